@@ -1,0 +1,16 @@
+# Two interface targets: how the library's own sources are compiled, and the warnings that all sources obey.
+
+add_library(holonomic_warnings INTERFACE)
+if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+    target_compile_options(holonomic_warnings INTERFACE
+        $<$<COMPILE_LANGUAGE:C,CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow>)
+endif()
+
+add_library(holonomic_flags INTERFACE)
+target_compile_features(holonomic_flags INTERFACE cxx_std_17)
+if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+    # Products and sums are fused only where the source says fma: the compensated arithmetic depends on knowing which
+    # operations round, and results must not depend on the compiler's taste. Nothing reads errno after sqrt.
+    target_compile_options(holonomic_flags INTERFACE
+        $<$<COMPILE_LANGUAGE:CXX>:-fvisibility=hidden -fvisibility-inlines-hidden -ffp-contract=off -fno-math-errno>)
+endif()
