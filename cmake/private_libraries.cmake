@@ -1,0 +1,38 @@
+# What a program that is not linked by the C++ compiler must name beside the static library: the C++ run-time library
+# and, if it is used, OpenMP's, as this compiler and CMake's FindOpenMP report them.
+#
+#   holonomic_private_libraries(names flags)
+#       names  a list for target_link_libraries
+#       flags  a string for Libs.private in a pkg-config file
+function(holonomic_private_libraries names_out flags_out)
+    set(names)
+    set(flags)
+    foreach(library IN LISTS CMAKE_CXX_IMPLICIT_LINK_LIBRARIES)
+        # The compiler's own support library and libc are there in any language.
+        if(NOT library IN_LIST CMAKE_C_IMPLICIT_LINK_LIBRARIES AND NOT library MATCHES "^(c|gcc|gcc_s)$")
+            list(APPEND names ${library})
+            if(IS_ABSOLUTE ${library})
+                list(APPEND flags ${library})
+            else()
+                list(APPEND flags -l${library})
+            endif()
+        endif()
+    endforeach()
+    if(OpenMP_CXX_FOUND)
+        foreach(library IN LISTS OpenMP_CXX_LIB_NAMES)
+            get_filename_component(folder "${OpenMP_${library}_LIBRARY}" DIRECTORY)
+            if(folder AND NOT folder IN_LIST CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES)
+                list(APPEND names ${OpenMP_${library}_LIBRARY})
+                list(APPEND flags -L${folder})
+            else()
+                list(APPEND names ${library})
+            endif()
+            list(APPEND flags -l${library})
+        endforeach()
+    endif()
+    list(REMOVE_DUPLICATES names)
+    list(REMOVE_DUPLICATES flags)
+    string(REPLACE ";" " " flags "${flags}")
+    set(${names_out} ${names} PARENT_SCOPE)
+    set(${flags_out} ${flags} PARENT_SCOPE)
+endfunction()
