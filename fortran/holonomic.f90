@@ -1,0 +1,65 @@
+! Exact Lagrange multipliers and constraint forces of chains of rigid bonds: the Fortran side of the library.
+!
+!     use holonomic
+!     type(hol_chains) :: chains
+!     call chains%create(masses)                                   ! 0 = held fixed
+!     call chains%add(atoms=[1, 2, 3, 4], lengths=[1.54d0, 1.54d0, 1.54d0])
+!     call chains%forces(r, v, f, g=g, tension=tension)            ! g: the constraint forces
+!     call chains%project_positions(r_ref, r, dt, v)               ! SHAKE, RATTLE's first half
+!     call chains%project_velocities(r, v)                         ! RATTLE's second half
+!     call chains%destroy()
+!
+! The arguments are those of the C functions of the same name (holonomic.h), in docs/fortran.md; everything is counted
+! from 1. Every procedure has the optional arguments stat and errmsg of ALLOCATE.
+module holonomic
+   use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_loc
+   use, intrinsic :: iso_fortran_env, only: int64
+   use holonomic_c, only: hol_report, hol_worst, HOL_OK, HOL_ERR_NULL, HOL_ERR_VALUE, HOL_ERR_INDEX, &
+                          HOL_ERR_SHARED_ATOM, HOL_ERR_MEMORY, HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE, &
+                          HOL_ERR_NO_CONVERGENCE, HOL_ERR_NOT_DEFINITE, HOL_ERR_INTERNAL, hol_version, hol_status_name, &
+                          hol_instruction_set, hol_error_location
+   use holonomic_status, only: text_of
+   use holonomic_violation, only: chain_set_violation
+   implicit none
+   private
+   public :: hol_chains, hol_report, hol_worst
+   public :: holonomic_version, holonomic_status_name, holonomic_instruction_set, holonomic_error_location
+   public :: HOL_OK, HOL_ERR_NULL, HOL_ERR_VALUE, HOL_ERR_INDEX, HOL_ERR_SHARED_ATOM, HOL_ERR_MEMORY, &
+             HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE, HOL_ERR_NO_CONVERGENCE, HOL_ERR_NOT_DEFINITE, HOL_ERR_INTERNAL
+
+   ! Chains of rigid bonds. The variable that was created owns them until its destroy: there is no finalizer. A copy made
+   ! by assignment refers to the same chains, owns nothing, and must not be used after the owner's destroy.
+   type, extends(chain_set_violation) :: hol_chains
+   end type
+
+contains
+
+   function holonomic_version() result(text)
+      character(:), allocatable :: text
+      text = text_of(hol_version())
+   end function
+
+   function holonomic_status_name(status) result(text)
+      integer, intent(in) :: status
+      character(:), allocatable :: text
+      text = text_of(hol_status_name(int(status, c_int)))
+   end function
+
+   function holonomic_instruction_set() result(text)
+      character(:), allocatable :: text
+      text = text_of(hol_instruction_set())
+   end function
+
+   ! Where this thread's last failure inside the library was; -1: does not apply.
+   subroutine holonomic_error_location(chain, bond, atom, n_bad)
+      integer(int64), intent(out), optional :: chain, bond, atom, n_bad
+      integer(c_int64_t), target :: at(4)
+      at = -1
+      call hol_error_location(c_loc(at(1)), c_loc(at(2)), c_loc(at(3)), c_loc(at(4)))
+      if (present(chain)) chain = at(1)
+      if (present(bond)) bond = at(2)
+      if (present(atom)) atom = at(3)
+      if (present(n_bad)) n_bad = at(4)
+   end subroutine
+
+end module

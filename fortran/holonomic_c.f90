@@ -1,0 +1,269 @@
+! The C interface of the library (holonomic.h), declared for Fortran and nothing more: same names, same arguments, C's
+! conventions. What each function does is said in the header. Ordinary programs want the module `holonomic`.
+module holonomic_c
+   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_int32_t, c_int64_t, c_null_ptr, c_ptr
+   implicit none
+   public
+   private :: c_char, c_double, c_int, c_int32_t, c_int64_t, c_null_ptr, c_ptr
+
+   ! hol_status
+   integer(c_int), parameter :: HOL_OK = 0
+   integer(c_int), parameter :: HOL_ERR_NULL = 1
+   integer(c_int), parameter :: HOL_ERR_VALUE = 2
+   integer(c_int), parameter :: HOL_ERR_INDEX = 3
+   integer(c_int), parameter :: HOL_ERR_SHARED_ATOM = 4
+   integer(c_int), parameter :: HOL_ERR_MEMORY = 5
+   integer(c_int), parameter :: HOL_ERR_NOT_FINITE = 6
+   integer(c_int), parameter :: HOL_ERR_DEGENERATE = 7
+   integer(c_int), parameter :: HOL_ERR_NO_CONVERGENCE = 8
+   integer(c_int), parameter :: HOL_ERR_NOT_DEFINITE = 9
+   integer(c_int), parameter :: HOL_ERR_INTERNAL = 10
+
+   ! hol_element
+   integer(c_int32_t), parameter :: HOL_DOUBLE = 0
+   integer(c_int32_t), parameter :: HOL_FLOAT = 1
+
+   ! hol_mode
+   integer(c_int), parameter :: HOL_WRITE = 0
+   integer(c_int), parameter :: HOL_ADD = 1
+
+   type, bind(c) :: hol_view
+      type(c_ptr) :: x = c_null_ptr
+      type(c_ptr) :: y = c_null_ptr
+      type(c_ptr) :: z = c_null_ptr
+      integer(c_int64_t) :: stride = 0
+      integer(c_int32_t) :: element = HOL_DOUBLE
+      integer(c_int32_t) :: reserved = 0
+   end type
+
+   type, bind(c) :: hol_report
+      integer(c_int64_t) :: iterations = 0
+      integer(c_int64_t) :: n_corrected = 0
+      integer(c_int64_t) :: n_failed = 0
+      integer(c_int64_t) :: chain = 0
+      integer(c_int64_t) :: bond = 0
+      real(c_double) :: max_error = 0
+   end type
+
+   type, bind(c) :: hol_worst
+      real(c_double) :: length = 0
+      integer(c_int64_t) :: length_chain = 0
+      integer(c_int64_t) :: length_bond = 0
+      real(c_double) :: rate = 0
+      integer(c_int64_t) :: rate_chain = 0
+      integer(c_int64_t) :: rate_bond = 0
+   end type
+
+   ! Arguments that may be NULL are `type(c_ptr), value`: C_LOC of what is there, or C_NULL_PTR.
+   interface
+
+      ! ---------------------------------------------------------------------------------------- status and errors
+
+      function hol_version() bind(c) result(text)
+         import :: c_ptr
+         type(c_ptr) :: text
+      end function
+
+      function hol_status_name(status) bind(c) result(text)
+         import :: c_int, c_ptr
+         integer(c_int), value :: status
+         type(c_ptr) :: text
+      end function
+
+      function hol_error_message() bind(c) result(text)
+         import :: c_ptr
+         type(c_ptr) :: text
+      end function
+
+      subroutine hol_error_location(chain, bond, atom, n_bad) bind(c)
+         import :: c_ptr
+         type(c_ptr), value :: chain, bond, atom, n_bad
+      end subroutine
+
+      function hol_instruction_set() bind(c) result(text)
+         import :: c_ptr
+         type(c_ptr) :: text
+      end function
+
+      ! --------------------------------------------------------------------------------------------------- chains
+
+      function hol_chains_create(n_atoms, masses, chains) bind(c) result(status)
+         import :: c_int, c_int64_t, c_ptr
+         integer(c_int64_t), value :: n_atoms
+         type(c_ptr), value :: masses
+         type(c_ptr), intent(out) :: chains
+         integer(c_int) :: status
+      end function
+
+      subroutine hol_chains_destroy(chains) bind(c)
+         import :: c_ptr
+         type(c_ptr), value :: chains
+      end subroutine
+
+      function hol_chains_add(chains, n_bonds, atoms, lengths) bind(c) result(status)
+         import :: c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t), value :: n_bonds
+         type(c_ptr), value :: atoms, lengths
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_add_block(chains, n_chains, n_bonds, first_atom, lengths) bind(c) result(status)
+         import :: c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t), value :: n_chains, n_bonds, first_atom
+         type(c_ptr), value :: lengths
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_set_index_base(chains, base) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int), value :: base
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_set_box(chains, box) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, box
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_set_threads(chains, n_threads) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int), value :: n_threads
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_set_active(chains, active) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, active
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_set_tolerance(chains, tolerance) bind(c) result(status)
+         import :: c_double, c_int, c_ptr
+         type(c_ptr), value :: chains
+         real(c_double), value :: tolerance
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_set_max_iterations(chains, max_iterations) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int), value :: max_iterations
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_n_atoms(chains) bind(c) result(n)
+         import :: c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t) :: n
+      end function
+
+      function hol_chains_n_chains(chains) bind(c) result(n)
+         import :: c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t) :: n
+      end function
+
+      function hol_chains_n_bonds(chains) bind(c) result(n)
+         import :: c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t) :: n
+      end function
+
+      function hol_chains_offsets(chains, offsets) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, offsets
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_atoms(chains, chain, atoms) bind(c) result(status)
+         import :: c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t), value :: chain
+         type(c_ptr), value :: atoms
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_degrees_of_freedom(chains, dimensions) bind(c) result(n)
+         import :: c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int), value :: dimensions
+         integer(c_int64_t) :: n
+      end function
+
+      function hol_chains_memory(chains) bind(c) result(n)
+         import :: c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t) :: n
+      end function
+
+      ! ------------------------------------------------------------------------------------------- the three levels
+
+      function hol_forces(chains, r, v, f, lambda, tension, g, mode, virial) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, r, v, f, lambda, tension, g
+         integer(c_int), value :: mode
+         type(c_ptr), value :: virial
+         integer(c_int) :: status
+      end function
+
+      function hol_forces_view(chains, r, v, f, lambda, tension, g, mode, virial) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, r, v, f, lambda, tension, g
+         integer(c_int), value :: mode
+         type(c_ptr), value :: virial
+         integer(c_int) :: status
+      end function
+
+      function hol_project_velocities(chains, r, v, lambda, virial) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, r, v, lambda, virial
+         integer(c_int) :: status
+      end function
+
+      function hol_project_velocities_view(chains, r, v, lambda, virial) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, r, v, lambda, virial
+         integer(c_int) :: status
+      end function
+
+      function hol_project_positions(chains, r_ref, r, v, dt, lambda, guess, virial, report) bind(c) result(status)
+         import :: c_double, c_int, c_ptr
+         type(c_ptr), value :: chains, r_ref, r, v
+         real(c_double), value :: dt
+         type(c_ptr), value :: lambda
+         integer(c_int), value :: guess
+         type(c_ptr), value :: virial, report
+         integer(c_int) :: status
+      end function
+
+      function hol_project_positions_view(chains, r_ref, r, v, dt, lambda, guess, virial, report) &
+         bind(c) result(status)
+         import :: c_double, c_int, c_ptr
+         type(c_ptr), value :: chains, r_ref, r, v
+         real(c_double), value :: dt
+         type(c_ptr), value :: lambda
+         integer(c_int), value :: guess
+         type(c_ptr), value :: virial, report
+         integer(c_int) :: status
+      end function
+
+      function hol_violation(chains, r, v, worst) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, r, v, worst
+         integer(c_int) :: status
+      end function
+
+      function hol_violation_view(chains, r, v, worst) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, r, v, worst
+         integer(c_int) :: status
+      end function
+
+   end interface
+
+end module

@@ -1,0 +1,188 @@
+! Which atoms are joined by rigid bonds. Here type(hol_chains) begins: chains are created, added and destroyed. The
+! modules holonomic_settings, holonomic_counts, holonomic_forces and so on extend the type, each by one ability; the
+! module `holonomic` has the whole. Atoms, bonds and chains are counted from 1.
+module holonomic_chains
+   use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
+   use, intrinsic :: iso_fortran_env, only: int32, int64, real64
+   use holonomic_c, only: hol_chains_add, hol_chains_add_block, hol_chains_create, hol_chains_destroy, &
+                          hol_chains_set_index_base, hol_error_location, HOL_ERR_VALUE
+   use holonomic_place, only: decimal
+   use holonomic_status, only: failure, settle
+   implicit none
+   private
+   public :: chain_set
+
+   type :: chain_set
+      private
+      type(c_ptr) :: handle = c_null_ptr
+      logical :: is_owner = .false.
+   contains
+      procedure :: create
+      procedure :: destroy
+      procedure, private :: add_list_32, add_list_64, add_list_one_length_32, add_list_one_length_64
+      procedure, private :: add_block_32, add_block_64, add_block_one_length_32, add_block_one_length_64
+      ! add(atoms, lengths): one chain by its atoms. add(n_chains, n_bonds, first_atom, lengths): a block of chains.
+      generic :: add => add_list_32, add_list_64, add_list_one_length_32, add_list_one_length_64, &
+         add_block_32, add_block_64, add_block_one_length_32, add_block_one_length_64
+      procedure :: c_handle   ! for calls of the module holonomic_c
+      procedure, private :: share
+      generic :: assignment(=) => share
+   end type
+
+contains
+
+   subroutine create(self, masses, stat, errmsg)
+      class(chain_set), intent(inout) :: self
+      real(real64), intent(in), contiguous, target :: masses(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      integer(c_int64_t), target :: atom
+      real(real64), target :: no_mass(1)
+      integer(c_int) :: status
+      if (c_associated(self%handle)) then
+         call problem%set(HOL_ERR_VALUE, "these chains have been created already; destroy them first")
+      else
+         no_mass = 0
+         if (size(masses) == 0) then
+            status = hol_chains_create(0_c_int64_t, c_loc(no_mass), self%handle)
+         else
+            status = hol_chains_create(size(masses, kind=c_int64_t), c_loc(masses), self%handle)
+         end if
+         if (status == HOL_ERR_VALUE) then
+            ! The C function has no index base yet, and its message would count the atoms from 0.
+            call hol_error_location(c_null_ptr, c_null_ptr, c_loc(atom), c_null_ptr)
+            if (atom >= 0) call problem%set(status, "the mass of atom "//decimal(atom + 1)// &
+                                            " is negative, not a number or too small")
+         end if
+         call problem%ask(status)
+         if (problem%none()) call problem%ask(hol_chains_set_index_base(self%handle, 1_c_int))
+         self%is_owner = problem%none()
+      end if
+      call settle(problem, stat, errmsg)
+   end subroutine
+
+   ! A copy made by assignment only forgets the chains: they belong to the variable that created them.
+   impure elemental subroutine destroy(self)
+      class(chain_set), intent(inout) :: self
+      if (self%is_owner) call hol_chains_destroy(self%handle)
+      self%handle = c_null_ptr
+      self%is_owner = .false.
+   end subroutine
+
+   impure elemental subroutine share(self, other)
+      class(chain_set), intent(inout) :: self
+      class(chain_set), intent(in) :: other
+      if (c_associated(self%handle)) then
+         if (c_associated(self%handle, other%handle)) return
+         call self%destroy()
+      end if
+      self%handle = other%handle
+      self%is_owner = .false.
+   end subroutine
+
+   subroutine add_list_64(self, atoms, lengths, stat, errmsg)
+      class(chain_set), intent(inout) :: self
+      integer(int64), intent(in), contiguous, target :: atoms(:)
+      real(real64), intent(in), contiguous, target :: lengths(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      integer(c_int64_t) :: n_bonds
+      n_bonds = size(atoms, kind=c_int64_t) - 1
+      if (size(lengths, kind=c_int64_t) /= max(n_bonds, 0_c_int64_t)) then
+         call problem%set(HOL_ERR_VALUE, "add: "//decimal(size(lengths, kind=c_int64_t))//" lengths were given for "// &
+                          decimal(max(n_bonds, 0_c_int64_t))//" bonds")
+      else if (n_bonds < 1) then
+         call problem%set(HOL_ERR_VALUE, "add: a chain needs at least two atoms")
+      else
+         call problem%ask(hol_chains_add(self%handle, n_bonds, c_loc(atoms), c_loc(lengths)))
+      end if
+      call settle(problem, stat, errmsg)
+   end subroutine
+
+   subroutine add_list_32(self, atoms, lengths, stat, errmsg)
+      class(chain_set), intent(inout) :: self
+      integer(int32), intent(in) :: atoms(:)
+      real(real64), intent(in), contiguous, target :: lengths(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      call self%add(int(atoms, int64), lengths, stat, errmsg)
+   end subroutine
+
+   subroutine add_list_one_length_64(self, atoms, lengths, stat, errmsg)
+      class(chain_set), intent(inout) :: self
+      integer(int64), intent(in), contiguous, target :: atoms(:)
+      real(real64), intent(in) :: lengths
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      call self%add(atoms, repeated(lengths, size(atoms, kind=int64) - 1), stat, errmsg)
+   end subroutine
+
+   subroutine add_list_one_length_32(self, atoms, lengths, stat, errmsg)
+      class(chain_set), intent(inout) :: self
+      integer(int32), intent(in) :: atoms(:)
+      real(real64), intent(in) :: lengths
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      call self%add(int(atoms, int64), repeated(lengths, size(atoms, kind=int64) - 1), stat, errmsg)
+   end subroutine
+
+   subroutine add_block_64(self, n_chains, n_bonds, first_atom, lengths, stat, errmsg)
+      class(chain_set), intent(inout) :: self
+      integer(int64), intent(in) :: n_chains, n_bonds, first_atom
+      real(real64), intent(in), contiguous, target :: lengths(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      if (n_bonds < 1) then
+         call problem%set(HOL_ERR_VALUE, "add: n_bonds = "//decimal(n_bonds)//" must be at least 1")
+      else if (size(lengths, kind=int64) /= n_bonds) then
+         call problem%set(HOL_ERR_VALUE, "add: "//decimal(size(lengths, kind=int64))//" lengths were given for "// &
+                          decimal(n_bonds)//" bonds")
+      else
+         call problem%ask(hol_chains_add_block(self%handle, n_chains, n_bonds, first_atom, c_loc(lengths)))
+      end if
+      call settle(problem, stat, errmsg)
+   end subroutine
+
+   subroutine add_block_32(self, n_chains, n_bonds, first_atom, lengths, stat, errmsg)
+      class(chain_set), intent(inout) :: self
+      integer(int32), intent(in) :: n_chains, n_bonds, first_atom
+      real(real64), intent(in), contiguous, target :: lengths(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      call self%add(int(n_chains, int64), int(n_bonds, int64), int(first_atom, int64), lengths, stat, errmsg)
+   end subroutine
+
+   subroutine add_block_one_length_64(self, n_chains, n_bonds, first_atom, lengths, stat, errmsg)
+      class(chain_set), intent(inout) :: self
+      integer(int64), intent(in) :: n_chains, n_bonds, first_atom
+      real(real64), intent(in) :: lengths
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      call self%add(n_chains, n_bonds, first_atom, repeated(lengths, n_bonds), stat, errmsg)
+   end subroutine
+
+   subroutine add_block_one_length_32(self, n_chains, n_bonds, first_atom, lengths, stat, errmsg)
+      class(chain_set), intent(inout) :: self
+      integer(int32), intent(in) :: n_chains, n_bonds, first_atom
+      real(real64), intent(in) :: lengths
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      call self%add(int(n_chains, int64), int(n_bonds, int64), int(first_atom, int64), lengths, stat, errmsg)
+   end subroutine
+
+   recursive type(c_ptr) function c_handle(self)
+      class(chain_set), intent(in) :: self
+      c_handle = self%handle
+   end function
+
+   pure function repeated(length, n) result(lengths)
+      real(real64), intent(in) :: length
+      integer(int64), intent(in) :: n
+      real(real64), allocatable :: lengths(:)
+      allocate (lengths(max(n, 0_int64)), source=length)
+   end function
+
+end module

@@ -1,0 +1,257 @@
+! Where the caller's arrays per atom stand in memory. Nothing is copied: the view that C gets has the address of the
+! first element and the distance to the next, as the array's descriptor tells, so that sections such as atoms(:)%x,
+! r(:, ::2) or r(:3, :) do as they are. (Separate x, y, z of which each has a stride of its own are the exception: they
+! are copied before and given back after.)
+module holonomic_place
+   use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_int8_t, c_intptr_t, c_loc, c_null_ptr, c_ptr, c_size_t
+   use, intrinsic :: iso_fortran_env, only: real32, real64
+   use holonomic_c, only: hol_view, HOL_DOUBLE, HOL_FLOAT, HOL_ERR_MEMORY, HOL_ERR_NULL, HOL_ERR_VALUE
+   use holonomic_status, only: failure
+   implicit none
+   private
+   public :: place, decimal, enough, per_bond, tensor
+
+   ! One component of all atoms.
+   type :: line
+      integer(c_intptr_t) :: first = 0   ! address
+      integer(c_intptr_t) :: stride = 0  ! bytes
+      integer(c_int64_t) :: extent = -1  ! -1: the caller gave no such array
+   end type
+
+   type :: place
+      logical :: given = .false.
+      type(hol_view) :: view
+      type(line), private :: lines(3)
+      integer(c_int8_t), allocatable, private :: copy(:, :, :)  ! (bytes of an element, n_atoms, 2 or 3)
+   contains
+      ! rows_*(n_atoms, problem, name, array): an array (3, n) or (2, n).
+      ! parts_*(n_atoms, problem, name, x, y, z): separate arrays, where a * in the name stands for x, y and z.
+      procedure :: rows_32, rows_64, parts_32, parts_64
+      procedure :: address
+      procedure :: give_back   ! after the call, for arrays that it writes
+      procedure, private :: put
+   end type
+
+   interface
+      function c_memcpy(to, from, n) bind(c, name="memcpy") result(same)
+         import :: c_intptr_t, c_size_t
+         integer(c_intptr_t), value :: to, from
+         integer(c_size_t), value :: n
+         integer(c_intptr_t) :: same
+      end function
+   end interface
+
+contains
+
+   ! Of the view, for C; NULL if the caller gave no such array.
+   recursive type(c_ptr) function address(self)
+      class(place), intent(in), target :: self
+      address = c_null_ptr
+      if (self%given) address = c_loc(self%view)
+   end function
+
+   recursive subroutine rows_32(self, n_atoms, problem, name, array)
+      class(place), intent(inout), target :: self
+      integer(c_int64_t), intent(in) :: n_atoms
+      type(failure), intent(inout) :: problem
+      character(*), intent(in) :: name
+      real(real32), optional, target :: array(:, :)
+      if (.not. present(array)) return
+      if (.not. has_rows(size(array, 1), name, problem)) return
+      if (size(array, 1) == 3) then
+         call self%parts_32(n_atoms, problem, name, array(1, :), array(2, :), array(3, :))
+      else
+         call self%parts_32(n_atoms, problem, name, array(1, :), array(2, :))
+      end if
+   end subroutine
+
+   recursive subroutine rows_64(self, n_atoms, problem, name, array)
+      class(place), intent(inout), target :: self
+      integer(c_int64_t), intent(in) :: n_atoms
+      type(failure), intent(inout) :: problem
+      character(*), intent(in) :: name
+      real(real64), optional, target :: array(:, :)
+      if (.not. present(array)) return
+      if (.not. has_rows(size(array, 1), name, problem)) return
+      if (size(array, 1) == 3) then
+         call self%parts_64(n_atoms, problem, name, array(1, :), array(2, :), array(3, :))
+      else
+         call self%parts_64(n_atoms, problem, name, array(1, :), array(2, :))
+      end if
+   end subroutine
+
+   recursive subroutine parts_32(self, n_atoms, problem, name, x, y, z)
+      class(place), intent(inout), target :: self
+      integer(c_int64_t), intent(in) :: n_atoms
+      type(failure), intent(inout) :: problem
+      character(*), intent(in) :: name
+      real(real32), optional, target :: x(:), y(:)
+      real(real32), optional, target :: z(:)
+      call self%put(n_atoms, problem, name, HOL_FLOAT, line_of_32(x), line_of_32(y), line_of_32(z))
+   end subroutine
+
+   recursive subroutine parts_64(self, n_atoms, problem, name, x, y, z)
+      class(place), intent(inout), target :: self
+      integer(c_int64_t), intent(in) :: n_atoms
+      type(failure), intent(inout) :: problem
+      character(*), intent(in) :: name
+      real(real64), optional, target :: x(:), y(:)
+      real(real64), optional, target :: z(:)
+      call self%put(n_atoms, problem, name, HOL_DOUBLE, line_of_64(x), line_of_64(y), line_of_64(z))
+   end subroutine
+
+   ! An array of one atom has no stride, and gets the size of its element.
+   recursive function line_of_32(array) result(found)
+      real(real32), optional, target :: array(:)
+      type(line) :: found
+      if (.not. present(array)) return
+      found%extent = size(array, kind=c_int64_t)
+      found%stride = storage_size(array)/8
+      if (found%extent >= 1) found%first = transfer(c_loc(array(1)), found%first)
+      if (found%extent >= 2) found%stride = transfer(c_loc(array(2)), found%first) - found%first
+   end function
+
+   recursive function line_of_64(array) result(found)
+      real(real64), optional, target :: array(:)
+      type(line) :: found
+      if (.not. present(array)) return
+      found%extent = size(array, kind=c_int64_t)
+      found%stride = storage_size(array)/8
+      if (found%extent >= 1) found%first = transfer(c_loc(array(1)), found%first)
+      if (found%extent >= 2) found%stride = transfer(c_loc(array(2)), found%first) - found%first
+   end function
+
+   recursive logical function has_rows(n_rows, name, problem)
+      integer, intent(in) :: n_rows
+      character(*), intent(in) :: name
+      type(failure), intent(inout) :: problem
+      has_rows = n_rows == 3 .or. n_rows == 2
+      if (.not. has_rows) call problem%set(HOL_ERR_VALUE, "the first dimension of "//name//" must be 3 (or 2), not " &
+                                           //decimal(int(n_rows, c_int64_t)))
+   end function
+
+   recursive subroutine put(self, n_atoms, problem, name, element, x, y, z)
+      class(place), intent(inout), target :: self
+      integer(c_int64_t), intent(in) :: n_atoms
+      type(failure), intent(inout) :: problem
+      character(*), intent(in) :: name
+      integer(c_int32_t), intent(in) :: element
+      type(line), intent(in) :: x, y, z
+      integer :: part, n_parts
+      self%lines = [x, y, z]
+      if (all(self%lines%extent < 0)) return
+      if (x%extent < 0 .or. y%extent < 0) then
+         call problem%set(HOL_ERR_NULL, named(name, "x")//" and "//named(name, "y")//" must be given together")
+         return
+      end if
+      n_parts = merge(3, 2, z%extent >= 0)
+      do part = 1, n_parts
+         if (.not. enough(named(name, "xyz"(part:part)), self%lines(part)%extent, n_atoms, "atoms", problem)) return
+      end do
+      self%given = .true.
+      self%view%element = element
+      if (n_atoms == 0) then
+         ! Nothing to point at, but NULL would mean that the array is not there.
+         self%lines(:n_parts)%first = transfer(c_loc(self%view), x%first)
+      else if (any(self%lines(:n_parts)%stride /= x%stride) .and. n_atoms > 1) then
+         if (.not. take_copy(self, n_atoms, n_parts, problem)) return
+      end if
+      self%view%stride = self%lines(1)%stride
+      self%view%x = transfer(self%lines(1)%first, c_null_ptr)
+      self%view%y = transfer(self%lines(2)%first, c_null_ptr)
+      if (n_parts == 3) self%view%z = transfer(self%lines(3)%first, c_null_ptr)
+      if (allocated(self%copy)) then
+         ! C works on the copy; the lines keep the places of the originals for give_back.
+         self%view%stride = size(self%copy, 1)
+         self%view%x = c_loc(self%copy(1, 1, 1))
+         self%view%y = c_loc(self%copy(1, 1, 2))
+         if (n_parts == 3) self%view%z = c_loc(self%copy(1, 1, 3))
+      end if
+   end subroutine
+
+   recursive logical function take_copy(self, n_atoms, n_parts, problem)
+      class(place), intent(inout), target :: self
+      integer(c_int64_t), intent(in) :: n_atoms
+      integer, intent(in) :: n_parts
+      type(failure), intent(inout) :: problem
+      integer :: bytes, stat
+      bytes = merge(8, 4, self%view%element == HOL_DOUBLE)
+      allocate (self%copy(bytes, n_atoms, n_parts), stat=stat)
+      take_copy = stat == 0
+      if (take_copy) then
+         call move_elements(self%lines, self%copy, back=.false.)
+      else
+         call problem%set(HOL_ERR_MEMORY, "out of memory for copies of x, y and z, whose strides differ")
+      end if
+   end function
+
+   recursive subroutine give_back(self)
+      class(place), intent(in), target :: self
+      if (allocated(self%copy)) call move_elements(self%lines, self%copy, back=.true.)
+   end subroutine
+
+   recursive subroutine move_elements(lines, copy, back)
+      type(line), intent(in) :: lines(3)
+      integer(c_int8_t), contiguous, target :: copy(:, :, :)
+      logical, intent(in) :: back
+      integer(c_intptr_t) :: theirs, ours, same
+      integer(c_int64_t) :: atom
+      integer :: part
+      do part = 1, size(copy, 3)
+         do atom = 1, size(copy, 2, c_int64_t)
+            theirs = lines(part)%first + (atom - 1)*lines(part)%stride
+            ours = transfer(c_loc(copy(1, atom, part)), ours)
+            if (back) then
+               same = c_memcpy(theirs, ours, size(copy, 1, c_size_t))
+            else
+               same = c_memcpy(ours, theirs, size(copy, 1, c_size_t))
+            end if
+         end do
+      end do
+   end subroutine
+
+   ! Whether an array has the elements that are needed; more do no harm, as in codes that dimension for the worst case.
+   recursive logical function enough(name, extent, needed, what, problem)
+      character(*), intent(in) :: name, what
+      integer(c_int64_t), intent(in) :: extent, needed
+      type(failure), intent(inout) :: problem
+      enough = extent >= needed
+      if (.not. enough) call problem%set(HOL_ERR_VALUE, name//" has "//decimal(extent)//" elements, too few for " &
+                                         //decimal(needed)//" "//what)
+   end function
+
+   ! Of an array per bond, after a check of its size; NULL if the caller gave none.
+   recursive type(c_ptr) function per_bond(array, name, n_bonds, problem)
+      real(real64), optional, contiguous, target :: array(:)
+      character(*), intent(in) :: name
+      integer(c_int64_t), intent(in) :: n_bonds
+      type(failure), intent(inout) :: problem
+      per_bond = c_null_ptr
+      if (.not. present(array)) return
+      if (enough(name, size(array, kind=c_int64_t), n_bonds, "bonds", problem)) per_bond = c_loc(array)
+   end function
+
+   recursive type(c_ptr) function tensor(matrix)
+      real(real64), optional, target :: matrix(3, 3)
+      tensor = c_null_ptr
+      if (present(matrix)) tensor = c_loc(matrix)
+   end function
+
+   pure recursive function named(pattern, component) result(name)
+      character(*), intent(in) :: pattern, component
+      character(:), allocatable :: name
+      integer :: at
+      at = index(pattern, "*")
+      name = pattern
+      if (at > 0) name = pattern(:at - 1)//component//pattern(at + 1:)
+   end function
+
+   pure recursive function decimal(n) result(text)
+      integer(c_int64_t), intent(in) :: n
+      character(:), allocatable :: text
+      character(20) :: digits
+      write (digits, "(i0)") n
+      text = trim(digits)
+   end function
+
+end module

@@ -1,0 +1,106 @@
+! Options of the chains, which a run may change between its steps.
+module holonomic_settings
+   use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_loc, c_null_ptr, c_signed_char
+   use, intrinsic :: iso_fortran_env, only: real64
+   use holonomic_c, only: hol_chains_n_chains, hol_chains_set_active, hol_chains_set_box, &
+                          hol_chains_set_max_iterations, hol_chains_set_threads, hol_chains_set_tolerance, &
+                          HOL_ERR_MEMORY
+   use holonomic_chains, only: chain_set
+   use holonomic_place, only: enough, tensor
+   use holonomic_status, only: failure, settle
+   implicit none
+   private
+   public :: chain_set_settings
+
+   type, extends(chain_set) :: chain_set_settings
+   contains
+      procedure, private :: set_box_matrix, set_box_lengths
+      generic :: set_box => set_box_matrix, set_box_lengths
+      procedure :: set_threads
+      procedure :: set_active
+      procedure :: set_tolerance
+      procedure :: set_max_iterations
+   end type
+
+contains
+
+   ! Column i is box vector i; a column of zeros: not periodic along that axis. Without an argument: no box.
+   subroutine set_box_matrix(self, box, stat, errmsg)
+      class(chain_set_settings), intent(inout) :: self
+      real(real64), intent(in), optional, target :: box(3, 3)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      call problem%ask(hol_chains_set_box(self%c_handle(), tensor(box)))
+      call settle(problem, stat, errmsg)
+   end subroutine
+
+   ! An orthorhombic box by its three edges; an edge of zero: not periodic along that axis.
+   subroutine set_box_lengths(self, lengths, stat, errmsg)
+      class(chain_set_settings), intent(inout) :: self
+      real(real64), intent(in) :: lengths(3)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      real(real64) :: box(3, 3)
+      integer :: i
+      box = 0
+      do i = 1, 3
+         box(i, i) = lengths(i)
+      end do
+      call self%set_box(box, stat, errmsg)
+   end subroutine
+
+   subroutine set_threads(self, n_threads, stat, errmsg)
+      class(chain_set_settings), intent(inout) :: self
+      integer, intent(in) :: n_threads
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      call problem%ask(hol_chains_set_threads(self%c_handle(), int(n_threads, c_int)))
+      call settle(problem, stat, errmsg)
+   end subroutine
+
+   ! Without an argument all chains are active.
+   subroutine set_active(self, active, stat, errmsg)
+      class(chain_set_settings), intent(inout) :: self
+      logical, intent(in), optional :: active(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      integer(c_signed_char), allocatable, target :: flags(:)
+      type(failure) :: problem
+      integer :: trouble
+      if (.not. present(active)) then
+         call problem%ask(hol_chains_set_active(self%c_handle(), c_null_ptr))
+      else if (enough("active", size(active, kind=c_int64_t), hol_chains_n_chains(self%c_handle()), "chains", problem)) then
+         allocate (flags(max(1, size(active))), stat=trouble)
+         if (trouble /= 0) then
+            call problem%set(HOL_ERR_MEMORY, "set_active: out of memory")
+         else
+            flags(:size(active)) = merge(1_c_signed_char, 0_c_signed_char, active)
+            call problem%ask(hol_chains_set_active(self%c_handle(), c_loc(flags)))
+         end if
+      end if
+      call settle(problem, stat, errmsg)
+   end subroutine
+
+   subroutine set_tolerance(self, tolerance, stat, errmsg)
+      class(chain_set_settings), intent(inout) :: self
+      real(real64), intent(in) :: tolerance
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      call problem%ask(hol_chains_set_tolerance(self%c_handle(), tolerance))
+      call settle(problem, stat, errmsg)
+   end subroutine
+
+   subroutine set_max_iterations(self, max_iterations, stat, errmsg)
+      class(chain_set_settings), intent(inout) :: self
+      integer, intent(in) :: max_iterations
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      call problem%ask(hol_chains_set_max_iterations(self%c_handle(), int(max_iterations, c_int)))
+      call settle(problem, stat, errmsg)
+   end subroutine
+
+end module

@@ -1,0 +1,75 @@
+! How a failure reaches the caller: `stat` and `errmsg` as in ALLOCATE. If `stat` is present the procedure returns, with
+! a hol_status in it (0 on success) and the reason in `errmsg`, which a success leaves alone; if `stat` is absent a
+! failure stops the program with the reason.
+module holonomic_status
+   use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_int, c_ptr, c_size_t
+   use holonomic_c, only: hol_error_message, HOL_OK
+   implicit none
+   private
+   public :: failure, settle, text_of
+
+   ! The first thing found wrong with the arguments of a call, or what the library said about it.
+   type :: failure
+      integer(c_int) :: status = HOL_OK
+      character(:), allocatable :: message
+   contains
+      procedure :: none
+      procedure :: set
+      procedure :: ask
+   end type
+
+   interface
+      function c_strlen(text) bind(c, name="strlen") result(n)
+         import :: c_ptr, c_size_t
+         type(c_ptr), value :: text
+         integer(c_size_t) :: n
+      end function
+   end interface
+
+contains
+
+   recursive logical function none(self)
+      class(failure), intent(in) :: self
+      none = self%status == HOL_OK
+   end function
+
+   recursive subroutine set(self, status, message)
+      class(failure), intent(inout) :: self
+      integer(c_int), intent(in) :: status
+      character(*), intent(in) :: message
+      if (.not. self%none()) return
+      self%status = status
+      self%message = message
+   end subroutine
+
+   ! Takes over the status of a C function, and its message if it failed.
+   recursive subroutine ask(self, status)
+      class(failure), intent(inout) :: self
+      integer(c_int), intent(in) :: status
+      if (status /= HOL_OK) call self%set(status, text_of(hol_error_message()))
+   end subroutine
+
+   recursive subroutine settle(problem, stat, errmsg)
+      type(failure), intent(in) :: problem
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      if (present(stat)) stat = int(problem%status)
+      if (problem%none()) return
+      if (.not. present(stat)) error stop "holonomic: "//problem%message
+      if (present(errmsg)) errmsg = problem%message
+   end subroutine
+
+   ! A Fortran copy of a C string.
+   recursive function text_of(address) result(text)
+      type(c_ptr), intent(in) :: address
+      character(:), allocatable :: text
+      character(kind=c_char), pointer :: letters(:)
+      integer :: i
+      call c_f_pointer(address, letters, [c_strlen(address)])
+      allocate (character(size(letters)) :: text)
+      do i = 1, size(letters)
+         text(i:i) = letters(i)
+      end do
+   end function
+
+end module
