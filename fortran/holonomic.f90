@@ -16,14 +16,15 @@ module holonomic
    use, intrinsic :: iso_fortran_env, only: int64
    use holonomic_c, only: hol_report, hol_worst, HOL_OK, HOL_ERR_NULL, HOL_ERR_VALUE, HOL_ERR_INDEX, &
                           HOL_ERR_SHARED_ATOM, HOL_ERR_MEMORY, HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE, &
-                          HOL_ERR_NO_CONVERGENCE, HOL_ERR_NOT_DEFINITE, HOL_ERR_INTERNAL, hol_version, hol_status_name, &
-                          hol_instruction_set, hol_error_location
+                          HOL_ERR_NO_CONVERGENCE, HOL_ERR_NOT_DEFINITE, HOL_ERR_INTERNAL, &
+                          c_version => hol_version, c_status_name => hol_status_name, &
+                          c_instruction_set => hol_instruction_set, c_error_location => hol_error_location
    use holonomic_status, only: text_of
    use holonomic_violation, only: chain_set_violation
    implicit none
    private
    public :: hol_chains, hol_report, hol_worst
-   public :: holonomic_version, holonomic_status_name, holonomic_instruction_set, holonomic_error_location
+   public :: hol_version, hol_status_name, hol_instruction_set, hol_error_location
    public :: HOL_OK, HOL_ERR_NULL, HOL_ERR_VALUE, HOL_ERR_INDEX, HOL_ERR_SHARED_ATOM, HOL_ERR_MEMORY, &
              HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE, HOL_ERR_NO_CONVERGENCE, HOL_ERR_NOT_DEFINITE, HOL_ERR_INTERNAL
 
@@ -32,30 +33,46 @@ module holonomic
    type, extends(chain_set_violation) :: hol_chains
    end type
 
+   interface hol_version
+      procedure :: version
+   end interface
+
+   interface hol_status_name
+      procedure :: status_name
+   end interface
+
+   interface hol_instruction_set
+      procedure :: instruction_set
+   end interface
+
+   interface hol_error_location
+      procedure :: error_location
+   end interface
+
 contains
 
-   function holonomic_version() result(text)
+   function version() result(text)
       character(:), allocatable :: text
-      text = text_of(hol_version())
+      text = text_of(c_version())
    end function
 
-   function holonomic_status_name(status) result(text)
+   function status_name(status) result(text)
       integer, intent(in) :: status
       character(:), allocatable :: text
-      text = text_of(hol_status_name(int(status, c_int)))
+      text = text_of(c_status_name(int(status, c_int)))
    end function
 
-   function holonomic_instruction_set() result(text)
+   function instruction_set() result(text)
       character(:), allocatable :: text
-      text = text_of(hol_instruction_set())
+      text = text_of(c_instruction_set())
    end function
 
    ! Where this thread's last failure inside the library was; -1: does not apply.
-   subroutine holonomic_error_location(chain, bond, atom, n_bad)
+   subroutine error_location(chain, bond, atom, n_bad)
       integer(int64), intent(out), optional :: chain, bond, atom, n_bad
       integer(c_int64_t), target :: at(4)
       at = -1
-      call hol_error_location(c_loc(at(1)), c_loc(at(2)), c_loc(at(3)), c_loc(at(4)))
+      call c_error_location(c_loc(at(1)), c_loc(at(2)), c_loc(at(3)), c_loc(at(4)))
       if (present(chain)) chain = at(1)
       if (present(bond)) bond = at(2)
       if (present(atom)) atom = at(3)
