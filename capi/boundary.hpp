@@ -1,0 +1,44 @@
+// The boundary between C callers and the core: no exception crosses it, every failure leaves a message.
+#ifndef HOLONOMIC_CAPI_BOUNDARY_HPP
+#define HOLONOMIC_CAPI_BOUNDARY_HPP
+
+#include <exception>
+#include <new>
+
+#include "core/chains.hpp"
+#include "core/error.hpp"
+#include "holonomic.h"
+
+struct hol_chains {
+    holonomic::Chains chains;
+    hol_chains(std::int64_t n_atoms, const double *masses) : chains(n_atoms, masses) {}
+};
+
+namespace holonomic {
+
+// Keeps the error for hol_error_message() and hol_error_location() of this thread; returns its status.
+int remember(const Error &error) noexcept;
+
+// Throws HOL_ERR_NULL if p is a null pointer.
+inline void need(const void *p, const char *name) {
+    if (!p) throw make_error(HOL_ERR_NULL, "%s is NULL", name);
+}
+
+template <class Body>
+int guarded(Body body) noexcept {
+    try {
+        body();
+        return HOL_OK;
+    } catch (const Error &error) {
+        return remember(error);
+    } catch (const std::bad_alloc &) {
+        return remember(make_error(HOL_ERR_MEMORY, "out of memory"));
+    } catch (const std::exception &error) {
+        return remember(make_error(HOL_ERR_INTERNAL, "internal error: %s", error.what()));
+    } catch (...) {
+        return remember(make_error(HOL_ERR_INTERNAL, "internal error"));
+    }
+}
+
+}  // namespace holonomic
+#endif

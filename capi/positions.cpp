@@ -1,0 +1,49 @@
+#include "core/positions.hpp"
+
+#include <cmath>
+
+#include "boundary.hpp"
+#include "core/view.hpp"
+
+using holonomic::AtomArray;
+using holonomic::guarded;
+using holonomic::make_error;
+using holonomic::need;
+
+namespace {
+
+void check(double dt, const double *lambda, int guess) {
+    if (!(dt > 0) || !std::isfinite(dt) || !(dt * dt > 0) || !std::isfinite(1 / (dt * dt)))
+        throw make_error(HOL_ERR_VALUE, "dt is %g; it must be positive and finite, and so must dt^2 and 1/dt^2", dt);
+    if (guess != 0 && guess != 1) throw make_error(HOL_ERR_VALUE, "guess is %d; it must be 0 or 1", guess);
+    if (guess) need(lambda, "lambda, which holds the guess,");
+}
+
+}  // namespace
+
+int hol_project_positions(const hol_chains *chains, const double *r_ref, double *r, double *v, double dt,
+                          double *lambda, int guess, double *virial, hol_report *report) {
+    return guarded([&] {
+        need(chains, "chains");
+        need(r_ref, "r_ref");
+        need(r, "r");
+        check(dt, lambda, guess);
+        holonomic::project_positions(chains->chains, holonomic::packed_array(r_ref), holonomic::packed_array(r),
+                                     holonomic::packed_array(v), dt, lambda, guess == 1, virial, report);
+    });
+}
+
+int hol_project_positions_view(const hol_chains *chains, const hol_view *r_ref, const hol_view *r, const hol_view *v,
+                               double dt, double *lambda, int guess, double *virial, hol_report *report) {
+    return guarded([&] {
+        need(chains, "chains");
+        need(r_ref, "r_ref");
+        need(r, "r");
+        check(dt, lambda, guess);
+        const AtomArray a0 = holonomic::viewed_array(r_ref, "r_ref"), a1 = holonomic::viewed_array(r, "r"),
+                        av = holonomic::viewed_array(v, "v");
+        const AtomArray *const all[] = {&a0, &a1, &av};
+        holonomic::check_dimensions(all, 3);
+        holonomic::project_positions(chains->chains, a0, a1, av, dt, lambda, guess == 1, virial, report);
+    });
+}

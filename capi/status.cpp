@@ -1,0 +1,50 @@
+#include "boundary.hpp"
+#include "core/dispatch.hpp"
+
+namespace holonomic {
+
+namespace {
+thread_local Error last_error{};
+}
+
+int remember(const Error &error) noexcept {
+    last_error = error;
+    return error.status;
+}
+
+}  // namespace holonomic
+
+#define HOL_TEXT(x) #x
+#define HOL_VERSION_TEXT(major, minor, patch) HOL_TEXT(major) "." HOL_TEXT(minor) "." HOL_TEXT(patch)
+
+const char *hol_version(void) { return HOL_VERSION_TEXT(HOL_VERSION_MAJOR, HOL_VERSION_MINOR, HOL_VERSION_PATCH); }
+
+const char *hol_status_name(int status) {
+    switch (status) {
+        case HOL_OK: return "HOL_OK";
+        case HOL_ERR_NULL: return "HOL_ERR_NULL";
+        case HOL_ERR_VALUE: return "HOL_ERR_VALUE";
+        case HOL_ERR_INDEX: return "HOL_ERR_INDEX";
+        case HOL_ERR_SHARED_ATOM: return "HOL_ERR_SHARED_ATOM";
+        case HOL_ERR_MEMORY: return "HOL_ERR_MEMORY";
+        case HOL_ERR_NOT_FINITE: return "HOL_ERR_NOT_FINITE";
+        case HOL_ERR_DEGENERATE: return "HOL_ERR_DEGENERATE";
+        case HOL_ERR_NO_CONVERGENCE: return "HOL_ERR_NO_CONVERGENCE";
+        case HOL_ERR_NOT_DEFINITE: return "HOL_ERR_NOT_DEFINITE";
+        case HOL_ERR_INTERNAL: return "HOL_ERR_INTERNAL";
+        default: return "unknown status";
+    }
+}
+
+const char *hol_error_message(void) { return holonomic::last_error.message; }
+
+void hol_error_location(int64_t *chain, int64_t *bond, int64_t *atom, int64_t *n_bad) {
+    const holonomic::Error &error = holonomic::last_error;
+    const bool any = error.status != HOL_OK;
+    if (chain) *chain = any && error.chain >= 0 ? error.chain + error.base : -1;
+    if (bond) *bond = any && error.bond >= 0 ? error.bond + error.base : -1;
+    if (atom) *atom = any && error.atom >= 0 ? error.atom + error.base : -1;
+    if (n_bad) *n_bad = any ? error.n_bad : 0;
+}
+
+const char *hol_instruction_set(void) { return holonomic::kernels().name; }

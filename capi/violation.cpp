@@ -1,0 +1,29 @@
+#include "core/violation.hpp"
+
+#include "boundary.hpp"
+#include "core/view.hpp"
+
+using holonomic::AtomArray;
+using holonomic::guarded;
+using holonomic::need;
+
+int hol_violation(const hol_chains *chains, const double *r, const double *v, hol_worst *worst) {
+    return guarded([&] {
+        need(chains, "chains");
+        need(r, "r");
+        need(worst, "worst");
+        holonomic::violation(chains->chains, holonomic::packed_array(r), holonomic::packed_array(v), worst);
+    });
+}
+
+int hol_violation_view(const hol_chains *chains, const hol_view *r, const hol_view *v, hol_worst *worst) {
+    return guarded([&] {
+        need(chains, "chains");
+        need(r, "r");
+        need(worst, "worst");
+        const AtomArray ar = holonomic::viewed_array(r, "r"), av = holonomic::viewed_array(v, "v");
+        const AtomArray *const all[] = {&ar, &av};
+        holonomic::check_dimensions(all, 2);
+        holonomic::violation(chains->chains, ar, av, worst);
+    });
+}

@@ -1,0 +1,76 @@
+// The periodic box and its inverse.
+#include <cmath>
+
+#include "chains.hpp"
+#include "error.hpp"
+#include "holonomic.h"
+
+namespace holonomic {
+
+// A row of zeros means that the box is not periodic along that vector. For the inverse it is replaced by a vector that
+// makes the matrix regular; its own multiple is then never subtracted, because the kernels skip zero elements of h.
+void Chains::set_box(const double *h) {
+    if (!h) {
+        box = Box{Box::none, {}, {}};
+        return;
+    }
+    double m[3][3];
+    bool periodic[3], diagonal = true;
+    for (int i = 0; i < 3; ++i) {
+        periodic[i] = false;
+        for (int c = 0; c < 3; ++c) {
+            m[i][c] = h[3 * i + c];
+            if (!std::isfinite(m[i][c]))
+                throw make_error(HOL_ERR_VALUE, "element (%d,%d) of the box is not finite", i + 1, c + 1);
+            periodic[i] = periodic[i] || m[i][c] != 0;
+            diagonal = diagonal && (i == c || m[i][c] == 0);
+        }
+    }
+    Box next{Box::none, {}, {}};
+    for (int i = 0; i < 9; ++i) next.h[i] = h[i];
+    const auto cross = [](const double *a, const double *b, double *c) {
+        for (int k = 0; k < 3; ++k) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+    };
+    const int n = periodic[0] + periodic[1] + periodic[2];
+    if (n == 0) {
+        box = next;
+        return;
+    }
+    next.shape = diagonal ? Box::orthorhombic : Box::triclinic;
+    if (diagonal) {
+        for (int i = 0; i < 3; ++i) next.inverse[3 * i + i] = periodic[i] ? 1 / m[i][i] : 0;
+        for (int i = 0; i < 3; ++i)
+            if (!std::isfinite(next.inverse[3 * i + i]))
+                throw make_error(HOL_ERR_VALUE, "box vector %d is too short", i + 1);
+        box = next;
+        return;
+    }
+    // Replace missing vectors by ones perpendicular to the others.
+    for (int i = 0; i < 3; ++i) {
+        if (periodic[i]) continue;
+        double *a = m[i], *b = m[(i + 1) % 3], *c = m[(i + 2) % 3];
+        if (n == 2) {
+            cross(b, c, a);
+        } else if (!periodic[(i + 1) % 3] && periodic[(i + 2) % 3]) {
+            int smallest = 0;
+            for (int k = 1; k < 3; ++k)
+                if (std::fabs(c[k]) < std::fabs(c[smallest])) smallest = k;
+            double axis[3] = {0, 0, 0};
+            axis[smallest] = 1;
+            cross(c, axis, a);
+            cross(c, a, b);
+            break;
+        }
+    }
+    double columns[3][3], volume = 0, size = 1;
+    for (int i = 0; i < 3; ++i) cross(m[(i + 1) % 3], m[(i + 2) % 3], columns[i]);
+    for (int c = 0; c < 3; ++c) volume += m[0][c] * columns[0][c];
+    for (int i = 0; i < 3; ++i) size *= std::sqrt(m[i][0] * m[i][0] + m[i][1] * m[i][1] + m[i][2] * m[i][2]);
+    if (!(std::fabs(volume) > 1e-10 * size))
+        throw make_error(HOL_ERR_VALUE, "the box vectors lie in a plane or on a line");
+    for (int i = 0; i < 3; ++i)
+        for (int c = 0; c < 3; ++c) next.inverse[3 * c + i] = periodic[i] ? columns[i][c] / volume : 0;
+    box = next;
+}
+
+}  // namespace holonomic

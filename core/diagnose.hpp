@@ -1,0 +1,20 @@
+// What is wrong with a chain that a kernel could not solve. Slow and rarely called: it reads the chain again, so that
+// the kernels need not keep account of causes.
+#ifndef HOLONOMIC_DIAGNOSE_HPP
+#define HOLONOMIC_DIAGNOSE_HPP
+
+#include "chains.hpp"
+#include "error.hpp"
+
+namespace holonomic {
+
+struct NamedArray {
+    const char *what;  // "position", "velocity", ...
+    const AtomArray *array;
+};
+
+// The error of a call whose tally counts bad chains; `otherwise` is the status if the data as such are in order.
+Error diagnose(const Chains &chains, const Tally &tally, const NamedArray *arrays, int n_arrays, int otherwise);
+
+}  // namespace holonomic
+#endif

@@ -1,0 +1,20 @@
+// How the core reports a failure to the C layer.
+#ifndef HOLONOMIC_ERROR_HPP
+#define HOLONOMIC_ERROR_HPP
+
+#include <cstdint>
+
+namespace holonomic {
+
+// Thrown after every output that is due has been written. Numbers are counted from 0; -1: does not apply.
+struct Error {
+    int status;          // hol_status
+    char message[240];   // text, with the numbers already in the caller's counting
+    std::int64_t chain = -1, bond = -1, atom = -1, n_bad = 0;
+    int base = 0;        // of the caller's counting
+};
+
+[[gnu::format(printf, 2, 3)]] Error make_error(int status, const char *format, ...);
+
+}  // namespace holonomic
+#endif

@@ -1,0 +1,25 @@
+#include "forces.hpp"
+
+#include "diagnose.hpp"
+#include "execute.hpp"
+#include "holonomic.h"
+
+namespace holonomic {
+
+void write_virial(const Tally &tally, double *virial) {
+    const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    for (int i = 0; i < 9; ++i) virial[i] = tally.virial[place[i]];
+}
+
+void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
+            double *tension, const AtomArray &g, bool add, double *virial) {
+    const ForcesCall call{r, v, f, g, lambda, tension, add, virial != nullptr, chains.box};
+    const Tally tally = execute(chains, kernels().forces, call);
+    if (tally.n_bad > 0) {
+        const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}, {"force", &f}};
+        throw diagnose(chains, tally, arrays, 3, HOL_ERR_NOT_FINITE);
+    }
+    if (virial) write_virial(tally, virial);
+}
+
+}  // namespace holonomic

@@ -1,0 +1,17 @@
+// Acceleration level: multipliers and constraint forces of all chains.
+#ifndef HOLONOMIC_FORCES_HPP
+#define HOLONOMIC_FORCES_HPP
+
+#include "chains.hpp"
+
+namespace holonomic {
+
+// virial [9] or nullptr. Throws Error once everything that is due has been written.
+void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
+            double *tension, const AtomArray &g, bool add, double *virial);
+
+// The six sums of a tally as a symmetric [3][3].
+void write_virial(const Tally &tally, double *virial);
+
+}  // namespace holonomic
+#endif

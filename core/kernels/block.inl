@@ -1,0 +1,285 @@
+// A block: up to W chains (or W segments of one), one per lane, read from the caller's memory into interleaved arrays
+// in cache and written back. Packed coordinates are read in place, a transposition of W x W elements at a time; any
+// other layout is first copied into packed staging buffers.
+
+namespace holonomic {
+namespace HOL_ISA {
+
+typedef Vector3<vec> vec3;
+
+// Scratch memory handed out front to back.
+struct Arena {
+    double *next;
+    vec *vecs(long n) {
+        vec *p = reinterpret_cast<vec *>(next);
+        next += n * W;
+        return p;
+    }
+    double *doubles(long n) {
+        double *p = next;
+        next += (n + 7) / 8 * 8;
+        return p;
+    }
+};
+
+struct Block {
+    long n, n_min;        // bonds of the longest and of the shortest lane
+    long len[W];          // bonds of each lane
+    int lanes;            // lanes in use; the others repeat the first one and are never stored
+    bool uniform_w;       // the inverse mass is constant along each lane
+    vec w_uniform;
+    const vec *w;         // else [n+1], interleaved
+    const double *w3[W];  // and [len+1][3], each inverse mass three times
+    long first_bond[W];
+    long chain[W];
+
+    mask in_use() const { return first_lanes(lanes); }
+    vec lengths() const {
+        vec v;
+        for (int i = 0; i < W; ++i) v[i] = static_cast<double>(len[i]);
+        return v;
+    }
+};
+
+// One vector per atom as the lanes of a block see it: [len+1][3], in the caller's memory or staged.
+struct Packed {
+    double *lane[W];
+};
+
+HOL_INLINE double element(const char *p, bool is_float) {
+    return is_float ? static_cast<double>(*reinterpret_cast<const float *>(p)) : *reinterpret_cast<const double *>(p);
+}
+
+HOL_INLINE int64_t atom_of(const Lane &lane, int64_t k) { return lane.atoms ? lane.atoms[k] : lane.first_atom + k; }
+
+HOL_INLINE long staged_size(long n_bonds) { return (3 * (n_bonds + 1) + 7) / 8 * 8; }
+
+// Copies atoms `from` .. `from + n` of a chain into packed[n+1][3].
+static inline void stage(const AtomArray &array, const Lane &lane, long from, long n, double *packed) {
+    for (long k = 0; k <= n; ++k) {
+        const int64_t offset = atom_of(lane, from + k) * array.stride;
+        packed[3 * k] = element(array.x + offset, array.is_float);
+        packed[3 * k + 1] = element(array.y + offset, array.is_float);
+        packed[3 * k + 2] = array.z ? element(array.z + offset, array.is_float) : 0.0;
+    }
+}
+
+HOL_INLINE void put(char *p, bool is_float, double value, bool add) {
+    if (is_float) {
+        float *q = reinterpret_cast<float *>(p);
+        *q = static_cast<float>(add ? static_cast<double>(*q) + value : value);
+    } else {
+        double *q = reinterpret_cast<double *>(p);
+        *q = add ? *q + value : value;
+    }
+}
+
+static inline void unstage(const AtomArray &array, const Lane &lane, long from, long n, const double *packed,
+                           bool add) {
+    for (long k = 0; k <= n; ++k) {
+        const int64_t offset = atom_of(lane, from + k) * array.stride;
+        put(array.x + offset, array.is_float, packed[3 * k], add);
+        put(array.y + offset, array.is_float, packed[3 * k + 1], add);
+        if (array.z) put(array.z + offset, array.is_float, packed[3 * k + 2], add);
+    }
+}
+
+HOL_INLINE bool in_place(const AtomArray &array, const Lane &lane) { return array.packed && !lane.atoms; }
+
+// Where lane i of the block finds its vectors: in place, or staged from atom `from` on.
+HOL_INLINE void open_lane(const AtomArray &array, const Lane &lane, long from, long n, long n_max, Packed &packed,
+                          int i, double *staging, bool read) {
+    if (in_place(array, lane)) {
+        packed.lane[i] = reinterpret_cast<double *>(array.x) + 3 * (lane.first_atom + from);
+    } else {
+        packed.lane[i] = staging + i * staged_size(n_max);
+        if (read) stage(array, lane, from, n, packed.lane[i]);
+    }
+}
+
+// The lanes past the last one in use repeat the first.
+HOL_INLINE void repeat_first(Packed &packed, int lanes) {
+    for (int i = lanes; i < W; ++i) packed.lane[i] = packed.lane[0];
+}
+
+// 3 W doubles from p + 3 k on of a vector [len+1][3], where the last may lie past its end: then through `buffer`
+// [3 W + 3], padded with zeros.
+HOL_INLINE const double *window(const double *p, long k, long len, double *buffer) {
+    if (__builtin_expect(k + W <= len, 1)) return p + 3 * k;
+    const long left = len - k + 1 > 0 ? 3 * (len - k + 1) : 0;
+    for (long i = 0; i < 3 * W + 3; ++i) buffer[i] = i < left ? p[3 * k + i] : 0.0;
+    return buffer;
+}
+
+// Inverse masses of the lanes: constant along each, or tables in scratch.
+static inline void set_masses(Block &block, const double *const *tables, const double *uniform, Arena &arena) {
+    block.uniform_w = true;
+    for (int i = 0; i < block.lanes; ++i) block.uniform_w = block.uniform_w && tables[i] == nullptr;
+    for (int i = 0; i < W; ++i) block.w_uniform[i] = uniform[i < block.lanes ? i : 0];
+    if (block.uniform_w) return;
+    vec *w = arena.vecs(block.n + 1);
+    bool same = true;
+    for (int i = 1; i < block.lanes; ++i) same = same && tables[i] == tables[0] && block.len[i] == block.len[0];
+    for (int i = 0; i < W; ++i) {
+        const int lane = i < block.lanes ? i : 0;
+        const double *table = tables[lane];
+        for (long k = 0; k <= block.n; ++k)  // inert bonds past the end: any positive mass
+            w[k][i] = k > block.len[i] ? 1.0 : (table ? table[k] : uniform[lane]);
+        if (i > 0 && (same || i >= block.lanes)) {
+            block.w3[i] = block.w3[0];
+            continue;
+        }
+        double *w3 = arena.doubles(3 * (block.n + 1 + W));
+        for (long k = 0; k < 3 * (block.n + 1 + W); ++k)
+            w3[k] = k / 3 > block.len[i] ? 1.0 : (table ? table[k / 3] : uniform[lane]);
+        block.w3[i] = w3;
+    }
+    block.w = w;
+}
+
+// Minimum image of the bond vectors of all lanes; `lo` gets what d's rounding left off.
+template <bool careful>
+HOL_INLINE void wrap(const Box &box, vec3 &d, vec3 &lo) {
+    const double *h = box.h, *in = box.inverse;
+    const vec n[3] = {round(d.x * in[0] + d.y * in[3] + d.z * in[6]), round(d.x * in[1] + d.y * in[4] + d.z * in[7]),
+                      round(d.x * in[2] + d.y * in[5] + d.z * in[8])};
+    vec *component[3] = {&d.x, &d.y, &d.z}, *low[3] = {&lo.x, &lo.y, &lo.z};
+    for (int c = 0; c < 3; ++c)
+        for (int i = 0; i < 3; ++i) {
+            if (h[3 * i + c] == 0) continue;
+            if (careful) {
+                const Pair<vec> p = two_product<vec>(n[i], splat(h[3 * i + c]));
+                const Pair<vec> s = two_difference<vec>(*component[c], p.hi);
+                const Pair<vec> t = fast_two_sum<vec>(s.hi, s.lo - p.lo + *low[c]);
+                *component[c] = t.hi;
+                *low[c] = t.lo;
+            } else {
+                *component[c] = mul_add(n[i], splat(-h[3 * i + c]), *component[c]);
+            }
+        }
+}
+
+// What the right-hand side of a bond is made of.
+enum Terms { none_ = 0, velocity_squared = 1, force_difference = 2, rate = 4 };
+
+// Bond vectors D[k] = r_{k+1} - r_k and right-hand sides B[k] of all lanes:
+//   velocity_squared: |v_{k+1} - v_k|^2,  force_difference: D . (w_{k+1} f_{k+1} - w_k f_k),  rate: D . (v_{k+1} - v_k).
+// careful: D_low gets the low words of the differences. Bonds past the end of a lane are inert: D = (1,0,0), B = 0.
+template <int terms, bool uniform, bool boxed, bool careful>
+static inline void load_bonds(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
+                              vec3 *D, vec3 *D_low, vec *B) {
+    for (long k0 = 0; k0 < block.n; k0 += W) {
+        double buffer[3][W][3 * W + 3];
+        const double *pr[W], *pv[W], *pf[W];
+        for (int i = 0; i < W; ++i) {
+            pr[i] = window(r.lane[i], k0, block.len[i], buffer[0][i]);
+            if (terms & (velocity_squared | rate)) pv[i] = window(v.lane[i], k0, block.len[i], buffer[1][i]);
+            if (terms & force_difference) pf[i] = window(f.lane[i], k0, block.len[i], buffer[2][i]);
+        }
+        // In the packed layout, component by component, before transposing; with a box the products have to wait.
+        vec d[3 * W], low[careful ? 3 * W : 1], p[3 * W], a[boxed ? 3 * W : 1];
+        for (int j = 0; j < 3; ++j) {
+            for (int i = 0; i < W; ++i) {
+                const int e = j * W + i;
+                const vec r0 = load(pr[i] + W * j), r1 = load(pr[i] + W * j + 3);
+                d[e] = r1 - r0;
+                if (careful) low[e] = two_difference<vec>(r1, r0).lo;
+                vec dv = {}, df = {};
+                if (terms & (velocity_squared | rate)) dv = load(pv[i] + W * j + 3) - load(pv[i] + W * j);
+                if (terms & force_difference) {
+                    const vec f0 = load(pf[i] + W * j), f1 = load(pf[i] + W * j + 3);
+                    if (uniform) {
+                        df = splat(block.w_uniform[i]) * (f1 - f0);
+                    } else {
+                        const double *w3 = block.w3[i] + 3 * k0 + W * j;
+                        df = load(w3 + 3) * f1 - load(w3) * f0;
+                    }
+                }
+                if (boxed) {
+                    a[e] = terms & rate ? dv : df;
+                    p[e] = dv * dv;
+                } else {
+                    if (terms & rate)
+                        p[e] = dv * d[e];
+                    else if ((terms & velocity_squared) && (terms & force_difference))
+                        p[e] = mul_add(df, d[e], dv * dv);
+                    else if (terms & force_difference)
+                        p[e] = df * d[e];
+                    else
+                        p[e] = dv * dv;
+                }
+            }
+            transpose(d + j * W);
+            if (terms) transpose(p + j * W);
+            if (careful) transpose(low + j * W);
+            if (boxed) transpose(a + j * W);
+        }
+        const long m = block.n - k0 < W ? block.n - k0 : W;
+        for (long b = 0; b < m; ++b) {
+            vec3 bond = {d[3 * b], d[3 * b + 1], d[3 * b + 2]}, bond_low = {};
+            if (careful) bond_low = {low[3 * b], low[3 * b + 1], low[3 * b + 2]};
+            vec rhs = {};
+            if (boxed) {
+                wrap<careful>(box, bond, bond_low);
+                const vec3 other = {a[3 * b], a[3 * b + 1], a[3 * b + 2]};
+                if (terms & (rate | force_difference)) rhs = dot(bond, other);
+                if (terms & velocity_squared) rhs = rhs + ((p[3 * b] + p[3 * b + 1]) + p[3 * b + 2]);
+            } else if (terms) {
+                rhs = (p[3 * b] + p[3 * b + 1]) + p[3 * b + 2];
+            }
+            if (__builtin_expect(k0 + b >= block.n_min, 0)) {
+                const mask live = less(splat(static_cast<double>(k0 + b)), block.lengths());
+                bond = {select(live, bond.x, splat(1.0)), keep(live, bond.y), keep(live, bond.z)};
+                bond_low = {keep(live, bond_low.x), keep(live, bond_low.y), keep(live, bond_low.z)};
+                rhs = keep(live, rhs);
+            }
+            D[k0 + b] = bond;
+            if (careful) D_low[k0 + b] = bond_low;
+            B[k0 + b] = rhs;
+        }
+    }
+}
+
+// Writes a value per bond of the lanes in `which` into the caller's array per bond.
+static inline void store_bonds(const Block &block, const vec *value, mask which, double *out) {
+    const unsigned chosen = bits(which & block.in_use());
+    for (long k0 = 0; k0 < block.n; k0 += W) {
+        vec m[W];
+        for (int b = 0; b < W; ++b) m[b] = k0 + b < block.n ? value[k0 + b] : vec{};
+        transpose(m);
+        for (int i = 0; i < block.lanes; ++i) {
+            if (!(chosen >> i & 1)) continue;
+            double *p = out + block.first_bond[i] + k0;
+            const long left = block.len[i] - k0;
+            if (left >= W)
+                store(p, m[i]);
+            else
+                for (long b = 0; b < left; ++b) p[b] = m[i][b];
+        }
+    }
+}
+
+enum Update { write_, add_ };
+
+// Writes W consecutive atoms from atom k0 on, given component by component (value[3 W], transposed in place).
+HOL_INLINE void store_atoms(const Block &block, long k0, vec *value, unsigned chosen, Update update,
+                            const Packed &out) {
+    for (int j = 0; j < 3; ++j) transpose(value + j * W);
+    for (int i = 0; i < block.lanes; ++i) {
+        if (!(chosen >> i & 1)) continue;
+        double *p = out.lane[i] + 3 * k0;
+        const long left = 3 * (block.len[i] + 1 - k0);
+        if (__builtin_expect(left >= 3 * W, 1)) {
+            for (int j = 0; j < 3; ++j)
+                store(p + j * W, update == add_ ? load(p + j * W) + value[j * W + i] : value[j * W + i]);
+        } else {
+            for (long e = 0; e < left; ++e) {
+                const double x = value[e / W * W + i][e % W];
+                p[e] = update == add_ ? p[e] + x : x;
+            }
+        }
+    }
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic

@@ -1,0 +1,91 @@
+// What the core hands to a kernel: plain data, the same for every instruction set.
+#ifndef HOLONOMIC_KERNELS_CALL_HPP
+#define HOLONOMIC_KERNELS_CALL_HPP
+
+#include <stdint.h>
+
+namespace holonomic {
+
+// A vector per atom in the caller's memory; x == nullptr: absent, z == nullptr: two dimensions.
+struct AtomArray {
+    char *x, *y, *z;
+    int64_t stride;    // bytes
+    bool is_float;
+    bool packed;       // doubles [n_atoms][3]: the layout that the kernels read and write in place
+};
+
+// One chain as a kernel sees it.
+struct Lane {
+    int64_t n_bonds;
+    int64_t first_atom;     // if atoms == nullptr: the chain's atoms are first_atom, first_atom + 1, ...
+    const int64_t *atoms;   // [n_bonds+1] or nullptr
+    const double *w;        // inverse masses along the chain [n_bonds+1], or nullptr: all w_uniform
+    const double *length;   // bond lengths [n_bonds], or nullptr: all length_uniform
+    double w_uniform;
+    double length_uniform;
+    int64_t first_bond;     // place of its first bond in arrays per bond
+    int64_t chain;          // its number
+};
+
+// A piece of work: chains of at most longest_lane bonds, or a single longer one.
+struct Unit {
+    const Lane *lanes;
+    int64_t count;
+    bool regular;  // all `count` chains are like lanes[0], over consecutive atoms and bonds; else lanes[count]
+};
+
+// Chains of more bonds are cut into segments.
+constexpr int64_t longest_lane = 256;
+
+struct Box {
+    enum Shape { none, orthorhombic, triclinic } shape;
+    double h[9];        // row i is box vector i
+    double inverse[9];  // fractional coordinate i of d is sum_c d_c inverse[3 c + i]
+};
+
+// What a unit adds to the result of a call.
+struct Tally {
+    double virial[6];  // xx xy xz yy yz zz of - sum t d (x) d
+    int64_t n_bad;
+    int64_t first_bad;  // smallest number of a bad chain
+    // positions
+    int64_t iterations, n_corrected, worst_chain, worst_bond;
+    double worst;
+};
+
+struct ForcesCall {
+    AtomArray r, v, f, g;
+    double *lambda, *tension;
+    bool add, virial;
+    Box box;
+};
+
+struct VelocitiesCall {
+    AtomArray r, v;
+    double *lambda;
+    bool virial;
+    Box box;
+};
+
+struct PositionsCall {
+    AtomArray r_ref, r, v;
+    double *lambda;
+    double dt;
+    bool guess, virial;
+    double tolerance;  // 0: what the coordinates carry
+    int max_iterations;
+    Box box;
+};
+
+// The kernels of one instruction set. `scratch` has scratch_bytes(longest chain of the unit), aligned to 64.
+struct Kernels {
+    const char *name;
+    int lanes;
+    int64_t (*scratch_bytes)(int64_t n_bonds);
+    void (*forces)(const ForcesCall &, const Unit &, double *scratch, Tally &);
+    void (*velocities)(const VelocitiesCall &, const Unit &, double *scratch, Tally &);
+    void (*positions)(const PositionsCall &, const Unit &, double *scratch, Tally &);
+};
+
+}  // namespace holonomic
+#endif

@@ -1,0 +1,132 @@
+// The recursion without subtractions (theory (9)-(12)): pivots P, multipliers l of the elimination, and the two sweeps.
+//
+//   E_1 = w_0 q_1,  P_k = E_k + w_k q_k,  E_{k+1} = w_k (q_{k+1} E_k + w_k X_{k+1}) / P_k,  l_{k+1} = w_k g_{k+1} / P_k
+//   y_1 = b_1,  y_{k+1} = b_{k+1} + l_{k+1} y_k,  t_N = y_N / P_N,  t_k = y_k / P_k + l_{k+1} t_{k+1}
+//
+// Here bond k = 0 .. n-1 lies between atoms k and k+1; L[k] is the multiplier of the joint at atom k+1.
+
+namespace holonomic {
+namespace HOL_ISA {
+
+template <bool uniform>
+HOL_INLINE vec w_at(const Block &block, long k) {
+    return uniform ? block.w_uniform : block.w[k];
+}
+
+// Whether the joint between bonds k and k+1 is one, in each lane.
+HOL_INLINE mask joint(const Block &block, long k) {
+    return less(splat(static_cast<double>(k + 1)), block.lengths());
+}
+
+// X = |d x d'|^2 of two nearly parallel bonds has a relative error of about 2 eps |d| |d'| / sqrt X from the rounding
+// of d, d' and of the cross product. It enters E' = w (q' E + w X) / P, so what E' gets of it is harmless where
+//     w sqrt(X q q') <= c (q' E + w X),   c = joint_tolerance,
+// and this holds for every X if E >= w q / (4 c^2): the cheap test that ordinary chains pass (docs/performance.md).
+constexpr double joint_tolerance = 4;
+
+// Exact form of the test, for the joint k of a block whose pivots are rebuilt from E.
+template <bool uniform>
+static __attribute__((noinline)) mask doubtful_joints(const Block &block, const vec3 *D, long k0, long n, vec E) {
+    mask doubt = none();
+    for (long k = k0; k < n && k + 1 < block.n; ++k) {
+        const vec w = w_at<uniform>(block, k + 1), q = dot(D[k], D[k]), q1 = dot(D[k + 1], D[k + 1]);
+        const vec3 c = cross(D[k], D[k + 1]);
+        const vec X = dot(c, c), qq = q * q1, S = mul_add(q1, E, w * X);
+        const double eps2 = 4.9e-32;  // (2^-52)^2: an X that vanished by rounding
+        const vec left = (w * w) * ((X + eps2 * qq) * qq), right = (joint_tolerance * joint_tolerance) * (S * S);
+        doubt = doubt | (~less_equal(left, right) & joint(block, k));
+        E = w * S / mul_add(w, q, E);
+    }
+    return doubt;
+}
+
+// Plain forward sweep: B becomes u = y / P, L the multipliers. Four bonds at a time E is carried as a fraction A / F,
+// which takes the divisions out of the chain of dependences. Returns the lanes that need careful arithmetic.
+template <bool uniform>
+static inline mask forward(const Block &block, const vec3 *D, vec *B, vec *L) {
+    const long n = block.n;
+    const double least = 4 * joint_tolerance * joint_tolerance + 1;
+    mask doubt = none();
+    vec3 d = D[0];
+    vec q = dot(d, d), E = w_at<uniform>(block, 0) * q, y = B[0];
+    for (long k0 = 0; k0 < n; k0 += 4) {
+        vec A = E, F = splat(1.0), rF = {}, slack = {};
+        const bool full = k0 + 4 < n && k0 + 4 < block.n_min;
+        const auto bond = [&](long k, bool has_joint, bool ragged) __attribute__((always_inline)) {
+            const vec w = w_at<uniform>(block, k + 1);
+            const vec F1 = mul_add(w * q, F, A);
+            rF = splat(1.0) / F1;
+            const vec rP = F * rF;
+            B[k] = y * rP;
+            if (!has_joint) return;
+            const vec3 d1 = D[k + 1];
+            const vec q1 = dot(d1, d1);
+            const vec3 c = cross(d, d1);
+            vec g = dot(d, d1), X = dot(c, c), s = mul_add(splat(least), A, -F1);
+            if (ragged) {
+                const mask m = joint(block, k);
+                g = keep(m, g);
+                X = keep(m, X);
+                s = keep(m, s);
+            }
+            const vec l = (w * g) * rP;
+            L[k] = l;
+            y = mul_add(l, y, B[k + 1]);
+            A = w * mul_add(w * X, F, q1 * A);
+            F = F1;
+            slack = min(slack, s);
+            q = q1;
+            d = d1;
+        };
+        const vec E0 = E;
+        if (__builtin_expect(full, 1)) {
+            bond(k0, true, false);
+            bond(k0 + 1, true, false);
+            bond(k0 + 2, true, false);
+            bond(k0 + 3, true, false);
+        } else {
+            for (long k = k0; k < k0 + 4 && k < n; ++k) bond(k, k + 1 < n, k + 1 >= block.n_min);
+        }
+        E = A * rF;
+        if (__builtin_expect(any(less(slack, vec{})), 0))
+            doubt = doubt | doubtful_joints<uniform>(block, D, k0, k0 + 4, E0);
+    }
+    return doubt;
+}
+
+// The same with bond vectors D + D_low and compensated products, a division per bond: right for any chain.
+template <bool uniform>
+static __attribute__((noinline)) void forward_careful(const Block &block, const vec3 *D, const vec3 *D_low, vec *B,
+                                                      vec *L) {
+    const long n = block.n;
+    vec q = dot(D[0], D[0]), E = w_at<uniform>(block, 0) * q, y = B[0];
+    for (long k = 0; k < n; ++k) {
+        const vec w = w_at<uniform>(block, k + 1), P = mul_add(w, q, E);
+        B[k] = y / P;
+        if (k + 1 == n) break;
+        const vec3 c = cross_compensated(D[k], D_low[k], D[k + 1], D_low[k + 1]);
+        vec g = dot_compensated(D[k], D_low[k], D[k + 1], D_low[k + 1]), X = dot(c, c);
+        if (k + 1 >= block.n_min) {
+            const mask m = joint(block, k);
+            g = keep(m, g);
+            X = keep(m, X);
+        }
+        const vec q1 = dot(D[k + 1], D[k + 1]), wP = w / P;
+        L[k] = wP * g;
+        y = mul_add(L[k], y, B[k + 1]);
+        E = wP * mul_add(w, X, q1 * E);
+        q = q1;
+    }
+}
+
+// Backward sweep: u becomes t = 2 lambda.
+HOL_INLINE void backward(long n, vec *u, const vec *L) {
+    vec t = u[n - 1];
+    for (long k = n - 2; k >= 0; --k) {
+        t = mul_add(L[k], t, u[k]);
+        u[k] = t;
+    }
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic

@@ -1,0 +1,46 @@
+// Velocity level of a block of chains: the same solve with d . (v_k - v_{k-1}) on the right; v_i += w_i G_i.
+
+namespace holonomic {
+namespace HOL_ISA {
+
+template <bool careful>
+static inline mask solve_velocities(const Block &block, const VelocitiesCall &call, const Packed &r, const Packed &v,
+                                    const System &s) {
+    return solve_any<rate, careful>(block, call.box, r, v, v, s);
+}
+
+static void store_velocities(const Block &block, const Lane *lane, const VelocitiesCall &call, const System &s,
+                             mask which, const Packed &v, Arena arena, Tally &tally) {
+    if (block.uniform_w)
+        store_pulls<true, true>(block, s.D, s.t, which, add_, v);
+    else
+        store_pulls<true, false>(block, s.D, s.t, which, add_, v);
+    close(call.v, block, lane, which, v, false);
+    if (call.lambda) {
+        vec *value = arena.vecs(block.n);
+        scale_into(block.n, s.t, 0.5, value);
+        store_bonds(block, value, which, call.lambda);
+    }
+    if (call.virial) add_virial(block.n, s.D, s.t, which, 1, tally);
+}
+
+static void velocities_block(const Block &block, const Lane *lane, const VelocitiesCall &call, Arena arena,
+                             Tally &tally) {
+    const Packed r = open(call.r, block, lane, arena, true), v = open(call.v, block, lane, arena, true);
+    const System s(block.n, arena);
+    mask good = solve_velocities<false>(block, call, r, v, s);
+    store_velocities(block, lane, call, s, good, v, arena, tally);
+    mask rest = block.in_use() & ~good;
+    if (__builtin_expect(!any(rest), 1)) return;
+    good = solve_velocities<true>(block, call, r, v, s) & rest;
+    store_velocities(block, lane, call, s, good, v, arena, tally);
+    rest = rest & ~good;
+    if (any(rest)) note_bad(block, rest, tally);
+}
+
+static void velocities(const VelocitiesCall &call, const Unit &unit, double *scratch, Tally &tally) {
+    for_each_block(call, unit, scratch, tally, velocities_block);
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic

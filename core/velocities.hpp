@@ -1,0 +1,13 @@
+// Velocity level: the exact projection onto the constraints.
+#ifndef HOLONOMIC_VELOCITIES_HPP
+#define HOLONOMIC_VELOCITIES_HPP
+
+#include "chains.hpp"
+
+namespace holonomic {
+
+// virial [9] or nullptr. Throws Error once everything that is due has been written.
+void project_velocities(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda, double *virial);
+
+}  // namespace holonomic
+#endif

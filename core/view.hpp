@@ -1,0 +1,33 @@
+// A vector per atom in the caller's memory.
+#ifndef HOLONOMIC_VIEW_HPP
+#define HOLONOMIC_VIEW_HPP
+
+#include <cstdint>
+
+#include "kernels/call.hpp"
+
+struct hol_view;
+
+namespace holonomic {
+
+// [n_atoms][3] doubles; absent if p is a null pointer.
+AtomArray packed_array(const double *p);
+
+// As the view says; absent if it is a null pointer. Throws Error with `name` in the message if it makes no sense.
+AtomArray viewed_array(const hol_view *view, const char *name);
+
+// All views of a call have z, or none has.
+void check_dimensions(const AtomArray *const *arrays, int n);
+
+inline void read_atom(const AtomArray &array, std::int64_t atom, double *x) {
+    const char *const components[3] = {array.x, array.y, array.z};
+    for (int c = 0; c < 3; ++c) {
+        const char *p = components[c];
+        if (p) p += atom * array.stride;
+        x[c] = !p ? 0 : array.is_float ? static_cast<double>(*reinterpret_cast<const float *>(p))
+                                       : *reinterpret_cast<const double *>(p);
+    }
+}
+
+}  // namespace holonomic
+#endif

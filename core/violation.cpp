@@ -1,0 +1,75 @@
+#include "violation.hpp"
+
+#include <cmath>
+
+#include "diagnose.hpp"
+#include "holonomic.h"
+#include "view.hpp"
+
+namespace holonomic {
+
+namespace {
+
+void minimum_image(const Box &box, double *d) {
+    if (box.shape == Box::none) return;
+    double n[3];
+    for (int i = 0; i < 3; ++i)
+        n[i] = std::nearbyint(d[0] * box.inverse[i] + d[1] * box.inverse[3 + i] + d[2] * box.inverse[6 + i]);
+    for (int i = 0; i < 3; ++i)
+        for (int c = 0; c < 3; ++c)
+            if (box.h[3 * i + c] != 0) d[c] = std::fma(-n[i], box.h[3 * i + c], d[c]);
+}
+
+}  // namespace
+
+void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, hol_worst *worst) {
+    hol_worst found{0, -1, -1, 0, -1, -1};
+    Tally tally{};
+    tally.first_bad = -1;
+    for (std::int64_t chain = 0; chain < chains.n_chains(); ++chain) {
+        if (!chains.is_active(chain)) continue;
+        const Lane lane = chains.lane(chain);
+        double r0[3] = {0, 0, 0}, v0[3] = {0, 0, 0};
+        bool finite = true;
+        for (std::int64_t k = 0; k <= lane.n_bonds; ++k) {
+            const std::int64_t atom = lane.atoms ? lane.atoms[k] : lane.first_atom + k;
+            double r1[3], v1[3] = {0, 0, 0}, d[3];
+            read_atom(r, atom, r1);
+            if (v.x) read_atom(v, atom, v1);
+            if (k > 0) {
+                const double a = lane.length ? lane.length[k - 1] : lane.length_uniform;
+                for (int c = 0; c < 3; ++c) d[c] = r1[c] - r0[c];
+                minimum_image(chains.box, d);
+                const double length = std::fabs(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] - a * a) / (a * a);
+                const double rate = std::fabs(d[0] * (v1[0] - v0[0]) + d[1] * (v1[1] - v0[1]) + d[2] * (v1[2] - v0[2]));
+                finite = finite && std::isfinite(length) && std::isfinite(rate);
+                if (found.length_chain < 0 || length > found.length) {
+                    found.length = length;
+                    found.length_chain = chain + chains.base;
+                    found.length_bond = k - 1 + chains.base;
+                }
+                if (v.x && (found.rate_chain < 0 || rate > found.rate)) {
+                    found.rate = rate;
+                    found.rate_chain = chain + chains.base;
+                    found.rate_bond = k - 1 + chains.base;
+                }
+            }
+            for (int c = 0; c < 3; ++c) {
+                r0[c] = r1[c];
+                v0[c] = v1[c];
+            }
+        }
+        if (!finite) {
+            if (tally.n_bad++ == 0) tally.first_bad = chain;
+        }
+    }
+    if (tally.n_bad > 0) {
+        const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}};
+        Error error = diagnose(chains, tally, arrays, 2, HOL_ERR_NOT_FINITE);
+        error.status = HOL_ERR_NOT_FINITE;  // whatever else is wrong with that chain, it gives no number
+        throw error;
+    }
+    *worst = found;
+}
+
+}  // namespace holonomic

@@ -1,0 +1,14 @@
+// How far positions and velocities are from the constraints.
+#ifndef HOLONOMIC_VIOLATION_HPP
+#define HOLONOMIC_VIOLATION_HPP
+
+#include "chains.hpp"
+
+struct hol_worst;
+
+namespace holonomic {
+
+void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, hol_worst *worst);
+
+}  // namespace holonomic
+#endif
