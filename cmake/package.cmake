@@ -22,11 +22,22 @@ if(TARGET holonomic_static)
 endif()
 if(BUILD_SHARED_LIBS)
     set(PC_LIBS)
-    set(PC_LIBS_PRIVATE ${private_flags})
+    set(PC_LIBS_PRIVATE " ${private_flags}")
 else()
     # There is nothing but the static library, so that whoever links it needs them.
     set(PC_LIBS " ${private_flags}")
     set(PC_LIBS_PRIVATE)
+endif()
+
+# In a program that is static throughout, libgfortran calls those thread functions of which it finds any, and has only
+# weak references to them: once OpenMP's library brings some in, all must be there, or the program crashes as it ends.
+# (gfortran -static -fopenmp has this defect on its own.)
+set(PC_FORTRAN_LIBS_PRIVATE)
+if(HOLONOMIC_BUILD_FORTRAN AND OpenMP_CXX_FOUND AND CMAKE_Fortran_COMPILER_ID STREQUAL "GNU" AND NOT APPLE)
+    foreach(name IN ITEMS create join self cond_broadcast cond_destroy cond_init cond_wait getspecific setspecific
+            key_create key_delete mutex_destroy mutex_init mutex_lock mutex_trylock mutex_unlock)
+        string(APPEND PC_FORTRAN_LIBS_PRIVATE " -Wl,-u,pthread_${name}")
+    endforeach()
 endif()
 
 # -------------------------------------------------------------------------------------------------------- pkg-config

@@ -1,0 +1,108 @@
+# Set-up that the scripts share; to be read with `.`, in bash, from the top of the tree.
+#
+#   say TEXT...             a line that says what happens next
+#   fail TEXT...            a line on standard error, and the end of the script
+#   need NAME...            installs what is missing of these, or says what to install and ends the script
+#   want NAME...            the same for what a script can do without: if it can't be had, it says so and goes on
+#   build_jobs              prints how many compilations to run at once
+
+say() {
+    printf '== %s\n' "$*"
+}
+
+fail() {
+    printf '%s: %s\n' "${0##*/}" "$*" >&2
+    exit 1
+}
+
+build_jobs() {
+    local cores memory_gb
+    cores=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
+    # The kernels take up to a gigabyte each to compile.
+    memory_gb=$(awk '/^MemTotal/ { print int($2 / 1048576) }' /proc/meminfo 2>/dev/null)
+    if [ -n "$memory_gb" ] && [ "$memory_gb" -lt "$cores" ]; then
+        cores=$((memory_gb > 0 ? memory_gb : 1))
+    fi
+    echo "$cores"
+}
+
+# Whether NAME is there already. A compiler or a library counts only if it compiles something.
+present() {
+    case $1 in
+        c++) command -v c++ >/dev/null && echo 'int main() {}' | c++ -x c++ - -o /dev/null 2>/dev/null ;;
+        cmocka) echo '#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+int main(void) { return 0; }' | cc -x c - -lcmocka -o /dev/null 2>/dev/null ;;
+        eigen) [ -e /usr/include/eigen3/Eigen/Core ] || pkg-config --exists eigen3 2>/dev/null ;;
+        *) command -v "$1" >/dev/null ;;
+    esac
+}
+
+# The Debian package that brings NAME.
+debian_package() {
+    case $1 in
+        c++) echo g++ libc6-dev ;;
+        make | cmake | gfortran | pkg-config | valgrind | git) echo "$1" ;;
+        cmocka) echo libcmocka-dev ;;
+        eigen) echo libeigen3-dev ;;
+        gnuplot) echo gnuplot-nox ;;
+        abidiff) echo abigail-tools ;;
+        *) echo "$1" ;;
+    esac
+}
+
+missing_of() {
+    local name
+    for name in "$@"; do
+        present "$name" || printf '%s ' "$name"
+    done
+}
+
+# Installs the packages that bring the names given; fails where that is not possible.
+install_names() {
+    local name packages=() as_root=()
+    command -v apt-get >/dev/null || return 1
+    if [ "$(id -u)" -ne 0 ]; then
+        command -v sudo >/dev/null || return 1
+        as_root=(sudo)
+    fi
+    for name in "$@"; do
+        # shellcheck disable=SC2207
+        packages+=($(debian_package "$name"))
+    done
+    say "installing ${packages[*]} with apt-get"
+    if [ -z "${apt_lists_fresh:-}" ]; then
+        "${as_root[@]}" apt-get update -qq || return 1
+        apt_lists_fresh=yes
+    fi
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+        apt-get install -y -qq --no-install-recommends "${packages[@]}" >/dev/null || return 1
+}
+
+need() {
+    local missing name packages
+    missing=$(missing_of "$@")
+    [ -n "$missing" ] || return 0
+    # shellcheck disable=SC2086
+    install_names $missing
+    # shellcheck disable=SC2086
+    missing=$(missing_of $missing)
+    [ -n "$missing" ] || return 0
+    packages=$(for name in $missing; do debian_package "$name"; done | tr '\n' ' ')
+    fail "these are missing and could not be installed from here: $missing
+Please install them and run this again. On Debian or Ubuntu:
+    apt-get install $packages
+Other systems have them under the same or similar names."
+}
+
+want() {
+    local name
+    for name in $(missing_of "$@"); do
+        # One by one: that one is not to be had must not cost the others.
+        install_names "$name"
+        present "$name" || say "going on without $name"
+    done
+}

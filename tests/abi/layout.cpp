@@ -1,0 +1,2 @@
+// The same as C++ sees the header.
+#include "layout.c"
