@@ -55,9 +55,11 @@ case $finder in
     cmake)
         target=holonomic
         [ $language != fortran ] || target=fortran
-        [ "$link" != archive ] || target=${target}_static
+        # In a prefix without a shared library the plain name is the static one.
+        [ "$link" != archive ] || [ ! -e "$libdir/libholonomic.so" ] || target=${target}_static
         cp "$here/projects/$language/CMakeLists.txt" .
-        show "$CMAKE" -S . -B build -DCMAKE_PREFIX_PATH="$prefix" -DHOLONOMIC_TARGET=holonomic::$target
+        show "$CMAKE" -S . -B build -DCMAKE_PREFIX_PATH="$prefix" -DPROGRAM="$program" \
+            -DHOLONOMIC_TARGET=holonomic::$target
         show "$CMAKE" --build build
         cp build/program .
         ;;
