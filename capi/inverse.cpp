@@ -1,0 +1,144 @@
+#include "core/inverse.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "boundary.hpp"
+#include "core/view.hpp"
+
+using holonomic::AtomArray;
+using holonomic::guarded;
+using holonomic::make_error;
+using holonomic::need;
+using holonomic::packed_array;
+using holonomic::viewed_array;
+
+struct hol_inverse {
+    holonomic::Inverse inverse;
+};
+
+namespace {
+
+void create(const hol_chains *chains, std::int64_t chain, const AtomArray &r, hol_inverse **inverse) {
+    const holonomic::Chains &all = chains->chains;
+    const std::int64_t number = chain - all.base;
+    if (chain < all.base || number >= all.n_chains()) {
+        holonomic::Error error = make_error(HOL_ERR_INDEX, "chain %lld is outside %d .. %lld",
+                                            static_cast<long long>(chain), all.base,
+                                            static_cast<long long>(all.n_chains() - 1 + all.base));
+        error.base = all.base;
+        throw error;
+    }
+    *inverse = new hol_inverse{holonomic::Inverse(all, number, r)};
+}
+
+// Number of a bond counted from 0; -1, which the core refuses, for one below the base.
+std::int64_t bond(const hol_inverse *inverse, std::int64_t i) {
+    const int base = inverse->inverse.base();
+    return i < base ? -1 : i - base;
+}
+
+bool is_physical(int scaling) {
+    if (scaling != HOL_UNIT_DIAGONAL && scaling != HOL_PHYSICAL)
+        throw make_error(HOL_ERR_VALUE, "scaling is %d; it must be HOL_UNIT_DIAGONAL or HOL_PHYSICAL", scaling);
+    return scaling == HOL_PHYSICAL;
+}
+
+void error_bound(const hol_inverse *inverse, const AtomArray &v, const AtomArray &f, const double *lambda,
+                 double *bound, double *relative) {
+    const std::vector<double> found = inverse->inverse.error_bound(v, f, lambda);
+    double largest = 0, size = 0;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        largest = std::max(largest, found[k]);
+        size = std::max(size, std::fabs(lambda[k]));
+        if (bound) bound[k] = found[k];
+    }
+    if (relative) *relative = largest == 0 ? 0 : largest / size;
+}
+
+}  // namespace
+
+int hol_inverse_create(const hol_chains *chains, int64_t chain, const double *r, hol_inverse **inverse) {
+    if (inverse) *inverse = nullptr;
+    return guarded([&] {
+        need(chains, "chains");
+        need(r, "r");
+        need(inverse, "inverse");
+        create(chains, chain, packed_array(r), inverse);
+    });
+}
+
+int hol_inverse_create_view(const hol_chains *chains, int64_t chain, const hol_view *r, hol_inverse **inverse) {
+    if (inverse) *inverse = nullptr;
+    return guarded([&] {
+        need(chains, "chains");
+        need(r, "r");
+        need(inverse, "inverse");
+        create(chains, chain, viewed_array(r, "r"), inverse);
+    });
+}
+
+void hol_inverse_destroy(hol_inverse *inverse) { delete inverse; }
+
+int64_t hol_inverse_n_bonds(const hol_inverse *inverse) { return inverse ? inverse->inverse.n_bonds() : 0; }
+
+int hol_inverse_entry(const hol_inverse *inverse, int scaling, int64_t i, int64_t j, double *value) {
+    return guarded([&] {
+        need(inverse, "inverse");
+        need(value, "value");
+        *value = inverse->inverse.entry(is_physical(scaling), bond(inverse, i), bond(inverse, j));
+    });
+}
+
+int hol_inverse_row(const hol_inverse *inverse, int scaling, int64_t i, double *row) {
+    return guarded([&] {
+        need(inverse, "inverse");
+        need(row, "row");
+        inverse->inverse.row(is_physical(scaling), bond(inverse, i), row);
+    });
+}
+
+int hol_inverse_band(const hol_inverse *inverse, int scaling, int64_t width, double *band) {
+    return guarded([&] {
+        need(inverse, "inverse");
+        need(band, "band");
+        inverse->inverse.band(is_physical(scaling), width, band);
+    });
+}
+
+int hol_inverse_matrix(const hol_inverse *inverse, int scaling, double *matrix) {
+    return guarded([&] {
+        need(inverse, "inverse");
+        need(matrix, "matrix");
+        inverse->inverse.matrix(is_physical(scaling), matrix);
+    });
+}
+
+int hol_inverse_condition(const hol_inverse *inverse, double *condition) {
+    return guarded([&] {
+        need(inverse, "inverse");
+        need(condition, "condition");
+        *condition = inverse->inverse.condition();
+    });
+}
+
+int hol_inverse_error_bound(const hol_inverse *inverse, const double *v, const double *f, const double *lambda,
+                            double *bound, double *relative) {
+    return guarded([&] {
+        need(inverse, "inverse");
+        need(lambda, "lambda");
+        error_bound(inverse, packed_array(v), packed_array(f), lambda, bound, relative);
+    });
+}
+
+int hol_inverse_error_bound_view(const hol_inverse *inverse, const hol_view *v, const hol_view *f,
+                                 const double *lambda, double *bound, double *relative) {
+    return guarded([&] {
+        need(inverse, "inverse");
+        need(lambda, "lambda");
+        const AtomArray av = viewed_array(v, "v"), af = viewed_array(f, "f");
+        const AtomArray *const all[] = {&av, &af};
+        if (av.x) holonomic::check_dimensions(all, 2);
+        error_bound(inverse, av, af, lambda, bound, relative);
+    });
+}

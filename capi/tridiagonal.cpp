@@ -1,0 +1,52 @@
+#include "core/tridiagonal.hpp"
+
+#include "boundary.hpp"
+
+using holonomic::guarded;
+using holonomic::need;
+using holonomic::Tridiagonal;
+
+namespace {
+
+Tridiagonal matrix(std::int64_t n, const double *gamma) {
+    if (n > 1) need(gamma, "gamma");
+    return Tridiagonal(n, gamma);
+}
+
+}  // namespace
+
+int hol_tridiagonal_pivots(int64_t n, const double *gamma, double *omega2) {
+    return guarded([&] {
+        need(omega2, "omega2");
+        matrix(n, gamma).pivots(omega2);
+    });
+}
+
+int hol_tridiagonal_log_det(int64_t n, const double *gamma, double *log_det) {
+    return guarded([&] {
+        need(log_det, "log_det");
+        *log_det = matrix(n, gamma).log_det();
+    });
+}
+
+int hol_tridiagonal_solve(int64_t n, const double *gamma, const double *b, double *x) {
+    return guarded([&] {
+        need(b, "b");
+        need(x, "x");
+        matrix(n, gamma).solve(b, x);
+    });
+}
+
+int hol_tridiagonal_inverse_entry(int64_t n, const double *gamma, int64_t i, int64_t j, double *value) {
+    return guarded([&] {
+        need(value, "value");
+        *value = matrix(n, gamma).inverse_entry(i, j);
+    });
+}
+
+int hol_tridiagonal_inverse_band(int64_t n, const double *gamma, int64_t width, double *band) {
+    return guarded([&] {
+        need(band, "band");
+        matrix(n, gamma).inverse_band(width, band);
+    });
+}

@@ -1,0 +1,30 @@
+// Bond vectors of one chain with nothing rounded off, and the cosine and sine between two of them.
+#ifndef HOLONOMIC_BOND_VECTORS_HPP
+#define HOLONOMIC_BOND_VECTORS_HPP
+
+#include <vector>
+
+#include "chains.hpp"
+#include "double_pair.hpp"
+
+namespace holonomic {
+
+// d_k = r_{k+1} - r_k for k = 0 .. N-1, the minimum image if there is a box. Not checked for anything.
+std::vector<PairVector> bond_vectors(const Lane &lane, const AtomArray &r, const Box &box);
+
+// A bond vector over the power of two that brings it to a size of about 1, so that products can't overflow or underflow.
+struct ScaledBond {
+    Vector3<double> hi, lo;
+    double length;  // of the scaled vector
+    int exponent;
+};
+ScaledBond scaled(const PairVector &d);
+
+struct Joint {
+    double cosine;      // of the angle between neighbouring bonds, with its sign
+    double complement;  // 1 - |cosine|, right to a few roundings however small
+};
+Joint joint_between(const ScaledBond &a, const ScaledBond &b);
+
+}  // namespace holonomic
+#endif

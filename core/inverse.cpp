@@ -1,0 +1,189 @@
+// Theory (28)-(34): elimination on unit bonds with the deficits of the rows carried instead of the diagonal, so that
+// nothing is subtracted; then products of its multipliers.
+#include "inverse.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bond_vectors.hpp"
+#include "diagnose.hpp"
+#include "holonomic.h"
+
+namespace holonomic {
+
+namespace {
+
+Error bad_data(const Chains &chains, std::int64_t chain, const AtomArray &r) {
+    Tally tally{};
+    tally.n_bad = 1;
+    tally.first_bad = chain;
+    const NamedArray arrays[] = {{"position", &r}};
+    return diagnose(chains, tally, arrays, 1, HOL_ERR_NOT_FINITE);
+}
+
+}  // namespace
+
+Inverse::Inverse(const Chains &chains, std::int64_t chain, const AtomArray &r)
+    : n_(static_cast<std::size_t>(chains.lane(chain).n_bonds)), base_(chains.base), atoms_(n_ + 1), w_(n_ + 1),
+      d_(bond_vectors(chains.lane(chain), r, chains.box)), bonds_(n_), largest_row_(1) {
+    const Lane lane = chains.lane(chain);
+    for (std::size_t k = 0; k <= n_; ++k) {
+        const std::int64_t i = static_cast<std::int64_t>(k);
+        atoms_[k] = lane.atoms ? lane.atoms[i] : lane.first_atom + i;
+        w_[k] = lane.w ? lane.w[i] : lane.w_uniform;
+    }
+    std::vector<Joint> joints(n_ + 1, Joint{0, 1});  // k: between bonds k-1 and k
+    ScaledBond before{};
+    bool good = true;
+    for (std::size_t k = 0; k < n_; ++k) {
+        const ScaledBond here = scaled(d_[k]);
+        if (k > 0) joints[k] = joint_between(before, here);
+        bonds_[k].length = std::scalbn(here.length, here.exponent);
+        good = good && here.length > 0 && std::isfinite(here.length);
+        before = here;
+    }
+    const auto coupling = [&](std::size_t k) { return w_[k] * std::fabs(joints[k].cosine); };  // p of theory (22)
+    const auto deficit = [&](std::size_t k) { return w_[k] * joints[k].complement + w_[k + 1] * joints[k + 1].complement; };
+    double e = 0;
+    for (std::size_t k = 0; k < n_; ++k) {
+        Bond &b = bonds_[k];
+        b.root = std::sqrt(w_[k] + w_[k + 1]);
+        b.l = k == 0 ? 0 : coupling(k) / bonds_[k - 1].pivot;
+        e = deficit(k) + b.l * e;
+        b.inverse = e;
+        b.pivot = e + (k + 1 < n_ ? coupling(k + 1) : 0);
+        good = good && b.pivot > 0 && std::isfinite(b.pivot);
+    }
+    if (!good) throw bad_data(chains, chain, r);
+    double rest = 0;  // R of theory (30)
+    for (std::size_t k = n_; k-- > 0;) {
+        if (k + 1 < n_) {
+            const double p = coupling(k + 1), sum = deficit(k + 1) + rest;
+            rest = p == 0 ? 0 : p * (sum / (sum + p));
+        }
+        bonds_[k].inverse = 1 / (bonds_[k].inverse + rest);
+        good = good && std::isfinite(bonds_[k].inverse);
+        double row = 1;
+        if (k > 0) row += coupling(k) / (bonds_[k].root * bonds_[k - 1].root);
+        if (k + 1 < n_) row += coupling(k + 1) / (bonds_[k].root * bonds_[k + 1].root);
+        largest_row_ = std::max(largest_row_, row);
+    }
+    if (!good) throw bad_data(chains, chain, r);
+    for (std::size_t k = 1; k < n_; ++k) bonds_[k].l = std::copysign(bonds_[k].l, joints[k].cosine);
+}
+
+void Inverse::check(std::int64_t i) const {
+    if (i >= 0 && i < n_bonds()) return;
+    Error error = make_error(HOL_ERR_INDEX, "the number of a bond is outside %d .. %lld", base_,
+                             static_cast<long long>(n_) - 1 + base_);
+    error.base = base_;
+    throw error;
+}
+
+// Z~^-1 = S M^-1 S with S_k = sqrt(M_kk), Z^-1 the same with S_k = 1 / (2 |d_k|).
+double Inverse::scale(bool physical, std::size_t k) const {
+    return physical ? 0.5 / bonds_[k].length : bonds_[k].root;
+}
+
+// From an element on the diagonal upwards in its column: (M^-1)_{k-1,j} = l_k (M^-1)_kj. The product is kept in range, as
+// its end may be needed times a large scale.
+class Inverse::Walk {
+public:
+    Walk(const Inverse &inverse, bool physical, std::size_t j)
+        : inverse_(inverse), physical_(physical), at_(j), exponent_(0),
+          product_(inverse.bonds_[j].inverse * inverse.scale(physical, j)) {}
+    double value() const {
+        const double value = product_ * inverse_.scale(physical_, at_);
+        return exponent_ == 0 ? value : std::scalbn(value, exponent_);
+    }
+    void up() {
+        product_ *= inverse_.bonds_[at_--].l;
+        if (std::fabs(product_) < 0x1p-500 && product_ != 0) {
+            product_ *= 0x1p500;
+            exponent_ -= 500;
+        }
+    }
+
+private:
+    const Inverse &inverse_;
+    bool physical_;
+    std::size_t at_;
+    int exponent_;
+    double product_;
+};
+
+double Inverse::entry(bool physical, std::int64_t i, std::int64_t j) const {
+    check(i);
+    check(j);
+    Walk walk(*this, physical, static_cast<std::size_t>(std::max(i, j)));
+    for (std::int64_t steps = std::max(i, j) - std::min(i, j); steps > 0; --steps) walk.up();
+    return walk.value();
+}
+
+void Inverse::row(bool physical, std::int64_t i, double *out) const {
+    check(i);
+    const std::size_t row = static_cast<std::size_t>(i);
+    Walk walk(*this, physical, row);
+    for (std::size_t k = row;; --k) {
+        out[k] = walk.value();
+        if (k == 0) break;
+        walk.up();
+    }
+    // To the right of the diagonal each element has a diagonal of its own; the product of l is common.
+    double product = scale(physical, row);
+    int exponent = 0;
+    for (std::size_t j = row + 1; j < n_; ++j) {
+        product *= bonds_[j].l;
+        if (std::fabs(product) < 0x1p-500 && product != 0) {
+            product *= 0x1p500;
+            exponent -= 500;
+        }
+        const double value = product * (bonds_[j].inverse * scale(physical, j));
+        out[j] = exponent == 0 ? value : std::scalbn(value, exponent);
+    }
+}
+
+void Inverse::band(bool physical, std::int64_t width, double *out) const {
+    if (width < 0) throw make_error(HOL_ERR_VALUE, "width is %lld; it must be at least 0", static_cast<long long>(width));
+    const std::size_t columns = static_cast<std::size_t>(width) + 1;
+    for (std::size_t j = 0; j < n_; ++j) {
+        Walk walk(*this, physical, j);
+        for (std::size_t k = 0; k < columns && k <= j; ++k) {
+            if (k > 0) walk.up();
+            out[(j - k) * columns + k] = walk.value();
+        }
+    }
+    for (std::size_t i = 0; i < n_; ++i)
+        for (std::size_t k = n_ - i; k < columns; ++k) out[i * columns + k] = 0;
+}
+
+void Inverse::matrix(bool physical, double *out) const {
+    for (std::size_t j = 0; j < n_; ++j) {
+        Walk walk(*this, physical, j);
+        for (std::size_t i = j;; --i) {
+            out[i * n_ + j] = out[j * n_ + i] = walk.value();
+            if (i == 0) break;
+            walk.up();
+        }
+    }
+}
+
+// x becomes |M^-1| x for x >= 0.
+void Inverse::multiply_by_absolute_inverse(std::vector<double> &x) const {
+    for (std::size_t k = 1; k < n_; ++k) x[k] += std::fabs(bonds_[k].l) * x[k - 1];
+    for (std::size_t k = n_; k-- > 0;) {
+        x[k] /= bonds_[k].pivot;
+        if (k + 1 < n_) x[k] += std::fabs(bonds_[k + 1].l) * x[k + 1];
+    }
+}
+
+double Inverse::condition() const {
+    std::vector<double> x(n_);
+    for (std::size_t k = 0; k < n_; ++k) x[k] = bonds_[k].root;
+    multiply_by_absolute_inverse(x);
+    double largest = 0;
+    for (std::size_t k = 0; k < n_; ++k) largest = std::max(largest, bonds_[k].root * x[k]);
+    return largest_row_ * largest;
+}
+
+}  // namespace holonomic

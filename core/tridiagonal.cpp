@@ -1,0 +1,100 @@
+// Theory (35)-(38).
+#include "tridiagonal.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "error.hpp"
+#include "holonomic.h"
+
+namespace holonomic {
+
+Tridiagonal::Tridiagonal(std::int64_t n, const double *gamma) : n_(static_cast<std::size_t>(n)), gamma_(gamma) {
+    if (n < 1 || n > std::numeric_limits<std::int64_t>::max() / 64)
+        throw make_error(HOL_ERR_VALUE, "n is %lld; it must be at least 1", static_cast<long long>(n));
+    for (std::size_t k = 1; k < n_; ++k) {
+        if (std::isfinite(gamma_[k - 1])) continue;
+        Error error = make_error(HOL_ERR_NOT_FINITE, "gamma between rows %lld and %lld is not finite",
+                                 static_cast<long long>(k) - 1, static_cast<long long>(k));
+        error.bond = static_cast<std::int64_t>(k) - 1;
+        throw error;
+    }
+    omega2_.resize(n_);
+    omega2_[0] = as_pair(1);
+    for (std::size_t k = 1; k < n_; ++k) {
+        omega2_[k] = as_pair(1) - this->gamma(k) * this->gamma(k) / omega2_[k - 1];
+        if (omega2_[k].hi > 0) continue;  // false for NaN, to which a gamma of 1e300 leads
+        Error error = make_error(HOL_ERR_NOT_DEFINITE, "the matrix is not positive definite: Omega^2 of row %lld is %g",
+                                 static_cast<long long>(k), omega2_[k].hi);
+        error.bond = static_cast<std::int64_t>(k);
+        throw error;
+    }
+}
+
+void Tridiagonal::pivots(double *omega2) const {
+    for (std::size_t k = 0; k < n_; ++k) omega2[k] = rounded(omega2_[k]);
+}
+
+double Tridiagonal::log_det() const {
+    DoublePair sum = as_pair(0);  // of terms that all have the same sign
+    for (std::size_t k = 1; k < n_; ++k) {
+        const double removed = rounded(gamma(k) * factor(k));
+        sum = sum + as_pair(removed < 0.5 ? std::log1p(-removed) : std::log(rounded(omega2_[k])));
+    }
+    return rounded(sum);
+}
+
+void Tridiagonal::solve(const double *b, double *x) const {
+    std::vector<DoublePair> y(n_);
+    y[0] = as_pair(b[0]);
+    for (std::size_t k = 1; k < n_; ++k) y[k] = as_pair(b[k]) + factor(k) * y[k - 1];
+    DoublePair next = as_pair(0);
+    for (std::size_t k = n_; k-- > 0;) {
+        y[k] = y[k] / omega2_[k];
+        if (k + 1 < n_) y[k] = y[k] + factor(k + 1) * next;
+        next = y[k];
+    }
+    for (std::size_t k = 0; k < n_; ++k) x[k] = rounded(y[k]);
+}
+
+// 1 / (Omega_i^2 + Omega'_i^2 - 1), Omega' from the last row on.
+std::vector<double> Tridiagonal::inverse_diagonal() const {
+    std::vector<double> diagonal(n_);
+    DoublePair removed = as_pair(0);  // 1 - Omega'^2
+    for (std::size_t k = n_; k-- > 0;) {
+        diagonal[k] = rounded(as_pair(1) / (omega2_[k] - removed));
+        if (k > 0) removed = gamma(k) * gamma(k) / (as_pair(1) - removed);
+    }
+    return diagonal;
+}
+
+double Tridiagonal::inverse_entry(std::int64_t i, std::int64_t j) const {
+    if (i < 0 || j < 0 || static_cast<std::size_t>(i) >= n_ || static_cast<std::size_t>(j) >= n_)
+        throw make_error(HOL_ERR_INDEX, "element (%lld,%lld) is outside a matrix of %lld rows, counted from 0",
+                         static_cast<long long>(i), static_cast<long long>(j), static_cast<long long>(n_));
+    const std::size_t low = static_cast<std::size_t>(i < j ? i : j), high = static_cast<std::size_t>(i < j ? j : i);
+    DoublePair removed = as_pair(0);
+    for (std::size_t k = n_ - 1; k > high; --k) removed = gamma(k) * gamma(k) / (as_pair(1) - removed);
+    DoublePair value = as_pair(1) / (omega2_[high] - removed);
+    for (std::size_t k = high; k > low; --k) value = value * factor(k);
+    return rounded(value);
+}
+
+void Tridiagonal::inverse_band(std::int64_t width, double *band) const {
+    if (width < 0) throw make_error(HOL_ERR_VALUE, "width is %lld; it must be at least 0", static_cast<long long>(width));
+    const std::vector<double> diagonal = inverse_diagonal();
+    const std::size_t columns = static_cast<std::size_t>(width) + 1;
+    std::vector<double> factors(n_);
+    for (std::size_t k = 1; k < n_; ++k) factors[k] = rounded(factor(k));
+    for (std::size_t j = 0; j < n_; ++j) {
+        double value = diagonal[j];
+        for (std::size_t k = 0; k < columns && k <= j; ++k) {
+            band[(j - k) * columns + k] = value;
+            value *= factors[j - k];
+        }
+    }
+    for (std::size_t i = 0; i < n_; ++i)
+        for (std::size_t k = n_ - i; k < columns; ++k) band[i * columns + k] = 0;
+}
+
+}  // namespace holonomic

@@ -1,0 +1,35 @@
+// The symmetric tridiagonal matrix with ones on its diagonal and -gamma beside it, known by gamma alone.
+#ifndef HOLONOMIC_TRIDIAGONAL_HPP
+#define HOLONOMIC_TRIDIAGONAL_HPP
+
+#include <cstdint>
+#include <vector>
+
+#include "double_pair.hpp"
+
+namespace holonomic {
+
+// Elimination from the first row on, in twice the precision: without the bonds there is no form without subtractions,
+// so the digits that they cost are carried along. Throws Error.
+class Tridiagonal {
+public:
+    Tridiagonal(std::int64_t n, const double *gamma);  // gamma [n-1], used by the functions, too
+
+    void pivots(double *omega2) const;
+    double log_det() const;
+    void solve(const double *b, double *x) const;
+    double inverse_entry(std::int64_t i, std::int64_t j) const;
+    void inverse_band(std::int64_t width, double *band) const;
+
+private:
+    DoublePair gamma(std::size_t k) const { return as_pair(gamma_[k - 1]); }  // between rows k-1 and k
+    DoublePair factor(std::size_t k) const { return gamma(k) / omega2_[k - 1]; }
+    std::vector<double> inverse_diagonal() const;
+
+    std::size_t n_;
+    const double *gamma_;
+    std::vector<DoublePair> omega2_;
+};
+
+}  // namespace holonomic
+#endif
