@@ -55,14 +55,14 @@ static void assert_chain(const assembly *a, int64_t c, const double *got, const 
     free(y);
 }
 
-static void assert_location(int64_t chain, int64_t bad)
+static void assert_location(int64_t first, int64_t bad)
 {
     int64_t where = -9, count = -9;
     char name[64];
     hol_error_location(&where, NULL, NULL, &count);
-    assert_int_equal(where, chain);
+    assert_int_equal(where, first);
     assert_int_equal(count, bad);
-    snprintf(name, sizeof name, "%lld", (long long)chain);
+    snprintf(name, sizeof name, "%lld", (long long)first);
     assert_message_names(name);
     snprintf(name, sizeof name, "%lld", (long long)bad);
     if (bad > 1) assert_message_names(name);
@@ -220,11 +220,11 @@ static void the_first_bad_chain_decides_status_and_message(void **state)
     spoil(&a, 9, 2, NAN_POSITION);
     spoil(&a, 4, 3, ZERO_BOND);
     double *g = untouched(assembly_size(&a));
-    int64_t chain, bond;
+    int64_t where, bond;
     CHECK_FAILS(HOL_ERR_DEGENERATE, hol_forces(a.chains, a.r, NULL, a.f, NULL, NULL, g, HOL_WRITE, NULL));
     assert_location(4, 2);
-    hol_error_location(&chain, &bond, NULL, NULL);
-    assert_int_equal(chain, 4);
+    hol_error_location(&where, &bond, NULL, NULL);
+    assert_int_equal(where, 4);
     assert_int_equal(bond, 2); /* the bond between atoms 2 and 3 of the chain, counted from 0 */
     spoil(&a, 1, 1, NAN_FORCE);
     CHECK_FAILS(HOL_ERR_NOT_FINITE, hol_forces(a.chains, a.r, NULL, a.f, NULL, NULL, g, HOL_WRITE, NULL));
