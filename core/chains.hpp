@@ -71,6 +71,7 @@ public:
     Lane lane(std::int64_t chain) const;  // chain in 0 .. n_chains-1
     const Plan &plan() const;             // thread-safe
     Unit unit(const Plan &plan, std::int64_t piece, Lane *lanes) const;  // lanes [loose_piece]
+    std::int64_t piece_bonds(const Plan &plan, std::int64_t piece) const;  // of a chain of the piece; 0 if loose ones
 
     int base = 0;
     int n_threads = 1;

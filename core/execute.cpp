@@ -15,14 +15,49 @@ namespace {
 // Below this a second thread costs more than it saves.
 constexpr std::int64_t bonds_per_thread = 4096;
 
+// Memory of a thread that stays until the thread ends, aligned to 64.
 struct ThreadMemory {
     double *data = nullptr;
     std::int64_t bytes = 0;
     ~ThreadMemory() { std::free(data); }
+
+    double *get(std::int64_t wanted) {
+        if (wanted <= bytes) return data;
+        std::free(data);
+        bytes = 0;
+        const std::size_t rounded = static_cast<std::size_t>((wanted + 63) / 64 * 64);
+        data = static_cast<double *>(std::aligned_alloc(64, rounded));
+        if (data) bytes = static_cast<std::int64_t>(rounded);
+        return data;
+    }
 };
 
-thread_local ThreadMemory memory;
-thread_local std::vector<Tally> tallies;
+thread_local ThreadMemory scratch_memory, store_memory;
+thread_local std::vector<Tally> piece_tallies, block_tallies;
+
+Tally *tallies(std::vector<Tally> &memory, std::int64_t n) {
+    if (static_cast<std::int64_t>(memory.size()) < n) memory.resize(static_cast<std::size_t>(n));
+    return memory.data();
+}
+
+double *scratch_of_this_thread(std::int64_t bytes) {
+    double *const scratch = scratch_memory.get(bytes);
+    if (!scratch) throw std::bad_alloc();
+    return scratch;
+}
+
+#ifdef _OPENMP
+// Gives every thread of a team its memory, so that nothing can fail later.
+void reserve(int n_threads, std::int64_t scratch_bytes, std::int64_t store_bytes) {
+    bool failed = false;
+#pragma omp parallel num_threads(n_threads)
+    if (!scratch_memory.get(scratch_bytes) || (store_bytes > 0 && !store_memory.get(store_bytes))) {
+#pragma omp atomic write
+        failed = true;
+    }
+    if (failed) throw std::bad_alloc();
+}
+#endif
 
 }  // namespace
 
@@ -46,61 +81,90 @@ void add(Tally &total, const Tally &piece) {
     }
 }
 
-double *thread_scratch(std::int64_t bytes) {
-    if (bytes <= memory.bytes) return memory.data;
-    std::free(memory.data);
-    memory.bytes = 0;
-    const std::size_t rounded = static_cast<std::size_t>((bytes + 63) / 64 * 64);
-    memory.data = static_cast<double *>(std::aligned_alloc(64, rounded));
-    if (memory.data) memory.bytes = static_cast<std::int64_t>(rounded);
-    return memory.data;
+void Team::run(std::int64_t n, Tally &total, void (*call)(const void *, std::int64_t, double *, Tally &),
+               const void *body) const {
+#ifdef _OPENMP
+    if (n_threads_ > 1) {
+        Tally *const parts = tallies(block_tallies, n);
+#pragma omp parallel for schedule(static) num_threads(n_threads_)
+        for (std::int64_t j = 0; j < n; ++j) {
+            Tally tally = empty_tally();
+            call(body, j, scratch_memory.get(scratch_bytes_), tally);
+            parts[j] = tally;
+        }
+        for (std::int64_t j = 0; j < n; ++j) add(total, parts[j]);
+        return;
+    }
+#endif
+    for (std::int64_t j = 0; j < n; ++j) {
+        Tally tally = empty_tally();
+        call(body, j, scratch_memory.get(scratch_bytes_), tally);
+        add(total, tally);
+    }
 }
 
 Tally execute(const Chains &chains, const Work &work) {
     const Plan &plan = chains.plan();
     const std::int64_t n_pieces = static_cast<std::int64_t>(plan.pieces.size());
-    const std::int64_t bytes = kernels().scratch_bytes(plan.longest_in_lane);
+    const std::int64_t scratch_bytes =
+        kernels().scratch_bytes(plan.longest > longest_lane ? 2 * longest_lane : plan.longest);
+    const int n_threads =
+        static_cast<int>(std::min<std::int64_t>(chains.n_threads, std::max<std::int64_t>(plan.n_bonds / bonds_per_thread, 1)));
+
+    // A chain long enough to keep all threads busy is shared among them; of all others each is one thread's work.
+    const std::int64_t shared_blocks = 8 * n_threads;
+    std::int64_t own_store = 0, shared_store = 0;
+    bool any_shared = false;
+    if (plan.longest > longest_lane)
+        for (std::int64_t p = 0; p < n_pieces; ++p) {
+            const std::int64_t n = chains.piece_bonds(plan, p);
+            if (n <= longest_lane) continue;
+            const bool shared = n_threads > 1 && work.long_blocks(n) >= shared_blocks;
+            any_shared = any_shared || shared;
+            (shared ? shared_store : own_store) = std::max(shared ? shared_store : own_store, work.long_bytes(n));
+        }
+    scratch_of_this_thread(scratch_bytes);
+    if (std::max(own_store, shared_store) > 0 && !store_memory.get(std::max(own_store, shared_store)))
+        throw std::bad_alloc();
+
+    const Team alone(1, scratch_bytes);
+    const auto work_on = [&](std::int64_t p, double *scratch, Tally &tally) {
+        Lane lanes[loose_piece];
+        const Unit unit = chains.unit(plan, p, lanes);
+        if (unit.lanes[0].n_bonds <= longest_lane)
+            work.unit(unit, scratch, tally);
+        else
+            work.long_chain(unit.lanes[0], alone, store_memory.get(own_store), tally);
+    };
     Tally total = empty_tally();
-    const std::int64_t worthwhile = std::min(n_pieces, plan.n_bonds / bonds_per_thread);
-    const int n_threads = static_cast<int>(std::min<std::int64_t>(chains.n_threads, worthwhile));
 #ifdef _OPENMP
     if (n_threads > 1) {
-        if (static_cast<std::int64_t>(tallies.size()) < n_pieces) tallies.resize(static_cast<std::size_t>(n_pieces));
-        Tally *const piece_tallies = tallies.data();
-        bool out_of_memory = false;
-#pragma omp parallel num_threads(n_threads)
-        {
-            double *const scratch = thread_scratch(bytes);
-            if (!scratch) {
-#pragma omp atomic write
-                out_of_memory = true;
-            }
-#pragma omp barrier
-            bool stop;
-#pragma omp atomic read
-            stop = out_of_memory;
-            if (!stop) {
-#pragma omp for schedule(dynamic, 4)
-                for (std::int64_t p = 0; p < n_pieces; ++p) {
-                    Lane lanes[loose_piece];
-                    Tally tally = empty_tally();
-                    work(chains.unit(plan, p, lanes), scratch, tally);
-                    piece_tallies[p] = tally;
-                }
-            }
+        reserve(n_threads, scratch_bytes, own_store);
+        Tally *const parts = tallies(piece_tallies, n_pieces);
+        const auto is_shared = [&](std::int64_t p) {
+            if (!any_shared) return false;
+            const std::int64_t n = chains.piece_bonds(plan, p);
+            return n > longest_lane && work.long_blocks(n) >= shared_blocks;
+        };
+#pragma omp parallel for schedule(dynamic, 4) num_threads(n_threads)
+        for (std::int64_t p = 0; p < n_pieces; ++p) {
+            Tally tally = empty_tally();
+            if (!is_shared(p)) work_on(p, scratch_memory.get(scratch_bytes), tally);
+            parts[p] = tally;
         }
-        if (out_of_memory) throw std::bad_alloc();
-        for (std::int64_t p = 0; p < n_pieces; ++p) add(total, piece_tallies[p]);
+        const Team team(n_threads, scratch_bytes);
+        for (std::int64_t p = 0; any_shared && p < n_pieces; ++p) {
+            if (!is_shared(p)) continue;
+            Lane lanes[loose_piece];
+            work.long_chain(chains.unit(plan, p, lanes).lanes[0], team, store_memory.get(shared_store), parts[p]);
+        }
+        for (std::int64_t p = 0; p < n_pieces; ++p) add(total, parts[p]);
         return total;
     }
 #endif
-    static_cast<void>(n_threads);
-    double *const scratch = thread_scratch(bytes);
-    if (!scratch) throw std::bad_alloc();
-    Lane lanes[loose_piece];
     for (std::int64_t p = 0; p < n_pieces; ++p) {
         Tally tally = empty_tally();
-        work(chains.unit(plan, p, lanes), scratch, tally);
+        work_on(p, scratch_memory.get(scratch_bytes), tally);
         add(total, tally);
     }
     return total;

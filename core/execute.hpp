@@ -11,30 +11,63 @@ namespace holonomic {
 Tally empty_tally();
 void add(Tally &total, const Tally &piece);
 
-// Memory of the calling thread that stays until the thread ends; nullptr if there is none to be had. Aligned to 64.
-double *thread_scratch(std::int64_t bytes);
+// The threads that work on one long chain.
+class Team {
+public:
+    Team(int n_threads, std::int64_t scratch_bytes) : n_threads_(n_threads), scratch_bytes_(scratch_bytes) {}
 
-// Calls work(unit, scratch, tally) for every piece of the plan. Throws std::bad_alloc before any work is done.
+    // Calls body(j, scratch, tally) for j = 0 .. n-1, and adds the tallies in the order of j.
+    template <class Body>
+    void for_each(std::int64_t n, Tally &total, const Body &body) const {
+        run(n, total, [](const void *b, std::int64_t j, double *scratch, Tally &tally) {
+            (*static_cast<const Body *>(b))(j, scratch, tally);
+        }, &body);
+    }
+
+private:
+    void run(std::int64_t n, Tally &total, void (*call)(const void *, std::int64_t, double *, Tally &),
+             const void *body) const;
+    int n_threads_;
+    std::int64_t scratch_bytes_;
+};
+
+// What a call does with chains that fit into lanes, and with longer ones.
 class Work {
 public:
-    virtual void operator()(const Unit &unit, double *scratch, Tally &tally) const = 0;
+    virtual void unit(const Unit &unit, double *scratch, Tally &tally) const = 0;
+    virtual std::int64_t long_blocks(std::int64_t n_bonds) const = 0;
+    virtual std::int64_t long_bytes(std::int64_t n_bonds) const = 0;
+    virtual void long_chain(const Lane &lane, const Team &team, double *store, Tally &tally) const = 0;
 
 protected:
     ~Work() = default;
 };
+
+// Throws std::bad_alloc before any work is done.
 Tally execute(const Chains &chains, const Work &work);
 
-template <class Call>
-Tally execute(const Chains &chains, void (*kernel)(const Call &, const Unit &, double *, Tally &), const Call &call) {
-    struct KernelWork final : Work {
-        void (*kernel)(const Call &, const Unit &, double *, Tally &);
-        const Call &call;
-        KernelWork(void (*k)(const Call &, const Unit &, double *, Tally &), const Call &c) : kernel(k), call(c) {}
-        void operator()(const Unit &unit, double *scratch, Tally &tally) const override {
-            kernel(call, unit, scratch, tally);
-        }
-    };
-    return execute(chains, KernelWork(kernel, call));
+// Counts a long chain as bad.
+inline void note_bad(const Lane &lane, Tally &tally) {
+    if (tally.n_bad++ == 0 || lane.chain < tally.first_bad) tally.first_bad = lane.chain;
+}
+
+// Forces and velocities: eliminate, join, finish; once more with compensated products where plain ones don't do.
+template <class Phases, class Call>
+void solve_long_chain(const Phases &phases, const Call &call, const Lane &lane, const Team &team, double *store,
+                      Tally &tally) {
+    const std::int64_t blocks = phases.blocks(lane.n_bonds);
+    JoinResult result = join_doubtful;
+    for (int attempt = 0; attempt < 2 && result == join_doubtful; ++attempt) {
+        const bool careful = attempt == 1;
+        team.for_each(blocks, tally, [&](std::int64_t j, double *scratch, Tally &) {
+            phases.eliminate(call, lane, j, careful, store, scratch);
+        });
+        result = phases.join(lane, careful, store);
+    }
+    if (result != join_good) return note_bad(lane, tally);
+    team.for_each(blocks, tally, [&](std::int64_t j, double *scratch, Tally &part) {
+        phases.finish(call, lane, j, store, scratch, part);
+    });
 }
 
 }  // namespace holonomic

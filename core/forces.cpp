@@ -6,6 +6,22 @@
 
 namespace holonomic {
 
+namespace {
+
+struct ForcesWork final : Work {
+    const ForcesCall &call;
+    const Kernels &k = kernels();
+    explicit ForcesWork(const ForcesCall &c) : call(c) {}
+    void unit(const Unit &unit, double *scratch, Tally &tally) const override { k.forces(call, unit, scratch, tally); }
+    std::int64_t long_blocks(std::int64_t n) const override { return k.long_forces.blocks(n); }
+    std::int64_t long_bytes(std::int64_t n) const override { return k.long_forces.bytes(n); }
+    void long_chain(const Lane &lane, const Team &team, double *store, Tally &tally) const override {
+        solve_long_chain(k.long_forces, call, lane, team, store, tally);
+    }
+};
+
+}  // namespace
+
 void write_virial(const Tally &tally, double *virial) {
     const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     for (int i = 0; i < 9; ++i) virial[i] = tally.virial[place[i]];
@@ -14,7 +30,7 @@ void write_virial(const Tally &tally, double *virial) {
 void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
             double *tension, const AtomArray &g, bool add, double *virial) {
     const ForcesCall call{r, v, f, g, lambda, tension, add, virial != nullptr, chains.box};
-    const Tally tally = execute(chains, kernels().forces, call);
+    const Tally tally = execute(chains, ForcesWork(call));
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}, {"force", &f}};
         throw diagnose(chains, tally, arrays, 3, HOL_ERR_NOT_FINITE);

@@ -7,7 +7,7 @@ namespace holonomic {
 
 namespace {
 
-constexpr std::int64_t piece_bonds = 4096;  // enough to hide the cost of a piece, few enough to share out evenly
+constexpr std::int64_t bonds_per_piece = 4096;  // enough to hide the cost of a piece, few enough to share out evenly
 constexpr std::int64_t widest = 8;          // lanes of the widest instruction set: pieces are cut at multiples of it
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
@@ -27,7 +27,7 @@ void Chains::make_plan() const {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         const Group &group = groups_[g];
         const std::int64_t n_bonds = kinds_[at(group.kind)].n_bonds, index = static_cast<std::int64_t>(g);
-        const std::int64_t per_piece = std::max(widest, piece_bonds / n_bonds / widest * widest);
+        const std::int64_t per_piece = std::max(widest, bonds_per_piece / n_bonds / widest * widest);
         for (std::int64_t begin = 0; begin < group.n_chains;) {
             if (!is_active(group.first_chain + begin)) {
                 ++begin;
@@ -60,6 +60,11 @@ void Chains::make_plan() const {
         plan->pieces.push_back({-1, first, std::min(loose_piece, n_loose - first)});
     plan_owner_ = std::move(plan);
     plan_.store(plan_owner_.get(), std::memory_order_release);
+}
+
+std::int64_t Chains::piece_bonds(const Plan &plan, std::int64_t piece) const {
+    const std::int64_t group = plan.pieces[at(piece)].group;
+    return group < 0 ? 0 : kinds_[at(groups_[at(group)].kind)].n_bonds;
 }
 
 Unit Chains::unit(const Plan &plan, std::int64_t piece, Lane *lanes) const {

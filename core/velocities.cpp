@@ -7,9 +7,27 @@
 
 namespace holonomic {
 
+namespace {
+
+struct VelocitiesWork final : Work {
+    const VelocitiesCall &call;
+    const Kernels &k = kernels();
+    explicit VelocitiesWork(const VelocitiesCall &c) : call(c) {}
+    void unit(const Unit &unit, double *scratch, Tally &tally) const override {
+        k.velocities(call, unit, scratch, tally);
+    }
+    std::int64_t long_blocks(std::int64_t n) const override { return k.long_velocities.blocks(n); }
+    std::int64_t long_bytes(std::int64_t n) const override { return k.long_velocities.bytes(n); }
+    void long_chain(const Lane &lane, const Team &team, double *store, Tally &tally) const override {
+        solve_long_chain(k.long_velocities, call, lane, team, store, tally);
+    }
+};
+
+}  // namespace
+
 void project_velocities(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda, double *virial) {
     const VelocitiesCall call{r, v, lambda, virial != nullptr, chains.box};
-    const Tally tally = execute(chains, kernels().velocities, call);
+    const Tally tally = execute(chains, VelocitiesWork(call));
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}};
         throw diagnose(chains, tally, arrays, 2, HOL_ERR_NOT_FINITE);

@@ -77,7 +77,48 @@ struct PositionsCall {
     Box box;
 };
 
-// The kernels of one instruction set. `scratch` has scratch_bytes(longest chain of the unit), aligned to 64.
+enum JoinResult { join_good, join_doubtful, join_bad };
+
+// A chain of more than longest_lane bonds is worked on in blocks of segments, in phases; within a phase the blocks may
+// be done in any order, by any thread. `store` keeps what passes from phase to phase.
+struct LongForces {
+    int64_t (*blocks)(int64_t n_bonds);
+    int64_t (*bytes)(int64_t n_bonds);  // of the store
+    void (*eliminate)(const ForcesCall &, const Lane &, int64_t block, bool careful, double *store, double *scratch);
+    JoinResult (*join)(const Lane &, bool careful, double *store);
+    void (*finish)(const ForcesCall &, const Lane &, int64_t block, double *store, double *scratch, Tally &);
+};
+
+struct LongVelocities {
+    int64_t (*blocks)(int64_t n_bonds);
+    int64_t (*bytes)(int64_t n_bonds);
+    void (*eliminate)(const VelocitiesCall &, const Lane &, int64_t block, bool careful, double *store,
+                      double *scratch);
+    JoinResult (*join)(const Lane &, bool careful, double *store);
+    void (*finish)(const VelocitiesCall &, const Lane &, int64_t block, double *store, double *scratch, Tally &);
+};
+
+// Largest coordinate and largest relative error of a chain or block; the error is NaN if anything is not finite.
+struct LongTally {
+    double extent, error;
+};
+
+struct LongPositions {
+    int64_t (*blocks)(int64_t n_bonds);
+    int64_t (*bytes)(int64_t n_bonds);
+    void (*load)(const PositionsCall &, const Lane &, int64_t block, double *store, double *scratch, LongTally &);
+    void (*guess)(const PositionsCall &, const Lane &, int64_t block, double *store);
+    void (*forget)(const Lane &, int64_t block, double *store);
+    void (*solve)(const PositionsCall &, const Lane &, int64_t block, bool renew, bool careful, double *store,
+                  double *scratch);
+    bool (*join)(const Lane &, bool renew, double *store);
+    void (*substitute)(const PositionsCall &, const Lane &, int64_t block, double *store);
+    double (*correct)(const PositionsCall &, const Lane &, int64_t block, double *store, double *scratch);
+    void (*finish)(const PositionsCall &, const Lane &, int64_t block, bool moved, double *store, double *scratch,
+                   Tally &);
+};
+
+// The kernels of one instruction set. `scratch` has scratch_bytes(bonds of the longest lane), aligned to 64.
 struct Kernels {
     const char *name;
     int lanes;
@@ -85,6 +126,9 @@ struct Kernels {
     void (*forces)(const ForcesCall &, const Unit &, double *scratch, Tally &);
     void (*velocities)(const VelocitiesCall &, const Unit &, double *scratch, Tally &);
     void (*positions)(const PositionsCall &, const Unit &, double *scratch, Tally &);
+    LongForces long_forces;
+    LongVelocities long_velocities;
+    LongPositions long_positions;
 };
 
 }  // namespace holonomic

@@ -8,6 +8,8 @@
 #include "forces.inl"
 #include "velocities.inl"
 #include "positions.inl"
+#include "segments.inl"
+#include "segments_positions.inl"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -19,8 +21,21 @@ static int64_t scratch_bytes(int64_t n_bonds) {
     return static_cast<int64_t>(sizeof(vec)) * vectors_per_bond * (n_bonds + 2 * W + 8);
 }
 
+static int64_t long_blocks(int64_t n_bonds) { return Cut(n_bonds).blocks; }
+
 extern const Kernels kernels;
-const Kernels kernels = {HOL_NAME, W, scratch_bytes, forces, velocities, positions};
+const Kernels kernels = {
+    HOL_NAME,
+    W,
+    scratch_bytes,
+    forces,
+    velocities,
+    positions,
+    {long_blocks, long_bytes, long_forces_eliminate, long_join, long_forces_finish},
+    {long_blocks, long_bytes, long_velocities_eliminate, long_join, long_velocities_finish},
+    {long_blocks, long_positions_bytes, long_positions_load, long_positions_guess, long_positions_forget,
+     long_positions_solve, long_positions_join, long_positions_substitute, long_positions_correct, long_positions_finish},
+};
 
 }  // namespace HOL_ISA
 }  // namespace holonomic

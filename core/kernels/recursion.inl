@@ -22,7 +22,7 @@ HOL_INLINE mask joint(const Block &block, long k) {
 // of d, d' and of the cross product. It enters E' = w (q' E + w X) / P, so what E' gets of it is harmless where
 //     w sqrt(X q q') <= c (q' E + w X),   c = joint_tolerance,
 // and this holds for every X if E >= w q / (4 c^2): the cheap test that ordinary chains pass (docs/performance.md).
-constexpr double joint_tolerance = 4;
+constexpr double joint_tolerance = 8;
 
 // Exact form of the test, for the joint k of a block whose pivots are rebuilt from E.
 template <bool uniform>
