@@ -138,6 +138,7 @@ contains
       print "(a, es10.2, a)", "energy fluctuation    ", sqrt(sum((e - slope*t)**2)/samples)/kt, " kT per bead, rms about it"
       print "(a, f10.5)", "temperature           ", kt
       print "(a, 3f10.4)", "pressure              ", pressure_sum/samples
+      print "(a, es10.2)", "  largest difference  ", (maxval(pressure_sum) - minval(pressure_sum))/samples
       print "(a, i0, a)", "neighbour list        ", list%made, " times made"
    end subroutine
 

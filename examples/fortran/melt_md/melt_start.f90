@@ -16,6 +16,8 @@ contains
       real(dp), intent(out) :: r(:, :)
       logical, intent(out) :: fits
       integer :: width, rows, patches(3), chain, bead, row, column, at(3)
+      patches = 0
+      fits = .false.
       do width = 1, n_beads
          rows = (n_beads + width - 1)/width
          patches = floor(box/([width - 1, rows - 1, 0] + closest))

@@ -1,0 +1,60 @@
+example_folder(fortran)
+set(molecule ${PROJECT_SOURCE_DIR}/examples/fortran/alkane_md/n-hexadecane.xyz)
+
+# ------------------------------------------------------------------------------------------------------- alkane_md
+# The bonds hold to the rounding of coordinates of some 10 A, 2 eps 10/1.54 for d^2, with some room for a bad step. The
+# energy of velocity Verlet at 2 fs fluctuates by about 0.02 kJ/mol of 58; a wrong force or constraint gives far more.
+example_test(alkane_md.rattle fortran alkane_md file=${molecule} steps=20000 output=nve --
+    "degrees of freedom" 1 = 30
+    "largest bond error" 1 < 2e-14
+    "most iterations" 1 < 6
+    "energy fluctuation" 1 < 0.1
+    "energy drift" 1 < 2
+    "energy drift" 1 > -2
+    file nve.dat > 100000
+    file nve.gp > 300)
+# Runge-Kutta knows nothing of the bonds but their forces: order 4 in their lengths shows that the forces are exact.
+example_test(alkane_md.rk4 fortran alkane_md file=${molecule} integrator=rk4 steps=500 dt=1 --
+    "observed order" 1 > 3.8
+    "observed order" 2 > 3.8
+    "observed order" 1 < 4.2
+    "observed order" 2 < 4.2
+    "largest bond error" 1 < 1e-5)
+# 33 degrees of freedom over 100 ps with a correlation time below 1 ps: the mean is known to about 5 K, so 25 K is five
+# standard errors; one of three degrees of freedom miscounted would show as 27 K.
+example_test(alkane_md.langevin fortran alkane_md file=${molecule} integrator=langevin steps=50000 friction=5 --
+    "degrees of freedom" 1 = 33
+    "largest bond error" 1 < 3e-14
+    "mean temperature" 1 > 275
+    "mean temperature" 1 < 325)
+example_refuses(alkane_md.refuses_a_missing_file fortran "alkane_md: .*nowhere.xyz" alkane_md file=nowhere.xyz)
+example_refuses(alkane_md.refuses_another_group fortran "'OH', atom 3, is neither CH3 nor CH2"
+    alkane_md file=${CMAKE_CURRENT_SOURCE_DIR}/propanol.xyz)
+example_refuses(alkane_md.refuses_a_gap fortran "line 5: this atom is not a bond of 1.54 A from the one before"
+    alkane_md file=${CMAKE_CURRENT_SOURCE_DIR}/gap.xyz)
+example_refuses(alkane_md.refuses_an_unknown_option fortran "there is no option 'step'" alkane_md step=3)
+example_refuses(alkane_md.refuses_no_steps fortran "steps=0 must be a whole number" alkane_md steps=0)
+
+add_test(NAME examples.make_alkane COMMAND sh -c "\"$1\" 16 | cmp - \"$2\"" sh
+    ${CMAKE_CURRENT_BINARY_DIR}/fortran/make_alkane ${molecule})
+set_tests_properties(examples.make_alkane PROPERTIES FIXTURES_REQUIRED examples_fortran)
+
+# --------------------------------------------------------------------------------------------------------- melt_md
+# Momentum: a random walk of 512 roundings of eps in each of 4000 kicks is 3e-13. The three pressures are averages of
+# the same quantity to second order in dt.
+example_test(melt_md fortran melt_md chains=16 melt=4000 steps=4000 --
+    "degrees of freedom" 1 = 1037
+    "largest bond error" 1 < 1e-13
+    "largest |d.v|" 1 < 1e-14
+    "largest momentum" 1 < 1e-11
+    "energy fluctuation" 1 < 5e-4
+    "temperature" 1 > 0.85
+    "temperature" 1 < 1.15
+    "  largest difference" 1 < 0.01)
+example_refuses(melt_md.refuses_a_full_box fortran "box is too small" melt_md density=3)
+
+# ---------------------------------------------------------------------------------------------------- legacy_fixed
+example_test(legacy_fixed fortran legacy_fixed --
+    "LARGEST BOND ERROR" 1 < 5e-14
+    "  20.000" 1 < 0.01
+    "  20.000" 1 > -0.01)
