@@ -75,7 +75,8 @@ install_names() {
     done
     say "installing ${packages[*]} with apt-get"
     if [ -z "${apt_lists_fresh:-}" ]; then
-        "${as_root[@]}" apt-get update -qq || return 1
+        # Where one of several sources can't be reached, the others may have what is needed.
+        "${as_root[@]}" apt-get update -qq
         apt_lists_fresh=yes
     fi
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
