@@ -71,6 +71,8 @@ void add(Tally &total, const Tally &piece) {
     for (int i = 0; i < 6; ++i) total.virial[i] += piece.virial[i];
     if (piece.n_bad > 0 && (total.n_bad == 0 || piece.first_bad < total.first_bad)) total.first_bad = piece.first_bad;
     total.n_bad += piece.n_bad;
+    total.log_det += piece.log_det;
+    total.log_det_z += piece.log_det_z;
     total.iterations = std::max(total.iterations, piece.iterations);
     total.n_corrected += piece.n_corrected;
     if (piece.worst_chain >= 0 && (total.worst_chain < 0 || piece.worst > total.worst ||

@@ -51,6 +51,8 @@ struct Tally {
     // positions
     int64_t iterations, n_corrected, worst_chain, worst_bond;
     double worst;
+    // metric: ln det Z~ and, of a long chain, ln det Z
+    double log_det, log_det_z;
 };
 
 struct ForcesCall {
@@ -74,6 +76,15 @@ struct PositionsCall {
     bool guess, virial;
     double tolerance;  // 0: what the coordinates carry
     int max_iterations;
+    Box box;
+};
+
+struct MetricCall {
+    AtomArray r, force;
+    double kT;
+    double *log_det, *log_det_z;  // per chain
+    bool sum;                     // the tally's log_det is needed
+    bool add;
     Box box;
 };
 
@@ -118,6 +129,14 @@ struct LongPositions {
                    Tally &);
 };
 
+struct LongMetric {
+    int64_t (*blocks)(int64_t n_bonds);
+    int64_t (*bytes)(int64_t n_bonds);
+    void (*map)(const MetricCall &, const Lane &, int64_t block, double *store, double *scratch);
+    bool (*join)(const Lane &, double *store);
+    void (*finish)(const MetricCall &, const Lane &, int64_t block, double *store, double *scratch, Tally &);
+};
+
 // The kernels of one instruction set. `scratch` has scratch_bytes(bonds of the longest lane), aligned to 64.
 struct Kernels {
     const char *name;
@@ -126,9 +145,11 @@ struct Kernels {
     void (*forces)(const ForcesCall &, const Unit &, double *scratch, Tally &);
     void (*velocities)(const VelocitiesCall &, const Unit &, double *scratch, Tally &);
     void (*positions)(const PositionsCall &, const Unit &, double *scratch, Tally &);
+    void (*metric)(const MetricCall &, const Unit &, double *scratch, Tally &);
     LongForces long_forces;
     LongVelocities long_velocities;
     LongPositions long_positions;
+    LongMetric long_metric;
 };
 
 }  // namespace holonomic

@@ -1,0 +1,51 @@
+#include "metric.hpp"
+
+#include <cmath>
+
+#include "diagnose.hpp"
+#include "execute.hpp"
+#include "holonomic.h"
+
+namespace holonomic {
+
+namespace {
+
+struct MetricWork final : Work {
+    const MetricCall &call;
+    const Kernels &k = kernels();
+    explicit MetricWork(const MetricCall &c) : call(c) {}
+    void unit(const Unit &unit, double *scratch, Tally &tally) const override { k.metric(call, unit, scratch, tally); }
+    std::int64_t long_blocks(std::int64_t n) const override { return k.long_metric.blocks(n); }
+    std::int64_t long_bytes(std::int64_t n) const override { return k.long_metric.bytes(n); }
+    void long_chain(const Lane &lane, const Team &team, double *store, Tally &tally) const override {
+        const std::int64_t blocks = long_blocks(lane.n_bonds);
+        team.for_each(blocks, tally, [&](std::int64_t j, double *scratch, Tally &) {
+            k.long_metric.map(call, lane, j, store, scratch);
+        });
+        if (!k.long_metric.join(lane, store)) return note_bad(lane, tally);
+        Tally whole = empty_tally();
+        team.for_each(blocks, whole, [&](std::int64_t j, double *scratch, Tally &part) {
+            k.long_metric.finish(call, lane, j, store, scratch, part);
+        });
+        if (call.log_det) call.log_det[lane.chain] = whole.log_det;
+        if (call.log_det_z) call.log_det_z[lane.chain] = whole.log_det_z;
+        tally.log_det += whole.log_det;
+    }
+};
+
+}  // namespace
+
+void metric(const Chains &chains, const AtomArray &r, double kT, double *log_det, double *log_det_z, double *energy,
+            const AtomArray &force, bool add) {
+    if (!(kT >= 0) || !std::isfinite(kT))
+        throw make_error(HOL_ERR_VALUE, "kT is %g; it must be finite and not negative", kT);
+    const MetricCall call{r, force, kT, log_det, log_det_z, energy != nullptr, add, chains.box};
+    const Tally tally = execute(chains, MetricWork(call));
+    if (tally.n_bad > 0) {
+        const NamedArray arrays[] = {{"position", &r}};
+        throw diagnose(chains, tally, arrays, 1, HOL_ERR_NOT_FINITE);
+    }
+    if (energy) *energy = 0.5 * kT * tally.log_det;
+}
+
+}  // namespace holonomic
