@@ -5,6 +5,16 @@
 #include "assembly.h"
 #include "check.h"
 
+/** Counts what is above its bound, so that the whole table is printed before the test fails. */
+static int over;
+
+static void count_above(double error, double bound)
+{
+    if (error <= bound) return;
+    print_message("  above its bound %.2g\n", bound);
+    ++over;
+}
+
 typedef struct outcome {
     double error; /* largest |d.d - 1| afterwards */
     int64_t iterations;
@@ -60,33 +70,39 @@ static outcome worst_of(chain_kind kind, int64_t n, double dt)
 static void coils_end_at_the_rounding_of_their_coordinates(void **state)
 {
     (void)state;
+    over = 0;
     static const int64_t lengths[] = {1, 3, 10, 100, 1000, 10000, 100000};
     for (int i = 0; i < 7; ++i)
         for (int large = 0; large < 2; ++large) {
             const outcome o = worst_of(CHAIN_COIL, lengths[i], large ? 0.02 : 0.005);
             assert_int_equal(o.status, HOL_OK);
-            /* a walk of N steps has coordinates of the order of sqrt(N), and so is the rounding: 3e-16 at 1, 3e-15 at 100,
-               1e-13 at 1e5 */
-            CHECK_AT_MOST(o.error, 3.2e-16 * sqrt((double)lengths[i]));
-            assert_in_range(o.iterations, 2, large ? 5 : 4);
+            /* a walk of N steps has coordinates of the order of sqrt(N), and so is the rounding: about 3e-16 at 1, 3e-15 at
+               100, 1e-13 at 1e5. The exact solution rounded to doubles has 1.3e-16, 3.2e-15 and 7e-14 on these chains. */
+            count_above(o.error, 3.5e-16 * sqrt((double)lengths[i]));
+            assert_in_range(o.iterations, 1, large ? 5 : 4);
         }
+    assert_int_equal(over, 0);
 }
 
 static void nearly_straight_chains_end_at_the_rounding_of_their_coordinates(void **state)
 {
     (void)state;
+    over = 0;
     static const int64_t lengths[] = {1, 10, 100, 1000, 10000, 100000};
-    static const double bounds[] = {3e-16, 3e-15, 3e-14, 2e-13, 1.5e-12, 4e-12};
+    static const double bounds[] = {3.5e-16, 3e-15, 3.5e-14, 2.5e-13, 1.5e-12, 4e-12};
+    /* the exact solution rounded to doubles: 1.1e-16, 2.3e-15, 3e-14, 2.1e-13, 8.4e-13 on these chains */
     for (int i = 0; i < 6; ++i) {
         const outcome o = worst_of(CHAIN_NEARLY_STRAIGHT, lengths[i], 0.005);
         assert_int_equal(o.status, HOL_OK);
-        CHECK_AT_MOST(o.error, bounds[i]);
+        count_above(o.error, bounds[i]);
     }
+    assert_int_equal(over, 0);
 }
 
 static void hostile_chains_converge_to_the_rounding_or_are_refused(void **state)
 {
     (void)state;
+    over = 0;
     static const chain_kind hostile[] = {CHAIN_MASSES_1E3, CHAIN_MASSES_1E6, CHAIN_FIXED_ENDS, CHAIN_FOLDED, CHAIN_BOND_RATIO_1E6, CHAIN_OFFSET_1E6, CHAIN_TAUT, CHAIN_ROD_MASSES_1E9};
     for (size_t i = 0; i < sizeof hostile / sizeof *hostile; ++i)
         for (int64_t n = 3; n <= 1000; n = n * 10 + 2) {
@@ -94,19 +110,22 @@ static void hostile_chains_converge_to_the_rounding_or_are_refused(void **state)
             assert_true(o.status == HOL_OK || o.status == HOL_ERR_NO_CONVERGENCE || o.status == HOL_ERR_DEGENERATE);
             /* of the chains that were done: rounding of coordinates up to n + 3e6, over the shortest bond */
             const double extent = hostile[i] == CHAIN_OFFSET_1E6 ? 3e6 + (double)n : (double)n, shortest = hostile[i] == CHAIN_BOND_RATIO_1E6 ? 1e-6 : 1;
-            CHECK_AT_MOST(o.error, DBL_EPSILON * (2 * sqrt(3) * extent / shortest + 8));
+            count_above(o.error, DBL_EPSILON * (2 * sqrt(3) * extent / shortest + 8));
             if (hostile[i] == CHAIN_MASSES_1E3 || hostile[i] == CHAIN_MASSES_1E6) assert_int_equal(o.status, HOL_OK);
         }
+    assert_int_equal(over, 0);
 }
 
 static void bonds_of_very_different_lengths_converge_when_the_step_suits_the_shortest(void **state)
 {
     (void)state;
+    over = 0;
     for (int64_t n = 3; n <= 1000; n = n * 10 + 2) {
         const outcome o = worst_of(CHAIN_BOND_RATIO_1E6, n, 1e-9);
         assert_int_equal(o.status, HOL_OK);
-        CHECK_AT_MOST(o.error, DBL_EPSILON * (2 * sqrt(3) * sqrt((double)n) * 3 / 1e-6 + 8));
+        count_above(o.error, DBL_EPSILON * (2 * sqrt(3) * sqrt((double)n) * 3 / 1e-6 + 8));
     }
+    assert_int_equal(over, 0);
 }
 
 int main(void)

@@ -85,7 +85,7 @@ static void what_is_left_of_the_rates_is_rounding(void **state)
         print_message("N = %6lld: %.2Lg on coils, %.2Lg nearly straight\n", (long long)lengths[i], coil, straight);
         /* at most five roundings of velocities of up to four times the root mean square; nearly straight chains carry
            velocities along the chain that are the larger the longer they are */
-        CHECK_AT_MOST(coil, lengths[i] < 1000 ? 1e-15L : 1e-15L * 2);
+        CHECK_AT_MOST(coil, 1e-15L);
         CHECK_AT_MOST(straight, 1e-14L);
     }
 }
