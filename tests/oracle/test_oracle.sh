@@ -1,22 +1,24 @@
 #!/usr/bin/env bash
 # scripts/oracle accepts what is right, also files that are not in the tree, and rejects what is not.
-#   test_oracle.sh TOP BUILD MAKE_CASE
+#   test_oracle.sh TOP BUILD MAKE_CASE CHECK_ORACLE
 set -u
-top=$1 build=$2 make_case=$3
+top=$1 build=$2 make_case=$3 checker=$4
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 failures=0
 
 complain() { printf 'FAILED: %s\n' "$*"; failures=$((failures + 1)); }
 
-# run STATUS WORDS DIR: the exit status and what the output must contain
-run() {
-    local status
-    BUILD_DIR=$build "$top/scripts/oracle" "$3" >"$work/out" 2>&1
-    status=$?
+# expect STATUS WORDS DIR GOT: the exit status and what the output must contain
+expect() {
+    local status=$4
     [ "$status" -eq "$1" ] || { complain "status $status instead of $1 for $3"; tail -n 5 "$work/out"; }
     grep -q -- "$2" "$work/out" || { complain "no '$2' in the output for $3"; tail -n 5 "$work/out"; }
 }
+
+# The whole script, and the program that it runs.
+run() { BUILD_DIR=$build "$top/scripts/oracle" "$3" >"$work/out" 2>&1; expect "$@" $?; }
+check() { "$checker" "$3" >"$work/out" 2>&1; expect "$@" $?; }
 
 fresh() { rm -rf "$work/$1"; cp -r "$top/tests/oracle" "$work/$1"; echo coil_n005.txt >"$work/$1/INDEX"; }
 
@@ -34,50 +36,57 @@ for kind in 0 1 2 3 4 5 6 7 8 9 10 11 12; do
     done
 done
 for size in 1 2 1000; do "$make_case" "$work/new" 1 "$size" 5 || complain "make_case 1 $size"; done
-run 0 '^oracle: 42 cases, worst ratio 0\.' "$work/new"
+check 0 '^oracle: 42 cases, worst ratio 0\.' "$work/new"
 tail -n 1 "$work/out"
 
-# One digit wrong in a reference, in each quantity.
+# One number wrong by 1e-9 of itself, in each quantity: spoil QUANTITY FIRST_LINE ROW FIELD changes field FIELD of the first
+# line that begins with ROW at or after the one that begins with FIRST_LINE.
 spoil() {
     fresh spoilt
-    sed -i "$2" "$work/spoilt/coil_n005.txt"
+    awk -v first="$2" -v row="$3" -v field="$4" '
+        index($0, first) == 1 { inside = 1 }
+        inside && !done && (index($0, row " ") == 1) { $field = sprintf("%.17e", $field * (1 + 1e-9)); done = 1 }
+        { print }' "$top/tests/oracle/coil_n005.txt" >"$work/spoilt/coil_n005.txt"
     cmp -s "$work/spoilt/coil_n005.txt" "$top/tests/oracle/coil_n005.txt" && complain "the reference for $1 was not changed"
-    run 1 "$1 .*OUT OF BOUND" "$work/spoilt"
-    grep -q '^oracle: 1 cases, worst ratio ' "$work/out" || complain "no last line after a failure in $1"
+    check 1 "^coil_n005  *$1 .*OUT OF BOUND" "$work/spoilt"
+    [ "$(grep -c 'OUT OF BOUND' "$work/out")" -eq 1 ] || complain "a wrong $1 spoils other quantities"
+    tail -n 1 "$work/out" | grep -q '^oracle: 1 cases, worst ratio [1-9]' || complain "no last line after a failure in $1"
 }
-change='s/\([0-9]\.[0-9]\{9\}\)[0-4]/\15/; t; s/\([0-9]\.[0-9]\{9\}\)[5-9]/\11/'
-spoil lndet "/^lndet/{$change}"
-spoil fixman_energy "/^fixman_energy/{$change}"
-spoil virial "/^virial/{$change}"
-spoil lambda "/^bonds_out/,/^atoms_out/{/^2 /{$change}}"
-spoil ' G ' "/^atoms_out/,/^zinv/{/^3 /{$change}}"
-spoil zinv "/^zinv/,/^end/{/^1 2 /{$change}}"
+spoil lndet lndet lndet 2
+spoil fixman_energy fixman_energy fixman_energy 2
+spoil virial virial virial 4
+spoil lambda bonds_out 2 2
+spoil G atoms_out 3 4
+spoil 'Fixman force' atoms_out 2 6
+spoil zinv zinv '1 2' 3
+run 1 'zinv .*OUT OF BOUND' "$work/spoilt"
 # a reference of exactly zero must be met exactly: lambda of a chain at rest
 fresh zero
 echo zero_n008.txt >"$work/zero/INDEX"
+check 0 'lambda .* 0 of .* ok' "$work/zero"
 sed -i '/^bonds_out/,/^atoms_out/{s/^3 0.0 0.0/3 1.0e-300 0.0/}' "$work/zero/zero_n008.txt"
-run 1 'lambda .*OUT OF BOUND' "$work/zero"
+check 1 'lambda .*OUT OF BOUND' "$work/zero"
 
 # Files that can't be read.
 run 2 'there is no folder' "$work/nowhere"
 mkdir "$work/empty"
 run 2 'no readable file INDEX' "$work/empty"
 : >"$work/empty/INDEX"
-run 2 'lists no case' "$work/empty"
+check 2 'lists no case' "$work/empty"
 echo missing.txt >"$work/empty/INDEX"
-run 2 'missing.txt: No such file' "$work/empty"
+check 2 'missing.txt: No such file' "$work/empty"
 fresh cut && sed -i '30,$d' "$work/cut/coil_n005.txt"
-run 2 'coil_n005.txt, line .*the file ends too early' "$work/cut"
+check 2 'coil_n005.txt, line .*the file ends too early' "$work/cut"
 fresh word && sed -i 's/^bonds_out/bonds_uot/' "$work/word/coil_n005.txt"
-run 2 "line .*expected 'bonds_out'" "$work/word"
+check 2 "line .*expected 'bonds_out'" "$work/word"
 fresh number && sed -i 's/^lndet .*/lndet nan/' "$work/number/coil_n005.txt"
-run 2 'line .*not finite' "$work/number"
+check 2 'line .*not finite' "$work/number"
 fresh text && sed -i 's/^lndet .*/lndet none/' "$work/text/coil_n005.txt"
-run 2 'line .*expected a number' "$work/text"
+check 2 'line .*expected a number' "$work/text"
 fresh size && sed -i 's/^nbonds .*/nbonds 4/' "$work/size/coil_n005.txt"
-run 2 'coil_n005.txt, line ' "$work/size"
+check 2 'coil_n005.txt, line ' "$work/size"
 fresh size && sed -i 's/^nbonds .*/nbonds -4/' "$work/size/coil_n005.txt"
-run 2 'out of range' "$work/size"
+check 2 'out of range' "$work/size"
 "$top/scripts/oracle" a b >"$work/out" 2>&1
 [ $? -eq 2 ] || complain "two arguments are not refused"
 
