@@ -156,19 +156,19 @@ module holonomic_c
          integer(c_int) :: status
       end function
 
-      function hol_chains_n_atoms(chains) bind(c) result(n)
+      pure function hol_chains_n_atoms(chains) bind(c) result(n)
          import :: c_int64_t, c_ptr
          type(c_ptr), value :: chains
          integer(c_int64_t) :: n
       end function
 
-      function hol_chains_n_chains(chains) bind(c) result(n)
+      pure function hol_chains_n_chains(chains) bind(c) result(n)
          import :: c_int64_t, c_ptr
          type(c_ptr), value :: chains
          integer(c_int64_t) :: n
       end function
 
-      function hol_chains_n_bonds(chains) bind(c) result(n)
+      pure function hol_chains_n_bonds(chains) bind(c) result(n)
          import :: c_int64_t, c_ptr
          type(c_ptr), value :: chains
          integer(c_int64_t) :: n
@@ -188,14 +188,14 @@ module holonomic_c
          integer(c_int) :: status
       end function
 
-      function hol_chains_degrees_of_freedom(chains, dimensions) bind(c) result(n)
+      pure function hol_chains_degrees_of_freedom(chains, dimensions) bind(c) result(n)
          import :: c_int, c_int64_t, c_ptr
          type(c_ptr), value :: chains
          integer(c_int), value :: dimensions
          integer(c_int64_t) :: n
       end function
 
-      function hol_chains_memory(chains) bind(c) result(n)
+      pure function hol_chains_memory(chains) bind(c) result(n)
          import :: c_int64_t, c_ptr
          type(c_ptr), value :: chains
          integer(c_int64_t) :: n

@@ -173,7 +173,7 @@ contains
       call self%add(int(n_chains, int64), int(n_bonds, int64), int(first_atom, int64), lengths, stat, errmsg)
    end subroutine
 
-   recursive type(c_ptr) function c_handle(self)
+   pure recursive type(c_ptr) function c_handle(self)
       class(chain_set), intent(in) :: self
       c_handle = self%handle
    end function

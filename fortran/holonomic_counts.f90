@@ -24,23 +24,23 @@ module holonomic_counts
 
 contains
 
-   recursive integer(int64) function n_atoms(self)
+   pure recursive integer(int64) function n_atoms(self)
       class(chain_set_counts), intent(in) :: self
       n_atoms = hol_chains_n_atoms(self%c_handle())
    end function
 
-   recursive integer(int64) function n_chains(self)
+   pure recursive integer(int64) function n_chains(self)
       class(chain_set_counts), intent(in) :: self
       n_chains = hol_chains_n_chains(self%c_handle())
    end function
 
-   recursive integer(int64) function n_bonds(self)
+   pure recursive integer(int64) function n_bonds(self)
       class(chain_set_counts), intent(in) :: self
       n_bonds = hol_chains_n_bonds(self%c_handle())
    end function
 
    ! Of all atoms; three dimensions by default. A conserved total momentum is not subtracted.
-   recursive integer(int64) function degrees_of_freedom(self, dimensions)
+   pure recursive integer(int64) function degrees_of_freedom(self, dimensions)
       class(chain_set_counts), intent(in) :: self
       integer, intent(in), optional :: dimensions
       integer(c_int) :: d
@@ -50,7 +50,7 @@ contains
    end function
 
    ! Bytes that the chains occupy.
-   recursive integer(int64) function memory(self)
+   pure recursive integer(int64) function memory(self)
       class(chain_set_counts), intent(in) :: self
       memory = hol_chains_memory(self%c_handle())
    end function

@@ -1,7 +1,7 @@
 ! Where the caller's arrays per atom stand in memory. Nothing is copied: the view that C gets has the address of the
-! first element and the distance to the next, as the array's descriptor tells, so that sections such as atoms(:)%x,
-! r(:, ::2) or r(:3, :) do as they are. (Separate x, y, z of which each has a stride of its own are the exception: they
-! are copied before and given back after.)
+! first element and the distance to the next, as the array's descriptor tells, so that sections such as r(:, ::2) or
+! r(:3, :) do as they are. (Separate x, y, z of which each has a stride of its own are the exception: they are copied
+! before and given back after. Some compilers also copy what their descriptors can't express, such as atoms%x.)
 module holonomic_place
    use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_int8_t, c_intptr_t, c_loc, c_null_ptr, c_ptr, c_size_t
    use, intrinsic :: iso_fortran_env, only: real32, real64
