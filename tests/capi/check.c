@@ -35,6 +35,22 @@ void assert_message_names(const char *words)
     if (!strstr(hol_error_message(), words)) fail_msg("'%s' does not name '%s'", hol_error_message(), words);
 }
 
+long double long_double_rounding(void)
+{
+    volatile long double eps = 1, sum = 2;
+    while (sum != 1) {
+        eps /= 2;
+        sum = 1 + eps;
+    }
+    return 2 * eps;
+}
+
+int quick_run(void)
+{
+    const char *value = getenv("HOLONOMIC_TESTS_QUICK");
+    return value && value[0] && strcmp(value, "0") != 0;
+}
+
 long double oracle_bound(int64_t n_bonds)
 {
     return 16 + sqrtl((long double)n_bonds);

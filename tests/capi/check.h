@@ -58,6 +58,15 @@ double *copy_of(const double *a, size_t n);
 /** Fails unless the message of the last failing call contains the words. */
 void assert_message_names(const char *words);
 
+/**
+ * Relative rounding of long double arithmetic as it runs: that of double under valgrind, which has no wider one, whatever
+ * LDBL_EPSILON says.
+ */
+long double long_double_rounding(void);
+
+/** Whether HOLONOMIC_TESTS_QUICK is set: a test then takes fewer examples, for runs under slow tools. */
+int quick_run(void);
+
 /** Bound of tests/oracle/README.md in units of eps times the scale, for a chain of n bonds. */
 long double oracle_bound(int64_t n_bonds);
 
