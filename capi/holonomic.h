@@ -303,7 +303,8 @@ typedef struct hol_report {
  * @param[in]     chains
  * @param[in]     r_ref   positions before the drift [n_atoms][3]
  * @param[in,out] r       positions after the drift [n_atoms][3]; in: unconstrained, out: constrained
- * @param[in,out] v       velocities [n_atoms][3], or NULL; v_i += dt w_i G_i, the displacement over dt
+ * @param[in,out] v       velocities [n_atoms][3], or NULL; v_i += dt w_i G_i, the displacement over dt. Only added to:
+ *                        what is there is not checked, and a NaN stays one
  * @param[in]     dt      time step, time, > 0 and finite
  * @param[in,out] lambda  multipliers [n_bonds], force/length, or NULL. The constraint force over a leap-frog step; half
  *                        of it for velocity Verlet, whose position update carries dt^2/2.

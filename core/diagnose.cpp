@@ -28,7 +28,7 @@ bool bond_vector(const AtomArray &r, const Box &box, const Lane &lane, std::int6
     return d[0] != 0 || d[1] != 0 || d[2] != 0;
 }
 
-// First bond whose pivot vanishes, or -1.
+// First bond whose pivot vanishes; -1 if none does, -2 if the numbers overflow before.
 std::int64_t vanishing_pivot(const AtomArray &r, const Box &box, const Lane &lane) {
     const auto w = [&](std::int64_t k) { return lane.w ? lane.w[k] : lane.w_uniform; };
     double d[3], d1[3];
@@ -36,6 +36,7 @@ std::int64_t vanishing_pivot(const AtomArray &r, const Box &box, const Lane &lan
     double q = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], E = w(0) * q;
     for (std::int64_t k = 0; k < lane.n_bonds; ++k) {
         const double P = E + w(k + 1) * q;
+        if (!std::isfinite(P)) return -2;
         if (!(P > 0)) return k;
         if (k + 1 == lane.n_bonds) break;
         bond_vector(r, box, lane, k + 1, d1);
@@ -96,7 +97,7 @@ Error diagnose(const Chains &chains, const Tally &tally, const NamedArray *array
                                  "determined%s",
                                  chain, number(taut), others),
                       taut, -1);
-    if (otherwise == HOL_ERR_NO_CONVERGENCE)
+    if (taut == -1 && otherwise == HOL_ERR_NO_CONVERGENCE)
         return finish(make_error(otherwise,
                                  "chain %lld: no corrections along the reference bonds bring the bonds back to their "
                                  "lengths; the step is too large, or a length can't be reached%s",

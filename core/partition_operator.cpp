@@ -22,10 +22,10 @@ public:
     StraightChain(const real *masses, std::size_t n_bonds)
         : m_(masses), last_(n_bonds), inner_(n_bonds + 1, 0), infinite_end_(std::isinf(masses[n_bonds])) {
         for (std::size_t i = last_; i-- > 1;) inner_[i] = inner_[i + 1] + m_[i];
-        sin_least_.assign(last_ + 1, 1);
+        least_.assign(last_ + 1, {1, 0});
         for (std::size_t n = 1; n < last_; ++n) {
-            const real b = std::sqrt(b2(n)) * sin_least_[n], c2n = c2(n);
-            sin_least_[n + 1] = b / std::sqrt(c2n + b * b);
+            const real b = std::sqrt(b2(n)) * least_[n].sine, c = std::sqrt(c2(n)), omega = std::hypot(b, c);
+            least_[n + 1] = {b / omega, c / omega};
         }
     }
 
@@ -40,8 +40,8 @@ public:
         return share * (infinite_end_ ? 1 : sum(n + 1) / sum(n));
     }
 
-    // Smallest sin phi_n that a conformation reaches, i.e. that of the straight chain.
-    real sin_least(std::size_t n) const { return sin_least_[n]; }
+    // Smallest phi_n that a conformation reaches, i.e. that of the straight chain.
+    PivotAngle least(std::size_t n) const { return least_[n]; }
 
     // Distance from phi_n = 0, where the functions are analytic, to their nearest singularity (n >= 2): there the chain
     // without its last atom is singular.
@@ -57,7 +57,7 @@ private:
     const real *m_;
     std::size_t last_;
     std::vector<real> inner_;  // masses n .. N-1
-    std::vector<real> sin_least_;
+    std::vector<PivotAngle> least_;
     bool infinite_end_;
 };
 
@@ -70,17 +70,17 @@ PivotMeans pivot_means(const long double *masses, std::size_t n_bonds) {
     long exponent[2] = {0, 0};
     for (std::size_t n = n_bonds; n >= 2; --n) {
         const real b = std::sqrt(straight.b2(n)), c2 = straight.c2(n), c = std::sqrt(c2);
-        panels.divide(straight.sin_least(n), straight.singularity(n));
+        panels.divide(straight.least(n), straight.singularity(n));
         for (std::size_t i = 0; i < panels.size(); ++i) {
             const real s = panels.sine(i), bs = b * s, omega = std::sqrt(c2 + bs * bs);
             PivotValues mean = {{1, 1}};
-            if (n < n_bonds) mean = next.mean(bs, c);  // tan phi_{n+1} = B_n sin phi_n / C_n
+            if (n < n_bonds) mean = next.mean({bs, c});  // tan phi_{n+1} = B_n sin phi_n / C_n
             panels.set(i, {{mean.of[0] * (s / omega), mean.of[1] * (s * omega)}});
         }
         panels.integrate(exponent);
         std::swap(panels, next);
     }
-    const PivotValues total = next.mean(std::sqrt(straight.b2(1)), std::sqrt(straight.c2(1)));  // from Omega_1 = 1
+    const PivotValues total = next.mean({std::sqrt(straight.b2(1)), std::sqrt(straight.c2(1))});  // from Omega_1 = 1
     const real ln2 = std::log(real(2));
     return {std::log(total.of[0]) + static_cast<real>(exponent[0]) * ln2,
             std::log(total.of[1]) + static_cast<real>(exponent[1]) * ln2};

@@ -56,10 +56,10 @@ void integrate_down(const real *a, real *c) {
 
 }  // namespace
 
-void Panels::divide(real sin_least, real singularity) {
-    const real least = std::asin(sin_least);
+void Panels::divide(const PivotAngle &end, real singularity) {
+    const real least = std::atan2(end.sine, end.cosine);
     edges_.clear();
-    first_ = std::atan2(std::sqrt((1 - sin_least) * (1 + sin_least)), sin_least);
+    first_ = std::atan2(end.cosine, end.sine);
     if (least < first_edge) {
         first_ = pi / 2 - first_edge;
         edges_.push_back(first_edge);
@@ -123,20 +123,20 @@ PivotValues Panels::series(std::size_t panel, real x) const {  // Clenshaw's rec
     return {{c[0].of[0] + (x * b1.of[0] - b2.of[0]), c[0].of[1] + (x * b1.of[1] - b2.of[1])}};
 }
 
-PivotValues Panels::mean(real sine, real cosine) const {
-    const real theta = std::atan2(cosine, sine);  // pi/2 - phi
+PivotValues Panels::mean(const PivotAngle &at) const {
+    const real theta = std::atan2(at.cosine, at.sine);  // pi/2 - phi
     if (theta <= first_ || n_panels_ == 1) {
         const real u = theta / first_;
         const PivotValues j = series(0, 2 * u * u - 1);
         const real factor = theta > 0 ? theta / std::sin(theta) : 1;
         return {{factor * j.of[0], factor * j.of[1]}};
     }
-    const real phi = std::atan2(sine, cosine);
+    const real phi = std::atan2(at.sine, at.cosine);
     std::size_t panel = 1;
     while (panel + 1 < n_panels_ && phi < edges_[panel]) ++panel;
     const real high = edges_[panel - 1], low = edges_[panel], half = (high - low) / 2;
     const PivotValues j = series(panel, (phi - (high + low) / 2) / half);
-    const real secant = std::hypot(sine, cosine) / cosine;
+    const real secant = std::hypot(at.sine, at.cosine) / at.cosine;
     PivotValues mean;
     for (int f = 0; f < 2; ++f) mean.of[f] = secant * (before_[panel].of[f] + half * j.of[f]);
     return mean;

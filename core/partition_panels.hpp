@@ -12,14 +12,19 @@ struct PivotValues {
     long double of[2];
 };
 
+// phi by its sine and cosine, or anything proportional to them: neither end of 0 .. pi/2 loses digits.
+struct PivotAngle {
+    long double sine, cosine;
+};
+
 class Panels {
 public:
     // Chebyshev nodes per panel: the nearest singularity lies on a Bernstein ellipse of parameter 4.6 or more, and
     // 4.6^-28 = 3e-19 is below the rounding of a 64-bit significand.
     static constexpr std::size_t order = 28;
 
-    // Panels from pi/2 down to phi_least, halving until they are shorter than the distance to the singularity.
-    void divide(long double sin_least, long double singularity);
+    // Panels from pi/2 down to `least`, halving until they are shorter than the distance to the singularity.
+    void divide(const PivotAngle &least, long double singularity);
 
     std::size_t size() const { return n_panels_ * order; }
     long double sine(std::size_t node) const;  // sin phi
@@ -29,8 +34,7 @@ public:
     // scaled by a power of two, which is added to exponent[2].
     void integrate(long *exponent);
 
-    // The means at tan phi = sine / cosine.
-    PivotValues mean(long double sine, long double cosine) const;
+    PivotValues mean(const PivotAngle &at) const;
 
 private:
     PivotValues series(std::size_t panel, long double x) const;

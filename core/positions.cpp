@@ -8,6 +8,7 @@
 #include "execute.hpp"
 #include "forces.hpp"
 #include "holonomic.h"
+#include "view.hpp"
 
 namespace holonomic {
 
@@ -25,6 +26,7 @@ public:
     void operator()(Tally &tally) {
         if (!attempt(false, call_.guess, tally) && !attempt(true, false, tally)) note_bad(lane_, tally);
     }
+
 
 private:
     // Largest of what body(j, scratch) returns; NaN if any is.
@@ -53,7 +55,67 @@ private:
         });
     }
 
-    void finish(bool moved, std::int64_t solves, Tally &tally) const {
+    // Writes the results. Where single pulls move an atom so far that their rounding is more than the coordinates'
+    // (light atoms between heavy ones in a taut chain), goes on from the coordinates as they are then rounded; if that
+    // does not end within the tolerance, everything is put back.
+    bool finish(bool moved, std::int64_t solves, double reach, Tally &tally) {
+        const bool coarse = moved && !(largest([&](std::int64_t j, double *) {
+            return phases_.pull(lane_, j, store_);
+        }) <= 0.25 * reach);
+        if (!coarse) {
+            write(moved, solves, tally);
+            return true;
+        }
+        const Saved saved(call_, lane_);
+        Tally part = empty_tally();
+        write(moved, solves, part);
+        PositionsCall again = call_;
+        again.lambda = nullptr;
+        again.guess = again.virial = false;
+        LongNewton rest(phases_, again, lane_, team_, store_);
+        rest.depth_ = depth_ + 1;
+        Tally settled = empty_tally();
+        if (depth_ >= 4 || !rest.attempt(true, false, settled)) {
+            saved.restore();
+            return false;
+        }
+        part.worst = settled.worst;
+        part.worst_bond = settled.worst_bond;
+        add(tally, part);
+        return true;
+    }
+
+    // What a chain's positions, velocities and multipliers were.
+    class Saved {
+    public:
+        Saved(const PositionsCall &call, const Lane &lane) : call_(call), lane_(lane) {
+            const std::size_t n = static_cast<std::size_t>(lane.n_bonds);
+            r_.resize(3 * (n + 1));
+            if (call.v.x) v_.resize(3 * (n + 1));
+            for (std::size_t k = 0; k <= n; ++k) {
+                read_atom(call.r, atom(k), &r_[3 * k]);
+                if (call.v.x) read_atom(call.v, atom(k), &v_[3 * k]);
+            }
+            if (call.lambda) lambda_.assign(call.lambda + lane.first_bond, call.lambda + lane.first_bond + lane.n_bonds);
+        }
+        void restore() const {
+            for (std::size_t k = 0; 3 * k < r_.size(); ++k) {
+                write_atom(call_.r, atom(k), &r_[3 * k]);
+                if (call_.v.x) write_atom(call_.v, atom(k), &v_[3 * k]);
+            }
+            std::copy(lambda_.begin(), lambda_.end(), call_.lambda + lane_.first_bond);
+        }
+
+    private:
+        std::int64_t atom(std::size_t k) const {
+            return lane_.atoms ? lane_.atoms[k] : lane_.first_atom + static_cast<std::int64_t>(k);
+        }
+        const PositionsCall &call_;
+        const Lane &lane_;
+        std::vector<double> r_, v_, lambda_;
+    };
+
+    void write(bool moved, std::int64_t solves, Tally &tally) const {
         team_.for_each(blocks_, tally, [&](std::int64_t j, double *scratch, Tally &part) {
             phases_.finish(call_, lane_, j, moved, store_, scratch, part);
         });
@@ -80,11 +142,11 @@ private:
         double shortest = lane_.length_uniform;
         for (std::int64_t k = 0; lane_.length && k < lane_.n_bonds; ++k) shortest = std::min(shortest, lane_.length[k]);
         const double u = call_.r.is_float ? 5.97e-8 : 1.11e-16;
-        const double carried = 8 * u * (1 + extent / shortest), done = std::max(call_.tolerance, 4 * epsilon);
-        const double accepted = std::max(done, carried);
+        const double carried = 8 * u * (1 + extent / shortest), done = std::max(call_.tolerance, epsilon);
+        const double accepted = std::max(call_.tolerance, carried);
         if (!std::isfinite(error)) return false;
-        if (error <= std::max(call_.tolerance, carried)) {
-            finish(false, 0, tally);
+        if (error <= accepted) {
+            write(false, 0, tally);
             return true;
         }
         if (guess) {
@@ -93,27 +155,31 @@ private:
             if (!(with_guess <= error)) return attempt(careful, false, tally);
             error = with_guess;
             if (error <= done) {
-                finish(true, 0, tally);
-                return true;
+                return finish(true, 0, extent + shortest, tally);
             }
         } else if (call_.guess) {  // tau holds the guess that is not to be used
             all([&](std::int64_t j, double *) { phases_.forget(lane_, j, store_); });
         }
         bool renew = true;
+        double rate = error;  // new factors square the error
         for (std::int64_t i = 0; i < call_.max_iterations; ++i) {
             all([&](std::int64_t j, double *scratch) {
                 phases_.solve(call_, lane_, j, renew, careful, store_, scratch);
             });
             if (!phases_.join(lane_, renew, store_)) return false;
             all([&](std::int64_t j, double *) { phases_.substitute(call_, lane_, j, store_); });
-            const double before = error;
+            const double before = error, expected_error = rate * before;
             error = correct();
             if (!std::isfinite(error)) return false;
-            if (error <= done || (error > 0.25 * before && error <= accepted)) {
-                finish(true, i + 1, tally);
-                return true;
+            const bool floor = (expected_error < 0.125 * epsilon && error <= 4 * epsilon) || error > 0.25 * before;
+            if (error <= done || (floor && error <= accepted)) {
+                return finish(true, i + 1, extent + shortest, tally);
             }
-            renew = careful || error > 1e-3 * before;
+            rate = error / before;
+            double expected = error * rate;
+            for (std::int64_t k = i + 2; k < 4; ++k) expected *= rate;
+            renew = careful || (expected > 0.1 * epsilon && (i < 2 || rate > 1e-4));
+            if (renew) rate = error;
         }
         return false;
     }
@@ -124,6 +190,7 @@ private:
     const Team &team_;
     double *const store_;
     const std::int64_t blocks_;
+    int depth_ = 0;
 };
 
 struct PositionsWork final : Work {

@@ -45,6 +45,12 @@ double Tridiagonal::log_det() const {
 }
 
 void Tridiagonal::solve(const double *b, double *x) const {
+    for (std::size_t k = 0; k < n_; ++k) {
+        if (std::isfinite(b[k])) continue;
+        Error error = make_error(HOL_ERR_NOT_FINITE, "b of row %lld is not finite", static_cast<long long>(k));
+        error.bond = static_cast<std::int64_t>(k);
+        throw error;
+    }
     std::vector<DoublePair> y(n_);
     y[0] = as_pair(b[0]);
     for (std::size_t k = 1; k < n_; ++k) y[k] = as_pair(b[k]) + factor(k) * y[k - 1];

@@ -19,7 +19,15 @@ struct VelocitiesWork final : Work {
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_velocities.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return k.long_velocities.bytes(n); }
     void long_chain(const Lane &lane, const Team &team, double *store, Tally &tally) const override {
+        // The recursion gives the multipliers to a few roundings of themselves; what that leaves of the rates goes with
+        // a second projection, of velocities that need next to none.
+        const std::int64_t n_bad = tally.n_bad;
         solve_long_chain(k.long_velocities, call, lane, team, store, tally);
+        if (tally.n_bad > n_bad) return;
+        VelocitiesCall again = call;
+        again.lambda = nullptr;
+        again.virial = false;
+        if (!call.v.is_float) solve_long_chain(k.long_velocities, again, lane, team, store, tally);
     }
 };
 

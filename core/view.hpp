@@ -29,5 +29,18 @@ inline void read_atom(const AtomArray &array, std::int64_t atom, double *x) {
     }
 }
 
+inline void write_atom(const AtomArray &array, std::int64_t atom, const double *x) {
+    char *const components[3] = {array.x, array.y, array.z};
+    for (int c = 0; c < 3; ++c) {
+        char *p = components[c];
+        if (!p) continue;
+        p += atom * array.stride;
+        if (array.is_float)
+            *reinterpret_cast<float *>(p) = static_cast<float>(x[c]);
+        else
+            *reinterpret_cast<double *>(p) = x[c];
+    }
+}
+
 }  // namespace holonomic
 #endif

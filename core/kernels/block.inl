@@ -26,6 +26,7 @@ struct Block {
     long n, n_min;        // bonds of the longest and of the shortest lane
     long len[W];          // bonds of each lane
     int lanes;            // lanes in use; the others repeat the first one and are never stored
+    bool roomy;           // W atoms more can be read behind each lane
     bool uniform_w;       // the inverse mass is constant along each lane
     vec w_uniform;
     const vec *w;         // else [n+1], interleaved
@@ -104,8 +105,8 @@ HOL_INLINE void repeat_first(Packed &packed, int lanes) {
 
 // 3 W doubles from p + 3 k on of a vector [len+1][3], where the last may lie past its end: then through `buffer`
 // [3 W + 3], padded with zeros.
-HOL_INLINE const double *window(const double *p, long k, long len, double *buffer) {
-    if (__builtin_expect(k + W <= len, 1)) return p + 3 * k;
+HOL_INLINE const double *window(const double *p, long k, long len, bool roomy, double *buffer) {
+    if (__builtin_expect(roomy || k + W <= len, 1)) return p + 3 * k;
     const long left = len - k + 1 > 0 ? 3 * (len - k + 1) : 0;
     for (long i = 0; i < 3 * W + 3; ++i) buffer[i] = i < left ? p[3 * k + i] : 0.0;
     return buffer;
@@ -162,121 +163,149 @@ HOL_INLINE void wrap(const Box &box, vec3 &d, vec3 &lo) {
 // What the right-hand side of a bond is made of.
 enum Terms { none_ = 0, velocity_squared = 1, force_difference = 2, rate = 4 };
 
+// The bonds k0 .. k0 + W - 1 of all lanes, from pointers to atom k0: see load_bonds. d[W], low[W], rhs[W].
+template <int terms, bool uniform, bool boxed, bool careful>
+HOL_INLINE void load_chunk(const Block &block, const Box &box, long k0, const double *const *pr,
+                           const double *const *pv, const double *const *pf, vec3 *d3, vec3 *low3, vec *rhs) {
+    vec *const d = &d3->x, *const low = careful ? &low3->x : nullptr;
+    vec p[3 * W], a[boxed ? 3 * W : 1];
+    // In the packed layout, component by component, before transposing; with a box the products have to wait.
+    for (int j = 0; j < 3; ++j) {
+        vec e[W], l[W];
+        for (int i = 0; i < W; ++i) {
+            const vec r0 = load(pr[i] + W * j), r1 = load(pr[i] + W * j + 3);
+            e[i] = r1 - r0;
+            if (careful) l[i] = two_difference<vec>(r1, r0).lo;
+            vec dv = {}, df = {};
+            if (terms & (velocity_squared | rate)) dv = load(pv[i] + W * j + 3) - load(pv[i] + W * j);
+            if (terms & force_difference) {
+                const vec f0 = load(pf[i] + W * j), f1 = load(pf[i] + W * j + 3);
+                if (uniform) {
+                    df = splat(block.w_uniform[i]) * (f1 - f0);
+                } else {
+                    const double *w3 = block.w3[i] + 3 * k0 + W * j;
+                    df = load(w3 + 3) * f1 - load(w3) * f0;
+                }
+            }
+            if (boxed) {
+                a[j * W + i] = terms & rate ? dv : df;
+                p[j * W + i] = dv * dv;
+            } else if (terms & rate) {
+                p[j * W + i] = dv * e[i];
+            } else if ((terms & velocity_squared) && (terms & force_difference)) {
+                p[j * W + i] = mul_add(df, e[i], dv * dv);
+            } else if (terms & force_difference) {
+                p[j * W + i] = df * e[i];
+            } else {
+                p[j * W + i] = dv * dv;
+            }
+        }
+        transpose(e);
+        for (int i = 0; i < W; ++i) d[j * W + i] = e[i];
+        if (terms) transpose(p + j * W);
+        if (careful) {
+            transpose(l);
+            for (int i = 0; i < W; ++i) low[j * W + i] = l[i];
+        }
+        if (boxed) transpose(a + j * W);
+    }
+    for (int b = 0; b < W; ++b) {
+        vec sum = {};
+        if (boxed) {
+            vec3 unused = {};
+            wrap<careful>(box, d3[b], careful ? low3[b] : unused);
+            const vec3 other = {a[3 * b], a[3 * b + 1], a[3 * b + 2]};
+            if (terms & (rate | force_difference)) sum = dot(d3[b], other);
+            if (terms & velocity_squared) sum = sum + ((p[3 * b] + p[3 * b + 1]) + p[3 * b + 2]);
+        } else if (terms) {
+            sum = (p[3 * b] + p[3 * b + 1]) + p[3 * b + 2];
+        }
+        rhs[b] = sum;
+    }
+}
+
 // Bond vectors D[k] = r_{k+1} - r_k and right-hand sides B[k] of all lanes:
 //   velocity_squared: |v_{k+1} - v_k|^2,  force_difference: D . (w_{k+1} f_{k+1} - w_k f_k),  rate: D . (v_{k+1} - v_k).
 // careful: D_low gets the low words of the differences. Bonds past the end of a lane are inert: D = (1,0,0), B = 0.
 template <int terms, bool uniform, bool boxed, bool careful>
 static inline void load_bonds(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
                               vec3 *D, vec3 *D_low, vec *B) {
-    for (long k0 = 0; k0 < block.n; k0 += W) {
-        double buffer[3][W][3 * W + 3];
-        const double *pr[W], *pv[W], *pf[W];
+    const double *pr[W], *pv[W], *pf[W];
+    long k0 = 0;
+    for (; k0 + W <= block.n_min; k0 += W) {
         for (int i = 0; i < W; ++i) {
-            pr[i] = window(r.lane[i], k0, block.len[i], buffer[0][i]);
-            if (terms & (velocity_squared | rate)) pv[i] = window(v.lane[i], k0, block.len[i], buffer[1][i]);
-            if (terms & force_difference) pf[i] = window(f.lane[i], k0, block.len[i], buffer[2][i]);
+            pr[i] = r.lane[i] + 3 * k0;
+            pv[i] = v.lane[i] + 3 * k0;
+            pf[i] = f.lane[i] + 3 * k0;
         }
-        // In the packed layout, component by component, before transposing; with a box the products have to wait.
-        vec d[3 * W], low[careful ? 3 * W : 1], p[3 * W], a[boxed ? 3 * W : 1];
-        for (int j = 0; j < 3; ++j) {
-            for (int i = 0; i < W; ++i) {
-                const int e = j * W + i;
-                const vec r0 = load(pr[i] + W * j), r1 = load(pr[i] + W * j + 3);
-                d[e] = r1 - r0;
-                if (careful) low[e] = two_difference<vec>(r1, r0).lo;
-                vec dv = {}, df = {};
-                if (terms & (velocity_squared | rate)) dv = load(pv[i] + W * j + 3) - load(pv[i] + W * j);
-                if (terms & force_difference) {
-                    const vec f0 = load(pf[i] + W * j), f1 = load(pf[i] + W * j + 3);
-                    if (uniform) {
-                        df = splat(block.w_uniform[i]) * (f1 - f0);
-                    } else {
-                        const double *w3 = block.w3[i] + 3 * k0 + W * j;
-                        df = load(w3 + 3) * f1 - load(w3) * f0;
-                    }
-                }
-                if (boxed) {
-                    a[e] = terms & rate ? dv : df;
-                    p[e] = dv * dv;
-                } else {
-                    if (terms & rate)
-                        p[e] = dv * d[e];
-                    else if ((terms & velocity_squared) && (terms & force_difference))
-                        p[e] = mul_add(df, d[e], dv * dv);
-                    else if (terms & force_difference)
-                        p[e] = df * d[e];
-                    else
-                        p[e] = dv * dv;
-                }
-            }
-            transpose(d + j * W);
-            if (terms) transpose(p + j * W);
-            if (careful) transpose(low + j * W);
-            if (boxed) transpose(a + j * W);
+        load_chunk<terms, uniform, boxed, careful>(block, box, k0, pr, pv, pf, D + k0, D_low + k0, B + k0);
+    }
+    for (; k0 < block.n; k0 += W) {
+        double buffer[3][W][3 * W + 3];
+        for (int i = 0; i < W; ++i) {
+            pr[i] = window(r.lane[i], k0, block.len[i], block.roomy, buffer[0][i]);
+            if (terms & (velocity_squared | rate)) pv[i] = window(v.lane[i], k0, block.len[i], block.roomy, buffer[1][i]);
+            if (terms & force_difference) pf[i] = window(f.lane[i], k0, block.len[i], block.roomy, buffer[2][i]);
         }
-        const long m = block.n - k0 < W ? block.n - k0 : W;
-        for (long b = 0; b < m; ++b) {
-            vec3 bond = {d[3 * b], d[3 * b + 1], d[3 * b + 2]}, bond_low = {};
-            if (careful) bond_low = {low[3 * b], low[3 * b + 1], low[3 * b + 2]};
-            vec rhs = {};
-            if (boxed) {
-                wrap<careful>(box, bond, bond_low);
-                const vec3 other = {a[3 * b], a[3 * b + 1], a[3 * b + 2]};
-                if (terms & (rate | force_difference)) rhs = dot(bond, other);
-                if (terms & velocity_squared) rhs = rhs + ((p[3 * b] + p[3 * b + 1]) + p[3 * b + 2]);
-            } else if (terms) {
-                rhs = (p[3 * b] + p[3 * b + 1]) + p[3 * b + 2];
-            }
-            if (__builtin_expect(k0 + b >= block.n_min, 0)) {
-                const mask live = less(splat(static_cast<double>(k0 + b)), block.lengths());
-                bond = {select(live, bond.x, splat(1.0)), keep(live, bond.y), keep(live, bond.z)};
-                bond_low = {keep(live, bond_low.x), keep(live, bond_low.y), keep(live, bond_low.z)};
-                rhs = keep(live, rhs);
-            }
-            D[k0 + b] = bond;
-            if (careful) D_low[k0 + b] = bond_low;
-            B[k0 + b] = rhs;
+        vec3 d[W], low[W];
+        vec rhs[W];
+        load_chunk<terms, uniform, boxed, careful>(block, box, k0, pr, pv, pf, d, low, rhs);
+        for (long b = 0; b < W && k0 + b < block.n; ++b) {
+            const mask live = less(splat(static_cast<double>(k0 + b)), block.lengths());
+            D[k0 + b] = {select(live, d[b].x, splat(1.0)), keep(live, d[b].y), keep(live, d[b].z)};
+            if (careful) D_low[k0 + b] = {keep(live, low[b].x), keep(live, low[b].y), keep(live, low[b].z)};
+            B[k0 + b] = keep(live, rhs[b]);
         }
     }
 }
 
-// Writes a value per bond of the lanes in `which` into the caller's array per bond.
-static inline void store_bonds(const Block &block, const vec *value, mask which, double *out) {
+// Writes factor times a value per bond of the lanes in `which` into the caller's array per bond.
+static inline void store_bonds(const Block &block, const vec *value, double factor, mask which, double *out) {
     const unsigned chosen = bits(which & block.in_use());
-    for (long k0 = 0; k0 < block.n; k0 += W) {
-        vec m[W];
-        for (int b = 0; b < W; ++b) m[b] = k0 + b < block.n ? value[k0 + b] : vec{};
-        transpose(m);
-        for (int i = 0; i < block.lanes; ++i) {
-            if (!(chosen >> i & 1)) continue;
-            double *p = out + block.first_bond[i] + k0;
-            const long left = block.len[i] - k0;
-            if (left >= W)
-                store(p, m[i]);
-            else
-                for (long b = 0; b < left; ++b) p[b] = m[i][b];
+    double *p[W];
+    for (int i = 0; i < block.lanes; ++i) p[i] = out + block.first_bond[i];
+    long k0 = 0;
+    if (chosen == (1u << W) - 1)
+        for (; k0 + W <= block.n_min; k0 += W) {
+            vec m[W];
+            for (int b = 0; b < W; ++b) m[b] = factor * value[k0 + b];
+            transpose(m);
+            for (int i = 0; i < W; ++i) store(p[i] + k0, m[i]);
         }
-    }
+    for (int i = 0; i < block.lanes; ++i)
+        if (chosen >> i & 1)
+            for (long k = k0; k < block.len[i]; ++k) p[i][k] = factor * value[k][i];
 }
 
 enum Update { write_, add_ };
 
-// Writes W consecutive atoms from atom k0 on, given component by component (value[3 W], transposed in place).
-HOL_INLINE void store_atoms(const Block &block, long k0, vec *value, unsigned chosen, Update update,
-                            const Packed &out) {
+// Writes W consecutive atoms from atom k0 on, given component by component (value[3 W], transposed in place), of all
+// lanes.
+template <Update update>
+HOL_INLINE void store_chunk(long k0, vec *value, const Packed &out) {
+    for (int j = 0; j < 3; ++j) {
+        transpose(value + j * W);
+        for (int i = 0; i < W; ++i) {
+            double *p = out.lane[i] + 3 * k0 + j * W;
+            store(p, update == add_ ? load(p) + value[j * W + i] : value[j * W + i]);
+        }
+    }
+}
+
+// The same where lanes may end, or be left out.
+template <Update update>
+HOL_INLINE void store_ragged(const Block &block, long k0, vec *value, unsigned chosen, const Packed &out) {
     for (int j = 0; j < 3; ++j) transpose(value + j * W);
     for (int i = 0; i < block.lanes; ++i) {
         if (!(chosen >> i & 1)) continue;
         double *p = out.lane[i] + 3 * k0;
-        const long left = 3 * (block.len[i] + 1 - k0);
-        if (__builtin_expect(left >= 3 * W, 1)) {
-            for (int j = 0; j < 3; ++j)
-                store(p + j * W, update == add_ ? load(p + j * W) + value[j * W + i] : value[j * W + i]);
-        } else {
-            for (long e = 0; e < left; ++e) {
-                const double x = value[e / W * W + i][e % W];
-                p[e] = update == add_ ? p[e] + x : x;
-            }
+        long left = 3 * (block.len[i] + 1 - k0);
+        for (int j = 0; j < 3 && left > 0; ++j, left -= W, p += W) {
+            const vec x = value[j * W + i];
+            if (left >= W)
+                store(p, update == add_ ? load(p) + x : x);
+            else
+                for (long e = 0; e < left; ++e) p[e] = update == add_ ? p[e] + x[e] : x[e];
         }
     }
 }

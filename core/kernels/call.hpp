@@ -125,6 +125,7 @@ struct LongPositions {
     bool (*join)(const Lane &, bool renew, double *store);
     void (*substitute)(const PositionsCall &, const Lane &, int64_t block, double *store);
     double (*correct)(const PositionsCall &, const Lane &, int64_t block, double *store, double *scratch);
+    double (*pull)(const Lane &, int64_t block, double *store);
     void (*finish)(const PositionsCall &, const Lane &, int64_t block, bool moved, double *store, double *scratch,
                    Tally &);
 };

@@ -7,21 +7,26 @@ namespace HOL_ISA {
 struct System {
     vec3 *D, *D_low;
     vec *t, *L;  // t: right-hand side, then u, then the solution t = 2 lambda
+    vec *b, *pivots, *spare;  // for refine(); they share the memory of D_low
     System(long n, Arena &arena)
         : D(reinterpret_cast<vec3 *>(arena.vecs(3 * n))), D_low(reinterpret_cast<vec3 *>(arena.vecs(3 * n))),
-          t(arena.vecs(n)), L(arena.vecs(n)) {}
+          t(arena.vecs(n)), L(arena.vecs(n)), b(&D_low->x), pivots(b + n), spare(pivots + n) {}
 };
 
 template <int terms, bool uniform, bool boxed, bool careful>
 static __attribute__((noinline)) mask solve(const Block &block, const Box &box, const Packed &r, const Packed &v,
                                             const Packed &f, const System &s) {
+    constexpr bool refined = terms == rate && !careful;
     load_bonds<terms, uniform, boxed, careful>(block, box, r, v, f, s.D, s.D_low, s.t);
     mask doubt = none();
+    if (refined)
+        for (long k = 0; k < block.n; ++k) s.b[k] = s.t[k];
     if (careful)
         forward_careful<uniform>(block, s.D, s.D_low, s.t, s.L);
     else
-        doubt = forward<uniform>(block, s.D, s.t, s.L);
+        doubt = forward<uniform, refined>(block, s.D, s.t, s.L, s.pivots);
     backward(block.n, s.t, s.L);
+    if (refined) refine<uniform>(block, s.D, s.b, s.pivots, s.L, s.t, s.spare);
     return finite(s.t[0]) & ~doubt & block.in_use();
 }
 
@@ -46,10 +51,6 @@ static inline mask solve_forces(const Block &block, const ForcesCall &call, cons
     return solve_any<none_, careful>(block, call.box, r, v, f, s);
 }
 
-static inline void scale_into(long n, const vec *a, double factor, vec *out) {
-    for (long k = 0; k < n; ++k) out[k] = factor * a[k];
-}
-
 // - sum t d (x) d over the bonds of the lanes in `which`.
 static inline void add_virial(long n, const vec3 *d, const vec *t, mask which, double factor, Tally &tally) {
     vec s[6] = {};
@@ -65,30 +66,53 @@ static inline void add_virial(long n, const vec3 *d, const vec *t, mask which, d
     for (int c = 0; c < 6; ++c) tally.virial[c] -= factor * sum_lanes(keep(which, s[c]));
 }
 
-// G_i = t_{i+1} d_{i+1} - t_i d_i per atom; times w_i where `weighted`.
+// G_i = t_{i+1} d_{i+1} - t_i d_i of the atoms first .. n, where `before` is t d of the bond before atom `first`; times
+// w_i where `weighted`.
+template <bool weighted, bool uniform, Update update>
+static inline void store_pulls_from(const Block &block, long first, vec3 before, const vec3 *d, const vec *t,
+                                    mask which, const Packed &out) {
+    const unsigned chosen = bits(which);
+    const auto pull = [&](long k, const vec3 &after, vec *value) __attribute__((always_inline)) {
+        vec3 g = {after.x - before.x, after.y - before.y, after.z - before.z};
+        if (weighted) {
+            const vec w = w_at<uniform>(block, k);
+            g = {w * g.x, w * g.y, w * g.z};
+        }
+        value[0] = g.x;
+        value[1] = g.y;
+        value[2] = g.z;
+        before = after;
+    };
+    long k0 = first;
+    if (chosen == (1u << W) - 1)
+        for (; k0 + W <= block.n_min; k0 += W) {
+            vec value[3 * W];
+            for (int a = 0; a < W; ++a) {
+                const long k = k0 + a;
+                pull(k, {t[k] * d[k].x, t[k] * d[k].y, t[k] * d[k].z}, value + 3 * a);
+            }
+            store_chunk<update>(k0, value, out);
+        }
+    for (; k0 <= block.n; k0 += W) {
+        vec value[3 * W] = {};
+        for (int a = 0; a < W; ++a) {
+            const long k = k0 + a;
+            if (k > block.n) break;
+            vec3 after = {};
+            if (k < block.n) after = {t[k] * d[k].x, t[k] * d[k].y, t[k] * d[k].z};
+            pull(k, after, value + 3 * a);
+        }
+        store_ragged<update>(block, k0, value, chosen, out);
+    }
+}
+
 template <bool weighted, bool uniform>
 static inline void store_pulls(const Block &block, const vec3 *d, const vec *t, mask which, Update update,
                                const Packed &out) {
-    const unsigned chosen = bits(which);
-    vec3 before = {};
-    for (long k0 = 0; k0 <= block.n; k0 += W) {
-        vec value[3 * W];
-        for (int a = 0; a < W; ++a) {
-            const long k = k0 + a;
-            vec3 after = {};
-            if (k < block.n) after = {t[k] * d[k].x, t[k] * d[k].y, t[k] * d[k].z};
-            vec3 pull = {after.x - before.x, after.y - before.y, after.z - before.z};
-            if (weighted && k <= block.n) {
-                const vec w = w_at<uniform>(block, k);
-                pull = {w * pull.x, w * pull.y, w * pull.z};
-            }
-            value[3 * a] = pull.x;
-            value[3 * a + 1] = pull.y;
-            value[3 * a + 2] = pull.z;
-            before = after;
-        }
-        store_atoms(block, k0, value, chosen, update, out);
-    }
+    if (update == add_)
+        store_pulls_from<weighted, uniform, add_>(block, 0, vec3{}, d, t, which, out);
+    else
+        store_pulls_from<weighted, uniform, write_>(block, 0, vec3{}, d, t, which, out);
 }
 
 static inline void note_bad(const Block &block, mask bad, Tally &tally) {
@@ -100,23 +124,36 @@ static inline void note_bad(const Block &block, mask bad, Tally &tally) {
     }
 }
 
-// Fills a block with the chains first .. first + lanes - 1 of a unit.
+// Fills a block with the chains first .. first + lanes - 1 of a unit. Of a regular unit, the block before this one may
+// still be in place.
 static inline void open_block(const Unit &unit, int64_t first, Block &block, Lane *lane) {
     const int64_t left = unit.count - first;
     block.lanes = left < W ? static_cast<int>(left) : W;
+    block.roomy = false;
+    if (unit.regular) {
+        const Lane &head = unit.lanes[0];
+        const int64_t n = head.n_bonds;
+        if (first == 0) {
+            block.n = block.n_min = n;
+            for (int i = 0; i < W; ++i) {
+                lane[i] = head;
+                block.len[i] = n;
+            }
+        }
+        for (int i = 0; i < block.lanes; ++i) {
+            const int64_t c = first + i;
+            lane[i].first_atom = head.first_atom + c * (n + 1);
+            if (head.atoms) lane[i].atoms = head.atoms + c * (n + 1);
+            lane[i].first_bond = block.first_bond[i] = head.first_bond + c * n;
+            lane[i].chain = block.chain[i] = head.chain + c;
+        }
+        block.roomy = (left - block.lanes) * (n + 1) >= W && !head.atoms;
+        return;
+    }
     block.n = 0;
     block.n_min = longest_lane + 1;
     for (int i = 0; i < block.lanes; ++i) {
-        if (unit.regular) {
-            const int64_t c = first + i, n = unit.lanes[0].n_bonds;
-            lane[i] = unit.lanes[0];
-            lane[i].first_atom += c * (n + 1);
-            if (lane[i].atoms) lane[i].atoms += c * (n + 1);
-            lane[i].first_bond += c * n;
-            lane[i].chain += c;
-        } else {
-            lane[i] = unit.lanes[first + i];
-        }
+        lane[i] = unit.lanes[first + i];
         block.len[i] = lane[i].n_bonds;
         block.first_bond[i] = lane[i].first_bond;
         block.chain[i] = lane[i].chain;
@@ -158,16 +195,11 @@ static inline void close(const AtomArray &array, const Block &block, const Lane 
 
 static void store_forces(const Block &block, const Lane *lane, const ForcesCall &call, const System &s, mask which,
                          const Packed &g, Arena arena) {
-    if (call.lambda || call.tension) {
+    if (call.lambda) store_bonds(block, s.t, 0.5, which, call.lambda);
+    if (call.tension) {
         vec *value = arena.vecs(block.n);
-        if (call.lambda) {
-            scale_into(block.n, s.t, 0.5, value);
-            store_bonds(block, value, which, call.lambda);
-        }
-        if (call.tension) {
-            for (long k = 0; k < block.n; ++k) value[k] = s.t[k] * sqrt(dot(s.D[k], s.D[k]));
-            store_bonds(block, value, which, call.tension);
-        }
+        for (long k = 0; k < block.n; ++k) value[k] = s.t[k] * sqrt(dot(s.D[k], s.D[k]));
+        store_bonds(block, value, 1, which, call.tension);
     }
     if (!call.g.x) return;
     bool staged = false;
@@ -188,7 +220,7 @@ static void store_forces(const Block &block, const Lane *lane, const ForcesCall 
 static void forces_block(const Block &block, const Lane *lane, const ForcesCall &call, Arena arena, Tally &tally) {
     const Packed r = open(call.r, block, lane, arena, true), v = open(call.v, block, lane, arena, true);
     const Packed f = open(call.f, block, lane, arena, true);
-    Packed g = {};
+    Packed g;
     if (call.g.x)
         for (int i = 0; i < block.lanes; ++i)
             if (in_place(call.g, lane[i]))

@@ -10,7 +10,7 @@ namespace HOL_ISA {
 
 constexpr double epsilon = 2.220446049250313e-16;
 
-// An error at which the iteration has nothing left to gain: a few roundings of D.D - a^2.
+// A few roundings of D.D - a^2: what the iteration leaves at best in a chain of many bonds.
 constexpr double floor_error = 4 * epsilon;
 
 struct Newton {
@@ -142,8 +142,12 @@ static inline vec correct(const Block &block, const Newton &x, mask which) {
             p1 = {s * b.x, s * b.y, s * b.z};
         }
         const vec3 right = {w * (p1.x - p.x), w * (p1.y - p.y), w * (p1.z - p.z)};
-        vec3 d = x.D[k];
-        d = {d.x + (right.x - left.x), d.y + (right.y - left.y), d.z + (right.z - left.z)};
+        vec3 move = {right.x - left.x, right.y - left.y, right.z - left.z};
+        if (__builtin_expect(k >= block.n_min, 0)) {  // inert bonds stay where they are
+            const mask live = less(splat(static_cast<double>(k)), block.lengths());
+            move = {keep(live, move.x), keep(live, move.y), keep(live, move.z)};
+        }
+        const vec3 d = {x.D[k].x + move.x, x.D[k].y + move.y, x.D[k].z + move.z};
         x.D[k] = d;
         const vec a2 = a2_at(x, k), sigma = dot(d, d) - a2;
         x.s[k] = 0.5 * sigma;
@@ -153,6 +157,14 @@ static inline vec correct(const Block &block, const Newton &x, mask which) {
         left = right;
     }
     return worst + poison;
+}
+
+// The factors of an earlier D shrink the error by a constant each time, new ones square it at twice the price: they are
+// worth it where the old ones would take more than four solves in all.
+HOL_INLINE mask worth_renewing(vec error, vec rate, int i) {
+    vec expected = error * rate;
+    for (int k = i + 2; k < 4; ++k) expected = expected * rate;
+    return less(splat(0.1 * epsilon), expected) & (i < 2 ? ~none() : less(splat(1e-4), rate));
 }
 
 struct Outcome {
@@ -167,9 +179,9 @@ static inline Outcome iterate(const Block &block, const Newton &x, const Positio
                               mask wanted, bool guess) {
     Outcome out = {};
     vec error = residuals(block, x);
-    vec done = max(splat(call.tolerance), splat(floor_error));
-    const vec accepted = max(done, carried);
-    out.untouched = less_equal(error, max(splat(call.tolerance), carried)) & wanted;
+    const vec tolerance = splat(call.tolerance), done = max(tolerance, splat(epsilon));
+    const vec accepted = max(tolerance, carried);
+    out.untouched = less_equal(error, accepted) & wanted;
     out.error = error;
     mask active = wanted & ~out.untouched & finite(error);
     if (guess) {
@@ -178,34 +190,72 @@ static inline Outcome iterate(const Block &block, const Newton &x, const Positio
             x.tau[k] = vec{};
         }
         error = correct<uniform>(block, x, active);
-        const mask helped = less_equal(error, out.error);
-        const mask undo = active & ~helped;
-        if (any(undo)) {  // back to where these lanes were
-            for (long k = 0; k < block.n; ++k) x.s[k] = -x.tau[k];
-            error = correct<uniform>(block, x, undo);
-        }
+        active = active & less_equal(error, out.error);  // where it did not help: from zero, in the second attempt
         out.converged = active & less_equal(error, done);
         active = active & ~out.converged;
     } else {
         for (long k = 0; k < block.n; ++k) x.tau[k] = vec{};
     }
     mask renew = active;
+    vec rate = error;  // new factors square the error
     for (int i = 0; i < call.max_iterations && any(active); ++i) {
         if (any(renew & active)) factorize<uniform, careful>(block, x, renew & active);
         substitute(block.n, x);
-        const vec before = error;
+        // At the floor: the solve should have gone far below a rounding, or it gained little, and what is left is no
+        // more than the coordinates carry.
+        const vec before = error, expected = rate * before;
         error = select(active, correct<uniform>(block, x, active), error);
         ++out.solves;
-        const mask stalled = less(0.25 * before, error) & less_equal(error, accepted);
-        const mask finished = active & (less_equal(error, done) | stalled);
+        const mask floor = (less(expected, splat(0.125 * epsilon)) & less_equal(error, splat(floor_error))) |
+                           less(0.25 * before, error);
+        const mask finished = active & (less_equal(error, done) | (floor & less_equal(error, accepted)));
         out.converged = out.converged | finished;
         active = active & ~finished & finite(error);
-        // The factors of an earlier D shrink the error by a constant each time; new ones are worth their price where
-        // that constant is large.
-        const vec rate = error / before;
-        renew = careful ? active : active & less(splat(1e-3), rate);
+        rate = error / before;
+        renew = careful ? active : active & worth_renewing(error, rate, i);
+        rate = select(renew, error, rate);
     }
     out.error = error;
+    return out;
+}
+
+// A chain of one bond in closed form: with sigma = D.D - a^2, D - s b has the length a for
+// s = sigma / (D.b + sqrt((D.b)^2 - b.b sigma)), and tau = s / (w_0 + w_1).
+static inline Outcome solve_single_bonds(const Block &block, const Newton &x, const PositionsCall &call, vec carried,
+                                         mask wanted) {
+    Outcome out = {};
+    const vec3 b = x.b[0], d = x.D[0];
+    const vec w = block.uniform_w ? 2 * block.w_uniform : block.w[0] + block.w[1];
+    const vec a2 = a2_at(x, 0), sigma = dot(d, d) - a2, db = dot(d, b);
+    const vec root = sqrt(mul_add(db, db, -(dot(b, b) * sigma)));  // NaN where the length can't be reached
+    const vec s = sigma / (db + select(less(db, vec{}), -root, root));
+    const vec error = abs(sigma) / a2;
+    out.untouched = less_equal(error, max(splat(call.tolerance), carried)) & wanted;
+    out.converged = wanted & ~out.untouched & finite(s / w) & less(vec{}, w);
+    const vec step = keep(out.converged, s);
+    const vec3 moved = {mul_add(-step, b.x, d.x), mul_add(-step, b.y, d.y), mul_add(-step, b.z, d.z)};
+    x.D[0] = {select(wanted, moved.x, d.x), select(wanted, moved.y, d.y), select(wanted, moved.z, d.z)};
+    const vec left = dot(x.D[0], x.D[0]) - a2;
+    x.s[0] = select(wanted, 0.5 * left, x.s[0]);
+    x.tau[0] = select(wanted, keep(out.converged, s / w), x.tau[0]);
+    out.error = select(out.converged, abs(left) / a2, error);
+    out.solves = any(out.converged) ? 1 : 0;
+    return out;
+}
+
+// All lanes in `wanted`: chains of one bond in closed form, the others by Newton's method.
+template <bool uniform, bool careful>
+static inline Outcome solve_positions(const Block &block, const Newton &x, const PositionsCall &call, vec carried,
+                                      mask wanted, bool guess) {
+    const mask single = wanted & less(block.lengths(), splat(1.5));
+    Outcome out = {};
+    if (any(wanted & ~single)) out = iterate<uniform, careful>(block, x, call, carried, wanted & ~single, guess);
+    if (!any(single)) return out;
+    const Outcome one = solve_single_bonds(block, x, call, carried, single);
+    out.untouched = out.untouched | one.untouched;
+    out.converged = out.converged | one.converged;
+    out.error = select(single, one.error, out.error);
+    out.solves = one.solves > out.solves ? one.solves : out.solves;
     return out;
 }
 
@@ -231,40 +281,52 @@ static inline void note_worst(const Block &block, const Newton &x, mask which, v
 
 template <bool uniform>
 static void store_positions(const Block &block, const Lane *lane, const PositionsCall &call, const Newton &x,
-                            const Outcome &out, const Packed &r, const Packed &v, Arena arena, Tally &tally) {
+                            const Outcome &out, const Packed &r, const Packed &v, Tally &tally) {
     const mask done = out.converged | out.untouched;
     if (any(out.converged)) {
-        store_pulls<true, uniform>(block, x.b, x.tau, out.converged, add_, r);
         close(call.r, block, lane, out.converged, r, false);
         if (call.v.x) {
-            scale_into(block.n, x.tau, 1 / call.dt, x.up);
+            for (long k = 0; k < block.n; ++k) x.up[k] = (1 / call.dt) * x.tau[k];
             store_pulls<true, uniform>(block, x.b, x.up, out.converged, add_, v);
             close(call.v, block, lane, out.converged, v, false);
         }
         if (call.virial) add_virial(block.n, x.b, x.tau, out.converged, 1 / (call.dt * call.dt), tally);
     }
     if (call.lambda) {
-        vec *value = arena.vecs(block.n);
-        const double factor = 0.5 / (call.dt * call.dt);
-        for (long k = 0; k < block.n; ++k) value[k] = keep(out.converged, factor * x.tau[k]);
-        store_bonds(block, value, done, call.lambda);
+        if (any(out.untouched))
+            for (long k = 0; k < block.n; ++k) x.tau[k] = keep(out.converged, x.tau[k]);
+        store_bonds(block, x.tau, 0.5 / (call.dt * call.dt), done, call.lambda);
     }
     note_worst(block, x, done, out.error, tally);
     tally.n_corrected += __builtin_popcount(bits(out.converged));
     if (out.solves > tally.iterations) tally.iterations = out.solves;
 }
 
-template <bool uniform>
+// Lanes in which an atom's displacement is the difference of pulls so large that their rounding is more than the
+// coordinates': light atoms between heavy ones in a taut chain. Elsewhere moving the atoms costs one rounding of them.
+static inline mask coarse_moves(const Block &block, const Newton &x, vec largest_coordinate) {
+    vec pull = {}, reach = {};
+    for (long k = 0; k < block.n; ++k) {
+        const vec w = block.uniform_w ? block.w_uniform : max(block.w[k], block.w[k + 1]);
+        pull = max(w * abs(x.tau[k]), pull);
+        reach = max(a2_at(x, k), reach);
+    }
+    reach = sqrt(reach);
+    return less(0.25 * (largest_coordinate + sqrt(x.a2_min)), pull * reach);
+}
+
+static inline void load_bond_vectors(const Block &block, const Box &box, const Packed &r, vec3 *D, vec *unused) {
+    const Packed absent = {};
+    if (box.shape == Box::none)
+        load_bonds<none_, true, false, false>(block, box, r, absent, absent, D, nullptr, unused);
+    else
+        load_bonds<none_, true, true, false>(block, box, r, absent, absent, D, nullptr, unused);
+}
+
 static void load_positions(const Block &block, const PositionsCall &call, const Packed &r_ref, const Packed &r,
                            const Newton &x) {
-    const Packed absent = {};
-    if (call.box.shape == Box::none) {
-        load_bonds<none_, true, false, false>(block, call.box, r_ref, absent, absent, x.b, nullptr, x.s);
-        load_bonds<none_, true, false, false>(block, call.box, r, absent, absent, x.D, nullptr, x.s);
-    } else {
-        load_bonds<none_, true, true, false>(block, call.box, r_ref, absent, absent, x.b, nullptr, x.s);
-        load_bonds<none_, true, true, false>(block, call.box, r, absent, absent, x.D, nullptr, x.s);
-    }
+    load_bond_vectors(block, call.box, r_ref, x.b, x.s);
+    load_bond_vectors(block, call.box, r, x.D, x.s);
     if (!call.guess) return;
     const double factor = 2 * call.dt * call.dt;
     for (long k = 0; k < block.n; ++k)
@@ -272,6 +334,42 @@ static void load_positions(const Block &block, const PositionsCall &call, const 
             const int lane = i < block.lanes ? i : 0;
             x.tau[k][i] = k < block.len[i] ? factor * call.lambda[block.first_bond[lane] + k] : 0.0;
         }
+}
+
+// Moves the atoms of the lanes that have converged. Where that is too coarse, goes on from the coordinates as they are
+// now rounded: the moves that remain are small, and so are their roundings. Lanes that do not get there are put back.
+template <bool uniform>
+static void move_atoms(const Block &block, const PositionsCall &call, const Newton &x, const Packed &r, vec carried,
+                       vec largest_coordinate, Outcome &out, Arena arena) {
+    const mask coarse = out.converged & coarse_moves(block, x, largest_coordinate);
+    double *saved[W] = {};
+    if (__builtin_expect(any(coarse), 0))
+        for (int i = 0; i < block.lanes; ++i) {
+            saved[i] = arena.doubles(3 * (block.len[i] + 1));
+            for (long e = 0; e < 3 * (block.len[i] + 1); ++e) saved[i][e] = r.lane[i][e];
+        }
+    store_pulls<true, uniform>(block, x.b, x.tau, out.converged, add_, r);
+    if (__builtin_expect(!any(coarse), 1)) return;
+    vec *const total = arena.vecs(block.n);
+    mask wanted = coarse;
+    for (int pass = 0; pass < 5 && any(wanted); ++pass) {
+        for (long k = 0; k < block.n; ++k) total[k] = x.tau[k];
+        load_bond_vectors(block, call.box, r, x.D, x.s);
+        Outcome again = {};
+        vec error = residuals(block, x);
+        out.error = select(coarse, error, out.error);
+        wanted = wanted & ~less_equal(error, max(splat(call.tolerance), carried));
+        if (!any(wanted)) break;
+        again = solve_positions<uniform, true>(block, x, call, carried, wanted, false);
+        store_pulls<true, uniform>(block, x.b, x.tau, again.converged & wanted, add_, r);
+        for (long k = 0; k < block.n; ++k) x.tau[k] = total[k] + keep(again.converged & wanted, x.tau[k]);
+    }
+    if (!any(wanted)) return;
+    const unsigned back = bits(wanted);
+    for (int i = 0; i < block.lanes; ++i)
+        if (back >> i & 1)
+            for (long e = 0; e < 3 * (block.len[i] + 1); ++e) r.lane[i][e] = saved[i][e];
+    out.converged = out.converged & ~wanted;
 }
 
 template <bool uniform>
@@ -283,17 +381,19 @@ static void positions_block_of(const Block &block, const Lane *lane, const Posit
     set_lengths(block, lane, x, arena);
     // What the coordinates carry: each end of a bond is rounded to u |r|, u = half a unit in the last place.
     const double u = call.r.is_float ? 5.97e-8 : 1.11e-16;
-    const vec carried = (8 * u) * (splat(1.0) + extent(block, r) / sqrt(x.a2_min));
-    load_positions<uniform>(block, call, r_ref, r, x);
-    Outcome out = iterate<uniform, false>(block, x, call, carried, block.in_use(), call.guess);
-    store_positions<uniform>(block, lane, call, x, out, r, v, arena, tally);
+    const vec largest = extent(block, r), carried = (8 * u) * (splat(1.0) + largest / sqrt(x.a2_min));
+    load_positions(block, call, r_ref, r, x);
+    Outcome out = solve_positions<uniform, false>(block, x, call, carried, block.in_use(), call.guess);
+    move_atoms<uniform>(block, call, x, r, carried, largest, out, arena);
+    store_positions<uniform>(block, lane, call, x, out, r, v, tally);
     mask rest = block.in_use() & ~(out.converged | out.untouched);
     if (__builtin_expect(!any(rest), 1)) return;
     // Once more from the start, with new factors at every step and nothing that can overflow on the way.
-    load_positions<uniform>(block, call, r_ref, r, x);
-    out = iterate<uniform, true>(block, x, call, carried, rest, false);
+    load_positions(block, call, r_ref, r, x);
+    out = solve_positions<uniform, true>(block, x, call, carried, rest, false);
     out.untouched = out.untouched & rest;
-    store_positions<uniform>(block, lane, call, x, out, r, v, arena, tally);
+    move_atoms<uniform>(block, call, x, r, carried, largest, out, arena);
+    store_positions<uniform>(block, lane, call, x, out, r, v, tally);
     rest = rest & ~(out.converged | out.untouched);
     if (any(rest)) note_bad(block, rest, tally);
 }

@@ -42,8 +42,8 @@ static __attribute__((noinline)) mask doubtful_joints(const Block &block, const 
 
 // Plain forward sweep: B becomes u = y / P, L the multipliers. Four bonds at a time E is carried as a fraction A / F,
 // which takes the divisions out of the chain of dependences. Returns the lanes that need careful arithmetic.
-template <bool uniform>
-static inline mask forward(const Block &block, const vec3 *D, vec *B, vec *L) {
+template <bool uniform, bool keep_pivots = false>
+static inline mask forward(const Block &block, const vec3 *D, vec *B, vec *L, vec *pivots = nullptr) {
     const long n = block.n;
     const double least = 4 * joint_tolerance * joint_tolerance + 1;
     mask doubt = none();
@@ -58,6 +58,7 @@ static inline mask forward(const Block &block, const vec3 *D, vec *B, vec *L) {
             rF = splat(1.0) / F1;
             const vec rP = F * rF;
             B[k] = y * rP;
+            if (keep_pivots) pivots[k] = rP;
             if (!has_joint) return;
             const vec3 d1 = D[k + 1];
             const vec q1 = dot(d1, d1);
@@ -116,6 +117,41 @@ static __attribute__((noinline)) void forward_careful(const Block &block, const 
         y = mul_add(L[k], y, B[k + 1]);
         E = wP * mul_add(w, X, q1 * E);
         q = q1;
+    }
+}
+
+// Adds to t the solution for what it leaves of the right-hand side b: the recursion gives t to a few roundings of
+// itself, this makes the projected rates as small as the velocities' own rounding. s: working space [n].
+template <bool uniform>
+static inline void refine(const Block &block, const vec3 *D, const vec *b, const vec *pivots, const vec *L, vec *t,
+                          vec *s) {
+    const long n = block.n;
+    vec y = {}, before = {};  // before = w (q t - g t') of the joint on the left, the part of the row that it adds
+    vec q = dot(D[0], D[0]);
+    before = w_at<uniform>(block, 0) * (q * t[0]);
+    for (long k = 0; k < n; ++k) {
+        vec own = q * t[k], after = {};
+        vec next_before = {}, q1 = {};
+        if (k + 1 < n) {
+            vec g = dot(D[k], D[k + 1]);
+            if (__builtin_expect(k + 1 >= block.n_min, 0)) g = keep(joint(block, k), g);
+            q1 = dot(D[k + 1], D[k + 1]);
+            const vec w = w_at<uniform>(block, k + 1);
+            after = w * mul_add(-g, t[k + 1], own);
+            next_before = w * mul_add(-g, t[k], q1 * t[k + 1]);
+        } else {
+            after = w_at<uniform>(block, n) * own;
+        }
+        const vec rest = (b[k] - before) - after;
+        y = k == 0 ? rest : mul_add(L[k - 1], y, rest);
+        s[k] = y * pivots[k];
+        before = next_before;
+        q = q1;
+    }
+    vec c = {};
+    for (long k = n - 1; k >= 0; --k) {
+        c = k + 1 < n ? mul_add(L[k], c, s[k]) : s[k];
+        t[k] = t[k] + c;
     }
 }
 

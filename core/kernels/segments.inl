@@ -70,6 +70,7 @@ struct SegmentBlock {
 static inline SegmentBlock segment_block(const Cut &cut, int64_t j, const Lane &lane) {
     SegmentBlock s;
     s.block.lanes = W;
+    s.block.roomy = false;
     s.block.n = 0;
     s.block.n_min = s.own_min = cut.longest() + 1;
     s.own_max = 0;
@@ -121,7 +122,7 @@ template <bool uniform, bool careful>
 static __attribute__((noinline)) void eliminate(const SegmentBlock &s, const Segments &x, const vec3 *D_low) {
     const Block &block = s.block;
     const vec3 *D = x.D;
-    const double least = 4 * joint_tolerance * joint_tolerance + 1;
+    const double least = 4 * joint_tolerance * joint_tolerance;
     Summary sum = {};
     vec w = w_at<uniform>(block, 1), q = dot(D[1], D[1]), w_max = w;
     vec X, g;
@@ -134,17 +135,19 @@ static __attribute__((noinline)) void eliminate(const SegmentBlock &s, const Seg
         X = dot(cr, cr);
         g = dot(D[0], D[1]);
     }
-    vec A = w * q, F = splat(1.0), a = (w * w) * X, c = w * dot(D[0], D[0]);  // E = A / F; a and c carry the same 1 / F
-    vec f = w * g, T = {}, y = x.t[1], slack = {}, E0 = A;
+    vec E = w * q, a = (w * w) * X, c = w * dot(D[0], D[0]);
+    vec f = w * g, T = {}, y = x.t[1], slack = {}, E0 = E;
     long chunk = 1;
     for (long k = 1; k < s.own_max; ++k) {
         w = w_at<uniform>(block, k + 1);
-        const vec wq = w * q;
-        const vec F1 = mul_add(wq, F, A), c1 = mul_add(wq, c, a);
-        const vec rF = splat(1.0) / F1, rP = F * rF, u = y * rP;
+        const vec wq = w * q, P = E + wq, rP = splat(1.0) / P, u = y * rP;
         x.t[k] = u;
         x.fP[k] = f * rP;
         T = mul_add(f, u, T);
+        // In a straight chain c, f and E shrink by the same factor at each bond. They are rounded in the same way, so
+        // that their ratios stay exact: segments of equal bonds would all have the same error in them.
+        const vec c_before = c;
+        c = mul_add(a, rP, (wq * rP) * c);
         if (k + 1 < block.n) {
             const vec3 d = D[k], d1 = D[k + 1];
             const vec q1 = dot(d1, d1);
@@ -157,7 +160,7 @@ static __attribute__((noinline)) void eliminate(const SegmentBlock &s, const Seg
                 const vec3 cr = cross(d, d1);
                 X = dot(cr, cr);
                 g = dot(d, d1);
-                step = mul_add(splat(least), A, -F1);
+                step = mul_add(splat(least), E, -wq);
             }
             if (__builtin_expect(k + 1 >= block.n_min, 0)) {
                 const mask m = joint(block, k);
@@ -165,40 +168,34 @@ static __attribute__((noinline)) void eliminate(const SegmentBlock &s, const Seg
                 g = keep(m, g);
                 step = keep(m, step);
             }
-            const vec l = (w * g) * rP, wX = w * X;
+            const vec l = (w * g) * rP, lE = (w * q1) * rP, lX = (w * (w * X)) * rP;
             x.L[k] = l;
             y = mul_add(l, y, x.t[k + 1]);
             f = l * f;
-            A = w * mul_add(wX, F, q1 * A);
-            a = w * mul_add(wX, c, q1 * a);
+            a = mul_add(lE, a, lX * c_before);
+            E = mul_add(lE, E, lX);
             slack = min(slack, step);
             if (!uniform) w_max = max(w_max, w);
             q = q1;
         } else {
-            A = a = vec{};
+            E = a = vec{};
         }
-        F = F1;
-        c = c1;
         if (k + 1 >= s.own_min) {
             const mask m = ends_at(s, k + 1);
-            sum.E = select(m, A * rF, sum.E);
-            sum.a = select(m, a * rF, sum.a);
-            sum.c = select(m, c * rF, sum.c);
+            sum.E = select(m, E, sum.E);
+            sum.a = select(m, a, sum.a);
+            sum.c = select(m, c, sum.c);
             sum.y = select(m, y, sum.y);
             sum.f = select(m, f, sum.f);
             sum.T = select(m, T, sum.T);
             sum.span = select(m, (uniform ? w : w_max) * q, sum.span);
         }
-        if (careful || (k & 3) == 0 || k + 1 == s.own_max) {
-            A = A * rF;
-            a = a * rF;
-            c = c * rF;
-            F = splat(1.0);
-            if (!careful && __builtin_expect(any(less(slack, vec{})), 0)) {
+        if (!careful && ((k & 3) == 0 || k + 1 == s.own_max)) {
+            if (__builtin_expect(any(less(slack, vec{})), 0)) {
                 sum.doubt = sum.doubt | doubtful_joints<uniform>(block, D, chunk, k + 1, E0);
                 slack = vec{};
             }
-            E0 = A;
+            E0 = E;
             chunk = k + 1;
         }
     }
@@ -268,7 +265,7 @@ static void long_velocities_eliminate(const VelocitiesCall &call, const Lane &la
 // 2 eps sqrt(a sum alpha_j q_j q_{j+1} / n) <= 2 eps sqrt(a w_max q c), because sum alpha_j q_j q_{j+1} <= n w_max q c;
 // it is harmless where that is below join_tolerance (E_free E + a).
 static JoinResult long_join(const Lane &lane, bool careful, double *store) {
-    const double join_tolerance = 32;
+    const double join_tolerance = 8;
     const Cut cut(lane.n_bonds);
     const double w0 = lane.w ? lane.w[0] : lane.w_uniform;
     double E = 0, y = 0;
@@ -322,32 +319,25 @@ static inline void substitute_block(const Cut &cut, const SegmentBlock &s, int64
     for (long k = s.own[s.last]; k < s.block.n; ++k) x.t[k][s.last] = 0;  // no bond follows the last segment
 }
 
+// The segments without the separators that follow them.
+static inline Block own_block(const SegmentBlock &s) {
+    Block block = s.block;
+    block.n = s.own_max;
+    block.n_min = s.own_min;
+    for (int i = 0; i < W; ++i) block.len[i] = s.own[i];
+    return block;
+}
+
 // Values per atom of the lanes: atoms 1 .. own of each segment, and atom 0 of the chain.
 template <bool weighted, bool uniform>
 static void store_segment_pulls(const SegmentBlock &s, int64_t j, const Segments &x, Update update, const Packed &out) {
-    Block block = s.block;
-    for (int i = 0; i < W; ++i) block.len[i] = s.own[i];
-    const unsigned all = (1u << W) - 1;
+    Block block = own_block(s);
+    block.n = s.block.n;  // the last atom of a lane is pulled by the bond behind it, too
     const vec3 first = {x.t[0] * x.D[0].x, x.t[0] * x.D[0].y, x.t[0] * x.D[0].z};
-    vec3 before = first;
-    for (long k0 = 1; k0 <= s.own_max; k0 += W) {
-        vec value[3 * W];
-        for (int b = 0; b < W; ++b) {
-            const long k = k0 + b;
-            vec3 after = {};
-            if (k < s.block.n) after = {x.t[k] * x.D[k].x, x.t[k] * x.D[k].y, x.t[k] * x.D[k].z};
-            vec3 pull = {after.x - before.x, after.y - before.y, after.z - before.z};
-            if (weighted && k <= s.block.n) {
-                const vec w = w_at<uniform>(block, k);
-                pull = {w * pull.x, w * pull.y, w * pull.z};
-            }
-            value[3 * b] = pull.x;
-            value[3 * b + 1] = pull.y;
-            value[3 * b + 2] = pull.z;
-            before = after;
-        }
-        store_atoms(block, k0, value, all, update, out);
-    }
+    if (update == add_)
+        store_pulls_from<weighted, uniform, add_>(block, 1, first, x.D, x.t, first_lanes(W), out);
+    else
+        store_pulls_from<weighted, uniform, write_>(block, 1, first, x.D, x.t, first_lanes(W), out);
     if (j > 0) return;
     const double w = weighted ? w_at<uniform>(block, 0)[0] : 1.0;
     const double pull[3] = {w * first.x[0], w * first.y[0], w * first.z[0]};
@@ -387,19 +377,12 @@ static void long_forces_finish(const ForcesCall &call, const Lane &lane, int64_t
     const SegmentBlock s = segment_block(cut, j, lane);
     Arena arena = {scratch};
     substitute_block(cut, s, j, x, store);
-    if (call.lambda || call.tension) {
-        Block block = s.block;
-        block.n = s.own_max;
-        for (int i = 0; i < W; ++i) block.len[i] = s.own[i];
+    const Block own = own_block(s);
+    if (call.lambda) store_bonds(own, x.t, 0.5, first_lanes(W), call.lambda);
+    if (call.tension) {
         vec *value = arena.vecs(s.own_max);
-        if (call.lambda) {
-            scale_into(s.own_max, x.t, 0.5, value);
-            store_bonds(block, value, first_lanes(W), call.lambda);
-        }
-        if (call.tension) {
-            for (long k = 0; k < s.own_max; ++k) value[k] = x.t[k] * sqrt(dot(x.D[k], x.D[k]));
-            store_bonds(block, value, first_lanes(W), call.tension);
-        }
+        for (long k = 0; k < s.own_max; ++k) value[k] = x.t[k] * sqrt(dot(x.D[k], x.D[k]));
+        store_bonds(own, value, 1, first_lanes(W), call.tension);
     }
     if (call.g.x) {
         const bool direct = in_place(call.g, lane);
@@ -425,14 +408,7 @@ static void long_velocities_finish(const VelocitiesCall &call, const Lane &lane,
     else
         store_segment_pulls<true, false>(s, j, x, update, v);
     close_segments(call.v, s, j, lane, v, true);
-    if (call.lambda) {
-        Block block = s.block;
-        block.n = s.own_max;
-        for (int i = 0; i < W; ++i) block.len[i] = s.own[i];
-        vec *value = arena.vecs(s.own_max);
-        scale_into(s.own_max, x.t, 0.5, value);
-        store_bonds(block, value, first_lanes(W), call.lambda);
-    }
+    if (call.lambda) store_bonds(own_block(s), x.t, 0.5, first_lanes(W), call.lambda);
     if (call.virial) add_segment_virial(s, x, tally);
 }
 

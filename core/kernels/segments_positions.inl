@@ -370,6 +370,24 @@ static double long_positions_correct(const PositionsCall &, const Lane &lane, in
     return worst;
 }
 
+// Largest w |tau| a of the block: how far single pulls move an atom (see coarse_moves).
+static double long_positions_pull(const Lane &lane, int64_t j, double *store) {
+    const Cut cut(lane.n_bonds);
+    const NewtonSegments x(store, cut.longest(), j);
+    double largest = 0;
+    for (int i = 0; i < W; ++i) {
+        const int64_t first = cut.first(j * W + i), n = cut.length(j * W + i);
+        for (int64_t k = 0; k < n; ++k) {
+            const double w0 = lane.w ? lane.w[first + k] : lane.w_uniform;
+            const double w1 = lane.w ? lane.w[first + k + 1] : lane.w_uniform;
+            const double a = lane.length ? lane.length[first + k] : lane.length_uniform;
+            const double pull = (w0 > w1 ? w0 : w1) * abs(x.tau[k][i]) * a;
+            largest = pull > largest ? pull : largest;
+        }
+    }
+    return largest;
+}
+
 // Writes r, v and lambda, and adds to the sums; with `moved` false the chain was within the tolerance as it came.
 static void long_positions_finish(const PositionsCall &call, const Lane &lane, int64_t j, bool moved, double *store,
                                   double *scratch, Tally &tally) {
@@ -404,7 +422,7 @@ static void long_positions_finish(const PositionsCall &call, const Lane &lane, i
         };
         move(call.r, x.tau);
         if (call.v.x) {
-            scale_into(s.block.n, x.tau, 1 / call.dt, x.up);
+            for (long k = 0; k < s.block.n; ++k) x.up[k] = (1 / call.dt) * x.tau[k];
             move(call.v, x.up);
         }
         if (call.virial) {
@@ -414,13 +432,9 @@ static void long_positions_finish(const PositionsCall &call, const Lane &lane, i
         }
     }
     if (!call.lambda) return;
-    Block block = s.block;
-    block.n = s.own_max;
-    for (int i = 0; i < W; ++i) block.len[i] = s.own[i];
-    const double factor = moved ? 0.5 / (call.dt * call.dt) : 0.0;
-    vec *value = arena.vecs(s.own_max);
-    for (long k = 0; k < s.own_max; ++k) value[k] = moved ? factor * x.tau[k] : vec{};
-    store_bonds(block, value, first_lanes(W), call.lambda);
+    if (!moved)
+        for (long k = 0; k < s.own_max; ++k) x.tau[k] = vec{};
+    store_bonds(own_block(s), x.tau, 0.5 / (call.dt * call.dt), first_lanes(W), call.lambda);
 }
 
 }  // namespace HOL_ISA

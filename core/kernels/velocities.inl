@@ -10,17 +10,13 @@ static inline mask solve_velocities(const Block &block, const VelocitiesCall &ca
 }
 
 static void store_velocities(const Block &block, const Lane *lane, const VelocitiesCall &call, const System &s,
-                             mask which, const Packed &v, Arena arena, Tally &tally) {
+                             mask which, const Packed &v, Tally &tally) {
     if (block.uniform_w)
         store_pulls<true, true>(block, s.D, s.t, which, add_, v);
     else
         store_pulls<true, false>(block, s.D, s.t, which, add_, v);
     close(call.v, block, lane, which, v, false);
-    if (call.lambda) {
-        vec *value = arena.vecs(block.n);
-        scale_into(block.n, s.t, 0.5, value);
-        store_bonds(block, value, which, call.lambda);
-    }
+    if (call.lambda) store_bonds(block, s.t, 0.5, which, call.lambda);
     if (call.virial) add_virial(block.n, s.D, s.t, which, 1, tally);
 }
 
@@ -29,11 +25,11 @@ static void velocities_block(const Block &block, const Lane *lane, const Velocit
     const Packed r = open(call.r, block, lane, arena, true), v = open(call.v, block, lane, arena, true);
     const System s(block.n, arena);
     mask good = solve_velocities<false>(block, call, r, v, s);
-    store_velocities(block, lane, call, s, good, v, arena, tally);
+    store_velocities(block, lane, call, s, good, v, tally);
     mask rest = block.in_use() & ~good;
     if (__builtin_expect(!any(rest), 1)) return;
     good = solve_velocities<true>(block, call, r, v, s) & rest;
-    store_velocities(block, lane, call, s, good, v, arena, tally);
+    store_velocities(block, lane, call, s, good, v, tally);
     rest = rest & ~good;
     if (any(rest)) note_bad(block, rest, tally);
 }
