@@ -18,21 +18,53 @@ module holonomic
                           HOL_ERR_SHARED_ATOM, HOL_ERR_MEMORY, HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE, &
                           HOL_ERR_NO_CONVERGENCE, HOL_ERR_NOT_DEFINITE, HOL_ERR_INTERNAL, &
                           c_version => hol_version, c_status_name => hol_status_name, &
-                          c_instruction_set => hol_instruction_set, c_error_location => hol_error_location
+                          c_instruction_set => hol_instruction_set, c_error_location => hol_error_location, &
+                          HOL_PHYSICAL, HOL_UNIT_DIAGONAL
+   use holonomic_inverse, only: hol_inverse
+   use holonomic_metric, only: chain_set_metric
    use holonomic_status, only: text_of
-   use holonomic_violation, only: chain_set_violation
+   use holonomic_tridiagonal, only: inverse_band, inverse_entry, log_det, partition_of_equal_masses, &
+                                    partition_of_masses, pivots, solve
    implicit none
    private
-   public :: hol_chains, hol_report, hol_worst
+   public :: hol_chains, hol_inverse, hol_report, hol_worst
    public :: hol_version, hol_status_name, hol_instruction_set, hol_error_location
+   public :: hol_tridiagonal_pivots, hol_tridiagonal_log_det, hol_tridiagonal_solve, hol_tridiagonal_inverse_entry, &
+             hol_tridiagonal_inverse_band, hol_partition_function
    public :: HOL_OK, HOL_ERR_NULL, HOL_ERR_VALUE, HOL_ERR_INDEX, HOL_ERR_SHARED_ATOM, HOL_ERR_MEMORY, &
-             HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE, HOL_ERR_NO_CONVERGENCE, HOL_ERR_NOT_DEFINITE, HOL_ERR_INTERNAL
+             HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE, HOL_ERR_NO_CONVERGENCE, HOL_ERR_NOT_DEFINITE, HOL_ERR_INTERNAL, &
+             HOL_PHYSICAL, HOL_UNIT_DIAGONAL
 
    ! Chains of rigid bonds. The variable that was created owns them until its destroy: there is no finalizer. A copy made
    ! by assignment refers to the same chains, owns nothing, and must not be used after the owner's destroy.
-   type, extends(chain_set_violation) :: hol_chains
+   type, extends(chain_set_metric) :: hol_chains
    end type
 
+   interface hol_tridiagonal_pivots
+      procedure :: pivots
+   end interface
+
+   interface hol_tridiagonal_log_det
+      procedure :: log_det
+   end interface
+
+   interface hol_tridiagonal_solve
+      procedure :: solve
+   end interface
+
+   interface hol_tridiagonal_inverse_entry
+      procedure :: inverse_entry
+   end interface
+
+   interface hol_tridiagonal_inverse_band
+      procedure :: inverse_band
+   end interface
+
+   interface hol_partition_function
+      procedure :: partition_of_masses, partition_of_equal_masses
+   end interface
+
+   ! Names as in C, for procedures of Fortran.
    interface hol_version
       procedure :: version
    end interface

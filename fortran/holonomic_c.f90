@@ -1,10 +1,11 @@
 ! The C interface of the library (holonomic.h), declared for Fortran and nothing more: same names, same arguments, C's
 ! conventions. What each function does is said in the header. Ordinary programs want the module `holonomic`.
 module holonomic_c
-   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_int32_t, c_int64_t, c_null_ptr, c_ptr
+   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int32_t, c_int64_t, c_null_ptr, c_ptr
+   use holonomic_c_metric
    implicit none
    public
-   private :: c_char, c_double, c_int, c_int32_t, c_int64_t, c_null_ptr, c_ptr
+   private :: c_double, c_int, c_int32_t, c_int64_t, c_null_ptr, c_ptr
 
    ! hol_status
    integer(c_int), parameter :: HOL_OK = 0

@@ -4,7 +4,7 @@ module holonomic_forces
    use, intrinsic :: iso_fortran_env, only: real32, real64
    use holonomic_c, only: hol_forces_view, HOL_ADD, HOL_WRITE
    use holonomic_counts, only: chain_set_counts
-   use holonomic_place, only: per_bond, place, tensor
+   use holonomic_place, only: list_of, place, tensor
    use holonomic_status, only: failure, settle
    implicit none
    private
@@ -184,8 +184,8 @@ contains
       integer(c_int) :: mode
       mode = HOL_WRITE
       if (present(add)) mode = merge(HOL_ADD, HOL_WRITE, add)
-      at_lambda = per_bond(lambda, "lambda", self%n_bonds(), problem)
-      at_tension = per_bond(tension, "tension", self%n_bonds(), problem)
+      at_lambda = list_of(lambda, "lambda", self%n_bonds(), "bonds", problem)
+      at_tension = list_of(tension, "tension", self%n_bonds(), "bonds", problem)
       if (problem%none()) then
          call problem%ask(hol_forces_view(self%c_handle(), at_r%address(), at_v%address(), at_f%address(), at_lambda, &
                                           at_tension, at_g%address(), mode, tensor(virial)))

@@ -9,7 +9,7 @@ module holonomic_place
    use holonomic_status, only: failure
    implicit none
    private
-   public :: place, decimal, enough, per_bond, tensor
+   public :: place, decimal, enough, list_of, number_at, tensor
 
    ! One component of all atoms.
    type :: line
@@ -220,15 +220,21 @@ contains
                                          //decimal(needed)//" "//what)
    end function
 
-   ! Of an array per bond, after a check of its size; NULL if the caller gave none.
-   recursive type(c_ptr) function per_bond(array, name, n_bonds, problem)
+   ! Of an array per bond or per chain, after a check of its size; NULL if the caller gave none.
+   recursive type(c_ptr) function list_of(array, name, needed, what, problem)
       real(real64), optional, contiguous, target :: array(:)
-      character(*), intent(in) :: name
-      integer(c_int64_t), intent(in) :: n_bonds
+      character(*), intent(in) :: name, what
+      integer(c_int64_t), intent(in) :: needed
       type(failure), intent(inout) :: problem
-      per_bond = c_null_ptr
+      list_of = c_null_ptr
       if (.not. present(array)) return
-      if (enough(name, size(array, kind=c_int64_t), n_bonds, "bonds", problem)) per_bond = c_loc(array)
+      if (enough(name, size(array, kind=c_int64_t), needed, what, problem)) list_of = c_loc(array)
+   end function
+
+   recursive type(c_ptr) function number_at(number)
+      real(real64), optional, target :: number
+      number_at = c_null_ptr
+      if (present(number)) number_at = c_loc(number)
    end function
 
    recursive type(c_ptr) function tensor(matrix)

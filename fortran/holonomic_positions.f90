@@ -3,7 +3,7 @@ module holonomic_positions
    use, intrinsic :: iso_c_binding, only: c_int, c_loc, c_null_ptr, c_ptr
    use, intrinsic :: iso_fortran_env, only: real32, real64
    use holonomic_c, only: hol_project_positions_view, hol_report
-   use holonomic_place, only: per_bond, place, tensor
+   use holonomic_place, only: list_of, place, tensor
    use holonomic_status, only: failure, settle
    use holonomic_velocities, only: chain_set_velocities
    implicit none
@@ -119,7 +119,7 @@ contains
       integer(c_int) :: has_guess
       has_guess = 0
       if (present(guess)) has_guess = merge(1_c_int, 0_c_int, guess)
-      at_lambda = per_bond(lambda, "lambda", self%n_bonds(), problem)
+      at_lambda = list_of(lambda, "lambda", self%n_bonds(), "bonds", problem)
       at_report = c_null_ptr
       if (present(report)) at_report = c_loc(report)
       if (problem%none()) then

@@ -4,7 +4,7 @@ module holonomic_velocities
    use, intrinsic :: iso_fortran_env, only: real32, real64
    use holonomic_c, only: hol_project_velocities_view
    use holonomic_forces, only: chain_set_forces
-   use holonomic_place, only: per_bond, place, tensor
+   use holonomic_place, only: list_of, place, tensor
    use holonomic_status, only: failure, settle
    implicit none
    private
@@ -91,7 +91,7 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(c_ptr) :: at_lambda
-      at_lambda = per_bond(lambda, "lambda", self%n_bonds(), problem)
+      at_lambda = list_of(lambda, "lambda", self%n_bonds(), "bonds", problem)
       if (problem%none()) then
          call problem%ask(hol_project_velocities_view(self%c_handle(), at_r%address(), at_v%address(), at_lambda, &
                                                       tensor(virial)))

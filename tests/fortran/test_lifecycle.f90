@@ -64,8 +64,10 @@ contains
    end function
 
    subroutine texts()
+      character(:), allocatable :: version
       call test("texts")
-      call check(verify(hol_version(), "0123456789.") == 0 .and. len(hol_version()) >= 5, "a version")
+      version = hol_version()
+      call check(verify(version, "0123456789.") == 0 .and. len(version) >= 5, "a version")
       call check(hol_status_name(HOL_ERR_INDEX) == "HOL_ERR_INDEX", "the name of a status")
       call check(hol_status_name(12345) == "unknown status", "and of none")
       call check(any(hol_instruction_set() == [character(8) :: "baseline", "avx2", "avx512"]), "an instruction set")

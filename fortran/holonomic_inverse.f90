@@ -1,0 +1,299 @@
+! The inverse of the matrix Z of one chain. Bonds are counted from 1. As with type(hol_chains), the variable that was
+! created owns what it has until its destroy, and copies don't.
+module holonomic_inverse
+   use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
+   use, intrinsic :: iso_fortran_env, only: int64, real32, real64
+   use holonomic_c, only: hol_chains_n_atoms, hol_inverse_band, hol_inverse_condition, hol_inverse_create_view, &
+                          hol_inverse_destroy, hol_inverse_entry, hol_inverse_error_bound_view, hol_inverse_matrix, &
+                          hol_inverse_n_bonds, hol_inverse_row, HOL_ERR_VALUE, HOL_UNIT_DIAGONAL
+   use holonomic_chains, only: chain_set
+   use holonomic_place, only: decimal, enough, list_of, number_at, place
+   use holonomic_status, only: failure, settle
+   implicit none
+   private
+   public :: hol_inverse
+
+   type :: hol_inverse
+      private
+      type(c_ptr) :: handle = c_null_ptr
+      logical :: is_owner = .false.
+      integer(c_int64_t) :: n_atoms = 0   ! of the arrays v and f of error_bound
+   contains
+      procedure, private :: create_rows_32, create_rows_64, create_parts_32, create_parts_64
+      generic :: create => create_rows_32, create_rows_64, create_parts_32, create_parts_64
+      procedure :: destroy
+      procedure :: n_bonds
+      procedure :: entry => inverse_entry
+      procedure :: row
+      procedure :: band
+      procedure :: matrix
+      procedure :: condition
+      procedure, private :: bound_at_rest, bound_rows_32, bound_rows_64, bound_parts_32, bound_parts_64
+      generic :: error_bound => bound_at_rest, bound_rows_32, bound_rows_64, bound_parts_32, bound_parts_64
+      procedure, private :: share
+      generic :: assignment(=) => share
+   end type
+
+contains
+
+   subroutine create_rows_64(self, chains, chain, r, stat, errmsg)
+      class(hol_inverse), intent(inout) :: self
+      class(chain_set), intent(in) :: chains
+      integer, intent(in) :: chain
+      real(real64), intent(in), target :: r(:, :)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      type(place), target :: at_r
+      call at_r%rows_64(hol_chains_n_atoms(chains%c_handle()), problem, "r", r)
+      call create_at(self, problem, chains, chain, at_r, stat, errmsg)
+   end subroutine
+
+   subroutine create_parts_64(self, chains, chain, x, y, z, stat, errmsg)
+      class(hol_inverse), intent(inout) :: self
+      class(chain_set), intent(in) :: chains
+      integer, intent(in) :: chain
+      real(real64), intent(in), target :: x(:), y(:)
+      real(real64), intent(in), optional, target :: z(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      type(place), target :: at_r
+      call at_r%parts_64(hol_chains_n_atoms(chains%c_handle()), problem, "*", x, y, z)
+      call create_at(self, problem, chains, chain, at_r, stat, errmsg)
+   end subroutine
+
+   subroutine create_rows_32(self, chains, chain, r, stat, errmsg)
+      class(hol_inverse), intent(inout) :: self
+      class(chain_set), intent(in) :: chains
+      integer, intent(in) :: chain
+      real(real32), intent(in), target :: r(:, :)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      type(place), target :: at_r
+      call at_r%rows_32(hol_chains_n_atoms(chains%c_handle()), problem, "r", r)
+      call create_at(self, problem, chains, chain, at_r, stat, errmsg)
+   end subroutine
+
+   subroutine create_parts_32(self, chains, chain, x, y, z, stat, errmsg)
+      class(hol_inverse), intent(inout) :: self
+      class(chain_set), intent(in) :: chains
+      integer, intent(in) :: chain
+      real(real32), intent(in), target :: x(:), y(:)
+      real(real32), intent(in), optional, target :: z(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      type(place), target :: at_r
+      call at_r%parts_32(hol_chains_n_atoms(chains%c_handle()), problem, "*", x, y, z)
+      call create_at(self, problem, chains, chain, at_r, stat, errmsg)
+   end subroutine
+
+   subroutine create_at(self, problem, chains, chain, at_r, stat, errmsg)
+      class(hol_inverse), intent(inout) :: self
+      type(failure), intent(inout) :: problem
+      class(chain_set), intent(in) :: chains
+      integer, intent(in) :: chain
+      type(place), intent(in), target :: at_r
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      if (c_associated(self%handle)) call problem%set(HOL_ERR_VALUE, "this inverse has been created already; " &
+                                                      //"destroy it first")
+      if (problem%none()) then
+         call problem%ask(hol_inverse_create_view(chains%c_handle(), int(chain, c_int64_t), at_r%address(), self%handle))
+         self%is_owner = problem%none()
+         self%n_atoms = hol_chains_n_atoms(chains%c_handle())
+      end if
+      call settle(problem, stat, errmsg)
+   end subroutine
+
+   impure elemental subroutine destroy(self)
+      class(hol_inverse), intent(inout) :: self
+      if (self%is_owner) call hol_inverse_destroy(self%handle)
+      self%handle = c_null_ptr
+      self%is_owner = .false.
+   end subroutine
+
+   impure elemental subroutine share(self, other)
+      class(hol_inverse), intent(inout) :: self
+      class(hol_inverse), intent(in) :: other
+      if (c_associated(self%handle)) then
+         if (c_associated(self%handle, other%handle)) return
+         call self%destroy()
+      end if
+      self%handle = other%handle
+      self%n_atoms = other%n_atoms
+      self%is_owner = .false.
+   end subroutine
+
+   pure recursive integer(int64) function n_bonds(self)
+      class(hol_inverse), intent(in) :: self
+      n_bonds = hol_inverse_n_bonds(self%handle)
+   end function
+
+   pure recursive integer(c_int) function chosen(scaling)
+      integer(c_int), intent(in), optional :: scaling
+      chosen = HOL_UNIT_DIAGONAL
+      if (present(scaling)) chosen = scaling
+   end function
+
+   ! scaling: HOL_UNIT_DIAGONAL, the default, or HOL_PHYSICAL.
+   recursive subroutine inverse_entry(self, i, j, value, scaling, stat, errmsg)
+      class(hol_inverse), intent(in) :: self
+      integer, intent(in) :: i, j
+      real(real64), intent(inout), target :: value
+      integer(c_int), intent(in), optional :: scaling
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      call problem%ask(hol_inverse_entry(self%handle, chosen(scaling), int(i, c_int64_t), int(j, c_int64_t), c_loc(value)))
+      call settle(problem, stat, errmsg)
+   end subroutine
+
+   recursive subroutine row(self, i, values, scaling, stat, errmsg)
+      class(hol_inverse), intent(in) :: self
+      integer, intent(in) :: i
+      real(real64), intent(inout), contiguous, target :: values(:)
+      integer(c_int), intent(in), optional :: scaling
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      if (enough("values", size(values, kind=c_int64_t), self%n_bonds(), "bonds", problem)) call problem%ask( &
+         hol_inverse_row(self%handle, chosen(scaling), int(i, c_int64_t), c_loc(values)))
+      call settle(problem, stat, errmsg)
+   end subroutine
+
+   ! band(0:width, n_bonds): element (i, i + k) at band(k, i), 0 where i + k is past the last bond.
+   recursive subroutine band(self, values, scaling, stat, errmsg)
+      class(hol_inverse), intent(in) :: self
+      real(real64), intent(inout), contiguous, target :: values(0:, :)
+      integer(c_int), intent(in), optional :: scaling
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      if (enough("the second dimension of values", size(values, 2, c_int64_t), self%n_bonds(), "bonds", problem)) &
+         call problem%ask(hol_inverse_band(self%handle, chosen(scaling), size(values, 1, c_int64_t) - 1, c_loc(values)))
+      call settle(problem, stat, errmsg)
+   end subroutine
+
+   recursive subroutine matrix(self, values, scaling, stat, errmsg)
+      class(hol_inverse), intent(in) :: self
+      real(real64), intent(inout), contiguous, target :: values(:, :)
+      integer(c_int), intent(in), optional :: scaling
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      if (any(shape(values, c_int64_t) /= self%n_bonds())) then
+         call problem%set(HOL_ERR_VALUE, "values must be of "//decimal(self%n_bonds())//" rows and columns")
+      else
+         call problem%ask(hol_inverse_matrix(self%handle, chosen(scaling), c_loc(values)))
+      end if
+      call settle(problem, stat, errmsg)
+   end subroutine
+
+   recursive subroutine condition(self, value, stat, errmsg)
+      class(hol_inverse), intent(in) :: self
+      real(real64), intent(inout), target :: value
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      call problem%ask(hol_inverse_condition(self%handle, c_loc(value)))
+      call settle(problem, stat, errmsg)
+   end subroutine
+
+   ! Without velocities and applied forces.
+   recursive subroutine bound_at_rest(self, lambda, bound, relative, stat, errmsg)
+      class(hol_inverse), intent(in) :: self
+      real(real64), intent(in), contiguous, target :: lambda(:)
+      real(real64), intent(inout), optional, contiguous, target :: bound(:)
+      real(real64), intent(inout), optional, target :: relative
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      type(place), target :: none
+      call bound_at(self, problem, lambda, none, none, bound, relative, stat, errmsg)
+   end subroutine
+
+   recursive subroutine bound_rows_64(self, lambda, v, f, bound, relative, stat, errmsg)
+      class(hol_inverse), intent(in) :: self
+      real(real64), intent(in), contiguous, target :: lambda(:)
+      real(real64), intent(in), target :: v(:, :)
+      real(real64), intent(in), optional, target :: f(:, :)
+      real(real64), intent(inout), optional, contiguous, target :: bound(:)
+      real(real64), intent(inout), optional, target :: relative
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      type(place), target :: at_v, at_f
+      call at_v%rows_64(self%n_atoms, problem, "v", v)
+      call at_f%rows_64(self%n_atoms, problem, "f", f)
+      call bound_at(self, problem, lambda, at_v, at_f, bound, relative, stat, errmsg)
+   end subroutine
+
+   recursive subroutine bound_parts_64(self, lambda, vx, vy, vz, fx, fy, fz, bound, relative, stat, errmsg)
+      class(hol_inverse), intent(in) :: self
+      real(real64), intent(in), contiguous, target :: lambda(:)
+      real(real64), intent(in), target :: vx(:), vy(:), fx(:), fy(:)
+      real(real64), intent(in), optional, target :: vz(:), fz(:)
+      real(real64), intent(inout), optional, contiguous, target :: bound(:)
+      real(real64), intent(inout), optional, target :: relative
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      type(place), target :: at_v, at_f
+      call at_v%parts_64(self%n_atoms, problem, "v*", vx, vy, vz)
+      call at_f%parts_64(self%n_atoms, problem, "f*", fx, fy, fz)
+      call bound_at(self, problem, lambda, at_v, at_f, bound, relative, stat, errmsg)
+   end subroutine
+
+   recursive subroutine bound_rows_32(self, lambda, v, f, bound, relative, stat, errmsg)
+      class(hol_inverse), intent(in) :: self
+      real(real64), intent(in), contiguous, target :: lambda(:)
+      real(real32), intent(in), target :: v(:, :)
+      real(real32), intent(in), optional, target :: f(:, :)
+      real(real64), intent(inout), optional, contiguous, target :: bound(:)
+      real(real64), intent(inout), optional, target :: relative
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      type(place), target :: at_v, at_f
+      call at_v%rows_32(self%n_atoms, problem, "v", v)
+      call at_f%rows_32(self%n_atoms, problem, "f", f)
+      call bound_at(self, problem, lambda, at_v, at_f, bound, relative, stat, errmsg)
+   end subroutine
+
+   recursive subroutine bound_parts_32(self, lambda, vx, vy, vz, fx, fy, fz, bound, relative, stat, errmsg)
+      class(hol_inverse), intent(in) :: self
+      real(real64), intent(in), contiguous, target :: lambda(:)
+      real(real32), intent(in), target :: vx(:), vy(:), fx(:), fy(:)
+      real(real32), intent(in), optional, target :: vz(:), fz(:)
+      real(real64), intent(inout), optional, contiguous, target :: bound(:)
+      real(real64), intent(inout), optional, target :: relative
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      type(place), target :: at_v, at_f
+      call at_v%parts_32(self%n_atoms, problem, "v*", vx, vy, vz)
+      call at_f%parts_32(self%n_atoms, problem, "f*", fx, fy, fz)
+      call bound_at(self, problem, lambda, at_v, at_f, bound, relative, stat, errmsg)
+   end subroutine
+
+   recursive subroutine bound_at(self, problem, lambda, at_v, at_f, bound, relative, stat, errmsg)
+      class(hol_inverse), intent(in) :: self
+      type(failure), intent(inout) :: problem
+      real(real64), intent(in), contiguous, target :: lambda(:)
+      type(place), intent(in), target :: at_v, at_f
+      real(real64), intent(inout), optional, contiguous, target :: bound(:)
+      real(real64), intent(inout), optional, target :: relative
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(c_ptr) :: at_lambda, at_bound
+      at_lambda = list_of(lambda, "lambda", self%n_bonds(), "bonds", problem)
+      at_bound = list_of(bound, "bound", self%n_bonds(), "bonds", problem)
+      if (problem%none()) call problem%ask(hol_inverse_error_bound_view(self%handle, at_v%address(), at_f%address(), &
+                                                                        at_lambda, at_bound, number_at(relative)))
+      call settle(problem, stat, errmsg)
+   end subroutine
+
+end module
