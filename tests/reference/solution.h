@@ -79,6 +79,13 @@ int solution_metric_make(const solution_problem *p, solution_metric *out);
 
 void solution_metric_free(solution_metric *m);
 
+/**
+ * The Fixman force in units of kT by differences of ln det Z~, fourth order in steps of 1e-8 of a bond: it knows nothing of
+ * the formula for the gradient.
+ * @param[out] force [n_bonds+1][3]
+ */
+int solution_fixman_differences(const solution_problem *p, long double *force);
+
 /** Column `column` (from 0) of Z~^-1 [n_bonds]. Returns 0 or -1. */
 int solution_inverse_column(const solution_problem *p, int64_t column, long double *values);
 

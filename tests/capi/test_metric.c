@@ -1,0 +1,212 @@
+/**
+ * ln det Z~, the Fixman potential and its force: against solutions in 113-bit arithmetic, closed forms and what must hold
+ * exactly.
+ */
+#include "assembly.h"
+#include "check.h"
+#include "random.h"
+#include "solution.h"
+
+static hol_chains *handle(const chain *c)
+{
+    hol_chains *chains;
+    CHECK(hol_chains_create(c->n_bonds + 1, c->mass, &chains));
+    CHECK(hol_chains_add_block(chains, 1, c->n_bonds, 0, c->length));
+    return chains;
+}
+
+/** The inverse masses as the library rounds them. */
+static double *inverse_masses(const chain *c)
+{
+    double *w = malloc(sizeof(double) * ((size_t)c->n_bonds + 1));
+    assert_non_null(w);
+    for (int64_t i = 0; i <= c->n_bonds; ++i) w[i] = c->mass[i] == 0 ? 0 : 1 / c->mass[i];
+    return w;
+}
+
+static void compare_with_solution(chain_kind kind, int64_t n, uint64_t seed)
+{
+    chain c = chain_make(kind, n, seed);
+    double *w = inverse_masses(&c), *force = untouched(3 * ((size_t)n + 1)), log_det, energy;
+    const solution_problem p = {n, c.mass, w, c.r, NULL, NULL, NULL};
+    const long double bound = oracle_bound(n) * DBL_EPSILON;
+    solution_metric exact;
+    assert_int_equal(solution_metric_make(&p, &exact), 0);
+    hol_chains *chains = handle(&c);
+    CHECK(hol_metric(chains, c.r, 2, &log_det, NULL, &energy, force, HOL_WRITE));
+    CHECK_AT_MOST(fabsl(log_det - exact.log_det), bound * fabsl(exact.log_det));
+    assert_true(energy == log_det); /* kT / 2 = 1 */
+    for (int64_t i = 0; i < 3 * (n + 1); ++i)
+        CHECK_AT_MOST(fabsl(force[i] - 2 * exact.fixman_force[i]), 2 * bound * 2 * exact.fixman_scale[i / 3]);
+    hol_chains_destroy(chains);
+    solution_metric_free(&exact);
+    free(force);
+    free(w);
+    chain_free(&c);
+}
+
+static void metric_agrees_with_113_bits_for_every_kind_of_chain(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < CHAIN_KINDS; ++kind)
+        for (int64_t n = kind == CHAIN_FIXED_ENDS || kind == CHAIN_TAUT ? 2 : 1; n <= 40; n += n < 10 ? 1 : 13)
+            compare_with_solution((chain_kind)kind, n, (uint64_t)n);
+}
+
+static void metric_of_long_chains_agrees_with_113_bits(void **state)
+{
+    (void)state;
+    const int64_t sizes[] = {256, 257, 300, 1023};
+    for (int kind = 0; kind < CHAIN_KINDS; ++kind)
+        for (int i = 0; i < 4; ++i)
+            if (i != 3 || kind % 4 == 2) compare_with_solution((chain_kind)kind, sizes[i], 5);
+}
+
+static void force_is_minus_the_gradient(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < CHAIN_KINDS; ++kind) {
+        if (kind == CHAIN_STRAIGHT || kind == CHAIN_ROD_MASSES_1E9 || kind == CHAIN_TAUT || kind == CHAIN_FOLDED)
+            continue; /* within the step of a singular shape, where differences know nothing */
+        for (int64_t n = 2; n <= 20; n += 6) {
+            chain c = chain_make((chain_kind)kind, n, (uint64_t)(100 + n));
+            double *w = inverse_masses(&c), *force = untouched(3 * ((size_t)n + 1));
+            long double *slope = malloc(sizeof(long double) * 3 * ((size_t)n + 1));
+            const solution_problem p = {n, c.mass, w, c.r, NULL, NULL, NULL};
+            solution_metric exact;
+            assert_non_null(slope);
+            assert_int_equal(solution_metric_make(&p, &exact), 0);
+            assert_int_equal(solution_fixman_differences(&p, slope), 0);
+            hol_chains *chains = handle(&c);
+            CHECK(hol_metric(chains, c.r, 1, NULL, NULL, NULL, force, HOL_WRITE));
+            /* beside the library's rounding that of the differences: 2^-112 over the step, 1e-8, times the condition */
+            for (int64_t i = 0; i < 3 * (n + 1); ++i)
+                CHECK_AT_MOST(fabsl(force[i] - slope[i]),
+                              (2 * oracle_bound(n) * DBL_EPSILON + 1e-20L * exact.condition) * exact.fixman_scale[i / 3] +
+                                  1e-24L * exact.condition / c.length[i / 3 < n ? i / 3 : n - 1]);
+            hol_chains_destroy(chains);
+            solution_metric_free(&exact);
+            free(slope);
+            free(force);
+            free(w);
+            chain_free(&c);
+        }
+    }
+}
+
+static void total_force_torque_and_virial_trace_vanish(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < CHAIN_KINDS; ++kind) {
+        const int64_t n = 50;
+        if (kind == CHAIN_OFFSET_1E6) continue; /* the sums themselves lose six digits there */
+        chain c = chain_make((chain_kind)kind, n, 3);
+        double force[3 * 51];
+        hol_chains *chains = handle(&c);
+        CHECK(hol_metric(chains, c.r, 1, NULL, NULL, NULL, force, HOL_WRITE));
+        long double total[3] = {0, 0, 0}, torque[3] = {0, 0, 0}, trace = 0, size = 0, moment = 0;
+        for (int64_t i = 0; i <= n; ++i) {
+            const double *r = c.r + 3 * i, *f = force + 3 * i;
+            for (int x = 0; x < 3; ++x) {
+                const int y = (x + 1) % 3, z = (x + 2) % 3;
+                total[x] += f[x];
+                torque[x] += (long double)r[y] * f[z] - (long double)r[z] * f[y];
+                trace += (long double)r[x] * f[x];
+                size += fabsl(f[x]);
+                for (int j = 0; j < 3; ++j) moment += fabsl((long double)r[x] * f[j]);
+            }
+        }
+        /* each force component is right to a few roundings of its bonds' contributions, a bond ratio of 1e6 included */
+        const long double bound = 2 * oracle_bound(n) * DBL_EPSILON * (kind == CHAIN_BOND_RATIO_1E6 ? 1e6L : 1);
+        for (int x = 0; x < 3; ++x) {
+            CHECK_AT_MOST(fabsl(total[x]), bound * size);
+            CHECK_AT_MOST(fabsl(torque[x]), bound * moment);
+        }
+        CHECK_AT_MOST(fabsl(trace), bound * moment);
+        hol_chains_destroy(chains);
+        chain_free(&c);
+    }
+}
+
+static void straight_chain_has_the_closed_form_up_to_a_million_bonds(void **state)
+{
+    (void)state;
+    for (int64_t n = 1; n <= 1000000; n *= 10) {
+        chain c = chain_make(CHAIN_STRAIGHT, n, 1);
+        double log_det;
+        hol_chains *chains = handle(&c);
+        CHECK(hol_metric(chains, c.r, 1, &log_det, NULL, NULL, NULL, HOL_WRITE));
+        const long double exact = logl((long double)(n + 1)) - (long double)n * logl(2);
+        CHECK_AT_MOST(fabsl(log_det - exact), oracle_bound(n) * DBL_EPSILON * fabsl(exact));
+        hol_chains_destroy(chains);
+        chain_free(&c);
+    }
+}
+
+static void reversing_the_labels_changes_nothing_but_rounding(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < CHAIN_KINDS; ++kind)
+        for (int64_t n = 3; n <= 1003; n += 500) {
+            chain c = chain_make((chain_kind)kind, n, 17), back = chain_make((chain_kind)kind, n, 17);
+            for (int64_t i = 0; i <= n; ++i) {
+                back.mass[i] = c.mass[n - i];
+                for (int x = 0; x < 3; ++x) back.r[3 * i + x] = c.r[3 * (n - i) + x];
+                if (i < n) back.length[i] = c.length[n - 1 - i];
+            }
+            double there, again;
+            hol_chains *chains = handle(&c), *reversed = handle(&back);
+            CHECK(hol_metric(chains, c.r, 1, &there, NULL, NULL, NULL, HOL_WRITE));
+            CHECK(hol_metric(reversed, back.r, 1, &again, NULL, NULL, NULL, HOL_WRITE));
+            CHECK_AT_MOST(fabs(there - again), 2 * oracle_bound(n) * DBL_EPSILON * fabs(there));
+            hol_chains_destroy(chains);
+            hol_chains_destroy(reversed);
+            chain_free(&c);
+            chain_free(&back);
+        }
+}
+
+static void physical_determinant_adds_the_diagonal(void **state)
+{
+    (void)state;
+    const double units[] = {1, 0x1p-60, 0x1p200, 0x1p-200};
+    const int64_t sizes[] = {1, 2, 33, 400};
+    for (int u = 0; u < 4; ++u)
+        for (int s = 0; s < 4; ++s) {
+            const int64_t n = sizes[s];
+            chain c = chain_make(CHAIN_HETEROGENEOUS, n, 4);
+            long double sum = 0, size = 0;
+            for (int64_t i = 0; i < 3 * (n + 1); ++i) c.r[i] *= units[u];
+            for (int64_t k = 0; k < n; ++k) {
+                long double square = 0;
+                for (int x = 0; x < 3; ++x) {
+                    const long double d = (long double)c.r[3 * k + 3 + x] - c.r[3 * k + x];
+                    square += d * d;
+                }
+                const long double term = logl(4 * (1 / (long double)c.mass[k] + 1 / (long double)c.mass[k + 1]) * square);
+                sum += term;
+                size += fabsl(term);
+            }
+            double scaled, physical;
+            hol_chains *chains = handle(&c);
+            CHECK(hol_metric(chains, c.r, 1, &scaled, &physical, NULL, NULL, HOL_WRITE));
+            /* one rounding per term and per sum */
+            CHECK_AT_MOST(fabsl(physical - scaled - sum), oracle_bound(n) * DBL_EPSILON * (size + fabs(scaled)));
+            hol_chains_destroy(chains);
+            chain_free(&c);
+        }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(metric_agrees_with_113_bits_for_every_kind_of_chain),
+        cmocka_unit_test(metric_of_long_chains_agrees_with_113_bits),
+        cmocka_unit_test(force_is_minus_the_gradient),
+        cmocka_unit_test(total_force_torque_and_virial_trace_vanish),
+        cmocka_unit_test(straight_chain_has_the_closed_form_up_to_a_million_bonds),
+        cmocka_unit_test(reversing_the_labels_changes_nothing_but_rounding),
+        cmocka_unit_test(physical_determinant_adds_the_diagonal),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
