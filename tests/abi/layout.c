@@ -35,9 +35,12 @@ static void enum_values_are_frozen(void)
     IS(HOL_FLOAT, 1);
     IS(HOL_WRITE, 0);
     IS(HOL_ADD, 1);
+    IS(HOL_UNIT_DIAGONAL, 0);
+    IS(HOL_PHYSICAL, 1);
     IS(sizeof(hol_status), sizeof(int));
     IS(sizeof(hol_element), sizeof(int));
     IS(sizeof(hol_mode), sizeof(int));
+    IS(sizeof(hol_scaling), sizeof(int));
 }
 
 static void hol_view_is_frozen(void)
