@@ -9,7 +9,7 @@ int64_t c_layout(int which) {
     static const int64_t list[] = {
         HOL_OK, HOL_ERR_NULL, HOL_ERR_VALUE, HOL_ERR_INDEX, HOL_ERR_SHARED_ATOM, HOL_ERR_MEMORY, HOL_ERR_NOT_FINITE,
         HOL_ERR_DEGENERATE, HOL_ERR_NO_CONVERGENCE, HOL_ERR_NOT_DEFINITE, HOL_ERR_INTERNAL,
-        HOL_DOUBLE, HOL_FLOAT, HOL_WRITE, HOL_ADD,
+        HOL_DOUBLE, HOL_FLOAT, HOL_WRITE, HOL_ADD, HOL_UNIT_DIAGONAL, HOL_PHYSICAL,
         sizeof(hol_view), offsetof(hol_view, x), offsetof(hol_view, y), offsetof(hol_view, z),
         offsetof(hol_view, stride), offsetof(hol_view, element), offsetof(hol_view, reserved),
         sizeof(hol_report), offsetof(hol_report, iterations), offsetof(hol_report, n_corrected),
