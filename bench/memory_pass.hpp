@@ -1,0 +1,15 @@
+/** The yardstick: how long it takes to read three arrays and to write one. */
+#ifndef BENCH_MEMORY_PASS_HPP
+#define BENCH_MEMORY_PASS_HPP
+
+#include <vector>
+
+namespace bench {
+
+/// g = r + v f, element by element, over the arrays on which the methods work.
+void memory_pass(const std::vector<double> &r, const std::vector<double> &v, const std::vector<double> &f,
+                 std::vector<double> &g, int threads);
+
+}  // namespace bench
+
+#endif

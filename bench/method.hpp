@@ -1,0 +1,49 @@
+/**
+ * What is compared: a method is a call that does the work of one level for all chains of a problem.
+ */
+#ifndef BENCH_METHOD_HPP
+#define BENCH_METHOD_HPP
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "problem.hpp"
+
+namespace bench {
+
+enum class Level { acceleration, velocity, position, metric, solve };
+
+const char *level_name(Level level);
+
+/// The arrays on which a call works.
+struct State {
+    std::vector<double> r, v;     ///< [atoms][3]; in: what the level starts from; out: projected
+    std::vector<double> g;        ///< [atoms][3], constraint forces
+    std::vector<double> lambda;   ///< [bonds of all chains]; level solve: the solution x
+    std::vector<double> log_det;  ///< [chains]
+    std::int64_t iterations = 0;  ///< largest number of iterations (sweeps) that a chain took
+
+    State(const Problem &p, Level level);
+    /// Puts back what a call of this level changes.
+    void restore(const Problem &p, Level level);
+};
+
+struct Method {
+    std::string name;     ///< as in results.csv
+    std::string setting;  ///< "default", or what was changed
+    std::function<void(State &)> call;
+    int threads = 1;
+    /// Before and after each call, not timed: for methods with arrays of their own.
+    std::function<void(State &)> before = nullptr, after = nullptr;
+};
+
+using Methods = std::vector<Method>;
+
+/// "tolerance 1e-06"
+std::string tolerance_setting(double tolerance);
+
+}  // namespace bench
+
+#endif

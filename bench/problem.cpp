@@ -1,0 +1,134 @@
+#include "problem.hpp"
+
+#include <holonomic.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include "random.h"
+
+namespace bench {
+namespace {
+
+const double degree = 3.14159265358979323846 / 180;
+
+/// Turns u by an angle about an axis chosen at random.
+void turn(random_stream &s, double u[3], double angle) {
+    double e[3], along = 0, size = 0;
+    random_direction(&s, e);
+    for (int x = 0; x < 3; ++x) along += e[x] * u[x];
+    for (int x = 0; x < 3; ++x) {
+        e[x] -= along * u[x];
+        size += e[x] * e[x];
+    }
+    size = std::sqrt(size);
+    double norm = 0;
+    for (int x = 0; x < 3; ++x) {
+        u[x] = std::cos(angle) * u[x] + std::sin(angle) * e[x] / size;
+        norm += u[x] * u[x];
+    }
+    norm = std::sqrt(norm);
+    for (int x = 0; x < 3; ++x) u[x] /= norm;
+}
+
+void next_direction(const Recipe &recipe, random_stream &s, bool first, double u[3]) {
+    if (first || recipe.name == "coil" || recipe.name == "melt" || recipe.name == "fixed_ends")
+        random_direction(&s, u);
+    else if (recipe.name == "tetrahedral")
+        turn(s, u, std::acos(1.0 / 3));
+    else if (recipe.name == "straight5")
+        turn(s, u, 5 * degree * random_uniform(&s));
+    else if (recipe.name == "light_joints")
+        turn(s, u, degree * (recipe.turn_from + (recipe.turn_to - recipe.turn_from) * random_uniform(&s)));
+    else
+        throw std::invalid_argument("there is no problem " + recipe.name);
+}
+
+void masses_and_lengths(const Recipe &recipe, random_stream &s, Problem &p) {
+    const std::size_t n = p.n();
+    p.mass.assign(n + 1, 1.0);
+    p.length.assign(n, 1.0);
+    if (recipe.name == "light_joints")
+        for (std::size_t i = 1; i <= n; i += 2) p.mass[i] = recipe.light;
+    if (recipe.name == "fixed_ends") p.mass.front() = p.mass.back() = 0;
+    if (recipe.general) {
+        for (double &m : p.mass) m = std::pow(10, 2 * random_uniform(&s) - 1);
+        for (double &a : p.length) a = 0.7 + 0.8 * random_uniform(&s);
+    }
+    for (double m : p.mass) p.w.push_back(m > 0 ? 1 / m : 0);
+}
+
+/// Velocities and forces of the size that belongs to kT = 1, except that light joints move like the others.
+void motion(random_stream &s, Problem &p) {
+    for (std::size_t c = 0; c < p.n_chains(); ++c)
+        for (std::size_t i = 0; i <= p.n(); ++i) {
+            const bool light = p.name == "light_joints";
+            const double size = p.w[i] == 0 ? 0 : light ? 1 : std::sqrt(p.w[i]);
+            for (std::size_t x = 0; x < 3; ++x) {
+                p.raw_v.push_back(size * random_normal(&s));
+                p.f.push_back(p.w[i] > 0 ? random_normal(&s) / (light ? p.w[i] : std::sqrt(p.w[i])) : random_normal(&s));
+            }
+        }
+}
+
+void project(Problem &p) {
+    hol_chains *chains = nullptr;
+    std::vector<double> mass(p.atoms());
+    for (std::size_t i = 0; i < mass.size(); ++i) mass[i] = p.mass[i % (p.n() + 1)];
+    int status = hol_chains_create(static_cast<std::int64_t>(p.atoms()), mass.data(), &chains);
+    const std::unique_ptr<hol_chains, decltype(&hol_chains_destroy)> owner(chains, hol_chains_destroy);
+    if (status == HOL_OK) status = hol_chains_add_block(chains, p.chains, p.bonds, 0, p.length.data());
+    if (status == HOL_OK) status = hol_project_velocities(chains, p.r.data(), p.v.data(), nullptr, nullptr);
+    if (status != HOL_OK) throw std::runtime_error("problem " + p.name + ": " + hol_error_message());
+}
+
+}  // namespace
+
+Problem make_problem(const Recipe &recipe) {
+    Problem p;
+    p.name = recipe.name;
+    p.chains = recipe.chains;
+    p.bonds = recipe.bonds;
+    p.one_by_one = recipe.one_by_one;
+    random_stream s = random_seed(recipe.seed);
+    masses_and_lengths(recipe, s, p);
+    // The chains of a melt start anywhere in a box at the density of a bead-rod melt, 0.85; others at the origin.
+    const double side = p.name == "melt" ? std::cbrt(static_cast<double>(p.atoms()) / 0.85) : 0;
+    p.r.reserve(3 * p.atoms());
+    for (std::size_t c = 0; c < p.n_chains(); ++c) {
+        double u[3] = {1, 0, 0}, at[3];
+        for (double &x : at) x = side * (random_uniform(&s) - 0.5);
+        p.r.insert(p.r.end(), at, at + 3);
+        for (std::size_t k = 0; k < p.n(); ++k) {
+            next_direction(recipe, s, k == 0, u);
+            for (std::size_t x = 0; x < 3; ++x) p.r.push_back(*(p.r.end() - 3) + p.length[k] * u[x]);
+        }
+    }
+    motion(s, p);
+    p.v = p.raw_v;
+    project(p);
+    p.drifted.resize(p.r.size());
+    for (std::size_t i = 0; i < p.r.size(); ++i) p.drifted[i] = p.r[i] + p.dt * p.v[i];
+    return p;
+}
+
+Recipe single(const std::string &name, std::int64_t n_bonds, std::int64_t pool) {
+    Recipe recipe;
+    recipe.name = name;
+    recipe.bonds = n_bonds;
+    recipe.chains = std::clamp<std::int64_t>(pool / n_bonds, 1, 2000);
+    recipe.one_by_one = true;
+    return recipe;
+}
+
+Recipe batch(const std::string &name, std::int64_t n_chains, std::int64_t n_bonds) {
+    Recipe recipe;
+    recipe.name = name;
+    recipe.chains = n_chains;
+    recipe.bonds = n_bonds;
+    return recipe;
+}
+
+}  // namespace bench

@@ -1,0 +1,59 @@
+/**
+ * The scenes that are measured: many chains of the same kind, with the state of their atoms.
+ */
+#ifndef BENCH_PROBLEM_HPP
+#define BENCH_PROBLEM_HPP
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace bench {
+
+/// Chains of equal length, masses and bond lengths, one after the other in the arrays; unit energy, dt in its time unit.
+struct Problem {
+    std::string name;         ///< coil, tetrahedral, straight5, light_joints, fixed_ends or melt
+    std::int64_t chains = 0;  ///< in the arrays
+    std::int64_t bonds = 0;   ///< per chain
+    bool one_by_one = false;  ///< a pool of single chains, each given to the method in a call of its own
+    double dt = 0.005;
+    std::vector<double> mass, w;  ///< [bonds+1] along a chain; mass 0, w 0: held fixed
+    std::vector<double> length;   ///< [bonds]
+    std::vector<double> r;        ///< [atoms][3], on the constraints to rounding
+    std::vector<double> raw_v;    ///< [atoms][3], normal; not on the constraints
+    std::vector<double> v;        ///< [atoms][3], on the constraints
+    std::vector<double> f;        ///< [atoms][3]
+    std::vector<double> drifted;  ///< [atoms][3], r + dt v
+
+    std::size_t n_chains() const { return static_cast<std::size_t>(chains); }
+    std::size_t n() const { return static_cast<std::size_t>(bonds); }
+    std::size_t atoms() const { return n_chains() * (n() + 1); }
+    std::size_t all_bonds() const { return n_chains() * n(); }
+    std::size_t first_atom(std::size_t chain) const { return chain * (n() + 1); }
+    std::int64_t chains_per_call() const { return one_by_one ? 1 : chains; }
+};
+
+/// How a problem is made.
+struct Recipe {
+    std::string name;
+    std::int64_t chains = 1, bonds = 1;
+    bool one_by_one = false;
+    bool general = false;      ///< masses over two decades and lengths 0.7..1.5 along the chain instead of the kind's own
+    double light = 1e-6;       ///< light_joints: mass of every second atom
+    double turn_from = 20, turn_to = 60;  ///< light_joints: degrees by which a bond turns from the one before
+    std::uint64_t seed = 1;
+};
+
+/// Always the same for the same recipe.
+Problem make_problem(const Recipe &recipe);
+
+/// Single chains of n_bonds: as many different ones as make about `pool` bonds, at least one and at most 2000.
+Recipe single(const std::string &name, std::int64_t n_bonds, std::int64_t pool = 20000);
+
+/// n_chains chains of n_bonds given to the method in one call.
+Recipe batch(const std::string &name, std::int64_t n_chains, std::int64_t n_bonds);
+
+}  // namespace bench
+
+#endif

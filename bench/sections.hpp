@@ -1,0 +1,39 @@
+/** Which methods are measured on which problems: one section per question. */
+#ifndef BENCH_SECTIONS_HPP
+#define BENCH_SECTIONS_HPP
+
+#include "measure.hpp"
+#include "results.hpp"
+
+namespace bench {
+
+enum class Extent { tiny, quick, full };
+
+/// What a section works with.
+struct Run {
+    Extent extent;
+    Effort effort;
+    Results &results;
+    int threads;  ///< of the rows with more than one thread; 1: there are none
+
+    bool full() const { return extent == Extent::full; }
+    /// Measures, stores, and says so.
+    void measure(Level level, const Problem &p, const Methods &methods, const UnitSystems *systems = nullptr) const;
+};
+
+void acceleration_section(const Run &run);
+void velocity_section(const Run &run);
+void position_section(const Run &run);
+void metric_section(const Run &run);
+void solve_section(const Run &run);
+void skips_section(const Run &run);
+/// Multipliers of chains from condition number 1 to 1e16.
+void condition_section(const Run &run);
+/// Energy drift of a melt against the tolerance of the constraints.
+void drift_section(const Run &run);
+/// The library as it is, for one instruction set per process: rows are named after it.
+void instruction_set_section(const Run &run);
+
+}  // namespace bench
+
+#endif
