@@ -27,6 +27,7 @@ struct Block {
     long len[W];          // bonds of each lane
     int lanes;            // lanes in use; the others repeat the first one and are never stored
     bool roomy;           // W atoms more can be read behind each lane
+    long ahead;           // doubles from a lane's vectors to those of the next block, to be fetched early; or 0
     bool uniform_w;       // the inverse mass is constant along each lane
     vec w_uniform;
     const vec *w;         // else [n+1], interleaved
@@ -163,6 +164,16 @@ HOL_INLINE void wrap(const Box &box, vec3 &d, vec3 &lo) {
 // What the right-hand side of a bond is made of.
 enum Terms { none_ = 0, velocity_squared = 1, force_difference = 2, rate = 4 };
 
+// Starts to fetch W atoms of the next block.
+HOL_INLINE void fetch_ahead(const double *p) {
+    __builtin_prefetch(p, 0, 2);
+    __builtin_prefetch(p + 8, 0, 2);
+    if (W > 4) {
+        __builtin_prefetch(p + 16, 0, 2);
+        __builtin_prefetch(p + 24, 0, 2);
+    }
+}
+
 // The bonds k0 .. k0 + W - 1 of all lanes, from pointers to atom k0: see load_bonds. d[W], low[W], rhs[W].
 template <int terms, bool uniform, bool boxed, bool careful>
 HOL_INLINE void load_chunk(const Block &block, const Box &box, long k0, const double *const *pr,
@@ -238,6 +249,12 @@ static inline void load_bonds(const Block &block, const Box &box, const Packed &
             pv[i] = v.lane[i] + 3 * k0;
             pf[i] = f.lane[i] + 3 * k0;
         }
+        if (block.ahead)
+            for (int i = 0; i < W; ++i) {
+                fetch_ahead(pr[i] + block.ahead);
+                if (terms & (velocity_squared | rate)) fetch_ahead(pv[i] + block.ahead);
+                if (terms & force_difference) fetch_ahead(pf[i] + block.ahead);
+            }
         load_chunk<terms, uniform, boxed, careful>(block, box, k0, pr, pv, pf, D + k0, D_low + k0, B + k0);
     }
     for (; k0 < block.n; k0 += W) {

@@ -130,6 +130,7 @@ static inline void open_block(const Unit &unit, int64_t first, Block &block, Lan
     const int64_t left = unit.count - first;
     block.lanes = left < W ? static_cast<int>(left) : W;
     block.roomy = false;
+    block.ahead = 0;
     if (unit.regular) {
         const Lane &head = unit.lanes[0];
         const int64_t n = head.n_bonds;
@@ -148,6 +149,7 @@ static inline void open_block(const Unit &unit, int64_t first, Block &block, Lan
             lane[i].chain = block.chain[i] = head.chain + c;
         }
         block.roomy = (left - block.lanes) * (n + 1) >= W && !head.atoms;
+        block.ahead = 3 * W * (n + 1);  // the next unit often goes on where this one ends
         return;
     }
     block.n = 0;
@@ -239,6 +241,14 @@ static void forces_block(const Block &block, const Lane *lane, const ForcesCall 
     if (any(rest)) note_bad(block, rest, tally);
 }
 
+// A faster path for small molecules: returns the first one that it has left (molecules.inl). Most calls have none.
+template <class Call>
+static int64_t small_molecules(const Call &, const Unit &, const Block &, int64_t first) {
+    return first;
+}
+static int64_t small_molecules(const ForcesCall &call, const Unit &unit, const Block &block, int64_t first);
+static int64_t small_molecules(const VelocitiesCall &call, const Unit &unit, const Block &block, int64_t first);
+
 template <class Call, class Work>
 static inline void for_each_block(const Call &call, const Unit &unit, double *scratch, Tally &tally, Work work) {
     Block block;
@@ -249,6 +259,13 @@ static inline void for_each_block(const Call &call, const Unit &unit, double *sc
         if (first == 0 || !unit.regular || block.lanes < W) {
             arena = {scratch};
             set_masses(block, lane, arena);
+        }
+        if (block.lanes == W) {
+            const int64_t next = small_molecules(call, unit, block, first);
+            if (next > first) {
+                first = next - W;  // the rest goes on from there
+                continue;
+            }
         }
         work(block, lane, call, arena, tally);
     }

@@ -8,6 +8,7 @@
 #include "forces.inl"
 #include "velocities.inl"
 #include "positions.inl"
+#include "molecules.inl"
 #include "metric.inl"
 #include "segments.inl"
 #include "segments_positions.inl"

@@ -123,40 +123,52 @@ static inline void substitute(long n, const Newton &x) {
 }
 
 // Adds the corrections s of the lanes in `which` to tau and D; returns the new largest error and leaves (D.D - a^2) / 2
-// in s.
-template <bool uniform>
-static inline vec correct(const Block &block, const Newton &x, mask which) {
+// in s. A NaN among the corrections is one in all of them, so that the first tells.
+template <bool uniform_w, bool uniform_a>
+static inline vec correct_bonds(const Block &block, const Newton &x, mask which) {
     const long n = block.n;
-    vec worst = {}, poison = {};
-    vec s = keep(which, x.s[0]);
-    vec3 p = {s * x.b[0].x, s * x.b[0].y, s * x.b[0].z};
-    vec w = w_at<uniform>(block, 0);
-    vec3 left = {w * p.x, w * p.y, w * p.z};  // displacement of the atom left of bond k
-    for (long k = 0; k < n; ++k) {
+    vec worst = {};
+    vec s = keep(which, x.s[0]), w = w_at<uniform_w>(block, 0);
+    const vec poison = 0.0 * s;
+    vec c = uniform_w ? w * s : s;
+    vec3 p = {c * x.b[0].x, c * x.b[0].y, c * x.b[0].z};
+    vec3 left = uniform_w ? p : vec3{w * p.x, w * p.y, w * p.z};  // displacement of the atom left of bond k
+    const auto bond = [&](long k, bool last, bool ragged) __attribute__((always_inline)) {
         x.tau[k] = x.tau[k] + s;
-        w = w_at<uniform>(block, k + 1);
+        w = w_at<uniform_w>(block, k + 1);
         vec3 p1 = {};
-        if (k + 1 < n) {
+        if (!last) {
             s = keep(which, x.s[k + 1]);
+            c = uniform_w ? w * s : s;
             const vec3 b = x.b[k + 1];
-            p1 = {s * b.x, s * b.y, s * b.z};
+            p1 = {c * b.x, c * b.y, c * b.z};
         }
-        const vec3 right = {w * (p1.x - p.x), w * (p1.y - p.y), w * (p1.z - p.z)};
+        vec3 right = {p1.x - p.x, p1.y - p.y, p1.z - p.z};
+        if (!uniform_w) right = {w * right.x, w * right.y, w * right.z};
         vec3 move = {right.x - left.x, right.y - left.y, right.z - left.z};
-        if (__builtin_expect(k >= block.n_min, 0)) {  // inert bonds stay where they are
+        if (ragged) {  // inert bonds stay where they are
             const mask live = less(splat(static_cast<double>(k)), block.lengths());
             move = {keep(live, move.x), keep(live, move.y), keep(live, move.z)};
         }
         const vec3 d = {x.D[k].x + move.x, x.D[k].y + move.y, x.D[k].z + move.z};
         x.D[k] = d;
-        const vec a2 = a2_at(x, k), sigma = dot(d, d) - a2;
+        const vec a2 = uniform_a ? x.a2_uniform : x.a2[k], sigma = dot(d, d) - a2;
         x.s[k] = 0.5 * sigma;
-        worst = max(abs(sigma) / a2, worst);
-        poison = mul_add(sigma, vec{}, poison);
+        worst = max(uniform_a ? abs(sigma) : abs(sigma) / a2, worst);
         p = p1;
         left = right;
-    }
-    return worst + poison;
+    };
+    const long regular = block.n_min < n ? block.n_min : n - 1;
+    long k = 0;
+    for (; k < regular; ++k) bond(k, false, false);
+    for (; k < n - 1; ++k) bond(k, false, true);
+    bond(n - 1, true, block.n_min < n);
+    return (uniform_a ? worst / x.a2_uniform : worst) + poison;
+}
+
+template <bool uniform>
+static inline vec correct(const Block &block, const Newton &x, mask which) {
+    return x.a2 ? correct_bonds<uniform, false>(block, x, which) : correct_bonds<uniform, true>(block, x, which);
 }
 
 // The factors of an earlier D shrink the error by a constant each time, new ones square it at twice the price: they are

@@ -42,16 +42,16 @@ static __attribute__((noinline)) mask doubtful_joints(const Block &block, const 
 
 // Plain forward sweep: B becomes u = y / P, L the multipliers. Four bonds at a time E is carried as a fraction A / F,
 // which takes the divisions out of the chain of dependences. Returns the lanes that need careful arithmetic.
-template <bool uniform, bool keep_pivots = false>
+template <bool uniform, bool keep_pivots = false, int fixed = 0>
 static inline mask forward(const Block &block, const vec3 *D, vec *B, vec *L, vec *pivots = nullptr) {
-    const long n = block.n;
+    const long n = fixed > 0 ? fixed : block.n, n_min = fixed > 0 ? fixed : block.n_min;  // known to the compiler?
     const double least = 4 * joint_tolerance * joint_tolerance + 1;
     mask doubt = none();
     vec3 d = D[0];
     vec q = dot(d, d), E = w_at<uniform>(block, 0) * q, y = B[0];
     for (long k0 = 0; k0 < n; k0 += 4) {
         vec A = E, F = splat(1.0), rF = {}, slack = {};
-        const bool full = k0 + 4 < n && k0 + 4 < block.n_min;
+        const bool full = k0 + 4 < n && k0 + 4 < n_min;
         const auto bond = [&](long k, bool has_joint, bool ragged) __attribute__((always_inline)) {
             const vec w = w_at<uniform>(block, k + 1);
             const vec F1 = mul_add(w * q, F, A);
@@ -86,7 +86,7 @@ static inline mask forward(const Block &block, const vec3 *D, vec *B, vec *L, ve
             bond(k0 + 2, true, false);
             bond(k0 + 3, true, false);
         } else {
-            for (long k = k0; k < k0 + 4 && k < n; ++k) bond(k, k + 1 < n, k + 1 >= block.n_min);
+            for (long k = k0; k < k0 + 4 && k < n; ++k) bond(k, k + 1 < n, k + 1 >= n_min);
         }
         E = A * rF;
         if (__builtin_expect(any(less(slack, vec{})), 0))
@@ -122,10 +122,10 @@ static __attribute__((noinline)) void forward_careful(const Block &block, const 
 
 // Adds to t the solution for what it leaves of the right-hand side b: the recursion gives t to a few roundings of
 // itself, this makes the projected rates as small as the velocities' own rounding. s: working space [n].
-template <bool uniform>
+template <bool uniform, int fixed = 0>
 static inline void refine(const Block &block, const vec3 *D, const vec *b, const vec *pivots, const vec *L, vec *t,
                           vec *s) {
-    const long n = block.n;
+    const long n = fixed > 0 ? fixed : block.n, n_min = fixed > 0 ? fixed : block.n_min;
     vec y = {}, before = {};  // before = w (q t - g t') of the joint on the left, the part of the row that it adds
     vec q = dot(D[0], D[0]);
     before = w_at<uniform>(block, 0) * (q * t[0]);
@@ -134,7 +134,7 @@ static inline void refine(const Block &block, const vec3 *D, const vec *b, const
         vec next_before = {}, q1 = {};
         if (k + 1 < n) {
             vec g = dot(D[k], D[k + 1]);
-            if (__builtin_expect(k + 1 >= block.n_min, 0)) g = keep(joint(block, k), g);
+            if (__builtin_expect(k + 1 >= n_min, 0)) g = keep(joint(block, k), g);
             q1 = dot(D[k + 1], D[k + 1]);
             const vec w = w_at<uniform>(block, k + 1);
             after = w * mul_add(-g, t[k + 1], own);
