@@ -30,6 +30,7 @@ program test_integrators
    call leap_frog_and_velocity_verlet_agree()
    call velocity_verlet_can_be_reversed()
    call brownian_multipliers_are_forces()
+   call noise_makes_the_thermal_tension()
    call chains%destroy()
    call finish()
 
@@ -187,6 +188,40 @@ contains
       end do
       call check(error(2) < 0.01_real64 .and. abs(error(1)/error(2) - 2) < 0.2_real64, "multipliers are those of the forces")
       call beads%destroy()
+   end subroutine
+
+   ! A dumbbell that turns freely at temperature kT pulls at its bond with 2 kT/a, by its angular velocity. In Brownian
+   ! dynamics there are no velocities, and the same mean tension comes from the noise in the multipliers.
+   subroutine noise_makes_the_thermal_tension()
+      integer, parameter :: n_dumbbells = 200000
+      real(real64), parameter :: dt = 0.01_real64
+      type(hol_chains) :: dumbbells
+      real(real64), allocatable, dimension(:, :) :: r, q, a, b
+      real(real64), allocatable, dimension(:) :: tension, lambda
+      integer :: i
+      call test("thermal tension")
+      call dumbbells%create([(1.0_real64, i=1, 2*n_dumbbells)])
+      call dumbbells%add(n_dumbbells, 1, 1, 1.0_real64)
+      allocate (r(3, 2*n_dumbbells), source=0.0_real64)
+      allocate (q(3, 2*n_dumbbells), a(3, 2*n_dumbbells), b(3, 2*n_dumbbells))
+      allocate (tension(n_dumbbells), lambda(n_dumbbells))
+      r(1, 2::2) = 1
+      call random_number(a)
+      call random_number(b)
+      a = sqrt(-2*log(1 - a))*cos(2*acos(-1.0_real64)*b)
+      ! The square of a relative velocity across the bond has the mean 2 times 2 and the standard deviation 4; the
+      ! tension is half of it. Six standard errors.
+      q = a
+      call dumbbells%project_velocities(r, q)
+      call dumbbells%forces(r, q, tension=tension)
+      call check(abs(sum(tension)/n_dumbbells - 2) < 6*2/sqrt(real(n_dumbbells, real64)), "of velocities")
+      ! Noise along the bond gives single multipliers a standard deviation of 1/sqrt(dt). The mean has an error of order dt.
+      q = r + sqrt(2*dt)*a
+      call dumbbells%project_positions(r, q, sqrt(dt), lambda=lambda)
+      call check(abs(sum(2*lambda)/n_dumbbells - 2) < 6/sqrt(dt*n_dumbbells) + 4*dt, "of noise")
+      print "(a, 2f8.4)", "thermal tension of velocities and of noise: ", sum(tension)/n_dumbbells, &
+         sum(2*lambda)/n_dumbbells
+      call dumbbells%destroy()
    end subroutine
 
 end program
