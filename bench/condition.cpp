@@ -34,7 +34,7 @@ std::vector<Recipe> family(const Run &run) {
     if (run.extent == Extent::tiny) return list;
     for (double turn : {60.0, 30.0, 15.0, 5.0}) add(0.8 * turn, turn, 1);
     const int step = run.full() ? 1 : 3;
-    for (int digits = 1; digits <= 13; digits += step) add(0.5e-3, 1e-3, std::pow(10, -digits));
+    for (int digits = 1; digits <= 13; digits += step) add(0.5e-6, 1e-6, std::pow(10, -digits));
     return list;
 }
 

@@ -2,13 +2,13 @@
 // energy in units of the kinetic energy, per unit of time, from a straight line through the energies; ns_per_bond is the time
 // of position and velocity constraints together, per step.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "melt_run.hpp"
 #include "memory_pass.hpp"
 #include "methods/methods.hpp"
 #include "sections.hpp"
+#include "stopwatch.hpp"
 
 namespace bench {
 namespace {
@@ -27,9 +27,9 @@ double slope(const std::vector<double> &t, const std::vector<double> &e) {
 double pass_seconds(const Problem &p) {
     std::vector<double> g(p.r.size()), times;
     for (int i = 0; i < 200; ++i) {
-        const auto start = std::chrono::steady_clock::now();
+        const Stopwatch watch(1);
         memory_pass(p.r, p.v, p.f, g, 1);
-        times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        times.push_back(watch.seconds());
     }
     std::nth_element(times.begin(), times.begin() + 100, times.end());
     return times[100];

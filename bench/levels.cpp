@@ -62,7 +62,7 @@ Methods position_peers(const Problem &p, bool all) {
         for (int iterations : all ? std::vector<int>{1, 2, 4} : std::vector<int>{order == 4 ? 1 : 4})
             list.push_back(lincs(p, order, iterations));
     // Setting CCMA up takes a time that grows as the square of the bonds in a call.
-    if (have_openmm() && p.name != "fixed_ends" && p.chains_per_call() * p.bonds <= 3000)
+    if (have_openmm() && p.name != "fixed_ends" && p.chains_per_call() * p.bonds <= 7000)
         for (bool angles : {false, true})
             for (double tolerance : all ? std::vector<double>{1e-4, 1e-6, 1e-8, 1e-10} : std::vector<double>{1e-6, 1e-10})
                 list.push_back(openmm_ccma(Level::position, p, tolerance, angles));
@@ -121,9 +121,14 @@ void position_section(const Run &run) {
         append(list, position_peers(p, all));
         run.measure(Level::position, p, list);
     };
-    for (std::int64_t n : sizes(run)) work(single("coil", n, pool(run)), n == 100 || run.extent == Extent::tiny);
-    for (const Recipe &recipe : batches(run, "coil")) work(recipe, recipe.chains == 1000);
-    for (const Recipe &recipe : shapes(run)) work(recipe, true);
+    for (std::int64_t n : sizes(run)) work(single("coil", n, pool(run)), run.extent == Extent::tiny);
+    for (const Recipe &recipe : batches(run, "coil")) work(recipe, false);
+    // The whole range of settings, on many chains in a call: error against run time.
+    if (run.extent == Extent::tiny) return;
+    for (const char *name : {"coil", "straight5", "light_joints"}) work(batch(name, run.full() ? 64 : 20, 100), true);
+    if (!run.full()) return;
+    for (const char *name : {"tetrahedral", "fixed_ends"}) work(batch(name, 64, 100), true);
+    work(single("straight5", 1000, 2000), true);
 }
 
 void metric_section(const Run &run) {

@@ -3,25 +3,23 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <set>
 
 #include "memory_pass.hpp"
+#include "stopwatch.hpp"
 
 namespace bench {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 double seconds_of(const Method &m, State &s, const Problem &p, Level level) {
     s.restore(p, level);
     if (m.before) m.before(s);
-    const auto start = Clock::now();
+    const Stopwatch watch(m.threads);
     m.call(s);
-    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    const double seconds = watch.seconds();
     if (m.after) m.after(s);
     return seconds;
 }
@@ -60,18 +58,20 @@ void register_method(const std::string &name, const Method &m, const Problem &p,
     const double calls = std::ceil(effort.seconds / std::max(seconds_per_call, 1e-9));
     const bool slow = seconds_per_call > effort.slow_seconds;
     const bool restores = m.before || m.after || level == Level::position || level == Level::velocity;
-    benchmark::internal::Benchmark *made;
-    if (restores)
-        made = benchmark::RegisterBenchmark(name.c_str(), [&m, &p, level, &state](benchmark::State &b) {
-                   for (auto _ : b) b.SetIterationTime(seconds_of(m, state, p, level));
-               })->UseManualTime();
-    else
-        made = benchmark::RegisterBenchmark(name.c_str(), [&m, &state](benchmark::State &b) {
-                   for (auto _ : b) {
-                       m.call(state);
-                       benchmark::ClobberMemory();
-                   }
-               })->UseRealTime();
+    // Where nothing is restored the clock is read once for all calls of a repetition.
+    auto *made = benchmark::RegisterBenchmark(name.c_str(), [&m, &p, level, &state, restores](benchmark::State &b) {
+        if (restores) {
+            for (auto _ : b) b.SetIterationTime(seconds_of(m, state, p, level));
+            return;
+        }
+        const Stopwatch watch(m.threads);
+        for (auto _ : b) {
+            m.call(state);
+            benchmark::ClobberMemory();
+        }
+        b.SetIterationTime(watch.seconds());
+    });
+    made->UseManualTime();
     made->Iterations(static_cast<std::int64_t>(std::clamp(calls, 1.0, 1e7)))
         ->Repetitions(slow ? std::min(3, effort.repetitions) : effort.repetitions);
 }

@@ -1,9 +1,9 @@
 #include "melt_run.hpp"
 
-#include <chrono>
 #include <cmath>
 
 #include "random.h"
+#include "stopwatch.hpp"
 
 namespace bench {
 namespace {
@@ -109,9 +109,9 @@ void MeltRun::forces() {
 }
 
 void MeltRun::timed(const Method &method) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch(1);
     method.call(state_);
-    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    seconds_ += watch.seconds();
 }
 
 void MeltRun::step(const Constraints &constraints) {
