@@ -355,7 +355,7 @@ HOL_API int hol_violation_view(const hol_chains *chains, const hol_view *r, cons
  * angles between neighbouring bonds only. A rigid chain visits its conformations with the weight det Z~^(+1/2) relative
  * to the freely jointed chain (stiff springs); with the potential energy
  *     U_F = +(kT/2) sum over chains of ln det Z~
- * added to the others it visits them as the freely jointed chain does. docs/theory.md (20)-(27); Mazars 2007, Eq. (19).
+ * added to the others it visits them as the freely jointed chain does. docs/theory.md (24)-(32); Mazars 2007, Eq. (19).
  *
  * @param[in]     chains
  * @param[in]     r          positions [n_atoms][3]
@@ -389,8 +389,9 @@ typedef struct hol_inverse hol_inverse;
 typedef enum hol_scaling { HOL_UNIT_DIAGONAL = 0, HOL_PHYSICAL = 1 } hol_scaling;
 
 /**
- * Prepares the inverse for one chain, in time and memory proportional to its number of bonds N. docs/theory.md (28)-(34);
- * Mazars 2007, Eqs. (20) and (28). Everything is copied: the set of chains and r may be changed or freed afterwards.
+ * Prepares the inverse for one chain, in time and memory proportional to its number of bonds N.
+ * docs/theory.md (33)-(37); Mazars 2007, Eqs. (20) and (28). Everything is copied: the set of chains and r may be
+ * changed or freed afterwards.
  * @param[in]  chains   an inactive chain is allowed
  * @param[in]  chain    number of the chain, counted from the index base of `chains`, as bonds and atoms are in all the
  *                      functions below
@@ -411,8 +412,8 @@ HOL_API void hol_inverse_destroy(hol_inverse *inverse);
 HOL_API int64_t hol_inverse_n_bonds(const hol_inverse *inverse);
 
 /**
- * One element, in a time proportional to |i - j| + 1. It is right to a few roundings plus one or two for each step from i
- * to j; it vanishes exactly where a right angle or a fixed atom lies between i and j, and underflows only if the
+ * One element, in a time proportional to |i - j| + 1. It is right to a few roundings plus one or two for each step
+ * from i to j; it vanishes exactly where a right angle or a fixed atom lies between i and j, and underflows only if the
  * element does.
  * @param[in]  inverse
  * @param[in]  scaling  HOL_UNIT_DIAGONAL or HOL_PHYSICAL
@@ -446,8 +447,8 @@ HOL_API int hol_inverse_band(const hol_inverse *inverse, int scaling, int64_t wi
 HOL_API int hol_inverse_matrix(const hol_inverse *inverse, int scaling, double *matrix);
 
 /**
- * Condition number of Z~ in the infinity norm, |Z~| |Z~^-1|, in O(N): by how much relative errors in the matrix can grow in
- * the multipliers, at worst and in norm. About N^2/2 for a straight chain of equal masses. The library's own rounding
+ * Condition number of Z~ in the infinity norm, |Z~| |Z~^-1|, in O(N): by how much relative errors in the matrix can grow
+ * in the multipliers, at worst and in norm. About N^2/2 for a straight chain of equal masses. The library's own rounding
  * does not grow with it; the effect of errors in the caller's positions does.
  * @return HOL_OK; HOL_ERR_NULL. Since 0.1.
  */
@@ -459,11 +460,11 @@ HOL_API int hol_inverse_condition(const hol_inverse *inverse, double *condition)
  * O(N). It says how far to trust multipliers from any source, this library or another solver.
  *
  * @param[in]  inverse  of the conformation to which the multipliers belong
- * @param[in]  v, f     velocities and applied forces of all atoms, as given to hol_forces, [n_atoms][3]; either may be NULL
+ * @param[in]  v, f     velocities and applied forces as given to hol_forces, [n_atoms][3]; either may be NULL
  * @param[in]  lambda   [N], the chain's part of the multipliers
  * @param[out] bound    [N] |lambda_k - exact lambda_k| <= bound_k, or NULL
- * @param[out] relative the largest bound_k over the largest |lambda_k|, or NULL; 0 if all bounds are 0, infinite if only
- *                      the multipliers are
+ * @param[out] relative the largest bound_k over the largest |lambda_k|, or NULL; 0 if all bounds are 0, infinite if
+ *                      only the multipliers are
  *
  * "Exact" is for the given doubles of r, v, f and for the inverse masses as rounded to doubles. What the data's own
  * errors do comes on top: at most a relative error of theirs times hol_inverse_condition.
@@ -479,9 +480,9 @@ HOL_API int hol_inverse_error_bound_view(const hol_inverse *inverse, const hol_v
 /* ------------------------------------------------------------------------------------- the bare tridiagonal algebra */
 
 /*
- * The symmetric tridiagonal matrix T of n rows with ones on its diagonal and -gamma beside it, T_{k-1,k} = -gamma_k, as it
- * appears in spin models, harmonic chains and other one-dimensional models. gamma is [n-1]: gamma[0] couples the first two
- * rows (gamma_2 in the paper), gamma[k] rows k and k+1 counted from 0.
+ * The symmetric tridiagonal matrix T of n rows with ones on its diagonal and -gamma beside it, T_{k-1,k} = -gamma_k, as
+ * it appears in spin models, harmonic chains and other one-dimensional models. gamma is [n-1]: gamma[0] couples the first
+ * two rows (gamma_2 in the paper), gamma[k] rows k and k+1 counted from 0.
  *
  * Accuracy. Results are those of the given doubles to a few roundings (plus one or two for each row between i and j in
  * inverse elements), as all recursions run in twice the precision; this holds up to a condition number of about 1e14.
@@ -489,13 +490,14 @@ HOL_API int hol_inverse_error_bound_view(const hol_inverse *inverse, const hol_v
  * to 1.1e-16 times the condition number, relatively. Chains whose masses and bond vectors are known should go through
  * hol_metric and hol_inverse, which lose nothing. A matrix that its rounding has made singular is reported as such.
  *
- * All return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (n < 1; width); HOL_ERR_INDEX (i, j); HOL_ERR_NOT_FINITE;
+ * All return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (n < 1; width); HOL_ERR_INDEX (i, j); HOL_ERR_NOT_FINITE (gamma, b);
  * HOL_ERR_NOT_DEFINITE (Omega^2 <= 0: message and hol_error_location's bond name the row, counted from 0);
- * HOL_ERR_MEMORY. On an error nothing is written. Thread-safe. docs/theory.md (35)-(38).
+ * HOL_ERR_MEMORY. On an error nothing is written. Thread-safe. docs/theory.md (38)-(41).
  */
 
 /**
- * Pivots of the elimination from the first row on, Omega_k^2 = 1 - gamma_k^2 / Omega_{k-1}^2 (Mazars 2007, Eq. 17). O(n).
+ * Pivots of the elimination from the first row on, Omega_k^2 = 1 - gamma_k^2 / Omega_{k-1}^2 (Mazars 2007, Eq. 17).
+ * O(n).
  * @param[in]  n
  * @param[in]  gamma   [n-1]; may be NULL if n = 1
  * @param[out] omega2  [n], the first is 1
@@ -531,8 +533,8 @@ HOL_API int hol_tridiagonal_inverse_band(int64_t n, const double *gamma, int64_t
 /* -------------------------------------------------------------------------------------------- partition functions */
 
 /**
- * Means of powers of the metric determinant over all conformations of the freely jointed chain of given masses, i.e. over
- * independent bond directions, each uniform on the sphere; as logarithms. With x_n = m_n m_{n-2} / ((m_{n-1} + m_n)
+ * Means of powers of the metric determinant over all conformations of the freely jointed chain of given masses, i.e.
+ * over independent bond directions, each uniform on the sphere; as logarithms. With x_n = m_n m_{n-2} / ((m_{n-1} + m_n)
  * (m_{n-1} + m_{n-2})) and gamma_n uniform in 0 .. sqrt(x_n):
  *     log_he      ln < det Z~^(-1/2) >: the multiple hypergeometric function He(1/2; 3/2; x_2..x_N), the integral of
  *                 Mazars 2007, Eq. (31)
@@ -547,9 +549,10 @@ HOL_API int hol_tridiagonal_inverse_band(int64_t n, const double *gamma, int64_t
  * @param[out] log_rigid   or NULL
  * @param[out] log_volume  or NULL
  *
- * Method: a transfer operator in the pivots Omega, docs/theory.md (39)-(47). Time grows as N times the square of the number of
- * digits that the masses span. exp(log_he) and exp(log_rigid) have a relative error below 1e-13 where long double has 64
- * bits or more (docs/metric.md has the measurements), 1e-16 N otherwise.
+ * Method: a transfer operator in the pivots Omega, docs/theory.md (42)-(49), in O(N); a chain of 10,000 bonds takes about
+ * a second, two or three if its masses span many decades. exp(log_he) and exp(log_rigid) have the relative error of the
+ * logarithm's own rounding as a double, about 1e-16 (1 + |logarithm|), where long double has 64 bits or more; elsewhere
+ * about 1e-16 N.
  * @return HOL_OK; HOL_ERR_NULL (all three outputs); HOL_ERR_VALUE (n_bonds, a mass: the message names the atom, counted
  *         from 0); HOL_ERR_DEGENERATE (a bond between two fixed atoms); HOL_ERR_MEMORY. On an error nothing is written.
  *         Thread-safe. Since 0.1.

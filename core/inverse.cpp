@@ -1,4 +1,4 @@
-// Theory (28)-(34): elimination on unit bonds with the deficits of the rows carried instead of the diagonal, so that
+// Theory (33)-(36): elimination on unit bonds with the deficits of the rows carried instead of the diagonal, so that
 // nothing is subtracted; then products of its multipliers.
 #include "inverse.hpp"
 
@@ -42,7 +42,7 @@ Inverse::Inverse(const Chains &chains, std::int64_t chain, const AtomArray &r)
         good = good && here.length > 0 && std::isfinite(here.length);
         before = here;
     }
-    const auto coupling = [&](std::size_t k) { return w_[k] * std::fabs(joints[k].cosine); };  // p of theory (22)
+    const auto coupling = [&](std::size_t k) { return w_[k] * std::fabs(joints[k].cosine); };  // p of theory (25)
     const auto deficit = [&](std::size_t k) { return w_[k] * joints[k].complement + w_[k + 1] * joints[k + 1].complement; };
     double e = 0;
     for (std::size_t k = 0; k < n_; ++k) {
@@ -55,7 +55,7 @@ Inverse::Inverse(const Chains &chains, std::int64_t chain, const AtomArray &r)
         good = good && b.pivot > 0 && std::isfinite(b.pivot);
     }
     if (!good) throw bad_data(chains, chain, r);
-    double rest = 0;  // R of theory (30)
+    double rest = 0;  // R of theory (33)
     for (std::size_t k = n_; k-- > 0;) {
         if (k + 1 < n_) {
             const double p = coupling(k + 1), sum = deficit(k + 1) + rest;

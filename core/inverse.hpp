@@ -31,7 +31,7 @@ public:
 private:
     struct Bond {
         double l;         // of the elimination: couples it to the bond before, with the sign of their cosine; 0 for the first
-        double pivot;     // P of theory (25)
+        double pivot;     // P of theory (26)
         double inverse;   // (M^-1)_kk
         double root;      // sqrt(M_kk)
         double length;    // |d_k|

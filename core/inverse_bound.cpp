@@ -1,4 +1,4 @@
-// How far given multipliers are from the exact ones: theory (34).
+// How far given multipliers are from the exact ones: theory (37).
 #include <cmath>
 
 #include "diagnose.hpp"

@@ -1,4 +1,4 @@
-// Theory (35)-(38).
+// Theory (38)-(41).
 #include "tridiagonal.hpp"
 
 #include <cmath>

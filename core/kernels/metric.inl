@@ -1,4 +1,4 @@
-// Metric determinant and Fixman force of a block of chains, theory (20)-(27): elimination on unit bonds, with the deficits
+// Metric determinant and Fixman force of a block of chains, theory (24)-(31): elimination on unit bonds, with the deficits
 // e and f that the bonds on either side leave of a row carried instead of the diagonal, so that nothing is subtracted.
 // Products are always compensated: determinants and the inverse have no componentwise scale that forgives their rounding.
 

@@ -167,7 +167,7 @@ static double end_cosine(const sampler *s, int64_t chain, int last)
 /**
  * The density of the end cosine of the rigid chain of equal masses, from what the other bonds contribute given the pivot
  * Omega_2^2 = 1 - c^2/4: V_N = 1, V_{n-1}(Omega) = mean over c of Omega' V_n(Omega'), Omega'^2 = 1 - (c/2)^2/Omega^2
- * (docs/theory.md (40)). Simpson's rule, tables on Omega in sqrt(1/2)..1. Returns the mean of cos^2.
+ * (docs/theory.md (44)). Simpson's rule, tables on Omega in sqrt(1/2)..1. Returns the mean of cos^2.
  */
 static double rigid_density(int64_t n_bonds, double *density, int points)
 {
