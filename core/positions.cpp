@@ -69,16 +69,22 @@ private:
         const Saved saved(call_, lane_);
         Tally part = empty_tally();
         write(moved, solves, part);
+        // The second time the multipliers start at 0 in an array of their own, and are added.
         PositionsCall again = call_;
-        again.lambda = nullptr;
+        std::vector<double> more(call_.lambda ? static_cast<std::size_t>(lane_.n_bonds) : 0);
+        Lane alone = lane_;
+        alone.first_bond = 0;
+        again.lambda = call_.lambda ? more.data() : nullptr;
         again.guess = again.virial = false;
-        LongNewton rest(phases_, again, lane_, team_, store_);
+        LongNewton rest(phases_, again, alone, team_, store_);
         rest.depth_ = depth_ + 1;
         Tally settled = empty_tally();
         if (depth_ >= 4 || !rest.attempt(true, false, settled)) {
             saved.restore();
             return false;
         }
+        for (std::size_t k = 0; k < more.size(); ++k)
+            call_.lambda[lane_.first_bond + static_cast<std::int64_t>(k)] += more[k];
         part.worst = settled.worst;
         part.worst_bond = settled.worst_bond;
         add(tally, part);

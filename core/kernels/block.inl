@@ -139,24 +139,25 @@ static inline void set_masses(Block &block, const double *const *tables, const d
     block.w = w;
 }
 
-// Minimum image of the bond vectors of all lanes; `lo` gets what d's rounding left off.
-template <bool careful>
-HOL_INLINE void wrap(const Box &box, vec3 &d, vec3 &lo) {
+// Minimum image of bond vectors, of all lanes or of one; `lo` gets what d's rounding left off.
+template <bool careful, class V>
+HOL_INLINE void wrap(const Box &box, Vector3<V> &d, Vector3<V> &lo) {
     const double *h = box.h, *in = box.inverse;
-    const vec n[3] = {round(d.x * in[0] + d.y * in[3] + d.z * in[6]), round(d.x * in[1] + d.y * in[4] + d.z * in[7]),
-                      round(d.x * in[2] + d.y * in[5] + d.z * in[8])};
-    vec *component[3] = {&d.x, &d.y, &d.z}, *low[3] = {&lo.x, &lo.y, &lo.z};
+    const V n[3] = {round(d.x * in[0] + d.y * in[3] + d.z * in[6]), round(d.x * in[1] + d.y * in[4] + d.z * in[7]),
+                    round(d.x * in[2] + d.y * in[5] + d.z * in[8])};
+    V *component[3] = {&d.x, &d.y, &d.z}, *low[3] = {&lo.x, &lo.y, &lo.z};
     for (int c = 0; c < 3; ++c)
         for (int i = 0; i < 3; ++i) {
             if (h[3 * i + c] == 0) continue;
+            const V side = V{} + h[3 * i + c];
             if (careful) {
-                const Pair<vec> p = two_product<vec>(n[i], splat(h[3 * i + c]));
-                const Pair<vec> s = two_difference<vec>(*component[c], p.hi);
-                const Pair<vec> t = fast_two_sum<vec>(s.hi, s.lo - p.lo + *low[c]);
+                const Pair<V> p = two_product<V>(n[i], side);
+                const Pair<V> s = two_difference<V>(*component[c], p.hi);
+                const Pair<V> t = fast_two_sum<V>(s.hi, s.lo - p.lo + *low[c]);
                 *component[c] = t.hi;
                 *low[c] = t.lo;
             } else {
-                *component[c] = mul_add(n[i], splat(-h[3 * i + c]), *component[c]);
+                *component[c] = mul_add(n[i], -side, *component[c]);
             }
         }
 }

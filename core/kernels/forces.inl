@@ -24,7 +24,7 @@ static __attribute__((noinline)) mask solve(const Block &block, const Box &box, 
     if (careful)
         forward_careful<uniform>(block, s.D, s.D_low, s.t, s.L);
     else
-        doubt = forward<uniform, refined>(block, s.D, s.t, s.L, s.pivots);
+        doubt = forward<uniform, refined>(block, Source{&r, &box}, s.D, s.t, s.L, s.pivots);
     backward(block.n, s.t, s.L);
     if (refined) refine<uniform>(block, s.D, s.b, s.pivots, s.L, s.t, s.spare);
     return finite(s.t[0]) & ~doubt & block.in_use();

@@ -46,6 +46,10 @@ HOL_INLINE vec as_vec(mask a) { return reinterpret_cast<vec>(a); }
 HOL_INLINE vec select(mask m, vec a, vec b) { return as_vec((m & as_mask(a)) | (~m & as_mask(b))); }
 HOL_INLINE vec keep(mask m, vec a) { return as_vec(m & as_mask(a)); }  // a where m, else zero
 HOL_INLINE vec abs(vec a) { return as_vec(as_mask(a) & (mask{} + 0x7fffffffffffffffLL)); }
+HOL_INLINE double round(double a) {  // as for vec below
+    const double big = 6755399441055744.0, sum = a + big;
+    return sum - big;
+}
 HOL_INLINE double abs(double a) { return __builtin_fabs(a); }
 
 // a * b + c: in one rounding where the instruction set has it, in two elsewhere.

@@ -82,7 +82,9 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
         vec t[padded], L[N];
         const int64_t at = 3 * (N + 1) * first;
         load_molecules<N, terms, uniform>(block, r + at, v + at, f + at, D, t);
-        const mask doubt = forward<uniform, false, N>(block, D, t, L);
+        Packed from;
+        for (int i = 0; i < W; ++i) from.lane[i] = const_cast<double *>(r) + at + 3 * (N + 1) * i;
+        const mask doubt = forward<uniform, false, N>(block, Source{&from, &call.box}, D, t, L);
         backward(N, t, L);
         if (__builtin_expect(any(doubt | ~finite(t[0])), 0)) break;
         if (g) {
@@ -108,8 +110,10 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
         vec t[padded], L[N], b[N], pivots[N], spare[N];
         const int64_t at = 3 * (N + 1) * first;
         load_molecules<N, rate, uniform>(block, r + at, v + at, nullptr, D, t);
+        Packed from;
+        for (int i = 0; i < W; ++i) from.lane[i] = const_cast<double *>(r) + at + 3 * (N + 1) * i;
         for (int k = 0; k < N; ++k) b[k] = t[k];
-        const mask doubt = forward<uniform, true, N>(block, D, t, L, pivots);
+        const mask doubt = forward<uniform, true, N>(block, Source{&from, &call.box}, D, t, L, pivots);
         backward(N, t, L);
         refine<uniform, N>(block, D, b, pivots, L, t, spare);
         if (__builtin_expect(any(doubt | ~finite(t[0])), 0)) break;

@@ -40,10 +40,46 @@ static __attribute__((noinline)) mask doubtful_joints(const Block &block, const 
     return doubt;
 }
 
+// Where the bond vectors of a block come from.
+struct Source {
+    const Packed *r;
+    const Box *box;
+};
+
+// g = d . d' of nearly orthogonal bonds cancels, and what it loses shows where the right-hand side of one bond is larger
+// than its neighbour's by orders of magnitude. Below this cosine g is computed anew from the coordinates: a few in a
+// hundred joints of a coil.
+constexpr double small_cosine = 1.0 / 32;
+
+HOL_INLINE mask nearly_orthogonal(vec g, vec X) {
+    const vec scaled = (1 / small_cosine) * g;
+    return less(scaled * scaled, X);  // X = q q' (1 - cos^2)
+}
+
+// The lanes in `which` of g, for the joint of bonds k and k+1, with compensated products of unrounded differences.
+static __attribute__((noinline)) vec exact_dots(const Source &source, long k, mask which, vec g) {
+    const unsigned chosen = bits(which);
+    for (int i = 0; i < W; ++i) {
+        if (!(chosen >> i & 1)) continue;
+        const double *r = source.r->lane[i] + 3 * k;
+        Vector3<double> d[2], low[2];
+        for (int b = 0; b < 2; ++b, r += 3) {
+            const Pair<double> x = two_difference(r[3], r[0]), y = two_difference(r[4], r[1]),
+                               z = two_difference(r[5], r[2]);
+            d[b] = {x.hi, y.hi, z.hi};
+            low[b] = {x.lo, y.lo, z.lo};
+            if (source.box->shape != Box::none) wrap<true>(*source.box, d[b], low[b]);
+        }
+        g[i] = dot_compensated(d[0], low[0], d[1], low[1]);
+    }
+    return g;
+}
+
 // Plain forward sweep: B becomes u = y / P, L the multipliers. Four bonds at a time E is carried as a fraction A / F,
 // which takes the divisions out of the chain of dependences. Returns the lanes that need careful arithmetic.
 template <bool uniform, bool keep_pivots = false, int fixed = 0>
-static inline mask forward(const Block &block, const vec3 *D, vec *B, vec *L, vec *pivots = nullptr) {
+static inline mask forward(const Block &block, const Source &source, const vec3 *D, vec *B, vec *L,
+                           vec *pivots = nullptr) {
     const long n = fixed > 0 ? fixed : block.n, n_min = fixed > 0 ? fixed : block.n_min;  // known to the compiler?
     const double least = 4 * joint_tolerance * joint_tolerance + 1;
     mask doubt = none();
@@ -70,10 +106,12 @@ static inline mask forward(const Block &block, const vec3 *D, vec *B, vec *L, ve
                 X = keep(m, X);
                 s = keep(m, s);
             }
+            const mask orthogonal = nearly_orthogonal(g, X);
+            if (__builtin_expect(any(orthogonal), 0)) g = exact_dots(source, k, orthogonal, g);
             const vec l = (w * g) * rP;
             L[k] = l;
             y = mul_add(l, y, B[k + 1]);
-            A = w * mul_add(w * X, F, q1 * A);
+            A = mul_add((w * w) * X, F, (w * q1) * A);
             F = F1;
             slack = min(slack, s);
             q = q1;
@@ -89,8 +127,9 @@ static inline mask forward(const Block &block, const vec3 *D, vec *B, vec *L, ve
             for (long k = k0; k < k0 + 4 && k < n; ++k) bond(k, k + 1 < n, k + 1 >= n_min);
         }
         E = A * rF;
-        if (__builtin_expect(any(less(slack, vec{})), 0))
-            doubt = doubt | doubtful_joints<uniform>(block, D, k0, k0 + 4, E0);
+        const mask short_of = less(slack, vec{});
+        if (__builtin_expect(any(short_of), 0))
+            doubt = doubt | (doubtful_joints<uniform>(block, D, k0, k0 + 4, E0) & short_of);
     }
     return doubt;
 }

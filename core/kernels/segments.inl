@@ -120,7 +120,8 @@ HOL_INLINE mask ends_at(const SegmentBlock &s, long k) {
 
 // Eliminates the inner bonds of W segments. t holds the right-hand sides, and u afterwards.
 template <bool uniform, bool careful>
-static __attribute__((noinline)) void eliminate(const SegmentBlock &s, const Segments &x, const vec3 *D_low) {
+static __attribute__((noinline)) void eliminate(const SegmentBlock &s, const Source &source, const Segments &x,
+                                                const vec3 *D_low) {
     const Block &block = s.block;
     const vec3 *D = x.D;
     const double least = 4 * joint_tolerance * joint_tolerance;
@@ -135,6 +136,8 @@ static __attribute__((noinline)) void eliminate(const SegmentBlock &s, const Seg
         const vec3 cr = cross(D[0], D[1]);
         X = dot(cr, cr);
         g = dot(D[0], D[1]);
+        const mask orthogonal = nearly_orthogonal(g, X);
+        if (any(orthogonal)) g = exact_dots(source, 0, orthogonal, g);
     }
     vec E = w * q, a = (w * w) * X, c = w * dot(D[0], D[0]);
     vec f = w * g, T = {}, y = x.t[1], slack = {}, E0 = E;
@@ -169,6 +172,10 @@ static __attribute__((noinline)) void eliminate(const SegmentBlock &s, const Seg
                 g = keep(m, g);
                 step = keep(m, step);
             }
+            if (!careful) {
+                const mask orthogonal = nearly_orthogonal(g, X);
+                if (__builtin_expect(any(orthogonal), 0)) g = exact_dots(source, k, orthogonal, g);
+            }
             const vec l = (w * g) * rP, lE = (w * q1) * rP, lX = (w * (w * X)) * rP;
             x.L[k] = l;
             y = mul_add(l, y, x.t[k + 1]);
@@ -192,8 +199,9 @@ static __attribute__((noinline)) void eliminate(const SegmentBlock &s, const Seg
             sum.span = select(m, (uniform ? w : w_max) * q, sum.span);
         }
         if (!careful && ((k & 3) == 0 || k + 1 == s.own_max)) {
-            if (__builtin_expect(any(less(slack, vec{})), 0)) {
-                sum.doubt = sum.doubt | doubtful_joints<uniform>(block, D, chunk, k + 1, E0);
+            const mask short_of = less(slack, vec{});
+            if (__builtin_expect(any(short_of), 0)) {
+                sum.doubt = sum.doubt | (doubtful_joints<uniform>(block, D, chunk, k + 1, E0) & short_of);
                 slack = vec{};
             }
             E0 = E;
@@ -220,13 +228,13 @@ static void eliminate_block(const Call &call, const Lane &lane, int64_t j, const
             load_bonds<terms, true, true, careful>(s.block, call.box, pr, pv, pf, x.D, D_low, x.t);
         else
             load_bonds<terms, true, false, careful>(s.block, call.box, pr, pv, pf, x.D, D_low, x.t);
-        eliminate<true, careful>(s, x, D_low);
+        eliminate<true, careful>(s, Source{&pr, &call.box}, x, D_low);
     } else {
         if (boxed)
             load_bonds<terms, false, true, careful>(s.block, call.box, pr, pv, pf, x.D, D_low, x.t);
         else
             load_bonds<terms, false, false, careful>(s.block, call.box, pr, pv, pf, x.D, D_low, x.t);
-        eliminate<false, careful>(s, x, D_low);
+        eliminate<false, careful>(s, Source{&pr, &call.box}, x, D_low);
     }
 }
 
