@@ -1,8 +1,9 @@
 #include "execute.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <new>
+
+#include "thread_memory.hpp"
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -15,33 +16,17 @@ namespace {
 // Below this a second thread costs more than it saves.
 constexpr std::int64_t bonds_per_thread = 4096;
 
-// Memory of a thread that stays until the thread ends, aligned to 64.
-struct ThreadMemory {
-    double *data = nullptr;
-    std::int64_t bytes = 0;
-    ~ThreadMemory() { std::free(data); }
+double *scratch_memory(std::int64_t bytes) { return static_cast<double *>(thread_memory(Keep::scratch, bytes)); }
+double *store_memory(std::int64_t bytes) { return static_cast<double *>(thread_memory(Keep::store, bytes)); }
 
-    double *get(std::int64_t wanted) {
-        if (wanted <= bytes) return data;
-        std::free(data);
-        bytes = 0;
-        const std::size_t rounded = static_cast<std::size_t>((wanted + 63) / 64 * 64);
-        data = static_cast<double *>(std::aligned_alloc(64, rounded));
-        if (data) bytes = static_cast<std::int64_t>(rounded);
-        return data;
-    }
-};
-
-thread_local ThreadMemory scratch_memory, store_memory;
-thread_local std::vector<Tally> piece_tallies, block_tallies;
-
-Tally *tallies(std::vector<Tally> &memory, std::int64_t n) {
-    if (static_cast<std::int64_t>(memory.size()) < n) memory.resize(static_cast<std::size_t>(n));
-    return memory.data();
+Tally *tallies(Keep what, std::int64_t n) {
+    void *const memory = thread_memory(what, n * static_cast<std::int64_t>(sizeof(Tally)));
+    if (!memory) throw std::bad_alloc();
+    return static_cast<Tally *>(memory);
 }
 
 double *scratch_of_this_thread(std::int64_t bytes) {
-    double *const scratch = scratch_memory.get(bytes);
+    double *const scratch = scratch_memory(bytes);
     if (!scratch) throw std::bad_alloc();
     return scratch;
 }
@@ -51,7 +36,7 @@ double *scratch_of_this_thread(std::int64_t bytes) {
 void reserve(int n_threads, std::int64_t scratch_bytes, std::int64_t store_bytes) {
     bool failed = false;
 #pragma omp parallel num_threads(n_threads)
-    if (!scratch_memory.get(scratch_bytes) || (store_bytes > 0 && !store_memory.get(store_bytes))) {
+    if (!scratch_memory(scratch_bytes) || (store_bytes > 0 && !store_memory(store_bytes))) {
 #pragma omp atomic write
         failed = true;
     }
@@ -87,11 +72,11 @@ void Team::run(std::int64_t n, Tally &total, void (*call)(const void *, std::int
                const void *body) const {
 #ifdef _OPENMP
     if (n_threads_ > 1) {
-        Tally *const parts = tallies(block_tallies, n);
+        Tally *const parts = tallies(Keep::block_tallies, n);
 #pragma omp parallel for schedule(static) num_threads(n_threads_)
         for (std::int64_t j = 0; j < n; ++j) {
             Tally tally = empty_tally();
-            call(body, j, scratch_memory.get(scratch_bytes_), tally);
+            call(body, j, scratch_memory(scratch_bytes_), tally);
             parts[j] = tally;
         }
         for (std::int64_t j = 0; j < n; ++j) add(total, parts[j]);
@@ -100,7 +85,7 @@ void Team::run(std::int64_t n, Tally &total, void (*call)(const void *, std::int
 #endif
     for (std::int64_t j = 0; j < n; ++j) {
         Tally tally = empty_tally();
-        call(body, j, scratch_memory.get(scratch_bytes_), tally);
+        call(body, j, scratch_memory(scratch_bytes_), tally);
         add(total, tally);
     }
 }
@@ -126,7 +111,7 @@ Tally execute(const Chains &chains, const Work &work) {
             (shared ? shared_store : own_store) = std::max(shared ? shared_store : own_store, work.long_bytes(n));
         }
     scratch_of_this_thread(scratch_bytes);
-    if (std::max(own_store, shared_store) > 0 && !store_memory.get(std::max(own_store, shared_store)))
+    if (std::max(own_store, shared_store) > 0 && !store_memory(std::max(own_store, shared_store)))
         throw std::bad_alloc();
 
     const Team alone(1, scratch_bytes);
@@ -136,13 +121,13 @@ Tally execute(const Chains &chains, const Work &work) {
         if (unit.lanes[0].n_bonds <= longest_lane)
             work.unit(unit, scratch, tally);
         else
-            work.long_chain(unit.lanes[0], alone, store_memory.get(own_store), tally);
+            work.long_chain(unit.lanes[0], alone, store_memory(own_store), tally);
     };
     Tally total = empty_tally();
 #ifdef _OPENMP
     if (n_threads > 1) {
         reserve(n_threads, scratch_bytes, own_store);
-        Tally *const parts = tallies(piece_tallies, n_pieces);
+        Tally *const parts = tallies(Keep::piece_tallies, n_pieces);
         const auto is_shared = [&](std::int64_t p) {
             if (!any_shared) return false;
             const std::int64_t n = chains.piece_bonds(plan, p);
@@ -151,14 +136,14 @@ Tally execute(const Chains &chains, const Work &work) {
 #pragma omp parallel for schedule(dynamic, 4) num_threads(n_threads)
         for (std::int64_t p = 0; p < n_pieces; ++p) {
             Tally tally = empty_tally();
-            if (!is_shared(p)) work_on(p, scratch_memory.get(scratch_bytes), tally);
+            if (!is_shared(p)) work_on(p, scratch_memory(scratch_bytes), tally);
             parts[p] = tally;
         }
         const Team team(n_threads, scratch_bytes);
         for (std::int64_t p = 0; any_shared && p < n_pieces; ++p) {
             if (!is_shared(p)) continue;
             Lane lanes[loose_piece];
-            work.long_chain(chains.unit(plan, p, lanes).lanes[0], team, store_memory.get(shared_store), parts[p]);
+            work.long_chain(chains.unit(plan, p, lanes).lanes[0], team, store_memory(shared_store), parts[p]);
         }
         for (std::int64_t p = 0; p < n_pieces; ++p) add(total, parts[p]);
         return total;
@@ -166,7 +151,7 @@ Tally execute(const Chains &chains, const Work &work) {
 #endif
     for (std::int64_t p = 0; p < n_pieces; ++p) {
         Tally tally = empty_tally();
-        work_on(p, scratch_memory.get(scratch_bytes), tally);
+        work_on(p, scratch_memory(scratch_bytes), tally);
         add(total, tally);
     }
     return total;

@@ -1,0 +1,79 @@
+#include "thread_memory.hpp"
+
+#include <cstdlib>
+
+#if !defined(_WIN32)
+#include <pthread.h>
+#endif
+
+namespace holonomic {
+
+namespace {
+
+struct Block {
+    void *data;
+    std::int64_t bytes;
+};
+
+struct Blocks {
+    Block of[4];
+    bool kept;  // whether the end of the thread will free them
+};
+
+void release(void *p) {
+    Blocks &blocks = *static_cast<Blocks *>(p);
+    for (Block &block : blocks.of) {
+        std::free(block.data);
+        block = Block{nullptr, 0};
+    }
+    blocks.kept = false;
+}
+
+#if defined(_WIN32)
+
+struct OwnedBlocks : Blocks {
+    OwnedBlocks() : Blocks{} {}
+    ~OwnedBlocks() { release(this); }
+};
+thread_local OwnedBlocks blocks_of_this_thread;
+
+bool keep(Blocks &) { return true; }
+
+#else
+
+// Not an object with a destructor: to register one, the run-time library allocates, and ends the process if it can't.
+thread_local Blocks blocks_of_this_thread;
+
+struct Key {
+    pthread_key_t key;
+    bool made;
+    Key() : made(pthread_key_create(&key, release) == 0) {}
+};
+
+// Has the end of the thread free its blocks. The library stays loaded (-z nodelete), so that `release` is still there.
+bool keep(Blocks &blocks) {
+    static const Key end_of_thread;
+    return end_of_thread.made && pthread_setspecific(end_of_thread.key, &blocks) == 0;
+}
+
+#endif
+
+}  // namespace
+
+void *thread_memory(Keep what, std::int64_t bytes) noexcept {
+    Blocks &blocks = blocks_of_this_thread;
+    Block &block = blocks.of[static_cast<int>(what)];
+    if (bytes <= block.bytes) return block.data;
+    if (!blocks.kept) {
+        if (!keep(blocks)) return nullptr;
+        blocks.kept = true;
+    }
+    std::free(block.data);
+    block = Block{nullptr, 0};
+    const std::size_t rounded = (static_cast<std::size_t>(bytes) + 63) / 64 * 64;
+    block.data = std::aligned_alloc(64, rounded);
+    if (block.data) block.bytes = static_cast<std::int64_t>(rounded);
+    return block.data;
+}
+
+}  // namespace holonomic

@@ -1,0 +1,16 @@
+// Memory that a thread keeps from call to call, until it ends.
+#ifndef HOLONOMIC_THREAD_MEMORY_HPP
+#define HOLONOMIC_THREAD_MEMORY_HPP
+
+#include <cstdint>
+
+namespace holonomic {
+
+enum class Keep { scratch, store, piece_tallies, block_tallies };
+
+// At least `bytes` of the calling thread's memory for this purpose, aligned to 64; its contents are lost when it has to
+// grow. Null if there is no memory.
+void *thread_memory(Keep what, std::int64_t bytes) noexcept;
+
+}  // namespace holonomic
+#endif

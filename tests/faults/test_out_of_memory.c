@@ -1,0 +1,343 @@
+/**
+ * Every allocation made to fail in turn, in every function that allocates: HOL_ERR_MEMORY, outputs as they were, nothing
+ * leaked, and the same call then succeeds with the same handle.
+ *
+ * Each attempt runs in a thread of its own, because a thread's scratch memory is kept from call to call.
+ */
+#define _GNU_SOURCE
+#include "assembly.h"
+#include "check.h"
+#include "failing_allocations.h"
+
+#include <pthread.h>
+
+/** One call: writes what it computes to `out`, which `prepare` fills before. */
+typedef struct operation {
+    const char *name;
+    int (*call)(const assembly *a, double *out);
+} operation;
+
+static size_t atoms3(const assembly *a) { return assembly_size(a); }
+static size_t bonds(const assembly *a) { return (size_t)a->n_bonds; }
+
+/* Layout of `out`: two arrays per atom, two per bond, and 16 numbers. */
+static double *per_bond(const assembly *a, double *out) { return out + 2 * atoms3(a); }
+static double *numbers(const assembly *a, double *out) { return per_bond(a, out) + 2 * bonds(a); }
+static size_t out_size(const assembly *a) { return 2 * atoms3(a) + 2 * bonds(a) + 16; }
+
+static void prepare(const assembly *a, double *out)
+{
+    for (size_t i = 0; i < out_size(a); ++i) out[i] = 0.25;
+    memcpy(out, a->v, sizeof *out * atoms3(a));
+    for (size_t i = 0; i < atoms3(a); ++i) out[atoms3(a) + i] = a->r[i] + 0.003 * a->v[i];
+}
+
+static int forces(const assembly *a, double *out)
+{
+    return hol_forces(a->chains, a->r, a->v, a->f, per_bond(a, out), per_bond(a, out) + bonds(a), out, HOL_WRITE, numbers(a, out));
+}
+
+static int velocities(const assembly *a, double *out)
+{
+    return hol_project_velocities(a->chains, a->r, out, per_bond(a, out), numbers(a, out));
+}
+
+static int positions(const assembly *a, double *out)
+{
+    return hol_project_positions(a->chains, a->r, out + atoms3(a), out, 0.003, per_bond(a, out), 0, numbers(a, out), NULL);
+}
+
+static int violation(const assembly *a, double *out)
+{
+    hol_worst worst = {0, 0, 0, 0, 0, 0};
+    const int status = hol_violation(a->chains, a->r, a->v, &worst);
+    if (status == HOL_OK) numbers(a, out)[0] = worst.length;
+    return status;
+}
+
+static int metric(const assembly *a, double *out)
+{
+    return hol_metric(a->chains, a->r, 1, per_bond(a, out), NULL, numbers(a, out), out, HOL_WRITE);
+}
+
+static int inverse(const assembly *a, double *out)
+{
+    hol_inverse *made = (hol_inverse *)out;
+    int status = hol_inverse_create(a->chains, 0, a->r, &made);
+    if (status != HOL_OK) {
+        if (made != NULL) return HOL_ERR_INTERNAL; /* "NULL on an error" */
+        return status;
+    }
+    double *o = numbers(a, out);
+    status = hol_inverse_entry(made, HOL_UNIT_DIAGONAL, 0, 1, o);
+    if (status == HOL_OK) status = hol_inverse_condition(made, o + 1);
+    if (status != HOL_OK) o[0] = o[1] = 0.25;
+    hol_inverse_destroy(made);
+    return status;
+}
+
+static hol_inverse *prepared; /* made before allocations fail */
+
+static int inverse_row(const assembly *a, double *out) { return hol_inverse_row(prepared, HOL_PHYSICAL, 1, per_bond(a, out)); }
+static int inverse_band(const assembly *a, double *out) { return hol_inverse_band(prepared, HOL_UNIT_DIAGONAL, 1, per_bond(a, out)); }
+static int inverse_bound(const assembly *a, double *out)
+{
+    return hol_inverse_error_bound(prepared, a->v, a->f, a->length, per_bond(a, out), numbers(a, out));
+}
+
+static double gamma_of(size_t k) { return 0.3 + 0.1 * (double)(k % 2); }
+
+static int tridiagonal(const assembly *a, double *out, int which)
+{
+    enum { ROWS = 50 };
+    double gamma[ROWS], *o = per_bond(a, out);
+    for (size_t k = 0; k < ROWS; ++k) gamma[k] = gamma_of(k);
+    switch (which) {
+    case 0: return hol_tridiagonal_pivots(ROWS, gamma, o);
+    case 1: return hol_tridiagonal_log_det(ROWS, gamma, o);
+    case 2: return hol_tridiagonal_solve(ROWS, gamma, gamma, o);
+    case 3: return hol_tridiagonal_inverse_entry(ROWS, gamma, 3, 17, o);
+    default: return hol_tridiagonal_inverse_band(ROWS, gamma, 1, o);
+    }
+}
+
+static int pivots(const assembly *a, double *out) { return tridiagonal(a, out, 0); }
+static int log_det(const assembly *a, double *out) { return tridiagonal(a, out, 1); }
+static int solve(const assembly *a, double *out) { return tridiagonal(a, out, 2); }
+static int entry(const assembly *a, double *out) { return tridiagonal(a, out, 3); }
+static int band(const assembly *a, double *out) { return tridiagonal(a, out, 4); }
+
+static int partition(const assembly *a, double *out)
+{
+    const double mass[7] = {1, 12, 1, 16, 1, 14, 3};
+    double *o = numbers(a, out);
+    return hol_partition_function(6, mass, o, o + 1, o + 2);
+}
+
+static const operation operations[] = {
+    {"hol_forces", forces},
+    {"hol_project_velocities", velocities},
+    {"hol_project_positions", positions},
+    {"hol_violation", violation},
+    {"hol_metric", metric},
+    {"hol_inverse_create", inverse},
+    {"hol_inverse_row", inverse_row},
+    {"hol_inverse_band", inverse_band},
+    {"hol_inverse_error_bound", inverse_bound},
+    {"hol_tridiagonal_pivots", pivots},
+    {"hol_tridiagonal_log_det", log_det},
+    {"hol_tridiagonal_solve", solve},
+    {"hol_tridiagonal_inverse_entry", entry},
+    {"hol_tridiagonal_inverse_band", band},
+    {"hol_partition_function", partition},
+};
+
+typedef struct attempt {
+    const operation *what;
+    const assembly *a;
+    const double *right;             /* what must come out; NULL: not known yet */
+    double *before, *out, *again;
+    long good;                       /* allocations that succeed */
+    int once;                        /* one fails, or all from there on */
+    int status, second;
+    long refused;
+} attempt;
+
+static void *run(void *argument)
+{
+    attempt *t = argument;
+    if (t->once)
+        fail_once_after(t->good);
+    else
+        fail_after(t->good);
+    t->status = t->what->call(t->a, t->out);
+    t->refused = refused();
+    fail_no_more();
+    t->second = t->what->call(t->a, t->again);
+    return NULL;
+}
+
+static void run_in_a_thread(attempt *t)
+{
+    pthread_t thread;
+    prepare(t->a, t->before);
+    prepare(t->a, t->out);
+    prepare(t->a, t->again);
+    assert_int_equal(pthread_create(&thread, NULL, run, t), 0);
+    assert_int_equal(pthread_join(thread, NULL), 0);
+}
+
+/** Fails one allocation after the other until a call meets no failure any more. Returns how many were met. */
+static long fail_each(const operation *what, const assembly *a, int once)
+{
+    const size_t size = out_size(a);
+    double *right = untouched(size), *before = untouched(size), *out = untouched(size), *again = untouched(size);
+    attempt t = {what, a, right, before, out, again, 1000000, once, 0, 0, 0};
+    run_in_a_thread(&t); /* the first call may prepare the handle */
+    if (t.status != HOL_OK) fail_msg("%s: %s", what->name, hol_status_name(t.status));
+    memcpy(right, out, size * sizeof *out);
+    const long in_use = blocks_in_use();
+    for (t.good = 0;; ++t.good) {
+        run_in_a_thread(&t);
+        if (blocks_in_use() != in_use)
+            fail_msg("%s: %ld blocks leak after failure %ld", what->name, blocks_in_use() - in_use, t.good);
+        assert_int_equal(t.second, HOL_OK);
+        assert_same_bits(again, right, size);
+        if (t.refused == 0) break;
+        if (t.status != HOL_ERR_MEMORY)
+            fail_msg("%s: %s after allocation %ld failed", what->name, hol_status_name(t.status), t.good);
+        assert_same_bits(out, before, size);
+    }
+    assert_int_equal(t.status, HOL_OK);
+    assert_same_bits(out, right, size);
+    free(right), free(before), free(out), free(again);
+    return t.good;
+}
+
+static void fail_each_of_all(const assembly *a, const char *name)
+{
+    CHECK(hol_inverse_create(a->chains, 0, a->r, &prepared));
+    for (size_t i = 0; i < sizeof operations / sizeof *operations; ++i) {
+        const long met = fail_each(operations + i, a, 0) + fail_each(operations + i, a, 1);
+        print_message("%-28s %-12s %3ld allocations failed in turn\n", name, operations[i].name, met);
+    }
+    hol_inverse_destroy(prepared);
+}
+
+static void every_allocation_of_a_calculation_can_fail(void **state)
+{
+    (void)state;
+    static const int64_t shapes[][3] = {{9, 3, 30}, {1, 2000, 2000}, {3, 2, 3000}};
+    static const char *const names[] = {"short chains", "one long chain", "long and short"};
+    for (int i = 0; i < 3; ++i) {
+        assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, shapes[i][0], shapes[i][1], shapes[i][2], SCATTERED, 5);
+        fail_each_of_all(&a, names[i]);
+        assembly_free(&a);
+    }
+}
+
+/** The handle's own preparation happens in the first calculation after a change: that may fail too. */
+static void the_first_calculation_with_a_handle_can_fail(void **state)
+{
+    (void)state;
+    assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, 20, 1, 30, SCATTERED, 6);
+    const size_t size = out_size(&a);
+    double *before = untouched(size), *out = untouched(size), *again = untouched(size), *right = untouched(size);
+    prepare(&a, right);
+    CHECK(forces(&a, right));
+    unsigned char *active = malloc((size_t)a.n_chains);
+    memset(active, 1, (size_t)a.n_chains);
+    attempt t = {operations, &a, right, before, out, again, 0, 0, 0, 0, 0};
+    for (t.good = 0;; ++t.good) {
+        CHECK(hol_chains_set_active(a.chains, active)); /* makes the handle prepare itself again */
+        run_in_a_thread(&t);
+        assert_int_equal(t.second, HOL_OK);
+        assert_same_bits(again, right, size);
+        if (t.refused == 0) break;
+        assert_int_equal(t.status, HOL_ERR_MEMORY);
+        assert_same_bits(out, before, size);
+    }
+    assert_true(t.good > 0);
+    free(before), free(out), free(again), free(right), free(active);
+    assembly_free(&a);
+}
+
+static void handles_are_not_made_without_memory(void **state)
+{
+    (void)state;
+    const double mass[4] = {1, 2, 3, 4};
+    const long in_use = blocks_in_use();
+    long good = 0;
+    for (;; ++good) {
+        hol_chains *chains = (hol_chains *)&good;
+        fail_after(good);
+        const int status = hol_chains_create(4, mass, &chains);
+        fail_no_more();
+        if (status == HOL_OK) {
+            hol_chains_destroy(chains);
+            break;
+        }
+        assert_int_equal(status, HOL_ERR_MEMORY);
+        assert_null(chains);
+        assert_int_equal(blocks_in_use(), in_use);
+    }
+    assert_true(good > 0);
+    assert_int_equal(blocks_in_use(), in_use);
+}
+
+enum { ADD = 0, ADD_BLOCK, SET_ACTIVE, CHANGES };
+
+static int change(hol_chains *chains, int which)
+{
+    static const int64_t list[4] = {40, 7, 33, 12}; /* free atoms */
+    static const double length[3] = {1, 1.5, 0.5};
+    static const unsigned char active[40] = {1, 0, 1};
+    switch (which) {
+    case ADD: return hol_chains_add(chains, 3, list, length);
+    case ADD_BLOCK: return hol_chains_add_block(chains, 3, 3, 14, length);
+    default: return hol_chains_set_active(chains, active);
+    }
+}
+
+static hol_chains *some_chains(void)
+{
+    hol_chains *chains = NULL;
+    double mass[50];
+    static const int64_t list[3] = {5, 3, 1};
+    static const double length[2] = {1, 2};
+    for (int i = 0; i < 50; ++i) mass[i] = 1 + i % 3;
+    CHECK(hol_chains_create(50, mass, &chains));
+    CHECK(hol_chains_add(chains, 2, list, length));
+    return chains;
+}
+
+static void a_change_that_finds_no_memory_changes_nothing(void **state)
+{
+    (void)state;
+    for (int which = 0; which < CHANGES; ++which) {
+        const long in_use = blocks_in_use();
+        long good = 0;
+        for (;; ++good) {
+            hol_chains *chains = some_chains(), *twin = some_chains();
+            fail_after(good);
+            const int status = change(chains, which);
+            const long no = refused();
+            fail_no_more();
+            if (status != HOL_OK) {
+                assert_int_equal(status, HOL_ERR_MEMORY);
+                assert_int_equal(hol_chains_n_chains(chains), 1);
+                assert_int_equal(hol_chains_n_bonds(chains), 2);
+                CHECK(change(chains, which)); /* the atoms are still free */
+            }
+            CHECK(change(twin, which));
+            int64_t offsets[2][8], atoms[2][4];
+            CHECK(hol_chains_offsets(chains, offsets[0]));
+            CHECK(hol_chains_offsets(twin, offsets[1]));
+            const int64_t n = hol_chains_n_chains(twin);
+            assert_int_equal(hol_chains_n_chains(chains), n);
+            assert_memory_equal(offsets[0], offsets[1], sizeof(int64_t) * (size_t)(n + 1));
+            for (int64_t c = 1; c < n; ++c) {
+                CHECK(hol_chains_atoms(chains, c, atoms[0]));
+                CHECK(hol_chains_atoms(twin, c, atoms[1]));
+                assert_memory_equal(atoms[0], atoms[1], sizeof atoms[0]);
+            }
+            assert_int_equal(hol_chains_degrees_of_freedom(chains, 3), hol_chains_degrees_of_freedom(twin, 3));
+            hol_chains_destroy(chains);
+            hol_chains_destroy(twin);
+            assert_int_equal(blocks_in_use(), in_use);
+            if (status == HOL_OK && no == 0) break;
+        }
+        assert_true(good > 0);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_allocation_of_a_calculation_can_fail),
+        cmocka_unit_test(the_first_calculation_with_a_handle_can_fail),
+        cmocka_unit_test(handles_are_not_made_without_memory),
+        cmocka_unit_test(a_change_that_finds_no_memory_changes_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
