@@ -36,6 +36,15 @@ present() {
 #include <setjmp.h>
 #include <cmocka.h>
 int main(void) { return 0; }' | cc -x c - -lcmocka -o /dev/null 2>/dev/null ;;
+        mpfr) echo '#include <mpfr.h>' | cc -x c -fsyntax-only - 2>/dev/null ;;
+        libfuzzer) echo 'extern "C" int LLVMFuzzerTestOneInput(const unsigned char *, unsigned long) { return 0; }' |
+            clang++ -x c++ -fsanitize=fuzzer,address,undefined - -o /dev/null 2>/dev/null ;;
+        benchmark) echo '#include <benchmark/benchmark.h>
+int main() { return static_cast<int>(benchmark::CPUInfo::Get().num_cpus) * 0; }' |
+            c++ -x c++ - -lbenchmark -pthread -o /dev/null 2>/dev/null ;;
+        lapack) echo 'extern "C" void dptsv_(); int main() { dptsv_(); }' | c++ -x c++ - -llapack -o /dev/null 2>/dev/null ;;
+        openmm) echo '#include <OpenMM.h>
+int main() { OpenMM::System system; }' | c++ -x c++ - -lOpenMM -o /dev/null 2>/dev/null ;;
         eigen) [ -e /usr/include/eigen3/Eigen/Core ] || pkg-config --exists eigen3 2>/dev/null ;;
         *) command -v "$1" >/dev/null ;;
     esac
@@ -48,7 +57,13 @@ debian_package() {
         make | cmake | gfortran | pkg-config | valgrind | git) echo "$1" ;;
         cmocka) echo libcmocka-dev ;;
         eigen) echo libeigen3-dev ;;
+        mpfr) echo libmpfr-dev ;;
+        libfuzzer) echo clang libclang-rt-dev ;;
+        qemu-x86_64) echo qemu-user ;;
         gnuplot) echo gnuplot-nox ;;
+        benchmark) echo libbenchmark-dev ;;
+        lapack) echo liblapack-dev ;;
+        openmm) echo libopenmm-dev ;;
         abidiff) echo abigail-tools ;;
         *) echo "$1" ;;
     esac

@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <cmath>
+
+#include "bond_matrix.hpp"
+#include "checks.hpp"
+
+namespace stress {
+
+using namespace reference;
+
+namespace {
+
+constexpr long double eps = DBL_EPSILON;
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+/** Whether the reference's Newton method finds an answer. */
+bool has_answer(const hostile_chain& c)
+{
+    const solution_problem p = c.problem();
+    solution s;
+    std::vector<long double> r(3 * at(c.n_bonds + 1));
+    if (solution_positions(&p, drifted(c).data(), c.length.data(), c.dt, r.data(), &s) < 0) return false;
+    solution_free(&s);
+    return true;
+}
+
+bool finite(const vec& x)
+{
+    return std::all_of(x.begin(), x.end(), [](double y) { return std::isfinite(y); });
+}
+
+bool all_unwritten(const vec& x)
+{
+    return std::all_of(x.begin(), x.end(), is_unwritten);
+}
+
+} // namespace
+
+void check_positions(const hostile_chain& c, const library_results& alone, verdict& out)
+{
+    if (c.dt == 0) return;
+    if (alone.positions != HOL_OK) {
+        out.note(REFUSED_STEP, has_answer(c));
+        return;
+    }
+    out.note(REFUSED_STEP, false);
+    const exact_chain old(c.problem());
+    const vec drift = drifted(c);
+    const std::size_t n = at(c.n_bonds);
+    const long double k_eps = oracle_bound(c.n_bonds) * eps;
+    const long double dt2 = static_cast<long double>(c.dt) * c.dt;
+    long double extent = 0;
+    for (std::size_t i = 0; i < drift.size(); ++i)
+        extent = std::max({extent, std::fabs(static_cast<long double>(drift[i])), std::fabs(static_cast<long double>(c.r[i]))});
+    const long double shortest = *std::min_element(c.length.begin(), c.length.end());
+    std::vector<long double> term(n + 1, 0);
+    std::vector<quad3> shift(n + 1, quad3{});
+    for (std::size_t k = 0; k < n; ++k) {
+        const quad3 d = row(alone.r.data(), k + 1) - row(alone.r.data(), k);
+        const quad a = c.length[k];
+        const long double error = static_cast<long double>(absolute(dot(d, d) - a * a) / (a * a));
+        // a bond between atoms that are both fixed stays as it is; there is none here
+        out.note(POSITION_LENGTH, error / (8 * eps * (1 + extent / shortest)));
+        out.note(POSITION_LENGTH_LOCAL, error / (8 * eps * (1 + extent / c.length[k])));
+        const quad3 pull = 2 * quad(alone.position_lambda[k]) * old.d[k];
+        shift[k] = shift[k] + pull;
+        shift[k + 1] = shift[k + 1] - pull;
+        const long double size = 2 * std::fabs(static_cast<long double>(alone.position_lambda[k])) * c.length[k];
+        term[k] += size;
+        term[k + 1] += size;
+    }
+    for (std::size_t i = 0; i <= n; ++i)
+        for (std::size_t x = 0; x < 3; ++x) {
+            const quad exact = quad(drift[3 * i + x]) + quad(dt2) * old.w[i] * shift[i][x];
+            const long double error = static_cast<long double>(absolute(quad(alone.r[3 * i + x]) - exact));
+            const long double allowed = k_eps * (std::fabs(static_cast<long double>(drift[3 * i + x])) + dt2 * c.w[i] * term[i]);
+            out.note(POSITION_SHIFT, error == 0 ? 0 : error / allowed);
+        }
+}
+
+void check_outputs(const hostile_chain& c, const library_results& part, verdict& out)
+{
+    const auto level = [&](int status, bool kept, bool complete) {
+        const bool failed = status != HOL_OK; // of this chain, or of another in the same call
+        out.note(OUTPUTS_KEPT, !(complete || (failed && kept)));
+    };
+    const vec drift = drifted(c);
+    level(part.forces, all_unwritten(part.lambda) && all_unwritten(part.g), finite(part.lambda) && finite(part.g));
+    level(part.metric, all_unwritten(part.log_det) && all_unwritten(part.fixman),
+          finite(part.log_det) && finite(part.fixman));
+    level(part.velocities, all_unwritten(part.velocity_lambda) && same_bits(part.v, c.v),
+          finite(part.velocity_lambda) && finite(part.v));
+    level(part.positions, all_unwritten(part.position_lambda) && same_bits(part.r, drift) && same_bits(part.moved, c.v),
+          finite(part.position_lambda) && finite(part.r) && finite(part.moved));
+}
+
+void check_same(const library_results& one, const library_results& other, verdict& out)
+{
+    const vec library_results::*const all[] = {
+        &library_results::lambda, &library_results::g, &library_results::log_det, &library_results::fixman,
+        &library_results::velocity_lambda, &library_results::v, &library_results::position_lambda, &library_results::r,
+        &library_results::moved};
+    for (const auto member : all) out.note(SAME_BITS, !same_bits(one.*member, other.*member));
+}
+
+verdict check_alone(const hostile_chain& c, bool& regular, long double& condition)
+{
+    verdict out;
+    const solution_problem p = c.problem();
+    const exact_metric exact = metric_of(p);
+    condition = exact.condition;
+    regular = exact.regular;
+    const arrangement a = arrange({&c}, 0);
+    const library_results alone = compute(a, c.dt > 0 ? c.dt : 1);
+    check_outputs(c, alone, out);
+    if (!regular) { // nothing to compare with: the chain is taut between fixed atoms
+        out.note(ACCEPTED, alone.forces != HOL_ERR_DEGENERATE || alone.velocities != HOL_ERR_DEGENERATE ||
+                               alone.metric != HOL_ERR_DEGENERATE);
+        return out;
+    }
+    out.note(REFUSED, alone.forces != HOL_OK || alone.velocities != HOL_OK || alone.metric != HOL_OK);
+    check_linear_levels(c, alone, out);
+    check_metric(c, exact, a, alone, out);
+    check_positions(c, alone, out);
+    return out;
+}
+
+} // namespace stress
