@@ -243,11 +243,12 @@ static void forces_block(const Block &block, const Lane *lane, const ForcesCall 
 
 // A faster path for small molecules: returns the first one that it has left (molecules.inl). Most calls have none.
 template <class Call>
-static int64_t small_molecules(const Call &, const Unit &, const Block &, int64_t first) {
+static int64_t small_molecules(const Call &, const Unit &, const Block &, int64_t first, Tally &) {
     return first;
 }
-static int64_t small_molecules(const ForcesCall &call, const Unit &unit, const Block &block, int64_t first);
-static int64_t small_molecules(const VelocitiesCall &call, const Unit &unit, const Block &block, int64_t first);
+static int64_t small_molecules(const ForcesCall &call, const Unit &unit, const Block &block, int64_t first, Tally &);
+static int64_t small_molecules(const VelocitiesCall &call, const Unit &unit, const Block &block, int64_t first, Tally &);
+static int64_t small_molecules(const PositionsCall &call, const Unit &unit, const Block &block, int64_t first, Tally &);
 
 template <class Call, class Work>
 static inline void for_each_block(const Call &call, const Unit &unit, double *scratch, Tally &tally, Work work) {
@@ -261,7 +262,7 @@ static inline void for_each_block(const Call &call, const Unit &unit, double *sc
             set_masses(block, lane, arena);
         }
         if (block.lanes == W) {
-            const int64_t next = small_molecules(call, unit, block, first);
+            const int64_t next = small_molecules(call, unit, block, first, tally);
             if (next > first) {
                 first = next - W;  // the rest goes on from there
                 continue;

@@ -123,6 +123,76 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
     return first;
 }
 
+// Component c of atom a of W diatomic molecules.
+HOL_INLINE vec diatomic(const double *p, int a, int c) {
+    vec x;
+    for (int i = 0; i < W; ++i) x[i] = p[6 * i + 3 * a + c];
+    return x;
+}
+
+// Adds w_a t b to atom 0 and subtracts it from atom 1 of the molecules in `chosen`.
+HOL_INLINE void pull_diatomics(const Block &block, const vec3 &b, vec t, unsigned chosen, double *out) {
+    const vec3 pull = {t * b.x, t * b.y, t * b.z};
+    for (int a = 0; a < 2; ++a) {
+        const vec w = block.uniform_w ? block.w_uniform : block.w[a];
+        const vec3 g = a == 0 ? vec3{w * pull.x, w * pull.y, w * pull.z}
+                              : vec3{w * (0.0 - pull.x), w * (0.0 - pull.y), w * (0.0 - pull.z)};
+        for (int i = 0; i < W; ++i) {
+            if (!(chosen >> i & 1)) continue;
+            double *p = out + 6 * i + 3 * a;
+            p[0] += g.x[i];
+            p[1] += g.y[i];
+            p[2] += g.z[i];
+        }
+    }
+}
+
+// Positions of diatomic molecules, W at a time, as positions_block does them; what is left over goes there.
+static int64_t small_molecules(const PositionsCall &call, const Unit &unit, const Block &block, int64_t first,
+                               Tally &tally) {
+    const Lane &head = unit.lanes[0];
+    if (!unit.regular || head.atoms || head.n_bonds != 1 || !call.r.packed || !call.r_ref.packed ||
+        (call.v.x && !call.v.packed) || call.virial || call.box.shape != Box::none)
+        return first;
+    const double *const r_ref = reinterpret_cast<double *>(call.r_ref.x) + 3 * head.first_atom;
+    double *const r = reinterpret_cast<double *>(call.r.x) + 3 * head.first_atom;
+    double *const v = call.v.x ? reinterpret_cast<double *>(call.v.x) + 3 * head.first_atom : nullptr;
+    vec memory[16];
+    Arena arena = {reinterpret_cast<double *>(memory)};
+    Newton x(1, arena);
+    x.a2 = nullptr;
+    x.a2_min = x.a2_uniform = splat(head.length_uniform * head.length_uniform);
+    const mask all = first_lanes(W);
+    for (; first + W <= unit.count; first += W) {
+        vec largest = {};
+        vec *const b = &x.b[0].x, *const d = &x.D[0].x;
+        const double *p = r_ref + 6 * first, *q = r + 6 * first;
+        for (int c = 0; c < 3; ++c) {
+            b[c] = diatomic(p, 1, c) - diatomic(p, 0, c);
+            const vec q0 = diatomic(q, 0, c), q1 = diatomic(q, 1, c);
+            d[c] = q1 - q0;
+            largest = max(max(abs(q0), abs(q1)), largest);
+        }
+        const vec carried = carried_error(call.r, largest, x.a2_min);
+        x.s[0] = x.tau[0] = vec{};
+        const Outcome out = solve_single_bonds(block, x, call, carried, all);
+        if (any(~(out.converged | out.untouched)) || any(out.converged & coarse_moves(block, x, largest))) break;
+        const unsigned moved = bits(out.converged);
+        pull_diatomics(block, x.b[0], x.tau[0], moved, r + 6 * first);
+        if (v) pull_diatomics(block, x.b[0], (1 / call.dt) * x.tau[0], moved, v + 6 * first);
+        if (call.lambda) store(call.lambda + head.first_bond + first, 0.5 / (call.dt * call.dt) * x.tau[0]);
+        for (int i = 0; i < W; ++i) {
+            if (!(out.error[i] > tally.worst || tally.worst_chain < 0)) continue;
+            tally.worst = out.error[i];
+            tally.worst_chain = head.chain + first + i;
+            tally.worst_bond = 0;
+        }
+        tally.n_corrected += __builtin_popcount(moved);
+        if (moved && tally.iterations < 1) tally.iterations = 1;
+    }
+    return first;
+}
+
 template <int N, bool uniform>
 static int64_t molecules(const ForcesCall &call, const Unit &unit, const Block &block, int64_t first) {
     if (call.v.x && call.f.x)
@@ -160,11 +230,12 @@ static int64_t any_molecules(const Call &call, const Unit &unit, const Block &bl
     }
 }
 
-static int64_t small_molecules(const ForcesCall &call, const Unit &unit, const Block &block, int64_t first) {
+static int64_t small_molecules(const ForcesCall &call, const Unit &unit, const Block &block, int64_t first, Tally &) {
     return any_molecules(call, unit, block, first);
 }
 
-static int64_t small_molecules(const VelocitiesCall &call, const Unit &unit, const Block &block, int64_t first) {
+static int64_t small_molecules(const VelocitiesCall &call, const Unit &unit, const Block &block, int64_t first,
+                               Tally &) {
     return any_molecules(call, unit, block, first);
 }
 

@@ -63,6 +63,13 @@ static inline vec extent(const Block &block, const Packed &r) {
     return largest;
 }
 
+// The error |D.D - a^2| / a^2 that the coordinates carry: each end of a bond is rounded to u |r|, u = half a unit in the
+// last place.
+HOL_INLINE vec carried_error(const AtomArray &r, vec largest_coordinate, vec a2_min) {
+    const double u = r.is_float ? 5.97e-8 : 1.11e-16;
+    return (8 * u) * (splat(1.0) + largest_coordinate / sqrt(a2_min));
+}
+
 // s = (D.D - a^2) / 2 of every bond; returns the largest |D.D - a^2| / a^2 per lane.
 static inline vec residuals(const Block &block, const Newton &x) {
     vec worst = {}, poison = {};
@@ -391,9 +398,7 @@ static void positions_block_of(const Block &block, const Lane *lane, const Posit
     const Packed v = open(call.v, block, lane, arena, true);
     Newton x(block.n, arena);
     set_lengths(block, lane, x, arena);
-    // What the coordinates carry: each end of a bond is rounded to u |r|, u = half a unit in the last place.
-    const double u = call.r.is_float ? 5.97e-8 : 1.11e-16;
-    const vec largest = extent(block, r), carried = (8 * u) * (splat(1.0) + largest / sqrt(x.a2_min));
+    const vec largest = extent(block, r), carried = carried_error(call.r, largest, x.a2_min);
     load_positions(block, call, r_ref, r, x);
     Outcome out = solve_positions<uniform, false>(block, x, call, carried, block.in_use(), call.guess);
     move_atoms<uniform>(block, call, x, r, carried, largest, out, arena);
