@@ -146,7 +146,9 @@ contains
       end if
       n_parts = merge(3, 2, z%extent >= 0)
       do part = 1, n_parts
-         if (.not. enough(named(name, "xyz"(part:part)), self%lines(part)%extent, n_atoms, "atoms", problem)) return
+         if (self%lines(part)%extent >= n_atoms) cycle
+         call too_few(named(name, "xyz"(part:part)), self%lines(part)%extent, n_atoms, "atoms", problem)
+         return
       end do
       self%given = .true.
       self%view%element = element
@@ -216,9 +218,15 @@ contains
       integer(c_int64_t), intent(in) :: extent, needed
       type(failure), intent(inout) :: problem
       enough = extent >= needed
-      if (.not. enough) call problem%set(HOL_ERR_VALUE, name//" has "//decimal(extent)//" elements, too few for " &
-                                         //decimal(needed)//" "//what)
+      if (.not. enough) call too_few(name, extent, needed, what, problem)
    end function
+
+   recursive subroutine too_few(name, extent, needed, what, problem)
+      character(*), intent(in) :: name, what
+      integer(c_int64_t), intent(in) :: extent, needed
+      type(failure), intent(inout) :: problem
+      call problem%set(HOL_ERR_VALUE, name//" has "//decimal(extent)//" elements, too few for "//decimal(needed)//" "//what)
+   end subroutine
 
    ! Of an array per bond or per chain, after a check of its size; NULL if the caller gave none.
    recursive type(c_ptr) function list_of(array, name, needed, what, problem)

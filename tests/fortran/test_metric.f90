@@ -26,6 +26,7 @@ program test_metric
    call straight_chain_in_closed_form()
    call tridiagonal_refuses()
    call partition_functions()
+   deallocate (names)
    call finish()
 
 contains

@@ -16,6 +16,7 @@ program test_oracle
    do i = 1, size(names)
       call references_are_met(trim(folder)//"/"//trim(names(i)))
    end do
+   deallocate (names)
    call finish()
 
 contains
