@@ -1,4 +1,7 @@
 // bench_holonomic [--tiny | --quick] --out DIR [SECTION ..]
+// bench_holonomic --isa: the instruction set in use
+#include <holonomic.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -42,7 +45,7 @@ Effort effort_of(Extent extent) {
 }
 
 int usage() {
-    std::fprintf(stderr, "usage: bench_holonomic [--tiny | --quick] --out DIR [SECTION ..]\nsections:");
+    std::fprintf(stderr, "usage: bench_holonomic [--tiny | --quick] --out DIR [SECTION ..]\n       bench_holonomic --isa\nsections:");
     for (const auto &section : sections) std::fprintf(stderr, " %s", section.first.c_str());
     std::fprintf(stderr, "\n");
     return 2;
@@ -61,6 +64,8 @@ int main(int argc, char **argv) {
             extent = Extent::quick;
         else if (std::strcmp(argv[i], "--tiny") == 0)
             extent = Extent::tiny;
+        else if (std::strcmp(argv[i], "--isa") == 0)
+            return std::printf("%s\n", hol_instruction_set()) < 0;
         else if (std::strcmp(argv[i], "--out") == 0 && i + 1 < argc)
             out = argv[++i];
         else if (argv[i][0] != '-' && find(argv[i]))

@@ -1,0 +1,16 @@
+# Does the error of the multipliers grow with the condition number? Chains of 64 bonds.
+set logscale xy
+set format xy "%.0e"
+set xlabel "condition number of Z, scaled to ones on its diagonal"
+set ylabel "largest |lambda - exact| / scale"
+set key left top
+set yrange [1e-17:10]
+set title "Error of the multipliers against the condition number, chains of 64 bonds"
+pick(method) = sprintf("$6 == \"%s\" && $7 ~ /^condition/", method)
+do for [kind in "png svg"] {
+    set terminal @kind
+    set output sprintf("%s/condition.%s", out, kind)
+    plot for [i in "11 7 10 1"] rows(pick(names[int(i)]), "substr($7, 11), $8") using 1:2 \
+             with linespoints lw width(int(i)) lc rgb colours[int(i)] pt marks[int(i)] title names[int(i)]
+    unset output
+}

@@ -1,0 +1,17 @@
+# Which tolerance does a simulation at constant energy need? Textbook RATTLE against the library.
+set logscale xy
+set format xy "%.0e"
+set xlabel "tolerance of RATTLE's sweeps"
+set ylabel "drift of the energy / (kinetic energy x unit of time)"
+set key left top
+set title "Energy drift of a melt of 64 chains of 31 bonds, WCA beads, dt = 0.003"
+set xrange [*:*] reverse
+do for [kind in "png svg"] {
+    set terminal @kind
+    set output sprintf("%s/energy_drift.%s", out, kind)
+    exact = real(system(sprintf("awk -F, '$7 == \"energy drift to rounding\" { print $8 }' '%s'", results)))
+    plot rows("$6 == \"rattle\" && $7 ~ /^energy drift/", "substr($7, 24), $8") using 1:2 \
+             with linespoints lw 1.5 lc rgb colours[4] pt marks[4] title "rattle", \
+         exact with lines lw 3 lc rgb colours[1] title "holonomic, to rounding"
+    unset output
+}
