@@ -7,10 +7,11 @@ namespace HOL_ISA {
 struct System {
     vec3 *D, *D_low;
     vec *t, *L;  // t: right-hand side, then u, then the solution t = 2 lambda
-    vec *b, *pivots, *spare;  // for refine(); they share the memory of D_low
+    vec *b, *pivots, *spare, *dots;  // for refine(); all but dots share the memory of D_low
     System(long n, Arena &arena)
         : D(reinterpret_cast<vec3 *>(arena.vecs(3 * n))), D_low(reinterpret_cast<vec3 *>(arena.vecs(3 * n))),
-          t(arena.vecs(n)), L(arena.vecs(n)), b(&D_low->x), pivots(b + n), spare(pivots + n) {}
+          t(arena.vecs(n)), L(arena.vecs(n)), b(&D_low->x), pivots(b + n), spare(pivots + n),
+          dots(arena.vecs(n)) {}
 };
 
 template <int terms, bool uniform, bool boxed, bool careful>
@@ -24,9 +25,9 @@ static __attribute__((noinline)) mask solve(const Block &block, const Box &box, 
     if (careful)
         forward_careful<uniform>(block, s.D, s.D_low, s.t, s.L);
     else
-        doubt = forward<uniform, refined>(block, Source{&r, &box}, s.D, s.t, s.L, s.pivots);
+        doubt = forward<uniform, refined>(block, Source{&r, &box}, s.D, s.t, s.L, s.pivots, s.dots);
     backward(block.n, s.t, s.L);
-    if (refined) refine<uniform>(block, s.D, s.b, s.pivots, s.L, s.t, s.spare);
+    if (refined) refine<uniform>(block, s.D, s.b, s.pivots, s.dots, s.L, s.t, s.spare);
     return finite(s.t[0]) & ~doubt & block.in_use();
 }
 

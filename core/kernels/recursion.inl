@@ -79,7 +79,7 @@ static __attribute__((noinline)) vec exact_dots(const Source &source, long k, ma
 // which takes the divisions out of the chain of dependences. Returns the lanes that need careful arithmetic.
 template <bool uniform, bool keep_pivots = false, int fixed = 0>
 static inline mask forward(const Block &block, const Source &source, const vec3 *D, vec *B, vec *L,
-                           vec *pivots = nullptr) {
+                           vec *pivots = nullptr, vec *dots = nullptr) {
     const long n = fixed > 0 ? fixed : block.n, n_min = fixed > 0 ? fixed : block.n_min;  // known to the compiler?
     const double least = 4 * joint_tolerance * joint_tolerance + 1;
     mask doubt = none();
@@ -108,6 +108,7 @@ static inline mask forward(const Block &block, const Source &source, const vec3 
             }
             const mask orthogonal = nearly_orthogonal(g, X);
             if (__builtin_expect(any(orthogonal), 0)) g = exact_dots(source, k, orthogonal, g);
+            if (keep_pivots) dots[k] = g;
             const vec l = (w * g) * rP;
             L[k] = l;
             y = mul_add(l, y, B[k + 1]);
@@ -162,9 +163,9 @@ static __attribute__((noinline)) void forward_careful(const Block &block, const 
 // Adds to t the solution for what it leaves of the right-hand side b: the recursion gives t to a few roundings of
 // itself, this makes the projected rates as small as the velocities' own rounding. s: working space [n].
 template <bool uniform, int fixed = 0>
-static inline void refine(const Block &block, const vec3 *D, const vec *b, const vec *pivots, const vec *L, vec *t,
-                          vec *s) {
-    const long n = fixed > 0 ? fixed : block.n, n_min = fixed > 0 ? fixed : block.n_min;
+static inline void refine(const Block &block, const vec3 *D, const vec *b, const vec *pivots, const vec *dots,
+                          const vec *L, vec *t, vec *s) {
+    const long n = fixed > 0 ? fixed : block.n;
     vec y = {}, before = {};  // before = w (q t - g t') of the joint on the left, the part of the row that it adds
     vec q = dot(D[0], D[0]);
     before = w_at<uniform>(block, 0) * (q * t[0]);
@@ -172,8 +173,7 @@ static inline void refine(const Block &block, const vec3 *D, const vec *b, const
         vec own = q * t[k], after = {};
         vec next_before = {}, q1 = {};
         if (k + 1 < n) {
-            vec g = dot(D[k], D[k + 1]);
-            if (__builtin_expect(k + 1 >= n_min, 0)) g = keep(joint(block, k), g);
+            const vec g = dots[k];
             q1 = dot(D[k + 1], D[k + 1]);
             const vec w = w_at<uniform>(block, k + 1);
             after = w * mul_add(-g, t[k + 1], own);
