@@ -98,7 +98,7 @@ contains
    subroutine stop_with(message)
       character(*), intent(in) :: message
       write (error_unit, "(2a)") "alkane_md: ", message
-      stop 2, quiet=.true.
+      stop 2
    end subroutine
 
 end module

@@ -173,7 +173,7 @@ contains
    subroutine stop_with(message)
       character(*), intent(in) :: message
       write (error_unit, "(2a)") "melt_md: ", message
-      stop 2, quiet=.true.
+      stop 2
    end subroutine
 
 end program
