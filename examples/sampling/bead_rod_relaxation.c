@@ -152,7 +152,7 @@ int main(int argc, char **argv)
         return 2;
     }
     measure(&m, &square, &cosine);
-    printf("%d chains of %d rods; start: mean square end-to-end distance / N = %.6f\n", (int)m.n_chains, (int)m.n_bonds,
+    printf("%d chains of %d rods, at the start mean square end-to-end distance / N = %.6f\n", (int)m.n_chains, (int)m.n_bonds,
            square / n);
     fprintf(data, "# time, mean square end-to-end distance / N, mean square cosine\n");
     for (long i = 1; i <= steps; ++i) {

@@ -9,9 +9,7 @@
  */
 static long double bound(int64_t n, long double logarithm)
 {
-    const volatile long double one = 1, small = LDBL_EPSILON;
-    const long double step = one + small > one ? LDBL_EPSILON : DBL_EPSILON;
-    return 4 * (long double)n * step + DBL_EPSILON * fabsl(logarithm) + DBL_EPSILON;
+    return 4 * (long double)n * long_double_rounding() + DBL_EPSILON * fabsl(logarithm) + DBL_EPSILON;
 }
 
 static double value(int64_t n, const double *masses, int p)

@@ -21,7 +21,7 @@ example_refuses(fixman_sampling.refuses_an_unknown_option sampling "there is no 
 
 # --------------------------------------------------------------------------------------------- bead_rod_relaxation
 example_test(bead_rod_relaxation sampling bead_rod_relaxation bonds=4 time=22 --
-    "200 chains of 4 rods; start: mean square end-to-end distance / N =" 1 = 4
+    "200 chains of 4 rods, at the start mean square end-to-end distance / N =" 1 = 4
     "largest bond error:" 1 < 1e-14
     "mean square end-to-end distance / N:" 1 > 0.97
     "mean square end-to-end distance / N:" 1 < 1.03
