@@ -126,7 +126,7 @@ contains
    end subroutine
 
    subroutine separate_arrays_of_different_strides()
-      real(real64) :: x(n), y(2*n), z(3*n), gx(3*n), gy(n), gz(2*n)
+      real(real64) :: x(n), y(2*n), z(3*n), gx(3*n), gy(n), gz(2*n), vx(2*n), vy(n), vz(n), again(3, n)
       call test("separate arrays with a stride each")
       y = -7
       z = -7
@@ -142,6 +142,24 @@ contains
       call check(all(same_bits(gz(::2), g(3, :))), "gz")
       call check(all(same_bits(gx(1::3), -7.0_real64)) .and. all(same_bits(gz(2::2), -7.0_real64)), &
                  "nothing between them is written")
+      call chains%metric(x(n:1:-1), y(::2), z(3::3), 1.0_real64, fx=gx(3::3), fy=gy, fz=gz(2::2))
+      call chains%metric(r, 1.0_real64, force=again)
+      call check(all(same_bits(gx(3::3), again(1, :))) .and. all(same_bits(gz(2::2), again(3, :))), "metric")
+      vx = -7
+      vx(::2) = v(1, :)
+      vy = v(2, n:1:-1)
+      vz = v(3, :)
+      x = x + dt*vx(2*n - 1:1:-2)
+      y(::2) = y(::2) + dt*v(2, :)
+      z(3::3) = z(3::3) + dt*v(3, :)
+      call chains%project_positions(r(1, :), r(2, :), r(3, :), x(n:1:-1), y(::2), z(3::3), dt, vx(::2), vy(n:1:-1), vz)
+      call check(all(same_bits(x(n:1:-1), moved_r(1, :))) .and. all(same_bits(z(3::3), moved_r(3, :))), "positions")
+      call check(all(same_bits(vx(::2), moved_v(1, :))) .and. all(same_bits(vy(n:1:-1), moved_v(2, :))), &
+                 "velocities of positions")
+      call chains%project_velocities(x(n:1:-1), y(::2), z(3::3), vx(::2), vy(n:1:-1), vz)
+      call check(all(same_bits(vx(::2), moved(1, :))) .and. all(same_bits(vz, moved(3, :))), "velocities")
+      call check(all(same_bits(y(2::2), -7.0_real64)) .and. all(same_bits(vx(2::2), -7.0_real64)), &
+                 "nothing between these is written either")
    end subroutine
 
    subroutine larger_arrays()
