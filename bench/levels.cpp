@@ -70,7 +70,7 @@ Methods position_peers(const Problem &p, bool all) {
 }
 
 std::vector<Recipe> shapes(const Run &run) {
-    const std::int64_t few = run.extent == Extent::tiny ? 64 : 2000;
+    const std::int64_t few = run.extent == Extent::tiny ? 64 : run.full() ? 2000 : 500;
     std::vector<Recipe> list = {single("straight5", 100, few), single("light_joints", 100, few)};
     if (run.extent == Extent::tiny) return {single("straight5", 32, few)};
     if (!run.full()) return list;
@@ -125,7 +125,7 @@ void position_section(const Run &run) {
     for (const Recipe &recipe : batches(run, "coil")) work(recipe, false);
     // The whole range of settings, on many chains in a call: error against run time.
     if (run.extent == Extent::tiny) return;
-    for (const char *name : {"coil", "straight5", "light_joints"}) work(batch(name, run.full() ? 64 : 20, 100), true);
+    for (const char *name : {"coil", "straight5", "light_joints"}) work(batch(name, run.full() ? 64 : 16, 100), true);
     if (!run.full()) return;
     for (const char *name : {"tetrahedral", "fixed_ends"}) work(batch(name, 64, 100), true);
     work(single("straight5", 1000, 2000), true);

@@ -8,7 +8,7 @@ set yrange [1e-17:10]
 set title "Error of the multipliers against the condition number, chains of 64 bonds"
 pick(method) = sprintf("$6 == \"%s\" && $7 ~ /^condition/", method)
 do for [kind in "png svg"] {
-    set terminal @kind
+    eval "set terminal " . (kind eq "png" ? png : svg)
     set output sprintf("%s/condition.%s", out, kind)
     plot for [i in "11 7 10 1"] rows(pick(names[int(i)]), "substr($7, 11), $8") using 1:2 \
              with linespoints lw width(int(i)) lc rgb colours[int(i)] pt marks[int(i)] title names[int(i)]

@@ -7,7 +7,7 @@ set key left top
 set title "Energy drift of a melt of 64 chains of 31 bonds, WCA beads, dt = 0.003"
 set xrange [*:*] reverse
 do for [kind in "png svg"] {
-    set terminal @kind
+    eval "set terminal " . (kind eq "png" ? png : svg)
     set output sprintf("%s/energy_drift.%s", out, kind)
     exact = real(system(sprintf("awk -F, '$7 == \"energy drift to rounding\" { print $8 }' '%s'", results)))
     plot rows("$6 == \"rattle\" && $7 ~ /^energy drift/", "substr($7, 24), $8") using 1:2 \

@@ -9,7 +9,7 @@ set title sprintf("Positions, %s, %s chains of 100 bonds: lower left is better",
 pick(method) = sprintf("$1 == \"position\" && $2 == \"%s\" && $3 == \"%s\" && $4 == 100 && $5 == 1 && $6 == \"%s\"", problem, chains, method)
 sorted(c) = rows(c, "$9, $8") . " | sort -t, -k2,2g"
 do for [kind in "png svg"] {
-    set terminal @kind
+    eval "set terminal " . (kind eq "png" ? png : svg)
     set output sprintf("%s/positions_%s.%s", out, problem, kind)
     plot for [i=1:5] sorted(pick(names[i]) . " && ($7 == \"default\" || $7 ~ /^(tolerance|order)/)") using 1:2 \
              with linespoints lw width(i) lc rgb colours[i] pt marks[i] ps (i == 1 ? 1.3 : 1) title names[i], \

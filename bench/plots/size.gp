@@ -7,11 +7,11 @@ set title sprintf("Time per bond, %s level, coils", level)
 # A batch of 256 x 32 or the like is not a single chain; rows of one chain only.
 pick(method, setting) = sprintf("$1 == \"%s\" && $2 == \"coil\" && $3 == 1 && $5 == 1 && $6 == \"%s\" && $7 ~ /%s/", level, method, setting)
 sorted(c, what) = rows(c, what) . " | sort -t, -k1,1g"
-wanted = level eq "position" ? "^(default|tolerance 1e-12|order 4 iterations 1)$" : "^(default|assembled|as printed|pattern reused)$"
+wanted = level eq "position" ? "^(default|tolerance 1e-12|order 4 iterations 1)$" : "^(default|assembled|as printed|pattern reused|dense|literal)$"
 do for [kind in "png svg"] {
-    set terminal @kind
+    eval "set terminal " . (kind eq "png" ? png : svg)
     set output sprintf("%s/size_%s.%s", out, level, kind)
-    plot for [i=1:11] (count(pick(names[i], wanted)) > 0 ? sorted(pick(names[i], wanted), "$4, $9") : "< echo 1,NaN") using 1:2 \
+    plot for [i=1:12] (count(pick(names[i], wanted)) > 0 ? sorted(pick(names[i], wanted), "$4, $9") : "< echo 1,NaN") using 1:2 \
              with linespoints lw width(i) lc rgb colours[i] pt marks[i] \
              title (count(pick(names[i], wanted)) > 0 ? names[i] : ""), \
          sorted(pick("holonomic", "^default$"), "$4, $9 / $10") using 1:2 with lines lw 2 dt 2 lc rgb "#888888" \
