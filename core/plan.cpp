@@ -10,6 +10,9 @@ namespace {
 constexpr std::int64_t bonds_per_piece = 4096;  // enough to hide the cost of a piece, few enough to share out evenly
 constexpr std::int64_t widest = 8;          // lanes of the widest instruction set: pieces are cut at multiples of it
 
+// Positions, velocities, forces and results of so many bonds, 96 bytes each, fill a second-level cache.
+constexpr std::int64_t bonds_in_cache = 16384;
+
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
@@ -71,13 +74,13 @@ Unit Chains::unit(const Plan &plan, std::int64_t piece, Lane *lanes) const {
     const Plan::Piece &p = plan.pieces[at(piece)];
     if (p.group >= 0) {
         lanes[0] = lane_of(groups_[at(p.group)], p.first);
-        return {lanes, p.count, true};
+        return {lanes, p.count, true, plan.n_bonds > bonds_in_cache};
     }
     for (std::int64_t i = 0; i < p.count; ++i) {
         const Plan::Reference &reference = plan.loose[at(p.first + i)];
         lanes[i] = lane_of(groups_[at(reference.group)], reference.index);
     }
-    return {lanes, p.count, false};
+    return {lanes, p.count, false, plan.n_bonds > bonds_in_cache};
 }
 
 }  // namespace holonomic

@@ -277,6 +277,35 @@ static inline void load_bonds(const Block &block, const Box &box, const Packed &
     }
 }
 
+// The rates D . (v_{k+1} - v_k) of the bonds k0 .. k0 + W - 1, with D as loaded before.
+HOL_INLINE void rate_chunk(const double *const *pv, const vec3 *D, vec *rates) {
+    vec e[3 * W];
+    for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < W; ++i) e[j * W + i] = load(pv[i] + W * j + 3) - load(pv[i] + W * j);
+        transpose(e + j * W);
+    }
+    for (int b = 0; b < W; ++b) rates[b] = dot(D[b], vec3{e[3 * b], e[3 * b + 1], e[3 * b + 2]});
+}
+
+static inline void load_rates(const Block &block, const Packed &v, const vec3 *D, vec *B) {
+    const double *pv[W];
+    long k0 = 0;
+    for (; k0 + W <= block.n_min; k0 += W) {
+        for (int i = 0; i < W; ++i) pv[i] = v.lane[i] + 3 * k0;
+        rate_chunk(pv, D + k0, B + k0);
+    }
+    for (; k0 < block.n; k0 += W) {
+        double buffer[W][3 * W + 3];
+        vec3 d[W];
+        vec rates[W];
+        for (int i = 0; i < W; ++i) pv[i] = window(v.lane[i], k0, block.len[i], false, buffer[i]);
+        for (long b = 0; b < W; ++b) d[b] = k0 + b < block.n ? D[k0 + b] : vec3{};
+        rate_chunk(pv, d, rates);
+        for (long b = 0; b < W && k0 + b < block.n; ++b)
+            B[k0 + b] = keep(less(splat(static_cast<double>(k0 + b)), block.lengths()), rates[b]);
+    }
+}
+
 // Writes factor times a value per bond of the lanes in `which` into the caller's array per bond.
 static inline void store_bonds(const Block &block, const vec *value, double factor, mask which, double *out) {
     const unsigned chosen = bits(which & block.in_use());

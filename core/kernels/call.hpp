@@ -32,6 +32,7 @@ struct Unit {
     const Lane *lanes;
     int64_t count;
     bool regular;  // all `count` chains are like lanes[0], over consecutive atoms and bonds; else lanes[count]
+    bool large;    // the caller's arrays are unlikely to be in cache
 };
 
 // Chains of more bonds are cut into segments.

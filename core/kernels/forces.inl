@@ -7,27 +7,22 @@ namespace HOL_ISA {
 struct System {
     vec3 *D, *D_low;
     vec *t, *L;  // t: right-hand side, then u, then the solution t = 2 lambda
-    vec *b, *pivots, *spare, *dots;  // for refine(); all but dots share the memory of D_low
+    vec *pivots;  // 1 / P
     System(long n, Arena &arena)
         : D(reinterpret_cast<vec3 *>(arena.vecs(3 * n))), D_low(reinterpret_cast<vec3 *>(arena.vecs(3 * n))),
-          t(arena.vecs(n)), L(arena.vecs(n)), b(&D_low->x), pivots(b + n), spare(pivots + n),
-          dots(arena.vecs(n)) {}
+          t(arena.vecs(n)), L(arena.vecs(n)), pivots(arena.vecs(n)) {}
 };
 
 template <int terms, bool uniform, bool boxed, bool careful>
 static __attribute__((noinline)) mask solve(const Block &block, const Box &box, const Packed &r, const Packed &v,
                                             const Packed &f, const System &s) {
-    constexpr bool refined = terms == rate && !careful;
     load_bonds<terms, uniform, boxed, careful>(block, box, r, v, f, s.D, s.D_low, s.t);
     mask doubt = none();
-    if (refined)
-        for (long k = 0; k < block.n; ++k) s.b[k] = s.t[k];
     if (careful)
-        forward_careful<uniform>(block, s.D, s.D_low, s.t, s.L);
+        forward_careful<uniform>(block, s.D, s.D_low, s.t, s.L, s.pivots);
     else
-        doubt = forward<uniform, refined>(block, Source{&r, &box}, s.D, s.t, s.L, s.pivots, s.dots);
+        doubt = forward<uniform, terms == rate>(block, Source{&r, &box}, s.D, s.t, s.L, s.pivots);
     backward(block.n, s.t, s.L);
-    if (refined) refine<uniform>(block, s.D, s.b, s.pivots, s.dots, s.L, s.t, s.spare);
     return finite(s.t[0]) & ~doubt & block.in_use();
 }
 
@@ -150,7 +145,7 @@ static inline void open_block(const Unit &unit, int64_t first, Block &block, Lan
             lane[i].chain = block.chain[i] = head.chain + c;
         }
         block.roomy = (left - block.lanes) * (n + 1) >= W && !head.atoms;
-        block.ahead = 3 * W * (n + 1);  // the next unit often goes on where this one ends
+        if (unit.large) block.ahead = 3 * W * (n + 1);  // the next unit often goes on where this one ends
         return;
     }
     block.n = 0;

@@ -107,18 +107,23 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
     for (; molecules_left(unit, first); first += W) {
         constexpr int padded = (N + W - 1) / W * W;
         vec3 D[padded];
-        vec t[padded], L[N], b[N], pivots[N], dots[N], spare[N];
+        vec t[padded], L[N], pivots[N];
         const int64_t at = 3 * (N + 1) * first;
         load_molecules<N, rate, uniform>(block, r + at, v + at, nullptr, D, t);
         Packed from;
         for (int i = 0; i < W; ++i) from.lane[i] = const_cast<double *>(r) + at + 3 * (N + 1) * i;
-        for (int k = 0; k < N; ++k) b[k] = t[k];
-        const mask doubt = forward<uniform, true, N>(block, Source{&from, &call.box}, D, t, L, pivots, dots);
+        const mask doubt = forward<uniform, true, N>(block, Source{&from, &call.box}, D, t, L, pivots);
         backward(N, t, L);
-        refine<uniform, N>(block, D, b, pivots, dots, L, t, spare);
         if (__builtin_expect(any(doubt | ~finite(t[0])), 0)) break;
-        store_molecules<N, true, uniform, add_>(block, D, t, v + at);
         if (call.lambda) store_multipliers<N>(t, call.lambda + head.first_bond + N * first);
+        store_molecules<N, true, uniform, add_>(block, D, t, v + at);
+        for (long k0 = 0; k0 < N; k0 += W) {  // as in store_velocities
+            const double *pv[W];
+            for (int i = 0; i < W; ++i) pv[i] = v + at + 3 * (N + 1) * i + 3 * k0;
+            rate_chunk(pv, D + k0, t + k0);
+        }
+        substitute(N, t, pivots, L);
+        store_molecules<N, true, uniform, add_>(block, D, t, v + at);
     }
     return first;
 }

@@ -115,7 +115,7 @@ static __attribute__((noinline)) void factorize(const Block &block, const Newton
 }
 
 // s becomes the correction of tau.
-static inline void substitute(long n, const Newton &x) {
+static inline void solve_frozen(long n, const Newton &x) {
     vec y = x.s[0];
     for (long k = 0; k + 1 < n; ++k) {
         x.s[k] = y * x.rP[k];
@@ -204,11 +204,13 @@ static inline Outcome iterate(const Block &block, const Newton &x, const Positio
     out.error = error;
     mask active = wanted & ~out.untouched & finite(error);
     if (guess) {
+        vec poison = {};
         for (long k = 0; k < block.n; ++k) {
             x.s[k] = x.tau[k];
+            poison = mul_add(x.tau[k], vec{}, poison);  // a guess may be a NaN anywhere
             x.tau[k] = vec{};
         }
-        error = correct<uniform>(block, x, active);
+        error = correct<uniform>(block, x, active) + poison;
         active = active & less_equal(error, out.error);  // where it did not help: from zero, in the second attempt
         out.converged = active & less_equal(error, done);
         active = active & ~out.converged;
@@ -219,7 +221,7 @@ static inline Outcome iterate(const Block &block, const Newton &x, const Positio
     vec rate = error;  // new factors square the error
     for (int i = 0; i < call.max_iterations && any(active); ++i) {
         if (any(renew & active)) factorize<uniform, careful>(block, x, renew & active);
-        substitute(block.n, x);
+        solve_frozen(block.n, x);
         // At the floor: the solve should have gone far below a rounding, or it gained little, and what is left is no
         // more than the coordinates carry.
         const vec before = error, expected = rate * before;

@@ -79,7 +79,7 @@ static __attribute__((noinline)) vec exact_dots(const Source &source, long k, ma
 // which takes the divisions out of the chain of dependences. Returns the lanes that need careful arithmetic.
 template <bool uniform, bool keep_pivots = false, int fixed = 0>
 static inline mask forward(const Block &block, const Source &source, const vec3 *D, vec *B, vec *L,
-                           vec *pivots = nullptr, vec *dots = nullptr) {
+                           vec *pivots = nullptr) {
     const long n = fixed > 0 ? fixed : block.n, n_min = fixed > 0 ? fixed : block.n_min;  // known to the compiler?
     const double least = 4 * joint_tolerance * joint_tolerance + 1;
     mask doubt = none();
@@ -108,7 +108,6 @@ static inline mask forward(const Block &block, const Source &source, const vec3 
             }
             const mask orthogonal = nearly_orthogonal(g, X);
             if (__builtin_expect(any(orthogonal), 0)) g = exact_dots(source, k, orthogonal, g);
-            if (keep_pivots) dots[k] = g;
             const vec l = (w * g) * rP;
             L[k] = l;
             y = mul_add(l, y, B[k + 1]);
@@ -138,12 +137,13 @@ static inline mask forward(const Block &block, const Source &source, const vec3 
 // The same with bond vectors D + D_low and compensated products, a division per bond: right for any chain.
 template <bool uniform>
 static __attribute__((noinline)) void forward_careful(const Block &block, const vec3 *D, const vec3 *D_low, vec *B,
-                                                      vec *L) {
+                                                      vec *L, vec *pivots) {
     const long n = block.n;
     vec q = dot(D[0], D[0]), E = w_at<uniform>(block, 0) * q, y = B[0];
     for (long k = 0; k < n; ++k) {
         const vec w = w_at<uniform>(block, k + 1), P = mul_add(w, q, E);
         B[k] = y / P;
+        pivots[k] = splat(1.0) / P;
         if (k + 1 == n) break;
         const vec3 c = cross_compensated(D[k], D_low[k], D[k + 1], D_low[k + 1]);
         vec g = dot_compensated(D[k], D_low[k], D[k + 1], D_low[k + 1]), X = dot(c, c);
@@ -160,40 +160,6 @@ static __attribute__((noinline)) void forward_careful(const Block &block, const 
     }
 }
 
-// Adds to t the solution for what it leaves of the right-hand side b: the recursion gives t to a few roundings of
-// itself, this makes the projected rates as small as the velocities' own rounding. s: working space [n].
-template <bool uniform, int fixed = 0>
-static inline void refine(const Block &block, const vec3 *D, const vec *b, const vec *pivots, const vec *dots,
-                          const vec *L, vec *t, vec *s) {
-    const long n = fixed > 0 ? fixed : block.n;
-    vec y = {}, before = {};  // before = w (q t - g t') of the joint on the left, the part of the row that it adds
-    vec q = dot(D[0], D[0]);
-    before = w_at<uniform>(block, 0) * (q * t[0]);
-    for (long k = 0; k < n; ++k) {
-        vec own = q * t[k], after = {};
-        vec next_before = {}, q1 = {};
-        if (k + 1 < n) {
-            const vec g = dots[k];
-            q1 = dot(D[k + 1], D[k + 1]);
-            const vec w = w_at<uniform>(block, k + 1);
-            after = w * mul_add(-g, t[k + 1], own);
-            next_before = w * mul_add(-g, t[k], q1 * t[k + 1]);
-        } else {
-            after = w_at<uniform>(block, n) * own;
-        }
-        const vec rest = (b[k] - before) - after;
-        y = k == 0 ? rest : mul_add(L[k - 1], y, rest);
-        s[k] = y * pivots[k];
-        before = next_before;
-        q = q1;
-    }
-    vec c = {};
-    for (long k = n - 1; k >= 0; --k) {
-        c = k + 1 < n ? mul_add(L[k], c, s[k]) : s[k];
-        t[k] = t[k] + c;
-    }
-}
-
 // Backward sweep: u becomes t = 2 lambda.
 HOL_INLINE void backward(long n, vec *u, const vec *L) {
     vec t = u[n - 1];
@@ -201,6 +167,17 @@ HOL_INLINE void backward(long n, vec *u, const vec *L) {
         t = mul_add(L[k], t, u[k]);
         u[k] = t;
     }
+}
+
+// Both sweeps for another right-hand side, with 1 / P and L of an elimination that has been done.
+HOL_INLINE void substitute(long n, vec *b, const vec *pivots, const vec *L) {
+    vec y = b[0];
+    b[0] = y * pivots[0];
+    for (long k = 1; k < n; ++k) {
+        y = mul_add(L[k - 1], y, b[k]);
+        b[k] = y * pivots[k];
+    }
+    backward(n, b, L);
 }
 
 }  // namespace HOL_ISA

@@ -9,15 +9,23 @@ static inline mask solve_velocities(const Block &block, const VelocitiesCall &ca
     return solve_any<rate, careful>(block, call.box, r, v, v, s);
 }
 
+// The recursion gives the multipliers to a few roundings of themselves. What that leaves of the rates goes with a second
+// substitution, for the rates of the velocities as they are rounded now.
 static void store_velocities(const Block &block, const Lane *lane, const VelocitiesCall &call, const System &s,
                              mask which, const Packed &v, Tally &tally) {
-    if (block.uniform_w)
-        store_pulls<true, true>(block, s.D, s.t, which, add_, v);
-    else
-        store_pulls<true, false>(block, s.D, s.t, which, add_, v);
-    close(call.v, block, lane, which, v, false);
+    if (!any(which)) return;
     if (call.lambda) store_bonds(block, s.t, 0.5, which, call.lambda);
     if (call.virial) add_virial(block.n, s.D, s.t, which, 1, tally);
+    for (int pass = 0; pass < 2; ++pass) {
+        if (block.uniform_w)
+            store_pulls<true, true>(block, s.D, s.t, which, add_, v);
+        else
+            store_pulls<true, false>(block, s.D, s.t, which, add_, v);
+        if (pass == 1 || call.v.is_float) break;
+        load_rates(block, v, s.D, s.t);
+        substitute(block.n, s.t, s.pivots, s.L);
+    }
+    close(call.v, block, lane, which, v, false);
 }
 
 static void velocities_block(const Block &block, const Lane *lane, const VelocitiesCall &call, Arena arena,
