@@ -20,7 +20,8 @@ double condition_of(const Problem &p) {
     return condition;
 }
 
-/// Chains of 64 bonds whose condition number grows along the list: turns from 90 degrees to small ones, then light joints.
+/// Chains of 64 bonds whose condition number grows along the list: turns from 90 degrees to small ones, then light
+/// joints.
 std::vector<Recipe> family(const Run &run) {
     std::vector<Recipe> list;
     auto add = [&list, &run](double from, double to, double light) {

@@ -55,7 +55,8 @@ double rate_error(const Problem &p, const State &s) {
             const std::size_t atom = 3 * (p.first_atom(c) + k);
             long double rate = 0;
             for (std::size_t x = atom; x < atom + 3; ++x)
-                rate += (static_cast<long double>(p.r[x + 3]) - p.r[x]) * (static_cast<long double>(s.v[x + 3]) - s.v[x]);
+                rate +=
+                    (static_cast<long double>(p.r[x + 3]) - p.r[x]) * (static_cast<long double>(s.v[x + 3]) - s.v[x]);
             worst = std::max(worst, size_of(rate / (rms * p.length[k])));
         }
     return worst;
@@ -66,7 +67,8 @@ double rate_error(const Problem &p, const State &s) {
 Reference::Reference(const Problem &p, Level level, const UnitSystems *systems, std::size_t bonds_at_most)
     : problem_(p), level_(level) {
     if (level == Level::velocity || level == Level::position) return;  // the constraints themselves are the reference
-    const std::size_t wanted = std::clamp<std::size_t>(bonds_at_most / p.n(), 1, std::min<std::size_t>(p.n_chains(), 500));
+    const std::size_t wanted =
+        std::clamp<std::size_t>(bonds_at_most / p.n(), 1, std::min<std::size_t>(p.n_chains(), 500));
     for (std::size_t i = 0; i < wanted; ++i) chains_.push_back(i * p.n_chains() / wanted);
     auto keep = [this](long double x) {
         exact_.push_back(static_cast<double>(x));

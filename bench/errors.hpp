@@ -14,25 +14,24 @@ namespace bench {
  * bonds, spread over all of them, and of one at least.
  */
 class Reference {
-   public:
+public:
     Reference(const Problem &p, Level level, const UnitSystems *systems, std::size_t bonds_at_most);
 
     /**
-     * acceleration: largest |lambda - exact| over the componentwise scale of tests/oracle/README.md, i.e. over what relative
-     *               changes of the inputs of size one can make of it: 1.1e-16 is one rounding of an input
-     * velocity:     largest |d.dv| over the root mean square of the velocities' components, unit bonds
-     * position:     largest |d.d - a^2| / a^2
-     * metric:       largest |ln det Z~ - exact| / |exact|
-     * solve:        largest over chains of max |x - exact| / max |exact|
-     * A result that is not finite counts as infinite.
+     * acceleration: largest |lambda - exact| over the componentwise scale of tests/oracle/README.md, i.e. over what
+     * relative changes of the inputs of size one can make of it: 1.1e-16 is one rounding of an input velocity: largest
+     * |d.dv| over the root mean square of the velocities' components, unit bonds position:     largest |d.d - a^2| /
+     * a^2 metric:       largest |ln det Z~ - exact| / |exact| solve:        largest over chains of max |x - exact| /
+     * max |exact| A result that is not finite counts as infinite.
      */
     double error(const State &s) const;
 
-   private:
+private:
     const Problem &problem_;
     Level level_;
     std::vector<std::size_t> chains_;
-    std::vector<double> exact_, exact_low_, scale_;  ///< of the chains above, one after the other; low: what exact_ lost
+    std::vector<double> exact_, exact_low_,
+        scale_;  ///< of the chains above, one after the other; low: what exact_ lost
 };
 
 }  // namespace bench

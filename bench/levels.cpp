@@ -50,7 +50,8 @@ Methods direct(const Problem &p, Wrap wrap) {
 /// What peers do at the position level; `all`: the whole range of settings, otherwise the usual and the sharpest.
 Methods position_peers(const Problem &p, bool all) {
     Methods list;
-    const std::vector<double> tolerances = all ? std::vector<double>{1e-4, 1e-6, 1e-8, 1e-10, 1e-12} : std::vector<double>{1e-6, 1e-12};
+    const std::vector<double> tolerances =
+        all ? std::vector<double>{1e-4, 1e-6, 1e-8, 1e-10, 1e-12} : std::vector<double>{1e-6, 1e-12};
     // Sweeps grow as N^2 on straight chains: hours at a thousand bonds.
     const bool sweeps = p.name != "straight5" || p.bonds <= 100;
     for (double tolerance : tolerances) {
@@ -64,7 +65,8 @@ Methods position_peers(const Problem &p, bool all) {
     // Setting CCMA up takes a time that grows as the square of the bonds in a call.
     if (have_openmm() && p.name != "fixed_ends" && p.chains_per_call() * p.bonds <= 7000)
         for (bool angles : {false, true})
-            for (double tolerance : all ? std::vector<double>{1e-4, 1e-6, 1e-8, 1e-10} : std::vector<double>{1e-6, 1e-10})
+            for (double tolerance :
+                 all ? std::vector<double>{1e-4, 1e-6, 1e-8, 1e-10} : std::vector<double>{1e-6, 1e-10})
                 list.push_back(openmm_ccma(Level::position, p, tolerance, angles));
     return list;
 }
@@ -103,7 +105,8 @@ void velocity_section(const Run &run) {
             for (double tolerance : {1e-6, 1e-9, 1e-12})
                 if (p.name != "straight5" || p.bonds <= 100) list.push_back(rattle(Level::velocity, p, tolerance));
             if (have_openmm() && p.name != "fixed_ends" && p.chains_per_call() * p.bonds <= 3000)
-                for (double tolerance : {1e-6, 1e-10}) list.push_back(openmm_ccma(Level::velocity, p, tolerance, false));
+                for (double tolerance : {1e-6, 1e-10})
+                    list.push_back(openmm_ccma(Level::velocity, p, tolerance, false));
         }
         run.measure(Level::velocity, p, list);
     };

@@ -24,9 +24,15 @@ namespace {
 using Section = void (*)(const Run &);
 
 const std::vector<std::pair<std::string, Section>> sections = {
-    {"acceleration", acceleration_section}, {"velocity", velocity_section},   {"position", position_section},
-    {"metric", metric_section},             {"solve", solve_section},         {"skips", skips_section},
-    {"condition", condition_section},       {"drift", drift_section},         {"isa", instruction_set_section},
+    {"acceleration", acceleration_section},
+    {"velocity", velocity_section},
+    {"position", position_section},
+    {"metric", metric_section},
+    {"solve", solve_section},
+    {"skips", skips_section},
+    {"condition", condition_section},
+    {"drift", drift_section},
+    {"isa", instruction_set_section},
 };
 
 Section find(const std::string &name) {
@@ -45,7 +51,9 @@ Effort effort_of(Extent extent) {
 }
 
 int usage() {
-    std::fprintf(stderr, "usage: bench_holonomic [--tiny | --quick] --out DIR [SECTION ..]\n       bench_holonomic --isa\nsections:");
+    std::fprintf(
+        stderr,
+        "usage: bench_holonomic [--tiny | --quick] --out DIR [SECTION ..]\n       bench_holonomic --isa\nsections:");
     for (const auto &section : sections) std::fprintf(stderr, " %s", section.first.c_str());
     std::fprintf(stderr, "\n");
     return 2;
@@ -80,7 +88,8 @@ int main(int argc, char **argv) {
         const int threads = std::thread::hardware_concurrency() >= 2 ? 2 : 1;
         const Run run = {extent, effort_of(extent), results, threads};
         for (const auto &section : sections)
-            if (wanted.empty() || std::find(wanted.begin(), wanted.end(), section.first) != wanted.end()) section.second(run);
+            if (wanted.empty() || std::find(wanted.begin(), wanted.end(), section.first) != wanted.end())
+                section.second(run);
     } catch (const std::exception &problem) {
         std::fprintf(stderr, "bench_holonomic: %s\n", problem.what());
         return 1;

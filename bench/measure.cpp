@@ -26,7 +26,7 @@ double seconds_of(const Method &m, State &s, const Problem &p, Level level) {
 
 /// Collects the time per iteration of each repetition, by name.
 class Collector : public benchmark::BenchmarkReporter {
-   public:
+public:
     std::map<std::string, std::vector<double>> seconds;
     bool ReportContext(const Context &) override { return true; }
     void ReportRuns(const std::vector<Run> &runs) override {
@@ -103,7 +103,8 @@ std::vector<Row> measure(Level level, const Problem &p, const Methods &methods, 
     std::vector<double> errors;
     benchmark::ClearRegisteredBenchmarks();
     for (std::size_t i = 0; i < all.size(); ++i) {
-        // Once for the error, and to warm up; the second time tells how long a call takes, unless the first was long enough.
+        // Once for the error, and to warm up; the second time tells how long a call takes, unless the first was long
+        // enough.
         spoil(state);
         double seconds = seconds_of(all[i], state, p, level);
         errors.push_back(i < methods.size() ? reference.error(state) : 0);
@@ -126,9 +127,9 @@ std::vector<Row> measure(Level level, const Problem &p, const Methods &methods, 
         const Method &m = methods[i];
         const std::vector<double> times = per_bond(i);
         const double median = quantile(times, 0.5);
-        rows.push_back({level_name(level), p.name, p.chains_per_call(), p.bonds, m.threads, m.name, m.setting, errors[i],
-                        median, median / pass[m.threads], times.front(), quantile(times, 0.25), quantile(times, 0.75),
-                        times.back(), static_cast<int>(times.size())});
+        rows.push_back({level_name(level), p.name, p.chains_per_call(), p.bonds, m.threads, m.name, m.setting,
+                        errors[i], median, median / pass[m.threads], times.front(), quantile(times, 0.25),
+                        quantile(times, 0.75), times.back(), static_cast<int>(times.size())});
     }
     return rows;
 }

@@ -43,10 +43,8 @@ Problem start(std::int64_t n_chains, std::int64_t n_bonds, double dt) {
 }  // namespace
 
 MeltRun::MeltRun(std::int64_t n_chains, std::int64_t n_bonds, double dt)
-    : problem_(start(n_chains, n_bonds, dt)),
-      side_(std::cbrt(static_cast<double>(problem_.atoms()) / 0.85)),
-      state_(problem_, Level::position),
-      f_(problem_.r.size()) {
+    : problem_(start(n_chains, n_bonds, dt)), side_(std::cbrt(static_cast<double>(problem_.atoms()) / 0.85)),
+      state_(problem_, Level::position), f_(problem_.r.size()) {
     list_pairs();
     forces();
 }

@@ -1,6 +1,6 @@
 /**
- * Molecular dynamics of a melt of bead-rod chains with purely repulsive (WCA) beads, for the energy drift: velocity Verlet
- * with the constraints of the method that is measured (RATTLE).
+ * Molecular dynamics of a melt of bead-rod chains with purely repulsive (WCA) beads, for the energy drift: velocity
+ * Verlet with the constraints of the method that is measured (RATTLE).
  */
 #ifndef BENCH_MELT_RUN_HPP
 #define BENCH_MELT_RUN_HPP
@@ -18,7 +18,7 @@ struct Constraints {
 };
 
 class MeltRun {
-   public:
+public:
     /// Chains on a lattice path in a periodic box at bead density 0.85, kT = 1.
     MeltRun(std::int64_t n_chains, std::int64_t n_bonds, double dt);
 
@@ -37,7 +37,7 @@ class MeltRun {
     Point save() const { return {problem_.r, state_.v}; }
     void load(const Point &point);
 
-   private:
+private:
     void timed(const Method &method);
     void list_pairs();
     void forces();

@@ -11,11 +11,8 @@ const char *level_name(Level level) {
 }
 
 State::State(const Problem &p, Level level)
-    : r(level == Level::position ? p.drifted : p.r),
-      v(level == Level::velocity ? p.raw_v : p.v),
-      g(p.r.size()),
-      lambda(p.all_bonds()),
-      log_det(p.n_chains()) {}
+    : r(level == Level::position ? p.drifted : p.r), v(level == Level::velocity ? p.raw_v : p.v), g(p.r.size()),
+      lambda(p.all_bonds()), log_det(p.n_chains()) {}
 
 void State::restore(const Problem &p, Level level) {
     if (level == Level::position) {

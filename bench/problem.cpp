@@ -68,7 +68,8 @@ void motion(random_stream &s, Problem &p) {
             const double size = p.w[i] == 0 ? 0 : light ? 1 : std::sqrt(p.w[i]);
             for (std::size_t x = 0; x < 3; ++x) {
                 p.raw_v.push_back(size * random_normal(&s));
-                p.f.push_back(p.w[i] > 0 ? random_normal(&s) / (light ? p.w[i] : std::sqrt(p.w[i])) : random_normal(&s));
+                p.f.push_back(p.w[i] > 0 ? random_normal(&s) / (light ? p.w[i] : std::sqrt(p.w[i]))
+                                         : random_normal(&s));
             }
         }
 }

@@ -11,7 +11,8 @@
 
 namespace bench {
 
-/// Chains of equal length, masses and bond lengths, one after the other in the arrays; unit energy, dt in its time unit.
+/// Chains of equal length, masses and bond lengths, one after the other in the arrays; unit energy, dt in its time
+/// unit.
 struct Problem {
     std::string name;         ///< coil, tetrahedral, straight5, light_joints, fixed_ends or melt
     std::int64_t chains = 0;  ///< in the arrays
@@ -39,8 +40,8 @@ struct Recipe {
     std::string name;
     std::int64_t chains = 1, bonds = 1;
     bool one_by_one = false;
-    bool general = false;      ///< masses over two decades and lengths 0.7..1.5 along the chain instead of the kind's own
-    double light = 1e-6;       ///< light_joints: mass of every second atom
+    bool general = false;  ///< masses over two decades and lengths 0.7..1.5 along the chain instead of the kind's own
+    double light = 1e-6;   ///< light_joints: mass of every second atom
     double turn_from = 20, turn_to = 60;  ///< light_joints: degrees by which a bond turns from the one before
     std::uint64_t seed = 1;
 };

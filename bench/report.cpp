@@ -28,8 +28,8 @@ std::string scene_of(const Measurement &m) {
 const Measurement *find(const Table &all, const std::string &level, const std::string &problem, std::int64_t chains,
                         std::int64_t bonds, const std::string &method, const std::string &setting, int threads = 1) {
     for (const Measurement &m : all)
-        if (m.level == level && m.problem == problem && m.chains == chains && m.bonds == bonds && m.threads == threads &&
-            m.method == method && m.setting == setting)
+        if (m.level == level && m.problem == problem && m.chains == chains && m.bonds == bonds &&
+            m.threads == threads && m.method == method && m.setting == setting)
             return &m;
     return nullptr;
 }
@@ -46,19 +46,24 @@ struct Rival {
 /// The library beside the strongest others on the scenes that matter most.
 void headline(std::FILE *out, const Table &all) {
     static const Scene scenes[] = {
-        {"acceleration", "melt", 10000, 100}, {"acceleration", "melt", 1000, 100}, {"acceleration", "melt", 256, 32},
-        {"acceleration", "melt", 100000, 3},  {"acceleration", "coil", 1, 1000000}, {"acceleration", "straight5", 1, 1000000},
-        {"acceleration", "coil", 1, 1000},    {"velocity", "melt", 1000, 100},     {"position", "coil", 1000, 100},
-        {"position", "coil", 10000, 3},       {"position", "coil", 100000, 1},     {"position", "coil", 1, 100000},
+        {"acceleration", "melt", 10000, 100}, {"acceleration", "melt", 1000, 100},
+        {"acceleration", "melt", 256, 32},    {"acceleration", "melt", 100000, 3},
+        {"acceleration", "coil", 1, 1000000}, {"acceleration", "straight5", 1, 1000000},
+        {"acceleration", "coil", 1, 1000},    {"velocity", "melt", 1000, 100},
+        {"position", "coil", 1000, 100},      {"position", "coil", 10000, 3},
+        {"position", "coil", 100000, 1},      {"position", "coil", 1, 100000},
     };
     static const Rival rivals[] = {
-        {"lapack-dptsv", "assembled"},        {"lapack-dgtsv", "assembled"},     {"rattle", "tolerance 1e-12"},
-        {"milc-shake", "tolerance 1e-12"},    {"sparse-newton", "tolerance 1e-12"}, {"lincs", "order 4 iterations 1"},
+        {"lapack-dptsv", "assembled"},     {"lapack-dgtsv", "assembled"},        {"rattle", "tolerance 1e-12"},
+        {"milc-shake", "tolerance 1e-12"}, {"sparse-newton", "tolerance 1e-12"}, {"lincs", "order 4 iterations 1"},
     };
     std::fprintf(out,
-                 "## The library beside the others\n\nTimes faster than (below 1: slower). `default` rows, one thread; 2 threads: "
-                 "one thread's time over two threads'.\n\n| scene | ns/bond | memory passes | error | 2 threads | dptsv | dgtsv | "
-                 "RATTLE 1e-12 | MILC-SHAKE 1e-12 | sparse Newton 1e-12 | LINCS 4, 1 |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+                 "## The library beside the others\n\nTimes faster than (below 1: slower). `default` rows, one thread; "
+                 "2 threads: "
+                 "one thread's time over two threads'.\n\n| scene | ns/bond | memory passes | error | 2 threads | "
+                 "dptsv | dgtsv | "
+                 "RATTLE 1e-12 | MILC-SHAKE 1e-12 | sparse Newton 1e-12 | LINCS 4, 1 "
+                 "|\n|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (const Scene &s : scenes) {
         const Measurement *own = find(all, s.level, s.problem, s.chains, s.bonds, "holonomic", "default");
         if (!own) continue;
@@ -74,23 +79,28 @@ void headline(std::FILE *out, const Table &all) {
     }
 }
 
-/// Every scene in which another method with an error no worse than ten times the library's, or than 1e-12, took less time.
+/// Every scene in which another method with an error no worse than ten times the library's, or than 1e-12, took less
+/// time.
 void losses(std::FILE *out, const Table &all) {
-    std::fprintf(out,
-                 "\n## Where another method is faster\n\nEvery row that took less time than the library's default on the same "
-                 "scene, with an error below ten times the library's or below 1.1e-12; then those that are faster at a "
-                 "larger error.\n");
+    std::fprintf(
+        out,
+        "\n## Where another method is faster\n\nEvery row that took less time than the library's default on the same "
+        "scene, with an error below ten times the library's or below 1.1e-12; then those that are faster at a "
+        "larger error.\n");
     for (const bool accurate : {true, false}) {
-        std::fprintf(out, "\n### %s\n\n| scene | method | ns/bond | error | holonomic: ns/bond | error |\n|---|---|---|---|---|---|\n",
+        std::fprintf(out,
+                     "\n### %s\n\n| scene | method | ns/bond | error | holonomic: ns/bond | error "
+                     "|\n|---|---|---|---|---|---|\n",
                      accurate ? "As accurate" : "Less accurate");
         int n = 0;
         for (const Measurement &m : all) {
             if (m.method == "holonomic" || m.is_special()) continue;
-            const Measurement *own = find(all, m.level, m.problem, m.chains, m.bonds, "holonomic", "default", m.threads);
+            const Measurement *own =
+                find(all, m.level, m.problem, m.chains, m.bonds, "holonomic", "default", m.threads);
             if (!own || m.ns >= own->ns || (m.error <= std::fmax(10 * own->error, 1.1e-12)) != accurate) continue;
-            std::fprintf(out, "| %s | %s, %s | %s | %s | %s | %s |\n", scene_of(m).c_str(), m.method.c_str(), m.setting.c_str(),
-                         number(m.ns).c_str(), number(m.error, "%.1e").c_str(), number(own->ns).c_str(),
-                         number(own->error, "%.1e").c_str());
+            std::fprintf(out, "| %s | %s, %s | %s | %s | %s | %s |\n", scene_of(m).c_str(), m.method.c_str(),
+                         m.setting.c_str(), number(m.ns).c_str(), number(m.error, "%.1e").c_str(),
+                         number(own->ns).c_str(), number(own->error, "%.1e").c_str());
             ++n;
         }
         if (n == 0) std::fprintf(out, "| none | | | | | |\n");
@@ -98,12 +108,16 @@ void losses(std::FILE *out, const Table &all) {
 }
 
 void all_tables(std::FILE *out, const Table &all) {
-    std::fprintf(out, "\n## All measurements\n\nMedians; the spread is the range between the quartiles, in percent of the median.\n");
+    std::fprintf(
+        out,
+        "\n## All measurements\n\nMedians; the spread is the range between the quartiles, in percent of the median.\n");
     std::set<std::string> done;
     for (const Measurement &first : all) {
         if (first.is_special() || !done.insert(scene_of(first)).second) continue;
-        std::fprintf(out, "\n### %s\n\n| method | setting | ns/bond | spread | memory passes | error |\n|---|---|---|---|---|---|\n",
-                     scene_of(first).c_str());
+        std::fprintf(
+            out,
+            "\n### %s\n\n| method | setting | ns/bond | spread | memory passes | error |\n|---|---|---|---|---|---|\n",
+            scene_of(first).c_str());
         for (const Measurement &m : all)
             if (m.same_scene(first) && !m.is_special())
                 std::fprintf(out, "| %s | %s | %s | %s %% | %s | %s |\n", m.method.c_str(), m.setting.c_str(),
@@ -113,9 +127,10 @@ void all_tables(std::FILE *out, const Table &all) {
 }
 
 void plots(std::FILE *out) {
-    static const char *const names[] = {"positions_coil",    "positions_straight5", "positions_light_joints", "size_acceleration",
-                                        "size_velocity",     "size_position",       "condition",              "energy_drift",
-                                        "skips_acceleration", "skips_velocity",     "skips_position",         "skips_metric"};
+    static const char *const names[] = {"positions_coil",    "positions_straight5", "positions_light_joints",
+                                        "size_acceleration", "size_velocity",       "size_position",
+                                        "condition",         "energy_drift",        "skips_acceleration",
+                                        "skips_velocity",    "skips_position",      "skips_metric"};
     std::fprintf(out, "\n## Plots\n\n");
     for (const char *name : names) std::fprintf(out, "![%s](%s.png)\n\n", name, name);
 }
@@ -124,8 +139,10 @@ void write(const std::string &directory) {
     const Table all = read_results(directory);
     std::FILE *out = std::fopen((directory + "/report.md").c_str(), "w");
     if (!out) throw std::runtime_error("cannot write report.md");
-    std::fprintf(out, "# Run time against error\n\nMade by scripts/bench; docs/benchmarks.md of the source tree explains rows, "
-                      "methods and errors.\n\n");
+    std::fprintf(
+        out,
+        "# Run time against error\n\nMade by scripts/bench; docs/benchmarks.md of the source tree explains rows, "
+        "methods and errors.\n\n");
     std::ifstream machine(directory + "/machine.txt");
     for (std::string line; std::getline(machine, line);) std::fprintf(out, "    %s\n", line.c_str());
     std::fprintf(out, "\n");

@@ -11,7 +11,7 @@
 namespace bench {
 
 class Results {
-   public:
+public:
     /// Appends to directory/results.csv and directory/spread.csv; writes the heads if they are new.
     explicit Results(const std::string &directory);
     ~Results();
@@ -20,7 +20,7 @@ class Results {
 
     void add(const std::vector<Row> &rows);
 
-   private:
+private:
     std::FILE *results_, *spread_;
 };
 

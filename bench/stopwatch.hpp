@@ -1,6 +1,6 @@
 /**
- * Time that a call takes: of the calling thread's own processor time where one thread works, so that other programs on the
- * machine don't count; elapsed time where several do.
+ * Time that a call takes: of the calling thread's own processor time where one thread works, so that other programs on
+ * the machine don't count; elapsed time where several do.
  */
 #ifndef BENCH_STOPWATCH_HPP
 #define BENCH_STOPWATCH_HPP
@@ -10,11 +10,11 @@
 namespace bench {
 
 class Stopwatch {
-   public:
+public:
     explicit Stopwatch(int threads) : clock_(threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC), start_(now()) {}
     double seconds() const { return now() - start_; }
 
-   private:
+private:
     double now() const {
         timespec t;
         clock_gettime(clock_, &t);

@@ -17,7 +17,8 @@ std::vector<std::vector<std::string>> read_csv(const std::string &name, std::siz
         std::vector<std::string> cells;
         std::istringstream stream(line);
         for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-        if (cells.size() != columns) throw std::runtime_error(name + ": not " + std::to_string(columns) + " columns: " + line);
+        if (cells.size() != columns)
+            throw std::runtime_error(name + ": not " + std::to_string(columns) + " columns: " + line);
         rows.push_back(std::move(cells));
     }
     return rows;

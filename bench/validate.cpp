@@ -1,6 +1,6 @@
-// The methods that stand in for others must behave as published: error and iterations at given settings, on the problems and
-// with the error measures for which they were published or measured from the packages themselves. A window of a factor
-// three either way allows for other random chains.
+// The methods that stand in for others must behave as published: error and iterations at given settings, on the
+// problems and with the error measures for which they were published or measured from the packages themselves. A window
+// of a factor three either way allows for other random chains.
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -42,7 +42,8 @@ void coils() {
     // SHAKE stops at the first sweep in which all bonds are within the tolerance: just below it, by linear convergence.
     for (double tolerance : {1e-4, 1e-6, 1e-9, 1e-12}) {
         const Outcome o = run(level, p, rattle(level, p, tolerance));
-        expect("coil: SHAKE sweeps end just below " + tolerance_setting(tolerance), o.error, 0.3 * tolerance, 1.001 * tolerance);
+        expect("coil: SHAKE sweeps end just below " + tolerance_setting(tolerance), o.error, 0.3 * tolerance,
+               1.001 * tolerance);
     }
     // Newton: largest violation 1e-3 before, 3e-7 after one solve, 2e-14 after two; one solve to 1e-6, two to 1e-12.
     const Outcome once = run(level, p, sparse_newton(p, 1e-6)), twice = run(level, p, sparse_newton(p, 1e-12));
@@ -72,8 +73,8 @@ void coils() {
 void nearly_straight() {
     const Problem p = make_problem(batch("straight5", 5, 100)), longer = make_problem(batch("straight5", 2, 1000));
     const Level level = Level::position;
-    expect("straight5: SHAKE needs thousands of sweeps (1e-6)", static_cast<double>(run(level, p, rattle(level, p, 1e-6)).iterations),
-           1000, 30000);
+    expect("straight5: SHAKE needs thousands of sweeps (1e-6)",
+           static_cast<double>(run(level, p, rattle(level, p, 1e-6)).iterations), 1000, 30000);
     expect("straight5: LINCS order 4, 1 iteration", run(level, p, lincs(p, 4, 1)).error, 1.2e-4, 1e-3);
     expect("straight5: LINCS order 8, 4 iterations", run(level, p, lincs(p, 8, 4)).error, 0.7e-4, 6e-4);
     expect("straight5, N = 1000: sparse Newton, solves to 1e-12",
@@ -82,10 +83,12 @@ void nearly_straight() {
         const Outcome o = run(level, longer, milc_shake(longer, 1e-9));
         expect("straight5, N = 1000: MILC-SHAKE, solves to 1e-9", static_cast<double>(o.iterations), 2, 6);
         const Problem longest = make_problem(batch("straight5", 1, 10000));
-        expect("straight5, N = 10,000: MILC-SHAKE stalls near 3e-12", run(level, longest, milc_shake(longest, 1e-13)).error, 1e-13, 1e-11);
+        expect("straight5, N = 10,000: MILC-SHAKE stalls near 3e-12",
+               run(level, longest, milc_shake(longest, 1e-13)).error, 1e-13, 1e-11);
     }
     if (have_openmm())
-        expect("straight5: CCMA stops after 150 iterations", run(level, p, openmm_ccma(level, p, 1e-6, false)).error, 4e-5, 4.5e-4);
+        expect("straight5: CCMA stops after 150 iterations", run(level, p, openmm_ccma(level, p, 1e-6, false)).error,
+               4e-5, 4.5e-4);
 }
 
 /// Velocity level: a direct solve leaves rounding, sweeps their tolerance.
@@ -93,10 +96,11 @@ void velocities() {
     const Problem p = make_problem(batch("coil", 20, 100));
     const Level level = Level::velocity;
     if (have_lapack())
-        expect("coil: velocities by dgtsv", run(level, p, direct_velocities(p, "", "", lapack_dgtsv())).error, 0, 20 * eps);
+        expect("coil: velocities by dgtsv", run(level, p, direct_velocities(p, "", "", lapack_dgtsv())).error, 0,
+               20 * eps);
     for (double tolerance : {1e-6, 1e-9})
-        expect("coil: velocities by sweeps, " + tolerance_setting(tolerance), run(level, p, rattle(level, p, tolerance)).error,
-               0.3 * tolerance, 3 * tolerance);
+        expect("coil: velocities by sweeps, " + tolerance_setting(tolerance),
+               run(level, p, rattle(level, p, tolerance)).error, 0.3 * tolerance, 3 * tolerance);
 }
 
 /// Accelerations: all direct ways agree on coils; those that subtract lose digits with the condition number, 1e4 here.
@@ -104,9 +108,10 @@ void accelerations() {
     const Problem coil = make_problem(batch("coil", 20, 100)), straight = make_problem(batch("straight5", 5, 100));
     const Level level = Level::acceleration;
     auto both = [&](const char *name, const Solver &solver) {
-        expect(std::string("coil: multipliers by ") + name, run(level, coil, direct_forces(coil, "", "", solver)).error, 0, 20 * eps);
-        expect(std::string("straight5: multipliers by ") + name, run(level, straight, direct_forces(straight, "", "", solver)).error,
-               2 * eps, 1e4 * eps);
+        expect(std::string("coil: multipliers by ") + name, run(level, coil, direct_forces(coil, "", "", solver)).error,
+               0, 20 * eps);
+        expect(std::string("straight5: multipliers by ") + name,
+               run(level, straight, direct_forces(straight, "", "", solver)).error, 2 * eps, 1e4 * eps);
     };
     both("Eq. (20)", eq20());
     both("the Omega recursion", omega_recursion());
@@ -119,7 +124,8 @@ void accelerations() {
     recipe.light = 1e-12;
     recipe.turn_from = 0.5e-6, recipe.turn_to = 1e-6;
     const Problem light = make_problem(recipe);
-    expect("light straight joints: the Omega recursion", run(level, light, direct_forces(light, "", "", omega_recursion())).error, 1e-5, 1e300);
+    expect("light straight joints: the Omega recursion",
+           run(level, light, direct_forces(light, "", "", omega_recursion())).error, 1e-5, 1e300);
     expect("light straight joints: the library", run(level, light, holonomic(level, light)).error, 0, (16 + 8) * eps);
 }
 
@@ -132,7 +138,8 @@ void determinants() {
     State s(p, Level::metric);
     direct_metric(p, "", "", omega_recursion_log_det()).call(s);
     const double exact = std::log(21.0) - 20 * std::log(2.0);
-    expect("straight chain of 20: ln det by the Omega recursion, relative error", std::fabs(s.log_det[0] / exact - 1), 0, 1000 * eps);
+    expect("straight chain of 20: ln det by the Omega recursion, relative error", std::fabs(s.log_det[0] / exact - 1),
+           0, 1000 * eps);
 }
 
 }  // namespace

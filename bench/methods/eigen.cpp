@@ -12,7 +12,7 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 
 class Simplicial {
-   public:
+public:
     /// Lower triangle by columns: each has its diagonal element and, but for the last, the one below.
     const Eigen::SimplicialLDLT<Sparse> &factor(const System &s) {
         const Eigen::Index n = s.size();
@@ -26,7 +26,7 @@ class Simplicial {
         return solver_;
     }
 
-   private:
+private:
     void prepare(Eigen::Index n) {
         matrix_.resize(n, n);
         matrix_.reserve(Eigen::VectorXi::Constant(n, 2));
@@ -41,7 +41,8 @@ class Simplicial {
     Eigen::SimplicialLDLT<Sparse> solver_;
 };
 
-const Eigen::LDLT<Eigen::MatrixXd> &factor_dense(const System &s, Eigen::MatrixXd &m, Eigen::LDLT<Eigen::MatrixXd> &ldlt) {
+const Eigen::LDLT<Eigen::MatrixXd> &factor_dense(const System &s, Eigen::MatrixXd &m,
+                                                 Eigen::LDLT<Eigen::MatrixXd> &ldlt) {
     const Eigen::Index n = s.size();
     m.setZero(n, n);
     for (Eigen::Index k = 0; k < n; ++k) {

@@ -20,16 +20,16 @@ struct Handles {
     std::vector<double> tension;  ///< output
     std::size_t atoms_each, bonds_each;
     Handles(const Problem &p, int threads)
-        : all(make_handles(p, threads)),
-          tension(p.all_bonds()),
-          atoms_each(p.atoms() / all.size()),
+        : all(make_handles(p, threads)), tension(p.all_bonds()), atoms_each(p.atoms() / all.size()),
           bonds_each(p.all_bonds() / all.size()) {}
 };
 
 using Shared = std::shared_ptr<Handles>;
 
 double *at(std::vector<double> &x, std::size_t i, bool wanted = true) { return wanted ? x.data() + i : nullptr; }
-const double *at(const std::vector<double> &x, std::size_t i, bool wanted = true) { return wanted ? x.data() + i : nullptr; }
+const double *at(const std::vector<double> &x, std::size_t i, bool wanted = true) {
+    return wanted ? x.data() + i : nullptr;
+}
 
 void forces(const Problem &p, const Parts &with, Handles &h, State &s) {
     double virial[9];
@@ -78,11 +78,16 @@ Method make(Level level, const Problem &p, const std::string &setting, const Par
     m.setting = setting;
     m.call = [level, &p, with, h](State &s) {
         switch (level) {
-            case Level::acceleration: return forces(p, with, *h, s);
-            case Level::velocity: return velocities(p, with, *h, s);
-            case Level::position: return positions(p, with, *h, s);
-            case Level::metric: return metric(p, with, *h, s);
-            case Level::solve: break;
+            case Level::acceleration:
+                return forces(p, with, *h, s);
+            case Level::velocity:
+                return velocities(p, with, *h, s);
+            case Level::position:
+                return positions(p, with, *h, s);
+            case Level::metric:
+                return metric(p, with, *h, s);
+            case Level::solve:
+                break;
         }
     };
     return m;
@@ -148,7 +153,8 @@ Method half_inactive(Level level, const Problem &p) {
 Method boxed(Level level, const Problem &p, bool triclinic) {
     auto h = std::make_shared<Handles>(p, 1);
     // Wide enough that no bond is folded: the answer is that without a box, and the work is the box's.
-    const double box[9] = {400, 0, 0, triclinic ? 30.0 : 0.0, 400, 0, triclinic ? 20.0 : 0.0, triclinic ? 10.0 : 0.0, 400};
+    const double box[9] = {400, 0, 0, triclinic ? 30.0 : 0.0, 400, 0, triclinic ? 20.0 : 0.0, triclinic ? 10.0 : 0.0,
+                           400};
     for (Handle &handle : h->all) check(hol_chains_set_box(handle.get(), box));
     return make(level, p, triclinic ? "box triclinic" : "box orthorhombic", Parts(), h);
 }
@@ -158,9 +164,8 @@ struct Layout {
     Handle chains;
     Array<T> reference, r, v, f, g;
     Layout(const Problem &p, typename Array<T>::Components components, const std::vector<std::int64_t> &order)
-        : chains(order.empty() ? make_block(p, p.chains) : make_listed(p, order)),
-          reference(p, components, order), r(p, components, order), v(p, components, order), f(p, components, order),
-          g(p, components, order) {
+        : chains(order.empty() ? make_block(p, p.chains) : make_listed(p, order)), reference(p, components, order),
+          r(p, components, order), v(p, components, order), f(p, components, order), g(p, components, order) {
         reference.copy_from(p.r);
         f.copy_from(p.f);
     }
@@ -180,7 +185,8 @@ Method laid_out(Level level, const Problem &p, const std::string &setting, std::
         a->v.copy_to(s.v);
     };
     m.call = [a, level, &p](State &s) {
-        const hol_view reference = a->reference.view(), r = a->r.view(), v = a->v.view(), f = a->f.view(), g = a->g.view();
+        const hol_view reference = a->reference.view(), r = a->r.view(), v = a->v.view(), f = a->f.view(),
+                       g = a->g.view();
         double energy;
         if (level == Level::acceleration)
             check(hol_forces_view(a->chains.get(), &r, &v, &f, s.lambda.data(), nullptr, &g, HOL_WRITE, nullptr));

@@ -10,10 +10,11 @@
 
 namespace bench {
 
-/// One vector per atom, of doubles or floats, x y z together or in arrays of their own, atoms in any order within a chain.
+/// One vector per atom, of doubles or floats, x y z together or in arrays of their own, atoms in any order within a
+/// chain.
 template <class T>
 class Array {
-   public:
+public:
     enum class Components { together, apart };
     Array(const Problem &p, Components components, std::vector<std::int64_t> order)
         : problem_(p), apart_(components == Components::apart), order_(std::move(order)), data_(3 * p.atoms()) {}
@@ -36,7 +37,7 @@ class Array {
         return v;
     }
 
-   private:
+private:
     template <class Do>
     void for_each(Do act) const {
         const std::size_t atoms = problem_.atoms();

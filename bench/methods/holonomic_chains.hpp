@@ -13,8 +13,8 @@ namespace bench {
 
 using Handle = std::unique_ptr<hol_chains, decltype(&hol_chains_destroy)>;
 
-/// Ends the run with the library's message after a wrong call. Chains that the library reports as bad keep what they had,
-/// and the error of the row shows it, as it does for the methods that report nothing.
+/// Ends the run with the library's message after a wrong call. Chains that the library reports as bad keep what they
+/// had, and the error of the row shows it, as it does for the methods that report nothing.
 void check(int status);
 
 /// `chains` chains of the problem over atoms 0 .. of their own, added in one call.

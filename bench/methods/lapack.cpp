@@ -45,8 +45,12 @@ Solver lapack_dgtsv() {
 #else
 
 bool have_lapack() { return false; }
-Solver lapack_dptsv() { return [](System &) {}; }
-Solver lapack_dgtsv() { return [](System &) {}; }
+Solver lapack_dptsv() {
+    return [](System &) {};
+}
+Solver lapack_dgtsv() {
+    return [](System &) {};
+}
 
 #endif
 

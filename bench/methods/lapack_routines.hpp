@@ -6,7 +6,8 @@ extern "C" {
 /// Symmetric positive definite tridiagonal system, by L D L^T.
 void dptsv_(const int *n, const int *nrhs, double *d, double *e, double *b, const int *ldb, int *info);
 /// General tridiagonal system, by Gaussian elimination with row exchanges.
-void dgtsv_(const int *n, const int *nrhs, double *lower, double *d, double *upper, double *b, const int *ldb, int *info);
+void dgtsv_(const int *n, const int *nrhs, double *lower, double *d, double *upper, double *b, const int *ldb,
+            int *info);
 }
 
 #endif

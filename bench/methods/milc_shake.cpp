@@ -80,7 +80,8 @@ Method milc_shake(const Problem &p, double tolerance) {
                 state.iterations = 0;
                 for (std::size_t c = 0; c < p.n_chains(); ++c) {
                     const std::size_t atom = 3 * p.first_atom(c);
-                    state.iterations = std::max(state.iterations, project(p, &p.r[atom], tolerance, *s, &state.r[atom]));
+                    state.iterations =
+                        std::max(state.iterations, project(p, &p.r[atom], tolerance, *s, &state.r[atom]));
                 }
             }};
 }

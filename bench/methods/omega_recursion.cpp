@@ -1,5 +1,6 @@
-// The recursion Omega_n^2 = 1 - gamma_n^2 / Omega_{n-1}^2 as printed (Mazars 2007, Eq. 17), used the way a careful reader
-// would: Z~^-1 = C C^t is never formed but applied, O(N). It subtracts nearly equal numbers where chains are straight.
+// The recursion Omega_n^2 = 1 - gamma_n^2 / Omega_{n-1}^2 as printed (Mazars 2007, Eq. 17), used the way a careful
+// reader would: Z~^-1 = C C^t is never formed but applied, O(N). It subtracts nearly equal numbers where chains are
+// straight.
 #include <cmath>
 #include <memory>
 

@@ -1,6 +1,7 @@
-// OpenMM's CCMA (Eastman and Pande 2010, J. Chem. Theory Comput. 6, 434) in its reference platform, made from a System as a
-// Context makes it and called through the class in OpenMM's installed headers: the same algorithm as
-// Context::applyConstraints, which however takes the positions themselves as reference instead of those before the drift.
+// OpenMM's CCMA (Eastman and Pande 2010, J. Chem. Theory Comput. 6, 434) in its reference platform, made from a System
+// as a Context makes it and called through the class in OpenMM's installed headers: the same algorithm as
+// Context::applyConstraints, which however takes the positions themselves as reference instead of those before the
+// drift.
 #include <cmath>
 #include <memory>
 

@@ -1,6 +1,6 @@
 // Sweeps over the bonds, one at a time, until all are within the tolerance: Ryckaert, Ciccotti and Berendsen 1977 for
-// positions, Andersen 1983 for velocities. A bond neither of whose atoms moved in the last sweep is not looked at again,
-// as in Allen and Tildesley's programs.
+// positions, Andersen 1983 for velocities. A bond neither of whose atoms moved in the last sweep is not looked at
+// again, as in Allen and Tildesley's programs.
 #include <cmath>
 #include <memory>
 
@@ -94,8 +94,9 @@ Method rattle(Level level, const Problem &p, double tolerance) {
                     const std::size_t atom = 3 * p.first_atom(c);
                     for (std::size_t i = 0; i < 3 * p.n(); ++i) (*bonds)[i] = p.r[atom + i + 3] - p.r[atom + i];
                     const std::int64_t sweeps =
-                        level == Level::position ? shake(p, bonds->data(), tolerance, *moved, &state.r[atom])
-                                                 : rattle_velocities(p, bonds->data(), tolerance, *moved, &state.v[atom]);
+                        level == Level::position
+                            ? shake(p, bonds->data(), tolerance, *moved, &state.r[atom])
+                            : rattle_velocities(p, bonds->data(), tolerance, *moved, &state.v[atom]);
                     state.iterations = std::max(state.iterations, sweeps);
                 }
             }};

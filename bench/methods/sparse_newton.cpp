@@ -1,7 +1,8 @@
 // Newton's method for the positions with a sparse direct solver, the ILVES way (Lopez-Villellas et al. 2023): the exact
-// Jacobian of the bonds' squared lengths, factored without exchanges along a pattern found once for the molecule, whatever
-// its shape. Its pattern is symmetric but its values are not (new bonds times old ones), so L and U^T differ in their
-// values and share their pattern: an L D L^T in structure. For a chain numbered along itself there is no fill-in.
+// Jacobian of the bonds' squared lengths, factored without exchanges along a pattern found once for the molecule,
+// whatever its shape. Its pattern is symmetric but its values are not (new bonds times old ones), so L and U^T differ
+// in their values and share their pattern: an L D L^T in structure. For a chain numbered along itself there is no
+// fill-in.
 #include <cmath>
 #include <memory>
 
@@ -14,7 +15,7 @@ const int iterations_at_most = 16;
 
 /// Couplings of one molecule, lower triangle by rows; and for each the products that elimination subtracts from it.
 class Pattern {
-   public:
+public:
     struct Entry {
         int column, atom;
         double sign;
@@ -49,11 +50,12 @@ class Pattern {
 
 struct Workspace {
     Pattern pattern;
-    std::vector<double> b, d;             ///< old and new bonds [n][3]
-    std::vector<double> diagonal, x;      ///< [n]
-    std::vector<double> lower, upper;     ///< values of J_kj and J_jk per entry
+    std::vector<double> b, d;          ///< old and new bonds [n][3]
+    std::vector<double> diagonal, x;   ///< [n]
+    std::vector<double> lower, upper;  ///< values of J_kj and J_jk per entry
     explicit Workspace(std::size_t n)
-        : pattern(n), b(3 * n), d(3 * n), diagonal(n), x(n), lower(pattern.entries.size()), upper(pattern.entries.size()) {}
+        : pattern(n), b(3 * n), d(3 * n), diagonal(n), x(n), lower(pattern.entries.size()),
+          upper(pattern.entries.size()) {}
 };
 
 double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -128,7 +130,8 @@ Method sparse_newton(const Problem &p, double tolerance) {
                 state.iterations = 0;
                 for (std::size_t c = 0; c < p.n_chains(); ++c) {
                     const std::size_t atom = 3 * p.first_atom(c);
-                    state.iterations = std::max(state.iterations, project(p, &p.r[atom], tolerance, *s, &state.r[atom]));
+                    state.iterations =
+                        std::max(state.iterations, project(p, &p.r[atom], tolerance, *s, &state.r[atom]));
                 }
             }};
 }
