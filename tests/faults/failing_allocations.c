@@ -1,4 +1,5 @@
-/* Takes the place of the C library's allocation for the whole process; operator new of the C++ run-time calls malloc. */
+/* Takes the place of the C library's allocation for the whole process; operator new of the C++ run-time calls malloc.
+ */
 #define _GNU_SOURCE
 #include "failing_allocations.h"
 
@@ -48,14 +49,35 @@ void fail_once_after(long good)
     atomic_store(&left, good);
 }
 
-void fail_no_more(void) { atomic_store(&left, LONG_MAX); }
-long refused(void) { return atomic_load(&refusals); }
-long blocks_in_use(void) { return atomic_load(&in_use); }
+void fail_no_more(void)
+{
+    atomic_store(&left, LONG_MAX);
+}
+long refused(void)
+{
+    return atomic_load(&refusals);
+}
+long blocks_in_use(void)
+{
+    return atomic_load(&in_use);
+}
 
-void *malloc(size_t size) { return refuse() ? NULL : given(__libc_malloc(size)); }
-void *calloc(size_t count, size_t size) { return refuse() ? NULL : given(__libc_calloc(count, size)); }
-void *memalign(size_t alignment, size_t size) { return refuse() ? NULL : given(__libc_memalign(alignment, size)); }
-void *aligned_alloc(size_t alignment, size_t size) { return memalign(alignment, size); }
+void *malloc(size_t size)
+{
+    return refuse() ? NULL : given(__libc_malloc(size));
+}
+void *calloc(size_t count, size_t size)
+{
+    return refuse() ? NULL : given(__libc_calloc(count, size));
+}
+void *memalign(size_t alignment, size_t size)
+{
+    return refuse() ? NULL : given(__libc_memalign(alignment, size));
+}
+void *aligned_alloc(size_t alignment, size_t size)
+{
+    return memalign(alignment, size);
+}
 
 void *realloc(void *old, size_t size)
 {

@@ -70,7 +70,8 @@ static void threads_share_a_handle_from_its_first_use_on(void **state)
 {
     (void)state;
     assembly good = assembly_of_kind(CHAIN_HETEROGENEOUS, 40, 2, 60, SCATTERED, 7);
-    assembly bad = assembly_of_kind(CHAIN_COIL, 9, 2, 400, IN_ORDER, 8), other = assembly_of_kind(CHAIN_COIL, 2, 3, 9, IN_ORDER, 9);
+    assembly bad = assembly_of_kind(CHAIN_COIL, 9, 2, 400, IN_ORDER, 8),
+             other = assembly_of_kind(CHAIN_COIL, 2, 3, 9, IN_ORDER, 9);
     bad.r[5] = NAN;
     hol_inverse *inverse = NULL;
     CHECK(hol_inverse_create(other.chains, 0, other.r, &inverse)); /* the two handles above stay unused until then */

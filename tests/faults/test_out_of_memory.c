@@ -1,6 +1,6 @@
 /**
- * Every allocation made to fail in turn, in every function that allocates: HOL_ERR_MEMORY, outputs as they were, nothing
- * leaked, and the same call then succeeds with the same handle.
+ * Every allocation made to fail in turn, in every function that allocates: HOL_ERR_MEMORY, outputs as they were,
+ * nothing leaked, and the same call then succeeds with the same handle.
  *
  * Each attempt runs in a thread of its own, because a thread's scratch memory is kept from call to call.
  */
@@ -17,13 +17,28 @@ typedef struct operation {
     int (*call)(const assembly *a, double *out);
 } operation;
 
-static size_t atoms3(const assembly *a) { return assembly_size(a); }
-static size_t bonds(const assembly *a) { return (size_t)a->n_bonds; }
+static size_t atoms3(const assembly *a)
+{
+    return assembly_size(a);
+}
+static size_t bonds(const assembly *a)
+{
+    return (size_t)a->n_bonds;
+}
 
 /* Layout of `out`: two arrays per atom, two per bond, and 16 numbers. */
-static double *per_bond(const assembly *a, double *out) { return out + 2 * atoms3(a); }
-static double *numbers(const assembly *a, double *out) { return per_bond(a, out) + 2 * bonds(a); }
-static size_t out_size(const assembly *a) { return 2 * atoms3(a) + 2 * bonds(a) + 16; }
+static double *per_bond(const assembly *a, double *out)
+{
+    return out + 2 * atoms3(a);
+}
+static double *numbers(const assembly *a, double *out)
+{
+    return per_bond(a, out) + 2 * bonds(a);
+}
+static size_t out_size(const assembly *a)
+{
+    return 2 * atoms3(a) + 2 * bonds(a) + 16;
+}
 
 static void prepare(const assembly *a, double *out)
 {
@@ -34,7 +49,8 @@ static void prepare(const assembly *a, double *out)
 
 static int forces(const assembly *a, double *out)
 {
-    return hol_forces(a->chains, a->r, a->v, a->f, per_bond(a, out), per_bond(a, out) + bonds(a), out, HOL_WRITE, numbers(a, out));
+    return hol_forces(a->chains, a->r, a->v, a->f, per_bond(a, out), per_bond(a, out) + bonds(a), out, HOL_WRITE,
+                      numbers(a, out));
 }
 
 static int velocities(const assembly *a, double *out)
@@ -44,7 +60,8 @@ static int velocities(const assembly *a, double *out)
 
 static int positions(const assembly *a, double *out)
 {
-    return hol_project_positions(a->chains, a->r, out + atoms3(a), out, 0.003, per_bond(a, out), 0, numbers(a, out), NULL);
+    return hol_project_positions(a->chains, a->r, out + atoms3(a), out, 0.003, per_bond(a, out), 0, numbers(a, out),
+                                 NULL);
 }
 
 static int violation(const assembly *a, double *out)
@@ -78,14 +95,23 @@ static int inverse(const assembly *a, double *out)
 
 static hol_inverse *prepared; /* made before allocations fail */
 
-static int inverse_row(const assembly *a, double *out) { return hol_inverse_row(prepared, HOL_PHYSICAL, 1, per_bond(a, out)); }
-static int inverse_band(const assembly *a, double *out) { return hol_inverse_band(prepared, HOL_UNIT_DIAGONAL, 1, per_bond(a, out)); }
+static int inverse_row(const assembly *a, double *out)
+{
+    return hol_inverse_row(prepared, HOL_PHYSICAL, 1, per_bond(a, out));
+}
+static int inverse_band(const assembly *a, double *out)
+{
+    return hol_inverse_band(prepared, HOL_UNIT_DIAGONAL, 1, per_bond(a, out));
+}
 static int inverse_bound(const assembly *a, double *out)
 {
     return hol_inverse_error_bound(prepared, a->v, a->f, a->length, per_bond(a, out), numbers(a, out));
 }
 
-static double gamma_of(size_t k) { return 0.3 + 0.1 * (double)(k % 2); }
+static double gamma_of(size_t k)
+{
+    return 0.3 + 0.1 * (double)(k % 2);
+}
 
 static int tridiagonal(const assembly *a, double *out, int which)
 {
@@ -93,19 +119,39 @@ static int tridiagonal(const assembly *a, double *out, int which)
     double gamma[ROWS], *o = per_bond(a, out);
     for (size_t k = 0; k < ROWS; ++k) gamma[k] = gamma_of(k);
     switch (which) {
-    case 0: return hol_tridiagonal_pivots(ROWS, gamma, o);
-    case 1: return hol_tridiagonal_log_det(ROWS, gamma, o);
-    case 2: return hol_tridiagonal_solve(ROWS, gamma, gamma, o);
-    case 3: return hol_tridiagonal_inverse_entry(ROWS, gamma, 3, 17, o);
-    default: return hol_tridiagonal_inverse_band(ROWS, gamma, 1, o);
+        case 0:
+            return hol_tridiagonal_pivots(ROWS, gamma, o);
+        case 1:
+            return hol_tridiagonal_log_det(ROWS, gamma, o);
+        case 2:
+            return hol_tridiagonal_solve(ROWS, gamma, gamma, o);
+        case 3:
+            return hol_tridiagonal_inverse_entry(ROWS, gamma, 3, 17, o);
+        default:
+            return hol_tridiagonal_inverse_band(ROWS, gamma, 1, o);
     }
 }
 
-static int pivots(const assembly *a, double *out) { return tridiagonal(a, out, 0); }
-static int log_det(const assembly *a, double *out) { return tridiagonal(a, out, 1); }
-static int solve(const assembly *a, double *out) { return tridiagonal(a, out, 2); }
-static int entry(const assembly *a, double *out) { return tridiagonal(a, out, 3); }
-static int band(const assembly *a, double *out) { return tridiagonal(a, out, 4); }
+static int pivots(const assembly *a, double *out)
+{
+    return tridiagonal(a, out, 0);
+}
+static int log_det(const assembly *a, double *out)
+{
+    return tridiagonal(a, out, 1);
+}
+static int solve(const assembly *a, double *out)
+{
+    return tridiagonal(a, out, 2);
+}
+static int entry(const assembly *a, double *out)
+{
+    return tridiagonal(a, out, 3);
+}
+static int band(const assembly *a, double *out)
+{
+    return tridiagonal(a, out, 4);
+}
 
 static int partition(const assembly *a, double *out)
 {
@@ -135,10 +181,10 @@ static const operation operations[] = {
 typedef struct attempt {
     const operation *what;
     const assembly *a;
-    const double *right;             /* what must come out; NULL: not known yet */
+    const double *right; /* what must come out; NULL: not known yet */
     double *before, *out, *again;
-    long good;                       /* allocations that succeed */
-    int once;                        /* one fails, or all from there on */
+    long good; /* allocations that succeed */
+    int once;  /* one fails, or all from there on */
     int status, second;
     long refused;
 } attempt;
@@ -273,9 +319,12 @@ static int change(hol_chains *chains, int which)
     static const double length[3] = {1, 1.5, 0.5};
     static const unsigned char active[40] = {1, 0, 1};
     switch (which) {
-    case ADD: return hol_chains_add(chains, 3, list, length);
-    case ADD_BLOCK: return hol_chains_add_block(chains, 3, 3, 14, length);
-    default: return hol_chains_set_active(chains, active);
+        case ADD:
+            return hol_chains_add(chains, 3, list, length);
+        case ADD_BLOCK:
+            return hol_chains_add_block(chains, 3, 3, 14, length);
+        default:
+            return hol_chains_set_active(chains, active);
     }
 }
 

@@ -5,9 +5,9 @@
 #include <iterator>
 #include <vector>
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size);
 
-int main(int argc, char** argv)
+int main(int argc, char **argv)
 {
     if (argc < 2) {
         std::fprintf(stderr, "replay: no files\n");
@@ -21,7 +21,7 @@ int main(int argc, char** argv)
         }
         const std::vector<char> bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
         std::fprintf(stderr, "%s\n", argv[i]);
-        LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+        LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t *>(bytes.data()), bytes.size());
     }
     std::printf("%d files\n", argc - 1);
     return 0;

@@ -9,17 +9,22 @@
 #include "exact_metric.hpp"
 #include "oracle_file.h"
 
-namespace stress {
+namespace stress
+{
 
-namespace {
+namespace
+{
 
 struct file_closer {
-    void operator()(FILE* f) const { std::fclose(f); }
+    void operator()(FILE *f) const
+    {
+        std::fclose(f);
+    }
 };
 using file = std::unique_ptr<FILE, file_closer>;
 
 /** A result; zero is written as the format wants it. */
-void result(FILE* out, long double x)
+void result(FILE *out, long double x)
 {
     if (x == 0)
         std::fputs(" 0.0", out);
@@ -27,12 +32,12 @@ void result(FILE* out, long double x)
         std::fprintf(out, " %.20Le", x);
 }
 
-void write_inputs(FILE* out, const hostile_chain& c)
+void write_inputs(FILE *out, const hostile_chain &c)
 {
     std::fprintf(out, "atoms_in\n");
     for (std::size_t i = 0; i < c.mass.size(); ++i) {
         std::fprintf(out, "%zu %.16e %.16e", i, c.w[i], c.w[i] > 0 ? c.mass[i] : -1.0);
-        for (const std::vector<double>* x : {&c.r, &c.v, &c.f})
+        for (const std::vector<double> *x : {&c.r, &c.v, &c.f})
             std::fprintf(out, " %.16e %.16e %.16e", (*x)[3 * i], (*x)[3 * i + 1], (*x)[3 * i + 2]);
         std::fputc('\n', out);
     }
@@ -40,7 +45,7 @@ void write_inputs(FILE* out, const hostile_chain& c)
     for (std::size_t k = 0; k < c.length.size(); ++k) std::fprintf(out, "%zu %.16e\n", k + 1, c.length[k]);
 }
 
-void write_results(FILE* out, const solution& s, const exact_metric& m)
+void write_results(FILE *out, const solution &s, const exact_metric &m)
 {
     std::fprintf(out, "lndet");
     result(out, m.log_det);
@@ -68,7 +73,7 @@ void write_results(FILE* out, const solution& s, const exact_metric& m)
     const std::int64_t n = s.n_bonds, middle = (n + 1) / 2, next = n > 1 ? 2 : 1, far = n < 20 ? n : 20;
     const std::int64_t entries[][2] = {{1, 1}, {1, next}, {middle, middle}, {1, far}, {n, n}};
     std::fprintf(out, "zinv 5\n");
-    for (const auto& e : entries) {
+    for (const auto &e : entries) {
         std::fprintf(out, "%lld %lld", static_cast<long long>(e[0]), static_cast<long long>(e[1]));
         result(out, m.entry(e[0] - 1, e[1] - 1));
         std::fputc('\n', out);
@@ -78,9 +83,10 @@ void write_results(FILE* out, const solution& s, const exact_metric& m)
 
 std::mutex index_in_use;
 
-} // namespace
+}  // namespace
 
-bool write_case(const std::string& directory, const std::string& name, const std::string& comment, const hostile_chain& c)
+bool write_case(const std::string &directory, const std::string &name, const std::string &comment,
+                const hostile_chain &c)
 {
     const solution_problem p = c.problem();
     const exact_metric m = metric_of(p);
@@ -100,7 +106,7 @@ bool write_case(const std::string& directory, const std::string& name, const std
     return out && index && std::fprintf(index.get(), "%s.txt\n", name.c_str()) > 0;
 }
 
-hostile_chain read_case(const std::string& path)
+hostile_chain read_case(const std::string &path)
 {
     oracle_case o;
     char message[4400];
@@ -113,7 +119,7 @@ hostile_chain read_case(const std::string& path)
     const std::size_t n = static_cast<std::size_t>(o.n_bonds), atoms = n + 1;
     c.w.assign(o.w, o.w + atoms);
     c.mass.assign(o.mass, o.mass + atoms);
-    for (double& m : c.mass)
+    for (double &m : c.mass)
         if (m < 0) m = 0;
     c.r.assign(o.r, o.r + 3 * atoms);
     c.v.assign(o.v, o.v + 3 * atoms);
@@ -127,4 +133,4 @@ hostile_chain read_case(const std::string& path)
     return c;
 }
 
-} // namespace stress
+}  // namespace stress

@@ -9,14 +9,16 @@
 
 #include "hostile_chain.hpp"
 
-namespace stress {
+namespace stress
+{
 
 /** Writes DIRECTORY/NAME.txt and adds it to DIRECTORY/INDEX. False if that is not possible, or Z is singular. */
-bool write_case(const std::string& directory, const std::string& name, const std::string& comment, const hostile_chain& c);
+bool write_case(const std::string &directory, const std::string &name, const std::string &comment,
+                const hostile_chain &c);
 
 /** Reads the inputs of a case; the program ends with a message if it can't. */
-hostile_chain read_case(const std::string& path);
+hostile_chain read_case(const std::string &path);
 
-} // namespace stress
+}  // namespace stress
 
 #endif

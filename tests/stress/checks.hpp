@@ -1,7 +1,8 @@
 /**
  * @file checks.hpp
- * Compares what the library says about one chain with the reference solution. Bounds are those of tests/oracle/README.md,
- * K = 16 + sqrt(N) in units of eps times the componentwise scale; where the README has none, they are given here.
+ * Compares what the library says about one chain with the reference solution. Bounds are those of
+ * tests/oracle/README.md, K = 16 + sqrt(N) in units of eps times the componentwise scale; where the README has none,
+ * they are given here.
  */
 #ifndef STRESS_CHECKS_HPP
 #define STRESS_CHECKS_HPP
@@ -11,41 +12,43 @@
 #include "library_results.hpp"
 #include "quantities.hpp"
 
-namespace stress {
+namespace stress
+{
 
 /** K of the README. */
 long double oracle_bound(std::int64_t n_bonds);
 
 /** What underflow may cost each multiplier; far below everything in ordinary units. */
-std::vector<long double> underflow_of(const hostile_chain& c);
+std::vector<long double> underflow_of(const hostile_chain &c);
 
 /**
  * lambda, G and virial of hol_forces; lambda and v of hol_project_velocities.
- * Velocities: |v_i - ref| <= K eps (|v_i0| + w_i g_scale_i), which is what rounding lambda and v alone may do. Of d.dv may
- * be left K eps times the largest term that enters it: |d| times a velocity that goes in or comes out, or a 2 w lambda |d|.
+ * Velocities: |v_i - ref| <= K eps (|v_i0| + w_i g_scale_i), g_scale with the velocities before and after the
+ * projection in its right-hand side: what rounding them may do. Of d.dv may be left K eps times the largest term that
+ * enters it: |d| times a velocity that goes in or comes out, or a 2 w lambda |d|.
  */
-void check_linear_levels(const hostile_chain& c, const library_results& alone, verdict& out);
+void check_linear_levels(const hostile_chain &c, const library_results &alone, verdict &out);
 
 /** ln det, Fixman force, elements of the inverse, its condition number (2 K eps) and the guaranteed error bound. */
-void check_metric(const hostile_chain& c, const exact_metric& exact, const arrangement& a, const library_results& alone,
-                  verdict& out);
+void check_metric(const hostile_chain &c, const exact_metric &exact, const arrangement &a, const library_results &alone,
+                  verdict &out);
 
 /**
- * Bond lengths: |d.d - a^2| / a^2 <= 8 eps (1 + extent / shortest bond), twice what hol_chains_set_tolerance describes as the
- * default because rounding the coordinates comes on top. Shift: r - drift = dt^2 w G(lambda) along the old bonds to K eps
- * of the terms of that sum.
+ * Bond lengths: |d.d - a^2| / a^2 <= 8 eps (1 + extent / shortest bond), twice what hol_chains_set_tolerance describes
+ * as the default because rounding the coordinates comes on top. Shift: r - drift = dt^2 w G(lambda) along the old bonds
+ * to K eps of the terms of that sum.
  */
-void check_positions(const hostile_chain& c, const library_results& alone, verdict& out);
+void check_positions(const hostile_chain &c, const library_results &alone, verdict &out);
 
 /** A chain that failed keeps its outputs bit for bit; one that did not has only finite ones. */
-void check_outputs(const hostile_chain& c, const library_results& part, verdict& out);
+void check_outputs(const hostile_chain &c, const library_results &part, verdict &out);
 
 /** The parts that must not depend on the surroundings. The position level is left out if `positions` is false. */
-void check_same(const library_results& one, const library_results& other, verdict& out);
+void check_same(const library_results &one, const library_results &other, verdict &out);
 
 /** Everything about one chain on its own; `regular` tells whether Z has an inverse. */
-verdict check_alone(const hostile_chain& c, bool& regular, long double& condition);
+verdict check_alone(const hostile_chain &c, bool &regular, long double &condition);
 
-} // namespace stress
+}  // namespace stress
 
 #endif

@@ -5,41 +5,49 @@
 #include "checks.hpp"
 #include "linear_solve.hpp"
 
-namespace stress {
+namespace stress
+{
 
 using namespace reference;
 
-namespace {
+namespace
+{
 
 constexpr long double eps = DBL_EPSILON, smallest = 4.9406564584124654e-324L;
 
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+std::size_t at(std::int64_t i)
+{
+    return static_cast<std::size_t>(i);
+}
 
 struct reference_solution {
     solution s{};
     bool ok;
-    reference_solution(const hostile_chain& c, int (*solve)(const solution_problem*, solution*))
+    reference_solution(const hostile_chain &c, int (*solve)(const solution_problem *, solution *))
     {
         const solution_problem p = c.problem();
         ok = solve(&p, &s) == 0;
     }
-    ~reference_solution() { if (ok) solution_free(&s); }
-    reference_solution(const reference_solution&) = delete;
-    reference_solution& operator=(const reference_solution&) = delete;
+    ~reference_solution()
+    {
+        if (ok) solution_free(&s);
+    }
+    reference_solution(const reference_solution &) = delete;
+    reference_solution &operator=(const reference_solution &) = delete;
 };
 
-long double size_of(const hostile_chain& c, std::size_t k)
+long double size_of(const hostile_chain &c, std::size_t k)
 {
     return c.length[k];
 }
 
-} // namespace
+}  // namespace
 
 /**
  * Every product and sum of a right-hand side may be off by the smallest number, and so may each step of the two sweeps:
  * that is seen where forces are denormal numbers, or where multipliers die away along a chain until they are.
  */
-std::vector<long double> underflow_of(const hostile_chain& c)
+std::vector<long double> underflow_of(const hostile_chain &c)
 {
     std::vector<long double> out(at(c.n_bonds), 0);
     const exact_chain e(c.problem());
@@ -55,9 +63,11 @@ std::vector<long double> underflow_of(const hostile_chain& c)
     return out;
 }
 
-namespace {
+namespace
+{
 
-void check_forces(const hostile_chain& c, const library_results& alone, const std::vector<long double>& slack, verdict& out)
+void check_forces(const hostile_chain &c, const library_results &alone, const std::vector<long double> &slack,
+                  verdict &out)
 {
     const reference_solution ref(c, solution_forces);
     if (!ref.ok) return;
@@ -78,15 +88,15 @@ void check_forces(const hostile_chain& c, const library_results& alone, const st
         out.compare(VIRIAL, alone.virial[i], ref.s.virial[i], k_eps * ref.s.virial_scale + virial_slack);
 }
 
-void check_velocities(const hostile_chain& c, const library_results& alone, const std::vector<long double>& slack,
-                      verdict& out)
+void check_velocities(const hostile_chain &c, const library_results &alone, const std::vector<long double> &slack,
+                      verdict &out)
 {
     const reference_solution ref(c, solution_velocities);
     if (!ref.ok) return;
     const exact_chain e(c.problem());
     const long double k_eps = oracle_bound(c.n_bonds) * eps;
     const std::size_t n = at(c.n_bonds);
-    std::vector<long double> term(n + 1, 0), g_slack(n + 1, 0); // sizes of what adds up to the velocity of an atom
+    std::vector<long double> term(n + 1, 0), g_slack(n + 1, 0);  // sizes of what adds up to the velocity of an atom
     for (std::size_t k = 0; k < n; ++k) {
         out.compare(VELOCITY_LAMBDA, alone.velocity_lambda[k], ref.s.lambda[k],
                     k_eps * ref.s.lambda_scale[k] + slack[k]);
@@ -96,11 +106,25 @@ void check_velocities(const hostile_chain& c, const library_results& alone, cons
             if (slack[k] > 0) g_slack[i] += 2 * slack[k] * size_of(c, k) * c.w[i] + 8 * smallest * (1 + c.w[i]);
         }
     }
+    // What rounding the velocities that come out does to the multipliers, were the projection applied once more.
+    std::vector<quad> again;
+    for (std::size_t k = 0; k < n; ++k) {
+        quad s = 0;
+        for (std::size_t i = k; i <= k + 1; ++i)
+            for (std::size_t x = 0; x < 3; ++x) s += 2 * absolute(e.d[k][x]) * absolute(quad(alone.v[3 * i + x]));
+        again.push_back(s);
+    }
+    if (!solve_banded(with_negative_neighbours(bond_matrix(e)), again)) return;
+    std::vector<long double> scale(n + 1);
+    for (std::size_t i = 0; i <= n; ++i) {
+        scale[i] = c.w[i] * ref.s.g_scale[i];
+        for (std::size_t k = i > 0 ? i - 1 : 0; k <= i && k < n; ++k)
+            scale[i] += c.w[i] * 2 * static_cast<long double>(again[k]) * size_of(c, k);
+    }
     for (std::size_t i = 0; i <= n; ++i)
         for (std::size_t x = 0; x < 3; ++x) {
             const long double before = c.v[3 * i + x], exact = before + c.w[i] * ref.s.g[3 * i + x];
-            out.compare(VELOCITY, alone.v[3 * i + x], exact,
-                        k_eps * (std::fabs(before) + c.w[i] * ref.s.g_scale[i]) + g_slack[i]);
+            out.compare(VELOCITY, alone.v[3 * i + x], exact, k_eps * (std::fabs(before) + scale[i]) + g_slack[i]);
             term[i] += std::fabs(before) + std::fabs(static_cast<long double>(alone.v[3 * i + x]));
         }
     for (std::size_t k = 0; k < n; ++k) {
@@ -111,18 +135,18 @@ void check_velocities(const hostile_chain& c, const library_results& alone, cons
     }
 }
 
-} // namespace
+}  // namespace
 
 long double oracle_bound(std::int64_t n_bonds)
 {
     return 16 + std::sqrt(static_cast<long double>(n_bonds));
 }
 
-void check_linear_levels(const hostile_chain& c, const library_results& alone, verdict& out)
+void check_linear_levels(const hostile_chain &c, const library_results &alone, verdict &out)
 {
     const std::vector<long double> slack = underflow_of(c);
     if (alone.forces == HOL_OK) check_forces(c, alone, slack, out);
     if (alone.velocities == HOL_OK) check_velocities(c, alone, slack, out);
 }
 
-} // namespace stress
+}  // namespace stress

@@ -4,18 +4,23 @@
 #include "bond_matrix.hpp"
 #include "checks.hpp"
 
-namespace stress {
+namespace stress
+{
 
 using namespace reference;
 
-namespace {
+namespace
+{
 
 constexpr long double eps = DBL_EPSILON;
 
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+std::size_t at(std::int64_t i)
+{
+    return static_cast<std::size_t>(i);
+}
 
 /** Whether the reference's Newton method finds an answer. */
-bool has_answer(const hostile_chain& c)
+bool has_answer(const hostile_chain &c)
 {
     const solution_problem p = c.problem();
     solution s;
@@ -25,19 +30,19 @@ bool has_answer(const hostile_chain& c)
     return true;
 }
 
-bool finite(const vec& x)
+bool finite(const vec &x)
 {
     return std::all_of(x.begin(), x.end(), [](double y) { return std::isfinite(y); });
 }
 
-bool all_unwritten(const vec& x)
+bool all_unwritten(const vec &x)
 {
     return std::all_of(x.begin(), x.end(), is_unwritten);
 }
 
-} // namespace
+}  // namespace
 
-void check_positions(const hostile_chain& c, const library_results& alone, verdict& out)
+void check_positions(const hostile_chain &c, const library_results &alone, verdict &out)
 {
     if (c.dt == 0) return;
     if (alone.positions != HOL_OK) {
@@ -52,7 +57,8 @@ void check_positions(const hostile_chain& c, const library_results& alone, verdi
     const long double dt2 = static_cast<long double>(c.dt) * c.dt;
     long double extent = 0;
     for (std::size_t i = 0; i < drift.size(); ++i)
-        extent = std::max({extent, std::fabs(static_cast<long double>(drift[i])), std::fabs(static_cast<long double>(c.r[i]))});
+        extent = std::max(
+            {extent, std::fabs(static_cast<long double>(drift[i])), std::fabs(static_cast<long double>(c.r[i]))});
     const long double shortest = *std::min_element(c.length.begin(), c.length.end());
     std::vector<long double> term(n + 1, 0);
     std::vector<quad3> shift(n + 1, quad3{});
@@ -74,15 +80,16 @@ void check_positions(const hostile_chain& c, const library_results& alone, verdi
         for (std::size_t x = 0; x < 3; ++x) {
             const quad exact = quad(drift[3 * i + x]) + quad(dt2) * old.w[i] * shift[i][x];
             const long double error = static_cast<long double>(absolute(quad(alone.r[3 * i + x]) - exact));
-            const long double allowed = k_eps * (std::fabs(static_cast<long double>(drift[3 * i + x])) + dt2 * c.w[i] * term[i]);
+            const long double allowed =
+                k_eps * (std::fabs(static_cast<long double>(drift[3 * i + x])) + dt2 * c.w[i] * term[i]);
             out.note(POSITION_SHIFT, error == 0 ? 0 : error / allowed);
         }
 }
 
-void check_outputs(const hostile_chain& c, const library_results& part, verdict& out)
+void check_outputs(const hostile_chain &c, const library_results &part, verdict &out)
 {
     const auto level = [&](int status, bool kept, bool complete) {
-        const bool failed = status != HOL_OK; // of this chain, or of another in the same call
+        const bool failed = status != HOL_OK;  // of this chain, or of another in the same call
         out.note(OUTPUTS_KEPT, !(complete || (failed && kept)));
     };
     const vec drift = drifted(c);
@@ -95,16 +102,21 @@ void check_outputs(const hostile_chain& c, const library_results& part, verdict&
           finite(part.position_lambda) && finite(part.r) && finite(part.moved));
 }
 
-void check_same(const library_results& one, const library_results& other, verdict& out)
+void check_same(const library_results &one, const library_results &other, verdict &out)
 {
-    const vec library_results::*const all[] = {
-        &library_results::lambda, &library_results::g, &library_results::log_det, &library_results::fixman,
-        &library_results::velocity_lambda, &library_results::v, &library_results::position_lambda, &library_results::r,
-        &library_results::moved};
+    const vec library_results::*const all[] = {&library_results::lambda,
+                                               &library_results::g,
+                                               &library_results::log_det,
+                                               &library_results::fixman,
+                                               &library_results::velocity_lambda,
+                                               &library_results::v,
+                                               &library_results::position_lambda,
+                                               &library_results::r,
+                                               &library_results::moved};
     for (const auto member : all) out.note(SAME_BITS, !same_bits(one.*member, other.*member));
 }
 
-verdict check_alone(const hostile_chain& c, bool& regular, long double& condition)
+verdict check_alone(const hostile_chain &c, bool &regular, long double &condition)
 {
     verdict out;
     const solution_problem p = c.problem();
@@ -114,7 +126,7 @@ verdict check_alone(const hostile_chain& c, bool& regular, long double& conditio
     const arrangement a = arrange({&c}, 0);
     const library_results alone = compute(a, c.dt > 0 ? c.dt : 1);
     check_outputs(c, alone, out);
-    if (!regular) { // nothing to compare with: the chain is taut between fixed atoms
+    if (!regular) {  // nothing to compare with: the chain is taut between fixed atoms
         out.note(ACCEPTED, alone.forces != HOL_ERR_DEGENERATE || alone.velocities != HOL_ERR_DEGENERATE ||
                                alone.metric != HOL_ERR_DEGENERATE);
         return out;
@@ -126,4 +138,4 @@ verdict check_alone(const hostile_chain& c, bool& regular, long double& conditio
     return out;
 }
 
-} // namespace stress
+}  // namespace stress

@@ -1,9 +1,9 @@
 /**
- * Error of the multipliers against the condition number, 1 .. 1e16 and beyond, in three families: straight chains of growing
- * length, straight chains with ever lighter joints, chains ever more taut between fixed ends. For each chain the library,
- * the recursion as printed in the paper (Eq. 17 on the gammas), and LAPACK's dptsv (or, without LAPACK, the same LDL^T).
- *     condition_sweep          prints  family condition library printed ldl   in units of eps times the componentwise scale
- * Exit status 1 if the library exceeds the bound of tests/oracle/README.md anywhere.
+ * Error of the multipliers against the condition number, 1 .. 1e16 and beyond, in three families: straight chains of
+ * growing length, straight chains with ever lighter joints, chains ever more taut between fixed ends. For each chain
+ * the library, the recursion as printed in the paper (Eq. 17 on the gammas), and LAPACK's dptsv (or, without LAPACK,
+ * the same LDL^T). condition_sweep          prints  family condition library printed ldl   in units of eps times the
+ * componentwise scale Exit status 1 if the library exceeds the bound of tests/oracle/README.md anywhere.
  */
 #include <algorithm>
 #include <cmath>
@@ -14,25 +14,29 @@
 using namespace stress;
 
 #ifdef STRESS_HAVE_LAPACK
-extern "C" void dptsv_(const int* n, const int* nrhs, double* d, double* e, double* b, const int* ldb, int* info);
+extern "C" void dptsv_(const int *n, const int *nrhs, double *d, double *e, double *b, const int *ldb, int *info);
 #endif
 
-namespace {
+namespace
+{
 
-using row3 = const double*;
+using row3 = const double *;
 
-double dot(const double* a, const double* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+double dot(const double *a, const double *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 /** Z and K + C in ordinary double precision. */
 struct system_of {
     vec diagonal, beside, right;
-    explicit system_of(const hostile_chain& c)
+    explicit system_of(const hostile_chain &c)
     {
         const std::size_t n = static_cast<std::size_t>(c.n_bonds);
         vec d(3 * n);
         for (std::size_t i = 0; i < 3 * n; ++i) d[i] = c.r[i + 3] - c.r[i];
         for (std::size_t k = 0; k < n; ++k) {
-            const double* const dk = &d[3 * k];
+            const double *const dk = &d[3 * k];
             double dv[3], df[3];
             for (std::size_t x = 0; x < 3; ++x) {
                 dv[x] = c.v[3 * k + 3 + x] - c.v[3 * k + x];
@@ -46,7 +50,7 @@ struct system_of {
 };
 
 /** Omega_k^2 = 1 - gamma_k^2 / Omega_{k-1}^2, then the two sweeps. */
-vec by_printed_recursion(const system_of& s)
+vec by_printed_recursion(const system_of &s)
 {
     const std::size_t n = s.diagonal.size();
     vec x(n), omega2(n), gamma(n, 0), scale(n);
@@ -68,7 +72,7 @@ vec by_elimination(system_of s)
     const int one = 1;
     int info = 0;
     dptsv_(&n, &one, s.diagonal.data(), s.beside.data(), s.right.data(), &n, &info);
-    if (info != 0) s.right.assign(s.right.size(), NAN); // it takes the matrix for singular
+    if (info != 0) s.right.assign(s.right.size(), NAN);  // it takes the matrix for singular
 #else
     for (std::size_t k = 1; k < s.right.size(); ++k) {
         const double l = s.beside[k - 1] / s.diagonal[k - 1];
@@ -106,7 +110,7 @@ hostile_chain straight(std::int64_t n, double light, double bend, bool fixed_end
     return c;
 }
 
-double worst(const vec& x, const solution& reference)
+double worst(const vec &x, const solution &reference)
 {
     long double largest = 0;
     for (std::size_t k = 0; k < x.size(); ++k) {
@@ -116,7 +120,7 @@ double worst(const vec& x, const solution& reference)
     return static_cast<double>(largest);
 }
 
-bool print(const char* family, const hostile_chain& c)
+bool print(const char *family, const hostile_chain &c)
 {
     const solution_problem p = c.problem();
     const exact_metric exact = metric_of(p);
@@ -131,7 +135,7 @@ bool print(const char* family, const hostile_chain& c)
     return library.forces == HOL_OK && error <= static_cast<double>(oracle_bound(c.n_bonds));
 }
 
-} // namespace
+}  // namespace
 
 int main()
 {

@@ -5,14 +5,16 @@
 #include "bond_matrix.hpp"
 #include "linear_solve.hpp"
 
-namespace stress {
+namespace stress
+{
 
 using namespace reference;
 
-namespace {
+namespace
+{
 
 /** Pivots of the elimination from the first row on, or from the last. Empty if one is not positive. */
-std::vector<quad> pivots(const tridiagonal& z, bool from_last)
+std::vector<quad> pivots(const tridiagonal &z, bool from_last)
 {
     const std::size_t n = z.size();
     std::vector<quad> p(n);
@@ -30,26 +32,26 @@ std::vector<quad> pivots(const tridiagonal& z, bool from_last)
 }
 
 /** ln of the product; it is kept near one by powers of two, so that its logarithm keeps its digits. */
-long double log_product(const std::vector<quad>& factors)
+long double log_product(const std::vector<quad> &factors)
 {
     quad product = 1;
     long exponent = 0;
-    for (const quad& x : factors) {
+    for (const quad &x : factors) {
         product *= x;
         for (; product < 0.5; product *= 2) --exponent;
     }
     return std::log1p(static_cast<long double>(product - 1)) + static_cast<long double>(exponent) * std::log(2.0L);
 }
 
-long double largest_row_sum(const std::vector<quad>& rows)
+long double largest_row_sum(const std::vector<quad> &rows)
 {
     quad largest = 0;
-    for (const quad& x : rows)
+    for (const quad &x : rows)
         if (x > largest) largest = x;
     return static_cast<long double>(largest);
 }
 
-} // namespace
+}  // namespace
 
 long double exact_metric::entry(std::int64_t i, std::int64_t j) const
 {
@@ -58,7 +60,7 @@ long double exact_metric::entry(std::int64_t i, std::int64_t j) const
     return value;
 }
 
-exact_metric metric_of(const solution_problem& problem)
+exact_metric metric_of(const solution_problem &problem)
 {
     exact_metric out;
     const exact_chain c(problem);
@@ -81,7 +83,7 @@ exact_metric metric_of(const solution_problem& problem)
         const quad step = k > 0 ? -z.lower[k] / forward[k - 1] : quad(0);
         out.diagonal.push_back(static_cast<long double>(diagonal));
         out.step.push_back(static_cast<long double>(step));
-        if (k > 0) { // Z~^-1 = sqrt(M_ii M_jj) M^-1, M_ii = w + w'
+        if (k > 0) {  // Z~^-1 = sqrt(M_ii M_jj) M^-1, M_ii = w + w'
             h[k] = c.w[k] * step * diagonal / square_root((c.w[k - 1] + c.w[k]) * (c.w[k] + c.w[k + 1]));
             normal[k] = cross(u[k - 1], u[k]);
             row_sum[k] += absolute(z.lower[k]);
@@ -90,7 +92,7 @@ exact_metric metric_of(const solution_problem& problem)
     }
     if (!solve_banded(with_negative_neighbours(z), inverse_row_sum)) return out;
     out.condition = largest_row_sum(row_sum) * largest_row_sum(inverse_row_sum);
-    if (!(out.condition < 1e60L)) return out; // singular but for the rounding of this arithmetic
+    if (!(out.condition < 1e60L)) return out;  // singular but for the rounding of this arithmetic
     for (std::size_t k = 0; k < n; ++k) {
         phi[k + 1] = (1 / size[k]) * cross(u[k], h[k] * normal[k] - h[k + 1] * normal[k + 1]);
         scale[k + 1] = (absolute(h[k]) * norm(normal[k]) + absolute(h[k + 1]) * norm(normal[k + 1])) / size[k];
@@ -104,4 +106,4 @@ exact_metric metric_of(const solution_problem& problem)
     return out;
 }
 
-} // namespace stress
+}  // namespace stress

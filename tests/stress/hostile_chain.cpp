@@ -4,26 +4,49 @@
 #include <cmath>
 #include <limits>
 
-namespace stress {
+namespace stress
+{
 
-namespace {
+namespace
+{
 
 using vec = std::vector<double>;
 
 struct dice {
     random_stream stream;
-    double uniform(double low, double high) { return low + (high - low) * random_uniform(&stream); }
-    double decades(double low, double high) { return std::pow(10.0, uniform(low, high)); }
-    bool chance(double p) { return random_uniform(&stream) < p; }
-    int one_of(int n) { return static_cast<int>(random_integer(&stream, 0, n - 1)); }
-    double sign() { return chance(0.5) ? 1 : -1; }
-    std::int64_t atom(const hostile_chain& c) { return random_integer(&stream, 0, c.n_bonds); }
+    double uniform(double low, double high)
+    {
+        return low + (high - low) * random_uniform(&stream);
+    }
+    double decades(double low, double high)
+    {
+        return std::pow(10.0, uniform(low, high));
+    }
+    bool chance(double p)
+    {
+        return random_uniform(&stream) < p;
+    }
+    int one_of(int n)
+    {
+        return static_cast<int>(random_integer(&stream, 0, n - 1));
+    }
+    double sign()
+    {
+        return chance(0.5) ? 1 : -1;
+    }
+    std::int64_t atom(const hostile_chain &c)
+    {
+        return random_integer(&stream, 0, c.n_bonds);
+    }
 };
 
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+std::size_t at(std::int64_t i)
+{
+    return static_cast<std::size_t>(i);
+}
 
 /** Sets a mass whose reciprocal is the stored inverse mass to the last bit. */
-void set_mass(hostile_chain& c, std::size_t i, double mass)
+void set_mass(hostile_chain &c, std::size_t i, double mass)
 {
     for (int attempt = 0; attempt < 100; ++attempt, mass = std::nextafter(mass, HUGE_VAL)) {
         c.w[i] = 1 / mass;
@@ -32,7 +55,7 @@ void set_mass(hostile_chain& c, std::size_t i, double mass)
     }
 }
 
-void draw_masses(hostile_chain& c, dice& d)
+void draw_masses(hostile_chain &c, dice &d)
 {
     const std::size_t atoms = c.mass.size();
     const int style = c.features & UNEQUAL_MASSES ? d.one_of(4) : 4;
@@ -53,11 +76,11 @@ void draw_masses(hostile_chain& c, dice& d)
     for (std::size_t i = 0; i < atoms; ++i) {
         bool fixed = where == 3 && d.chance(share);
         fixed = fixed || (i == 0 && (where == 0 || where == 2)) || (i + 1 == atoms && (where == 1 || where == 2));
-        if (fixed && (i == 0 || c.w[i - 1] != 0)) c.w[i] = c.mass[i] = 0; // a bond between fixed atoms is an error
+        if (fixed && (i == 0 || c.w[i - 1] != 0)) c.w[i] = c.mass[i] = 0;  // a bond between fixed atoms is an error
     }
 }
 
-vec draw_lengths(const hostile_chain& c, dice& d)
+vec draw_lengths(const hostile_chain &c, dice &d)
 {
     vec a(at(c.n_bonds));
     const int style = c.features & UNEQUAL_BONDS ? d.one_of(3) : 3;
@@ -72,7 +95,7 @@ vec draw_lengths(const hostile_chain& c, dice& d)
     return a;
 }
 
-void normal_to(const double* u, dice& d, double* out)
+void normal_to(const double *u, dice &d, double *out)
 {
     double x[3], along = 0, square = 0;
     do {
@@ -84,7 +107,7 @@ void normal_to(const double* u, dice& d, double* out)
 }
 
 /** Turns the direction u by the next joint. */
-void turn(double* u, dice& d, bool straight, bool right, double fold)
+void turn(double *u, dice &d, bool straight, bool right, double fold)
 {
     double n[3], cosine = 0, sine = 1;
     if (!straight && !right) {
@@ -103,7 +126,7 @@ void turn(double* u, dice& d, bool straight, bool right, double fold)
 }
 
 /** Along x with exact steps and sideways by tiny amounts: angles of 1e-16 that rounding does not drown. */
-void walk_along_axis(hostile_chain& c, const vec& a, dice& d)
+void walk_along_axis(hostile_chain &c, const vec &a, dice &d)
 {
     const double fold = d.chance(0.5) ? 0 : d.uniform(0, 1), quiet = d.uniform(0, 1);
     for (std::size_t k = 0; k < a.size(); ++k) {
@@ -114,7 +137,7 @@ void walk_along_axis(hostile_chain& c, const vec& a, dice& d)
 }
 
 /** Joints of right angles to the last bit, or off by a tiny part of the next bond. */
-void walk_on_lattice(hostile_chain& c, const vec& a, dice& d)
+void walk_on_lattice(hostile_chain &c, const vec &a, dice &d)
 {
     const double off = d.chance(0.5) ? 0 : d.uniform(0, 1);
     std::size_t axis = 0;
@@ -126,7 +149,7 @@ void walk_on_lattice(hostile_chain& c, const vec& a, dice& d)
     }
 }
 
-void draw_positions(hostile_chain& c, dice& d)
+void draw_positions(hostile_chain &c, dice &d)
 {
     const vec a = draw_lengths(c, d);
     const bool straight = c.features & STRAIGHT, right = c.features & RIGHT_ANGLES;
@@ -145,7 +168,7 @@ void draw_positions(hostile_chain& c, dice& d)
     }
 }
 
-void shift(hostile_chain& c, dice& d)
+void shift(hostile_chain &c, dice &d)
 {
     for (std::size_t x = 0; x < 3; ++x) {
         const double offset = d.sign() * d.decades(0, 8);
@@ -154,7 +177,7 @@ void shift(hostile_chain& c, dice& d)
 }
 
 /** Forces or velocities: normal, or over 30 decades, in one of several patterns. */
-void draw_vectors(vec& out, const hostile_chain& c, dice& d, bool velocities)
+void draw_vectors(vec &out, const hostile_chain &c, dice &d, bool velocities)
 {
     const bool wide = c.features & WIDE_FORCES;
     const int style = d.one_of(wide ? 6 : 5);
@@ -168,28 +191,29 @@ void draw_vectors(vec& out, const hostile_chain& c, dice& d, bool velocities)
         for (std::size_t x = 0; x < 3; ++x) {
             double value = thermal * random_normal(&d.stream);
             if (style == 0) value = 0;
-            if (style == 1) value = common[x] * size;                         // the same for all
-            if (style == 2 && i != special) value = 0;                        // on one atom alone
-            if (style == 3) value = common[x] * size * 1e8 + value;           // a large part that is common
-            if (style == 5) value = spread * random_normal(&d.stream);        // of any size, atom by atom
+            if (style == 1) value = common[x] * size;                   // the same for all
+            if (style == 2 && i != special) value = 0;                  // on one atom alone
+            if (style == 3) value = common[x] * size * 1e8 + value;     // a large part that is common
+            if (style == 5) value = spread * random_normal(&d.stream);  // of any size, atom by atom
             out[3 * i + x] = value;
         }
     }
 }
 
-void make_denormal(vec& out, dice& d)
+void make_denormal(vec &out, dice &d)
 {
     const double share = d.chance(0.3) ? 1 : d.uniform(0, 1);
-    for (double& x : out)
+    for (double &x : out)
         if (d.chance(share)) x = d.sign() * d.decades(-323, -300);
 }
 
-} // namespace
+}  // namespace
 
-const char* feature_name(int bit)
+const char *feature_name(int bit)
 {
-    static const char* const names[n_features] = {"unequal masses", "fixed atoms", "unequal bonds", "straight or folded",
-                                                  "right angles",   "far away",    "wide forces",   "denormal numbers"};
+    static const char *const names[n_features] = {"unequal masses",     "fixed atoms",     "unequal bonds",
+                                                  "straight or folded", "right angles",    "far away",
+                                                  "wide forces",        "denormal numbers"};
     return names[bit];
 }
 
@@ -206,14 +230,14 @@ std::string hostile_chain::words() const
     return all.empty() ? "ordinary" : all;
 }
 
-std::vector<double> drifted(const hostile_chain& c)
+std::vector<double> drifted(const hostile_chain &c)
 {
     vec r = c.r;
     for (std::size_t i = 0; i < r.size(); ++i) r[i] += c.dt * c.v[i];
     return r;
 }
 
-bool complete(hostile_chain& c, double drift)
+bool complete(hostile_chain &c, double drift)
 {
     c.length.assign(at(c.n_bonds), 0);
     c.dt = HUGE_VAL;
@@ -239,7 +263,7 @@ hostile_chain make_hostile_chain(std::uint64_t seed, std::int64_t longest)
     hostile_chain c;
     c.seed = seed;
     dice d{random_seed(seed * UINT64_C(0x9e3779b97f4a7c15) + 1)};
-    const double share = d.uniform(0, 0.7); // between ordinary chains and those that have everything
+    const double share = d.uniform(0, 0.7);  // between ordinary chains and those that have everything
     for (int bit = 0; bit < n_features; ++bit)
         if (d.chance(bit == 7 ? share / 4 : share)) c.features |= 1u << bit;
     c.n_bonds = static_cast<std::int64_t>(std::exp(d.uniform(0, std::log(static_cast<double>(longest) + 1))));
@@ -255,7 +279,7 @@ hostile_chain make_hostile_chain(std::uint64_t seed, std::int64_t longest)
         make_denormal(c.f, d);
         if (d.chance(0.5)) make_denormal(c.v, d);
     }
-    if (d.chance(0.7)) // fixed atoms may be given a velocity, too: a wall that moves
+    if (d.chance(0.7))  // fixed atoms may be given a velocity, too: a wall that moves
         for (std::size_t i = 0; i < atoms; ++i)
             if (c.w[i] == 0) c.v[3 * i] = c.v[3 * i + 1] = c.v[3 * i + 2] = 0;
     const double drift = d.decades(-9, -1.5);
@@ -268,4 +292,4 @@ hostile_chain make_hostile_chain(std::uint64_t seed, std::int64_t longest)
     }
 }
 
-} // namespace stress
+}  // namespace stress

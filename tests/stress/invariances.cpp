@@ -5,35 +5,41 @@
 
 #include "checks.hpp"
 
-namespace stress {
-
-namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
-
-void scale(vec& x, double factor)
+namespace stress
 {
-    for (double& y : x)
+
+namespace
+{
+
+std::size_t at(std::int64_t i)
+{
+    return static_cast<std::size_t>(i);
+}
+
+void scale(vec &x, double factor)
+{
+    for (double &y : x)
         if (!is_unwritten(y)) y *= factor;
 }
 
-bool near_the_ends(const vec& x)
+bool near_the_ends(const vec &x)
 {
     return std::any_of(x.begin(), x.end(), [](double y) { return y != 0 && std::fabs(y) < 1e-100; });
 }
 
-/** Multipliers that die away along a chain end among denormal numbers, where scaling is not exact: these become zero. */
-void without_tails(library_results& o)
+/** Multipliers that die away along a chain end among denormal numbers, where scaling is not exact: these become zero.
+ */
+void without_tails(library_results &o)
 {
-    for (vec* x : {&o.lambda, &o.g, &o.velocity_lambda, &o.position_lambda, &o.v, &o.fixman})
-        for (double& y : *x)
+    for (vec *x : {&o.lambda, &o.g, &o.velocity_lambda, &o.position_lambda, &o.v, &o.fixman})
+        for (double &y : *x)
             if (std::fabs(y) < 1e-200) y = 0;
 }
 
 /** Units of mass, length and time that are 2^m, 2^l and 2^t of the old ones. */
-void check_units(const hostile_chain& c, library_results alone, int m, int l, int t, verdict& out)
+void check_units(const hostile_chain &c, library_results alone, int m, int l, int t, verdict &out)
 {
-    if (near_the_ends(c.f) || near_the_ends(c.v)) return; // where denormal numbers are met, scaling is not exact
+    if (near_the_ends(c.f) || near_the_ends(c.v)) return;  // where denormal numbers are met, scaling is not exact
     hostile_chain other = c;
     const double mass = std::ldexp(1, m), length = std::ldexp(1, l), time = std::ldexp(1, t);
     const double force = mass * length / (time * time), velocity = length / time;
@@ -41,9 +47,9 @@ void check_units(const hostile_chain& c, library_results alone, int m, int l, in
     scale(other.length, length), scale(other.r, length);
     scale(other.v, velocity), scale(other.f, force);
     other.dt = c.dt * time;
-    library_results there = compute(arrange({&other}, 0), time); // `alone` was made with a step of 1
+    library_results there = compute(arrange({&other}, 0), time);  // `alone` was made with a step of 1
     scale(there.lambda, length / force), scale(there.g, 1 / force);
-    scale(there.fixman, length); // kT stays 1
+    scale(there.fixman, length);  // kT stays 1
     scale(there.velocity_lambda, length / (force * time));
     scale(there.v, 1 / velocity);
     scale(there.position_lambda, length / force), scale(there.r, 1 / length), scale(there.moved, 1 / velocity);
@@ -52,33 +58,34 @@ void check_units(const hostile_chain& c, library_results alone, int m, int l, in
     check_same(alone, there, out);
 }
 
-void mirror(vec& x)
+void mirror(vec &x)
 {
     for (std::size_t i = 0; i < x.size(); i += 3)
-        if (!is_unwritten(x[i])) x[i] = 0 - x[i]; // zeros keep their sign: +0
+        if (!is_unwritten(x[i])) x[i] = 0 - x[i];  // zeros keep their sign: +0
 }
 
-void plain_zeros(library_results& o)
+void plain_zeros(library_results &o)
 {
-    for (vec* x : {&o.g, &o.fixman, &o.v, &o.r, &o.moved, &o.lambda, &o.velocity_lambda, &o.position_lambda, &o.log_det})
-        for (double& y : *x)
-            if (y == 0) y = 0; // -0 as well
+    for (vec *x :
+         {&o.g, &o.fixman, &o.v, &o.r, &o.moved, &o.lambda, &o.velocity_lambda, &o.position_lambda, &o.log_det})
+        for (double &y : *x)
+            if (y == 0) y = 0;  // -0 as well
 }
 
-void check_mirror(const hostile_chain& c, library_results alone, verdict& out)
+void check_mirror(const hostile_chain &c, library_results alone, verdict &out)
 {
     hostile_chain other = c;
     mirror(other.r), mirror(other.v), mirror(other.f);
     library_results there = compute(arrange({&other}, 0), 1);
-    for (vec* x : {&there.g, &there.fixman, &there.v, &there.r, &there.moved}) mirror(*x);
+    for (vec *x : {&there.g, &there.fixman, &there.v, &there.r, &there.moved}) mirror(*x);
     plain_zeros(there);
     plain_zeros(alone);
     check_same(alone, there, out);
 }
 
-} // namespace
+}  // namespace
 
-hostile_chain reversed(const hostile_chain& c)
+hostile_chain reversed(const hostile_chain &c)
 {
     hostile_chain o = c;
     const std::size_t n = at(c.n_bonds);
@@ -94,10 +101,10 @@ hostile_chain reversed(const hostile_chain& c)
     return o;
 }
 
-hostile_chain turned(const hostile_chain& c)
+hostile_chain turned(const hostile_chain &c)
 {
     hostile_chain o = c;
-    for (vec* x : {&o.r, &o.v, &o.f})
+    for (vec *x : {&o.r, &o.v, &o.f})
         for (std::size_t i = 0; i < x->size(); i += 3) {
             const double first = (*x)[i];
             (*x)[i] = (*x)[i + 1];
@@ -107,10 +114,10 @@ hostile_chain turned(const hostile_chain& c)
     return o;
 }
 
-void check_invariances(const std::vector<hostile_chain>& chains, std::uint64_t shuffle, std::vector<verdict>& out)
+void check_invariances(const std::vector<hostile_chain> &chains, std::uint64_t shuffle, std::vector<verdict> &out)
 {
-    std::vector<const hostile_chain*> parts;
-    for (const hostile_chain& c : chains) parts.push_back(&c);
+    std::vector<const hostile_chain *> parts;
+    for (const hostile_chain &c : chains) parts.push_back(&c);
     const arrangement together = arrange(parts, shuffle);
     const library_results first = compute(together, 1), again = compute(together, 1),
                           views = compute_in_views(together, 1);
@@ -119,7 +126,7 @@ void check_invariances(const std::vector<hostile_chain>& chains, std::uint64_t s
     random_stream stream = random_seed(shuffle);
     for (std::size_t k = 0; k < chains.size(); ++k) {
         const library_results alone = compute(arrange({parts[k]}, 0), 1);
-        for (const library_results* other : {&first, &again, &views, &threads}) {
+        for (const library_results *other : {&first, &again, &views, &threads}) {
             const library_results part = part_of(*other, together, k);
             check_same(alone, part, out[k]);
             check_outputs(chains[k], part, out[k]);
@@ -129,8 +136,8 @@ void check_invariances(const std::vector<hostile_chain>& chains, std::uint64_t s
         check_units(chains[k], alone, m, l, t, out[k]);
         check_mirror(chains[k], alone, out[k]);
     }
-    for (const library_results* other : {&again, &views, &threads})
+    for (const library_results *other : {&again, &views, &threads})
         out[0].note(SAME_BITS, !same_bits(first.virial, other->virial));
 }
 
-} // namespace stress
+}  // namespace stress

@@ -5,11 +5,16 @@
 #include <cstring>
 #include <utility>
 
-namespace stress {
+namespace stress
+{
 
-namespace {
+namespace
+{
 
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+std::size_t at(std::int64_t i)
+{
+    return static_cast<std::size_t>(i);
+}
 
 void must(int status)
 {
@@ -18,13 +23,13 @@ void must(int status)
     std::abort();
 }
 
-void scatter(const vec& from, const std::vector<std::int64_t>& atoms, vec& to)
+void scatter(const vec &from, const std::vector<std::int64_t> &atoms, vec &to)
 {
     for (std::size_t i = 0; i < atoms.size(); ++i)
         for (std::size_t x = 0; x < 3; ++x) to[3 * at(atoms[i]) + x] = from[3 * i + x];
 }
 
-vec gather(const vec& from, const std::vector<std::int64_t>& atoms)
+vec gather(const vec &from, const std::vector<std::int64_t> &atoms)
 {
     vec to(3 * atoms.size());
     for (std::size_t i = 0; i < atoms.size(); ++i)
@@ -36,15 +41,15 @@ vec gather(const vec& from, const std::vector<std::int64_t>& atoms)
 struct three_arrays {
     vec memory;
     hol_view view;
-    explicit three_arrays(const vec& from) : memory(from.size())
+    explicit three_arrays(const vec &from) : memory(from.size())
     {
         const std::size_t n = from.size() / 3;
         for (std::size_t i = 0; i < n; ++i)
             for (std::size_t x = 0; x < 3; ++x) memory[x * n + n - 1 - i] = from[3 * i + x];
-        double* last = memory.data() + n - 1;
+        double *last = memory.data() + n - 1;
         view = {last, last + n, last + 2 * n, -static_cast<std::int64_t>(sizeof(double)), HOL_DOUBLE, 0};
     }
-    void give_back(vec& to) const
+    void give_back(vec &to) const
     {
         const std::size_t n = to.size() / 3;
         for (std::size_t i = 0; i < n; ++i)
@@ -52,7 +57,7 @@ struct three_arrays {
     }
 };
 
-library_results blank(const arrangement& a)
+library_results blank(const arrangement &a)
 {
     library_results o;
     const std::size_t bonds = at(a.n_bonds);
@@ -68,7 +73,7 @@ library_results blank(const arrangement& a)
     return o;
 }
 
-} // namespace
+}  // namespace
 
 double unwritten()
 {
@@ -84,17 +89,17 @@ bool is_unwritten(double x)
     return std::memcmp(&x, &pattern, sizeof x) == 0;
 }
 
-bool same_bits(const vec& a, const vec& b)
+bool same_bits(const vec &a, const vec &b)
 {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
 }
 
-arrangement arrange(const std::vector<const hostile_chain*>& parts, std::uint64_t shuffle)
+arrangement arrange(const std::vector<const hostile_chain *> &parts, std::uint64_t shuffle)
 {
     arrangement a;
     random_stream stream = random_seed(shuffle);
     std::int64_t gap = 0;
-    for (const hostile_chain* c : parts) {
+    for (const hostile_chain *c : parts) {
         a.n_bonds += c->n_bonds;
         a.n_atoms += c->n_bonds + 1;
     }
@@ -110,7 +115,7 @@ arrangement arrange(const std::vector<const hostile_chain*>& parts, std::uint64_
     a.v = a.f = a.drift = a.r;
     vec mass(at(a.n_atoms), 1.0);
     std::size_t next = 0;
-    for (const hostile_chain* c : parts) {
+    for (const hostile_chain *c : parts) {
         std::vector<std::int64_t> atoms(order.begin() + static_cast<std::ptrdiff_t>(next),
                                         order.begin() + static_cast<std::ptrdiff_t>(next) + c->n_bonds + 1);
         next += atoms.size();
@@ -121,7 +126,7 @@ arrangement arrange(const std::vector<const hostile_chain*>& parts, std::uint64_
         for (std::size_t i = 0; i < atoms.size(); ++i) mass[at(atoms[i])] = c->mass[i];
         a.atoms.push_back(std::move(atoms));
     }
-    hol_chains* chains = nullptr;
+    hol_chains *chains = nullptr;
     must(hol_chains_create(a.n_atoms, mass.data(), &chains));
     a.chains.reset(chains);
     for (std::size_t c = 0; c < parts.size(); ++c)
@@ -129,10 +134,10 @@ arrangement arrange(const std::vector<const hostile_chain*>& parts, std::uint64_
     return a;
 }
 
-library_results compute(const arrangement& a, double dt)
+library_results compute(const arrangement &a, double dt)
 {
     library_results o = blank(a);
-    const hol_chains* chains = a.chains.get();
+    const hol_chains *chains = a.chains.get();
     o.forces = hol_forces(chains, a.r.data(), a.v.data(), a.f.data(), o.lambda.data(), nullptr, o.g.data(), HOL_WRITE,
                           o.virial.data());
     o.metric = hol_metric(chains, a.r.data(), 1, o.log_det.data(), nullptr, nullptr, o.fixman.data(), HOL_WRITE);
@@ -142,10 +147,10 @@ library_results compute(const arrangement& a, double dt)
     return o;
 }
 
-library_results compute_in_views(const arrangement& a, double dt)
+library_results compute_in_views(const arrangement &a, double dt)
 {
     library_results o = blank(a);
-    const hol_chains* chains = a.chains.get();
+    const hol_chains *chains = a.chains.get();
     three_arrays r(a.r), v(a.v), f(a.f), g(o.g), fixman(o.fixman), projected(o.v), moved(o.moved), drift(o.r);
     o.forces = hol_forces_view(chains, &r.view, &v.view, &f.view, o.lambda.data(), nullptr, &g.view, HOL_WRITE,
                                o.virial.data());
@@ -161,16 +166,16 @@ library_results compute_in_views(const arrangement& a, double dt)
     return o;
 }
 
-library_results part_of(const library_results& all, const arrangement& a, std::size_t chain)
+library_results part_of(const library_results &all, const arrangement &a, std::size_t chain)
 {
     library_results o = all;
     std::ptrdiff_t first = 0;
     for (std::size_t c = 0; c < chain; ++c) first += static_cast<std::ptrdiff_t>(a.atoms[c].size()) - 1;
     const std::ptrdiff_t last = first + static_cast<std::ptrdiff_t>(a.atoms[chain].size()) - 1;
-    for (vec* x : {&o.lambda, &o.velocity_lambda, &o.position_lambda}) *x = vec(x->begin() + first, x->begin() + last);
-    for (vec* x : {&o.g, &o.fixman, &o.v, &o.moved, &o.r}) *x = gather(*x, a.atoms[chain]);
+    for (vec *x : {&o.lambda, &o.velocity_lambda, &o.position_lambda}) *x = vec(x->begin() + first, x->begin() + last);
+    for (vec *x : {&o.g, &o.fixman, &o.v, &o.moved, &o.r}) *x = gather(*x, a.atoms[chain]);
     o.log_det.assign(1, all.log_det[chain]);
     return o;
 }
 
-} // namespace stress
+}  // namespace stress

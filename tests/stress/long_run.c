@@ -2,9 +2,10 @@
  * Long runs of a small system: do the constraints drift?
  *     long_run STEPS
  * (1) NVE: 8 bead-rod chains of 8 beads with repulsive beads, RATTLE, dt = 0.004. Total energy, momentum, bond lengths.
- * (2) Langevin: a chain of 12 beads with unequal masses and one end held, in a harmonic trap, BAOAB with the projections of
- *     the library, dt = 0.02. Bond lengths, d.v, and the mean kinetic energy, kT/2 for each degree of freedom.
- * Exit status 1 if a bond length is off by more than 1e-13 relative at the end of any step, or a mean is not what it must be.
+ * (2) Langevin: a chain of 12 beads with unequal masses and one end held, in a harmonic trap, BAOAB with the
+ * projections of the library, dt = 0.02. Bond lengths, d.v, and the mean kinetic energy, kT/2 for each degree of
+ * freedom. Exit status 1 if a bond length is off by more than 1e-13 relative at the end of any step, or a mean is not
+ * what it must be.
  */
 #include <float.h>
 #include <math.h>
@@ -58,10 +59,11 @@ static void nve(long steps)
         largest = fmax(largest, fabs(e));
     }
     const double n = (double)steps, slope = (n * te - t1 * e1) / (n * t2 - t1 * t1) / (double)m.n_atoms;
-    printf("NVE, %ld steps: energy off by at most %.2e kT per bead, drift %.2e kT per bead and unit of time,\n"
-           "    bond error at most %.2e, momentum changed by %.2e, %.2f iterations a step\n",
-           steps, largest / (double)m.n_atoms, slope, m.worst_length, fabs(momentum(&m) - p0),
-           (double)m.iterations / (double)m.steps);
+    printf(
+        "NVE, %ld steps: energy off by at most %.2e kT per bead, drift %.2e kT per bead and unit of time,\n"
+        "    bond error at most %.2e, momentum changed by %.2e, %.2f iterations a step\n",
+        steps, largest / (double)m.n_atoms, slope, m.worst_length, fabs(momentum(&m) - p0),
+        (double)m.iterations / (double)m.steps);
     require(m.worst_length < 1e-13, "a bond length has drifted");
     /* each step rounds 192 momenta of about one, at random */
     require(fabs(momentum(&m) - p0) < 100 * DBL_EPSILON * sqrt(192.0 * n), "the momentum has drifted");
@@ -108,7 +110,8 @@ static void langevin(long steps)
             must(hol_project_velocities(chains, r, v, NULL, NULL));
             if (half == 1) break;
             drift(chains, r, v, dt / 2, lambda); /* A */
-            for (int i = 3; i < SIZE; ++i) v[i] = decay * v[i] + kick * random_normal(&stream) / sqrt(mass[i / 3]); /* O */
+            for (int i = 3; i < SIZE; ++i)
+                v[i] = decay * v[i] + kick * random_normal(&stream) / sqrt(mass[i / 3]); /* O */
             must(hol_project_velocities(chains, r, v, NULL, NULL));
             drift(chains, r, v, dt / 2, lambda); /* A */
         }
@@ -119,11 +122,14 @@ static void langevin(long steps)
         for (int i = 3; i < SIZE; ++i) kinetic += mass[i / 3] * v[i] * v[i];
     }
     const double per_freedom = kinetic / (double)steps / (double)hol_chains_degrees_of_freedom(chains, 3);
-    printf("Langevin, %ld steps: bond error at most %.2e, d.v at most %.2e, kinetic energy %.4f of kT/2 per degree of freedom\n",
-           steps, worst_length, worst_rate, per_freedom);
+    printf(
+        "Langevin, %ld steps: bond error at most %.2e, d.v at most %.2e, kinetic energy %.4f of kT/2 per degree of "
+        "freedom\n",
+        steps, worst_length, worst_rate, per_freedom);
     require(worst_length < 1e-13, "a bond length has drifted");
     require(worst_rate < 1e-13, "velocities along bonds are left");
-    /* 22 degrees of freedom, correlated over 1/(2 friction) = 25 steps: four standard errors, and the error of the step */
+    /* 22 degrees of freedom, correlated over 1/(2 friction) = 25 steps: four standard errors, and the error of the step
+     */
     const double samples = (double)steps / 50 * (double)hol_chains_degrees_of_freedom(chains, 3);
     require(fabs(per_freedom - 1) < 4 * sqrt(2 / samples) + 5e-3, "the temperature is wrong");
     hol_chains_destroy(chains);

@@ -9,52 +9,60 @@
 #include <cfloat>
 #include <cmath>
 
-namespace stress {
+namespace stress
+{
 
 enum quantity {
-    LAMBDA,            ///< multipliers of hol_forces
-    FORCE,             ///< constraint forces
-    VIRIAL,            ///< of hol_forces
-    LOG_DET,           ///< ln det Z~
+    LAMBDA,   ///< multipliers of hol_forces
+    FORCE,    ///< constraint forces
+    VIRIAL,   ///< of hol_forces
+    LOG_DET,  ///< ln det Z~
     FIXMAN_FORCE,
-    INVERSE,           ///< elements of Z~^-1
-    CONDITION,         ///< condition number of Z~
-    ERROR_BOUND,       ///< the true error of lambda over what hol_inverse_error_bound guarantees
-    VELOCITY_LAMBDA,   ///< multipliers of hol_project_velocities
-    VELOCITY,          ///< the velocities themselves
-    VELOCITY_RESIDUAL, ///< d . dv that is left
-    POSITION_LENGTH,   ///< bond lengths after hol_project_positions
-    POSITION_LENGTH_LOCAL, ///< each against its own coordinates' rounding; for information
-    POSITION_SHIFT,    ///< that the shift is what the multipliers say, along the old bonds
-    REFUSED_STEP,      ///< no convergence where the reference converges; for information
-    REFUSED,           ///< an error for a chain that has an answer
-    ACCEPTED,          ///< no error for a chain that has none
-    OUTPUTS_KEPT,      ///< outputs of a failing chain written to, or one not finite without an error
-    SAME_BITS,         ///< alone, among others, in another layout and on several threads
+    INVERSE,                ///< elements of Z~^-1
+    CONDITION,              ///< condition number of Z~
+    ERROR_BOUND,            ///< the true error of lambda over what hol_inverse_error_bound guarantees
+    VELOCITY_LAMBDA,        ///< multipliers of hol_project_velocities
+    VELOCITY,               ///< the velocities themselves
+    VELOCITY_RESIDUAL,      ///< d . dv that is left
+    POSITION_LENGTH,        ///< bond lengths after hol_project_positions
+    POSITION_LENGTH_LOCAL,  ///< each against its own coordinates' rounding; for information
+    POSITION_SHIFT,         ///< that the shift is what the multipliers say, along the old bonds
+    REFUSED_STEP,           ///< no convergence where the reference converges; for information
+    REFUSED,                ///< an error for a chain that has an answer
+    ACCEPTED,               ///< no error for a chain that has none
+    OUTPUTS_KEPT,           ///< outputs of a failing chain written to, or one not finite without an error
+    SAME_BITS,              ///< alone, among others, in another layout and on several threads
     N_QUANTITIES
 };
 
-inline const char* quantity_name(int q)
+inline const char *quantity_name(int q)
 {
-    static const char* const names[N_QUANTITIES] = {
-        "lambda",     "G",          "virial",      "ln det",         "Fixman force",       "inverse",
-        "condition",  "error bound", "lambda (v)", "velocities",     "d.dv left",          "bond lengths",
-        "bond by bond", "shift (r)", "refused step", "refused",    "accepted",    "outputs kept",   "same bits"};
+    static const char *const names[N_QUANTITIES] = {
+        "lambda",       "G",          "virial",     "ln det",       "Fixman force", "inverse",      "condition",
+        "error bound",  "lambda (v)", "velocities", "d.dv left",    "bond lengths", "bond by bond", "shift (r)",
+        "refused step", "refused",    "accepted",   "outputs kept", "same bits"};
     return names[q];
 }
 
 /** The largest error over bound of each quantity; negative where it was not checked. */
 struct verdict {
     std::array<long double, N_QUANTITIES> ratio;
-    verdict() { ratio.fill(-1); }
+    verdict()
+    {
+        ratio.fill(-1);
+    }
 
     void note(quantity q, long double value)
     {
         if (!(value <= ratio[q])) ratio[q] = std::isnan(value) ? HUGE_VALL : value;
     }
-    void note(quantity q, bool wrong) { note(q, wrong ? HUGE_VALL : 0.0L); }
+    void note(quantity q, bool wrong)
+    {
+        note(q, wrong ? HUGE_VALL : 0.0L);
+    }
 
-    /** A number against its reference; allowed is the largest error that is right, 0: the number must be met exactly. */
+    /** A number against its reference; allowed is the largest error that is right, 0: the number must be met exactly.
+     */
     void compare(quantity q, double value, long double reference, long double allowed)
     {
         const long double error = std::fabs(value - reference);
@@ -77,6 +85,6 @@ inline bool verdict::exceeded() const
     return false;
 }
 
-} // namespace stress
+}  // namespace stress
 
 #endif

@@ -1,8 +1,9 @@
 /**
  * The largest systems, through every function:
  *     scale_run N_CHAINS BONDS_PER_CHAIN
- * e.g. `scale_run 1 50000000` and `scale_run 10000000 3` (about 12 and 10 gigabytes). Random walks of unit bonds; checked are
- * the second derivative of each bond length, d.v, the bond lengths, ln det between its bounds, and the force balance.
+ * e.g. `scale_run 1 50000000` and `scale_run 10000000 3` (about 12 and 10 gigabytes). Random walks of unit bonds;
+ * checked are the second derivative of each bond length, d.v, the bond lengths, ln det between its bounds, and the
+ * force balance.
  */
 #define _POSIX_C_SOURCE 200809L
 #include <float.h>
@@ -55,7 +56,8 @@ static double *allocate(int64_t n)
 }
 
 /** Largest |d . (a' - a) + dv^2| over the bonds, relative to what is added up. */
-static double second_derivative(int64_t n_chains, int64_t n, const double *r, const double *v, const double *f, const double *g)
+static double second_derivative(int64_t n_chains, int64_t n, const double *r, const double *v, const double *f,
+                                const double *g)
 {
     double largest = 0;
     for (int64_t c = 0; c < n_chains; ++c)
@@ -117,7 +119,8 @@ int main(int argc, char **argv)
     say("hol_metric, energy per bond:", energy / (double)(n_chains * n));
     require(fabs(sum - energy) <= 1e-10 * fabs(sum), "the energy is not the sum over the chains");
     require(energy < 0, "the determinant is not below one");
-    for (int x = 0; x < 3; ++x) require(fabs(total[x]) < 1e-9 * sqrt((double)size), "Fixman forces do not add up to zero");
+    for (int x = 0; x < 3; ++x)
+        require(fabs(total[x]) < 1e-9 * sqrt((double)size), "Fixman forces do not add up to zero");
 
     hol_worst worst;
     must(hol_project_velocities(chains, r, v, lambda, virial));
@@ -136,7 +139,8 @@ int main(int argc, char **argv)
     say("hol_project_positions, bond error:", worst.length);
     printf("    %lld iterations, %lld chains moved, coordinates to %.0f\n", (long long)report.iterations,
            (long long)report.n_corrected, extent);
-    require(worst.length < 2 * sqrt(3) * DBL_EPSILON * (1 + extent), "bond lengths are off by more than the coordinates' rounding");
+    require(worst.length < 2 * sqrt(3) * DBL_EPSILON * (1 + extent),
+            "bond lengths are off by more than the coordinates' rounding");
 
     hol_inverse *inverse = NULL;
     double condition = 0, entry = 0;

@@ -21,11 +21,12 @@
 
 using namespace stress;
 
-namespace {
+namespace
+{
 
 constexpr std::int64_t longest = 2000;
 constexpr std::uint64_t group_size = 8;
-constexpr int most_files = 100; // enough to work with, and the disk stays free
+constexpr int most_files = 100;  // enough to work with, and the disk stays free
 
 using clock_type = std::chrono::steady_clock;
 
@@ -36,12 +37,15 @@ struct run {
     std::atomic<std::uint64_t> next;
     std::atomic<int> files{0};
     std::mutex lock;
-    tally total; // under the lock
+    tally total;  // under the lock
 
-    double elapsed() const { return std::chrono::duration<double>(clock_type::now() - start).count(); }
+    double elapsed() const
+    {
+        return std::chrono::duration<double>(clock_type::now() - start).count();
+    }
 };
 
-std::string exceeded_words(const verdict& v)
+std::string exceeded_words(const verdict &v)
 {
     std::string words = "exceeds:";
     char text[64];
@@ -54,7 +58,7 @@ std::string exceeded_words(const verdict& v)
     return words;
 }
 
-void keep(run& all, const hostile_chain& c, const std::string& name, const verdict& v)
+void keep(run &all, const hostile_chain &c, const std::string &name, const verdict &v)
 {
     if (!v.exceeded() || all.directory.empty() || all.files.fetch_add(1) >= most_files) return;
     if (!write_case(all.directory, name, exceeded_words(v), c))
@@ -62,7 +66,7 @@ void keep(run& all, const hostile_chain& c, const std::string& name, const verdi
                      static_cast<unsigned long long>(c.seed), all.directory.c_str());
 }
 
-void check_one(run& all, const hostile_chain& c, verdict v, const std::string& name, tally& sum)
+void check_one(run &all, const hostile_chain &c, verdict v, const std::string &name, tally &sum)
 {
     bool regular = true;
     long double condition = 0;
@@ -74,7 +78,7 @@ void check_one(run& all, const hostile_chain& c, verdict v, const std::string& n
     keep(all, c, name, v);
 }
 
-void check_group(run& all, std::uint64_t first)
+void check_group(run &all, std::uint64_t first)
 {
     tally sum;
     random_stream stream = random_seed(first);
@@ -92,24 +96,26 @@ void check_group(run& all, std::uint64_t first)
     all.total.add(sum);
 }
 
-void work(run& all)
+void work(run &all)
 {
     while (all.elapsed() < all.seconds) check_group(all, all.next.fetch_add(group_size));
 }
 
-void show_progress(run& all, const std::atomic<bool>& done)
+void show_progress(run &all, const std::atomic<bool> &done)
 {
     for (int tick = 0; !done; ++tick) {
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
         if (tick % 100 != 99) continue;
         const std::lock_guard<std::mutex> guard(all.lock);
-        std::fprintf(stderr, "%6.0f of %.0f s: %lld chains, %lld exceed a bound, the largest error of lambda is %.2Lg of its bound\n",
-                     all.elapsed(), all.seconds, static_cast<long long>(all.total.chains),
-                     static_cast<long long>(all.total.exceeded), all.total.quantity[LAMBDA].worst);
+        std::fprintf(
+            stderr,
+            "%6.0f of %.0f s: %lld chains, %lld exceed a bound, the largest error of lambda is %.2Lg of its bound\n",
+            all.elapsed(), all.seconds, static_cast<long long>(all.total.chains),
+            static_cast<long long>(all.total.exceeded), all.total.quantity[LAMBDA].worst);
     }
 }
 
-int check_file(const char* path)
+int check_file(const char *path)
 {
     const hostile_chain c = read_case(path);
     bool regular;
@@ -125,9 +131,9 @@ int check_file(const char* path)
     return v.exceeded();
 }
 
-} // namespace
+}  // namespace
 
-int main(int argc, char** argv)
+int main(int argc, char **argv)
 {
     if (argc == 3 && std::strcmp(argv[1], "--case") == 0) return check_file(argv[2]);
     const double seconds = argc >= 2 ? std::atof(argv[1]) : 0;
@@ -145,7 +151,7 @@ int main(int argc, char** argv)
     std::atomic<bool> done{false};
     std::thread progress(show_progress, std::ref(all), std::cref(done));
     for (unsigned t = 0; t < n_threads; ++t) threads.emplace_back(work, std::ref(all));
-    for (std::thread& t : threads) t.join();
+    for (std::thread &t : threads) t.join();
     done = true;
     progress.join();
     all.total.print();

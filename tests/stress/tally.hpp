@@ -11,24 +11,25 @@
 #include "hostile_chain.hpp"
 #include "quantities.hpp"
 
-namespace stress {
+namespace stress
+{
 
 struct tally {
     struct of_quantity {
         std::int64_t checked = 0, exceeded = 0;
         long double worst = -1;
-        std::uint64_t seed = 0; ///< of the chain with the largest error
+        std::uint64_t seed = 0;  ///< of the chain with the largest error
     };
     std::array<of_quantity, N_QUANTITIES> quantity{};
     std::array<std::int64_t, n_features> with_feature{}, exceeded_with_feature{};
     std::int64_t chains = 0, bonds = 0, singular = 0, exceeded = 0;
     long double largest_condition = 0;
 
-    void add(const hostile_chain& c, const verdict& v);
-    void add(const tally& other);
+    void add(const hostile_chain &c, const verdict &v);
+    void add(const tally &other);
     void print() const;
 };
 
-} // namespace stress
+}  // namespace stress
 
 #endif

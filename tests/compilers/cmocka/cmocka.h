@@ -1,6 +1,6 @@
 /**
- * The part of CMocka that the tests use, for machines that it is not installed for (cross compilation): the first failure
- * ends the program with status 1.
+ * The part of CMocka that the tests use, for machines that it is not installed for (cross compilation): the first
+ * failure ends the program with status 1.
  */
 #ifndef COMPILERS_CMOCKA_H
 #define COMPILERS_CMOCKA_H
@@ -14,11 +14,15 @@ struct CMUnitTest {
     void (*run)(void **state);
 };
 
-#define cmocka_unit_test(function) {#function, function}
+#define cmocka_unit_test(function) \
+    {                              \
+#function, function        \
+    }
 #define cmocka_run_group_tests(tests, setup, teardown) run_group((tests), sizeof(tests) / sizeof *(tests))
 
 #define print_message(...) ((void)printf(__VA_ARGS__))
-#define fail_msg(...) ((void)printf("%s:%d: ", __FILE__, __LINE__), (void)printf(__VA_ARGS__), (void)printf("\n"), exit(1))
+#define fail_msg(...) \
+    ((void)printf("%s:%d: ", __FILE__, __LINE__), (void)printf(__VA_ARGS__), (void)printf("\n"), exit(1))
 #define fail() fail_msg("failed")
 #define assert_true(c) ((c) ? (void)0 : fail_msg("%s", #c))
 #define assert_null(p) assert_true(!(p))
