@@ -220,7 +220,7 @@ static inline Outcome iterate(const Block &block, const Newton &x, const Positio
     mask renew = active;
     vec rate = error;  // new factors square the error
     for (int i = 0; i < call.max_iterations && any(active); ++i) {
-        if (any(renew & active)) factorize<uniform, careful>(block, x, renew & active);
+        if (any(renew & active)) factorize<uniform, careful>(block, x, i == 0 ? ~none() : renew & active);
         solve_frozen(block.n, x);
         // At the floor: the solve should have gone far below a rounding, or it gained little, and what is left is no
         // more than the coordinates carry.
@@ -270,7 +270,10 @@ static inline Outcome solve_positions(const Block &block, const Newton &x, const
                                       mask wanted, bool guess) {
     const mask single = wanted & less(block.lengths(), splat(1.5));
     Outcome out = {};
-    if (any(wanted & ~single)) out = iterate<uniform, careful>(block, x, call, carried, wanted & ~single, guess);
+    if (any(wanted & ~single))
+        out = iterate<uniform, careful>(block, x, call, carried, wanted & ~single, guess);
+    else
+        for (long k = 0; k < block.n; ++k) x.tau[k] = vec{};
     if (!any(single)) return out;
     const Outcome one = solve_single_bonds(block, x, call, carried, single);
     out.untouched = out.untouched | one.untouched;
