@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "boundary.hpp"
 #include "core/view.hpp"
@@ -53,7 +54,11 @@ void error_bound(const hol_inverse *inverse, const AtomArray &v, const AtomArray
         size = std::max(size, std::fabs(lambda[k]));
         if (bound) bound[k] = found[k];
     }
-    if (relative) *relative = largest == 0 ? 0 : largest / size;
+    if (!relative) return;
+    if (largest == 0)
+        *relative = 0;
+    else
+        *relative = size > 0 ? largest / size : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace

@@ -12,9 +12,8 @@ namespace holonomic {
 
 namespace {
 
-// Share of a neighbour's mass: m / (m + middle).
+// Share of a neighbour's mass: m / (m + middle), middle finite.
 long double share(long double m, long double middle) {
-    if (std::isinf(middle)) return 0;
     return std::isinf(m) ? 1 : m / (m + middle);
 }
 
@@ -62,8 +61,13 @@ Partition partition_function(std::int64_t n_bonds, const double *masses, const P
     }
     if (asked.volume) {
         long double sum = 0;
-        for (std::size_t n = 2; n <= last; ++n)
+        for (std::size_t n = 2; n <= last; ++n) {
+            if (std::isinf(m[n - 1])) {
+                sum = -std::numeric_limits<long double>::infinity();
+                break;
+            }
             sum += (std::log(share(m[n], m[n - 1])) + std::log(share(m[n - 2], m[n - 1]))) / 2;
+        }
         result.volume = static_cast<double>(sum);
     }
     return result;

@@ -22,10 +22,11 @@ Tridiagonal::Tridiagonal(std::int64_t n, const double *gamma) : n_(static_cast<s
     omega2_.resize(n_);
     omega2_[0] = as_pair(1);
     for (std::size_t k = 1; k < n_; ++k) {
-        omega2_[k] = as_pair(1) - this->gamma(k) * this->gamma(k) / omega2_[k - 1];
-        if (omega2_[k].hi > 0) continue;  // false for NaN, to which a gamma of 1e300 leads
-        Error error = make_error(HOL_ERR_NOT_DEFINITE, "the matrix is not positive definite: Omega^2 of row %lld is %g",
-                                 static_cast<long long>(k), omega2_[k].hi);
+        const bool small = std::fabs(gamma_[k - 1]) < 1;  // whatever the row before, which also spares an overflow
+        if (small) omega2_[k] = as_pair(1) - this->gamma(k) * this->gamma(k) / omega2_[k - 1];
+        if (small && omega2_[k].hi > 0) continue;
+        Error error = make_error(HOL_ERR_NOT_DEFINITE, "the matrix is not positive definite: Omega^2 of row %lld is not",
+                                 static_cast<long long>(k));
         error.bond = static_cast<std::int64_t>(k);
         throw error;
     }

@@ -162,16 +162,19 @@ static inline MetricSums eliminate_metric(const Block &block, const Geometry &x,
 // From the joint's two sides: h_k = w_k (M^-1)_{k-1,k}, and h_k n_k in place of n_k. f belongs to bond k.
 template <bool uniform>
 HOL_INLINE void weigh_normal(const Block &block, const Geometry &x, long k, vec f) {
-    const vec e = x.e[k - 1], p = x.p[k];
+    const mask coupled = less(vec{}, x.p[k]);
+    const vec e = x.e[k - 1], p = select(coupled, x.p[k], splat(1.0));  // the caller may trap divisions by zero
     const vec size = w_at<uniform>(block, k) / (e + f + (e / p) * f);
     const mask sign = mask{} + (-0x7fffffffffffffffLL - 1);
     const vec h = as_vec(as_mask(size) | (as_mask(x.cosine[k]) & sign));
-    x.normal[k] = scaled(x.normal[k], keep(less(vec{}, p), h));
+    x.normal[k] = scaled(x.normal[k], keep(coupled, h));
 }
 
 // What the bonds to the right of joint k leave of row k-1.
 HOL_INLINE vec next_deficit(const Geometry &x, long k, vec f) {
-    return x.delta[k - 1] + keep(less(vec{}, x.p[k]), x.p[k] * (f / (f + x.p[k])));
+    const mask coupled = less(vec{}, x.p[k]);
+    const vec p = select(coupled, x.p[k], splat(1.0));
+    return x.delta[k - 1] + keep(coupled, p * (f / (f + p)));
 }
 
 // phi of bond k as t times a vector, so that the force on atom k is the pull t_k phi_k - t_{k-1} phi_{k-1}.

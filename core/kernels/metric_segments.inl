@@ -176,7 +176,7 @@ static inline void finish_window(const MetricCall &call, const Lane &lane, Metri
     tally.log_det += sum_lanes(sums.log_det);
     tally.log_det_z += sum_lanes(sums.log_det_z);
     if (!call.force.x) return;
-    vec f = {};
+    vec f = splat(1.0);  // anything positive, until f_end is reached
     for (long k = block.n - 1; k > 0; --k) {
         f = select(equal(k, x.f_at), sum.f_end, f);
         weigh_normal<uniform>(block, g, k, f);
