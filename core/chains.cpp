@@ -15,6 +15,9 @@ std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 long long number(std::int64_t i, int base) { return static_cast<long long>(i + base); }
 
+// A caller's number counted from 0; -1 if it is below the base, however far (the least number minus 1 would overflow).
+std::int64_t from_zero(std::int64_t i, int base) { return i < base ? -1 : i - base; }
+
 Error out_of_range(const char *what, std::int64_t value, std::int64_t least) {
     return make_error(HOL_ERR_VALUE, "%s is %lld; it must be at least %lld", what, static_cast<long long>(value),
                       static_cast<long long>(least));
@@ -173,7 +176,7 @@ void Chains::add(std::int64_t n_bonds, const std::int64_t *atoms, const double *
             Error error = make_error(HOL_ERR_INDEX, "atom %lld, number %lld of chain %lld, is outside %d .. %lld",
                                      static_cast<long long>(atoms[k]), number(k, base), number(n_chains_, base), base,
                                      number(n_atoms_ - 1, base));
-            error.atom = atoms[k] - base;
+            error.atom = from_zero(atoms[k], base);
             error.chain = n_chains_;
             error.base = base;
             throw error;
@@ -203,8 +206,8 @@ void Chains::add(std::int64_t n_bonds, const std::int64_t *atoms, const double *
 void Chains::add_block(std::int64_t n_chains, std::int64_t n_bonds, std::int64_t first_atom, const double *lengths) {
     if (n_chains < 1) throw out_of_range("n_chains", n_chains, 1);
     if (n_bonds < 1) throw out_of_range("n_bonds", n_bonds, 1);
-    const std::int64_t first = first_atom - base;
-    if (first_atom < base || first >= n_atoms_ || n_bonds >= n_atoms_ ||
+    const std::int64_t first = from_zero(first_atom, base);
+    if (first < 0 || first >= n_atoms_ || n_bonds >= n_atoms_ ||
         n_chains > (n_atoms_ - first) / (n_bonds + 1)) {
         Error error = make_error(HOL_ERR_INDEX,
                                  "%lld chains of %lld bonds from atom %lld on reach outside the atoms %d .. %lld",

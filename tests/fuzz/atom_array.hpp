@@ -39,7 +39,7 @@ public:
     }
     bool holds(const std::vector<char> &other) const
     {
-        return std::memcmp(data_.get(), other.data(), bytes_) == 0;
+        return bytes_ == 0 || std::memcmp(data_.get(), other.data(), bytes_) == 0;
     }
 
 private:
