@@ -60,6 +60,7 @@ void add(Tally &total, const Tally &piece) {
     total.log_det_z += piece.log_det_z;
     total.iterations = std::max(total.iterations, piece.iterations);
     total.n_corrected += piece.n_corrected;
+    total.out_of_memory = total.out_of_memory || piece.out_of_memory;
     if (piece.worst_chain >= 0 && (total.worst_chain < 0 || piece.worst > total.worst ||
                                    (piece.worst == total.worst && piece.worst_chain < total.worst_chain))) {
         total.worst = piece.worst;

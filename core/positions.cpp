@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <new>
 
 #include "diagnose.hpp"
 #include "execute.hpp"
@@ -66,9 +67,16 @@ private:
             write(moved, solves, tally);
             return true;
         }
+        try {
+            return settle(solves, tally);
+        } catch (const std::bad_alloc &) {  // before anything was written; it must not leave a parallel region
+            tally.out_of_memory = true;
+            return false;
+        }
+    }
+
+    bool settle(std::int64_t solves, Tally &tally) {
         const Saved saved(call_, lane_);
-        Tally part = empty_tally();
-        write(moved, solves, part);
         // The second time the multipliers start at 0 in an array of their own, and are added.
         PositionsCall again = call_;
         std::vector<double> more(call_.lambda ? static_cast<std::size_t>(lane_.n_bonds) : 0);
@@ -76,11 +84,14 @@ private:
         alone.first_bond = 0;
         again.lambda = call_.lambda ? more.data() : nullptr;
         again.guess = again.virial = false;
+        Tally part = empty_tally();
+        write(true, solves, part);
         LongNewton rest(phases_, again, alone, team_, store_);
         rest.depth_ = depth_ + 1;
         Tally settled = empty_tally();
         if (depth_ >= 4 || !rest.attempt(true, false, settled)) {
             saved.restore();
+            tally.out_of_memory = tally.out_of_memory || settled.out_of_memory;
             return false;
         }
         for (std::size_t k = 0; k < more.size(); ++k)
@@ -228,6 +239,7 @@ void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomA
         report->bond = tally.worst_chain < 0 ? -1 : tally.worst_bond + chains.base;
         report->max_error = tally.worst;
     }
+    if (tally.out_of_memory) throw std::bad_alloc();
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"reference position", &r_ref}, {"position", &r}, {"velocity", &v}};
         throw diagnose(chains, tally, arrays, 3, HOL_ERR_NO_CONVERGENCE);

@@ -52,6 +52,7 @@ struct Tally {
     // positions
     int64_t iterations, n_corrected, worst_chain, worst_bond;
     double worst;
+    bool out_of_memory;  // a chain was left as it was for want of memory
     // metric: ln det Z~ and, of a long chain, ln det Z
     double log_det, log_det_z;
 };
