@@ -247,8 +247,8 @@ static inline void load_bonds(const Block &block, const Box &box, const Packed &
     for (; k0 + W <= block.n_min; k0 += W) {
         for (int i = 0; i < W; ++i) {
             pr[i] = r.lane[i] + 3 * k0;
-            pv[i] = v.lane[i] + 3 * k0;
-            pf[i] = f.lane[i] + 3 * k0;
+            if (terms & (velocity_squared | rate)) pv[i] = v.lane[i] + 3 * k0;
+            if (terms & force_difference) pf[i] = f.lane[i] + 3 * k0;
         }
         if (block.ahead)
             for (int i = 0; i < W; ++i) {
