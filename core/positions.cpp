@@ -17,7 +17,7 @@ namespace {
 
 constexpr double epsilon = 2.220446049250313e-16;
 
-// Newton's method on one long chain. The decisions are those of core/kernels/positions.inl.
+// Newton's method on one long chain. The decisions are those of core/kernels/newton.inl.
 class LongNewton {
 public:
     LongNewton(const LongPositions &phases, const PositionsCall &call, const Lane &lane, const Team &team,

@@ -7,10 +7,13 @@
 #include "recursion.inl"
 #include "forces.inl"
 #include "velocities.inl"
+#include "newton.inl"
 #include "positions.inl"
 #include "molecules.inl"
 #include "metric.inl"
 #include "segments.inl"
+#include "segments_forces.inl"
+#include "segments_newton.inl"
 #include "segments_positions.inl"
 #include "metric_segments.inl"
 
