@@ -60,8 +60,9 @@ void check_inverse(const hostile_chain &c, const exact_metric &exact, const arra
     out.note(ERROR_BOUND, bounded != HOL_OK);
     const std::vector<long double> slack = underflow_of(c);
     for (std::size_t k = 0; k < at(n) && bounded == HOL_OK; ++k)
-        out.compare(ERROR_BOUND, alone.lambda[k], s.lambda[k],
-                    bound[k] + 4 * slack[k] + std::fabs(s.lambda[k]) * 0x1p-62L);  // the reference is rounded to 64 bits
+        out.compare(
+            ERROR_BOUND, alone.lambda[k], s.lambda[k],
+            bound[k] + 4 * slack[k] + std::fabs(s.lambda[k]) * 0x1p-62L);  // the reference is rounded to 64 bits
     solution_free(&s);
 }
 
