@@ -82,15 +82,16 @@ static inline vec residuals(const Block &block, const Newton &x) {
     return worst + poison;
 }
 
-// Eliminates with the Jacobian at D; only the lanes in `which` take the new factors. Fractions as in forward().
-template <bool uniform, bool careful>
+// Eliminates with the Jacobian at D; only the lanes in `which` take the new factors, or all, the first time. Fractions
+// as in forward().
+template <bool uniform, bool careful, bool all>
 static __attribute__((noinline)) void factorize(const Block &block, const Newton &x, mask which) {
     const long n = block.n;
     vec q = dot(x.D[0], x.b[0]), A = w_at<uniform>(block, 0) * q, F = splat(1.0);
     for (long k = 0; k < n; ++k) {
         const vec w = w_at<uniform>(block, k + 1);
         const vec F1 = mul_add(w * q, F, A), rF = splat(1.0) / F1, rP = F * rF;
-        x.rP[k] = select(which, rP, x.rP[k]);
+        x.rP[k] = all ? rP : select(which, rP, x.rP[k]);
         if (k + 1 == n) break;
         const vec q1 = dot(x.D[k + 1], x.b[k + 1]);
         vec lower = dot(x.D[k + 1], x.b[k]), upper = dot(x.D[k], x.b[k + 1]);
@@ -102,8 +103,8 @@ static __attribute__((noinline)) void factorize(const Block &block, const Newton
             X = keep(m, X);
         }
         const vec wP = w * rP;
-        x.down[k] = select(which, wP * lower, x.down[k]);
-        x.up[k] = select(which, wP * upper, x.up[k]);
+        x.down[k] = all ? wP * lower : select(which, wP * lower, x.down[k]);
+        x.up[k] = all ? wP * upper : select(which, wP * upper, x.up[k]);
         A = w * mul_add(w * X, F, q1 * A);
         F = F1;
         if (careful || (k & 3) == 3) {
@@ -220,7 +221,10 @@ static inline Outcome iterate(const Block &block, const Newton &x, const Positio
     mask renew = active;
     vec rate = error;  // new factors square the error
     for (int i = 0; i < call.max_iterations && any(active); ++i) {
-        if (any(renew & active)) factorize<uniform, careful>(block, x, i == 0 ? ~none() : renew & active);
+        if (i == 0)
+            factorize<uniform, careful, true>(block, x, active);
+        else if (any(renew & active))
+            factorize<uniform, careful, false>(block, x, renew & active);
         solve_frozen(block.n, x);
         // At the floor: the solve should have gone far below a rounding, or it gained little, and what is left is no
         // more than the coordinates carry.

@@ -99,6 +99,7 @@ static void long_positions_load(const PositionsCall &call, const Lane &lane, int
         load_bonds<none_, true, true, false>(s.block, call.box, r_ref, absent, absent, x.b, nullptr, x.s);
         load_bonds<none_, true, true, false>(s.block, call.box, r, absent, absent, x.D, nullptr, x.s);
     }
+    *x.summary = NewtonSummary{};
     segment_residuals(s, lane, x);
     const double factor = 2 * call.dt * call.dt;
     const int64_t end = lane.first_bond + lane.n_bonds;
