@@ -1,8 +1,8 @@
 /**
  * Hostile chains against the reference solution for a given time:
- *     stress SECONDS [DIRECTORY [FIRST [THREADS]]]     chains from number FIRST on; exceedances go to DIRECTORY
- *     stress --case FILE                               one file in the format of tests/oracle
- * Exit status 0: everything within its bounds; 1: something is not; 2: wrong usage.
+ *     stress SECONDS [DIRECTORY [FIRST [THREADS [LONGEST [PERCENT]]]]]     chains from number FIRST on; exceedances go
+ * to DIRECTORY stress --case FILE                               one file in the format of tests/oracle Exit status 0:
+ * everything within its bounds; 1: something is not; 2: wrong usage.
  */
 #include <algorithm>
 #include <atomic>
@@ -24,7 +24,7 @@ using namespace stress;
 namespace
 {
 
-constexpr std::int64_t longest = 2000;
+std::int64_t longest = 2000;
 constexpr std::uint64_t group_size = 8;
 constexpr int most_files = 100;  // enough to work with, and the disk stays free
 
@@ -137,8 +137,9 @@ int main(int argc, char **argv)
 {
     if (argc == 3 && std::strcmp(argv[1], "--case") == 0) return check_file(argv[2]);
     const double seconds = argc >= 2 ? std::atof(argv[1]) : 0;
-    if (!(seconds > 0) || argc > 5) {
-        std::fprintf(stderr, "usage: stress SECONDS [DIRECTORY [FIRST [THREADS]]] | stress --case FILE\n");
+    if (!(seconds > 0) || argc > 7) {
+        std::fprintf(stderr,
+                     "usage: stress SECONDS [DIRECTORY [FIRST [THREADS [LONGEST [PERCENT]]]]] | stress --case FILE\n");
         return 2;
     }
     run all;
@@ -147,6 +148,7 @@ int main(int argc, char **argv)
     all.next = argc >= 4 ? std::strtoull(argv[3], nullptr, 10) : 1;
     const unsigned n_threads = argc >= 5 ? static_cast<unsigned>(std::max(1, std::atoi(argv[4])))
                                          : std::max(1u, std::thread::hardware_concurrency());
+    if (argc >= 6) longest = std::max(1, std::atoi(argv[5]));
     std::vector<std::thread> threads;
     std::atomic<bool> done{false};
     std::thread progress(show_progress, std::ref(all), std::cref(done));
@@ -157,5 +159,7 @@ int main(int argc, char **argv)
     all.total.print();
     std::printf("stress: %.0f chains an hour on %u threads, instruction set %s\n",
                 3600 * static_cast<double>(all.total.chains) / all.elapsed(), n_threads, hol_instruction_set());
-    return all.total.exceeded ? 1 : 0;
+    // PERCENT of the chains may exceed a bound: for a test that guards what is reached, docs/stability.md
+    const double allowed = argc >= 7 ? std::atof(argv[6]) / 100 : 0;
+    return static_cast<double>(all.total.exceeded) > allowed * static_cast<double>(all.total.chains) ? 1 : 0;
 }
