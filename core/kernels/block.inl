@@ -32,6 +32,7 @@ struct Block {
     vec w_uniform;
     const vec *w;         // else [n+1], interleaved
     const double *w3[W];  // and [len+1][3], each inverse mass three times
+    bool lane_uniform[W]; // lanes of constant mass: rounded as in a block of such, whatever the others are
     long first_bond[W];
     long chain[W];
 
@@ -117,7 +118,10 @@ HOL_INLINE const double *window(const double *p, long k, long len, bool roomy, d
 static inline void set_masses(Block &block, const double *const *tables, const double *uniform, Arena &arena) {
     block.uniform_w = true;
     for (int i = 0; i < block.lanes; ++i) block.uniform_w = block.uniform_w && tables[i] == nullptr;
-    for (int i = 0; i < W; ++i) block.w_uniform[i] = uniform[i < block.lanes ? i : 0];
+    for (int i = 0; i < W; ++i) {
+        block.w_uniform[i] = uniform[i < block.lanes ? i : 0];
+        block.lane_uniform[i] = tables[i < block.lanes ? i : 0] == nullptr;
+    }
     if (block.uniform_w) return;
     vec *w = arena.vecs(block.n + 1);
     bool same = true;
@@ -165,14 +169,11 @@ HOL_INLINE void wrap(const Box &box, Vector3<V> &d, Vector3<V> &lo) {
 // What the right-hand side of a bond is made of.
 enum Terms { none_ = 0, velocity_squared = 1, force_difference = 2, rate = 4 };
 
-// Starts to fetch W atoms of the next block.
-HOL_INLINE void fetch_ahead(const double *p) {
-    __builtin_prefetch(p, 0, 2);
-    __builtin_prefetch(p + 8, 0, 2);
-    if (W > 4) {
-        __builtin_prefetch(p + 16, 0, 2);
-        __builtin_prefetch(p + 24, 0, 2);
-    }
+// Starts to fetch W atoms of the next block, `ahead` doubles from p: an address that may lie behind the array.
+HOL_INLINE void fetch_ahead(const double *p, long ahead) {
+    const uintptr_t address = reinterpret_cast<uintptr_t>(p) + static_cast<uintptr_t>(ahead) * sizeof(double);
+    for (int line = 0; line < (W > 4 ? 4 : 2); ++line)
+        __builtin_prefetch(reinterpret_cast<const void *>(address + static_cast<uintptr_t>(line) * 64), 0, 2);
 }
 
 // The bonds k0 .. k0 + W - 1 of all lanes, from pointers to atom k0: see load_bonds. d[W], low[W], rhs[W].
@@ -192,7 +193,7 @@ HOL_INLINE void load_chunk(const Block &block, const Box &box, long k0, const do
             if (terms & (velocity_squared | rate)) dv = load(pv[i] + W * j + 3) - load(pv[i] + W * j);
             if (terms & force_difference) {
                 const vec f0 = load(pf[i] + W * j), f1 = load(pf[i] + W * j + 3);
-                if (uniform) {
+                if (uniform || block.lane_uniform[i]) {
                     df = splat(block.w_uniform[i]) * (f1 - f0);
                 } else {
                     const double *w3 = block.w3[i] + 3 * k0 + W * j;
@@ -252,11 +253,12 @@ static inline void load_bonds(const Block &block, const Box &box, const Packed &
         }
         if (block.ahead)
             for (int i = 0; i < W; ++i) {
-                fetch_ahead(pr[i] + block.ahead);
-                if (terms & (velocity_squared | rate)) fetch_ahead(pv[i] + block.ahead);
-                if (terms & force_difference) fetch_ahead(pf[i] + block.ahead);
+                fetch_ahead(pr[i], block.ahead);
+                if (terms & (velocity_squared | rate)) fetch_ahead(pv[i], block.ahead);
+                if (terms & force_difference) fetch_ahead(pf[i], block.ahead);
             }
-        load_chunk<terms, uniform, boxed, careful>(block, box, k0, pr, pv, pf, D + k0, D_low + k0, B + k0);
+        load_chunk<terms, uniform, boxed, careful>(block, box, k0, pr, pv, pf, D + k0, careful ? D_low + k0 : nullptr,
+                                                   B + k0);
     }
     for (; k0 < block.n; k0 += W) {
         double buffer[3][W][3 * W + 3];

@@ -16,8 +16,8 @@ HOL_INLINE void load_molecules(const Block &block, const double *r, const double
         for (int i = 0; i < W; ++i) {
             const long at = 3 * (N + 1) * i + 3 * k0;
             pr[i] = r + at;
-            pv[i] = v + at;
-            pf[i] = f + at;
+            if (terms & (velocity_squared | rate)) pv[i] = v + at;
+            if (terms & force_difference) pf[i] = f + at;
         }
         load_chunk<terms, uniform, false, false>(block, no_box, k0, pr, pv, pf, D + k0, nullptr, t + k0);
     }
@@ -81,7 +81,7 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
         vec3 D[padded];
         vec t[padded], L[N];
         const int64_t at = 3 * (N + 1) * first;
-        load_molecules<N, terms, uniform>(block, r + at, v + at, f + at, D, t);
+        load_molecules<N, terms, uniform>(block, r + at, v ? v + at : v, f ? f + at : f, D, t);
         Packed from;
         for (int i = 0; i < W; ++i) from.lane[i] = const_cast<double *>(r) + at + 3 * (N + 1) * i;
         const mask doubt = forward<uniform, false, N>(block, Source{&from, &call.box}, D, t, L);

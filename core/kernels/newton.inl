@@ -138,21 +138,18 @@ static inline vec correct_bonds(const Block &block, const Newton &x, mask which)
     vec worst = {};
     vec s = keep(which, x.s[0]), w = w_at<uniform_w>(block, 0);
     const vec poison = 0.0 * s;
-    vec c = uniform_w ? w * s : s;
-    vec3 p = {c * x.b[0].x, c * x.b[0].y, c * x.b[0].z};
-    vec3 left = uniform_w ? p : vec3{w * p.x, w * p.y, w * p.z};  // displacement of the atom left of bond k
+    vec3 p = {s * x.b[0].x, s * x.b[0].y, s * x.b[0].z};
+    vec3 left = {w * p.x, w * p.y, w * p.z};  // displacement of the atom left of bond k
     const auto bond = [&](long k, bool last, bool ragged) __attribute__((always_inline)) {
         x.tau[k] = x.tau[k] + s;
         w = w_at<uniform_w>(block, k + 1);
         vec3 p1 = {};
         if (!last) {
             s = keep(which, x.s[k + 1]);
-            c = uniform_w ? w * s : s;
             const vec3 b = x.b[k + 1];
-            p1 = {c * b.x, c * b.y, c * b.z};
+            p1 = {s * b.x, s * b.y, s * b.z};
         }
-        vec3 right = {p1.x - p.x, p1.y - p.y, p1.z - p.z};
-        if (!uniform_w) right = {w * right.x, w * right.y, w * right.z};
+        const vec3 right = {w * (p1.x - p.x), w * (p1.y - p.y), w * (p1.z - p.z)};
         vec3 move = {right.x - left.x, right.y - left.y, right.z - left.z};
         if (ragged) {  // inert bonds stay where they are
             const mask live = less(splat(static_cast<double>(k)), block.lengths());
