@@ -317,13 +317,13 @@ static inline void store_bonds(const Block &block, const vec *value, double fact
     if (chosen == (1u << W) - 1)
         for (; k0 + W <= block.n_min; k0 += W) {
             vec m[W];
-            for (int b = 0; b < W; ++b) m[b] = factor * value[k0 + b];
+            for (int b = 0; b < W; ++b) m[b] = factor * value[k0 + b] + 0.0;  // a zero is +0, whatever the padding
             transpose(m);
             for (int i = 0; i < W; ++i) store(p[i] + k0, m[i]);
         }
     for (int i = 0; i < block.lanes; ++i)
         if (chosen >> i & 1)
-            for (long k = k0; k < block.len[i]; ++k) p[i][k] = factor * value[k][i];
+            for (long k = k0; k < block.len[i]; ++k) p[i][k] = factor * value[k][i] + 0.0;
 }
 
 enum Update { write_, add_ };

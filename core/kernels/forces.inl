@@ -69,7 +69,8 @@ static inline void store_pulls_from(const Block &block, long first, vec3 before,
                                     mask which, const Packed &out) {
     const unsigned chosen = bits(which);
     const auto pull = [&](long k, const vec3 &after, vec *value) __attribute__((always_inline)) {
-        vec3 g = {after.x - before.x, after.y - before.y, after.z - before.z};
+        // A zero is +0, whatever padding stands beside it.
+        vec3 g = {(after.x - before.x) + 0.0, (after.y - before.y) + 0.0, (after.z - before.z) + 0.0};
         if (weighted) {
             const vec w = w_at<uniform>(block, k);
             g = {w * g.x, w * g.y, w * g.z};

@@ -33,7 +33,7 @@ HOL_INLINE void store_molecules(const Block &block, const vec3 *D, const vec *t,
         vec3 after = {};
         if (k < N) after = {t[k] * D[k].x, t[k] * D[k].y, t[k] * D[k].z};
         const vec w = weighted ? w_at<uniform>(block, k) : splat(1.0);
-        const vec3 g = {after.x - before.x, after.y - before.y, after.z - before.z};
+        const vec3 g = {(after.x - before.x) + 0.0, (after.y - before.y) + 0.0, (after.z - before.z) + 0.0};
         value[3 * k] = weighted ? w * g.x : g.x;
         value[3 * k + 1] = weighted ? w * g.y : g.y;
         value[3 * k + 2] = weighted ? w * g.z : g.z;
@@ -56,7 +56,7 @@ HOL_INLINE void store_molecules(const Block &block, const vec3 *D, const vec *t,
 template <int N>
 HOL_INLINE void store_multipliers(const vec *t, double *out) {
     for (int k = 0; k < N; ++k) {
-        const vec lambda = 0.5 * t[k];
+        const vec lambda = 0.5 * t[k] + 0.0;
         for (int i = 0; i < W; ++i) out[N * i + k] = lambda[i];
     }
 }
@@ -140,7 +140,7 @@ HOL_INLINE void pull_diatomics(const Block &block, const vec3 &b, vec t, unsigne
     const vec3 pull = {t * b.x, t * b.y, t * b.z};
     for (int a = 0; a < 2; ++a) {
         const vec w = block.uniform_w ? block.w_uniform : block.w[a];
-        const vec3 g = a == 0 ? vec3{w * pull.x, w * pull.y, w * pull.z}
+        const vec3 g = a == 0 ? vec3{w * (pull.x + 0.0), w * (pull.y + 0.0), w * (pull.z + 0.0)}
                               : vec3{w * (0.0 - pull.x), w * (0.0 - pull.y), w * (0.0 - pull.z)};
         for (int i = 0; i < W; ++i) {
             if (!(chosen >> i & 1)) continue;
@@ -185,7 +185,7 @@ static int64_t small_molecules(const PositionsCall &call, const Unit &unit, cons
         const unsigned moved = bits(out.converged);
         pull_diatomics(block, x.b[0], x.tau[0], moved, r + 6 * first);
         if (v) pull_diatomics(block, x.b[0], (1 / call.dt) * x.tau[0], moved, v + 6 * first);
-        if (call.lambda) store(call.lambda + head.first_bond + first, 0.5 / (call.dt * call.dt) * x.tau[0]);
+        if (call.lambda) store(call.lambda + head.first_bond + first, 0.5 / (call.dt * call.dt) * x.tau[0] + 0.0);
         for (int i = 0; i < W; ++i) {
             if (!(out.error[i] > tally.worst || tally.worst_chain < 0)) continue;
             tally.worst = out.error[i];
