@@ -23,7 +23,8 @@
  * - The library never prints, exits, aborts or throws, and changes no floating-point environment.
  * - Threads: a handle that no thread changes (create, add, set, destroy) may be used by any number of threads at once.
  *   Results do not depend on hol_chains_set_threads, on the memory layout, nor on which other chains there are.
- *   Scratch memory belongs to the calling thread; after a thread's first call nothing is allocated.
+ *   Scratch memory belongs to the calling thread; after a thread's first call with chains of that size nothing is
+ *   allocated, but for a long chain whose positions need a second attempt (light atoms, taut between heavy ones).
  */
 #ifndef HOLONOMIC_H
 #define HOLONOMIC_H
