@@ -134,7 +134,7 @@ Tally execute(const Chains &chains, const Work &work) {
             const std::int64_t n = chains.piece_bonds(plan, p);
             return n > longest_lane && work.long_blocks(n) >= shared_blocks;
         };
-#pragma omp parallel for schedule(dynamic, 4) num_threads(n_threads)
+#pragma omp parallel for schedule(dynamic) num_threads(n_threads)
         for (std::int64_t p = 0; p < n_pieces; ++p) {
             Tally tally = empty_tally();
             if (!is_shared(p)) work_on(p, scratch_memory(scratch_bytes), tally);
