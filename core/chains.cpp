@@ -99,8 +99,7 @@ bool Chains::same_kind(const Kind &kind, std::int64_t n_bonds, AtomOf atom_of, c
 }
 
 template <class AtomOf>
-std::int64_t Chains::find_kind(std::int64_t n_bonds, AtomOf atom_of, const double *lengths, bool &is_new) {
-    is_new = false;
+std::int64_t Chains::find_kind(std::int64_t n_bonds, AtomOf atom_of, const double *lengths) {
     if (!groups_.empty() && same_kind(kinds_[at(groups_.back().kind)], n_bonds, atom_of, lengths))
         return groups_.back().kind;
 
@@ -120,7 +119,6 @@ std::int64_t Chains::find_kind(std::int64_t n_bonds, AtomOf atom_of, const doubl
     for (auto it = candidates.first; it != candidates.second; ++it)
         if (same_kind(kinds_[at(it->second)], n_bonds, atom_of, lengths)) return it->second;
 
-    is_new = true;
     const std::size_t n_w = w_tables_.size(), n_length = length_tables_.size();
     try {
         if (w_varies) {
@@ -187,9 +185,8 @@ void Chains::add(std::int64_t n_bonds, const std::int64_t *atoms, const double *
     const std::size_t n_lists = atom_lists_.size();
     try {
         for (; marked <= n_bonds; ++marked) mark(atoms[marked] - base, n_chains_, marked);
-        bool is_new;
         const std::int64_t kind =
-            find_kind(n_bonds, [&](std::int64_t k) { return atoms[k] - base; }, lengths, is_new);
+            find_kind(n_bonds, [&](std::int64_t k) { return atoms[k] - base; }, lengths);
         std::int64_t offset = -1;
         if (!consecutive) {
             offset = static_cast<std::int64_t>(n_lists);
@@ -227,9 +224,8 @@ void Chains::add_block(std::int64_t n_chains, std::int64_t n_bonds, std::int64_t
             mark(first + marked, n_chains_ + marked / (n_bonds + 1), marked % (n_bonds + 1));
         for (; added < n_chains;) {
             const std::int64_t start = first + added * (n_bonds + 1);
-            bool is_new;
-            const std::int64_t kind =
-                find_kind(n_bonds, [&](std::int64_t k) { return start + k; }, lengths, is_new);
+                const std::int64_t kind =
+                find_kind(n_bonds, [&](std::int64_t k) { return start + k; }, lengths);
             std::int64_t same = 1;  // with equal masses everywhere, all chains of the block are of this kind
             if (w_.empty()) same = n_chains - added;
             append(kind, same, start, -1);

@@ -50,6 +50,9 @@ struct Plan {
 // At most so many loose chains are worked on as one piece.
 constexpr std::int64_t loose_piece = 64;
 
+// Replaces a bond vector by its minimum image (box.cpp).
+void minimum_image(const Box &box, double *d);
+
 class Chains {
 public:
     Chains(std::int64_t n_atoms, const double *masses);
@@ -82,10 +85,9 @@ public:
 private:
     double w(std::int64_t atom) const { return w_.empty() ? w_uniform_ : w_[static_cast<std::size_t>(atom)]; }
     template <class AtomOf>
-    std::int64_t find_kind(std::int64_t n_bonds, AtomOf atom_of, const double *lengths, bool &is_new);
+    std::int64_t find_kind(std::int64_t n_bonds, AtomOf atom_of, const double *lengths);
     template <class AtomOf>
     bool same_kind(const Kind &kind, std::int64_t n_bonds, AtomOf atom_of, const double *lengths) const;
-    void forget_last_kind();
     void mark(std::int64_t atom, std::int64_t chain, std::int64_t position);
     void unmark(std::int64_t atom);
     void append(std::int64_t kind, std::int64_t n_chains, std::int64_t first_atom, std::int64_t atoms_offset);

@@ -17,14 +17,7 @@ bool bond_vector(const AtomArray &r, const Box &box, const Lane &lane, std::int6
     read_atom(r, atom_at(lane, k), a);
     read_atom(r, atom_at(lane, k + 1), b);
     for (int c = 0; c < 3; ++c) d[c] = b[c] - a[c];
-    if (box.shape != Box::none) {
-        double n[3];
-        for (int i = 0; i < 3; ++i)
-            n[i] = std::nearbyint(d[0] * box.inverse[i] + d[1] * box.inverse[3 + i] + d[2] * box.inverse[6 + i]);
-        for (int i = 0; i < 3; ++i)
-            for (int c = 0; c < 3; ++c)
-                if (box.h[3 * i + c] != 0) d[c] -= n[i] * box.h[3 * i + c];
-    }
+    minimum_image(box, d);
     return d[0] != 0 || d[1] != 0 || d[2] != 0;
 }
 

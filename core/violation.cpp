@@ -8,20 +8,6 @@
 
 namespace holonomic {
 
-namespace {
-
-void minimum_image(const Box &box, double *d) {
-    if (box.shape == Box::none) return;
-    double n[3];
-    for (int i = 0; i < 3; ++i)
-        n[i] = std::nearbyint(d[0] * box.inverse[i] + d[1] * box.inverse[3 + i] + d[2] * box.inverse[6 + i]);
-    for (int i = 0; i < 3; ++i)
-        for (int c = 0; c < 3; ++c)
-            if (box.h[3 * i + c] != 0) d[c] = std::fma(-n[i], box.h[3 * i + c], d[c]);
-}
-
-}  // namespace
-
 void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, hol_worst *worst) {
     hol_worst found{0, -1, -1, 0, -1, -1};
     Tally tally{};
