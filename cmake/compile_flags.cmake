@@ -1,9 +1,15 @@
 # Two interface targets: how the library's own sources are compiled, and the warnings that all sources obey.
 
+option(HOLONOMIC_WARNINGS_AS_ERRORS "Every warning in C and C++ ends the build: what continuous integration does" OFF)
+
+set(warnings $<$<COMPILE_LANGUAGE:C,CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow>)
 add_library(holonomic_warnings INTERFACE)
 if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
-    target_compile_options(holonomic_warnings INTERFACE
-        $<$<COMPILE_LANGUAGE:C,CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow>)
+    target_compile_options(holonomic_warnings INTERFACE ${warnings})
+    if(HOLONOMIC_WARNINGS_AS_ERRORS)
+        # For targets that don't name holonomic_warnings, too: the whole tree, examples included.
+        add_compile_options(${warnings} $<$<COMPILE_LANGUAGE:C,CXX>:-Werror>)
+    endif()
 endif()
 
 add_library(holonomic_flags INTERFACE)

@@ -1,0 +1,71 @@
+/**
+ * @file session.hpp
+ * One handle's life as a fuzzer's bytes tell it: each member function makes one call, or several that belong together.
+ */
+#ifndef FUZZ_SESSION_HPP
+#define FUZZ_SESSION_HPP
+
+#include <holonomic.h>
+
+#include <cstdint>
+
+#include "byte_reader.hpp"
+#include "outputs.hpp"
+
+namespace fuzz
+{
+
+struct session {
+    byte_reader in;
+    std::int64_t n_atoms = 0;
+    int base = 0;
+    bool any_inactive = false;
+    hol_chains *chains = nullptr;
+
+    explicit session(byte_reader r) : in(r)
+    {
+    }
+    ~session()
+    {
+        hol_chains_destroy(chains);
+    }
+    session(const session &) = delete;
+    session &operator=(const session &) = delete;
+
+    std::size_t atoms3() const
+    {
+        return 3 * static_cast<std::size_t>(n_atoms);
+    }
+    std::size_t bonds() const
+    {
+        return static_cast<std::size_t>(hol_chains_n_bonds(chains));
+    }
+    std::int64_t active() const
+    {
+        return any_inactive ? INT64_MAX : hol_chains_n_chains(chains);
+    }
+    template <class T>
+    T *maybe(T *p)
+    {
+        return in.often() ? p : nullptr;
+    }
+
+    void create();
+    void add();
+    void add_block();
+    void set();
+    void ask();
+    void forces();
+    void velocities();
+    void positions();
+    void violation();
+    void metric();
+    void inverse();
+    void tridiagonal();
+    void partition();
+    void run();
+};
+
+}  // namespace fuzz
+
+#endif
