@@ -2,13 +2,13 @@
 
 option(HOLONOMIC_WARNINGS_AS_ERRORS "Every warning in C and C++ ends the build: what continuous integration does" OFF)
 
-set(warnings $<$<COMPILE_LANGUAGE:C,CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow>)
+set(warnings "$<$<COMPILE_LANGUAGE:C,CXX>:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow>")
 add_library(holonomic_warnings INTERFACE)
 if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
-    target_compile_options(holonomic_warnings INTERFACE ${warnings})
+    target_compile_options(holonomic_warnings INTERFACE "${warnings}")
     if(HOLONOMIC_WARNINGS_AS_ERRORS)
         # For targets that don't name holonomic_warnings, too: the whole tree, examples included.
-        add_compile_options(${warnings} $<$<COMPILE_LANGUAGE:C,CXX>:-Werror>)
+        add_compile_options("${warnings}" "$<$<COMPILE_LANGUAGE:C,CXX>:-Werror>")
     endif()
 endif()
 

@@ -19,12 +19,6 @@ constexpr std::int64_t bonds_per_thread = 4096;
 double *scratch_memory(std::int64_t bytes) { return static_cast<double *>(thread_memory(Keep::scratch, bytes)); }
 double *store_memory(std::int64_t bytes) { return static_cast<double *>(thread_memory(Keep::store, bytes)); }
 
-Tally *tallies(Keep what, std::int64_t n) {
-    void *const memory = thread_memory(what, n * static_cast<std::int64_t>(sizeof(Tally)));
-    if (!memory) throw std::bad_alloc();
-    return static_cast<Tally *>(memory);
-}
-
 double *scratch_of_this_thread(std::int64_t bytes) {
     double *const scratch = scratch_memory(bytes);
     if (!scratch) throw std::bad_alloc();
@@ -32,6 +26,12 @@ double *scratch_of_this_thread(std::int64_t bytes) {
 }
 
 #ifdef _OPENMP
+Tally *tallies(Keep what, std::int64_t n) {
+    void *const memory = thread_memory(what, n * static_cast<std::int64_t>(sizeof(Tally)));
+    if (!memory) throw std::bad_alloc();
+    return static_cast<Tally *>(memory);
+}
+
 // Gives every thread of a team its memory, so that nothing can fail later.
 void reserve(int n_threads, std::int64_t scratch_bytes, std::int64_t store_bytes) {
     bool failed = false;
@@ -83,6 +83,8 @@ void Team::run(std::int64_t n, Tally &total, void (*call)(const void *, std::int
         for (std::int64_t j = 0; j < n; ++j) add(total, parts[j]);
         return;
     }
+#else
+    static_cast<void>(n_threads_);
 #endif
     for (std::int64_t j = 0; j < n; ++j) {
         Tally tally = empty_tally();

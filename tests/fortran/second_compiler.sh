@@ -1,14 +1,16 @@
 #!/bin/sh
-# Compiles the module and some of the tests with another Fortran compiler, and runs them against the C library.
+# Compiles the module, the tests of it and the examples with another Fortran compiler, and runs them against the C library.
 #
-#   second_compiler.sh COMPILER MODULE_SOURCES COMPILE_ORDER LIBRARY_DIR WORK ORACLE_DIR
-# Status 77 (skipped) if the compiler says itself that it can't do it yet.
+#   second_compiler.sh COMPILER TOP COMPILE_ORDER LIBRARY_DIR WORK      CC is the C compiler
+# Status 77 (skipped) if there is no such compiler, or if it says itself that it can't do it yet.
 set -eu
-compiler=$1 sources=$2 order=$3 library=$4 work=$5 oracle=$6
-here=$(cd "$(dirname "$0")" && pwd)
+compiler=$1 top=$2 order=$3 library=$4 work=$5
+[ -x "$compiler" ] || { echo "no LLVM Fortran compiler here (package flang-19, or flang of another number)"; exit 77; }
+tests=$top/tests/fortran examples=$top/examples/fortran oracle=$top/tests/oracle
 rm -rf "$work"
 mkdir -p "$work"
 cd "$work"
+"$compiler" --version | head -n 1
 
 compile() {
     if ! "$compiler" "$@" >log 2>&1; then
@@ -19,12 +21,61 @@ compile() {
 }
 
 while read -r file; do
-    compile -O2 -c "$sources/$file"
+    compile -O2 -c "$top/fortran/$file"
 done <"$order"
-compile -c "$here/checks.f90"
-compile -c "$here/oracle_case.f90"
-for test in test_oracle.f90 test_layouts.f90 test_arguments.f90 test_levels.f90 test_metric.f90 test_fixed.f; do
-    compile -O1 "$here/$test" ./*.o -o program "-L$library" -lholonomic "-Wl,-rpath,$library"
+module=$(ls ./*.o)
+"${CC:-cc}" -c "-I$top/capi" "$tests/c_side.c" -o c_side.obj
+compile -c "$tests/checks.f90"
+compile -c "$tests/oracle_case.f90"
+
+link() { # link PROGRAM SOURCE... OBJECT...
+    program=$1
+    shift
+    compile -O1 "$@" -o "$program" "-L$library" -lholonomic "-Wl,-rpath,$library"
+}
+
+for test in test_oracle.f90 test_layouts.f90 test_arguments.f90 test_levels.f90 test_metric.f90 test_integrators.f90 \
+    test_lifecycle.f90 test_fixed.f; do
+    extra=
+    [ $test != test_lifecycle.f90 ] || extra=c_side.obj
+    # shellcheck disable=SC2086
+    link program "$tests/$test" ./*.o $extra
     echo "$test"
     ./program "$oracle"
 done
+
+# Without `stat` an error ends the program with its message.
+# shellcheck disable=SC2086
+link stops "$tests/stops.f90" $module
+if ./stops >output 2>errors; then echo "stops.f90 went on after an error"; exit 1; fi
+grep 'holonomic: atom 3, .*outside 1 .. 2' errors
+
+example() { # example NAME SOURCE...
+    name=$1
+    shift
+    # shellcheck disable=SC2086
+    link "$name" "$@" $module
+}
+md=$examples/alkane_md
+example alkane_md "$md/alkane_units.f90" "$md/alkane_force_field.f90" "$md/alkane_options.f90" "$md/alkane_xyz.f90" \
+    "$md/alkane_integrators.f90" "$md/alkane_samples.f90" "$md/alkane_md.f90"
+example make_alkane "$md/make_alkane.f90"
+melt=$examples/melt_md
+example melt_md "$melt/melt_pairs.f90" "$melt/melt_start.f90" "$melt/melt_md.f90"
+example legacy_fixed "$examples/legacy_fixed.f"
+
+here=$(pwd)
+check() { # check PROGRAM [ARGUMENT ...] -- EXPECTATION: what the other compiler's programs are checked for, more briefly
+    program=$1
+    shift
+    echo "$program"
+    "$top/tests/examples/check_output.sh" "$here/run" "$here/$program" "$@"
+}
+./make_alkane 16 | cmp - "$md/n-hexadecane.xyz"
+check alkane_md "file=$md/n-hexadecane.xyz" steps=2000 -- "degrees of freedom" 1 = 30 "largest bond error" 1 "<" 2e-14 \
+    "energy fluctuation" 1 "<" 0.1
+check alkane_md "file=$md/n-hexadecane.xyz" integrator=rk4 steps=500 dt=1 -- "observed order" 1 ">" 3.8 \
+    "observed order" 2 ">" 3.8
+check melt_md chains=16 melt=1000 steps=500 -- "degrees of freedom" 1 = 1037 "largest bond error" 1 "<" 1e-13 \
+    "largest |d.v|" 1 "<" 1e-14
+check legacy_fixed -- "LARGEST BOND ERROR" 1 "<" 5e-14

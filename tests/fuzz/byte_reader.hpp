@@ -46,7 +46,7 @@ public:
         static const double special[] = {0.0,       -0.0,    1.0,      -1.0,    NAN,    INFINITY,
                                          -INFINITY, DBL_MAX, -DBL_MAX, DBL_MIN, 5e-324, 1e300,
                                          1e-300,    1e150,   1e-150,   1e154,   1e16,   DBL_EPSILON};
-        return special[kind % (sizeof special / sizeof *special)];
+        return special[static_cast<std::size_t>(kind) % (sizeof special / sizeof *special)];
     }
 
     /** A positive number of ordinary size, or, seldom, anything. */
@@ -62,7 +62,7 @@ public:
         if (kind < 216) return kind % 24;
         static const std::int64_t special[] = {-1,        -2, INT64_MAX, INT64_MIN, INT64_MAX - 1, 1000, INT32_MAX,
                                                INT32_MIN, 64, 63,        65};
-        return special[kind % (sizeof special / sizeof *special)];
+        return special[static_cast<std::size_t>(kind) % (sizeof special / sizeof *special)];
     }
 
 private:

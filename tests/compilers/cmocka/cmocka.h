@@ -24,6 +24,11 @@ struct CMUnitTest {
 #define fail_msg(...) \
     ((void)printf("%s:%d: ", __FILE__, __LINE__), (void)printf(__VA_ARGS__), (void)printf("\n"), exit(1))
 #define fail() fail_msg("failed")
+#define skip()                 \
+    do {                       \
+        (void)puts("skipped"); \
+        return;                \
+    } while (0)
 #define assert_true(c) ((c) ? (void)0 : fail_msg("%s", #c))
 #define assert_null(p) assert_true(!(p))
 #define assert_non_null(p) assert_true(p)
