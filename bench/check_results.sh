@@ -32,5 +32,14 @@ awk -F, '
         printf "%d rows\n", NR - 1
         exit failed
     }' "$3/results.csv"
-"$2" "$3"
+# A page's blocks are replaced, and only they.
+printf 'before\n<!-- bench glance -->\nold\n<!-- end -->\nafter\n' >"$3/page.md"
+"$2" "$3" "$3/page.md"
 grep -q '^## Where another method is faster' "$3/report.md"
+grep -q '^| work' "$3/page.md"
+grep -q '^before' "$3/page.md"
+grep -q '^after' "$3/page.md"
+if grep -q '^old' "$3/page.md"; then
+    echo "the block was not replaced"
+    exit 1
+fi

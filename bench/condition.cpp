@@ -25,11 +25,8 @@ double condition_of(const Problem &p) {
 std::vector<Recipe> family(const Run &run) {
     std::vector<Recipe> list;
     auto add = [&list, &run](double from, double to, double light) {
-        Recipe recipe = single("light_joints", 64, run.extent == Extent::tiny ? 64 : 1280);
-        recipe.turn_from = from;
-        recipe.turn_to = to;
-        recipe.light = light;
-        list.push_back(recipe);
+        list.push_back(
+            with_joints(single("light_joints", 64, run.extent == Extent::tiny ? 64 : 1280), light, from, to));
     };
     add(90, 90, 1);
     if (run.extent == Extent::tiny) return list;

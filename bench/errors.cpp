@@ -29,9 +29,9 @@ double size_of(long double x) {
     return std::isnan(size) ? std::numeric_limits<double>::infinity() : size;
 }
 
-double length_error(const Problem &p, const State &s) {
+double length_error(const Problem &p, const State &s, std::size_t chains) {
     double worst = 0;
-    for (std::size_t c = 0; c < p.n_chains(); ++c)
+    for (std::size_t c = 0; c < chains; ++c)
         for (std::size_t k = 0; k < p.n(); ++k) {
             const double *r = &s.r[3 * (p.first_atom(c) + k)];
             long double square = 0;
@@ -45,12 +45,12 @@ double length_error(const Problem &p, const State &s) {
     return worst;
 }
 
-double rate_error(const Problem &p, const State &s) {
+double rate_error(const Problem &p, const State &s, std::size_t chains) {
     double worst = 0;
     long double squares = 0;
     for (double v : s.v) squares += static_cast<long double>(v) * v;
     const long double rms = std::sqrt(squares / static_cast<long double>(s.v.size()));
-    for (std::size_t c = 0; c < p.n_chains(); ++c)
+    for (std::size_t c = 0; c < chains; ++c)
         for (std::size_t k = 0; k < p.n(); ++k) {
             const std::size_t atom = 3 * (p.first_atom(c) + k);
             long double rate = 0;
@@ -110,12 +110,14 @@ Reference::Reference(const Problem &p, Level level, const UnitSystems *systems, 
     }
 }
 
-double Reference::error(const State &s) const {
-    if (level_ == Level::position) return length_error(problem_, s);
-    if (level_ == Level::velocity) return rate_error(problem_, s);
+double Reference::error(const State &s, double part) const {
+    const auto chains = static_cast<std::size_t>(std::ceil(part * static_cast<double>(problem_.n_chains())));
+    if (level_ == Level::position) return length_error(problem_, s, chains);
+    if (level_ == Level::velocity) return rate_error(problem_, s, chains);
     double worst = 0;
     std::size_t i = 0;
     for (std::size_t chain : chains_) {
+        if (chain >= chains) break;
         const bool per_chain = level_ == Level::metric;
         const double *x = per_chain ? &s.log_det[chain] : &s.lambda[chain * problem_.n()];
         for (std::size_t k = 0; k < (per_chain ? 1 : problem_.n()); ++k, ++i) {

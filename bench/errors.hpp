@@ -18,13 +18,14 @@ public:
     Reference(const Problem &p, Level level, const UnitSystems *systems, std::size_t bonds_at_most);
 
     /**
-     * acceleration: largest |lambda - exact| over the componentwise scale of tests/oracle/README.md, i.e. over what
-     * relative changes of the inputs of size one can make of it: 1.1e-16 is one rounding of an input velocity: largest
-     * |d.dv| over the root mean square of the velocities' components, unit bonds position:     largest |d.d - a^2| /
-     * a^2 metric:       largest |ln det Z~ - exact| / |exact| solve:        largest over chains of max |x - exact| /
-     * max |exact| A result that is not finite counts as infinite.
+     * Largest error of the first chains, `part` of all.
+     *     acceleration: |lambda - exact| over the componentwise scale of tests/oracle/README.md, i.e. over what
+     * relative changes of the inputs of size one can make of it: 1.1e-16 is one rounding of an input velocity: |d.dv|
+     * over the root mean square of the velocities' components, unit bonds position:     |d.d - a^2| / a^2 metric: |ln
+     * det Z~ - exact| / |exact| solve:        max |x - exact| / max |exact| of a chain A result that is not finite
+     * counts as infinite.
      */
-    double error(const State &s) const;
+    double error(const State &s, double part = 1) const;
 
 private:
     const Problem &problem_;

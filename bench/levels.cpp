@@ -7,7 +7,7 @@ namespace {
 
 std::vector<std::int64_t> sizes(const Run &run) {
     if (run.extent == Extent::tiny) return {1, 3, 32};
-    if (run.extent == Extent::quick) return {1, 3, 32, 100, 1000, 10000};
+    if (run.extent == Extent::quick) return {1, 3, 100, 1000, 10000};
     return {1, 2, 3, 4, 5, 10, 32, 100, 1000, 10000, 100000, 1000000};
 }
 
@@ -26,8 +26,9 @@ void append(Methods &to, Methods &&from) {
 
 Methods library(const Run &run, Level level, const Problem &p) {
     Methods list = {holonomic(level, p)};
-    if (run.threads > 1 && !p.one_by_one) list.push_back(holonomic(level, p, run.threads));
-    if (run.threads > 1 && p.one_by_one && p.bonds >= 100000) list.push_back(holonomic(level, p, run.threads));
+    // A short first look leaves out that small calls start no second thread.
+    if (run.threads > 1 && (run.full() || p.chains_per_call() * p.bonds >= 1000))
+        list.push_back(holonomic(level, p, run.threads));
     return list;
 }
 
@@ -48,10 +49,11 @@ Methods direct(const Problem &p, Wrap wrap) {
 }
 
 /// What peers do at the position level; `all`: the whole range of settings, otherwise the usual and the sharpest.
-Methods position_peers(const Problem &p, bool all) {
+Methods position_peers(const Run &run, const Problem &p, bool all) {
     Methods list;
-    const std::vector<double> tolerances =
-        all ? std::vector<double>{1e-4, 1e-6, 1e-8, 1e-10, 1e-12} : std::vector<double>{1e-6, 1e-12};
+    std::vector<double> tolerances = {1e-6, 1e-12};
+    if (all) tolerances = {1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
+    if (all && !run.full()) tolerances = {1e-4, 1e-8, 1e-12};
     // Sweeps grow as N^2 on straight chains: hours at a thousand bonds.
     const bool sweeps = p.name != "straight5" || p.bonds <= 100;
     for (double tolerance : tolerances) {
@@ -71,14 +73,27 @@ Methods position_peers(const Problem &p, bool all) {
     return list;
 }
 
+/// The other kinds of chains than coils.
 std::vector<Recipe> shapes(const Run &run) {
-    const std::int64_t few = run.extent == Extent::tiny ? 64 : run.full() ? 2000 : 500;
-    std::vector<Recipe> list = {single("straight5", 100, few), single("light_joints", 100, few)};
-    if (run.extent == Extent::tiny) return {single("straight5", 32, few)};
-    if (!run.full()) return list;
-    for (const char *name : {"tetrahedral", "fixed_ends"}) list.push_back(single(name, 100, few));
-    list.push_back(single("straight5", 1000, few));
+    if (run.extent == Extent::tiny) return {batch("straight5", 2, 32)};
+    if (!run.full()) return {batch("straight5", 4, 100), batch("light_joints", 16, 100)};
+    std::vector<Recipe> list;
+    for (const char *name : {"straight5", "light_joints", "tetrahedral", "fixed_ends"})
+        list.push_back(batch(name, 64, 100));
+    list.push_back(single("straight5", 1000, 2000));
     return list;
+}
+
+/// A million bonds in one line: no memory of the far end dies on the way.
+void truly_straight(const Run &run) {
+    const Problem p = make_problem(with_joints(single("straight5", 1000000), 1, 0, 0));
+    Methods list = library(run, Level::acceleration, p);
+    for (Method &m : list) m.setting = "truly straight";
+    list.push_back(scalar_sweep(p));
+    if (have_lapack()) list.push_back(direct_forces(p, "lapack-dptsv", "assembled", lapack_dptsv()));
+    for (Method &m : list)
+        if (m.name != "holonomic") m.setting += " truly straight";
+    run.measure(Level::acceleration, p, list);
 }
 
 }  // namespace
@@ -88,12 +103,15 @@ void acceleration_section(const Run &run) {
         const Problem p = make_problem(recipe);
         Methods list = library(run, Level::acceleration, p);
         append(list, direct(p, direct_forces));
+        list.push_back(scalar_sweep(p));
         run.measure(Level::acceleration, p, list);
     };
     for (std::int64_t n : sizes(run)) work(single("coil", n, pool(run)));
     for (const Recipe &recipe : batches(run, "melt")) work(recipe);
     for (const Recipe &recipe : shapes(run)) work(recipe);
-    if (run.full()) work(single("straight5", 1000000));
+    if (!run.full()) return;
+    work(single("straight5", 1000000));
+    truly_straight(run);
 }
 
 void velocity_section(const Run &run) {
@@ -102,7 +120,7 @@ void velocity_section(const Run &run) {
         Methods list = library(run, Level::velocity, p);
         append(list, direct(p, direct_velocities));
         if (iterative) {
-            for (double tolerance : {1e-6, 1e-9, 1e-12})
+            for (double tolerance : run.full() ? std::vector<double>{1e-6, 1e-9, 1e-12} : std::vector<double>{1e-6})
                 if (p.name != "straight5" || p.bonds <= 100) list.push_back(rattle(Level::velocity, p, tolerance));
             if (have_openmm() && p.name != "fixed_ends" && p.chains_per_call() * p.bonds <= 3000)
                 for (double tolerance : {1e-6, 1e-10})
@@ -121,14 +139,15 @@ void position_section(const Run &run) {
         Methods list = library(run, Level::position, p);
         if (all)
             for (double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) list.push_back(holonomic_tolerance(p, tolerance));
-        append(list, position_peers(p, all));
+        append(list, position_peers(run, p, all));
         run.measure(Level::position, p, list);
     };
     for (std::int64_t n : sizes(run)) work(single("coil", n, pool(run)), run.extent == Extent::tiny);
     for (const Recipe &recipe : batches(run, "coil")) work(recipe, false);
     // The whole range of settings, on many chains in a call: error against run time.
     if (run.extent == Extent::tiny) return;
-    for (const char *name : {"coil", "straight5", "light_joints"}) work(batch(name, run.full() ? 64 : 16, 100), true);
+    for (const char *name : {"coil", "light_joints", "straight5"})
+        work(batch(name, run.full() ? 64 : name[0] == 's' ? 4 : 16, 100), true);
     if (!run.full()) return;
     for (const char *name : {"tetrahedral", "fixed_ends"}) work(batch(name, 64, 100), true);
     work(single("straight5", 1000, 2000), true);
@@ -154,23 +173,27 @@ void metric_section(const Run &run) {
 }
 
 void solve_section(const Run &run) {
-    for (std::int64_t n : sizes(run)) {
-        const Problem p = make_problem(single("coil", n, pool(run)));
+    auto work = [&run](const Recipe &recipe) {
+        const Problem p = make_problem(recipe);
         const UnitSystems systems(p);
         Methods list = {holonomic_solve(p, systems)};
-        auto add = [&](const char *name, const char *setting, const Solver &solver) {
-            list.push_back(direct_solve(p, systems, name, setting, solver));
+        auto add = [&](const char *name, const Solver &solver) {
+            list.push_back(direct_solve(p, systems, name, "matrix given", solver));
         };
         if (have_lapack()) {
-            add("lapack-dptsv", "matrix given", lapack_dptsv());
-            add("lapack-dgtsv", "matrix given", lapack_dgtsv());
+            add("lapack-dptsv", lapack_dptsv());
+            add("lapack-dgtsv", lapack_dgtsv());
         }
-        if (n <= 100000) add("eigen-simplicial", "matrix given", eigen_simplicial());
-        if (n <= 100) add("eigen-ldlt", "matrix given", eigen_ldlt());
-        if (n <= 1000) add("eq20", "matrix given", eq20());
-        add("omega-recursion", "matrix given", omega_recursion());
+        if (p.bonds <= 100000) add("eigen-simplicial", eigen_simplicial());
+        if (p.bonds <= 100) add("eigen-ldlt", eigen_ldlt());
+        if (p.bonds <= 1000) add("eq20", eq20());
+        add("omega-recursion", omega_recursion());
         run.measure(Level::solve, p, list, &systems);
-    }
+    };
+    for (std::int64_t n : sizes(run)) work(single("coil", n, pool(run)));
+    if (!run.full()) return;
+    for (const char *name : {"tetrahedral", "straight5", "light_joints", "fixed_ends", "melt"})
+        work(single(name, 100, 6400));
 }
 
 }  // namespace bench

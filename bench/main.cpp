@@ -9,14 +9,17 @@
 #include <thread>
 
 #include "sections.hpp"
+#include "stopwatch.hpp"
 
 namespace bench {
 
 void Run::measure(Level level, const Problem &p, const Methods &methods, const UnitSystems *systems) const {
-    std::printf("   %-12s %-12s %7lld x %-7lld %2zu methods\n", level_name(level), p.name.c_str(),
+    std::printf("   %-12s %-12s %7lld x %-7lld %2zu rows", level_name(level), p.name.c_str(),
                 static_cast<long long>(p.chains_per_call()), static_cast<long long>(p.bonds), methods.size());
     std::fflush(stdout);
+    const Stopwatch watch(2);
     results.add(bench::measure(level, p, methods, effort, systems));
+    std::printf("%6.1f s\n", watch.seconds());
 }
 
 namespace {

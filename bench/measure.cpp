@@ -52,25 +52,38 @@ Method pass_method(const Problem &p, int threads) {
     return m;
 }
 
-/// A repetition is so many calls that it takes the time asked for; restoring inputs between them is not timed.
+/// The calls of one repetition, timed; restoring inputs between them is not. Where nothing is restored the clock is
+/// read once for all. A repetition ends early if calls take far longer than the first ones did, as when threads have to
+/// wait for a core that another program holds: the rest of its iterations then do nothing.
+void repeat(benchmark::State &b, const Method &m, const Problem &p, Level level, State &state, double seconds_at_most) {
+    const bool restores = m.before || m.after || level == Level::position || level == Level::velocity;
+    double seconds = 0;
+    int calls = 0;
+    bool late = false;
+    const Stopwatch elapsed(2), watch(m.threads);
+    for (auto _ : b) {
+        if (late) continue;
+        if (restores) {
+            seconds += seconds_of(m, state, p, level);
+        } else {
+            m.call(state);
+            benchmark::ClobberMemory();
+        }
+        late = ++calls % 8 == 0 && elapsed.seconds() > seconds_at_most;
+        if (late && !restores) seconds = watch.seconds();
+    }
+    if (!late && !restores) seconds = watch.seconds();
+    b.SetIterationTime(seconds / calls * static_cast<double>(b.iterations()));
+}
+
+/// A repetition is so many calls that it takes the time asked for.
 void register_method(const std::string &name, const Method &m, const Problem &p, Level level, State &state,
                      double seconds_per_call, const Effort &effort) {
     const double calls = std::ceil(effort.seconds / std::max(seconds_per_call, 1e-9));
     const bool slow = seconds_per_call > effort.slow_seconds;
-    const bool restores = m.before || m.after || level == Level::position || level == Level::velocity;
-    // Where nothing is restored the clock is read once for all calls of a repetition.
-    auto *made = benchmark::RegisterBenchmark(name.c_str(), [&m, &p, level, &state, restores](benchmark::State &b) {
-        if (restores) {
-            for (auto _ : b) b.SetIterationTime(seconds_of(m, state, p, level));
-            return;
-        }
-        const Stopwatch watch(m.threads);
-        for (auto _ : b) {
-            m.call(state);
-            benchmark::ClobberMemory();
-        }
-        b.SetIterationTime(watch.seconds());
-    });
+    const double most = std::max(6 * effort.seconds, 4 * seconds_per_call);
+    auto *made = benchmark::RegisterBenchmark(
+        name.c_str(), [&m, &p, level, &state, most](benchmark::State &b) { repeat(b, m, p, level, state, most); });
     made->UseManualTime();
     made->Iterations(static_cast<std::int64_t>(std::clamp(calls, 1.0, 1e7)))
         ->Repetitions(slow ? std::min(3, effort.repetitions) : effort.repetitions);
@@ -107,7 +120,11 @@ std::vector<Row> measure(Level level, const Problem &p, const Methods &methods, 
         // enough.
         spoil(state);
         double seconds = seconds_of(all[i], state, p, level);
-        errors.push_back(i < methods.size() ? reference.error(state) : 0);
+        if (all[i].for_error) {
+            state.restore(p, level);
+            all[i].for_error(state);
+        }
+        errors.push_back(i < methods.size() ? reference.error(state, all[i].part_done) : 0);
         if (seconds < effort.slow_seconds) seconds = seconds_of(all[i], state, p, level);
         register_method(std::to_string(i), all[i], p, level, state, seconds, effort);
     }

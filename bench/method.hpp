@@ -37,6 +37,9 @@ struct Method {
     int threads = 1;
     /// Before and after each call, not timed: for methods with arrays of their own.
     std::function<void(State &)> before = nullptr, after = nullptr;
+    /// What is run for the error where `call` doesn't leave what the error is measured by.
+    std::function<void(State &)> for_error = nullptr;
+    double part_done = 1;  ///< the error is that of the first chains, this part of all
 };
 
 using Methods = std::vector<Method>;

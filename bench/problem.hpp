@@ -40,9 +40,13 @@ struct Recipe {
     std::string name;
     std::int64_t chains = 1, bonds = 1;
     bool one_by_one = false;
-    bool general = false;  ///< masses over two decades and lengths 0.7..1.5 along the chain instead of the kind's own
-    double light = 1e-6;   ///< light_joints: mass of every second atom
-    double turn_from = 20, turn_to = 60;  ///< light_joints: degrees by which a bond turns from the one before
+    bool general_masses = false;        ///< over two decades along the chain instead of the kind's own
+    bool general_lengths = false;       ///< 0.7..1.5 along the chain
+    bool flat = false;                  ///< in the plane z = 0
+    bool orthogonal = false;            ///< every bond at a right angle to the one before, along an axis
+    std::int64_t fixed_every = 0;       ///< so many atoms apart, one is held fixed; 0: none
+    double light = 1e-6;                ///< light_joints: mass of every second atom
+    double turn_from = 0, turn_to = 5;  ///< straight5, light_joints: degrees between a bond and the one before
     std::uint64_t seed = 1;
 };
 
@@ -54,6 +58,9 @@ Recipe single(const std::string &name, std::int64_t n_bonds, std::int64_t pool =
 
 /// n_chains chains of n_bonds given to the method in one call.
 Recipe batch(const std::string &name, std::int64_t n_chains, std::int64_t n_bonds);
+
+/// The same as light joints of the given mass in chains whose bonds turn by so many degrees.
+Recipe with_joints(Recipe recipe, double light, double turn_from, double turn_to);
 
 }  // namespace bench
 

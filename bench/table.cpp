@@ -1,5 +1,6 @@
 #include "table.hpp"
 
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -26,10 +27,9 @@ std::vector<std::vector<std::string>> read_csv(const std::string &name, std::siz
 
 }  // namespace
 
-std::vector<Measurement> read_results(const std::string &directory) {
+Table::Table(const std::string &directory) {
     const auto results = read_csv(directory + "/results.csv", 10), spread = read_csv(directory + "/spread.csv", 13);
     if (results.size() != spread.size()) throw std::runtime_error("results.csv and spread.csv differ in length");
-    std::vector<Measurement> all;
     for (std::size_t i = 0; i < results.size(); ++i) {
         const auto &r = results[i], &s = spread[i];
         Measurement m;
@@ -37,9 +37,21 @@ std::vector<Measurement> read_results(const std::string &directory) {
         m.chains = std::stoll(r[2]), m.bonds = std::stoll(r[3]), m.threads = std::stoi(r[4]);
         m.error = std::stod(r[7]), m.ns = std::stod(r[8]), m.passes = std::stod(r[9]);
         m.repetitions = std::stoi(s[7]), m.lower = std::stod(s[9]), m.upper = std::stod(s[11]);
-        all.push_back(m);
+        rows_.push_back(m);
     }
-    return all;
+}
+
+const Measurement *Table::find(const Key &key) const {
+    for (const Measurement &m : rows_)
+        if (m.level == key.level && m.problem == key.problem && m.chains == key.chains && m.bonds == key.bonds &&
+            m.method == key.method && m.setting == key.setting && m.threads == key.threads)
+            return &m;
+    return nullptr;
+}
+
+double Table::ns(const Key &key) const {
+    const Measurement *m = find(key);
+    return m ? m->ns : std::nan("");
 }
 
 }  // namespace bench

@@ -14,18 +14,33 @@ struct Measurement {
     int threads = 0, repetitions = 0;
     double error = 0, ns = 0, passes = 0, lower = 0, upper = 0;
 
-    /// Without a number that is not wanted in it: the same problem, size and threads.
-    bool same_scene(const Measurement &other) const {
-        return level == other.level && problem == other.problem && chains == other.chains && bonds == other.bonds &&
-               threads == other.threads;
-    }
-    bool is_special() const {  ///< condition numbers, energy drift: for the plots, not for the tables
+    bool is_special() const {  ///< condition numbers, energy drift: not a level at work on a scene of its own
         return setting.rfind("condition", 0) == 0 || setting.rfind("energy drift", 0) == 0;
     }
 };
 
-/// Reads both files of a folder; rows that stand in both at the same place belong together.
-std::vector<Measurement> read_results(const std::string &directory);
+/// What identifies a row, apart from its numbers.
+struct Key {
+    std::string level, problem;
+    std::int64_t chains = 0, bonds = 0;
+    std::string method = "holonomic", setting = "default";
+    int threads = 1;
+};
+
+/// All rows of a run.
+class Table {
+public:
+    /// Reads results.csv and spread.csv of a folder; rows that stand in both at the same place belong together.
+    explicit Table(const std::string &directory);
+    const std::vector<Measurement> &rows() const { return rows_; }
+    /// NULL if there is no such row. Where several fit, the first.
+    const Measurement *find(const Key &key) const;
+    /// Time per bond; NaN if there is no such row.
+    double ns(const Key &key) const;
+
+private:
+    std::vector<Measurement> rows_;
+};
 
 }  // namespace bench
 

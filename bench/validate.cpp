@@ -120,10 +120,7 @@ void accelerations() {
     if (have_lapack()) both("dptsv", lapack_dptsv());
     if (have_lapack()) both("dgtsv", lapack_dgtsv());
     // Nearly straight with joints 1e12 times lighter: the recursion as printed has no digit left.
-    Recipe recipe = batch("light_joints", 5, 64);
-    recipe.light = 1e-12;
-    recipe.turn_from = 0.5e-6, recipe.turn_to = 1e-6;
-    const Problem light = make_problem(recipe);
+    const Problem light = make_problem(with_joints(batch("light_joints", 5, 64), 1e-12, 0.5e-6, 1e-6));
     expect("light straight joints: the Omega recursion",
            run(level, light, direct_forces(light, "", "", omega_recursion())).error, 1e-5, 1e300);
     expect("light straight joints: the library", run(level, light, holonomic(level, light)).error, 0, (16 + 8) * eps);
@@ -131,10 +128,7 @@ void accelerations() {
 
 /// A straight chain of equal masses has det Z~ = (N+1)/2^N.
 void determinants() {
-    Recipe recipe = batch("light_joints", 1, 20);
-    recipe.light = 1;
-    recipe.turn_from = recipe.turn_to = 0;
-    const Problem p = make_problem(recipe);
+    const Problem p = make_problem(with_joints(batch("light_joints", 1, 20), 1, 0, 0));
     State s(p, Level::metric);
     direct_metric(p, "", "", omega_recursion_log_det()).call(s);
     const double exact = std::log(21.0) - 20 * std::log(2.0);

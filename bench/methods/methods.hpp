@@ -12,7 +12,12 @@ namespace bench {
 Method holonomic(Level level, const Problem &p, int threads = 1);
 Method holonomic_tolerance(const Problem &p, double tolerance);
 Method holonomic_solve(const Problem &p, const UnitSystems &systems);
+/// The whole work with one thing less or more at a time.
 Methods holonomic_skips(Level level, const Problem &p);
+/// Accelerations with NULL for v or f, of a problem in which they are zero.
+Method holonomic_without(const Problem &p, bool v, bool f);
+/// Of a problem in the plane z = 0, on arrays without a z.
+Method holonomic_flat(Level level, const Problem &p);
 
 // Packages.
 bool have_lapack();
@@ -39,6 +44,8 @@ Solver eq20();
 /// The recursion for Omega as printed, with the factors of Eqs. (9) and (24) put right.
 Solver omega_recursion();
 LogDeterminant omega_recursion_log_det();
+/// Level acceleration: the same elimination without the scaling, i.e. an L D L^T of Z, as one inlined scalar sweep.
+Method scalar_sweep(const Problem &p);
 
 }  // namespace bench
 
