@@ -31,22 +31,25 @@ std::int64_t shake(const Problem &p, const double *b, double tolerance, Moved &m
     moved.start();
     for (std::int64_t sweep = 1; sweep <= sweeps_at_most; ++sweep) {
         bool done = true;
+        double at[3] = {r[0], r[1], r[2]};  // of atom k, in registers: each bond waits for the one before it
         for (std::size_t k = 0; k < n; ++k) {
-            if (!moved.bond(k)) continue;
-            double *r0 = r + 3 * k;
+            double *r1 = r + 3 * k + 3, next[3] = {r1[0], r1[1], r1[2]};
             const double *bond = b + 3 * k;
-            const double d[3] = {r0[3] - r0[0], r0[4] - r0[1], r0[5] - r0[2]};
             const double square = p.length[k] * p.length[k];
+            const double d[3] = {next[0] - at[0], next[1] - at[1], next[2] - at[2]};
             const double excess = d[0] * d[0] + d[1] * d[1] + d[2] * d[2] - square;
-            if (std::abs(excess) <= tolerance * square) continue;
-            const double along = d[0] * bond[0] + d[1] * bond[1] + d[2] * bond[2];
-            const double t = excess / (2 * (p.w[k] + p.w[k + 1]) * along);
-            for (int x = 0; x < 3; ++x) {
-                r0[x] += p.w[k] * t * bond[x];
-                r0[x + 3] -= p.w[k + 1] * t * bond[x];
+            if (moved.bond(k) && std::abs(excess) > tolerance * square) {
+                const double along = d[0] * bond[0] + d[1] * bond[1] + d[2] * bond[2];
+                const double t = excess / (2 * (p.w[k] + p.w[k + 1]) * along);
+                const double pull = p.w[k] * t, push = p.w[k + 1] * t;
+                for (int x = 0; x < 3; ++x) {
+                    r1[x - 3] = at[x] + pull * bond[x];
+                    r1[x] = next[x] -= push * bond[x];
+                }
+                moved.mark(k);
+                done = false;
             }
-            moved.mark(k);
-            done = false;
+            for (int x = 0; x < 3; ++x) at[x] = next[x];
         }
         if (done) return sweep - 1;
         moved.next();
@@ -62,20 +65,23 @@ std::int64_t rattle_velocities(const Problem &p, const double *d, double toleran
     moved.start();
     for (std::int64_t sweep = 1; sweep <= sweeps_at_most; ++sweep) {
         bool done = true;
+        double at[3] = {v[0], v[1], v[2]};
         for (std::size_t k = 0; k < n; ++k) {
-            if (!moved.bond(k)) continue;
-            double *v0 = v + 3 * k;
+            double *v1 = v + 3 * k + 3, next[3] = {v1[0], v1[1], v1[2]};
             const double *bond = d + 3 * k;
             const double square = bond[0] * bond[0] + bond[1] * bond[1] + bond[2] * bond[2];
-            const double rate = bond[0] * (v0[3] - v0[0]) + bond[1] * (v0[4] - v0[1]) + bond[2] * (v0[5] - v0[2]);
-            if (std::abs(rate) <= tolerance * square) continue;
-            const double t = rate / ((p.w[k] + p.w[k + 1]) * square);
-            for (int x = 0; x < 3; ++x) {
-                v0[x] += p.w[k] * t * bond[x];
-                v0[x + 3] -= p.w[k + 1] * t * bond[x];
+            const double rate = bond[0] * (next[0] - at[0]) + bond[1] * (next[1] - at[1]) + bond[2] * (next[2] - at[2]);
+            if (moved.bond(k) && std::abs(rate) > tolerance * square) {
+                const double t = rate / ((p.w[k] + p.w[k + 1]) * square);
+                const double pull = p.w[k] * t, push = p.w[k + 1] * t;
+                for (int x = 0; x < 3; ++x) {
+                    v1[x - 3] = at[x] + pull * bond[x];
+                    v1[x] = next[x] -= push * bond[x];
+                }
+                moved.mark(k);
+                done = false;
             }
-            moved.mark(k);
-            done = false;
+            for (int x = 0; x < 3; ++x) at[x] = next[x];
         }
         if (done) return sweep - 1;
         moved.next();
