@@ -220,16 +220,40 @@ std::string skips_block(const Table &all) {
 }
 
 std::string losses_block(const Table &all, bool accurate) {
-    MarkdownTable table({"scene", "holonomic: ns/bond", "error", "fastest other", "ns/bond", "error"});
+    struct Loss {
+        std::string work, method, sizes;
+        double factor;
+        const Measurement *own, *other;  // where it is greatest
+    };
+    std::vector<Loss> losses;
     std::set<std::string> done;
     for (const Measurement &first : all.rows()) {
         if (first.is_special() || !done.insert(scene_of(first)).second) continue;
         const Measurement *own = all.find(own_of(first));
         const Measurement *best = own ? fastest_other(all, *own, accurate) : nullptr;
-        if (best && best->ns < own->ns)
-            table.add({scene_of(first), number(own->ns), error_text(own->error), best->method + ", " + best->setting,
-                       number(best->ns), error_text(best->error)});
+        if (!best || best->ns >= own->ns) continue;
+        const Loss loss = {own->level + ", " + own->problem,
+                           best->method + ", " + best->setting,
+                           size_text(own->chains, own->bonds),
+                           own->ns / best->ns,
+                           own,
+                           best};
+        const auto same = std::find_if(losses.begin(), losses.end(), [&](const Loss &other) {
+            return other.work == loss.work && other.method == loss.method;
+        });
+        if (same == losses.end()) {
+            losses.push_back(loss);
+            continue;
+        }
+        const std::string sizes = same->sizes + ", " + loss.sizes;
+        if (loss.factor > same->factor) *same = loss;
+        same->sizes = sizes;
     }
+    MarkdownTable table({"work", "faster", "at chains x bonds", "times faster, at most", "ns/bond", "error",
+                         "holonomic: ns/bond", "error"});
+    for (const Loss &l : losses)
+        table.add({l.work, l.method, l.sizes, number(l.factor), number(l.other->ns), error_text(l.other->error),
+                   number(l.own->ns), error_text(l.own->error)});
     return table.empty() ? "none\n" : table.text();
 }
 
