@@ -85,7 +85,7 @@ awk -F, -v quick="${2:-}" '
         for (i = split("acceleration velocity position metric", level, " "); i > 0; --i) {
             own(level[i], "melt", size)
             demand_each(level[i], "melt", size, "holonomic", "half inactive;all inactive;box orthorhombic;box triclinic;view of the plain layout;x y z apart;padded to four doubles;float view;index list;two dimensions;general masses;general lengths;general masses and lengths;every 10th atom fixed;orthogonal neighbours;HOLONOMIC_ISA=baseline")
-            demand(level[i], "light_joints", size, 1, "holonomic", "compensated arithmetic")
+            if (level[i] != "position") demand(level[i], "light_joints", size, 1, "holonomic", "compensated arithmetic")
         }
         demand_each("acceleration", "melt", size, "holonomic", "v = NULL;f = NULL;v = NULL and f = NULL;no lambda;no g;tension too;virial too;g added to;all outputs in one call;all outputs by separate calls")
         demand_each("velocity", "melt", size, "holonomic", "no lambda;virial too")

@@ -26,7 +26,7 @@ struct Row {
 struct Effort {
     int repetitions = 7;
     double seconds = 0.01;      ///< least time of one repetition
-    double slow_seconds = 0.3;  ///< a call that takes longer is repeated three times only
+    double slow_seconds = 0.1;  ///< a call that takes longer is repeated three times only
     std::size_t reference_bonds = 20000;
 };
 

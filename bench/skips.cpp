@@ -66,7 +66,11 @@ void skips_section(const Run &run) {
         Recipe flat = recipe;
         flat.flat = true;
         for (Level level : levels) {
-            for (const auto &other : other_chains(recipe)) measure_as(run, level, other.first, other.second);
+            for (const auto &other : other_chains(recipe)) {
+                // Straight chains of such joints have no solution after a drift of dt = 0.005.
+                if (level == Level::position && other.second.name == "light_joints") continue;
+                measure_as(run, level, other.first, other.second);
+            }
             measure_as(run, level, "two dimensions", flat);
         }
     }
