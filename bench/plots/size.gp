@@ -15,6 +15,8 @@ do for [kind in "png svg"] {
     plot for [i=1:12] (count(pick(names[i], wanted)) > 0 ? sorted(pick(names[i], wanted), "$4, $9") : "< echo 1,NaN") using 1:2 \
              with linespoints lw width(i) lc rgb colours[i] pt marks[i] \
              title (count(pick(names[i], wanted)) > 0 ? names[i] : ""), \
+         (level eq "acceleration" ? sorted(pick("omega-recursion", "^unscaled scalar sweep$"), "$4, $9") : "< echo 1,NaN") using 1:2 \
+             with linespoints lw 1.5 dt 3 lc rgb "#7f3f00" pt 6 title (level eq "acceleration" ? "scalar L D L^T sweep" : ""), \
          sorted(pick("holonomic", "^default$"), "$4, $9 / $10") using 1:2 with lines lw 2 dt 2 lc rgb "#888888" \
              title "memory pass: the floor"
     unset output
