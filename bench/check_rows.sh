@@ -55,7 +55,7 @@ awk -F, -v quick="${2:-}" '
         demand_each("position", problem, size, "sparse-newton", "tolerance 1e-06;tolerance 1e-12")
         demand_each("position", problem, size, "lincs", "order 4 iterations 1;order 8 iterations 4")
         split(size, part, "x")
-        if (part[1] * part[2] <= 7000)
+        if (part[1] * part[2] <= (quick ? 7000 : 8200))
             demand_each("position", problem, size, "openmm-ccma", "tolerance 1e-06;tolerance 1e-10;tolerance 1e-06 exact angles;tolerance 1e-10 exact angles")
     }
     function accuracy(problem, size,   range, lincs) {

@@ -65,7 +65,7 @@ Methods position_peers(const Run &run, const Problem &p, bool all) {
         for (int iterations : all ? std::vector<int>{1, 2, 4} : std::vector<int>{order == 4 ? 1 : 4})
             list.push_back(lincs(p, order, iterations));
     // Setting CCMA up takes a time that grows as the square of the bonds in a call.
-    if (have_openmm() && p.name != "fixed_ends" && p.chains_per_call() * p.bonds <= 7000)
+    if (have_openmm() && p.name != "fixed_ends" && p.chains_per_call() * p.bonds <= (run.full() ? 8200 : 7000))
         for (bool angles : {false, true})
             for (double tolerance :
                  all ? std::vector<double>{1e-4, 1e-6, 1e-8, 1e-10} : std::vector<double>{1e-6, 1e-10})

@@ -1,7 +1,7 @@
-// OpenMM's CCMA (Eastman and Pande 2010, J. Chem. Theory Comput. 6, 434) in its reference platform, made from a System
-// as a Context makes it and called through the class in OpenMM's installed headers: the same algorithm as
-// Context::applyConstraints, which however takes the positions themselves as reference instead of those before the
-// drift.
+// OpenMM's CCMA (Eastman and Pande 2010, J. Chem. Theory Comput. 6, 434) in its reference platform, through
+// Context::applyConstraints and applyVelocityConstraints. They take the positions that they are given as the reference
+// too, those after the drift, instead of the ones before it as an integrator does; on coils the
+// work is the same.
 #include <cmath>
 #include <memory>
 
@@ -10,15 +10,16 @@
 #ifdef BENCH_HAVE_OPENMM
 
 #include <OpenMM.h>
-#include <openmm/reference/ReferenceConstraints.h>
 
 namespace bench {
 namespace {
 
 /// One constraint set: all chains of a call, as they would stand in one simulation.
 struct Molecules {
-    std::unique_ptr<OpenMM::ReferenceConstraints> constraints;
-    std::vector<OpenMM::Vec3> reference, moving;
+    std::unique_ptr<OpenMM::System> system;
+    std::unique_ptr<OpenMM::VerletIntegrator> integrator;
+    std::unique_ptr<OpenMM::Context> context;
+    std::vector<OpenMM::Vec3> moving;
     std::size_t first_atom = 0;
 };
 
@@ -32,7 +33,8 @@ double angle_at(const double *r) {
 }
 
 Molecules make(const Problem &p, std::size_t first_chain, std::size_t chains, bool angles) {
-    OpenMM::System system;
+    auto system_owner = std::make_unique<OpenMM::System>();
+    OpenMM::System &system = *system_owner;
     auto angle_force = std::make_unique<OpenMM::HarmonicAngleForce>();
     Molecules m;
     m.first_atom = p.first_atom(first_chain);
@@ -50,9 +52,11 @@ Molecules make(const Problem &p, std::size_t first_chain, std::size_t chains, bo
         }
     }
     if (angles) system.addForce(angle_force.release());
-    m.constraints = std::make_unique<OpenMM::ReferenceConstraints>(system);
-    m.reference.resize(chains * (p.n() + 1));
-    m.moving.resize(m.reference.size());
+    m.system = std::move(system_owner);
+    m.integrator = std::make_unique<OpenMM::VerletIntegrator>(p.dt);
+    m.context =
+        std::make_unique<OpenMM::Context>(*m.system, *m.integrator, OpenMM::Platform::getPlatformByName("Reference"));
+    m.moving.resize(chains * (p.n() + 1));
     return m;
 }
 
@@ -72,31 +76,33 @@ Method openmm_ccma(Level level, const Problem &p, double tolerance, bool angles)
     auto all = std::make_shared<std::vector<Molecules>>();
     for (std::size_t c = 0; c < p.n_chains(); c += chains_per_call) {
         all->push_back(make(p, c, chains_per_call, angles));
-        copy_in(p.r, all->back().first_atom, all->back().reference);
+        Molecules &m = all->back();
+        copy_in(p.r, m.first_atom, m.moving);
+        m.context->setPositions(m.moving);
     }
-    auto w = std::make_shared<std::vector<double>>();
-    for (std::size_t i = 0; i < chains_per_call * (p.n() + 1); ++i) w->push_back(p.w[i % (p.n() + 1)]);
     const bool position = level == Level::position;
     Method method;
     method.name = "openmm-ccma";
     method.setting = tolerance_setting(tolerance) + (angles ? " exact angles" : "");
     // OpenMM keeps vectors of its own; copying to and from them is not its fault and not timed.
     method.before = [all, position](State &state) {
-        for (Molecules &m : *all) copy_in(position ? state.r : state.v, m.first_atom, m.moving);
-    };
-    method.call = [all, w, tolerance, position](State &) {
         for (Molecules &m : *all) {
-            if (position)
-                m.constraints->apply(m.reference, m.moving, *w, tolerance);
-            else
-                m.constraints->applyToVelocities(m.reference, m.moving, *w, tolerance);
+            copy_in(position ? state.r : state.v, m.first_atom, m.moving);
+            position ? m.context->setPositions(m.moving) : m.context->setVelocities(m.moving);
         }
     };
+    method.call = [all, tolerance, position](State &) {
+        for (Molecules &m : *all)
+            position ? m.context->applyConstraints(tolerance) : m.context->applyVelocityConstraints(tolerance);
+    };
     method.after = [all, position](State &state) {
-        for (const Molecules &m : *all)
-            for (std::size_t i = 0; i < m.moving.size(); ++i)
+        for (const Molecules &m : *all) {
+            const OpenMM::State result = m.context->getState(OpenMM::State::Positions | OpenMM::State::Velocities);
+            const std::vector<OpenMM::Vec3> &moved = position ? result.getPositions() : result.getVelocities();
+            for (std::size_t i = 0; i < moved.size(); ++i)
                 for (std::size_t x = 0; x < 3; ++x)
-                    (position ? state.r : state.v)[3 * (m.first_atom + i) + x] = m.moving[i][static_cast<int>(x)];
+                    (position ? state.r : state.v)[3 * (m.first_atom + i) + x] = moved[i][static_cast<int>(x)];
+        }
     };
     return method;
 }
