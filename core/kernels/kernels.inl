@@ -10,6 +10,7 @@
 #include "newton.inl"
 #include "positions.inl"
 #include "molecules.inl"
+#include "molecules_positions.inl"
 #include "metric.inl"
 #include "segments.inl"
 #include "segments_forces.inl"

@@ -3,8 +3,187 @@
 namespace holonomic {
 namespace HOL_ISA {
 
+// Inverse masses over that of the lane where it has only one, which is then exactly 1 whatever shares the block.
+static inline void set_masses(const Block &block, Newton &x, Arena &arena) {
+    mask same;
+    for (int i = 0; i < W; ++i) same[i] = block.uniform_w || block.lane_uniform[i] ? -1 : 0;
+    x.w = block.w;
+    x.movable = ~same | less(vec{}, block.w_uniform);
+    x.unit = select(same & x.movable, block.w_uniform, splat(1.0));
+    if (!any(same) || block.uniform_w) return;
+    vec *w = arena.vecs(block.n + 1);
+    for (long k = 0; k <= block.n; ++k) w[k] = select(same, splat(1.0), block.w[k]);
+    x.w = w;
+}
+
+static inline void set_lengths(const Block &block, const Lane *lane, Newton &x, Arena &arena) {
+    bool uniform = block.n == block.n_min;
+    vec a_min, a_max;
+    for (int i = 0; i < W; ++i) {
+        const Lane &one = lane[i < block.lanes ? i : 0];
+        a_min[i] = a_max[i] = one.length_uniform;
+        uniform = uniform && !one.length;
+        for (long k = 0; one.length && k < one.n_bonds; ++k) {
+            a_min[i] = __builtin_fmin(a_min[i], one.length[k]);
+            a_max[i] = __builtin_fmax(a_max[i], one.length[k]);
+        }
+    }
+    x.a_min = a_min;
+    x.a_max = a_max;
+    x.a2 = nullptr;
+    x.a2_uniform = a_min * a_min;
+    if (uniform) return;
+    vec *a2 = arena.vecs(block.n);
+    for (int i = 0; i < W; ++i) {
+        const Lane &one = lane[i < block.lanes ? i : 0];
+        for (long k = 0; k < block.n; ++k) {
+            const double a = one.length && k < one.n_bonds ? one.length[k] : one.length_uniform;
+            a2[k][i] = k < one.n_bonds ? a * a : 1.0;
+        }
+    }
+    x.a2 = a2;
+}
+
+// Bond vectors k0 .. k0 + W - 1, from pointers to atom k0 of each lane.
+template <bool boxed>
+HOL_INLINE void bonds_between(const Box &box, const double *const *p, vec3 *d) {
+    vec m[3 * W];
+    for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < W; ++i) m[j * W + i] = load(p[i] + W * j + 3) - load(p[i] + W * j);
+        transpose(m + j * W);
+    }
+    for (int a = 0; a < W; ++a) {
+        d[a] = {m[3 * a], m[3 * a + 1], m[3 * a + 2]};
+        vec3 unused = {};
+        if (boxed) wrap<false>(box, d[a], unused);
+    }
+}
+
+template <bool boxed>
+static inline void load_bond_vectors(const Block &block, const Box &box, const Packed &r, vec3 *D) {
+    const double *p[W];
+    vec3 d[W];
+    long k0 = 0;
+    for (; k0 + W <= block.n_min; k0 += W) {
+        for (int i = 0; i < W; ++i) p[i] = r.lane[i] + 3 * k0;
+        if (block.ahead)
+            for (int i = 0; i < W; ++i) fetch_ahead(p[i], block.ahead);
+        bonds_between<boxed>(box, p, d);
+        for (int a = 0; a < W; ++a) D[k0 + a] = d[a];
+    }
+    for (; k0 < block.n; k0 += W) {
+        double buffer[W][3 * W + 3];
+        for (int i = 0; i < W; ++i) p[i] = window(r.lane[i], k0, block.len[i], block.roomy, buffer[i]);
+        bonds_between<boxed>(box, p, d);
+        for (long a = 0; a < W && k0 + a < block.n; ++a) {  // inert bonds past the end of a lane: (1, 0, 0)
+            const mask m = live(block, k0 + a);
+            D[k0 + a] = {select(m, d[a].x, splat(1.0)), keep(m, d[a].y), keep(m, d[a].z)};
+        }
+    }
+}
+
+static inline void load_bond_vectors(const Block &block, const Box &box, const Packed &r, vec3 *D) {
+    if (box.shape == Box::none)
+        load_bond_vectors<false>(block, box, r, D);
+    else
+        load_bond_vectors<true>(block, box, r, D);
+}
+
+static inline void load_guess(const Block &block, const PositionsCall &call, const Newton &x) {
+    const vec factor = (2 * call.dt * call.dt) * x.unit;
+    for (int i = 0; i < W; ++i) {
+        const int lane = i < block.lanes ? i : 0;
+        for (long k = 0; k < block.n; ++k)
+            x.tau[k][i] = k < block.len[i] ? factor[i] * call.lambda[block.first_bond[lane] + k] : 0.0;
+    }
+}
+
+// Where the moves of the atoms go: positions, or velocities by the factor 1 / dt, or both.
+struct Targets {
+    Packed r, v;
+    double per_dt;
+};
+
+// Moves the atoms of the lanes in `which` by w_i (tau_{i+1} b_{i+1} - tau_i b_i).
+template <bool uniform_w, bool to_r, bool to_v>
+static inline void store_moves(const Block &block, const Newton &x, mask which, const Targets to) {
+    const unsigned chosen = bits(which & block.in_use());
+    const vec *const tau = x.tau;
+    const vec3 *const b = x.b;
+    vec3 before = {};
+    const auto move = [&](long k, vec *value) __attribute__((always_inline)) {
+        const vec3 after = times(tau[k], b[k]), m = times_w<uniform_w>(x, k, minus(after, before));
+        value[0] = m.x;
+        value[1] = m.y;
+        value[2] = m.z;
+        before = after;
+    };
+    long k0 = 0;
+    if (chosen == (1u << W) - 1) {
+        const vec per_dt = splat(to.per_dt);
+        for (; k0 + W <= block.n_min; k0 += W) {
+            vec value[3 * W];
+            for (int a = 0; a < W; ++a) move(k0 + a, value + 3 * a);
+            for (int j = 0; j < 3; ++j) {
+                transpose(value + j * W);
+                for (int i = 0; i < W; ++i) {
+                    double *const r = to.r.lane[i] + 3 * k0 + j * W, *const v = to.v.lane[i] + 3 * k0 + j * W;
+                    if (to_r) store(r, load(r) + value[j * W + i]);
+                    if (to_v) store(v, mul_add(value[j * W + i], per_dt, load(v)));
+                }
+            }
+        }
+    }
+    for (; k0 <= block.n; ++k0) {
+        vec value[3];
+        move(k0, value);
+        for (int i = 0; i < block.lanes; ++i) {
+            if (!(chosen >> i & 1) || k0 > block.len[i]) continue;
+            for (int c = 0; c < 3; ++c) {
+                const long e = 3 * k0 + c;
+                if (to_r) to.r.lane[i][e] = to.r.lane[i][e] + value[c][i];
+                if (to_v) to.v.lane[i][e] = mul_add(value[c][i], to.per_dt, to.v.lane[i][e]);
+            }
+        }
+    }
+}
+
+// Writes tau times a factor of the lanes in `which`; zeros as +0.
+static inline void store_multipliers(const Block &block, const Newton &x, vec factor, mask which, double *out) {
+    const unsigned chosen = bits(which & block.in_use());
+    double *p[W];
+    for (int i = 0; i < block.lanes; ++i) p[i] = out + block.first_bond[i];
+    long k0 = 0;
+    if (chosen == (1u << W) - 1)
+        for (; k0 + W <= block.n_min; k0 += W) {
+            vec m[W];
+            for (int a = 0; a < W; ++a) m[a] = mul_add(x.tau[k0 + a], factor, vec{});
+            transpose(m);
+            for (int i = 0; i < W; ++i) store(p[i] + k0, m[i]);
+        }
+    for (; k0 < block.n; ++k0) {
+        const vec value = mul_add(x.tau[k0], factor, vec{});
+        for (int i = 0; i < block.lanes; ++i)
+            if ((chosen >> i & 1) && k0 < block.len[i]) p[i][k0] = value[i];
+    }
+}
+
+// The first bond of a lane with this error.
+template <bool uniform_w, bool uniform_a>
+static __attribute__((noinline)) long worst_bond(const Block &block, const Newton &x, int lane, double error) {
+    Mover<uniform_w> mover = Mover<uniform_w>::start(x);
+    long k = 0;
+    for (vec worst = {}; k < block.len[lane]; ++k) {
+        length_error<uniform_a>(block, x, k, false, Mover<uniform_w>::bond(mover, x, k), worst);
+        if ((uniform_a ? worst / x.a2_uniform : worst)[lane] >= error) break;
+    }
+    return k < block.len[lane] ? k : 0;
+}
+
+template <bool uniform_w, bool uniform_a>
 static inline void note_worst(const Block &block, const Newton &x, mask which, vec error, Tally &tally) {
-    const unsigned chosen = bits(which);
+    const unsigned chosen = bits(which & block.in_use());
+    int worst = -1;
     for (int i = 0; i < block.lanes; ++i) {
         if (!(chosen >> i & 1)) continue;
         if (!(error[i] > tally.worst || tally.worst_chain < 0 ||
@@ -12,140 +191,178 @@ static inline void note_worst(const Block &block, const Newton &x, mask which, v
             continue;
         tally.worst = error[i];
         tally.worst_chain = block.chain[i];
-        double largest = -1;
-        for (long k = 0; k < block.len[i]; ++k) {
-            const double e = abs(2 * x.s[k][i]) / (x.a2 ? x.a2[k][i] : x.a2_uniform[i]);
-            if (e > largest) {
-                largest = e;
-                tally.worst_bond = k;
-            }
-        }
+        worst = i;
     }
+    if (worst >= 0) tally.worst_bond = worst_bond<uniform_w, uniform_a>(block, x, worst, tally.worst);
 }
 
-template <bool uniform>
-static void store_positions(const Block &block, const Lane *lane, const PositionsCall &call, const Newton &x,
-                            const Outcome &out, const Packed &r, const Packed &v, Tally &tally) {
-    const mask done = out.converged | out.untouched;
-    if (any(out.converged)) {
-        close(call.r, block, lane, out.converged, r, false);
-        if (call.v.x) {
-            for (long k = 0; k < block.n; ++k) x.up[k] = (1 / call.dt) * x.tau[k];
-            store_pulls<true, uniform>(block, x.b, x.up, out.converged, add_, v);
-            close(call.v, block, lane, out.converged, v, false);
-        }
-        if (call.virial) add_virial(block.n, x.b, x.tau, out.converged, 1 / (call.dt * call.dt), tally);
+// - sum tau b (x) b / dt^2 over the bonds of the lanes in `which`.
+static inline void add_virial(const Block &block, const Newton &x, mask which, double dt, Tally &tally) {
+    vec s[6] = {};
+    for (long k = 0; k < block.n; ++k) {
+        const vec3 b = x.b[k], p = times(x.tau[k], b);
+        const vec term[6] = {p.x * b.x, p.x * b.y, p.x * b.z, p.y * b.y, p.y * b.z, p.z * b.z};
+        for (int c = 0; c < 6; ++c) s[c] = s[c] + term[c];
     }
-    if (call.lambda) {
-        if (any(out.untouched))
-            for (long k = 0; k < block.n; ++k) x.tau[k] = keep(out.converged, x.tau[k]);
-        store_bonds(block, x.tau, 0.5 / (call.dt * call.dt), done, call.lambda);
+    const vec factor = splat(1 / (dt * dt)) / x.unit;
+    for (int c = 0; c < 6; ++c) tally.virial[c] -= sum_lanes(keep(which & block.in_use(), s[c] * factor));
+}
+
+template <bool uniform_w, bool uniform_a, bool careful>
+static __attribute__((noinline)) Outcome solve_positions(const Block &block, Newton &x, const PositionsCall &call,
+                                                         Carried &carried, mask wanted, bool guess) {
+    const mask single = wanted & less(block.lengths(), splat(1.5)), longer = wanted & ~single;
+    Outcome out = {};
+    if (any(longer))
+        out = iterate<uniform_w, uniform_a, careful>(block, x, call, carried, longer, guess);
+    else
+        for (long k = 0; k < block.n; ++k) x.tau[k] = vec{};
+    if (careful) {  // D has been moved by all corrections
+        x.step = x.correction;
+        for (long k = 0; k < block.n; ++k) x.correction[k] = vec{};
     }
-    note_worst(block, x, done, out.error, tally);
-    tally.n_corrected += __builtin_popcount(bits(out.converged));
-    if (out.solves > tally.iterations) tally.iterations = out.solves;
+    if (!any(single)) return out;
+    x.step = x.tau;
+    const Outcome one = solve_single_bonds<uniform_w>(x, carried, single);
+    out.untouched = out.untouched | one.untouched;
+    out.converged = out.converged | one.converged;
+    out.error = select(single, one.error, out.error);
+    out.solves = one.solves > out.solves ? one.solves : out.solves;
+    return out;
 }
 
 // Lanes in which an atom's displacement is the difference of pulls so large that their rounding is more than the
 // coordinates': light atoms between heavy ones in a taut chain. Elsewhere moving the atoms costs one rounding of them.
-static inline mask coarse_moves(const Block &block, const Newton &x, vec largest_coordinate) {
-    vec pull = {}, reach = {};
-    for (long k = 0; k < block.n; ++k) {
-        const vec w = block.uniform_w ? block.w_uniform : max(block.w[k], block.w[k + 1]);
-        pull = max(w * abs(x.tau[k]), pull);
-        reach = max(a2_at(x, k), reach);
+template <bool uniform_w>
+static inline mask coarse_moves(const Block &block, const Newton &x, Carried &carried, mask which) {
+    vec pull = {};
+    go_down<0>(block, [&](long k) __attribute__((always_inline)) {
+        const vec tau = abs(x.tau[k]);
+        pull = max(uniform_w ? tau : max(x.w[k], x.w[k + 1]) * tau, pull);
+    });
+    pull = pull * x.a_max;
+    if (!any(which & less(0.25 * x.a_min, pull))) return none();
+    return which & less(0.25 * (carried.largest_coordinate() + x.a_min), pull);
+}
+
+// The two attempts at a block of chains.
+template <bool uniform_w, bool uniform_a>
+struct Positions {
+    const Block &block;
+    const Lane *const lane;
+    const PositionsCall &call;
+    Arena arena;
+    Tally &tally;
+    Packed r_ref, r, v;
+    Newton x;
+
+    Positions(const Block &b, const Lane *l, const PositionsCall &c, Arena a, Tally &t)
+        : block(b), lane(l), call(c), arena(a), tally(t), r_ref(open(c.r_ref, b, l, arena, true)),
+          r(open(c.r, b, l, arena, true)), v(open(c.v, b, l, arena, true)), x(b.n, arena) {
+        set_masses(block, x, arena);
+        set_lengths(block, lane, x, arena);
     }
-    reach = sqrt(reach);
-    return less(0.25 * (largest_coordinate + sqrt(x.a2_min)), pull * reach);
-}
 
-static inline void load_bond_vectors(const Block &block, const Box &box, const Packed &r, vec3 *D, vec *unused) {
-    const Packed absent = {};
-    if (box.shape == Box::none)
-        load_bonds<none_, true, false, false>(block, box, r, absent, absent, D, nullptr, unused);
-    else
-        load_bonds<none_, true, true, false>(block, box, r, absent, absent, D, nullptr, unused);
-}
+    template <bool to_r, bool to_v>
+    void move(mask which) const {
+        store_moves<uniform_w, to_r, to_v>(block, x, which, Targets{r, v, 1 / call.dt});
+    }
 
-static void load_positions(const Block &block, const PositionsCall &call, const Packed &r_ref, const Packed &r,
-                           const Newton &x) {
-    load_bond_vectors(block, call.box, r_ref, x.b, x.s);
-    load_bond_vectors(block, call.box, r, x.D, x.s);
-    if (!call.guess) return;
-    const double factor = 2 * call.dt * call.dt;
-    for (long k = 0; k < block.n; ++k)
-        for (int i = 0; i < W; ++i) {
-            const int lane = i < block.lanes ? i : 0;
-            x.tau[k][i] = k < block.len[i] ? factor * call.lambda[block.first_bond[lane] + k] : 0.0;
-        }
-}
-
-// Moves the atoms of the lanes that have converged. Where that is too coarse, goes on from the coordinates as they are
-// now rounded: the moves that remain are small, and so are their roundings. Lanes that do not get there are put back.
-template <bool uniform>
-static void move_atoms(const Block &block, const PositionsCall &call, const Newton &x, const Packed &r, vec carried,
-                       vec largest_coordinate, Outcome &out, Arena arena) {
-    const mask coarse = out.converged & coarse_moves(block, x, largest_coordinate);
-    double *saved[W] = {};
-    if (__builtin_expect(any(coarse), 0))
+    // Goes on from the coordinates as they are rounded after a coarse move: the moves that remain are small, and so are
+    // their roundings. Lanes that do not get there are put back. Returns them.
+    mask settle(mask coarse, Carried &carried, Outcome &out) {
+        Arena rest = arena;
+        double *saved[W] = {};
         for (int i = 0; i < block.lanes; ++i) {
-            saved[i] = arena.doubles(3 * (block.len[i] + 1));
+            saved[i] = rest.doubles(3 * (block.len[i] + 1));
             for (long e = 0; e < 3 * (block.len[i] + 1); ++e) saved[i][e] = r.lane[i][e];
         }
-    store_pulls<true, uniform>(block, x.b, x.tau, out.converged, add_, r);
-    if (__builtin_expect(!any(coarse), 1)) return;
-    vec *const total = arena.vecs(block.n);
-    mask wanted = coarse;
-    for (int pass = 0; pass < 5 && any(wanted); ++pass) {
-        for (long k = 0; k < block.n; ++k) total[k] = x.tau[k];
-        load_bond_vectors(block, call.box, r, x.D, x.s);
-        Outcome again = {};
-        vec error = residuals(block, x);
-        out.error = select(coarse, error, out.error);
-        wanted = wanted & ~less_equal(error, max(splat(call.tolerance), carried));
-        if (!any(wanted)) break;
-        again = solve_positions<uniform, true>(block, x, call, carried, wanted, false);
-        store_pulls<true, uniform>(block, x.b, x.tau, again.converged & wanted, add_, r);
-        for (long k = 0; k < block.n; ++k) x.tau[k] = total[k] + keep(again.converged & wanted, x.tau[k]);
+        vec *const total = rest.vecs(block.n);
+        carried.largest_coordinate();  // of the coordinates as they came
+        move<true, false>(out.converged);
+        mask wanted = coarse;
+        for (int pass = 0; pass < 5 && any(wanted); ++pass) {
+            for (long k = 0; k < block.n; ++k) {
+                total[k] = x.tau[k];
+                x.correction[k] = vec{};
+            }
+            load_bond_vectors(block, call.box, r, x.D);
+            x.step = x.correction;
+            const vec error = residuals<uniform_w, uniform_a>(block, x);
+            out.error = select(coarse, error, out.error);
+            wanted = wanted & ~less_equal(error, carried.accepted());
+            if (!any(wanted)) break;
+            const Outcome again = solve_positions<uniform_w, uniform_a, true>(block, x, call, carried, wanted, false);
+            const mask moved = again.converged & wanted;
+            move<true, false>(moved);
+            for (long k = 0; k < block.n; ++k) x.tau[k] = total[k] + keep(moved, x.tau[k]);
+        }
+        const unsigned back = bits(wanted);
+        for (int i = 0; i < block.lanes; ++i)
+            if (back >> i & 1)
+                for (long e = 0; e < 3 * (block.len[i] + 1); ++e) r.lane[i][e] = saved[i][e];
+        return wanted;
     }
-    if (!any(wanted)) return;
-    const unsigned back = bits(wanted);
-    for (int i = 0; i < block.lanes; ++i)
-        if (back >> i & 1)
-            for (long e = 0; e < 3 * (block.len[i] + 1); ++e) r.lane[i][e] = saved[i][e];
-    out.converged = out.converged & ~wanted;
-}
 
-template <bool uniform>
-static void positions_block_of(const Block &block, const Lane *lane, const PositionsCall &call, Arena arena,
-                               Tally &tally) {
-    const Packed r_ref = open(call.r_ref, block, lane, arena, true), r = open(call.r, block, lane, arena, true);
-    const Packed v = open(call.v, block, lane, arena, true);
-    Newton x(block.n, arena);
-    set_lengths(block, lane, x, arena);
-    const vec largest = extent(block, r), carried = carried_error(call.r, largest, x.a2_min);
-    load_positions(block, call, r_ref, r, x);
-    Outcome out = solve_positions<uniform, false>(block, x, call, carried, block.in_use(), call.guess);
-    move_atoms<uniform>(block, call, x, r, carried, largest, out, arena);
-    store_positions<uniform>(block, lane, call, x, out, r, v, tally);
-    mask rest = block.in_use() & ~(out.converged | out.untouched);
-    if (__builtin_expect(!any(rest), 1)) return;
-    // Once more from the start, with new factors at every step and nothing that can overflow on the way.
-    load_positions(block, call, r_ref, r, x);
-    out = solve_positions<uniform, true>(block, x, call, carried, rest, false);
-    out.untouched = out.untouched & rest;
-    move_atoms<uniform>(block, call, x, r, carried, largest, out, arena);
-    store_positions<uniform>(block, lane, call, x, out, r, v, tally);
-    rest = rest & ~(out.converged | out.untouched);
-    if (any(rest)) note_bad(block, rest, tally);
-}
+    // Moves the atoms of the lanes that have converged and writes what else is wanted of them.
+    void finish(Outcome &out, Carried &carried) {
+        const mask coarse = coarse_moves<uniform_w>(block, x, carried, out.converged);
+        const bool settled = __builtin_expect(any(coarse), 0);
+        note_worst<uniform_w, uniform_a>(block, x, (out.converged | out.untouched) & ~coarse, out.error, tally);
+        if (settled) out.converged = out.converged & ~settle(coarse, carried, out);
+        if (any(out.converged)) {
+            if (settled) {
+                note_worst<uniform_w, uniform_a>(block, x, out.converged & coarse, out.error, tally);
+                if (call.v.x) move<false, true>(out.converged);
+            } else if (call.v.x) {
+                move<true, true>(out.converged);
+            } else {
+                move<true, false>(out.converged);
+            }
+            close(call.r, block, lane, out.converged, r, false);
+            if (call.v.x) close(call.v, block, lane, out.converged, v, false);
+            if (call.virial) add_virial(block, x, out.converged, call.dt, tally);
+        }
+        if (call.lambda) {
+            store_multipliers(block, x, splat(0.5 / (call.dt * call.dt)) / x.unit, out.converged | out.untouched, call.lambda);
+        }
+        tally.n_corrected += __builtin_popcount(bits(out.converged));
+        if (out.solves > tally.iterations) tally.iterations = out.solves;
+    }
+
+    void load() const {
+        load_bond_vectors(block, call.box, r_ref, x.b);
+        load_bond_vectors(block, call.box, r, x.D);
+    }
+
+    void solve() {
+        const mask all = block.in_use();
+        load();
+        if (call.guess) load_guess(block, call, x);
+        Carried carried(block, x, call, r);
+        Outcome out = solve_positions<uniform_w, uniform_a, false>(block, x, call, carried, all, call.guess);
+        finish(out, carried);
+        mask rest = all & ~(out.converged | out.untouched);
+        if (__builtin_expect(!any(rest), 1)) return;
+        // Once more from the start, with new factors at every step and nothing that can overflow on the way.
+        load();
+        out = solve_positions<uniform_w, uniform_a, true>(block, x, call, carried, rest, false);
+        finish(out, carried);
+        rest = rest & ~(out.converged | out.untouched);
+        if (any(rest)) note_bad(block, rest, tally);
+    }
+};
 
 static void positions_block(const Block &block, const Lane *lane, const PositionsCall &call, Arena arena,
                             Tally &tally) {
+    bool uniform_a = block.n == block.n_min;
+    for (int i = 0; i < block.lanes; ++i) uniform_a = uniform_a && !lane[i].length;
     if (block.uniform_w)
-        positions_block_of<true>(block, lane, call, arena, tally);
+        uniform_a ? Positions<true, true>(block, lane, call, arena, tally).solve()
+                  : Positions<true, false>(block, lane, call, arena, tally).solve();
     else
-        positions_block_of<false>(block, lane, call, arena, tally);
+        uniform_a ? Positions<false, true>(block, lane, call, arena, tally).solve()
+                  : Positions<false, false>(block, lane, call, arena, tally).solve();
 }
 
 static void positions(const PositionsCall &call, const Unit &unit, double *scratch, Tally &tally) {
