@@ -1,0 +1,190 @@
+/*
+ * A program as one that was linked to release 0.1 may be: it calls every function of that release, uses every public
+ * struct, and checks what comes back. every_function.sh builds it against an old header and runs it with today's
+ * library.
+ */
+#include <holonomic.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static int failures = 0;
+
+static void expect(int right, const char *what)
+{
+    if (right) return;
+    printf("not so: %s (%s)\n", what, hol_error_message());
+    ++failures;
+}
+
+#define EXPECT(what) expect((what) != 0, #what)
+#define NEAR(a, b) EXPECT(fabs((a) - (b)) <= 1e-12)
+#define SUCCEEDS(call) EXPECT((call) == HOL_OK)
+
+/* Three beads hang from a fixed one. */
+static const double mass[4] = {0, 1, 1, 1}, length[3] = {1, 1, 1};
+static const double hanging[12] = {0, 0, 0, 0, 0, -1, 0, 0, -2, 0, 0, -3};
+static const double weight[12] = {0, 0, -10, 0, 0, -10, 0, 0, -10, 0, 0, -10};
+
+static hol_view view_of(const double *a)
+{
+    hol_view view = {NULL, NULL, NULL, 3 * sizeof(double), HOL_DOUBLE, 0};
+    view.x = (void *)a;
+    view.y = (void *)(a + 1);
+    view.z = (void *)(a + 2);
+    return view;
+}
+
+static void handles(hol_chains *chains)
+{
+    const double box[9] = {100, 0, 0, 0, 100, 0, 0, 0, 100};
+    const unsigned char active[1] = {1};
+    const int64_t list[2] = {2, 3};
+    int64_t offsets[2], atoms[4], chain = 7, bond = 7, atom = 7, bad = 7;
+    hol_chains *second = NULL;
+    EXPECT(strncmp(hol_version(), "0.", 2) == 0);
+    EXPECT(strcmp(hol_status_name(HOL_ERR_DEGENERATE), "HOL_ERR_DEGENERATE") == 0);
+    EXPECT(hol_instruction_set()[0] != 0);
+    EXPECT(hol_chains_n_atoms(chains) == 4 && hol_chains_n_chains(chains) == 1 && hol_chains_n_bonds(chains) == 3);
+    SUCCEEDS(hol_chains_offsets(chains, offsets));
+    EXPECT(offsets[0] == 0 && offsets[1] == 3);
+    SUCCEEDS(hol_chains_atoms(chains, 0, atoms));
+    EXPECT(atoms[0] == 0 && atoms[3] == 3);
+    EXPECT(hol_chains_degrees_of_freedom(chains, 3) == 6);
+    EXPECT(hol_chains_memory(chains) > 0);
+    SUCCEEDS(hol_chains_set_box(chains, box));
+    SUCCEEDS(hol_chains_set_threads(chains, 2));
+    SUCCEEDS(hol_chains_set_active(chains, active));
+    SUCCEEDS(hol_chains_set_tolerance(chains, 0));
+    SUCCEEDS(hol_chains_set_max_iterations(chains, 40));
+    SUCCEEDS(hol_chains_create(4, mass, &second));
+    SUCCEEDS(hol_chains_set_index_base(second, 1));
+    SUCCEEDS(hol_chains_add(second, 1, list, length));
+    EXPECT(hol_chains_add(second, 1, list, length) == HOL_ERR_SHARED_ATOM);
+    hol_error_location(&chain, &bond, &atom, &bad);
+    EXPECT(atom == 2);
+    hol_chains_destroy(second);
+}
+
+static void forces(const hol_chains *chains)
+{
+    double lambda[3], tension[3], g[12], virial[9];
+    const hol_view r = view_of(hanging), f = view_of(weight), out = view_of(g);
+    SUCCEEDS(hol_forces(chains, hanging, NULL, weight, lambda, tension, g, HOL_WRITE, virial));
+    NEAR(tension[0], 30);
+    NEAR(tension[2], 10);
+    NEAR(lambda[1], 10);
+    NEAR(g[5], 10);
+    NEAR(virial[8], -60);
+    SUCCEEDS(hol_forces_view(chains, &r, NULL, &f, lambda, NULL, &out, HOL_ADD, NULL));
+    NEAR(g[5], 20);
+}
+
+static void velocities(const hol_chains *chains)
+{
+    double v[12] = {0, 0, 0, 0, 0, 1, 2, 0, 1, 0, 0, 4}, lambda[3];
+    const hol_view r = view_of(hanging), out = view_of(v);
+    SUCCEEDS(hol_project_velocities(chains, hanging, v, lambda, NULL));
+    NEAR(v[5], 0);
+    NEAR(v[6], 2);
+    NEAR(v[11], 0);
+    SUCCEEDS(hol_project_velocities_view(chains, &r, &out, NULL, NULL));
+    NEAR(v[8], 0);
+}
+
+static void positions(const hol_chains *chains)
+{
+    double r[12], v[12] = {0}, lambda[3];
+    const hol_view before = view_of(hanging), after = view_of(r);
+    hol_report report;
+    hol_worst worst;
+    memcpy(r, hanging, sizeof r);
+    r[3] = 0.01;
+    r[10] = 0.02;
+    SUCCEEDS(hol_violation(chains, r, NULL, &worst));
+    EXPECT(worst.length > 1e-5 && worst.length_chain == 0 && worst.rate == 0);
+    SUCCEEDS(hol_project_positions(chains, hanging, r, v, 0.01, lambda, 0, NULL, &report));
+    EXPECT(report.n_corrected == 1 && report.n_failed == 0 && report.max_error < 1e-12 && report.iterations >= 1);
+    NEAR(r[3] * r[3] + r[4] * r[4] + r[5] * r[5], 1);
+    SUCCEEDS(hol_project_positions_view(chains, &before, &after, NULL, 0.01, NULL, 0, NULL, &report));
+    EXPECT(report.n_corrected == 0);
+    SUCCEEDS(hol_violation_view(chains, &after, NULL, &worst));
+    EXPECT(worst.length < 1e-12);
+}
+
+static void metric(const hol_chains *chains)
+{
+    double log_det, log_det_z, energy, force[12];
+    const hol_view r = view_of(hanging);
+    SUCCEEDS(hol_metric(chains, hanging, 2, &log_det, &log_det_z, &energy, force, HOL_WRITE));
+    NEAR(log_det, log(0.25));
+    NEAR(log_det_z, log(64));
+    NEAR(energy, log(0.25));
+    NEAR(force[5], 0);
+    SUCCEEDS(hol_metric_view(chains, &r, 0, &log_det, NULL, NULL, NULL, HOL_WRITE));
+    NEAR(log_det, log(0.25));
+}
+
+static void inverse(const hol_chains *chains)
+{
+    static const double exact[9] = {0.75, 0.5, 0.25, 0.5, 0.5, 0.25, 0.25, 0.25, 0.25}, lambda[3] = {15, 10, 5};
+    double value, row[3], band[6], matrix[9], condition, bound[3], relative;
+    const hol_view r = view_of(hanging), f = view_of(weight);
+    hol_inverse *z = NULL;
+    int i;
+    SUCCEEDS(hol_inverse_create(chains, 0, hanging, &z));
+    EXPECT(hol_inverse_n_bonds(z) == 3);
+    SUCCEEDS(hol_inverse_entry(z, HOL_UNIT_DIAGONAL, 0, 0, &value));
+    NEAR(value, 3);
+    SUCCEEDS(hol_inverse_row(z, HOL_PHYSICAL, 1, row));
+    SUCCEEDS(hol_inverse_band(z, HOL_PHYSICAL, 1, band));
+    SUCCEEDS(hol_inverse_matrix(z, HOL_PHYSICAL, matrix));
+    for (i = 0; i < 9; ++i) NEAR(matrix[i], exact[i]);
+    for (i = 0; i < 3; ++i) NEAR(row[i], exact[3 + i]);
+    NEAR(band[1], exact[1]);
+    SUCCEEDS(hol_inverse_condition(z, &condition));
+    EXPECT(condition > 1);
+    SUCCEEDS(hol_inverse_error_bound(z, NULL, weight, lambda, bound, &relative));
+    EXPECT(relative < 1e-12);
+    hol_inverse_destroy(z);
+    SUCCEEDS(hol_inverse_create_view(chains, 0, &r, &z));
+    SUCCEEDS(hol_inverse_error_bound_view(z, NULL, &f, lambda, bound, NULL));
+    EXPECT(bound[2] < 1e-12);
+    hol_inverse_destroy(z);
+}
+
+static void tridiagonal(void)
+{
+    const double gamma[1] = {0.5}, b[2] = {1, 0};
+    double out[4], he, rigid, volume;
+    SUCCEEDS(hol_tridiagonal_pivots(2, gamma, out));
+    NEAR(out[1], 0.75);
+    SUCCEEDS(hol_tridiagonal_log_det(2, gamma, out));
+    NEAR(out[0], log(0.75));
+    SUCCEEDS(hol_tridiagonal_solve(2, gamma, b, out));
+    NEAR(out[1], 2 / 3.0);
+    SUCCEEDS(hol_tridiagonal_inverse_entry(2, gamma, 0, 1, out));
+    NEAR(out[0], 2 / 3.0);
+    SUCCEEDS(hol_tridiagonal_inverse_band(2, gamma, 1, out));
+    NEAR(out[2], 4 / 3.0);
+    SUCCEEDS(hol_partition_function(1, NULL, &he, &rigid, &volume));
+    NEAR(he + rigid + volume, 0);
+}
+
+int main(void)
+{
+    hol_chains *chains = NULL;
+    SUCCEEDS(hol_chains_create(4, mass, &chains));
+    SUCCEEDS(hol_chains_add_block(chains, 1, 3, 0, length));
+    handles(chains);
+    forces(chains);
+    velocities(chains);
+    positions(chains);
+    metric(chains);
+    inverse(chains);
+    tridiagonal();
+    hol_chains_destroy(chains);
+    if (failures == 0)
+        printf("compiled for %d.%d, runs with %s\n", HOL_VERSION_MAJOR, HOL_VERSION_MINOR, hol_version());
+    return failures != 0;
+}
