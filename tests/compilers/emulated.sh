@@ -39,9 +39,10 @@ if [ "$processor" != i686 ]; then
     run "$build/tests/stress/stress" 20 "" 3000 2 250 2 >"$build/output" 2>&1 || { cat "$build/output"; exit 1; }
     tail -n 2 "$build/output"
 fi
-# Not those that measure time, or would take minutes under emulation.
+# Not those that measure time, or would take minutes under emulation, nor test_accuracy: its bounds are those of the very
+# chains that the mathematical functions of this processor's library make.
 for test in "$build"/tests/capi/test_*; do
-    case ${test##*/} in *.* | test_scale | test_trajectories | test_allocations | test_partition) continue ;; esac
+    case ${test##*/} in *.* | test_accuracy | test_scale | test_trajectories | test_allocations | test_partition) continue ;; esac
     [ -x "$test" ] || continue
     HOLONOMIC_TESTS_QUICK=1 run "$test" >"$build/output" 2>&1 ||
         { echo "${test##*/}:"; tail -n 5 "$build/output"; exit 1; }
