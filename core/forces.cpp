@@ -3,6 +3,7 @@
 #include "diagnose.hpp"
 #include "execute.hpp"
 #include "holonomic.h"
+#include "view.hpp"
 
 namespace holonomic {
 
@@ -29,7 +30,9 @@ void write_virial(const Tally &tally, double *virial) {
 
 void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
             double *tension, const AtomArray &g, bool add, double *virial) {
-    const ForcesCall call{r, v, f, g, lambda, tension, add, virial != nullptr, chains.box};
+    ForcesCall call{r, v, f, g, lambda, tension, add, virial != nullptr, chains.box};
+    AtomArray *const inputs[] = {&call.r, &call.v, &call.f};
+    unify_layout(inputs, 3);
     const Tally tally = execute(chains, ForcesWork(call));
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}, {"force", &f}};

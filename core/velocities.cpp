@@ -4,6 +4,7 @@
 #include "execute.hpp"
 #include "forces.hpp"
 #include "holonomic.h"
+#include "view.hpp"
 
 namespace holonomic {
 
@@ -34,7 +35,9 @@ struct VelocitiesWork final : Work {
 }  // namespace
 
 void project_velocities(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda, double *virial) {
-    const VelocitiesCall call{r, v, lambda, virial != nullptr, chains.box};
+    VelocitiesCall call{r, v, lambda, virial != nullptr, chains.box};
+    AtomArray *const inputs[] = {&call.r, &call.v};
+    unify_layout(inputs, 2);
     const Tally tally = execute(chains, VelocitiesWork(call));
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}};

@@ -35,4 +35,10 @@ void check_dimensions(const AtomArray *const *arrays, int n) {
             throw make_error(HOL_ERR_VALUE, "some views have z and some have not");
 }
 
+void unify_layout(AtomArray *const *arrays, int n) {
+    bool packed = true;
+    for (int i = 0; i < n; ++i) packed = packed && (arrays[i]->packed || !arrays[i]->x);
+    for (int i = 0; i < n; ++i) arrays[i]->packed = packed;
+}
+
 }  // namespace holonomic

@@ -16,6 +16,9 @@ AtomArray packed_array(const double *p);
 // As the view says; absent if it is a null pointer. Throws Error with `name` in the message if it makes no sense.
 AtomArray viewed_array(const hol_view *view, const char *name);
 
+// The kernels read arrays in place only if all of a call are packed.
+void unify_layout(AtomArray *const *arrays, int n);
+
 // All views of a call have z, or none has.
 void check_dimensions(const AtomArray *const *arrays, int n);
 

@@ -3,113 +3,14 @@
 namespace holonomic {
 namespace HOL_ISA {
 
-// Interleaved working arrays of a linear solve.
-struct System {
-    vec3 *D, *D_low;
-    vec *t, *L;  // t: right-hand side, then u, then the solution t = 2 lambda
-    vec *pivots;  // 1 / P
-    System(long n, Arena &arena)
-        : D(reinterpret_cast<vec3 *>(arena.vecs(3 * n))), D_low(reinterpret_cast<vec3 *>(arena.vecs(3 * n))),
-          t(arena.vecs(n)), L(arena.vecs(n)), pivots(arena.vecs(n)) {}
-};
-
-template <int terms, bool uniform, bool boxed, bool careful>
-static __attribute__((noinline)) mask solve(const Block &block, const Box &box, const Packed &r, const Packed &v,
-                                            const Packed &f, const System &s) {
-    load_bonds<terms, uniform, boxed, careful>(block, box, r, v, f, s.D, s.D_low, s.t);
-    mask doubt = none();
-    if (careful)
-        forward_careful<uniform>(block, s.D, s.D_low, s.t, s.L, s.pivots);
-    else
-        doubt = forward<uniform, terms == rate>(block, Source{&r, &box}, s.D, s.t, s.L, s.pivots);
-    backward(block.n, s.t, s.L);
-    return finite(s.t[0]) & ~doubt & block.in_use();
-}
-
-template <int terms, bool careful>
-static inline mask solve_any(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
-                             const System &s) {
-    const bool boxed = box.shape != Box::none;
-    if (block.uniform_w)
-        return boxed ? solve<terms, true, true, careful>(block, box, r, v, f, s)
-                     : solve<terms, true, false, careful>(block, box, r, v, f, s);
-    return boxed ? solve<terms, false, true, careful>(block, box, r, v, f, s)
-                 : solve<terms, false, false, careful>(block, box, r, v, f, s);
-}
-
 template <bool careful>
-static inline mask solve_forces(const Block &block, const ForcesCall &call, const Packed &r, const Packed &v,
-                                const Packed &f, const System &s) {
+static inline mask forward_forces(const Block &block, const ForcesCall &call, const Packed &r, const Packed &v,
+                                    const Packed &f, const System &s, mask &calm) {
     if (call.v.x && call.f.x)
-        return solve_any<velocity_squared | force_difference, careful>(block, call.box, r, v, f, s);
-    if (call.f.x) return solve_any<force_difference, careful>(block, call.box, r, v, f, s);
-    if (call.v.x) return solve_any<velocity_squared, careful>(block, call.box, r, v, f, s);
-    return solve_any<none_, careful>(block, call.box, r, v, f, s);
-}
-
-// - sum t d (x) d over the bonds of the lanes in `which`.
-static inline void add_virial(long n, const vec3 *d, const vec *t, mask which, double factor, Tally &tally) {
-    vec s[6] = {};
-    for (long k = 0; k < n; ++k) {
-        const vec3 p = {t[k] * d[k].x, t[k] * d[k].y, t[k] * d[k].z};
-        s[0] = mul_add(p.x, d[k].x, s[0]);
-        s[1] = mul_add(p.x, d[k].y, s[1]);
-        s[2] = mul_add(p.x, d[k].z, s[2]);
-        s[3] = mul_add(p.y, d[k].y, s[3]);
-        s[4] = mul_add(p.y, d[k].z, s[4]);
-        s[5] = mul_add(p.z, d[k].z, s[5]);
-    }
-    for (int c = 0; c < 6; ++c) tally.virial[c] -= factor * sum_lanes(keep(which, s[c]));
-}
-
-// G_i = t_{i+1} d_{i+1} - t_i d_i of the atoms first .. n, where `before` is t d of the bond before atom `first`; times
-// w_i where `weighted`.
-template <bool weighted, bool uniform, Update update>
-static inline void store_pulls_from(const Block &block, long first, vec3 before, const vec3 *d, const vec *t,
-                                    mask which, const Packed &out) {
-    const unsigned chosen = bits(which);
-    const auto pull = [&](long k, const vec3 &after, vec *value) __attribute__((always_inline)) {
-        // A zero is +0, whatever padding stands beside it.
-        vec3 g = {(after.x - before.x) + 0.0, (after.y - before.y) + 0.0, (after.z - before.z) + 0.0};
-        if (weighted) {
-            const vec w = w_at<uniform>(block, k);
-            g = {w * g.x, w * g.y, w * g.z};
-        }
-        value[0] = g.x;
-        value[1] = g.y;
-        value[2] = g.z;
-        before = after;
-    };
-    long k0 = first;
-    if (chosen == (1u << W) - 1)
-        for (; k0 + W <= block.n_min; k0 += W) {
-            vec value[3 * W];
-            for (int a = 0; a < W; ++a) {
-                const long k = k0 + a;
-                pull(k, {t[k] * d[k].x, t[k] * d[k].y, t[k] * d[k].z}, value + 3 * a);
-            }
-            store_chunk<update>(k0, value, out);
-        }
-    for (; k0 <= block.n; k0 += W) {
-        vec value[3 * W] = {};
-        for (int a = 0; a < W; ++a) {
-            const long k = k0 + a;
-            if (k > block.n) break;
-            vec3 after = {};
-            if (k < block.n) after = {t[k] * d[k].x, t[k] * d[k].y, t[k] * d[k].z};
-            pull(k, after, value + 3 * a);
-        }
-        store_ragged<update>(block, k0, value, chosen, out);
-    }
-}
-
-template <bool weighted, bool uniform>
-static inline void store_pulls(const Block &block, const vec3 *d, const vec *t, mask which, Update update,
-                               const Packed &out) {
-    if (update == add_)
-        store_pulls_from<weighted, uniform, add_>(block, 0, vec3{}, d, t, which, out);
-    else
-        store_pulls_from<weighted, uniform, write_>(block, 0, vec3{}, d, t, which, out);
+        return forward_any<velocity_squared | force_difference, careful>(block, call.box, r, v, f, s, calm);
+    if (call.f.x) return forward_any<force_difference, careful>(block, call.box, r, v, f, s, calm);
+    if (call.v.x) return forward_any<velocity_squared, careful>(block, call.box, r, v, f, s, calm);
+    return forward_any<none_, careful>(block, call.box, r, v, f, s, calm);
 }
 
 static inline void note_bad(const Block &block, mask bad, Tally &tally) {
@@ -126,7 +27,7 @@ static inline void note_bad(const Block &block, mask bad, Tally &tally) {
 static inline void open_block(const Unit &unit, int64_t first, Block &block, Lane *lane) {
     const int64_t left = unit.count - first;
     block.lanes = left < W ? static_cast<int>(left) : W;
-    block.roomy = false;
+    block.roomy = block.staged = false;
     block.ahead = 0;
     if (unit.regular) {
         const Lane &head = unit.lanes[0];
@@ -145,7 +46,8 @@ static inline void open_block(const Unit &unit, int64_t first, Block &block, Lan
             lane[i].first_bond = block.first_bond[i] = head.first_bond + c * n;
             lane[i].chain = block.chain[i] = head.chain + c;
         }
-        block.roomy = (left - block.lanes) * (n + 1) >= W && !head.atoms;
+        block.staged = head.atoms != nullptr;
+        block.roomy = (left - block.lanes) * (n + 1) >= W && !block.staged;
         if (unit.large) block.ahead = 3 * W * (n + 1);  // the next unit often goes on where this one ends
         return;
     }
@@ -153,6 +55,7 @@ static inline void open_block(const Unit &unit, int64_t first, Block &block, Lan
     block.n_min = longest_lane + 1;
     for (int i = 0; i < block.lanes; ++i) {
         lane[i] = unit.lanes[first + i];
+        block.staged = block.staged || lane[i].atoms;
         block.len[i] = lane[i].n_bonds;
         block.first_bond[i] = lane[i].first_bond;
         block.chain[i] = lane[i].chain;
@@ -172,14 +75,21 @@ static inline void set_masses(Block &block, const Lane *lane, Arena &arena) {
     set_masses(block, tables, uniform, arena);
 }
 
+HOL_INLINE bool in_place(const AtomArray &array, const Block &block) { return array.packed && !block.staged; }
+
+// The lanes of a block in an array of the caller's or, where that can't be used in place, in staging buffers.
 static inline Packed open(const AtomArray &array, const Block &block, const Lane *lane, Arena &arena, bool read) {
     Packed packed = {};
     if (!array.x) return packed;
-    double *staging = nullptr;
-    for (int i = 0; i < block.lanes; ++i)
-        if (!in_place(array, lane[i])) staging = arena.next;
-    if (staging) arena.next += W * staged_size(block.n);
-    for (int i = 0; i < block.lanes; ++i) open_lane(array, lane[i], 0, block.len[i], block.n, packed, i, staging, read);
+    const bool direct = in_place(array, block);
+    for (int i = 0; i < block.lanes; ++i) {
+        if (direct) {
+            packed.lane[i] = reinterpret_cast<double *>(array.x) + 3 * lane[i].first_atom;
+        } else {
+            packed.lane[i] = arena.doubles(staged_size(block.n));
+            if (read) stage(array, lane[i], 0, block.len[i], packed.lane[i]);
+        }
+    }
     repeat_first(packed, block.lanes);
     return packed;
 }
@@ -187,55 +97,54 @@ static inline Packed open(const AtomArray &array, const Block &block, const Lane
 // Copies staged lanes back.
 static inline void close(const AtomArray &array, const Block &block, const Lane *lane, mask which, const Packed &packed,
                          bool add) {
-    const unsigned chosen = bits(which);
+    if (in_place(array, block)) return;
+    const unsigned chosen = bits(which & block.in_use());
     for (int i = 0; i < block.lanes; ++i)
-        if ((chosen >> i & 1) && !in_place(array, lane[i])) unstage(array, lane[i], 0, block.len[i], packed.lane[i], add);
+        if (chosen >> i & 1) unstage(array, lane[i], 0, block.len[i], packed.lane[i], add);
 }
 
-static void store_forces(const Block &block, const Lane *lane, const ForcesCall &call, const System &s, mask which,
-                         const Packed &g, Arena arena) {
-    if (call.lambda) store_bonds(block, s.t, 0.5, which, call.lambda);
+// What a call wants of the lanes in `which`, from u.
+static void finish_forces(const Block &block, const ForcesCall &call, const System &s, mask which, const Packed &g,
+                          Update update, Arena arena, Tally &tally) {
+    if (call.lambda) store_bonds(block, s.t, splat(0.5), which, call.lambda);
     if (call.tension) {
         vec *value = arena.vecs(block.n);
         for (long k = 0; k < block.n; ++k) value[k] = s.t[k] * sqrt(dot(s.D[k], s.D[k]));
-        store_bonds(block, value, 1, which, call.tension);
+        store_bonds(block, value, splat(1.0), which, call.tension);
     }
-    if (!call.g.x) return;
-    bool staged = false;
-    for (int i = 0; i < block.lanes; ++i) staged = staged || !in_place(call.g, lane[i]);
-    if (!staged) {
-        store_pulls<false, true>(block, s.D, s.t, which, call.add ? add_ : write_, g);
-        return;
-    }
-    Packed out = g;  // all lanes through staging, so that packed ones among them are added to in the end, too
-    double *staging = arena.doubles(W * staged_size(block.n));
-    for (int i = 0; i < block.lanes; ++i) out.lane[i] = staging + i * staged_size(block.n);
-    store_pulls<false, true>(block, s.D, s.t, which, write_, out);
-    const unsigned chosen = bits(which);
-    for (int i = 0; i < block.lanes; ++i)
-        if (chosen >> i & 1) unstage(call.g, lane[i], 0, block.len[i], out.lane[i], call.add);
+    if (call.g.x) store_pulls<false, true>(block, s.D, s.t, which, update, g);
+    if (call.virial) add_virial(block.n, s.D, s.t, which, splat(1.0), tally);
 }
 
 static void forces_block(const Block &block, const Lane *lane, const ForcesCall &call, Arena arena, Tally &tally) {
     const Packed r = open(call.r, block, lane, arena, true), v = open(call.v, block, lane, arena, true);
-    const Packed f = open(call.f, block, lane, arena, true);
-    Packed g;
-    if (call.g.x)
-        for (int i = 0; i < block.lanes; ++i)
-            if (in_place(call.g, lane[i]))
-                g.lane[i] = reinterpret_cast<double *>(call.g.x) + 3 * lane[i].first_atom;
+    const Packed f = open(call.f, block, lane, arena, true), g = open(call.g, block, lane, arena, false);
+    const Update update = call.add && in_place(call.g, block) ? add_ : write_;  // else unstage() adds
     const System s(block.n, arena);
-    mask good = solve_forces<false>(block, call, r, v, f, s);
-    store_forces(block, lane, call, s, good, g, arena);
-    if (call.virial) add_virial(block.n, s.D, s.t, good, 1, tally);
+    mask calm, good = forward_forces<false>(block, call, r, v, f, s, calm);
+    const bool plain = block.lanes == W && !any(~(good & calm));
+    if (__builtin_expect(plain && !call.tension && !call.virial, 1)) {
+        if (update == add_)
+            substitute_and_store<false, true, add_>(block, s, g, call.lambda, splat(0.5));
+        else
+            substitute_and_store<false, true, write_>(block, s, g, call.lambda, splat(0.5));
+    } else {
+        backward(0, block.n, s.t, s.L);
+        good = good & finite(s.t[0]) & block.in_use();
+        finish_forces(block, call, s, good, g, update, arena, tally);
+    }
     mask rest = block.in_use() & ~good;
-    if (__builtin_expect(!any(rest), 1)) return;
-    // The lanes that plain arithmetic can't answer for, once more with compensated products.
-    good = solve_forces<true>(block, call, r, v, f, s) & rest;
-    store_forces(block, lane, call, s, good, g, arena);
-    if (call.virial) add_virial(block.n, s.D, s.t, good, 1, tally);
-    rest = rest & ~good;
-    if (any(rest)) note_bad(block, rest, tally);
+    if (__builtin_expect(any(rest), 0)) {
+        // The lanes that plain arithmetic can't answer for, once more with compensated products.
+        forward_forces<true>(block, call, r, v, f, s, calm);
+        backward(0, block.n, s.t, s.L);
+        const mask mended = finite(s.t[0]) & rest;
+        finish_forces(block, call, s, mended, g, update, arena, tally);
+        good = good | mended;
+        rest = rest & ~mended;
+        if (any(rest)) note_bad(block, rest, tally);
+    }
+    if (call.g.x) close(call.g, block, lane, good, g, call.add);
 }
 
 // A faster path for small molecules: returns the first one that it has left (molecules.inl). Most calls have none.

@@ -4,7 +4,11 @@
 #include "lanes.hpp"
 
 #include "block.inl"
+#include "load.inl"
+#include "store.inl"
 #include "recursion.inl"
+#include "solve.inl"
+#include "pulls.inl"
 #include "forces.inl"
 #include "velocities.inl"
 #include "newton.inl"

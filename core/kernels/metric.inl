@@ -55,7 +55,7 @@ static inline void measure(const Block &block, const Geometry &x) {
             const vec size = abs(c);
             vec complement = select(less(size, splat(0.5)), 1.0 - size, dot(normal, normal) / (1.0 + size));
             if (k >= block.n_min) {
-                const mask m = joint(block, k - 1);
+                const mask m = joint(block, k);
                 c = keep(m, c);
                 normal = {keep(m, normal.x), keep(m, normal.y), keep(m, normal.z)};
                 complement = select(m, complement, splat(1.0));
@@ -145,7 +145,7 @@ static inline MetricSums eliminate_metric(const Block &block, const Geometry &x,
             const vec inverse = splat(1.0) / M;
             det.multiply(select(counted, P * inverse, splat(1.0)), keep(counted, removed * inverse));
             if (call.log_det_z)
-                det_z.multiply(select(counted, 4.0 * M * x.square[k], splat(1.0)),
+                det_z.multiply(select(counted, 4.0 * (block.unit * M) * x.square[k], splat(1.0)),
                                select(counted, x.scale[k], splat(1.0)));
         }
         if (k + 1 == block.n) break;
@@ -204,15 +204,9 @@ static __attribute__((noinline)) void metric_of_block(const Block &block, const 
             f = next_deficit(x, k, f);
         }
         turn(x, 0, call.kT);
-        System pulls(0, arena);
-        pulls.D = x.u;
-        pulls.t = x.t;
-        Packed out = {};
-        for (int i = 0; i < block.lanes; ++i)
-            if (in_place(call.force, lane[i]))
-                out.lane[i] = reinterpret_cast<double *>(call.force.x) + 3 * lane[i].first_atom;
-        const ForcesCall as_forces = {{}, {}, {}, call.force, nullptr, nullptr, call.add, false, call.box};
-        store_forces(block, lane, as_forces, pulls, good, out, arena);
+        const Packed out = open(call.force, block, lane, arena, false);
+        store_pulls<false, true>(block, x.u, x.t, good, call.add && in_place(call.force, block) ? add_ : write_, out);
+        close(call.force, block, lane, good, out, call.add);
     }
     for (int i = 0; i < block.lanes; ++i) {
         if (!(which >> i & 1)) continue;

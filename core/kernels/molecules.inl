@@ -33,7 +33,7 @@ HOL_INLINE void store_molecules(const Block &block, const vec3 *D, const vec *t,
         vec3 after = {};
         if (k < N) after = {t[k] * D[k].x, t[k] * D[k].y, t[k] * D[k].z};
         const vec w = weighted ? w_at<uniform>(block, k) : splat(1.0);
-        const vec3 g = {(after.x - before.x) + 0.0, (after.y - before.y) + 0.0, (after.z - before.z) + 0.0};
+        const vec3 g = {after.x - before.x, after.y - before.y, after.z - before.z};
         value[3 * k] = weighted ? w * g.x : g.x;
         value[3 * k + 1] = weighted ? w * g.y : g.y;
         value[3 * k + 2] = weighted ? w * g.z : g.z;
@@ -54,9 +54,9 @@ HOL_INLINE void store_molecules(const Block &block, const vec3 *D, const vec *t,
 }
 
 template <int N>
-HOL_INLINE void store_multipliers(const vec *t, double *out) {
+HOL_INLINE void store_multipliers(const vec *t, vec factor, double *out) {
     for (int k = 0; k < N; ++k) {
-        const vec lambda = 0.5 * t[k] + 0.0;
+        const vec lambda = factor * t[k];
         for (int i = 0; i < W; ++i) out[N * i + k] = lambda[i];
     }
 }
@@ -79,21 +79,23 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
     for (; molecules_left(unit, first); first += W) {
         constexpr int padded = (N + W - 1) / W * W;
         vec3 D[padded];
-        vec t[padded], L[N];
+        vec t[padded], L[N + 1];
         const int64_t at = 3 * (N + 1) * first;
         load_molecules<N, terms, uniform>(block, r + at, v ? v + at : v, f ? f + at : f, D, t);
         Packed from;
         for (int i = 0; i < W; ++i) from.lane[i] = const_cast<double *>(r) + at + 3 * (N + 1) * i;
-        const mask doubt = forward<uniform, false, N>(block, Source{&from, &call.box}, D, t, L);
-        backward(N, t, L);
-        if (__builtin_expect(any(doubt | ~finite(t[0])), 0)) break;
+        const Source source = {&from, &call.box};
+        Sweep<uniform, false> sweep{block, source, System(D, t, L, nullptr)};
+        for (int k = 0; k < N; ++k) sweep.step(k, t[k], k % 4 == 0, false);
+        if (__builtin_expect(any(sweep.doubt() | ~sweep.calm()), 0)) break;
+        backward(0, N, t, L);
         if (g) {
             if (call.add)
                 store_molecules<N, false, true, add_>(block, D, t, g + at);
             else
                 store_molecules<N, false, true, write_>(block, D, t, g + at);
         }
-        if (call.lambda) store_multipliers<N>(t, call.lambda + head.first_bond + N * first);
+        if (call.lambda) store_multipliers<N>(t, splat(0.5), call.lambda + head.first_bond + N * first);
     }
     return first;
 }
@@ -107,22 +109,26 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
     for (; molecules_left(unit, first); first += W) {
         constexpr int padded = (N + W - 1) / W * W;
         vec3 D[padded];
-        vec t[padded], L[N], pivots[N];
+        vec t[padded], L[N + 1], pivots[N];
         const int64_t at = 3 * (N + 1) * first;
         load_molecules<N, rate, uniform>(block, r + at, v + at, nullptr, D, t);
         Packed from;
         for (int i = 0; i < W; ++i) from.lane[i] = const_cast<double *>(r) + at + 3 * (N + 1) * i;
-        const mask doubt = forward<uniform, true, N>(block, Source{&from, &call.box}, D, t, L, pivots);
-        backward(N, t, L);
-        if (__builtin_expect(any(doubt | ~finite(t[0])), 0)) break;
-        if (call.lambda) store_multipliers<N>(t, call.lambda + head.first_bond + N * first);
+        const Source source = {&from, &call.box};
+        const System s(D, t, L, pivots);
+        Sweep<uniform, true> sweep{block, source, s};
+        for (int k = 0; k < N; ++k) sweep.step(k, t[k], k % 4 == 0, false);
+        if (__builtin_expect(any(sweep.doubt() | ~sweep.calm()), 0)) break;
+        backward(0, N, t, L);
+        if (call.lambda) store_multipliers<N>(t, 0.5 * block.mass, call.lambda + head.first_bond + N * first);
         store_molecules<N, true, uniform, add_>(block, D, t, v + at);
         for (long k0 = 0; k0 < N; k0 += W) {  // as in store_velocities
             const double *pv[W];
             for (int i = 0; i < W; ++i) pv[i] = v + at + 3 * (N + 1) * i + 3 * k0;
             rate_chunk(pv, D + k0, t + k0);
         }
-        substitute(N, t, pivots, L);
+        substitute(N, s);
+        backward(0, N, t, L);
         store_molecules<N, true, uniform, add_>(block, D, t, v + at);
     }
     return first;

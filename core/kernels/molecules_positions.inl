@@ -26,8 +26,6 @@ private:
 template <int N, bool uniform>
 HOL_INLINE void set_molecule(const Block &block, const Lane &head, Newton &x, vec *w, vec *a2) {
     const bool one_mass = block.uniform_w;
-    x.movable = one_mass ? less(vec{}, block.w_uniform) : ~none();
-    x.unit = select(x.movable, one_mass ? block.w_uniform : splat(1.0), splat(1.0));
     x.a_min = x.a_max = splat(head.length_uniform);
     if (head.length) {
         double least = head.length[0], most = head.length[0];
@@ -150,7 +148,7 @@ static __attribute__((noinline)) int64_t positions_of_molecules(const MoleculesC
         note_molecules<N, uniform>(m, x, out.error, first, tally);
         move_molecules<N, uniform>(x, m.r + at, m.v ? m.v + at : nullptr, m.per_dt);
         if (m.lambda) {
-            const vec factor = splat(0.5 / (m.call.dt * m.call.dt)) / x.unit;
+            const vec factor = splat(0.5 / (m.call.dt * m.call.dt)) / m.block.unit;
             for (int k = 0; k < N; ++k) {
                 const vec value = mul_add(x.tau[k], factor, vec{});
                 if (N == 1) store(m.lambda + first, value);

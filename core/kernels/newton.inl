@@ -26,9 +26,7 @@ struct Newton {
     vec *tau;         // [n+1], times `unit`
     vec *correction;  // [n+1], the last one
     vec *step;        // what D has not been moved by yet: tau, or the last correction
-    const vec *w;     // [n+1] inverse masses over `unit`; nullptr: 1
-    vec unit;
-    mask movable;     // not all atoms held fixed alike
+    const vec *w;     // [n+1] inverse masses, those of the block; not if all are 1
     const vec *a2;    // nullptr: a2_uniform
     vec a2_uniform, a_min, a_max;
     Newton(long n, Arena &arena)
@@ -153,7 +151,7 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
         vec lower = dot(d1, x.b[k]), upper = dot(b1, d);
         vec X = careful ? dot(cross(d, d1), cross(x.b[k], b1)) : mul_add(q, q1, -(lower * upper));
         if (ragged) {
-            const mask m = joint(block, k);
+            const mask m = joint(block, k + 1);
             lower = keep(m, lower);
             upper = keep(m, upper);
             X = keep(m, X);
@@ -309,7 +307,7 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
     x.step = careful ? x.correction : x.tau;
     vec error = eliminate<uniform_w, uniform_a, careful ? careful_factors : first_factors, fixed>(block, x, wanted);
     out.untouched = wanted & carried.within(error);
-    mask active = wanted & x.movable & ~out.untouched & finite(error);
+    mask active = wanted & block.movable & ~out.untouched & finite(error);
     if (guess) {
         for (long k = 0; k < block.n; ++k) x.tau[k] = keep(active, x.tau[k]);
         const vec before = error;
@@ -365,7 +363,7 @@ HOL_INLINE Outcome solve_single_bonds(const Newton &x, Carried &carried, mask wa
     const vec root = sqrt(mul_add(db, db, -(dot(b, b) * sigma)));  // NaN where the length can't be reached
     const vec s = sigma / (db + select(less(db, vec{}), -root, root)), error = abs(sigma) / a2;
     out.untouched = wanted & carried.within(error);
-    out.converged = wanted & ~out.untouched & finite(s / w) & x.movable & less(vec{}, w);
+    out.converged = wanted & ~out.untouched & finite(s / w) & less(vec{}, w);
     const vec step = keep(out.converged, s);
     const vec3 moved = {mul_add(-step, b.x, d.x), mul_add(-step, b.y, d.y), mul_add(-step, b.z, d.z)};
     const vec left = mul_add(moved.z, moved.z, mul_add(moved.y, moved.y, mul_add(moved.x, moved.x, -a2)));

@@ -3,19 +3,6 @@
 namespace holonomic {
 namespace HOL_ISA {
 
-// Inverse masses over that of the lane where it has only one, which is then exactly 1 whatever shares the block.
-static inline void set_masses(const Block &block, Newton &x, Arena &arena) {
-    mask same;
-    for (int i = 0; i < W; ++i) same[i] = block.uniform_w || block.lane_uniform[i] ? -1 : 0;
-    x.w = block.w;
-    x.movable = ~same | less(vec{}, block.w_uniform);
-    x.unit = select(same & x.movable, block.w_uniform, splat(1.0));
-    if (!any(same) || block.uniform_w) return;
-    vec *w = arena.vecs(block.n + 1);
-    for (long k = 0; k <= block.n; ++k) w[k] = select(same, splat(1.0), block.w[k]);
-    x.w = w;
-}
-
 static inline void set_lengths(const Block &block, const Lane *lane, Newton &x, Arena &arena) {
     bool uniform = block.n == block.n_min;
     vec a_min, a_max;
@@ -90,7 +77,7 @@ static inline void load_bond_vectors(const Block &block, const Box &box, const P
 }
 
 static inline void load_guess(const Block &block, const PositionsCall &call, const Newton &x) {
-    const vec factor = (2 * call.dt * call.dt) * x.unit;
+    const vec factor = (2 * call.dt * call.dt) * block.unit;
     for (int i = 0; i < W; ++i) {
         const int lane = i < block.lanes ? i : 0;
         for (long k = 0; k < block.n; ++k)
@@ -204,7 +191,7 @@ static inline void add_virial(const Block &block, const Newton &x, mask which, d
         const vec term[6] = {p.x * b.x, p.x * b.y, p.x * b.z, p.y * b.y, p.y * b.z, p.z * b.z};
         for (int c = 0; c < 6; ++c) s[c] = s[c] + term[c];
     }
-    const vec factor = splat(1 / (dt * dt)) / x.unit;
+    const vec factor = splat(1 / (dt * dt)) / block.unit;
     for (int c = 0; c < 6; ++c) tally.virial[c] -= sum_lanes(keep(which & block.in_use(), s[c] * factor));
 }
 
@@ -259,7 +246,7 @@ struct Positions {
     Positions(const Block &b, const Lane *l, const PositionsCall &c, Arena a, Tally &t)
         : block(b), lane(l), call(c), arena(a), tally(t), r_ref(open(c.r_ref, b, l, arena, true)),
           r(open(c.r, b, l, arena, true)), v(open(c.v, b, l, arena, true)), x(b.n, arena) {
-        set_masses(block, x, arena);
+        x.w = block.w;
         set_lengths(block, lane, x, arena);
     }
 
@@ -324,7 +311,7 @@ struct Positions {
             if (call.virial) add_virial(block, x, out.converged, call.dt, tally);
         }
         if (call.lambda) {
-            store_multipliers(block, x, splat(0.5 / (call.dt * call.dt)) / x.unit, out.converged | out.untouched, call.lambda);
+            store_multipliers(block, x, splat(0.5 / (call.dt * call.dt)) / block.unit, out.converged | out.untouched, call.lambda);
         }
         tally.n_corrected += __builtin_popcount(bits(out.converged));
         if (out.solves > tally.iterations) tally.iterations = out.solves;

@@ -3,20 +3,33 @@
 //   E_1 = w_0 q_1,  P_k = E_k + w_k q_k,  E_{k+1} = w_k (q_{k+1} E_k + w_k X_{k+1}) / P_k,  l_{k+1} = w_k g_{k+1} / P_k
 //   y_1 = b_1,  y_{k+1} = b_{k+1} + l_{k+1} y_k,  t_N = y_N / P_N,  t_k = y_k / P_k + l_{k+1} t_{k+1}
 //
-// Here bond k = 0 .. n-1 lies between atoms k and k+1; L[k] is the multiplier of the joint at atom k+1.
+// Here bond k = 0 .. n-1 lies between atoms k and k+1; joint k is the one between bonds k-1 and k, at atom k, and L[k] its
+// multiplier. Inverse masses are in the lane's unit; with equal ones, t is unit * 2 lambda for a right-hand side as it
+// is, and 2 lambda for one that has been divided by the unit.
 
 namespace holonomic {
 namespace HOL_ISA {
 
+// Inverse mass of atom k in the lane's unit.
 template <bool uniform>
 HOL_INLINE vec w_at(const Block &block, long k) {
-    return uniform ? block.w_uniform : block.w[k];
+    return uniform ? splat(1.0) : block.w[k];
 }
 
-// Whether the joint between bonds k and k+1 is one, in each lane.
-HOL_INLINE mask joint(const Block &block, long k) {
-    return less(splat(static_cast<double>(k + 1)), block.lengths());
-}
+// Whether bonds k-1 and k are both there, in each lane.
+HOL_INLINE mask joint(const Block &block, long k) { return less(splat(static_cast<double>(k)), block.lengths()); }
+
+// Interleaved working arrays of a linear solve.
+struct System {
+    vec3 *D, *D_low;
+    vec *t, *L;   // t: right-hand side, then u = y / P, then the solution; L[0 .. n]: L[0] and L[n] are of no joint
+    vec *pivots;  // 1 / P
+    System(long n, Arena &arena)
+        : D(reinterpret_cast<vec3 *>(arena.vecs(3 * n))), D_low(reinterpret_cast<vec3 *>(arena.vecs(3 * n))),
+          t(arena.vecs(n)), L(arena.vecs(n + 1)), pivots(arena.vecs(n)) {}
+    System(vec3 *bonds, vec *values, vec *multipliers, vec *reciprocals)
+        : D(bonds), D_low(nullptr), t(values), L(multipliers), pivots(reciprocals) {}
+};
 
 // X = |d x d'|^2 of two nearly parallel bonds has a relative error of about 2 eps |d| |d'| / sqrt X from the rounding
 // of d, d' and of the cross product. It enters E' = w (q' E + w X) / P, so what E' gets of it is harmless where
@@ -24,13 +37,13 @@ HOL_INLINE mask joint(const Block &block, long k) {
 // and this holds for every X if E >= w q / (4 c^2): the cheap test that ordinary chains pass (docs/performance.md).
 constexpr double joint_tolerance = 8;
 
-// Exact form of the test, for the joint k of a block whose pivots are rebuilt from E.
+// Exact form of the test, for the joints first .. end-1; E is that of bond first-1.
 template <bool uniform>
-static __attribute__((noinline)) mask doubtful_joints(const Block &block, const vec3 *D, long k0, long n, vec E) {
+static __attribute__((noinline)) mask doubtful_joints(const Block &block, const vec3 *D, long first, long end, vec E) {
     mask doubt = none();
-    for (long k = k0; k < n && k + 1 < block.n; ++k) {
-        const vec w = w_at<uniform>(block, k + 1), q = dot(D[k], D[k]), q1 = dot(D[k + 1], D[k + 1]);
-        const vec3 c = cross(D[k], D[k + 1]);
+    for (long k = first; k < end && k < block.n; ++k) {
+        const vec w = w_at<uniform>(block, k), q = dot(D[k - 1], D[k - 1]), q1 = dot(D[k], D[k]);
+        const vec3 c = cross(D[k - 1], D[k]);
         const vec X = dot(c, c), qq = q * q1, S = mul_add(q1, E, w * X);
         const double eps2 = 4.9e-32;  // (2^-52)^2: an X that vanished by rounding
         const vec left = (w * w) * ((X + eps2 * qq) * qq), right = (joint_tolerance * joint_tolerance) * (S * S);
@@ -56,12 +69,12 @@ HOL_INLINE mask nearly_orthogonal(vec g, vec X) {
     return less(scaled * scaled, X);  // X = q q' (1 - cos^2)
 }
 
-// The lanes in `which` of g, for the joint of bonds k and k+1, with compensated products of unrounded differences.
+// The lanes in `which` of g, for joint k, with compensated products of unrounded differences.
 static __attribute__((noinline)) vec exact_dots(const Source &source, long k, mask which, vec g) {
     const unsigned chosen = bits(which);
     for (int i = 0; i < W; ++i) {
         if (!(chosen >> i & 1)) continue;
-        const double *r = source.r->lane[i] + 3 * k;
+        const double *r = source.r->lane[i] + 3 * (k - 1);
         Vector3<double> d[2], low[2];
         for (int b = 0; b < 2; ++b, r += 3) {
             const Pair<double> x = two_difference(r[3], r[0]), y = two_difference(r[4], r[1]),
@@ -75,109 +88,111 @@ static __attribute__((noinline)) vec exact_dots(const Source &source, long k, ma
     return g;
 }
 
-// Plain forward sweep: B becomes u = y / P, L the multipliers. Four bonds at a time E is carried as a fraction A / F,
-// which takes the divisions out of the chain of dependences. Returns the lanes that need careful arithmetic.
-template <bool uniform, bool keep_pivots = false, int fixed = 0>
-static inline mask forward(const Block &block, const Source &source, const vec3 *D, vec *B, vec *L,
-                           vec *pivots = nullptr) {
-    const long n = fixed > 0 ? fixed : block.n, n_min = fixed > 0 ? fixed : block.n_min;  // known to the compiler?
-    const double least = 4 * joint_tolerance * joint_tolerance + 1;
-    mask doubt = none();
-    vec3 d = D[0];
-    vec q = dot(d, d), E = w_at<uniform>(block, 0) * q, y = B[0];
-    for (long k0 = 0; k0 < n; k0 += 4) {
-        vec A = E, F = splat(1.0), rF = {}, slack = {};
-        const bool full = k0 + 4 < n && k0 + 4 < n_min;
-        const auto bond = [&](long k, bool has_joint, bool ragged) __attribute__((always_inline)) {
-            const vec w = w_at<uniform>(block, k + 1);
-            const vec F1 = mul_add(w * q, F, A);
-            rF = splat(1.0) / F1;
-            const vec rP = F * rF;
-            B[k] = y * rP;
-            if (keep_pivots) pivots[k] = rP;
-            if (!has_joint) return;
-            const vec3 d1 = D[k + 1];
-            const vec q1 = dot(d1, d1);
-            const vec3 c = cross(d, d1);
-            vec g = dot(d, d1), X = dot(c, c), s = mul_add(splat(least), A, -F1);
-            if (ragged) {
-                const mask m = joint(block, k);
-                g = keep(m, g);
-                X = keep(m, X);
-                s = keep(m, s);
-            }
-            const mask orthogonal = nearly_orthogonal(g, X);
-            if (__builtin_expect(any(orthogonal), 0)) g = exact_dots(source, k, orthogonal, g);
-            const vec l = (w * g) * rP;
-            L[k] = l;
-            y = mul_add(l, y, B[k + 1]);
-            A = mul_add((w * w) * X, F, (w * q1) * A);
-            F = F1;
-            slack = min(slack, s);
-            q = q1;
-            d = d1;
-        };
-        const vec E0 = E;
-        if (__builtin_expect(full, 1)) {
-            bond(k0, true, false);
-            bond(k0 + 1, true, false);
-            bond(k0 + 2, true, false);
-            bond(k0 + 3, true, false);
-        } else {
-            for (long k = k0; k < k0 + 4 && k < n; ++k) bond(k, k + 1 < n, k + 1 >= n_min);
-        }
-        E = A * rF;
-        const mask short_of = less(slack, vec{});
-        if (__builtin_expect(any(short_of), 0))
-            doubt = doubt | (doubtful_joints<uniform>(block, D, k0, k0 + 4, E0) & short_of);
-    }
-    return doubt;
-}
+// Plain forward sweep, a bond at a time: turns right-hand sides into u = y / P and keeps the multipliers. Within four
+// bonds E is carried as a fraction A / F, which takes the divisions out of the chain of dependences.
+template <bool uniform, bool keep_pivots>
+struct Sweep {
+    const Block &block;
+    const Source &source;
+    const System s;
+    vec3 d = {};                                   // the bond before
+    vec A = splat(1.0), F = {}, F1 = {}, rF = splat(1.0);  // E = A / F and P = F1 / F of the bond before
+    vec rP = {}, y = {};
+    vec slack = {};                                // negative where the cheap test failed
+    vec size = {}, shortest = splat(1e300), longest = {};  // sum of u^2; extremes of q
 
-// The same with bond vectors D + D_low and compensated products, a division per bond: right for any chain.
-template <bool uniform>
-static __attribute__((noinline)) void forward_careful(const Block &block, const vec3 *D, const vec3 *D_low, vec *B,
-                                                      vec *L, vec *pivots) {
-    const long n = block.n;
-    vec q = dot(D[0], D[0]), E = w_at<uniform>(block, 0) * q, y = B[0];
-    for (long k = 0; k < n; ++k) {
-        const vec w = w_at<uniform>(block, k + 1), P = mul_add(w, q, E);
-        B[k] = y / P;
-        pivots[k] = splat(1.0) / P;
-        if (k + 1 == n) break;
-        const vec3 c = cross_compensated(D[k], D_low[k], D[k + 1], D_low[k + 1]);
-        vec g = dot_compensated(D[k], D_low[k], D[k + 1], D_low[k + 1]), X = dot(c, c);
-        if (k + 1 >= block.n_min) {
+    inline __attribute__((always_inline)) void step(long k, vec b, bool starts_group, bool ragged) {
+        const vec w = w_at<uniform>(block, k), w1 = w_at<uniform>(block, k + 1);
+        const vec3 d1 = s.D[k], c = cross(d, d1);
+        const vec q = dot(d1, d1);
+        vec g = dot(d, d1), X = dot(c, c);
+        vec spare = mul_add(splat(4 * joint_tolerance * joint_tolerance + 1), A, -F1);
+        if (ragged) {
             const mask m = joint(block, k);
             g = keep(m, g);
             X = keep(m, X);
+            spare = keep(m, spare);
         }
-        const vec q1 = dot(D[k + 1], D[k + 1]), wP = w / P;
-        L[k] = wP * g;
-        y = mul_add(L[k], y, B[k + 1]);
+        const mask orthogonal = nearly_orthogonal(g, X);
+        if (__builtin_expect(any(orthogonal), 0)) g = exact_dots(source, k, orthogonal, g);
+        const vec l = (w * g) * rP;
+        s.L[k] = l;
+        y = mul_add(l, y, b);
+        A = mul_add((w * w) * X, F, (w * q) * A);
+        F = F1;
+        if (starts_group) {
+            A = A * rF;
+            F = splat(1.0);
+        }
+        F1 = starts_group ? w1 * q + A : mul_add(w1 * q, F, A);
+        rF = splat(1.0) / F1;
+        rP = starts_group ? rF : F * rF;
+        const vec u = y * rP;
+        s.t[k] = u;
+        if (keep_pivots) s.pivots[k] = rP;
+        slack = min(slack, spare);
+        size = mul_add(u, u, size);
+        shortest = min(shortest, q);
+        longest = max(longest, q);
+        d = d1;
+    }
+
+    // Lanes in which the backward sweep can't overflow: |t_k| |d_k| <= sum_j |u_j| |d_j|, because |l_k| |d_{k-1}| <= |d_k|.
+    mask calm() const {
+        return less(size, splat(1e200)) & less(splat(1e-100), shortest) & less(longest, splat(1e100));
+    }
+    // Lanes that need careful arithmetic.
+    mask doubt() const {
+        const mask failed = less(slack, vec{});
+        if (__builtin_expect(!any(failed), 1)) return none();
+        return doubtful_joints<uniform>(block, s.D, 1, block.n, w_at<uniform>(block, 0) * dot(s.D[0], s.D[0])) & failed;
+    }
+};
+
+// The same with bond vectors D + D_low and compensated products, a division per bond: right for any chain.
+template <bool uniform>
+static __attribute__((noinline)) void forward_careful(const Block &block, const System &s) {
+    const long n = block.n;
+    vec q = dot(s.D[0], s.D[0]), E = w_at<uniform>(block, 0) * q, y = s.t[0];
+    for (long k = 0; k < n; ++k) {
+        const vec w = w_at<uniform>(block, k + 1), P = mul_add(w, q, E);
+        s.t[k] = y / P;
+        s.pivots[k] = splat(1.0) / P;
+        if (k + 1 == n) break;
+        const vec3 c = cross_compensated(s.D[k], s.D_low[k], s.D[k + 1], s.D_low[k + 1]);
+        vec g = dot_compensated(s.D[k], s.D_low[k], s.D[k + 1], s.D_low[k + 1]), X = dot(c, c);
+        if (k + 1 >= block.n_min) {
+            const mask m = joint(block, k + 1);
+            g = keep(m, g);
+            X = keep(m, X);
+        }
+        const vec q1 = dot(s.D[k + 1], s.D[k + 1]), wP = w / P;
+        s.L[k + 1] = wP * g;
+        y = mul_add(s.L[k + 1], y, s.t[k + 1]);
         E = wP * mul_add(w, X, q1 * E);
         q = q1;
     }
 }
 
-// Backward sweep: u becomes t = 2 lambda.
-HOL_INLINE void backward(long n, vec *u, const vec *L) {
-    vec t = u[n - 1];
-    for (long k = n - 2; k >= 0; --k) {
-        t = mul_add(L[k], t, u[k]);
+// Backward sweep over the bonds from .. n-1: u becomes t. The last one is added to zero as all others are to something,
+// so that a chain's zeros have the same sign whether or not inert bonds follow it.
+HOL_INLINE void backward(long from, long n, vec *u, const vec *L) {
+    vec t = u[n - 1] + 0.0;
+    u[n - 1] = t;
+    for (long k = n - 2; k >= from; --k) {
+        t = mul_add(L[k + 1], t, u[k]);
         u[k] = t;
     }
 }
 
-// Both sweeps for another right-hand side, with 1 / P and L of an elimination that has been done.
-HOL_INLINE void substitute(long n, vec *b, const vec *pivots, const vec *L) {
-    vec y = b[0];
-    b[0] = y * pivots[0];
+// The forward sweep for another right-hand side, with 1 / P and L of an elimination that has been done.
+HOL_INLINE void substitute(long n, const System &s) {
+    vec y = s.t[0];
+    s.t[0] = y * s.pivots[0];
     for (long k = 1; k < n; ++k) {
-        y = mul_add(L[k - 1], y, b[k]);
-        b[k] = y * pivots[k];
+        y = mul_add(s.L[k], y, s.t[k]);
+        s.t[k] = y * s.pivots[k];
     }
-    backward(n, b, L);
 }
 
 }  // namespace HOL_ISA

@@ -137,7 +137,7 @@ static __attribute__((noinline)) void eliminate(const SegmentBlock &s, const Sou
         X = dot(cr, cr);
         g = dot(D[0], D[1]);
         const mask orthogonal = nearly_orthogonal(g, X);
-        if (any(orthogonal)) g = exact_dots(source, 0, orthogonal, g);
+        if (any(orthogonal)) g = exact_dots(source, 1, orthogonal, g);
     }
     vec E = w * q, a = (w * w) * X, c = w * dot(D[0], D[0]);
     vec f = w * g, T = {}, y = x.t[1], slack = {}, E0 = E;
@@ -167,14 +167,14 @@ static __attribute__((noinline)) void eliminate(const SegmentBlock &s, const Sou
                 step = mul_add(splat(least), E, -wq);
             }
             if (__builtin_expect(k + 1 >= block.n_min, 0)) {
-                const mask m = joint(block, k);
+                const mask m = joint(block, k + 1);
                 X = keep(m, X);
                 g = keep(m, g);
                 step = keep(m, step);
             }
             if (!careful) {
                 const mask orthogonal = nearly_orthogonal(g, X);
-                if (__builtin_expect(any(orthogonal), 0)) g = exact_dots(source, k, orthogonal, g);
+                if (__builtin_expect(any(orthogonal), 0)) g = exact_dots(source, k + 1, orthogonal, g);
             }
             const vec l = (w * g) * rP, lE = (w * q1) * rP, lX = (w * (w * X)) * rP;
             x.L[k] = l;
@@ -201,7 +201,7 @@ static __attribute__((noinline)) void eliminate(const SegmentBlock &s, const Sou
         if (!careful && ((k & 3) == 0 || k + 1 == s.own_max)) {
             const mask short_of = less(slack, vec{});
             if (__builtin_expect(any(short_of), 0)) {
-                sum.doubt = sum.doubt | (doubtful_joints<uniform>(block, D, chunk, k + 1, E0) & short_of);
+                sum.doubt = sum.doubt | (doubtful_joints<uniform>(block, D, chunk + 1, k + 2, E0) & short_of);
                 slack = vec{};
             }
             E0 = E;
@@ -276,7 +276,7 @@ static void long_velocities_eliminate(const VelocitiesCall &call, const Lane &la
 static JoinResult long_join(const Lane &lane, bool careful, double *store) {
     const double join_tolerance = 8;
     const Cut cut(lane.n_bonds);
-    const double w0 = lane.w ? lane.w[0] : lane.w_uniform;
+    const double w0 = relative_w(lane, 0);
     double E = 0, y = 0;
     for (int64_t j = 0; j < cut.blocks; ++j) {
         const Segments x(store, cut.longest(), j);

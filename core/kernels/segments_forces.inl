@@ -68,7 +68,7 @@ static inline void add_segment_virial(const SegmentBlock &s, const Segments &x, 
             own[i][0] = x.t[s.own[i]][i];
             x.t[s.own[i]][i] = 0;
         }
-    add_virial(s.own_max < s.block.n ? s.own_max + 1 : s.block.n, x.D, x.t, first_lanes(W), 1, part);
+    add_virial(s.own_max < s.block.n ? s.own_max + 1 : s.block.n, x.D, x.t, first_lanes(W), splat(1.0), part);
     for (int i = 0; i < W; ++i)
         if (s.own[i] < s.block.n) x.t[s.own[i]][i] = own[i][0];
     for (int c = 0; c < 6; ++c) tally.virial[c] += part.virial[c];
@@ -82,11 +82,11 @@ static void long_forces_finish(const ForcesCall &call, const Lane &lane, int64_t
     Arena arena = {scratch};
     substitute_block(cut, s, j, x, store);
     const Block own = own_block(s);
-    if (call.lambda) store_bonds(own, x.t, 0.5, first_lanes(W), call.lambda);
+    if (call.lambda) store_bonds(own, x.t, splat(0.5), first_lanes(W), call.lambda);
     if (call.tension) {
         vec *value = arena.vecs(s.own_max);
         for (long k = 0; k < s.own_max; ++k) value[k] = x.t[k] * sqrt(dot(x.D[k], x.D[k]));
-        store_bonds(own, value, 1, first_lanes(W), call.tension);
+        store_bonds(own, value, splat(1.0), first_lanes(W), call.tension);
     }
     if (call.g.x) {
         const bool direct = in_place(call.g, lane);
@@ -112,8 +112,11 @@ static void long_velocities_finish(const VelocitiesCall &call, const Lane &lane,
     else
         store_segment_pulls<true, false>(s, j, x, update, v);
     close_segments(call.v, s, j, lane, v, true);
-    if (call.lambda) store_bonds(own_block(s), x.t, 0.5, first_lanes(W), call.lambda);
-    if (call.virial) add_segment_virial(s, x, tally);
+    if (call.lambda) store_bonds(own_block(s), x.t, 0.5 * s.block.mass, first_lanes(W), call.lambda);
+    if (!call.virial) return;
+    Tally part = {};
+    add_segment_virial(s, x, part);
+    for (int c = 0; c < 6; ++c) tally.virial[c] += part.virial[c] / unit_of(lane);
 }
 
 }  // namespace HOL_ISA

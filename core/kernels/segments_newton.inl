@@ -101,7 +101,7 @@ static void long_positions_load(const PositionsCall &call, const Lane &lane, int
     }
     *x.summary = NewtonSummary{};
     segment_residuals(s, lane, x);
-    const double factor = 2 * call.dt * call.dt;
+    const double factor = 2 * call.dt * call.dt * unit_of(lane);
     const int64_t end = lane.first_bond + lane.n_bonds;
     for (long k = 0; k < s.block.n; ++k)
         for (int i = 0; i < W; ++i) {
@@ -160,7 +160,7 @@ static __attribute__((noinline)) void factorize_segments(const SegmentBlock &s, 
             vec lower = dot(x.D[k + 1], x.b[k]), upper = dot(x.D[k], x.b[k + 1]);
             vec X = dot(cross(x.D[k], x.D[k + 1]), cross(x.b[k], x.b[k + 1]));
             if (k + 1 >= block.n_min) {
-                const mask m = joint(block, k);
+                const mask m = joint(block, k + 1);
                 lower = keep(m, lower);
                 upper = keep(m, upper);
                 X = keep(m, X);
@@ -254,7 +254,7 @@ static void long_positions_solve(const PositionsCall &, const Lane &lane, int64_
 // Solves for the separators; false if that gives no finite numbers.
 static bool long_positions_join(const Lane &lane, bool renew, double *store) {
     const Cut cut(lane.n_bonds);
-    const double w0 = lane.w ? lane.w[0] : lane.w_uniform;
+    const double w0 = relative_w(lane, 0);
     double E = 0, y = 0;
     for (int64_t j = 0; j < cut.blocks; ++j) {
         const NewtonSegments x(store, cut.longest(), j);

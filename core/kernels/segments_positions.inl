@@ -11,8 +11,8 @@ static double long_positions_pull(const Lane &lane, int64_t j, double *store) {
     for (int i = 0; i < W; ++i) {
         const int64_t first = cut.first(j * W + i), n = cut.length(j * W + i);
         for (int64_t k = 0; k < n; ++k) {
-            const double w0 = lane.w ? lane.w[first + k] : lane.w_uniform;
-            const double w1 = lane.w ? lane.w[first + k + 1] : lane.w_uniform;
+            const double w0 = relative_w(lane, first + k);
+            const double w1 = relative_w(lane, first + k + 1);
             const double a = lane.length ? lane.length[first + k] : lane.length_uniform;
             const double pull = (w0 > w1 ? w0 : w1) * abs(x.tau[k][i]) * a;
             largest = pull > largest ? pull : largest;
@@ -61,13 +61,13 @@ static void long_positions_finish(const PositionsCall &call, const Lane &lane, i
         if (call.virial) {
             Tally part = {};
             add_segment_virial(s, Segments{x.b, x.tau}, part);
-            for (int c = 0; c < 6; ++c) tally.virial[c] += part.virial[c] / (call.dt * call.dt);
+            for (int c = 0; c < 6; ++c) tally.virial[c] += part.virial[c] / (unit_of(lane) * call.dt * call.dt);
         }
     }
     if (!call.lambda) return;
     if (!moved)
         for (long k = 0; k < s.own_max; ++k) x.tau[k] = vec{};
-    store_bonds(own_block(s), x.tau, 0.5 / (call.dt * call.dt), first_lanes(W), call.lambda);
+    store_bonds(own_block(s), x.tau, splat(0.5 / (call.dt * call.dt) / unit_of(lane)), first_lanes(W), call.lambda);
 }
 
 }  // namespace HOL_ISA

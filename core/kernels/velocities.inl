@@ -4,40 +4,65 @@ namespace holonomic {
 namespace HOL_ISA {
 
 template <bool careful>
-static inline mask solve_velocities(const Block &block, const VelocitiesCall &call, const Packed &r, const Packed &v,
-                                    const System &s) {
-    return solve_any<rate, careful>(block, call.box, r, v, v, s);
+static inline mask forward_velocities(const Block &block, const VelocitiesCall &call, const Packed &r, const Packed &v,
+                                      const System &s, mask &calm) {
+    return forward_any<rate, careful>(block, call.box, r, v, v, s, calm);
+}
+
+static inline void pull_velocities(const Block &block, const System &s, mask which, const Packed &v) {
+    if (block.uniform_w)
+        store_pulls<true, true>(block, s.D, s.t, which, add_, v);
+    else
+        store_pulls<true, false>(block, s.D, s.t, which, add_, v);
 }
 
 // The recursion gives the multipliers to a few roundings of themselves. What that leaves of the rates goes with a second
 // substitution, for the rates of the velocities as they are rounded now.
-static void store_velocities(const Block &block, const Lane *lane, const VelocitiesCall &call, const System &s,
-                             mask which, const Packed &v, Tally &tally) {
+static void finish_velocities(const Block &block, const Lane *lane, const VelocitiesCall &call, const System &s,
+                              mask which, const Packed &v, Tally &tally) {
     if (!any(which)) return;
-    if (call.lambda) store_bonds(block, s.t, 0.5, which, call.lambda);
-    if (call.virial) add_virial(block.n, s.D, s.t, which, 1, tally);
-    for (int pass = 0; pass < 2; ++pass) {
-        if (block.uniform_w)
-            store_pulls<true, true>(block, s.D, s.t, which, add_, v);
-        else
-            store_pulls<true, false>(block, s.D, s.t, which, add_, v);
-        if (pass == 1 || call.v.is_float) break;
+    if (call.lambda) store_bonds(block, s.t, 0.5 * block.mass, which, call.lambda);
+    if (call.virial) add_virial(block.n, s.D, s.t, which, block.mass, tally);
+    pull_velocities(block, s, which, v);
+    if (!call.v.is_float) {
         load_rates(block, v, s.D, s.t);
-        substitute(block.n, s.t, s.pivots, s.L);
+        substitute(block.n, s);
+        backward(0, block.n, s.t, s.L);
+        pull_velocities(block, s, which, v);
     }
     close(call.v, block, lane, which, v, false);
+}
+
+static inline void substitute_velocities(const Block &block, const System &s, const Packed &v, double *lambda) {
+    if (block.uniform_w)
+        substitute_and_store<true, true, add_>(block, s, v, lambda, 0.5 * block.mass);
+    else
+        substitute_and_store<true, false, add_>(block, s, v, lambda, 0.5 * block.mass);
 }
 
 static void velocities_block(const Block &block, const Lane *lane, const VelocitiesCall &call, Arena arena,
                              Tally &tally) {
     const Packed r = open(call.r, block, lane, arena, true), v = open(call.v, block, lane, arena, true);
     const System s(block.n, arena);
-    mask good = solve_velocities<false>(block, call, r, v, s);
-    store_velocities(block, lane, call, s, good, v, tally);
+    mask calm, good = forward_velocities<false>(block, call, r, v, s, calm);
+    const bool plain = block.lanes == W && !any(~(good & calm));
+    if (__builtin_expect(plain && !call.virial && !call.v.is_float, 1)) {
+        substitute_velocities(block, s, v, call.lambda);
+        load_rates(block, v, s.D, s.t);
+        substitute(block.n, s);
+        substitute_velocities(block, s, v, nullptr);
+        close(call.v, block, lane, good, v, false);
+        return;
+    }
+    backward(0, block.n, s.t, s.L);
+    good = good & finite(s.t[0]) & block.in_use();
+    finish_velocities(block, lane, call, s, good, v, tally);
     mask rest = block.in_use() & ~good;
     if (__builtin_expect(!any(rest), 1)) return;
-    good = solve_velocities<true>(block, call, r, v, s) & rest;
-    store_velocities(block, lane, call, s, good, v, tally);
+    forward_velocities<true>(block, call, r, v, s, calm);
+    backward(0, block.n, s.t, s.L);
+    good = finite(s.t[0]) & rest;
+    finish_velocities(block, lane, call, s, good, v, tally);
     rest = rest & ~good;
     if (any(rest)) note_bad(block, rest, tally);
 }

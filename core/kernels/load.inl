@@ -1,0 +1,208 @@
+// Reading a block: bond vectors and right-hand sides of W bonds of W chains at a time. Differences are taken of the
+// numbers as they stand in memory, and only those are transposed.
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// Minimum image of bond vectors, of all lanes or of one; `lo` gets what d's rounding left off.
+template <bool careful, class V>
+HOL_INLINE void wrap(const Box &box, Vector3<V> &d, Vector3<V> &lo) {
+    const double *h = box.h, *in = box.inverse;
+    const V n[3] = {round(d.x * in[0] + d.y * in[3] + d.z * in[6]), round(d.x * in[1] + d.y * in[4] + d.z * in[7]),
+                    round(d.x * in[2] + d.y * in[5] + d.z * in[8])};
+    V *component[3] = {&d.x, &d.y, &d.z}, *low[3] = {&lo.x, &lo.y, &lo.z};
+    for (int c = 0; c < 3; ++c)
+        for (int i = 0; i < 3; ++i) {
+            if (h[3 * i + c] == 0) continue;
+            const V side = V{} + h[3 * i + c];
+            if (careful) {
+                const Pair<V> p = two_product<V>(n[i], side);
+                const Pair<V> s = two_difference<V>(*component[c], p.hi);
+                const Pair<V> t = fast_two_sum<V>(s.hi, s.lo - p.lo + *low[c]);
+                *component[c] = t.hi;
+                *low[c] = t.lo;
+            } else {
+                *component[c] = mul_add(n[i], -side, *component[c]);
+            }
+        }
+}
+
+// What the right-hand side of a bond is made of.
+enum Terms { none_ = 0, velocity_squared = 1, force_difference = 2, rate = 4 };
+
+// Starts to fetch W atoms of the next block, `ahead` doubles from p: an address that may lie behind the array.
+HOL_INLINE void fetch_ahead(const double *p, long ahead) {
+    const uintptr_t address = reinterpret_cast<uintptr_t>(p) + static_cast<uintptr_t>(ahead) * sizeof(double);
+    for (int line = 0; line < (W > 4 ? 4 : 2); ++line)
+        __builtin_prefetch(reinterpret_cast<const void *>(address + static_cast<uintptr_t>(line) * 64), 0, 2);
+}
+
+// The bonds k0 .. k0 + W - 1 of all lanes, from pointers to atom k0: see load_bonds. d[W], low[W], rhs[W].
+template <int terms, bool uniform, bool boxed, bool careful>
+HOL_INLINE void load_chunk(const Block &block, const Box &box, long k0, const double *const *pr,
+                           const double *const *pv, const double *const *pf, vec3 *d3, vec3 *low3, vec *rhs) {
+    vec *const d = &d3->x, *const low = careful ? &low3->x : nullptr;
+    vec p[3 * W], a[boxed ? 3 * W : 1];
+    // In the packed layout, component by component, before transposing; with a box the products have to wait.
+    for (int j = 0; j < 3; ++j) {
+        vec e[W], l[W];
+        for (int i = 0; i < W; ++i) {
+            const vec r0 = load(pr[i] + W * j), r1 = load(pr[i] + W * j + 3);
+            e[i] = r1 - r0;
+            if (careful) l[i] = two_difference<vec>(r1, r0).lo;
+            vec dv = {}, df = {}, vv = {};
+            if (terms & (velocity_squared | rate)) dv = load(pv[i] + W * j + 3) - load(pv[i] + W * j);
+            if (terms & velocity_squared) vv = (block.mass[i] * dv) * dv;
+            if (terms & force_difference) {
+                const vec f0 = load(pf[i] + W * j), f1 = load(pf[i] + W * j + 3);
+                if (uniform) {
+                    df = f1 - f0;
+                } else {
+                    const double *w3 = block.w3[i] + 3 * k0 + W * j;
+                    df = load(w3 + 3) * f1 - load(w3) * f0;
+                }
+            }
+            if (boxed) {
+                a[j * W + i] = terms & rate ? dv : df;
+                p[j * W + i] = vv;
+            } else if (terms & rate) {
+                p[j * W + i] = dv * e[i];
+            } else if (terms & force_difference) {
+                p[j * W + i] = terms & velocity_squared ? mul_add(df, e[i], vv) : df * e[i];
+            } else {
+                p[j * W + i] = vv;
+            }
+        }
+        transpose(e);
+        for (int i = 0; i < W; ++i) d[j * W + i] = e[i];
+        if (boxed ? (terms & velocity_squared) != 0 : terms != 0) transpose(p + j * W);
+        if (careful) {
+            transpose(l);
+            for (int i = 0; i < W; ++i) low[j * W + i] = l[i];
+        }
+        if (boxed && (terms & (rate | force_difference))) transpose(a + j * W);
+    }
+    for (int b = 0; b < W; ++b) {
+        vec sum = {};
+        if (boxed) {
+            vec3 unused = {};
+            wrap<careful>(box, d3[b], careful ? low3[b] : unused);
+            const vec3 other = {a[3 * b], a[3 * b + 1], a[3 * b + 2]};
+            if (terms & (rate | force_difference)) sum = dot(d3[b], other);
+            if (terms & velocity_squared) sum = sum + ((p[3 * b] + p[3 * b + 1]) + p[3 * b + 2]);
+        } else if (terms) {
+            sum = (p[3 * b] + p[3 * b + 1]) + p[3 * b + 2];
+        }
+        rhs[b] = sum;
+    }
+}
+
+HOL_INLINE uintptr_t distance(const double *from, const double *to) {
+    return reinterpret_cast<uintptr_t>(to) - reinterpret_cast<uintptr_t>(from);
+}
+
+HOL_INLINE const double *at_distance(const double *p, uintptr_t bytes) {
+    return reinterpret_cast<const double *>(reinterpret_cast<uintptr_t>(p) + bytes);
+}
+
+// The lanes' places in the arrays of a call. All arrays are laid out in the same way (all in place or all staged), so
+// that one address per lane does for them together.
+struct Places {
+    const double *lane[W];
+    uintptr_t v, f;  // from a lane in r to the same one in v and f
+    Places(const Packed &pr, const Packed &pv, const Packed &pf)
+        : v(distance(pr.lane[0], pv.lane[0])), f(distance(pr.lane[0], pf.lane[0])) {
+        for (int i = 0; i < W; ++i) lane[i] = pr.lane[i];
+    }
+};
+
+// The full chunk of bonds k0 .. k0 + W - 1.
+template <int terms, bool uniform, bool boxed, bool careful>
+HOL_INLINE void load_full_chunk(const Block &block, const Box &box, const Places &at, long k0, vec3 *D, vec3 *D_low,
+                                vec *B) {
+    const double *pr[W], *pv[W], *pf[W];
+    for (int i = 0; i < W; ++i) {
+        pr[i] = at.lane[i] + 3 * k0;
+        pv[i] = at_distance(pr[i], at.v);
+        pf[i] = at_distance(pr[i], at.f);
+    }
+    if (block.ahead)
+        for (int i = 0; i < W; ++i) {
+            fetch_ahead(pr[i], block.ahead);
+            if (terms & (velocity_squared | rate)) fetch_ahead(pv[i], block.ahead);
+            if (terms & force_difference) fetch_ahead(pf[i], block.ahead);
+        }
+    load_chunk<terms, uniform, boxed, careful>(block, box, k0, pr, pv, pf, D, D_low, B);
+}
+
+// The bonds k0 .. k0 + W - 1 where lanes may end: those past the end of a lane are inert, D = (1,0,0), B = 0.
+template <int terms, bool uniform, bool boxed, bool careful>
+static __attribute__((noinline)) void load_ragged_chunk(const Block &block, const Box &box, const Packed &r,
+                                                        const Packed &v, const Packed &f, long k0, vec3 *D,
+                                                        vec3 *D_low, vec *B) {
+    double buffer[3][W][3 * W + 3];
+    const double *pr[W], *pv[W], *pf[W];
+    for (int i = 0; i < W; ++i) {
+        pr[i] = window(r.lane[i], k0, block.len[i], block.roomy, buffer[0][i]);
+        if (terms & (velocity_squared | rate)) pv[i] = window(v.lane[i], k0, block.len[i], block.roomy, buffer[1][i]);
+        if (terms & force_difference) pf[i] = window(f.lane[i], k0, block.len[i], block.roomy, buffer[2][i]);
+    }
+    vec3 d[W], low[W];
+    vec rhs[W];
+    load_chunk<terms, uniform, boxed, careful>(block, box, k0, pr, pv, pf, d, low, rhs);
+    for (long b = 0; b < W && k0 + b < block.n; ++b) {
+        const mask live = less(splat(static_cast<double>(k0 + b)), block.lengths());
+        D[b] = {select(live, d[b].x, splat(1.0)), keep(live, d[b].y), keep(live, d[b].z)};
+        if (careful) D_low[b] = {keep(live, low[b].x), keep(live, low[b].y), keep(live, low[b].z)};
+        B[b] = keep(live, rhs[b]);
+    }
+}
+
+// Bond vectors D[k] = r_{k+1} - r_k and right-hand sides B[k] of all lanes, with w in the lane's unit:
+//   velocity_squared: |v_{k+1} - v_k|^2 / unit,  force_difference: D . (w_{k+1} f_{k+1} - w_k f_k),
+//   rate: D . (v_{k+1} - v_k).
+// careful: D_low gets the low words of the differences. Bonds past the end of a lane are inert: D = (1,0,0), B = 0.
+template <int terms, bool uniform, bool boxed, bool careful>
+static inline void load_bonds(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
+                              vec3 *D, vec3 *D_low, vec *B) {
+    const Places at(r, v, f);
+    long k0 = 0;
+    for (; k0 + W <= block.n_min; k0 += W)
+        load_full_chunk<terms, uniform, boxed, careful>(block, box, at, k0, D + k0, careful ? D_low + k0 : nullptr,
+                                                        B + k0);
+    for (; k0 < block.n; k0 += W)
+        load_ragged_chunk<terms, uniform, boxed, careful>(block, box, r, v, f, k0, D + k0,
+                                                          careful ? D_low + k0 : nullptr, B + k0);
+}
+
+// The rates D . (v_{k+1} - v_k) of the bonds k0 .. k0 + W - 1, with D as loaded before.
+HOL_INLINE void rate_chunk(const double *const *pv, const vec3 *D, vec *rates) {
+    vec e[3 * W];
+    for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < W; ++i) e[j * W + i] = load(pv[i] + W * j + 3) - load(pv[i] + W * j);
+        transpose(e + j * W);
+    }
+    for (int b = 0; b < W; ++b) rates[b] = dot(D[b], vec3{e[3 * b], e[3 * b + 1], e[3 * b + 2]});
+}
+
+static inline void load_rates(const Block &block, const Packed &v, const vec3 *D, vec *B) {
+    const double *pv[W];
+    long k0 = 0;
+    for (; k0 + W <= block.n_min; k0 += W) {
+        for (int i = 0; i < W; ++i) pv[i] = v.lane[i] + 3 * k0;
+        rate_chunk(pv, D + k0, B + k0);
+    }
+    for (; k0 < block.n; k0 += W) {
+        double buffer[W][3 * W + 3];
+        vec3 d[W];
+        vec rates[W];
+        for (int i = 0; i < W; ++i) pv[i] = window(v.lane[i], k0, block.len[i], false, buffer[i]);
+        for (long b = 0; b < W; ++b) d[b] = k0 + b < block.n ? D[k0 + b] : vec3{};
+        rate_chunk(pv, d, rates);
+        for (long b = 0; b < W && k0 + b < block.n; ++b)
+            B[k0 + b] = keep(less(splat(static_cast<double>(k0 + b)), block.lengths()), rates[b]);
+    }
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
