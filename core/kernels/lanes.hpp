@@ -38,6 +38,13 @@ typedef double vec_unaligned __attribute__((vector_size(HOL_LANES * 8), aligned(
 
 #define HOL_INLINE static inline __attribute__((always_inline))
 
+// Before a loop of few turns over vectors: left rolled, it would keep them in memory.
+#if defined(__clang__)
+#define HOL_UNROLL _Pragma("clang loop unroll(full)")
+#else
+#define HOL_UNROLL _Pragma("GCC unroll 16")
+#endif
+
 HOL_INLINE vec load(const double *p) { return *reinterpret_cast<const vec_unaligned *>(p); }
 HOL_INLINE void store(double *p, vec a) { *reinterpret_cast<vec_unaligned *>(p) = a; }
 HOL_INLINE vec splat(double a) { return a - vec{}; }
@@ -63,6 +70,7 @@ HOL_INLINE double mul_add(double a, double b, double c) {
 
 #if HOL_LANES == 8 && defined(__AVX512F__)
 HOL_INLINE vec mul_add(vec a, vec b, vec c) { return _mm512_fmadd_pd(a, b, c); }
+HOL_INLINE vec mul_sub(vec a, vec b, vec c) { return _mm512_fmsub_pd(a, b, c); }
 HOL_INLINE vec max(vec a, vec b) { return _mm512_max_pd(a, b); }
 HOL_INLINE vec min(vec a, vec b) { return _mm512_min_pd(a, b); }
 HOL_INLINE vec sqrt(vec a) { return _mm512_sqrt_pd(a); }
@@ -72,6 +80,7 @@ HOL_INLINE unsigned bits(mask m) {
 }
 #elif HOL_LANES == 4 && defined(__AVX2__)
 HOL_INLINE vec mul_add(vec a, vec b, vec c) { return _mm256_fmadd_pd(a, b, c); }
+HOL_INLINE vec mul_sub(vec a, vec b, vec c) { return _mm256_fmsub_pd(a, b, c); }
 HOL_INLINE vec max(vec a, vec b) { return _mm256_max_pd(a, b); }
 HOL_INLINE vec min(vec a, vec b) { return _mm256_min_pd(a, b); }
 HOL_INLINE vec sqrt(vec a) { return _mm256_sqrt_pd(a); }
@@ -85,6 +94,7 @@ HOL_INLINE vec mul_add(vec a, vec b, vec c) {
     return a * b + c;
 #endif
 }
+HOL_INLINE vec mul_sub(vec a, vec b, vec c) { return mul_add(a, b, -c); }
 HOL_INLINE vec max(vec a, vec b) { return select(reinterpret_cast<mask>(a > b), a, b); }
 HOL_INLINE vec min(vec a, vec b) { return select(reinterpret_cast<mask>(a < b), a, b); }
 HOL_INLINE vec sqrt(vec a) {
@@ -98,13 +108,18 @@ HOL_INLINE vec round(vec a) {
     const vec sum = a + big;
     return sum - big;
 }
+#if HOL_LANES == 2 && defined(__SSE2__)
+HOL_INLINE unsigned bits(mask m) { return static_cast<unsigned>(_mm_movemask_pd(as_vec(m))); }
+#else
 HOL_INLINE unsigned bits(mask m) {
     unsigned b = 0;
-    for (int i = 0; i < W; ++i) b |= (m[i] != 0 ? 1u : 0u) << i;
+    for (int i = 0; i < W; ++i) b |= (m[i] < 0 ? 1u : 0u) << i;
     return b;
 }
 #endif
+#endif
 
+// The sign bits of a mask tell.
 HOL_INLINE bool any(mask m) { return bits(m) != 0; }
 HOL_INLINE mask less(vec a, vec b) { return reinterpret_cast<mask>(a < b); }
 HOL_INLINE mask less_equal(vec a, vec b) { return reinterpret_cast<mask>(a <= b); }

@@ -44,8 +44,10 @@ HOL_INLINE void load_chunk(const Block &block, const Box &box, long k0, const do
     vec *const d = &d3->x, *const low = careful ? &low3->x : nullptr;
     vec p[3 * W], a[boxed ? 3 * W : 1];
     // In the packed layout, component by component, before transposing; with a box the products have to wait.
+    HOL_UNROLL
     for (int j = 0; j < 3; ++j) {
         vec e[W], l[W];
+        HOL_UNROLL
         for (int i = 0; i < W; ++i) {
             const vec r0 = load(pr[i] + W * j), r1 = load(pr[i] + W * j + 3);
             e[i] = r1 - r0;
@@ -74,6 +76,7 @@ HOL_INLINE void load_chunk(const Block &block, const Box &box, long k0, const do
             }
         }
         transpose(e);
+        HOL_UNROLL
         for (int i = 0; i < W; ++i) d[j * W + i] = e[i];
         if (boxed ? (terms & velocity_squared) != 0 : terms != 0) transpose(p + j * W);
         if (careful) {
@@ -82,6 +85,7 @@ HOL_INLINE void load_chunk(const Block &block, const Box &box, long k0, const do
         }
         if (boxed && (terms & (rate | force_difference))) transpose(a + j * W);
     }
+    HOL_UNROLL
     for (int b = 0; b < W; ++b) {
         vec sum = {};
         if (boxed) {
@@ -121,6 +125,7 @@ template <int terms, bool uniform, bool boxed, bool careful>
 HOL_INLINE void load_full_chunk(const Block &block, const Box &box, const Places &at, long k0, vec3 *D, vec3 *D_low,
                                 vec *B) {
     const double *pr[W], *pv[W], *pf[W];
+    HOL_UNROLL
     for (int i = 0; i < W; ++i) {
         pr[i] = at.lane[i] + 3 * k0;
         pv[i] = at_distance(pr[i], at.v);
@@ -178,10 +183,12 @@ static inline void load_bonds(const Block &block, const Box &box, const Packed &
 // The rates D . (v_{k+1} - v_k) of the bonds k0 .. k0 + W - 1, with D as loaded before.
 HOL_INLINE void rate_chunk(const double *const *pv, const vec3 *D, vec *rates) {
     vec e[3 * W];
+    HOL_UNROLL
     for (int j = 0; j < 3; ++j) {
         for (int i = 0; i < W; ++i) e[j * W + i] = load(pv[i] + W * j + 3) - load(pv[i] + W * j);
         transpose(e + j * W);
     }
+    HOL_UNROLL
     for (int b = 0; b < W; ++b) rates[b] = dot(D[b], vec3{e[3 * b], e[3 * b + 1], e[3 * b + 2]});
 }
 

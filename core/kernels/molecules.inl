@@ -7,20 +7,42 @@ namespace HOL_ISA {
 
 constexpr int largest_molecule = 5;
 
-// Bonds of W molecules, D[k] and right-hand sides t[k].
+// The atoms of W molecules: element 3 a + c is component c of atom a. Up to W - 1 doubles behind each are read.
+template <int N>
+HOL_INLINE void load_molecules(const double *p, vec *elements) {
+    HOL_UNROLL
+    for (int j = 0; j < (3 * (N + 1) + W - 1) / W; ++j) {
+        HOL_UNROLL
+        for (int i = 0; i < W; ++i) elements[j * W + i] = load(p + 3 * (N + 1) * i + j * W);
+        transpose(elements + j * W);
+    }
+}
+
+// Bonds D[k] of W molecules and their right-hand sides t[k], rounded as load_chunk() does.
 template <int N, int terms, bool uniform>
 HOL_INLINE void load_molecules(const Block &block, const double *r, const double *v, const double *f, vec3 *D, vec *t) {
-    const Box no_box = {};
-    const double *pr[W], *pv[W], *pf[W];
-    for (long k0 = 0; k0 < N; k0 += W) {
-        for (int i = 0; i < W; ++i) {
-            const long at = 3 * (N + 1) * i + 3 * k0;
-            pr[i] = r + at;
-            if (terms & (velocity_squared | rate)) pv[i] = v + at;
-            if (terms & force_difference) pf[i] = f + at;
+    vec e[(3 * (N + 1) + W - 1) / W * W], p[3 * N], *const d = &D[0].x;
+    load_molecules<N>(r, e);
+    HOL_UNROLL
+    for (int c = 0; c < 3 * N; ++c) d[c] = e[c + 3] - e[c];
+    if (terms & (velocity_squared | rate)) {
+        load_molecules<N>(v, e);
+        HOL_UNROLL
+        for (int c = 0; c < 3 * N; ++c) {
+            const vec dv = e[c + 3] - e[c];
+            p[c] = terms & rate ? dv * d[c] : (block.mass * dv) * dv;
         }
-        load_chunk<terms, uniform, false, false>(block, no_box, k0, pr, pv, pf, D + k0, nullptr, t + k0);
     }
+    if (terms & force_difference) {
+        load_molecules<N>(f, e);
+        HOL_UNROLL
+        for (int c = 0; c < 3 * N; ++c) {
+            const vec df = uniform ? e[c + 3] - e[c] : block.w[c / 3 + 1] * e[c + 3] - block.w[c / 3] * e[c];
+            p[c] = terms & velocity_squared ? mul_add(df, d[c], p[c]) : df * d[c];
+        }
+    }
+    HOL_UNROLL
+    for (int k = 0; k < N; ++k) t[k] = (p[3 * k] + p[3 * k + 1]) + p[3 * k + 2];
 }
 
 // G of the atoms of W molecules, times w where `weighted`.
@@ -29,6 +51,7 @@ HOL_INLINE void store_molecules(const Block &block, const vec3 *D, const vec *t,
     constexpr int elements = 3 * (N + 1), full = elements / W, rest = elements % W;
     vec value[(full + 1) * W] = {};
     vec3 before = {};
+    HOL_UNROLL
     for (int k = 0; k <= N; ++k) {
         vec3 after = {};
         if (k < N) after = {t[k] * D[k].x, t[k] * D[k].y, t[k] * D[k].z};
@@ -39,6 +62,7 @@ HOL_INLINE void store_molecules(const Block &block, const vec3 *D, const vec *t,
         value[3 * k + 2] = weighted ? w * g.z : g.z;
         before = after;
     }
+    HOL_UNROLL
     for (int j = 0; j < full; ++j) {
         transpose(value + j * W);
         for (int i = 0; i < W; ++i) {
@@ -46,6 +70,7 @@ HOL_INLINE void store_molecules(const Block &block, const vec3 *D, const vec *t,
             store(p, update == add_ ? load(p) + value[j * W + i] : value[j * W + i]);
         }
     }
+    HOL_UNROLL
     for (int e = 0; e < rest; ++e)
         for (int i = 0; i < W; ++i) {
             double &p = out[elements * i + full * W + e];
@@ -77,15 +102,15 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
     const double *const r = atoms(call.r), *const v = atoms(call.v), *const f = atoms(call.f);
     double *const g = atoms(call.g);
     for (; molecules_left(unit, first); first += W) {
-        constexpr int padded = (N + W - 1) / W * W;
-        vec3 D[padded];
-        vec t[padded], L[N + 1];
+        vec3 D[N];
+        vec t[N], L[N + 1];
         const int64_t at = 3 * (N + 1) * first;
         load_molecules<N, terms, uniform>(block, r + at, v ? v + at : v, f ? f + at : f, D, t);
         Packed from;
         for (int i = 0; i < W; ++i) from.lane[i] = const_cast<double *>(r) + at + 3 * (N + 1) * i;
         const Source source = {&from, &call.box};
         Sweep<uniform, false> sweep{block, source, System(D, t, L, nullptr)};
+        HOL_UNROLL
         for (int k = 0; k < N; ++k) sweep.step(k, t[k], k % 4 == 0, false);
         if (__builtin_expect(any(sweep.doubt() | ~sweep.calm()), 0)) break;
         backward(0, N, t, L);
@@ -107,9 +132,8 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
     const double *const r = reinterpret_cast<double *>(call.r.x) + 3 * head.first_atom;
     double *const v = reinterpret_cast<double *>(call.v.x) + 3 * head.first_atom;
     for (; molecules_left(unit, first); first += W) {
-        constexpr int padded = (N + W - 1) / W * W;
-        vec3 D[padded];
-        vec t[padded], L[N + 1], pivots[N];
+        vec3 D[N];
+        vec t[N], L[N + 1], pivots[N];
         const int64_t at = 3 * (N + 1) * first;
         load_molecules<N, rate, uniform>(block, r + at, v + at, nullptr, D, t);
         Packed from;
@@ -117,15 +141,18 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
         const Source source = {&from, &call.box};
         const System s(D, t, L, pivots);
         Sweep<uniform, true> sweep{block, source, s};
+        HOL_UNROLL
         for (int k = 0; k < N; ++k) sweep.step(k, t[k], k % 4 == 0, false);
         if (__builtin_expect(any(sweep.doubt() | ~sweep.calm()), 0)) break;
         backward(0, N, t, L);
         if (call.lambda) store_multipliers<N>(t, 0.5 * block.mass, call.lambda + head.first_bond + N * first);
         store_molecules<N, true, uniform, add_>(block, D, t, v + at);
-        for (long k0 = 0; k0 < N; k0 += W) {  // as in store_velocities
-            const double *pv[W];
-            for (int i = 0; i < W; ++i) pv[i] = v + at + 3 * (N + 1) * i + 3 * k0;
-            rate_chunk(pv, D + k0, t + k0);
+        vec rounded[(3 * (N + 1) + W - 1) / W * W];  // as in finish_velocities
+        load_molecules<N>(v + at, rounded);
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) {
+            const vec *const a = rounded + 3 * k;
+            t[k] = dot(D[k], vec3{a[3] - a[0], a[4] - a[1], a[5] - a[2]});
         }
         substitute(N, s);
         backward(0, N, t, L);

@@ -104,6 +104,7 @@ static __attribute__((noinline)) void substitute_and_store(const Block &block, c
             for (long k = full; k < block.len[i]; ++k) value_out[block.first_bond[i] + k] = factor[i] * s.t[k][i];
     for (long k0 = full - W; k0 >= 0; k0 -= W) {
         vec value[3 * W], bond_value[W];
+        HOL_UNROLL
         for (long b = W - 1; b >= 0; --b) {
             const long k = k0 + b;
             t = mul_add(s.L[k + 1], t, s.t[k]);

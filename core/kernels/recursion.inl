@@ -31,10 +31,16 @@ struct System {
         : D(bonds), D_low(nullptr), t(values), L(multipliers), pivots(reciprocals) {}
 };
 
-// X = |d x d'|^2 of two nearly parallel bonds has a relative error of about 2 eps |d| |d'| / sqrt X from the rounding
-// of d, d' and of the cross product. It enters E' = w (q' E + w X) / P, so what E' gets of it is harmless where
-//     w sqrt(X q q') <= c (q' E + w X),   c = joint_tolerance,
-// and this holds for every X if E >= w q / (4 c^2): the cheap test that ordinary chains pass (docs/performance.md).
+// How X = |d x d'|^2 is found. It enters E' = w (q' E + w X) / P, and what its error does to E' depends on E: with
+// e = E / (w q),
+//  - q q' - g^2 has an error of a few roundings of q q', of which E' gets a few / (e + sin^2): ordinary chains, in which
+//    e >= least_remainder everywhere but in a row of nearly parallel bonds;
+//  - the cross product has a relative error of about 2 eps |d| |d'| / sqrt X from the rounding of d and d', which is
+//    harmless where w sqrt(X q q') <= c (q' E + w X), c = joint_tolerance. This holds for every X if e >= 1 / (4 c^2);
+//  - else the chain needs compensated products of the unrounded bond vectors.
+// The tests are cheap to hot: one multiply-add for the first, one more where it fails, the full one where that fails
+// (docs/performance.md).
+constexpr double least_remainder = 1.0 / 4;
 constexpr double joint_tolerance = 8;
 
 // Exact form of the test, for the joints first .. end-1; E is that of bond first-1.
@@ -64,10 +70,12 @@ struct Source {
 // hundred joints of a coil.
 constexpr double small_cosine = 1.0 / 32;
 
-HOL_INLINE mask nearly_orthogonal(vec g, vec X) {
-    const vec scaled = (1 / small_cosine) * g;
-    return less(scaled * scaled, X);  // X = q q' (1 - cos^2)
+// Its sign bit is set where |cos| is below that; X = q q' (1 - cos^2).
+HOL_INLINE vec not_orthogonal(vec g2, vec X) {
+    return mul_sub(splat(1 / (small_cosine * small_cosine)), g2, X);
 }
+
+HOL_INLINE mask nearly_orthogonal(vec g, vec X) { return less(not_orthogonal(g * g, X), vec{}); }
 
 // The lanes in `which` of g, for joint k, with compensated products of unrounded differences.
 static __attribute__((noinline)) vec exact_dots(const Source &source, long k, mask which, vec g) {
@@ -95,52 +103,66 @@ struct Sweep {
     const Block &block;
     const Source &source;
     const System s;
-    vec3 d = {};                                   // the bond before
+    vec3 d = {};                                           // the bond before
+    vec q = {};
     vec A = splat(1.0), F = {}, F1 = {}, rF = splat(1.0);  // E = A / F and P = F1 / F of the bond before
     vec rP = {}, y = {};
-    vec slack = {};                                // negative where the cheap test failed
-    vec size = {}, shortest = splat(1e300), longest = {};  // sum of u^2; extremes of q
+    vec slack = {};                                        // negative where the cheap tests failed
+    vec size = {};                                         // sum of |u|, q, 1 / P and w
 
     inline __attribute__((always_inline)) void step(long k, vec b, bool starts_group, bool ragged) {
         const vec w = w_at<uniform>(block, k), w1 = w_at<uniform>(block, k + 1);
-        const vec3 d1 = s.D[k], c = cross(d, d1);
-        const vec q = dot(d1, d1);
-        vec g = dot(d, d1), X = dot(c, c);
-        vec spare = mul_add(splat(4 * joint_tolerance * joint_tolerance + 1), A, -F1);
+        const vec3 d1 = s.D[k];
+        const vec q1 = dot(d1, d1);
+        vec g = dot(d, d1), g2 = g * g, X = q * q1 - g2;
         if (ragged) {
             const mask m = joint(block, k);
             g = keep(m, g);
+            g2 = keep(m, g2);
             X = keep(m, X);
-            spare = keep(m, spare);
         }
-        const mask orthogonal = nearly_orthogonal(g, X);
-        if (__builtin_expect(any(orthogonal), 0)) g = exact_dots(source, k, orthogonal, g);
+        const vec remainder = mul_sub(splat(1 + 1 / least_remainder), A, F1);
+        const mask signs = as_mask(not_orthogonal(g2, X)) | as_mask(remainder);
+        if (__builtin_expect(any(signs), 0)) delicate_joint(k, d1, remainder, ragged, g, X);
         const vec l = (w * g) * rP;
         s.L[k] = l;
         y = mul_add(l, y, b);
-        A = mul_add((w * w) * X, F, (w * q) * A);
+        A = mul_add(w * q1, A, ((w * w) * X) * F);
         F = F1;
         if (starts_group) {
             A = A * rF;
             F = splat(1.0);
         }
-        F1 = starts_group ? w1 * q + A : mul_add(w1 * q, F, A);
+        F1 = starts_group ? w1 * q1 + A : mul_add(w1 * q1, F, A);
         rF = splat(1.0) / F1;
         rP = starts_group ? rF : F * rF;
         const vec u = y * rP;
         s.t[k] = u;
         if (keep_pivots) s.pivots[k] = rP;
-        slack = min(slack, spare);
-        size = mul_add(u, u, size);
-        shortest = min(shortest, q);
-        longest = max(longest, q);
+        size = size + ((abs(u) + q1) + rP);
+        if (!uniform) size = size + w1;
         d = d1;
+        q = q1;
     }
 
-    // Lanes in which the backward sweep can't overflow: |t_k| |d_k| <= sum_j |u_j| |d_j|, because |l_k| |d_{k-1}| <= |d_k|.
-    mask calm() const {
-        return less(size, splat(1e200)) & less(splat(1e-100), shortest) & less(longest, splat(1e100));
+    // A joint of nearly orthogonal bonds, or one before which little of E is left.
+    inline __attribute__((always_inline)) void delicate_joint(long k, const vec3 &d1, vec remainder, bool ragged, vec &g,
+                                                              vec &X) {
+        mask little = less(remainder, vec{});
+        if (ragged) little = little & joint(block, k);
+        if (any(little)) {
+            const vec3 c = cross(d, d1);
+            X = select(little, dot(c, c), X);
+            const vec spare = mul_sub(splat(1 + 4 * joint_tolerance * joint_tolerance), A, F1);
+            slack = min(slack, keep(little, spare));
+        }
+        const mask orthogonal = nearly_orthogonal(g, X);
+        if (any(orthogonal)) g = exact_dots(source, k, orthogonal, g);
     }
+
+    // Lanes in which the backward sweep can't overflow: |t_k| |d_k| <= sum_j |u_j| |d_j|, because |l_k| |d_{k-1}| <= |d_k|,
+    // and |t_k| <= |u_k| + |l_{k+1} t_{k+1}|, |l_{k+1}| <= w |d_k| |d_{k+1}| / P_k.
+    mask calm() const { return less(size, splat(1e60)); }
     // Lanes that need careful arithmetic.
     mask doubt() const {
         const mask failed = less(slack, vec{});

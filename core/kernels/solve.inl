@@ -15,8 +15,10 @@ static __attribute__((noinline)) mask forward(const Block &block, const Box &box
     long k0 = 0;
     for (; k0 + group <= block.n_min; k0 += group) {
         vec b[group];
+        HOL_UNROLL
         for (long k = 0; k < group; k += W)
             load_full_chunk<terms, uniform, boxed, false>(block, box, at, k0 + k, s.D + k0 + k, nullptr, b + k);
+        HOL_UNROLL
         for (long k = 0; k < group; ++k) sweep.step(k0 + k, b[k], k % 4 == 0, false);
     }
     const long ragged_from = k0;

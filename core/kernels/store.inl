@@ -27,6 +27,7 @@ enum Update { write_, add_ };
 // lanes.
 template <Update update>
 HOL_INLINE void store_chunk(long k0, vec *value, const Packed &out) {
+    HOL_UNROLL
     for (int j = 0; j < 3; ++j) {
         transpose(value + j * W);
         for (int i = 0; i < W; ++i) {
