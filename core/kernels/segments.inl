@@ -9,304 +9,260 @@
 //
 //     P^ = E + c,  y^ = y + T,  E' = (E_free E + a) / P^,  y' = y_free + (f / P^) y^,
 //     backwards t_s = y^ / P^ + (f / P^) t_s',  inside t_k = u_k + (f / P)_k t_s + l_{k+1} t_{k+1}.
+//
+// (E, 1) and (a, c) are two solutions of one linear recursion, so that the fractions of the ordinary sweep do for both.
 
 namespace holonomic {
 namespace HOL_ISA {
 
-// How a chain is cut. Depends on its length alone, so that results depend on neither threads nor other chains.
-struct Cut {
-    int64_t blocks, segments, base, extra;  // the first `extra` segments have base + 1 bonds, the others base
-    explicit Cut(int64_t n_bonds) {
-        const int64_t bonds_per_block = 1024;  // of all lanes: the working arrays of a block stay in cache
-        blocks = (n_bonds + bonds_per_block - 1) / bonds_per_block;
-        segments = blocks * W;
-        base = n_bonds / segments;
-        extra = n_bonds % segments;
-    }
-    int64_t first(int64_t s) const { return s * base + (s < extra ? s : extra); }
-    int64_t length(int64_t s) const { return base + (s < extra ? 1 : 0); }
-    int64_t longest() const { return base + (extra > 0 ? 1 : 0); }
-};
-
 // What the elimination of the inner bonds of W segments leaves, and the solution at their separators.
 struct Summary {
-    vec E, y, a, c, f, T;
-    vec span;   // largest w times the last q: see join()
-    vec t, up;  // at the separator: y^ / P^, then t; f / P^
+    vec E, y, a, c, f, T;  // y without the right-hand side of the separator behind
+    vec q, b;              // of the separators: d.d and the right-hand side
+    vec span;              // largest w times the last q: see long_join()
+    vec t, up;             // at the separators: y^ / P^, then t; f / P^
     mask doubt;
 };
 
-// The working arrays of W segments.
-struct Segments {
-    vec3 *D;
-    vec *t, *L, *fP;
+// What the elimination keeps of a bond for the substitution: u = y / P, the multiplier of the joint behind it, f / P.
+struct Kept {
+    vec u, l, fP;
+};
+
+struct SegmentStore {
     Summary *summary;
-    static int64_t vectors(int64_t longest) { return 6 * (longest + 1) + static_cast<int64_t>(sizeof(Summary) / sizeof(vec)); }
-    Segments(vec3 *bonds, vec *values) : D(bonds), t(values), L(nullptr), fP(nullptr), summary(nullptr) {}
-    Segments(double *store, int64_t longest, int64_t block) {
-        vec *p = reinterpret_cast<vec *>(store) + block * vectors(longest);
-        summary = reinterpret_cast<Summary *>(p);
-        p += sizeof(Summary) / sizeof(vec);
-        D = reinterpret_cast<vec3 *>(p);
-        t = p + 3 * (longest + 1);
-        L = t + (longest + 1);
-        fP = L + (longest + 1);
-    }
+    Kept *kept;
+    SegmentStore(double *store, const Cut &cut, int64_t block)
+        : summary(reinterpret_cast<Summary *>(store) + block),
+          kept(reinterpret_cast<Kept *>(reinterpret_cast<Summary *>(store) + cut.blocks) + cut.first_row(block)) {}
 };
 
 static int64_t long_bytes(int64_t n_bonds) {
     const Cut cut(n_bonds);
-    return cut.blocks * Segments::vectors(cut.longest()) * static_cast<int64_t>(sizeof(vec));
+    return cut.blocks * static_cast<int64_t>(sizeof(Summary)) +
+           cut.first_row(cut.blocks) * static_cast<int64_t>(sizeof(Kept));
 }
 
-// The lanes of block j as chains of their own: len counts the bonds of the segment and the separator that follows.
-struct SegmentBlock {
-    Block block;
-    long own[W], own_min, own_max;  // bonds of each segment
-    int64_t from[W];                // its first bond in the chain
-    int last;                       // lane of the chain's last segment, or -1
+// Whether the bonds k and k + 1 are both there, in each lane.
+HOL_INLINE mask inner_joint(const Block &block, long k) {
+    return less(splat(static_cast<double>(k + 1)), block.lengths());
+}
+
+// The test of doubtful_joints() for the joints of n + 1 bonds from D on, the first of which is bond k.
+template <bool uniform>
+static __attribute__((noinline)) mask doubtful_segment_joints(const Block &block, const vec3 *D, long k, long n, vec E) {
+    mask doubt = none();
+    for (long i = 0; i < n; ++i) {
+        const vec w = w_at<uniform>(block, k + i + 1), q = dot(D[i], D[i]), q1 = dot(D[i + 1], D[i + 1]);
+        const vec3 c = cross(D[i], D[i + 1]);
+        const vec X = dot(c, c), qq = q * q1, S = mul_add(q1, E, w * X);
+        const double eps2 = 4.9e-32;  // (2^-52)^2: an X that vanished by rounding
+        const vec left = (w * w) * ((X + eps2 * qq) * qq), right = (joint_tolerance * joint_tolerance) * (S * S);
+        doubt = doubt | (~less_equal(left, right) & inner_joint(block, k + i));
+        E = w * S / mul_add(w, q, E);
+    }
+    return doubt;
+}
+
+// Products of the bond vectors of a joint and of the bond behind it.
+struct Joint {
+    vec g, X, q;
 };
 
-static inline SegmentBlock segment_block(const Cut &cut, int64_t j, const Lane &lane) {
-    SegmentBlock s;
-    s.block.lanes = W;
-    s.block.roomy = false;
-    s.block.ahead = 0;
-    s.block.n = 0;
-    s.block.n_min = s.own_min = cut.longest() + 1;
-    s.own_max = 0;
-    s.last = j == cut.blocks - 1 ? W - 1 : -1;
-    for (int i = 0; i < W; ++i) {
-        const int64_t segment = j * W + i;
-        s.from[i] = cut.first(segment);
-        s.own[i] = cut.length(segment);
-        s.block.len[i] = s.own[i] + (i == s.last ? 0 : 1);
-        s.block.first_bond[i] = lane.first_bond + s.from[i];
-        s.block.chain[i] = lane.chain;
-        s.own_min = s.own[i] < s.own_min ? s.own[i] : s.own_min;
-        s.own_max = s.own[i] > s.own_max ? s.own[i] : s.own_max;
-        s.block.n_min = s.block.len[i] < s.block.n_min ? s.block.len[i] : s.block.n_min;
-        s.block.n = s.block.len[i] > s.block.n ? s.block.len[i] : s.block.n;
+HOL_INLINE Joint plain_joint(const vec3 &d, const vec3 &d1) {
+    const vec3 c = cross(d, d1);
+    return {dot(d, d1), dot(c, c), dot(d1, d1)};
+}
+
+HOL_INLINE Joint careful_joint(const vec3 &d, const vec3 &low, const vec3 &d1, const vec3 &low1) {
+    const vec3 c = cross_compensated(d, low, d1, low1);
+    return {dot_compensated(d, low, d1, low1), dot(c, c), dot(d1, d1)};
+}
+
+// As small_cosine in recursion.inl; the error bound of chains of more than longest_lane bonds is twice as large.
+constexpr double segment_cosine = 1.0 / 64;
+
+// Computes g anew where bonds are nearly orthogonal: of n joints, the first of which is that of bonds k and k + 1.
+static __attribute__((noinline)) void refine_joints(const Source &source, long k, Joint *j, long n) {
+    for (long i = 0; i < n; ++i) {
+        const vec scaled = (1 / segment_cosine) * j[i].g;
+        const mask orthogonal = less(scaled * scaled, j[i].X);
+        if (any(orthogonal)) j[i].g = exact_dots(source, k + i + 1, orthogonal, j[i].g);
     }
-    return s;
 }
 
-static inline void set_segment_masses(SegmentBlock &s, const Lane &lane, Arena &arena) {
-    const double *tables[W];
-    double uniform[W];
-    for (int i = 0; i < W; ++i) {
-        tables[i] = lane.w ? lane.w + s.from[i] : nullptr;
-        uniform[i] = lane.w_uniform;
+// The joints between n + 1 bonds from d on, the first of which is bond k.
+template <int n>
+HOL_INLINE void plain_joints(const Source &source, long k, const vec3 *d, Joint *j) {
+    vec least = {};
+#pragma GCC unroll 8
+    for (int i = 0; i < n; ++i) {
+        j[i] = plain_joint(d[i], d[i + 1]);
+        const vec scaled = (1 / segment_cosine) * j[i].g;
+        least = min(least, mul_add(scaled, scaled, -j[i].X));
     }
-    set_masses(s.block, tables, uniform, arena);
+    if (any(less(least, vec{}))) refine_joints(source, k, j, n);
 }
 
-static inline Packed open_segments(const AtomArray &array, const SegmentBlock &s, const Lane &lane, Arena &arena,
-                                   bool read) {
-    Packed packed = {};
-    if (!array.x) return packed;
-    double *staging = nullptr;
-    if (!in_place(array, lane)) staging = arena.doubles(W * staged_size(s.block.n));
-    for (int i = 0; i < W; ++i)
-        open_lane(array, lane, s.from[i], s.block.len[i], s.block.n, packed, i, staging, read);
-    return packed;
+// The elimination of the inner bonds of W segments, a bond at a time.
+struct Elimination {
+    vec q;                        // of the bond that is to be eliminated
+    vec A, F, rF, a, c, f, y, T;  // E = A / F; a, c and f are in units of 1 / F, too; rF = 1 / F
+    vec w_max, slack;
+};
+
+// From a separator and the bond behind it, whose right-hand side is b1.
+template <bool uniform>
+HOL_INLINE void start(Elimination &e, const Block &block, vec q0, const Joint &j, vec b1) {
+    const vec w = w_at<uniform>(block, 1);
+    e.q = j.q;
+    e.A = w * e.q;
+    e.F = e.rF = splat(1.0);
+    e.a = (w * w) * j.X;
+    e.c = w * q0;
+    e.y = b1;
+    e.f = w * j.g;
+    e.T = e.slack = vec{};
+    e.w_max = w;
 }
 
-HOL_INLINE mask ends_at(const SegmentBlock &s, long k) {
-    mask m;
-    for (int i = 0; i < W; ++i) m[i] = s.own[i] == k ? -1 : 0;
-    return m;
+// In a straight chain c, f and E shrink by the same factor at each bond. They are rounded in the same way, so that their
+// ratios stay exact: segments of equal bonds would all have the same error in them.
+HOL_INLINE void normalise(Elimination &e) {
+    e.A = e.A * e.rF;
+    e.f = e.f * e.rF;
+    e.a = e.a * e.rF;
+    e.c = e.c * e.rF;
+    e.F = splat(1.0);
 }
 
-// Eliminates the inner bonds of W segments. t holds the right-hand sides, and u afterwards.
+// Eliminates bond k; j is the joint behind it and b1 the right-hand side behind that. ragged: lanes may end there.
 template <bool uniform, bool careful>
-static __attribute__((noinline)) void eliminate(const SegmentBlock &s, const Source &source, const Segments &x,
-                                                const vec3 *D_low) {
-    const Block &block = s.block;
-    const vec3 *D = x.D;
-    const double least = 4 * joint_tolerance * joint_tolerance;
-    Summary sum = {};
-    vec w = w_at<uniform>(block, 1), q = dot(D[1], D[1]), w_max = w;
-    vec X, g;
-    if (careful) {
-        const vec3 cr = cross_compensated(D[0], D_low[0], D[1], D_low[1]);
-        X = dot(cr, cr);
-        g = dot_compensated(D[0], D_low[0], D[1], D_low[1]);
-    } else {
-        const vec3 cr = cross(D[0], D[1]);
-        X = dot(cr, cr);
-        g = dot(D[0], D[1]);
-        const mask orthogonal = nearly_orthogonal(g, X);
-        if (any(orthogonal)) g = exact_dots(source, 1, orthogonal, g);
+HOL_INLINE void step(Elimination &e, const Block &block, Kept *kept, long k, const Joint &j, vec b1, bool ragged) {
+    const vec w = w_at<uniform>(block, k + 1);
+    const vec wq = w * e.q, F1 = mul_add(wq, e.F, e.A), c1 = mul_add(wq, e.c, e.a);
+    vec spare = {};
+    if (!careful) spare = mul_add(splat(4 * joint_tolerance * joint_tolerance + 1), e.A, -F1);
+    e.rF = splat(1.0) / F1;
+    const vec rP = e.F * e.rF, fP = e.f * e.rF, wwX = (w * w) * j.X, wq1 = w * j.q;
+    vec wg = w * j.g;
+    const mask live = ragged ? inner_joint(block, k) : none();
+    if (ragged) wg = keep(live, wg);
+    const vec l = wg * rP;
+    *kept = {e.y * rP, l, fP};
+    e.T = mul_add(fP, e.y, e.T);
+    e.y = mul_add(l, e.y, b1);
+    e.f = wg * e.f;
+    e.A = mul_add(wwX, e.F, wq1 * e.A);
+    e.a = mul_add(wwX, e.c, wq1 * e.a);
+    if (ragged) {
+        e.A = keep(live, e.A);
+        e.a = keep(live, e.a);
+        spare = keep(live, spare);
     }
-    vec E = w * q, a = (w * w) * X, c = w * dot(D[0], D[0]);
-    vec f = w * g, T = {}, y = x.t[1], slack = {}, E0 = E;
-    long chunk = 1;
-    for (long k = 1; k < s.own_max; ++k) {
-        w = w_at<uniform>(block, k + 1);
-        const vec wq = w * q, P = E + wq, rP = splat(1.0) / P, u = y * rP;
-        x.t[k] = u;
-        x.fP[k] = f * rP;
-        T = mul_add(f, u, T);
-        // In a straight chain c, f and E shrink by the same factor at each bond. They are rounded in the same way, so
-        // that their ratios stay exact: segments of equal bonds would all have the same error in them.
-        const vec c_before = c;
-        c = mul_add(a, rP, (wq * rP) * c);
-        if (k + 1 < block.n) {
-            const vec3 d = D[k], d1 = D[k + 1];
-            const vec q1 = dot(d1, d1);
-            vec step = {};
-            if (careful) {
-                const vec3 cr = cross_compensated(d, D_low[k], d1, D_low[k + 1]);
-                X = dot(cr, cr);
-                g = dot_compensated(d, D_low[k], d1, D_low[k + 1]);
-            } else {
-                const vec3 cr = cross(d, d1);
-                X = dot(cr, cr);
-                g = dot(d, d1);
-                step = mul_add(splat(least), E, -wq);
-            }
-            if (__builtin_expect(k + 1 >= block.n_min, 0)) {
-                const mask m = joint(block, k + 1);
-                X = keep(m, X);
-                g = keep(m, g);
-                step = keep(m, step);
-            }
-            if (!careful) {
-                const mask orthogonal = nearly_orthogonal(g, X);
-                if (__builtin_expect(any(orthogonal), 0)) g = exact_dots(source, k + 1, orthogonal, g);
-            }
-            const vec l = (w * g) * rP, lE = (w * q1) * rP, lX = (w * (w * X)) * rP;
-            x.L[k] = l;
-            y = mul_add(l, y, x.t[k + 1]);
-            f = l * f;
-            a = mul_add(lE, a, lX * c_before);
-            E = mul_add(lE, E, lX);
-            slack = min(slack, step);
-            if (!uniform) w_max = max(w_max, w);
-            q = q1;
-        } else {
-            E = a = vec{};
-        }
-        if (k + 1 >= s.own_min) {
-            const mask m = ends_at(s, k + 1);
-            sum.E = select(m, E, sum.E);
-            sum.a = select(m, a, sum.a);
-            sum.c = select(m, c, sum.c);
-            sum.y = select(m, y, sum.y);
-            sum.f = select(m, f, sum.f);
-            sum.T = select(m, T, sum.T);
-            sum.span = select(m, (uniform ? w : w_max) * q, sum.span);
-        }
-        if (!careful && ((k & 3) == 0 || k + 1 == s.own_max)) {
-            const mask short_of = less(slack, vec{});
-            if (__builtin_expect(any(short_of), 0)) {
-                sum.doubt = sum.doubt | (doubtful_joints<uniform>(block, D, chunk + 1, k + 2, E0) & short_of);
-                slack = vec{};
-            }
-            E0 = E;
-            chunk = k + 1;
-        }
-    }
-    *x.summary = sum;
+    e.F = F1;
+    e.c = c1;
+    if (!careful) e.slack = min(e.slack, spare);
+    if (!uniform) e.w_max = max(e.w_max, w);
+    e.q = j.q;
 }
 
-// Loads block j and eliminates its inner bonds.
-template <int terms, bool careful, class Call>
-static void eliminate_block(const Call &call, const Lane &lane, int64_t j, const AtomArray &r, const AtomArray &v,
-                            const AtomArray &f, double *store, Arena arena) {
-    const Cut cut(lane.n_bonds);
-    const Segments x(store, cut.longest(), j);
-    SegmentBlock s = segment_block(cut, j, lane);
-    set_segment_masses(s, lane, arena);
-    const Packed pr = open_segments(r, s, lane, arena, true), pv = open_segments(v, s, lane, arena, true);
-    const Packed pf = open_segments(f, s, lane, arena, true);
-    vec3 *D_low = reinterpret_cast<vec3 *>(arena.vecs(3 * s.block.n));
-    const bool boxed = call.box.shape != Box::none;
-    if (s.block.uniform_w) {
-        if (boxed)
-            load_bonds<terms, true, true, careful>(s.block, call.box, pr, pv, pf, x.D, D_low, x.t);
+// Eliminates the inner bonds of W segments of n bonds. block.len counts the separators behind them.
+template <int terms, bool uniform, bool careful>
+static __attribute__((noinline)) void eliminate(const Block &block, const Source &source, const SegmentBonds &in, long n,
+                                                const SegmentStore &x) {
+    Elimination e;
+    const vec3 absent = {};
+    mask doubt = none();
+    vec3 d[group + 1];
+    vec b[group];
+    Joint j[group];
+    SegmentPlaces at = {in.r.lane[0], bytes_between(in.r.lane[0], in.r.lane[1]), 0, 0, block.mass};
+    if (terms & (velocity_squared | rate)) at.v = bytes_between(at.r, in.v.lane[0]);
+    if (terms & force_difference) at.f = bytes_between(at.r, in.f.lane[0]);
+    long k0 = 0;  // bonds that have been read; one less has been eliminated
+    if (in.full > 0) {
+        load_group<terms, uniform>(block, in, at, 0, d + 1, b);
+        x.summary->q = dot(d[1], d[1]);
+        x.summary->b = b[0];
+        plain_joints<group - 1>(source, 0, d + 1, j + 1);
+        start<uniform>(e, block, x.summary->q, j[1], b[1]);
+        const vec E0 = e.A;
+        for (int i = 2; i < group; ++i) {
+            step<uniform, false>(e, block, x.kept + i - 1, i - 1, j[i], b[i], false);
+            if (i % 4 == 3) normalise(e);
+        }
+        const mask short_of = less(e.slack, vec{});
+        if (any(short_of))
+            doubt = doubtful_segment_joints<uniform>(block, d + 2, 1, group - 2, E0) & short_of;
+        e.slack = vec{};
+        d[0] = d[group];
+        k0 = group;
+    }
+    for (; k0 < in.full; k0 += group) {
+        load_group<terms, uniform>(block, in, at, k0, d + 1, b);
+        plain_joints<group>(source, k0 - 1, d, j);
+        const vec E0 = e.A;
+#pragma GCC unroll 8
+        for (int i = 0; i < group; ++i) {
+            step<uniform, false>(e, block, x.kept + k0 + i - 1, k0 + i - 1, j[i], b[i], false);
+            if (i % 4 == 3) normalise(e);
+        }
+        const mask short_of = less(e.slack, vec{});
+        if (__builtin_expect(any(short_of), 0)) {
+            doubt = doubt | (doubtful_segment_joints<uniform>(block, d, k0 - 1, group, E0) & short_of);
+            e.slack = vec{};
+        }
+        d[0] = d[group];
+    }
+    const long read = terms == in_scratch ? k0 : 0;
+    const vec3 *D = in.D + read, *low = careful ? in.low : &absent;
+    const int low_step = careful ? 1 : 0;
+    const vec *B = in.B + read;
+    vec3 before = d[0], low_before = {};
+    if (k0 == 0) {
+        x.summary->q = dot(D[0], D[0]);
+        x.summary->b = B[0];
+        Joint first;
+        if (careful)
+            first = careful_joint(D[0], low[0], D[1], low[low_step]);
         else
-            load_bonds<terms, true, false, careful>(s.block, call.box, pr, pv, pf, x.D, D_low, x.t);
-        eliminate<true, careful>(s, Source{&pr, &call.box}, x, D_low);
-    } else {
-        if (boxed)
-            load_bonds<terms, false, true, careful>(s.block, call.box, pr, pv, pf, x.D, D_low, x.t);
+            plain_joints<1>(source, 0, D, &first);
+        start<uniform>(e, block, x.summary->q, first, B[1]);
+        before = D[1];
+        low_before = low[low_step];
+        D += 2;
+        low += 2 * low_step;
+        B += 2;
+        k0 = 2;
+    }
+    for (; k0 <= n; ++k0, ++D, low += low_step, ++B) {
+        const vec E0 = e.A;
+        const vec3 two[2] = {before, k0 < n ? *D : in.next};
+        const vec3 low_here = k0 < n ? *low : in.next_low;
+        // The last joint is masked in the chain's last segment, others where that ends.
+        Joint joint;
+        if (careful)
+            joint = careful_joint(two[0], low_before, two[1], low_here);
         else
-            load_bonds<terms, false, false, careful>(s.block, call.box, pr, pv, pf, x.D, D_low, x.t);
-        eliminate<false, careful>(s, Source{&pr, &call.box}, x, D_low);
+            plain_joints<1>(source, k0 - 1, two, &joint);
+        step<uniform, careful>(e, block, x.kept + k0 - 1, k0 - 1, joint, k0 < n ? *B : vec{}, true);
+        normalise(e);
+        before = two[1];
+        low_before = low_here;
+        if (careful || !any(less(e.slack, vec{}))) continue;
+        doubt = doubt | (doubtful_segment_joints<uniform>(block, two, k0 - 1, 1, E0) & less(e.slack, vec{}));
+        e.slack = vec{};
     }
-}
-
-template <bool careful>
-static void eliminate_forces(const ForcesCall &call, const Lane &lane, int64_t j, double *store, Arena arena) {
-    constexpr int both = velocity_squared | force_difference;
-    if (call.v.x && call.f.x)
-        eliminate_block<both, careful>(call, lane, j, call.r, call.v, call.f, store, arena);
-    else if (call.f.x)
-        eliminate_block<force_difference, careful>(call, lane, j, call.r, call.v, call.f, store, arena);
-    else if (call.v.x)
-        eliminate_block<velocity_squared, careful>(call, lane, j, call.r, call.v, call.f, store, arena);
-    else
-        eliminate_block<none_, careful>(call, lane, j, call.r, call.v, call.f, store, arena);
-}
-
-static void long_forces_eliminate(const ForcesCall &call, const Lane &lane, int64_t j, bool careful, double *store,
-                                  double *scratch) {
-    if (careful)
-        eliminate_forces<true>(call, lane, j, store, Arena{scratch});
-    else
-        eliminate_forces<false>(call, lane, j, store, Arena{scratch});
-}
-
-static void long_velocities_eliminate(const VelocitiesCall &call, const Lane &lane, int64_t j, bool careful,
-                                      double *store, double *scratch) {
-    const AtomArray absent = {};
-    if (careful)
-        eliminate_block<rate, true>(call, lane, j, call.r, call.v, absent, store, Arena{scratch});
-    else
-        eliminate_block<rate, false>(call, lane, j, call.r, call.v, absent, store, Arena{scratch});
-}
-
-// Solves for the separators. `careful` says how the segments were eliminated.
-//
-// The rounding of the X of nearly parallel bonds reaches E' through a. With a = sum alpha_j X_j, its error is about
-// 2 eps sqrt(a sum alpha_j q_j q_{j+1} / n) <= 2 eps sqrt(a w_max q c), because sum alpha_j q_j q_{j+1} <= n w_max q c;
-// it is harmless where that is below join_tolerance (E_free E + a).
-static JoinResult long_join(const Lane &lane, bool careful, double *store) {
-    const double join_tolerance = 8;
-    const Cut cut(lane.n_bonds);
-    const double w0 = relative_w(lane, 0);
-    double E = 0, y = 0;
-    for (int64_t j = 0; j < cut.blocks; ++j) {
-        const Segments x(store, cut.longest(), j);
-        Summary &s = *x.summary;
-        if (j == 0) {
-            const vec3 d = x.D[0];
-            E = w0 * dot(d, d)[0];
-            y = x.t[0][0];
-        }
-        if (!careful && any(s.doubt)) return join_doubtful;
-        for (int i = 0; i < W; ++i) {
-            const double P = E + s.c[i], yhat = y + s.T[i], S = s.E[i] * E + s.a[i];
-            if (!careful && !(4 * s.a[i] * s.span[i] * s.c[i] <= join_tolerance * join_tolerance * S * S))
-                return join_doubtful;
-            s.t[i] = yhat / P;
-            s.up[i] = s.f[i] / P;
-            E = S / P;
-            y = s.y[i] + s.up[i] * yhat;
-        }
-    }
-    double t = 0;
-    for (int64_t j = cut.blocks - 1; j >= 0; --j) {
-        Summary &s = *Segments(store, cut.longest(), j).summary;
-        for (int i = W - 1; i >= 0; --i) {
-            t = j == cut.blocks - 1 && i == W - 1 ? s.t[i] : s.t[i] + s.up[i] * t;
-            s.t[i] = t;
-            if (!(t - t == 0)) return careful ? join_bad : join_doubtful;
-        }
-    }
-    return join_good;
+    Summary &sum = *x.summary;
+    sum.E = e.A;
+    sum.a = e.a;
+    sum.c = e.c;
+    sum.y = e.y;
+    sum.f = e.f;
+    sum.T = e.T;
+    sum.span = e.w_max * e.q;
+    sum.doubt = doubt;
 }
 
 }  // namespace HOL_ISA
