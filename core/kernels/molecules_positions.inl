@@ -26,6 +26,7 @@ private:
 template <int N, bool uniform>
 HOL_INLINE void set_molecule(const Block &block, const Lane &head, Newton &x, vec *w, vec *a2) {
     const bool one_mass = block.uniform_w;
+    x.lengths = splat(N);
     x.a_min = x.a_max = splat(head.length_uniform);
     if (head.length) {
         double least = head.length[0], most = head.length[0];
@@ -36,6 +37,7 @@ HOL_INLINE void set_molecule(const Block &block, const Lane &head, Newton &x, ve
         x.a_min = splat(least);
         x.a_max = splat(most);
     }
+    x.per_a_min = splat(1.0) / x.a_min;
     x.a2_uniform = x.a_min * x.a_min;
     x.w = nullptr;
     x.a2 = nullptr;
@@ -87,12 +89,29 @@ HOL_INLINE void move_molecules(const Newton &x, double *r, double *v, double per
                 double *const p = v + elements * i + j * W;
                 store(p, mul_add(value[j * W + i], splat(per_dt), load(p)));
             }
-    for (int e = 0; e < rest; ++e)
-        for (int i = 0; i < W; ++i) {
+    if (rest == 0) return;
+    typedef double pair __attribute__((vector_size(16)));
+    typedef double pair_unaligned __attribute__((vector_size(16), aligned(8), may_alias));
+    vec *const last = value + full * W;
+    transpose(last);
+    for (int i = 0; i < W; ++i)
+        for (int e = 0; e < rest; e += 2) {
             const int at = elements * i + full * W + e;
-            const double move = value[full * W + e][i];
-            r[at] = r[at] + move;
-            if (v) v[at] = mul_add(move, per_dt, v[at]);
+            if (e + 1 == rest) {
+                r[at] = r[at] + last[i][e];
+                if (v) v[at] = mul_add(last[i][e], per_dt, v[at]);
+                continue;
+            }
+            pair_unaligned &p = *reinterpret_cast<pair_unaligned *>(r + at);
+            const pair move = {last[i][e], last[i][e + 1]};
+            p = p + move;
+            if (!v) continue;
+            pair_unaligned &q = *reinterpret_cast<pair_unaligned *>(v + at);
+#if HOL_HAS_FMA && defined(__x86_64__)
+            q = _mm_fmadd_pd(move, pair{per_dt, per_dt}, q);
+#else
+            q = pair{mul_add(move[0], per_dt, q[0]), mul_add(move[1], per_dt, q[1])};
+#endif
         }
 }
 
@@ -111,7 +130,7 @@ HOL_INLINE void note_molecules(const MoleculesCall &m, const Newton &x, vec erro
     tally.worst_bond = 0;
     vec largest = {};
     for (int k = 0; k < N; ++k) {
-        length_error<uniform>(m.block, x, k, false, Mover<uniform>::bond(mover, x, k), largest);
+        length_error<uniform>(x, k, false, Mover<uniform>::bond(mover, x, k), largest);
         if (found || !((uniform ? largest / x.a2_uniform : largest)[worst] >= error[worst])) continue;
         found = true;
         tally.worst_bond = k;
@@ -120,12 +139,13 @@ HOL_INLINE void note_molecules(const MoleculesCall &m, const Newton &x, vec erro
 
 // From molecule `first` on; returns the first one that is not done.
 template <int N, bool uniform>
-static __attribute__((noinline)) int64_t positions_of_molecules(const MoleculesCall &m, int64_t first, Tally &tally) {
+static __attribute__((noinline)) int64_t of_molecules(const MoleculesCall &m, int64_t first, Tally &tally) {
     vec memory[12 * N + 12], w[N + 1], a2[N];
     Arena arena = {reinterpret_cast<double *>(memory)};
     Newton x(N, arena);
     set_molecule<N, uniform>(m.block, m.unit.lanes[0], x, w, a2);
     const mask all = first_lanes(W);
+    const vec factor = splat(0.5 / (m.call.dt * m.call.dt)) / m.block.unit;
     for (; molecules_left(m.unit, first); first += W) {
         const int64_t at = 3 * (N + 1) * first;
         load_molecules<N>(m.r_ref + at, x.b);
@@ -148,7 +168,6 @@ static __attribute__((noinline)) int64_t positions_of_molecules(const MoleculesC
         note_molecules<N, uniform>(m, x, out.error, first, tally);
         move_molecules<N, uniform>(x, m.r + at, m.v ? m.v + at : nullptr, m.per_dt);
         if (m.lambda) {
-            const vec factor = splat(0.5 / (m.call.dt * m.call.dt)) / m.block.unit;
             for (int k = 0; k < N; ++k) {
                 const vec value = mul_add(x.tau[k], factor, vec{});
                 if (N == 1) store(m.lambda + first, value);
@@ -170,11 +189,11 @@ static int64_t small_molecules(const PositionsCall &call, const Unit &unit, cons
     const MoleculesCall m(call, unit, block);
     const bool uniform = block.uniform_w && !head.length;
     switch (head.n_bonds) {
-        case 1: return uniform ? positions_of_molecules<1, true>(m, first, tally) : positions_of_molecules<1, false>(m, first, tally);
-        case 2: return uniform ? positions_of_molecules<2, true>(m, first, tally) : positions_of_molecules<2, false>(m, first, tally);
-        case 3: return uniform ? positions_of_molecules<3, true>(m, first, tally) : positions_of_molecules<3, false>(m, first, tally);
-        case 4: return uniform ? positions_of_molecules<4, true>(m, first, tally) : positions_of_molecules<4, false>(m, first, tally);
-        default: return uniform ? positions_of_molecules<5, true>(m, first, tally) : positions_of_molecules<5, false>(m, first, tally);
+        case 1: return uniform ? of_molecules<1, true>(m, first, tally) : of_molecules<1, false>(m, first, tally);
+        case 2: return uniform ? of_molecules<2, true>(m, first, tally) : of_molecules<2, false>(m, first, tally);
+        case 3: return uniform ? of_molecules<3, true>(m, first, tally) : of_molecules<3, false>(m, first, tally);
+        case 4: return uniform ? of_molecules<4, true>(m, first, tally) : of_molecules<4, false>(m, first, tally);
+        default: return uniform ? of_molecules<5, true>(m, first, tally) : of_molecules<5, false>(m, first, tally);
     }
 }
 

@@ -3,202 +3,10 @@
 namespace holonomic {
 namespace HOL_ISA {
 
-static inline void set_lengths(const Block &block, const Lane *lane, Newton &x, Arena &arena) {
-    bool uniform = block.n == block.n_min;
-    vec a_min, a_max;
-    for (int i = 0; i < W; ++i) {
-        const Lane &one = lane[i < block.lanes ? i : 0];
-        a_min[i] = a_max[i] = one.length_uniform;
-        uniform = uniform && !one.length;
-        for (long k = 0; one.length && k < one.n_bonds; ++k) {
-            a_min[i] = __builtin_fmin(a_min[i], one.length[k]);
-            a_max[i] = __builtin_fmax(a_max[i], one.length[k]);
-        }
-    }
-    x.a_min = a_min;
-    x.a_max = a_max;
-    x.a2 = nullptr;
-    x.a2_uniform = a_min * a_min;
-    if (uniform) return;
-    vec *a2 = arena.vecs(block.n);
-    for (int i = 0; i < W; ++i) {
-        const Lane &one = lane[i < block.lanes ? i : 0];
-        for (long k = 0; k < block.n; ++k) {
-            const double a = one.length && k < one.n_bonds ? one.length[k] : one.length_uniform;
-            a2[k][i] = k < one.n_bonds ? a * a : 1.0;
-        }
-    }
-    x.a2 = a2;
-}
-
-// Bond vectors k0 .. k0 + W - 1, from pointers to atom k0 of each lane.
-template <bool boxed>
-HOL_INLINE void bonds_between(const Box &box, const double *const *p, vec3 *d) {
-    vec m[3 * W];
-    for (int j = 0; j < 3; ++j) {
-        for (int i = 0; i < W; ++i) m[j * W + i] = load(p[i] + W * j + 3) - load(p[i] + W * j);
-        transpose(m + j * W);
-    }
-    for (int a = 0; a < W; ++a) {
-        d[a] = {m[3 * a], m[3 * a + 1], m[3 * a + 2]};
-        vec3 unused = {};
-        if (boxed) wrap<false>(box, d[a], unused);
-    }
-}
-
-template <bool boxed>
-static inline void load_bond_vectors(const Block &block, const Box &box, const Packed &r, vec3 *D) {
-    const double *p[W];
-    vec3 d[W];
-    long k0 = 0;
-    for (; k0 + W <= block.n_min; k0 += W) {
-        for (int i = 0; i < W; ++i) p[i] = r.lane[i] + 3 * k0;
-        if (block.ahead)
-            for (int i = 0; i < W; ++i) fetch_ahead(p[i], block.ahead);
-        bonds_between<boxed>(box, p, d);
-        for (int a = 0; a < W; ++a) D[k0 + a] = d[a];
-    }
-    for (; k0 < block.n; k0 += W) {
-        double buffer[W][3 * W + 3];
-        for (int i = 0; i < W; ++i) p[i] = window(r.lane[i], k0, block.len[i], block.roomy, buffer[i]);
-        bonds_between<boxed>(box, p, d);
-        for (long a = 0; a < W && k0 + a < block.n; ++a) {  // inert bonds past the end of a lane: (1, 0, 0)
-            const mask m = live(block, k0 + a);
-            D[k0 + a] = {select(m, d[a].x, splat(1.0)), keep(m, d[a].y), keep(m, d[a].z)};
-        }
-    }
-}
-
-static inline void load_bond_vectors(const Block &block, const Box &box, const Packed &r, vec3 *D) {
-    if (box.shape == Box::none)
-        load_bond_vectors<false>(block, box, r, D);
-    else
-        load_bond_vectors<true>(block, box, r, D);
-}
-
-static inline void load_guess(const Block &block, const PositionsCall &call, const Newton &x) {
-    const vec factor = (2 * call.dt * call.dt) * block.unit;
-    for (int i = 0; i < W; ++i) {
-        const int lane = i < block.lanes ? i : 0;
-        for (long k = 0; k < block.n; ++k)
-            x.tau[k][i] = k < block.len[i] ? factor[i] * call.lambda[block.first_bond[lane] + k] : 0.0;
-    }
-}
-
-// Where the moves of the atoms go: positions, or velocities by the factor 1 / dt, or both.
-struct Targets {
-    Packed r, v;
-    double per_dt;
-};
-
-// Moves the atoms of the lanes in `which` by w_i (tau_{i+1} b_{i+1} - tau_i b_i).
-template <bool uniform_w, bool to_r, bool to_v>
-static inline void store_moves(const Block &block, const Newton &x, mask which, const Targets to) {
-    const unsigned chosen = bits(which & block.in_use());
-    const vec *const tau = x.tau;
-    const vec3 *const b = x.b;
-    vec3 before = {};
-    const auto move = [&](long k, vec *value) __attribute__((always_inline)) {
-        const vec3 after = times(tau[k], b[k]), m = times_w<uniform_w>(x, k, minus(after, before));
-        value[0] = m.x;
-        value[1] = m.y;
-        value[2] = m.z;
-        before = after;
-    };
-    long k0 = 0;
-    if (chosen == (1u << W) - 1) {
-        const vec per_dt = splat(to.per_dt);
-        for (; k0 + W <= block.n_min; k0 += W) {
-            vec value[3 * W];
-            for (int a = 0; a < W; ++a) move(k0 + a, value + 3 * a);
-            for (int j = 0; j < 3; ++j) {
-                transpose(value + j * W);
-                for (int i = 0; i < W; ++i) {
-                    double *const r = to.r.lane[i] + 3 * k0 + j * W, *const v = to.v.lane[i] + 3 * k0 + j * W;
-                    if (to_r) store(r, load(r) + value[j * W + i]);
-                    if (to_v) store(v, mul_add(value[j * W + i], per_dt, load(v)));
-                }
-            }
-        }
-    }
-    for (; k0 <= block.n; ++k0) {
-        vec value[3];
-        move(k0, value);
-        for (int i = 0; i < block.lanes; ++i) {
-            if (!(chosen >> i & 1) || k0 > block.len[i]) continue;
-            for (int c = 0; c < 3; ++c) {
-                const long e = 3 * k0 + c;
-                if (to_r) to.r.lane[i][e] = to.r.lane[i][e] + value[c][i];
-                if (to_v) to.v.lane[i][e] = mul_add(value[c][i], to.per_dt, to.v.lane[i][e]);
-            }
-        }
-    }
-}
-
-// Writes tau times a factor of the lanes in `which`; zeros as +0.
-static inline void store_multipliers(const Block &block, const Newton &x, vec factor, mask which, double *out) {
-    const unsigned chosen = bits(which & block.in_use());
-    double *p[W];
-    for (int i = 0; i < block.lanes; ++i) p[i] = out + block.first_bond[i];
-    long k0 = 0;
-    if (chosen == (1u << W) - 1)
-        for (; k0 + W <= block.n_min; k0 += W) {
-            vec m[W];
-            for (int a = 0; a < W; ++a) m[a] = mul_add(x.tau[k0 + a], factor, vec{});
-            transpose(m);
-            for (int i = 0; i < W; ++i) store(p[i] + k0, m[i]);
-        }
-    for (; k0 < block.n; ++k0) {
-        const vec value = mul_add(x.tau[k0], factor, vec{});
-        for (int i = 0; i < block.lanes; ++i)
-            if ((chosen >> i & 1) && k0 < block.len[i]) p[i][k0] = value[i];
-    }
-}
-
-// The first bond of a lane with this error.
-template <bool uniform_w, bool uniform_a>
-static __attribute__((noinline)) long worst_bond(const Block &block, const Newton &x, int lane, double error) {
-    Mover<uniform_w> mover = Mover<uniform_w>::start(x);
-    long k = 0;
-    for (vec worst = {}; k < block.len[lane]; ++k) {
-        length_error<uniform_a>(block, x, k, false, Mover<uniform_w>::bond(mover, x, k), worst);
-        if ((uniform_a ? worst / x.a2_uniform : worst)[lane] >= error) break;
-    }
-    return k < block.len[lane] ? k : 0;
-}
-
-template <bool uniform_w, bool uniform_a>
-static inline void note_worst(const Block &block, const Newton &x, mask which, vec error, Tally &tally) {
-    const unsigned chosen = bits(which & block.in_use());
-    int worst = -1;
-    for (int i = 0; i < block.lanes; ++i) {
-        if (!(chosen >> i & 1)) continue;
-        if (!(error[i] > tally.worst || tally.worst_chain < 0 ||
-              (error[i] == tally.worst && block.chain[i] < tally.worst_chain)))
-            continue;
-        tally.worst = error[i];
-        tally.worst_chain = block.chain[i];
-        worst = i;
-    }
-    if (worst >= 0) tally.worst_bond = worst_bond<uniform_w, uniform_a>(block, x, worst, tally.worst);
-}
-
-// - sum tau b (x) b / dt^2 over the bonds of the lanes in `which`.
-static inline void add_virial(const Block &block, const Newton &x, mask which, double dt, Tally &tally) {
-    vec s[6] = {};
-    for (long k = 0; k < block.n; ++k) {
-        const vec3 b = x.b[k], p = times(x.tau[k], b);
-        const vec term[6] = {p.x * b.x, p.x * b.y, p.x * b.z, p.y * b.y, p.y * b.z, p.z * b.z};
-        for (int c = 0; c < 6; ++c) s[c] = s[c] + term[c];
-    }
-    const vec factor = splat(1 / (dt * dt)) / block.unit;
-    for (int c = 0; c < 6; ++c) tally.virial[c] -= sum_lanes(keep(which & block.in_use(), s[c] * factor));
-}
-
 template <bool uniform_w, bool uniform_a, bool careful>
 static __attribute__((noinline)) Outcome solve_positions(const Block &block, Newton &x, const PositionsCall &call,
                                                          Carried &carried, mask wanted, bool guess) {
-    const mask single = wanted & less(block.lengths(), splat(1.5)), longer = wanted & ~single;
+    const mask single = wanted & less(x.lengths, splat(1.5)), longer = wanted & ~single;
     Outcome out = {};
     if (any(longer))
         out = iterate<uniform_w, uniform_a, careful>(block, x, call, carried, longer, guess);
@@ -223,7 +31,7 @@ static __attribute__((noinline)) Outcome solve_positions(const Block &block, New
 template <bool uniform_w>
 static inline mask coarse_moves(const Block &block, const Newton &x, Carried &carried, mask which) {
     vec pull = {};
-    go_down<0>(block, [&](long k) __attribute__((always_inline)) {
+    go_up<0>(block, [&](long k, bool) __attribute__((always_inline)) {
         const vec tau = abs(x.tau[k]);
         pull = max(uniform_w ? tau : max(x.w[k], x.w[k + 1]) * tau, pull);
     });
@@ -246,6 +54,7 @@ struct Positions {
     Positions(const Block &b, const Lane *l, const PositionsCall &c, Arena a, Tally &t)
         : block(b), lane(l), call(c), arena(a), tally(t), r_ref(open(c.r_ref, b, l, arena, true)),
           r(open(c.r, b, l, arena, true)), v(open(c.v, b, l, arena, true)), x(b.n, arena) {
+        x.lengths = block.lengths();
         x.w = block.w;
         set_lengths(block, lane, x, arena);
     }
@@ -273,7 +82,7 @@ struct Positions {
                 total[k] = x.tau[k];
                 x.correction[k] = vec{};
             }
-            load_bond_vectors(block, call.box, r, x.D);
+            load_bond_vectors(block, call.box, r, x.D, nullptr);
             x.step = x.correction;
             const vec error = residuals<uniform_w, uniform_a>(block, x);
             out.error = select(coarse, error, out.error);
@@ -311,15 +120,16 @@ struct Positions {
             if (call.virial) add_virial(block, x, out.converged, call.dt, tally);
         }
         if (call.lambda) {
-            store_multipliers(block, x, splat(0.5 / (call.dt * call.dt)) / block.unit, out.converged | out.untouched, call.lambda);
+            const vec factor = splat(0.5 / (call.dt * call.dt)) / block.unit;
+            store_multipliers(block, x, factor, out.converged | out.untouched, call.lambda);
         }
         tally.n_corrected += __builtin_popcount(bits(out.converged));
         if (out.solves > tally.iterations) tally.iterations = out.solves;
     }
 
     void load() const {
-        load_bond_vectors(block, call.box, r_ref, x.b);
-        load_bond_vectors(block, call.box, r, x.D);
+        load_bond_vectors(block, call.box, r_ref, x.b, call.v.x ? &v : nullptr);
+        load_bond_vectors(block, call.box, r, x.D, nullptr);
     }
 
     void solve() {
