@@ -61,7 +61,7 @@ struct Positions {
 
     template <bool to_r, bool to_v>
     void move(mask which) const {
-        store_moves<uniform_w, to_r, to_v>(block, x, which, Targets{r, v, 1 / call.dt});
+        store_moves<uniform_w, to_r, to_v>(block, x, which, r, v, 1 / call.dt);
     }
 
     // Goes on from the coordinates as they are rounded after a coarse move: the moves that remain are small, and so are

@@ -95,15 +95,11 @@ static inline void load_guess(const Block &block, const PositionsCall &call, con
     }
 }
 
-// Where the moves of the atoms go: positions, or velocities by the factor 1 / dt, or both.
-struct Targets {
-    Packed r, v;
-    double per_dt;
-};
-
-// Moves the atoms of the lanes in `which` by w_i (tau_{i+1} b_{i+1} - tau_i b_i).
+// Moves the atoms of the lanes in `which` by w_i (tau_{i+1} b_{i+1} - tau_i b_i), and changes their velocities by
+// `per_dt` times that: either, or both.
 template <bool uniform_w, bool to_r, bool to_v>
-static inline void store_moves(const Block &block, const Newton &x, mask which, const Targets to) {
+static inline void store_moves(const Block &block, const Newton &x, mask which, const Packed &r, const Packed &v,
+                               double per_dt) {
     const unsigned chosen = bits(which & block.in_use());
     const vec *const tau = x.tau;
     const vec3 *const b = x.b;
@@ -117,16 +113,16 @@ static inline void store_moves(const Block &block, const Newton &x, mask which, 
     };
     long k0 = 0;
     if (chosen == (1u << W) - 1) {
-        const vec per_dt = splat(to.per_dt);
+        const vec rate = splat(per_dt);
         for (; k0 + W <= block.n_min; k0 += W) {
             vec value[3 * W];
             for (int a = 0; a < W; ++a) move(k0 + a, value + 3 * a);
             for (int j = 0; j < 3; ++j) {
                 transpose(value + j * W);
                 for (int i = 0; i < W; ++i) {
-                    double *const r = to.r.lane[i] + 3 * k0 + j * W, *const v = to.v.lane[i] + 3 * k0 + j * W;
-                    if (to_r) store(r, load(r) + value[j * W + i]);
-                    if (to_v) store(v, mul_add(value[j * W + i], per_dt, load(v)));
+                    double *const p = r.lane[i] + 3 * k0 + j * W, *const q = v.lane[i] + 3 * k0 + j * W;
+                    if (to_r) store(p, load(p) + value[j * W + i]);
+                    if (to_v) store(q, mul_add(value[j * W + i], rate, load(q)));
                 }
             }
         }
@@ -138,8 +134,8 @@ static inline void store_moves(const Block &block, const Newton &x, mask which, 
             if (!(chosen >> i & 1) || k0 > block.len[i]) continue;
             for (int c = 0; c < 3; ++c) {
                 const long e = 3 * k0 + c;
-                if (to_r) to.r.lane[i][e] = to.r.lane[i][e] + value[c][i];
-                if (to_v) to.v.lane[i][e] = mul_add(value[c][i], to.per_dt, to.v.lane[i][e]);
+                if (to_r) r.lane[i][e] = r.lane[i][e] + value[c][i];
+                if (to_v) v.lane[i][e] = mul_add(value[c][i], per_dt, v.lane[i][e]);
             }
         }
     }
