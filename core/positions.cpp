@@ -50,9 +50,9 @@ private:
         team_.for_each(blocks_, unused, [&](std::int64_t j, double *scratch, Tally &) { body(j, scratch); });
     }
 
-    double correct() const {
+    double step(bool substitute) const {
         return largest([&](std::int64_t j, double *scratch) {
-            return phases_.correct(call_, lane_, j, store_, scratch);
+            return phases_.step(call_, lane_, j, substitute, store_, scratch);
         });
     }
 
@@ -168,7 +168,7 @@ private:
         }
         if (guess) {
             all([&](std::int64_t j, double *) { phases_.guess(call_, lane_, j, store_); });
-            const double with_guess = correct();
+            const double with_guess = step(false);
             if (!(with_guess <= error)) return attempt(careful, false, tally);
             error = with_guess;
             if (error <= done) {
@@ -180,13 +180,13 @@ private:
         bool renew = true;
         double rate = error;  // new factors square the error
         for (std::int64_t i = 0; i < call_.max_iterations; ++i) {
-            all([&](std::int64_t j, double *scratch) {
-                phases_.solve(call_, lane_, j, renew, careful, store_, scratch);
-            });
+            if (renew)
+                all([&](std::int64_t j, double *scratch) {
+                    phases_.factorize(call_, lane_, j, careful, store_, scratch);
+                });
             if (!phases_.join(lane_, renew, store_)) return false;
-            all([&](std::int64_t j, double *) { phases_.substitute(call_, lane_, j, store_); });
             const double before = error, expected_error = rate * before;
-            error = correct();
+            error = step(true);
             if (!std::isfinite(error)) return false;
             const bool floor = (expected_error < 0.125 * epsilon && error <= 4 * epsilon) || error > 0.25 * before;
             if (error <= done || (floor && error <= accepted)) {

@@ -122,11 +122,9 @@ struct LongPositions {
     void (*load)(const PositionsCall &, const Lane &, int64_t block, double *store, double *scratch, LongTally &);
     void (*guess)(const PositionsCall &, const Lane &, int64_t block, double *store);
     void (*forget)(const Lane &, int64_t block, double *store);
-    void (*solve)(const PositionsCall &, const Lane &, int64_t block, bool renew, bool careful, double *store,
-                  double *scratch);
-    bool (*join)(const Lane &, bool renew, double *store);
-    void (*substitute)(const PositionsCall &, const Lane &, int64_t block, double *store);
-    double (*correct)(const PositionsCall &, const Lane &, int64_t block, double *store, double *scratch);
+    void (*factorize)(const PositionsCall &, const Lane &, int64_t block, bool careful, double *store, double *scratch);
+    bool (*join)(const Lane &, bool renewed, double *store);
+    double (*step)(const PositionsCall &, const Lane &, int64_t block, bool substitute, double *store, double *scratch);
     double (*pull)(const Lane &, int64_t block, double *store);
     void (*finish)(const PositionsCall &, const Lane &, int64_t block, bool moved, double *store, double *scratch,
                    Tally &);

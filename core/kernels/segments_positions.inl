@@ -46,6 +46,13 @@ static double long_positions_pull(const Lane &lane, int64_t j, double *store) {
     const Cut cut(lane.n_bonds);
     const NewtonSegments x(store, cut.longest(), j);
     double largest = 0;
+    if (!lane.w && !lane.length) {
+        const SegmentBlock s = segment_block(cut, j, lane);
+        vec most = {};
+        for (long k = 0; k < s.own_max; ++k) most = max(most, abs(x.tau[k]));
+        for (int i = 0; i < W; ++i) largest = most[i] > largest ? most[i] : largest;
+        return largest * relative_w(lane, 0) * lane.length_uniform;
+    }
     for (int i = 0; i < W; ++i) {
         const int64_t first = cut.first(j * W + i), n = cut.length(j * W + i);
         for (int64_t k = 0; k < n; ++k) {
@@ -59,6 +66,26 @@ static double long_positions_pull(const Lane &lane, int64_t j, double *store) {
     return largest;
 }
 
+// The block's largest error and the first bond that has it.
+static inline void note_worst_bond(const SegmentBlock &s, const Lane &lane, const NewtonSegments &x, Tally &tally) {
+    const vec error = x.summary->error;
+    double worst = error[0];
+    for (int i = 1; i < W; ++i) worst = error[i] > worst ? error[i] : worst;
+    tally.worst = worst;
+    tally.worst_chain = lane.chain;
+    tally.worst_bond = -1;
+    for (int i = 0; i < W && tally.worst_bond < 0; ++i) {
+        if (error[i] < worst) continue;
+        for (long k = 0; k < s.own[i] && tally.worst_bond < 0; ++k) {
+            const double a = lane.length ? lane.length[s.from[i] + k] : lane.length_uniform, a2 = a * a;
+            const double dx = x.D[k].x[i], dy = x.D[k].y[i], dz = x.D[k].z[i];
+            const double sigma = 0.5 * mul_add(dz, dz, mul_add(dy, dy, mul_add(dx, dx, -a2)));
+            if (2 * (abs(sigma) / a2) >= worst) tally.worst_bond = s.from[i] + k;
+        }
+        if (tally.worst_bond < 0) tally.worst_bond = s.from[i];
+    }
+}
+
 // Writes r, v and lambda, and adds to the sums; with `moved` false the chain was within the tolerance as it came.
 static void long_positions_finish(const PositionsCall &call, const Lane &lane, int64_t j, bool moved, double *store,
                                   double *scratch, Tally &tally) {
@@ -66,17 +93,7 @@ static void long_positions_finish(const PositionsCall &call, const Lane &lane, i
     const NewtonSegments x(store, cut.longest(), j);
     SegmentBlock s = segment_block(cut, j, lane);
     Arena arena = {scratch};
-    for (long k = 0; k < s.own_max; ++k)
-        for (int i = 0; i < W; ++i) {
-            if (k >= s.own[i]) continue;
-            const double a = lane.length ? lane.length[s.from[i] + k] : lane.length_uniform;
-            const double e = abs(2 * x.s[k][i]) / (a * a);
-            if (tally.worst_chain >= 0 && !(e > tally.worst)) continue;
-            if (tally.worst_chain >= 0 && tally.worst_chain == lane.chain && e == tally.worst) continue;
-            tally.worst = e;
-            tally.worst_chain = lane.chain;
-            tally.worst_bond = s.from[i] + k;
-        }
+    note_worst_bond(s, lane, x, tally);
     if (moved) {
         set_segment_masses(s, lane, arena);
         const auto move = [&](const AtomArray &array, vec *t) {
