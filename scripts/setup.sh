@@ -5,6 +5,8 @@
 #   need NAME...            installs what is missing of these, or says what to install and ends the script
 #   want NAME...            the same for what a script can do without: if it can't be had, it says so and goes on
 #   build_jobs              prints how many compilations to run at once
+#   own_instruction_sets    prints which kernels beside the baseline's this machine can run, for HOLONOMIC_INSTRUCTION_SETS:
+#                           builds that only run here need no others
 
 say() {
     printf '== %s\n' "$*"
@@ -26,6 +28,13 @@ build_jobs() {
     echo "$cores"
 }
 
+own_instruction_sets() {
+    local sets=()
+    grep -qw avx2 /proc/cpuinfo 2>/dev/null && sets+=(avx2)
+    grep -qw avx512dq /proc/cpuinfo 2>/dev/null && sets+=(avx512)
+    (IFS=';' && echo "${sets[*]}")
+}
+
 # Whether NAME is there already. A compiler or a library counts only if it compiles something.
 present() {
     case $1 in
@@ -45,9 +54,19 @@ int main() { return static_cast<int>(benchmark::CPUInfo::Get().num_cpus) * 0; }'
         lapack) echo 'extern "C" void dptsv_(); int main() { dptsv_(); }' | c++ -x c++ - -llapack -o /dev/null 2>/dev/null ;;
         openmm) echo '#include <OpenMM.h>
 int main() { OpenMM::System system; }' | c++ -x c++ - -lOpenMM -o /dev/null 2>/dev/null ;;
+        flang) present_any flang flang-new flang-22 flang-21 flang-20 flang-new-19 flang-new-18 ;;
+        arm) command -v aarch64-linux-gnu-g++ >/dev/null && command -v qemu-aarch64 >/dev/null ;;
         eigen) [ -e /usr/include/eigen3/Eigen/Core ] || pkg-config --exists eigen3 2>/dev/null ;;
         *) command -v "$1" >/dev/null ;;
     esac
+}
+
+present_any() {
+    local name
+    for name in "$@"; do
+        command -v "$name" >/dev/null && return
+    done
+    return 1
 }
 
 # The Debian package that brings NAME.
@@ -60,6 +79,9 @@ debian_package() {
         mpfr) echo libmpfr-dev ;;
         libfuzzer) echo clang libclang-rt-dev ;;
         qemu-x86_64) echo qemu-user ;;
+        arm) echo g++-aarch64-linux-gnu qemu-user ;;
+        clang++) echo clang libomp-dev ;;
+        flang) newest_package '^flang-[0-9]+$' ;;
         gnuplot) echo gnuplot-nox ;;
         benchmark) echo libbenchmark-dev ;;
         lapack) echo liblapack-dev ;;
@@ -67,6 +89,13 @@ debian_package() {
         abidiff) echo abigail-tools ;;
         *) echo "$1" ;;
     esac
+}
+
+# The one with the highest number among the packages whose names match; without an index of packages, a guess.
+newest_package() {
+    local name
+    name=$(apt-cache --names-only search "$1" 2>/dev/null | cut -d ' ' -f 1 | sort -V | tail -n 1)
+    echo "${name:-flang}"
 }
 
 missing_of() {
