@@ -69,7 +69,8 @@ int hol_chains_set_tolerance(hol_chains *chains, double tolerance) {
     return guarded([&] {
         need(chains, "chains");
         if (!(tolerance >= 0) || !std::isfinite(tolerance))
-            throw make_error(HOL_ERR_VALUE, "the tolerance is %g; it must be positive, or 0 for the default", tolerance);
+            throw make_error(HOL_ERR_VALUE, "the tolerance is %g; it must be positive, or 0 for the default",
+                             tolerance);
         chains->chains.tolerance = tolerance;
     });
 }

@@ -24,9 +24,9 @@ void create(const hol_chains *chains, std::int64_t chain, const AtomArray &r, ho
     const holonomic::Chains &all = chains->chains;
     const std::int64_t number = chain - all.base;
     if (chain < all.base || number >= all.n_chains()) {
-        holonomic::Error error = make_error(HOL_ERR_INDEX, "chain %lld is outside %d .. %lld",
-                                            static_cast<long long>(chain), all.base,
-                                            static_cast<long long>(all.n_chains() - 1 + all.base));
+        holonomic::Error error =
+            make_error(HOL_ERR_INDEX, "chain %lld is outside %d .. %lld", static_cast<long long>(chain), all.base,
+                       static_cast<long long>(all.n_chains() - 1 + all.base));
         error.base = all.base;
         throw error;
     }
@@ -136,8 +136,8 @@ int hol_inverse_error_bound(const hol_inverse *inverse, const double *v, const d
     });
 }
 
-int hol_inverse_error_bound_view(const hol_inverse *inverse, const hol_view *v, const hol_view *f,
-                                 const double *lambda, double *bound, double *relative) {
+int hol_inverse_error_bound_view(const hol_inverse *inverse, const hol_view *v, const hol_view *f, const double *lambda,
+                                 double *bound, double *relative) {
     return guarded([&] {
         need(inverse, "inverse");
         need(lambda, "lambda");

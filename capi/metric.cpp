@@ -19,8 +19,8 @@ bool adds(int mode) {
 
 }  // namespace
 
-int hol_metric(const hol_chains *chains, const double *r, double kT, double *log_det, double *log_det_z,
-               double *energy, double *force, int mode) {
+int hol_metric(const hol_chains *chains, const double *r, double kT, double *log_det, double *log_det_z, double *energy,
+               double *force, int mode) {
     return guarded([&] {
         need(chains, "chains");
         need(r, "r");

@@ -21,18 +21,30 @@ const char *hol_version(void) { return HOL_VERSION_TEXT(HOL_VERSION_MAJOR, HOL_V
 
 const char *hol_status_name(int status) {
     switch (status) {
-        case HOL_OK: return "HOL_OK";
-        case HOL_ERR_NULL: return "HOL_ERR_NULL";
-        case HOL_ERR_VALUE: return "HOL_ERR_VALUE";
-        case HOL_ERR_INDEX: return "HOL_ERR_INDEX";
-        case HOL_ERR_SHARED_ATOM: return "HOL_ERR_SHARED_ATOM";
-        case HOL_ERR_MEMORY: return "HOL_ERR_MEMORY";
-        case HOL_ERR_NOT_FINITE: return "HOL_ERR_NOT_FINITE";
-        case HOL_ERR_DEGENERATE: return "HOL_ERR_DEGENERATE";
-        case HOL_ERR_NO_CONVERGENCE: return "HOL_ERR_NO_CONVERGENCE";
-        case HOL_ERR_NOT_DEFINITE: return "HOL_ERR_NOT_DEFINITE";
-        case HOL_ERR_INTERNAL: return "HOL_ERR_INTERNAL";
-        default: return "unknown status";
+        case HOL_OK:
+            return "HOL_OK";
+        case HOL_ERR_NULL:
+            return "HOL_ERR_NULL";
+        case HOL_ERR_VALUE:
+            return "HOL_ERR_VALUE";
+        case HOL_ERR_INDEX:
+            return "HOL_ERR_INDEX";
+        case HOL_ERR_SHARED_ATOM:
+            return "HOL_ERR_SHARED_ATOM";
+        case HOL_ERR_MEMORY:
+            return "HOL_ERR_MEMORY";
+        case HOL_ERR_NOT_FINITE:
+            return "HOL_ERR_NOT_FINITE";
+        case HOL_ERR_DEGENERATE:
+            return "HOL_ERR_DEGENERATE";
+        case HOL_ERR_NO_CONVERGENCE:
+            return "HOL_ERR_NO_CONVERGENCE";
+        case HOL_ERR_NOT_DEFINITE:
+            return "HOL_ERR_NOT_DEFINITE";
+        case HOL_ERR_INTERNAL:
+            return "HOL_ERR_INTERNAL";
+        default:
+            return "unknown status";
     }
 }
 

@@ -2,13 +2,14 @@
  * Brownian dynamics of bead-rod chains that start straight and coil up.
  *
  * Overdamped beads of friction 1 at kT = 1 on rods of length 1. A step displaces the beads by sqrt(2 dt) times normal
- * random numbers and dt times the metric force, and puts the rods back to their lengths with hol_project_positions: first
- * along the old rods (predictor), then along the rods half-way between the old and the new beads and with the force of
- * there (corrector). That is a mid-point scheme as in Liu, J. Chem. Phys. 90, 5826 (1989), with the constraints obeyed to
- * rounding. A step must be so small that no rod turns by a right angle at once: dt = 0.002 moves a rod's end by 0.06.
+ * random numbers and dt times the metric force, and puts the rods back to their lengths with hol_project_positions:
+ * first along the old rods (predictor), then along the rods half-way between the old and the new beads and with the
+ * force of there (corrector). That is a mid-point scheme as in Liu, J. Chem. Phys. 90, 5826 (1989), with the
+ * constraints obeyed to rounding. A step must be so small that no rod turns by a right angle at once: dt = 0.002 moves
+ * a rod's end by 0.06.
  *
- * With the metric force the rods become a freely jointed chain: mean square end-to-end distance N and mean square of the
- * cosine between neighbouring rods 1/3. Without it (metric=0) the cosine settles at what rigid rods have.
+ * With the metric force the rods become a freely jointed chain: mean square end-to-end distance N and mean square of
+ * the cosine between neighbouring rods 1/3. Without it (metric=0) the cosine settles at what rigid rods have.
  */
 #include <holonomic.h>
 #include <stdint.h>
@@ -45,8 +46,17 @@ static double *numbers(int64_t n)
 static melt straight_chains(const option *o)
 {
     const int64_t bonds = (int64_t)o[BONDS].value, chains = (int64_t)o[CHAINS].value, atoms = chains * (bonds + 1);
-    melt m = {bonds, chains, atoms, NULL, o[METRIC].value, numbers(3 * atoms), numbers(3 * atoms), numbers(3 * atoms),
-              numbers(3 * atoms), numbers(3 * atoms), noise_start((uint64_t)o[SEED].value)};
+    melt m = {bonds,
+              chains,
+              atoms,
+              NULL,
+              o[METRIC].value,
+              numbers(3 * atoms),
+              numbers(3 * atoms),
+              numbers(3 * atoms),
+              numbers(3 * atoms),
+              numbers(3 * atoms),
+              noise_start((uint64_t)o[SEED].value)};
     double *ones = numbers(atoms);
     for (int64_t i = 0; i < atoms; ++i) {
         ones[i] = 1;
@@ -130,8 +140,8 @@ static double report(const char *what, estimate e, double expected)
 
 int main(int argc, char **argv)
 {
-    option o[OPTIONS] = {{"bonds", 10, 2}, {"chains", 200, 1}, {"dt", 0.002, 1e-9},
-                         {"time", 150, 1e-6}, {"metric", 1, 0},  {"seed", 1, 0}};
+    option o[OPTIONS] = {{"bonds", 10, 2},    {"chains", 200, 1}, {"dt", 0.002, 1e-9},
+                         {"time", 150, 1e-6}, {"metric", 1, 0},   {"seed", 1, 0}};
     const char *output = "bead_rod_relaxation";
     char name[512];
     read_options(argc, argv, o, OPTIONS, &output);
@@ -152,8 +162,8 @@ int main(int argc, char **argv)
         return 2;
     }
     measure(&m, &square, &cosine);
-    printf("%d chains of %d rods, at the start mean square end-to-end distance / N = %.6f\n", (int)m.n_chains, (int)m.n_bonds,
-           square / n);
+    printf("%d chains of %d rods, at the start mean square end-to-end distance / N = %.6f\n", (int)m.n_chains,
+           (int)m.n_bonds, square / n);
     fprintf(data, "# time, mean square end-to-end distance / N, mean square cosine\n");
     for (long i = 1; i <= steps; ++i) {
         const double time = (double)i * dt;

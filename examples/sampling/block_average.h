@@ -1,6 +1,6 @@
 /**
- * Mean of a correlated series with its statistical error by block averaging (Flyvbjerg and Petersen 1989): neighbours are
- * averaged in pairs again and again; the error of the mean grows until the blocks are longer than the correlation.
+ * Mean of a correlated series with its statistical error by block averaging (Flyvbjerg and Petersen 1989): neighbours
+ * are averaged in pairs again and again; the error of the mean grows until the blocks are longer than the correlation.
  */
 #ifndef SAMPLING_BLOCK_AVERAGE_H
 #define SAMPLING_BLOCK_AVERAGE_H

@@ -4,9 +4,10 @@
  * Without it the angle between the first two bonds has the distribution of the rigid chain: proportional to
  * sqrt(1 - cos^2/4) for a trimer of equal masses. With it the distribution is flat, as for stiff springs.
  *
- * The sampling is Hamiltonian Monte Carlo on the constraints: velocities from the Maxwell distribution, projected; a short
- * RATTLE trajectory; acceptance by the change of energy. It samples the rigid measure times exp(-U/kT) without any error
- * of the time step, so that what differs from the expected curve is statistics. Masses, bond lengths and kT are 1.
+ * The sampling is Hamiltonian Monte Carlo on the constraints: velocities from the Maxwell distribution, projected; a
+ * short RATTLE trajectory; acceptance by the change of energy. It samples the rigid measure times exp(-U/kT) without
+ * any error of the time step, so that what differs from the expected curve is statistics. Masses, bond lengths and kT
+ * are 1.
  */
 #include <holonomic.h>
 #include <stdint.h>
@@ -20,9 +21,9 @@ enum { BINS = 40, GRID = 400 };
 typedef struct sampler {
     int64_t n_bonds, n_chains, n_atoms;
     hol_chains *chains;
-    double fixman;                                     /* factor of the Fixman potential: 1 or 0 */
+    double fixman; /* factor of the Fixman potential: 1 or 0 */
     double *r, *r_old, *r_ref, *v, *force, *log_det, *log_det_old, *energy_old;
-    unsigned char *failed;                             /* chains whose step the constraints can't follow */
+    unsigned char *failed; /* chains whose step the constraints can't follow */
     noise random;
     double accepted, proposed;
 } sampler;
@@ -97,8 +98,8 @@ static void kick(sampler *s, double dt)
 }
 
 /**
- * Puts the positions back on the constraints. Now and then a step is too large for a chain: the library leaves it as it was
- * and says so. Its proposal will be rejected; until then it goes on from where the proposal began.
+ * Puts the positions back on the constraints. Now and then a step is too large for a chain: the library leaves it as it
+ * was and says so. Its proposal will be rejected; until then it goes on from where the proposal began.
  */
 static void constrain(sampler *s, double dt)
 {
@@ -165,9 +166,9 @@ static double end_cosine(const sampler *s, int64_t chain, int last)
 }
 
 /**
- * The density of the end cosine of the rigid chain of equal masses, from what the other bonds contribute given the pivot
- * Omega_2^2 = 1 - c^2/4: V_N = 1, V_{n-1}(Omega) = mean over c of Omega' V_n(Omega'), Omega'^2 = 1 - (c/2)^2/Omega^2
- * (docs/theory.md (44)). Simpson's rule, tables on Omega in sqrt(1/2)..1. Returns the mean of cos^2.
+ * The density of the end cosine of the rigid chain of equal masses, from what the other bonds contribute given the
+ * pivot Omega_2^2 = 1 - c^2/4: V_N = 1, V_{n-1}(Omega) = mean over c of Omega' V_n(Omega'), Omega'^2 = 1 -
+ * (c/2)^2/Omega^2 (docs/theory.md (44)). Simpson's rule, tables on Omega in sqrt(1/2)..1. Returns the mean of cos^2.
  */
 static double rigid_density(int64_t n_bonds, double *density, int points)
 {
@@ -180,7 +181,8 @@ static double rigid_density(int64_t n_bonds, double *density, int points)
             double sum = 0;
             const int m = n == 2 ? points - 1 : 200;
             for (int k = 0; k <= m; ++k) {
-                const double c = (double)k / m, pivot = sqrt(1 - c * c / (4 * omega * omega)), at = (pivot - low) / step;
+                const double c = (double)k / m, pivot = sqrt(1 - c * c / (4 * omega * omega)),
+                             at = (pivot - low) / step;
                 const int j = at > 1 ? (at < GRID - 2 ? (int)at - 1 : GRID - 3) : 0;
                 double value = 0; /* cubic interpolation */
                 for (int a = 0; a < 4; ++a) {
@@ -226,8 +228,10 @@ static double sample(int64_t n_bonds, double fixman, double expected, const opti
     }
     const estimate e = block_average(series, moves);
     const double off = (e.mean - expected) / e.error;
-    printf("%2d bonds, Fixman potential times %-3g mean cos^2 %.6f +- %.6f, expected %.6f: %+.2f errors off; accepted %.4f\n",
-           (int)n_bonds, fixman, e.mean, e.error, expected, off, s.accepted / s.proposed);
+    printf(
+        "%2d bonds, Fixman potential times %-3g mean cos^2 %.6f +- %.6f, expected %.6f: %+.2f errors off; accepted "
+        "%.4f\n",
+        (int)n_bonds, fixman, e.mean, e.error, expected, off, s.accepted / s.proposed);
     fflush(stdout);
     for (int b = 0; b < BINS; ++b) {
         const estimate height = block_average(histogram + b * moves, moves);
@@ -248,9 +252,11 @@ static void plot(const char *output)
     fprintf(gp, "set terminal pngcairo size 1000,450\nset output '%s.png'\nset multiplot layout 1,2\n", output);
     fprintf(gp, "set xlabel '|cos theta| of the first two bonds'\nset ylabel 'density'\nset yrange [0.85:1.15]\n");
     for (int i = 0; i < 2; ++i)
-        fprintf(gp, "set title '%s'\nplot '%s.dat' index %d with yerrorbars title 'rigid', '' index %d with yerrorbars title "
-                    "'with the Fixman potential', '' index %d with lines lw 2 title 'rigid, exact', 1 lw 2 title 'flat'\n",
-                i ? "10 bonds" : "trimer", output, 3 * i, 3 * i + 1, 3 * i + 2);
+        fprintf(
+            gp,
+            "set title '%s'\nplot '%s.dat' index %d with yerrorbars title 'rigid', '' index %d with yerrorbars title "
+            "'with the Fixman potential', '' index %d with lines lw 2 title 'rigid, exact', 1 lw 2 title 'flat'\n",
+            i ? "10 bonds" : "trimer", output, 3 * i, 3 * i + 1, 3 * i + 2);
     fclose(gp);
     snprintf(command, sizeof command, "command -v gnuplot >/dev/null 2>&1 && gnuplot '%s' 2>/dev/null", name);
     if (system(command) == 0)
@@ -261,8 +267,8 @@ static void plot(const char *output)
 
 int main(int argc, char **argv)
 {
-    option o[] = {{"molecules", 1000, 1}, {"moves", 4096, 64}, {"steps", 8, 1}, {"dt", 0.12, 1e-6},
-                  {"seed", 1, 0},         {"factor", 1, -10}};
+    option o[] = {{"molecules", 1000, 1}, {"moves", 4096, 64}, {"steps", 8, 1},
+                  {"dt", 0.12, 1e-6},     {"seed", 1, 0},      {"factor", 1, -10}};
     const char *output = "fixman_sampling";
     char name[512];
     double density[2 * BINS + 1], worst = 0;
@@ -273,7 +279,8 @@ int main(int argc, char **argv)
         fprintf(stderr, "%s: can't be written\n", name);
         return 1;
     }
-    fprintf(data, "# |cos|, density, its error: rigid; with the Fixman potential; rigid, exact. Trimer, then ten bonds.\n");
+    fprintf(data,
+            "# |cos|, density, its error: rigid; with the Fixman potential; rigid, exact. Trimer, then ten bonds.\n");
     for (int i = 0; i < 2; ++i) {
         const int64_t n_bonds = i == 0 ? 2 : 10;
         const double rigid = rigid_density(n_bonds, density, 2 * BINS + 1);

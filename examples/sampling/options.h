@@ -11,7 +11,8 @@ typedef struct option {
     double value, least; /* the default, replaced by what is given; the smallest that makes sense */
 } option;
 
-/** Reads the arguments into options [n]; output gets the value of output=. Ends the program with a message on an error. */
+/** Reads the arguments into options [n]; output gets the value of output=. Ends the program with a message on an error.
+ */
 static inline void read_options(int argc, char **argv, option *options, int n, const char **output)
 {
     for (int i = 1; i < argc; ++i) {

@@ -84,10 +84,22 @@ static void hol_worst_is_frozen(void)
 /* The alignment of a type is the offset at which it comes after a char. */
 static void alignments_are_natural(void)
 {
-    struct view_after_char { char c; hol_view object; };
-    struct report_after_char { char c; hol_report object; };
-    struct worst_after_char { char c; hol_worst object; };
-    struct int64_after_char { char c; int64_t object; };
+    struct view_after_char {
+        char c;
+        hol_view object;
+    };
+    struct report_after_char {
+        char c;
+        hol_report object;
+    };
+    struct worst_after_char {
+        char c;
+        hol_worst object;
+    };
+    struct int64_after_char {
+        char c;
+        int64_t object;
+    };
     const size_t natural = offsetof(struct int64_after_char, object);
     IS(offsetof(struct view_after_char, object), natural);
     IS(offsetof(struct report_after_char, object), natural);

@@ -98,7 +98,8 @@ int64_t assembly_bonds(const assembly *a, int64_t c)
 void assembly_take(const assembly *a, int64_t c, const double *per_atom, double *out)
 {
     const int64_t *atoms = a->atoms + a->first[c];
-    for (int64_t i = 0; i <= assembly_bonds(a, c); ++i) memcpy(out + 3 * i, per_atom + 3 * atoms[i], 3 * sizeof(double));
+    for (int64_t i = 0; i <= assembly_bonds(a, c); ++i)
+        memcpy(out + 3 * i, per_atom + 3 * atoms[i], 3 * sizeof(double));
 }
 
 chain assembly_chain(const assembly *a, int64_t c)

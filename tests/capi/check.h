@@ -9,6 +9,8 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+
+/* which needs the four above */
 #include <cmocka.h>
 
 #include <float.h>
@@ -22,25 +24,24 @@
 #define CHECK(call)                                                                                                    \
     do {                                                                                                               \
         const int check_status = (call);                                                                               \
-        if (check_status != HOL_OK)                                                                                    \
-            fail_msg("%s: %s: %s", #call, hol_status_name(check_status), hol_error_message());                         \
+        if (check_status != HOL_OK) fail_msg("%s: %s: %s", #call, hol_status_name(check_status), hol_error_message()); \
     } while (0)
 
 /** Calls a function that must fail in this way, with a message. */
-#define CHECK_FAILS(status, call)                                                                                      \
-    do {                                                                                                               \
-        const int check_status = (call);                                                                               \
-        if (check_status != (status))                                                                                  \
-            fail_msg("%s: %s instead of %s", #call, hol_status_name(check_status), hol_status_name(status));           \
-        assert_true(hol_error_message()[0] != 0);                                                                      \
+#define CHECK_FAILS(status, call)                                                                            \
+    do {                                                                                                     \
+        const int check_status = (call);                                                                     \
+        if (check_status != (status))                                                                        \
+            fail_msg("%s: %s instead of %s", #call, hol_status_name(check_status), hol_status_name(status)); \
+        assert_true(hol_error_message()[0] != 0);                                                            \
     } while (0)
 
 /** Fails unless value is at most bound; says by how much. Not a number fails. */
-#define CHECK_AT_MOST(value, bound)                                                                                    \
-    do {                                                                                                               \
-        const long double check_value = (value), check_bound = (bound);                                                \
-        if (!(check_value <= check_bound))                                                                             \
-            fail_msg("%s = %Lg is above %s = %Lg", #value, check_value, #bound, check_bound);                          \
+#define CHECK_AT_MOST(value, bound)                                                           \
+    do {                                                                                      \
+        const long double check_value = (value), check_bound = (bound);                       \
+        if (!(check_value <= check_bound))                                                    \
+            fail_msg("%s = %Lg is above %s = %Lg", #value, check_value, #bound, check_bound); \
     } while (0)
 
 /** Allocates n doubles that hold a pattern which no calculation writes; the program ends if there is no memory. */
@@ -59,8 +60,8 @@ double *copy_of(const double *a, size_t n);
 void assert_message_names(const char *words);
 
 /**
- * Relative rounding of long double arithmetic as it runs: that of double under valgrind, which has no wider one, whatever
- * LDBL_EPSILON says.
+ * Relative rounding of long double arithmetic as it runs: that of double under valgrind, which has no wider one,
+ * whatever LDBL_EPSILON says.
  */
 long double long_double_rounding(void);
 

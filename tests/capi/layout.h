@@ -10,10 +10,10 @@
 
 typedef struct layout {
     const char *name;
-    int element;    /**< HOL_DOUBLE or HOL_FLOAT */
-    int step;       /**< elements from an atom to the next; 0: three separate arrays */
-    int order[3];   /**< where x, y and z stand in a record */
-    int backwards;  /**< the last atom comes first */
+    int element;   /**< HOL_DOUBLE or HOL_FLOAT */
+    int step;      /**< elements from an atom to the next; 0: three separate arrays */
+    int order[3];  /**< where x, y and z stand in a record */
+    int backwards; /**< the last atom comes first */
 } layout;
 
 /** All layouts: those of doubles first. */

@@ -4,7 +4,8 @@
 #include "random.h"
 
 static const double cutoff2 = 1.2599210498948732; /* 2^(1/3): the WCA potential ends at 2^(1/6) */
-static const double list_radius = 1.45;           /* pairs are listed to here, and again once an atom has moved half of what is beyond */
+static const double list_radius =
+    1.45; /* pairs are listed to here, and again once an atom has moved half of what is beyond */
 
 /** Position number `step` of a path that visits a cubic lattice, each site a neighbour of the one before. */
 static void lattice_path(int64_t step, int64_t side, double r[3])
@@ -72,7 +73,8 @@ static void list_pairs(melt *m)
     for (int64_t i = 0; i < m->n_atoms; ++i) {
         const int64_t c = cell_of(m, i, cells), z = c % cells, y = c / cells % cells, x = c / cells / cells;
         for (int64_t n = 0; n < 27; ++n) {
-            const int64_t nx = (x + n / 9 - 1 + cells) % cells, ny = (y + n / 3 % 3 - 1 + cells) % cells, nz = (z + n % 3 - 1 + cells) % cells;
+            const int64_t nx = (x + n / 9 - 1 + cells) % cells, ny = (y + n / 3 % 3 - 1 + cells) % cells,
+                          nz = (z + n % 3 - 1 + cells) % cells;
             list_with_cell(m, i, (nx * cells + ny) * cells + nz);
         }
     }
@@ -84,7 +86,8 @@ static int list_is_old(const melt *m)
     const double margin = (list_radius - sqrt(cutoff2)) / 2;
     for (int64_t i = 0; i < m->n_atoms; ++i) {
         double square = 0;
-        for (int x = 0; x < 3; ++x) square += (m->r[3 * i + x] - m->at_list[3 * i + x]) * (m->r[3 * i + x] - m->at_list[3 * i + x]);
+        for (int x = 0; x < 3; ++x)
+            square += (m->r[3 * i + x] - m->at_list[3 * i + x]) * (m->r[3 * i + x] - m->at_list[3 * i + x]);
         if (square > margin * margin) return 1;
     }
     return 0;
@@ -134,7 +137,8 @@ melt melt_make(int64_t n_chains, int64_t n_beads, double density, uint64_t seed)
     m.side = cbrt((double)m.n_atoms / density);
     const int64_t sites = (int64_t)m.side, cells = (int64_t)(m.side / list_radius), n = 3 * m.n_atoms;
     assert_true(sites * sites * sites >= m.n_atoms && cells >= 3);
-    m.r = doubles(n), m.v = doubles(n), m.f = doubles(n), m.w = doubles(m.n_atoms), m.before = doubles(n), m.at_list = doubles(n);
+    m.r = doubles(n), m.v = doubles(n), m.f = doubles(n), m.w = doubles(m.n_atoms), m.before = doubles(n),
+    m.at_list = doubles(n);
     m.lambda = doubles(m.n_atoms);
     m.head = integers(cells * cells * cells), m.next = integers(m.n_atoms);
     double mean[3] = {0, 0, 0}, *lengths = doubles(n_beads);

@@ -11,11 +11,11 @@
 typedef struct melt {
     hol_chains *chains;
     int64_t n_chains, n_beads, n_atoms;
-    double side;               /**< of the box */
-    double *r, *v, *f, *w;     /**< [n_atoms][3]; w = 1/m per atom */
-    double *before, *lambda;   /**< positions of the last step; multipliers of the last step */
+    double side;             /**< of the box */
+    double *r, *v, *f, *w;   /**< [n_atoms][3]; w = 1/m per atom */
+    double *before, *lambda; /**< positions of the last step; multipliers of the last step */
     double potential;
-    int64_t *head, *next;      /**< cells of the pair search */
+    int64_t *head, *next; /**< cells of the pair search */
     int64_t *pairs, n_pairs, capacity;
     double *at_list;           /**< positions when the pairs were listed */
     double worst_length;       /**< largest |d.d - 1| seen since it was last reset */

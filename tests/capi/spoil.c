@@ -2,21 +2,36 @@
 
 #include "check.h"
 
-const char *const spoiler_words[SPOILERS] = {"nan position", "infinite position", "nan velocity",    "nan force",
-                                            "infinite force", "zero bond",       "overflowing bond"};
+const char *const spoiler_words[SPOILERS] = {"nan position",   "infinite position", "nan velocity",    "nan force",
+                                             "infinite force", "zero bond",         "overflowing bond"};
 
 void spoil(assembly *a, int64_t c, int64_t at, spoiler how)
 {
     const int64_t atom = a->atoms[a->first[c] + at], before = a->atoms[a->first[c] + at - 1];
     switch (how) {
-    case NAN_POSITION: a->r[3 * atom + 1] = NAN; break;
-    case INFINITE_POSITION: a->r[3 * atom + 2] = INFINITY; break;
-    case NAN_VELOCITY: a->v[3 * atom] = NAN; break;
-    case NAN_FORCE: a->f[3 * atom + 2] = NAN; break;
-    case INFINITE_FORCE: a->f[3 * atom + 1] = -INFINITY; break;
-    case ZERO_BOND: memcpy(a->r + 3 * atom, a->r + 3 * before, 3 * sizeof(double)); break;
-    case OVERFLOWING_BOND: a->r[3 * atom] = 1e300; break;
-    default: break;
+        case NAN_POSITION:
+            a->r[3 * atom + 1] = NAN;
+            break;
+        case INFINITE_POSITION:
+            a->r[3 * atom + 2] = INFINITY;
+            break;
+        case NAN_VELOCITY:
+            a->v[3 * atom] = NAN;
+            break;
+        case NAN_FORCE:
+            a->f[3 * atom + 2] = NAN;
+            break;
+        case INFINITE_FORCE:
+            a->f[3 * atom + 1] = -INFINITY;
+            break;
+        case ZERO_BOND:
+            memcpy(a->r + 3 * atom, a->r + 3 * before, 3 * sizeof(double));
+            break;
+        case OVERFLOWING_BOND:
+            a->r[3 * atom] = 1e300;
+            break;
+        default:
+            break;
     }
 }
 

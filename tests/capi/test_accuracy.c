@@ -1,6 +1,6 @@
 /**
- * The accuracy promised for the time step: one long or short chain, unit bonds and masses, kT = 1, velocities projected,
- * positions drifted by dt v. The bounds are those of docs: what the rounding of the coordinates leaves.
+ * The accuracy promised for the time step: one long or short chain, unit bonds and masses, kT = 1, velocities
+ * projected, positions drifted by dt v. The bounds are those of docs: what the rounding of the coordinates leaves.
  */
 #include "assembly.h"
 #include "check.h"
@@ -42,7 +42,8 @@ static outcome step(chain_kind kind, int64_t n, double dt, uint64_t seed)
     }
     for (int64_t k = 0; o.status == HOL_OK && k < n; ++k) {
         long double square = 0;
-        for (int x = 0; x < 3; ++x) square += ((long double)q[3 * k + 3 + x] - q[3 * k + x]) * ((long double)q[3 * k + 3 + x] - q[3 * k + x]);
+        for (int x = 0; x < 3; ++x)
+            square += ((long double)q[3 * k + 3 + x] - q[3 * k + x]) * ((long double)q[3 * k + 3 + x] - q[3 * k + x]);
         const long double a2 = (long double)one.length[k] * one.length[k];
         o.error = fmax(o.error, (double)(fabsl(square - a2) / a2));
     }
@@ -73,8 +74,9 @@ static outcome worst_of(chain_kind kind, int64_t n, double dt)
     }
     qsort(errors, (size_t)count, sizeof *errors, compare);
     worst.typical = errors[count / 2];
-    print_message("%-16s N = %6lld, dt = %-6g error %.2g, typically %.2g, %lld iterations%s%s\n", chain_kind_name(kind), (long long)n, dt,
-                  worst.error, worst.typical, (long long)worst.iterations, worst.status ? ", " : "", worst.status ? hol_status_name(worst.status) : "");
+    print_message("%-16s N = %6lld, dt = %-6g error %.2g, typically %.2g, %lld iterations%s%s\n", chain_kind_name(kind),
+                  (long long)n, dt, worst.error, worst.typical, (long long)worst.iterations, worst.status ? ", " : "",
+                  worst.status ? hol_status_name(worst.status) : "");
     return worst;
 }
 
@@ -87,9 +89,9 @@ static void coils_end_at_the_rounding_of_their_coordinates(void **state)
         for (int large = 0; large < 2; ++large) {
             const outcome o = worst_of(CHAIN_COIL, lengths[i], large ? 0.02 : 0.005);
             assert_int_equal(o.status, HOL_OK);
-            /* a walk of N steps has coordinates of the order of sqrt(N), and so is the rounding: about 3e-16 at 1, 3e-15 at
-               100, 1e-13 at 1e5. The worst of several is beyond it: 1.3e-16, 3.2e-15
-               and 7e-14 for the exact solution rounded to doubles. */
+            /* a walk of N steps has coordinates of the order of sqrt(N), and so is the rounding: about 3e-16 at 1,
+               3e-15 at 100, 1e-13 at 1e5. The worst of several is beyond it: 1.3e-16, 3.2e-15 and 7e-14 for the exact
+               solution rounded to doubles. */
             count_above(o.typical, 3e-16 * sqrt((double)lengths[i]));
             count_above(o.error, 4.5e-16 * sqrt((double)lengths[i]));
             assert_in_range(o.iterations, 1, large ? 5 : 4);
@@ -116,13 +118,16 @@ static void hostile_chains_converge_to_the_rounding_or_are_refused(void **state)
 {
     (void)state;
     over = 0;
-    static const chain_kind hostile[] = {CHAIN_MASSES_1E3, CHAIN_MASSES_1E6, CHAIN_FIXED_ENDS, CHAIN_FOLDED, CHAIN_BOND_RATIO_1E6, CHAIN_OFFSET_1E6, CHAIN_TAUT, CHAIN_ROD_MASSES_1E9};
+    static const chain_kind hostile[] = {CHAIN_MASSES_1E3, CHAIN_MASSES_1E6,     CHAIN_FIXED_ENDS,
+                                         CHAIN_FOLDED,     CHAIN_BOND_RATIO_1E6, CHAIN_OFFSET_1E6,
+                                         CHAIN_TAUT,       CHAIN_ROD_MASSES_1E9};
     for (size_t i = 0; i < sizeof hostile / sizeof *hostile; ++i)
         for (int64_t n = 3; n <= 1000; n = n * 10 + 2) {
             const outcome o = worst_of(hostile[i], n, 0.005);
             assert_true(o.status == HOL_OK || o.status == HOL_ERR_NO_CONVERGENCE || o.status == HOL_ERR_DEGENERATE);
             /* of the chains that were done: rounding of coordinates up to n + 3e6, over the shortest bond */
-            const double extent = hostile[i] == CHAIN_OFFSET_1E6 ? 3e6 + (double)n : (double)n, shortest = hostile[i] == CHAIN_BOND_RATIO_1E6 ? 1e-6 : 1;
+            const double extent = hostile[i] == CHAIN_OFFSET_1E6 ? 3e6 + (double)n : (double)n,
+                         shortest = hostile[i] == CHAIN_BOND_RATIO_1E6 ? 1e-6 : 1;
             count_above(o.error, DBL_EPSILON * (2 * sqrt(3) * extent / shortest + 8));
             if (hostile[i] == CHAIN_MASSES_1E3 || hostile[i] == CHAIN_MASSES_1E6) assert_int_equal(o.status, HOL_OK);
         }

@@ -68,7 +68,8 @@ static void nothing_is_allocated_after_the_first_call(void **state)
         const size_t size = 3 * (size_t)atoms;
         chain c = chain_make(CHAIN_COIL, atoms - 1, 5);
         hol_chains *chains;
-        double *ones = malloc(sizeof *ones * (size_t)shapes[s][1]), *r = untouched(size), *v = untouched(size), *g = untouched(size), *lambda = untouched(size);
+        double *ones = malloc(sizeof *ones * (size_t)shapes[s][1]), *r = untouched(size), *v = untouched(size),
+               *g = untouched(size), *lambda = untouched(size);
         for (int64_t k = 0; k < shapes[s][1]; ++k) ones[k] = 1;
         CHECK(hol_chains_create(atoms, c.mass, &chains));
         CHECK(hol_chains_add_block(chains, shapes[s][0], shapes[s][1], 0, ones));

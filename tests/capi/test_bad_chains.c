@@ -155,7 +155,8 @@ static void velocities_that_are_not_finite_are_added_to_and_not_checked(void **s
     const double dt = 0.004;
     assembly a = assembly_of_kind(CHAIN_COIL, 9, 2, 30, IN_ORDER, 28);
     const size_t size = assembly_size(&a);
-    double *r = copy_of(a.r, size), *expected = copy_of(a.r, size), *v = copy_of(a.v, size), *expected_v = copy_of(a.v, size);
+    double *r = copy_of(a.r, size), *expected = copy_of(a.r, size), *v = copy_of(a.v, size),
+           *expected_v = copy_of(a.v, size);
     for (size_t i = 0; i < size; ++i) r[i] = expected[i] += dt * a.v[i];
     spoil(&a, 4, 2, NAN_VELOCITY);
     memcpy(v, a.v, size * sizeof *v);

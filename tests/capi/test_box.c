@@ -17,8 +17,14 @@ static const struct {
     const char *name;
     const double *box;
 } boxes[] = {
-    {"cube", cube},         {"brick", brick},     {"slab", slab},   {"negative", negative}, {"tilted", tilted},
-    {"general", general}, {"tilted slab", tilted_slab}, {"strongly tilted", strongly_tilted},
+    {"cube", cube},
+    {"brick", brick},
+    {"slab", slab},
+    {"negative", negative},
+    {"tilted", tilted},
+    {"general", general},
+    {"tilted slab", tilted_slab},
+    {"strongly tilted", strongly_tilted},
 };
 enum { BOXES = sizeof boxes / sizeof *boxes };
 
@@ -50,15 +56,16 @@ static void forces_take_the_nearest_image(void **state)
             const solution_problem p = {one.n_bonds, one.mass, NULL, one.r, one.v, one.f, boxes[b].box};
             solution exact;
             assert_int_equal(solution_forces(&p, &exact), 0);
-            /* a wrapped bond is the difference of coordinates up to 40 + 2 * 3 * 9 less a box vector: a relative error of
-               about 100 eps in the bond, which the bound for exact bonds doesn't cover; it moves lambda by as much times
-               the scale, twice (matrix and right side) */
+            /* a wrapped bond is the difference of coordinates up to 40 + 2 * 3 * 9 less a box vector: a relative error
+               of about 100 eps in the bond, which the bound for exact bonds doesn't cover; it moves lambda by as much
+               times the scale, twice (matrix and right side) */
             const long double unit = (oracle_bound(one.n_bonds) + 400) * DBL_EPSILON;
             for (int64_t k = 0; k < one.n_bonds; ++k)
                 CHECK_AT_MOST(fabsl(lambda[a.first_bond[c] + k] - exact.lambda[k]), unit * exact.lambda_scale[k]);
             for (int64_t i = 0; i <= one.n_bonds; ++i)
                 for (int x = 0; x < 3; ++x)
-                    CHECK_AT_MOST(fabsl(g[3 * a.atoms[a.first[c] + i] + x] - exact.g[3 * i + x]), unit * exact.g_scale[i]);
+                    CHECK_AT_MOST(fabsl(g[3 * a.atoms[a.first[c] + i] + x] - exact.g[3 * i + x]),
+                                  unit * exact.g_scale[i]);
             for (int i = 0; i < 9; ++i) sum[i] += exact.virial[i];
             scale += exact.virial_scale;
             solution_free(&exact);
@@ -87,7 +94,8 @@ static void a_box_changes_chains_that_do_not_cross_it_by_rounding_only(void **st
             assert_int_equal(solution_forces(&p, &exact), 0);
             for (int64_t k = 0; k < one.n_bonds; ++k) {
                 const int64_t at = a.first_bond[c] + k;
-                CHECK_AT_MOST(fabs(boxed[at] - lambda[at]), oracle_bound(one.n_bonds) * DBL_EPSILON * exact.lambda_scale[k]);
+                CHECK_AT_MOST(fabs(boxed[at] - lambda[at]),
+                              oracle_bound(one.n_bonds) * DBL_EPSILON * exact.lambda_scale[k]);
             }
             solution_free(&exact);
             chain_free(&one);
@@ -136,7 +144,8 @@ static void projections_take_the_nearest_image(void **state)
     (void)state;
     const double dt = 0.002;
     for (int b = 0; b < BOXES; ++b) {
-        assembly a = assembly_of_kind(CHAIN_COIL, 23, 1, 40, SCATTERED, 62 + (uint64_t)b), w = assembly_of_kind(CHAIN_COIL, 23, 1, 40, SCATTERED, 62 + (uint64_t)b);
+        assembly a = assembly_of_kind(CHAIN_COIL, 23, 1, 40, SCATTERED, 62 + (uint64_t)b),
+                 w = assembly_of_kind(CHAIN_COIL, 23, 1, 40, SCATTERED, 62 + (uint64_t)b);
         const size_t size = assembly_size(&a);
         double *shift = copy_of(a.r, size);
         wrap(&w, boxes[b].box, 4);
@@ -154,7 +163,8 @@ static void projections_take_the_nearest_image(void **state)
         assert_int_equal(report.n_failed, 0);
         for (size_t i = 0; i < size; ++i) {
             if (isnan(a.r[i])) continue;
-            /* coordinates of 100 carry 1.4e-14; the projection is well conditioned and may move it by some times that */
+            /* coordinates of 100 carry 1.4e-14; the projection is well conditioned and may move it by some times that
+             */
             CHECK_AT_MOST(fabs(wq[i] - shift[i] - q[i]), 40 * 100 * DBL_EPSILON);
             CHECK_AT_MOST(fabs(wv[i] - v[i]), 40 * 100 * DBL_EPSILON / dt);
         }

@@ -146,7 +146,8 @@ static void add_refuses_wrong_arguments_and_adds_nothing(void **state)
 {
     (void)state;
     hol_chains *c = make(10);
-    const int64_t good[3] = {0, 1, 2}, low[3] = {0, -1, 2}, high[3] = {0, 1, 10}, twice[3] = {4, 5, 4}, far[3] = {0, INT64_MIN, 1};
+    const int64_t good[3] = {0, 1, 2}, low[3] = {0, -1, 2}, high[3] = {0, 1, 10}, twice[3] = {4, 5, 4},
+                  far[3] = {0, INT64_MIN, 1};
     const int64_t huge[3] = {3, INT64_MAX, 4}, shared[3] = {6, 7, 1};
     const double lengths[2] = {1, 1};
     CHECK(hol_chains_add(c, 2, good, lengths));
@@ -290,7 +291,7 @@ static void memory_grows_with_the_bonds_and_is_modest(void **state)
     CHECK(hol_chains_add_block(c, n, 3, 0, lengths));
     const int64_t after = hol_chains_memory(c);
     assert_true(after >= before);
-    assert_true(before >= 8 * 4 * n); /* the masses at least, as no two are equal */
+    assert_true(before >= 8 * 4 * n);                        /* the masses at least, as no two are equal */
     CHECK_AT_MOST((double)after / (3.0 * (double)n), 100.0); /* bytes per bond */
     hol_chains_destroy(c);
     free(masses);

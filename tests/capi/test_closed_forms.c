@@ -1,9 +1,9 @@
 /**
- * One to five bonds with equal masses and unit lengths against the closed forms of the appendix of Mazars 2007, with the
- * corrections of docs/theory.md: lambda = D Z~^-1 D (K + C), and the entries of Z~^-1 as polynomials of gamma.
+ * One to five bonds with equal masses and unit lengths against the closed forms of the appendix of Mazars 2007, with
+ * the corrections of docs/theory.md: lambda = D Z~^-1 D (K + C), and the entries of Z~^-1 as polynomials of gamma.
  */
-#include "check.h"
 #include "chain.h"
+#include "check.h"
 #include "solution.h"
 
 /** Z~^-1 for n bonds, from gamma_2 .. gamma_n (g[2] .. g[n]). */
@@ -81,7 +81,8 @@ static void closed_forms(int n, double mass, uint64_t seed)
     assert_int_equal(solution_forces(&p, &exact), 0);
     for (int i = 1; i <= n; ++i) {
         long double sum = 0;
-        for (int j = 1; j <= n; ++j) sum += z[i - 1][j - 1] * right[j] / (8 * a[i] * a[j] / mass); /* Z_kk = 8 a^2 / m */
+        for (int j = 1; j <= n; ++j)
+            sum += z[i - 1][j - 1] * right[j] / (8 * a[i] * a[j] / mass); /* Z_kk = 8 a^2 / m */
         CHECK_AT_MOST(fabsl(lambda[i - 1] - sum), oracle_bound(n) * DBL_EPSILON * exact.lambda_scale[i - 1]);
         CHECK_AT_MOST(fabsl(exact.lambda[i - 1] - sum), 1000 * long_double_rounding() * exact.lambda_scale[i - 1]);
     }
@@ -101,7 +102,8 @@ static void one_bond_has_the_closed_form_with_a_quarter(void **state)
 {
     (void)state;
     /* A.1.2 corrected: lambda = 1/(4a) [(F1 - F0).u + m/a (v1 - v0)^2]; here 1/8 [3 + 1/2 (1 + 4)] */
-    const double mass[2] = {1, 1}, length = 2, r[6] = {0, 0, 0, 2, 0, 0}, v[6] = {0, 0, 0, 0, 1, 2}, f[6] = {-1, 5, 5, 2, 7, 1};
+    const double mass[2] = {1, 1}, length = 2, r[6] = {0, 0, 0, 2, 0, 0}, v[6] = {0, 0, 0, 0, 1, 2},
+                 f[6] = {-1, 5, 5, 2, 7, 1};
     double lambda, tension, g[6], virial[9];
     hol_chains *chains;
     CHECK(hol_chains_create(2, mass, &chains));

@@ -1,6 +1,6 @@
 /**
- * Chains without a solution, or with one that no number can hold: stretched taut between fixed atoms, two fixed atoms in
- * one bond, forces that overflow; and long chains, where the fault is met when most of the work is done.
+ * Chains without a solution, or with one that no number can hold: stretched taut between fixed atoms, two fixed atoms
+ * in one bond, forces that overflow; and long chains, where the fault is met when most of the work is done.
  */
 #include "assembly.h"
 #include "check.h"

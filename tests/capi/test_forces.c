@@ -51,7 +51,8 @@ static void assert_solution(const assembly *a, const double *v, const double *f,
         solution_free(&exact);
         chain_free(&one);
     }
-    /* the sum over chains adds at most one rounding of the largest partial sum per chain, sqrt of that if they are random */
+    /* the sum over chains adds at most one rounding of the largest partial sum per chain, sqrt of that if they are
+     * random */
     for (int i = 0; i < 9; ++i)
         CHECK_AT_MOST(fabsl(s.virial[i] - virial[i]),
                       allowed * DBL_EPSILON * virial_scale * (1 + sqrtl((long double)a->n_chains) / 16));
@@ -170,10 +171,15 @@ static void forces_make_the_second_derivative_of_every_bond_vanish(void **state)
                 const double mi = a.mass[i / 3], mj = a.mass[j / 3];
                 long double sum = 0, size = 0;
                 for (int x = 0; x < 3; ++x) {
-                    const long double d = (long double)a.r[j + x] - a.r[i + x], u = (long double)a.v[j + x] - a.v[i + x];
+                    const long double d = (long double)a.r[j + x] - a.r[i + x],
+                                      u = (long double)a.v[j + x] - a.v[i + x];
                     const long double wi = mi > 0 ? 1 / (long double)mi : 0, wj = mj > 0 ? 1 / (long double)mj : 0;
-                    sum += d * (wj * ((long double)a.f[j + x] + s.g[j + x]) - wi * ((long double)a.f[i + x] + s.g[i + x])) + u * u;
-                    size += fabsl(d) * (wj * (fabsl(a.f[j + x]) + fabs(s.g[j + x])) + wi * (fabsl(a.f[i + x]) + fabs(s.g[i + x]))) + u * u;
+                    sum += d * (wj * ((long double)a.f[j + x] + s.g[j + x]) -
+                                wi * ((long double)a.f[i + x] + s.g[i + x])) +
+                           u * u;
+                    size += fabsl(d) * (wj * (fabsl(a.f[j + x]) + fabs(s.g[j + x])) +
+                                        wi * (fabsl(a.f[i + x]) + fabs(s.g[i + x]))) +
+                            u * u;
                 }
                 /* G is a difference of two pulls, each of which may be larger than G, so its error is counted in terms
                    of the pulls of the neighbouring bonds */
@@ -211,7 +217,8 @@ static void constraint_forces_sum_to_zero_and_exert_no_torque(void **state)
                     torque[x] += d[y] * s.g[3 * atoms[i] + z] - d[z] * s.g[3 * atoms[i] + y];
                 }
             }
-            /* every pull acts on two atoms, oppositely: what is left are the roundings of the pulls, and of their sums */
+            /* every pull acts on two atoms, oppositely: what is left are the roundings of the pulls, and of their sums
+             */
             for (int x = 0; x < 3; ++x) {
                 CHECK_AT_MOST(fabsl(force[x]), 2 * DBL_EPSILON * size);
                 CHECK_AT_MOST(fabsl(torque[x]), 4 * DBL_EPSILON * size * reach);
@@ -234,13 +241,15 @@ static void virial_is_the_sum_of_positions_times_forces_and_of_tensions(void **s
             for (int x = 0; x < 3; ++x)
                 for (int y = 0; y < 3; ++y) {
                     const double *p = a.r + 3 * atoms[k], *q = a.r + 3 * atoms[k + 1];
-                    const long double t = 2 * s.lambda[a.first_bond[c] + k] * ((long double)q[x] - p[x]) * ((long double)q[y] - p[y]);
+                    const long double t =
+                        2 * s.lambda[a.first_bond[c] + k] * ((long double)q[x] - p[x]) * ((long double)q[y] - p[y]);
                     by_bonds[3 * x + y] -= t;
                     size += fabsl(t);
                 }
         for (int64_t i = 0; i <= assembly_bonds(&a, c); ++i)
             for (int x = 0; x < 3; ++x)
-                for (int y = 0; y < 3; ++y) by_atoms[3 * x + y] += (long double)a.r[3 * atoms[i] + x] * s.g[3 * atoms[i] + y];
+                for (int y = 0; y < 3; ++y)
+                    by_atoms[3 * x + y] += (long double)a.r[3 * atoms[i] + x] * s.g[3 * atoms[i] + y];
     }
     for (int i = 0; i < 9; ++i) {
         /* roundings: of each term, and of the sums over bonds, chains and lanes */
@@ -283,7 +292,8 @@ static void adding_mode_adds_and_atoms_of_no_chain_are_left_alone(void **state)
     (void)state;
     assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, 20, 1, 40, SCATTERED, 15);
     results s = compute(&a, a.v, a.f);
-    double *sum = copy_of(a.v, assembly_size(&a)), *in_place = copy_of(a.f, assembly_size(&a)), *bare = untouched(assembly_size(&a));
+    double *sum = copy_of(a.v, assembly_size(&a)), *in_place = copy_of(a.f, assembly_size(&a)),
+           *bare = untouched(assembly_size(&a));
     unsigned char *used = calloc((size_t)a.n_atoms, 1);
     for (int64_t i = 0; i < a.n_bonds + a.n_chains; ++i) used[a.atoms[i]] = 1;
     CHECK(hol_forces(a.chains, a.r, a.v, a.f, NULL, NULL, sum, HOL_ADD, NULL));

@@ -66,14 +66,17 @@ static void every_verb_leaves_inactive_chains_alone(void **state)
     unsigned char *active = leave_out(&a);
     assembly b = only_active(&a, active);
     const size_t n = (size_t)a.n_bonds, size = assembly_size(&a), b_size = assembly_size(&b);
-    double *g = untouched(size), *before = untouched(size), *lambda = untouched(n), *b_g = untouched(b_size), *b_lambda = untouched(n);
+    double *g = untouched(size), *before = untouched(size), *lambda = untouched(n), *b_g = untouched(b_size),
+           *b_lambda = untouched(n);
     double virial[9], b_virial[9];
 
     CHECK(hol_forces(a.chains, a.r, a.v, a.f, lambda, NULL, g, HOL_WRITE, virial));
     CHECK(hol_forces(b.chains, b.r, b.v, b.f, b_lambda, NULL, b_g, HOL_WRITE, b_virial));
     assert_matches(&a, active, g, before, lambda, &b, b_g, b_lambda);
     /* the chains stand in other blocks, so the sum over chains may be rounded elsewhere */
-    for (int i = 0; i < 9; ++i) CHECK_AT_MOST(fabs(virial[i] - b_virial[i]), 64 * DBL_EPSILON * (fabs(b_virial[0]) + fabs(b_virial[4]) + fabs(b_virial[8])));
+    for (int i = 0; i < 9; ++i)
+        CHECK_AT_MOST(fabs(virial[i] - b_virial[i]),
+                      64 * DBL_EPSILON * (fabs(b_virial[0]) + fabs(b_virial[4]) + fabs(b_virial[8])));
 
     double *v = copy_of(a.v, size), *b_v = copy_of(b.v, b_size), *fresh = untouched(n);
     CHECK(hol_project_velocities(a.chains, a.r, v, fresh, virial));

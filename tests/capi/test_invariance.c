@@ -65,7 +65,8 @@ static void assert_same_outputs(const assembly *a, const outputs *p, const outpu
 }
 
 /** Chain i of one set of outputs against chain j of another. */
-static void assert_same_chain(const assembly *a, int64_t i, const outputs *p, const assembly *b, int64_t j, const outputs *q)
+static void assert_same_chain(const assembly *a, int64_t i, const outputs *p, const assembly *b, int64_t j,
+                              const outputs *q)
 {
     const size_t n = (size_t)assembly_bonds(a, i), size = 3 * (n + 1);
     assert_int_equal(assembly_bonds(b, j), n);
@@ -261,7 +262,8 @@ static void straight_chains_scale_exactly_too(void **state)
 {
     (void)state;
     /* the case in which the library compensates products: thresholds must not depend on units */
-    static const chain_kind straight[] = {CHAIN_NEARLY_STRAIGHT, CHAIN_STRAIGHT, CHAIN_ROD_MASSES_1E9, CHAIN_TAUT, CHAIN_OFFSET_1E6};
+    static const chain_kind straight[] = {CHAIN_NEARLY_STRAIGHT, CHAIN_STRAIGHT, CHAIN_ROD_MASSES_1E9, CHAIN_TAUT,
+                                          CHAIN_OFFSET_1E6};
     for (size_t i = 0; i < sizeof straight / sizeof *straight; ++i) {
         chain one = chain_make(straight[i], 64, 3);
         assembly a = assembly_make(&one, 1, IN_ORDER, 0);

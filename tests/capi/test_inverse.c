@@ -1,6 +1,6 @@
 /** The inverse of Z: against 113-bit solutions and closed forms, and its error bounds against true errors. */
-#include "check.h"
 #include "chain.h"
+#include "check.h"
 #include "layout.h"
 #include "random.h"
 #include "solution.h"
@@ -54,7 +54,7 @@ static void elements_agree_with_113_bits_for_every_kind_of_chain(void **state)
             const solution_problem p = {n, c.mass, w, c.r, NULL, NULL, NULL};
             hol_inverse *inverse = inverse_of(&c);
             assert_int_equal(hol_inverse_n_bonds(inverse), n);
-            for (int64_t i = 0; i < n; i += n > 40 ? 37 : 1) {
+            for (int64_t i = 0; i<n; i += n> 40 ? 37 : 1) {
                 assert_int_equal(solution_inverse_column(&p, i, exact), 0);
                 CHECK(hol_inverse_row(inverse, HOL_UNIT_DIAGONAL, i, row));
                 for (int64_t j = 0; j < n; ++j) {
@@ -162,7 +162,8 @@ static void straight_chain_has_the_closed_form_up_to_a_million_bonds(void **stat
             const int64_t low = i < j ? i : j, high = i < j ? j : i;
             const long double exact = 2.0L * (long double)low * (long double)(n + 1 - high) / (long double)(n + 1);
             CHECK(hol_inverse_entry(inverse, HOL_UNIT_DIAGONAL, i - 1, j - 1, &value));
-            CHECK_AT_MOST(fabsl(value - exact), (oracle_bound(n) + 2 * (long double)(high - low)) * DBL_EPSILON * exact);
+            CHECK_AT_MOST(fabsl(value - exact),
+                          (oracle_bound(n) + 2 * (long double)(high - low)) * DBL_EPSILON * exact);
         }
         /* |Z~| = 2, largest row of the inverse: sum_j 2 min(i,j)(N+1-max)/(N+1) = i (N+1-i) at the middle */
         const long double middle = (long double)((n + 1) / 2);
@@ -253,7 +254,8 @@ static void views_and_index_base_give_the_same(void **state)
     CHECK(hol_forces(chains, c.r, c.v, c.f, lambda, NULL, NULL, HOL_WRITE, NULL));
     CHECK(hol_inverse_create(chains, 0, c.r, &inverse));
     CHECK(hol_chains_set_index_base(chains, 1));
-    laid_out r = lay_out(&layouts[1], 10, c.r, 3), v = lay_out(&layouts[2], 10, c.v, 3), f = lay_out(&layouts[1], 10, c.f, 3);
+    laid_out r = lay_out(&layouts[1], 10, c.r, 3), v = lay_out(&layouts[2], 10, c.v, 3),
+             f = lay_out(&layouts[1], 10, c.f, 3);
     CHECK(hol_inverse_create_view(chains, 1, &r.view, &other));
     for (int64_t i = 0; i < 9; ++i) {
         CHECK(hol_inverse_entry(inverse, HOL_PHYSICAL, i, 3, &a));

@@ -1,6 +1,6 @@
 /**
- * ln det Z~, the Fixman potential and its force: against solutions in 113-bit arithmetic, closed forms and what must hold
- * exactly.
+ * ln det Z~, the Fixman potential and its force: against solutions in 113-bit arithmetic, closed forms and what must
+ * hold exactly.
  */
 #include "assembly.h"
 #include "check.h"
@@ -49,7 +49,8 @@ static void metric_agrees_with_113_bits_for_every_kind_of_chain(void **state)
 {
     (void)state;
     for (int kind = 0; kind < CHAIN_KINDS; ++kind)
-        for (int64_t n = kind == CHAIN_FIXED_ENDS || kind == CHAIN_TAUT ? 2 : 1; n <= 40; n += n < 10 && !quick_run() ? 1 : 13)
+        for (int64_t n = kind == CHAIN_FIXED_ENDS || kind == CHAIN_TAUT ? 2 : 1; n <= 40;
+             n += n < 10 && !quick_run() ? 1 : 13)
             compare_with_solution((chain_kind)kind, n, (uint64_t)n);
 }
 
@@ -81,9 +82,10 @@ static void force_is_minus_the_gradient(void **state)
             CHECK(hol_metric(chains, c.r, 1, NULL, NULL, NULL, force, HOL_WRITE));
             /* beside the library's rounding that of the differences: 2^-112 over the step, 1e-8, times the condition */
             for (int64_t i = 0; i < 3 * (n + 1); ++i)
-                CHECK_AT_MOST(fabsl(force[i] - slope[i]),
-                              (2 * oracle_bound(n) * DBL_EPSILON + 1e-20L * exact.condition) * exact.fixman_scale[i / 3] +
-                                  1e-24L * exact.condition / c.length[i / 3 < n ? i / 3 : n - 1]);
+                CHECK_AT_MOST(
+                    fabsl(force[i] - slope[i]),
+                    (2 * oracle_bound(n) * DBL_EPSILON + 1e-20L * exact.condition) * exact.fixman_scale[i / 3] +
+                        1e-24L * exact.condition / c.length[i / 3 < n ? i / 3 : n - 1]);
             hol_chains_destroy(chains);
             solution_metric_free(&exact);
             free(slope);
@@ -183,7 +185,8 @@ static void physical_determinant_adds_the_diagonal(void **state)
                     const long double d = (long double)c.r[3 * k + 3 + x] - c.r[3 * k + x];
                     square += d * d;
                 }
-                const long double term = logl(4 * (1 / (long double)c.mass[k] + 1 / (long double)c.mass[k + 1]) * square);
+                const long double term =
+                    logl(4 * (1 / (long double)c.mass[k] + 1 / (long double)c.mass[k + 1]) * square);
                 sum += term;
                 size += fabsl(term);
             }

@@ -56,7 +56,8 @@ static void short_chains_have_closed_forms(void **state)
         for (int i = 0; i < 3; ++i) m[i] = exp(8 * random_normal(&random));
         const long double x = m[2] / ((long double)m[1] + m[2]) * (m[0] / ((long double)m[1] + m[0]));
         /* 1 - x = m_1 (m_0 + m_1 + m_2) / ((m_1 + m_2) (m_1 + m_0)) */
-        const long double y = m[1] / ((long double)m[1] + m[2]) * (((long double)m[0] + m[1] + m[2]) / ((long double)m[1] + m[0]));
+        const long double y =
+            m[1] / ((long double)m[1] + m[2]) * (((long double)m[0] + m[1] + m[2]) / ((long double)m[1] + m[0]));
         const long double angle = atan2l(sqrtl(x), sqrtl(y)) / sqrtl(x);
         CHECK_AT_MOST(fabsl(value(2, m, -1) - logl(angle)), bound(2, 0));
         CHECK_AT_MOST(fabsl(value(2, m, 1) - logl((sqrtl(y) + angle) / 2)), bound(2, 0));

@@ -1,4 +1,5 @@
-/** Position projection when it cannot succeed: nothing of the chain changes, the others are done, and the report says so. */
+/** Position projection when it cannot succeed: nothing of the chain changes, the others are done, and the report says
+ * so. */
 #include "assembly.h"
 #include "check.h"
 
@@ -10,7 +11,8 @@ typedef struct arrays {
 
 static arrays begin(const assembly *a)
 {
-    arrays s = {copy_of(a->r, assembly_size(a)), copy_of(a->v, assembly_size(a)), untouched((size_t)a->n_bonds), untouched(9)};
+    arrays s = {copy_of(a->r, assembly_size(a)), copy_of(a->v, assembly_size(a)), untouched((size_t)a->n_bonds),
+                untouched(9)};
     for (size_t i = 0; i < assembly_size(a); ++i) s.r[i] += time_step * a->v[i];
     return s;
 }
@@ -38,7 +40,8 @@ static void out_of_reach(const assembly *a, int64_t c, double *r)
     double d[3], e[3] = {0, 0, 0};
     for (int x = 0; x < 3; ++x) d[x] = a->r[j + x] - a->r[i + x];
     e[fabs(d[0]) < 0.5 ? 0 : 1] = 1;
-    for (int x = 0; x < 3; ++x) r[i + x] = r[j + x] - 9 * (d[(x + 1) % 3] * e[(x + 2) % 3] - d[(x + 2) % 3] * e[(x + 1) % 3]);
+    for (int x = 0; x < 3; ++x)
+        r[i + x] = r[j + x] - 9 * (d[(x + 1) % 3] * e[(x + 2) % 3] - d[(x + 2) % 3] * e[(x + 1) % 3]);
 }
 
 /** Throws the whole chain about. */
@@ -58,7 +61,8 @@ static void fail_with(spoiler spoil, const int64_t *bad, int n_bad, int threads,
     for (int i = 0; i < n_bad; ++i) spoil(&a, bad[i], got.r);
     arrays before = {copy_of(got.r, assembly_size(&a)), 0, 0, 0};
     hol_report report;
-    CHECK_FAILS(HOL_ERR_NO_CONVERGENCE, hol_project_positions(a.chains, a.r, got.r, with_v ? got.v : NULL, time_step, got.lambda, 0, got.virial, &report));
+    CHECK_FAILS(HOL_ERR_NO_CONVERGENCE, hol_project_positions(a.chains, a.r, got.r, with_v ? got.v : NULL, time_step,
+                                                              got.lambda, 0, got.virial, &report));
     int64_t where, count;
     hol_error_location(&where, NULL, NULL, &count);
     assert_int_equal(where, bad[0]);
@@ -103,7 +107,8 @@ static void a_hard_bound_on_iterations_ends_in_a_status(void **state)
     arrays s = begin(&a), before = begin(&a);
     hol_report report;
     CHECK(hol_chains_set_max_iterations(a.chains, 1));
-    CHECK_FAILS(HOL_ERR_NO_CONVERGENCE, hol_project_positions(a.chains, a.r, s.r, s.v, time_step, s.lambda, 0, s.virial, &report));
+    CHECK_FAILS(HOL_ERR_NO_CONVERGENCE,
+                hol_project_positions(a.chains, a.r, s.r, s.v, time_step, s.lambda, 0, s.virial, &report));
     assert_same_bits(s.r, before.r, assembly_size(&a));
     assert_same_bits(s.v, before.v, assembly_size(&a));
     assert_untouched(s.lambda, (size_t)a.n_bonds);
@@ -133,7 +138,8 @@ static void wrong_arguments_are_refused_and_nothing_is_written(void **state)
     CHECK_FAILS(HOL_ERR_NULL, hol_project_positions(a.chains, a.r, s.r, s.v, 1, NULL, 1, s.virial, &report));
     static const double wrong[] = {0, -1, -0.0, NAN, INFINITY, -INFINITY};
     for (int i = 0; i < 6; ++i)
-        CHECK_FAILS(HOL_ERR_VALUE, hol_project_positions(a.chains, a.r, s.r, s.v, wrong[i], s.lambda, 0, s.virial, &report));
+        CHECK_FAILS(HOL_ERR_VALUE,
+                    hol_project_positions(a.chains, a.r, s.r, s.v, wrong[i], s.lambda, 0, s.virial, &report));
     CHECK_FAILS(HOL_ERR_VALUE, hol_project_positions(a.chains, a.r, s.r, s.v, 1, s.lambda, 2, s.virial, &report));
     CHECK_FAILS(HOL_ERR_VALUE, hol_project_positions(a.chains, a.r, s.r, s.v, 1, s.lambda, -1, s.virial, &report));
     assert_same_bits(s.r, before.r, assembly_size(&a));
@@ -154,7 +160,8 @@ static void a_wild_guess_ends_on_the_lengths_or_in_a_status(void **state)
         arrays s = begin(&a), before = begin(&a);
         for (int64_t k = 0; k < a.n_bonds; ++k) s.lambda[k] = k % 3 ? guesses[g] : 0;
         const int status = hol_project_positions(a.chains, a.r, s.r, s.v, time_step, s.lambda, 1, NULL, NULL);
-        assert_true(status == HOL_OK || status == HOL_ERR_NO_CONVERGENCE || status == HOL_ERR_NOT_FINITE || status == HOL_ERR_DEGENERATE);
+        assert_true(status == HOL_OK || status == HOL_ERR_NO_CONVERGENCE || status == HOL_ERR_NOT_FINITE ||
+                    status == HOL_ERR_DEGENERATE);
         for (int64_t c = 0; c < a.n_chains; ++c) {
             const int64_t *atoms = a.atoms + a.first[c];
             int moved = 0;
@@ -162,7 +169,9 @@ static void a_wild_guess_ends_on_the_lengths_or_in_a_status(void **state)
                 moved |= memcmp(s.r + 3 * atoms[i], before.r + 3 * atoms[i], 3 * sizeof(double)) != 0;
             for (int64_t k = 0; moved && k < assembly_bonds(&a, c); ++k) {
                 double square = 0;
-                for (int x = 0; x < 3; ++x) square += (s.r[3 * atoms[k + 1] + x] - s.r[3 * atoms[k] + x]) * (s.r[3 * atoms[k + 1] + x] - s.r[3 * atoms[k] + x]);
+                for (int x = 0; x < 3; ++x)
+                    square += (s.r[3 * atoms[k + 1] + x] - s.r[3 * atoms[k] + x]) *
+                              (s.r[3 * atoms[k + 1] + x] - s.r[3 * atoms[k] + x]);
                 /* a solution far away has larger coordinates, but unit bonds keep a chain of 40 within 60 */
                 CHECK_AT_MOST(fabs(square - 1), 4 * 60 * DBL_EPSILON);
             }

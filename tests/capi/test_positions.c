@@ -55,11 +55,13 @@ static void check_against_newton(const chain *one, double dt, long double close)
         }
         CHECK_AT_MOST(fabsl(square - length * length) / (length * length), rounding_of_a_bond(extent, length));
     }
-    for (int64_t i = 0; i < 3 * (n + 1); ++i) CHECK_AT_MOST(fabsl(q[i] - exact_q[i]), close * DBL_EPSILON * (extent + 1));
+    for (int64_t i = 0; i < 3 * (n + 1); ++i)
+        CHECK_AT_MOST(fabsl(q[i] - exact_q[i]), close * DBL_EPSILON * (extent + 1));
     /* dt^2 w 2 lambda |b| moves an atom; an error of it is one of the positions */
     for (int64_t k = 0; k < n; ++k) {
         const long double w = 1 / (long double)(one->mass[k] > 0 ? one->mass[k] : one->mass[k + 1]);
-        CHECK_AT_MOST(fabsl(lambda[k] - exact.lambda[k]) * dt * dt * w * 2 * one->length[k], 4 * close * DBL_EPSILON * (extent + 1));
+        CHECK_AT_MOST(fabsl(lambda[k] - exact.lambda[k]) * dt * dt * w * 2 * one->length[k],
+                      4 * close * DBL_EPSILON * (extent + 1));
     }
     solution_free(&exact);
     free(start), free(q), free(lambda), free(exact_q);
@@ -74,7 +76,7 @@ static void positions_agree_with_newton_in_113_bits(void **state)
         double dt;
         long double close; /* how many roundings of the coordinates the geometry may make out of one */
     } problems[] = {
-        {CHAIN_COIL, 0.005, 20},        {CHAIN_COIL, 0.02, 20},       {CHAIN_HETEROGENEOUS, 0.005, 40},
+        {CHAIN_COIL, 0.005, 20},        {CHAIN_COIL, 0.02, 20},        {CHAIN_HETEROGENEOUS, 0.005, 40},
         {CHAIN_LATTICE, 0.02, 20},      {CHAIN_MASSES_1E3, 0.005, 40}, {CHAIN_MASSES_1E6, 0.005, 40},
         {CHAIN_FIXED_ENDS, 0.005, 100},
     };
@@ -131,7 +133,8 @@ static void velocities_take_the_displacement_over_the_time_step(void **state)
     CHECK(hol_project_positions(a.chains, a.r, without, NULL, dt, NULL, 0, NULL, NULL));
     assert_same_bits(q, without, assembly_size(&a));
     for (size_t i = 0; i < assembly_size(&a); ++i) {
-        const long double moved = ((long double)q[i] - start[i]) / dt, bound = DBL_EPSILON * (fabs(q[i]) / dt + fabs(v[i]) + fabs(a.v[i]) + 4 * fabsl(moved));
+        const long double moved = ((long double)q[i] - start[i]) / dt,
+                          bound = DBL_EPSILON * (fabs(q[i]) / dt + fabs(v[i]) + fabs(a.v[i]) + 4 * fabsl(moved));
         CHECK_AT_MOST(fabsl((long double)v[i] - a.v[i] - moved), bound);
     }
     free(start), free(q), free(v), free(without);
@@ -157,7 +160,8 @@ static void corrections_conserve_momentum_and_angular_momentum(void **state)
             }
             size += a.mass[atom];
             for (int x = 0; x < 3; ++x)
-                l[x] += a.r[3 * atom + (x + 1) % 3] * move[(x + 2) % 3] - a.r[3 * atom + (x + 2) % 3] * move[(x + 1) % 3];
+                l[x] +=
+                    a.r[3 * atom + (x + 1) % 3] * move[(x + 2) % 3] - a.r[3 * atom + (x + 2) % 3] * move[(x + 1) % 3];
         }
         /* each coordinate is rounded once, by half an eps of it, and moves there by a sum of two terms; the force is
            along the bonds of the reference positions, so that its torque vanishes about those */
@@ -182,7 +186,8 @@ static void virial_is_the_sum_over_the_reference_bonds(void **state)
         for (int64_t k = 0; k < assembly_bonds(&a, c); ++k) {
             const double *p = a.r + 3 * a.atoms[a.first[c] + k], *r = a.r + 3 * a.atoms[a.first[c] + k + 1];
             for (int x = 0; x < 9; ++x) {
-                const long double t = 2 * lambda[a.first_bond[c] + k] * ((long double)r[x / 3] - p[x / 3]) * ((long double)r[x % 3] - p[x % 3]);
+                const long double t = 2 * lambda[a.first_bond[c] + k] * ((long double)r[x / 3] - p[x / 3]) *
+                                      ((long double)r[x % 3] - p[x % 3]);
                 sum[x] -= t;
                 size += fabsl(t);
             }
@@ -197,7 +202,8 @@ static double multiplier_difference(const chain *one, double dt, int leap_frog)
 {
     assembly a = assembly_make(one, 1, IN_ORDER, 0);
     const size_t size = assembly_size(&a), n = (size_t)one->n_bonds;
-    double *q = copy_of(a.r, size), *before = copy_of(a.r, size), *g = untouched(size), *exact = untouched(n), *lambda = untouched(n);
+    double *q = copy_of(a.r, size), *before = copy_of(a.r, size), *g = untouched(size), *exact = untouched(n),
+           *lambda = untouched(n);
     CHECK(hol_project_velocities(a.chains, a.r, a.v, NULL, NULL));
     CHECK(hol_forces(a.chains, a.r, a.v, a.f, exact, NULL, g, HOL_WRITE, NULL));
     for (size_t i = 0; i < size; ++i) {
@@ -223,7 +229,8 @@ static void multipliers_tend_to_those_of_the_acceleration_level(void **state)
     for (int64_t n = 1; n <= 30; n += 7) {
         chain one = chain_make(CHAIN_COIL, n, 12);
         for (int leap_frog = 0; leap_frog < 2; ++leap_frog) {
-            const double coarse = multiplier_difference(&one, 4e-4, leap_frog), fine = multiplier_difference(&one, 2e-4, leap_frog);
+            const double coarse = multiplier_difference(&one, 4e-4, leap_frog),
+                         fine = multiplier_difference(&one, 2e-4, leap_frog);
             /* velocity Verlet, half of the force: first order; leap-frog, the force: second order */
             CHECK_AT_MOST(fine, coarse / (leap_frog ? 3.2 : 1.7));
             CHECK_AT_MOST(fine, leap_frog ? 0.05 : 1.0);
@@ -276,7 +283,8 @@ static void a_guess_saves_an_iteration_and_changes_the_result_by_rounding_only(v
         CHECK(hol_project_velocities(a.chains, r, a.v, NULL, NULL));
         free(first);
     }
-    print_message("iterations in 19 steps: %lld without a guess, %lld with\n", (long long)cold_sum, (long long)warm_sum);
+    print_message("iterations in 19 steps: %lld without a guess, %lld with\n", (long long)cold_sum,
+                  (long long)warm_sum);
     assert_true(warm_sum + 9 <= cold_sum); /* at least every other step one less */
     free(r), free(q), free(lambda);
     assembly_free(&a);

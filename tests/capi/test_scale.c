@@ -17,7 +17,8 @@ static void assert_no_second_derivative(const chain *c, const double *g, int64_t
 {
     long double worst = 0;
     for (int64_t k = 0; k < c->n_bonds; ++k) {
-        if (k % (bonds_per_chain + 1) == bonds_per_chain) continue; /* from the end of a chain to the start of the next */
+        if (k % (bonds_per_chain + 1) == bonds_per_chain)
+            continue; /* from the end of a chain to the start of the next */
         long double sum = 0, size = 0;
         for (int x = 0; x < 3; ++x) {
             const int64_t i = 3 * k + x, j = i + 3;
@@ -43,16 +44,19 @@ static void run(int64_t n_chains, int64_t bonds_per_chain)
     CHECK(hol_chains_create(atoms, c.mass, &chains));
     CHECK(hol_chains_add_block(chains, n_chains, bonds_per_chain, 0, ones));
     CHECK(hol_forces(chains, c.r, c.v, c.f, lambda, NULL, g, HOL_WRITE, virial));
-    print_message("%lld chains of %lld: set-up and first call %.3f s, %.2f bytes per bond\n", (long long)n_chains, (long long)bonds_per_chain,
-                  seconds() - start, (double)hol_chains_memory(chains) / (double)(n_chains * bonds_per_chain));
+    print_message("%lld chains of %lld: set-up and first call %.3f s, %.2f bytes per bond\n", (long long)n_chains,
+                  (long long)bonds_per_chain, seconds() - start,
+                  (double)hol_chains_memory(chains) / (double)(n_chains * bonds_per_chain));
     CHECK_AT_MOST(seconds() - start, 2.0); /* seconds: a tenth of that on a free machine */
     hol_chains_destroy(chains);
     start = seconds();
     int64_t *list = malloc(sizeof *list * (size_t)atoms);
     for (int64_t i = 0; i < atoms; ++i) list[i] = i;
     CHECK(hol_chains_create(atoms, c.mass, &chains));
-    for (int64_t k = 0; k < n_chains; ++k) CHECK(hol_chains_add(chains, bonds_per_chain, list + k * (bonds_per_chain + 1), ones));
-    print_message("  by lists of atoms: %.3f s, %.2f bytes per bond\n", seconds() - start, (double)hol_chains_memory(chains) / (double)(n_chains * bonds_per_chain));
+    for (int64_t k = 0; k < n_chains; ++k)
+        CHECK(hol_chains_add(chains, bonds_per_chain, list + k * (bonds_per_chain + 1), ones));
+    print_message("  by lists of atoms: %.3f s, %.2f bytes per bond\n", seconds() - start,
+                  (double)hol_chains_memory(chains) / (double)(n_chains * bonds_per_chain));
     CHECK_AT_MOST(seconds() - start, 4.0);
     assert_no_second_derivative(&c, g, bonds_per_chain);
     double *again = untouched(3 * (size_t)atoms);

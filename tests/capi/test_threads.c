@@ -1,4 +1,5 @@
-/** One handle used by several threads at once; messages that belong to a thread; nothing printed, no rounding mode changed. */
+/** One handle used by several threads at once; messages that belong to a thread; nothing printed, no rounding mode
+ * changed. */
 #define _DEFAULT_SOURCE
 #include "assembly.h"
 #include "check.h"
@@ -48,7 +49,8 @@ static void many_threads_may_compute_with_one_handle(void **state)
         assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, 60, 1, 60, IN_ORDER, 111);
         CHECK(hol_chains_set_threads(a.chains, inner));
         const size_t size = assembly_size(&a);
-        double *g = copy_of(a.f, size), *v = copy_of(a.v, size), *r = copy_of(a.r, size), *lambda = untouched((size_t)a.n_bonds);
+        double *g = copy_of(a.f, size), *v = copy_of(a.v, size), *r = copy_of(a.r, size),
+               *lambda = untouched((size_t)a.n_bonds);
         for (size_t i = 0; i < size; ++i) r[i] += 0.004 * a.v[i];
         CHECK(hol_forces(a.chains, a.r, a.v, a.f, lambda, NULL, g, HOL_WRITE, NULL));
         CHECK(hol_project_positions(a.chains, a.r, r, NULL, 0.004, NULL, 0, NULL, NULL));

@@ -75,8 +75,8 @@ static void trajectories_reversed_in_time_return_to_their_start(void **state)
     assembly a = assembly_of_kind(CHAIN_COIL, 20, 1, 20, IN_ORDER, 122);
     const double once = there_and_back(&a, 1, 0.005), many = there_and_back(&a, 200, 0.005);
     print_message("distance from the start: %.2g after one step and back, %.2g after 200\n", once, many);
-    /* roundings of 400 steps, magnified as trajectories of chains of up to 20 bonds diverge in one unit of time, which is
-       some decades at most; an irreversible step would leave the square or cube of dt, 1e-5 */
+    /* roundings of 400 steps, magnified as trajectories of chains of up to 20 bonds diverge in one unit of time, which
+       is some decades at most; an irreversible step would leave the square or cube of dt, 1e-5 */
     CHECK_AT_MOST(many, 1e-9);
     assembly_free(&a);
 }
@@ -164,10 +164,11 @@ static void a_melt_conserves_energy_and_momentum_and_keeps_its_bonds(void **stat
     const double n = (double)melt_steps, drift = (n * sum_te - sum_t * sum_e) / (n * sum_tt - sum_t * sum_t);
     double momentum[3] = {0, 0, 0};
     for (int64_t i = 0; i < 3 * m.n_atoms; ++i) momentum[i % 3] += m.v[i];
-    print_message("%lld steps: drift per bead and unit of time %.2g kT, energy within %.2g kT per bead, bond error %.2g, "
-                  "momentum %.2g, %.2f iterations per step\n",
-                  (long long)melt_steps, drift, highest - lowest, m.worst_length,
-                  fmax(fabs(momentum[0]), fmax(fabs(momentum[1]), fabs(momentum[2]))), (double)m.iterations / n);
+    print_message(
+        "%lld steps: drift per bead and unit of time %.2g kT, energy within %.2g kT per bead, bond error %.2g, "
+        "momentum %.2g, %.2f iterations per step\n",
+        (long long)melt_steps, drift, highest - lowest, m.worst_length,
+        fmax(fabs(momentum[0]), fmax(fabs(momentum[1]), fabs(momentum[2]))), (double)m.iterations / n);
     /* over a short run the bounded fluctuation of the energy looks like a drift of its size over the time */
     CHECK_AT_MOST(fabs(drift), 1e-6 + (melt_steps < 100000 ? 3 * (highest - lowest) / (n * dt) : 0));
     CHECK_AT_MOST(highest - lowest, 1e-2);

@@ -1,6 +1,6 @@
 /**
- * Callers that let the processor trap divisions by zero, invalid operations and overflows (-ffpe-trap in Fortran) must be
- * able to call the library with good data of any kind.
+ * Callers that let the processor trap divisions by zero, invalid operations and overflows (-ffpe-trap in Fortran) must
+ * be able to call the library with good data of any kind.
  */
 #define _GNU_SOURCE
 #include <fenv.h>

@@ -20,16 +20,17 @@ static void small_matrices_have_the_closed_forms_of_the_appendix(void **state)
         CHECK_AT_MOST(fabsl(log_det - logl(d5)), 4 * DBL_EPSILON * fabsl(logl(d5)) + 100 * long_double_rounding());
         CHECK(hol_tridiagonal_inverse_band(5, g, 4, inverse));
         const long double g2 = g[0], g3 = g[1], g4 = g[2], g5 = g[3];
-        const long double exact[5][5] = {
-            {1 - s[3] - s[2] - s[1] * (1 - s[3]), g2 * (1 - s[3] - s[2]), g2 * g3 * (1 - s[3]), g2 * g3 * g4, g2 * g3 * g4 * g5},
-            {1 - s[3] - s[2], g3 * (1 - s[3]), g3 * g4, g3 * g4 * g5, 0},
-            {d2 * (1 - s[3]), g4 * d2, g4 * g5 * d2, 0, 0},
-            {d3, g5 * d3, 0, 0, 0},
-            {d4, 0, 0, 0, 0}};
+        const long double exact[5][5] = {{1 - s[3] - s[2] - s[1] * (1 - s[3]), g2 * (1 - s[3] - s[2]),
+                                          g2 * g3 * (1 - s[3]), g2 * g3 * g4, g2 * g3 * g4 * g5},
+                                         {1 - s[3] - s[2], g3 * (1 - s[3]), g3 * g4, g3 * g4 * g5, 0},
+                                         {d2 * (1 - s[3]), g4 * d2, g4 * g5 * d2, 0, 0},
+                                         {d3, g5 * d3, 0, 0, 0},
+                                         {d4, 0, 0, 0, 0}};
         for (int i = 0; i < 5; ++i)
             for (int k = 0; k < 5; ++k) {
                 const long double z = exact[i][k] / d5;
-                CHECK_AT_MOST(fabsl(inverse[5 * i + k] - z), (4 + 2 * k) * DBL_EPSILON * fabsl(z) + 100 * long_double_rounding());
+                CHECK_AT_MOST(fabsl(inverse[5 * i + k] - z),
+                              (4 + 2 * k) * DBL_EPSILON * fabsl(z) + 100 * long_double_rounding());
             }
     }
 }
@@ -63,7 +64,8 @@ static void solutions_are_exact_for_the_given_doubles(void **state)
     (void)state;
     random_stream random = random_seed(2);
     for (int64_t n = 1; n <= 400; n = 3 * n + 2) {
-        double *g = malloc(sizeof(double) * (size_t)n), *b = malloc(sizeof(double) * (size_t)n), *x = untouched((size_t)n);
+        double *g = malloc(sizeof(double) * (size_t)n), *b = malloc(sizeof(double) * (size_t)n),
+               *x = untouched((size_t)n);
         assert_true(g && b);
         for (int64_t k = 0; k < n; ++k) {
             g[k] = 0.5 - 1e-9 * random_uniform(&random);

@@ -31,7 +31,8 @@ static void velocities_agree_with_an_independent_solution(void **state)
                     const double got = v[3 * a.atoms[a.first[c] + i] + x], start = one->v[3 * i + x];
                     const long double w = one->mass[i] > 0 ? 1 / (long double)one->mass[i] : 0;
                     if (w == 0) assert_true(got == start);
-                    CHECK_AT_MOST(fabsl(got - (start + w * exact.g[3 * i + x])), unit * w * exact.g_scale[i] + DBL_EPSILON * fabs(start));
+                    CHECK_AT_MOST(fabsl(got - (start + w * exact.g[3 * i + x])),
+                                  unit * w * exact.g_scale[i] + DBL_EPSILON * fabs(start));
                 }
             for (int i = 0; i < 9; ++i) sum[i] += exact.virial[i];
             scale += exact.virial_scale * oracle_bound(one->n_bonds);
@@ -78,7 +79,8 @@ static void what_is_left_of_the_rates_is_rounding(void **state)
     for (int i = 0; i < (quick_run() ? 4 : 7); ++i) {
         long double coil = 0, straight = 0;
         for (uint64_t seed = 0; seed < 10; ++seed) {
-            const long double p = rate_after_projection(CHAIN_COIL, lengths[i], seed), q = rate_after_projection(CHAIN_NEARLY_STRAIGHT, lengths[i], seed);
+            const long double p = rate_after_projection(CHAIN_COIL, lengths[i], seed),
+                              q = rate_after_projection(CHAIN_NEARLY_STRAIGHT, lengths[i], seed);
             if (p > coil) coil = p;
             if (q > straight) straight = q;
         }
@@ -124,7 +126,8 @@ static void projection_conserves_momentum_and_angular_momentum_and_lowers_kineti
                 after += m * v[3 * atom + x] * v[3 * atom + x];
                 if (fabs(r[x]) > reach) reach = fabs(r[x]);
             }
-            for (int x = 0; x < 3; ++x) l[x] += m * (r[(x + 1) % 3] * dv[(x + 2) % 3] - r[(x + 2) % 3] * dv[(x + 1) % 3]);
+            for (int x = 0; x < 3; ++x)
+                l[x] += m * (r[(x + 1) % 3] * dv[(x + 2) % 3] - r[(x + 2) % 3] * dv[(x + 1) % 3]);
         }
         for (int x = 0; x < 3; ++x) {
             /* every velocity is rounded once, the pulls of a bond on its atoms are opposite up to a rounding each */

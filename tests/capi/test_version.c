@@ -13,9 +13,17 @@ static void every_status_has_its_own_name(void **state)
 {
     (void)state;
     static const char *const names[] = {
-        "HOL_OK",           "HOL_ERR_NULL",           "HOL_ERR_VALUE",        "HOL_ERR_INDEX",
-        "HOL_ERR_SHARED_ATOM", "HOL_ERR_MEMORY",      "HOL_ERR_NOT_FINITE",   "HOL_ERR_DEGENERATE",
-        "HOL_ERR_NO_CONVERGENCE", "HOL_ERR_NOT_DEFINITE", "HOL_ERR_INTERNAL",
+        "HOL_OK",
+        "HOL_ERR_NULL",
+        "HOL_ERR_VALUE",
+        "HOL_ERR_INDEX",
+        "HOL_ERR_SHARED_ATOM",
+        "HOL_ERR_MEMORY",
+        "HOL_ERR_NOT_FINITE",
+        "HOL_ERR_DEGENERATE",
+        "HOL_ERR_NO_CONVERGENCE",
+        "HOL_ERR_NOT_DEFINITE",
+        "HOL_ERR_INTERNAL",
     };
     for (int s = 0; s < 11; ++s) assert_string_equal(hol_status_name(s), names[s]);
     assert_string_equal(hol_status_name(11), "unknown status");

@@ -43,7 +43,8 @@ static void forces_through(const assembly *a, const layout *how, const layout *o
     CHECK(hol_forces(a->chains, a->r, a->v, a->f, lambda, tension, g, mode, virial));
     laid_out r = lay_out(how, a->n_atoms, a->r, 3), v = lay_out(other, a->n_atoms, a->v, 3);
     laid_out f = lay_out(how, a->n_atoms, a->f, 3), out = lay_out(other, a->n_atoms, a->v, 3);
-    CHECK(hol_forces_view(a->chains, &r.view, &v.view, &f.view, view_lambda, view_tension, &out.view, mode, view_virial));
+    CHECK(
+        hol_forces_view(a->chains, &r.view, &v.view, &f.view, view_lambda, view_tension, &out.view, mode, view_virial));
     assert_same_bits(lambda, view_lambda, n);
     assert_same_bits(tension, view_tension, n);
     assert_same_bits(virial, view_virial, 9);
@@ -59,7 +60,8 @@ static void forces_are_the_same_through_every_layout(void **state)
     static const int64_t longest[] = {1, 3, 40, 2500};
     for (int l = 0; l < 4; l += quick_run() ? 2 : 1)
         for (int how = IN_ORDER; how <= SCATTERED; ++how) {
-            assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, 13, l ? longest[l] / 2 : 1, longest[l], (arrangement)how, 41);
+            assembly a =
+                assembly_of_kind(CHAIN_HETEROGENEOUS, 13, l ? longest[l] / 2 : 1, longest[l], (arrangement)how, 41);
             round_to_float(&a);
             for (int i = 0; i < n_layouts; ++i)
                 for (int mode = HOL_WRITE; mode <= HOL_ADD; ++mode) {
@@ -81,7 +83,8 @@ static void velocities_are_the_same_through_every_layout(void **state)
         CHECK(hol_project_velocities(a.chains, a.r, v, lambda, virial));
         for (int i = 0; i < n_layouts; ++i) {
             double *view_lambda = untouched(n), view_virial[9];
-            laid_out r = lay_out(&layouts[(i + 3) % n_layouts], a.n_atoms, a.r, 3), u = lay_out(&layouts[i], a.n_atoms, a.v, 3);
+            laid_out r = lay_out(&layouts[(i + 3) % n_layouts], a.n_atoms, a.r, 3),
+                     u = lay_out(&layouts[i], a.n_atoms, a.v, 3);
             CHECK(hol_project_velocities_view(a.chains, &r.view, &u.view, view_lambda, view_virial));
             assert_same_bits(lambda, view_lambda, n);
             assert_same_bits(virial, view_virial, 9);
@@ -100,14 +103,17 @@ static void positions_are_the_same_through_every_layout_of_doubles(void **state)
     for (int how = IN_ORDER; how <= SCATTERED; ++how) {
         assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, 21, 1, 60, (arrangement)how, 43);
         const size_t n = (size_t)a.n_bonds, size = assembly_size(&a);
-        double *lambda = untouched(n), *start = drifted(&a, time_step), *q = copy_of(start, size), *v = copy_of(a.v, size), virial[9];
+        double *lambda = untouched(n), *start = drifted(&a, time_step), *q = copy_of(start, size),
+               *v = copy_of(a.v, size), virial[9];
         hol_report report, view_report;
         CHECK(hol_project_positions(a.chains, a.r, q, v, time_step, lambda, 0, virial, &report));
         for (int i = 0; i < n_double_layouts; ++i) {
             double *view_lambda = untouched(n), view_virial[9];
             laid_out r = lay_out(&layouts[(i + 3) % n_double_layouts], a.n_atoms, a.r, 3);
-            laid_out p = lay_out(&layouts[i], a.n_atoms, start, 3), u = lay_out(&layouts[(i + 1) % n_double_layouts], a.n_atoms, a.v, 3);
-            CHECK(hol_project_positions_view(a.chains, &r.view, &p.view, &u.view, time_step, view_lambda, 0, view_virial, &view_report));
+            laid_out p = lay_out(&layouts[i], a.n_atoms, start, 3),
+                     u = lay_out(&layouts[(i + 1) % n_double_layouts], a.n_atoms, a.v, 3);
+            CHECK(hol_project_positions_view(a.chains, &r.view, &p.view, &u.view, time_step, view_lambda, 0,
+                                             view_virial, &view_report));
             assert_same_bits(lambda, view_lambda, n);
             assert_same_bits(virial, view_virial, 9);
             assert_numbers(&p, q, layouts[i].name);
@@ -160,7 +166,7 @@ static void two_dimensions_give_the_bits_of_three_with_zero_z(void **state)
     assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, 23, 1, 50, SCATTERED, 45);
     flatten(&a);
     const double short_step = 1e-5; /* some of the flattened bonds are very short */
-    hol_chains *same_length; /* the flattened bonds are shorter, so positions get lengths of their own */
+    hol_chains *same_length;        /* the flattened bonds are shorter, so positions get lengths of their own */
     CHECK(hol_chains_create(a.n_atoms, a.mass, &same_length));
     for (int64_t c = 0; c < a.n_chains; ++c) {
         for (int64_t k = 0; k < assembly_bonds(&a, c); ++k) {
@@ -171,18 +177,22 @@ static void two_dimensions_give_the_bits_of_three_with_zero_z(void **state)
     }
     const size_t n = (size_t)a.n_bonds, size = assembly_size(&a);
     double *lambda = untouched(n), *flat_lambda = untouched(n), *g = copy_of(a.f, size), virial[9], flat_virial[9];
-    double *v = copy_of(a.v, size), *start = drifted(&a, short_step), *q = copy_of(start, size), *u = copy_of(a.v, size);
+    double *v = copy_of(a.v, size), *start = drifted(&a, short_step), *q = copy_of(start, size),
+           *u = copy_of(a.v, size);
     for (int i = 0; i < n_double_layouts; ++i) {
         laid_out fr = lay_out(&layouts[i], a.n_atoms, a.r, 2), fv = lay_out(&layouts[i], a.n_atoms, a.v, 2);
         laid_out ff = lay_out(&layouts[i], a.n_atoms, a.f, 2), fp = lay_out(&layouts[i], a.n_atoms, start, 2);
-        memcpy(g, a.f, sizeof *g * size), memcpy(v, a.v, sizeof *v * size), memcpy(q, start, sizeof *q * size), memcpy(u, a.v, sizeof *u * size);
+        memcpy(g, a.f, sizeof *g * size), memcpy(v, a.v, sizeof *v * size), memcpy(q, start, sizeof *q * size),
+            memcpy(u, a.v, sizeof *u * size);
         CHECK(hol_forces(a.chains, a.r, a.v, a.f, lambda, NULL, g, HOL_ADD, virial));
-        CHECK(hol_forces_view(a.chains, &fr.view, &fv.view, &ff.view, flat_lambda, NULL, &ff.view, HOL_ADD, flat_virial));
+        CHECK(
+            hol_forces_view(a.chains, &fr.view, &fv.view, &ff.view, flat_lambda, NULL, &ff.view, HOL_ADD, flat_virial));
         assert_same_bits(lambda, flat_lambda, n);
         for (int k = 0; k < 9; ++k) assert_true(virial[k] == flat_virial[k]);
         assert_numbers(&ff, g, layouts[i].name);
         CHECK(hol_project_positions(same_length, a.r, q, u, short_step, lambda, 0, virial, NULL));
-        CHECK(hol_project_positions_view(same_length, &fr.view, &fp.view, &fv.view, short_step, flat_lambda, 0, flat_virial, NULL));
+        CHECK(hol_project_positions_view(same_length, &fr.view, &fp.view, &fv.view, short_step, flat_lambda, 0,
+                                         flat_virial, NULL));
         assert_same_bits(lambda, flat_lambda, n);
         assert_numbers(&fp, q, layouts[i].name);
         assert_numbers(&fv, u, layouts[i].name);

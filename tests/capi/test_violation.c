@@ -21,7 +21,8 @@ static void violation_finds_the_worst_bond_of_all_chains(void **state)
                     square += d * d;
                     product += d * ((long double)a.v[j + x] - a.v[i + x]);
                 }
-                if (fabsl(square - l * l) / (l * l) > length) length = fabsl(square - l * l) / (l * l), where[0] = c, where[1] = k;
+                if (fabsl(square - l * l) / (l * l) > length)
+                    length = fabsl(square - l * l) / (l * l), where[0] = c, where[1] = k;
                 if (fabsl(product) > rate) rate = fabsl(product), where[2] = c, where[3] = k;
             }
         hol_worst worst;

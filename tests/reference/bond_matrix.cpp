@@ -2,18 +2,20 @@
 
 #include <cmath>
 
-namespace reference {
+namespace reference
+{
 
-quad3 row(const double* array, std::size_t i)
+quad3 row(const double *array, std::size_t i)
 {
     if (!array) return {quad(0), quad(0), quad(0)};
     return {quad(array[3 * i]), quad(array[3 * i + 1]), quad(array[3 * i + 2])};
 }
 
-namespace {
+namespace
+{
 
 /** The shortest of d + n0 h0 + n1 h1 + n2 h2, by repeated search among the neighbouring cells. */
-quad3 shortest_image(quad3 d, const double* box)
+quad3 shortest_image(quad3 d, const double *box)
 {
     for (bool moved = true; moved;) {
         moved = false;
@@ -32,9 +34,9 @@ quad3 shortest_image(quad3 d, const double* box)
     return d;
 }
 
-} // namespace
+}  // namespace
 
-exact_chain::exact_chain(const solution_problem& p)
+exact_chain::exact_chain(const solution_problem &p)
 {
     const std::size_t n = static_cast<std::size_t>(p.n_bonds);
     for (std::size_t i = 0; i <= n; ++i) {
@@ -49,7 +51,7 @@ exact_chain::exact_chain(const solution_problem& p)
     }
 }
 
-tridiagonal bond_matrix(const exact_chain& c)
+tridiagonal bond_matrix(const exact_chain &c)
 {
     const std::size_t n = c.n_bonds();
     tridiagonal z(n);
@@ -60,7 +62,7 @@ tridiagonal bond_matrix(const exact_chain& c)
     return z;
 }
 
-tridiagonal scaled_bond_matrix(const exact_chain& c)
+tridiagonal scaled_bond_matrix(const exact_chain &c)
 {
     tridiagonal z = bond_matrix(c);
     std::vector<quad> scale;
@@ -72,4 +74,4 @@ tridiagonal scaled_bond_matrix(const exact_chain& c)
     return z;
 }
 
-} // namespace reference
+}  // namespace reference

@@ -8,9 +8,8 @@
 const char *chain_kind_name(chain_kind kind)
 {
     static const char *const names[CHAIN_KINDS] = {
-        "coil",      "heterogeneous", "nearly straight", "straight",       "lattice",    "folded",
-        "masses 1e3", "masses 1e6",   "fixed ends",      "bond ratio 1e6", "offset 1e6",
-        "rod masses 1e9", "taut",
+        "coil",       "heterogeneous", "nearly straight", "straight",   "lattice",        "folded", "masses 1e3",
+        "masses 1e6", "fixed ends",    "bond ratio 1e6",  "offset 1e6", "rod masses 1e9", "taut",
     };
     return names[kind];
 }
@@ -39,34 +38,35 @@ static void next_direction(chain_kind kind, random_stream *s, int64_t k, double 
 {
     const double degree = 3.14159265358979323846 / 180;
     switch (kind) {
-    case CHAIN_STRAIGHT:
-        u[0] = 1;
-        u[1] = u[2] = 0;
-        return;
-    case CHAIN_LATTICE:
-        u[0] = u[1] = u[2] = 0;
-        u[k % 3] = random_bits(s) & 1 ? 1 : -1;
-        return;
-    case CHAIN_NEARLY_STRAIGHT:
-    case CHAIN_OFFSET_1E6:
-        if (k == 0) break;
-        turn(s, u, 5 * degree * random_uniform(s));
-        return;
-    case CHAIN_ROD_MASSES_1E9:
-        u[0] = 0.31;
-        u[1] = 0.52;
-        u[2] = sqrt(1 - u[0] * u[0] - u[1] * u[1]);
-        return;
-    case CHAIN_TAUT:
-        if (k == 0) break;
-        turn(s, u, 1e-5 * random_uniform(s));
-        return;
-    case CHAIN_FOLDED:
-        if (k == 0) break;
-        for (int x = 0; x < 3; ++x) u[x] = -u[x];
-        turn(s, u, 1e-3 * random_uniform(s));
-        return;
-    default: break;
+        case CHAIN_STRAIGHT:
+            u[0] = 1;
+            u[1] = u[2] = 0;
+            return;
+        case CHAIN_LATTICE:
+            u[0] = u[1] = u[2] = 0;
+            u[k % 3] = random_bits(s) & 1 ? 1 : -1;
+            return;
+        case CHAIN_NEARLY_STRAIGHT:
+        case CHAIN_OFFSET_1E6:
+            if (k == 0) break;
+            turn(s, u, 5 * degree * random_uniform(s));
+            return;
+        case CHAIN_ROD_MASSES_1E9:
+            u[0] = 0.31;
+            u[1] = 0.52;
+            u[2] = sqrt(1 - u[0] * u[0] - u[1] * u[1]);
+            return;
+        case CHAIN_TAUT:
+            if (k == 0) break;
+            turn(s, u, 1e-5 * random_uniform(s));
+            return;
+        case CHAIN_FOLDED:
+            if (k == 0) break;
+            for (int x = 0; x < 3; ++x) u[x] = -u[x];
+            turn(s, u, 1e-3 * random_uniform(s));
+            return;
+        default:
+            break;
     }
     random_direction(s, u);
 }

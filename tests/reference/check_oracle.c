@@ -1,7 +1,7 @@
 /**
  * Checks the library against reference files: check_oracle DIR reads DIR/INDEX and the files that it lists.
- * A line per case and quantity: the worst error in units of eps times its scale, and the bound of tests/oracle/README.md.
- * Exit status 0: all within their bounds; 1: one is not; 2: the files cannot be read.
+ * A line per case and quantity: the worst error in units of eps times its scale, and the bound of
+ * tests/oracle/README.md. Exit status 0: all within their bounds; 1: one is not; 2: the files cannot be read.
  */
 #include <float.h>
 #include <holonomic.h>
@@ -130,7 +130,8 @@ static long double check_inverse(const oracle_case *c, const hol_chains *chains)
         const oracle_entry *z = c->zinv + e;
         double value;
         status = hol_inverse_entry(inverse, HOL_UNIT_DIAGONAL, z->i - 1, z->j - 1, &value);
-        if (status == HOL_OK) compare(&of_entry, value, z->value, fabsl(z->value), k + 2 * (long double)llabs(z->i - z->j));
+        if (status == HOL_OK)
+            compare(&of_entry, value, z->value, fabsl(z->value), k + 2 * (long double)llabs(z->i - z->j));
     }
     hol_inverse_destroy(inverse);
     if (status != HOL_OK) {

@@ -2,9 +2,10 @@
 
 #include <utility>
 
-namespace reference {
+namespace reference
+{
 
-bool solve_dense(const tridiagonal& matrix, std::vector<quad>& b)
+bool solve_dense(const tridiagonal &matrix, std::vector<quad> &b)
 {
     const std::size_t n = matrix.size();
     std::vector<std::vector<quad>> a(n, std::vector<quad>(n, quad(0)));
@@ -34,10 +35,10 @@ bool solve_dense(const tridiagonal& matrix, std::vector<quad>& b)
     return true;
 }
 
-bool solve_banded(tridiagonal m, std::vector<quad>& b)
+bool solve_banded(tridiagonal m, std::vector<quad> &b)
 {
     const std::size_t n = m.size();
-    std::vector<quad> second(n, quad(0)); // second superdiagonal, filled by row exchanges
+    std::vector<quad> second(n, quad(0));  // second superdiagonal, filled by row exchanges
     for (std::size_t k = 0; k + 1 < n; ++k) {
         if (absolute(m.lower[k + 1]) > absolute(m.diagonal[k])) {
             std::swap(m.diagonal[k], m.lower[k + 1]);
@@ -60,7 +61,7 @@ bool solve_banded(tridiagonal m, std::vector<quad>& b)
     return true;
 }
 
-bool solve(const tridiagonal& matrix, std::vector<quad>& right_side)
+bool solve(const tridiagonal &matrix, std::vector<quad> &right_side)
 {
     const std::size_t dense_limit = 64;
     return matrix.size() <= dense_limit ? solve_dense(matrix, right_side) : solve_banded(matrix, right_side);
@@ -68,9 +69,9 @@ bool solve(const tridiagonal& matrix, std::vector<quad>& right_side)
 
 tridiagonal with_negative_neighbours(tridiagonal matrix)
 {
-    for (quad& x : matrix.lower) x = -absolute(x);
-    for (quad& x : matrix.upper) x = -absolute(x);
+    for (quad &x : matrix.lower) x = -absolute(x);
+    for (quad &x : matrix.upper) x = -absolute(x);
     return matrix;
 }
 
-} // namespace reference
+}  // namespace reference

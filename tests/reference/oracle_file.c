@@ -38,7 +38,8 @@ static int next_line(reader *in)
         ++in->line_number;
         const size_t size = strlen(in->line);
         if (size + 1 == LINE_SIZE && in->line[size - 1] != '\n') return fail(in, "the line is too long");
-        for (in->at = in->line; isspace((unsigned char)*in->at); ++in->at) {}
+        for (in->at = in->line; isspace((unsigned char)*in->at); ++in->at) {
+        }
         if (*in->at && *in->at != '#') return 0;
     }
     return fail(in, "the file ends too early");
@@ -214,8 +215,7 @@ int oracle_read(const char *path, oracle_case *c, char *message, size_t message_
     if (!in->file)
         snprintf(message, message_size, "%s: %s", path, strerror(errno));
     else
-        status = read_head(in, c) || allocate(in, c) || read_inputs(in, c) || read_results(in, c) ||
-                         read_entries(in, c)
+        status = read_head(in, c) || allocate(in, c) || read_inputs(in, c) || read_results(in, c) || read_entries(in, c)
                      ? -1
                      : 0;
     if (in->file) fclose(in->file);

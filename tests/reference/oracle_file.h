@@ -21,14 +21,14 @@ typedef struct oracle_entry {
 typedef struct oracle_case {
     char name[128];
     int64_t n_bonds;
-    double *w, *mass;    /**< [n_bonds+1]; mass is -1 where w is 0 */
-    double *r, *v, *f;   /**< [n_bonds+1][3] */
-    double *length;      /**< [n_bonds] */
+    double *w, *mass;  /**< [n_bonds+1]; mass is -1 where w is 0 */
+    double *r, *v, *f; /**< [n_bonds+1][3] */
+    double *length;    /**< [n_bonds] */
     long double lndet, fixman_energy;
     long double virial[9];
     double condition;
-    long double *lambda, *lambda_scale; /**< [n_bonds] */
-    long double *g, *fixman_force;      /**< [n_bonds+1][3] */
+    long double *lambda, *lambda_scale;  /**< [n_bonds] */
+    long double *g, *fixman_force;       /**< [n_bonds+1][3] */
     long double *g_scale, *fixman_scale; /**< [n_bonds+1] */
     int64_t n_zinv;
     oracle_entry *zinv;

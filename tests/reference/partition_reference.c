@@ -52,7 +52,8 @@ long double partition_series(int64_t n_bonds, const double *masses, int p, const
     return log_scale;
 }
 
-/** Nodes and weights of tanh-sinh quadrature on (0, 1), with the distance to the upper end, which a node can't carry. */
+/** Nodes and weights of tanh-sinh quadrature on (0, 1), with the distance to the upper end, which a node can't carry.
+ */
 enum { POINTS = 401 };
 typedef struct rule {
     long double node[POINTS], rest[POINTS], weight[POINTS];

@@ -1,7 +1,7 @@
 /**
  * @file partition_reference.h
- * Means of det Z~^(p/2), p = -1 or +1, over independent uniform bond directions, computed in ways that share nothing with
- * the library: a power series, and nested quadrature of the determinant itself.
+ * Means of det Z~^(p/2), p = -1 or +1, over independent uniform bond directions, computed in ways that share nothing
+ * with the library: a power series, and nested quadrature of the determinant itself.
  */
 #ifndef REFERENCE_PARTITION_REFERENCE_H
 #define REFERENCE_PARTITION_REFERENCE_H

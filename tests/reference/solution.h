@@ -1,19 +1,16 @@
 /**
  * @file solution.h
- * Independent solutions to compare the library with: the equations as in docs/theory.md, set up as matrices from the raw
- * inputs and solved by textbook elimination in 113-bit arithmetic. One chain per call.
+ * Independent solutions to compare the library with: the equations as in docs/theory.md, set up as matrices from the
+ * raw inputs and solved by textbook elimination in 113-bit arithmetic. One chain per call.
  *
  * Scales. The error that a double-precision program may make is measured against a scale per number: how much relative
- * changes of the size of rounding in the inputs can move it, were they all to add up. With |Z^-1| the matrix of absolute
- * values,
- *     lambda_scale_k = sum_l |Z^-1|_kl S_l,
- *     S_l            = 2 sum_x |d_l,x| (w_l |f_l,x| + w_{l-1} |f_{l-1},x|) + 2 |v_l - v_{l-1}|^2      (acceleration level)
- *     S_l            = 2 sum_x |d_l,x| (|v_l,x| + |v_{l-1},x|)                                        (velocity level)
- *     g_scale_i      = 2 (lambda_scale_i |d_i| + lambda_scale_{i+1} |d_{i+1}|)
- *     virial_scale   = sum_k 2 lambda_scale_k |d_k|^2
- *     fixman_scale_i = p_i + p_{i+1},  p_k = (|h_k| |n_k| + |h_{k+1}| |n_{k+1}|) / |d_k|,
- *                      h_k = w_{k-1} (M^-1)_{k-1,k},  n_k = u_{k-1} x u_k
- * The first kind and the last reproduce every scale printed in tests/oracle to its six digits.
+ * changes of the size of rounding in the inputs can move it, were they all to add up. With |Z^-1| the matrix of
+ * absolute values, lambda_scale_k = sum_l |Z^-1|_kl S_l, S_l            = 2 sum_x |d_l,x| (w_l |f_l,x| + w_{l-1}
+ * |f_{l-1},x|) + 2 |v_l - v_{l-1}|^2      (acceleration level) S_l            = 2 sum_x |d_l,x| (|v_l,x| + |v_{l-1},x|)
+ * (velocity level) g_scale_i      = 2 (lambda_scale_i |d_i| + lambda_scale_{i+1} |d_{i+1}|) virial_scale   = sum_k 2
+ * lambda_scale_k |d_k|^2 fixman_scale_i = p_i + p_{i+1},  p_k = (|h_k| |n_k| + |h_{k+1}| |n_{k+1}|) / |d_k|, h_k =
+ * w_{k-1} (M^-1)_{k-1,k},  n_k = u_{k-1} x u_k The first kind and the last reproduce every scale printed in
+ * tests/oracle to its six digits.
  */
 #ifndef REFERENCE_SOLUTION_H
 #define REFERENCE_SOLUTION_H
@@ -80,8 +77,8 @@ int solution_metric_make(const solution_problem *p, solution_metric *out);
 void solution_metric_free(solution_metric *m);
 
 /**
- * The Fixman force in units of kT by differences of ln det Z~, fourth order in steps of 1e-8 of a bond: it knows nothing of
- * the formula for the gradient.
+ * The Fixman force in units of kT by differences of ln det Z~, fourth order in steps of 1e-8 of a bond: it knows
+ * nothing of the formula for the gradient.
  * @param[out] force [n_bonds+1][3]
  */
 int solution_fixman_differences(const solution_problem *p, long double *force);
@@ -89,7 +86,8 @@ int solution_fixman_differences(const solution_problem *p, long double *force);
 /** Column `column` (from 0) of Z~^-1 [n_bonds]. Returns 0 or -1. */
 int solution_inverse_column(const solution_problem *p, int64_t column, long double *values);
 
-/** Inverses of Z~ and ln det Z~ lose digits in proportion to the condition number; a caller can ask for what is left. */
+/** Inverses of Z~ and ln det Z~ lose digits in proportion to the condition number; a caller can ask for what is left.
+ */
 long double solution_epsilon(void);
 
 #ifdef __cplusplus

@@ -3,10 +3,12 @@
 #include "bond_matrix.hpp"
 #include "solution.h"
 
-namespace reference {
-namespace {
+namespace reference
+{
+namespace
+{
 
-quad determinant(const tridiagonal& m)
+quad determinant(const tridiagonal &m)
 {
     quad product = 1, pivot = 0;
     for (std::size_t k = 0; k < m.size(); ++k) {
@@ -25,7 +27,7 @@ quad log_near_one(quad x)
 }
 
 /** ln det Z~ with the atom moved by +step minus that with it moved by -step. */
-quad difference(const exact_chain& c, std::size_t atom, std::size_t axis, quad step)
+quad difference(const exact_chain &c, std::size_t atom, std::size_t axis, quad step)
 {
     quad det[2];
     for (int side = 0; side < 2; ++side) {
@@ -38,10 +40,10 @@ quad difference(const exact_chain& c, std::size_t atom, std::size_t axis, quad s
     return log_near_one(det[0] / det[1] - 1);
 }
 
-} // namespace
-} // namespace reference
+}  // namespace
+}  // namespace reference
 
-extern "C" int solution_fixman_differences(const solution_problem* p, long double* force)
+extern "C" int solution_fixman_differences(const solution_problem *p, long double *force)
 {
     using namespace reference;
     const exact_chain c(*p);

@@ -4,14 +4,16 @@
 #include "bond_matrix.hpp"
 #include "solution.h"
 
-namespace reference {
-namespace {
+namespace reference
+{
+namespace
+{
 
-bool allocate(solution& s, std::size_t n)
+bool allocate(solution &s, std::size_t n)
 {
     const std::size_t atoms = n + 1;
     s.n_bonds = static_cast<int64_t>(n);
-    s.lambda = static_cast<long double*>(std::calloc(3 * n + 4 * atoms, sizeof(long double)));
+    s.lambda = static_cast<long double *>(std::calloc(3 * n + 4 * atoms, sizeof(long double)));
     if (!s.lambda) return false;
     s.lambda_scale = s.lambda + n;
     s.tension = s.lambda_scale + n;
@@ -20,9 +22,9 @@ bool allocate(solution& s, std::size_t n)
     return true;
 }
 
-} // namespace
+}  // namespace
 
-int fill(const exact_chain& c, const std::vector<quad>& lambda, const std::vector<quad>& scale, solution& out)
+int fill(const exact_chain &c, const std::vector<quad> &lambda, const std::vector<quad> &scale, solution &out)
 {
     const std::size_t n = c.n_bonds();
     if (!allocate(out, n)) return -1;
@@ -52,21 +54,22 @@ int fill(const exact_chain& c, const std::vector<quad>& lambda, const std::vecto
     return 0;
 }
 
-namespace {
+namespace
+{
 
-int solve_level(const exact_chain& c, std::vector<quad>& right_side, std::vector<quad>& size, solution& out)
+int solve_level(const exact_chain &c, std::vector<quad> &right_side, std::vector<quad> &size, solution &out)
 {
     const tridiagonal z = bond_matrix(c);
     if (!solve(z, right_side) || !solve_banded(with_negative_neighbours(z), size)) return -1;
     return fill(c, right_side, size, out);
 }
 
-} // namespace
-} // namespace reference
+}  // namespace
+}  // namespace reference
 
 using namespace reference;
 
-extern "C" int solution_forces(const solution_problem* p, solution* out)
+extern "C" int solution_forces(const solution_problem *p, solution *out)
 {
     const exact_chain c(*p);
     std::vector<quad> right_side, size;
@@ -81,7 +84,7 @@ extern "C" int solution_forces(const solution_problem* p, solution* out)
     return solve_level(c, right_side, size, *out);
 }
 
-extern "C" int solution_velocities(const solution_problem* p, solution* out)
+extern "C" int solution_velocities(const solution_problem *p, solution *out)
 {
     const exact_chain c(*p);
     std::vector<quad> right_side, size;
@@ -95,7 +98,7 @@ extern "C" int solution_velocities(const solution_problem* p, solution* out)
     return solve_level(c, right_side, size, *out);
 }
 
-extern "C" void solution_free(solution* s)
+extern "C" void solution_free(solution *s)
 {
     std::free(s->lambda);
     *s = solution();

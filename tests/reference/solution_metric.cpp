@@ -5,11 +5,13 @@
 #include "bond_matrix.hpp"
 #include "solution.h"
 
-namespace reference {
-namespace {
+namespace reference
+{
+namespace
+{
 
 /** ln det by elimination; the product is kept near one by powers of two, so that its logarithm keeps its digits. */
-long double log_det(const tridiagonal& m)
+long double log_det(const tridiagonal &m)
 {
     quad product = 1, pivot = 0;
     long exponent = 0;
@@ -22,7 +24,7 @@ long double log_det(const tridiagonal& m)
     return std::log1p(rest) + static_cast<long double>(exponent) * std::log(2.0L);
 }
 
-std::vector<quad> inverse_column(const tridiagonal& m, std::size_t column)
+std::vector<quad> inverse_column(const tridiagonal &m, std::size_t column)
 {
     std::vector<quad> x(m.size(), quad(0));
     x[column] = 1;
@@ -30,7 +32,7 @@ std::vector<quad> inverse_column(const tridiagonal& m, std::size_t column)
     return x;
 }
 
-int metric(const solution_problem& p, solution_metric& out)
+int metric(const solution_problem &p, solution_metric &out)
 {
     const exact_chain c(p);
     const std::size_t n = c.n_bonds();
@@ -53,7 +55,7 @@ int metric(const solution_problem& p, solution_metric& out)
         if (k > 0) entries += absolute(z.lower[k]);
         if (k + 1 < n) entries += absolute(z.upper[k]);
         if (entries > row_sum) row_sum = entries;
-        if (k > 0) { // Z~^-1 = sqrt(M_ii M_jj) M^-1, M_ii = w + w'
+        if (k > 0) {  // Z~^-1 = sqrt(M_ii M_jj) M^-1, M_ii = w + w'
             const quad masses = square_root((c.w[k - 1] + c.w[k]) * (c.w[k] + c.w[k + 1]));
             h[k] = c.w[k] * column[k - 1] / masses;
             normal[k] = cross(u[k - 1], u[k]);
@@ -73,14 +75,14 @@ int metric(const solution_problem& p, solution_metric& out)
     return 0;
 }
 
-} // namespace
-} // namespace reference
+}  // namespace
+}  // namespace reference
 
-extern "C" int solution_metric_make(const solution_problem* p, solution_metric* out)
+extern "C" int solution_metric_make(const solution_problem *p, solution_metric *out)
 {
     const std::size_t n = static_cast<std::size_t>(p->n_bonds), atoms = n + 1;
     *out = solution_metric();
-    out->fixman_force = static_cast<long double*>(std::calloc(4 * atoms + n, sizeof(long double)));
+    out->fixman_force = static_cast<long double *>(std::calloc(4 * atoms + n, sizeof(long double)));
     if (!out->fixman_force) return -1;
     out->fixman_scale = out->fixman_force + 3 * atoms;
     out->inverse_diagonal = out->fixman_scale + atoms;
@@ -89,13 +91,13 @@ extern "C" int solution_metric_make(const solution_problem* p, solution_metric* 
     return -1;
 }
 
-extern "C" void solution_metric_free(solution_metric* m)
+extern "C" void solution_metric_free(solution_metric *m)
 {
     std::free(m->fixman_force);
     *m = solution_metric();
 }
 
-extern "C" int solution_inverse_column(const solution_problem* p, int64_t column, long double* values)
+extern "C" int solution_inverse_column(const solution_problem *p, int64_t column, long double *values)
 {
     const reference::exact_chain c(*p);
     const auto x = reference::inverse_column(reference::scaled_bond_matrix(c), static_cast<std::size_t>(column));

@@ -3,17 +3,19 @@
 #include "bond_matrix.hpp"
 #include "solution.h"
 
-namespace reference {
-namespace {
+namespace reference
+{
+namespace
+{
 
 /** One Newton problem: bonds D_k(t) = D0_k + dt^2 (w_k G_k - w_{k-1} G_{k-1}), G from 2 lambda along the old bonds. */
 struct newton {
-    exact_chain c; // the old bonds
+    exact_chain c;  // the old bonds
     std::vector<quad3> drifted;
     std::vector<quad> length;
     quad dt2;
 
-    std::vector<quad3> bonds(const std::vector<quad>& lambda) const
+    std::vector<quad3> bonds(const std::vector<quad> &lambda) const
     {
         const std::size_t n = c.n_bonds();
         std::vector<quad3> d;
@@ -27,7 +29,7 @@ struct newton {
     }
 
     /** d sigma_k / d lambda_l. */
-    tridiagonal jacobian(const std::vector<quad3>& d) const
+    tridiagonal jacobian(const std::vector<quad3> &d) const
     {
         const std::size_t n = c.n_bonds();
         tridiagonal j(n);
@@ -40,8 +42,9 @@ struct newton {
     }
 };
 
-/** Iterations until the worst relative error of a bond is at the rounding of the arithmetic; -1 if it does not get there. */
-int iterate(const newton& problem, std::vector<quad>& lambda)
+/** Iterations until the worst relative error of a bond is at the rounding of the arithmetic; -1 if it does not get
+ * there. */
+int iterate(const newton &problem, std::vector<quad> &lambda)
 {
     const std::size_t n = problem.c.n_bonds();
     const int limit = 100;
@@ -63,13 +66,13 @@ int iterate(const newton& problem, std::vector<quad>& lambda)
     return -1;
 }
 
-} // namespace
-} // namespace reference
+}  // namespace
+}  // namespace reference
 
 using namespace reference;
 
-extern "C" int solution_positions(const solution_problem* p, const double* drifted, const double* length, double dt,
-                                  long double* positions, solution* out)
+extern "C" int solution_positions(const solution_problem *p, const double *drifted, const double *length, double dt,
+                                  long double *positions, solution *out)
 {
     solution_problem moved = *p;
     moved.r = drifted;
@@ -84,7 +87,8 @@ extern "C" int solution_positions(const solution_problem* p, const double* drift
             quad g = 0;
             if (i < n) g += 2 * lambda[i] * problem.c.d[i][x];
             if (i > 0) g -= 2 * lambda[i - 1] * problem.c.d[i - 1][x];
-            positions[3 * i + x] = static_cast<long double>(quad(drifted[3 * i + x]) + problem.dt2 * problem.c.w[i] * g);
+            positions[3 * i + x] =
+                static_cast<long double>(quad(drifted[3 * i + x]) + problem.dt2 * problem.c.w[i] * g);
         }
     return steps;
 }

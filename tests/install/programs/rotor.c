@@ -9,8 +9,8 @@ int main(void)
     const int64_t atoms[2] = {0, 1};
     double tension = -1, g[6] = {0};
     hol_chains *chains;
-    if (hol_chains_create(2, masses, &chains) != HOL_OK || hol_chains_add(chains, 1, atoms, &length) != HOL_OK
-        || hol_forces(chains, r, v, NULL, NULL, &tension, g, HOL_WRITE, NULL) != HOL_OK) {
+    if (hol_chains_create(2, masses, &chains) != HOL_OK || hol_chains_add(chains, 1, atoms, &length) != HOL_OK ||
+        hol_forces(chains, r, v, NULL, NULL, &tension, g, HOL_WRITE, NULL) != HOL_OK) {
         printf("%s\n", hol_error_message());
         return 1;
     }

@@ -21,7 +21,8 @@ int main()
     const std::unique_ptr<hol_chains, void (*)(hol_chains *)> chains(handle, hol_chains_destroy);
     double tension = -1;
     if (hol_chains_add(chains.get(), 1, atoms.data(), &length) != HOL_OK) return 1;
-    if (hol_forces(chains.get(), r.data(), v.data(), nullptr, nullptr, &tension, g.data(), HOL_WRITE, nullptr) != HOL_OK)
+    if (hol_forces(chains.get(), r.data(), v.data(), nullptr, nullptr, &tension, g.data(), HOL_WRITE, nullptr) !=
+        HOL_OK)
         return 1;
     std::printf("holonomic %s\n", hol_version());
     std::printf("tension %.3f forces %.3f %.3f\n", tension, g[3 * 7], g[3 * 93]);
