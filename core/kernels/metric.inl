@@ -177,11 +177,13 @@ HOL_INLINE vec next_deficit(const Geometry &x, long k, vec f) {
     return x.delta[k - 1] + keep(coupled, p * (f / (f + p)));
 }
 
-// phi of bond k as t times a vector, so that the force on atom k is the pull t_k phi_k - t_{k-1} phi_{k-1}.
+// phi of bond k as t times a vector, so that the force on atom k is the pull t_k phi_k - t_{k-1} phi_{k-1}. Zeros are +0,
+// so that those of a chain's last atom don't depend on whether inert bonds follow.
 HOL_INLINE void turn(const Geometry &x, long k, double kT) {
     const vec3 a = x.normal[k], b = x.normal[k + 1];
-    x.u[k] = cross(x.u[k], vec3{a.x - b.x, a.y - b.y, a.z - b.z});
-    x.t[k] = -kT * x.reciprocal[k];
+    const vec3 v = cross(x.u[k], vec3{b.x - a.x, b.y - a.y, b.z - a.z});
+    x.u[k] = {v.x + 0.0, v.y + 0.0, v.z + 0.0};
+    x.t[k] = kT * x.reciprocal[k];
 }
 
 template <bool uniform, bool boxed>

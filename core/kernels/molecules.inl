@@ -81,7 +81,7 @@ HOL_INLINE void store_molecules(const Block &block, const vec3 *D, const vec *t,
 template <int N>
 HOL_INLINE void store_multipliers(const vec *t, vec factor, double *out) {
     for (int k = 0; k < N; ++k) {
-        const vec lambda = factor * t[k];
+        const vec lambda = mul_add(factor, t[k], vec{});  // zeros as +0
         for (int i = 0; i < W; ++i) out[N * i + k] = lambda[i];
     }
 }

@@ -101,14 +101,15 @@ static __attribute__((noinline)) void substitute_and_store(const Block &block, c
     }
     if (value_out)
         for (int i = 0; i < W; ++i)
-            for (long k = full; k < block.len[i]; ++k) value_out[block.first_bond[i] + k] = factor[i] * s.t[k][i];
+            for (long k = full; k < block.len[i]; ++k)
+                value_out[block.first_bond[i] + k] = mul_add(factor[i], s.t[k][i], 0.0);
     for (long k0 = full - W; k0 >= 0; k0 -= W) {
         vec value[3 * W], bond_value[W];
         HOL_UNROLL
         for (long b = W - 1; b >= 0; --b) {
             const long k = k0 + b;
             t = mul_add(s.L[k + 1], t, s.t[k]);
-            bond_value[b] = factor * t;
+            bond_value[b] = mul_add(factor, t, vec{});  // zeros as +0
             const vec3 p = scaled_bond(s.D[k], t);
             const vec w = weighted ? w_at<uniform>(block, k + 1) : splat(1.0);
             value[3 * b] = w * (after.x - p.x);

@@ -3,7 +3,7 @@
 namespace holonomic {
 namespace HOL_ISA {
 
-// Writes factor times a value per bond of the lanes in `which` into the caller's array per bond.
+// Writes factor times a value per bond of the lanes in `which` into the caller's array per bond; zeros as +0.
 static inline void store_bonds(const Block &block, const vec *value, vec factor, mask which, double *out) {
     const unsigned chosen = bits(which & block.in_use());
     double *p[W];
@@ -12,13 +12,13 @@ static inline void store_bonds(const Block &block, const vec *value, vec factor,
     if (chosen == (1u << W) - 1)
         for (; k0 + W <= block.n_min; k0 += W) {
             vec m[W];
-            for (int b = 0; b < W; ++b) m[b] = factor * value[k0 + b];
+            for (int b = 0; b < W; ++b) m[b] = mul_add(factor, value[k0 + b], vec{});
             transpose(m);
             for (int i = 0; i < W; ++i) store(p[i] + k0, m[i]);
         }
     for (int i = 0; i < block.lanes; ++i)
         if (chosen >> i & 1)
-            for (long k = k0; k < block.len[i]; ++k) p[i][k] = factor[i] * value[k][i];
+            for (long k = k0; k < block.len[i]; ++k) p[i][k] = mul_add(factor[i], value[k][i], 0.0);
 }
 
 enum Update { write_, add_ };
