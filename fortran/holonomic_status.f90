@@ -9,9 +9,10 @@ module holonomic_status
    public :: failure, settle, text_of
 
    ! The first thing found wrong with the arguments of a call, or what the library said about it.
+   ! The message is of fixed length, as C's is: there may be no memory left for another. Undefined while there is none.
    type :: failure
       integer(c_int) :: status = HOL_OK
-      character(:), allocatable :: message
+      character(256) :: message
    contains
       procedure :: none
       procedure :: set
@@ -46,7 +47,17 @@ contains
    recursive subroutine ask(self, status)
       class(failure), intent(inout) :: self
       integer(c_int), intent(in) :: status
-      if (status /= HOL_OK) call self%set(status, text_of(hol_error_message()))
+      character(kind=c_char), pointer :: letters(:)
+      type(c_ptr) :: text
+      integer :: i
+      if (status == HOL_OK .or. .not. self%none()) return
+      self%status = status
+      self%message = ""
+      text = hol_error_message()
+      call c_f_pointer(text, letters, [c_strlen(text)])
+      do i = 1, min(size(letters), len(self%message))
+         self%message(i:i) = letters(i)
+      end do
    end subroutine
 
    recursive subroutine settle(problem, stat, errmsg)
@@ -55,7 +66,7 @@ contains
       character(*), intent(inout), optional :: errmsg
       if (present(stat)) stat = int(problem%status)
       if (problem%none()) return
-      if (.not. present(stat)) error stop "holonomic: "//problem%message
+      if (.not. present(stat)) error stop "holonomic: "//trim(problem%message)
       if (present(errmsg)) errmsg = problem%message
    end subroutine
 
