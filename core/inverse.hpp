@@ -41,6 +41,7 @@ private:
     void check(std::int64_t i) const;
     double scale(bool physical, std::size_t k) const;
     void multiply_by_absolute_inverse(std::vector<double> &x) const;
+    bool touched(const AtomArray &v, const AtomArray &f, const double *lambda, std::size_t k) const;
     DoublePair residual(const AtomArray &v, const AtomArray &f, const double *lambda, std::size_t k, double &terms) const;
 
     std::size_t n_;

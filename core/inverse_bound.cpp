@@ -56,6 +56,14 @@ DoublePair Inverse::residual(const AtomArray &v, const AtomArray &f, const doubl
     return sum;
 }
 
+// Whether anything that stands in the equation of bond k is not zero; where nothing is, its residual is exactly zero.
+bool Inverse::touched(const AtomArray &v, const AtomArray &f, const double *lambda, std::size_t k) const {
+    const auto any = [&](const AtomArray &array) {
+        return array.x && (size(vector_of(array, atoms_[k])) > 0 || size(vector_of(array, atoms_[k + 1])) > 0);
+    };
+    return any(v) || any(f) || lambda[k] != 0 || (k > 0 && lambda[k - 1] != 0) || (k + 1 < n_ && lambda[k + 1] != 0);
+}
+
 std::vector<double> Inverse::error_bound(const AtomArray &v, const AtomArray &f, const double *lambda) const {
     const auto check = [&](const AtomArray &array, const char *what) {
         for (std::size_t k = 0; array.x && k <= n_; ++k) {
@@ -78,17 +86,24 @@ std::vector<double> Inverse::error_bound(const AtomArray &v, const AtomArray &f,
         throw error;
     }
     // Each product and sum of the evaluation has a relative error below 2^-102 and there are fewer than 64 of them; a box
-    // adds the same for lattice vectors up to 2^5 times as long as the bond.
-    const double evaluation = 0x1p-90;
+    // adds the same for lattice vectors up to 2^5 times as long as the bond. Among denormal numbers each is off by up to
+    // the smallest number instead, before it is multiplied by at most one more vector and one more inverse mass; that also
+    // covers what the sweeps of the inverse lose there.
+    const double evaluation = 0x1p-90, denormal = 0x1p-1067;
     std::vector<double> bound(n_);
     for (std::size_t k = 0; k < n_; ++k) {
         double terms = 0;
         const double rest = std::fabs(rounded(residual(v, f, lambda, k, terms)));
         bound[k] = (rest + evaluation * terms) / bonds_[k].length;
+        if (bound[k] < 0x1p-900 && touched(v, f, lambda, k))
+            bound[k] += denormal * (1 + size(d_[k])) * (1 + w_[k] + w_[k + 1]) / std::fmin(bonds_[k].length, 1);
     }
     multiply_by_absolute_inverse(bound);
     // t = 2 lambda; one per cent for the rounding of this calculation, which has no differences in it.
-    for (std::size_t k = 0; k < n_; ++k) bound[k] *= 0.505 / bonds_[k].length;
+    for (std::size_t k = 0; k < n_; ++k) {
+        const double scale = 0.505 / bonds_[k].length;
+        bound[k] = bound[k] > 0 ? bound[k] * scale + 0x1p-1074 : 0;
+    }
     return bound;
 }
 
