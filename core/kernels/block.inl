@@ -28,6 +28,7 @@ struct Block {
     int lanes;            // lanes in use; the others repeat the first one and are never stored
     bool roomy;           // W atoms more can be read behind each lane
     long ahead;           // doubles from a lane's vectors to those of the next block, to be fetched early; or 0
+    long list_ahead;      // the same for lists of atoms
     bool staged;          // some lanes lie in staging buffers, so all do
     // Inverse masses are relative to a unit of each lane's own: its inverse mass where that is constant along it, else 1.
     // So equal masses cost nothing, and are rounded the same way whatever stands in the other lanes.
@@ -52,11 +53,7 @@ struct Packed {
     double *lane[W];
 };
 
-HOL_INLINE double element(const char *p, bool is_float) {
-    return is_float ? static_cast<double>(*reinterpret_cast<const float *>(p)) : *reinterpret_cast<const double *>(p);
-}
 
-HOL_INLINE int64_t atom_of(const Lane &lane, int64_t k) { return lane.atoms ? lane.atoms[k] : lane.first_atom + k; }
 
 // Unit of the inverse masses of a chain, and the one of its atom k in it: see Block.
 HOL_INLINE double unit_of(const Lane &lane) { return !lane.w && lane.w_uniform > 0 ? lane.w_uniform : 1.0; }
@@ -64,34 +61,63 @@ HOL_INLINE double relative_w(const Lane &lane, int64_t k) { return lane.w ? lane
 
 HOL_INLINE long staged_size(long n_bonds) { return (3 * (n_bonds + 1) + 7) / 8 * 8; }
 
+// Calls each(k, offset in bytes) for the atoms from .. from + n of a chain.
+template <class Each>
+HOL_INLINE void for_each_atom(const AtomArray &array, const Lane &lane, long from, long n, Each each) {
+    if (lane.atoms)
+        for (long k = 0; k <= n; ++k) each(k, lane.atoms[from + k] * array.stride);
+    else
+        for (long k = 0; k <= n; ++k) each(k, (lane.first_atom + from + k) * array.stride);
+}
+
+template <class T>
+HOL_INLINE void stage_elements(const AtomArray &array, const Lane &lane, long from, long n, double *packed) {
+    const char *const x = array.x, *const y = array.y, *const z = array.z;
+    if (z)
+        for_each_atom(array, lane, from, n, [&](long k, int64_t offset) __attribute__((always_inline)) {
+            packed[3 * k] = *reinterpret_cast<const T *>(x + offset);
+            packed[3 * k + 1] = *reinterpret_cast<const T *>(y + offset);
+            packed[3 * k + 2] = *reinterpret_cast<const T *>(z + offset);
+        });
+    else
+        for_each_atom(array, lane, from, n, [&](long k, int64_t offset) __attribute__((always_inline)) {
+            packed[3 * k] = *reinterpret_cast<const T *>(x + offset);
+            packed[3 * k + 1] = *reinterpret_cast<const T *>(y + offset);
+            packed[3 * k + 2] = 0;
+        });
+}
+
 // Copies atoms `from` .. `from + n` of a chain into packed[n+1][3].
-static inline void stage(const AtomArray &array, const Lane &lane, long from, long n, double *packed) {
-    for (long k = 0; k <= n; ++k) {
-        const int64_t offset = atom_of(lane, from + k) * array.stride;
-        packed[3 * k] = element(array.x + offset, array.is_float);
-        packed[3 * k + 1] = element(array.y + offset, array.is_float);
-        packed[3 * k + 2] = array.z ? element(array.z + offset, array.is_float) : 0.0;
-    }
+static __attribute__((noinline)) void stage(const AtomArray &array, const Lane &lane, long from, long n,
+                                            double *packed) {
+    if (array.is_float)
+        stage_elements<float>(array, lane, from, n, packed);
+    else
+        stage_elements<double>(array, lane, from, n, packed);
 }
 
-HOL_INLINE void put(char *p, bool is_float, double value, bool add) {
-    if (is_float) {
-        float *q = reinterpret_cast<float *>(p);
-        *q = static_cast<float>(add ? static_cast<double>(*q) + value : value);
-    } else {
-        double *q = reinterpret_cast<double *>(p);
-        *q = add ? *q + value : value;
-    }
+template <class T, bool add>
+HOL_INLINE void unstage_elements(const AtomArray &array, const Lane &lane, long from, long n, const double *packed) {
+    const auto put = [](char *p, double value) __attribute__((always_inline)) {
+        T *const q = reinterpret_cast<T *>(p);
+        *q = static_cast<T>(add ? static_cast<double>(*q) + value : value);
+    };
+    char *const x = array.x, *const y = array.y, *const z = array.z;
+    for_each_atom(array, lane, from, n, [&](long k, int64_t offset) __attribute__((always_inline)) {
+        put(x + offset, packed[3 * k]);
+        put(y + offset, packed[3 * k + 1]);
+        if (z) put(z + offset, packed[3 * k + 2]);
+    });
 }
 
-static inline void unstage(const AtomArray &array, const Lane &lane, long from, long n, const double *packed,
-                           bool add) {
-    for (long k = 0; k <= n; ++k) {
-        const int64_t offset = atom_of(lane, from + k) * array.stride;
-        put(array.x + offset, array.is_float, packed[3 * k], add);
-        put(array.y + offset, array.is_float, packed[3 * k + 1], add);
-        if (array.z) put(array.z + offset, array.is_float, packed[3 * k + 2], add);
-    }
+static __attribute__((noinline)) void unstage(const AtomArray &array, const Lane &lane, long from, long n,
+                                              const double *packed, bool add) {
+    if (array.is_float)
+        add ? unstage_elements<float, true>(array, lane, from, n, packed)
+            : unstage_elements<float, false>(array, lane, from, n, packed);
+    else
+        add ? unstage_elements<double, true>(array, lane, from, n, packed)
+            : unstage_elements<double, false>(array, lane, from, n, packed);
 }
 
 HOL_INLINE bool in_place(const AtomArray &array, const Lane &lane) { return array.packed && !lane.atoms; }

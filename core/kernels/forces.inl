@@ -28,7 +28,7 @@ static inline void open_block(const Unit &unit, int64_t first, Block &block, Lan
     const int64_t left = unit.count - first;
     block.lanes = left < W ? static_cast<int>(left) : W;
     block.roomy = block.staged = false;
-    block.ahead = 0;
+    block.ahead = block.list_ahead = 0;
     if (unit.regular) {
         const Lane &head = unit.lanes[0];
         const int64_t n = head.n_bonds;
@@ -49,6 +49,7 @@ static inline void open_block(const Unit &unit, int64_t first, Block &block, Lan
         block.staged = head.atoms != nullptr;
         block.roomy = (left - block.lanes) * (n + 1) >= W && !block.staged;
         if (unit.large) block.ahead = 3 * W * (n + 1);  // the next unit often goes on where this one ends
+        if (unit.large && left >= 2 * W) block.list_ahead = W * (n + 1);
         return;
     }
     block.n = 0;
@@ -117,6 +118,7 @@ static void finish_forces(const Block &block, const ForcesCall &call, const Syst
 }
 
 static void forces_block(const Block &block, const Lane *lane, const ForcesCall &call, Arena arena, Tally &tally) {
+    if (block.staged && listed_forces(block, lane, call, arena)) return;
     const Packed r = open(call.r, block, lane, arena, true), v = open(call.v, block, lane, arena, true);
     const Packed f = open(call.f, block, lane, arena, true), g = open(call.g, block, lane, arena, false);
     const Update update = call.add && in_place(call.g, block) ? add_ : write_;  // else unstage() adds

@@ -9,6 +9,7 @@
 #include "recursion.inl"
 #include "solve.inl"
 #include "pulls.inl"
+#include "gathered.inl"
 #include "forces.inl"
 #include "velocities.inl"
 #include "newton_sweeps.inl"

@@ -8,12 +8,19 @@ namespace HOL_ISA {
 template <bool careful, class V>
 HOL_INLINE void wrap(const Box &box, Vector3<V> &d, Vector3<V> &lo) {
     const double *h = box.h, *in = box.inverse;
+    if (!careful && box.shape == Box::orthorhombic) {
+        d.x = mul_add(round(d.x * in[0]), V{} - h[0], d.x);
+        d.y = mul_add(round(d.y * in[4]), V{} - h[4], d.y);
+        d.z = mul_add(round(d.z * in[8]), V{} - h[8], d.z);
+        return;
+    }
     const V n[3] = {round(d.x * in[0] + d.y * in[3] + d.z * in[6]), round(d.x * in[1] + d.y * in[4] + d.z * in[7]),
                     round(d.x * in[2] + d.y * in[5] + d.z * in[8])};
     V *component[3] = {&d.x, &d.y, &d.z}, *low[3] = {&lo.x, &lo.y, &lo.z};
-    for (int c = 0; c < 3; ++c)
+    HOL_UNROLL
+    for (int c = 0; c < 3; ++c) {
+        HOL_UNROLL
         for (int i = 0; i < 3; ++i) {
-            if (h[3 * i + c] == 0) continue;
             const V side = V{} + h[3 * i + c];
             if (careful) {
                 const Pair<V> p = two_product<V>(n[i], side);
@@ -25,6 +32,7 @@ HOL_INLINE void wrap(const Box &box, Vector3<V> &d, Vector3<V> &lo) {
                 *component[c] = mul_add(n[i], -side, *component[c]);
             }
         }
+    }
 }
 
 // What the right-hand side of a bond is made of.
@@ -178,6 +186,22 @@ static inline void load_bonds(const Block &block, const Box &box, const Packed &
     for (; k0 < block.n; k0 += W)
         load_ragged_chunk<terms, uniform, boxed, careful>(block, box, r, v, f, k0, D + k0,
                                                           careful ? D_low + k0 : nullptr, B + k0);
+}
+
+// The right-hand side of a bond as load_chunk() finds it, from differences already in lanes: dv of the velocities, df of
+// the forces times their inverse masses.
+template <int terms>
+HOL_INLINE vec right_hand_side(bool boxed, vec mass, const vec3 &d, const vec3 &dv, const vec3 &df) {
+    const vec3 vv = {(mass * dv.x) * dv.x, (mass * dv.y) * dv.y, (mass * dv.z) * dv.z};
+    if (boxed) {
+        vec sum = {};
+        if (terms & (rate | force_difference)) sum = dot(d, terms & rate ? dv : df);
+        return terms & velocity_squared ? sum + ((vv.x + vv.y) + vv.z) : sum;
+    }
+    if (terms & rate) return (dv.x * d.x + dv.y * d.y) + dv.z * d.z;
+    if (!(terms & force_difference)) return (vv.x + vv.y) + vv.z;
+    if (!(terms & velocity_squared)) return (df.x * d.x + df.y * d.y) + df.z * d.z;
+    return (mul_add(df.x, d.x, vv.x) + mul_add(df.y, d.y, vv.y)) + mul_add(df.z, d.z, vv.z);
 }
 
 // The rates D . (v_{k+1} - v_k) of the bonds k0 .. k0 + W - 1, with D as loaded before.

@@ -157,10 +157,7 @@ static inline void store_window_forces(const MetricCall &call, const Lane &lane,
                 value[1] += t * phi.y[i];
                 value[2] += t * phi.z[i];
             }
-            const int64_t offset = atom_of(lane, x.s.from[i] + k) * force.stride;
-            put(force.x + offset, force.is_float, value[0], call.add);
-            put(force.y + offset, force.is_float, value[1], call.add);
-            if (force.z) put(force.z + offset, force.is_float, value[2], call.add);
+            unstage(force, lane, x.s.from[i] + k, 0, value, call.add);
         }
     }
 }

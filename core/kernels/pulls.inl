@@ -117,7 +117,12 @@ static __attribute__((noinline)) void substitute_and_store(const Block &block, c
             value[3 * b + 2] = w * (after.z - p.z);
             after = p;
         }
-        if (out.lane[0]) store_chunk<update>(k0 + 1, value, out);
+        if (out.lane[0]) {
+            if (update == write_ && block.ahead)
+                HOL_UNROLL
+                for (int i = 0; i < W; ++i) fetch_ahead(out.lane[i] + 3 * (k0 + 1), block.ahead);
+            store_chunk<update>(k0 + 1, value, out);
+        }
         if (value_out) {
             transpose(bond_value);
             for (int i = 0; i < W; ++i) store(value_out + block.first_bond[i] + k0, bond_value[i]);

@@ -59,10 +59,15 @@ static __attribute__((noinline)) mask doubtful_joints(const Block &block, const 
     return doubt;
 }
 
-// Where the bond vectors of a block come from.
+// Where the bond vectors of a block come from: lanes of coordinates, or lists of atoms in the array `base`.
 struct Source {
     const Packed *r;
+    const double *base;
+    const int64_t *const *atoms;
     const Box *box;
+    const double *atom(int lane, long k) const {
+        return atoms ? base + 3 * atoms[lane][k] : r->lane[lane] + 3 * k;
+    }
 };
 
 // g = d . d' of nearly orthogonal bonds cancels, and what it loses shows where the right-hand side of one bond is larger
@@ -79,14 +84,13 @@ HOL_INLINE mask nearly_orthogonal(vec g, vec X) { return less(not_orthogonal(g *
 
 // The lanes in `which` of g, for joint k, with compensated products of unrounded differences.
 static __attribute__((noinline)) vec exact_dots(const Source &source, long k, mask which, vec g) {
-    const unsigned chosen = bits(which);
-    for (int i = 0; i < W; ++i) {
-        if (!(chosen >> i & 1)) continue;
-        const double *r = source.r->lane[i] + 3 * (k - 1);
+    for (unsigned left = bits(which); left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
         Vector3<double> d[2], low[2];
-        for (int b = 0; b < 2; ++b, r += 3) {
-            const Pair<double> x = two_difference(r[3], r[0]), y = two_difference(r[4], r[1]),
-                               z = two_difference(r[5], r[2]);
+        for (int b = 0; b < 2; ++b) {
+            const double *const p = source.atom(i, k - 1 + b), *const q = source.atom(i, k + b);
+            const Pair<double> x = two_difference(q[0], p[0]), y = two_difference(q[1], p[1]),
+                               z = two_difference(q[2], p[2]);
             d[b] = {x.hi, y.hi, z.hi};
             low[b] = {x.lo, y.lo, z.lo};
             if (source.box->shape != Box::none) wrap<true>(*source.box, d[b], low[b]);

@@ -33,7 +33,7 @@ static inline SegmentBlock segment_block(const Cut &cut, int64_t j, const Lane &
     SegmentBlock s;
     s.block.lanes = W;
     s.block.roomy = false;
-    s.block.ahead = 0;
+    s.block.ahead = s.block.list_ahead = 0;
     s.block.n = 0;
     s.block.n_min = s.own_min = cut.longest() + 1;
     s.own_max = 0;

@@ -42,6 +42,7 @@ static inline void substitute_velocities(const Block &block, const System &s, co
 
 static void velocities_block(const Block &block, const Lane *lane, const VelocitiesCall &call, Arena arena,
                              Tally &tally) {
+    if (block.staged && listed_velocities(block, lane, call, arena)) return;
     const Packed r = open(call.r, block, lane, arena, true), v = open(call.v, block, lane, arena, true);
     const System s(block.n, arena);
     mask calm, good = forward_velocities<false>(block, call, r, v, s, calm);
