@@ -151,7 +151,7 @@ static __attribute__((noinline)) void substitute_and_scatter(const Block &block,
         const vec3 p = scaled_bond(s.D[k], t);
         pull(k + 1, p);
         after = p;
-        return factor * t;
+        return mul_add(factor, t, vec{});  // zeros as +0
     };
     const long full = block.n / W * W;
     for (long k = block.n - 1; k >= full; --k) {
