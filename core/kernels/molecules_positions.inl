@@ -24,7 +24,7 @@ private:
 
 // Inverse masses and lengths as in positions.inl; `uniform`: of both there is only one.
 template <int N, bool uniform>
-HOL_INLINE void set_molecule(const Block &block, const Lane &head, Newton &x, vec *w, vec *a2) {
+HOL_INLINE void set_molecule(const Block &block, const Lane &head, Newton &x, vec *w, vec *a2, vec *per_a2) {
     const bool one_mass = block.uniform_w;
     x.lengths = splat(N);
     x.a_min = x.a_max = splat(head.length_uniform);
@@ -39,16 +39,19 @@ HOL_INLINE void set_molecule(const Block &block, const Lane &head, Newton &x, ve
     }
     x.per_a_min = splat(1.0) / x.a_min;
     x.a2_uniform = x.a_min * x.a_min;
+    x.per_a2_uniform = splat(1.0) / x.a2_uniform;
     x.w = nullptr;
-    x.a2 = nullptr;
+    x.a2 = x.per_a2 = nullptr;
     if (uniform) return;
     for (int k = 0; k <= N; ++k) w[k] = one_mass ? splat(1.0) : block.w[k];
     for (int k = 0; k < N; ++k) {
         const double a = head.length ? head.length[k] : head.length_uniform;
         a2[k] = splat(a * a);
+        per_a2[k] = splat(1.0) / a2[k];
     }
     x.w = w;
     x.a2 = a2;
+    x.per_a2 = per_a2;
 }
 
 template <int N>
@@ -131,7 +134,7 @@ HOL_INLINE void note_molecules(const MoleculesCall &m, const Newton &x, vec erro
     vec largest = {};
     for (int k = 0; k < N; ++k) {
         length_error<uniform>(x, k, false, Mover<uniform>::bond(mover, x, k), largest);
-        if (found || !((uniform ? largest / x.a2_uniform : largest)[worst] >= error[worst])) continue;
+        if (found || !(relative_error<uniform>(x, largest)[worst] >= error[worst])) continue;
         found = true;
         tally.worst_bond = k;
     }
@@ -140,10 +143,10 @@ HOL_INLINE void note_molecules(const MoleculesCall &m, const Newton &x, vec erro
 // From molecule `first` on; returns the first one that is not done.
 template <int N, bool uniform>
 static __attribute__((noinline)) int64_t of_molecules(const MoleculesCall &m, int64_t first, Tally &tally) {
-    vec memory[12 * N + 12], w[N + 1], a2[N];
+    vec memory[12 * N + 12], w[N + 1], a2[N], per_a2[N];
     Arena arena = {reinterpret_cast<double *>(memory)};
     Newton x(N, arena);
-    set_molecule<N, uniform>(m.block, m.unit.lanes[0], x, w, a2);
+    set_molecule<N, uniform>(m.block, m.unit.lanes[0], x, w, a2, per_a2);
     const mask all = first_lanes(W);
     const vec factor = splat(0.5 / (m.call.dt * m.call.dt)) / m.block.unit;
     for (; molecules_left(m.unit, first); first += W) {

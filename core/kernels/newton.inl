@@ -149,7 +149,7 @@ HOL_INLINE Outcome solve_single_bonds(const Newton &x, Carried &carried, mask wa
     const vec3 moved = {mul_add(-step, b.x, d.x), mul_add(-step, b.y, d.y), mul_add(-step, b.z, d.z)};
     const vec left = mul_add(moved.z, moved.z, mul_add(moved.y, moved.y, mul_add(moved.x, moved.x, -a2)));
     x.tau[0] = select(wanted, keep(out.converged, s / w), x.tau[0]);
-    out.error = abs(left) / a2;
+    out.error = abs(left) * (x.a2 ? x.per_a2[0] : x.per_a2_uniform);
     out.solves = any(out.converged) ? 1 : 0;
     return out;
 }

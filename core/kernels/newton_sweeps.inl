@@ -20,7 +20,13 @@ struct Row {
     vec down, half_rP, up, u;
 };
 
-struct Newton {
+// The lengths of the bonds, a. Errors relative to a^2 are products with 1 / a^2, whether it differs among bonds or not.
+struct BondLengths {
+    const vec *a2, *per_a2;  // nullptr: the same for all bonds of a lane
+    vec a2_uniform, per_a2_uniform, a_min, a_max, per_a_min;
+};
+
+struct Newton : BondLengths {
     vec3 *b, *D;  // [n+1]: behind the last bond is one of length 0, whose multiplier is 0
     Row *row;
     vec *tau;         // [n+1], times `unit`
@@ -28,8 +34,6 @@ struct Newton {
     vec *step;        // what D has not been moved by yet: tau, or the last correction
     const vec *w;     // [n+1] inverse masses, those of the block; not if all are 1
     vec lengths;      // numbers of bonds
-    const vec *a2;    // nullptr: a2_uniform
-    vec a2_uniform, a_min, a_max, per_a_min;
     Newton(long n, Arena &arena)
         : b(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + 1)))), D(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + 1)))),
           row(reinterpret_cast<Row *>(arena.vecs(4 * n))), tau(arena.vecs(n + 1)), correction(arena.vecs(n + 1)),
@@ -116,14 +120,19 @@ HOL_INLINE vec length_error(const Newton &x, long k, bool ragged, const vec3 &d,
     const vec a2 = uniform_a ? x.a2_uniform : x.a2[k];
     vec sigma = mul_add(d.z, d.z, mul_add(d.y, d.y, mul_add(d.x, d.x, -a2)));
     if (ragged) sigma = keep(live(x, k), sigma);
-    worst = max(uniform_a ? abs(sigma) : abs(sigma) / a2, worst);
+    worst = max(uniform_a ? abs(sigma) : abs(sigma) * x.per_a2[k], worst);
     return sigma;
+}
+
+template <bool uniform_a>
+HOL_INLINE vec relative_error(const Newton &x, vec worst) {
+    return uniform_a ? worst * x.per_a2_uniform : worst;
 }
 
 // Largest |D.D - a^2| / a^2; max() may lose a NaN, the sum y over all bonds keeps it.
 template <bool uniform_a>
 HOL_INLINE vec largest_error(const Newton &x, vec worst, vec y) {
-    return mul_add(y, vec{}, uniform_a ? worst / x.a2_uniform : worst);
+    return mul_add(y, vec{}, relative_error<uniform_a>(x, worst));
 }
 
 enum Factors { first_factors, renewed_factors, careful_factors };

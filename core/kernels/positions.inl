@@ -51,12 +51,12 @@ struct Positions {
     Packed r_ref, r, v;
     Newton x;
 
-    Positions(const Block &b, const Lane *l, const PositionsCall &c, Arena a, Tally &t)
-        : block(b), lane(l), call(c), arena(a), tally(t), r_ref(open(c.r_ref, b, l, arena, true)),
+    Positions(const Block &b, const Lane *l, const PositionsCall &c, const BondLengths &a, Arena memory, Tally &t)
+        : block(b), lane(l), call(c), arena(memory), tally(t), r_ref(open(c.r_ref, b, l, arena, true)),
           r(open(c.r, b, l, arena, true)), v(open(c.v, b, l, arena, true)), x(b.n, arena) {
         x.lengths = block.lengths();
         x.w = block.w;
-        set_lengths(block, lane, x, arena);
+        static_cast<BondLengths &>(x) = a;
     }
 
     template <bool to_r, bool to_v>
@@ -150,20 +150,31 @@ struct Positions {
     }
 };
 
-static void positions_block(const Block &block, const Lane *lane, const PositionsCall &call, Arena arena,
-                            Tally &tally) {
-    bool uniform_a = block.n == block.n_min;
-    for (int i = 0; i < block.lanes; ++i) uniform_a = uniform_a && !lane[i].length;
+static void positions_block(const Block &block, const Lane *lane, const PositionsCall &call, const BondLengths &a,
+                            Arena arena, Tally &tally) {
     if (block.uniform_w)
-        uniform_a ? Positions<true, true>(block, lane, call, arena, tally).solve()
-                  : Positions<true, false>(block, lane, call, arena, tally).solve();
+        a.a2 ? Positions<true, false>(block, lane, call, a, arena, tally).solve()
+             : Positions<true, true>(block, lane, call, a, arena, tally).solve();
     else
-        uniform_a ? Positions<false, true>(block, lane, call, arena, tally).solve()
-                  : Positions<false, false>(block, lane, call, arena, tally).solve();
+        a.a2 ? Positions<false, false>(block, lane, call, a, arena, tally).solve()
+             : Positions<false, true>(block, lane, call, a, arena, tally).solve();
 }
 
 static void positions(const PositionsCall &call, const Unit &unit, double *scratch, Tally &tally) {
-    for_each_block(call, unit, scratch, tally, positions_block);
+    BondLengths lengths = {};
+    const double *begin = nullptr;
+    double *end = nullptr;
+    for_each_block(call, unit, scratch, tally,
+                   [&](const Block &block, const Lane *lane, const PositionsCall &, Arena arena, Tally &) {
+                       if (unit.regular && begin == arena.next) {  // as the chains of the block before, and in place
+                           arena.next = end;
+                       } else {
+                           begin = arena.next;
+                           lengths = bond_lengths(block, lane, arena);
+                           end = arena.next;
+                       }
+                       positions_block(block, lane, call, lengths, arena, tally);
+                   });
 }
 
 }  // namespace HOL_ISA

@@ -4,33 +4,42 @@
 namespace holonomic {
 namespace HOL_ISA {
 
-static inline void set_lengths(const Block &block, const Lane *lane, Newton &x, Arena &arena) {
-    bool uniform = block.n == block.n_min;
-    vec a_min, a_max;
+static inline BondLengths bond_lengths(const Block &block, const Lane *lane, Arena &arena) {
+    bool uniform = block.n == block.n_min, same = uniform;
+    double least[W], most[W];
     for (int i = 0; i < W; ++i) {
         const Lane &one = lane[i < block.lanes ? i : 0];
-        a_min[i] = a_max[i] = one.length_uniform;
         uniform = uniform && !one.length;
-        for (long k = 0; one.length && k < one.n_bonds; ++k) {
-            a_min[i] = __builtin_fmin(a_min[i], one.length[k]);
-            a_max[i] = __builtin_fmax(a_max[i], one.length[k]);
+        same = same && one.length == lane[0].length && (one.length || one.length_uniform == lane[0].length_uniform);
+        least[i] = i > 0 && same ? least[0] : one.length_uniform;
+        most[i] = i > 0 && same ? most[0] : one.length_uniform;
+        for (long k = 0; one.length && !(i > 0 && same) && k < one.n_bonds; ++k) {
+            least[i] = __builtin_fmin(least[i], one.length[k]);
+            most[i] = __builtin_fmax(most[i], one.length[k]);
         }
     }
-    x.a_min = a_min;
-    x.a_max = a_max;
-    x.per_a_min = splat(1.0) / a_min;
-    x.a2 = nullptr;
-    x.a2_uniform = a_min * a_min;
-    if (uniform) return;
-    vec *a2 = arena.vecs(block.n);
-    for (int i = 0; i < W; ++i) {
+    BondLengths x = {};
+    x.a_min = load(least);
+    x.a_max = load(most);
+    x.per_a_min = splat(1.0) / x.a_min;
+    x.a2_uniform = x.a_min * x.a_min;
+    x.per_a2_uniform = splat(1.0) / x.a2_uniform;
+    if (uniform) return x;
+    vec *const a2 = arena.vecs(block.n), *const per_a2 = arena.vecs(block.n);
+    for (int i = 0; i < W && !same; ++i) {
         const Lane &one = lane[i < block.lanes ? i : 0];
         for (long k = 0; k < block.n; ++k) {
             const double a = one.length && k < one.n_bonds ? one.length[k] : one.length_uniform;
             a2[k][i] = k < one.n_bonds ? a * a : 1.0;
         }
     }
+    for (long k = 0; k < block.n; ++k) {
+        if (same) a2[k] = splat(lane[0].length[k] * lane[0].length[k]);
+        per_a2[k] = splat(1.0) / a2[k];
+    }
     x.a2 = a2;
+    x.per_a2 = per_a2;
+    return x;
 }
 
 // Bond vectors k0 .. k0 + W - 1, from pointers to atom k0 of each lane.
@@ -168,7 +177,7 @@ static __attribute__((noinline)) long worst_bond(const Block &block, const Newto
     long k = 0;
     for (vec worst = {}; k < block.len[lane]; ++k) {
         length_error<uniform_a>(x, k, false, Mover<uniform_w>::bond(mover, x, k), worst);
-        if ((uniform_a ? worst / x.a2_uniform : worst)[lane] >= error) break;
+        if (relative_error<uniform_a>(x, worst)[lane] >= error) break;
     }
     return k < block.len[lane] ? k : 0;
 }
