@@ -15,6 +15,8 @@
 #include "newton_sweeps.inl"
 #include "newton.inl"
 #include "positions_arrays.inl"
+#include "solve_positions.inl"
+#include "positions_gathered.inl"
 #include "positions.inl"
 #include "molecules.inl"
 #include "molecules_positions.inl"

@@ -3,10 +3,20 @@
 namespace holonomic {
 namespace HOL_ISA {
 
-// Largest |coordinate| of each lane.
-static __attribute__((noinline)) vec extent(const Block &block, const Packed &r) {
+// Largest |coordinate| of each lane. With lists of atoms, r is where the first ones are.
+static __attribute__((noinline)) vec extent(const Block &block, const Packed &r, const int64_t *const *lists = nullptr) {
     vec largest;
     for (int i = 0; i < W; ++i) {
+        if (lists) {
+            double x = 0;
+            for (long k = 0; k <= block.len[i]; ++k)
+                for (int c = 0; c < 3; ++c) {
+                    const double y = abs(r.lane[i][3 * (lists[i][k] - lists[i][0]) + c]);
+                    x = y > x ? y : x;
+                }
+            largest[i] = x;
+            continue;
+        }
         const long count = 3 * (block.len[i] + 1);
         vec m = {};
         long e = 0;
@@ -23,12 +33,13 @@ static __attribute__((noinline)) vec extent(const Block &block, const Packed &r)
 // is looked for when a decision hangs on it, which is rare.
 class Carried {
 public:
-    Carried(const Block &block, const Newton &x, const PositionsCall &call, const Packed &r)
-        : block_(block), x_(x), r_(r), tolerance_(call.tolerance), u_(call.r.is_float ? 5.97e-8 : 1.11e-16),
+    Carried(const Block &block, const Newton &x, const PositionsCall &call, const Packed &r,
+            const int64_t *const *lists = nullptr)
+        : block_(block), x_(x), r_(r), lists_(lists), tolerance_(call.tolerance), u_(call.r.is_float ? 5.97e-8 : 1.11e-16),
           boxed_(call.box.shape != Box::none) {}
 
     vec largest_coordinate() {
-        if (!known_) largest_ = extent(block_, r_);
+        if (!known_) largest_ = extent(block_, r_, lists_);
         known_ = true;
         return largest_;
     }
@@ -58,6 +69,7 @@ private:
     const Block &block_;
     const Newton &x_;
     const Packed &r_;
+    const int64_t *const *const lists_;
     const double tolerance_, u_;
     const bool boxed_;
     bool known_ = false;

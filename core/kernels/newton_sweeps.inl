@@ -41,6 +41,11 @@ struct Newton : BondLengths {
         b[n] = vec3{};
         tau[n] = correction[n] = vec{};
     }
+    Newton(const Block &block, const BondLengths &a, Arena &arena) : Newton(block.n, arena) {
+        static_cast<BondLengths &>(*this) = a;
+        lengths = block.lengths();
+        w = block.w;
+    }
 };
 
 template <bool uniform_w>
@@ -138,8 +143,8 @@ HOL_INLINE vec largest_error(const Newton &x, vec worst, vec y) {
 enum Factors { first_factors, renewed_factors, careful_factors };
 
 // Eliminates with the Jacobian at D and substitutes forward; returns the largest error. first_factors: of D as loaded,
-// in all lanes; renewed_factors: of D as moved by the corrections so far, in the lanes in `which`; careful_factors: of D
-// as it stands, in the lanes in `which`, with a division per bond and nothing that cancels. Fractions as in forward().
+// in all lanes; renewed_factors: of D as moved by the corrections so far, in the lanes in `which`; careful_factors: of
+// D as it stands, in the lanes in `which`, with a division per bond and nothing that cancels. Fractions as in forward().
 template <bool uniform_w, bool uniform_a, Factors factors, int fixed = 0>
 HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
     constexpr bool moved = factors == renewed_factors, all = factors == first_factors,

@@ -3,43 +3,6 @@
 namespace holonomic {
 namespace HOL_ISA {
 
-template <bool uniform_w, bool uniform_a, bool careful>
-static __attribute__((noinline)) Outcome solve_positions(const Block &block, Newton &x, const PositionsCall &call,
-                                                         Carried &carried, mask wanted, bool guess) {
-    const mask single = wanted & less(x.lengths, splat(1.5)), longer = wanted & ~single;
-    Outcome out = {};
-    if (any(longer))
-        out = iterate<uniform_w, uniform_a, careful>(block, x, call, carried, longer, guess);
-    else
-        for (long k = 0; k < block.n; ++k) x.tau[k] = vec{};
-    if (careful) {  // D has been moved by all corrections
-        x.step = x.correction;
-        for (long k = 0; k < block.n; ++k) x.correction[k] = vec{};
-    }
-    if (!any(single)) return out;
-    x.step = x.tau;
-    const Outcome one = solve_single_bonds<uniform_w>(x, carried, single);
-    out.untouched = out.untouched | one.untouched;
-    out.converged = out.converged | one.converged;
-    out.error = select(single, one.error, out.error);
-    out.solves = one.solves > out.solves ? one.solves : out.solves;
-    return out;
-}
-
-// Lanes in which an atom's displacement is the difference of pulls so large that their rounding is more than the
-// coordinates': light atoms between heavy ones in a taut chain. Elsewhere moving the atoms costs one rounding of them.
-template <bool uniform_w>
-static inline mask coarse_moves(const Block &block, const Newton &x, Carried &carried, mask which) {
-    vec pull = {};
-    go_up<0>(block, [&](long k, bool) __attribute__((always_inline)) {
-        const vec tau = abs(x.tau[k]);
-        pull = max(uniform_w ? tau : max(x.w[k], x.w[k + 1]) * tau, pull);
-    });
-    pull = pull * x.a_max;
-    if (!any(which & less(0.25 * x.a_min, pull))) return none();
-    return which & less(0.25 * (carried.largest_coordinate() + x.a_min), pull);
-}
-
 // The two attempts at a block of chains.
 template <bool uniform_w, bool uniform_a>
 struct Positions {
@@ -53,11 +16,7 @@ struct Positions {
 
     Positions(const Block &b, const Lane *l, const PositionsCall &c, const BondLengths &a, Arena memory, Tally &t)
         : block(b), lane(l), call(c), arena(memory), tally(t), r_ref(open(c.r_ref, b, l, arena, true)),
-          r(open(c.r, b, l, arena, true)), v(open(c.v, b, l, arena, true)), x(b.n, arena) {
-        x.lengths = block.lengths();
-        x.w = block.w;
-        static_cast<BondLengths &>(x) = a;
-    }
+          r(open(c.r, b, l, arena, true)), v(open(c.v, b, l, arena, true)), x(b, a, arena) {}
 
     template <bool to_r, bool to_v>
     void move(mask which) const {
@@ -119,12 +78,7 @@ struct Positions {
             if (call.v.x) close(call.v, block, lane, out.converged, v, false);
             if (call.virial) add_virial(block, x, out.converged, call.dt, tally);
         }
-        if (call.lambda) {
-            const vec factor = splat(0.5 / (call.dt * call.dt)) / block.unit;
-            store_multipliers(block, x, factor, out.converged | out.untouched, call.lambda);
-        }
-        tally.n_corrected += __builtin_popcount(bits(out.converged));
-        if (out.solves > tally.iterations) tally.iterations = out.solves;
+        note_solved(block, x, call, out, tally);
     }
 
     void load() const {
@@ -150,14 +104,21 @@ struct Positions {
     }
 };
 
+template <bool uniform_w, bool uniform_a>
+static inline void positions_block(const Block &block, const Lane *lane, const PositionsCall &call,
+                                   const BondLengths &a, Arena arena, Tally &tally) {
+    if (block.staged && listed_positions<uniform_w, uniform_a>(block, lane, call, a, arena, tally)) return;
+    Positions<uniform_w, uniform_a>(block, lane, call, a, arena, tally).solve();
+}
+
 static void positions_block(const Block &block, const Lane *lane, const PositionsCall &call, const BondLengths &a,
                             Arena arena, Tally &tally) {
     if (block.uniform_w)
-        a.a2 ? Positions<true, false>(block, lane, call, a, arena, tally).solve()
-             : Positions<true, true>(block, lane, call, a, arena, tally).solve();
+        a.a2 ? positions_block<true, false>(block, lane, call, a, arena, tally)
+             : positions_block<true, true>(block, lane, call, a, arena, tally);
     else
-        a.a2 ? Positions<false, false>(block, lane, call, a, arena, tally).solve()
-             : Positions<false, true>(block, lane, call, a, arena, tally).solve();
+        a.a2 ? positions_block<false, false>(block, lane, call, a, arena, tally)
+             : positions_block<false, true>(block, lane, call, a, arena, tally);
 }
 
 static void positions(const PositionsCall &call, const Unit &unit, double *scratch, Tally &tally) {
