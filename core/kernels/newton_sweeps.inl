@@ -168,17 +168,18 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
         const vec3 d1 = moved ? Mover<uniform_w>::bond(mover, x, k + 1) : x.D[k + 1], b1 = x.b[k + 1];
         if (!moved) d = x.D[k];
         const vec q1 = dot(d1, b1);
-        vec lower = dot(d1, x.b[k]), upper = dot(b1, d);
+        const vec lower = dot(d1, x.b[k]), upper = dot(b1, d);
         vec X = careful ? dot(cross(d, d1), cross(x.b[k], b1)) : mul_add(q, q1, -(lower * upper));
-        if (ragged) {
+        const vec wP = times_w<uniform_w>(x, k + 1, rP);
+        vec up = wP * upper;
+        down = wP * lower;
+        if (ragged) {  // the last pivot of a chain may be 0: no product with its reciprocal
             const mask m = live(x, k + 1);
-            lower = keep(m, lower);
-            upper = keep(m, upper);
+            up = keep(m, up);
+            down = keep(m, down);
             X = keep(m, X);
         }
-        const vec wP = times_w<uniform_w>(x, k + 1, rP), up = wP * upper;
         row.up = all ? up : select(which, up, row.up);
-        down = wP * lower;
         A = times_w<uniform_w>(x, k + 1, mul_add(times_w<uniform_w>(x, k + 1, X), F, q1 * A));
         F = F1;
         if (careful || (k & 3) == 3) {
