@@ -22,15 +22,14 @@ namespace {
 
 void create(const hol_chains *chains, std::int64_t chain, const AtomArray &r, hol_inverse **inverse) {
     const holonomic::Chains &all = chains->chains;
-    const std::int64_t number = chain - all.base;
-    if (chain < all.base || number >= all.n_chains()) {
+    if (chain < all.base || chain - all.base >= all.n_chains()) {
         holonomic::Error error =
             make_error(HOL_ERR_INDEX, "chain %lld is outside %d .. %lld", static_cast<long long>(chain), all.base,
                        static_cast<long long>(all.n_chains() - 1 + all.base));
         error.base = all.base;
         throw error;
     }
-    *inverse = new hol_inverse{holonomic::Inverse(all, number, r)};
+    *inverse = new hol_inverse{holonomic::Inverse(all, chain - all.base, r)};
 }
 
 // Number of a bond counted from 0; -1, which the core refuses, for one below the base.
