@@ -30,11 +30,14 @@ std::uint64_t mix(std::uint64_t hash, double value) {
     return hash ^ (hash >> 29);
 }
 
+// Lengths are compared by their squares, which must neither vanish nor overflow.
 void check_lengths(std::int64_t n_bonds, const double *lengths, int base) {
     for (std::int64_t k = 0; k < n_bonds; ++k) {
-        if (lengths[k] > 0 && std::isfinite(lengths[k])) continue;
-        Error error = make_error(HOL_ERR_VALUE, "the length of bond %lld is %g; it must be positive and finite",
-                                 number(k, base), lengths[k]);
+        if (lengths[k] >= 1e-150 && lengths[k] <= 1e150) continue;
+        const char *const range = lengths[k] > 0 && std::isfinite(lengths[k]) ? "between 1e-150 and 1e150"
+                                                                              : "positive and finite";
+        Error error = make_error(HOL_ERR_VALUE, "the length of bond %lld is %g; it must be %s", number(k, base),
+                                 lengths[k], range);
         error.bond = k;
         error.base = base;
         throw error;

@@ -91,7 +91,7 @@ template <int terms, bool uniform>
 static __attribute__((noinline)) mask forward_gathered(const Block &block, const Box &box, const AtomLists &at,
                                                        const double *r, const double *v, const double *f,
                                                        const System &s) {
-    const Source source = {nullptr, r, at.atoms, &box};
+    const Source source = {nullptr, r, at.atoms, &box, nullptr};
     Sweep<uniform, terms == rate> sweep{block, source, s};
     const bool boxed = box.shape != Box::none;
     vec3 r0 = gather(r, at, 0), v0 = {}, f0 = {};

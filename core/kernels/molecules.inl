@@ -108,7 +108,7 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
         load_molecules<N, terms, uniform>(block, r + at, v ? v + at : v, f ? f + at : f, D, t);
         Packed from;
         for (int i = 0; i < W; ++i) from.lane[i] = const_cast<double *>(r) + at + 3 * (N + 1) * i;
-        const Source source = {&from, nullptr, nullptr, &call.box};
+        const Source source = {&from, nullptr, nullptr, &call.box, nullptr};
         Sweep<uniform, false> sweep{block, source, System(D, t, L, nullptr)};
         HOL_UNROLL
         for (int k = 0; k < N; ++k) sweep.step(k, t[k], k % 4 == 0, false);
@@ -138,7 +138,7 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
         load_molecules<N, rate, uniform>(block, r + at, v + at, nullptr, D, t);
         Packed from;
         for (int i = 0; i < W; ++i) from.lane[i] = const_cast<double *>(r) + at + 3 * (N + 1) * i;
-        const Source source = {&from, nullptr, nullptr, &call.box};
+        const Source source = {&from, nullptr, nullptr, &call.box, nullptr};
         const System s(D, t, L, pivots);
         Sweep<uniform, true> sweep{block, source, s};
         HOL_UNROLL

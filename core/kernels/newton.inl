@@ -156,10 +156,11 @@ HOL_INLINE Outcome solve_single_bonds(const Newton &x, Carried &carried, mask wa
     const vec root = sqrt(mul_add(db, db, -(dot(b, b) * sigma)));  // NaN where the length can't be reached
     const vec s = sigma / (db + select(less(db, vec{}), -root, root));
     out.untouched = wanted & carried.within(abs(sigma), a2);
-    out.converged = wanted & ~out.untouched & finite(s / w) & less(vec{}, w);
-    const vec step = keep(out.converged, s);
+    const mask reached = wanted & ~out.untouched & finite(s / w) & less(vec{}, w);
+    const vec step = keep(reached, s);
     const vec3 moved = {mul_add(-step, b.x, d.x), mul_add(-step, b.y, d.y), mul_add(-step, b.z, d.z)};
     const vec left = mul_add(moved.z, moved.z, mul_add(moved.y, moved.y, mul_add(moved.x, moved.x, -a2)));
+    out.converged = reached & finite(left);  // coordinates so large that squares overflow
     x.tau[0] = select(wanted, keep(out.converged, s / w), x.tau[0]);
     out.error = abs(left) * (x.a2 ? x.per_a2[0] : x.per_a2_uniform);
     out.solves = any(out.converged) ? 1 : 0;

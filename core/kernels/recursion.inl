@@ -65,6 +65,7 @@ struct Source {
     const double *base;
     const int64_t *const *atoms;
     const Box *box;
+    const long *len;  // of lanes that may end before the joints that are asked for; or nullptr
     const double *atom(int lane, long k) const {
         return atoms ? base + 3 * atoms[lane][k] : r->lane[lane] + 3 * k;
     }
@@ -86,6 +87,7 @@ HOL_INLINE mask nearly_orthogonal(vec g, vec X) { return less(not_orthogonal(g *
 static __attribute__((noinline)) vec exact_dots(const Source &source, long k, mask which, vec g) {
     for (unsigned left = bits(which); left; left &= left - 1) {
         const int i = __builtin_ctz(left);
+        if (source.len && k >= source.len[i]) continue;
         Vector3<double> d[2], low[2];
         for (int b = 0; b < 2; ++b) {
             const double *const p = source.atom(i, k - 1 + b), *const q = source.atom(i, k + b);

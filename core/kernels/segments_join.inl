@@ -14,7 +14,7 @@ static void eliminate_block_of(const Box &box, const SegmentBlock &s, const Pack
     Block own = own_block(s);
     vec3 *const D = reinterpret_cast<vec3 *>(arena.vecs(3 * (n + W))), *const low = reinterpret_cast<vec3 *>(arena.vecs(3 * (n + W)));
     vec *const B = arena.vecs(n + W);
-    const Source source = {&in.r, nullptr, nullptr, &box};
+    const Source source = {&in.r, nullptr, nullptr, &box, s.block.len};
     in.D = D;
     in.low = low;
     in.B = B;

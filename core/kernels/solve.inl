@@ -9,7 +9,7 @@ template <int terms, bool uniform, bool boxed>
 static __attribute__((noinline)) mask forward(const Block &block, const Box &box, const Packed &r, const Packed &v,
                                               const Packed &f, const System &s, mask &calm) {
     const Places at(r, v, f);
-    const Source source = {&r, nullptr, nullptr, &box};
+    const Source source = {&r, nullptr, nullptr, &box, nullptr};
     Sweep<uniform, terms == rate> sweep{block, source, s};
     constexpr long group = W > 4 ? W : 4;
     long k0 = 0;
