@@ -115,7 +115,7 @@ HOL_API void hol_chains_destroy(hol_chains *chains);
  * @param[in,out] chains
  * @param[in]     n_bonds  >= 1
  * @param[in]     atoms    [n_bonds+1], any numbers of atoms of the caller's arrays, each used once
- * @param[in]     lengths  [n_bonds], bond lengths, > 0 and finite (1e-150 .. 1e150). Used by hol_project_positions and hol_violation;
+ * @param[in]     lengths  [n_bonds], bond lengths, 1e-150 .. 1e150. Used by hol_project_positions and hol_violation;
  *                         the acceleration and velocity levels use the bond vectors as they are. Copied.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (n_bonds, a length); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM; HOL_ERR_MEMORY.
  *         On an error nothing is added. Not thread-safe on one handle. Since 0.1.
