@@ -129,9 +129,9 @@ static inline void store_moves(const Block &block, const Newton &x, mask which, 
             for (int j = 0; j < 3; ++j) {
                 transpose(value + j * W);
                 for (int i = 0; i < W; ++i) {
-                    double *const p = r.lane[i] + 3 * k0 + j * W, *const q = v.lane[i] + 3 * k0 + j * W;
-                    if (to_r) store(p, load(p) + value[j * W + i]);
-                    if (to_v) store(q, mul_add(value[j * W + i], rate, load(q)));
+                    const long e = 3 * k0 + j * W;
+                    if (to_r) store(r.lane[i] + e, load(r.lane[i] + e) + value[j * W + i]);
+                    if (to_v) store(v.lane[i] + e, mul_add(value[j * W + i], rate, load(v.lane[i] + e)));
                 }
             }
         }

@@ -233,9 +233,70 @@ static void an_ill_posed_step_fails_cleanly_or_succeeds(void **state)
     print_message("nearly straight, dt 0.02: %d solved, %d refused\n", solved, failed);
 }
 
+/** Bonds of length 1 along z, all alike, of old positions `before` apart and of new ones `now` apart at an angle. */
+static void project_single_bonds(int n, double before, double now)
+{
+    const double mass[8] = {1, 1, 1, 1, 1, 1, 1, 1}, length = 1;
+    double ref[24] = {0}, r[24] = {0}, old[24];
+    hol_chains *chains;
+    CHECK(hol_chains_create(2 * n, mass, &chains));
+    CHECK(hol_chains_add_block(chains, n, 1, 0, &length));
+    for (int c = 0; c < n; ++c) {
+        ref[6 * c + 5] = before;
+        r[6 * c + 4] = 0.3 * now;
+        r[6 * c + 5] = now;
+    }
+    memcpy(old, r, sizeof r);
+    hol_report report;
+    const int status = hol_project_positions(chains, ref, r, NULL, 1, NULL, 0, NULL, &report);
+    if (status == HOL_OK) {
+        hol_worst worst;
+        CHECK(hol_violation(chains, r, NULL, &worst));
+        CHECK_AT_MOST(worst.length, 16 * DBL_EPSILON * (1 + now));  // of a, in units of the coordinates' rounding
+        CHECK_AT_MOST(report.max_error, 32 * DBL_EPSILON * (1 + now));
+    } else {
+        assert_true(status == HOL_ERR_NO_CONVERGENCE || status == HOL_ERR_NOT_FINITE || status == HOL_ERR_DEGENERATE);
+        assert_same_bits(r, old, 24);
+    }
+    if (fabs(log10(before)) < 100 && now < 3) assert_int_equal(status, HOL_OK);
+    hol_chains_destroy(chains);
+}
+
+static void single_bonds_end_on_their_length_or_in_a_status(void **state)
+{
+    (void)state;
+    const double now[] = {1e-3, 0.9, 1, 1.5, 10, 1e3, 1e6};
+    for (int e = -300; e <= 300; e += 12)
+        for (size_t i = 0; i < sizeof now / sizeof *now; ++i)
+            for (int n = 1; n <= 4; n += 3) project_single_bonds(n, pow(10, e), now[i]);
+}
+
+static void a_reference_that_is_no_number_is_an_error_although_the_bond_is_satisfied(void **state)
+{
+    (void)state;
+    const double mass[2] = {1, 1}, length = 1;
+    double ref[6] = {0, 0, 0, 0, 0, 1}, r[6] = {0, 0, 0, 0, 0, 1}, before[6];
+    memcpy(before, r, sizeof r);
+    hol_chains *chains;
+    CHECK(hol_chains_create(2, mass, &chains));
+    CHECK(hol_chains_add_block(chains, 1, 1, 0, &length));
+    for (int x = 0; x < 6; ++x) {
+        const double good = ref[x];
+        ref[x] = x % 2 ? HUGE_VAL : NAN;
+        CHECK_FAILS(HOL_ERR_NOT_FINITE, hol_project_positions(chains, ref, r, NULL, 1, NULL, 0, NULL, NULL));
+        assert_same_bits(r, before, 6);
+        ref[x] = good;
+    }
+    CHECK(hol_project_positions(chains, ref, r, NULL, 1, NULL, 0, NULL, NULL));
+    assert_same_bits(r, before, 6);
+    hol_chains_destroy(chains);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(single_bonds_end_on_their_length_or_in_a_status),
+        cmocka_unit_test(a_reference_that_is_no_number_is_an_error_although_the_bond_is_satisfied),
         cmocka_unit_test(chains_that_cannot_reach_their_lengths_keep_every_bit),
         cmocka_unit_test(a_hard_bound_on_iterations_ends_in_a_status),
         cmocka_unit_test(wrong_arguments_are_refused_and_nothing_is_written),

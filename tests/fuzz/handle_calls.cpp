@@ -103,9 +103,11 @@ void session::ask()
     std::int64_t *const o = reinterpret_cast<std::int64_t *>(offsets.data());
     if (hol_chains_offsets(maybe(chains), maybe(o)) == HOL_OK) {
         const std::int64_t which = in.whole();
-        const std::int64_t c = which - base;
-        const std::size_t size =
-            c >= 0 && c < static_cast<std::int64_t>(n) ? static_cast<std::size_t>(o[c + 1] - o[c] + 1) : 0;
+        std::size_t size = 0;
+        if (which >= base && which < base + static_cast<std::int64_t>(n)) {
+            const std::int64_t c = which - base;
+            size = static_cast<std::size_t>(o[c + 1] - o[c] + 1);
+        }
         block atoms(size * sizeof(std::int64_t));
         check_status(hol_chains_atoms(maybe(chains), which, maybe(reinterpret_cast<std::int64_t *>(atoms.data()))));
     }
