@@ -44,24 +44,29 @@ Inverse::Inverse(const Chains &chains, std::int64_t chain, const AtomArray &r)
     }
     const auto coupling = [&](std::size_t k) { return w_[k] * std::fabs(joints[k].cosine); };  // p of theory (25)
     const auto deficit = [&](std::size_t k) { return w_[k] * joints[k].complement + w_[k + 1] * joints[k + 1].complement; };
-    double e = 0;
+    // What is carried from bond to bond has twice the digits: along a straight chain each step would round it the same way.
+    DoublePair e = as_pair(0), pivot = as_pair(1);
     for (std::size_t k = 0; k < n_; ++k) {
         Bond &b = bonds_[k];
         b.root = std::sqrt(w_[k] + w_[k + 1]);
-        b.l = k == 0 ? 0 : coupling(k) / bonds_[k - 1].pivot;
-        e = deficit(k) + b.l * e;
-        b.inverse = e;
-        b.pivot = e + (k + 1 < n_ ? coupling(k + 1) : 0);
+        const DoublePair l = k == 0 ? as_pair(0) : as_pair(coupling(k)) / pivot;
+        e = as_pair(deficit(k)) + l * e;
+        pivot = e + as_pair(k + 1 < n_ ? coupling(k + 1) : 0);
+        b.l = rounded(l);
+        b.inverse = rounded(e);
+        b.pivot = rounded(pivot);
         good = good && b.pivot > 0 && std::isfinite(b.pivot);
+        if (!good) break;
     }
     if (!good) throw bad_data(chains, chain, r);
-    double rest = 0;  // R of theory (33)
+    DoublePair rest = as_pair(0);  // R of theory (33)
     for (std::size_t k = n_; k-- > 0;) {
         if (k + 1 < n_) {
-            const double p = coupling(k + 1), sum = deficit(k + 1) + rest;
-            rest = p == 0 ? 0 : p * (sum / (sum + p));
+            const double p = coupling(k + 1);
+            const DoublePair sum = as_pair(deficit(k + 1)) + rest;
+            rest = p == 0 ? as_pair(0) : as_pair(p) * (sum / (sum + as_pair(p)));
         }
-        bonds_[k].inverse = 1 / (bonds_[k].inverse + rest);
+        bonds_[k].inverse = 1 / (bonds_[k].inverse + rounded(rest));
         good = good && std::isfinite(bonds_[k].inverse);
         double row = 1;
         if (k > 0) row += coupling(k) / (bonds_[k].root * bonds_[k - 1].root);
