@@ -43,7 +43,7 @@ void check_positions(const hostile_chain &c, const library_results &alone, verdi
 /** A chain that failed keeps its outputs bit for bit; one that did not has only finite ones. */
 void check_outputs(const hostile_chain &c, const library_results &part, verdict &out);
 
-/** The parts that must not depend on the surroundings. The position level is left out if `positions` is false. */
+/** Whether everything is the same to the last bit. */
 void check_same(const library_results &one, const library_results &other, verdict &out);
 
 /** Everything about one chain on its own; `regular` tells whether Z has an inverse. */
