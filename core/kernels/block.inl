@@ -33,6 +33,7 @@ struct Block {
     // Inverse masses are relative to a unit of each lane's own: its inverse mass where that is constant along it, else 1.
     // So equal masses cost nothing, and are rounded the same way whatever stands in the other lanes.
     bool uniform_w;       // they are 1 along every lane
+    bool unit_masses;     // and so are the masses
     vec unit, mass;       // the unit, and 1 / unit
     mask movable;         // lanes that do not consist of fixed atoms alone
     const vec *w;         // else [n+1], interleaved, in that unit
@@ -162,6 +163,7 @@ static inline void set_masses(Block &block, const double *const *tables, const d
         block.uniform_w = block.uniform_w && has_unit;
     }
     block.mass = splat(1.0) / block.unit;
+    block.unit_masses = block.uniform_w && !any(reinterpret_cast<mask>(block.mass != splat(1.0)));
     if (block.uniform_w) return;
     vec *w = arena.vecs(block.n + 1);
     bool same = true;

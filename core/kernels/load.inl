@@ -36,7 +36,7 @@ HOL_INLINE void wrap(const Box &box, Vector3<V> &d, Vector3<V> &lo) {
 }
 
 // What the right-hand side of a bond is made of.
-enum Terms { none_ = 0, velocity_squared = 1, force_difference = 2, rate = 4 };
+enum Terms { none_ = 0, velocity_squared = 1, force_difference = 2, rate = 4, unit_mass = 8 };
 
 // Starts to fetch W atoms of the next block, `ahead` doubles from p: an address that may lie behind the array.
 HOL_INLINE void fetch_ahead(const double *p, long ahead) {
@@ -62,7 +62,7 @@ HOL_INLINE void load_chunk(const Block &block, const Box &box, long k0, const do
             if (careful) l[i] = two_difference<vec>(r1, r0).lo;
             vec dv = {}, df = {}, vv = {};
             if (terms & (velocity_squared | rate)) dv = load(pv[i] + W * j + 3) - load(pv[i] + W * j);
-            if (terms & velocity_squared) vv = (block.mass[i] * dv) * dv;
+            if (terms & velocity_squared) vv = (terms & unit_mass ? dv : block.mass[i] * dv) * dv;
             if (terms & force_difference) {
                 const vec f0 = load(pf[i] + W * j), f1 = load(pf[i] + W * j + 3);
                 if (uniform) {
@@ -109,22 +109,13 @@ HOL_INLINE void load_chunk(const Block &block, const Box &box, long k0, const do
     }
 }
 
-HOL_INLINE uintptr_t distance(const double *from, const double *to) {
-    return reinterpret_cast<uintptr_t>(to) - reinterpret_cast<uintptr_t>(from);
-}
-
-HOL_INLINE const double *at_distance(const double *p, uintptr_t bytes) {
-    return reinterpret_cast<const double *>(reinterpret_cast<uintptr_t>(p) + bytes);
-}
-
 // The lanes' places in the arrays of a call. All arrays are laid out in the same way (all in place or all staged), so
-// that one address per lane does for them together.
+// that a lane is at the same distance from the first in each.
 struct Places {
-    const double *lane[W];
-    uintptr_t v, f;  // from a lane in r to the same one in v and f
-    Places(const Packed &pr, const Packed &pv, const Packed &pf)
-        : v(distance(pr.lane[0], pv.lane[0])), f(distance(pr.lane[0], pf.lane[0])) {
-        for (int i = 0; i < W; ++i) lane[i] = pr.lane[i];
+    const double *r, *v, *f;  // of the first lane
+    long lane[W];
+    Places(const Packed &pr, const Packed &pv, const Packed &pf) : r(pr.lane[0]), v(pv.lane[0]), f(pf.lane[0]) {
+        for (int i = 0; i < W; ++i) lane[i] = pr.lane[i] - pr.lane[0];
     }
 };
 
@@ -132,14 +123,14 @@ struct Places {
 template <int terms, bool uniform, bool boxed, bool careful>
 HOL_INLINE void load_full_chunk(const Block &block, const Box &box, const Places &at, long k0, vec3 *D, vec3 *D_low,
                                 vec *B) {
-    const double *pr[W], *pv[W], *pf[W];
+    const double *pr[W], *pv[W] = {}, *pf[W] = {};
     HOL_UNROLL
     for (int i = 0; i < W; ++i) {
-        pr[i] = at.lane[i] + 3 * k0;
-        pv[i] = at_distance(pr[i], at.v);
-        pf[i] = at_distance(pr[i], at.f);
+        pr[i] = at.r + 3 * k0 + at.lane[i];
+        if (terms & (velocity_squared | rate)) pv[i] = at.v + 3 * k0 + at.lane[i];
+        if (terms & force_difference) pf[i] = at.f + 3 * k0 + at.lane[i];
     }
-    if (block.ahead)
+    if (__builtin_expect(block.ahead != 0, 0))
         for (int i = 0; i < W; ++i) {
             fetch_ahead(pr[i], block.ahead);
             if (terms & (velocity_squared | rate)) fetch_ahead(pv[i], block.ahead);

@@ -83,21 +83,53 @@ HOL_INLINE vec not_orthogonal(vec g2, vec X) {
 
 HOL_INLINE mask nearly_orthogonal(vec g, vec X) { return less(not_orthogonal(g * g, X), vec{}); }
 
-// The lanes in `which` of g, for joint k, with compensated products of unrounded differences.
+// The sum of three numbers and their low words, as if in twice the precision.
+template <class Three>
+HOL_INLINE double sum_compensated(const Three &hi, const Three &lo) {
+    const Pair<double> s = two_sum<double>(hi[0], hi[1]), t = two_sum<double>(s.hi, hi[2]);
+    return t.hi + ((t.lo + s.lo) + ((lo[0] + lo[1]) + lo[2]));
+}
+
+// g of joint k in one lane, with compensated products of unrounded differences.
+static __attribute__((noinline)) double exact_dot(const Source &source, int lane, long k) {
+    Vector3<double> d[2], low[2];
+    for (int b = 0; b < 2; ++b) {
+        const double *const from = source.atom(lane, k - 1 + b), *const to = source.atom(lane, k + b);
+        const Pair<double> x = two_difference(to[0], from[0]), y = two_difference(to[1], from[1]),
+                           z = two_difference(to[2], from[2]);
+        d[b] = {x.hi, y.hi, z.hi};
+        low[b] = {x.lo, y.lo, z.lo};
+        if (source.box->shape != Box::none) wrap<true>(*source.box, d[b], low[b]);
+    }
+    const Pair<double> x = two_product(d[0].x, d[1].x), y = two_product(d[0].y, d[1].y), z = two_product(d[0].z, d[1].z);
+    const double hi[3] = {x.hi, y.hi, z.hi};
+    const double lo[3] = {mul_add(d[0].x, low[1].x, mul_add(low[0].x, d[1].x, x.lo)),
+                          mul_add(d[0].y, low[1].y, mul_add(low[0].y, d[1].y, y.lo)),
+                          mul_add(d[0].z, low[1].z, mul_add(low[0].z, d[1].z, z.lo))};
+    return sum_compensated(hi, lo);
+}
+
+#if HOL_LANES == 4
+// The same without a box, from the coordinates of the three atoms: x, y and z at once.
+HOL_INLINE double exact_dot(const double *p0, const double *p1, const double *p2) {
+    const vec r0 = {p0[0], p0[1], p0[2], 0}, r1 = {p1[0], p1[1], p1[2], 0}, r2 = {p2[0], p2[1], p2[2], 0};
+    const Pair<vec> a = two_difference<vec>(r1, r0), b = two_difference<vec>(r2, r1), hi = two_product<vec>(a.hi, b.hi);
+    return sum_compensated(hi.hi, mul_add(a.hi, b.lo, mul_add(a.lo, b.hi, hi.lo)));
+}
+#endif
+
+// The lanes in `which` of g, for joint k.
 static __attribute__((noinline)) vec exact_dots(const Source &source, long k, mask which, vec g) {
     for (unsigned left = bits(which); left; left &= left - 1) {
         const int i = __builtin_ctz(left);
         if (source.len && k >= source.len[i]) continue;
-        Vector3<double> d[2], low[2];
-        for (int b = 0; b < 2; ++b) {
-            const double *const p = source.atom(i, k - 1 + b), *const q = source.atom(i, k + b);
-            const Pair<double> x = two_difference(q[0], p[0]), y = two_difference(q[1], p[1]),
-                               z = two_difference(q[2], p[2]);
-            d[b] = {x.hi, y.hi, z.hi};
-            low[b] = {x.lo, y.lo, z.lo};
-            if (source.box->shape != Box::none) wrap<true>(*source.box, d[b], low[b]);
+#if HOL_LANES == 4
+        if (source.box->shape == Box::none) {
+            g[i] = exact_dot(source.atom(i, k - 1), source.atom(i, k), source.atom(i, k + 1));
+            continue;
         }
-        g[i] = dot_compensated(d[0], low[0], d[1], low[1]);
+#endif
+        g[i] = exact_dot(source, i, k);
     }
     return g;
 }

@@ -50,6 +50,8 @@ template <int terms, bool careful>
 static inline mask forward_any(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
                                  const System &s, mask &calm) {
     const bool boxed = box.shape != Box::none;
+    if (!careful && (terms & velocity_squared) && block.unit_masses && !boxed)
+        return forward<terms | unit_mass, true, false>(block, box, r, v, f, s, calm);
     if (block.uniform_w)
         return boxed ? forward_by<terms, careful, true, true>(block, box, r, v, f, s, calm)
                      : forward_by<terms, careful, true, false>(block, box, r, v, f, s, calm);
