@@ -55,7 +55,7 @@ typedef enum hol_status {
     HOL_ERR_INDEX = 3,          /**< an atom, bond or chain number is out of range */
     HOL_ERR_SHARED_ATOM = 4,    /**< an atom is used twice; chains that share an atom are not supported yet */
     HOL_ERR_MEMORY = 5,         /**< out of memory */
-    HOL_ERR_NOT_FINITE = 6,     /**< an infinity or NaN in the data of a chain, or an overflow on the way */
+    HOL_ERR_NOT_FINITE = 6,     /**< an infinity or NaN in the data of a chain, or an overflow or underflow */
     HOL_ERR_DEGENERATE = 7,     /**< a bond of length zero, or a chain stretched taut between fixed atoms */
     HOL_ERR_NO_CONVERGENCE = 8, /**< the bond lengths can't be reached from these positions */
     HOL_ERR_NOT_DEFINITE = 9,   /**< hol_tridiagonal_*: the matrix is not positive definite */

@@ -96,7 +96,8 @@ Error diagnose(const Chains &chains, const Tally &tally, const NamedArray *array
                                  "lengths; the step is too large, or a length can't be reached%s",
                                  chain, others),
                       -1, -1);
-    return finish(make_error(HOL_ERR_NOT_FINITE, "chain %lld: the numbers overflow; choose other units%s", chain, others),
+    return finish(make_error(HOL_ERR_NOT_FINITE, "chain %lld: the numbers overflow or underflow; choose other units%s",
+                             chain, others),
                   -1, -1);
 }
 

@@ -199,25 +199,33 @@ struct Sweep {
     }
 
     // Lanes in which the backward sweep can't overflow: |t_k| |d_k| <= sum_j |u_j| |d_j|, because |l_k| |d_{k-1}| <= |d_k|,
-    // and |t_k| <= |u_k| + |l_{k+1} t_{k+1}|, |l_{k+1}| <= w |d_k| |d_{k+1}| / P_k.
+    // and |t_k| <= |u_k| + |l_{k+1} t_{k+1}|, |l_{k+1}| <= w |d_k| |d_{k+1}| / P_k. Nor have the products of five pivots
+    // that make up A lost digits by underflow.
     mask calm() const { return less(size, splat(1e60)); }
     // Lanes that need careful arithmetic.
     mask doubt() const {
-        const mask failed = less(slack, vec{});
-        if (__builtin_expect(!any(failed), 1)) return none();
-        return doubtful_joints<uniform>(block, s.D, 1, block.n, w_at<uniform>(block, 0) * dot(s.D[0], s.D[0])) & failed;
+        const mask failed = less(slack, vec{}), wild = ~calm();
+        if (__builtin_expect(!any(failed), 1)) return wild;
+        return wild |
+               (doubtful_joints<uniform>(block, s.D, 1, block.n, w_at<uniform>(block, 0) * dot(s.D[0], s.D[0])) & failed);
     }
 };
 
-// The same with bond vectors D + D_low and compensated products, a division per bond: right for any chain.
+// Products of two pivots underflow where their reciprocals are not below this.
+constexpr double largest_reciprocal = 1e140;
+
+// The same with bond vectors D + D_low and compensated products, a division per bond: right for any chain whose numbers
+// don't overflow or underflow; u_0 is NaN where they do.
 template <bool uniform>
 static __attribute__((noinline)) void forward_careful(const Block &block, const System &s) {
     const long n = block.n;
+    vec size = {};
     vec q = dot(s.D[0], s.D[0]), E = w_at<uniform>(block, 0) * q, y = s.t[0];
     for (long k = 0; k < n; ++k) {
         const vec w = w_at<uniform>(block, k + 1), P = mul_add(w, q, E);
         s.t[k] = y / P;
         s.pivots[k] = splat(1.0) / P;
+        size = size + s.pivots[k];
         if (k + 1 == n) break;
         const vec3 c = cross_compensated(s.D[k], s.D_low[k], s.D[k + 1], s.D_low[k + 1]);
         vec g = dot_compensated(s.D[k], s.D_low[k], s.D[k + 1], s.D_low[k + 1]), X = dot(c, c);
@@ -232,6 +240,7 @@ static __attribute__((noinline)) void forward_careful(const Block &block, const 
         E = wP * mul_add(w, X, q1 * E);
         q = q1;
     }
+    s.t[0] = select(less(size, splat(largest_reciprocal)), s.t[0], splat(__builtin_nan("")));
 }
 
 // Backward sweep over the bonds from .. n-1: u becomes t. The last one is added to zero as all others are to something,

@@ -104,11 +104,16 @@ HOL_INLINE void plain_joints(const Source &source, long k, const vec3 *d, Joint 
     if (any(less(least, vec{}))) refine_joints(source, k, j, n);
 }
 
+// Products of six pivots, of which a consists after four bonds, underflow where the reciprocal of four of them is not below
+// the first of these; products of three, where that of one is not below the second.
+constexpr double largest_reciprocal_of_four = 1e190, largest_reciprocal_of_one = 1e90;
+
 // The elimination of the inner bonds of W segments, a bond at a time.
 struct Elimination {
     vec q;                        // of the bond that is to be eliminated
     vec A, F, rF, a, c, f, y, T;  // E = A / F; a, c and f are in units of 1 / F, too; rF = 1 / F
     vec w_max, slack;
+    vec largest_rF;
 };
 
 // From a separator and the bond behind it, whose right-hand side is b1.
@@ -122,7 +127,7 @@ HOL_INLINE void start(Elimination &e, const Block &block, vec q0, const Joint &j
     e.c = w * q0;
     e.y = b1;
     e.f = w * j.g;
-    e.T = e.slack = vec{};
+    e.T = e.slack = e.largest_rF = vec{};
     e.w_max = w;
 }
 
@@ -134,6 +139,7 @@ HOL_INLINE void normalise(Elimination &e) {
     e.a = e.a * e.rF;
     e.c = e.c * e.rF;
     e.F = splat(1.0);
+    e.largest_rF = max(e.largest_rF, e.rF);
 }
 
 // Eliminates bond k; j is the joint behind it and b1 the right-hand side behind that. ragged: lanes may end there.
@@ -262,7 +268,7 @@ static __attribute__((noinline)) void eliminate(const Block &block, const Source
     sum.f = e.f;
     sum.T = e.T;
     sum.span = e.w_max * e.q;
-    sum.doubt = doubt;
+    sum.doubt = doubt | ~less(e.largest_rF, splat(careful ? largest_reciprocal_of_one : largest_reciprocal_of_four));
 }
 
 }  // namespace HOL_ISA

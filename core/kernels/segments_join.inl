@@ -84,7 +84,7 @@ static JoinResult long_join(const Lane &lane, bool careful, double *store) {
     for (int64_t j = 0; j < cut.blocks; ++j) {
         Summary &s = all[j];
         if (j == 0) E = relative_w(lane, 0) * s.q[0];
-        if (!careful && any(s.doubt)) return join_doubtful;
+        if (any(s.doubt)) return careful ? join_bad : join_doubtful;
         for (int i = 0; i < W; ++i) {
             const double P = E + s.c[i], yhat = (y + s.b[i]) + s.T[i], S = s.E[i] * E + s.a[i];
             if (!careful && !(4 * s.a[i] * s.span[i] * s.c[i] <= join_tolerance * join_tolerance * S * S))

@@ -258,6 +258,51 @@ static void powers_of_two_of_the_units_scale_every_result_exactly(void **state)
     }
 }
 
+static double largest_difference(const double *a, const double *b, size_t n)
+{
+    double worst = 0;
+    for (size_t i = 0; i < n; ++i) worst = fmax(worst, fabs(a[i] - b[i]));
+    return worst;
+}
+
+static void lengths_in_any_unit_give_the_right_result_or_an_error(void **state)
+{
+    (void)state;
+    /* where products of lengths underflow or overflow; constraint forces have no unit of length if there are no
+     * velocities, nor have projected velocities */
+    static const int64_t bonds[] = {1, 3, 8, 100, 600};
+    for (int c = 0; c < 5; ++c) {
+        chain one = chain_make(CHAIN_COIL, bonds[c], 60);
+        assembly a = assembly_make(&one, 1, IN_ORDER, 0);
+        const size_t size = assembly_size(&a);
+        double *g = untouched(size), *v = copy_of(a.v, size), *r = copy_of(a.r, size);
+        CHECK(hol_forces(a.chains, a.r, NULL, a.f, NULL, NULL, g, HOL_WRITE, NULL));
+        CHECK(hol_project_velocities(a.chains, a.r, v, NULL, NULL));
+        int right = 0;
+        for (int e = -500; e <= 500; e += 4) {
+            double *scaled_g = untouched(size), *scaled_v = copy_of(a.v, size);
+            for (size_t i = 0; i < size; ++i) r[i] = ldexp(a.r[i], e);
+            const int forces = hol_forces(a.chains, r, NULL, a.f, NULL, NULL, scaled_g, HOL_WRITE, NULL);
+            if (forces == HOL_OK)
+                CHECK_AT_MOST(largest_difference(scaled_g, g, size), 1e-12);
+            else
+                assert_untouched(scaled_g, size);
+            const int velocities = hol_project_velocities(a.chains, r, scaled_v, NULL, NULL);
+            if (velocities == HOL_OK)
+                CHECK_AT_MOST(largest_difference(scaled_v, v, size), 1e-12);
+            else
+                assert_same_bits(scaled_v, a.v, size);
+            right += forces == HOL_OK && velocities == HOL_OK;
+            if (abs(e) <= 136) assert_true(forces == HOL_OK && velocities == HOL_OK);
+            free(scaled_g), free(scaled_v);
+        }
+        assert_true(right < 251); /* else this has not been where numbers end */
+        free(g), free(v), free(r);
+        assembly_free(&a);
+        chain_free(&one);
+    }
+}
+
 static void straight_chains_scale_exactly_too(void **state)
 {
     (void)state;
@@ -291,6 +336,7 @@ int main(void)
         cmocka_unit_test(a_long_chain_gives_the_same_bits_alone_and_among_others),
         cmocka_unit_test(every_number_of_threads_gives_the_same_bits),
         cmocka_unit_test(powers_of_two_of_the_units_scale_every_result_exactly),
+        cmocka_unit_test(lengths_in_any_unit_give_the_right_result_or_an_error),
         cmocka_unit_test(straight_chains_scale_exactly_too),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
