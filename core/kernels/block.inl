@@ -71,21 +71,48 @@ HOL_INLINE void for_each_atom(const AtomArray &array, const Lane &lane, long fro
         for (long k = 0; k <= n; ++k) each(k, (lane.first_atom + from + k) * array.stride);
 }
 
+// Layouts of consecutive atoms that the compiler turns into loops over vectors.
+enum Layout { packed_layout, separate_layout, any_layout };
+
 template <class T>
-HOL_INLINE void stage_elements(const AtomArray &array, const Lane &lane, long from, long n, double *packed) {
+HOL_INLINE Layout layout_of(const AtomArray &array, const Lane &lane) {
+    const int64_t size = sizeof(T);
+    if (lane.atoms || !array.z) return any_layout;
+    if (array.stride == size) return separate_layout;
+    return array.stride == 3 * size && array.y == array.x + size && array.z == array.y + size ? packed_layout : any_layout;
+}
+
+template <class T>
+HOL_INLINE T *element(char *array, const AtomArray &layout, int64_t atom) {
+    return reinterpret_cast<T *>(array + atom * layout.stride);
+}
+
+template <class T>
+HOL_INLINE void stage_elements(const AtomArray &array, const Lane &lane, long from, long n, double *__restrict packed) {
+    const Layout layout = layout_of<T>(array, lane);
+    const int64_t first = lane.first_atom + from;
+    if (layout == packed_layout) {
+        const T *__restrict const a = element<T>(array.x, array, first);
+        for (long i = 0; i < 3 * (n + 1); ++i) packed[i] = a[i];
+        return;
+    }
+    if (layout == separate_layout) {
+        const T *__restrict const x = element<T>(array.x, array, first);
+        const T *__restrict const y = element<T>(array.y, array, first);
+        const T *__restrict const z = element<T>(array.z, array, first);
+        for (long k = 0; k <= n; ++k) {
+            packed[3 * k] = x[k];
+            packed[3 * k + 1] = y[k];
+            packed[3 * k + 2] = z[k];
+        }
+        return;
+    }
     const char *const x = array.x, *const y = array.y, *const z = array.z;
-    if (z)
-        for_each_atom(array, lane, from, n, [&](long k, int64_t offset) __attribute__((always_inline)) {
-            packed[3 * k] = *reinterpret_cast<const T *>(x + offset);
-            packed[3 * k + 1] = *reinterpret_cast<const T *>(y + offset);
-            packed[3 * k + 2] = *reinterpret_cast<const T *>(z + offset);
-        });
-    else
-        for_each_atom(array, lane, from, n, [&](long k, int64_t offset) __attribute__((always_inline)) {
-            packed[3 * k] = *reinterpret_cast<const T *>(x + offset);
-            packed[3 * k + 1] = *reinterpret_cast<const T *>(y + offset);
-            packed[3 * k + 2] = 0;
-        });
+    for_each_atom(array, lane, from, n, [&](long k, int64_t offset) __attribute__((always_inline)) {
+        packed[3 * k] = *reinterpret_cast<const T *>(x + offset);
+        packed[3 * k + 1] = *reinterpret_cast<const T *>(y + offset);
+        packed[3 * k + 2] = z ? *reinterpret_cast<const T *>(z + offset) : T(0);
+    });
 }
 
 // Copies atoms `from` .. `from + n` of a chain into packed[n+1][3].
@@ -98,16 +125,34 @@ static __attribute__((noinline)) void stage(const AtomArray &array, const Lane &
 }
 
 template <class T, bool add>
-HOL_INLINE void unstage_elements(const AtomArray &array, const Lane &lane, long from, long n, const double *packed) {
-    const auto put = [](char *p, double value) __attribute__((always_inline)) {
-        T *const q = reinterpret_cast<T *>(p);
-        *q = static_cast<T>(add ? static_cast<double>(*q) + value : value);
+HOL_INLINE void unstage_elements(const AtomArray &array, const Lane &lane, long from, long n,
+                                 const double *__restrict packed) {
+    const auto put = [](T &element, double value) __attribute__((always_inline)) {
+        element = static_cast<T>(add ? static_cast<double>(element) + value : value);
     };
+    const Layout layout = layout_of<T>(array, lane);
+    const int64_t first = lane.first_atom + from;
+    if (layout == packed_layout) {
+        T *__restrict const a = element<T>(array.x, array, first);
+        for (long i = 0; i < 3 * (n + 1); ++i) put(a[i], packed[i]);
+        return;
+    }
+    if (layout == separate_layout) {
+        T *__restrict const x = element<T>(array.x, array, first);
+        T *__restrict const y = element<T>(array.y, array, first);
+        T *__restrict const z = element<T>(array.z, array, first);
+        for (long k = 0; k <= n; ++k) {
+            put(x[k], packed[3 * k]);
+            put(y[k], packed[3 * k + 1]);
+            put(z[k], packed[3 * k + 2]);
+        }
+        return;
+    }
     char *const x = array.x, *const y = array.y, *const z = array.z;
     for_each_atom(array, lane, from, n, [&](long k, int64_t offset) __attribute__((always_inline)) {
-        put(x + offset, packed[3 * k]);
-        put(y + offset, packed[3 * k + 1]);
-        if (z) put(z + offset, packed[3 * k + 2]);
+        put(*reinterpret_cast<T *>(x + offset), packed[3 * k]);
+        put(*reinterpret_cast<T *>(y + offset), packed[3 * k + 1]);
+        if (z) put(*reinterpret_cast<T *>(z + offset), packed[3 * k + 2]);
     });
 }
 
