@@ -113,7 +113,7 @@ static void finish_forces(const Block &block, const ForcesCall &call, const Syst
         for (long k = 0; k < block.n; ++k) value[k] = s.t[k] * sqrt(dot(s.D[k], s.D[k]));
         store_bonds(block, value, splat(1.0), which, call.tension);
     }
-    if (call.g.x) store_pulls<false, true>(block, s.D, s.t, which, update, g);
+    if (call.g.x) store_pulls(block, s.D, s.t, which, update, g);
     if (call.virial) add_virial(block.n, s.D, s.t, which, splat(1.0), tally);
 }
 
@@ -127,9 +127,9 @@ static void forces_block(const Block &block, const Lane *lane, const ForcesCall 
     const bool plain = block.lanes == W && !any(~(good & calm));
     if (__builtin_expect(plain && !call.tension && !call.virial, 1)) {
         if (update == add_)
-            substitute_and_store<false, true, add_>(block, s, g, call.lambda, splat(0.5));
+            substitute_and_store<add_>(block, s, g, call.lambda, splat(0.5));
         else
-            substitute_and_store<false, true, write_>(block, s, g, call.lambda, splat(0.5));
+            substitute_and_store<write_>(block, s, g, call.lambda, splat(0.5));
     } else {
         backward(0, block.n, s.t, s.L);
         good = good & finite(s.t[0]) & block.in_use();

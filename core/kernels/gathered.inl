@@ -84,19 +84,21 @@ HOL_INLINE void scatter(double *base, const AtomLists &at, long k, vec3 a) {
 #endif
 }
 
-HOL_INLINE vec3 difference(const vec3 &a, const vec3 &b) { return {b.x - a.x, b.y - a.y, b.z - a.z}; }
 
-// As forward(), from the lists. Returns the lanes for which plain arithmetic will do, nothing overflowing.
+
+// As forward(), from the lists; of rates, the velocities go to `velocities`. Returns the lanes for which plain
+// arithmetic will do, nothing overflowing.
 template <int terms, bool uniform>
 static __attribute__((noinline)) mask forward_gathered(const Block &block, const Box &box, const AtomLists &at,
                                                        const double *r, const double *v, const double *f,
-                                                       const System &s) {
+                                                       const System &s, vec3 *velocities) {
     const Source source = {nullptr, r, at.atoms, &box, nullptr};
     Sweep<uniform, terms == rate> sweep{block, source, s};
     const bool boxed = box.shape != Box::none;
     vec3 r0 = gather(r, at, 0), v0 = {}, f0 = {};
     if (terms & (velocity_squared | rate)) v0 = gather(v, at, 0);
     if (terms & force_difference) f0 = gather(f, at, 0);
+    if (terms & rate) velocities[0] = v0;
     const auto bond = [&](long k, bool starts_group) __attribute__((always_inline)) {
         if (block.list_ahead)
             for (int i = 0; i < W; ++i) {
@@ -114,6 +116,7 @@ static __attribute__((noinline)) mask forward_gathered(const Block &block, const
             const vec3 v1 = gather(v, at, k + 1);
             dv = difference(v0, v1);
             v0 = v1;
+            if (terms & rate) velocities[k + 1] = v1;
         }
         if (terms & force_difference) {
             const vec3 f1 = gather(f, at, k + 1);
@@ -131,20 +134,18 @@ static __attribute__((noinline)) mask forward_gathered(const Block &block, const
         bond(k + 3, false);
     }
     for (; k < block.n; ++k) bond(k, k % 4 == 0);
-    return ~sweep.doubt() & sweep.calm();
+    return ~sweep.doubt();
 }
 
 // As substitute_and_store(), to the lists.
-template <bool weighted, bool uniform, Update update>
+template <Update update>
 static __attribute__((noinline)) void substitute_and_scatter(const Block &block, const System &s, const AtomLists &at,
                                                              double *out, double *value_out, vec factor) {
     vec t = {}, values[W];
     vec3 after = {};
     s.L[block.n] = vec{};
     const auto pull = [&](long k, const vec3 &before) __attribute__((always_inline)) {
-        const vec w = weighted ? w_at<uniform>(block, k) : splat(1.0);
-        const vec3 g = difference(before, after);
-        if (out) scatter<update>(out, at, k, {w * g.x, w * g.y, w * g.z});
+        if (out) scatter<update>(out, at, k, difference(before, after));
     };
     const auto bond = [&](long k) __attribute__((always_inline)) {
         t = mul_add(s.L[k + 1], t, s.t[k]);
@@ -165,9 +166,7 @@ static __attribute__((noinline)) void substitute_and_scatter(const Block &block,
         transpose(values);
         for (int i = 0; i < W; ++i) store(value_out + block.first_bond[i] + k0, values[i]);
     }
-    if (!out) return;
-    const vec w = weighted ? w_at<uniform>(block, 0) : splat(1.0);
-    scatter<update>(out, at, 0, {w * after.x, w * after.y, w * after.z});
+    if (out) scatter<update>(out, at, 0, after);
 }
 
 HOL_INLINE double *base_of(const AtomArray &array) { return reinterpret_cast<double *>(array.x); }
@@ -182,9 +181,10 @@ HOL_INLINE bool listed(const Block &block, const Lane *lane) {
 
 template <int terms>
 static inline mask forward_listed(const Block &block, const Box &box, const AtomLists &at, const AtomArray &r,
-                                  const AtomArray &v, const AtomArray &f, const System &s) {
-    return block.uniform_w ? forward_gathered<terms, true>(block, box, at, base_of(r), base_of(v), base_of(f), s)
-                           : forward_gathered<terms, false>(block, box, at, base_of(r), base_of(v), base_of(f), s);
+                                  const AtomArray &v, const AtomArray &f, const System &s, vec3 *velocities) {
+    return block.uniform_w
+               ? forward_gathered<terms, true>(block, box, at, base_of(r), base_of(v), base_of(f), s, velocities)
+               : forward_gathered<terms, false>(block, box, at, base_of(r), base_of(v), base_of(f), s, velocities);
 }
 
 // Whether this did all that there was to do; else nothing has been written.
@@ -195,42 +195,19 @@ static inline bool listed_forces(const Block &block, const Lane *lane, const For
     const System s(block.n, arena);
     mask good;
     if (call.v.x && call.f.x)
-        good = forward_listed<velocity_squared | force_difference>(block, call.box, at, call.r, call.v, call.f, s);
+        good = forward_listed<velocity_squared | force_difference>(block, call.box, at, call.r, call.v, call.f, s,
+                                                                  nullptr);
     else if (call.f.x)
-        good = forward_listed<force_difference>(block, call.box, at, call.r, call.v, call.f, s);
+        good = forward_listed<force_difference>(block, call.box, at, call.r, call.v, call.f, s, nullptr);
     else if (call.v.x)
-        good = forward_listed<velocity_squared>(block, call.box, at, call.r, call.v, call.f, s);
+        good = forward_listed<velocity_squared>(block, call.box, at, call.r, call.v, call.f, s, nullptr);
     else
         return false;
     if (any(~good)) return false;
     if (call.add)
-        substitute_and_scatter<false, true, add_>(block, s, at, base_of(call.g), call.lambda, splat(0.5));
+        substitute_and_scatter<add_>(block, s, at, base_of(call.g), call.lambda, splat(0.5));
     else
-        substitute_and_scatter<false, true, write_>(block, s, at, base_of(call.g), call.lambda, splat(0.5));
-    return true;
-}
-
-static inline bool listed_velocities(const Block &block, const Lane *lane, const VelocitiesCall &call, Arena arena) {
-    if (!call.r.packed || call.virial || !listed(block, lane)) return false;
-    const AtomLists at(lane);
-    const System s(block.n, arena);
-    if (any(~forward_listed<rate>(block, call.box, at, call.r, call.v, call.v, s))) return false;
-    double *const v = base_of(call.v);
-    const auto pull = [&](double *lambda) {
-        if (block.uniform_w)
-            substitute_and_scatter<true, true, add_>(block, s, at, v, lambda, 0.5 * block.mass);
-        else
-            substitute_and_scatter<true, false, add_>(block, s, at, v, lambda, 0.5 * block.mass);
-    };
-    pull(call.lambda);
-    vec3 left = gather(v, at, 0);  // as in finish_velocities()
-    for (long k = 0; k < block.n; ++k) {
-        const vec3 right = gather(v, at, k + 1);
-        s.t[k] = dot(s.D[k], difference(left, right));
-        left = right;
-    }
-    substitute(block.n, s);
-    pull(nullptr);
+        substitute_and_scatter<write_>(block, s, at, base_of(call.g), call.lambda, splat(0.5));
     return true;
 }
 

@@ -183,47 +183,16 @@ static inline void load_bonds(const Block &block, const Box &box, const Packed &
 // the forces times their inverse masses.
 template <int terms>
 HOL_INLINE vec right_hand_side(bool boxed, vec mass, const vec3 &d, const vec3 &dv, const vec3 &df) {
+    if (terms & rate) return dot(d, dv);
     const vec3 vv = {(mass * dv.x) * dv.x, (mass * dv.y) * dv.y, (mass * dv.z) * dv.z};
     if (boxed) {
         vec sum = {};
-        if (terms & (rate | force_difference)) sum = dot(d, terms & rate ? dv : df);
+        if (terms & force_difference) sum = dot(d, df);
         return terms & velocity_squared ? sum + ((vv.x + vv.y) + vv.z) : sum;
     }
-    if (terms & rate) return (dv.x * d.x + dv.y * d.y) + dv.z * d.z;
     if (!(terms & force_difference)) return (vv.x + vv.y) + vv.z;
     if (!(terms & velocity_squared)) return (df.x * d.x + df.y * d.y) + df.z * d.z;
     return (mul_add(df.x, d.x, vv.x) + mul_add(df.y, d.y, vv.y)) + mul_add(df.z, d.z, vv.z);
-}
-
-// The rates D . (v_{k+1} - v_k) of the bonds k0 .. k0 + W - 1, with D as loaded before.
-HOL_INLINE void rate_chunk(const double *const *pv, const vec3 *D, vec *rates) {
-    vec e[3 * W];
-    HOL_UNROLL
-    for (int j = 0; j < 3; ++j) {
-        for (int i = 0; i < W; ++i) e[j * W + i] = load(pv[i] + W * j + 3) - load(pv[i] + W * j);
-        transpose(e + j * W);
-    }
-    HOL_UNROLL
-    for (int b = 0; b < W; ++b) rates[b] = dot(D[b], vec3{e[3 * b], e[3 * b + 1], e[3 * b + 2]});
-}
-
-static inline void load_rates(const Block &block, const Packed &v, const vec3 *D, vec *B) {
-    const double *pv[W];
-    long k0 = 0;
-    for (; k0 + W <= block.n_min; k0 += W) {
-        for (int i = 0; i < W; ++i) pv[i] = v.lane[i] + 3 * k0;
-        rate_chunk(pv, D + k0, B + k0);
-    }
-    for (; k0 < block.n; k0 += W) {
-        double buffer[W][3 * W + 3];
-        vec3 d[W];
-        vec rates[W];
-        for (int i = 0; i < W; ++i) pv[i] = window(v.lane[i], k0, block.len[i], false, buffer[i]);
-        for (long b = 0; b < W; ++b) d[b] = k0 + b < block.n ? D[k0 + b] : vec3{};
-        rate_chunk(pv, d, rates);
-        for (long b = 0; b < W && k0 + b < block.n; ++b)
-            B[k0 + b] = keep(less(splat(static_cast<double>(k0 + b)), block.lengths()), rates[b]);
-    }
 }
 
 }  // namespace HOL_ISA

@@ -207,7 +207,7 @@ static __attribute__((noinline)) void metric_of_block(const Block &block, const 
         }
         turn(x, 0, call.kT);
         const Packed out = open(call.force, block, lane, arena, false);
-        store_pulls<false, true>(block, x.u, x.t, good, call.add && in_place(call.force, block) ? add_ : write_, out);
+        store_pulls(block, x.u, x.t, good, call.add && in_place(call.force, block) ? add_ : write_, out);
         close(call.force, block, lane, good, out, call.add);
     }
     for (int i = 0; i < block.lanes; ++i) {

@@ -7,11 +7,15 @@ namespace HOL_ISA {
 
 constexpr int largest_molecule = 5;
 
+// Vectors of W molecules' atoms, rounded up to what is transposed at a time.
+template <int N>
+constexpr int vectors_of = (3 * (N + 1) + W - 1) / W * W;
+
 // The atoms of W molecules: element 3 a + c is component c of atom a. Up to W - 1 doubles behind each are read.
 template <int N>
 HOL_INLINE void load_molecules(const double *p, vec *elements) {
     HOL_UNROLL
-    for (int j = 0; j < (3 * (N + 1) + W - 1) / W; ++j) {
+    for (int j = 0; j < vectors_of<N> / W; ++j) {
         HOL_UNROLL
         for (int i = 0; i < W; ++i) elements[j * W + i] = load(p + 3 * (N + 1) * i + j * W);
         transpose(elements + j * W);
@@ -21,16 +25,17 @@ HOL_INLINE void load_molecules(const double *p, vec *elements) {
 // Bonds D[k] of W molecules and their right-hand sides t[k], rounded as load_chunk() does.
 template <int N, int terms, bool uniform>
 HOL_INLINE void load_molecules(const Block &block, const double *r, const double *v, const double *f, vec3 *D, vec *t) {
-    vec e[(3 * (N + 1) + W - 1) / W * W], p[3 * N], *const d = &D[0].x;
+    vec e[vectors_of<N>], p[3 * N], *const d = &D[0].x;
     load_molecules<N>(r, e);
     HOL_UNROLL
     for (int c = 0; c < 3 * N; ++c) d[c] = e[c + 3] - e[c];
-    if (terms & (velocity_squared | rate)) {
+    if (terms == none_) return;
+    if (terms & velocity_squared) {
         load_molecules<N>(v, e);
         HOL_UNROLL
         for (int c = 0; c < 3 * N; ++c) {
             const vec dv = e[c + 3] - e[c];
-            p[c] = terms & rate ? dv * d[c] : (block.mass * dv) * dv;
+            p[c] = (block.mass * dv) * dv;
         }
     }
     if (terms & force_difference) {
@@ -45,23 +50,10 @@ HOL_INLINE void load_molecules(const Block &block, const double *r, const double
     for (int k = 0; k < N; ++k) t[k] = (p[3 * k] + p[3 * k + 1]) + p[3 * k + 2];
 }
 
-// G of the atoms of W molecules, times w where `weighted`.
-template <int N, bool weighted, bool uniform, Update update>
-HOL_INLINE void store_molecules(const Block &block, const vec3 *D, const vec *t, double *out) {
+// Writes the atoms of W molecules, elements as above, transposed in place.
+template <int N, Update update>
+HOL_INLINE void store_elements(vec *value, double *out) {
     constexpr int elements = 3 * (N + 1), full = elements / W, rest = elements % W;
-    vec value[(full + 1) * W] = {};
-    vec3 before = {};
-    HOL_UNROLL
-    for (int k = 0; k <= N; ++k) {
-        vec3 after = {};
-        if (k < N) after = {t[k] * D[k].x, t[k] * D[k].y, t[k] * D[k].z};
-        const vec w = weighted ? w_at<uniform>(block, k) : splat(1.0);
-        const vec3 g = {after.x - before.x, after.y - before.y, after.z - before.z};
-        value[3 * k] = weighted ? w * g.x : g.x;
-        value[3 * k + 1] = weighted ? w * g.y : g.y;
-        value[3 * k + 2] = weighted ? w * g.z : g.z;
-        before = after;
-    }
     HOL_UNROLL
     for (int j = 0; j < full; ++j) {
         transpose(value + j * W);
@@ -76,6 +68,22 @@ HOL_INLINE void store_molecules(const Block &block, const vec3 *D, const vec *t,
             double &p = out[elements * i + full * W + e];
             p = update == add_ ? p + value[full * W + e][i] : value[full * W + e][i];
         }
+}
+
+// G of the atoms of W molecules.
+template <int N, Update update>
+HOL_INLINE void store_pulls(const vec3 *D, const vec *t, double *out) {
+    vec value[vectors_of<N>];
+    vec3 before = {};
+    HOL_UNROLL
+    for (int k = 0; k <= N; ++k) {
+        const vec3 after = k < N ? scaled_bond(D[k], t[k]) : vec3{}, g = difference(before, after);
+        value[3 * k] = g.x;
+        value[3 * k + 1] = g.y;
+        value[3 * k + 2] = g.z;
+        before = after;
+    }
+    store_elements<N, update>(value, out);
 }
 
 template <int N>
@@ -116,9 +124,9 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
         backward(0, N, t, L);
         if (g) {
             if (call.add)
-                store_molecules<N, false, true, add_>(block, D, t, g + at);
+                store_pulls<N, add_>(D, t, g + at);
             else
-                store_molecules<N, false, true, write_>(block, D, t, g + at);
+                store_pulls<N, write_>(D, t, g + at);
         }
         if (call.lambda) store_multipliers<N>(t, splat(0.5), call.lambda + head.first_bond + N * first);
     }
@@ -133,30 +141,29 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
     double *const v = reinterpret_cast<double *>(call.v.x) + 3 * head.first_atom;
     for (; molecules_left(unit, first); first += W) {
         vec3 D[N];
-        vec t[N], L[N + 1], pivots[N];
+        vec t[N], left[N + 1], L[N + 1], pivots[N], elements[vectors_of<N>];
         const int64_t at = 3 * (N + 1) * first;
-        load_molecules<N, rate, uniform>(block, r + at, v + at, nullptr, D, t);
+        load_molecules<N, none_, uniform>(block, r + at, nullptr, nullptr, D, t);
+        load_molecules<N>(v + at, elements);
         Packed from;
         for (int i = 0; i < W; ++i) from.lane[i] = const_cast<double *>(r) + at + 3 * (N + 1) * i;
         const Source source = {&from, nullptr, nullptr, &call.box, nullptr};
-        const System s(D, t, L, pivots);
-        Sweep<uniform, true> sweep{block, source, s};
+        const Projection x({D, t, L, pivots}, reinterpret_cast<vec3 *>(elements), left);
+        Sweep<uniform, true> sweep{block, source, x.s};
         HOL_UNROLL
-        for (int k = 0; k < N; ++k) sweep.step(k, t[k], k % 4 == 0, false);
-        if (__builtin_expect(any(sweep.doubt() | ~sweep.calm()), 0)) break;
-        backward(0, N, t, L);
+        for (int k = 0; k < N; ++k) sweep.step(k, rate_of(D[k], x.v[k], x.v[k + 1]), k % 4 == 0, false);
+        FirstPull<uniform> pull(block, x, N);
+        HOL_UNROLL
+        for (int k = N - 1; k >= 0; --k) pull.step(k);
+        pull.finish();
+        substitute(N, x.correction());
+        if (__builtin_expect(any(sweep.doubt() | ~x.finite(N)), 0)) break;
+        Pull<uniform> correction{block, x, left};
+        HOL_UNROLL
+        for (int k = N - 1; k >= 0; --k) x.v[k + 1] = correction.step(k);
+        x.v[0] = correction.finish();
         if (call.lambda) store_multipliers<N>(t, 0.5 * block.mass, call.lambda + head.first_bond + N * first);
-        store_molecules<N, true, uniform, add_>(block, D, t, v + at);
-        vec rounded[(3 * (N + 1) + W - 1) / W * W];  // as in finish_velocities
-        load_molecules<N>(v + at, rounded);
-        HOL_UNROLL
-        for (int k = 0; k < N; ++k) {
-            const vec *const a = rounded + 3 * k;
-            t[k] = dot(D[k], vec3{a[3] - a[0], a[4] - a[1], a[5] - a[2]});
-        }
-        substitute(N, s);
-        backward(0, N, t, L);
-        store_molecules<N, true, uniform, add_>(block, D, t, v + at);
+        store_elements<N, write_>(elements, v + at);
     }
     return first;
 }

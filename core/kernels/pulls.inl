@@ -58,20 +58,20 @@ static inline void store_pulls_from(const Block &block, long first, vec3 before,
     }
 }
 
-template <bool weighted, bool uniform>
 static inline void store_pulls(const Block &block, const vec3 *d, const vec *t, mask which, Update update,
                                const Packed &out) {
     if (update == add_)
-        store_pulls_from<weighted, uniform, add_>(block, 0, vec3{}, d, t, which, out);
+        store_pulls_from<false, true, add_>(block, 0, vec3{}, d, t, which, out);
     else
-        store_pulls_from<weighted, uniform, write_>(block, 0, vec3{}, d, t, which, out);
+        store_pulls_from<false, true, write_>(block, 0, vec3{}, d, t, which, out);
 }
 
+HOL_INLINE vec3 difference(const vec3 &a, const vec3 &b) { return {b.x - a.x, b.y - a.y, b.z - a.z}; }
 HOL_INLINE vec3 scaled_bond(const vec3 &d, vec t) { return {t * d.x, t * d.y, t * d.z}; }
 
 // The backward sweep, and what it gives written at once: G (see store_pulls_from) to `out`, and factor t to
 // value_out[bond]; either may be absent. For blocks in which all lanes are used and good, and can't overflow (calm()).
-template <bool weighted, bool uniform, Update update>
+template <Update update>
 static __attribute__((noinline)) void substitute_and_store(const Block &block, const System &s, const Packed &out,
                                                            double *value_out, vec factor) {
     const long full = block.n_min / W * W;
@@ -91,11 +91,9 @@ static __attribute__((noinline)) void substitute_and_store(const Block &block, c
             const long k = k0 + a;
             const vec3 left = scaled_bond(s.D[k - 1], s.t[k - 1]);
             const vec3 right = k < block.n ? scaled_bond(s.D[k], s.t[k]) : vec3{};
-            const vec3 g = {right.x - left.x, right.y - left.y, right.z - left.z};
-            const vec w = weighted ? w_at<uniform>(block, k) : splat(1.0);
-            value[3 * a] = w * g.x;
-            value[3 * a + 1] = w * g.y;
-            value[3 * a + 2] = w * g.z;
+            value[3 * a] = right.x - left.x;
+            value[3 * a + 1] = right.y - left.y;
+            value[3 * a + 2] = right.z - left.z;
         }
         store_ragged<update>(block, k0, value, (1u << W) - 1, out);
     }
@@ -111,10 +109,9 @@ static __attribute__((noinline)) void substitute_and_store(const Block &block, c
             t = mul_add(s.L[k + 1], t, s.t[k]);
             bond_value[b] = mul_add(factor, t, vec{});  // zeros as +0
             const vec3 p = scaled_bond(s.D[k], t);
-            const vec w = weighted ? w_at<uniform>(block, k + 1) : splat(1.0);
-            value[3 * b] = w * (after.x - p.x);
-            value[3 * b + 1] = w * (after.y - p.y);
-            value[3 * b + 2] = w * (after.z - p.z);
+            value[3 * b] = after.x - p.x;
+            value[3 * b + 1] = after.y - p.y;
+            value[3 * b + 2] = after.z - p.z;
             after = p;
         }
         if (out.lane[0]) {
@@ -129,13 +126,11 @@ static __attribute__((noinline)) void substitute_and_store(const Block &block, c
         }
     }
     if (!out.lane[0]) return;
-    const vec w = weighted ? w_at<uniform>(block, 0) : splat(1.0);
-    const vec3 g = {w * after.x, w * after.y, w * after.z};
     for (int i = 0; i < W; ++i) {
         double *const p = out.lane[i];
-        p[0] = update == add_ ? p[0] + g.x[i] : g.x[i];
-        p[1] = update == add_ ? p[1] + g.y[i] : g.y[i];
-        p[2] = update == add_ ? p[2] + g.z[i] : g.z[i];
+        p[0] = update == add_ ? p[0] + after.x[i] : after.x[i];
+        p[1] = update == add_ ? p[1] + after.y[i] : after.y[i];
+        p[2] = update == add_ ? p[2] + after.z[i] : after.z[i];
     }
 }
 

@@ -146,7 +146,8 @@ struct Sweep {
     vec A = splat(1.0), F = {}, F1 = {}, rF = splat(1.0);  // E = A / F and P = F1 / F of the bond before
     vec rP = {}, y = {};
     vec slack = {};                                        // negative where the cheap tests failed
-    vec size = {};                                         // sum of |u|, q, 1 / P and w
+    // Sum of |u|, q, 1 / P and w; without |u| where pivots are kept for a second solve, whose end shows an overflow.
+    vec size = {};
 
     inline __attribute__((always_inline)) void step(long k, vec b, bool starts_group, bool ragged) {
         const vec w = w_at<uniform>(block, k), w1 = w_at<uniform>(block, k + 1);
@@ -177,7 +178,7 @@ struct Sweep {
         const vec u = y * rP;
         s.t[k] = u;
         if (keep_pivots) s.pivots[k] = rP;
-        size = size + ((abs(u) + q1) + rP);
+        size = size + (keep_pivots ? q1 + rP : (abs(u) + q1) + rP);
         if (!uniform) size = size + w1;
         d = d1;
         q = q1;
@@ -258,6 +259,7 @@ HOL_INLINE void backward(long from, long n, vec *u, const vec *L) {
 HOL_INLINE void substitute(long n, const System &s) {
     vec y = s.t[0];
     s.t[0] = y * s.pivots[0];
+#pragma GCC unroll 4
     for (long k = 1; k < n; ++k) {
         y = mul_add(s.L[k], y, s.t[k]);
         s.t[k] = y * s.pivots[k];
