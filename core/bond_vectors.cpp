@@ -48,7 +48,8 @@ ScaledBond scaled(const PairVector &d) {
 
 Joint joint_between(const ScaledBond &a, const ScaledBond &b) {
     const double lengths = a.length * b.length;
-    const double cosine = plain::dot_compensated(a.hi, a.lo, b.hi, b.lo) / lengths;
+    double cosine = plain::dot_compensated(a.hi, a.lo, b.hi, b.lo) / lengths;
+    if (std::fabs(cosine) < 1e-15) cosine = dot_exact(a.hi, a.lo, b.hi, b.lo) / lengths;
     if (std::fabs(cosine) < 0.5) return {cosine, 1 - std::fabs(cosine)};
     const Vector3<double> normal = plain::cross_compensated(a.hi, a.lo, b.hi, b.lo);
     const double sine2 = plain::dot(normal, normal) / (lengths * lengths);

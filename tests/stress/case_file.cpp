@@ -86,7 +86,7 @@ std::mutex index_in_use;
 }  // namespace
 
 bool write_case(const std::string &directory, const std::string &name, const std::string &comment,
-                const hostile_chain &c)
+                const chain_group &group, const hostile_chain &c)
 {
     const solution_problem p = c.problem();
     const exact_metric m = metric_of(p);
@@ -94,9 +94,10 @@ bool write_case(const std::string &directory, const std::string &name, const std
     if (!m.regular || solution_forces(&p, &s)) return false;
     const file out(std::fopen((directory + "/" + name + ".txt").c_str(), "w"));
     if (out) {
-        std::fprintf(out.get(), "# %s\n# seed %llu: %s\n# dt %.17g\ncase %s\nnbonds %lld\n", comment.c_str(),
-                     static_cast<unsigned long long>(c.seed), c.words().c_str(), c.dt, name.c_str(),
-                     static_cast<long long>(c.n_bonds));
+        std::fprintf(out.get(), "# %s\n# seed %llu: %s\n# dt %.17g\n# group %llu %llu %lld\ncase %s\nnbonds %lld\n",
+                     comment.c_str(), static_cast<unsigned long long>(c.seed), c.words().c_str(), c.dt,
+                     static_cast<unsigned long long>(group.first), static_cast<unsigned long long>(group.size),
+                     static_cast<long long>(group.longest), name.c_str(), static_cast<long long>(c.n_bonds));
         write_inputs(out.get(), c);
         write_results(out.get(), s, m);
     }
@@ -106,7 +107,7 @@ bool write_case(const std::string &directory, const std::string &name, const std
     return out && index && std::fprintf(index.get(), "%s.txt\n", name.c_str()) > 0;
 }
 
-hostile_chain read_case(const std::string &path)
+hostile_chain read_case(const std::string &path, chain_group &group)
 {
     oracle_case o;
     char message[4400];
@@ -129,7 +130,15 @@ hostile_chain read_case(const std::string &path)
     oracle_free(&o);
     const file in(std::fopen(path.c_str(), "r"));
     char line[256];
-    while (in && std::fgets(line, sizeof line, in.get()) && line[0] == '#') std::sscanf(line, "# dt %lf", &c.dt);
+    unsigned long long seed = 0, first = 0, size = 0;
+    long long longest = 0;
+    while (in && std::fgets(line, sizeof line, in.get()) && line[0] == '#') {
+        std::sscanf(line, "# dt %lf", &c.dt);
+        std::sscanf(line, "# seed %llu", &seed);
+        std::sscanf(line, "# group %llu %llu %lld", &first, &size, &longest);
+    }
+    c.seed = seed;
+    group = {first, size, longest};
     return c;
 }
 

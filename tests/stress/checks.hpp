@@ -23,9 +23,9 @@ std::vector<long double> underflow_of(const hostile_chain &c);
 
 /**
  * lambda, G and virial of hol_forces; lambda and v of hol_project_velocities.
- * Velocities: |v_i - ref| <= K eps (|v_i0| + w_i g_scale_i), g_scale with the velocities before and after the
- * projection in its right-hand side: what rounding them may do. Of d.dv may be left K eps times the largest term that
- * enters it: |d| times a velocity that goes in or comes out, or a 2 w lambda |d|.
+ * Velocities: |v_i - ref| <= K eps (|v_i0| + w_i g_scale_i), g_scale with all terms of the velocities in its right-hand
+ * side: what rounding them may do. These terms are what goes in, what comes out and the pulls 2 w lambda |d|. Of d.dv
+ * may be left K eps |d| times those of its two atoms.
  */
 void check_linear_levels(const hostile_chain &c, const library_results &alone, verdict &out);
 

@@ -54,9 +54,9 @@ std::vector<long double> underflow_of(const hostile_chain &c)
     const exact_chain e(c.problem());
     std::vector<quad> rhs;
     for (std::size_t k = 0; k < e.n_bonds(); ++k) {
-        quad s = 64;
-        for (std::size_t x = 0; x < 3; ++x) s += 64 * absolute(e.d[k][x]) * (2 + e.w[k] + e.w[k + 1]);
-        rhs.push_back(s);
+        quad s = 1;
+        for (std::size_t x = 0; x < 3; ++x) s += absolute(e.d[k][x]);
+        rhs.push_back(64 * s * (1 + e.w[k] + e.w[k + 1]));
     }
     if (!solve_banded(with_negative_neighbours(bond_matrix(e)), rhs)) return out;
     const long double longest = *std::max_element(c.length.begin(), c.length.end());
@@ -118,18 +118,23 @@ void check_velocities(const hostile_chain &c, const library_results &alone, verd
     for (std::size_t k = 0; k < n; ++k) {
         out.compare(VELOCITY_LAMBDA, alone.velocity_lambda[k], ref.s.lambda[k],
                     k_eps * ref.s.lambda_scale[k] + slack[k]);
-        const long double pull = 2 * std::fabs(ref.s.lambda[k]) * size_of(c, k);
+        const long double larger =
+            std::max(std::fabs(ref.s.lambda[k]), std::fabs(static_cast<long double>(alone.velocity_lambda[k])));
+        const long double pull = 2 * larger * size_of(c, k);
         for (std::size_t i = k; i <= k + 1; ++i) {
             term[i] += c.w[i] * pull;
             if (slack[k] > 0) g_slack[i] += 2 * slack[k] * size_of(c, k) * c.w[i] + 8 * smallest * (1 + c.w[i]);
         }
     }
-    // What rounding the velocities that come out does to the multipliers, were the projection applied once more.
+    for (std::size_t i = 0; i <= n; ++i)
+        for (std::size_t x = 0; x < 3; ++x)
+            term[i] += std::fabs(static_cast<long double>(c.v[3 * i + x])) +
+                       std::fabs(static_cast<long double>(alone.v[3 * i + x]));
+    // What rounding the sums that the velocities are does to the multipliers, were the projection applied once more.
     std::vector<quad> again;
     for (std::size_t k = 0; k < n; ++k) {
         quad s = 0;
-        for (std::size_t i = k; i <= k + 1; ++i)
-            for (std::size_t x = 0; x < 3; ++x) s += 2 * absolute(e.d[k][x]) * absolute(quad(alone.v[3 * i + x]));
+        for (std::size_t x = 0; x < 3; ++x) s += 2 * absolute(e.d[k][x]) * quad(term[k] + term[k + 1]);
         again.push_back(s);
     }
     if (!solve_banded(with_negative_neighbours(bond_matrix(e)), again)) return;
@@ -143,7 +148,6 @@ void check_velocities(const hostile_chain &c, const library_results &alone, verd
         for (std::size_t x = 0; x < 3; ++x) {
             const long double before = c.v[3 * i + x], exact = before + c.w[i] * ref.s.g[3 * i + x];
             out.compare(VELOCITY, alone.v[3 * i + x], exact, k_eps * (std::fabs(before) + scale[i]) + g_slack[i]);
-            term[i] += std::fabs(before) + std::fabs(static_cast<long double>(alone.v[3 * i + x]));
         }
     for (std::size_t k = 0; k < n; ++k) {
         const quad3 dv = row(alone.v.data(), k + 1) - row(alone.v.data(), k);

@@ -49,6 +49,14 @@ void tally::add(const tally &other)
     }
 }
 
+long double tally::worst() const
+{
+    long double largest = 0;
+    for (int q = 0; q < N_QUANTITIES; ++q)
+        if (!for_information(q)) largest = std::max(largest, quantity[static_cast<std::size_t>(q)].worst);
+    return largest;
+}
+
 void tally::print() const
 {
     std::printf("\n%-14s %10s %16s %9s %8s\n", "quantity", "checked", "worst err/bound", "exceeded", "chain");

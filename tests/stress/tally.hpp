@@ -27,6 +27,7 @@ struct tally {
 
     void add(const hostile_chain &c, const verdict &v);
     void add(const tally &other);
+    long double worst() const;  ///< largest error over its bound of everything that is promised
     void print() const;
 };
 
