@@ -21,11 +21,14 @@ long double oracle_bound(std::int64_t n_bonds);
 /** What underflow may cost each multiplier; far below everything in ordinary units. */
 std::vector<long double> underflow_of(const hostile_chain &c);
 
+/** Sizes of what projecting velocities (or displacements) of the given sizes pulls each atom with, times w. */
+std::vector<long double> pulls_by(const hostile_chain &c, const std::vector<long double> &size);
+
 /**
  * lambda, G and virial of hol_forces; lambda and v of hol_project_velocities.
  * Velocities: |v_i - ref| <= K eps (|v_i0| + w_i g_scale_i), g_scale with all terms of the velocities in its right-hand
  * side: what rounding them may do. These terms are what goes in, what comes out and the pulls 2 w lambda |d|. Of d.dv
- * may be left K eps |d| times those of its two atoms.
+ * may be left K eps |d| times those of its two atoms, with the pulls of projecting their rounding.
  */
 void check_linear_levels(const hostile_chain &c, const library_results &alone, verdict &out);
 
@@ -36,7 +39,7 @@ void check_metric(const hostile_chain &c, const exact_metric &exact, const arran
 /**
  * Bond lengths: |d.d - a^2| / a^2 <= 8 eps (1 + extent / shortest bond), twice what hol_chains_set_tolerance describes
  * as the default because rounding the coordinates comes on top. Shift: r - drift = dt^2 w G(lambda) along the old bonds
- * to K eps of the terms of that sum.
+ * to K eps of the terms of that sum, with the pulls of projecting their rounding.
  */
 void check_positions(const hostile_chain &c, const library_results &alone, verdict &out);
 

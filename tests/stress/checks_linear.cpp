@@ -66,6 +66,27 @@ std::vector<long double> underflow_of(const hostile_chain &c)
     return out;
 }
 
+/**
+ * A projection removes from a bond what its atoms' displacements, or velocities, put into it; their sizes are given.
+ */
+std::vector<long double> pulls_by(const hostile_chain &c, const std::vector<long double> &size)
+{
+    const exact_chain e(c.problem());
+    const std::size_t n = at(c.n_bonds);
+    std::vector<long double> pull(n + 1, 0);
+    std::vector<quad> lambda;
+    for (std::size_t k = 0; k < n; ++k) {
+        quad s = 0;
+        for (std::size_t x = 0; x < 3; ++x) s += 2 * absolute(e.d[k][x]) * quad(size[k] + size[k + 1]);
+        lambda.push_back(s);
+    }
+    if (!solve_banded(with_negative_neighbours(bond_matrix(e)), lambda)) return pull;
+    for (std::size_t k = 0; k < n; ++k)
+        for (std::size_t i = k; i <= k + 1; ++i)
+            pull[i] += c.w[i] * 2 * static_cast<long double>(lambda[k]) * size_of(c, k);
+    return pull;
+}
+
 namespace
 {
 
@@ -130,25 +151,14 @@ void check_velocities(const hostile_chain &c, const library_results &alone, verd
         for (std::size_t x = 0; x < 3; ++x)
             term[i] += std::fabs(static_cast<long double>(c.v[3 * i + x])) +
                        std::fabs(static_cast<long double>(alone.v[3 * i + x]));
-    // What rounding the sums that the velocities are does to the multipliers, were the projection applied once more.
-    std::vector<quad> again;
-    for (std::size_t k = 0; k < n; ++k) {
-        quad s = 0;
-        for (std::size_t x = 0; x < 3; ++x) s += 2 * absolute(e.d[k][x]) * quad(term[k] + term[k + 1]);
-        again.push_back(s);
-    }
-    if (!solve_banded(with_negative_neighbours(bond_matrix(e)), again)) return;
-    std::vector<long double> scale(n + 1);
-    for (std::size_t i = 0; i <= n; ++i) {
-        scale[i] = c.w[i] * ref.s.g_scale[i];
-        for (std::size_t k = i > 0 ? i - 1 : 0; k <= i && k < n; ++k)
-            scale[i] += c.w[i] * 2 * static_cast<long double>(again[k]) * size_of(c, k);
-    }
+    const std::vector<long double> second = pulls_by(c, term);  // of a projection of the rounding, in units of eps
     for (std::size_t i = 0; i <= n; ++i)
         for (std::size_t x = 0; x < 3; ++x) {
             const long double before = c.v[3 * i + x], exact = before + c.w[i] * ref.s.g[3 * i + x];
-            out.compare(VELOCITY, alone.v[3 * i + x], exact, k_eps * (std::fabs(before) + scale[i]) + g_slack[i]);
+            out.compare(VELOCITY, alone.v[3 * i + x], exact,
+                        k_eps * (std::fabs(before) + c.w[i] * ref.s.g_scale[i] + second[i]) + g_slack[i]);
         }
+    for (std::size_t i = 0; i <= n; ++i) term[i] += eps * second[i];
     for (std::size_t k = 0; k < n; ++k) {
         const quad3 dv = row(alone.v.data(), k + 1) - row(alone.v.data(), k);
         const long double left = std::fabs(static_cast<long double>(dot(e.d[k], dv)));

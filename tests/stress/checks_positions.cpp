@@ -73,15 +73,17 @@ void check_positions(const hostile_chain &c, const library_results &alone, verdi
         shift[k] = shift[k] + pull;
         shift[k + 1] = shift[k + 1] - pull;
         const long double size = 2 * std::fabs(static_cast<long double>(alone.position_lambda[k])) * c.length[k];
-        term[k] += size;
-        term[k + 1] += size;
+        term[k] += dt2 * c.w[k] * size;
+        term[k + 1] += dt2 * c.w[k + 1] * size;
     }
+    for (std::size_t i = 0; i <= n; ++i)
+        for (std::size_t x = 0; x < 3; ++x) term[i] += std::fabs(static_cast<long double>(drift[3 * i + x]));
+    const std::vector<long double> second = pulls_by(c, term);
     for (std::size_t i = 0; i <= n; ++i)
         for (std::size_t x = 0; x < 3; ++x) {
             const quad exact = quad(drift[3 * i + x]) + quad(dt2) * old.w[i] * shift[i][x];
             const long double error = static_cast<long double>(absolute(quad(alone.r[3 * i + x]) - exact));
-            const long double allowed =
-                k_eps * (std::fabs(static_cast<long double>(drift[3 * i + x])) + dt2 * c.w[i] * term[i]);
+            const long double allowed = k_eps * (term[i] + eps * second[i]);
             out.note(POSITION_SHIFT, error == 0 ? 0 : error / allowed);
         }
 }
