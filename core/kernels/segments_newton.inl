@@ -76,7 +76,7 @@ static inline void segment_errors(const SegmentBlock &s, const Lane &lane, const
         if (k >= s.own_min) sigma = keep(owned(s, k), sigma);
         if (k == 0) x.summary->s = sigma;
         worst = max(lane.length ? abs(sigma) / a2 : abs(sigma), worst);
-        poison = mul_add(sigma, vec{}, poison);
+        poison = mul_add(sigma + dot(x.D[k], x.b[k]), vec{}, poison);  // reference positions are bad data, too
     }
     x.summary->error = 2.0 * (lane.length ? worst : worst / a2_of(s, lane, 0)) + poison;
     for (int i = 0; i < W; ++i) {
