@@ -22,4 +22,8 @@ if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
     # operations round, and results must not depend on the compiler's taste. Nothing reads errno after sqrt.
     target_compile_options(holonomic_flags INTERFACE
         $<$<COMPILE_LANGUAGE:CXX>:-fvisibility=hidden -fvisibility-inlines-hidden -ffp-contract=off -fno-math-errno>)
+    # The 387 rounds when it pleases, which compensated arithmetic does not survive.
+    if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(i[3-6]86|x86|x86_64|AMD64|amd64)$" AND CMAKE_SIZEOF_VOID_P EQUAL 4)
+        target_compile_options(holonomic_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-msse2 -mfpmath=sse>)
+    endif()
 endif()
