@@ -153,7 +153,7 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
     Mover<uniform_w> mover = {};
     if (moved) mover = Mover<uniform_w>::start(x);
     vec3 d = moved ? Mover<uniform_w>::bond(mover, x, 0) : x.D[0];
-    vec worst = {}, y = {}, down = {}, q = dot(d, x.b[0]), A = times_w<uniform_w>(x, 0, q), F = splat(1.0);
+    vec worst = {}, y = {}, down = {}, last = {}, q = dot(d, x.b[0]), A = times_w<uniform_w>(x, 0, q), F = splat(1.0);
     const auto bond = [&](long k, bool ragged) __attribute__((always_inline)) {
         Row &row = x.row[k];
         const vec F1 = mul_add(times_w<uniform_w>(x, k + 1, q), F, A), rF = splat(1.0) / F1, rP = F * rF;
@@ -161,6 +161,7 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
         row.down = down = all ? down : select(which, down, row.down);
         y = mul_add(down, y, length_error<uniform_a>(x, k, ragged, moved ? d : x.D[k], worst));
         row.u = y * row.half_rP;
+        if (ragged || k + 1 == n) last = last + q;  // y knows nothing of a chain's last b, which must be a number, too
         if (k + 1 == n) {
             row.up = vec{};
             return;
@@ -202,7 +203,7 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
             }
         for (; k < n; ++k) bond(k, k + 1 >= block.n_min);
     }
-    return largest_error<uniform_a>(x, worst, y);
+    return largest_error<uniform_a>(x, worst, y + last);
 }
 
 // New factors for the lanes in `which`, out of the way of the common case.
