@@ -59,6 +59,21 @@ static __attribute__((noinline)) mask doubtful_joints(const Block &block, const 
     return doubt;
 }
 
+// Lanes in which pivots are extreme, whatever the right-hand sides are: the arithmetic must not depend on their unit.
+template <bool uniform>
+static __attribute__((noinline)) mask extreme_pivots(const Block &block, const vec3 *D) {
+    vec q = dot(D[0], D[0]), E = w_at<uniform>(block, 0) * q, size = {};
+    for (long k = 0; k < block.n; ++k) {
+        const vec w = w_at<uniform>(block, k + 1), P = mul_add(w, q, E);
+        size = size + ((q + splat(1.0) / P) + w);
+        if (k + 1 == block.n) break;
+        const vec3 c = cross(D[k], D[k + 1]);
+        q = dot(D[k + 1], D[k + 1]);
+        E = w * mul_add(q, E, w * keep(joint(block, k + 1), dot(c, c))) / P;
+    }
+    return ~less(size, splat(1e60));
+}
+
 // Where the bond vectors of a block come from: lanes of coordinates, or lists of atoms in the array `base`.
 struct Source {
     const Packed *r;
@@ -206,9 +221,10 @@ struct Sweep {
     // Lanes that need careful arithmetic.
     mask doubt() const {
         const mask failed = less(slack, vec{}), wild = ~calm();
-        if (__builtin_expect(!any(failed), 1)) return wild;
-        return wild |
-               (doubtful_joints<uniform>(block, s.D, 1, block.n, w_at<uniform>(block, 0) * dot(s.D[0], s.D[0])) & failed);
+        if (__builtin_expect(!any(failed | wild), 1)) return none();
+        const mask doubtful =
+            doubtful_joints<uniform>(block, s.D, 1, block.n, w_at<uniform>(block, 0) * dot(s.D[0], s.D[0])) & failed;
+        return any(wild) ? doubtful | (extreme_pivots<uniform>(block, s.D) & wild) : doubtful;
     }
 };
 
