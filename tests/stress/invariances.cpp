@@ -31,7 +31,7 @@ bool near_the_ends(const vec &x)
  */
 void without_tails(library_results &o)
 {
-    for (vec *x : {&o.lambda, &o.g, &o.velocity_lambda, &o.position_lambda, &o.v, &o.fixman})
+    for (vec *x : {&o.lambda, &o.g, &o.velocity_lambda, &o.position_lambda, &o.v, &o.moved, &o.r, &o.fixman})
         for (double &y : *x)
             if (std::fabs(y) < 1e-200) y = 0;
 }
