@@ -134,7 +134,7 @@ static __attribute__((noinline)) mask forward_gathered(const Block &block, const
         bond(k + 3, false);
     }
     for (; k < block.n; ++k) bond(k, k % 4 == 0);
-    return ~sweep.doubt();
+    return ~sweep.doubt() & sweep.calm();
 }
 
 // As substitute_and_store(), to the lists.
