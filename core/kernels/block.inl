@@ -54,65 +54,45 @@ struct Packed {
     double *lane[W];
 };
 
-
-
 // Unit of the inverse masses of a chain, and the one of its atom k in it: see Block.
 HOL_INLINE double unit_of(const Lane &lane) { return !lane.w && lane.w_uniform > 0 ? lane.w_uniform : 1.0; }
 HOL_INLINE double relative_w(const Lane &lane, int64_t k) { return lane.w ? lane.w[k] : lane.w_uniform > 0 ? 1.0 : 0.0; }
 
 HOL_INLINE long staged_size(long n_bonds) { return (3 * (n_bonds + 1) + 7) / 8 * 8; }
 
-// Calls each(k, offset in bytes) for the atoms from .. from + n of a chain.
-template <class Each>
-HOL_INLINE void for_each_atom(const AtomArray &array, const Lane &lane, long from, long n, Each each) {
-    if (lane.atoms)
-        for (long k = 0; k <= n; ++k) each(k, lane.atoms[from + k] * array.stride);
-    else
-        for (long k = 0; k <= n; ++k) each(k, (lane.first_atom + from + k) * array.stride);
-}
-
-// Layouts of consecutive atoms that the compiler turns into loops over vectors.
-enum Layout { packed_layout, separate_layout, any_layout };
-
-template <class T>
-HOL_INLINE Layout layout_of(const AtomArray &array, const Lane &lane) {
-    const int64_t size = sizeof(T);
-    if (lane.atoms || !array.z) return any_layout;
-    if (array.stride == size) return separate_layout;
-    return array.stride == 3 * size && array.y == array.x + size && array.z == array.y + size ? packed_layout : any_layout;
-}
-
-template <class T>
-HOL_INLINE T *element(char *array, const AtomArray &layout, int64_t atom) {
-    return reinterpret_cast<T *>(array + atom * layout.stride);
+// Calls each(element, i) for the components of the atoms from .. from + n of a chain, i counting them all; there is none
+// for an absent z. The layouts of consecutive atoms that most callers have are loops that the compiler vectorizes.
+template <class T, class Each>
+HOL_INLINE void for_each_element(const AtomArray &array, const Lane &lane, long from, long n, Each each) {
+    const int64_t size = sizeof(T), offset = (lane.first_atom + from) * array.stride;
+    if (!lane.atoms && array.z && array.stride == size) {
+        T *__restrict const x = reinterpret_cast<T *>(array.x + offset);
+        T *__restrict const y = reinterpret_cast<T *>(array.y + offset);
+        T *__restrict const z = reinterpret_cast<T *>(array.z + offset);
+        for (long k = 0; k <= n; ++k) {
+            each(x[k], 3 * k);
+            each(y[k], 3 * k + 1);
+            each(z[k], 3 * k + 2);
+        }
+    } else if (!lane.atoms && array.z == array.y + size && array.y == array.x + size && array.stride == 3 * size) {
+        T *__restrict const elements = reinterpret_cast<T *>(array.x + offset);
+        for (long i = 0; i < 3 * (n + 1); ++i) each(elements[i], i);
+    } else {
+        for (long k = 0; k <= n; ++k) {
+            const int64_t at = (lane.atoms ? lane.atoms[from + k] : lane.first_atom + from + k) * array.stride;
+            each(*reinterpret_cast<T *>(array.x + at), 3 * k);
+            each(*reinterpret_cast<T *>(array.y + at), 3 * k + 1);
+            if (array.z) each(*reinterpret_cast<T *>(array.z + at), 3 * k + 2);
+        }
+    }
 }
 
 template <class T>
 HOL_INLINE void stage_elements(const AtomArray &array, const Lane &lane, long from, long n, double *__restrict packed) {
-    const Layout layout = layout_of<T>(array, lane);
-    const int64_t first = lane.first_atom + from;
-    if (layout == packed_layout) {
-        const T *__restrict const a = element<T>(array.x, array, first);
-        for (long i = 0; i < 3 * (n + 1); ++i) packed[i] = a[i];
-        return;
-    }
-    if (layout == separate_layout) {
-        const T *__restrict const x = element<T>(array.x, array, first);
-        const T *__restrict const y = element<T>(array.y, array, first);
-        const T *__restrict const z = element<T>(array.z, array, first);
-        for (long k = 0; k <= n; ++k) {
-            packed[3 * k] = x[k];
-            packed[3 * k + 1] = y[k];
-            packed[3 * k + 2] = z[k];
-        }
-        return;
-    }
-    const char *const x = array.x, *const y = array.y, *const z = array.z;
-    for_each_atom(array, lane, from, n, [&](long k, int64_t offset) __attribute__((always_inline)) {
-        packed[3 * k] = *reinterpret_cast<const T *>(x + offset);
-        packed[3 * k + 1] = *reinterpret_cast<const T *>(y + offset);
-        packed[3 * k + 2] = z ? *reinterpret_cast<const T *>(z + offset) : T(0);
+    for_each_element<T>(array, lane, from, n, [=](const T &element, long i) __attribute__((always_inline)) {
+        packed[i] = element;
     });
+    for (long k = 0; !array.z && k <= n; ++k) packed[3 * k + 2] = 0;
 }
 
 // Copies atoms `from` .. `from + n` of a chain into packed[n+1][3].
@@ -127,32 +107,8 @@ static __attribute__((noinline)) void stage(const AtomArray &array, const Lane &
 template <class T, bool add>
 HOL_INLINE void unstage_elements(const AtomArray &array, const Lane &lane, long from, long n,
                                  const double *__restrict packed) {
-    const auto put = [](T &element, double value) __attribute__((always_inline)) {
-        element = static_cast<T>(add ? static_cast<double>(element) + value : value);
-    };
-    const Layout layout = layout_of<T>(array, lane);
-    const int64_t first = lane.first_atom + from;
-    if (layout == packed_layout) {
-        T *__restrict const a = element<T>(array.x, array, first);
-        for (long i = 0; i < 3 * (n + 1); ++i) put(a[i], packed[i]);
-        return;
-    }
-    if (layout == separate_layout) {
-        T *__restrict const x = element<T>(array.x, array, first);
-        T *__restrict const y = element<T>(array.y, array, first);
-        T *__restrict const z = element<T>(array.z, array, first);
-        for (long k = 0; k <= n; ++k) {
-            put(x[k], packed[3 * k]);
-            put(y[k], packed[3 * k + 1]);
-            put(z[k], packed[3 * k + 2]);
-        }
-        return;
-    }
-    char *const x = array.x, *const y = array.y, *const z = array.z;
-    for_each_atom(array, lane, from, n, [&](long k, int64_t offset) __attribute__((always_inline)) {
-        put(*reinterpret_cast<T *>(x + offset), packed[3 * k]);
-        put(*reinterpret_cast<T *>(y + offset), packed[3 * k + 1]);
-        if (z) put(*reinterpret_cast<T *>(z + offset), packed[3 * k + 2]);
+    for_each_element<T>(array, lane, from, n, [=](T &element, long i) __attribute__((always_inline)) {
+        element = static_cast<T>(add ? static_cast<double>(element) + packed[i] : packed[i]);
     });
 }
 

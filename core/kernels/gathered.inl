@@ -84,8 +84,6 @@ HOL_INLINE void scatter(double *base, const AtomLists &at, long k, vec3 a) {
 #endif
 }
 
-
-
 // As forward(), from the lists; of rates, the velocities go to `velocities`. Returns the lanes for which plain
 // arithmetic will do, nothing overflowing.
 template <int terms, bool uniform>

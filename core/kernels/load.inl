@@ -35,6 +35,16 @@ HOL_INLINE void wrap(const Box &box, Vector3<V> &d, Vector3<V> &lo) {
     }
 }
 
+// The vector from one atom to another, unrounded: d + lo.
+HOL_INLINE void unrounded_bond(const Box &box, const double *from, const double *to, Vector3<double> &d,
+                               Vector3<double> &lo) {
+    const Pair<double> x = two_difference(to[0], from[0]), y = two_difference(to[1], from[1]),
+                       z = two_difference(to[2], from[2]);
+    d = {x.hi, y.hi, z.hi};
+    lo = {x.lo, y.lo, z.lo};
+    if (box.shape != Box::none) wrap<true>(box, d, lo);
+}
+
 // What the right-hand side of a bond is made of.
 enum Terms { none_ = 0, velocity_squared = 1, force_difference = 2, rate = 4, unit_mass = 8 };
 

@@ -59,6 +59,10 @@ static __attribute__((noinline)) mask doubtful_joints(const Block &block, const 
     return doubt;
 }
 
+// Up to this size of |u|, q, 1 / P and w nothing overflows behind the forward sweep, and no product of pivots within it
+// has lost digits by underflow.
+constexpr double largest_calm = 1e60;
+
 // Lanes in which pivots are extreme, whatever the right-hand sides are: the arithmetic must not depend on their unit.
 template <bool uniform>
 static __attribute__((noinline)) mask extreme_pivots(const Block &block, const vec3 *D) {
@@ -71,7 +75,7 @@ static __attribute__((noinline)) mask extreme_pivots(const Block &block, const v
         q = dot(D[k + 1], D[k + 1]);
         E = w * mul_add(q, E, w * keep(joint(block, k + 1), dot(c, c))) / P;
     }
-    return ~less(size, splat(1e60));
+    return ~less(size, splat(largest_calm));
 }
 
 // Where the bond vectors of a block come from: lanes of coordinates, or lists of atoms in the array `base`.
@@ -108,14 +112,8 @@ HOL_INLINE double sum_compensated(const Three &hi, const Three &lo) {
 // g of joint k in one lane, with compensated products of unrounded differences.
 static __attribute__((noinline)) double exact_dot(const Source &source, int lane, long k) {
     Vector3<double> d[2], low[2];
-    for (int b = 0; b < 2; ++b) {
-        const double *const from = source.atom(lane, k - 1 + b), *const to = source.atom(lane, k + b);
-        const Pair<double> x = two_difference(to[0], from[0]), y = two_difference(to[1], from[1]),
-                           z = two_difference(to[2], from[2]);
-        d[b] = {x.hi, y.hi, z.hi};
-        low[b] = {x.lo, y.lo, z.lo};
-        if (source.box->shape != Box::none) wrap<true>(*source.box, d[b], low[b]);
-    }
+    for (int b = 0; b < 2; ++b)
+        unrounded_bond(*source.box, source.atom(lane, k - 1 + b), source.atom(lane, k + b), d[b], low[b]);
     const Pair<double> x = two_product(d[0].x, d[1].x), y = two_product(d[0].y, d[1].y), z = two_product(d[0].z, d[1].z);
     const double hi[3] = {x.hi, y.hi, z.hi};
     const double lo[3] = {mul_add(d[0].x, low[1].x, mul_add(low[0].x, d[1].x, x.lo)),
@@ -217,7 +215,7 @@ struct Sweep {
     // Lanes in which the backward sweep can't overflow: |t_k| |d_k| <= sum_j |u_j| |d_j|, because |l_k| |d_{k-1}| <= |d_k|,
     // and |t_k| <= |u_k| + |l_{k+1} t_{k+1}|, |l_{k+1}| <= w |d_k| |d_{k+1}| / P_k. Nor have the products of five pivots
     // that make up A lost digits by underflow.
-    mask calm() const { return less(size, splat(1e60)); }
+    mask calm() const { return less(size, splat(largest_calm)); }
     // Lanes that need careful arithmetic.
     mask doubt() const {
         const mask failed = less(slack, vec{}), wild = ~calm();

@@ -128,9 +128,8 @@ static inline void find_next(const SegmentBlock &s, const Box &box, const Packed
             continue;
         }
         const double *p = r.lane[i] + 3 * s.own[i];
-        const Pair<double> x = two_difference(p[3], p[0]), y = two_difference(p[4], p[1]), z = two_difference(p[5], p[2]);
-        Vector3<double> d = {x.hi, y.hi, z.hi}, low = {x.lo, y.lo, z.lo};
-        if (box.shape != Box::none) wrap<true>(box, d, low);
+        Vector3<double> d, low;
+        unrounded_bond(box, p, p + 3, d, low);
         in.next.x[i] = d.x;
         in.next.y[i] = d.y;
         in.next.z[i] = d.z;

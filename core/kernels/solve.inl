@@ -10,7 +10,7 @@ static __attribute__((noinline)) mask forward(const Block &block, const Box &box
                                               const Packed &f, const System &s, mask &calm) {
     const Places at(r, v, f);
     const Source source = {&r, nullptr, nullptr, &box, nullptr};
-    Sweep<uniform, terms == rate> sweep{block, source, s};
+    Sweep<uniform, false> sweep{block, source, s};
     constexpr long group = W > 4 ? W : 4;
     long k0 = 0;
     for (; k0 + group <= block.n_min; k0 += group) {
