@@ -310,7 +310,8 @@ typedef struct hol_report {
  * @param[in]     dt      time step, time, > 0 and finite
  * @param[in,out] lambda  multipliers [n_bonds], force/length, or NULL. The constraint force over a leap-frog step; half
  *                        of it for velocity Verlet, whose position update carries dt^2/2.
- * @param[in]     guess   0, or 1: lambda holds a first guess, the multipliers of the last step; saves an iteration
+ * @param[in]     guess   0, or 1: lambda holds a first guess, the multipliers of the last step; saves an iteration, but
+ *                        is not used in coils of more than about 1000 bonds
  * @param[out]    virial  [3][3], energy, or NULL: sum_i r_ref,i (x) G_i = - sum_k 2 lambda_k b_k (x) b_k
  * @param[out]    report  or NULL; written whenever the arguments are valid, also if chains fail
  * @return HOL_OK; HOL_ERR_NULL (chains, r_ref or r; lambda with guess = 1); HOL_ERR_VALUE (dt, guess);

@@ -25,21 +25,25 @@ public:
         : phases_(phases), call_(call), lane_(lane), team_(team), store_(store), blocks_(phases.blocks(lane.n_bonds)) {}
 
     void operator()(Tally &tally) {
+        if (in_windows(tally)) return;
         if (!attempt(false, call_.guess, tally) && !attempt(true, false, tally)) note_bad(lane_, tally);
     }
 
-
 private:
+    // Makes `largest` at least e; NaN stays.
+    static void raise(std::atomic<double> &largest, double e) {
+        double seen = largest.load();
+        while ((e > seen || (std::isnan(e) && !std::isnan(seen))) && !largest.compare_exchange_weak(seen, e)) {
+        }
+    }
+
     // Largest of what body(j, scratch) returns; NaN if any is.
     template <class Body>
     double largest(const Body &body) const {
         std::atomic<double> worst{0};
         Tally unused = empty_tally();
         team_.for_each(blocks_, unused, [&](std::int64_t j, double *scratch, Tally &) {
-            const double e = body(j, scratch);
-            double seen = worst.load();
-            while ((e > seen || (std::isnan(e) && !std::isnan(seen))) && !worst.compare_exchange_weak(seen, e)) {
-            }
+            raise(worst, body(j, scratch));
         });
         return worst.load();
     }
@@ -48,6 +52,41 @@ private:
     void all(const Body &body) const {
         Tally unused = empty_tally();
         team_.for_each(blocks_, unused, [&](std::int64_t j, double *scratch, Tally &) { body(j, scratch); });
+    }
+
+    // In windows that know nothing of each other; false, with nothing written, where that does not do.
+    bool in_windows(Tally &tally) const {
+        const std::int64_t n = phases_.windows(lane_.n_bonds);
+        std::atomic<bool> failed{false}, solved{false}, untouched{false};
+        std::atomic<double> worst{0};
+        Tally part = empty_tally();
+        team_.for_each(n, part, [&](std::int64_t j, double *scratch, Tally &own) {
+            if (failed) return;
+            // Which bond has a window's largest error is looked for only if no other's is known to be larger.
+            const double known = std::nextafter(worst.load(), -1.0);
+            own.worst = known;
+            own.worst_chain = lane_.chain;
+            const WindowResult result = phases_.window(call_, lane_, j, store_, scratch, own);
+            if (own.worst == known)
+                own.worst_chain = -1;
+            else
+                raise(worst, own.worst);
+            (result == window_failed ? failed : result == window_solved ? solved : untouched) = true;
+        });
+        if (failed || (solved && untouched)) return false;
+        bool fit = true;
+        Tally unused = empty_tally();
+        if (solved)
+            team_.for_each(1, unused, [&](std::int64_t, double *scratch, Tally &) {
+                fit = phases_.windows_fit(call_, lane_, store_, scratch, part);
+            });
+        if (!fit) return false;
+        team_.for_each(n, part, [&](std::int64_t j, double *scratch, Tally &own) {
+            phases_.finish_window(call_, lane_, j, solved, store_, scratch, own);
+        });
+        part.n_corrected = solved;
+        add(tally, part);
+        return true;
     }
 
     double step(bool substitute) const {
@@ -145,9 +184,7 @@ private:
         error = largest([&](std::int64_t j, double *scratch) {
             LongTally part{0, 0};
             phases_.load(call_, lane_, j, store_, scratch, part);
-            double seen = extent.load();
-            while (part.extent > seen && !extent.compare_exchange_weak(seen, part.extent)) {
-            }
+            raise(extent, part.extent);
             return part.error;
         });
         return extent.load();

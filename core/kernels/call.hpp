@@ -116,6 +116,9 @@ struct LongTally {
     double extent, error;
 };
 
+// What became of a window: see positions_windows.inl.
+enum WindowResult { window_failed, window_untouched, window_solved };
+
 struct LongPositions {
     int64_t (*blocks)(int64_t n_bonds);
     int64_t (*bytes)(int64_t n_bonds);
@@ -128,6 +131,12 @@ struct LongPositions {
     double (*pull)(const Lane &, int64_t block, double *store);
     void (*finish)(const PositionsCall &, const Lane &, int64_t block, bool moved, double *store, double *scratch,
                    Tally &);
+    // In windows: the store is tau, [n_bonds].
+    int64_t (*windows)(int64_t n_bonds);
+    WindowResult (*window)(const PositionsCall &, const Lane &, int64_t window, double *tau, double *scratch, Tally &);
+    bool (*windows_fit)(const PositionsCall &, const Lane &, const double *tau, double *scratch, Tally &);
+    void (*finish_window)(const PositionsCall &, const Lane &, int64_t window, bool moved, const double *tau,
+                          double *scratch, Tally &);
 };
 
 struct LongMetric {

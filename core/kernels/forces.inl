@@ -53,7 +53,7 @@ static inline void open_block(const Unit &unit, int64_t first, Block &block, Lan
         return;
     }
     block.n = 0;
-    block.n_min = longest_lane + 1;
+    block.n_min = unit.lanes[first].n_bonds;
     for (int i = 0; i < block.lanes; ++i) {
         lane[i] = unit.lanes[first + i];
         block.staged = block.staged || lane[i].atoms;

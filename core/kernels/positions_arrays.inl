@@ -104,15 +104,14 @@ static inline void load_guess(const Block &block, const PositionsCall &call, con
     }
 }
 
-// Moves the atoms of the lanes in `which` by w_i (tau_{i+1} b_{i+1} - tau_i b_i), and changes their velocities by
-// `per_dt` times that: either, or both.
+// Moves the atoms `first` .. n of the lanes in `which` by w_i (tau_{i+1} b_{i+1} - tau_i b_i), and changes their velocities
+// by `per_dt` times that: either, or both. `before` is tau b of the bond before the first atom.
 template <bool uniform_w, bool to_r, bool to_v>
 static inline void store_moves(const Block &block, const Newton &x, mask which, const Packed &r, const Packed &v,
-                               double per_dt) {
+                               double per_dt, long first = 0, vec3 before = vec3{}) {
     const unsigned chosen = bits(which & block.in_use());
     const vec *const tau = x.tau;
     const vec3 *const b = x.b;
-    vec3 before = {};
     const auto move = [&](long k, vec *value) __attribute__((always_inline)) {
         const vec3 after = times(tau[k], b[k]), m = times_w<uniform_w>(x, k, minus(after, before));
         value[0] = m.x;
@@ -120,7 +119,7 @@ static inline void store_moves(const Block &block, const Newton &x, mask which, 
         value[2] = m.z;
         before = after;
     };
-    long k0 = 0;
+    long k0 = first;
     if (chosen == (1u << W) - 1) {
         const vec rate = splat(per_dt);
         for (; k0 + W <= block.n_min; k0 += W) {

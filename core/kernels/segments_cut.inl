@@ -7,8 +7,8 @@ namespace HOL_ISA {
 // shorter. Depends on the chain's length alone, so that results depend on neither threads nor other chains.
 struct Cut {
     int64_t n_bonds, blocks, base, extra;  // the first `extra` blocks have 4 W bonds more than the others, 4 W base
-    explicit Cut(int64_t n) : n_bonds(n) {
-        const int64_t bonds_per_block = 1024;  // of all lanes: what is kept of a block stays in cache
+    // bonds_per_block: of all lanes; so that what is kept of a block stays in cache.
+    explicit Cut(int64_t n, int64_t bonds_per_block = 1024) : n_bonds(n) {
         const int64_t fours = (n + 4 * W - 1) / (4 * W);
         blocks = (n + bonds_per_block - 1) / bonds_per_block;
         base = fours / blocks;

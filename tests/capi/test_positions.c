@@ -94,10 +94,16 @@ static void positions_agree_with_newton_in_113_bits(void **state)
 static void long_chains_agree_with_newton_in_113_bits(void **state)
 {
     (void)state;
-    static const int64_t lengths[] = {100, 500, 800, 1000, 1001, 4096, 20000};
-    for (int i = 0; i < (quick_run() ? 4 : 7); ++i) {
+    static const int64_t lengths[] = {100, 800, 1030, 3001, 500, 1000, 1001, 1024, 2049, 4096, 20000};
+    static const chain_kind kinds[] = {CHAIN_HETEROGENEOUS, CHAIN_LATTICE, CHAIN_MASSES_1E6, CHAIN_FIXED_ENDS};
+    for (int i = 0; i < (quick_run() ? 4 : 11); ++i) {
         chain one = chain_make(CHAIN_COIL, lengths[i], 4);
         check_against_newton(&one, 0.005, 20);
+        chain_free(&one);
+    }
+    for (int i = 0; i < 4; ++i) {
+        chain one = chain_make(kinds[i], 2500, 5);
+        check_against_newton(&one, 0.005, 100);
         chain_free(&one);
     }
 }
@@ -122,11 +128,16 @@ static void every_chain_of_a_mixed_set_ends_on_its_lengths(void **state)
     }
 }
 
-static void velocities_take_the_displacement_over_the_time_step(void **state)
+/** 40 chains of up to 60 bonds; or a few so long that the library solves them in windows. */
+static assembly short_or_long(chain_kind kind, int is_long, arrangement how, uint64_t seed)
 {
-    (void)state;
+    return is_long ? assembly_of_kind(kind, 3, 4000, 9000, how, seed) : assembly_of_kind(kind, 40, 1, 60, how, seed);
+}
+
+static void check_velocities(int is_long)
+{
     const double dt = 0.004;
-    assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, 40, 1, 60, IN_ORDER, 82);
+    assembly a = short_or_long(CHAIN_HETEROGENEOUS, is_long, IN_ORDER, 82);
     double *start = drift(&a, dt, 0), *q = copy_of(start, assembly_size(&a)), *v = copy_of(a.v, assembly_size(&a));
     double *without = copy_of(start, assembly_size(&a));
     CHECK(hol_project_positions(a.chains, a.r, q, v, dt, NULL, 0, NULL, NULL));
@@ -141,11 +152,16 @@ static void velocities_take_the_displacement_over_the_time_step(void **state)
     assembly_free(&a);
 }
 
-static void corrections_conserve_momentum_and_angular_momentum(void **state)
+static void velocities_take_the_displacement_over_the_time_step(void **state)
 {
     (void)state;
+    for (int is_long = 0; is_long < 2; ++is_long) check_velocities(is_long);
+}
+
+static void check_momenta(int is_long)
+{
     const double dt = 0.004;
-    assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, 40, 1, 60, SCATTERED, 83);
+    assembly a = short_or_long(CHAIN_HETEROGENEOUS, is_long, SCATTERED, 83);
     double *start = drift(&a, dt, 0), *q = copy_of(start, assembly_size(&a));
     CHECK(hol_project_positions(a.chains, a.r, q, NULL, dt, NULL, 0, NULL, NULL));
     for (int64_t c = 0; c < a.n_chains; ++c) {
@@ -174,11 +190,16 @@ static void corrections_conserve_momentum_and_angular_momentum(void **state)
     assembly_free(&a);
 }
 
-static void virial_is_the_sum_over_the_reference_bonds(void **state)
+static void corrections_conserve_momentum_and_angular_momentum(void **state)
 {
     (void)state;
+    for (int is_long = 0; is_long < 2; ++is_long) check_momenta(is_long);
+}
+
+static void check_virial(int is_long)
+{
     const double dt = 0.004;
-    assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, 40, 1, 60, SCATTERED, 84);
+    assembly a = short_or_long(CHAIN_HETEROGENEOUS, is_long, SCATTERED, 84);
     double *q = drift(&a, dt, 0), *lambda = untouched((size_t)a.n_bonds), virial[9];
     long double sum[9] = {0}, size = 0;
     CHECK(hol_project_positions(a.chains, a.r, q, NULL, dt, lambda, 0, virial, NULL));
@@ -195,6 +216,12 @@ static void virial_is_the_sum_over_the_reference_bonds(void **state)
     for (int x = 0; x < 9; ++x) CHECK_AT_MOST(fabsl(virial[x] - sum[x]), 16 * DBL_EPSILON * size);
     free(q), free(lambda);
     assembly_free(&a);
+}
+
+static void virial_is_the_sum_over_the_reference_bonds(void **state)
+{
+    (void)state;
+    for (int is_long = 0; is_long < 2; ++is_long) check_virial(is_long);
 }
 
 /** Largest difference between lambda of the position level times `factor` and of the acceleration level. */
@@ -239,10 +266,9 @@ static void multipliers_tend_to_those_of_the_acceleration_level(void **state)
     }
 }
 
-static void a_chain_within_the_tolerance_is_not_touched(void **state)
+static void check_satisfied(int is_long)
 {
-    (void)state;
-    assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, 30, 1, 60, SCATTERED, 85);
+    assembly a = short_or_long(CHAIN_HETEROGENEOUS, is_long, SCATTERED, 85);
     double *q = drift(&a, 0.004, 0), *lambda = untouched((size_t)a.n_bonds), virial[9];
     hol_report report;
     CHECK(hol_project_positions(a.chains, a.r, q, NULL, 0.004, NULL, 0, NULL, NULL));
@@ -259,14 +285,36 @@ static void a_chain_within_the_tolerance_is_not_touched(void **state)
     assembly_free(&a);
 }
 
-static void a_guess_saves_an_iteration_and_changes_the_result_by_rounding_only(void **state)
+static void a_chain_within_the_tolerance_is_not_touched(void **state)
 {
     (void)state;
+    for (int is_long = 0; is_long < 2; ++is_long) check_satisfied(is_long);
+}
+
+static void a_long_chain_of_which_a_part_is_satisfied_ends_on_its_lengths(void **state)
+{
+    (void)state;
+    assembly a = assembly_of_kind(CHAIN_COIL, 1, 5000, 5000, IN_ORDER, 89);
+    double *q = copy_of(a.r, assembly_size(&a));
+    hol_report report;
+    hol_worst worst;
+    for (size_t i = assembly_size(&a) - 300; i < assembly_size(&a); ++i) q[i] += 0.004 * a.v[i];
+    CHECK(hol_project_positions(a.chains, a.r, q, NULL, 0.004, NULL, 0, NULL, &report));
+    assert_int_equal(report.n_corrected, 1);
+    CHECK(hol_violation(a.chains, q, NULL, &worst));
+    CHECK_AT_MOST(worst.length, rounding_of_a_bond(200, 1));
+    free(q);
+    assembly_free(&a);
+}
+
+static void check_guess(int is_long)
+{
     const double dt = 0.004;
-    assembly a = assembly_of_kind(CHAIN_COIL, 64, 32, 32, IN_ORDER, 86);
+    assembly a = short_or_long(CHAIN_COIL, is_long, IN_ORDER, 86);
     const size_t size = assembly_size(&a);
     CHECK(hol_project_velocities(a.chains, a.r, a.v, NULL, NULL));
     double *r = copy_of(a.r, size), *q = copy_of(a.r, size), *lambda = untouched((size_t)a.n_bonds), *first = NULL;
+    const double extent = is_long ? 200 : 20;
     hol_report cold, warm;
     int64_t cold_sum = 0, warm_sum = 0;
     for (int step = 0; step < 20; ++step) {
@@ -274,7 +322,7 @@ static void a_guess_saves_an_iteration_and_changes_the_result_by_rounding_only(v
         first = copy_of(q, size);
         CHECK(hol_project_positions(a.chains, r, first, NULL, dt, NULL, 0, NULL, &cold));
         CHECK(hol_project_positions(a.chains, r, q, a.v, dt, lambda, step > 0, NULL, &warm));
-        for (size_t i = 0; i < size; ++i) CHECK_AT_MOST(fabs(q[i] - first[i]), 20 * DBL_EPSILON * 20);
+        for (size_t i = 0; i < size; ++i) CHECK_AT_MOST(fabs(q[i] - first[i]), 20 * DBL_EPSILON * extent);
         if (step > 0) {
             cold_sum += cold.iterations;
             warm_sum += warm.iterations;
@@ -285,15 +333,21 @@ static void a_guess_saves_an_iteration_and_changes_the_result_by_rounding_only(v
     }
     print_message("iterations in 19 steps: %lld without a guess, %lld with\n", (long long)cold_sum,
                   (long long)warm_sum);
-    assert_true(warm_sum + 9 <= cold_sum); /* at least every other step one less */
+    if (!is_long) assert_true(warm_sum + 9 <= cold_sum); /* at least every other step one less */
+    if (is_long) assert_true(warm_sum <= cold_sum);
     free(r), free(q), free(lambda);
     assembly_free(&a);
 }
 
-static void a_larger_tolerance_is_obeyed_and_costs_less(void **state)
+static void a_guess_saves_an_iteration_and_changes_the_result_by_rounding_only(void **state)
 {
     (void)state;
-    assembly a = assembly_of_kind(CHAIN_COIL, 40, 5, 60, IN_ORDER, 87);
+    for (int is_long = 0; is_long < 2; ++is_long) check_guess(is_long);
+}
+
+static void check_tolerance(int is_long)
+{
+    assembly a = short_or_long(CHAIN_COIL, is_long, IN_ORDER, 87);
     double *start = drift(&a, 0.01, 1);
     int64_t last = 100;
     for (double tolerance = 1e-14; tolerance < 1e-1; tolerance *= 1e4) {
@@ -303,7 +357,7 @@ static void a_larger_tolerance_is_obeyed_and_costs_less(void **state)
         CHECK(hol_chains_set_tolerance(a.chains, tolerance));
         CHECK(hol_project_positions(a.chains, a.r, q, NULL, 0.01, NULL, 0, NULL, &report));
         CHECK(hol_violation(a.chains, q, NULL, &worst));
-        CHECK_AT_MOST(worst.length, tolerance + rounding_of_a_bond(25, 1));
+        CHECK_AT_MOST(worst.length, tolerance + rounding_of_a_bond(is_long ? 200 : 25, 1));
         assert_true(report.iterations <= last);
         last = report.iterations;
         free(q);
@@ -313,10 +367,15 @@ static void a_larger_tolerance_is_obeyed_and_costs_less(void **state)
     assembly_free(&a);
 }
 
-static void fixed_atoms_keep_every_bit(void **state)
+static void a_larger_tolerance_is_obeyed_and_costs_less(void **state)
 {
     (void)state;
-    assembly a = assembly_of_kind(CHAIN_FIXED_ENDS, 30, 3, 60, SCATTERED, 88);
+    for (int is_long = 0; is_long < 2; ++is_long) check_tolerance(is_long);
+}
+
+static void check_fixed_atoms(int is_long)
+{
+    assembly a = short_or_long(CHAIN_FIXED_ENDS, is_long, SCATTERED, 88);
     double *start = drift(&a, 0.004, 1), *q = copy_of(start, assembly_size(&a)), *v = copy_of(a.v, assembly_size(&a));
     CHECK(hol_project_positions(a.chains, a.r, q, v, 0.004, NULL, 0, NULL, NULL));
     for (int64_t i = 0; i < a.n_atoms; ++i)
@@ -326,6 +385,12 @@ static void fixed_atoms_keep_every_bit(void **state)
         }
     free(start), free(q), free(v);
     assembly_free(&a);
+}
+
+static void fixed_atoms_keep_every_bit(void **state)
+{
+    (void)state;
+    for (int is_long = 0; is_long < 2; ++is_long) check_fixed_atoms(is_long);
 }
 
 int main(void)
@@ -339,6 +404,7 @@ int main(void)
         cmocka_unit_test(virial_is_the_sum_over_the_reference_bonds),
         cmocka_unit_test(multipliers_tend_to_those_of_the_acceleration_level),
         cmocka_unit_test(a_chain_within_the_tolerance_is_not_touched),
+        cmocka_unit_test(a_long_chain_of_which_a_part_is_satisfied_ends_on_its_lengths),
         cmocka_unit_test(a_guess_saves_an_iteration_and_changes_the_result_by_rounding_only),
         cmocka_unit_test(a_larger_tolerance_is_obeyed_and_costs_less),
         cmocka_unit_test(fixed_atoms_keep_every_bit),

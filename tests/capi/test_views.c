@@ -100,8 +100,10 @@ static void velocities_are_the_same_through_every_layout(void **state)
 static void positions_are_the_same_through_every_layout_of_doubles(void **state)
 {
     (void)state;
-    for (int how = IN_ORDER; how <= SCATTERED; ++how) {
-        assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, 21, 1, 60, (arrangement)how, 43);
+    for (int how = IN_ORDER; how <= SCATTERED + 2; ++how) { /* the last two: one long chain */
+        assembly a = how <= SCATTERED ? assembly_of_kind(CHAIN_HETEROGENEOUS, 21, 1, 60, (arrangement)how, 43)
+                                      : assembly_of_kind(CHAIN_HETEROGENEOUS, 1, 5000, 5000,
+                                                         how == SCATTERED + 1 ? IN_ORDER : SCATTERED, 43);
         const size_t n = (size_t)a.n_bonds, size = assembly_size(&a);
         double *lambda = untouched(n), *start = drifted(&a, time_step), *q = copy_of(start, size),
                *v = copy_of(a.v, size), virial[9];
