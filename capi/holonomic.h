@@ -303,7 +303,7 @@ typedef struct hol_report {
  * Jacobian. docs/theory.md (15)-(19), docs/integrators.md.
  *
  * @param[in]     chains
- * @param[in]     r_ref   positions before the drift [n_atoms][3]
+ * @param[in]     r_ref   positions before the drift [n_atoms][3]; may be r itself
  * @param[in,out] r       positions after the drift [n_atoms][3]; in: unconstrained, out: constrained
  * @param[in,out] v       velocities [n_atoms][3], or NULL; v_i += dt w_i G_i, the displacement over dt. Only added to:
  *                        what is there is not checked, and a NaN stays one

@@ -42,9 +42,8 @@ private:
     double largest(const Body &body) const {
         std::atomic<double> worst{0};
         Tally unused = empty_tally();
-        team_.for_each(blocks_, unused, [&](std::int64_t j, double *scratch, Tally &) {
-            raise(worst, body(j, scratch));
-        });
+        team_.for_each(blocks_, unused,
+                       [&](std::int64_t j, double *scratch, Tally &) { raise(worst, body(j, scratch)); });
         return worst.load();
     }
 
@@ -56,6 +55,7 @@ private:
 
     // In windows that know nothing of each other; false, with nothing written, where that does not do.
     bool in_windows(Tally &tally) const {
+        if (call_.r_ref.x == call_.r.x) return false;  // the bonds of the reference are needed while atoms are moved
         const std::int64_t n = phases_.windows(lane_.n_bonds);
         std::atomic<bool> failed{false}, solved{false}, untouched{false};
         std::atomic<double> worst{0};
@@ -99,9 +99,9 @@ private:
     // (light atoms between heavy ones in a taut chain), goes on from the coordinates as they are then rounded; if that
     // does not end within the tolerance, everything is put back.
     bool finish(bool moved, std::int64_t solves, double reach, Tally &tally) {
-        const bool coarse = moved && !(largest([&](std::int64_t j, double *) {
-            return phases_.pull(lane_, j, store_);
-        }) <= 0.25 * reach);
+        const bool coarse =
+            moved &&
+            !(largest([&](std::int64_t j, double *) { return phases_.pull(lane_, j, store_); }) <= 0.25 * reach);
         if (!coarse) {
             write(moved, solves, tally);
             return true;
@@ -152,7 +152,8 @@ private:
                 read_atom(call.r, atom(k), &r_[3 * k]);
                 if (call.v.x) read_atom(call.v, atom(k), &v_[3 * k]);
             }
-            if (call.lambda) lambda_.assign(call.lambda + lane.first_bond, call.lambda + lane.first_bond + lane.n_bonds);
+            if (call.lambda)
+                lambda_.assign(call.lambda + lane.first_bond, call.lambda + lane.first_bond + lane.n_bonds);
         }
         void restore() const {
             for (std::size_t k = 0; 3 * k < r_.size(); ++k) {
@@ -265,8 +266,8 @@ struct PositionsWork final : Work {
 
 void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomArray &r, const AtomArray &v, double dt,
                        double *lambda, bool guess, double *virial, hol_report *report) {
-    const PositionsCall call{r_ref, r,     v, lambda, dt, guess, virial != nullptr, chains.tolerance,
-                             chains.max_iterations, chains.box};
+    const PositionsCall call{
+        r_ref, r, v, lambda, dt, guess, virial != nullptr, chains.tolerance, chains.max_iterations, chains.box};
     const Tally tally = execute(chains, PositionsWork(call));
     if (report) {
         report->iterations = tally.iterations;

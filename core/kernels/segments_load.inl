@@ -82,15 +82,14 @@ HOL_INLINE void load_segments(const Block &block, const SegmentPlaces &at, long 
 template <int terms, bool uniform>
 HOL_INLINE void load_group(const Block &block, const SegmentBonds &in, const SegmentPlaces &at, long k0, vec3 *d,
                            vec *b) {
-    if (terms == in_scratch) {
+    if constexpr (terms == in_scratch) {
         for (int i = 0; i < group; ++i) {
             d[i] = in.D[k0 + i];
             b[i] = in.B[k0 + i];
         }
-        return;
+    } else {
+        for (int c = 0; c < group; c += W) load_segments<terms, uniform>(block, at, k0 + c, d + c, b + c);
     }
-    for (int c = 0; c < group; c += W)
-        load_segments<terms == in_scratch ? 0 : terms, uniform>(block, at, k0 + c, d + c, b + c);
 }
 
 // The bonds k0 .. k0 + W - 1 where lanes may end: those past the end of a lane are inert.

@@ -307,6 +307,25 @@ static void a_long_chain_of_which_a_part_is_satisfied_ends_on_its_lengths(void *
     assembly_free(&a);
 }
 
+/** A chain put back on its lengths along its own bonds. */
+static void the_reference_may_be_the_array_that_is_corrected(void **state)
+{
+    (void)state;
+    for (int is_long = 0; is_long < 2; ++is_long) {
+        assembly a = short_or_long(CHAIN_COIL, is_long, IN_ORDER, 90);
+        double *start = drift(&a, 0.02, 1), *q = copy_of(start, assembly_size(&a)),
+               *both = copy_of(start, assembly_size(&a));
+        hol_worst worst;
+        CHECK(hol_project_positions(a.chains, start, q, NULL, 0.02, NULL, 0, NULL, NULL));
+        CHECK(hol_project_positions(a.chains, both, both, NULL, 0.02, NULL, 0, NULL, NULL));
+        CHECK(hol_violation(a.chains, both, NULL, &worst));
+        CHECK_AT_MOST(worst.length, rounding_of_a_bond(200, 1));
+        for (size_t i = 0; i < assembly_size(&a); ++i) CHECK_AT_MOST(fabs(q[i] - both[i]), 20 * DBL_EPSILON * 200);
+        free(start), free(q), free(both);
+        assembly_free(&a);
+    }
+}
+
 static void check_guess(int is_long)
 {
     const double dt = 0.004;
@@ -405,6 +424,7 @@ int main(void)
         cmocka_unit_test(multipliers_tend_to_those_of_the_acceleration_level),
         cmocka_unit_test(a_chain_within_the_tolerance_is_not_touched),
         cmocka_unit_test(a_long_chain_of_which_a_part_is_satisfied_ends_on_its_lengths),
+        cmocka_unit_test(the_reference_may_be_the_array_that_is_corrected),
         cmocka_unit_test(a_guess_saves_an_iteration_and_changes_the_result_by_rounding_only),
         cmocka_unit_test(a_larger_tolerance_is_obeyed_and_costs_less),
         cmocka_unit_test(fixed_atoms_keep_every_bit),
