@@ -47,11 +47,26 @@ private:
     std::unique_ptr<char[]> data_;
 };
 
+/** Positions of one coil of unit bonds. */
+inline void walk(double *x, std::size_t n, unsigned seed)
+{
+    for (std::size_t i = 0; i < n; i += 3) {
+        double d[3], square = 0;
+        for (double &c : d) {
+            seed = seed * 1664525u + 1013904223u;
+            c = static_cast<double>(seed >> 8) / (1 << 23) - 1;
+            square += c * c;
+        }
+        for (std::size_t c = 0; c < 3; ++c) x[i + c] = i < 3 ? 0 : x[i + c - 3] + d[c] / std::sqrt(square);
+    }
+}
+
 /** Fills with numbers from the reader; a few bytes decide about the whole if they are few. */
 inline void fill(block &b, std::size_t n, byte_reader &in, bool positive = false)
 {
     double *x = b.doubles();
-    const int style = in.byte() % 4;
+    const int style = in.byte() % 5;
+    if (style == 4 && !positive && n % 3 == 0) return walk(x, n, in.byte());
     for (std::size_t i = 0; i < n; ++i) {
         if (style == 0 || in.done())
             x[i] = positive ? 1.0 : static_cast<double>((i * 7 + i * i * 3) % 11) / 4 + static_cast<double>(i % 3);

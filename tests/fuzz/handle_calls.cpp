@@ -8,7 +8,11 @@ void session::create()
 {
     hol_chains_destroy(chains);
     chains = nullptr;
-    n_atoms = in.byte() % 70;
+    // One handle in sixteen is large enough for chains that are cut into segments and windows.
+    static const std::int64_t large[] = {258,  300,  511,  700,  1024, 1030, 1100, 1500,
+                                         2049, 2051, 2500, 3000, 3300, 4097, 4099, 4500};
+    const int size = in.byte();
+    n_atoms = size < 240 ? size % 70 : large[size - 240];
     block masses(static_cast<std::size_t>(n_atoms) * sizeof(double));
     fill(masses, static_cast<std::size_t>(n_atoms), in, true);
     hol_chains *const before = reinterpret_cast<hol_chains *>(&masses);
@@ -24,15 +28,24 @@ void session::create()
     any_inactive = false;
 }
 
+// Mostly small; in a large handle mostly nearly all of its atoms.
+std::int64_t session::bonds_of_a_chain()
+{
+    const std::int64_t n = in.whole();
+    return n_atoms > 256 && n >= 0 && n < 24 && in.often() ? n_atoms - 1 - n : n;
+}
+
 void session::add()
 {
-    std::int64_t n = in.whole();
+    const std::int64_t n = bonds_of_a_chain();
     // Arrays as long as the numbers say, except where the numbers alone are an error.
     const std::size_t length = static_cast<std::size_t>(n > 0 && n <= n_atoms ? n : 0);
     block atoms((length + 1) * sizeof(std::int64_t)), lengths(length * sizeof(double));
     fill(lengths, length, in, true);
     std::int64_t *list = reinterpret_cast<std::int64_t *>(atoms.data());
-    const std::int64_t first = in.byte() % 64, step = in.byte() % 3 == 0 ? -1 : 1;
+    const std::int64_t room = n_atoms - static_cast<std::int64_t>(length);
+    const std::int64_t first = in.byte() % (n_atoms > 256 && room > 0 && room < 64 ? room : 64),
+                       step = in.byte() % 3 == 0 ? -1 : 1;
     for (std::size_t k = 0; k <= length; ++k)
         list[k] = in.often() ? first + step * static_cast<std::int64_t>(k) : in.whole();
     const std::int64_t chains_before = hol_chains_n_chains(chains), bonds_before = hol_chains_n_bonds(chains);
@@ -45,7 +58,7 @@ void session::add()
 
 void session::add_block()
 {
-    const std::int64_t n_chains = in.whole(), n = in.whole(), first = in.whole();
+    const std::int64_t n_chains = in.whole(), n = bonds_of_a_chain(), first = in.whole();
     const std::size_t length = static_cast<std::size_t>(n > 0 && n <= n_atoms ? n : 0);
     block lengths(length * sizeof(double));
     fill(lengths, length, in, true);

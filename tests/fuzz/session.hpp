@@ -51,6 +51,7 @@ struct session {
     }
 
     void create();
+    std::int64_t bonds_of_a_chain();
     void add();
     void add_block();
     void set();
