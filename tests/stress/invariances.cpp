@@ -27,13 +27,19 @@ bool near_the_ends(const vec &x)
     return std::any_of(x.begin(), x.end(), [](double y) { return y != 0 && std::fabs(y) < 1e-100; });
 }
 
-/** Multipliers that die away along a chain end among denormal numbers, where scaling is not exact: these become zero.
+/**
+ * Multipliers that die away along a chain end among denormal numbers, where scaling is not exact: these become zero. So
+ * do those below 1e-80 of their largest, into which products go that may be denormal (docs/stability.md).
  */
 void without_tails(library_results &o)
 {
-    for (vec *x : {&o.lambda, &o.g, &o.velocity_lambda, &o.position_lambda, &o.v, &o.moved, &o.r, &o.fixman})
+    for (vec *x : {&o.lambda, &o.g, &o.velocity_lambda, &o.position_lambda, &o.v, &o.moved, &o.r, &o.fixman}) {
+        double least = 1e-200;
+        for (double y : *x)
+            if (!is_unwritten(y)) least = std::max(least, 1e-80 * std::fabs(y));
         for (double &y : *x)
-            if (std::fabs(y) < 1e-200) y = 0;
+            if (std::fabs(y) < least) y = 0;
+    }
 }
 
 /** Units of mass, length and time that are 2^m, 2^l and 2^t of the old ones. */
