@@ -17,6 +17,10 @@ namespace {
 
 constexpr double epsilon = 2.220446049250313e-16;
 
+// In more solves than ordinary chains take, tau may have been much larger than it ends: its sum is rounded in that
+// size, and the bonds have been moved by the summands.
+constexpr std::int64_t most_solves = 5;
+
 // Newton's method on one long chain. The decisions are those of core/kernels/newton.inl.
 class LongNewton {
 public:
@@ -96,12 +100,12 @@ private:
     }
 
     // Writes the results. Where single pulls move an atom so far that their rounding is more than the coordinates'
-    // (light atoms between heavy ones in a taut chain), goes on from the coordinates as they are then rounded; if that
-    // does not end within the tolerance, everything is put back.
+    // (light atoms between heavy ones in a taut chain), or may have done so on the way, goes on from the coordinates as
+    // they are then rounded; if that does not end within the tolerance, everything is put back.
     bool finish(bool moved, std::int64_t solves, double reach, Tally &tally) {
-        const bool coarse =
-            moved &&
-            !(largest([&](std::int64_t j, double *) { return phases_.pull(lane_, j, store_); }) <= 0.25 * reach);
+        const bool unusual = depth_ == 0 && solves > most_solves;
+        const auto pull = [&](std::int64_t j, double *) { return phases_.pull(lane_, j, store_); };
+        const bool coarse = moved && (unusual || !(largest(pull) <= 0.25 * reach));
         if (!coarse) {
             write(moved, solves, tally);
             return true;
