@@ -2,18 +2,20 @@
 // their own by the kernel of short ones. What happens beyond the end of a piece is felt k joints further in by no more
 // than the product of their |l|, which dies within a few dozen bonds of a coil; the multipliers of the margins are thrown
 // away. That the others solve the chain's equations does not rest on this: inside a piece it is what Newton's method
-// has found, and where two pieces meet the lengths of the bonds are computed before anything is written. Chains whose ends are felt farther are left to segments_newton.inl.
+// has found, and where two pieces meet the lengths of the bonds are computed before anything is written. Chains whose ends
+// are felt farther are left to segments_newton.inl.
 
 namespace holonomic {
 namespace HOL_ISA {
 
-constexpr long window_bonds = 512;   // of a lane, without its margins: so much stays in the second-level cache
+constexpr long window_bonds = 512;    // of a lane, without its margins: so much stays in the second-level cache
 constexpr long shortest_piece = 256;  // with shorter ones the margins would cost too much
 constexpr long longest_margin = 96;
 constexpr double negligible = 1e-19;  // of what happens beyond a margin
 
 static Cut windows(int64_t n_bonds) { return Cut(n_bonds, window_bonds * W); }
 static int64_t long_positions_windows(int64_t n_bonds) { return windows(n_bonds).blocks; }
+
 // How many bonds beyond an atom of the chain, in the direction `step` (1 or -1), a piece needs there; those to the end of
 // the chain if that comes first. Or -1: too many.
 //
@@ -59,7 +61,8 @@ static bool cut_pieces(const PositionsCall &call, const Lane &lane, const Segmen
     if (s.own_max < shortest_piece) return false;
     long before = 0, behind = 0;
     for (int i = 0; i < W; ++i) {
-        const long left = margin(call, lane, s.from[i], -1, arena), right = margin(call, lane, s.from[i] + s.own[i], 1, arena);
+        const long left = margin(call, lane, s.from[i], -1, arena);
+        const long right = margin(call, lane, s.from[i] + s.own[i], 1, arena);
         if (left < 0 || right < 0) return false;
         before = left > before ? left : before;
         behind = right > behind ? right : behind;
