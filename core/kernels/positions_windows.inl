@@ -114,45 +114,37 @@ static __attribute__((noinline)) void note_worst_of_pieces(const Newton &x, cons
     }
 }
 
-// The iteration on a window; x is left as it ends.
 template <bool uniform_w, bool uniform_a>
 static WindowResult solve_window(const Block &block, const Lane *piece, const PositionsCall &call, const BondLengths &a,
-                                 Arena arena, Newton &x, vec &error, Tally &tally) {
+                                 const SegmentBlock &s, const Pieces &pieces, const Lane &lane, Arena arena, double *tau,
+                                 Tally &tally) {
     // The lengths at the ends of a piece must be within the tolerance with the multipliers of its neighbour, too.
     PositionsCall strict = call;
     strict.tolerance = call.tolerance / 8;
     strict.v = AtomArray{};
     Positions<uniform_w, uniform_a> window(block, piece, strict, a, arena, tally);
-    window.load();
-    x = window.x;
+    Newton &x = window.x;
     Carried carried(block, x, call, window.r);
     const mask all = first_lanes(W);
+    window.load();
     // A guess does not help: it knows of the pulls beyond the ends of a piece, which are not there.
     const Outcome out = solve_positions<uniform_w, uniform_a, false>(block, x, strict, carried, all, false);
-    error = out.error;
-    if (!any(all & ~out.untouched)) return window_untouched;
-    if (any(all & ~out.converged) || any(coarse_moves<uniform_w>(block, x, carried, all))) return window_failed;
+    const bool untouched = !any(all & ~out.untouched);
+    if (!untouched && (any(all & ~out.converged) || any(coarse_moves<uniform_w>(block, x, carried, all))))
+        return window_failed;
+    if (any(less(splat(tally.worst), out.error)))
+        note_worst_of_pieces<uniform_w, uniform_a>(x, s, pieces, lane, untouched, tally);
+    if (untouched) return window_untouched;
     if (out.solves > tally.iterations) tally.iterations = out.solves;
+    if (pieces.even) {
+        Block own = own_block(s);
+        for (int i = 0; i < W; ++i) own.first_bond[i] = s.from[i];
+        store_bonds(own, x.tau + pieces.skip[0], splat(1.0), all, tau);
+    } else {
+        for (int i = 0; i < W; ++i)
+            for (long k = 0; k < s.own[i]; ++k) tau[s.from[i] + k] = x.tau[k + pieces.skip[i]][i];
+    }
     return window_solved;
-}
-
-template <bool uniform_w, bool uniform_a>
-static WindowResult solve_window(const Block &block, const Lane *piece, const PositionsCall &call, const BondLengths &a,
-                                 const SegmentBlock &s, const Pieces &pieces, const Lane &lane, Arena arena, double *tau,
-                                 Tally &tally) {
-    Newton x(0, arena);
-    vec error;
-    const WindowResult result = solve_window<uniform_w, uniform_a>(block, piece, call, a, arena, x, error, tally);
-    if (result == window_failed) return result;
-    if (any(less(splat(tally.worst), error)))
-        note_worst_of_pieces<uniform_w, uniform_a>(x, s, pieces, lane, result == window_untouched, tally);
-    if (result == window_untouched) return result;
-    Block own = own_block(s);
-    for (int i = 0; i < W; ++i) own.first_bond[i] = s.from[i];
-    for (int i = 0; i < W && !pieces.even; ++i)
-        for (long k = 0; k < s.own[i]; ++k) tau[s.from[i] + k] = x.tau[k + pieces.skip[i]][i];
-    if (pieces.even) store_bonds(own, x.tau + pieces.skip[0], splat(1.0), first_lanes(W), tau);
-    return result;
 }
 
 // Finds the multipliers of window j, tau[n_bonds] in the store.
