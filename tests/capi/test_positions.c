@@ -1,25 +1,8 @@
 /** Position projection against Newton's method in 113 bits, and against what the step must conserve. */
 #include "assembly.h"
 #include "check.h"
+#include "positions.h"
 #include "solution.h"
-
-/** Positions after a drift with the velocities, projected if `consistent`. */
-static double *drift(assembly *a, double dt, int consistent)
-{
-    if (consistent) CHECK(hol_project_velocities(a->chains, a->r, a->v, NULL, NULL));
-    double *r = copy_of(a->r, assembly_size(a));
-    for (size_t i = 0; i < assembly_size(a); ++i) r[i] += dt * a->v[i];
-    return r;
-}
-
-/**
- * What rounding the coordinates of a bond's two atoms does to |d.d - a^2| / a^2: each changes by eps/2 of the largest
- * coordinate in each direction, so d by sqrt(3) eps extent; and the iteration itself ends within eight roundings.
- */
-static long double rounding_of_a_bond(long double extent, long double a)
-{
-    return DBL_EPSILON * (2 * sqrtl(3) * extent / a + 8);
-}
 
 static long double extent_of(const double *r, size_t n)
 {
@@ -126,12 +109,6 @@ static void every_chain_of_a_mixed_set_ends_on_its_lengths(void **state)
         free(q);
         assembly_free(&a);
     }
-}
-
-/** 40 chains of up to 60 bonds; or a few so long that the library solves them in windows. */
-static assembly short_or_long(chain_kind kind, int is_long, arrangement how, uint64_t seed)
-{
-    return is_long ? assembly_of_kind(kind, 3, 4000, 9000, how, seed) : assembly_of_kind(kind, 40, 1, 60, how, seed);
 }
 
 static void check_velocities(int is_long)
@@ -266,152 +243,6 @@ static void multipliers_tend_to_those_of_the_acceleration_level(void **state)
     }
 }
 
-static void check_satisfied(int is_long)
-{
-    assembly a = short_or_long(CHAIN_HETEROGENEOUS, is_long, SCATTERED, 85);
-    double *q = drift(&a, 0.004, 0), *lambda = untouched((size_t)a.n_bonds), virial[9];
-    hol_report report;
-    CHECK(hol_project_positions(a.chains, a.r, q, NULL, 0.004, NULL, 0, NULL, NULL));
-    double *again = copy_of(q, assembly_size(&a)), *v = copy_of(a.v, assembly_size(&a));
-    CHECK(hol_project_positions(a.chains, a.r, again, v, 0.004, lambda, 0, virial, &report));
-    assert_same_bits(again, q, assembly_size(&a));
-    assert_same_bits(v, a.v, assembly_size(&a));
-    for (int64_t k = 0; k < a.n_bonds; ++k) assert_true(lambda[k] == 0);
-    for (int i = 0; i < 9; ++i) assert_true(virial[i] == 0);
-    assert_int_equal(report.n_corrected, 0);
-    assert_int_equal(report.n_failed, 0);
-    assert_int_equal(report.iterations, 0);
-    free(q), free(lambda), free(again), free(v);
-    assembly_free(&a);
-}
-
-static void a_chain_within_the_tolerance_is_not_touched(void **state)
-{
-    (void)state;
-    for (int is_long = 0; is_long < 2; ++is_long) check_satisfied(is_long);
-}
-
-static void a_long_chain_of_which_a_part_is_satisfied_ends_on_its_lengths(void **state)
-{
-    (void)state;
-    assembly a = assembly_of_kind(CHAIN_COIL, 1, 5000, 5000, IN_ORDER, 89);
-    double *q = copy_of(a.r, assembly_size(&a));
-    hol_report report;
-    hol_worst worst;
-    for (size_t i = assembly_size(&a) - 300; i < assembly_size(&a); ++i) q[i] += 0.004 * a.v[i];
-    CHECK(hol_project_positions(a.chains, a.r, q, NULL, 0.004, NULL, 0, NULL, &report));
-    assert_int_equal(report.n_corrected, 1);
-    CHECK(hol_violation(a.chains, q, NULL, &worst));
-    CHECK_AT_MOST(worst.length, rounding_of_a_bond(200, 1));
-    free(q);
-    assembly_free(&a);
-}
-
-/** A chain put back on its lengths along its own bonds. */
-static void the_reference_may_be_the_array_that_is_corrected(void **state)
-{
-    (void)state;
-    for (int is_long = 0; is_long < 2; ++is_long) {
-        assembly a = short_or_long(CHAIN_COIL, is_long, IN_ORDER, 90);
-        double *start = drift(&a, 0.02, 1), *q = copy_of(start, assembly_size(&a)),
-               *both = copy_of(start, assembly_size(&a));
-        hol_worst worst;
-        CHECK(hol_project_positions(a.chains, start, q, NULL, 0.02, NULL, 0, NULL, NULL));
-        CHECK(hol_project_positions(a.chains, both, both, NULL, 0.02, NULL, 0, NULL, NULL));
-        CHECK(hol_violation(a.chains, both, NULL, &worst));
-        CHECK_AT_MOST(worst.length, rounding_of_a_bond(200, 1));
-        for (size_t i = 0; i < assembly_size(&a); ++i) CHECK_AT_MOST(fabs(q[i] - both[i]), 20 * DBL_EPSILON * 200);
-        free(start), free(q), free(both);
-        assembly_free(&a);
-    }
-}
-
-static void check_guess(int is_long)
-{
-    const double dt = 0.004;
-    assembly a = short_or_long(CHAIN_COIL, is_long, IN_ORDER, 86);
-    const size_t size = assembly_size(&a);
-    CHECK(hol_project_velocities(a.chains, a.r, a.v, NULL, NULL));
-    double *r = copy_of(a.r, size), *q = copy_of(a.r, size), *lambda = untouched((size_t)a.n_bonds), *first = NULL;
-    const double extent = is_long ? 200 : 20;
-    hol_report cold, warm;
-    int64_t cold_sum = 0, warm_sum = 0;
-    for (int step = 0; step < 20; ++step) {
-        for (size_t i = 0; i < size; ++i) q[i] = r[i] + dt * a.v[i];
-        first = copy_of(q, size);
-        CHECK(hol_project_positions(a.chains, r, first, NULL, dt, NULL, 0, NULL, &cold));
-        CHECK(hol_project_positions(a.chains, r, q, a.v, dt, lambda, step > 0, NULL, &warm));
-        for (size_t i = 0; i < size; ++i) CHECK_AT_MOST(fabs(q[i] - first[i]), 20 * DBL_EPSILON * extent);
-        if (step > 0) {
-            cold_sum += cold.iterations;
-            warm_sum += warm.iterations;
-        }
-        memcpy(r, q, sizeof *r * size);
-        CHECK(hol_project_velocities(a.chains, r, a.v, NULL, NULL));
-        free(first);
-    }
-    print_message("iterations in 19 steps: %lld without a guess, %lld with\n", (long long)cold_sum,
-                  (long long)warm_sum);
-    if (!is_long) assert_true(warm_sum + 9 <= cold_sum); /* at least every other step one less */
-    if (is_long) assert_true(warm_sum <= cold_sum);
-    free(r), free(q), free(lambda);
-    assembly_free(&a);
-}
-
-static void a_guess_saves_an_iteration_and_changes_the_result_by_rounding_only(void **state)
-{
-    (void)state;
-    for (int is_long = 0; is_long < 2; ++is_long) check_guess(is_long);
-}
-
-static void check_tolerance(int is_long)
-{
-    assembly a = short_or_long(CHAIN_COIL, is_long, IN_ORDER, 87);
-    double *start = drift(&a, 0.01, 1);
-    int64_t last = 100;
-    for (double tolerance = 1e-14; tolerance < 1e-1; tolerance *= 1e4) {
-        double *q = copy_of(start, assembly_size(&a));
-        hol_report report;
-        hol_worst worst;
-        CHECK(hol_chains_set_tolerance(a.chains, tolerance));
-        CHECK(hol_project_positions(a.chains, a.r, q, NULL, 0.01, NULL, 0, NULL, &report));
-        CHECK(hol_violation(a.chains, q, NULL, &worst));
-        CHECK_AT_MOST(worst.length, tolerance + rounding_of_a_bond(is_long ? 200 : 25, 1));
-        assert_true(report.iterations <= last);
-        last = report.iterations;
-        free(q);
-    }
-    assert_true(last <= 2);
-    free(start);
-    assembly_free(&a);
-}
-
-static void a_larger_tolerance_is_obeyed_and_costs_less(void **state)
-{
-    (void)state;
-    for (int is_long = 0; is_long < 2; ++is_long) check_tolerance(is_long);
-}
-
-static void check_fixed_atoms(int is_long)
-{
-    assembly a = short_or_long(CHAIN_FIXED_ENDS, is_long, SCATTERED, 88);
-    double *start = drift(&a, 0.004, 1), *q = copy_of(start, assembly_size(&a)), *v = copy_of(a.v, assembly_size(&a));
-    CHECK(hol_project_positions(a.chains, a.r, q, v, 0.004, NULL, 0, NULL, NULL));
-    for (int64_t i = 0; i < a.n_atoms; ++i)
-        if (a.mass[i] == 0) {
-            assert_same_bits(q + 3 * i, start + 3 * i, 3);
-            assert_same_bits(v + 3 * i, a.v + 3 * i, 3);
-        }
-    free(start), free(q), free(v);
-    assembly_free(&a);
-}
-
-static void fixed_atoms_keep_every_bit(void **state)
-{
-    (void)state;
-    for (int is_long = 0; is_long < 2; ++is_long) check_fixed_atoms(is_long);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -422,12 +253,6 @@ int main(void)
         cmocka_unit_test(corrections_conserve_momentum_and_angular_momentum),
         cmocka_unit_test(virial_is_the_sum_over_the_reference_bonds),
         cmocka_unit_test(multipliers_tend_to_those_of_the_acceleration_level),
-        cmocka_unit_test(a_chain_within_the_tolerance_is_not_touched),
-        cmocka_unit_test(a_long_chain_of_which_a_part_is_satisfied_ends_on_its_lengths),
-        cmocka_unit_test(the_reference_may_be_the_array_that_is_corrected),
-        cmocka_unit_test(a_guess_saves_an_iteration_and_changes_the_result_by_rounding_only),
-        cmocka_unit_test(a_larger_tolerance_is_obeyed_and_costs_less),
-        cmocka_unit_test(fixed_atoms_keep_every_bit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,15 +2,9 @@
 #include "assembly.h"
 #include "check.h"
 #include "layout.h"
+#include "positions.h"
 
 static const double time_step = 0.004;
-
-static double *drifted(const assembly *a, double dt)
-{
-    double *r = copy_of(a->r, assembly_size(a));
-    for (size_t i = 0; i < assembly_size(a); ++i) r[i] += dt * a->v[i];
-    return r;
-}
 
 /** Rounds all data to float, so that float and double views hold the same numbers. */
 static void round_to_float(assembly *a)
@@ -105,7 +99,7 @@ static void positions_are_the_same_through_every_layout_of_doubles(void **state)
                                       : assembly_of_kind(CHAIN_HETEROGENEOUS, 1, 5000, 5000,
                                                          how == SCATTERED + 1 ? IN_ORDER : SCATTERED, 43);
         const size_t n = (size_t)a.n_bonds, size = assembly_size(&a);
-        double *lambda = untouched(n), *start = drifted(&a, time_step), *q = copy_of(start, size),
+        double *lambda = untouched(n), *start = drift(&a, time_step, 0), *q = copy_of(start, size),
                *v = copy_of(a.v, size), virial[9];
         hol_report report, view_report;
         CHECK(hol_project_positions(a.chains, a.r, q, v, time_step, lambda, 0, virial, &report));
@@ -134,7 +128,7 @@ static void float_positions_end_at_the_rounding_of_floats(void **state)
     (void)state;
     assembly a = assembly_of_kind(CHAIN_COIL, 21, 1, 60, IN_ORDER, 44);
     round_to_float(&a);
-    double *start = drifted(&a, time_step);
+    double *start = drift(&a, time_step, 0);
     for (int i = n_double_layouts; i < n_layouts; ++i) {
         laid_out r = lay_out(&layouts[i], a.n_atoms, a.r, 3), p = lay_out(&layouts[i], a.n_atoms, start, 3);
         laid_out v = lay_out(&layouts[i], a.n_atoms, a.v, 3);
@@ -179,7 +173,7 @@ static void two_dimensions_give_the_bits_of_three_with_zero_z(void **state)
     }
     const size_t n = (size_t)a.n_bonds, size = assembly_size(&a);
     double *lambda = untouched(n), *flat_lambda = untouched(n), *g = copy_of(a.f, size), virial[9], flat_virial[9];
-    double *v = copy_of(a.v, size), *start = drifted(&a, short_step), *q = copy_of(start, size),
+    double *v = copy_of(a.v, size), *start = drift(&a, short_step, 0), *q = copy_of(start, size),
            *u = copy_of(a.v, size);
     for (int i = 0; i < n_double_layouts; ++i) {
         laid_out fr = lay_out(&layouts[i], a.n_atoms, a.r, 2), fv = lay_out(&layouts[i], a.n_atoms, a.v, 2);
