@@ -48,10 +48,15 @@ HOL_INLINE void unrounded_bond(const Box &box, const double *from, const double 
 // What the right-hand side of a bond is made of.
 enum Terms { none_ = 0, velocity_squared = 1, force_difference = 2, rate = 4, unit_mass = 8 };
 
-// Starts to fetch W atoms of the next block, `ahead` doubles from p: an address that may lie behind the array.
-HOL_INLINE void fetch_ahead(const double *p, long ahead) {
-    const uintptr_t address = reinterpret_cast<uintptr_t>(p) + static_cast<uintptr_t>(ahead) * sizeof(double);
-    for (int line = 0; line < (W > 4 ? 4 : 2); ++line)
+// Starts to fetch a piece of the next block's vectors, `ahead` doubles from those of this one, when this one is at atom
+// k0, as many as `atoms` of each lane: its lanes lie one behind the other, and are fetched in that order, as the
+// processor's own prefetchers like it. The addresses may lie behind the array.
+template <int atoms = W>
+HOL_INLINE void fetch_ahead(const double *first_lane, long k0, long ahead) {
+    const uintptr_t address =
+        reinterpret_cast<uintptr_t>(first_lane) + static_cast<uintptr_t>(ahead + 3 * W * k0) * sizeof(double);
+    HOL_UNROLL
+    for (int line = 0; line < (3 * W * atoms + 7) / 8; ++line)
         __builtin_prefetch(reinterpret_cast<const void *>(address + static_cast<uintptr_t>(line) * 64), 0, 2);
 }
 
@@ -140,12 +145,11 @@ HOL_INLINE void load_full_chunk(const Block &block, const Box &box, const Places
         if (terms & (velocity_squared | rate)) pv[i] = at.v + 3 * k0 + at.lane[i];
         if (terms & force_difference) pf[i] = at.f + 3 * k0 + at.lane[i];
     }
-    if (__builtin_expect(block.ahead != 0, 0))
-        for (int i = 0; i < W; ++i) {
-            fetch_ahead(pr[i], block.ahead);
-            if (terms & (velocity_squared | rate)) fetch_ahead(pv[i], block.ahead);
-            if (terms & force_difference) fetch_ahead(pf[i], block.ahead);
-        }
+    if (__builtin_expect(block.ahead != 0, 0)) {
+        fetch_ahead(at.r, k0, block.ahead);
+        if (terms & (velocity_squared | rate)) fetch_ahead(at.v, k0, block.ahead);
+        if (terms & force_difference) fetch_ahead(at.f, k0, block.ahead);
+    }
     load_chunk<terms, uniform, boxed, careful>(block, box, k0, pr, pv, pf, D, D_low, B);
 }
 

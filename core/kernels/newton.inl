@@ -116,6 +116,7 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
         else
             substitute_back<false, careful, fixed>(block, x, active);
         const vec before = error, expected = rate * before;
+        x.fetch = i < 3 ? x.next[i] : nullptr;
         error = correct<uniform_w, uniform_a, careful, fixed>(block, x);
         ++out.solves;
         // At the floor: the solve should have gone far below a rounding, or it gained little, and what is left is no

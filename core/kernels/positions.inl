@@ -41,7 +41,7 @@ struct Positions {
                 total[k] = x.tau[k];
                 x.correction[k] = vec{};
             }
-            load_bond_vectors(block, call.box, r, x.D, nullptr);
+            load_bond_vectors(block, call.box, r, x.D);
             x.step = x.correction;
             const vec error = residuals<uniform_w, uniform_a>(block, x);
             out.error = select(coarse, error, out.error);
@@ -82,13 +82,19 @@ struct Positions {
     }
 
     void load() const {
-        load_bond_vectors(block, call.box, r_ref, x.b, call.v.x ? &v : nullptr);
-        load_bond_vectors(block, call.box, r, x.D, nullptr);
+        load_bond_vectors(block, call.box, r_ref, x.b);
+        load_bond_vectors(block, call.box, r, x.D);
     }
 
     void solve() {
         const mask all = block.in_use();
         load();
+        if (block.ahead) {
+            x.next[0] = r_ref.lane[0];
+            x.next[1] = r.lane[0];
+            x.next[2] = v.lane[0];
+            x.ahead = block.ahead;
+        }
         if (call.guess) load_guess(block, call, x);
         Carried carried(block, x, call, r);
         Outcome out = solve_positions<uniform_w, uniform_a, false>(block, x, call, carried, all, call.guess);

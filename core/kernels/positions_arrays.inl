@@ -57,21 +57,14 @@ HOL_INLINE void bonds_between(const Box &box, const double *const *p, vec3 *d) {
     }
 }
 
-// `fetch`: what else of the next block to start fetching.
 template <bool boxed>
-static inline void load_bond_vectors(const Block &block, const Box &box, const Packed &r, vec3 *D,
-                                     const Packed *fetch) {
+static inline void load_bond_vectors(const Block &block, const Box &box, const Packed &r, vec3 *D) {
     const vec lengths = block.lengths();
     const double *p[W];
     vec3 d[W];
     long k0 = 0;
     for (; k0 + W <= block.n_min; k0 += W) {
         for (int i = 0; i < W; ++i) p[i] = r.lane[i] + 3 * k0;
-        if (block.ahead)
-            for (int i = 0; i < W; ++i) {
-                fetch_ahead(p[i], block.ahead);
-                if (fetch) fetch_ahead(fetch->lane[i] + 3 * k0, block.ahead);
-            }
         bonds_between<boxed>(box, p, d);
         for (int a = 0; a < W; ++a) D[k0 + a] = d[a];
     }
@@ -87,12 +80,11 @@ static inline void load_bond_vectors(const Block &block, const Box &box, const P
     }
 }
 
-static inline void load_bond_vectors(const Block &block, const Box &box, const Packed &r, vec3 *D,
-                                     const Packed *fetch) {
+static inline void load_bond_vectors(const Block &block, const Box &box, const Packed &r, vec3 *D) {
     if (box.shape == Box::none)
-        load_bond_vectors<false>(block, box, r, D, fetch);
+        load_bond_vectors<false>(block, box, r, D);
     else
-        load_bond_vectors<true>(block, box, r, D, fetch);
+        load_bond_vectors<true>(block, box, r, D);
 }
 
 static inline void load_guess(const Block &block, const PositionsCall &call, const Newton &x) {

@@ -242,7 +242,7 @@ static void long_positions_finish_window(const PositionsCall &call, const Lane &
     Arena arena = {scratch};
     set_segment_masses(s, lane, arena);
     Newton x(s.block, BondLengths{}, arena);
-    load_bond_vectors(s.block, call.box, open_segments(call.r_ref, s, lane, arena, true), x.b, nullptr);
+    load_bond_vectors(s.block, call.box, open_segments(call.r_ref, s, lane, arena, true), x.b);
     long k = 0;
     for (; k + W <= s.block.n_min; k += W) {
         vec m[W];

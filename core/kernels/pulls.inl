@@ -115,9 +115,7 @@ static __attribute__((noinline)) void substitute_and_store(const Block &block, c
             after = p;
         }
         if (out.lane[0]) {
-            if (update == write_ && block.ahead)
-                HOL_UNROLL
-                for (int i = 0; i < W; ++i) fetch_ahead(out.lane[i] + 3 * (k0 + 1), block.ahead);
+            if (update == write_ && block.ahead) fetch_ahead(out.lane[0], k0, block.ahead);
             store_chunk<update>(k0 + 1, value, out);
         }
         if (value_out) {

@@ -72,8 +72,7 @@ static __attribute__((noinline)) mask forward_velocities(const Block &block, con
             const double *pv[W];
             HOL_UNROLL
             for (int i = 0; i < W; ++i) pv[i] = at.v + 3 * (k + 1) + at.lane[i];
-            if (__builtin_expect(block.ahead != 0, 0))
-                for (int i = 0; i < W; ++i) fetch_ahead(pv[i], block.ahead);
+            if (__builtin_expect(block.ahead != 0, 0)) fetch_ahead(at.v, k, block.ahead);
             load_atoms(pv, x.v + k + 1);
         }
         HOL_UNROLL
