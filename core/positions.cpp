@@ -271,7 +271,8 @@ struct PositionsWork final : Work {
 void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomArray &r, const AtomArray &v, double dt,
                        double *lambda, bool guess, double *virial, hol_report *report) {
     const PositionsCall call{
-        r_ref, r, v, lambda, dt, guess, virial != nullptr, chains.tolerance, chains.max_iterations, chains.box};
+        r_ref,  r, v, lambda, dt, guess, virial != nullptr, report != nullptr, chains.tolerance, chains.max_iterations,
+        chains.box};
     const Tally tally = execute(chains, PositionsWork(call));
     if (report) {
         report->iterations = tally.iterations;

@@ -75,7 +75,7 @@ struct PositionsCall {
     AtomArray r_ref, r, v;
     double *lambda;
     double dt;
-    bool guess, virial;
+    bool guess, virial, report;  // report: the errors left are wanted
     double tolerance;  // 0: what the coordinates carry
     int max_iterations;
     Box box;

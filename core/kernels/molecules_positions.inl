@@ -168,7 +168,7 @@ static __attribute__((noinline)) int64_t of_molecules(const MoleculesCall &m, in
         for (int k = 0; k < N; ++k)
             pull = max(uniform ? abs(x.tau[k]) : max(x.w[k], x.w[k + 1]) * abs(x.tau[k]), pull);
         if (any(less(0.25 * x.a_min, pull * x.a_max))) break;
-        note_molecules<N, uniform>(m, x, out.error, first, tally);
+        if (m.call.report) note_molecules<N, uniform>(m, x, out.error, first, tally);
         move_molecules<N, uniform>(x, m.r + at, m.v ? m.v + at : nullptr, m.per_dt);
         if (m.lambda) {
             for (int k = 0; k < N; ++k) {

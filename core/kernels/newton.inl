@@ -84,6 +84,11 @@ HOL_INLINE mask worth_renewing(vec error, vec rate, int i) {
     return less(splat(0.1 * epsilon), expected) & (i < 2 ? ~none() : less(splat(1e-4), rate));
 }
 
+// From an error no larger than this, a solve with factors that have just taken the error down to less than `steady` of
+// itself needs no look at what it has done: it leaves less than a rounding, and could not leave more than this.
+constexpr double last_error = 64 * epsilon;
+constexpr double steady = 1.0 / 256;
+
 struct Outcome {
     mask untouched, converged;
     vec error;
@@ -110,11 +115,18 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
         active = active & ~out.converged;
     }
     vec rate = error;  // new factors square the error
+    mask proven = none();
     for (int i = 0; i < call.max_iterations && any(active); ++i) {
         if (i == 0 && !guess)
             substitute_back<true, careful, fixed>(block, x, active);
         else
             substitute_back<false, careful, fixed>(block, x, active);
+        if (!careful && !any(active & ~(proven & less(rate * error, splat(0.125 * epsilon))))) {
+            ++out.solves;
+            out.converged = out.converged | active;
+            if (call.report) error = correct<uniform_w, uniform_a, careful, fixed>(block, x);
+            break;
+        }
         const vec before = error, expected = rate * before;
         x.fetch = i < 3 ? x.next[i] : nullptr;
         error = correct<uniform_w, uniform_a, careful, fixed>(block, x);
@@ -135,6 +147,7 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
         active = active & finite(error);
         rate = error / before;
         const mask renewed = careful ? active : active & worth_renewing(error, rate, i);
+        proven = ~renewed & less(rate, splat(steady)) & less_equal(error, splat(last_error));
         if (!any(renewed)) continue;
         renew<uniform_w, uniform_a, careful ? careful_factors : renewed_factors>(block, x, renewed);
         rate = select(renewed, error, rate);

@@ -63,11 +63,11 @@ struct Positions {
     void finish(Outcome &out, Carried &carried) {
         const mask coarse = coarse_moves<uniform_w>(block, x, carried, out.converged);
         const bool settled = __builtin_expect(any(coarse), 0);
-        note_worst<uniform_w, uniform_a>(block, x, (out.converged | out.untouched) & ~coarse, out.error, tally);
+        note_worst<uniform_w, uniform_a>(block, x, call, (out.converged | out.untouched) & ~coarse, out.error, tally);
         if (settled) out.converged = out.converged & ~settle(coarse, carried, out);
         if (any(out.converged)) {
             if (settled) {
-                note_worst<uniform_w, uniform_a>(block, x, out.converged & coarse, out.error, tally);
+                note_worst<uniform_w, uniform_a>(block, x, call, out.converged & coarse, out.error, tally);
                 if (call.v.x) move<false, true>(out.converged);
             } else if (call.v.x) {
                 move<true, true>(out.converged);

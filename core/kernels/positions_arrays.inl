@@ -174,7 +174,9 @@ static __attribute__((noinline)) long worst_bond(const Block &block, const Newto
 }
 
 template <bool uniform_w, bool uniform_a>
-static inline void note_worst(const Block &block, const Newton &x, mask which, vec error, Tally &tally) {
+static inline void note_worst(const Block &block, const Newton &x, const PositionsCall &call, mask which, vec error,
+                              Tally &tally) {
+    if (!call.report) return;
     const unsigned chosen = bits(which & block.in_use());
     int worst = -1;
     for (int i = 0; i < block.lanes; ++i) {

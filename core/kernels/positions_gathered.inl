@@ -63,7 +63,7 @@ static __attribute__((noinline)) bool listed_positions(const Block &block, const
     const Outcome out =
         solve_positions<uniform_w, uniform_a, false>(block, x, call, carried, block.in_use(), call.guess);
     if (any(~out.converged) || any(coarse_moves<uniform_w>(block, x, carried, out.converged))) return false;
-    note_worst<uniform_w, uniform_a>(block, x, out.converged, out.error, tally);
+    note_worst<uniform_w, uniform_a>(block, x, call, out.converged, out.error, tally);
     if (call.v.x)
         scatter_moves<uniform_w, true>(block, x, at, base_of(call.r), base_of(call.v), splat(1 / call.dt));
     else

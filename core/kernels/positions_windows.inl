@@ -132,7 +132,7 @@ static WindowResult solve_window(const Block &block, const Lane *piece, const Po
     const bool untouched = !any(all & ~out.untouched);
     if (!untouched && (any(all & ~out.converged) || any(coarse_moves<uniform_w>(block, x, carried, all))))
         return window_failed;
-    if (any(less(splat(tally.worst), out.error)))
+    if (call.report && any(less(splat(tally.worst), out.error)))
         note_worst_of_pieces<uniform_w, uniform_a>(x, s, pieces, lane, untouched, tally);
     if (untouched) return window_untouched;
     if (out.solves > tally.iterations) tally.iterations = out.solves;
