@@ -55,13 +55,12 @@ template <int N, Update update>
 HOL_INLINE void store_elements(vec *value, double *out) {
     constexpr int elements = 3 * (N + 1), full = elements / W, rest = elements % W;
     HOL_UNROLL
-    for (int j = 0; j < full; ++j) {
-        transpose(value + j * W);
-        for (int i = 0; i < W; ++i) {
+    for (int j = 0; j < full; ++j) transpose(value + j * W);
+    for (int i = 0; i < W; ++i)  // in the order of the addresses: faster from memory
+        for (int j = 0; j < full; ++j) {
             double *p = out + elements * i + j * W;
             store(p, update == add_ ? load(p) + value[j * W + i] : value[j * W + i]);
         }
-    }
     HOL_UNROLL
     for (int e = 0; e < rest; ++e)
         for (int i = 0; i < W; ++i) {
@@ -86,11 +85,27 @@ HOL_INLINE void store_pulls(const vec3 *D, const vec *t, double *out) {
     store_elements<N, update>(value, out);
 }
 
+// Writes factor times a value per bond of W molecules; zeros as +0. Rows of W elements, the rest of which the next
+// molecule's row overwrites, as long as they stay inside.
 template <int N>
 HOL_INLINE void store_multipliers(const vec *t, vec factor, double *out) {
-    for (int k = 0; k < N; ++k) {
-        const vec lambda = mul_add(factor, t[k], vec{});  // zeros as +0
-        for (int i = 0; i < W; ++i) out[N * i + k] = lambda[i];
+    constexpr int whole = N < W ? N : W;
+    vec row[W] = {};
+    HOL_UNROLL
+    for (int k = 0; k < whole; ++k) row[k] = mul_add(factor, t[k], vec{});
+    if (N == 1) return store(out, row[0]);
+    transpose(row);
+    HOL_UNROLL
+    for (int i = 0; i < W; ++i) {
+        if (N * i + W <= N * W)
+            store(out + N * i, row[i]);
+        else
+            for (int k = 0; k < whole; ++k) out[N * i + k] = row[i][k];
+    }
+    HOL_UNROLL
+    for (int k = whole; k < N; ++k) {
+        const vec value = mul_add(factor, t[k], vec{});
+        for (int i = 0; i < W; ++i) out[N * i + k] = value[i];
     }
 }
 

@@ -79,19 +79,17 @@ HOL_INLINE void move_molecules(const Newton &x, double *r, double *v, double per
         value[3 * k + 2] = m.z;
         before = after;
     }
-    for (int j = 0; j < full; ++j) {
-        transpose(value + j * W);
-        for (int i = 0; i < W; ++i) {
+    for (int j = 0; j < full; ++j) transpose(value + j * W);
+    for (int i = 0; i < W; ++i)
+        for (int j = 0; j < full; ++j) {
             double *const p = r + elements * i + j * W;
             store(p, load(p) + value[j * W + i]);
         }
-    }
-    if (v)
-        for (int j = 0; j < full; ++j)
-            for (int i = 0; i < W; ++i) {
-                double *const p = v + elements * i + j * W;
-                store(p, mul_add(value[j * W + i], splat(per_dt), load(p)));
-            }
+    for (int i = 0; v && i < W; ++i)
+        for (int j = 0; j < full; ++j) {
+            double *const p = v + elements * i + j * W;
+            store(p, mul_add(value[j * W + i], splat(per_dt), load(p)));
+        }
     if (rest == 0) return;
     typedef double pair __attribute__((vector_size(16)));
     typedef double pair_unaligned __attribute__((vector_size(16), aligned(8), may_alias));
@@ -170,13 +168,7 @@ static __attribute__((noinline)) int64_t of_molecules(const MoleculesCall &m, in
         if (any(less(0.25 * x.a_min, pull * x.a_max))) break;
         if (m.call.report) note_molecules<N, uniform>(m, x, out.error, first, tally);
         move_molecules<N, uniform>(x, m.r + at, m.v ? m.v + at : nullptr, m.per_dt);
-        if (m.lambda) {
-            for (int k = 0; k < N; ++k) {
-                const vec value = mul_add(x.tau[k], factor, vec{});
-                if (N == 1) store(m.lambda + first, value);
-                for (int i = 0; N > 1 && i < W; ++i) m.lambda[N * (first + i) + k] = value[i];
-            }
-        }
+        if (m.lambda) store_multipliers<N>(x.tau, factor, m.lambda + N * first);
         tally.n_corrected += W;
         if (out.solves > tally.iterations) tally.iterations = out.solves;
     }
