@@ -166,6 +166,12 @@ struct Sweep {
         const vec w = w_at<uniform>(block, k), w1 = w_at<uniform>(block, k + 1);
         const vec3 d1 = s.D[k];
         const vec q1 = dot(d1, d1);
+        if (__builtin_constant_p(k) && k == 0) {  // what the rest comes to without a bond before
+            y = b + 0.0;
+            A = w * q1;
+            F = splat(1.0);
+            return finish_step(k, d1, q1, w1, true);
+        }
         vec g = dot(d, d1), g2 = g * g, X = q * q1 - g2;
         if (ragged) {
             const mask m = joint(block, k);
@@ -185,6 +191,10 @@ struct Sweep {
             A = A * rF;
             F = splat(1.0);
         }
+        finish_step(k, d1, q1, w1, starts_group);
+    }
+
+    inline __attribute__((always_inline)) void finish_step(long k, const vec3 &d1, vec q1, vec w1, bool starts_group) {
         F1 = starts_group ? w1 * q1 + A : mul_add(w1 * q1, F, A);
         rF = splat(1.0) / F1;
         rP = starts_group ? rF : F * rF;
