@@ -149,6 +149,20 @@ HOL_INLINE const double *window(const double *p, long k, long len, bool roomy, d
     return buffer;
 }
 
+// Values along the lanes as vectors [n]: rows[lane][k] for k < full, where all lanes have one, value(lane, k) behind.
+template <class Value>
+HOL_INLINE void interleave(const double *const *rows, long full, long n, vec *out, const Value &value) {
+    long k = 0;
+    for (; k + W <= full; k += W) {
+        vec m[W];
+        for (int i = 0; i < W; ++i) m[i] = load(rows[i] + k);
+        transpose(m);
+        for (int a = 0; a < W; ++a) out[k + a] = m[a];
+    }
+    for (; k < n; ++k)
+        for (int i = 0; i < W; ++i) out[k][i] = value(i, k);
+}
+
 // Inverse masses of the lanes: constant along each, or tables in scratch.
 static inline void set_masses(Block &block, const double *const *tables, const double *uniform, Arena &arena) {
     const double *table[W];
@@ -168,18 +182,33 @@ static inline void set_masses(Block &block, const double *const *tables, const d
     if (block.uniform_w) return;
     vec *w = arena.vecs(block.n + 1);
     bool same = true;
-    for (int i = 1; i < W; ++i) same = same && table[i] == table[0] && constant[i] == constant[0] && block.len[i] == block.len[0];
+    long in_tables = block.n + 1;
     for (int i = 0; i < W; ++i) {
-        const auto value = [&](long k) {  // inert bonds past the end: any positive mass
-            return k > block.len[i] ? 1.0 : (table[i] ? table[i][k] : constant[i]);
-        };
-        for (long k = 0; k <= block.n; ++k) w[k][i] = value(k);
+        same = same && table[i] == table[0] && constant[i] == constant[0] && block.len[i] == block.len[0];
+        in_tables = !table[i] ? 0 : block.len[i] < in_tables ? block.len[i] + 1 : in_tables;
+    }
+    const auto value = [&](int i, long k) __attribute__((always_inline)) {  // inert bonds past the end: any positive mass
+        return k > block.len[i] ? 1.0 : (table[i] ? table[i][k] : constant[i]);
+    };
+    interleave(table, in_tables, block.n + 1, w, value);
+    for (int i = 0; i < W; ++i) {
         if (i > 0 && same) {
             block.w3[i] = block.w3[0];
             continue;
         }
-        double *w3 = arena.doubles(3 * (block.n + 1 + W));
-        for (long k = 0; k < 3 * (block.n + 1 + W); ++k) w3[k] = value(k / 3);
+        double *const w3 = arena.doubles(3 * (block.n + 1 + W));
+        long k = 0;
+        for (; k + W <= in_tables; k += W) {
+            const vec x = load(table[i] + k);
+            HOL_UNROLL
+            for (int j = 0; j < 3; ++j) {
+                vec three;
+                HOL_UNROLL
+                for (int e = 0; e < W; ++e) three[e] = x[(j * W + e) / 3];
+                store(w3 + 3 * k + j * W, three);
+            }
+        }
+        for (; k < block.n + 1 + W; ++k) w3[3 * k] = w3[3 * k + 1] = w3[3 * k + 2] = value(i, k);
         block.w3[i] = w3;
     }
     block.w = w;

@@ -64,6 +64,11 @@ static inline void open_block(const Unit &unit, int64_t first, Block &block, Lan
         if (lane[i].n_bonds < block.n_min) block.n_min = lane[i].n_bonds;
     }
     for (int i = block.lanes; i < W; ++i) block.len[i] = block.len[0];
+    // Chains of the same length one behind the other: those of the next block often go on where these end.
+    bool consecutive = unit.large && !block.staged && block.lanes == W && block.n == block.n_min;
+    for (int i = 1; i < block.lanes; ++i)
+        consecutive = consecutive && lane[i].first_atom == lane[0].first_atom + i * (block.n + 1);
+    if (consecutive) block.ahead = 3 * W * (block.n + 1);
 }
 
 static inline void set_masses(Block &block, const Lane *lane, Arena &arena) {

@@ -5,40 +5,38 @@ namespace holonomic {
 namespace HOL_ISA {
 
 static inline BondLengths bond_lengths(const Block &block, const Lane *lane, Arena &arena) {
-    bool uniform = block.n == block.n_min, same = uniform;
-    double least[W], most[W];
+    bool uniform = block.n == block.n_min;
+    long in_tables = block.n;
+    const double *table[W];
+    double first[W];
     for (int i = 0; i < W; ++i) {
         const Lane &one = lane[i < block.lanes ? i : 0];
         uniform = uniform && !one.length;
-        same = same && one.length == lane[0].length && (one.length || one.length_uniform == lane[0].length_uniform);
-        least[i] = i > 0 && same ? least[0] : one.length_uniform;
-        most[i] = i > 0 && same ? most[0] : one.length_uniform;
-        for (long k = 0; one.length && !(i > 0 && same) && k < one.n_bonds; ++k) {
-            least[i] = __builtin_fmin(least[i], one.length[k]);
-            most[i] = __builtin_fmax(most[i], one.length[k]);
-        }
+        table[i] = one.length;
+        first[i] = one.length ? one.length[0] : one.length_uniform;
+        in_tables = !one.length ? 0 : block.len[i] < in_tables ? block.len[i] : in_tables;
     }
     BondLengths x = {};
-    x.a_min = load(least);
-    x.a_max = load(most);
+    x.a_min = x.a_max = load(first);
+    if (!uniform) {
+        vec *const a2 = arena.vecs(block.n), *const per_a2 = arena.vecs(block.n);
+        interleave(table, in_tables, block.n, a2, [&](int i, long k) __attribute__((always_inline)) {
+            return table[i] && k < block.len[i] ? table[i][k] : first[i];
+        });
+        const vec lengths = block.lengths();
+        for (long k = 0; k < block.n; ++k) {
+            const vec a = a2[k];
+            x.a_min = min(a, x.a_min);
+            x.a_max = max(a, x.a_max);
+            a2[k] = k < block.n_min ? a * a : select(less(splat(static_cast<double>(k)), lengths), a * a, splat(1.0));
+            per_a2[k] = splat(1.0) / a2[k];
+        }
+        x.a2 = a2;
+        x.per_a2 = per_a2;
+    }
     x.per_a_min = splat(1.0) / x.a_min;
     x.a2_uniform = x.a_min * x.a_min;
     x.per_a2_uniform = splat(1.0) / x.a2_uniform;
-    if (uniform) return x;
-    vec *const a2 = arena.vecs(block.n), *const per_a2 = arena.vecs(block.n);
-    for (int i = 0; i < W && !same; ++i) {
-        const Lane &one = lane[i < block.lanes ? i : 0];
-        for (long k = 0; k < block.n; ++k) {
-            const double a = one.length && k < one.n_bonds ? one.length[k] : one.length_uniform;
-            a2[k][i] = k < one.n_bonds ? a * a : 1.0;
-        }
-    }
-    for (long k = 0; k < block.n; ++k) {
-        if (same) a2[k] = splat(lane[0].length[k] * lane[0].length[k]);
-        per_a2[k] = splat(1.0) / a2[k];
-    }
-    x.a2 = a2;
-    x.per_a2 = per_a2;
     return x;
 }
 
