@@ -11,7 +11,7 @@ namespace holonomic {
 // makes the matrix regular; its own multiple is then never subtracted, because the kernels skip zero elements of h.
 void Chains::set_box(const double *h) {
     if (!h) {
-        box = Box{Box::none, {}, {}};
+        box = Box{};
         return;
     }
     double m[3][3];
@@ -26,7 +26,7 @@ void Chains::set_box(const double *h) {
             diagonal = diagonal && (i == c || m[i][c] == 0);
         }
     }
-    Box next{Box::none, {}, {}};
+    Box next{};
     for (int i = 0; i < 9; ++i) next.h[i] = h[i];
     const auto cross = [](const double *a, const double *b, double *c) {
         for (int k = 0; k < 3; ++k) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
@@ -42,6 +42,10 @@ void Chains::set_box(const double *h) {
         for (int i = 0; i < 3; ++i)
             if (!std::isfinite(next.inverse[3 * i + i]))
                 throw make_error(HOL_ERR_VALUE, "box vector %d is too short", i + 1);
+        for (int i = 0; i < 10; ++i) {
+            next.minus_side[i] = -next.h[4 * (i % 3)];
+            next.per_side[i] = next.inverse[4 * (i % 3)];
+        }
         box = next;
         return;
     }

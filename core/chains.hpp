@@ -80,7 +80,7 @@ public:
     int n_threads = 1;
     double tolerance = 0;
     int max_iterations = 50;
-    Box box{Box::none, {}, {}};
+    Box box{};
 
 private:
     double w(std::int64_t atom) const { return w_.empty() ? w_uniform_ : w_[static_cast<std::size_t>(atom)]; }

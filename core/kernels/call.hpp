@@ -42,6 +42,8 @@ struct Box {
     enum Shape { none, orthorhombic, triclinic } shape;
     double h[9];        // row i is box vector i
     double inverse[9];  // fractional coordinate i of d is sum_c d_c inverse[3 c + i]
+    // orthorhombic: minus the sides and their inverses for components x y z x y z ..
+    double minus_side[10], per_side[10];
 };
 
 // What a unit adds to the result of a call.

@@ -122,7 +122,7 @@ static __attribute__((noinline)) mask forward_gathered(const Block &block, const
             df = {w1 * f1.x - w0 * f0.x, w1 * f1.y - w0 * f0.y, w1 * f1.z - w0 * f0.z};
             f0 = f1;
         }
-        sweep.step(k, right_hand_side<terms>(boxed, block.mass, d, dv, df), starts_group, false);
+        sweep.step(k, right_hand_side<terms>(box.shape == Box::triclinic, block.mass, d, dv, df), starts_group, false);
     };
     long k = 0;
     for (; k + 4 <= block.n; k += 4) {

@@ -60,13 +60,18 @@ HOL_INLINE void fetch_ahead(const double *first_lane, long k0, long ahead) {
         __builtin_prefetch(reinterpret_cast<const void *>(address + static_cast<uintptr_t>(line) * 64), 0, 2);
 }
 
+// When the minimum image is taken: never; of the components as they stand in memory, which will do if the box is
+// orthorhombic; of bond vectors, for which the products have to wait until they are transposed.
+enum Images { no_images, images_of_components, images_of_bonds };
+
 // The bonds k0 .. k0 + W - 1 of all lanes, from pointers to atom k0: see load_bonds. d[W], low[W], rhs[W].
-template <int terms, bool uniform, bool boxed, bool careful>
-HOL_INLINE void load_chunk(const Block &block, const Box &box, long k0, const double *const *pr,
-                           const double *const *pv, const double *const *pf, vec3 *d3, vec3 *low3, vec *rhs) {
+template <int terms, bool uniform, Images images, bool careful>
+HOL_INLINE void load_chunk_with(const Block &block, const Box &box, long k0, const double *const *pr,
+                                const double *const *pv, const double *const *pf, vec3 *d3, vec3 *low3, vec *rhs) {
+    constexpr bool wait = images == images_of_bonds;
     vec *const d = &d3->x, *const low = careful ? &low3->x : nullptr;
-    vec p[3 * W], a[boxed ? 3 * W : 1];
-    // In the packed layout, component by component, before transposing; with a box the products have to wait.
+    vec p[3 * W], a[wait ? 3 * W : 1];
+    // In the packed layout, component by component, before transposing.
     HOL_UNROLL
     for (int j = 0; j < 3; ++j) {
         vec e[W], l[W];
@@ -75,6 +80,10 @@ HOL_INLINE void load_chunk(const Block &block, const Box &box, long k0, const do
             const vec r0 = load(pr[i] + W * j), r1 = load(pr[i] + W * j + 3);
             e[i] = r1 - r0;
             if (careful) l[i] = two_difference<vec>(r1, r0).lo;
+            if (images == images_of_components) {
+                const int first = W * j % 3;
+                e[i] = mul_add(round(e[i] * load(box.per_side + first)), load(box.minus_side + first), e[i]);
+            }
             vec dv = {}, df = {}, vv = {};
             if (terms & (velocity_squared | rate)) dv = load(pv[i] + W * j + 3) - load(pv[i] + W * j);
             if (terms & velocity_squared) vv = (terms & unit_mass ? dv : block.mass[i] * dv) * dv;
@@ -87,7 +96,7 @@ HOL_INLINE void load_chunk(const Block &block, const Box &box, long k0, const do
                     df = load(w3 + 3) * f1 - load(w3) * f0;
                 }
             }
-            if (boxed) {
+            if (wait) {
                 a[j * W + i] = terms & rate ? dv : df;
                 p[j * W + i] = vv;
             } else if (terms & rate) {
@@ -101,17 +110,17 @@ HOL_INLINE void load_chunk(const Block &block, const Box &box, long k0, const do
         transpose(e);
         HOL_UNROLL
         for (int i = 0; i < W; ++i) d[j * W + i] = e[i];
-        if (boxed ? (terms & velocity_squared) != 0 : terms != 0) transpose(p + j * W);
+        if (wait ? (terms & velocity_squared) != 0 : terms != 0) transpose(p + j * W);
         if (careful) {
             transpose(l);
             for (int i = 0; i < W; ++i) low[j * W + i] = l[i];
         }
-        if (boxed && (terms & (rate | force_difference))) transpose(a + j * W);
+        if (wait && (terms & (rate | force_difference))) transpose(a + j * W);
     }
     HOL_UNROLL
     for (int b = 0; b < W; ++b) {
         vec sum = {};
-        if (boxed) {
+        if (wait) {
             vec3 unused = {};
             wrap<careful>(box, d3[b], careful ? low3[b] : unused);
             const vec3 other = {a[3 * b], a[3 * b + 1], a[3 * b + 2]};
@@ -122,6 +131,17 @@ HOL_INLINE void load_chunk(const Block &block, const Box &box, long k0, const do
         }
         rhs[b] = sum;
     }
+}
+
+template <int terms, bool uniform, bool boxed, bool careful>
+HOL_INLINE void load_chunk(const Block &block, const Box &box, long k0, const double *const *pr,
+                           const double *const *pv, const double *const *pf, vec3 *d, vec3 *low, vec *rhs) {
+    if (!boxed)
+        load_chunk_with<terms, uniform, no_images, careful>(block, box, k0, pr, pv, pf, d, low, rhs);
+    else if (!careful && box.shape == Box::orthorhombic)
+        load_chunk_with<terms, uniform, images_of_components, careful>(block, box, k0, pr, pv, pf, d, low, rhs);
+    else
+        load_chunk_with<terms, uniform, images_of_bonds, careful>(block, box, k0, pr, pv, pf, d, low, rhs);
 }
 
 // The lanes' places in the arrays of a call. All arrays are laid out in the same way (all in place or all staged), so
@@ -194,12 +214,12 @@ static inline void load_bonds(const Block &block, const Box &box, const Packed &
 }
 
 // The right-hand side of a bond as load_chunk() finds it, from differences already in lanes: dv of the velocities, df of
-// the forces times their inverse masses.
+// the forces times their inverse masses. `waited`: for images of bonds.
 template <int terms>
-HOL_INLINE vec right_hand_side(bool boxed, vec mass, const vec3 &d, const vec3 &dv, const vec3 &df) {
+HOL_INLINE vec right_hand_side(bool waited, vec mass, const vec3 &d, const vec3 &dv, const vec3 &df) {
     if (terms & rate) return dot(d, dv);
     const vec3 vv = {(mass * dv.x) * dv.x, (mass * dv.y) * dv.y, (mass * dv.z) * dv.z};
-    if (boxed) {
+    if (waited) {
         vec sum = {};
         if (terms & force_difference) sum = dot(d, df);
         return terms & velocity_squared ? sum + ((vv.x + vv.y) + vv.z) : sum;

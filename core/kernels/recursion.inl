@@ -110,6 +110,7 @@ HOL_INLINE double sum_compensated(const Three &hi, const Three &lo) {
 }
 
 // g of joint k in one lane, with compensated products of unrounded differences.
+#if HOL_LANES != 4
 static __attribute__((noinline)) double exact_dot(const Source &source, int lane, long k) {
     Vector3<double> d[2], low[2];
     for (int b = 0; b < 2; ++b)
@@ -121,12 +122,25 @@ static __attribute__((noinline)) double exact_dot(const Source &source, int lane
                           mul_add(d[0].z, low[1].z, mul_add(low[0].z, d[1].z, z.lo))};
     return sum_compensated(hi, lo);
 }
+#else
+// From the coordinates of the three atoms: x, y and z at once.
+HOL_INLINE Pair<vec> unrounded_bond(const Box &box, vec from, vec to) {
+    Pair<vec> d = two_difference<vec>(to, from);
+    if (box.shape == Box::none) return d;
+    const double *const h = box.h, *const in = box.inverse;
+    const vec n = round(d.hi[0] * vec{in[0], in[1], in[2], 0} + d.hi[1] * vec{in[3], in[4], in[5], 0} +
+                        d.hi[2] * vec{in[6], in[7], in[8], 0});
+    for (int i = 0; i < 3; ++i) {
+        const Pair<vec> p = two_product<vec>(splat(n[i]), vec{h[3 * i], h[3 * i + 1], h[3 * i + 2], 0});
+        const Pair<vec> s = two_difference<vec>(d.hi, p.hi);
+        d = fast_two_sum<vec>(s.hi, s.lo - p.lo + d.lo);
+    }
+    return d;
+}
 
-#if HOL_LANES == 4
-// The same without a box, from the coordinates of the three atoms: x, y and z at once.
-HOL_INLINE double exact_dot(const double *p0, const double *p1, const double *p2) {
+HOL_INLINE double exact_dot(const Box &box, const double *p0, const double *p1, const double *p2) {
     const vec r0 = {p0[0], p0[1], p0[2], 0}, r1 = {p1[0], p1[1], p1[2], 0}, r2 = {p2[0], p2[1], p2[2], 0};
-    const Pair<vec> a = two_difference<vec>(r1, r0), b = two_difference<vec>(r2, r1), hi = two_product<vec>(a.hi, b.hi);
+    const Pair<vec> a = unrounded_bond(box, r0, r1), b = unrounded_bond(box, r1, r2), hi = two_product<vec>(a.hi, b.hi);
     return sum_compensated(hi.hi, mul_add(a.hi, b.lo, mul_add(a.lo, b.hi, hi.lo)));
 }
 #endif
@@ -137,12 +151,10 @@ static __attribute__((noinline)) vec exact_dots(const Source &source, long k, ma
         const int i = __builtin_ctz(left);
         if (source.len && k >= source.len[i]) continue;
 #if HOL_LANES == 4
-        if (source.box->shape == Box::none) {
-            g[i] = exact_dot(source.atom(i, k - 1), source.atom(i, k), source.atom(i, k + 1));
-            continue;
-        }
-#endif
+        g[i] = exact_dot(*source.box, source.atom(i, k - 1), source.atom(i, k), source.atom(i, k + 1));
+#else
         g[i] = exact_dot(source, i, k);
+#endif
     }
     return g;
 }
