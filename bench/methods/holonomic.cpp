@@ -30,14 +30,12 @@ void velocities(const Problem &p, const Parts &with, Handles &h, State &s) {
 
 void positions(const Problem &p, const Parts &with, Handles &h, State &s) {
     double virial[9];
-    s.iterations = 0;
+    hol_report report;
     for (std::size_t c = 0; c < h.all.size(); ++c) {
         const std::size_t atom = 3 * c * h.atoms_each;
-        hol_report report;
         check(hol_project_positions(h.all[c].get(), at(p.r, atom), at(s.r, atom), at(s.v, atom, with.v), p.dt,
                                     at(s.lambda, c * h.bonds_each, with.lambda), with.guess,
-                                    with.virial ? virial : nullptr, &report));
-        s.iterations = std::max(s.iterations, report.iterations);
+                                    with.virial ? virial : nullptr, with.report ? &report : nullptr));
     }
 }
 

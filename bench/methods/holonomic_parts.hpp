@@ -15,6 +15,7 @@ namespace bench {
 /// What a call is given. The defaults are the whole work of a level.
 struct Parts {
     bool v = true, f = true, lambda = true, g = true, virial = false, tension = false, add = false, guess = false;
+    bool report = false;                   ///< positions
     bool log_det = true, gradient = true;  ///< metric; gradient: the Fixman energy and force
 };
 

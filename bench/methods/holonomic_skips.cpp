@@ -28,6 +28,7 @@ Methods parts_skips(Level level, const Problem &p, const Shared &h) {
     }
     if (level == Level::position) {
         add("v = NULL", [](Parts &w) { w.v = false; });
+        add("report too", [](Parts &w) { w.report = true; });
         add("r alone", [](Parts &w) { w.v = w.lambda = false; });
     }
     return list;

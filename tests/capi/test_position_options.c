@@ -129,6 +129,42 @@ static void a_larger_tolerance_is_obeyed_and_costs_less(void **state)
     for (int is_long = 0; is_long < 2; ++is_long) check_tolerance(is_long);
 }
 
+/** Without a report the errors that are left need not be known, and the last solve is not looked at. */
+static void check_report(chain_kind kind, int64_t n_chains, int64_t low, int64_t high)
+{
+    const double dt = 0.004;
+    assembly a = assembly_of_kind(kind, n_chains, low, high, IN_ORDER, 91);
+    const size_t size = assembly_size(&a), n = (size_t)a.n_bonds;
+    double *q = drift(&a, dt, 1), *told = copy_of(q, size), *v = copy_of(a.v, size), *v_told = copy_of(a.v, size);
+    double *lambda = untouched(n), *lambda_told = untouched(n);
+    hol_report report;
+    hol_worst worst;
+    CHECK(hol_project_positions(a.chains, a.r, q, v, dt, lambda, 0, NULL, NULL));
+    CHECK(hol_project_positions(a.chains, a.r, told, v_told, dt, lambda_told, 0, NULL, &report));
+    assert_same_bits(q, told, size);
+    assert_same_bits(v, v_told, size);
+    assert_same_bits(lambda, lambda_told, n);
+    CHECK(hol_violation(a.chains, q, NULL, &worst));
+    const long double rounding = rounding_of_a_bond(high > 1000 ? 200 : 40, 0.5L);
+    CHECK_AT_MOST(worst.length, report.max_error + rounding);
+    CHECK_AT_MOST(report.max_error, rounding);
+    assert_true(report.iterations > 0);
+    free(q), free(told), free(v), free(v_told), free(lambda), free(lambda_told);
+    assembly_free(&a);
+}
+
+static void a_report_changes_nothing(void **state)
+{
+    (void)state;
+    for (int heterogeneous = 0; heterogeneous < 2; ++heterogeneous) {
+        const chain_kind kind = heterogeneous ? CHAIN_HETEROGENEOUS : CHAIN_COIL;
+        for (int64_t n = 1; n <= 6; ++n) check_report(kind, 50, n, n);
+        check_report(kind, 40, 1, 60);
+        check_report(kind, 9, 100, 100);
+        check_report(kind, 2, 3000, 3000);
+    }
+}
+
 static void check_fixed_atoms(int is_long)
 {
     assembly a = short_or_long(CHAIN_FIXED_ENDS, is_long, SCATTERED, 88);
@@ -157,6 +193,7 @@ int main(void)
         cmocka_unit_test(the_reference_may_be_the_array_that_is_corrected),
         cmocka_unit_test(a_guess_saves_an_iteration_and_changes_the_result_by_rounding_only),
         cmocka_unit_test(a_larger_tolerance_is_obeyed_and_costs_less),
+        cmocka_unit_test(a_report_changes_nothing),
         cmocka_unit_test(fixed_atoms_keep_every_bit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
