@@ -132,9 +132,11 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
             substitute_back<true, careful, fixed>(block, x, active);
         else
             substitute_back<false, careful, fixed>(block, x, active);
-        if (!careful && !any(active & ~(proven & less(rate * error, splat(0.125 * epsilon))))) {
+        const mask last = active & proven & less(rate * error, splat(0.125 * epsilon));
+        out.converged = out.converged | last;  // whatever the other lanes have to do
+        active = active & ~last;
+        if (!any(active)) {
             ++out.solves;
-            out.converged = out.converged | active;
             if (call.report) error = correct<uniform_w, uniform_a, careful, fixed>(block, x);
             break;
         }
@@ -158,7 +160,7 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
         active = active & finite(error);
         rate = error / before;
         const mask renewed = careful ? active : active & worth_renewing(error, rate, i);
-        proven = ~renewed & less(rate, splat(steady)) & less_equal(error, splat(last_error));
+        if (!careful) proven = ~renewed & less(rate, splat(steady)) & less_equal(error, splat(last_error));
         if (!any(renewed)) continue;
         renew<uniform_w, uniform_a, careful ? careful_factors : renewed_factors>(block, x, renewed);
         rate = select(renewed, error, rate);

@@ -110,7 +110,8 @@ void check_group(run &all, std::uint64_t first)
 
 void work(run &all)
 {
-    while (all.elapsed() < all.seconds) check_group(all, all.next.fetch_add(group_size));
+    do check_group(all, all.next.fetch_add(group_size));
+    while (all.elapsed() < all.seconds);
 }
 
 void show_progress(run &all, const std::atomic<bool> &done)
