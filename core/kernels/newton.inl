@@ -52,17 +52,6 @@ public:
     // side by much more than its roundings, excludes it, nothing is looked for.
     mask within(vec error, vec a2) {
         if (!boxed_) {
-#if HOL_LANES == 4
-            // Mostly the first coordinates, of whatever lane, tell without that.
-            if (!lists_) {
-                constexpr double near = 1e5;
-                vec largest = abs(load(r_.lane[0]));
-                for (int i = 1; i < W; ++i) largest = max(abs(load(r_.lane[i])), largest);
-                const vec reach = mul_add(splat(static_cast<double>(block_.n)), x_.a_max, largest);
-                const double most = tolerance_ > 20 * near * u_ ? 2 * tolerance_ : 40 * near * u_;
-                if (!any(~(less(reach, near * x_.a_min) & less(most * a2, error)))) return none();
-            }
-#endif
             vec first = {};
             for (int c = 0; c < 3; ++c) {
                 vec component;
@@ -137,12 +126,11 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
         active = active & ~last;
         if (!any(active)) {
             ++out.solves;
-            if (call.report) error = correct<uniform_w, uniform_a, careful, fixed>(block, x);
+            if (call.report) error = correct<uniform_w, uniform_a, careful, fixed>(block, x, nullptr);
             break;
         }
         const vec before = error, expected = rate * before;
-        x.fetch = i < 3 ? x.next[i] : nullptr;
-        error = correct<uniform_w, uniform_a, careful, fixed>(block, x);
+        error = correct<uniform_w, uniform_a, careful, fixed>(block, x, i < 3 ? x.next[i] : nullptr);
         ++out.solves;
         // At the floor: the solve should have gone far below a rounding, or it gained little, and what is left is no
         // more than the coordinates carry.

@@ -34,9 +34,7 @@ struct Newton : BondLengths {
     vec *step;        // what D has not been moved by yet: tau, or the last correction
     const vec *w;     // [n+1] inverse masses, those of the block; not if all are 1
     vec lengths;      // numbers of bonds
-    const double *next[3] = {};     // where the block's atoms begin, for those of the next one to be fetched early
-    const double *fetch = nullptr;  // while this goes on: one of them
-    long ahead = 0;
+    const double *next[3] = {};  // where the block's atoms begin, for those of the next one to be fetched early
     Newton(long n, Arena &arena)
         : b(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + 1)))), D(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + 1)))),
           row(reinterpret_cast<Row *>(arena.vecs(4 * n))), tau(arena.vecs(n + 1)), correction(arena.vecs(n + 1)),
@@ -216,13 +214,13 @@ static __attribute__((noinline)) vec renew(const Block &block, const Newton &x, 
 }
 
 // Moves the bonds by the corrections `step`, and substitutes forward what that leaves of their lengths; returns the
-// largest error. `keep_bonds`: D becomes the moved bonds.
+// largest error. `keep_bonds`: D becomes the moved bonds. `fetch`: what to fetch of the next block meanwhile, or nullptr.
 template <bool uniform_w, bool uniform_a, bool keep_bonds, int fixed = 0>
-HOL_INLINE vec correct(const Block &block, const Newton &x) {
+HOL_INLINE vec correct(const Block &block, const Newton &x, const double *fetch) {
     Mover<uniform_w> mover = Mover<uniform_w>::start(x);
     vec worst = {}, y = {};
     go_up<fixed>(block, [&](long k, bool ragged) __attribute__((always_inline)) {
-        if (!keep_bonds && fixed == 0 && k % 2 == 0 && x.fetch) fetch_ahead<2>(x.fetch, k, x.ahead);
+        if (!keep_bonds && fixed == 0 && k % 2 == 0 && fetch) fetch_ahead<2>(fetch, k, block.ahead);
         const vec3 d = Mover<uniform_w>::bond(mover, x, k);
         if (keep_bonds) {
             const mask m = live(x, k);

@@ -93,7 +93,6 @@ struct Positions {
             x.next[0] = r_ref.lane[0];
             x.next[1] = r.lane[0];
             x.next[2] = v.lane[0];
-            x.ahead = block.ahead;
         }
         if (call.guess) load_guess(block, call, x);
         Carried carried(block, x, call, r);
