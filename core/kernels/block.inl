@@ -208,10 +208,12 @@ HOL_INLINE const double *window(const double *p, long k, long len, bool roomy, d
     return buffer;
 }
 
-// Values along the lanes as vectors [n]: rows[lane][k] for k < full, where all lanes have one, value(lane, k) behind.
+// Values along the lanes as vectors [n]: rows[lane][k] while all lanes have one, of count + more; value(lane, k) behind.
 template <class Value>
-HOL_INLINE void interleave(const double *const *rows, long full, long n, vec *out, const Value &value) {
-    long k = 0;
+HOL_INLINE void interleave(const double *const *rows, const long *count, long more, long n, vec *out,
+                           const Value &value) {
+    long full = n, k = 0;
+    for (int i = 0; i < W; ++i) full = !rows[i] ? 0 : count[i] + more < full ? count[i] + more : full;
     for (; k + W <= full; k += W) {
         vec m[W];
         for (int i = 0; i < W; ++i) m[i] = load(rows[i] + k);
@@ -241,15 +243,11 @@ static inline void set_masses(Block &block, const double *const *tables, const d
     if (block.uniform_w) return;
     vec *w = arena.vecs(block.n + 1);
     bool same = true;
-    long in_tables = block.n + 1;
-    for (int i = 0; i < W; ++i) {
-        same = same && table[i] == table[0] && constant[i] == constant[0] && block.len[i] == block.len[0];
-        in_tables = !table[i] ? 0 : block.len[i] < in_tables ? block.len[i] + 1 : in_tables;
-    }
+    for (int i = 1; i < W; ++i) same = same && table[i] == table[0] && constant[i] == constant[0] && block.len[i] == block.len[0];
     const auto value = [&](int i, long k) __attribute__((always_inline)) {  // inert bonds past the end: any positive mass
         return k > block.len[i] ? 1.0 : (table[i] ? table[i][k] : constant[i]);
     };
-    interleave(table, in_tables, block.n + 1, w, value);
+    interleave(table, block.len, 1, block.n + 1, w, value);
     for (int i = 0; i < W; ++i) {
         if (i > 0 && same) {
             block.w3[i] = block.w3[0];
@@ -257,7 +255,7 @@ static inline void set_masses(Block &block, const double *const *tables, const d
         }
         double *const w3 = arena.doubles(3 * (block.n + 1 + W));
         long k = 0;
-        for (; k + W <= in_tables; k += W) {
+        for (; table[i] && k + W <= block.len[i] + 1; k += W) {
             const vec x = load(table[i] + k);
             HOL_UNROLL
             for (int j = 0; j < 3; ++j) {

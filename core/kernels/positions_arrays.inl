@@ -6,7 +6,6 @@ namespace HOL_ISA {
 
 static inline BondLengths bond_lengths(const Block &block, const Lane *lane, Arena &arena) {
     bool uniform = block.n == block.n_min;
-    long in_tables = block.n;
     const double *table[W];
     double first[W];
     for (int i = 0; i < W; ++i) {
@@ -14,13 +13,12 @@ static inline BondLengths bond_lengths(const Block &block, const Lane *lane, Are
         uniform = uniform && !one.length;
         table[i] = one.length;
         first[i] = one.length ? one.length[0] : one.length_uniform;
-        in_tables = !one.length ? 0 : block.len[i] < in_tables ? block.len[i] : in_tables;
     }
     BondLengths x = {};
     x.a_min = x.a_max = load(first);
     if (!uniform) {
         vec *const a2 = arena.vecs(block.n), *const per_a2 = arena.vecs(block.n);
-        interleave(table, in_tables, block.n, a2, [&](int i, long k) __attribute__((always_inline)) {
+        interleave(table, block.len, 0, block.n, a2, [&](int i, long k) __attribute__((always_inline)) {
             return table[i] && k < block.len[i] ? table[i][k] : first[i];
         });
         const vec lengths = block.lengths();

@@ -243,15 +243,11 @@ static void long_positions_finish_window(const PositionsCall &call, const Lane &
     set_segment_masses(s, lane, arena);
     Newton x(s.block, BondLengths{}, arena);
     load_bond_vectors(s.block, call.box, open_segments(call.r_ref, s, lane, arena, true), x.b);
-    long k = 0;
-    for (; k + W <= s.block.n_min; k += W) {
-        vec m[W];
-        for (int i = 0; i < W; ++i) m[i] = load(tau + s.from[i] + k);
-        transpose(m);
-        for (int a = 0; a < W; ++a) x.tau[k + a] = m[a];
-    }
-    for (; k < s.block.n; ++k)
-        for (int i = 0; i < W; ++i) x.tau[k][i] = k < s.block.len[i] ? tau[s.from[i] + k] : 0.0;
+    const double *own_tau[W];
+    for (int i = 0; i < W; ++i) own_tau[i] = tau + s.from[i];
+    interleave(own_tau, s.block.len, 0, s.block.n, x.tau, [&](int i, long k) __attribute__((always_inline)) {
+        return k < s.block.len[i] ? own_tau[i][k] : 0.0;
+    });
     // Of what is staged, only the atoms that are written here: others may be being written by other threads.
     const auto open = [&](const AtomArray &array) {
         const Packed packed = open_segments(array, s, lane, arena, false);
