@@ -1,6 +1,6 @@
 /** Steps to be projected, and what their rounding leaves. */
-#ifndef POSITIONS_H
-#define POSITIONS_H
+#ifndef TESTS_POSITIONS_H
+#define TESTS_POSITIONS_H
 
 #include "assembly.h"
 

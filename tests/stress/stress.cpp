@@ -110,8 +110,9 @@ void check_group(run &all, std::uint64_t first)
 
 void work(run &all)
 {
-    do check_group(all, all.next.fetch_add(group_size));
-    while (all.elapsed() < all.seconds);
+    do {
+        check_group(all, all.next.fetch_add(group_size));
+    } while (all.elapsed() < all.seconds);
 }
 
 void show_progress(run &all, const std::atomic<bool> &done)
