@@ -5,8 +5,8 @@
 #include <exception>
 #include <new>
 
-#include "core/chains.hpp"
 #include "core/error.hpp"
+#include "core/molecules/chains.hpp"
 #include "holonomic.h"
 
 struct hol_chains {
@@ -19,9 +19,9 @@ namespace holonomic {
 // Keeps the error for hol_error_message() and hol_error_location() of this thread; returns its status.
 int remember(const Error &error) noexcept;
 
-// Throws HOL_ERR_NULL if p is a null pointer.
+// Throws Status::null if p is a null pointer.
 inline void need(const void *p, const char *name) {
-    if (!p) throw make_error(HOL_ERR_NULL, "%s is NULL", name);
+    if (!p) throw make_error(Status::null, "%s is NULL", name);
 }
 
 template <class Body>
@@ -32,11 +32,11 @@ int guarded(Body body) noexcept {
     } catch (const Error &error) {
         return remember(error);
     } catch (const std::bad_alloc &) {
-        return remember(make_error(HOL_ERR_MEMORY, "out of memory"));
+        return remember(make_error(Status::memory, "out of memory"));
     } catch (const std::exception &error) {
-        return remember(make_error(HOL_ERR_INTERNAL, "internal error: %s", error.what()));
+        return remember(make_error(Status::internal, "internal error: %s", error.what()));
     } catch (...) {
-        return remember(make_error(HOL_ERR_INTERNAL, "internal error"));
+        return remember(make_error(Status::internal, "internal error"));
     }
 }
 

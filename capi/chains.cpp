@@ -5,6 +5,7 @@
 using holonomic::guarded;
 using holonomic::make_error;
 using holonomic::need;
+using holonomic::Status;
 
 int hol_chains_create(int64_t n_atoms, const double *masses, hol_chains **chains) {
     return guarded([&] {
@@ -38,7 +39,7 @@ int hol_chains_add_block(hol_chains *chains, int64_t n_chains, int64_t n_bonds, 
 int hol_chains_set_index_base(hol_chains *chains, int base) {
     return guarded([&] {
         need(chains, "chains");
-        if (base != 0 && base != 1) throw make_error(HOL_ERR_VALUE, "the index base is %d; it must be 0 or 1", base);
+        if (base != 0 && base != 1) throw make_error(Status::value, "the index base is %d; it must be 0 or 1", base);
         chains->chains.base = base;
     });
 }
@@ -53,7 +54,7 @@ int hol_chains_set_box(hol_chains *chains, const double *box) {
 int hol_chains_set_threads(hol_chains *chains, int n_threads) {
     return guarded([&] {
         need(chains, "chains");
-        if (n_threads < 1) throw make_error(HOL_ERR_VALUE, "n_threads is %d; it must be at least 1", n_threads);
+        if (n_threads < 1) throw make_error(Status::value, "n_threads is %d; it must be at least 1", n_threads);
         chains->chains.n_threads = n_threads;
     });
 }
@@ -69,7 +70,7 @@ int hol_chains_set_tolerance(hol_chains *chains, double tolerance) {
     return guarded([&] {
         need(chains, "chains");
         if (!(tolerance >= 0) || !std::isfinite(tolerance))
-            throw make_error(HOL_ERR_VALUE, "the tolerance is %g; it must be positive, or 0 for the default",
+            throw make_error(Status::value, "the tolerance is %g; it must be positive, or 0 for the default",
                              tolerance);
         chains->chains.tolerance = tolerance;
     });
@@ -79,7 +80,7 @@ int hol_chains_set_max_iterations(hol_chains *chains, int max_iterations) {
     return guarded([&] {
         need(chains, "chains");
         if (max_iterations < 1 || max_iterations > 1000)
-            throw make_error(HOL_ERR_VALUE, "max_iterations is %d; it must be in 1 .. 1000", max_iterations);
+            throw make_error(Status::value, "max_iterations is %d; it must be in 1 .. 1000", max_iterations);
         chains->chains.max_iterations = max_iterations;
     });
 }
@@ -103,7 +104,7 @@ int hol_chains_atoms(const hol_chains *chains, int64_t chain, int64_t *atoms) {
         const int base = chains->chains.base;
         const int64_t n = chains->chains.n_chains();
         if (chain < base || chain - base >= n)
-            throw make_error(HOL_ERR_INDEX, "chain %lld is outside %d .. %lld", static_cast<long long>(chain), base,
+            throw make_error(Status::index, "chain %lld is outside %d .. %lld", static_cast<long long>(chain), base,
                              static_cast<long long>(n - 1 + base));
         chains->chains.atoms(chain - base, atoms);
     });

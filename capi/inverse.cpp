@@ -1,17 +1,18 @@
-#include "core/inverse.hpp"
+#include "core/inverse/inverse.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "boundary.hpp"
-#include "core/view.hpp"
+#include "view.hpp"
 
 using holonomic::AtomArray;
 using holonomic::guarded;
 using holonomic::make_error;
 using holonomic::need;
 using holonomic::packed_array;
+using holonomic::Status;
 using holonomic::viewed_array;
 
 struct hol_inverse {
@@ -24,7 +25,7 @@ void create(const hol_chains *chains, std::int64_t chain, const AtomArray &r, ho
     const holonomic::Chains &all = chains->chains;
     if (chain < all.base || chain - all.base >= all.n_chains()) {
         holonomic::Error error =
-            make_error(HOL_ERR_INDEX, "chain %lld is outside %d .. %lld", static_cast<long long>(chain), all.base,
+            make_error(Status::index, "chain %lld is outside %d .. %lld", static_cast<long long>(chain), all.base,
                        static_cast<long long>(all.n_chains() - 1 + all.base));
         error.base = all.base;
         throw error;
@@ -40,7 +41,7 @@ std::int64_t bond(const hol_inverse *inverse, std::int64_t i) {
 
 bool is_physical(int scaling) {
     if (scaling != HOL_UNIT_DIAGONAL && scaling != HOL_PHYSICAL)
-        throw make_error(HOL_ERR_VALUE, "scaling is %d; it must be HOL_UNIT_DIAGONAL or HOL_PHYSICAL", scaling);
+        throw make_error(Status::value, "scaling is %d; it must be HOL_UNIT_DIAGONAL or HOL_PHYSICAL", scaling);
     return scaling == HOL_PHYSICAL;
 }
 

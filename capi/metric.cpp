@@ -1,19 +1,20 @@
 #include "core/metric.hpp"
 
 #include "boundary.hpp"
-#include "core/view.hpp"
+#include "view.hpp"
 
 using holonomic::AtomArray;
 using holonomic::guarded;
 using holonomic::need;
 using holonomic::packed_array;
+using holonomic::Status;
 using holonomic::viewed_array;
 
 namespace {
 
 bool adds(int mode) {
     if (mode != HOL_WRITE && mode != HOL_ADD)
-        throw holonomic::make_error(HOL_ERR_VALUE, "mode is %d; it must be HOL_WRITE or HOL_ADD", mode);
+        throw holonomic::make_error(Status::value, "mode is %d; it must be HOL_WRITE or HOL_ADD", mode);
     return mode == HOL_ADD;
 }
 

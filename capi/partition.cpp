@@ -1,4 +1,4 @@
-#include "core/partition.hpp"
+#include "core/partition/partition.hpp"
 
 #include "boundary.hpp"
 
@@ -6,7 +6,7 @@ int hol_partition_function(int64_t n_bonds, const double *masses, double *log_he
                            double *log_volume) {
     return holonomic::guarded([&] {
         if (!log_he && !log_rigid && !log_volume)
-            throw holonomic::make_error(HOL_ERR_NULL, "log_he, log_rigid and log_volume are all NULL");
+            throw holonomic::make_error(holonomic::Status::null, "log_he, log_rigid and log_volume are all NULL");
         const holonomic::PartitionAsked asked{log_he || log_rigid, log_volume != nullptr};
         const holonomic::Partition result = holonomic::partition_function(n_bonds, masses, asked);
         if (log_he) *log_he = result.he;

@@ -3,19 +3,20 @@
 #include <cmath>
 
 #include "boundary.hpp"
-#include "core/view.hpp"
+#include "view.hpp"
 
 using holonomic::AtomArray;
 using holonomic::guarded;
 using holonomic::make_error;
 using holonomic::need;
+using holonomic::Status;
 
 namespace {
 
 void check(double dt, const double *lambda, int guess) {
     if (!(dt > 0) || !std::isfinite(dt) || !(dt * dt > 0) || !std::isfinite(1 / (dt * dt)))
-        throw make_error(HOL_ERR_VALUE, "dt is %g; it must be positive and finite, and so must dt^2 and 1/dt^2", dt);
-    if (guess != 0 && guess != 1) throw make_error(HOL_ERR_VALUE, "guess is %d; it must be 0 or 1", guess);
+        throw make_error(Status::value, "dt is %g; it must be positive and finite, and so must dt^2 and 1/dt^2", dt);
+    if (guess != 0 && guess != 1) throw make_error(Status::value, "guess is %d; it must be 0 or 1", guess);
     if (guess) need(lambda, "lambda, which holds the guess,");
 }
 

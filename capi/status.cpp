@@ -1,15 +1,26 @@
 #include "boundary.hpp"
-#include "core/dispatch.hpp"
+#include "core/run/dispatch.hpp"
 
 namespace holonomic {
 
 namespace {
+
 thread_local Error last_error{};
-}
+
+constexpr bool same(Status status, hol_status code) { return static_cast<int>(status) == static_cast<int>(code); }
+static_assert(same(Status::ok, HOL_OK) && same(Status::null, HOL_ERR_NULL) && same(Status::value, HOL_ERR_VALUE) &&
+                  same(Status::index, HOL_ERR_INDEX) && same(Status::shared_atom, HOL_ERR_SHARED_ATOM) &&
+                  same(Status::memory, HOL_ERR_MEMORY) && same(Status::not_finite, HOL_ERR_NOT_FINITE) &&
+                  same(Status::degenerate, HOL_ERR_DEGENERATE) &&
+                  same(Status::no_convergence, HOL_ERR_NO_CONVERGENCE) &&
+                  same(Status::not_definite, HOL_ERR_NOT_DEFINITE) && same(Status::internal, HOL_ERR_INTERNAL),
+              "core/status.hpp and the public header disagree");
+
+}  // namespace
 
 int remember(const Error &error) noexcept {
     last_error = error;
-    return error.status;
+    return static_cast<int>(error.status);
 }
 
 }  // namespace holonomic
@@ -52,7 +63,7 @@ const char *hol_error_message(void) { return holonomic::last_error.message; }
 
 void hol_error_location(int64_t *chain, int64_t *bond, int64_t *atom, int64_t *n_bad) {
     const holonomic::Error &error = holonomic::last_error;
-    const bool any = error.status != HOL_OK;
+    const bool any = error.status != holonomic::Status::ok;
     if (chain) *chain = any && error.chain >= 0 ? error.chain + error.base : -1;
     if (bond) *bond = any && error.bond >= 0 ? error.bond + error.base : -1;
     if (atom) *atom = any && error.atom >= 0 ? error.atom + error.base : -1;

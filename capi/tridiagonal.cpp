@@ -1,4 +1,4 @@
-#include "core/tridiagonal.hpp"
+#include "core/inverse/tridiagonal.hpp"
 
 #include "boundary.hpp"
 

@@ -1,7 +1,7 @@
 #include "core/violation.hpp"
 
 #include "boundary.hpp"
-#include "core/view.hpp"
+#include "view.hpp"
 
 using holonomic::AtomArray;
 using holonomic::guarded;

@@ -4,7 +4,7 @@
 
 #define HOL_ISA plain
 #define HOL_LANES 2
-#include "kernels/compensated.hpp"
+#include "core/kernels/compensated.hpp"
 #undef HOL_ISA
 #undef HOL_LANES
 
@@ -42,8 +42,8 @@ inline DoublePair operator/(const DoublePair &a, const DoublePair &b) {
 
 inline DoublePair dot(const PairVector &a, const PairVector &b) { return a.x * b.x + (a.y * b.y + a.z * b.z); }
 
-// (a + a_lo).(b + b_lo) as if in three times the precision (Ogita, Rump and Oishi, SumK): for vectors that are square to
-// their last digits.
+// (a + a_lo).(b + b_lo) as if in three times the precision (Ogita, Rump and Oishi, SumK): for vectors that are square
+// to their last digits.
 inline double dot_exact(const Vector3<double> &a, const Vector3<double> &a_lo, const Vector3<double> &b,
                         const Vector3<double> &b_lo) {
     const double factors[3][4] = {{a.x, a_lo.x, b.x, b_lo.x}, {a.y, a_lo.y, b.y, b_lo.y}, {a.z, a_lo.z, b.z, b_lo.z}};

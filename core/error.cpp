@@ -1,11 +1,11 @@
-#include "error.hpp"
+#include "core/error.hpp"
 
 #include <cstdarg>
 #include <cstdio>
 
 namespace holonomic {
 
-Error make_error(int status, const char *format, ...) {
+Error make_error(Status status, const char *format, ...) {
     Error error;
     error.status = status;
     va_list arguments;

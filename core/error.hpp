@@ -4,17 +4,19 @@
 
 #include <cstdint>
 
+#include "core/status.hpp"
+
 namespace holonomic {
 
 // Thrown after every output that is due has been written. Numbers are counted from 0; -1: does not apply.
 struct Error {
-    int status;          // hol_status
-    char message[240];   // text, with the numbers already in the caller's counting
+    Status status;
+    char message[240];  // text, with the numbers already in the caller's counting
     std::int64_t chain = -1, bond = -1, atom = -1, n_bad = 0;
-    int base = 0;        // of the caller's counting
+    int base = 0;  // of the caller's counting
 };
 
-[[gnu::format(printf, 2, 3)]] Error make_error(int status, const char *format, ...);
+[[gnu::format(printf, 2, 3)]] Error make_error(Status status, const char *format, ...);
 
 }  // namespace holonomic
 #endif

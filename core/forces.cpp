@@ -1,9 +1,8 @@
-#include "forces.hpp"
+#include "core/forces.hpp"
 
-#include "diagnose.hpp"
-#include "execute.hpp"
-#include "holonomic.h"
-#include "view.hpp"
+#include "core/caller/view.hpp"
+#include "core/run/diagnose.hpp"
+#include "core/run/execute.hpp"
 
 namespace holonomic {
 
@@ -36,7 +35,7 @@ void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const 
     const Tally tally = execute(chains, ForcesWork(call));
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}, {"force", &f}};
-        throw diagnose(chains, tally, arrays, 3, HOL_ERR_NOT_FINITE);
+        throw diagnose(chains, tally, arrays, 3, Status::not_finite);
     }
     if (virial) write_virial(tally, virial);
 }

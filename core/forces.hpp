@@ -2,7 +2,7 @@
 #ifndef HOLONOMIC_FORCES_HPP
 #define HOLONOMIC_FORCES_HPP
 
-#include "chains.hpp"
+#include "core/molecules/chains.hpp"
 
 namespace holonomic {
 

@@ -1,10 +1,9 @@
-#include "metric.hpp"
+#include "core/metric.hpp"
 
 #include <cmath>
 
-#include "diagnose.hpp"
-#include "execute.hpp"
-#include "holonomic.h"
+#include "core/run/diagnose.hpp"
+#include "core/run/execute.hpp"
 
 namespace holonomic {
 
@@ -38,12 +37,12 @@ struct MetricWork final : Work {
 void metric(const Chains &chains, const AtomArray &r, double kT, double *log_det, double *log_det_z, double *energy,
             const AtomArray &force, bool add) {
     if (!(kT >= 0) || !std::isfinite(kT))
-        throw make_error(HOL_ERR_VALUE, "kT is %g; it must be finite and not negative", kT);
+        throw make_error(Status::value, "kT is %g; it must be finite and not negative", kT);
     const MetricCall call{r, force, kT, log_det, log_det_z, energy != nullptr, add, chains.box};
     const Tally tally = execute(chains, MetricWork(call));
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &r}};
-        throw diagnose(chains, tally, arrays, 1, HOL_ERR_NOT_FINITE);
+        throw diagnose(chains, tally, arrays, 1, Status::not_finite);
     }
     if (energy) *energy = 0.5 * kT * tally.log_det;
 }

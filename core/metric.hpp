@@ -2,7 +2,7 @@
 #ifndef HOLONOMIC_METRIC_HPP
 #define HOLONOMIC_METRIC_HPP
 
-#include "chains.hpp"
+#include "core/molecules/chains.hpp"
 
 namespace holonomic {
 

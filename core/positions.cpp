@@ -1,15 +1,15 @@
-#include "positions.hpp"
+#include "core/positions.hpp"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <new>
 
-#include "diagnose.hpp"
-#include "execute.hpp"
-#include "forces.hpp"
+#include "core/caller/view.hpp"
+#include "core/forces.hpp"
+#include "core/run/diagnose.hpp"
+#include "core/run/execute.hpp"
 #include "holonomic.h"
-#include "view.hpp"
 
 namespace holonomic {
 
@@ -270,9 +270,17 @@ struct PositionsWork final : Work {
 
 void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomArray &r, const AtomArray &v, double dt,
                        double *lambda, bool guess, double *virial, hol_report *report) {
-    const PositionsCall call{
-        r_ref,  r, v, lambda, dt, guess, virial != nullptr, report != nullptr, chains.tolerance, chains.max_iterations,
-        chains.box};
+    const PositionsCall call{r_ref,
+                             r,
+                             v,
+                             lambda,
+                             dt,
+                             guess,
+                             virial != nullptr,
+                             report != nullptr,
+                             chains.tolerance,
+                             chains.max_iterations,
+                             chains.box};
     const Tally tally = execute(chains, PositionsWork(call));
     if (report) {
         report->iterations = tally.iterations;
@@ -285,7 +293,7 @@ void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomA
     if (tally.out_of_memory) throw std::bad_alloc();
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"reference position", &r_ref}, {"position", &r}, {"velocity", &v}};
-        throw diagnose(chains, tally, arrays, 3, HOL_ERR_NO_CONVERGENCE);
+        throw diagnose(chains, tally, arrays, 3, Status::no_convergence);
     }
     if (virial) write_virial(tally, virial);
 }

@@ -2,7 +2,7 @@
 #ifndef HOLONOMIC_POSITIONS_HPP
 #define HOLONOMIC_POSITIONS_HPP
 
-#include "chains.hpp"
+#include "core/molecules/chains.hpp"
 
 struct hol_report;
 

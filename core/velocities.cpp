@@ -1,10 +1,9 @@
-#include "velocities.hpp"
+#include "core/velocities.hpp"
 
-#include "diagnose.hpp"
-#include "execute.hpp"
-#include "forces.hpp"
-#include "holonomic.h"
-#include "view.hpp"
+#include "core/caller/view.hpp"
+#include "core/forces.hpp"
+#include "core/run/diagnose.hpp"
+#include "core/run/execute.hpp"
 
 namespace holonomic {
 
@@ -41,7 +40,7 @@ void project_velocities(const Chains &chains, const AtomArray &r, const AtomArra
     const Tally tally = execute(chains, VelocitiesWork(call));
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}};
-        throw diagnose(chains, tally, arrays, 2, HOL_ERR_NOT_FINITE);
+        throw diagnose(chains, tally, arrays, 2, Status::not_finite);
     }
     if (virial) write_virial(tally, virial);
 }

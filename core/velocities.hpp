@@ -2,7 +2,7 @@
 #ifndef HOLONOMIC_VELOCITIES_HPP
 #define HOLONOMIC_VELOCITIES_HPP
 
-#include "chains.hpp"
+#include "core/molecules/chains.hpp"
 
 namespace holonomic {
 

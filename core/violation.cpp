@@ -1,10 +1,10 @@
-#include "violation.hpp"
+#include "core/violation.hpp"
 
 #include <cmath>
 
-#include "diagnose.hpp"
+#include "core/caller/view.hpp"
+#include "core/run/diagnose.hpp"
 #include "holonomic.h"
-#include "view.hpp"
 
 namespace holonomic {
 
@@ -51,8 +51,8 @@ void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, hol
     }
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}};
-        Error error = diagnose(chains, tally, arrays, 2, HOL_ERR_NOT_FINITE);
-        error.status = HOL_ERR_NOT_FINITE;  // whatever else is wrong with that chain, it gives no number
+        Error error = diagnose(chains, tally, arrays, 2, Status::not_finite);
+        error.status = Status::not_finite;  // whatever else is wrong with that chain, it gives no number
         throw error;
     }
     *worst = found;

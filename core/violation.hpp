@@ -2,7 +2,7 @@
 #ifndef HOLONOMIC_VIOLATION_HPP
 #define HOLONOMIC_VIOLATION_HPP
 
-#include "chains.hpp"
+#include "core/molecules/chains.hpp"
 
 struct hol_worst;
 

@@ -59,7 +59,8 @@ void every_kind_has_a_status_and_a_message()
     comes_out_as("text", HOL_ERR_INTERNAL, "internal error", static_cast<const char *>("text"));
     comes_out_as("a null pointer", HOL_ERR_INTERNAL, "internal error", nullptr);
     comes_out_as("an unrelated class", HOL_ERR_INTERNAL, "internal error", Unrelated());
-    comes_out_as("the library's own", HOL_ERR_VALUE, "dt is -1", holonomic::make_error(HOL_ERR_VALUE, "dt is %d", -1));
+    comes_out_as("the library's own", HOL_ERR_VALUE, "dt is -1",
+                 holonomic::make_error(holonomic::Status::value, "dt is %d", -1));
 }
 
 void messages_are_cut_to_their_room()

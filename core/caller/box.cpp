@@ -1,9 +1,8 @@
 // The periodic box and its inverse.
 #include <cmath>
 
-#include "chains.hpp"
-#include "error.hpp"
-#include "holonomic.h"
+#include "core/error.hpp"
+#include "core/molecules/chains.hpp"
 
 namespace holonomic {
 
@@ -21,7 +20,7 @@ void Chains::set_box(const double *h) {
         for (int c = 0; c < 3; ++c) {
             m[i][c] = h[3 * i + c];
             if (!std::isfinite(m[i][c]))
-                throw make_error(HOL_ERR_VALUE, "element (%d,%d) of the box is not finite", i + 1, c + 1);
+                throw make_error(Status::value, "element (%d,%d) of the box is not finite", i + 1, c + 1);
             periodic[i] = periodic[i] || m[i][c] != 0;
             diagonal = diagonal && (i == c || m[i][c] == 0);
         }
@@ -41,7 +40,7 @@ void Chains::set_box(const double *h) {
         for (int i = 0; i < 3; ++i) next.inverse[3 * i + i] = periodic[i] ? 1 / m[i][i] : 0;
         for (int i = 0; i < 3; ++i)
             if (!std::isfinite(next.inverse[3 * i + i]))
-                throw make_error(HOL_ERR_VALUE, "box vector %d is too short", i + 1);
+                throw make_error(Status::value, "box vector %d is too short", i + 1);
         for (int i = 0; i < 10; ++i) {
             next.minus_side[i] = -next.h[4 * (i % 3)];
             next.per_side[i] = next.inverse[4 * (i % 3)];
@@ -71,7 +70,7 @@ void Chains::set_box(const double *h) {
     for (int c = 0; c < 3; ++c) volume += m[0][c] * columns[0][c];
     for (int i = 0; i < 3; ++i) size *= std::sqrt(m[i][0] * m[i][0] + m[i][1] * m[i][1] + m[i][2] * m[i][2]);
     if (!(std::fabs(volume) > 1e-10 * size))
-        throw make_error(HOL_ERR_VALUE, "the box vectors lie in a plane or on a line");
+        throw make_error(Status::value, "the box vectors lie in a plane or on a line");
     for (int i = 0; i < 3; ++i)
         for (int c = 0; c < 3; ++c) next.inverse[3 * c + i] = periodic[i] ? columns[i][c] / volume : 0;
     box = next;

@@ -1,4 +1,4 @@
-#include "partition_panels.hpp"
+#include "core/partition/partition_panels.hpp"
 
 #include <cmath>
 
@@ -12,8 +12,8 @@ const real pi = 3.14159265358979323846264338327950288L;
 const real first_edge = pi / 6;  // the first panel is even in pi/2 - phi and may be wider than the others
 
 struct Tables {
-    real node[order];            // Chebyshev nodes on (-1, 1)
-    real cosine[order][order];   // from values to coefficients
+    real node[order];           // Chebyshev nodes on (-1, 1)
+    real cosine[order][order];  // from values to coefficients
     Tables() {
         const real n = static_cast<real>(order);
         for (std::size_t j = 0; j < order; ++j) {

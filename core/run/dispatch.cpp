@@ -1,4 +1,4 @@
-#include "dispatch.hpp"
+#include "core/run/dispatch.hpp"
 
 #include <cstdlib>
 #include <cstring>

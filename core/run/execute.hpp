@@ -2,8 +2,8 @@
 #ifndef HOLONOMIC_EXECUTE_HPP
 #define HOLONOMIC_EXECUTE_HPP
 
-#include "chains.hpp"
-#include "dispatch.hpp"
+#include "core/molecules/chains.hpp"
+#include "core/run/dispatch.hpp"
 
 namespace holonomic {
 
@@ -19,9 +19,12 @@ public:
     // Calls body(j, scratch, tally) for j = 0 .. n-1, and adds the tallies in the order of j.
     template <class Body>
     void for_each(std::int64_t n, Tally &total, const Body &body) const {
-        run(n, total, [](const void *b, std::int64_t j, double *scratch, Tally &tally) {
-            (*static_cast<const Body *>(b))(j, scratch, tally);
-        }, &body);
+        run(
+            n, total,
+            [](const void *b, std::int64_t j, double *scratch, Tally &tally) {
+                (*static_cast<const Body *>(b))(j, scratch, tally);
+            },
+            &body);
     }
 
 private:

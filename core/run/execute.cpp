@@ -1,9 +1,9 @@
-#include "execute.hpp"
+#include "core/run/execute.hpp"
 
 #include <algorithm>
 #include <new>
 
-#include "thread_memory.hpp"
+#include "core/run/thread_memory.hpp"
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -98,8 +98,8 @@ Tally execute(const Chains &chains, const Work &work) {
     const std::int64_t n_pieces = static_cast<std::int64_t>(plan.pieces.size());
     const std::int64_t scratch_bytes =
         kernels().scratch_bytes(plan.longest > longest_lane ? 2 * longest_lane : plan.longest);
-    const int n_threads =
-        static_cast<int>(std::min<std::int64_t>(chains.n_threads, std::max<std::int64_t>(plan.n_bonds / bonds_per_thread, 1)));
+    const int n_threads = static_cast<int>(
+        std::min<std::int64_t>(chains.n_threads, std::max<std::int64_t>(plan.n_bonds / bonds_per_thread, 1)));
 
     // A chain long enough to keep all threads busy is shared among them; of all others each is one thread's work.
     const std::int64_t shared_blocks = 8 * n_threads;

@@ -4,31 +4,24 @@
 
 #include <cstdint>
 
-#include "kernels/call.hpp"
-
-struct hol_view;
+#include "core/kernels/call.hpp"
 
 namespace holonomic {
 
 // [n_atoms][3] doubles; absent if p is a null pointer.
 AtomArray packed_array(const double *p);
 
-// As the view says; absent if it is a null pointer. Throws Error with `name` in the message if it makes no sense.
-AtomArray viewed_array(const hol_view *view, const char *name);
-
 // The kernels read arrays in place only if all of a call are packed.
 void unify_layout(AtomArray *const *arrays, int n);
-
-// All views of a call have z, or none has.
-void check_dimensions(const AtomArray *const *arrays, int n);
 
 inline void read_atom(const AtomArray &array, std::int64_t atom, double *x) {
     const char *const components[3] = {array.x, array.y, array.z};
     for (int c = 0; c < 3; ++c) {
         const char *p = components[c];
         if (p) p += atom * array.stride;
-        x[c] = !p ? 0 : array.is_float ? static_cast<double>(*reinterpret_cast<const float *>(p))
-                                       : *reinterpret_cast<const double *>(p);
+        x[c] = !p               ? 0
+               : array.is_float ? static_cast<double>(*reinterpret_cast<const float *>(p))
+                                : *reinterpret_cast<const double *>(p);
     }
 }
 

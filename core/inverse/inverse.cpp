@@ -1,13 +1,12 @@
 // Theory (33)-(36): elimination on unit bonds with the deficits of the rows carried instead of the diagonal, so that
 // nothing is subtracted; then products of its multipliers.
-#include "inverse.hpp"
+#include "core/inverse/inverse.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bond_vectors.hpp"
-#include "diagnose.hpp"
-#include "holonomic.h"
+#include "core/inverse/bond_vectors.hpp"
+#include "core/run/diagnose.hpp"
 
 namespace holonomic {
 
@@ -18,7 +17,7 @@ Error bad_data(const Chains &chains, std::int64_t chain, const AtomArray &r) {
     tally.n_bad = 1;
     tally.first_bad = chain;
     const NamedArray arrays[] = {{"position", &r}};
-    return diagnose(chains, tally, arrays, 1, HOL_ERR_NOT_FINITE);
+    return diagnose(chains, tally, arrays, 1, Status::not_finite);
 }
 
 }  // namespace
@@ -43,8 +42,11 @@ Inverse::Inverse(const Chains &chains, std::int64_t chain, const AtomArray &r)
         before = here;
     }
     const auto coupling = [&](std::size_t k) { return w_[k] * std::fabs(joints[k].cosine); };  // p of theory (25)
-    const auto deficit = [&](std::size_t k) { return w_[k] * joints[k].complement + w_[k + 1] * joints[k + 1].complement; };
-    // What is carried from bond to bond has twice the digits: along a straight chain each step would round it the same way.
+    const auto deficit = [&](std::size_t k) {
+        return w_[k] * joints[k].complement + w_[k + 1] * joints[k + 1].complement;
+    };
+    // What is carried from bond to bond has twice the digits: along a straight chain each step would round it the same
+    // way.
     DoublePair e = as_pair(0), pivot = as_pair(1);
     for (std::size_t k = 0; k < n_; ++k) {
         Bond &b = bonds_[k];
@@ -79,19 +81,17 @@ Inverse::Inverse(const Chains &chains, std::int64_t chain, const AtomArray &r)
 
 void Inverse::check(std::int64_t i) const {
     if (i >= 0 && i < n_bonds()) return;
-    Error error = make_error(HOL_ERR_INDEX, "the number of a bond is outside %d .. %lld", base_,
+    Error error = make_error(Status::index, "the number of a bond is outside %d .. %lld", base_,
                              static_cast<long long>(n_) - 1 + base_);
     error.base = base_;
     throw error;
 }
 
 // Z~^-1 = S M^-1 S with S_k = sqrt(M_kk), Z^-1 the same with S_k = 1 / (2 |d_k|).
-double Inverse::scale(bool physical, std::size_t k) const {
-    return physical ? 0.5 / bonds_[k].length : bonds_[k].root;
-}
+double Inverse::scale(bool physical, std::size_t k) const { return physical ? 0.5 / bonds_[k].length : bonds_[k].root; }
 
-// From an element on the diagonal upwards in its column: (M^-1)_{k-1,j} = l_k (M^-1)_kj. The product is kept in range, as
-// its end may be needed times a large scale.
+// From an element on the diagonal upwards in its column: (M^-1)_{k-1,j} = l_k (M^-1)_kj. The product is kept in range,
+// as its end may be needed times a large scale.
 class Inverse::Walk {
 public:
     Walk(const Inverse &inverse, bool physical, std::size_t j)
@@ -149,7 +149,8 @@ void Inverse::row(bool physical, std::int64_t i, double *out) const {
 }
 
 void Inverse::band(bool physical, std::int64_t width, double *out) const {
-    if (width < 0) throw make_error(HOL_ERR_VALUE, "width is %lld; it must be at least 0", static_cast<long long>(width));
+    if (width < 0)
+        throw make_error(Status::value, "width is %lld; it must be at least 0", static_cast<long long>(width));
     const std::size_t columns = static_cast<std::size_t>(width) + 1;
     for (std::size_t j = 0; j < n_; ++j) {
         Walk walk(*this, physical, j);

@@ -1,11 +1,10 @@
-#include "chains.hpp"
+#include "core/molecules/chains.hpp"
 
 #include <cmath>
 #include <cstring>
 #include <limits>
 
-#include "error.hpp"
-#include "holonomic.h"
+#include "core/error.hpp"
 
 namespace holonomic {
 
@@ -19,7 +18,7 @@ long long number(std::int64_t i, int base) { return static_cast<long long>(i + b
 std::int64_t from_zero(std::int64_t i, int base) { return i < base ? -1 : i - base; }
 
 Error out_of_range(const char *what, std::int64_t value, std::int64_t least) {
-    return make_error(HOL_ERR_VALUE, "%s is %lld; it must be at least %lld", what, static_cast<long long>(value),
+    return make_error(Status::value, "%s is %lld; it must be at least %lld", what, static_cast<long long>(value),
                       static_cast<long long>(least));
 }
 
@@ -34,9 +33,9 @@ std::uint64_t mix(std::uint64_t hash, double value) {
 void check_lengths(std::int64_t n_bonds, const double *lengths, int base) {
     for (std::int64_t k = 0; k < n_bonds; ++k) {
         if (lengths[k] >= 1e-150 && lengths[k] <= 1e150) continue;
-        const char *const range = lengths[k] > 0 && std::isfinite(lengths[k]) ? "between 1e-150 and 1e150"
-                                                                              : "positive and finite";
-        Error error = make_error(HOL_ERR_VALUE, "the length of bond %lld is %g; it must be %s", number(k, base),
+        const char *const range =
+            lengths[k] > 0 && std::isfinite(lengths[k]) ? "between 1e-150 and 1e150" : "positive and finite";
+        Error error = make_error(Status::value, "the length of bond %lld is %g; it must be %s", number(k, base),
                                  lengths[k], range);
         error.bond = k;
         error.base = base;
@@ -49,12 +48,12 @@ void check_lengths(std::int64_t n_bonds, const double *lengths, int base) {
 Chains::Chains(std::int64_t n_atoms, const double *masses) : n_atoms_(n_atoms) {
     if (n_atoms < 0) throw out_of_range("n_atoms", n_atoms, 0);
     if (n_atoms > std::numeric_limits<std::int64_t>::max() / 64)
-        throw make_error(HOL_ERR_VALUE, "n_atoms is %lld: too large", static_cast<long long>(n_atoms));
+        throw make_error(Status::value, "n_atoms is %lld: too large", static_cast<long long>(n_atoms));
     bool uniform = true;
     for (std::int64_t i = 0; i < n_atoms; ++i) {
         const double w = masses[i] == 0 ? 0 : 1 / masses[i];
         if (!(masses[i] >= 0) || !std::isfinite(w)) {
-            Error error = make_error(HOL_ERR_VALUE,
+            Error error = make_error(Status::value,
                                      "the mass of atom %lld (counted from 0) is %g; it must be positive, or 0 for an "
                                      "atom that is held fixed",
                                      number(i, 0), masses[i]);
@@ -76,7 +75,7 @@ void Chains::mark(std::int64_t atom, std::int64_t chain, std::int64_t position) 
     std::uint64_t &word = used_[at(atom / 64)];
     const std::uint64_t bit = std::uint64_t{1} << (atom % 64);
     if (word & bit) {
-        Error error = make_error(HOL_ERR_SHARED_ATOM,
+        Error error = make_error(Status::shared_atom,
                                  "atom %lld, number %lld of chain %lld, is in use already: chains that share an atom "
                                  "(rings, branches) are not supported yet",
                                  number(atom, base), number(position, base), number(chain, base));
@@ -168,13 +167,13 @@ void Chains::append(std::int64_t kind, std::int64_t n_chains, std::int64_t first
 void Chains::add(std::int64_t n_bonds, const std::int64_t *atoms, const double *lengths) {
     if (n_bonds < 1) throw out_of_range("n_bonds", n_bonds, 1);
     if (n_bonds >= n_atoms_)
-        throw make_error(HOL_ERR_VALUE, "n_bonds is %lld: a chain of so many bonds has more than the %lld atoms",
+        throw make_error(Status::value, "n_bonds is %lld: a chain of so many bonds has more than the %lld atoms",
                          static_cast<long long>(n_bonds), static_cast<long long>(n_atoms_));
     check_lengths(n_bonds, lengths, base);
     bool consecutive = true;
     for (std::int64_t k = 0; k <= n_bonds; ++k) {
         if (atoms[k] < base || atoms[k] - base >= n_atoms_) {
-            Error error = make_error(HOL_ERR_INDEX, "atom %lld, number %lld of chain %lld, is outside %d .. %lld",
+            Error error = make_error(Status::index, "atom %lld, number %lld of chain %lld, is outside %d .. %lld",
                                      static_cast<long long>(atoms[k]), number(k, base), number(n_chains_, base), base,
                                      number(n_atoms_ - 1, base));
             error.atom = from_zero(atoms[k], base);
@@ -188,8 +187,8 @@ void Chains::add(std::int64_t n_bonds, const std::int64_t *atoms, const double *
     const std::size_t n_lists = atom_lists_.size();
     try {
         for (; marked <= n_bonds; ++marked) mark(atoms[marked] - base, n_chains_, marked);
-        const std::int64_t kind =
-            find_kind(n_bonds, [&](std::int64_t k) { return atoms[k] - base; }, lengths);
+        const std::int64_t kind = find_kind(
+            n_bonds, [&](std::int64_t k) { return atoms[k] - base; }, lengths);
         std::int64_t offset = -1;
         if (!consecutive) {
             offset = static_cast<std::int64_t>(n_lists);
@@ -207,12 +206,11 @@ void Chains::add_block(std::int64_t n_chains, std::int64_t n_bonds, std::int64_t
     if (n_chains < 1) throw out_of_range("n_chains", n_chains, 1);
     if (n_bonds < 1) throw out_of_range("n_bonds", n_bonds, 1);
     const std::int64_t first = from_zero(first_atom, base);
-    if (first < 0 || first >= n_atoms_ || n_bonds >= n_atoms_ ||
-        n_chains > (n_atoms_ - first) / (n_bonds + 1)) {
-        Error error = make_error(HOL_ERR_INDEX,
-                                 "%lld chains of %lld bonds from atom %lld on reach outside the atoms %d .. %lld",
-                                 static_cast<long long>(n_chains), static_cast<long long>(n_bonds),
-                                 static_cast<long long>(first_atom), base, number(n_atoms_ - 1, base));
+    if (first < 0 || first >= n_atoms_ || n_bonds >= n_atoms_ || n_chains > (n_atoms_ - first) / (n_bonds + 1)) {
+        Error error =
+            make_error(Status::index, "%lld chains of %lld bonds from atom %lld on reach outside the atoms %d .. %lld",
+                       static_cast<long long>(n_chains), static_cast<long long>(n_bonds),
+                       static_cast<long long>(first_atom), base, number(n_atoms_ - 1, base));
         error.atom = first;
         error.base = base;
         throw error;
@@ -227,8 +225,8 @@ void Chains::add_block(std::int64_t n_chains, std::int64_t n_bonds, std::int64_t
             mark(first + marked, n_chains_ + marked / (n_bonds + 1), marked % (n_bonds + 1));
         for (; added < n_chains;) {
             const std::int64_t start = first + added * (n_bonds + 1);
-                const std::int64_t kind =
-                find_kind(n_bonds, [&](std::int64_t k) { return start + k; }, lengths);
+            const std::int64_t kind = find_kind(
+                n_bonds, [&](std::int64_t k) { return start + k; }, lengths);
             std::int64_t same = 1;  // with equal masses everywhere, all chains of the block are of this kind
             if (w_.empty()) same = n_chains - added;
             append(kind, same, start, -1);
@@ -317,14 +315,12 @@ std::int64_t Chains::degrees_of_freedom(int dimensions) const {
 
 std::int64_t Chains::memory() const {
     const Plan *plan = plan_.load(std::memory_order_acquire);
-    std::size_t bytes = sizeof *this + w_.capacity() * sizeof(double) + used_.capacity() * sizeof(std::uint64_t) +
-                        kinds_.capacity() * sizeof(Kind) +
-                        (w_tables_.capacity() + length_tables_.capacity()) * sizeof(double) +
-                        kind_by_hash_.size() * 40 + kind_by_hash_.bucket_count() * sizeof(void *) +
-                        atom_lists_.capacity() * sizeof(std::int64_t) + groups_.capacity() * sizeof(Group) +
-                        active_.capacity();
-    if (plan)
-        bytes += plan->pieces.capacity() * sizeof(Plan::Piece) + plan->loose.capacity() * sizeof(Plan::Reference);
+    std::size_t bytes =
+        sizeof *this + w_.capacity() * sizeof(double) + used_.capacity() * sizeof(std::uint64_t) +
+        kinds_.capacity() * sizeof(Kind) + (w_tables_.capacity() + length_tables_.capacity()) * sizeof(double) +
+        kind_by_hash_.size() * 40 + kind_by_hash_.bucket_count() * sizeof(void *) +
+        atom_lists_.capacity() * sizeof(std::int64_t) + groups_.capacity() * sizeof(Group) + active_.capacity();
+    if (plan) bytes += plan->pieces.capacity() * sizeof(Plan::Piece) + plan->loose.capacity() * sizeof(Plan::Reference);
     return static_cast<std::int64_t>(bytes);
 }
 

@@ -2,7 +2,7 @@
 #ifndef HOLONOMIC_DISPATCH_HPP
 #define HOLONOMIC_DISPATCH_HPP
 
-#include "kernels/call.hpp"
+#include "core/kernels/call.hpp"
 
 namespace holonomic {
 

@@ -1,20 +1,19 @@
 // Theory (38)-(41).
-#include "tridiagonal.hpp"
+#include "core/inverse/tridiagonal.hpp"
 
 #include <cmath>
 #include <limits>
 
-#include "error.hpp"
-#include "holonomic.h"
+#include "core/error.hpp"
 
 namespace holonomic {
 
 Tridiagonal::Tridiagonal(std::int64_t n, const double *gamma) : n_(static_cast<std::size_t>(n)), gamma_(gamma) {
     if (n < 1 || n > std::numeric_limits<std::int64_t>::max() / 64)
-        throw make_error(HOL_ERR_VALUE, "n is %lld; it must be at least 1", static_cast<long long>(n));
+        throw make_error(Status::value, "n is %lld; it must be at least 1", static_cast<long long>(n));
     for (std::size_t k = 1; k < n_; ++k) {
         if (std::isfinite(gamma_[k - 1])) continue;
-        Error error = make_error(HOL_ERR_NOT_FINITE, "gamma between rows %lld and %lld is not finite",
+        Error error = make_error(Status::not_finite, "gamma between rows %lld and %lld is not finite",
                                  static_cast<long long>(k) - 1, static_cast<long long>(k));
         error.bond = static_cast<std::int64_t>(k) - 1;
         throw error;
@@ -25,8 +24,9 @@ Tridiagonal::Tridiagonal(std::int64_t n, const double *gamma) : n_(static_cast<s
         const bool small = std::fabs(gamma_[k - 1]) < 1;  // whatever the row before, which also spares an overflow
         if (small) omega2_[k] = as_pair(1) - this->gamma(k) * this->gamma(k) / omega2_[k - 1];
         if (small && omega2_[k].hi > 0) continue;
-        Error error = make_error(HOL_ERR_NOT_DEFINITE, "the matrix is not positive definite: Omega^2 of row %lld is not",
-                                 static_cast<long long>(k));
+        Error error =
+            make_error(Status::not_definite, "the matrix is not positive definite: Omega^2 of row %lld is not",
+                       static_cast<long long>(k));
         error.bond = static_cast<std::int64_t>(k);
         throw error;
     }
@@ -48,7 +48,7 @@ double Tridiagonal::log_det() const {
 void Tridiagonal::solve(const double *b, double *x) const {
     for (std::size_t k = 0; k < n_; ++k) {
         if (std::isfinite(b[k])) continue;
-        Error error = make_error(HOL_ERR_NOT_FINITE, "b of row %lld is not finite", static_cast<long long>(k));
+        Error error = make_error(Status::not_finite, "b of row %lld is not finite", static_cast<long long>(k));
         error.bond = static_cast<std::int64_t>(k);
         throw error;
     }
@@ -77,7 +77,7 @@ std::vector<double> Tridiagonal::inverse_diagonal() const {
 
 double Tridiagonal::inverse_entry(std::int64_t i, std::int64_t j) const {
     if (i < 0 || j < 0 || static_cast<std::size_t>(i) >= n_ || static_cast<std::size_t>(j) >= n_)
-        throw make_error(HOL_ERR_INDEX, "element (%lld,%lld) is outside a matrix of %lld rows, counted from 0",
+        throw make_error(Status::index, "element (%lld,%lld) is outside a matrix of %lld rows, counted from 0",
                          static_cast<long long>(i), static_cast<long long>(j), static_cast<long long>(n_));
     const std::size_t low = static_cast<std::size_t>(i < j ? i : j), high = static_cast<std::size_t>(i < j ? j : i);
     DoublePair removed = as_pair(0);
@@ -88,7 +88,8 @@ double Tridiagonal::inverse_entry(std::int64_t i, std::int64_t j) const {
 }
 
 void Tridiagonal::inverse_band(std::int64_t width, double *band) const {
-    if (width < 0) throw make_error(HOL_ERR_VALUE, "width is %lld; it must be at least 0", static_cast<long long>(width));
+    if (width < 0)
+        throw make_error(Status::value, "width is %lld; it must be at least 0", static_cast<long long>(width));
     const std::vector<double> diagonal = inverse_diagonal();
     const std::size_t columns = static_cast<std::size_t>(width) + 1;
     std::vector<double> factors(n_);

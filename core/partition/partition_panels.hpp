@@ -40,10 +40,10 @@ private:
     PivotValues series(std::size_t panel, long double x) const;
 
     std::size_t n_panels_ = 0;
-    long double first_ = 0;               // width of the first panel: pi/2 - phi is in 0 .. first_
-    std::vector<long double> edges_;      // phi at the ends of the other panels, decreasing
-    std::vector<PivotValues> values_;     // g at the nodes, then coefficients of the integrals, panel after panel
-    std::vector<PivotValues> before_;     // integral from the upper end of a panel to pi/2
+    long double first_ = 0;            // width of the first panel: pi/2 - phi is in 0 .. first_
+    std::vector<long double> edges_;   // phi at the ends of the other panels, decreasing
+    std::vector<PivotValues> values_;  // g at the nodes, then coefficients of the integrals, panel after panel
+    std::vector<PivotValues> before_;  // integral from the upper end of a panel to pi/2
 };
 
 }  // namespace holonomic

@@ -1,14 +1,14 @@
 // How a call goes through the chains: pieces of work of a few thousand bonds, the same for any number of threads.
 #include <algorithm>
 
-#include "chains.hpp"
+#include "core/molecules/chains.hpp"
 
 namespace holonomic {
 
 namespace {
 
 constexpr std::int64_t bonds_per_piece = 4096;  // enough to hide the cost of a piece, few enough to share out evenly
-constexpr std::int64_t widest = 8;          // lanes of the widest instruction set: pieces are cut at multiples of it
+constexpr std::int64_t widest = 8;  // lanes of the widest instruction set: pieces are cut at multiples of it
 
 // Positions, velocities, forces and results of so many bonds, 96 bytes each, fill a second-level cache.
 constexpr std::int64_t bonds_in_cache = 16384;
@@ -53,11 +53,10 @@ void Chains::make_plan() const {
             for (; begin < end; ++begin) plan->loose.push_back({index, begin});
         }
     }
-    std::stable_sort(plan->loose.begin(), plan->loose.end(),
-                     [this](const Plan::Reference &a, const Plan::Reference &b) {
-                         return kinds_[at(groups_[at(a.group)].kind)].n_bonds <
-                                kinds_[at(groups_[at(b.group)].kind)].n_bonds;
-                     });
+    std::stable_sort(
+        plan->loose.begin(), plan->loose.end(), [this](const Plan::Reference &a, const Plan::Reference &b) {
+            return kinds_[at(groups_[at(a.group)].kind)].n_bonds < kinds_[at(groups_[at(b.group)].kind)].n_bonds;
+        });
     const std::int64_t n_loose = static_cast<std::int64_t>(plan->loose.size());
     for (std::int64_t first = 0; first < n_loose; first += loose_piece)
         plan->pieces.push_back({-1, first, std::min(loose_piece, n_loose - first)});

@@ -4,15 +4,16 @@
 
 #include <vector>
 
-#include "chains.hpp"
-#include "double_pair.hpp"
+#include "core/double_pair.hpp"
+#include "core/molecules/chains.hpp"
 
 namespace holonomic {
 
 // d_k = r_{k+1} - r_k for k = 0 .. N-1, the minimum image if there is a box. Not checked for anything.
 std::vector<PairVector> bond_vectors(const Lane &lane, const AtomArray &r, const Box &box);
 
-// A bond vector over the power of two that brings it to a size of about 1, so that products can't overflow or underflow.
+// A bond vector over the power of two that brings it to a size of about 1, so that products can't overflow or
+// underflow.
 struct ScaledBond {
     Vector3<double> hi, lo;
     double length;  // of the scaled vector

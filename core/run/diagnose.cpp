@@ -1,10 +1,9 @@
-#include "diagnose.hpp"
+#include "core/run/diagnose.hpp"
 
 #include <cmath>
 #include <cstdio>
 
-#include "holonomic.h"
-#include "view.hpp"
+#include "core/caller/view.hpp"
 
 namespace holonomic {
 
@@ -48,7 +47,7 @@ std::int64_t vanishing_pivot(const AtomArray &r, const Box &box, const Lane &lan
 
 }  // namespace
 
-Error diagnose(const Chains &chains, const Tally &tally, const NamedArray *arrays, int n_arrays, int otherwise) {
+Error diagnose(const Chains &chains, const Tally &tally, const NamedArray *arrays, int n_arrays, Status otherwise) {
     const Lane lane = chains.lane(tally.first_bad);
     const int base = chains.base;
     const auto number = [base](std::int64_t i) { return static_cast<long long>(i + base); };
@@ -71,7 +70,7 @@ Error diagnose(const Chains &chains, const Tally &tally, const NamedArray *array
             const std::int64_t atom = atom_at(lane, k);
             read_atom(*arrays[a].array, atom, x);
             if (std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2])) continue;
-            return finish(make_error(HOL_ERR_NOT_FINITE, "chain %lld: the %s of atom %lld is not finite%s", chain,
+            return finish(make_error(Status::not_finite, "chain %lld: the %s of atom %lld is not finite%s", chain,
                                      arrays[a].what, number(atom), others),
                           -1, atom);
         }
@@ -79,24 +78,24 @@ Error diagnose(const Chains &chains, const Tally &tally, const NamedArray *array
     for (std::int64_t k = 0; k < lane.n_bonds; ++k) {
         double d[3];
         if (!bond_vector(*arrays[0].array, chains.box, lane, k, d))
-            return finish(make_error(HOL_ERR_DEGENERATE, "chain %lld: bond %lld has length zero%s", chain, number(k),
-                                     others),
-                          k, -1);
+            return finish(
+                make_error(Status::degenerate, "chain %lld: bond %lld has length zero%s", chain, number(k), others), k,
+                -1);
     }
     const std::int64_t taut = vanishing_pivot(*arrays[0].array, chains.box, lane);
     if (taut >= 0)
-        return finish(make_error(HOL_ERR_DEGENERATE,
+        return finish(make_error(Status::degenerate,
                                  "chain %lld: taut between atoms that are held fixed; the tension of bond %lld is not "
                                  "determined%s",
                                  chain, number(taut), others),
                       taut, -1);
-    if (taut == -1 && otherwise == HOL_ERR_NO_CONVERGENCE)
+    if (taut == -1 && otherwise == Status::no_convergence)
         return finish(make_error(otherwise,
                                  "chain %lld: no corrections along the reference bonds bring the bonds back to their "
                                  "lengths; the step is too large, or a length can't be reached%s",
                                  chain, others),
                       -1, -1);
-    return finish(make_error(HOL_ERR_NOT_FINITE, "chain %lld: the numbers overflow or underflow; choose other units%s",
+    return finish(make_error(Status::not_finite, "chain %lld: the numbers overflow or underflow; choose other units%s",
                              chain, others),
                   -1, -1);
 }

@@ -1,14 +1,14 @@
-// Theory (42)-(49). The mean is a Markov chain in Omega: with w_n = gamma_n / Omega_{n-1} one has Omega_n^2 = 1 - w_n^2,
-// and what the bonds n..N contribute, given Omega_{n-1}, is the mean of Omega_n^p times the next such mean over
+// Theory (42)-(49). The mean is a Markov chain in Omega: with w_n = gamma_n / Omega_{n-1} one has Omega_n^2 = 1 -
+// w_n^2, and what the bonds n..N contribute, given Omega_{n-1}, is the mean of Omega_n^p times the next such mean over
 // 0 < w_n < sqrt(x_n) / Omega_{n-1}. The substitution w_n = B_n cos phi, with B_n the backward Omega of the straight
 // chain, moves all singularities of these functions to the line Re phi = 0, so that panels which halve towards phi = 0
 // converge geometrically whatever the masses.
-#include "partition_operator.hpp"
+#include "core/partition/partition_operator.hpp"
 
 #include <cmath>
 #include <vector>
 
-#include "partition_panels.hpp"
+#include "core/partition/partition_panels.hpp"
 
 namespace holonomic {
 

@@ -1,4 +1,4 @@
-#include "thread_memory.hpp"
+#include "core/run/thread_memory.hpp"
 
 #include <cstdlib>
 

@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "kernels/call.hpp"
+#include "core/kernels/call.hpp"
 
 namespace holonomic {
 
@@ -19,7 +19,7 @@ struct Kind {
     std::int64_t w_offset;       // into w_tables, or -1: all w_uniform
     std::int64_t length_offset;  // into length_tables, or -1: all length_uniform
     double w_uniform, length_uniform;
-    std::int64_t fixed_bonds;    // bonds between two fixed atoms, which remove no degree of freedom
+    std::int64_t fixed_bonds;  // bonds between two fixed atoms, which remove no degree of freedom
 };
 
 // Chains of one kind that follow each other in the caller's arrays or in the index lists.
@@ -42,7 +42,7 @@ struct Plan {
         std::int64_t first, count;  // if group == -1: loose[first] .. loose[first+count-1]
     };
     std::vector<Piece> pieces;
-    std::vector<Reference> loose;  // chains that fill no block of their own kind, by length
+    std::vector<Reference> loose;                   // chains that fill no block of their own kind, by length
     std::int64_t longest_in_lane = 0, longest = 0;  // bonds
     std::int64_t n_bonds = 0;                       // of active chains
 };
@@ -71,9 +71,9 @@ public:
     std::int64_t memory() const;
     bool is_active(std::int64_t chain) const;
 
-    Lane lane(std::int64_t chain) const;  // chain in 0 .. n_chains-1
-    const Plan &plan() const;             // thread-safe
-    Unit unit(const Plan &plan, std::int64_t piece, Lane *lanes) const;  // lanes [loose_piece]
+    Lane lane(std::int64_t chain) const;                                   // chain in 0 .. n_chains-1
+    const Plan &plan() const;                                              // thread-safe
+    Unit unit(const Plan &plan, std::int64_t piece, Lane *lanes) const;    // lanes [loose_piece]
     std::int64_t piece_bonds(const Plan &plan, std::int64_t piece) const;  // of a chain of the piece; 0 if loose ones
 
     int base = 0;
@@ -98,14 +98,14 @@ private:
 
     std::int64_t n_atoms_, n_chains_ = 0, n_bonds_ = 0;
     double w_uniform_ = 0;
-    std::vector<double> w_;               // [n_atoms], empty if all are w_uniform_
-    std::vector<std::uint64_t> used_;     // a bit per atom
+    std::vector<double> w_;            // [n_atoms], empty if all are w_uniform_
+    std::vector<std::uint64_t> used_;  // a bit per atom
     std::vector<Kind> kinds_;
     std::unordered_multimap<std::uint64_t, std::int64_t> kind_by_hash_;
     std::vector<double> w_tables_, length_tables_;
     std::vector<std::int64_t> atom_lists_;
     std::vector<Group> groups_;
-    std::vector<unsigned char> active_;   // [n_chains] or empty: all
+    std::vector<unsigned char> active_;  // [n_chains] or empty: all
 
     mutable std::mutex plan_mutex_;
     mutable std::atomic<const Plan *> plan_{nullptr};

@@ -3,8 +3,8 @@
 #ifndef HOLONOMIC_DIAGNOSE_HPP
 #define HOLONOMIC_DIAGNOSE_HPP
 
-#include "chains.hpp"
-#include "error.hpp"
+#include "core/error.hpp"
+#include "core/molecules/chains.hpp"
 
 namespace holonomic {
 
@@ -14,7 +14,7 @@ struct NamedArray {
 };
 
 // The error of a call whose tally counts bad chains; `otherwise` is the status if the data as such are in order.
-Error diagnose(const Chains &chains, const Tally &tally, const NamedArray *arrays, int n_arrays, int otherwise);
+Error diagnose(const Chains &chains, const Tally &tally, const NamedArray *arrays, int n_arrays, Status otherwise);
 
 }  // namespace holonomic
 #endif

@@ -1,8 +1,8 @@
-#include "bond_vectors.hpp"
+#include "core/inverse/bond_vectors.hpp"
 
 #include <cmath>
 
-#include "view.hpp"
+#include "core/caller/view.hpp"
 
 namespace holonomic {
 

@@ -1,10 +1,9 @@
 // How far given multipliers are from the exact ones: theory (37).
 #include <cmath>
 
-#include "diagnose.hpp"
-#include "holonomic.h"
-#include "inverse.hpp"
-#include "view.hpp"
+#include "core/caller/view.hpp"
+#include "core/inverse/inverse.hpp"
+#include "core/run/diagnose.hpp"
 
 namespace holonomic {
 
@@ -26,8 +25,8 @@ bool is_finite(const PairVector &a) { return std::isfinite(size(a)); }
 
 }  // namespace
 
-// Of bond k, in the form d_k.(w_k A_k - w_{k-1} A_{k-1}) + |dv|^2 with A_i = F_i + G_i; `terms` gets the size of what is
-// added up.
+// Of bond k, in the form d_k.(w_k A_k - w_{k-1} A_{k-1}) + |dv|^2 with A_i = F_i + G_i; `terms` gets the size of what
+// is added up.
 DoublePair Inverse::residual(const AtomArray &v, const AtomArray &f, const double *lambda, std::size_t k,
                              double &terms) const {
     const DoublePair w0 = as_pair(w_[k]), w1 = as_pair(w_[k + 1]), minus = as_pair(-1);
@@ -68,7 +67,7 @@ std::vector<double> Inverse::error_bound(const AtomArray &v, const AtomArray &f,
     const auto check = [&](const AtomArray &array, const char *what) {
         for (std::size_t k = 0; array.x && k <= n_; ++k) {
             if (is_finite(vector_of(array, atoms_[k]))) continue;
-            Error error = make_error(HOL_ERR_NOT_FINITE, "the %s of atom %lld is not finite", what,
+            Error error = make_error(Status::not_finite, "the %s of atom %lld is not finite", what,
                                      static_cast<long long>(atoms_[k] + base_));
             error.atom = atoms_[k];
             error.base = base_;
@@ -79,16 +78,16 @@ std::vector<double> Inverse::error_bound(const AtomArray &v, const AtomArray &f,
     check(f, "force");
     for (std::size_t k = 0; k < n_; ++k) {
         if (std::isfinite(lambda[k])) continue;
-        Error error = make_error(HOL_ERR_NOT_FINITE, "the multiplier of bond %lld is not finite",
+        Error error = make_error(Status::not_finite, "the multiplier of bond %lld is not finite",
                                  static_cast<long long>(k) + base_);
         error.bond = static_cast<std::int64_t>(k);
         error.base = base_;
         throw error;
     }
-    // Each product and sum of the evaluation has a relative error below 2^-102 and there are fewer than 64 of them; a box
-    // adds the same for lattice vectors up to 2^5 times as long as the bond. Among denormal numbers each is off by up to
-    // the smallest number instead, before it is multiplied by at most one more vector and one more inverse mass; that also
-    // covers what the sweeps of the inverse lose there.
+    // Each product and sum of the evaluation has a relative error below 2^-102 and there are fewer than 64 of them; a
+    // box adds the same for lattice vectors up to 2^5 times as long as the bond. Among denormal numbers each is off by
+    // up to the smallest number instead, before it is multiplied by at most one more vector and one more inverse mass;
+    // that also covers what the sweeps of the inverse lose there.
     const double evaluation = 0x1p-90, denormal = 0x1p-1067;
     std::vector<double> bound(n_);
     for (std::size_t k = 0; k < n_; ++k) {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "double_pair.hpp"
+#include "core/double_pair.hpp"
 
 namespace holonomic {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "chains.hpp"
-#include "double_pair.hpp"
+#include "core/double_pair.hpp"
+#include "core/molecules/chains.hpp"
 
 namespace holonomic {
 
@@ -30,11 +30,11 @@ public:
 
 private:
     struct Bond {
-        double l;         // of the elimination: couples it to the bond before, with the sign of their cosine; 0 for the first
-        double pivot;     // P of theory (26)
-        double inverse;   // (M^-1)_kk
-        double root;      // sqrt(M_kk)
-        double length;    // |d_k|
+        double l;  // of the elimination: couples it to the bond before, with the sign of their cosine; 0 for the first
+        double pivot;    // P of theory (26)
+        double inverse;  // (M^-1)_kk
+        double root;     // sqrt(M_kk)
+        double length;   // |d_k|
     };
     class Walk;
 
@@ -42,7 +42,8 @@ private:
     double scale(bool physical, std::size_t k) const;
     void multiply_by_absolute_inverse(std::vector<double> &x) const;
     bool touched(const AtomArray &v, const AtomArray &f, const double *lambda, std::size_t k) const;
-    DoublePair residual(const AtomArray &v, const AtomArray &f, const double *lambda, std::size_t k, double &terms) const;
+    DoublePair residual(const AtomArray &v, const AtomArray &f, const double *lambda, std::size_t k,
+                        double &terms) const;
 
     std::size_t n_;
     int base_;
@@ -50,7 +51,7 @@ private:
     std::vector<double> w_;            // [n+1]
     std::vector<PairVector> d_;        // [n], exact differences of the coordinates
     std::vector<Bond> bonds_;
-    double largest_row_;               // sum of absolute values in the largest row of Z~
+    double largest_row_;  // sum of absolute values in the largest row of Z~
 };
 
 }  // namespace holonomic

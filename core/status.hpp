@@ -1,0 +1,23 @@
+// What a call can end with. The values are those of hol_status in the public header, which capi/status.cpp asserts:
+// core includes nothing of capi.
+#ifndef HOLONOMIC_STATUS_HPP
+#define HOLONOMIC_STATUS_HPP
+
+namespace holonomic {
+
+enum class Status {
+    ok = 0,
+    null = 1,
+    value = 2,
+    index = 3,
+    shared_atom = 4,
+    memory = 5,
+    not_finite = 6,
+    degenerate = 7,
+    no_convergence = 8,
+    not_definite = 9,
+    internal = 10
+};
+
+}  // namespace holonomic
+#endif
