@@ -35,6 +35,26 @@ struct Unit {
     bool large;    // the caller's arrays are unlikely to be in cache
 };
 
+// One molecule that is no chain, as a kernel sees it. Its atoms and bonds are numbered as in its shape.
+struct MoleculeLane {
+    int64_t first_atom;           // if atoms == nullptr: its atoms are first_atom, first_atom + 1, ...
+    const int64_t *atoms;         // [n_atoms] or nullptr
+    const unsigned char *shared;  // [n_atoms] or nullptr: fixed atoms of other molecules too, whose G is not written
+    const double *w, *length;     // [n_atoms], [n_bonds]
+    int64_t first_bond;           // bond k stands at first_bond + k in arrays per bond
+    int64_t molecule;             // its number
+};
+
+struct Schedule;  // order of elimination of a shape: core/molecules/schedule.hpp
+
+// A piece of work: molecules of one shape; masses and lengths may differ among them.
+struct MoleculeUnit {
+    const Schedule *schedule;
+    const MoleculeLane *lanes;
+    int64_t count;
+    bool regular, large;  // as in Unit
+};
+
 // Chains of more bonds are cut into segments.
 constexpr int64_t longest_lane = 256;
 
@@ -89,6 +109,15 @@ struct MetricCall {
     double *log_det, *log_det_z;  // per chain
     bool sum;                     // the tally's log_det is needed
     bool add;
+    Box box;
+};
+
+// Z lambda = rhs.
+struct SolveCall {
+    AtomArray r, g;
+    const double *rhs;  // per bond
+    double *lambda, *tension;
+    bool add, virial;
     Box box;
 };
 
