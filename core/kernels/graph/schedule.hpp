@@ -1,0 +1,72 @@
+// The order in which the bonds of a molecule that is no chain are eliminated, as flat arrays that a kernel runs
+// through. Plain data, the same for every instruction set; core/molecules/schedule.hpp makes it.
+#ifndef HOLONOMIC_KERNELS_GRAPH_SCHEDULE_HPP
+#define HOLONOMIC_KERNELS_GRAPH_SCHEDULE_HPP
+
+#include <stdint.h>
+
+namespace holonomic {
+
+// Atoms and bonds are renumbered. The *slot* of an atom: first the atoms of the trees, each after its children
+// (post-order), then the root of a tree, or the atoms of the core. The *place* of a bond: a bond of a tree has the slot
+// of its lower atom, the one away from the root; the bonds of the core follow in the order of their elimination. So
+// slot s < n_tree has its bond to its parent at place s, and there are no bonds but n_tree + n_core.
+//
+// A core is what is left when atoms with one bond are stripped until there are none; a tree has none. All its atoms are
+// movable, because fixed atoms are leaves.
+struct Schedule {
+    enum Type : int32_t { tree, triangle, ring, graph };
+    Type type;
+    int32_t n_atoms, n_bonds;
+    int32_t n_tree;        // bonds of trees
+    int32_t n_core;        // bonds of the core
+    int32_t n_core_atoms;  // 0 for a tree, whose root has slot n_tree
+    int32_t max_children;
+    int32_t max_core_bonds;  // of an atom of the core
+
+    // As they were given: bond k joins the local atoms atom_i[k] and atom_j[k].
+    const int32_t *atom_i, *atom_j;
+    const uint8_t *fixed;  // [n_atoms] by local atom
+
+    const int32_t *atom_of;   // [n_atoms] local atom of a slot
+    const int32_t *slot_of;   // [n_atoms] and back
+    const int32_t *bond_of;   // [n_bonds] local bond of a place
+    const int32_t *place_of;  // [n_bonds] and back
+
+    // Trees: the bond vector at place s points from slot parent[s] to slot s, away from the root or the core.
+    const int32_t *parent;       // [n_tree] slot
+    const int32_t *child_start;  // [n_atoms + 1] the children of slot s are child[child_start[s] ..]: slots, ascending
+    const int32_t *child;        // [n_tree]
+    const int32_t *pair_start;   // [n_atoms + 1] sums of k (k - 1) / 2, k children: places for a joint's multipliers
+    int32_t n_pairs;
+
+    // The core: bond p, at place n_tree + p, points from slot from[p] to slot to[p]. In a ring or triangle bond p joins
+    // slots p and p + 1, the last one to slot 0, and all point that way round; elsewhere from the smaller local atom.
+    const int32_t *from, *to;   // [n_core]
+    const int32_t *meet_start;  // [n_core_atoms + 1] bonds that meet at core atom c, slot n_tree + c
+    const int32_t *meet;        // [2 n_core] 2 p + 1 where bond p points to the atom, 2 p where it points away
+    const int32_t *
+        meet_pair;  // for every core atom, the off-diagonal entries of pairs a > b of its bonds: (1,0), (2,0), (2,1) ..
+    const int32_t *meet_pair_start;  // [n_core_atoms + 1]
+
+    // A symmetric elimination of the core's matrix, column after column. Off-diagonal entries e of column p are
+    // column_start[p] .. column_start[p + 1], with rows row[e] > p, ascending. Column p takes from the entry
+    // (row[a], row[b]), a > b, its product a b / pivot: entry update[update_start[p] + (a (a-1) / 2 + b)], a and b
+    // counted from the column's start; and from the diagonal elements of all row[a].
+    const int32_t *column_start;  // [n_core + 1]
+    const int32_t *row;           // [n_entries]
+    const int64_t *update_start;  // [n_core + 1]
+    const int32_t *update;
+    int32_t n_entries;
+    int32_t max_column;
+
+    Schedule() = default;
+    Schedule(const Schedule &) = delete;
+    Schedule &operator=(const Schedule &) = delete;
+    ~Schedule();
+    struct Memory;
+    Memory *memory = nullptr;  // where the arrays are
+};
+
+}  // namespace holonomic
+#endif

@@ -1,0 +1,300 @@
+#include "core/molecules/schedule.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "core/molecules/elimination_order.hpp"
+
+namespace holonomic {
+
+namespace {
+
+using Numbers = std::vector<std::int32_t>;
+
+std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+
+// Lists of numbers, one per row, in one array.
+struct Lists {
+    Numbers start, item;
+    std::int32_t size(std::int32_t i) const { return start[at(i) + 1] - start[at(i)]; }
+    const std::int32_t *begin(std::int32_t i) const { return item.data() + start[at(i)]; }
+    const std::int32_t *end(std::int32_t i) const { return item.data() + start[at(i) + 1]; }
+};
+
+// Which of the pairs hold each number: calls each(k, row) for the two rows of pair k.
+template <class Each>
+Lists invert(std::int32_t n_rows, std::int32_t n_pairs, const Each &each) {
+    Lists lists;
+    lists.start.assign(at(n_rows) + 1, 0);
+    for (std::int32_t k = 0; k < n_pairs; ++k)
+        for (const std::int32_t i : {each(k, 0), each(k, 1)}) ++lists.start[at(i) + 1];
+    for (std::int32_t i = 0; i < n_rows; ++i) lists.start[at(i) + 1] += lists.start[at(i)];
+    lists.item.resize(2 * at(n_pairs));
+    Numbers next(lists.start.begin(), lists.start.end() - 1);
+    for (std::int32_t k = 0; k < n_pairs; ++k)
+        for (const std::int32_t i : {each(k, 0), each(k, 1)}) lists.item[at(next[at(i)]++)] = k;
+    return lists;
+}
+
+}  // namespace
+
+struct Schedule::Memory {
+    Numbers atom_i, atom_j, atom_of, slot_of, bond_of, place_of, parent, child_start, child, pair_start, from, to,
+        meet_start, meet, meet_pair, meet_pair_start, column_start, row, update;
+    std::vector<std::int64_t> update_start;
+    std::vector<std::uint8_t> fixed;
+};
+
+Schedule::~Schedule() { delete memory; }
+
+namespace {
+
+class Maker {
+public:
+    Maker(Schedule &s, Schedule::Memory &m) : s_(s), m_(m), bonds_(bonds_of_atoms()) {}
+
+    void make() {
+        strip();
+        number_trees();
+        if (s_.n_core == 0) {
+            s_.type = Schedule::tree;
+        } else if (s_.n_tree == 0 && s_.n_core == s_.n_core_atoms) {
+            s_.type = s_.n_core == 3 ? Schedule::triangle : Schedule::ring;
+            number_ring();
+        } else {
+            s_.type = Schedule::graph;
+            number_core();
+        }
+        invert_numbers();
+        list_children();
+        list_meetings();
+        list_updates();
+    }
+
+private:
+    Lists bonds_of_atoms() const {
+        return invert(s_.n_atoms, s_.n_bonds,
+                      [&](std::int32_t k, int end) { return (end ? m_.atom_j : m_.atom_i)[at(k)]; });
+    }
+    std::int32_t other_end(std::int32_t bond, std::int32_t atom) const {
+        return m_.atom_i[at(bond)] == atom ? m_.atom_j[at(bond)] : m_.atom_i[at(bond)];
+    }
+
+    // Takes away atoms with one bond until none is left: upper_bond_ of those. Of a tree the last two atoms would take
+    // each other away; the one that is left is the atom with the largest number of those that had one bond.
+    void strip() {
+        Numbers degree(at(s_.n_atoms)), leaves;
+        upper_bond_.assign(at(s_.n_atoms), -1);
+        const bool is_tree = s_.n_bonds == s_.n_atoms - 1;
+        std::int32_t root = -1;
+        for (std::int32_t i = 0; i < s_.n_atoms; ++i) {
+            degree[at(i)] = bonds_.size(i);
+            if (is_tree && degree[at(i)] == 1) root = i;
+        }
+        for (std::int32_t i = 0; i < s_.n_atoms; ++i)
+            if (degree[at(i)] == 1 && i != root) leaves.push_back(i);
+        s_.n_tree = 0;
+        while (!leaves.empty()) {
+            const std::int32_t i = leaves.back();
+            leaves.pop_back();
+            for (const std::int32_t *k = bonds_.begin(i); k != bonds_.end(i); ++k) {
+                const std::int32_t j = other_end(*k, i);
+                if (upper_bond_[at(j)] == *k) continue;  // a child's
+                upper_bond_[at(i)] = *k;
+                if (--degree[at(j)] == 1 && j != root) leaves.push_back(j);
+            }
+            ++s_.n_tree;
+        }
+        s_.n_core = s_.n_bonds - s_.n_tree;
+        s_.n_core_atoms = is_tree ? 0 : s_.n_atoms - s_.n_tree;
+    }
+
+    bool is_child(std::int32_t bond, std::int32_t atom) const {
+        const std::int32_t j = other_end(bond, atom);
+        return upper_bond_[at(j)] == bond;
+    }
+
+    // Post-order of the trees below each atom that was not taken away, children in the order of their bonds.
+    void number_trees() {
+        Numbers stack, next(bonds_.start.begin(), bonds_.start.end() - 1);
+        for (std::int32_t top = 0; top < s_.n_atoms; ++top) {
+            if (upper_bond_[at(top)] >= 0) continue;
+            stack.assign(1, top);
+            while (!stack.empty()) {
+                const std::int32_t i = stack.back();
+                std::int32_t &k = next[at(i)];
+                while (k < bonds_.start[at(i) + 1] && !is_child(bonds_.item[at(k)], i)) ++k;
+                if (k < bonds_.start[at(i) + 1]) {
+                    stack.push_back(other_end(bonds_.item[at(k++)], i));
+                    continue;
+                }
+                stack.pop_back();
+                if (i == top) break;
+                m_.atom_of.push_back(i);
+                m_.bond_of.push_back(upper_bond_[at(i)]);
+            }
+        }
+        for (std::int32_t i = 0; i < s_.n_atoms; ++i)
+            if (upper_bond_[at(i)] < 0) m_.atom_of.push_back(i);
+    }
+
+    // Round from atom 0 in the direction of its first bond.
+    void number_ring() {
+        m_.atom_of.clear();
+        std::int32_t atom = 0, bond = *bonds_.begin(0);
+        do {
+            m_.atom_of.push_back(atom);
+            m_.bond_of.push_back(bond);
+            atom = other_end(bond, atom);
+            bond = bonds_.begin(atom)[bonds_.begin(atom)[0] == bond ? 1 : 0];
+        } while (atom != 0);
+    }
+
+    void number_core() {
+        Numbers core, core_number(at(s_.n_bonds), -1);
+        for (std::int32_t k = 0; k < s_.n_bonds; ++k) {
+            const std::int32_t i = m_.atom_i[at(k)], j = m_.atom_j[at(k)];
+            if (upper_bond_[at(i)] == k || upper_bond_[at(j)] == k) continue;
+            core_number[at(k)] = static_cast<std::int32_t>(core.size());
+            core.push_back(k);
+        }
+        std::vector<Numbers> neighbours(core.size());
+        for (std::size_t p = 0; p < core.size(); ++p)
+            for (const std::int32_t i : {m_.atom_i[at(core[p])], m_.atom_j[at(core[p])]})
+                for (const std::int32_t *l = bonds_.begin(i); l != bonds_.end(i); ++l)
+                    if (*l != core[p] && core_number[at(*l)] >= 0) neighbours[p].push_back(core_number[at(*l)]);
+        for (const std::int32_t p : minimum_degree(std::move(neighbours))) m_.bond_of.push_back(core[at(p)]);
+    }
+
+    void invert_numbers() {
+        m_.slot_of.resize(at(s_.n_atoms));
+        m_.place_of.resize(at(s_.n_bonds));
+        for (std::int32_t i = 0; i < s_.n_atoms; ++i) m_.slot_of[at(m_.atom_of[at(i)])] = i;
+        for (std::int32_t k = 0; k < s_.n_bonds; ++k) m_.place_of[at(m_.bond_of[at(k)])] = k;
+        for (std::int32_t k = 0; k < s_.n_tree; ++k)
+            m_.parent.push_back(m_.slot_of[at(other_end(m_.bond_of[at(k)], m_.atom_of[at(k)]))]);
+        const bool round = s_.type == Schedule::ring || s_.type == Schedule::triangle;
+        for (std::int32_t p = 0; p < s_.n_core; ++p) {
+            const std::int32_t k = m_.bond_of[at(s_.n_tree + p)];
+            m_.from.push_back(round ? p : m_.slot_of[at(m_.atom_i[at(k)])]);
+            m_.to.push_back(round ? (p + 1) % s_.n_core : m_.slot_of[at(m_.atom_j[at(k)])]);
+        }
+    }
+
+    void list_children() {
+        m_.child_start.assign(at(s_.n_atoms) + 1, 0);
+        for (const std::int32_t p : m_.parent) ++m_.child_start[at(p) + 1];
+        m_.pair_start.assign(at(s_.n_atoms) + 1, 0);
+        s_.max_children = 0;
+        for (std::int32_t i = 0; i < s_.n_atoms; ++i) {
+            const std::int32_t k = m_.child_start[at(i) + 1];
+            m_.child_start[at(i) + 1] += m_.child_start[at(i)];
+            m_.pair_start[at(i) + 1] = m_.pair_start[at(i)] + k * (k - 1) / 2;
+            s_.max_children = std::max(s_.max_children, k);
+        }
+        s_.n_pairs = m_.pair_start[at(s_.n_atoms)];
+        m_.child.resize(at(s_.n_tree));
+        Numbers next(m_.child_start.begin(), m_.child_start.end() - 1);
+        for (std::int32_t k = 0; k < s_.n_tree; ++k) m_.child[at(next[at(m_.parent[at(k)])]++)] = k;
+    }
+
+    // Which bonds meet at each atom of the core, and the factor's pattern.
+    void list_meetings() {
+        Lists meet = invert(s_.n_core_atoms, s_.n_core,
+                            [&](std::int32_t p, int end) { return (end ? m_.to : m_.from)[at(p)] - s_.n_tree; });
+        std::vector<Numbers> neighbours(at(s_.n_core));
+        s_.max_core_bonds = 0;
+        for (std::int32_t c = 0; c < s_.n_core_atoms; ++c) {
+            s_.max_core_bonds = std::max(s_.max_core_bonds, meet.size(c));
+            for (const std::int32_t *a = meet.begin(c); a != meet.end(c); ++a)
+                for (const std::int32_t *b = meet.begin(c); b != meet.end(c); ++b)
+                    if (a != b) neighbours[at(*a)].push_back(*b);
+        }
+        Fill fill = fill_of(neighbours);
+        m_.column_start = std::move(fill.column_start);
+        m_.row = std::move(fill.row);
+        s_.n_entries = static_cast<std::int32_t>(m_.row.size());
+        m_.meet_pair_start.assign(1, 0);
+        for (std::int32_t c = 0; c < s_.n_core_atoms; ++c) {
+            for (const std::int32_t *a = meet.begin(c); a != meet.end(c); ++a)
+                for (const std::int32_t *b = meet.begin(c); b != a; ++b)
+                    m_.meet_pair.push_back(entry(std::max(*a, *b), std::min(*a, *b)));
+            m_.meet_pair_start.push_back(static_cast<std::int32_t>(m_.meet_pair.size()));
+        }
+        for (std::int32_t c = 0; c < s_.n_core_atoms; ++c)
+            for (std::int32_t m = meet.start[at(c)]; m < meet.start[at(c) + 1]; ++m) {
+                std::int32_t &p = meet.item[at(m)];
+                p = 2 * p + (m_.to[at(p)] == s_.n_tree + c ? 1 : 0);
+            }
+        m_.meet_start = std::move(meet.start);
+        m_.meet = std::move(meet.item);
+    }
+
+    std::int32_t entry(std::int32_t row, std::int32_t column) const {
+        const auto begin = m_.row.begin();
+        return static_cast<std::int32_t>(
+            std::lower_bound(begin + m_.column_start[at(column)], begin + m_.column_start[at(column) + 1], row) -
+            begin);
+    }
+
+    void list_updates() {
+        s_.max_column = 0;
+        m_.update_start.assign(1, 0);
+        for (std::int32_t p = 0; p < s_.n_core; ++p) {
+            const std::int32_t first = m_.column_start[at(p)], end = m_.column_start[at(p) + 1];
+            s_.max_column = std::max(s_.max_column, end - first);
+            for (std::int32_t a = first; a < end; ++a)
+                for (std::int32_t b = first; b < a; ++b) m_.update.push_back(entry(m_.row[at(a)], m_.row[at(b)]));
+            m_.update_start.push_back(static_cast<std::int64_t>(m_.update.size()));
+        }
+    }
+
+    Schedule &s_;
+    Schedule::Memory &m_;
+    const Lists bonds_;
+    Numbers upper_bond_;  // of the atoms of trees, by local atom; -1: a root, or of the core
+};
+
+void point_into(Schedule &s, const Schedule::Memory &m) {
+    s.atom_i = m.atom_i.data();
+    s.atom_j = m.atom_j.data();
+    s.fixed = m.fixed.data();
+    s.atom_of = m.atom_of.data();
+    s.slot_of = m.slot_of.data();
+    s.bond_of = m.bond_of.data();
+    s.place_of = m.place_of.data();
+    s.parent = m.parent.data();
+    s.child_start = m.child_start.data();
+    s.child = m.child.data();
+    s.pair_start = m.pair_start.data();
+    s.from = m.from.data();
+    s.to = m.to.data();
+    s.meet_start = m.meet_start.data();
+    s.meet = m.meet.data();
+    s.meet_pair = m.meet_pair.data();
+    s.meet_pair_start = m.meet_pair_start.data();
+    s.column_start = m.column_start.data();
+    s.row = m.row.data();
+    s.update_start = m.update_start.data();
+    s.update = m.update.data();
+}
+
+}  // namespace
+
+std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
+                                              const bool *fixed) {
+    std::unique_ptr<Schedule> s(new Schedule());
+    Schedule::Memory &m = *(s->memory = new Schedule::Memory());
+    s->n_atoms = n_atoms;
+    s->n_bonds = n_bonds;
+    for (std::int32_t k = 0; k < n_bonds; ++k) {
+        m.atom_i.push_back(pairs[2 * k]);
+        m.atom_j.push_back(pairs[2 * k + 1]);
+    }
+    for (std::int32_t i = 0; i < n_atoms; ++i) m.fixed.push_back(fixed && fixed[i]);
+    Maker(*s, m).make();
+    point_into(*s, m);
+    return s;
+}
+
+}  // namespace holonomic

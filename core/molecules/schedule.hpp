@@ -1,0 +1,19 @@
+// Makes the order of elimination of a molecule that is not a chain, once per shape.
+#ifndef HOLONOMIC_SCHEDULE_HPP
+#define HOLONOMIC_SCHEDULE_HPP
+
+#include <cstdint>
+#include <memory>
+
+#include "core/kernels/graph/schedule.hpp"
+
+namespace holonomic {
+
+// The molecule's bonds are pairs[n_bonds][2] of local atoms 0 .. n_atoms - 1; no pair twice, all atoms connected, fixed
+// atoms with one bond each. At least one bond. Takes O(n log n), and what the fill of the core costs.
+// Throws std::bad_alloc, and std::length_error where the core fills up to 2^31 entries.
+std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
+                                              const bool *fixed);
+
+}  // namespace holonomic
+#endif
