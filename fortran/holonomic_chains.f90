@@ -59,7 +59,7 @@ contains
          if (problem%none()) call problem%ask(hol_chains_set_index_base(self%handle, 1_c_int))
          self%is_owner = problem%none()
       end if
-      call settle(problem, stat, errmsg)
+      call settle(problem, "create", stat, errmsg)
    end subroutine
 
    ! A copy made by assignment only forgets the chains: they belong to the variable that created them.
@@ -89,16 +89,17 @@ contains
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
       integer(c_int64_t) :: n_bonds
+      call problem%need_created(self%handle)
       n_bonds = size(atoms, kind=c_int64_t) - 1
       if (size(lengths, kind=c_int64_t) /= max(n_bonds, 0_c_int64_t)) then
-         call problem%set(HOL_ERR_VALUE, "add: "//decimal(size(lengths, kind=c_int64_t))//" lengths were given for "// &
+         call problem%set(HOL_ERR_VALUE, decimal(size(lengths, kind=c_int64_t))//" lengths were given for "// &
                           decimal(max(n_bonds, 0_c_int64_t))//" bonds")
       else if (n_bonds < 1) then
-         call problem%set(HOL_ERR_VALUE, "add: a chain needs at least two atoms")
+         call problem%set(HOL_ERR_VALUE, "a chain needs at least two atoms")
       else
          call problem%ask(hol_chains_add(self%handle, n_bonds, c_loc(atoms), c_loc(lengths)))
       end if
-      call settle(problem, stat, errmsg)
+      call settle(problem, "add", stat, errmsg)
    end subroutine
 
    subroutine add_list_32(self, atoms, lengths, stat, errmsg)
@@ -135,15 +136,16 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
+      call problem%need_created(self%handle)
       if (n_bonds < 1) then
-         call problem%set(HOL_ERR_VALUE, "add: n_bonds = "//decimal(n_bonds)//" must be at least 1")
+         call problem%set(HOL_ERR_VALUE, "n_bonds = "//decimal(n_bonds)//" must be at least 1")
       else if (size(lengths, kind=int64) /= n_bonds) then
-         call problem%set(HOL_ERR_VALUE, "add: "//decimal(size(lengths, kind=int64))//" lengths were given for "// &
+         call problem%set(HOL_ERR_VALUE, decimal(size(lengths, kind=int64))//" lengths were given for "// &
                           decimal(n_bonds)//" bonds")
       else
          call problem%ask(hol_chains_add_block(self%handle, n_chains, n_bonds, first_atom, c_loc(lengths)))
       end if
-      call settle(problem, stat, errmsg)
+      call settle(problem, "add", stat, errmsg)
    end subroutine
 
    subroutine add_block_32(self, n_chains, n_bonds, first_atom, lengths, stat, errmsg)

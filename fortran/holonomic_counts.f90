@@ -62,9 +62,10 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
+      call problem%need_created(self%c_handle())
       if (enough("offsets", size(first_bond, kind=int64), self%n_chains() + 1, "chains and the end", problem)) &
          call problem%ask(hol_chains_offsets(self%c_handle(), c_loc(first_bond)))
-      call settle(problem, stat, errmsg)
+      call settle(problem, "offsets", stat, errmsg)
    end subroutine
 
    ! list(n_bonds + n_chains): the atoms of all chains, chain after chain, each in order. Chain c begins at element
@@ -78,10 +79,11 @@ contains
       integer(int64) :: chain
       integer :: trouble
       type(failure) :: problem
+      call problem%need_created(self%c_handle())
       if (enough("atoms", size(list, kind=int64), self%n_bonds() + self%n_chains(), "atoms", problem)) then
          allocate (first_bond(self%n_chains() + 1), stat=trouble)
          if (trouble /= 0) then
-            call problem%set(HOL_ERR_MEMORY, "atoms: out of memory")
+            call problem%set(HOL_ERR_MEMORY, "out of memory")
          else
             call problem%ask(hol_chains_offsets(self%c_handle(), c_loc(first_bond)))
             do chain = 1, self%n_chains()
@@ -90,7 +92,7 @@ contains
             end do
          end if
       end if
-      call settle(problem, stat, errmsg)
+      call settle(problem, "atoms", stat, errmsg)
    end subroutine
 
 end module

@@ -37,7 +37,7 @@ contains
       call at_v%rows_64(self%n_atoms(), problem, "v", v)
       call at_f%rows_64(self%n_atoms(), problem, "f", f)
       call at_g%rows_64(self%n_atoms(), problem, "g", g)
-      call forces_at(self, problem, at_r, at_v, at_f, lambda, tension, at_g, add, virial, stat, errmsg)
+      call forces_at(self, "forces", problem, at_r, at_v, at_f, lambda, tension, at_g, add, virial, stat, errmsg)
    end subroutine
 
    recursive subroutine forces_rows_32(self, r, v, f, lambda, tension, g, add, virial, stat, errmsg)
@@ -56,7 +56,7 @@ contains
       call at_v%rows_32(self%n_atoms(), problem, "v", v)
       call at_f%rows_32(self%n_atoms(), problem, "f", f)
       call at_g%rows_32(self%n_atoms(), problem, "g", g)
-      call forces_at(self, problem, at_r, at_v, at_f, lambda, tension, at_g, add, virial, stat, errmsg)
+      call forces_at(self, "forces", problem, at_r, at_v, at_f, lambda, tension, at_g, add, virial, stat, errmsg)
    end subroutine
 
    recursive subroutine forces_parts_64(self, x, y, z, vx, vy, vz, fx, fy, fz, lambda, tension, gx, gy, gz, add, &
@@ -76,7 +76,7 @@ contains
       call at_v%parts_64(self%n_atoms(), problem, "v*", vx, vy, vz)
       call at_f%parts_64(self%n_atoms(), problem, "f*", fx, fy, fz)
       call at_g%parts_64(self%n_atoms(), problem, "g*", gx, gy, gz)
-      call forces_at(self, problem, at_r, at_v, at_f, lambda, tension, at_g, add, virial, stat, errmsg)
+      call forces_at(self, "forces", problem, at_r, at_v, at_f, lambda, tension, at_g, add, virial, stat, errmsg)
    end subroutine
 
    recursive subroutine forces_parts_32(self, x, y, z, vx, vy, vz, fx, fy, fz, lambda, tension, gx, gy, gz, add, &
@@ -96,7 +96,7 @@ contains
       call at_v%parts_32(self%n_atoms(), problem, "v*", vx, vy, vz)
       call at_f%parts_32(self%n_atoms(), problem, "f*", fx, fy, fz)
       call at_g%parts_32(self%n_atoms(), problem, "g*", gx, gy, gz)
-      call forces_at(self, problem, at_r, at_v, at_f, lambda, tension, at_g, add, virial, stat, errmsg)
+      call forces_at(self, "forces", problem, at_r, at_v, at_f, lambda, tension, at_g, add, virial, stat, errmsg)
    end subroutine
 
    recursive subroutine add_forces_rows_64(self, r, v, f, lambda, tension, virial, stat, errmsg)
@@ -113,7 +113,8 @@ contains
       call at_r%rows_64(self%n_atoms(), problem, "r", r)
       call at_v%rows_64(self%n_atoms(), problem, "v", v)
       call at_f%rows_64(self%n_atoms(), problem, "f", f)
-      call forces_at(self, problem, at_r, at_v, at_f, lambda, tension, at_f, .true., virial, stat, errmsg)
+      call forces_at(self, "add_forces", problem, at_r, at_v, at_f, lambda, tension, at_f, .true., virial, &
+                     stat, errmsg)
    end subroutine
 
    recursive subroutine add_forces_rows_32(self, r, v, f, lambda, tension, virial, stat, errmsg)
@@ -130,7 +131,8 @@ contains
       call at_r%rows_32(self%n_atoms(), problem, "r", r)
       call at_v%rows_32(self%n_atoms(), problem, "v", v)
       call at_f%rows_32(self%n_atoms(), problem, "f", f)
-      call forces_at(self, problem, at_r, at_v, at_f, lambda, tension, at_f, .true., virial, stat, errmsg)
+      call forces_at(self, "add_forces", problem, at_r, at_v, at_f, lambda, tension, at_f, .true., virial, &
+                     stat, errmsg)
    end subroutine
 
    recursive subroutine add_forces_parts_64(self, x, y, z, vx, vy, vz, fx, fy, fz, lambda, tension, virial, &
@@ -149,7 +151,8 @@ contains
       call at_r%parts_64(self%n_atoms(), problem, "*", x, y, z)
       call at_v%parts_64(self%n_atoms(), problem, "v*", vx, vy, vz)
       call at_f%parts_64(self%n_atoms(), problem, "f*", fx, fy, fz)
-      call forces_at(self, problem, at_r, at_v, at_f, lambda, tension, at_f, .true., virial, stat, errmsg)
+      call forces_at(self, "add_forces", problem, at_r, at_v, at_f, lambda, tension, at_f, .true., virial, &
+                     stat, errmsg)
    end subroutine
 
    recursive subroutine add_forces_parts_32(self, x, y, z, vx, vy, vz, fx, fy, fz, lambda, tension, virial, &
@@ -168,11 +171,14 @@ contains
       call at_r%parts_32(self%n_atoms(), problem, "*", x, y, z)
       call at_v%parts_32(self%n_atoms(), problem, "v*", vx, vy, vz)
       call at_f%parts_32(self%n_atoms(), problem, "f*", fx, fy, fz)
-      call forces_at(self, problem, at_r, at_v, at_f, lambda, tension, at_f, .true., virial, stat, errmsg)
+      call forces_at(self, "add_forces", problem, at_r, at_v, at_f, lambda, tension, at_f, .true., virial, &
+                     stat, errmsg)
    end subroutine
 
-   recursive subroutine forces_at(self, problem, at_r, at_v, at_f, lambda, tension, at_g, add, virial, stat, errmsg)
+   recursive subroutine forces_at(self, procedure, problem, at_r, at_v, at_f, lambda, tension, at_g, add, virial, &
+                                  stat, errmsg)
       class(chain_set_forces), intent(in) :: self
+      character(*), intent(in) :: procedure
       type(failure), intent(inout) :: problem
       type(place), intent(in), target :: at_r, at_v, at_f, at_g
       real(real64), intent(inout), optional, contiguous, target :: lambda(:), tension(:)
@@ -182,6 +188,7 @@ contains
       character(*), intent(inout), optional :: errmsg
       type(c_ptr) :: at_lambda, at_tension
       integer(c_int) :: mode
+      call problem%need_created(self%c_handle())
       mode = HOL_WRITE
       if (present(add)) mode = merge(HOL_ADD, HOL_WRITE, add)
       at_lambda = list_of(lambda, "lambda", self%n_bonds(), "bonds", problem)
@@ -191,7 +198,7 @@ contains
                                           at_tension, at_g%address(), mode, tensor(virial)))
          call at_g%give_back()
       end if
-      call settle(problem, stat, errmsg)
+      call settle(problem, procedure, stat, errmsg)
    end subroutine
 
 end module

@@ -5,7 +5,7 @@ module holonomic_inverse
    use, intrinsic :: iso_fortran_env, only: int64, real32, real64
    use holonomic_c, only: hol_chains_n_atoms, hol_inverse_band, hol_inverse_condition, hol_inverse_create_view, &
                           hol_inverse_destroy, hol_inverse_entry, hol_inverse_error_bound_view, hol_inverse_matrix, &
-                          hol_inverse_n_bonds, hol_inverse_row, HOL_ERR_VALUE, HOL_UNIT_DIAGONAL
+                          hol_inverse_n_bonds, hol_inverse_row, HOL_ERR_NULL, HOL_ERR_VALUE, HOL_UNIT_DIAGONAL
    use holonomic_chains, only: chain_set
    use holonomic_place, only: decimal, enough, list_of, number_at, place
    use holonomic_status, only: failure, settle
@@ -98,6 +98,8 @@ contains
       type(place), intent(in), target :: at_r
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
+      if (.not. c_associated(chains%c_handle())) &
+         call problem%set(HOL_ERR_NULL, "create has not been called for the chains")
       if (c_associated(self%handle)) call problem%set(HOL_ERR_VALUE, "this inverse has been created already; " &
                                                       //"destroy it first")
       if (problem%none()) then
@@ -105,7 +107,7 @@ contains
          self%is_owner = problem%none()
          self%n_atoms = hol_chains_n_atoms(chains%c_handle())
       end if
-      call settle(problem, stat, errmsg)
+      call settle(problem, "create", stat, errmsg)
    end subroutine
 
    impure elemental subroutine destroy(self)
@@ -147,8 +149,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
+      call problem%need_created(self%handle)
       call problem%ask(hol_inverse_entry(self%handle, chosen(scaling), int(i, c_int64_t), int(j, c_int64_t), c_loc(value)))
-      call settle(problem, stat, errmsg)
+      call settle(problem, "entry", stat, errmsg)
    end subroutine
 
    recursive subroutine row(self, i, values, scaling, stat, errmsg)
@@ -159,9 +162,10 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
+      call problem%need_created(self%handle)
       if (enough("values", size(values, kind=c_int64_t), self%n_bonds(), "bonds", problem)) call problem%ask( &
          hol_inverse_row(self%handle, chosen(scaling), int(i, c_int64_t), c_loc(values)))
-      call settle(problem, stat, errmsg)
+      call settle(problem, "row", stat, errmsg)
    end subroutine
 
    ! band(0:width, n_bonds): element (i, i + k) at band(k, i), 0 where i + k is past the last bond.
@@ -172,9 +176,10 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
+      call problem%need_created(self%handle)
       if (enough("the second dimension of values", size(values, 2, c_int64_t), self%n_bonds(), "bonds", problem)) &
          call problem%ask(hol_inverse_band(self%handle, chosen(scaling), size(values, 1, c_int64_t) - 1, c_loc(values)))
-      call settle(problem, stat, errmsg)
+      call settle(problem, "band", stat, errmsg)
    end subroutine
 
    recursive subroutine matrix(self, values, scaling, stat, errmsg)
@@ -184,12 +189,13 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
+      call problem%need_created(self%handle)
       if (any(shape(values, c_int64_t) /= self%n_bonds())) then
          call problem%set(HOL_ERR_VALUE, "values must be of "//decimal(self%n_bonds())//" rows and columns")
       else
          call problem%ask(hol_inverse_matrix(self%handle, chosen(scaling), c_loc(values)))
       end if
-      call settle(problem, stat, errmsg)
+      call settle(problem, "matrix", stat, errmsg)
    end subroutine
 
    recursive subroutine condition(self, value, stat, errmsg)
@@ -198,8 +204,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
+      call problem%need_created(self%handle)
       call problem%ask(hol_inverse_condition(self%handle, c_loc(value)))
-      call settle(problem, stat, errmsg)
+      call settle(problem, "condition", stat, errmsg)
    end subroutine
 
    ! Without velocities and applied forces.
@@ -289,11 +296,12 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(c_ptr) :: at_lambda, at_bound
+      call problem%need_created(self%handle)
       at_lambda = list_of(lambda, "lambda", self%n_bonds(), "bonds", problem)
       at_bound = list_of(bound, "bound", self%n_bonds(), "bonds", problem)
       if (problem%none()) call problem%ask(hol_inverse_error_bound_view(self%handle, at_v%address(), at_f%address(), &
                                                                         at_lambda, at_bound, number_at(relative)))
-      call settle(problem, stat, errmsg)
+      call settle(problem, "error_bound", stat, errmsg)
    end subroutine
 
 end module

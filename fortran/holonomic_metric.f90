@@ -101,6 +101,7 @@ contains
       type(c_ptr) :: at_log_det, at_log_det_z
       real(real64) :: thermal
       integer(c_int) :: mode
+      call problem%need_created(self%c_handle())
       mode = HOL_WRITE
       if (present(add)) mode = merge(HOL_ADD, HOL_WRITE, add)
       thermal = 0
@@ -116,7 +117,7 @@ contains
                                           number_at(energy), at_force%address(), mode))
          call at_force%give_back()
       end if
-      call settle(problem, stat, errmsg)
+      call settle(problem, "metric", stat, errmsg)
    end subroutine
 
 end module

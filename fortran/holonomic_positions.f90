@@ -13,7 +13,9 @@ module holonomic_positions
    type, extends(chain_set_velocities) :: chain_set_positions
    contains
       procedure, private :: positions_rows_32, positions_rows_64, positions_parts_32, positions_parts_64
-      generic :: project_positions => positions_rows_32, positions_rows_64, positions_parts_32, positions_parts_64
+      procedure, private :: positions_rows_32_short, positions_parts_32_short   ! dt of single precision, too
+      generic :: project_positions => positions_rows_32, positions_rows_64, positions_parts_32, positions_parts_64, &
+         positions_rows_32_short, positions_parts_32_short
    end type
 
 contains
@@ -104,6 +106,40 @@ contains
       call project_at(self, problem, at_ref, at_r, dt, at_v, lambda, guess, virial, report, stat, errmsg)
    end subroutine
 
+   recursive subroutine positions_rows_32_short(self, r_ref, r, dt, v, lambda, guess, virial, report, stat, errmsg)
+      class(chain_set_positions), intent(in) :: self
+      real(real32), intent(in), target :: r_ref(:, :)
+      real(real32), intent(inout), target :: r(:, :)
+      real(real32), intent(in) :: dt
+      real(real32), intent(inout), optional, target :: v(:, :)
+      real(real64), intent(inout), optional, contiguous, target :: lambda(:)
+      logical, intent(in), optional :: guess
+      real(real64), intent(inout), optional, target :: virial(3, 3)
+      type(hol_report), intent(inout), optional, target :: report
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      call self%project_positions(r_ref, r, real(dt, real64), v, lambda, guess, virial, report, stat, errmsg)
+   end subroutine
+
+   recursive subroutine positions_parts_32_short(self, x_ref, y_ref, z_ref, x, y, z, dt, vx, vy, vz, lambda, guess, &
+                                                 virial, report, stat, errmsg)
+      class(chain_set_positions), intent(in) :: self
+      real(real32), intent(in), target :: x_ref(:), y_ref(:)
+      real(real32), intent(in), optional, target :: z_ref(:)
+      real(real32), intent(inout), target :: x(:), y(:)
+      real(real32), intent(inout), optional, target :: z(:)
+      real(real32), intent(in) :: dt
+      real(real32), intent(inout), optional, target :: vx(:), vy(:), vz(:)
+      real(real64), intent(inout), optional, contiguous, target :: lambda(:)
+      logical, intent(in), optional :: guess
+      real(real64), intent(inout), optional, target :: virial(3, 3)
+      type(hol_report), intent(inout), optional, target :: report
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      call self%project_positions(x_ref, y_ref, z_ref, x, y, z, real(dt, real64), vx, vy, vz, lambda, guess, virial, &
+                                  report, stat, errmsg)
+   end subroutine
+
    recursive subroutine project_at(self, problem, at_ref, at_r, dt, at_v, lambda, guess, virial, report, stat, errmsg)
       class(chain_set_positions), intent(in) :: self
       type(failure), intent(inout) :: problem
@@ -117,6 +153,7 @@ contains
       character(*), intent(inout), optional :: errmsg
       type(c_ptr) :: at_lambda, at_report
       integer(c_int) :: has_guess
+      call problem%need_created(self%c_handle())
       has_guess = 0
       if (present(guess)) has_guess = merge(1_c_int, 0_c_int, guess)
       at_lambda = list_of(lambda, "lambda", self%n_bonds(), "bonds", problem)
@@ -129,7 +166,7 @@ contains
          call at_r%give_back()
          call at_v%give_back()
       end if
-      call settle(problem, stat, errmsg)
+      call settle(problem, "project_positions", stat, errmsg)
    end subroutine
 
 end module

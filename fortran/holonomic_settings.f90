@@ -31,8 +31,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
+      call problem%need_created(self%c_handle())
       call problem%ask(hol_chains_set_box(self%c_handle(), tensor(box)))
-      call settle(problem, stat, errmsg)
+      call settle(problem, "set_box", stat, errmsg)
    end subroutine
 
    ! An orthorhombic box by its three edges; an edge of zero: not periodic along that axis.
@@ -56,8 +57,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
+      call problem%need_created(self%c_handle())
       call problem%ask(hol_chains_set_threads(self%c_handle(), int(n_threads, c_int)))
-      call settle(problem, stat, errmsg)
+      call settle(problem, "set_threads", stat, errmsg)
    end subroutine
 
    ! Without an argument all chains are active.
@@ -69,18 +71,19 @@ contains
       integer(c_signed_char), allocatable, target :: flags(:)
       type(failure) :: problem
       integer :: trouble
+      call problem%need_created(self%c_handle())
       if (.not. present(active)) then
          call problem%ask(hol_chains_set_active(self%c_handle(), c_null_ptr))
       else if (enough("active", size(active, kind=c_int64_t), hol_chains_n_chains(self%c_handle()), "chains", problem)) then
          allocate (flags(max(1, size(active))), stat=trouble)
          if (trouble /= 0) then
-            call problem%set(HOL_ERR_MEMORY, "set_active: out of memory")
+            call problem%set(HOL_ERR_MEMORY, "out of memory")
          else
             flags(:size(active)) = merge(1_c_signed_char, 0_c_signed_char, active)
             call problem%ask(hol_chains_set_active(self%c_handle(), c_loc(flags)))
          end if
       end if
-      call settle(problem, stat, errmsg)
+      call settle(problem, "set_active", stat, errmsg)
    end subroutine
 
    subroutine set_tolerance(self, tolerance, stat, errmsg)
@@ -89,8 +92,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
+      call problem%need_created(self%c_handle())
       call problem%ask(hol_chains_set_tolerance(self%c_handle(), tolerance))
-      call settle(problem, stat, errmsg)
+      call settle(problem, "set_tolerance", stat, errmsg)
    end subroutine
 
    subroutine set_max_iterations(self, max_iterations, stat, errmsg)
@@ -99,8 +103,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
+      call problem%need_created(self%c_handle())
       call problem%ask(hol_chains_set_max_iterations(self%c_handle(), int(max_iterations, c_int)))
-      call settle(problem, stat, errmsg)
+      call settle(problem, "set_max_iterations", stat, errmsg)
    end subroutine
 
 end module

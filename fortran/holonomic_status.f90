@@ -2,8 +2,8 @@
 ! a hol_status in it (0 on success) and the reason in `errmsg`, which a success leaves alone; if `stat` is absent a
 ! failure stops the program with the reason.
 module holonomic_status
-   use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_int, c_ptr, c_size_t
-   use holonomic_c, only: hol_error_message, HOL_OK
+   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_int, c_ptr, c_size_t
+   use holonomic_c, only: hol_error_message, HOL_ERR_NULL, HOL_OK
    implicit none
    private
    public :: failure, settle, text_of
@@ -16,6 +16,7 @@ module holonomic_status
    contains
       procedure :: none
       procedure :: set
+      procedure :: need_created
       procedure :: ask
    end type
 
@@ -43,13 +44,21 @@ contains
       self%message = message
    end subroutine
 
-   ! Takes over the status of a C function, and its message if it failed.
+   ! To be called first: of what C then says about NULL nothing is kept.
+   recursive subroutine need_created(self, handle)
+      class(failure), intent(inout) :: self
+      type(c_ptr), intent(in) :: handle
+      if (.not. c_associated(handle)) call self%set(HOL_ERR_NULL, "create has not been called")
+   end subroutine
+
+   ! Takes over the status of a C function, and its message if it failed, without the name of that function: `settle`
+   ! names the procedure that the caller knows.
    recursive subroutine ask(self, status)
       class(failure), intent(inout) :: self
       integer(c_int), intent(in) :: status
       character(kind=c_char), pointer :: letters(:)
       type(c_ptr) :: text
-      integer :: i
+      integer :: i, behind
       if (status == HOL_OK .or. .not. self%none()) return
       self%status = status
       self%message = ""
@@ -58,16 +67,27 @@ contains
       do i = 1, min(size(letters), len(self%message))
          self%message(i:i) = letters(i)
       end do
+      behind = verify(self%message, "abcdefghijklmnopqrstuvwxyz_")
+      if (self%message(:4) /= "hol_" .or. self%message(behind:behind + 1) /= ": ") return
+      self%message = self%message(behind + 2:)
    end subroutine
 
-   recursive subroutine settle(problem, stat, errmsg)
+   ! The end of every procedure; `procedure` is its name, which stands before the message.
+   recursive subroutine settle(problem, procedure, stat, errmsg)
       type(failure), intent(in) :: problem
+      character(*), intent(in) :: procedure
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
+      character(len(problem%message) + 40) :: text   ! not an expression: there may be no memory left for one
+      integer :: n
       if (present(stat)) stat = int(problem%status)
       if (problem%none()) return
-      if (.not. present(stat)) error stop "holonomic: "//trim(problem%message)
-      if (present(errmsg)) errmsg = problem%message
+      n = len(procedure)
+      text = procedure
+      text(n + 1:n + 2) = ": "
+      text(n + 3:) = problem%message
+      if (.not. present(stat)) error stop "holonomic: "//trim(text)
+      if (present(errmsg)) errmsg = text
    end subroutine
 
    ! A Fortran copy of a C string.

@@ -51,7 +51,7 @@ contains
       type(failure) :: problem
       if (enough("omega2", size(omega2, kind=c_int64_t), rows(gamma), "rows", problem)) &
          call ask(problem, hol_tridiagonal_pivots(rows(gamma), at_gamma(gamma), c_loc(omega2)))
-      call settle(problem, stat, errmsg)
+      call settle(problem, "hol_tridiagonal_pivots", stat, errmsg)
    end subroutine
 
    recursive subroutine log_det(gamma, value, stat, errmsg)
@@ -61,7 +61,7 @@ contains
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
       call ask(problem, hol_tridiagonal_log_det(rows(gamma), at_gamma(gamma), c_loc(value)))
-      call settle(problem, stat, errmsg)
+      call settle(problem, "hol_tridiagonal_log_det", stat, errmsg)
    end subroutine
 
    recursive subroutine solve(gamma, b, x, stat, errmsg)
@@ -74,7 +74,7 @@ contains
       at_b = list_of(b, "b", rows(gamma), "rows", problem)
       at_x = list_of(x, "x", rows(gamma), "rows", problem)
       if (problem%none()) call ask(problem, hol_tridiagonal_solve(rows(gamma), at_gamma(gamma), at_b, at_x))
-      call settle(problem, stat, errmsg)
+      call settle(problem, "hol_tridiagonal_solve", stat, errmsg)
    end subroutine
 
    recursive subroutine inverse_entry(gamma, i, j, value, stat, errmsg)
@@ -91,7 +91,7 @@ contains
          call ask(problem, hol_tridiagonal_inverse_entry(rows(gamma), at_gamma(gamma), i - 1_c_int64_t, &
                                                          j - 1_c_int64_t, c_loc(value)))
       end if
-      call settle(problem, stat, errmsg)
+      call settle(problem, "hol_tridiagonal_inverse_entry", stat, errmsg)
    end subroutine
 
    ! band(0:width, rows): element (i, i + k) at band(k, i), 0 where i + k is past the last row.
@@ -104,7 +104,7 @@ contains
       if (enough("the second dimension of band", size(band, 2, c_int64_t), rows(gamma), "rows", problem)) &
          call ask(problem, hol_tridiagonal_inverse_band(rows(gamma), at_gamma(gamma), size(band, 1, c_int64_t) - 1, &
                                                         c_loc(band)))
-      call settle(problem, stat, errmsg)
+      call settle(problem, "hol_tridiagonal_inverse_band", stat, errmsg)
    end subroutine
 
    recursive subroutine partition_of_masses(masses, log_he, log_rigid, log_volume, stat, errmsg)
@@ -127,7 +127,7 @@ contains
          end if
          call problem%ask(status)
       end if
-      call settle(problem, stat, errmsg)
+      call settle(problem, "hol_partition_function", stat, errmsg)
    end subroutine
 
    recursive subroutine partition_of_equal_masses(n_bonds, log_he, log_rigid, log_volume, stat, errmsg)
@@ -138,7 +138,7 @@ contains
       type(failure) :: problem
       call problem%ask(hol_partition_function(int(n_bonds, c_int64_t), c_null_ptr, number_at(log_he), &
                                               number_at(log_rigid), number_at(log_volume)))
-      call settle(problem, stat, errmsg)
+      call settle(problem, "hol_partition_function", stat, errmsg)
    end subroutine
 
 end module

@@ -91,13 +91,14 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(c_ptr) :: at_lambda
+      call problem%need_created(self%c_handle())
       at_lambda = list_of(lambda, "lambda", self%n_bonds(), "bonds", problem)
       if (problem%none()) then
          call problem%ask(hol_project_velocities_view(self%c_handle(), at_r%address(), at_v%address(), at_lambda, &
                                                       tensor(virial)))
          call at_v%give_back()
       end if
-      call settle(problem, stat, errmsg)
+      call settle(problem, "project_velocities", stat, errmsg)
    end subroutine
 
 end module

@@ -81,9 +81,10 @@ contains
       type(hol_worst), intent(inout), target :: worst
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
+      call problem%need_created(self%c_handle())
       if (problem%none()) &
          call problem%ask(hol_violation_view(self%c_handle(), at_r%address(), at_v%address(), c_loc(worst)))
-      call settle(problem, stat, errmsg)
+      call settle(problem, "violation", stat, errmsg)
    end subroutine
 
 end module

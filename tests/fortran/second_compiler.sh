@@ -35,7 +35,7 @@ link() { # link PROGRAM SOURCE... OBJECT...
 }
 
 for test in test_oracle.f90 test_layouts.f90 test_arguments.f90 test_levels.f90 test_metric.f90 test_integrators.f90 \
-    test_lifecycle.f90 test_fixed.f; do
+    test_lifecycle.f90 test_fixed.f test_old_arrays.f; do
     extra=
     [ $test != test_lifecycle.f90 ] || extra=c_side.obj
     # shellcheck disable=SC2086
@@ -48,7 +48,7 @@ done
 # shellcheck disable=SC2086
 link stops "$tests/stops.f90" $module
 if ./stops >output 2>errors; then echo "stops.f90 went on after an error"; exit 1; fi
-grep 'holonomic: atom 3, .*outside 1 .. 2' errors
+grep 'holonomic: add: atom 3, .*outside 1 .. 2' errors
 
 example() { # example NAME SOURCE...
     name=$1

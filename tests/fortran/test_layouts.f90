@@ -184,7 +184,8 @@ contains
    end subroutine
 
    subroutine single_precision()
-      real(real32), dimension(3, n) :: r4, v4, g4, a4
+      real(real32), dimension(3, n) :: r4, v4, g4, a4, b4, u4
+      real(real32), parameter :: dt4 = 0.0078125_real32   ! 2^-7, the same in both precisions
       real(real32), dimension(n) :: x4, y4, z4
       real(real64), dimension(3, n) :: g8
       real(real64), dimension(n - 1) :: lambda4, lambda8
@@ -208,6 +209,19 @@ contains
       call chains%project_velocities(a4, v4)
       call chains%violation(a4, v4, worst4)
       call check(worst4%rate < 8*epsilon(1.0_real32), "velocities too")
+      a4 = r4 + dt4*v4
+      b4 = a4
+      u4 = v4
+      call chains%project_positions(r4, a4, dt4, v4)
+      call chains%project_positions(r4, b4, real(dt4, real64), u4)
+      call check(all(same_bits(a4, b4)) .and. all(same_bits(v4, u4)), "dt of either precision")
+      x4 = r4(1, :) + dt4*u4(1, :)
+      y4 = r4(2, :) + dt4*u4(2, :)
+      z4 = r4(3, :) + dt4*u4(3, :)
+      a4 = r4 + dt4*u4
+      call chains%project_positions(r4(1, :), r4(2, :), r4(3, :), x4, y4, z4, dt4)
+      call chains%project_positions(r4, a4, dt4)
+      call check(all(same_bits(x4, a4(1, :))) .and. all(same_bits(z4, a4(3, :))), "of separate arrays, too")
    end subroutine
 
    subroutine two_dimensions()
