@@ -63,10 +63,33 @@ if(HOLONOMIC_BUILD_FORTRAN)
     pkgconfig_folder(PC_FMODDIR "${HOLONOMIC_FORTRAN_MODULE_DIR}")
     set(PC_FMODDIR_LINE "\nfmoddir=${PC_FMODDIR}")
 endif()
+
+# The loader finds a library below /usr by itself. From any other prefix a program needs to be told where its library is:
+# most have never been heard of by the loader, and it hears of /usr/local only by ldconfig, on some systems never. Which
+# prefix it is turns out when the library is installed, so that there are two sets of files to choose from.
+set(PC_RPATH)
 foreach(name IN LISTS pc_files)
-    configure_file(cmake/${name}.pc.in ${name}.pc @ONLY)
-    install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc DESTINATION ${pkgconfig_dir})
+    configure_file(cmake/${name}.pc.in pkgconfig/found_by_the_loader/${name}.pc @ONLY)
 endforeach()
+if(BUILD_SHARED_LIBS)
+    set(PC_RPATH " -Wl,-rpath,\${libdir}")
+endif()
+foreach(name IN LISTS pc_files)
+    configure_file(cmake/${name}.pc.in pkgconfig/elsewhere/${name}.pc @ONLY)
+endforeach()
+set(full_pkgconfig ${pkgconfig_dir})
+if(NOT IS_ABSOLUTE ${pkgconfig_dir})
+    set(full_pkgconfig "\${CMAKE_INSTALL_PREFIX}/${pkgconfig_dir}")
+endif()
+install(CODE "
+    set(kind elsewhere)
+    if(CMAKE_INSTALL_PREFIX MATCHES \"^/*(usr)?/*$\")
+        set(kind found_by_the_loader)
+    endif()
+    foreach(name IN ITEMS ${pc_files})
+        file(INSTALL DESTINATION \"${full_pkgconfig}\" TYPE FILE FILES
+            \"${CMAKE_CURRENT_BINARY_DIR}/pkgconfig/\${kind}/\${name}.pc\")
+    endforeach()")
 
 # ----------------------------------------------------------------------------------------------------- CMake package
 configure_package_config_file(cmake/holonomic-config.cmake.in holonomic-config.cmake

@@ -78,7 +78,7 @@ if [ $language != fortran ] && echo "$needed" | grep -q fortran; then
     exit 1
 fi
 
-LD_LIBRARY_PATH=$libdir ./program >printed
+./program >printed
 cat >expected <<END
 holonomic $version
 tension 1.000 forces 1.000 -1.000

@@ -1,0 +1,67 @@
+#!/bin/sh
+# Runs README's commands as they stand, in a home directory that neither pkg-config nor the loader knows: what it builds
+# must run and print what README says.
+#
+#   run_readme.sh README BUILD LIBDIR WORK LANGUAGE...        LANGUAGE: c, fortran
+#       BUILD   a build of the library: README's own commands to configure and build are taken as done there
+#       LIBDIR  folder of libraries in a prefix; README says lib
+# CC, FC, CMAKE and PKG_CONFIG name the programs to use.
+set -eu
+readme=$1 build=$2 libdir=$3 work=$4
+shift 4
+unset CPATH C_INCLUDE_PATH LIBRARY_PATH LD_LIBRARY_PATH LD_RUN_PATH LD_PRELOAD PKG_CONFIG_PATH PKG_CONFIG_LIBDIR || :
+rm -rf "$work"
+mkdir -p "$work/bin" "$work/home"
+cd "$work"
+HOME=$work/home PATH=$work/bin:$PATH
+export HOME PATH
+
+stand_in() { # stand_in NAME PROGRAM: what README calls NAME
+    printf '#!/bin/sh\nexec %s "$@"\n' "$2" >"bin/$1"
+    chmod +x "bin/$1"
+}
+stand_in cc "$CC"
+stand_in gfortran "$FC"
+stand_in pkg-config "$PKG_CONFIG"
+cat >bin/cmake <<END
+#!/bin/sh
+case "\$1 \$2" in
+    "-S ." | "--build build") ;;
+    "--install build") shift 2 && exec "$CMAKE" --install "$build" "\$@" ;;
+    *) echo "README asks cmake for something else: \$*" && exit 1 ;;
+esac
+END
+chmod +x bin/cmake
+
+# What is indented in a section, outside of programs; of the programs, the first one.
+lines_of() {
+    awk -v title="## $1" '
+        /^```/ { program = !program }
+        /^## / && !program { inside = $0 == title }
+        inside && !program && /^    / { print substr($0, 5) }' "$readme"
+}
+program_in() {
+    awk -v start="^\`\`\`$1\$" '$0 ~ start { inside = 1; next } /^```/ && inside { exit } inside' "$readme"
+}
+
+lines_of Install | sed "s|\.local/lib/|.local/$libdir/|" >install.sh
+grep -q "^cmake " install.sh && grep -q "PKG_CONFIG_PATH" install.sh || { echo "README does not say how to install"; exit 1; }
+set +e
+. ./install.sh >installed.log 2>&1 || { cat installed.log; exit 1; }
+set -e
+
+for language in "$@"; do
+    case $language in
+        c) section=C ;;
+        fortran) section=Fortran ;;
+    esac
+    # The first line is the command, which names the program, and the others are what it prints.
+    lines_of "$section" | head -n 1 >command_line
+    lines_of "$section" | tail -n +2 >expected
+    program=$(sed 's/^[a-z]* \([a-z0-9.]*\) .*/\1/' command_line)
+    program_in "$language" >"$program"
+    [ -s "$program" ] && [ -s expected ] || { echo "README has no program in $language, or does not say what it prints"; exit 1; }
+    cat command_line
+    . ./command_line | tee printed
+    diff expected printed
+done
