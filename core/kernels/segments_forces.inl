@@ -104,7 +104,10 @@ static __attribute__((noinline)) void finish_segments(const SegmentBlock &s, boo
     for (; k0 >= full; k0 -= W) {
         for (int b = W - 1; b >= 0; --b) {
             const long k = k0 + b;
-            if (k < n) t = mul_add(x.kept[k].l, t, mul_add(x.kept[k].fP, ts, x.kept[k].u));
+            if (k == 0)  // a lane of fewer than W bonds: its separator is in this chunk
+                t = ts;
+            else if (k < n)
+                t = mul_add(x.kept[k].l, t, mul_add(x.kept[k].fP, ts, x.kept[k].u));
             value[b] = k <= n ? t : vec{};
         }
         load_ragged_chunk_of<none_, true, boxed>(own, box, in.r, in.r, in.r, k0, d, unused);
