@@ -87,7 +87,6 @@ debian_package() {
         lapack) echo liblapack-dev ;;
         openmm) echo libopenmm-dev ;;
         abidiff) echo abigail-tools ;;
-        dpkg-shlibdeps) echo dpkg-dev ;;
         *) echo "$1" ;;
     esac
 }
