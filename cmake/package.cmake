@@ -7,11 +7,11 @@ set(cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/holonomic)
 set(pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
 # ------------------------------------------------------------------------------------------------------------ files
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT licence)
 
-install(EXPORT holonomic-targets NAMESPACE holonomic:: DESTINATION ${cmake_dir})
+install(EXPORT holonomic-targets NAMESPACE holonomic:: DESTINATION ${cmake_dir} COMPONENT development)
 if(HOLONOMIC_BUILD_FORTRAN)
-    install(EXPORT holonomic-fortran-targets NAMESPACE holonomic:: DESTINATION ${cmake_dir})
+    install(EXPORT holonomic-fortran-targets NAMESPACE holonomic:: DESTINATION ${cmake_dir} COMPONENT development)
 endif()
 
 # ---------------------------------------------------------------------------------------------------- static linking
@@ -89,11 +89,11 @@ install(CODE "
     foreach(name IN ITEMS ${pc_files})
         file(INSTALL DESTINATION \"${full_pkgconfig}\" TYPE FILE FILES
             \"${CMAKE_CURRENT_BINARY_DIR}/pkgconfig/\${kind}/\${name}.pc\")
-    endforeach()")
+    endforeach()" COMPONENT development)
 
 # ----------------------------------------------------------------------------------------------------- CMake package
 configure_package_config_file(cmake/holonomic-config.cmake.in holonomic-config.cmake
     INSTALL_DESTINATION ${cmake_dir} NO_SET_AND_CHECK_MACRO)
 write_basic_package_version_file(holonomic-config-version.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/holonomic-config.cmake
-    ${CMAKE_CURRENT_BINARY_DIR}/holonomic-config-version.cmake DESTINATION ${cmake_dir})
+    ${CMAKE_CURRENT_BINARY_DIR}/holonomic-config-version.cmake DESTINATION ${cmake_dir} COMPONENT development)

@@ -4,7 +4,7 @@
 
 #define HOL_ISA plain
 #define HOL_LANES 2
-#include "core/kernels/compensated.hpp"
+#include "core/kernels/arithmetic/exact.hpp"
 #undef HOL_ISA
 #undef HOL_LANES
 

@@ -21,7 +21,7 @@ constexpr double epsilon = 2.220446049250313e-16;
 // size, and the bonds have been moved by the summands.
 constexpr std::int64_t most_solves = 5;
 
-// Newton's method on one long chain. The decisions are those of core/kernels/newton.inl.
+// Newton's method on one long chain. The decisions are those of core/kernels/newton/iterate.hpp.
 class LongNewton {
 public:
     LongNewton(const LongPositions &phases, const PositionsCall &call, const Lane &lane, const Team &team,

@@ -87,6 +87,7 @@ debian_package() {
         lapack) echo liblapack-dev ;;
         openmm) echo libopenmm-dev ;;
         abidiff) echo abigail-tools ;;
+        dpkg-shlibdeps) echo dpkg-dev ;;
         *) echo "$1" ;;
     esac
 }

@@ -3,40 +3,30 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "kernel_sets.hpp"
+
 namespace holonomic {
 
-namespace baseline {
-extern const Kernels kernels;
-}
-#ifdef HOLONOMIC_HAVE_AVX2
-namespace avx2 {
-extern const Kernels kernels;
-}
-#endif
-#ifdef HOLONOMIC_HAVE_AVX512
-namespace avx512 {
-extern const Kernels kernels;
-}
-#endif
+#define HOLONOMIC_DECLARE(isa, runs_here, tests_only) \
+    namespace isa {                                   \
+    extern const Kernels kernels;                     \
+    }
+HOLONOMIC_KERNEL_SETS(HOLONOMIC_DECLARE)
+#undef HOLONOMIC_DECLARE
 
 namespace {
 
 const Kernels &choose() {
-    const Kernels *available[3];
-    int n = 0;
-#ifdef HOLONOMIC_HAVE_AVX512
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
-        __builtin_cpu_supports("fma"))
-        available[n++] = &avx512::kernels;
-#endif
-#ifdef HOLONOMIC_HAVE_AVX2
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) available[n++] = &avx2::kernels;
-#endif
-    available[n++] = &baseline::kernels;
-    const char *wanted = std::getenv("HOLONOMIC_ISA");
-    for (int i = 0; wanted && i < n; ++i)
-        if (std::strcmp(wanted, available[i]->name) == 0) return *available[i];
-    return *available[0];
+    const char *const wanted = std::getenv("HOLONOMIC_ISA");
+    const Kernels *best = nullptr;
+#define HOLONOMIC_CONSIDER(isa, runs_here, tests_only)                                  \
+    if (runs_here) {                                                                    \
+        if (wanted && std::strcmp(wanted, isa::kernels.name) == 0) return isa::kernels; \
+        if (!best && !(tests_only)) best = &isa::kernels;                               \
+    }
+    HOLONOMIC_KERNEL_SETS(HOLONOMIC_CONSIDER)
+#undef HOLONOMIC_CONSIDER
+    return *best;
 }
 
 }  // namespace

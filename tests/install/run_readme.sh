@@ -7,6 +7,7 @@
 #       LIBDIR  folder of libraries in a prefix; README says lib
 # CC, FC, CMAKE and PKG_CONFIG name the programs to use.
 set -eu
+here=$(cd "$(dirname "$0")" && pwd)
 readme=$1 build=$2 libdir=$3 work=$4
 shift 4
 unset CPATH C_INCLUDE_PATH LIBRARY_PATH LD_LIBRARY_PATH LD_RUN_PATH LD_PRELOAD PKG_CONFIG_PATH PKG_CONFIG_LIBDIR || :
@@ -33,35 +34,12 @@ esac
 END
 chmod +x bin/cmake
 
-# What is indented in a section, outside of programs; of the programs, the first one.
-lines_of() {
-    awk -v title="## $1" '
-        /^```/ { program = !program }
-        /^## / && !program { inside = $0 == title }
-        inside && !program && /^    / { print substr($0, 5) }' "$readme"
-}
-program_in() {
-    awk -v start="^\`\`\`$1\$" '$0 ~ start { inside = 1; next } /^```/ && inside { exit } inside' "$readme"
-}
-
-lines_of Install | sed "s|\.local/lib/|.local/$libdir/|" >install.sh
+# What is indented in README's section on installing, outside of programs.
+awk '/^```/ { program = !program } /^## / && !program { inside = $0 == "## Install" }
+    inside && !program && /^    / { print substr($0, 5) }' "$readme" | sed "s|\.local/lib/|.local/$libdir/|" >install.sh
 grep -q "^cmake " install.sh && grep -q "PKG_CONFIG_PATH" install.sh || { echo "README does not say how to install"; exit 1; }
 set +e
 . ./install.sh >installed.log 2>&1 || { cat installed.log; exit 1; }
 set -e
 
-for language in "$@"; do
-    case $language in
-        c) section=C ;;
-        fortran) section=Fortran ;;
-    esac
-    # The first line is the command, which names the program, and the others are what it prints.
-    lines_of "$section" | head -n 1 >command_line
-    lines_of "$section" | tail -n +2 >expected
-    program=$(sed 's/^[a-z]* \([a-z0-9.]*\) .*/\1/' command_line)
-    program_in "$language" >"$program"
-    [ -s "$program" ] && [ -s expected ] || { echo "README has no program in $language, or does not say what it prints"; exit 1; }
-    cat command_line
-    . ./command_line | tee printed
-    diff expected printed
-done
+"$here/readme_programs.sh" "$readme" "$@"

@@ -1,0 +1,71 @@
+// The image of a bond in a periodic box that is shortest.
+#ifndef HOLONOMIC_KERNELS_ARITHMETIC_IMAGE_HPP
+#define HOLONOMIC_KERNELS_ARITHMETIC_IMAGE_HPP
+
+#include "core/kernels/arithmetic/exact.hpp"
+#include "core/kernels/call.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// Minimum image of bond vectors, of all lanes or of one; `lo` gets what d's rounding left off.
+template <bool careful, class V>
+HOL_INLINE void wrap(const Box &box, Vector3<V> &d, Vector3<V> &lo) {
+    const double *h = box.h, *in = box.inverse;
+    if (!careful && box.shape == Box::orthorhombic) {
+        d.x = mul_add(round(d.x * in[0]), V{} - h[0], d.x);
+        d.y = mul_add(round(d.y * in[4]), V{} - h[4], d.y);
+        d.z = mul_add(round(d.z * in[8]), V{} - h[8], d.z);
+        return;
+    }
+    const V n[3] = {round(d.x * in[0] + d.y * in[3] + d.z * in[6]), round(d.x * in[1] + d.y * in[4] + d.z * in[7]),
+                    round(d.x * in[2] + d.y * in[5] + d.z * in[8])};
+    V *component[3] = {&d.x, &d.y, &d.z}, *low[3] = {&lo.x, &lo.y, &lo.z};
+    HOL_UNROLL
+    for (int c = 0; c < 3; ++c) {
+        HOL_UNROLL
+        for (int i = 0; i < 3; ++i) {
+            const V side = V{} + h[3 * i + c];
+            if (careful) {
+                const Pair<V> p = two_product<V>(n[i], side);
+                const Pair<V> s = two_difference<V>(*component[c], p.hi);
+                const Pair<V> t = fast_two_sum<V>(s.hi, s.lo - p.lo + *low[c]);
+                *component[c] = t.hi;
+                *low[c] = t.lo;
+            } else {
+                *component[c] = mul_add(n[i], -side, *component[c]);
+            }
+        }
+    }
+}
+
+// The vector from one atom to another, unrounded: d + lo.
+HOL_INLINE void unrounded_bond(const Box &box, const double *from, const double *to, Vector3<double> &d,
+                               Vector3<double> &lo) {
+    const Pair<double> x = two_difference(to[0], from[0]), y = two_difference(to[1], from[1]),
+                       z = two_difference(to[2], from[2]);
+    d = {x.hi, y.hi, z.hi};
+    lo = {x.lo, y.lo, z.lo};
+    if (box.shape != Box::none) wrap<true>(box, d, lo);
+}
+
+#if HOL_LANES == 4
+// From the coordinates of the three atoms: x, y and z at once.
+HOL_INLINE Pair<vec> unrounded_bond(const Box &box, vec from, vec to) {
+    Pair<vec> d = two_difference<vec>(to, from);
+    if (box.shape == Box::none) return d;
+    const double *const h = box.h, *const in = box.inverse;
+    const vec n = round(d.hi[0] * vec{in[0], in[1], in[2], 0} + d.hi[1] * vec{in[3], in[4], in[5], 0} +
+                        d.hi[2] * vec{in[6], in[7], in[8], 0});
+    for (int i = 0; i < 3; ++i) {
+        const Pair<vec> p = two_product<vec>(splat(n[i]), vec{h[3 * i], h[3 * i + 1], h[3 * i + 2], 0});
+        const Pair<vec> s = two_difference<vec>(d.hi, p.hi);
+        d = fast_two_sum<vec>(s.hi, s.lo - p.lo + d.lo);
+    }
+    return d;
+}
+#endif
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

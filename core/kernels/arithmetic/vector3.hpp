@@ -1,0 +1,38 @@
+// Vectors in space, of doubles or of lanes.
+#ifndef HOLONOMIC_KERNELS_ARITHMETIC_VECTOR3_HPP
+#define HOLONOMIC_KERNELS_ARITHMETIC_VECTOR3_HPP
+
+#include "core/kernels/isa/lanes.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+template <class V>
+struct Vector3 {
+    V x, y, z;
+};
+
+template <class V>
+HOL_INLINE V dot(const Vector3<V> &a, const Vector3<V> &b) {
+    return mul_add(a.z, b.z, mul_add(a.y, b.y, a.x * b.x));
+}
+
+template <class V>
+HOL_INLINE Vector3<V> cross(const Vector3<V> &a, const Vector3<V> &b) {
+    return {mul_add(a.y, b.z, -(a.z * b.y)), mul_add(a.z, b.x, -(a.x * b.z)), mul_add(a.x, b.y, -(a.y * b.x))};
+}
+
+typedef Vector3<vec> vec3;
+
+// b - a
+
+HOL_INLINE vec3 difference(const vec3 &a, const vec3 &b) { return {b.x - a.x, b.y - a.y, b.z - a.z}; }
+HOL_INLINE vec3 scaled_bond(const vec3 &d, vec t) { return {t * d.x, t * d.y, t * d.z}; }
+
+HOL_INLINE vec3 times(vec s, const vec3 &a) { return {s * a.x, s * a.y, s * a.z}; }
+HOL_INLINE vec3 minus(const vec3 &a, const vec3 &b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+HOL_INLINE vec3 plus(const vec3 &a, const vec3 &b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,164 @@
+// The recursion without subtractions (theory (9)-(12)): pivots P, multipliers l of the elimination, and the two sweeps.
+//
+//   E_1 = w_0 q_1,  P_k = E_k + w_k q_k,  E_{k+1} = w_k (q_{k+1} E_k + w_k X_{k+1}) / P_k,  l_{k+1} = w_k g_{k+1} / P_k
+//   y_1 = b_1,  y_{k+1} = b_{k+1} + l_{k+1} y_k,  t_N = y_N / P_N,  t_k = y_k / P_k + l_{k+1} t_{k+1}
+//
+// Here bond k = 0 .. n-1 lies between atoms k and k+1; joint k is the one between bonds k-1 and k, at atom k, and L[k] its
+// multiplier. Inverse masses are in the lane's unit; with equal ones, t is unit * 2 lambda for a right-hand side as it
+// is, and 2 lambda for one that has been divided by the unit.
+#ifndef HOLONOMIC_KERNELS_ELIMINATE_CHAIN_HPP
+#define HOLONOMIC_KERNELS_ELIMINATE_CHAIN_HPP
+
+#include "core/kernels/eliminate/exact_joints.hpp"
+#include "core/kernels/eliminate/remainder.hpp"
+#include "core/kernels/eliminate/system.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// Plain forward sweep, a bond at a time: turns right-hand sides into u = y / P and keeps the multipliers. Within four
+// bonds E is carried as a fraction A / F, which takes the divisions out of the chain of dependences.
+template <bool uniform, bool keep_pivots>
+struct Sweep {
+    const Block &block;
+    const Source &source;
+    const System s;
+    vec3 d = {};                                           // the bond before
+    vec q = {};
+    vec A = splat(1.0), F = {}, F1 = {}, rF = splat(1.0);  // E = A / F and P = F1 / F of the bond before
+    vec rP = {}, y = {};
+    vec slack = {};                                        // negative where the cheap tests failed
+    // Sum of |u|, q, 1 / P and w; without |u| where pivots are kept for a second solve, whose end shows an overflow.
+    vec size = {};
+
+    inline __attribute__((always_inline)) void step(long k, vec b, bool starts_group, bool ragged) {
+        const vec w = w_at<uniform>(block, k), w1 = w_at<uniform>(block, k + 1);
+        const vec3 d1 = s.D[k];
+        const vec q1 = dot(d1, d1);
+        if (__builtin_constant_p(k) && k == 0) {  // what the rest comes to without a bond before
+            y = b + 0.0;
+            A = w * q1;
+            F = splat(1.0);
+            return finish_step(k, d1, q1, w1, true);
+        }
+        vec g = dot(d, d1), g2 = g * g, X = q * q1 - g2;
+        if (ragged) {
+            const mask m = joint(block, k);
+            g = keep(m, g);
+            g2 = keep(m, g2);
+            X = keep(m, X);
+        }
+        const vec remainder = mul_sub(splat(1 + 1 / least_remainder), A, F1);
+        const mask signs = as_mask(not_orthogonal(g2, X)) | as_mask(remainder);
+        if (__builtin_expect(any(signs), 0)) delicate_joint(k, d1, remainder, ragged, g, X);
+        const vec l = (w * g) * rP;
+        s.L[k] = l;
+        y = mul_add(l, y, b);
+        A = mul_add(w * q1, A, ((w * w) * X) * F);
+        F = F1;
+        if (starts_group) {
+            A = A * rF;
+            F = splat(1.0);
+        }
+        finish_step(k, d1, q1, w1, starts_group);
+    }
+
+    inline __attribute__((always_inline)) void finish_step(long k, const vec3 &d1, vec q1, vec w1, bool starts_group) {
+        F1 = starts_group ? w1 * q1 + A : mul_add(w1 * q1, F, A);
+        rF = splat(1.0) / F1;
+        rP = starts_group ? rF : F * rF;
+        const vec u = y * rP;
+        s.t[k] = u;
+        if (keep_pivots) s.pivots[k] = rP;
+        size = size + (keep_pivots ? q1 + rP : (abs(u) + q1) + rP);
+        if (!uniform) size = size + w1;
+        d = d1;
+        q = q1;
+    }
+
+    // A joint of nearly orthogonal bonds, or one before which little of E is left.
+    inline __attribute__((always_inline)) void delicate_joint(long k, const vec3 &d1, vec remainder, bool ragged, vec &g,
+                                                              vec &X) {
+        mask little = less(remainder, vec{});
+        if (ragged) little = little & joint(block, k);
+        if (any(little)) {
+            const vec3 c = cross(d, d1);
+            X = select(little, dot(c, c), X);
+            const vec spare = mul_sub(splat(1 + 4 * joint_tolerance * joint_tolerance), A, F1);
+            slack = min(slack, keep(little, spare));
+        }
+        const mask orthogonal = nearly_orthogonal(g, X);
+        if (any(orthogonal)) g = exact_dots(source, k, orthogonal, g);
+    }
+
+    // Lanes in which the backward sweep can't overflow: |t_k| |d_k| <= sum_j |u_j| |d_j|, because |l_k| |d_{k-1}| <= |d_k|,
+    // and |t_k| <= |u_k| + |l_{k+1} t_{k+1}|, |l_{k+1}| <= w |d_k| |d_{k+1}| / P_k. Nor have the products of five pivots
+    // that make up A lost digits by underflow.
+    mask calm() const { return less(size, splat(largest_calm)); }
+    // Lanes that need careful arithmetic.
+    mask doubt() const {
+        const mask failed = less(slack, vec{}), wild = ~calm();
+        if (__builtin_expect(!any(failed | wild), 1)) return none();
+        const mask doubtful =
+            doubtful_joints<uniform>(block, s.D, 1, block.n, w_at<uniform>(block, 0) * dot(s.D[0], s.D[0])) & failed;
+        return any(wild) ? doubtful | (extreme_pivots<uniform>(block, s.D) & wild) : doubtful;
+    }
+};
+
+// Products of two pivots underflow where their reciprocals are not below this.
+constexpr double largest_reciprocal = 1e140;
+
+// The same with bond vectors D + D_low and compensated products, a division per bond: right for any chain whose numbers
+// don't overflow or underflow; u_0 is NaN where they do.
+template <bool uniform>
+HOL_NOINLINE void forward_careful(const Block &block, const System &s) {
+    const long n = block.n;
+    vec size = {};
+    vec q = dot(s.D[0], s.D[0]), E = w_at<uniform>(block, 0) * q, y = s.t[0];
+    for (long k = 0; k < n; ++k) {
+        const vec w = w_at<uniform>(block, k + 1), P = mul_add(w, q, E);
+        s.t[k] = y / P;
+        s.pivots[k] = splat(1.0) / P;
+        size = size + s.pivots[k];
+        if (k + 1 == n) break;
+        const vec3 c = cross_compensated(s.D[k], s.D_low[k], s.D[k + 1], s.D_low[k + 1]);
+        vec g = dot_compensated(s.D[k], s.D_low[k], s.D[k + 1], s.D_low[k + 1]), X = dot(c, c);
+        if (k + 1 >= block.n_min) {
+            const mask m = joint(block, k + 1);
+            g = keep(m, g);
+            X = keep(m, X);
+        }
+        const vec q1 = dot(s.D[k + 1], s.D[k + 1]), wP = w / P;
+        s.L[k + 1] = wP * g;
+        y = mul_add(s.L[k + 1], y, s.t[k + 1]);
+        E = wP * mul_add(w, X, q1 * E);
+        q = q1;
+    }
+    s.t[0] = select(less(size, splat(largest_reciprocal)), s.t[0], splat(__builtin_nan("")));
+}
+
+// Backward sweep over the bonds from .. n-1: u becomes t. The last one is added to zero as all others are to something,
+// so that a chain's zeros have the same sign whether or not inert bonds follow it.
+HOL_INLINE void backward(long from, long n, vec *u, const vec *L) {
+    vec t = u[n - 1] + 0.0;
+    u[n - 1] = t;
+    for (long k = n - 2; k >= from; --k) {
+        t = mul_add(L[k + 1], t, u[k]);
+        u[k] = t;
+    }
+}
+
+// The forward sweep for another right-hand side, with 1 / P and L of an elimination that has been done.
+HOL_INLINE void substitute(long n, const System &s) {
+    vec y = s.t[0];
+    s.t[0] = y * s.pivots[0];
+#pragma GCC unroll 4
+    for (long k = 1; k < n; ++k) {
+        y = mul_add(s.L[k], y, s.t[k]);
+        s.t[k] = y * s.pivots[k];
+    }
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

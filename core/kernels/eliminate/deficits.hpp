@@ -1,0 +1,197 @@
+// Metric determinant and Fixman force of a block of chains, theory (24)-(31): elimination on unit bonds, with the deficits
+// e and f that the bonds on either side leave of a row carried instead of the diagonal, so that nothing is subtracted.
+// Products are always compensated: determinants and the inverse have no componentwise scale that forgives their rounding.
+#ifndef HOLONOMIC_KERNELS_ELIMINATE_DEFICITS_HPP
+#define HOLONOMIC_KERNELS_ELIMINATE_DEFICITS_HPP
+
+#include "core/kernels/arithmetic/exact.hpp"
+#include "core/kernels/memory/arena.hpp"
+#include "core/kernels/memory/block.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// Per bond k of a block; joint k lies between bonds k-1 and k.
+struct Geometry {
+    vec3 *u, *low;   // bond vector, then unit vector, then Fixman's phi; low words of the bond vector
+    vec3 *normal;    // u_{k-1} x u_k, then h_k times it
+    vec *cosine, *complement;  // of joint k: c and 1 - |c|
+    vec *reciprocal;           // 1 / |d|
+    vec *square;     // d.d over `scale` squared
+    vec *scale;      // a power of two
+    vec *p, *delta;  // coupling of bonds k-1 and k; what row k has beyond its neighbours
+    vec *e, *t;
+    Geometry(long n, Arena &arena)
+        : u(vectors(n, arena)), low(vectors(n, arena)), normal(vectors(n + 1, arena)), cosine(arena.vecs(n + 1)),
+          complement(arena.vecs(n + 1)), reciprocal(arena.vecs(n)), square(arena.vecs(n)), scale(arena.vecs(n)),
+          p(arena.vecs(n + 1)), delta(arena.vecs(n)), e(arena.vecs(n)), t(arena.vecs(n)) {}
+    static vec3 *vectors(long n, Arena &arena) { return reinterpret_cast<vec3 *>(arena.vecs(3 * n)); }
+};
+
+constexpr long long exponent_bits = 0x7ff0000000000000LL;
+constexpr long long exponent_of_one = 0x3ff0000000000000LL;
+
+// The reciprocal of the power of two just below the largest component.
+HOL_INLINE vec reciprocal_scale(const vec3 &d) {
+    const vec largest = max(max(abs(d.x), abs(d.y)), abs(d.z));
+    return as_vec((mask{} + 2 * exponent_of_one) - (as_mask(largest) & (mask{} + exponent_bits)));
+}
+
+HOL_INLINE vec3 scaled(const vec3 &a, vec s) { return {a.x * s, a.y * s, a.z * s}; }
+
+template <bool uniform>
+static inline void measure(const Block &block, const Geometry &x) {
+    vec3 d0 = {}, low0 = {};
+    vec r0 = {};
+    x.p[0] = x.p[block.n] = x.cosine[0] = x.cosine[block.n] = vec{};
+    x.complement[0] = x.complement[block.n] = splat(1.0);
+    x.normal[0] = x.normal[block.n] = vec3{};
+    for (long k = 0; k < block.n; ++k) {
+        const vec s = reciprocal_scale(x.u[k]);
+        const vec3 d = scaled(x.u[k], s), low = scaled(x.low[k], s);
+        const vec q = dot_compensated(d, low, d, low), r = splat(1.0) / sqrt(q);
+        x.u[k] = scaled(d, r);
+        x.square[k] = q;
+        x.scale[k] = s;
+        x.reciprocal[k] = r * s;
+        if (k > 0) {
+            const vec f = r0 * r;
+            vec c = dot_compensated(d0, low0, d, low) * f;
+            vec3 normal = scaled(cross_compensated(d0, low0, d, low), f);
+            const vec size = abs(c);
+            vec complement = select(less(size, splat(0.5)), 1.0 - size, dot(normal, normal) / (1.0 + size));
+            if (k >= block.n_min) {
+                const mask m = joint(block, k);
+                c = keep(m, c);
+                normal = {keep(m, normal.x), keep(m, normal.y), keep(m, normal.z)};
+                complement = select(m, complement, splat(1.0));
+            }
+            x.cosine[k] = c;
+            x.complement[k] = complement;
+            x.normal[k] = normal;
+            x.p[k] = w_at<uniform>(block, k) * abs(c);
+        }
+        d0 = d;
+        low0 = low;
+        r0 = r;
+    }
+    for (long k = 0; k < block.n; ++k)
+        x.delta[k] = w_at<uniform>(block, k) * x.complement[k] + w_at<uniform>(block, k + 1) * x.complement[k + 1];
+}
+
+// Sum of logarithms of products of (1 - x) and of positive numbers, a logarithm per few factors.
+struct LogSum {
+    static constexpr int group = 8;
+    vec sum, product, removed;  // removed = 1 - product, without cancellation
+    int n;
+    LogSum() : sum{}, product(splat(1.0)), removed{}, n(0) {}
+    inline __attribute__((always_inline)) void multiply(vec factor, vec x) {  // factor = 1 - x
+        removed = mul_add(removed, factor, x);
+        product = product * factor;
+        if (++n == group) flush();
+    }
+    __attribute__((noinline)) void flush() {
+        for (int i = 0; i < W; ++i)
+            sum[i] += product[i] < 0.5 ? __builtin_log(product[i]) : __builtin_log1p(-removed[i]);
+        product = splat(1.0);
+        removed = vec{};
+        n = 0;
+    }
+};
+
+// The same for factors of any size, as mantissas and exponents.
+struct LogSumWide {
+    vec sum, mantissas;
+    mask exponents;
+    int n;
+    LogSumWide() : sum{}, mantissas(splat(1.0)), exponents{}, n(0) {}
+    inline __attribute__((always_inline)) void multiply(vec factor, vec scale) {  // factor / scale^2, scale a power of two
+        const mask f = as_mask(factor), one = mask{} + exponent_of_one;
+        exponents = exponents + (((f & (mask{} + exponent_bits)) - one) >> 52) - 2 * ((as_mask(scale) - one) >> 52);
+        mantissas = mantissas * as_vec((f & (mask{} + 0xfffffffffffffLL)) | one);
+        if (++n == 16) flush();
+    }
+    __attribute__((noinline)) void flush() {
+        for (int i = 0; i < W; ++i) sum[i] += __builtin_log(mantissas[i]);
+        mantissas = splat(1.0);
+        n = 0;
+    }
+    vec total() {
+        flush();
+        for (int i = 0; i < W; ++i) sum[i] += static_cast<double>(exponents[i]) * 0.69314718055994530942;
+        return sum;
+    }
+};
+
+HOL_INLINE mask between(long k, vec first, vec end) {
+    const vec v = splat(static_cast<double>(k));
+    return less_equal(first, v) & less(v, end);
+}
+
+struct MetricSums {
+    vec log_det, log_det_z;
+};
+
+// Left to right from e of bond 0: e of all bonds, and the logarithms over the bonds first .. end-1 of each lane. Lanes with
+// a pivot that is not positive are taken out of `good`.
+template <bool uniform>
+static inline MetricSums eliminate_metric(const Block &block, const Geometry &x, vec e, vec first, vec end,
+                                          const MetricCall &call, mask &good) {
+    const bool logs = call.log_det || call.sum;
+    const vec headroom = splat(call.force.x ? call.kT * 0x1p300 : 0.0);  // no force overflows
+    LogSum det;
+    LogSumWide det_z;
+    vec removed = {};  // p l
+    for (long k = 0; k < block.n; ++k) {
+        const vec P = e + x.p[k + 1], M = w_at<uniform>(block, k) + w_at<uniform>(block, k + 1);
+        x.e[k] = e;
+        good = good & less(vec{}, P) & finite(x.reciprocal[k] + headroom * x.reciprocal[k]);
+        if (logs || call.log_det_z) {
+            const mask counted = between(k, first, end);
+            const vec inverse = splat(1.0) / M;
+            det.multiply(select(counted, P * inverse, splat(1.0)), keep(counted, removed * inverse));
+            if (call.log_det_z)
+                det_z.multiply(select(counted, 4.0 * (block.unit * M) * x.square[k], splat(1.0)),
+                               select(counted, x.scale[k], splat(1.0)));
+        }
+        if (k + 1 == block.n) break;
+        const vec l = x.p[k + 1] / P;
+        removed = x.p[k + 1] * l;
+        e = mul_add(l, e, x.delta[k + 1]);
+    }
+    det.flush();
+    MetricSums sums = {det.sum, vec{}};
+    if (call.log_det_z) sums.log_det_z = det.sum + det_z.total();
+    return sums;
+}
+
+// From the joint's two sides: h_k = w_k (M^-1)_{k-1,k}, and h_k n_k in place of n_k. f belongs to bond k.
+template <bool uniform>
+HOL_INLINE void weigh_normal(const Block &block, const Geometry &x, long k, vec f) {
+    const mask coupled = less(vec{}, x.p[k]);
+    const vec e = x.e[k - 1], p = select(coupled, x.p[k], splat(1.0));  // the caller may trap divisions by zero
+    const vec size = w_at<uniform>(block, k) / (e + f + (e / p) * f);
+    const mask sign = mask{} + (-0x7fffffffffffffffLL - 1);
+    const vec h = as_vec(as_mask(size) | (as_mask(x.cosine[k]) & sign));
+    x.normal[k] = scaled(x.normal[k], keep(coupled, h));
+}
+
+// What the bonds to the right of joint k leave of row k-1.
+HOL_INLINE vec next_deficit(const Geometry &x, long k, vec f) {
+    const mask coupled = less(vec{}, x.p[k]);
+    const vec p = select(coupled, x.p[k], splat(1.0));
+    return x.delta[k - 1] + keep(coupled, p * (f / (f + p)));
+}
+
+// phi of bond k as t times a vector, so that the force on atom k is the pull t_k phi_k - t_{k-1} phi_{k-1}. Zeros are +0,
+// so that those of a chain's last atom don't depend on whether inert bonds follow.
+HOL_INLINE void turn(const Geometry &x, long k, double kT) {
+    const vec3 a = x.normal[k], b = x.normal[k + 1];
+    const vec3 v = cross(x.u[k], vec3{b.x - a.x, b.y - a.y, b.z - a.z});
+    x.u[k] = {v.x + 0.0, v.y + 0.0, v.z + 0.0};
+    x.t[k] = kT * x.reciprocal[k];
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,106 @@
+// Blocks of equally long chains with lists of atoms in packed arrays: up and down the chains.
+#ifndef HOLONOMIC_KERNELS_ELIMINATE_LISTED_HPP
+#define HOLONOMIC_KERNELS_ELIMINATE_LISTED_HPP
+
+#include "core/kernels/arithmetic/image.hpp"
+#include "core/kernels/eliminate/chain.hpp"
+#include "core/kernels/memory/listed.hpp"
+#include "core/kernels/memory/terms.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// As forward(), from the lists; of rates, the velocities go to `velocities`. Returns the lanes for which plain
+// arithmetic will do, nothing overflowing.
+template <int terms, bool uniform>
+HOL_NOINLINE mask forward_gathered(const Block &block, const Box &box, const AtomLists &at,
+                                                       const double *r, const double *v, const double *f,
+                                                       const System &s, vec3 *velocities) {
+    const Source source = {nullptr, r, at.atoms, &box, nullptr};
+    Sweep<uniform, terms == rate> sweep{block, source, s};
+    const bool boxed = box.shape != Box::none;
+    vec3 r0 = gather(r, at, 0), v0 = {}, f0 = {};
+    if (terms & (velocity_squared | rate)) v0 = gather(v, at, 0);
+    if (terms & force_difference) f0 = gather(f, at, 0);
+    if (terms & rate) velocities[0] = v0;
+    const auto bond = [&](long k, bool starts_group) __attribute__((always_inline)) {
+        if (block.list_ahead)
+            for (int i = 0; i < W; ++i) {
+                const int64_t next = 3 * at.atoms[i][k + block.list_ahead];
+                __builtin_prefetch(r + next, 0, 2);
+                if (terms & (velocity_squared | rate)) __builtin_prefetch(v + next, 0, 2);
+                if (terms & force_difference) __builtin_prefetch(f + next, 0, 2);
+            }
+        const vec3 r1 = gather(r, at, k + 1);
+        vec3 d = difference(r0, r1), dv = {}, df = {}, unused = {};
+        if (boxed) wrap<false>(box, d, unused);
+        s.D[k] = d;
+        r0 = r1;
+        if (terms & (velocity_squared | rate)) {
+            const vec3 v1 = gather(v, at, k + 1);
+            dv = difference(v0, v1);
+            v0 = v1;
+            if (terms & rate) velocities[k + 1] = v1;
+        }
+        if (terms & force_difference) {
+            const vec3 f1 = gather(f, at, k + 1);
+            const vec w0 = w_at<uniform>(block, k), w1 = w_at<uniform>(block, k + 1);
+            df = {w1 * f1.x - w0 * f0.x, w1 * f1.y - w0 * f0.y, w1 * f1.z - w0 * f0.z};
+            f0 = f1;
+        }
+        sweep.step(k, right_hand_side<terms>(box.shape == Box::triclinic, block.mass, d, dv, df), starts_group, false);
+    };
+    long k = 0;
+    for (; k + 4 <= block.n; k += 4) {
+        bond(k, true);
+        bond(k + 1, false);
+        bond(k + 2, false);
+        bond(k + 3, false);
+    }
+    for (; k < block.n; ++k) bond(k, k % 4 == 0);
+    return ~sweep.doubt() & sweep.calm();
+}
+
+// As substitute_and_store(), to the lists.
+template <Update update>
+HOL_NOINLINE void substitute_and_scatter(const Block &block, const System &s, const AtomLists &at,
+                                                             double *out, double *value_out, vec factor) {
+    vec t = {}, values[W];
+    vec3 after = {};
+    s.L[block.n] = vec{};
+    const auto pull = [&](long k, const vec3 &before) __attribute__((always_inline)) {
+        if (out) scatter<update>(out, at, k, difference(before, after));
+    };
+    const auto bond = [&](long k) __attribute__((always_inline)) {
+        t = mul_add(s.L[k + 1], t, s.t[k]);
+        const vec3 p = scaled_bond(s.D[k], t);
+        pull(k + 1, p);
+        after = p;
+        return mul_add(factor, t, vec{});  // zeros as +0
+    };
+    const long full = block.n / W * W;
+    for (long k = block.n - 1; k >= full; --k) {
+        const vec value = bond(k);
+        for (int i = 0; value_out && i < W; ++i) value_out[block.first_bond[i] + k] = value[i];
+    }
+    for (long k0 = full - W; k0 >= 0; k0 -= W) {
+        HOL_UNROLL
+        for (long b = W - 1; b >= 0; --b) values[b] = bond(k0 + b);
+        if (!value_out) continue;
+        transpose(values);
+        for (int i = 0; i < W; ++i) store(value_out + block.first_bond[i] + k0, values[i]);
+    }
+    if (out) scatter<update>(out, at, 0, after);
+}
+
+template <int terms>
+static inline mask forward_listed(const Block &block, const Box &box, const AtomLists &at, const AtomArray &r,
+                                  const AtomArray &v, const AtomArray &f, const System &s, vec3 *velocities) {
+    return block.uniform_w
+               ? forward_gathered<terms, true>(block, box, at, base_of(r), base_of(v), base_of(f), s, velocities)
+               : forward_gathered<terms, false>(block, box, at, base_of(r), base_of(v), base_of(f), s, velocities);
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

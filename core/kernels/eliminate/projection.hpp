@@ -1,0 +1,99 @@
+// Velocities that are projected: the second sweeps, for what rounding leaves of the rates.
+#ifndef HOLONOMIC_KERNELS_ELIMINATE_PROJECTION_HPP
+#define HOLONOMIC_KERNELS_ELIMINATE_PROJECTION_HPP
+
+#include "core/kernels/eliminate/chain.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// Working arrays of a projection.
+struct Projection {
+    System s;
+    vec3 *v;    // of the atoms
+    vec *left;  // of the bonds: what rounding leaves of the rates, then the multipliers that correct it
+    Projection(long n, Arena &arena)
+        : s(n, arena), v(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + 1 + W)))), left(arena.vecs(n + 1)) {}
+    Projection(const System &system, vec3 *velocities, vec *rates) : s(system), v(velocities), left(rates) {}
+    System correction() const { return System(s.D, left, s.L, s.pivots); }
+    // Whether nothing has overflowed: what is not finite is carried to the first bond by the backward sweep, and to the
+    // last one by the substitution of the rates.
+    mask finite(long n) const { return HOL_ISA::finite(s.t[0] + left[n - 1]); }
+};
+
+// d . (v_{k+1} - v_k)
+HOL_INLINE vec rate_of(const vec3 &d, const vec3 &v0, const vec3 &v1) { return dot(d, difference(v0, v1)); }
+
+// The backward sweep, u to t, and what it makes of velocities: v_k + w_k (t_{k+1} d_{k+1} - t_k d_k), rounded once.
+template <bool uniform>
+struct Pull {
+    const Block &block;
+    const Projection x;  // by value: its pointers stay in registers
+    const vec *const u;
+    vec t = {};
+    vec3 after = {};  // t d of bond k + 1
+
+    inline __attribute__((always_inline)) vec3 moved(long k, const vec3 &before) const {
+        const vec w = w_at<uniform>(block, k);
+        const vec3 v = x.v[k], g = difference(before, after);
+        return {mul_add(w, g.x, v.x), mul_add(w, g.y, v.y), mul_add(w, g.z, v.z)};
+    }
+    // Atom k + 1; the last is atom 0.
+    inline __attribute__((always_inline)) vec3 step(long k) {
+        t = mul_add(x.s.L[k + 1], t, u[k]);
+        const vec3 before = scaled_bond(x.s.D[k], t), v = moved(k + 1, before);
+        after = before;
+        return v;
+    }
+    inline __attribute__((always_inline)) vec3 finish() const { return moved(0, vec3{}); }
+};
+
+// That for u in s.t, which becomes t; `left` gets the rates of the velocities as they are rounded now.
+template <bool uniform>
+struct FirstPull {
+    Pull<uniform> pull;
+    vec3 d = {}, v1 = {};  // bond k + 1, atom k + 2
+
+    FirstPull(const Block &block, const Projection &x, long n) : pull{block, x, x.s.t} { x.s.L[n] = vec{}; }
+    inline __attribute__((always_inline)) void step(long k) {
+        keep_velocity(k + 1, pull.step(k));
+        pull.x.s.t[k] = pull.t;
+        d = pull.x.s.D[k];
+    }
+    inline __attribute__((always_inline)) void finish() { keep_velocity(0, pull.finish()); }
+    inline __attribute__((always_inline)) void keep_velocity(long k, const vec3 &v) {
+        pull.x.v[k] = v;
+        pull.x.left[k] = rate_of(d, v, v1);
+        v1 = v;
+    }
+};
+
+// From u to the velocities. The recursion gives the multipliers to a few roundings of themselves; what that leaves of
+// the rates goes with a second substitution, for the rates of the velocities as they are rounded: this prepares it,
+// unless they are to be rounded to floats. Returns the lanes in which all is finite.
+template <bool uniform>
+HOL_NOINLINE mask pull_back(const Block &block, const Projection &x, bool twice) {
+    long k = block.n;
+    FirstPull<uniform> pull(block, x, k);
+    while (k % 4 != 0) pull.step(--k);
+    while (k > 0) {
+        k -= 4;
+        pull.step(k + 3);
+        pull.step(k + 2);
+        pull.step(k + 1);
+        pull.step(k);
+    }
+    pull.finish();
+    for (k = twice ? block.n_min : 0; k < block.n; ++k)
+        x.left[k] = twice ? keep(joint(block, k), x.left[k]) : vec{};
+    if (twice) substitute(block.n, x.correction());
+    return x.finite(block.n);
+}
+
+static inline mask pull_back(const Block &block, const Projection &x, bool twice) {
+    return block.uniform_w ? pull_back<true>(block, x, twice) : pull_back<false>(block, x, twice);
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,60 @@
+// How far the remainder E may be trusted: the tests of doubt.
+#ifndef HOLONOMIC_KERNELS_ELIMINATE_REMAINDER_HPP
+#define HOLONOMIC_KERNELS_ELIMINATE_REMAINDER_HPP
+
+#include "core/kernels/arithmetic/vector3.hpp"
+#include "core/kernels/memory/block.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// How X = |d x d'|^2 is found. It enters E' = w (q' E + w X) / P, and what its error does to E' depends on E: with
+// e = E / (w q),
+//  - q q' - g^2 has an error of a few roundings of q q', of which E' gets a few / (e + sin^2): ordinary chains, in which
+//    e >= least_remainder everywhere but in a row of nearly parallel bonds;
+//  - the cross product has a relative error of about 2 eps |d| |d'| / sqrt X from the rounding of d and d', which is
+//    harmless where w sqrt(X q q') <= c (q' E + w X), c = joint_tolerance. This holds for every X if e >= 1 / (4 c^2);
+//  - else the chain needs compensated products of the unrounded bond vectors.
+// The tests are cheap to hot: one multiply-add for the first, one more where it fails, the full one where that fails
+// (docs/performance.md).
+constexpr double least_remainder = 1.0 / 4;
+constexpr double joint_tolerance = 8;
+
+// Exact form of the test, for the joints first .. end-1; E is that of bond first-1.
+template <bool uniform>
+HOL_NOINLINE mask doubtful_joints(const Block &block, const vec3 *D, long first, long end, vec E) {
+    mask doubt = none();
+    for (long k = first; k < end && k < block.n; ++k) {
+        const vec w = w_at<uniform>(block, k), q = dot(D[k - 1], D[k - 1]), q1 = dot(D[k], D[k]);
+        const vec3 c = cross(D[k - 1], D[k]);
+        const vec X = dot(c, c), qq = q * q1, S = mul_add(q1, E, w * X);
+        const double eps2 = 4.9e-32;  // (2^-52)^2: an X that vanished by rounding
+        const vec left = (w * w) * ((X + eps2 * qq) * qq), right = (joint_tolerance * joint_tolerance) * (S * S);
+        doubt = doubt | (~less_equal(left, right) & joint(block, k));
+        E = w * S / mul_add(w, q, E);
+    }
+    return doubt;
+}
+
+// Up to this size of |u|, q, 1 / P and w nothing overflows behind the forward sweep, and no product of pivots within it
+// has lost digits by underflow.
+constexpr double largest_calm = 1e60;
+
+// Lanes in which pivots are extreme, whatever the right-hand sides are: the arithmetic must not depend on their unit.
+template <bool uniform>
+HOL_NOINLINE mask extreme_pivots(const Block &block, const vec3 *D) {
+    vec q = dot(D[0], D[0]), E = w_at<uniform>(block, 0) * q, size = {};
+    for (long k = 0; k < block.n; ++k) {
+        const vec w = w_at<uniform>(block, k + 1), P = mul_add(w, q, E);
+        size = size + ((q + splat(1.0) / P) + w);
+        if (k + 1 == block.n) break;
+        const vec3 c = cross(D[k], D[k + 1]);
+        q = dot(D[k + 1], D[k + 1]);
+        E = w * mul_add(q, E, w * keep(joint(block, k + 1), dot(c, c))) / P;
+    }
+    return ~less(size, splat(largest_calm));
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,282 @@
+// One long chain, W segments at a time. The first bond of a segment is its separator; the others are eliminated as a
+// chain that starts free behind it, and what they leave is carried along with the same pivots (theory (20)-(23)):
+//
+//     start      f = w g,  a = w^2 X,  c = w q_s,  T = 0            (of the separator and its neighbour)
+//     each bond  c' = (a + w q_k c) / P_k,  a' = w (q_{k+1} a + w X_{k+1} c) / P_k,  f' = l f,  T += f u_k
+//
+// c is what a segment leaves at its left joint, E and y what it leaves at its right one, f the coupling of the two and
+// a = E c - f^2. Joining from left to right again adds only what is not negative:
+//
+//     P^ = E + c,  y^ = y + T,  E' = (E_free E + a) / P^,  y' = y_free + (f / P^) y^,
+//     backwards t_s = y^ / P^ + (f / P^) t_s',  inside t_k = u_k + (f / P)_k t_s + l_{k+1} t_{k+1}.
+//
+// (E, 1) and (a, c) are two solutions of one linear recursion, so that the fractions of the ordinary sweep do for both.
+#ifndef HOLONOMIC_KERNELS_ELIMINATE_SEGMENT_HPP
+#define HOLONOMIC_KERNELS_ELIMINATE_SEGMENT_HPP
+
+#include "core/kernels/eliminate/exact_joints.hpp"
+#include "core/kernels/eliminate/remainder.hpp"
+#include "core/kernels/memory/segments.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// What the elimination of the inner bonds of W segments leaves, and the solution at their separators.
+struct Summary {
+    vec E, y, a, c, f, T;  // y without the right-hand side of the separator behind
+    vec q, b;              // of the separators: d.d and the right-hand side
+    vec span;              // largest w times the last q: see long_join()
+    vec t, up;             // at the separators: y^ / P^, then t; f / P^
+    mask doubt;
+};
+
+// What the elimination keeps of a bond for the substitution: u = y / P, the multiplier of the joint behind it, f / P.
+struct Kept {
+    vec u, l, fP;
+};
+
+struct SegmentStore {
+    Summary *summary;
+    Kept *kept;
+    SegmentStore(double *store, const Cut &cut, int64_t block)
+        : summary(reinterpret_cast<Summary *>(store) + block),
+          kept(reinterpret_cast<Kept *>(reinterpret_cast<Summary *>(store) + cut.blocks) + cut.first_row(block)) {}
+};
+
+static inline int64_t long_bytes(int64_t n_bonds) {
+    const Cut cut(n_bonds);
+    return cut.blocks * static_cast<int64_t>(sizeof(Summary)) +
+           cut.first_row(cut.blocks) * static_cast<int64_t>(sizeof(Kept));
+}
+
+// Whether the bonds k and k + 1 are both there, in each lane.
+HOL_INLINE mask inner_joint(const Block &block, long k) {
+    return less(splat(static_cast<double>(k + 1)), block.lengths());
+}
+
+// The test of doubtful_joints() for the joints of n + 1 bonds from D on, the first of which is bond k.
+template <bool uniform>
+HOL_NOINLINE mask doubtful_segment_joints(const Block &block, const vec3 *D, long k, long n, vec E) {
+    mask doubt = none();
+    for (long i = 0; i < n; ++i) {
+        const vec w = w_at<uniform>(block, k + i + 1), q = dot(D[i], D[i]), q1 = dot(D[i + 1], D[i + 1]);
+        const vec3 c = cross(D[i], D[i + 1]);
+        const vec X = dot(c, c), qq = q * q1, S = mul_add(q1, E, w * X);
+        const double eps2 = 4.9e-32;  // (2^-52)^2: an X that vanished by rounding
+        const vec left = (w * w) * ((X + eps2 * qq) * qq), right = (joint_tolerance * joint_tolerance) * (S * S);
+        doubt = doubt | (~less_equal(left, right) & inner_joint(block, k + i));
+        E = w * S / mul_add(w, q, E);
+    }
+    return doubt;
+}
+
+// Products of the bond vectors of a joint and of the bond behind it.
+struct Joint {
+    vec g, X, q;
+};
+
+HOL_INLINE Joint plain_joint(const vec3 &d, const vec3 &d1) {
+    const vec3 c = cross(d, d1);
+    return {dot(d, d1), dot(c, c), dot(d1, d1)};
+}
+
+HOL_INLINE Joint careful_joint(const vec3 &d, const vec3 &low, const vec3 &d1, const vec3 &low1) {
+    const vec3 c = cross_compensated(d, low, d1, low1);
+    return {dot_compensated(d, low, d1, low1), dot(c, c), dot(d1, d1)};
+}
+
+// As small_cosine in recursion.inl; the error bound of chains of more than longest_lane bonds is twice as large.
+constexpr double segment_cosine = 1.0 / 64;
+
+// Computes g anew where bonds are nearly orthogonal: of n joints, the first of which is that of bonds k and k + 1.
+HOL_NOINLINE void refine_joints(const Source &source, long k, Joint *j, long n) {
+    for (long i = 0; i < n; ++i) {
+        const vec scaled = (1 / segment_cosine) * j[i].g;
+        const mask orthogonal = less(scaled * scaled, j[i].X);
+        if (any(orthogonal)) j[i].g = exact_dots(source, k + i + 1, orthogonal, j[i].g);
+    }
+}
+
+// The joints between n + 1 bonds from d on, the first of which is bond k.
+template <int n>
+HOL_INLINE void plain_joints(const Source &source, long k, const vec3 *d, Joint *j) {
+    vec least = {};
+#pragma GCC unroll 8
+    for (int i = 0; i < n; ++i) {
+        j[i] = plain_joint(d[i], d[i + 1]);
+        const vec scaled = (1 / segment_cosine) * j[i].g;
+        least = min(least, mul_add(scaled, scaled, -j[i].X));
+    }
+    if (any(less(least, vec{}))) refine_joints(source, k, j, n);
+}
+
+// Products of six pivots, of which a consists after four bonds, underflow where the reciprocal of four of them is not below
+// the first of these; products of three, where that of one is not below the second.
+constexpr double largest_reciprocal_of_four = 1e190, largest_reciprocal_of_one = 1e90;
+
+// The elimination of the inner bonds of W segments, a bond at a time.
+struct Elimination {
+    vec q;                        // of the bond that is to be eliminated
+    vec A, F, rF, a, c, f, y, T;  // E = A / F; a, c and f are in units of 1 / F, too; rF = 1 / F
+    vec w_max, slack;
+    vec largest_rF;
+};
+
+// From a separator and the bond behind it, whose right-hand side is b1.
+template <bool uniform>
+HOL_INLINE void start(Elimination &e, const Block &block, vec q0, const Joint &j, vec b1) {
+    const vec w = w_at<uniform>(block, 1);
+    e.q = j.q;
+    e.A = w * e.q;
+    e.F = e.rF = splat(1.0);
+    e.a = (w * w) * j.X;
+    e.c = w * q0;
+    e.y = b1;
+    e.f = w * j.g;
+    e.T = e.slack = e.largest_rF = vec{};
+    e.w_max = w;
+}
+
+// In a straight chain c, f and E shrink by the same factor at each bond. They are rounded in the same way, so that their
+// ratios stay exact: segments of equal bonds would all have the same error in them.
+HOL_INLINE void normalise(Elimination &e) {
+    e.A = e.A * e.rF;
+    e.f = e.f * e.rF;
+    e.a = e.a * e.rF;
+    e.c = e.c * e.rF;
+    e.F = splat(1.0);
+    e.largest_rF = max(e.largest_rF, e.rF);
+}
+
+// Eliminates bond k; j is the joint behind it and b1 the right-hand side behind that. ragged: lanes may end there.
+template <bool uniform, bool careful>
+HOL_INLINE void step(Elimination &e, const Block &block, Kept *kept, long k, const Joint &j, vec b1, bool ragged) {
+    const vec w = w_at<uniform>(block, k + 1);
+    const vec wq = w * e.q, F1 = mul_add(wq, e.F, e.A), c1 = mul_add(wq, e.c, e.a);
+    vec spare = {};
+    if (!careful) spare = mul_add(splat(4 * joint_tolerance * joint_tolerance + 1), e.A, -F1);
+    e.rF = splat(1.0) / F1;
+    const vec rP = e.F * e.rF, fP = e.f * e.rF, wwX = (w * w) * j.X, wq1 = w * j.q;
+    vec wg = w * j.g;
+    const mask live = ragged ? inner_joint(block, k) : none();
+    if (ragged) wg = keep(live, wg);
+    const vec l = wg * rP;
+    *kept = {e.y * rP, l, fP};
+    e.T = mul_add(fP, e.y, e.T);
+    e.y = mul_add(l, e.y, b1);
+    e.f = wg * e.f;
+    e.A = mul_add(wwX, e.F, wq1 * e.A);
+    e.a = mul_add(wwX, e.c, wq1 * e.a);
+    if (ragged) {
+        e.A = keep(live, e.A);
+        e.a = keep(live, e.a);
+        spare = keep(live, spare);
+    }
+    e.F = F1;
+    e.c = c1;
+    if (!careful) e.slack = min(e.slack, spare);
+    if (!uniform) e.w_max = max(e.w_max, w);
+    e.q = j.q;
+}
+
+// Eliminates the inner bonds of W segments of n bonds. block.len counts the separators behind them.
+template <int terms, bool uniform, bool careful>
+HOL_NOINLINE void eliminate(const Block &block, const Source &source, const SegmentBonds &in, long n,
+                                                const SegmentStore &x) {
+    Elimination e;
+    const vec3 absent = {};
+    mask doubt = none();
+    vec3 d[group + 1];
+    vec b[group];
+    Joint j[group];
+    SegmentPlaces at = {in.r.lane[0], bytes_between(in.r.lane[0], in.r.lane[1]), 0, 0, block.mass};
+    if (terms & (velocity_squared | rate)) at.v = bytes_between(at.r, in.v.lane[0]);
+    if (terms & force_difference) at.f = bytes_between(at.r, in.f.lane[0]);
+    long k0 = 0;  // bonds that have been read; one less has been eliminated
+    if (in.full > 0) {
+        load_group<terms, uniform>(block, in, at, 0, d + 1, b);
+        x.summary->q = dot(d[1], d[1]);
+        x.summary->b = b[0];
+        plain_joints<group - 1>(source, 0, d + 1, j + 1);
+        start<uniform>(e, block, x.summary->q, j[1], b[1]);
+        const vec E0 = e.A;
+        for (int i = 2; i < group; ++i) {
+            step<uniform, false>(e, block, x.kept + i - 1, i - 1, j[i], b[i], false);
+            if (i % 4 == 3) normalise(e);
+        }
+        const mask short_of = less(e.slack, vec{});
+        if (any(short_of))
+            doubt = doubtful_segment_joints<uniform>(block, d + 2, 1, group - 2, E0) & short_of;
+        e.slack = vec{};
+        d[0] = d[group];
+        k0 = group;
+    }
+    for (; k0 < in.full; k0 += group) {
+        load_group<terms, uniform>(block, in, at, k0, d + 1, b);
+        plain_joints<group>(source, k0 - 1, d, j);
+        const vec E0 = e.A;
+#pragma GCC unroll 8
+        for (int i = 0; i < group; ++i) {
+            step<uniform, false>(e, block, x.kept + k0 + i - 1, k0 + i - 1, j[i], b[i], false);
+            if (i % 4 == 3) normalise(e);
+        }
+        const mask short_of = less(e.slack, vec{});
+        if (__builtin_expect(any(short_of), 0)) {
+            doubt = doubt | (doubtful_segment_joints<uniform>(block, d, k0 - 1, group, E0) & short_of);
+            e.slack = vec{};
+        }
+        d[0] = d[group];
+    }
+    const long read = terms == in_scratch ? k0 : 0;
+    const vec3 *D = in.D + read, *low = careful ? in.low : &absent;
+    const int low_step = careful ? 1 : 0;
+    const vec *B = in.B + read;
+    vec3 before = d[0], low_before = {};
+    if (k0 == 0) {
+        x.summary->q = dot(D[0], D[0]);
+        x.summary->b = B[0];
+        Joint first;
+        if (careful)
+            first = careful_joint(D[0], low[0], D[1], low[low_step]);
+        else
+            plain_joints<1>(source, 0, D, &first);
+        start<uniform>(e, block, x.summary->q, first, B[1]);
+        before = D[1];
+        low_before = low[low_step];
+        D += 2;
+        low += 2 * low_step;
+        B += 2;
+        k0 = 2;
+    }
+    for (; k0 <= n; ++k0, ++D, low += low_step, ++B) {
+        const vec E0 = e.A;
+        const vec3 two[2] = {before, k0 < n ? *D : in.next};
+        const vec3 low_here = k0 < n ? *low : in.next_low;
+        // The last joint is masked in the chain's last segment, others where that ends.
+        Joint joint;
+        if (careful)
+            joint = careful_joint(two[0], low_before, two[1], low_here);
+        else
+            plain_joints<1>(source, k0 - 1, two, &joint);
+        step<uniform, careful>(e, block, x.kept + k0 - 1, k0 - 1, joint, k0 < n ? *B : vec{}, true);
+        normalise(e);
+        before = two[1];
+        low_before = low_here;
+        if (careful || !any(less(e.slack, vec{}))) continue;
+        doubt = doubt | (doubtful_segment_joints<uniform>(block, two, k0 - 1, 1, E0) & less(e.slack, vec{}));
+        e.slack = vec{};
+    }
+    Summary &sum = *x.summary;
+    sum.E = e.A;
+    sum.a = e.a;
+    sum.c = e.c;
+    sum.y = e.y;
+    sum.f = e.f;
+    sum.T = e.T;
+    sum.span = e.w_max * e.q;
+    sum.doubt = doubt | ~less(e.largest_rF, splat(careful ? largest_reciprocal_of_one : largest_reciprocal_of_four));
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,193 @@
+// Acceleration and velocity level of one long chain, once its separators are solved for: substitute inside the segments
+// from their ends to their beginnings, and store what comes out.
+#ifndef HOLONOMIC_KERNELS_ELIMINATE_SEGMENT_SUBSTITUTE_HPP
+#define HOLONOMIC_KERNELS_ELIMINATE_SEGMENT_SUBSTITUTE_HPP
+
+#include "core/kernels/eliminate/segment.hpp"
+#include "core/kernels/memory/pulls.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// Copies staged segments back: the atoms that the lane wrote.
+static inline void close_segments(const AtomArray &array, const SegmentBlock &s, int64_t j, const Lane &lane,
+                                  const Packed &packed, bool add) {
+    if (in_place(array, lane)) return;
+    for (int i = 0; i < W; ++i) {
+        const long first = j == 0 && i == 0 ? 0 : 1;
+        unstage(array, lane, s.from[i] + first, s.own[i] - first, packed.lane[i] + 3 * first, add);
+    }
+}
+
+// What is to be written of W segments.
+struct SegmentOutputs {
+    Packed pulls;  // per atom
+    bool has_pulls;
+    double *lambda, *tension;
+    vec lambda_factor;
+    double virial_factor;
+    bool virial;
+};
+
+// - sum t d (x) d
+struct VirialSum {
+    vec xx = {}, xy = {}, xz = {}, yy = {}, yz = {}, zz = {};
+};
+
+HOL_INLINE void add_bond(VirialSum &s, const vec3 &d, const vec3 &p) {
+    s.xx = mul_add(p.x, d.x, s.xx);
+    s.xy = mul_add(p.x, d.y, s.xy);
+    s.xz = mul_add(p.x, d.z, s.xz);
+    s.yy = mul_add(p.y, d.y, s.yy);
+    s.yz = mul_add(p.y, d.z, s.yz);
+    s.zz = mul_add(p.z, d.z, s.zz);
+}
+
+// Writes a value per bond of the bonds k0 .. k0 + W - 1; lanes may end there.
+HOL_INLINE void store_segment_values(const Block &block, long k0, const vec *value, bool ragged, double *out) {
+    vec m[W];
+    for (int b = 0; b < W; ++b) m[b] = value[b];
+    transpose(m);
+    for (int i = 0; i < W; ++i) {
+        double *p = out + block.first_bond[i] + k0;
+        if (!ragged || k0 + W <= block.len[i])
+            store(p, m[i]);
+        else
+            for (long k = k0; k < block.len[i]; ++k) p[k - k0] = m[i][k - k0];
+    }
+}
+
+// The bonds k0 .. k0 + W - 1 with their t, once those behind them are done; `after` is t d of bond k0 + W, then of k0.
+template <bool weighted, bool uniform, Update update>
+HOL_INLINE void store_segment_chunk(const Block &own, const SegmentOutputs &out, long k0, const vec3 *d, const vec *t,
+                                    bool ragged, vec3 &after, VirialSum &sum) {
+    const vec zero = {};  // added to products: a zero is +0, and so are differences of such
+    if (out.lambda) {
+        vec value[W];
+        for (int b = 0; b < W; ++b) value[b] = mul_add(out.lambda_factor, t[b], zero);
+        store_segment_values(own, k0, value, ragged, out.lambda);
+    }
+    if (out.tension) {
+        vec value[W];
+        for (int b = 0; b < W; ++b) value[b] = mul_add(t[b], sqrt(dot(d[b], d[b])), zero);
+        store_segment_values(own, k0, value, ragged, out.tension);
+    }
+    if (!out.has_pulls && !out.virial) return;
+    vec value[3 * W];
+    for (int b = W - 1; b >= 0; --b) {
+        const vec3 p = {mul_add(t[b], d[b].x, zero), mul_add(t[b], d[b].y, zero), mul_add(t[b], d[b].z, zero)};
+        vec3 g = {after.x - p.x, after.y - p.y, after.z - p.z};
+        if (weighted) {
+            const vec w = ragged && k0 + b + 1 > own.n ? vec{} : w_at<uniform>(own, k0 + b + 1);
+            g = {w * g.x, w * g.y, w * g.z};
+        }
+        value[3 * b] = g.x;
+        value[3 * b + 1] = g.y;
+        value[3 * b + 2] = g.z;
+        if (out.virial && !(ragged && k0 + b >= own.n)) add_bond(sum, d[b], p);
+        after = p;
+    }
+    if (!out.has_pulls) return;
+    if (ragged)
+        store_ragged<update>(own, k0 + 1, value, (1u << W) - 1, out.pulls);
+    else
+        store_chunk<update>(k0 + 1, value, out.pulls);
+}
+
+// Atoms 1 .. own of each segment, and atom 0 of the chain.
+template <bool weighted, bool uniform, bool boxed, Update update>
+HOL_NOINLINE void finish_segments(const SegmentBlock &s, bool first_block, const Box &box,
+                                                      const SegmentBonds &in, const SegmentStore &x, vec next,
+                                                      const SegmentOutputs &out, Tally &tally) {
+    const Block own = own_block(s);
+    const long n = s.own_max, full = s.own_min / W * W;
+    const vec ts = x.summary->t;
+    vec t = next, value[W], unused[W];
+    vec3 after = {next * in.next.x, next * in.next.y, next * in.next.z}, d[W];
+    VirialSum sum;
+    long k0 = (n - 1) / W * W;
+    for (; k0 >= full; k0 -= W) {
+        for (int b = W - 1; b >= 0; --b) {
+            const long k = k0 + b;
+            if (k == 0)  // a lane of fewer than W bonds: its separator is in this chunk
+                t = ts;
+            else if (k < n)
+                t = mul_add(x.kept[k].l, t, mul_add(x.kept[k].fP, ts, x.kept[k].u));
+            value[b] = k <= n ? t : vec{};
+        }
+        load_ragged_chunk_of<none_, true, boxed>(own, box, in.r, in.r, in.r, k0, d, unused);
+        if (n - k0 < W) d[n - k0] = in.next;  // the separators behind the segments
+        store_segment_chunk<weighted, uniform, update>(own, out, k0, d, value, true, after, sum);
+    }
+    const double *pr[W];
+    const SegmentPlaces at = {in.r.lane[0], bytes_between(in.r.lane[0], in.r.lane[1]), 0, 0, vec{}};
+    for (; k0 >= 0; k0 -= W) {
+        for (int b = W - 1; b > 0; --b) {
+            const Kept &p = x.kept[k0 + b];
+            t = mul_add(p.l, t, mul_add(p.fP, ts, p.u));
+            value[b] = t;
+        }
+        if (k0 > 0)
+            t = mul_add(x.kept[k0].l, t, mul_add(x.kept[k0].fP, ts, x.kept[k0].u));
+        else
+            t = ts;
+        value[0] = t;
+        if (boxed)
+            for (int i = 0; i < W; ++i) pr[i] = in.r.lane[i] + 3 * k0;
+        if (boxed)
+            load_chunk<none_, true, boxed, false>(own, box, k0, pr, pr, pr, d, nullptr, unused);
+        else
+            load_segments<none_, true>(own, at, k0, d, unused);
+        store_segment_chunk<weighted, uniform, update>(own, out, k0, d, value, false, after, sum);
+    }
+    if (out.virial) {
+        const vec *const part = &sum.xx;
+        for (int c = 0; c < 6; ++c) tally.virial[c] -= out.virial_factor * sum_lanes(part[c]);
+    }
+    if (!first_block || !out.has_pulls) return;
+    const double w = weighted ? w_at<uniform>(own, 0)[0] : 1.0;
+    const double pull[3] = {w * after.x[0] + 0.0, w * after.y[0] + 0.0, w * after.z[0] + 0.0};
+    for (int c = 0; c < 3; ++c)
+        out.pulls.lane[0][c] = update == add_ ? out.pulls.lane[0][c] + pull[c] : pull[c];
+}
+
+template <bool weighted, bool boxed>
+static inline void finish_segments(const SegmentBlock &s, bool first_block, const Box &box, const SegmentBonds &in,
+                            const SegmentStore &x, vec next, const SegmentOutputs &out, Update update, Tally &tally) {
+    if (weighted && !s.block.uniform_w && update == write_)
+        finish_segments<true, false, boxed, write_>(s, first_block, box, in, x, next, out, tally);
+    else if (weighted && !s.block.uniform_w)
+        finish_segments<true, false, boxed, add_>(s, first_block, box, in, x, next, out, tally);
+    else if (update == add_)
+        finish_segments<weighted, true, boxed, add_>(s, first_block, box, in, x, next, out, tally);
+    else
+        finish_segments<weighted, true, boxed, write_>(s, first_block, box, in, x, next, out, tally);
+}
+
+// Substitutes in block j and writes; `pulled` gets what its atoms are pulled with.
+template <bool weighted>
+static inline void finish_block(const Box &box, const AtomArray &r, const AtomArray &pulled, bool add, SegmentOutputs out,
+                         const Lane &lane, int64_t j, double *store, Arena arena, Tally &tally) {
+    const Cut cut(lane.n_bonds);
+    SegmentBlock s = segment_block(cut, j, lane);
+    if (weighted) set_segment_masses(s, lane, arena);
+    SegmentBonds in = {};
+    in.r = open_segments(r, s, lane, arena, true);
+    find_next(s, box, in.r, in);
+    const SegmentStore x(store, cut, j);
+    vec next;
+    for (int i = 0; i + 1 < W; ++i) next[i] = x.summary->t[i + 1];
+    next[W - 1] = s.last < 0 ? x.summary[1].t[0] : 0.0;
+    out.has_pulls = pulled.x != nullptr;
+    out.pulls = open_segments(pulled, s, lane, arena, false);
+    const Update update = in_place(pulled, lane) && add ? add_ : write_;
+    if (box.shape == Box::none)
+        finish_segments<weighted, false>(s, j == 0, box, in, x, next, out, update, tally);
+    else
+        finish_segments<weighted, true>(s, j == 0, box, in, x, next, out, update, tally);
+    if (out.has_pulls) close_segments(pulled, s, j, lane, out.pulls, add);
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

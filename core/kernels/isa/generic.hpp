@@ -1,0 +1,50 @@
+// Any number of lanes on any processor: what the compiler makes of the vectors.
+#ifndef HOLONOMIC_KERNELS_ISA_GENERIC_HPP
+#define HOLONOMIC_KERNELS_ISA_GENERIC_HPP
+
+#include "core/kernels/isa/vector.hpp"
+
+#if !(HOL_LANES == 8 && defined(__AVX512F__)) && !(HOL_LANES == 4 && defined(__AVX2__) && defined(__FMA__))
+namespace holonomic {
+namespace HOL_ISA {
+
+// One rounding or two, as for a double: results of a set must not depend on where a bond is worked on.
+HOL_INLINE vec mul_add(vec a, vec b, vec c) {
+#if defined(__aarch64__) && HOL_LANES == 2
+    return vfmaq_f64(c, a, b);
+#elif HOL_HAS_FMA
+    vec r;
+    HOL_UNROLL
+    for (int i = 0; i < W; ++i) r[i] = __builtin_fma(a[i], b[i], c[i]);
+    return r;
+#else
+    return a * b + c;
+#endif
+}
+HOL_INLINE vec mul_sub(vec a, vec b, vec c) { return mul_add(a, b, -c); }
+HOL_INLINE vec max(vec a, vec b) { return select(reinterpret_cast<mask>(a > b), a, b); }
+HOL_INLINE vec min(vec a, vec b) { return select(reinterpret_cast<mask>(a < b), a, b); }
+HOL_INLINE vec sqrt(vec a) {
+    vec s;
+    for (int i = 0; i < W; ++i) s[i] = __builtin_sqrt(a[i]);
+    return s;
+}
+HOL_INLINE vec round(vec a) {  // as of a double
+    const vec big = splat(6755399441055744.0);
+    const vec sum = a + big;
+    return sum - big;
+}
+#if HOL_LANES == 2 && defined(__SSE2__)
+HOL_INLINE unsigned bits(mask m) { return static_cast<unsigned>(_mm_movemask_pd(as_vec(m))); }
+#else
+HOL_INLINE unsigned bits(mask m) {
+    unsigned b = 0;
+    for (int i = 0; i < W; ++i) b |= (m[i] < 0 ? 1u : 0u) << i;
+    return b;
+}
+#endif
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif
+#endif

@@ -1,0 +1,35 @@
+// Lanes: W doubles worked on at once, one chain (or one segment of a chain) in each. All that kernels do with a vector.
+#ifndef HOLONOMIC_KERNELS_ISA_LANES_HPP
+#define HOLONOMIC_KERNELS_ISA_LANES_HPP
+
+#include "core/kernels/isa/avx2.hpp"
+#include "core/kernels/isa/avx512.hpp"
+#include "core/kernels/isa/generic.hpp"
+#include "core/kernels/isa/transpose.hpp"
+#include "core/kernels/isa/vector.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// The sign bits of a mask tell.
+HOL_INLINE bool any(mask m) { return bits(m) != 0; }
+HOL_INLINE mask less(vec a, vec b) { return reinterpret_cast<mask>(a < b); }
+HOL_INLINE mask less_equal(vec a, vec b) { return reinterpret_cast<mask>(a <= b); }
+HOL_INLINE mask finite(vec a) { return reinterpret_cast<mask>(a - a == vec{}); }
+HOL_INLINE mask none() { return mask{}; }
+HOL_INLINE mask first_lanes(int n) {
+    mask m{};
+    for (int i = 0; i < W; ++i) m[i] = i < n ? -1 : 0;
+    return m;
+}
+HOL_INLINE double sum_lanes(vec a) {  // in the order of the lanes
+    double s = a[0];
+    for (int i = 1; i < W; ++i) s += a[i];
+    return s;
+}
+
+constexpr unsigned all_lanes = (1u << W) - 1;  // bits() of a mask with all lanes set
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

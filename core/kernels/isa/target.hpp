@@ -1,0 +1,39 @@
+// What a translation unit of the kernels is compiled for: HOL_ISA, the namespace of its instruction set, and HOL_LANES, how
+// many doubles are worked on at once. core/CMakeLists.txt defines both; the defaults here let every header open alone.
+//
+// All code of a set is in its namespace, so that no function compiled for a newer processor can be linked into code that
+// runs on an older one. So no standard headers with templates in the kernels.
+#ifndef HOLONOMIC_KERNELS_ISA_TARGET_HPP
+#define HOLONOMIC_KERNELS_ISA_TARGET_HPP
+
+#ifndef HOL_ISA
+#define HOL_ISA baseline
+#endif
+#ifndef HOL_LANES
+#if defined(__AVX512F__)
+#define HOL_LANES 8
+#elif defined(__AVX2__)
+#define HOL_LANES 4
+#else
+#define HOL_LANES 2
+#endif
+#endif
+
+#if defined(__FMA__) || defined(__aarch64__)
+#define HOL_HAS_FMA 1
+#else
+#define HOL_HAS_FMA 0
+#endif
+
+#define HOL_INLINE static inline __attribute__((always_inline))
+// For what would only get in the way of the common case, were it inlined.
+#define HOL_NOINLINE static __attribute__((noinline, unused))
+
+// Before a loop of few turns over vectors: left rolled, it would keep them in memory.
+#if defined(__clang__)
+#define HOL_UNROLL _Pragma("clang loop unroll(full)")
+#else
+#define HOL_UNROLL _Pragma("GCC unroll 16")
+#endif
+
+#endif

@@ -1,0 +1,55 @@
+// A vector of W doubles, and what the compiler can do with it whatever the instruction set is.
+#ifndef HOLONOMIC_KERNELS_ISA_VECTOR_HPP
+#define HOLONOMIC_KERNELS_ISA_VECTOR_HPP
+
+#include "core/kernels/isa/target.hpp"
+
+#if defined(__x86_64__) || defined(__i386__)
+#pragma GCC diagnostic push  // some versions of this header use _mm512_undefined_pd() in a way that gcc warns about
+#pragma GCC diagnostic ignored "-Wuninitialized"
+#ifndef __clang__
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+#include <immintrin.h>
+#pragma GCC diagnostic pop
+#elif defined(__aarch64__)
+#include <arm_neon.h>
+#endif
+
+namespace holonomic {
+namespace HOL_ISA {
+
+constexpr int W = HOL_LANES;
+
+typedef double vec __attribute__((vector_size(HOL_LANES * 8)));
+typedef long long mask __attribute__((vector_size(HOL_LANES * 8)));  // all bits of a lane set, or none
+typedef double vec_unaligned __attribute__((vector_size(HOL_LANES * 8), aligned(8), may_alias));
+
+HOL_INLINE vec load(const double *p) { return *reinterpret_cast<const vec_unaligned *>(p); }
+HOL_INLINE void store(double *p, vec a) { *reinterpret_cast<vec_unaligned *>(p) = a; }
+HOL_INLINE vec splat(double a) { return a - vec{}; }
+HOL_INLINE mask as_mask(vec a) { return reinterpret_cast<mask>(a); }
+HOL_INLINE vec as_vec(mask a) { return reinterpret_cast<vec>(a); }
+HOL_INLINE vec select(mask m, vec a, vec b) { return as_vec((m & as_mask(a)) | (~m & as_mask(b))); }
+HOL_INLINE vec keep(mask m, vec a) { return as_vec(m & as_mask(a)); }  // a where m, else zero
+HOL_INLINE vec abs(vec a) { return as_vec(as_mask(a) & (mask{} + 0x7fffffffffffffffLL)); }
+HOL_INLINE double abs(double a) { return __builtin_fabs(a); }
+
+// To the nearest integer by adding and subtracting 1.5 * 2^52: right for |a| < 2^51, which is all that a box needs.
+HOL_INLINE double round(double a) {
+    const double big = 6755399441055744.0, sum = a + big;
+    return sum - big;
+}
+
+// a * b + c: in one rounding where the instruction set has it, in two elsewhere.
+HOL_INLINE double mul_add(double a, double b, double c) {
+#if HOL_HAS_FMA
+    return __builtin_fma(a, b, c);
+#else
+    return a * b + c;
+#endif
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,62 @@
+// A block: up to W chains (or W segments of one), one per lane, read from the caller's memory into interleaved arrays
+// in cache and written back. Packed coordinates are read in place, a transposition of W x W elements at a time; any
+// other layout is first copied into packed staging buffers.
+#ifndef HOLONOMIC_KERNELS_MEMORY_BLOCK_HPP
+#define HOLONOMIC_KERNELS_MEMORY_BLOCK_HPP
+
+#include "core/kernels/call.hpp"
+#include "core/kernels/isa/lanes.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+constexpr int group = W > 4 ? W : 4;  // bonds of a lane that are read and eliminated at a time
+
+struct Block {
+    long n, n_min;        // bonds of the longest and of the shortest lane
+    long len[W];          // bonds of each lane
+    int lanes;            // lanes in use; the others repeat the first one and are never stored
+    bool roomy;           // W atoms more can be read behind each lane
+    long ahead;           // doubles from a lane's vectors to those of the next block, to be fetched early; or 0
+    long list_ahead;      // the same for lists of atoms
+    bool staged;          // some lanes lie in staging buffers, so all do
+    // Inverse masses are relative to a unit of each lane's own: its inverse mass where that is constant along it, else 1.
+    // So equal masses cost nothing, and are rounded the same way whatever stands in the other lanes.
+    bool uniform_w;       // they are 1 along every lane
+    bool unit_masses;     // and so are the masses
+    vec unit, mass;       // the unit, and 1 / unit
+    mask movable;         // lanes that do not consist of fixed atoms alone
+    const vec *w;         // else [n+1], interleaved, in that unit
+    const double *w3[W];  // and [len+1][3], each three times
+    long first_bond[W];
+    long chain[W];
+
+    mask in_use() const { return first_lanes(lanes); }
+    vec lengths() const {
+        vec v;
+        for (int i = 0; i < W; ++i) v[i] = static_cast<double>(len[i]);
+        return v;
+    }
+};
+
+// One vector per atom as the lanes of a block see it: [len+1][3], in the caller's memory or staged.
+struct Packed {
+    double *lane[W];
+};
+
+// Unit of the inverse masses of a chain, and the one of its atom k in it: see Block.
+HOL_INLINE double unit_of(const Lane &lane) { return !lane.w && lane.w_uniform > 0 ? lane.w_uniform : 1.0; }
+HOL_INLINE double relative_w(const Lane &lane, int64_t k) { return lane.w ? lane.w[k] : lane.w_uniform > 0 ? 1.0 : 0.0; }
+
+// Inverse mass of atom k in the lane's unit.
+template <bool uniform>
+HOL_INLINE vec w_at(const Block &block, long k) {
+    return uniform ? splat(1.0) : block.w[k];
+}
+
+// Whether bonds k-1 and k are both there, in each lane.
+HOL_INLINE mask joint(const Block &block, long k) { return less(splat(static_cast<double>(k)), block.lengths()); }
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

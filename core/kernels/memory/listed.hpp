@@ -1,0 +1,105 @@
+// Blocks of equally long chains with lists of atoms, in packed arrays: every vector is read where the list says, and
+// results are written there, with the same arithmetic as for chains over consecutive atoms. What needs more than the
+// plain path is left to the general one, which copies such chains into staging buffers.
+#ifndef HOLONOMIC_KERNELS_MEMORY_LISTED_HPP
+#define HOLONOMIC_KERNELS_MEMORY_LISTED_HPP
+
+#include "core/kernels/arithmetic/vector3.hpp"
+#include "core/kernels/memory/block.hpp"
+#include "core/kernels/memory/sink.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// The lists of the lanes.
+struct AtomLists {
+    const int64_t *atoms[W];
+    explicit AtomLists(const Lane *lane) {
+        for (int i = 0; i < W; ++i) atoms[i] = lane[i].atoms;
+    }
+};
+
+#if HOL_LANES >= 4 && defined(__AVX2__)
+typedef double vec4 __attribute__((vector_size(32)));
+
+// x y z of four atoms, from and to rows of three.
+HOL_INLINE void gather4(const double *base, const int64_t *const *atoms, long k, vec4 &x, vec4 &y, vec4 &z) {
+    const __m256i three = _mm256_setr_epi64x(-1, -1, -1, 0);
+    vec4 row[4];
+    HOL_UNROLL
+    for (int i = 0; i < 4; ++i) row[i] = _mm256_maskload_pd(base + 3 * atoms[i][k], three);
+    const vec4 a = _mm256_unpacklo_pd(row[0], row[1]), b = _mm256_unpackhi_pd(row[0], row[1]);
+    const vec4 c = _mm256_unpacklo_pd(row[2], row[3]), d = _mm256_unpackhi_pd(row[2], row[3]);
+    x = _mm256_permute2f128_pd(a, c, 0x20);
+    y = _mm256_permute2f128_pd(b, d, 0x20);
+    z = _mm256_permute2f128_pd(a, c, 0x31);
+}
+
+HOL_INLINE void scatter4(double *base, const int64_t *const *atoms, long k, vec4 x, vec4 y, vec4 z) {
+    const vec4 even = _mm256_unpacklo_pd(x, y), odd = _mm256_unpackhi_pd(x, y);
+    HOL_UNROLL
+    for (int i = 0; i < 4; ++i) {
+        double *const p = base + 3 * atoms[i][k];
+        const vec4 pair = i % 2 ? odd : even;
+        _mm_storeu_pd(p, i < 2 ? _mm256_castpd256_pd128(pair) : _mm256_extractf128_pd(pair, 1));
+        p[2] = z[i];
+    }
+}
+#endif
+
+HOL_INLINE vec3 gather(const double *base, const AtomLists &at, long k) {
+    vec3 a;
+#if HOL_LANES == 4 && defined(__AVX2__)
+    gather4(base, at.atoms, k, a.x, a.y, a.z);
+#elif HOL_LANES == 8 && defined(__AVX512F__)
+    vec4 x[2], y[2], z[2];
+    for (int h = 0; h < 2; ++h) gather4(base, at.atoms + 4 * h, k, x[h], y[h], z[h]);
+    a.x = _mm512_insertf64x4(_mm512_castpd256_pd512(x[0]), x[1], 1);
+    a.y = _mm512_insertf64x4(_mm512_castpd256_pd512(y[0]), y[1], 1);
+    a.z = _mm512_insertf64x4(_mm512_castpd256_pd512(z[0]), z[1], 1);
+#else
+    for (int i = 0; i < W; ++i) {
+        const double *const p = base + 3 * at.atoms[i][k];
+        a.x[i] = p[0];
+        a.y[i] = p[1];
+        a.z[i] = p[2];
+    }
+#endif
+    return a;
+}
+
+template <Update update>
+HOL_INLINE void scatter(double *base, const AtomLists &at, long k, vec3 a) {
+    if (update == add_) {
+        const vec3 b = gather(base, at, k);
+        a = {b.x + a.x, b.y + a.y, b.z + a.z};
+    }
+#if HOL_LANES == 4 && defined(__AVX2__)
+    scatter4(base, at.atoms, k, a.x, a.y, a.z);
+#elif HOL_LANES == 8 && defined(__AVX512F__)
+    scatter4(base, at.atoms, k, _mm512_castpd512_pd256(a.x), _mm512_castpd512_pd256(a.y), _mm512_castpd512_pd256(a.z));
+    scatter4(base, at.atoms + 4, k, _mm512_extractf64x4_pd(a.x, 1), _mm512_extractf64x4_pd(a.y, 1),
+             _mm512_extractf64x4_pd(a.z, 1));
+#else
+    for (int i = 0; i < W; ++i) {
+        double *const p = base + 3 * at.atoms[i][k];
+        p[0] = a.x[i];
+        p[1] = a.y[i];
+        p[2] = a.z[i];
+    }
+#endif
+}
+
+HOL_INLINE double *base_of(const AtomArray &array) { return reinterpret_cast<double *>(array.x); }
+
+// Lists in packed arrays, in all lanes of a full block?
+HOL_INLINE bool listed(const Block &block, const Lane *lane) {
+    if (block.lanes < W || block.n != block.n_min) return false;
+    for (int i = 0; i < W; ++i)
+        if (!lane[i].atoms) return false;
+    return true;
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

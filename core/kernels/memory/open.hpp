@@ -1,0 +1,131 @@
+// Blocks of a unit: what is in their lanes, and where.
+#ifndef HOLONOMIC_KERNELS_MEMORY_OPEN_HPP
+#define HOLONOMIC_KERNELS_MEMORY_OPEN_HPP
+
+#include "core/kernels/memory/arena.hpp"
+#include "core/kernels/memory/masses.hpp"
+#include "core/kernels/memory/stage.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+static inline void note_bad(const Block &block, mask bad, Tally &tally) {
+    const unsigned which = bits(bad & block.in_use());
+    for (int i = 0; i < block.lanes; ++i) {
+        if (!(which >> i & 1)) continue;
+        if (tally.n_bad == 0 || block.chain[i] < tally.first_bad) tally.first_bad = block.chain[i];
+        ++tally.n_bad;
+    }
+}
+
+// Fills a block with the chains first .. first + lanes - 1 of a unit. Of a regular unit, the block before this one may
+// still be in place.
+static inline void open_block(const Unit &unit, int64_t first, Block &block, Lane *lane) {
+    const int64_t left = unit.count - first;
+    block.lanes = left < W ? static_cast<int>(left) : W;
+    block.roomy = block.staged = false;
+    block.ahead = block.list_ahead = 0;
+    if (unit.regular) {
+        const Lane &head = unit.lanes[0];
+        const int64_t n = head.n_bonds;
+        if (first == 0) {
+            block.n = block.n_min = n;
+            for (int i = 0; i < W; ++i) {
+                lane[i] = head;
+                block.len[i] = n;
+            }
+        }
+        for (int i = 0; i < block.lanes; ++i) {
+            const int64_t c = first + i;
+            lane[i].first_atom = head.first_atom + c * (n + 1);
+            if (head.atoms) lane[i].atoms = head.atoms + c * (n + 1);
+            lane[i].first_bond = block.first_bond[i] = head.first_bond + c * n;
+            lane[i].chain = block.chain[i] = head.chain + c;
+        }
+        block.staged = head.atoms != nullptr;
+        block.roomy = (left - block.lanes) * (n + 1) >= W && !block.staged;
+        if (unit.large) block.ahead = 3 * W * (n + 1);  // the next unit often goes on where this one ends
+        if (unit.large && left >= 2 * W) block.list_ahead = W * (n + 1);
+        return;
+    }
+    block.n = 0;
+    block.n_min = unit.lanes[first].n_bonds;
+    for (int i = 0; i < block.lanes; ++i) {
+        lane[i] = unit.lanes[first + i];
+        block.staged = block.staged || lane[i].atoms;
+        block.len[i] = lane[i].n_bonds;
+        block.first_bond[i] = lane[i].first_bond;
+        block.chain[i] = lane[i].chain;
+        if (lane[i].n_bonds > block.n) block.n = lane[i].n_bonds;
+        if (lane[i].n_bonds < block.n_min) block.n_min = lane[i].n_bonds;
+    }
+    for (int i = block.lanes; i < W; ++i) block.len[i] = block.len[0];
+    // Chains of the same length one behind the other: those of the next block often go on where these end.
+    bool consecutive = unit.large && !block.staged && block.lanes == W && block.n == block.n_min;
+    for (int i = 1; i < block.lanes; ++i)
+        consecutive = consecutive && lane[i].first_atom == lane[0].first_atom + i * (block.n + 1);
+    if (consecutive) block.ahead = 3 * W * (block.n + 1);
+}
+
+HOL_INLINE bool in_place(const AtomArray &array, const Block &block) { return array.packed && !block.staged; }
+
+// The lanes of a block in an array of the caller's or, where that can't be used in place, in staging buffers.
+static inline Packed open(const AtomArray &array, const Block &block, const Lane *lane, Arena &arena, bool read) {
+    Packed packed = {};
+    if (!array.x) return packed;
+    const bool direct = in_place(array, block);
+    for (int i = 0; i < block.lanes; ++i) {
+        if (direct) {
+            packed.lane[i] = reinterpret_cast<double *>(array.x) + 3 * lane[i].first_atom;
+        } else {
+            packed.lane[i] = arena.doubles(staged_size(block.n));
+            if (read) stage(array, lane[i], 0, block.len[i], packed.lane[i]);
+        }
+    }
+    repeat_first(packed, block.lanes);
+    return packed;
+}
+
+// Copies staged lanes back.
+static inline void close(const AtomArray &array, const Block &block, const Lane *lane, mask which, const Packed &packed,
+                         bool add) {
+    if (in_place(array, block)) return;
+    const unsigned chosen = bits(which & block.in_use());
+    for (int i = 0; i < block.lanes; ++i)
+        if (chosen >> i & 1) unstage(array, lane[i], 0, block.len[i], packed.lane[i], add);
+}
+
+// Calls work(block, lane, call, arena, tally) for the blocks of a unit, after small(call, unit, block, first, tally) has done
+// what it can of W and more of them; that returns the first chain that it has left.
+template <class Call, class Work, class Small>
+static inline void for_each_block(const Call &call, const Unit &unit, double *scratch, Tally &tally, Work work,
+                                  Small small) {
+    Block block;
+    Lane lane[W];
+    Arena arena = {scratch};
+    for (int64_t first = 0; first < unit.count; first += W) {
+        open_block(unit, first, block, lane);
+        if (first == 0 || !unit.regular || block.lanes < W) {
+            arena = {scratch};
+            set_masses(block, lane, arena);
+        }
+        if (block.lanes == W) {
+            const int64_t next = small(call, unit, block, first, tally);
+            if (next > first) {
+                first = next - W;  // the rest goes on from there
+                continue;
+            }
+        }
+        work(block, lane, call, arena, tally);
+    }
+}
+
+// For `small` of calls that have no faster path.
+template <class Call>
+static inline int64_t no_molecules(const Call &, const Unit &, const Block &, int64_t first, Tally &) {
+    return first;
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,26 @@
+// Fetching ahead what the next block will read.
+#ifndef HOLONOMIC_KERNELS_MEMORY_PREFETCH_HPP
+#define HOLONOMIC_KERNELS_MEMORY_PREFETCH_HPP
+
+#include <stdint.h>
+
+#include "core/kernels/isa/lanes.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// Starts to fetch a piece of the next block's vectors, `ahead` doubles from those of this one, when this one is at atom
+// k0, as many as `atoms` of each lane: its lanes lie one behind the other, and are fetched in that order, as the
+// processor's own prefetchers like it. The addresses may lie behind the array.
+template <int atoms = W>
+HOL_INLINE void fetch_ahead(const double *first_lane, long k0, long ahead) {
+    const uintptr_t address =
+        reinterpret_cast<uintptr_t>(first_lane) + static_cast<uintptr_t>(ahead + 3 * W * k0) * sizeof(double);
+    HOL_UNROLL
+    for (int line = 0; line < (3 * W * atoms + 7) / 8; ++line)
+        __builtin_prefetch(reinterpret_cast<const void *>(address + static_cast<uintptr_t>(line) * 64), 0, 2);
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,155 @@
+// Copies of atoms that are not packed: into scratch, and back.
+#ifndef HOLONOMIC_KERNELS_MEMORY_STAGE_HPP
+#define HOLONOMIC_KERNELS_MEMORY_STAGE_HPP
+
+#include <stdint.h>
+
+#include "core/kernels/memory/block.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+HOL_INLINE long staged_size(long n_bonds) { return (3 * (n_bonds + 1) + 7) / 8 * 8; }
+
+// Calls each(element, i) for the components of the atoms from .. from + n of a chain, i counting them all; there is none
+// for an absent z. The layouts of consecutive atoms that most callers have are loops that the compiler vectorizes.
+template <class T, class Each>
+HOL_INLINE void for_each_element(const AtomArray &array, const Lane &lane, long from, long n, Each each) {
+    const int64_t size = sizeof(T), offset = (lane.first_atom + from) * array.stride;
+    if (!lane.atoms && array.z && array.stride == size) {
+        T *__restrict const x = reinterpret_cast<T *>(array.x + offset);
+        T *__restrict const y = reinterpret_cast<T *>(array.y + offset);
+        T *__restrict const z = reinterpret_cast<T *>(array.z + offset);
+        for (long k = 0; k <= n; ++k) {
+            each(x[k], 3 * k);
+            each(y[k], 3 * k + 1);
+            each(z[k], 3 * k + 2);
+        }
+    } else if (!lane.atoms && array.z == array.y + size && array.y == array.x + size && array.stride == 3 * size) {
+        T *__restrict const elements = reinterpret_cast<T *>(array.x + offset);
+        for (long i = 0; i < 3 * (n + 1); ++i) each(elements[i], i);
+    } else {
+        for (long k = 0; k <= n; ++k) {
+            const int64_t at = (lane.atoms ? lane.atoms[from + k] : lane.first_atom + from + k) * array.stride;
+            each(*reinterpret_cast<T *>(array.x + at), 3 * k);
+            each(*reinterpret_cast<T *>(array.y + at), 3 * k + 1);
+            if (array.z) each(*reinterpret_cast<T *>(array.z + at), 3 * k + 2);
+        }
+    }
+}
+
+// Where a chain's atoms stand one behind the other in arrays of their own for x, y and z; x == nullptr elsewhere.
+struct Apart {
+    double *x = nullptr, *y = nullptr, *z = nullptr;
+    Apart(const AtomArray &array, const Lane &lane, long from) {
+        if (array.is_float || lane.atoms || !array.z || array.stride != sizeof(double)) return;
+        x = reinterpret_cast<double *>(array.x) + lane.first_atom + from;
+        y = reinterpret_cast<double *>(array.y) + lane.first_atom + from;
+        z = reinterpret_cast<double *>(array.z) + lane.first_atom + from;
+    }
+};
+
+// The atoms 0, 1, .. n, four at a time, between x, y, z and packed[n+1][3]; returns the first one that is left. The
+// compiler would take twice as many instructions.
+#if defined(__AVX2__)
+HOL_INLINE long pack(const Apart &from, long n, double *packed) {
+    long k = 0;
+    for (; k + 3 <= n; k += 4) {
+        const __m256d x = _mm256_loadu_pd(from.x + k), y = _mm256_loadu_pd(from.y + k), z = _mm256_loadu_pd(from.z + k);
+        const __m256d xy = _mm256_unpacklo_pd(x, y), zx = _mm256_blend_pd(z, x, 10), yz = _mm256_unpackhi_pd(y, z);
+        _mm256_storeu_pd(packed + 3 * k, _mm256_permute2f128_pd(xy, zx, 0x20));
+        _mm256_storeu_pd(packed + 3 * k + 4, _mm256_blend_pd(yz, xy, 12));
+        _mm256_storeu_pd(packed + 3 * k + 8, _mm256_permute2f128_pd(zx, yz, 0x31));
+    }
+    return k;
+}
+
+template <bool add>
+HOL_INLINE long unpack(const double *packed, long n, const Apart &to) {
+    const auto put = [](double *p, __m256d a) __attribute__((always_inline)) {
+        _mm256_storeu_pd(p, add ? _mm256_add_pd(_mm256_loadu_pd(p), a) : a);
+    };
+    long k = 0;
+    for (; k + 3 <= n; k += 4) {
+        const __m256d a = _mm256_loadu_pd(packed + 3 * k), b = _mm256_loadu_pd(packed + 3 * k + 4);
+        const __m256d c = _mm256_loadu_pd(packed + 3 * k + 8);
+        const __m256d xy = _mm256_blend_pd(a, b, 12), zx = _mm256_permute2f128_pd(a, c, 0x21), yz = _mm256_blend_pd(b, c, 12);
+        put(to.x + k, _mm256_blend_pd(xy, zx, 10));
+        put(to.y + k, _mm256_shuffle_pd(xy, yz, 5));
+        put(to.z + k, _mm256_blend_pd(zx, yz, 10));
+    }
+    return k;
+}
+#else
+HOL_INLINE long pack(const Apart &, long, double *) { return 0; }
+template <bool add>
+HOL_INLINE long unpack(const double *, long, const Apart &) {
+    return 0;
+}
+#endif
+
+template <class T>
+HOL_INLINE void stage_elements(const AtomArray &array, const Lane &lane, long from, long n, double *__restrict packed) {
+    for_each_element<T>(array, lane, from, n, [=](const T &element, long i) __attribute__((always_inline)) {
+        packed[i] = element;
+    });
+    for (long k = 0; !array.z && k <= n; ++k) packed[3 * k + 2] = 0;
+}
+
+// Copies atoms `from` .. `from + n` of a chain into packed[n+1][3].
+HOL_NOINLINE void stage(const AtomArray &array, const Lane &lane, long from, long n,
+                                            double *packed) {
+    const Apart apart(array, lane, from);
+    const long done = apart.x ? pack(apart, n, packed) : 0;
+    if (done > n) return;
+    if (array.is_float)
+        stage_elements<float>(array, lane, from, n, packed);
+    else
+        stage_elements<double>(array, lane, from + done, n - done, packed + 3 * done);
+}
+
+template <class T, bool add>
+HOL_INLINE void unstage_elements(const AtomArray &array, const Lane &lane, long from, long n,
+                                 const double *__restrict packed) {
+    for_each_element<T>(array, lane, from, n, [=](T &element, long i) __attribute__((always_inline)) {
+        element = static_cast<T>(add ? static_cast<double>(element) + packed[i] : packed[i]);
+    });
+}
+
+template <bool add>
+HOL_INLINE void unstage(const AtomArray &array, const Lane &lane, long from, long n, const double *packed) {
+    const Apart apart(array, lane, from);
+    const long done = apart.x ? unpack<add>(packed, n, apart) : 0;
+    if (done > n) return;
+    if (array.is_float)
+        unstage_elements<float, add>(array, lane, from, n, packed);
+    else
+        unstage_elements<double, add>(array, lane, from + done, n - done, packed + 3 * done);
+}
+
+HOL_NOINLINE void unstage(const AtomArray &array, const Lane &lane, long from, long n,
+                                              const double *packed, bool add) {
+    add ? unstage<true>(array, lane, from, n, packed) : unstage<false>(array, lane, from, n, packed);
+}
+
+HOL_INLINE bool in_place(const AtomArray &array, const Lane &lane) { return array.packed && !lane.atoms; }
+
+// Where lane i of the block finds its vectors: in place, or staged from atom `from` on.
+HOL_INLINE void open_lane(const AtomArray &array, const Lane &lane, long from, long n, long n_max, Packed &packed,
+                          int i, double *staging, bool read) {
+    if (in_place(array, lane)) {
+        packed.lane[i] = reinterpret_cast<double *>(array.x) + 3 * (lane.first_atom + from);
+    } else {
+        packed.lane[i] = staging + i * staged_size(n_max);
+        if (read) stage(array, lane, from, n, packed.lane[i]);
+    }
+}
+
+// The lanes past the last one in use repeat the first.
+HOL_INLINE void repeat_first(Packed &packed, int lanes) {
+    for (int i = lanes; i < W; ++i) packed.lane[i] = packed.lane[0];
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,120 @@
+// The two attempts at the positions of a block of chains.
+#ifndef HOLONOMIC_KERNELS_NEWTON_ATTEMPTS_HPP
+#define HOLONOMIC_KERNELS_NEWTON_ATTEMPTS_HPP
+
+#include "core/kernels/memory/bonds.hpp"
+#include "core/kernels/memory/open.hpp"
+#include "core/kernels/newton/solve.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// The two attempts at a block of chains.
+template <bool uniform_w, bool uniform_a>
+struct Positions {
+    const Block &block;
+    const Lane *const lane;
+    const PositionsCall &call;
+    Arena arena;
+    Tally &tally;
+    Packed r_ref, r, v;
+    Newton x;
+
+    Positions(const Block &b, const Lane *l, const PositionsCall &c, const BondLengths &a, Arena memory, Tally &t)
+        : block(b), lane(l), call(c), arena(memory), tally(t), r_ref(open(c.r_ref, b, l, arena, true)),
+          r(open(c.r, b, l, arena, true)), v(open(c.v, b, l, arena, true)), x(b, a, arena) {}
+
+    template <bool to_r, bool to_v>
+    void move(mask which) const {
+        store_moves<uniform_w, to_r, to_v>(block, x, which, r, v, 1 / call.dt);
+    }
+
+    // Goes on from the coordinates as they are rounded after a coarse move: the moves that remain are small, and so are
+    // their roundings. Lanes that do not get there are put back. Returns them.
+    mask settle(mask coarse, Carried &carried, Outcome &out) {
+        Arena rest = arena;
+        double *saved[W] = {};
+        for (int i = 0; i < block.lanes; ++i) {
+            saved[i] = rest.doubles(3 * (block.len[i] + 1));
+            for (long e = 0; e < 3 * (block.len[i] + 1); ++e) saved[i][e] = r.lane[i][e];
+        }
+        vec *const total = rest.vecs(block.n);
+        carried.largest_coordinate();  // of the coordinates as they came
+        move<true, false>(out.converged);
+        mask wanted = coarse;
+        for (int pass = 0; pass < 5 && any(wanted); ++pass) {
+            for (long k = 0; k < block.n; ++k) {
+                total[k] = x.tau[k];
+                x.correction[k] = vec{};
+            }
+            load_bond_vectors(block, call.box, r, x.D);
+            x.step = x.correction;
+            const vec error = residuals<uniform_w, uniform_a>(block, x);
+            out.error = select(coarse, error, out.error);
+            wanted = wanted & ~less_equal(error, carried.accepted());
+            if (!any(wanted)) break;
+            const Outcome again = solve_positions<uniform_w, uniform_a, true>(block, x, call, carried, wanted, false);
+            const mask moved = again.converged & wanted;
+            move<true, false>(moved);
+            for (long k = 0; k < block.n; ++k) x.tau[k] = total[k] + keep(moved, x.tau[k]);
+        }
+        const unsigned back = bits(wanted);
+        for (int i = 0; i < block.lanes; ++i)
+            if (back >> i & 1)
+                for (long e = 0; e < 3 * (block.len[i] + 1); ++e) r.lane[i][e] = saved[i][e];
+        return wanted;
+    }
+
+    // Moves the atoms of the lanes that have converged and writes what else is wanted of them.
+    void finish(Outcome &out, Carried &carried) {
+        const mask coarse = coarse_moves<uniform_w>(block, x, carried, out.converged);
+        const bool settled = __builtin_expect(any(coarse), 0);
+        note_worst<uniform_w, uniform_a>(block, x, call, (out.converged | out.untouched) & ~coarse, out.error, tally);
+        if (settled) out.converged = out.converged & ~settle(coarse, carried, out);
+        if (any(out.converged)) {
+            if (settled) {
+                note_worst<uniform_w, uniform_a>(block, x, call, out.converged & coarse, out.error, tally);
+                if (call.v.x) move<false, true>(out.converged);
+            } else if (call.v.x) {
+                move<true, true>(out.converged);
+            } else {
+                move<true, false>(out.converged);
+            }
+            close(call.r, block, lane, out.converged, r, false);
+            if (call.v.x) close(call.v, block, lane, out.converged, v, false);
+            if (call.virial) add_virial(block, x, out.converged, call.dt, tally);
+        }
+        note_solved(block, x, call, out, tally);
+    }
+
+    void load() const {
+        load_bond_vectors(block, call.box, r_ref, x.b);
+        load_bond_vectors(block, call.box, r, x.D);
+    }
+
+    void solve() {
+        const mask all = block.in_use();
+        load();
+        if (block.ahead) {
+            x.next[0] = r_ref.lane[0];
+            x.next[1] = r.lane[0];
+            x.next[2] = v.lane[0];
+        }
+        if (call.guess) load_guess(block, call, x);
+        Carried carried(block, x, call, r);
+        Outcome out = solve_positions<uniform_w, uniform_a, false>(block, x, call, carried, all, call.guess);
+        finish(out, carried);
+        mask rest = all & ~(out.converged | out.untouched);
+        if (__builtin_expect(!any(rest), 1)) return;
+        // Once more from the start, with new factors at every step and nothing that can overflow on the way.
+        load();
+        out = solve_positions<uniform_w, uniform_a, true>(block, x, call, carried, rest, false);
+        finish(out, carried);
+        rest = rest & ~(out.converged | out.untouched);
+        if (any(rest)) note_bad(block, rest, tally);
+    }
+};
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,77 @@
+// Newton's method for the positions of a block of chains, by the sweeps of newton_sweeps.inl: what is done when.
+#ifndef HOLONOMIC_KERNELS_NEWTON_ITERATE_HPP
+#define HOLONOMIC_KERNELS_NEWTON_ITERATE_HPP
+
+#include "core/kernels/newton/decisions.hpp"
+#include "core/kernels/newton/sweeps.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// Newton's method on the lanes in `wanted`, from tau = 0 or the caller's guess in tau.
+template <bool uniform_w, bool uniform_a, bool careful, int fixed = 0>
+HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &call, Carried &carried, mask wanted,
+                           bool guess) {
+    Outcome out = {};
+    const vec done = splat(call.tolerance > epsilon ? call.tolerance : epsilon);
+    x.step = careful ? x.correction : x.tau;
+    vec error = careful ? renew<uniform_w, uniform_a, careful_factors>(block, x, wanted)
+                        : eliminate<uniform_w, uniform_a, first_factors, fixed>(block, x, wanted);
+    out.untouched = wanted & carried.within(error, splat(1.0));
+    mask active = wanted & block.movable & ~out.untouched & finite(error);
+    if (guess) {
+        for (long k = 0; k < block.n; ++k) x.tau[k] = keep(active, x.tau[k]);
+        const vec before = error;
+        error = renew<uniform_w, uniform_a, renewed_factors>(block, x, active);
+        active = active & less_equal(error, before);  // where it did not help: from zero, in the second attempt
+        out.converged = active & less_equal(error, done);
+        active = active & ~out.converged;
+    }
+    vec rate = error;  // new factors square the error
+    mask proven = none();
+    for (int i = 0; i < call.max_iterations && any(active); ++i) {
+        if (i == 0 && !guess)
+            substitute_back<true, careful, fixed>(block, x, active);
+        else
+            substitute_back<false, careful, fixed>(block, x, active);
+        const mask last = active & proven & less(rate * error, splat(0.125 * epsilon));
+        out.converged = out.converged | last;  // whatever the other lanes have to do
+        active = active & ~last;
+        if (!any(active)) {
+            ++out.solves;
+            if (call.report) error = correct<uniform_w, uniform_a, careful, fixed>(block, x, nullptr);
+            break;
+        }
+        const vec before = error, expected = rate * before;
+        error = correct<uniform_w, uniform_a, careful, fixed>(block, x, i < 3 ? x.next[i] : nullptr);
+        ++out.solves;
+        // At the floor: the solve should have gone far below a rounding, or it gained little, and what is left is no
+        // more than the coordinates carry.
+        const mask floor = (less(expected, splat(0.125 * epsilon)) & less_equal(error, splat(floor_error))) |
+                           less(0.25 * before, error);
+        const mask near = active & (less_equal(error, done) | floor);
+        if (any(near)) {
+            const mask sure = less_equal(error, max(done, carried.always_accepted()));
+            mask finished = near;
+            if (any(near & ~sure)) finished = near & less_equal(error, max(done, carried.accepted()));
+            out.converged = out.converged | finished;
+            active = active & ~finished & finite(error);
+            if (!any(active)) break;
+        }
+        active = active & finite(error);
+        rate = error / before;
+        const mask renewed = careful ? active : active & worth_renewing(error, rate, i);
+        if (!careful) proven = ~renewed & less(rate, splat(steady)) & less_equal(error, splat(last_error));
+        if (!any(renewed)) continue;
+        renew<uniform_w, uniform_a, careful ? careful_factors : renewed_factors>(block, x, renewed);
+        rate = select(renewed, error, rate);
+    }
+    if (out.solves == 0 && !guess)
+        for (long k = 0; k <= block.n; ++k) x.tau[k] = vec{};
+    out.error = error;
+    return out;
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

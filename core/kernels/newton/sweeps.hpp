@@ -1,0 +1,223 @@
+// The sweeps of Newton's method up and down the chains of a block.
+#ifndef HOLONOMIC_KERNELS_NEWTON_SWEEPS_HPP
+#define HOLONOMIC_KERNELS_NEWTON_SWEEPS_HPP
+
+#include "core/kernels/memory/prefetch.hpp"
+#include "core/kernels/newton/system.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// Calls body(k, ragged) for the bonds of a block upwards, two at a time where all lanes have them; `fixed` bonds, if
+// that is known to the compiler, one by one.
+template <int fixed, int k = 0, class Body>
+HOL_INLINE void go_up(const Block &block, const Body &body) {
+    if constexpr (fixed > 0) {
+        body(k, false);
+        if constexpr (k + 1 < fixed) go_up<fixed, k + 1>(block, body);
+    } else {
+        long i = 0;
+        for (; i + 2 <= block.n_min; i += 2) {
+            body(i, false);
+            body(i + 1, false);
+        }
+        for (; i < block.n_min; ++i) body(i, false);
+        for (; i < block.n; ++i) body(i, true);
+    }
+}
+
+// Calls two(k), for bonds k and k - 1, down to the first; the pairs are the same whatever the length of the block.
+template <int fixed, int k = fixed - 1, class One, class Two>
+HOL_INLINE void go_down(const Block &block, const One &one, const Two &two) {
+    if constexpr (fixed > 0) {
+        if constexpr (k % 2 == 0)
+            one(k);
+        else
+            two(k);
+        if constexpr (k > 1) go_down<fixed, k - (k % 2 == 0 ? 1 : 2)>(block, one, two);
+    } else {
+        long i = block.n - 1;
+        if (i % 2 == 0) one(i--);
+        for (; i >= 3; i -= 4) {
+            two(i);
+            two(i - 2);
+        }
+        if (i > 0) two(i);
+    }
+}
+
+// The bond vectors as the corrections `step` have moved them, one after the other.
+template <bool uniform_w>
+struct Mover {
+    vec3 pull, left;  // of the last bond, and the displacement of the atom behind it
+    HOL_INLINE Mover start(const Newton &x) {
+        const vec3 p = times(x.step[0], x.b[0]);
+        return {p, times_w<uniform_w>(x, 0, p)};
+    }
+    HOL_INLINE vec3 bond(Mover &m, const Newton &x, long k) {
+        const vec3 p = times(x.step[k + 1], x.b[k + 1]), right = times_w<uniform_w>(x, k + 1, minus(p, m.pull));
+        const vec3 d = plus(x.D[k], minus(right, m.left));
+        m = {p, right};
+        return d;
+    }
+};
+
+// D.D - a^2 of bond k, and its largest size, relative to a^2 if that differs among the bonds.
+template <bool uniform_a>
+HOL_INLINE vec length_error(const Newton &x, long k, bool ragged, const vec3 &d, vec &worst) {
+    const vec a2 = uniform_a ? x.a2_uniform : x.a2[k];
+    vec sigma = mul_add(d.z, d.z, mul_add(d.y, d.y, mul_add(d.x, d.x, -a2)));
+    if (ragged) sigma = keep(live(x, k), sigma);
+    worst = max(uniform_a ? abs(sigma) : abs(sigma) * x.per_a2[k], worst);
+    return sigma;
+}
+
+template <bool uniform_a>
+HOL_INLINE vec relative_error(const Newton &x, vec worst) {
+    return uniform_a ? worst * x.per_a2_uniform : worst;
+}
+
+// Largest |D.D - a^2| / a^2; max() may lose a NaN, the sum y over all bonds keeps it.
+template <bool uniform_a>
+HOL_INLINE vec largest_error(const Newton &x, vec worst, vec y) {
+    return mul_add(y, vec{}, relative_error<uniform_a>(x, worst));
+}
+
+enum Factors { first_factors, renewed_factors, careful_factors };
+
+// Eliminates with the Jacobian at D and substitutes forward; returns the largest error. first_factors: of D as loaded,
+// in all lanes; renewed_factors: of D as moved by the corrections so far, in the lanes in `which`; careful_factors: of
+// D as it stands, in the lanes in `which`, with a division per bond and nothing that cancels. Fractions as in forward().
+template <bool uniform_w, bool uniform_a, Factors factors, int fixed = 0>
+HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
+    constexpr bool moved = factors == renewed_factors, all = factors == first_factors,
+                   careful = factors == careful_factors;
+    const long n = fixed > 0 ? fixed : block.n;
+    Mover<uniform_w> mover = {};
+    if (moved) mover = Mover<uniform_w>::start(x);
+    vec3 d = moved ? Mover<uniform_w>::bond(mover, x, 0) : x.D[0];
+    vec worst = {}, y = {}, down = {}, last = {}, q = dot(d, x.b[0]), A = times_w<uniform_w>(x, 0, q), F = splat(1.0);
+    const auto bond = [&](long k, bool ragged) __attribute__((always_inline)) {
+        Row &row = x.row[k];
+        const vec F1 = mul_add(times_w<uniform_w>(x, k + 1, q), F, A), rF = splat(1.0) / F1, rP = F * rF;
+        row.half_rP = all ? 0.5 * rP : select(which, 0.5 * rP, row.half_rP);
+        row.down = down = all ? down : select(which, down, row.down);
+        y = mul_add(down, y, length_error<uniform_a>(x, k, ragged, moved ? d : x.D[k], worst));
+        row.u = y * row.half_rP;
+        if (ragged || k + 1 == n) last = last + q;  // y knows nothing of a chain's last b, which must be a number, too
+        if (k + 1 == n) {
+            row.up = vec{};
+            return;
+        }
+        const vec3 d1 = moved ? Mover<uniform_w>::bond(mover, x, k + 1) : x.D[k + 1], b1 = x.b[k + 1];
+        if (!moved) d = x.D[k];
+        const vec q1 = dot(d1, b1);
+        const vec lower = dot(d1, x.b[k]), upper = dot(b1, d);
+        vec X = careful ? dot(cross(d, d1), cross(x.b[k], b1)) : mul_add(q, q1, -(lower * upper));
+        const vec wP = times_w<uniform_w>(x, k + 1, rP);
+        vec up = wP * upper;
+        down = wP * lower;
+        if (ragged) {  // the last pivot of a chain may be 0: no product with its reciprocal
+            const mask m = live(x, k + 1);
+            up = keep(m, up);
+            down = keep(m, down);
+            X = keep(m, X);
+        }
+        row.up = all ? up : select(which, up, row.up);
+        A = times_w<uniform_w>(x, k + 1, mul_add(times_w<uniform_w>(x, k + 1, X), F, q1 * A));
+        F = F1;
+        if (careful || (k & 3) == 3) {
+            A = A * rF;
+            F = splat(1.0);
+        }
+        q = q1;
+        if (moved) d = d1;
+    };
+    if constexpr (fixed > 0) {
+        go_up<fixed>(block, bond);
+    } else {
+        long k = 0;
+        if (!careful)
+            for (; k + 4 < block.n_min; k += 4) {
+                bond(k, false);
+                bond(k + 1, false);
+                bond(k + 2, false);
+                bond(k + 3, false);
+            }
+        for (; k < n; ++k) bond(k, k + 1 >= block.n_min);
+    }
+    return largest_error<uniform_a>(x, worst, y + last);
+}
+
+// New factors for the lanes in `which`, out of the way of the common case.
+template <bool uniform_w, bool uniform_a, Factors factors>
+HOL_NOINLINE vec renew(const Block &block, const Newton &x, mask which) {
+    return eliminate<uniform_w, uniform_a, factors>(block, x, which);
+}
+
+// Moves the bonds by the corrections `step`, and substitutes forward what that leaves of their lengths; returns the
+// largest error. `keep_bonds`: D becomes the moved bonds. `fetch`: what to fetch of the next block meanwhile, or nullptr.
+template <bool uniform_w, bool uniform_a, bool keep_bonds, int fixed = 0>
+HOL_INLINE vec correct(const Block &block, const Newton &x, const double *fetch) {
+    Mover<uniform_w> mover = Mover<uniform_w>::start(x);
+    vec worst = {}, y = {};
+    go_up<fixed>(block, [&](long k, bool ragged) __attribute__((always_inline)) {
+        if (!keep_bonds && fixed == 0 && k % 2 == 0 && fetch) fetch_ahead<2>(fetch, k, block.ahead);
+        const vec3 d = Mover<uniform_w>::bond(mover, x, k);
+        if (keep_bonds) {
+            const mask m = live(x, k);
+            x.D[k] = {select(m, d.x, x.D[k].x), select(m, d.y, x.D[k].y), select(m, d.z, x.D[k].z)};
+        }
+        y = mul_add(x.row[k].down, y, length_error<uniform_a>(x, k, ragged, d, worst));
+        x.row[k].u = y * x.row[k].half_rP;
+    });
+    return largest_error<uniform_a>(x, worst, y);
+}
+
+// The largest error alone.
+template <bool uniform_w, bool uniform_a>
+static inline vec residuals(const Block &block, const Newton &x) {
+    Mover<uniform_w> mover = Mover<uniform_w>::start(x);
+    vec worst = {}, y = {};
+    for (long k = 0; k < block.n; ++k)
+        y = y + length_error<uniform_a>(x, k, true, Mover<uniform_w>::bond(mover, x, k), worst);
+    return largest_error<uniform_a>(x, worst, y);
+}
+
+// Goes down the chain: adds the corrections of the lanes in `which`, or of all, to tau, which is 0 the first time.
+template <bool first, bool separate, bool all, int fixed>
+HOL_INLINE void substitute_back(const Block &block, const Newton &x, mask which) {
+    vec t = {};
+    const auto add = [&](long k, vec correction) __attribute__((always_inline)) {
+        const vec change = all ? correction : keep(which, correction);
+        if (separate) x.step[k] = change;
+        x.tau[k] = first ? change : x.tau[k] + change;
+    };
+    // Two bonds depend on the one behind them at once, by the product of their factors.
+    go_down<fixed>(
+        block,
+        [&](long k) __attribute__((always_inline)) {
+            t = mul_add(x.row[k].up, t, x.row[k].u);
+            add(k, t);
+        },
+        [&](long k) __attribute__((always_inline)) {
+            const Row &a = x.row[k], &b = x.row[k - 1];
+            const vec up = a.up, u = a.u, both = b.up * up, sum = mul_add(b.up, u, b.u);
+            add(k, mul_add(up, t, u));
+            t = mul_add(both, t, sum);
+            add(k - 1, t);
+        });
+}
+
+// A branch, so that the next step does not wait for what this one's errors say of the lanes.
+template <bool first, bool separate, int fixed = 0>
+HOL_INLINE void substitute_back(const Block &block, const Newton &x, mask which) {
+    if (!separate && __builtin_expect(bits(which) == (1u << W) - 1, 1))
+        substitute_back<first, separate, true, fixed>(block, x, which);
+    else
+        substitute_back<first, separate, false, fixed>(block, x, which);
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,203 @@
+// Positions of small molecules of one kind over consecutive atoms: the arithmetic of positions.inl, with the number of
+// bonds known to the compiler. Where a lane needs more than that, its W molecules are left to the general path.
+#ifndef HOLONOMIC_KERNELS_VERBS_POSITIONS_SMALL_HPP
+#define HOLONOMIC_KERNELS_VERBS_POSITIONS_SMALL_HPP
+
+#include "core/kernels/memory/bonds.hpp"
+#include "core/kernels/memory/fixed.hpp"
+#include "core/kernels/newton/solve.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// What the molecules of a unit have in common.
+struct MoleculesCall {
+    const PositionsCall &call;
+    const Unit &unit;
+    const Block &block;
+    double *r_ref, *r, *v, *lambda;
+    double per_dt;
+
+    MoleculesCall(const PositionsCall &c, const Unit &u, const Block &b)
+        : call(c), unit(u), block(b), r_ref(atoms(c.r_ref)), r(atoms(c.r)), v(atoms(c.v)),
+          lambda(c.lambda ? c.lambda + u.lanes[0].first_bond : nullptr), per_dt(1 / c.dt) {}
+
+private:
+    double *atoms(const AtomArray &a) const {
+        return a.x ? reinterpret_cast<double *>(a.x) + 3 * unit.lanes[0].first_atom : nullptr;
+    }
+};
+
+// Inverse masses and lengths as in positions.inl; `uniform`: of both there is only one.
+template <int N, bool uniform>
+HOL_INLINE void set_molecule(const Block &block, const Lane &head, Newton &x, vec *w, vec *a2, vec *per_a2) {
+    const bool one_mass = block.uniform_w;
+    x.lengths = splat(N);
+    x.a_min = x.a_max = splat(head.length_uniform);
+    if (head.length) {
+        double least = head.length[0], most = head.length[0];
+        for (int k = 1; k < N; ++k) {
+            least = __builtin_fmin(least, head.length[k]);
+            most = __builtin_fmax(most, head.length[k]);
+        }
+        x.a_min = splat(least);
+        x.a_max = splat(most);
+    }
+    x.per_a_min = splat(1.0) / x.a_min;
+    x.a2_uniform = x.a_min * x.a_min;
+    x.per_a2_uniform = splat(1.0) / x.a2_uniform;
+    x.w = nullptr;
+    x.a2 = x.per_a2 = nullptr;
+    if (uniform) return;
+    for (int k = 0; k <= N; ++k) w[k] = one_mass ? splat(1.0) : block.w[k];
+    for (int k = 0; k < N; ++k) {
+        const double a = head.length ? head.length[k] : head.length_uniform;
+        a2[k] = splat(a * a);
+        per_a2[k] = splat(1.0) / a2[k];
+    }
+    x.w = w;
+    x.a2 = a2;
+    x.per_a2 = per_a2;
+}
+
+template <int N>
+HOL_INLINE void load_molecules(const double *r, vec3 *D) {
+    const Box no_box = {};
+    for (int k0 = 0; k0 < N; k0 += W) {
+        const double *p[W];
+        vec3 d[W];
+        for (int i = 0; i < W; ++i) p[i] = r + 3 * (N + 1) * i + 3 * k0;
+        bonds_between<false>(no_box, p, d);
+        for (int a = 0; a < W && k0 + a < N; ++a) D[k0 + a] = d[a];
+    }
+}
+
+// As store_moves: of W molecules, all of them.
+template <int N, bool uniform>
+HOL_INLINE void move_molecules(const Newton &x, double *r, double *v, double per_dt) {
+    constexpr int elements = 3 * (N + 1), full = elements / W, rest = elements % W;
+    vec value[(full + 1) * W] = {};
+    vec3 before = {};
+    for (int k = 0; k <= N; ++k) {
+        const vec3 after = times(x.tau[k], x.b[k]), m = times_w<uniform>(x, k, minus(after, before));
+        value[3 * k] = m.x;
+        value[3 * k + 1] = m.y;
+        value[3 * k + 2] = m.z;
+        before = after;
+    }
+    for (int j = 0; j < full; ++j) transpose(value + j * W);
+    for (int i = 0; i < W; ++i)
+        for (int j = 0; j < full; ++j) {
+            double *const p = r + elements * i + j * W;
+            store(p, load(p) + value[j * W + i]);
+        }
+    for (int i = 0; v && i < W; ++i)
+        for (int j = 0; j < full; ++j) {
+            double *const p = v + elements * i + j * W;
+            store(p, mul_add(value[j * W + i], splat(per_dt), load(p)));
+        }
+    if (rest == 0) return;
+    typedef double pair __attribute__((vector_size(16)));
+    typedef double pair_unaligned __attribute__((vector_size(16), aligned(8), may_alias));
+    vec *const last = value + full * W;
+    transpose(last);
+    for (int i = 0; i < W; ++i)
+        for (int e = 0; e < rest; e += 2) {
+            const int at = elements * i + full * W + e;
+            if (e + 1 == rest) {
+                r[at] = r[at] + last[i][e];
+                if (v) v[at] = mul_add(last[i][e], per_dt, v[at]);
+                continue;
+            }
+            pair_unaligned &p = *reinterpret_cast<pair_unaligned *>(r + at);
+            const pair move = {last[i][e], last[i][e + 1]};
+            p = p + move;
+            if (!v) continue;
+            pair_unaligned &q = *reinterpret_cast<pair_unaligned *>(v + at);
+#if HOL_HAS_FMA && defined(__x86_64__)
+            q = _mm_fmadd_pd(move, pair{per_dt, per_dt}, q);
+#else
+            q = pair{mul_add(move[0], per_dt, q[0]), mul_add(move[1], per_dt, q[1])};
+#endif
+        }
+}
+
+template <int N, bool uniform>
+HOL_INLINE void note_molecules(const MoleculesCall &m, const Newton &x, vec error, int64_t first, Tally &tally) {
+    if (tally.worst_chain >= 0 && !any(less(splat(tally.worst), error))) return;
+    int worst = -1;
+    for (int i = 0; i < W; ++i) {
+        if (!(error[i] > tally.worst || tally.worst_chain < 0)) continue;
+        tally.worst = error[i];
+        tally.worst_chain = m.unit.lanes[0].chain + first + i;
+        worst = i;
+    }
+    Mover<uniform> mover = Mover<uniform>::start(x);
+    bool found = false;
+    tally.worst_bond = 0;
+    vec largest = {};
+    for (int k = 0; k < N; ++k) {
+        length_error<uniform>(x, k, false, Mover<uniform>::bond(mover, x, k), largest);
+        if (found || !(relative_error<uniform>(x, largest)[worst] >= error[worst])) continue;
+        found = true;
+        tally.worst_bond = k;
+    }
+}
+
+// From molecule `first` on; returns the first one that is not done.
+template <int N, bool uniform>
+HOL_NOINLINE int64_t of_molecules(const MoleculesCall &m, int64_t first, Tally &tally) {
+    vec memory[12 * N + 12], w[N + 1], a2[N], per_a2[N];
+    Arena arena = {reinterpret_cast<double *>(memory)};
+    Newton x(N, arena);
+    set_molecule<N, uniform>(m.block, m.unit.lanes[0], x, w, a2, per_a2);
+    const mask all = first_lanes(W);
+    const vec factor = splat(0.5 / (m.call.dt * m.call.dt)) / m.block.unit;
+    for (; molecules_left(m.unit, first); first += W) {
+        const int64_t at = 3 * (N + 1) * first;
+        load_molecules<N>(m.r_ref + at, x.b);
+        load_molecules<N>(m.r + at, x.D);
+        Packed r;
+        for (int i = 0; i < W; ++i) r.lane[i] = m.r + at + 3 * (N + 1) * i;
+        Carried carried(m.block, x, m.call, r);
+        Outcome out = {};
+        if (N == 1) {
+            out = solve_single_bonds<uniform>(x, carried, all);
+            x.tau[0] = keep(all, x.tau[0]);
+        } else {
+            out = iterate<uniform, uniform, false, N>(m.block, x, m.call, carried, all, false);
+        }
+        if (any(~out.converged)) break;
+        vec pull = {};
+        for (int k = 0; k < N; ++k)
+            pull = max(uniform ? abs(x.tau[k]) : max(x.w[k], x.w[k + 1]) * abs(x.tau[k]), pull);
+        if (any(less(0.25 * x.a_min, pull * x.a_max))) break;
+        if (m.call.report) note_molecules<N, uniform>(m, x, out.error, first, tally);
+        move_molecules<N, uniform>(x, m.r + at, m.v ? m.v + at : nullptr, m.per_dt);
+        if (m.lambda) store_multipliers<N>(x.tau, factor, m.lambda + N * first);
+        tally.n_corrected += W;
+        if (out.solves > tally.iterations) tally.iterations = out.solves;
+    }
+    return first;
+}
+
+static inline int64_t small_positions(const PositionsCall &call, const Unit &unit, const Block &block, int64_t first,
+                               Tally &tally) {
+    const Lane &head = unit.lanes[0];
+    if (!unit.regular || head.atoms || head.n_bonds > largest_molecule || !call.r.packed || !call.r_ref.packed ||
+        (call.v.x && !call.v.packed) || call.virial || call.guess || call.box.shape != Box::none)
+        return first;
+    const MoleculesCall m(call, unit, block);
+    const bool uniform = block.uniform_w && !head.length;
+    switch (head.n_bonds) {
+        case 1: return uniform ? of_molecules<1, true>(m, first, tally) : of_molecules<1, false>(m, first, tally);
+        case 2: return uniform ? of_molecules<2, true>(m, first, tally) : of_molecules<2, false>(m, first, tally);
+        case 3: return uniform ? of_molecules<3, true>(m, first, tally) : of_molecules<3, false>(m, first, tally);
+        case 4: return uniform ? of_molecules<4, true>(m, first, tally) : of_molecules<4, false>(m, first, tally);
+        default: return uniform ? of_molecules<5, true>(m, first, tally) : of_molecules<5, false>(m, first, tally);
+    }
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

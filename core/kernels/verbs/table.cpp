@@ -1,0 +1,40 @@
+// The table through which core calls the kernels of one instruction set.
+#include "core/kernels/eliminate/join.hpp"
+#include "core/kernels/isa/lanes.hpp"
+#include "core/kernels/memory/cut.hpp"
+#include "core/kernels/verbs/verbs.hpp"
+
+#define HOL_STRING_OF(name) #name
+#define HOL_STRING(name) HOL_STRING_OF(name)
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// Interleaved vectors per bond that the greediest kernel takes, staging included.
+constexpr int64_t vectors_per_bond = 40;
+
+static int64_t scratch_bytes(int64_t n_bonds) {
+    return static_cast<int64_t>(sizeof(vec)) * vectors_per_bond * (n_bonds + 2 * W + 8);
+}
+
+static int64_t long_blocks(int64_t n_bonds) { return Cut(n_bonds).blocks; }
+
+extern const Kernels kernels;
+const Kernels kernels = {
+    HOL_STRING(HOL_ISA),
+    W,
+    scratch_bytes,
+    forces,
+    velocities,
+    positions,
+    metric,
+    {long_blocks, long_bytes, long_forces_eliminate, long_join, long_forces_finish},
+    {long_blocks, long_bytes, long_velocities_eliminate, long_join, long_velocities_finish},
+    {long_blocks, long_positions_bytes, long_positions_load, long_positions_guess, long_positions_forget,
+     long_positions_factorize, long_positions_join, long_positions_step, long_positions_pull, long_positions_finish,
+     long_positions_windows, long_positions_window, long_positions_windows_fit, long_positions_finish_window},
+    {long_blocks, long_metric_bytes, long_metric_map, long_metric_join, long_metric_finish},
+};
+
+}  // namespace HOL_ISA
+}  // namespace holonomic

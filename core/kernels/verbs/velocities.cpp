@@ -1,0 +1,170 @@
+// Velocity level of a block of chains: the same solve with d . (v_k - v_{k-1}) on the right; v_i += w_i G_i. Velocities
+// are read once, stay in lanes until they are right, and are written once.
+#include "core/kernels/eliminate/forward.hpp"
+#include "core/kernels/eliminate/join.hpp"
+#include "core/kernels/eliminate/listed.hpp"
+#include "core/kernels/eliminate/projection.hpp"
+#include "core/kernels/eliminate/segment_substitute.hpp"
+#include "core/kernels/memory/open.hpp"
+#include "core/kernels/memory/pulls.hpp"
+#include "core/kernels/verbs/velocities_small.hpp"
+#include "core/kernels/verbs/verbs.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// Loads and eliminates. Returns the lanes that plain arithmetic can answer for.
+template <bool uniform, bool boxed>
+HOL_NOINLINE mask forward_velocities(const Block &block, const Box &box, const Packed &r,
+                                                         const Packed &v, const Projection &x) {
+    const System &s = x.s;
+    const Source source = {&r, nullptr, nullptr, &box, nullptr};
+    Sweep<uniform, true> sweep{block, source, s};
+    const Places at(r, v, v);
+    x.v[0] = load_atom(v);
+    long k0 = 0;
+    for (; k0 + group <= block.n_min; k0 += group) {
+        HOL_UNROLL
+        for (long k = k0; k < k0 + group; k += W) {
+            vec unused[W];
+            load_full_chunk<none_, uniform, boxed, false>(block, box, at, k, s.D + k, nullptr, unused);
+            const double *pv[W];
+            HOL_UNROLL
+            for (int i = 0; i < W; ++i) pv[i] = at.v + 3 * (k + 1) + at.lane[i];
+            if (__builtin_expect(block.ahead != 0, 0)) fetch_ahead(at.v, k, block.ahead);
+            load_atoms(pv, x.v + k + 1);
+        }
+        HOL_UNROLL
+        for (long k = k0; k < k0 + group; ++k)
+            sweep.step(k, rate_of(s.D[k], x.v[k], x.v[k + 1]), (k - k0) % 4 == 0, false);
+    }
+    const long ragged_from = k0;
+    for (; k0 < block.n; k0 += W) {
+        load_ragged_chunk<none_, uniform, boxed, false>(block, box, r, r, r, k0, s.D + k0, nullptr, s.t + k0);
+        load_ragged_atoms(block, v, k0, x.v);
+    }
+    for (long k = ragged_from; k < block.n; ++k)
+        sweep.step(k, keep(joint(block, k), rate_of(s.D[k], x.v[k], x.v[k + 1])), k % 4 == 0, k >= block.n_min);
+    return ~sweep.doubt();
+}
+
+// The same with compensated products of unrounded bond vectors: good in all lanes.
+template <bool uniform, bool boxed>
+HOL_NOINLINE mask forward_velocities_careful(const Block &block, const Box &box, const Packed &r,
+                                                                 const Packed &v, const Projection &x) {
+    load_bonds<none_, uniform, boxed, true>(block, box, r, r, r, x.s.D, x.s.D_low, x.s.t);
+    x.v[0] = load_atom(v);
+    for (long k0 = 0; k0 < block.n; k0 += W) load_ragged_atoms(block, v, k0, x.v);
+    for (long k = 0; k < block.n; ++k)
+        x.s.t[k] = keep(joint(block, k), rate_of(x.s.D[k], x.v[k], x.v[k + 1]));
+    forward_careful<uniform>(block, x.s);
+    return ~none();
+}
+
+template <bool uniform>
+static inline mask forward_velocities(const Block &block, const Box &box, const Packed &r, const Packed &v,
+                                      const Projection &x, bool careful) {
+    if (box.shape != Box::none)
+        return careful ? forward_velocities_careful<uniform, true>(block, box, r, v, x)
+                       : forward_velocities<uniform, true>(block, box, r, v, x);
+    return careful ? forward_velocities_careful<uniform, false>(block, box, r, v, x)
+                   : forward_velocities<uniform, false>(block, box, r, v, x);
+}
+
+// The second substitution, and the velocities of the lanes in `which` to `out`.
+template <bool uniform>
+HOL_NOINLINE void correct_and_store(const Block &block, const Projection &x, mask which,
+                                                        const Packed &out) {
+    Pull<uniform> pull{block, x, x.left};
+    const Packed to = out;
+    const unsigned chosen = bits(which);
+    const long full = block.n / W * W, fast = chosen == (1u << W) - 1 ? block.n_min : 0;
+    if (full < block.n) {
+        vec3 value[W] = {};
+        for (long k = block.n - 1; k >= full; --k) value[k - full] = pull.step(k);
+        store_ragged<write_>(block, full + 1, &value->x, chosen, out);
+    }
+    for (long k0 = full - W; k0 >= 0; k0 -= W) {
+        vec value[3 * W];
+        HOL_UNROLL
+        for (long b = W - 1; b >= 0; --b) {
+            const vec3 v = pull.step(k0 + b);
+            value[3 * b] = v.x;
+            value[3 * b + 1] = v.y;
+            value[3 * b + 2] = v.z;
+        }
+        if (__builtin_expect(k0 + W <= fast, 1))
+            store_chunk<write_>(k0 + 1, value, to);
+        else
+            store_ragged<write_>(block, k0 + 1, value, chosen, out);
+    }
+    const vec3 v = pull.finish();
+    for (int i = 0; i < W; ++i) {
+        if (!(chosen >> i & 1)) continue;
+        out.lane[i][0] = v.x[i];
+        out.lane[i][1] = v.y[i];
+        out.lane[i][2] = v.z[i];
+    }
+}
+
+template <bool uniform>
+HOL_NOINLINE void correct_and_scatter(const Block &block, const Projection &x, const AtomLists &at,
+                                                          double *out) {
+    Pull<uniform> pull{block, x, x.left};
+    for (long k = block.n - 1; k >= 0; --k) scatter<write_>(out, at, k + 1, pull.step(k));
+    scatter<write_>(out, at, 0, pull.finish());
+}
+
+// Lists of atoms in packed arrays. Whether this did all that there was to do; else nothing has been written.
+static inline bool listed_velocities(const Block &block, const Lane *lane, const VelocitiesCall &call, Arena arena) {
+    if (!call.r.packed || call.virial || !listed(block, lane)) return false;
+    const AtomLists at(lane);
+    const Projection x(block.n, arena);
+    mask good = forward_listed<rate>(block, call.box, at, call.r, call.v, call.v, x.s, x.v);
+    good = good & pull_back(block, x, true);
+    if (any(~good)) return false;
+    if (call.lambda) store_bonds(block, x.s.t, 0.5 * block.mass, good, call.lambda);
+    block.uniform_w ? correct_and_scatter<true>(block, x, at, base_of(call.v))
+                    : correct_and_scatter<false>(block, x, at, base_of(call.v));
+    return true;
+}
+
+static void velocities_block(const Block &block, const Lane *lane, const VelocitiesCall &call, Arena arena,
+                             Tally &tally) {
+    if (block.staged && listed_velocities(block, lane, call, arena)) return;
+    const Packed r = open(call.r, block, lane, arena, true), v = open(call.v, block, lane, arena, true);
+    const Projection x(block.n, arena);
+    mask rest = block.in_use();
+    for (int careful = 0; careful < 2 && any(rest); ++careful) {
+        mask good = block.uniform_w ? forward_velocities<true>(block, call.box, r, v, x, careful)
+                                    : forward_velocities<false>(block, call.box, r, v, x, careful);
+        good = good & pull_back(block, x, !call.v.is_float) & rest;
+        rest = rest & ~good;
+        if (!any(good)) continue;
+        if (call.lambda) store_bonds(block, x.s.t, 0.5 * block.mass, good, call.lambda);
+        if (call.virial) add_virial(block.n, x.s.D, x.s.t, good, block.mass, tally);
+        block.uniform_w ? correct_and_store<true>(block, x, good, v) : correct_and_store<false>(block, x, good, v);
+        close(call.v, block, lane, good, v, false);
+    }
+    if (any(rest)) note_bad(block, rest, tally);
+}
+
+void velocities(const VelocitiesCall &call, const Unit &unit, double *scratch, Tally &tally) {
+    for_each_block(call, unit, scratch, tally, velocities_block, small_velocities);
+}
+
+void long_velocities_eliminate(const VelocitiesCall &call, const Lane &lane, int64_t j, bool careful,
+                                      double *store, double *scratch) {
+    eliminate_block<rate>(call, lane, j, call.r, call.v, AtomArray{}, careful, store, Arena{scratch});
+}
+
+void long_velocities_finish(const VelocitiesCall &call, const Lane &lane, int64_t j, double *store,
+                                   double *scratch, Tally &tally) {
+    // With equal masses, t is w times 2 lambda here.
+    const double mass = 1 / unit_of(lane);
+    const SegmentOutputs out = {{}, false, call.lambda, nullptr, splat(0.5 * mass), mass, call.virial};
+    finish_block<true>(call.box, call.r, call.v, true, out, lane, j, store, Arena{scratch}, tally);
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic

@@ -1,0 +1,52 @@
+// The entries of the table of kernels: what the verbs of one instruction set define, and what core/kernels/call.hpp says of
+// them.
+#ifndef HOLONOMIC_KERNELS_VERBS_VERBS_HPP
+#define HOLONOMIC_KERNELS_VERBS_VERBS_HPP
+
+#include "core/kernels/call.hpp"
+#include "core/kernels/isa/target.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+void forces(const ForcesCall &, const Unit &, double *scratch, Tally &);
+void long_forces_eliminate(const ForcesCall &, const Lane &, int64_t block, bool careful, double *store,
+                           double *scratch);
+void long_forces_finish(const ForcesCall &, const Lane &, int64_t block, double *store, double *scratch, Tally &);
+
+void velocities(const VelocitiesCall &, const Unit &, double *scratch, Tally &);
+void long_velocities_eliminate(const VelocitiesCall &, const Lane &, int64_t block, bool careful, double *store,
+                               double *scratch);
+void long_velocities_finish(const VelocitiesCall &, const Lane &, int64_t block, double *store, double *scratch,
+                            Tally &);
+
+void positions(const PositionsCall &, const Unit &, double *scratch, Tally &);
+int64_t long_positions_bytes(int64_t n_bonds);
+void long_positions_load(const PositionsCall &, const Lane &, int64_t block, double *store, double *scratch,
+                         LongTally &);
+void long_positions_guess(const PositionsCall &, const Lane &, int64_t block, double *store);
+void long_positions_forget(const Lane &, int64_t block, double *store);
+void long_positions_factorize(const PositionsCall &, const Lane &, int64_t block, bool careful, double *store,
+                              double *scratch);
+bool long_positions_join(const Lane &, bool renew, double *store);
+double long_positions_step(const PositionsCall &, const Lane &, int64_t block, bool substitute, double *store,
+                           double *scratch);
+double long_positions_pull(const Lane &, int64_t block, double *store);
+void long_positions_finish(const PositionsCall &, const Lane &, int64_t block, bool moved, double *store,
+                           double *scratch, Tally &);
+int64_t long_positions_windows(int64_t n_bonds);
+WindowResult long_positions_window(const PositionsCall &, const Lane &, int64_t window, double *tau, double *scratch,
+                                   Tally &);
+bool long_positions_windows_fit(const PositionsCall &, const Lane &, const double *tau, double *scratch, Tally &);
+void long_positions_finish_window(const PositionsCall &, const Lane &, int64_t window, bool moved, const double *tau,
+                                  double *scratch, Tally &);
+
+void metric(const MetricCall &, const Unit &, double *scratch, Tally &);
+int64_t long_metric_bytes(int64_t n_bonds);
+void long_metric_map(const MetricCall &, const Lane &, int64_t block, double *store, double *scratch);
+bool long_metric_join(const Lane &, double *store);
+void long_metric_finish(const MetricCall &, const Lane &, int64_t block, double *store, double *scratch, Tally &);
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# Installs the packages that scripts/package made on a machine with nothing on it, and does there what README tells a
+# newcomer to do: its programs in C and Fortran by its own lines, and a CMake project.
+#
+#   fresh_machine.sh PACKAGES SUITE MIRROR WORK
+#       PACKAGES  folder of the .deb files        SUITE   bookworm, noble, ...
+#       MIRROR    where debootstrap gets it       WORK    folder for the machine, a chroot; is removed at the end
+# Needs root. Exit status 77: no debootstrap, no root, or the distribution can't be had.
+set -eu
+packages=$(cd "$1" && pwd) suite=$2 mirror=$3 work=$4
+source=$(cd "$(dirname "$0")/../.." && pwd)
+
+leave_out() {
+    echo "left out: $*"
+    exit 77
+}
+[ "$(id -u)" -eq 0 ] || leave_out "only root can make a machine of its own"
+command -v debootstrap >/dev/null || leave_out "no debootstrap"
+
+root=$work/$suite
+rm -rf "$root"
+mkdir -p "$work"
+trap 'rm -rf "$root"' EXIT
+echo "making $suite"
+debootstrap --variant=minbase --include=ca-certificates "$suite" "$root" "$mirror" >"$work/$suite.log" 2>&1 ||
+    { tail -n 5 "$work/$suite.log"; leave_out "$suite can't be had"; }
+inside() { chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C DEBIAN_FRONTEND=noninteractive "$@"; }
+
+# apt reaches its sources as it does outside.
+cp /etc/resolv.conf "$root/etc/" 2>/dev/null || :
+cp /etc/apt/apt.conf.d/* "$root/etc/apt/apt.conf.d/" 2>/dev/null || :
+[ ! -d /etc/apt/auth.conf.d ] || cp -r /etc/apt/auth.conf.d "$root/etc/apt/"
+mkdir -p "$root/srv/packages"
+cp "$packages"/*.deb "$root/srv/packages"
+echo "installing the packages, compilers and cmake"
+inside apt-get update -qq
+inside sh -c 'apt-get install -y -qq --no-install-recommends gcc g++ gfortran libc6-dev make cmake pkgconf /srv/packages/*.deb' \
+    >"$work/$suite.apt.log" 2>&1 || { tail -n 20 "$work/$suite.apt.log"; exit 1; }
+
+# The programs of README, compiled by the lines of README, print what README says.
+mkdir -p "$root/srv/try/tests/install"
+cp "$source/README.md" "$root/srv/try"
+cp -r "$source/tests/install/programs" "$source/tests/install/projects" "$root/srv/try/tests/install"
+cp "$source/tests/install/readme_programs.sh" "$root/srv/try"
+inside sh -c "mkdir /srv/try/readme && cd /srv/try/readme && ../readme_programs.sh ../README.md c fortran"
+
+for language in c fortran; do
+    program=$([ $language = c ] && echo rotor.c || echo rotor_free.f90)
+    target=$([ $language = c ] && echo holonomic || echo fortran)
+    folder=/srv/try/tests/install/projects/$language
+    cp "$root/srv/try/tests/install/programs/$program" "$root$folder"
+    inside cmake -S $folder -B /srv/try/$language -DPROGRAM=$program -DHOLONOMIC_TARGET=holonomic::$target >/dev/null
+    inside cmake --build /srv/try/$language >/dev/null
+    echo "CMake, $language:"
+    inside /srv/try/$language/program
+done
+inside apt-get purge -y -qq libholonomic0 >/dev/null
+[ -z "$(find "$root/usr/lib" "$root/usr/include" -name '*holonomic*')" ] || { echo "files are left after the packages are removed"; exit 1; }
+echo "$suite: passed"
