@@ -17,26 +17,27 @@ struct hol_chains {
 namespace holonomic {
 
 // Keeps the error for hol_error_message() and hol_error_location() of this thread; returns its status.
-int remember(const Error &error) noexcept;
+int remember(const char *function, const Error &error) noexcept;
 
 // Throws Status::null if p is a null pointer.
 inline void need(const void *p, const char *name) {
     if (!p) throw make_error(Status::null, "%s is NULL", name);
 }
 
+// `function` is the name of the caller's, with which messages begin.
 template <class Body>
-int guarded(Body body) noexcept {
+int guarded(const char *function, Body body) noexcept {
     try {
         body();
         return HOL_OK;
     } catch (const Error &error) {
-        return remember(error);
+        return remember(function, error);
     } catch (const std::bad_alloc &) {
-        return remember(make_error(Status::memory, "out of memory"));
+        return remember(function, make_error(Status::memory, "out of memory"));
     } catch (const std::exception &error) {
-        return remember(make_error(Status::internal, "internal error: %s", error.what()));
+        return remember(function, make_error(Status::internal, "internal error: %s", error.what()));
     } catch (...) {
-        return remember(make_error(Status::internal, "internal error"));
+        return remember(function, make_error(Status::internal, "internal error"));
     }
 }
 

@@ -22,7 +22,7 @@ bool adds(int mode) {
 
 int hol_forces(const hol_chains *chains, const double *r, const double *v, const double *f, double *lambda,
                double *tension, double *g, int mode, double *virial) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(chains, "chains");
         need(r, "r");
         holonomic::forces(chains->chains, packed_array(r), packed_array(v), packed_array(f), lambda, tension,
@@ -32,7 +32,7 @@ int hol_forces(const hol_chains *chains, const double *r, const double *v, const
 
 int hol_forces_view(const hol_chains *chains, const hol_view *r, const hol_view *v, const hol_view *f, double *lambda,
                     double *tension, const hol_view *g, int mode, double *virial) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(chains, "chains");
         need(r, "r");
         const AtomArray ar = viewed_array(r, "r"), av = viewed_array(v, "v"), af = viewed_array(f, "f"),

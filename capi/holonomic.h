@@ -1,30 +1,40 @@
 /**
  * @file holonomic.h
- * Exact Lagrange multipliers and constraint forces of chains of rigid bonds, in time linear in the number of bonds.
+ * Exact Lagrange multipliers and constraint forces of molecules with rigid bonds: chains, branched molecules, rings,
+ * rigid water, any graph; for chains, trees and rings in time linear in the number of bonds.
  *
  * Conventions, valid for every function (docs/theory.md has the derivations):
  *
  * - Atom i has mass m_i, inverse mass w_i = 1/m_i (0 for an atom that is held fixed), position r_i, velocity v_i and
- *   applied force f_i. A chain of N bonds joins N+1 atoms; bond k has the vector d_k = r_k - r_{k-1}, the length a_k
- *   and the constraint sigma_k = d_k.d_k - a_k^2 = 0.
- * - The constraint force is G_i = - sum_k lambda_k grad_i sigma_k = 2 (lambda_{i+1} d_{i+1} - lambda_i d_i):
- *   lambda_k > 0 pulls the two atoms together, and T_k = 2 lambda_k |d_k| is the tension of the bond, a force.
+ *   applied force f_i. Bond k joins two atoms i and j; it has the vector d_k = r_j - r_i, the length a_k and the
+ *   constraint sigma_k = d_k.d_k - a_k^2 = 0. In a chain of N bonds and N+1 atoms d_k = r_k - r_{k-1}.
+ * - The constraint force is G_i = - sum_k lambda_k grad_i sigma_k, in a chain 2 (lambda_{i+1} d_{i+1} - lambda_i d_i):
+ *   lambda_k > 0 pulls the two atoms together, and T_k = 2 lambda_k |d_k| is the tension of the bond, a force. Neither
+ *   depends on which of its two atoms a bond names first.
+ * - A molecule is a set of atoms joined by bonds, directly or through each other; atoms that are held fixed join
+ *   nothing, so a fixed atom may belong to many molecules. Molecules are numbered in the order in which they were
+ *   added. Where a function or a message speaks of a chain and its number, a molecule of any shape is meant, unless it
+ *   says "linear". Bonds of a molecule are counted along a linear chain, otherwise by their lower and then by their
+ *   higher atom: hol_chains_bonds gives their places in the arrays per bond.
  * - Units are the caller's own; any consistent set does (m, length, time; force = mass length / time^2).
  * - An output that is NULL is not computed; an input that may be NULL is zero then and costs nothing.
- * - Arrays per atom are [n_atoms][3] (Fortran: (3, n_atoms)); only the atoms that belong to chains are read and
- *   written. Arrays per bond are [n_bonds], chain after chain in the order in which the chains were added
- *   (hol_chains_offsets). Arrays per chain are [n_chains].
+ * - Arrays per atom are [n_atoms][3] (Fortran: (3, n_atoms)); only the atoms that belong to molecules are read and
+ *   written. Arrays per bond are [n_bonds], in the order in which the bonds were given, call after call. Arrays per
+ *   chain are [n_chains], one element for each molecule.
+ * - A bond between two fixed atoms is no constraint: it belongs to no molecule, removes no degree of freedom, and its
+ *   multiplier and tension are 0.
  * - Every function that can fail returns an hol_status. hol_error_message() then says in words, for the calling
  *   thread, what was wrong and where, and hol_error_location() gives the place in numbers.
- * - A wrong argument: nothing is written. Bad data in some chains (HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE,
- *   HOL_ERR_NO_CONVERGENCE): the outputs of these chains stay as they were, bit for bit, sums over chains (virial,
- *   energy) are not written, and all other chains are complete. The status, message and location are those of the
- *   first bad chain.
+ * - A wrong argument: nothing is written. Bad data in some molecules (HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE,
+ *   HOL_ERR_NO_CONVERGENCE): the outputs of these molecules stay as they were, bit for bit, sums over molecules
+ *   (virial, energy) are not written, and all other molecules are complete. The status, message and location are those
+ *   of the first bad molecule. A fixed atom that several molecules share gets the sum over those that are not bad.
  * - The library never prints, exits, aborts or throws, and changes no floating-point environment.
  * - Threads: a handle that no thread changes (create, add, set, destroy) may be used by any number of threads at once.
- *   Results do not depend on hol_chains_set_threads, on the memory layout, nor on which other chains there are.
- *   Scratch memory belongs to the calling thread; after a thread's first call with chains of that size nothing is
- *   allocated, but for a long chain whose positions need a second attempt (light atoms, taut between heavy ones).
+ *   Results do not depend on hol_chains_set_threads, on the memory layout, on which other molecules there are, nor on
+ *   the order in which bonds were given. Scratch memory belongs to the calling thread; after a thread's first call with
+ *   molecules of that size nothing is allocated, but for a long chain whose positions need a second attempt (light
+ *   atoms, taut between heavy ones).
  */
 #ifndef HOLONOMIC_H
 #define HOLONOMIC_H
@@ -32,7 +42,7 @@
 #include <stdint.h>
 
 #define HOL_VERSION_MAJOR 0
-#define HOL_VERSION_MINOR 1
+#define HOL_VERSION_MINOR 2
 #define HOL_VERSION_PATCH 0
 
 #if defined(_WIN32) || !defined(__GNUC__)
@@ -53,10 +63,10 @@ typedef enum hol_status {
     HOL_ERR_NULL = 1,           /**< a pointer that is needed is NULL */
     HOL_ERR_VALUE = 2,          /**< a size, mass, length or option is out of its range */
     HOL_ERR_INDEX = 3,          /**< an atom, bond or chain number is out of range */
-    HOL_ERR_SHARED_ATOM = 4,    /**< an atom is used twice; chains that share an atom are not supported yet */
+    HOL_ERR_SHARED_ATOM = 4,    /**< an atom that can move belongs to a molecule of an earlier call already */
     HOL_ERR_MEMORY = 5,         /**< out of memory */
     HOL_ERR_NOT_FINITE = 6,     /**< an infinity or NaN in the data of a chain, or an overflow or underflow */
-    HOL_ERR_DEGENERATE = 7,     /**< a bond of length zero, or a chain stretched taut between fixed atoms */
+    HOL_ERR_DEGENERATE = 7,     /**< a bond of length zero, bonds that are not independent of each other */
     HOL_ERR_NO_CONVERGENCE = 8, /**< the bond lengths can't be reached from these positions */
     HOL_ERR_NOT_DEFINITE = 9,   /**< hol_tridiagonal_*: the matrix is not positive definite */
     HOL_ERR_INTERNAL = 10       /**< a bug in the library: please report the message */
@@ -69,17 +79,19 @@ HOL_API const char *hol_version(void);
 HOL_API const char *hol_status_name(int status);
 
 /**
- * What went wrong in this thread's last call that failed, naming the chain, bond or atom; "" before the first failure.
+ * What went wrong in this thread's last call that failed, naming the function and the molecule, bond or atom; ""
+ * before the first failure.
  * Valid until the thread's next failing call. Never NULL. Since 0.1.
  */
 HOL_API const char *hol_error_message(void);
 
 /**
  * Where this thread's last failing call failed. Each pointer may be NULL. Since 0.1.
- * @param[out] chain  number of the first bad chain, or -1 if it does not apply (likewise below)
- * @param[out] bond   number of the bond within its chain
+ * @param[out] chain  number of the first bad molecule, or -1 if it does not apply (likewise below)
+ * @param[out] bond   number of the bond within its molecule (hol_chains_bonds); of a bond that was refused when it was
+ *                    to be added, its number in the list of that call
  * @param[out] atom   number of the atom in the caller's arrays
- * @param[out] n_bad  how many chains were bad (0 for a wrong argument)
+ * @param[out] n_bad  how many molecules were bad (0 for a wrong argument)
  *
  * Numbers are counted as in the handle concerned (hol_chains_set_index_base), from 0 by default.
  */
@@ -92,13 +104,13 @@ HOL_API void hol_error_location(int64_t *chain, int64_t *bond, int64_t *atom, in
  */
 HOL_API const char *hol_instruction_set(void);
 
-/* -------------------------------------------------------------------------------------------------------- chains */
+/* ----------------------------------------------------------------------------------------------------- molecules */
 
-/** Which atoms are joined by rigid bonds: any number of linear chains over the caller's atom arrays. */
+/** Which atoms are joined by rigid bonds: any number of molecules over the caller's atom arrays. */
 typedef struct hol_chains hol_chains;
 
 /**
- * Makes an empty set of chains over n_atoms atoms.
+ * Makes an empty set of molecules over n_atoms atoms.
  * @param[in]  n_atoms  number of atoms in the caller's arrays, >= 0
  * @param[in]  masses   [n_atoms], mass; 0 or +infinity: the atom is held fixed. Copied.
  * @param[out] chains   the new handle, to be given to hol_chains_destroy; NULL on an error
@@ -111,19 +123,22 @@ HOL_API int hol_chains_create(int64_t n_atoms, const double *masses, hol_chains 
 HOL_API void hol_chains_destroy(hol_chains *chains);
 
 /**
- * Adds one chain of n_bonds bonds, given by its atoms in order along the chain.
+ * Adds one linear chain of n_bonds bonds, given by its atoms in order along the chain.
  * @param[in,out] chains
  * @param[in]     n_bonds  >= 1
- * @param[in]     atoms    [n_bonds+1], any numbers of atoms of the caller's arrays, each used once
+ * @param[in]     atoms    [n_bonds+1], any numbers of atoms of the caller's arrays; one that can move is used once
  * @param[in]     lengths  [n_bonds], bond lengths, 1e-150 .. 1e150. Used by hol_project_positions and hol_violation;
  *                         the acceleration and velocity levels use the bond vectors as they are. Copied.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (n_bonds, a length); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM; HOL_ERR_MEMORY.
  *         On an error nothing is added. Not thread-safe on one handle. Since 0.1.
+ *
+ * The chain is one molecule, whatever atoms of it are fixed; only a bond between two fixed atoms divides it into
+ * molecules of their own, as it belongs to none.
  */
 HOL_API int hol_chains_add(hol_chains *chains, int64_t n_bonds, const int64_t *atoms, const double *lengths);
 
 /**
- * Adds n_chains chains of n_bonds bonds each, over consecutive atoms: chain c has the atoms
+ * Adds n_chains linear chains of n_bonds bonds each, over consecutive atoms: chain c has the atoms
  * first_atom + c (n_bonds+1) .. first_atom + c (n_bonds+1) + n_bonds. A melt in one call.
  * @param[in] n_chains    >= 1
  * @param[in] n_bonds     >= 1
@@ -135,8 +150,64 @@ HOL_API int hol_chains_add_block(hol_chains *chains, int64_t n_chains, int64_t n
                                  const double *lengths);
 
 /**
- * Counts atoms, bonds and chains from `base`, 0 (default) or 1, in hol_chains_add, hol_chains_add_block, in every
- * number that the library returns and in its messages. For callers whose index lists come from Fortran.
+ * Adds bonds in any order, either atom first: the library finds the molecules that they form, and which of them are
+ * linear chains, trees, rings, triangles or anything else (docs/molecules.md). Molecules of one kind, i.e. of the same
+ * masses and lengths at the same relative numbers of atoms, are worked on together, so programs that number the atoms
+ * of all molecules of a kind alike get the most of it.
+ *
+ * @param[in,out] chains
+ * @param[in]     n_bonds  >= 1
+ * @param[in]     pairs    [n_bonds][2], the two atoms of each bond (Fortran: (2, n_bonds))
+ * @param[in]     lengths  [n_bonds], as in hol_chains_add. Copied.
+ *
+ * New molecules are numbered by their lowest atoms that can move. Arrays per bond have these bonds in the order of the
+ * list, after those of earlier calls. All bonds of a molecule have to be given in one call, but a fixed
+ * atom may occur in any number of bonds and calls: it couples nothing.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (n_bonds, a length, a bond of an atom with itself, a molecule of more
+ *         than 2^31 - 1 bonds); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM (an atom that can move is in a molecule of an
+ *         earlier call; the message names it); HOL_ERR_DEGENERATE (a bond that is given twice, or more bonds within a
+ *         part of a molecule than it has freedoms, as all distances between five atoms: the message names a bond; bonds
+ *         that depend on each other through the positions alone are found by the calls that meet them);
+ *         HOL_ERR_MEMORY.
+ *         On an error nothing is added. Not thread-safe on one handle. O(n_bonds). Since 0.2.
+ */
+HOL_API int hol_chains_add_bonds(hol_chains *chains, int64_t n_bonds, const int64_t *pairs, const double *lengths);
+
+/**
+ * Adds the same bonds for n_molecules molecules of n_atoms consecutive atoms each: molecule m has the atoms
+ * first_atom + m n_atoms .. first_atom + m n_atoms + n_atoms - 1. A box of rigid water in one call.
+ * @param[in] n_molecules  >= 1
+ * @param[in] n_atoms      >= 2, atoms from one molecule to the next; some may have no bond (virtual sites)
+ * @param[in] first_atom   number of the first atom of the first molecule
+ * @param[in] n_bonds      >= 1, bonds of one molecule
+ * @param[in] pairs        [n_bonds][2], numbers within the molecule, counted from the index base
+ * @param[in] lengths      [n_bonds], the same for every molecule. Copied.
+ * @return as hol_chains_add_bonds, of which this is n_molecules copies in one list, molecule after molecule (bonds that
+ *         do not hold together make several molecules of each copy). Since 0.2.
+ */
+HOL_API int hol_chains_add_molecules(hol_chains *chains, int64_t n_molecules, int64_t n_atoms, int64_t first_atom,
+                                     int64_t n_bonds, const int64_t *pairs, const double *lengths);
+
+/**
+ * New lengths for all bonds, without building the set again.
+ * @param[in] lengths  [n_bonds], 1e-150 .. 1e150. Copied.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (a length: the message names the bond); HOL_ERR_MEMORY. On an error
+ *         nothing is changed. Not thread-safe on one handle. O(n_bonds). Since 0.2.
+ */
+HOL_API int hol_chains_set_lengths(hol_chains *chains, const double *lengths);
+
+/**
+ * New masses for all atoms, without building the set again.
+ * @param[in] masses  [n_atoms], as in hol_chains_create. What is held fixed divides molecules, so that an atom that is
+ *                    in use stays fixed if it was, and movable if it was.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (a mass: the message names the atom); HOL_ERR_MEMORY. On an error nothing
+ *         is changed. Not thread-safe on one handle. O(n_atoms). Since 0.2.
+ */
+HOL_API int hol_chains_set_masses(hol_chains *chains, const double *masses);
+
+/**
+ * Counts atoms, bonds and molecules from `base`, 0 (default) or 1, in the lists that are given (hol_chains_add..), in
+ * every number that the library returns and in its messages. For callers whose index lists come from Fortran.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Since 0.1.
  */
 HOL_API int hol_chains_set_index_base(hol_chains *chains, int base);
@@ -152,57 +223,110 @@ HOL_API int hol_chains_set_index_base(hol_chains *chains, int base);
 HOL_API int hol_chains_set_box(hol_chains *chains, const double *box);
 
 /**
+ * Box of the reference positions of hol_project_positions, if it is another than that of the positions: barostats that
+ * deform the cell between the two.
+ * @param[in] box  as in hol_chains_set_box; NULL (default): that of hol_chains_set_box, also when it is set later
+ * @return as hol_chains_set_box. Since 0.2.
+ */
+HOL_API int hol_chains_set_reference_box(hol_chains *chains, const double *box);
+
+/**
  * Number of threads that a call may use, >= 1. The default is 1. Without OpenMP at build time all calls use one.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Since 0.1.
  */
 HOL_API int hol_chains_set_threads(hol_chains *chains, int n_threads);
 
 /**
- * Leaves chains out: the data of an inactive chain are neither read nor written, and it counts in no sum.
- * @param[in] active  [n_chains], 0 = inactive, anything else = active; copied. NULL: all active (default). Chains
+ * Leaves molecules out: the data of an inactive molecule are neither read nor written, and it counts in no sum.
+ * @param[in] active  [n_chains], 0 = inactive, anything else = active; copied. NULL: all active (default). Molecules
  *                    added later are active.
  * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_MEMORY. Since 0.1.
  */
 HOL_API int hol_chains_set_active(hol_chains *chains, const unsigned char *active);
 
 /**
- * Tolerance of hol_project_positions: a chain is done when |d.d - a^2| / a^2 <= tolerance for each of its bonds.
+ * Tolerance of hol_project_positions: a molecule is done when |d.d - a^2| / a^2 <= tolerance for each of its bonds.
  * @param[in] tolerance  > 0, or 0 for the default: the rounding of the coordinates, i.e. of the largest coordinate of
- *                       the chain in the element type of the caller's positions.
+ *                       the molecule in the element type of the caller's positions.
  * A tolerance below what the coordinates can carry means the default.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Since 0.1.
  */
 HOL_API int hol_chains_set_tolerance(hol_chains *chains, double tolerance);
 
 /**
- * Bound on the iterations of hol_project_positions for a chain, 1..1000. The default is 50; a well-posed step needs
+ * Bound on the iterations of hol_project_positions for a molecule, 1..1000. The default is 50; a well-posed step needs
  * 2 to 5. @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Since 0.1.
  */
 HOL_API int hol_chains_set_max_iterations(hol_chains *chains, int max_iterations);
 
-/** Number of atoms, chains and bonds; 0 if chains is NULL. Since 0.1. */
+/** Number of atoms, molecules and bonds; 0 if chains is NULL. Since 0.1. */
 HOL_API int64_t hol_chains_n_atoms(const hol_chains *chains);
 HOL_API int64_t hol_chains_n_chains(const hol_chains *chains);
 HOL_API int64_t hol_chains_n_bonds(const hol_chains *chains);
 
-/**
- * Where each chain's bonds stand in the arrays per bond.
- * @param[out] offsets  [n_chains+1]: chain c has the bonds offsets[c] .. offsets[c+1]-1; counted from the index base
- * @return HOL_OK; HOL_ERR_NULL. Since 0.1.
- */
-HOL_API int hol_chains_offsets(const hol_chains *chains, int64_t *offsets);
+/** What the bonds of a molecule look like, fixed atoms being ends. Values are never changed nor reused. Since 0.2. */
+typedef enum hol_shape {
+    HOL_SHAPE_CHAIN = 0,    /**< linear */
+    HOL_SHAPE_TREE = 1,     /**< branched, without a cycle */
+    HOL_SHAPE_RING = 2,     /**< one cycle of at least four bonds and nothing else */
+    HOL_SHAPE_TRIANGLE = 3, /**< three atoms and their three distances */
+    HOL_SHAPE_OTHER = 4     /**< anything else that has a cycle */
+} hol_shape;
+
+/** Number of molecules of an hol_shape; 0 if chains is NULL or for any other number. O(n_chains). Since 0.2. */
+HOL_API int64_t hol_chains_n_of_shape(const hol_chains *chains, int shape);
+
+/** Number of different kinds of molecules (shape, masses and lengths); 0 if chains is NULL. Since 0.2. */
+HOL_API int64_t hol_chains_n_kinds(const hol_chains *chains);
 
 /**
- * Atoms of one chain, in order.
- * @param[in]  chain  number of the chain
- * @param[out] atoms  [number of bonds of the chain + 1]
+ * Shape and size of one molecule. Each output may be NULL.
+ * @param[in]  molecule  its number
+ * @param[out] shape     an hol_shape
+ * @param[out] n_atoms   how many numbers hol_chains_atoms gives, at most n_bonds + 1
+ * @param[out] n_bonds   how many numbers hol_chains_bonds gives
+ * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_INDEX. Since 0.2.
+ */
+HOL_API int hol_chains_molecule(const hol_chains *chains, int64_t molecule, int *shape, int64_t *n_atoms,
+                                int64_t *n_bonds);
+
+/**
+ * Atoms of one molecule: along a linear chain; ascending otherwise, each once.
+ * @param[in]  chain  number of the molecule
+ * @param[out] atoms  [n_atoms of hol_chains_molecule], for a linear chain the number of its bonds + 1
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_INDEX. Since 0.1.
  */
 HOL_API int hol_chains_atoms(const hol_chains *chains, int64_t chain, int64_t *atoms);
 
 /**
+ * Bonds of one molecule, in the order in which they are counted within it: hol_error_location, hol_report, hol_worst
+ * and hol_inverse speak of bond k of the molecule, which is bond bonds[k] of the arrays per bond.
+ * @param[in]  molecule  its number
+ * @param[out] bonds     [n_bonds of hol_chains_molecule]
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_INDEX. Since 0.2.
+ */
+HOL_API int hol_chains_bonds(const hol_chains *chains, int64_t molecule, int64_t *bonds);
+
+/**
+ * The molecule of every bond.
+ * @param[out] molecules  [n_bonds]; -1 (whatever the index base) for a bond between two fixed atoms
+ * @return HOL_OK; HOL_ERR_NULL. O(n_bonds). Since 0.2.
+ */
+HOL_API int hol_chains_molecules_of_bonds(const hol_chains *chains, int64_t *molecules);
+
+/**
+ * Where each molecule's bonds stand in the arrays per bond, if those of each follow one another and molecule follows
+ * molecule, as they do if only hol_chains_add and hol_chains_add_block were called and no bond joins two fixed atoms;
+ * hol_chains_bonds tells it in any case. The order within a molecule is that of hol_chains_bonds.
+ * @param[out] offsets  [n_chains+1]: molecule c has the bonds offsets[c] .. offsets[c+1]-1; counted from the index base
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (the bonds stand in another order; the message names the first molecule
+ *         of which that is so; nothing is written). Since 0.1.
+ */
+HOL_API int hol_chains_offsets(const hol_chains *chains, int64_t *offsets);
+
+/**
  * Degrees of freedom of all n_atoms atoms: dimensions times the number of atoms that can move, less one for each bond
- * of an active chain between atoms that are not both fixed. A conserved total momentum is not subtracted.
+ * of an active molecule. A conserved total momentum is not subtracted.
  * @param[in] dimensions  3, or 2 for views without z
  * @return the number; -1 if chains is NULL or dimensions is neither. Since 0.1.
  */
@@ -237,8 +361,8 @@ typedef enum hol_mode { HOL_WRITE = 0, HOL_ADD = 1 } hol_mode;
  * Constraint forces that keep every bond's length constant at this instant.
  *
  * Finds the multipliers with which each bond obeys sigma'' = 0, that is
- *     d_k . (A_k - A_{k-1}) + |v_k - v_{k-1}|^2 = 0,   A_i = w_i (f_i + G_i),
- * by one factorization per chain: no iteration, no tolerance. docs/theory.md (5)-(12); Mazars 2007, Eqs. (6), (24).
+ *     d_k . (A_j - A_i) + |v_j - v_i|^2 = 0,   A_i = w_i (f_i + G_i),   bond k from atom i to atom j,
+ * by one factorization per molecule: no iteration, no tolerance. docs/theory.md (5)-(12); Mazars 2007, Eqs. (6), (24).
  *
  * @param[in]  chains   which atoms are bonded
  * @param[in]  r        positions [n_atoms][3], length
@@ -247,8 +371,8 @@ typedef enum hol_mode { HOL_WRITE = 0, HOL_ADD = 1 } hol_mode;
  * @param[out] lambda   multipliers [n_bonds], force/length, or NULL
  * @param[out] tension  T = 2 lambda |d| [n_bonds], force, > 0 under tension, or NULL
  * @param[out] g        constraint forces [n_atoms][3], force, or NULL. May be f itself.
- * @param[in]  mode     HOL_WRITE: g = G for the atoms of the chains; HOL_ADD: g = g + G
- * @param[out] virial   [3][3], energy, or NULL: sum_i r_i (x) G_i = - sum_k 2 lambda_k d_k (x) d_k over active chains
+ * @param[in]  mode     HOL_WRITE: g = G for the atoms of the molecules; HOL_ADD: g = g + G
+ * @param[out] virial   [3][3], energy, or NULL: sum_i r_i (x) G_i = - sum_k 2 lambda_k d_k (x) d_k over active ones
  * @return HOL_OK; HOL_ERR_NULL (chains or r); HOL_ERR_VALUE (mode); HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE;
  *         HOL_ERR_MEMORY. Thread-safe on one handle. Since 0.1.
  */
@@ -262,7 +386,7 @@ HOL_API int hol_forces_view(const hol_chains *chains, const hol_view *r, const h
 /* ------------------------------------------------------------------------------------------------ velocity level */
 
 /**
- * Projects velocities onto the constraints (the second half of RATTLE): after the call d_k . (v_k - v_{k-1}) = 0 for
+ * Projects velocities onto the constraints (the second half of RATTLE): after the call d_k . (v_j - v_i) = 0 for
  * every bond. The change is the one of least kinetic energy, v_i += w_i G_i, with G_i as above; exact, no iteration.
  * docs/theory.md (13)-(14).
  *
@@ -287,20 +411,20 @@ HOL_API int hol_project_velocities_view(const hol_chains *chains, const hol_view
 
 /** What hol_project_positions did. */
 typedef struct hol_report {
-    int64_t iterations;  /**< largest number of linear solves that a chain took */
-    int64_t n_corrected; /**< chains that were moved; the others already obeyed the tolerance */
-    int64_t n_failed;    /**< chains that were left as they were because they did not converge or had bad data */
-    int64_t chain;       /**< chain and */
-    int64_t bond;        /**< bond (within the chain) with the largest error; -1 if there is none */
-    double max_error;    /**< largest |d.d - a^2| / a^2 left in a chain that did not fail, before the positions are
+    int64_t iterations;  /**< largest number of linear solves that a molecule took */
+    int64_t n_corrected; /**< molecules that were moved; the others already obeyed the tolerance */
+    int64_t n_failed;    /**< molecules that were left as they were because they did not converge or had bad data */
+    int64_t chain;       /**< molecule and */
+    int64_t bond;        /**< bond (within the molecule) with the largest error; -1 if there is none */
+    double max_error;    /**< largest |d.d - a^2| / a^2 left in a molecule that did not fail, before the positions are
                               rounded to the caller's element type */
 } hol_report;
 
 /**
  * Puts positions back on the constraints (SHAKE; the first half of RATTLE): finds G along the bonds of r_ref such that
- *     r_i + dt^2 w_i G_i,   G_i = 2 (lambda_{i+1} b_{i+1} - lambda_i b_i),   b_k = r_ref,k - r_ref,k-1,
- * has |d_k| = a_k for every bond, to the rounding of the coordinates, by Newton's method with the exact tridiagonal
- * Jacobian. docs/theory.md (15)-(19), docs/integrators.md.
+ *     r_i + dt^2 w_i G_i,   G_i = - 2 sum_k s_ki lambda_k b_k,   b_k = r_ref,j - r_ref,i,
+ * (s = +1 at atom j of bond k, -1 at atom i) has |d_k| = a_k for every bond, to the rounding of the coordinates, by
+ * Newton's method with the exact Jacobian. docs/theory.md (15)-(19), docs/integrators.md.
  *
  * @param[in]     chains
  * @param[in]     r_ref   positions before the drift [n_atoms][3]; may be r itself
@@ -313,11 +437,11 @@ typedef struct hol_report {
  * @param[in]     guess   0, or 1: lambda holds a first guess, the multipliers of the last step; saves an iteration, but
  *                        is not used in coils of more than about 1000 bonds
  * @param[out]    virial  [3][3], energy, or NULL: sum_i r_ref,i (x) G_i = - sum_k 2 lambda_k b_k (x) b_k
- * @param[out]    report  or NULL; written whenever the arguments are valid, also if chains fail
+ * @param[out]    report  or NULL; written whenever the arguments are valid, also if molecules fail
  * @return HOL_OK; HOL_ERR_NULL (chains, r_ref or r; lambda with guess = 1); HOL_ERR_VALUE (dt, guess);
- *         HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE; HOL_ERR_NO_CONVERGENCE; HOL_ERR_MEMORY. A chain already within the
- *         tolerance (hol_chains_set_tolerance) is not touched and has lambda = 0. A chain that fails keeps r, v and
- *         lambda. Thread-safe on one handle, each thread with arrays of its own. Since 0.1.
+ *         HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE; HOL_ERR_NO_CONVERGENCE; HOL_ERR_MEMORY. A molecule already within
+ *         the tolerance (hol_chains_set_tolerance) is not touched and has lambda = 0. A molecule that fails keeps r, v
+ *         and lambda. Thread-safe on one handle, each thread with arrays of its own. Since 0.1.
  */
 HOL_API int hol_project_positions(const hol_chains *chains, const double *r_ref, double *r, double *v, double dt,
                                   double *lambda, int guess, double *virial, hol_report *report);
@@ -330,15 +454,15 @@ HOL_API int hol_project_positions_view(const hol_chains *chains, const hol_view 
 /** How far positions and velocities are from the constraints. */
 typedef struct hol_worst {
     double length;        /**< largest |d.d - a^2| / a^2 */
-    int64_t length_chain; /**< its chain, -1 if there is no bond */
-    int64_t length_bond;  /**< its bond within the chain */
-    double rate;          /**< largest |d . (v_k - v_{k-1})|, length^2/time; 0 without v */
+    int64_t length_chain; /**< its molecule, -1 if there is no bond */
+    int64_t length_bond;  /**< its bond within the molecule */
+    double rate;          /**< largest |d . (v_j - v_i)|, length^2/time; 0 without v */
     int64_t rate_chain;
     int64_t rate_bond;
 } hol_worst;
 
 /**
- * Largest violation of the constraints over the active chains.
+ * Largest violation of the constraints over the active molecules.
  * @param[in]  r      positions [n_atoms][3]
  * @param[in]  v      velocities [n_atoms][3], or NULL
  * @param[out] worst
@@ -352,26 +476,26 @@ HOL_API int hol_violation_view(const hol_chains *chains, const hol_view *r, cons
 /* -------------------------------------------------------------------------- metric determinant and Fixman potential */
 
 /**
- * The metric determinant of rigid chains, and the Fixman potential that corrects for it.
+ * The metric determinant of molecules with rigid bonds, and the Fixman potential that corrects for it.
  *
  * Z is the matrix that hol_forces solves; Z~ is Z scaled to ones on its diagonal, a function of the masses and of the
- * angles between neighbouring bonds only. A rigid chain visits its conformations with the weight det Z~^(+1/2) relative
- * to the freely jointed chain (stiff springs); with the potential energy
- *     U_F = +(kT/2) sum over chains of ln det Z~
- * added to the others it visits them as the freely jointed chain does. docs/theory.md (24)-(32); Mazars 2007, Eq. (19).
+ * angles between neighbouring bonds only. A rigid molecule visits its conformations with the weight det Z~^(+1/2)
+ * relative to one with stiff springs (the freely jointed chain); with the potential energy
+ *     U_F = +(kT/2) sum over molecules of ln det Z~
+ * added to the others it visits them as that does. docs/theory.md (24)-(32); Mazars 2007, Eq. (19).
  *
  * @param[in]     chains
  * @param[in]     r          positions [n_atoms][3]
  * @param[in]     kT         thermal energy, >= 0 and finite; only energy and force depend on it
- * @param[out]    log_det    [n_chains] ln det Z~, <= 0, or NULL. Relative error a few roundings, however straight the
- *                           chain and however unequal its masses. 0 for a chain of one bond.
+ * @param[out]    log_det    [n_chains] ln det Z~, <= 0, or NULL. Relative error a few roundings, however straight a
+ *                           chain or tree and however unequal its masses. 0 for a molecule of one bond.
  * @param[out]    log_det_z  [n_chains] ln det Z, which contains masses and the bonds' actual lengths in the caller's
- *                           units (Z_kk = 4 (w_{k-1} + w_k) |d_k|^2), or NULL
- * @param[out]    energy     U_F, or NULL; summed over active chains
+ *                           units (Z_kk = 4 (w_i + w_j) |d_k|^2), or NULL
+ * @param[out]    energy     U_F, or NULL; summed over active molecules
  * @param[in,out] force      - grad U_F [n_atoms][3], or NULL
- * @param[in]     mode       HOL_WRITE: force = - grad U_F for the atoms of the chains; HOL_ADD: added to what is there
+ * @param[in]     mode       HOL_WRITE: force = - grad U_F for the molecules' atoms; HOL_ADD: added to what is there
  *
- * Entries of inactive chains are not written. The force on a fixed atom is reported too: minus what the others get.
+ * Entries of inactive molecules are not written. The force on a fixed atom is reported too: minus what the others get.
  * Total force, total torque and the trace of the virial of the force are zero.
  * @return HOL_OK; HOL_ERR_NULL (chains or r); HOL_ERR_VALUE (kT, mode); HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE;
  *         HOL_ERR_MEMORY. Thread-safe on one handle. Since 0.1.
@@ -385,19 +509,19 @@ HOL_API int hol_metric_view(const hol_chains *chains, const hol_view *r, double 
 
 /* ------------------------------------------------------------------------------------------------- inverse of Z */
 
-/** The inverse of the matrix Z of one chain in one conformation, prepared so that each element costs what it must. */
+/** The inverse of the matrix Z of one molecule in one conformation, prepared so that an element costs what it must. */
 typedef struct hol_inverse hol_inverse;
 
 /** Which inverse: of Z~ (ones on its diagonal, no units) or of Z, in 1/(length^2/mass). lambda = Z^-1 (K + C). */
 typedef enum hol_scaling { HOL_UNIT_DIAGONAL = 0, HOL_PHYSICAL = 1 } hol_scaling;
 
 /**
- * Prepares the inverse for one chain, in time and memory proportional to its number of bonds N.
- * docs/theory.md (33)-(37); Mazars 2007, Eqs. (20) and (28). Everything is copied: the set of chains and r may be
+ * Prepares the inverse for one molecule, for a linear chain in time and memory proportional to its number of bonds N.
+ * docs/theory.md (33)-(37); Mazars 2007, Eqs. (20) and (28). Everything is copied: the set of molecules and r may be
  * changed or freed afterwards.
- * @param[in]  chains   an inactive chain is allowed
- * @param[in]  chain    number of the chain, counted from the index base of `chains`, as bonds and atoms are in all the
- *                      functions below
+ * @param[in]  chains   an inactive molecule is allowed
+ * @param[in]  chain    number of the molecule, counted from the index base of `chains`, as bonds and atoms are in all
+ *                      the functions below
  * @param[in]  r        positions [n_atoms][3]
  * @param[out] inverse  the new handle, to be given to hol_inverse_destroy; NULL on an error
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_INDEX; HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE; HOL_ERR_MEMORY.

@@ -65,7 +65,7 @@ void error_bound(const hol_inverse *inverse, const AtomArray &v, const AtomArray
 
 int hol_inverse_create(const hol_chains *chains, int64_t chain, const double *r, hol_inverse **inverse) {
     if (inverse) *inverse = nullptr;
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(chains, "chains");
         need(r, "r");
         need(inverse, "inverse");
@@ -75,7 +75,7 @@ int hol_inverse_create(const hol_chains *chains, int64_t chain, const double *r,
 
 int hol_inverse_create_view(const hol_chains *chains, int64_t chain, const hol_view *r, hol_inverse **inverse) {
     if (inverse) *inverse = nullptr;
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(chains, "chains");
         need(r, "r");
         need(inverse, "inverse");
@@ -88,7 +88,7 @@ void hol_inverse_destroy(hol_inverse *inverse) { delete inverse; }
 int64_t hol_inverse_n_bonds(const hol_inverse *inverse) { return inverse ? inverse->inverse.n_bonds() : 0; }
 
 int hol_inverse_entry(const hol_inverse *inverse, int scaling, int64_t i, int64_t j, double *value) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(inverse, "inverse");
         need(value, "value");
         *value = inverse->inverse.entry(is_physical(scaling), bond(inverse, i), bond(inverse, j));
@@ -96,7 +96,7 @@ int hol_inverse_entry(const hol_inverse *inverse, int scaling, int64_t i, int64_
 }
 
 int hol_inverse_row(const hol_inverse *inverse, int scaling, int64_t i, double *row) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(inverse, "inverse");
         need(row, "row");
         inverse->inverse.row(is_physical(scaling), bond(inverse, i), row);
@@ -104,7 +104,7 @@ int hol_inverse_row(const hol_inverse *inverse, int scaling, int64_t i, double *
 }
 
 int hol_inverse_band(const hol_inverse *inverse, int scaling, int64_t width, double *band) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(inverse, "inverse");
         need(band, "band");
         inverse->inverse.band(is_physical(scaling), width, band);
@@ -112,7 +112,7 @@ int hol_inverse_band(const hol_inverse *inverse, int scaling, int64_t width, dou
 }
 
 int hol_inverse_matrix(const hol_inverse *inverse, int scaling, double *matrix) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(inverse, "inverse");
         need(matrix, "matrix");
         inverse->inverse.matrix(is_physical(scaling), matrix);
@@ -120,7 +120,7 @@ int hol_inverse_matrix(const hol_inverse *inverse, int scaling, double *matrix) 
 }
 
 int hol_inverse_condition(const hol_inverse *inverse, double *condition) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(inverse, "inverse");
         need(condition, "condition");
         *condition = inverse->inverse.condition();
@@ -129,7 +129,7 @@ int hol_inverse_condition(const hol_inverse *inverse, double *condition) {
 
 int hol_inverse_error_bound(const hol_inverse *inverse, const double *v, const double *f, const double *lambda,
                             double *bound, double *relative) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(inverse, "inverse");
         need(lambda, "lambda");
         error_bound(inverse, packed_array(v), packed_array(f), lambda, bound, relative);
@@ -138,7 +138,7 @@ int hol_inverse_error_bound(const hol_inverse *inverse, const double *v, const d
 
 int hol_inverse_error_bound_view(const hol_inverse *inverse, const hol_view *v, const hol_view *f, const double *lambda,
                                  double *bound, double *relative) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(inverse, "inverse");
         need(lambda, "lambda");
         const AtomArray av = viewed_array(v, "v"), af = viewed_array(f, "f");

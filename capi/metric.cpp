@@ -22,7 +22,7 @@ bool adds(int mode) {
 
 int hol_metric(const hol_chains *chains, const double *r, double kT, double *log_det, double *log_det_z, double *energy,
                double *force, int mode) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(chains, "chains");
         need(r, "r");
         holonomic::metric(chains->chains, packed_array(r), kT, log_det, log_det_z, energy, packed_array(force),
@@ -32,7 +32,7 @@ int hol_metric(const hol_chains *chains, const double *r, double kT, double *log
 
 int hol_metric_view(const hol_chains *chains, const hol_view *r, double kT, double *log_det, double *log_det_z,
                     double *energy, const hol_view *force, int mode) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(chains, "chains");
         need(r, "r");
         const AtomArray ar = viewed_array(r, "r"), af = viewed_array(force, "force");

@@ -24,7 +24,7 @@ void check(double dt, const double *lambda, int guess) {
 
 int hol_project_positions(const hol_chains *chains, const double *r_ref, double *r, double *v, double dt,
                           double *lambda, int guess, double *virial, hol_report *report) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(chains, "chains");
         need(r_ref, "r_ref");
         need(r, "r");
@@ -36,7 +36,7 @@ int hol_project_positions(const hol_chains *chains, const double *r_ref, double 
 
 int hol_project_positions_view(const hol_chains *chains, const hol_view *r_ref, const hol_view *r, const hol_view *v,
                                double dt, double *lambda, int guess, double *virial, hol_report *report) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(chains, "chains");
         need(r_ref, "r_ref");
         need(r, "r");

@@ -1,3 +1,5 @@
+#include <cstdio>
+
 #include "boundary.hpp"
 #include "core/run/dispatch.hpp"
 
@@ -6,6 +8,7 @@ namespace holonomic {
 namespace {
 
 thread_local Error last_error{};
+thread_local char last_message[sizeof last_error.message + 48] = "";
 
 constexpr bool same(Status status, hol_status code) { return static_cast<int>(status) == static_cast<int>(code); }
 static_assert(same(Status::ok, HOL_OK) && same(Status::null, HOL_ERR_NULL) && same(Status::value, HOL_ERR_VALUE) &&
@@ -18,8 +21,9 @@ static_assert(same(Status::ok, HOL_OK) && same(Status::null, HOL_ERR_NULL) && sa
 
 }  // namespace
 
-int remember(const Error &error) noexcept {
+int remember(const char *function, const Error &error) noexcept {
     last_error = error;
+    std::snprintf(last_message, sizeof last_message, "%s: %s", function, error.message);
     return static_cast<int>(error.status);
 }
 
@@ -59,7 +63,7 @@ const char *hol_status_name(int status) {
     }
 }
 
-const char *hol_error_message(void) { return holonomic::last_error.message; }
+const char *hol_error_message(void) { return holonomic::last_message; }
 
 void hol_error_location(int64_t *chain, int64_t *bond, int64_t *atom, int64_t *n_bad) {
     const holonomic::Error &error = holonomic::last_error;

@@ -16,21 +16,21 @@ Tridiagonal matrix(std::int64_t n, const double *gamma) {
 }  // namespace
 
 int hol_tridiagonal_pivots(int64_t n, const double *gamma, double *omega2) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(omega2, "omega2");
         matrix(n, gamma).pivots(omega2);
     });
 }
 
 int hol_tridiagonal_log_det(int64_t n, const double *gamma, double *log_det) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(log_det, "log_det");
         *log_det = matrix(n, gamma).log_det();
     });
 }
 
 int hol_tridiagonal_solve(int64_t n, const double *gamma, const double *b, double *x) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(b, "b");
         need(x, "x");
         matrix(n, gamma).solve(b, x);
@@ -38,14 +38,14 @@ int hol_tridiagonal_solve(int64_t n, const double *gamma, const double *b, doubl
 }
 
 int hol_tridiagonal_inverse_entry(int64_t n, const double *gamma, int64_t i, int64_t j, double *value) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(value, "value");
         *value = matrix(n, gamma).inverse_entry(i, j);
     });
 }
 
 int hol_tridiagonal_inverse_band(int64_t n, const double *gamma, int64_t width, double *band) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(band, "band");
         matrix(n, gamma).inverse_band(width, band);
     });

@@ -8,7 +8,7 @@ using holonomic::guarded;
 using holonomic::need;
 
 int hol_project_velocities(const hol_chains *chains, const double *r, double *v, double *lambda, double *virial) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(chains, "chains");
         need(r, "r");
         need(v, "v");
@@ -19,7 +19,7 @@ int hol_project_velocities(const hol_chains *chains, const double *r, double *v,
 
 int hol_project_velocities_view(const hol_chains *chains, const hol_view *r, const hol_view *v, double *lambda,
                                 double *virial) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(chains, "chains");
         need(r, "r");
         need(v, "v");

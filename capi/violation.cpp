@@ -8,7 +8,7 @@ using holonomic::guarded;
 using holonomic::need;
 
 int hol_violation(const hol_chains *chains, const double *r, const double *v, hol_worst *worst) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(chains, "chains");
         need(r, "r");
         need(worst, "worst");
@@ -17,7 +17,7 @@ int hol_violation(const hol_chains *chains, const double *r, const double *v, ho
 }
 
 int hol_violation_view(const hol_chains *chains, const hol_view *r, const hol_view *v, hol_worst *worst) {
-    return guarded([&] {
+    return guarded(__func__, [&] {
         need(chains, "chains");
         need(r, "r");
         need(worst, "worst");

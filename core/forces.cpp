@@ -1,6 +1,7 @@
 #include "core/forces.hpp"
 
 #include "core/caller/view.hpp"
+#include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
 
@@ -9,14 +10,32 @@ namespace holonomic {
 namespace {
 
 struct ForcesWork final : Work {
-    const ForcesCall &call;
+    ForcesCall calls[n_wheres];
     const Kernels &k = kernels();
-    explicit ForcesWork(const ForcesCall &c) : call(c) {}
-    void unit(const Unit &unit, double *scratch, Tally &tally) const override { k.forces(call, unit, scratch, tally); }
+    ForcesWork(const ForcesCall &call, Apart &apart) {
+        make_variants(
+            calls, call, apart,
+            [&](ForcesCall &c) {
+                c.lambda = apart.results(call.lambda);
+                c.tension = apart.results(call.tension);
+            },
+            [&](ForcesCall &c) {
+                c.r = apart.atoms(call.r);
+                c.v = apart.atoms(call.v);
+                c.f = apart.atoms(call.f);
+                c.g = apart.summed_atoms(call.g, call.add);
+            });
+    }
+    void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
+        k.forces(calls[where], unit, scratch, tally);
+    }
+    void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
+        k.molecules.forces(calls[where], unit, scratch, tally);
+    }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_forces.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return k.long_forces.bytes(n); }
-    void long_chain(const Lane &lane, const Team &team, double *store, Tally &tally) const override {
-        solve_long_chain(k.long_forces, call, lane, team, store, tally);
+    void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
+        solve_long_chain(k.long_forces, calls[where], lane, team, store, tally);
     }
 };
 
@@ -32,10 +51,14 @@ void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const 
     ForcesCall call{r, v, f, g, lambda, tension, add, virial != nullptr, chains.box};
     AtomArray *const inputs[] = {&call.r, &call.v, &call.f};
     unify_layout(inputs, 3);
-    const Tally tally = execute(chains, ForcesWork(call));
+    Apart apart(chains);
+    const Tally tally = execute(chains, ForcesWork(call, apart));
+    apart.put_back();
+    clear_unconstrained(chains, lambda);
+    clear_unconstrained(chains, tension);
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}, {"force", &f}};
-        throw diagnose(chains, tally, arrays, 3, Status::not_finite);
+        throw diagnose(chains, tally, chains.box, arrays, 3, Status::not_finite);
     }
     if (virial) write_virial(tally, virial);
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
 
@@ -10,13 +11,26 @@ namespace holonomic {
 namespace {
 
 struct MetricWork final : Work {
-    const MetricCall &call;
+    MetricCall calls[n_wheres];
     const Kernels &k = kernels();
-    explicit MetricWork(const MetricCall &c) : call(c) {}
-    void unit(const Unit &unit, double *scratch, Tally &tally) const override { k.metric(call, unit, scratch, tally); }
+    MetricWork(const MetricCall &call, Apart &apart) {
+        make_variants(
+            calls, call, apart, [](MetricCall &) {},
+            [&](MetricCall &c) {
+                c.r = apart.atoms(call.r);
+                c.force = apart.summed_atoms(call.force, call.add);
+            });
+    }
+    void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
+        k.metric(calls[where], unit, scratch, tally);
+    }
+    void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
+        k.molecules.metric(calls[where], unit, scratch, tally);
+    }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_metric.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return k.long_metric.bytes(n); }
-    void long_chain(const Lane &lane, const Team &team, double *store, Tally &tally) const override {
+    void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
+        const MetricCall &call = calls[where];
         const std::int64_t blocks = long_blocks(lane.n_bonds);
         team.for_each(blocks, tally, [&](std::int64_t j, double *scratch, Tally &) {
             k.long_metric.map(call, lane, j, store, scratch);
@@ -39,10 +53,12 @@ void metric(const Chains &chains, const AtomArray &r, double kT, double *log_det
     if (!(kT >= 0) || !std::isfinite(kT))
         throw make_error(Status::value, "kT is %g; it must be finite and not negative", kT);
     const MetricCall call{r, force, kT, log_det, log_det_z, energy != nullptr, add, chains.box};
-    const Tally tally = execute(chains, MetricWork(call));
+    Apart apart(chains);
+    const Tally tally = execute(chains, MetricWork(call, apart));
+    apart.put_back();
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &r}};
-        throw diagnose(chains, tally, arrays, 1, Status::not_finite);
+        throw diagnose(chains, tally, chains.box, arrays, 1, Status::not_finite);
     }
     if (energy) *energy = 0.5 * kT * tally.log_det;
 }

@@ -7,6 +7,7 @@
 
 #include "core/caller/view.hpp"
 #include "core/forces.hpp"
+#include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
 #include "holonomic.h"
@@ -253,16 +254,27 @@ private:
 };
 
 struct PositionsWork final : Work {
-    const PositionsCall &call;
+    PositionsCall calls[n_wheres];
     const Kernels &k = kernels();
-    explicit PositionsWork(const PositionsCall &c) : call(c) {}
-    void unit(const Unit &unit, double *scratch, Tally &tally) const override {
-        k.positions(call, unit, scratch, tally);
+    PositionsWork(const PositionsCall &call, Apart &apart) {
+        make_variants(
+            calls, call, apart, [&](PositionsCall &c) { c.lambda = apart.results(call.lambda); },
+            [&](PositionsCall &c) {
+                c.r_ref = apart.atoms(call.r_ref);
+                c.r = apart.moved_atoms(call.r);
+                c.v = apart.moved_atoms(call.v);
+            });
+    }
+    void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
+        k.positions(calls[where], unit, scratch, tally);
+    }
+    void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
+        k.molecules.positions(calls[where], unit, scratch, tally);
     }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_positions.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return k.long_positions.bytes(n); }
-    void long_chain(const Lane &lane, const Team &team, double *store, Tally &tally) const override {
-        LongNewton(k.long_positions, call, lane, team, store)(tally);
+    void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
+        LongNewton(k.long_positions, calls[where], lane, team, store)(tally);
     }
 };
 
@@ -280,8 +292,12 @@ void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomA
                              report != nullptr,
                              chains.tolerance,
                              chains.max_iterations,
-                             chains.box};
-    const Tally tally = execute(chains, PositionsWork(call));
+                             chains.box,
+                             chains.box_of_reference()};
+    Apart apart(chains);
+    const Tally tally = execute(chains, PositionsWork(call, apart));
+    apart.put_back();
+    clear_unconstrained(chains, lambda);
     if (report) {
         report->iterations = tally.iterations;
         report->n_corrected = tally.n_corrected;
@@ -293,7 +309,7 @@ void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomA
     if (tally.out_of_memory) throw std::bad_alloc();
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"reference position", &r_ref}, {"position", &r}, {"velocity", &v}};
-        throw diagnose(chains, tally, arrays, 3, Status::no_convergence);
+        throw diagnose(chains, tally, chains.box_of_reference(), arrays, 3, Status::no_convergence);
     }
     if (virial) write_virial(tally, virial);
 }

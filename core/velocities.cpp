@@ -2,6 +2,7 @@
 
 #include "core/caller/view.hpp"
 #include "core/forces.hpp"
+#include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
 
@@ -10,15 +11,26 @@ namespace holonomic {
 namespace {
 
 struct VelocitiesWork final : Work {
-    const VelocitiesCall &call;
+    VelocitiesCall calls[n_wheres];
     const Kernels &k = kernels();
-    explicit VelocitiesWork(const VelocitiesCall &c) : call(c) {}
-    void unit(const Unit &unit, double *scratch, Tally &tally) const override {
-        k.velocities(call, unit, scratch, tally);
+    VelocitiesWork(const VelocitiesCall &call, Apart &apart) {
+        make_variants(
+            calls, call, apart, [&](VelocitiesCall &c) { c.lambda = apart.results(call.lambda); },
+            [&](VelocitiesCall &c) {
+                c.r = apart.atoms(call.r);
+                c.v = apart.moved_atoms(call.v);
+            });
+    }
+    void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
+        k.velocities(calls[where], unit, scratch, tally);
+    }
+    void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
+        k.molecules.velocities(calls[where], unit, scratch, tally);
     }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_velocities.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return k.long_velocities.bytes(n); }
-    void long_chain(const Lane &lane, const Team &team, double *store, Tally &tally) const override {
+    void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
+        const VelocitiesCall &call = calls[where];
         // The recursion gives the multipliers to a few roundings of themselves; what that leaves of the rates goes with
         // a second projection, of velocities that need next to none.
         const std::int64_t n_bad = tally.n_bad;
@@ -37,10 +49,13 @@ void project_velocities(const Chains &chains, const AtomArray &r, const AtomArra
     VelocitiesCall call{r, v, lambda, virial != nullptr, chains.box};
     AtomArray *const inputs[] = {&call.r, &call.v};
     unify_layout(inputs, 2);
-    const Tally tally = execute(chains, VelocitiesWork(call));
+    Apart apart(chains);
+    const Tally tally = execute(chains, VelocitiesWork(call, apart));
+    apart.put_back();
+    clear_unconstrained(chains, lambda);
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}};
-        throw diagnose(chains, tally, arrays, 2, Status::not_finite);
+        throw diagnose(chains, tally, chains.box, arrays, 2, Status::not_finite);
     }
     if (virial) write_virial(tally, virial);
 }

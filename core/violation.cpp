@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
 #include "core/run/diagnose.hpp"
 #include "holonomic.h"
@@ -14,35 +15,37 @@ void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, hol
     tally.first_bad = -1;
     for (std::int64_t chain = 0; chain < chains.n_chains(); ++chain) {
         if (!chains.is_active(chain)) continue;
-        const Lane lane = chains.lane(chain);
-        double r0[3] = {0, 0, 0}, v0[3] = {0, 0, 0};
+        const Molecule m = chains.molecule(chain);
+        double r0[3], v0[3] = {0, 0, 0}, r1[3], v1[3] = {0, 0, 0};
         bool finite = true;
-        for (std::int64_t k = 0; k <= lane.n_bonds; ++k) {
-            const std::int64_t atom = lane.atoms ? lane.atoms[k] : lane.first_atom + k;
-            double r1[3], v1[3] = {0, 0, 0}, d[3];
-            read_atom(r, atom, r1);
-            if (v.x) read_atom(v, atom, v1);
-            if (k > 0) {
-                const double a = lane.length ? lane.length[k - 1] : lane.length_uniform;
-                for (int c = 0; c < 3; ++c) d[c] = r1[c] - r0[c];
-                minimum_image(chains.box, d);
-                const double length = std::fabs(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] - a * a) / (a * a);
-                const double rate = std::fabs(d[0] * (v1[0] - v0[0]) + d[1] * (v1[1] - v0[1]) + d[2] * (v1[2] - v0[2]));
-                finite = finite && std::isfinite(length) && std::isfinite(rate);
-                if (found.length_chain < 0 || length > found.length) {
-                    found.length = length;
-                    found.length_chain = chain + chains.base;
-                    found.length_bond = k - 1 + chains.base;
+        for (std::int64_t k = 0; k < m.n_bonds; ++k) {
+            if (k > 0 && m.i(k) == m.j(k - 1)) {
+                for (int c = 0; c < 3; ++c) {
+                    r0[c] = r1[c];
+                    v0[c] = v1[c];
                 }
-                if (v.x && (found.rate_chain < 0 || rate > found.rate)) {
-                    found.rate = rate;
-                    found.rate_chain = chain + chains.base;
-                    found.rate_bond = k - 1 + chains.base;
-                }
+            } else {
+                read_atom(r, m.atom(m.i(k)), r0);
+                if (v.x) read_atom(v, m.atom(m.i(k)), v0);
             }
-            for (int c = 0; c < 3; ++c) {
-                r0[c] = r1[c];
-                v0[c] = v1[c];
+            read_atom(r, m.atom(m.j(k)), r1);
+            if (v.x) read_atom(v, m.atom(m.j(k)), v1);
+            const double a = m.length(k);
+            double d[3];
+            for (int c = 0; c < 3; ++c) d[c] = r1[c] - r0[c];
+            minimum_image(chains.box, d);
+            const double length = std::fabs(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] - a * a) / (a * a);
+            const double rate = std::fabs(d[0] * (v1[0] - v0[0]) + d[1] * (v1[1] - v0[1]) + d[2] * (v1[2] - v0[2]));
+            finite = finite && std::isfinite(length) && std::isfinite(rate);
+            if (found.length_chain < 0 || length > found.length) {
+                found.length = length;
+                found.length_chain = chain + chains.base;
+                found.length_bond = k + chains.base;
+            }
+            if (v.x && (found.rate_chain < 0 || rate > found.rate)) {
+                found.rate = rate;
+                found.rate_chain = chain + chains.base;
+                found.rate_bond = k + chains.base;
             }
         }
         if (!finite) {
@@ -51,7 +54,7 @@ void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, hol
     }
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}};
-        Error error = diagnose(chains, tally, arrays, 2, Status::not_finite);
+        Error error = diagnose(chains, tally, chains.box, arrays, 2, Status::not_finite);
         error.status = Status::not_finite;  // whatever else is wrong with that chain, it gives no number
         throw error;
     }

@@ -1,18 +1,15 @@
-// The periodic box and its inverse.
+#include "core/caller/box.hpp"
+
 #include <cmath>
 
 #include "core/error.hpp"
-#include "core/molecules/chains.hpp"
 
 namespace holonomic {
 
 // A row of zeros means that the box is not periodic along that vector. For the inverse it is replaced by a vector that
 // makes the matrix regular; its own multiple is then never subtracted, because the kernels skip zero elements of h.
-void Chains::set_box(const double *h) {
-    if (!h) {
-        box = Box{};
-        return;
-    }
+Box make_box(const double *h) {
+    if (!h) return Box{};
     double m[3][3];
     bool periodic[3], diagonal = true;
     for (int i = 0; i < 3; ++i) {
@@ -31,10 +28,7 @@ void Chains::set_box(const double *h) {
         for (int k = 0; k < 3; ++k) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
     };
     const int n = periodic[0] + periodic[1] + periodic[2];
-    if (n == 0) {
-        box = next;
-        return;
-    }
+    if (n == 0) return next;
     next.shape = diagonal ? Box::orthorhombic : Box::triclinic;
     if (diagonal) {
         for (int i = 0; i < 3; ++i) next.inverse[3 * i + i] = periodic[i] ? 1 / m[i][i] : 0;
@@ -45,8 +39,7 @@ void Chains::set_box(const double *h) {
             next.minus_side[i] = -next.h[4 * (i % 3)];
             next.per_side[i] = next.inverse[4 * (i % 3)];
         }
-        box = next;
-        return;
+        return next;
     }
     // Replace missing vectors by ones perpendicular to the others.
     for (int i = 0; i < 3; ++i) {
@@ -73,7 +66,7 @@ void Chains::set_box(const double *h) {
         throw make_error(Status::value, "the box vectors lie in a plane or on a line");
     for (int i = 0; i < 3; ++i)
         for (int c = 0; c < 3; ++c) next.inverse[3 * c + i] = periodic[i] ? columns[i][c] / volume : 0;
-    box = next;
+    return next;
 }
 
 void minimum_image(const Box &box, double *d) {

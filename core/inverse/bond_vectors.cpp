@@ -19,18 +19,17 @@ void minimum_image(const Box &box, DoublePair *d) {
 
 }  // namespace
 
-std::vector<PairVector> bond_vectors(const Lane &lane, const AtomArray &r, const Box &box) {
-    std::vector<PairVector> bonds(static_cast<std::size_t>(lane.n_bonds));
-    double before[3], here[3];
-    for (std::int64_t k = 0; k <= lane.n_bonds; ++k) {
-        read_atom(r, lane.atoms ? lane.atoms[k] : lane.first_atom + k, here);
-        if (k > 0) {
-            DoublePair d[3];
-            for (int c = 0; c < 3; ++c) d[c] = plain::two_difference(here[c], before[c]);
-            if (box.shape != Box::none) minimum_image(box, d);
-            bonds[static_cast<std::size_t>(k) - 1] = {d[0], d[1], d[2]};
-        }
-        for (int c = 0; c < 3; ++c) before[c] = here[c];
+std::vector<PairVector> bond_vectors(const Molecule &m, const AtomArray &r, const Box &box) {
+    std::vector<PairVector> bonds;
+    bonds.reserve(static_cast<std::size_t>(m.n_bonds));
+    for (std::int64_t k = 0; k < m.n_bonds; ++k) {
+        double from[3], to[3];
+        read_atom(r, m.atom(m.i(k)), from);
+        read_atom(r, m.atom(m.j(k)), to);
+        DoublePair d[3];
+        for (int c = 0; c < 3; ++c) d[c] = plain::two_difference(to[c], from[c]);
+        if (box.shape != Box::none) minimum_image(box, d);
+        bonds.push_back({d[0], d[1], d[2]});
     }
     return bonds;
 }

@@ -9,8 +9,8 @@
 
 namespace holonomic {
 
-// d_k = r_{k+1} - r_k for k = 0 .. N-1, the minimum image if there is a box. Not checked for anything.
-std::vector<PairVector> bond_vectors(const Lane &lane, const AtomArray &r, const Box &box);
+// d_k = r_j - r_i for k = 0 .. N-1, the minimum image if there is a box. Not checked for anything.
+std::vector<PairVector> bond_vectors(const Molecule &molecule, const AtomArray &r, const Box &box);
 
 // A bond vector over the power of two that brings it to a size of about 1, so that products can't overflow or
 // underflow.

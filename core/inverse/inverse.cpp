@@ -17,19 +17,25 @@ Error bad_data(const Chains &chains, std::int64_t chain, const AtomArray &r) {
     tally.n_bad = 1;
     tally.first_bad = chain;
     const NamedArray arrays[] = {{"position", &r}};
-    return diagnose(chains, tally, arrays, 1, Status::not_finite);
+    return diagnose(chains, tally, chains.box, arrays, 1, Status::not_finite);
 }
 
 }  // namespace
 
 Inverse::Inverse(const Chains &chains, std::int64_t chain, const AtomArray &r)
-    : n_(static_cast<std::size_t>(chains.lane(chain).n_bonds)), base_(chains.base), atoms_(n_ + 1), w_(n_ + 1),
-      d_(bond_vectors(chains.lane(chain), r, chains.box)), bonds_(n_), largest_row_(1) {
-    const Lane lane = chains.lane(chain);
+    : n_(static_cast<std::size_t>(chains.molecule(chain).n_bonds)), base_(chains.base), atoms_(n_ + 1), w_(n_ + 1),
+      d_(bond_vectors(chains.molecule(chain), r, chains.box)), bonds_(n_), largest_row_(1) {
+    const Molecule m = chains.molecule(chain);
+    if (m.shape) {
+        Error error = make_error(Status::value, "molecule %lld is no linear chain: its inverse is not supported yet",
+                                 static_cast<long long>(chain + base_));
+        error.chain = chain;
+        error.base = base_;
+        throw error;
+    }
     for (std::size_t k = 0; k <= n_; ++k) {
-        const std::int64_t i = static_cast<std::int64_t>(k);
-        atoms_[k] = lane.atoms ? lane.atoms[i] : lane.first_atom + i;
-        w_[k] = lane.w ? lane.w[i] : lane.w_uniform;
+        atoms_[k] = m.atom(static_cast<std::int64_t>(k));
+        w_[k] = m.w(static_cast<std::int64_t>(k));
     }
     std::vector<Joint> joints(n_ + 1, Joint{0, 1});  // k: between bonds k-1 and k
     ScaledBond before{};

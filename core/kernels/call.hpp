@@ -100,7 +100,7 @@ struct PositionsCall {
     bool guess, virial, report;  // report: the errors left are wanted
     double tolerance;  // 0: what the coordinates carry
     int max_iterations;
-    Box box;
+    Box box, box_ref;  // of r; of r_ref
 };
 
 struct MetricCall {
@@ -178,6 +178,17 @@ struct LongMetric {
     void (*finish)(const MetricCall &, const Lane &, int64_t block, double *store, double *scratch, Tally &);
 };
 
+// Molecules that are no linear chains. `scratch` has the largest scratch_bytes of the schedules, aligned to 64. A value
+// that solve writes may stand where its right-hand side did.
+struct MoleculeKernels {
+    int64_t (*scratch_bytes)(const Schedule &);
+    void (*forces)(const ForcesCall &, const MoleculeUnit &, double *scratch, Tally &);
+    void (*velocities)(const VelocitiesCall &, const MoleculeUnit &, double *scratch, Tally &);
+    void (*positions)(const PositionsCall &, const MoleculeUnit &, double *scratch, Tally &);
+    void (*metric)(const MetricCall &, const MoleculeUnit &, double *scratch, Tally &);
+    void (*solve)(const SolveCall &, const MoleculeUnit &, double *scratch, Tally &);
+};
+
 // The kernels of one instruction set. `scratch` has scratch_bytes(bonds of the longest lane), aligned to 64.
 struct Kernels {
     const char *name;
@@ -191,6 +202,7 @@ struct Kernels {
     LongVelocities long_velocities;
     LongPositions long_positions;
     LongMetric long_metric;
+    MoleculeKernels molecules{};
 };
 
 }  // namespace holonomic

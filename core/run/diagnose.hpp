@@ -1,5 +1,5 @@
-// What is wrong with a chain that a kernel could not solve. Slow and rarely called: it reads the chain again, so that
-// the kernels need not keep account of causes.
+// What is wrong with a molecule that a kernel could not solve. Slow and rarely called: it reads the molecule again, so
+// that the kernels need not keep account of causes.
 #ifndef HOLONOMIC_DIAGNOSE_HPP
 #define HOLONOMIC_DIAGNOSE_HPP
 
@@ -13,8 +13,10 @@ struct NamedArray {
     const AtomArray *array;
 };
 
-// The error of a call whose tally counts bad chains; `otherwise` is the status if the data as such are in order.
-Error diagnose(const Chains &chains, const Tally &tally, const NamedArray *arrays, int n_arrays, Status otherwise);
+// The error of a call whose tally counts bad molecules; `otherwise` is the status if the data as such are in order. The
+// first array has the positions of the bond vectors, and `box` is theirs.
+Error diagnose(const Chains &chains, const Tally &tally, const Box &box, const NamedArray *arrays, int n_arrays,
+               Status otherwise);
 
 }  // namespace holonomic
 #endif

@@ -44,6 +44,14 @@ void reserve(int n_threads, std::int64_t scratch_bytes, std::int64_t store_bytes
 }
 #endif
 
+// Bonds of a chain that is worked on in segments, 0 if the piece is none.
+std::int64_t long_chain_bonds(const Chains &chains, const Plan &plan, std::int64_t p) {
+    const Plan::Piece &piece = plan.pieces[static_cast<std::size_t>(p)];
+    if (piece.shape != linear) return 0;
+    const std::int64_t n = chains.piece_bonds(piece);
+    return n > longest_lane ? n : 0;
+}
+
 }  // namespace
 
 Tally empty_tally() {
@@ -96,8 +104,10 @@ void Team::run(std::int64_t n, Tally &total, void (*call)(const void *, std::int
 Tally execute(const Chains &chains, const Work &work) {
     const Plan &plan = chains.plan();
     const std::int64_t n_pieces = static_cast<std::int64_t>(plan.pieces.size());
-    const std::int64_t scratch_bytes =
+    std::int64_t scratch_bytes =
         kernels().scratch_bytes(plan.longest > longest_lane ? 2 * longest_lane : plan.longest);
+    for (const std::int32_t shape : plan.shapes)
+        scratch_bytes = std::max(scratch_bytes, kernels().molecules.scratch_bytes(*chains.shapes()[shape].schedule));
     const int n_threads = static_cast<int>(
         std::min<std::int64_t>(chains.n_threads, std::max<std::int64_t>(plan.n_bonds / bonds_per_thread, 1)));
 
@@ -107,8 +117,8 @@ Tally execute(const Chains &chains, const Work &work) {
     bool any_shared = false;
     if (plan.longest > longest_lane)
         for (std::int64_t p = 0; p < n_pieces; ++p) {
-            const std::int64_t n = chains.piece_bonds(plan, p);
-            if (n <= longest_lane) continue;
+            const std::int64_t n = long_chain_bonds(chains, plan, p);
+            if (n == 0) continue;
             const bool shared = n_threads > 1 && work.long_blocks(n) >= shared_blocks;
             any_shared = any_shared || shared;
             (shared ? shared_store : own_store) = std::max(shared ? shared_store : own_store, work.long_bytes(n));
@@ -119,12 +129,17 @@ Tally execute(const Chains &chains, const Work &work) {
 
     const Team alone(1, scratch_bytes);
     const auto work_on = [&](std::int64_t p, double *scratch, Tally &tally) {
+        const Plan::Piece &piece = plan.pieces[static_cast<std::size_t>(p)];
+        if (piece.shape != linear) {
+            MoleculeLane lanes[loose_piece];
+            return work.unit(chains.unit(plan, piece, lanes), piece.where, scratch, tally);
+        }
         Lane lanes[loose_piece];
-        const Unit unit = chains.unit(plan, p, lanes);
+        const Unit unit = chains.unit(plan, piece, lanes);
         if (unit.lanes[0].n_bonds <= longest_lane)
-            work.unit(unit, scratch, tally);
+            work.unit(unit, piece.where, scratch, tally);
         else
-            work.long_chain(unit.lanes[0], alone, store_memory(own_store), tally);
+            work.long_chain(unit.lanes[0], piece.where, alone, store_memory(own_store), tally);
     };
     Tally total = empty_tally();
 #ifdef _OPENMP
@@ -133,8 +148,8 @@ Tally execute(const Chains &chains, const Work &work) {
         Tally *const parts = tallies(Keep::piece_tallies, n_pieces);
         const auto is_shared = [&](std::int64_t p) {
             if (!any_shared) return false;
-            const std::int64_t n = chains.piece_bonds(plan, p);
-            return n > longest_lane && work.long_blocks(n) >= shared_blocks;
+            const std::int64_t n = long_chain_bonds(chains, plan, p);
+            return n > 0 && work.long_blocks(n) >= shared_blocks;
         };
 #pragma omp parallel for schedule(dynamic) num_threads(n_threads)
         for (std::int64_t p = 0; p < n_pieces; ++p) {
@@ -145,8 +160,10 @@ Tally execute(const Chains &chains, const Work &work) {
         const Team team(n_threads, scratch_bytes);
         for (std::int64_t p = 0; any_shared && p < n_pieces; ++p) {
             if (!is_shared(p)) continue;
+            const Plan::Piece &piece = plan.pieces[static_cast<std::size_t>(p)];
             Lane lanes[loose_piece];
-            work.long_chain(chains.unit(plan, p, lanes).lanes[0], team, store_memory(shared_store), parts[p]);
+            work.long_chain(chains.unit(plan, piece, lanes).lanes[0], piece.where, team, store_memory(shared_store),
+                            parts[p]);
         }
         for (std::int64_t p = 0; p < n_pieces; ++p) add(total, parts[p]);
         return total;

@@ -34,13 +34,14 @@ private:
     std::int64_t scratch_bytes_;
 };
 
-// What a call does with chains that fit into lanes, and with longer ones.
+// What a call does with linear chains that fit into lanes, with molecules of other shapes, and with longer chains.
 class Work {
 public:
-    virtual void unit(const Unit &unit, double *scratch, Tally &tally) const = 0;
+    virtual void unit(const Unit &unit, int where, double *scratch, Tally &tally) const = 0;
+    virtual void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const = 0;
     virtual std::int64_t long_blocks(std::int64_t n_bonds) const = 0;
     virtual std::int64_t long_bytes(std::int64_t n_bonds) const = 0;
-    virtual void long_chain(const Lane &lane, const Team &team, double *store, Tally &tally) const = 0;
+    virtual void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const = 0;
 
 protected:
     ~Work() = default;

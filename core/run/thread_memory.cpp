@@ -16,7 +16,7 @@ struct Block {
 };
 
 struct Blocks {
-    Block of[4];
+    Block of[5];
     bool kept;  // whether the end of the thread will free them
 };
 

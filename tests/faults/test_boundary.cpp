@@ -36,8 +36,9 @@ struct Unrelated {
 template <class Thrown>
 void comes_out_as(const char *name, int status, const char *words, Thrown thrown)
 {
-    const int got = holonomic::guarded([&] { throw thrown; });
+    const int got = holonomic::guarded("hol_test", [&] { throw thrown; });
     expect(got == status && std::strstr(hol_error_message(), words), name);
+    expect(std::strncmp(hol_error_message(), "hol_test: ", 10) == 0, "the name of the function");
     std::int64_t chain = 7, bond = 7, atom = 7, bad = 7;
     hol_error_location(&chain, &bond, &atom, &bad);
     expect(chain == -1 && bond == -1 && atom == -1 && bad == 0, "a location left over from an earlier error");
@@ -66,20 +67,20 @@ void every_kind_has_a_status_and_a_message()
 void messages_are_cut_to_their_room()
 {
     const std::string text = std::string(10000, 'x') + "%s%n";
-    const int got = holonomic::guarded([&] { throw std::runtime_error(text); });
+    const int got = holonomic::guarded("hol_test", [&] { throw std::runtime_error(text); });
     const std::size_t length = std::strlen(hol_error_message());
-    expect(got == HOL_ERR_INTERNAL && length > 100 && length < 300, "a message of 10,000 characters");
-    holonomic::guarded([] { throw std::runtime_error("%s%s%n"); });
+    expect(got == HOL_ERR_INTERNAL && length > 100 && length < 310, "a message of 10,000 characters");
+    holonomic::guarded("hol_test", [] { throw std::runtime_error("%s%s%n"); });
     expect(std::strstr(hol_error_message(), "%s%s%n"), "a message that looks like a format");
 }
 
 // A thread's exception is that thread's error and nobody else's.
 void each_thread_keeps_its_own_message()
 {
-    holonomic::guarded([] { throw std::runtime_error("here"); });
+    holonomic::guarded("hol_test", [] { throw std::runtime_error("here"); });
     std::string there;
     std::thread([&] {
-        holonomic::guarded([] { throw std::runtime_error("over there"); });
+        holonomic::guarded("hol_test", [] { throw std::runtime_error("over there"); });
         there = hol_error_message();
     }).join();
     expect(there.find("over there") != std::string::npos, "another thread's message");
@@ -89,8 +90,8 @@ void each_thread_keeps_its_own_message()
 
 void success_throws_nothing_and_keeps_the_last_message()
 {
-    holonomic::guarded([] { throw std::runtime_error("kept"); });
-    expect(holonomic::guarded([] {}) == HOL_OK && std::strstr(hol_error_message(), "kept"), "a success");
+    holonomic::guarded("hol_test", [] { throw std::runtime_error("kept"); });
+    expect(holonomic::guarded("hol_test", [] {}) == HOL_OK && std::strstr(hol_error_message(), "kept"), "a success");
 }
 
 }  // namespace

@@ -1,0 +1,184 @@
+#include "core/molecules/batch.hpp"
+
+#include <algorithm>
+
+#include "core/run/dispatch.hpp"
+
+namespace holonomic {
+
+namespace {
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+bool ascend(const std::int64_t *x, std::int64_t n) {
+    for (std::int64_t i = 1; i < n; ++i)
+        if (x[i] != x[0] + i) return false;
+    return true;
+}
+
+// Whether two molecules of the list may be of one kind, by their sizes.
+bool alike(const FoundMolecules &found, std::size_t m, std::size_t n) {
+    if (n >= found.molecules.size()) return false;  // also "before the first"
+    return found.molecules[m].n_bonds == found.molecules[n].n_bonds &&
+           found.molecules[m].n_atoms == found.molecules[n].n_atoms;
+}
+
+}  // namespace
+
+Error Batch::not_supported(const FoundMolecules &found, std::size_t m) const {
+    const std::int64_t atom = found.atoms[at(found.molecules[m].first_atom)];
+    Error error = make_error(Status::value, "the molecule of atom %lld is no linear chain: not supported yet",
+                             static_cast<long long>(atom + chains_.base));
+    error.atom = atom;
+    error.base = chains_.base;
+    return error;
+}
+
+Batch::Batch(Chains &chains)
+    : chains_(chains), before_(chains.groups_.mark()), n_unconstrained_(chains.unconstrained_.size()),
+      n_active_(chains.active_.size()) {}
+
+Batch::~Batch() {
+    if (committed_) return;
+    chains_.groups_.roll_back(before_);
+    chains_.unconstrained_.resize(n_unconstrained_);
+    chains_.active_.resize(n_active_);
+    for (const std::int64_t atom : taken_) chains_.use_.give_back(atom);
+}
+
+void Batch::take(std::int64_t atom, std::int64_t chain, std::int64_t position) {
+    if (chains_.masses_.fixed(atom)) return fixed_.push_back(atom);
+    if (chains_.use_.used(atom)) {
+        const int base = chains_.base;
+        Error error =
+            make_error(Status::shared_atom,
+                       "atom %lld, number %lld of chain %lld, is in use already: all bonds of a molecule must "
+                       "be added in one call of hol_chains_add_bonds",
+                       static_cast<long long>(atom + base), static_cast<long long>(position + base),
+                       static_cast<long long>(chain + base));
+        error.atom = atom;
+        error.chain = chain;
+        error.base = base;
+        throw error;
+    }
+    taken_.push_back(atom);
+    chains_.use_.take(atom);
+}
+
+Error Batch::in_use(std::int64_t atom) const {
+    Error error = make_error(Status::shared_atom,
+                             "atom %lld is in a molecule of an earlier call already: all bonds of a molecule must be "
+                             "added in one call",
+                             static_cast<long long>(atom + chains_.base));
+    error.atom = atom;
+    error.base = chains_.base;
+    return error;
+}
+
+void Batch::append_part(std::int64_t n_bonds, const std::int64_t *atoms, const double *lengths,
+                        std::int64_t first_bond) {
+    w_.resize(at(n_bonds + 1));
+    for (std::int64_t k = 0; k <= n_bonds; ++k) w_[at(k)] = chains_.masses_.w(atoms[k]);
+    const std::int64_t kind =
+        chains_.kinds_.find(linear, n_bonds + 1, n_bonds, w_.data(), lengths, chains_.groups_.last_kind());
+    chains_.groups_.append(chains_.kinds_, kind, 1, atoms[0], ascend(atoms, n_bonds + 1) ? nullptr : atoms, first_bond,
+                           nullptr);
+}
+
+// Bonds between two fixed atoms divide it.
+void Batch::append_chain(std::int64_t n_bonds, const std::int64_t *atoms, const double *lengths) {
+    const std::int64_t first_bond = chains_.n_bonds_ + n_bonds_;
+    std::int64_t begin = 0;
+    for (std::int64_t k = 0; k <= n_bonds; ++k) {
+        const bool end = k == n_bonds;
+        if (!end && !(chains_.masses_.fixed(atoms[k]) && chains_.masses_.fixed(atoms[k + 1]))) continue;
+        if (k > begin) append_part(k - begin, atoms + begin, lengths + begin, first_bond + begin);
+        if (!end) chains_.unconstrained_.push_back(first_bond + k);
+        begin = k + 1;
+    }
+    n_bonds_ += n_bonds;
+}
+
+void Batch::append_block(std::int64_t count, std::int64_t n_bonds, std::int64_t first_atom, const double *lengths) {
+    if (chains_.masses_.uniform() && !chains_.masses_.fixed(0)) {  // then all of them are of one kind
+        w_.assign(at(n_bonds + 1), chains_.masses_.w(0));
+        const std::int64_t kind =
+            chains_.kinds_.find(linear, n_bonds + 1, n_bonds, w_.data(), lengths, chains_.groups_.last_kind());
+        chains_.groups_.append(chains_.kinds_, kind, count, first_atom, nullptr, chains_.n_bonds_ + n_bonds_, nullptr);
+        n_bonds_ += count * n_bonds;
+        return;
+    }
+    std::vector<std::int64_t> atoms(at(n_bonds + 1));
+    for (std::int64_t c = 0; c < count; ++c) {
+        for (std::int64_t k = 0; k <= n_bonds; ++k) atoms[at(k)] = first_atom + c * (n_bonds + 1) + k;
+        append_chain(n_bonds, atoms.data(), lengths);
+    }
+}
+
+// Where neighbours of the same size don't follow each other in memory, they all go by lists, so that they are one
+// group.
+void Batch::append_one(const FoundMolecules &found, std::size_t m, std::int32_t shape) {
+    const FoundMolecule &molecule = found.molecules[m];
+    const std::int64_t *const atoms = &found.atoms[at(molecule.first_atom)];
+    const std::int64_t *const bonds = &found.bonds[at(molecule.first_bond)];
+    const std::int64_t kind = chains_.kinds_.find(shape, molecule.n_atoms, molecule.n_bonds, w_.data(), length_.data(),
+                                                  chains_.groups_.last_kind());
+    bool list_atoms = !ascend(atoms, molecule.n_atoms), list_bonds = !ascend(bonds, molecule.n_bonds);
+    if (!list_atoms || !list_bonds) {
+        const bool before = alike(found, m, m - 1), after = alike(found, m, m + 1);
+        const bool atoms_follow = (before && atoms[-1] + 1 == atoms[0]) ||
+                                  (after && atoms[molecule.n_atoms - 1] + 1 == atoms[molecule.n_atoms]);
+        const bool bonds_follow = (before && bonds[-1] + 1 == bonds[0]) ||
+                                  (after && bonds[molecule.n_bonds - 1] + 1 == bonds[molecule.n_bonds]);
+        list_atoms = list_atoms || ((before || after) && !atoms_follow);
+        list_bonds = list_bonds || ((before || after) && !bonds_follow);
+    }
+    places_.clear();
+    if (list_bonds)
+        for (std::int32_t k = 0; k < molecule.n_bonds; ++k) places_.push_back(chains_.n_bonds_ + bonds[k]);
+    chains_.groups_.append(chains_.kinds_, kind, 1, atoms[0], list_atoms ? atoms : nullptr, chains_.n_bonds_ + bonds[0],
+                           list_bonds ? places_.data() : nullptr);
+}
+
+void Batch::append_found(const FoundMolecules &found, std::int64_t n_bonds, const double *lengths,
+                         std::int64_t n_lengths) {
+    for (std::size_t i = 0; i < found.atoms.size(); ++i)
+        if (!found.fixed[i] && chains_.use_.used(found.atoms[i])) throw in_use(found.atoms[i]);
+    taken_.reserve(found.atoms.size());
+    std::int32_t last_shape = linear;
+    for (std::size_t m = 0; m < found.molecules.size(); ++m) {
+        const FoundMolecule &molecule = found.molecules[m];
+        const std::size_t first = at(molecule.first_atom), n_atoms = at(molecule.n_atoms);
+        w_.resize(n_atoms);
+        length_.resize(at(molecule.n_bonds));
+        for (std::size_t i = 0; i < n_atoms; ++i) w_[i] = chains_.masses_.w(found.atoms[first + i]);
+        for (std::size_t k = 0; k < length_.size(); ++k) {
+            const std::int64_t bond = found.bonds[at(molecule.first_bond) + k];
+            length_[k] = lengths[n_lengths == n_bonds ? bond : bond % n_lengths];
+        }
+        std::int32_t shape = linear;
+        if (molecule.form != Form::chain) {
+            if (!kernels().molecules.forces) throw not_supported(found, m);
+            shape = last_shape =
+                chains_.shapes_.find(molecule.form, molecule.n_atoms, molecule.n_bonds,
+                                     &found.pairs[2 * at(molecule.first_bond)], &found.fixed[first], last_shape);
+        }
+        append_one(found, m, shape);
+        for (std::size_t i = first; i < first + n_atoms; ++i)
+            (found.fixed[i] ? fixed_ : taken_).push_back(found.atoms[i]);
+    }
+    fixed_.insert(fixed_.end(), found.unconstrained_atoms.begin(), found.unconstrained_atoms.end());
+    for (const std::int64_t bond : found.unconstrained) chains_.unconstrained_.push_back(chains_.n_bonds_ + bond);
+    n_bonds_ += n_bonds;
+}
+
+void Batch::commit() {
+    if (!chains_.active_.empty()) chains_.active_.resize(at(chains_.n_chains()), 1);
+    chains_.n_bonds_ += n_bonds_;
+    for (const std::int64_t atom : taken_) chains_.use_.take(atom);
+    for (const std::int64_t atom : fixed_) chains_.use_.take_fixed(atom);
+    committed_ = true;
+    chains_.changed();
+}
+
+}  // namespace holonomic

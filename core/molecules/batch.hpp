@@ -1,0 +1,47 @@
+// What one call adds to a set of molecules: all of it, or on an error nothing.
+#ifndef HOLONOMIC_BATCH_HPP
+#define HOLONOMIC_BATCH_HPP
+
+#include <cstdint>
+#include <vector>
+
+#include "core/molecules/chains.hpp"
+
+namespace holonomic {
+
+// Throws Error if a length is out of range.
+void check_lengths(std::int64_t n_bonds, const double *lengths, int base);
+
+class Batch {
+public:
+    explicit Batch(Chains &chains);
+    ~Batch();
+    Batch(const Batch &) = delete;
+    Batch &operator=(const Batch &) = delete;
+
+    // An atom of a chain, which must be free if it can move. Throws Error.
+    void take(std::int64_t atom, std::int64_t chain, std::int64_t position);
+    void append_chain(std::int64_t n_bonds, const std::int64_t *atoms, const double *lengths);
+    void append_block(std::int64_t count, std::int64_t n_bonds, std::int64_t first_atom, const double *lengths);
+    // Bond k of the list has the length lengths[k % n_lengths]. Throws Error if an atom is not free.
+    void append_found(const FoundMolecules &found, std::int64_t n_bonds, const double *lengths, std::int64_t n_lengths);
+    void commit();
+
+private:
+    void append_part(std::int64_t n_bonds, const std::int64_t *atoms, const double *lengths, std::int64_t first_bond);
+    void append_one(const FoundMolecules &found, std::size_t m, std::int32_t shape);
+    Error not_supported(const FoundMolecules &found, std::size_t m) const;
+    Error in_use(std::int64_t atom) const;
+
+    Chains &chains_;
+    const Groups::Mark before_;
+    const std::size_t n_unconstrained_, n_active_;
+    std::int64_t n_bonds_ = 0;
+    std::vector<std::int64_t> taken_, fixed_;
+    std::vector<double> w_, length_;
+    std::vector<std::int64_t> places_;
+    bool committed_ = false;
+};
+
+}  // namespace holonomic
+#endif

@@ -1,0 +1,128 @@
+// What a set of molecules tells about itself.
+#include <algorithm>
+
+#include "core/molecules/chains.hpp"
+
+namespace holonomic {
+
+namespace {
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+bool Chains::is_active(std::int64_t molecule) const { return active_.empty() || active_[at(molecule)] != 0; }
+
+Molecule Chains::molecule(std::int64_t molecule) const {
+    const Group &group = groups_.of_molecule(molecule);
+    const Kind &kind = kind_of(group);
+    const std::int64_t index = molecule - group.first_molecule, bonds = group.first_bond + index * kind.n_bonds;
+    Molecule m;
+    m.number = molecule;
+    m.n_atoms = kind.n_atoms();
+    m.n_bonds = kind.n_bonds;
+    m.shape = kind.shape == linear ? nullptr : &shapes_[kind.shape];
+    m.atom_list = groups_.atoms(group, index, kind.n_atoms());
+    m.first_atom = m.atom_list ? m.atom_list[0] : group.first_atom + index * kind.n_atoms();
+    m.w_table = kinds_.w(kind);
+    m.length_table = kinds_.length(kind);
+    m.w_uniform = kind.w_uniform;
+    m.length_uniform = kind.length_uniform;
+    m.bond_list = group.reordered ? groups_.reordered().data() + bonds : nullptr;
+    m.first_bond = m.bond_list ? m.bond_list[0] : bonds;
+    return m;
+}
+
+std::int64_t Chains::n_of_form(int form) const {
+    std::int64_t n = 0;
+    for (const Group &group : groups_.all()) {
+        const std::int32_t shape = kind_of(group).shape;
+        const Form its = shape == linear ? Form::chain : shapes_[shape].form;
+        if (static_cast<int>(its) == form) n += group.count;
+    }
+    return n;
+}
+
+// Kinds that a failed call has left behind are not counted.
+std::int64_t Chains::n_kinds() const {
+    std::vector<unsigned char> seen(at(kinds_.size()), 0);
+    for (const Group &group : groups_.all()) seen[at(group.kind)] = 1;
+    return std::count(seen.begin(), seen.end(), 1);
+}
+
+void Chains::offsets(std::int64_t *out) const {
+    std::int64_t next = 0;
+    for (const Group &group : groups_.all()) {
+        if (group.reordered || group.first_bond != next) {
+            Error error =
+                make_error(Status::value,
+                           "the bonds of molecule %lld do not follow those of the molecule before in the arrays "
+                           "per bond: hol_chains_bonds tells where they stand",
+                           static_cast<long long>(group.first_molecule + base));
+            error.chain = group.first_molecule;
+            error.base = base;
+            throw error;
+        }
+        next += group.count * kind_of(group).n_bonds;
+    }
+    if (next != n_bonds_)
+        throw make_error(Status::value,
+                         "the last bonds join fixed atoms and are in no molecule: hol_chains_bonds tells "
+                         "where the others stand");
+    std::int64_t molecule = 0;
+    for (const Group &group : groups_.all())
+        for (std::int64_t c = 0; c < group.count; ++c)
+            out[molecule++] = base + group.first_bond + c * kind_of(group).n_bonds;
+    out[molecule] = base + n_bonds_;
+}
+
+std::int64_t Chains::count_atoms(std::int64_t number) const {
+    const Molecule m = molecule(number);
+    if (!m.shape) return m.n_atoms;
+    std::int64_t n = 1;
+    for (std::int64_t i = 1; i < m.n_atoms; ++i) n += m.atom(i) != m.atom(i - 1);
+    return n;
+}
+
+void Chains::atoms(std::int64_t number, std::int64_t *out) const {
+    const Molecule m = molecule(number);
+    for (std::int64_t i = 0; i < m.n_atoms; ++i)
+        if (i == 0 || !m.shape || m.atom(i) != m.atom(i - 1)) *out++ = base + m.atom(i);
+}
+
+void Chains::bonds(std::int64_t number, std::int64_t *out) const {
+    const Molecule m = molecule(number);
+    for (std::int64_t k = 0; k < m.n_bonds; ++k) out[k] = base + m.bond(k);
+}
+
+void Chains::molecules_of_bonds(std::int64_t *out) const {
+    for (const Group &group : groups_.all()) {
+        const std::int64_t n_bonds = kind_of(group).n_bonds;
+        for (std::int64_t k = 0; k < group.count * n_bonds; ++k)
+            out[groups_.bond(group, group.first_bond + k)] = base + group.first_molecule + k / n_bonds;
+    }
+    for (const std::int64_t bond : unconstrained_) out[bond] = -1;
+}
+
+std::int64_t Chains::degrees_of_freedom(int dimensions) const {
+    std::int64_t constraints = 0;
+    for (const Group &group : groups_.all()) {
+        std::int64_t active = group.count;
+        if (!active_.empty()) {
+            active = 0;
+            for (std::int64_t c = 0; c < group.count; ++c) active += is_active(group.first_molecule + c);
+        }
+        constraints += active * kind_of(group).n_bonds;
+    }
+    return dimensions * masses_.n_movable() - constraints;
+}
+
+std::int64_t Chains::memory() const {
+    const Plan *plan = plan_.load(std::memory_order_acquire);
+    return static_cast<std::int64_t>(sizeof *this + masses_.bytes() + use_.bytes() + kinds_.bytes() + shapes_.bytes() +
+                                     groups_.bytes() + unconstrained_.capacity() * sizeof(std::int64_t) +
+                                     active_.capacity()) +
+           (plan ? plan->bytes() : 0);
+}
+
+}  // namespace holonomic

@@ -1,0 +1,42 @@
+// What the bonds of molecules look like: topologies that are no linear chains, each with its order of elimination.
+#ifndef HOLONOMIC_SHAPE_HPP
+#define HOLONOMIC_SHAPE_HPP
+
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "core/molecules/schedule.hpp"
+
+namespace holonomic {
+
+// The values are those of hol_shape, which capi/molecules.cpp asserts.
+enum class Form { chain = 0, tree = 1, ring = 2, triangle = 3, other = 4 };
+
+struct Shape {
+    Form form;
+    std::int32_t n_atoms, n_bonds;
+    std::vector<std::int32_t> pairs;   // [n_bonds][2] local atoms, the lower one first
+    std::vector<unsigned char> fixed;  // [n_atoms]
+    std::unique_ptr<const Schedule> schedule;
+};
+
+class Shapes {
+public:
+    // The shape with these bonds and fixed atoms; a new one if there is none yet. Looks at `likely` first. Throws
+    // std::bad_alloc, changing nothing.
+    std::int32_t find(Form form, std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
+                      const unsigned char *fixed, std::int32_t likely);
+
+    const Shape &operator[](std::int32_t shape) const { return shapes_[static_cast<std::size_t>(shape)]; }
+    std::int32_t size() const { return static_cast<std::int32_t>(shapes_.size()); }
+    std::size_t bytes() const;
+
+private:
+    std::vector<Shape> shapes_;
+    std::unordered_multimap<std::uint64_t, std::int32_t> by_hash_;
+};
+
+}  // namespace holonomic
+#endif

@@ -1,0 +1,58 @@
+// New masses and lengths of a set of molecules: the same molecules, sorted into kinds again.
+#include <algorithm>
+#include <utility>
+
+#include "core/molecules/batch.hpp"
+#include "core/molecules/chains.hpp"
+
+namespace holonomic {
+
+namespace {
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+// lengths [n_bonds] in the caller's order, or null: as they are.
+void Chains::rebuild(const Masses &masses, const double *lengths) {
+    Kinds kinds;
+    Groups groups;
+    std::vector<double> w, length;
+    std::vector<std::int64_t> places;
+    for (const Group &group : groups_.all())
+        for (std::int64_t index = 0; index < group.count; ++index) {
+            const Molecule m = molecule(group.first_molecule + index);
+            w.resize(at(m.n_atoms));
+            length.resize(at(m.n_bonds));
+            for (std::int64_t i = 0; i < m.n_atoms; ++i) w[at(i)] = masses.w(m.atom(i));
+            for (std::int64_t k = 0; k < m.n_bonds; ++k) length[at(k)] = lengths ? lengths[m.bond(k)] : m.length(k);
+            const std::int64_t kind =
+                kinds.find(kind_of(group).shape, m.n_atoms, m.n_bonds, w.data(), length.data(), groups.last_kind());
+            groups.append(kinds, kind, 1, m.first_atom, m.atom_list, m.first_bond, m.bond_list);
+        }
+    kinds_ = std::move(kinds);
+    groups_ = std::move(groups);
+    changed();
+}
+
+void Chains::set_lengths(const double *lengths) {
+    check_lengths(n_bonds_, lengths, base);
+    rebuild(masses_, lengths);
+}
+
+void Chains::set_masses(const double *masses) {
+    Masses next(n_atoms_, masses, base);
+    for (std::int64_t i = 0; i < n_atoms_; ++i) {
+        if (!use_.used(i) || next.fixed(i) == masses_.fixed(i)) continue;
+        Error error =
+            make_error(Status::value, "the mass of atom %lld is %g: an atom that has bonds and %s must stay so",
+                       static_cast<long long>(i + base), masses[i], masses_.fixed(i) ? "is held fixed" : "can move");
+        error.atom = i;
+        error.base = base;
+        throw error;
+    }
+    rebuild(next, nullptr);
+    masses_ = std::move(next);
+}
+
+}  // namespace holonomic

@@ -1,0 +1,145 @@
+#include "core/run/apart.hpp"
+
+#include <cstring>
+#include <new>
+
+#include "core/caller/view.hpp"
+#include "core/run/thread_memory.hpp"
+
+namespace holonomic {
+
+namespace {
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+std::int64_t rounded_up(std::int64_t bytes) { return (bytes + 63) / 64 * 64; }
+
+template <class Each>
+void for_components(const AtomArray &a, std::int64_t i, const AtomArray &b, std::int64_t j, Each each) {
+    if (a.x) each(a.x + i * a.stride, b.x + j * b.stride);
+    if (a.y) each(a.y + i * a.stride, b.y + j * b.stride);
+    if (a.z) each(a.z + i * a.stride, b.z + j * b.stride);
+}
+
+// Bit for bit.
+void copy_atom(const AtomArray &from, std::int64_t i, const AtomArray &to, std::int64_t j) {
+    const std::size_t size = from.is_float ? sizeof(float) : sizeof(double);
+    for_components(from, i, to, j, [size](const char *source, char *target) { std::memcpy(target, source, size); });
+}
+
+// A NaN that no arithmetic makes: whether a kernel has written a result shows by it.
+constexpr std::uint64_t unwritten = 0x7ff8600dcafe5a17u;
+constexpr std::uint32_t unwritten_float = 0x7fc5a171u;
+
+void mark_unwritten(const AtomArray &array, std::int64_t i) {
+    if (array.is_float)
+        std::memcpy(array.x + i * array.stride, &unwritten_float, sizeof unwritten_float);
+    else
+        std::memcpy(array.x + i * array.stride, &unwritten, sizeof unwritten);
+}
+
+bool is_unwritten(const AtomArray &array, std::int64_t i) {
+    return array.is_float ? std::memcmp(array.x + i * array.stride, &unwritten_float, sizeof unwritten_float) == 0
+                          : std::memcmp(array.x + i * array.stride, &unwritten, sizeof unwritten) == 0;
+}
+
+}  // namespace
+
+Apart::Apart(const Chains &chains) : chains_(chains), plan_(chains.plan()), memory_(nullptr) {
+    const std::int64_t n_stage = static_cast<std::int64_t>(plan_.stage.size());
+    const std::int64_t n_values = reorders() ? static_cast<std::int64_t>(chains.reordered_bonds().size()) : 0;
+    const std::int64_t bytes = most * (rounded_up(n_stage * 24) + rounded_up(n_values * 8));
+    if (bytes == 0) return;
+    memory_ = static_cast<char *>(thread_memory(Keep::apart, bytes));
+    if (!memory_) throw std::bad_alloc();
+}
+
+Apart::Values &Apart::copy_of(const double *callers) {
+    for (int i = 0; i < n_values_; ++i)
+        if (values_[i].callers == callers) return values_[i];
+    const std::vector<std::int64_t> &places = chains_.reordered_bonds();
+    double *const copy = reinterpret_cast<double *>(memory_);
+    memory_ += rounded_up(static_cast<std::int64_t>(places.size() * sizeof(double)));
+    for (std::size_t k = 0; k < places.size(); ++k) std::memcpy(copy + k, callers + places[k], sizeof(double));
+    values_[n_values_] = {callers, copy, nullptr};
+    return values_[n_values_++];
+}
+
+double *Apart::results(double *callers) {
+    if (!callers) return nullptr;
+    Values &values = copy_of(callers);
+    values.result = callers;
+    return values.copy;
+}
+
+const double *Apart::inputs(const double *callers) { return callers ? copy_of(callers).copy : nullptr; }
+
+AtomArray Apart::stage(const AtomArray &callers, Use use) {
+    if (!callers.x) return callers;
+    for (int i = 0; i < n_atoms_; ++i)
+        if (atoms_[i].callers.x == callers.x && atoms_[i].use == use) return atoms_[i].copy;
+    const std::int64_t size = callers.is_float ? sizeof(float) : sizeof(double);
+    AtomArray copy{memory_,  memory_ + size,   callers.z ? memory_ + 2 * size : nullptr,
+                   3 * size, callers.is_float, callers.packed};
+    memory_ += rounded_up(static_cast<std::int64_t>(plan_.stage.size()) * 24);
+    for (std::size_t i = 0; i < plan_.stage.size(); ++i)
+        copy_atom(callers, plan_.stage[i], copy, static_cast<std::int64_t>(i));
+    const double zero[3] = {0, 0, 0};
+    for (const Plan::Copy &shared : plan_.copies) {
+        if (use == Use::written) mark_unwritten(copy, shared.place);
+        if (use == Use::added) write_atom(copy, shared.place, zero);
+    }
+    atoms_[n_atoms_++] = {callers, copy, use};
+    return copy;
+}
+
+AtomArray Apart::atoms(const AtomArray &callers) { return stage(callers, Use::read); }
+AtomArray Apart::moved_atoms(const AtomArray &callers) { return stage(callers, Use::moved); }
+AtomArray Apart::summed_atoms(const AtomArray &callers, bool add) {
+    return stage(callers, add ? Use::added : Use::written);
+}
+
+// The copies of a shared atom stand next to each other in the plan, in the order of the molecules.
+void Apart::sum_copies(const Atoms &atoms) const {
+    for (std::size_t first = 0, end; first < plan_.copies.size(); first = end) {
+        const std::int64_t atom = plan_.copies[first].atom;
+        double sum[3] = {0, 0, 0};
+        bool any = false;
+        for (end = first; end < plan_.copies.size() && plan_.copies[end].atom == atom; ++end) {
+            if (atoms.use == Use::written && is_unwritten(atoms.copy, plan_.copies[end].place)) continue;
+            double one[3];
+            read_atom(atoms.copy, plan_.copies[end].place, one);
+            any = any || atoms.use == Use::written || one[0] != 0 || one[1] != 0 || one[2] != 0;
+            for (int c = 0; c < 3; ++c) sum[c] += one[c];
+        }
+        if (!any) continue;
+        double before[3] = {0, 0, 0};
+        if (atoms.use == Use::added) read_atom(atoms.callers, atom, before);
+        for (int c = 0; c < 3; ++c) sum[c] += before[c];
+        write_atom(atoms.callers, atom, sum);
+    }
+}
+
+void Apart::put_back(const Atoms &atoms) const {
+    if (atoms.use == Use::read) return;
+    for (std::size_t i = 0; i < plan_.stage.size(); ++i)
+        if (!plan_.is_copy[i]) copy_atom(atoms.copy, static_cast<std::int64_t>(i), atoms.callers, plan_.stage[i]);
+    if (atoms.use != Use::moved) sum_copies(atoms);
+}
+
+void Apart::put_back() const {
+    const std::vector<std::int64_t> &places = chains_.reordered_bonds();
+    for (int i = 0; i < n_values_; ++i) {
+        if (!values_[i].result) continue;
+        for (std::size_t k = 0; k < places.size(); ++k)
+            std::memcpy(values_[i].result + places[k], values_[i].copy + k, sizeof(double));
+    }
+    for (int i = 0; i < n_atoms_; ++i) put_back(atoms_[i]);
+}
+
+void clear_unconstrained(const Chains &chains, double *values) {
+    if (!values) return;
+    for (const std::int64_t bond : chains.unconstrained()) values[at(bond)] = 0;
+}
+
+}  // namespace holonomic

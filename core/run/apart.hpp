@@ -1,0 +1,75 @@
+// Copies of the caller's arrays for those molecules that can't be worked on in place: values per bond in the order of
+// the molecules, where the caller has them in another; atoms of molecules that share fixed atoms, each molecule with
+// its own copy of the shared ones, so that no two kernels write to the same place.
+#ifndef HOLONOMIC_APART_HPP
+#define HOLONOMIC_APART_HPP
+
+#include <cstdint>
+
+#include "core/molecules/chains.hpp"
+
+namespace holonomic {
+
+class Apart {
+public:
+    // Takes memory of the calling thread for all arrays that a call may have. Throws std::bad_alloc.
+    explicit Apart(const Chains &chains);
+
+    bool reorders() const { return plan_.reordered; }
+    bool stages() const { return !plan_.stage.empty(); }
+
+    // Values per bond, or null: as they are in the caller's array, in the order of the molecules. Put back at the end.
+    double *results(double *callers);
+    // The same of what is only read.
+    const double *inputs(const double *callers);
+
+    // A vector per atom of the stage, as the caller has it; absent if it is.
+    AtomArray atoms(const AtomArray &callers);
+    // Of which the atoms that can move are put back at the end. Fixed ones don't change.
+    AtomArray moved_atoms(const AtomArray &callers);
+    // Of which all are put back, the copies of a shared atom summed up: over what was there if add, else in its place
+    // unless no kernel wrote any.
+    AtomArray summed_atoms(const AtomArray &callers, bool add);
+
+    // Writes everything to where it belongs.
+    void put_back() const;
+
+private:
+    static constexpr int most = 4;
+    enum class Use { read, moved, written, added };
+    struct Values {
+        const double *callers;
+        double *copy, *result;  // null: only read
+    };
+    struct Atoms {
+        AtomArray callers, copy;
+        Use use;
+    };
+    Values &copy_of(const double *callers);
+    AtomArray stage(const AtomArray &callers, Use use);
+    void put_back(const Atoms &atoms) const;
+    void sum_copies(const Atoms &atoms) const;
+
+    const Chains &chains_;
+    const Plan &plan_;
+    char *memory_;  // what of it is free
+    Values values_[most];
+    Atoms atoms_[most];
+    int n_values_ = 0, n_atoms_ = 0;
+};
+
+// The variants of a call, by Where: `values` and `atoms` replace those of its arrays.
+template <class Call, class Values, class Atoms>
+void make_variants(Call (&calls)[n_wheres], const Call &call, const Apart &apart, Values values, Atoms atoms) {
+    for (int where = 0; where < n_wheres; ++where) {
+        calls[where] = call;
+        if ((where & reordered) && apart.reorders()) values(calls[where]);
+        if ((where & staged) && apart.stages()) atoms(calls[where]);
+    }
+}
+
+// Bonds that are no constraints get a value of 0. Null: nothing.
+void clear_unconstrained(const Chains &chains, double *values);
+
+}  // namespace holonomic
+#endif

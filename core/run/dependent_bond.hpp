@@ -1,0 +1,20 @@
+// Looks for a bond whose constraint follows from the others'.
+#ifndef HOLONOMIC_DEPENDENT_BOND_HPP
+#define HOLONOMIC_DEPENDENT_BOND_HPP
+
+#include <cstdint>
+
+#include "core/molecules/molecule.hpp"
+
+namespace holonomic {
+
+// In the order of elimination of least fill, with twice the digits: the first bond of a molecule whose pivot vanishes;
+// -1 if none does, -2 if the numbers overflow before or there is too much to be done. Throws std::bad_alloc.
+std::int64_t dependent_bond(const Molecule &molecule, const AtomArray &r, const Box &box);
+
+// The first bond that does not fit to the others in its cycle, because the images of the periodic box that are next to
+// each other do not close it; -1 if all do.
+std::int64_t open_cycle(const Molecule &molecule, const AtomArray &r, const Box &box);
+
+}  // namespace holonomic
+#endif
