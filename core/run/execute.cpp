@@ -104,8 +104,7 @@ void Team::run(std::int64_t n, Tally &total, void (*call)(const void *, std::int
 Tally execute(const Chains &chains, const Work &work) {
     const Plan &plan = chains.plan();
     const std::int64_t n_pieces = static_cast<std::int64_t>(plan.pieces.size());
-    std::int64_t scratch_bytes =
-        kernels().scratch_bytes(plan.longest > longest_lane ? 2 * longest_lane : plan.longest);
+    std::int64_t scratch_bytes = kernels().scratch_bytes(plan.longest > longest_lane ? 2 * longest_lane : plan.longest);
     for (const std::int32_t shape : plan.shapes)
         scratch_bytes = std::max(scratch_bytes, kernels().molecules.scratch_bytes(*chains.shapes()[shape].schedule));
     const int n_threads = static_cast<int>(

@@ -88,7 +88,7 @@ struct Positions {
     }
 
     void load() const {
-        load_bond_vectors(block, call.box, r_ref, x.b);
+        load_bond_vectors(block, call.box_ref, r_ref, x.b);
         load_bond_vectors(block, call.box, r, x.D);
     }
 

@@ -26,7 +26,7 @@ HOL_INLINE void gather_bonds(const Block &block, const PositionsCall &call, cons
         const vec3 b1 = gather(r_ref, at, k + 1), r1 = gather(r, at, k + 1);
         vec3 b = difference(b0, b1), d = difference(r0, r1);
         if (boxed) {
-            wrap<false>(call.box, b, unused);
+            wrap<false>(call.box_ref, b, unused);
             wrap<false>(call.box, d, unused);
         }
         x.b[k] = b;
@@ -58,7 +58,7 @@ HOL_NOINLINE bool listed_positions(const Block &block, const Lane *lane, const P
     if (!call.r_ref.packed || !call.r.packed || (call.v.x && !call.v.packed) || !listed(block, lane)) return false;
     const AtomLists at(lane);
     Newton x(block, a, arena);
-    if (call.box.shape == Box::none)
+    if (call.box.shape == Box::none && call.box_ref.shape == Box::none)
         gather_bonds<false>(block, call, at, x);
     else
         gather_bonds<true>(block, call, at, x);

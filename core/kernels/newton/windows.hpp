@@ -39,7 +39,7 @@ static inline long margin(const PositionsCall &call, const Lane &lane, int64_t a
         if (w == 0) return k;
         const double *const next = p + 3 * step;
         Vector3<double> d = {next[0] - p[0], next[1] - p[1], next[2] - p[2]};
-        if (call.box.shape != Box::none) wrap<false>(call.box, d, unused);
+        if (call.box_ref.shape != Box::none) wrap<false>(call.box_ref, d, unused);
         const double q1 = dot(d, d), g = dot(before, d), qq = q * q1, gg = g * g;
         if (k > 0) {
             const double spare = 1 + (lane.w ? w_before / w : 1.0) * sin2;
@@ -162,13 +162,13 @@ static inline double seam_error(const PositionsCall &call, const Lane &lane, int
     open_lane(call.r_ref, lane, from, n, n, r_ref, 0, arena.doubles(staged_size(n)), true);
     open_lane(call.r, lane, from, n, n, r, 0, arena.doubles(staged_size(n)), true);
     Vector3<double> pull[6] = {}, move[5];  // pull[k + 1]: of bond from + k
-    const auto bond = [&](const double *p) {
+    const auto bond = [](const Box &box, const double *p) {
         Vector3<double> d = {p[3] - p[0], p[4] - p[1], p[5] - p[2]}, unused = {};
-        if (call.box.shape != Box::none) wrap<false>(call.box, d, unused);
+        if (box.shape != Box::none) wrap<false>(box, d, unused);
         return d;
     };
     for (long k = 0; k < n; ++k) {
-        const Vector3<double> b = bond(r_ref.lane[0] + 3 * k);
+        const Vector3<double> b = bond(call.box_ref, r_ref.lane[0] + 3 * k);
         pull[k + 1] = {tau[from + k] * b.x, tau[from + k] * b.y, tau[from + k] * b.z};
     }
     for (long k = 0; k <= n; ++k) {
@@ -179,7 +179,7 @@ static inline double seam_error(const PositionsCall &call, const Lane &lane, int
     for (int64_t k = seam - 1; k <= seam; ++k) {
         const long i = static_cast<long>(k - from);
         const double a = lane.length ? lane.length[k] : lane.length_uniform;
-        Vector3<double> d = bond(r.lane[0] + 3 * i);
+        Vector3<double> d = bond(call.box, r.lane[0] + 3 * i);
         d = {d.x + (move[i + 1].x - move[i].x), d.y + (move[i + 1].y - move[i].y), d.z + (move[i + 1].z - move[i].z)};
         const double error = abs(mul_add(d.z, d.z, mul_add(d.y, d.y, mul_add(d.x, d.x, -(a * a))))) / (a * a);
         if (!(error <= worst)) worst = error;

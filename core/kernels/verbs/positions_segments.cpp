@@ -20,13 +20,14 @@ void long_positions_load(const PositionsCall &call, const Lane &lane, int64_t j,
     const Packed absent = {}, r_ref = open_segments(call.r_ref, s, lane, arena, true),
                  r = open_segments(call.r, s, lane, arena, true);
     s.block.uniform_w = true;
-    if (call.box.shape == Box::none) {
-        load_bonds<none_, true, false, false>(s.block, call.box, r_ref, absent, absent, x.b, nullptr, x.s);
-        load_bonds<none_, true, false, false>(s.block, call.box, r, absent, absent, x.D, nullptr, x.s);
-    } else {
-        load_bonds<none_, true, true, false>(s.block, call.box, r_ref, absent, absent, x.b, nullptr, x.s);
-        load_bonds<none_, true, true, false>(s.block, call.box, r, absent, absent, x.D, nullptr, x.s);
-    }
+    const auto load = [&](const Box &box, const Packed &rows, vec3 *bonds) {
+        if (box.shape == Box::none)
+            load_bonds<none_, true, false, false>(s.block, box, rows, absent, absent, bonds, nullptr, x.s);
+        else
+            load_bonds<none_, true, true, false>(s.block, box, rows, absent, absent, bonds, nullptr, x.s);
+    };
+    load(call.box_ref, r_ref, x.b);
+    load(call.box, r, x.D);
     *x.summary = NewtonSummary{};
     segment_errors(s, lane, x);
     const double factor = 2 * call.dt * call.dt * unit_of(lane);

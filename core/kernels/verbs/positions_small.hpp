@@ -185,7 +185,8 @@ static inline int64_t small_positions(const PositionsCall &call, const Unit &uni
                                Tally &tally) {
     const Lane &head = unit.lanes[0];
     if (!unit.regular || head.atoms || head.n_bonds > largest_molecule || !call.r.packed || !call.r_ref.packed ||
-        (call.v.x && !call.v.packed) || call.virial || call.guess || call.box.shape != Box::none)
+        (call.v.x && !call.v.packed) || call.virial || call.guess || call.box.shape != Box::none ||
+        call.box_ref.shape != Box::none)
         return first;
     const MoleculesCall m(call, unit, block);
     const bool uniform = block.uniform_w && !head.length;

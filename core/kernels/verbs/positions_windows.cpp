@@ -50,7 +50,7 @@ void long_positions_finish_window(const PositionsCall &call, const Lane &lane, i
     Arena arena = {scratch};
     set_segment_masses(s, lane, arena);
     Newton x(s.block, BondLengths{}, arena);
-    load_bond_vectors(s.block, call.box, open_segments(call.r_ref, s, lane, arena, true), x.b);
+    load_bond_vectors(s.block, call.box_ref, open_segments(call.r_ref, s, lane, arena, true), x.b);
     const double *own_tau[W];
     for (int i = 0; i < W; ++i) own_tau[i] = tau + s.from[i];
     interleave(own_tau, s.block.len, 0, s.block.n, x.tau, [&](int i, long k) __attribute__((always_inline)) {
