@@ -111,7 +111,7 @@ Reference::Reference(const Problem &p, Level level, const UnitSystems *systems, 
 }
 
 double Reference::error(const State &s, double part) const {
-    const auto chains = static_cast<std::size_t>(std::ceil(part * static_cast<double>(problem_.n_chains())));
+    const auto chains = static_cast<std::size_t>(std::ceil(part * static_cast<double>(problem_.n_chains()) - 1e-6));
     if (level_ == Level::position) return length_error(problem_, s, chains);
     if (level_ == Level::velocity) return rate_error(problem_, s, chains);
     double worst = 0;

@@ -6,6 +6,7 @@
 
 #include "method.hpp"
 #include "methods/tridiagonal_system.hpp"
+#include "problem.hpp"
 
 namespace bench {
 

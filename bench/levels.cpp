@@ -64,12 +64,13 @@ Methods position_peers(const Run &run, const Problem &p, bool all) {
     for (int order : all ? std::vector<int>{4, 8, 12} : std::vector<int>{4, 8})
         for (int iterations : all ? std::vector<int>{1, 2, 4} : std::vector<int>{order == 4 ? 1 : 4})
             list.push_back(lincs(p, order, iterations));
-    // Setting CCMA up takes a time that grows as the square of the bonds in a call.
+    // Setting CCMA up takes a time that grows as the square of its bonds; pools are not done in full.
     if (have_openmm() && p.name != "fixed_ends" && p.chains_per_call() * p.bonds <= (run.full() ? 8200 : 7000))
         for (bool angles : {false, true})
-            for (double tolerance :
-                 all ? std::vector<double>{1e-4, 1e-6, 1e-8, 1e-10} : std::vector<double>{1e-6, 1e-10})
-                list.push_back(openmm_ccma(Level::position, p, tolerance, angles));
+            append(list,
+                   openmm_ccma(Level::position, p,
+                               all ? std::vector<double>{1e-4, 1e-6, 1e-8, 1e-10} : std::vector<double>{1e-6, 1e-10},
+                               angles));
     return list;
 }
 
@@ -123,8 +124,7 @@ void velocity_section(const Run &run) {
             for (double tolerance : run.full() ? std::vector<double>{1e-6, 1e-9, 1e-12} : std::vector<double>{1e-6})
                 if (p.name != "straight5" || p.bonds <= 100) list.push_back(rattle(Level::velocity, p, tolerance));
             if (have_openmm() && p.name != "fixed_ends" && p.chains_per_call() * p.bonds <= 3000)
-                for (double tolerance : {1e-6, 1e-10})
-                    list.push_back(openmm_ccma(Level::velocity, p, tolerance, false));
+                append(list, openmm_ccma(Level::velocity, p, {1e-6, 1e-10}, false));
         }
         run.measure(Level::velocity, p, list);
     };

@@ -14,11 +14,17 @@
 namespace bench {
 
 void Run::measure(Level level, const Problem &p, const Methods &methods, const UnitSystems *systems) const {
+    // The reference of the metric takes a time that grows as the square of the bonds of a chain.
+    const Reference reference(p, level, systems, effort.reference_bonds / (level == Level::metric ? 4 : 1));
+    measure(level, p, methods, [&reference](const State &s, double part) { return reference.error(s, part); });
+}
+
+void Run::measure(Level level, const Scene &p, const Methods &methods, const ErrorOf &error_of) const {
     std::printf("   %-12s %-12s %7lld x %-7lld %2zu rows", level_name(level), p.name.c_str(),
                 static_cast<long long>(p.chains_per_call()), static_cast<long long>(p.bonds), methods.size());
     std::fflush(stdout);
     const Stopwatch watch(2);
-    results.add(bench::measure(level, p, methods, effort, systems));
+    results.add(bench::measure(level, p, methods, effort, error_of));
     std::printf("%6.1f s\n", watch.seconds());
 }
 
@@ -35,6 +41,7 @@ const std::vector<std::pair<std::string, Section>> sections = {
     {"skips", skips_section},
     {"condition", condition_section},
     {"drift", drift_section},
+    {"molecules", molecules_section},
     {"isa", instruction_set_section},
 };
 

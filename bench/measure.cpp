@@ -14,7 +14,7 @@
 namespace bench {
 namespace {
 
-double seconds_of(const Method &m, State &s, const Problem &p, Level level) {
+double seconds_of(const Method &m, State &s, const Scene &p, Level level) {
     s.restore(p, level);
     if (m.before) m.before(s);
     const Stopwatch watch(m.threads);
@@ -44,7 +44,7 @@ double quantile(const std::vector<double> &sorted, double part) {
     return sorted[low] + (place - static_cast<double>(low)) * (sorted[high] - sorted[low]);
 }
 
-Method pass_method(const Problem &p, int threads) {
+Method pass_method(const Scene &p, int threads) {
     Method m;
     m.name = "memory pass";
     m.threads = threads;
@@ -55,7 +55,7 @@ Method pass_method(const Problem &p, int threads) {
 /// The calls of one repetition, timed; restoring inputs between them is not. Where nothing is restored the clock is
 /// read once for all. A repetition ends early if calls take far longer than the first ones did, as when threads have to
 /// wait for a core that another program holds: the rest of its iterations then do nothing.
-void repeat(benchmark::State &b, const Method &m, const Problem &p, Level level, State &state, double seconds_at_most) {
+void repeat(benchmark::State &b, const Method &m, const Scene &p, Level level, State &state, double seconds_at_most) {
     const bool restores = m.before || m.after || level == Level::position || level == Level::velocity;
     double seconds = 0;
     int calls = 0;
@@ -77,7 +77,7 @@ void repeat(benchmark::State &b, const Method &m, const Problem &p, Level level,
 }
 
 /// A repetition is so many calls that it takes the time asked for.
-void register_method(const std::string &name, const Method &m, const Problem &p, Level level, State &state,
+void register_method(const std::string &name, const Method &m, const Scene &p, Level level, State &state,
                      double seconds_per_call, const Effort &effort) {
     const double calls = std::ceil(effort.seconds / std::max(seconds_per_call, 1e-9));
     const bool slow = seconds_per_call > effort.slow_seconds;
@@ -104,10 +104,8 @@ void start_measuring() {
     benchmark::Initialize(&count, arguments);
 }
 
-std::vector<Row> measure(Level level, const Problem &p, const Methods &methods, const Effort &effort,
-                         const UnitSystems *systems) {
-    // The reference of the metric takes a time that grows as the square of the bonds of a chain.
-    const Reference reference(p, level, systems, effort.reference_bonds / (level == Level::metric ? 4 : 1));
+std::vector<Row> measure(Level level, const Scene &p, const Methods &methods, const Effort &effort,
+                         const ErrorOf &error_of) {
     State state(p, level);
     Methods all = methods;
     std::set<int> thread_counts;
@@ -125,7 +123,10 @@ std::vector<Row> measure(Level level, const Problem &p, const Methods &methods, 
             state.restore(p, level);
             all[i].for_error(state);
         }
-        errors.push_back(i < methods.size() ? reference.error(state, all[i].part_done) : 0);
+        if (i >= methods.size())
+            errors.push_back(0);
+        else
+            errors.push_back(all[i].own_error ? all[i].own_error() : error_of(state, all[i].part_done));
         if (seconds < effort.slow_seconds) seconds = seconds_of(all[i], state, p, level);
         register_method(std::to_string(i), all[i], p, level, state, seconds, effort);
     }
@@ -134,7 +135,8 @@ std::vector<Row> measure(Level level, const Problem &p, const Methods &methods, 
 
     auto per_bond = [&](std::size_t i) {
         std::vector<double> times = collector.seconds.at(std::to_string(i));
-        for (double &t : times) t *= 1e9 / static_cast<double>(p.all_bonds());
+        const std::size_t bonds = all[i].bonds_worked > 0 ? all[i].bonds_worked : p.all_bonds();
+        for (double &t : times) t *= 1e9 / static_cast<double>(bonds);
         std::sort(times.begin(), times.end());
         return times;
     };

@@ -4,10 +4,10 @@
 #ifndef BENCH_MEASURE_HPP
 #define BENCH_MEASURE_HPP
 
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "errors.hpp"
 #include "method.hpp"
 
 namespace bench {
@@ -33,12 +33,12 @@ struct Effort {
 /// Called once per process, before the first measurement.
 void start_measuring();
 
-/**
- * Runs every method once for its error, then all of them and the memory passes in turns, in random order.
- * @param systems  of level solve, otherwise NULL
- */
-std::vector<Row> measure(Level level, const Problem &p, const Methods &methods, const Effort &effort,
-                         const UnitSystems *systems = nullptr);
+/// How wrong a result is, as far as the first part of the chains goes.
+using ErrorOf = std::function<double(const State &, double part)>;
+
+/// Runs every method once for its error, then all of them and the memory passes in turns, in random order.
+std::vector<Row> measure(Level level, const Scene &p, const Methods &methods, const Effort &effort,
+                         const ErrorOf &error_of);
 
 }  // namespace bench
 

@@ -29,7 +29,7 @@ Problem start(std::int64_t n_chains, std::int64_t n_bonds, double dt) {
     p.mass.assign(p.n() + 1, 1);
     p.w = p.mass;
     p.length.assign(p.n(), 1);
-    p.r.resize(3 * p.atoms());
+    p.r.resize(3 * p.n_chains() * (p.n() + 1));
     p.v.resize(p.r.size());
     random_stream s = random_seed(3);
     const auto side = static_cast<std::size_t>(std::ceil(std::cbrt(static_cast<double>(p.atoms()))));

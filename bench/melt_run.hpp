@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "method.hpp"
+#include "problem.hpp"
 
 namespace bench {
 

@@ -10,11 +10,11 @@ const char *level_name(Level level) {
     return names[static_cast<int>(level)];
 }
 
-State::State(const Problem &p, Level level)
+State::State(const Scene &p, Level level)
     : r(level == Level::position ? p.drifted : p.r), v(level == Level::velocity ? p.raw_v : p.v), g(p.r.size()),
       lambda(p.all_bonds()), log_det(p.n_chains()) {}
 
-void State::restore(const Problem &p, Level level) {
+void State::restore(const Scene &p, Level level) {
     if (level == Level::position) {
         std::copy(p.drifted.begin(), p.drifted.end(), r.begin());
         std::copy(p.v.begin(), p.v.end(), v.begin());

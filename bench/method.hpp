@@ -1,5 +1,5 @@
 /**
- * What is compared: a method is a call that does the work of one level for all chains of a problem.
+ * What is compared: a method is a call that does the work of one level for all molecules of a scene.
  */
 #ifndef BENCH_METHOD_HPP
 #define BENCH_METHOD_HPP
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "problem.hpp"
+#include "scene.hpp"
 
 namespace bench {
 
@@ -25,9 +25,9 @@ struct State {
     std::vector<double> log_det;  ///< [chains]
     std::int64_t iterations = 0;  ///< largest number of iterations (sweeps) that a chain took
 
-    State(const Problem &p, Level level);
+    State(const Scene &p, Level level);
     /// Puts back what a call of this level changes.
-    void restore(const Problem &p, Level level);
+    void restore(const Scene &p, Level level);
 };
 
 struct Method {
@@ -39,7 +39,10 @@ struct Method {
     std::function<void(State &)> before = nullptr, after = nullptr;
     /// What is run for the error where `call` doesn't leave what the error is measured by.
     std::function<void(State &)> for_error = nullptr;
-    double part_done = 1;  ///< the error is that of the first chains, this part of all
+    double part_done = 1;          ///< the error is that of the first chains, this part of all
+    std::size_t bonds_worked = 0;  ///< what the time is divided by, if not all bonds of the scene
+    /// Of a method that works on a scene of its own; otherwise the error is that of the state that `call` was given.
+    std::function<double()> own_error = nullptr;
 };
 
 using Methods = std::vector<Method>;

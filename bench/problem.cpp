@@ -68,7 +68,7 @@ void masses_and_lengths(const Recipe &recipe, random_stream &s, Problem &p) {
         for (std::size_t i = 1; i <= n; i += 2) p.mass[i] = recipe.light;
     if (recipe.name == "fixed_ends") p.mass.front() = p.mass.back() = 0;
     if (recipe.general_masses)
-        for (double &m : p.mass) m = std::pow(10, 2 * random_uniform(&s) - 1);
+        for (double &m : p.mass) m = std::pow(10, recipe.decades * (random_uniform(&s) - 0.5));
     if (recipe.general_lengths)
         for (double &a : p.length) a = 0.7 + 0.8 * random_uniform(&s);
     if (recipe.fixed_every > 0)
@@ -112,8 +112,9 @@ Problem make_problem(const Recipe &recipe) {
     random_stream s = random_seed(recipe.seed);
     masses_and_lengths(recipe, s, p);
     // The chains of a melt start anywhere in a box at the density of a bead-rod melt, 0.85; others at the origin.
-    const double side = p.name == "melt" ? std::cbrt(static_cast<double>(p.atoms()) / 0.85) : 0;
-    p.r.reserve(3 * p.atoms());
+    const std::size_t atoms = p.n_chains() * (p.n() + 1);
+    const double side = p.name == "melt" ? std::cbrt(static_cast<double>(atoms) / 0.85) : 0;
+    p.r.reserve(3 * atoms);
     for (std::size_t c = 0; c < p.n_chains(); ++c) {
         double u[3] = {1, 0, 0}, at[3];
         for (double &x : at) x = side * (random_uniform(&s) - 0.5);

@@ -1,5 +1,5 @@
 /**
- * The scenes that are measured: many chains of the same kind, with the state of their atoms.
+ * Scenes of chains: many of the same kind, with the state of their atoms.
  */
 #ifndef BENCH_PROBLEM_HPP
 #define BENCH_PROBLEM_HPP
@@ -9,30 +9,18 @@
 #include <string>
 #include <vector>
 
+#include "scene.hpp"
+
 namespace bench {
 
 /// Chains of equal length, masses and bond lengths, one after the other in the arrays; unit energy, dt in its time
 /// unit.
-struct Problem {
-    std::string name;         ///< coil, tetrahedral, straight5, light_joints, fixed_ends or melt
-    std::int64_t chains = 0;  ///< in the arrays
-    std::int64_t bonds = 0;   ///< per chain
-    bool one_by_one = false;  ///< a pool of single chains, each given to the method in a call of its own
-    double dt = 0.005;
+struct Problem : Scene {
     std::vector<double> mass, w;  ///< [bonds+1] along a chain; mass 0, w 0: held fixed
     std::vector<double> length;   ///< [bonds]
-    std::vector<double> r;        ///< [atoms][3], on the constraints to rounding
-    std::vector<double> raw_v;    ///< [atoms][3], normal; not on the constraints
-    std::vector<double> v;        ///< [atoms][3], on the constraints
-    std::vector<double> f;        ///< [atoms][3]
-    std::vector<double> drifted;  ///< [atoms][3], r + dt v
 
-    std::size_t n_chains() const { return static_cast<std::size_t>(chains); }
     std::size_t n() const { return static_cast<std::size_t>(bonds); }
-    std::size_t atoms() const { return n_chains() * (n() + 1); }
-    std::size_t all_bonds() const { return n_chains() * n(); }
     std::size_t first_atom(std::size_t chain) const { return chain * (n() + 1); }
-    std::int64_t chains_per_call() const { return one_by_one ? 1 : chains; }
 };
 
 /// How a problem is made.
@@ -40,7 +28,8 @@ struct Recipe {
     std::string name;
     std::int64_t chains = 1, bonds = 1;
     bool one_by_one = false;
-    bool general_masses = false;        ///< over two decades along the chain instead of the kind's own
+    bool general_masses = false;        ///< along the chain, instead of the kind's own
+    double decades = 2;                 ///< that general masses span
     bool general_lengths = false;       ///< 0.7..1.5 along the chain
     bool flat = false;                  ///< in the plane z = 0
     bool orthogonal = false;            ///< every bond at a right angle to the one before, along an axis

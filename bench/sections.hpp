@@ -2,6 +2,7 @@
 #ifndef BENCH_SECTIONS_HPP
 #define BENCH_SECTIONS_HPP
 
+#include "errors.hpp"
 #include "measure.hpp"
 #include "results.hpp"
 
@@ -17,8 +18,9 @@ struct Run {
     int threads;  ///< of the rows with more than one thread; 1: there are none
 
     bool full() const { return extent == Extent::full; }
-    /// Measures, stores, and says so.
+    /// Measures, stores, and says so. Level solve needs its systems.
     void measure(Level level, const Problem &p, const Methods &methods, const UnitSystems *systems = nullptr) const;
+    void measure(Level level, const Scene &p, const Methods &methods, const ErrorOf &error_of) const;
 };
 
 void acceleration_section(const Run &run);
@@ -31,6 +33,8 @@ void skips_section(const Run &run);
 void condition_section(const Run &run);
 /// Energy drift of a melt against the tolerance of the constraints.
 void drift_section(const Run &run);
+/// Molecules of any topology, level by level.
+void molecules_section(const Run &run);
 /// The library as it is, for one instruction set per process: rows are named after it.
 void instruction_set_section(const Run &run);
 

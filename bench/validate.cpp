@@ -7,12 +7,23 @@
 
 #include "errors.hpp"
 #include "methods/methods.hpp"
+#include "validate.hpp"
+
+namespace {
+
+int failures = 0;
+
+}  // namespace
+
+void bench::expect(const std::string &what, double value, double low, double high) {
+    const bool good = value >= low && value <= high;
+    std::printf("%s  %-66s %10.3g  in [%.3g, %.3g]\n", good ? "ok  " : "FAIL", what.c_str(), value, low, high);
+    if (!good) ++failures;
+}
 
 namespace {
 
 using namespace bench;
-
-int failures = 0;
 
 struct Outcome {
     double error;
@@ -25,12 +36,6 @@ Outcome run(Level level, const Problem &p, const Method &m) {
     m.call(s);
     if (m.after) m.after(s);
     return {Reference(p, level, nullptr, 2000).error(s), s.iterations};
-}
-
-void expect(const std::string &what, double value, double low, double high) {
-    const bool good = value >= low && value <= high;
-    std::printf("%s  %-66s %10.3g  in [%.3g, %.3g]\n", good ? "ok  " : "FAIL", what.c_str(), value, low, high);
-    if (!good) ++failures;
 }
 
 const double eps = 0x1p-52;
@@ -65,7 +70,7 @@ void coils() {
     if (have_openmm()) {
         const Problem q = make_problem(batch("coil", 20, 100));
         // Its tolerance is of lengths, half that of squares.
-        expect("coil: CCMA at 1e-6", run(level, q, openmm_ccma(level, q, 1e-6, false)).error, 0.6e-6, 2.001e-6);
+        expect("coil: CCMA at 1e-6", run(level, q, openmm_ccma(level, q, {1e-6}, false)[0]).error, 0.6e-6, 2.001e-6);
     }
 }
 
@@ -87,8 +92,8 @@ void nearly_straight() {
                run(level, longest, milc_shake(longest, 1e-13)).error, 1e-13, 1e-11);
     }
     if (have_openmm())
-        expect("straight5: CCMA stops after 150 iterations", run(level, p, openmm_ccma(level, p, 1e-6, false)).error,
-               4e-5, 4.5e-4);
+        expect("straight5: CCMA stops after 150 iterations",
+               run(level, p, openmm_ccma(level, p, {1e-6}, false)[0]).error, 4e-5, 4.5e-4);
 }
 
 /// Velocity level: a direct solve leaves rounding, sweeps their tolerance.
@@ -144,6 +149,7 @@ int main() {
     velocities();
     accelerations();
     determinants();
+    validate_molecules();
     std::printf(failures ? "%d of the expectations above failed\n" : "all as published\n", failures);
     return failures != 0;
 }

@@ -54,6 +54,8 @@ int main() { return static_cast<int>(benchmark::CPUInfo::Get().num_cpus) * 0; }'
         lapack) echo 'extern "C" void dptsv_(); int main() { dptsv_(); }' | c++ -x c++ - -llapack -o /dev/null 2>/dev/null ;;
         openmm) echo '#include <OpenMM.h>
 int main() { OpenMM::System system; }' | c++ -x c++ - -lOpenMM -o /dev/null 2>/dev/null ;;
+        lammps-examples) [ -e /usr/share/lammps/examples/HEAT/data.spce ] ;;
+        gromacs-data) [ -e /usr/share/gromacs/top/spc216.gro ] ;;
         flang) present_any flang flang-new flang-22 flang-21 flang-20 flang-new-19 flang-new-18 ;;
         arm) command -v aarch64-linux-gnu-g++ >/dev/null && command -v qemu-aarch64 >/dev/null ;;
         eigen) [ -e /usr/include/eigen3/Eigen/Core ] || pkg-config --exists eigen3 2>/dev/null ;;

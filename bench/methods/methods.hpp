@@ -28,8 +28,9 @@ Solver eigen_simplicial();
 LogDeterminant eigen_ldlt_log_det();
 LogDeterminant eigen_simplicial_log_det();
 bool have_openmm();
-/// Level position or velocity. With angles: OpenMM is told the exact angles between neighbouring bonds, its best case.
-Method openmm_ccma(Level level, const Problem &p, double tolerance, bool angles);
+/// Level position or velocity, a method per tolerance. With angles: OpenMM is told the exact angles between
+/// neighbouring bonds, its best case.
+Methods openmm_ccma(Level level, const Problem &p, const std::vector<double> &tolerances, bool angles);
 
 // Textbook algorithms, written here.
 /// SHAKE sweeps (position) or RATTLE's sweeps over velocities until every bond is within the tolerance.
