@@ -35,12 +35,14 @@ Error Batch::not_supported(const FoundMolecules &found, std::size_t m) const {
 }
 
 Batch::Batch(Chains &chains)
-    : chains_(chains), before_(chains.groups_.mark()), n_unconstrained_(chains.unconstrained_.size()),
+    : chains_(chains), before_(chains.groups_.mark()), kinds_before_(chains.kinds_.mark()),
+      n_unconstrained_(chains.unconstrained_.size()),
       n_active_(chains.active_.size()) {}
 
 Batch::~Batch() {
     if (committed_) return;
     chains_.groups_.roll_back(before_);
+    chains_.kinds_.roll_back(kinds_before_);
     chains_.unconstrained_.resize(n_unconstrained_);
     chains_.active_.resize(n_active_);
     for (const std::int64_t atom : taken_) chains_.use_.give_back(atom);

@@ -35,6 +35,7 @@ private:
 
     Chains &chains_;
     const Groups::Mark before_;
+    const Kinds::Mark kinds_before_;
     const std::size_t n_unconstrained_, n_active_;
     std::int64_t n_bonds_ = 0;
     std::vector<std::int64_t> taken_, fixed_;

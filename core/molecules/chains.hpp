@@ -45,7 +45,7 @@ public:
     std::int64_t n_chains() const { return groups_.n_molecules(); }
     std::int64_t n_bonds() const { return n_bonds_; }
     std::int64_t n_of_form(int form) const;
-    std::int64_t n_kinds() const;
+    std::int64_t n_kinds() const { return kinds_.size(); }
     void offsets(std::int64_t *out) const;
     std::int64_t count_atoms(std::int64_t molecule) const;  // that `atoms` writes
     void atoms(std::int64_t molecule, std::int64_t *out) const;

@@ -1,6 +1,7 @@
 #include "core/molecules/kind.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "core/molecules/hash.hpp"
 
@@ -60,6 +61,15 @@ std::int64_t Kinds::find(std::int32_t shape, std::int64_t n_atoms, std::int64_t 
         throw;
     }
     return size() - 1;
+}
+
+void Kinds::roll_back(const Mark &mark) noexcept {
+    if (kinds_.size() == mark.n_kinds) return;
+    for (auto it = by_hash_.begin(); it != by_hash_.end();)
+        it = it->second >= static_cast<std::int64_t>(mark.n_kinds) ? by_hash_.erase(it) : std::next(it);
+    kinds_.resize(mark.n_kinds);
+    w_.resize(mark.n_w);
+    length_.resize(mark.n_lengths);
 }
 
 std::size_t Kinds::bytes() const {

@@ -27,6 +27,13 @@ public:
     std::int64_t find(std::int32_t shape, std::int64_t n_atoms, std::int64_t n_bonds, const double *w,
                       const double *length, std::int64_t likely);
 
+    // Takes back all that was new since.
+    struct Mark {
+        std::size_t n_kinds, n_w, n_lengths;
+    };
+    Mark mark() const { return {kinds_.size(), w_.size(), length_.size()}; }
+    void roll_back(const Mark &mark) noexcept;
+
     const Kind &operator[](std::int64_t kind) const { return kinds_[static_cast<std::size_t>(kind)]; }
     std::int64_t size() const { return static_cast<std::int64_t>(kinds_.size()); }
     // [n_atoms], [n_bonds], or null if all are alike; kinds that are not linear have both.

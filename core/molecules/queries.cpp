@@ -43,13 +43,6 @@ std::int64_t Chains::n_of_form(int form) const {
     return n;
 }
 
-// Kinds that a failed call has left behind are not counted.
-std::int64_t Chains::n_kinds() const {
-    std::vector<unsigned char> seen(at(kinds_.size()), 0);
-    for (const Group &group : groups_.all()) seen[at(group.kind)] = 1;
-    return std::count(seen.begin(), seen.end(), 1);
-}
-
 void Chains::offsets(std::int64_t *out) const {
     std::int64_t next = 0;
     for (const Group &group : groups_.all()) {
