@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # scripts/oracle accepts what is right, also files that are not in the tree, and rejects what is not.
-#   test_oracle.sh TOP BUILD MAKE_CASE CHECK_ORACLE
+#   test_oracle.sh TOP BUILD MAKE_CASE CHECK_ORACLE MAKE_MOLECULE
 set -u
-top=$1 build=$2 make_case=$3 checker=$4
+top=$1 build=$2 make_case=$3 checker=$4 make_molecule=$5
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 failures=0
@@ -66,6 +66,50 @@ echo zero_n008.txt >"$work/zero/INDEX"
 check 0 'lambda .* 0 of .* ok' "$work/zero"
 sed -i '/^bonds_out/,/^atoms_out/{s/^3 0.0 0.0/3 1.0e-300 0.0/}' "$work/zero/zero_n008.txt"
 check 1 'lambda .*OUT OF BOUND' "$work/zero"
+
+# The format of molecules of any shape (tests/oracle/molecules/README.md): a linear chain in it, alone and among the others.
+mkdir "$work/molecule"
+"$make_molecule" "$work/molecule" 0 9 1 || complain "make_molecule 0 9 1"
+molecule=chain_n009_1
+check 0 '^oracle: 1 cases, worst ratio 0\.' "$work/molecule"
+for quantity in lambda G virial mu 'projected v' positions 'lambda (r)' 'bonds left' lndet lndetz fixman_energy 'Fixman force'; do
+    grep -q "^$molecule .*$quantity .*ok\$" "$work/out" || complain "no line for $quantity of a molecule"
+done
+fresh mixed && cp "$work/molecule/$molecule.txt" "$work/mixed/" && echo "$molecule.txt" >>"$work/mixed/INDEX"
+check 0 '^oracle: 2 cases, worst ratio 0\.' "$work/mixed"
+
+# As spoil, in a file of the new format.
+spoil_molecule() {
+    rm -rf "$work/spoilt" && cp -r "$work/molecule" "$work/spoilt"
+    awk -v first="$2" -v row="$3" -v field="$4" '
+        index($0, first) == 1 && (first !~ /^#/ || $0 == first) { inside = 1 }
+        inside && !done && (index($0, row " ") == 1) { $field = sprintf("%.17e", $field * (1 + 1e-9)); done = 1 }
+        { print }' "$work/molecule/$molecule.txt" >"$work/spoilt/$molecule.txt"
+    cmp -s "$work/spoilt/$molecule.txt" "$work/molecule/$molecule.txt" && complain "the reference for $1 was not changed"
+    check 1 "^$molecule  *$1 .*OUT OF BOUND" "$work/spoilt"
+    [ "$(grep -c 'OUT OF BOUND' "$work/out")" -eq 1 ] || complain "a wrong $1 spoils other quantities"
+}
+spoil_molecule lndet lndet lndet 2
+spoil_molecule lndetz lndetz lndetz 2
+spoil_molecule fixman_energy fixman_energy fixman_energy 2
+spoil_molecule virial virial virial 4
+spoil_molecule lambda bonds_out 3 2
+spoil_molecule mu bonds_out 3 4
+spoil_molecule G atoms_out 3 3
+spoil_molecule 'Fixman force' atoms_out 4 7
+spoil_molecule 'projected v' atoms_out 5 10
+spoil_molecule positions positions 6 6
+spoil_molecule 'lambda (r)' '# k lambda lambda_scale' 7 2
+# one that must be refused, and is not
+sed -e 's/^expect ok/expect degenerate/' -e '/^lndet/,$d' "$work/molecule/$molecule.txt" >"$work/spoilt/$molecule.txt"
+echo end >>"$work/spoilt/$molecule.txt"
+check 1 'should be refused' "$work/spoilt"
+sed '/^positions/,$d' "$work/molecule/$molecule.txt" >"$work/spoilt/$molecule.txt"
+check 2 "$molecule.txt, line .*the file ends too early" "$work/spoilt"
+{ cat "$work/spoilt/$molecule.txt"; printf 'positions none\nend\n'; } >"$work/spoilt/whole" && mv "$work/spoilt/whole" "$work/spoilt/$molecule.txt"
+check 0 '^oracle: 1 cases, worst ratio 0\.' "$work/spoilt"
+sed -i 's/^class tree/class bush/' "$work/spoilt/$molecule.txt"
+check 2 "line .*expected 'tree' or 'cyclic'" "$work/spoilt"
 
 # Files that can't be read.
 run 2 'there is no folder' "$work/nowhere"

@@ -5,18 +5,11 @@
 #ifndef REFERENCE_WIDE_POSITIONS_HPP
 #define REFERENCE_WIDE_POSITIONS_HPP
 
+#include "molecule_step.hpp"
 #include "wide_levels.hpp"
 
 namespace reference
 {
-
-/** What a step is made of, beside the problem, whose positions are the reference. */
-struct molecule_step {
-    const double *drifted;  // [n_atoms][3]
-    const double *length;   // [n_bonds]
-    double dt;
-    const double *drifted_box;  // the box of the drifted positions, or nullptr
-};
 
 template <class REAL>
 struct newton_state {
