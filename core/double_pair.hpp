@@ -4,43 +4,19 @@
 
 #define HOL_ISA plain
 #define HOL_LANES 2
-#include "core/kernels/arithmetic/exact.hpp"
+#include "core/kernels/careful/wide.hpp"
 #undef HOL_ISA
 #undef HOL_LANES
 
 namespace holonomic {
 
 using plain::Vector3;
-using DoublePair = plain::Pair<double>;
-using PairVector = Vector3<DoublePair>;
+using DoublePair = plain::Wide;
+using PairVector = plain::Wide3;
 
 inline DoublePair as_pair(double a) { return {a, 0}; }
-inline double rounded(const DoublePair &a) { return a.hi + a.lo; }
-inline DoublePair operator-(const DoublePair &a) { return {-a.hi, -a.lo}; }
-
-inline DoublePair operator+(const DoublePair &a, const DoublePair &b) {
-    const DoublePair s = plain::two_sum(a.hi, b.hi), t = plain::two_sum(a.lo, b.lo);
-    const DoublePair u = plain::fast_two_sum(s.hi, s.lo + t.hi);
-    return plain::fast_two_sum(u.hi, u.lo + t.lo);
-}
-
-inline DoublePair operator-(const DoublePair &a, const DoublePair &b) { return a + -b; }
-
-inline DoublePair operator*(const DoublePair &a, const DoublePair &b) {
-    const DoublePair p = plain::two_product(a.hi, b.hi);
-    return plain::fast_two_sum(p.hi, p.lo + (a.hi * b.lo + a.lo * b.hi));
-}
-
-inline DoublePair operator/(const DoublePair &a, const DoublePair &b) {
-    const double q1 = a.hi / b.hi;
-    const DoublePair r1 = a - as_pair(q1) * b;
-    const double q2 = r1.hi / b.hi;
-    const DoublePair r2 = r1 - as_pair(q2) * b;
-    const DoublePair q = plain::fast_two_sum(q1, q2);
-    return q + as_pair(r2.hi / b.hi);
-}
-
-inline DoublePair dot(const PairVector &a, const PairVector &b) { return a.x * b.x + (a.y * b.y + a.z * b.z); }
+using plain::rounded;
+using plain::dot;
 
 // (a + a_lo).(b + b_lo) as if in three times the precision (Ogita, Rump and Oishi, SumK): for vectors that are square
 // to their last digits.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/molecules/careful_shape.hpp"
 #include "core/molecules/elimination_order.hpp"
 
 namespace holonomic {
@@ -43,6 +44,7 @@ struct Schedule::Memory {
         meet_start, meet, meet_pair, meet_pair_start, column_start, row, update;
     std::vector<std::int64_t> update_start;
     std::vector<std::uint8_t> fixed;
+    std::unique_ptr<const CarefulShape> careful;
 };
 
 Schedule::~Schedule() { delete memory; }
@@ -294,6 +296,8 @@ std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t
     for (std::int32_t i = 0; i < n_atoms; ++i) m.fixed.push_back(fixed && fixed[i]);
     Maker(*s, m).make();
     point_into(*s, m);
+    m.careful = std::make_unique<const CarefulShape>(n_atoms, n_bonds, pairs);
+    s->careful = &m.careful->plan();
     return s;
 }
 

@@ -7,6 +7,8 @@
 
 namespace holonomic {
 
+struct CarefulPlan;  // core/kernels/careful/plan.hpp
+
 // Atoms and bonds are renumbered. The *slot* of an atom: first the atoms of the trees, each after its children
 // (post-order), then the root of a tree, or the atoms of the core. The *place* of a bond: a bond of a tree has the slot
 // of its lower atom, the one away from the root; the bonds of the core follow in the order of their elimination. So
@@ -59,6 +61,8 @@ struct Schedule {
     const int32_t *update;
     int32_t n_entries;
     int32_t max_column;
+
+    const CarefulPlan *careful;  // the same molecule for the careful solver
 
     Schedule() = default;
     Schedule(const Schedule &) = delete;

@@ -1,0 +1,109 @@
+// The core of a molecule, what is left when hanging trees are stripped: its matrix eliminated bond by bond in the order
+// of the plan, in twice the precision. With D on the left and B on the right (molecules.md (m12)) it is not symmetric.
+#ifndef HOLONOMIC_KERNELS_CAREFUL_CORE_HPP
+#define HOLONOMIC_KERNELS_CAREFUL_CORE_HPP
+
+#include "core/kernels/careful/molecule.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace careful {
+
+// Rows and columns are places in the order of elimination.
+struct Core {
+    const CarefulPlan *plan;
+    bool mixed;
+    Wide *diagonal;  // [n_core] of the matrix, then the pivots
+    Wide *removed;   // [n_core] what has been subtracted from the diagonal
+    Wide *full;      // [n_core] the diagonal before anything was
+    Wide *lower;     // elements of the columns below the diagonal; then over the pivot
+    Wide *upper;     // those of the rows beside it; the same if not mixed, but never over the pivot
+};
+
+HOL_NOINLINE Core take_core(const CarefulPlan &plan, bool mixed, Memory &memory) {
+    Core x;
+    x.plan = &plan;
+    x.mixed = mixed;
+    x.diagonal = memory.take<Wide>(plan.n_core);
+    x.removed = memory.take<Wide>(plan.n_core);
+    x.full = memory.take<Wide>(plan.n_core);
+    x.lower = memory.take<Wide>(plan.column_start[plan.n_core]);
+    x.upper = memory.take<Wide>(plan.column_start[plan.n_core]);
+    return x;
+}
+
+// Where the element of a row stands in a column; it is there.
+HOL_NOINLINE int64_t element(const CarefulPlan &plan, int32_t row, int32_t column) {
+    int64_t first = plan.column_start[column], end = plan.column_start[column + 1];
+    while (end - first > 1) {
+        const int64_t middle = first + (end - first) / 2;
+        (plan.rows[middle] <= row ? first : end) = middle;
+    }
+    return first;
+}
+
+HOL_NOINLINE void clear(const Core &x) {
+    for (int32_t c = 0; c < x.plan->n_core; ++c) x.diagonal[c] = x.removed[c] = x.full[c] = wide(0);
+    for (int64_t e = 0; e < x.plan->column_start[x.plan->n_core]; ++e) x.lower[e] = x.upper[e] = wide(0);
+}
+
+// Adds to the element of bonds k (row) and l (column) of the matrix.
+HOL_NOINLINE void add_element(const Core &x, int32_t k, int32_t l, const Wide &value) {
+    const int32_t row = x.plan->place[k], column = x.plan->place[l];
+    if (row > column)
+        x.lower[element(*x.plan, row, column)] += value;
+    else
+        x.upper[element(*x.plan, column, row)] += value;
+}
+
+// Takes column c out of those behind it.
+HOL_NOINLINE void eliminate_column(const Core &x, int32_t c, bool &good) {
+    const int64_t first = x.plan->column_start[c], end = x.plan->column_start[c + 1];
+    const Wide r = wide(1) / x.diagonal[c];
+    for (int64_t a = first; a < end; ++a) x.lower[a] = x.lower[a] * r;
+    for (int64_t a = first; a < end; ++a) {
+        const int32_t column = x.plan->rows[a];
+        const Wide taken = x.lower[a] * x.upper[a];
+        x.diagonal[column] -= taken;
+        x.removed[column] += taken;
+        int64_t at = x.plan->column_start[column];
+        for (int64_t b = a + 1; b < end; ++b, ++at) {
+            while (x.plan->rows[at] != x.plan->rows[b]) ++at;
+            const Wide up = x.lower[a] * x.upper[b];
+            x.upper[at] -= up;
+            x.lower[at] -= x.mixed ? x.lower[b] * x.upper[a] : up;
+        }
+    }
+    good = good && is_finite(r.hi);
+}
+
+// Pivots below this part of their diagonal are refused: in twice the precision, dependent constraints show as 1e-30.
+constexpr double redundant = 1e-22;
+
+HOL_NOINLINE bool factorize(const Core &x, int32_t &bad) {
+    bool good = true;
+    for (int32_t c = 0; c < x.plan->n_core; ++c) {
+        bad = x.plan->core[c];
+        if (!(abs(x.diagonal[c].hi) > redundant * abs(x.full[c].hi))) return false;
+        eliminate_column(x, c, good);
+        if (!good) return false;
+    }
+    return true;
+}
+
+// In place: y is the right-hand side by place, then the solution.
+HOL_NOINLINE void solve(const Core &x, Wide *y) {
+    const CarefulPlan &plan = *x.plan;
+    for (int32_t c = 0; c < plan.n_core; ++c)
+        for (int64_t a = plan.column_start[c]; a < plan.column_start[c + 1]; ++a) y[plan.rows[a]] -= x.lower[a] * y[c];
+    for (int32_t c = plan.n_core; c-- > 0;) {
+        Wide sum = y[c];
+        for (int64_t a = plan.column_start[c]; a < plan.column_start[c + 1]; ++a) sum -= x.upper[a] * y[plan.rows[a]];
+        y[c] = sum / x.diagonal[c];
+    }
+}
+
+}  // namespace careful
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,162 @@
+// Any molecule: hanging trees by (m2)-(m4), the core by its factors, (m10) and (m11) between them; docs of the
+// equations: molecules.md. Symmetric, or with D on the left and B on the right for Newton's method.
+#ifndef HOLONOMIC_KERNELS_CAREFUL_GRAPH_HPP
+#define HOLONOMIC_KERNELS_CAREFUL_GRAPH_HPP
+
+#include "core/kernels/careful/core.hpp"
+#include "core/kernels/careful/joint.hpp"
+#include "core/kernels/careful/trees.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace careful {
+
+// At every atom the arms that lead away from the core, its children, are eliminated.
+struct Graph {
+    const Wide3 *D, *B;  // [n_bonds], the same if symmetric
+    Wide *up;            // [n_bonds] of hanging bonds: inverse mass that the far side offers
+    Wide *pivot;         // [n_bonds] of hanging bonds: among its siblings, S over all of them eliminated
+    Wide *L;             // row of arm e of atom i: multipliers of the children (without e, if it is one)
+    Wide *y;             // [n_bonds] right-hand sides as a solve passes them on
+    Wide *core_y;        // [n_core]
+    Core core;
+};
+
+HOL_NOINLINE Graph take_graph(const CarefulPlan &plan, const Wide3 *D, const Wide3 *B, Memory &memory) {
+    Graph x;
+    x.D = D;
+    x.B = B;
+    x.up = memory.take<Wide>(plan.n_bonds);
+    x.pivot = memory.take<Wide>(plan.n_bonds);
+    x.L = memory.take<Wide>(plan.table_start[plan.n_atoms]);
+    x.y = memory.take<Wide>(plan.n_bonds);
+    x.core_y = memory.take<Wide>(plan.n_core);
+    x.core = take_core(plan, D != B, memory);
+    return x;
+}
+
+HOL_INLINE bool is_child(const CarefulPlan &plan, int32_t i, int32_t k) {
+    return plan.place[k] < 0 && plan.parent[i] != k;
+}
+
+HOL_NOINLINE bool eliminate_children(const CarefulPlan &plan, Joint &x, int32_t i, int target) {
+    x.n_others = 0;
+    for (int a = 0; a < x.n; ++a)
+        if (a != target && is_child(plan, i, plan.arms[plan.arm_start[i] + a])) x.others[x.n_others++] = a;
+    return eliminate_arms(x);
+}
+
+// What atom i, its children eliminated, gives to the elements of its core bonds.
+HOL_NOINLINE void add_to_core(const Molecule &m, const Graph &g, const Joint &x, int32_t i, const Wide *L) {
+    const int32_t *const arms = m.plan.arms + m.plan.arm_start[i];
+    for (int e = 0; e < x.n; ++e) {
+        if (m.plan.place[arms[e]] < 0) continue;
+        for (int f = 0; f < x.n; ++f) {
+            if (m.plan.place[arms[f]] < 0) continue;
+            const Wide value = offered(x, e, f);
+            if (e != f) {
+                add_element(g.core, arms[e], arms[f], value);
+                continue;
+            }
+            const int32_t at = m.plan.place[arms[e]];
+            g.core.diagonal[at] += value;
+            g.core.full[at] += x.w * dot(x.D[e], x.B[e]);
+            g.core.removed[at] += taken(x, L + e * x.n, e);
+        }
+    }
+}
+
+// Eliminates the children of atom i: for its other arms, all at once, and for each child its siblings.
+HOL_NOINLINE bool factorize_atom(const Molecule &m, const Graph &g, Joint &x, int32_t i, int32_t &bad) {
+    const CarefulPlan &plan = m.plan;
+    const int32_t *const arms = plan.arms + plan.arm_start[i];
+    Wide *const L = g.L + plan.table_start[i];
+    open_joint(m, g.D, g.B, i, x);
+    for (int a = 0; a < x.n; ++a)
+        if (is_child(plan, i, arms[a])) set_arm(x, a, g.up[arms[a]]);
+    for (int e = 0; e < x.n; ++e) {
+        if (!is_child(plan, i, arms[e])) continue;
+        if (!eliminate_children(plan, x, i, e)) {
+            bad = arms[stiffest(x)];
+            return false;
+        }
+        multipliers(x, e, L + e * x.n);
+        g.pivot[arms[e]] = g.up[arms[e]] + offered(x, e, e);
+        const double diagonal = m.w[i] + m.w[m.other(arms[e], i)];
+        bad = arms[e];
+        if (!(abs(g.pivot[arms[e]].hi) > vanishing * diagonal)) return false;
+    }
+    if (!eliminate_children(plan, x, i, -1)) {
+        bad = arms[stiffest(x)];
+        return false;
+    }
+    for (int e = 0; e < x.n; ++e) {
+        if (is_child(plan, i, arms[e])) continue;
+        multipliers(x, e, L + e * x.n);
+        if (arms[e] == plan.parent[i]) g.up[arms[e]] = offered(x, e, e);
+    }
+    add_to_core(m, g, x, i, L);
+    return true;
+}
+
+// False, with the number of a bond that depends on others, if there is one.
+HOL_NOINLINE bool factorize(const Molecule &m, const Graph &g, Joint &x, int32_t &bad) {
+    const CarefulPlan &plan = m.plan;
+    clear(g.core);
+    for (int32_t s = 0; s < plan.n_hanging; ++s)
+        if (!factorize_atom(m, g, x, plan.hanging[s], bad)) return false;
+    for (int32_t i = 0; i < plan.n_atoms; ++i)
+        if (plan.parent[i] < 0 && !factorize_atom(m, g, x, i, bad)) return false;
+    return factorize(g.core, bad);
+}
+
+// y of the arms of atom i that are no children, less what its children pass on.
+HOL_NOINLINE void pass_on(const CarefulPlan &plan, const Graph &g, int32_t i) {
+    const int32_t *const arms = plan.arms + plan.arm_start[i];
+    const int n = plan.arm_start[i + 1] - plan.arm_start[i];
+    for (int e = 0; e < n; ++e) {
+        if (is_child(plan, i, arms[e])) continue;
+        for (int a = 0; a < n; ++a)
+            if (is_child(plan, i, arms[a])) g.y[arms[e]] -= g.L[plan.table_start[i] + e * n + a] * g.y[arms[a]];
+    }
+}
+
+// t of the children of atom i, from t of its other arms.
+HOL_NOINLINE void solve_children(const Molecule &m, const Graph &g, int32_t i, Wide *t) {
+    const CarefulPlan &plan = m.plan;
+    const int32_t *const arms = plan.arms + plan.arm_start[i];
+    const int n = plan.arm_start[i + 1] - plan.arm_start[i];
+    Wide3 pull = {};  // of the arms known
+    for (int e = 0; e < n; ++e)
+        if (!is_child(plan, i, arms[e])) pull = pull + t[arms[e]] * m.outward(g.B, arms[e], i);
+    for (int e = 0; e < n; ++e)
+        if (is_child(plan, i, arms[e])) g.y[arms[e]] -= m.w[i] * dot(m.outward(g.D, arms[e], i), pull);
+    for (int e = 0; e < n; ++e) {
+        if (!is_child(plan, i, arms[e])) continue;
+        Wide sum = g.y[arms[e]];
+        for (int a = 0; a < n; ++a)
+            if (a != e && is_child(plan, i, arms[a])) sum -= g.L[plan.table_start[i] + e * n + a] * g.y[arms[a]];
+        t[arms[e]] = sum / g.pivot[arms[e]];
+    }
+}
+
+// A t = b by the factors at hand.
+HOL_NOINLINE void solve(const Molecule &m, const Graph &g, const Wide *b, Wide *t) {
+    const CarefulPlan &plan = m.plan;
+    for (int32_t k = 0; k < plan.n_bonds; ++k) g.y[k] = b[k];
+    for (int32_t s = 0; s < plan.n_hanging; ++s) pass_on(plan, g, plan.hanging[s]);
+    for (int32_t i = 0; i < plan.n_atoms; ++i)
+        if (plan.parent[i] < 0) pass_on(plan, g, i);
+    for (int32_t c = 0; c < plan.n_core; ++c) g.core_y[c] = g.y[plan.core[c]];
+    solve(g.core, g.core_y);
+    for (int32_t c = 0; c < plan.n_core; ++c) t[plan.core[c]] = g.core_y[c];
+    from_the_root(plan, [&](int32_t i) {
+        solve_children(m, g, i, t);
+        return true;
+    });
+}
+
+}  // namespace careful
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

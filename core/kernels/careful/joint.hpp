@@ -1,0 +1,178 @@
+// One atom and the bonds that meet there: what some of them, eliminated together, leave of the atom's inverse mass
+// along another one. All bond vectors point away from the atom; arm a offers the inverse mass E_a from its far side.
+// With
+//     S = diag(E) + w D^T B over the arms eliminated, D = B but for Newton's method (molecules.md (m12)),
+// everything is a sum over sets T of at most three of these arms of products of Gram determinants, in which nothing is
+// subtracted (Cauchy and Binet). All of it is relative to the product of the E; an E = 0 must then be in every set.
+#ifndef HOLONOMIC_KERNELS_CAREFUL_JOINT_HPP
+#define HOLONOMIC_KERNELS_CAREFUL_JOINT_HPP
+
+#include "core/kernels/careful/wide.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace careful {
+
+// Atoms of more bonds are worked on by their inertia alone: O(n) instead of O(n^3) terms per arm.
+constexpr int most_sets = 16;
+
+// An E below this part of w d.d does not give way at all.
+constexpr double stiff = 0x1p-280;
+
+// Arms that don't give way and whose Gram determinant is below this are linearly dependent: two bonds in line to 1e-12
+// and a third one as near to their plane are still solved.
+constexpr double flat = 1e-52;
+
+struct Joint {
+    int n;
+    double w;
+    bool mixed;
+    Wide3 *D, *B;    // [n], the same if not mixed
+    Wide *rho;       // [n] w / E; 1 where E = 0
+    bool *rigid;     // [n] E = 0
+    Wide3 *XD, *XB;  // [n][n] cross products of arms a and b at [a n + b]
+    Wide *V;         // [n] scratch
+    int n_others, n_rigid;
+    int *others;      // [n] the arms that are eliminated
+    Wide det;         // of S over these arms, relative to the product of the E that are not 0
+    Wide inverse[9];  // of 1 + sum rho D B^T, for atoms of many bonds
+
+    static int64_t doubles(int64_t n) { return n * (6 + 6 + 2 + 2 + 2 + 2 * 6 * n) + 8 * 8; }
+
+    bool many() const { return n > most_sets; }
+    const Wide3 &cross_D(int a, int b) const { return XD[a * n + b]; }
+    const Wide3 &cross_B(int a, int b) const { return XB[a * n + b]; }
+};
+
+// The cross products of all arms, once their vectors are there.
+HOL_NOINLINE void prepare(Joint &x) {
+    if (x.many()) return;
+    for (int a = 0; a < x.n; ++a)
+        for (int b = 0; b < a; ++b) {
+            x.XD[a * x.n + b] = cross(x.D[a], x.D[b]);
+            x.XD[b * x.n + a] = -x.XD[a * x.n + b];
+            if (!x.mixed) continue;
+            x.XB[a * x.n + b] = cross(x.B[a], x.B[b]);
+            x.XB[b * x.n + a] = -x.XB[a * x.n + b];
+        }
+}
+
+// Arm a offers E from its far side.
+HOL_NOINLINE void set_arm(Joint &x, int a, const Wide &E) {
+    const Wide q = dot(x.D[a], x.B[a]);
+    x.rigid[a] = !(abs(E.hi) > stiff * (x.w * abs(q.hi)));
+    x.rho[a] = x.rigid[a] ? wide(1) : wide(x.w) / E;
+}
+
+HOL_NOINLINE void invert(const Wide *m, Wide *inverse) {
+    const Wide c0 = m[4] * m[8] - m[5] * m[7], c1 = m[5] * m[6] - m[3] * m[8], c2 = m[3] * m[7] - m[4] * m[6];
+    const Wide r = wide(1) / (m[0] * c0 + m[1] * c1 + m[2] * c2);
+    const Wide adjugate[9] = {c0, m[2] * m[7] - m[1] * m[8], m[1] * m[5] - m[2] * m[4],
+                              c1, m[0] * m[8] - m[2] * m[6], m[2] * m[3] - m[0] * m[5],
+                              c2, m[1] * m[6] - m[0] * m[7], m[0] * m[4] - m[1] * m[3]};
+    for (int i = 0; i < 9; ++i) inverse[i] = adjugate[i] * r;
+}
+
+// Of many arms, those that do not give way give way by less than a rounding.
+HOL_NOINLINE Wide rho_of_many(const Joint &x, int a) {
+    return x.rigid[a] ? wide(0x1p56) / dot(x.D[a], x.B[a]) : x.rho[a];
+}
+
+HOL_NOINLINE bool eliminate_many(Joint &x) {
+    Wide m[9] = {};
+    m[0] = m[4] = m[8] = wide(1);
+    for (int o = 0; o < x.n_others; ++o) {
+        const int a = x.others[o];
+        const Wide3 D = rho_of_many(x, a) * x.D[a], &B = x.B[a];
+        const Wide d[3] = {D.x, D.y, D.z}, b[3] = {B.x, B.y, B.z};
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) m[3 * i + j] += b[i] * d[j];
+    }
+    invert(m, x.inverse);
+    return x.n_rigid <= 3;
+}
+
+// Sets the arms that are eliminated: those in others[0 .. n_others). False if their S is singular.
+HOL_NOINLINE bool eliminate_arms(Joint &x) {
+    x.n_rigid = 0;
+    for (int o = 0; o < x.n_others; ++o) x.n_rigid += x.rigid[x.others[o]];
+    if (x.w == 0) return true;
+    if (x.many()) return eliminate_many(x);
+    Wide sum = x.n_rigid == 0 ? wide(1) : wide(0);
+    for (int o = 0; o < x.n_others; ++o) {
+        const int a = x.others[o];
+        const Wide q = dot(x.D[a], x.B[a]), t = x.rho[a] * q;
+        if (x.rigid[a] == x.n_rigid) sum += t;
+        for (int p = 0; p < o; ++p) {
+            const int b = x.others[p], rigid = x.rigid[a] + x.rigid[b];
+            const Wide both = x.rho[a] * x.rho[b];
+            if (rigid == x.n_rigid) sum += both * dot(x.cross_D(a, b), x.cross_B(a, b));
+            for (int s = 0; s < p; ++s) {
+                const int c = x.others[s];
+                if (rigid + x.rigid[c] != x.n_rigid) continue;
+                const Wide volume = dot(x.D[c], x.cross_D(a, b));
+                sum += both * x.rho[c] * (volume * (x.mixed ? dot(x.B[c], x.cross_B(a, b)) : volume));
+            }
+        }
+    }
+    x.det = sum;
+    return x.n_rigid <= 3 && abs(sum.hi) > flat;
+}
+
+// <x^T, y^T> summed over the sets T of arms eliminated, without `skip`, that hold all rigid ones but `in`, which is x
+// or y or neither; times what is left of the product of the E. x on the side of D, y on that of B, or the other way
+// round.
+HOL_NOINLINE Wide gram_sum(const Joint &j, int x, int y, int skip, bool swapped) {
+    const Wide3 *const D = swapped ? j.B : j.D, *const B = swapped ? j.D : j.B;
+    const Wide3 *const XD = swapped ? j.XB : j.XD, *const XB = swapped ? j.XD : j.XB;
+    const int n = j.n, wanted = j.n_rigid - (skip >= 0 && j.rigid[skip] ? 1 : 0);
+    Wide sum = wanted == 0 ? dot(D[x], B[y]) : wide(0);
+    for (int o = 0; o < j.n_others; ++o) {
+        const int a = j.others[o];
+        if (a == skip) continue;
+        if (j.rigid[a] == wanted) sum += j.rho[a] * dot(XD[x * n + a], XB[y * n + a]);
+        for (int p = 0; p < o; ++p) {
+            const int b = j.others[p];
+            if (b == skip || j.rigid[a] + j.rigid[b] != wanted) continue;
+            const Wide vx = dot(D[x], XD[a * n + b]);
+            sum += j.rho[a] * j.rho[b] * (vx * (x == y && !j.mixed ? vx : dot(B[y], XB[a * n + b])));
+        }
+    }
+    return sum;
+}
+
+HOL_NOINLINE Wide through_inverse(const Joint &x, const Wide3 &D, const Wide3 &B) {
+    const Wide *const m = x.inverse;
+    const Wide3 v = {m[0] * B.x + m[1] * B.y + m[2] * B.z, m[3] * B.x + m[4] * B.y + m[5] * B.z,
+                     m[6] * B.x + m[7] * B.y + m[8] * B.z};
+    return dot(D, v);
+}
+
+// d_e . W d_f, the inverse mass between two arms e and f that are not eliminated.
+HOL_NOINLINE Wide offered(const Joint &x, int e, int f) {
+    if (x.w == 0) return wide(0);
+    if (x.many()) return x.w * through_inverse(x, x.D[e], x.B[f]);
+    return x.w * (gram_sum(x, e, f, -1, false) / x.det);
+}
+
+// Row e of S over the arms eliminated, times the inverse: y_e -= sum l_a y_a.
+HOL_NOINLINE void multipliers(const Joint &x, int e, Wide *l) {
+    for (int o = 0; o < x.n_others; ++o) {
+        const int a = x.others[o];
+        l[a] = x.w == 0   ? wide(0)
+               : x.many() ? rho_of_many(x, a) * through_inverse(x, x.D[e], x.B[a])
+                          : x.rho[a] * (gram_sum(x, e, a, a, false) / x.det);
+    }
+}
+
+// What the arms eliminated have taken of w d_e . d_e, or between e and f; from their multipliers.
+HOL_NOINLINE Wide taken(const Joint &x, const Wide *l, int f) {
+    Wide sum = wide(0);
+    for (int o = 0; o < x.n_others; ++o) sum += l[x.others[o]] * dot(x.D[x.others[o]], x.B[f]);
+    return x.w * sum;
+}
+
+}  // namespace careful
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,75 @@
+// Forces, velocities and given right-hand sides of one molecule.
+#include "core/kernels/careful/careful.hpp"
+#include "core/kernels/careful/solution.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace careful {
+
+// d.(w_j f_j - w_i f_i) + |v_j - v_i|^2 of each bond, both in the solver's units.
+static void force_terms(const Molecule &m, const ForcesCall &call, Wide *b) {
+    for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
+        const int32_t i = m.plan.atom_i[k], j = m.plan.atom_j[k];
+        b[k] = wide(0);
+        if (call.f.x) {
+            const Vector3<double> fi = read(call.f, m.lane, i), fj = read(call.f, m.lane, j);
+            const Wide3 a = {two_product(m.w[j], fj.x) - two_product(m.w[i], fi.x),
+                             two_product(m.w[j], fj.y) - two_product(m.w[i], fi.y),
+                             two_product(m.w[j], fj.z) - two_product(m.w[i], fi.z)};
+            b[k] = dot(m.d[k], a);
+        }
+        if (call.v.x) {
+            const Wide3 dv = difference(read(call.v, m.lane, i), read(call.v, m.lane, j));
+            b[k] += dot((1 / m.mass_unit / m.unit[k]) * dv, dv);
+        }
+    }
+}
+
+void forces(const ForcesCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch, Tally &tally) {
+    Memory memory = {reinterpret_cast<char *>(scratch)};
+    Solution x(plan, lane, memory);
+    if (!x.open(call.r, call.box)) return note_bad_molecule(lane, tally);
+    force_terms(x.m, call, x.b);
+    if (!x.close()) return note_bad_molecule(lane, tally);
+    write_multipliers(x.m, x.t, call.lambda, call.tension);
+    if (call.g.x) write_forces(x.m, call.g, call.add, x.system.pull);
+    if (call.virial) add_virial(x.m, x.m.d, x.t, 1, tally);
+}
+
+void solve(const SolveCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch, Tally &tally) {
+    Memory memory = {reinterpret_cast<char *>(scratch)};
+    Solution x(plan, lane, memory);
+    if (!x.open(call.r, call.box)) return note_bad_molecule(lane, tally);
+    // Z = 4 A and t = 2 lambda.
+    for (int32_t k = 0; k < plan.n_bonds; ++k)
+        x.b[k] = wide(0.5 * call.rhs[lane.first_bond + k] / x.m.mass_unit / x.m.unit[k]);
+    if (!x.close()) return note_bad_molecule(lane, tally);
+    write_multipliers(x.m, x.t, call.lambda, call.tension);
+    if (call.g.x) write_forces(x.m, call.g, call.add, x.system.pull);
+    if (call.virial) add_virial(x.m, x.m.d, x.t, 1, tally);
+}
+
+void velocities(const VelocitiesCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch,
+                Tally &tally) {
+    Memory memory = {reinterpret_cast<char *>(scratch)};
+    Solution x(plan, lane, memory);
+    const Molecule &m = x.m;
+    if (!x.open(call.r, call.box)) return note_bad_molecule(lane, tally);
+    for (int32_t k = 0; k < plan.n_bonds; ++k)
+        x.b[k] = over(dot(m.d[k], difference(read(call.v, lane, plan.atom_i[k]), read(call.v, lane, plan.atom_j[k]))),
+                      m.mass_unit);
+    if (!x.close()) return note_bad_molecule(lane, tally);
+    for (int32_t i = 0; i < plan.n_atoms; ++i) {
+        const Vector3<double> v = read(call.v, lane, i);
+        x.system.pull[i] = Wide3{wide(v.x), wide(v.y), wide(v.z)} + lane.w[i] * x.system.pull[i];
+    }
+    if (!finite_pulls(m, x.system.pull)) return note_bad_molecule(lane, tally);
+    for (int32_t i = 0; i < plan.n_atoms; ++i)
+        if (lane.w[i] > 0) write(call.v, lane, i, rounded(x.system.pull[i]));
+    write_multipliers(m, x.t, call.lambda, nullptr);
+    if (call.virial) add_virial(m, m.d, x.t, 1, tally);
+}
+
+}  // namespace careful
+}  // namespace HOL_ISA
+}  // namespace holonomic

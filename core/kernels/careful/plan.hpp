@@ -1,0 +1,30 @@
+// How the careful solver goes through a molecule: plain arrays, made once per shape (core/molecules/careful_shape.hpp).
+#ifndef HOLONOMIC_KERNELS_CAREFUL_PLAN_HPP
+#define HOLONOMIC_KERNELS_CAREFUL_PLAN_HPP
+
+#include <stdint.h>
+
+namespace holonomic {
+
+// Atoms with one bond are stripped until none is left. What was stripped are the hanging trees, the bonds that remain
+// are the core; of a molecule without cycles one atom remains, its root.
+struct CarefulPlan {
+    int32_t n_atoms, n_bonds;
+    const int32_t *atom_i, *atom_j;   // [n_bonds]
+    const int32_t *arm_start, *arms;  // [n_atoms+1], [2 n_bonds]: the bonds of each atom
+    const int64_t *table_start;       // [n_atoms+1]: sums of the squares of the numbers of bonds of the atoms before
+    int32_t most_arms;                // of one atom
+    const int32_t *parent;            // [n_atoms] bond towards the core or the root; -1 there
+    int32_t n_hanging;                //
+    const int32_t *hanging;           // [n_hanging] the stripped atoms, children before parents
+    int32_t n_core;                   //
+    const int32_t *core;              // [n_core] bonds in their order of elimination
+    const int32_t *place;             // [n_bonds] the bond's place in it, -1 for hanging bonds
+    const int32_t *column_start;      // [n_core+1] columns of the factor, below the diagonal
+    const int32_t *rows;              // [column_start[n_core]] ascending in each column
+    const int32_t *ring;              // [n_bonds] in their order round the ring; nullptr if it is no bare ring
+    int64_t scratch_bytes;            // of any function of the careful solver
+};
+
+}  // namespace holonomic
+#endif

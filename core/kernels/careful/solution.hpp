@@ -1,0 +1,95 @@
+// A molecule loaded, solved, and what is written of it at every level.
+#ifndef HOLONOMIC_KERNELS_CAREFUL_SOLUTION_HPP
+#define HOLONOMIC_KERNELS_CAREFUL_SOLUTION_HPP
+
+#include "core/kernels/careful/system.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace careful {
+
+HOL_NOINLINE void note_bad_molecule(const MoleculeLane &lane, Tally &tally) {
+    if (tally.n_bad++ == 0 || lane.molecule < tally.first_bad) tally.first_bad = lane.molecule;
+}
+
+// What multiplies b, and the t that is solved for, to give those in the caller's units: with d = unit d' and
+// w = mass_unit w' both sides are divided by mass_unit / unit.
+HOL_INLINE Wide over(const Wide &a, double power_of_two) { return {a.hi / power_of_two, a.lo / power_of_two}; }
+
+// t in the caller's units; false if one is no number.
+HOL_NOINLINE bool to_callers_units(const Molecule &m, Wide *t) {
+    bool good = true;
+    for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
+        t[k] = over(t[k], m.unit[k]);
+        good = good && is_finite(t[k].hi);
+    }
+    return good;
+}
+
+// The bond vectors in the caller's units, for sums in which their unit would differ.
+HOL_NOINLINE void restore_vectors(const Molecule &m) {
+    for (int32_t k = 0; k < m.plan.n_bonds; ++k) m.d[k] = m.unit[k] * m.d[k];
+}
+
+HOL_NOINLINE void write_multipliers(const Molecule &m, const Wide *t, double *lambda, double *tension) {
+    for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
+        if (lambda) lambda[m.lane.first_bond + k] = 0.5 * rounded(t[k]) + 0.0;
+        if (tension) tension[m.lane.first_bond + k] = rounded(t[k] * square_root(dot(m.d[k], m.d[k]))) + 0.0;
+    }
+}
+
+HOL_NOINLINE void add_virial(const Molecule &m, const Wide3 *d, const Wide *t, double factor, Tally &tally) {
+    Wide s[6] = {};
+    for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
+        const Wide3 p = t[k] * d[k];
+        s[0] += p.x * d[k].x;
+        s[1] += p.x * d[k].y;
+        s[2] += p.x * d[k].z;
+        s[3] += p.y * d[k].y;
+        s[4] += p.y * d[k].z;
+        s[5] += p.z * d[k].z;
+    }
+    for (int c = 0; c < 6; ++c) tally.virial[c] -= factor * rounded(s[c]);
+}
+
+// The forces of all atoms; those of fixed atoms that other molecules share are left to the core.
+HOL_NOINLINE void write_forces(const Molecule &m, const AtomArray &g, bool add, const Wide3 *pull) {
+    for (int32_t i = 0; i < m.plan.n_atoms; ++i) {
+        if (m.lane.shared && m.lane.shared[i]) continue;
+        Vector3<double> value = rounded(pull[i]);
+        if (add) {
+            const Vector3<double> before = read(g, m.lane, i);
+            value = {before.x + value.x, before.y + value.y, before.z + value.z};
+        }
+        write(g, m.lane, i, value);
+    }
+}
+
+HOL_NOINLINE bool finite_pulls(const Molecule &m, const Wide3 *pull) {
+    bool good = true;
+    for (int32_t i = 0; i < m.plan.n_atoms; ++i) good = good && is_finite(rounded(pull[i]));
+    return good;
+}
+
+// The molecule's t in the caller's units, and the pulls of it on the atoms; false if it is bad.
+struct Solution {
+    Molecule m;
+    System system;
+    Wide *b, *t;
+    Solution(const CarefulPlan &plan, const MoleculeLane &lane, Memory &memory)
+        : m(plan, lane, memory), system(take_system(m, memory)), b(memory.take<Wide>(plan.n_bonds)),
+          t(memory.take<Wide>(plan.n_bonds)) {}
+    bool open(const AtomArray &r, const Box &box) { return load(m, r, box) && factorize(m, system); }
+    bool close() {
+        solve(m, system, b, t);
+        if (!to_callers_units(m, t)) return false;
+        restore_vectors(m);
+        pulls(m, m.d, t, system.pull);
+        return finite_pulls(m, system.pull);
+    }
+};
+
+}  // namespace careful
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

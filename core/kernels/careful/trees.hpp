@@ -1,0 +1,172 @@
+// Trees in the two-sided form (molecules.md (m2), (m4), (m5)): over every bond each of its ends sends the other what
+// all bonds behind it leave of the inverse mass, and of the right-hand sides. Nothing large cancels, whatever the
+// masses.
+#ifndef HOLONOMIC_KERNELS_CAREFUL_TREES_HPP
+#define HOLONOMIC_KERNELS_CAREFUL_TREES_HPP
+
+#include "core/kernels/careful/joint.hpp"
+#include "core/kernels/careful/molecule.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace careful {
+
+HOL_NOINLINE Joint take_joint(int32_t most_arms, bool mixed, Memory &memory) {
+    const int64_t n = most_arms, pairs = n > most_sets ? 0 : n * n;
+    Joint x = {};
+    x.mixed = mixed;
+    x.D = memory.take<Wide3>(n);
+    x.B = mixed ? memory.take<Wide3>(n) : x.D;
+    x.rho = memory.take<Wide>(n);
+    x.rigid = memory.take<bool>(n);
+    x.XD = memory.take<Wide3>(pairs);
+    x.XB = mixed ? memory.take<Wide3>(pairs) : x.XD;
+    x.others = memory.take<int>(n);
+    return x;
+}
+
+// The bonds of atom i, pointing away from it.
+HOL_NOINLINE void open_joint(const Molecule &m, const Wide3 *D, const Wide3 *B, int32_t i, Joint &x) {
+    const CarefulPlan &plan = m.plan;
+    x.n = plan.arm_start[i + 1] - plan.arm_start[i];
+    x.w = m.w[i];
+    for (int a = 0; a < x.n; ++a) {
+        const int32_t k = plan.arms[plan.arm_start[i] + a];
+        x.D[a] = m.outward(D, k, i);
+        if (x.mixed) x.B[a] = m.outward(B, k, i);
+    }
+    prepare(x);
+}
+
+// All arms but one are eliminated.
+HOL_NOINLINE bool eliminate_others(Joint &x, int target) {
+    x.n_others = 0;
+    for (int a = 0; a < x.n; ++a)
+        if (a != target) x.others[x.n_others++] = a;
+    return eliminate_arms(x);
+}
+
+// Of the arms eliminated one that gives way least: the last that does not at all.
+HOL_NOINLINE int stiffest(const Joint &x) {
+    int arm = x.n_others > 0 ? x.others[0] : 0;
+    for (int o = 0; o < x.n_others; ++o)
+        if (x.rigid[x.others[o]]) arm = x.others[o];
+    return arm;
+}
+
+struct Tree {
+    Wide *up, *down;  // [n_bonds] inverse mass offered to the bond from the side away from the root, and from its side
+    Wide *L;          // multipliers of arm a in the message along arm e of atom i at [table_start[i] + e n + a]
+    Wide *y_up, *y_down;  // [n_bonds] what a solve sends
+};
+
+HOL_NOINLINE Tree take_tree(const CarefulPlan &plan, Memory &memory) {
+    Tree x;
+    x.up = memory.take<Wide>(plan.n_bonds);
+    x.down = memory.take<Wide>(plan.n_bonds);
+    x.L = memory.take<Wide>(plan.table_start[plan.n_atoms]);
+    x.y_up = memory.take<Wide>(plan.n_bonds);
+    x.y_down = memory.take<Wide>(plan.n_bonds);
+    return x;
+}
+
+// A pivot below this part of the diagonal is none: the bond is a combination of others.
+constexpr double vanishing = 1e-56;
+
+// Calls body(i) for the atoms from the root outwards.
+template <class Body>
+HOL_INLINE bool from_the_root(const CarefulPlan &plan, const Body &body) {
+    for (int32_t i = 0; i < plan.n_atoms; ++i)
+        if (plan.parent[i] < 0 && !body(i)) return false;
+    for (int32_t s = plan.n_hanging; s-- > 0;)
+        if (!body(plan.hanging[s])) return false;
+    return true;
+}
+
+// Message of atom i along its arm e.
+HOL_NOINLINE bool send(const Molecule &m, const Tree &tree, Joint &x, int32_t i, int e, Wide &E, int32_t &bad) {
+    const int32_t *const arms = m.plan.arms + m.plan.arm_start[i];
+    if (!eliminate_others(x, e)) {
+        bad = arms[stiffest(x)];
+        return false;
+    }
+    E = offered(x, e, e);
+    multipliers(x, e, tree.L + m.plan.table_start[i] + e * x.n);
+    return true;
+}
+
+// False, with the number of a bond that depends on others, if there is one.
+HOL_NOINLINE bool factorize(const Molecule &m, const Tree &tree, Joint &x, int32_t &bad) {
+    const CarefulPlan &plan = m.plan;
+    for (int32_t s = 0; s < plan.n_hanging; ++s) {
+        const int32_t i = plan.hanging[s], parent = plan.parent[i];
+        open_joint(m, m.d, m.d, i, x);
+        int e = 0;
+        for (int a = 0; a < x.n; ++a) {
+            const int32_t k = plan.arms[plan.arm_start[i] + a];
+            if (k == parent)
+                e = a;
+            else
+                set_arm(x, a, tree.up[k]);
+        }
+        if (!send(m, tree, x, i, e, tree.up[parent], bad)) return false;
+    }
+    const bool good = from_the_root(plan, [&](int32_t i) {
+        open_joint(m, m.d, m.d, i, x);
+        for (int a = 0; a < x.n; ++a) {
+            const int32_t k = plan.arms[plan.arm_start[i] + a];
+            set_arm(x, a, k == plan.parent[i] ? tree.down[k] : tree.up[k]);
+        }
+        for (int a = 0; a < x.n; ++a) {
+            const int32_t k = plan.arms[plan.arm_start[i] + a];
+            if (k != plan.parent[i] && !send(m, tree, x, i, a, tree.down[k], bad)) return false;
+        }
+        return true;
+    });
+    if (!good) return false;
+    for (int32_t k = 0; k < plan.n_bonds; ++k) {
+        const double diagonal = (m.w[plan.atom_i[k]] + m.w[plan.atom_j[k]]) * dot(m.d[k], m.d[k]).hi;
+        bad = k;
+        if (!(tree.up[k].hi + tree.down[k].hi > vanishing * diagonal)) return false;
+    }
+    return true;
+}
+
+// The right-hand sides behind arm e of atom i, as they pass over it.
+HOL_NOINLINE Wide passed(const CarefulPlan &plan, const Tree &tree, const Wide *b, int32_t i, int e) {
+    const int32_t *const arms = plan.arms + plan.arm_start[i];
+    const int n = plan.arm_start[i + 1] - plan.arm_start[i];
+    const Wide *const L = tree.L + plan.table_start[i] + e * n;
+    Wide sum = wide(0);
+    for (int a = 0; a < n; ++a) {
+        if (a == e) continue;
+        const int32_t k = arms[a];
+        sum -= L[a] * (b[k] + (k == plan.parent[i] ? tree.y_down[k] : tree.y_up[k]));
+    }
+    return sum;
+}
+
+// A t = b.
+HOL_NOINLINE void solve(const Molecule &m, const Tree &tree, const Wide *b, Wide *t) {
+    const CarefulPlan &plan = m.plan;
+    for (int32_t s = 0; s < plan.n_hanging; ++s) {
+        const int32_t i = plan.hanging[s];
+        const int32_t *const arms = plan.arms + plan.arm_start[i];
+        int e = 0;
+        while (arms[e] != plan.parent[i]) ++e;
+        tree.y_up[plan.parent[i]] = passed(plan, tree, b, i, e);
+    }
+    from_the_root(plan, [&](int32_t i) {
+        const int32_t *const arms = plan.arms + plan.arm_start[i];
+        for (int a = 0; a < plan.arm_start[i + 1] - plan.arm_start[i]; ++a)
+            if (arms[a] != plan.parent[i]) tree.y_down[arms[a]] = passed(plan, tree, b, i, a);
+        return true;
+    });
+    for (int32_t k = 0; k < plan.n_bonds; ++k)
+        t[k] = (b[k] + tree.y_up[k] + tree.y_down[k]) / (tree.up[k] + tree.down[k]);
+}
+
+}  // namespace careful
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

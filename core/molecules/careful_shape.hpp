@@ -1,0 +1,36 @@
+// What the careful solver needs to know of a shape, made once.
+#ifndef HOLONOMIC_CAREFUL_SHAPE_HPP
+#define HOLONOMIC_CAREFUL_SHAPE_HPP
+
+#include <cstdint>
+#include <vector>
+
+#include "core/kernels/careful/plan.hpp"
+
+namespace holonomic {
+
+class CarefulShape {
+public:
+    // A connected molecule: bond k joins the atoms pairs[2 k] < pairs[2 k + 1].
+    CarefulShape(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs);
+    CarefulShape(const CarefulShape &) = delete;
+    CarefulShape &operator=(const CarefulShape &) = delete;
+
+    const CarefulPlan &plan() const { return plan_; }
+    std::int64_t memory() const;  // bytes
+
+private:
+    using List = std::vector<std::int32_t>;
+
+    void find_arms();
+    void strip();
+    void order_core();
+    void find_ring();
+
+    List atom_i_, atom_j_, arm_start_, arms_, parent_, hanging_, core_, place_, rows_, ring_, column_start_;
+    std::vector<std::int64_t> table_start_;
+    CarefulPlan plan_{};
+};
+
+}  // namespace holonomic
+#endif
