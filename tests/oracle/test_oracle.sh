@@ -78,12 +78,12 @@ done
 fresh mixed && cp "$work/molecule/$molecule.txt" "$work/mixed/" && echo "$molecule.txt" >>"$work/mixed/INDEX"
 check 0 '^oracle: 2 cases, worst ratio 0\.' "$work/mixed"
 
-# As spoil, in a file of the new format.
+# As spoil, in a file of the new format; multipliers of positions carry fewer digits, which a fifth argument says.
 spoil_molecule() {
     rm -rf "$work/spoilt" && cp -r "$work/molecule" "$work/spoilt"
-    awk -v first="$2" -v row="$3" -v field="$4" '
+    awk -v first="$2" -v row="$3" -v field="$4" -v part="${5:-1e-9}" '
         index($0, first) == 1 && (first !~ /^#/ || $0 == first) { inside = 1 }
-        inside && !done && (index($0, row " ") == 1) { $field = sprintf("%.17e", $field * (1 + 1e-9)); done = 1 }
+        inside && !done && (index($0, row " ") == 1) { $field = sprintf("%.17e", $field * (1 + part)); done = 1 }
         { print }' "$work/molecule/$molecule.txt" >"$work/spoilt/$molecule.txt"
     cmp -s "$work/spoilt/$molecule.txt" "$work/molecule/$molecule.txt" && complain "the reference for $1 was not changed"
     check 1 "^$molecule  *$1 .*OUT OF BOUND" "$work/spoilt"
@@ -99,7 +99,7 @@ spoil_molecule G atoms_out 3 3
 spoil_molecule 'Fixman force' atoms_out 4 7
 spoil_molecule 'projected v' atoms_out 5 10
 spoil_molecule positions positions 6 6
-spoil_molecule 'lambda (r)' '# k lambda lambda_scale' 7 2
+spoil_molecule 'lambda (r)' '# k lambda lambda_scale' 7 2 1e-3
 # one that must be refused, and is not
 sed -e 's/^expect ok/expect degenerate/' -e '/^lndet/,$d' "$work/molecule/$molecule.txt" >"$work/spoilt/$molecule.txt"
 echo end >>"$work/spoilt/$molecule.txt"

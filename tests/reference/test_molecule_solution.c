@@ -138,7 +138,8 @@ static void fixman_forces_are_differences_of_the_determinant(void **state)
     (void)state;
     const double step = 0x1p-14;
     for (int kind = 0; kind < MOLECULE_GOOD_KINDS; ++kind) {
-        molecule m = molecule_make((molecule_kind)kind, kind == MOLECULE_PEPTIDE || kind == MOLECULE_DENDRIMER ? 1 : 4, 6);
+        molecule m =
+            molecule_make((molecule_kind)kind, kind == MOLECULE_PEPTIDE || kind == MOLECULE_DENDRIMER ? 1 : 4, 6);
         const molecule_problem p = molecule_problem_of(&m);
         molecule_metric at, side;
         assert_int_equal(molecule_metric_make(&p, &at), 0);
