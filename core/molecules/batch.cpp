@@ -36,8 +36,7 @@ Error Batch::not_supported(const FoundMolecules &found, std::size_t m) const {
 
 Batch::Batch(Chains &chains)
     : chains_(chains), before_(chains.groups_.mark()), kinds_before_(chains.kinds_.mark()),
-      n_unconstrained_(chains.unconstrained_.size()),
-      n_active_(chains.active_.size()) {}
+      n_unconstrained_(chains.unconstrained_.size()), n_active_(chains.active_.size()) {}
 
 Batch::~Batch() {
     if (committed_) return;
@@ -146,7 +145,7 @@ void Batch::append_found(const FoundMolecules &found, std::int64_t n_bonds, cons
                          std::int64_t n_lengths) {
     for (std::size_t i = 0; i < found.atoms.size(); ++i)
         if (!found.fixed[i] && chains_.use_.used(found.atoms[i])) throw in_use(found.atoms[i]);
-    taken_.reserve(found.atoms.size());
+    found_ = &found;
     std::int32_t last_shape = linear;
     for (std::size_t m = 0; m < found.molecules.size(); ++m) {
         const FoundMolecule &molecule = found.molecules[m];
@@ -166,8 +165,9 @@ void Batch::append_found(const FoundMolecules &found, std::int64_t n_bonds, cons
                                      &found.pairs[2 * at(molecule.first_bond)], &found.fixed[first], last_shape);
         }
         append_one(found, m, shape);
+        if (molecule.n_fixed == 0) continue;
         for (std::size_t i = first; i < first + n_atoms; ++i)
-            (found.fixed[i] ? fixed_ : taken_).push_back(found.atoms[i]);
+            if (found.fixed[i]) fixed_.push_back(found.atoms[i]);
     }
     fixed_.insert(fixed_.end(), found.unconstrained_atoms.begin(), found.unconstrained_atoms.end());
     for (const std::int64_t bond : found.unconstrained) chains_.unconstrained_.push_back(chains_.n_bonds_ + bond);
@@ -177,7 +177,9 @@ void Batch::append_found(const FoundMolecules &found, std::int64_t n_bonds, cons
 void Batch::commit() {
     if (!chains_.active_.empty()) chains_.active_.resize(at(chains_.n_chains()), 1);
     chains_.n_bonds_ += n_bonds_;
-    for (const std::int64_t atom : taken_) chains_.use_.take(atom);
+    if (found_)
+        for (std::size_t i = 0; i < found_->atoms.size(); ++i)
+            if (!found_->fixed[i]) chains_.use_.take(found_->atoms[i]);
     for (const std::int64_t atom : fixed_) chains_.use_.take_fixed(atom);
     committed_ = true;
     chains_.changed();

@@ -38,6 +38,7 @@ private:
     const Kinds::Mark kinds_before_;
     const std::size_t n_unconstrained_, n_active_;
     std::int64_t n_bonds_ = 0;
+    const FoundMolecules *found_ = nullptr;  // of which the movable atoms are to be taken
     std::vector<std::int64_t> taken_, fixed_;
     std::vector<double> w_, length_;
     std::vector<std::int64_t> places_;

@@ -1,6 +1,7 @@
 #include "core/molecules/find.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
 
 #include "core/molecules/numbering.hpp"
@@ -14,9 +15,8 @@ std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 using Numbers = std::vector<std::int32_t>;
 
-// The atoms of the list counted from 0, in the order of the list.
-std::vector<std::int64_t> checked_atoms(std::int64_t n_atoms, const BondList &list) {
-    std::vector<std::int64_t> atoms(at(2 * list.n_bonds));
+// Throws Error if a bond of the list makes no sense.
+const BondList &checked(std::int64_t n_atoms, const BondList &list) {
     for (std::int64_t e = 0; e < 2 * list.n_bonds; ++e) {
         const std::int64_t atom = list.pairs[e];
         if (atom < list.base || atom - list.base >= n_atoms) {
@@ -28,11 +28,10 @@ std::vector<std::int64_t> checked_atoms(std::int64_t n_atoms, const BondList &li
             error.base = list.base;
             throw error;
         }
-        atoms[at(e)] = atom - list.base;
         if (e % 2 == 1 && atom == list.pairs[e - 1])
             throw bond_error(list, Status::value, e / 2, "joins an atom to itself");
     }
-    return atoms;
+    return list;
 }
 
 // Sets of atoms that hold together. The least number stands for its set.
@@ -73,10 +72,14 @@ Numbers sorted_by_molecule(const Numbers &molecule, std::size_t n_molecules, Num
 class Finder {
 public:
     Finder(const Masses &masses, std::int64_t n_atoms, const BondList &list)
-        : list_(list), ends_(checked_atoms(n_atoms, list)), number_(n_atoms, ends_), end_(ends_.size()),
-          fixed_(at(number_.size())) {
-        for (std::size_t e = 0; e < end_.size(); ++e) end_[e] = number_(ends_[e]);
-        for (std::int32_t i = 0; i < number_.size(); ++i) fixed_[at(i)] = masses.fixed(number_.atom(i));
+        : list_(checked(n_atoms, list)), number_(n_atoms, list.pairs, 2 * list.n_bonds, list.base),
+          end_(at(2 * list.n_bonds)), fixed_(at(number_.size())) {
+        for (std::size_t e = 0; e < end_.size(); ++e) end_[e] = number_(list.pairs[e] - list.base);
+        for (std::int32_t i = 0; i < number_.size(); ++i) {
+            fixed_[at(i)] = masses.fixed(number_.atom(i));
+            any_fixed_ = any_fixed_ || fixed_[at(i)];
+        }
+        bring_together();
     }
 
     FoundMolecules find() {
@@ -96,12 +99,39 @@ public:
     }
 
 private:
+    std::int32_t least_atom(std::size_t p) const { return std::min(end_[2 * p], end_[2 * p + 1]); }
+    std::int64_t bond_at(std::size_t p) const { return bond_at_.empty() ? static_cast<std::int64_t>(p) : bond_at_[p]; }
+
+    // Bonds that stand in the list in any order are first brought near to those of nearby atoms: what follows would
+    // miss the cache at every step.
+    void bring_together() {
+        const std::size_t n_bonds = end_.size() / 2;
+        std::size_t jumps = 0;
+        for (std::size_t p = 1; p < n_bonds; ++p) jumps += std::abs(least_atom(p) - least_atom(p - 1)) > 4096;
+        if (jumps < n_bonds / 16) return;
+        int shift = 0;
+        while (number_.size() >> shift > 1024) ++shift;
+        std::vector<std::size_t> next(at(number_.size() >> shift) + 2, 0);
+        for (std::size_t p = 0; p < n_bonds; ++p) ++next[at(least_atom(p) >> shift) + 1];
+        for (std::size_t b = 1; b < next.size(); ++b) next[b] += next[b - 1];
+        Numbers end(end_.size());
+        bond_at_.resize(n_bonds);
+        for (std::size_t p = 0; p < n_bonds; ++p) {
+            const std::size_t to = next[at(least_atom(p) >> shift)]++;
+            bond_at_[to] = static_cast<std::int32_t>(p);
+            end[2 * to] = end_[2 * p];
+            end[2 * to + 1] = end_[2 * p + 1];
+        }
+        end_.swap(end);
+    }
+
     // Which molecule each bond and each movable atom belongs to.
     void divide() {
         const std::size_t n_bonds = end_.size() / 2;
         Sets sets(number_.size());
         for (std::size_t k = 0; k < n_bonds; ++k)
-            if (!fixed_[at(end_[2 * k])] && !fixed_[at(end_[2 * k + 1])]) sets.join(end_[2 * k], end_[2 * k + 1]);
+            if (!any_fixed_ || (!fixed_[at(end_[2 * k])] && !fixed_[at(end_[2 * k + 1])]))
+                sets.join(end_[2 * k], end_[2 * k + 1]);
         Numbers molecule(at(number_.size()), -1), of_bond(n_bonds, -1);
         for (std::int32_t i = 0; i < number_.size(); ++i) {
             if (fixed_[at(i)]) continue;
@@ -109,11 +139,11 @@ private:
             molecule[at(i)] = least == i ? static_cast<std::int32_t>(n_molecules_++) : molecule[at(least)];
         }
         for (std::size_t k = 0; k < n_bonds; ++k) {
-            const std::int32_t i = fixed_[at(end_[2 * k])] ? end_[2 * k + 1] : end_[2 * k];
+            const std::int32_t i = any_fixed_ && fixed_[at(end_[2 * k])] ? end_[2 * k + 1] : end_[2 * k];
             of_bond[k] = molecule[at(i)];
             if (of_bond[k] >= 0) continue;
-            found_.unconstrained.push_back(static_cast<std::int64_t>(k));
-            found_.unconstrained_atoms.insert(found_.unconstrained_atoms.end(), {ends_[2 * k], ends_[2 * k + 1]});
+            found_.unconstrained.push_back(bond_at(k));
+            for (std::size_t e = 0; e < 2; ++e) found_.unconstrained_atoms.push_back(number_.atom(end_[2 * k + e]));
         }
         bonds_ = sorted_by_molecule(of_bond, n_molecules_, bond_start_);
         atoms_ = sorted_by_molecule(molecule, n_molecules_, atom_start_);
@@ -129,8 +159,8 @@ private:
         bool leaves = false;
         for (std::size_t k = 0; k < n_bonds; ++k) {
             const std::size_t bond = at(bonds_[first + k]);
-            draft.bonds[k] = static_cast<std::int64_t>(bond);
-            leaves = leaves || fixed_[at(end_[2 * bond])] || fixed_[at(end_[2 * bond + 1])];
+            draft.bonds[k] = bond_at(bond);
+            leaves = leaves || (any_fixed_ && (fixed_[at(end_[2 * bond])] || fixed_[at(end_[2 * bond + 1])]));
         }
         if (leaves) return take_with_leaves(m, local, draft);
         for (std::int32_t i = atom_start_[m]; i < atom_start_[m + 1]; ++i) {
@@ -139,7 +169,7 @@ private:
         }
         draft.fixed.assign(draft.atoms.size(), 0);
         for (std::size_t k = 0; k < n_bonds; ++k)
-            for (std::size_t e = 0; e < 2; ++e) draft.pairs[2 * k + e] = local[at(end_[2 * at(draft.bonds[k]) + e])];
+            for (std::size_t e = 0; e < 2; ++e) draft.pairs[2 * k + e] = local[at(end_[2 * at(bonds_[first + k]) + e])];
     }
 
     // With fixed atoms, each once for every bond that it ends; those of one atom in the order of the bonds' other
@@ -149,11 +179,12 @@ private:
             std::int32_t atom, other;
             std::size_t end;  // of the leaf's bond in the draft
         };
+        const std::size_t first = at(bond_start_[m]);
         std::vector<Entry> entries;
         for (std::int32_t i = atom_start_[m]; i < atom_start_[m + 1]; ++i) entries.push_back({atoms_[at(i)], -1, 0});
         for (std::size_t k = 0; k < draft.bonds.size(); ++k)
             for (std::size_t e = 0; e < 2; ++e) {
-                const std::size_t bond = 2 * at(draft.bonds[k]);
+                const std::size_t bond = 2 * at(bonds_[first + k]);
                 if (fixed_[at(end_[bond + e])]) entries.push_back({end_[bond + e], end_[bond + 1 - e], 2 * k + e});
             }
         std::sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) {
@@ -162,23 +193,25 @@ private:
         for (std::size_t i = 0; i < entries.size(); ++i) {
             const Entry &entry = entries[i];
             if (i > 0 && entry.other >= 0 && entry.atom == entries[i - 1].atom && entry.other == entries[i - 1].other)
-                throw bond_error(list_, Status::degenerate, draft.bonds[entry.end / 2],
+                throw bond_error(list_, Status::degenerate,
+                                 std::max(draft.bonds[entry.end / 2], draft.bonds[entries[i - 1].end / 2]),
                                  "joins two atoms that another bond of the list joins already");
             if (entry.other < 0) local[at(entry.atom)] = static_cast<std::int32_t>(i);
             draft.atoms.push_back(number_.atom(entry.atom));
             draft.fixed.push_back(entry.other >= 0);
         }
         for (std::size_t k = 0; k < draft.bonds.size(); ++k)
-            for (std::size_t e = 0; e < 2; ++e) draft.pairs[2 * k + e] = local[at(end_[2 * at(draft.bonds[k]) + e])];
+            for (std::size_t e = 0; e < 2; ++e) draft.pairs[2 * k + e] = local[at(end_[2 * at(bonds_[first + k]) + e])];
         for (std::size_t i = 0; i < entries.size(); ++i)
             if (entries[i].other >= 0) draft.pairs[entries[i].end] = static_cast<std::int32_t>(i);
     }
 
     const BondList &list_;
-    const std::vector<std::int64_t> ends_;  // atoms [n_bonds][2]
     const Numbering number_;
-    Numbers end_;  // their short numbers
+    Numbers end_;      // short numbers of the atoms of each bond, the bonds in an order of our own:
+    Numbers bond_at_;  // their numbers in the list; empty if that is their order
     std::vector<unsigned char> fixed_;
+    bool any_fixed_ = false;
     std::size_t n_molecules_ = 0;
     Numbers bonds_, bond_start_, atoms_, atom_start_;  // of each molecule
     FoundMolecules found_;
