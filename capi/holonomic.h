@@ -140,6 +140,7 @@ HOL_API int hol_chains_add(hol_chains *chains, int64_t n_bonds, const int64_t *a
 /**
  * Adds n_chains linear chains of n_bonds bonds each, over consecutive atoms: chain c has the atoms
  * first_atom + c (n_bonds+1) .. first_atom + c (n_bonds+1) + n_bonds. A melt in one call.
+ * @param[in,out] chains
  * @param[in] n_chains    >= 1
  * @param[in] n_bonds     >= 1
  * @param[in] first_atom  number of the first atom of the first chain
@@ -176,6 +177,7 @@ HOL_API int hol_chains_add_bonds(hol_chains *chains, int64_t n_bonds, const int6
 /**
  * Adds the same bonds for n_molecules molecules of n_atoms consecutive atoms each: molecule m has the atoms
  * first_atom + m n_atoms .. first_atom + m n_atoms + n_atoms - 1. A box of rigid water in one call.
+ * @param[in,out] chains
  * @param[in] n_molecules  >= 1
  * @param[in] n_atoms      >= 2, atoms from one molecule to the next; some may have no bond (virtual sites)
  * @param[in] first_atom   number of the first atom of the first molecule
@@ -190,6 +192,7 @@ HOL_API int hol_chains_add_molecules(hol_chains *chains, int64_t n_molecules, in
 
 /**
  * New lengths for all bonds, without building the set again.
+ * @param[in,out] chains
  * @param[in] lengths  [n_bonds], 1e-150 .. 1e150. Copied.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (a length: the message names the bond); HOL_ERR_MEMORY. On an error
  *         nothing is changed. Not thread-safe on one handle. O(n_bonds). Since 0.2.
@@ -198,6 +201,7 @@ HOL_API int hol_chains_set_lengths(hol_chains *chains, const double *lengths);
 
 /**
  * New masses for all atoms, without building the set again.
+ * @param[in,out] chains
  * @param[in] masses  [n_atoms], as in hol_chains_create. What is held fixed divides molecules, so that an atom that is
  *                    in use stays fixed if it was, and movable if it was.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (a mass: the message names the atom); HOL_ERR_MEMORY. On an error nothing
@@ -214,6 +218,7 @@ HOL_API int hol_chains_set_index_base(hol_chains *chains, int base);
 
 /**
  * Periodic box: bond vectors are taken as the minimum image. The default is none.
+ * @param[in,out] chains
  * @param[in] box  [3][3], row i is box vector i, length; a row of zeros: not periodic along that axis. NULL: no box.
  *
  * Orthorhombic boxes (off-diagonal elements all zero) cost less than triclinic ones. The image is the right one for
@@ -225,6 +230,7 @@ HOL_API int hol_chains_set_box(hol_chains *chains, const double *box);
 /**
  * Box of the reference positions of hol_project_positions, if it is another than that of the positions: barostats that
  * deform the cell between the two.
+ * @param[in,out] chains
  * @param[in] box  as in hol_chains_set_box; NULL (default): that of hol_chains_set_box, also when it is set later
  * @return as hol_chains_set_box. Since 0.2.
  */
@@ -238,6 +244,7 @@ HOL_API int hol_chains_set_threads(hol_chains *chains, int n_threads);
 
 /**
  * Leaves molecules out: the data of an inactive molecule are neither read nor written, and it counts in no sum.
+ * @param[in,out] chains
  * @param[in] active  [n_chains], 0 = inactive, anything else = active; copied. NULL: all active (default). Molecules
  *                    added later are active.
  * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_MEMORY. Since 0.1.
@@ -246,6 +253,7 @@ HOL_API int hol_chains_set_active(hol_chains *chains, const unsigned char *activ
 
 /**
  * Tolerance of hol_project_positions: a molecule is done when |d.d - a^2| / a^2 <= tolerance for each of its bonds.
+ * @param[in,out] chains
  * @param[in] tolerance  > 0, or 0 for the default: the rounding of the coordinates, i.e. of the largest coordinate of
  *                       the molecule in the element type of the caller's positions.
  * A tolerance below what the coordinates can carry means the default.
@@ -281,6 +289,7 @@ HOL_API int64_t hol_chains_n_kinds(const hol_chains *chains);
 
 /**
  * Shape and size of one molecule. Each output may be NULL.
+ * @param[in] chains
  * @param[in]  molecule  its number
  * @param[out] shape     an hol_shape
  * @param[out] n_atoms   how many numbers hol_chains_atoms gives, at most n_bonds + 1
@@ -292,6 +301,7 @@ HOL_API int hol_chains_molecule(const hol_chains *chains, int64_t molecule, int 
 
 /**
  * Atoms of one molecule: along a linear chain; ascending otherwise, each once.
+ * @param[in] chains
  * @param[in]  chain  number of the molecule
  * @param[out] atoms  [n_atoms of hol_chains_molecule], for a linear chain the number of its bonds + 1
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_INDEX. Since 0.1.
@@ -301,6 +311,7 @@ HOL_API int hol_chains_atoms(const hol_chains *chains, int64_t chain, int64_t *a
 /**
  * Bonds of one molecule, in the order in which they are counted within it: hol_error_location, hol_report, hol_worst
  * and hol_inverse speak of bond k of the molecule, which is bond bonds[k] of the arrays per bond.
+ * @param[in] chains
  * @param[in]  molecule  its number
  * @param[out] bonds     [n_bonds of hol_chains_molecule]
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_INDEX. Since 0.2.
@@ -309,6 +320,7 @@ HOL_API int hol_chains_bonds(const hol_chains *chains, int64_t molecule, int64_t
 
 /**
  * The molecule of every bond.
+ * @param[in] chains
  * @param[out] molecules  [n_bonds]; -1 (whatever the index base) for a bond between two fixed atoms
  * @return HOL_OK; HOL_ERR_NULL. O(n_bonds). Since 0.2.
  */
@@ -318,6 +330,7 @@ HOL_API int hol_chains_molecules_of_bonds(const hol_chains *chains, int64_t *mol
  * Where each molecule's bonds stand in the arrays per bond, if those of each follow one another and molecule follows
  * molecule, as they do if only hol_chains_add and hol_chains_add_block were called and no bond joins two fixed atoms;
  * hol_chains_bonds tells it in any case. The order within a molecule is that of hol_chains_bonds.
+ * @param[in] chains
  * @param[out] offsets  [n_chains+1]: molecule c has the bonds offsets[c] .. offsets[c+1]-1; counted from the index base
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (the bonds stand in another order; the message names the first molecule
  *         of which that is so; nothing is written). Since 0.1.
@@ -327,6 +340,7 @@ HOL_API int hol_chains_offsets(const hol_chains *chains, int64_t *offsets);
 /**
  * Degrees of freedom of all n_atoms atoms: dimensions times the number of atoms that can move, less one for each bond
  * of an active molecule. A conserved total momentum is not subtracted.
+ * @param[in] chains
  * @param[in] dimensions  3, or 2 for views without z
  * @return the number; -1 if chains is NULL or dimensions is neither. Since 0.1.
  */
@@ -463,6 +477,7 @@ typedef struct hol_worst {
 
 /**
  * Largest violation of the constraints over the active molecules.
+ * @param[in] chains
  * @param[in]  r      positions [n_atoms][3]
  * @param[in]  v      velocities [n_atoms][3], or NULL
  * @param[out] worst
@@ -553,6 +568,9 @@ HOL_API int hol_inverse_entry(const hol_inverse *inverse, int scaling, int64_t i
 
 /**
  * Row i, which is column i too, in O(N).
+ * @param[in]  inverse
+ * @param[in]  scaling  HOL_UNIT_DIAGONAL or HOL_PHYSICAL
+ * @param[in]  i        number of a bond within the molecule
  * @param[out] row  [N]
  * @return as hol_inverse_entry. Since 0.1.
  */
@@ -560,6 +578,8 @@ HOL_API int hol_inverse_row(const hol_inverse *inverse, int scaling, int64_t i, 
 
 /**
  * The diagonal and `width` diagonals beside it, in O(N (width+1)); width 0 is the diagonal alone.
+ * @param[in]  inverse
+ * @param[in]  scaling  HOL_UNIT_DIAGONAL or HOL_PHYSICAL
  * @param[in]  width  >= 0
  * @param[out] band   [N][width+1]: element (i, i+k) at band[i (width+1) + k], 0 where i+k is past the last bond
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (scaling, width). Since 0.1.
@@ -568,6 +588,8 @@ HOL_API int hol_inverse_band(const hol_inverse *inverse, int scaling, int64_t wi
 
 /**
  * The whole inverse, in O(N^2).
+ * @param[in]  inverse
+ * @param[in]  scaling  HOL_UNIT_DIAGONAL or HOL_PHYSICAL
  * @param[out] matrix  [N][N], symmetric to the last bit
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (scaling). Since 0.1.
  */
@@ -637,6 +659,8 @@ HOL_API int hol_tridiagonal_log_det(int64_t n, const double *gamma, double *log_
 
 /**
  * Solves T x = b. O(n).
+ * @param[in]  n      rows
+ * @param[in]  gamma  [n-1]; may be NULL if n = 1
  * @param[in]  b  [n]
  * @param[out] x  [n], may be b itself
  * Since 0.1.
@@ -645,13 +669,19 @@ HOL_API int hol_tridiagonal_solve(int64_t n, const double *gamma, const double *
 
 /**
  * One element of the inverse (Mazars 2007, Eq. 20). O(n) whatever i and j; for many elements use the band.
+ * @param[in]  n      rows
+ * @param[in]  gamma  [n-1]; may be NULL if n = 1
  * @param[in] i, j  rows, counted from 0
+ * @param[out] value
  * Since 0.1.
  */
 HOL_API int hol_tridiagonal_inverse_entry(int64_t n, const double *gamma, int64_t i, int64_t j, double *value);
 
 /**
  * The diagonal of the inverse and `width` diagonals beside it. O(n (width+1)).
+ * @param[in]  n      rows
+ * @param[in]  gamma  [n-1]; may be NULL if n = 1
+ * @param[in]  width  >= 0
  * @param[out] band  [n][width+1]: element (i, i+k) at band[i (width+1) + k], 0 where i+k is past the last row
  * Since 0.1.
  */
