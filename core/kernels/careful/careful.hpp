@@ -18,6 +18,7 @@ namespace careful {
 void forces(const ForcesCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
 void velocities(const VelocitiesCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
 void positions(const PositionsCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
+void metric(const MetricCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
 void solve(const SolveCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
 
 }  // namespace careful

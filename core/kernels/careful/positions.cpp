@@ -29,7 +29,7 @@ struct Projection {
 
 static bool load(Projection &p, const PositionsCall &call) {
     Molecule &m = p.m;
-    if (!load(m, call.r_ref, call.box) || !load_vectors(m, call.r, call.box, p.first)) return false;
+    if (!load(m, call.r_ref, call.box_ref) || !load_vectors(m, call.r, call.box, p.first)) return false;
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
         const double a = m.lane.length[k] / m.unit[k];
         p.first[k] = (1 / m.unit[k]) * p.first[k];

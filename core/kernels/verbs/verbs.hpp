@@ -46,6 +46,7 @@ int64_t long_metric_bytes(int64_t n_bonds);
 void long_metric_map(const MetricCall &, const Lane &, int64_t block, double *store, double *scratch);
 bool long_metric_join(const Lane &, double *store);
 void long_metric_finish(const MetricCall &, const Lane &, int64_t block, double *store, double *scratch, Tally &);
+void molecules_metric(const MetricCall &, const MoleculeUnit &, double *scratch, Tally &);
 
 }  // namespace HOL_ISA
 }  // namespace holonomic

@@ -1,0 +1,100 @@
+// ln det Z~ as the sum of the logarithms of pivots over their diagonal elements (molecules.md (m7)): of what is taken
+// from the diagonal where that is less than half of it, so that small ones keep their digits.
+#ifndef HOLONOMIC_KERNELS_CAREFUL_LOGARITHMS_HPP
+#define HOLONOMIC_KERNELS_CAREFUL_LOGARITHMS_HPP
+
+#include "core/kernels/careful/system.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace careful {
+
+HOL_NOINLINE double log_of_ratio(const Wide &removed, const Wide &pivot, const Wide &full) {
+    const Wide x = removed / full;
+    if (x.hi < 0.5) return __builtin_log1p(-x.hi) - x.lo / (1 - x.hi);
+    const Wide ratio = pivot / full;
+    return __builtin_log(ratio.hi) + ratio.lo / ratio.hi;
+}
+
+// w d.d of both ends of a bond.
+HOL_INLINE Wide full_diagonal(const Molecule &m, int32_t k) {
+    return (wide(m.w[m.plan.atom_i[k]]) + wide(m.w[m.plan.atom_j[k]])) * dot(m.d[k], m.d[k]);
+}
+
+// The children of atom i, one after the other; and what all of them take from its parent bond, in F.
+HOL_NOINLINE Wide log_of_children(const Molecule &m, const Wide *up, Wide *F, Joint &x, Wide *l, int32_t i) {
+    const CarefulPlan &plan = m.plan;
+    const int32_t *const arms = plan.arms + plan.arm_start[i];
+    Wide sum = wide(0);
+    int parent = -1;
+    open_joint(m, m.d, m.d, i, x);
+    x.n_others = 0;
+    for (int a = 0; a < x.n; ++a) {
+        if (arms[a] == plan.parent[i]) parent = a;
+        if (!is_child(plan, i, arms[a])) continue;
+        const int32_t k = arms[a];
+        eliminate_arms(x);
+        multipliers(x, a, l);
+        const Wide pivot = up[k] + offered(x, a, a), removed = F[k] + taken(x, l, a);
+        sum += wide(log_of_ratio(removed, pivot, full_diagonal(m, k)));
+        set_arm(x, a, up[k]);
+        x.others[x.n_others++] = a;
+    }
+    if (parent < 0) return sum;
+    eliminate_arms(x);
+    multipliers(x, parent, l);
+    F[arms[parent]] = taken(x, l, parent);
+    return sum;
+}
+
+HOL_NOINLINE Wide log_of_trees(const Molecule &m, const Wide *up, Joint &x, Memory memory) {
+    Wide *const F = memory.take<Wide>(m.plan.n_bonds), *const l = memory.take<Wide>(m.plan.most_arms);
+    Wide sum = wide(0);
+    for (int32_t s = 0; s < m.plan.n_hanging; ++s) sum += log_of_children(m, up, F, x, l, m.plan.hanging[s]);
+    for (int32_t i = 0; i < m.plan.n_atoms; ++i)
+        if (m.plan.parent[i] < 0) sum += log_of_children(m, up, F, x, l, i);
+    return sum;
+}
+
+HOL_NOINLINE Wide log_of_core(const Core &x) {
+    Wide sum = wide(0);
+    for (int32_t c = 0; c < x.plan->n_core; ++c) sum += wide(log_of_ratio(x.removed[c], x.diagonal[c], x.full[c]));
+    return sum;
+}
+
+HOL_NOINLINE Wide log_of_ring(const Molecule &m, const Ring &x) {
+    Wide sum = wide(0);
+    for (int32_t k = 0; k < x.n; ++k) {
+        const int32_t bond = m.plan.ring[k];
+        const Wide full = wide(m.w[m.plan.atom_i[bond]]) + wide(m.w[m.plan.atom_j[bond]]);
+        sum += wide(log_of_ratio(x.removed[k], x.P[k], full));
+    }
+    return sum;
+}
+
+// ln det Z~ of a molecule that has been factorized.
+HOL_NOINLINE Wide log_det(const Molecule &m, System &x, const Memory &memory) {
+    if (is_ring(m.plan)) return log_of_ring(m, x.ring);
+    if (is_tree(m.plan)) return log_of_trees(m, x.tree.up, x.joint, memory);
+    return log_of_trees(m, x.graph.up, x.joint, memory) + log_of_core(x.graph.core);
+}
+
+// Sum of ln Z_kk, Z_kk = 4 (w_i + w_j) d.d.
+HOL_NOINLINE Wide log_of_diagonal(const Molecule &m) {
+    constexpr double ln2 = 0.69314718055994530942;
+    Wide sum = wide(0);
+    for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
+        const double scaled = 4 * full_diagonal(m, k).hi, z = scaled * m.mass_unit * m.unit[k] * m.unit[k];
+        if (z > 0x1p-1000 && z < 0x1p1000)
+            sum += wide(__builtin_log(z));
+        else
+            sum +=
+                wide(__builtin_log(scaled)) + (__builtin_logb(m.mass_unit) + 2 * __builtin_logb(m.unit[k])) * wide(ln2);
+    }
+    return sum;
+}
+
+}  // namespace careful
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif
