@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "boundary.hpp"
 #include "view.hpp"
@@ -16,7 +17,7 @@ using holonomic::Status;
 using holonomic::viewed_array;
 
 struct hol_inverse {
-    holonomic::Inverse inverse;
+    std::unique_ptr<const holonomic::Inverse> inverse;
 };
 
 namespace {
@@ -30,12 +31,12 @@ void create(const hol_chains *chains, std::int64_t chain, const AtomArray &r, ho
         error.base = all.base;
         throw error;
     }
-    *inverse = new hol_inverse{holonomic::Inverse(all, chain - all.base, r)};
+    *inverse = new hol_inverse{holonomic::Inverse::make(all, chain - all.base, r)};
 }
 
 // Number of a bond counted from 0; -1, which the core refuses, for one below the base.
 std::int64_t bond(const hol_inverse *inverse, std::int64_t i) {
-    const int base = inverse->inverse.base();
+    const int base = inverse->inverse->base();
     return i < base ? -1 : i - base;
 }
 
@@ -47,7 +48,7 @@ bool is_physical(int scaling) {
 
 void error_bound(const hol_inverse *inverse, const AtomArray &v, const AtomArray &f, const double *lambda,
                  double *bound, double *relative) {
-    const std::vector<double> found = inverse->inverse.error_bound(v, f, lambda);
+    const std::vector<double> found = inverse->inverse->error_bound(v, f, lambda);
     double largest = 0, size = 0;
     for (std::size_t k = 0; k < found.size(); ++k) {
         largest = std::max(largest, found[k]);
@@ -85,13 +86,13 @@ int hol_inverse_create_view(const hol_chains *chains, int64_t chain, const hol_v
 
 void hol_inverse_destroy(hol_inverse *inverse) { delete inverse; }
 
-int64_t hol_inverse_n_bonds(const hol_inverse *inverse) { return inverse ? inverse->inverse.n_bonds() : 0; }
+int64_t hol_inverse_n_bonds(const hol_inverse *inverse) { return inverse ? inverse->inverse->n_bonds() : 0; }
 
 int hol_inverse_entry(const hol_inverse *inverse, int scaling, int64_t i, int64_t j, double *value) {
     return guarded(__func__, [&] {
         need(inverse, "inverse");
         need(value, "value");
-        *value = inverse->inverse.entry(is_physical(scaling), bond(inverse, i), bond(inverse, j));
+        *value = inverse->inverse->entry(is_physical(scaling), bond(inverse, i), bond(inverse, j));
     });
 }
 
@@ -99,7 +100,7 @@ int hol_inverse_row(const hol_inverse *inverse, int scaling, int64_t i, double *
     return guarded(__func__, [&] {
         need(inverse, "inverse");
         need(row, "row");
-        inverse->inverse.row(is_physical(scaling), bond(inverse, i), row);
+        inverse->inverse->row(is_physical(scaling), bond(inverse, i), row);
     });
 }
 
@@ -107,7 +108,7 @@ int hol_inverse_band(const hol_inverse *inverse, int scaling, int64_t width, dou
     return guarded(__func__, [&] {
         need(inverse, "inverse");
         need(band, "band");
-        inverse->inverse.band(is_physical(scaling), width, band);
+        inverse->inverse->band(is_physical(scaling), width, band);
     });
 }
 
@@ -115,7 +116,7 @@ int hol_inverse_matrix(const hol_inverse *inverse, int scaling, double *matrix) 
     return guarded(__func__, [&] {
         need(inverse, "inverse");
         need(matrix, "matrix");
-        inverse->inverse.matrix(is_physical(scaling), matrix);
+        inverse->inverse->matrix(is_physical(scaling), matrix);
     });
 }
 
@@ -123,7 +124,7 @@ int hol_inverse_condition(const hol_inverse *inverse, double *condition) {
     return guarded(__func__, [&] {
         need(inverse, "inverse");
         need(condition, "condition");
-        *condition = inverse->inverse.condition();
+        *condition = inverse->inverse->condition();
     });
 }
 

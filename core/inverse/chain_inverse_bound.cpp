@@ -2,8 +2,7 @@
 #include <cmath>
 
 #include "core/caller/view.hpp"
-#include "core/inverse/inverse.hpp"
-#include "core/run/diagnose.hpp"
+#include "core/inverse/chain_inverse.hpp"
 
 namespace holonomic {
 
@@ -21,14 +20,12 @@ PairVector combined(const DoublePair &a, const PairVector &x, const DoublePair &
 
 double size(const PairVector &a) { return std::fabs(a.x.hi) + std::fabs(a.y.hi) + std::fabs(a.z.hi); }
 
-bool is_finite(const PairVector &a) { return std::isfinite(size(a)); }
-
 }  // namespace
 
 // Of bond k, in the form d_k.(w_k A_k - w_{k-1} A_{k-1}) + |dv|^2 with A_i = F_i + G_i; `terms` gets the size of what
 // is added up.
-DoublePair Inverse::residual(const AtomArray &v, const AtomArray &f, const double *lambda, std::size_t k,
-                             double &terms) const {
+DoublePair ChainInverse::residual(const AtomArray &v, const AtomArray &f, const double *lambda, std::size_t k,
+                                  double &terms) const {
     const DoublePair w0 = as_pair(w_[k]), w1 = as_pair(w_[k + 1]), minus = as_pair(-1);
     const PairVector &d = d_[k];
     const double q = dot(d, d).hi;
@@ -56,34 +53,15 @@ DoublePair Inverse::residual(const AtomArray &v, const AtomArray &f, const doubl
 }
 
 // Whether anything that stands in the equation of bond k is not zero; where nothing is, its residual is exactly zero.
-bool Inverse::touched(const AtomArray &v, const AtomArray &f, const double *lambda, std::size_t k) const {
+bool ChainInverse::touched(const AtomArray &v, const AtomArray &f, const double *lambda, std::size_t k) const {
     const auto any = [&](const AtomArray &array) {
         return array.x && (size(vector_of(array, atoms_[k])) > 0 || size(vector_of(array, atoms_[k + 1])) > 0);
     };
     return any(v) || any(f) || lambda[k] != 0 || (k > 0 && lambda[k - 1] != 0) || (k + 1 < n_ && lambda[k + 1] != 0);
 }
 
-std::vector<double> Inverse::error_bound(const AtomArray &v, const AtomArray &f, const double *lambda) const {
-    const auto check = [&](const AtomArray &array, const char *what) {
-        for (std::size_t k = 0; array.x && k <= n_; ++k) {
-            if (is_finite(vector_of(array, atoms_[k]))) continue;
-            Error error = make_error(Status::not_finite, "the %s of atom %lld is not finite", what,
-                                     static_cast<long long>(atoms_[k] + base_));
-            error.atom = atoms_[k];
-            error.base = base_;
-            throw error;
-        }
-    };
-    check(v, "velocity");
-    check(f, "force");
-    for (std::size_t k = 0; k < n_; ++k) {
-        if (std::isfinite(lambda[k])) continue;
-        Error error = make_error(Status::not_finite, "the multiplier of bond %lld is not finite",
-                                 static_cast<long long>(k) + base_);
-        error.bond = static_cast<std::int64_t>(k);
-        error.base = base_;
-        throw error;
-    }
+std::vector<double> ChainInverse::error_bound(const AtomArray &v, const AtomArray &f, const double *lambda) const {
+    check_finite(atoms_, v, f, lambda);
     // Each product and sum of the evaluation has a relative error below 2^-102 and there are fewer than 64 of them; a
     // box adds the same for lattice vectors up to 2^5 times as long as the bond. Among denormal numbers each is off by
     // up to the smallest number instead, before it is multiplied by at most one more vector and one more inverse mass;

@@ -1,0 +1,39 @@
+// One molecule that is no linear chain, copied and with its equations A t = b eliminated by the careful solver
+// (core/kernels/careful), in the baseline's instructions: for what is not in the hot path.
+#ifndef HOLONOMIC_CAREFUL_MOLECULE_HPP
+#define HOLONOMIC_CAREFUL_MOLECULE_HPP
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/kernels/call.hpp"
+#include "core/molecules/molecule.hpp"
+
+namespace holonomic {
+
+class CarefulMolecule {
+public:
+    // Throws std::bad_alloc.
+    CarefulMolecule(const Molecule &molecule, const AtomArray &r, const Box &box);
+    ~CarefulMolecule();
+
+    bool good() const;
+    // Where it is not good: a bond that depends on others; -1 if the bond vectors are of no use.
+    std::int64_t dependent_bond() const;
+
+    // Row i of the inverse of A~ = A over the roots of its diagonal elements. Thread-safe. Throws std::bad_alloc.
+    std::vector<double> inverse_row(std::int64_t i) const;
+    // The root of a diagonal element of A, as root() 2^exponent().
+    double root(std::int64_t k) const;
+    int exponent(std::int64_t k) const;
+    // Sum of absolute values in the largest row of A~.
+    double largest_row() const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace holonomic
+#endif
