@@ -90,7 +90,7 @@ std::vector<double> CarefulMolecule::inverse_row(std::int64_t i) const {
     b[at(i)] = as_pair(1);
     solve(s.molecule, own, b.data(), t.data());
     std::vector<double> row(n);
-    for (std::size_t k = 0; k < n; ++k) row[k] = s.root[at(i)] * rounded(t[k]) * s.root[k] + 0.0;
+    for (std::size_t k = 0; k < n; ++k) row[k] = (s.root[at(i)] * s.root[k]) * rounded(t[k]) + 0.0;
     return row;
 }
 

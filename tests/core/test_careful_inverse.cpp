@@ -133,7 +133,7 @@ void bad_arguments_are_refused(const owned &x)
 }  // namespace
 
 int main()
-{
+try {
     unsigned seed = 300;
     for (const shape &s : shapes) {
         if (s.list.size() < 3 || s.name == std::string("chain of three")) continue;
@@ -146,4 +146,7 @@ int main()
         bounds_hold(x, h);
         bad_arguments_are_refused(x);
     }
+} catch (const holonomic::Error &error) {
+    std::puts(error.message);
+    return 1;
 }
