@@ -4,11 +4,11 @@
 
 #include <cmath>
 
+#include "careful_calls.hpp"
 #include "careful_case.hpp"
 #include "careful_shapes.hpp"
 
 using namespace careful_case;
-namespace solver = holonomic::baseline::careful;
 using holonomic::AtomArray;
 using holonomic::CarefulShape;
 using holonomic::packed_array;
@@ -54,40 +54,6 @@ void agree(const molecule &m, const std::vector<double> &lambda, const solution 
         require(error <= 2 * epsilon * exact.scale[k], m.name, what);
     }
 }
-
-struct calls {
-    molecule m;
-    CarefulShape s;
-    std::vector<double> memory, lambda, g;
-    holonomic::MoleculeLane lane;
-    holonomic::Tally tally = empty_tally();
-
-    explicit calls(const molecule &given)
-        : m(given), s(m.n_atoms, m.n_bonds, m.pairs.data()), lambda(m.n_bonds, 77.0),
-          g(3 * m.n_atoms, 78.0), lane{0, nullptr, nullptr, m.w.data(), m.length.data(), 0, 0}
-    {
-    }
-
-    void forces()
-    {
-        holonomic::ForcesCall call{};
-        call.r = packed_array(m.r.data());
-        call.v = packed_array(m.v.data());
-        call.f = packed_array(m.f.data());
-        call.g = packed_array(g.data());
-        call.lambda = lambda.data();
-        call.virial = true;
-        run(call, solver::forces);
-    }
-    template <class Call>
-    void run(const Call &call, void (*verb)(const Call &, const holonomic::CarefulPlan &,
-                                            const holonomic::MoleculeLane &, double *, holonomic::Tally &))
-    {
-        double *const scratch = scratch_for(s.plan(), memory);
-        verb(call, s.plan(), lane, scratch, tally);
-        require(!overrun(s.plan(), scratch), m.name, "scratch memory is overrun");
-    }
-};
 
 void forces_are_right(const molecule &m)
 {

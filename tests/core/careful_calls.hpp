@@ -1,0 +1,55 @@
+/**
+ * @file careful_calls.hpp
+ * The careful solver of the baseline's instructions, called for one molecule.
+ */
+#ifndef CAREFUL_CALLS_HPP
+#define CAREFUL_CALLS_HPP
+
+#ifndef HOL_ISA
+#define HOL_ISA baseline
+#endif
+#include "careful_case.hpp"
+#include "core/kernels/careful/careful.hpp"
+
+namespace careful_case
+{
+
+namespace solver = holonomic::baseline::careful;
+
+struct calls {
+    molecule m;
+    holonomic::CarefulShape s;
+    std::vector<double> memory, lambda, g;
+    holonomic::MoleculeLane lane;
+    holonomic::Tally tally = empty_tally();
+
+    explicit calls(const molecule &given)
+        : m(given), s(m.n_atoms, m.n_bonds, m.pairs.data()), lambda(m.n_bonds, 77.0),
+          g(3 * m.n_atoms, 78.0), lane{0, nullptr, nullptr, m.w.data(), m.length.data(), 0, 0}
+    {
+    }
+
+    void forces()
+    {
+        holonomic::ForcesCall call{};
+        call.r = holonomic::packed_array(m.r.data());
+        call.v = holonomic::packed_array(m.v.data());
+        call.f = holonomic::packed_array(m.f.data());
+        call.g = holonomic::packed_array(g.data());
+        call.lambda = lambda.data();
+        call.virial = true;
+        run(call, solver::forces);
+    }
+    template <class Call>
+    void run(const Call &call, void (*verb)(const Call &, const holonomic::CarefulPlan &,
+                                            const holonomic::MoleculeLane &, double *, holonomic::Tally &))
+    {
+        double *const scratch = scratch_for(s.plan(), memory);
+        verb(call, s.plan(), lane, scratch, tally);
+        require(!overrun(s.plan(), scratch), m.name, "scratch memory is overrun");
+    }
+};
+
+}  // namespace careful_case
+
+#endif
