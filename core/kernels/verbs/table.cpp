@@ -34,6 +34,7 @@ const Kernels kernels = {
      long_positions_factorize, long_positions_join, long_positions_step, long_positions_pull, long_positions_finish,
      long_positions_windows, long_positions_window, long_positions_windows_fit, long_positions_finish_window},
     {long_blocks, long_metric_bytes, long_metric_map, long_metric_join, long_metric_finish},
+    {molecules_scratch_bytes, molecules_forces, molecules_velocities, molecules_positions, molecules_metric, molecules_solve},
 };
 
 }  // namespace HOL_ISA

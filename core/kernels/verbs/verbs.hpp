@@ -48,6 +48,12 @@ bool long_metric_join(const Lane &, double *store);
 void long_metric_finish(const MetricCall &, const Lane &, int64_t block, double *store, double *scratch, Tally &);
 void molecules_metric(const MetricCall &, const MoleculeUnit &, double *scratch, Tally &);
 
+int64_t molecules_scratch_bytes(const Schedule &);
+void molecules_forces(const ForcesCall &, const MoleculeUnit &, double *scratch, Tally &);
+void molecules_velocities(const VelocitiesCall &, const MoleculeUnit &, double *scratch, Tally &);
+void molecules_positions(const PositionsCall &, const MoleculeUnit &, double *scratch, Tally &);
+void molecules_solve(const SolveCall &, const MoleculeUnit &, double *scratch, Tally &);
+
 }  // namespace HOL_ISA
 }  // namespace holonomic
 #endif

@@ -1,0 +1,62 @@
+// A unit of molecules, a block after the other: W in lanes while there are two or more left and they are not too large
+// for a cache, else one by one.
+#ifndef HOLONOMIC_KERNELS_GRAPH_BLOCKS_HPP
+#define HOLONOMIC_KERNELS_GRAPH_BLOCKS_HPP
+
+#include "core/kernels/graph/linear.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// Molecules of more bonds are worked on one by one.
+constexpr int32_t largest_in_lanes = 2048;
+
+HOL_INLINE MoleculeLane molecule_of(const MoleculeUnit &unit, int64_t i) {
+    if (!unit.regular) return unit.lanes[i];
+    MoleculeLane lane = unit.lanes[0];
+    lane.first_atom += i * unit.schedule->n_atoms;
+    lane.first_bond += i * unit.schedule->n_bonds;
+    lane.molecule += i;
+    return lane;
+}
+
+// The masses of the block before, which this one may have, too, in the same memory.
+template <class V>
+struct KnownMasses {
+    const double *of[Width<V>::lanes] = {};
+    bool same(const MoleculeLane *lane, int used) {
+        bool all = true;
+        for (int i = 0; i < Width<V>::lanes; ++i) {
+            const double *const w = lane[i < used ? i : 0].w;
+            all = all && of[i] == w;
+            of[i] = w;
+        }
+        return all;
+    }
+};
+
+// Calls work.template block<V>(lane, used, masses are known, scratch) for all blocks.
+template <class Work>
+static inline void for_each_block(const MoleculeUnit &unit, double *scratch, Work &work) {
+    MoleculeLane lane[W];
+    KnownMasses<vec> known;
+    KnownMasses<double> known_one;
+    const bool small = unit.schedule->n_bonds <= largest_in_lanes;
+    int64_t first = 0;
+    while (first < unit.count) {
+        const int64_t left = unit.count - first;
+        const int used = !small || left < 2 ? 1 : left < W ? static_cast<int>(left) : W;
+        for (int i = 0; i < used; ++i) lane[i] = molecule_of(unit, first + i);
+        if (used > 1)
+            work.template block<vec>(lane, used, known.same(lane, used), scratch);
+        else
+            work.template block<double>(lane, 1, known_one.same(lane, 1), scratch);
+        first += used;
+    }
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,144 @@
+// The core of a molecule with cycles: what hanging trees leave of its atoms' inverse masses is a tensor per atom, never
+// formed (theory (55)); the core's bonds are eliminated by LDL^T in the order of the schedule.
+#ifndef HOLONOMIC_KERNELS_GRAPH_CORE_MATRIX_HPP
+#define HOLONOMIC_KERNELS_GRAPH_CORE_MATRIX_HPP
+
+#include "core/kernels/graph/joint.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+template <class V>
+struct CoreMatrix {
+    V *entry;  // [n_entries] off-diagonal elements, then multipliers; the pivots are E of the rows
+    V *reach;  // for every core atom: l of each of its bonds for each of its children
+    V *part;   // working memory: bonds of an atom times its children
+    static constexpr int64_t most_parts(const Schedule &s) {
+        return static_cast<int64_t>(s.max_core_bonds) * s.max_children;
+    }
+};
+
+// The number of products of bonds and children over all atoms of the core.
+HOL_INLINE int64_t reaches(const Schedule &s) {
+    int64_t n = 0;
+    for (int32_t c = 0; c < s.n_core_atoms; ++c)
+        n += static_cast<int64_t>(s.meet_start[c + 1] - s.meet_start[c]) *
+             (s.child_start[s.n_tree + c + 1] - s.child_start[s.n_tree + c]);
+    return n;
+}
+
+HOL_INLINE double sign_of(int32_t meet) { return meet % 2 ? 1.0 : -1.0; }
+
+// The elements that one atom gives: s_k s_l (w d_k.d_l - sum over children of z_k z_l r), z = the forward half of l.
+template <class V>
+static inline void add_core_atom(Molecules<V> &x, const CoreMatrix<V> &core, int32_t c, V *reach, Memory<V> memory) {
+    const Schedule &s = x.s;
+    const int32_t slot = s.n_tree + c, k = s.child_start[slot + 1] - s.child_start[slot];
+    const int32_t *const child = s.child + s.child_start[slot], *const meet = s.meet + s.meet_start[c];
+    const int32_t n = s.meet_start[c + 1] - s.meet_start[c], *entry = s.meet_pair + s.meet_pair_start[c];
+    const V w = x.w[slot];
+    auto f = JointMemory<V, 0>::make(memory, k);
+    decompose(x, child, k, w, f.S, f.r, f.m);
+    V *const m = x.pair + s.pair_start[slot];
+    for (int32_t a = 0; a < k; ++a) x.row[child[a]].r = f.r[a];
+    for (int32_t a = 0; a < k * (k - 1) / 2; ++a) m[a] = f.m[a];
+    for (int32_t e = 0; e < n; ++e) {
+        const int32_t place = s.n_tree + meet[e] / 2;
+        V *const z = core.part + e * k, *const l = reach + e * k;
+        for (int32_t a = 0; a < k; ++a) f.y[a] = w * product_of(x, child[a], place);
+        solve_joint(k, f.r, f.m, f.y, z, l);
+        BondRow<V> &row = x.row[place];
+        const V whole = w * row.q;
+        V left = whole;
+        for (int32_t a = 0; a < k; ++a) left = mul_add(-(z[a] * f.r[a]), z[a], left);
+        if (k > 0) x.slack = min(mul_add(Width<V>::all(-least_part), whole, left), x.slack);
+        row.E = row.E + left;
+        for (int32_t o = 0; o < e; ++o) {
+            V g = w * product_of(x, place, s.n_tree + meet[o] / 2);
+            const V *const zo = core.part + o * k;
+            for (int32_t a = 0; a < k; ++a) g = mul_add(-(z[a] * f.r[a]), zo[a], g);
+            core.entry[*entry++] = sign_of(meet[e]) * sign_of(meet[o]) * g;
+        }
+    }
+}
+
+template <class V>
+static inline void factorize_core(Molecules<V> &x, const CoreMatrix<V> &core, Memory<V> memory) {
+    const Schedule &s = x.s;
+    for (int32_t e = 0; e < s.n_entries; ++e) core.entry[e] = V{};
+    BondRow<V> *const row = x.row + s.n_tree;
+    for (int32_t p = 0; p < s.n_core; ++p) row[p].E = V{};
+    V *reach = core.reach;
+    for (int32_t c = 0; c < s.n_core_atoms; ++c) {
+        add_core_atom(x, core, c, reach, memory);
+        reach += static_cast<int64_t>(s.meet_start[c + 1] - s.meet_start[c]) *
+                 (s.child_start[s.n_tree + c + 1] - s.child_start[s.n_tree + c]);
+    }
+    for (int32_t p = 0; p < s.n_core; ++p) {
+        const int32_t first = s.column_start[p], n = s.column_start[p + 1] - first;
+        const int32_t *const below = s.row + first, *update = s.update + s.update_start[p];
+        V *const column = core.entry + first;
+        const V r = Width<V>::all(1) / row[p].E;
+        row[p].r = r;
+        for (int32_t a = 0; a < n; ++a) {
+            const V l = column[a] * r;
+            for (int32_t b = 0; b < a; ++b, ++update)
+                core.entry[*update] = mul_add(-l, core.part[b], core.entry[*update]);
+            row[below[a]].E = mul_add(-l, column[a], row[below[a]].E);
+            core.part[a] = column[a];
+            column[a] = l;
+        }
+    }
+}
+
+// What the children of the core's atoms leave of the right-hand sides, then the core's own; all of u.
+template <class V>
+static inline void substitute_core(const Molecules<V> &x, const CoreMatrix<V> &core, Memory<V> memory) {
+    const Schedule &s = x.s;
+    const V *reach = core.reach;
+    for (int32_t c = 0; c < s.n_core_atoms; ++c) {
+        const int32_t slot = s.n_tree + c, k = s.child_start[slot + 1] - s.child_start[slot];
+        const int32_t *const child = s.child + s.child_start[slot];
+        if (k == 0) continue;
+        for (int32_t e = s.meet_start[c]; e < s.meet_start[c + 1]; ++e, reach += k) {
+            V sum = {};
+            for (int32_t a = 0; a < k; ++a) sum = mul_add(reach[a], x.row[child[a]].t, sum);
+            V &y = x.row[s.n_tree + s.meet[e] / 2].t;
+            y = s.meet[e] % 2 ? y + sum : y - sum;
+        }
+        substitute_joint<0, true>(x, slot, k, memory);
+    }
+    BondRow<V> *const row = x.row + s.n_tree;
+    for (int32_t p = 0; p < s.n_core; ++p)
+        for (int32_t e = s.column_start[p]; e < s.column_start[p + 1]; ++e)
+            row[s.row[e]].t = mul_add(-core.entry[e], row[p].t, row[s.row[e]].t);
+}
+
+// Back: t of the core, then of the first bonds of its hanging trees.
+template <class V>
+static inline void down_core(const Molecules<V> &x, const CoreMatrix<V> &core) {
+    const Schedule &s = x.s;
+    BondRow<V> *const row = x.row + s.n_tree;
+    for (int32_t p = s.n_core - 1; p >= 0; --p) {
+        V t = row[p].t * row[p].r;
+        for (int32_t e = s.column_start[p]; e < s.column_start[p + 1]; ++e)
+            t = mul_add(-core.entry[e], row[s.row[e]].t, t);
+        row[p].t = t;
+    }
+    const V *reach = core.reach;
+    for (int32_t c = 0; c < s.n_core_atoms; ++c) {
+        const int32_t slot = s.n_tree + c, k = s.child_start[slot + 1] - s.child_start[slot];
+        const int32_t *const child = s.child + s.child_start[slot];
+        if (k == 0) continue;
+        for (int32_t e = s.meet_start[c]; e < s.meet_start[c + 1]; ++e, reach += k) {
+            const V t = x.row[s.n_tree + s.meet[e] / 2].t, signed_t = s.meet[e] % 2 ? t : -t;
+            for (int32_t a = 0; a < k; ++a) x.row[child[a]].t = mul_add(reach[a], signed_t, x.row[child[a]].t);
+        }
+    }
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

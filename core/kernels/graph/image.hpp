@@ -1,0 +1,32 @@
+// The image of one bond.
+#ifndef HOLONOMIC_KERNELS_GRAPH_IMAGE_HPP
+#define HOLONOMIC_KERNELS_GRAPH_IMAGE_HPP
+
+#include "core/kernels/arithmetic/image.hpp"
+#include "core/kernels/graph/width.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// Minimum image of a bond vector; `lo` gets what the rounding of d leaves off.
+template <bool careful, class V>
+HOL_INLINE void take_image(const Box &box, Vector3<V> &d, Vector3<V> &lo) {
+    if (box.shape != Box::none) wrap<careful>(box, d, lo);
+}
+
+// The vector from one atom to another, unrounded: d + lo.
+template <class V>
+HOL_INLINE void exact_bond(const Box &box, const Vector3<V> &from, const Vector3<V> &to, Vector3<V> &d,
+                           Vector3<V> &lo) {
+    const Pair<V> x = two_difference<V>(to.x, from.x), y = two_difference<V>(to.y, from.y),
+                  z = two_difference<V>(to.z, from.z);
+    d = {x.hi, y.hi, z.hi};
+    lo = {x.lo, y.lo, z.lo};
+    take_image<true>(box, d, lo);
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,109 @@
+// Newton's method on a block of molecules: what is done when. The decisions are those of chains.
+#ifndef HOLONOMIC_KERNELS_GRAPH_ITERATE_HPP
+#define HOLONOMIC_KERNELS_GRAPH_ITERATE_HPP
+
+#include "core/kernels/call.hpp"
+#include "core/kernels/graph/width.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+constexpr double rounding = 2.220446049250313e-16;
+
+// Errors |D.D - a^2| / a^2 that are accepted: what the coordinates of a molecule carry, whose ends of bonds are rounded
+// to u |r|, and what is so for any coordinates; but no less than the tolerance.
+template <class V>
+struct Limits {
+    V accepted, always_accepted;
+    Limits(const PositionsCall &call, V largest_coordinate, V a_min) {
+        const double u = call.r.is_float ? 5.97e-8 : 1.11e-16;
+        accepted = max(Width<V>::all(call.tolerance), (8 * u) * (Width<V>::all(1) + largest_coordinate / a_min));
+        always_accepted = Width<V>::all(call.tolerance > 8 * u ? call.tolerance : 8 * u);
+    }
+};
+
+// What became of the lanes.
+template <class V>
+struct Solved {
+    MaskOf<V> untouched, converged;
+    V error;
+    int64_t solves;
+};
+
+// The factors of an earlier D shrink the error by a constant each time, new ones square it at twice the price: they are
+// worth it where the old ones would take more than four solves in all.
+template <class V>
+HOL_INLINE MaskOf<V> worth_new_factors(V error, V rate, int i) {
+    V expected = error * rate;
+    for (int k = i + 2; k < 4; ++k) expected = expected * rate;
+    return less(Width<V>::all(0.1 * rounding), expected) & less(Width<V>::all(i < 2 ? -1.0 : 1e-4), rate);
+}
+
+// From an error no larger than this, a solve with factors that have just taken the error down to less than `steady` of
+// itself needs no look at what it has done: it leaves less than a rounding, and could not leave more than this.
+constexpr double last_error = 64 * rounding;
+constexpr double steady = 1.0 / 256;
+
+// Newton's method in the lanes of `wanted`, from tau = 0 or, with `guess`, from tau as it is where that is better.
+// System:
+//   V open()                       largest error of the bonds as they came
+//   void forget(mask)              tau = 0
+//   void factorize(mask)           with the bonds as they are
+//   void solve(mask)               corrections for what is left, added to tau
+//   V move()                       the bonds as tau moves them, and their largest error
+template <class V, class System>
+HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const PositionsCall &call, MaskOf<V> wanted) {
+    typedef MaskOf<V> Mask;
+    const Mask none = Width<V>::none();
+    const V done = Width<V>::all(call.tolerance > rounding ? call.tolerance : rounding);
+    V error = newton.open();
+    Solved<V> out = {wanted & less_equal(error, limits.accepted), none, error, 0};
+    Mask active = wanted & ~out.untouched & finite(error);
+    if (call.guess) {
+        newton.forget(~active);
+        const V with_guess = newton.move();
+        newton.forget(~less_equal(with_guess, error));
+        error = newton.move();
+        out.converged = active & less_equal(error, done);
+        active = active & ~out.converged;
+    } else {
+        newton.forget(~none);
+    }
+    V rate = error;  // new factors square the error
+    Mask proven = none;
+    if (any(active)) newton.factorize(active);
+    for (int i = 0; i < call.max_iterations && any(active); ++i) {
+        newton.solve(active);
+        ++out.solves;
+        const Mask last = active & proven & less(rate * error, Width<V>::all(0.125 * rounding));
+        out.converged = out.converged | last;  // whatever the other lanes have to do
+        active = active & ~last;
+        if (!call.report && !any(active)) break;
+        const V before = error, expected = rate * before;
+        error = newton.move();
+        // At the floor: the solve should have gone far below a rounding, or it gained little, and what is left is no
+        // more than the coordinates carry.
+        const Mask floor =
+            (less(expected, Width<V>::all(0.125 * rounding)) & less_equal(error, Width<V>::all(4 * rounding))) |
+            less(0.25 * before, error);
+        const Mask near = active & (less_equal(error, done) | floor);
+        const Mask finished = near & less_equal(error, max(done, max(limits.accepted, limits.always_accepted)));
+        out.converged = out.converged | finished;
+        active = active & ~finished & finite(error);
+        if (!any(active)) break;
+        rate = error / before;
+        const Mask renewed = active & worth_new_factors(error, rate, i);
+        proven = ~renewed & less(rate, Width<V>::all(steady)) & less_equal(error, Width<V>::all(last_error));
+        if (!any(renewed)) continue;
+        newton.factorize(renewed);
+        rate = select(renewed, error, rate);
+    }
+    out.error = error;
+    return out;
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

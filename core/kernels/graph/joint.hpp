@@ -1,0 +1,219 @@
+// An atom of a tree: the k bonds to its children are eliminated together (theory (51)-(53)). With their E, bond vectors
+// D = (d_1 .. d_k), all pointing away from the root, and S = diag(E) + w D^T D,
+//
+//     S u = y,   S l = w D^T d_e,   y_e = b_e + l.y,   E_e = w (q_e - w d_e^T D S^-1 D^T d_e),   t_c = u_c + l_c t_e.
+//
+// S = L P L^T as it stands: this subtracts. As long as every pivot and every E keep a sixteenth of what they are
+// subtracted from, errors stay at a few roundings; x.slack tells where they don't.
+#ifndef HOLONOMIC_KERNELS_GRAPH_JOINT_HPP
+#define HOLONOMIC_KERNELS_GRAPH_JOINT_HPP
+
+#include "core/kernels/graph/molecules.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// What must be left of a pivot's diagonal element.
+constexpr double least_part = 1.0 / 16;
+
+constexpr int pair_of(int a, int b) { return a * (a - 1) / 2 + b; }  // a > b
+
+// Multipliers m and reciprocal pivots r of S; S is k (k + 1) / 2 values of working memory, its rows one after the
+// other.
+template <class V>
+HOL_INLINE void decompose(Molecules<V> &x, const int32_t *child, int k, V w, V *S, V *r, V *m) {
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) {
+        const BondRow<V> &row = x.row[child[a]];
+        HOL_UNROLL
+        for (int b = 0; b < a; ++b) S[pair_of(a + 1, b)] = w * product_of(x, child[a], child[b]);
+        S[pair_of(a + 1, a)] = mul_add(w, row.q, row.E);
+    }
+    HOL_UNROLL
+    for (int j = 0; j < k; ++j) {
+        const V P = S[pair_of(j + 1, j)];
+        if (j > 0) {
+            const BondRow<V> &row = x.row[child[j]];
+            const V whole = mul_add(w, row.q, row.E);
+            x.slack = min(mul_add(Width<V>::all(-least_part), whole, P), x.slack);
+        }
+        r[j] = Width<V>::all(1) / P;
+        HOL_UNROLL
+        for (int a = j + 1; a < k; ++a) {
+            const V l = S[pair_of(a + 1, j)] * r[j];
+            m[pair_of(a, j)] = l;
+            HOL_UNROLL
+            for (int b = j + 1; b <= a; ++b)
+                S[pair_of(a + 1, b)] = mul_add(-l, S[pair_of(b + 1, j)], S[pair_of(a + 1, b)]);
+        }
+    }
+}
+
+// S^-1 times y, with what y is after its forward half in z.
+template <class V>
+HOL_INLINE void solve_joint(int k, const V *r, const V *m, const V *y, V *z, V *u) {
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) {
+        V sum = y[a];
+        HOL_UNROLL
+        for (int j = 0; j < a; ++j) sum = mul_add(-m[pair_of(a, j)], z[j], sum);
+        z[a] = sum;
+    }
+    HOL_UNROLL
+    for (int a = k - 1; a >= 0; --a) {
+        V sum = z[a] * r[a];
+        HOL_UNROLL
+        for (int j = a + 1; j < k; ++j) sum = mul_add(-m[pair_of(j, a)], u[j], sum);
+        u[a] = sum;
+    }
+}
+
+// Working memory of a joint: in registers where k is known to the compiler.
+template <class V, int known>
+struct JointMemory {
+    V S[known * (known + 1) / 2], r[known], m[known * (known - 1) / 2 + 1], y[known], z[known], l[known];
+    HOL_INLINE JointMemory make(Memory<V>, int) { return {}; }
+};
+template <class V>
+struct JointMemory<V, 0> {
+    V *S, *r, *m, *y, *z, *l;
+    HOL_INLINE JointMemory make(Memory<V> a, int k) {
+        return {
+            a.values(k * (k + 1) / 2), a.values(k), a.values(k * (k - 1) / 2), a.values(k), a.values(k), a.values(k)};
+    }
+    static constexpr int64_t values(int64_t k) { return k * (k + 1) / 2 + k * (k - 1) / 2 + 4 * k; }
+};
+
+// The children of slot `slot`, with the bond above it at place `slot` (top: there is none). Right-hand sides are in t
+// of the rows. `keep`: multipliers and pivots are kept for another right-hand side.
+template <int known, bool top, bool keep, class V>
+HOL_INLINE void up_joint(Molecules<V> &x, int32_t slot, int count, Memory<V> memory) {
+    const int k = known > 0 ? known : count;
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    auto f = JointMemory<V, known>::make(memory, k);
+    const V w = x.w[slot];
+    decompose(x, child, k, w, f.S, f.r, f.m);
+    V *const m = keep ? x.pair + x.s.pair_start[slot] : nullptr;
+    if (keep) {
+        HOL_UNROLL
+        for (int a = 0; a < k; ++a) {
+            x.row[child[a]].r = f.r[a];
+            HOL_UNROLL
+            for (int b = 0; b < a; ++b) m[pair_of(a, b)] = f.m[pair_of(a, b)];
+        }
+    }
+    if (!top) {
+        BondRow<V> &e = x.row[slot];
+        HOL_UNROLL
+        for (int a = 0; a < k; ++a) f.y[a] = w * product_of(x, child[a], slot);
+        solve_joint(k, f.r, f.m, f.y, f.z, f.l);
+        const V whole = w * e.q;
+        V E = whole, y = e.t;
+        HOL_UNROLL
+        for (int a = 0; a < k; ++a) {
+            E = mul_add(-(f.z[a] * f.r[a]), f.z[a], E);
+            y = mul_add(f.l[a], x.row[child[a]].t, y);
+            x.row[child[a]].l = f.l[a];
+        }
+        x.slack = min(mul_add(Width<V>::all(-least_part), whole, E), x.slack);
+        e.E = E;
+        e.t = y;
+    }
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) f.y[a] = x.row[child[a]].t;
+    solve_joint(k, f.r, f.m, f.y, f.z, f.l);
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) x.row[child[a]].t = f.l[a];
+}
+
+// The same for another right-hand side.
+template <int known, bool top, class V>
+HOL_INLINE void substitute_joint(const Molecules<V> &x, int32_t slot, int count, Memory<V> memory) {
+    const int k = known > 0 ? known : count;
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    auto f = JointMemory<V, known>::make(memory, k);
+    const V *const m = x.pair + x.s.pair_start[slot];
+    V y = top ? V{} : x.row[slot].t;
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) {
+        BondRow<V> &row = x.row[child[a]];
+        f.y[a] = row.t;
+        f.r[a] = row.r;
+        if (!top) y = mul_add(row.l, row.t, y);
+        HOL_UNROLL
+        for (int b = 0; b < a; ++b) f.m[pair_of(a, b)] = m[pair_of(a, b)];
+    }
+    solve_joint(k, f.r, f.m, f.y, f.z, f.l);
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) x.row[child[a]].t = f.l[a];
+    if (!top) x.row[slot].t = y;
+}
+
+// Up the trees: E, l and u of all their bonds, y of what is above them. A leaf has E = w q from where it was loaded.
+template <bool keep, class V>
+static inline void up_trees(Molecules<V> &x, Memory<V> memory) {
+    const Schedule &s = x.s;
+    for (int32_t slot = 0; slot < s.n_tree; ++slot) {
+        const int k = s.child_start[slot + 1] - s.child_start[slot];
+        switch (k) {
+            case 0:
+                break;
+            case 1:
+                up_joint<1, false, keep>(x, slot, k, memory);
+                break;
+            case 2:
+                up_joint<2, false, keep>(x, slot, k, memory);
+                break;
+            case 3:
+                up_joint<3, false, keep>(x, slot, k, memory);
+                break;
+            default:
+                up_joint<0, false, keep>(x, slot, k, memory);
+        }
+    }
+    if (s.type == Schedule::tree) up_joint<1, true, keep>(x, s.n_tree, 1, memory);
+}
+
+template <class V>
+static inline void substitute_trees(const Molecules<V> &x, Memory<V> memory) {
+    const Schedule &s = x.s;
+    for (int32_t slot = 0; slot < s.n_tree; ++slot) {
+        const int k = s.child_start[slot + 1] - s.child_start[slot];
+        switch (k) {
+            case 0:
+                break;
+            case 1:
+                substitute_joint<1, false>(x, slot, k, memory);
+                break;
+            case 2:
+                substitute_joint<2, false>(x, slot, k, memory);
+                break;
+            case 3:
+                substitute_joint<3, false>(x, slot, k, memory);
+                break;
+            default:
+                substitute_joint<0, false>(x, slot, k, memory);
+        }
+    }
+    if (s.type == Schedule::tree) substitute_joint<1, true>(x, s.n_tree, 1, memory);
+}
+
+// Down the trees: u becomes t, from what is above them.
+template <class V>
+static inline void down_trees(const Molecules<V> &x) {
+    const Schedule &s = x.s;
+    const int32_t *const start = s.child_start;
+    for (int32_t slot = s.n_tree - 1; slot >= 0; --slot) {
+        const V t = x.row[slot].t;
+        for (int32_t c = start[slot]; c < start[slot + 1]; ++c) {
+            BondRow<V> &row = x.row[s.child[c]];
+            row.t = mul_add(row.l, t, row.t);
+        }
+    }
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

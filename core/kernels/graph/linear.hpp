@@ -1,0 +1,166 @@
+// Solves the linear equations of a block of molecules, whatever their shape.
+#ifndef HOLONOMIC_KERNELS_GRAPH_LINEAR_HPP
+#define HOLONOMIC_KERNELS_GRAPH_LINEAR_HPP
+
+#include "core/kernels/graph/core_matrix.hpp"
+#include "core/kernels/graph/joint.hpp"
+#include "core/kernels/graph/residual.hpp"
+#include "core/kernels/graph/ring.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+template <class V>
+struct Linear {
+    Molecules<V> x;
+    CoreMatrix<V> core;
+    RingRow<V> *ring;
+    Equations<V> equations;
+    V *t, *alone;       // [n_bonds] of a graph: the solution so far; what it would be if every bond were alone
+    Memory<V> working;  // of a joint of many bonds
+
+    // Values of V that the arrays take.
+    static int64_t values(const Schedule &s) {
+        int64_t n = s.n_atoms + sizeof(BondRow<V>) / sizeof(V) * s.n_bonds + s.n_pairs +
+                    JointMemory<V, 0>::values(s.max_children);
+        if (s.type == Schedule::ring) n += sizeof(RingRow<V>) / sizeof(V) * s.n_bonds;
+        n += 3 * 3 * static_cast<int64_t>(s.n_atoms);
+        if (s.type == Schedule::graph) {
+            const int64_t part = CoreMatrix<V>::most_parts(s);
+            n += s.n_entries + reaches(s) + (part > s.max_column ? part : s.max_column) +
+                 3 * static_cast<int64_t>(s.n_bonds) + 6 * static_cast<int64_t>(s.n_atoms);
+        }
+        return n;
+    }
+
+    Linear(const Schedule &s, const MoleculeLane *lane, int used, const Box &box, const AtomArray &r, Memory<V> &memory)
+        : x{s, {}, used, Atoms<V>(lane, used), &box, &r, nullptr, nullptr, nullptr, Width<V>::all(1)}, core(), ring(),
+          equations(), t(), alone() {
+        for (int i = 0; i < Width<V>::lanes; ++i) x.lane[i] = lane[i < used ? i : 0];
+        x.w = memory.values(s.n_atoms);
+        x.row = reinterpret_cast<BondRow<V> *>(memory.values(sizeof(BondRow<V>) / sizeof(V) * s.n_bonds));
+        x.pair = memory.values(s.n_pairs);
+        if (s.type == Schedule::ring)
+            ring = reinterpret_cast<RingRow<V> *>(memory.values(sizeof(RingRow<V>) / sizeof(V) * s.n_bonds));
+        equations.r = memory.vectors(s.n_atoms);
+        equations.velocity = memory.vectors(s.n_atoms);
+        equations.force = memory.vectors(s.n_atoms);
+        if (s.type == Schedule::graph) {
+            const int64_t part = CoreMatrix<V>::most_parts(s);
+            core = {memory.values(s.n_entries), memory.values(reaches(s)),
+                    memory.values(part > s.max_column ? part : s.max_column)};
+            t = memory.values(s.n_bonds);
+            alone = memory.values(s.n_bonds);
+            equations.given = memory.values(s.n_bonds);
+            equations.a = reinterpret_cast<Pair3<V> *>(memory.values(6 * static_cast<int64_t>(s.n_atoms)));
+        }
+        working = memory;
+        memory.values(JointMemory<V, 0>::values(s.max_children));
+    }
+
+    // Inverse masses by slot.
+    void set_masses() {
+        for (int32_t i = 0; i < x.s.n_atoms; ++i)
+            for (int l = 0; l < Width<V>::lanes; ++l) Width<V>::set(x.w[i], l, x.lane[l].w[x.s.atom_of[i]]);
+    }
+
+    // From right-hand sides to the solution, both in t of the rows; `keep`: for more than one of them.
+    template <bool keep>
+    void factorize_and_solve() {
+        switch (x.s.type) {
+            case Schedule::tree:
+                up_trees<keep>(x, working);
+                down_trees(x);
+                break;
+            case Schedule::triangle:
+                break;  // triangle_linear.hpp
+            case Schedule::ring:
+                factorize_ring(x, ring);
+                solve_ring(x, ring);
+                break;
+            case Schedule::graph:
+                find_sizes();
+                up_trees<true>(x, working);
+                factorize_core(x, core, working);
+                solve_core();
+        }
+    }
+
+    void solve_again() {
+        switch (x.s.type) {
+            case Schedule::tree:
+                substitute_trees(x, working);
+                down_trees(x);
+                break;
+            case Schedule::triangle:
+                break;
+            case Schedule::ring:
+                solve_ring(x, ring);
+                break;
+            case Schedule::graph:
+                substitute_trees(x, working);
+                solve_core();
+        }
+    }
+
+    // Graphs: corrections against the exact residual until they would be less than a rounding. Returns the lanes in
+    // which they shrank as they should; the solution is t of the rows, as before.
+    MaskOf<V> refine() {
+        typedef MaskOf<V> Mask;
+        const Schedule &s = x.s;
+        for (int32_t k = 0; k < s.n_bonds; ++k) t[k] = x.row[k].t;
+        Mask active = x.in_use(), good = ~x.in_use();
+        V before = Width<V>::all(1);
+        for (int pass = 0; pass < 8 && any(active); ++pass) {
+            find_residuals(x, equations, t);
+            solve_again();
+            const V part = correct(active);
+            const Mask contracts = less_equal(part, 0.125 * before);
+            const Mask done = active & contracts & less_equal(part * part, epsilon * before);
+            good = good | done;
+            active = active & contracts & ~done;
+            before = part;
+        }
+        for (int32_t k = 0; k < s.n_bonds; ++k) x.row[k].t = t[k];
+        return good;
+    }
+
+private:
+    static constexpr double epsilon = 2.220446049250313e-16;
+
+    void solve_core() {
+        substitute_core(x, core, working);
+        down_core(x, core);
+        down_trees(x);
+    }
+
+    // |b_k| / A_kk
+    void find_sizes() {
+        for (int32_t k = 0; k < x.s.n_bonds; ++k) {
+            int32_t from, to;
+            ends_of(x.s, k, from, to);
+            alone[k] = abs(x.row[k].t) / ((x.w[from] + x.w[to]) * x.row[k].q);
+        }
+    }
+
+    // Adds the corrections in t of the rows, in the lanes in `active`; returns the largest one relative to its
+    // multiplier. What is a millionth of the molecule's largest tension counts as much as that.
+    V correct(MaskOf<V> active) {
+        const int32_t n = x.s.n_bonds;
+        V largest = {}, part = {};
+        for (int32_t k = 0; k < n; ++k) largest = max(abs(t[k]) * sqrt(x.row[k].q), largest);
+        const V least = mul_add(Width<V>::all(1e-6), largest, Width<V>::all(1e-290));
+        for (int32_t k = 0; k < n; ++k) {
+            const V change = keep(active, x.row[k].t), length = sqrt(x.row[k].q);
+            t[k] = t[k] + change;
+            part = max(abs(change) * length / mul_add(abs(t[k]) + alone[k], length, least), part);
+        }
+        return part;
+    }
+};
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

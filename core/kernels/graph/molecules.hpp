@@ -1,0 +1,94 @@
+// A block of molecules of one shape: what is known of their atoms and bonds while they are solved.
+#ifndef HOLONOMIC_KERNELS_GRAPH_MOLECULES_HPP
+#define HOLONOMIC_KERNELS_GRAPH_MOLECULES_HPP
+
+#include "core/kernels/graph/atoms.hpp"
+#include "core/kernels/graph/image.hpp"
+#include "core/kernels/graph/schedule.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// A bond at its place (schedule.hpp).
+template <class V>
+struct BondRow {
+    Vector3<V> d;
+    V q;  // d.d
+    V E;  // inverse mass that what hangs on the bond offers along it, times q; of the core: the pivot
+    V t;  // right-hand side y, then u, then the solution
+    V l;  // what the bond above gets of y, and this one of its t
+    V r;  // 1 / pivot
+};
+
+template <class V>
+struct Molecules {
+    const Schedule &s;
+    MoleculeLane lane[Width<V>::lanes];
+    int used;  // lanes with a molecule
+    Atoms<V> at;
+    const Box *box;
+    const AtomArray *r;  // of the bond vectors, for what is computed anew
+    V *w;                // [n_atoms] by slot
+    BondRow<V> *row;     // [n_bonds] by place
+    V *pair;             // [n_pairs] multipliers among the children of an atom
+    V slack;             // negative where plain products do not do
+
+    MaskOf<V> in_use() const { return Width<V>::first(used); }
+};
+
+// The bond vectors of a lane, in double, with the low word that the difference of the coordinates leaves.
+HOL_INLINE void read_row(const AtomArray &array, int64_t number, double *x) {
+    const char *const p[3] = {array.x, array.y, array.z};
+    for (int c = 0; c < 3; ++c)
+        x[c] = !p[c]            ? 0.0
+               : array.is_float ? element<float>(p[c] + number * array.stride)
+                                : element<double>(p[c] + number * array.stride);
+}
+
+// The slots at the two ends of a bond; it points from the first to the second.
+HOL_INLINE void ends_of(const Schedule &s, int32_t place, int32_t &from, int32_t &to) {
+    from = place < s.n_tree ? s.parent[place] : s.from[place - s.n_tree];
+    to = place < s.n_tree ? place : s.to[place - s.n_tree];
+}
+
+template <class V>
+HOL_INLINE void exact_bond(const Molecules<V> &x, int lane, int32_t place, Vector3<double> &d, Vector3<double> &lo) {
+    int32_t from, to;
+    ends_of(x.s, place, from, to);
+    Vector3<double> a, b;
+    read_row(*x.r, Atoms<V>::number(x.at, lane, x.s.atom_of[from]), &a.x);
+    read_row(*x.r, Atoms<V>::number(x.at, lane, x.s.atom_of[to]), &b.x);
+    exact_bond(*x.box, a, b, d, lo);
+}
+
+// g = d . d' of nearly orthogonal bonds cancels, which shows where one right-hand side is much larger than the other.
+// Below this cosine it is computed anew from the coordinates.
+constexpr double least_cosine = 1.0 / 32;
+
+template <class V>
+HOL_NOINLINE V dots_anew(const Molecules<V> &x, int32_t a, int32_t b, unsigned which, V g) {
+    for (unsigned left = which; left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        Vector3<double> d[2], low[2];
+        exact_bond(x, i, a, d[0], low[0]);
+        exact_bond(x, i, b, d[1], low[1]);
+        Width<V>::set(g, i, dot_compensated(d[0], low[0], d[1], low[1]));
+    }
+    return g;
+}
+
+// d . d' of two bonds, with the rule above.
+template <class V>
+HOL_INLINE V product_of(const Molecules<V> &x, int32_t a, int32_t b) {
+    const BondRow<V> &p = x.row[a], &q = x.row[b];
+    const V g = dot(p.d, q.d);
+    const MaskOf<V> small = less(Width<V>::all(1 / (least_cosine * least_cosine)) * (g * g), p.q * q.q);
+    if (__builtin_expect(any(small), 0)) return dots_anew(x, a, b, bits(small), g);
+    return g;
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,170 @@
+// Newton's method for the positions of a block of molecules (theory (15)-(17), (58)): the corrections
+// move_i = w_i (sum of tau b of the bonds that point away - that of those that point to it) must bring every D.D to
+// a^2.
+#ifndef HOLONOMIC_KERNELS_GRAPH_NEWTON_HPP
+#define HOLONOMIC_KERNELS_GRAPH_NEWTON_HPP
+
+#include "core/kernels/graph/newton_core.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+template <class V>
+struct Newton {
+    NewtonSystem<V> x;
+    V *spare;  // for the core's factors
+    V worst, sum;
+
+    static int64_t values(const Schedule &s) {
+        const int64_t part = CoreMatrix<V>::most_parts(s), n_atoms = s.n_atoms, n_bonds = s.n_bonds;
+        return 4 * n_atoms + 3 + (sizeof(NewtonRow<V>) / sizeof(V) + 3) * n_bonds +
+               2 * static_cast<int64_t>(s.n_pairs) + 4 * static_cast<int64_t>(s.n_entries) + 2 * reaches(s) + 2 * part +
+               NewtonMemory<V, 0>::values(s.max_children);
+    }
+
+    Newton(const Schedule &s, Memory<V> &memory)
+        : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, spare(), worst(), sum() {
+        const int64_t part = CoreMatrix<V>::most_parts(s);
+        x.w = memory.values(s.n_atoms);
+        x.row = reinterpret_cast<NewtonRow<V> *>(memory.values(sizeof(NewtonRow<V>) / sizeof(V) * s.n_bonds));
+        x.lower = memory.values(s.n_pairs);
+        x.upper = memory.values(s.n_pairs);
+        x.move = memory.vectors(s.n_atoms);
+        x.new_D = memory.vectors(s.n_bonds + 1);
+        x.core_lower = memory.values(s.n_entries);
+        x.core_upper = memory.values(s.n_entries);
+        x.reach_up = memory.values(reaches(s));
+        x.reach_down = memory.values(reaches(s));
+        x.part_up = memory.values(part);
+        x.part_down = memory.values(part);
+        spare = memory.values(2 * static_cast<int64_t>(s.n_entries));
+        x.working = memory;
+        memory.values(NewtonMemory<V, 0>::values(s.max_children));
+    }
+
+    // What is left of a bond's length into its t, for D as given.
+    void measure(NewtonRow<V> &row, const Vector3<V> &D) {
+        const V sigma = mul_add(D.z, D.z, mul_add(D.y, D.y, mul_add(D.x, D.x, -row.a2)));
+        worst = max(abs(sigma) * row.per_a2, worst);
+        sum = sum + sigma;
+        row.t = 0.5 * sigma;
+    }
+    // Largest |D.D - a^2| / a^2; max() may lose a NaN, the sum keeps it.
+    V largest() const { return mul_add(sum, V{}, worst); }
+
+    // Factors for the bonds in new_D, in the lanes of `which`.
+    __attribute__((noinline)) void factorize(MaskOf<V> which) {
+        const Schedule &s = x.s;
+        for (int32_t slot = 0; slot < s.n_tree; ++slot) {
+            const int k = s.child_start[slot + 1] - s.child_start[slot];
+            switch (k) {
+                case 0:
+                    x.row[slot].E = x.w[slot] * dot(x.new_D[slot], x.row[slot].b);
+                    break;
+                case 1:
+                    factorize_joint<1, false>(x, slot, k, which);
+                    break;
+                case 2:
+                    factorize_joint<2, false>(x, slot, k, which);
+                    break;
+                case 3:
+                    factorize_joint<3, false>(x, slot, k, which);
+                    break;
+                default:
+                    factorize_joint<0, false>(x, slot, k, which);
+            }
+        }
+        if (s.n_core_atoms == 0)
+            factorize_joint<1, true>(x, s.n_tree, 1, which);
+        else
+            factorize_core(x, spare, which);
+    }
+
+    // From what is left, in t of the rows, to u.
+    __attribute__((noinline)) void substitute() {
+        const Schedule &s = x.s;
+        for (int32_t slot = 0; slot < s.n_tree; ++slot) {
+            const int k = s.child_start[slot + 1] - s.child_start[slot];
+            switch (k) {
+                case 0:
+                    break;
+                case 1:
+                    substitute_joint<1, false>(x, slot, k);
+                    break;
+                case 2:
+                    substitute_joint<2, false>(x, slot, k);
+                    break;
+                case 3:
+                    substitute_joint<3, false>(x, slot, k);
+                    break;
+                default:
+                    substitute_joint<0, false>(x, slot, k);
+            }
+        }
+        if (s.n_core_atoms == 0)
+            substitute_joint<1, true>(x, s.n_tree, 1);
+        else
+            substitute_core(x);
+    }
+
+    // Corrections for what is left, in t of the rows, added to tau in the lanes of `active`.
+    __attribute__((noinline)) void solve(MaskOf<V> active) {
+        const Schedule &s = x.s;
+        substitute();
+        if (s.n_core_atoms > 0) down_core(x);
+        for (int32_t k = s.n_bonds - 1; k >= s.n_tree; --k) x.row[k].tau = x.row[k].tau + keep(active, x.row[k].t);
+        for (int32_t k = s.n_tree - 1; k >= 0; --k) {
+            NewtonRow<V> &row = x.row[k];
+            if (s.parent[k] < s.n_tree) row.t = mul_add(row.down, x.row[s.parent[k]].t, row.t);
+            row.tau = row.tau + keep(active, row.t);
+        }
+    }
+
+    // The atoms and bonds as tau moves them, and their largest error.
+    __attribute__((noinline)) V move() {
+        const Schedule &s = x.s;
+        for (int32_t slot = s.n_atoms - 1; slot >= 0; --slot) {
+            Vector3<V> pull = {};
+            for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c)
+                pull = add_times(pull, x.row[s.child[c]].tau, x.row[s.child[c]].b);
+            if (slot < s.n_tree) {
+                pull = add_times(pull, -x.row[slot].tau, x.row[slot].b);
+            } else if (s.n_core_atoms > 0) {
+                for (int32_t e = s.meet_start[slot - s.n_tree]; e < s.meet_start[slot - s.n_tree + 1]; ++e) {
+                    const NewtonRow<V> &row = x.row[s.n_tree + s.meet[e] / 2];
+                    pull = add_times(pull, s.meet[e] % 2 ? -row.tau : row.tau, row.b);
+                }
+            }
+            x.move[slot] = x.w[slot] * pull;
+        }
+        worst = sum = V{};
+        for (int32_t k = 0; k < s.n_bonds; ++k) {
+            int32_t from, to;
+            ends_of(s, k, from, to);
+            x.new_D[k] = x.row[k].D + (x.move[to] - x.move[from]);
+            measure(x.row[k], x.new_D[k]);
+        }
+        return largest();
+    }
+
+    // tau = 0 in the lanes of `which`.
+    void forget(MaskOf<V> which) {
+        for (int32_t k = 0; k < x.s.n_bonds; ++k) x.row[k].tau = select(which, V{}, x.row[k].tau);
+    }
+
+    // D as it stands: the first factors' bonds, and what they leave.
+    V open() {
+        worst = sum = V{};
+        for (int32_t k = 0; k < x.s.n_bonds; ++k) {
+            x.new_D[k] = x.row[k].D;
+            measure(x.row[k], x.row[k].D);
+        }
+        return largest();
+    }
+};
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

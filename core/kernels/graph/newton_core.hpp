@@ -1,0 +1,136 @@
+// The core at the position level: LU in the order and with the pattern of the symmetric elimination.
+#ifndef HOLONOMIC_KERNELS_GRAPH_NEWTON_CORE_HPP
+#define HOLONOMIC_KERNELS_GRAPH_NEWTON_CORE_HPP
+
+#include "core/kernels/graph/core_matrix.hpp"
+#include "core/kernels/graph/newton_joint.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// The elements of one atom of the core. Row k and column l: s_k s_l (w D_k.b_l - sum over its children).
+template <class V>
+static inline void add_core_atom(const NewtonSystem<V> &x, int32_t c, int64_t reach, V *entry_lower, V *entry_upper,
+                                 MaskOf<V> which) {
+    const Schedule &s = x.s;
+    const int32_t slot = s.n_tree + c, k = s.child_start[slot + 1] - s.child_start[slot];
+    const int32_t *const meet = s.meet + s.meet_start[c], *entry = s.meet_pair + s.meet_pair_start[c];
+    const int32_t n = s.meet_start[c + 1] - s.meet_start[c];
+    const V w = x.w[slot];
+    auto f = NewtonMemory<V, 0>::make(x.working, k);
+    factorize_children(x, slot, k, f, which);
+    for (int32_t e = 0; e < n; ++e) {
+        const int32_t place = s.n_tree + meet[e] / 2;
+        V *const z = x.part_down + e * k, *const h = x.part_up + e * k;
+        NewtonRow<V> &row = x.row[place];
+        row.E = row.E + couple(x, slot, k, place, f, z, h, f.S, f.u);
+        for (int32_t a = 0; a < k; ++a) {
+            V &up = x.reach_up[reach + e * k + a], &down = x.reach_down[reach + e * k + a];
+            up = select(which, f.S[a], up);
+            down = select(which, f.u[a], down);
+        }
+        for (int32_t o = 0; o < e; ++o, ++entry) {
+            const int32_t other = s.n_tree + meet[o] / 2;
+            V eo = w * dot(x.new_D[place], x.row[other].b), oe = w * dot(x.new_D[other], row.b);
+            const V *const zo = x.part_down + o * k, *const ho = x.part_up + o * k;
+            for (int32_t a = 0; a < k; ++a) {
+                eo = mul_add(-(h[a] * f.r[a]), zo[a], eo);
+                oe = mul_add(-(ho[a] * f.r[a]), z[a], oe);
+            }
+            const double sign = sign_of(meet[e]) * sign_of(meet[o]);
+            const bool below = place > other;  // row e, column o
+            entry_lower[*entry] = sign * (below ? eo : oe);
+            entry_upper[*entry] = sign * (below ? oe : eo);
+        }
+    }
+}
+
+// New factors in the lanes of `which`; `spare` has 2 n_entries + n_core values.
+template <class V>
+static inline void factorize_core(const NewtonSystem<V> &x, V *spare, MaskOf<V> which) {
+    const Schedule &s = x.s;
+    V *const lower = spare, *const upper = spare + s.n_entries;
+    for (int32_t e = 0; e < 2 * s.n_entries; ++e) spare[e] = V{};
+    NewtonRow<V> *const row = x.row + s.n_tree;
+    for (int32_t p = 0; p < s.n_core; ++p) row[p].E = V{};
+    int64_t reach = 0;
+    for (int32_t c = 0; c < s.n_core_atoms; ++c) {
+        add_core_atom(x, c, reach, lower, upper, which);
+        reach += static_cast<int64_t>(s.meet_start[c + 1] - s.meet_start[c]) *
+                 (s.child_start[s.n_tree + c + 1] - s.child_start[s.n_tree + c]);
+    }
+    for (int32_t p = 0; p < s.n_core; ++p) {
+        const int32_t first = s.column_start[p], n = s.column_start[p + 1] - first;
+        const int32_t *const below = s.row + first, *update = s.update + s.update_start[p];
+        const V r = Width<V>::all(1) / row[p].E;
+        row[p].r = select(which, r, row[p].r);
+        for (int32_t a = 0; a < n; ++a) {
+            V &l = lower[first + a], &u = upper[first + a];
+            const V la = l * r, ua = u * r;
+            for (int32_t b = 0; b < a; ++b, ++update) {
+                // element (a, b) below the diagonal and (b, a) above it; l and u of b are multiplied by r already
+                lower[*update] = mul_add(-l, upper[first + b], lower[*update]);
+                upper[*update] = mul_add(-u, lower[first + b], upper[*update]);
+            }
+            row[below[a]].E = mul_add(-l, ua, row[below[a]].E);
+            l = la;
+            u = ua;
+        }
+        for (int32_t e = first; e < first + n; ++e) {
+            x.core_lower[e] = select(which, lower[e], x.core_lower[e]);
+            x.core_upper[e] = select(which, upper[e], x.core_upper[e]);
+        }
+    }
+}
+
+// Up, behind the trees: y of the core, then its forward half.
+template <class V>
+static inline void substitute_core(const NewtonSystem<V> &x) {
+    const Schedule &s = x.s;
+    const V *reach = x.reach_up;
+    for (int32_t c = 0; c < s.n_core_atoms; ++c) {
+        const int32_t slot = s.n_tree + c, k = s.child_start[slot + 1] - s.child_start[slot];
+        if (k == 0) continue;
+        const int32_t *const child = s.child + s.child_start[slot];
+        for (int32_t e = s.meet_start[c]; e < s.meet_start[c + 1]; ++e, reach += k) {
+            V sum = {};
+            for (int32_t a = 0; a < k; ++a) sum = mul_add(reach[a], x.row[child[a]].t, sum);
+            V &y = x.row[s.n_tree + s.meet[e] / 2].t;
+            y = s.meet[e] % 2 ? y + sum : y - sum;
+        }
+        substitute_joint<0, true>(x, slot, k);
+    }
+    NewtonRow<V> *const row = x.row + s.n_tree;
+    for (int32_t p = 0; p < s.n_core; ++p)
+        for (int32_t e = s.column_start[p]; e < s.column_start[p + 1]; ++e)
+            row[s.row[e]].t = mul_add(-x.core_lower[e], row[p].t, row[s.row[e]].t);
+}
+
+// Down: the corrections of the core into t, then of the first bonds of its hanging trees.
+template <class V>
+static inline void down_core(const NewtonSystem<V> &x) {
+    const Schedule &s = x.s;
+    NewtonRow<V> *const row = x.row + s.n_tree;
+    for (int32_t p = s.n_core - 1; p >= 0; --p) {
+        V t = row[p].t * row[p].r;
+        for (int32_t e = s.column_start[p]; e < s.column_start[p + 1]; ++e)
+            t = mul_add(-x.core_upper[e], row[s.row[e]].t, t);
+        row[p].t = t;
+    }
+    const V *reach = x.reach_down;
+    for (int32_t c = 0; c < s.n_core_atoms; ++c) {
+        const int32_t slot = s.n_tree + c, k = s.child_start[slot + 1] - s.child_start[slot];
+        if (k == 0) continue;
+        const int32_t *const child = s.child + s.child_start[slot];
+        for (int32_t e = s.meet_start[c]; e < s.meet_start[c + 1]; ++e, reach += k) {
+            const V t = x.row[s.n_tree + s.meet[e] / 2].t, signed_t = s.meet[e] % 2 ? t : -t;
+            for (int32_t a = 0; a < k; ++a) x.row[child[a]].t = mul_add(reach[a], signed_t, x.row[child[a]].t);
+        }
+    }
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

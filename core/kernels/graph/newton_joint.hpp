@@ -1,0 +1,197 @@
+// The joints of trees at the position level (theory (58)): rows belong to the new bond vectors D, columns to the
+// reference bonds b, so that S = diag(E) + w D^T b is not symmetric and there are two kinds of multipliers, for the way
+// up and for the way down:
+//
+//     y_e = y_e + w (b_c . D_e) S^-1 y,   E_e = w (D_e . b_e) - w^2 (D_e . b) S^-1 (D . b_e),   t_c = u_c + (S^-1 w D .
+//     b_e)_c t_e
+//
+// Newton's residuals are exact whatever the factors are, so nothing here needs a test of doubt.
+#ifndef HOLONOMIC_KERNELS_GRAPH_NEWTON_JOINT_HPP
+#define HOLONOMIC_KERNELS_GRAPH_NEWTON_JOINT_HPP
+
+#include "core/kernels/graph/joint.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+template <class V>
+struct NewtonRow {
+    Vector3<V> D, b;
+    V tau;       // the multiplier so far, 2 dt^2 lambda
+    V t;         // what is left of the length, (D.D - a^2) / 2 and y; then u
+    V up, down;  // what the bond above gets of y, and this one of its correction
+    V r;         // 1 / pivot
+    V E;         // as in BondRow; of the core: the pivot
+    V a2, per_a2;
+};
+
+template <class V>
+struct NewtonSystem {
+    const Schedule &s;
+    V *w;  // [n_atoms] by slot
+    NewtonRow<V> *row;
+    V *lower, *upper;            // [n_pairs] each
+    Vector3<V> *move;            // [n_atoms] displacements
+    Vector3<V> *new_D;           // [n_bonds] bonds as moved, for new factors
+    V *core_lower, *core_upper;  // [n_entries] each
+    V *reach_up, *reach_down;    // as CoreMatrix
+    V *part_up, *part_down;      // working memory of a core atom or column
+    Memory<V> working;           // of a joint of many bonds
+};
+
+// LU of S: r, lower l_aj = S_aj / P_j, upper n_ja = S_ja / P_j, both at pair_of(a, j), a > j. S has k k values.
+template <class V>
+HOL_INLINE void decompose(int k, V *S, V *r, V *lower, V *upper) {
+    HOL_UNROLL
+    for (int j = 0; j < k; ++j) {
+        r[j] = Width<V>::all(1) / S[j * k + j];
+        HOL_UNROLL
+        for (int a = j + 1; a < k; ++a) {
+            lower[pair_of(a, j)] = S[a * k + j] * r[j];
+            upper[pair_of(a, j)] = S[j * k + a] * r[j];
+        }
+        HOL_UNROLL
+        for (int a = j + 1; a < k; ++a) {
+            HOL_UNROLL
+            for (int b = j + 1; b < k; ++b) S[a * k + b] = mul_add(-lower[pair_of(a, j)], S[j * k + b], S[a * k + b]);
+        }
+    }
+}
+
+// S^-1 y with (lower, upper); y S^-1 with (upper, lower). z: y after the first half.
+template <class V>
+HOL_INLINE void solve_joint(int k, const V *r, const V *first, const V *second, const V *y, V *z, V *u) {
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) {
+        V sum = y[a];
+        HOL_UNROLL
+        for (int j = 0; j < a; ++j) sum = mul_add(-first[pair_of(a, j)], z[j], sum);
+        z[a] = sum;
+    }
+    HOL_UNROLL
+    for (int a = k - 1; a >= 0; --a) {
+        V sum = z[a] * r[a];
+        HOL_UNROLL
+        for (int j = a + 1; j < k; ++j) sum = mul_add(-second[pair_of(j, a)], u[j], sum);
+        u[a] = sum;
+    }
+}
+
+template <class V, int known>
+struct NewtonMemory {
+    V S[known * known], r[known], lower[known * (known - 1) / 2 + 1], upper[known * (known - 1) / 2 + 1], y[known],
+        z[known], h[known], u[known];
+    HOL_INLINE NewtonMemory make(Memory<V>, int) { return {}; }
+};
+template <class V>
+struct NewtonMemory<V, 0> {
+    V *S, *r, *lower, *upper, *y, *z, *h, *u;
+    HOL_INLINE NewtonMemory make(Memory<V> a, int k) {
+        return {a.values(k * k),
+                a.values(k),
+                a.values(k * (k - 1) / 2),
+                a.values(k * (k - 1) / 2),
+                a.values(k),
+                a.values(k),
+                a.values(k),
+                a.values(k)};
+    }
+    static constexpr int64_t values(int64_t k) { return k * k + k * (k - 1) + 5 * k; }
+};
+
+// Factors of the children of a slot into f and, in the lanes of `which`, to where they are kept. `D` of all bonds.
+template <class V, class Joint>
+HOL_INLINE void factorize_children(const NewtonSystem<V> &x, int32_t slot, int k, Joint &f, MaskOf<V> which) {
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    const V w = x.w[slot];
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) {
+        HOL_UNROLL
+        for (int b = 0; b < k; ++b) {
+            const V g = w * dot(x.new_D[child[a]], x.row[child[b]].b);
+            f.S[a * k + b] = a == b ? g + x.row[child[a]].E : g;
+        }
+    }
+    decompose(k, f.S, f.r, f.lower, f.upper);
+    V *const lower = x.lower + x.s.pair_start[slot], *const upper = x.upper + x.s.pair_start[slot];
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) {
+        NewtonRow<V> &row = x.row[child[a]];
+        row.r = select(which, f.r[a], row.r);
+        HOL_UNROLL
+        for (int b = 0; b < a; ++b) {
+            lower[pair_of(a, b)] = select(which, f.lower[pair_of(a, b)], lower[pair_of(a, b)]);
+            upper[pair_of(a, b)] = select(which, f.upper[pair_of(a, b)], upper[pair_of(a, b)]);
+        }
+    }
+}
+
+// What the children leave of the inverse mass along the bond at `place`, and its multipliers for each of them in f.h
+// (up) and f.u (down).
+template <class V, class Joint>
+HOL_INLINE V couple(const NewtonSystem<V> &x, int32_t slot, int k, int32_t place, Joint &f, V *z, V *h, V *up,
+                    V *down) {
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    const V w = x.w[slot];
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) f.y[a] = w * dot(x.new_D[child[a]], x.row[place].b);
+    solve_joint(k, f.r, f.lower, f.upper, f.y, z, down);
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) f.y[a] = w * dot(x.new_D[place], x.row[child[a]].b);
+    solve_joint(k, f.r, f.upper, f.lower, f.y, h, up);
+    V E = w * dot(x.new_D[place], x.row[place].b);
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) E = mul_add(-(h[a] * f.r[a]), z[a], E);
+    return E;
+}
+
+template <int known, bool top, class V>
+HOL_INLINE void factorize_joint(const NewtonSystem<V> &x, int32_t slot, int count, MaskOf<V> which) {
+    const int k = known > 0 ? known : count;
+    auto f = NewtonMemory<V, known>::make(x.working, k);
+    factorize_children(x, slot, k, f, which);
+    if (top) return;
+    V *const up = f.S, *const down = f.u;  // S is done with
+    x.row[slot].E = couple(x, slot, k, slot, f, f.z, f.h, up, down);
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) {
+        NewtonRow<V> &row = x.row[child[a]];
+        row.up = select(which, up[a], row.up);
+        row.down = select(which, down[a], row.down);
+    }
+}
+
+// Up: y of the bond above, u of the children.
+template <int known, bool top, class V>
+HOL_INLINE void substitute_joint(const NewtonSystem<V> &x, int32_t slot, int count) {
+    const int k = known > 0 ? known : count;
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    if (known == 1) {
+        NewtonRow<V> &row = x.row[child[0]];
+        const V y = row.t;
+        row.t = y * row.r;
+        if (!top) x.row[slot].t = mul_add(row.up, y, x.row[slot].t);
+        return;
+    }
+    auto f = NewtonMemory<V, known>::make(x.working, k);
+    const V *const lower = x.lower + x.s.pair_start[slot], *const upper = x.upper + x.s.pair_start[slot];
+    V above = top ? V{} : x.row[slot].t;
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) {
+        const NewtonRow<V> &row = x.row[child[a]];
+        f.y[a] = row.t;
+        f.r[a] = row.r;
+        if (!top) above = mul_add(row.up, row.t, above);
+    }
+    solve_joint(k, f.r, lower, upper, f.y, f.z, f.u);
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) x.row[child[a]].t = f.u[a];
+    if (!top) x.row[slot].t = above;
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

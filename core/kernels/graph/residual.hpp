@@ -1,0 +1,102 @@
+// What a solution leaves of the equations of a whole molecule, in twice the precision: the accelerations a = w (f + G)
+// and then, per bond, d.(a_j - a_i) + c, which vanishes at the exact solution. Refinement against it mends what LDL^T
+// of a core loses.
+#ifndef HOLONOMIC_KERNELS_GRAPH_RESIDUAL_HPP
+#define HOLONOMIC_KERNELS_GRAPH_RESIDUAL_HPP
+
+#include "core/kernels/graph/molecules.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+template <class V>
+HOL_INLINE Pair<V> add_pairs(const Pair<V> &a, const Pair<V> &b) {
+    const Pair<V> s = two_sum<V>(a.hi, b.hi);
+    return fast_two_sum<V>(s.hi, s.lo + (a.lo + b.lo));
+}
+template <class V>
+HOL_INLINE Pair<V> multiply_pairs(const Pair<V> &a, const Pair<V> &b) {
+    const Pair<V> p = two_product<V>(a.hi, b.hi);
+    return {p.hi, p.lo + mul_add(a.hi, b.lo, a.lo * b.hi)};
+}
+
+template <class V>
+struct Pair3 {
+    Pair<V> x, y, z;
+};
+
+template <class V>
+HOL_INLINE Pair3<V> add_pairs(const Pair3<V> &a, const Pair3<V> &b) {
+    return {add_pairs(a.x, b.x), add_pairs(a.y, b.y), add_pairs(a.z, b.z)};
+}
+template <class V>
+HOL_INLINE Pair3<V> scale_pairs(const V &s, const Pair3<V> &a) {
+    const Pair<V> p = {s, V{}};
+    return {multiply_pairs(p, a.x), multiply_pairs(p, a.y), multiply_pairs(p, a.z)};
+}
+template <class V>
+HOL_INLINE Pair3<V> negative(const Pair3<V> &a) {
+    return {{-a.x.hi, -a.x.lo}, {-a.y.hi, -a.y.lo}, {-a.z.hi, -a.z.lo}};
+}
+template <class V>
+HOL_INLINE Pair<V> dot_pairs(const Pair3<V> &a, const Pair3<V> &b) {
+    return add_pairs(multiply_pairs(a.x, b.x), add_pairs(multiply_pairs(a.y, b.y), multiply_pairs(a.z, b.z)));
+}
+template <class V>
+HOL_INLINE Pair3<V> difference_of(const Vector3<V> &from, const Vector3<V> &to) {
+    return {two_difference<V>(to.x, from.x), two_difference<V>(to.y, from.y), two_difference<V>(to.z, from.z)};
+}
+
+// What the right-hand sides are made of, kept for this: per atom by slot, per bond by place; absent ones are nullptr.
+template <class V>
+struct Equations {
+    Vector3<V> *r;         // coordinates
+    Vector3<V> *velocity;  // c = |v_j - v_i|^2
+    Vector3<V> *force;     // a = w (force + G)
+    Vector3<V> *start;     // a = start + w G
+    V *given;              // c = given
+    Pair3<V> *a;           // [n_atoms] working memory
+};
+
+// Residuals into t of the rows; the solution is t[place].
+template <class V>
+HOL_NOINLINE void find_residuals(const Molecules<V> &x, const Equations<V> &e, const V *t) {
+    const Schedule &s = x.s;
+    for (int32_t i = 0; i < s.n_atoms; ++i) {
+        e.a[i] = Pair3<V>{};
+        if (e.force) e.a[i] = {{e.force[i].x, V{}}, {e.force[i].y, V{}}, {e.force[i].z, V{}}};
+    }
+    const auto bond = [&](int32_t from, int32_t to) __attribute__((always_inline)) {
+        Vector3<V> d, lo;
+        exact_bond(*x.box, e.r[from], e.r[to], d, lo);
+        return Pair3<V>{{d.x, lo.x}, {d.y, lo.y}, {d.z, lo.z}};
+    };
+    for (int32_t k = 0; k < s.n_bonds; ++k) {
+        int32_t from, to;
+        ends_of(s, k, from, to);
+        const Pair3<V> pull = scale_pairs(t[k], bond(from, to));
+        e.a[from] = add_pairs(e.a[from], pull);
+        e.a[to] = add_pairs(e.a[to], negative(pull));
+    }
+    for (int32_t i = 0; i < s.n_atoms; ++i) {
+        e.a[i] = scale_pairs(x.w[i], e.a[i]);
+        if (e.start) e.a[i] = add_pairs(e.a[i], {{e.start[i].x, V{}}, {e.start[i].y, V{}}, {e.start[i].z, V{}}});
+    }
+    for (int32_t k = 0; k < s.n_bonds; ++k) {
+        int32_t from, to;
+        ends_of(s, k, from, to);
+        Pair<V> sum = dot_pairs(bond(from, to), add_pairs(e.a[to], negative(e.a[from])));
+        if (e.velocity) {
+            const Pair3<V> dv = difference_of(e.velocity[from], e.velocity[to]);
+            sum = add_pairs(sum, dot_pairs(dv, dv));
+        }
+        if (e.given) sum = add_pairs(sum, {e.given[k], V{}});
+        x.row[k].t = sum.hi + sum.lo;
+    }
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

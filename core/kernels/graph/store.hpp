@@ -1,0 +1,116 @@
+// What the multipliers of a block of molecules do, written to the caller's arrays: values per bond, pulls on atoms,
+// virial.
+#ifndef HOLONOMIC_KERNELS_GRAPH_STORE_HPP
+#define HOLONOMIC_KERNELS_GRAPH_STORE_HPP
+
+#include "core/kernels/graph/molecules.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// G of the atom at a slot: t d of the bonds that point away from it, less t d of those that point to it.
+template <class V>
+HOL_INLINE Vector3<V> pull_on(const Molecules<V> &x, int32_t slot) {
+    const Schedule &s = x.s;
+    Vector3<V> g = {};
+    for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) {
+        const BondRow<V> &row = x.row[s.child[c]];
+        g = add_times(g, row.t, row.d);
+    }
+    if (slot < s.n_tree) return add_times(g, -x.row[slot].t, x.row[slot].d);
+    if (s.n_core_atoms == 0) return g;
+    for (int32_t e = s.meet_start[slot - s.n_tree]; e < s.meet_start[slot - s.n_tree + 1]; ++e) {
+        const BondRow<V> &row = x.row[s.n_tree + s.meet[e] / 2];
+        g = add_times(g, s.meet[e] % 2 ? -row.t : row.t, row.d);
+    }
+    return g;
+}
+
+// The lanes of `which` in which this local atom may be written: not those where it is a fixed one of other molecules,
+// too.
+template <class V>
+HOL_INLINE unsigned writable(const Molecules<V> &x, int32_t atom, unsigned which) {
+    for (int i = 0; i < Width<V>::lanes; ++i)
+        if (x.lane[i].shared && x.lane[i].shared[atom]) which &= ~(1u << i);
+    return which;
+}
+
+template <class V>
+HOL_INLINE bool any_shared(const Molecules<V> &x) {
+    bool shared = false;
+    for (int i = 0; i < Width<V>::lanes; ++i) shared = shared || x.lane[i].shared;
+    return shared;
+}
+
+// G of all atoms in the lanes of `which`, written or added.
+template <Layout layout, class V>
+HOL_NOINLINE void write_pulls(const Molecules<V> &x, const AtomArray &g, bool add, unsigned which) {
+    const bool shared = any_shared(x);
+    for (int32_t slot = x.s.n_atoms - 1; slot >= 0; --slot) {
+        const int32_t atom = x.s.atom_of[slot];
+        Vector3<V> pull = pull_on(x, slot);
+        if (add) pull = read<layout>(g, x.at, atom) + pull;
+        write<layout>(g, x.at, atom, pull, shared ? writable(x, atom, which) : which);
+    }
+}
+
+// factor t of all bonds, zeros as +0; with_length: times |d|.
+template <bool with_length, class V>
+HOL_NOINLINE void write_bonds(const Molecules<V> &x, double factor, double *out, unsigned which) {
+    double *p[Width<V>::lanes];
+    for (int i = 0; i < Width<V>::lanes; ++i) p[i] = out + x.lane[i].first_bond;
+    const bool all = which == (1u << Width<V>::lanes) - 1;
+    for (int32_t k = 0; k < x.s.n_bonds; ++k) {
+        const BondRow<V> &row = x.row[k];
+        V value = mul_add(Width<V>::all(factor), row.t, V{});
+        if (with_length) value = mul_add(row.t, sqrt(row.q), V{});
+        const int32_t bond = x.s.bond_of[k];
+        if (all) {
+            HOL_UNROLL
+            for (int i = 0; i < Width<V>::lanes; ++i) p[i][bond] = Width<V>::get(value, i);
+        } else {
+            for (int i = 0; i < Width<V>::lanes; ++i)
+                if (which >> i & 1) p[i][bond] = Width<V>::get(value, i);
+        }
+    }
+}
+
+// - sum t d (x) d over the lanes of `which`, in the order of the lanes.
+template <class V>
+HOL_NOINLINE void add_pulls_to_virial(const Molecules<V> &x, unsigned which, Tally &tally) {
+    V s[6] = {};
+    for (int32_t k = 0; k < x.s.n_bonds; ++k) {
+        const Vector3<V> d = x.row[k].d, p = x.row[k].t * d;
+        s[0] = mul_add(p.x, d.x, s[0]);
+        s[1] = mul_add(p.x, d.y, s[1]);
+        s[2] = mul_add(p.x, d.z, s[2]);
+        s[3] = mul_add(p.y, d.y, s[3]);
+        s[4] = mul_add(p.y, d.z, s[4]);
+        s[5] = mul_add(p.z, d.z, s[5]);
+    }
+    for (int c = 0; c < 6; ++c)
+        for (int i = 0; i < Width<V>::lanes; ++i)
+            if (which >> i & 1) tally.virial[c] -= Width<V>::get(s[c], i);
+}
+
+// Lanes in which all multipliers are finite.
+template <class V>
+HOL_INLINE MaskOf<V> finite_solution(const Molecules<V> &x) {
+    V sum = {};
+    for (int32_t k = 0; k < x.s.n_bonds; ++k) sum = sum + abs(x.row[k].t);
+    return finite(sum);
+}
+
+static inline void note_bad_molecules(const MoleculeLane *lane, unsigned which, Tally &tally) {
+    for (; which; which &= which - 1) {
+        const int64_t molecule = lane[__builtin_ctz(which)].molecule;
+        if (tally.n_bad == 0 || molecule < tally.first_bad) tally.first_bad = molecule;
+        ++tally.n_bad;
+    }
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

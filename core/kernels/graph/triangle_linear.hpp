@@ -1,0 +1,114 @@
+// Forces, given right-hand sides and velocities of triangles.
+#ifndef HOLONOMIC_KERNELS_GRAPH_TRIANGLE_LINEAR_HPP
+#define HOLONOMIC_KERNELS_GRAPH_TRIANGLE_LINEAR_HPP
+
+#include "core/kernels/graph/store.hpp"
+#include "core/kernels/graph/triangle.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// What a linear solve reads and writes; absent arrays have x == nullptr.
+struct TriangleCall {
+    const AtomArray &r, &v, &f;
+    const double *rhs;
+    const AtomArray &g;
+    double *lambda, *tension;
+    bool add, virial;
+    const Box &box;
+};
+
+template <Layout layout, class V>
+HOL_INLINE void read_triangle(const AtomArray &array, const Atoms<V> &at, const Schedule &s, Vector3<V> *atoms) {
+    HOL_UNROLL
+    for (int i = 0; i < 3; ++i) atoms[i] = read<layout>(array, at, s.atom_of[i]);
+}
+
+// Right-hand sides as load.hpp makes them.
+template <Layout layout, class V>
+HOL_INLINE void triangle_sides(const TriangleCall &call, const MoleculeLane *lane, const Atoms<V> &at,
+                               const Schedule &s, const TriangleMasses<V> &m, const Vector3<V> *d, V *y) {
+    Vector3<V> a[3];
+    for (int k = 0; k < 3; ++k) y[k] = V{};
+    if (call.v.x) {
+        read_triangle<layout>(call.v, at, s, a);
+        HOL_UNROLL
+        for (int k = 0; k < 3; ++k) {
+            const Vector3<V> dv = a[(k + 1) % 3] - a[k];
+            y[k] = dot(dv, dv);
+        }
+    }
+    if (call.f.x) {
+        read_triangle<layout>(call.f, at, s, a);
+        HOL_UNROLL
+        for (int k = 0; k < 3; ++k) a[k] = m.w[k] * a[k];
+        HOL_UNROLL
+        for (int k = 0; k < 3; ++k) y[k] = y[k] + dot(d[k], a[(k + 1) % 3] - a[k]);
+    }
+    if (call.rhs)
+        for (int k = 0; k < 3; ++k)
+            for (int i = 0; i < Width<V>::lanes; ++i)
+                Width<V>::set(y[k], i, 0.5 * call.rhs[lane[i].first_bond + s.bond_of[k]]);
+}
+
+// Returns the lanes that are done.
+template <Layout layout, class V>
+static inline unsigned solve_triangles(const TriangleCall &call, const Schedule &s, const MoleculeLane *lane, int used,
+                                       const Atoms<V> &at, const TriangleMasses<V> &m, Tally &tally) {
+    Vector3<V> r[3];
+    V t[3];
+    read_triangle<layout>(call.r, at, s, r);
+    const Triangle<V> x = triangle_of(call.box, r);
+    triangle_sides<layout>(call, lane, at, s, m, x.d, t);
+    TriangleInverse<V>::solve(invert_triangle(m, x), t, t);
+    const unsigned good = bits(Width<V>::first(used) & x.closed & finite(t[0] + (t[1] + t[2])));
+    if (!good) return good;
+    if (call.lambda) write_triangle_bonds(lane, s, t, Width<V>::all(0.5), call.lambda, good);
+    if (call.tension) {
+        const V T[3] = {t[0] * sqrt(x.q[0]), t[1] * sqrt(x.q[1]), t[2] * sqrt(x.q[2])};
+        write_triangle_bonds(lane, s, T, Width<V>::all(1), call.tension, good);
+    }
+    if (call.virial) add_triangle_virial(x.d, t, 1, good, tally);
+    if (!call.g.x) return good;
+    HOL_UNROLL
+    for (int i = 0; i < 3; ++i) {
+        Vector3<V> g = triangle_pull(x.d, t, i);
+        if (call.add) g = read<layout>(call.g, at, s.atom_of[i]) + g;
+        write<layout>(call.g, at, s.atom_of[i], g, good);
+    }
+    return good;
+}
+
+// The velocity level: twice, as velocities.hpp says.
+template <Layout layout, class V>
+static inline unsigned project_triangles(const VelocitiesCall &call, const Schedule &s, const MoleculeLane *lane,
+                                         int used, const Atoms<V> &at, const TriangleMasses<V> &m, Tally &tally) {
+    Vector3<V> r[3], v[3];
+    V t[3];
+    read_triangle<layout>(call.r, at, s, r);
+    read_triangle<layout>(call.v, at, s, v);
+    const Triangle<V> x = triangle_of(call.box, r);
+    const TriangleInverse<V> inverse = invert_triangle(m, x);
+    const auto project = [&]() __attribute__((always_inline)) {
+        HOL_UNROLL
+        for (int k = 0; k < 3; ++k) t[k] = dot(x.d[k], v[(k + 1) % 3] - v[k]);
+        TriangleInverse<V>::solve(inverse, t, t);
+        HOL_UNROLL
+        for (int i = 0; i < 3; ++i) v[i] = add_times(v[i], m.w[i], triangle_pull(x.d, t, i));
+    };
+    project();
+    const unsigned good = bits(Width<V>::first(used) & x.closed & finite(t[0] + (t[1] + t[2])));
+    if (!good) return good;
+    if (call.lambda) write_triangle_bonds(lane, s, t, Width<V>::all(0.5), call.lambda, good);
+    if (call.virial) add_triangle_virial(x.d, t, 1, good, tally);
+    if (!call.v.is_float) project();
+    HOL_UNROLL
+    for (int i = 0; i < 3; ++i) write<layout>(call.v, at, s.atom_of[i], v[i], good);
+    return good;
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,87 @@
+// Velocity level of molecules: the same equations with d . (v_j - v_i) on the right, v_i += w_i G_i. A second solve,
+// for the rates of the velocities as they are rounded after the first, leaves d . (v_j - v_i) at their rounding.
+#ifndef HOLONOMIC_KERNELS_GRAPH_VELOCITIES_HPP
+#define HOLONOMIC_KERNELS_GRAPH_VELOCITIES_HPP
+
+#include "core/kernels/graph/forces.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+struct VelocitiesWork {
+    const VelocitiesCall &call;
+    const Schedule &schedule;
+    const bool packed;
+    Tally &tally;
+
+    template <class V>
+    void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
+        Memory<V> memory = {scratch};
+        Linear<V> z(schedule, lane, used, call.box, call.r, memory);
+        if (!masses_known) z.set_masses();
+        z.equations.force = nullptr;
+        z.equations.given = nullptr;
+        switch (layout_of(z.x.at, packed)) {
+            case rows_in_order:
+                solve<rows_in_order>(z, memory);
+                break;
+            case rows_listed:
+                solve<rows_listed>(z, memory);
+                break;
+            default:
+                solve<elements>(z, memory);
+        }
+    }
+
+    template <Layout layout, class V>
+    void solve(Linear<V> &z, Memory<V> memory) const {
+        Loader<layout, rates, V>{z, {&call.v, nullptr, nullptr}}.load();
+        z.equations.start = z.equations.velocity;
+        z.equations.velocity = nullptr;
+        const unsigned good = solve_loaded<true>(z), rest = bits(z.x.in_use()) & ~good;
+        if (good) {
+            if (call.lambda) write_bonds<false>(z.x, 0.5, call.lambda, good);
+            if (call.virial) add_pulls_to_virial(z.x, good, tally);
+            Vector3<V> *const v = z.equations.start;
+            if (!call.v.is_float) {
+                add_pulls_to(z.x, v);
+                find_rates(z.x, v);
+                z.solve_again();
+            }
+            write_velocities<layout>(z.x, v, good);
+        }
+        if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, z.x.lane, rest, memory.next, tally);
+    }
+
+    template <class V>
+    HOL_NOINLINE void add_pulls_to(const Molecules<V> &x, Vector3<V> *v) {
+        for (int32_t slot = x.s.n_atoms - 1; slot >= 0; --slot)
+            v[slot] = add_times(v[slot], x.w[slot], pull_on(x, slot));
+    }
+
+    // d . (v_j - v_i) into t of the rows.
+    template <class V>
+    HOL_NOINLINE void find_rates(const Molecules<V> &x, const Vector3<V> *v) {
+        for (int32_t k = 0; k < x.s.n_bonds; ++k) {
+            int32_t from, to;
+            ends_of(x.s, k, from, to);
+            x.row[k].t = dot(x.row[k].d, v[to] - v[from]);
+        }
+    }
+
+    template <Layout layout, class V>
+    __attribute__((noinline)) void write_velocities(const Molecules<V> &x, const Vector3<V> *v, unsigned which) const {
+        const bool shared = any_shared(x);
+        for (int32_t slot = x.s.n_atoms - 1; slot >= 0; --slot) {
+            const int32_t atom = x.s.atom_of[slot];
+            write<layout>(call.v, x.at, atom, add_times(v[slot], x.w[slot], pull_on(x, slot)),
+                          shared ? writable(x, atom, which) : which);
+        }
+    }
+};
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,37 @@
+// Constraint forces of molecules that are no chains, and multipliers for given right-hand sides.
+#include "core/kernels/graph/forces.hpp"
+#include "core/kernels/verbs/verbs.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+using namespace graph;
+
+void molecules_forces(const ForcesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+    const bool packed =
+        call.r.packed && (!call.v.x || call.v.packed) && (!call.f.x || call.f.packed) && (!call.g.x || call.g.packed);
+    if (unit.schedule->type == Schedule::triangle) {
+        const TriangleCall triangles = {call.r,      call.v,       call.f,   nullptr,     call.g,
+                                        call.lambda, call.tension, call.add, call.virial, call.box};
+        for_each_triangle(TriangleLinearVerb{triangles, tally}, call, unit, packed, scratch, tally);
+        return;
+    }
+    ForcesWork work = {call, *unit.schedule, packed, tally};
+    for_each_block(unit, scratch, work);
+}
+
+void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+    const bool packed = call.r.packed && (!call.g.x || call.g.packed);
+    if (unit.schedule->type == Schedule::triangle) {
+        const AtomArray none = {};
+        const TriangleCall triangles = {call.r,      none,         none,     call.rhs,    call.g,
+                                        call.lambda, call.tension, call.add, call.virial, call.box};
+        for_each_triangle(TriangleLinearVerb{triangles, tally}, call, unit, packed, scratch, tally);
+        return;
+    }
+    SolveWork work = {call, *unit.schedule, packed, tally};
+    for_each_block(unit, scratch, work);
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic

@@ -1,0 +1,32 @@
+// Position level of molecules that are no chains.
+#include "core/kernels/graph/linear.hpp"
+#include "core/kernels/graph/positions.hpp"
+#include "core/kernels/verbs/verbs.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+using namespace graph;
+
+// What a block takes at the greediest level, and the careful solver behind it.
+template <class V>
+static int64_t block_bytes(const Schedule &s) {
+    const int64_t linear = Linear<V>::values(s), newton = Newton<V>::values(s);
+    return static_cast<int64_t>(sizeof(V)) * (linear > newton ? linear : newton);
+}
+
+int64_t molecules_scratch_bytes(const Schedule &s) {
+    return (s.n_bonds <= largest_in_lanes ? block_bytes<vec>(s) : block_bytes<double>(s)) + 64 +
+           s.careful->scratch_bytes;
+}
+
+void molecules_positions(const PositionsCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+    const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
+    if (unit.schedule->type == Schedule::triangle)
+        return for_each_triangle(TrianglePositionsVerb{call, tally}, call, unit, packed, scratch, tally);
+    PositionsWork work = {call, *unit.schedule, packed, tally};
+    for_each_block(unit, scratch, work);
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic

@@ -1,0 +1,19 @@
+// Velocity level of molecules that are no chains.
+#include "core/kernels/graph/velocities.hpp"
+#include "core/kernels/verbs/verbs.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+using namespace graph;
+
+void molecules_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+    const bool packed = call.r.packed && call.v.packed;
+    if (unit.schedule->type == Schedule::triangle)
+        return for_each_triangle(TriangleVelocitiesVerb{call, tally}, call, unit, packed, scratch, tally);
+    VelocitiesWork work = {call, *unit.schedule, packed, tally};
+    for_each_block(unit, scratch, work);
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
