@@ -397,6 +397,28 @@ HOL_API int hol_forces(const hol_chains *chains, const double *r, const double *
 HOL_API int hol_forces_view(const hol_chains *chains, const hol_view *r, const hol_view *v, const hol_view *f,
                             double *lambda, double *tension, const hol_view *g, int mode, double *virial);
 
+/**
+ * Multipliers of given right-hand sides: Z lambda = rhs, Z_kl = sum_i w_i grad_i sigma_k . grad_i sigma_l, the matrix
+ * that hol_forces solves, for which rhs_k = 2 d_k . (w_j f_j - w_i f_i) + 2 |v_j - v_i|^2. Any other right-hand side
+ * makes sigma_k'' what the caller wants it to be: with forces f + G, sigma_k'' = (its value without G) - rhs_k. For
+ * terms that relax errors, prescribed rates, other thermostats.
+ *
+ * @param[in]     r       positions [n_atoms][3]
+ * @param[in]     rhs     [n_bonds]; not read for bonds between two fixed atoms
+ * @param[out]    lambda  [n_bonds], or NULL; may be rhs itself
+ * @param[in,out] g       G_i = - sum_k lambda_k grad_i sigma_k [n_atoms][3], or NULL
+ * @param[in]     mode    HOL_WRITE or HOL_ADD, as in hol_forces
+ * @param[out]    virial  [3][3], - sum_k 2 lambda_k d_k (x) d_k over active molecules, or NULL
+ * @return HOL_OK; HOL_ERR_NULL (chains, r or rhs); HOL_ERR_VALUE (mode); HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE;
+ *         HOL_ERR_MEMORY. Thread-safe on one handle. Since 0.2.
+ */
+HOL_API int hol_solve(const hol_chains *chains, const double *r, const double *rhs, double *lambda, double *g, int mode,
+                      double *virial);
+
+/** hol_solve with arrays per atom of any layout. Since 0.2. */
+HOL_API int hol_solve_view(const hol_chains *chains, const hol_view *r, const double *rhs, double *lambda,
+                           const hol_view *g, int mode, double *virial);
+
 /* ------------------------------------------------------------------------------------------------ velocity level */
 
 /**

@@ -1,24 +1,15 @@
 #include "core/metric.hpp"
 
 #include "boundary.hpp"
+#include "mode.hpp"
 #include "view.hpp"
 
+using holonomic::adds;
 using holonomic::AtomArray;
 using holonomic::guarded;
 using holonomic::need;
 using holonomic::packed_array;
-using holonomic::Status;
 using holonomic::viewed_array;
-
-namespace {
-
-bool adds(int mode) {
-    if (mode != HOL_WRITE && mode != HOL_ADD)
-        throw holonomic::make_error(Status::value, "mode is %d; it must be HOL_WRITE or HOL_ADD", mode);
-    return mode == HOL_ADD;
-}
-
-}  // namespace
 
 int hol_metric(const hol_chains *chains, const double *r, double kT, double *log_det, double *log_det_z, double *energy,
                double *force, int mode) {

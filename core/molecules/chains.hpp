@@ -59,12 +59,12 @@ public:
     const Box &box_of_reference() const { return has_reference_box_ ? reference_box_ : box; }
 
     // plan.cpp
-    const Plan &plan() const;  // thread-safe
-    bool is_linear(const Plan::Piece &piece) const { return piece.shape == linear; }
+    const Plan &plan() const;           // thread-safe
+    const Plan &plan_of_parts() const;  // likewise; no molecule of it is linear
+    // units.cpp
     Unit unit(const Plan &plan, const Plan::Piece &piece, Lane *lanes) const;  // lanes [loose_piece]
     MoleculeUnit unit(const Plan &plan, const Plan::Piece &piece, MoleculeLane *lanes) const;
     std::int64_t piece_bonds(const Plan::Piece &piece) const;  // of one molecule of the piece; 0 if loose ones
-    const Shapes &shapes() const { return shapes_; }
     const std::vector<std::int64_t> &reordered_bonds() const { return groups_.reordered(); }
     const std::vector<std::int64_t> &unconstrained() const { return unconstrained_; }
 
@@ -77,13 +77,14 @@ public:
 private:
     friend class Batch;
     friend class Planner;
-    void changed() { plan_.store(nullptr); }
-    void resize_active(std::int64_t n_molecules);
+    void changed() {
+        plan_.store(nullptr);
+        plan_of_parts_.store(nullptr);
+    }
     const Kind &kind_of(const Group &group) const { return kinds_[group.kind]; }
     Lane lane_of(const Group &group, std::int64_t index, std::int64_t stage) const;
-    MoleculeLane molecule_lane_of(const Group &group, std::int64_t index, std::int64_t stage) const;
-    void add_atoms(std::int64_t n_bonds, std::int64_t n_chains, const std::int64_t *atoms, const double *lengths);
-    void add_found(const FoundMolecules &found, std::int64_t n_bonds, const double *lengths, std::int64_t n_lengths);
+    MoleculeLane molecule_lane_of(const Plan &plan, const Group &group, std::int64_t index, std::int64_t stage,
+                                  std::int64_t part) const;
     void rebuild(const Masses &masses, const double *lengths);
 
     std::int64_t n_atoms_, n_bonds_ = 0;
@@ -98,8 +99,8 @@ private:
     bool has_reference_box_ = false;
 
     mutable std::mutex plan_mutex_;
-    mutable std::atomic<const Plan *> plan_{nullptr};
-    mutable std::unique_ptr<Plan> plan_owner_;
+    mutable std::atomic<const Plan *> plan_{nullptr}, plan_of_parts_{nullptr};
+    mutable std::unique_ptr<Plan> plan_owner_, plan_of_parts_owner_;
 };
 
 }  // namespace holonomic

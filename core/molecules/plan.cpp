@@ -1,6 +1,7 @@
 #include "core/molecules/plan.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 
 #include "core/molecules/chains.hpp"
@@ -12,16 +13,19 @@ namespace {
 constexpr std::int64_t bonds_per_piece = 4096;  // enough to hide the cost of a piece, few enough to share out evenly
 constexpr std::int64_t widest = 8;  // lanes of the widest instruction set: pieces are cut at multiples of it
 
-// Positions, velocities, forces and results of so many bonds, 96 bytes each, fill a second-level cache.
-constexpr std::int64_t bonds_in_cache = 16384;
-
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
 class Planner {
 public:
-    explicit Planner(const Chains &chains) : chains_(chains), groups_(chains.groups_.all()) {}
+    Planner(const Chains &chains, bool of_parts)
+        : chains_(chains), groups_(chains.groups_.all()), n_shapes_(chains.shapes_.size()) {
+        if (of_parts) divide_kinds();
+        for (std::int32_t s = 0; s < n_shapes_; ++s) plan_->schedules.push_back(chains.shapes_[s].schedule.get());
+        for (std::int32_t s = 0; s < plan_->part_shapes.size(); ++s)
+            plan_->schedules.push_back(plan_->part_shapes[s].schedule.get());
+    }
 
     std::unique_ptr<Plan> make() {
         for (std::size_t g = 0; g < groups_.size(); ++g) divide(static_cast<std::int64_t>(g));
@@ -64,31 +68,84 @@ private:
         }
     }
 
+    // What lies between the fixed atoms of each kind of linear chain.
+    void divide_kinds() {
+        plan_->w.resize(at(chains_.kinds_.size()));
+        plan_->part_start.push_back(0);
+        for (std::int64_t k = 0; k < chains_.kinds_.size(); ++k) {
+            const Kind &kind = chains_.kinds_[k];
+            if (kind.shape == linear) {
+                const double *w = chains_.kinds_.w(kind);
+                if (!w) plan_->w[at(k)].assign(at(kind.n_atoms()), kind.w_uniform);
+                if (!w) w = plan_->w[at(k)].data();
+                std::int64_t first = 0;
+                for (std::int64_t i = 1; i <= kind.n_bonds; ++i)
+                    if (w[i] == 0 || i == kind.n_bonds) {
+                        add_part(w, first, i - first);
+                        first = i;
+                    }
+            }
+            plan_->part_start.push_back(static_cast<std::int64_t>(plan_->parts.size()));
+        }
+    }
+
+    void add_part(const double *w, std::int64_t first, std::int64_t n_bonds) {
+        if (n_bonds >= std::numeric_limits<std::int32_t>::max())
+            throw make_error(Status::value, "a chain of %lld bonds is too long for this function",
+                             static_cast<long long>(n_bonds));
+        std::vector<std::int32_t> pairs(at(2 * n_bonds));
+        std::vector<unsigned char> fixed(at(n_bonds + 1));
+        for (std::size_t e = 0; e < pairs.size(); ++e) pairs[e] = static_cast<std::int32_t>((e + 1) / 2);
+        for (std::size_t i = 0; i < fixed.size(); ++i) fixed[i] = w[at(first) + i] == 0;
+        const std::int32_t shape =
+            plan_->part_shapes.find(Form::chain, static_cast<std::int32_t>(n_bonds + 1),
+                                    static_cast<std::int32_t>(n_bonds), pairs.data(), fixed.data(), -1);
+        plan_->parts.push_back({first, n_bonds, n_shapes_ + shape});
+    }
+
     void add_run(std::int64_t g, std::int64_t begin, std::int64_t end, bool apart) {
         const Kind &k = kind(g);
         const int where = (groups_[at(g)].reordered ? reordered : in_place) + (apart ? staged : in_place);
-        const auto stage_of_next = [&] { return apart ? static_cast<std::int64_t>(plan_->stage.size()) : -1; };
+        const std::int64_t stage = apart ? static_cast<std::int64_t>(plan_->stage.size()) : -1;
+        for (std::int64_t i = begin; apart && i < end; ++i) add_to_stage(groups_[at(g)], i);
         plan_->n_bonds += (end - begin) * k.n_bonds;
         plan_->reordered = plan_->reordered || (where & reordered) != 0;
-        if (k.shape == linear) {
-            plan_->longest = std::max(plan_->longest, k.n_bonds);
-            if (k.n_bonds <= longest_lane) plan_->longest_in_lane = std::max(plan_->longest_in_lane, k.n_bonds);
-        } else {
-            plan_->shapes.push_back(k.shape);
+        Run run{g, begin, end, stage, -1, k.n_bonds, k.shape, where};
+        if (k.shape != linear || plan_->part_start.empty()) return add_pieces(run);
+        for (run.part = plan_->part_start[at(groups_[at(g)].kind)];
+             run.part < plan_->part_start[at(groups_[at(g)].kind + 1)]; ++run.part) {
+            run.shape = plan_->parts[at(run.part)].shape;
+            add_pieces(run);
         }
-        const bool single = k.shape == linear && k.n_bonds > longest_lane;
-        const std::int64_t block = single ? 1 : widest;
-        const std::int64_t per_piece = single ? 1 : std::max(widest, bonds_per_piece / k.n_bonds / widest * widest);
-        while (end - begin >= block) {
-            const std::int64_t count = std::min(per_piece, (end - begin) / block * block);
-            plan_->pieces.push_back({g, begin, count, stage_of_next(), k.shape, where});
-            for (std::int64_t i = begin; apart && i < begin + count; ++i) add_to_stage(groups_[at(g)], i);
+    }
+
+    // Molecules of a group, or of each its part.
+    struct Run {
+        std::int64_t group, begin, end, stage, part, n_bonds;
+        std::int32_t shape;
+        int where;
+    };
+
+    void add_pieces(const Run &run) {
+        if (run.shape == linear) {
+            plan_->longest = std::max(plan_->longest, run.n_bonds);
+            if (run.n_bonds <= longest_lane) plan_->longest_in_lane = std::max(plan_->longest_in_lane, run.n_bonds);
+        } else {
+            plan_->shapes.push_back(run.shape);
+        }
+        // Molecules that are not alike from one to the next are loose, and so are parts of a chain of several.
+        const bool single = run.shape == linear && run.n_bonds > longest_lane;
+        const bool whole = run.part < 0 || plan_->parts[at(run.part)].n_bonds == run.n_bonds;
+        const std::int64_t block = single ? 1 : widest, size = kind(run.group).n_atoms();
+        const std::int64_t per_piece = single ? 1 : std::max(widest, bonds_per_piece / run.n_bonds / widest * widest);
+        const auto stage = [&](std::int64_t i) { return run.stage < 0 ? -1 : run.stage + (i - run.begin) * size; };
+        std::int64_t begin = run.begin;
+        while (whole && run.end - begin >= block) {
+            const std::int64_t count = std::min(per_piece, (run.end - begin) / block * block);
+            plan_->pieces.push_back({run.group, begin, count, stage(begin), run.part, run.shape, run.where});
             begin += count;
         }
-        for (; begin < end; ++begin) {
-            plan_->loose.push_back({g, begin, stage_of_next()});
-            if (apart) add_to_stage(groups_[at(g)], begin);
-        }
+        for (; begin < run.end; ++begin) plan_->loose.push_back({run.group, begin, stage(begin), run.part});
     }
 
     void add_to_stage(const Group &group, std::int64_t index) {
@@ -106,107 +163,61 @@ private:
         const auto where = [this](const Plan::Reference &r) {
             return (groups_[at(r.group)].reordered ? reordered : in_place) + (r.stage >= 0 ? staged : in_place);
         };
+        const auto shape = [this](const Plan::Reference &r) {
+            return r.part < 0 ? kind(r.group).shape : plan_->parts[at(r.part)].shape;
+        };
         const auto key = [&](const Plan::Reference &r) {
-            return std::make_tuple(where(r), kind(r.group).shape, kind(r.group).n_bonds);
+            return std::make_tuple(where(r), shape(r), kind(r.group).n_bonds);
         };
         std::vector<Plan::Reference> &loose = plan_->loose;
         std::stable_sort(loose.begin(), loose.end(),
                          [&](const Plan::Reference &a, const Plan::Reference &b) { return key(a) < key(b); });
         for (std::size_t first = 0, end; first < loose.size(); first = end) {
             const auto same = [&](const Plan::Reference &r) {
-                return where(r) == where(loose[first]) && kind(r.group).shape == kind(loose[first].group).shape;
+                return where(r) == where(loose[first]) && shape(r) == shape(loose[first]);
             };
             for (end = first + 1; end < loose.size() && end - first < at(loose_piece) && same(loose[end]);) ++end;
             plan_->pieces.push_back({-1, static_cast<std::int64_t>(first), static_cast<std::int64_t>(end - first), -1,
-                                     kind(loose[first].group).shape, where(loose[first])});
+                                     -1, shape(loose[first]), where(loose[first])});
         }
     }
 
     const Chains &chains_;
     const std::vector<Group> &groups_;
+    const std::int32_t n_shapes_;
     std::unique_ptr<Plan> plan_ = std::make_unique<Plan>();
 };
 
 std::int64_t Plan::bytes() const {
-    return static_cast<std::int64_t>(sizeof *this + pieces.capacity() * sizeof(Piece) +
-                                     loose.capacity() * sizeof(Reference) +
-                                     (shapes.capacity() + stage.capacity()) * sizeof(std::int64_t) +
-                                     is_copy.capacity() + copies.capacity() * sizeof(Copy));
+    std::size_t bytes = sizeof *this + pieces.capacity() * sizeof(Piece) + loose.capacity() * sizeof(Reference) +
+                        schedules.capacity() * sizeof(schedules[0]) + shapes.capacity() * sizeof(shapes[0]) +
+                        (stage.capacity() + part_start.capacity()) * sizeof(std::int64_t) + is_copy.capacity() +
+                        copies.capacity() * sizeof(Copy) + parts.capacity() * sizeof(Part) + part_shapes.bytes();
+    for (const std::vector<double> &table : w) bytes += table.capacity() * sizeof(double);
+    return static_cast<std::int64_t>(bytes);
 }
 
-const Plan &Chains::plan() const {
-    const Plan *plan = plan_.load(std::memory_order_acquire);
-    if (plan) return *plan;
-    const std::lock_guard<std::mutex> lock(plan_mutex_);
-    if (!plan_.load(std::memory_order_relaxed)) {
-        plan_owner_ = Planner(*this).make();
-        plan_.store(plan_owner_.get(), std::memory_order_release);
+namespace {
+
+// Made by the first of the threads that need it.
+const Plan &made_once(const Chains &chains, bool of_parts, std::mutex &mutex, std::atomic<const Plan *> &plan,
+                      std::unique_ptr<Plan> &owner) {
+    const Plan *const there = plan.load(std::memory_order_acquire);
+    if (there) return *there;
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (!plan.load(std::memory_order_relaxed)) {
+        owner = Planner(chains, of_parts).make();
+        plan.store(owner.get(), std::memory_order_release);
     }
-    return *plan_owner_;
+    return *owner;
 }
 
-std::int64_t Chains::piece_bonds(const Plan::Piece &piece) const {
-    return piece.group < 0 ? 0 : kind_of(groups_.all()[at(piece.group)]).n_bonds;
-}
+}  // namespace
 
-Lane Chains::lane_of(const Group &group, std::int64_t index, std::int64_t stage) const {
-    const Kind &kind = kind_of(group);
-    Lane lane;
-    lane.n_bonds = kind.n_bonds;
-    lane.first_atom = stage >= 0 ? stage : group.first_atom + index * kind.n_atoms();
-    lane.atoms = stage >= 0 ? nullptr : groups_.atoms(group, index, kind.n_atoms());
-    lane.w = kinds_.w(kind);
-    lane.length = kinds_.length(kind);
-    lane.w_uniform = kind.w_uniform;
-    lane.length_uniform = kind.length_uniform;
-    lane.first_bond = group.first_bond + index * kind.n_bonds;
-    lane.chain = group.first_molecule + index;
-    return lane;
-}
+const Plan &Chains::plan() const { return made_once(*this, false, plan_mutex_, plan_, plan_owner_); }
 
-MoleculeLane Chains::molecule_lane_of(const Group &group, std::int64_t index, std::int64_t stage) const {
-    const Kind &kind = kind_of(group);
-    MoleculeLane lane;
-    lane.first_atom = stage >= 0 ? stage : group.first_atom + index * kind.n_atoms();
-    lane.atoms = stage >= 0 ? nullptr : groups_.atoms(group, index, kind.n_atoms());
-    lane.shared = nullptr;  // molecules that share atoms have copies of their own
-    lane.w = kinds_.w(kind);
-    lane.length = kinds_.length(kind);
-    lane.first_bond = group.first_bond + index * kind.n_bonds;
-    lane.molecule = group.first_molecule + index;
-    return lane;
-}
-
-Lane Chains::lane(std::int64_t molecule) const {
-    const Group &group = groups_.of_molecule(molecule);
-    return lane_of(group, molecule - group.first_molecule, -1);
-}
-
-Unit Chains::unit(const Plan &plan, const Plan::Piece &p, Lane *lanes) const {
-    const bool large = plan.n_bonds > bonds_in_cache;
-    if (p.group >= 0) {
-        lanes[0] = lane_of(groups_.all()[at(p.group)], p.first, p.stage);
-        return {lanes, p.count, true, large};
-    }
-    for (std::int64_t i = 0; i < p.count; ++i) {
-        const Plan::Reference &reference = plan.loose[at(p.first + i)];
-        lanes[i] = lane_of(groups_.all()[at(reference.group)], reference.index, reference.stage);
-    }
-    return {lanes, p.count, false, large};
-}
-
-MoleculeUnit Chains::unit(const Plan &plan, const Plan::Piece &p, MoleculeLane *lanes) const {
-    const bool large = plan.n_bonds > bonds_in_cache;
-    const Schedule *const schedule = shapes_[p.shape].schedule.get();
-    if (p.group >= 0) {
-        lanes[0] = molecule_lane_of(groups_.all()[at(p.group)], p.first, p.stage);
-        return {schedule, lanes, p.count, true, large};
-    }
-    for (std::int64_t i = 0; i < p.count; ++i) {
-        const Plan::Reference &reference = plan.loose[at(p.first + i)];
-        lanes[i] = molecule_lane_of(groups_.all()[at(reference.group)], reference.index, reference.stage);
-    }
-    return {schedule, lanes, p.count, false, large};
+const Plan &Chains::plan_of_parts() const {
+    return made_once(*this, true, plan_mutex_, plan_of_parts_, plan_of_parts_owner_);
 }
 
 }  // namespace holonomic

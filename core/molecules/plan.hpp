@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/kernels/call.hpp"
+#include "core/molecules/shape.hpp"
 
 namespace holonomic {
 
@@ -18,11 +19,13 @@ struct Plan {
     struct Reference {
         std::int64_t group, index;
         std::int64_t stage;  // its first atom in the stage, or -1
+        std::int64_t part;   // of its chain, or -1: all of it
     };
     struct Piece {
         std::int64_t group;         // `count` molecules of this group from `first` on, or
         std::int64_t first, count;  // if group == -1: loose[first] .. loose[first+count-1]
         std::int64_t stage;         // of the first, or -1
+        std::int64_t part;          // as in a reference; loose ones have their own
         std::int32_t shape;         // of all its molecules
         int where;
     };
@@ -34,11 +37,23 @@ struct Plan {
     std::vector<Reference> loose;                   // molecules that fill no block of their own kind
     std::int64_t longest_in_lane = 0, longest = 0;  // bonds of linear chains
     std::int64_t n_bonds = 0;                       // of active molecules
+    std::vector<const Schedule *> schedules;        // of all shapes
     std::vector<std::int32_t> shapes;               // those that occur, but for linear
     std::vector<std::int64_t> stage;                // atoms of the molecules that share fixed atoms, one after another
     std::vector<unsigned char> is_copy;             // of each atom of the stage
     std::vector<Copy> copies;                       // by atom, then by place
     bool reordered = false;                         // some molecules' bonds are
+
+    // For calls that work on linear chains as on other molecules: what lies between two fixed atoms is a part.
+    struct Part {
+        std::int64_t first;  // atom and bond of the chain
+        std::int64_t n_bonds;
+        std::int32_t shape;
+    };
+    std::vector<Part> parts;
+    std::vector<std::int64_t> part_start;  // [n_kinds+1], empty if chains are worked on as chains
+    std::vector<std::vector<double>> w;    // [n_kinds], of kinds whose inverse masses are all alike
+    Shapes part_shapes;
 
     std::int64_t bytes() const;
 };

@@ -111,11 +111,12 @@ std::int64_t Chains::degrees_of_freedom(int dimensions) const {
 }
 
 std::int64_t Chains::memory() const {
-    const Plan *plan = plan_.load(std::memory_order_acquire);
+    const Plan *const plan = plan_.load(std::memory_order_acquire), *const of_parts =
+                                                                        plan_of_parts_.load(std::memory_order_acquire);
     return static_cast<std::int64_t>(sizeof *this + masses_.bytes() + use_.bytes() + kinds_.bytes() + shapes_.bytes() +
                                      groups_.bytes() + unconstrained_.capacity() * sizeof(std::int64_t) +
                                      active_.capacity()) +
-           (plan ? plan->bytes() : 0);
+           (plan ? plan->bytes() : 0) + (of_parts ? of_parts->bytes() : 0);
 }
 
 }  // namespace holonomic

@@ -45,7 +45,7 @@ bool is_unwritten(const AtomArray &array, std::int64_t i) {
 
 }  // namespace
 
-Apart::Apart(const Chains &chains) : chains_(chains), plan_(chains.plan()), memory_(nullptr) {
+Apart::Apart(const Chains &chains, const Plan &plan) : chains_(chains), plan_(plan), memory_(nullptr) {
     const std::int64_t n_stage = static_cast<std::int64_t>(plan_.stage.size());
     const std::int64_t n_values = reorders() ? static_cast<std::int64_t>(chains.reordered_bonds().size()) : 0;
     const std::int64_t bytes = most * (rounded_up(n_stage * 24) + rounded_up(n_values * 8));

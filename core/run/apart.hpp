@@ -13,7 +13,8 @@ namespace holonomic {
 class Apart {
 public:
     // Takes memory of the calling thread for all arrays that a call may have. Throws std::bad_alloc.
-    explicit Apart(const Chains &chains);
+    explicit Apart(const Chains &chains) : Apart(chains, chains.plan()) {}
+    Apart(const Chains &chains, const Plan &plan);
 
     bool reorders() const { return plan_.reordered; }
     bool stages() const { return !plan_.stage.empty(); }

@@ -101,12 +101,14 @@ void Team::run(std::int64_t n, Tally &total, void (*call)(const void *, std::int
     }
 }
 
-Tally execute(const Chains &chains, const Work &work) {
-    const Plan &plan = chains.plan();
+Tally execute(const Chains &chains, const Work &work) { return execute(chains, chains.plan(), work); }
+
+Tally execute(const Chains &chains, const Plan &plan, const Work &work) {
     const std::int64_t n_pieces = static_cast<std::int64_t>(plan.pieces.size());
     std::int64_t scratch_bytes = kernels().scratch_bytes(plan.longest > longest_lane ? 2 * longest_lane : plan.longest);
     for (const std::int32_t shape : plan.shapes)
-        scratch_bytes = std::max(scratch_bytes, kernels().molecules.scratch_bytes(*chains.shapes()[shape].schedule));
+        scratch_bytes = std::max(scratch_bytes,
+                                 kernels().molecules.scratch_bytes(*plan.schedules[static_cast<std::size_t>(shape)]));
     const int n_threads = static_cast<int>(
         std::min<std::int64_t>(chains.n_threads, std::max<std::int64_t>(plan.n_bonds / bonds_per_thread, 1)));
 

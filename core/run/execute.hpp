@@ -49,6 +49,7 @@ protected:
 
 // Throws std::bad_alloc before any work is done.
 Tally execute(const Chains &chains, const Work &work);
+Tally execute(const Chains &chains, const Plan &plan, const Work &work);
 
 // Counts a long chain as bad.
 inline void note_bad(const Lane &lane, Tally &tally) {
