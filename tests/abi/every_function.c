@@ -1,6 +1,6 @@
 /*
- * A program as one that was linked to release 0.1 may be: it calls every function of that release, uses every public
- * struct, and checks what comes back. every_function.sh builds it against an old header and runs it with today's
+ * A program as one that was linked to an earlier release may be: it calls every function of that release, uses every
+ * public struct, and checks what comes back. every_function.sh builds it against an old header and runs it with today's
  * library.
  */
 #include <holonomic.h>
@@ -171,6 +171,44 @@ static void tridiagonal(void)
     NEAR(he + rigid + volume, 0);
 }
 
+#if HOL_VERSION_MAJOR > 0 || HOL_VERSION_MINOR >= 2
+/* A rigid triangle and three beads on one, all of mass 1, pulled apart. */
+static void molecules(void)
+{
+    const int64_t triangle[6] = {0, 1, 1, 2, 2, 0}, star[6] = {4, 3, 5, 3, 3, 6};
+    const double masses[7] = {1, 1, 1, 1, 1, 1, 1}, ones[6] = {1, 1, 1, 1, 1, 1}, h = sqrt(0.75), box[9] = {9, 0, 0, 0, 9};
+    const double r[21] = {0, 0, 0, 1, 0, 0, 0.5, h, 0, 5, 5, 5, 6, 5, 5, 5, 6, 5, 5, 5, 6};
+    const double rhs[6] = {4, 4, 4, 4, 4, 4};
+    const hol_view view = view_of(r);
+    double lambda[6] = {0}, g[21];
+    const hol_view out = view_of(g);
+    int64_t n_atoms = 0, n_bonds = 0, bonds[3] = {0}, of_bonds[6] = {0};
+    int shape = -1;
+    hol_chains *both = NULL;
+    SUCCEEDS(hol_chains_create(7, masses, &both));
+    SUCCEEDS(hol_chains_add_molecules(both, 1, 3, 0, 3, triangle, ones));
+    SUCCEEDS(hol_chains_add_bonds(both, 3, star, ones));
+    SUCCEEDS(hol_chains_set_lengths(both, ones));
+    SUCCEEDS(hol_chains_set_masses(both, masses));
+    SUCCEEDS(hol_chains_set_reference_box(both, box));
+    SUCCEEDS(hol_chains_set_reference_box(both, NULL));
+    SUCCEEDS(hol_chains_molecule(both, 1, &shape, &n_atoms, &n_bonds));
+    EXPECT(shape == HOL_SHAPE_TREE && n_atoms == 4 && n_bonds == 3);
+    SUCCEEDS(hol_chains_bonds(both, 0, bonds));
+    EXPECT(bonds[0] == 0 && bonds[1] == 2 && bonds[2] == 1);
+    SUCCEEDS(hol_chains_molecules_of_bonds(both, of_bonds));
+    EXPECT(of_bonds[2] == 0 && of_bonds[3] == 1);
+    EXPECT(hol_chains_n_of_shape(both, HOL_SHAPE_TRIANGLE) == 1 && hol_chains_n_kinds(both) == 2);
+    SUCCEEDS(hol_solve(both, r, rhs, lambda, g, HOL_WRITE, NULL));
+    NEAR(lambda[0], 1 / 3.0); /* Z is 8 on its diagonal and 2 beside it */
+    NEAR(lambda[4], 0.5);     /* 8 and 0 */
+    NEAR(g[3 * 4], -1);
+    SUCCEEDS(hol_solve_view(both, &view, rhs, NULL, &out, HOL_ADD, NULL));
+    NEAR(g[3 * 4], -2);
+    hol_chains_destroy(both);
+}
+#endif
+
 int main(void)
 {
     hol_chains *chains = NULL;
@@ -183,6 +221,9 @@ int main(void)
     metric(chains);
     inverse(chains);
     tridiagonal();
+#if HOL_VERSION_MAJOR > 0 || HOL_VERSION_MINOR >= 2
+    molecules();
+#endif
     hol_chains_destroy(chains);
     if (failures == 0)
         printf("compiled for %d.%d, runs with %s\n", HOL_VERSION_MAJOR, HOL_VERSION_MINOR, hol_version());

@@ -37,10 +37,16 @@ static void enum_values_are_frozen(void)
     IS(HOL_ADD, 1);
     IS(HOL_UNIT_DIAGONAL, 0);
     IS(HOL_PHYSICAL, 1);
+    IS(HOL_SHAPE_CHAIN, 0);
+    IS(HOL_SHAPE_TREE, 1);
+    IS(HOL_SHAPE_RING, 2);
+    IS(HOL_SHAPE_TRIANGLE, 3);
+    IS(HOL_SHAPE_OTHER, 4);
     IS(sizeof(hol_status), sizeof(int));
     IS(sizeof(hol_element), sizeof(int));
     IS(sizeof(hol_mode), sizeof(int));
     IS(sizeof(hol_scaling), sizeof(int));
+    IS(sizeof(hol_shape), sizeof(int));
 }
 
 static void hol_view_is_frozen(void)

@@ -205,9 +205,9 @@ static void bad_and_inactive_molecules_keep_their_multipliers(void **state)
     double *lambda = untouched((size_t)a.n_bonds), *kept = untouched((size_t)a.n_bonds), *virial = untouched(9);
     CHECK_FAILS(HOL_ERR_NOT_FINITE, hol_forces(b, a.r, a.v, a.f, lambda, NULL, NULL, HOL_WRITE, virial));
     assert_message_names("hol_forces: ");
-    int64_t chain, bond, atom, n_bad;
-    hol_error_location(&chain, &bond, &atom, &n_bad);
-    assert_int_equal(chain, 7);
+    int64_t molecule_number, bond, atom, n_bad;
+    hol_error_location(&molecule_number, &bond, &atom, &n_bad);
+    assert_int_equal(molecule_number, 7);
     assert_int_equal(atom, a.atoms[a.first[7]]);
     assert_int_equal(n_bad, 1);
     assert_untouched(virial, 9);
@@ -338,8 +338,8 @@ static void wrong_bonds_are_refused_and_nothing_is_added(void **state)
     hol_error_location(NULL, NULL, &atom, NULL);
     assert_int_equal(atom, 2);
     assert_message_names("atom 2");
-    const int64_t chain[3] = {4, 3, 2};
-    CHECK_FAILS(HOL_ERR_SHARED_ATOM, hol_chains_add(c, 2, chain, ones));
+    const int64_t linear[3] = {4, 3, 2};
+    CHECK_FAILS(HOL_ERR_SHARED_ATOM, hol_chains_add(c, 2, linear, ones));
     assert_message_names("hol_chains_add: atom 2");
     const double wrong[] = {0, -1, NAN, INFINITY, 1e-160, 1e160};
     const int64_t free_pair[4] = {5, 6, 7, 8};

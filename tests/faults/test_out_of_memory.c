@@ -72,6 +72,11 @@ static int violation(const assembly *a, double *out)
     return status;
 }
 
+static int given_right_hand_sides(const assembly *a, double *out)
+{
+    return hol_solve(a->chains, a->r, a->length, per_bond(a, out), out, HOL_WRITE, numbers(a, out));
+}
+
 static int metric(const assembly *a, double *out)
 {
     return hol_metric(a->chains, a->r, 1, per_bond(a, out), NULL, numbers(a, out), out, HOL_WRITE);
@@ -165,6 +170,7 @@ static const operation operations[] = {
     {"hol_project_velocities", velocities},
     {"hol_project_positions", positions},
     {"hol_violation", violation},
+    {"hol_solve", given_right_hand_sides},
     {"hol_metric", metric},
     {"hol_inverse_create", inverse},
     {"hol_inverse_row", inverse_row},
@@ -250,6 +256,37 @@ static void fail_each_of_all(const assembly *a, const char *name)
     hol_inverse_destroy(prepared);
 }
 
+/** Chains turned into molecules: some closed to rings, some with a triangle, two that share a fixed atom; no order. */
+static assembly molecules(void)
+{
+    enum { CHAINS = 9, BONDS = 12, ATOMS = BONDS + 1 };
+    assembly a = assembly_of_kind(CHAIN_COIL, CHAINS, BONDS, BONDS, IN_ORDER, 7);
+    int64_t *pairs = malloc(sizeof *pairs * 2 * CHAINS * (BONDS + 1)), n = 0;
+    double *lengths = malloc(sizeof *lengths * CHAINS * (BONDS + 1));
+    a.mass[0] = 0;
+    for (int64_t k = BONDS; k >= 0; --k)
+        for (int64_t c = 0; c < CHAINS; ++c) {
+            const int64_t first = c * ATOMS, last = c % 3 == 0 ? 0 : c % 3 == 1 ? first + 2 : first;
+            if (k == BONDS && c == 0) continue;
+            pairs[2 * n] = k == BONDS && c % 3 == 1 ? first : first + k;
+            pairs[2 * n + 1] = k == BONDS ? last : first + k + 1;
+            double square = 0;
+            for (int i = 0; i < 3; ++i) {
+                const double d = a.r[3 * pairs[2 * n + 1] + i] - a.r[3 * pairs[2 * n] + i];
+                square += d * d;
+            }
+            lengths[n++] = sqrt(square);
+        }
+    free(a.length);
+    hol_chains_destroy(a.chains);
+    a.length = lengths;
+    a.n_bonds = n;
+    CHECK(hol_chains_create(a.n_atoms, a.mass, &a.chains));
+    CHECK(hol_chains_add_bonds(a.chains, n, pairs, lengths));
+    free(pairs);
+    return a;
+}
+
 static void every_allocation_of_a_calculation_can_fail(void **state)
 {
     (void)state;
@@ -260,32 +297,39 @@ static void every_allocation_of_a_calculation_can_fail(void **state)
         fail_each_of_all(&a, names[i]);
         assembly_free(&a);
     }
+    assembly a = molecules();
+    fail_each_of_all(&a, "molecules");
+    assembly_free(&a);
 }
 
 /** The handle's own preparation happens in the first calculation after a change: that may fail too. */
 static void the_first_calculation_with_a_handle_can_fail(void **state)
 {
     (void)state;
-    assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, 20, 1, 30, SCATTERED, 6);
-    const size_t size = out_size(&a);
-    double *before = untouched(size), *out = untouched(size), *again = untouched(size), *right = untouched(size);
-    prepare(&a, right);
-    CHECK(forces(&a, right));
-    unsigned char *active = malloc((size_t)a.n_chains);
-    memset(active, 1, (size_t)a.n_chains);
-    attempt t = {operations, &a, right, before, out, again, 0, 0, 0, 0, 0};
-    for (t.good = 0;; ++t.good) {
-        CHECK(hol_chains_set_active(a.chains, active)); /* makes the handle prepare itself again */
-        run_in_a_thread(&t);
-        assert_int_equal(t.second, HOL_OK);
-        assert_same_bits(again, right, size);
-        if (t.refused == 0) break;
-        assert_int_equal(t.status, HOL_ERR_MEMORY);
-        assert_same_bits(out, before, size);
+    static const operation calls[] = {{"hol_forces", forces}, {"hol_solve", given_right_hand_sides}};
+    for (int i = 0; i < 4; ++i) {
+        assembly a = i < 2 ? assembly_of_kind(CHAIN_HETEROGENEOUS, 20, 1, 30, SCATTERED, 6) : molecules();
+        const operation *what = calls + i % 2;
+        const size_t size = out_size(&a);
+        double *before = untouched(size), *out = untouched(size), *again = untouched(size), *right = untouched(size);
+        prepare(&a, right);
+        CHECK(what->call(&a, right));
+        unsigned char *active = malloc((size_t)hol_chains_n_chains(a.chains));
+        memset(active, 1, (size_t)hol_chains_n_chains(a.chains));
+        attempt t = {what, &a, right, before, out, again, 0, 0, 0, 0, 0};
+        for (t.good = 0;; ++t.good) {
+            CHECK(hol_chains_set_active(a.chains, active)); /* makes the handle prepare itself again */
+            run_in_a_thread(&t);
+            assert_int_equal(t.second, HOL_OK);
+            assert_same_bits(again, right, size);
+            if (t.refused == 0) break;
+            assert_int_equal(t.status, HOL_ERR_MEMORY);
+            assert_same_bits(out, before, size);
+        }
+        assert_true(t.good > 0);
+        free(before), free(out), free(again), free(right), free(active);
+        assembly_free(&a);
     }
-    assert_true(t.good > 0);
-    free(before), free(out), free(again), free(right), free(active);
-    assembly_free(&a);
 }
 
 static void handles_are_not_made_without_memory(void **state)
@@ -311,14 +355,28 @@ static void handles_are_not_made_without_memory(void **state)
     assert_int_equal(blocks_in_use(), in_use);
 }
 
-enum { ADD = 0, ADD_BLOCK, SET_ACTIVE, CHANGES };
+enum { ADD = 0, ADD_BLOCK, ADD_BONDS, ADD_MOLECULES, SET_LENGTHS, SET_MASSES, SET_ACTIVE, CHANGES };
 
 static int change(hol_chains *chains, int which)
 {
     static const int64_t list[4] = {40, 7, 33, 12}; /* free atoms */
     static const double length[3] = {1, 1.5, 0.5};
     static const unsigned char active[40] = {1, 0, 1};
+    /* a star, a ring, and a chain from its end on */
+    static const int64_t bonds[20] = {20, 22, 20, 24, 20, 26, 12, 11, 11, 14, 14, 13, 13, 12, 41, 40, 40, 39, 39, 38};
+    static const int64_t triangle[6] = {0, 1, 1, 2, 2, 0};
+    static const double ones[10] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+    double mass[50];
+    for (int i = 0; i < 50; ++i) mass[i] = 2 + i % 5;
     switch (which) {
+        case ADD_BONDS:
+            return hol_chains_add_bonds(chains, 10, bonds, ones);
+        case ADD_MOLECULES:
+            return hol_chains_add_molecules(chains, 9, 3, 20, 3, triangle, ones);
+        case SET_LENGTHS:
+            return hol_chains_set_lengths(chains, length);
+        case SET_MASSES:
+            return hol_chains_set_masses(chains, mass);
         case ADD:
             return hol_chains_add(chains, 3, list, length);
         case ADD_BLOCK:
@@ -340,6 +398,21 @@ static hol_chains *some_chains(void)
     return chains;
 }
 
+/** Masses, lengths and bonds show in what is calculated. */
+static void assert_same_results(const hol_chains *one, const hol_chains *other)
+{
+    double r[150], f[150], lambda[2][40] = {{0}};
+    hol_worst worst[2];
+    const hol_chains *const both[2] = {one, other};
+    for (int i = 0; i < 150; ++i) r[i] = sin(i * i), f[i] = cos(i);
+    for (int i = 0; i < 2; ++i) {
+        CHECK(hol_forces(both[i], r, NULL, f, lambda[i], NULL, NULL, HOL_WRITE, NULL));
+        CHECK(hol_violation(both[i], r, NULL, worst + i));
+    }
+    assert_same_bits(lambda[0], lambda[1], 40);
+    assert_true(worst[0].length == worst[1].length);
+}
+
 static void a_change_that_finds_no_memory_changes_nothing(void **state)
 {
     (void)state;
@@ -356,20 +429,23 @@ static void a_change_that_finds_no_memory_changes_nothing(void **state)
                 assert_int_equal(status, HOL_ERR_MEMORY);
                 assert_int_equal(hol_chains_n_chains(chains), 1);
                 assert_int_equal(hol_chains_n_bonds(chains), 2);
+                assert_int_equal(hol_chains_n_kinds(chains), 1);
                 CHECK(change(chains, which)); /* the atoms are still free */
             }
             CHECK(change(twin, which));
-            int64_t offsets[2][8], atoms[2][4];
-            CHECK(hol_chains_offsets(chains, offsets[0]));
-            CHECK(hol_chains_offsets(twin, offsets[1]));
             const int64_t n = hol_chains_n_chains(twin);
             assert_int_equal(hol_chains_n_chains(chains), n);
-            assert_memory_equal(offsets[0], offsets[1], sizeof(int64_t) * (size_t)(n + 1));
-            for (int64_t c = 1; c < n; ++c) {
+            assert_int_equal(hol_chains_n_kinds(chains), hol_chains_n_kinds(twin));
+            for (int64_t c = 0; c < n; ++c) {
+                int64_t atoms[2][8] = {{0}}, bonds_of[2][8] = {{0}};
                 CHECK(hol_chains_atoms(chains, c, atoms[0]));
                 CHECK(hol_chains_atoms(twin, c, atoms[1]));
                 assert_memory_equal(atoms[0], atoms[1], sizeof atoms[0]);
+                CHECK(hol_chains_bonds(chains, c, bonds_of[0]));
+                CHECK(hol_chains_bonds(twin, c, bonds_of[1]));
+                assert_memory_equal(bonds_of[0], bonds_of[1], sizeof bonds_of[0]);
             }
+            assert_same_results(chains, twin);
             assert_int_equal(hol_chains_degrees_of_freedom(chains, 3), hol_chains_degrees_of_freedom(twin, 3));
             hol_chains_destroy(chains);
             hol_chains_destroy(twin);

@@ -18,7 +18,8 @@ void session::run()
 {
     create();
     for (int call = 0; call < 24 && !in.done(); ++call) {
-        switch (in.below(16)) {
+        const int what = in.byte();
+        switch (what < 160 ? what % 16 : 16 + what % 6) {
             case 0:
                 create();
                 break;
@@ -58,8 +59,24 @@ void session::run()
             case 14:
                 violation();
                 break;
-            default:
+            case 15:
                 forces();
+                break;
+            case 16:
+            case 17:
+                add_bonds();
+                break;
+            case 18:
+                add_molecules();
+                break;
+            case 19:
+                set_values();
+                break;
+            case 20:
+                ask_about_molecules();
+                break;
+            default:
+                solve();
                 break;
         }
     }

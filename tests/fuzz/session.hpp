@@ -8,6 +8,7 @@
 #include <holonomic.h>
 
 #include <cstdint>
+#include <vector>
 
 #include "byte_reader.hpp"
 #include "outputs.hpp"
@@ -40,8 +41,13 @@ struct session {
     {
         return static_cast<std::size_t>(hol_chains_n_bonds(chains));
     }
+    // How many bad molecules leave nothing that is written: never so many if bonds between fixed atoms get their 0.
     std::int64_t active() const
     {
+        std::vector<std::int64_t> molecules(bonds());
+        if (!molecules.empty() && hol_chains_molecules_of_bonds(chains, molecules.data()) != HOL_OK) return INT64_MAX;
+        for (const std::int64_t m : molecules)
+            if (m < 0) return INT64_MAX;
         return any_inactive ? INT64_MAX : hol_chains_n_chains(chains);
     }
     template <class T>
@@ -54,6 +60,12 @@ struct session {
     std::int64_t bonds_of_a_chain();
     void add();
     void add_block();
+    void fill_pairs(block &pairs, std::size_t n_bonds, std::int64_t span);
+    void add_bonds();
+    void add_molecules();
+    void set_values();
+    void ask_about_molecules();
+    void solve();
     void set();
     void ask();
     void forces();
