@@ -53,8 +53,6 @@ void metric(const Chains &chains, const AtomArray &r, double kT, double *log_det
     if (!(kT >= 0) || !std::isfinite(kT))
         throw make_error(Status::value, "kT is %g; it must be finite and not negative", kT);
     const MetricCall call{r, force, kT, log_det, log_det_z, energy != nullptr, add, chains.box};
-    if (!chains.plan().shapes.empty() && !kernels().molecules.metric)
-        throw make_error(Status::value, "molecules that are no linear chains are not supported yet");
     Apart apart(chains);
     const Tally tally = execute(chains, MetricWork(call, apart));
     apart.put_back();

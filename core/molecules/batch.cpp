@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "core/run/dispatch.hpp"
-
 namespace holonomic {
 
 namespace {
@@ -24,15 +22,6 @@ bool alike(const FoundMolecules &found, std::size_t m, std::size_t n) {
 }
 
 }  // namespace
-
-Error Batch::not_supported(const FoundMolecules &found, std::size_t m) const {
-    const std::int64_t atom = found.atoms[at(found.molecules[m].first_atom)];
-    Error error = make_error(Status::value, "the molecule of atom %lld is no linear chain: not supported yet",
-                             static_cast<long long>(atom + chains_.base));
-    error.atom = atom;
-    error.base = chains_.base;
-    return error;
-}
 
 Batch::Batch(Chains &chains)
     : chains_(chains), before_(chains.groups_.mark()), kinds_before_(chains.kinds_.mark()),
@@ -159,7 +148,6 @@ void Batch::append_found(const FoundMolecules &found, std::int64_t n_bonds, cons
         }
         std::int32_t shape = linear;
         if (molecule.form != Form::chain) {
-            if (!kernels().molecules.forces) throw not_supported(found, m);
             shape = last_shape =
                 chains_.shapes_.find(molecule.form, molecule.n_atoms, molecule.n_bonds,
                                      &found.pairs[2 * at(molecule.first_bond)], &found.fixed[first], last_shape);

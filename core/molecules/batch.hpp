@@ -30,7 +30,6 @@ public:
 private:
     void append_part(std::int64_t n_bonds, const std::int64_t *atoms, const double *lengths, std::int64_t first_bond);
     void append_one(const FoundMolecules &found, std::size_t m, std::int32_t shape);
-    Error not_supported(const FoundMolecules &found, std::size_t m) const;
     Error in_use(std::int64_t atom) const;
 
     Chains &chains_;
