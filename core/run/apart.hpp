@@ -59,13 +59,16 @@ private:
     int n_values_ = 0, n_atoms_ = 0;
 };
 
-// The variants of a call, by Where: `values` and `atoms` replace those of its arrays.
+// The variants of a call, by Where: `values` and `atoms` replace those of its arrays. Those that no molecule needs are not
+// made.
 template <class Call, class Values, class Atoms>
 void make_variants(Call (&calls)[n_wheres], const Call &call, const Apart &apart, Values values, Atoms atoms) {
-    for (int where = 0; where < n_wheres; ++where) {
+    calls[in_place] = call;
+    for (int where = 1; where < n_wheres; ++where) {
+        if (((where & reordered) && !apart.reorders()) || ((where & staged) && !apart.stages())) continue;
         calls[where] = call;
-        if ((where & reordered) && apart.reorders()) values(calls[where]);
-        if ((where & staged) && apart.stages()) atoms(calls[where]);
+        if (where & reordered) values(calls[where]);
+        if (where & staged) atoms(calls[where]);
     }
 }
 
