@@ -59,8 +59,8 @@ private:
     int n_values_ = 0, n_atoms_ = 0;
 };
 
-// The variants of a call, by Where: `values` and `atoms` replace those of its arrays. Those that no molecule needs are not
-// made.
+// The variants of a call, by Where: `values` and `atoms` replace those of its arrays. Those that no molecule needs are
+// not made.
 template <class Call, class Values, class Atoms>
 void make_variants(Call (&calls)[n_wheres], const Call &call, const Apart &apart, Values values, Atoms atoms) {
     calls[in_place] = call;

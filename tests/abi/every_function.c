@@ -176,7 +176,8 @@ static void tridiagonal(void)
 static void molecules(void)
 {
     const int64_t triangle[6] = {0, 1, 1, 2, 2, 0}, star[6] = {4, 3, 5, 3, 3, 6};
-    const double masses[7] = {1, 1, 1, 1, 1, 1, 1}, ones[6] = {1, 1, 1, 1, 1, 1}, h = sqrt(0.75), box[9] = {9, 0, 0, 0, 9};
+    const double masses[7] = {1, 1, 1, 1, 1, 1, 1}, ones[6] = {1, 1, 1, 1, 1, 1}, h = sqrt(0.75),
+                 box[9] = {9, 0, 0, 0, 9};
     const double r[21] = {0, 0, 0, 1, 0, 0, 0.5, h, 0, 5, 5, 5, 6, 5, 5, 5, 6, 5, 5, 5, 6};
     const double rhs[6] = {4, 4, 4, 4, 4, 4};
     const hol_view view = view_of(r);

@@ -1,6 +1,6 @@
 /**
- * Molecules from lists of bonds: what is found in them, in whatever order they come; results bit for bit those of chains
- * that were given as chains; new lengths and masses; what is refused, with nothing added.
+ * Molecules from lists of bonds: what is found in them, in whatever order they come; results bit for bit those of
+ * chains that were given as chains; new lengths and masses; what is refused, with nothing added.
  */
 #include "assembly.h"
 #include "check.h"
@@ -45,7 +45,10 @@ static bond_list shuffled(const assembly *a, uint64_t seed)
     return list;
 }
 
-static void list_free(bond_list *list) { free(list->pairs), free(list->from), free(list->lengths); }
+static void list_free(bond_list *list)
+{
+    free(list->pairs), free(list->from), free(list->lengths);
+}
 
 static hol_chains *of_bonds(const assembly *a, const bond_list *list)
 {
@@ -131,7 +134,8 @@ static void check_every_level(const assembly *a, hol_chains *b, const bond_list 
     CHECK(hol_violation(b, r2, v2, &w2));
     assert_true(w1.length == w2.length && w1.rate == w2.rate && w1.length_chain == w2.length_chain);
     assert_int_equal(w1.length_bond, w2.length_bond);
-    free(l1), free(l2), free(t1), free(t2), free(g1), free(g2), free(v1), free(v2), free(r1), free(r2), free(d1), free(d2);
+    free(l1), free(l2), free(t1), free(t2), free(g1), free(g2), free(v1), free(v2), free(r1), free(r2), free(d1),
+        free(d2);
 }
 
 static void bonds_in_any_order_give_the_bits_of_chains(void **state)
@@ -312,9 +316,9 @@ static void wrong_bonds_are_refused_and_nothing_is_added(void **state)
     (void)state;
     hol_chains *c = make(10);
     const double ones[12] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
-    const int64_t good[4] = {1, 0, 2, 1}, low[4] = {5, 6, -1, 7}, high[4] = {5, 6, 10, 7}, far[4] = {INT64_MIN, 5, 5, 6},
-                  huge[4] = {5, INT64_MAX, 5, 6}, self[4] = {5, 6, 7, 7}, twice[6] = {5, 6, 7, 8, 6, 5},
-                  joins[4] = {5, 6, 6, 2};
+    const int64_t good[4] = {1, 0, 2, 1}, low[4] = {5, 6, -1, 7}, high[4] = {5, 6, 10, 7},
+                  far[4] = {INT64_MIN, 5, 5, 6}, huge[4] = {5, INT64_MAX, 5, 6}, self[4] = {5, 6, 7, 7},
+                  twice[6] = {5, 6, 7, 8, 6, 5}, joins[4] = {5, 6, 6, 2};
     CHECK(hol_chains_add_bonds(c, 2, good, ones));
     CHECK_FAILS(HOL_ERR_NULL, hol_chains_add_bonds(NULL, 2, good, ones));
     CHECK_FAILS(HOL_ERR_NULL, hol_chains_add_bonds(c, 2, NULL, ones));

@@ -230,7 +230,8 @@ void what_counting_finds_is_refused()
     refused("five of them in a larger molecule", joined(chain(50), joined(complete(5, 50), chain(20, 54))), 75);
     refused("twice five on one atom", joined(complete(5), complete(5, 4)), 9);
     refused("an octahedron with a diagonal",
-            {{0, 2}, {0, 3}, {0, 4}, {0, 5}, {1, 2}, {1, 3}, {1, 4}, {1, 5}, {2, 4}, {4, 3}, {3, 5}, {5, 2}, {0, 1}}, 6);
+            {{0, 2}, {0, 3}, {0, 4}, {0, 5}, {1, 2}, {1, 3}, {1, 4}, {1, 5}, {2, 4}, {4, 3}, {3, 5}, {5, 2}, {0, 1}},
+            6);
     refused("four bonds of one atom to fixed ones", {{0, 1}, {0, 2}, {0, 3}, {0, 4}}, 5, {1, 2, 3, 4});
     refused("the same bond twice", {{0, 1}, {1, 2}, {1, 0}}, 3);
     refused("the same bond to a fixed atom twice", {{0, 1}, {1, 2}, {1, 0}}, 3, {0});

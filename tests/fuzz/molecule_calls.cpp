@@ -82,7 +82,8 @@ void session::ask_about_molecules()
     if (status == HOL_OK) {
         check(n_of_bonds >= 1 && n_of_atoms >= 2 && n_of_atoms <= n_of_bonds + 1, "a molecule of another size");
         block atoms(static_cast<std::size_t>(n_of_atoms) * sizeof(std::int64_t)),
-            list(static_cast<std::size_t>(n_of_bonds) * sizeof(std::int64_t)), molecules(bonds() * sizeof(std::int64_t));
+            list(static_cast<std::size_t>(n_of_bonds) * sizeof(std::int64_t)),
+            molecules(bonds() * sizeof(std::int64_t));
         std::int64_t *const a = reinterpret_cast<std::int64_t *>(atoms.data()),
                             *const b = reinterpret_cast<std::int64_t *>(list.data()),
                             *const m = reinterpret_cast<std::int64_t *>(molecules.data());
@@ -108,11 +109,10 @@ void session::solve()
     out.add_sum(virial);
     const int mode = in.often() ? in.byte() & 1 : in.byte();
     double *const into = in.often() ? maybe(lambda.doubles()) : rhs.doubles();  // "may be rhs itself"
-    const int status =
-        in.byte() & 1 ? hol_solve(maybe(chains), maybe(r.plain.doubles()), maybe(rhs.doubles()), into,
-                                  maybe(g.plain.doubles()), mode, maybe(virial.doubles()))
-                      : hol_solve_view(maybe(chains), maybe(&r.view), maybe(rhs.doubles()), into, maybe(&g.view), mode,
-                                       maybe(virial.doubles()));
+    const int status = in.byte() & 1 ? hol_solve(maybe(chains), maybe(r.plain.doubles()), maybe(rhs.doubles()), into,
+                                                 maybe(g.plain.doubles()), mode, maybe(virial.doubles()))
+                                     : hol_solve_view(maybe(chains), maybe(&r.view), maybe(rhs.doubles()), into,
+                                                      maybe(&g.view), mode, maybe(virial.doubles()));
     out.check_after(status, active());
 }
 
