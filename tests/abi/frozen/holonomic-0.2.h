@@ -553,9 +553,15 @@ typedef struct hol_inverse hol_inverse;
 typedef enum hol_scaling { HOL_UNIT_DIAGONAL = 0, HOL_PHYSICAL = 1 } hol_scaling;
 
 /**
- * Prepares the inverse for one molecule, for a linear chain in time and memory proportional to its number of bonds N.
- * docs/theory.md (33)-(37); Mazars 2007, Eqs. (20) and (28). Everything is copied: the set of molecules and r may be
- * changed or freed afterwards.
+ * Prepares the inverse for one molecule of N bonds: for a linear chain, a tree or a ring in time and memory
+ * proportional to N, for others in what the elimination of their cycles costs. docs/theory.md (33)-(37); Mazars 2007,
+ * Eqs. (20) and (28). Everything is copied: the set of molecules and r may be changed or freed afterwards.
+ *
+ * In a linear chain elements are products along it, and cost as the functions below say. In other molecules (since 0.2)
+ * a row is a solution of the equations, in O(N) for trees and rings: so is an element, the diagonal and the matrix take
+ * O(N^2). All are solved for in twice the precision: right to a few roundings, in trees however ill conditioned Z is,
+ * beside cycles as long as no pivot of Z~ is below 1e-17. These functions may then return HOL_ERR_MEMORY.
+ *
  * @param[in]  chains   an inactive molecule is allowed
  * @param[in]  chain    number of the molecule, counted from the index base of `chains`, as bonds and atoms are in all
  *                      the functions below
@@ -576,7 +582,7 @@ HOL_API void hol_inverse_destroy(hol_inverse *inverse);
 HOL_API int64_t hol_inverse_n_bonds(const hol_inverse *inverse);
 
 /**
- * One element, in a time proportional to |i - j| + 1. It is right to a few roundings plus one or two for each step
+ * One element; of a linear chain in a time proportional to |i - j| + 1. It is right to a few roundings plus one or two for each step
  * from i to j; it vanishes exactly where a right angle or a fixed atom lies between i and j, and underflows only if the
  * element does.
  * @param[in]  inverse
@@ -602,7 +608,7 @@ HOL_API int hol_inverse_row(const hol_inverse *inverse, int scaling, int64_t i, 
  * The diagonal and `width` diagonals beside it, in O(N (width+1)); width 0 is the diagonal alone.
  * @param[in]  inverse
  * @param[in]  scaling  HOL_UNIT_DIAGONAL or HOL_PHYSICAL
- * @param[in]  width  >= 0
+ * @param[in]  width  >= 0; 0 for a molecule that is no linear chain, as the order of its bonds gives a band no meaning
  * @param[out] band   [N][width+1]: element (i, i+k) at band[i (width+1) + k], 0 where i+k is past the last bond
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (scaling, width). Since 0.1.
  */
@@ -628,7 +634,7 @@ HOL_API int hol_inverse_condition(const hol_inverse *inverse, double *condition)
 /**
  * How far given multipliers of the chain are from the exact ones, as a guaranteed bound found afterwards: |Z^-1| times
  * the residual K + C - Z lambda, evaluated in twice the precision, with the rounding of the evaluation itself added.
- * O(N). It says how far to trust multipliers from any source, this library or another solver.
+ * O(N) for a linear chain, O(N^2) otherwise. It says how far to trust multipliers from any source, this library or another solver.
  *
  * @param[in]  inverse  of the conformation to which the multipliers belong
  * @param[in]  v, f     velocities and applied forces as given to hol_forces, [n_atoms][3]; either may be NULL
