@@ -211,6 +211,16 @@ void dependent_bonds_are_refused()
     is_refused("a bond of no length", {{0, 1}, {0, 2}, {0, 3}}, {0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0}, {});
 }
 
+void atoms_of_many_bonds_are_right()
+{
+    for (const int arms : {17, 30, 70}) {
+        molecule m("star of many arms", with(star(arms), {{1, arms + 1}, {2, arms + 2}}), 31, arms < 60 ? 4.0 : 1.0);
+        if (arms < 60) m.w[3] = m.w[static_cast<std::size_t>(arms) + 1] = 0;
+        forces_are_right(m);
+        velocities_are_right(m);
+    }
+}
+
 void shared_atoms_are_not_written()
 {
     molecule m("brush", {{0, 1}, {1, 2}, {1, 3}}, 4, 0.5);
@@ -243,5 +253,6 @@ int main()
         }
     layouts_and_boxes_change_nothing();
     dependent_bonds_are_refused();
+    atoms_of_many_bonds_are_right();
     shared_atoms_are_not_written();
 }

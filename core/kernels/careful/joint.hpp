@@ -13,8 +13,10 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace careful {
 
-// Atoms of more bonds are worked on by their inertia alone: O(n) instead of O(n^3) terms per arm.
-constexpr int most_sets = 16;
+// Atoms of more bonds are worked on by their inertia alone, the sum of rho D B^T: O(n) instead of O(n^3) terms per arm.
+// It has digits enough while it is no larger than `mild`; where it is, only atoms of still more bonds make do with it.
+constexpr int few_arms = 16, most_arms = 64;
+constexpr double mild = 0x1p20;
 
 // An E below this part of w d.d does not give way at all.
 constexpr double stiff = 0x1p-280;
@@ -31,22 +33,19 @@ struct Joint {
     Wide *rho;       // [n] w / E; 1 where E = 0
     bool *rigid;     // [n] E = 0
     Wide3 *XD, *XB;  // [n][n] cross products of arms a and b at [a n + b]
-    Wide *V;         // [n] scratch
     int n_others, n_rigid;
     int *others;      // [n] the arms that are eliminated
     Wide det;         // of S over these arms, relative to the product of the E that are not 0
-    Wide inverse[9];  // of 1 + sum rho D B^T, for atoms of many bonds
+    bool by_inertia;  // how they are eliminated
+    Wide inverse[9];  // if so, of 1 + sum rho D B^T
 
-    static int64_t doubles(int64_t n) { return n * (6 + 6 + 2 + 2 + 2 + 2 * 6 * n) + 8 * 8; }
-
-    bool many() const { return n > most_sets; }
     const Wide3 &cross_D(int a, int b) const { return XD[a * n + b]; }
     const Wide3 &cross_B(int a, int b) const { return XB[a * n + b]; }
 };
 
 // The cross products of all arms, once their vectors are there.
 HOL_NOINLINE void prepare(Joint &x) {
-    if (x.many()) return;
+    if (x.n > most_arms) return;
     for (int a = 0; a < x.n; ++a)
         for (int b = 0; b < a; ++b) {
             x.XD[a * x.n + b] = cross(x.D[a], x.D[b]);
@@ -73,17 +72,18 @@ HOL_NOINLINE void invert(const Wide *m, Wide *inverse) {
     for (int i = 0; i < 9; ++i) inverse[i] = adjugate[i] * r;
 }
 
-// Of many arms, those that do not give way give way by less than a rounding.
-HOL_NOINLINE Wide rho_of_many(const Joint &x, int a) {
-    return x.rigid[a] ? wide(0x1p56) / dot(x.D[a], x.B[a]) : x.rho[a];
+// Where inertia has to do, arms that do not give way give way by 3e-11 of what others do: the digits are shared between
+// that and the inverse.
+HOL_NOINLINE Wide rho_of_inertia(const Joint &x, int a) {
+    return x.rigid[a] ? wide(0x1p35) / dot(x.D[a], x.B[a]) : x.rho[a];
 }
 
-HOL_NOINLINE bool eliminate_many(Joint &x) {
+HOL_NOINLINE bool eliminate_by_inertia(Joint &x) {
     Wide m[9] = {};
     m[0] = m[4] = m[8] = wide(1);
     for (int o = 0; o < x.n_others; ++o) {
         const int a = x.others[o];
-        const Wide3 D = rho_of_many(x, a) * x.D[a], &B = x.B[a];
+        const Wide3 D = rho_of_inertia(x, a) * x.D[a], &B = x.B[a];
         const Wide d[3] = {D.x, D.y, D.z}, b[3] = {B.x, B.y, B.z};
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) m[3 * i + j] += b[i] * d[j];
@@ -95,9 +95,15 @@ HOL_NOINLINE bool eliminate_many(Joint &x) {
 // Sets the arms that are eliminated: those in others[0 .. n_others). False if their S is singular.
 HOL_NOINLINE bool eliminate_arms(Joint &x) {
     x.n_rigid = 0;
-    for (int o = 0; o < x.n_others; ++o) x.n_rigid += x.rigid[x.others[o]];
+    double inertia = 0;
+    for (int o = 0; o < x.n_others; ++o) {
+        const int a = x.others[o];
+        x.n_rigid += x.rigid[a];
+        inertia += abs((x.rho[a] * dot(x.D[a], x.B[a])).hi);
+    }
+    x.by_inertia = x.n > most_arms || (x.n > few_arms && x.n_rigid == 0 && inertia < mild);
     if (x.w == 0) return true;
-    if (x.many()) return eliminate_many(x);
+    if (x.by_inertia) return eliminate_by_inertia(x);
     Wide sum = x.n_rigid == 0 ? wide(1) : wide(0);
     for (int o = 0; o < x.n_others; ++o) {
         const int a = x.others[o];
@@ -151,7 +157,7 @@ HOL_NOINLINE Wide through_inverse(const Joint &x, const Wide3 &D, const Wide3 &B
 // d_e . W d_f, the inverse mass between two arms e and f that are not eliminated.
 HOL_NOINLINE Wide offered(const Joint &x, int e, int f) {
     if (x.w == 0) return wide(0);
-    if (x.many()) return x.w * through_inverse(x, x.D[e], x.B[f]);
+    if (x.by_inertia) return x.w * through_inverse(x, x.D[e], x.B[f]);
     return x.w * (gram_sum(x, e, f, -1, false) / x.det);
 }
 
@@ -159,9 +165,9 @@ HOL_NOINLINE Wide offered(const Joint &x, int e, int f) {
 HOL_NOINLINE void multipliers(const Joint &x, int e, Wide *l) {
     for (int o = 0; o < x.n_others; ++o) {
         const int a = x.others[o];
-        l[a] = x.w == 0   ? wide(0)
-               : x.many() ? rho_of_many(x, a) * through_inverse(x, x.D[e], x.B[a])
-                          : x.rho[a] * (gram_sum(x, e, a, a, false) / x.det);
+        l[a] = x.w == 0       ? wide(0)
+               : x.by_inertia ? rho_of_inertia(x, a) * through_inverse(x, x.D[e], x.B[a])
+                              : x.rho[a] * (gram_sum(x, e, a, a, false) / x.det);
     }
 }
 

@@ -11,8 +11,8 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace careful {
 
-HOL_NOINLINE Joint take_joint(int32_t most_arms, bool mixed, Memory &memory) {
-    const int64_t n = most_arms, pairs = n > most_sets ? 0 : n * n;
+HOL_NOINLINE Joint take_joint(int32_t most, bool mixed, Memory &memory) {
+    const int64_t n = most, pairs = n > most_arms ? 0 : n * n;
     Joint x = {};
     x.mixed = mixed;
     x.D = memory.take<Wide3>(n);
