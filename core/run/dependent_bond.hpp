@@ -8,8 +8,8 @@
 
 namespace holonomic {
 
-// Of a molecule that is no linear chain, by the careful solver: the first bond whose pivot vanishes; -1 if none does, -2
-// if the bond vectors are of no use. Throws std::bad_alloc.
+// Of a molecule that is no linear chain, by the careful solver: the first bond whose pivot vanishes; -1 if none does,
+// -2 if the bond vectors are of no use. Throws std::bad_alloc.
 std::int64_t dependent_bond(const Molecule &molecule, const AtomArray &r, const Box &box);
 
 // The first bond that does not fit to the others in its cycle, because the images of the periodic box that are next to

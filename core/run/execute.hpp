@@ -3,6 +3,7 @@
 #define HOLONOMIC_EXECUTE_HPP
 
 #include "core/molecules/chains.hpp"
+#include "core/run/closing.hpp"
 #include "core/run/dispatch.hpp"
 
 namespace holonomic {
@@ -39,6 +40,8 @@ class Work {
 public:
     virtual void unit(const Unit &unit, int where, double *scratch, Tally &tally) const = 0;
     virtual void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const = 0;
+    // Positions whose images must close the cycles of a molecule; how many there are, at most two.
+    virtual int images(int where, Images *images) const = 0;
     virtual std::int64_t long_blocks(std::int64_t n_bonds) const = 0;
     virtual std::int64_t long_bytes(std::int64_t n_bonds) const = 0;
     virtual void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const = 0;
