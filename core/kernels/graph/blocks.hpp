@@ -16,6 +16,7 @@ HOL_INLINE MoleculeLane molecule_of(const MoleculeUnit &unit, int64_t i) {
     if (!unit.regular) return unit.lanes[i];
     MoleculeLane lane = unit.lanes[0];
     lane.first_atom += i * unit.schedule->n_atoms;
+    if (lane.atoms) lane.atoms += i * unit.schedule->n_atoms;
     lane.first_bond += i * unit.schedule->n_bonds;
     lane.molecule += i;
     return lane;

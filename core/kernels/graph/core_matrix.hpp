@@ -63,6 +63,10 @@ static inline void add_core_atom(Molecules<V> &x, const CoreMatrix<V> &core, int
     }
 }
 
+// A pivot below this part of its diagonal element may be nothing but rounding: the bonds may depend on each other, which
+// corrections don't show where the right-hand side does not.
+constexpr double least_pivot = 1e-10;
+
 template <class V>
 static inline void factorize_core(Molecules<V> &x, const CoreMatrix<V> &core, Memory<V> memory) {
     const Schedule &s = x.s;
@@ -79,6 +83,8 @@ static inline void factorize_core(Molecules<V> &x, const CoreMatrix<V> &core, Me
         const int32_t first = s.column_start[p], n = s.column_start[p + 1] - first;
         const int32_t *const below = s.row + first, *update = s.update + s.update_start[p];
         V *const column = core.entry + first;
+        const V whole = (x.w[s.from[p]] + x.w[s.to[p]]) * row[p].q;
+        x.slack = min(mul_add(Width<V>::all(-least_pivot), whole, row[p].E), x.slack);
         const V r = Width<V>::all(1) / row[p].E;
         row[p].r = r;
         for (int32_t a = 0; a < n; ++a) {
