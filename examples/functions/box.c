@@ -1,0 +1,21 @@
+/* A bond across the border of a periodic box that a barostat has just made larger. */
+#include "check.h"
+
+int main(void)
+{
+    const double mass[2] = {1, 1}, length = 1;
+    const double before[3][3] = {{10, 0, 0}, {0, 10, 0}, {0, 0, 10}},
+                 after[3][3] = {{11, 0, 0}, {0, 11, 0}, {0, 0, 11}};
+    const double r_ref[2][3] = {{9.5, 5, 5}, {0.5, 5, 5}}; /* one length apart in the old box */
+    double r[2][3] = {{10.45, 5.5, 5.5}, {0.55, 5.5, 5.5}};
+    hol_chains *chains = NULL;
+
+    ok(hol_chains_create(2, mass, &chains));
+    ok(hol_chains_add_block(chains, 1, 1, 0, &length));
+    ok(hol_chains_set_box(chains, after[0]));
+    ok(hol_chains_set_reference_box(chains, before[0])); /* of r_ref */
+    ok(hol_project_positions(chains, r_ref[0], r[0], NULL, 1.0, NULL, 0, NULL, NULL));
+    shows("distance", r[1][0] + 11 - r[0][0], 1);
+    hol_chains_destroy(chains);
+    return 0;
+}
