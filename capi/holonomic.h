@@ -403,6 +403,7 @@ HOL_API int hol_forces_view(const hol_chains *chains, const hol_view *r, const h
  * makes sigma_k'' what the caller wants it to be: with forces f + G, sigma_k'' = (its value without G) - rhs_k. For
  * terms that relax errors, prescribed rates, other thermostats.
  *
+ * @param[in]     chains
  * @param[in]     r       positions [n_atoms][3]
  * @param[in]     rhs     [n_bonds]; not read for bonds between two fixed atoms
  * @param[out]    lambda  [n_bonds], or NULL; may be rhs itself
@@ -582,9 +583,9 @@ HOL_API void hol_inverse_destroy(hol_inverse *inverse);
 HOL_API int64_t hol_inverse_n_bonds(const hol_inverse *inverse);
 
 /**
- * One element; of a linear chain in a time proportional to |i - j| + 1. It is right to a few roundings plus one or two for each step
- * from i to j; it vanishes exactly where a right angle or a fixed atom lies between i and j, and underflows only if the
- * element does.
+ * One element; of a linear chain in a time proportional to |i - j| + 1. It is right to a few roundings plus one or two
+ * for each step from i to j; it vanishes exactly where a right angle or a fixed atom lies between i and j, and
+ * underflows only if the element does.
  * @param[in]  inverse
  * @param[in]  scaling  HOL_UNIT_DIAGONAL or HOL_PHYSICAL
  * @param[in]  i, j     numbers of bonds within the chain
@@ -634,7 +635,8 @@ HOL_API int hol_inverse_condition(const hol_inverse *inverse, double *condition)
 /**
  * How far given multipliers of the chain are from the exact ones, as a guaranteed bound found afterwards: |Z^-1| times
  * the residual K + C - Z lambda, evaluated in twice the precision, with the rounding of the evaluation itself added.
- * O(N) for a linear chain, O(N^2) otherwise. It says how far to trust multipliers from any source, this library or another solver.
+ * O(N) for a linear chain, O(N^2) otherwise. It says how far to trust multipliers from any source, this library or
+ * another solver.
  *
  * @param[in]  inverse  of the conformation to which the multipliers belong
  * @param[in]  v, f     velocities and applied forces as given to hol_forces, [n_atoms][3]; either may be NULL

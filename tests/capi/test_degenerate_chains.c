@@ -1,7 +1,7 @@
 /**
  * Chains without a solution, or with one that no number can hold: stretched taut between fixed atoms, forces that
- * overflow; two fixed atoms in one bond, which is no constraint; and long chains, where the fault is met when most of the
- * work is done.
+ * overflow; two fixed atoms in one bond, which is no constraint; and long chains, where the fault is met when most of
+ * the work is done.
  */
 #include "assembly.h"
 #include "check.h"

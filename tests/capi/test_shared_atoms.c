@@ -1,6 +1,6 @@
 /**
- * Fixed atoms that many molecules share: each of these gives what it gives by itself, and the force on the shared atom is
- * the sum over those that are not bad.
+ * Fixed atoms that many molecules share: each of these gives what it gives by itself, and the force on the shared atom
+ * is the sum over those that are not bad.
  */
 #include "check.h"
 #include "random.h"
@@ -57,8 +57,8 @@ static brush make_brush(int one_call)
         CHECK(hol_chains_create(b.n_atoms, b.mass, &b.alone[c]));
         for (int64_t k = 0; k < b.n[c]; ++k) {
             const double *p = b.r + 3 * b.atoms[c][k], *q = b.r + 3 * b.atoms[c][k + 1];
-            lengths[b.first_bond[c] + k] = sqrt((q[0] - p[0]) * (q[0] - p[0]) + (q[1] - p[1]) * (q[1] - p[1]) +
-                                                (q[2] - p[2]) * (q[2] - p[2]));
+            lengths[b.first_bond[c] + k] =
+                sqrt((q[0] - p[0]) * (q[0] - p[0]) + (q[1] - p[1]) * (q[1] - p[1]) + (q[2] - p[2]) * (q[2] - p[2]));
             pairs[2 * (b.first_bond[c] + k)] = b.atoms[c][k];
             pairs[2 * (b.first_bond[c] + k) + 1] = b.atoms[c][k + 1];
         }
@@ -102,7 +102,8 @@ static void each_molecule_gives_what_it_gives_alone(void **state)
             assert_same_bits(l, l1, m);
             assert_same_bits(g + 3, g1 + 3, 3 * (n - 1));
             /* a sum of N_CHAINS forces, each rounding once */
-            for (int i = 0; i < 3; ++i) CHECK_AT_MOST(fabs(g[i] - sum[i]), (N_CHAINS + 1) * DBL_EPSILON * (size[i] + 1));
+            for (int i = 0; i < 3; ++i)
+                CHECK_AT_MOST(fabs(g[i] - sum[i]), (N_CHAINS + 1) * DBL_EPSILON * (size[i] + 1));
             free(l), free(g), free(l1), free(g1);
         }
     brush_free(&b);
@@ -113,10 +114,10 @@ static void velocities_positions_and_fixman_force_too(void **state)
     (void)state;
     brush b = make_brush(0);
     const size_t n = (size_t)b.n_atoms, m = (size_t)b.n_bonds;
-    double *l = untouched(m), *l1 = untouched(m), *v = copy_of(b.v, 3 * n), *v1 = copy_of(b.v, 3 * n), size[3] = {0, 0, 0};
+    double *l = untouched(m), *l1 = untouched(m), *v = copy_of(b.v, 3 * n), *v1 = copy_of(b.v, 3 * n),
+           size[3] = {0, 0, 0};
     CHECK(hol_project_velocities(b.chains, b.r, v, l, NULL));
-    for (int c = 0; c < N_CHAINS; ++c)
-        CHECK(hol_project_velocities(b.alone[c], b.r, v1, l1 + b.first_bond[c], NULL));
+    for (int c = 0; c < N_CHAINS; ++c) CHECK(hol_project_velocities(b.alone[c], b.r, v1, l1 + b.first_bond[c], NULL));
     assert_same_bits(l, l1, m);
     assert_same_bits(v, v1, 3 * n);
     double *r = copy_of(b.r, 3 * n), *r1;
@@ -173,7 +174,8 @@ static void arrays_of_any_layout_share_atoms(void **state)
     brush b = make_brush(1);
     brush c = make_brush(0);
     const size_t n = (size_t)b.n_atoms, m = (size_t)b.n_bonds;
-    /* floats in records of five numbers; results are those of the same numbers as doubles, rounded once for each chain */
+    /* floats in records of five numbers; results are those of the same numbers as doubles, rounded once for each chain
+     */
     float *r = malloc(20 * n), *f = malloc(20 * n), *g = malloc(20 * n);
     double *exact = malloc(24 * n), *g1 = malloc(24 * n), *l = untouched(m), *l1 = untouched(m);
     for (size_t i = 0; i < n; ++i)
@@ -238,7 +240,8 @@ static void a_ring_through_a_fixed_atom_is_a_chain_between_two_copies_of_it(void
         double sum = 0;
         for (int x = 0; x < 3; ++x) {
             const double wi = mass[i] > 0 ? 1 / mass[i] : 0, wj = mass[j] > 0 ? 1 / mass[j] : 0;
-            sum += (r[3 * j + x] - r[3 * i + x]) * (wj * (f[3 * j + x] + g[3 * j + x]) - wi * (f[3 * i + x] + g[3 * i + x]));
+            sum += (r[3 * j + x] - r[3 * i + x]) *
+                   (wj * (f[3 * j + x] + g[3 * j + x]) - wi * (f[3 * i + x] + g[3 * i + x]));
         }
         CHECK_AT_MOST(fabs(sum), 100 * DBL_EPSILON);
     }
