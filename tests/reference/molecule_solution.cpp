@@ -11,11 +11,11 @@ namespace reference
 namespace
 {
 
-using narrow = wide_float<320>;
+using narrow = wide_float<448>;
 using broad = wide_float<1280>;
 
-/** Below this least pivot of Z~, 320 bits may leave too few digits of numbers far below the largest. */
-constexpr double narrow_limit = 1e-30, broad_limit = 1e-200;
+/** Below this least pivot of Z~, 448 bits may leave too few digits of numbers 1e-80 of the largest. */
+constexpr double narrow_limit = 1e-25, broad_limit = 1e-200;
 
 template <class REAL>
 void copy(const std::vector<REAL> &from, long double *to)

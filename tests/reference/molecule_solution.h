@@ -1,7 +1,7 @@
 /**
  * @file molecule_solution.h
  * Independent solutions for molecules of any shape: the matrix from the gradients of the constraints, elimination in
- * 320 bits, and in 1280 where pivots are so small that 320 might not do.
+ * 448 bits, and in 1280 where pivots are so small that 448 might not do.
  */
 #ifndef REFERENCE_MOLECULE_SOLUTION_H
 #define REFERENCE_MOLECULE_SOLUTION_H
@@ -18,7 +18,7 @@ int molecule_forces(const molecule_problem *p, molecule_solution *out);
 /** Z lambda = 2 d.dv; g is the impulse m dv and `moved` the projected velocities. v must be given. */
 int molecule_velocities(const molecule_problem *p, molecule_solution *out);
 
-/** Z lambda = rhs. The scale of lambda is |Z^-1| (|rhs_k| + 2 |d_k.(w G)_i| + 2 |d_k.(w G)_j|). */
+/** Z lambda = rhs. The scale of lambda is |Z^-1| (|rhs| + |Z| |lambda|), products w d_k.d_l of Z one by one. */
 int molecule_solve(const molecule_problem *p, const double *rhs, molecule_solution *out);
 
 /**

@@ -143,7 +143,10 @@ wide_solution<REAL> wide_velocities(const molecule_problem &p)
     return out;
 }
 
-/** Z lambda = rhs. The scale of lambda is |Z^-1| (|rhs| + the terms d.(w G), as in the other levels). */
+/**
+ * Z lambda = rhs. The scale of lambda is |Z^-1| (|rhs| + |Z| |lambda|): what relative changes of one rounding in the
+ * right-hand side and in every product w d_k.d_l of the matrix can do.
+ */
 template <class REAL>
 wide_solution<REAL> wide_solve(const molecule_problem &p, const double *rhs)
 {
@@ -154,12 +157,11 @@ wide_solution<REAL> wide_solve(const molecule_problem &p, const double *rhs)
     std::vector<REAL> b, scale;
     for (const auto &k : m.bonds) b.push_back(REAL(rhs[k.number]).scaled(-1));
     const std::vector<REAL> t = system.factor.solve(b);
-    const auto g = m.forces(t);
-    for (std::size_t k = 0; k < m.bonds.size(); ++k) {
-        const auto &bond = m.bonds[k];
-        scale.push_back(absolute(b[k]) + absolute(m.w[bond.i] * product(bond.d, g[bond.i])) +
-                        absolute(m.w[bond.j] * product(bond.d, g[bond.j])));
-    }
+    for (const REAL &x : b) scale.push_back(absolute(x));
+    for (std::size_t atom = 0; atom < m.w.size(); ++atom)
+        for (const auto &k : m.ends[atom])
+            for (const auto &l : m.ends[atom])
+                scale[k.bond] += m.w[atom] * absolute(product(m.bonds[k.bond].d, m.bonds[l.bond].d) * t[l.bond]);
     out = from_multipliers(m, p, t, amplified(system.factor, scale));
     out.least_pivot = system.least_pivot;
     return out;

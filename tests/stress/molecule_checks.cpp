@@ -1,0 +1,268 @@
+#include "molecule_checks.hpp"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+
+#include "molecule_solution.h"
+
+namespace stress
+{
+
+namespace
+{
+
+constexpr long double eps = DBL_EPSILON;
+constexpr long double graph_limit = 1e-17L;     // graphs with a pivot below it are promised nothing
+constexpr long double straight_sine2 = 1e-21L;  // triangles below it are straight but for rounding
+constexpr long double singular = 1e-60L;
+
+long double k_eps(const hostile_molecule &m)
+{
+    return (16 + std::sqrt(static_cast<long double>(m.n_bonds()))) * eps;
+}
+
+/**
+ * What the multipliers may be off by beside K eps times their scale: K eps times 1e-80 of the largest one. They die
+ * away as products of many factors. In graphs that elimination has to subtract for, a multiplier that is zero because
+ * its atom can't move comes out as the rounding of the residual in twice the precision: there 1e-40.
+ */
+long double slack(const hostile_molecule &m, const molecule_solution &s, long double bound)
+{
+    const long double least = m.shape == GRAPHS ? 1e-40L : 1e-80L;
+    return bound * least * *std::max_element(s.lambda_scale, s.lambda_scale + s.n_bonds);
+}
+
+void check_forces(const hostile_molecule &m, const molecule_results &alone, molecule_verdict &out)
+{
+    const molecule_problem p = m.problem();
+    const long double k = k_eps(m);
+    molecule_solution s;
+    if (alone.forces == HOL_OK && molecule_forces(&p, &s) == 0) {
+        const long double tail = slack(m, s, k);
+        for (std::size_t b = 0; b < m.length.size(); ++b)
+            out.compare(M_LAMBDA, alone.lambda[b], s.lambda[b],
+                        k * s.lambda_scale[b] + (s.lambda_scale[b] > 0 ? tail : 0));
+        const long double pull = 2 * tail * *std::max_element(m.length.begin(), m.length.end());
+        for (std::size_t i = 0; i < m.r.size(); ++i)
+            if (s.g_scale[i / 3] > 0 || !is_blank(alone.g[i]))  // atoms without a constraint are not written
+                out.compare(M_FORCE, alone.g[i], s.g[i], k * s.g_scale[i / 3] + (s.g_scale[i / 3] > 0 ? pull : 0));
+        for (std::size_t i = 0; i < 9; ++i) out.compare(M_VIRIAL, alone.virial[i], s.virial[i], k * s.virial_scale);
+        molecule_solution_free(&s);
+    }
+    const numbers rhs = right_hand_side(m);
+    if (alone.solve == HOL_OK && molecule_solve(&p, rhs.data(), &s) == 0) {
+        const long double tail = slack(m, s, k);
+        for (std::size_t b = 0; b < m.length.size(); ++b)
+            out.compare(M_SOLVE, alone.solved[b], s.lambda[b],
+                        k * s.lambda_scale[b] + (s.lambda_scale[b] > 0 ? tail : 0));
+        molecule_solution_free(&s);
+    }
+}
+
+void check_velocities(const hostile_molecule &m, const molecule_results &alone, molecule_verdict &out)
+{
+    const molecule_problem p = m.problem();
+    const long double k = k_eps(m);
+    molecule_solution s;
+    if (alone.velocities != HOL_OK || molecule_velocities(&p, &s)) return;
+    const long double tail = slack(m, s, k);
+    for (std::size_t b = 0; b < m.length.size(); ++b)
+        out.compare(M_MU, alone.mu[b], s.lambda[b], k * s.lambda_scale[b] + (s.lambda_scale[b] > 0 ? tail : 0));
+    for (std::size_t i = 0; i < m.r.size(); ++i)
+        out.compare(M_VELOCITY, alone.v[i], s.moved[i], k * s.moved_scale[i / 3]);
+    molecule_solution_free(&s);
+}
+
+/** The sum of values per molecule, which come per bond. */
+long double sum_over_molecules(const numbers &of_bond, const std::vector<std::int64_t> &molecule)
+{
+    std::vector<bool> seen(of_bond.size(), false);
+    long double sum = 0;
+    for (std::size_t k = 0; k < of_bond.size(); ++k) {
+        if (molecule[k] < 0 || seen[static_cast<std::size_t>(molecule[k])]) continue;
+        seen[static_cast<std::size_t>(molecule[k])] = true;
+        sum += of_bond[k];
+    }
+    return sum;
+}
+
+struct inverse_deleter {
+    void operator()(hol_inverse *i) const
+    {
+        hol_inverse_destroy(i);
+    }
+};
+
+/** A few elements of the inverse, if the whole is one molecule with its bonds in the library's order. */
+void check_inverse(const placement &a, const hostile_molecule &m, const molecule_metric &exact, molecule_verdict &out)
+{
+    if (hol_chains_n_chains(a.chains.get()) != 1) return;
+    const std::int64_t n = m.n_bonds();
+    std::vector<std::int64_t> order(m.length.size());
+    if (std::count(a.molecule_of_bond.begin(), a.molecule_of_bond.end(), 0) != n) return;
+    if (hol_chains_bonds(a.chains.get(), 0, order.data()) != HOL_OK) return;
+    hol_inverse *made = nullptr;
+    const int status = hol_inverse_create(a.chains.get(), 0, a.r.data(), &made);
+    const std::unique_ptr<hol_inverse, inverse_deleter> inverse(made);
+    out.note(M_REFUSED, status != HOL_OK);
+    if (status != HOL_OK) return;
+    for (std::int64_t i = 0; i < n; i += 1 + n / 6)
+        for (std::int64_t j = 0; j < n; j += 1 + n / 6) {
+            const auto at = [&](std::int64_t x, std::int64_t y) {
+                return exact.inverse[order[static_cast<std::size_t>(x)] * n + order[static_cast<std::size_t>(y)]];
+            };
+            double value = 0;
+            hol_inverse_entry(made, HOL_UNIT_DIAGONAL, i, j, &value);
+            out.compare(M_INVERSE, value, at(i, j), k_eps(m) * std::sqrt(at(i, i) * at(j, j)));
+        }
+}
+
+void check_metric(const placement &a, const hostile_molecule &m, const molecule_metric &exact,
+                  const molecule_results &alone, molecule_verdict &out)
+{
+    if (alone.metric != HOL_OK) return;
+    const long double k = k_eps(m);
+    out.compare(M_LOG_DET, static_cast<double>(sum_over_molecules(alone.log_det, a.molecule_of_bond)), exact.log_det,
+                k * std::fabs(exact.log_det));
+    out.compare(M_LOG_DET_Z, static_cast<double>(sum_over_molecules(alone.log_det_z, a.molecule_of_bond)),
+                exact.log_det_z, k * exact.log_det_z_scale);
+    for (std::size_t i = 0; i < m.r.size(); ++i)
+        if (exact.fixman_scale[i / 3] > 0 || !is_blank(alone.fixman[i]))
+            out.compare(M_FIXMAN, alone.fixman[i], exact.fixman_force[i], 2 * k * exact.fixman_scale[i / 3]);
+    check_inverse(a, m, exact, out);
+}
+
+void check_lengths(const hostile_molecule &m, const numbers &r, molecule_verdict &out)
+{
+    long double extent = 0;
+    for (double x : r) extent = std::max(extent, std::fabs(static_cast<long double>(x)));
+    const long double shortest = *std::min_element(m.length.begin(), m.length.end());
+    for (std::size_t k = 0; k < m.length.size(); ++k) {
+        const std::size_t i = static_cast<std::size_t>(m.pairs[2 * k]),
+                          j = static_cast<std::size_t>(m.pairs[2 * k + 1]);
+        if (m.w[i] == 0 && m.w[j] == 0) continue;
+        const long double square = static_cast<long double>(m.length[k]) * m.length[k];
+        long double error = -square;
+        for (std::size_t x = 0; x < 3; ++x) {
+            const long double d = static_cast<long double>(r[3 * j + x]) - r[3 * i + x];
+            error += d * d;
+        }
+        out.note(M_LENGTH, std::fabs(error / square) / (8 * eps * (1 + extent / shortest)));
+    }
+}
+
+void check_positions(const hostile_molecule &m, const molecule_results &alone, molecule_verdict &out)
+{
+    if (m.dt == 0) return;
+    const molecule_problem p = m.problem();
+    molecule_solution s;
+    const bool converged = molecule_positions(&p, m.drifted().data(), nullptr, m.length.data(), m.dt, &s) == 0;
+    out.note(M_REFUSED_STEP, alone.positions != HOL_OK && converged);
+    if (alone.positions == HOL_OK) check_lengths(m, alone.r, out);
+    if (!converged) return;
+    const long double k = k_eps(m), tail = slack(m, s, k);
+    for (std::size_t b = 0; b < m.length.size() && alone.positions == HOL_OK; ++b)
+        out.compare(M_POSITION_LAMBDA, alone.position_lambda[b], s.lambda[b],
+                    k * s.lambda_scale[b] + (s.lambda_scale[b] > 0 ? tail : 0));
+    for (std::size_t i = 0; i < m.r.size() && alone.positions == HOL_OK; ++i)
+        out.compare(M_POSITION, alone.r[i], s.moved[i], k * s.moved_scale[i / 3]);
+    molecule_solution_free(&s);
+}
+
+bool all_finite(const numbers &x)
+{
+    return std::all_of(x.begin(), x.end(), [](double y) { return std::isfinite(y); });
+}
+
+bool finite_or_blank(const numbers &x)
+{
+    return std::all_of(x.begin(), x.end(), [](double y) { return std::isfinite(y) || is_blank(y); });
+}
+
+}  // namespace
+
+/** A part may be several molecules for the library, if atoms of it are fixed: each is complete, or none of it written.
+ */
+void check_outputs(const hostile_molecule &m, const molecule_results &part, molecule_verdict &out)
+{
+    for (const numbers *x :
+         {&part.lambda, &part.solved, &part.mu, &part.position_lambda, &part.log_det, &part.g, &part.fixman})
+        out.note(M_OUTPUTS, !finite_or_blank(*x));
+    for (const numbers *x : {&part.v, &part.r, &part.moved}) out.note(M_OUTPUTS, !all_finite(*x));
+    if (part.forces == HOL_OK) out.note(M_OUTPUTS, !all_finite(part.lambda));
+    if (part.solve == HOL_OK) out.note(M_OUTPUTS, !all_finite(part.solved));
+    if (part.velocities == HOL_OK) out.note(M_OUTPUTS, !all_finite(part.mu));
+    if (part.positions == HOL_OK) out.note(M_OUTPUTS, !all_finite(part.position_lambda));
+    const auto kept = [](const numbers &multipliers, const numbers &is, const numbers &was) {
+        return !std::all_of(multipliers.begin(), multipliers.end(), is_blank) || identical(is, was);
+    };
+    out.note(M_OUTPUTS, !kept(part.mu, part.v, m.v) || !kept(part.position_lambda, part.r, m.drifted()) ||
+                            !kept(part.position_lambda, part.moved, m.v));
+}
+
+namespace
+{
+
+/** Whether one of the molecules that the library finds in it is neither tree nor ring nor triangle. */
+bool has_graph(const placement &a)
+{
+    return hol_chains_n_of_shape(a.chains.get(), HOL_SHAPE_OTHER) > 0;
+}
+
+bool is_straight_triangle(const hostile_molecule &m)
+{
+    if (m.shape != TRIANGLES) return false;
+    long double least = 1;
+    for (std::size_t i = 0; i < 3; ++i) {
+        long double u[3], v[3], uu = 0, vv = 0, area = 0;
+        for (std::size_t x = 0; x < 3; ++x) {
+            u[x] = static_cast<long double>(m.r[3 * ((i + 1) % 3) + x]) - m.r[3 * i + x];
+            v[x] = static_cast<long double>(m.r[3 * ((i + 2) % 3) + x]) - m.r[3 * i + x];
+            uu += u[x] * u[x];
+            vv += v[x] * v[x];
+        }
+        for (std::size_t x = 0; x < 3; ++x) {
+            const std::size_t y = (x + 1) % 3, z = (x + 2) % 3;
+            area += (u[y] * v[z] - u[z] * v[y]) * (u[y] * v[z] - u[z] * v[y]);
+        }
+        least = std::min(least, area / (uu * vv));
+    }
+    return least < straight_sine2;
+}
+
+}  // namespace
+
+molecule_verdict check_alone(const hostile_molecule &m, molecule_facts &facts)
+{
+    molecule_verdict out;
+    const molecule_problem p = m.problem();
+    molecule_metric exact;
+    facts.regular = molecule_metric_make(&p, &exact) == 0 && exact.least_pivot > singular;
+    facts.least_pivot = exact.least_pivot;
+    facts.condition = exact.condition;
+    const placement a = place({&m}, 0);
+    const bool graph = a.status == HOL_OK && has_graph(a), doubtful = is_straight_triangle(m);
+    facts.promised = facts.regular && !doubtful && (!graph || exact.least_pivot > graph_limit);
+    if (a.status != HOL_OK) {
+        out.note(M_REFUSED, a.status != HOL_ERR_DEGENERATE || facts.regular);
+        molecule_metric_free(&exact);
+        return out;
+    }
+    const molecule_results alone = compute(a, m.dt > 0 ? m.dt : 1);
+    check_outputs(m, alone, out);
+    for (const int status : {alone.forces, alone.solve, alone.velocities, alone.metric}) {
+        if (facts.promised) out.note(M_REFUSED, status != HOL_OK);
+        if (!facts.regular) out.note(M_ACCEPTED, status != HOL_ERR_DEGENERATE);
+    }
+    if (facts.promised) {
+        check_forces(m, alone, out);
+        check_velocities(m, alone, out);
+        check_metric(a, m, exact, alone, out);
+        check_positions(m, alone, out);
+    }
+    molecule_metric_free(&exact);
+    return out;
+}
+
+}  // namespace stress

@@ -1,0 +1,42 @@
+/**
+ * @file molecule_checks.hpp
+ * Compares what the library says about molecules with the reference solution, whose bounds are those of
+ * tests/oracle/molecules/README.md.
+ */
+#ifndef STRESS_MOLECULE_CHECKS_HPP
+#define STRESS_MOLECULE_CHECKS_HPP
+
+#include <vector>
+
+#include "hostile_molecule.hpp"
+#include "molecule_quantities.hpp"
+#include "molecule_results.hpp"
+
+namespace stress
+{
+
+/** What the reference says about a molecule. */
+struct molecule_facts {
+    bool regular = false;
+    long double condition = 0, least_pivot = 0;
+    /** Whether bounds are promised: trees, rings and triangles always, graphs as long as no pivot of Z~ is below 1e-17.
+     */
+    bool promised = false;
+};
+
+/** Everything about one molecule on its own. */
+molecule_verdict check_alone(const hostile_molecule &m, molecule_facts &facts);
+
+/**
+ * To the bit: alone, among the others with bonds in any order and direction, in separate arrays backwards, a second
+ * time and on three threads; in units that are other powers of two, and mirrored. One verdict per molecule.
+ */
+void check_invariances(const std::vector<hostile_molecule> &molecules, std::uint64_t shuffle,
+                       std::vector<molecule_verdict> &out);
+
+/** What failed keeps its outputs bit for bit; what did not has only finite ones. */
+void check_outputs(const hostile_molecule &m, const molecule_results &part, molecule_verdict &out);
+
+}  // namespace stress
+
+#endif

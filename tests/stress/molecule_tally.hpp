@@ -1,0 +1,40 @@
+/**
+ * @file molecule_tally.hpp
+ * Counts over all molecules of a run by class, and the tables at its end.
+ */
+#ifndef STRESS_MOLECULE_TALLY_HPP
+#define STRESS_MOLECULE_TALLY_HPP
+
+#include <array>
+#include <cstdint>
+
+#include "molecule_checks.hpp"
+
+namespace stress
+{
+
+struct molecule_tally {
+    struct of_quantity {
+        std::int64_t checked = 0, exceeded = 0;
+        long double worst = -1;
+        std::uint64_t seed = 0;  ///< of the molecule with the largest error
+    };
+    struct of_class {
+        std::array<of_quantity, M_QUANTITIES> quantity{};
+        std::int64_t molecules = 0, bonds = 0, singular = 0, not_promised = 0, exceeded = 0;
+        long double largest_condition = 0;
+    };
+    std::array<of_class, N_CLASSES> classes{};
+
+    /** Whether the molecule exceeds a bound that is promised. */
+    bool add(const hostile_molecule &m, const molecule_facts &facts, const molecule_verdict &v);
+    void add(const molecule_tally &other);
+    void print() const;
+
+    /** Whether no error is above `excess` times its bound and at most `share` of each class exceed one at all. */
+    bool within(long double excess, double share) const;
+};
+
+}  // namespace stress
+
+#endif
