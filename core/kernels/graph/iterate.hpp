@@ -79,7 +79,6 @@ HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const Posi
         const Mask last = active & proven & less(rate * error, Width<V>::all(0.125 * rounding));
         out.converged = out.converged | last;  // whatever the other lanes have to do
         active = active & ~last;
-        if (!call.report && !any(active)) break;
         const V before = error, expected = rate * before;
         error = newton.move();
         // At the floor: the solve should have gone far below a rounding, or it gained little, and what is left is no
