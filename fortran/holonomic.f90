@@ -1,9 +1,10 @@
-! Exact Lagrange multipliers and constraint forces of chains of rigid bonds: the Fortran side of the library.
+! Exact Lagrange multipliers and constraint forces of molecules with rigid bonds: the Fortran side of the library.
 !
 !     use holonomic
 !     type(hol_chains) :: chains
 !     call chains%create(masses)                                   ! 0 = held fixed
-!     call chains%add(atoms=[1, 2, 3, 4], lengths=[1.54d0, 1.54d0, 1.54d0])
+!     call chains%add(atoms=[1, 2, 3, 4], lengths=[1.54d0, 1.54d0, 1.54d0])       ! a linear chain, or
+!     call chains%add(bonds=pairs, lengths=lengths)                ! (2, n): bonds in any order, molecules of any shape
 !     call chains%forces(r, v, f, g=g, tension=tension)            ! g: the constraint forces
 !     call chains%project_positions(r_ref, r, dt, v)               ! SHAKE, RATTLE's first half
 !     call chains%project_velocities(r, v)                         ! RATTLE's second half
@@ -19,7 +20,8 @@ module holonomic
                           HOL_ERR_NO_CONVERGENCE, HOL_ERR_NOT_DEFINITE, HOL_ERR_INTERNAL, &
                           c_version => hol_version, c_status_name => hol_status_name, &
                           c_instruction_set => hol_instruction_set, c_error_location => hol_error_location, &
-                          HOL_PHYSICAL, HOL_UNIT_DIAGONAL
+                          HOL_PHYSICAL, HOL_SHAPE_CHAIN, HOL_SHAPE_OTHER, HOL_SHAPE_RING, HOL_SHAPE_TREE, &
+                          HOL_SHAPE_TRIANGLE, HOL_UNIT_DIAGONAL
    use holonomic_inverse, only: hol_inverse
    use holonomic_metric, only: chain_set_metric
    use holonomic_status, only: text_of
@@ -33,10 +35,11 @@ module holonomic
              hol_tridiagonal_inverse_band, hol_partition_function
    public :: HOL_OK, HOL_ERR_NULL, HOL_ERR_VALUE, HOL_ERR_INDEX, HOL_ERR_SHARED_ATOM, HOL_ERR_MEMORY, &
              HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE, HOL_ERR_NO_CONVERGENCE, HOL_ERR_NOT_DEFINITE, HOL_ERR_INTERNAL, &
-             HOL_PHYSICAL, HOL_UNIT_DIAGONAL
+             HOL_PHYSICAL, HOL_UNIT_DIAGONAL, HOL_SHAPE_CHAIN, HOL_SHAPE_TREE, HOL_SHAPE_RING, HOL_SHAPE_TRIANGLE, &
+             HOL_SHAPE_OTHER
 
-   ! Chains of rigid bonds. The variable that was created owns them until its destroy: there is no finalizer. A copy made
-   ! by assignment refers to the same chains, owns nothing, and must not be used after the owner's destroy.
+   ! Molecules with rigid bonds. The variable that was created owns them until its destroy: there is no finalizer. A copy
+   ! made by assignment refers to the same molecules, owns nothing, and must not be used after the owner's destroy.
    type, extends(chain_set_metric) :: hol_chains
    end type
 

@@ -3,6 +3,7 @@
 module holonomic_c
    use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int32_t, c_int64_t, c_null_ptr, c_ptr
    use holonomic_c_metric
+   use holonomic_c_molecules
    implicit none
    public
    private :: c_double, c_int, c_int32_t, c_int64_t, c_null_ptr, c_ptr
@@ -86,122 +87,6 @@ module holonomic_c
          type(c_ptr) :: text
       end function
 
-      ! --------------------------------------------------------------------------------------------------- chains
-
-      function hol_chains_create(n_atoms, masses, chains) bind(c) result(status)
-         import :: c_int, c_int64_t, c_ptr
-         integer(c_int64_t), value :: n_atoms
-         type(c_ptr), value :: masses
-         type(c_ptr), intent(out) :: chains
-         integer(c_int) :: status
-      end function
-
-      subroutine hol_chains_destroy(chains) bind(c)
-         import :: c_ptr
-         type(c_ptr), value :: chains
-      end subroutine
-
-      function hol_chains_add(chains, n_bonds, atoms, lengths) bind(c) result(status)
-         import :: c_int, c_int64_t, c_ptr
-         type(c_ptr), value :: chains
-         integer(c_int64_t), value :: n_bonds
-         type(c_ptr), value :: atoms, lengths
-         integer(c_int) :: status
-      end function
-
-      function hol_chains_add_block(chains, n_chains, n_bonds, first_atom, lengths) bind(c) result(status)
-         import :: c_int, c_int64_t, c_ptr
-         type(c_ptr), value :: chains
-         integer(c_int64_t), value :: n_chains, n_bonds, first_atom
-         type(c_ptr), value :: lengths
-         integer(c_int) :: status
-      end function
-
-      function hol_chains_set_index_base(chains, base) bind(c) result(status)
-         import :: c_int, c_ptr
-         type(c_ptr), value :: chains
-         integer(c_int), value :: base
-         integer(c_int) :: status
-      end function
-
-      function hol_chains_set_box(chains, box) bind(c) result(status)
-         import :: c_int, c_ptr
-         type(c_ptr), value :: chains, box
-         integer(c_int) :: status
-      end function
-
-      function hol_chains_set_threads(chains, n_threads) bind(c) result(status)
-         import :: c_int, c_ptr
-         type(c_ptr), value :: chains
-         integer(c_int), value :: n_threads
-         integer(c_int) :: status
-      end function
-
-      function hol_chains_set_active(chains, active) bind(c) result(status)
-         import :: c_int, c_ptr
-         type(c_ptr), value :: chains, active
-         integer(c_int) :: status
-      end function
-
-      function hol_chains_set_tolerance(chains, tolerance) bind(c) result(status)
-         import :: c_double, c_int, c_ptr
-         type(c_ptr), value :: chains
-         real(c_double), value :: tolerance
-         integer(c_int) :: status
-      end function
-
-      function hol_chains_set_max_iterations(chains, max_iterations) bind(c) result(status)
-         import :: c_int, c_ptr
-         type(c_ptr), value :: chains
-         integer(c_int), value :: max_iterations
-         integer(c_int) :: status
-      end function
-
-      pure function hol_chains_n_atoms(chains) bind(c) result(n)
-         import :: c_int64_t, c_ptr
-         type(c_ptr), value :: chains
-         integer(c_int64_t) :: n
-      end function
-
-      pure function hol_chains_n_chains(chains) bind(c) result(n)
-         import :: c_int64_t, c_ptr
-         type(c_ptr), value :: chains
-         integer(c_int64_t) :: n
-      end function
-
-      pure function hol_chains_n_bonds(chains) bind(c) result(n)
-         import :: c_int64_t, c_ptr
-         type(c_ptr), value :: chains
-         integer(c_int64_t) :: n
-      end function
-
-      function hol_chains_offsets(chains, offsets) bind(c) result(status)
-         import :: c_int, c_ptr
-         type(c_ptr), value :: chains, offsets
-         integer(c_int) :: status
-      end function
-
-      function hol_chains_atoms(chains, chain, atoms) bind(c) result(status)
-         import :: c_int, c_int64_t, c_ptr
-         type(c_ptr), value :: chains
-         integer(c_int64_t), value :: chain
-         type(c_ptr), value :: atoms
-         integer(c_int) :: status
-      end function
-
-      pure function hol_chains_degrees_of_freedom(chains, dimensions) bind(c) result(n)
-         import :: c_int, c_int64_t, c_ptr
-         type(c_ptr), value :: chains
-         integer(c_int), value :: dimensions
-         integer(c_int64_t) :: n
-      end function
-
-      pure function hol_chains_memory(chains) bind(c) result(n)
-         import :: c_int64_t, c_ptr
-         type(c_ptr), value :: chains
-         integer(c_int64_t) :: n
-      end function
-
       ! ------------------------------------------------------------------------------------------- the three levels
 
       function hol_forces(chains, r, v, f, lambda, tension, g, mode, virial) bind(c) result(status)
@@ -215,6 +100,22 @@ module holonomic_c
       function hol_forces_view(chains, r, v, f, lambda, tension, g, mode, virial) bind(c) result(status)
          import :: c_int, c_ptr
          type(c_ptr), value :: chains, r, v, f, lambda, tension, g
+         integer(c_int), value :: mode
+         type(c_ptr), value :: virial
+         integer(c_int) :: status
+      end function
+
+      function hol_solve(chains, r, rhs, lambda, g, mode, virial) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, r, rhs, lambda, g
+         integer(c_int), value :: mode
+         type(c_ptr), value :: virial
+         integer(c_int) :: status
+      end function
+
+      function hol_solve_view(chains, r, rhs, lambda, g, mode, virial) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, r, rhs, lambda, g
          integer(c_int), value :: mode
          type(c_ptr), value :: virial
          integer(c_int) :: status

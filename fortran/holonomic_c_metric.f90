@@ -1,5 +1,5 @@
-! The second half of the C interface, as holonomic_c has the first: metric determinant, inverse, tridiagonal algebra,
-! partition functions. Use the module holonomic_c, which has both.
+! The part of the C interface about the metric determinant, the inverse, tridiagonal algebra and partition functions; use
+! the module holonomic_c, which has all parts.
 module holonomic_c_metric
    use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int64_t, c_ptr
    implicit none

@@ -1,6 +1,6 @@
-! Which atoms are joined by rigid bonds. Here type(hol_chains) begins: chains are created, added and destroyed. The
-! modules holonomic_settings, holonomic_counts, holonomic_forces and so on extend the type, each by one ability; the
-! module `holonomic` has the whole. Atoms, bonds and chains are counted from 1.
+! Which atoms are joined by rigid bonds. Here type(hol_chains) begins: it is created and destroyed, and linear chains
+! are added. The modules holonomic_bonds, holonomic_settings, holonomic_counts, holonomic_forces and so on extend the type,
+! each by one ability; the module `holonomic` has the whole. Atoms, bonds and molecules are counted from 1.
 module holonomic_chains
    use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
    use, intrinsic :: iso_fortran_env, only: int32, int64, real64
@@ -10,7 +10,7 @@ module holonomic_chains
    use holonomic_status, only: failure, settle
    implicit none
    private
-   public :: chain_set
+   public :: chain_set, repeated
 
    type :: chain_set
       private

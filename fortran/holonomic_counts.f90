@@ -1,9 +1,10 @@
-! What the chains consist of.
+! What the molecules consist of.
 module holonomic_counts
-   use, intrinsic :: iso_c_binding, only: c_int, c_loc
-   use, intrinsic :: iso_fortran_env, only: int64
-   use holonomic_c, only: hol_chains_atoms, hol_chains_degrees_of_freedom, hol_chains_memory, hol_chains_n_atoms, &
-                          hol_chains_n_bonds, hol_chains_n_chains, hol_chains_offsets, HOL_ERR_MEMORY
+   use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_loc, c_null_ptr
+   use, intrinsic :: iso_fortran_env, only: int32, int64
+   use holonomic_c, only: hol_chains_atoms, hol_chains_bonds, hol_chains_degrees_of_freedom, hol_chains_memory, &
+                          hol_chains_molecule, hol_chains_molecules_of_bonds, hol_chains_n_atoms, hol_chains_n_bonds, &
+                          hol_chains_n_chains, hol_chains_n_kinds, hol_chains_n_of_shape, hol_chains_offsets
    use holonomic_place, only: enough
    use holonomic_settings, only: chain_set_settings
    use holonomic_status, only: failure, settle
@@ -18,8 +19,15 @@ module holonomic_counts
       procedure :: n_bonds
       procedure :: degrees_of_freedom
       procedure :: memory
+      procedure :: n_of_shape
+      procedure :: n_kinds
       procedure :: offsets
-      procedure :: atoms
+      procedure :: molecules_of_bonds
+      ! Of one molecule by its number, default or 64-bit integer; atoms also of all of them.
+      procedure, private :: molecule_32, molecule_64, atoms_32, atoms_64, atoms_of_all, bonds_32, bonds_64
+      generic :: molecule => molecule_32, molecule_64
+      generic :: atoms => atoms_of_all, atoms_32, atoms_64
+      generic :: bonds => bonds_32, bonds_64
    end type
 
 contains
@@ -49,12 +57,26 @@ contains
       degrees_of_freedom = hol_chains_degrees_of_freedom(self%c_handle(), d)
    end function
 
-   ! Bytes that the chains occupy.
+   ! Bytes that the molecules occupy.
    pure recursive integer(int64) function memory(self)
       class(chain_set_counts), intent(in) :: self
       memory = hol_chains_memory(self%c_handle())
    end function
 
+   ! Molecules of a shape (HOL_SHAPE_...).
+   pure recursive integer(int64) function n_of_shape(self, shape)
+      class(chain_set_counts), intent(in) :: self
+      integer, intent(in) :: shape
+      n_of_shape = hol_chains_n_of_shape(self%c_handle(), int(shape, c_int))
+   end function
+
+   ! Different kinds of molecules: of the same shape, masses and lengths.
+   pure recursive integer(int64) function n_kinds(self)
+      class(chain_set_counts), intent(in) :: self
+      n_kinds = hol_chains_n_kinds(self%c_handle())
+   end function
+
+   ! Where the bonds of each molecule follow one another, as in a set of chains alone:
    ! first_bond(n_chains + 1): chain c has the bonds first_bond(c) .. first_bond(c + 1) - 1 of arrays per bond.
    recursive subroutine offsets(self, first_bond, stat, errmsg)
       class(chain_set_counts), intent(in) :: self
@@ -63,36 +85,134 @@ contains
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
       call problem%need_created(self%c_handle())
-      if (enough("offsets", size(first_bond, kind=int64), self%n_chains() + 1, "chains and the end", problem)) &
+      if (enough("first_bond", size(first_bond, kind=int64), self%n_chains() + 1, "molecules and the end", problem)) &
          call problem%ask(hol_chains_offsets(self%c_handle(), c_loc(first_bond)))
       call settle(problem, "offsets", stat, errmsg)
    end subroutine
 
-   ! list(n_bonds + n_chains): the atoms of all chains, chain after chain, each in order. Chain c begins at element
-   ! first_bond(c) + c - 1.
-   recursive subroutine atoms(self, list, stat, errmsg)
+   ! list(n_bonds + n_chains) suffices: the atoms of all molecules, molecule after molecule, those of a linear chain in
+   ! order, those of others ascending. If all are linear chains, chain c begins at element first_bond(c) + c - 1.
+   recursive subroutine atoms_of_all(self, list, stat, errmsg)
       class(chain_set_counts), intent(in) :: self
       integer(int64), intent(inout), contiguous, target :: list(:)
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
-      integer(int64), allocatable, target :: first_bond(:)
-      integer(int64) :: chain
-      integer :: trouble
+      integer(c_int64_t), target :: n
+      integer(int64) :: number, needed, before
       type(failure) :: problem
       call problem%need_created(self%c_handle())
-      if (enough("atoms", size(list, kind=int64), self%n_bonds() + self%n_chains(), "atoms", problem)) then
-         allocate (first_bond(self%n_chains() + 1), stat=trouble)
-         if (trouble /= 0) then
-            call problem%set(HOL_ERR_MEMORY, "out of memory")
-         else
-            call problem%ask(hol_chains_offsets(self%c_handle(), c_loc(first_bond)))
-            do chain = 1, self%n_chains()
-               if (problem%none()) call problem%ask(hol_chains_atoms(self%c_handle(), chain, &
-                                                                      c_loc(list(first_bond(chain) + chain - 1))))
-            end do
-         end if
+      needed = 0
+      do number = 1, self%n_chains()
+         call problem%ask(hol_chains_molecule(self%c_handle(), number, c_null_ptr, c_loc(n), c_null_ptr))
+         if (problem%none()) needed = needed + n
+      end do
+      if (problem%none() .and. enough("list", size(list, kind=int64), needed, "atoms", problem)) then
+         before = 0
+         do number = 1, self%n_chains()
+            call problem%ask(hol_chains_molecule(self%c_handle(), number, c_null_ptr, c_loc(n), c_null_ptr))
+            if (problem%none()) call problem%ask(hol_chains_atoms(self%c_handle(), number, c_loc(list(before + 1))))
+            before = before + n
+         end do
       end if
       call settle(problem, "atoms", stat, errmsg)
+   end subroutine
+
+   ! The molecule of every bond, list(n_bonds); -1 for a bond between two fixed atoms, which belongs to none.
+   recursive subroutine molecules_of_bonds(self, list, stat, errmsg)
+      class(chain_set_counts), intent(in) :: self
+      integer(int64), intent(inout), contiguous, target :: list(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      call problem%need_created(self%c_handle())
+      if (enough("list", size(list, kind=int64), self%n_bonds(), "bonds", problem)) &
+         call problem%ask(hol_chains_molecules_of_bonds(self%c_handle(), c_loc(list)))
+      call settle(problem, "molecules_of_bonds", stat, errmsg)
+   end subroutine
+
+   ! Shape (HOL_SHAPE_...) and size of one molecule.
+   recursive subroutine molecule_64(self, number, shape, n_atoms, n_bonds, stat, errmsg)
+      class(chain_set_counts), intent(in) :: self
+      integer(int64), intent(in) :: number
+      integer, intent(inout), optional :: shape
+      integer(int64), intent(inout), optional :: n_atoms, n_bonds
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      integer(c_int), target :: what
+      integer(c_int64_t), target :: atoms, bonds
+      call problem%need_created(self%c_handle())
+      call problem%ask(hol_chains_molecule(self%c_handle(), number, c_loc(what), c_loc(atoms), c_loc(bonds)))
+      if (problem%none()) then
+         if (present(shape)) shape = int(what)
+         if (present(n_atoms)) n_atoms = atoms
+         if (present(n_bonds)) n_bonds = bonds
+      end if
+      call settle(problem, "molecule", stat, errmsg)
+   end subroutine
+
+   recursive subroutine molecule_32(self, number, shape, n_atoms, n_bonds, stat, errmsg)
+      class(chain_set_counts), intent(in) :: self
+      integer(int32), intent(in) :: number
+      integer, intent(inout), optional :: shape
+      integer(int64), intent(inout), optional :: n_atoms, n_bonds
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      call self%molecule(int(number, int64), shape, n_atoms, n_bonds, stat, errmsg)
+   end subroutine
+
+   ! The atoms of one molecule, list(n_atoms): along a linear chain, ascending otherwise.
+   recursive subroutine atoms_64(self, number, list, stat, errmsg)
+      class(chain_set_counts), intent(in) :: self
+      integer(int64), intent(in) :: number
+      integer(int64), intent(inout), contiguous, target :: list(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      integer(c_int64_t), target :: n
+      call problem%need_created(self%c_handle())
+      call problem%ask(hol_chains_molecule(self%c_handle(), number, c_null_ptr, c_loc(n), c_null_ptr))
+      if (problem%none()) then
+         if (enough("list", size(list, kind=int64), n, "atoms", problem)) &
+            call problem%ask(hol_chains_atoms(self%c_handle(), number, c_loc(list)))
+      end if
+      call settle(problem, "atoms", stat, errmsg)
+   end subroutine
+
+   recursive subroutine atoms_32(self, number, list, stat, errmsg)
+      class(chain_set_counts), intent(in) :: self
+      integer(int32), intent(in) :: number
+      integer(int64), intent(inout), contiguous, target :: list(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      call self%atoms(int(number, int64), list, stat, errmsg)
+   end subroutine
+
+   ! The bonds of one molecule, list(n_bonds), in the order in which they are counted within it.
+   recursive subroutine bonds_64(self, number, list, stat, errmsg)
+      class(chain_set_counts), intent(in) :: self
+      integer(int64), intent(in) :: number
+      integer(int64), intent(inout), contiguous, target :: list(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      integer(c_int64_t), target :: n
+      call problem%need_created(self%c_handle())
+      call problem%ask(hol_chains_molecule(self%c_handle(), number, c_null_ptr, c_null_ptr, c_loc(n)))
+      if (problem%none()) then
+         if (enough("list", size(list, kind=int64), n, "bonds", problem)) &
+            call problem%ask(hol_chains_bonds(self%c_handle(), number, c_loc(list)))
+      end if
+      call settle(problem, "bonds", stat, errmsg)
+   end subroutine
+
+   recursive subroutine bonds_32(self, number, list, stat, errmsg)
+      class(chain_set_counts), intent(in) :: self
+      integer(int32), intent(in) :: number
+      integer(int64), intent(inout), contiguous, target :: list(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      call self%bonds(int(number, int64), list, stat, errmsg)
    end subroutine
 
 end module

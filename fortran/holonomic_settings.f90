@@ -1,25 +1,30 @@
-! Options of the chains, which a run may change between its steps.
+! Options of the molecules, and what else of them a run may change between its steps.
 module holonomic_settings
-   use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_loc, c_null_ptr, c_signed_char
+   use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_loc, c_null_ptr, c_ptr, c_signed_char
    use, intrinsic :: iso_fortran_env, only: real64
-   use holonomic_c, only: hol_chains_n_chains, hol_chains_set_active, hol_chains_set_box, &
-                          hol_chains_set_max_iterations, hol_chains_set_threads, hol_chains_set_tolerance, &
-                          HOL_ERR_MEMORY
-   use holonomic_chains, only: chain_set
-   use holonomic_place, only: enough, tensor
+   use holonomic_bonds, only: chain_set_bonds
+   use holonomic_c, only: hol_chains_n_atoms, hol_chains_n_bonds, hol_chains_n_chains, hol_chains_set_active, &
+                          hol_chains_set_box, hol_chains_set_lengths, hol_chains_set_masses, &
+                          hol_chains_set_max_iterations, hol_chains_set_reference_box, hol_chains_set_threads, &
+                          hol_chains_set_tolerance, HOL_ERR_MEMORY
+   use holonomic_place, only: enough, list_of, tensor
    use holonomic_status, only: failure, settle
    implicit none
    private
    public :: chain_set_settings
 
-   type, extends(chain_set) :: chain_set_settings
+   type, extends(chain_set_bonds) :: chain_set_settings
    contains
       procedure, private :: set_box_matrix, set_box_lengths
       generic :: set_box => set_box_matrix, set_box_lengths
+      procedure, private :: set_reference_box_matrix, set_reference_box_lengths
+      generic :: set_reference_box => set_reference_box_matrix, set_reference_box_lengths
       procedure :: set_threads
       procedure :: set_active
       procedure :: set_tolerance
       procedure :: set_max_iterations
+      procedure :: set_lengths
+      procedure :: set_masses
    end type
 
 contains
@@ -42,13 +47,37 @@ contains
       real(real64), intent(in) :: lengths(3)
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
+      call self%set_box(orthorhombic(lengths), stat, errmsg)
+   end subroutine
+
+   pure function orthorhombic(lengths) result(box)
+      real(real64), intent(in) :: lengths(3)
       real(real64) :: box(3, 3)
       integer :: i
       box = 0
       do i = 1, 3
          box(i, i) = lengths(i)
       end do
-      call self%set_box(box, stat, errmsg)
+   end function
+
+   ! Of the reference positions in project_positions. Without an argument: the same as that of set_box.
+   subroutine set_reference_box_matrix(self, box, stat, errmsg)
+      class(chain_set_settings), intent(inout) :: self
+      real(real64), intent(in), optional, target :: box(3, 3)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      call problem%need_created(self%c_handle())
+      call problem%ask(hol_chains_set_reference_box(self%c_handle(), tensor(box)))
+      call settle(problem, "set_reference_box", stat, errmsg)
+   end subroutine
+
+   subroutine set_reference_box_lengths(self, lengths, stat, errmsg)
+      class(chain_set_settings), intent(inout) :: self
+      real(real64), intent(in) :: lengths(3)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      call self%set_reference_box(orthorhombic(lengths), stat, errmsg)
    end subroutine
 
    subroutine set_threads(self, n_threads, stat, errmsg)
@@ -62,7 +91,7 @@ contains
       call settle(problem, "set_threads", stat, errmsg)
    end subroutine
 
-   ! Without an argument all chains are active.
+   ! Without an argument all molecules are active.
    subroutine set_active(self, active, stat, errmsg)
       class(chain_set_settings), intent(inout) :: self
       logical, intent(in), optional :: active(:)
@@ -74,7 +103,7 @@ contains
       call problem%need_created(self%c_handle())
       if (.not. present(active)) then
          call problem%ask(hol_chains_set_active(self%c_handle(), c_null_ptr))
-      else if (enough("active", size(active, kind=c_int64_t), hol_chains_n_chains(self%c_handle()), "chains", problem)) then
+      else if (enough("active", size(active, kind=c_int64_t), hol_chains_n_chains(self%c_handle()), "molecules", problem)) then
          allocate (flags(max(1, size(active))), stat=trouble)
          if (trouble /= 0) then
             call problem%set(HOL_ERR_MEMORY, "out of memory")
@@ -106,6 +135,34 @@ contains
       call problem%need_created(self%c_handle())
       call problem%ask(hol_chains_set_max_iterations(self%c_handle(), int(max_iterations, c_int)))
       call settle(problem, "set_max_iterations", stat, errmsg)
+   end subroutine
+
+   ! New lengths of all bonds, in the order in which these were given.
+   subroutine set_lengths(self, lengths, stat, errmsg)
+      class(chain_set_settings), intent(inout) :: self
+      real(real64), intent(in), contiguous, target :: lengths(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      type(c_ptr) :: at_lengths
+      call problem%need_created(self%c_handle())
+      at_lengths = list_of(lengths, "lengths", hol_chains_n_bonds(self%c_handle()), "bonds", problem)
+      if (problem%none()) call problem%ask(hol_chains_set_lengths(self%c_handle(), at_lengths))
+      call settle(problem, "set_lengths", stat, errmsg)
+   end subroutine
+
+   ! New masses of all atoms. A fixed atom of a molecule stays fixed, and one that can move stays movable.
+   subroutine set_masses(self, masses, stat, errmsg)
+      class(chain_set_settings), intent(inout) :: self
+      real(real64), intent(in), contiguous, target :: masses(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      type(c_ptr) :: at_masses
+      call problem%need_created(self%c_handle())
+      at_masses = list_of(masses, "masses", hol_chains_n_atoms(self%c_handle()), "atoms", problem)
+      if (problem%none()) call problem%ask(hol_chains_set_masses(self%c_handle(), at_masses))
+      call settle(problem, "set_masses", stat, errmsg)
    end subroutine
 
 end module

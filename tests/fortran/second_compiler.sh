@@ -26,6 +26,7 @@ done <"$order"
 module=$(ls ./*.o)
 "${CC:-cc}" -c "-I$top/capi" "$tests/c_side.c" -o c_side.obj
 compile -c "$tests/checks.f90"
+compile -c "$tests/dense_bonds.f90"
 compile -c "$tests/oracle_case.f90"
 
 link() { # link PROGRAM SOURCE... OBJECT...
@@ -34,8 +35,8 @@ link() { # link PROGRAM SOURCE... OBJECT...
     compile -O1 "$@" -o "$program" "-L$library" -lholonomic "-Wl,-rpath,$library"
 }
 
-for test in test_oracle.f90 test_layouts.f90 test_arguments.f90 test_levels.f90 test_metric.f90 test_integrators.f90 \
-    test_lifecycle.f90 test_fixed.f test_old_arrays.f; do
+for test in test_oracle.f90 test_layouts.f90 test_arguments.f90 test_levels.f90 test_molecules.f90 test_graphs.f90 \
+    test_metric.f90 test_integrators.f90 test_lifecycle.f90 test_fixed.f test_old_arrays.f; do
     extra=
     [ $test != test_lifecycle.f90 ] || extra=c_side.obj
     # shellcheck disable=SC2086

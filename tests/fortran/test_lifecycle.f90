@@ -40,6 +40,7 @@ contains
       ours = [integer(c_int64_t) :: HOL_OK, HOL_ERR_NULL, HOL_ERR_VALUE, HOL_ERR_INDEX, HOL_ERR_SHARED_ATOM, &
               HOL_ERR_MEMORY, HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE, HOL_ERR_NO_CONVERGENCE, HOL_ERR_NOT_DEFINITE, &
               HOL_ERR_INTERNAL, HOL_DOUBLE, HOL_FLOAT, HOL_WRITE, HOL_ADD, HOL_UNIT_DIAGONAL, HOL_PHYSICAL, &
+              HOL_SHAPE_CHAIN, HOL_SHAPE_TREE, HOL_SHAPE_RING, HOL_SHAPE_TRIANGLE, HOL_SHAPE_OTHER, &
               c_sizeof(view), offset(c_loc(view), c_loc(view%x)), offset(c_loc(view), c_loc(view%y)), &
               offset(c_loc(view), c_loc(view%z)), offset(c_loc(view), c_loc(view%stride)), &
               offset(c_loc(view), c_loc(view%element)), offset(c_loc(view), c_loc(view%reserved)), &

@@ -1,0 +1,204 @@
+! The part of the C interface that says what is bonded and how it is treated; use the module holonomic_c, which has all
+! parts.
+module holonomic_c_molecules
+   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int64_t, c_ptr
+   implicit none
+   public
+   private :: c_double, c_int, c_int64_t, c_ptr
+
+   ! hol_shape
+   integer(c_int), parameter :: HOL_SHAPE_CHAIN = 0
+   integer(c_int), parameter :: HOL_SHAPE_TREE = 1
+   integer(c_int), parameter :: HOL_SHAPE_RING = 2
+   integer(c_int), parameter :: HOL_SHAPE_TRIANGLE = 3
+   integer(c_int), parameter :: HOL_SHAPE_OTHER = 4
+
+   interface
+
+      function hol_chains_create(n_atoms, masses, chains) bind(c) result(status)
+         import :: c_int, c_int64_t, c_ptr
+         integer(c_int64_t), value :: n_atoms
+         type(c_ptr), value :: masses
+         type(c_ptr), intent(out) :: chains
+         integer(c_int) :: status
+      end function
+
+      subroutine hol_chains_destroy(chains) bind(c)
+         import :: c_ptr
+         type(c_ptr), value :: chains
+      end subroutine
+
+      function hol_chains_add(chains, n_bonds, atoms, lengths) bind(c) result(status)
+         import :: c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t), value :: n_bonds
+         type(c_ptr), value :: atoms, lengths
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_add_block(chains, n_chains, n_bonds, first_atom, lengths) bind(c) result(status)
+         import :: c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t), value :: n_chains, n_bonds, first_atom
+         type(c_ptr), value :: lengths
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_add_bonds(chains, n_bonds, pairs, lengths) bind(c) result(status)
+         import :: c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t), value :: n_bonds
+         type(c_ptr), value :: pairs, lengths
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_add_molecules(chains, n_molecules, n_atoms, &
+         first_atom, n_bonds, pairs, lengths) bind(c) result(status)
+         import :: c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t), value :: n_molecules, n_atoms, first_atom, n_bonds
+         type(c_ptr), value :: pairs, lengths
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_set_lengths(chains, lengths) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, lengths
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_set_masses(chains, masses) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, masses
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_set_index_base(chains, base) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int), value :: base
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_set_box(chains, box) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, box
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_set_reference_box(chains, box) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, box
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_set_threads(chains, n_threads) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int), value :: n_threads
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_set_active(chains, active) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, active
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_set_tolerance(chains, tolerance) bind(c) result(status)
+         import :: c_double, c_int, c_ptr
+         type(c_ptr), value :: chains
+         real(c_double), value :: tolerance
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_set_max_iterations(chains, max_iterations) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int), value :: max_iterations
+         integer(c_int) :: status
+      end function
+
+      pure function hol_chains_n_atoms(chains) bind(c) result(n)
+         import :: c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t) :: n
+      end function
+
+      pure function hol_chains_n_chains(chains) bind(c) result(n)
+         import :: c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t) :: n
+      end function
+
+      pure function hol_chains_n_bonds(chains) bind(c) result(n)
+         import :: c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t) :: n
+      end function
+
+      function hol_chains_offsets(chains, offsets) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, offsets
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_atoms(chains, chain, atoms) bind(c) result(status)
+         import :: c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t), value :: chain
+         type(c_ptr), value :: atoms
+         integer(c_int) :: status
+      end function
+
+      pure function hol_chains_n_of_shape(chains, shape) bind(c) result(n)
+         import :: c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int), value :: shape
+         integer(c_int64_t) :: n
+      end function
+
+      pure function hol_chains_n_kinds(chains) bind(c) result(n)
+         import :: c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t) :: n
+      end function
+
+      function hol_chains_molecule(chains, molecule, shape, n_atoms, n_bonds) bind(c) result(status)
+         import :: c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t), value :: molecule
+         type(c_ptr), value :: shape, n_atoms, n_bonds
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_bonds(chains, molecule, bonds) bind(c) result(status)
+         import :: c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t), value :: molecule
+         type(c_ptr), value :: bonds
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_molecules_of_bonds(chains, molecules) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, molecules
+         integer(c_int) :: status
+      end function
+
+      pure function hol_chains_degrees_of_freedom(chains, dimensions) bind(c) result(n)
+         import :: c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int), value :: dimensions
+         integer(c_int64_t) :: n
+      end function
+
+      pure function hol_chains_memory(chains) bind(c) result(n)
+         import :: c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t) :: n
+      end function
+
+   end interface
+
+end module
