@@ -106,7 +106,7 @@ contains
          call problem%ask(hol_chains_molecule(self%c_handle(), number, c_null_ptr, c_loc(n), c_null_ptr))
          if (problem%none()) needed = needed + n
       end do
-      if (problem%none() .and. enough("list", size(list, kind=int64), needed, "atoms", problem)) then
+      if (enough("list", size(list, kind=int64), needed, "atoms", problem)) then
          before = 0
          do number = 1, self%n_chains()
             call problem%ask(hol_chains_molecule(self%c_handle(), number, c_null_ptr, c_loc(n), c_null_ptr))

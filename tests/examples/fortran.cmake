@@ -58,3 +58,36 @@ example_test(legacy_fixed fortran legacy_fixed --
     "LARGEST BOND ERROR" 1 < 5e-14
     "  20.000" 1 < 0.01
     "  20.000" 1 > -0.01)
+
+# -------------------------------------------------------------------------------------------------------- water_md
+# Momentum is three degrees of freedom of 6 per molecule. Oxygens of SPC/E are nearest at 2.75 A. The pressure of so small
+# a box scatters by some 1000 bar about 0; without the constraints' virial it would be off by tens of thousands.
+example_test(water_md fortran water_md molecules=125 melt=500 steps=1000 output=water --
+    "125 molecules" 1 > 15
+    "degrees of freedom" 1 = 747
+    "largest bond error" 1 < 1e-13
+    "largest |d.v|" 1 < 1e-14
+    "energy fluctuation" 1 < 0.02
+    "mean temperature" 1 > 270
+    "mean temperature" 1 < 345
+    "mean pressure" 1 > -3000
+    "mean pressure" 1 < 3000
+    "oxygens are nearest at" 1 > 2.65
+    "oxygens are nearest at" 1 < 2.90
+    file water.dat > 30000
+    file water.gp > 300)
+example_refuses(water_md.refuses_no_time_step fortran "dt, temperature and density must be above zero" water_md dt=0)
+
+# ----------------------------------------------------------------------------------------------------- ring_fixman
+# Exact: neighbours of a freely jointed ring of 6 have the mean cosine -1/5, and the radius of gyration squared is 7/12.
+# The program itself compares means within four standard errors, and must find what the potential does.
+example_test(ring_fixman fortran ring_fixman molecules=200 moves=300 --
+    "200 rings of" 1 = 6
+    "mean cos, neighbours" 3 > -0.206
+    "mean cos, neighbours" 3 < -0.194
+    "radius of gyration^2" 3 > 0.577
+    "radius of gyration^2" 3 < 0.590
+    "largest deviation:" 1 < 4
+    "what the potential does to neighbours:" 1 > 5)
+example_refuses(ring_fixman.notices_the_wrong_sign fortran "the sampling is not what it should be"
+    ring_fixman molecules=200 moves=150 factor=-1)
