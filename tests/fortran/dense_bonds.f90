@@ -5,7 +5,8 @@ module dense_bonds
    private
    public :: along_bonds, curvature, dense_multipliers, rates
 
-   integer, parameter :: qp = real128
+   ! Where a compiler has no quadruple precision, double has to do.
+   integer, parameter :: qp = merge(real128, real64, real128 > 0)
 
 contains
 

@@ -6,6 +6,8 @@ program test_levels
    use holonomic
    implicit none
 
+   ! Where a compiler has no quadruple precision, double has to do.
+   integer, parameter :: qp = merge(real128, real64, real128 > 0)
    integer, parameter :: n = 12, n_bonds = n - 1
    type(hol_chains) :: chains
    real(real64), dimension(3, n) :: r, v, f
@@ -74,18 +76,18 @@ contains
    end function
 
    subroutine forces_solve_the_dense_equations()
-      real(real128) :: z(n_bonds, n_bonds), b(n_bonds), d(3, n_bonds), wq(n)
+      real(qp) :: z(n_bonds, n_bonds), b(n_bonds), d(3, n_bonds), wq(n)
       real(real64) :: lambda(n_bonds)
       integer :: k, l
       call test("forces solve Z lambda = K + C")
       wq = 0
-      where (mass > 0) wq = 1/real(mass, real128)
-      d = real(r(:, 2:), real128) - real(r(:, :n_bonds), real128)
+      where (mass > 0) wq = 1/real(mass, qp)
+      d = real(r(:, 2:), qp) - real(r(:, :n_bonds), qp)
       z = 0
       do k = 1, n_bonds
          z(k, k) = 4*(wq(k) + wq(k + 1))*dot_product(d(:, k), d(:, k))
          b(k) = 2*dot_product(d(:, k), wq(k + 1)*f(:, k + 1) - wq(k)*f(:, k)) &
-                + 2*sum((real(v(:, k + 1), real128) - v(:, k))**2)
+                + 2*sum((real(v(:, k + 1), qp) - v(:, k))**2)
       end do
       do k = 2, n_bonds
          z(k - 1, k) = -4*wq(k)*dot_product(d(:, k - 1), d(:, k))
