@@ -136,7 +136,7 @@ contains
       call chains%set_box([1.0_real64, nan, 1.0_real64], stat, message)
       call check(stat == HOL_ERR_VALUE, "a box that is not finite")
       call chains%set_active([.true.], stat, message)
-      call check(stat == HOL_ERR_VALUE .and. says("active") .and. says("4 chains"), "too few flags")
+      call check(stat == HOL_ERR_VALUE .and. says("active") .and. says("4 molecules"), "too few flags")
       call check(chains%degrees_of_freedom(4) == -1, "four dimensions")
    end subroutine
 
