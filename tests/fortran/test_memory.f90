@@ -29,6 +29,7 @@ program test_memory
    end do
    call creation_and_adding()
    call forces()
+   call molecules()
    call finish()
 
 contains
@@ -83,6 +84,43 @@ contains
       call check(good > 0 .and. stat == HOL_OK, "forces fail before they succeed")
       call check(all(g > -7), "and are written then")
       call chains%destroy()
+   end subroutine
+
+   ! A comb: a tooth at every third atom.
+   subroutine molecules()
+      type(hol_chains) :: set
+      integer(int64) :: bonds(2, n - 1)
+      real(real64) :: g(3, n), lambda(n - 1), rhs(n - 1)
+      character(200) :: words
+      integer :: good, stat
+      call test("bonds are added or not added")
+      bonds = reshape([(merge(atoms(max(1, i - 2)), atoms(i - 1), mod(i, 3) == 1), atoms(i), i=2, n)], [2, n - 1])
+      rhs = 1
+      call set%create(mass)
+      do good = 0, 1000
+         words = ""
+         call fail_after(int(good, c_long))
+         call set%add(bonds, length, stat=stat, errmsg=words)
+         call fail_no_more()
+         if (stat == HOL_OK) exit
+         call check(stat == HOL_ERR_MEMORY .and. set%n_bonds() == 0, "add: stat is HOL_ERR_MEMORY, nothing is added")
+         call check(words == "add: out of memory", "add: errmsg says so")
+      end do
+      call check(good > 0 .and. stat == HOL_OK .and. set%n_of_shape(HOL_SHAPE_TREE) == 1, "add fails before it succeeds")
+      call test("right-hand sides")
+      do good = 0, 1000
+         words = ""
+         g = -7
+         lambda = -7
+         call fail_after(int(good, c_long))
+         call set%solve(r, rhs, lambda, g, stat=stat, errmsg=words)
+         call fail_no_more()
+         if (stat == HOL_OK) exit
+         call check(stat == HOL_ERR_MEMORY .and. words == "solve: out of memory", "solve: out of memory")
+         call check(all(same_bits(g, -7.0_real64)) .and. all(same_bits(lambda, -7.0_real64)), "nothing was written")
+      end do
+      call check(stat == HOL_OK .and. all(lambda > -7), "solve succeeds with enough of it")
+      call set%destroy()
    end subroutine
 
 end program
