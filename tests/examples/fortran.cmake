@@ -60,6 +60,17 @@ example_test(legacy_fixed fortran legacy_fixed --
     "  20.000" 1 > -0.01)
 
 # -------------------------------------------------------------------------------------------------------- water_md
+# At constant pressure the mean pressure is that of the bath, and the density what it makes it: less than 0.998 where the
+# cutoff is so short.
+example_test(water_md.constant_pressure fortran water_md molecules=64 melt=200 steps=3000 pressure=1 --
+    "degrees of freedom" 1 = 384
+    "largest bond error" 1 < 1e-13
+    "mean density" 1 > 0.80
+    "mean density" 1 < 1.08
+    "mean temperature" 1 > 280
+    "mean temperature" 1 < 325
+    "mean pressure" 1 > -1000
+    "mean pressure" 1 < 1000)
 # Momentum is three degrees of freedom of 6 per molecule. Oxygens of SPC/E are nearest at 2.75 A. The pressure of so small
 # a box scatters by some 1000 bar about 0; without the constraints' virial it would be off by tens of thousands.
 example_test(water_md fortran water_md molecules=125 melt=500 steps=1000 output=water --
