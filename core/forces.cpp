@@ -10,22 +10,21 @@ namespace holonomic {
 namespace {
 
 struct ForcesWork final : Work {
-    ForcesCall calls[n_wheres];
+    const Variants<ForcesCall> calls;
     const Kernels &k = kernels();
-    ForcesWork(const ForcesCall &call, Apart &apart) {
-        make_variants(
-            calls, call, apart,
-            [&](ForcesCall &c) {
-                c.lambda = apart.results(call.lambda);
-                c.tension = apart.results(call.tension);
-            },
-            [&](ForcesCall &c) {
-                c.r = apart.atoms(call.r);
-                c.v = apart.atoms(call.v);
-                c.f = apart.atoms(call.f);
-                c.g = apart.summed_atoms(call.g, call.add);
-            });
-    }
+    ForcesWork(const ForcesCall &call, Apart &apart)
+        : calls(
+              call, apart,
+              [&](ForcesCall &c) {
+                  c.lambda = apart.results(call.lambda);
+                  c.tension = apart.results(call.tension);
+              },
+              [&](ForcesCall &c) {
+                  c.r = apart.atoms(call.r);
+                  c.v = apart.atoms(call.v);
+                  c.f = apart.atoms(call.f);
+                  c.g = apart.summed_atoms(call.g, call.add);
+              }) {}
     void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
         k.forces(calls[where], unit, scratch, tally);
     }

@@ -11,16 +11,15 @@ namespace holonomic {
 namespace {
 
 struct MetricWork final : Work {
-    MetricCall calls[n_wheres];
+    const Variants<MetricCall> calls;
     const Kernels &k = kernels();
-    MetricWork(const MetricCall &call, Apart &apart) {
-        make_variants(
-            calls, call, apart, [](MetricCall &) {},
-            [&](MetricCall &c) {
-                c.r = apart.atoms(call.r);
-                c.force = apart.summed_atoms(call.force, call.add);
-            });
-    }
+    MetricWork(const MetricCall &call, Apart &apart)
+        : calls(
+              call, apart, [](MetricCall &) {},
+              [&](MetricCall &c) {
+                  c.r = apart.atoms(call.r);
+                  c.force = apart.summed_atoms(call.force, call.add);
+              }) {}
     void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
         k.metric(calls[where], unit, scratch, tally);
     }

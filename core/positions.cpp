@@ -254,17 +254,16 @@ private:
 };
 
 struct PositionsWork final : Work {
-    PositionsCall calls[n_wheres];
+    const Variants<PositionsCall> calls;
     const Kernels &k = kernels();
-    PositionsWork(const PositionsCall &call, Apart &apart) {
-        make_variants(
-            calls, call, apart, [&](PositionsCall &c) { c.lambda = apart.results(call.lambda); },
-            [&](PositionsCall &c) {
-                c.r_ref = apart.atoms(call.r_ref);
-                c.r = apart.moved_atoms(call.r);
-                c.v = apart.moved_atoms(call.v);
-            });
-    }
+    PositionsWork(const PositionsCall &call, Apart &apart)
+        : calls(
+              call, apart, [&](PositionsCall &c) { c.lambda = apart.results(call.lambda); },
+              [&](PositionsCall &c) {
+                  c.r_ref = apart.atoms(call.r_ref);
+                  c.r = apart.moved_atoms(call.r);
+                  c.v = apart.moved_atoms(call.v);
+              }) {}
     void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
         k.positions(calls[where], unit, scratch, tally);
     }

@@ -12,20 +12,19 @@ namespace holonomic {
 namespace {
 
 struct SolveWork final : Work {
-    SolveCall calls[n_wheres];
+    const Variants<SolveCall> calls;
     const Kernels &k = kernels();
-    SolveWork(const SolveCall &call, Apart &apart) {
-        make_variants(
-            calls, call, apart,
-            [&](SolveCall &c) {
-                c.rhs = apart.inputs(call.rhs);
-                c.lambda = apart.results(call.lambda);
-            },
-            [&](SolveCall &c) {
-                c.r = apart.atoms(call.r);
-                c.g = apart.summed_atoms(call.g, call.add);
-            });
-    }
+    SolveWork(const SolveCall &call, Apart &apart)
+        : calls(
+              call, apart,
+              [&](SolveCall &c) {
+                  c.rhs = apart.inputs(call.rhs);
+                  c.lambda = apart.results(call.lambda);
+              },
+              [&](SolveCall &c) {
+                  c.r = apart.atoms(call.r);
+                  c.g = apart.summed_atoms(call.g, call.add);
+              }) {}
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
         k.molecules.solve(calls[where], unit, scratch, tally);
     }

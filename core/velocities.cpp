@@ -11,16 +11,15 @@ namespace holonomic {
 namespace {
 
 struct VelocitiesWork final : Work {
-    VelocitiesCall calls[n_wheres];
+    const Variants<VelocitiesCall> calls;
     const Kernels &k = kernels();
-    VelocitiesWork(const VelocitiesCall &call, Apart &apart) {
-        make_variants(
-            calls, call, apart, [&](VelocitiesCall &c) { c.lambda = apart.results(call.lambda); },
-            [&](VelocitiesCall &c) {
-                c.r = apart.atoms(call.r);
-                c.v = apart.moved_atoms(call.v);
-            });
-    }
+    VelocitiesWork(const VelocitiesCall &call, Apart &apart)
+        : calls(
+              call, apart, [&](VelocitiesCall &c) { c.lambda = apart.results(call.lambda); },
+              [&](VelocitiesCall &c) {
+                  c.r = apart.atoms(call.r);
+                  c.v = apart.moved_atoms(call.v);
+              }) {}
     void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
         k.velocities(calls[where], unit, scratch, tally);
     }

@@ -59,7 +59,10 @@ public:
     const Box &box_of_reference() const { return has_reference_box_ ? reference_box_ : box; }
 
     // plan.cpp
-    const Plan &plan() const;           // thread-safe
+    const Plan &plan() const {  // thread-safe
+        const Plan *const made = plan_.load(std::memory_order_acquire);
+        return made ? *made : make_plan();
+    }
     const Plan &plan_of_parts() const;  // likewise; no molecule of it is linear
     // units.cpp
     Unit unit(const Plan &plan, const Plan::Piece &piece, Lane *lanes) const;  // lanes [loose_piece]
@@ -77,6 +80,7 @@ public:
 private:
     friend class Batch;
     friend class Planner;
+    const Plan &make_plan() const;
     void changed() {
         plan_.store(nullptr);
         plan_of_parts_.store(nullptr);

@@ -214,7 +214,7 @@ const Plan &made_once(const Chains &chains, bool of_parts, std::mutex &mutex, st
 
 }  // namespace
 
-const Plan &Chains::plan() const { return made_once(*this, false, plan_mutex_, plan_, plan_owner_); }
+const Plan &Chains::make_plan() const { return made_once(*this, false, plan_mutex_, plan_, plan_owner_); }
 
 const Plan &Chains::plan_of_parts() const {
     return made_once(*this, true, plan_mutex_, plan_of_parts_, plan_of_parts_owner_);

@@ -59,18 +59,27 @@ private:
     int n_values_ = 0, n_atoms_ = 0;
 };
 
-// The variants of a call, by Where: `values` and `atoms` replace those of its arrays. Those that no molecule needs are
-// not made.
-template <class Call, class Values, class Atoms>
-void make_variants(Call (&calls)[n_wheres], const Call &call, const Apart &apart, Values values, Atoms atoms) {
-    calls[in_place] = call;
-    for (int where = 1; where < n_wheres; ++where) {
-        if (((where & reordered) && !apart.reorders()) || ((where & staged) && !apart.stages())) continue;
-        calls[where] = call;
-        if (where & reordered) values(calls[where]);
-        if (where & staged) atoms(calls[where]);
+// A call as it is given, and variants of it by Where.
+template <class Call>
+class Variants {
+public:
+    // `values` and `atoms` replace a variant's arrays. Variants that no molecule needs are not made.
+    template <class Values, class Atoms>
+    Variants(const Call &call, const Apart &apart, Values values, Atoms atoms) : call_(call) {
+        if (!apart.reorders() && !apart.stages()) return;
+        for (int where = 1; where < n_wheres; ++where) {
+            if (((where & reordered) && !apart.reorders()) || ((where & staged) && !apart.stages())) continue;
+            made_[where - 1] = call;
+            if (where & reordered) values(made_[where - 1]);
+            if (where & staged) atoms(made_[where - 1]);
+        }
     }
-}
+    const Call &operator[](int where) const { return where == in_place ? call_ : made_[where - 1]; }
+
+private:
+    const Call &call_;
+    Call made_[n_wheres - 1];
+};
 
 // Bonds that are no constraints get a value of 0. Null: nothing.
 void clear_unconstrained(const Chains &chains, double *values);
