@@ -1,5 +1,5 @@
 // The core of a molecule, what is left when hanging trees are stripped: its matrix eliminated bond by bond in the order
-// of the plan, in twice the precision. With D on the left and B on the right (molecules.md (m12)) it is not symmetric.
+// of the plan, in twice the precision. With D on the left and B on the right (theory (58)) it is not symmetric.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_CORE_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_CORE_HPP
 

@@ -1,7 +1,7 @@
 // One atom and the bonds that meet there: what some of them, eliminated together, leave of the atom's inverse mass
 // along another one. All bond vectors point away from the atom; arm a offers the inverse mass E_a from its far side.
 // With
-//     S = diag(E) + w D^T B over the arms eliminated, D = B but for Newton's method (molecules.md (m12)),
+//     S = diag(E) + w D^T B over the arms eliminated, D = B but for Newton's method (theory (58)),
 // everything is a sum over sets T of at most three of these arms of products of Gram determinants, in which nothing is
 // subtracted (Cauchy and Binet). All of it is relative to the product of the E; an E = 0 must then be in every set.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_JOINT_HPP

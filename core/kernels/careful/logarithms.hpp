@@ -1,4 +1,4 @@
-// ln det Z~ as the sum of the logarithms of pivots over their diagonal elements (molecules.md (m7)): of what is taken
+// ln det Z~ as the sum of the logarithms of pivots over their diagonal elements (theory (61)): of what is taken
 // from the diagonal where that is less than half of it, so that small ones keep their digits.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_LOGARITHMS_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_LOGARITHMS_HPP

@@ -1,4 +1,4 @@
-// Metric determinant and Fixman force of one molecule (molecules.md (m6)-(m8)).
+// Metric determinant and Fixman force of one molecule (theory (60)-(62)).
 #include "core/kernels/careful/careful.hpp"
 #include "core/kernels/careful/logarithms.hpp"
 #include "core/kernels/careful/neighbours.hpp"

@@ -1,4 +1,4 @@
-// Elements of A^-1 for bonds that share an atom, which the Fixman force needs (molecules.md (m6)).
+// Elements of A^-1 for bonds that share an atom, which the Fixman force needs (theory (60)).
 #ifndef HOLONOMIC_KERNELS_CAREFUL_NEIGHBOURS_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_NEIGHBOURS_HPP
 

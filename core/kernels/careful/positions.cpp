@@ -1,4 +1,4 @@
-// Position level of one molecule: Newton's method with the mixed Jacobian (molecules.md (m12)) anew at each step. The
+// Position level of one molecule: Newton's method with the mixed Jacobian (theory (58)) anew at each step. The
 // decisions are those of the chains (newton.inl). In twice the precision, differences of large pulls lose nothing.
 #include "core/kernels/careful/careful.hpp"
 #include "core/kernels/careful/solution.hpp"

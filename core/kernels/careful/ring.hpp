@@ -1,4 +1,4 @@
-// A ring without side atoms, triangles among them (molecules.md (m13)): elimination on unit bonds that carries the
+// A ring without side atoms, triangles among them (theory (57)): elimination on unit bonds that carries the
 // off-diagonals and the deficits of diagonal dominance, of which nothing that matters is subtracted, whatever the signs
 // (Q. Ye, Math. Comp. 77, 2195 (2008)). Rows are the bonds round the ring; joint k lies between rows k - 1 and k.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_RING_HPP

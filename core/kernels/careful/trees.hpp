@@ -1,4 +1,4 @@
-// Trees in the two-sided form (molecules.md (m2), (m4), (m5)): over every bond each of its ends sends the other what
+// Trees in the two-sided form (theory (52), (54), (59)): over every bond each of its ends sends the other what
 // all bonds behind it leave of the inverse mass, and of the right-hand sides. Nothing large cancels, whatever the
 // masses.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_TREES_HPP
