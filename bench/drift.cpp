@@ -8,7 +8,6 @@
 #include "memory_pass.hpp"
 #include "methods/methods.hpp"
 #include "sections.hpp"
-#include "stopwatch.hpp"
 
 namespace bench {
 namespace {
@@ -22,17 +21,6 @@ double slope(const std::vector<double> &t, const std::vector<double> &e) {
         te += (t[i] - mean_t) * (e[i] - mean_e);
     }
     return te / tt;
-}
-
-double pass_seconds(const Problem &p) {
-    std::vector<double> g(p.r.size()), times;
-    for (int i = 0; i < 200; ++i) {
-        const Stopwatch watch(1);
-        memory_pass(p.r, p.v, p.f, g, 1);
-        times.push_back(watch.seconds());
-    }
-    std::nth_element(times.begin(), times.begin() + 100, times.end());
-    return times[100];
 }
 
 Row drift(MeltRun &run, const Constraints &constraints, const std::string &setting, int steps) {
@@ -55,7 +43,7 @@ Row drift(MeltRun &run, const Constraints &constraints, const std::string &setti
             "energy drift " + setting,
             std::abs(slope(t, e)) / run.kinetic(),
             ns,
-            seconds / pass_seconds(p),
+            seconds / memory_pass_seconds(p.r.size()),
             ns,
             ns,
             ns,

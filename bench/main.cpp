@@ -42,6 +42,7 @@ const std::vector<std::pair<std::string, Section>> sections = {
     {"condition", condition_section},
     {"drift", drift_section},
     {"molecules", molecules_section},
+    {"adding", adding_section},
     {"isa", instruction_set_section},
 };
 

@@ -24,11 +24,12 @@ bool is_water(const Molecules &m) {
 }
 
 Methods library(const Run &run, Level level, const Molecules &m, bool all) {
-    Methods list;
-    (void)run;
-    (void)level;
-    (void)m;
-    (void)all;
+    Methods list = {holonomic(level, m)};
+    if (run.threads > 1) list.push_back(holonomic(level, m, run.threads));
+    list.push_back(holonomic_any_order(level, m));
+    if (m.source.empty()) list.push_back(holonomic_chains_instead(level, m));
+    if (level == Level::position && all)
+        for (double tolerance : {1e-4, 1e-8, 1e-12}) list.push_back(holonomic_tolerance(m, tolerance));
     return list;
 }
 

@@ -35,6 +35,8 @@ void condition_section(const Run &run);
 void drift_section(const Run &run);
 /// Molecules of any topology, level by level.
 void molecules_section(const Run &run);
+/// Making a handle: telling the library what is bonded.
+void adding_section(const Run &run);
 /// The library as it is, for one instruction set per process: rows are named after it.
 void instruction_set_section(const Run &run);
 
