@@ -76,7 +76,7 @@ Kind linear(int bonds) {
 void work(const Run &run, const Molecules &m) {
     const int repetitions = run.full() ? 5 : 3;
     auto store = [&](const std::string &setting, const Times &times) {
-        run.results.add({row(m, setting, times.add), row(m, setting + ", built anew", times.whole)});
+        run.results.add({row(m, setting, times.add), row(m, setting + " built anew", times.whole)});
     };
     BondList bonds(m);
     auto listed = [&bonds](hol_chains *chains) {

@@ -15,7 +15,7 @@ awk -F, '
         next
     }
     NF != 10 { bad("ten columns expected"); next }
-    !among($1, "acceleration velocity position metric solve") { bad("level") }
+    !among($1, "acceleration velocity position metric solve setup") { bad("level") }
     !among($2, "coil tetrahedral straight5 light_joints fixed_ends melt") && !among($2, molecules) { bad("problem") }
     $3 !~ /^[1-9][0-9]*$/ || $4 !~ /^[1-9][0-9]*$/ || $5 !~ /^[1-9][0-9]*$/ { bad("chains, bonds, threads") }
     !among($6, "holonomic openmm-ccma lapack-dptsv lapack-dgtsv eigen-ldlt eigen-simplicial rattle milc-shake lincs sparse-newton eq20 omega-recursion") &&

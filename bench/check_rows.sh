@@ -92,7 +92,37 @@ awk -F, -v quick="${2:-}" '
         demand_each("position", "melt", size, "holonomic", "v = NULL;no lambda;r alone;virial too;guess;already satisfied")
         demand_each("metric", "melt", size, "holonomic", "log_det alone;outputs by separate calls")
     }
+    # Of molecules the sizes are what comes of their kinds: any will do.
+    function molecule(level, problem, method, settings,   list, i) {
+        if (method == "openmm" && !any[method]) return
+        for (i = split(settings, list, ";"); i > 0; --i)
+            if (!((level "," problem "," method "," list[i]) in of_any_size)) {
+                printf "missing: %s, %s, %s, %s\n", level, problem, method, list[i]
+                ++missing
+            }
+    }
+    function molecules(problem,   i, level) {
+        for (i = split("acceleration velocity position", level, " "); i > 0; --i) {
+            molecule(level[i], problem, "holonomic", "default;bonds in any order;chains instead")
+            if (level[i] == "position") continue
+            molecule(level[i], problem, "sparse-ldl", "pattern reused")
+            molecule(level[i], problem, "eigen-simplicial", "pattern reused")
+        }
+        molecule("velocity", problem, "rattle", "tolerance 1e-06;tolerance 1e-12")
+        for (i = split("rattle sparse-newton quasi-newton", level, " "); i > 0; --i)
+            molecule("position", problem, level[i], "tolerance 1e-06;tolerance 1e-12")
+        molecule("position", problem, "lincs", "order 4 iterations 1;order 8 iterations 4")
+        if (problem != "water") return
+        molecule("velocity", problem, "settle", "default")
+        molecule("position", problem, "settle", "default")
+        molecule("velocity", problem, "openmm", "tolerance 1e-06;tolerance 1e-10")
+        molecule("position", problem, "openmm", "tolerance 1e-06;tolerance 1e-10")
+    }
+    function adding(problem) {
+        molecule("setup", problem, "holonomic", "bonds in order;as molecules;bonds in any order;bonds and atoms in any order")
+    }
     NR > 1 {
+        of_any_size[$1 "," $2 "," $6 "," $7] = 1
         row[$1 "," $2 "," $3 "," $4 "," $5 "," $6 "," $7] = 1
         any[$6] = 1
         if ($5 > 1) two = 1
@@ -139,6 +169,9 @@ awk -F, -v quick="${2:-}" '
                 printf "missing: condition numbers, %s\n", n[i]
                 ++missing
             }
+        for (i = split("water hydrogens dodecane dendrimer comb brush ring triangles arms random_tree protein", n, " "); i > 0; --i)
+            molecules(n[i])
+        for (i = split("coil random_tree water", n, " "); i > 0; --i) adding(n[i])
         if (drifts < (quick ? 5 : 7)) { printf "missing: energy drifts\n"; ++missing }
         if (missing) printf "%d rows are missing\n", missing
         exit missing > 0

@@ -25,9 +25,11 @@ std::string machine_block(const std::string &directory) {
 
 std::string plots_block() {
     std::string text;
-    for (const char *name : {"positions_coil", "positions_straight5", "positions_light_joints", "size_acceleration",
-                             "size_velocity", "size_position", "condition", "energy_drift", "skips_acceleration",
-                             "skips_velocity", "skips_position", "skips_metric"})
+    for (const char *name :
+         {"positions_coil", "positions_straight5", "positions_light_joints", "size_acceleration", "size_velocity",
+          "size_position", "condition", "energy_drift", "skips_acceleration", "skips_velocity", "skips_position",
+          "skips_metric", "molecules_acceleration", "molecules_velocity", "molecules_position", "positions_water",
+          "positions_dodecane", "large_acceleration", "large_position"})
         text += std::string("![") + name + "](" + name + ".png)\n";
     return text;
 }
@@ -42,8 +44,15 @@ std::vector<Block> blocks(const std::string &directory) {
         {"targets", "What was aimed at, and what was reached", targets_block(all)},
         {"plots", "Plots", plots_block()},
         {"losses", "Where another method is faster and as accurate (error below ten times the library's, or 1.1e-12)",
-         losses_block(all, true)},
-        {"rough", "Where another method is faster and less accurate", losses_block(all, false)},
+         losses_block(all, true, false)},
+        {"rough", "Where another method is faster and less accurate", losses_block(all, false, false)},
+        {"molecules", "Molecules of any topology: times faster than (below 1: slower), one thread",
+         molecules_block(all)},
+        {"molecule_targets", "Molecules: what was aimed at, and what was reached", molecule_targets_block(all)},
+        {"molecule_losses", "Molecules: where another method is faster and as accurate", losses_block(all, true, true)},
+        {"molecule_rough", "Molecules: where another method is faster and less accurate",
+         losses_block(all, false, true)},
+        {"adding", "Adding bonds, one thread", adding_block(all)},
         {"batches", "Many chains in a call, the library's default", batches_block(all)},
         {"accelerations", "Accelerations: ns per bond against the length of a chain, one chain per call",
          sizes_block(all, "acceleration")},

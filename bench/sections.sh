@@ -3,9 +3,9 @@
 
 # Processor seconds of a build from nothing, and of each section, on a common machine: for the estimates alone.
 build_cpu=110
-sections=(acceleration velocity position metric solve skips condition drift isa)
-full_seconds=(45 60 120 20 15 70 5 20 15)
-quick_seconds=(4 4 7 2 1 6 1 2 1)
+sections=(acceleration velocity position metric solve skips condition drift molecules adding isa)
+full_seconds=(45 60 120 20 15 70 5 20 150 10 15)
+quick_seconds=(4 4 7 2 1 6 1 2 30 2 1)
 
 # Sum of the estimates from section number $1 on.
 seconds_from() {
@@ -61,7 +61,7 @@ describe_machine() {
     printf 'system: %s\n' "$(. /etc/os-release 2>/dev/null && echo "$PRETTY_NAME, $(uname -sr)" || uname -sr)"
     printf 'compiler: %s\n' "$(c++ --version | head -n 1)"
     printf 'holonomic: %s, instruction set %s\n' "$(git describe --always --dirty 2>/dev/null || echo unknown)" "$("$program" --isa)"
-    for package in libeigen3-dev liblapack-dev libopenmm-dev libbenchmark-dev; do
+    for package in libeigen3-dev liblapack-dev libopenmm-dev libbenchmark-dev lammps-examples gromacs-data; do
         dpkg-query -W -f '${Package}: ${Version}\n' "$package" 2>/dev/null
     done
     printf 'command: scripts/bench%s\n' "${extent:+ $extent}"

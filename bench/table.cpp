@@ -27,6 +27,12 @@ std::vector<std::vector<std::string>> read_csv(const std::string &name, std::siz
 
 }  // namespace
 
+bool Measurement::is_molecule() const {
+    for (const char *name : {"coil", "tetrahedral", "straight5", "light_joints", "fixed_ends", "melt"})
+        if (problem == name) return false;
+    return true;
+}
+
 Table::Table(const std::string &directory) {
     const auto results = read_csv(directory + "/results.csv", 10), spread = read_csv(directory + "/spread.csv", 13);
     if (results.size() != spread.size()) throw std::runtime_error("results.csv and spread.csv differ in length");

@@ -14,6 +14,8 @@ struct Measurement {
     int threads = 0, repetitions = 0;
     double error = 0, ns = 0, passes = 0, lower = 0, upper = 0;
 
+    /// A scene of molecules of any topology rather than of chains.
+    bool is_molecule() const;
     bool is_special() const {  ///< condition numbers, energy drift: not a level at work on a scene of its own
         return setting.rfind("condition", 0) == 0 || setting.rfind("energy drift", 0) == 0;
     }

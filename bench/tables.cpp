@@ -138,7 +138,8 @@ std::string batches_block(const Table &all) {
     MarkdownTable table(
         {"scene", "ns/bond", "spread", "memory passes", "error", "two threads: times faster", "their memory passes"});
     for (const Measurement &m : all.rows()) {
-        if (m.method != "holonomic" || m.setting != "default" || m.threads != 1 || m.chains == 1) continue;
+        if (m.method != "holonomic" || m.setting != "default" || m.threads != 1 || m.chains == 1 || m.is_molecule())
+            continue;
         if (all.find(key_of(m)) != &m) continue;  // measured again among what a scene saves
         Key key = key_of(m);
         key.threads = 2;
@@ -219,7 +220,7 @@ std::string skips_block(const Table &all) {
     return table.text();
 }
 
-std::string losses_block(const Table &all, bool accurate) {
+std::string losses_block(const Table &all, bool accurate, bool molecules) {
     struct Loss {
         std::string work, method, sizes;
         double factor;
@@ -228,7 +229,7 @@ std::string losses_block(const Table &all, bool accurate) {
     std::vector<Loss> losses;
     std::set<std::string> done;
     for (const Measurement &first : all.rows()) {
-        if (first.is_special() || !done.insert(scene_of(first)).second) continue;
+        if (first.is_special() || first.is_molecule() != molecules || !done.insert(scene_of(first)).second) continue;
         const Measurement *own = all.find(own_of(first));
         const Measurement *best = own ? fastest_other(all, *own, accurate) : nullptr;
         if (!best || best->ns >= own->ns) continue;

@@ -25,8 +25,13 @@ std::string condition_block(const Table &all);
 std::string drift_block(const Table &all);
 /// What each thing costs that a scene may do without.
 std::string skips_block(const Table &all);
-/// Scenes in which another method was faster, as accurate or not.
-std::string losses_block(const Table &all, bool accurate);
+/// Scenes of chains or of molecules in which another method was faster, as accurate or not.
+std::string losses_block(const Table &all, bool accurate, bool molecules);
+/// Molecules of any topology, level by level: over chains of as many bonds, and beside the others.
+std::string molecules_block(const Table &all);
+std::string molecule_targets_block(const Table &all);
+/// What it costs to tell the library what is bonded.
+std::string adding_block(const Table &all);
 
 }  // namespace bench
 
