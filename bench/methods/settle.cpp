@@ -24,14 +24,14 @@ double square(double x) { return x * x; }
 /// The canonical triangle: distances of atoms from the centre of mass along and across its axis.
 struct Triangle {
     double part_o, part_h;  ///< of the mass
-    double ra, rb, rc, hh2;
+    double ra, rb, rc, hh2, over_ra;
     double wo, wh;
     explicit Triangle(const Kind &kind) {
         const double o = kind.mass[0], h = kind.mass[1], all = o + 2 * h;
         part_o = o / all, part_h = h / all;
         rc = kind.length[2] / 2;
         const double height = std::sqrt(square(kind.length[0]) - square(rc));
-        ra = 2 * part_h * height, rb = height - ra;
+        ra = 2 * part_h * height, rb = height - ra, over_ra = 1 / ra;
         hh2 = square(kind.length[2]);
         wo = kind.w[0], wh = kind.w[1];
     }
@@ -48,7 +48,7 @@ void positions(const Triangle &t, const double *reference, double over_dt, doubl
     const double za1 = dot(a1, ez), xb1 = dot(b1, ex), yb1 = dot(b1, ey), zb1 = dot(b1, ez);
     const double xc1 = dot(c1, ex), yc1 = dot(c1, ey), zc1 = dot(c1, ez);
     // Turned about x by phi and about y by psi, so that the heights above the plane are those of the new atoms.
-    const double sin_phi = za1 / t.ra, cos_phi = std::sqrt(1 - square(sin_phi));
+    const double sin_phi = za1 * t.over_ra, cos_phi = std::sqrt(1 - square(sin_phi));
     const double sin_psi = (zb1 - zc1) / (2 * t.rc * cos_phi), cos_psi = std::sqrt(1 - square(sin_psi));
     const double ya2 = t.ra * cos_phi, yb2 = -t.rb * cos_phi - t.rc * sin_psi * sin_phi;
     const double yc2 = -t.rb * cos_phi + t.rc * sin_psi * sin_phi;
