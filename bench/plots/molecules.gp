@@ -8,6 +8,7 @@ set logscale y
 set ylabel "time per bond / ns"
 set xtics rotate by -35 font ",10" scale 0
 set key top left
+set rmargin 12
 set title sprintf("%s, one thread", level eq "acceleration" ? "Forces (lambda and G)" : level eq "velocity" ? "Velocities" : "Positions, with velocities and lambda") font ",11"
 other = level eq "position" ? "sparse-newton,tolerance 1e-12" : "sparse-ldl,pattern reused"
 # A line per scene: its name, and the times of the three.
