@@ -25,6 +25,12 @@ constexpr double stiff = 0x1p-280;
 // and a third one as near to their plane are still solved.
 constexpr double flat = 1e-52;
 
+// Of many arms those that do not give way, three at most, take their directions out of all the others.
+struct Rigid {
+    int n, arm[3];
+    Wide gram[9];  // inverse of D.B of these arms
+};
+
 struct Joint {
     int n;
     double w;
@@ -34,10 +40,11 @@ struct Joint {
     bool *rigid;     // [n] E = 0
     Wide3 *XD, *XB;  // [n][n] cross products of arms a and b at [a n + b]
     int n_others, n_rigid;
-    int *others;      // [n] the arms that are eliminated
-    Wide det;         // of S over these arms, relative to the product of the E that are not 0
-    bool by_inertia;  // how they are eliminated
-    Wide inverse[9];  // if so, of 1 + sum rho D B^T
+    int *others;       // [n] the arms that are eliminated
+    Wide det;          // of S over these arms, relative to the product of the E that are not 0
+    bool by_inertia;   // how they are eliminated
+    Wide inverse[9];   // if so, of 1 + sum rho D B^T of those that give way,
+    Rigid rigid_arms;  // the directions of the others being taken out
 
     const Wide3 &cross_D(int a, int b) const { return XD[a * n + b]; }
     const Wide3 &cross_B(int a, int b) const { return XB[a * n + b]; }
@@ -63,33 +70,59 @@ HOL_NOINLINE void set_arm(Joint &x, int a, const Wide &E) {
     x.rho[a] = x.rigid[a] ? wide(1) : wide(x.w) / E;
 }
 
-HOL_NOINLINE void invert(const Wide *m, Wide *inverse) {
+// False if there is none.
+HOL_NOINLINE bool invert(const Wide *m, Wide *inverse) {
     const Wide c0 = m[4] * m[8] - m[5] * m[7], c1 = m[5] * m[6] - m[3] * m[8], c2 = m[3] * m[7] - m[4] * m[6];
-    const Wide r = wide(1) / (m[0] * c0 + m[1] * c1 + m[2] * c2);
+    const Wide det = m[0] * c0 + m[1] * c1 + m[2] * c2;
+    if (!(abs(det.hi) > flat)) return false;
+    const Wide r = wide(1) / det;
     const Wide adjugate[9] = {c0, m[2] * m[7] - m[1] * m[8], m[1] * m[5] - m[2] * m[4],
                               c1, m[0] * m[8] - m[2] * m[6], m[2] * m[3] - m[0] * m[5],
                               c2, m[1] * m[6] - m[0] * m[7], m[0] * m[4] - m[1] * m[3]};
     for (int i = 0; i < 9; ++i) inverse[i] = adjugate[i] * r;
+    return true;
 }
 
-// Where inertia has to do, arms that do not give way give way by 3e-11 of what others do: the digits are shared between
-// that and the inverse.
-HOL_NOINLINE Wide rho_of_inertia(const Joint &x, int a) {
-    return x.rigid[a] ? wide(0x1p35) / dot(x.D[a], x.B[a]) : x.rho[a];
+HOL_NOINLINE bool take_rigid(Joint &x, Rigid &rigid) {
+    rigid.n = 0;
+    if (x.n_rigid > 3) return false;
+    for (int o = 0; o < x.n_others; ++o)
+        if (x.rigid[x.others[o]]) rigid.arm[rigid.n++] = x.others[o];
+    Wide m[9] = {};
+    m[0] = m[4] = m[8] = wide(1);
+    for (int p = 0; p < rigid.n; ++p)
+        for (int q = 0; q < rigid.n; ++q) m[3 * p + q] = dot(x.D[rigid.arm[p]], x.B[rigid.arm[q]]);
+    return invert(m, rigid.gram);
+}
+
+// The multipliers of the rigid arms that take a vector of the side of D, or of B, off their directions.
+HOL_INLINE Wide share(const Joint &x, const Rigid &rigid, const Wide3 &v, bool of_D, int p) {
+    Wide sum = wide(0);
+    for (int q = 0; q < rigid.n; ++q)
+        sum += of_D ? dot(v, x.B[rigid.arm[q]]) * rigid.gram[3 * q + p]
+                    : rigid.gram[3 * p + q] * dot(x.D[rigid.arm[q]], v);
+    return sum;
+}
+
+HOL_NOINLINE Wide3 project(const Joint &x, const Rigid &rigid, const Wide3 &v, bool of_D) {
+    Wide3 left = v;
+    for (int p = 0; p < rigid.n; ++p) left = left - share(x, rigid, v, of_D, p) * (of_D ? x.D : x.B)[rigid.arm[p]];
+    return left;
 }
 
 HOL_NOINLINE bool eliminate_by_inertia(Joint &x) {
+    if (!take_rigid(x, x.rigid_arms)) return false;
     Wide m[9] = {};
     m[0] = m[4] = m[8] = wide(1);
     for (int o = 0; o < x.n_others; ++o) {
         const int a = x.others[o];
-        const Wide3 D = rho_of_inertia(x, a) * x.D[a], &B = x.B[a];
+        if (x.rigid[a]) continue;
+        const Wide3 D = x.rho[a] * project(x, x.rigid_arms, x.D[a], true), B = project(x, x.rigid_arms, x.B[a], false);
         const Wide d[3] = {D.x, D.y, D.z}, b[3] = {B.x, B.y, B.z};
-        for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j) m[3 * i + j] += b[i] * d[j];
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c) m[3 * r + c] += b[r] * d[c];
     }
-    invert(m, x.inverse);
-    return x.n_rigid <= 3;
+    return invert(m, x.inverse);
 }
 
 // Sets the arms that are eliminated: those in others[0 .. n_others). False if their S is singular.
@@ -99,7 +132,7 @@ HOL_NOINLINE bool eliminate_arms(Joint &x) {
     for (int o = 0; o < x.n_others; ++o) {
         const int a = x.others[o];
         x.n_rigid += x.rigid[a];
-        inertia += abs((x.rho[a] * dot(x.D[a], x.B[a])).hi);
+        if (!x.rigid[a]) inertia += abs((x.rho[a] * dot(x.D[a], x.B[a])).hi);
     }
     x.by_inertia = x.n > most_arms || (x.n > few_arms && x.n_rigid == 0 && inertia < mild);
     if (x.w == 0) return true;
@@ -147,11 +180,24 @@ HOL_NOINLINE Wide gram_sum(const Joint &j, int x, int y, int skip, bool swapped)
     return sum;
 }
 
-HOL_NOINLINE Wide through_inverse(const Joint &x, const Wide3 &D, const Wide3 &B) {
+HOL_NOINLINE Wide through_inverse(const Joint &x, const Wide3 &of_D, const Wide3 &of_B) {
     const Wide *const m = x.inverse;
+    const Wide3 D = project(x, x.rigid_arms, of_D, true), B = project(x, x.rigid_arms, of_B, false);
     const Wide3 v = {m[0] * B.x + m[1] * B.y + m[2] * B.z, m[3] * B.x + m[4] * B.y + m[5] * B.z,
                      m[6] * B.x + m[7] * B.y + m[8] * B.z};
     return dot(D, v);
+}
+
+// Those of the arms that give way first; what they leave of the vector is shared by the others.
+HOL_NOINLINE void multipliers_by_inertia(const Joint &x, int e, Wide *l) {
+    Wide3 left = x.D[e];
+    for (int o = 0; o < x.n_others; ++o) {
+        const int a = x.others[o];
+        if (x.rigid[a]) continue;
+        l[a] = x.rho[a] * through_inverse(x, x.D[e], x.B[a]);
+        left = left - l[a] * x.D[a];
+    }
+    for (int p = 0; p < x.rigid_arms.n; ++p) l[x.rigid_arms.arm[p]] = share(x, x.rigid_arms, left, true, p);
 }
 
 // d_e . W d_f, the inverse mass between two arms e and f that are not eliminated.
@@ -163,11 +209,10 @@ HOL_NOINLINE Wide offered(const Joint &x, int e, int f) {
 
 // Row e of S over the arms eliminated, times the inverse: y_e -= sum l_a y_a.
 HOL_NOINLINE void multipliers(const Joint &x, int e, Wide *l) {
+    if (x.w != 0 && x.by_inertia) return multipliers_by_inertia(x, e, l);
     for (int o = 0; o < x.n_others; ++o) {
         const int a = x.others[o];
-        l[a] = x.w == 0       ? wide(0)
-               : x.by_inertia ? rho_of_inertia(x, a) * through_inverse(x, x.D[e], x.B[a])
-                              : x.rho[a] * (gram_sum(x, e, a, a, false) / x.det);
+        l[a] = x.w == 0 ? wide(0) : x.rho[a] * (gram_sum(x, e, a, a, false) / x.det);
     }
 }
 
