@@ -35,7 +35,7 @@ Box make_box(const double *h) {
         for (int i = 0; i < 3; ++i)
             if (!std::isfinite(next.inverse[3 * i + i]))
                 throw make_error(Status::value, "box vector %d is too short", i + 1);
-        for (int i = 0; i < 10; ++i) {
+        for (int i = 0; i < most_lanes + 2; ++i) {
             next.minus_side[i] = -next.h[4 * (i % 3)];
             next.per_side[i] = next.inverse[4 * (i % 3)];
         }

@@ -58,12 +58,15 @@ struct MoleculeUnit {
 // Chains of more bonds are cut into segments.
 constexpr int64_t longest_lane = 256;
 
+// More lanes than this no set has: vectors are read so far from tables, and need no larger alignment.
+constexpr int most_lanes = 16;
+
 struct Box {
     enum Shape { none, orthorhombic, triclinic } shape;
     double h[9];        // row i is box vector i
     double inverse[9];  // fractional coordinate i of d is sum_c d_c inverse[3 c + i]
     // orthorhombic: minus the sides and their inverses for components x y z x y z ..
-    double minus_side[10], per_side[10];
+    double minus_side[most_lanes + 2], per_side[most_lanes + 2];
 };
 
 // What a unit adds to the result of a call.

@@ -6,6 +6,8 @@
 #include <pthread.h>
 #endif
 
+#include "core/kernels/call.hpp"
+
 namespace holonomic {
 
 namespace {
@@ -70,8 +72,9 @@ void *thread_memory(Keep what, std::int64_t bytes) noexcept {
     }
     std::free(block.data);
     block = Block{nullptr, 0};
-    const std::size_t rounded = (static_cast<std::size_t>(bytes) + 63) / 64 * 64;
-    block.data = std::aligned_alloc(64, rounded);
+    constexpr std::size_t alignment = sizeof(double) * most_lanes;
+    const std::size_t rounded = (static_cast<std::size_t>(bytes) + alignment - 1) / alignment * alignment;
+    block.data = std::aligned_alloc(alignment, rounded);
     if (block.data) block.bytes = static_cast<std::int64_t>(rounded);
     return block.data;
 }

@@ -25,12 +25,20 @@
 #define HOL_HAS_FMA 0
 #endif
 
+// What is small is a part of its caller. Not in sets for tests alone, whose lanes no register holds: inlined, they would take
+// minutes to compile.
+#ifdef HOL_TESTS_ONLY
+#define HOL_INLINE static inline
+#else
 #define HOL_INLINE static inline __attribute__((always_inline))
+#endif
 // For what would only get in the way of the common case, were it inlined.
 #define HOL_NOINLINE static __attribute__((noinline, unused))
 
 // Before a loop of few turns over vectors: left rolled, it would keep them in memory.
-#if defined(__clang__)
+#ifdef HOL_TESTS_ONLY
+#define HOL_UNROLL
+#elif defined(__clang__)
 #define HOL_UNROLL _Pragma("clang loop unroll(full)")
 #else
 #define HOL_UNROLL _Pragma("GCC unroll 16")

@@ -17,7 +17,8 @@ struct Arena {
     }
     double *doubles(long n) {
         double *p = next;
-        next += (n + 7) / 8 * 8;
+        constexpr long least = W > 8 ? W : 8;  // vectors that follow are aligned
+        next += (n + least - 1) / least * least;
         return p;
     }
 };

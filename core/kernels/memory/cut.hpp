@@ -8,23 +8,29 @@
 namespace holonomic {
 namespace HOL_ISA {
 
-// How a chain is cut: blocks of W segments of the same number of bonds, a multiple of 4; the chain's last segment may be
-// shorter. Depends on the chain's length alone, so that results depend on neither threads nor other chains.
+// How a chain is cut: blocks of W segments of the same number of bonds, a multiple of `step`; the chain's last segment may
+// be shorter. Depends on the chain's length alone, so that results depend on neither threads nor other chains.
 struct Cut {
-    int64_t n_bonds, blocks, base, extra;  // the first `extra` blocks have 4 W bonds more than the others, 4 W base
+    static constexpr int64_t step = W <= 8 ? 4 : 1;
+    int64_t n_bonds, blocks, base, extra;  // the first `extra` blocks have step W bonds more than the others, step W base
     // bonds_per_block: of all lanes; so that what is kept of a block stays in cache.
     explicit Cut(int64_t n, int64_t bonds_per_block = 1024) : n_bonds(n) {
-        const int64_t fours = (n + 4 * W - 1) / (4 * W);
+        const int64_t steps = (n + step * W - 1) / (step * W);
         blocks = (n + bonds_per_block - 1) / bonds_per_block;
-        base = fours / blocks;
-        extra = fours % blocks;
+        base = steps / blocks;
+        extra = steps % blocks;
     }
-    int64_t rows(int64_t block) const { return 4 * (base + (block < extra ? 1 : 0)); }  // bonds of each lane
-    int64_t first_row(int64_t block) const { return 4 * (block * base + (block < extra ? block : extra)); }
+    int64_t rows(int64_t block) const { return step * (base + (block < extra ? 1 : 0)); }  // bonds of each lane
+    int64_t first_row(int64_t block) const { return step * (block * base + (block < extra ? block : extra)); }
     int64_t first(int64_t s) const { return first_row(s / W) * W + s % W * rows(s / W); }
     int64_t length(int64_t s) const { return s == blocks * W - 1 ? n_bonds - first(s) : rows(s / W); }
     int64_t longest() const { return rows(0); }
 };
+
+// The last segment of the shortest chain that is cut is the shortest of all. The elimination starts from its separator and
+// the bond behind that.
+constexpr int64_t steps_of_shortest = (longest_lane + Cut::step * W) / (Cut::step * W);
+static_assert(longest_lane + 1 - (W - 1) * Cut::step * steps_of_shortest >= 2, "a segment of fewer than two bonds");
 
 // The lanes of block j as chains of their own: len counts the bonds of the segment and the separator that follows.
 struct SegmentBlock {

@@ -13,6 +13,8 @@ namespace HOL_ISA {
 // Interleaved vectors per bond that the greediest kernel takes, staging included.
 constexpr int64_t vectors_per_bond = 40;
 
+static_assert(W <= most_lanes, "Box and the alignment of a thread's memory are made for fewer lanes");
+
 static int64_t scratch_bytes(int64_t n_bonds) {
     return static_cast<int64_t>(sizeof(vec)) * vectors_per_bond * (n_bonds + 2 * W + 8);
 }
