@@ -26,7 +26,7 @@ struct ForcesWork final : Work {
                   c.g = apart.summed_atoms(call.g, call.add);
               }) {}
     void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
-        k.forces(calls[where], unit, scratch, tally);
+        kernels(unit).forces(calls[where], unit, scratch, tally);
     }
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
         k.molecules.forces(calls[where], unit, scratch, tally);

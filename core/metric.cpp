@@ -21,7 +21,7 @@ struct MetricWork final : Work {
                   c.force = apart.summed_atoms(call.force, call.add);
               }) {}
     void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
-        k.metric(calls[where], unit, scratch, tally);
+        kernels(unit).metric(calls[where], unit, scratch, tally);
     }
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
         k.molecules.metric(calls[where], unit, scratch, tally);

@@ -265,7 +265,7 @@ struct PositionsWork final : Work {
                   c.v = apart.moved_atoms(call.v);
               }) {}
     void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
-        k.positions(calls[where], unit, scratch, tally);
+        kernels(unit).positions(calls[where], unit, scratch, tally);
     }
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
         k.molecules.positions(calls[where], unit, scratch, tally);

@@ -21,7 +21,7 @@ struct VelocitiesWork final : Work {
                   c.v = apart.moved_atoms(call.v);
               }) {}
     void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
-        k.velocities(calls[where], unit, scratch, tally);
+        kernels(unit).velocities(calls[where], unit, scratch, tally);
     }
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
         k.molecules.velocities(calls[where], unit, scratch, tally);

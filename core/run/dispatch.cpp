@@ -1,39 +1,113 @@
+// Which kernels run. All but the baseline's fuse multiplication and addition, and give the same bits for a chain that
+// fits into a lane (tests/lanes/same_bits.sh), so that a call may choose by what it has to do. Four lanes with the 32
+// registers of AVX-512 (`avx512vl`) run wherever they can: nothing that has been measured is faster, but for
+// eight lanes (`avx512`) in cache on the family that is named below.
+//
+// ns per bond: lambda and G from r, v, f / velocities / positions; equal masses, packed arrays, one thread.
+//
+//                                AMD family 25 (Zen 4)                                  AMD family 26 (Zen 5)
+//     chains x bonds             avx2                avx512vl            avx512         avx2             avx512
+//          1 x 12             31.0 31.0 39.9      29.9 26.8 39.5      57.4 58.2 60.2
+//          1 x 200            15.7 15.6 24.3      15.4 14.4 24.8      23.9 31.1 43.6    40 to 60 % slower with avx512
+//        256 x 32  (L2)        4.1  4.3  6.4       3.6  4.0  6.2       3.7  4.3  7.5     3.4  -  5.1      2.8  -  3.3
+//       1000 x 100 (L3)        4.1  4.2  6.6       3.4  3.9  6.1       4.3  4.6  7.8
+//     10,000 x 100 (memory)    7.5  6.4 10.0       7.5  6.4 10.7      11.3  7.5 11.8     7.2 4.6  -      11.3 8.3  -
+//    100,000 x 3   (memory)    4.8  4.9  9.1       5.6  4.5  9.2       6.0  4.8  8.7
+//          1 x 100,000         4.4  8.0 10.3       4.1  7.0 10.0       5.9 11.7 10.6
+//          1 x 1,000,000      12.9 22.9 19.5      12.8  (a) 19.6      22.9 37.0 24.6    14.3  -  -      16.8  -  -
+//
+// (a) not told apart from avx2. From memory all wait for it: eight lanes ask for twice as many lines at a time, more
+// than the processor has buffers for.
 #include "core/run/dispatch.hpp"
 
 #include <cstdlib>
 #include <cstring>
 
+#if defined(__x86_64__) || defined(__i386__)
+#include <cpuid.h>
+#endif
+
 #include "kernel_sets.hpp"
 
 namespace holonomic {
 
-#define HOLONOMIC_DECLARE(isa, runs_here, tests_only) \
-    namespace isa {                                   \
-    extern const Kernels kernels;                     \
+#define HOLONOMIC_DECLARE(isa, runs_here) \
+    namespace isa {                       \
+    extern const Kernels kernels;         \
     }
 HOLONOMIC_KERNEL_SETS(HOLONOMIC_DECLARE)
+HOLONOMIC_TEST_SETS(HOLONOMIC_DECLARE)
 #undef HOLONOMIC_DECLARE
 
 namespace {
 
-const Kernels &choose() {
-    const char *const wanted = std::getenv("HOLONOMIC_ISA");
-    const Kernels *best = nullptr;
-#define HOLONOMIC_CONSIDER(isa, runs_here, tests_only)                                  \
-    if (runs_here) {                                                                    \
-        if (wanted && std::strcmp(wanted, isa::kernels.name) == 0) return isa::kernels; \
-        if (!best && !(tests_only)) best = &isa::kernels;                               \
-    }
-    HOLONOMIC_KERNEL_SETS(HOLONOMIC_CONSIDER)
+// 0: not one of AMD's.
+unsigned amd_family() {
+#if defined(__x86_64__) || defined(__i386__)
+    unsigned a = 0, b = 0, c = 0, d = 0;
+    if (!__get_cpuid(0, &a, &b, &c, &d) || b != signature_AMD_ebx || c != signature_AMD_ecx || d != signature_AMD_edx)
+        return 0;
+    if (!__get_cpuid(1, &a, &b, &c, &d)) return 0;
+    const unsigned family = a >> 8 & 15;
+    return family < 15 ? family : family + (a >> 20 & 255);
+#else
+    return 0;
+#endif
+}
+
+struct Sets {
+    const Kernels *best = nullptr, *eight_lanes = nullptr;  // eight_lanes: may be chosen by the unit
+    unsigned family = 0;
+
+    Sets() {
+        const char *const wanted = std::getenv("HOLONOMIC_ISA");
+        const Kernels *forced = nullptr;
+        __builtin_cpu_init();
+#define HOLONOMIC_CONSIDER(isa, runs_here) \
+    if (runs_here) consider(isa::kernels, wanted, forced, true);
+        HOLONOMIC_KERNEL_SETS(HOLONOMIC_CONSIDER)
 #undef HOLONOMIC_CONSIDER
-    return *best;
+#define HOLONOMIC_CONSIDER(isa, runs_here) \
+    if (runs_here) consider(isa::kernels, wanted, forced, false);
+        HOLONOMIC_TEST_SETS(HOLONOMIC_CONSIDER)
+#undef HOLONOMIC_CONSIDER
+        if (forced) {
+            best = forced;
+            eight_lanes = nullptr;
+        }
+        family = amd_family();
+    }
+
+    void consider(const Kernels &set, const char *wanted, const Kernels *&forced, bool installed) {
+        if (wanted && std::strcmp(wanted, set.name) == 0) forced = &set;
+        if (installed && !best) best = &set;
+        if (installed && std::strcmp(set.name, "avx512") == 0) eight_lanes = &set;
+    }
+};
+
+const Sets &sets() {
+    static const Sets found;
+    return found;
 }
 
 }  // namespace
 
-const Kernels &kernels() {
-    static const Kernels &chosen = choose();
-    return chosen;
+bool eight_lanes_pay(unsigned amd_family, const Unit &unit) {
+    return amd_family == 26 && !unit.large && unit.count >= 8;
+}
+
+const Kernels &kernels() { return *sets().best; }
+
+const Kernels &kernels(const Unit &unit) {
+    const Sets &s = sets();
+    return s.eight_lanes && eight_lanes_pay(s.family, unit) ? *s.eight_lanes : *s.best;
+}
+
+int64_t scratch_bytes(int64_t n_bonds) {
+    const Sets &s = sets();
+    const int64_t own = s.best->scratch_bytes(n_bonds),
+                  other = s.eight_lanes ? s.eight_lanes->scratch_bytes(n_bonds) : 0;
+    return own > other ? own : other;
 }
 
 }  // namespace holonomic

@@ -1,4 +1,4 @@
-// Which instruction set the calculations use.
+// Which kernels the calculations use.
 #ifndef HOLONOMIC_DISPATCH_HPP
 #define HOLONOMIC_DISPATCH_HPP
 
@@ -6,8 +6,19 @@
 
 namespace holonomic {
 
-// The best kernels that this machine can run, or those that HOLONOMIC_ISA names. Thread-safe.
+// The kernels of long chains and of molecules that are no chains, whatever the call: how these are cut, and so their
+// digits, depends on the number of lanes. HOLONOMIC_ISA forces a set. Thread-safe.
 const Kernels &kernels();
+
+// The kernels of chains that fit into lanes: those, or a set that gives the same bits and is faster for such a unit.
+const Kernels &kernels(const Unit &unit);
+
+// Scratch that either needs for chains of up to n_bonds bonds.
+int64_t scratch_bytes(int64_t n_bonds);
+
+// Whether eight lanes (AVX-512) are faster than four for a unit, on AMD's processors of this family (0: any other): the
+// rule and what it was made from are in dispatch.cpp.
+bool eight_lanes_pay(unsigned amd_family, const Unit &unit);
 
 }  // namespace holonomic
 #endif

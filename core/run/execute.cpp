@@ -136,7 +136,7 @@ Tally execute(const Chains &chains, const Work &work) { return execute(chains, c
 
 Tally execute(const Chains &chains, const Plan &plan, const Work &work) {
     const std::int64_t n_pieces = static_cast<std::int64_t>(plan.pieces.size());
-    std::int64_t scratch_bytes = kernels().scratch_bytes(plan.longest > longest_lane ? 2 * longest_lane : plan.longest);
+    std::int64_t scratch_bytes = holonomic::scratch_bytes(plan.longest > longest_lane ? 2 * longest_lane : plan.longest);
     for (const std::int32_t shape : plan.shapes)
         scratch_bytes = std::max(scratch_bytes,
                                  kernels().molecules.scratch_bytes(*plan.schedules[static_cast<std::size_t>(shape)]));

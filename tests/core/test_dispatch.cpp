@@ -1,0 +1,45 @@
+// Which kernels run: the rule, and that whatever it chooses is there.
+#include <cstdio>
+#include <cstring>
+
+#include "core/run/dispatch.hpp"
+
+using namespace holonomic;
+
+namespace
+{
+
+int n_failed = 0;
+
+void expect(bool holds, const char *what)
+{
+    if (holds) return;
+    std::printf("not so: %s\n", what);
+    ++n_failed;
+}
+
+Unit unit_of(std::int64_t count, bool large)
+{
+    static const Lane lane = {};
+    return Unit{&lane, count, true, large};
+}
+
+}  // namespace
+
+int main()
+{
+    const std::int64_t counts[] = {1, 7, 8, 1000};
+    for (const std::int64_t count : counts)
+        for (const bool large : {false, true}) {
+            const Unit unit = unit_of(count, large);
+            expect(!eight_lanes_pay(25, unit), "eight lanes never run on Zen 4, where they are slower");
+            expect(!eight_lanes_pay(0, unit), "eight lanes don't run where they have not been measured");
+            expect(eight_lanes_pay(26, unit) == (count >= 8 && !large), "on Zen 5 eight lanes run full and in cache");
+            const Kernels &chosen = kernels(unit);
+            expect(chosen.lanes == kernels().lanes || chosen.lanes == 8,
+                   "a unit runs with the common lanes or with eight");
+            expect(chosen.scratch_bytes(256) <= scratch_bytes(256), "there is scratch for the set that runs");
+        }
+    std::printf("runs here: %s\n", kernels().name);
+    return n_failed > 0;
+}
