@@ -1,6 +1,7 @@
 // Which kernels run: the rule, and that whatever it chooses is there.
+#include <cstdint>
 #include <cstdio>
-#include <cstring>
+#include <initializer_list>
 
 #include "core/run/dispatch.hpp"
 
