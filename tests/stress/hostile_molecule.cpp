@@ -29,7 +29,7 @@ void set_mass(hostile_molecule &m, std::size_t i, double mass)
 }
 
 /** Graphs keep the masses of their shape unless they are to be apart. */
-void draw_masses(hostile_molecule &m, molecule_dice &d)
+void draw_movable_masses(hostile_molecule &m, molecule_dice &d)
 {
     const double half = m.shape == GRAPHS ? 3 : 12, odd = d.decades(-half, half);
     const std::int64_t style = m.features & MASSES_APART ? d.whole(0, 2) : 3, special = d.whole(0, m.n_atoms() - 1);
@@ -41,14 +41,16 @@ void draw_masses(hostile_molecule &m, molecule_dice &d)
         if (style == 2 && i == at(special)) mass *= odd;
         set_mass(m, i, mass);
     }
+}
+
+void draw_masses(hostile_molecule &m, molecule_dice &d)
+{
+    draw_movable_masses(m, d);
     if (!(m.features & HELD_FIXED)) return;
+    const std::size_t special = at(d.whole(0, m.n_atoms() - 1));
     const double share = d.decades(-1.5, -0.3);
     for (std::size_t i = 0; i < m.w.size(); ++i)
-        if (d.chance(share)) m.w[i] = m.mass[i] = 0;
-    // a bond between two fixed atoms is no constraint: one at least must be there
-    bool movable = false;
-    for (double w : m.w) movable = movable || w > 0;
-    if (!movable) set_mass(m, at(special), 1);
+        if (i != special && d.chance(share)) m.w[i] = m.mass[i] = 0;
 }
 
 void draw_motion(hostile_molecule &m, molecule_dice &d)
@@ -182,6 +184,25 @@ hostile_molecule make_hostile_molecule(std::uint64_t seed)
     while (!set_lengths(m));  // the coordinates' rounding may swallow a bond
     renumber(m, d);
     draw_masses(m, d);
+    draw_motion(m, d);
+    if (m.features & CONSISTENT) project(m);
+    set_time_step(m, d.decades(-9, -1.5));
+    return m;
+}
+
+hostile_molecule make_sibling(const hostile_molecule &of, std::uint64_t seed)
+{
+    hostile_molecule m = of;
+    m.seed = seed;
+    molecule_dice d{random_seed(seed * UINT64_C(0x9e3779b97f4a7c15) + 13)};
+    for (std::size_t i = 0; i < m.w.size(); ++i) {
+        for (std::size_t x = 0; x < 3; ++x) m.r[3 * i + x] = of.r[3 * i + (x + 1) % 3];
+        if (of.w[i] == 0) m.w[i] = 1;  // for now
+    }
+    draw_movable_masses(m, d);
+    for (std::size_t i = 0; i < m.w.size(); ++i)
+        if (of.w[i] == 0) m.w[i] = m.mass[i] = 0;
+    set_lengths(m);
     draw_motion(m, d);
     if (m.features & CONSISTENT) project(m);
     set_time_step(m, d.decades(-9, -1.5));

@@ -57,6 +57,9 @@ struct hostile_molecule {
 /** The molecule with this number; the same on every machine. Every fourth number is of each class. */
 hostile_molecule make_hostile_molecule(std::uint64_t seed);
 
+/** A molecule of the same shape, with the same atoms held fixed, of other masses, in another direction and motion. */
+hostile_molecule make_sibling(const hostile_molecule &of, std::uint64_t seed);
+
 /** Sets lengths from positions. False if a bond has length zero. */
 bool set_lengths(hostile_molecule &m);
 

@@ -81,13 +81,18 @@ void keep(run &all, const hostile_molecule &m, const molecule_verdict &v, bool r
     if (index) std::fclose(index);
 }
 
-/** The molecules of the group that begins with `first`, all checks. */
+/** The molecules of the group that begins with `first`; in half of the groups all are of one shape, to share a block.
+ */
 std::vector<hostile_molecule> group_of(std::uint64_t first)
 {
     random_stream stream = random_seed(first);
     std::vector<hostile_molecule> molecules;
     const std::uint64_t size = static_cast<std::uint64_t>(random_integer(&stream, 1, group_size));
-    for (std::uint64_t k = 0; k < size; ++k) molecules.push_back(make_hostile_molecule(first + k));
+    const bool siblings = random_uniform(&stream) < 0.5;
+    const hostile_molecule one =
+        make_hostile_molecule(first + static_cast<std::uint64_t>(random_integer(&stream, 0, N_CLASSES - 1)));
+    for (std::uint64_t k = 0; k < size; ++k)
+        molecules.push_back(siblings ? make_sibling(one, first + k) : make_hostile_molecule(first + k));
     return molecules;
 }
 
@@ -119,10 +124,11 @@ int check_seed(std::uint64_t seed)
     const std::vector<hostile_molecule> molecules = group_of(first);
     std::vector<molecule_verdict> verdicts(molecules.size());
     check_invariances(molecules, first + 1, verdicts);
-    const hostile_molecule m = make_hostile_molecule(seed);
+    const bool in_group = seed - first < molecules.size();
+    const hostile_molecule m = in_group ? molecules[seed - first] : make_hostile_molecule(seed);
     molecule_facts facts;
     molecule_verdict v = check_alone(m, facts);
-    if (seed - first < molecules.size()) v.add(verdicts[seed - first]);
+    if (in_group) v.add(verdicts[seed - first]);
     std::printf("%llu: %s; %lld atoms, %lld bonds, condition number %.2Le, least pivot %.2Le\n",
                 static_cast<unsigned long long>(seed), m.words().c_str(), static_cast<long long>(m.n_atoms()),
                 static_cast<long long>(m.n_bonds()), facts.condition, facts.least_pivot);
