@@ -67,7 +67,11 @@ check 0 'lambda .* 0 of .* ok' "$work/zero"
 sed -i '/^bonds_out/,/^atoms_out/{s/^3 0.0 0.0/3 1.0e-300 0.0/}' "$work/zero/zero_n008.txt"
 check 1 'lambda .*OUT OF BOUND' "$work/zero"
 
-# The format of molecules of any shape (tests/oracle/molecules/README.md): a linear chain in it, alone and among the others.
+# The format of molecules of any shape (tests/oracle/molecules/README.md).
+check 0 '^oracle: 21 cases, worst ratio 0\.' "$top/tests/oracle/molecules"
+[ "$(grep -c '^refused.*refused' "$work/out")" -eq 4 ] || complain 'the four degenerate molecules are not refused'
+
+# A linear chain in it, alone and among the others.
 mkdir "$work/molecule"
 "$make_molecule" "$work/molecule" 0 9 1 || complain "make_molecule 0 9 1"
 molecule=chain_n009_1

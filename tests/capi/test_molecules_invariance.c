@@ -1,0 +1,217 @@
+/** Results of molecules do not depend on how they are told, to the last bit. */
+#include "check.h"
+#include "layout.h"
+#include "mixture.h"
+#include "molecule_solution.h"
+
+enum { ARRAYS = 9 };
+
+/** All results, per part and in its own order: numbers of all parts one after the other. */
+typedef struct everything {
+    double *part[ARRAYS];
+    size_t size[ARRAYS];
+} everything;
+
+static void gather(const mixture *m, everything *e, int at, const double *values, int per_atom)
+{
+    e->size[at] = (size_t)(per_atom ? 3 * m->first_atom[m->n_parts] : m->n_bonds);
+    e->part[at] = untouched(e->size[at]);
+    for (int64_t p = 0; p < m->n_parts; ++p)
+        if (per_atom)
+            mixture_take(m, p, values, e->part[at] + 3 * m->first_atom[p]);
+        else
+            mixture_take_bonds(m, p, values, e->part[at] + m->first_bond[p]);
+}
+
+static everything compute(const mixture *m)
+{
+    everything e;
+    const size_t n = (size_t)m->n_bonds, size = mixture_size(m);
+    const double dt = 1e-4;
+    double *lambda = untouched(n), *g = untouched(size), *mu = untouched(n), *v = copy_of(m->v, size);
+    double *tau = untouched(n), *r = mixture_drifted(m, dt), *force = untouched(size), *solved = untouched(n);
+    double *moved = copy_of(m->v, size);
+    CHECK(hol_forces(m->chains, m->r, m->v, m->f, lambda, NULL, g, HOL_WRITE, NULL));
+    CHECK(hol_solve(m->chains, m->r, m->length, solved, NULL, HOL_WRITE, NULL));
+    CHECK(hol_project_velocities(m->chains, m->r, v, mu, NULL));
+    CHECK(hol_project_positions(m->chains, m->r, r, moved, dt, tau, 0, NULL, NULL));
+    CHECK(hol_metric(m->chains, m->r, 1, NULL, NULL, NULL, force, HOL_WRITE));
+    const double *const all[ARRAYS] = {lambda, mu, tau, solved, g, v, r, force, moved};
+    for (int k = 0; k < ARRAYS; ++k) gather(m, &e, k, all[k], k >= 4);
+    free(lambda), free(g), free(mu), free(v), free(tau), free(r), free(force), free(solved), free(moved);
+    return e;
+}
+
+static void release(everything *e)
+{
+    for (int k = 0; k < ARRAYS; ++k) free(e->part[k]);
+}
+
+static void assert_same(const everything *a, const everything *b)
+{
+    for (int k = 0; k < ARRAYS; ++k) assert_same_bits(a->part[k], b->part[k], a->size[k]);
+}
+
+/** All kinds whose steps converge from velocities at random. */
+static int64_t make_parts(molecule *parts)
+{
+    int64_t n = 0;
+    for (int kind = 0; kind < MOLECULE_GOOD_KINDS; ++kind) {
+        if (kind == MOLECULE_LIGHT_JOINTS || kind == MOLECULE_LARIAT || kind == MOLECULE_TAUT) continue;
+        if (kind == MOLECULE_COLLAPSED_RING || kind == MOLECULE_BENT || kind == MOLECULE_TRIANGLES_179) continue;
+        if (kind == MOLECULE_COPLANAR_STAR || kind == MOLECULE_NEARLY_STRAIGHT_COMB) continue;
+        for (int copy = 0; copy < 3; ++copy)
+            parts[n++] = molecule_make((molecule_kind)kind, kind == MOLECULE_DENDRIMER ? 1 : 4 + copy, (uint64_t)copy);
+    }
+    return n;
+}
+
+static void order_and_direction_of_bonds_and_placement_change_no_bit(void **state)
+{
+    (void)state;
+    molecule parts[3 * MOLECULE_GOOD_KINDS];
+    const int64_t n = make_parts(parts);
+    mixture plain = mixture_make(parts, n, ONE_AFTER_THE_OTHER, 0);
+    everything expected = compute(&plain);
+    for (uint64_t seed = 1; seed <= 4; ++seed) {
+        mixture m = mixture_make(parts, n, MIXED, seed);
+        everything got = compute(&m);
+        assert_same(&got, &expected);
+        release(&got);
+        mixture_free(&m);
+    }
+    for (int64_t p = 0; p < n; ++p) { /* each alone */
+        mixture m = mixture_make(parts + p, 1, ONE_AFTER_THE_OTHER, 0);
+        everything got = compute(&m);
+        for (int k = 0; k < ARRAYS; ++k) {
+            const int64_t first = k >= 4 ? 3 * plain.first_atom[p] : plain.first_bond[p];
+            assert_same_bits(got.part[k], expected.part[k] + first, got.size[k]);
+        }
+        release(&got);
+        mixture_free(&m);
+    }
+    release(&expected);
+    mixture_free(&plain);
+    for (int64_t p = 0; p < n; ++p) molecule_free(parts + p);
+}
+
+static void number_of_threads_changes_no_bit(void **state)
+{
+    (void)state;
+    static const molecule_kind kinds[] = {MOLECULE_WATER, MOLECULE_XH3, MOLECULE_PEPTIDE, MOLECULE_RING};
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k) {
+        mixture m =
+            mixture_of_kind(kinds[k], quick_run() ? 40 : 400, 3, kinds[k] == MOLECULE_PEPTIDE ? 3 : 6, MIXED, k);
+        everything one = compute(&m);
+        double virial[3][9];
+        CHECK(hol_forces(m.chains, m.r, m.v, m.f, NULL, NULL, NULL, HOL_WRITE, virial[0]));
+        for (int threads = 2; threads <= 5; threads += 3) {
+            CHECK(hol_chains_set_threads(m.chains, threads));
+            everything several = compute(&m);
+            assert_same(&several, &one);
+            CHECK(hol_forces(m.chains, m.r, m.v, m.f, NULL, NULL, NULL, HOL_WRITE, virial[1]));
+            assert_same_bits(virial[0], virial[1], 9);
+            release(&several);
+        }
+        release(&one);
+        mixture_free(&m);
+    }
+}
+
+static void one_call_for_copies_gives_the_bits_of_the_list(void **state)
+{
+    (void)state;
+    enum { N = 37 };
+    mixture m = mixture_of_kind(MOLECULE_NEOPENTANE, N, 17, 17, ONE_AFTER_THE_OTHER, 3);
+    everything list = compute(&m);
+    for (int64_t k = 0; k < m.n_bonds; ++k) m.length[k] = m.length[k % 16]; /* all copies have those of the first */
+    CHECK(hol_chains_set_lengths(m.chains, m.length));
+    everything same_lengths = compute(&m);
+    hol_chains_destroy(m.chains);
+    CHECK(hol_chains_create(m.n_atoms, m.mass, &m.chains));
+    CHECK(hol_chains_add_molecules(m.chains, N, 17, 0, 16, m.pairs, m.length));
+    assert_int_equal(hol_chains_n_bonds(m.chains), m.n_bonds);
+    everything copies = compute(&m);
+    assert_same(&copies, &same_lengths);
+    assert_same_bits(copies.part[0], list.part[0], list.size[0]); /* forces know no lengths */
+    release(&list), release(&copies), release(&same_lengths);
+    mixture_free(&m);
+}
+
+static void layouts_of_doubles_change_no_bit(void **state)
+{
+    (void)state;
+    mixture m = mixture_of_all(1, MIXED, 5);
+    const size_t size = mixture_size(&m);
+    double *lambda = untouched((size_t)m.n_bonds), *g = untouched(size), *v = copy_of(m.v, size);
+    CHECK(hol_forces(m.chains, m.r, m.v, m.f, lambda, NULL, g, HOL_WRITE, NULL));
+    CHECK(hol_project_velocities(m.chains, m.r, v, NULL, NULL));
+    for (int k = 0; k < n_double_layouts; ++k) {
+        laid_out r = lay_out(layouts + k, m.n_atoms, m.r, 3), u = lay_out(layouts + k, m.n_atoms, m.v, 3);
+        laid_out f = lay_out(layouts + k, m.n_atoms, m.f, 3), out = lay_out(layouts + k, m.n_atoms, m.f, 3);
+        double *got = untouched((size_t)m.n_bonds), *got_g = untouched(size), *got_v = untouched(size);
+        CHECK(hol_forces_view(m.chains, &r.view, &u.view, &f.view, got, NULL, &out.view, HOL_WRITE, NULL));
+        CHECK(hol_project_velocities_view(m.chains, &r.view, &u.view, NULL, NULL));
+        assert_same_bits(got, lambda, (size_t)m.n_bonds);
+        collect(&out, got_g);
+        collect(&u, got_v);
+        for (int64_t p = 0; p < m.n_parts; ++p)
+            for (int64_t a = m.first_atom[p]; a < m.first_atom[p + 1]; ++a) {
+                const size_t i = 3 * (size_t)m.atoms[a];
+                int has_bond = 0;
+                for (int64_t b = 0; b < 2 * m.n_bonds; ++b) has_bond = has_bond || m.pairs[b] == m.atoms[a];
+                if (has_bond && !isnan(g[i])) assert_same_bits(got_g + i, g + i, 3);
+                assert_same_bits(got_v + i, v + i, 3);
+            }
+        assert_true(gaps_untouched(&out) && gaps_untouched(&u));
+        laid_out_free(&r), laid_out_free(&u), laid_out_free(&f), laid_out_free(&out);
+        free(got), free(got_g), free(got_v);
+    }
+    free(lambda), free(g), free(v);
+    mixture_free(&m);
+}
+
+/** Inputs rounded to floats are as exact as any: lambda is that of the rounded numbers. */
+static void floats_and_two_dimensions_give_the_solution_of_the_rounded_numbers(void **state)
+{
+    (void)state;
+    for (int k = 0; k < n_layouts; ++k)
+        for (int dimensions = 2; dimensions <= 3; ++dimensions) {
+            molecule part = molecule_make(MOLECULE_TREE, 12, 6);
+            mixture m = mixture_make(&part, 1, ONE_AFTER_THE_OTHER, 0);
+            laid_out r = lay_out(layouts + k, m.n_atoms, m.r, dimensions);
+            laid_out v = lay_out(layouts + k, m.n_atoms, m.v, dimensions),
+                     f = lay_out(layouts + k, m.n_atoms, m.f, dimensions);
+            double *lambda = untouched((size_t)m.n_bonds);
+            CHECK(hol_forces_view(m.chains, &r.view, &v.view, &f.view, lambda, NULL, NULL, HOL_WRITE, NULL));
+            double *const inputs[3] = {part.r, part.v, part.f};
+            const laid_out *const views[3] = {&r, &v, &f};
+            for (int n = 0; n < 3; ++n) {
+                collect(views[n], inputs[n]);
+                for (int64_t i = 0; dimensions == 2 && i < part.n_atoms; ++i) inputs[n][3 * i + 2] = 0;
+            }
+            const molecule_problem problem = molecule_problem_of(&part);
+            molecule_solution exact;
+            assert_int_equal(molecule_forces(&problem, &exact), 0);
+            for (int64_t b = 0; b < m.n_bonds; ++b)
+                CHECK_AT_MOST(fabsl(lambda[b] - exact.lambda[b]),
+                              oracle_bound(m.n_bonds) * DBL_EPSILON * exact.lambda_scale[b]);
+            molecule_solution_free(&exact);
+            laid_out_free(&r), laid_out_free(&v), laid_out_free(&f);
+            free(lambda);
+            mixture_free(&m);
+            molecule_free(&part);
+        }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(order_and_direction_of_bonds_and_placement_change_no_bit),
+        cmocka_unit_test(number_of_threads_changes_no_bit),
+        cmocka_unit_test(one_call_for_copies_gives_the_bits_of_the_list),
+        cmocka_unit_test(layouts_of_doubles_change_no_bit),
+        cmocka_unit_test(floats_and_two_dimensions_give_the_solution_of_the_rounded_numbers),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
