@@ -99,10 +99,9 @@ HOL_API void hol_error_location(int64_t *chain, int64_t *bond, int64_t *atom, in
 
 /**
  * The instruction set that the calculations use on this machine: "baseline", "avx2", "avx512vl" (four lanes with the
- * registers of AVX-512) or "avx512" (eight lanes). Never NULL. Where it is "avx512vl", chains of up to 256 bonds may run
- * with "avx512" in calls for which that is faster; their results are the same bits.
- * The environment variable HOLONOMIC_ISA, read at the first use in a process, forces one of these names if the
- * machine has it. Since 0.1.
+ * registers of AVX-512) or "avx512" (eight lanes). Never NULL. Where it is "avx512vl", chains of up to 256 bonds may
+ * run with "avx512" in calls for which that is faster; their results are the same bits. The environment variable
+ * HOLONOMIC_ISA, read at the first use in a process, forces one of these names if the machine has it. Since 0.1.
  */
 HOL_API const char *hol_instruction_set(void);
 

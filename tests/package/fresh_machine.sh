@@ -2,12 +2,13 @@
 # Installs the packages that scripts/package made on a machine with nothing on it, and does there what README tells a
 # newcomer to do: its programs in C and Fortran by its own lines, and a CMake project.
 #
-#   fresh_machine.sh PACKAGES SUITE MIRROR WORK
+#   fresh_machine.sh PACKAGES SUITE WORK [MIRROR]
 #       PACKAGES  folder of the .deb files        SUITE   bookworm, noble, ...
-#       MIRROR    where debootstrap gets it       WORK    folder for the machine, a chroot; is removed at the end
+#       WORK      folder for the machine, a chroot; is removed at the end
+#       MIRROR    where debootstrap gets it; if not given, from where this machine gets its own packages
 # Needs root. Exit status 77: no debootstrap, no root, or the distribution can't be had.
 set -eu
-packages=$(cd "$1" && pwd) suite=$2 mirror=$3 work=$4
+packages=$(cd "$1" && pwd) suite=$2 work=$3
 source=$(cd "$(dirname "$0")/../.." && pwd)
 
 leave_out() {
@@ -16,6 +17,8 @@ leave_out() {
 }
 [ "$(id -u)" -eq 0 ] || leave_out "only root can make a machine of its own"
 command -v debootstrap >/dev/null || leave_out "no debootstrap"
+mirror=${4:-$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' | head -n 1)}
+[ -n "$mirror" ] || leave_out "no mirror known"
 
 root=$work/$suite
 rm -rf "$root"

@@ -98,9 +98,10 @@ HOL_API const char *hol_error_message(void);
 HOL_API void hol_error_location(int64_t *chain, int64_t *bond, int64_t *atom, int64_t *n_bad);
 
 /**
- * The instruction set that the calculations use on this machine: "baseline", "avx2" or "avx512". Never NULL.
- * The environment variable HOLONOMIC_ISA, read at the first use in a process, forces one of these names if the
- * machine has it. Since 0.1.
+ * The instruction set that the calculations use on this machine: "baseline", "avx2", "avx512vl" (four lanes with the
+ * registers of AVX-512) or "avx512" (eight lanes). Never NULL. Where it is "avx512vl", chains of up to 256 bonds may
+ * run with "avx512" in calls for which that is faster; their results are the same bits. The environment variable
+ * HOLONOMIC_ISA, read at the first use in a process, forces one of these names if the machine has it. Since 0.1.
  */
 HOL_API const char *hol_instruction_set(void);
 
