@@ -18,6 +18,10 @@ struct RingRow {
     V l_last;  // what the last row gets of this one; l of the bond's row is what the next one gets
 };
 
+// Plain products do while every v keeps this part of the diagonal: it is a sum of 1 - |c|, of which each is right to a
+// rounding of 1. Of random rings of fifty bonds 1 in 140 has a smaller one.
+constexpr double least_deficit = 1.0 / 16;
+
 template <class V>
 static inline void factorize_ring(Molecules<V> &x, RingRow<V> *ring) {
     const int32_t N = x.s.n_bonds;
@@ -37,6 +41,7 @@ static inline void factorize_ring(Molecules<V> &x, RingRow<V> *ring) {
     for (int32_t k = 0; k + 2 < N; ++k) {
         const V n = ring[k + 1].o, old = k + 3 == N ? ring[N - 1].o : V{}, v = row[k].E;
         const V r = one / (v + (abs(n) + abs(z))), fill = -(n * z) * r;
+        x.slack = min(mul_add(Width<V>::all(-least_deficit), x.w[k] + x.w[k + 1], v), x.slack);
         row[k].r = r;
         row[k].l = -(n * r);
         ring[k].l_last = -(z * r);
@@ -46,10 +51,13 @@ static inline void factorize_ring(Molecules<V> &x, RingRow<V> *ring) {
         z = old + fill;
     }
     BondRow<V> &next = row[N - 2], &last = row[N - 1];
+    x.slack = min(mul_add(Width<V>::all(-least_deficit), x.w[N - 2] + x.w[N - 1], next.E), x.slack);
     next.r = one / (next.E + abs(z));
     next.l = V{};
     ring[N - 2].l_last = -(z * next.r);
-    last.r = one / mul_add(abs(z) * next.E, next.r, last.E);
+    const V left = mul_add(abs(z) * next.E, next.r, last.E);
+    x.slack = min(mul_add(Width<V>::all(-least_deficit), x.w[N - 1] + x.w[0], left), x.slack);
+    last.r = one / left;
 }
 
 // From right-hand sides to the solution, both in t of the rows.
