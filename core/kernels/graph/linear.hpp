@@ -35,9 +35,8 @@ struct Linear {
     }
 
     Linear(const Schedule &s, const MoleculeLane *lane, int used, const Box &box, const AtomArray &r, Memory<V> &memory)
-        : x{s, {}, used, Atoms<V>(lane, used), &box, &r, nullptr, nullptr, nullptr, Width<V>::all(1)}, core(), ring(),
+        : x{s, lane, used, Atoms<V>(lane, used), &box, &r, nullptr, nullptr, nullptr, Width<V>::all(1)}, core(), ring(),
           equations(), t(), alone() {
-        for (int i = 0; i < Width<V>::lanes; ++i) x.lane[i] = lane[i < used ? i : 0];
         x.w = memory.values(s.n_atoms);
         x.row = reinterpret_cast<BondRow<V> *>(memory.values(sizeof(BondRow<V>) / sizeof(V) * s.n_bonds));
         x.pair = memory.values(s.n_pairs);

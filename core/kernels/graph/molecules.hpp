@@ -24,8 +24,8 @@ struct BondRow {
 template <class V>
 struct Molecules {
     const Schedule &s;
-    MoleculeLane lane[Width<V>::lanes];
-    int used;  // lanes with a molecule
+    const MoleculeLane *lane;  // of all lanes; those without a molecule repeat the first one
+    int used;                  // lanes with a molecule
     Atoms<V> at;
     const Box *box;
     const AtomArray *r;  // of the bond vectors, for what is computed anew

@@ -173,23 +173,21 @@ struct PositionsWork {
         Memory<V> memory = {scratch};
         const Atoms<V> at(lane, used);
         Newton<V> newton(schedule, memory);
-        MoleculeLane all[Width<V>::lanes];
-        for (int i = 0; i < Width<V>::lanes; ++i) all[i] = lane[i < used ? i : 0];
         for (int32_t slot = 0; slot < schedule.n_atoms; ++slot)
             for (int i = 0; i < Width<V>::lanes; ++i)
-                Width<V>::set(newton.x.w[slot], i, all[i].w[schedule.atom_of[slot]]);
+                Width<V>::set(newton.x.w[slot], i, lane[i].w[schedule.atom_of[slot]]);
         unsigned rest;
         switch (layout_of(at, packed)) {
             case rows_in_order:
-                rest = solve<rows_in_order>(newton, all, used, at);
+                rest = solve<rows_in_order>(newton, lane, used, at);
                 break;
             case rows_listed:
-                rest = solve<rows_listed>(newton, all, used, at);
+                rest = solve<rows_listed>(newton, lane, used, at);
                 break;
             default:
-                rest = solve<elements>(newton, all, used, at);
+                rest = solve<elements>(newton, lane, used, at);
         }
-        if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, all, rest, memory.next, tally);
+        if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, lane, rest, memory.next, tally);
     }
 
     template <Layout layout, class V>

@@ -38,23 +38,21 @@ struct TriangleWork {
             masses.set(lane, used, schedule);
             if (Verb::with_lengths) known.lengths_for(static_cast<V *>(nullptr)).set(lane, used, schedule);
         }
-        MoleculeLane all[Width<V>::lanes];
-        for (int i = 0; i < Width<V>::lanes; ++i) all[i] = lane[i < used ? i : 0];
-        const Atoms<V> at(all, Width<V>::lanes);
+        const Atoms<V> at(lane, Width<V>::lanes);
         const TriangleLengths<V> &lengths = known.lengths_for(static_cast<V *>(nullptr));
         unsigned good;
         switch (layout_of(at, packed)) {
             case rows_in_order:
-                good = verb.template solve<rows_in_order, V>(schedule, all, used, at, masses, lengths);
+                good = verb.template solve<rows_in_order, V>(schedule, lane, used, at, masses, lengths);
                 break;
             case rows_listed:
-                good = verb.template solve<rows_listed, V>(schedule, all, used, at, masses, lengths);
+                good = verb.template solve<rows_listed, V>(schedule, lane, used, at, masses, lengths);
                 break;
             default:
-                good = verb.template solve<elements, V>(schedule, all, used, at, masses, lengths);
+                good = verb.template solve<elements, V>(schedule, lane, used, at, masses, lengths);
         }
         const unsigned rest = bits(Width<V>::first(used)) & ~good;
-        if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, all, rest, scratch, tally);
+        if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, lane, rest, scratch, tally);
     }
 };
 

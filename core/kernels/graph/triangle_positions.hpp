@@ -98,9 +98,9 @@ struct TriangleNewton {
     }
 };
 
-// The worst bond of the molecules in `which`: of a molecule the one with the smallest number among those.
+// The worst bond of the molecules in `which`, from the errors of all: of a molecule the one with the smallest number.
 template <class V>
-HOL_NOINLINE void note_worst_triangle(const TriangleNewton<V> &x, const Schedule &s, const MoleculeLane *lane, V error,
+HOL_NOINLINE void note_worst_triangle(const V *size, const Schedule &s, const MoleculeLane *lane, V error,
                                       unsigned which, Tally &tally) {
     for (int i = 0; i < Width<V>::lanes; ++i) {
         if (!(which >> i & 1)) continue;
@@ -111,8 +111,7 @@ HOL_NOINLINE void note_worst_triangle(const TriangleNewton<V> &x, const Schedule
         tally.worst_chain = lane[i].molecule;
         tally.worst_bond = 3;
         for (int k = 0; k < 3; ++k)
-            if (Width<V>::get(abs(2.0 * x.left[k]) * x.a.per_a2[k], i) >= e && s.bond_of[k] < tally.worst_bond)
-                tally.worst_bond = s.bond_of[k];
+            if (Width<V>::get(size[k], i) >= e && s.bond_of[k] < tally.worst_bond) tally.worst_bond = s.bond_of[k];
         if (tally.worst_bond == 3) tally.worst_bond = 0;
     }
 }
@@ -145,7 +144,11 @@ static inline unsigned move_triangles(const PositionsCall &call, const Schedule 
     const Limits<V> limits(call, largest, a.a_min);
     const Solved<V> out = iterate<V>(x, limits, call, Width<V>::first(used));
     const unsigned moved = bits(out.converged & ~x.coarse_moves(largest)), good = moved | bits(out.untouched);
-    if (call.report) note_worst_triangle(x, s, lane, out.error, good, tally);
+    if (call.report) {
+        V size[3];
+        for (int k = 0; k < 3; ++k) size[k] = abs(2.0 * x.left[k]) * x.a.per_a2[k];
+        note_worst_triangle(size, s, lane, out.error, good, tally);
+    }
     if (call.lambda) write_triangle_bonds(lane, s, x.tau, Width<V>::all(0.5 / (call.dt * call.dt)), call.lambda, good);
     if (!moved) return good;
     if (call.virial) add_triangle_virial(x.b, x.tau, 1 / (call.dt * call.dt), moved, tally);
