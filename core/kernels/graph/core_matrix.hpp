@@ -39,7 +39,7 @@ static inline void add_core_atom(Molecules<V> &x, const CoreMatrix<V> &core, int
     const int32_t n = s.meet_start[c + 1] - s.meet_start[c], *entry = s.meet_pair + s.meet_pair_start[c];
     const V w = x.w[slot];
     auto f = JointMemory<V, 0>::make(memory, k);
-    decompose(x, child, k, w, f.S, f.r, f.m);
+    decompose(x, child, k, w, f.S, f.r, f.m, x.slack);
     V *const m = x.pair + s.pair_start[slot];
     for (int32_t a = 0; a < k; ++a) x.row[child[a]].r = f.r[a];
     for (int32_t a = 0; a < k * (k - 1) / 2; ++a) m[a] = f.m[a];
@@ -63,8 +63,8 @@ static inline void add_core_atom(Molecules<V> &x, const CoreMatrix<V> &core, int
     }
 }
 
-// A pivot below this part of its diagonal element may be nothing but rounding: the bonds may depend on each other, which
-// corrections don't show where the right-hand side does not.
+// A pivot below this part of its diagonal element may be nothing but rounding: the bonds may depend on each other,
+// which corrections don't show where the right-hand side does not.
 constexpr double least_pivot = 1e-10;
 
 template <class V>

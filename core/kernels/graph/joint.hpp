@@ -4,7 +4,7 @@
 //     S u = y,   S l = w D^T d_e,   y_e = b_e + l.y,   E_e = w (q_e - w d_e^T D S^-1 D^T d_e),   t_c = u_c + l_c t_e.
 //
 // S = L P L^T as it stands: this subtracts. As long as every pivot and every E keep a sixteenth of what they are
-// subtracted from, errors stay at a few roundings; x.slack tells where they don't.
+// subtracted from, errors stay at a few roundings; `slack` is negative where they don't.
 #ifndef HOLONOMIC_KERNELS_GRAPH_JOINT_HPP
 #define HOLONOMIC_KERNELS_GRAPH_JOINT_HPP
 
@@ -22,7 +22,7 @@ constexpr int pair_of(int a, int b) { return a * (a - 1) / 2 + b; }  // a > b
 // Multipliers m and reciprocal pivots r of S; S is k (k + 1) / 2 values of working memory, its rows one after the
 // other.
 template <class V>
-HOL_INLINE void decompose(Molecules<V> &x, const int32_t *child, int k, V w, V *S, V *r, V *m) {
+HOL_INLINE void decompose(const Molecules<V> &x, const int32_t *child, int k, V w, V *S, V *r, V *m, V &slack) {
     HOL_UNROLL
     for (int a = 0; a < k; ++a) {
         const BondRow<V> &row = x.row[child[a]];
@@ -36,7 +36,7 @@ HOL_INLINE void decompose(Molecules<V> &x, const int32_t *child, int k, V w, V *
         if (j > 0) {
             const BondRow<V> &row = x.row[child[j]];
             const V whole = mul_add(w, row.q, row.E);
-            x.slack = min(mul_add(Width<V>::all(-least_part), whole, P), x.slack);
+            slack = min(mul_add(Width<V>::all(-least_part), whole, P), slack);
         }
         r[j] = Width<V>::all(1) / P;
         HOL_UNROLL
@@ -88,12 +88,12 @@ struct JointMemory<V, 0> {
 // The children of slot `slot`, with the bond above it at place `slot` (top: there is none). Right-hand sides are in t
 // of the rows. `keep`: multipliers and pivots are kept for another right-hand side.
 template <int known, bool top, bool keep, class V>
-HOL_INLINE void up_joint(Molecules<V> &x, int32_t slot, int count, Memory<V> memory) {
+HOL_INLINE void up_joint(const Molecules<V> &x, int32_t slot, int count, Memory<V> memory, V &slack) {
     const int k = known > 0 ? known : count;
     const int32_t *const child = x.s.child + x.s.child_start[slot];
     auto f = JointMemory<V, known>::make(memory, k);
     const V w = x.w[slot];
-    decompose(x, child, k, w, f.S, f.r, f.m);
+    decompose(x, child, k, w, f.S, f.r, f.m, slack);
     V *const m = keep ? x.pair + x.s.pair_start[slot] : nullptr;
     if (keep) {
         HOL_UNROLL
@@ -116,7 +116,7 @@ HOL_INLINE void up_joint(Molecules<V> &x, int32_t slot, int count, Memory<V> mem
             y = mul_add(f.l[a], x.row[child[a]].t, y);
             x.row[child[a]].l = f.l[a];
         }
-        x.slack = min(mul_add(Width<V>::all(-least_part), whole, E), x.slack);
+        slack = min(mul_add(Width<V>::all(-least_part), whole, E), slack);
         e.E = E;
         e.t = y;
     }
@@ -153,6 +153,7 @@ HOL_INLINE void substitute_joint(const Molecules<V> &x, int32_t slot, int count,
 // Up the trees: E, l and u of all their bonds, y of what is above them. A leaf has E = w q from where it was loaded.
 template <bool keep, class V>
 static inline void up_trees(Molecules<V> &x, Memory<V> memory) {
+    V slack = x.slack;  // in a register
     const Schedule &s = x.s;
     for (int32_t slot = 0; slot < s.n_tree; ++slot) {
         const int k = s.child_start[slot + 1] - s.child_start[slot];
@@ -160,19 +161,20 @@ static inline void up_trees(Molecules<V> &x, Memory<V> memory) {
             case 0:
                 break;
             case 1:
-                up_joint<1, false, keep>(x, slot, k, memory);
+                up_joint<1, false, keep>(x, slot, k, memory, slack);
                 break;
             case 2:
-                up_joint<2, false, keep>(x, slot, k, memory);
+                up_joint<2, false, keep>(x, slot, k, memory, slack);
                 break;
             case 3:
-                up_joint<3, false, keep>(x, slot, k, memory);
+                up_joint<3, false, keep>(x, slot, k, memory, slack);
                 break;
             default:
-                up_joint<0, false, keep>(x, slot, k, memory);
+                up_joint<0, false, keep>(x, slot, k, memory, slack);
         }
     }
-    if (s.type == Schedule::tree) up_joint<1, true, keep>(x, s.n_tree, 1, memory);
+    if (s.type == Schedule::tree) up_joint<1, true, keep>(x, s.n_tree, 1, memory, slack);
+    x.slack = slack;
 }
 
 template <class V>

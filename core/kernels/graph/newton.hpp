@@ -14,7 +14,6 @@ template <class V>
 struct Newton {
     NewtonSystem<V> x;
     V *spare;  // for the core's factors
-    V worst, sum;
 
     static int64_t values(const Schedule &s) {
         const int64_t part = CoreMatrix<V>::most_parts(s), n_atoms = s.n_atoms, n_bonds = s.n_bonds;
@@ -24,7 +23,7 @@ struct Newton {
     }
 
     Newton(const Schedule &s, Memory<V> &memory)
-        : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, spare(), worst(), sum() {
+        : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, spare() {
         const int64_t part = CoreMatrix<V>::most_parts(s);
         x.w = memory.values(s.n_atoms);
         x.row = reinterpret_cast<NewtonRow<V> *>(memory.values(sizeof(NewtonRow<V>) / sizeof(V) * s.n_bonds));
@@ -43,17 +42,28 @@ struct Newton {
         memory.values(NewtonMemory<V, 0>::values(s.max_children));
     }
 
+    // The largest |D.D - a^2| / a^2 of the bonds that have been measured; max() may lose a NaN, the sum keeps it.
+    struct Errors {
+        V worst, sum;
+        V largest() const { return mul_add(sum, V{}, worst); }
+    };
     // What is left of a bond's length into its t, for D as given.
-    void measure(NewtonRow<V> &row, const Vector3<V> &D) {
+    HOL_INLINE void measure(NewtonRow<V> &row, const Vector3<V> &D, Errors &errors) {
         const V sigma = mul_add(D.z, D.z, mul_add(D.y, D.y, mul_add(D.x, D.x, -row.a2)));
-        worst = max(abs(sigma) * row.per_a2, worst);
-        sum = sum + sigma;
+        errors.worst = max(abs(sigma) * row.per_a2, errors.worst);
+        errors.sum = errors.sum + sigma;
         row.t = 0.5 * sigma;
     }
-    // Largest |D.D - a^2| / a^2; max() may lose a NaN, the sum keeps it.
-    V largest() const { return mul_add(sum, V{}, worst); }
 
     // Factors for the bonds in new_D, in the lanes of `which`.
+    void factorize(MaskOf<V> which) {
+        if (bits(which) == (1u << Width<V>::lanes) - 1)
+            factorize<true>(which);
+        else
+            factorize<false>(which);
+    }
+
+    template <bool all>
     __attribute__((noinline)) void factorize(MaskOf<V> which) {
         const Schedule &s = x.s;
         for (int32_t slot = 0; slot < s.n_tree; ++slot) {
@@ -63,20 +73,20 @@ struct Newton {
                     x.row[slot].E = x.w[slot] * dot(x.new_D[slot], x.row[slot].b);
                     break;
                 case 1:
-                    factorize_joint<1, false>(x, slot, k, which);
+                    factorize_joint<1, false, all>(x, slot, k, which);
                     break;
                 case 2:
-                    factorize_joint<2, false>(x, slot, k, which);
+                    factorize_joint<2, false, all>(x, slot, k, which);
                     break;
                 case 3:
-                    factorize_joint<3, false>(x, slot, k, which);
+                    factorize_joint<3, false, all>(x, slot, k, which);
                     break;
                 default:
-                    factorize_joint<0, false>(x, slot, k, which);
+                    factorize_joint<0, false, all>(x, slot, k, which);
             }
         }
         if (s.n_core_atoms == 0)
-            factorize_joint<1, true>(x, s.n_tree, 1, which);
+            factorize_joint<1, true, all>(x, s.n_tree, 1, which);
         else
             factorize_core(x, spare, which);
     }
@@ -138,14 +148,14 @@ struct Newton {
             }
             x.move[slot] = x.w[slot] * pull;
         }
-        worst = sum = V{};
+        Errors errors = {};
         for (int32_t k = 0; k < s.n_bonds; ++k) {
             int32_t from, to;
             ends_of(s, k, from, to);
             x.new_D[k] = x.row[k].D + (x.move[to] - x.move[from]);
-            measure(x.row[k], x.new_D[k]);
+            measure(x.row[k], x.new_D[k], errors);
         }
-        return largest();
+        return errors.largest();
     }
 
     // tau = 0 in the lanes of `which`.
@@ -155,12 +165,12 @@ struct Newton {
 
     // D as it stands: the first factors' bonds, and what they leave.
     V open() {
-        worst = sum = V{};
+        Errors errors = {};
         for (int32_t k = 0; k < x.s.n_bonds; ++k) {
             x.new_D[k] = x.row[k].D;
-            measure(x.row[k], x.row[k].D);
+            measure(x.row[k], x.row[k].D, errors);
         }
-        return largest();
+        return errors.largest();
     }
 };
 

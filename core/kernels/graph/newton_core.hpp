@@ -19,7 +19,7 @@ static inline void add_core_atom(const NewtonSystem<V> &x, int32_t c, int64_t re
     const int32_t n = s.meet_start[c + 1] - s.meet_start[c];
     const V w = x.w[slot];
     auto f = NewtonMemory<V, 0>::make(x.working, k);
-    factorize_children(x, slot, k, f, which);
+    factorize_children<false>(x, slot, k, f, which);
     for (int32_t e = 0; e < n; ++e) {
         const int32_t place = s.n_tree + meet[e] / 2;
         V *const z = x.part_down + e * k, *const h = x.part_up + e * k;

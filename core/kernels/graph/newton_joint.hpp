@@ -100,8 +100,14 @@ struct NewtonMemory<V, 0> {
     static constexpr int64_t values(int64_t k) { return k * k + k * (k - 1) + 5 * k; }
 };
 
+// Into `to` in the lanes of `which`, or in all.
+template <bool all, class V>
+HOL_INLINE void put_where(MaskOf<V> which, V &to, V value) {
+    to = all ? value : select(which, value, to);
+}
+
 // Factors of the children of a slot into f and, in the lanes of `which`, to where they are kept. `D` of all bonds.
-template <class V, class Joint>
+template <bool all, class V, class Joint>
 HOL_INLINE void factorize_children(const NewtonSystem<V> &x, int32_t slot, int k, Joint &f, MaskOf<V> which) {
     const int32_t *const child = x.s.child + x.s.child_start[slot];
     const V w = x.w[slot];
@@ -118,11 +124,11 @@ HOL_INLINE void factorize_children(const NewtonSystem<V> &x, int32_t slot, int k
     HOL_UNROLL
     for (int a = 0; a < k; ++a) {
         NewtonRow<V> &row = x.row[child[a]];
-        row.r = select(which, f.r[a], row.r);
+        put_where<all>(which, row.r, f.r[a]);
         HOL_UNROLL
         for (int b = 0; b < a; ++b) {
-            lower[pair_of(a, b)] = select(which, f.lower[pair_of(a, b)], lower[pair_of(a, b)]);
-            upper[pair_of(a, b)] = select(which, f.upper[pair_of(a, b)], upper[pair_of(a, b)]);
+            put_where<all>(which, lower[pair_of(a, b)], f.lower[pair_of(a, b)]);
+            put_where<all>(which, upper[pair_of(a, b)], f.upper[pair_of(a, b)]);
         }
     }
 }
@@ -146,11 +152,11 @@ HOL_INLINE V couple(const NewtonSystem<V> &x, int32_t slot, int k, int32_t place
     return E;
 }
 
-template <int known, bool top, class V>
+template <int known, bool top, bool all, class V>
 HOL_INLINE void factorize_joint(const NewtonSystem<V> &x, int32_t slot, int count, MaskOf<V> which) {
     const int k = known > 0 ? known : count;
     auto f = NewtonMemory<V, known>::make(x.working, k);
-    factorize_children(x, slot, k, f, which);
+    factorize_children<all>(x, slot, k, f, which);
     if (top) return;
     V *const up = f.S, *const down = f.u;  // S is done with
     x.row[slot].E = couple(x, slot, k, slot, f, f.z, f.h, up, down);
@@ -158,8 +164,8 @@ HOL_INLINE void factorize_joint(const NewtonSystem<V> &x, int32_t slot, int coun
     HOL_UNROLL
     for (int a = 0; a < k; ++a) {
         NewtonRow<V> &row = x.row[child[a]];
-        row.up = select(which, up[a], row.up);
-        row.down = select(which, down[a], row.down);
+        put_where<all>(which, row.up, up[a]);
+        put_where<all>(which, row.down, down[a]);
     }
 }
 

@@ -145,9 +145,9 @@ static inline unsigned move_triangles(const PositionsCall &call, const Schedule 
     const Solved<V> out = iterate<V>(x, limits, call, Width<V>::first(used));
     const unsigned moved = bits(out.converged & ~x.coarse_moves(largest)), good = moved | bits(out.untouched);
     if (call.report) {
-        V size[3];
-        for (int k = 0; k < 3; ++k) size[k] = abs(2.0 * x.left[k]) * x.a.per_a2[k];
-        note_worst_triangle(size, s, lane, out.error, good, tally);
+        V left[3];
+        for (int k = 0; k < 3; ++k) left[k] = abs(2.0 * x.left[k]) * x.a.per_a2[k];
+        note_worst_triangle(left, s, lane, out.error, good, tally);
     }
     if (call.lambda) write_triangle_bonds(lane, s, x.tau, Width<V>::all(0.5 / (call.dt * call.dt)), call.lambda, good);
     if (!moved) return good;
