@@ -44,6 +44,7 @@ HOL_INLINE void advance(const MoleculeUnit &unit, MoleculeLane *lane) {
                   bonds = W * static_cast<int64_t>(unit.schedule->n_bonds);
     for (int i = 0; i < W; ++i) {
         lane[i].first_atom += atoms;
+        if (lane[i].atoms) lane[i].atoms += atoms;
         lane[i].first_bond += bonds;
         lane[i].molecule += W;
     }
