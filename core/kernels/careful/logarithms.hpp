@@ -84,8 +84,12 @@ HOL_NOINLINE Wide log_of_diagonal(const Molecule &m) {
     constexpr double ln2 = 0.69314718055994530942;
     Wide sum = wide(0);
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
-        const double scaled = 4 * full_diagonal(m, k).hi, z = scaled * m.mass_unit * m.unit[k] * m.unit[k];
-        if (z > 0x1p-1000 && z < 0x1p1000)
+        const Wide full = full_diagonal(m, k);
+        const double unit = 4 * m.mass_unit * m.unit[k] * m.unit[k], scaled = 4 * full.hi, z = unit * full.hi;
+        const Wide beyond = unit * full - wide(1);  // small where the logarithm is
+        if (abs(beyond.hi) < 0.5)
+            sum += wide(__builtin_log1p(beyond.hi) + beyond.lo / (1 + beyond.hi));
+        else if (z > 0x1p-1000 && z < 0x1p1000)
             sum += wide(__builtin_log(z));
         else
             sum +=
