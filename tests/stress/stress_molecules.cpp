@@ -69,6 +69,11 @@ void keep(run &all, const hostile_molecule &m, const molecule_verdict &v, bool r
     const std::vector<double> drifted = m.drifted();
     const std::string text = reference::molecule_text(
         m.problem(), {name, !regular, {drifted.data(), m.length.data(), m.dt > 0 ? m.dt : 1, nullptr}});
+    if (text.empty()) {  // a number that is zero but for the rounding of any arithmetic
+        std::fprintf(stderr, "stress: no file for number %llu, which --seed repeats\n",
+                     static_cast<unsigned long long>(m.seed));
+        return;
+    }
     const std::lock_guard<std::mutex> guard(all.lock);
     std::FILE *out = std::fopen((all.directory + "/" + name + ".txt").c_str(), "w");
     std::FILE *index = std::fopen((all.directory + "/INDEX").c_str(), "a");
