@@ -9,22 +9,22 @@ namespace holonomic {
 // A vector per atom in the caller's memory; x == nullptr: absent, z == nullptr: two dimensions.
 struct AtomArray {
     char *x, *y, *z;
-    int64_t stride;    // bytes
+    int64_t stride;  // bytes
     bool is_float;
-    bool packed;       // doubles [n_atoms][3]: the layout that the kernels read and write in place
+    bool packed;  // doubles [n_atoms][3]: the layout that the kernels read and write in place
 };
 
 // One chain as a kernel sees it.
 struct Lane {
     int64_t n_bonds;
-    int64_t first_atom;     // if atoms == nullptr: the chain's atoms are first_atom, first_atom + 1, ...
-    const int64_t *atoms;   // [n_bonds+1] or nullptr
-    const double *w;        // inverse masses along the chain [n_bonds+1], or nullptr: all w_uniform
-    const double *length;   // bond lengths [n_bonds], or nullptr: all length_uniform
+    int64_t first_atom;    // if atoms == nullptr: the chain's atoms are first_atom, first_atom + 1, ...
+    const int64_t *atoms;  // [n_bonds+1] or nullptr
+    const double *w;       // inverse masses along the chain [n_bonds+1], or nullptr: all w_uniform
+    const double *length;  // bond lengths [n_bonds], or nullptr: all length_uniform
     double w_uniform;
     double length_uniform;
-    int64_t first_bond;     // place of its first bond in arrays per bond
-    int64_t chain;          // its number
+    int64_t first_bond;  // place of its first bond in arrays per bond
+    int64_t chain;       // its number
 };
 
 // A piece of work: chains of at most longest_lane bonds, or a single longer one.
@@ -101,7 +101,7 @@ struct PositionsCall {
     double *lambda;
     double dt;
     bool guess, virial, report;  // report: the errors left are wanted
-    double tolerance;  // 0: what the coordinates carry
+    double tolerance;            // 0: what the coordinates carry
     int max_iterations;
     Box box, box_ref;  // of r; of r_ref
 };

@@ -65,8 +65,7 @@ HOL_INLINE V minor_compensated(V a, V b, V c, V d) {
 
 // Vectors that carry a low word: (a + a_lo), exact to about twice the precision.
 template <class V>
-HOL_INLINE V dot_compensated(const Vector3<V> &a, const Vector3<V> &a_lo, const Vector3<V> &b,
-                             const Vector3<V> &b_lo) {
+HOL_INLINE V dot_compensated(const Vector3<V> &a, const Vector3<V> &a_lo, const Vector3<V> &b, const Vector3<V> &b_lo) {
     const Pair<V> x = two_product(a.x, b.x), y = two_product(a.y, b.y), z = two_product(a.z, b.z);
     const Pair<V> s = two_sum(x.hi, y.hi), t = two_sum(s.hi, z.hi);
     return t.hi + ((t.lo + s.lo) + ((x.lo + y.lo) + z.lo) + (dot(a, b_lo) + dot(a_lo, b)));

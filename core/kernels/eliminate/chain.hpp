@@ -3,9 +3,9 @@
 //   E_1 = w_0 q_1,  P_k = E_k + w_k q_k,  E_{k+1} = w_k (q_{k+1} E_k + w_k X_{k+1}) / P_k,  l_{k+1} = w_k g_{k+1} / P_k
 //   y_1 = b_1,  y_{k+1} = b_{k+1} + l_{k+1} y_k,  t_N = y_N / P_N,  t_k = y_k / P_k + l_{k+1} t_{k+1}
 //
-// Here bond k = 0 .. n-1 lies between atoms k and k+1; joint k is the one between bonds k-1 and k, at atom k, and L[k] its
-// multiplier. Inverse masses are in the lane's unit; with equal ones, t is unit * 2 lambda for a right-hand side as it
-// is, and 2 lambda for one that has been divided by the unit.
+// Here bond k = 0 .. n-1 lies between atoms k and k+1; joint k is the one between bonds k-1 and k, at atom k, and L[k]
+// its multiplier. Inverse masses are in the lane's unit; with equal ones, t is unit * 2 lambda for a right-hand side as
+// it is, and 2 lambda for one that has been divided by the unit.
 #ifndef HOLONOMIC_KERNELS_ELIMINATE_CHAIN_HPP
 #define HOLONOMIC_KERNELS_ELIMINATE_CHAIN_HPP
 
@@ -23,11 +23,11 @@ struct Sweep {
     const Block &block;
     const Source &source;
     const System s;
-    vec3 d = {};                                           // the bond before
+    vec3 d = {};  // the bond before
     vec q = {};
     vec A = splat(1.0), F = {}, F1 = {}, rF = splat(1.0);  // E = A / F and P = F1 / F of the bond before
     vec rP = {}, y = {};
-    vec slack = {};                                        // negative where the cheap tests failed
+    vec slack = {};  // negative where the cheap tests failed
     // Sum of |u|, q, 1 / P and w; without |u| where pivots are kept for a second solve, whose end shows an overflow.
     vec size = {};
 
@@ -77,8 +77,8 @@ struct Sweep {
     }
 
     // A joint of nearly orthogonal bonds, or one before which little of E is left.
-    inline __attribute__((always_inline)) void delicate_joint(long k, const vec3 &d1, vec remainder, bool ragged, vec &g,
-                                                              vec &X) {
+    inline __attribute__((always_inline)) void delicate_joint(long k, const vec3 &d1, vec remainder, bool ragged,
+                                                              vec &g, vec &X) {
         mask little = less(remainder, vec{});
         if (ragged) little = little & joint(block, k);
         if (any(little)) {
@@ -91,9 +91,9 @@ struct Sweep {
         if (any(orthogonal)) g = exact_dots(source, k, orthogonal, g);
     }
 
-    // Lanes in which the backward sweep can't overflow: |t_k| |d_k| <= sum_j |u_j| |d_j|, because |l_k| |d_{k-1}| <= |d_k|,
-    // and |t_k| <= |u_k| + |l_{k+1} t_{k+1}|, |l_{k+1}| <= w |d_k| |d_{k+1}| / P_k. Nor have the products of five pivots
-    // that make up A lost digits by underflow.
+    // Lanes in which the backward sweep can't overflow: |t_k| |d_k| <= sum_j |u_j| |d_j|, because |l_k| |d_{k-1}| <=
+    // |d_k|, and |t_k| <= |u_k| + |l_{k+1} t_{k+1}|, |l_{k+1}| <= w |d_k| |d_{k+1}| / P_k. Nor have the products of
+    // five pivots that make up A lost digits by underflow.
     mask calm() const { return less(size, splat(largest_calm)); }
     // Lanes that need careful arithmetic.
     mask doubt() const {

@@ -1,6 +1,7 @@
-// Metric determinant and Fixman force of a block of chains, theory (24)-(31): elimination on unit bonds, with the deficits
-// e and f that the bonds on either side leave of a row carried instead of the diagonal, so that nothing is subtracted.
-// Products are always compensated: determinants and the inverse have no componentwise scale that forgives their rounding.
+// Metric determinant and Fixman force of a block of chains, theory (24)-(31): elimination on unit bonds, with the
+// deficits e and f that the bonds on either side leave of a row carried instead of the diagonal, so that nothing is
+// subtracted. Products are always compensated: determinants and the inverse have no componentwise scale that forgives
+// their rounding.
 #ifndef HOLONOMIC_KERNELS_ELIMINATE_DEFICITS_HPP
 #define HOLONOMIC_KERNELS_ELIMINATE_DEFICITS_HPP
 
@@ -13,13 +14,13 @@ namespace HOL_ISA {
 
 // Per bond k of a block; joint k lies between bonds k-1 and k.
 struct Geometry {
-    vec3 *u, *low;   // bond vector, then unit vector, then Fixman's phi; low words of the bond vector
-    vec3 *normal;    // u_{k-1} x u_k, then h_k times it
+    vec3 *u, *low;             // bond vector, then unit vector, then Fixman's phi; low words of the bond vector
+    vec3 *normal;              // u_{k-1} x u_k, then h_k times it
     vec *cosine, *complement;  // of joint k: c and 1 - |c|
     vec *reciprocal;           // 1 / |d|
-    vec *square;     // d.d over `scale` squared
-    vec *scale;      // a power of two
-    vec *p, *delta;  // coupling of bonds k-1 and k; what row k has beyond its neighbours
+    vec *square;               // d.d over `scale` squared
+    vec *scale;                // a power of two
+    vec *p, *delta;            // coupling of bonds k-1 and k; what row k has beyond its neighbours
     vec *e, *t;
     Geometry(long n, Arena &arena)
         : u(vectors(n, arena)), low(vectors(n, arena)), normal(vectors(n + 1, arena)), cosine(arena.vecs(n + 1)),
@@ -105,7 +106,8 @@ struct LogSumWide {
     mask exponents;
     int n;
     LogSumWide() : sum{}, mantissas(splat(1.0)), exponents{}, n(0) {}
-    inline __attribute__((always_inline)) void multiply(vec factor, vec scale) {  // factor / scale^2, scale a power of two
+    inline __attribute__((always_inline)) void multiply(vec factor,
+                                                        vec scale) {  // factor / scale^2, scale a power of two
         const mask f = as_mask(factor), one = mask{} + exponent_of_one;
         exponents = exponents + (((f & (mask{} + exponent_bits)) - one) >> 52) - 2 * ((as_mask(scale) - one) >> 52);
         mantissas = mantissas * as_vec((f & (mask{} + 0xfffffffffffffLL)) | one);
@@ -132,8 +134,8 @@ struct MetricSums {
     vec log_det, log_det_z;
 };
 
-// Left to right from e of bond 0: e of all bonds, and the logarithms over the bonds first .. end-1 of each lane. Lanes with
-// a pivot that is not positive are taken out of `good`.
+// Left to right from e of bond 0: e of all bonds, and the logarithms over the bonds first .. end-1 of each lane. Lanes
+// with a pivot that is not positive are taken out of `good`.
 template <bool uniform>
 static inline MetricSums eliminate_metric(const Block &block, const Geometry &x, vec e, vec first, vec end,
                                           const MetricCall &call, mask &good) {
@@ -183,8 +185,8 @@ HOL_INLINE vec next_deficit(const Geometry &x, long k, vec f) {
     return x.delta[k - 1] + keep(coupled, p * (f / (f + p)));
 }
 
-// phi of bond k as t times a vector, so that the force on atom k is the pull t_k phi_k - t_{k-1} phi_{k-1}. Zeros are +0,
-// so that those of a chain's last atom don't depend on whether inert bonds follow.
+// phi of bond k as t times a vector, so that the force on atom k is the pull t_k phi_k - t_{k-1} phi_{k-1}. Zeros are
+// +0, so that those of a chain's last atom don't depend on whether inert bonds follow.
 HOL_INLINE void turn(const Geometry &x, long k, double kT) {
     const vec3 a = x.normal[k], b = x.normal[k + 1];
     const vec3 v = cross(x.u[k], vec3{b.x - a.x, b.y - a.y, b.z - a.z});

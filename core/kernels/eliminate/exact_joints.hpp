@@ -15,20 +15,16 @@ struct Source {
     const int64_t *const *atoms;
     const Box *box;
     const long *len;  // of lanes that may end before the joints that are asked for; or nullptr
-    const double *atom(int lane, long k) const {
-        return atoms ? base + 3 * atoms[lane][k] : r->lane[lane] + 3 * k;
-    }
+    const double *atom(int lane, long k) const { return atoms ? base + 3 * atoms[lane][k] : r->lane[lane] + 3 * k; }
 };
 
-// g = d . d' of nearly orthogonal bonds cancels, and what it loses shows where the right-hand side of one bond is larger
-// than its neighbour's by orders of magnitude. Below this cosine g is computed anew from the coordinates: a few in a
-// hundred joints of a coil.
+// g = d . d' of nearly orthogonal bonds cancels, and what it loses shows where the right-hand side of one bond is
+// larger than its neighbour's by orders of magnitude. Below this cosine g is computed anew from the coordinates: a few
+// in a hundred joints of a coil.
 constexpr double small_cosine = 1.0 / 32;
 
 // Its sign bit is set where |cos| is below that; X = q q' (1 - cos^2).
-HOL_INLINE vec not_orthogonal(vec g2, vec X) {
-    return mul_sub(splat(1 / (small_cosine * small_cosine)), g2, X);
-}
+HOL_INLINE vec not_orthogonal(vec g2, vec X) { return mul_sub(splat(1 / (small_cosine * small_cosine)), g2, X); }
 
 HOL_INLINE mask nearly_orthogonal(vec g, vec X) { return less(not_orthogonal(g * g, X), vec{}); }
 
@@ -38,7 +34,8 @@ HOL_NOINLINE double exact_dot(const Source &source, int lane, long k) {
     Vector3<double> d[2], low[2];
     for (int b = 0; b < 2; ++b)
         unrounded_bond(*source.box, source.atom(lane, k - 1 + b), source.atom(lane, k + b), d[b], low[b]);
-    const Pair<double> x = two_product(d[0].x, d[1].x), y = two_product(d[0].y, d[1].y), z = two_product(d[0].z, d[1].z);
+    const Pair<double> x = two_product(d[0].x, d[1].x), y = two_product(d[0].y, d[1].y),
+                       z = two_product(d[0].z, d[1].z);
     const double hi[3] = {x.hi, y.hi, z.hi};
     const double lo[3] = {mul_add(d[0].x, low[1].x, mul_add(low[0].x, d[1].x, x.lo)),
                           mul_add(d[0].y, low[1].y, mul_add(low[0].y, d[1].y, y.lo)),

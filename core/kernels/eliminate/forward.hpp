@@ -8,11 +8,11 @@
 namespace holonomic {
 namespace HOL_ISA {
 
-// Loads the bonds of a block and eliminates: t becomes u. Returns the lanes that plain arithmetic can answer for, and in
-// `calm` those in which nothing can overflow from here on.
+// Loads the bonds of a block and eliminates: t becomes u. Returns the lanes that plain arithmetic can answer for, and
+// in `calm` those in which nothing can overflow from here on.
 template <int terms, bool uniform, bool boxed>
-HOL_NOINLINE mask forward(const Block &block, const Box &box, const Packed &r, const Packed &v,
-                                              const Packed &f, const System &s, mask &calm) {
+HOL_NOINLINE mask forward(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
+                          const System &s, mask &calm) {
     const Places at(r, v, f);
     const Source source = {&r, nullptr, nullptr, &box, nullptr};
     Sweep<uniform, false> sweep{block, source, s};
@@ -34,8 +34,8 @@ HOL_NOINLINE mask forward(const Block &block, const Box &box, const Packed &r, c
 }
 
 template <int terms, bool uniform, bool boxed>
-HOL_NOINLINE void forward_careful(const Block &block, const Box &box, const Packed &r,
-                                                        const Packed &v, const Packed &f, const System &s) {
+HOL_NOINLINE void forward_careful(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
+                                  const System &s) {
     load_bonds<terms, uniform, boxed, true>(block, box, r, v, f, s.D, s.D_low, s.t);
     forward_careful<uniform>(block, s);
 }
@@ -43,7 +43,7 @@ HOL_NOINLINE void forward_careful(const Block &block, const Box &box, const Pack
 // The lanes for which u is good; `calm` as above.
 template <int terms, bool careful, bool uniform, bool boxed>
 static inline mask forward_by(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
-                                const System &s, mask &calm) {
+                              const System &s, mask &calm) {
     if (!careful) return forward<terms, uniform, boxed>(block, box, r, v, f, s, calm);
     forward_careful<terms, uniform, boxed>(block, box, r, v, f, s);
     calm = none();
@@ -52,7 +52,7 @@ static inline mask forward_by(const Block &block, const Box &box, const Packed &
 
 template <int terms, bool careful>
 static inline mask forward_any(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
-                                 const System &s, mask &calm) {
+                               const System &s, mask &calm) {
     const bool boxed = box.shape != Box::none;
     if (!careful && (terms & velocity_squared) && block.unit_masses && !boxed)
         return forward<terms | unit_mass, true, false>(block, box, r, v, f, s, calm);

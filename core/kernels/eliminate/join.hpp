@@ -10,13 +10,14 @@ namespace HOL_ISA {
 // Loads block j and eliminates its inner bonds.
 template <int terms, bool uniform>
 static inline void eliminate_block_of(const Box &box, const SegmentBlock &s, const Packed &r, const Packed &v,
-                               const Packed &f, bool careful, const SegmentStore &x, Arena arena) {
+                                      const Packed &f, bool careful, const SegmentStore &x, Arena arena) {
     const bool boxed = box.shape != Box::none;
     const long n = s.own_max;
     SegmentBonds in = {r, v, f, nullptr, nullptr, nullptr, {}, {}, 0};
     find_next(s, box, r, in);
     Block own = own_block(s);
-    vec3 *const D = reinterpret_cast<vec3 *>(arena.vecs(3 * (n + W))), *const low = reinterpret_cast<vec3 *>(arena.vecs(3 * (n + W)));
+    vec3 *const D = reinterpret_cast<vec3 *>(arena.vecs(3 * (n + W))), *const low = reinterpret_cast<vec3 *>(
+                                                                           arena.vecs(3 * (n + W)));
     vec *const B = arena.vecs(n + W);
     const Source source = {&in.r, nullptr, nullptr, &box, s.block.len};
     in.D = D;
@@ -41,8 +42,8 @@ static inline void eliminate_block_of(const Box &box, const SegmentBlock &s, con
 }
 
 template <int terms, class Call>
-static inline void eliminate_block(const Call &call, const Lane &lane, int64_t j, const AtomArray &r, const AtomArray &v,
-                            const AtomArray &f, bool careful, double *store, Arena arena) {
+static inline void eliminate_block(const Call &call, const Lane &lane, int64_t j, const AtomArray &r,
+                                   const AtomArray &v, const AtomArray &f, bool careful, double *store, Arena arena) {
     const Cut cut(lane.n_bonds);
     SegmentBlock s = segment_block(cut, j, lane);
     set_segment_masses(s, lane, arena);

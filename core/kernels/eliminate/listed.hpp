@@ -13,9 +13,8 @@ namespace HOL_ISA {
 // As forward(), from the lists; of rates, the velocities go to `velocities`. Returns the lanes for which plain
 // arithmetic will do, nothing overflowing.
 template <int terms, bool uniform>
-HOL_NOINLINE mask forward_gathered(const Block &block, const Box &box, const AtomLists &at,
-                                                       const double *r, const double *v, const double *f,
-                                                       const System &s, vec3 *velocities) {
+HOL_NOINLINE mask forward_gathered(const Block &block, const Box &box, const AtomLists &at, const double *r,
+                                   const double *v, const double *f, const System &s, vec3 *velocities) {
     const Source source = {nullptr, r, at.atoms, &box, nullptr};
     Sweep<uniform, terms == rate> sweep{block, source, s};
     const bool boxed = box.shape != Box::none;
@@ -63,8 +62,8 @@ HOL_NOINLINE mask forward_gathered(const Block &block, const Box &box, const Ato
 
 // As substitute_and_store(), to the lists.
 template <Update update>
-HOL_NOINLINE void substitute_and_scatter(const Block &block, const System &s, const AtomLists &at,
-                                                             double *out, double *value_out, vec factor) {
+HOL_NOINLINE void substitute_and_scatter(const Block &block, const System &s, const AtomLists &at, double *out,
+                                         double *value_out, vec factor) {
     vec t = {}, values[W];
     vec3 after = {};
     s.L[block.n] = vec{};

@@ -84,8 +84,7 @@ HOL_NOINLINE mask pull_back(const Block &block, const Projection &x, bool twice)
         pull.step(k);
     }
     pull.finish();
-    for (k = twice ? block.n_min : 0; k < block.n; ++k)
-        x.left[k] = twice ? keep(joint(block, k), x.left[k]) : vec{};
+    for (k = twice ? block.n_min : 0; k < block.n; ++k) x.left[k] = twice ? keep(joint(block, k), x.left[k]) : vec{};
     if (twice) substitute(block.n, x.correction());
     return x.finite(block.n);
 }

@@ -10,7 +10,8 @@ namespace HOL_ISA {
 
 // How X = |d x d'|^2 is found. It enters E' = w (q' E + w X) / P, and what its error does to E' depends on E: with
 // e = E / (w q),
-//  - q q' - g^2 has an error of a few roundings of q q', of which E' gets a few / (e + sin^2): ordinary chains, in which
+//  - q q' - g^2 has an error of a few roundings of q q', of which E' gets a few / (e + sin^2): ordinary chains, in
+//  which
 //    e >= least_remainder everywhere but in a row of nearly parallel bonds;
 //  - the cross product has a relative error of about 2 eps |d| |d'| / sqrt X from the rounding of d and d', which is
 //    harmless where w sqrt(X q q') <= c (q' E + w X), c = joint_tolerance. This holds for every X if e >= 1 / (4 c^2);

@@ -110,8 +110,8 @@ HOL_INLINE void plain_joints(const Source &source, long k, const vec3 *d, Joint 
     if (any(less(least, vec{}))) refine_joints(source, k, j, n);
 }
 
-// Products of six pivots, of which a consists after four bonds, underflow where the reciprocal of four of them is not below
-// the first of these; products of three, where that of one is not below the second.
+// Products of six pivots, of which a consists after four bonds, underflow where the reciprocal of four of them is not
+// below the first of these; products of three, where that of one is not below the second.
 constexpr double largest_reciprocal_of_four = 1e190, largest_reciprocal_of_one = 1e90;
 
 // The elimination of the inner bonds of W segments, a bond at a time.
@@ -137,8 +137,8 @@ HOL_INLINE void start(Elimination &e, const Block &block, vec q0, const Joint &j
     e.w_max = w;
 }
 
-// In a straight chain c, f and E shrink by the same factor at each bond. They are rounded in the same way, so that their
-// ratios stay exact: segments of equal bonds would all have the same error in them.
+// In a straight chain c, f and E shrink by the same factor at each bond. They are rounded in the same way, so that
+// their ratios stay exact: segments of equal bonds would all have the same error in them.
 HOL_INLINE void normalise(Elimination &e) {
     e.A = e.A * e.rF;
     e.f = e.f * e.rF;
@@ -182,7 +182,7 @@ HOL_INLINE void step(Elimination &e, const Block &block, Kept *kept, long k, con
 // Eliminates the inner bonds of W segments of n bonds. block.len counts the separators behind them.
 template <int terms, bool uniform, bool careful>
 HOL_NOINLINE void eliminate(const Block &block, const Source &source, const SegmentBonds &in, long n,
-                                                const SegmentStore &x) {
+                            const SegmentStore &x) {
     Elimination e;
     const vec3 absent = {};
     mask doubt = none();
@@ -205,8 +205,7 @@ HOL_NOINLINE void eliminate(const Block &block, const Source &source, const Segm
             if (i % 4 == 3) normalise(e);
         }
         const mask short_of = less(e.slack, vec{});
-        if (any(short_of))
-            doubt = doubtful_segment_joints<uniform>(block, d + 2, 1, group - 2, E0) & short_of;
+        if (any(short_of)) doubt = doubtful_segment_joints<uniform>(block, d + 2, 1, group - 2, E0) & short_of;
         e.slack = vec{};
         d[0] = d[group];
         k0 = group;

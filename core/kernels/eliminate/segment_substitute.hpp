@@ -96,9 +96,8 @@ HOL_INLINE void store_segment_chunk(const Block &own, const SegmentOutputs &out,
 
 // Atoms 1 .. own of each segment, and atom 0 of the chain.
 template <bool weighted, bool uniform, bool boxed, Update update>
-HOL_NOINLINE void finish_segments(const SegmentBlock &s, bool first_block, const Box &box,
-                                                      const SegmentBonds &in, const SegmentStore &x, vec next,
-                                                      const SegmentOutputs &out, Tally &tally) {
+HOL_NOINLINE void finish_segments(const SegmentBlock &s, bool first_block, const Box &box, const SegmentBonds &in,
+                                  const SegmentStore &x, vec next, const SegmentOutputs &out, Tally &tally) {
     const Block own = own_block(s);
     const long n = s.own_max, full = s.own_min / W * W;
     const vec ts = x.summary->t;
@@ -147,13 +146,13 @@ HOL_NOINLINE void finish_segments(const SegmentBlock &s, bool first_block, const
     if (!first_block || !out.has_pulls) return;
     const double w = weighted ? w_at<uniform>(own, 0)[0] : 1.0;
     const double pull[3] = {w * after.x[0] + 0.0, w * after.y[0] + 0.0, w * after.z[0] + 0.0};
-    for (int c = 0; c < 3; ++c)
-        out.pulls.lane[0][c] = update == add_ ? out.pulls.lane[0][c] + pull[c] : pull[c];
+    for (int c = 0; c < 3; ++c) out.pulls.lane[0][c] = update == add_ ? out.pulls.lane[0][c] + pull[c] : pull[c];
 }
 
 template <bool weighted, bool boxed>
 static inline void finish_segments(const SegmentBlock &s, bool first_block, const Box &box, const SegmentBonds &in,
-                            const SegmentStore &x, vec next, const SegmentOutputs &out, Update update, Tally &tally) {
+                                   const SegmentStore &x, vec next, const SegmentOutputs &out, Update update,
+                                   Tally &tally) {
     if (weighted && !s.block.uniform_w && update == write_)
         finish_segments<true, false, boxed, write_>(s, first_block, box, in, x, next, out, tally);
     else if (weighted && !s.block.uniform_w)
@@ -166,8 +165,9 @@ static inline void finish_segments(const SegmentBlock &s, bool first_block, cons
 
 // Substitutes in block j and writes; `pulled` gets what its atoms are pulled with.
 template <bool weighted>
-static inline void finish_block(const Box &box, const AtomArray &r, const AtomArray &pulled, bool add, SegmentOutputs out,
-                         const Lane &lane, int64_t j, double *store, Arena arena, Tally &tally) {
+static inline void finish_block(const Box &box, const AtomArray &r, const AtomArray &pulled, bool add,
+                                SegmentOutputs out, const Lane &lane, int64_t j, double *store, Arena arena,
+                                Tally &tally) {
     const Cut cut(lane.n_bonds);
     SegmentBlock s = segment_block(cut, j, lane);
     if (weighted) set_segment_masses(s, lane, arena);

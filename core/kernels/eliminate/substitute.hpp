@@ -12,8 +12,8 @@ namespace HOL_ISA {
 // The backward sweep, and what it gives written at once: G (see store_pulls_from) to `out`, and factor t to
 // value_out[bond]; either may be absent. For blocks in which all lanes are used and good, and can't overflow (calm()).
 template <Update update>
-HOL_NOINLINE void substitute_and_store(const Block &block, const System &s, const Packed &out,
-                                                           double *value_out, vec factor) {
+HOL_NOINLINE void substitute_and_store(const Block &block, const System &s, const Packed &out, double *value_out,
+                                       vec factor) {
     const long full = block.n_min / W * W;
     vec t = {};
     vec3 after = {};  // t d of the bond behind

@@ -1,8 +1,9 @@
-// What a translation unit of the kernels is compiled for: HOL_ISA, the namespace of its instruction set, and HOL_LANES, how
-// many doubles are worked on at once. core/CMakeLists.txt defines both; the defaults here let every header open alone.
+// What a translation unit of the kernels is compiled for: HOL_ISA, the namespace of its instruction set, and HOL_LANES,
+// how many doubles are worked on at once. core/CMakeLists.txt defines both; the defaults here let every header open
+// alone.
 //
-// All code of a set is in its namespace, so that no function compiled for a newer processor can be linked into code that
-// runs on an older one. So no standard headers with templates in the kernels.
+// All code of a set is in its namespace, so that no function compiled for a newer processor can be linked into code
+// that runs on an older one. So no standard headers with templates in the kernels.
 #ifndef HOLONOMIC_KERNELS_ISA_TARGET_HPP
 #define HOLONOMIC_KERNELS_ISA_TARGET_HPP
 

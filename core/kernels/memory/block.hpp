@@ -13,15 +13,15 @@ namespace HOL_ISA {
 constexpr int group = W > 4 ? W : 4;  // bonds of a lane that are read and eliminated at a time
 
 struct Block {
-    long n, n_min;        // bonds of the longest and of the shortest lane
-    long len[W];          // bonds of each lane
-    int lanes;            // lanes in use; the others repeat the first one and are never stored
-    bool roomy;           // W atoms more can be read behind each lane
-    long ahead;           // doubles from a lane's vectors to those of the next block, to be fetched early; or 0
-    long list_ahead;      // the same for lists of atoms
-    bool staged;          // some lanes lie in staging buffers, so all do
-    // Inverse masses are relative to a unit of each lane's own: its inverse mass where that is constant along it, else 1.
-    // So equal masses cost nothing, and are rounded the same way whatever stands in the other lanes.
+    long n, n_min;    // bonds of the longest and of the shortest lane
+    long len[W];      // bonds of each lane
+    int lanes;        // lanes in use; the others repeat the first one and are never stored
+    bool roomy;       // W atoms more can be read behind each lane
+    long ahead;       // doubles from a lane's vectors to those of the next block, to be fetched early; or 0
+    long list_ahead;  // the same for lists of atoms
+    bool staged;      // some lanes lie in staging buffers, so all do
+    // Inverse masses are relative to a unit of each lane's own: its inverse mass where that is constant along it,
+    // else 1. So equal masses cost nothing, and are rounded the same way whatever stands in the other lanes.
     bool uniform_w;       // they are 1 along every lane
     bool unit_masses;     // and so are the masses
     vec unit, mass;       // the unit, and 1 / unit
@@ -46,7 +46,9 @@ struct Packed {
 
 // Unit of the inverse masses of a chain, and the one of its atom k in it: see Block.
 HOL_INLINE double unit_of(const Lane &lane) { return !lane.w && lane.w_uniform > 0 ? lane.w_uniform : 1.0; }
-HOL_INLINE double relative_w(const Lane &lane, int64_t k) { return lane.w ? lane.w[k] : lane.w_uniform > 0 ? 1.0 : 0.0; }
+HOL_INLINE double relative_w(const Lane &lane, int64_t k) {
+    return lane.w ? lane.w[k] : lane.w_uniform > 0 ? 1.0 : 0.0;
+}
 
 // Inverse mass of atom k in the lane's unit.
 template <bool uniform>

@@ -90,8 +90,7 @@ static inline Packed open_segments(const AtomArray &array, const SegmentBlock &s
     if (!array.x) return packed;
     double *staging = nullptr;
     if (!in_place(array, lane)) staging = arena.doubles(W * staged_size(s.block.n));
-    for (int i = 0; i < W; ++i)
-        open_lane(array, lane, s.from[i], s.block.len[i], s.block.n, packed, i, staging, read);
+    for (int i = 0; i < W; ++i) open_lane(array, lane, s.from[i], s.block.len[i], s.block.n, packed, i, staging, read);
     return packed;
 }
 

@@ -16,7 +16,7 @@ constexpr int largest_molecule = 5;
 
 // Vectors of W molecules' atoms, rounded up to what is transposed at a time.
 template <int N>
-constexpr int vectors_of = (3 * (N + 1) + W - 1) / W * W;
+constexpr int vectors_of = (3 * (N + 1) + W - 1) / W *W;
 
 // The atoms of W molecules: element 3 a + c is component c of atom a. Up to W - 1 doubles behind each are read.
 template <int N>

@@ -95,8 +95,8 @@ static inline void close(const AtomArray &array, const Block &block, const Lane 
         if (chosen >> i & 1) unstage(array, lane[i], 0, block.len[i], packed.lane[i], add);
 }
 
-// Calls work(block, lane, call, arena, tally) for the blocks of a unit, after small(call, unit, block, first, tally) has done
-// what it can of W and more of them; that returns the first chain that it has left.
+// Calls work(block, lane, call, arena, tally) for the blocks of a unit, after small(call, unit, block, first, tally)
+// has done what it can of W and more of them; that returns the first chain that it has left.
 template <class Call, class Work, class Small>
 static inline void for_each_block(const Call &call, const Unit &unit, double *scratch, Tally &tally, Work work,
                                   Small small) {

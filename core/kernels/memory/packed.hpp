@@ -127,9 +127,8 @@ HOL_INLINE void load_full_chunk(const Block &block, const Box &box, const Places
 
 // The bonds k0 .. k0 + W - 1 where lanes may end: those past the end of a lane are inert, D = (1,0,0), B = 0.
 template <int terms, bool uniform, bool boxed, bool careful>
-HOL_NOINLINE void load_ragged_chunk(const Block &block, const Box &box, const Packed &r,
-                                                        const Packed &v, const Packed &f, long k0, vec3 *D,
-                                                        vec3 *D_low, vec *B) {
+HOL_NOINLINE void load_ragged_chunk(const Block &block, const Box &box, const Packed &r, const Packed &v,
+                                    const Packed &f, long k0, vec3 *D, vec3 *D_low, vec *B) {
     double buffer[3][W][3 * W + 3];
     const double *pr[W], *pv[W], *pf[W];
     for (int i = 0; i < W; ++i) {

@@ -17,7 +17,8 @@ HOL_INLINE const double *window(const double *p, long k, long len, bool roomy, d
     return buffer;
 }
 
-// Values along the lanes as vectors [n]: rows[lane][k] while all lanes have one, of count + more; value(lane, k) behind.
+// Values along the lanes as vectors [n]: rows[lane][k] while all lanes have one, of count + more; value(lane, k)
+// behind.
 template <class Value>
 HOL_INLINE void interleave(const double *const *rows, const long *count, long more, long n, vec *out,
                            const Value &value) {

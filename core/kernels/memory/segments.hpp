@@ -1,5 +1,5 @@
-// Reading W segments of a long chain: bond vectors and right-hand sides. Segments lie equally far apart in each array, so
-// that one address per array does for all lanes.
+// Reading W segments of a long chain: bond vectors and right-hand sides. Segments lie equally far apart in each array,
+// so that one address per array does for all lanes.
 #ifndef HOLONOMIC_KERNELS_MEMORY_SEGMENTS_HPP
 #define HOLONOMIC_KERNELS_MEMORY_SEGMENTS_HPP
 
@@ -118,8 +118,8 @@ HOL_INLINE void load_ragged_chunk_of(const Block &block, const Box &box, const P
 }
 
 template <int terms, bool uniform>
-HOL_NOINLINE void load_tail(const Block &block, const Box &box, const Packed &r, const Packed &v,
-                                                const Packed &f, long k0, vec3 *D, vec *B) {
+HOL_NOINLINE void load_tail(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
+                            long k0, vec3 *D, vec *B) {
     for (; k0 < block.n; k0 += W, D += W, B += W)
         load_ragged_chunk_of<terms, uniform, false>(block, box, r, v, f, k0, D, B);
 }

@@ -11,8 +11,8 @@ namespace HOL_ISA {
 
 HOL_INLINE long staged_size(long n_bonds) { return (3 * (n_bonds + 1) + 7) / 8 * 8; }
 
-// Calls each(element, i) for the components of the atoms from .. from + n of a chain, i counting them all; there is none
-// for an absent z. The layouts of consecutive atoms that most callers have are loops that the compiler vectorizes.
+// Calls each(element, i) for the components of the atoms from .. from + n of a chain, i counting them all; there is
+// none for an absent z. The layouts of consecutive atoms that most callers have are loops that the compiler vectorizes.
 template <class T, class Each>
 HOL_INLINE void for_each_element(const AtomArray &array, const Lane &lane, long from, long n, Each each) {
     const int64_t size = sizeof(T), offset = (lane.first_atom + from) * array.stride;
@@ -73,7 +73,8 @@ HOL_INLINE long unpack(const double *packed, long n, const Apart &to) {
     for (; k + 3 <= n; k += 4) {
         const __m256d a = _mm256_loadu_pd(packed + 3 * k), b = _mm256_loadu_pd(packed + 3 * k + 4);
         const __m256d c = _mm256_loadu_pd(packed + 3 * k + 8);
-        const __m256d xy = _mm256_blend_pd(a, b, 12), zx = _mm256_permute2f128_pd(a, c, 0x21), yz = _mm256_blend_pd(b, c, 12);
+        const __m256d xy = _mm256_blend_pd(a, b, 12), zx = _mm256_permute2f128_pd(a, c, 0x21),
+                      yz = _mm256_blend_pd(b, c, 12);
         put(to.x + k, _mm256_blend_pd(xy, zx, 10));
         put(to.y + k, _mm256_shuffle_pd(xy, yz, 5));
         put(to.z + k, _mm256_blend_pd(zx, yz, 10));
@@ -90,15 +91,13 @@ HOL_INLINE long unpack(const double *, long, const Apart &) {
 
 template <class T>
 HOL_INLINE void stage_elements(const AtomArray &array, const Lane &lane, long from, long n, double *__restrict packed) {
-    for_each_element<T>(array, lane, from, n, [=](const T &element, long i) __attribute__((always_inline)) {
-        packed[i] = element;
-    });
+    for_each_element<T>(
+        array, lane, from, n, [=](const T &element, long i) __attribute__((always_inline)) { packed[i] = element; });
     for (long k = 0; !array.z && k <= n; ++k) packed[3 * k + 2] = 0;
 }
 
 // Copies atoms `from` .. `from + n` of a chain into packed[n+1][3].
-HOL_NOINLINE void stage(const AtomArray &array, const Lane &lane, long from, long n,
-                                            double *packed) {
+HOL_NOINLINE void stage(const AtomArray &array, const Lane &lane, long from, long n, double *packed) {
     const Apart apart(array, lane, from);
     const long done = apart.x ? pack(apart, n, packed) : 0;
     if (done > n) return;
@@ -111,9 +110,10 @@ HOL_NOINLINE void stage(const AtomArray &array, const Lane &lane, long from, lon
 template <class T, bool add>
 HOL_INLINE void unstage_elements(const AtomArray &array, const Lane &lane, long from, long n,
                                  const double *__restrict packed) {
-    for_each_element<T>(array, lane, from, n, [=](T &element, long i) __attribute__((always_inline)) {
-        element = static_cast<T>(add ? static_cast<double>(element) + packed[i] : packed[i]);
-    });
+    for_each_element<T>(
+        array, lane, from, n, [=](T & element, long i) __attribute__((always_inline)) {
+            element = static_cast<T>(add ? static_cast<double>(element) + packed[i] : packed[i]);
+        });
 }
 
 template <bool add>
@@ -127,8 +127,7 @@ HOL_INLINE void unstage(const AtomArray &array, const Lane &lane, long from, lon
         unstage_elements<double, add>(array, lane, from + done, n - done, packed + 3 * done);
 }
 
-HOL_NOINLINE void unstage(const AtomArray &array, const Lane &lane, long from, long n,
-                                              const double *packed, bool add) {
+HOL_NOINLINE void unstage(const AtomArray &array, const Lane &lane, long from, long n, const double *packed, bool add) {
     add ? unstage<true>(array, lane, from, n, packed) : unstage<false>(array, lane, from, n, packed);
 }
 

@@ -10,8 +10,8 @@ namespace HOL_ISA {
 // What the right-hand side of a bond is made of.
 enum Terms { none_ = 0, velocity_squared = 1, force_difference = 2, rate = 4, unit_mass = 8 };
 
-// The right-hand side of a bond as load_chunk() finds it, from differences already in lanes: dv of the velocities, df of
-// the forces times their inverse masses. `waited`: for images of bonds.
+// The right-hand side of a bond as load_chunk() finds it, from differences already in lanes: dv of the velocities, df
+// of the forces times their inverse masses. `waited`: for images of bonds.
 template <int terms>
 HOL_INLINE vec right_hand_side(bool waited, vec mass, const vec3 &d, const vec3 &dv, const vec3 &df) {
     if (terms & rate) return dot(d, dv);

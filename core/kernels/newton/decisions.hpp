@@ -39,8 +39,8 @@ class Carried {
 public:
     Carried(const Block &block, const Newton &x, const PositionsCall &call, const Packed &r,
             const int64_t *const *lists = nullptr)
-        : block_(block), x_(x), r_(r), lists_(lists), tolerance_(call.tolerance), u_(call.r.is_float ? 5.97e-8 : 1.11e-16),
-          boxed_(call.box.shape != Box::none) {}
+        : block_(block), x_(x), r_(r), lists_(lists), tolerance_(call.tolerance),
+          u_(call.r.is_float ? 5.97e-8 : 1.11e-16), boxed_(call.box.shape != Box::none) {}
 
     vec largest_coordinate() {
         if (!known_) largest_ = extent(block_, r_, lists_);

@@ -1,6 +1,6 @@
 // Positions of blocks of equally long chains with lists of atoms, in packed arrays: read and moved where the lists say,
-// with the arithmetic of positions.inl. Where a lane needs more than the first attempt, or nothing done to it, the block
-// is left to the general path as it came.
+// with the arithmetic of positions.inl. Where a lane needs more than the first attempt, or nothing done to it, the
+// block is left to the general path as it came.
 #ifndef HOLONOMIC_KERNELS_NEWTON_LISTED_HPP
 #define HOLONOMIC_KERNELS_NEWTON_LISTED_HPP
 
@@ -54,7 +54,7 @@ static inline void scatter_moves(const Block &block, const Newton &x, const Atom
 // Whether this did all that there was to do; else nothing has been written.
 template <bool uniform_w, bool uniform_a>
 HOL_NOINLINE bool listed_positions(const Block &block, const Lane *lane, const PositionsCall &call,
-                                                       const BondLengths &a, Arena arena, Tally &tally) {
+                                   const BondLengths &a, Arena arena, Tally &tally) {
     if (!call.r_ref.packed || !call.r.packed || (call.v.x && !call.v.packed) || !listed(block, lane)) return false;
     const AtomLists at(lane);
     Newton x(block, a, arena);

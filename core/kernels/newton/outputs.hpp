@@ -1,4 +1,5 @@
-// What Newton's method has found, to and from the caller's arrays: a guess, moves, multipliers, the worst bond, the virial.
+// What Newton's method has found, to and from the caller's arrays: a guess, moves, multipliers, the worst bond, the
+// virial.
 #ifndef HOLONOMIC_KERNELS_NEWTON_OUTPUTS_HPP
 #define HOLONOMIC_KERNELS_NEWTON_OUTPUTS_HPP
 
@@ -17,8 +18,8 @@ static inline void load_guess(const Block &block, const PositionsCall &call, con
     }
 }
 
-// Moves the atoms `first` .. n of the lanes in `which` by w_i (tau_{i+1} b_{i+1} - tau_i b_i), and changes their velocities
-// by `per_dt` times that: either, or both. `before` is tau b of the bond before the first atom.
+// Moves the atoms `first` .. n of the lanes in `which` by w_i (tau_{i+1} b_{i+1} - tau_i b_i), and changes their
+// velocities by `per_dt` times that: either, or both. `before` is tau b of the bond before the first atom.
 template <bool uniform_w, bool to_r, bool to_v>
 static inline void store_moves(const Block &block, const Newton &x, mask which, const Packed &r, const Packed &v,
                                double per_dt, long first = 0, vec3 before = vec3{}) {

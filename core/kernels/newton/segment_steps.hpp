@@ -1,5 +1,5 @@
-// Steps of Newton's method on one long chain with the factors at hand (segments_newton.inl): the separators are joined, and
-// each block substitutes backward, moves its bonds and substitutes forward what that leaves of their lengths.
+// Steps of Newton's method on one long chain with the factors at hand (segments_newton.inl): the separators are joined,
+// and each block substitutes backward, moves its bonds and substitutes forward what that leaves of their lengths.
 #ifndef HOLONOMIC_KERNELS_NEWTON_SEGMENT_STEPS_HPP
 #define HOLONOMIC_KERNELS_NEWTON_SEGMENT_STEPS_HPP
 
@@ -28,11 +28,10 @@ static inline void descend(const SegmentBlock &s, const NewtonSegments &x, vec n
         for (long i = s.own[s.last]; i < s.block.n; ++i) x.s[i][s.last] = 0;
 }
 
-// Moves the bonds by the corrections in s, finds what is left of D.D - a^2 and, with `ascend`, substitutes that forward.
-// Returns the largest error of each lane.
+// Moves the bonds by the corrections in s, finds what is left of D.D - a^2 and, with `ascend`, substitutes that
+// forward. Returns the largest error of each lane.
 template <bool uniform_w, bool uniform_a, bool ascend>
-HOL_NOINLINE vec move_segments(const SegmentBlock &s, const Lane &lane, const NewtonSegments &x,
-                                                   const vec3 &previous) {
+HOL_NOINLINE vec move_segments(const SegmentBlock &s, const Lane &lane, const NewtonSegments &x, const vec3 &previous) {
     const vec a2_uniform = splat(lane.length_uniform * lane.length_uniform);
     vec c = x.s[0], w = w_at<uniform_w>(s.block, 0), worst = {}, poison = {};
     vec3 p = {c * x.b[0].x, c * x.b[0].y, c * x.b[0].z};
@@ -79,7 +78,8 @@ HOL_NOINLINE vec move_segments(const SegmentBlock &s, const Lane &lane, const Ne
 }
 
 template <bool ascend>
-static inline vec move_segments(const SegmentBlock &s, const Lane &lane, const NewtonSegments &x, const vec3 &previous) {
+static inline vec move_segments(const SegmentBlock &s, const Lane &lane, const NewtonSegments &x,
+                                const vec3 &previous) {
     if (s.block.uniform_w)
         return lane.length ? move_segments<true, false, ascend>(s, lane, x, previous)
                            : move_segments<true, true, ascend>(s, lane, x, previous);

@@ -15,15 +15,15 @@ namespace holonomic {
 namespace HOL_ISA {
 
 struct NewtonSummary {
-    vec E, a, c, down, up;            // what the elimination leaves; `up` starts from
-    vec first_up;                     // the coupling of the separator to its neighbour
-    vec s, y, T;                      // and the forward substitution; s: right-hand side of the separator
-    vec last_u, last_fP, last_up;     // of each segment's last bond
+    vec E, a, c, down, up;         // what the elimination leaves; `up` starts from
+    vec first_up;                  // the coupling of the separator to its neighbour
+    vec s, y, T;                   // and the forward substitution; s: right-hand side of the separator
+    vec last_u, last_fP, last_up;  // of each segment's last bond
     vec3 last_b;
-    vec P, join_down, join_up;        // pivots and multipliers of the separators
-    vec t;                            // their corrections
-    vec3 last;                        // correction times b of each segment's last bond
-    vec error;                        // largest |D.D - a^2| / a^2 of the segment
+    vec P, join_down, join_up;  // pivots and multipliers of the separators
+    vec t;                      // their corrections
+    vec3 last;                  // correction times b of each segment's last bond
+    vec error;                  // largest |D.D - a^2| / a^2 of the segment
 };
 
 struct NewtonSegments {
@@ -114,8 +114,8 @@ HOL_NOINLINE void factorize_segments(const SegmentBlock &s, const NewtonSegments
             const vec q1 = dot(x.D[k + 1], x.b[k + 1]);
             vec lower = dot(x.D[k + 1], x.b[k]), upper = dot(x.D[k], x.b[k + 1]);
             // Where the cross products are needed, the first attempt does not converge as it should.
-            vec X = careful ? dot(cross(x.D[k], x.D[k + 1]), cross(x.b[k], x.b[k + 1]))
-                            : mul_add(q, q1, -(lower * upper));
+            vec X =
+                careful ? dot(cross(x.D[k], x.D[k + 1]), cross(x.b[k], x.b[k + 1])) : mul_add(q, q1, -(lower * upper));
             if (k + 1 >= block.n_min) {
                 const mask m = joint(block, k + 1);
                 lower = keep(m, lower);

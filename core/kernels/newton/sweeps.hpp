@@ -87,7 +87,8 @@ enum Factors { first_factors, renewed_factors, careful_factors };
 
 // Eliminates with the Jacobian at D and substitutes forward; returns the largest error. first_factors: of D as loaded,
 // in all lanes; renewed_factors: of D as moved by the corrections so far, in the lanes in `which`; careful_factors: of
-// D as it stands, in the lanes in `which`, with a division per bond and nothing that cancels. Fractions as in forward().
+// D as it stands, in the lanes in `which`, with a division per bond and nothing that cancels. Fractions as in
+// forward().
 template <bool uniform_w, bool uniform_a, Factors factors, int fixed = 0>
 HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
     constexpr bool moved = factors == renewed_factors, all = factors == first_factors,
@@ -156,21 +157,23 @@ HOL_NOINLINE vec renew(const Block &block, const Newton &x, mask which) {
 }
 
 // Moves the bonds by the corrections `step`, and substitutes forward what that leaves of their lengths; returns the
-// largest error. `keep_bonds`: D becomes the moved bonds. `fetch`: what to fetch of the next block meanwhile, or nullptr.
+// largest error. `keep_bonds`: D becomes the moved bonds. `fetch`: what to fetch of the next block meanwhile, or
+// nullptr.
 template <bool uniform_w, bool uniform_a, bool keep_bonds, int fixed = 0>
 HOL_INLINE vec correct(const Block &block, const Newton &x, const double *fetch) {
     Mover<uniform_w> mover = Mover<uniform_w>::start(x);
     vec worst = {}, y = {};
-    go_up<fixed>(block, [&](long k, bool ragged) __attribute__((always_inline)) {
-        if (!keep_bonds && fixed == 0 && k % 2 == 0 && fetch) fetch_ahead<2>(fetch, k, block.ahead);
-        const vec3 d = Mover<uniform_w>::bond(mover, x, k);
-        if (keep_bonds) {
-            const mask m = live(x, k);
-            x.D[k] = {select(m, d.x, x.D[k].x), select(m, d.y, x.D[k].y), select(m, d.z, x.D[k].z)};
-        }
-        y = mul_add(x.row[k].down, y, length_error<uniform_a>(x, k, ragged, d, worst));
-        x.row[k].u = y * x.row[k].half_rP;
-    });
+    go_up<fixed>(
+        block, [&](long k, bool ragged) __attribute__((always_inline)) {
+            if (!keep_bonds && fixed == 0 && k % 2 == 0 && fetch) fetch_ahead<2>(fetch, k, block.ahead);
+            const vec3 d = Mover<uniform_w>::bond(mover, x, k);
+            if (keep_bonds) {
+                const mask m = live(x, k);
+                x.D[k] = {select(m, d.x, x.D[k].x), select(m, d.y, x.D[k].y), select(m, d.z, x.D[k].z)};
+            }
+            y = mul_add(x.row[k].down, y, length_error<uniform_a>(x, k, ragged, d, worst));
+            x.row[k].u = y * x.row[k].half_rP;
+        });
     return largest_error<uniform_a>(x, worst, y);
 }
 

@@ -35,11 +35,11 @@ struct BondLengths {
 struct Newton : BondLengths {
     vec3 *b, *D;  // [n+1]: behind the last bond is one of length 0, whose multiplier is 0
     Row *row;
-    vec *tau;         // [n+1], times `unit`
-    vec *correction;  // [n+1], the last one
-    vec *step;        // what D has not been moved by yet: tau, or the last correction
-    const vec *w;     // [n+1] inverse masses, those of the block; not if all are 1
-    vec lengths;      // numbers of bonds
+    vec *tau;                    // [n+1], times `unit`
+    vec *correction;             // [n+1], the last one
+    vec *step;                   // what D has not been moved by yet: tau, or the last correction
+    const vec *w;                // [n+1] inverse masses, those of the block; not if all are 1
+    vec lengths;                 // numbers of bonds
     const double *next[3] = {};  // where the block's atoms begin, for those of the next one to be fetched early
     Newton(long n, Arena &arena)
         : b(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + 1)))), D(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + 1)))),

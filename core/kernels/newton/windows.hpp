@@ -1,9 +1,9 @@
-// Position level of one long chain in windows: W pieces of it with a margin on either side, solved in cache as chains of
-// their own by the kernel of short ones. What happens beyond the end of a piece is felt k joints further in by no more
-// than the product of their |l|, which dies within a few dozen bonds of a coil; the multipliers of the margins are thrown
-// away. That the others solve the chain's equations does not rest on this: inside a piece it is what Newton's method
-// has found, and where two pieces meet the lengths of the bonds are computed before anything is written. Chains whose ends
-// are felt farther are left to segments_newton.inl.
+// Position level of one long chain in windows: W pieces of it with a margin on either side, solved in cache as chains
+// of their own by the kernel of short ones. What happens beyond the end of a piece is felt k joints further in by no
+// more than the product of their |l|, which dies within a few dozen bonds of a coil; the multipliers of the margins are
+// thrown away. That the others solve the chain's equations does not rest on this: inside a piece it is what Newton's
+// method has found, and where two pieces meet the lengths of the bonds are computed before anything is written. Chains
+// whose ends are felt farther are left to segments_newton.inl.
 #ifndef HOLONOMIC_KERNELS_NEWTON_WINDOWS_HPP
 #define HOLONOMIC_KERNELS_NEWTON_WINDOWS_HPP
 
@@ -21,11 +21,11 @@ constexpr double negligible = 1e-19;  // of what happens beyond a margin
 
 static inline Cut windows(int64_t n_bonds) { return Cut(n_bonds, window_bonds * W); }
 
-// How many bonds beyond an atom of the chain, in the direction `step` (1 or -1), a piece needs there; those to the end of
-// the chain if that comes first. Or -1: too many.
+// How many bonds beyond an atom of the chain, in the direction `step` (1 or -1), a piece needs there; those to the end
+// of the chain if that comes first. Or -1: too many.
 //
-// Elimination towards the margin finds P = w q + E at a joint and E >= w' q sin'^2, where ' is the joint before, at an atom
-// of inverse mass w': |l| <= |cos| / (1 + (w' / w) sin'^2), for equal lengths.
+// Elimination towards the margin finds P = w q + E at a joint and E >= w' q sin'^2, where ' is the joint before, at an
+// atom of inverse mass w': |l| <= |cos| / (1 + (w' / w) sin'^2), for equal lengths.
 static inline long margin(const PositionsCall &call, const Lane &lane, int64_t atom, int step, Arena arena) {
     const int64_t to_end = step > 0 ? lane.n_bonds - atom : atom;
     const long most = to_end < longest_margin ? static_cast<long>(to_end) : longest_margin;
@@ -62,7 +62,8 @@ struct Pieces {
 };
 
 // Returns false if windows don't pay or won't do.
-static inline bool cut_pieces(const PositionsCall &call, const Lane &lane, const SegmentBlock &s, Arena arena, Pieces &x) {
+static inline bool cut_pieces(const PositionsCall &call, const Lane &lane, const SegmentBlock &s, Arena arena,
+                              Pieces &x) {
     if (s.own_max < shortest_piece) return false;
     long before = 0, behind = 0;
     for (int i = 0; i < W; ++i) {
@@ -89,11 +90,12 @@ static inline bool cut_pieces(const PositionsCall &call, const Lane &lane, const
     return true;
 }
 
-// The largest error of the pieces without their margins, if greater than the one in the tally, and the first bond that has
-// it. `seams`: with the bonds on either side of the atoms where pieces meet; the multipliers here are not all theirs.
+// The largest error of the pieces without their margins, if greater than the one in the tally, and the first bond that
+// has it. `seams`: with the bonds on either side of the atoms where pieces meet; the multipliers here are not all
+// theirs.
 template <bool uniform_w, bool uniform_a>
-HOL_NOINLINE void note_worst_of_pieces(const Newton &x, const SegmentBlock &s, const Pieces &pieces,
-                                                           const Lane &lane, bool seams, Tally &tally) {
+HOL_NOINLINE void note_worst_of_pieces(const Newton &x, const SegmentBlock &s, const Pieces &pieces, const Lane &lane,
+                                       bool seams, Tally &tally) {
     vec first, end, worst = {}, at = {};
     for (int i = 0; i < W; ++i) {
         const bool chain_begins = s.from[i] == 0, chain_ends = i == s.last;
@@ -120,9 +122,9 @@ HOL_NOINLINE void note_worst_of_pieces(const Newton &x, const SegmentBlock &s, c
 }
 
 template <bool uniform_w, bool uniform_a>
-static inline WindowResult solve_window(const Block &block, const Lane *piece, const PositionsCall &call, const BondLengths &a,
-                                 const SegmentBlock &s, const Pieces &pieces, const Lane &lane, Arena arena, double *tau,
-                                 Tally &tally) {
+static inline WindowResult solve_window(const Block &block, const Lane *piece, const PositionsCall &call,
+                                        const BondLengths &a, const SegmentBlock &s, const Pieces &pieces,
+                                        const Lane &lane, Arena arena, double *tau, Tally &tally) {
     // The lengths at the ends of a piece must be within the tolerance with the multipliers of its neighbour, too.
     PositionsCall strict = call;
     strict.tolerance = call.tolerance / 8;
@@ -152,10 +154,10 @@ static inline WindowResult solve_window(const Block &block, const Lane *piece, c
     return window_solved;
 }
 
-// Largest |D.D - a^2| / a^2, as moved by tau, of the bonds on either side of atom `seam`; kept in the tally if it is the
-// largest so far.
-static inline double seam_error(const PositionsCall &call, const Lane &lane, int64_t seam, const double *tau, Arena arena,
-                         Tally &tally) {
+// Largest |D.D - a^2| / a^2, as moved by tau, of the bonds on either side of atom `seam`; kept in the tally if it is
+// the largest so far.
+static inline double seam_error(const PositionsCall &call, const Lane &lane, int64_t seam, const double *tau,
+                                Arena arena, Tally &tally) {
     const int64_t from = seam - 2 > 0 ? seam - 2 : 0, end = seam + 2 < lane.n_bonds ? seam + 2 : lane.n_bonds;
     const long n = static_cast<long>(end - from);
     Packed r_ref = {}, r = {};
@@ -193,7 +195,7 @@ static inline double seam_error(const PositionsCall &call, const Lane &lane, int
 // Moves the atoms 1 .. own of the pieces, and the first one of the chain.
 template <bool uniform_w, bool to_r, bool to_v>
 static inline void move_window(const SegmentBlock &s, int64_t j, const Newton &x, const Packed &r, const Packed &v,
-                        double per_dt) {
+                               double per_dt) {
     const vec3 first = times(x.tau[0], x.b[0]);
     store_moves<uniform_w, to_r, to_v>(own_block(s), x, first_lanes(W), r, v, per_dt, 1, first);
     if (j > 0) return;

@@ -20,7 +20,7 @@ static inline bool listed_forces(const Block &block, const Lane *lane, const For
     mask good;
     if (call.v.x && call.f.x)
         good = forward_listed<velocity_squared | force_difference>(block, call.box, at, call.r, call.v, call.f, s,
-                                                                  nullptr);
+                                                                   nullptr);
     else if (call.f.x)
         good = forward_listed<force_difference>(block, call.box, at, call.r, call.v, call.f, s, nullptr);
     else if (call.v.x)
@@ -37,7 +37,7 @@ static inline bool listed_forces(const Block &block, const Lane *lane, const For
 
 template <bool careful>
 static inline mask forward_forces(const Block &block, const ForcesCall &call, const Packed &r, const Packed &v,
-                                    const Packed &f, const System &s, mask &calm) {
+                                  const Packed &f, const System &s, mask &calm) {
     if (call.v.x && call.f.x)
         return forward_any<velocity_squared | force_difference, careful>(block, call.box, r, v, f, s, calm);
     if (call.f.x) return forward_any<force_difference, careful>(block, call.box, r, v, f, s, calm);
@@ -95,7 +95,7 @@ void forces(const ForcesCall &call, const Unit &unit, double *scratch, Tally &ta
 }
 
 void long_forces_eliminate(const ForcesCall &call, const Lane &lane, int64_t j, bool careful, double *store,
-                                  double *scratch) {
+                           double *scratch) {
     constexpr int both = velocity_squared | force_difference;
     const Arena arena = {scratch};
     if (call.v.x && call.f.x)
@@ -109,7 +109,7 @@ void long_forces_eliminate(const ForcesCall &call, const Lane &lane, int64_t j, 
 }
 
 void long_forces_finish(const ForcesCall &call, const Lane &lane, int64_t j, double *store, double *scratch,
-                               Tally &tally) {
+                        Tally &tally) {
     const SegmentOutputs out = {{}, false, call.lambda, call.tension, splat(0.5), 1.0, call.virial};
     finish_block<false>(call.box, call.r, call.g, call.add, out, lane, j, store, Arena{scratch}, tally);
 }

@@ -52,7 +52,8 @@ struct ForcesOfMolecules {
     }
 };
 
-static inline int64_t small_forces(const ForcesCall &call, const Unit &unit, const Block &block, int64_t first, Tally &) {
+static inline int64_t small_forces(const ForcesCall &call, const Unit &unit, const Block &block, int64_t first,
+                                   Tally &) {
     const bool plain = call.r.packed && (!call.v.x || call.v.packed) && (!call.f.x || call.f.packed) &&
                        (!call.g.x || call.g.packed) && !call.tension && !call.virial && call.box.shape == Box::none;
     return plain ? any_molecules<ForcesOfMolecules>(call, unit, block, first) : first;

@@ -10,15 +10,14 @@ namespace holonomic {
 namespace HOL_ISA {
 
 template <bool uniform, bool boxed>
-HOL_NOINLINE void metric_of_block(const Block &block, const Lane *lane, const MetricCall &call,
-                                                      Arena arena, Tally &tally) {
+HOL_NOINLINE void metric_of_block(const Block &block, const Lane *lane, const MetricCall &call, Arena arena,
+                                  Tally &tally) {
     const Packed r = open(call.r, block, lane, arena, true), absent = {};
     const Geometry x(block.n, arena);
     load_bonds<none_, uniform, boxed, true>(block, call.box, r, absent, absent, x.u, x.low, x.t);
     measure<uniform>(block, x);
     mask good = block.in_use();
-    const MetricSums sums =
-        eliminate_metric<uniform>(block, x, x.delta[0], vec{}, block.lengths(), call, good);
+    const MetricSums sums = eliminate_metric<uniform>(block, x, x.delta[0], vec{}, block.lengths(), call, good);
     good = good & finite(sums.log_det) & finite(sums.log_det_z);
     const unsigned which = bits(good);
     if (call.force.x && which) {
@@ -93,7 +92,7 @@ bool long_metric_join(const Lane &lane, double *store) {
 }
 
 void long_metric_finish(const MetricCall &call, const Lane &lane, int64_t j, double *store, double *scratch,
-                               Tally &tally) {
+                        Tally &tally) {
     const Cut cut(lane.n_bonds);
     MetricWindow x = metric_window(cut, j, lane);
     Arena arena = {scratch};
@@ -104,9 +103,7 @@ void long_metric_finish(const MetricCall &call, const Lane &lane, int64_t j, dou
         finish_window<false>(call, lane, x, arena, metric_summary(store, j), tally);
 }
 
-int64_t long_metric_bytes(int64_t n_bonds) {
-    return Cut(n_bonds).blocks * static_cast<int64_t>(sizeof(MetricSummary));
-}
+int64_t long_metric_bytes(int64_t n_bonds) { return Cut(n_bonds).blocks * static_cast<int64_t>(sizeof(MetricSummary)); }
 
 }  // namespace HOL_ISA
 }  // namespace holonomic

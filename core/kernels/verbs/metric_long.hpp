@@ -1,6 +1,6 @@
-// Metric of one long chain: the lanes are its segments. The map from e of one bond to that of the next, and from f of one
-// bond to that of the bond before, is a fraction of linear functions with coefficients that are not negative, so that
-// the maps of whole segments are found without a subtraction; then each segment goes on as a chain of its own.
+// Metric of one long chain: the lanes are its segments. The map from e of one bond to that of the next, and from f of
+// one bond to that of the bond before, is a fraction of linear functions with coefficients that are not negative, so
+// that the maps of whole segments are found without a subtraction; then each segment goes on as a chain of its own.
 //
 // Theory (32):
 //     e_k = ((delta_k + p_k) e_{k-1} + delta_k p_k) / (e_{k-1} + p_k),   R_k = f_k - delta_k:  the mirror image

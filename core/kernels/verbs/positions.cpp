@@ -30,18 +30,19 @@ void positions(const PositionsCall &call, const Unit &unit, double *scratch, Tal
     BondLengths lengths = {};
     const double *begin = nullptr;
     double *end = nullptr;
-    for_each_block(call, unit, scratch, tally,
-                   [&](const Block &block, const Lane *lane, const PositionsCall &, Arena arena, Tally &) {
-                       if (unit.regular && begin == arena.next) {  // as the chains of the block before, and in place
-                           arena.next = end;
-                       } else {
-                           begin = arena.next;
-                           lengths = bond_lengths(block, lane, arena);
-                           end = arena.next;
-                       }
-                       positions_block(block, lane, call, lengths, arena, tally);
-                   },
-                   small_positions);
+    for_each_block(
+        call, unit, scratch, tally,
+        [&](const Block &block, const Lane *lane, const PositionsCall &, Arena arena, Tally &) {
+            if (unit.regular && begin == arena.next) {  // as the chains of the block before, and in place
+                arena.next = end;
+            } else {
+                begin = arena.next;
+                lengths = bond_lengths(block, lane, arena);
+                end = arena.next;
+            }
+            positions_block(block, lane, call, lengths, arena, tally);
+        },
+        small_positions);
 }
 
 }  // namespace HOL_ISA

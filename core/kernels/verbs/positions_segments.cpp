@@ -11,8 +11,8 @@ int64_t long_positions_bytes(int64_t n_bonds) {
     return cut.blocks * NewtonSegments::vectors(cut.longest()) * static_cast<int64_t>(sizeof(vec));
 }
 
-void long_positions_load(const PositionsCall &call, const Lane &lane, int64_t j, double *store,
-                                double *scratch, LongTally &tally) {
+void long_positions_load(const PositionsCall &call, const Lane &lane, int64_t j, double *store, double *scratch,
+                         LongTally &tally) {
     const Cut cut(lane.n_bonds);
     const NewtonSegments x(store, cut.longest(), j);
     SegmentBlock s = segment_block(cut, j, lane);
@@ -73,7 +73,7 @@ void long_positions_forget(const Lane &lane, int64_t j, double *store) {
 
 // Eliminates with the Jacobian at D and substitutes forward. The bond behind each segment is taken from its owner.
 void long_positions_factorize(const PositionsCall &, const Lane &lane, int64_t j, bool careful, double *store,
-                                     double *scratch) {
+                              double *scratch) {
     const Cut cut(lane.n_bonds);
     const NewtonSegments x(store, cut.longest(), j);
     SegmentBlock s = segment_block(cut, j, lane);
@@ -141,10 +141,10 @@ bool long_positions_join(const Lane &lane, bool renew, double *store) {
     return true;
 }
 
-// With `substitute`, moves the bonds by the corrections that those of the separators lead to, and substitutes forward what
-// that leaves of their lengths; else by the corrections in s. Returns the largest error of the block.
+// With `substitute`, moves the bonds by the corrections that those of the separators lead to, and substitutes forward
+// what that leaves of their lengths; else by the corrections in s. Returns the largest error of the block.
 double long_positions_step(const PositionsCall &, const Lane &lane, int64_t j, bool substitute, double *store,
-                                  double *scratch) {
+                           double *scratch) {
     const Cut cut(lane.n_bonds);
     const NewtonSegments x(store, cut.longest(), j);
     SegmentBlock s = segment_block(cut, j, lane);
@@ -152,8 +152,9 @@ double long_positions_step(const PositionsCall &, const Lane &lane, int64_t j, b
     set_segment_masses(s, lane, arena);
     const bool has_next = j + 1 < cut.blocks;
     if (substitute)
-        descend(s, x, next_of(x.summary->t, has_next,
-                              has_next ? NewtonSegments(store, cut.longest(), j + 1).summary->t[0] : 0.0));
+        descend(s, x,
+                next_of(x.summary->t, has_next,
+                        has_next ? NewtonSegments(store, cut.longest(), j + 1).summary->t[0] : 0.0));
     const vec3 last = x.summary->last;
     vec3 previous = {};
     if (j > 0) {
@@ -167,7 +168,8 @@ double long_positions_step(const PositionsCall &, const Lane &lane, int64_t j, b
         previous.y[i] = last.y[i - 1];
         previous.z[i] = last.z[i - 1];
     }
-    const vec error = substitute ? move_segments<true>(s, lane, x, previous) : move_segments<false>(s, lane, x, previous);
+    const vec error =
+        substitute ? move_segments<true>(s, lane, x, previous) : move_segments<false>(s, lane, x, previous);
     x.summary->error = error;
     double worst = 0;
     for (int i = 0; i < W; ++i) {
@@ -204,7 +206,7 @@ double long_positions_pull(const Lane &lane, int64_t j, double *store) {
 
 // Writes r, v and lambda, and adds to the sums; with `moved` false the chain was within the tolerance as it came.
 void long_positions_finish(const PositionsCall &call, const Lane &lane, int64_t j, bool moved, double *store,
-                                  double *scratch, Tally &tally) {
+                           double *scratch, Tally &tally) {
     const Cut cut(lane.n_bonds);
     const NewtonSegments x(store, cut.longest(), j);
     SegmentBlock s = segment_block(cut, j, lane);

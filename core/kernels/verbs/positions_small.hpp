@@ -169,8 +169,7 @@ HOL_NOINLINE int64_t of_molecules(const MoleculesCall &m, int64_t first, Tally &
         }
         if (any(~out.converged)) break;
         vec pull = {};
-        for (int k = 0; k < N; ++k)
-            pull = max(uniform ? abs(x.tau[k]) : max(x.w[k], x.w[k + 1]) * abs(x.tau[k]), pull);
+        for (int k = 0; k < N; ++k) pull = max(uniform ? abs(x.tau[k]) : max(x.w[k], x.w[k + 1]) * abs(x.tau[k]), pull);
         if (any(less(0.25 * x.a_min, pull * x.a_max))) break;
         if (m.call.report) note_molecules<N, uniform>(m, x, out.error, first, tally);
         move_molecules<N, uniform>(x, m.r + at, m.v ? m.v + at : nullptr, m.per_dt);
@@ -182,7 +181,7 @@ HOL_NOINLINE int64_t of_molecules(const MoleculesCall &m, int64_t first, Tally &
 }
 
 static inline int64_t small_positions(const PositionsCall &call, const Unit &unit, const Block &block, int64_t first,
-                               Tally &tally) {
+                                      Tally &tally) {
     const Lane &head = unit.lanes[0];
     if (!unit.regular || head.atoms || head.n_bonds > largest_molecule || !call.r.packed || !call.r_ref.packed ||
         (call.v.x && !call.v.packed) || call.virial || call.guess || call.box.shape != Box::none ||
@@ -191,11 +190,16 @@ static inline int64_t small_positions(const PositionsCall &call, const Unit &uni
     const MoleculesCall m(call, unit, block);
     const bool uniform = block.uniform_w && !head.length;
     switch (head.n_bonds) {
-        case 1: return uniform ? of_molecules<1, true>(m, first, tally) : of_molecules<1, false>(m, first, tally);
-        case 2: return uniform ? of_molecules<2, true>(m, first, tally) : of_molecules<2, false>(m, first, tally);
-        case 3: return uniform ? of_molecules<3, true>(m, first, tally) : of_molecules<3, false>(m, first, tally);
-        case 4: return uniform ? of_molecules<4, true>(m, first, tally) : of_molecules<4, false>(m, first, tally);
-        default: return uniform ? of_molecules<5, true>(m, first, tally) : of_molecules<5, false>(m, first, tally);
+        case 1:
+            return uniform ? of_molecules<1, true>(m, first, tally) : of_molecules<1, false>(m, first, tally);
+        case 2:
+            return uniform ? of_molecules<2, true>(m, first, tally) : of_molecules<2, false>(m, first, tally);
+        case 3:
+            return uniform ? of_molecules<3, true>(m, first, tally) : of_molecules<3, false>(m, first, tally);
+        case 4:
+            return uniform ? of_molecules<4, true>(m, first, tally) : of_molecules<4, false>(m, first, tally);
+        default:
+            return uniform ? of_molecules<5, true>(m, first, tally) : of_molecules<5, false>(m, first, tally);
     }
 }
 

@@ -9,8 +9,8 @@ namespace HOL_ISA {
 int64_t long_positions_windows(int64_t n_bonds) { return windows(n_bonds).blocks; }
 
 // Finds the multipliers of window j, tau[n_bonds] in the store.
-WindowResult long_positions_window(const PositionsCall &call, const Lane &lane, int64_t j, double *tau,
-                                          double *scratch, Tally &tally) {
+WindowResult long_positions_window(const PositionsCall &call, const Lane &lane, int64_t j, double *tau, double *scratch,
+                                   Tally &tally) {
     const SegmentBlock s = segment_block(windows(lane.n_bonds), j, lane);
     Pieces pieces;
     if (!cut_pieces(call, lane, s, Arena{scratch}, pieces)) return window_failed;
@@ -29,7 +29,7 @@ WindowResult long_positions_window(const PositionsCall &call, const Lane &lane, 
 
 // Whether the multipliers of the pieces fit together.
 bool long_positions_windows_fit(const PositionsCall &call, const Lane &lane, const double *tau, double *scratch,
-                                       Tally &tally) {
+                                Tally &tally) {
     const Cut cut = windows(lane.n_bonds);
     const double enough = call.tolerance > floor_error ? call.tolerance : floor_error;
     for (int64_t i = 1; i < cut.blocks * W; ++i)
@@ -38,8 +38,8 @@ bool long_positions_windows_fit(const PositionsCall &call, const Lane &lane, con
 }
 
 // Writes what the multipliers of window j do; with `moved` false the chain was within the tolerance as it came.
-void long_positions_finish_window(const PositionsCall &call, const Lane &lane, int64_t j, bool moved,
-                                         const double *tau, double *scratch, Tally &tally) {
+void long_positions_finish_window(const PositionsCall &call, const Lane &lane, int64_t j, bool moved, const double *tau,
+                                  double *scratch, Tally &tally) {
     SegmentBlock s = segment_block(windows(lane.n_bonds), j, lane);
     const int64_t from = s.from[0], end = s.from[W - 1] + s.own[W - 1];
     const double factor = 0.5 / (call.dt * call.dt) / unit_of(lane);
@@ -53,9 +53,9 @@ void long_positions_finish_window(const PositionsCall &call, const Lane &lane, i
     load_bond_vectors(s.block, call.box_ref, open_segments(call.r_ref, s, lane, arena, true), x.b);
     const double *own_tau[W];
     for (int i = 0; i < W; ++i) own_tau[i] = tau + s.from[i];
-    interleave(own_tau, s.block.len, 0, s.block.n, x.tau, [&](int i, long k) __attribute__((always_inline)) {
-        return k < s.block.len[i] ? own_tau[i][k] : 0.0;
-    });
+    interleave(
+        own_tau, s.block.len, 0, s.block.n,
+        x.tau, [&](int i, long k) __attribute__((always_inline)) { return k < s.block.len[i] ? own_tau[i][k] : 0.0; });
     // Of what is staged, only the atoms that are written here: others may be being written by other threads.
     const auto open = [&](const AtomArray &array) {
         const Packed packed = open_segments(array, s, lane, arena, false);

@@ -15,8 +15,8 @@ namespace HOL_ISA {
 
 // Loads and eliminates. Returns the lanes that plain arithmetic can answer for.
 template <bool uniform, bool boxed>
-HOL_NOINLINE mask forward_velocities(const Block &block, const Box &box, const Packed &r,
-                                                         const Packed &v, const Projection &x) {
+HOL_NOINLINE mask forward_velocities(const Block &block, const Box &box, const Packed &r, const Packed &v,
+                                     const Projection &x) {
     const System &s = x.s;
     const Source source = {&r, nullptr, nullptr, &box, nullptr};
     Sweep<uniform, true> sweep{block, source, s};
@@ -50,13 +50,12 @@ HOL_NOINLINE mask forward_velocities(const Block &block, const Box &box, const P
 
 // The same with compensated products of unrounded bond vectors: good in all lanes.
 template <bool uniform, bool boxed>
-HOL_NOINLINE mask forward_velocities_careful(const Block &block, const Box &box, const Packed &r,
-                                                                 const Packed &v, const Projection &x) {
+HOL_NOINLINE mask forward_velocities_careful(const Block &block, const Box &box, const Packed &r, const Packed &v,
+                                             const Projection &x) {
     load_bonds<none_, uniform, boxed, true>(block, box, r, r, r, x.s.D, x.s.D_low, x.s.t);
     x.v[0] = load_atom(v);
     for (long k0 = 0; k0 < block.n; k0 += W) load_ragged_atoms(block, v, k0, x.v);
-    for (long k = 0; k < block.n; ++k)
-        x.s.t[k] = keep(joint(block, k), rate_of(x.s.D[k], x.v[k], x.v[k + 1]));
+    for (long k = 0; k < block.n; ++k) x.s.t[k] = keep(joint(block, k), rate_of(x.s.D[k], x.v[k], x.v[k + 1]));
     forward_careful<uniform>(block, x.s);
     return ~none();
 }
@@ -73,8 +72,7 @@ static inline mask forward_velocities(const Block &block, const Box &box, const 
 
 // The second substitution, and the velocities of the lanes in `which` to `out`.
 template <bool uniform>
-HOL_NOINLINE void correct_and_store(const Block &block, const Projection &x, mask which,
-                                                        const Packed &out) {
+HOL_NOINLINE void correct_and_store(const Block &block, const Projection &x, mask which, const Packed &out) {
     Pull<uniform> pull{block, x, x.left};
     const Packed to = out;
     const unsigned chosen = bits(which);
@@ -108,8 +106,7 @@ HOL_NOINLINE void correct_and_store(const Block &block, const Projection &x, mas
 }
 
 template <bool uniform>
-HOL_NOINLINE void correct_and_scatter(const Block &block, const Projection &x, const AtomLists &at,
-                                                          double *out) {
+HOL_NOINLINE void correct_and_scatter(const Block &block, const Projection &x, const AtomLists &at, double *out) {
     Pull<uniform> pull{block, x, x.left};
     for (long k = block.n - 1; k >= 0; --k) scatter<write_>(out, at, k + 1, pull.step(k));
     scatter<write_>(out, at, 0, pull.finish());
@@ -153,13 +150,13 @@ void velocities(const VelocitiesCall &call, const Unit &unit, double *scratch, T
     for_each_block(call, unit, scratch, tally, velocities_block, small_velocities);
 }
 
-void long_velocities_eliminate(const VelocitiesCall &call, const Lane &lane, int64_t j, bool careful,
-                                      double *store, double *scratch) {
+void long_velocities_eliminate(const VelocitiesCall &call, const Lane &lane, int64_t j, bool careful, double *store,
+                               double *scratch) {
     eliminate_block<rate>(call, lane, j, call.r, call.v, AtomArray{}, careful, store, Arena{scratch});
 }
 
-void long_velocities_finish(const VelocitiesCall &call, const Lane &lane, int64_t j, double *store,
-                                   double *scratch, Tally &tally) {
+void long_velocities_finish(const VelocitiesCall &call, const Lane &lane, int64_t j, double *store, double *scratch,
+                            Tally &tally) {
     // With equal masses, t is w times 2 lambda here.
     const double mass = 1 / unit_of(lane);
     const SegmentOutputs out = {{}, false, call.lambda, nullptr, splat(0.5 * mass), mass, call.virial};

@@ -1,5 +1,5 @@
-// The entries of the table of kernels: what the verbs of one instruction set define, and what core/kernels/call.hpp says of
-// them.
+// The entries of the table of kernels: what the verbs of one instruction set define, and what core/kernels/call.hpp
+// says of them.
 #ifndef HOLONOMIC_KERNELS_VERBS_VERBS_HPP
 #define HOLONOMIC_KERNELS_VERBS_VERBS_HPP
 
