@@ -31,7 +31,7 @@ struct Sweep {
     // Sum of |u|, q, 1 / P and w; without |u| where pivots are kept for a second solve, whose end shows an overflow.
     vec size = {};
 
-    inline __attribute__((always_inline)) void step(long k, vec b, bool starts_group, bool ragged) {
+    inline HOL_FORCED void step(long k, vec b, bool starts_group, bool ragged) {
         const vec w = w_at<uniform>(block, k), w1 = w_at<uniform>(block, k + 1);
         const vec3 d1 = s.D[k];
         const vec q1 = dot(d1, d1);
@@ -63,7 +63,7 @@ struct Sweep {
         finish_step(k, d1, q1, w1, starts_group);
     }
 
-    inline __attribute__((always_inline)) void finish_step(long k, const vec3 &d1, vec q1, vec w1, bool starts_group) {
+    inline HOL_FORCED void finish_step(long k, const vec3 &d1, vec q1, vec w1, bool starts_group) {
         F1 = starts_group ? w1 * q1 + A : mul_add(w1 * q1, F, A);
         rF = splat(1.0) / F1;
         rP = starts_group ? rF : F * rF;
@@ -77,8 +77,7 @@ struct Sweep {
     }
 
     // A joint of nearly orthogonal bonds, or one before which little of E is left.
-    inline __attribute__((always_inline)) void delicate_joint(long k, const vec3 &d1, vec remainder, bool ragged,
-                                                              vec &g, vec &X) {
+    inline HOL_FORCED void delicate_joint(long k, const vec3 &d1, vec remainder, bool ragged, vec &g, vec &X) {
         mask little = less(remainder, vec{});
         if (ragged) little = little & joint(block, k);
         if (any(little)) {

@@ -86,7 +86,7 @@ struct LogSum {
     vec sum, product, removed;  // removed = 1 - product, without cancellation
     int n;
     LogSum() : sum{}, product(splat(1.0)), removed{}, n(0) {}
-    inline __attribute__((always_inline)) void multiply(vec factor, vec x) {  // factor = 1 - x
+    inline HOL_FORCED void multiply(vec factor, vec x) {  // factor = 1 - x
         removed = mul_add(removed, factor, x);
         product = product * factor;
         if (++n == group) flush();
@@ -106,8 +106,8 @@ struct LogSumWide {
     mask exponents;
     int n;
     LogSumWide() : sum{}, mantissas(splat(1.0)), exponents{}, n(0) {}
-    inline __attribute__((always_inline)) void multiply(vec factor,
-                                                        vec scale) {  // factor / scale^2, scale a power of two
+    inline HOL_FORCED void multiply(vec factor,
+                                    vec scale) {  // factor / scale^2, scale a power of two
         const mask f = as_mask(factor), one = mask{} + exponent_of_one;
         exponents = exponents + (((f & (mask{} + exponent_bits)) - one) >> 52) - 2 * ((as_mask(scale) - one) >> 52);
         mantissas = mantissas * as_vec((f & (mask{} + 0xfffffffffffffLL)) | one);

@@ -22,7 +22,7 @@ HOL_NOINLINE mask forward_gathered(const Block &block, const Box &box, const Ato
     if (terms & (velocity_squared | rate)) v0 = gather(v, at, 0);
     if (terms & force_difference) f0 = gather(f, at, 0);
     if (terms & rate) velocities[0] = v0;
-    const auto bond = [&](long k, bool starts_group) __attribute__((always_inline)) {
+    const auto bond = [&](long k, bool starts_group) HOL_FORCED {
         if (block.list_ahead)
             for (int i = 0; i < W; ++i) {
                 const int64_t next = 3 * at.atoms[i][k + block.list_ahead];
@@ -67,10 +67,10 @@ HOL_NOINLINE void substitute_and_scatter(const Block &block, const System &s, co
     vec t = {}, values[W];
     vec3 after = {};
     s.L[block.n] = vec{};
-    const auto pull = [&](long k, const vec3 &before) __attribute__((always_inline)) {
+    const auto pull = [&](long k, const vec3 &before) HOL_FORCED {
         if (out) scatter<update>(out, at, k, difference(before, after));
     };
-    const auto bond = [&](long k) __attribute__((always_inline)) {
+    const auto bond = [&](long k) HOL_FORCED {
         t = mul_add(s.L[k + 1], t, s.t[k]);
         const vec3 p = scaled_bond(s.D[k], t);
         pull(k + 1, p);

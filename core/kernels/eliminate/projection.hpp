@@ -33,19 +33,19 @@ struct Pull {
     vec t = {};
     vec3 after = {};  // t d of bond k + 1
 
-    inline __attribute__((always_inline)) vec3 moved(long k, const vec3 &before) const {
+    inline HOL_FORCED vec3 moved(long k, const vec3 &before) const {
         const vec w = w_at<uniform>(block, k);
         const vec3 v = x.v[k], g = difference(before, after);
         return {mul_add(w, g.x, v.x), mul_add(w, g.y, v.y), mul_add(w, g.z, v.z)};
     }
     // Atom k + 1; the last is atom 0.
-    inline __attribute__((always_inline)) vec3 step(long k) {
+    inline HOL_FORCED vec3 step(long k) {
         t = mul_add(x.s.L[k + 1], t, u[k]);
         const vec3 before = scaled_bond(x.s.D[k], t), v = moved(k + 1, before);
         after = before;
         return v;
     }
-    inline __attribute__((always_inline)) vec3 finish() const { return moved(0, vec3{}); }
+    inline HOL_FORCED vec3 finish() const { return moved(0, vec3{}); }
 };
 
 // That for u in s.t, which becomes t; `left` gets the rates of the velocities as they are rounded now.
@@ -55,13 +55,13 @@ struct FirstPull {
     vec3 d = {}, v1 = {};  // bond k + 1, atom k + 2
 
     FirstPull(const Block &block, const Projection &x, long n) : pull{block, x, x.s.t} { x.s.L[n] = vec{}; }
-    inline __attribute__((always_inline)) void step(long k) {
+    inline HOL_FORCED void step(long k) {
         keep_velocity(k + 1, pull.step(k));
         pull.x.s.t[k] = pull.t;
         d = pull.x.s.D[k];
     }
-    inline __attribute__((always_inline)) void finish() { keep_velocity(0, pull.finish()); }
-    inline __attribute__((always_inline)) void keep_velocity(long k, const vec3 &v) {
+    inline HOL_FORCED void finish() { keep_velocity(0, pull.finish()); }
+    inline HOL_FORCED void keep_velocity(long k, const vec3 &v) {
         pull.x.v[k] = v;
         pull.x.left[k] = rate_of(d, v, v1);
         v1 = v;

@@ -26,18 +26,27 @@
 #define HOL_HAS_FMA 0
 #endif
 
-// What is small is a part of its caller. Not in sets for tests alone, whose lanes no register holds: inlined, they would take
-// minutes to compile.
-#ifdef HOL_TESTS_ONLY
-#define HOL_INLINE static inline
-#else
-#define HOL_INLINE static inline __attribute__((always_inline))
+// Forced inlining keeps what a loop works on in registers. Instrumented code would not fit there, nor would more lanes than a
+// register has, in sets for tests alone: inlined, both take minutes to compile, and a gigabyte.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define HOL_SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
+#define HOL_SANITIZED 1
 #endif
+#endif
+
+#if defined(HOL_SANITIZED) || defined(HOL_TESTS_ONLY)
+#define HOL_FORCED
+#else
+#define HOL_FORCED __attribute__((always_inline))  // for lambdas and members
+#endif
+#define HOL_INLINE static inline HOL_FORCED  // for functions
 // For what would only get in the way of the common case, were it inlined.
 #define HOL_NOINLINE static __attribute__((noinline, unused))
 
 // Before a loop of few turns over vectors: left rolled, it would keep them in memory.
-#ifdef HOL_TESTS_ONLY
+#if defined(HOL_SANITIZED) || defined(HOL_TESTS_ONLY)
 #define HOL_UNROLL
 #elif defined(__clang__)
 #define HOL_UNROLL _Pragma("clang loop unroll(full)")

@@ -30,8 +30,7 @@ static inline void set_masses(Block &block, const double *const *tables, const d
     bool same = true;
     for (int i = 1; i < W; ++i)
         same = same && table[i] == table[0] && constant[i] == constant[0] && block.len[i] == block.len[0];
-    const auto value = [&](int i, long k)
-        __attribute__((always_inline)) {  // inert bonds past the end: any positive mass
+    const auto value = [&](int i, long k) HOL_FORCED {  // inert bonds past the end: any positive mass
         return k > block.len[i] ? 1.0 : (table[i] ? table[i][k] : constant[i]);
     };
     interleave(table, block.len, 1, block.n + 1, w, value);

@@ -29,7 +29,7 @@ template <bool weighted, bool uniform, Update update>
 static inline void store_pulls_from(const Block &block, long first, vec3 before, const vec3 *d, const vec *t,
                                     mask which, const Packed &out) {
     const unsigned chosen = bits(which);
-    const auto pull = [&](long k, const vec3 &after, vec *value) __attribute__((always_inline)) {
+    const auto pull = [&](long k, const vec3 &after, vec *value) HOL_FORCED {
         vec3 g = {after.x - before.x, after.y - before.y, after.z - before.z};
         if (weighted) {
             const vec w = w_at<uniform>(block, k);

@@ -66,9 +66,8 @@ HOL_INLINE long pack(const Apart &from, long n, double *packed) {
 
 template <bool add>
 HOL_INLINE long unpack(const double *packed, long n, const Apart &to) {
-    const auto put = [](double *p, __m256d a) __attribute__((always_inline)) {
-        _mm256_storeu_pd(p, add ? _mm256_add_pd(_mm256_loadu_pd(p), a) : a);
-    };
+    const auto put = [](double *p, __m256d a)
+                         HOL_FORCED { _mm256_storeu_pd(p, add ? _mm256_add_pd(_mm256_loadu_pd(p), a) : a); };
     long k = 0;
     for (; k + 3 <= n; k += 4) {
         const __m256d a = _mm256_loadu_pd(packed + 3 * k), b = _mm256_loadu_pd(packed + 3 * k + 4);
@@ -91,8 +90,7 @@ HOL_INLINE long unpack(const double *, long, const Apart &) {
 
 template <class T>
 HOL_INLINE void stage_elements(const AtomArray &array, const Lane &lane, long from, long n, double *__restrict packed) {
-    for_each_element<T>(
-        array, lane, from, n, [=](const T &element, long i) __attribute__((always_inline)) { packed[i] = element; });
+    for_each_element<T>(array, lane, from, n, [=](const T &element, long i) HOL_FORCED { packed[i] = element; });
     for (long k = 0; !array.z && k <= n; ++k) packed[3 * k + 2] = 0;
 }
 
@@ -110,10 +108,9 @@ HOL_NOINLINE void stage(const AtomArray &array, const Lane &lane, long from, lon
 template <class T, bool add>
 HOL_INLINE void unstage_elements(const AtomArray &array, const Lane &lane, long from, long n,
                                  const double *__restrict packed) {
-    for_each_element<T>(
-        array, lane, from, n, [=](T & element, long i) __attribute__((always_inline)) {
-            element = static_cast<T>(add ? static_cast<double>(element) + packed[i] : packed[i]);
-        });
+    for_each_element<T>(array, lane, from, n, [=](T &element, long i) HOL_FORCED {
+        element = static_cast<T>(add ? static_cast<double>(element) + packed[i] : packed[i]);
+    });
 }
 
 template <bool add>

@@ -22,10 +22,8 @@ static inline BondLengths bond_lengths(const Block &block, const Lane *lane, Are
     x.a_min = x.a_max = load(first);
     if (!uniform) {
         vec *const a2 = arena.vecs(block.n), *const per_a2 = arena.vecs(block.n);
-        interleave(
-            table, block.len, 0, block.n, a2, [&](int i, long k) __attribute__((always_inline)) {
-                return table[i] && k < block.len[i] ? table[i][k] : first[i];
-            });
+        interleave(table, block.len, 0, block.n, a2,
+                   [&](int i, long k) HOL_FORCED { return table[i] && k < block.len[i] ? table[i][k] : first[i]; });
         const vec lengths = block.lengths();
         for (long k = 0; k < block.n; ++k) {
             const vec a = a2[k];

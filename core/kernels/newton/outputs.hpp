@@ -26,7 +26,7 @@ static inline void store_moves(const Block &block, const Newton &x, mask which, 
     const unsigned chosen = bits(which & block.in_use());
     const vec *const tau = x.tau;
     const vec3 *const b = x.b;
-    const auto move = [&](long k, vec *value) __attribute__((always_inline)) {
+    const auto move = [&](long k, vec *value) HOL_FORCED {
         const vec3 after = times(tau[k], b[k]), m = times_w<uniform_w>(x, k, minus(after, before));
         value[0] = m.x;
         value[1] = m.y;

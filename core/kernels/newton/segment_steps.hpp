@@ -36,7 +36,7 @@ HOL_NOINLINE vec move_segments(const SegmentBlock &s, const Lane &lane, const Ne
     vec c = x.s[0], w = w_at<uniform_w>(s.block, 0), worst = {}, poison = {};
     vec3 p = {c * x.b[0].x, c * x.b[0].y, c * x.b[0].z};
     vec3 left = {w * (p.x - previous.x), w * (p.y - previous.y), w * (p.z - previous.z)};
-    const auto moved = [&](long k, bool ragged) __attribute__((always_inline)) {
+    const auto moved = [&](long k, bool ragged) HOL_FORCED {
         x.tau[k] = x.tau[k] + c;
         w = w_at<uniform_w>(s.block, k + 1);
         vec3 p1 = {};

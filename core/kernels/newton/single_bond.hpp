@@ -23,7 +23,7 @@ HOL_INLINE Outcome solve_single_bonds(const Newton &x, Carried &carried, mask wa
     const mask reached = known & ~out.untouched & finite(s / w) & less(vec{}, w);
     vec step = keep(reached, s);
     vec3 moved;
-    const auto excess = [&]() __attribute__((always_inline)) {  // of D.D over a^2 once it is moved
+    const auto excess = [&]() HOL_FORCED {  // of D.D over a^2 once it is moved
         moved = {mul_add(-step, b.x, d.x), mul_add(-step, b.y, d.y), mul_add(-step, b.z, d.z)};
         return mul_add(moved.z, moved.z, mul_add(moved.y, moved.y, mul_add(moved.x, moved.x, -a2)));
     };

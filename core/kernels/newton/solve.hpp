@@ -38,11 +38,10 @@ HOL_NOINLINE Outcome solve_positions(const Block &block, Newton &x, const Positi
 template <bool uniform_w>
 static inline mask coarse_moves(const Block &block, const Newton &x, Carried &carried, mask which) {
     vec pull = {};
-    go_up<0>(
-        block, [&](long k, bool) __attribute__((always_inline)) {
-            const vec tau = abs(x.tau[k]);
-            pull = max(uniform_w ? tau : max(x.w[k], x.w[k + 1]) * tau, pull);
-        });
+    go_up<0>(block, [&](long k, bool) HOL_FORCED {
+        const vec tau = abs(x.tau[k]);
+        pull = max(uniform_w ? tau : max(x.w[k], x.w[k + 1]) * tau, pull);
+    });
     pull = pull * x.a_max;
     if (!any(which & less(0.25 * x.a_min, pull))) return none();
     return which & less(0.25 * (carried.largest_coordinate() + x.a_min), pull);

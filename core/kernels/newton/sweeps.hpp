@@ -98,7 +98,7 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
     if (moved) mover = Mover<uniform_w>::start(x);
     vec3 d = moved ? Mover<uniform_w>::bond(mover, x, 0) : x.D[0];
     vec worst = {}, y = {}, down = {}, last = {}, q = dot(d, x.b[0]), A = times_w<uniform_w>(x, 0, q), F = splat(1.0);
-    const auto bond = [&](long k, bool ragged) __attribute__((always_inline)) {
+    const auto bond = [&](long k, bool ragged) HOL_FORCED {
         Row &row = x.row[k];
         const vec F1 = mul_add(times_w<uniform_w>(x, k + 1, q), F, A), rF = splat(1.0) / F1, rP = F * rF;
         row.half_rP = all ? 0.5 * rP : select(which, 0.5 * rP, row.half_rP);
@@ -163,17 +163,16 @@ template <bool uniform_w, bool uniform_a, bool keep_bonds, int fixed = 0>
 HOL_INLINE vec correct(const Block &block, const Newton &x, const double *fetch) {
     Mover<uniform_w> mover = Mover<uniform_w>::start(x);
     vec worst = {}, y = {};
-    go_up<fixed>(
-        block, [&](long k, bool ragged) __attribute__((always_inline)) {
-            if (!keep_bonds && fixed == 0 && k % 2 == 0 && fetch) fetch_ahead<2>(fetch, k, block.ahead);
-            const vec3 d = Mover<uniform_w>::bond(mover, x, k);
-            if (keep_bonds) {
-                const mask m = live(x, k);
-                x.D[k] = {select(m, d.x, x.D[k].x), select(m, d.y, x.D[k].y), select(m, d.z, x.D[k].z)};
-            }
-            y = mul_add(x.row[k].down, y, length_error<uniform_a>(x, k, ragged, d, worst));
-            x.row[k].u = y * x.row[k].half_rP;
-        });
+    go_up<fixed>(block, [&](long k, bool ragged) HOL_FORCED {
+        if (!keep_bonds && fixed == 0 && k % 2 == 0 && fetch) fetch_ahead<2>(fetch, k, block.ahead);
+        const vec3 d = Mover<uniform_w>::bond(mover, x, k);
+        if (keep_bonds) {
+            const mask m = live(x, k);
+            x.D[k] = {select(m, d.x, x.D[k].x), select(m, d.y, x.D[k].y), select(m, d.z, x.D[k].z)};
+        }
+        y = mul_add(x.row[k].down, y, length_error<uniform_a>(x, k, ragged, d, worst));
+        x.row[k].u = y * x.row[k].half_rP;
+    });
     return largest_error<uniform_a>(x, worst, y);
 }
 
@@ -191,7 +190,7 @@ static inline vec residuals(const Block &block, const Newton &x) {
 template <bool first, bool separate, bool all, int fixed>
 HOL_INLINE void substitute_back(const Block &block, const Newton &x, mask which) {
     vec t = {};
-    const auto add = [&](long k, vec correction) __attribute__((always_inline)) {
+    const auto add = [&](long k, vec correction) HOL_FORCED {
         const vec change = all ? correction : keep(which, correction);
         if (separate) x.step[k] = change;
         x.tau[k] = first ? change : x.tau[k] + change;
@@ -199,11 +198,11 @@ HOL_INLINE void substitute_back(const Block &block, const Newton &x, mask which)
     // Two bonds depend on the one behind them at once, by the product of their factors.
     go_down<fixed>(
         block,
-        [&](long k) __attribute__((always_inline)) {
+        [&](long k) HOL_FORCED {
             t = mul_add(x.row[k].up, t, x.row[k].u);
             add(k, t);
         },
-        [&](long k) __attribute__((always_inline)) {
+        [&](long k) HOL_FORCED {
             const Row &a = x.row[k], &b = x.row[k - 1];
             const vec up = a.up, u = a.u, both = b.up * up, sum = mul_add(b.up, u, b.u);
             add(k, mul_add(up, t, u));

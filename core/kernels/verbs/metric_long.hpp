@@ -21,7 +21,7 @@ namespace HOL_ISA {
 struct Map {
     vec a, b, d;
     // This map after which that of bond k follows.
-    inline __attribute__((always_inline)) Map then(vec delta, vec p) const {
+    inline HOL_FORCED Map then(vec delta, vec p) const {
         const vec r = splat(1.0) / (a + p), both = delta + p, product = delta * p;
         return {mul_add(both, a, product) * r, mul_add(both, b, product * d) * r, mul_add(p, d, b) * r};
     }

@@ -53,9 +53,8 @@ void long_positions_finish_window(const PositionsCall &call, const Lane &lane, i
     load_bond_vectors(s.block, call.box_ref, open_segments(call.r_ref, s, lane, arena, true), x.b);
     const double *own_tau[W];
     for (int i = 0; i < W; ++i) own_tau[i] = tau + s.from[i];
-    interleave(
-        own_tau, s.block.len, 0, s.block.n,
-        x.tau, [&](int i, long k) __attribute__((always_inline)) { return k < s.block.len[i] ? own_tau[i][k] : 0.0; });
+    interleave(own_tau, s.block.len, 0, s.block.n, x.tau,
+               [&](int i, long k) HOL_FORCED { return k < s.block.len[i] ? own_tau[i][k] : 0.0; });
     // Of what is staged, only the atoms that are written here: others may be being written by other threads.
     const auto open = [&](const AtomArray &array) {
         const Packed packed = open_segments(array, s, lane, arena, false);
