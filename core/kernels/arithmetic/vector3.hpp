@@ -24,11 +24,6 @@ HOL_INLINE Vector3<V> cross(const Vector3<V> &a, const Vector3<V> &b) {
 
 typedef Vector3<vec> vec3;
 
-// b - a
-
-HOL_INLINE vec3 difference(const vec3 &a, const vec3 &b) { return {b.x - a.x, b.y - a.y, b.z - a.z}; }
-HOL_INLINE vec3 scaled_bond(const vec3 &d, vec t) { return {t * d.x, t * d.y, t * d.z}; }
-
 HOL_INLINE vec3 times(vec s, const vec3 &a) { return {s * a.x, s * a.y, s * a.z}; }
 HOL_INLINE vec3 minus(const vec3 &a, const vec3 &b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 HOL_INLINE vec3 plus(const vec3 &a, const vec3 &b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }

@@ -25,7 +25,8 @@ struct Sweep {
     const System s;
     vec3 d = {};  // the bond before
     vec q = {};
-    vec A = splat(1.0), F = {}, F1 = {}, rF = splat(1.0);  // E = A / F and P = F1 / F of the bond before
+    Column e = {splat(1.0), vec{}};  // E
+    vec F1 = {}, rF = splat(1.0);    // P = F1 / F of the bond before; rF = 1 / F1
     vec rP = {}, y = {};
     vec slack = {};  // negative where the cheap tests failed
     // Sum of |u|, q, 1 / P and w; without |u| where pivots are kept for a second solve, whose end shows an overflow.
@@ -37,8 +38,7 @@ struct Sweep {
         const vec q1 = dot(d1, d1);
         if (__builtin_constant_p(k) && k == 0) {  // what the rest comes to without a bond before
             y = b + 0.0;
-            A = w * q1;
-            F = splat(1.0);
+            e = {w * q1, splat(1.0)};
             return finish_step(k, d1, q1, w1, true);
         }
         vec g = dot(d, d1), g2 = g * g, X = q * q1 - g2;
@@ -48,25 +48,21 @@ struct Sweep {
             g2 = keep(m, g2);
             X = keep(m, X);
         }
-        const vec remainder = mul_sub(splat(1 + 1 / least_remainder), A, F1);
+        const vec remainder = spare(e, F1, 1 / least_remainder);
         const mask signs = as_mask(not_orthogonal(g2, X)) | as_mask(remainder);
         if (__builtin_expect(any(signs), 0)) delicate_joint(k, d1, remainder, ragged, g, X);
         const vec l = (w * g) * rP;
         s.L[k] = l;
         y = mul_add(l, y, b);
-        A = mul_add(w * q1, A, ((w * w) * X) * F);
-        F = F1;
-        if (starts_group) {
-            A = A * rF;
-            F = splat(1.0);
-        }
+        e.pass(F1, (w * w) * X, w * q1);
+        if (starts_group) e = {e.A * rF, splat(1.0)};
         finish_step(k, d1, q1, w1, starts_group);
     }
 
     inline HOL_FORCED void finish_step(long k, const vec3 &d1, vec q1, vec w1, bool starts_group) {
-        F1 = starts_group ? w1 * q1 + A : mul_add(w1 * q1, F, A);
+        F1 = starts_group ? w1 * q1 + e.A : e.next(w1 * q1);
         rF = splat(1.0) / F1;
-        rP = starts_group ? rF : F * rF;
+        rP = starts_group ? rF : e.F * rF;
         const vec u = y * rP;
         s.t[k] = u;
         if (keep_pivots) s.pivots[k] = rP;
@@ -83,8 +79,7 @@ struct Sweep {
         if (any(little)) {
             const vec3 c = cross(d, d1);
             X = select(little, dot(c, c), X);
-            const vec spare = mul_sub(splat(1 + 4 * joint_tolerance * joint_tolerance), A, F1);
-            slack = min(slack, keep(little, spare));
+            slack = min(slack, keep(little, spare(e, F1, spare_of_cross_products)));
         }
         const mask orthogonal = nearly_orthogonal(g, X);
         if (any(orthogonal)) g = exact_dots(source, k, orthogonal, g);
@@ -99,7 +94,8 @@ struct Sweep {
         const mask failed = less(slack, vec{}), wild = ~calm();
         if (__builtin_expect(!any(failed | wild), 1)) return none();
         const mask doubtful =
-            doubtful_joints<uniform>(block, s.D, 1, block.n, w_at<uniform>(block, 0) * dot(s.D[0], s.D[0])) & failed;
+            doubtful_joints<uniform>(block, s.D, 1, block.n - 1, w_at<uniform>(block, 0) * dot(s.D[0], s.D[0])) &
+            failed;
         return any(wild) ? doubtful | (extreme_pivots<uniform>(block, s.D) & wild) : doubtful;
     }
 };

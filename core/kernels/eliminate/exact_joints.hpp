@@ -24,9 +24,13 @@ struct Source {
 constexpr double small_cosine = 1.0 / 32;
 
 // Its sign bit is set where |cos| is below that; X = q q' (1 - cos^2).
-HOL_INLINE vec not_orthogonal(vec g2, vec X) { return mul_sub(splat(1 / (small_cosine * small_cosine)), g2, X); }
+HOL_INLINE vec not_orthogonal(vec g2, vec X, double cosine = small_cosine) {
+    return mul_sub(splat(1 / (cosine * cosine)), g2, X);
+}
 
-HOL_INLINE mask nearly_orthogonal(vec g, vec X) { return less(not_orthogonal(g * g, X), vec{}); }
+HOL_INLINE mask nearly_orthogonal(vec g, vec X, double cosine = small_cosine) {
+    return less(not_orthogonal(g * g, X, cosine), vec{});
+}
 
 // g of joint k in one lane, with compensated products of unrounded differences.
 #if HOL_LANES != 4

@@ -28,17 +28,17 @@ static inline void eliminate_block_of(const Box &box, const SegmentBlock &s, con
             load_bonds<terms, uniform, true, true>(own, box, r, v, f, D, low, B);
         else
             load_bonds<terms, uniform, false, true>(own, box, r, v, f, D, low, B);
-        eliminate<in_scratch, uniform, true>(s.block, source, in, n, x);
+        eliminate<in_scratch, uniform, true>(s.block, box, source, in, n, x);
         return;
     }
     in.full = s.own_min / group * group;
     if (boxed) {
         load_bonds<terms, uniform, true, false>(own, box, r, v, f, D, low, B);
-        eliminate<in_scratch, uniform, false>(s.block, source, in, n, x);
+        eliminate<in_scratch, uniform, false>(s.block, box, source, in, n, x);
         return;
     }
     if (in.full < n) load_tail<terms, uniform>(own, box, r, v, f, in.full, D, B);
-    eliminate<terms, uniform, false>(s.block, source, in, n, x);
+    eliminate<terms, uniform, false>(s.block, box, source, in, n, x);
 }
 
 template <int terms, class Call>

@@ -6,6 +6,7 @@
 #include "core/kernels/eliminate/chain.hpp"
 #include "core/kernels/memory/listed.hpp"
 #include "core/kernels/memory/terms.hpp"
+#include "core/kernels/memory/values.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -31,13 +32,13 @@ HOL_NOINLINE mask forward_gathered(const Block &block, const Box &box, const Ato
                 if (terms & force_difference) __builtin_prefetch(f + next, 0, 2);
             }
         const vec3 r1 = gather(r, at, k + 1);
-        vec3 d = difference(r0, r1), dv = {}, df = {}, unused = {};
+        vec3 d = minus(r1, r0), dv = {}, df = {}, unused = {};
         if (boxed) wrap<false>(box, d, unused);
         s.D[k] = d;
         r0 = r1;
         if (terms & (velocity_squared | rate)) {
             const vec3 v1 = gather(v, at, k + 1);
-            dv = difference(v0, v1);
+            dv = minus(v1, v0);
             v0 = v1;
             if (terms & rate) velocities[k + 1] = v1;
         }
@@ -68,11 +69,11 @@ HOL_NOINLINE void substitute_and_scatter(const Block &block, const System &s, co
     vec3 after = {};
     s.L[block.n] = vec{};
     const auto pull = [&](long k, const vec3 &before) HOL_FORCED {
-        if (out) scatter<update>(out, at, k, difference(before, after));
+        if (out) scatter<update>(out, at, k, minus(after, before));
     };
     const auto bond = [&](long k) HOL_FORCED {
         t = mul_add(s.L[k + 1], t, s.t[k]);
-        const vec3 p = scaled_bond(s.D[k], t);
+        const vec3 p = times(t, s.D[k]);
         pull(k + 1, p);
         after = p;
         return mul_add(factor, t, vec{});  // zeros as +0
@@ -86,8 +87,7 @@ HOL_NOINLINE void substitute_and_scatter(const Block &block, const System &s, co
         HOL_UNROLL
         for (long b = W - 1; b >= 0; --b) values[b] = bond(k0 + b);
         if (!value_out) continue;
-        transpose(values);
-        for (int i = 0; i < W; ++i) store(value_out + block.first_bond[i] + k0, values[i]);
+        store_values<false>(block, k0, values, all_lanes, value_out);
     }
     if (out) scatter<update>(out, at, 0, after);
 }

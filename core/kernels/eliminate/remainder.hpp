@@ -1,4 +1,4 @@
-// How far the remainder E may be trusted: the tests of doubt.
+// The remainder E: its recursion, and how far it may be trusted.
 #ifndef HOLONOMIC_KERNELS_ELIMINATE_REMAINDER_HPP
 #define HOLONOMIC_KERNELS_ELIMINATE_REMAINDER_HPP
 
@@ -8,11 +8,27 @@
 namespace holonomic {
 namespace HOL_ISA {
 
+// A solution of the recursion E' = w (q' E + w X) / (w q + E), as the fraction E = A / F:
+//     F' = w q F + A,   A' = w q' A + w^2 X F
+// Both may be scaled by one factor at any time, so that no division need wait for another. A chain has one column. A
+// segment has two, its own and that of its separator, (a, c), with the same coefficients. In Newton's matrix, which is
+// not symmetric, q and X are products of old and new bonds.
+struct Column {
+    vec A, F;
+    HOL_FORCED vec next(vec wq) const { return mul_add(wq, F, A); }  // F'; the pivot P is F' / F
+    HOL_FORCED void pass(vec F1, vec wwX, vec wq1) {
+        A = mul_add(wwX, F, wq1 * A);
+        F = F1;
+    }
+};
+
+// What the cheap tests of doubt look at: negative where E < P / (1 + times). P = F' / F.
+HOL_INLINE vec spare(const Column &e, vec F1, double times) { return mul_sub(splat(1 + times), e.A, F1); }
+
 // How X = |d x d'|^2 is found. It enters E' = w (q' E + w X) / P, and what its error does to E' depends on E: with
 // e = E / (w q),
-//  - q q' - g^2 has an error of a few roundings of q q', of which E' gets a few / (e + sin^2): ordinary chains, in
-//  which
-//    e >= least_remainder everywhere but in a row of nearly parallel bonds;
+//  - q q' - g^2 has an error of a few roundings of q q', of which E' gets a few / (e + sin^2): harmless in ordinary
+//    chains, in which e >= least_remainder everywhere but in a row of nearly parallel bonds;
 //  - the cross product has a relative error of about 2 eps |d| |d'| / sqrt X from the rounding of d and d', which is
 //    harmless where w sqrt(X q q') <= c (q' E + w X), c = joint_tolerance. This holds for every X if e >= 1 / (4 c^2);
 //  - else the chain needs compensated products of the unrounded bond vectors.
@@ -20,18 +36,20 @@ namespace HOL_ISA {
 // (docs/performance.md).
 constexpr double least_remainder = 1.0 / 4;
 constexpr double joint_tolerance = 8;
+constexpr double spare_of_cross_products = 4 * joint_tolerance * joint_tolerance;
 
-// Exact form of the test, for the joints first .. end-1; E is that of bond first-1.
+// Exact form of the test for the joints between the n + 1 bonds from D on; joint i is at atom first + i, and E is what
+// is left before D[0].
 template <bool uniform>
-HOL_NOINLINE mask doubtful_joints(const Block &block, const vec3 *D, long first, long end, vec E) {
+HOL_NOINLINE mask doubtful_joints(const Block &block, const vec3 *D, long first, long n, vec E) {
     mask doubt = none();
-    for (long k = first; k < end && k < block.n; ++k) {
-        const vec w = w_at<uniform>(block, k), q = dot(D[k - 1], D[k - 1]), q1 = dot(D[k], D[k]);
-        const vec3 c = cross(D[k - 1], D[k]);
+    for (long i = 0; i < n; ++i) {
+        const vec w = w_at<uniform>(block, first + i), q = dot(D[i], D[i]), q1 = dot(D[i + 1], D[i + 1]);
+        const vec3 c = cross(D[i], D[i + 1]);
         const vec X = dot(c, c), qq = q * q1, S = mul_add(q1, E, w * X);
         const double eps2 = 4.9e-32;  // (2^-52)^2: an X that vanished by rounding
         const vec left = (w * w) * ((X + eps2 * qq) * qq), right = (joint_tolerance * joint_tolerance) * (S * S);
-        doubt = doubt | (~less_equal(left, right) & joint(block, k));
+        doubt = doubt | (~less_equal(left, right) & joint(block, first + i));
         E = w * S / mul_add(w, q, E);
     }
     return doubt;

@@ -49,27 +49,6 @@ static inline int64_t long_bytes(int64_t n_bonds) {
            cut.first_row(cut.blocks) * static_cast<int64_t>(sizeof(Kept));
 }
 
-// Whether the bonds k and k + 1 are both there, in each lane.
-HOL_INLINE mask inner_joint(const Block &block, long k) {
-    return less(splat(static_cast<double>(k + 1)), block.lengths());
-}
-
-// The test of doubtful_joints() for the joints of n + 1 bonds from D on, the first of which is bond k.
-template <bool uniform>
-HOL_NOINLINE mask doubtful_segment_joints(const Block &block, const vec3 *D, long k, long n, vec E) {
-    mask doubt = none();
-    for (long i = 0; i < n; ++i) {
-        const vec w = w_at<uniform>(block, k + i + 1), q = dot(D[i], D[i]), q1 = dot(D[i + 1], D[i + 1]);
-        const vec3 c = cross(D[i], D[i + 1]);
-        const vec X = dot(c, c), qq = q * q1, S = mul_add(q1, E, w * X);
-        const double eps2 = 4.9e-32;  // (2^-52)^2: an X that vanished by rounding
-        const vec left = (w * w) * ((X + eps2 * qq) * qq), right = (joint_tolerance * joint_tolerance) * (S * S);
-        doubt = doubt | (~less_equal(left, right) & inner_joint(block, k + i));
-        E = w * S / mul_add(w, q, E);
-    }
-    return doubt;
-}
-
 // Products of the bond vectors of a joint and of the bond behind it.
 struct Joint {
     vec g, X, q;
@@ -85,14 +64,13 @@ HOL_INLINE Joint careful_joint(const vec3 &d, const vec3 &low, const vec3 &d1, c
     return {dot_compensated(d, low, d1, low1), dot(c, c), dot(d1, d1)};
 }
 
-// As small_cosine in recursion.inl; the error bound of chains of more than longest_lane bonds is twice as large.
+// As small_cosine in exact_joints.hpp; the error bound of chains of more than longest_lane bonds is twice as large.
 constexpr double segment_cosine = 1.0 / 64;
 
 // Computes g anew where bonds are nearly orthogonal: of n joints, the first of which is that of bonds k and k + 1.
 HOL_NOINLINE void refine_joints(const Source &source, long k, Joint *j, long n) {
     for (long i = 0; i < n; ++i) {
-        const vec scaled = (1 / segment_cosine) * j[i].g;
-        const mask orthogonal = less(scaled * scaled, j[i].X);
+        const mask orthogonal = nearly_orthogonal(j[i].g, j[i].X, segment_cosine);
         if (any(orthogonal)) j[i].g = exact_dots(source, k + i + 1, orthogonal, j[i].g);
     }
 }
@@ -104,8 +82,7 @@ HOL_INLINE void plain_joints(const Source &source, long k, const vec3 *d, Joint 
 #pragma GCC unroll 8
     for (int i = 0; i < n; ++i) {
         j[i] = plain_joint(d[i], d[i + 1]);
-        const vec scaled = (1 / segment_cosine) * j[i].g;
-        least = min(least, mul_add(scaled, scaled, -j[i].X));
+        least = min(least, not_orthogonal(j[i].g * j[i].g, j[i].X, segment_cosine));
     }
     if (any(less(least, vec{}))) refine_joints(source, k, j, n);
 }
@@ -116,8 +93,9 @@ constexpr double largest_reciprocal_of_four = 1e190, largest_reciprocal_of_one =
 
 // The elimination of the inner bonds of W segments, a bond at a time.
 struct Elimination {
-    vec q;                        // of the bond that is to be eliminated
-    vec A, F, rF, a, c, f, y, T;  // E = A / F; a, c and f are in units of 1 / F, too; rF = 1 / F
+    vec q;            // of the bond that is to be eliminated
+    Column e, ac;     // E = A / F; a and c, in the same units of 1 / F
+    vec rF, f, y, T;  // 1 / F; f is in its units, too
     vec w_max, slack;
     vec largest_rF;
 };
@@ -127,10 +105,9 @@ template <bool uniform>
 HOL_INLINE void start(Elimination &e, const Block &block, vec q0, const Joint &j, vec b1) {
     const vec w = w_at<uniform>(block, 1);
     e.q = j.q;
-    e.A = w * e.q;
-    e.F = e.rF = splat(1.0);
-    e.a = (w * w) * j.X;
-    e.c = w * q0;
+    e.e = {w * e.q, splat(1.0)};
+    e.rF = splat(1.0);
+    e.ac = {(w * w) * j.X, w * q0};
     e.y = b1;
     e.f = w * j.g;
     e.T = e.slack = e.largest_rF = vec{};
@@ -140,11 +117,9 @@ HOL_INLINE void start(Elimination &e, const Block &block, vec q0, const Joint &j
 // In a straight chain c, f and E shrink by the same factor at each bond. They are rounded in the same way, so that
 // their ratios stay exact: segments of equal bonds would all have the same error in them.
 HOL_INLINE void normalise(Elimination &e) {
-    e.A = e.A * e.rF;
     e.f = e.f * e.rF;
-    e.a = e.a * e.rF;
-    e.c = e.c * e.rF;
-    e.F = splat(1.0);
+    e.e = {e.e.A * e.rF, splat(1.0)};
+    e.ac = {e.ac.A * e.rF, e.ac.F * e.rF};
     e.largest_rF = max(e.largest_rF, e.rF);
 }
 
@@ -152,36 +127,34 @@ HOL_INLINE void normalise(Elimination &e) {
 template <bool uniform, bool careful>
 HOL_INLINE void step(Elimination &e, const Block &block, Kept *kept, long k, const Joint &j, vec b1, bool ragged) {
     const vec w = w_at<uniform>(block, k + 1);
-    const vec wq = w * e.q, F1 = mul_add(wq, e.F, e.A), c1 = mul_add(wq, e.c, e.a);
-    vec spare = {};
-    if (!careful) spare = mul_add(splat(4 * joint_tolerance * joint_tolerance + 1), e.A, -F1);
+    const vec wq = w * e.q, F1 = e.e.next(wq), c1 = e.ac.next(wq);
+    vec left = {};
+    if (!careful) left = spare(e.e, F1, spare_of_cross_products);
     e.rF = splat(1.0) / F1;
-    const vec rP = e.F * e.rF, fP = e.f * e.rF, wwX = (w * w) * j.X, wq1 = w * j.q;
+    const vec rP = e.e.F * e.rF, fP = e.f * e.rF, wwX = (w * w) * j.X, wq1 = w * j.q;
     vec wg = w * j.g;
-    const mask live = ragged ? inner_joint(block, k) : none();
+    const mask live = ragged ? joint(block, k + 1) : none();
     if (ragged) wg = keep(live, wg);
     const vec l = wg * rP;
     *kept = {e.y * rP, l, fP};
     e.T = mul_add(fP, e.y, e.T);
     e.y = mul_add(l, e.y, b1);
     e.f = wg * e.f;
-    e.A = mul_add(wwX, e.F, wq1 * e.A);
-    e.a = mul_add(wwX, e.c, wq1 * e.a);
+    e.e.pass(F1, wwX, wq1);
+    e.ac.pass(c1, wwX, wq1);
     if (ragged) {
-        e.A = keep(live, e.A);
-        e.a = keep(live, e.a);
-        spare = keep(live, spare);
+        e.e.A = keep(live, e.e.A);
+        e.ac.A = keep(live, e.ac.A);
+        left = keep(live, left);
     }
-    e.F = F1;
-    e.c = c1;
-    if (!careful) e.slack = min(e.slack, spare);
+    if (!careful) e.slack = min(e.slack, left);
     if (!uniform) e.w_max = max(e.w_max, w);
     e.q = j.q;
 }
 
 // Eliminates the inner bonds of W segments of n bonds. block.len counts the separators behind them.
 template <int terms, bool uniform, bool careful>
-HOL_NOINLINE void eliminate(const Block &block, const Source &source, const SegmentBonds &in, long n,
+HOL_NOINLINE void eliminate(const Block &block, const Box &box, const Source &source, const SegmentBonds &in, long n,
                             const SegmentStore &x) {
     Elimination e;
     const vec3 absent = {};
@@ -189,31 +162,29 @@ HOL_NOINLINE void eliminate(const Block &block, const Source &source, const Segm
     vec3 d[group + 1];
     vec b[group];
     Joint j[group];
-    SegmentPlaces at = {in.r.lane[0], bytes_between(in.r.lane[0], in.r.lane[1]), 0, 0, block.mass};
-    if (terms & (velocity_squared | rate)) at.v = bytes_between(at.r, in.v.lane[0]);
-    if (terms & force_difference) at.f = bytes_between(at.r, in.f.lane[0]);
+    const EvenRows rows(in.r, terms & (velocity_squared | rate) ? in.v : in.r, terms & force_difference ? in.f : in.r);
     long k0 = 0;  // bonds that have been read; one less has been eliminated
     if (in.full > 0) {
-        load_group<terms, uniform>(block, in, at, 0, d + 1, b);
+        load_group<terms, uniform>(block, box, in, rows, 0, d + 1, b);
         x.summary->q = dot(d[1], d[1]);
         x.summary->b = b[0];
         plain_joints<group - 1>(source, 0, d + 1, j + 1);
         start<uniform>(e, block, x.summary->q, j[1], b[1]);
-        const vec E0 = e.A;
+        const vec E0 = e.e.A;
         for (int i = 2; i < group; ++i) {
             step<uniform, false>(e, block, x.kept + i - 1, i - 1, j[i], b[i], false);
             if (i % 4 == 3) normalise(e);
         }
         const mask short_of = less(e.slack, vec{});
-        if (any(short_of)) doubt = doubtful_segment_joints<uniform>(block, d + 2, 1, group - 2, E0) & short_of;
+        if (any(short_of)) doubt = doubtful_joints<uniform>(block, d + 2, 2, group - 2, E0) & short_of;
         e.slack = vec{};
         d[0] = d[group];
         k0 = group;
     }
     for (; k0 < in.full; k0 += group) {
-        load_group<terms, uniform>(block, in, at, k0, d + 1, b);
+        load_group<terms, uniform>(block, box, in, rows, k0, d + 1, b);
         plain_joints<group>(source, k0 - 1, d, j);
-        const vec E0 = e.A;
+        const vec E0 = e.e.A;
 #pragma GCC unroll 8
         for (int i = 0; i < group; ++i) {
             step<uniform, false>(e, block, x.kept + k0 + i - 1, k0 + i - 1, j[i], b[i], false);
@@ -221,7 +192,7 @@ HOL_NOINLINE void eliminate(const Block &block, const Source &source, const Segm
         }
         const mask short_of = less(e.slack, vec{});
         if (__builtin_expect(any(short_of), 0)) {
-            doubt = doubt | (doubtful_segment_joints<uniform>(block, d, k0 - 1, group, E0) & short_of);
+            doubt = doubt | (doubtful_joints<uniform>(block, d, k0, group, E0) & short_of);
             e.slack = vec{};
         }
         d[0] = d[group];
@@ -248,7 +219,7 @@ HOL_NOINLINE void eliminate(const Block &block, const Source &source, const Segm
         k0 = 2;
     }
     for (; k0 <= n; ++k0, ++D, low += low_step, ++B) {
-        const vec E0 = e.A;
+        const vec E0 = e.e.A;
         const vec3 two[2] = {before, k0 < n ? *D : in.next};
         const vec3 low_here = k0 < n ? *low : in.next_low;
         // The last joint is masked in the chain's last segment, others where that ends.
@@ -262,13 +233,13 @@ HOL_NOINLINE void eliminate(const Block &block, const Source &source, const Segm
         before = two[1];
         low_before = low_here;
         if (careful || !any(less(e.slack, vec{}))) continue;
-        doubt = doubt | (doubtful_segment_joints<uniform>(block, two, k0 - 1, 1, E0) & less(e.slack, vec{}));
+        doubt = doubt | (doubtful_joints<uniform>(block, two, k0, 1, E0) & less(e.slack, vec{}));
         e.slack = vec{};
     }
     Summary &sum = *x.summary;
-    sum.E = e.A;
-    sum.a = e.a;
-    sum.c = e.c;
+    sum.E = e.e.A;
+    sum.a = e.ac.A;
+    sum.c = e.ac.F;
     sum.y = e.y;
     sum.f = e.f;
     sum.T = e.T;

@@ -5,6 +5,8 @@
 
 #include "core/kernels/eliminate/segment.hpp"
 #include "core/kernels/memory/pulls.hpp"
+#include "core/kernels/memory/values.hpp"
+#include "core/kernels/memory/virial.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -29,69 +31,39 @@ struct SegmentOutputs {
     bool virial;
 };
 
-// - sum t d (x) d
-struct VirialSum {
-    vec xx = {}, xy = {}, xz = {}, yy = {}, yz = {}, zz = {};
-};
-
-HOL_INLINE void add_bond(VirialSum &s, const vec3 &d, const vec3 &p) {
-    s.xx = mul_add(p.x, d.x, s.xx);
-    s.xy = mul_add(p.x, d.y, s.xy);
-    s.xz = mul_add(p.x, d.z, s.xz);
-    s.yy = mul_add(p.y, d.y, s.yy);
-    s.yz = mul_add(p.y, d.z, s.yz);
-    s.zz = mul_add(p.z, d.z, s.zz);
-}
-
-// Writes a value per bond of the bonds k0 .. k0 + W - 1; lanes may end there.
-HOL_INLINE void store_segment_values(const Block &block, long k0, const vec *value, bool ragged, double *out) {
-    vec m[W];
-    for (int b = 0; b < W; ++b) m[b] = value[b];
-    transpose(m);
-    for (int i = 0; i < W; ++i) {
-        double *p = out + block.first_bond[i] + k0;
-        if (!ragged || k0 + W <= block.len[i])
-            store(p, m[i]);
-        else
-            for (long k = k0; k < block.len[i]; ++k) p[k - k0] = m[i][k - k0];
-    }
-}
-
 // The bonds k0 .. k0 + W - 1 with their t, once those behind them are done; `after` is t d of bond k0 + W, then of k0.
-template <bool weighted, bool uniform, Update update>
+template <bool weighted, bool uniform, Update update, bool ragged>
 HOL_INLINE void store_segment_chunk(const Block &own, const SegmentOutputs &out, long k0, const vec3 *d, const vec *t,
-                                    bool ragged, vec3 &after, VirialSum &sum) {
+                                    vec3 &after, VirialSum &sum) {
     const vec zero = {};  // added to products: a zero is +0, and so are differences of such
     if (out.lambda) {
         vec value[W];
         for (int b = 0; b < W; ++b) value[b] = mul_add(out.lambda_factor, t[b], zero);
-        store_segment_values(own, k0, value, ragged, out.lambda);
+        store_values<ragged>(own, k0, value, all_lanes, out.lambda);
     }
     if (out.tension) {
         vec value[W];
         for (int b = 0; b < W; ++b) value[b] = mul_add(t[b], sqrt(dot(d[b], d[b])), zero);
-        store_segment_values(own, k0, value, ragged, out.tension);
+        store_values<ragged>(own, k0, value, all_lanes, out.tension);
     }
     if (!out.has_pulls && !out.virial) return;
     vec value[3 * W];
     for (int b = W - 1; b >= 0; --b) {
         const vec3 p = {mul_add(t[b], d[b].x, zero), mul_add(t[b], d[b].y, zero), mul_add(t[b], d[b].z, zero)};
-        vec3 g = {after.x - p.x, after.y - p.y, after.z - p.z};
-        if (weighted) {
-            const vec w = ragged && k0 + b + 1 > own.n ? vec{} : w_at<uniform>(own, k0 + b + 1);
-            g = {w * g.x, w * g.y, w * g.z};
-        }
+        vec3 g = minus(after, p);
+        if (weighted && !uniform) g = times(ragged && k0 + b + 1 > own.n ? vec{} : own.w[k0 + b + 1], g);
         value[3 * b] = g.x;
         value[3 * b + 1] = g.y;
         value[3 * b + 2] = g.z;
-        if (out.virial && !(ragged && k0 + b >= own.n)) add_bond(sum, d[b], p);
+        if (out.virial && !(ragged && k0 + b >= own.n)) sum.add(d[b], p);
         after = p;
     }
     if (!out.has_pulls) return;
+    const AtomSink<update> sink = {out.pulls};
     if (ragged)
-        store_ragged<update>(own, k0 + 1, value, (1u << W) - 1, out.pulls);
+        store_ragged(own, k0 + 1, value, all_lanes, sink);
     else
-        store_chunk<update>(k0 + 1, value, out.pulls);
+        store_chunk(k0 + 1, value, sink);
 }
 
 // Atoms 1 .. own of each segment, and atom 0 of the chain.
@@ -102,7 +74,7 @@ HOL_NOINLINE void finish_segments(const SegmentBlock &s, bool first_block, const
     const long n = s.own_max, full = s.own_min / W * W;
     const vec ts = x.summary->t;
     vec t = next, value[W], unused[W];
-    vec3 after = {next * in.next.x, next * in.next.y, next * in.next.z}, d[W];
+    vec3 after = times(next, in.next), d[W];
     VirialSum sum;
     long k0 = (n - 1) / W * W;
     for (; k0 >= full; k0 -= W) {
@@ -114,12 +86,11 @@ HOL_NOINLINE void finish_segments(const SegmentBlock &s, bool first_block, const
                 t = mul_add(x.kept[k].l, t, mul_add(x.kept[k].fP, ts, x.kept[k].u));
             value[b] = k <= n ? t : vec{};
         }
-        load_ragged_chunk_of<none_, true, boxed>(own, box, in.r, in.r, in.r, k0, d, unused);
+        load_ragged<none_, true, boxed, false>(own, box, in.r, in.r, in.r, k0, d, nullptr, unused);
         if (n - k0 < W) d[n - k0] = in.next;  // the separators behind the segments
-        store_segment_chunk<weighted, uniform, update>(own, out, k0, d, value, true, after, sum);
+        store_segment_chunk<weighted, uniform, update, true>(own, out, k0, d, value, after, sum);
     }
-    const double *pr[W];
-    const SegmentPlaces at = {in.r.lane[0], bytes_between(in.r.lane[0], in.r.lane[1]), 0, 0, vec{}};
+    const EvenRows at(in.r, in.r, in.r);
     for (; k0 >= 0; k0 -= W) {
         for (int b = W - 1; b > 0; --b) {
             const Kept &p = x.kept[k0 + b];
@@ -131,22 +102,13 @@ HOL_NOINLINE void finish_segments(const SegmentBlock &s, bool first_block, const
         else
             t = ts;
         value[0] = t;
-        if (boxed)
-            for (int i = 0; i < W; ++i) pr[i] = in.r.lane[i] + 3 * k0;
-        if (boxed)
-            load_chunk<none_, true, boxed, false>(own, box, k0, pr, pr, pr, d, nullptr, unused);
-        else
-            load_segments<none_, true>(own, at, k0, d, unused);
-        store_segment_chunk<weighted, uniform, update>(own, out, k0, d, value, false, after, sum);
+        load_chunk<none_, true, boxed, false>(own, box, k0, at.from(k0), d, nullptr, unused);
+        store_segment_chunk<weighted, uniform, update, false>(own, out, k0, d, value, after, sum);
     }
-    if (out.virial) {
-        const vec *const part = &sum.xx;
-        for (int c = 0; c < 6; ++c) tally.virial[c] -= out.virial_factor * sum_lanes(part[c]);
-    }
+    if (out.virial) sum.count(~none(), splat(out.virial_factor), tally);
     if (!first_block || !out.has_pulls) return;
-    const double w = weighted ? w_at<uniform>(own, 0)[0] : 1.0;
-    const double pull[3] = {w * after.x[0] + 0.0, w * after.y[0] + 0.0, w * after.z[0] + 0.0};
-    for (int c = 0; c < 3; ++c) out.pulls.lane[0][c] = update == add_ ? out.pulls.lane[0][c] + pull[c] : pull[c];
+    if (weighted && !uniform) after = times(own.w[0], after);
+    store_first({after.x + 0.0, after.y + 0.0, after.z + 0.0}, 1, AtomSink<update>{out.pulls});
 }
 
 template <bool weighted, bool boxed>

@@ -42,7 +42,7 @@ HOL_INLINE void load_molecules(const Block &block, const double *r, const double
         HOL_UNROLL
         for (int c = 0; c < 3 * N; ++c) {
             const vec dv = e[c + 3] - e[c];
-            p[c] = (block.mass * dv) * dv;
+            p[c] = square<terms>(block.mass, dv);
         }
     }
     if (terms & force_difference) {
@@ -50,7 +50,7 @@ HOL_INLINE void load_molecules(const Block &block, const double *r, const double
         HOL_UNROLL
         for (int c = 0; c < 3 * N; ++c) {
             const vec df = uniform ? e[c + 3] - e[c] : block.w[c / 3 + 1] * e[c + 3] - block.w[c / 3] * e[c];
-            p[c] = terms & velocity_squared ? mul_add(df, d[c], p[c]) : df * d[c];
+            p[c] = product<terms>(d[c], vec{}, df, p[c]);
         }
     }
     HOL_UNROLL
@@ -83,7 +83,7 @@ HOL_INLINE void store_pulls(const vec3 *D, const vec *t, double *out) {
     vec3 before = {};
     HOL_UNROLL
     for (int k = 0; k <= N; ++k) {
-        const vec3 after = k < N ? scaled_bond(D[k], t[k]) : vec3{}, g = difference(before, after);
+        const vec3 after = k < N ? times(t[k], D[k]) : vec3{}, g = minus(after, before);
         value[3 * k] = g.x;
         value[3 * k + 1] = g.y;
         value[3 * k + 2] = g.z;

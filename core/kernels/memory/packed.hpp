@@ -16,10 +16,38 @@ namespace HOL_ISA {
 // orthorhombic; of bond vectors, for which the products have to wait until they are transposed.
 enum Images { no_images, images_of_components, images_of_bonds };
 
-// The bonds k0 .. k0 + W - 1 of all lanes, from pointers to atom k0: see load_bonds. d[W], low[W], rhs[W].
-template <int terms, bool uniform, Images images, bool careful>
-HOL_INLINE void load_chunk_with(const Block &block, const Box &box, long k0, const double *const *pr,
-                                const double *const *pv, const double *const *pf, vec3 *d3, vec3 *low3, vec *rhs) {
+// Where a chunk of W bonds is read: the rows of lane i in each array, from the chunk's first atom on.
+struct LaneRows {
+    const double *pr[W], *pv[W], *pf[W];
+    HOL_FORCED const double *r(int i) const { return pr[i]; }
+    HOL_FORCED const double *v(int i) const { return pv[i]; }
+    HOL_FORCED const double *f(int i) const { return pf[i]; }
+};
+
+// Lanes all at the same distance from one another, in each array: one address per array does.
+struct EvenRows {
+    uintptr_t at, lane, to_v, to_f;
+    EvenRows(const Packed &r, const Packed &v, const Packed &f)
+        : at(number(r.lane[0])), lane(number(r.lane[W > 1 ? 1 : 0]) - at), to_v(number(v.lane[0]) - at),
+          to_f(number(f.lane[0]) - at) {}
+    HOL_FORCED EvenRows from(long k0) const {
+        EvenRows rows = *this;
+        rows.at += static_cast<uintptr_t>(3 * k0) * sizeof(double);
+        return rows;
+    }
+    HOL_FORCED const double *r(int i) const { return pointer(at + static_cast<uintptr_t>(i) * lane); }
+    HOL_FORCED const double *v(int i) const { return pointer(at + static_cast<uintptr_t>(i) * lane + to_v); }
+    HOL_FORCED const double *f(int i) const { return pointer(at + static_cast<uintptr_t>(i) * lane + to_f); }
+
+private:
+    HOL_INLINE uintptr_t number(const double *p) { return reinterpret_cast<uintptr_t>(p); }
+    HOL_INLINE const double *pointer(uintptr_t p) { return reinterpret_cast<const double *>(p); }
+};
+
+// The bonds k0 .. k0 + W - 1 of all lanes: see load_bonds. d[W], low[W], rhs[W].
+template <int terms, bool uniform, Images images, bool careful, class Rows>
+HOL_INLINE void load_chunk_with(const Block &block, const Box &box, long k0, const Rows &rows, vec3 *d3, vec3 *low3,
+                                vec *rhs) {
     constexpr bool wait = images == images_of_bonds;
     vec *const d = &d3->x, *const low = careful ? &low3->x : nullptr;
     vec p[3 * W], a[wait ? 3 * W : 1];
@@ -29,7 +57,8 @@ HOL_INLINE void load_chunk_with(const Block &block, const Box &box, long k0, con
         vec e[W], l[W];
         HOL_UNROLL
         for (int i = 0; i < W; ++i) {
-            const vec r0 = load(pr[i] + W * j), r1 = load(pr[i] + W * j + 3);
+            const double *const r = rows.r(i) + W * j;
+            const vec r0 = load(r), r1 = load(r + 3);
             e[i] = r1 - r0;
             if (careful) l[i] = two_difference<vec>(r1, r0).lo;
             if (images == images_of_components) {
@@ -37,32 +66,20 @@ HOL_INLINE void load_chunk_with(const Block &block, const Box &box, long k0, con
                 e[i] = mul_add(round(e[i] * load(box.per_side + first)), load(box.minus_side + first), e[i]);
             }
             vec dv = {}, df = {}, vv = {};
-            if (terms & (velocity_squared | rate)) dv = load(pv[i] + W * j + 3) - load(pv[i] + W * j);
-            if (terms & velocity_squared) vv = (terms & unit_mass ? dv : block.mass[i] * dv) * dv;
+            if (terms & (velocity_squared | rate)) dv = load(rows.v(i) + W * j + 3) - load(rows.v(i) + W * j);
+            if (terms & velocity_squared) vv = square<terms>(splat(block.mass[i]), dv);
             if (terms & force_difference) {
-                const vec f0 = load(pf[i] + W * j), f1 = load(pf[i] + W * j + 3);
-                if (uniform) {
-                    df = f1 - f0;
-                } else {
-                    const double *w3 = block.w3[i] + 3 * k0 + W * j;
-                    df = load(w3 + 3) * f1 - load(w3) * f0;
-                }
+                const vec f0 = load(rows.f(i) + W * j), f1 = load(rows.f(i) + W * j + 3);
+                const double *const w3 = uniform ? nullptr : block.w3[i] + 3 * k0 + W * j;
+                df = uniform ? f1 - f0 : load(w3 + 3) * f1 - load(w3) * f0;
             }
-            if (wait) {
-                a[j * W + i] = terms & rate ? dv : df;
-                p[j * W + i] = vv;
-            } else if (terms & rate) {
-                p[j * W + i] = dv * e[i];
-            } else if (terms & force_difference) {
-                p[j * W + i] = terms & velocity_squared ? mul_add(df, e[i], vv) : df * e[i];
-            } else {
-                p[j * W + i] = vv;
-            }
+            if (wait) a[j * W + i] = terms & rate ? dv : df;
+            p[j * W + i] = wait ? vv : product<terms>(e[i], dv, df, vv);
         }
         transpose(e);
         HOL_UNROLL
         for (int i = 0; i < W; ++i) d[j * W + i] = e[i];
-        if (wait ? (terms & velocity_squared) != 0 : terms != 0) transpose(p + j * W);
+        if (wait ? (terms & velocity_squared) != 0 : (terms & products) != 0) transpose(p + j * W);
         if (careful) {
             transpose(l);
             for (int i = 0; i < W; ++i) low[j * W + i] = l[i];
@@ -78,22 +95,22 @@ HOL_INLINE void load_chunk_with(const Block &block, const Box &box, long k0, con
             const vec3 other = {a[3 * b], a[3 * b + 1], a[3 * b + 2]};
             if (terms & (rate | force_difference)) sum = dot(d3[b], other);
             if (terms & velocity_squared) sum = sum + ((p[3 * b] + p[3 * b + 1]) + p[3 * b + 2]);
-        } else if (terms) {
+        } else if (terms & products) {
             sum = (p[3 * b] + p[3 * b + 1]) + p[3 * b + 2];
         }
-        rhs[b] = sum;
+        if (!(terms & bonds_alone)) rhs[b] = sum;
     }
 }
 
-template <int terms, bool uniform, bool boxed, bool careful>
-HOL_INLINE void load_chunk(const Block &block, const Box &box, long k0, const double *const *pr,
-                           const double *const *pv, const double *const *pf, vec3 *d, vec3 *low, vec *rhs) {
+template <int terms, bool uniform, bool boxed, bool careful, class Rows>
+HOL_INLINE void load_chunk(const Block &block, const Box &box, long k0, const Rows &rows, vec3 *d, vec3 *low,
+                           vec *rhs) {
     if (!boxed)
-        load_chunk_with<terms, uniform, no_images, careful>(block, box, k0, pr, pv, pf, d, low, rhs);
+        load_chunk_with<terms, uniform, no_images, careful>(block, box, k0, rows, d, low, rhs);
     else if (!careful && box.shape == Box::orthorhombic)
-        load_chunk_with<terms, uniform, images_of_components, careful>(block, box, k0, pr, pv, pf, d, low, rhs);
+        load_chunk_with<terms, uniform, images_of_components, careful>(block, box, k0, rows, d, low, rhs);
     else
-        load_chunk_with<terms, uniform, images_of_bonds, careful>(block, box, k0, pr, pv, pf, d, low, rhs);
+        load_chunk_with<terms, uniform, images_of_bonds, careful>(block, box, k0, rows, d, low, rhs);
 }
 
 // The lanes' places in the arrays of a call. All arrays are laid out in the same way (all in place or all staged), so
@@ -110,46 +127,59 @@ struct Places {
 template <int terms, bool uniform, bool boxed, bool careful>
 HOL_INLINE void load_full_chunk(const Block &block, const Box &box, const Places &at, long k0, vec3 *D, vec3 *D_low,
                                 vec *B) {
-    const double *pr[W], *pv[W] = {}, *pf[W] = {};
+    LaneRows rows;
     HOL_UNROLL
     for (int i = 0; i < W; ++i) {
-        pr[i] = at.r + 3 * k0 + at.lane[i];
-        if (terms & (velocity_squared | rate)) pv[i] = at.v + 3 * k0 + at.lane[i];
-        if (terms & force_difference) pf[i] = at.f + 3 * k0 + at.lane[i];
+        rows.pr[i] = at.r + 3 * k0 + at.lane[i];
+        if (terms & (velocity_squared | rate)) rows.pv[i] = at.v + 3 * k0 + at.lane[i];
+        if (terms & force_difference) rows.pf[i] = at.f + 3 * k0 + at.lane[i];
     }
-    if (__builtin_expect(block.ahead != 0, 0)) {
+    if (!(terms & bonds_alone) && __builtin_expect(block.ahead != 0, 0)) {
         fetch_ahead(at.r, k0, block.ahead);
         if (terms & (velocity_squared | rate)) fetch_ahead(at.v, k0, block.ahead);
         if (terms & force_difference) fetch_ahead(at.f, k0, block.ahead);
     }
-    load_chunk<terms, uniform, boxed, careful>(block, box, k0, pr, pv, pf, D, D_low, B);
+    load_chunk<terms, uniform, boxed, careful>(block, box, k0, rows, D, D_low, B);
 }
 
-// The bonds k0 .. k0 + W - 1 where lanes may end: those past the end of a lane are inert, D = (1,0,0), B = 0.
+// The bonds k0 .. k0 + W - 1 where lanes may end: those past the end of a lane are inert, d = (1,0,0), rhs = 0.
+template <int terms, bool uniform, bool boxed, bool careful>
+HOL_INLINE void load_ragged(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
+                            long k0, vec3 *d, vec3 *low, vec *rhs) {
+    double buffer[3][W][3 * W + 3];
+    LaneRows rows;
+    for (int i = 0; i < W; ++i) {
+        rows.pr[i] = window(r.lane[i], k0, block.len[i], block.roomy, buffer[0][i]);
+        if (terms & (velocity_squared | rate))
+            rows.pv[i] = window(v.lane[i], k0, block.len[i], block.roomy, buffer[1][i]);
+        if (terms & force_difference) rows.pf[i] = window(f.lane[i], k0, block.len[i], block.roomy, buffer[2][i]);
+    }
+    load_chunk<terms, uniform, boxed, careful>(block, box, k0, rows, d, low, rhs);
+    for (long b = 0; b < W; ++b) {
+        const mask live = joint(block, k0 + b);
+        d[b] = {select(live, d[b].x, splat(1.0)), keep(live, d[b].y), keep(live, d[b].z)};
+        if (careful) low[b] = {keep(live, low[b].x), keep(live, low[b].y), keep(live, low[b].z)};
+        if (!(terms & bonds_alone)) rhs[b] = keep(live, rhs[b]);
+    }
+}
+
+// The same into arrays that end with the block.
 template <int terms, bool uniform, bool boxed, bool careful>
 HOL_NOINLINE void load_ragged_chunk(const Block &block, const Box &box, const Packed &r, const Packed &v,
                                     const Packed &f, long k0, vec3 *D, vec3 *D_low, vec *B) {
-    double buffer[3][W][3 * W + 3];
-    const double *pr[W], *pv[W], *pf[W];
-    for (int i = 0; i < W; ++i) {
-        pr[i] = window(r.lane[i], k0, block.len[i], block.roomy, buffer[0][i]);
-        if (terms & (velocity_squared | rate)) pv[i] = window(v.lane[i], k0, block.len[i], block.roomy, buffer[1][i]);
-        if (terms & force_difference) pf[i] = window(f.lane[i], k0, block.len[i], block.roomy, buffer[2][i]);
-    }
     vec3 d[W], low[W];
     vec rhs[W];
-    load_chunk<terms, uniform, boxed, careful>(block, box, k0, pr, pv, pf, d, low, rhs);
+    load_ragged<terms, uniform, boxed, careful>(block, box, r, v, f, k0, d, low, rhs);
     for (long b = 0; b < W && k0 + b < block.n; ++b) {
-        const mask live = less(splat(static_cast<double>(k0 + b)), block.lengths());
-        D[b] = {select(live, d[b].x, splat(1.0)), keep(live, d[b].y), keep(live, d[b].z)};
-        if (careful) D_low[b] = {keep(live, low[b].x), keep(live, low[b].y), keep(live, low[b].z)};
-        B[b] = keep(live, rhs[b]);
+        D[b] = d[b];
+        if (careful) D_low[b] = low[b];
+        if (!(terms & bonds_alone)) B[b] = rhs[b];
     }
 }
 
 // Bond vectors D[k] = r_{k+1} - r_k and right-hand sides B[k] of all lanes, with w in the lane's unit:
 //   velocity_squared: |v_{k+1} - v_k|^2 / unit,  force_difference: D . (w_{k+1} f_{k+1} - w_k f_k),
-//   rate: D . (v_{k+1} - v_k).
+//   rate: D . (v_{k+1} - v_k),  bonds_alone: none, B may be absent.
 // careful: D_low gets the low words of the differences. Bonds past the end of a lane are inert: D = (1,0,0), B = 0.
 template <int terms, bool uniform, bool boxed, bool careful>
 static inline void load_bonds(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
@@ -158,10 +188,18 @@ static inline void load_bonds(const Block &block, const Box &box, const Packed &
     long k0 = 0;
     for (; k0 + W <= block.n_min; k0 += W)
         load_full_chunk<terms, uniform, boxed, careful>(block, box, at, k0, D + k0, careful ? D_low + k0 : nullptr,
-                                                        B + k0);
+                                                        terms & bonds_alone ? nullptr : B + k0);
     for (; k0 < block.n; k0 += W)
-        load_ragged_chunk<terms, uniform, boxed, careful>(block, box, r, v, f, k0, D + k0,
-                                                          careful ? D_low + k0 : nullptr, B + k0);
+        load_ragged_chunk<terms, uniform, boxed, careful>(
+            block, box, r, v, f, k0, D + k0, careful ? D_low + k0 : nullptr, terms & bonds_alone ? nullptr : B + k0);
+}
+
+// Bond vectors alone.
+static inline void load_bond_vectors(const Block &block, const Box &box, const Packed &r, vec3 *D) {
+    if (box.shape == Box::none)
+        load_bonds<bonds_alone, true, false, false>(block, box, r, r, r, D, nullptr, nullptr);
+    else
+        load_bonds<bonds_alone, true, true, false>(block, box, r, r, r, D, nullptr, nullptr);
 }
 
 }  // namespace HOL_ISA

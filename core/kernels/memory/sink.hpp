@@ -1,61 +1,80 @@
-// Writing a block: values per bond and vectors per atom, transposed back into the caller's layout.
+// Where the vectors per atom of a block go. A sink takes what is found for a lane as it stands in memory, W components
+// from component e of the lane's atoms on or a single one; chunks are transposed here, and cut where lanes end.
 #ifndef HOLONOMIC_KERNELS_MEMORY_SINK_HPP
 #define HOLONOMIC_KERNELS_MEMORY_SINK_HPP
 
+#include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/memory/block.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 
-// Writes factor times a value per bond of the lanes in `which` into the caller's array per bond; zeros as +0.
-static inline void store_bonds(const Block &block, const vec *value, vec factor, mask which, double *out) {
-    const unsigned chosen = bits(which & block.in_use());
-    double *p[W];
-    for (int i = 0; i < block.lanes; ++i) p[i] = out + block.first_bond[i];
-    long k0 = 0;
-    if (chosen == (1u << W) - 1)
-        for (; k0 + W <= block.n_min; k0 += W) {
-            vec m[W];
-            for (int b = 0; b < W; ++b) m[b] = mul_add(factor, value[k0 + b], vec{});
-            transpose(m);
-            for (int i = 0; i < W; ++i) store(p[i] + k0, m[i]);
-        }
-    for (int i = 0; i < block.lanes; ++i)
-        if (chosen >> i & 1)
-            for (long k = k0; k < block.len[i]; ++k) p[i][k] = mul_add(factor[i], value[k][i], 0.0);
-}
-
 enum Update { write_, add_ };
 
-// Writes W consecutive atoms from atom k0 on, given component by component (value[3 W], transposed in place), of all
-// lanes.
+// An array per atom that is written, or added to.
 template <Update update>
-HOL_INLINE void store_chunk(long k0, vec *value, const Packed &out) {
+struct AtomSink {
+    const Packed &out;
+    HOL_FORCED void row(int lane, long e, vec x) const {
+        double *const p = out.lane[lane] + e;
+        store(p, update == add_ ? load(p) + x : x);
+    }
+    HOL_FORCED void component(int lane, long e, double x) const {
+        double &p = out.lane[lane][e];
+        p = update == add_ ? p + x : x;
+    }
+};
+
+// Moves of atoms: added to r, and as a rate to v; either, or both.
+template <bool to_r, bool to_v>
+struct MoveSink {
+    const Packed &r, &v;
+    double per_dt;
+    HOL_FORCED void row(int lane, long e, vec x) const {
+        if (to_r) store(r.lane[lane] + e, load(r.lane[lane] + e) + x);
+        if (to_v) store(v.lane[lane] + e, mul_add(x, splat(per_dt), load(v.lane[lane] + e)));
+    }
+    HOL_FORCED void component(int lane, long e, double x) const {
+        if (to_r) r.lane[lane][e] = r.lane[lane][e] + x;
+        if (to_v) v.lane[lane][e] = mul_add(x, per_dt, v.lane[lane][e]);
+    }
+};
+
+// W consecutive atoms from atom k0 on, given component by component (value[3 W], transposed in place), of all lanes.
+template <class Sink>
+HOL_INLINE void store_chunk(long k0, vec *value, const Sink &sink) {
     HOL_UNROLL
     for (int j = 0; j < 3; ++j) {
         transpose(value + j * W);
-        for (int i = 0; i < W; ++i) {
-            double *p = out.lane[i] + 3 * k0 + j * W;
-            store(p, update == add_ ? load(p) + value[j * W + i] : value[j * W + i]);
-        }
+        for (int i = 0; i < W; ++i) sink.row(i, 3 * k0 + j * W, value[j * W + i]);
     }
 }
 
 // The same where lanes may end, or be left out.
-template <Update update>
-HOL_INLINE void store_ragged(const Block &block, long k0, vec *value, unsigned chosen, const Packed &out) {
+template <class Sink>
+HOL_INLINE void store_ragged(const Block &block, long k0, vec *value, unsigned chosen, const Sink &sink) {
     for (int j = 0; j < 3; ++j) transpose(value + j * W);
     for (int i = 0; i < block.lanes; ++i) {
         if (!(chosen >> i & 1)) continue;
-        double *p = out.lane[i] + 3 * k0;
-        long left = 3 * (block.len[i] + 1 - k0);
-        for (int j = 0; j < 3 && left > 0; ++j, left -= W, p += W) {
+        long e = 3 * k0, left = 3 * (block.len[i] + 1 - k0);
+        for (int j = 0; j < 3 && left > 0; ++j, left -= W, e += W) {
             const vec x = value[j * W + i];
             if (left >= W)
-                store(p, update == add_ ? load(p) + x : x);
+                sink.row(i, e, x);
             else
-                for (long e = 0; e < left; ++e) p[e] = update == add_ ? p[e] + x[e] : x[e];
+                for (long c = 0; c < left; ++c) sink.component(i, e + c, x[c]);
         }
+    }
+}
+
+// Atom 0 of the chosen lanes.
+template <class Sink>
+HOL_INLINE void store_first(const vec3 &a, unsigned chosen, const Sink &sink) {
+    for (int i = 0; i < W; ++i) {
+        if (!(chosen >> i & 1)) continue;
+        sink.component(i, 0, a.x[i]);
+        sink.component(i, 1, a.y[i]);
+        sink.component(i, 2, a.z[i]);
     }
 }
 

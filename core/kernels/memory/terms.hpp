@@ -1,4 +1,5 @@
-// Right-hand sides of the equations for the multipliers.
+// Right-hand sides of the equations for the multipliers: what they are made of, and each product once. They are found
+// while a block is read, component by component of what stands in memory or of vectors in lanes.
 #ifndef HOLONOMIC_KERNELS_MEMORY_TERMS_HPP
 #define HOLONOMIC_KERNELS_MEMORY_TERMS_HPP
 
@@ -7,23 +8,46 @@
 namespace holonomic {
 namespace HOL_ISA {
 
-// What the right-hand side of a bond is made of.
-enum Terms { none_ = 0, velocity_squared = 1, force_difference = 2, rate = 4, unit_mass = 8 };
+// With d the bond vector, dv the difference of velocities, df that of forces times inverse masses:
+//   velocity_squared: dv.dv / unit,  force_difference: d.df,  rate: d.dv
+// unit_mass: velocities need no factor. bonds_alone: no right-hand side, not even zero.
+enum Terms {
+    none_ = 0,
+    velocity_squared = 1,
+    force_difference = 2,
+    rate = 4,
+    unit_mass = 8,
+    bonds_alone = 16,
+    products = velocity_squared | force_difference | rate
+};
 
-// The right-hand side of a bond as load_chunk() finds it, from differences already in lanes: dv of the velocities, df
-// of the forces times their inverse masses. `waited`: for images of bonds.
+// A component of velocity_squared.
+template <int terms>
+HOL_INLINE vec square(vec mass, vec dv) {
+    return (terms & unit_mass ? dv : mass * dv) * dv;
+}
+
+// A component of the right-hand side; vv is that of square().
+template <int terms>
+HOL_INLINE vec product(vec d, vec dv, vec df, vec vv) {
+    if (terms & rate) return dv * d;
+    if (!(terms & force_difference)) return vv;
+    return terms & velocity_squared ? mul_add(df, d, vv) : df * d;
+}
+
+// The right-hand side of a bond from differences already in lanes, rounded as where they are read from rows. `waited`:
+// for images of bonds.
 template <int terms>
 HOL_INLINE vec right_hand_side(bool waited, vec mass, const vec3 &d, const vec3 &dv, const vec3 &df) {
     if (terms & rate) return dot(d, dv);
-    const vec3 vv = {(mass * dv.x) * dv.x, (mass * dv.y) * dv.y, (mass * dv.z) * dv.z};
+    const vec3 vv = {square<terms>(mass, dv.x), square<terms>(mass, dv.y), square<terms>(mass, dv.z)};
     if (waited) {
         vec sum = {};
         if (terms & force_difference) sum = dot(d, df);
         return terms & velocity_squared ? sum + ((vv.x + vv.y) + vv.z) : sum;
     }
-    if (!(terms & force_difference)) return (vv.x + vv.y) + vv.z;
-    if (!(terms & velocity_squared)) return (df.x * d.x + df.y * d.y) + df.z * d.z;
-    return (mul_add(df.x, d.x, vv.x) + mul_add(df.y, d.y, vv.y)) + mul_add(df.z, d.z, vv.z);
+    return (product<terms>(d.x, dv.x, df.x, vv.x) + product<terms>(d.y, dv.y, df.y, vv.y)) +
+           product<terms>(d.z, dv.z, df.z, vv.z);
 }
 
 }  // namespace HOL_ISA

@@ -2,8 +2,9 @@
 #ifndef HOLONOMIC_KERNELS_NEWTON_ATTEMPTS_HPP
 #define HOLONOMIC_KERNELS_NEWTON_ATTEMPTS_HPP
 
-#include "core/kernels/memory/bonds.hpp"
 #include "core/kernels/memory/open.hpp"
+#include "core/kernels/memory/packed.hpp"
+#include "core/kernels/memory/pulls.hpp"
 #include "core/kernels/newton/solve.hpp"
 
 namespace holonomic {
@@ -26,7 +27,7 @@ struct Positions {
 
     template <bool to_r, bool to_v>
     void move(mask which) const {
-        store_moves<uniform_w, to_r, to_v>(block, x, which, r, v, 1 / call.dt);
+        store_pulls<true, uniform_w>(block, x.b, x.tau, which, MoveSink<to_r, to_v>{r, v, 1 / call.dt});
     }
 
     // Goes on from the coordinates as they are rounded after a coarse move: the moves that remain are small, and so are

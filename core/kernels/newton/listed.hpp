@@ -24,7 +24,7 @@ HOL_INLINE void gather_bonds(const Block &block, const PositionsCall &call, cons
                 if (v) __builtin_prefetch(v + next, 0, 2);
             }
         const vec3 b1 = gather(r_ref, at, k + 1), r1 = gather(r, at, k + 1);
-        vec3 b = difference(b0, b1), d = difference(r0, r1);
+        vec3 b = minus(b1, b0), d = minus(r1, r0);
         if (boxed) {
             wrap<false>(call.box_ref, b, unused);
             wrap<false>(call.box, d, unused);
@@ -36,7 +36,7 @@ HOL_INLINE void gather_bonds(const Block &block, const PositionsCall &call, cons
     }
 }
 
-// As store_moves(), of all lanes.
+// As store_pulls() with a MoveSink, of all lanes.
 template <bool uniform_w, bool to_v>
 static inline void scatter_moves(const Block &block, const Newton &x, const AtomLists &at, double *r, double *v,
                                  vec rate) {

@@ -1,50 +1,31 @@
-// Position level of one long chain, once Newton's method (segments_newton.inl) has ended: move the atoms and store.
+// Position level of one long chain, once Newton's method (segments.hpp) has ended: move the atoms and store.
 #ifndef HOLONOMIC_KERNELS_NEWTON_SEGMENT_OUTPUTS_HPP
 #define HOLONOMIC_KERNELS_NEWTON_SEGMENT_OUTPUTS_HPP
 
 #include "core/kernels/eliminate/segment_substitute.hpp"
 #include "core/kernels/memory/pulls.hpp"
+#include "core/kernels/memory/virial.hpp"
 #include "core/kernels/newton/segments.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 
-// Bond vectors and multipliers of W segments and of the separators behind them.
-struct Segments {
-    vec3 *D;
-    vec *t;
-};
-
-// Values per atom of the lanes: atoms 1 .. own of each segment, and atom 0 of the chain.
-template <bool weighted, bool uniform>
-static void store_segment_pulls(const SegmentBlock &s, int64_t j, const Segments &x, Update update, const Packed &out) {
+// Moves the atoms 1 .. own of each segment, and atom 0 of the chain, by t b in place of tau b.
+template <bool uniform, class Sink>
+static void move_segment_atoms(const SegmentBlock &s, int64_t j, const NewtonSegments &x, const vec *t,
+                               const Sink &sink) {
     Block block = own_block(s);
     block.n = s.block.n;  // the last atom of a lane is pulled by the bond behind it, too
-    const vec3 first = {x.t[0] * x.D[0].x, x.t[0] * x.D[0].y, x.t[0] * x.D[0].z};
-    if (update == add_)
-        store_pulls_from<weighted, uniform, add_>(block, 1, first, x.D, x.t, first_lanes(W), out);
-    else
-        store_pulls_from<weighted, uniform, write_>(block, 1, first, x.D, x.t, first_lanes(W), out);
-    if (j > 0) return;
-    const double w = weighted ? w_at<uniform>(block, 0)[0] : 1.0;
-    const double pull[3] = {w * first.x[0], w * first.y[0], w * first.z[0]};
-    for (int c = 0; c < 3; ++c) out.lane[0][c] = update == add_ ? out.lane[0][c] + pull[c] : pull[c];
+    const vec3 first = times(t[0], x.b[0]);
+    store_pulls<true, uniform>(block, x.b, t, first_lanes(W), sink, 1, first);
+    if (j == 0) store_first(uniform ? first : times(block.w[0], first), 1, sink);
 }
 
-static inline void add_segment_virial(const SegmentBlock &s, const Segments &x, Tally &tally) {
-    Tally part = {};
-    // The bond that follows a segment is counted with the next one.
-    vec own[W];
-    for (int i = 0; i < W; ++i) own[i] = vec{};
-    for (int i = 0; i < W; ++i)
-        if (s.own[i] < s.block.n) {
-            own[i][0] = x.t[s.own[i]][i];
-            x.t[s.own[i]][i] = 0;
-        }
-    add_virial(s.own_max < s.block.n ? s.own_max + 1 : s.block.n, x.D, x.t, first_lanes(W), splat(1.0), part);
-    for (int i = 0; i < W; ++i)
-        if (s.own[i] < s.block.n) x.t[s.own[i]][i] = own[i][0];
-    for (int c = 0; c < 6; ++c) tally.virial[c] += part.virial[c];
+// The bond behind a segment is counted with the next one.
+static inline void add_segment_virial(const SegmentBlock &s, const NewtonSegments &x, vec factor, Tally &tally) {
+    VirialSum sum;
+    for (long k = 0; k < s.own_max; ++k) sum.add(x.b[k], times(keep(owned(s, k), x.tau[k]), x.b[k]));
+    sum.count(~none(), factor, tally);
 }
 
 // The block's largest error and the first bond that has it.

@@ -61,14 +61,14 @@ HOL_NOINLINE vec move_segments(const SegmentBlock &s, const Lane &lane, const Ne
     for (; k + 1 < s.own_min; ++k) {
         const vec sigma = moved(k, false);
         if (ascend)
-            Ascent::bond(a, s, x, k, sigma, false);
+            a.bond(s, x, k, sigma, false);
         else
             poison = mul_add(sigma, vec{}, poison);
     }
     for (; k < s.own_max; ++k) {
         const vec sigma = moved(k, true);
         if (ascend)
-            Ascent::bond(a, s, x, k, sigma, true);
+            a.bond(s, x, k, sigma, true);
         else
             poison = mul_add(sigma, vec{}, poison);
     }

@@ -7,6 +7,7 @@
 #ifndef HOLONOMIC_KERNELS_NEWTON_SEGMENTS_HPP
 #define HOLONOMIC_KERNELS_NEWTON_SEGMENTS_HPP
 
+#include "core/kernels/eliminate/remainder.hpp"
 #include "core/kernels/memory/cut.hpp"
 #include "core/kernels/memory/packed.hpp"
 #include "core/kernels/newton/decisions.hpp"
@@ -101,13 +102,13 @@ HOL_NOINLINE void factorize_segments(const SegmentBlock &s, const NewtonSegments
     const Block &block = s.block;
     NewtonSummary sum = *x.summary;
     vec w = w_at<uniform>(block, 1), q = dot(x.D[1], x.b[1]);
-    vec A = w * q, F = splat(1.0), c = w * dot(x.D[0], x.b[0]);
-    vec a = (w * w) * dot(cross(x.D[0], x.D[1]), cross(x.b[0], x.b[1]));
+    Column e = {w * q, splat(1.0)};
+    Column ac = {(w * w) * dot(cross(x.D[0], x.D[1]), cross(x.b[0], x.b[1])), w * dot(x.D[0], x.b[0])};
     vec f_down = w * dot(x.D[1], x.b[0]), f_up = w * dot(x.D[0], x.b[1]);
     sum.first_up = f_up;
     for (long k = 1; k < s.own_max; ++k) {
         w = w_at<uniform>(block, k + 1);
-        const vec wq = w * q, F1 = mul_add(wq, F, A), c1 = mul_add(wq, c, a), rF = splat(1.0) / F1, rP = F * rF;
+        const vec wq = w * q, F1 = e.next(wq), c1 = ac.next(wq), rF = splat(1.0) / F1, rP = e.F * rF;
         x.rP[k] = rP;
         x.fP[k] = f_down * rP;
         if (k + 1 < block.n) {
@@ -122,32 +123,29 @@ HOL_NOINLINE void factorize_segments(const SegmentBlock &s, const NewtonSegments
                 upper = keep(m, upper);
                 X = keep(m, X);
             }
-            const vec wP = w * rP, wX = w * X;
+            const vec wP = w * rP, wwX = w * (w * X), wq1 = w * q1;
             x.down[k] = wP * lower;
             x.up[k] = wP * upper;
             f_down = x.down[k] * f_down;
             f_up = x.up[k] * f_up;
-            A = w * mul_add(wX, F, q1 * A);
-            a = w * mul_add(wX, c, q1 * a);
+            e.pass(F1, wwX, wq1);
+            ac.pass(c1, wwX, wq1);
             q = q1;
         } else {
-            A = a = vec{};
+            e = {vec{}, F1};
+            ac = {vec{}, c1};
         }
-        F = F1;
-        c = c1;
         if (k + 1 >= s.own_min) {
             const mask m = ends_at(s, k + 1);
-            sum.E = select(m, A * rF, sum.E);
-            sum.a = select(m, a * rF, sum.a);
-            sum.c = select(m, c * rF, sum.c);
+            sum.E = select(m, e.A * rF, sum.E);
+            sum.a = select(m, ac.A * rF, sum.a);
+            sum.c = select(m, ac.F * rF, sum.c);
             sum.down = select(m, f_down, sum.down);
             sum.up = select(m, f_up, sum.up);
         }
         if (careful || (k & 3) == 0) {
-            A = A * rF;
-            a = a * rF;
-            c = c * rF;
-            F = splat(1.0);
+            e = {e.A * rF, splat(1.0)};
+            ac = {ac.A * rF, ac.F * rF};
         }
     }
     *x.summary = sum;
@@ -156,18 +154,18 @@ HOL_NOINLINE void factorize_segments(const SegmentBlock &s, const NewtonSegments
 // One bond on the way up: u = y / P in place of the right-hand side.
 struct Ascent {
     vec y, T, f;
-    HOL_INLINE void bond(Ascent &a, const SegmentBlock &s, const NewtonSegments &x, long k, vec sigma, bool ragged) {
-        a.y = a.y + sigma;
-        const vec u = a.y * x.rP[k];
+    HOL_FORCED void bond(const SegmentBlock &s, const NewtonSegments &x, long k, vec sigma, bool ragged) {
+        y = y + sigma;
+        const vec u = y * x.rP[k];
         x.s[k] = u;
-        a.T = mul_add(a.f, u, a.T);
-        a.y = x.down[k] * a.y;
-        a.f = x.up[k] * a.f;
+        T = mul_add(f, u, T);
+        y = x.down[k] * y;
+        f = x.up[k] * f;
         if (!ragged) return;
         const mask m = ends_at(s, k + 1);
         NewtonSummary &sum = *x.summary;
-        sum.y = select(m, a.y, sum.y);
-        sum.T = select(m, a.T, sum.T);
+        sum.y = select(m, y, sum.y);
+        sum.T = select(m, T, sum.T);
         sum.last_u = select(m, u, sum.last_u);
         sum.last_fP = select(m, x.fP[k], sum.last_fP);
         sum.last_up = select(m, x.up[k], sum.last_up);

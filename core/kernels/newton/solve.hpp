@@ -3,6 +3,8 @@
 #ifndef HOLONOMIC_KERNELS_NEWTON_SOLVE_HPP
 #define HOLONOMIC_KERNELS_NEWTON_SOLVE_HPP
 
+#include "core/kernels/memory/values.hpp"
+#include "core/kernels/memory/virial.hpp"
 #include "core/kernels/newton/iterate.hpp"
 #include "core/kernels/newton/outputs.hpp"
 #include "core/kernels/newton/single_bond.hpp"
@@ -52,7 +54,7 @@ static inline void note_solved(const Block &block, const Newton &x, const Positi
                                Tally &tally) {
     if (call.lambda) {
         const vec factor = splat(0.5 / (call.dt * call.dt)) / block.unit;
-        store_multipliers(block, x, factor, out.converged | out.untouched, call.lambda);
+        store_bonds(block, x.tau, factor, out.converged | out.untouched, call.lambda);
     }
     tally.n_corrected += __builtin_popcount(bits(out.converged));
     if (out.solves > tally.iterations) tally.iterations = out.solves;

@@ -2,6 +2,7 @@
 #ifndef HOLONOMIC_KERNELS_NEWTON_SWEEPS_HPP
 #define HOLONOMIC_KERNELS_NEWTON_SWEEPS_HPP
 
+#include "core/kernels/eliminate/remainder.hpp"
 #include "core/kernels/memory/prefetch.hpp"
 #include "core/kernels/newton/system.hpp"
 
@@ -50,14 +51,12 @@ HOL_INLINE void go_down(const Block &block, const One &one, const Two &two) {
 template <bool uniform_w>
 struct Mover {
     vec3 pull, left;  // of the last bond, and the displacement of the atom behind it
-    HOL_INLINE Mover start(const Newton &x) {
-        const vec3 p = times(x.step[0], x.b[0]);
-        return {p, times_w<uniform_w>(x, 0, p)};
-    }
-    HOL_INLINE vec3 bond(Mover &m, const Newton &x, long k) {
-        const vec3 p = times(x.step[k + 1], x.b[k + 1]), right = times_w<uniform_w>(x, k + 1, minus(p, m.pull));
-        const vec3 d = plus(x.D[k], minus(right, m.left));
-        m = {p, right};
+    explicit HOL_FORCED Mover(const Newton &x) : pull(times(x.step[0], x.b[0])), left(times_w<uniform_w>(x, 0, pull)) {}
+    HOL_FORCED vec3 bond(const Newton &x, long k) {
+        const vec3 p = times(x.step[k + 1], x.b[k + 1]), right = times_w<uniform_w>(x, k + 1, minus(p, pull));
+        const vec3 d = plus(x.D[k], minus(right, left));
+        pull = p;
+        left = right;
         return d;
     }
 };
@@ -94,13 +93,13 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
     constexpr bool moved = factors == renewed_factors, all = factors == first_factors,
                    careful = factors == careful_factors;
     const long n = fixed > 0 ? fixed : block.n;
-    Mover<uniform_w> mover = {};
-    if (moved) mover = Mover<uniform_w>::start(x);
-    vec3 d = moved ? Mover<uniform_w>::bond(mover, x, 0) : x.D[0];
-    vec worst = {}, y = {}, down = {}, last = {}, q = dot(d, x.b[0]), A = times_w<uniform_w>(x, 0, q), F = splat(1.0);
+    Mover<uniform_w> mover(x);
+    vec3 d = moved ? mover.bond(x, 0) : x.D[0];
+    vec worst = {}, y = {}, down = {}, last = {}, q = dot(d, x.b[0]);
+    Column e = {times_w<uniform_w>(x, 0, q), splat(1.0)};
     const auto bond = [&](long k, bool ragged) HOL_FORCED {
         Row &row = x.row[k];
-        const vec F1 = mul_add(times_w<uniform_w>(x, k + 1, q), F, A), rF = splat(1.0) / F1, rP = F * rF;
+        const vec F1 = e.next(times_w<uniform_w>(x, k + 1, q)), rF = splat(1.0) / F1, rP = e.F * rF;
         row.half_rP = all ? 0.5 * rP : select(which, 0.5 * rP, row.half_rP);
         row.down = down = all ? down : select(which, down, row.down);
         y = mul_add(down, y, length_error<uniform_a>(x, k, ragged, moved ? d : x.D[k], worst));
@@ -110,7 +109,7 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
             row.up = vec{};
             return;
         }
-        const vec3 d1 = moved ? Mover<uniform_w>::bond(mover, x, k + 1) : x.D[k + 1], b1 = x.b[k + 1];
+        const vec3 d1 = moved ? mover.bond(x, k + 1) : x.D[k + 1], b1 = x.b[k + 1];
         if (!moved) d = x.D[k];
         const vec q1 = dot(d1, b1);
         const vec lower = dot(d1, x.b[k]), upper = dot(b1, d);
@@ -125,12 +124,8 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
             X = keep(m, X);
         }
         row.up = all ? up : select(which, up, row.up);
-        A = times_w<uniform_w>(x, k + 1, mul_add(times_w<uniform_w>(x, k + 1, X), F, q1 * A));
-        F = F1;
-        if (careful || (k & 3) == 3) {
-            A = A * rF;
-            F = splat(1.0);
-        }
+        e.pass(F1, times_w<uniform_w>(x, k + 1, times_w<uniform_w>(x, k + 1, X)), times_w<uniform_w>(x, k + 1, q1));
+        if (careful || (k & 3) == 3) e = {e.A * rF, splat(1.0)};
         q = q1;
         if (moved) d = d1;
     };
@@ -161,11 +156,11 @@ HOL_NOINLINE vec renew(const Block &block, const Newton &x, mask which) {
 // nullptr.
 template <bool uniform_w, bool uniform_a, bool keep_bonds, int fixed = 0>
 HOL_INLINE vec correct(const Block &block, const Newton &x, const double *fetch) {
-    Mover<uniform_w> mover = Mover<uniform_w>::start(x);
+    Mover<uniform_w> mover(x);
     vec worst = {}, y = {};
     go_up<fixed>(block, [&](long k, bool ragged) HOL_FORCED {
         if (!keep_bonds && fixed == 0 && k % 2 == 0 && fetch) fetch_ahead<2>(fetch, k, block.ahead);
-        const vec3 d = Mover<uniform_w>::bond(mover, x, k);
+        const vec3 d = mover.bond(x, k);
         if (keep_bonds) {
             const mask m = live(x, k);
             x.D[k] = {select(m, d.x, x.D[k].x), select(m, d.y, x.D[k].y), select(m, d.z, x.D[k].z)};
@@ -179,10 +174,9 @@ HOL_INLINE vec correct(const Block &block, const Newton &x, const double *fetch)
 // The largest error alone.
 template <bool uniform_w, bool uniform_a>
 static inline vec residuals(const Block &block, const Newton &x) {
-    Mover<uniform_w> mover = Mover<uniform_w>::start(x);
+    Mover<uniform_w> mover(x);
     vec worst = {}, y = {};
-    for (long k = 0; k < block.n; ++k)
-        y = y + length_error<uniform_a>(x, k, true, Mover<uniform_w>::bond(mover, x, k), worst);
+    for (long k = 0; k < block.n; ++k) y = y + length_error<uniform_a>(x, k, true, mover.bond(x, k), worst);
     return largest_error<uniform_a>(x, worst, y);
 }
 
@@ -214,7 +208,7 @@ HOL_INLINE void substitute_back(const Block &block, const Newton &x, mask which)
 // A branch, so that the next step does not wait for what this one's errors say of the lanes.
 template <bool first, bool separate, int fixed = 0>
 HOL_INLINE void substitute_back(const Block &block, const Newton &x, mask which) {
-    if (!separate && __builtin_expect(bits(which) == (1u << W) - 1, 1))
+    if (!separate && __builtin_expect(bits(which) == all_lanes, 1))
         substitute_back<first, separate, true, fixed>(block, x, which);
     else
         substitute_back<first, separate, false, fixed>(block, x, which);

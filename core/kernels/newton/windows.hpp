@@ -8,6 +8,8 @@
 #define HOLONOMIC_KERNELS_NEWTON_WINDOWS_HPP
 
 #include "core/kernels/memory/cut.hpp"
+#include "core/kernels/memory/values.hpp"
+#include "core/kernels/memory/virial.hpp"
 #include "core/kernels/newton/attempts.hpp"
 #include "core/kernels/newton/lengths.hpp"
 
@@ -103,11 +105,11 @@ HOL_NOINLINE void note_worst_of_pieces(const Newton &x, const SegmentBlock &s, c
         end[i] = static_cast<double>(pieces.skip[i] + s.own[i] - (seams || chain_ends ? 0 : 1));
         at[i] = first[i];
     }
-    Mover<uniform_w> mover = Mover<uniform_w>::start(x);
+    Mover<uniform_w> mover(x);
     for (long k = 0; k < pieces.skip[W - 1] + s.own_max; ++k) {
         const vec number = splat(static_cast<double>(k));
         vec error = {};
-        length_error<uniform_a>(x, k, false, Mover<uniform_w>::bond(mover, x, k), error);
+        length_error<uniform_a>(x, k, false, mover.bond(x, k), error);
         error = relative_error<uniform_a>(x, error);
         const mask greater = less_equal(first, number) & less(number, end) & less(worst, error);
         worst = select(greater, error, worst);
@@ -197,14 +199,9 @@ template <bool uniform_w, bool to_r, bool to_v>
 static inline void move_window(const SegmentBlock &s, int64_t j, const Newton &x, const Packed &r, const Packed &v,
                                double per_dt) {
     const vec3 first = times(x.tau[0], x.b[0]);
-    store_moves<uniform_w, to_r, to_v>(own_block(s), x, first_lanes(W), r, v, per_dt, 1, first);
-    if (j > 0) return;
-    const vec3 move = times_w<uniform_w>(x, 0, first);
-    const double value[3] = {move.x[0], move.y[0], move.z[0]};
-    for (int c = 0; c < 3; ++c) {
-        if (to_r) r.lane[0][c] = r.lane[0][c] + value[c];
-        if (to_v) v.lane[0][c] = mul_add(value[c], per_dt, v.lane[0][c]);
-    }
+    const MoveSink<to_r, to_v> sink = {r, v, per_dt};
+    store_pulls<true, uniform_w>(own_block(s), x.b, x.tau, first_lanes(W), sink, 1, first);
+    if (j == 0) store_first(times_w<uniform_w>(x, 0, first), 1, sink);
 }
 
 }  // namespace HOL_ISA

@@ -5,6 +5,8 @@
 #include "core/kernels/eliminate/segment_substitute.hpp"
 #include "core/kernels/eliminate/substitute.hpp"
 #include "core/kernels/memory/open.hpp"
+#include "core/kernels/memory/values.hpp"
+#include "core/kernels/memory/virial.hpp"
 #include "core/kernels/verbs/forces_small.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 

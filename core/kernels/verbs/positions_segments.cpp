@@ -1,4 +1,6 @@
 // Position level of one long chain in segments: the phases of an iteration.
+#include "core/kernels/memory/values.hpp"
+#include "core/kernels/memory/virial.hpp"
 #include "core/kernels/newton/segment_outputs.hpp"
 #include "core/kernels/newton/segment_steps.hpp"
 #include "core/kernels/verbs/verbs.hpp"
@@ -98,7 +100,7 @@ void long_positions_factorize(const PositionsCall &, const Lane &lane, int64_t j
     for (long k = 1; k < s.own_max; ++k) {
         vec sigma = half_excess(x.D[k], a2_of(s, lane, k));
         if (k >= s.own_min) sigma = keep(owned(s, k), sigma);
-        Ascent::bond(a, s, x, k, sigma, k + 1 >= s.own_min);
+        a.bond(s, x, k, sigma, k + 1 >= s.own_min);
     }
 }
 
@@ -214,16 +216,17 @@ void long_positions_finish(const PositionsCall &call, const Lane &lane, int64_t 
     note_worst_bond(s, lane, x, tally);
     if (moved) {
         set_segment_masses(s, lane, arena);
-        const auto move = [&](const AtomArray &array, vec *t) {
+        const auto move = [&](const AtomArray &array, const vec *t) {
             if (!array.x) return;
             Arena staging = arena;
             const Packed out = open_segments(array, s, lane, staging, false);
-            const Update update = in_place(array, lane) ? add_ : write_;
-            Segments view{x.b, t};
-            if (s.block.uniform_w)
-                store_segment_pulls<true, true>(s, j, view, update, out);
+            const bool add = in_place(array, lane), uniform = s.block.uniform_w;
+            if (add)
+                uniform ? move_segment_atoms<true>(s, j, x, t, AtomSink<add_>{out})
+                        : move_segment_atoms<false>(s, j, x, t, AtomSink<add_>{out});
             else
-                store_segment_pulls<true, false>(s, j, view, update, out);
+                uniform ? move_segment_atoms<true>(s, j, x, t, AtomSink<write_>{out})
+                        : move_segment_atoms<false>(s, j, x, t, AtomSink<write_>{out});
             close_segments(array, s, j, lane, out, true);
         };
         move(call.r, x.tau);
@@ -231,11 +234,7 @@ void long_positions_finish(const PositionsCall &call, const Lane &lane, int64_t 
             for (long k = 0; k < s.block.n; ++k) x.up[k] = (1 / call.dt) * x.tau[k];
             move(call.v, x.up);
         }
-        if (call.virial) {
-            Tally part = {};
-            add_segment_virial(s, Segments{x.b, x.tau}, part);
-            for (int c = 0; c < 6; ++c) tally.virial[c] += part.virial[c] / (unit_of(lane) * call.dt * call.dt);
-        }
+        if (call.virial) add_segment_virial(s, x, splat(1 / (unit_of(lane) * call.dt * call.dt)), tally);
     }
     if (!call.lambda) return;
     if (!moved)

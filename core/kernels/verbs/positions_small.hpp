@@ -3,8 +3,8 @@
 #ifndef HOLONOMIC_KERNELS_VERBS_POSITIONS_SMALL_HPP
 #define HOLONOMIC_KERNELS_VERBS_POSITIONS_SMALL_HPP
 
-#include "core/kernels/memory/bonds.hpp"
 #include "core/kernels/memory/fixed.hpp"
+#include "core/kernels/memory/packed.hpp"
 #include "core/kernels/newton/solve.hpp"
 
 namespace holonomic {
@@ -61,18 +61,17 @@ HOL_INLINE void set_molecule(const Block &block, const Lane &head, Newton &x, ve
 }
 
 template <int N>
-HOL_INLINE void load_molecules(const double *r, vec3 *D) {
-    const Box no_box = {};
+HOL_INLINE void load_molecules(const Block &block, const double *r, vec3 *D) {
     for (int k0 = 0; k0 < N; k0 += W) {
-        const double *p[W];
+        LaneRows rows;
         vec3 d[W];
-        for (int i = 0; i < W; ++i) p[i] = r + 3 * (N + 1) * i + 3 * k0;
-        bonds_between<false>(no_box, p, d);
+        for (int i = 0; i < W; ++i) rows.pr[i] = r + 3 * (N + 1) * i + 3 * k0;
+        load_chunk<bonds_alone, true, false, false>(block, Box{}, k0, rows, d, nullptr, nullptr);
         for (int a = 0; a < W && k0 + a < N; ++a) D[k0 + a] = d[a];
     }
 }
 
-// As store_moves: of W molecules, all of them.
+// As store_pulls() with a MoveSink: of W molecules, all of them.
 template <int N, bool uniform>
 HOL_INLINE void move_molecules(const Newton &x, double *r, double *v, double per_dt) {
     constexpr int elements = 3 * (N + 1), full = elements / W, rest = elements % W;
@@ -132,12 +131,12 @@ HOL_INLINE void note_molecules(const MoleculesCall &m, const Newton &x, vec erro
         tally.worst_chain = m.unit.lanes[0].chain + first + i;
         worst = i;
     }
-    Mover<uniform> mover = Mover<uniform>::start(x);
+    Mover<uniform> mover(x);
     bool found = false;
     tally.worst_bond = 0;
     vec largest = {};
     for (int k = 0; k < N; ++k) {
-        length_error<uniform>(x, k, false, Mover<uniform>::bond(mover, x, k), largest);
+        length_error<uniform>(x, k, false, mover.bond(x, k), largest);
         if (found || !(relative_error<uniform>(x, largest)[worst] >= error[worst])) continue;
         found = true;
         tally.worst_bond = k;
@@ -155,8 +154,8 @@ HOL_NOINLINE int64_t of_molecules(const MoleculesCall &m, int64_t first, Tally &
     const vec factor = splat(0.5 / (m.call.dt * m.call.dt)) / m.block.unit;
     for (; molecules_left(m.unit, first); first += W) {
         const int64_t at = 3 * (N + 1) * first;
-        load_molecules<N>(m.r_ref + at, x.b);
-        load_molecules<N>(m.r + at, x.D);
+        load_molecules<N>(m.block, m.r_ref + at, x.b);
+        load_molecules<N>(m.block, m.r + at, x.D);
         Packed r;
         for (int i = 0; i < W; ++i) r.lane[i] = m.r + at + 3 * (N + 1) * i;
         Carried carried(m.block, x, m.call, r);

@@ -7,6 +7,8 @@
 #include "core/kernels/eliminate/segment_substitute.hpp"
 #include "core/kernels/memory/open.hpp"
 #include "core/kernels/memory/pulls.hpp"
+#include "core/kernels/memory/values.hpp"
+#include "core/kernels/memory/virial.hpp"
 #include "core/kernels/verbs/velocities_small.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
@@ -74,13 +76,14 @@ static inline mask forward_velocities(const Block &block, const Box &box, const 
 template <bool uniform>
 HOL_NOINLINE void correct_and_store(const Block &block, const Projection &x, mask which, const Packed &out) {
     Pull<uniform> pull{block, x, x.left};
-    const Packed to = out;
+    const Packed to = out;  // by value: its pointers stay in registers
+    const AtomSink<write_> sink = {to};
     const unsigned chosen = bits(which);
-    const long full = block.n / W * W, fast = chosen == (1u << W) - 1 ? block.n_min : 0;
+    const long full = block.n / W * W, fast = chosen == all_lanes ? block.n_min : 0;
     if (full < block.n) {
         vec3 value[W] = {};
         for (long k = block.n - 1; k >= full; --k) value[k - full] = pull.step(k);
-        store_ragged<write_>(block, full + 1, &value->x, chosen, out);
+        store_ragged(block, full + 1, &value->x, chosen, sink);
     }
     for (long k0 = full - W; k0 >= 0; k0 -= W) {
         vec value[3 * W];
@@ -92,17 +95,11 @@ HOL_NOINLINE void correct_and_store(const Block &block, const Projection &x, mas
             value[3 * b + 2] = v.z;
         }
         if (__builtin_expect(k0 + W <= fast, 1))
-            store_chunk<write_>(k0 + 1, value, to);
+            store_chunk(k0 + 1, value, sink);
         else
-            store_ragged<write_>(block, k0 + 1, value, chosen, out);
+            store_ragged(block, k0 + 1, value, chosen, sink);
     }
-    const vec3 v = pull.finish();
-    for (int i = 0; i < W; ++i) {
-        if (!(chosen >> i & 1)) continue;
-        out.lane[i][0] = v.x[i];
-        out.lane[i][1] = v.y[i];
-        out.lane[i][2] = v.z[i];
-    }
+    store_first(pull.finish(), chosen, sink);
 }
 
 template <bool uniform>
