@@ -15,8 +15,8 @@ using DoublePair = plain::Wide;
 using PairVector = plain::Wide3;
 
 inline DoublePair as_pair(double a) { return {a, 0}; }
-using plain::rounded;
 using plain::dot;
+using plain::rounded;
 
 // (a + a_lo).(b + b_lo) as if in three times the precision (Ogita, Rump and Oishi, SumK): for vectors that are square
 // to their last digits.

@@ -77,7 +77,6 @@ struct Tally {
     // positions
     int64_t iterations, n_corrected, worst_chain, worst_bond;
     double worst;
-    bool out_of_memory;  // a chain was left as it was for want of memory
     // metric: ln det Z~ and, of a long chain, ln det Z
     double log_det, log_det_z;
 };
@@ -145,32 +144,18 @@ struct LongVelocities {
     void (*finish)(const VelocitiesCall &, const Lane &, int64_t block, double *store, double *scratch, Tally &);
 };
 
-// Largest coordinate and largest relative error of a chain or block; the error is NaN if anything is not finite.
-struct LongTally {
-    double extent, error;
+// The threads that work on one long chain, as core lends them: run() calls body(context, j, scratch, part) for j = 0 ..
+// n-1 on any of them, and adds the parts to the total in the order of j.
+struct LongTeam {
+    const void *threads;
+    void (*run)(const void *threads, int64_t n, Tally &total,
+                void (*body)(const void *context, int64_t j, double *scratch, Tally &part), const void *context);
 };
-
-// What became of a window: see positions_windows.inl.
-enum WindowResult { window_failed, window_untouched, window_solved };
 
 struct LongPositions {
     int64_t (*blocks)(int64_t n_bonds);
     int64_t (*bytes)(int64_t n_bonds);
-    void (*load)(const PositionsCall &, const Lane &, int64_t block, double *store, double *scratch, LongTally &);
-    void (*guess)(const PositionsCall &, const Lane &, int64_t block, double *store);
-    void (*forget)(const Lane &, int64_t block, double *store);
-    void (*factorize)(const PositionsCall &, const Lane &, int64_t block, bool careful, double *store, double *scratch);
-    bool (*join)(const Lane &, bool renewed, double *store);
-    double (*step)(const PositionsCall &, const Lane &, int64_t block, bool substitute, double *store, double *scratch);
-    double (*pull)(const Lane &, int64_t block, double *store);
-    void (*finish)(const PositionsCall &, const Lane &, int64_t block, bool moved, double *store, double *scratch,
-                   Tally &);
-    // In windows: the store is tau, [n_bonds].
-    int64_t (*windows)(int64_t n_bonds);
-    WindowResult (*window)(const PositionsCall &, const Lane &, int64_t window, double *tau, double *scratch, Tally &);
-    bool (*windows_fit)(const PositionsCall &, const Lane &, const double *tau, double *scratch, Tally &);
-    void (*finish_window)(const PositionsCall &, const Lane &, int64_t window, bool moved, const double *tau,
-                          double *scratch, Tally &);
+    void (*solve)(const PositionsCall &, const Lane &, const LongTeam &, double *store, Tally &);
 };
 
 struct LongMetric {

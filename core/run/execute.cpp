@@ -85,29 +85,6 @@ void work_on_molecules(const Work &work, const MoleculeUnit &unit, int where, do
 
 }  // namespace
 
-Tally empty_tally() {
-    Tally tally{};
-    tally.first_bad = tally.worst_chain = tally.worst_bond = -1;
-    return tally;
-}
-
-void add(Tally &total, const Tally &piece) {
-    for (int i = 0; i < 6; ++i) total.virial[i] += piece.virial[i];
-    if (piece.n_bad > 0 && (total.n_bad == 0 || piece.first_bad < total.first_bad)) total.first_bad = piece.first_bad;
-    total.n_bad += piece.n_bad;
-    total.log_det += piece.log_det;
-    total.log_det_z += piece.log_det_z;
-    total.iterations = std::max(total.iterations, piece.iterations);
-    total.n_corrected += piece.n_corrected;
-    total.out_of_memory = total.out_of_memory || piece.out_of_memory;
-    if (piece.worst_chain >= 0 && (total.worst_chain < 0 || piece.worst > total.worst ||
-                                   (piece.worst == total.worst && piece.worst_chain < total.worst_chain))) {
-        total.worst = piece.worst;
-        total.worst_chain = piece.worst_chain;
-        total.worst_bond = piece.worst_bond;
-    }
-}
-
 void Team::run(std::int64_t n, Tally &total, void (*call)(const void *, std::int64_t, double *, Tally &),
                const void *body) const {
 #ifdef _OPENMP

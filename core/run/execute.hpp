@@ -2,15 +2,12 @@
 #ifndef HOLONOMIC_EXECUTE_HPP
 #define HOLONOMIC_EXECUTE_HPP
 
+#include "core/kernels/tally.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/run/closing.hpp"
 #include "core/run/dispatch.hpp"
 
 namespace holonomic {
-
-// The sums of a call. Pieces are added in their order, whatever thread worked on them.
-Tally empty_tally();
-void add(Tally &total, const Tally &piece);
 
 // The threads that work on one long chain.
 class Team {
@@ -26,6 +23,13 @@ public:
                 (*static_cast<const Body *>(b))(j, scratch, tally);
             },
             &body);
+    }
+
+    // For kernels that go through phases of their own.
+    LongTeam lent() const {
+        return {this, [](const void *team, std::int64_t n, Tally &total,
+                         void (*body)(const void *, std::int64_t, double *, Tally &),
+                         const void *context) { static_cast<const Team *>(team)->run(n, total, body, context); }};
     }
 
 private:
@@ -53,11 +57,6 @@ protected:
 // Throws std::bad_alloc before any work is done.
 Tally execute(const Chains &chains, const Work &work);
 Tally execute(const Chains &chains, const Plan &plan, const Work &work);
-
-// Counts a long chain as bad.
-inline void note_bad(const Lane &lane, Tally &tally) {
-    if (tally.n_bad++ == 0 || lane.chain < tally.first_bad) tally.first_bad = lane.chain;
-}
 
 // Forces and velocities: eliminate, join, finish; once more with compensated products where plain ones don't do.
 template <class Phases, class Call>

@@ -1,7 +1,8 @@
-// When Newton's method is done, and when it takes new factors.
+// What the lanes of a block accept.
 #ifndef HOLONOMIC_KERNELS_NEWTON_DECISIONS_HPP
 #define HOLONOMIC_KERNELS_NEWTON_DECISIONS_HPP
 
+#include "core/kernels/newton/criterion.hpp"
 #include "core/kernels/newton/system.hpp"
 
 namespace holonomic {
@@ -33,14 +34,13 @@ HOL_NOINLINE vec extent(const Block &block, const Packed &r, const int64_t *cons
     return largest;
 }
 
-// What the coordinates carry: each end of a bond is rounded to u |r|, u = half a unit in the last place. Their largest
-// is looked for when a decision hangs on it, which is rare.
+// What the coordinates of each lane carry. Their largest is looked for when a decision hangs on it, which is rare.
 class Carried {
 public:
     Carried(const Block &block, const Newton &x, const PositionsCall &call, const Packed &r,
             const int64_t *const *lists = nullptr)
-        : block_(block), x_(x), r_(r), lists_(lists), tolerance_(call.tolerance),
-          u_(call.r.is_float ? 5.97e-8 : 1.11e-16), boxed_(call.box.shape != Box::none) {}
+        : block_(block), x_(x), r_(r), lists_(lists), tolerance_(call.tolerance), u_(unit_roundoff(call.r)),
+          boxed_(call.box.shape != Box::none) {}
 
     vec largest_coordinate() {
         if (!known_) largest_ = extent(block_, r_, lists_);
@@ -48,7 +48,7 @@ public:
         return largest_;
     }
     // An error |D.D - a^2| / a^2 no larger than this one is accepted.
-    vec accepted() { return max(splat(tolerance_), (8 * u_) * (splat(1.0) + largest_coordinate() / x_.a_min)); }
+    vec accepted() { return max(splat(tolerance_), carried_error(u_, largest_coordinate(), x_.a_min)); }
     vec always_accepted() const { return splat(tolerance_ > 8 * u_ ? tolerance_ : 8 * u_); }
 
     // Whether the bonds as they came may be accepted: `error` is their |D.D - a^2| in units of `a2`. No atom is farther
@@ -79,14 +79,6 @@ private:
     bool known_ = false;
     vec largest_ = {};
 };
-
-// The factors of an earlier D shrink the error by a constant each time, new ones square it at twice the price: they are
-// worth it where the old ones would take more than four solves in all.
-HOL_INLINE mask worth_renewing(vec error, vec rate, int i) {
-    vec expected = error * rate;
-    for (int k = i + 2; k < 4; ++k) expected = expected * rate;
-    return less(splat(0.1 * epsilon), expected) & (i < 2 ? ~none() : less(splat(1e-4), rate));
-}
 
 // From an error no larger than this, a solve with factors that have just taken the error down to less than `steady` of
 // itself needs no look at what it has done: it leaves less than a rounding, and could not leave more than this.

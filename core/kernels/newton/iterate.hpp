@@ -13,7 +13,7 @@ template <bool uniform_w, bool uniform_a, bool careful, int fixed = 0>
 HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &call, Carried &carried, mask wanted,
                            bool guess) {
     Outcome out = {};
-    const vec done = splat(call.tolerance > epsilon ? call.tolerance : epsilon);
+    const vec done = splat(wanted_error(call));
     x.step = careful ? x.correction : x.tau;
     vec error = careful ? renew<uniform_w, uniform_a, careful_factors>(block, x, wanted)
                         : eliminate<uniform_w, uniform_a, first_factors, fixed>(block, x, wanted);
@@ -45,10 +45,7 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
         const vec before = error, expected = rate * before;
         error = correct<uniform_w, uniform_a, careful, fixed>(block, x, i < 3 ? x.next[i] : nullptr);
         ++out.solves;
-        // At the floor: the solve should have gone far below a rounding, or it gained little, and what is left is no
-        // more than the coordinates carry.
-        const mask floor = (less(expected, splat(0.125 * epsilon)) & less_equal(error, splat(floor_error))) |
-                           less(0.25 * before, error);
+        const mask floor = at_floor(expected, before, error);
         const mask near = active & (less_equal(error, done) | floor);
         if (any(near)) {
             const mask sure = less_equal(error, max(done, carried.always_accepted()));

@@ -1,9 +1,9 @@
 // Position level of one long chain in segments: the elimination of segments.inl with the unsymmetric Jacobian of
 // newton.inl. f splits into the coupling of the rows to the separator (down) and of the separator to them (up).
 //
-// An iteration with the factors at hand goes through the blocks once, in any order: `long_positions_step` substitutes
+// An iteration with the factors at hand goes through the blocks once, in any order: `step_segments` substitutes
 // backward, moves the bonds and substitutes forward what that leaves of their lengths. In between the separators are
-// joined. `long_positions_factorize` eliminates anew.
+// joined. `factorize_segments` eliminates anew.
 #ifndef HOLONOMIC_KERNELS_NEWTON_SEGMENTS_HPP
 #define HOLONOMIC_KERNELS_NEWTON_SEGMENTS_HPP
 
@@ -98,7 +98,7 @@ static inline vec next_of(const vec here, bool has_next, double beyond) {
 }
 
 template <bool uniform>
-HOL_NOINLINE void factorize_segments(const SegmentBlock &s, const NewtonSegments &x, bool careful) {
+HOL_NOINLINE void eliminate_segments(const SegmentBlock &s, const NewtonSegments &x, bool careful) {
     const Block &block = s.block;
     NewtonSummary sum = *x.summary;
     vec w = w_at<uniform>(block, 1), q = dot(x.D[1], x.b[1]);

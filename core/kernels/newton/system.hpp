@@ -15,11 +15,6 @@
 namespace holonomic {
 namespace HOL_ISA {
 
-constexpr double epsilon = 2.220446049250313e-16;
-
-// A few roundings of D.D - a^2: what the iteration leaves at best in a chain of many bonds.
-constexpr double floor_error = 4 * epsilon;
-
 // The factors of a bond's row: what it gets of the row before on the way up, 1 / (2 P), what it gets of the row behind
 // on the way down; and y / (2 P).
 struct Row {

@@ -3,7 +3,7 @@
 // more than the product of their |l|, which dies within a few dozen bonds of a coil; the multipliers of the margins are
 // thrown away. That the others solve the chain's equations does not rest on this: inside a piece it is what Newton's
 // method has found, and where two pieces meet the lengths of the bonds are computed before anything is written. Chains
-// whose ends are felt farther are left to segments_newton.inl.
+// whose ends are felt farther are left to segments.hpp.
 #ifndef HOLONOMIC_KERNELS_NEWTON_WINDOWS_HPP
 #define HOLONOMIC_KERNELS_NEWTON_WINDOWS_HPP
 
@@ -12,6 +12,7 @@
 #include "core/kernels/memory/virial.hpp"
 #include "core/kernels/newton/attempts.hpp"
 #include "core/kernels/newton/lengths.hpp"
+#include "core/kernels/newton/phases.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -124,7 +125,7 @@ HOL_NOINLINE void note_worst_of_pieces(const Newton &x, const SegmentBlock &s, c
 }
 
 template <bool uniform_w, bool uniform_a>
-static inline WindowResult solve_window(const Block &block, const Lane *piece, const PositionsCall &call,
+static inline WindowResult solve_pieces(const Block &block, const Lane *piece, const PositionsCall &call,
                                         const BondLengths &a, const SegmentBlock &s, const Pieces &pieces,
                                         const Lane &lane, Arena arena, double *tau, Tally &tally) {
     // The lengths at the ends of a piece must be within the tolerance with the multipliers of its neighbour, too.

@@ -1,20 +1,20 @@
 // Position level of one long chain in segments: the phases of an iteration.
 #include "core/kernels/memory/values.hpp"
 #include "core/kernels/memory/virial.hpp"
+#include "core/kernels/newton/phases.hpp"
 #include "core/kernels/newton/segment_outputs.hpp"
 #include "core/kernels/newton/segment_steps.hpp"
-#include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 
-int64_t long_positions_bytes(int64_t n_bonds) {
+int64_t segments_bytes(int64_t n_bonds) {
     const Cut cut(n_bonds);
     return cut.blocks * NewtonSegments::vectors(cut.longest()) * static_cast<int64_t>(sizeof(vec));
 }
 
-void long_positions_load(const PositionsCall &call, const Lane &lane, int64_t j, double *store, double *scratch,
-                         LongTally &tally) {
+void load_segments(const PositionsCall &call, const Lane &lane, int64_t j, double *store, double *scratch,
+                   LongTally &tally) {
     const Cut cut(lane.n_bonds);
     const NewtonSegments x(store, cut.longest(), j);
     SegmentBlock s = segment_block(cut, j, lane);
@@ -50,7 +50,7 @@ void long_positions_load(const PositionsCall &call, const Lane &lane, int64_t j,
 }
 
 // Starts from the guess in tau: it becomes the first correction.
-void long_positions_guess(const PositionsCall &, const Lane &lane, int64_t j, double *store) {
+void start_from_guess(const PositionsCall &, const Lane &lane, int64_t j, double *store) {
     const Cut cut(lane.n_bonds);
     const NewtonSegments x(store, cut.longest(), j);
     const SegmentBlock s = segment_block(cut, j, lane);
@@ -67,15 +67,15 @@ void long_positions_guess(const PositionsCall &, const Lane &lane, int64_t j, do
 }
 
 // Drops a guess in tau.
-void long_positions_forget(const Lane &lane, int64_t j, double *store) {
+void forget_guess(const Lane &lane, int64_t j, double *store) {
     const Cut cut(lane.n_bonds);
     const NewtonSegments x(store, cut.longest(), j);
     for (int64_t k = 0; k <= cut.longest(); ++k) x.tau[k] = vec{};
 }
 
 // Eliminates with the Jacobian at D and substitutes forward. The bond behind each segment is taken from its owner.
-void long_positions_factorize(const PositionsCall &, const Lane &lane, int64_t j, bool careful, double *store,
-                              double *scratch) {
+void factorize_segments(const PositionsCall &, const Lane &lane, int64_t j, bool careful, double *store,
+                        double *scratch) {
     const Cut cut(lane.n_bonds);
     const NewtonSegments x(store, cut.longest(), j);
     SegmentBlock s = segment_block(cut, j, lane);
@@ -93,9 +93,9 @@ void long_positions_factorize(const PositionsCall &, const Lane &lane, int64_t j
     Arena arena = {scratch};
     set_segment_masses(s, lane, arena);
     if (s.block.uniform_w)
-        factorize_segments<true>(s, x, careful);
+        eliminate_segments<true>(s, x, careful);
     else
-        factorize_segments<false>(s, x, careful);
+        eliminate_segments<false>(s, x, careful);
     Ascent a = {vec{}, vec{}, x.summary->first_up};
     for (long k = 1; k < s.own_max; ++k) {
         vec sigma = half_excess(x.D[k], a2_of(s, lane, k));
@@ -105,7 +105,7 @@ void long_positions_factorize(const PositionsCall &, const Lane &lane, int64_t j
 }
 
 // Solves for the separators; false if that gives no finite numbers.
-bool long_positions_join(const Lane &lane, bool renew, double *store) {
+bool join_segments(const Lane &lane, bool renew, double *store) {
     const Cut cut(lane.n_bonds);
     const double w0 = relative_w(lane, 0);
     double E = 0, y = 0;
@@ -145,8 +145,8 @@ bool long_positions_join(const Lane &lane, bool renew, double *store) {
 
 // With `substitute`, moves the bonds by the corrections that those of the separators lead to, and substitutes forward
 // what that leaves of their lengths; else by the corrections in s. Returns the largest error of the block.
-double long_positions_step(const PositionsCall &, const Lane &lane, int64_t j, bool substitute, double *store,
-                           double *scratch) {
+double step_segments(const PositionsCall &, const Lane &lane, int64_t j, bool substitute, double *store,
+                     double *scratch) {
     const Cut cut(lane.n_bonds);
     const NewtonSegments x(store, cut.longest(), j);
     SegmentBlock s = segment_block(cut, j, lane);
@@ -182,7 +182,7 @@ double long_positions_step(const PositionsCall &, const Lane &lane, int64_t j, b
 }
 
 // Largest w |tau| a of the block: how far single pulls move an atom (see coarse_moves).
-double long_positions_pull(const Lane &lane, int64_t j, double *store) {
+double largest_pull(const Lane &lane, int64_t j, double *store) {
     const Cut cut(lane.n_bonds);
     const NewtonSegments x(store, cut.longest(), j);
     double largest = 0;
@@ -207,8 +207,8 @@ double long_positions_pull(const Lane &lane, int64_t j, double *store) {
 }
 
 // Writes r, v and lambda, and adds to the sums; with `moved` false the chain was within the tolerance as it came.
-void long_positions_finish(const PositionsCall &call, const Lane &lane, int64_t j, bool moved, double *store,
-                           double *scratch, Tally &tally) {
+void finish_segments(const PositionsCall &call, const Lane &lane, int64_t j, bool moved, double *store, double *scratch,
+                     Tally &tally) {
     const Cut cut(lane.n_bonds);
     const NewtonSegments x(store, cut.longest(), j);
     SegmentBlock s = segment_block(cut, j, lane);

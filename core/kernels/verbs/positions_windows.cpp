@@ -1,16 +1,16 @@
 // Position level of one long chain in windows: the phases.
 #include "core/kernels/eliminate/segment_substitute.hpp"
+#include "core/kernels/newton/phases.hpp"
 #include "core/kernels/newton/windows.hpp"
-#include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 
-int64_t long_positions_windows(int64_t n_bonds) { return windows(n_bonds).blocks; }
+int64_t count_windows(int64_t n_bonds) { return windows(n_bonds).blocks; }
 
 // Finds the multipliers of window j, tau[n_bonds] in the store.
-WindowResult long_positions_window(const PositionsCall &call, const Lane &lane, int64_t j, double *tau, double *scratch,
-                                   Tally &tally) {
+WindowResult solve_window(const PositionsCall &call, const Lane &lane, int64_t j, double *tau, double *scratch,
+                          Tally &tally) {
     const SegmentBlock s = segment_block(windows(lane.n_bonds), j, lane);
     Pieces pieces;
     if (!cut_pieces(call, lane, s, Arena{scratch}, pieces)) return window_failed;
@@ -21,15 +21,14 @@ WindowResult long_positions_window(const PositionsCall &call, const Lane &lane, 
     set_masses(block, piece, arena);
     const BondLengths a = bond_lengths(block, piece, arena);
     if (block.uniform_w)
-        return a.a2 ? solve_window<true, false>(block, piece, call, a, s, pieces, lane, arena, tau, tally)
-                    : solve_window<true, true>(block, piece, call, a, s, pieces, lane, arena, tau, tally);
-    return a.a2 ? solve_window<false, false>(block, piece, call, a, s, pieces, lane, arena, tau, tally)
-                : solve_window<false, true>(block, piece, call, a, s, pieces, lane, arena, tau, tally);
+        return a.a2 ? solve_pieces<true, false>(block, piece, call, a, s, pieces, lane, arena, tau, tally)
+                    : solve_pieces<true, true>(block, piece, call, a, s, pieces, lane, arena, tau, tally);
+    return a.a2 ? solve_pieces<false, false>(block, piece, call, a, s, pieces, lane, arena, tau, tally)
+                : solve_pieces<false, true>(block, piece, call, a, s, pieces, lane, arena, tau, tally);
 }
 
 // Whether the multipliers of the pieces fit together.
-bool long_positions_windows_fit(const PositionsCall &call, const Lane &lane, const double *tau, double *scratch,
-                                Tally &tally) {
+bool windows_fit(const PositionsCall &call, const Lane &lane, const double *tau, double *scratch, Tally &tally) {
     const Cut cut = windows(lane.n_bonds);
     const double enough = call.tolerance > floor_error ? call.tolerance : floor_error;
     for (int64_t i = 1; i < cut.blocks * W; ++i)
@@ -38,8 +37,8 @@ bool long_positions_windows_fit(const PositionsCall &call, const Lane &lane, con
 }
 
 // Writes what the multipliers of window j do; with `moved` false the chain was within the tolerance as it came.
-void long_positions_finish_window(const PositionsCall &call, const Lane &lane, int64_t j, bool moved, const double *tau,
-                                  double *scratch, Tally &tally) {
+void finish_window(const PositionsCall &call, const Lane &lane, int64_t j, bool moved, const double *tau,
+                   double *scratch, Tally &tally) {
     SegmentBlock s = segment_block(windows(lane.n_bonds), j, lane);
     const int64_t from = s.from[0], end = s.from[W - 1] + s.own[W - 1];
     const double factor = 0.5 / (call.dt * call.dt) / unit_of(lane);

@@ -32,9 +32,7 @@ const Kernels kernels = {
     metric,
     {long_blocks, long_bytes, long_forces_eliminate, long_join, long_forces_finish},
     {long_blocks, long_bytes, long_velocities_eliminate, long_join, long_velocities_finish},
-    {long_blocks, long_positions_bytes, long_positions_load, long_positions_guess, long_positions_forget,
-     long_positions_factorize, long_positions_join, long_positions_step, long_positions_pull, long_positions_finish,
-     long_positions_windows, long_positions_window, long_positions_windows_fit, long_positions_finish_window},
+    {long_blocks, long_positions_bytes, long_positions},
     {long_blocks, long_metric_bytes, long_metric_map, long_metric_join, long_metric_finish},
     {molecules_scratch_bytes, molecules_forces, molecules_velocities, molecules_positions, molecules_metric, molecules_solve},
 };

@@ -22,24 +22,7 @@ void long_velocities_finish(const VelocitiesCall &, const Lane &, int64_t block,
 
 void positions(const PositionsCall &, const Unit &, double *scratch, Tally &);
 int64_t long_positions_bytes(int64_t n_bonds);
-void long_positions_load(const PositionsCall &, const Lane &, int64_t block, double *store, double *scratch,
-                         LongTally &);
-void long_positions_guess(const PositionsCall &, const Lane &, int64_t block, double *store);
-void long_positions_forget(const Lane &, int64_t block, double *store);
-void long_positions_factorize(const PositionsCall &, const Lane &, int64_t block, bool careful, double *store,
-                              double *scratch);
-bool long_positions_join(const Lane &, bool renew, double *store);
-double long_positions_step(const PositionsCall &, const Lane &, int64_t block, bool substitute, double *store,
-                           double *scratch);
-double long_positions_pull(const Lane &, int64_t block, double *store);
-void long_positions_finish(const PositionsCall &, const Lane &, int64_t block, bool moved, double *store,
-                           double *scratch, Tally &);
-int64_t long_positions_windows(int64_t n_bonds);
-WindowResult long_positions_window(const PositionsCall &, const Lane &, int64_t window, double *tau, double *scratch,
-                                   Tally &);
-bool long_positions_windows_fit(const PositionsCall &, const Lane &, const double *tau, double *scratch, Tally &);
-void long_positions_finish_window(const PositionsCall &, const Lane &, int64_t window, bool moved, const double *tau,
-                                  double *scratch, Tally &);
+void long_positions(const PositionsCall &, const Lane &, const LongTeam &, double *store, Tally &);
 
 void metric(const MetricCall &, const Unit &, double *scratch, Tally &);
 int64_t long_metric_bytes(int64_t n_bonds);

@@ -1,0 +1,37 @@
+// Sums of a call. Internal linkage: the kernels of every instruction set have them, too.
+#ifndef HOLONOMIC_KERNELS_TALLY_HPP
+#define HOLONOMIC_KERNELS_TALLY_HPP
+
+#include "core/kernels/call.hpp"
+
+namespace holonomic {
+
+static inline Tally empty_tally() {
+    Tally tally{};
+    tally.first_bad = tally.worst_chain = tally.worst_bond = -1;
+    return tally;
+}
+
+static inline void add(Tally &total, const Tally &piece) {
+    for (int i = 0; i < 6; ++i) total.virial[i] += piece.virial[i];
+    if (piece.n_bad > 0 && (total.n_bad == 0 || piece.first_bad < total.first_bad)) total.first_bad = piece.first_bad;
+    total.n_bad += piece.n_bad;
+    total.log_det += piece.log_det;
+    total.log_det_z += piece.log_det_z;
+    if (piece.iterations > total.iterations) total.iterations = piece.iterations;
+    total.n_corrected += piece.n_corrected;
+    if (piece.worst_chain >= 0 && (total.worst_chain < 0 || piece.worst > total.worst ||
+                                   (piece.worst == total.worst && piece.worst_chain < total.worst_chain))) {
+        total.worst = piece.worst;
+        total.worst_chain = piece.worst_chain;
+        total.worst_bond = piece.worst_bond;
+    }
+}
+
+// Counts a long chain as bad.
+static inline void note_bad(const Lane &lane, Tally &tally) {
+    if (tally.n_bad++ == 0 || lane.chain < tally.first_bad) tally.first_bad = lane.chain;
+}
+
+}  // namespace holonomic
+#endif
