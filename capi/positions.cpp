@@ -20,6 +20,24 @@ void check(double dt, const double *lambda, int guess) {
     if (guess) need(lambda, "lambda, which holds the guess,");
 }
 
+// The caller's report: written once there is one, also if the call fails then.
+class ReportTo {
+public:
+    explicit ReportTo(hol_report *to) : to_(to) {}
+    ~ReportTo() {
+        if (to_ && found_.made)
+            *to_ = {found_.iterations, found_.n_corrected, found_.n_failed,
+                    found_.chain,      found_.bond,        found_.max_error};
+    }
+    ReportTo(const ReportTo &) = delete;
+    ReportTo &operator=(const ReportTo &) = delete;
+    holonomic::Report *get() { return to_ ? &found_ : nullptr; }
+
+private:
+    hol_report *const to_;
+    holonomic::Report found_{};
+};
+
 }  // namespace
 
 int hol_project_positions(const hol_chains *chains, const double *r_ref, double *r, double *v, double dt,
@@ -29,8 +47,9 @@ int hol_project_positions(const hol_chains *chains, const double *r_ref, double 
         need(r_ref, "r_ref");
         need(r, "r");
         check(dt, lambda, guess);
+        ReportTo found(report);
         holonomic::project_positions(chains->chains, holonomic::packed_array(r_ref), holonomic::packed_array(r),
-                                     holonomic::packed_array(v), dt, lambda, guess == 1, virial, report);
+                                     holonomic::packed_array(v), dt, lambda, guess == 1, virial, found.get());
     });
 }
 
@@ -45,6 +64,7 @@ int hol_project_positions_view(const hol_chains *chains, const hol_view *r_ref, 
                         av = holonomic::viewed_array(v, "v");
         const AtomArray *const all[] = {&a0, &a1, &av};
         holonomic::check_dimensions(all, 3);
-        holonomic::project_positions(chains->chains, a0, a1, av, dt, lambda, guess == 1, virial, report);
+        ReportTo found(report);
+        holonomic::project_positions(chains->chains, a0, a1, av, dt, lambda, guess == 1, virial, found.get());
     });
 }

@@ -7,12 +7,22 @@ using holonomic::AtomArray;
 using holonomic::guarded;
 using holonomic::need;
 
+namespace {
+
+void write(hol_worst *to, const holonomic::Worst &found) {
+    *to = {found.length, found.length_chain, found.length_bond, found.rate, found.rate_chain, found.rate_bond};
+}
+
+}  // namespace
+
 int hol_violation(const hol_chains *chains, const double *r, const double *v, hol_worst *worst) {
     return guarded(__func__, [&] {
         need(chains, "chains");
         need(r, "r");
         need(worst, "worst");
-        holonomic::violation(chains->chains, holonomic::packed_array(r), holonomic::packed_array(v), worst);
+        holonomic::Worst found;
+        holonomic::violation(chains->chains, holonomic::packed_array(r), holonomic::packed_array(v), &found);
+        write(worst, found);
     });
 }
 
@@ -24,6 +34,8 @@ int hol_violation_view(const hol_chains *chains, const hol_view *r, const hol_vi
         const AtomArray ar = holonomic::viewed_array(r, "r"), av = holonomic::viewed_array(v, "v");
         const AtomArray *const all[] = {&ar, &av};
         holonomic::check_dimensions(all, 2);
-        holonomic::violation(chains->chains, ar, av, worst);
+        holonomic::Worst found;
+        holonomic::violation(chains->chains, ar, av, &found);
+        write(worst, found);
     });
 }

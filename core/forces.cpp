@@ -44,11 +44,6 @@ struct ForcesWork final : Work {
 
 }  // namespace
 
-void write_virial(const Tally &tally, double *virial) {
-    const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    for (int i = 0; i < 9; ++i) virial[i] = tally.virial[place[i]];
-}
-
 void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
             double *tension, const AtomArray &g, bool add, double *virial) {
     ForcesCall call{r, v, f, g, lambda, tension, add, virial != nullptr, chains.box};

@@ -10,8 +10,5 @@ namespace holonomic {
 void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
             double *tension, const AtomArray &g, bool add, double *virial);
 
-// The six sums of a tally as a symmetric [3][3].
-void write_virial(const Tally &tally, double *virial);
-
 }  // namespace holonomic
 #endif

@@ -1,11 +1,9 @@
 #include "core/positions.hpp"
 
 #include "core/caller/view.hpp"
-#include "core/forces.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
-#include "holonomic.h"
 
 namespace holonomic {
 
@@ -43,7 +41,7 @@ struct PositionsWork final : Work {
 }  // namespace
 
 void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomArray &r, const AtomArray &v, double dt,
-                       double *lambda, bool guess, double *virial, hol_report *report) {
+                       double *lambda, bool guess, double *virial, Report *report) {
     const PositionsCall call{r_ref,
                              r,
                              v,
@@ -61,12 +59,14 @@ void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomA
     apart.put_back();
     clear_unconstrained(chains, lambda);
     if (report) {
-        report->iterations = tally.iterations;
-        report->n_corrected = tally.n_corrected;
-        report->n_failed = tally.n_bad;
-        report->chain = tally.worst_chain < 0 ? -1 : tally.worst_chain + chains.base;
-        report->bond = tally.worst_chain < 0 ? -1 : tally.worst_bond + chains.base;
-        report->max_error = tally.worst;
+        const bool none = tally.worst_chain < 0;
+        *report = {tally.iterations,
+                   tally.n_corrected,
+                   tally.n_bad,
+                   none ? -1 : tally.worst_chain + chains.base,
+                   none ? -1 : tally.worst_bond + chains.base,
+                   tally.worst,
+                   true};
     }
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"reference position", &r_ref}, {"position", &r}, {"velocity", &v}};

@@ -4,13 +4,18 @@
 
 #include "core/molecules/chains.hpp"
 
-struct hol_report;
-
 namespace holonomic {
+
+// What a projection of positions did; chain and bond as the caller counts them, -1 if there is none.
+struct Report {
+    std::int64_t iterations, n_corrected, n_failed, chain, bond;
+    double max_error;
+    bool made;  // false: the call failed before it did anything
+};
 
 // virial [9], report: or nullptr. Throws Error once everything that is due has been written.
 void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomArray &r, const AtomArray &v, double dt,
-                       double *lambda, bool guess, double *virial, hol_report *report);
+                       double *lambda, bool guess, double *virial, Report *report);
 
 }  // namespace holonomic
 #endif

@@ -1,7 +1,6 @@
 #include "core/velocities.hpp"
 
 #include "core/caller/view.hpp"
-#include "core/forces.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"

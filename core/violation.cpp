@@ -5,12 +5,11 @@
 #include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
 #include "core/run/diagnose.hpp"
-#include "holonomic.h"
 
 namespace holonomic {
 
-void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, hol_worst *worst) {
-    hol_worst found{0, -1, -1, 0, -1, -1};
+void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Worst *worst) {
+    Worst found{0, -1, -1, 0, -1, -1};
     Tally tally{};
     tally.first_bad = -1;
     for (std::int64_t chain = 0; chain < chains.n_chains(); ++chain) {

@@ -4,11 +4,17 @@
 
 #include "core/molecules/chains.hpp"
 
-struct hol_worst;
-
 namespace holonomic {
 
-void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, hol_worst *worst);
+// The largest violations and where they are, as the caller counts; -1 if there is none.
+struct Worst {
+    double length;
+    std::int64_t length_chain, length_bond;
+    double rate;
+    std::int64_t rate_chain, rate_bond;
+};
+
+void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Worst *worst);
 
 }  // namespace holonomic
 #endif

@@ -177,7 +177,7 @@ struct MoleculeKernels {
     void (*solve)(const SolveCall &, const MoleculeUnit &, double *scratch, Tally &);
 };
 
-// The kernels of one instruction set. `scratch` has scratch_bytes(bonds of the longest lane), aligned to 64.
+// The kernels of one instruction set. `scratch` has scratch_bytes(bonds of the longest chain), aligned to 64.
 struct Kernels {
     const char *name;
     int lanes;

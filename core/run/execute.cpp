@@ -109,11 +109,16 @@ void Team::run(std::int64_t n, Tally &total, void (*call)(const void *, std::int
     }
 }
 
+void write_virial(const Tally &tally, double *virial) {
+    const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    for (int i = 0; i < 9; ++i) virial[i] = tally.virial[place[i]];
+}
+
 Tally execute(const Chains &chains, const Work &work) { return execute(chains, chains.plan(), work); }
 
 Tally execute(const Chains &chains, const Plan &plan, const Work &work) {
     const std::int64_t n_pieces = static_cast<std::int64_t>(plan.pieces.size());
-    std::int64_t scratch_bytes = holonomic::scratch_bytes(plan.longest > longest_lane ? 2 * longest_lane : plan.longest);
+    std::int64_t scratch_bytes = holonomic::scratch_bytes(plan.longest);
     for (const std::int32_t shape : plan.shapes)
         scratch_bytes = std::max(scratch_bytes,
                                  kernels().molecules.scratch_bytes(*plan.schedules[static_cast<std::size_t>(shape)]));

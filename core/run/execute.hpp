@@ -54,6 +54,9 @@ protected:
     ~Work() = default;
 };
 
+// The six sums of a tally as a symmetric [3][3].
+void write_virial(const Tally &tally, double *virial);
+
 // Throws std::bad_alloc before any work is done.
 Tally execute(const Chains &chains, const Work &work);
 Tally execute(const Chains &chains, const Plan &plan, const Work &work);

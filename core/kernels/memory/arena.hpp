@@ -2,23 +2,38 @@
 #ifndef HOLONOMIC_KERNELS_MEMORY_ARENA_HPP
 #define HOLONOMIC_KERNELS_MEMORY_ARENA_HPP
 
+#include <stdint.h>
+
 #include "core/kernels/isa/lanes.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 
-// Scratch memory handed out front to back.
+// Vectors per bond that the greediest kernel takes, positions of staged chains with unequal masses and lengths: three
+// arrays (9), masses (4), lengths (2), Newton's method (12), what is put back after a coarse move (4).
+constexpr int64_t vectors_per_bond = 32;
+
+// For a block of chains of at most n bonds, of what ends with a chunk or with a cache line too.
+HOL_INLINE int64_t scratch_doubles(int64_t n) { return W * vectors_per_bond * (n + 2 * W + 8); }
+
+// Scratch memory handed out front to back. Builds with assertions and with sanitizers end where it does not suffice.
 struct Arena {
     double *next;
-    vec *vecs(long n) {
-        vec *p = reinterpret_cast<vec *>(next);
-        next += n * W;
-        return p;
-    }
+    const double *end;
+    Arena(double *scratch, int64_t n_bonds) : next(scratch), end(scratch + scratch_doubles(n_bonds)) {}
+    vec *vecs(long n) { return reinterpret_cast<vec *>(take(n * W)); }
     double *doubles(long n) {
-        double *p = next;
         constexpr long least = W > 8 ? W : 8;  // vectors that follow are aligned
-        next += (n + least - 1) / least * least;
+        return take((n + least - 1) / least * least);
+    }
+
+private:
+    HOL_FORCED double *take(long n) {
+        double *const p = next;
+        next += n;
+#if defined(HOL_SANITIZED) || !defined(NDEBUG)
+        if (next > end) __builtin_trap();
+#endif
         return p;
     }
 };

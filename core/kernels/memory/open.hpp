@@ -102,11 +102,11 @@ static inline void for_each_block(const Call &call, const Unit &unit, double *sc
                                   Small small) {
     Block block;
     Lane lane[W];
-    Arena arena = {scratch};
+    Arena arena(scratch, 0);
     for (int64_t first = 0; first < unit.count; first += W) {
         open_block(unit, first, block, lane);
         if (first == 0 || !unit.regular || block.lanes < W) {
-            arena = {scratch};
+            arena = Arena(scratch, block.n);
             set_masses(block, lane, arena);
         }
         if (block.lanes == W) {

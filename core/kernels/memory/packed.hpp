@@ -3,6 +3,8 @@
 #ifndef HOLONOMIC_KERNELS_MEMORY_PACKED_HPP
 #define HOLONOMIC_KERNELS_MEMORY_PACKED_HPP
 
+#include <stdint.h>
+
 #include "core/kernels/arithmetic/image.hpp"
 #include "core/kernels/memory/block.hpp"
 #include "core/kernels/memory/prefetch.hpp"
@@ -24,6 +26,9 @@ struct LaneRows {
     HOL_FORCED const double *f(int i) const { return pf[i]; }
 };
 
+HOL_INLINE uintptr_t number(const double *p) { return reinterpret_cast<uintptr_t>(p); }
+HOL_INLINE const double *pointer(uintptr_t p) { return reinterpret_cast<const double *>(p); }
+
 // Lanes all at the same distance from one another, in each array: one address per array does.
 struct EvenRows {
     uintptr_t at, lane, to_v, to_f;
@@ -38,10 +43,6 @@ struct EvenRows {
     HOL_FORCED const double *r(int i) const { return pointer(at + static_cast<uintptr_t>(i) * lane); }
     HOL_FORCED const double *v(int i) const { return pointer(at + static_cast<uintptr_t>(i) * lane + to_v); }
     HOL_FORCED const double *f(int i) const { return pointer(at + static_cast<uintptr_t>(i) * lane + to_f); }
-
-private:
-    HOL_INLINE uintptr_t number(const double *p) { return reinterpret_cast<uintptr_t>(p); }
-    HOL_INLINE const double *pointer(uintptr_t p) { return reinterpret_cast<const double *>(p); }
 };
 
 // The bonds k0 .. k0 + W - 1 of all lanes: see load_bonds. d[W], low[W], rhs[W].

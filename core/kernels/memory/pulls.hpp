@@ -21,14 +21,15 @@ static inline void store_pulls(const Block &block, const vec3 *d, const vec *t, 
         value[2] = g.z;
         before = after;
     };
-    vec value[3 * W];
     long k0 = first;
     if (chosen == all_lanes)
         for (; k0 + W <= block.n_min; k0 += W) {
+            vec value[3 * W];
             for (int a = 0; a < W; ++a) pull(k0 + a, times(t[k0 + a], d[k0 + a]), value + 3 * a);
             store_chunk(k0, value, sink);
         }
     for (; k0 <= block.n; k0 += W) {
+        vec value[3 * W] = {};
         for (int a = 0; a < W && k0 + a <= block.n; ++a)
             pull(k0 + a, k0 + a < block.n ? times(t[k0 + a], d[k0 + a]) : vec3{}, value + 3 * a);
         store_ragged(block, k0, value, chosen, sink);

@@ -17,9 +17,7 @@
 namespace holonomic {
 namespace HOL_ISA {
 
-constexpr long window_bonds = 512;    // of a lane, without its margins: so much stays in the second-level cache
 constexpr long shortest_piece = 256;  // with shorter ones the margins would cost too much
-constexpr long longest_margin = 96;
 constexpr double negligible = 1e-19;  // of what happens beyond a margin
 
 static inline Cut windows(int64_t n_bonds) { return Cut(n_bonds, window_bonds * W); }

@@ -99,7 +99,7 @@ void forces(const ForcesCall &call, const Unit &unit, double *scratch, Tally &ta
 void long_forces_eliminate(const ForcesCall &call, const Lane &lane, int64_t j, bool careful, double *store,
                            double *scratch) {
     constexpr int both = velocity_squared | force_difference;
-    const Arena arena = {scratch};
+    const Arena arena(scratch, longest_piece);
     if (call.v.x && call.f.x)
         eliminate_block<both>(call, lane, j, call.r, call.v, call.f, careful, store, arena);
     else if (call.f.x)
@@ -113,7 +113,7 @@ void long_forces_eliminate(const ForcesCall &call, const Lane &lane, int64_t j, 
 void long_forces_finish(const ForcesCall &call, const Lane &lane, int64_t j, double *store, double *scratch,
                         Tally &tally) {
     const SegmentOutputs out = {{}, false, call.lambda, call.tension, splat(0.5), 1.0, call.virial};
-    finish_block<false>(call.box, call.r, call.g, call.add, out, lane, j, store, Arena{scratch}, tally);
+    finish_block<false>(call.box, call.r, call.g, call.add, out, lane, j, store, Arena(scratch, longest_piece), tally);
 }
 
 }  // namespace HOL_ISA

@@ -59,7 +59,7 @@ void metric(const MetricCall &call, const Unit &unit, double *scratch, Tally &ta
 void long_metric_map(const MetricCall &call, const Lane &lane, int64_t j, double *store, double *scratch) {
     const Cut cut(lane.n_bonds);
     MetricWindow x = metric_window(cut, j, lane);
-    Arena arena = {scratch};
+    Arena arena(scratch, longest_piece);
     set_segment_masses(x.s, lane, arena);
     if (x.s.block.uniform_w)
         map_window<true>(call, lane, x, arena, metric_summary(store, j));
@@ -95,7 +95,7 @@ void long_metric_finish(const MetricCall &call, const Lane &lane, int64_t j, dou
                         Tally &tally) {
     const Cut cut(lane.n_bonds);
     MetricWindow x = metric_window(cut, j, lane);
-    Arena arena = {scratch};
+    Arena arena(scratch, longest_piece);
     set_segment_masses(x.s, lane, arena);
     if (x.s.block.uniform_w)
         finish_window<true>(call, lane, x, arena, metric_summary(store, j), tally);

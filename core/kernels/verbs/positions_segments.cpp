@@ -18,18 +18,12 @@ void load_segments(const PositionsCall &call, const Lane &lane, int64_t j, doubl
     const Cut cut(lane.n_bonds);
     const NewtonSegments x(store, cut.longest(), j);
     SegmentBlock s = segment_block(cut, j, lane);
-    Arena arena = {scratch};
-    const Packed absent = {}, r_ref = open_segments(call.r_ref, s, lane, arena, true),
+    Arena arena(scratch, longest_piece);
+    const Packed r_ref = open_segments(call.r_ref, s, lane, arena, true),
                  r = open_segments(call.r, s, lane, arena, true);
     s.block.uniform_w = true;
-    const auto load = [&](const Box &box, const Packed &rows, vec3 *bonds) {
-        if (box.shape == Box::none)
-            load_bonds<none_, true, false, false>(s.block, box, rows, absent, absent, bonds, nullptr, x.s);
-        else
-            load_bonds<none_, true, true, false>(s.block, box, rows, absent, absent, bonds, nullptr, x.s);
-    };
-    load(call.box_ref, r_ref, x.b);
-    load(call.box, r, x.D);
+    load_bond_vectors(s.block, call.box_ref, r_ref, x.b);
+    load_bond_vectors(s.block, call.box, r, x.D);
     *x.summary = NewtonSummary{};
     segment_errors(s, lane, x);
     const double factor = 2 * call.dt * call.dt * unit_of(lane);
@@ -90,7 +84,7 @@ void factorize_segments(const PositionsCall &, const Lane &lane, int64_t j, bool
         x.D[k].y[i] = owner.D[0].y[from];
         x.D[k].z[i] = owner.D[0].z[from];
     }
-    Arena arena = {scratch};
+    Arena arena(scratch, longest_piece);
     set_segment_masses(s, lane, arena);
     if (s.block.uniform_w)
         eliminate_segments<true>(s, x, careful);
@@ -150,7 +144,7 @@ double step_segments(const PositionsCall &, const Lane &lane, int64_t j, bool su
     const Cut cut(lane.n_bonds);
     const NewtonSegments x(store, cut.longest(), j);
     SegmentBlock s = segment_block(cut, j, lane);
-    Arena arena = {scratch};
+    Arena arena(scratch, longest_piece);
     set_segment_masses(s, lane, arena);
     const bool has_next = j + 1 < cut.blocks;
     if (substitute)
@@ -212,7 +206,7 @@ void finish_segments(const PositionsCall &call, const Lane &lane, int64_t j, boo
     const Cut cut(lane.n_bonds);
     const NewtonSegments x(store, cut.longest(), j);
     SegmentBlock s = segment_block(cut, j, lane);
-    Arena arena = {scratch};
+    Arena arena(scratch, longest_piece);
     note_worst_bond(s, lane, x, tally);
     if (moved) {
         set_segment_masses(s, lane, arena);

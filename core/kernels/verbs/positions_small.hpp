@@ -146,8 +146,8 @@ HOL_INLINE void note_molecules(const MoleculesCall &m, const Newton &x, vec erro
 // From molecule `first` on; returns the first one that is not done.
 template <int N, bool uniform>
 HOL_NOINLINE int64_t of_molecules(const MoleculesCall &m, int64_t first, Tally &tally) {
-    vec memory[12 * N + 12], w[N + 1], a2[N], per_a2[N];
-    Arena arena = {reinterpret_cast<double *>(memory)};
+    vec memory[vectors_per_bond * (N + 2 * W + 8)], w[N + 1], a2[N], per_a2[N];
+    Arena arena(reinterpret_cast<double *>(memory), N);
     Newton x(N, arena);
     set_molecule<N, uniform>(m.block, m.unit.lanes[0], x, w, a2, per_a2);
     const mask all = first_lanes(W);

@@ -13,8 +13,8 @@ WindowResult solve_window(const PositionsCall &call, const Lane &lane, int64_t j
                           Tally &tally) {
     const SegmentBlock s = segment_block(windows(lane.n_bonds), j, lane);
     Pieces pieces;
-    if (!cut_pieces(call, lane, s, Arena{scratch}, pieces)) return window_failed;
-    Arena arena = {scratch};
+    if (!cut_pieces(call, lane, s, Arena(scratch, longest_piece), pieces)) return window_failed;
+    Arena arena(scratch, longest_piece);
     Block block;
     Lane piece[W];
     open_block(Unit{pieces.lane, W, false, false}, 0, block, piece);
@@ -32,7 +32,7 @@ bool windows_fit(const PositionsCall &call, const Lane &lane, const double *tau,
     const Cut cut = windows(lane.n_bonds);
     const double enough = call.tolerance > floor_error ? call.tolerance : floor_error;
     for (int64_t i = 1; i < cut.blocks * W; ++i)
-        if (!(seam_error(call, lane, cut.first(i), tau, Arena{scratch}, tally) <= enough)) return false;
+        if (!(seam_error(call, lane, cut.first(i), tau, Arena(scratch, longest_piece), tally) <= enough)) return false;
     return true;
 }
 
@@ -46,7 +46,7 @@ void finish_window(const PositionsCall &call, const Lane &lane, int64_t j, bool 
         for (int64_t k = from; k < end; ++k)
             call.lambda[lane.first_bond + k] = moved ? mul_add(factor, tau[k], 0.0) : 0.0;  // zeros as +0
     if (!moved) return;
-    Arena arena = {scratch};
+    Arena arena(scratch, longest_piece);
     set_segment_masses(s, lane, arena);
     Newton x(s.block, BondLengths{}, arena);
     load_bond_vectors(s.block, call.box_ref, open_segments(call.r_ref, s, lane, arena, true), x.b);

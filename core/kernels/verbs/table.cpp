@@ -1,6 +1,7 @@
 // The table through which core calls the kernels of one instruction set.
 #include "core/kernels/eliminate/join.hpp"
 #include "core/kernels/isa/lanes.hpp"
+#include "core/kernels/memory/arena.hpp"
 #include "core/kernels/memory/cut.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
@@ -10,13 +11,10 @@
 namespace holonomic {
 namespace HOL_ISA {
 
-// Interleaved vectors per bond that the greediest kernel takes, staging included.
-constexpr int64_t vectors_per_bond = 40;
-
 static_assert(W <= most_lanes, "Box and the alignment of a thread's memory are made for fewer lanes");
 
 static int64_t scratch_bytes(int64_t n_bonds) {
-    return static_cast<int64_t>(sizeof(vec)) * vectors_per_bond * (n_bonds + 2 * W + 8);
+    return scratch_doubles(n_bonds > longest_lane ? longest_piece : n_bonds) * static_cast<int64_t>(sizeof(double));
 }
 
 static int64_t long_blocks(int64_t n_bonds) { return Cut(n_bonds).blocks; }

@@ -149,7 +149,7 @@ void velocities(const VelocitiesCall &call, const Unit &unit, double *scratch, T
 
 void long_velocities_eliminate(const VelocitiesCall &call, const Lane &lane, int64_t j, bool careful, double *store,
                                double *scratch) {
-    eliminate_block<rate>(call, lane, j, call.r, call.v, AtomArray{}, careful, store, Arena{scratch});
+    eliminate_block<rate>(call, lane, j, call.r, call.v, AtomArray{}, careful, store, Arena(scratch, longest_piece));
 }
 
 void long_velocities_finish(const VelocitiesCall &call, const Lane &lane, int64_t j, double *store, double *scratch,
@@ -157,7 +157,7 @@ void long_velocities_finish(const VelocitiesCall &call, const Lane &lane, int64_
     // With equal masses, t is w times 2 lambda here.
     const double mass = 1 / unit_of(lane);
     const SegmentOutputs out = {{}, false, call.lambda, nullptr, splat(0.5 * mass), mass, call.virial};
-    finish_block<true>(call.box, call.r, call.v, true, out, lane, j, store, Arena{scratch}, tally);
+    finish_block<true>(call.box, call.r, call.v, true, out, lane, j, store, Arena(scratch, longest_piece), tally);
 }
 
 }  // namespace HOL_ISA
