@@ -199,7 +199,9 @@ static inline void move_window(const SegmentBlock &s, int64_t j, const Newton &x
                                double per_dt) {
     const vec3 first = times(x.tau[0], x.b[0]);
     const MoveSink<to_r, to_v> sink = {r, v, per_dt};
-    store_pulls<true, uniform_w>(own_block(s), x.b, x.tau, first_lanes(W), sink, 1, first);
+    Block own = own_block(s);
+    own.n = s.block.n;  // the last atom of a lane is pulled by the bond behind it, too
+    store_pulls<true, uniform_w>(own, x.b, x.tau, first_lanes(W), sink, 1, first);
     if (j == 0) store_first(times_w<uniform_w>(x, 0, first), 1, sink);
 }
 
