@@ -10,7 +10,7 @@ namespace HOL_ISA {
 // The pulls on the atoms first .. n of the lanes in `which`, where `before` is t d of the bond before atom `first`;
 // times w_i where `weighted`.
 template <bool weighted, bool uniform, class Sink>
-static inline void store_pulls(const Block &block, const vec3 *d, const vec *t, mask which, const Sink &sink,
+static inline void store_pulls(const Block &block, const vec3 *d, const vec *t, mask which, const Sink sink,
                                long first = 0, vec3 before = vec3{}) {
     const unsigned chosen = bits(which & block.in_use());
     const auto pull = [&](long k, const vec3 &after, vec *value) HOL_FORCED {

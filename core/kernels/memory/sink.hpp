@@ -1,5 +1,7 @@
 // Where the vectors per atom of a block go. A sink takes what is found for a lane as it stands in memory, W components
-// from component e of the lane's atoms on or a single one; chunks are transposed here, and cut where lanes end.
+// from component e of the lane's atoms on or a single one; chunks are transposed here, and cut where lanes end. Sinks
+// hold what they need by value: for all that the compiler knows, a store to the caller's arrays changes what is behind
+// a reference, which took 4 more instructions a bond of positions.
 #ifndef HOLONOMIC_KERNELS_MEMORY_SINK_HPP
 #define HOLONOMIC_KERNELS_MEMORY_SINK_HPP
 
@@ -14,7 +16,7 @@ enum Update { write_, add_ };
 // An array per atom that is written, or added to.
 template <Update update>
 struct AtomSink {
-    const Packed &out;
+    Packed out;
     HOL_FORCED void row(int lane, long e, vec x) const {
         double *const p = out.lane[lane] + e;
         store(p, update == add_ ? load(p) + x : x);
@@ -28,15 +30,15 @@ struct AtomSink {
 // Moves of atoms: added to r, and as a rate to v; either, or both.
 template <bool to_r, bool to_v>
 struct MoveSink {
-    const Packed &r, &v;
-    double per_dt;
+    Packed r, v;
+    vec per_dt;
     HOL_FORCED void row(int lane, long e, vec x) const {
         if (to_r) store(r.lane[lane] + e, load(r.lane[lane] + e) + x);
-        if (to_v) store(v.lane[lane] + e, mul_add(x, splat(per_dt), load(v.lane[lane] + e)));
+        if (to_v) store(v.lane[lane] + e, mul_add(x, per_dt, load(v.lane[lane] + e)));
     }
     HOL_FORCED void component(int lane, long e, double x) const {
         if (to_r) r.lane[lane][e] = r.lane[lane][e] + x;
-        if (to_v) v.lane[lane][e] = mul_add(x, per_dt, v.lane[lane][e]);
+        if (to_v) v.lane[lane][e] = mul_add(x, per_dt[0], v.lane[lane][e]);
     }
 };
 

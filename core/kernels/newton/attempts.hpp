@@ -27,7 +27,7 @@ struct Positions {
 
     template <bool to_r, bool to_v>
     void move(mask which) const {
-        store_pulls<true, uniform_w>(block, x.b, x.tau, which, MoveSink<to_r, to_v>{r, v, 1 / call.dt});
+        store_pulls<true, uniform_w>(block, x.b, x.tau, which, MoveSink<to_r, to_v>{r, v, splat(1 / call.dt)});
     }
 
     // Goes on from the coordinates as they are rounded after a coarse move: the moves that remain are small, and so are

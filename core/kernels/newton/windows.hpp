@@ -198,7 +198,7 @@ template <bool uniform_w, bool to_r, bool to_v>
 static inline void move_window(const SegmentBlock &s, int64_t j, const Newton &x, const Packed &r, const Packed &v,
                                double per_dt) {
     const vec3 first = times(x.tau[0], x.b[0]);
-    const MoveSink<to_r, to_v> sink = {r, v, per_dt};
+    const MoveSink<to_r, to_v> sink = {r, v, splat(per_dt)};
     Block own = own_block(s);
     own.n = s.block.n;  // the last atom of a lane is pulled by the bond behind it, too
     store_pulls<true, uniform_w>(own, x.b, x.tau, first_lanes(W), sink, 1, first);
