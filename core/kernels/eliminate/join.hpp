@@ -1,4 +1,4 @@
-// The elimination of a long chain block by block, and the solution at the separators (segments.inl).
+// The elimination of a long chain block by block, and the solution at the separators (segment.hpp).
 #ifndef HOLONOMIC_KERNELS_ELIMINATE_JOIN_HPP
 #define HOLONOMIC_KERNELS_ELIMINATE_JOIN_HPP
 

@@ -26,8 +26,8 @@
 #define HOL_HAS_FMA 0
 #endif
 
-// Forced inlining keeps what a loop works on in registers. Instrumented code would not fit there, nor would more lanes than a
-// register has, in sets for tests alone: inlined, both take minutes to compile, and a gigabyte.
+// Forced inlining keeps what a loop works on in registers. Instrumented code would not fit there, nor would more lanes
+// than a register has, in sets for tests alone: inlined, both take minutes to compile, and a gigabyte.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define HOL_SANITIZED 1
 #elif defined(__has_feature)

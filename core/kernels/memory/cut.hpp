@@ -8,19 +8,20 @@
 namespace holonomic {
 namespace HOL_ISA {
 
-// Bonds of a block of segments, all lanes: so that what is kept of it stays in cache. Of a lane's window without its margins: so
-// much stays in the second-level cache.
+// Bonds of a block of segments, all lanes: so that what is kept of it stays in cache. Of a lane's window without its
+// margins: so much stays in the second-level cache.
 constexpr int64_t segment_bonds = 1024, window_bonds = 512, longest_margin = 96;
 
 // Bonds of a lane in the longest block that a long chain is cut into; rounding up and neighbours are at most 12 more.
 constexpr int64_t longest_segment = segment_bonds / W + 12, longest_window = window_bonds + 12 + 2 * longest_margin;
 constexpr int64_t longest_piece = longest_segment > longest_window ? longest_segment : longest_window;
 
-// How a chain is cut: blocks of W segments of the same number of bonds, a multiple of `step`; the chain's last segment may
-// be shorter. Depends on the chain's length alone, so that results depend on neither threads nor other chains.
+// How a chain is cut: blocks of W segments of the same number of bonds, a multiple of `step`; the chain's last segment
+// may be shorter. Depends on the chain's length alone, so that results depend on neither threads nor other chains.
 struct Cut {
     static constexpr int64_t step = W <= 8 ? 4 : 1;
-    int64_t n_bonds, blocks, base, extra;  // the first `extra` blocks have step W bonds more than the others, step W base
+    int64_t n_bonds, blocks, base,
+        extra;  // the first `extra` blocks have step W bonds more than the others, step W base
     // bonds_per_block: of all lanes; so that what is kept of a block stays in cache.
     explicit Cut(int64_t n, int64_t bonds_per_block = segment_bonds) : n_bonds(n) {
         const int64_t steps = (n + step * W - 1) / (step * W);
@@ -35,8 +36,8 @@ struct Cut {
     int64_t longest() const { return rows(0); }
 };
 
-// The last segment of the shortest chain that is cut is the shortest of all. The elimination starts from its separator and
-// the bond behind that.
+// The last segment of the shortest chain that is cut is the shortest of all. The elimination starts from its separator
+// and the bond behind that.
 constexpr int64_t steps_of_shortest = (longest_lane + Cut::step * W) / (Cut::step * W);
 static_assert(longest_lane + 1 - (W - 1) * Cut::step * steps_of_shortest >= 2, "a segment of fewer than two bonds");
 

@@ -1,4 +1,4 @@
-// Newton's method for the positions of a block of chains, by the sweeps of newton_sweeps.inl: what is done when.
+// Newton's method for the positions of a block of chains, by the sweeps of sweeps.hpp: what is done when.
 #ifndef HOLONOMIC_KERNELS_NEWTON_ITERATE_HPP
 #define HOLONOMIC_KERNELS_NEWTON_ITERATE_HPP
 

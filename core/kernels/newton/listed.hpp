@@ -1,6 +1,6 @@
 // Positions of blocks of equally long chains with lists of atoms, in packed arrays: read and moved where the lists say,
-// with the arithmetic of positions.inl. Where a lane needs more than the first attempt, or nothing done to it, the
-// block is left to the general path as it came.
+// with the arithmetic of verbs/positions.cpp. Where a lane needs more than the first attempt, or nothing done to it,
+// the block is left to the general path as it came.
 #ifndef HOLONOMIC_KERNELS_NEWTON_LISTED_HPP
 #define HOLONOMIC_KERNELS_NEWTON_LISTED_HPP
 

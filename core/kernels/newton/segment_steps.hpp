@@ -1,4 +1,4 @@
-// Steps of Newton's method on one long chain with the factors at hand (segments_newton.inl): the separators are joined,
+// Steps of Newton's method on one long chain with the factors at hand (segments.hpp): the separators are joined,
 // and each block substitutes backward, moves its bonds and substitutes forward what that leaves of their lengths.
 #ifndef HOLONOMIC_KERNELS_NEWTON_SEGMENT_STEPS_HPP
 #define HOLONOMIC_KERNELS_NEWTON_SEGMENT_STEPS_HPP

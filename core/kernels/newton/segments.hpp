@@ -1,5 +1,5 @@
-// Position level of one long chain in segments: the elimination of segments.inl with the unsymmetric Jacobian of
-// newton.inl. f splits into the coupling of the rows to the separator (down) and of the separator to them (up).
+// Position level of one long chain in segments: the elimination of eliminate/segment.hpp with the unsymmetric Jacobian
+// of sweeps.hpp. f splits into the coupling of the rows to the separator (down) and of the separator to them (up).
 //
 // An iteration with the factors at hand goes through the blocks once, in any order: `step_segments` substitutes
 // backward, moves the bonds and substitutes forward what that leaves of their lengths. In between the separators are

@@ -1,4 +1,4 @@
-// Position level of a block of chains: load, iterate (newton.inl), move the atoms, store.
+// Position level of a block of chains: load, iterate (newton/iterate.hpp), move the atoms, store.
 #include "core/kernels/newton/attempts.hpp"
 #include "core/kernels/newton/lengths.hpp"
 #include "core/kernels/newton/listed.hpp"

@@ -1,5 +1,6 @@
-// Positions of small molecules of one kind over consecutive atoms: the arithmetic of positions.inl, with the number of
-// bonds known to the compiler. Where a lane needs more than that, its W molecules are left to the general path.
+// Positions of small molecules of one kind over consecutive atoms: the arithmetic of verbs/positions.cpp, with the
+// number of bonds known to the compiler. Where a lane needs more than that, its W molecules are left to the general
+// path.
 #ifndef HOLONOMIC_KERNELS_VERBS_POSITIONS_SMALL_HPP
 #define HOLONOMIC_KERNELS_VERBS_POSITIONS_SMALL_HPP
 
@@ -28,7 +29,7 @@ private:
     }
 };
 
-// Inverse masses and lengths as in positions.inl; `uniform`: of both there is only one.
+// Inverse masses and lengths as in verbs/positions.cpp; `uniform`: of both there is only one.
 template <int N, bool uniform>
 HOL_INLINE void set_molecule(const Block &block, const Lane &head, Newton &x, vec *w, vec *a2, vec *per_a2) {
     const bool one_mass = block.uniform_w;
