@@ -10,6 +10,8 @@
 namespace holonomic {
 namespace HOL_ISA {
 
+namespace {
+
 // In more solves than ordinary chains take, tau may have been much larger than it ends: its sum is rounded in that
 // size, and the bonds have been moved by the summands.
 constexpr int64_t most_solves = 5;
@@ -239,6 +241,8 @@ bool LongNewton::iterate(bool careful, double error, double extent, double short
     }
     return false;
 }
+
+}  // namespace
 
 int64_t long_positions_bytes(int64_t n_bonds) {
     return segments_bytes(n_bonds) + Saved::doubles(n_bonds) * static_cast<int64_t>(sizeof(double));
