@@ -1,5 +1,5 @@
-// Any molecule: hanging trees by theory (52)-(54), the core by its factors, (55) between them. Symmetric, or with D on the
-// left and B on the right for Newton's method.
+// Any molecule: hanging trees by theory (52)-(54), the core by its factors, (55) between them. Symmetric, or with D on
+// the left and B on the right for Newton's method.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_GRAPH_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_GRAPH_HPP
 

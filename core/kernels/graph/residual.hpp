@@ -67,7 +67,7 @@ HOL_NOINLINE void find_residuals(const Molecules<V> &x, const Equations<V> &e, c
         e.a[i] = Pair3<V>{};
         if (e.force) e.a[i] = {{e.force[i].x, V{}}, {e.force[i].y, V{}}, {e.force[i].z, V{}}};
     }
-    const auto bond = [&](int32_t from, int32_t to) __attribute__((always_inline)) {
+    const auto bond = [&](int32_t from, int32_t to) HOL_FORCED {
         Vector3<V> d, lo;
         exact_bond(*x.box, e.r[from], e.r[to], d, lo);
         return Pair3<V>{{d.x, lo.x}, {d.y, lo.y}, {d.z, lo.z}};

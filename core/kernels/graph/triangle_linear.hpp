@@ -91,12 +91,12 @@ static inline unsigned project_triangles(const VelocitiesCall &call, const Sched
     const Triangle<V> x = triangle_of(call.box, r);
     const TriangleInverse<V> inverse = invert_triangle(m, x);
     V left[3];
-    const auto measure = [&]() __attribute__((always_inline)) {  // the largest rate at which a bond changes
+    const auto measure = [&]() HOL_FORCED {  // the largest rate at which a bond changes
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) left[k] = dot(x.d[k], v[(k + 1) % 3] - v[k]);
         return max(abs(left[0]), max(abs(left[1]), abs(left[2])));
     };
-    const auto project = [&](MaskOf<V> which) __attribute__((always_inline)) {
+    const auto project = [&](MaskOf<V> which) HOL_FORCED {
         TriangleInverse<V>::solve(inverse, left, t);
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) t[k] = keep(which, t[k]);

@@ -36,7 +36,7 @@ struct TriangleNewton {
     V tau[3], left[3];
     TriangleInverse<V> inverse;
 
-    inline __attribute__((always_inline)) V measure() {
+    inline HOL_FORCED V measure() {
         V size[3];
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) {
@@ -48,14 +48,14 @@ struct TriangleNewton {
         // max() may lose a NaN, the sum keeps it
         return mul_add(left[0] + (left[1] + left[2]), V{}, max(size[0], max(size[1], size[2])));
     }
-    inline __attribute__((always_inline)) V open() {
+    inline HOL_FORCED V open() {
         for (int k = 0; k < 3; ++k) now[k] = D[k];
         return measure();
     }
-    inline __attribute__((always_inline)) void forget(MaskOf<V> which) {
+    inline HOL_FORCED void forget(MaskOf<V> which) {
         for (int k = 0; k < 3; ++k) tau[k] = select(which, V{}, tau[k]);
     }
-    inline __attribute__((always_inline)) void factorize(MaskOf<V> which) {
+    inline HOL_FORCED void factorize(MaskOf<V> which) {
         V g[3][3];
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) {
@@ -70,13 +70,13 @@ struct TriangleNewton {
             for (int l = 0; l < 3; ++l) inverse.e[k][l] = select(which, fresh.e[k][l], inverse.e[k][l]);
         }
     }
-    inline __attribute__((always_inline)) void solve(MaskOf<V> active) {
+    inline HOL_FORCED void solve(MaskOf<V> active) {
         V change[3];
         TriangleInverse<V>::solve(inverse, left, change);
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) tau[k] = tau[k] + keep(active, change[k]);
     }
-    inline __attribute__((always_inline)) V move() {
+    inline HOL_FORCED V move() {
         Vector3<V> pull[3];
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) pull[k] = tau[k] * b[k];
@@ -88,7 +88,7 @@ struct TriangleNewton {
         }
         return measure();
     }
-    inline __attribute__((always_inline)) Vector3<V> moved(int i) const { return m.w[i] * triangle_pull(b, tau, i); }
+    inline HOL_FORCED Vector3<V> moved(int i) const { return m.w[i] * triangle_pull(b, tau, i); }
 
     // Lanes in which pulls on an atom are so large that their rounding is more than the coordinates'.
     MaskOf<V> coarse_moves(V largest_coordinate) const {
