@@ -11,8 +11,8 @@ namespace holonomic {
 namespace {
 
 constexpr std::int64_t bonds_per_piece = 4096;  // enough to hide the cost of a piece, few enough to share out evenly
-// Pieces are cut at multiples of this, the lanes of the widest set that is installed. It is a matter of speed: kernels of
-// any number of lanes take any number of chains.
+// Pieces are cut at multiples of this, the lanes of the widest set that is installed. It is a matter of speed: kernels
+// of any number of lanes take any number of chains.
 constexpr std::int64_t widest = 8;
 static_assert(widest <= most_lanes, "");
 

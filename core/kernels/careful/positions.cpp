@@ -1,5 +1,6 @@
 // Position level of one molecule: Newton's method with the mixed Jacobian (theory (58)) anew at each step. The
-// decisions are those of the chains (newton/iterate.hpp). In twice the precision, differences of large pulls lose nothing.
+// decisions are those of the chains (newton/iterate.hpp). In twice the precision, differences of large pulls lose
+// nothing.
 #include "core/kernels/careful/careful.hpp"
 #include "core/kernels/careful/solution.hpp"
 
