@@ -140,10 +140,10 @@ static void drift(brush *s, double dt)
 /** g-BAOAB */
 static void step(brush *s, double dt, double friction)
 {
-    const double keep = exp(-friction * dt), noise = sqrt(1 - keep * keep);
+    const double keep = exp(-friction * dt), kick_size = sqrt(1 - keep * keep);
     kick(s, dt / 2);
     drift(s, dt / 2);
-    for (int i = 0; i < 3 * s->n_atoms; ++i) s->v[i] = keep * s->v[i] + noise * noise_normal(&s->random);
+    for (int i = 0; i < 3 * s->n_atoms; ++i) s->v[i] = keep * s->v[i] + kick_size * noise_normal(&s->random);
     project_velocities(s);
     drift(s, dt / 2);
     apply_forces(s);
