@@ -1,7 +1,7 @@
 // Which kernels run. All but the baseline's fuse multiplication and addition, and give the same bits for a chain that
 // fits into a lane (tests/lanes/same_bits.sh), so that a call may choose by what it has to do. Four lanes with the 32
-// registers of AVX-512 (`avx512vl`) run wherever they can: beside avx2 they were faster or as fast, but for the two places
-// marked (a), and eight lanes (`avx512`) are faster in cache on the family that is named below.
+// registers of AVX-512 (`avx512vl`) run wherever they can: beside avx2 they were faster or as fast, but for the two
+// places marked (a), and eight lanes (`avx512`) are faster in cache on the family that is named below.
 //
 // ns per bond: lambda and G from r, v, f / velocities / positions; equal masses, packed arrays, one thread.
 //
@@ -16,8 +16,8 @@
 //          1 x 100,000         4.4  8.0 10.3       4.1  7.0 10.0       5.9 11.7 10.6
 //          1 x 1,000,000      12.9 22.9 19.5      12.8  (a) 19.6      22.9 37.0 24.6    14.3  -  -      16.8  -  -
 //
-// Smallest of several; the rows of 1000 x 100 and (a) are of a machine that was not quiet: 5.6 and 30.8, with a scatter as
-// large as the difference. From memory eight lanes, which ask for twice as many lines at a time, are the slowest.
+// Smallest of several; the rows of 1000 x 100 and (a) are of a machine that was not quiet: 5.6 and 30.8, with a scatter
+// as large as the difference. From memory eight lanes, which ask for twice as many lines at a time, are the slowest.
 #include "core/run/dispatch.hpp"
 
 #include <cstdlib>
