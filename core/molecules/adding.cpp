@@ -54,6 +54,10 @@ void check_lengths(std::int64_t n_bonds, const double *lengths, int base) {
 
 void Chains::add(std::int64_t n_bonds, const std::int64_t *atoms, const double *lengths) {
     check_at_least("n_bonds", n_bonds, 1);
+    // Before anything is read: atoms that can move occur once, with one that is fixed between each two at the most.
+    if (n_bonds > 2 * n_atoms_)
+        throw make_error(Status::value, "n_bonds is %lld: a chain of so many bonds has more than the %lld atoms",
+                         static_cast<long long>(n_bonds), static_cast<long long>(n_atoms_));
     check_lengths(n_bonds, lengths, base);
     std::vector<std::int64_t> list;
     for (std::int64_t k = 0; k <= n_bonds; ++k) {

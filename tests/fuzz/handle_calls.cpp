@@ -39,7 +39,7 @@ void session::add()
 {
     const std::int64_t n = bonds_of_a_chain();
     // Arrays as long as the numbers say, except where the numbers alone are an error.
-    const std::size_t length = static_cast<std::size_t>(n > 0 && n <= n_atoms ? n : 0);
+    const std::size_t length = static_cast<std::size_t>(n > 0 && n <= 2 * n_atoms ? n : 0);
     block atoms((length + 1) * sizeof(std::int64_t)), lengths(length * sizeof(double));
     fill(lengths, length, in, true);
     std::int64_t *list = reinterpret_cast<std::int64_t *>(atoms.data());
