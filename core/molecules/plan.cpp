@@ -132,7 +132,6 @@ private:
     void add_pieces(const Run &run) {
         if (run.shape == linear) {
             plan_->longest = std::max(plan_->longest, run.n_bonds);
-            if (run.n_bonds <= longest_lane) plan_->longest_in_lane = std::max(plan_->longest_in_lane, run.n_bonds);
         } else {
             plan_->shapes.push_back(run.shape);
         }

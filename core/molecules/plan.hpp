@@ -34,15 +34,15 @@ struct Plan {
         std::int64_t atom, place;
     };
     std::vector<Piece> pieces;
-    std::vector<Reference> loose;                   // molecules that fill no block of their own kind
-    std::int64_t longest_in_lane = 0, longest = 0;  // bonds of linear chains
-    std::int64_t n_bonds = 0;                       // of active molecules
-    std::vector<const Schedule *> schedules;        // of all shapes
-    std::vector<std::int32_t> shapes;               // those that occur, but for linear
-    std::vector<std::int64_t> stage;                // atoms of the molecules that share fixed atoms, one after another
-    std::vector<unsigned char> is_copy;             // of each atom of the stage
-    std::vector<Copy> copies;                       // by atom, then by place
-    bool reordered = false;                         // some molecules' bonds are
+    std::vector<Reference> loose;             // molecules that fill no block of their own kind
+    std::int64_t longest = 0;                 // bonds of linear chains
+    std::int64_t n_bonds = 0;                 // of active molecules
+    std::vector<const Schedule *> schedules;  // of all shapes
+    std::vector<std::int32_t> shapes;         // those that occur, but for linear
+    std::vector<std::int64_t> stage;          // atoms of the molecules that share fixed atoms, one after another
+    std::vector<unsigned char> is_copy;       // of each atom of the stage
+    std::vector<Copy> copies;                 // by atom, then by place
+    bool reordered = false;                   // some molecules' bonds are
 
     // For calls that work on linear chains as on other molecules: what lies between two fixed atoms is a part.
     struct Part {
