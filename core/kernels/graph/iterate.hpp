@@ -72,7 +72,7 @@ HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const Posi
     }
     V rate = error;  // new factors square the error
     Mask proven = none;
-    if (any(active)) newton.factorize(active);
+    if (any(active)) newton.factorize(~none);  // the first ones: there is nothing yet that other lanes keep
     for (int i = 0; i < call.max_iterations && any(active); ++i) {
         newton.solve(active);
         ++out.solves;

@@ -88,7 +88,7 @@ struct Newton {
         if (s.n_core_atoms == 0)
             factorize_joint<1, true, all>(x, s.n_tree, 1, which);
         else
-            factorize_core(x, spare, which);
+            factorize_core<all>(x, spare, which);
     }
 
     // From what is left, in t of the rows, to u.

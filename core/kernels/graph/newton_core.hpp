@@ -10,7 +10,7 @@ namespace HOL_ISA {
 namespace graph {
 
 // The elements of one atom of the core. Row k and column l: s_k s_l (w D_k.b_l - sum over its children).
-template <class V>
+template <bool all, class V>
 static inline void add_core_atom(const NewtonSystem<V> &x, int32_t c, int64_t reach, V *entry_lower, V *entry_upper,
                                  MaskOf<V> which) {
     const Schedule &s = x.s;
@@ -19,16 +19,15 @@ static inline void add_core_atom(const NewtonSystem<V> &x, int32_t c, int64_t re
     const int32_t n = s.meet_start[c + 1] - s.meet_start[c];
     const V w = x.w[slot];
     auto f = NewtonMemory<V, 0>::make(x.working, k);
-    factorize_children<false>(x, slot, k, f, which);
+    factorize_children<all>(x, slot, k, f, which);
     for (int32_t e = 0; e < n; ++e) {
         const int32_t place = s.n_tree + meet[e] / 2;
         V *const z = x.part_down + e * k, *const h = x.part_up + e * k;
         NewtonRow<V> &row = x.row[place];
         row.E = row.E + couple(x, slot, k, place, f, z, h, f.S, f.u);
         for (int32_t a = 0; a < k; ++a) {
-            V &up = x.reach_up[reach + e * k + a], &down = x.reach_down[reach + e * k + a];
-            up = select(which, f.S[a], up);
-            down = select(which, f.u[a], down);
+            put_where<all>(which, x.reach_up[reach + e * k + a], f.S[a]);
+            put_where<all>(which, x.reach_down[reach + e * k + a], f.u[a]);
         }
         for (int32_t o = 0; o < e; ++o, ++entry) {
             const int32_t other = s.n_tree + meet[o] / 2;
@@ -46,8 +45,8 @@ static inline void add_core_atom(const NewtonSystem<V> &x, int32_t c, int64_t re
     }
 }
 
-// New factors in the lanes of `which`; `spare` has 2 n_entries + n_core values.
-template <class V>
+// New factors in the lanes of `which`, or in all; `spare` has 2 n_entries + n_core values.
+template <bool all, class V>
 static inline void factorize_core(const NewtonSystem<V> &x, V *spare, MaskOf<V> which) {
     const Schedule &s = x.s;
     V *const lower = spare, *const upper = spare + s.n_entries;
@@ -56,7 +55,7 @@ static inline void factorize_core(const NewtonSystem<V> &x, V *spare, MaskOf<V> 
     for (int32_t p = 0; p < s.n_core; ++p) row[p].E = V{};
     int64_t reach = 0;
     for (int32_t c = 0; c < s.n_core_atoms; ++c) {
-        add_core_atom(x, c, reach, lower, upper, which);
+        add_core_atom<all>(x, c, reach, lower, upper, which);
         reach += static_cast<int64_t>(s.meet_start[c + 1] - s.meet_start[c]) *
                  (s.child_start[s.n_tree + c + 1] - s.child_start[s.n_tree + c]);
     }
@@ -64,7 +63,7 @@ static inline void factorize_core(const NewtonSystem<V> &x, V *spare, MaskOf<V> 
         const int32_t first = s.column_start[p], n = s.column_start[p + 1] - first;
         const int32_t *const below = s.row + first, *update = s.update + s.update_start[p];
         const V r = Width<V>::all(1) / row[p].E;
-        row[p].r = select(which, r, row[p].r);
+        put_where<all>(which, row[p].r, r);
         for (int32_t a = 0; a < n; ++a) {
             V &l = lower[first + a], &u = upper[first + a];
             const V la = l * r, ua = u * r;
@@ -78,8 +77,8 @@ static inline void factorize_core(const NewtonSystem<V> &x, V *spare, MaskOf<V> 
             u = ua;
         }
         for (int32_t e = first; e < first + n; ++e) {
-            x.core_lower[e] = select(which, lower[e], x.core_lower[e]);
-            x.core_upper[e] = select(which, upper[e], x.core_upper[e]);
+            put_where<all>(which, x.core_lower[e], lower[e]);
+            put_where<all>(which, x.core_upper[e], upper[e]);
         }
     }
 }
