@@ -99,9 +99,10 @@ HOL_API void hol_error_location(int64_t *chain, int64_t *bond, int64_t *atom, in
 
 /**
  * The instruction set that the calculations use on this machine: "baseline", "avx2", "avx512vl" (four lanes with the
- * registers of AVX-512) or "avx512" (eight lanes). Never NULL. Where it is "avx512vl", chains of up to 256 bonds may
- * run with "avx512" in calls for which that is faster; their results are the same bits. The environment variable
- * HOLONOMIC_ISA, read at the first use in a process, forces one of these names if the machine has it. Since 0.1.
+ * registers of AVX-512), "avx512" (eight lanes) or "scalar" (one lane, with AVX2's instructions). Never NULL. Chains of
+ * up to 256 bonds may run with another of these in calls for which that is faster, a chain that comes alone with
+ * "scalar"; their results are the same bits. The environment variable HOLONOMIC_ISA, read at the first use in a
+ * process, forces one of these names if the machine has it. Since 0.1.
  */
 HOL_API const char *hol_instruction_set(void);
 

@@ -30,7 +30,7 @@ build_jobs() {
 
 own_instruction_sets() {
     local sets=()
-    grep -qw avx2 /proc/cpuinfo 2>/dev/null && sets+=(avx2)
+    grep -qw avx2 /proc/cpuinfo 2>/dev/null && sets+=(avx2 scalar)
     grep -qw avx512dq /proc/cpuinfo 2>/dev/null && sets+=(avx512 avx512vl)
     (IFS=';' && echo "${sets[*]}")
 }

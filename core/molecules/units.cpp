@@ -68,7 +68,7 @@ Unit Chains::unit(const Plan &plan, const Plan::Piece &p, Lane *lanes) const {
         const Plan::Reference &reference = plan.loose[at(p.first + i)];
         lanes[i] = lane_of(groups_.all()[at(reference.group)], reference.index, reference.stage);
     }
-    return {lanes, p.count, false, large};
+    return {lanes, p.count, p.count == 1, large};  // one is like itself
 }
 
 MoleculeUnit Chains::unit(const Plan &plan, const Plan::Piece &p, MoleculeLane *lanes) const {

@@ -1,5 +1,6 @@
 // Which kernels run. All but the baseline's fuse multiplication and addition, and give the same bits for a chain that
-// fits into a lane (tests/lanes/same_bits.sh), so that a call may choose by what it has to do. Four lanes with the 32
+// fits into a lane (tests/lanes/same_bits.sh), so that a call may choose by what it has to do. A chain that comes alone
+// takes one lane (`scalar`; docs/performance.md), from two on they are faster side by side. Four lanes with the 32
 // registers of AVX-512 (`avx512vl`) run wherever they can: beside avx2 they were faster or as fast, but for the two
 // places marked (a), and eight lanes (`avx512`) are faster in cache on the family that is named below.
 //
@@ -56,7 +57,8 @@ unsigned amd_family() {
 }
 
 struct Sets {
-    const Kernels *best = nullptr, *eight_lanes = nullptr;  // eight_lanes: may be chosen by the unit
+    const Kernels *best = nullptr, *eight_lanes = nullptr,
+                  *one_lane = nullptr;  // the last two may be chosen by the unit
     unsigned family = 0;
 
     Sets() {
@@ -73,8 +75,9 @@ struct Sets {
 #undef HOLONOMIC_CONSIDER
         if (forced) {
             best = forced;
-            eight_lanes = nullptr;
+            eight_lanes = one_lane = nullptr;
         }
+        if (best->lanes < 4) one_lane = nullptr;  // the baseline rounds products: other bits
         family = amd_family();
     }
 
@@ -82,6 +85,7 @@ struct Sets {
         if (wanted && std::strcmp(wanted, set.name) == 0) forced = &set;
         if (installed && !best) best = &set;
         if (installed && std::strcmp(set.name, "avx512") == 0) eight_lanes = &set;
+        if (installed && std::strcmp(set.name, "scalar") == 0) one_lane = &set;
     }
 };
 
@@ -100,14 +104,14 @@ const Kernels &kernels() { return *sets().best; }
 
 const Kernels &kernels(const Unit &unit) {
     const Sets &s = sets();
+    if (s.one_lane && unit.count == 1) return *s.one_lane;
     return s.eight_lanes && eight_lanes_pay(s.family, unit) ? *s.eight_lanes : *s.best;
 }
 
 int64_t scratch_bytes(int64_t n_bonds) {
     const Sets &s = sets();
-    const int64_t own = s.best->scratch_bytes(n_bonds),
-                  other = s.eight_lanes ? s.eight_lanes->scratch_bytes(n_bonds) : 0;
-    return own > other ? own : other;
+    const Kernels *const widest = s.eight_lanes ? s.eight_lanes : s.best;
+    return widest->scratch_bytes(n_bonds);
 }
 
 }  // namespace holonomic

@@ -10,7 +10,8 @@ namespace holonomic {
 // digits, depends on the number of lanes. HOLONOMIC_ISA forces a set. Thread-safe.
 const Kernels &kernels();
 
-// The kernels of chains that fit into lanes: those, or a set that gives the same bits and is faster for such a unit.
+// The kernels of chains that fit into lanes: those, or a set that gives the same bits and is faster for such a unit, a
+// chain that comes alone among them.
 const Kernels &kernels(const Unit &unit);
 
 // Scratch that either needs for chains of up to n_bonds bonds.

@@ -187,12 +187,42 @@ static void a_bad_chain_keeps_applied_forces_that_it_would_overwrite(void **stat
     assembly_free(&a);
 }
 
+/* The last bond's pivot is infinite then, and its multiplier would be zero: no bond behind it tells. */
+static void an_overflowing_bond_is_found_wherever_it_is(void **state)
+{
+    (void)state;
+    for (int64_t n = 1; n <= 10; ++n)
+        for (int at = 1; at <= (int)n; ++at)
+            for (int64_t chains = 1; chains <= 20; chains += 19) {
+                assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, chains, n, n, at % 2 ? IN_ORDER : SCATTERED, 26);
+                const size_t size = assembly_size(&a), bonds = (size_t)a.n_bonds;
+                const int64_t bad = chains / 2;
+                spoil(&a, bad, at, OVERFLOWING_BOND);
+                double *lambda = untouched(bonds), *g = untouched(size), *before = untouched(size);
+                double *v = copy_of(a.v, size), *r = copy_of(a.r, size);
+                const double *here = lambda + a.first_bond[bad];
+                CHECK_FAILS(HOL_ERR_NOT_FINITE, hol_forces(a.chains, a.r, a.v, a.f, lambda, NULL, g, HOL_WRITE, NULL));
+                assert_untouched(here, (size_t)n);
+                assert_chain(&a, bad, g, before);
+                CHECK_FAILS(HOL_ERR_NOT_FINITE, hol_project_velocities(a.chains, a.r, v, lambda, NULL));
+                assert_untouched(here, (size_t)n);
+                assert_chain(&a, bad, v, a.v);
+                CHECK_FAILS(HOL_ERR_NOT_FINITE,
+                            hol_project_positions(a.chains, a.r, r, v, 0.004, lambda, 0, NULL, NULL));
+                assert_untouched(here, (size_t)n);
+                assert_chain(&a, bad, r, a.r);
+                free(lambda), free(g), free(before), free(v), free(r);
+                assembly_free(&a);
+            }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(forces_keep_bad_chains_and_complete_the_others),
         cmocka_unit_test(velocities_keep_bad_chains_and_complete_the_others),
         cmocka_unit_test(positions_keep_bad_chains_and_complete_the_others),
+        cmocka_unit_test(an_overflowing_bond_is_found_wherever_it_is),
         cmocka_unit_test(velocities_that_are_not_finite_are_added_to_and_not_checked),
         cmocka_unit_test(a_bad_chain_keeps_applied_forces_that_it_would_overwrite),
     };

@@ -104,13 +104,14 @@ struct Sweep {
 constexpr double largest_reciprocal = 1e140;
 
 // The same with bond vectors D + D_low and compensated products, a division per bond: right for any chain whose numbers
-// don't overflow or underflow; u_0 is NaN where they do.
+// don't overflow or underflow; u_0 is NaN where they do. A last bond of infinite q would pass for one without tension.
 template <bool uniform>
 HOL_NOINLINE void forward_careful(const Block &block, const System &s) {
     const long n = block.n;
-    vec size = {};
+    vec size = {}, overflow = {};  // of reciprocals of pivots; NaN if any q is infinite
     vec q = dot(s.D[0], s.D[0]), E = w_at<uniform>(block, 0) * q, y = s.t[0];
     for (long k = 0; k < n; ++k) {
+        overflow = overflow + (q - q);
         const vec w = w_at<uniform>(block, k + 1), P = mul_add(w, q, E);
         s.t[k] = y / P;
         s.pivots[k] = splat(1.0) / P;
@@ -129,7 +130,7 @@ HOL_NOINLINE void forward_careful(const Block &block, const System &s) {
         E = wP * mul_add(w, X, q1 * E);
         q = q1;
     }
-    s.t[0] = select(less(size, splat(largest_reciprocal)), s.t[0], splat(__builtin_nan("")));
+    s.t[0] = select(less(size, splat(largest_reciprocal)), s.t[0] + overflow, splat(__builtin_nan("")));
 }
 
 // Backward sweep over the bonds from .. n-1: u becomes t. The last one is added to zero as all others are to something,

@@ -29,18 +29,25 @@ HOL_INLINE vec mul_add(vec a, vec b, vec c) {
 #endif
 }
 HOL_INLINE vec mul_sub(vec a, vec b, vec c) { return mul_add(a, b, -c); }
-HOL_INLINE vec max(vec a, vec b) { return select(reinterpret_cast<mask>(a > b), a, b); }
-HOL_INLINE vec min(vec a, vec b) { return select(reinterpret_cast<mask>(a < b), a, b); }
+HOL_INLINE vec max(vec a, vec b) { return select(less(b, a), a, b); }
+HOL_INLINE vec min(vec a, vec b) { return select(less(a, b), a, b); }
 HOL_INLINE vec sqrt(vec a) {
     vec s;
     for (int i = 0; i < W; ++i) s[i] = __builtin_sqrt(a[i]);
     return s;
 }
+#if HOL_LANES == 1 && defined(__SSE4_1__)
+HOL_INLINE vec round(vec a) {
+    const __m128d x = _mm_set_sd(a[0]);
+    return {_mm_cvtsd_f64(_mm_round_sd(x, x, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC))};
+}
+#else
 HOL_INLINE vec round(vec a) {  // as of a double
     const vec big = splat(6755399441055744.0);
     const vec sum = a + big;
     return sum - big;
 }
+#endif
 #if HOL_LANES == 2 && defined(__SSE2__)
 HOL_INLINE unsigned bits(mask m) { return static_cast<unsigned>(_mm_movemask_pd(as_vec(m))); }
 #else

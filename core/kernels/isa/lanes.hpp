@@ -13,9 +13,7 @@ namespace HOL_ISA {
 
 // The sign bits of a mask tell.
 HOL_INLINE bool any(mask m) { return bits(m) != 0; }
-HOL_INLINE mask less(vec a, vec b) { return reinterpret_cast<mask>(a < b); }
-HOL_INLINE mask less_equal(vec a, vec b) { return reinterpret_cast<mask>(a <= b); }
-HOL_INLINE mask finite(vec a) { return reinterpret_cast<mask>(a - a == vec{}); }
+HOL_INLINE mask finite(vec a) { return equal(a - a, vec{}); }
 HOL_INLINE mask none() { return mask{}; }
 HOL_INLINE mask first_lanes(int n) {
     mask m{};

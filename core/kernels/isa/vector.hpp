@@ -2,6 +2,7 @@
 #ifndef HOLONOMIC_KERNELS_ISA_VECTOR_HPP
 #define HOLONOMIC_KERNELS_ISA_VECTOR_HPP
 
+#include "core/kernels/isa/one_lane.hpp"
 #include "core/kernels/isa/target.hpp"
 
 #if defined(__x86_64__) || defined(__i386__)
@@ -21,17 +22,24 @@ namespace HOL_ISA {
 
 constexpr int W = HOL_LANES;
 
+// mask: all bits of a lane set, or none.
+#if HOL_LANES > 1
 typedef double vec __attribute__((vector_size(HOL_LANES * 8)));
-typedef long long mask __attribute__((vector_size(HOL_LANES * 8)));  // all bits of a lane set, or none
+typedef long long mask __attribute__((vector_size(HOL_LANES * 8)));
 typedef double vec_unaligned __attribute__((vector_size(HOL_LANES * 8), aligned(8), may_alias));
+
+HOL_INLINE mask as_mask(vec a) { return reinterpret_cast<mask>(a); }
+HOL_INLINE vec as_vec(mask a) { return reinterpret_cast<vec>(a); }
+HOL_INLINE mask less(vec a, vec b) { return reinterpret_cast<mask>(a < b); }
+HOL_INLINE mask less_equal(vec a, vec b) { return reinterpret_cast<mask>(a <= b); }
+HOL_INLINE mask equal(vec a, vec b) { return reinterpret_cast<mask>(a == b); }
+HOL_INLINE vec select(mask m, vec a, vec b) { return as_vec((m & as_mask(a)) | (~m & as_mask(b))); }
+HOL_INLINE vec keep(mask m, vec a) { return as_vec(m & as_mask(a)); }  // a where m, else zero
+#endif
 
 HOL_INLINE vec load(const double *p) { return *reinterpret_cast<const vec_unaligned *>(p); }
 HOL_INLINE void store(double *p, vec a) { *reinterpret_cast<vec_unaligned *>(p) = a; }
 HOL_INLINE vec splat(double a) { return a - vec{}; }
-HOL_INLINE mask as_mask(vec a) { return reinterpret_cast<mask>(a); }
-HOL_INLINE vec as_vec(mask a) { return reinterpret_cast<vec>(a); }
-HOL_INLINE vec select(mask m, vec a, vec b) { return as_vec((m & as_mask(a)) | (~m & as_mask(b))); }
-HOL_INLINE vec keep(mask m, vec a) { return as_vec(m & as_mask(a)); }  // a where m, else zero
 HOL_INLINE vec abs(vec a) { return as_vec(as_mask(a) & (mask{} + 0x7fffffffffffffffLL)); }
 HOL_INLINE double abs(double a) { return __builtin_fabs(a); }
 

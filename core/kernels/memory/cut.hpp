@@ -9,8 +9,9 @@ namespace holonomic {
 namespace HOL_ISA {
 
 // Bonds of a block of segments, all lanes: so that what is kept of it stays in cache, and no segment is so long that it
-// loses digits in taut chains. Of a lane's window without its margins: so much stays in the second-level cache.
-constexpr int64_t segment_bonds = W < 2 ? 512 : 1024, window_bonds = 512, longest_margin = 96;
+// loses digits in taut chains; nor half of the chain, as a single lane's would be. Of a lane's window without its
+// margins: so much stays in the second-level cache.
+constexpr int64_t segment_bonds = W < 2 ? 256 : 1024, window_bonds = 512, longest_margin = 96;
 
 // Bonds of a lane in the longest block that a long chain is cut into; rounding up and neighbours are at most 12 more.
 constexpr int64_t longest_segment = segment_bonds / W + 12, longest_window = window_bonds + 12 + 2 * longest_margin;

@@ -116,10 +116,10 @@ HOL_INLINE void store_multipliers(const vec *t, vec factor, double *out) {
     }
 }
 
-// Whether W molecules from `first` on may be done here.
+// Whether W molecules from `first` on may be done here: W atoms behind them can be read, or need not be.
 HOL_INLINE bool molecules_left(const Unit &unit, int64_t first) {
     const int64_t n = unit.lanes[0].n_bonds;
-    return (unit.count - first - W) * (n + 1) >= W;
+    return W == 1 ? first < unit.count : (unit.count - first - W) * (n + 1) >= W;
 }
 
 }  // namespace HOL_ISA

@@ -24,7 +24,7 @@ static inline void set_masses(Block &block, const double *const *tables, const d
         block.uniform_w = block.uniform_w && has_unit;
     }
     block.mass = splat(1.0) / block.unit;
-    block.unit_masses = block.uniform_w && !any(reinterpret_cast<mask>(block.mass != splat(1.0)));
+    block.unit_masses = block.uniform_w && !any(~equal(block.mass, splat(1.0)));
     if (block.uniform_w) return;
     vec *w = arena.vecs(block.n + 1);
     bool same = true;

@@ -85,7 +85,8 @@ bool long_metric_join(const Lane &lane, double *store) {
         for (int i = W - 1; i >= 0; --i) {
             s.f_end[i] = s.delta[i] + R;
             if (!(R - R == 0)) return false;
-            if (j > 0 || i > 0) R = (s.mirrored.d[i] * R + s.mirrored.b[i]) / (R + s.mirrored.a[i]);
+            if ((j > 0 || i > 0) && !s.short_of_one[i])
+                R = (s.mirrored.d[i] * R + s.mirrored.b[i]) / (R + s.mirrored.a[i]);
         }
     }
     return true;

@@ -35,6 +35,7 @@ struct MetricSummary {
     Map forward, mirrored;  // of e from the window's first bond to the one before the next window's; of R, two bonds on
     vec delta;              // of the bond to which f_end belongs
     vec e_start, f_end;     // of the first bond and of the last one of which f is needed
+    mask short_of_one;      // f_end is that of the window before, too: the chain's last segment has two bonds
     mask bad;
 };
 
@@ -69,7 +70,7 @@ static inline MetricWindow metric_window(const Cut &cut, int64_t j, const Lane &
     return x;
 }
 
-HOL_INLINE mask equal(long k, vec place) { return reinterpret_cast<mask>(splat(static_cast<double>(k)) == place); }
+HOL_INLINE mask equal(long k, vec place) { return equal(splat(static_cast<double>(k)), place); }
 
 template <bool uniform>
 static inline void measure_window(const MetricCall &call, const Lane &lane, MetricWindow &x, const Geometry &g,
@@ -103,6 +104,7 @@ static inline void map_window(const MetricCall &call, const Lane &lane, MetricWi
             sum.delta = select(equal(k, x.f_at), delta, sum.delta);
         }
     }
+    sum.short_of_one = equal(2, x.f_at);
     sum.e_start = g.delta[0];  // right for the chain's first segment; the others get theirs when they are joined
     sum.bad = ~good;
 }
