@@ -5,8 +5,6 @@
 #   need NAME...            installs what is missing of these, or says what to install and ends the script
 #   want NAME...            the same for what a script can do without: if it can't be had, it says so and goes on
 #   build_jobs              prints how many compilations to run at once
-#   own_instruction_sets    prints which kernels beside the baseline's this machine can run, for HOLONOMIC_INSTRUCTION_SETS:
-#                           builds that only run here need no others
 
 say() {
     printf '== %s\n' "$*"
@@ -20,19 +18,12 @@ fail() {
 build_jobs() {
     local cores memory_gb
     cores=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
-    # The kernels take up to a gigabyte each to compile.
+    # The kernels take up to half a gigabyte each to compile.
     memory_gb=$(awk '/^MemTotal/ { print int($2 / 1048576) }' /proc/meminfo 2>/dev/null)
-    if [ -n "$memory_gb" ] && [ "$memory_gb" -lt "$cores" ]; then
-        cores=$((memory_gb > 0 ? memory_gb : 1))
+    if [ -n "$memory_gb" ] && [ "$((2 * memory_gb))" -lt "$cores" ]; then
+        cores=$((memory_gb > 0 ? 2 * memory_gb : 1))
     fi
     echo "$cores"
-}
-
-own_instruction_sets() {
-    local sets=()
-    grep -qw avx2 /proc/cpuinfo 2>/dev/null && sets+=(avx2 scalar)
-    grep -qw avx512dq /proc/cpuinfo 2>/dev/null && sets+=(avx512 avx512vl)
-    (IFS=';' && echo "${sets[*]}")
 }
 
 # Whether NAME is there already. A compiler or a library counts only if it compiles something.
