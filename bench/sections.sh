@@ -25,8 +25,8 @@ instruction_sets() {
     local flags sets=
     flags=" $(awk '/^flags/ { print; exit }' /proc/cpuinfo 2>/dev/null) "
     case $flags in *' avx2 '*) case $flags in *' fma '*) sets=avx2 ;; esac ;; esac
-    case $flags in *' avx512f '*) sets="$sets;avx512" ;; esac
-    if [ "$flags" = "  " ]; then sets='avx2;avx512'; fi
+    case $flags in *' avx512f '*' avx512vl '*) sets="$sets;avx512;avx512vl" ;; esac
+    if [ "$flags" = "  " ]; then sets='avx2;avx512;avx512vl'; fi
     echo "${sets#;}"
 }
 
@@ -44,7 +44,7 @@ measure_all() {
             "$program" $extent --out "$out" "$section" || failed="$failed $section"
             continue
         fi
-        for isa in baseline avx2 avx512; do
+        for isa in baseline avx2 avx512 avx512vl; do
             # The variable is obeyed only where the machine and the build have the set.
             [ "$(HOLONOMIC_ISA=$isa "$program" --isa)" = "$isa" ] || continue
             # shellcheck disable=SC2086

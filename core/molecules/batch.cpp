@@ -135,6 +135,10 @@ void Batch::append_found(const FoundMolecules &found, std::int64_t n_bonds, cons
     for (std::size_t i = 0; i < found.atoms.size(); ++i)
         if (!found.fixed[i] && chains_.use_.used(found.atoms[i])) throw in_use(found.atoms[i]);
     found_ = &found;
+    // All at once: where bonds stand in the list in any order, the processor then waits for many of them at a time.
+    std::vector<double> in_order(found.bonds.size());
+    for (std::size_t k = 0; k < in_order.size(); ++k)
+        in_order[k] = lengths[n_lengths == n_bonds ? found.bonds[k] : found.bonds[k] % n_lengths];
     std::int32_t last_shape = linear;
     for (std::size_t m = 0; m < found.molecules.size(); ++m) {
         const FoundMolecule &molecule = found.molecules[m];
@@ -142,10 +146,7 @@ void Batch::append_found(const FoundMolecules &found, std::int64_t n_bonds, cons
         w_.resize(n_atoms);
         length_.resize(at(molecule.n_bonds));
         for (std::size_t i = 0; i < n_atoms; ++i) w_[i] = chains_.masses_.w(found.atoms[first + i]);
-        for (std::size_t k = 0; k < length_.size(); ++k) {
-            const std::int64_t bond = found.bonds[at(molecule.first_bond) + k];
-            length_[k] = lengths[n_lengths == n_bonds ? bond : bond % n_lengths];
-        }
+        for (std::size_t k = 0; k < length_.size(); ++k) length_[k] = in_order[at(molecule.first_bond) + k];
         std::int32_t shape = linear;
         if (molecule.form != Form::chain) {
             shape = last_shape =

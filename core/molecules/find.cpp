@@ -102,8 +102,8 @@ private:
     std::int32_t least_atom(std::size_t p) const { return std::min(end_[2 * p], end_[2 * p + 1]); }
     std::int64_t bond_at(std::size_t p) const { return bond_at_.empty() ? static_cast<std::int64_t>(p) : bond_at_[p]; }
 
-    // Bonds that stand in the list in any order are first brought near to those of nearby atoms: what follows would
-    // miss the cache at every step.
+    // Bonds that stand in the list in any order are first sorted by their lower atoms: what follows would miss the cache
+    // at every step, and branch at random.
     void bring_together() {
         const std::size_t n_bonds = end_.size() / 2;
         std::size_t jumps = 0;
@@ -114,15 +114,34 @@ private:
         std::vector<std::size_t> next(at(number_.size() >> shift) + 2, 0);
         for (std::size_t p = 0; p < n_bonds; ++p) ++next[at(least_atom(p) >> shift) + 1];
         for (std::size_t b = 1; b < next.size(); ++b) next[b] += next[b - 1];
-        Numbers end(end_.size());
+        std::vector<Entry> entry(n_bonds), sorted;
+        for (std::size_t p = 0; p < n_bonds; ++p)
+            entry[next[at(least_atom(p) >> shift)]++] = {end_[2 * p], end_[2 * p + 1], static_cast<std::int32_t>(p)};
         bond_at_.resize(n_bonds);
-        for (std::size_t p = 0; p < n_bonds; ++p) {
-            const std::size_t to = next[at(least_atom(p) >> shift)]++;
-            bond_at_[to] = static_cast<std::int32_t>(p);
-            end[2 * to] = end_[2 * p];
-            end[2 * to + 1] = end_[2 * p + 1];
+        // Now next[b] is where the bonds of part b end.
+        for (std::size_t b = 0, begin = 0; begin < n_bonds; begin = next[b++]) {
+            sort_part(entry.data() + begin, next[b] - begin, shift, sorted);
+            for (std::size_t p = begin; p < next[b]; ++p) {
+                const Entry &e = sorted[p - begin];
+                end_[2 * p] = e.i;
+                end_[2 * p + 1] = e.j;
+                bond_at_[p] = e.bond;
+            }
         }
-        end_.swap(end);
+    }
+
+    struct Entry {
+        std::int32_t i, j, bond;
+    };
+
+    // Entries whose lower atoms differ in their last `shift` bits only; counts.
+    static void sort_part(const Entry *entry, std::size_t n, int shift, std::vector<Entry> &sorted) {
+        const auto place = [shift](const Entry &e) { return at(std::min(e.i, e.j) & ((1 << shift) - 1)); };
+        std::vector<std::uint32_t> next((std::size_t{1} << shift) + 1, 0);
+        for (std::size_t p = 0; p < n; ++p) ++next[place(entry[p]) + 1];
+        for (std::size_t i = 1; i < next.size(); ++i) next[i] += next[i - 1];
+        sorted.resize(n);
+        for (std::size_t p = 0; p < n; ++p) sorted[next[place(entry[p])]++] = entry[p];
     }
 
     // Which molecule each bond and each movable atom belongs to.
@@ -175,23 +194,23 @@ private:
     // With fixed atoms, each once for every bond that it ends; those of one atom in the order of the bonds' other
     // atoms.
     void take_with_leaves(std::size_t m, Numbers &local, Draft &draft) {
-        struct Entry {
+        struct End {
             std::int32_t atom, other;
             std::size_t end;  // of the leaf's bond in the draft
         };
         const std::size_t first = at(bond_start_[m]);
-        std::vector<Entry> entries;
+        std::vector<End> entries;
         for (std::int32_t i = atom_start_[m]; i < atom_start_[m + 1]; ++i) entries.push_back({atoms_[at(i)], -1, 0});
         for (std::size_t k = 0; k < draft.bonds.size(); ++k)
             for (std::size_t e = 0; e < 2; ++e) {
                 const std::size_t bond = 2 * at(bonds_[first + k]);
                 if (fixed_[at(end_[bond + e])]) entries.push_back({end_[bond + e], end_[bond + 1 - e], 2 * k + e});
             }
-        std::sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) {
+        std::sort(entries.begin(), entries.end(), [](const End &a, const End &b) {
             return a.atom != b.atom ? a.atom < b.atom : a.other != b.other ? a.other < b.other : a.end < b.end;
         });
         for (std::size_t i = 0; i < entries.size(); ++i) {
-            const Entry &entry = entries[i];
+            const End &entry = entries[i];
             if (i > 0 && entry.other >= 0 && entry.atom == entries[i - 1].atom && entry.other == entries[i - 1].other)
                 throw bond_error(list_, Status::degenerate,
                                  std::max(draft.bonds[entry.end / 2], draft.bonds[entries[i - 1].end / 2]),

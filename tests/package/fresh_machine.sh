@@ -24,8 +24,18 @@ root=$work/$suite
 rm -rf "$root"
 mkdir -p "$work"
 trap 'rm -rf "$root"' EXIT
+how=(--variant=minbase --include=ca-certificates) script=()
+if [ ! -e "/usr/share/debootstrap/scripts/$suite" ]; then
+    # A release younger than this debootstrap: Ubuntu's are all made by one script.
+    script=(/usr/share/debootstrap/scripts/gutsy)
+    how+=(--components=main,universe)
+    if [ ! -e /usr/share/keyrings/ubuntu-archive-keyring.gpg ]; then
+        echo "there is no key here to check $suite with: it is taken as it comes"
+        how+=(--no-check-gpg)
+    fi
+fi
 echo "making $suite"
-debootstrap --variant=minbase --include=ca-certificates "$suite" "$root" "$mirror" >"$work/$suite.log" 2>&1 ||
+debootstrap "${how[@]}" "$suite" "$root" "$mirror" "${script[@]}" >"$work/$suite.log" 2>&1 ||
     { tail -n 5 "$work/$suite.log"; leave_out "$suite can't be had"; }
 inside() { chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C DEBIAN_FRONTEND=noninteractive "$@"; }
 
