@@ -24,9 +24,9 @@ measuring_estimate() {
 instruction_sets() {
     local flags sets=
     flags=" $(awk '/^flags/ { print; exit }' /proc/cpuinfo 2>/dev/null) "
-    case $flags in *' avx2 '*) case $flags in *' fma '*) sets=avx2 ;; esac ;; esac
+    case $flags in *' avx2 '*) case $flags in *' fma '*) sets="avx2;scalar" ;; esac ;; esac
     case $flags in *' avx512f '*' avx512vl '*) sets="$sets;avx512;avx512vl" ;; esac
-    if [ "$flags" = "  " ]; then sets='avx2;avx512;avx512vl'; fi
+    if [ "$flags" = "  " ]; then sets="avx2;scalar;avx512;avx512vl"; fi
     echo "${sets#;}"
 }
 
