@@ -45,6 +45,8 @@ int main() { return static_cast<int>(benchmark::CPUInfo::Get().num_cpus) * 0; }'
         lapack) echo 'extern "C" void dptsv_(); int main() { dptsv_(); }' | c++ -x c++ - -llapack -o /dev/null 2>/dev/null ;;
         openmm) echo '#include <OpenMM.h>
 int main() { OpenMM::System system; }' | c++ -x c++ - -lOpenMM -o /dev/null 2>/dev/null ;;
+        mpi) command -v mpirun >/dev/null && command -v mpicxx >/dev/null ;;
+        lammps) command -v lmp >/dev/null && [ -e /usr/include/lammps/lammps.h ] ;;
         lammps-examples) [ -e /usr/share/lammps/examples/HEAT/data.spce ] ;;
         gromacs-data) [ -e /usr/share/gromacs/top/spc216.gro ] ;;
         flang) present_any flang flang-new flang-22 flang-21 flang-20 flang-new-19 flang-new-18 ;;
@@ -81,6 +83,8 @@ debian_package() {
         openmm) echo libopenmm-dev ;;
         abidiff) echo abigail-tools ;;
         dpkg-shlibdeps) echo dpkg-dev ;;
+        mpi) echo openmpi-bin libopenmpi-dev ;;
+        lammps) echo lammps liblammps-dev ;;
         *) echo "$1" ;;
     esac
 }

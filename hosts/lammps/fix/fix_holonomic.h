@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#ifndef LMP_FIX_HOLONOMIC_H
+#define LMP_FIX_HOLONOMIC_H
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "../plan/packed.hpp"
+#include "release.hpp"
+#include "selection.hpp"
+
+namespace LAMMPS_NS {
+
+/** Rigid bonds in molecules of any shape, with the library holonomic. */
+class FixHolonomic : public Fix {
+public:
+    FixHolonomic(LAMMPS *, int, char **);
+    ~FixHolonomic() override;
+
+    int setmask() override;
+    void init() override;
+    void setup_pre_neighbor() override;
+    void setup(int) override;
+    void min_setup(int) override;
+    void pre_neighbor() override;
+    void post_integrate() override;
+    void post_force(int) override;
+
+    void grow_arrays(int) override;
+    void copy_arrays(int, int, int) override;
+    void set_arrays(int) override;
+    int pack_exchange(int, double *) override;
+    int unpack_exchange(int, double *) override;
+    void write_restart(FILE *) override;
+    void restart(char *) override;
+
+    holonomic_lammps::Dof dof(int) override;
+    double compute_scalar() override;
+    double compute_vector(int) override;
+    double memory_usage() override;
+
+private:
+    using Vector = std::array<double, 3>;
+    using Shifts = std::array<int, 3>;
+
+    /** A slot whose atom is another image than the one that makes its molecule whole. */
+    struct Shifted {
+        int slot;
+        Shifts images;
+    };
+
+    void read_options(int narg, char **arg, int first);
+    void check_other_fixes();
+    void find_molecules();
+    template <class Function>
+    void guarded(Function function);  // turns exceptions into errors of LAMMPS
+
+    // Plan and positions
+    void replan(bool fresh);
+    void take_masses();
+    void make_whole();
+    void collect_positions();
+    void add_images(std::vector<double> &positions, int sign);
+    double return_positions(double inverse_time);
+    Vector image_vector(const Shifts &) const;
+    Shifts nearest_image(const double *d) const;
+
+    // Velocities and forces
+    void measure_rate();
+    void collect_velocities(double scale, bool with_forces);
+    void add_streaming();
+    template <class Add>
+    void return_to_atoms(const std::vector<double> &numbers, Add add);
+    void exact_forces();
+    double mass_of(int atom) const;
+    double kick_of(int atom) const;
+    bool reruns() const;
+
+    // Outputs
+    bool due(int every) const;
+    void tally(int vflag);
+    void tally_atoms();
+    void keep_forces();
+    void keep_tensions();
+    hol_worst errors();
+
+    holonomic_lammps::Selection selection_;
+    int forces_every_ = 0;    // steps between constraint forces per atom; 0: none
+    int tensions_every_ = 0;  // steps between tensions per bond
+    int fixed_bit_ = 0;       // group whose atoms are held fixed
+
+    std::vector<holonomic_lammps::Belonging> atoms_;  // by local atom
+    holonomic_lammps::Registry registry_;
+    std::unique_ptr<holonomic_lammps::Plan> plan_;
+    std::unique_ptr<holonomic_lammps::Packed> packed_;
+    std::vector<std::vector<std::array<int, 2>>> walks_;  // by shape, see walk()
+
+    // By slot, three numbers each; molecules are whole.
+    std::vector<double> before_, now_, velocities_, projected_, forces_, reactions_;
+    std::vector<double> masses_;    // by slot; 0: held fixed
+    std::vector<double> tensions_;  // by bond
+    double virial_[9] = {0};
+    std::vector<Shifted> shifted_;
+
+    double rate_[6] = {0};       // d(box)/dt box^-1, xx yy zz yz xz xy, with which atoms move beside their velocities
+    double step_rate_[6] = {0};  // its mean over the last step
+    double last_box_[6] = {0};   // at the end of that step
+    bool streaming_ = false;
+
+    int max_rows_ = 0;  // of array_local
+};
+
+}  // namespace LAMMPS_NS
+
+#endif

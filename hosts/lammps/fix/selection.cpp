@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "selection.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <map>
+
+#include "../plan/route.hpp"
+#include "angle.h"
+#include "atom.h"
+#include "bond.h"
+#include "error.h"
+#include "force.h"
+
+using namespace LAMMPS_NS;
+using namespace std::string_literals;
+
+namespace holonomic_lammps {
+
+namespace {
+
+/** As in fix shake. */
+constexpr double mass_tolerance = 0.1;
+constexpr double straight = 1e-5;
+constexpr double pi = 3.14159265358979323846;
+
+/** A question about the other atom of a bond. */
+enum : int { there = 1, in_group = 2, wanted = 4 };
+
+/** A pair of atoms, lower first, as a key. */
+using Pair = std::pair<Tag, Tag>;
+Pair pair_of(Tag a, Tag b) { return a < b ? Pair(a, b) : Pair(b, a); }
+
+/** For each of the questions that are asked of the bookkeepers of their tags, the answer. */
+template <class Answer, class Question, class Keeper, class Function>
+std::vector<Answer> ask_keepers(MPI_Comm world, const std::vector<Question> &questions, Keeper keeper,
+                                Function answer) {
+    const int n_ranks = size_of(world);
+    Outgoing<Question> outgoing(n_ranks);
+    for (const Question &question : questions) outgoing[bookkeeper(keeper(question), n_ranks)].push_back(question);
+    const auto answers = ask<Answer>(world, outgoing, [&](const Question &q, int) { return answer(q); });
+    std::vector<std::size_t> read(n_ranks, 0);
+    std::vector<Answer> result;
+    for (const Question &question : questions) {
+        const int p = bookkeeper(keeper(question), n_ranks);
+        result.push_back(answers[p][read[p]++]);
+    }
+    return result;
+}
+
+struct Flags {
+    Tag tag;
+    int flags;
+};
+
+struct Ask {
+    Tag from, to;
+};
+
+/** An entry of an atom's list of bonds or angles, which holds 32 at most. */
+void check_entries(Error *error, int n) {
+    if (n > 32) error->one(FLERR, "Fix holonomic: an atom has more than 32 bonds or angles"s);
+}
+
+}  // namespace
+
+int Selection::read(int narg, char **arg, int first) {
+    int k = first;
+    char mode = 0;
+    for (; k < narg; ++k) {
+        if (strlen(arg[k]) == 1 && strchr("batm", arg[k][0])) {
+            mode = arg[k][0];
+            continue;
+        }
+        if (mode == 0 || isalpha(static_cast<unsigned char>(arg[k][0]))) break;
+        const int most = mode == 'b' ? atom->nbondtypes : mode == 'a' ? atom->nangletypes : atom->ntypes;
+        const double value = utils::numeric(FLERR, arg[k], false, lmp);
+        if (mode == 'm') {
+            if (value <= 0) error->all(FLERR, "Fix holonomic: a mass must be positive"s);
+            masses_.push_back(value);
+            continue;
+        }
+        const int type = utils::inumeric(FLERR, arg[k], false, lmp);
+        if (type < 1 || type > most)
+            error->all(FLERR, std::string("Fix holonomic: there is no ") +
+                                  (mode == 'b'   ? "bond"
+                                   : mode == 'a' ? "angle"
+                                                 : "atom") +
+                                  " type " + arg[k]);
+        (mode == 'b' ? bond_types_ : mode == 'a' ? angle_types_ : atom_types_).insert(type);
+    }
+    if (bond_types_.empty() && atom_types_.empty() && masses_.empty())
+        error->all(FLERR, "Illegal fix holonomic command: no bonds are selected (b, t or m)"s);
+    return k;
+}
+
+/** Whether all bonds of an atom are wanted for its type or mass. */
+bool Selection::wants(int i) const {
+    if (atom_types_.count(atom->type[i])) return true;
+    const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+    for (double wanted_mass : masses_)
+        if (std::fabs(mass - wanted_mass) <= mass_tolerance) return true;
+    return false;
+}
+
+std::vector<Bond> Selection::select(int groupbit, std::vector<Belonging> &atoms) {
+    std::vector<Bond> bonds = select_bonds(groupbit, atoms);
+    if (!angle_types_.empty()) select_angles(atoms, bonds);
+    return bonds;
+}
+
+/** Lengths by bond type; 1 where the bond style has none yet. */
+std::vector<double> Selection::lengths_of_types() {
+    std::vector<double> lengths(atom->nbondtypes + 1, 1.0);
+    for (int type = 1; type <= atom->nbondtypes; ++type)
+        if (force->bond && force->bond->setflag && force->bond->setflag[type])
+            lengths[type] = force->bond->equilibrium_distance(type);
+    return lengths;
+}
+
+std::vector<Bond> Selection::select_bonds(int groupbit, std::vector<Belonging> &atoms) {
+    const int n_ranks = size_of(world);
+    Outgoing<Flags> notes(n_ranks);
+    for (int i = 0; i < atom->nlocal; ++i) {
+        const int flags = there | (atom->mask[i] & groupbit ? in_group : 0) | (wants(i) ? wanted : 0);
+        notes[bookkeeper(atom->tag[i], n_ranks)].push_back({atom->tag[i], flags});
+    }
+    std::unordered_map<Tag, int> known;
+    for (const Flags &flags : route(world, notes).items) known[flags.tag] = flags.flags;
+
+    std::vector<Ask> questions;
+    for (int i = 0; i < atom->nlocal; ++i) {
+        check_entries(error, atom->num_bond[i]);
+        for (int k = 0; k < atom->num_bond[i]; ++k) questions.push_back({atom->tag[i], atom->bond_atom[i][k]});
+    }
+    const auto other = ask_keepers<int>(
+        world, questions, [](const Ask &q) { return q.to; },
+        [&](const Ask &q) {
+            const auto found = known.find(q.to);
+            return found == known.end() ? 0 : found->second;
+        });
+
+    const std::vector<double> lengths = lengths_of_types();
+    std::vector<Bond> bonds;
+    std::size_t next = 0;
+    for (int i = 0; i < atom->nlocal; ++i)
+        for (int k = 0; k < atom->num_bond[i]; ++k) {
+            const int flags = other[next++];
+            int &type = atom->bond_type[i][k];
+            const bool ours = atoms[i].bonds >> k & 1 && type < 0;
+            const bool chosen = type > 0 && atom->mask[i] & groupbit && flags & in_group &&
+                                (bond_types_.count(type) || wants(i) || flags & wanted);
+            if (!ours && !chosen) continue;
+            if (chosen) type = -type;
+            atoms[i].bonds |= 1u << k;
+            bonds.push_back({atom->tag[i], atom->bond_atom[i][k], lengths[-type]});
+        }
+    return bonds;
+}
+
+/** Angles of the types wanted whose two bonds are rigid: the distance of their ends by the law of cosines. */
+void Selection::select_angles(std::vector<Belonging> &atoms, std::vector<Bond> &bonds) {
+    const int n_ranks = size_of(world);
+    Outgoing<Bond> notes(n_ranks);
+    for (const Bond &bond : bonds) notes[bookkeeper(std::min(bond.from, bond.to), n_ranks)].push_back(bond);
+    std::map<Pair, double> known;
+    for (const Bond &bond : route(world, notes).items) known[pair_of(bond.from, bond.to)] = bond.length;
+
+    std::vector<Ask> questions;
+    for (int i = 0; i < atom->nlocal; ++i) {
+        check_entries(error, atom->num_angle[i]);
+        for (int k = 0; k < atom->num_angle[i]; ++k) {
+            questions.push_back({atom->angle_atom1[i][k], atom->angle_atom2[i][k]});
+            questions.push_back({atom->angle_atom3[i][k], atom->angle_atom2[i][k]});
+        }
+    }
+    const auto sides = ask_keepers<double>(
+        world, questions, [](const Ask &q) { return std::min(q.from, q.to); },
+        [&](const Ask &q) {
+            const auto found = known.find(pair_of(q.from, q.to));
+            return found == known.end() ? 0.0 : found->second;
+        });
+
+    std::size_t next = 0;
+    for (int i = 0; i < atom->nlocal; ++i)
+        for (int k = 0; k < atom->num_angle[i]; ++k) {
+            const double a = sides[next], b = sides[next + 1];
+            next += 2;
+            int &type = atom->angle_type[i][k];
+            const bool ours = atoms[i].angles >> k & 1 && type < 0;
+            const bool chosen = type > 0 && angle_types_.count(type) && a > 0 && b > 0;
+            if (!ours && !chosen) continue;
+            if (chosen) type = -type;
+            atoms[i].angles |= 1u << k;
+            double angle = pi / 2;
+            if (force->angle && force->angle->setflag && force->angle->setflag[-type])
+                angle = force->angle->equilibrium_angle(-type);
+            if (pi - angle < straight)
+                error->one(FLERR, "Fix holonomic: angle type " + std::to_string(-type) +
+                                      " is straight: three distances on a line have no multipliers");
+            bonds.push_back({atom->angle_atom1[i][k], atom->angle_atom3[i][k],
+                             std::sqrt(a * a + b * b - 2 * a * b * std::cos(angle))});
+        }
+}
+
+void Selection::release(std::vector<Belonging> &atoms) {
+    for (int i = 0; i < atom->nlocal; ++i) {
+        for (int k = 0; k < atom->num_bond[i]; ++k)
+            if (atoms[i].bonds >> k & 1 && atom->bond_type[i][k] < 0) atom->bond_type[i][k] *= -1;
+        for (int k = 0; atom->num_angle && k < atom->num_angle[i]; ++k)
+            if (atoms[i].angles >> k & 1 && atom->angle_type[i][k] < 0) atom->angle_type[i][k] *= -1;
+    }
+}
+
+}  // namespace holonomic_lammps

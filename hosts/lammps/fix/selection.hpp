@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#ifndef HOLONOMIC_LAMMPS_FIX_SELECTION_HPP
+#define HOLONOMIC_LAMMPS_FIX_SELECTION_HPP
+
+#include <mpi.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "../plan/registry.hpp"
+#include "pointers.h"
+
+namespace holonomic_lammps {
+
+/** What the fix keeps of each atom: its place in a molecule, and which of its bonds and angles are rigid by this fix.
+ */
+struct Belonging : Membership {
+    std::uint32_t bonds = 0; /**< bit k: entry k of the atom's list of bonds, whose type is negative for that */
+    std::uint32_t angles = 0;
+};
+
+/** Which bonds and angles are to be rigid: those of given types, or bonds of atoms of given types or masses. */
+class Selection : protected LAMMPS_NS::Pointers {
+public:
+    explicit Selection(LAMMPS_NS::LAMMPS *lmp) : Pointers(lmp) {}
+
+    /** Reads "b 1 2 a 1 t 3 m 1.0" from arg[first] on; gives the number of the argument behind. */
+    int read(int narg, char **arg, int first);
+
+    /**
+     * Selects what is not yet rigid, by this fix or another, makes its types negative, so that no force acts along it,
+     * and gives the rigid distances of all atoms here. Collective.
+     */
+    std::vector<Bond> select(int groupbit, std::vector<Belonging> &atoms);
+
+    /** Makes the types of an atom's rigid bonds and angles positive again. */
+    void release(std::vector<Belonging> &atoms);
+
+private:
+    struct Ends;
+    std::vector<double> lengths_of_types();
+    std::vector<Bond> select_bonds(int groupbit, std::vector<Belonging> &atoms);
+    void select_angles(std::vector<Belonging> &atoms, std::vector<Bond> &bonds);
+    bool wants(int i) const;
+
+    std::set<int> bond_types_, angle_types_, atom_types_;
+    std::vector<double> masses_;
+};
+
+}  // namespace holonomic_lammps
+
+#endif

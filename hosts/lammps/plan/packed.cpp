@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "packed.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace holonomic_lammps {
+
+namespace {
+
+const char *reason(int status) {
+    switch (status) {
+        case HOL_ERR_NO_CONVERGENCE:
+            return "the bond lengths can't be reached from these positions: the time step is too long, or forces are "
+                   "too "
+                   "large";
+        case HOL_ERR_NOT_FINITE:
+            return "a position, velocity or force is infinite or no number";
+        case HOL_ERR_DEGENERATE:
+            return "constraints that depend on each other, or atoms that coincide";
+        case HOL_ERR_MEMORY:
+            return "out of memory";
+        default:
+            return hol_error_message();
+    }
+}
+
+std::string pair_of(Tag a, Tag b) { return "atoms " + std::to_string(a) + " and " + std::to_string(b); }
+
+}  // namespace
+
+Packed::Packed(const Plan &plan, const double *masses) : plan_(&plan), chains_(nullptr, hol_chains_destroy) {
+    hol_chains *chains = nullptr;
+    check(hol_chains_create(plan.n_slots(), masses, &chains), "taking the masses");
+    chains_.reset(chains);
+    const std::vector<Resident> &residents = plan.residents();
+    for (std::size_t begin = 0, end = 0; begin < residents.size(); begin = end) {
+        while (end < residents.size() && residents[end].shape == residents[begin].shape) ++end;
+        add(residents[begin], static_cast<int>(end - begin));
+    }
+}
+
+/** Molecules of one shape, one behind the other. */
+void Packed::add(const Resident &first, int n_molecules) {
+    const Shape &shape = plan_->shapes()[first.shape];
+    const auto n_bonds = static_cast<std::int64_t>(shape.pairs.size());
+    int status;
+    if (shape.linear) {
+        status = hol_chains_add_block(chains_.get(), n_molecules, n_bonds, first.first, shape.lengths.data());
+    } else {
+        std::vector<std::int64_t> pairs;
+        for (const auto &pair : shape.pairs) pairs.insert(pairs.end(), {pair[0], pair[1]});
+        status = hol_chains_add_molecules(chains_.get(), n_molecules, shape.n_atoms, first.first, n_bonds, pairs.data(),
+                                          shape.lengths.data());
+    }
+    if (status == HOL_OK) return;
+    std::int64_t bond;
+    hol_error_location(nullptr, &bond, nullptr, nullptr);
+    std::string where = "molecule of atom " + std::to_string(first.molecule);
+    if (bond >= 0) {
+        const Tag *tags = &plan_->tags()[first.first + bond / n_bonds * shape.n_atoms];
+        const auto &pair = shape.pairs[bond % n_bonds];
+        where = pair_of(tags[pair[0]], tags[pair[1]]);
+    }
+    throw std::runtime_error(where + ": " + reason(status) + " (" + hol_error_message() + ")");
+}
+
+std::int64_t Packed::positions(const double *before, double *now, double dt) {
+    if (empty()) return 0;
+    hol_report report;
+    check(hol_project_positions(chains_.get(), before, now, nullptr, dt, nullptr, 0, nullptr, &report), "positions");
+    return report.n_corrected;
+}
+
+void Packed::velocities(const double *r, double *v) {
+    if (empty()) return;
+    check(hol_project_velocities(chains_.get(), r, v, nullptr, nullptr), "velocities");
+}
+
+void Packed::forces(const double *r, const double *v, const double *f, double *tension, double *g, double *virial) {
+    std::fill(virial, virial + 9, 0.0);
+    if (empty()) return;
+    check(hol_forces(chains_.get(), r, v, f, nullptr, tension, g, HOL_WRITE, virial), "constraint forces");
+}
+
+hol_worst Packed::violation(const double *r, const double *v) const {
+    hol_worst worst{};
+    if (empty()) return worst;
+    check(hol_violation(chains_.get(), r, v, &worst), "errors of bonds");
+    return worst;
+}
+
+void Packed::check(int status, const char *doing) const {
+    if (status == HOL_OK) return;
+    throw std::runtime_error(std::string(doing) + ": " + place() + reason(status));
+}
+
+/** The molecule, and the bond or atom if there is one, of the last error. */
+std::string Packed::place() const {
+    std::int64_t chain, bond, atom, n_bad, n_atoms = 0, n_bonds = 0;
+    hol_error_location(&chain, &bond, &atom, &n_bad);
+    if (chain < 0 || hol_chains_molecule(chains_.get(), chain, nullptr, &n_atoms, &n_bonds) != HOL_OK) return "";
+    std::vector<std::int64_t> atoms(n_atoms), bonds(n_bonds);
+    hol_chains_atoms(chains_.get(), chain, atoms.data());
+    hol_chains_bonds(chains_.get(), chain, bonds.data());
+    std::string text = "the molecule of atom " + std::to_string(plan_->tags()[atoms[0]]);
+    if (atom >= 0) text = "atom " + std::to_string(plan_->tags()[atom]) + " in " + text;
+    if (bond >= 0 && bond < n_bonds) {
+        // Bonds follow the residents.
+        std::int64_t k = bonds[bond];
+        for (const Resident &resident : plan_->residents()) {
+            const Shape &shape = plan_->shapes()[resident.shape];
+            if (k >= static_cast<std::int64_t>(shape.pairs.size())) {
+                k -= static_cast<std::int64_t>(shape.pairs.size());
+                continue;
+            }
+            const Tag *tags = &plan_->tags()[resident.first];
+            text = "the bond between " + pair_of(tags[shape.pairs[k][0]], tags[shape.pairs[k][1]]) + " in " + text;
+            break;
+        }
+    }
+    if (n_bad > 1) text += " and " + std::to_string(n_bad - 1) + " more";
+    return text + ": ";
+}
+
+}  // namespace holonomic_lammps

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-2.0-only
+# Further tests of case.sh, which reads this.
+
+# The stock lmp with LD_PRELOAD gives the same numbers.
+preload() {
+    "$SCENE" melt 16 32 >data
+    run 1 own "$INPUTS/beads.lmp" data data rigid holonomic dt 0.003
+    LD_PRELOAD=$1 "$2" -in "$INPUTS/beads.lmp" -var data data -var rigid holonomic -var dt 0.003 -log none >stock 2>&1
+    same 1e-14 TotEng own stock
+}
+
+# Virials per atom add up to the pressure, constraint forces to nothing, tensions to the virial; on any number of ranks.
+outputs() {
+    "$SCENE" melt 40 32 >data
+    for n in 1 4; do
+        run $n out$n "$INPUTS/beads.lmp" data data rigid holonomic dt 0.003 more "forces 50 tensions 100" \
+            before "compute s all stress/atom NULL fix" later "include $INPUTS/sums.lmp" steps 200
+        # The last step of the dump, by atoms.
+        awk '/^ITEM: ENTRIES/ { n = 0; next } /^ITEM/ { reading = /ENTRIES/; next } NF == 4 { row[n++] = $0 }
+            END { for (k = 0; k < n; ++k) print row[k] }' tensions.dump | sort -n -k 1 >tensions$n
+    done
+    same 1e-10 v_p out1 out4
+    paste <(column v_p out1) <(column Press out1) | awk '{ d = $1 - $2; if (d < 0) d = -d; if (d > w) w = d }
+        END { printf "pressure of atoms and of the box: %.3g\n", w; exit !(NR > 1 && w < 1e-10) }' || fail 'pressure of atoms'
+    below 1e-10 v_net out1
+    below 1e-10 v_net out4
+    near 1e-7 "$(awk '{ s += $3 * $4 } END { printf "%.15g", s }' tensions4)" "$(column v_trace out4 | tail -n 1)" \
+        'sum of tension and length, and the virial'
+    paste tensions1 tensions4 | awk '{ d = $3 - $7; if (d < 0) d = -d; if (d > w) w = d; if ($1 != $5 || $2 != $6) bad = 1 }
+        END { printf "tensions of %d bonds on one and four ranks: %.3g\n", NR, w; exit !(NR == 1240 && !bad && w < 1e-9) }' ||
+        fail tensions
+}
+
+# Interrupted by a restart file, and by run after run.
+restart() {
+    "$SCENE" trimers 216 >data
+    local motion="npt temp 1.0 1.0 0.5 iso 0.5 0.5 2.0"
+    run 1 whole "$INPUTS/beads.lmp" data data rigid holonomic dt 0.003 steps 400 motion "$motion"
+    run 1 parts "$INPUTS/beads.lmp" data data rigid holonomic dt 0.003 steps 200 motion "$motion" later "run 200"
+    run 1 half "$INPUTS/beads.lmp" data data rigid holonomic dt 0.003 steps 200 motion "$motion" after "write_restart state"
+    run 2 rest "$INPUTS/resume.lmp" state state motion "$motion"
+    for part in parts rest; do
+        near 1e-8 "$(column TotEng $part | tail -n 1)" "$(column TotEng whole | tail -n 1)" "energy, $part"
+        near 1e-8 "$(column Press $part | tail -n 1)" "$(column Press whole | tail -n 1)" "pressure, $part"
+    done
+}
+
+# Without the fix the bond style acts again, with the energy that it had before.
+unfix() {
+    "$SCENE" melt 8 16 >data
+    run 1 plain "$INPUTS/beads.lmp" data data rigid none steps 50 dt 0.001 every 10
+    run 1 left "$INPUTS/beads.lmp" data data rigid none steps 50 dt 0.001 every 10 \
+        before "fix first all holonomic b 1" later "unfix first"
+    same 1e-14 TotEng plain left
+}
+
+# Atoms that are held fixed stay where they are, and their chains hang on them.
+fixed() {
+    "$SCENE" melt 8 16 >data
+    run 2 fixed "$INPUTS/beads.lmp" data data rigid holonomic dt 0.003 steps 1000 \
+        before "include $INPUTS/held.lmp" motion "nve" more "fixed held" later "include $INPUTS/hold.lmp"
+    below 1e-13 'f_rigid[1]' fixed
+    below 1e-13 v_far fixed
+    column TotEng fixed | awk 'NR == 1 { e = $1 } { d = $1 - e; if (d < 0) d = -d; if (d > w) w = d }
+        END { printf "largest change of the energy per bead %.3g\n", w; exit !(NR > 5 && w < 2e-3) }' || fail energy
+}
+
+# A triclinic box gives the trajectory of the same molecules; a box that shears keeps the bonds.
+triclinic() {
+    "$SCENE" melt 16 32 >data
+    run 1 right "$INPUTS/beads.lmp" data data rigid holonomic dt 0.003 steps 300
+    run 2 tilted "$INPUTS/beads.lmp" data data rigid holonomic dt 0.003 steps 300 before "change_box all triclinic"
+    same 1e-12 TotEng right tilted
+    for remap in v x; do
+        run 2 shear_$remap "$INPUTS/beads.lmp" data data rigid holonomic dt 0.003 steps 3000 before "change_box all triclinic" \
+            later "fix d all deform 1 xy erate 0.05 remap $remap flip yes"  motion "$([ $remap = v ] && echo nvt/sllod || echo nvt) temp 1.0 1.0 0.5"
+        below 1e-13 'f_rigid[1]' shear_$remap
+        below 1e-12 'f_rigid[2]' shear_$remap
+    done
+    # A fluid that is sheared resists: both pictures of the motion give the same stress, within their noise.
+    near 0.35 "$(mean Pxy shear_v)" "$(mean Pxy shear_x)" 'mean shear stress, remap v and x'
+}
+
+# Degrees of freedom, groups, Langevin dynamics: the temperature of a bath is reached.
+langevin() {
+    "$SCENE" waters 216 >data
+    run 1 bath "$INPUTS/beads.lmp" data data rigid holonomic dt 0.003 steps 10000 every 50 more "a 1" \
+        motion "nve" before "fix bath all langevin 1.0 1.0 0.5 4711" later "run 2000"
+    near 0.02 "$(mean Temp bath)" 1 'mean temperature'
+    below 1e-13 'f_rigid[1]' bath
+}
+
+# Positions of a dump give the same potential energy and pressure; a state without motion can be read again.
+rerun() {
+    "$SCENE" melt 8 16 >data
+    run 1 first "$INPUTS/beads.lmp" data data rigid holonomic dt 0.003 steps 200 every 50 \
+        later "include $INPUTS/dump.lmp"
+    run 1 second "$INPUTS/beads.lmp" data data rigid holonomic dt 0.003 steps 0 every 50 \
+        after "rerun trajectory.dump dump x y z vx vy vz"
+    same 1e-10 PotEng first second
+    same 1e-7 Press first second
+}
+
+# What is wrong is said, with the atoms concerned.
+errors() {
+    "$SCENE" melt 8 16 >data
+    stops "respa" data data rigid holonomic before "run_style respa 2 2"
+    stops "minimisation" data data rigid holonomic later "minimize 0 1e-6 10 10"
+    stops "no bond type 7" data data rigid holonomic more "b 7"
+    stops "no keyword" data data rigid holonomic more "colour 7"
+    stops "molecule of atom 1 has 2 atoms, of which 1" data data rigid holonomic later "include $INPUTS/delete.lmp"
+    stops "bond lengths can't be reached" data data rigid holonomic dt 0.5
+    stops "no bond is selected" data data rigid holonomic before "delete_bonds all bond 1 remove"
+    "$SCENE" bent 8 180 >data
+    stops "straight" data data rigid holonomic more "a 1" angle 180
+}

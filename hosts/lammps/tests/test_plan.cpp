@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Unit tests of the plan, without LAMMPS: to be run with any number of ranks. Every rank knows the whole scene and
+// looks at what the plan says of its part.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <numeric>
+#include <set>
+#include <string>
+
+#include "plan/packed.hpp"
+#include "plan/route.hpp"
+
+using namespace holonomic_lammps;
+
+namespace {
+
+int me, n_ranks, n_checks;
+
+void check(bool right, const char *what, int line) {
+    ++n_checks;
+    if (right) return;
+    std::fprintf(stderr, "rank %d, line %d: %s\n", me, line, what);
+    MPI_Abort(MPI_COMM_WORLD, 1);
+}
+#define CHECK(x) check((x), #x, __LINE__)
+
+std::uint64_t state = 88172645463325252u;
+int random_below(int n) {
+    state ^= state << 13, state ^= state >> 7, state ^= state << 17;
+    return static_cast<int>(state % static_cast<std::uint64_t>(n));
+}
+
+/** Chains, trees and rings, with tags in no order. */
+struct World {
+    int n_atoms = 0;
+    std::vector<Bond> bonds;
+    std::vector<int> molecule_of;  // by tag
+    std::vector<int> owner;        // by tag
+
+    explicit World(int n_molecules) : molecule_of(1), owner(1) {
+        std::vector<Tag> tags(n_molecules * 20);
+        std::iota(tags.begin(), tags.end(), 1);
+        for (std::size_t k = tags.size(); k > 1; --k) std::swap(tags[k - 1], tags[random_below(static_cast<int>(k))]);
+        molecule_of.assign(tags.size() + 1, -1);
+        owner.assign(tags.size() + 1, 0);
+        for (int m = 0; m < n_molecules; ++m) {
+            const int n = 2 + random_below(18), form = m % 3;
+            const Tag *t = &tags[20 * m];
+            for (int k = 1; k < n; ++k) {
+                const int to = form == 1 ? random_below(k) : k - 1;
+                bonds.push_back({t[k], t[to], 1.0 + 0.125 * (k % 3)});
+            }
+            if (form == 2 && n > 3) bonds.push_back({t[0], t[n - 1], 1.5});
+            for (int k = 0; k < n; ++k) molecule_of[t[k]] = m;
+            n_atoms += n;
+        }
+        deal();
+    }
+
+    void deal() {
+        for (int &rank : owner) rank = random_below(n_ranks);
+    }
+
+    std::vector<Tag> mine() const {
+        std::vector<Tag> tags;
+        for (std::size_t tag = 1; tag < owner.size(); ++tag)
+            if (owner[tag] == me) tags.push_back(static_cast<Tag>(tag));
+        return tags;
+    }
+};
+
+/** Each bond is told by the owners of its atoms: by both, or by the first. */
+Registry registry_of(const World &world, bool both) {
+    std::vector<Bond> told;
+    for (const Bond &bond : world.bonds) {
+        if (world.owner[bond.from] == me) told.push_back(bond);
+        if (both && world.owner[bond.to] == me) told.push_back({bond.to, bond.from, bond.length});
+    }
+    return Registry(MPI_COMM_WORLD, told);
+}
+
+void test_registry() {
+    const World world(60);
+    for (bool both : {false, true}) {
+        const Registry registry = registry_of(world, both);
+        CHECK(registry.n_molecules() == 60);
+        CHECK(registry.n_bonds() == static_cast<std::int64_t>(world.bonds.size()));
+        CHECK(registry.n_atoms() == world.n_atoms);
+        const std::vector<Tag> tags = world.mine();
+        const std::vector<Membership> members = registry.memberships(tags);
+        for (std::size_t k = 0; k < tags.size(); ++k) {
+            const int molecule = world.molecule_of[tags[k]];
+            CHECK((molecule >= 0) == (members[k].molecule != 0));
+            if (molecule < 0) continue;
+            const auto first = std::find(world.molecule_of.begin(), world.molecule_of.end(), molecule);
+            CHECK(members[k].molecule == first - world.molecule_of.begin());
+            const auto has = [&](const Bond &b) { return b.from == tags[k] || b.to == tags[k]; };
+            CHECK(members[k].n_bonds == std::count_if(world.bonds.begin(), world.bonds.end(), has));
+        }
+    }
+}
+
+/** A chain through all tags takes few rounds, and its places follow it. */
+void test_long_chain() {
+    constexpr int n = 5000;
+    std::vector<Bond> bonds;
+    for (Tag k = 0; k + 1 < n; ++k)
+        if (k % n_ranks == me) bonds.push_back({1 + k * 1999 % n, 1 + (k + 1) * 1999 % n, 1.0});
+    const Registry registry(MPI_COMM_WORLD, bonds);
+    CHECK(registry.n_molecules() == 1);
+    const Shape shape = registry.shapes({1})[0];
+    CHECK(shape.linear && shape.n_atoms == n);
+    const std::vector<Membership> members = registry.memberships({1, 1 + 1999 % n});
+    CHECK(members[0].place == 0 && members[1].place == 1);
+}
+
+/** The plan's slots are each an atom of one rank, whose numbers come and go. */
+void test_plan() {
+    World world(80);
+    const Registry registry = registry_of(world, false);
+    Plan plan(MPI_COMM_WORLD);
+    for (int round = 0; round < 6; ++round) {
+        if (round != 3) world.deal();
+        const std::vector<Tag> tags = world.mine();
+        const std::vector<Membership> members = registry.memberships(tags);
+        const bool changed = plan.renew(registry, members.data(), tags.data(), static_cast<int>(tags.size()));
+        if (round == 3 || (round > 0 && n_ranks == 1)) CHECK(!changed);
+        std::vector<double> at_home(plan.n_slots(), 0), back(tags.size(), 0);
+        for (int slot = 0; slot < plan.n_slots(); ++slot)
+            if (plan.atoms()[slot] >= 0) at_home[slot] = static_cast<double>(tags[plan.atoms()[slot]]);
+        plan.exchange.to_homes<1>(
+            MPI_COMM_WORLD, [&](int i, double *x) { *x = static_cast<double>(tags[i]); },
+            [&](int slot, const double *x) { at_home[slot] = *x; });
+        for (int slot = 0; slot < plan.n_slots(); ++slot)
+            CHECK(at_home[slot] == static_cast<double>(plan.tags()[slot]));
+        for (int slot = 0; slot < plan.n_slots(); ++slot)
+            if (plan.atoms()[slot] >= 0) back[plan.atoms()[slot]] = at_home[slot];
+        plan.exchange.to_owners<1>(
+            MPI_COMM_WORLD, [&](int slot, double *x) { *x = at_home[slot]; },
+            [&](int i, const double *x) { back[i] = *x; });
+        for (std::size_t k = 0; k < tags.size(); ++k)
+            if (members[k].molecule) CHECK(back[k] == static_cast<double>(tags[k]));
+        // Bonds of the shapes, with their lengths, are the world's.
+        std::set<std::pair<Tag, Tag>> known;
+        for (const Bond &bond : world.bonds) known.insert(std::minmax(bond.from, bond.to));
+        int n_bonds = 0;
+        for (const Resident &resident : plan.residents())
+            for (const auto &pair : plan.shapes()[resident.shape].pairs) {
+                const Tag a = plan.tags()[resident.first + pair[0]], b = plan.tags()[resident.first + pair[1]];
+                CHECK(known.count(std::minmax(a, b)) == 1);
+                ++n_bonds;
+            }
+        MPI_Allreduce(MPI_IN_PLACE, &n_bonds, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+        CHECK(n_bonds == static_cast<int>(world.bonds.size()));
+    }
+}
+
+/** Molecules whose atoms are dealt evenly live on all ranks: none has more than twice its share. */
+void test_balance() {
+    std::vector<Bond> bonds;
+    constexpr int n_chains = 400, n = 12;
+    for (Tag c = 0; c < n_chains && me == 0; ++c)
+        for (Tag k = 1; k < n; ++k) bonds.push_back({c * n + k, c * n + k + 1, 1.0});
+    const Registry registry(MPI_COMM_WORLD, bonds);
+    // Atom k of each chain is on rank k mod n_ranks: all ranks have equally many of each.
+    std::vector<Tag> tags;
+    for (Tag tag = 1; tag <= n_chains * n; ++tag)
+        if ((tag - 1) % n % n_ranks == me) tags.push_back(tag);
+    const std::vector<Membership> members = registry.memberships(tags);
+    Plan plan(MPI_COMM_WORLD);
+    plan.renew(registry, members.data(), tags.data(), static_cast<int>(tags.size()));
+    CHECK(plan.n_slots() <= 2 * n_chains * n / n_ranks);
+    CHECK(plan.n_slots() >= n_chains * n / n_ranks / 2);
+    CHECK(!plan.renew(registry, members.data(), tags.data(), static_cast<int>(tags.size())));
+}
+
+template <class Function>
+void refuses(const char *words, Function function) {
+    std::string said;
+    try {
+        function();
+    } catch (const ErrorEverywhere &e) {
+        said = e.what();
+    }
+    CHECK(said.find(words) != std::string::npos);
+}
+
+void test_errors() {
+    std::vector<Bond> bonds;
+    if (me == n_ranks - 1) bonds = {{7, 8, 1.0}, {8, 7, 1.25}};
+    refuses("are to be at two distances", [&] { Registry(MPI_COMM_WORLD, bonds); });
+    if (me == 0) bonds = {{5, 5, 1.0}};
+    if (me != 0) bonds.clear();
+    refuses("atom 5 with itself", [&] { Registry(MPI_COMM_WORLD, bonds); });
+    if (me == 0) bonds = {{3, 4, 1.0}, {4, 5, 1.0}};
+    const Registry registry(MPI_COMM_WORLD, bonds);
+    // Atom 4 is nowhere.
+    std::vector<Tag> tags;
+    if (me == 0) tags = {3};
+    if (me == n_ranks - 1) tags.push_back(5);
+    const std::vector<Membership> members = registry.memberships(tags);
+    refuses("molecule of atom 3 has 3 atoms, of which 2 are there",
+            [&] { Plan(MPI_COMM_WORLD).renew(registry, members.data(), tags.data(), static_cast<int>(tags.size())); });
+}
+
+/** Errors of the library name tags. */
+void test_messages() {
+    std::vector<Bond> bonds;
+    if (me == 0) bonds = {{40, 30, 1.0}, {30, 20, 1.0}};
+    const Registry registry(MPI_COMM_WORLD, bonds);
+    std::vector<Tag> tags;
+    if (me == 0) tags = {20, 30, 40};
+    const std::vector<Membership> members = registry.memberships(tags);
+    Plan plan(MPI_COMM_WORLD);
+    plan.renew(registry, members.data(), tags.data(), static_cast<int>(tags.size()));
+    if (me != 0) return;
+    const std::vector<double> masses(3, 1.0);
+    Packed packed(plan, masses.data());
+    std::vector<double> before{0, 0, 0, 1, 0, 0, 2, 0, 0}, now{0, 0, 0, 1, 0, 0, 1, 20, 0};
+    std::string said;
+    try {
+        packed.positions(before.data(), now.data(), 0.01);
+    } catch (const std::runtime_error &e) {
+        said = e.what();
+    }
+    CHECK(said.find("the molecule of atom 20") != std::string::npos);
+    CHECK(now[7] == 20);
+    // And it does what it should: the lengths are right, and the centre of mass rests.
+    now = {0, 0.1, 0, 1.05, 0, 0, 2, 0, 0.1};
+    packed.positions(before.data(), now.data(), 0.01);
+    for (int k = 0; k < 2; ++k) {
+        double square = 0;
+        for (int c = 0; c < 3; ++c) square += std::pow(now[3 * k + 3 + c] - now[3 * k + c], 2);
+        CHECK(std::fabs(square - 1) < 1e-15);
+    }
+    CHECK(std::fabs(now[0] + now[3] + now[6] - 3.05) < 1e-14);
+}
+
+}  // namespace
+
+int main(int argc, char **argv) {
+    MPI_Init(&argc, &argv);
+    me = rank_of(MPI_COMM_WORLD);
+    n_ranks = size_of(MPI_COMM_WORLD);
+    test_registry();
+    test_long_chain();
+    test_plan();
+    test_balance();
+    test_errors();
+    test_messages();
+    if (me == 0) std::printf("%d checks on rank 0 of %d\n", n_checks, n_ranks);
+    MPI_Finalize();
+    return 0;
+}
