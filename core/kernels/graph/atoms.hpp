@@ -16,16 +16,24 @@ enum Layout { rows_in_order, rows_listed, elements };
 #if HOL_LANES >= 4 && defined(__AVX2__)
 typedef double quad __attribute__((vector_size(32)));
 
+HOL_INLINE void transpose_quads(quad *m) {
+    const quad a = _mm256_unpacklo_pd(m[0], m[1]), b = _mm256_unpackhi_pd(m[0], m[1]);
+    const quad c = _mm256_unpacklo_pd(m[2], m[3]), d = _mm256_unpackhi_pd(m[2], m[3]);
+    m[0] = _mm256_permute2f128_pd(a, c, 0x20);
+    m[1] = _mm256_permute2f128_pd(b, d, 0x20);
+    m[2] = _mm256_permute2f128_pd(a, c, 0x31);
+    m[3] = _mm256_permute2f128_pd(b, d, 0x31);
+}
+
 HOL_INLINE void read_rows(const double *const *p, quad &x, quad &y, quad &z) {
     const __m256i three = _mm256_setr_epi64x(-1, -1, -1, 0);
     quad row[4];
     HOL_UNROLL
     for (int i = 0; i < 4; ++i) row[i] = _mm256_maskload_pd(p[i], three);
-    const quad a = _mm256_unpacklo_pd(row[0], row[1]), b = _mm256_unpackhi_pd(row[0], row[1]);
-    const quad c = _mm256_unpacklo_pd(row[2], row[3]), d = _mm256_unpackhi_pd(row[2], row[3]);
-    x = _mm256_permute2f128_pd(a, c, 0x20);
-    y = _mm256_permute2f128_pd(b, d, 0x20);
-    z = _mm256_permute2f128_pd(a, c, 0x31);
+    transpose_quads(row);
+    x = row[0];
+    y = row[1];
+    z = row[2];
 }
 
 HOL_INLINE void write_rows(double *const *p, quad x, quad y, quad z) {

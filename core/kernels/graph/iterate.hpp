@@ -16,10 +16,17 @@ constexpr double rounding = 2.220446049250313e-16;
 template <class V>
 struct Limits {
     V accepted, always_accepted;
+    double wanted;
     Limits(const PositionsCall &call, V largest_coordinate, V a_min) {
         const double u = call.r.is_float ? 5.97e-8 : 1.11e-16;
         accepted = max(Width<V>::all(call.tolerance), (8 * u) * (Width<V>::all(1) + largest_coordinate / a_min));
         always_accepted = Width<V>::all(call.tolerance > 8 * u ? call.tolerance : 8 * u);
+        wanted = call.tolerance > rounding ? call.tolerance : rounding;
+    }
+    // What is enough where the last solve must have gone far below a rounding: the floor, as in iterate().
+    V enough() const {
+        const V carried = max(accepted, always_accepted);
+        return max(Width<V>::all(wanted), min(Width<V>::all(4 * rounding), carried));
     }
 };
 
@@ -56,7 +63,7 @@ template <class V, class System>
 HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const PositionsCall &call, MaskOf<V> wanted) {
     typedef MaskOf<V> Mask;
     const Mask none = Width<V>::none();
-    const V done = Width<V>::all(call.tolerance > rounding ? call.tolerance : rounding);
+    const V done = Width<V>::all(limits.wanted);
     V error = newton.open();
     Solved<V> out = {wanted & less_equal(error, limits.accepted), none, error, 0};
     Mask active = wanted & ~out.untouched & finite(error);

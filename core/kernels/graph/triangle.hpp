@@ -4,7 +4,7 @@
 #ifndef HOLONOMIC_KERNELS_GRAPH_TRIANGLE_HPP
 #define HOLONOMIC_KERNELS_GRAPH_TRIANGLE_HPP
 
-#include "core/kernels/graph/atoms.hpp"
+#include "core/kernels/graph/consecutive.hpp"
 #include "core/kernels/graph/image.hpp"
 #include "core/kernels/graph/schedule.hpp"
 
@@ -12,57 +12,61 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
+// Its one numbering: atoms 0, 1, 2, and the bonds (0,1), (1,2), (2,0), which within the molecule have the numbers 0, 2, 1.
+constexpr int bond_number(int k) { return k == 0 ? 0 : 3 - k; }
+
 template <class V>
 struct TriangleMasses {
     V w[3];
-    V p;     // w_0 w_1 + w_1 w_2 + w_2 w_0
-    V s[3];  // w_i (w_j + w_k)
-    V all;   // w_0 w_1 w_2
-    void set(const MoleculeLane *lane, int used, const Schedule &schedule) {
+    V both[3];  // w_k + w_{k+1}: of bond k
+    V p;        // w_0 w_1 + w_1 w_2 + w_2 w_0
+    V s[3];     // w_i (w_j + w_k)
+    V w2[3];    // w_i^2
+    V all;      // w_0 w_1 w_2
+    V sum[3];   // what det has of q_k: all + w^2 (w' + w''), w of the atom opposite to bond k
+    void set(const MoleculeLane *lane, int used) {
         for (int a = 0; a < 3; ++a)
-            for (int i = 0; i < Width<V>::lanes; ++i)
-                Width<V>::set(w[a], i, lane[i < used ? i : 0].w[schedule.atom_of[a]]);
+            for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(w[a], i, lane[i < used ? i : 0].w[a]);
         p = mul_add(w[2], w[0] + w[1], w[0] * w[1]);
-        for (int a = 0; a < 3; ++a) s[a] = w[a] * (w[(a + 1) % 3] + w[(a + 2) % 3]);
         all = (w[0] * w[1]) * w[2];
+        for (int a = 0; a < 3; ++a) {
+            both[a] = w[a] + w[(a + 1) % 3];
+            s[a] = w[a] * (w[(a + 1) % 3] + w[(a + 2) % 3]);
+            w2[a] = w[a] * w[a];
+            sum[(a + 1) % 3] = mul_add(w[a], s[a], all);
+        }
     }
 };
 
-// Bond that is opposite to atom i, and the atom that is opposite to bond p.
-constexpr int opposite_bond(int i) { return (i + 1) % 3; }
-constexpr int opposite_atom(int p) { return (p + 2) % 3; }
-
-// The inverse of a triangle's matrix; symmetric where D and b are the same: then upper elements are those below.
+// The inverse of a triangle's matrix, adj / det.
 template <class V>
 struct TriangleInverse {
-    V e[3][3];
+    V adj[3][3];
+    V r;  // 1 / det
     HOL_INLINE void solve(const TriangleInverse &m, const V *y, V *t) {
         const V y0 = y[0], y1 = y[1], y2 = y[2];
         HOL_UNROLL
-        for (int k = 0; k < 3; ++k) t[k] = mul_add(m.e[k][2], y2, mul_add(m.e[k][1], y1, m.e[k][0] * y0));
+        for (int k = 0; k < 3; ++k)
+            t[k] = m.r * mul_add(m.adj[k][2], y2, mul_add(m.adj[k][1], y1, m.adj[k][0] * y0));
     }
 };
 
 // From the products g[k][l] = D_k . b_l and X = (D_k x D_l).(b_k x b_l), the same for any two bonds:
 //     det = X [w_0 w_1 w_2 (q_0 + q_1 + q_2) + sum over bonds of w^2 (w' + w'') q, w of the atom opposite to it],
 //     adj_kk = p q_l q_m + w^2 X,   adj_kl = p g_km g_ml - w (w' + w'') X, w of the atom between bonds k and l.
+// symmetric: D and b are the same. The inverse is of the matrix times `factor`.
 template <bool symmetric, class V>
-HOL_INLINE TriangleInverse<V> invert_triangle(const TriangleMasses<V> &m, const V g[3][3], V X) {
-    V sum = m.all * (g[0][0] + g[1][1] + g[2][2]);
-    HOL_UNROLL
-    for (int k = 0; k < 3; ++k) {
-        const int i = opposite_atom(k);
-        sum = mul_add(m.w[i] * m.s[i], g[k][k], sum);
-    }
-    const V r = Width<V>::all(1) / (X * sum), pr = m.p * r, Xr = X * r;
+HOL_INLINE TriangleInverse<V> invert_triangle(const TriangleMasses<V> &m, const V g[3][3], V X, double factor) {
     TriangleInverse<V> inverse;
+    const V sum = mul_add(m.sum[2], g[2][2], mul_add(m.sum[1], g[1][1], m.sum[0] * g[0][0]));
+    inverse.r = Width<V>::all(1 / factor) / (X * sum);
     HOL_UNROLL
     for (int k = 0; k < 3; ++k) {
-        const int l = (k + 1) % 3, o = (k + 2) % 3, own = opposite_atom(k), between = l;  // bond k ends at atom k + 1
-        inverse.e[k][k] = mul_add(pr * g[l][l], g[o][o], (m.w[own] * m.w[own]) * Xr);
-        const V apart = m.s[between] * Xr;
-        inverse.e[k][l] = mul_add(pr * g[k][o], g[o][l], -apart);
-        inverse.e[l][k] = symmetric ? inverse.e[k][l] : mul_add(pr * g[l][o], g[o][k], -apart);
+        const int l = (k + 1) % 3, o = (k + 2) % 3;  // bond k ends at atom l, and is opposite to atom o
+        inverse.adj[k][k] = mul_add(m.p * g[l][l], g[o][o], m.w2[o] * X);
+        const V apart = m.s[l] * X;
+        inverse.adj[k][l] = mul_add(m.p * g[k][o], g[o][l], -apart);
+        inverse.adj[l][k] = symmetric ? inverse.adj[k][l] : mul_add(m.p * g[l][o], g[o][k], -apart);
     }
     return inverse;
 }
@@ -94,12 +98,10 @@ template <class V>
 HOL_INLINE Triangle<V> triangle_of(const Box &box, const Vector3<V> *r) {
     Triangle<V> x;
     HOL_UNROLL
-    for (int k = 0; k < 3; ++k) {
-        Vector3<V> unused = {};
-        x.d[k] = r[(k + 1) % 3] - r[k];
-        take_image<false>(box, x.d[k], unused);
-        x.q[k] = dot(x.d[k], x.d[k]);
-    }
+    for (int k = 0; k < 3; ++k) x.d[k] = r[(k + 1) % 3] - r[k];
+    take_images<3>(box, x.d);
+    HOL_UNROLL
+    for (int k = 0; k < 3; ++k) x.q[k] = dot(x.d[k], x.d[k]);
     x.closed = ~Width<V>::none();
     if (box.shape != Box::none) {
         const Vector3<V> sum = x.d[0] + (x.d[1] + x.d[2]);
@@ -121,7 +123,7 @@ HOL_INLINE TriangleInverse<V> invert_triangle(const TriangleMasses<V> &m, const 
         g[k][k] = x.q[k];
         g[k][l] = g[l][k] = dot(x.d[k], x.d[l]);
     }
-    return invert_triangle<true>(m, g, x.X);
+    return invert_triangle<true>(m, g, x.X, 1);
 }
 
 // G of atom i: t d of the bond that starts there, less that of the bond that ends there.
@@ -132,17 +134,30 @@ HOL_INLINE Vector3<V> triangle_pull(const Vector3<V> *d, const V *t, int i) {
 
 // Writes factor t, zeros as +0.
 template <class V>
-HOL_INLINE void write_triangle_bonds(const MoleculeLane *lane, const Schedule &s, const V *value, V factor, double *out,
-                                     unsigned which) {
+HOL_INLINE void write_triangle_bonds(const MoleculeLane *lane, const V *value, V factor, double *out, unsigned which) {
     V v[3];
     HOL_UNROLL
-    for (int k = 0; k < 3; ++k) v[k] = mul_add(value[k], factor, V{});
+    for (int k = 0; k < 3; ++k) v[bond_number(k)] = mul_add(value[k], factor, V{});
+    if (__builtin_expect(which == (1u << Width<V>::lanes) - 1, 1)) {
+        double *p[Width<V>::lanes];
+        HOL_UNROLL
+        for (int i = 0; i < Width<V>::lanes; ++i) p[i] = out + lane[i].first_bond;
+        return write_rows(p, Vector3<V>{v[0], v[1], v[2]});
+    }
     for (int i = 0; i < Width<V>::lanes; ++i) {
         if (!(which >> i & 1)) continue;
         double *const p = out + lane[i].first_bond;
         HOL_UNROLL
-        for (int k = 0; k < 3; ++k) p[s.bond_of[k]] = Width<V>::get(v[k], i);
+        for (int k = 0; k < 3; ++k) p[k] = Width<V>::get(v[k], i);
     }
+}
+
+// factor times what is given for each bond.
+template <class V>
+HOL_INLINE void read_triangle_bonds(const MoleculeLane *lane, const double *in, double factor, V *value) {
+    for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < Width<V>::lanes; ++i)
+            Width<V>::set(value[k], i, factor * in[lane[i].first_bond + bond_number(k)]);
 }
 
 // - factor sum t d (x) d over the lanes of `which`.

@@ -4,6 +4,7 @@
 
 #include "core/kernels/graph/blocks.hpp"
 #include "core/kernels/graph/doubtful.hpp"
+#include "core/kernels/graph/triangle_linear.hpp"
 #include "core/kernels/graph/triangle_positions.hpp"
 
 namespace holonomic {
@@ -35,21 +36,21 @@ struct TriangleWork {
     void block(const MoleculeLane *lane, int used, bool same, double *scratch) {
         TriangleMasses<V> &masses = known.masses_for(static_cast<V *>(nullptr));
         if (!same) {
-            masses.set(lane, used, schedule);
-            if (Verb::with_lengths) known.lengths_for(static_cast<V *>(nullptr)).set(lane, used, schedule);
+            masses.set(lane, used);
+            if (Verb::with_lengths) known.lengths_for(static_cast<V *>(nullptr)).set(lane, used);
         }
         const Atoms<V> at(lane, Width<V>::lanes);
         const TriangleLengths<V> &lengths = known.lengths_for(static_cast<V *>(nullptr));
         unsigned good;
         switch (layout_of(at, packed)) {
             case rows_in_order:
-                good = verb.template solve<rows_in_order, V>(schedule, lane, used, at, masses, lengths);
+                good = verb.template solve<rows_in_order, V>(lane, used, at, masses, lengths);
                 break;
             case rows_listed:
-                good = verb.template solve<rows_listed, V>(schedule, lane, used, at, masses, lengths);
+                good = verb.template solve<rows_listed, V>(lane, used, at, masses, lengths);
                 break;
             default:
-                good = verb.template solve<elements, V>(schedule, lane, used, at, masses, lengths);
+                good = verb.template solve<elements, V>(lane, used, at, masses, lengths);
         }
         const unsigned rest = bits(Width<V>::first(used)) & ~good;
         if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, lane, rest, scratch, tally);
@@ -68,9 +69,9 @@ struct TriangleLinearVerb {
     const TriangleCall &call;
     Tally &tally;
     template <Layout layout, class V>
-    __attribute__((noinline)) unsigned solve(const Schedule &s, const MoleculeLane *lane, int used, const Atoms<V> &at,
+    __attribute__((noinline)) unsigned solve(const MoleculeLane *lane, int used, const Atoms<V> &at,
                                              const TriangleMasses<V> &m, const TriangleLengths<V> &) const {
-        return solve_triangles<layout>(call, s, lane, used, at, m, tally);
+        return solve_triangles<layout>(call, lane, used, at, m, tally);
     }
 };
 
@@ -79,9 +80,9 @@ struct TriangleVelocitiesVerb {
     const VelocitiesCall &call;
     Tally &tally;
     template <Layout layout, class V>
-    __attribute__((noinline)) unsigned solve(const Schedule &s, const MoleculeLane *lane, int used, const Atoms<V> &at,
+    __attribute__((noinline)) unsigned solve(const MoleculeLane *lane, int used, const Atoms<V> &at,
                                              const TriangleMasses<V> &m, const TriangleLengths<V> &) const {
-        return project_triangles<layout>(call, s, lane, used, at, m, tally);
+        return project_triangles<layout>(call, lane, used, at, m, tally);
     }
 };
 
@@ -90,9 +91,9 @@ struct TrianglePositionsVerb {
     const PositionsCall &call;
     Tally &tally;
     template <Layout layout, class V>
-    __attribute__((noinline)) unsigned solve(const Schedule &s, const MoleculeLane *lane, int used, const Atoms<V> &at,
+    __attribute__((noinline)) unsigned solve(const MoleculeLane *lane, int used, const Atoms<V> &at,
                                              const TriangleMasses<V> &m, const TriangleLengths<V> &a) const {
-        return move_triangles<layout>(call, s, lane, used, at, m, a, tally);
+        return move_triangles<layout>(call, lane, used, at, m, a, tally);
     }
 };
 

@@ -19,20 +19,14 @@ struct TriangleCall {
     const Box &box;
 };
 
-template <Layout layout, class V>
-HOL_INLINE void read_triangle(const AtomArray &array, const Atoms<V> &at, const Schedule &s, Vector3<V> *atoms) {
-    HOL_UNROLL
-    for (int i = 0; i < 3; ++i) atoms[i] = read<layout>(array, at, s.atom_of[i]);
-}
-
 // Right-hand sides as load.hpp makes them.
 template <Layout layout, class V>
 HOL_INLINE void triangle_sides(const TriangleCall &call, const MoleculeLane *lane, const Atoms<V> &at,
-                               const Schedule &s, const TriangleMasses<V> &m, const Vector3<V> *d, V *y) {
+                               const TriangleMasses<V> &m, const Vector3<V> *d, V *y) {
     Vector3<V> a[3];
     for (int k = 0; k < 3; ++k) y[k] = V{};
     if (call.v.x) {
-        read_triangle<layout>(call.v, at, s, a);
+        read_all<layout, 3>(call.v, at, a);
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) {
             const Vector3<V> dv = a[(k + 1) % 3] - a[k];
@@ -40,54 +34,54 @@ HOL_INLINE void triangle_sides(const TriangleCall &call, const MoleculeLane *lan
         }
     }
     if (call.f.x) {
-        read_triangle<layout>(call.f, at, s, a);
+        read_all<layout, 3>(call.f, at, a);
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) a[k] = m.w[k] * a[k];
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) y[k] = y[k] + dot(d[k], a[(k + 1) % 3] - a[k]);
     }
-    if (call.rhs)
-        for (int k = 0; k < 3; ++k)
-            for (int i = 0; i < Width<V>::lanes; ++i)
-                Width<V>::set(y[k], i, 0.5 * call.rhs[lane[i].first_bond + s.bond_of[k]]);
+    if (call.rhs) read_triangle_bonds(lane, call.rhs, 0.5, y);
 }
 
 // Returns the lanes that are done.
 template <Layout layout, class V>
-static inline unsigned solve_triangles(const TriangleCall &call, const Schedule &s, const MoleculeLane *lane, int used,
+static inline unsigned solve_triangles(const TriangleCall &call, const MoleculeLane *lane, int used,
                                        const Atoms<V> &at, const TriangleMasses<V> &m, Tally &tally) {
     Vector3<V> r[3];
     V t[3];
-    read_triangle<layout>(call.r, at, s, r);
+    read_all<layout, 3>(call.r, at, r);
     const Triangle<V> x = triangle_of(call.box, r);
-    triangle_sides<layout>(call, lane, at, s, m, x.d, t);
+    triangle_sides<layout>(call, lane, at, m, x.d, t);
     TriangleInverse<V>::solve(invert_triangle(m, x), t, t);
     const unsigned good = bits(Width<V>::first(used) & x.closed & finite(t[0] + (t[1] + t[2])));
     if (!good) return good;
-    if (call.lambda) write_triangle_bonds(lane, s, t, Width<V>::all(0.5), call.lambda, good);
+    if (call.lambda) write_triangle_bonds(lane, t, Width<V>::all(0.5), call.lambda, good);
     if (call.tension) {
         const V T[3] = {t[0] * sqrt(x.q[0]), t[1] * sqrt(x.q[1]), t[2] * sqrt(x.q[2])};
-        write_triangle_bonds(lane, s, T, Width<V>::all(1), call.tension, good);
+        write_triangle_bonds(lane, T, Width<V>::all(1), call.tension, good);
     }
     if (call.virial) add_triangle_virial(x.d, t, 1, good, tally);
     if (!call.g.x) return good;
+    Vector3<V> g[3], before[3];
     HOL_UNROLL
-    for (int i = 0; i < 3; ++i) {
-        Vector3<V> g = triangle_pull(x.d, t, i);
-        if (call.add) g = read<layout>(call.g, at, s.atom_of[i]) + g;
-        write<layout>(call.g, at, s.atom_of[i], g, good);
+    for (int i = 0; i < 3; ++i) g[i] = triangle_pull(x.d, t, i);
+    if (call.add) {
+        read_all<layout, 3>(call.g, at, before);
+        HOL_UNROLL
+        for (int i = 0; i < 3; ++i) g[i] = before[i] + g[i];
     }
+    write_all<layout, 3>(call.g, at, g, good);
     return good;
 }
 
 // The velocity level: twice, as velocities.hpp says.
 template <Layout layout, class V>
-static inline unsigned project_triangles(const VelocitiesCall &call, const Schedule &s, const MoleculeLane *lane,
+static inline unsigned project_triangles(const VelocitiesCall &call, const MoleculeLane *lane,
                                          int used, const Atoms<V> &at, const TriangleMasses<V> &m, Tally &tally) {
     Vector3<V> r[3], v[3];
     V t[3];
-    read_triangle<layout>(call.r, at, s, r);
-    read_triangle<layout>(call.v, at, s, v);
+    read_all<layout, 3>(call.r, at, r);
+    read_all<layout, 3>(call.v, at, v);
     const Triangle<V> x = triangle_of(call.box, r);
     const TriangleInverse<V> inverse = invert_triangle(m, x);
     V left[3];
@@ -107,7 +101,7 @@ static inline unsigned project_triangles(const VelocitiesCall &call, const Sched
     project(~Width<V>::none());
     const unsigned good = bits(Width<V>::first(used) & x.closed & finite(t[0] + (t[1] + t[2])));
     if (!good) return good;
-    if (call.lambda) write_triangle_bonds(lane, s, t, Width<V>::all(0.5), call.lambda, good);
+    if (call.lambda) write_triangle_bonds(lane, t, Width<V>::all(0.5), call.lambda, good);
     if (call.virial) add_triangle_virial(x.d, t, 1, good, tally);
     if (!call.v.is_float) {
         // Where the triangle is so nearly straight that the first time left as much as there was, what it left is
@@ -115,8 +109,7 @@ static inline unsigned project_triangles(const VelocitiesCall &call, const Sched
         const V after = measure();
         project(less(after, 0.25 * before));
     }
-    HOL_UNROLL
-    for (int i = 0; i < 3; ++i) write<layout>(call.v, at, s.atom_of[i], v[i], good);
+    write_all<layout, 3>(call.v, at, v, good);
     return good;
 }
 

@@ -1,0 +1,124 @@
+// Molecules of a number of atoms that the compiler knows, whose rows x y z stand one behind the other: 3 n doubles of
+// each lane, four at a time.
+#ifndef HOLONOMIC_KERNELS_GRAPH_CONSECUTIVE_HPP
+#define HOLONOMIC_KERNELS_GRAPH_CONSECUTIVE_HPP
+
+#include "core/kernels/graph/atoms.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+#if HOL_LANES >= 4 && defined(__AVX2__)
+// Element e of four lanes; what is left of the last row of four is read and written element by element.
+template <int n>
+HOL_INLINE void read_elements(const double *const *p, quad *e) {
+    HOL_UNROLL
+    for (int j = 0; j < n / 4; ++j) {
+        HOL_UNROLL
+        for (int i = 0; i < 4; ++i) e[4 * j + i] = _mm256_loadu_pd(p[i] + 4 * j);
+        transpose_quads(e + 4 * j);
+    }
+    HOL_UNROLL
+    for (int c = n / 4 * 4; c < n; ++c) e[c] = quad{p[0][c], p[1][c], p[2][c], p[3][c]};
+}
+
+template <int n>
+HOL_INLINE void write_elements(double *const *p, quad *e) {
+    HOL_UNROLL
+    for (int j = 0; j < n / 4; ++j) {
+        transpose_quads(e + 4 * j);
+        HOL_UNROLL
+        for (int i = 0; i < 4; ++i) _mm256_storeu_pd(p[i] + 4 * j, e[4 * j + i]);
+    }
+    HOL_UNROLL
+    for (int c = n / 4 * 4; c < n; ++c) {
+        HOL_UNROLL
+        for (int i = 0; i < 4; ++i) p[i][c] = e[c][i];
+    }
+}
+#endif
+
+template <int n>
+HOL_INLINE void read_elements(const double *const *p, Vector3<vec> *a) {
+    vec *const e = &a->x;
+#if HOL_LANES == 4 && defined(__AVX2__)
+    read_elements<n>(p, reinterpret_cast<quad *>(e));
+#elif HOL_LANES == 8 && defined(__AVX512F__)
+    quad low[n], high[n];
+    read_elements<n>(p, low);
+    read_elements<n>(p + 4, high);
+    HOL_UNROLL
+    for (int c = 0; c < n; ++c) e[c] = _mm512_insertf64x4(_mm512_castpd256_pd512(low[c]), high[c], 1);
+#else
+    for (int c = 0; c < n; ++c)
+        for (int i = 0; i < W; ++i) e[c][i] = p[i][c];
+#endif
+}
+template <int n>
+HOL_INLINE void read_elements(const double *const *p, Vector3<double> *a) {
+    HOL_UNROLL
+    for (int k = 0; k < n / 3; ++k) a[k] = {p[0][3 * k], p[0][3 * k + 1], p[0][3 * k + 2]};
+}
+
+template <int n>
+HOL_INLINE void write_elements(double *const *p, Vector3<vec> *a) {
+    vec *const e = &a->x;
+#if HOL_LANES == 4 && defined(__AVX2__)
+    write_elements<n>(p, reinterpret_cast<quad *>(e));
+#elif HOL_LANES == 8 && defined(__AVX512F__)
+    quad low[n], high[n];
+    HOL_UNROLL
+    for (int c = 0; c < n; ++c) {
+        low[c] = _mm512_castpd512_pd256(e[c]);
+        high[c] = _mm512_extractf64x4_pd(e[c], 1);
+    }
+    write_elements<n>(p, low);
+    write_elements<n>(p + 4, high);
+#else
+    for (int c = 0; c < n; ++c)
+        for (int i = 0; i < W; ++i) p[i][c] = e[c][i];
+#endif
+}
+template <int n>
+HOL_INLINE void write_elements(double *const *p, Vector3<double> *a) {
+    HOL_UNROLL
+    for (int k = 0; k < n / 3; ++k) {
+        p[0][3 * k] = a[k].x;
+        p[0][3 * k + 1] = a[k].y;
+        p[0][3 * k + 2] = a[k].z;
+    }
+}
+
+// The atoms 0 .. n - 1 of all lanes.
+template <Layout layout, int n, class V>
+HOL_INLINE void read_all(const AtomArray &array, const Atoms<V> &at, Vector3<V> *atoms) {
+    if (layout == rows_in_order) {
+        const double *p[Width<V>::lanes];
+        HOL_UNROLL
+        for (int i = 0; i < at.lanes; ++i) p[i] = reinterpret_cast<const double *>(array.x) + 3 * at.first[i];
+        read_elements<3 * n>(p, atoms);
+        return;
+    }
+    HOL_UNROLL
+    for (int k = 0; k < n; ++k) atoms[k] = read<layout>(array, at, k);
+}
+
+// The same in the lanes of `which`; `atoms` is used up.
+template <Layout layout, int n, class V>
+HOL_INLINE void write_all(const AtomArray &array, const Atoms<V> &at, Vector3<V> *atoms, unsigned which) {
+    if (layout == rows_in_order && __builtin_expect(which == (1u << at.lanes) - 1, 1)) {
+        double *p[Width<V>::lanes];
+        HOL_UNROLL
+        for (int i = 0; i < at.lanes; ++i) p[i] = reinterpret_cast<double *>(array.x) + 3 * at.first[i];
+        write_elements<3 * n>(p, atoms);
+        return;
+    }
+    HOL_UNROLL
+    for (int k = 0; k < n; ++k) write<layout>(array, at, k, atoms[k], which);
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif
