@@ -10,7 +10,8 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-enum Layout { rows_in_order, rows_listed, elements };
+// rows_adjacent: rows in order, and the molecules one behind the other.
+enum Layout { rows_in_order, rows_listed, elements, rows_adjacent };
 
 // Rows x y z of four lanes, from and to memory; of row i the element behind z is not touched.
 #if HOL_LANES >= 4 && defined(__AVX2__)
@@ -92,11 +93,21 @@ struct Atoms {
     static constexpr int lanes = Width<V>::lanes;
     const int64_t *list[lanes];  // or nullptr
     int64_t first[lanes];        // offset of the first atom in rows of three doubles, or its number
+    int64_t bond[lanes];         // the first bond in arrays per bond
     Atoms(const MoleculeLane *lane, int used) {
         for (int i = 0; i < lanes; ++i) {
             const MoleculeLane &one = lane[i < used ? i : 0];
             list[i] = one.atoms;
             first[i] = one.first_atom;
+            bond[i] = one.first_bond;
+        }
+    }
+    // To the next block of molecules that follow each other, of so many atoms and bonds.
+    HOL_INLINE void advance(Atoms &a, int64_t n_atoms, int64_t n_bonds) {
+        HOL_UNROLL
+        for (int i = 0; i < lanes; ++i) {
+            a.first[i] += lanes * n_atoms;
+            a.bond[i] += lanes * n_bonds;
         }
     }
     HOL_INLINE int64_t number(const Atoms &a, int i, int64_t k) { return a.list[i] ? a.list[i][k] : a.first[i] + k; }

@@ -90,13 +90,20 @@ HOL_INLINE void write_elements(double *const *p, Vector3<double> *a) {
     }
 }
 
+// The rows of molecules of n atoms.
+template <Layout layout, int n, class V>
+HOL_INLINE double *row_of(const AtomArray &array, const Atoms<V> &at, int i) {
+    double *const x = reinterpret_cast<double *>(array.x);
+    return layout == rows_adjacent ? x + 3 * at.first[0] + 3 * n * i : x + 3 * at.first[i];
+}
+
 // The atoms 0 .. n - 1 of all lanes.
 template <Layout layout, int n, class V>
 HOL_INLINE void read_all(const AtomArray &array, const Atoms<V> &at, Vector3<V> *atoms) {
-    if (layout == rows_in_order) {
+    if (layout == rows_in_order || layout == rows_adjacent) {
         const double *p[Width<V>::lanes];
         HOL_UNROLL
-        for (int i = 0; i < at.lanes; ++i) p[i] = reinterpret_cast<const double *>(array.x) + 3 * at.first[i];
+        for (int i = 0; i < at.lanes; ++i) p[i] = row_of<layout, n>(array, at, i);
         read_elements<3 * n>(p, atoms);
         return;
     }
@@ -104,18 +111,40 @@ HOL_INLINE void read_all(const AtomArray &array, const Atoms<V> &at, Vector3<V> 
     for (int k = 0; k < n; ++k) atoms[k] = read<layout>(array, at, k);
 }
 
+template <Layout layout, int n, class V>
+HOL_NOINLINE void write_some(const AtomArray &array, const Atoms<V> &at, const Vector3<V> *atoms, unsigned which) {
+    for (int k = 0; k < n; ++k) write<layout == rows_adjacent ? rows_in_order : layout>(array, at, k, atoms[k], which);
+}
+
 // The same in the lanes of `which`; `atoms` is used up.
 template <Layout layout, int n, class V>
 HOL_INLINE void write_all(const AtomArray &array, const Atoms<V> &at, Vector3<V> *atoms, unsigned which) {
-    if (layout == rows_in_order && __builtin_expect(which == (1u << at.lanes) - 1, 1)) {
+    if ((layout == rows_in_order || layout == rows_adjacent) && __builtin_expect(which == (1u << at.lanes) - 1, 1)) {
         double *p[Width<V>::lanes];
         HOL_UNROLL
-        for (int i = 0; i < at.lanes; ++i) p[i] = reinterpret_cast<double *>(array.x) + 3 * at.first[i];
+        for (int i = 0; i < at.lanes; ++i) p[i] = row_of<layout, n>(array, at, i);
         write_elements<3 * n>(p, atoms);
         return;
     }
-    HOL_UNROLL
-    for (int k = 0; k < n; ++k) write<layout>(array, at, k, atoms[k], which);
+    write_some<layout, n>(array, at, atoms, which);
+}
+
+// Three values per bond, in the order of the bonds.
+template <Layout layout, class V>
+HOL_INLINE void write_three(double *out, const Atoms<V> &at, const Vector3<V> &value, unsigned which) {
+    if (__builtin_expect(which == (1u << at.lanes) - 1, 1)) {
+        double *p[Width<V>::lanes];
+        HOL_UNROLL
+        for (int i = 0; i < at.lanes; ++i) p[i] = layout == rows_adjacent ? out + at.bond[0] + 3 * i : out + at.bond[i];
+        return write_rows(p, value);
+    }
+    for (int i = 0; i < at.lanes; ++i) {
+        if (!(which >> i & 1)) continue;
+        double *const p = out + at.bond[i];
+        p[0] = Width<V>::get(value.x, i);
+        p[1] = Width<V>::get(value.y, i);
+        p[2] = Width<V>::get(value.z, i);
+    }
 }
 
 }  // namespace graph

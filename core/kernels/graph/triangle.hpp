@@ -12,7 +12,8 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// Its one numbering: atoms 0, 1, 2, and the bonds (0,1), (1,2), (2,0), which within the molecule have the numbers 0, 2, 1.
+// Its one numbering: atoms 0, 1, 2, and the bonds (0,1), (1,2), (2,0), which within the molecule have the numbers 0,
+// 2, 1.
 constexpr int bond_number(int k) { return k == 0 ? 0 : 3 - k; }
 
 template <class V>
@@ -46,8 +47,7 @@ struct TriangleInverse {
     HOL_INLINE void solve(const TriangleInverse &m, const V *y, V *t) {
         const V y0 = y[0], y1 = y[1], y2 = y[2];
         HOL_UNROLL
-        for (int k = 0; k < 3; ++k)
-            t[k] = m.r * mul_add(m.adj[k][2], y2, mul_add(m.adj[k][1], y1, m.adj[k][0] * y0));
+        for (int k = 0; k < 3; ++k) t[k] = m.r * mul_add(m.adj[k][2], y2, mul_add(m.adj[k][1], y1, m.adj[k][0] * y0));
     }
 };
 
@@ -133,36 +133,24 @@ HOL_INLINE Vector3<V> triangle_pull(const Vector3<V> *d, const V *t, int i) {
 }
 
 // Writes factor t, zeros as +0.
-template <class V>
-HOL_INLINE void write_triangle_bonds(const MoleculeLane *lane, const V *value, V factor, double *out, unsigned which) {
+template <Layout layout, class V>
+HOL_INLINE void write_triangle_bonds(const Atoms<V> &at, const V *value, V factor, double *out, unsigned which) {
     V v[3];
     HOL_UNROLL
     for (int k = 0; k < 3; ++k) v[bond_number(k)] = mul_add(value[k], factor, V{});
-    if (__builtin_expect(which == (1u << Width<V>::lanes) - 1, 1)) {
-        double *p[Width<V>::lanes];
-        HOL_UNROLL
-        for (int i = 0; i < Width<V>::lanes; ++i) p[i] = out + lane[i].first_bond;
-        return write_rows(p, Vector3<V>{v[0], v[1], v[2]});
-    }
-    for (int i = 0; i < Width<V>::lanes; ++i) {
-        if (!(which >> i & 1)) continue;
-        double *const p = out + lane[i].first_bond;
-        HOL_UNROLL
-        for (int k = 0; k < 3; ++k) p[k] = Width<V>::get(v[k], i);
-    }
+    write_three<layout>(out, at, {v[0], v[1], v[2]}, which);
 }
 
 // factor times what is given for each bond.
 template <class V>
-HOL_INLINE void read_triangle_bonds(const MoleculeLane *lane, const double *in, double factor, V *value) {
+HOL_INLINE void read_triangle_bonds(const Atoms<V> &at, const double *in, double factor, V *value) {
     for (int k = 0; k < 3; ++k)
-        for (int i = 0; i < Width<V>::lanes; ++i)
-            Width<V>::set(value[k], i, factor * in[lane[i].first_bond + bond_number(k)]);
+        for (int i = 0; i < at.lanes; ++i) Width<V>::set(value[k], i, factor * in[at.bond[i] + bond_number(k)]);
 }
 
 // - factor sum t d (x) d over the lanes of `which`.
 template <class V>
-HOL_INLINE void add_triangle_virial(const Vector3<V> *d, const V *t, double factor, unsigned which, Tally &tally) {
+HOL_NOINLINE void add_triangle_virial(const Vector3<V> *d, const V *t, double factor, unsigned which, Tally &tally) {
     V s[6] = {};
     HOL_UNROLL
     for (int k = 0; k < 3; ++k) {

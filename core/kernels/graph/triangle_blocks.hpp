@@ -11,16 +11,28 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// The masses of a block, kept for the next one where that has the same.
-struct KnownTriangles {
-    TriangleMasses<vec> masses;
-    TriangleMasses<double> masses_of_one;
-    TriangleLengths<vec> lengths;
-    TriangleLengths<double> lengths_of_one;
-    TriangleMasses<vec> &masses_for(vec *) { return masses; }
-    TriangleMasses<double> &masses_for(double *) { return masses_of_one; }
-    TriangleLengths<vec> &lengths_for(vec *) { return lengths; }
-    TriangleLengths<double> &lengths_for(double *) { return lengths_of_one; }
+// The molecules of a block: given, or those of a unit from number `first` on.
+struct TrianglesGiven {
+    const MoleculeLane *lane;
+    MoleculeLane get(int i) const { return lane[i]; }
+    int64_t molecule(int i) const { return lane[i].molecule; }
+};
+struct TrianglesOfUnit {
+    const MoleculeUnit &unit;
+    int64_t first;
+    MoleculeLane get(int i) const { return molecule_of(unit, first + i); }
+    int64_t molecule(int i) const { return unit.lanes[0].molecule + first + i; }
+};
+
+// Masses and lengths of a block, kept for the next one where that has the same.
+template <class V>
+struct TriangleKind {
+    TriangleMasses<V> masses;
+    TriangleLengths<V> lengths;
+    void set(const MoleculeLane *lane, int used, bool with_lengths) {
+        masses.set(lane, used);
+        if (with_lengths) lengths.set(lane, used);
+    }
 };
 
 template <class Verb, class Call>
@@ -30,48 +42,82 @@ struct TriangleWork {
     const Schedule &schedule;
     const bool packed;
     Tally &tally;
-    KnownTriangles known;
+    TriangleKind<vec> known;
+    TriangleKind<double> known_one;
+    TriangleKind<vec> &kind_for(vec *) { return known; }
+    TriangleKind<double> &kind_for(double *) { return known_one; }
+
+    template <class Lanes>
+    HOL_NOINLINE void solve_carefully(const TriangleWork &work, const Lanes &lanes, unsigned rest, double *scratch) {
+        MoleculeLane lane[W];
+        for (int i = 0; i < W; ++i)
+            if (rest >> i & 1) lane[i] = lanes.get(i);
+        solve_doubtful(work.call, work.schedule, lane, rest, scratch, work.tally);
+    }
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool same, double *scratch) {
-        TriangleMasses<V> &masses = known.masses_for(static_cast<V *>(nullptr));
-        if (!same) {
-            masses.set(lane, used);
-            if (Verb::with_lengths) known.lengths_for(static_cast<V *>(nullptr)).set(lane, used);
-        }
+        TriangleKind<V> &kind = kind_for(static_cast<V *>(nullptr));
+        if (!same) kind.set(lane, used, Verb::with_lengths);
         const Atoms<V> at(lane, Width<V>::lanes);
-        const TriangleLengths<V> &lengths = known.lengths_for(static_cast<V *>(nullptr));
+        const TrianglesGiven lanes = {lane};
         unsigned good;
         switch (layout_of(at, packed)) {
             case rows_in_order:
-                good = verb.template solve<rows_in_order, V>(lane, used, at, masses, lengths);
+                good = verb.template solve<rows_in_order, V>(lanes, used, at, kind);
                 break;
             case rows_listed:
-                good = verb.template solve<rows_listed, V>(lane, used, at, masses, lengths);
+                good = verb.template solve<rows_listed, V>(lanes, used, at, kind);
                 break;
             default:
-                good = verb.template solve<elements, V>(lane, used, at, masses, lengths);
+                good = verb.template solve<elements, V>(lanes, used, at, kind);
         }
         const unsigned rest = bits(Width<V>::first(used)) & ~good;
-        if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, lane, rest, scratch, tally);
+        if (__builtin_expect(rest != 0, 0)) solve_carefully(*this, lanes, rest, scratch);
+    }
+
+    // Molecules of one kind, one behind the other, as long as there are W of them; returns how many are done.
+    __attribute__((noinline)) int64_t run(const MoleculeUnit &unit, double *scratch) {
+        MoleculeLane lane[W];
+        if (unit.count < W) return 0;
+        TrianglesOfUnit lanes = {unit, 0};
+        for (int i = 0; i < W; ++i) lane[i] = lanes.get(i);
+        known.set(lane, W, Verb::with_lengths);
+        Atoms<vec> at(lane, W);
+        for (; lanes.first + W <= unit.count; lanes.first += W) {
+            const unsigned good = verb.template in_place<rows_adjacent, vec>(lanes, W, at, known);
+            if (__builtin_expect(good != all_lanes, 0)) solve_carefully(*this, lanes, all_lanes & ~good, scratch);
+            Atoms<vec>::advance(at, 3, 3);
+        }
+        return lanes.first;
     }
 };
 
 template <class Verb, class Call>
 static inline void for_each_triangle(const Verb &verb, const Call &call, const MoleculeUnit &unit, bool packed,
                                      double *scratch, Tally &tally) {
-    TriangleWork<Verb, Call> work = {verb, call, *unit.schedule, packed, tally, {}};
-    for_each_block(unit, scratch, work);
+    TriangleWork<Verb, Call> work = {verb, call, *unit.schedule, packed, tally, {}, {}};
+    const int64_t done = unit.regular && packed && !unit.lanes[0].atoms ? work.run(unit, scratch) : 0;
+    if (done == unit.count) return;
+    const MoleculeLane next = molecule_of(unit, done);
+    for_each_block(
+        MoleculeUnit{unit.schedule, done > 0 ? &next : unit.lanes, unit.count - done, unit.regular, unit.large},
+        scratch, work);
 }
 
 struct TriangleLinearVerb {
     static constexpr bool with_lengths = false;
     const TriangleCall &call;
     Tally &tally;
-    template <Layout layout, class V>
-    __attribute__((noinline)) unsigned solve(const MoleculeLane *lane, int used, const Atoms<V> &at,
-                                             const TriangleMasses<V> &m, const TriangleLengths<V> &) const {
-        return solve_triangles<layout>(call, lane, used, at, m, tally);
+    template <Layout layout, class V, class Lanes>
+    inline HOL_FORCED unsigned in_place(const Lanes &, int used, const Atoms<V> &at,
+                                        const TriangleKind<V> &kind) const {
+        return solve_triangles<layout>(call, used, at, kind.masses, tally);
+    }
+    template <Layout layout, class V, class Lanes>
+    __attribute__((noinline)) unsigned solve(const Lanes &lanes, int used, const Atoms<V> &at,
+                                             const TriangleKind<V> &kind) const {
+        return in_place<layout>(lanes, used, at, kind);
     }
 };
 
@@ -79,10 +125,15 @@ struct TriangleVelocitiesVerb {
     static constexpr bool with_lengths = false;
     const VelocitiesCall &call;
     Tally &tally;
-    template <Layout layout, class V>
-    __attribute__((noinline)) unsigned solve(const MoleculeLane *lane, int used, const Atoms<V> &at,
-                                             const TriangleMasses<V> &m, const TriangleLengths<V> &) const {
-        return project_triangles<layout>(call, lane, used, at, m, tally);
+    template <Layout layout, class V, class Lanes>
+    inline HOL_FORCED unsigned in_place(const Lanes &, int used, const Atoms<V> &at,
+                                        const TriangleKind<V> &kind) const {
+        return project_triangles<layout>(call, used, at, kind.masses, tally);
+    }
+    template <Layout layout, class V, class Lanes>
+    __attribute__((noinline)) unsigned solve(const Lanes &lanes, int used, const Atoms<V> &at,
+                                             const TriangleKind<V> &kind) const {
+        return in_place<layout>(lanes, used, at, kind);
     }
 };
 
@@ -90,10 +141,15 @@ struct TrianglePositionsVerb {
     static constexpr bool with_lengths = true;
     const PositionsCall &call;
     Tally &tally;
-    template <Layout layout, class V>
-    __attribute__((noinline)) unsigned solve(const MoleculeLane *lane, int used, const Atoms<V> &at,
-                                             const TriangleMasses<V> &m, const TriangleLengths<V> &a) const {
-        return move_triangles<layout>(call, lane, used, at, m, a, tally);
+    template <Layout layout, class V, class Lanes>
+    inline HOL_FORCED unsigned in_place(const Lanes &lanes, int used, const Atoms<V> &at,
+                                        const TriangleKind<V> &kind) const {
+        return move_triangles<layout>(call, lanes, used, at, kind.masses, kind.lengths, tally);
+    }
+    template <Layout layout, class V, class Lanes>
+    __attribute__((noinline)) unsigned solve(const Lanes &lanes, int used, const Atoms<V> &at,
+                                             const TriangleKind<V> &kind) const {
+        return in_place<layout>(lanes, used, at, kind);
     }
 };
 

@@ -21,8 +21,8 @@ struct TriangleCall {
 
 // Right-hand sides as load.hpp makes them.
 template <Layout layout, class V>
-HOL_INLINE void triangle_sides(const TriangleCall &call, const MoleculeLane *lane, const Atoms<V> &at,
-                               const TriangleMasses<V> &m, const Vector3<V> *d, V *y) {
+HOL_INLINE void triangle_sides(const TriangleCall &call, const Atoms<V> &at, const TriangleMasses<V> &m,
+                               const Vector3<V> *d, V *y) {
     Vector3<V> a[3];
     for (int k = 0; k < 3; ++k) y[k] = V{};
     if (call.v.x) {
@@ -40,25 +40,25 @@ HOL_INLINE void triangle_sides(const TriangleCall &call, const MoleculeLane *lan
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) y[k] = y[k] + dot(d[k], a[(k + 1) % 3] - a[k]);
     }
-    if (call.rhs) read_triangle_bonds(lane, call.rhs, 0.5, y);
+    if (call.rhs) read_triangle_bonds(at, call.rhs, 0.5, y);
 }
 
 // Returns the lanes that are done.
 template <Layout layout, class V>
-static inline unsigned solve_triangles(const TriangleCall &call, const MoleculeLane *lane, int used,
-                                       const Atoms<V> &at, const TriangleMasses<V> &m, Tally &tally) {
+HOL_INLINE unsigned solve_triangles(const TriangleCall &call, int used, const Atoms<V> &at, const TriangleMasses<V> &m,
+                                    Tally &tally) {
     Vector3<V> r[3];
     V t[3];
     read_all<layout, 3>(call.r, at, r);
     const Triangle<V> x = triangle_of(call.box, r);
-    triangle_sides<layout>(call, lane, at, m, x.d, t);
+    triangle_sides<layout>(call, at, m, x.d, t);
     TriangleInverse<V>::solve(invert_triangle(m, x), t, t);
     const unsigned good = bits(Width<V>::first(used) & x.closed & finite(t[0] + (t[1] + t[2])));
     if (!good) return good;
-    if (call.lambda) write_triangle_bonds(lane, t, Width<V>::all(0.5), call.lambda, good);
+    if (call.lambda) write_triangle_bonds<layout>(at, t, Width<V>::all(0.5), call.lambda, good);
     if (call.tension) {
         const V T[3] = {t[0] * sqrt(x.q[0]), t[1] * sqrt(x.q[1]), t[2] * sqrt(x.q[2])};
-        write_triangle_bonds(lane, T, Width<V>::all(1), call.tension, good);
+        write_triangle_bonds<layout>(at, T, Width<V>::all(1), call.tension, good);
     }
     if (call.virial) add_triangle_virial(x.d, t, 1, good, tally);
     if (!call.g.x) return good;
@@ -76,8 +76,8 @@ static inline unsigned solve_triangles(const TriangleCall &call, const MoleculeL
 
 // The velocity level: twice, as velocities.hpp says.
 template <Layout layout, class V>
-static inline unsigned project_triangles(const VelocitiesCall &call, const MoleculeLane *lane,
-                                         int used, const Atoms<V> &at, const TriangleMasses<V> &m, Tally &tally) {
+HOL_INLINE unsigned project_triangles(const VelocitiesCall &call, int used, const Atoms<V> &at,
+                                      const TriangleMasses<V> &m, Tally &tally) {
     Vector3<V> r[3], v[3];
     V t[3];
     read_all<layout, 3>(call.r, at, r);
@@ -101,7 +101,7 @@ static inline unsigned project_triangles(const VelocitiesCall &call, const Molec
     project(~Width<V>::none());
     const unsigned good = bits(Width<V>::first(used) & x.closed & finite(t[0] + (t[1] + t[2])));
     if (!good) return good;
-    if (call.lambda) write_triangle_bonds(lane, t, Width<V>::all(0.5), call.lambda, good);
+    if (call.lambda) write_triangle_bonds<layout>(at, t, Width<V>::all(0.5), call.lambda, good);
     if (call.virial) add_triangle_virial(x.d, t, 1, good, tally);
     if (!call.v.is_float) {
         // Where the triangle is so nearly straight that the first time left as much as there was, what it left is

@@ -2,8 +2,8 @@
 //     P_k = - (w_k + w_{k+1}) tau_k b_k + w_{k+1} tau_{k+1} b_{k+1} + w_k tau_{k-1} b_{k-1},
 // so that with the matrix M of tau = 0 and q_k = |P_k|^2 the lengths are right where
 //     2 M tau = sigma + q(tau),   sigma = D.D - a^2.
-// q is a quadratic form in tau of three products of b alone, and small: nothing cancels, and what a step leaves is known
-// to many more digits than the bonds have.
+// q is a quadratic form in tau of three products of b alone, and small: nothing cancels, and what a step leaves is
+// known to many more digits than the bonds have.
 #ifndef HOLONOMIC_KERNELS_GRAPH_TRIANGLE_MODEL_HPP
 #define HOLONOMIC_KERNELS_GRAPH_TRIANGLE_MODEL_HPP
 
@@ -96,7 +96,8 @@ struct TriangleModel {
         TriangleInverse<V>::solve(f, y, tau);
         int64_t solves = 2;
         do {
-            // 2 M tau = sigma + q, linear about the last tau: 2 M' tau = sigma - q. What that leaves is q of the change.
+            // 2 M tau = sigma + q, linear about the last tau: 2 M' tau = sigma - q. What that leaves is q of the
+            // change.
             p = change(tau);
             f = inverse(p);
             HOL_UNROLL

@@ -18,7 +18,8 @@ struct TriangleLengths {
         a_max = V{};
         for (int k = 0; k < 3; ++k) {
             V a = {};
-            for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(a, i, lane[i < used ? i : 0].length[bond_number(k)]);
+            for (int i = 0; i < Width<V>::lanes; ++i)
+                Width<V>::set(a, i, lane[i < used ? i : 0].length[bond_number(k)]);
             a_min = min(a, a_min);
             a_max = max(a, a_max);
             a2[k] = a * a;
@@ -53,6 +54,7 @@ struct TriangleNewton {
         return mul_add(left[0] + (left[1] + left[2]), V{}, max(size[0], max(size[1], size[2])));
     }
     inline HOL_FORCED V open() {
+        HOL_UNROLL
         for (int k = 0; k < 3; ++k) now[k] = D[k];
         return measure();
     }

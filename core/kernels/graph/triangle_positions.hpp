@@ -9,15 +9,15 @@ namespace HOL_ISA {
 namespace graph {
 
 // The worst bond of the molecules in `which`, from the errors of all: of a molecule the one with the smallest number.
-template <class V>
-HOL_NOINLINE void note_worst_triangle(const V *size, const MoleculeLane *lane, V error, unsigned which, Tally &tally) {
+template <class V, class Lanes>
+HOL_NOINLINE void note_worst_triangle(const V *size, const Lanes &lanes, V error, unsigned which, Tally &tally) {
     for (int i = 0; i < Width<V>::lanes; ++i) {
         if (!(which >> i & 1)) continue;
         const double e = Width<V>::get(error, i);
-        if (!(e > tally.worst || tally.worst_chain < 0 || (e == tally.worst && lane[i].molecule < tally.worst_chain)))
+        if (!(e > tally.worst || tally.worst_chain < 0 || (e == tally.worst && lanes.molecule(i) < tally.worst_chain)))
             continue;
         tally.worst = e;
-        tally.worst_chain = lane[i].molecule;
+        tally.worst_chain = lanes.molecule(i);
         tally.worst_bond = 0;
         for (int k = 2; k >= 0; --k)
             if (Width<V>::get(size[bond_number(k)], i) >= e) tally.worst_bond = k;
@@ -25,10 +25,10 @@ HOL_NOINLINE void note_worst_triangle(const V *size, const MoleculeLane *lane, V
 }
 
 // A block at the position level: what is read, and how it is written.
-template <Layout layout, class V>
+template <Layout layout, class V, class Lanes>
 struct TrianglePositions {
     const PositionsCall &call;
-    const MoleculeLane *lane;
+    const Lanes &lanes;
     const Atoms<V> &at;
     const TriangleMasses<V> &m;
     const TriangleLengths<V> &a;
@@ -36,9 +36,9 @@ struct TrianglePositions {
     Vector3<V> r[3];
     V largest;  // coordinate
 
-    TrianglePositions(const PositionsCall &c, const MoleculeLane *lanes, const Atoms<V> &atoms,
-                      const TriangleMasses<V> &masses, const TriangleLengths<V> &lengths, Tally &sums)
-        : call(c), lane(lanes), at(atoms), m(masses), a(lengths), tally(sums) {}
+    TrianglePositions(const PositionsCall &c, const Lanes &list, const Atoms<V> &atoms, const TriangleMasses<V> &masses,
+                      const TriangleLengths<V> &lengths, Tally &sums)
+        : call(c), lanes(list), at(atoms), m(masses), a(lengths), tally(sums) {}
 
     inline HOL_FORCED void read_bonds(TriangleNewton<V> &x) {
         read_all<layout, 3>(call.r_ref, at, r);
@@ -61,10 +61,10 @@ struct TrianglePositions {
         if (call.report) {
             V left[3];
             for (int k = 0; k < 3; ++k) left[k] = abs(2.0 * x.left[k]) * a.per_a2[k];
-            note_worst_triangle(left, lane, error, good, tally);
+            note_worst_triangle(left, lanes, error, good, tally);
         }
         if (call.lambda)
-            write_triangle_bonds(lane, x.tau, Width<V>::all(0.5 / (call.dt * call.dt)), call.lambda, good);
+            write_triangle_bonds<layout>(at, x.tau, Width<V>::all(0.5 / (call.dt * call.dt)), call.lambda, good);
         if (!moved) return;
         if (call.virial) add_triangle_virial(x.b, x.tau, 1 / (call.dt * call.dt), moved, tally);
         Vector3<V> v[3];
@@ -91,7 +91,7 @@ struct TrianglePositions {
             x.shift[k] = Vector3<V>{};
         }
         p.read_bonds(x);
-        if (p.call.guess) read_triangle_bonds(p.lane, p.call.lambda, 2 * p.call.dt * p.call.dt, x.tau);
+        if (p.call.guess) read_triangle_bonds(p.at, p.call.lambda, 2 * p.call.dt * p.call.dt, x.tau);
         const Limits<V> limits(p.call, p.largest, p.a.a_min);
         const Solved<V> out = iterate<V>(x, limits, p.call, Width<V>::of_bits(wanted));
         const unsigned moved = bits(out.converged & ~x.coarse_moves(p.largest)), good = moved | bits(out.untouched);
@@ -119,22 +119,20 @@ struct TrianglePositions {
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) x.tau[k] = keep(wanted, x.tau[k]);
         error = x.move();
-        const MaskOf<V> converged =
-            wanted & ~unsure & less_equal(error, limits.enough()) & ~x.coarse_moves(largest);
+        const MaskOf<V> converged = wanted & ~unsure & less_equal(error, limits.enough()) & ~x.coarse_moves(largest);
         const unsigned moved = bits(converged), good = moved | bits(untouched), rest = bits(in_use) & ~good;
         write(x, error, good, moved, solves);
         return __builtin_expect(rest != 0, 0) ? good | solve_step_by_step(*this, rest) : good;
     }
 };
 
-template <Layout layout, class V>
-static inline unsigned move_triangles(const PositionsCall &call, const MoleculeLane *lane, int used, const Atoms<V> &at,
-                                      const TriangleMasses<V> &m, const TriangleLengths<V> &a, Tally &tally) {
-    return TrianglePositions<layout, V>(call, lane, at, m, a, tally).solve(Width<V>::first(used));
+template <Layout layout, class V, class Lanes>
+HOL_INLINE unsigned move_triangles(const PositionsCall &call, const Lanes &lanes, int used, const Atoms<V> &at,
+                                   const TriangleMasses<V> &m, const TriangleLengths<V> &a, Tally &tally) {
+    return TrianglePositions<layout, V, Lanes>(call, lanes, at, m, a, tally).solve(Width<V>::first(used));
 }
 
 }  // namespace graph
 }  // namespace HOL_ISA
 }  // namespace holonomic
 #endif
-
