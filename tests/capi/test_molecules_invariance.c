@@ -138,6 +138,70 @@ static void one_call_for_copies_gives_the_bits_of_the_list(void **state)
     mixture_free(&m);
 }
 
+/** n molecules of one kind: atom a of molecule p is number n a + p, so that each molecule has a list of its own. */
+static mixture interleaved(const molecule *parts, int64_t n)
+{
+    mixture m = mixture_make(parts, n, ONE_AFTER_THE_OTHER, 0);
+    double *const arrays[3] = {m.r, m.v, m.f};
+    const int64_t each = parts[0].n_atoms, bonds = parts[0].n_bonds;
+    for (int k = 0; k < 3; ++k) {
+        double *old = copy_of(arrays[k], mixture_size(&m));
+        for (int64_t i = 0; i < n * each; ++i)
+            memcpy(arrays[k] + 3 * (n * (i % each) + i / each), old + 3 * i, 3 * sizeof *old);
+        free(old);
+    }
+    for (int64_t i = 0; i < n * each; ++i) {
+        m.atoms[i] = n * (i % each) + i / each;
+        m.mass[m.atoms[i]] = parts[0].mass[i % each];
+    }
+    for (int64_t b = 0; b < m.n_bonds; ++b) m.length[b] = parts[0].length[b % bonds];
+    for (int64_t e = 0; e < 2 * m.n_bonds; ++e) m.pairs[e] = m.atoms[m.pairs[e]];
+    hol_chains_destroy(m.chains);
+    CHECK(hol_chains_create(m.n_atoms, m.mass, &m.chains));
+    CHECK(hol_chains_add_bonds(m.chains, m.n_bonds, m.pairs, m.length));
+    assert_int_equal(hol_chains_n_kinds(m.chains), 1);
+    return m;
+}
+
+/** A regular unit of molecules with lists; positions without a report. */
+static void equal_molecules_with_lists_have_the_bits_of_each_alone(void **state)
+{
+    (void)state;
+    enum { N = 27 }; /* some blocks of every number of lanes, and a rest */
+    static const struct {
+        molecule_kind kind;
+        int64_t size;
+    } kinds[] = {{MOLECULE_WATER, 3},
+                 {MOLECULE_NEOPENTANE, 17},
+                 {MOLECULE_COMB, 7},
+                 {MOLECULE_RING, 8},
+                 {MOLECULE_TRIANGLES, 6}};
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k) {
+        molecule parts[N];
+        for (int p = 0; p < N; ++p) {
+            random_stream stream = random_seed((uint64_t)p + 1);
+            parts[p] = molecule_make(kinds[k].kind, kinds[k].size, 1);
+            for (int64_t i = 0; i < parts[p].n_atoms; ++i)
+                for (int x = 0; x < 3; ++x) parts[p].r[3 * i + x] = parts[0].r[3 * i + (x + p) % 3];
+            molecule_finish(parts + p, &stream);
+            memcpy(parts[p].length, parts[0].length, (size_t)parts[0].n_bonds * sizeof(double));
+        }
+        mixture all = interleaved(parts, N);
+        everything together = compute(&all);
+        for (int64_t p = 0; p < N; ++p) {
+            mixture one = mixture_make(parts + p, 1, ONE_AFTER_THE_OTHER, 0);
+            everything alone = compute(&one);
+            for (int a = 0; a < ARRAYS; ++a)
+                assert_same_bits(alone.part[a], together.part[a] + (size_t)p * alone.size[a], alone.size[a]);
+            release(&alone);
+            mixture_free(&one);
+        }
+        release(&together);
+        mixture_free(&all);
+        for (int p = 0; p < N; ++p) molecule_free(parts + p);
+    }
+}
+
 static void layouts_of_doubles_change_no_bit(void **state)
 {
     (void)state;
@@ -210,6 +274,7 @@ int main(void)
         cmocka_unit_test(order_and_direction_of_bonds_and_placement_change_no_bit),
         cmocka_unit_test(number_of_threads_changes_no_bit),
         cmocka_unit_test(one_call_for_copies_gives_the_bits_of_the_list),
+        cmocka_unit_test(equal_molecules_with_lists_have_the_bits_of_each_alone),
         cmocka_unit_test(layouts_of_doubles_change_no_bit),
         cmocka_unit_test(floats_and_two_dimensions_give_the_solution_of_the_rounded_numbers),
     };

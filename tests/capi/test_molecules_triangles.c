@@ -52,6 +52,7 @@ static void nearly_straight_triangles_are_right_to_a_few_roundings(void **state)
             }
             for (int i = 0; i < 9; ++i) {
                 CHECK_AT_MOST(fabsl(g[i] - forces.g[i]), unit * forces.g_scale[i / 3]);
+                CHECK_AT_MOST(fabsl(v[i] - velocities.moved[i]), unit * velocities.moved_scale[i / 3]);
                 CHECK_AT_MOST(fabsl(fixman[i] - metric.fixman_force[i]), 2 * unit * metric.fixman_scale[i / 3]);
             }
             CHECK_AT_MOST(fabsl(log_det - metric.log_det), unit * fabsl(metric.log_det));

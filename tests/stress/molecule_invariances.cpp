@@ -21,12 +21,16 @@ void mirror(numbers &x)
         if (!is_blank(x[i])) x[i] = 0 - x[i];
 }
 
-/** A zero may have either sign, which hangs on the sign of what is added to it. */
+/**
+ * A zero may have either sign, which hangs on the sign of what is added to it; and where multipliers die away, numbers
+ * underflow in one unit that do not in another.
+ */
 void without_signs_of_zeros(molecule_results &o)
 {
+    constexpr double least = 1e-270;
     for (numbers *x : {&o.lambda, &o.solved, &o.mu, &o.position_lambda, &o.g, &o.fixman, &o.v, &o.r, &o.moved})
         for (double &y : *x)
-            if (y == 0) y = 0;
+            if (std::fabs(y) < least) y = 0;
 }
 
 void check_same(const molecule_results &one, const molecule_results &other, molecule_quantity q, molecule_verdict &out)

@@ -25,6 +25,7 @@ enum molecule_quantity {
     M_INVERSE,          ///< elements of Z~^-1, to K eps sqrt of the product of the diagonal elements
     M_POSITION,         ///< corrected positions
     M_POSITION_LAMBDA,  ///< their multipliers
+    M_CHAIN_LAMBDA,     ///< those of linear parts, which fixed atoms cut off and chains' kernels solve; for information
     M_LENGTH,           ///< bond lengths that are left
     M_REFUSED_STEP,     ///< no convergence where the reference converges; for information
     M_REFUSED,          ///< an error for a molecule that has an answer
@@ -38,9 +39,9 @@ enum molecule_quantity {
 inline const char *molecule_quantity_name(int q)
 {
     static const char *const names[M_QUANTITIES] = {
-        "lambda",   "G",        "virial",  "lambda (solve)", "mu",           "velocities", "ln det",
-        "ln det Z", "Fixman",   "inverse", "positions",      "lambda (r)",   "bonds left", "refused step",
-        "refused",  "accepted", "outputs", "same bits",      "units, mirror"};
+        "lambda",       "G",       "virial",   "lambda (solve)", "mu",         "velocities",   "ln det",
+        "ln det Z",     "Fixman",  "inverse",  "positions",      "lambda (r)", "of chains",    "bonds left",
+        "refused step", "refused", "accepted", "outputs",        "same bits",  "units, mirror"};
     return names[q];
 }
 
@@ -76,7 +77,7 @@ struct molecule_verdict {
 /** Quantities that are counted but promised nowhere. */
 inline bool is_information(int q)
 {
-    return q == M_REFUSED_STEP;
+    return q == M_REFUSED_STEP || q == M_CHAIN_LAMBDA;
 }
 
 }  // namespace stress

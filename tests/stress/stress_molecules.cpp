@@ -3,8 +3,10 @@
  *     stress_molecules SECONDS [DIRECTORY [FIRST [THREADS [PERCENT]]]]
  *         molecules from number FIRST on; those that exceed a bound go to DIRECTORY, as files for scripts/oracle.
  * PERCENT of each class may exceed one, by a factor of three at most: for a test that guards what docs/stability.md
- * says stress_molecules --seed NUMBER one molecule Exit status 0: everything within its bounds; 1: something is not; 2:
- * wrong usage.
+ * says.
+ *     stress_molecules --seed NUMBER...
+ *         these molecules.
+ * Exit status 0: everything within its bounds; 1: something is not; 2: wrong usage.
  */
 #include <algorithm>
 #include <atomic>
@@ -150,11 +152,15 @@ int check_seed(std::uint64_t seed)
 
 int main(int argc, char **argv)
 {
-    if (argc == 3 && std::strcmp(argv[1], "--seed") == 0) return check_seed(std::strtoull(argv[2], nullptr, 10));
+    if (argc >= 3 && std::strcmp(argv[1], "--seed") == 0) {
+        int exceed = 0;
+        for (int k = 2; k < argc; ++k) exceed += check_seed(std::strtoull(argv[k], nullptr, 10));
+        return exceed > 0;
+    }
     const double seconds = argc >= 2 ? std::atof(argv[1]) : 0;
     if (!(seconds > 0) || argc > 6) {
         std::fprintf(stderr,
-                     "usage: stress_molecules SECONDS [DIRECTORY [FIRST [THREADS [PERCENT]]]] | --seed NUMBER\n");
+                     "usage: stress_molecules SECONDS [DIRECTORY [FIRST [THREADS [PERCENT]]]] | --seed NUMBER...\n");
         return 2;
     }
     run all;

@@ -64,15 +64,15 @@ struct ForcesWork {
 
     template <Layout layout, class V>
     void solve(Linear<V> &z, Memory<V> memory) const {
-        const Inputs in = {&call.v, &call.f, nullptr};
+        z.x.in = {&call.v, &call.f, nullptr, false};
         if (call.v.x && call.f.x)
-            Loader<layout, squares | pulls, V>{z, in}.load();
+            Loader<layout, squares | pulls, V>{z}.load();
         else if (call.f.x)
-            Loader<layout, pulls, V>{z, in}.load();
+            Loader<layout, pulls, V>{z}.load();
         else if (call.v.x)
-            Loader<layout, squares, V>{z, in}.load();
+            Loader<layout, squares, V>{z}.load();
         else
-            Loader<layout, 0, V>{z, in}.load();
+            Loader<layout, 0, V>{z}.load();
         const unsigned good = solve_loaded<false>(z), rest = bits(z.x.in_use()) & ~good;
         write_outputs<layout>(z.x, {&call.g, call.lambda, call.tension, call.add, call.virial}, good, tally);
         if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, z.x.lane, rest, memory.next, tally);
@@ -105,7 +105,8 @@ struct SolveWork {
 
     template <Layout layout, class V>
     void solve(Linear<V> &z, Memory<V> memory) const {
-        Loader<layout, given, V>{z, {nullptr, nullptr, call.rhs}}.load();
+        z.x.in = {nullptr, nullptr, call.rhs, false};
+        Loader<layout, given, V>{z}.load();
         const unsigned good = solve_loaded<false>(z), rest = bits(z.x.in_use()) & ~good;
         write_outputs<layout>(z.x, {&call.g, call.lambda, call.tension, call.add, call.virial}, good, tally);
         if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, z.x.lane, rest, memory.next, tally);

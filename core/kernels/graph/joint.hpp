@@ -8,7 +8,7 @@
 #ifndef HOLONOMIC_KERNELS_GRAPH_JOINT_HPP
 #define HOLONOMIC_KERNELS_GRAPH_JOINT_HPP
 
-#include "core/kernels/graph/molecules.hpp"
+#include "core/kernels/graph/siblings.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -27,7 +27,7 @@ HOL_INLINE void decompose(const Molecules<V> &x, const int32_t *child, int k, V 
     for (int a = 0; a < k; ++a) {
         const BondRow<V> &row = x.row[child[a]];
         HOL_UNROLL
-        for (int b = 0; b < a; ++b) S[pair_of(a + 1, b)] = w * product_of(x, child[a], child[b]);
+        for (int b = 0; b < a; ++b) S[pair_of(a + 1, b)] = w * dot(row.d, x.row[child[b]].d);
         S[pair_of(a + 1, a)] = mul_add(w, row.q, row.E);
     }
     HOL_UNROLL
@@ -95,10 +95,10 @@ HOL_INLINE void up_joint(const Molecules<V> &x, int32_t slot, int count, Memory<
     const V w = x.w[slot];
     decompose(x, child, k, w, f.S, f.r, f.m, slack);
     V *const m = keep ? x.pair + x.s.pair_start[slot] : nullptr;
-    if (keep) {
-        HOL_UNROLL
-        for (int a = 0; a < k; ++a) {
-            x.row[child[a]].r = f.r[a];
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) {
+        x.row[child[a]].r = f.r[a];
+        if (keep) {
             HOL_UNROLL
             for (int b = 0; b < a; ++b) m[pair_of(a, b)] = f.m[pair_of(a, b)];
         }
@@ -106,7 +106,7 @@ HOL_INLINE void up_joint(const Molecules<V> &x, int32_t slot, int count, Memory<
     if (!top) {
         BondRow<V> &e = x.row[slot];
         HOL_UNROLL
-        for (int a = 0; a < k; ++a) f.y[a] = w * product_of(x, child[a], slot);
+        for (int a = 0; a < k; ++a) f.y[a] = w * (k == 1 ? product_of(x, child[a], slot) : dot(x.row[child[a]].d, e.d));
         solve_joint(k, f.r, f.m, f.y, f.z, f.l);
         const V whole = w * e.q;
         V E = whole, y = e.t;
@@ -121,7 +121,10 @@ HOL_INLINE void up_joint(const Molecules<V> &x, int32_t slot, int count, Memory<
         e.t = y;
     }
     HOL_UNROLL
-    for (int a = 0; a < k; ++a) f.y[a] = x.row[child[a]].t;
+    for (int a = 0; a < k; ++a) {
+        f.y[a] = x.row[child[a]].t;
+        x.row[child[a]].E = f.y[a] * f.r[a];  // what siblings.hpp compares with
+    }
     solve_joint(k, f.r, f.m, f.y, f.z, f.l);
     HOL_UNROLL
     for (int a = 0; a < k; ++a) x.row[child[a]].t = f.l[a];
@@ -201,18 +204,46 @@ static inline void substitute_trees(const Molecules<V> &x, Memory<V> memory) {
     if (s.type == Schedule::tree) substitute_joint<1, true>(x, s.n_tree, 1, memory);
 }
 
-// Down the trees: u becomes t, from what is above them.
-template <class V>
-static inline void down_trees(const Molecules<V> &x) {
+// Down one atom: u of its children becomes t, from that of the bond above. `look`: tests what is found.
+template <bool look, int known, class V>
+HOL_INLINE void down_joint(const Molecules<V> &x, int32_t slot, int count, V &slack) {
+    const int k = known > 0 ? known : count;
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    const V above = x.row[slot].t;
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) {
+        BondRow<V> &row = x.row[child[a]];
+        row.t = mul_add(row.l, above, row.t);
+    }
+    if (!look || known == 1) return;
+    const MaskOf<V> faint = faint_bonds(x, slot, k);
+    if (__builtin_expect(any(faint), 0)) doubt_faint_bonds(x, slot, k, bits(faint), slack);
+}
+
+// Down the trees.
+template <bool look, class V>
+static inline void down_trees(Molecules<V> &x) {
     const Schedule &s = x.s;
-    const int32_t *const start = s.child_start;
+    V slack = x.slack;
     for (int32_t slot = s.n_tree - 1; slot >= 0; --slot) {
-        const V t = x.row[slot].t;
-        for (int32_t c = start[slot]; c < start[slot + 1]; ++c) {
-            BondRow<V> &row = x.row[s.child[c]];
-            row.t = mul_add(row.l, t, row.t);
+        const int k = s.child_start[slot + 1] - s.child_start[slot];
+        switch (k) {
+            case 0:
+                break;
+            case 1:
+                down_joint<look, 1>(x, slot, k, slack);
+                break;
+            case 2:
+                down_joint<look, 2>(x, slot, k, slack);
+                break;
+            case 3:
+                down_joint<look, 3>(x, slot, k, slack);
+                break;
+            default:
+                down_joint<look, 0>(x, slot, k, slack);
         }
     }
+    x.slack = slack;
 }
 
 }  // namespace graph

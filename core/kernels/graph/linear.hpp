@@ -35,8 +35,8 @@ struct Linear {
     }
 
     Linear(const Schedule &s, const MoleculeLane *lane, int used, const Box &box, const AtomArray &r, Memory<V> &memory)
-        : x{s, lane, used, Atoms<V>(lane, used), &box, &r, nullptr, nullptr, nullptr, Width<V>::all(1)}, core(), ring(),
-          equations(), t(), alone() {
+        : x{s, lane, used, Atoms<V>(lane, used), &box, &r, nullptr, nullptr, nullptr, Width<V>::all(1), {}}, core(),
+          ring(), equations(), t(), alone() {
         x.w = memory.values(s.n_atoms);
         x.row = reinterpret_cast<BondRow<V> *>(memory.values(sizeof(BondRow<V>) / sizeof(V) * s.n_bonds));
         x.pair = memory.values(s.n_pairs);
@@ -70,7 +70,7 @@ struct Linear {
         switch (x.s.type) {
             case Schedule::tree:
                 up_trees<keep>(x, working);
-                down_trees(x);
+                down_trees<true>(x);
                 break;
             case Schedule::triangle:
                 break;  // triangle_linear.hpp
@@ -90,7 +90,7 @@ struct Linear {
         switch (x.s.type) {
             case Schedule::tree:
                 substitute_trees(x, working);
-                down_trees(x);
+                down_trees<false>(x);
                 break;
             case Schedule::triangle:
                 break;
@@ -131,7 +131,7 @@ private:
     void solve_core() {
         substitute_core(x, core, working);
         down_core(x, core);
-        down_trees(x);
+        down_trees<false>(x);
     }
 
     // |b_k| / A_kk

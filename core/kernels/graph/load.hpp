@@ -14,22 +14,16 @@ namespace graph {
 // bond.
 enum RightHandSide { squares = 1, pulls = 2, rates = 4, given = 8 };
 
-struct Inputs {
-    const AtomArray *v, *f;
-    const double *rhs;
-};
-
 template <Layout layout, int terms, class V>
 struct Loader {
     Linear<V> &z;
-    const Inputs in;
 
     // The atom at a slot, kept for the bonds below it.
     HOL_INLINE void read_atom(const Loader &me, int32_t slot, Vector3<V> &r, Vector3<V> &v, Vector3<V> &f) {
         const int32_t atom = me.z.x.s.atom_of[slot];
         r = read<layout>(*me.z.x.r, me.z.x.at, atom);
-        if (terms & (squares | rates)) v = read<layout>(*me.in.v, me.z.x.at, atom);
-        if (terms & pulls) f = read<layout>(*me.in.f, me.z.x.at, atom);
+        if (terms & (squares | rates)) v = read<layout>(*me.z.x.in.v, me.z.x.at, atom);
+        if (terms & pulls) f = read<layout>(*me.z.x.in.f, me.z.x.at, atom);
     }
     HOL_INLINE void keep_atom(const Loader &me, int32_t slot, const Vector3<V> &r, const Vector3<V> &v,
                               const Vector3<V> &f) {
@@ -67,7 +61,7 @@ struct Loader {
     HOL_INLINE V given_value(const Loader &me, int32_t place) {
         V b = {};
         for (int i = 0; i < Width<V>::lanes; ++i)
-            Width<V>::set(b, i, 0.5 * me.in.rhs[me.z.x.lane[i].first_bond + me.z.x.s.bond_of[place]]);
+            Width<V>::set(b, i, 0.5 * me.z.x.in.rhs[me.z.x.lane[i].first_bond + me.z.x.s.bond_of[place]]);
         if (me.z.equations.given) me.z.equations.given[place] = b;
         return b;
     }

@@ -21,6 +21,13 @@ struct BondRow {
     V r;  // 1 / pivot
 };
 
+// What right-hand sides are made of; absent ones are nullptr, or arrays without x.
+struct Inputs {
+    const AtomArray *v, *f;
+    const double *rhs;
+    bool rates;  // d.(v_j - v_i) instead of |v_j - v_i|^2
+};
+
 template <class V>
 struct Molecules {
     const Schedule &s;
@@ -33,6 +40,7 @@ struct Molecules {
     BondRow<V> *row;     // [n_bonds] by place
     V *pair;             // [n_pairs] multipliers among the children of an atom
     V slack;             // negative where plain products do not do
+    Inputs in;
 
     MaskOf<V> in_use() const { return Width<V>::first(used); }
 };

@@ -36,7 +36,8 @@ struct VelocitiesWork {
 
     template <Layout layout, class V>
     void solve(Linear<V> &z, Memory<V> memory) const {
-        Loader<layout, rates, V>{z, {&call.v, nullptr, nullptr}}.load();
+        z.x.in = {&call.v, nullptr, nullptr, true};
+        Loader<layout, rates, V>{z}.load();
         z.equations.start = z.equations.velocity;
         z.equations.velocity = nullptr;
         const unsigned good = solve_loaded<true>(z), rest = bits(z.x.in_use()) & ~good;

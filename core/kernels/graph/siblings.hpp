@@ -1,0 +1,99 @@
+// Where bonds meet at an atom of a tree, what is found may be a small difference of large terms: the multiplier of a
+// bond that is not pulled itself, beside a sibling or a parent that is. The products d.d' at atom i are right to a
+// rounding of |d| |d'|, so with the sum T of the tensions |t| |d| around the atom, t_c is right to a few roundings of
+//
+//     w_i |d_c| T r_c,   r_c = 1 / pivot,
+//
+// beside what its scale |A^-1| S (docs/theory.md) allows. That scale is at least |t_c|, |y_c| r_c - y_c is what c and the
+// bonds below it are pulled by, r_c <= (A^-1)_cc - and S_c / A_cc, S_c the terms of its right-hand side in absolute
+// values. Bonds for
+// which none of these is large enough are `faint`; the first two are looked at always, the third where those do not do.
+#ifndef HOLONOMIC_KERNELS_GRAPH_SIBLINGS_HPP
+#define HOLONOMIC_KERNELS_GRAPH_SIBLINGS_HPP
+
+#include "core/kernels/graph/molecules.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// How many times a bond's scale that error may be, both in roundings.
+constexpr double most_cancelled = 64;
+
+// Square of the part of the error that all bonds at an atom share.
+template <class V>
+HOL_INLINE V shared_error(const Molecules<V> &x, int32_t slot, int k) {
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    const BondRow<V> &e = x.row[slot];
+    V T2 = e.q * (e.t * e.t);
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) {
+        const BondRow<V> &row = x.row[child[a]];
+        T2 = mul_add(row.q, row.t * row.t, T2);
+    }
+    const V w = x.w[slot];
+    return (w * w) * ((1 / (most_cancelled * most_cancelled)) * T2);
+}
+
+// What a bond's own size leaves when the error is taken away: negative where it is faint.
+template <class V>
+HOL_INLINE V left_of(const BondRow<V> &row, const V &shared) {
+    return mul_add(-shared, row.q * (row.r * row.r), mul_add(row.t, row.t, row.E * row.E));
+}
+
+// Lanes in which a bond at this atom is faint, the one above it or one of its k children. E of the rows: y r.
+template <class V>
+HOL_INLINE MaskOf<V> faint_bonds(const Molecules<V> &x, int32_t slot, int k) {
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    const V shared = shared_error(x, slot, k);
+    V least = left_of(x.row[slot], shared);
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) least = min(left_of(x.row[child[a]], shared), least);
+    return less(least, V{});
+}
+
+// The terms of a bond's right-hand side in absolute values, in one lane.
+template <class V>
+double terms_of(const Molecules<V> &x, int32_t place, int lane) {
+    if (x.in.rhs) return __builtin_fabs(0.5 * x.in.rhs[x.lane[lane].first_bond + x.s.bond_of[place]]);
+    const Vector3<V> &row = x.row[place].d;
+    const double d[3] = {Width<V>::get(row.x, lane), Width<V>::get(row.y, lane), Width<V>::get(row.z, lane)};
+    int32_t end[2];
+    ends_of(x.s, place, end[0], end[1]);
+    double sum = 0, v[2][3] = {};
+    for (int e = 0; e < 2; ++e) {
+        const int64_t number = Atoms<V>::number(x.at, lane, x.s.atom_of[end[e]]);
+        double f[3] = {};
+        if (x.in.v->x) read_row(*x.in.v, number, v[e]);
+        if (x.in.f && x.in.f->x) read_row(*x.in.f, number, f);
+        const double w = Width<V>::get(x.w[end[e]], lane);
+        for (int c = 0; c < 3; ++c) sum += w * __builtin_fabs(d[c] * f[c]);
+        for (int c = 0; c < 3 && x.in.rates; ++c) sum += __builtin_fabs(d[c] * v[e][c]);
+    }
+    for (int c = 0; c < 3 && !x.in.rates; ++c) sum += (v[1][c] - v[0][c]) * (v[1][c] - v[0][c]);
+    return sum;
+}
+
+// Looks again at the bonds of an atom in the lanes of `which`: slack becomes negative where one is faint all the same.
+template <class V>
+HOL_NOINLINE void doubt_faint_bonds(const Molecules<V> &x, int32_t slot, int k, unsigned which, V &slack) {
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    const V shared = shared_error(x, slot, k);
+    for (int a = -1; a < k; ++a) {
+        const int32_t place = a < 0 ? slot : child[a];
+        const V left = left_of(x.row[place], shared);
+        int32_t from, to;
+        ends_of(x.s, place, from, to);
+        const V A = (x.w[from] + x.w[to]) * x.row[place].q;
+        for (unsigned rest = which & bits(less(left, V{})); rest; rest &= rest - 1) {
+            const int i = __builtin_ctz(rest);
+            const double own = terms_of(x, place, i) / Width<V>::get(A, i);
+            if (!(Width<V>::get(left, i) + own * own >= 0)) Width<V>::set(slack, i, -1);
+        }
+    }
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif
