@@ -44,6 +44,19 @@ private:
     using Vector = std::array<double, 3>;
     using Shifts = std::array<int, 3>;
 
+    /** Molecules that are worked on together, few enough for the cache, and where their parts of lists begin and end.
+     */
+    struct Block {
+        holonomic_lammps::Packed packed;
+        int first_shifted, end_shifted;
+        int first_away, end_away;
+    };
+
+    /** A slot whose atom another rank owns, and its place in the messages to the owners. */
+    struct Away {
+        int slot, order;
+    };
+
     /** A slot whose atom is another image than the one that makes its molecule whole. */
     struct Shifted {
         int slot;
@@ -60,21 +73,27 @@ private:
     void replan(bool fresh);
     void take_masses();
     void make_whole();
-    void collect_positions();
-    void add_images(std::vector<double> &positions, int sign);
-    double return_positions(double inverse_time);
+    void make_blocks();
+    void collect_all_positions();
+    bool constrain_positions(bool from_themselves, double time);
+    void collect_positions(const Block &);
+    void return_positions(const Block &, double inverse_time);
+    void move_atom(int atom, const double *r, double inverse_time);
+    void add_images(const Block &, int sign);
     Vector image_vector(const Shifts &) const;
     Shifts nearest_image(const double *d) const;
 
     // Velocities and forces
     void measure_rate();
-    void collect_velocities(double scale, bool with_forces);
-    void add_streaming();
+    template <class Give>
+    void constrain_velocities(bool half_kick, bool with_forces, Give give);
+    void receive_velocities(double half, bool with_forces);
+    void collect_velocities(const Block &, double half);
+    void add_streaming(const Block &);
     template <class Add>
     void return_to_atoms(const std::vector<double> &numbers, Add add);
     void exact_forces();
     double mass_of(int atom) const;
-    double kick_of(int atom) const;
     bool reruns() const;
 
     // Outputs
@@ -93,20 +112,24 @@ private:
     std::vector<holonomic_lammps::Belonging> atoms_;  // by local atom
     holonomic_lammps::Registry registry_;
     std::unique_ptr<holonomic_lammps::Plan> plan_;
-    std::unique_ptr<holonomic_lammps::Packed> packed_;
+    std::vector<Block> blocks_;
     std::vector<std::vector<std::array<int, 2>>> walks_;  // by shape, see walk()
 
     // By slot, three numbers each; molecules are whole.
-    std::vector<double> before_, now_, velocities_, projected_, forces_, reactions_;
-    std::vector<double> masses_;    // by slot; 0: held fixed
-    std::vector<double> tensions_;  // by bond
+    std::vector<double> before_, now_, velocities_, forces_, reactions_;
+    std::vector<double> masses_, inverse_masses_;  // by slot; 0: held fixed
+    std::vector<double> tensions_;                 // by bond
     double virial_[9] = {0};
-    std::vector<Shifted> shifted_;
+    std::vector<Shifted> shifted_;  // by slot
+    std::vector<Away> away_;        // by slot
+    std::vector<double> answers_;   // three numbers for each of those, in the order of the messages
+    std::vector<double> change_;    // scratch of a block
 
     double rate_[6] = {0};       // d(box)/dt box^-1, xx yy zz yz xz xy, with which atoms move beside their velocities
     double step_rate_[6] = {0};  // its mean over the last step
     double last_box_[6] = {0};   // at the end of that step
     bool streaming_ = false;
+    bool reruns_ = false;
 
     int max_rows_ = 0;  // of array_local
 };

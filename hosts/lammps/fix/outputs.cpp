@@ -90,8 +90,13 @@ Dof FixHolonomic::dof(int igroup) {
 
 hol_worst FixHolonomic::errors() {
     hol_worst worst{};
-    if (!packed_) return worst;
-    guarded([&] { worst = packed_->violation(now_.data(), projected_.data()); });
+    guarded([&] {
+        for (const Block &block : blocks_) {
+            const hol_worst here = block.packed.violation(now_.data(), velocities_.data());
+            worst.length = std::max(worst.length, here.length);
+            worst.rate = std::max(worst.rate, here.rate);
+        }
+    });
     double both[2] = {worst.length, worst.rate};
     MPI_Allreduce(MPI_IN_PLACE, both, 2, MPI_DOUBLE, MPI_MAX, world);
     worst.length = both[0];
@@ -123,5 +128,6 @@ double FixHolonomic::compute_vector(int k) {
 double FixHolonomic::memory_usage() {
     double bytes = static_cast<double>(atoms_.capacity() * sizeof(Belonging));
     bytes += static_cast<double>((6 * now_.capacity() + tensions_.capacity() + masses_.capacity()) * sizeof(double));
-    return bytes + (packed_ ? static_cast<double>(packed_->memory()) : 0.0);
+    for (const Block &block : blocks_) bytes += static_cast<double>(block.packed.memory());
+    return bytes;
 }

@@ -15,6 +15,13 @@ using namespace LAMMPS_NS;
 using namespace std::string_literals;
 using namespace holonomic_lammps;
 
+namespace {
+
+/** Arrays of a block stay in the cache between taking them, solving, and giving them back. */
+constexpr int atoms_of_block = 1024;
+
+}  // namespace
+
 bool FixHolonomic::reruns() const { return CommandName::of(input) == "rerun"s; }
 
 double FixHolonomic::mass_of(int i) const {
@@ -35,11 +42,9 @@ void FixHolonomic::setup_pre_neighbor() {
         replan(true);
         make_whole();
         if (reruns()) return;
-        before_ = now_;
-        packed_->positions(before_.data(), now_.data(), 1.0);
-        double moved = return_positions(0);
-        MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_DOUBLE, MPI_MAX, world);
-        if (moved > 0) comm->forward_comm();
+        int moved = constrain_positions(true, 1.0);
+        MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_INT, MPI_MAX, world);
+        if (moved) comm->forward_comm();
     });
 }
 
@@ -48,14 +53,36 @@ void FixHolonomic::replan(bool fresh) {
     const std::vector<Tag> tags(atom->tag, atom->tag + atom->nlocal);
     int changed = plan_->renew(registry_, members.data(), tags.data(), atom->nlocal) || fresh;
     MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_MAX, world);
+    away_.clear();
+    for (const Peer &owner : plan_->exchange.owners)
+        for (int slot : owner.indices) away_.push_back({slot, static_cast<int>(away_.size())});
+    std::sort(away_.begin(), away_.end(), [](const Away &a, const Away &b) { return a.slot < b.slot; });
+    answers_.resize(3 * away_.size());
     if (!changed) return;
     take_masses();
-    packed_ = std::make_unique<Packed>(*plan_, masses_.data());
-    for (std::vector<double> *array : {&now_, &before_, &velocities_, &projected_, &forces_, &reactions_})
-        array->assign(3 * static_cast<std::size_t>(plan_->n_slots()), 0.0);
-    tensions_.assign(packed_->n_bonds(), 0.0);
     walks_.clear();
     for (const Shape &shape : plan_->shapes()) walks_.push_back(walk(shape));
+    make_blocks();
+    for (std::vector<double> *array : {&now_, &before_, &velocities_, &forces_, &reactions_})
+        array->assign(3 * static_cast<std::size_t>(plan_->n_slots()), 0.0);
+}
+
+void FixHolonomic::make_blocks() {
+    const std::vector<Resident> &residents = plan_->residents();
+    const int n_residents = static_cast<int>(residents.size());
+    blocks_.clear();
+    int n_bonds = 0;
+    for (int first = 0, end = 0; first < n_residents; first = end) {
+        const int first_bond = n_bonds;
+        int n_atoms = 0;
+        while (end < n_residents && (n_atoms == 0 || n_atoms < atoms_of_block)) {
+            const Shape &shape = plan_->shapes()[residents[end++].shape];
+            n_atoms += shape.n_atoms;
+            n_bonds += static_cast<int>(shape.pairs.size());
+        }
+        blocks_.push_back({Packed(*plan_, masses_.data(), first, end, first_bond), 0, 0, 0, 0});
+    }
+    tensions_.assign(n_bonds, 0.0);
 }
 
 void FixHolonomic::take_masses() {
@@ -65,24 +92,38 @@ void FixHolonomic::take_masses() {
     plan_->exchange.to_homes<1>(
         world, [&](int i, double *mass) { *mass = mass_of(i); },
         [&](int slot, const double *mass) { masses_[slot] = *mass; });
+    inverse_masses_.resize(masses_.size());
+    for (std::size_t k = 0; k < masses_.size(); ++k) inverse_masses_[k] = masses_[k] > 0 ? 1 / masses_[k] : 0;
 }
 
 /** Which image of each atom makes its molecule whole, seen from the atom at place 0; bonds are shorter than half a box.
  */
 void FixHolonomic::make_whole() {
     shifted_.clear();
-    collect_positions();
-    for (const Resident &resident : plan_->residents())
-        for (const auto &step : walks_[resident.shape]) {
-            double *to = &now_[3 * (resident.first + step[0])];
-            const double *from = &now_[3 * (resident.first + step[1])];
-            const double d[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
-            const Shifts images = nearest_image(d);
-            if (images == Shifts{0, 0, 0}) continue;
-            shifted_.push_back({resident.first + step[0], images});
-            const Vector shift = image_vector(images);
-            for (int c = 0; c < 3; ++c) to[c] += shift[c];
+    collect_all_positions();
+    for (Block &block : blocks_) {
+        block.first_shifted = static_cast<int>(shifted_.size());
+        for (int m = block.packed.first_resident(); m < block.packed.end_resident(); ++m) {
+            const Resident &resident = plan_->residents()[m];
+            for (const auto &step : walks_[resident.shape]) {
+                double *to = &now_[3 * (resident.first + step[0])];
+                const double *from = &now_[3 * (resident.first + step[1])];
+                const double d[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+                const Shifts images = nearest_image(d);
+                if (images == Shifts{0, 0, 0}) continue;
+                shifted_.push_back({resident.first + step[0], images});
+                const Vector shift = image_vector(images);
+                for (int c = 0; c < 3; ++c) to[c] += shift[c];
+            }
         }
+        block.end_shifted = static_cast<int>(shifted_.size());
+        const auto behind = [](const Away &away, int slot) { return away.slot < slot; };
+        const auto find = [&](int slot) {
+            return static_cast<int>(std::lower_bound(away_.begin(), away_.end(), slot, behind) - away_.begin());
+        };
+        block.first_away = find(block.packed.first_slot());
+        block.end_away = find(block.packed.end_slot());
+    }
 }
 
 FixHolonomic::Vector FixHolonomic::image_vector(const Shifts &n) const {
@@ -102,63 +143,89 @@ FixHolonomic::Shifts FixHolonomic::nearest_image(const double *d) const {
     return n;
 }
 
-void FixHolonomic::add_images(std::vector<double> &positions, int sign) {
-    for (const Shifted &shifted : shifted_) {
-        const Vector shift = image_vector(shifted.images);
-        for (int c = 0; c < 3; ++c) positions[3 * shifted.slot + c] += sign * shift[c];
+void FixHolonomic::add_images(const Block &block, int sign) {
+    for (int k = block.first_shifted; k < block.end_shifted; ++k) {
+        const Vector shift = image_vector(shifted_[k].images);
+        for (int c = 0; c < 3; ++c) now_[3 * shifted_[k].slot + c] += sign * shift[c];
     }
 }
 
-void FixHolonomic::collect_positions() {
-    double **x = atom->x;
+/** Positions as the atoms have them, not yet whole. */
+void FixHolonomic::collect_all_positions() {
+    for (int slot = 0; slot < plan_->n_slots(); ++slot)
+        if (plan_->atoms()[slot] >= 0) std::copy_n(atom->x[plan_->atoms()[slot]], 3, &now_[3 * slot]);
+    plan_->exchange.to_homes<3>(
+        world, [&](int i, double *r) { std::copy_n(atom->x[i], 3, r); },
+        [&](int slot, const double *r) { std::copy_n(r, 3, &now_[3 * slot]); });
+}
+
+/** Those of a block's own atoms; what other ranks sent is there. Whole molecules. */
+void FixHolonomic::collect_positions(const Block &block) {
+    const double *x = atom->nlocal > 0 ? atom->x[0] : nullptr;
     const int *atoms = plan_->atoms().data();
-    const int n_slots = plan_->n_slots();
-    for (int slot = 0; slot < n_slots; ++slot) {
+    double *now = now_.data();
+    for (int slot = block.packed.first_slot(); slot < block.packed.end_slot(); ++slot) {
         if (atoms[slot] < 0) continue;
-        const double *from = x[atoms[slot]];
-        double *to = &now_[3 * slot];
+        const double *from = x + 3 * static_cast<std::ptrdiff_t>(atoms[slot]);
+        double *to = now + 3 * slot;
         to[0] = from[0], to[1] = from[1], to[2] = from[2];
     }
-    plan_->exchange.to_homes<3>(
-        world, [&](int i, double *r) { std::copy(x[i], x[i] + 3, r); },
-        [&](int slot, const double *r) { std::copy(r, r + 3, &now_[3 * slot]); });
-    add_images(now_, 1);
+    add_images(block, 1);
 }
 
-/** Positions as they are now go back to the atoms, whose velocities get what they have moved; gives the largest move.
- */
-double FixHolonomic::return_positions(double inverse_time) {
-    double **x = atom->x, **v = atom->v;
-    double largest = 0;
-    const auto place = [&](int i, const double *r) {
-        for (int c = 0; c < 3; ++c) {
-            const double moved = r[c] - x[i][c];
-            v[i][c] += inverse_time * moved;
-            x[i][c] = r[c];
-            largest = std::max(largest, std::fabs(moved));
-        }
-    };
-    std::vector<Vector> whole;
-    for (const Shifted &shifted : shifted_) {
-        const double *r = &now_[3 * shifted.slot];
-        whole.push_back({r[0], r[1], r[2]});
+/** An atom's new position; its velocity gets the displacement over the time. */
+inline void FixHolonomic::move_atom(int i, const double *r, double inverse_time) {
+    double *x = atom->x[0] + 3 * static_cast<std::ptrdiff_t>(i);
+    double *v = atom->v[0] + 3 * static_cast<std::ptrdiff_t>(i);
+    for (int c = 0; c < 3; ++c) {
+        v[c] += inverse_time * (r[c] - x[c]);
+        x[c] = r[c];
     }
-    add_images(now_, -1);
+}
+
+/** A block's positions go back to its own atoms, and into the answers to other ranks. */
+void FixHolonomic::return_positions(const Block &block, double inverse_time) {
+    const int first = block.packed.first_slot(), end = block.packed.end_slot();
+    if (block.first_shifted != block.end_shifted) {
+        change_.assign(&now_[3 * first], &now_[3 * first] + 3 * (end - first));
+        add_images(block, -1);
+    }
     const int *atoms = plan_->atoms().data();
-    for (int slot = 0; slot < plan_->n_slots(); ++slot)
-        if (atoms[slot] >= 0) place(atoms[slot], &now_[3 * slot]);
+    for (int slot = first; slot < end; ++slot)
+        if (atoms[slot] >= 0) move_atom(atoms[slot], &now_[3 * slot], inverse_time);
+    for (int k = block.first_away; k < block.end_away; ++k)
+        std::copy_n(&now_[3 * away_[k].slot], 3, &answers_[3 * away_[k].order]);
+    // Whole again, to the bit
+    for (int k = block.first_shifted; k < block.end_shifted; ++k)
+        std::copy_n(&change_[3 * (shifted_[k].slot - first)], 3, &now_[3 * shifted_[k].slot]);
+}
+
+/**
+ * Positions onto the constraints, along the bonds of those of the last step or of themselves; velocities get the
+ * displacements over the time, or nothing. Gives whether any has moved.
+ */
+bool FixHolonomic::constrain_positions(bool from_themselves, double time) {
+    const double inverse_time = from_themselves ? 0.0 : 1 / time;
+    before_.swap(now_);
+    plan_->exchange.to_homes<3>(
+        world, [&](int i, double *r) { std::copy_n(atom->x[i], 3, r); },
+        [&](int slot, const double *r) { std::copy_n(r, 3, &now_[3 * slot]); });
+    std::int64_t n_moved = 0;
+    for (Block &block : blocks_) {
+        collect_positions(block);
+        if (from_themselves)
+            std::copy(&now_[3 * block.packed.first_slot()], now_.data() + 3 * block.packed.end_slot(),
+                      &before_[3 * block.packed.first_slot()]);
+        n_moved += block.packed.positions(before_.data(), now_.data(), time);
+        return_positions(block, inverse_time);
+    }
+    const double *answer = answers_.data();
     plan_->exchange.to_owners<3>(
-        world, [&](int slot, double *r) { std::copy(&now_[3 * slot], &now_[3 * slot] + 3, r); }, place);
-    for (std::size_t k = 0; k < whole.size(); ++k)
-        std::copy(whole[k].begin(), whole[k].end(), &now_[3 * shifted_[k].slot]);
-    return largest;
+        world, [&](int, double *r) { std::copy_n(answer, 3, r), answer += 3; },
+        [&](int i, const double *r) { move_atom(i, r, inverse_time); });
+    return n_moved > 0;
 }
 
 void FixHolonomic::post_integrate() {
-    guarded([&] {
-        before_.swap(now_);
-        collect_positions();
-        packed_->positions(before_.data(), now_.data(), update->dt);
-        return_positions(1 / update->dt);
-    });
+    guarded([&] { constrain_positions(false, update->dt); });
 }

@@ -14,12 +14,6 @@ using namespace LAMMPS_NS;
 using namespace std::string_literals;
 using namespace holonomic_lammps;
 
-/** What a force changes a velocity by in half a step; 0 for atoms that are held fixed. */
-double FixHolonomic::kick_of(int i) const {
-    const double mass = mass_of(i);
-    return mass > 0 ? 0.5 * update->dt * force->ftm2v / mass : 0.0;
-}
-
 /**
  * Where a barostat or fix deform changes the box and moves the atoms with it, they move with v + L x, and it is that
  * motion that has to keep the lengths: d.(v_rel + L d) = 0. The boxes before and after a step give the mean L of the
@@ -55,50 +49,58 @@ void FixHolonomic::measure_rate() {
     streaming_ = std::any_of(rate_, rate_ + 6, [](double x) { return x != 0; });
 }
 
-/** Velocities of the slots, v + scale times half a kick; forces in the library's units. */
-void FixHolonomic::collect_velocities(double scale, bool with_forces) {
+/** From other ranks: v + half f / m, or v if half is 0; and the forces of all atoms, in the library's units. */
+void FixHolonomic::receive_velocities(double half, bool with_forces) {
     double **v = atom->v, **f = atom->f;
-    const double half = scale * 0.5 * update->dt * force->ftm2v;
-    const int *atoms = plan_->atoms().data();
-    const int n_slots = plan_->n_slots();
-    for (int slot = 0; slot < n_slots; ++slot) {
-        const int i = atoms[slot];
-        if (i < 0) continue;
-        const double kick = masses_[slot] > 0 ? half / masses_[slot] : 0.0;
-        for (int c = 0; c < 3; ++c) velocities_[3 * slot + c] = v[i][c] + kick * f[i][c];
-    }
+    const double unit = force->ftm2v;
     const auto read = [&](int i, double *u) {
-        const double kick = scale * kick_of(i);
+        const double mass = mass_of(i), kick = mass > 0 ? half / mass : 0.0;
         for (int c = 0; c < 3; ++c) u[c] = v[i][c] + kick * f[i][c];
     };
     if (!with_forces) {
         plan_->exchange.to_homes<3>(world, read,
-                                    [&](int slot, const double *u) { std::copy(u, u + 3, &velocities_[3 * slot]); });
-    } else {
-        for (int slot = 0; slot < n_slots; ++slot)
-            if (atoms[slot] >= 0)
-                for (int c = 0; c < 3; ++c) forces_[3 * slot + c] = force->ftm2v * f[atoms[slot]][c];
-        plan_->exchange.to_homes<6>(
-            world,
-            [&](int i, double *numbers) {
-                read(i, numbers);
-                for (int c = 0; c < 3; ++c) numbers[3 + c] = force->ftm2v * f[i][c];
-            },
-            [&](int slot, const double *numbers) {
-                std::copy(numbers, numbers + 3, &velocities_[3 * slot]);
-                std::copy(numbers + 3, numbers + 6, &forces_[3 * slot]);
-            });
+                                    [&](int slot, const double *u) { std::copy_n(u, 3, &velocities_[3 * slot]); });
+        return;
     }
-    add_streaming();
+    const int *atoms = plan_->atoms().data();
+    for (int slot = 0; slot < plan_->n_slots(); ++slot)
+        if (atoms[slot] >= 0)
+            for (int c = 0; c < 3; ++c) forces_[3 * slot + c] = unit * f[atoms[slot]][c];
+    plan_->exchange.to_homes<6>(
+        world,
+        [&](int i, double *numbers) {
+            read(i, numbers);
+            for (int c = 0; c < 3; ++c) numbers[3 + c] = unit * f[i][c];
+        },
+        [&](int slot, const double *numbers) {
+            std::copy_n(numbers, 3, &velocities_[3 * slot]);
+            std::copy_n(numbers + 3, 3, &forces_[3 * slot]);
+        });
+}
+
+/** The same for a block's own atoms; then the box's motion for all. */
+void FixHolonomic::collect_velocities(const Block &block, double half) {
+    if (atom->nlocal > 0) {
+        const double *v = atom->v[0], *f = atom->f[0];
+        const int *atoms = plan_->atoms().data();
+        double *velocities = velocities_.data();
+        for (int slot = block.packed.first_slot(); slot < block.packed.end_slot(); ++slot) {
+            if (atoms[slot] < 0) continue;
+            const std::ptrdiff_t i = 3 * static_cast<std::ptrdiff_t>(atoms[slot]);
+            const double kick = half * inverse_masses_[slot];
+            for (int c = 0; c < 3; ++c) velocities[3 * slot + c] = v[i + c] + kick * f[i + c];
+        }
+    }
+    add_streaming(block);
 }
 
 /** Velocities with which the slots really move: images with their box, atoms with the box that is deformed. */
-void FixHolonomic::add_streaming() {
+void FixHolonomic::add_streaming(const Block &block) {
     if (domain->deform_vremap) {
         const double *h = domain->h_rate;
-        for (const Shifted &shifted : shifted_) {
-            const Shifts &n = shifted.images;
-            double *v = &velocities_[3 * shifted.slot];
+        for (int k = block.first_shifted; k < block.end_shifted; ++k) {
+            const Shifts &n = shifted_[k].images;
+            double *v = &velocities_[3 * shifted_[k].slot];
             v[0] += n[0] * h[0] + n[1] * h[5] + n[2] * h[4];
             v[1] += n[1] * h[1] + n[2] * h[3];
             v[2] += n[2] * h[2];
@@ -106,7 +108,8 @@ void FixHolonomic::add_streaming() {
     }
     if (!streaming_) return;
     const double *L = rate_;
-    for (const Resident &resident : plan_->residents()) {
+    for (int m = block.packed.first_resident(); m < block.packed.end_resident(); ++m) {
+        const Resident &resident = plan_->residents()[m];
         const double *origin = &now_[3 * resident.first];
         const int n_atoms = plan_->shapes()[resident.shape].n_atoms;
         for (int k = 1; k < n_atoms; ++k) {
@@ -120,9 +123,41 @@ void FixHolonomic::add_streaming() {
     }
 }
 
+/**
+ * Velocities onto the constraints, those of now or those that a half step with the present forces would give: calls
+ * give(atom, change, mass) on the owners' ranks. velocities_ is what comes out, with the box's motion.
+ */
+template <class Give>
+void FixHolonomic::constrain_velocities(bool half_kick, bool with_forces, Give give) {
+    const double half = half_kick ? 0.5 * update->dt * force->ftm2v : 0.0;
+    receive_velocities(half, with_forces);
+    const int *atoms = plan_->atoms().data();
+    for (Block &block : blocks_) {
+        const int first = block.packed.first_slot(), n = block.packed.end_slot() - first;
+        double *velocities = &velocities_[3 * first];
+        collect_velocities(block, half);
+        change_.assign(velocities, velocities + 3 * n);
+        if (!reruns_) block.packed.velocities(now_.data(), velocities_.data());
+        for (int k = 0; k < 3 * n; ++k) change_[k] = velocities[k] - change_[k];
+        for (int k = 0; k < n; ++k)
+            if (atoms[first + k] >= 0) give(atoms[first + k], &change_[3 * k], masses_[first + k]);
+        for (int k = block.first_away; k < block.end_away; ++k)
+            std::copy_n(&change_[3 * (away_[k].slot - first)], 3, &answers_[3 * away_[k].order]);
+    }
+    const double *answer = answers_.data();
+    plan_->exchange.to_owners<3>(
+        world, [&](int, double *out) { std::copy_n(answer, 3, out), answer += 3; },
+        [&](int i, const double *change) { give(i, change, mass_of(i)); });
+}
+
 /** Constraint forces of this instant, tensions and virial, in LAMMPS's units, from positions, velocities and forces. */
 void FixHolonomic::exact_forces() {
-    packed_->forces(now_.data(), projected_.data(), forces_.data(), tensions_.data(), reactions_.data(), virial_);
+    std::fill(virial_, virial_ + 9, 0.0);
+    for (Block &block : blocks_) {
+        double part[9];
+        block.packed.forces(now_.data(), velocities_.data(), forces_.data(), tensions_.data(), reactions_.data(), part);
+        for (int k = 0; k < 9; ++k) virial_[k] += part[k];
+    }
     const double unit = 1 / force->ftm2v;
     for (double &x : reactions_) x *= unit;
     for (double &x : tensions_) x *= unit;
@@ -138,16 +173,13 @@ void FixHolonomic::setup(int vflag) {
         }
         std::copy(domain->h, domain->h + 6, last_box_);
         streaming_ = std::any_of(rate_, rate_ + 6, [](double x) { return x != 0; });
-        collect_positions();
-        collect_velocities(0.0, true);
-        projected_ = velocities_;
-        if (!reruns()) {
-            packed_->velocities(now_.data(), projected_.data());
-            for (std::size_t k = 0; k < projected_.size(); ++k) velocities_[k] = projected_[k] - velocities_[k];
-            return_to_atoms(velocities_, [&](int i, const double *dv) {
-                for (int c = 0; c < 3; ++c) atom->v[i][c] += dv[c];
-            });
-        }
+        collect_all_positions();
+        for (const Block &block : blocks_) add_images(block, 1);
+        reruns_ = reruns();
+        constrain_velocities(false, true, [&](int i, const double *change, double) {
+            for (int c = 0; c < 3; ++c) atom->v[i][c] += change[c];
+        });
+        reruns_ = false;
         exact_forces();
         return_to_atoms(reactions_, [&](int i, const double *g) {
             for (int c = 0; c < 3; ++c) atom->f[i][c] += g[c];
@@ -162,15 +194,12 @@ void FixHolonomic::post_force(int vflag) {
         measure_rate();
         v_init(vflag);
         const bool exact = evflag || due(forces_every_) || due(tensions_every_);
-        collect_velocities(1.0, exact);
-        projected_ = velocities_;
-        packed_->velocities(now_.data(), projected_.data());
-        for (std::size_t k = 0; k < projected_.size(); ++k) velocities_[k] = projected_[k] - velocities_[k];
-        double **f = atom->f;
-        return_to_atoms(velocities_, [&](int i, const double *dv) {
-            const double kick = kick_of(i);
-            if (kick > 0)
-                for (int c = 0; c < 3; ++c) f[i][c] += dv[c] / kick;
+        const double inverse_half = 2 / (update->dt * force->ftm2v);
+        double *f = atom->nlocal > 0 ? atom->f[0] : nullptr;
+        constrain_velocities(true, exact, [&](int i, const double *change, double mass) {
+            const double factor = mass * inverse_half;
+            double *force_of = f + 3 * static_cast<std::ptrdiff_t>(i);
+            for (int c = 0; c < 3; ++c) force_of[c] += factor * change[c];
         });
         if (!exact) return;
         exact_forces();

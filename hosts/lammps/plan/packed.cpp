@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "packed.hpp"
 
-#include <algorithm>
 #include <stdexcept>
 
 namespace holonomic_lammps {
@@ -29,14 +28,17 @@ std::string pair_of(Tag a, Tag b) { return "atoms " + std::to_string(a) + " and 
 
 }  // namespace
 
-Packed::Packed(const Plan &plan, const double *masses) : plan_(&plan), chains_(nullptr, hol_chains_destroy) {
-    hol_chains *chains = nullptr;
-    check(hol_chains_create(plan.n_slots(), masses, &chains), "taking the masses");
-    chains_.reset(chains);
+Packed::Packed(const Plan &plan, const double *masses, int first, int end, int first_bond)
+    : plan_(&plan), first_resident_(first), end_resident_(end), first_slot_(plan.residents()[first].first),
+      end_slot_(first_slot_), first_bond_(first_bond), chains_(nullptr, hol_chains_destroy) {
     const std::vector<Resident> &residents = plan.residents();
-    for (std::size_t begin = 0, end = 0; begin < residents.size(); begin = end) {
-        while (end < residents.size() && residents[end].shape == residents[begin].shape) ++end;
-        add(residents[begin], static_cast<int>(end - begin));
+    end_slot_ = residents[end - 1].first + plan.shapes()[residents[end - 1].shape].n_atoms;
+    hol_chains *chains = nullptr;
+    check(hol_chains_create(end_slot_ - first_slot_, masses + first_slot_, &chains), "taking the masses");
+    chains_.reset(chains);
+    for (int from = first, to = first; from < end; from = to) {
+        while (to < end && residents[to].shape == residents[from].shape) ++to;
+        add(residents[from], to - from);
     }
 }
 
@@ -46,12 +48,13 @@ void Packed::add(const Resident &first, int n_molecules) {
     const auto n_bonds = static_cast<std::int64_t>(shape.pairs.size());
     int status;
     if (shape.linear) {
-        status = hol_chains_add_block(chains_.get(), n_molecules, n_bonds, first.first, shape.lengths.data());
+        status =
+            hol_chains_add_block(chains_.get(), n_molecules, n_bonds, first.first - first_slot_, shape.lengths.data());
     } else {
         std::vector<std::int64_t> pairs;
         for (const auto &pair : shape.pairs) pairs.insert(pairs.end(), {pair[0], pair[1]});
-        status = hol_chains_add_molecules(chains_.get(), n_molecules, shape.n_atoms, first.first, n_bonds, pairs.data(),
-                                          shape.lengths.data());
+        status = hol_chains_add_molecules(chains_.get(), n_molecules, shape.n_atoms, first.first - first_slot_, n_bonds,
+                                          pairs.data(), shape.lengths.data());
     }
     if (status == HOL_OK) return;
     std::int64_t bond;
@@ -66,27 +69,27 @@ void Packed::add(const Resident &first, int n_molecules) {
 }
 
 std::int64_t Packed::positions(const double *before, double *now, double dt) {
-    if (empty()) return 0;
     hol_report report;
-    check(hol_project_positions(chains_.get(), before, now, nullptr, dt, nullptr, 0, nullptr, &report), "positions");
+    const int k = 3 * first_slot_;
+    check(hol_project_positions(chains_.get(), before + k, now + k, nullptr, dt, nullptr, 0, nullptr, &report),
+          "positions");
     return report.n_corrected;
 }
 
 void Packed::velocities(const double *r, double *v) {
-    if (empty()) return;
-    check(hol_project_velocities(chains_.get(), r, v, nullptr, nullptr), "velocities");
+    check(hol_project_velocities(chains_.get(), r + 3 * first_slot_, v + 3 * first_slot_, nullptr, nullptr),
+          "velocities");
 }
 
 void Packed::forces(const double *r, const double *v, const double *f, double *tension, double *g, double *virial) {
-    std::fill(virial, virial + 9, 0.0);
-    if (empty()) return;
-    check(hol_forces(chains_.get(), r, v, f, nullptr, tension, g, HOL_WRITE, virial), "constraint forces");
+    const int k = 3 * first_slot_;
+    check(hol_forces(chains_.get(), r + k, v + k, f + k, nullptr, tension + first_bond_, g + k, HOL_WRITE, virial),
+          "constraint forces");
 }
 
 hol_worst Packed::violation(const double *r, const double *v) const {
     hol_worst worst{};
-    if (empty()) return worst;
-    check(hol_violation(chains_.get(), r, v, &worst), "errors of bonds");
+    check(hol_violation(chains_.get(), r + 3 * first_slot_, v + 3 * first_slot_, &worst), "errors of bonds");
     return worst;
 }
 
@@ -103,12 +106,13 @@ std::string Packed::place() const {
     std::vector<std::int64_t> atoms(n_atoms), bonds(n_bonds);
     hol_chains_atoms(chains_.get(), chain, atoms.data());
     hol_chains_bonds(chains_.get(), chain, bonds.data());
-    std::string text = "the molecule of atom " + std::to_string(plan_->tags()[atoms[0]]);
-    if (atom >= 0) text = "atom " + std::to_string(plan_->tags()[atom]) + " in " + text;
+    std::string text = "the molecule of atom " + std::to_string(plan_->tags()[first_slot_ + atoms[0]]);
+    if (atom >= 0) text = "atom " + std::to_string(plan_->tags()[first_slot_ + atom]) + " in " + text;
     if (bond >= 0 && bond < n_bonds) {
         // Bonds follow the residents.
         std::int64_t k = bonds[bond];
-        for (const Resident &resident : plan_->residents()) {
+        for (int m = first_resident_; m < end_resident_; ++m) {
+            const Resident &resident = plan_->residents()[m];
             const Shape &shape = plan_->shapes()[resident.shape];
             if (k >= static_cast<std::int64_t>(shape.pairs.size())) {
                 k -= static_cast<std::int64_t>(shape.pairs.size());

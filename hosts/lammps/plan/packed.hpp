@@ -12,19 +12,25 @@
 namespace holonomic_lammps {
 
 /**
- * The library's handle for the molecules that live on this rank. Arrays per atom are [n_slots][3], whole molecules
- * without a box; arrays per bond follow the residents, and within each the pairs of its shape. Errors are
- * std::runtime_error and name atoms by their tags.
+ * The library's handle for some of the molecules that live on this rank, one behind the other. Arrays are those of all
+ * slots, per atom [n_slots][3], whole molecules without a box, and of all bonds, which follow the residents, and within
+ * each the pairs of its shape; the parts of these molecules are used. Errors are std::runtime_error and name atoms by
+ * their tags.
  */
 class Packed {
 public:
-    /** @param masses  [n_slots]; 0: held fixed */
-    Packed(const Plan &plan, const double *masses);
+    /** Residents first .. end - 1, at least one. @param masses  [n_slots]; 0: held fixed. first_bond: of all bonds */
+    Packed(const Plan &plan, const double *masses, int first, int end, int first_bond);
 
-    /** Molecules of which a position has been moved. */
+    int first_resident() const { return first_resident_; }
+    int end_resident() const { return end_resident_; }
+    int first_slot() const { return first_slot_; }
+    int end_slot() const { return end_slot_; }
+
+    /** Gives how many molecules have been moved. */
     std::int64_t positions(const double *before, double *now, double dt);
     void velocities(const double *r, double *v);
-    /** virial: [3][3]. */
+    /** virial: [3][3], of these molecules. */
     void forces(const double *r, const double *v, const double *f, double *tension, double *g, double *virial);
     hol_worst violation(const double *r, const double *v) const;
 
@@ -32,13 +38,12 @@ public:
     std::int64_t memory() const { return hol_chains_memory(chains_.get()); }
 
 private:
-    /** No molecule lives on this rank; its arrays may be NULL. */
-    bool empty() const { return plan_->n_slots() == 0; }
     void add(const Resident &first, int n_molecules);
     void check(int status, const char *doing) const;
     std::string place() const;
 
     const Plan *plan_;
+    int first_resident_, end_resident_, first_slot_, end_slot_, first_bond_;
     std::unique_ptr<hol_chains, void (*)(hol_chains *)> chains_;
 };
 

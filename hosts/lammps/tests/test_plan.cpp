@@ -217,7 +217,7 @@ void test_messages() {
     plan.renew(registry, members.data(), tags.data(), static_cast<int>(tags.size()));
     if (me != 0) return;
     const std::vector<double> masses(3, 1.0);
-    Packed packed(plan, masses.data());
+    Packed packed(plan, masses.data(), 0, 1, 0);
     std::vector<double> before{0, 0, 0, 1, 0, 0, 2, 0, 0}, now{0, 0, 0, 1, 0, 0, 1, 20, 0};
     std::string said;
     try {
