@@ -1,5 +1,6 @@
 #include "core/forces.hpp"
 
+#include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
@@ -46,7 +47,16 @@ struct ForcesWork final : Work {
 
 void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
             double *tension, const AtomArray &g, bool add, double *virial) {
-    ForcesCall call{r, v, f, g, lambda, tension, add, virial != nullptr, chains.box};
+    ForcesCall call;
+    call.r = r;
+    call.v = v;
+    call.f = f;
+    call.g = g;
+    call.lambda = lambda;
+    call.tension = tension;
+    call.add = add;
+    call.virial = virial != nullptr;
+    put_box(chains.box, call.box);
     AtomArray *const inputs[] = {&call.r, &call.v, &call.f};
     unify_layout(inputs, 3);
     Apart apart(chains);

@@ -1,5 +1,6 @@
 #include "core/positions.hpp"
 
+#include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
@@ -42,18 +43,19 @@ struct PositionsWork final : Work {
 
 void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomArray &r, const AtomArray &v, double dt,
                        double *lambda, bool guess, double *virial, Report *report) {
-    const PositionsCall call{r_ref,
-                             r,
-                             v,
-                             lambda,
-                             dt,
-                             guess,
-                             virial != nullptr,
-                             report != nullptr,
-                             chains.tolerance,
-                             chains.max_iterations,
-                             chains.box,
-                             chains.box_of_reference()};
+    PositionsCall call;
+    call.r_ref = r_ref;
+    call.r = r;
+    call.v = v;
+    call.lambda = lambda;
+    call.dt = dt;
+    call.guess = guess;
+    call.virial = virial != nullptr;
+    call.report = report != nullptr;
+    call.tolerance = chains.tolerance;
+    call.max_iterations = chains.max_iterations;
+    put_box(chains.box, call.box);
+    put_box(chains.box_of_reference(), call.box_ref);
     Apart apart(chains);
     const Tally tally = execute(chains, PositionsWork(call, apart));
     apart.put_back();

@@ -1,5 +1,6 @@
 #include "core/velocities.hpp"
 
+#include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
@@ -48,7 +49,12 @@ struct VelocitiesWork final : Work {
 }  // namespace
 
 void project_velocities(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda, double *virial) {
-    VelocitiesCall call{r, v, lambda, virial != nullptr, chains.box};
+    VelocitiesCall call;
+    call.r = r;
+    call.v = v;
+    call.lambda = lambda;
+    call.virial = virial != nullptr;
+    put_box(chains.box, call.box);
     AtomArray *const inputs[] = {&call.r, &call.v};
     unify_layout(inputs, 2);
     Apart apart(chains);

@@ -9,6 +9,17 @@ namespace holonomic {
 // h [9]: rows are the box vectors, a row of zeros is not periodic; null: no box. Throws Error.
 Box make_box(const double *h);
 
+// The box of a call. Of one that is not there the sides are zero, and nothing else is read or copied: a box is larger
+// than all that a call on one short chain reads.
+inline void put_box(const Box &box, Box &of_call) {
+    if (box.shape != Box::none) {
+        of_call = box;
+        return;
+    }
+    of_call.shape = Box::none;
+    for (int i = 0; i < 9; ++i) of_call.h[i] = of_call.inverse[i] = 0;
+}
+
 // Replaces a bond vector by its minimum image.
 void minimum_image(const Box &box, double *d);
 

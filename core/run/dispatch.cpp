@@ -1,8 +1,8 @@
 // Which kernels run. All but the baseline's fuse multiplication and addition, and give the same bits for a chain that
 // fits into a lane (tests/lanes/same_bits.sh), so that a call may choose by what it has to do. A chain that comes alone
 // takes one lane (`scalar`; docs/performance.md), from two on they are faster side by side. Four lanes with the 32
-// registers of AVX-512 (`avx512vl`) run wherever they can: beside avx2 they were faster or as fast, but for the two
-// places marked (a), and eight lanes (`avx512`) are faster in cache on the family that is named below.
+// registers of AVX-512 (`avx512vl`) run wherever they can: beside avx2 they were faster or as fast, and eight lanes
+// (`avx512`) are faster in cache on the family that is named below.
 //
 // ns per bond: lambda and G from r, v, f / velocities / positions; equal masses, packed arrays, one thread.
 //
@@ -11,14 +11,14 @@
 //          1 x 12             31.0 31.0 39.9      29.9 26.8 39.5      57.4 58.2 60.2
 //          1 x 200            15.7 15.6 24.3      15.4 14.4 24.8      23.9 31.1 43.6    40 to 60 % slower with avx512
 //        256 x 32  (L2)        4.1  4.3  6.4       3.6  4.0  6.2       3.7  4.3  7.5     3.4  -  5.1      2.8  -  3.3
-//       1000 x 100 (L3)        4.1  4.2  6.6       3.4  3.9  6.1       4.3  4.6  7.8
+//       1000 x 100 (L3)        5.4  5.5  8.0       4.6  5.4  7.8       6.0  6.5  8.7
 //     10,000 x 100 (memory)    7.5  6.4 10.0       7.5  6.4 10.7      11.3  7.5 11.8     7.2 4.6  -      11.3 8.3  -
-//    100,000 x 3   (memory)    4.8  4.9  9.1       5.6(a) 4.5 9.2      6.0  4.8  8.7
+//    100,000 x 3   (memory)    5.7  4.9  9.1       5.9  4.5  9.2       6.1  4.8  8.7
 //          1 x 100,000         4.4  8.0 10.3       4.1  7.0 10.0       5.9 11.7 10.6
-//          1 x 1,000,000      12.9 22.9 19.5      12.8  (a) 19.6      22.9 37.0 24.6    14.3  -  -      16.8  -  -
+//          1 x 1,000,000      12.9 28.4 19.5      12.8 26.2 19.6      22.9 48.6 24.6    14.3  -  -      16.8  -  -
 //
-// Smallest of several; the rows of 1000 x 100 and (a) are of a machine that was not quiet: 5.6 and 30.8, with a scatter
-// as large as the difference. From memory eight lanes, which ask for twice as many lines at a time, are the slowest.
+// Smallest of several, in turns in one process. Forces of 100,000 x 3 are the same within the scatter, medians 6.2, 6.4
+// and 6.6. From memory eight lanes, which ask for twice as many lines at a time, are the slowest.
 #include "core/run/dispatch.hpp"
 
 #include <cstdlib>

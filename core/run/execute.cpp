@@ -137,7 +137,7 @@ Tally execute(const Chains &chains, const Plan &plan, const Work &work) {
             any_shared = any_shared || shared;
             (shared ? shared_store : own_store) = std::max(shared ? shared_store : own_store, work.long_bytes(n));
         }
-    scratch_of_this_thread(scratch_bytes);
+    double *const own_scratch = scratch_of_this_thread(scratch_bytes);
     if (std::max(own_store, shared_store) > 0 && !store_memory(std::max(own_store, shared_store)))
         throw std::bad_alloc();
 
@@ -183,9 +183,13 @@ Tally execute(const Chains &chains, const Plan &plan, const Work &work) {
         return total;
     }
 #endif
+    if (n_pieces == 1) {
+        work_on(0, own_scratch, total);
+        return total;
+    }
     for (std::int64_t p = 0; p < n_pieces; ++p) {
         Tally tally = empty_tally();
-        work_on(p, scratch_memory(scratch_bytes), tally);
+        work_on(p, own_scratch, tally);
         add(total, tally);
     }
     return total;

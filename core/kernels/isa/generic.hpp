@@ -29,6 +29,7 @@ HOL_INLINE vec mul_add(vec a, vec b, vec c) {
 #endif
 }
 HOL_INLINE vec mul_sub(vec a, vec b, vec c) { return mul_add(a, b, -c); }
+#if HOL_LANES > 1
 HOL_INLINE vec max(vec a, vec b) { return select(less(b, a), a, b); }
 HOL_INLINE vec min(vec a, vec b) { return select(less(a, b), a, b); }
 HOL_INLINE vec sqrt(vec a) {
@@ -36,6 +37,7 @@ HOL_INLINE vec sqrt(vec a) {
     for (int i = 0; i < W; ++i) s[i] = __builtin_sqrt(a[i]);
     return s;
 }
+#endif
 #if HOL_LANES == 1 && defined(__SSE4_1__)
 HOL_INLINE vec round(vec a) {
     const __m128d x = _mm_set_sd(a[0]);

@@ -1,4 +1,5 @@
-// One lane: what a vector of one double is. The compiler's own would go through memory; this one is a double in a register.
+// One lane: what a vector of one double is. The compiler's own would go through memory; this one is a double in a
+// register.
 #ifndef HOLONOMIC_KERNELS_ISA_ONE_LANE_HPP
 #define HOLONOMIC_KERNELS_ISA_ONE_LANE_HPP
 
@@ -59,8 +60,13 @@ HOL_INLINE vec as_vec(mask m) {
 HOL_INLINE mask less(vec a, vec b) { return {a.element < b.element ? -1 : 0}; }
 HOL_INLINE mask less_equal(vec a, vec b) { return {a.element <= b.element ? -1 : 0}; }
 HOL_INLINE mask equal(vec a, vec b) { return {a.element == b.element ? -1 : 0}; }
-HOL_INLINE vec select(mask m, vec a, vec b) { return m.element ? a : b; }
+// Of doubles, so that nothing leaves the registers of floating point.
+HOL_INLINE vec select(mask m, vec a, vec b) { return {m.element ? a.element : b.element}; }
 HOL_INLINE vec keep(mask m, vec a) { return {m.element ? a.element : 0.0}; }
+HOL_INLINE vec max(vec a, vec b) { return {a.element > b.element ? a.element : b.element}; }
+HOL_INLINE vec min(vec a, vec b) { return {a.element < b.element ? a.element : b.element}; }
+HOL_INLINE vec abs(vec a) { return {__builtin_fabs(a.element)}; }
+HOL_INLINE vec sqrt(vec a) { return {__builtin_sqrt(a.element)}; }
 
 }  // namespace HOL_ISA
 }  // namespace holonomic

@@ -35,12 +35,12 @@ HOL_INLINE mask less_equal(vec a, vec b) { return reinterpret_cast<mask>(a <= b)
 HOL_INLINE mask equal(vec a, vec b) { return reinterpret_cast<mask>(a == b); }
 HOL_INLINE vec select(mask m, vec a, vec b) { return as_vec((m & as_mask(a)) | (~m & as_mask(b))); }
 HOL_INLINE vec keep(mask m, vec a) { return as_vec(m & as_mask(a)); }  // a where m, else zero
+HOL_INLINE vec abs(vec a) { return as_vec(as_mask(a) & (mask{} + 0x7fffffffffffffffLL)); }
 #endif
 
 HOL_INLINE vec load(const double *p) { return *reinterpret_cast<const vec_unaligned *>(p); }
 HOL_INLINE void store(double *p, vec a) { *reinterpret_cast<vec_unaligned *>(p) = a; }
 HOL_INLINE vec splat(double a) { return a - vec{}; }
-HOL_INLINE vec abs(vec a) { return as_vec(as_mask(a) & (mask{} + 0x7fffffffffffffffLL)); }
 HOL_INLINE double abs(double a) { return __builtin_fabs(a); }
 
 // To the nearest integer by adding and subtracting 1.5 * 2^52: right for |a| < 2^51, which is all that a box needs.
