@@ -6,13 +6,15 @@
 
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/memory/block.hpp"
+#include "core/kernels/memory/listed.hpp"
 #include "core/kernels/memory/sink.hpp"
 #include "core/kernels/memory/terms.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 
-constexpr int largest_molecule = 5;
+constexpr int largest_molecule = 5;        // over consecutive atoms, without a box
+constexpr int largest_boxed_molecule = 3;  // in an orthorhombic box, or with lists of atoms
 
 // Vectors of W molecules' atoms, rounded up to what is transposed at a time.
 template <int N>
@@ -29,16 +31,28 @@ HOL_INLINE void load_molecules(const double *p, vec *elements) {
     }
 }
 
-// Bonds D[k] of W molecules and their right-hand sides t[k], rounded as load_chunk() does.
-template <int N, int terms, bool uniform>
-HOL_INLINE void load_molecules(const Block &block, const double *r, const double *v, const double *f, vec3 *D, vec *t) {
-    vec e[vectors_of<N>], p[3 * N], *const d = &D[0].x;
-    load_molecules<N>(r, e);
+// Bonds D[k] from atoms; `boxed`: an orthorhombic box may be there.
+template <int N, bool boxed>
+HOL_INLINE void take_bonds(const Box &box, const vec *atoms, vec3 *D) {
+    vec *const d = &D[0].x;
     HOL_UNROLL
-    for (int c = 0; c < 3 * N; ++c) d[c] = e[c + 3] - e[c];
+    for (int c = 0; c < 3 * N; ++c) d[c] = atoms[c + 3] - atoms[c];
+    if (!boxed || box.shape == Box::none) return;
+    HOL_UNROLL
+    for (int c = 0; c < 3 * N; ++c)
+        d[c] = mul_add(round(d[c] * box.per_side[c % 3]), splat(box.minus_side[c % 3]), d[c]);
+}
+
+// Bonds D[k] of W molecules and their right-hand sides t[k], rounded as load_chunk() does.
+template <int N, int terms, bool uniform, bool boxed, class Place>
+HOL_INLINE void load_molecules(const Block &block, const Box &box, const Place &place, const double *r, const double *v,
+                               const double *f, vec3 *D, vec *t) {
+    vec e[vectors_of<N>], p[3 * N], *const d = &D[0].x;
+    place.load(r, e);
+    take_bonds<N, boxed>(box, e, D);
     if (terms == none_) return;
     if (terms & velocity_squared) {
-        load_molecules<N>(v, e);
+        place.load(v, e);
         HOL_UNROLL
         for (int c = 0; c < 3 * N; ++c) {
             const vec dv = e[c + 3] - e[c];
@@ -46,7 +60,7 @@ HOL_INLINE void load_molecules(const Block &block, const double *r, const double
         }
     }
     if (terms & force_difference) {
-        load_molecules<N>(f, e);
+        place.load(f, e);
         HOL_UNROLL
         for (int c = 0; c < 3 * N; ++c) {
             const vec df = uniform ? e[c + 3] - e[c] : block.w[c / 3 + 1] * e[c + 3] - block.w[c / 3] * e[c];
@@ -76,9 +90,62 @@ HOL_INLINE void store_elements(vec *value, double *out) {
         }
 }
 
+// Where W molecules of a unit stand, in the arrays of a call, from molecule `first` on: one behind the other, ..
+template <int N>
+struct InRow {
+    static constexpr bool listed = false;
+    int64_t at;  // the first one's first element
+    InRow(const Unit &unit, int64_t first) : at(3 * (unit.lanes[0].first_atom + (N + 1) * first)) {}
+    HOL_FORCED void load(const double *base, vec *elements) const { load_molecules<N>(base + at, elements); }
+    template <Update update>
+    HOL_FORCED void store(vec *value, double *base) const {
+        store_elements<N, update>(value, base + at);
+    }
+    HOL_FORCED Packed first_atoms(const double *base) const {
+        Packed p;
+        for (int i = 0; i < W; ++i) p.lane[i] = const_cast<double *>(base) + at + 3 * (N + 1) * i;
+        return p;
+    }
+    HOL_FORCED const int64_t *const *lists() const { return nullptr; }
+    HOL_FORCED void fetch_next(const double *) const {}  // the processor does that
+};
+
+// .. or as their lists say.
+template <int N>
+struct ByList {
+    static constexpr bool listed = true;
+    AtomLists at;
+    ByList(const Unit &unit, int64_t first) : at(unit.lanes[0].atoms + (N + 1) * first, N + 1) {}
+    HOL_FORCED void load(const double *base, vec *elements) const {
+        HOL_UNROLL
+        for (int k = 0; k <= N; ++k) {
+            const vec3 a = gather(base, at, k);
+            elements[3 * k] = a.x;
+            elements[3 * k + 1] = a.y;
+            elements[3 * k + 2] = a.z;
+        }
+    }
+    template <Update update>
+    HOL_FORCED void store(const vec *value, double *base) const {
+        HOL_UNROLL
+        for (int k = 0; k <= N; ++k)
+            scatter<update>(base, at, k, vec3{value[3 * k], value[3 * k + 1], value[3 * k + 2]});
+    }
+    HOL_FORCED Packed first_atoms(const double *base) const {
+        Packed p;
+        for (int i = 0; i < W; ++i) p.lane[i] = const_cast<double *>(base) + 3 * at.atoms[i][0];
+        return p;
+    }
+    HOL_FORCED const int64_t *const *lists() const { return at.atoms; }
+    HOL_FORCED void fetch_next(const double *base) const {
+        for (int i = 0; base && i < W; ++i)
+            for (int k = 0; k <= N; ++k) __builtin_prefetch(base + 3 * at.atoms[i][W * (N + 1) + k], 0, 2);
+    }
+};
+
 // G of the atoms of W molecules.
-template <int N, Update update>
-HOL_INLINE void store_pulls(const vec3 *D, const vec *t, double *out) {
+template <int N, Update update, class Place>
+HOL_INLINE void store_pulls(const vec3 *D, const vec *t, const Place &place, double *out) {
     vec value[vectors_of<N>];
     vec3 before = {};
     HOL_UNROLL
@@ -89,7 +156,7 @@ HOL_INLINE void store_pulls(const vec3 *D, const vec *t, double *out) {
         value[3 * k + 2] = g.z;
         before = after;
     }
-    store_elements<N, update>(value, out);
+    place.template store<update>(value, out);
 }
 
 // Writes factor times a value per bond of W molecules; zeros as +0. Rows of W elements, the rest of which the next
@@ -117,10 +184,20 @@ HOL_INLINE void store_multipliers(const vec *t, vec factor, double *out) {
 }
 
 // Whether W molecules from `first` on may be done here: W atoms behind them can be read, or need not be.
+template <class Place>
 HOL_INLINE bool molecules_left(const Unit &unit, int64_t first) {
     const int64_t n = unit.lanes[0].n_bonds;
-    return W == 1 ? first < unit.count : (unit.count - first - W) * (n + 1) >= W;
+    return (unit.count - first - W) * (n + 1) >= (W == 1 || Place::listed ? 0 : W);
 }
+
+// Whether those behind them may be fetched, and are worth it.
+template <class Place>
+HOL_INLINE bool fetches_next(const Unit &unit, int64_t first) {
+    return Place::listed && unit.large && unit.count - first >= 2 * W;
+}
+
+// Whether a box is of those that molecules of a known number of bonds may have.
+HOL_INLINE bool simple_box(const Box &box) { return box.shape == Box::none || box.shape == Box::orthorhombic; }
 
 }  // namespace HOL_ISA
 }  // namespace holonomic

@@ -17,22 +17,26 @@ struct AtomLists {
     explicit AtomLists(const Lane *lane) {
         for (int i = 0; i < W; ++i) atoms[i] = lane[i].atoms;
     }
+    // Lists of so many atoms each, one behind the other.
+    AtomLists(const int64_t *first, int64_t n_atoms) {
+        for (int i = 0; i < W; ++i) atoms[i] = first + i * n_atoms;
+    }
 };
 
 #if HOL_LANES >= 4 && defined(__AVX2__)
 typedef double vec4 __attribute__((vector_size(32)));
 
-// x y z of four atoms, from and to rows of three.
+// x y z of four atoms, from and to rows of three. They are read in the pieces in which scatter4() writes them, and
+// nothing of the next atom is touched: a load that overlaps with a store just made would have to wait for it.
 HOL_INLINE void gather4(const double *base, const int64_t *const *atoms, long k, vec4 &x, vec4 &y, vec4 &z) {
-    const __m256i three = _mm256_setr_epi64x(-1, -1, -1, 0);
-    vec4 row[4];
+    const double *p[4];
     HOL_UNROLL
-    for (int i = 0; i < 4; ++i) row[i] = _mm256_maskload_pd(base + 3 * atoms[i][k], three);
-    const vec4 a = _mm256_unpacklo_pd(row[0], row[1]), b = _mm256_unpackhi_pd(row[0], row[1]);
-    const vec4 c = _mm256_unpacklo_pd(row[2], row[3]), d = _mm256_unpackhi_pd(row[2], row[3]);
-    x = _mm256_permute2f128_pd(a, c, 0x20);
-    y = _mm256_permute2f128_pd(b, d, 0x20);
-    z = _mm256_permute2f128_pd(a, c, 0x31);
+    for (int i = 0; i < 4; ++i) p[i] = base + 3 * atoms[i][k];
+    const vec4 even = _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(p[0])), _mm_loadu_pd(p[2]), 1);
+    const vec4 odd = _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(p[1])), _mm_loadu_pd(p[3]), 1);
+    x = _mm256_unpacklo_pd(even, odd);
+    y = _mm256_unpackhi_pd(even, odd);
+    z = vec4{p[0][2], p[1][2], p[2][2], p[3][2]};
 }
 
 HOL_INLINE void scatter4(double *base, const int64_t *const *atoms, long k, vec4 x, vec4 y, vec4 z) {

@@ -42,6 +42,10 @@ public:
         : block_(block), x_(x), r_(r), lists_(lists), tolerance_(call.tolerance), u_(unit_roundoff(call.r)),
           boxed_(call.box.shape != Box::none) {}
 
+    void know_largest(vec coordinate) {
+        largest_ = coordinate;
+        known_ = true;
+    }
     vec largest_coordinate() {
         if (!known_) largest_ = extent(block_, r_, lists_);
         known_ = true;
@@ -55,7 +59,7 @@ public:
     // from the first one of its chain than the bonds are long, unless there are images: where that bound, on the safe
     // side by much more than its roundings, excludes it, nothing is looked for.
     mask within(vec error, vec a2) {
-        if (!boxed_) {
+        if (!boxed_ && !known_) {
             vec first = {};
             for (int c = 0; c < 3; ++c) {
                 vec component;

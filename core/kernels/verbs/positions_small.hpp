@@ -1,4 +1,4 @@
-// Positions of small molecules of one kind over consecutive atoms: the arithmetic of verbs/positions.cpp, with the
+// Positions of small molecules of one kind: the arithmetic of verbs/positions.cpp, with the
 // number of bonds known to the compiler. Where a lane needs more than that, its W molecules are left to the general
 // path.
 #ifndef HOLONOMIC_KERNELS_VERBS_POSITIONS_SMALL_HPP
@@ -7,6 +7,7 @@
 #include "core/kernels/memory/fixed.hpp"
 #include "core/kernels/memory/packed.hpp"
 #include "core/kernels/newton/solve.hpp"
+#include "core/kernels/verbs/small.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -20,13 +21,8 @@ struct MoleculesCall {
     double per_dt;
 
     MoleculesCall(const PositionsCall &c, const Unit &u, const Block &b)
-        : call(c), unit(u), block(b), r_ref(atoms(c.r_ref)), r(atoms(c.r)), v(atoms(c.v)),
+        : call(c), unit(u), block(b), r_ref(base_of(c.r_ref)), r(base_of(c.r)), v(base_of(c.v)),
           lambda(c.lambda ? c.lambda + u.lanes[0].first_bond : nullptr), per_dt(1 / c.dt) {}
-
-private:
-    double *atoms(const AtomArray &a) const {
-        return a.x ? reinterpret_cast<double *>(a.x) + 3 * unit.lanes[0].first_atom : nullptr;
-    }
 };
 
 // Inverse masses and lengths as in verbs/positions.cpp; `uniform`: of both there is only one.
@@ -72,12 +68,11 @@ HOL_INLINE void load_molecules(const Block &block, const double *r, vec3 *D) {
     }
 }
 
-// As store_pulls() with a MoveSink: of W molecules, all of them.
+// The moves of the atoms.
 template <int N, bool uniform>
-HOL_INLINE void move_molecules(const Newton &x, double *r, double *v, double per_dt) {
-    constexpr int elements = 3 * (N + 1), full = elements / W, rest = elements % W;
-    vec value[(full + 1) * W] = {};
+HOL_INLINE void find_moves(const Newton &x, vec *value) {
     vec3 before = {};
+    HOL_UNROLL
     for (int k = 0; k <= N; ++k) {
         const vec3 after = times(x.tau[k], x.b[k]), m = times_w<uniform>(x, k, minus(after, before));
         value[3 * k] = m.x;
@@ -85,6 +80,14 @@ HOL_INLINE void move_molecules(const Newton &x, double *r, double *v, double per
         value[3 * k + 2] = m.z;
         before = after;
     }
+}
+
+// As store_pulls() with a MoveSink: of W molecules, all of them.
+template <int N, bool uniform>
+HOL_INLINE void move_molecules(const Newton &x, double *r, double *v, double per_dt) {
+    constexpr int elements = 3 * (N + 1), full = elements / W, rest = elements % W;
+    vec value[(full + 1) * W] = {};
+    find_moves<N, uniform>(x, value);
     for (int j = 0; j < full; ++j) transpose(value + j * W);
     for (int i = 0; i < W; ++i)
         for (int j = 0; j < full; ++j) {
@@ -122,6 +125,41 @@ HOL_INLINE void move_molecules(const Newton &x, double *r, double *v, double per
         }
 }
 
+// The same of molecules with lists of atoms, which are `atoms` now.
+template <int N, bool uniform>
+HOL_INLINE void move_listed_molecules(const Newton &x, const ByList<N> &place, const vec *atoms, double *r, double *v,
+                                      double per_dt) {
+    vec move[3 * (N + 1)], moved[3 * (N + 1)], velocities[vectors_of<N>];
+    find_moves<N, uniform>(x, move);
+    HOL_UNROLL
+    for (int e = 0; e < 3 * (N + 1); ++e) moved[e] = atoms[e] + move[e];
+    place.template store<write_>(moved, r);
+    if (!v) return;
+    place.load(v, velocities);
+    HOL_UNROLL
+    for (int e = 0; e < 3 * (N + 1); ++e) velocities[e] = mul_add(move[e], splat(per_dt), velocities[e]);
+    place.template store<write_>(velocities, v);
+}
+
+// Bond vectors, and the atoms with their largest coordinate where it is not looked for later.
+template <int N, bool boxed, class Place>
+HOL_INLINE void load_positions(const MoleculesCall &m, const Place &place, const Newton &x, vec *atoms,
+                               Carried &carried) {
+    if constexpr (boxed) {
+        place.load(m.r_ref, atoms);
+        take_bonds<N, true>(m.call.box_ref, atoms, x.b);
+        place.load(m.r, atoms);
+        take_bonds<N, true>(m.call.box, atoms, x.D);
+        vec largest = {};
+        HOL_UNROLL
+        for (int e = 0; e < 3 * (N + 1); ++e) largest = max(largest, abs(atoms[e]));
+        carried.know_largest(largest);
+    } else {
+        load_molecules<N>(m.block, m.r_ref + place.at, x.b);
+        load_molecules<N>(m.block, m.r + place.at, x.D);
+    }
+}
+
 template <int N, bool uniform>
 HOL_INLINE void note_molecules(const MoleculesCall &m, const Newton &x, vec error, int64_t first, Tally &tally) {
     if (tally.worst_chain >= 0 && !any(less(splat(tally.worst), error))) return;
@@ -145,21 +183,26 @@ HOL_INLINE void note_molecules(const MoleculesCall &m, const Newton &x, vec erro
 }
 
 // From molecule `first` on; returns the first one that is not done.
-template <int N, bool uniform>
-HOL_NOINLINE int64_t of_molecules(const MoleculesCall &m, int64_t first, Tally &tally) {
+template <int N, bool uniform, bool boxed, template <int> class PlaceOf>
+HOL_NOINLINE int64_t positions_of_molecules(const MoleculesCall &m, int64_t first, Tally &tally) {
+    typedef PlaceOf<N> Place;
     vec memory[vectors_per_bond * (N + 2 * W + 8)], w[N + 1], a2[N], per_a2[N];
     Arena arena(reinterpret_cast<double *>(memory), N);
     Newton x(N, arena);
     set_molecule<N, uniform>(m.block, m.unit.lanes[0], x, w, a2, per_a2);
     const mask all = first_lanes(W);
     const vec factor = splat(0.5 / (m.call.dt * m.call.dt)) / m.block.unit;
-    for (; molecules_left(m.unit, first); first += W) {
-        const int64_t at = 3 * (N + 1) * first;
-        load_molecules<N>(m.block, m.r_ref + at, x.b);
-        load_molecules<N>(m.block, m.r + at, x.D);
-        Packed r;
-        for (int i = 0; i < W; ++i) r.lane[i] = m.r + at + 3 * (N + 1) * i;
-        Carried carried(m.block, x, m.call, r);
+    for (; molecules_left<Place>(m.unit, first); first += W) {
+        const Place place(m.unit, first);
+        if (fetches_next<Place>(m.unit, first)) {
+            place.fetch_next(m.r_ref);
+            place.fetch_next(m.r);
+            place.fetch_next(m.v);
+        }
+        const Packed r = place.first_atoms(m.r);
+        Carried carried(m.block, x, m.call, r, place.lists());
+        vec atoms[vectors_of<N>];
+        load_positions<N, boxed>(m, place, x, atoms, carried);
         Outcome out = {};
         if (N == 1) {
             out = solve_single_bonds<uniform>(x, carried, all);
@@ -172,7 +215,10 @@ HOL_NOINLINE int64_t of_molecules(const MoleculesCall &m, int64_t first, Tally &
         for (int k = 0; k < N; ++k) pull = max(uniform ? abs(x.tau[k]) : max(x.w[k], x.w[k + 1]) * abs(x.tau[k]), pull);
         if (any(less(0.25 * x.a_min, pull * x.a_max))) break;
         if (m.call.report) note_molecules<N, uniform>(m, x, out.error, first, tally);
-        move_molecules<N, uniform>(x, m.r + at, m.v ? m.v + at : nullptr, m.per_dt);
+        if constexpr (Place::listed)
+            move_listed_molecules<N, uniform>(x, place, atoms, m.r, m.v, m.per_dt);
+        else
+            move_molecules<N, uniform>(x, m.r + place.at, m.v ? m.v + place.at : nullptr, m.per_dt);
         if (m.lambda) store_multipliers<N>(x.tau, factor, m.lambda + N * first);
         tally.n_corrected += W;
         if (out.solves > tally.iterations) tally.iterations = out.solves;
@@ -180,27 +226,21 @@ HOL_NOINLINE int64_t of_molecules(const MoleculesCall &m, int64_t first, Tally &
     return first;
 }
 
+template <int N, bool uniform, bool boxed, template <int> class PlaceOf>
+struct PositionsOfMolecules {
+    static int64_t run(const PositionsCall &call, const Unit &unit, const Block &block, int64_t first, Tally &tally) {
+        return positions_of_molecules<N, uniform, boxed, PlaceOf>(MoleculesCall(call, unit, block), first, tally);
+    }
+};
+
 static inline int64_t small_positions(const PositionsCall &call, const Unit &unit, const Block &block, int64_t first,
                                       Tally &tally) {
-    const Lane &head = unit.lanes[0];
-    if (!unit.regular || head.atoms || head.n_bonds > largest_molecule || !call.r.packed || !call.r_ref.packed ||
-        (call.v.x && !call.v.packed) || call.virial || call.guess || call.box.shape != Box::none ||
-        call.box_ref.shape != Box::none)
+    if (!call.r.packed || !call.r_ref.packed || (call.v.x && !call.v.packed) || call.virial || call.guess ||
+        !simple_box(call.box) || !simple_box(call.box_ref))
         return first;
-    const MoleculesCall m(call, unit, block);
-    const bool uniform = block.uniform_w && !head.length;
-    switch (head.n_bonds) {
-        case 1:
-            return uniform ? of_molecules<1, true>(m, first, tally) : of_molecules<1, false>(m, first, tally);
-        case 2:
-            return uniform ? of_molecules<2, true>(m, first, tally) : of_molecules<2, false>(m, first, tally);
-        case 3:
-            return uniform ? of_molecules<3, true>(m, first, tally) : of_molecules<3, false>(m, first, tally);
-        case 4:
-            return uniform ? of_molecules<4, true>(m, first, tally) : of_molecules<4, false>(m, first, tally);
-        default:
-            return uniform ? of_molecules<5, true>(m, first, tally) : of_molecules<5, false>(m, first, tally);
-    }
+    const bool boxed = call.box.shape != Box::none || call.box_ref.shape != Box::none;
+    const bool uniform = block.uniform_w && !unit.lanes[0].length;
+    return any_molecules<PositionsOfMolecules>(call, unit, block, first, uniform, boxed, tally);
 }
 
 }  // namespace HOL_ISA

@@ -7,23 +7,40 @@
 namespace holonomic {
 namespace HOL_ISA {
 
-// Of<N, uniform>::run(call, unit, block, first) for molecules of N bonds, from molecule `first` on; returns the first
-// one that is not done.
-template <template <int, bool> class Of, class Call>
-static int64_t any_molecules(const Call &call, const Unit &unit, const Block &block, int64_t first) {
-    if (!unit.regular || unit.lanes[0].atoms || unit.lanes[0].n_bonds > largest_molecule) return first;
-    const bool uniform = block.uniform_w;
-    switch (unit.lanes[0].n_bonds) {
+// Of<N, uniform, boxed, Place>::run(call, unit, block, first) for molecules of N bonds, from molecule `first` on;
+// returns the first one that is not done. Place: of memory/fixed.hpp.
+template <int N, template <int, bool, bool, template <int> class> class Of, class Call>
+static int64_t molecules_of(const Call &call, const Unit &unit, const Block &block, int64_t first, bool uniform,
+                            bool boxed, Tally &tally) {
+    if constexpr (N <= largest_boxed_molecule) {
+        if (unit.lanes[0].atoms)
+            return uniform ? Of<N, true, true, ByList>::run(call, unit, block, first, tally)
+                           : Of<N, false, true, ByList>::run(call, unit, block, first, tally);
+        if (boxed)
+            return uniform ? Of<N, true, true, InRow>::run(call, unit, block, first, tally)
+                           : Of<N, false, true, InRow>::run(call, unit, block, first, tally);
+    }
+    return uniform ? Of<N, true, false, InRow>::run(call, unit, block, first, tally)
+                   : Of<N, false, false, InRow>::run(call, unit, block, first, tally);
+}
+
+// `boxed`: there is an orthorhombic box.
+template <template <int, bool, bool, template <int> class> class Of, class Call>
+static int64_t any_molecules(const Call &call, const Unit &unit, const Block &block, int64_t first, bool uniform,
+                             bool boxed, Tally &tally) {
+    const Lane &head = unit.lanes[0];
+    if (!unit.regular || head.n_bonds > (boxed || head.atoms ? largest_boxed_molecule : largest_molecule)) return first;
+    switch (head.n_bonds) {
         case 1:
-            return uniform ? Of<1, true>::run(call, unit, block, first) : Of<1, false>::run(call, unit, block, first);
+            return molecules_of<1, Of>(call, unit, block, first, uniform, boxed, tally);
         case 2:
-            return uniform ? Of<2, true>::run(call, unit, block, first) : Of<2, false>::run(call, unit, block, first);
+            return molecules_of<2, Of>(call, unit, block, first, uniform, boxed, tally);
         case 3:
-            return uniform ? Of<3, true>::run(call, unit, block, first) : Of<3, false>::run(call, unit, block, first);
+            return molecules_of<3, Of>(call, unit, block, first, uniform, boxed, tally);
         case 4:
-            return uniform ? Of<4, true>::run(call, unit, block, first) : Of<4, false>::run(call, unit, block, first);
+            return molecules_of<4, Of>(call, unit, block, first, uniform, boxed, tally);
         default:
-            return uniform ? Of<5, true>::run(call, unit, block, first) : Of<5, false>::run(call, unit, block, first);
+            return molecules_of<5, Of>(call, unit, block, first, uniform, boxed, tally);
     }
 }
 

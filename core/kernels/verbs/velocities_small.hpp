@@ -10,21 +10,25 @@ namespace holonomic {
 namespace HOL_ISA {
 
 // From molecule `first` on; returns the first one that is not done.
-template <int N, bool uniform>
+template <int N, bool uniform, bool boxed, template <int> class PlaceOf>
 static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &unit, const Block &block,
                                        int64_t first) {
+    typedef PlaceOf<N> Place;
     const Lane &head = unit.lanes[0];
-    const double *const r = reinterpret_cast<double *>(call.r.x) + 3 * head.first_atom;
-    double *const v = reinterpret_cast<double *>(call.v.x) + 3 * head.first_atom;
-    for (; molecules_left(unit, first); first += W) {
+    const double *const r = base_of(call.r);
+    double *const v = base_of(call.v);
+    for (; molecules_left<Place>(unit, first); first += W) {
         vec3 D[N];
         vec t[N], left[N + 1], L[N + 1], pivots[N], elements[vectors_of<N>];
-        const int64_t at = 3 * (N + 1) * first;
-        load_molecules<N, none_, uniform>(block, r + at, nullptr, nullptr, D, t);
-        load_molecules<N>(v + at, elements);
-        Packed from;
-        for (int i = 0; i < W; ++i) from.lane[i] = const_cast<double *>(r) + at + 3 * (N + 1) * i;
-        const Source source = {&from, nullptr, nullptr, &call.box, nullptr};
+        const Place place(unit, first);
+        if (fetches_next<Place>(unit, first)) {
+            place.fetch_next(r);
+            place.fetch_next(v);
+        }
+        load_molecules<N, none_, uniform, boxed>(block, call.box, place, r, nullptr, nullptr, D, t);
+        place.load(v, elements);
+        const Packed from = place.first_atoms(r);
+        const Source source = {&from, r, place.lists(), &call.box, nullptr};
         const Projection x({D, t, L, pivots}, reinterpret_cast<vec3 *>(elements), left);
         Sweep<uniform, true> sweep{block, source, x.s};
         HOL_UNROLL
@@ -40,22 +44,24 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
         for (int k = N - 1; k >= 0; --k) x.v[k + 1] = correction.step(k);
         x.v[0] = correction.finish();
         if (call.lambda) store_multipliers<N>(t, 0.5 * block.mass, call.lambda + head.first_bond + N * first);
-        store_elements<N, write_>(elements, v + at);
+        place.template store<write_>(elements, v);
     }
     return first;
 }
 
-template <int N, bool uniform>
+template <int N, bool uniform, bool boxed, template <int> class PlaceOf>
 struct VelocitiesOfMolecules {
-    static int64_t run(const VelocitiesCall &call, const Unit &unit, const Block &block, int64_t first) {
-        return velocities_of_molecules<N, uniform>(call, unit, block, first);
+    static int64_t run(const VelocitiesCall &call, const Unit &unit, const Block &block, int64_t first, Tally &) {
+        return velocities_of_molecules<N, uniform, boxed, PlaceOf>(call, unit, block, first);
     }
 };
 
 static inline int64_t small_velocities(const VelocitiesCall &call, const Unit &unit, const Block &block, int64_t first,
-                                       Tally &) {
-    const bool plain = call.r.packed && call.v.packed && !call.virial && call.box.shape == Box::none;
-    return plain ? any_molecules<VelocitiesOfMolecules>(call, unit, block, first) : first;
+                                       Tally &tally) {
+    const bool plain = call.r.packed && call.v.packed && !call.virial && simple_box(call.box);
+    const bool boxed = call.box.shape != Box::none;
+    return plain ? any_molecules<VelocitiesOfMolecules>(call, unit, block, first, block.uniform_w, boxed, tally)
+                 : first;
 }
 
 }  // namespace HOL_ISA
