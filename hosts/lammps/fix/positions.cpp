@@ -18,7 +18,7 @@ using namespace holonomic_lammps;
 namespace {
 
 /** Arrays of a block stay in the cache between taking them, solving, and giving them back. */
-constexpr int atoms_of_block = 1024;
+constexpr int atoms_of_block = 2048;
 
 }  // namespace
 
