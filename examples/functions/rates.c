@@ -4,7 +4,10 @@
 
 #include "check.h"
 
-static double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double dot(const double *a, const double *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 /* y = L x */
 static void turn(const double L[3][3], const double *x, double *y)

@@ -45,6 +45,27 @@ restart() {
     done
 }
 
+# The selectors of fix rattle: bonds of atom types, of masses, of a group; the same trajectories as with it.
+selectors() {
+    "$SCENE" stars 216 >data
+    local select
+    for select in "t 2" "t 1" "m 0.5" "m 7.0 t 2" "b 1"; do
+        for rigid in rattle holonomic; do
+            run 1 $rigid "$INPUTS/beads.lmp" data data rigid $rigid select "$select" light 0.5 dt 0.002 steps 200
+        done
+        same 1e-11 TotEng rattle holonomic
+        grep -q '216 molecules, 864 atoms, 648 rigid' holonomic || fail "$select: not all bonds"
+    done
+    # Of one group only: the others keep their bond style.
+    for rigid in rattle holonomic; do
+        run 1 $rigid "$INPUTS/beads.lmp" data data rigid $rigid light 0.5 dt 0.001 steps 200 \
+            before "group half molecule <= 100" whose half
+    done
+    same 1e-11 TotEng rattle holonomic
+    same 1e-11 Temp rattle holonomic
+    grep -q '100 molecules, 400 atoms, 300 rigid' holonomic || fail "not those of the group"
+}
+
 # Without the fix the bond style acts again, with the energy that it had before.
 unfix() {
     "$SCENE" melt 8 16 >data
