@@ -1,12 +1,9 @@
-// Positions of triangles in the multipliers alone. Bond k becomes D_k + P_k, where
-//     P_k = - (w_k + w_{k+1}) tau_k b_k + w_{k+1} tau_{k+1} b_{k+1} + w_k tau_{k-1} b_{k-1},
-// so that with the matrix M of tau = 0 and q_k = |P_k|^2 the lengths are right where
-//     2 M tau = sigma + q(tau),   sigma = D.D - a^2.
-// q is a quadratic form in tau of three products of b alone, and small: nothing cancels, and what a step leaves is
-// known to many more digits than the bonds have.
+// The model of triangles that multipliers.hpp solves. Bond k becomes D_k + P_k, where
+//     P_k = - (w_k + w_{k+1}) tau_k b_k + w_{k+1} tau_{k+1} b_{k+1} + w_k tau_{k-1} b_{k-1}.
 #ifndef HOLONOMIC_KERNELS_GRAPH_TRIANGLE_MODEL_HPP
 #define HOLONOMIC_KERNELS_GRAPH_TRIANGLE_MODEL_HPP
 
+#include "core/kernels/graph/multipliers.hpp"
 #include "core/kernels/graph/triangle_newton.hpp"
 
 namespace holonomic {
@@ -16,13 +13,13 @@ namespace graph {
 template <class V>
 struct TriangleModel {
     const TriangleMasses<V> &m;
-    const TriangleLengths<V> &a;
+    const V *per_a2;
     V u[3], c[3];  // b_k . b_k, b_k . b_{k+1}
     V g[3][3];     // D_k . b_l
     V sigma[3];
 
     // The bonds of either sort add up to zero.
-    inline HOL_FORCED TriangleModel(const TriangleNewton<V> &x) : m(x.m), a(x.a) {
+    inline HOL_FORCED TriangleModel(const TriangleNewton<V> &x) : m(x.m), per_a2(x.a.per_a2) {
         u[0] = dot(x.b[0], x.b[0]);
         u[1] = dot(x.b[1], x.b[1]);
         c[0] = dot(x.b[0], x.b[1]);
@@ -78,46 +75,11 @@ struct TriangleModel {
         }
         return invert(h);
     }
-    HOL_INLINE TriangleInverse<V> invert(const TriangleModel &x, const V h[3][3]) {
-        return invert_triangle<false>(x.m, h, mul_add(h[0][0], h[1][1], -(h[0][1] * h[1][0])), 2);
+    inline HOL_FORCED TriangleInverse<V> inverse() const { return invert(g); }
+    inline HOL_FORCED TriangleInverse<V> invert(const V h[3][3]) const {
+        return invert_triangle<false>(m, h, mul_add(h[0][0], h[1][1], -(h[0][1] * h[1][0])), 2);
     }
-    inline HOL_FORCED TriangleInverse<V> invert(const V h[3][3]) const { return invert(*this, h); }
-
-    // tau in the lanes of `active`, which keeps those that would need more; returns the number of solves. Two with the
-    // factors of D leave the third power of the first error e, one with new factors its square, one more with the same
-    // factors e^9.
-    inline HOL_FORCED int64_t solve(V *tau, MaskOf<V> &active) const {
-        TriangleInverse<V> f = invert(g);
-        V y[3], next[3], rest[3];
-        TriangleInverse<V>::solve(f, sigma, tau);
-        Change p = change(tau);
-        HOL_UNROLL
-        for (int k = 0; k < 3; ++k) y[k] = sigma[k] + p.q[k];
-        TriangleInverse<V>::solve(f, y, tau);
-        int64_t solves = 2;
-        do {
-            // 2 M tau = sigma + q, linear about the last tau: 2 M' tau = sigma - q. What that leaves is q of the
-            // change.
-            p = change(tau);
-            f = inverse(p);
-            HOL_UNROLL
-            for (int k = 0; k < 3; ++k) y[k] = sigma[k] - p.q[k];
-            TriangleInverse<V>::solve(f, y, next);
-            HOL_UNROLL
-            for (int k = 0; k < 3; ++k) y[k] = next[k] - tau[k];
-            p = change(y);
-            TriangleInverse<V>::solve(f, p.q, rest);
-            HOL_UNROLL
-            for (int k = 0; k < 3; ++k) tau[k] = select(active, next[k] + rest[k], tau[k]);
-            const V left = max(p.q[0] * a.per_a2[0], max(p.q[1] * a.per_a2[1], p.q[2] * a.per_a2[2]));
-            active = active & ~less(left, Width<V>::all(small_error));
-            solves += 2;
-        } while (__builtin_expect(any(active), 0) && solves < 8);
-        return solves;
-    }
-
-    // What the third solve may leave: the fourth leaves about its power 3/2, which must be far below a rounding.
-    static constexpr double small_error = 1e-12;
+    HOL_INLINE void solve(const TriangleInverse<V> &f, const V *y, V *tau) { TriangleInverse<V>::solve(f, y, tau); }
 };
 
 }  // namespace graph

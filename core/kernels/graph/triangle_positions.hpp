@@ -8,22 +8,6 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// The worst bond of the molecules in `which`, from the errors of all: of a molecule the one with the smallest number.
-template <class V, class Lanes>
-HOL_NOINLINE void note_worst_triangle(const V *size, const Lanes &lanes, V error, unsigned which, Tally &tally) {
-    for (int i = 0; i < Width<V>::lanes; ++i) {
-        if (!(which >> i & 1)) continue;
-        const double e = Width<V>::get(error, i);
-        if (!(e > tally.worst || tally.worst_chain < 0 || (e == tally.worst && lanes.molecule(i) < tally.worst_chain)))
-            continue;
-        tally.worst = e;
-        tally.worst_chain = lanes.molecule(i);
-        tally.worst_bond = 0;
-        for (int k = 2; k >= 0; --k)
-            if (Width<V>::get(size[bond_number(k)], i) >= e) tally.worst_bond = k;
-    }
-}
-
 // A block at the position level: what is read, and how it is written.
 template <Layout layout, class V, class Lanes>
 struct TrianglePositions {
@@ -60,8 +44,8 @@ struct TrianglePositions {
     inline HOL_FORCED void write(const TriangleNewton<V> &x, V error, unsigned good, unsigned moved, int64_t solves) {
         if (call.report) {
             V left[3];
-            for (int k = 0; k < 3; ++k) left[k] = abs(2.0 * x.left[k]) * a.per_a2[k];
-            note_worst_triangle(left, lanes, error, good, tally);
+            for (int k = 0; k < 3; ++k) left[bond_number(k)] = abs(2.0 * x.left[k]) * a.per_a2[k];
+            note_worst_bond<3>(left, lanes, error, good, tally);
         }
         if (call.lambda)
             write_triangle_bonds<layout>(at, x.tau, Width<V>::all(0.5 / (call.dt * call.dt)), call.lambda, good);
@@ -115,7 +99,7 @@ struct TrianglePositions {
         const TriangleModel<V> model(x);
         const MaskOf<V> wanted = in_use & ~untouched & model.open_angle();
         MaskOf<V> unsure = wanted;
-        const int64_t solves = model.solve(x.tau, unsure);
+        const int64_t solves = solve_for_multipliers<3>(model, x.tau, unsure);
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) x.tau[k] = keep(wanted, x.tau[k]);
         error = x.move();

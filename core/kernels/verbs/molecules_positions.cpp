@@ -1,6 +1,7 @@
 // Position level of molecules that are no chains.
 #include "core/kernels/graph/linear.hpp"
 #include "core/kernels/graph/positions.hpp"
+#include "core/kernels/graph/star_positions.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic {
@@ -20,12 +21,23 @@ int64_t molecules_scratch_bytes(const Schedule &s) {
            s.careful->scratch_bytes;
 }
 
+// Does a unit of stars of N bonds, if it is one.
+template <int N>
+static bool move_stars(const PositionsWork &general, const MoleculeUnit &unit, double *scratch) {
+    const int centre = centre_of_star<N>(*unit.schedule);
+    if (centre < 0) return false;
+    StarWork<N, PositionsWork> work = {general.call, general, centre, general.packed, general.tally, {}, {}};
+    for_each_block(unit, scratch, work);
+    return true;
+}
+
 void molecules_positions(const PositionsCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
     if (unit.schedule->type == Schedule::triangle)
         return for_each_triangle(TrianglePositionsVerb{call, tally}, call, unit, packed, scratch, tally);
     PositionsWork work = {call, *unit.schedule, packed, tally};
-    for_each_block(unit, scratch, work);
+    if (call.guess || !(move_stars<3>(work, unit, scratch) || move_stars<4>(work, unit, scratch)))
+        for_each_block(unit, scratch, work);
 }
 
 }  // namespace HOL_ISA

@@ -1,0 +1,75 @@
+// Newton's method for the multipliers alone of small molecules. The lengths are right where
+//     2 M tau = sigma + q(tau),   sigma = D.D - a^2,   q_k = |P_k|^2,   P what tau does to the bonds;
+// q is a quadratic form of products of the reference bonds b, and small: nothing cancels, and what a step leaves is
+// known to many more digits than the bonds have.
+#ifndef HOLONOMIC_KERNELS_GRAPH_MULTIPLIERS_HPP
+#define HOLONOMIC_KERNELS_GRAPH_MULTIPLIERS_HPP
+
+#include "core/kernels/graph/consecutive.hpp"
+#include "core/kernels/graph/iterate.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// What the third solve may leave of the lengths' squares: the fourth leaves about its power 3/2, which must be far
+// below a rounding.
+constexpr double small_enough = 1e-12;
+
+// A model of N bonds has: sigma[N], per_a2[N];  change(tau), with q[N];  inverse() of 2 M for tau = 0, and
+// inverse(change) for the bonds as changed;  solve(inverse, y, tau). tau in the lanes of `active`, which keeps those
+// that would need more; returns the number of solves. Two with the factors of D leave the third power of the first
+// error e, one with new factors its square, one more with the same factors e^9.
+template <int N, class V, class Model>
+HOL_INLINE int64_t solve_for_multipliers(const Model &x, V *tau, MaskOf<V> &active) {
+    auto f = x.inverse();
+    V y[N], next[N], rest[N];
+    Model::solve(f, x.sigma, tau);
+    auto p = x.change(tau);
+    HOL_UNROLL
+    for (int k = 0; k < N; ++k) y[k] = x.sigma[k] + p.q[k];
+    Model::solve(f, y, tau);
+    int64_t solves = 2;
+    do {
+        // 2 M tau = sigma + q, linear about the last tau: 2 M' tau = sigma - q. What that leaves is q of the change.
+        p = x.change(tau);
+        f = x.inverse(p);
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) y[k] = x.sigma[k] - p.q[k];
+        Model::solve(f, y, next);
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) y[k] = next[k] - tau[k];
+        p = x.change(y);
+        Model::solve(f, p.q, rest);
+        V left = p.q[0] * x.per_a2[0];
+        HOL_UNROLL
+        for (int k = 1; k < N; ++k) left = max(p.q[k] * x.per_a2[k], left);
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) tau[k] = select(active, next[k] + rest[k], tau[k]);
+        active = active & ~less(left, Width<V>::all(small_enough));
+        solves += 2;
+    } while (__builtin_expect(any(active), 0) && solves < 8);
+    return solves;
+}
+
+// The worst bond of the molecules in `which`, from the errors of all, N in the order of the bonds: of a molecule the
+// one with the smallest number.
+template <int N, class V, class Lanes>
+HOL_NOINLINE void note_worst_bond(const V *size, const Lanes &lanes, V error, unsigned which, Tally &tally) {
+    for (int i = 0; i < Width<V>::lanes; ++i) {
+        if (!(which >> i & 1)) continue;
+        const double e = Width<V>::get(error, i);
+        if (!(e > tally.worst || tally.worst_chain < 0 || (e == tally.worst && lanes.molecule(i) < tally.worst_chain)))
+            continue;
+        tally.worst = e;
+        tally.worst_chain = lanes.molecule(i);
+        tally.worst_bond = 0;
+        for (int k = N - 1; k >= 0; --k)
+            if (Width<V>::get(size[k], i) >= e) tally.worst_bond = k;
+    }
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif
