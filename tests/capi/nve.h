@@ -1,7 +1,7 @@
 /**
  * @file nve.h
- * Molecules with rigid bonds at constant energy, by RATTLE with the library. Units: angstrom, atomic mass, kJ/mol, so
- * that time is in 0.1 ps.
+ * Molecules with rigid bonds at constant energy, by RATTLE with the library, or with textbook sweeps beside it. Units:
+ * angstrom, atomic mass, kJ/mol, so that time is in 0.1 ps.
  */
 #ifndef TESTS_NVE_H
 #define TESTS_NVE_H
@@ -21,6 +21,7 @@ typedef struct nve {
     const void *of_what;
     double *r, *v, *f, *before; /**< [n_atoms][3] */
     double potential;
+    double sweeps;       /**< 0: the library; otherwise SHAKE and RATTLE to this relative tolerance */
     double worst_length; /**< largest |d.d - a^2| / a^2 over eps (1 + X / a_min) */
 } nve;
 
@@ -40,6 +41,9 @@ typedef struct energy_record {
 } energy_record;
 
 energy_record nve_run(nve *s, double dt, int steps);
+
+/** The same state, to be run by sweeps to this tolerance. */
+nve nve_with_sweeps(const nve *s, double tolerance);
 
 void nve_free(nve *s);
 

@@ -30,11 +30,31 @@ HOL_INLINE int64_t reaches(const Schedule &s) {
 
 HOL_INLINE double sign_of(int32_t meet) { return meet % 2 ? 1.0 : -1.0; }
 
-// The elements that one atom gives: s_k s_l (w d_k.d_l - sum over children of z_k z_l r), z = the forward half of l.
+// The elements that an atom without children gives: s_k s_l w d_k.d_l. Refinement mends what nearly orthogonal bonds
+// leave of a product.
+template <class V>
+static inline void add_bare_atom(const Molecules<V> &x, const CoreMatrix<V> &core, int32_t c) {
+    const Schedule &s = x.s;
+    const int32_t *const meet = s.meet + s.meet_start[c], *entry = s.meet_pair + s.meet_pair_start[c];
+    const int32_t n = s.meet_start[c + 1] - s.meet_start[c];
+    const V w = x.w[s.n_tree + c];
+    for (int32_t e = 0; e < n; ++e) {
+        BondRow<V> &row = x.row[s.n_tree + meet[e] / 2];
+        row.E = mul_add(w, row.q, row.E);
+        const V sign_w = meet[e] % 2 ? w : -w;
+        for (int32_t o = 0; o < e; ++o) {
+            const V g = sign_w * dot(row.d, x.row[s.n_tree + meet[o] / 2].d);
+            core.entry[*entry++] = meet[o] % 2 ? g : -g;
+        }
+    }
+}
+
+// The same of one with children: s_k s_l (w d_k.d_l - sum over children of z_k z_l r), z = the forward half of l.
 template <class V>
 static inline void add_core_atom(Molecules<V> &x, const CoreMatrix<V> &core, int32_t c, V *reach, Memory<V> memory) {
     const Schedule &s = x.s;
     const int32_t slot = s.n_tree + c, k = s.child_start[slot + 1] - s.child_start[slot];
+    if (k == 0) return add_bare_atom(x, core, c);
     const int32_t *const child = s.child + s.child_start[slot], *const meet = s.meet + s.meet_start[c];
     const int32_t n = s.meet_start[c + 1] - s.meet_start[c], *entry = s.meet_pair + s.meet_pair_start[c];
     const V w = x.w[slot];
@@ -44,18 +64,17 @@ static inline void add_core_atom(Molecules<V> &x, const CoreMatrix<V> &core, int
     for (int32_t a = 0; a < k; ++a) x.row[child[a]].r = f.r[a];
     for (int32_t a = 0; a < k * (k - 1) / 2; ++a) m[a] = f.m[a];
     for (int32_t e = 0; e < n; ++e) {
-        const int32_t place = s.n_tree + meet[e] / 2;
+        BondRow<V> &row = x.row[s.n_tree + meet[e] / 2];
         V *const z = core.part + e * k, *const l = reach + e * k;
-        for (int32_t a = 0; a < k; ++a) f.y[a] = w * product_of(x, child[a], place);
+        for (int32_t a = 0; a < k; ++a) f.y[a] = w * dot(x.row[child[a]].d, row.d);
         solve_joint(k, f.r, f.m, f.y, z, l);
-        BondRow<V> &row = x.row[place];
         const V whole = w * row.q;
         V left = whole;
         for (int32_t a = 0; a < k; ++a) left = mul_add(-(z[a] * f.r[a]), z[a], left);
-        if (k > 0) x.slack = min(mul_add(Width<V>::all(-least_part), whole, left), x.slack);
+        x.slack = min(mul_add(Width<V>::all(-least_part), whole, left), x.slack);
         row.E = row.E + left;
         for (int32_t o = 0; o < e; ++o) {
-            V g = w * product_of(x, place, s.n_tree + meet[o] / 2);
+            V g = w * dot(row.d, x.row[s.n_tree + meet[o] / 2].d);
             const V *const zo = core.part + o * k;
             for (int32_t a = 0; a < k; ++a) g = mul_add(-(z[a] * f.r[a]), zo[a], g);
             core.entry[*entry++] = sign_of(meet[e]) * sign_of(meet[o]) * g;

@@ -17,7 +17,7 @@ struct Linear {
     CoreMatrix<V> core;
     RingRow<V> *ring;
     Equations<V> equations;
-    V *t, *alone;       // [n_bonds] of a graph: the solution so far; what it would be if every bond were alone
+    V *t, *b;           // [n_bonds] of a graph: the solution so far; right-hand sides
     Memory<V> working;  // of a joint of many bonds
 
     // Values of V that the arrays take.
@@ -29,14 +29,14 @@ struct Linear {
         if (s.type == Schedule::graph) {
             const int64_t part = CoreMatrix<V>::most_parts(s);
             n += s.n_entries + reaches(s) + (part > s.max_column ? part : s.max_column) +
-                 3 * static_cast<int64_t>(s.n_bonds) + 6 * static_cast<int64_t>(s.n_atoms);
+                 9 * static_cast<int64_t>(s.n_bonds) + 6 * static_cast<int64_t>(s.n_atoms);
         }
         return n;
     }
 
     Linear(const Schedule &s, const MoleculeLane *lane, int used, const Box &box, const AtomArray &r, Memory<V> &memory)
         : x{s, lane, used, Atoms<V>(lane, used), &box, &r, nullptr, nullptr, nullptr, Width<V>::all(1), {}}, core(),
-          ring(), equations(), t(), alone() {
+          ring(), equations(), t(), b() {
         x.w = memory.values(s.n_atoms);
         x.row = reinterpret_cast<BondRow<V> *>(memory.values(sizeof(BondRow<V>) / sizeof(V) * s.n_bonds));
         x.pair = memory.values(s.n_pairs);
@@ -50,9 +50,10 @@ struct Linear {
             core = {memory.values(s.n_entries), memory.values(reaches(s)),
                     memory.values(part > s.max_column ? part : s.max_column)};
             t = memory.values(s.n_bonds);
-            alone = memory.values(s.n_bonds);
+            b = memory.values(s.n_bonds);
             equations.given = memory.values(s.n_bonds);
             equations.a = reinterpret_cast<Pair3<V> *>(memory.values(6 * static_cast<int64_t>(s.n_atoms)));
+            equations.d = reinterpret_cast<Pair3<V> *>(memory.values(6 * static_cast<int64_t>(s.n_bonds)));
         }
         working = memory;
         memory.values(JointMemory<V, 0>::values(s.max_children));
@@ -79,7 +80,7 @@ struct Linear {
                 solve_ring(x, ring);
                 break;
             case Schedule::graph:
-                find_sizes();
+                for (int32_t k = 0; k < x.s.n_bonds; ++k) b[k] = x.row[k].t;
                 up_trees<true>(x, working);
                 factorize_core(x, core, working);
                 solve_core();
@@ -108,15 +109,16 @@ struct Linear {
     MaskOf<V> refine() {
         typedef MaskOf<V> Mask;
         const Schedule &s = x.s;
+        find_unrounded(x, equations);
         for (int32_t k = 0; k < s.n_bonds; ++k) t[k] = x.row[k].t;
         Mask active = x.in_use(), good = ~x.in_use();
-        V before = Width<V>::all(1);
+        V before = Width<V>::all(1);  // squares
         for (int pass = 0; pass < 8 && any(active); ++pass) {
             find_residuals(x, equations, t);
             solve_again();
             const V part = correct(active);
-            const Mask contracts = less_equal(part, 0.125 * before);
-            const Mask done = active & contracts & less_equal(part * part, epsilon * before);
+            const Mask contracts = less_equal(part, (0.125 * 0.125) * before);
+            const Mask done = active & contracts & less_equal(part * part, (epsilon * epsilon) * before);
             good = good | done;
             active = active & contracts & ~done;
             before = part;
@@ -134,26 +136,20 @@ private:
         down_trees<false>(x);
     }
 
-    // |b_k| / A_kk
-    void find_sizes() {
-        for (int32_t k = 0; k < x.s.n_bonds; ++k) {
-            int32_t from, to;
-            ends_of(x.s, k, from, to);
-            alone[k] = abs(x.row[k].t) / ((x.w[from] + x.w[to]) * x.row[k].q);
-        }
-    }
-
-    // Adds the corrections in t of the rows, in the lanes in `active`; returns the largest one relative to its
-    // multiplier. What is a millionth of the molecule's largest tension counts as much as that.
+    // Adds the corrections in t of the rows, in the lanes in `active`; returns the square of the largest one relative
+    // to its multiplier's size: |t_k|, |b_k| / P_k, which is no more than its scale as P_k is at least 1 / (A^-1)_kk,
+    // and a millionth of the molecule's largest tension.
     V correct(MaskOf<V> active) {
         const int32_t n = x.s.n_bonds;
         V largest = {}, part = {};
-        for (int32_t k = 0; k < n; ++k) largest = max(abs(t[k]) * sqrt(x.row[k].q), largest);
-        const V least = mul_add(Width<V>::all(1e-6), largest, Width<V>::all(1e-290));
+        for (int32_t k = 0; k < n; ++k) largest = max((t[k] * t[k]) * x.row[k].q, largest);
+        const V least = mul_add(Width<V>::all(1e-12), largest, Width<V>::all(1e-290));
         for (int32_t k = 0; k < n; ++k) {
-            const V change = keep(active, x.row[k].t), length = sqrt(x.row[k].q);
+            const BondRow<V> &row = x.row[k];
+            const V change = keep(active, row.t), alone = b[k] * row.r;
             t[k] = t[k] + change;
-            part = max(abs(change) * length / mul_add(abs(t[k]) + alone[k], length, least), part);
+            const V size = mul_add(t[k], t[k], alone * alone);
+            part = max((change * change) * row.q / mul_add(size, row.q, least), part);
         }
         return part;
     }

@@ -10,15 +10,27 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
+// Low words are added up as they come: the high ones stay right to a rounding, which is all that a sum of few terms
+// needs.
 template <class V>
 HOL_INLINE Pair<V> add_pairs(const Pair<V> &a, const Pair<V> &b) {
     const Pair<V> s = two_sum<V>(a.hi, b.hi);
-    return fast_two_sum<V>(s.hi, s.lo + (a.lo + b.lo));
+    return {s.hi, s.lo + (a.lo + b.lo)};
+}
+template <class V>
+HOL_INLINE Pair<V> subtract_pairs(const Pair<V> &a, const Pair<V> &b) {
+    const Pair<V> s = two_difference<V>(a.hi, b.hi);
+    return {s.hi, s.lo + (a.lo - b.lo)};
 }
 template <class V>
 HOL_INLINE Pair<V> multiply_pairs(const Pair<V> &a, const Pair<V> &b) {
     const Pair<V> p = two_product<V>(a.hi, b.hi);
-    return {p.hi, p.lo + mul_add(a.hi, b.lo, a.lo * b.hi)};
+    return {p.hi, mul_add(a.hi, b.lo, mul_add(a.lo, b.hi, p.lo))};
+}
+template <class V>
+HOL_INLINE Pair<V> scale_pair(const V &s, const Pair<V> &a) {
+    const Pair<V> p = two_product<V>(s, a.hi);
+    return {p.hi, mul_add(s, a.lo, p.lo)};
 }
 
 template <class V>
@@ -27,17 +39,20 @@ struct Pair3 {
 };
 
 template <class V>
+HOL_INLINE Pair3<V> pairs_of(const Vector3<V> &hi, const Vector3<V> &lo) {
+    return {{hi.x, lo.x}, {hi.y, lo.y}, {hi.z, lo.z}};
+}
+template <class V>
 HOL_INLINE Pair3<V> add_pairs(const Pair3<V> &a, const Pair3<V> &b) {
     return {add_pairs(a.x, b.x), add_pairs(a.y, b.y), add_pairs(a.z, b.z)};
 }
 template <class V>
-HOL_INLINE Pair3<V> scale_pairs(const V &s, const Pair3<V> &a) {
-    const Pair<V> p = {s, V{}};
-    return {multiply_pairs(p, a.x), multiply_pairs(p, a.y), multiply_pairs(p, a.z)};
+HOL_INLINE Pair3<V> subtract_pairs(const Pair3<V> &a, const Pair3<V> &b) {
+    return {subtract_pairs(a.x, b.x), subtract_pairs(a.y, b.y), subtract_pairs(a.z, b.z)};
 }
 template <class V>
-HOL_INLINE Pair3<V> negative(const Pair3<V> &a) {
-    return {{-a.x.hi, -a.x.lo}, {-a.y.hi, -a.y.lo}, {-a.z.hi, -a.z.lo}};
+HOL_INLINE Pair3<V> scale_pairs(const V &s, const Pair3<V> &a) {
+    return {scale_pair(s, a.x), scale_pair(s, a.y), scale_pair(s, a.z)};
 }
 template <class V>
 HOL_INLINE Pair<V> dot_pairs(const Pair3<V> &a, const Pair3<V> &b) {
@@ -57,36 +72,42 @@ struct Equations {
     Vector3<V> *start;     // a = start + w G
     V *given;              // c = given
     Pair3<V> *a;           // [n_atoms] working memory
+    Pair3<V> *d;           // [n_bonds] unrounded bonds
 };
+
+// The unrounded bonds, once for all residuals.
+template <class V>
+HOL_INLINE void find_unrounded(const Molecules<V> &x, const Equations<V> &e) {
+    for (int32_t k = 0; k < x.s.n_bonds; ++k) {
+        int32_t from, to;
+        ends_of(x.s, k, from, to);
+        Vector3<V> d, lo;
+        exact_bond(*x.box, e.r[from], e.r[to], d, lo);
+        e.d[k] = pairs_of(d, lo);
+    }
+}
 
 // Residuals into t of the rows; the solution is t[place].
 template <class V>
 HOL_NOINLINE void find_residuals(const Molecules<V> &x, const Equations<V> &e, const V *t) {
     const Schedule &s = x.s;
-    for (int32_t i = 0; i < s.n_atoms; ++i) {
-        e.a[i] = Pair3<V>{};
-        if (e.force) e.a[i] = {{e.force[i].x, V{}}, {e.force[i].y, V{}}, {e.force[i].z, V{}}};
-    }
-    const auto bond = [&](int32_t from, int32_t to) HOL_FORCED {
-        Vector3<V> d, lo;
-        exact_bond(*x.box, e.r[from], e.r[to], d, lo);
-        return Pair3<V>{{d.x, lo.x}, {d.y, lo.y}, {d.z, lo.z}};
-    };
+    const Vector3<V> zero = {};
+    for (int32_t i = 0; i < s.n_atoms; ++i) e.a[i] = pairs_of(e.force ? e.force[i] : zero, zero);
     for (int32_t k = 0; k < s.n_bonds; ++k) {
         int32_t from, to;
         ends_of(s, k, from, to);
-        const Pair3<V> pull = scale_pairs(t[k], bond(from, to));
+        const Pair3<V> pull = scale_pairs(t[k], e.d[k]);
         e.a[from] = add_pairs(e.a[from], pull);
-        e.a[to] = add_pairs(e.a[to], negative(pull));
+        e.a[to] = subtract_pairs(e.a[to], pull);
     }
     for (int32_t i = 0; i < s.n_atoms; ++i) {
         e.a[i] = scale_pairs(x.w[i], e.a[i]);
-        if (e.start) e.a[i] = add_pairs(e.a[i], {{e.start[i].x, V{}}, {e.start[i].y, V{}}, {e.start[i].z, V{}}});
+        if (e.start) e.a[i] = add_pairs(e.a[i], pairs_of(e.start[i], zero));
     }
     for (int32_t k = 0; k < s.n_bonds; ++k) {
         int32_t from, to;
         ends_of(s, k, from, to);
-        Pair<V> sum = dot_pairs(bond(from, to), add_pairs(e.a[to], negative(e.a[from])));
+        Pair<V> sum = dot_pairs(e.d[k], subtract_pairs(e.a[to], e.a[from]));
         if (e.velocity) {
             const Pair3<V> dv = difference_of(e.velocity[from], e.velocity[to]);
             sum = add_pairs(sum, dot_pairs(dv, dv));
