@@ -4,10 +4,10 @@
 //
 //     w_i |d_c| T r_c,   r_c = 1 / pivot,
 //
-// beside what its scale |A^-1| S (docs/theory.md) allows. That scale is at least |t_c|, |y_c| r_c - y_c is what c and the
-// bonds below it are pulled by, r_c <= (A^-1)_cc - and S_c / A_cc, S_c the terms of its right-hand side in absolute
-// values. Bonds for
-// which none of these is large enough are `faint`; the first two are looked at always, the third where those do not do.
+// beside what its scale |A^-1| S (docs/theory.md) allows. That scale is at least |t_c|, |y_c| r_c - y_c is what c and
+// the bonds below it are pulled by, r_c <= (A^-1)_cc - and S_c / A_cc, S_c the terms of its right-hand side in absolute
+// values. Bonds for which none of these is large enough are `faint`; the first two are looked at always, the third
+// where those do not do.
 #ifndef HOLONOMIC_KERNELS_GRAPH_SIBLINGS_HPP
 #define HOLONOMIC_KERNELS_GRAPH_SIBLINGS_HPP
 
