@@ -2,6 +2,8 @@
 #ifndef HOLONOMIC_BOX_HPP
 #define HOLONOMIC_BOX_HPP
 
+#include <cstring>
+
 #include "core/kernels/call.hpp"
 
 namespace holonomic {
@@ -17,7 +19,8 @@ inline void put_box(const Box &box, Box &of_call) {
         return;
     }
     of_call.shape = Box::none;
-    for (int i = 0; i < 9; ++i) of_call.h[i] = of_call.inverse[i] = 0;
+    std::memcpy(of_call.h, box.h, sizeof box.h);
+    std::memcpy(of_call.inverse, box.inverse, sizeof box.inverse);
 }
 
 // Replaces a bond vector by its minimum image.

@@ -10,8 +10,6 @@ namespace holonomic {
 
 namespace {
 
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
-
 std::int64_t rounded_up(std::int64_t bytes) { return (bytes + 63) / 64 * 64; }
 
 template <class Each>
@@ -135,11 +133,6 @@ void Apart::put_back() const {
             std::memcpy(values_[i].result + places[k], values_[i].copy + k, sizeof(double));
     }
     for (int i = 0; i < n_atoms_; ++i) put_back(atoms_[i]);
-}
-
-void clear_unconstrained(const Chains &chains, double *values) {
-    if (!values) return;
-    for (const std::int64_t bond : chains.unconstrained()) values[at(bond)] = 0;
 }
 
 }  // namespace holonomic

@@ -82,7 +82,10 @@ private:
 };
 
 // Bonds that are no constraints get a value of 0. Null: nothing.
-void clear_unconstrained(const Chains &chains, double *values);
+inline void clear_unconstrained(const Chains &chains, double *values) {
+    if (!values) return;
+    for (const std::int64_t bond : chains.unconstrained()) values[static_cast<std::size_t>(bond)] = 0;
+}
 
 }  // namespace holonomic
 #endif
