@@ -168,7 +168,8 @@ void FixHolonomic::collect_positions(const Block &block) {
         if (atoms[slot] < 0) continue;
         const double *from = x + 3 * static_cast<std::ptrdiff_t>(atoms[slot]);
         double *to = now + 3 * slot;
-        to[0] = from[0], to[1] = from[1], to[2] = from[2];
+        const double r0 = from[0], r1 = from[1], r2 = from[2];
+        to[0] = r0, to[1] = r1, to[2] = r2;
     }
     add_images(block, 1);
 }
@@ -177,10 +178,12 @@ void FixHolonomic::collect_positions(const Block &block) {
 inline void FixHolonomic::move_atom(int i, const double *r, double inverse_time) {
     double *x = atom->x[0] + 3 * static_cast<std::ptrdiff_t>(i);
     double *v = atom->v[0] + 3 * static_cast<std::ptrdiff_t>(i);
-    for (int c = 0; c < 3; ++c) {
-        v[c] += inverse_time * (r[c] - x[c]);
-        x[c] = r[c];
-    }
+    // All read before anything is written: the compiler need not think of overlaps, and takes two at a time.
+    const double r0 = r[0], r1 = r[1], r2 = r[2];
+    const double v0 = v[0] + inverse_time * (r0 - x[0]), v1 = v[1] + inverse_time * (r1 - x[1]),
+                 v2 = v[2] + inverse_time * (r2 - x[2]);
+    x[0] = r0, x[1] = r1, x[2] = r2;
+    v[0] = v0, v[1] = v1, v[2] = v2;
 }
 
 /** A block's positions go back to its own atoms, and into the answers to other ranks. */

@@ -88,7 +88,9 @@ void FixHolonomic::collect_velocities(const Block &block, double half) {
             if (atoms[slot] < 0) continue;
             const std::ptrdiff_t i = 3 * static_cast<std::ptrdiff_t>(atoms[slot]);
             const double kick = half * inverse_masses_[slot];
-            for (int c = 0; c < 3; ++c) velocities[3 * slot + c] = v[i + c] + kick * f[i + c];
+            const double u0 = v[i] + kick * f[i], u1 = v[i + 1] + kick * f[i + 1], u2 = v[i + 2] + kick * f[i + 2];
+            double *to = velocities + 3 * slot;
+            to[0] = u0, to[1] = u1, to[2] = u2;
         }
     }
     add_streaming(block);
@@ -199,7 +201,9 @@ void FixHolonomic::post_force(int vflag) {
         constrain_velocities(true, exact, [&](int i, const double *change, double mass) {
             const double factor = mass * inverse_half;
             double *force_of = f + 3 * static_cast<std::ptrdiff_t>(i);
-            for (int c = 0; c < 3; ++c) force_of[c] += factor * change[c];
+            const double f0 = force_of[0] + factor * change[0], f1 = force_of[1] + factor * change[1],
+                         f2 = force_of[2] + factor * change[2];
+            force_of[0] = f0, force_of[1] = f1, force_of[2] = f2;
         });
         if (!exact) return;
         exact_forces();

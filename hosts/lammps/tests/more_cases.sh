@@ -9,6 +9,16 @@ preload() {
     same 1e-14 TotEng own stock
 }
 
+# However LAMMPS keeps its bonds and cuts its box, the trajectory is the same.
+layouts() {
+    "$SCENE" melt 40 32 >data
+    run 1 plain "$INPUTS/beads.lmp" data data rigid holonomic dt 0.003 steps 300
+    run 2 off "$INPUTS/beads.lmp" data data rigid holonomic dt 0.003 steps 300 first "newton off"
+    run 3 tiled "$INPUTS/beads.lmp" data data rigid holonomic dt 0.003 steps 300 first "comm_style tiled" later "balance 1.0 rcb"
+    run 4 grid "$INPUTS/beads.lmp" data data rigid holonomic dt 0.003 steps 300 first "processors 1 1 4"
+    for layout in off tiled grid; do same 1e-12 TotEng plain $layout; done
+}
+
 # Virials per atom add up to the pressure, constraint forces to nothing, tensions to the virial; on any number of ranks.
 outputs() {
     "$SCENE" melt 40 32 >data
