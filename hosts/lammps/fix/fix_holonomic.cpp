@@ -125,6 +125,7 @@ void FixHolonomic::find_molecules() {
         std::vector<Tag> tags(atom->tag, atom->tag + atom->nlocal);
         const std::vector<Membership> members = registry_.memberships(tags);
         for (int i = 0; i < atom->nlocal; ++i) static_cast<Membership &>(atoms_[i]) = members[i];
+        blocks_.clear();
         *plan_ = Plan(world);
     });
 }
