@@ -102,8 +102,8 @@ private:
     std::int32_t least_atom(std::size_t p) const { return std::min(end_[2 * p], end_[2 * p + 1]); }
     std::int64_t bond_at(std::size_t p) const { return bond_at_.empty() ? static_cast<std::int64_t>(p) : bond_at_[p]; }
 
-    // Bonds that stand in the list in any order are first sorted by their lower atoms: what follows would miss the cache
-    // at every step, and branch at random.
+    // Bonds that stand in the list in any order are first sorted by their lower atoms: what follows would miss the
+    // cache at every step, and branch at random.
     void bring_together() {
         const std::size_t n_bonds = end_.size() / 2;
         std::size_t jumps = 0;
