@@ -163,19 +163,32 @@ static mixture interleaved(const molecule *parts, int64_t n)
     return m;
 }
 
-/** A regular unit of molecules with lists; positions without a report. */
-static void equal_molecules_with_lists_have_the_bits_of_each_alone(void **state)
+/** Frees the mixture of these molecules. */
+static void assert_bits_of_each_alone(const molecule *parts, int64_t n, mixture *all)
+{
+    everything together = compute(all);
+    for (int64_t p = 0; p < n; ++p) {
+        mixture one = mixture_make(parts + p, 1, ONE_AFTER_THE_OTHER, 0);
+        everything alone = compute(&one);
+        for (int a = 0; a < ARRAYS; ++a)
+            assert_same_bits(alone.part[a], together.part[a] + (size_t)p * alone.size[a], alone.size[a]);
+        release(&alone);
+        mixture_free(&one);
+    }
+    release(&together);
+    mixture_free(all);
+}
+
+/** A regular unit of molecules, with lists and without; positions without a report. */
+static void equal_molecules_have_the_bits_of_each_alone(void **state)
 {
     (void)state;
     enum { N = 27 }; /* some blocks of every number of lanes, and a rest */
     static const struct {
         molecule_kind kind;
         int64_t size;
-    } kinds[] = {{MOLECULE_WATER, 3},
-                 {MOLECULE_NEOPENTANE, 17},
-                 {MOLECULE_COMB, 7},
-                 {MOLECULE_RING, 8},
-                 {MOLECULE_TRIANGLES, 6}};
+    } kinds[] = {{MOLECULE_WATER, 3}, {MOLECULE_XH3, 3},  {MOLECULE_XH4, 4},      {MOLECULE_NEOPENTANE, 17},
+                 {MOLECULE_COMB, 7},  {MOLECULE_RING, 8}, {MOLECULE_TRIANGLES, 6}};
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k) {
         molecule parts[N];
         for (int p = 0; p < N; ++p) {
@@ -186,18 +199,10 @@ static void equal_molecules_with_lists_have_the_bits_of_each_alone(void **state)
             molecule_finish(parts + p, &stream);
             memcpy(parts[p].length, parts[0].length, (size_t)parts[0].n_bonds * sizeof(double));
         }
-        mixture all = interleaved(parts, N);
-        everything together = compute(&all);
-        for (int64_t p = 0; p < N; ++p) {
-            mixture one = mixture_make(parts + p, 1, ONE_AFTER_THE_OTHER, 0);
-            everything alone = compute(&one);
-            for (int a = 0; a < ARRAYS; ++a)
-                assert_same_bits(alone.part[a], together.part[a] + (size_t)p * alone.size[a], alone.size[a]);
-            release(&alone);
-            mixture_free(&one);
-        }
-        release(&together);
-        mixture_free(&all);
+        mixture listed = interleaved(parts, N), in_order = mixture_make(parts, N, ONE_AFTER_THE_OTHER, 0);
+        assert_int_equal(hol_chains_n_kinds(in_order.chains), 1);
+        assert_bits_of_each_alone(parts, N, &listed);
+        assert_bits_of_each_alone(parts, N, &in_order);
         for (int p = 0; p < N; ++p) molecule_free(parts + p);
     }
 }
@@ -274,7 +279,7 @@ int main(void)
         cmocka_unit_test(order_and_direction_of_bonds_and_placement_change_no_bit),
         cmocka_unit_test(number_of_threads_changes_no_bit),
         cmocka_unit_test(one_call_for_copies_gives_the_bits_of_the_list),
-        cmocka_unit_test(equal_molecules_with_lists_have_the_bits_of_each_alone),
+        cmocka_unit_test(equal_molecules_have_the_bits_of_each_alone),
         cmocka_unit_test(layouts_of_doubles_change_no_bit),
         cmocka_unit_test(floats_and_two_dimensions_give_the_solution_of_the_rounded_numbers),
     };
