@@ -182,6 +182,47 @@ HOL_INLINE void note_molecules(const MoleculesCall &m, const Newton &x, vec erro
     }
 }
 
+// Whether no atom is pulled so far that its move needs more than this path.
+template <int N, bool uniform>
+HOL_INLINE bool moves_little(const Newton &x) {
+    vec pull = {};
+    for (int k = 0; k < N; ++k) pull = max(uniform ? abs(x.tau[k]) : max(x.w[k], x.w[k + 1]) * abs(x.tau[k]), pull);
+    return !any(less(0.25 * x.a_min, pull * x.a_max));
+}
+
+// Single bonds one behind the other, two blocks at a time: while one waits for its root and its quotient, the other is
+// worked on. Ends before a pair of blocks of which one needs more than this.
+template <bool uniform>
+HOL_NOINLINE int64_t pairs_of_single_bonds(const MoleculesCall &m, int64_t first, Tally &tally) {
+    typedef InRow<1> Place;
+    vec memory[2][vectors_per_bond * (2 * W + 9)], w[2], a2[1], per_a2[1];
+    Arena arenas[2] = {Arena(&memory[0][0][0], 1), Arena(&memory[1][0][0], 1)};
+    Newton a(1, arenas[0]), b(1, arenas[1]);
+    set_molecule<1, uniform>(m.block, m.unit.lanes[0], a, w, a2, per_a2);
+    set_molecule<1, uniform>(m.block, m.unit.lanes[0], b, w, a2, per_a2);
+    const vec factor = splat(0.5 / (m.call.dt * m.call.dt)) / m.block.unit;
+    for (; molecules_left<Place>(m.unit, first + W); first += 2 * W) {
+        const Place at_a(m.unit, first), at_b(m.unit, first + W);
+        const Packed r_a = at_a.first_atoms(m.r), r_b = at_b.first_atoms(m.r);
+        Carried carried_a(m.block, a, m.call, r_a), carried_b(m.block, b, m.call, r_b);
+        load_positions<1, false>(m, at_a, a, nullptr, carried_a);
+        load_positions<1, false>(m, at_b, b, nullptr, carried_b);
+        const Outcome of_a = solve_single_bonds<uniform>(a, carried_a, first_lanes(W));
+        const Outcome of_b = solve_single_bonds<uniform>(b, carried_b, first_lanes(W));
+        if (any(~(of_a.converged & of_b.converged)) || !moves_little<1, uniform>(a) || !moves_little<1, uniform>(b))
+            break;
+        move_molecules<1, uniform>(a, m.r + at_a.at, m.v ? m.v + at_a.at : nullptr, m.per_dt);
+        move_molecules<1, uniform>(b, m.r + at_b.at, m.v ? m.v + at_b.at : nullptr, m.per_dt);
+        if (m.lambda) {
+            store_multipliers<1>(a.tau, factor, m.lambda + first);
+            store_multipliers<1>(b.tau, factor, m.lambda + first + W);
+        }
+        tally.n_corrected += 2 * W;
+        if (tally.iterations < 1) tally.iterations = 1;
+    }
+    return first;
+}
+
 // From molecule `first` on; returns the first one that is not done.
 template <int N, bool uniform, bool boxed, template <int> class PlaceOf>
 HOL_NOINLINE int64_t positions_of_molecules(const MoleculesCall &m, int64_t first, Tally &tally) {
@@ -211,9 +252,7 @@ HOL_NOINLINE int64_t positions_of_molecules(const MoleculesCall &m, int64_t firs
             out = iterate<uniform, uniform, false, N>(m.block, x, m.call, carried, all, false);
         }
         if (any(~out.converged)) break;
-        vec pull = {};
-        for (int k = 0; k < N; ++k) pull = max(uniform ? abs(x.tau[k]) : max(x.w[k], x.w[k + 1]) * abs(x.tau[k]), pull);
-        if (any(less(0.25 * x.a_min, pull * x.a_max))) break;
+        if (!moves_little<N, uniform>(x)) break;
         if (m.call.report) note_molecules<N, uniform>(m, x, out.error, first, tally);
         if constexpr (Place::listed)
             move_listed_molecules<N, uniform>(x, place, atoms, m.r, m.v, m.per_dt);
@@ -229,7 +268,11 @@ HOL_NOINLINE int64_t positions_of_molecules(const MoleculesCall &m, int64_t firs
 template <int N, bool uniform, bool boxed, template <int> class PlaceOf>
 struct PositionsOfMolecules {
     static int64_t run(const PositionsCall &call, const Unit &unit, const Block &block, int64_t first, Tally &tally) {
-        return positions_of_molecules<N, uniform, boxed, PlaceOf>(MoleculesCall(call, unit, block), first, tally);
+        const MoleculesCall m(call, unit, block);
+        if constexpr (N == 1 && !boxed && W > 1) {
+            if (!call.report) first = pairs_of_single_bonds<uniform>(m, first, tally);
+        }
+        return positions_of_molecules<N, uniform, boxed, PlaceOf>(m, first, tally);
     }
 };
 
