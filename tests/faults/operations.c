@@ -1,0 +1,172 @@
+#include "operations.h"
+
+#include <string.h>
+
+static size_t atoms3(const assembly *a)
+{
+    return assembly_size(a);
+}
+static size_t bonds(const assembly *a)
+{
+    return (size_t)a->n_bonds;
+}
+
+/* Layout of `out`: two arrays per atom, two per bond, and 16 numbers. */
+static double *per_bond(const assembly *a, double *out)
+{
+    return out + 2 * atoms3(a);
+}
+static double *numbers(const assembly *a, double *out)
+{
+    return per_bond(a, out) + 2 * bonds(a);
+}
+size_t out_size(const assembly *a)
+{
+    return 2 * atoms3(a) + 2 * bonds(a) + 16;
+}
+
+void prepare(const assembly *a, double *out)
+{
+    for (size_t i = 0; i < out_size(a); ++i) out[i] = 0.25;
+    memcpy(out, a->v, sizeof *out * atoms3(a));
+    for (size_t i = 0; i < atoms3(a); ++i) out[atoms3(a) + i] = a->r[i] + 0.003 * a->v[i];
+}
+
+int forces(const assembly *a, double *out)
+{
+    return hol_forces(a->chains, a->r, a->v, a->f, per_bond(a, out), per_bond(a, out) + bonds(a), out, HOL_WRITE,
+                      numbers(a, out));
+}
+
+static int velocities(const assembly *a, double *out)
+{
+    return hol_project_velocities(a->chains, a->r, out, per_bond(a, out), numbers(a, out));
+}
+
+static int positions(const assembly *a, double *out)
+{
+    return hol_project_positions(a->chains, a->r, out + atoms3(a), out, 0.003, per_bond(a, out), 0, numbers(a, out),
+                                 NULL);
+}
+
+static int violation(const assembly *a, double *out)
+{
+    hol_worst worst = {0, 0, 0, 0, 0, 0};
+    const int status = hol_violation(a->chains, a->r, a->v, &worst);
+    if (status == HOL_OK) numbers(a, out)[0] = worst.length;
+    return status;
+}
+
+int given_right_hand_sides(const assembly *a, double *out)
+{
+    return hol_solve(a->chains, a->r, a->length, per_bond(a, out), out, HOL_WRITE, numbers(a, out));
+}
+
+static int metric(const assembly *a, double *out)
+{
+    return hol_metric(a->chains, a->r, 1, per_bond(a, out), NULL, numbers(a, out), out, HOL_WRITE);
+}
+
+static int inverse(const assembly *a, double *out)
+{
+    hol_inverse *made = (hol_inverse *)out;
+    int status = hol_inverse_create(a->chains, 0, a->r, &made);
+    if (status != HOL_OK) {
+        if (made != NULL) return HOL_ERR_INTERNAL; /* "NULL on an error" */
+        return status;
+    }
+    double *o = numbers(a, out);
+    status = hol_inverse_entry(made, HOL_UNIT_DIAGONAL, 0, 1, o);
+    if (status == HOL_OK) status = hol_inverse_condition(made, o + 1);
+    if (status != HOL_OK) o[0] = o[1] = 0.25;
+    hol_inverse_destroy(made);
+    return status;
+}
+
+hol_inverse *prepared;
+
+static int inverse_row(const assembly *a, double *out)
+{
+    return hol_inverse_row(prepared, HOL_PHYSICAL, 1, per_bond(a, out));
+}
+static int inverse_band(const assembly *a, double *out)
+{
+    return hol_inverse_band(prepared, HOL_UNIT_DIAGONAL, 1, per_bond(a, out));
+}
+static int inverse_bound(const assembly *a, double *out)
+{
+    return hol_inverse_error_bound(prepared, a->v, a->f, a->length, per_bond(a, out), numbers(a, out));
+}
+
+static double gamma_of(size_t k)
+{
+    return 0.3 + 0.1 * (double)(k % 2);
+}
+
+static int tridiagonal(const assembly *a, double *out, int which)
+{
+    enum { ROWS = 50 };
+    double gamma[ROWS], *o = per_bond(a, out);
+    for (size_t k = 0; k < ROWS; ++k) gamma[k] = gamma_of(k);
+    switch (which) {
+        case 0:
+            return hol_tridiagonal_pivots(ROWS, gamma, o);
+        case 1:
+            return hol_tridiagonal_log_det(ROWS, gamma, o);
+        case 2:
+            return hol_tridiagonal_solve(ROWS, gamma, gamma, o);
+        case 3:
+            return hol_tridiagonal_inverse_entry(ROWS, gamma, 3, 17, o);
+        default:
+            return hol_tridiagonal_inverse_band(ROWS, gamma, 1, o);
+    }
+}
+
+static int pivots(const assembly *a, double *out)
+{
+    return tridiagonal(a, out, 0);
+}
+static int log_det(const assembly *a, double *out)
+{
+    return tridiagonal(a, out, 1);
+}
+static int solve(const assembly *a, double *out)
+{
+    return tridiagonal(a, out, 2);
+}
+static int entry(const assembly *a, double *out)
+{
+    return tridiagonal(a, out, 3);
+}
+static int band(const assembly *a, double *out)
+{
+    return tridiagonal(a, out, 4);
+}
+
+static int partition(const assembly *a, double *out)
+{
+    const double mass[7] = {1, 12, 1, 16, 1, 14, 3};
+    double *o = numbers(a, out);
+    return hol_partition_function(6, mass, o, o + 1, o + 2);
+}
+
+const operation operations[] = {
+    {"hol_forces", forces},
+    {"hol_project_velocities", velocities},
+    {"hol_project_positions", positions},
+    {"hol_violation", violation},
+    {"hol_solve", given_right_hand_sides},
+    {"hol_metric", metric},
+    {"hol_inverse_create", inverse},
+    {"hol_inverse_row", inverse_row},
+    {"hol_inverse_band", inverse_band},
+    {"hol_inverse_error_bound", inverse_bound},
+    {"hol_tridiagonal_pivots", pivots},
+    {"hol_tridiagonal_log_det", log_det},
+    {"hol_tridiagonal_solve", solve},
+    {"hol_tridiagonal_inverse_entry", entry},
+    {"hol_tridiagonal_inverse_band", band},
+    {"hol_partition_function", partition},
+};
+
+const size_t n_operations = sizeof operations / sizeof *operations;
