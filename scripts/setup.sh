@@ -5,6 +5,8 @@
 #   need NAME...            installs what is missing of these, or says what to install and ends the script
 #   want NAME...            the same for what a script can do without: if it can't be had, it says so and goes on
 #   build_jobs              prints how many compilations to run at once
+#   few_instruction_sets    for HOLONOMIC_INSTRUCTION_SETS where a build is slow and what it is for needs no others: four
+#                           lanes and one, the same whatever processor this is
 
 say() {
     printf '== %s\n' "$*"
@@ -14,6 +16,8 @@ fail() {
     printf '%s: %s\n' "${0##*/}" "$*" >&2
     exit 1
 }
+
+few_instruction_sets="avx2;scalar"
 
 build_jobs() {
     local cores memory_gb

@@ -12,6 +12,11 @@ static inline Tally empty_tally() {
     return tally;
 }
 
+// Whether a bond of a molecule is worse than the worst so far; of equal ones that of the first molecule counts.
+static inline bool is_worse(const Tally &tally, double error, int64_t molecule) {
+    return tally.worst_chain < 0 || error > tally.worst || (error == tally.worst && molecule < tally.worst_chain);
+}
+
 static inline void add(Tally &total, const Tally &piece) {
     for (int i = 0; i < 6; ++i) total.virial[i] += piece.virial[i];
     if (piece.n_bad > 0 && (total.n_bad == 0 || piece.first_bad < total.first_bad)) total.first_bad = piece.first_bad;
@@ -20,8 +25,7 @@ static inline void add(Tally &total, const Tally &piece) {
     total.log_det_z += piece.log_det_z;
     if (piece.iterations > total.iterations) total.iterations = piece.iterations;
     total.n_corrected += piece.n_corrected;
-    if (piece.worst_chain >= 0 && (total.worst_chain < 0 || piece.worst > total.worst ||
-                                   (piece.worst == total.worst && piece.worst_chain < total.worst_chain))) {
+    if (piece.worst_chain >= 0 && is_worse(total, piece.worst, piece.worst_chain)) {
         total.worst = piece.worst;
         total.worst_chain = piece.worst_chain;
         total.worst_bond = piece.worst_bond;

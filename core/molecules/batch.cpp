@@ -107,12 +107,12 @@ void Batch::append_block(std::int64_t count, std::int64_t n_bonds, std::int64_t 
 
 // Where neighbours of the same size don't follow each other in memory, they all go by lists, so that they are one
 // group.
-void Batch::append_one(const FoundMolecules &found, std::size_t m, std::int32_t shape) {
+void Batch::append_one(const FoundMolecules &found, std::size_t m, std::int32_t shape, const double *lengths) {
     const FoundMolecule &molecule = found.molecules[m];
     const std::int64_t *const atoms = &found.atoms[at(molecule.first_atom)];
     const std::int64_t *const bonds = &found.bonds[at(molecule.first_bond)];
-    const std::int64_t kind = chains_.kinds_.find(shape, molecule.n_atoms, molecule.n_bonds, w_.data(), length_.data(),
-                                                  chains_.groups_.last_kind());
+    const std::int64_t kind =
+        chains_.kinds_.find(shape, molecule.n_atoms, molecule.n_bonds, w_.data(), lengths, chains_.groups_.last_kind());
     bool list_atoms = !ascend(atoms, molecule.n_atoms), list_bonds = !ascend(bonds, molecule.n_bonds);
     if (!list_atoms || !list_bonds) {
         const bool before = alike(found, m, m - 1), after = alike(found, m, m + 1);
@@ -144,16 +144,14 @@ void Batch::append_found(const FoundMolecules &found, std::int64_t n_bonds, cons
         const FoundMolecule &molecule = found.molecules[m];
         const std::size_t first = at(molecule.first_atom), n_atoms = at(molecule.n_atoms);
         w_.resize(n_atoms);
-        length_.resize(at(molecule.n_bonds));
         for (std::size_t i = 0; i < n_atoms; ++i) w_[i] = chains_.masses_.w(found.atoms[first + i]);
-        for (std::size_t k = 0; k < length_.size(); ++k) length_[k] = in_order[at(molecule.first_bond) + k];
         std::int32_t shape = linear;
         if (molecule.form != Form::chain) {
             shape = last_shape =
                 chains_.shapes_.find(molecule.form, molecule.n_atoms, molecule.n_bonds,
                                      &found.pairs[2 * at(molecule.first_bond)], &found.fixed[first], last_shape);
         }
-        append_one(found, m, shape);
+        append_one(found, m, shape, &in_order[at(molecule.first_bond)]);
         if (molecule.n_fixed == 0) continue;
         for (std::size_t i = first; i < first + n_atoms; ++i)
             if (found.fixed[i]) fixed_.push_back(found.atoms[i]);

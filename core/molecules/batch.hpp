@@ -29,7 +29,7 @@ public:
 
 private:
     void append_part(std::int64_t n_bonds, const std::int64_t *atoms, const double *lengths, std::int64_t first_bond);
-    void append_one(const FoundMolecules &found, std::size_t m, std::int32_t shape);
+    void append_one(const FoundMolecules &found, std::size_t m, std::int32_t shape, const double *lengths);
     Error in_use(std::int64_t atom) const;
 
     Chains &chains_;
@@ -39,7 +39,7 @@ private:
     std::int64_t n_bonds_ = 0;
     const FoundMolecules *found_ = nullptr;  // of which the movable atoms are to be taken
     std::vector<std::int64_t> taken_, fixed_;
-    std::vector<double> w_, length_;
+    std::vector<double> w_;
     std::vector<std::int64_t> places_;
     bool committed_ = false;
 };

@@ -39,14 +39,19 @@ HOL_INLINE void wrap(const Box &box, Vector3<V> &d, Vector3<V> &lo) {
     }
 }
 
-// The vector from one atom to another, unrounded: d + lo.
-HOL_INLINE void unrounded_bond(const Box &box, const double *from, const double *to, Vector3<double> &d,
-                               Vector3<double> &lo) {
-    const Pair<double> x = two_difference(to[0], from[0]), y = two_difference(to[1], from[1]),
-                       z = two_difference(to[2], from[2]);
+// The vector from one atom to another, unrounded: d + lo. Of all lanes or of one.
+template <class V>
+HOL_INLINE void unrounded_bond(const Box &box, const Vector3<V> &from, const Vector3<V> &to, Vector3<V> &d,
+                               Vector3<V> &lo) {
+    const Pair<V> x = two_difference<V>(to.x, from.x), y = two_difference<V>(to.y, from.y),
+                  z = two_difference<V>(to.z, from.z);
     d = {x.hi, y.hi, z.hi};
     lo = {x.lo, y.lo, z.lo};
     if (box.shape != Box::none) wrap<true>(box, d, lo);
+}
+HOL_INLINE void unrounded_bond(const Box &box, const double *from, const double *to, Vector3<double> &d,
+                               Vector3<double> &lo) {
+    unrounded_bond(box, Vector3<double>{from[0], from[1], from[2]}, Vector3<double>{to[0], to[1], to[2]}, d, lo);
 }
 
 #if HOL_LANES == 4

@@ -3,6 +3,7 @@
 // nothing.
 #include "core/kernels/careful/careful.hpp"
 #include "core/kernels/careful/solution.hpp"
+#include "core/kernels/tally.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -115,8 +116,7 @@ static Projected iterate(Projection &p, const PositionsCall &call, bool guess, i
 
 static void note_worst(const Projection &p, Tally &tally) {
     const int64_t molecule = p.m.lane.molecule;
-    if (tally.worst_chain >= 0 && !(p.error > tally.worst || (p.error == tally.worst && molecule < tally.worst_chain)))
-        return;
+    if (!is_worse(tally, p.error, molecule)) return;
     tally.worst = p.error;
     tally.worst_chain = molecule;
     tally.worst_bond = p.worst;

@@ -5,6 +5,7 @@
 
 #include "core/kernels/call.hpp"
 #include "core/kernels/graph/width.hpp"
+#include "core/kernels/memory/atom_rows.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -13,74 +14,9 @@ namespace graph {
 // rows_adjacent: rows in order, and the molecules one behind the other.
 enum Layout { rows_in_order, rows_listed, elements, rows_adjacent };
 
-// Rows x y z of four lanes, from and to memory; of row i the element behind z is not touched.
-#if HOL_LANES >= 4 && defined(__AVX2__)
-typedef double quad __attribute__((vector_size(32)));
-
-HOL_INLINE void transpose_quads(quad *m) {
-    const quad a = _mm256_unpacklo_pd(m[0], m[1]), b = _mm256_unpackhi_pd(m[0], m[1]);
-    const quad c = _mm256_unpacklo_pd(m[2], m[3]), d = _mm256_unpackhi_pd(m[2], m[3]);
-    m[0] = _mm256_permute2f128_pd(a, c, 0x20);
-    m[1] = _mm256_permute2f128_pd(b, d, 0x20);
-    m[2] = _mm256_permute2f128_pd(a, c, 0x31);
-    m[3] = _mm256_permute2f128_pd(b, d, 0x31);
-}
-
-HOL_INLINE void read_rows(const double *const *p, quad &x, quad &y, quad &z) {
-    const __m256i three = _mm256_setr_epi64x(-1, -1, -1, 0);
-    quad row[4];
-    HOL_UNROLL
-    for (int i = 0; i < 4; ++i) row[i] = _mm256_maskload_pd(p[i], three);
-    transpose_quads(row);
-    x = row[0];
-    y = row[1];
-    z = row[2];
-}
-
-HOL_INLINE void write_rows(double *const *p, quad x, quad y, quad z) {
-    const quad even = _mm256_unpacklo_pd(x, y), odd = _mm256_unpackhi_pd(x, y);
-    HOL_UNROLL
-    for (int i = 0; i < 4; ++i) {
-        const quad pair = i % 2 ? odd : even;
-        _mm_storeu_pd(p[i], i < 2 ? _mm256_castpd256_pd128(pair) : _mm256_extractf128_pd(pair, 1));
-        p[i][2] = z[i];
-    }
-}
-#endif
-
-HOL_INLINE void read_rows(const double *const *p, Vector3<vec> &a) {
-#if HOL_LANES == 4 && defined(__AVX2__)
-    read_rows(p, a.x, a.y, a.z);
-#elif HOL_LANES == 8 && defined(__AVX512F__)
-    quad x[2], y[2], z[2];
-    for (int h = 0; h < 2; ++h) read_rows(p + 4 * h, x[h], y[h], z[h]);
-    a.x = _mm512_insertf64x4(_mm512_castpd256_pd512(x[0]), x[1], 1);
-    a.y = _mm512_insertf64x4(_mm512_castpd256_pd512(y[0]), y[1], 1);
-    a.z = _mm512_insertf64x4(_mm512_castpd256_pd512(z[0]), z[1], 1);
-#else
-    for (int i = 0; i < W; ++i) {
-        a.x[i] = p[i][0];
-        a.y[i] = p[i][1];
-        a.z[i] = p[i][2];
-    }
-#endif
-}
+// A single molecule's, as memory/atom_rows.hpp has those of W.
 HOL_INLINE void read_rows(const double *const *p, Vector3<double> &a) { a = {p[0][0], p[0][1], p[0][2]}; }
 
-HOL_INLINE void write_rows(double *const *p, const Vector3<vec> &a) {
-#if HOL_LANES == 4 && defined(__AVX2__)
-    write_rows(p, a.x, a.y, a.z);
-#elif HOL_LANES == 8 && defined(__AVX512F__)
-    write_rows(p, _mm512_castpd512_pd256(a.x), _mm512_castpd512_pd256(a.y), _mm512_castpd512_pd256(a.z));
-    write_rows(p + 4, _mm512_extractf64x4_pd(a.x, 1), _mm512_extractf64x4_pd(a.y, 1), _mm512_extractf64x4_pd(a.z, 1));
-#else
-    for (int i = 0; i < W; ++i) {
-        p[i][0] = a.x[i];
-        p[i][1] = a.y[i];
-        p[i][2] = a.z[i];
-    }
-#endif
-}
 HOL_INLINE void write_rows(double *const *p, const Vector3<double> &a) {
     p[0][0] = a.x;
     p[0][1] = a.y;
@@ -186,6 +122,23 @@ HOL_INLINE Layout layout_of(const Atoms<V> &at, bool packed) {
         none = none && !at.list[i];
     }
     return none ? rows_in_order : lists ? rows_listed : elements;
+}
+
+// Calls f with that layout as a constant: decltype(argument)::value.
+template <Layout layout>
+struct Constant {
+    static constexpr Layout value = layout;
+};
+template <class V, class F>
+HOL_INLINE auto with_layout(const Atoms<V> &at, bool packed, F f) {
+    switch (layout_of(at, packed)) {
+        case rows_in_order:
+            return f(Constant<rows_in_order>());
+        case rows_listed:
+            return f(Constant<rows_listed>());
+        default:
+            return f(Constant<elements>());
+    }
 }
 
 }  // namespace graph

@@ -17,7 +17,7 @@ HOL_INLINE void read_elements(const double *const *p, quad *e) {
     for (int j = 0; j < n / 4; ++j) {
         HOL_UNROLL
         for (int i = 0; i < 4; ++i) e[4 * j + i] = _mm256_loadu_pd(p[i] + 4 * j);
-        transpose_quads(e + 4 * j);
+        transpose(e + 4 * j);
     }
     HOL_UNROLL
     for (int c = n / 4 * 4; c < n; ++c) e[c] = quad{p[0][c], p[1][c], p[2][c], p[3][c]};
@@ -27,7 +27,7 @@ template <int n>
 HOL_INLINE void write_elements(double *const *p, quad *e) {
     HOL_UNROLL
     for (int j = 0; j < n / 4; ++j) {
-        transpose_quads(e + 4 * j);
+        transpose(e + 4 * j);
         HOL_UNROLL
         for (int i = 0; i < 4; ++i) _mm256_storeu_pd(p[i] + 4 * j, e[4 * j + i]);
     }

@@ -50,16 +50,7 @@ struct ForcesWork {
         if (!call.v.x) z.equations.velocity = nullptr;
         if (!call.f.x) z.equations.force = nullptr;
         z.equations.given = nullptr;
-        switch (layout_of(z.x.at, packed)) {
-            case rows_in_order:
-                solve<rows_in_order>(z, memory);
-                break;
-            case rows_listed:
-                solve<rows_listed>(z, memory);
-                break;
-            default:
-                solve<elements>(z, memory);
-        }
+        with_layout(z.x.at, packed, [&](auto layout) { solve<decltype(layout)::value>(z, memory); });
     }
 
     template <Layout layout, class V>
@@ -91,16 +82,7 @@ struct SolveWork {
         Linear<V> z(schedule, lane, used, call.box, call.r, memory);
         if (!masses_known) z.set_masses();
         z.equations.velocity = z.equations.force = nullptr;
-        switch (layout_of(z.x.at, packed)) {
-            case rows_in_order:
-                solve<rows_in_order>(z, memory);
-                break;
-            case rows_listed:
-                solve<rows_listed>(z, memory);
-                break;
-            default:
-                solve<elements>(z, memory);
-        }
+        with_layout(z.x.at, packed, [&](auto layout) { solve<decltype(layout)::value>(z, memory); });
     }
 
     template <Layout layout, class V>

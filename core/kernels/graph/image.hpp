@@ -33,17 +33,6 @@ HOL_INLINE void take_images(const Box &box, Vector3<V> *d) {
     for (int k = 0; k < n; ++k) d[k] = image[k];
 }
 
-// The vector from one atom to another, unrounded: d + lo.
-template <class V>
-HOL_INLINE void exact_bond(const Box &box, const Vector3<V> &from, const Vector3<V> &to, Vector3<V> &d,
-                           Vector3<V> &lo) {
-    const Pair<V> x = two_difference<V>(to.x, from.x), y = two_difference<V>(to.y, from.y),
-                  z = two_difference<V>(to.z, from.z);
-    d = {x.hi, y.hi, z.hi};
-    lo = {x.lo, y.lo, z.lo};
-    take_image<true>(box, d, lo);
-}
-
 }  // namespace graph
 }  // namespace HOL_ISA
 }  // namespace holonomic

@@ -67,7 +67,7 @@ HOL_INLINE void exact_bond(const Molecules<V> &x, int lane, int32_t place, Vecto
     Vector3<double> a, b;
     read_row(*x.r, Atoms<V>::number(x.at, lane, x.s.atom_of[from]), &a.x);
     read_row(*x.r, Atoms<V>::number(x.at, lane, x.s.atom_of[to]), &b.x);
-    exact_bond(*x.box, a, b, d, lo);
+    unrounded_bond(*x.box, a, b, d, lo);
 }
 
 // g = d . d' of nearly orthogonal bonds cancels, which shows where one right-hand side is much larger than the other.

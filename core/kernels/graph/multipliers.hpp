@@ -7,6 +7,7 @@
 
 #include "core/kernels/graph/consecutive.hpp"
 #include "core/kernels/graph/iterate.hpp"
+#include "core/kernels/tally.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -59,8 +60,7 @@ HOL_NOINLINE void note_worst_bond(const V *size, const Lanes &lanes, V error, un
     for (int i = 0; i < Width<V>::lanes; ++i) {
         if (!(which >> i & 1)) continue;
         const double e = Width<V>::get(error, i);
-        if (!(e > tally.worst || tally.worst_chain < 0 || (e == tally.worst && lanes.molecule(i) < tally.worst_chain)))
-            continue;
+        if (!is_worse(tally, e, lanes.molecule(i))) continue;
         tally.worst = e;
         tally.worst_chain = lanes.molecule(i);
         tally.worst_bond = 0;

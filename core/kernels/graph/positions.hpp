@@ -8,6 +8,7 @@
 #include "core/kernels/graph/newton.hpp"
 #include "core/kernels/graph/store.hpp"
 #include "core/kernels/graph/triangle_blocks.hpp"
+#include "core/kernels/tally.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -95,8 +96,6 @@ struct PositionsBlock {
     }
 
     __attribute__((noinline)) void write_atoms(unsigned which) const {
-        bool shared = false;
-        for (int i = 0; i < Width<V>::lanes; ++i) shared = shared || lane[i].shared;
         const V per_dt = Width<V>::all(1 / call.dt);
         for (int32_t slot = s.n_atoms - 1; slot >= 0; --slot) {
             const int32_t atom = s.atom_of[slot];
@@ -109,16 +108,12 @@ struct PositionsBlock {
     }
 
     void add_virial(unsigned which) const {
-        V sum[6] = {};
+        MoleculesVirial<V> virial;
         for (int32_t k = 0; k < s.n_bonds; ++k) {
-            const Vector3<V> b = newton.x.row[k].b, p = newton.x.row[k].tau * b;
-            const V term[6] = {p.x * b.x, p.x * b.y, p.x * b.z, p.y * b.y, p.y * b.z, p.z * b.z};
-            for (int c = 0; c < 6; ++c) sum[c] = sum[c] + term[c];
+            const NewtonRow<V> &row = newton.x.row[k];
+            virial.add(row.b, row.tau * row.b);
         }
-        const double factor = 1 / (call.dt * call.dt);
-        for (int c = 0; c < 6; ++c)
-            for (int i = 0; i < Width<V>::lanes; ++i)
-                if (which >> i & 1) tally.virial[c] -= Width<V>::get(sum[c], i) * factor;
+        virial.count(which, 1 / (call.dt * call.dt), tally);
     }
 
     // The worst bond of the molecules in `which`: of a molecule the one with the smallest number among those.
@@ -127,9 +122,7 @@ struct PositionsBlock {
         for (int i = 0; i < Width<V>::lanes; ++i) {
             if (!(which >> i & 1)) continue;
             const double e = Width<V>::get(error, i);
-            if (!(e > tally.worst || tally.worst_chain < 0 ||
-                  (e == tally.worst && lane[i].molecule < tally.worst_chain)))
-                continue;
+            if (!is_worse(tally, e, lane[i].molecule)) continue;
             tally.worst = e;
             tally.worst_chain = lane[i].molecule;
             worst = i;
@@ -176,17 +169,8 @@ struct PositionsWork {
         for (int32_t slot = 0; slot < schedule.n_atoms; ++slot)
             for (int i = 0; i < Width<V>::lanes; ++i)
                 Width<V>::set(newton.x.w[slot], i, lane[i].w[schedule.atom_of[slot]]);
-        unsigned rest;
-        switch (layout_of(at, packed)) {
-            case rows_in_order:
-                rest = solve<rows_in_order>(newton, lane, used, at);
-                break;
-            case rows_listed:
-                rest = solve<rows_listed>(newton, lane, used, at);
-                break;
-            default:
-                rest = solve<elements>(newton, lane, used, at);
-        }
+        const unsigned rest = with_layout(
+            at, packed, [&](auto layout) { return solve<decltype(layout)::value>(newton, lane, used, at); });
         if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, lane, rest, memory.next, tally);
     }
 

@@ -82,7 +82,7 @@ HOL_INLINE void find_unrounded(const Molecules<V> &x, const Equations<V> &e) {
         int32_t from, to;
         ends_of(x.s, k, from, to);
         Vector3<V> d, lo;
-        exact_bond(*x.box, e.r[from], e.r[to], d, lo);
+        unrounded_bond(*x.box, e.r[from], e.r[to], d, lo);
         e.d[k] = pairs_of(d, lo);
     }
 }

@@ -162,18 +162,7 @@ struct StarPositions {
                 if (which >> i & 1) call.lambda[at.bond[i] + k] = Width<V>::get(value[k], i);
     }
 
-    HOL_NOINLINE void add_virial(const StarPositions &p, const Vector3<V> *b, const V *tau, unsigned which) {
-        V s[6] = {};
-        for (int k = 0; k < N; ++k) {
-            const Vector3<V> f = tau[k] * b[k];
-            const V term[6] = {f.x * b[k].x, f.x * b[k].y, f.x * b[k].z, f.y * b[k].y, f.y * b[k].z, f.z * b[k].z};
-            for (int c = 0; c < 6; ++c) s[c] = s[c] + term[c];
-        }
-        const double factor = 1 / (p.call.dt * p.call.dt);
-        for (int c = 0; c < 6; ++c)
-            for (int i = 0; i < Width<V>::lanes; ++i)
-                if (which >> i & 1) p.tally.virial[c] -= Width<V>::get(s[c], i) * factor;
-    }
+    // Of copies, so that the bonds themselves need not be in memory.
     inline HOL_FORCED void add_virial(const Vector3<V> *b, const V *tau, unsigned which) const {
         Vector3<V> bonds[N];
         V pulls[N];
@@ -182,7 +171,7 @@ struct StarPositions {
             bonds[k] = b[k];
             pulls[k] = tau[k];
         }
-        add_virial(*this, bonds, pulls, which);
+        add_bonds_virial<N>(bonds, pulls, 1 / (call.dt * call.dt), which, tally);
     }
 };
 
@@ -205,17 +194,9 @@ struct StarWork {
         if (!same) kind.set(lane, used, centre);
         const Atoms<V> at(lane, Width<V>::lanes);
         const MaskOf<V> in_use = Width<V>::first(used);
-        unsigned good;
-        switch (layout_of(at, packed)) {
-            case rows_in_order:
-                good = StarPositions<rows_in_order, N, V>{call, lane, at, kind, centre, tally}.solve(in_use);
-                break;
-            case rows_listed:
-                good = StarPositions<rows_listed, N, V>{call, lane, at, kind, centre, tally}.solve(in_use);
-                break;
-            default:
-                good = StarPositions<elements, N, V>{call, lane, at, kind, centre, tally}.solve(in_use);
-        }
+        const unsigned good = with_layout(at, packed, [&](auto layout) {
+            return StarPositions<decltype(layout)::value, N, V>{call, lane, at, kind, centre, tally}.solve(in_use);
+        });
         for (unsigned rest = bits(in_use) & ~good; __builtin_expect(rest != 0, 0); rest &= rest - 1)
             general.template block<double>(lane + __builtin_ctz(rest), 1, false, scratch);
     }

@@ -4,6 +4,7 @@
 #define HOLONOMIC_KERNELS_GRAPH_STORE_HPP
 
 #include "core/kernels/graph/molecules.hpp"
+#include "core/kernels/graph/virial.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -76,22 +77,12 @@ HOL_NOINLINE void write_bonds(const Molecules<V> &x, double factor, double *out,
     }
 }
 
-// - sum t d (x) d over the lanes of `which`, in the order of the lanes.
+// The virial of the lanes of `which`.
 template <class V>
 HOL_NOINLINE void add_pulls_to_virial(const Molecules<V> &x, unsigned which, Tally &tally) {
-    V s[6] = {};
-    for (int32_t k = 0; k < x.s.n_bonds; ++k) {
-        const Vector3<V> d = x.row[k].d, p = x.row[k].t * d;
-        s[0] = mul_add(p.x, d.x, s[0]);
-        s[1] = mul_add(p.x, d.y, s[1]);
-        s[2] = mul_add(p.x, d.z, s[2]);
-        s[3] = mul_add(p.y, d.y, s[3]);
-        s[4] = mul_add(p.y, d.z, s[4]);
-        s[5] = mul_add(p.z, d.z, s[5]);
-    }
-    for (int c = 0; c < 6; ++c)
-        for (int i = 0; i < Width<V>::lanes; ++i)
-            if (which >> i & 1) tally.virial[c] -= Width<V>::get(s[c], i);
+    MoleculesVirial<V> virial;
+    for (int32_t k = 0; k < x.s.n_bonds; ++k) virial.add(x.row[k].d, x.row[k].t * x.row[k].d);
+    virial.count(which, 1, tally);
 }
 
 // Lanes in which all multipliers are finite.

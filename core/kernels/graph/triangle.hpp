@@ -7,6 +7,7 @@
 #include "core/kernels/graph/consecutive.hpp"
 #include "core/kernels/graph/image.hpp"
 #include "core/kernels/graph/schedule.hpp"
+#include "core/kernels/graph/virial.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -87,8 +88,8 @@ struct Triangle {
 template <class V>
 HOL_NOINLINE V exact_cross(const Box &box, const Vector3<V> *r, const Triangle<V> &x) {
     Vector3<V> d[2], low[2];
-    exact_bond(box, r[1], r[2], d[0], low[0]);
-    exact_bond(box, r[2], r[0], d[1], low[1]);
+    unrounded_bond(box, r[1], r[2], d[0], low[0]);
+    unrounded_bond(box, r[2], r[0], d[1], low[1]);
     const Vector3<V> n = cross_compensated(d[0], low[0], d[1], low[1]);
     const V X = dot(n, n);
     return keep(less(straight_sine2 * (x.q[1] * x.q[2]), X), X);
@@ -146,22 +147,6 @@ template <class V>
 HOL_INLINE void read_triangle_bonds(const Atoms<V> &at, const double *in, double factor, V *value) {
     for (int k = 0; k < 3; ++k)
         for (int i = 0; i < at.lanes; ++i) Width<V>::set(value[k], i, factor * in[at.bond[i] + bond_number(k)]);
-}
-
-// - factor sum t d (x) d over the lanes of `which`.
-template <class V>
-HOL_NOINLINE void add_triangle_virial(const Vector3<V> *d, const V *t, double factor, unsigned which, Tally &tally) {
-    V s[6] = {};
-    HOL_UNROLL
-    for (int k = 0; k < 3; ++k) {
-        const Vector3<V> p = t[k] * d[k];
-        const V term[6] = {p.x * d[k].x, p.x * d[k].y, p.x * d[k].z, p.y * d[k].y, p.y * d[k].z, p.z * d[k].z};
-        HOL_UNROLL
-        for (int c = 0; c < 6; ++c) s[c] = s[c] + term[c];
-    }
-    for (int c = 0; c < 6; ++c)
-        for (int i = 0; i < Width<V>::lanes; ++i)
-            if (which >> i & 1) tally.virial[c] -= factor * Width<V>::get(s[c], i);
 }
 
 }  // namespace graph

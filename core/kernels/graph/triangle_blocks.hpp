@@ -55,23 +55,21 @@ struct TriangleWork {
         solve_doubtful(work.call, work.schedule, lane, rest, scratch, work.tally);
     }
 
+    // Apart from block(), which then has one call for each layout.
+    template <Layout layout, class V, class Lanes>
+    HOL_NOINLINE unsigned solve(const TriangleWork &work, const Lanes &lanes, int used, const Atoms<V> &at,
+                                const TriangleKind<V> &kind) {
+        return work.verb.template solve<layout>(lanes, used, at, kind);
+    }
+
     template <class V>
     void block(const MoleculeLane *lane, int used, bool same, double *scratch) {
         TriangleKind<V> &kind = kind_for(static_cast<V *>(nullptr));
         if (!same) kind.set(lane, used, Verb::with_lengths);
         const Atoms<V> at(lane, Width<V>::lanes);
         const TrianglesGiven lanes = {lane};
-        unsigned good;
-        switch (layout_of(at, packed)) {
-            case rows_in_order:
-                good = verb.template solve<rows_in_order, V>(lanes, used, at, kind);
-                break;
-            case rows_listed:
-                good = verb.template solve<rows_listed, V>(lanes, used, at, kind);
-                break;
-            default:
-                good = verb.template solve<elements, V>(lanes, used, at, kind);
-        }
+        const unsigned good = with_layout(
+            at, packed, [&](auto layout) { return solve<decltype(layout)::value>(*this, lanes, used, at, kind); });
         const unsigned rest = bits(Width<V>::first(used)) & ~good;
         if (__builtin_expect(rest != 0, 0)) solve_carefully(*this, lanes, rest, scratch);
     }
@@ -85,7 +83,7 @@ struct TriangleWork {
         known.set(lane, W, Verb::with_lengths);
         Atoms<vec> at(lane, W);
         for (; lanes.first + W <= unit.count; lanes.first += W) {
-            const unsigned good = verb.template in_place<rows_adjacent, vec>(lanes, W, at, known);
+            const unsigned good = verb.template solve<rows_adjacent>(lanes, W, at, known);
             if (__builtin_expect(good != all_lanes, 0)) solve_carefully(*this, lanes, all_lanes & ~good, scratch);
             Atoms<vec>::advance(at, 3, 3);
         }
@@ -110,14 +108,8 @@ struct TriangleLinearVerb {
     const TriangleCall &call;
     Tally &tally;
     template <Layout layout, class V, class Lanes>
-    inline HOL_FORCED unsigned in_place(const Lanes &, int used, const Atoms<V> &at,
-                                        const TriangleKind<V> &kind) const {
+    inline HOL_FORCED unsigned solve(const Lanes &, int used, const Atoms<V> &at, const TriangleKind<V> &kind) const {
         return solve_triangles<layout>(call, used, at, kind.masses, tally);
-    }
-    template <Layout layout, class V, class Lanes>
-    __attribute__((noinline)) unsigned solve(const Lanes &lanes, int used, const Atoms<V> &at,
-                                             const TriangleKind<V> &kind) const {
-        return in_place<layout>(lanes, used, at, kind);
     }
 };
 
@@ -126,14 +118,8 @@ struct TriangleVelocitiesVerb {
     const VelocitiesCall &call;
     Tally &tally;
     template <Layout layout, class V, class Lanes>
-    inline HOL_FORCED unsigned in_place(const Lanes &, int used, const Atoms<V> &at,
-                                        const TriangleKind<V> &kind) const {
+    inline HOL_FORCED unsigned solve(const Lanes &, int used, const Atoms<V> &at, const TriangleKind<V> &kind) const {
         return project_triangles<layout>(call, used, at, kind.masses, tally);
-    }
-    template <Layout layout, class V, class Lanes>
-    __attribute__((noinline)) unsigned solve(const Lanes &lanes, int used, const Atoms<V> &at,
-                                             const TriangleKind<V> &kind) const {
-        return in_place<layout>(lanes, used, at, kind);
     }
 };
 
@@ -142,14 +128,9 @@ struct TrianglePositionsVerb {
     const PositionsCall &call;
     Tally &tally;
     template <Layout layout, class V, class Lanes>
-    inline HOL_FORCED unsigned in_place(const Lanes &lanes, int used, const Atoms<V> &at,
-                                        const TriangleKind<V> &kind) const {
+    inline HOL_FORCED unsigned solve(const Lanes &lanes, int used, const Atoms<V> &at,
+                                     const TriangleKind<V> &kind) const {
         return move_triangles<layout>(call, lanes, used, at, kind.masses, kind.lengths, tally);
-    }
-    template <Layout layout, class V, class Lanes>
-    __attribute__((noinline)) unsigned solve(const Lanes &lanes, int used, const Atoms<V> &at,
-                                             const TriangleKind<V> &kind) const {
-        return in_place<layout>(lanes, used, at, kind);
     }
 };
 

@@ -60,7 +60,7 @@ HOL_INLINE unsigned solve_triangles(const TriangleCall &call, int used, const At
         const V T[3] = {t[0] * sqrt(x.q[0]), t[1] * sqrt(x.q[1]), t[2] * sqrt(x.q[2])};
         write_triangle_bonds<layout>(at, T, Width<V>::all(1), call.tension, good);
     }
-    if (call.virial) add_triangle_virial(x.d, t, 1, good, tally);
+    if (call.virial) add_bonds_virial<3>(x.d, t, 1, good, tally);
     if (!call.g.x) return good;
     Vector3<V> g[3], before[3];
     HOL_UNROLL
@@ -102,7 +102,7 @@ HOL_INLINE unsigned project_triangles(const VelocitiesCall &call, int used, cons
     const unsigned good = bits(Width<V>::first(used) & x.closed & finite(t[0] + (t[1] + t[2])));
     if (!good) return good;
     if (call.lambda) write_triangle_bonds<layout>(at, t, Width<V>::all(0.5), call.lambda, good);
-    if (call.virial) add_triangle_virial(x.d, t, 1, good, tally);
+    if (call.virial) add_bonds_virial<3>(x.d, t, 1, good, tally);
     if (!call.v.is_float) {
         // Where the triangle is so nearly straight that the first time left as much as there was, what it left is
         // rounding, and the second time would only enlarge it.

@@ -50,7 +50,7 @@ struct TrianglePositions {
         if (call.lambda)
             write_triangle_bonds<layout>(at, x.tau, Width<V>::all(0.5 / (call.dt * call.dt)), call.lambda, good);
         if (!moved) return;
-        if (call.virial) add_triangle_virial(x.b, x.tau, 1 / (call.dt * call.dt), moved, tally);
+        if (call.virial) add_bonds_virial<3>(x.b, x.tau, 1 / (call.dt * call.dt), moved, tally);
         Vector3<V> v[3];
         HOL_UNROLL
         for (int i = 0; i < 3; ++i) r[i] = r[i] + x.shift[i];

@@ -22,16 +22,7 @@ struct VelocitiesWork {
         if (!masses_known) z.set_masses();
         z.equations.force = nullptr;
         z.equations.given = nullptr;
-        switch (layout_of(z.x.at, packed)) {
-            case rows_in_order:
-                solve<rows_in_order>(z, memory);
-                break;
-            case rows_listed:
-                solve<rows_listed>(z, memory);
-                break;
-            default:
-                solve<elements>(z, memory);
-        }
+        with_layout(z.x.at, packed, [&](auto layout) { solve<decltype(layout)::value>(z, memory); });
     }
 
     template <Layout layout, class V>

@@ -5,6 +5,7 @@
 
 #include "core/kernels/memory/virial.hpp"
 #include "core/kernels/newton/sweeps.hpp"
+#include "core/kernels/tally.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -38,9 +39,7 @@ static inline void note_worst(const Block &block, const Newton &x, const Positio
     int worst = -1;
     for (int i = 0; i < block.lanes; ++i) {
         if (!(chosen >> i & 1)) continue;
-        if (!(error[i] > tally.worst || tally.worst_chain < 0 ||
-              (error[i] == tally.worst && block.chain[i] < tally.worst_chain)))
-            continue;
+        if (!is_worse(tally, error[i], block.chain[i])) continue;
         tally.worst = error[i];
         tally.worst_chain = block.chain[i];
         worst = i;

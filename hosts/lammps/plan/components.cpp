@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "route.hpp"
-
 namespace holonomic_lammps {
 
 namespace {
@@ -30,17 +28,7 @@ struct Labels {
     }
 
     std::vector<Tag> grandparents() const {
-        Outgoing<Tag> questions(n_ranks);
-        for (Tag tag : parent) questions[bookkeeper(tag, n_ranks)].push_back(tag);
-        const auto answers = ask<Tag>(world, questions, [this](Tag tag, int) { return parent[index.at(tag)]; });
-        std::vector<std::size_t> read(n_ranks, 0);
-        std::vector<Tag> result;
-        result.reserve(parent.size());
-        for (Tag tag : parent) {
-            const int p = bookkeeper(tag, n_ranks);
-            result.push_back(answers[p][read[p]++]);
-        }
-        return result;
+        return ask_bookkeepers<Tag>(world, parent, [this](Tag tag) { return parent[index.at(tag)]; });
     }
 };
 

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <string>
 
-#include "route.hpp"
-
 namespace holonomic_lammps {
 
 namespace {
@@ -108,20 +106,10 @@ void Registry::build(const std::vector<Node> &nodes) {
 }
 
 std::vector<Membership> Registry::memberships(const std::vector<Tag> &tags) const {
-    Outgoing<Tag> questions(n_ranks_);
-    for (Tag tag : tags) questions[bookkeeper(tag, n_ranks_)].push_back(tag);
-    const auto answers = ask<Membership>(world_, questions, [this](Tag tag, int) {
+    return ask_bookkeepers<Membership>(world_, tags, [this](Tag tag) {
         const auto found = memberships_.find(tag);
         return found == memberships_.end() ? Membership() : found->second;
     });
-    std::vector<std::size_t> read(n_ranks_, 0);
-    std::vector<Membership> result;
-    result.reserve(tags.size());
-    for (Tag tag : tags) {
-        const int p = bookkeeper(tag, n_ranks_);
-        result.push_back(answers[p][read[p]++]);
-    }
-    return result;
 }
 
 std::vector<Shape> Registry::shapes(const std::vector<Tag> &molecules) const {

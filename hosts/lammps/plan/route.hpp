@@ -56,7 +56,7 @@ Outgoing<Answer> ask(MPI_Comm world, const Outgoing<Question> &questions, Functi
     const int n_ranks = static_cast<int>(questions.size());
     Outgoing<Answer> replies(n_ranks);
     for (int p = 0; p < n_ranks; ++p)
-        for (int k = asked.first[p]; k < asked.first[p + 1]; ++k) replies[p].push_back(answer(asked.items[k], p));
+        for (int k = asked.first[p]; k < asked.first[p + 1]; ++k) replies[p].push_back(answer(asked.items[k]));
     const Delivery<Answer> came = route(world, replies);
     for (int p = 0; p < n_ranks; ++p)
         replies[p].assign(came.items.begin() + came.first[p], came.items.begin() + came.first[p + 1]);
