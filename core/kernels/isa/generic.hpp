@@ -13,14 +13,14 @@ HOL_INLINE vec mul_add(vec a, vec b, vec c) {
 #if defined(__aarch64__) && HOL_LANES == 2
     return vfmaq_f64(c, a, b);
 #elif HOL_LANES % 4 == 0 && defined(__AVX2__) && HOL_HAS_FMA  // in pieces: element by element takes minutes to compile
-    vec r;
+    vec r{};
     for (int i = 0; i < W / 4; ++i)
         reinterpret_cast<__m256d *>(&r)[i] =
             _mm256_fmadd_pd(reinterpret_cast<const __m256d *>(&a)[i], reinterpret_cast<const __m256d *>(&b)[i],
                             reinterpret_cast<const __m256d *>(&c)[i]);
     return r;
 #elif HOL_HAS_FMA
-    vec r;
+    vec r{};
     HOL_UNROLL
     for (int i = 0; i < W; ++i) r[i] = __builtin_fma(a[i], b[i], c[i]);
     return r;

@@ -31,23 +31,6 @@ enum : int { there = 1, in_group = 2, wanted = 4 };
 using Pair = std::pair<Tag, Tag>;
 Pair pair_of(Tag a, Tag b) { return a < b ? Pair(a, b) : Pair(b, a); }
 
-/** For each of the questions that are asked of the bookkeepers of their tags, the answer. */
-template <class Answer, class Question, class Keeper, class Function>
-std::vector<Answer> ask_keepers(MPI_Comm world, const std::vector<Question> &questions, Keeper keeper,
-                                Function answer) {
-    const int n_ranks = size_of(world);
-    Outgoing<Question> outgoing(n_ranks);
-    for (const Question &question : questions) outgoing[bookkeeper(keeper(question), n_ranks)].push_back(question);
-    const auto answers = ask<Answer>(world, outgoing, [&](const Question &q, int) { return answer(q); });
-    std::vector<std::size_t> read(n_ranks, 0);
-    std::vector<Answer> result;
-    for (const Question &question : questions) {
-        const int p = bookkeeper(keeper(question), n_ranks);
-        result.push_back(answers[p][read[p]++]);
-    }
-    return result;
-}
-
 struct Flags {
     Tag tag;
     int flags;
@@ -133,7 +116,7 @@ std::vector<Bond> Selection::select_bonds(int groupbit, std::vector<Belonging> &
         check_entries(error, atom->num_bond[i]);
         for (int k = 0; k < atom->num_bond[i]; ++k) questions.push_back({atom->tag[i], atom->bond_atom[i][k]});
     }
-    const auto other = ask_keepers<int>(
+    const auto other = ask_bookkeepers<int>(
         world, questions, [](const Ask &q) { return q.to; },
         [&](const Ask &q) {
             const auto found = known.find(q.to);
@@ -174,7 +157,7 @@ void Selection::select_angles(std::vector<Belonging> &atoms, std::vector<Bond> &
             questions.push_back({atom->angle_atom3[i][k], atom->angle_atom2[i][k]});
         }
     }
-    const auto sides = ask_keepers<double>(
+    const auto sides = ask_bookkeepers<double>(
         world, questions, [](const Ask &q) { return std::min(q.from, q.to); },
         [&](const Ask &q) {
             const auto found = known.find(pair_of(q.from, q.to));

@@ -28,7 +28,7 @@ struct Labels {
     }
 
     std::vector<Tag> grandparents() const {
-        return ask_bookkeepers<Tag>(world, parent, [this](Tag tag) { return parent[index.at(tag)]; });
+        return ask_bookkeepers<Tag>(world, parent, itself, [this](Tag tag) { return parent[index.at(tag)]; });
     }
 };
 

@@ -17,22 +17,27 @@ using Tag = std::int64_t;
 /** The rank that keeps the books for an atom or for the molecule named after it. */
 inline int bookkeeper(Tag tag, int n_ranks) { return static_cast<int>(tag % n_ranks); }
 
-/** What the bookkeepers of some tags answer, in the order of the tags; collective. */
-template <class Answer, class Function>
-std::vector<Answer> ask_bookkeepers(MPI_Comm world, const std::vector<Tag> &tags, Function answer) {
+/** What bookkeepers answer to some questions, in the order of the questions; `about` names a question's tag;
+ * collective. */
+template <class Answer, class Question, class About, class Function>
+std::vector<Answer> ask_bookkeepers(MPI_Comm world, const std::vector<Question> &questions, About about,
+                                    Function answer) {
     const int n_ranks = size_of(world);
-    Outgoing<Tag> questions(n_ranks);
-    for (Tag tag : tags) questions[bookkeeper(tag, n_ranks)].push_back(tag);
-    const Outgoing<Answer> answers = ask<Answer>(world, questions, answer);
+    Outgoing<Question> outgoing(n_ranks);
+    for (const Question &question : questions) outgoing[bookkeeper(about(question), n_ranks)].push_back(question);
+    const Outgoing<Answer> answers = ask<Answer>(world, outgoing, answer);
     std::vector<std::size_t> read(n_ranks, 0);
     std::vector<Answer> result;
-    result.reserve(tags.size());
-    for (Tag tag : tags) {
-        const int p = bookkeeper(tag, n_ranks);
+    result.reserve(questions.size());
+    for (const Question &question : questions) {
+        const int p = bookkeeper(about(question), n_ranks);
         result.push_back(answers[p][read[p]++]);
     }
     return result;
 }
+
+/** Of a question that is a tag. */
+inline Tag itself(Tag tag) { return tag; }
 
 /** An atom, as its bookkeeper knows it. */
 struct Node {

@@ -106,7 +106,7 @@ void Registry::build(const std::vector<Node> &nodes) {
 }
 
 std::vector<Membership> Registry::memberships(const std::vector<Tag> &tags) const {
-    return ask_bookkeepers<Membership>(world_, tags, [this](Tag tag) {
+    return ask_bookkeepers<Membership>(world_, tags, itself, [this](Tag tag) {
         const auto found = memberships_.find(tag);
         return found == memberships_.end() ? Membership() : found->second;
     });
