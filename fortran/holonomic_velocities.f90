@@ -1,7 +1,7 @@
 ! Velocity level: hol_project_velocities with arrays of any layout.
 module holonomic_velocities
    use, intrinsic :: iso_c_binding, only: c_ptr
-   use, intrinsic :: iso_fortran_env, only: real32, real64
+   use, intrinsic :: iso_fortran_env, only: int64, real32, real64
    use holonomic_c, only: hol_project_velocities_view
    use holonomic_place, only: list_of, place, tensor
    use holonomic_solve, only: chain_set_solve
@@ -27,9 +27,11 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
+      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v
-      call at_r%rows_64(self%n_atoms(), problem, "r", r)
-      call at_v%rows_64(self%n_atoms(), problem, "v", v)
+      n_atoms = self%n_atoms()
+      call at_r%rows_64(n_atoms, problem, "r", r)
+      call at_v%rows_64(n_atoms, problem, "v", v)
       call project_at(self, problem, at_r, at_v, lambda, virial, stat, errmsg)
    end subroutine
 
@@ -42,9 +44,11 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
+      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v
-      call at_r%rows_32(self%n_atoms(), problem, "r", r)
-      call at_v%rows_32(self%n_atoms(), problem, "v", v)
+      n_atoms = self%n_atoms()
+      call at_r%rows_32(n_atoms, problem, "r", r)
+      call at_v%rows_32(n_atoms, problem, "v", v)
       call project_at(self, problem, at_r, at_v, lambda, virial, stat, errmsg)
    end subroutine
 
@@ -59,9 +63,11 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
+      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v
-      call at_r%parts_64(self%n_atoms(), problem, "*", x, y, z)
-      call at_v%parts_64(self%n_atoms(), problem, "v*", vx, vy, vz)
+      n_atoms = self%n_atoms()
+      call at_r%parts_64(n_atoms, problem, "*", x, y, z)
+      call at_v%parts_64(n_atoms, problem, "v*", vx, vy, vz)
       call project_at(self, problem, at_r, at_v, lambda, virial, stat, errmsg)
    end subroutine
 
@@ -76,9 +82,11 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
+      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v
-      call at_r%parts_32(self%n_atoms(), problem, "*", x, y, z)
-      call at_v%parts_32(self%n_atoms(), problem, "v*", vx, vy, vz)
+      n_atoms = self%n_atoms()
+      call at_r%parts_32(n_atoms, problem, "*", x, y, z)
+      call at_v%parts_32(n_atoms, problem, "v*", vx, vy, vz)
       call project_at(self, problem, at_r, at_v, lambda, virial, stat, errmsg)
    end subroutine
 
