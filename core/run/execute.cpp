@@ -1,6 +1,7 @@
 #include "core/run/execute.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <new>
 
 #include "core/run/thread_memory.hpp"
@@ -32,15 +33,35 @@ Tally *tallies(Keep what, std::int64_t n) {
     return static_cast<Tally *>(memory);
 }
 
-// Gives every thread of a team its memory, so that nothing can fail later.
-void reserve(int n_threads, std::int64_t scratch_bytes, std::int64_t store_bytes) {
-    bool failed = false;
-#pragma omp parallel num_threads(n_threads)
-    if (!scratch_memory(scratch_bytes) || (store_bytes > 0 && !store_memory(store_bytes))) {
-#pragma omp atomic write
-        failed = true;
+// Calls body(j, scratch) for j = 0 .. n-1 on the threads of a team. Each has a share of its own, the same in every
+// call, so that it finds in its cache what it worked on before, and takes over what is left of the others' when it is
+// done: one that has to wait for a processor keeps nobody waiting but for what it has begun. A thread that gets no
+// memory leaves its share to the others; the calling thread has its memory already.
+template <class Body>
+void share(int n_threads, std::int64_t scratch_bytes, std::int64_t store_bytes, std::int64_t n, Team::Order order,
+           const Body &body) {
+    struct alignas(64) Share {
+        std::atomic<std::int64_t> next;
+        std::int64_t first, end;
+    };
+    constexpr int most = 64;
+    Share shares[most];
+    const int n_shares = std::min(n_threads, most);
+    for (int i = 0; i < n_shares; ++i) {
+        shares[i].first = n * i / n_shares;
+        shares[i].end = n * (i + 1) / n_shares;
+        shares[i].next.store(shares[i].first, std::memory_order_relaxed);
     }
-    if (failed) throw std::bad_alloc();
+#pragma omp parallel num_threads(n_threads)
+    {
+        double *const scratch = scratch_memory(scratch_bytes);
+        const int own = static_cast<int>(static_cast<std::int64_t>(omp_get_thread_num()) * n_shares / n_threads);
+        for (int i = 0; scratch && (store_bytes == 0 || store_memory(store_bytes)) && i < n_shares; ++i) {
+            Share &of = shares[(own + i) % n_shares];
+            for (std::int64_t j; (j = of.next.fetch_add(1, std::memory_order_relaxed)) < of.end;)
+                body(order == Team::forwards ? j : of.first + of.end - 1 - j, scratch);
+        }
+    }
 }
 #endif
 
@@ -91,17 +112,11 @@ void Team::run(std::int64_t n, Order order, Tally &total, void (*call)(const voi
 #ifdef _OPENMP
     if (n_threads_ > 1) {
         Tally *const parts = tallies(Keep::block_tallies, n);
-#pragma omp parallel num_threads(n_threads_)
-        {
-            const std::int64_t thread = omp_get_thread_num(), threads = omp_get_num_threads();
-            const std::int64_t first = n * thread / threads, end = n * (thread + 1) / threads;
-            for (std::int64_t i = first; i < end; ++i) {
-                const std::int64_t j = order == forwards ? i : first + end - 1 - i;
-                Tally tally = empty_tally();
-                call(body, j, scratch_memory(scratch_bytes_), tally);
-                parts[j] = tally;
-            }
-        }
+        share(n_threads_, scratch_bytes_, 0, n, order, [&](std::int64_t j, double *scratch) {
+            Tally tally = empty_tally();
+            call(body, j, scratch, tally);
+            parts[j] = tally;
+        });
         for (std::int64_t i = 0; i < n; ++i) add(total, parts[at(i)]);
         return;
     }
@@ -164,19 +179,17 @@ Tally execute(const Chains &chains, const Plan &plan, const Work &work) {
     Tally total = empty_tally();
 #ifdef _OPENMP
     if (n_threads > 1) {
-        reserve(n_threads, scratch_bytes, own_store);
         Tally *const parts = tallies(Keep::piece_tallies, n_pieces);
         const auto is_shared = [&](std::int64_t p) {
             if (!any_shared) return false;
             const std::int64_t n = long_chain_bonds(chains, plan, p);
             return n > 0 && work.long_blocks(n) >= shared_blocks;
         };
-#pragma omp parallel for schedule(dynamic) num_threads(n_threads)
-        for (std::int64_t p = 0; p < n_pieces; ++p) {
+        share(n_threads, scratch_bytes, own_store, n_pieces, Team::forwards, [&](std::int64_t p, double *scratch) {
             Tally tally = empty_tally();
-            if (!is_shared(p)) work_on(p, scratch_memory(scratch_bytes), tally);
+            if (!is_shared(p)) work_on(p, scratch, tally);
             parts[p] = tally;
-        }
+        });
         const Team team(n_threads, scratch_bytes);
         for (std::int64_t p = 0; any_shared && p < n_pieces; ++p) {
             if (!is_shared(p)) continue;
