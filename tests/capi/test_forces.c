@@ -1,32 +1,15 @@
 /** Constraint forces against an independent solution, and against what physics demands of them. */
 #include "assembly.h"
 #include "check.h"
+#include "forces.h"
 #include "oracle_file.h"
 #include "random.h"
 #include "solution.h"
 
-typedef struct results {
-    double *lambda, *tension, *g, virial[9];
-} results;
-
-static results compute(const assembly *a, const double *v, const double *f)
-{
-    results s = {untouched((size_t)a->n_bonds), untouched((size_t)a->n_bonds), untouched(assembly_size(a)), {0}};
-    CHECK(hol_forces(a->chains, a->r, v, f, s.lambda, s.tension, s.g, HOL_WRITE, s.virial));
-    return s;
-}
-
-static void release(results *s)
-{
-    free(s->lambda);
-    free(s->tension);
-    free(s->g);
-}
-
 /** Every number of every chain within `allowed` times the bound that tests/oracle/README.md sets. */
 static void assert_solution(const assembly *a, const double *v, const double *f, long double allowed)
 {
-    results s = compute(a, v, f);
+    forces_results s = forces_of(a, v, f);
     long double virial[9] = {0}, virial_scale = 0;
     for (int64_t c = 0; c < a->n_chains; ++c) {
         chain one = assembly_chain(a, c);
@@ -56,7 +39,7 @@ static void assert_solution(const assembly *a, const double *v, const double *f,
     for (int i = 0; i < 9; ++i)
         CHECK_AT_MOST(fabsl(s.virial[i] - virial[i]),
                       allowed * DBL_EPSILON * virial_scale * (1 + sqrtl((long double)a->n_chains) / 16));
-    release(&s);
+    forces_results_free(&s);
 }
 
 static void forces_agree_with_a_dense_solution_for_every_length_to_60(void **state)
@@ -116,14 +99,14 @@ static void forces_agree_with_the_reference_files_when_all_chains_share_one_hand
     fclose(index);
     assert_int_equal(n, 26);
     assembly a = assembly_make(parts, n, SCATTERED, 5);
-    results s = compute(&a, a.v, a.f);
+    forces_results s = forces_of(&a, a.v, a.f);
     for (int c = 0; c < n; ++c) {
         const long double unit = oracle_bound(cases[c].n_bonds) * DBL_EPSILON;
         for (int64_t k = 0; k < cases[c].n_bonds; ++k)
             CHECK_AT_MOST(fabsl(s.lambda[a.first_bond[c] + k] - cases[c].lambda[k]), unit * cases[c].lambda_scale[k]);
         oracle_free(&cases[c]);
     }
-    release(&s);
+    forces_results_free(&s);
     assembly_free(&a);
 }
 
@@ -133,10 +116,10 @@ static void velocities_and_forces_may_each_be_left_out(void **state)
     assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, 30, 1, 40, SCATTERED, 3);
     assert_solution(&a, a.v, NULL, 1);
     assert_solution(&a, NULL, a.f, 1);
-    results s = compute(&a, NULL, NULL);
+    forces_results s = forces_of(&a, NULL, NULL);
     for (int64_t k = 0; k < a.n_bonds; ++k) assert_true(s.lambda[k] == 0 && s.tension[k] == 0);
     for (int i = 0; i < 9; ++i) assert_true(s.virial[i] == 0);
-    release(&s);
+    forces_results_free(&s);
     assembly_free(&a);
 }
 
@@ -146,15 +129,15 @@ static void zero_velocities_and_forces_equal_null(void **state)
     (void)state;
     assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, 20, 1, 40, IN_ORDER, 4);
     double *zero = calloc(assembly_size(&a), sizeof *zero);
-    results with = compute(&a, zero, a.f), without = compute(&a, NULL, a.f);
+    forces_results with = forces_of(&a, zero, a.f), without = forces_of(&a, NULL, a.f);
     for (int64_t k = 0; k < a.n_bonds; ++k) assert_true(with.lambda[k] == without.lambda[k]);
-    release(&with);
-    release(&without);
-    with = compute(&a, a.v, zero);
-    without = compute(&a, a.v, NULL);
+    forces_results_free(&with);
+    forces_results_free(&without);
+    with = forces_of(&a, a.v, zero);
+    without = forces_of(&a, a.v, NULL);
     for (int64_t k = 0; k < a.n_bonds; ++k) assert_true(with.lambda[k] == without.lambda[k]);
-    release(&with);
-    release(&without);
+    forces_results_free(&with);
+    forces_results_free(&without);
     free(zero);
     assembly_free(&a);
 }
@@ -164,7 +147,7 @@ static void forces_make_the_second_derivative_of_every_bond_vanish(void **state)
     (void)state;
     for (int kind = 0; kind < CHAIN_KINDS; ++kind) {
         assembly a = assembly_of_kind((chain_kind)kind, 25, 2, 50, IN_ORDER, 11);
-        results s = compute(&a, a.v, a.f);
+        forces_results s = forces_of(&a, a.v, a.f);
         for (int64_t c = 0; c < a.n_chains; ++c)
             for (int64_t k = 1; k <= assembly_bonds(&a, c); ++k) {
                 const int64_t i = 3 * a.atoms[a.first[c] + k - 1], j = 3 * a.atoms[a.first[c] + k];
@@ -188,7 +171,7 @@ static void forces_make_the_second_derivative_of_every_bond_vanish(void **state)
                     size += fabs(s.tension[b]) * a.length[at] * ((mi > 0 ? 1 / mi : 0) + (mj > 0 ? 1 / mj : 0));
                 CHECK_AT_MOST(fabsl(sum), oracle_bound(assembly_bonds(&a, c)) * DBL_EPSILON * size);
             }
-        release(&s);
+        forces_results_free(&s);
         assembly_free(&a);
     }
 }
@@ -198,7 +181,7 @@ static void constraint_forces_sum_to_zero_and_exert_no_torque(void **state)
     (void)state;
     for (int kind = 0; kind < CHAIN_KINDS; ++kind) {
         assembly a = assembly_of_kind((chain_kind)kind, 25, 2, 80, SCATTERED, 12);
-        results s = compute(&a, a.v, a.f);
+        forces_results s = forces_of(&a, a.v, a.f);
         for (int64_t c = 0; c < a.n_chains; ++c) {
             long double force[3] = {0}, torque[3] = {0}, size = 0, reach = 0;
             const int64_t n = assembly_bonds(&a, c), *atoms = a.atoms + a.first[c];
@@ -224,7 +207,7 @@ static void constraint_forces_sum_to_zero_and_exert_no_torque(void **state)
                 CHECK_AT_MOST(fabsl(torque[x]), 4 * DBL_EPSILON * size * reach);
             }
         }
-        release(&s);
+        forces_results_free(&s);
         assembly_free(&a);
     }
 }
@@ -233,7 +216,7 @@ static void virial_is_the_sum_of_positions_times_forces_and_of_tensions(void **s
 {
     (void)state;
     assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, 40, 1, 60, SCATTERED, 13);
-    results s = compute(&a, a.v, a.f);
+    forces_results s = forces_of(&a, a.v, a.f);
     long double by_atoms[9] = {0}, by_bonds[9] = {0}, size = 0;
     for (int64_t c = 0; c < a.n_chains; ++c) {
         const int64_t *atoms = a.atoms + a.first[c];
@@ -258,98 +241,7 @@ static void virial_is_the_sum_of_positions_times_forces_and_of_tensions(void **s
         CHECK_AT_MOST(fabsl(s.virial[i] - by_atoms[i]), 60 * 16 * DBL_EPSILON * size);
         assert_true(s.virial[i] == s.virial[3 * (i % 3) + i / 3]);
     }
-    release(&s);
-    assembly_free(&a);
-}
-
-static void each_output_may_be_left_out_and_the_others_do_not_change(void **state)
-{
-    (void)state;
-    assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, 20, 1, 40, IN_ORDER, 14);
-    results all = compute(&a, a.v, a.f);
-    for (unsigned mask = 0; mask < 16; ++mask) {
-        results some = {untouched((size_t)a.n_bonds), untouched((size_t)a.n_bonds), untouched(assembly_size(&a)), {0}};
-        double *virial = untouched(9);
-        CHECK(hol_forces(a.chains, a.r, a.v, a.f, mask & 1 ? some.lambda : NULL, mask & 2 ? some.tension : NULL,
-                         mask & 4 ? some.g : NULL, HOL_WRITE, mask & 8 ? virial : NULL));
-        if (mask & 1) assert_same_bits(some.lambda, all.lambda, (size_t)a.n_bonds);
-        if (mask & 2) assert_same_bits(some.tension, all.tension, (size_t)a.n_bonds);
-        if (mask & 4) assert_same_bits(some.g, all.g, assembly_size(&a));
-        if (mask & 8) assert_same_bits(virial, all.virial, 9);
-        if (!(mask & 1)) assert_untouched(some.lambda, (size_t)a.n_bonds);
-        if (!(mask & 2)) assert_untouched(some.tension, (size_t)a.n_bonds);
-        if (!(mask & 4)) assert_untouched(some.g, assembly_size(&a));
-        if (!(mask & 8)) assert_untouched(virial, 9);
-        free(virial);
-        release(&some);
-    }
-    release(&all);
-    assembly_free(&a);
-}
-
-static void adding_mode_adds_and_atoms_of_no_chain_are_left_alone(void **state)
-{
-    (void)state;
-    assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, 20, 1, 40, SCATTERED, 15);
-    results s = compute(&a, a.v, a.f);
-    double *sum = copy_of(a.v, assembly_size(&a)), *in_place = copy_of(a.f, assembly_size(&a)),
-           *bare = untouched(assembly_size(&a));
-    unsigned char *used = calloc((size_t)a.n_atoms, 1);
-    for (int64_t i = 0; i < a.n_bonds + a.n_chains; ++i) used[a.atoms[i]] = 1;
-    CHECK(hol_forces(a.chains, a.r, a.v, a.f, NULL, NULL, sum, HOL_ADD, NULL));
-    CHECK(hol_forces(a.chains, a.r, a.v, in_place, NULL, NULL, in_place, HOL_ADD, NULL));
-    CHECK(hol_forces(a.chains, a.r, a.v, a.f, NULL, NULL, bare, HOL_WRITE, NULL));
-    for (int64_t i = 0; i < 3 * a.n_atoms; ++i) {
-        if (used[i / 3]) {
-            assert_true(sum[i] == a.v[i] + s.g[i]);
-            assert_true(in_place[i] == a.f[i] + s.g[i]);
-        } else {
-            assert_true(memcmp(sum + i, a.v + i, sizeof *sum) == 0);
-            assert_true(memcmp(in_place + i, a.f + i, sizeof *sum) == 0);
-            assert_untouched(bare + i, 1);
-        }
-    }
-    free(used);
-    free(sum);
-    free(in_place);
-    free(bare);
-    release(&s);
-    assembly_free(&a);
-}
-
-static void forces_may_be_written_over_the_applied_forces(void **state)
-{
-    (void)state;
-    static const int64_t longest[3] = {3, 40, 5000};
-    for (int i = 0; i < 3; ++i) {
-        assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, 12, longest[i], longest[i], IN_ORDER, 16);
-        results s = compute(&a, a.v, a.f);
-        double *f = copy_of(a.f, assembly_size(&a));
-        CHECK(hol_forces(a.chains, a.r, a.v, f, NULL, NULL, f, HOL_WRITE, NULL));
-        assert_same_bits(f, s.g, assembly_size(&a));
-        free(f);
-        release(&s);
-        assembly_free(&a);
-    }
-}
-
-static void forces_refuse_wrong_arguments_and_write_nothing(void **state)
-{
-    (void)state;
-    assembly a = assembly_of_kind(CHAIN_COIL, 3, 4, 4, IN_ORDER, 17);
-    double *lambda = untouched(12), *tension = untouched(12), *g = untouched(45), *virial = untouched(9);
-    CHECK_FAILS(HOL_ERR_NULL, hol_forces(NULL, a.r, a.v, a.f, lambda, tension, g, HOL_WRITE, virial));
-    CHECK_FAILS(HOL_ERR_NULL, hol_forces(a.chains, NULL, a.v, a.f, lambda, tension, g, HOL_WRITE, virial));
-    CHECK_FAILS(HOL_ERR_VALUE, hol_forces(a.chains, a.r, a.v, a.f, lambda, tension, g, 2, virial));
-    CHECK_FAILS(HOL_ERR_VALUE, hol_forces(a.chains, a.r, a.v, a.f, lambda, tension, g, -1, virial));
-    assert_untouched(lambda, 12);
-    assert_untouched(tension, 12);
-    assert_untouched(g, 45);
-    assert_untouched(virial, 9);
-    free(lambda);
-    free(tension);
-    free(g);
-    free(virial);
+    forces_results_free(&s);
     assembly_free(&a);
 }
 
@@ -364,10 +256,6 @@ int main(void)
         cmocka_unit_test(forces_make_the_second_derivative_of_every_bond_vanish),
         cmocka_unit_test(constraint_forces_sum_to_zero_and_exert_no_torque),
         cmocka_unit_test(virial_is_the_sum_of_positions_times_forces_and_of_tensions),
-        cmocka_unit_test(each_output_may_be_left_out_and_the_others_do_not_change),
-        cmocka_unit_test(adding_mode_adds_and_atoms_of_no_chain_are_left_alone),
-        cmocka_unit_test(forces_may_be_written_over_the_applied_forces),
-        cmocka_unit_test(forces_refuse_wrong_arguments_and_write_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
