@@ -1,5 +1,6 @@
 #include "core/metric.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/run/apart.hpp"
@@ -31,21 +32,12 @@ struct MetricWork final : Work {
         return 1;
     }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_metric.blocks(n); }
-    std::int64_t long_bytes(std::int64_t n) const override { return k.long_metric.bytes(n); }
+    std::int64_t long_bytes(std::int64_t n) const override {
+        return std::max(k.long_metric.bytes(n), kernels_for_one_chain().scratch_bytes(n));
+    }
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
-        const MetricCall &call = calls[where];
-        const std::int64_t blocks = long_blocks(lane.n_bonds);
-        team.for_each(blocks, tally, [&](std::int64_t j, double *scratch, Tally &) {
-            k.long_metric.map(call, lane, j, store, scratch);
-        });
-        if (!k.long_metric.join(lane, store)) return note_bad(lane, tally);
-        Tally whole = empty_tally();
-        team.for_each(blocks, whole, [&](std::int64_t j, double *scratch, Tally &part) {
-            k.long_metric.finish(call, lane, j, store, scratch, part);
-        });
-        if (call.log_det) call.log_det[lane.chain] = whole.log_det;
-        if (call.log_det_z) call.log_det_z[lane.chain] = whole.log_det_z;
-        tally.log_det += whole.log_det;
+        if (!k.long_metric.solve(calls[where], lane, team.lent(), store, tally))
+            kernels_for_one_chain().metric(calls[where], Unit{&lane, 1, false, false}, store, tally);
     }
 };
 

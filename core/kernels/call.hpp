@@ -128,21 +128,13 @@ enum JoinResult { join_good, join_doubtful, join_bad };
 
 // A chain of more than longest_lane bonds is worked on in blocks of segments, in phases; within a phase the blocks may
 // be done in any order, by any thread. `store` keeps what passes from phase to phase.
-struct LongForces {
+template <class Call>
+struct InSegments {
     int64_t (*blocks)(int64_t n_bonds);
     int64_t (*bytes)(int64_t n_bonds);  // of the store
-    void (*eliminate)(const ForcesCall &, const Lane &, int64_t block, bool careful, double *store, double *scratch);
+    void (*eliminate)(const Call &, const Lane &, int64_t block, bool careful, double *store, double *scratch);
     JoinResult (*join)(const Lane &, bool careful, double *store);
-    void (*finish)(const ForcesCall &, const Lane &, int64_t block, double *store, double *scratch, Tally &);
-};
-
-struct LongVelocities {
-    int64_t (*blocks)(int64_t n_bonds);
-    int64_t (*bytes)(int64_t n_bonds);
-    void (*eliminate)(const VelocitiesCall &, const Lane &, int64_t block, bool careful, double *store,
-                      double *scratch);
-    JoinResult (*join)(const Lane &, bool careful, double *store);
-    void (*finish)(const VelocitiesCall &, const Lane &, int64_t block, double *store, double *scratch, Tally &);
+    void (*finish)(const Call &, const Lane &, int64_t block, double *store, double *scratch, Tally &);
 };
 
 // The threads that work on one long chain, as core lends them: run() calls body(context, j, scratch, part) for j = 0 ..
@@ -153,18 +145,13 @@ struct LongTeam {
                 void (*body)(const void *context, int64_t j, double *scratch, Tally &part), const void *context);
 };
 
-struct LongPositions {
-    int64_t (*blocks)(int64_t n_bonds);
+// Or in windows, which know nothing of each other. `solve` returns false, with nothing written, where these won't do:
+// then the chain is a unit of one, as if it were short.
+template <class Call>
+struct InWindows {
+    int64_t (*blocks)(int64_t n_bonds);  // as InSegments has: which chains are worth several threads
     int64_t (*bytes)(int64_t n_bonds);
-    void (*solve)(const PositionsCall &, const Lane &, const LongTeam &, double *store, Tally &);
-};
-
-struct LongMetric {
-    int64_t (*blocks)(int64_t n_bonds);
-    int64_t (*bytes)(int64_t n_bonds);
-    void (*map)(const MetricCall &, const Lane &, int64_t block, double *store, double *scratch);
-    bool (*join)(const Lane &, double *store);
-    void (*finish)(const MetricCall &, const Lane &, int64_t block, double *store, double *scratch, Tally &);
+    bool (*solve)(const Call &, const Lane &, const LongTeam &, double *store, Tally &);
 };
 
 // Molecules that are no linear chains. `scratch` has the largest scratch_bytes of the schedules, aligned to 64. A value
@@ -178,19 +165,21 @@ struct MoleculeKernels {
     void (*solve)(const SolveCall &, const MoleculeUnit &, double *scratch, Tally &);
 };
 
-// The kernels of one instruction set. `scratch` has scratch_bytes(bonds of the longest chain), aligned to 64.
+// The kernels of one instruction set. `scratch` has scratch_bytes(bonds of the longest chain), aligned to 64; for long
+// chains piece_bytes.
 struct Kernels {
     const char *name;
     int lanes;
     int64_t (*scratch_bytes)(int64_t n_bonds);
+    int64_t piece_bytes;
     void (*forces)(const ForcesCall &, const Unit &, double *scratch, Tally &);
     void (*velocities)(const VelocitiesCall &, const Unit &, double *scratch, Tally &);
     void (*positions)(const PositionsCall &, const Unit &, double *scratch, Tally &);
     void (*metric)(const MetricCall &, const Unit &, double *scratch, Tally &);
-    LongForces long_forces;
-    LongVelocities long_velocities;
-    LongPositions long_positions;
-    LongMetric long_metric;
+    InSegments<ForcesCall> long_forces;
+    InSegments<VelocitiesCall> long_velocities;
+    InWindows<PositionsCall> long_positions;
+    InWindows<MetricCall> long_metric;
     MoleculeKernels molecules{};
 };
 

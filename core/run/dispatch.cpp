@@ -102,16 +102,21 @@ bool eight_lanes_pay(unsigned amd_family, const Unit &unit) {
 
 const Kernels &kernels() { return *sets().best; }
 
+const Kernels &kernels_for_one_chain() {
+    const Sets &s = sets();
+    return s.one_lane ? *s.one_lane : *s.best;
+}
+
 const Kernels &kernels(const Unit &unit) {
     const Sets &s = sets();
-    if (s.one_lane && unit.count == 1) return *s.one_lane;
+    if (unit.count == 1) return kernels_for_one_chain();
     return s.eight_lanes && eight_lanes_pay(s.family, unit) ? *s.eight_lanes : *s.best;
 }
 
 int64_t scratch_bytes(int64_t n_bonds) {
     const Sets &s = sets();
     const Kernels *const widest = s.eight_lanes ? s.eight_lanes : s.best;
-    return widest->scratch_bytes(n_bonds);
+    return n_bonds > longest_lane ? widest->piece_bytes : widest->scratch_bytes(n_bonds);
 }
 
 }  // namespace holonomic

@@ -13,6 +13,7 @@ const Kernels &kernels();
 // The kernels of chains that fit into lanes: those, or a set that gives the same bits and is faster for such a unit, a
 // chain that comes alone among them.
 const Kernels &kernels(const Unit &unit);
+const Kernels &kernels_for_one_chain();
 
 // Scratch that either needs for chains of up to n_bonds bonds.
 int64_t scratch_bytes(int64_t n_bonds);

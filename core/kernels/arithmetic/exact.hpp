@@ -6,8 +6,7 @@
 
 #include "core/kernels/arithmetic/vector3.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 template <class V>
 struct Pair {
@@ -47,23 +46,7 @@ HOL_INLINE Pair<V> two_product(V a, V b) {
 #endif
 }
 
-// a . b as if in twice the precision, rounded once.
-template <class V>
-HOL_INLINE V dot_compensated(const Vector3<V> &a, const Vector3<V> &b) {
-    const Pair<V> x = two_product(a.x, b.x), y = two_product(a.y, b.y), z = two_product(a.z, b.z);
-    const Pair<V> s = two_sum(x.hi, y.hi), t = two_sum(s.hi, z.hi);
-    return t.hi + ((t.lo + s.lo) + ((x.lo + y.lo) + z.lo));
-}
-
-// a b - c d as if in twice the precision, rounded once.
-template <class V>
-HOL_INLINE V minor_compensated(V a, V b, V c, V d) {
-    const Pair<V> p = two_product(a, b), q = two_product(c, d);
-    const Pair<V> s = two_difference(p.hi, q.hi);
-    return s.hi + (s.lo + (p.lo - q.lo));
-}
-
-// Vectors that carry a low word: (a + a_lo), exact to about twice the precision.
+// (a + a_lo) . (b + b_lo) as if in twice the precision, rounded once.
 template <class V>
 HOL_INLINE V dot_compensated(const Vector3<V> &a, const Vector3<V> &a_lo, const Vector3<V> &b, const Vector3<V> &b_lo) {
     const Pair<V> x = two_product(a.x, b.x), y = two_product(a.y, b.y), z = two_product(a.z, b.z);
@@ -71,6 +54,7 @@ HOL_INLINE V dot_compensated(const Vector3<V> &a, const Vector3<V> &a_lo, const 
     return t.hi + ((t.lo + s.lo) + ((x.lo + y.lo) + z.lo) + (dot(a, b_lo) + dot(a_lo, b)));
 }
 
+// The same of (a + al) (b + bl) - (c + cl) (d + dl).
 template <class V>
 HOL_INLINE V minor_compensated(V a, V al, V b, V bl, V c, V cl, V d, V dl) {
     const Pair<V> p = two_product(a, b), q = two_product(c, d);
@@ -94,6 +78,5 @@ HOL_INLINE double sum_compensated(const Three &hi, const Three &lo) {
     return t.hi + ((t.lo + s.lo) + ((lo[0] + lo[1]) + lo[2]));
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

@@ -5,8 +5,7 @@
 #include "core/kernels/arithmetic/exact.hpp"
 #include "core/kernels/call.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // Minimum image of bond vectors, of all lanes or of one; `lo` gets what d's rounding left off.
 template <bool careful, class V>
@@ -39,7 +38,14 @@ HOL_INLINE void wrap(const Box &box, Vector3<V> &d, Vector3<V> &lo) {
     }
 }
 
-// The vector from one atom to another, unrounded: d + lo. Of all lanes or of one.
+// The vector from one atom to another.
+HOL_INLINE Vector3<double> bond_vector(const Box &box, const double *from, const double *to) {
+    Vector3<double> d = {to[0] - from[0], to[1] - from[1], to[2] - from[2]}, unused = {};
+    if (box.shape != Box::none) wrap<false>(box, d, unused);
+    return d;
+}
+
+// The same, unrounded: d + lo. Of all lanes or of one.
 template <class V>
 HOL_INLINE void unrounded_bond(const Box &box, const Vector3<V> &from, const Vector3<V> &to, Vector3<V> &d,
                                Vector3<V> &lo) {
@@ -71,6 +77,5 @@ HOL_INLINE Pair<vec> unrounded_bond(const Box &box, vec from, vec to) {
 }
 #endif
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

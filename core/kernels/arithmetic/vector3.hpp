@@ -4,8 +4,7 @@
 
 #include "core/kernels/isa/lanes.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 template <class V>
 struct Vector3 {
@@ -22,12 +21,35 @@ HOL_INLINE Vector3<V> cross(const Vector3<V> &a, const Vector3<V> &b) {
     return {mul_add(a.y, b.z, -(a.z * b.y)), mul_add(a.z, b.x, -(a.x * b.z)), mul_add(a.x, b.y, -(a.y * b.x))};
 }
 
+template <class V>
+HOL_INLINE Vector3<V> operator+(const Vector3<V> &a, const Vector3<V> &b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class V>
+HOL_INLINE Vector3<V> operator-(const Vector3<V> &a, const Vector3<V> &b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class V>
+HOL_INLINE Vector3<V> operator*(V s, const Vector3<V> &a) {
+    return {s * a.x, s * a.y, s * a.z};
+}
+// c + s a and c - s a
+template <class V>
+HOL_INLINE Vector3<V> add_times(const Vector3<V> &c, V s, const Vector3<V> &a) {
+    return {mul_add(s, a.x, c.x), mul_add(s, a.y, c.y), mul_add(s, a.z, c.z)};
+}
+
+// d.d - a2
+template <class V>
+HOL_INLINE V excess(const Vector3<V> &d, V a2) {
+    return mul_add(d.z, d.z, mul_add(d.y, d.y, mul_add(d.x, d.x, -a2)));
+}
+
 typedef Vector3<vec> vec3;
 
 HOL_INLINE vec3 times(vec s, const vec3 &a) { return {s * a.x, s * a.y, s * a.z}; }
 HOL_INLINE vec3 minus(const vec3 &a, const vec3 &b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 HOL_INLINE vec3 plus(const vec3 &a, const vec3 &b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

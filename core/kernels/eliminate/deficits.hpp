@@ -9,8 +9,7 @@
 #include "core/kernels/memory/arena.hpp"
 #include "core/kernels/memory/block.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // Per bond k of a block; joint k lies between bonds k-1 and k.
 struct Geometry {
@@ -23,9 +22,9 @@ struct Geometry {
     vec *p, *delta;            // coupling of bonds k-1 and k; what row k has beyond its neighbours
     vec *e, *t;
     Geometry(long n, Arena &arena)
-        : u(vectors(n, arena)), low(vectors(n, arena)), normal(vectors(n + 1, arena)), cosine(arena.vecs(n + 1)),
-          complement(arena.vecs(n + 1)), reciprocal(arena.vecs(n)), square(arena.vecs(n)), scale(arena.vecs(n)),
-          p(arena.vecs(n + 1)), delta(arena.vecs(n)), e(arena.vecs(n)), t(arena.vecs(n)) {}
+        : u(vectors(n + W, arena)), low(vectors(n + W, arena)), normal(vectors(n + 1, arena)),
+          cosine(arena.vecs(n + 1)), complement(arena.vecs(n + 1)), reciprocal(arena.vecs(n)), square(arena.vecs(n)),
+          scale(arena.vecs(n)), p(arena.vecs(n + 1)), delta(arena.vecs(n)), e(arena.vecs(n)), t(arena.vecs(n + W)) {}
     static vec3 *vectors(long n, Arena &arena) { return reinterpret_cast<vec3 *>(arena.vecs(3 * n)); }
 };
 
@@ -192,6 +191,5 @@ HOL_INLINE void turn(const Geometry &x, long k, double kT) {
     x.t[k] = kT * x.reciprocal[k];
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

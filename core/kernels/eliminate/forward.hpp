@@ -27,7 +27,7 @@ HOL_NOINLINE mask forward(const Block &block, const Box &box, const Packed &r, c
     }
     const long ragged_from = k0;
     for (; k0 < block.n; k0 += W)
-        load_ragged_chunk<terms, uniform, boxed, false>(block, box, r, v, f, k0, s.D + k0, nullptr, s.t + k0);
+        load_ragged<terms, uniform, boxed, false>(block, box, r, v, f, k0, s.D + k0, nullptr, s.t + k0);
     for (long k = ragged_from; k < block.n; ++k) sweep.step(k, s.t[k], k % 4 == 0, k >= block.n_min);
     calm = sweep.calm();
     return ~sweep.doubt();

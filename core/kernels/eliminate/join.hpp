@@ -58,10 +58,10 @@ static inline void eliminate_block(const Call &call, const Lane &lane, int64_t j
                                    const double *strain = nullptr) {
     const Cut cut(lane.n_bonds);
     SegmentBlock s = segment_block(cut, j, lane);
-    set_segment_masses(s, lane, arena);
+    set_masses(s.block, s.lane, arena);
     // All are in place or none is, so that the segments are equally far apart in each array.
-    const Packed pr = open_segments(r, s, lane, arena, true), pv = open_segments(v, s, lane, arena, true);
-    const Packed pf = open_segments(f, s, lane, arena, true);
+    const Packed pr = open(r, s.block, s.lane, arena, true), pv = open(v, s.block, s.lane, arena, true);
+    const Packed pf = open(f, s.block, s.lane, arena, true);
     const SegmentStore x(store, cut, j);
     if (s.block.uniform_w)
         eliminate_block_of<terms, true>(call.box, s, pr, pv, pf, careful, x, arena, strain);

@@ -153,17 +153,17 @@ static inline void finish_block(const Box &box, const AtomArray &r, const AtomAr
                                 Tally &tally) {
     const Cut cut(lane.n_bonds);
     SegmentBlock s = segment_block(cut, j, lane);
-    if (weighted) set_segment_masses(s, lane, arena);
+    if (weighted) set_masses(s.block, s.lane, arena);
     if (in_place(r, lane)) s.block.ahead = distance_before(cut, j);
     SegmentBonds in = {};
-    in.r = open_segments(r, s, lane, arena, true);
+    in.r = open(r, s.block, s.lane, arena, true);
     find_next(s, box, in.r, in);
     const SegmentStore x(store, cut, j);
     vec next;
     for (int i = 0; i + 1 < W; ++i) next[i] = x.summary->t[i + 1];
     next[W - 1] = s.last < 0 ? x.summary[1].t[0] : 0.0;
     out.has_pulls = pulled.x != nullptr;
-    out.pulls = open_segments(pulled, s, lane, arena, false);
+    out.pulls = open(pulled, s.block, s.lane, arena, false);
     const Update update = in_place(pulled, lane) && add ? add_ : write_;
     if (box.shape == Box::none)
         finish_segments<weighted, false>(s, j == 0, box, in, x, next, out, update, tally);

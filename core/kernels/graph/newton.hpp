@@ -49,7 +49,7 @@ struct Newton {
     };
     // What is left of a bond's length into its t, for D as given.
     HOL_INLINE void measure(NewtonRow<V> &row, const Vector3<V> &D, Errors &errors) {
-        const V sigma = mul_add(D.z, D.z, mul_add(D.y, D.y, mul_add(D.x, D.x, -row.a2)));
+        const V sigma = excess(D, row.a2);
         errors.worst = max(abs(sigma) * row.per_a2, errors.worst);
         errors.sum = errors.sum + sigma;
         row.t = 0.5 * sigma;

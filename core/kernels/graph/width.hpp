@@ -63,24 +63,6 @@ struct Width<double> {
 template <class V>
 using MaskOf = typename Width<V>::Mask;
 
-template <class V>
-HOL_INLINE Vector3<V> operator+(const Vector3<V> &a, const Vector3<V> &b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-template <class V>
-HOL_INLINE Vector3<V> operator-(const Vector3<V> &a, const Vector3<V> &b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-template <class V>
-HOL_INLINE Vector3<V> operator*(V s, const Vector3<V> &a) {
-    return {s * a.x, s * a.y, s * a.z};
-}
-// c + s a and c - s a
-template <class V>
-HOL_INLINE Vector3<V> add_times(const Vector3<V> &c, V s, const Vector3<V> &a) {
-    return {mul_add(s, a.x, c.x), mul_add(s, a.y, c.y), mul_add(s, a.z, c.z)};
-}
-
 namespace graph {
 
 // Working arrays, handed out front to back.

@@ -2,11 +2,10 @@
 #ifndef HOLONOMIC_KERNELS_ISA_GENERIC_HPP
 #define HOLONOMIC_KERNELS_ISA_GENERIC_HPP
 
-#include "core/kernels/isa/vector.hpp"
+#include "core/kernels/isa/avx.hpp"
 
-#if !(HOL_LANES == 8 && defined(__AVX512F__)) && !(HOL_LANES == 4 && defined(__AVX2__) && defined(__FMA__))
-namespace holonomic {
-namespace HOL_ISA {
+#ifndef HOL_INTRINSIC
+namespace holonomic::HOL_ISA {
 
 // One rounding or two, as for a double: results of a set must not depend on where a bond is worked on.
 HOL_INLINE vec mul_add(vec a, vec b, vec c) {
@@ -60,7 +59,6 @@ HOL_INLINE unsigned bits(mask m) {
 }
 #endif
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif
 #endif

@@ -1,15 +1,13 @@
-// Lanes: W doubles worked on at once, one chain (or one segment of a chain) in each. All that kernels do with a vector.
+// Lanes: W doubles that are worked on at once, with one chain, or one piece of a chain, in each.
 #ifndef HOLONOMIC_KERNELS_ISA_LANES_HPP
 #define HOLONOMIC_KERNELS_ISA_LANES_HPP
 
-#include "core/kernels/isa/avx2.hpp"
-#include "core/kernels/isa/avx512.hpp"
+#include "core/kernels/isa/avx.hpp"
 #include "core/kernels/isa/generic.hpp"
 #include "core/kernels/isa/transpose.hpp"
 #include "core/kernels/isa/vector.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // The sign bits of a mask tell.
 HOL_INLINE bool any(mask m) { return bits(m) != 0; }
@@ -28,6 +26,5 @@ HOL_INLINE double sum_lanes(vec a) {  // in the order of the lanes
 
 constexpr unsigned all_lanes = (1u << W) - 1;  // bits() of a mask with all lanes set
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

@@ -6,8 +6,7 @@
 #include "core/kernels/isa/target.hpp"
 
 #if HOL_LANES == 1
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 struct mask {
     long long element;
@@ -68,7 +67,6 @@ HOL_INLINE vec min(vec a, vec b) { return {a.element < b.element ? a.element : b
 HOL_INLINE vec abs(vec a) { return {__builtin_fabs(a.element)}; }
 HOL_INLINE vec sqrt(vec a) { return {__builtin_sqrt(a.element)}; }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif
 #endif

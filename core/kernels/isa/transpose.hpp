@@ -4,8 +4,7 @@
 
 #include "core/kernels/isa/vector.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 #if HOL_LANES >= 4 && defined(__AVX2__)
 typedef double quad __attribute__((vector_size(32)));  // four lanes: all of vec, or a part of it
@@ -47,6 +46,5 @@ HOL_INLINE void transpose(vec *m) {
 }
 #endif
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

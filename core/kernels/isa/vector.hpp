@@ -17,8 +17,7 @@
 #include <arm_neon.h>
 #endif
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 constexpr int W = HOL_LANES;
 
@@ -58,6 +57,5 @@ HOL_INLINE double mul_add(double a, double b, double c) {
 #endif
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

@@ -6,15 +6,14 @@
 
 #include "core/kernels/isa/lanes.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // Vectors per bond that the greediest kernel takes, positions of staged chains with unequal masses and lengths: three
 // arrays (9), masses (4), lengths (2), Newton's method (12), what is put back after a coarse move (4).
 constexpr int64_t vectors_per_bond = 32;
 
 // For a block of chains of at most n bonds, of what ends with a chunk or with a cache line too.
-HOL_INLINE int64_t scratch_doubles(int64_t n) { return W * vectors_per_bond * (n + 2 * W + 8); }
+constexpr int64_t scratch_doubles(int64_t n) { return W * vectors_per_bond * (n + 2 * W + 8); }
 
 // Scratch memory handed out front to back. Builds with assertions and with sanitizers end where it does not suffice.
 struct Arena {
@@ -38,6 +37,5 @@ private:
     }
 };
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

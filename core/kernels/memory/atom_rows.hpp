@@ -5,8 +5,7 @@
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/isa/transpose.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 #if HOL_LANES >= 4 && defined(__AVX2__)
 // Rows are read in the pieces in which they are written, and nothing of the next atom is: a load that overlaps with a
@@ -63,6 +62,5 @@ HOL_INLINE void write_rows(double *const *p, const vec3 &a) {
 #endif
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

@@ -7,8 +7,7 @@
 #include "core/kernels/call.hpp"
 #include "core/kernels/isa/lanes.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 constexpr int group = W > 4 ? W : 4;  // bonds of a lane that are read and eliminated at a time
 
@@ -44,6 +43,18 @@ struct Packed {
     double *lane[W];
 };
 
+// n bonds of a chain from bond `from` on, as a chain.
+HOL_INLINE Lane part_of(const Lane &chain, int64_t from, int64_t n) {
+    Lane part = chain;
+    part.n_bonds = n;
+    part.first_atom += from;
+    part.first_bond += from;
+    if (chain.atoms) part.atoms += from;
+    if (chain.w) part.w += from;
+    if (chain.length) part.length += from;
+    return part;
+}
+
 // Unit of the inverse masses of a chain, and the one of its atom k in it: see Block.
 HOL_INLINE double unit_of(const Lane &lane) { return !lane.w && lane.w_uniform > 0 ? lane.w_uniform : 1.0; }
 HOL_INLINE double relative_w(const Lane &lane, int64_t k) {
@@ -59,6 +70,5 @@ HOL_INLINE vec w_at(const Block &block, long k) {
 // Whether bonds k-1 and k are both there, in each lane.
 HOL_INLINE mask joint(const Block &block, long k) { return less(splat(static_cast<double>(k)), block.lengths()); }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

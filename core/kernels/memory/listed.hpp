@@ -1,6 +1,6 @@
-// Blocks of equally long chains with lists of atoms, in packed arrays: every vector is read where the list says, and
-// results are written there, with the same arithmetic as for chains over consecutive atoms. What needs more than the
-// plain path is left to the general one, which copies such chains into staging buffers.
+// Blocks of equally long chains with lists of atoms in packed arrays. Vectors are read and written where the list says;
+// the arithmetic is that of chains over consecutive atoms. What needs more than the plain path is left to the general
+// one, which copies such chains into staging buffers.
 #ifndef HOLONOMIC_KERNELS_MEMORY_LISTED_HPP
 #define HOLONOMIC_KERNELS_MEMORY_LISTED_HPP
 
@@ -8,8 +8,7 @@
 #include "core/kernels/memory/block.hpp"
 #include "core/kernels/memory/sink.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // The lists of the lanes.
 struct AtomLists {
@@ -46,7 +45,7 @@ HOL_INLINE void scatter(double *base, const AtomLists &at, long k, vec3 a) {
 
 HOL_INLINE double *base_of(const AtomArray &array) { return reinterpret_cast<double *>(array.x); }
 
-// Lists in packed arrays, in all lanes of a full block?
+// Whether all lanes of a full block have lists.
 HOL_INLINE bool listed(const Block &block, const Lane *lane) {
     if (block.lanes < W || block.n != block.n_min) return false;
     for (int i = 0; i < W; ++i)
@@ -54,6 +53,5 @@ HOL_INLINE bool listed(const Block &block, const Lane *lane) {
     return true;
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

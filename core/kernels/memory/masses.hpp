@@ -6,21 +6,20 @@
 #include "core/kernels/memory/block.hpp"
 #include "core/kernels/memory/rows.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // Inverse masses of the lanes: constant along each, or tables in scratch.
-static inline void set_masses(Block &block, const double *const *tables, const double *uniform, Arena &arena) {
+static inline void set_masses(Block &block, const Lane *lane, Arena &arena) {
     const double *table[W];
     double constant[W];  // where there is no table
     block.uniform_w = true;
     for (int i = 0; i < W; ++i) {
-        const int lane = i < block.lanes ? i : 0;
-        const bool has_unit = !tables[lane] && uniform[lane] > 0;  // not in a chain of nothing but fixed atoms
-        table[i] = tables[lane];
-        constant[i] = has_unit ? 1.0 : uniform[lane];
-        block.movable[i] = has_unit || tables[lane] ? -1 : 0;
-        block.unit[i] = has_unit ? uniform[lane] : 1.0;
+        const Lane &of = lane[i < block.lanes ? i : 0];
+        const bool has_unit = !of.w && of.w_uniform > 0;  // not in a chain of nothing but fixed atoms
+        table[i] = of.w;
+        constant[i] = has_unit ? 1.0 : of.w_uniform;
+        block.movable[i] = has_unit || of.w ? -1 : 0;
+        block.unit[i] = has_unit ? of.w_uniform : 1.0;
         block.uniform_w = block.uniform_w && has_unit;
     }
     block.mass = splat(1.0) / block.unit;
@@ -57,16 +56,5 @@ static inline void set_masses(Block &block, const double *const *tables, const d
     block.w = w;
 }
 
-static inline void set_masses(Block &block, const Lane *lane, Arena &arena) {
-    const double *tables[W] = {};
-    double uniform[W] = {};
-    for (int i = 0; i < block.lanes; ++i) {
-        tables[i] = lane[i].w;
-        uniform[i] = lane[i].w_uniform;
-    }
-    set_masses(block, tables, uniform, arena);
-}
-
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

@@ -6,8 +6,7 @@
 #include "core/kernels/memory/masses.hpp"
 #include "core/kernels/memory/stage.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 static inline void note_bad(const Block &block, mask bad, Tally &tally) {
     const unsigned which = bits(bad & block.in_use());
@@ -18,8 +17,8 @@ static inline void note_bad(const Block &block, mask bad, Tally &tally) {
     }
 }
 
-// Fills a block with the chains first .. first + lanes - 1 of a unit. Of a regular unit, the block before this one may
-// still be in place.
+// Fills a block with the chains first .. first + lanes - 1 of a unit. In a regular unit it may hold the block before
+// this one: what these have in common is kept.
 static inline void open_block(const Unit &unit, int64_t first, Block &block, Lane *lane) {
     const int64_t left = unit.count - first;
     block.lanes = left < W ? static_cast<int>(left) : W;
@@ -69,7 +68,7 @@ static inline void open_block(const Unit &unit, int64_t first, Block &block, Lan
 
 HOL_INLINE bool in_place(const AtomArray &array, const Block &block) { return array.packed && !block.staged; }
 
-// The lanes of a block in an array of the caller's or, where that can't be used in place, in staging buffers.
+// Where the lanes of a block are: in the caller's array, or in staging buffers if that can't be used in place.
 static inline Packed open(const AtomArray &array, const Block &block, const Lane *lane, Arena &arena, bool read) {
     Packed packed = {};
     if (!array.x) return packed;
@@ -126,6 +125,5 @@ static inline int64_t no_molecules(const Call &, const Unit &, const Block &, in
     return first;
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

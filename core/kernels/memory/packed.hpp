@@ -11,11 +11,10 @@
 #include "core/kernels/memory/rows.hpp"
 #include "core/kernels/memory/terms.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
-// When the minimum image is taken: never; of the components as they stand in memory, which will do if the box is
-// orthorhombic; of bond vectors, for which the products have to wait until they are transposed.
+// What the minimum image is taken of: of nothing; of the components as they stand in memory, if the box is
+// orthorhombic; of bond vectors, and then the products have to wait until these are transposed.
 enum Images { no_images, images_of_components, images_of_bonds };
 
 // Where a chunk of W bonds is read: the rows of lane i in each array, from the chunk's first atom on.
@@ -29,7 +28,7 @@ struct LaneRows {
 HOL_INLINE uintptr_t number(const double *p) { return reinterpret_cast<uintptr_t>(p); }
 HOL_INLINE const double *pointer(uintptr_t p) { return reinterpret_cast<const double *>(p); }
 
-// Lanes all at the same distance from one another, in each array: one address per array does.
+// The same where lanes are all equally far apart: one address per array does.
 struct EvenRows {
     uintptr_t at, lane, to_v, to_f;
     EvenRows(const Packed &r, const Packed &v, const Packed &f)
@@ -143,10 +142,11 @@ HOL_INLINE void load_full_chunk(const Block &block, const Box &box, const Places
     load_chunk<terms, uniform, boxed, careful>(block, box, k0, rows, D, D_low, B);
 }
 
-// The bonds k0 .. k0 + W - 1 where lanes may end: those past the end of a lane are inert, d = (1,0,0), rhs = 0.
+// The bonds k0 .. k0 + W - 1 where lanes may end: those past the end of a lane are inert, d = (1,0,0), rhs = 0. All W
+// are written, whether or not the block has them.
 template <int terms, bool uniform, bool boxed, bool careful>
-HOL_INLINE void load_ragged(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
-                            long k0, vec3 *d, vec3 *low, vec *rhs) {
+HOL_NOINLINE void load_ragged(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
+                              long k0, vec3 *d, vec3 *low, vec *rhs) {
     double buffer[3][W][3 * W + 3];
     LaneRows rows;
     for (int i = 0; i < W; ++i) {
@@ -164,24 +164,11 @@ HOL_INLINE void load_ragged(const Block &block, const Box &box, const Packed &r,
     }
 }
 
-// The same into arrays that end with the block.
-template <int terms, bool uniform, bool boxed, bool careful>
-HOL_NOINLINE void load_ragged_chunk(const Block &block, const Box &box, const Packed &r, const Packed &v,
-                                    const Packed &f, long k0, vec3 *D, vec3 *D_low, vec *B) {
-    vec3 d[W], low[W];
-    vec rhs[W];
-    load_ragged<terms, uniform, boxed, careful>(block, box, r, v, f, k0, d, low, rhs);
-    for (long b = 0; b < W && k0 + b < block.n; ++b) {
-        D[b] = d[b];
-        if (careful) D_low[b] = low[b];
-        if (!(terms & bonds_alone)) B[b] = rhs[b];
-    }
-}
-
 // Bond vectors D[k] = r_{k+1} - r_k and right-hand sides B[k] of all lanes, with w in the lane's unit:
 //   velocity_squared: |v_{k+1} - v_k|^2 / unit,  force_difference: D . (w_{k+1} f_{k+1} - w_k f_k),
 //   rate: D . (v_{k+1} - v_k),  bonds_alone: none, B may be absent.
 // careful: D_low gets the low words of the differences. Bonds past the end of a lane are inert: D = (1,0,0), B = 0.
+// The arrays have room for W bonds more.
 template <int terms, bool uniform, bool boxed, bool careful>
 static inline void load_bonds(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
                               vec3 *D, vec3 *D_low, vec *B) {
@@ -191,8 +178,8 @@ static inline void load_bonds(const Block &block, const Box &box, const Packed &
         load_full_chunk<terms, uniform, boxed, careful>(block, box, at, k0, D + k0, careful ? D_low + k0 : nullptr,
                                                         terms & bonds_alone ? nullptr : B + k0);
     for (; k0 < block.n; k0 += W)
-        load_ragged_chunk<terms, uniform, boxed, careful>(
-            block, box, r, v, f, k0, D + k0, careful ? D_low + k0 : nullptr, terms & bonds_alone ? nullptr : B + k0);
+        load_ragged<terms, uniform, boxed, careful>(block, box, r, v, f, k0, D + k0, careful ? D_low + k0 : nullptr,
+                                                    terms & bonds_alone ? nullptr : B + k0);
 }
 
 // Bond vectors alone.
@@ -203,6 +190,5 @@ static inline void load_bond_vectors(const Block &block, const Box &box, const P
         load_bonds<bonds_alone, true, true, false>(block, box, r, r, r, D, nullptr, nullptr);
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

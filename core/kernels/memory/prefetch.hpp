@@ -6,11 +6,10 @@
 
 #include "core/kernels/isa/lanes.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
-// Starts to fetch a piece of the next block's vectors, `ahead` doubles from those of this one, when this one is at atom
-// k0, as many as `atoms` of each lane: its lanes lie one behind the other, and are fetched in that order, as the
+// Starts to fetch vectors of the next block when this one is at atom k0: as many as `atoms` of each lane. The next
+// block lies `ahead` doubles further on, its lanes one behind the other; they are fetched in that order, as the
 // processor's own prefetchers like it. The addresses may lie behind the array.
 template <int atoms = W>
 HOL_INLINE void fetch_ahead(const double *first_lane, long k0, long ahead) {
@@ -21,6 +20,5 @@ HOL_INLINE void fetch_ahead(const double *first_lane, long k0, long ahead) {
         __builtin_prefetch(reinterpret_cast<const void *>(address + static_cast<uintptr_t>(line) * 64), 0, 2);
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

@@ -4,11 +4,10 @@
 
 #include "core/kernels/memory/sink.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
-// The pulls on the atoms first .. n of the lanes in `which`, where `before` is t d of the bond before atom `first`;
-// times w_i where `weighted`.
+// Gives the sink the pulls on the atoms first .. n of the lanes in `which`, times w_i if `weighted`. `before` is t d of
+// the bond before atom `first`.
 template <bool weighted, bool uniform, class Sink>
 static inline void store_pulls(const Block &block, const vec3 *d, const vec *t, mask which, const Sink sink,
                                long first = 0, vec3 before = vec3{}) {
@@ -44,6 +43,5 @@ static inline void store_pulls(const Block &block, const vec3 *d, const vec *t, 
         store_pulls<false, true>(block, d, t, which, AtomSink<write_>{out});
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

@@ -5,11 +5,10 @@
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/memory/block.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
-// 3 W doubles from p + 3 k on of a vector [len+1][3], where the last may lie past its end: then through `buffer`
-// [3 W + 3], padded with zeros.
+// Where W + 1 atoms from atom k on of a vector [len+1][3] can be read: there, or in buffer[3 W + 3], padded with zeros,
+// if some lie past its end.
 HOL_INLINE const double *window(const double *p, long k, long len, bool roomy, double *buffer) {
     if (__builtin_expect(roomy || k + W <= len, 1)) return p + 3 * k;
     const long left = len - k + 1 > 0 ? 3 * (len - k + 1) : 0;
@@ -17,8 +16,8 @@ HOL_INLINE const double *window(const double *p, long k, long len, bool roomy, d
     return buffer;
 }
 
-// Values along the lanes as vectors [n]: rows[lane][k] while all lanes have one, of count + more; value(lane, k)
-// behind.
+// Values along the lanes as vectors out[n]: rows[lane][k] as long as all lanes have it, for k < count + more, then
+// value(lane, k).
 template <class Value>
 HOL_INLINE void interleave(const double *const *rows, const long *count, long more, long n, vec *out,
                            const Value &value) {
@@ -58,7 +57,7 @@ HOL_INLINE vec3 load_atom(const Packed &p) {
     return a;
 }
 
-// The atoms k0 + 1 .. k0 + W where lanes may end; what is behind their ends is of no use.
+// The atoms k0 + 1 .. k0 + W where lanes may end; anything is read behind their ends.
 HOL_NOINLINE void load_ragged_atoms(const Block &block, const Packed &p, long k0, vec3 *atoms) {
     double buffer[W][3 * W + 3];
     const double *from[W];
@@ -66,6 +65,5 @@ HOL_NOINLINE void load_ragged_atoms(const Block &block, const Packed &p, long k0
     load_atoms(from, atoms + k0 + 1);
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

@@ -1,5 +1,4 @@
-// Reading W segments of a long chain: bond vectors and right-hand sides. Segments lie equally far apart in each array,
-// so that one address per array does for all lanes.
+// Reads bond vectors and right-hand sides of W segments of a long chain.
 #ifndef HOLONOMIC_KERNELS_MEMORY_SEGMENTS_HPP
 #define HOLONOMIC_KERNELS_MEMORY_SEGMENTS_HPP
 
@@ -9,8 +8,7 @@
 #include "core/kernels/memory/cut.hpp"
 #include "core/kernels/memory/packed.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // Bond vectors and right-hand sides of W segments: in the caller's arrays, or as they were put into scratch.
 struct SegmentBonds {
@@ -23,6 +21,7 @@ struct SegmentBonds {
 };
 
 constexpr int in_scratch = -1;  // Terms: all bonds are in D, low and B
+
 // Bonds k0 .. k0 + group - 1.
 template <int terms, bool uniform>
 HOL_INLINE void load_group(const Block &block, const Box &box, const SegmentBonds &in, const EvenRows &rows, long k0,
@@ -66,6 +65,5 @@ static inline void find_next(const SegmentBlock &s, const Box &box, const Packed
     }
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

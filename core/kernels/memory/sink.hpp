@@ -8,8 +8,7 @@
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/memory/block.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 enum Update { write_, add_ };
 
@@ -42,7 +41,8 @@ struct MoveSink {
     }
 };
 
-// W consecutive atoms from atom k0 on, given component by component (value[3 W], transposed in place), of all lanes.
+// Gives the sink W consecutive atoms of all lanes, from atom k0 on: value[3 W], component by component, transposed in
+// place.
 template <class Sink>
 HOL_INLINE void store_chunk(long k0, vec *value, const Sink &sink) {
     HOL_UNROLL
@@ -80,6 +80,5 @@ HOL_INLINE void store_first(const vec3 &a, unsigned chosen, const Sink &sink) {
     }
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

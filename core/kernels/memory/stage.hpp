@@ -6,13 +6,12 @@
 
 #include "core/kernels/memory/block.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 HOL_INLINE long staged_size(long n_bonds) { return (3 * (n_bonds + 1) + 7) / 8 * 8; }
 
-// Calls each(element, i) for the components of the atoms from .. from + n of a chain, i counting them all; there is
-// none for an absent z. The layouts of consecutive atoms that most callers have are loops that the compiler vectorizes.
+// Calls each(element, i) for component i of the atoms from .. from + n of a chain, but not for an absent z. For the
+// layouts that most callers have, the compiler vectorizes these loops.
 template <class T, class Each>
 HOL_INLINE void for_each_element(const AtomArray &array, const Lane &lane, long from, long n, Each each) {
     const int64_t size = sizeof(T), offset = (lane.first_atom + from) * array.stride;
@@ -49,8 +48,8 @@ struct Apart {
     }
 };
 
-// The atoms 0, 1, .. n, four at a time, between x, y, z and packed[n+1][3]; returns the first one that is left. The
-// compiler would take twice as many instructions.
+// Copies the atoms 0 .. n between x, y, z and packed[n+1][3], four at a time; returns the first one that is left. What
+// the compiler makes of such a loop takes twice as many instructions.
 #if defined(__AVX2__)
 HOL_INLINE long pack(const Apart &from, long n, double *packed) {
     long k = 0;
@@ -146,6 +145,5 @@ HOL_INLINE void repeat_first(Packed &packed, int lanes) {
     for (int i = lanes; i < W; ++i) packed.lane[i] = packed.lane[0];
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

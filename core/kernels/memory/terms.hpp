@@ -1,12 +1,11 @@
-// Right-hand sides of the equations for the multipliers: what they are made of, and each product once. They are found
-// while a block is read, component by component of what stands in memory or of vectors in lanes.
+// Right-hand sides of the equations for the multipliers: what they are made of, and each product once. They are
+// computed while a block is read, from components as they stand in memory or from vectors in lanes.
 #ifndef HOLONOMIC_KERNELS_MEMORY_TERMS_HPP
 #define HOLONOMIC_KERNELS_MEMORY_TERMS_HPP
 
 #include "core/kernels/arithmetic/vector3.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // With d the bond vector, dv the difference of velocities, df that of forces times inverse masses:
 //   velocity_squared: dv.dv / unit,  force_difference: d.df,  rate: d.dv
@@ -35,8 +34,8 @@ HOL_INLINE vec product(vec d, vec dv, vec df, vec vv) {
     return terms & velocity_squared ? mul_add(df, d, vv) : df * d;
 }
 
-// The right-hand side of a bond from differences already in lanes, rounded as where they are read from rows. `waited`:
-// for images of bonds.
+// The right-hand side of a bond from differences that are in lanes already, rounded as if they had been read from rows.
+// `waited`: rounded as products that wait for the images of bonds.
 template <int terms>
 HOL_INLINE vec right_hand_side(bool waited, vec mass, const vec3 &d, const vec3 &dv, const vec3 &df) {
     if (terms & rate) return dot(d, dv);
@@ -50,6 +49,5 @@ HOL_INLINE vec right_hand_side(bool waited, vec mass, const vec3 &d, const vec3 
            product<terms>(d.z, dv.z, df.z, vv.z);
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

@@ -4,11 +4,10 @@
 
 #include "core/kernels/memory/block.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
-// The values of the bonds k0 .. k0 + W - 1, value[W] transposed in place, of the chosen lanes; ragged: lanes may end
-// there.
+// Writes the values of the bonds k0 .. k0 + W - 1 of the chosen lanes; value[W] is transposed in place. ragged: lanes
+// may end there.
 template <bool ragged>
 HOL_INLINE void store_values(const Block &block, long k0, vec *value, unsigned chosen, double *out) {
     transpose(value);
@@ -22,7 +21,7 @@ HOL_INLINE void store_values(const Block &block, long k0, vec *value, unsigned c
     }
 }
 
-// Factor times a value per bond, of the bonds first .. n - 1 of the lanes in `which`; zeros as +0.
+// Writes factor times a value per bond, for the bonds first .. n - 1 of the lanes in `which`; zeros as +0.
 static inline void store_bonds(const Block &block, const vec *value, vec factor, mask which, double *out,
                                long first = 0) {
     const unsigned chosen = bits(which & block.in_use());
@@ -39,6 +38,5 @@ static inline void store_bonds(const Block &block, const vec *value, vec factor,
     }
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

@@ -5,8 +5,7 @@
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/call.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // Of W lanes.
 struct VirialSum {
@@ -33,6 +32,5 @@ static inline void add_virial(long n, const vec3 *d, const vec *t, mask which, v
     sum.count(which, factor, tally);
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

@@ -5,12 +5,11 @@
 #include "core/kernels/memory/open.hpp"
 #include "core/kernels/memory/packed.hpp"
 #include "core/kernels/memory/pulls.hpp"
-#include "core/kernels/newton/solve.hpp"
+#include "core/kernels/newton/iterate.hpp"
+#include "core/kernels/newton/outputs.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
-// The two attempts at a block of chains.
 template <bool uniform_w, bool uniform_a>
 struct Positions {
     const Block &block;
@@ -30,8 +29,8 @@ struct Positions {
         store_pulls<true, uniform_w>(block, x.b, x.tau, which, MoveSink<to_r, to_v>{r, v, splat(1 / call.dt)});
     }
 
-    // Goes on from the coordinates as they are rounded after a coarse move: the moves that remain are small, and so are
-    // their roundings. Lanes that do not get there are put back. Returns them.
+    // After a coarse move, goes on from the coordinates as they are rounded: the moves that remain are small, and so
+    // are their roundings. Puts back the lanes that do not get there, and returns them.
     mask settle(mask coarse, Carried &carried, Outcome &out) {
         Arena rest = arena;
         double *saved[W] = {};
@@ -116,6 +115,5 @@ struct Positions {
     }
 };
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

@@ -1,51 +1,108 @@
-// When Newton's method is done, and when it takes new factors: for the error of a lane each (V = vec) or of a long
-// chain (V = double).
+// When Newton's method is done in a lane, and when it takes new factors there.
 #ifndef HOLONOMIC_KERNELS_NEWTON_CRITERION_HPP
 #define HOLONOMIC_KERNELS_NEWTON_CRITERION_HPP
 
-#include "core/kernels/call.hpp"
-#include "core/kernels/isa/lanes.hpp"
+#include "core/kernels/newton/system.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 constexpr double epsilon = 2.220446049250313e-16;
 
 // A few roundings of D.D - a^2: what the iteration leaves at best in a chain of many bonds.
 constexpr double floor_error = 4 * epsilon;
 
-HOL_INLINE bool less(double a, double b) { return a < b; }
-HOL_INLINE bool less_equal(double a, double b) { return a <= b; }
-
-// What the coordinates carry: each end of a bond is rounded to u |r|, u = half a unit in the last place. An error
-// |D.D - a^2| / a^2 no larger than this, or than the caller's tolerance, is accepted.
-HOL_INLINE double unit_roundoff(const AtomArray &r) { return r.is_float ? 5.97e-8 : 1.11e-16; }
-template <class V>
-HOL_INLINE V carried_error(double u, V extent, V shortest) {
-    return (8 * u) * (1.0 + extent / shortest);
-}
-
 // What is asked for where the coordinates carry it.
 HOL_INLINE double wanted_error(const PositionsCall &call) {
     return call.tolerance > epsilon ? call.tolerance : epsilon;
 }
 
-// At the floor: the solve should have gone far below a rounding, or it gained little. There an error is accepted that
-// is no more than the coordinates carry. `expected`: what the solve should have left.
-template <class V>
-HOL_INLINE auto at_floor(V expected, V before, V error) {
-    return (less(expected, V{} + 0.125 * epsilon) & less_equal(error, V{} + floor_error)) | less(0.25 * before, error);
+// At the floor, the solve should have gone far below a rounding, or it gained little. There an error is accepted if the
+// coordinates carry it. `expected`: what the solve should have left.
+HOL_INLINE mask at_floor(vec expected, vec before, vec error) {
+    return (less(expected, splat(0.125 * epsilon)) & less_equal(error, splat(floor_error))) |
+           less(0.25 * before, error);
 }
 
 // The factors of an earlier D shrink the error by a constant, `rate`, each time; new ones square it at twice the price:
 // they are worth it where the old ones would take more than four solves in all. i: solves so far, less one.
-template <class V>
-HOL_INLINE auto worth_renewing(V error, V rate, int64_t i) {
-    V expected = error * rate;
+HOL_INLINE mask worth_renewing(vec error, vec rate, int64_t i) {
+    vec expected = error * rate;
     for (int64_t k = i + 2; k < 4; ++k) expected = expected * rate;
-    return less(V{} + 0.1 * epsilon, expected) & less(V{} + (i < 2 ? -1.0 : 1e-4), rate);
+    return less(splat(0.1 * epsilon), expected) & less(splat(i < 2 ? -1.0 : 1e-4), rate);
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+// From an error no larger than this, a solve with factors that have just taken the error down to less than `steady` of
+// itself needs no look at what it has done: it leaves less than a rounding, and could not leave more than this.
+constexpr double last_error = 64 * epsilon;
+constexpr double steady = 1.0 / 256;
+
+// Largest |coordinate| of each lane. With lists of atoms, r is where the first ones are.
+HOL_NOINLINE vec extent(const Block &block, const Packed &r, const int64_t *const *lists = nullptr) {
+    vec largest = {};
+    for (int i = 0; i < W; ++i)
+        for (long k = 0; k <= block.len[i]; ++k) {
+            const double *const p = r.lane[i] + 3 * (lists ? lists[i][k] - lists[i][0] : k);
+            for (int c = 0; c < 3; ++c) largest[i] = abs(p[c]) > largest[i] ? abs(p[c]) : largest[i];
+        }
+    return largest;
+}
+
+// What the coordinates of each lane carry: each end of a bond is rounded to u |r|, u = half a unit in the last place.
+// The largest coordinate is looked for when a decision hangs on it, which is rare.
+class Carried {
+public:
+    Carried(const Block &block, const Newton &x, const PositionsCall &call, const Packed &r,
+            const int64_t *const *lists = nullptr)
+        : block_(block), x_(x), r_(r), lists_(lists), tolerance_(call.tolerance),
+          u_(call.r.is_float ? 5.97e-8 : 1.11e-16), boxed_(call.box.shape != Box::none) {}
+
+    void know_largest(vec coordinate) {
+        largest_ = coordinate;
+        known_ = true;
+    }
+    vec largest_coordinate() {
+        if (!known_) largest_ = extent(block_, r_, lists_);
+        known_ = true;
+        return largest_;
+    }
+    // An error |D.D - a^2| / a^2 no larger than this, or than the caller's tolerance, is accepted.
+    vec accepted() { return max(splat(tolerance_), (8 * u_) * (1.0 + largest_coordinate() / x_.a_min)); }
+    vec always_accepted() const { return splat(tolerance_ > 8 * u_ ? tolerance_ : 8 * u_); }
+
+    // Whether the bonds may be accepted as they came: `error` is their |D.D - a^2| in units of `a2`. Without images, no
+    // atom is farther from the first one of its chain than the bonds are long: where this bound, which is on the safe
+    // side by much more than its roundings, excludes it, the largest coordinate is not looked for.
+    mask within(vec error, vec a2) {
+        if (!boxed_ && !known_) {
+            vec first = {};
+            for (int c = 0; c < 3; ++c) {
+                vec component;
+                for (int i = 0; i < W; ++i) component[i] = r_.lane[i][c];
+                first = max(abs(component), first);
+            }
+            const vec per_a = x_.per_a_min, a = mul_add(error * x_.a_max, per_a * per_a, x_.a_max);
+            const vec most = mul_add(mul_add(a, splat(static_cast<double>(block_.n)), first), per_a, splat(1.0));
+            if (!any(~less(a2 * max(splat(2 * tolerance_), (16 * u_) * most), error))) return none();
+        }
+        return less_equal(error, a2 * accepted());
+    }
+
+private:
+    const Block &block_;
+    const Newton &x_;
+    const Packed &r_;
+    const int64_t *const *const lists_;
+    const double tolerance_, u_;
+    const bool boxed_;
+    bool known_ = false;
+    vec largest_ = {};
+};
+
+struct Outcome {
+    mask untouched, converged;
+    vec error;
+    int64_t solves;
+};
+
+}  // namespace holonomic::HOL_ISA
 #endif

@@ -2,11 +2,11 @@
 #ifndef HOLONOMIC_KERNELS_NEWTON_ITERATE_HPP
 #define HOLONOMIC_KERNELS_NEWTON_ITERATE_HPP
 
-#include "core/kernels/newton/decisions.hpp"
+#include "core/kernels/newton/criterion.hpp"
+#include "core/kernels/newton/single_bond.hpp"
 #include "core/kernels/newton/sweeps.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // Newton's method on the lanes in `wanted`, from tau = 0 or the caller's guess in tau.
 template <bool uniform_w, bool uniform_a, bool careful, int fixed = 0>
@@ -69,6 +69,29 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
     return out;
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+// The same, chains of one bond in closed form.
+template <bool uniform_w, bool uniform_a, bool careful>
+HOL_NOINLINE Outcome solve_positions(const Block &block, Newton &x, const PositionsCall &call, Carried &carried,
+                                     mask wanted, bool guess) {
+    const mask single = wanted & less(x.lengths, splat(1.5)), longer = wanted & ~single;
+    Outcome out = {};
+    if (any(longer))
+        out = iterate<uniform_w, uniform_a, careful>(block, x, call, carried, longer, guess);
+    else
+        for (long k = 0; k < block.n; ++k) x.tau[k] = vec{};
+    if (careful) {  // D has been moved by all corrections
+        x.step = x.correction;
+        for (long k = 0; k < block.n; ++k) x.correction[k] = vec{};
+    }
+    if (!any(single)) return out;
+    x.step = x.tau;
+    const Outcome one = solve_single_bonds<uniform_w>(x, carried, single);
+    out.untouched = out.untouched | one.untouched;
+    out.converged = out.converged | one.converged;
+    out.error = select(single, one.error, out.error);
+    out.solves = one.solves > out.solves ? one.solves : out.solves;
+    return out;
+}
+
+}  // namespace holonomic::HOL_ISA
 #endif

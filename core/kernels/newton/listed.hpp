@@ -1,15 +1,15 @@
-// Positions of blocks of equally long chains with lists of atoms, in packed arrays: read and moved where the lists say,
-// with the arithmetic of verbs/positions.cpp. Where a lane needs more than the first attempt, or nothing done to it,
-// the block is left to the general path as it came.
+// Positions of blocks of equally long chains with lists of atoms in packed arrays: the arithmetic of
+// verbs/positions.cpp, on atoms where the lists say. A block in which a lane needs more than the first attempt, or
+// nothing at all, is left to the general path as it came.
 #ifndef HOLONOMIC_KERNELS_NEWTON_LISTED_HPP
 #define HOLONOMIC_KERNELS_NEWTON_LISTED_HPP
 
 #include "core/kernels/arithmetic/image.hpp"
 #include "core/kernels/memory/listed.hpp"
-#include "core/kernels/newton/solve.hpp"
+#include "core/kernels/newton/iterate.hpp"
+#include "core/kernels/newton/outputs.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 template <bool boxed>
 HOL_INLINE void gather_bonds(const Block &block, const PositionsCall &call, const AtomLists &at, const Newton &x) {
@@ -51,7 +51,7 @@ static inline void scatter_moves(const Block &block, const Newton &x, const Atom
     }
 }
 
-// Whether this did all that there was to do; else nothing has been written.
+// True if the block is done; on false nothing was written.
 template <bool uniform_w, bool uniform_a>
 HOL_NOINLINE bool listed_positions(const Block &block, const Lane *lane, const PositionsCall &call,
                                    const BondLengths &a, Arena arena, Tally &tally) {
@@ -79,6 +79,5 @@ HOL_NOINLINE bool listed_positions(const Block &block, const Lane *lane, const P
     return true;
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

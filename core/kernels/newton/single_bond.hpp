@@ -2,10 +2,9 @@
 #ifndef HOLONOMIC_KERNELS_NEWTON_SINGLE_BOND_HPP
 #define HOLONOMIC_KERNELS_NEWTON_SINGLE_BOND_HPP
 
-#include "core/kernels/newton/decisions.hpp"
+#include "core/kernels/newton/criterion.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // A chain of one bond in closed form: with sigma = D.D - a^2, D - s b has the length a for
 // s = sigma / (D.b + sqrt((D.b)^2 - b.b sigma)), and tau = s / (w_0 + w_1).
@@ -15,7 +14,7 @@ HOL_INLINE Outcome solve_single_bonds(const Newton &x, Carried &carried, mask wa
     const vec3 b = x.b[0], d = x.D[0];
     const vec w = uniform_w ? splat(2.0) : x.w[0] + x.w[1];
     const vec a2 = x.a2 ? x.a2[0] : x.a2_uniform, db = dot(d, b);
-    const vec sigma = mul_add(d.z, d.z, mul_add(d.y, d.y, mul_add(d.x, d.x, -a2)));
+    const vec sigma = excess(d, a2);
     const vec root = sqrt(mul_add(db, db, -(dot(b, b) * sigma)));  // NaN where the length can't be reached
     const vec s = sigma / (db + select(less(db, vec{}), -root, root));
     const mask known = wanted & finite(db);
@@ -23,11 +22,11 @@ HOL_INLINE Outcome solve_single_bonds(const Newton &x, Carried &carried, mask wa
     const mask reached = known & ~out.untouched & finite(s / w) & less(vec{}, w);
     vec step = keep(reached, s);
     vec3 moved;
-    const auto excess = [&]() HOL_FORCED {  // of D.D over a^2 once it is moved
-        moved = {mul_add(-step, b.x, d.x), mul_add(-step, b.y, d.y), mul_add(-step, b.z, d.z)};
-        return mul_add(moved.z, moved.z, mul_add(moved.y, moved.y, mul_add(moved.x, moved.x, -a2)));
+    const auto excess_left = [&]() HOL_FORCED {
+        moved = add_times(d, -step, b);
+        return excess(moved, a2);
     };
-    vec left = excess();
+    vec left = excess_left();
     const vec enough = 4.0 * a2 * carried.always_accepted();
     mask unsure = reached & ~less_equal(abs(left), enough);
     out.converged = reached & ~unsure;
@@ -35,7 +34,7 @@ HOL_INLINE Outcome solve_single_bonds(const Newton &x, Carried &carried, mask wa
         // D much longer than a, or squares that overflow or underflow: on by Newton's method.
         for (int i = 0; i < 3; ++i) {
             step = step + keep(unsure & ~less_equal(abs(left), enough), left / (2.0 * dot(moved, b)));
-            left = excess();
+            left = excess_left();
         }
         out.converged = out.converged | (unsure & finite(step / w) & carried.within(0.25 * abs(left), a2));
     }
@@ -45,6 +44,5 @@ HOL_INLINE Outcome solve_single_bonds(const Newton &x, Carried &carried, mask wa
     return out;
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

@@ -6,11 +6,10 @@
 #include "core/kernels/memory/prefetch.hpp"
 #include "core/kernels/newton/system.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
-// Calls body(k, ragged) for the bonds of a block upwards, two at a time where all lanes have them; `fixed` bonds, if
-// that is known to the compiler, one by one.
+// Calls body(k, ragged) for the bonds of a block upwards, two at a time where all lanes have them. `fixed`: their
+// number if the compiler knows it, else 0.
 template <int fixed, int k = 0, class Body>
 HOL_INLINE void go_up(const Block &block, const Body &body) {
     if constexpr (fixed > 0) {
@@ -65,7 +64,7 @@ struct Mover {
 template <bool uniform_a>
 HOL_INLINE vec length_error(const Newton &x, long k, bool ragged, const vec3 &d, vec &worst) {
     const vec a2 = uniform_a ? x.a2_uniform : x.a2[k];
-    vec sigma = mul_add(d.z, d.z, mul_add(d.y, d.y, mul_add(d.x, d.x, -a2)));
+    vec sigma = excess(d, a2);
     if (ragged) sigma = keep(live(x, k), sigma);
     worst = max(uniform_a ? abs(sigma) : abs(sigma) * x.per_a2[k], worst);
     return sigma;
@@ -84,10 +83,10 @@ HOL_INLINE vec largest_error(const Newton &x, vec worst, vec y) {
 
 enum Factors { first_factors, renewed_factors, careful_factors };
 
-// Eliminates with the Jacobian at D and substitutes forward; returns the largest error. first_factors: of D as loaded,
-// in all lanes; renewed_factors: of D as moved by the corrections so far, in the lanes in `which`; careful_factors: of
-// D as it stands, in the lanes in `which`, with a division per bond and nothing that cancels. Fractions as in
-// forward().
+// Eliminates with the Jacobian at D and substitutes forward; returns the largest error. E is a fraction over four
+// bonds, as in Sweep. first_factors: D is as it was loaded, and all lanes get factors; renewed_factors: D has been
+// moved by the corrections so far, the lanes in `which` get factors; careful_factors: the same with D as it stands, a
+// division per bond, and nothing that cancels.
 template <bool uniform_w, bool uniform_a, Factors factors, int fixed = 0>
 HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
     constexpr bool moved = factors == renewed_factors, all = factors == first_factors,
@@ -151,9 +150,9 @@ HOL_NOINLINE vec renew(const Block &block, const Newton &x, mask which) {
     return eliminate<uniform_w, uniform_a, factors>(block, x, which);
 }
 
-// Moves the bonds by the corrections `step`, and substitutes forward what that leaves of their lengths; returns the
-// largest error. `keep_bonds`: D becomes the moved bonds. `fetch`: what to fetch of the next block meanwhile, or
-// nullptr.
+// Moves the bonds by the corrections `step` and substitutes forward what that leaves of their lengths; returns the
+// largest error. `keep_bonds`: D becomes the moved bonds. `fetch`: atoms of this block, so that those of the next are
+// fetched meanwhile, or nullptr.
 template <bool uniform_w, bool uniform_a, bool keep_bonds, int fixed = 0>
 HOL_INLINE vec correct(const Block &block, const Newton &x, const double *fetch) {
     Mover<uniform_w> mover(x);
@@ -214,6 +213,5 @@ HOL_INLINE void substitute_back(const Block &block, const Newton &x, mask which)
         substitute_back<first, separate, false, fixed>(block, x, which);
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

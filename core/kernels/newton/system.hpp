@@ -10,13 +10,12 @@
 
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/memory/arena.hpp"
-#include "core/kernels/memory/block.hpp"
+#include "core/kernels/memory/rows.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
-// The factors of a bond's row: what it gets of the row before on the way up, 1 / (2 P), what it gets of the row behind
-// on the way down; and y / (2 P).
+// A bond's row: its share of the row before on the way up, 1 / (2 P), its share of the row behind on the way down; and
+// y / (2 P).
 struct Row {
     vec down, half_rP, up, u;
 };
@@ -27,8 +26,41 @@ struct BondLengths {
     vec a2_uniform, per_a2_uniform, a_min, a_max, per_a_min;
 };
 
+static inline BondLengths bond_lengths(const Block &block, const Lane *lane, Arena &arena) {
+    bool uniform = block.n == block.n_min;
+    const double *table[W];
+    double first[W];
+    for (int i = 0; i < W; ++i) {
+        const Lane &one = lane[i < block.lanes ? i : 0];
+        uniform = uniform && !one.length;
+        table[i] = one.length;
+        first[i] = one.length ? one.length[0] : one.length_uniform;
+    }
+    BondLengths x = {};
+    x.a_min = x.a_max = load(first);
+    if (!uniform) {
+        vec *const a2 = arena.vecs(block.n), *const per_a2 = arena.vecs(block.n);
+        interleave(table, block.len, 0, block.n, a2,
+                   [&](int i, long k) HOL_FORCED { return table[i] && k < block.len[i] ? table[i][k] : first[i]; });
+        const vec lengths = block.lengths();
+        for (long k = 0; k < block.n; ++k) {
+            const vec a = a2[k];
+            x.a_min = min(a, x.a_min);
+            x.a_max = max(a, x.a_max);
+            a2[k] = k < block.n_min ? a * a : select(less(splat(static_cast<double>(k)), lengths), a * a, splat(1.0));
+            per_a2[k] = splat(1.0) / a2[k];
+        }
+        x.a2 = a2;
+        x.per_a2 = per_a2;
+    }
+    x.per_a_min = splat(1.0) / x.a_min;
+    x.a2_uniform = x.a_min * x.a_min;
+    x.per_a2_uniform = splat(1.0) / x.a2_uniform;
+    return x;
+}
+
 struct Newton : BondLengths {
-    vec3 *b, *D;  // [n+1]: behind the last bond is one of length 0, whose multiplier is 0
+    vec3 *b, *D;  // [n+W]: behind the last bond is one whose multiplier is 0
     Row *row;
     vec *tau;                    // [n+1], times `unit`
     vec *correction;             // [n+1], the last one
@@ -37,7 +69,7 @@ struct Newton : BondLengths {
     vec lengths;                 // numbers of bonds
     const double *next[3] = {};  // where the block's atoms begin, for those of the next one to be fetched early
     Newton(long n, Arena &arena)
-        : b(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + 1)))), D(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + 1)))),
+        : b(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + W)))), D(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + W)))),
           row(reinterpret_cast<Row *>(arena.vecs(4 * n))), tau(arena.vecs(n + 1)), correction(arena.vecs(n + 1)),
           step(tau) {
         b[n] = vec3{};
@@ -63,6 +95,5 @@ HOL_INLINE vec3 times_w(const Newton &x, long k, const vec3 &a) {
 // Whether a lane has a bond k.
 HOL_INLINE mask live(const Newton &x, long k) { return less(splat(static_cast<double>(k)), x.lengths); }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

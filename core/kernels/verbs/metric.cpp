@@ -1,33 +1,55 @@
-// Metric determinant and Fixman force of blocks of chains.
+// Metric determinant and Fixman force of blocks of chains, and of one long chain in windows (memory/windows.hpp).
 #include "core/kernels/eliminate/deficits.hpp"
+#include "core/kernels/isa/choose.hpp"
 #include "core/kernels/memory/open.hpp"
 #include "core/kernels/memory/packed.hpp"
 #include "core/kernels/memory/pulls.hpp"
-#include "core/kernels/verbs/metric_long.hpp"
+#include "core/kernels/memory/windows.hpp"
+#include "core/kernels/tally.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
+// The logarithms of all bonds, or of those that are the window's own. Lanes that are bad are taken out of `good`. The
+// forces are the pulls of t and phi, which are left in x.t and x.u.
 template <bool uniform, bool boxed>
-HOL_NOINLINE void metric_of_block(const Block &block, const Lane *lane, const MetricCall &call, Arena arena,
-                                  Tally &tally) {
-    const Packed r = open(call.r, block, lane, arena, true), absent = {};
-    const Geometry x(block.n, arena);
+HOL_NOINLINE MetricSums solve_metric(const Block &block, const MetricCall &call, const Packed &r, const Window *window,
+                                     const Geometry &x, mask &good) {
+    const Packed absent = {};
+    vec first = {}, end = block.lengths();
+    for (int i = 0; window && i < W; ++i) {
+        first[i] = static_cast<double>(window->skip[i]);
+        end[i] = static_cast<double>(window->skip[i] + window->own.own[i]);
+    }
     load_bonds<none_, uniform, boxed, true>(block, call.box, r, absent, absent, x.u, x.low, x.t);
     measure<uniform>(block, x);
-    mask good = block.in_use();
-    const MetricSums sums = eliminate_metric<uniform>(block, x, x.delta[0], vec{}, block.lengths(), call, good);
+    const MetricSums sums = eliminate_metric<uniform>(block, x, x.delta[0], first, end, call, good);
     good = good & finite(sums.log_det) & finite(sums.log_det_z);
+    if (!call.force.x || !any(good)) return sums;
+    vec f = x.delta[block.n - 1];
+    for (long k = block.n - 1; k > 0; --k) {
+        weigh_normal<uniform>(block, x, k, f);
+        turn(x, k, call.kT);
+        f = next_deficit(x, k, f);
+    }
+    turn(x, 0, call.kT);
+    return sums;
+}
+
+static inline MetricSums solve_metric(const Block &block, const MetricCall &call, const Packed &r, const Window *window,
+                                      const Geometry &x, mask &good) {
+    return choose(
+        [&](auto uniform, auto boxed) { return solve_metric<uniform, boxed>(block, call, r, window, x, good); },
+        block.uniform_w, call.box.shape != Box::none);
+}
+
+static void metric_block(const Block &block, const Lane *lane, const MetricCall &call, Arena arena, Tally &tally) {
+    const Packed r = open(call.r, block, lane, arena, true);
+    const Geometry x(block.n, arena);
+    mask good = block.in_use();
+    const MetricSums sums = solve_metric(block, call, r, nullptr, x, good);
     const unsigned which = bits(good);
     if (call.force.x && which) {
-        vec f = x.delta[block.n - 1];
-        for (long k = block.n - 1; k > 0; --k) {
-            weigh_normal<uniform>(block, x, k, f);
-            turn(x, k, call.kT);
-            f = next_deficit(x, k, f);
-        }
-        turn(x, 0, call.kT);
         const Packed out = open(call.force, block, lane, arena, false);
         store_pulls(block, x.u, x.t, good, call.add && in_place(call.force, block) ? add_ : write_, out);
         close(call.force, block, lane, good, out, call.add);
@@ -42,69 +64,68 @@ HOL_NOINLINE void metric_of_block(const Block &block, const Lane *lane, const Me
     if (any(rest)) note_bad(block, rest, tally);
 }
 
-static void metric_block(const Block &block, const Lane *lane, const MetricCall &call, Arena arena, Tally &tally) {
-    const bool boxed = call.box.shape != Box::none;
-    if (block.uniform_w)
-        boxed ? metric_of_block<true, true>(block, lane, call, arena, tally)
-              : metric_of_block<true, false>(block, lane, call, arena, tally);
-    else
-        boxed ? metric_of_block<false, true>(block, lane, call, arena, tally)
-              : metric_of_block<false, false>(block, lane, call, arena, tally);
-}
-
 void metric(const MetricCall &call, const Unit &unit, double *scratch, Tally &tally) {
     for_each_block(call, unit, scratch, tally, metric_block, no_molecules<MetricCall>);
 }
 
-void long_metric_map(const MetricCall &call, const Lane &lane, int64_t j, double *store, double *scratch) {
-    const Cut cut(lane.n_bonds);
-    MetricWindow x = metric_window(cut, j, lane);
-    Arena arena(scratch, longest_piece);
-    set_segment_masses(x.s, lane, arena);
-    if (x.s.block.uniform_w)
-        map_window<true>(call, lane, x, arena, metric_summary(store, j));
-    else
-        map_window<false>(call, lane, x, arena, metric_summary(store, j));
+// The forces of a window, until all windows are known to be good: those on the atoms of each piece, as packed vectors,
+// and which of these is the first that is the piece's own.
+struct KeptForces {
+    Packed forces;
+    double *first_own;
+    static int64_t doubles(const Cut &cut) { return W * (1 + staged_size(cut.longest() + 2 * longest_margin)); }
+    KeptForces(double *store, const Cut &cut, int64_t j) : first_own(store + j * doubles(cut)) {
+        for (int i = 0; i < W; ++i)
+            forces.lane[i] = first_own + W + i * staged_size(cut.longest() + 2 * longest_margin);
+    }
+};
+
+int64_t long_metric_bytes(int64_t n_bonds) {
+    const Cut cut = windows(n_bonds);
+    return cut.blocks * KeptForces::doubles(cut) * static_cast<int64_t>(sizeof(double));
 }
 
-// e and f at the ends of all windows. False if the chain is bad.
-bool long_metric_join(const Lane &lane, double *store) {
-    const int64_t blocks = Cut(lane.n_bonds).blocks;
-    double e = metric_summary(store, 0).e_start[0], R = 0;
-    for (int64_t j = 0; j < blocks; ++j) {
-        MetricSummary &s = metric_summary(store, j);
-        if (any(s.bad)) return false;
-        for (int i = 0; i < W; ++i) {
-            s.e_start[i] = e;
-            e = (s.forward.a[i] * e + s.forward.b[i]) / (e + s.forward.d[i]);
-        }
-    }
-    if (!(e > 0 && e - e == 0)) return false;  // the last pivot
-    for (int64_t j = blocks - 1; j >= 0; --j) {
-        MetricSummary &s = metric_summary(store, j);
-        for (int i = W - 1; i >= 0; --i) {
-            s.f_end[i] = s.delta[i] + R;
-            if (!(R - R == 0)) return false;
-            if ((j > 0 || i > 0) && !s.short_of_one[i])
-                R = (s.mirrored.d[i] * R + s.mirrored.b[i]) / (R + s.mirrored.a[i]);
-        }
-    }
+// Returns false if the chain can't be done in windows.
+static bool metric_window(const MetricCall &call, const Lane &lane, int64_t j, const KeptForces &kept, Arena arena,
+                          Tally &tally) {
+    Window window;
+    if (!open_window(call.r, call.box, lane, j, arena, window)) return false;
+    const Block &block = window.block;
+    const Packed r = open(call.r, block, window.lane, arena, true);
+    const Geometry x(block.n, arena);
+    for (int i = 0; i < W; ++i) kept.first_own[i] = static_cast<double>(window.skip[i]);
+    mask good = first_lanes(W);
+    const MetricSums sums = solve_metric(block, call, r, &window, x, good);
+    if (call.force.x) store_pulls(block, x.u, x.t, good, write_, kept.forces);
+    tally.log_det += sum_lanes(sums.log_det);
+    tally.log_det_z += sum_lanes(sums.log_det_z);
+    return !any(~good);
+}
+
+bool long_metric(const MetricCall &call, const Lane &lane, const LongTeam &team, double *store, Tally &tally) {
+    const Cut cut = windows(lane.n_bonds);
+    bool failed = false;
+    Tally sum = empty_tally(), unused = empty_tally();
+    for_each_window(team, cut.blocks, sum, [&](int64_t j, double *scratch, Tally &part) {
+        if (__atomic_load_n(&failed, __ATOMIC_RELAXED)) return;
+        if (!metric_window(call, lane, j, KeptForces(store, cut, j), Arena(scratch, longest_piece), part))
+            __atomic_store_n(&failed, true, __ATOMIC_RELAXED);
+    });
+    if (failed) return false;
+    if (call.force.x)
+        for_each_window(team, cut.blocks, unused, [&](int64_t j, double *, Tally &) {
+            const KeptForces kept(store, cut, j);
+            for (int i = 0; i < W; ++i) {
+                const int64_t s = j * W + i;
+                const long first = s == 0 ? 0 : 1, at = static_cast<long>(kept.first_own[i]) + first;
+                unstage(call.force, lane, cut.first(s) + first, cut.length(s) - first, kept.forces.lane[i] + 3 * at,
+                        call.add);
+            }
+        });
+    if (call.log_det) call.log_det[lane.chain] = sum.log_det;
+    if (call.log_det_z) call.log_det_z[lane.chain] = sum.log_det_z;
+    tally.log_det += sum.log_det;
     return true;
 }
 
-void long_metric_finish(const MetricCall &call, const Lane &lane, int64_t j, double *store, double *scratch,
-                        Tally &tally) {
-    const Cut cut(lane.n_bonds);
-    MetricWindow x = metric_window(cut, j, lane);
-    Arena arena(scratch, longest_piece);
-    set_segment_masses(x.s, lane, arena);
-    if (x.s.block.uniform_w)
-        finish_window<true>(call, lane, x, arena, metric_summary(store, j), tally);
-    else
-        finish_window<false>(call, lane, x, arena, metric_summary(store, j), tally);
-}
-
-int64_t long_metric_bytes(int64_t n_bonds) { return Cut(n_bonds).blocks * static_cast<int64_t>(sizeof(MetricSummary)); }
-
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA

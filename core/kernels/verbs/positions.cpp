@@ -1,29 +1,17 @@
 // Position level of a block of chains: load, iterate (newton/iterate.hpp), move the atoms, store.
+#include "core/kernels/isa/choose.hpp"
 #include "core/kernels/newton/attempts.hpp"
-#include "core/kernels/newton/lengths.hpp"
 #include "core/kernels/newton/listed.hpp"
-#include "core/kernels/newton/windows.hpp"
 #include "core/kernels/verbs/positions_small.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 template <bool uniform_w, bool uniform_a>
 static inline void positions_block(const Block &block, const Lane *lane, const PositionsCall &call,
                                    const BondLengths &a, Arena arena, Tally &tally) {
     if (block.staged && listed_positions<uniform_w, uniform_a>(block, lane, call, a, arena, tally)) return;
     Positions<uniform_w, uniform_a>(block, lane, call, a, arena, tally).solve();
-}
-
-static void positions_block(const Block &block, const Lane *lane, const PositionsCall &call, const BondLengths &a,
-                            Arena arena, Tally &tally) {
-    if (block.uniform_w)
-        a.a2 ? positions_block<true, false>(block, lane, call, a, arena, tally)
-             : positions_block<true, true>(block, lane, call, a, arena, tally);
-    else
-        a.a2 ? positions_block<false, false>(block, lane, call, a, arena, tally)
-             : positions_block<false, true>(block, lane, call, a, arena, tally);
 }
 
 void positions(const PositionsCall &call, const Unit &unit, double *scratch, Tally &tally) {
@@ -40,10 +28,13 @@ void positions(const PositionsCall &call, const Unit &unit, double *scratch, Tal
                 lengths = bond_lengths(block, lane, arena);
                 end = arena.next;
             }
-            positions_block(block, lane, call, lengths, arena, tally);
+            choose(
+                [&](auto uniform_w, auto uniform_a) {
+                    positions_block<uniform_w, uniform_a>(block, lane, call, lengths, arena, tally);
+                },
+                block.uniform_w, !lengths.a2);
         },
         small_positions);
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA

@@ -6,7 +6,8 @@
 
 #include "core/kernels/memory/fixed.hpp"
 #include "core/kernels/memory/packed.hpp"
-#include "core/kernels/newton/solve.hpp"
+#include "core/kernels/newton/iterate.hpp"
+#include "core/kernels/newton/outputs.hpp"
 #include "core/kernels/verbs/small.hpp"
 
 namespace holonomic {

@@ -8,13 +8,12 @@
 #define HOL_STRING_OF(name) #name
 #define HOL_STRING(name) HOL_STRING_OF(name)
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 static_assert(W <= most_lanes, "Box and the alignment of a thread's memory are made for fewer lanes");
 
 static int64_t scratch_bytes(int64_t n_bonds) {
-    return scratch_doubles(n_bonds > longest_lane ? longest_piece : n_bonds) * static_cast<int64_t>(sizeof(double));
+    return scratch_doubles(n_bonds) * static_cast<int64_t>(sizeof(double));
 }
 
 static int64_t long_blocks(int64_t n_bonds) { return Cut(n_bonds).blocks; }
@@ -24,6 +23,7 @@ const Kernels kernels = {
     HOL_STRING(HOL_ISA),
     W,
     scratch_bytes,
+    scratch_doubles(longest_piece) * static_cast<int64_t>(sizeof(double)),
     forces,
     velocities,
     positions,
@@ -31,10 +31,9 @@ const Kernels kernels = {
     {long_blocks, long_bytes, long_forces_eliminate, long_join, long_forces_finish},
     {long_blocks, long_bytes, long_velocities_eliminate, long_join, long_velocities_finish},
     {long_blocks, long_positions_bytes, long_positions},
-    {long_blocks, long_metric_bytes, long_metric_map, long_metric_join, long_metric_finish},
+    {long_blocks, long_metric_bytes, long_metric},
     {molecules_scratch_bytes, molecules_forces, molecules_velocities, molecules_positions, molecules_metric,
      molecules_solve},
 };
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA

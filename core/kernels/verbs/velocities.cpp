@@ -42,7 +42,7 @@ HOL_NOINLINE mask forward_velocities(const Block &block, const Box &box, const P
     }
     const long ragged_from = k0;
     for (; k0 < block.n; k0 += W) {
-        load_ragged_chunk<none_, uniform, boxed, false>(block, box, r, r, r, k0, s.D + k0, nullptr, s.t + k0);
+        load_ragged<none_, uniform, boxed, false>(block, box, r, r, r, k0, s.D + k0, nullptr, s.t + k0);
         load_ragged_atoms(block, v, k0, x.v);
     }
     for (long k = ragged_from; k < block.n; ++k)

@@ -6,8 +6,7 @@
 #include "core/kernels/call.hpp"
 #include "core/kernels/isa/target.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 void forces(const ForcesCall &, const Unit &, double *scratch, Tally &);
 void long_forces_eliminate(const ForcesCall &, const Lane &, int64_t block, bool careful, double *store,
@@ -22,13 +21,11 @@ void long_velocities_finish(const VelocitiesCall &, const Lane &, int64_t block,
 
 void positions(const PositionsCall &, const Unit &, double *scratch, Tally &);
 int64_t long_positions_bytes(int64_t n_bonds);
-void long_positions(const PositionsCall &, const Lane &, const LongTeam &, double *store, Tally &);
+bool long_positions(const PositionsCall &, const Lane &, const LongTeam &, double *store, Tally &);
 
 void metric(const MetricCall &, const Unit &, double *scratch, Tally &);
 int64_t long_metric_bytes(int64_t n_bonds);
-void long_metric_map(const MetricCall &, const Lane &, int64_t block, double *store, double *scratch);
-bool long_metric_join(const Lane &, double *store);
-void long_metric_finish(const MetricCall &, const Lane &, int64_t block, double *store, double *scratch, Tally &);
+bool long_metric(const MetricCall &, const Lane &, const LongTeam &, double *store, Tally &);
 void molecules_metric(const MetricCall &, const MoleculeUnit &, double *scratch, Tally &);
 
 int64_t molecules_scratch_bytes(const Schedule &);
@@ -37,6 +34,5 @@ void molecules_velocities(const VelocitiesCall &, const MoleculeUnit &, double *
 void molecules_positions(const PositionsCall &, const MoleculeUnit &, double *scratch, Tally &);
 void molecules_solve(const SolveCall &, const MoleculeUnit &, double *scratch, Tally &);
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

@@ -1,0 +1,27 @@
+// From conditions to template arguments: choose(body, a, b) calls body(A, B), where A and B are constants of the
+// compiler with the values of a and b, so that body may write kernel<A, B>(..).
+#ifndef HOLONOMIC_KERNELS_ISA_CHOOSE_HPP
+#define HOLONOMIC_KERNELS_ISA_CHOOSE_HPP
+
+#include "core/kernels/isa/target.hpp"
+
+namespace holonomic::HOL_ISA {
+
+template <bool condition>
+struct Constant {
+    constexpr operator bool() const { return condition; }
+};
+
+template <class Body>
+HOL_INLINE auto choose(const Body &body) {
+    return body();
+}
+
+template <class Body, class... More>
+HOL_INLINE auto choose(const Body &body, bool condition, More... more) {
+    if (condition) return choose([&](auto... c) HOL_FORCED { return body(Constant<true>{}, c...); }, more...);
+    return choose([&](auto... c) HOL_FORCED { return body(Constant<false>{}, c...); }, more...);
+}
+
+}  // namespace holonomic::HOL_ISA
+#endif
