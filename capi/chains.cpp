@@ -77,6 +77,20 @@ int hol_chains_set_reference_box(hol_chains *chains, const double *box) {
     });
 }
 
+int hol_chains_set_box_rate(hol_chains *chains, const double *L) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        chains->chains.set_box_rate(L);
+    });
+}
+
+int hol_chains_set_labels(hol_chains *chains, const int64_t *atoms, const int64_t *molecules) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        chains->chains.set_labels(atoms, molecules);
+    });
+}
+
 int hol_chains_set_lengths(hol_chains *chains, const double *lengths) {
     return guarded(__func__, [&] {
         need(chains, "chains");

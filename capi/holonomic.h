@@ -239,6 +239,34 @@ HOL_API int hol_chains_set_box(hol_chains *chains, const double *box);
 HOL_API int hol_chains_set_reference_box(hol_chains *chains, const double *box);
 
 /**
+ * Rate at which the box changes, d(box)/dt = L box, and the atoms with it: r' = v + L r with v what the program calls
+ * velocity (barostats in the equations of motion, SLLOD, shear). The default is none.
+ * @param[in,out] chains
+ * @param[in] L  [3][3], 1/time: (L x)_a = sum_b L_ab x_b, row after row (Fortran: L(b,a), columns are rows here); NULL
+ *               or zeros: none. Copied.
+ *
+ * A bond of vector d then has the relative velocity u = v_j - v_i + L d, with images of d as the box has them:
+ * hol_project_velocities makes d.u zero, hol_violation measures d.u, and hol_forces has |u|^2 in place of
+ * |v_j - v_i|^2, f being all that accelerates the positions (docs/integrators.md). Nothing else depends on it. Take L
+ * at the instant of the velocities; it may be set again before every call. A box set in the handle is not needed.
+ * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_VALUE (not finite). On an error nothing is changed. Not thread-safe on
+ *         one handle. Since 0.2.
+ */
+HOL_API int hol_chains_set_box_rate(hol_chains *chains, const double *L);
+
+/**
+ * Numbers by which the caller knows atoms and molecules, such as the tags of a program that moves atoms between
+ * processes. Messages show them beside the library's own numbers, "atom 17 (label 90210)"; a molecule without a label
+ * of its own is shown with one of its atoms. They mean nothing to the library, and may be any numbers.
+ * @param[in,out] chains
+ * @param[in] atoms      [n_atoms], or NULL: none (default). Copied.
+ * @param[in] molecules  [n_chains], or NULL: none (default). Copied. Molecules that are added later have none.
+ * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_MEMORY. On an error nothing is changed. Not thread-safe on one handle.
+ *         Since 0.2.
+ */
+HOL_API int hol_chains_set_labels(hol_chains *chains, const int64_t *atoms, const int64_t *molecules);
+
+/**
  * Number of threads that a call may use, >= 1. The default is 1. Without OpenMP at build time all calls use one.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Since 0.1.
  */
@@ -378,7 +406,8 @@ typedef enum hol_mode { HOL_WRITE = 0, HOL_ADD = 1 } hol_mode;
  *
  * Finds the multipliers with which each bond obeys sigma'' = 0, that is
  *     d_k . (A_j - A_i) + |v_j - v_i|^2 = 0,   A_i = w_i (f_i + G_i),   bond k from atom i to atom j,
- * by one factorization per molecule: no iteration, no tolerance. docs/theory.md (5)-(12); Mazars 2007, Eqs. (6), (24).
+ * by one factorization per molecule: no iteration, no tolerance. With hol_chains_set_box_rate v_j - v_i + L d_k stands
+ * in place of v_j - v_i (since 0.2). docs/theory.md (5)-(12); Mazars 2007, Eqs. (6), (24).
  *
  * @param[in]  chains   which atoms are bonded
  * @param[in]  r        positions [n_atoms][3], length
@@ -422,11 +451,49 @@ HOL_API int hol_solve(const hol_chains *chains, const double *r, const double *r
 HOL_API int hol_solve_view(const hol_chains *chains, const hol_view *r, const double *rhs, double *lambda,
                            const hol_view *g, int mode, double *virial);
 
+/** Which box positions belong to. */
+typedef enum hol_which_box { HOL_BOX = 0, HOL_REFERENCE_BOX = 1 } hol_which_box;
+
+/**
+ * What given multipliers do: the forces or impulses on the atoms, tensions and virials of the bonds; of the multipliers
+ * that hol_forces, hol_solve, hol_project_velocities or hol_project_positions found, or of their means over steps.
+ *
+ * @param[in]     chains
+ * @param[in]     r            positions [n_atoms][3] with which the multipliers were found: r; of hol_project_positions
+ *                             r_ref
+ * @param[in]     box          HOL_BOX: r belongs to that of hol_chains_set_box; HOL_REFERENCE_BOX: to that of
+ *                             hol_chains_set_reference_box, as r_ref does
+ * @param[in]     lambda       [n_bonds]; not read for bonds between two fixed atoms
+ * @param[out]    tension      2 lambda |d| [n_bonds], or NULL
+ * @param[in,out] g            G_i = - sum_k lambda_k grad_i sigma_k [n_atoms][3], or NULL: the constraint force;
+ *                             the impulse m_i dv_i of hol_project_velocities; of hol_project_positions the force over
+ *                             the step, which times dt is the impulse m_i dv_i and times dt^2 w_i the displacement.
+ *                             On fixed atoms too: what holds them has to bear it
+ * @param[in]     mode         HOL_WRITE or HOL_ADD, as in hol_forces
+ * @param[out]    bond_virial  [n_bonds][6] (Fortran: (6, n_bonds)), or NULL: xx xy xz yy yz zz of
+ *                             - 2 lambda_k d_k (x) d_k. Their sum over bonds is the virial of the call that found
+ *                             lambda; half of each at either atom is a virial per atom
+ * @param[out]    virial       [3][3], their sum over active molecules, or NULL
+ *
+ * Multipliers of hol_project_velocities leave out what its last correction of rounding changes: G agrees with m dv to
+ * the rounding of v.
+ * @return HOL_OK; HOL_ERR_NULL (chains, r or lambda); HOL_ERR_VALUE (box, mode); HOL_ERR_NOT_FINITE;
+ *         HOL_ERR_DEGENERATE (bonds that do not close their cycle in the box); HOL_ERR_MEMORY. Inactive molecules are
+ *         neither read nor written. Thread-safe on one handle. O(n_bonds). Since 0.2.
+ */
+HOL_API int hol_reactions(const hol_chains *chains, const double *r, int box, const double *lambda, double *tension,
+                          double *g, int mode, double *bond_virial, double *virial);
+
+/** hol_reactions with arrays per atom of any layout. Since 0.2. */
+HOL_API int hol_reactions_view(const hol_chains *chains, const hol_view *r, int box, const double *lambda,
+                               double *tension, const hol_view *g, int mode, double *bond_virial, double *virial);
+
 /* ------------------------------------------------------------------------------------------------ velocity level */
 
 /**
  * Projects velocities onto the constraints (the second half of RATTLE): after the call d_k . (v_j - v_i) = 0 for
- * every bond. The change is the one of least kinetic energy, v_i += w_i G_i, with G_i as above; exact, no iteration.
+ * every bond, or d_k . (v_j - v_i + L d_k) = 0 with hol_chains_set_box_rate (since 0.2). The change is the one of least
+ * kinetic energy, v_i += w_i G_i, with G_i as above (hol_reactions gives it); exact, no iteration.
  * docs/theory.md (13)-(14).
  *
  * @param[in]     chains
@@ -495,7 +562,7 @@ typedef struct hol_worst {
     double length;        /**< largest |d.d - a^2| / a^2 */
     int64_t length_chain; /**< its molecule, -1 if there is no bond */
     int64_t length_bond;  /**< its bond within the molecule */
-    double rate;          /**< largest |d . (v_j - v_i)|, length^2/time; 0 without v */
+    double rate; /**< largest |d . (v_j - v_i + L d)|, length^2/time; 0 without v (L: hol_chains_set_box_rate) */
     int64_t rate_chain;
     int64_t rate_bond;
 } hol_worst;
@@ -647,7 +714,8 @@ HOL_API int hol_inverse_condition(const hol_inverse *inverse, double *condition)
  * @param[out] relative the largest bound_k over the largest |lambda_k|, or NULL; 0 if all bounds are 0, infinite if
  *                      only the multipliers are
  *
- * "Exact" is for the given doubles of r, v, f and for the inverse masses as rounded to doubles. What the data's own
+ * The equations are those without hol_chains_set_box_rate. "Exact" is for the given doubles of r, v, f and for the
+ * inverse masses as rounded to doubles. What the data's own
  * errors do comes on top: at most a relative error of theirs times hol_inverse_condition.
  * @return HOL_OK; HOL_ERR_NULL (inverse or lambda); HOL_ERR_NOT_FINITE (v, f or lambda; nothing is written). Since 0.1.
  */

@@ -4,7 +4,8 @@
 
 namespace holonomic {
 
-AtomArray checked_array(const hol_view *view, const char *name) {
+AtomArray viewed_array(const hol_view *view, const char *name) {
+    if (!view) return AtomArray{};
     if (!view->x || !view->y) throw make_error(Status::null, "the view of %s has no x or no y", name);
     if (view->element != HOL_DOUBLE && view->element != HOL_FLOAT)
         throw make_error(Status::value, "the view of %s has the element type %d; it must be HOL_DOUBLE or HOL_FLOAT",

@@ -7,18 +7,8 @@
 
 namespace holonomic {
 
-// As the view says. Throws Error with `name` in the message if it makes no sense.
-AtomArray checked_array(const hol_view *view, const char *name);
-
-// The same; absent if it is a null pointer. Most views are of packed doubles: Fortran's arrays come as views.
-inline AtomArray viewed_array(const hol_view *view, const char *name) {
-    if (!view) return AtomArray{};
-    const double *const x = static_cast<const double *>(view->x);
-    if (x && view->element == HOL_DOUBLE && view->reserved == 0 && view->stride == 3 * sizeof(double) &&
-        view->y == x + 1 && view->z == x + 2)
-        return packed_array(x);
-    return checked_array(view, name);
-}
+// As the view says; absent if it is a null pointer. Throws Error with `name` in the message if it makes no sense.
+AtomArray viewed_array(const hol_view *view, const char *name);
 
 // All views of a call have z, or none has.
 void check_dimensions(const AtomArray *const *arrays, int n);

@@ -1,10 +1,14 @@
 #include "core/forces.hpp"
 
+#include <new>
+
 #include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
+#include "core/run/thread_memory.hpp"
+#include "core/solve.hpp"
 
 namespace holonomic {
 
@@ -43,6 +47,58 @@ struct ForcesWork final : Work {
     }
 };
 
+// d.(w_j f_j - w_i f_i) + |v_j - v_i + L d|^2, twice, of all bonds of active molecules.
+void right_hand_sides(const Chains &chains, const double *L, const AtomArray &r, const AtomArray &v, const AtomArray &f,
+                      double *rhs) {
+    for (std::int64_t number = 0; number < chains.n_chains(); ++number) {
+        if (!chains.is_active(number)) continue;
+        const Molecule m = chains.molecule(number);
+        for (std::int64_t k = 0; k < m.n_bonds; ++k) {
+            const std::int64_t i = m.i(k), j = m.j(k);
+            double x[2][3], u[2][3] = {}, a[2][3] = {}, d[3];
+            read_atom(r, m.atom(i), x[0]);
+            read_atom(r, m.atom(j), x[1]);
+            if (v.x) {
+                read_atom(v, m.atom(i), u[0]);
+                read_atom(v, m.atom(j), u[1]);
+            }
+            if (f.x) {
+                read_atom(f, m.atom(i), a[0]);
+                read_atom(f, m.atom(j), a[1]);
+            }
+            for (int c = 0; c < 3; ++c) d[c] = x[1][c] - x[0][c];
+            minimum_image(chains.box, d);
+            double sum = 0;
+            for (int c = 0; c < (r.z ? 3 : 2); ++c) {
+                const double flow = L[3 * c] * d[0] + L[3 * c + 1] * d[1] + L[3 * c + 2] * d[2];
+                const double speed = (u[1][c] - u[0][c]) + flow;
+                sum += d[c] * (m.w(j) * a[1][c] - m.w(i) * a[0][c]) + speed * speed;
+            }
+            rhs[m.bond(k)] = 2 * sum;
+        }
+    }
+}
+
+// With a box that changes, by the equations for given right-hand sides: such forces are asked for now and then.
+Tally forces_in_motion(const Chains &chains, const double *L, const ForcesCall &call) {
+    const std::int64_t bytes = chains.n_bonds() * static_cast<std::int64_t>(sizeof(double));
+    double *const rhs = static_cast<double *>(thread_memory(Keep::right_hand_sides, bytes));
+    if (!rhs && bytes > 0) throw std::bad_alloc();
+    right_hand_sides(chains, L, call.r, call.v, call.f, rhs);
+    return solve_equations(chains, call.r, rhs, {call.lambda, call.tension, call.g, call.add, call.virial});
+}
+
+Tally forces_at_rest(const Chains &chains, ForcesCall &call) {
+    AtomArray *const inputs[] = {&call.r, &call.v, &call.f};
+    unify_layout(inputs, 3);
+    Apart apart(chains);
+    const Tally tally = execute(chains, ForcesWork(call, apart));
+    apart.put_back();
+    clear_unconstrained(chains, call.lambda);
+    clear_unconstrained(chains, call.tension);
+    return tally;
+}
+
 }  // namespace
 
 void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
@@ -57,13 +113,8 @@ void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const 
     call.add = add;
     call.virial = virial != nullptr;
     put_box(chains.box, call.box);
-    AtomArray *const inputs[] = {&call.r, &call.v, &call.f};
-    unify_layout(inputs, 3);
-    Apart apart(chains);
-    const Tally tally = execute(chains, ForcesWork(call, apart));
-    apart.put_back();
-    clear_unconstrained(chains, lambda);
-    clear_unconstrained(chains, tension);
+    const BoxRate *const rate = chains.box_rate();
+    const Tally tally = rate ? forces_in_motion(chains, rate->L, call) : forces_at_rest(chains, call);
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}, {"force", &f}};
         throw diagnose(chains, tally, chains.box, arrays, 3, Status::not_finite);

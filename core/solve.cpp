@@ -1,11 +1,14 @@
 #include "core/solve.hpp"
 
-#include <cmath>
+#include <algorithm>
+#include <limits>
+#include <new>
 
-#include "core/forces.hpp"
+#include "core/reactions.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
+#include "core/run/thread_memory.hpp"
 
 namespace holonomic {
 
@@ -20,6 +23,7 @@ struct SolveWork final : Work {
               [&](SolveCall &c) {
                   c.rhs = apart.inputs(call.rhs);
                   c.lambda = apart.results(call.lambda);
+                  c.tension = apart.results(call.tension);
               },
               [&](SolveCall &c) {
                   c.r = apart.atoms(call.r);
@@ -39,34 +43,47 @@ struct SolveWork final : Work {
     void long_chain(const Lane &, int, const Team &, double *, Tally &) const override {}
 };
 
-// A right-hand side that is not finite, which the other arrays don't show.
-void check_rhs(const Chains &chains, const Tally &tally, const double *rhs) {
-    const Molecule m = chains.molecule(tally.first_bad);
-    for (std::int64_t k = 0; k < m.n_bonds; ++k) {
-        if (std::isfinite(rhs[m.bond(k)])) continue;
-        Error error =
-            make_error(Status::not_finite, "molecule %lld: the right-hand side of bond %lld is not finite",
-                       static_cast<long long>(m.number + chains.base), static_cast<long long>(k + chains.base));
-        error.chain = m.number;
-        error.bond = k;
-        error.n_bad = tally.n_bad;
-        error.base = chains.base;
-        throw error;
-    }
+// Whether atoms that are held fixed divide a chain into parts, which are solved apart from each other.
+bool divides_chains(const Plan &plan) {
+    for (std::size_t kind = 1; kind < plan.part_start.size(); ++kind)
+        if (plan.part_start[kind] > plan.part_start[kind - 1] + 1) return true;
+    return false;
+}
+
+Tally solve_parts(const Chains &chains, const Plan &plan, const SolveCall &call) {
+    Apart apart(chains, plan);
+    const Tally tally = execute(chains, plan, SolveWork(call, apart));
+    apart.put_back();
+    return tally;
 }
 
 }  // namespace
 
+Tally solve_equations(const Chains &chains, const AtomArray &r, const double *rhs, const Solution &out) {
+    const Plan &plan = chains.plan_of_parts();
+    if (!divides_chains(plan)) {
+        const Tally tally =
+            solve_parts(chains, plan, {r, out.g, rhs, out.lambda, out.tension, out.add, out.virial, chains.box});
+        clear_unconstrained(chains, out.lambda);
+        clear_unconstrained(chains, out.tension);
+        return tally;
+    }
+    // Two parts pull at the same atom, and a chain is bad if one of them is: from multipliers, which are no numbers
+    // where there is no solution.
+    const std::int64_t n = chains.n_bonds();
+    double *const lambda =
+        static_cast<double *>(thread_memory(Keep::multipliers, n * static_cast<std::int64_t>(sizeof(double))));
+    if (!lambda) throw std::bad_alloc();
+    std::fill(lambda, lambda + n, std::numeric_limits<double>::quiet_NaN());
+    solve_parts(chains, plan, {r, AtomArray{}, rhs, lambda, nullptr, false, false, chains.box});
+    return react(chains, r, chains.box, lambda, {out.lambda, out.tension, out.g, out.add, nullptr, out.virial});
+}
+
 void solve(const Chains &chains, const AtomArray &r, const double *rhs, double *lambda, const AtomArray &g, bool add,
            double *virial) {
-    const SolveCall call{r, g, rhs, lambda, nullptr, add, virial != nullptr, chains.box};
-    const Plan &plan = chains.plan_of_parts();
-    Apart apart(chains, plan);
-    const Tally tally = execute(chains, plan, SolveWork(call, apart));
-    apart.put_back();
-    clear_unconstrained(chains, lambda);
+    const Tally tally = solve_equations(chains, r, rhs, {lambda, nullptr, g, add, virial != nullptr});
     if (tally.n_bad > 0) {
-        check_rhs(chains, tally, rhs);  // a bad molecule's lambda was not written
+        check_values(chains, tally, rhs, "right-hand side");  // a bad molecule's lambda was not written
         const NamedArray arrays[] = {{"position", &r}};
         throw diagnose(chains, tally, chains.box, arrays, 1, Status::not_finite);
     }

@@ -54,6 +54,7 @@ void project_velocities(const Chains &chains, const AtomArray &r, const AtomArra
     call.v = v;
     call.lambda = lambda;
     call.virial = virial != nullptr;
+    call.strain = chains.box_rate() ? chains.box_rate()->strain : nullptr;
     put_box(chains.box, call.box);
     AtomArray *const inputs[] = {&call.r, &call.v};
     unify_layout(inputs, 2);

@@ -9,6 +9,7 @@
 namespace holonomic {
 
 void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Worst *worst) {
+    const BoxRate *const of_box = chains.box_rate();
     Worst found{0, -1, -1, 0, -1, -1};
     Tally tally{};
     tally.first_bad = -1;
@@ -34,7 +35,8 @@ void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Wor
             for (int c = 0; c < 3; ++c) d[c] = r1[c] - r0[c];
             minimum_image(chains.box, d);
             const double length = std::fabs(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] - a * a) / (a * a);
-            const double rate = std::fabs(d[0] * (v1[0] - v0[0]) + d[1] * (v1[1] - v0[1]) + d[2] * (v1[2] - v0[2]));
+            const double rate = std::fabs((d[0] * (v1[0] - v0[0]) + d[1] * (v1[1] - v0[1]) + d[2] * (v1[2] - v0[2])) +
+                                          (of_box && v.x ? stretching(*of_box, d) : 0));
             finite = finite && std::isfinite(length) && std::isfinite(rate);
             if (found.length_chain < 0 || length > found.length) {
                 found.length = length;

@@ -29,6 +29,10 @@ module holonomic_c
    integer(c_int), parameter :: HOL_WRITE = 0
    integer(c_int), parameter :: HOL_ADD = 1
 
+   ! hol_which_box
+   integer(c_int), parameter :: HOL_BOX = 0
+   integer(c_int), parameter :: HOL_REFERENCE_BOX = 1
+
    type, bind(c) :: hol_view
       type(c_ptr) :: x = c_null_ptr
       type(c_ptr) :: y = c_null_ptr
@@ -118,6 +122,26 @@ module holonomic_c
          type(c_ptr), value :: chains, r, rhs, lambda, g
          integer(c_int), value :: mode
          type(c_ptr), value :: virial
+         integer(c_int) :: status
+      end function
+
+      function hol_reactions(chains, r, box, lambda, tension, g, mode, bond_virial, virial) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, r
+         integer(c_int), value :: box
+         type(c_ptr), value :: lambda, tension, g
+         integer(c_int), value :: mode
+         type(c_ptr), value :: bond_virial, virial
+         integer(c_int) :: status
+      end function
+
+      function hol_reactions_view(chains, r, box, lambda, tension, g, mode, bond_virial, virial) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, r
+         integer(c_int), value :: box
+         type(c_ptr), value :: lambda, tension, g
+         integer(c_int), value :: mode
+         type(c_ptr), value :: bond_virial, virial
          integer(c_int) :: status
       end function
 

@@ -92,6 +92,18 @@ module holonomic_c_molecules
          integer(c_int) :: status
       end function
 
+      function hol_chains_set_box_rate(chains, L) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, L
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_set_labels(chains, atoms, molecules) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, atoms, molecules
+         integer(c_int) :: status
+      end function
+
       function hol_chains_set_threads(chains, n_threads) bind(c) result(status)
          import :: c_int, c_ptr
          type(c_ptr), value :: chains

@@ -1,7 +1,7 @@
 ! Acceleration level: hol_forces with arrays of any layout.
 module holonomic_forces
    use, intrinsic :: iso_c_binding, only: c_int, c_ptr
-   use, intrinsic :: iso_fortran_env, only: int64, real32, real64
+   use, intrinsic :: iso_fortran_env, only: real32, real64
    use holonomic_c, only: hol_forces_view, HOL_ADD, HOL_WRITE
    use holonomic_counts, only: chain_set_counts
    use holonomic_place, only: list_of, place, tensor
@@ -32,13 +32,11 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v, at_f, at_g
-      n_atoms = self%n_atoms()
-      call at_r%rows_64(n_atoms, problem, "r", r)
-      call at_v%rows_64(n_atoms, problem, "v", v)
-      call at_f%rows_64(n_atoms, problem, "f", f)
-      call at_g%rows_64(n_atoms, problem, "g", g)
+      call at_r%rows_64(self%n_atoms(), problem, "r", r)
+      call at_v%rows_64(self%n_atoms(), problem, "v", v)
+      call at_f%rows_64(self%n_atoms(), problem, "f", f)
+      call at_g%rows_64(self%n_atoms(), problem, "g", g)
       call forces_at(self, "forces", problem, at_r, at_v, at_f, lambda, tension, at_g, add, virial, stat, errmsg)
    end subroutine
 
@@ -53,13 +51,11 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v, at_f, at_g
-      n_atoms = self%n_atoms()
-      call at_r%rows_32(n_atoms, problem, "r", r)
-      call at_v%rows_32(n_atoms, problem, "v", v)
-      call at_f%rows_32(n_atoms, problem, "f", f)
-      call at_g%rows_32(n_atoms, problem, "g", g)
+      call at_r%rows_32(self%n_atoms(), problem, "r", r)
+      call at_v%rows_32(self%n_atoms(), problem, "v", v)
+      call at_f%rows_32(self%n_atoms(), problem, "f", f)
+      call at_g%rows_32(self%n_atoms(), problem, "g", g)
       call forces_at(self, "forces", problem, at_r, at_v, at_f, lambda, tension, at_g, add, virial, stat, errmsg)
    end subroutine
 
@@ -75,13 +71,11 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v, at_f, at_g
-      n_atoms = self%n_atoms()
-      call at_r%parts_64(n_atoms, problem, "*", x, y, z)
-      call at_v%parts_64(n_atoms, problem, "v*", vx, vy, vz)
-      call at_f%parts_64(n_atoms, problem, "f*", fx, fy, fz)
-      call at_g%parts_64(n_atoms, problem, "g*", gx, gy, gz)
+      call at_r%parts_64(self%n_atoms(), problem, "*", x, y, z)
+      call at_v%parts_64(self%n_atoms(), problem, "v*", vx, vy, vz)
+      call at_f%parts_64(self%n_atoms(), problem, "f*", fx, fy, fz)
+      call at_g%parts_64(self%n_atoms(), problem, "g*", gx, gy, gz)
       call forces_at(self, "forces", problem, at_r, at_v, at_f, lambda, tension, at_g, add, virial, stat, errmsg)
    end subroutine
 
@@ -97,13 +91,11 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v, at_f, at_g
-      n_atoms = self%n_atoms()
-      call at_r%parts_32(n_atoms, problem, "*", x, y, z)
-      call at_v%parts_32(n_atoms, problem, "v*", vx, vy, vz)
-      call at_f%parts_32(n_atoms, problem, "f*", fx, fy, fz)
-      call at_g%parts_32(n_atoms, problem, "g*", gx, gy, gz)
+      call at_r%parts_32(self%n_atoms(), problem, "*", x, y, z)
+      call at_v%parts_32(self%n_atoms(), problem, "v*", vx, vy, vz)
+      call at_f%parts_32(self%n_atoms(), problem, "f*", fx, fy, fz)
+      call at_g%parts_32(self%n_atoms(), problem, "g*", gx, gy, gz)
       call forces_at(self, "forces", problem, at_r, at_v, at_f, lambda, tension, at_g, add, virial, stat, errmsg)
    end subroutine
 
@@ -117,12 +109,10 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v, at_f
-      n_atoms = self%n_atoms()
-      call at_r%rows_64(n_atoms, problem, "r", r)
-      call at_v%rows_64(n_atoms, problem, "v", v)
-      call at_f%rows_64(n_atoms, problem, "f", f)
+      call at_r%rows_64(self%n_atoms(), problem, "r", r)
+      call at_v%rows_64(self%n_atoms(), problem, "v", v)
+      call at_f%rows_64(self%n_atoms(), problem, "f", f)
       call forces_at(self, "add_forces", problem, at_r, at_v, at_f, lambda, tension, at_f, .true., virial, &
                      stat, errmsg)
    end subroutine
@@ -137,12 +127,10 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v, at_f
-      n_atoms = self%n_atoms()
-      call at_r%rows_32(n_atoms, problem, "r", r)
-      call at_v%rows_32(n_atoms, problem, "v", v)
-      call at_f%rows_32(n_atoms, problem, "f", f)
+      call at_r%rows_32(self%n_atoms(), problem, "r", r)
+      call at_v%rows_32(self%n_atoms(), problem, "v", v)
+      call at_f%rows_32(self%n_atoms(), problem, "f", f)
       call forces_at(self, "add_forces", problem, at_r, at_v, at_f, lambda, tension, at_f, .true., virial, &
                      stat, errmsg)
    end subroutine
@@ -159,12 +147,10 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v, at_f
-      n_atoms = self%n_atoms()
-      call at_r%parts_64(n_atoms, problem, "*", x, y, z)
-      call at_v%parts_64(n_atoms, problem, "v*", vx, vy, vz)
-      call at_f%parts_64(n_atoms, problem, "f*", fx, fy, fz)
+      call at_r%parts_64(self%n_atoms(), problem, "*", x, y, z)
+      call at_v%parts_64(self%n_atoms(), problem, "v*", vx, vy, vz)
+      call at_f%parts_64(self%n_atoms(), problem, "f*", fx, fy, fz)
       call forces_at(self, "add_forces", problem, at_r, at_v, at_f, lambda, tension, at_f, .true., virial, &
                      stat, errmsg)
    end subroutine
@@ -181,12 +167,10 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v, at_f
-      n_atoms = self%n_atoms()
-      call at_r%parts_32(n_atoms, problem, "*", x, y, z)
-      call at_v%parts_32(n_atoms, problem, "v*", vx, vy, vz)
-      call at_f%parts_32(n_atoms, problem, "f*", fx, fy, fz)
+      call at_r%parts_32(self%n_atoms(), problem, "*", x, y, z)
+      call at_v%parts_32(self%n_atoms(), problem, "v*", vx, vy, vz)
+      call at_f%parts_32(self%n_atoms(), problem, "f*", fx, fy, fz)
       call forces_at(self, "add_forces", problem, at_r, at_v, at_f, lambda, tension, at_f, .true., virial, &
                      stat, errmsg)
    end subroutine

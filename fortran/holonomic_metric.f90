@@ -1,7 +1,7 @@
 ! Metric determinant and Fixman potential: hol_metric with arrays of any layout.
 module holonomic_metric
    use, intrinsic :: iso_c_binding, only: c_int, c_ptr
-   use, intrinsic :: iso_fortran_env, only: int64, real32, real64
+   use, intrinsic :: iso_fortran_env, only: real32, real64
    use holonomic_c, only: hol_metric_view, HOL_ADD, HOL_ERR_VALUE, HOL_WRITE
    use holonomic_place, only: list_of, number_at, place
    use holonomic_status, only: failure, settle
@@ -29,11 +29,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_force
-      n_atoms = self%n_atoms()
-      call at_r%rows_64(n_atoms, problem, "r", r)
-      call at_force%rows_64(n_atoms, problem, "force", force)
+      call at_r%rows_64(self%n_atoms(), problem, "r", r)
+      call at_force%rows_64(self%n_atoms(), problem, "force", force)
       call metric_at(self, problem, at_r, kt, log_det, log_det_z, energy, at_force, add, stat, errmsg)
    end subroutine
 
@@ -48,11 +46,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_force
-      n_atoms = self%n_atoms()
-      call at_r%rows_32(n_atoms, problem, "r", r)
-      call at_force%rows_32(n_atoms, problem, "force", force)
+      call at_r%rows_32(self%n_atoms(), problem, "r", r)
+      call at_force%rows_32(self%n_atoms(), problem, "force", force)
       call metric_at(self, problem, at_r, kt, log_det, log_det_z, energy, at_force, add, stat, errmsg)
    end subroutine
 
@@ -68,11 +64,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_force
-      n_atoms = self%n_atoms()
-      call at_r%parts_64(n_atoms, problem, "*", x, y, z)
-      call at_force%parts_64(n_atoms, problem, "f*", fx, fy, fz)
+      call at_r%parts_64(self%n_atoms(), problem, "*", x, y, z)
+      call at_force%parts_64(self%n_atoms(), problem, "f*", fx, fy, fz)
       call metric_at(self, problem, at_r, kt, log_det, log_det_z, energy, at_force, add, stat, errmsg)
    end subroutine
 
@@ -88,11 +82,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_force
-      n_atoms = self%n_atoms()
-      call at_r%parts_32(n_atoms, problem, "*", x, y, z)
-      call at_force%parts_32(n_atoms, problem, "f*", fx, fy, fz)
+      call at_r%parts_32(self%n_atoms(), problem, "*", x, y, z)
+      call at_force%parts_32(self%n_atoms(), problem, "f*", fx, fy, fz)
       call metric_at(self, problem, at_r, kt, log_det, log_det_z, energy, at_force, add, stat, errmsg)
    end subroutine
 

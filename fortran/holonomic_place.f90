@@ -18,24 +18,18 @@ module holonomic_place
       integer(c_int64_t) :: extent = -1  ! -1: the caller gave no such array
    end type
 
-   ! What stands in for x, y and z whose strides differ.
-   type :: copies
-      type(line) :: originals(3)
-      integer(c_int8_t), allocatable :: elements(:, :, :)  ! (bytes of an element, n_atoms, 2 or 3)
-   end type
-
-   ! Small, for a call makes several: each starts as a copy of the initial values.
    type :: place
       logical :: given = .false.
       type(hol_view) :: view
-      type(copies), allocatable, private :: copy
+      type(line), private :: lines(3)
+      integer(c_int8_t), allocatable, private :: copy(:, :, :)  ! (bytes of an element, n_atoms, 2 or 3)
    contains
       ! rows_*(n_atoms, problem, name, array): an array (3, n) or (2, n).
       ! parts_*(n_atoms, problem, name, x, y, z): separate arrays, where a * in the name stands for x, y and z.
       procedure :: rows_32, rows_64, parts_32, parts_64
       procedure :: address
       procedure :: give_back   ! after the call, for arrays that it writes
-      procedure, private :: put, put_nothing
+      procedure, private :: put
    end type
 
    interface
@@ -63,18 +57,12 @@ contains
       character(*), intent(in) :: name
       real(real32), optional, target :: array(:, :)
       if (.not. present(array)) return
-      if (.not. has_rows(size(array, 1), size(array, 2, c_int64_t), n_atoms, name, problem)) return
-      self%given = .true.
-      self%view%element = HOL_FLOAT
-      self%view%stride = storage_size(array)/8
-      if (n_atoms == 0) then
-         call self%put_nothing(size(array, 1))
-         return
+      if (.not. has_rows(size(array, 1), name, problem)) return
+      if (size(array, 1) == 3) then
+         call self%parts_32(n_atoms, problem, name, array(1, :), array(2, :), array(3, :))
+      else
+         call self%parts_32(n_atoms, problem, name, array(1, :), array(2, :))
       end if
-      self%view%x = c_loc(array(1, 1))
-      self%view%y = c_loc(array(2, 1))
-      if (size(array, 1) == 3) self%view%z = c_loc(array(3, 1))
-      if (n_atoms > 1) self%view%stride = distance(c_loc(array(1, 1)), c_loc(array(1, 2)))
    end subroutine
 
    recursive subroutine rows_64(self, n_atoms, problem, name, array)
@@ -84,18 +72,12 @@ contains
       character(*), intent(in) :: name
       real(real64), optional, target :: array(:, :)
       if (.not. present(array)) return
-      if (.not. has_rows(size(array, 1), size(array, 2, c_int64_t), n_atoms, name, problem)) return
-      self%given = .true.
-      self%view%element = HOL_DOUBLE
-      self%view%stride = storage_size(array)/8
-      if (n_atoms == 0) then
-         call self%put_nothing(size(array, 1))
-         return
+      if (.not. has_rows(size(array, 1), name, problem)) return
+      if (size(array, 1) == 3) then
+         call self%parts_64(n_atoms, problem, name, array(1, :), array(2, :), array(3, :))
+      else
+         call self%parts_64(n_atoms, problem, name, array(1, :), array(2, :))
       end if
-      self%view%x = c_loc(array(1, 1))
-      self%view%y = c_loc(array(2, 1))
-      if (size(array, 1) == 3) self%view%z = c_loc(array(3, 1))
-      if (n_atoms > 1) self%view%stride = distance(c_loc(array(1, 1)), c_loc(array(1, 2)))
    end subroutine
 
    recursive subroutine parts_32(self, n_atoms, problem, name, x, y, z)
@@ -139,33 +121,13 @@ contains
       if (found%extent >= 2) found%stride = transfer(c_loc(array(2)), found%first) - found%first
    end function
 
-   recursive logical function has_rows(n_rows, extent, n_atoms, name, problem)
+   recursive logical function has_rows(n_rows, name, problem)
       integer, intent(in) :: n_rows
-      integer(c_int64_t), intent(in) :: extent, n_atoms
       character(*), intent(in) :: name
       type(failure), intent(inout) :: problem
-      has_rows = (n_rows == 3 .or. n_rows == 2) .and. extent >= n_atoms
-      if (has_rows) return
-      if (n_rows /= 3 .and. n_rows /= 2) then
-         call problem%set(HOL_ERR_VALUE, "the first dimension of "//name//" must be 3 (or 2), not " &
-                          //decimal(int(n_rows, c_int64_t)))
-      else
-         call too_few(name, extent, n_atoms, "atoms", problem)
-      end if
-   end function
-
-   ! Without atoms there is nothing to point at, but NULL would mean that the array is not there.
-   recursive subroutine put_nothing(self, n_parts)
-      class(place), intent(inout), target :: self
-      integer, intent(in) :: n_parts
-      self%view%x = c_loc(self%view)
-      self%view%y = c_loc(self%view)
-      if (n_parts == 3) self%view%z = c_loc(self%view)
-   end subroutine
-
-   recursive integer(c_int64_t) function distance(from, to)
-      type(c_ptr), intent(in) :: from, to
-      distance = transfer(to, distance) - transfer(from, distance)
+      has_rows = n_rows == 3 .or. n_rows == 2
+      if (.not. has_rows) call problem%set(HOL_ERR_VALUE, "the first dimension of "//name//" must be 3 (or 2), not " &
+                                           //decimal(int(n_rows, c_int64_t)))
    end function
 
    recursive subroutine put(self, n_atoms, problem, name, element, x, y, z)
@@ -175,60 +137,59 @@ contains
       character(*), intent(in) :: name
       integer(c_int32_t), intent(in) :: element
       type(line), intent(in) :: x, y, z
-      type(line) :: lines(3)
       integer :: part, n_parts
-      lines = [x, y, z]
-      if (all(lines%extent < 0)) return
+      self%lines = [x, y, z]
+      if (all(self%lines%extent < 0)) return
       if (x%extent < 0 .or. y%extent < 0) then
          call problem%set(HOL_ERR_NULL, named(name, "x")//" and "//named(name, "y")//" must be given together")
          return
       end if
       n_parts = merge(3, 2, z%extent >= 0)
       do part = 1, n_parts
-         if (lines(part)%extent >= n_atoms) cycle
-         call too_few(named(name, "xyz"(part:part)), lines(part)%extent, n_atoms, "atoms", problem)
+         if (self%lines(part)%extent >= n_atoms) cycle
+         call too_few(named(name, "xyz"(part:part)), self%lines(part)%extent, n_atoms, "atoms", problem)
          return
       end do
       self%given = .true.
       self%view%element = element
-      self%view%stride = x%stride
       if (n_atoms == 0) then
-         call self%put_nothing(n_parts)
-      else if (any(lines(:n_parts)%stride /= x%stride) .and. n_atoms > 1) then
-         call take_copy(self, lines, n_atoms, n_parts, problem)
-      else
-         self%view%x = transfer(x%first, c_null_ptr)
-         self%view%y = transfer(y%first, c_null_ptr)
-         if (n_parts == 3) self%view%z = transfer(z%first, c_null_ptr)
+         ! Nothing to point at, but NULL would mean that the array is not there.
+         self%lines(:n_parts)%first = transfer(c_loc(self%view), x%first)
+      else if (any(self%lines(:n_parts)%stride /= x%stride) .and. n_atoms > 1) then
+         if (.not. take_copy(self, n_atoms, n_parts, problem)) return
+      end if
+      self%view%stride = self%lines(1)%stride
+      self%view%x = transfer(self%lines(1)%first, c_null_ptr)
+      self%view%y = transfer(self%lines(2)%first, c_null_ptr)
+      if (n_parts == 3) self%view%z = transfer(self%lines(3)%first, c_null_ptr)
+      if (allocated(self%copy)) then
+         ! C works on the copy; the lines keep the places of the originals for give_back.
+         self%view%stride = size(self%copy, 1)
+         self%view%x = c_loc(self%copy(1, 1, 1))
+         self%view%y = c_loc(self%copy(1, 1, 2))
+         if (n_parts == 3) self%view%z = c_loc(self%copy(1, 1, 3))
       end if
    end subroutine
 
-   ! C works on the copy; the places of the originals are kept for give_back.
-   recursive subroutine take_copy(self, lines, n_atoms, n_parts, problem)
+   recursive logical function take_copy(self, n_atoms, n_parts, problem)
       class(place), intent(inout), target :: self
-      type(line), intent(in) :: lines(3)
       integer(c_int64_t), intent(in) :: n_atoms
       integer, intent(in) :: n_parts
       type(failure), intent(inout) :: problem
       integer :: bytes, stat
       bytes = merge(8, 4, self%view%element == HOL_DOUBLE)
-      allocate (self%copy, stat=stat)
-      if (stat == 0) allocate (self%copy%elements(bytes, n_atoms, n_parts), stat=stat)
-      if (stat /= 0) then
+      allocate (self%copy(bytes, n_atoms, n_parts), stat=stat)
+      take_copy = stat == 0
+      if (take_copy) then
+         call move_elements(self%lines, self%copy, back=.false.)
+      else
          call problem%set(HOL_ERR_MEMORY, "out of memory for copies of x, y and z, whose strides differ")
-         return
       end if
-      self%copy%originals = lines
-      call move_elements(lines, self%copy%elements, back=.false.)
-      self%view%stride = bytes
-      self%view%x = c_loc(self%copy%elements(1, 1, 1))
-      self%view%y = c_loc(self%copy%elements(1, 1, 2))
-      if (n_parts == 3) self%view%z = c_loc(self%copy%elements(1, 1, 3))
-   end subroutine
+   end function
 
    recursive subroutine give_back(self)
       class(place), intent(in), target :: self
-      if (allocated(self%copy)) call move_elements(self%copy%originals, self%copy%elements, back=.true.)
+      if (allocated(self%copy)) call move_elements(self%lines, self%copy, back=.true.)
    end subroutine
 
    recursive subroutine move_elements(lines, copy, back)

@@ -1,7 +1,7 @@
 ! Position level: hol_project_positions with arrays of any layout.
 module holonomic_positions
    use, intrinsic :: iso_c_binding, only: c_int, c_loc, c_null_ptr, c_ptr
-   use, intrinsic :: iso_fortran_env, only: int64, real32, real64
+   use, intrinsic :: iso_fortran_env, only: real32, real64
    use holonomic_c, only: hol_project_positions_view, hol_report
    use holonomic_place, only: list_of, place, tensor
    use holonomic_status, only: failure, settle
@@ -33,12 +33,10 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_ref, at_r, at_v
-      n_atoms = self%n_atoms()
-      call at_ref%rows_64(n_atoms, problem, "r_ref", r_ref)
-      call at_r%rows_64(n_atoms, problem, "r", r)
-      call at_v%rows_64(n_atoms, problem, "v", v)
+      call at_ref%rows_64(self%n_atoms(), problem, "r_ref", r_ref)
+      call at_r%rows_64(self%n_atoms(), problem, "r", r)
+      call at_v%rows_64(self%n_atoms(), problem, "v", v)
       call project_at(self, problem, at_ref, at_r, dt, at_v, lambda, guess, virial, report, stat, errmsg)
    end subroutine
 
@@ -55,12 +53,10 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_ref, at_r, at_v
-      n_atoms = self%n_atoms()
-      call at_ref%rows_32(n_atoms, problem, "r_ref", r_ref)
-      call at_r%rows_32(n_atoms, problem, "r", r)
-      call at_v%rows_32(n_atoms, problem, "v", v)
+      call at_ref%rows_32(self%n_atoms(), problem, "r_ref", r_ref)
+      call at_r%rows_32(self%n_atoms(), problem, "r", r)
+      call at_v%rows_32(self%n_atoms(), problem, "v", v)
       call project_at(self, problem, at_ref, at_r, dt, at_v, lambda, guess, virial, report, stat, errmsg)
    end subroutine
 
@@ -80,12 +76,10 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_ref, at_r, at_v
-      n_atoms = self%n_atoms()
-      call at_ref%parts_64(n_atoms, problem, "*_ref", x_ref, y_ref, z_ref)
-      call at_r%parts_64(n_atoms, problem, "*", x, y, z)
-      call at_v%parts_64(n_atoms, problem, "v*", vx, vy, vz)
+      call at_ref%parts_64(self%n_atoms(), problem, "*_ref", x_ref, y_ref, z_ref)
+      call at_r%parts_64(self%n_atoms(), problem, "*", x, y, z)
+      call at_v%parts_64(self%n_atoms(), problem, "v*", vx, vy, vz)
       call project_at(self, problem, at_ref, at_r, dt, at_v, lambda, guess, virial, report, stat, errmsg)
    end subroutine
 
@@ -105,12 +99,10 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_ref, at_r, at_v
-      n_atoms = self%n_atoms()
-      call at_ref%parts_32(n_atoms, problem, "*_ref", x_ref, y_ref, z_ref)
-      call at_r%parts_32(n_atoms, problem, "*", x, y, z)
-      call at_v%parts_32(n_atoms, problem, "v*", vx, vy, vz)
+      call at_ref%parts_32(self%n_atoms(), problem, "*_ref", x_ref, y_ref, z_ref)
+      call at_r%parts_32(self%n_atoms(), problem, "*", x, y, z)
+      call at_v%parts_32(self%n_atoms(), problem, "v*", vx, vy, vz)
       call project_at(self, problem, at_ref, at_r, dt, at_v, lambda, guess, virial, report, stat, errmsg)
    end subroutine
 

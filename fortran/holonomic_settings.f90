@@ -1,10 +1,11 @@
 ! Options of the molecules, and what else of them a run may change between its steps.
 module holonomic_settings
    use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_loc, c_null_ptr, c_ptr, c_signed_char
-   use, intrinsic :: iso_fortran_env, only: real64
+   use, intrinsic :: iso_fortran_env, only: int32, int64, real64
    use holonomic_bonds, only: chain_set_bonds
    use holonomic_c, only: hol_chains_n_atoms, hol_chains_n_bonds, hol_chains_n_chains, hol_chains_set_active, &
-                          hol_chains_set_box, hol_chains_set_lengths, hol_chains_set_masses, &
+                          hol_chains_set_box, hol_chains_set_box_rate, hol_chains_set_labels, hol_chains_set_lengths, &
+                          hol_chains_set_masses, &
                           hol_chains_set_max_iterations, hol_chains_set_reference_box, hol_chains_set_threads, &
                           hol_chains_set_tolerance, HOL_ERR_MEMORY
    use holonomic_place, only: enough, list_of, tensor
@@ -19,6 +20,9 @@ module holonomic_settings
       generic :: set_box => set_box_matrix, set_box_lengths
       procedure, private :: set_reference_box_matrix, set_reference_box_lengths
       generic :: set_reference_box => set_reference_box_matrix, set_reference_box_lengths
+      procedure :: set_box_rate
+      procedure, private :: set_labels_none, set_labels_32, set_labels_64
+      generic :: set_labels => set_labels_none, set_labels_32, set_labels_64
       procedure :: set_threads
       procedure :: set_active
       procedure :: set_tolerance
@@ -79,6 +83,69 @@ contains
       character(*), intent(inout), optional :: errmsg
       call self%set_reference_box(orthorhombic(lengths), stat, errmsg)
    end subroutine
+
+   ! d(box)/dt = matmul(L, box) and r' = v + matmul(L, r). Without an argument: none.
+   subroutine set_box_rate(self, L, stat, errmsg)
+      class(chain_set_settings), intent(inout) :: self
+      real(real64), intent(in), optional :: L(3, 3)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      real(real64), target :: rows(3, 3)  ! as C has them
+      type(failure) :: problem
+      rows = 0
+      if (present(L)) rows = transpose(L)
+      call problem%need_created(self%c_handle())
+      call problem%ask(hol_chains_set_box_rate(self%c_handle(), tensor(rows)))
+      call settle(problem, "set_box_rate", stat, errmsg)
+   end subroutine
+
+   ! Numbers of atoms and molecules for messages; of size 0 or absent: none.
+   subroutine set_labels_64(self, atoms, molecules, stat, errmsg)
+      class(chain_set_settings), intent(inout) :: self
+      integer(int64), intent(in), contiguous, target :: atoms(:)
+      integer(int64), intent(in), optional, contiguous, target :: molecules(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      type(c_ptr) :: at_atoms, at_molecules
+      call problem%need_created(self%c_handle())
+      at_atoms = labels_of(atoms, "atoms", hol_chains_n_atoms(self%c_handle()), problem)
+      at_molecules = labels_of(molecules, "molecules", hol_chains_n_chains(self%c_handle()), problem)
+      if (problem%none()) call problem%ask(hol_chains_set_labels(self%c_handle(), at_atoms, at_molecules))
+      call settle(problem, "set_labels", stat, errmsg)
+   end subroutine
+
+   subroutine set_labels_32(self, atoms, molecules, stat, errmsg)
+      class(chain_set_settings), intent(inout) :: self
+      integer(int32), intent(in) :: atoms(:)
+      integer(int32), intent(in), optional :: molecules(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      if (present(molecules)) then
+         call self%set_labels_64(int(atoms, int64), int(molecules, int64), stat=stat, errmsg=errmsg)
+      else
+         call self%set_labels_64(int(atoms, int64), stat=stat, errmsg=errmsg)
+      end if
+   end subroutine
+
+   subroutine set_labels_none(self, stat, errmsg)
+      class(chain_set_settings), intent(inout) :: self
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      integer(int64) :: no_labels(0)
+      call self%set_labels_64(no_labels, stat=stat, errmsg=errmsg)
+   end subroutine
+
+   type(c_ptr) function labels_of(labels, name, needed, problem)
+      integer(int64), optional, contiguous, target :: labels(:)
+      character(*), intent(in) :: name
+      integer(c_int64_t), intent(in) :: needed
+      type(failure), intent(inout) :: problem
+      labels_of = c_null_ptr
+      if (.not. present(labels)) return
+      if (size(labels) == 0) return
+      if (enough("the list of labels", size(labels, kind=c_int64_t), needed, name, problem)) labels_of = c_loc(labels)
+   end function
 
    subroutine set_threads(self, n_threads, stat, errmsg)
       class(chain_set_settings), intent(inout) :: self

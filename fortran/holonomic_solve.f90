@@ -1,7 +1,7 @@
 ! Multipliers of given right-hand sides: hol_solve with arrays of any layout.
 module holonomic_solve
    use, intrinsic :: iso_c_binding, only: c_int, c_ptr
-   use, intrinsic :: iso_fortran_env, only: int64, real32, real64
+   use, intrinsic :: iso_fortran_env, only: real32, real64
    use holonomic_c, only: hol_solve_view, HOL_ADD, HOL_WRITE
    use holonomic_forces, only: chain_set_forces
    use holonomic_place, only: list_of, place, tensor
@@ -29,11 +29,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_g
-      n_atoms = self%n_atoms()
-      call at_r%rows_64(n_atoms, problem, "r", r)
-      call at_g%rows_64(n_atoms, problem, "g", g)
+      call at_r%rows_64(self%n_atoms(), problem, "r", r)
+      call at_g%rows_64(self%n_atoms(), problem, "g", g)
       call solve_at(self, problem, at_r, rhs, lambda, at_g, add, virial, stat, errmsg)
    end subroutine
 
@@ -48,11 +46,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_g
-      n_atoms = self%n_atoms()
-      call at_r%rows_32(n_atoms, problem, "r", r)
-      call at_g%rows_32(n_atoms, problem, "g", g)
+      call at_r%rows_32(self%n_atoms(), problem, "r", r)
+      call at_g%rows_32(self%n_atoms(), problem, "g", g)
       call solve_at(self, problem, at_r, rhs, lambda, at_g, add, virial, stat, errmsg)
    end subroutine
 
@@ -68,11 +64,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_g
-      n_atoms = self%n_atoms()
-      call at_r%parts_64(n_atoms, problem, "*", x, y, z)
-      call at_g%parts_64(n_atoms, problem, "g*", gx, gy, gz)
+      call at_r%parts_64(self%n_atoms(), problem, "*", x, y, z)
+      call at_g%parts_64(self%n_atoms(), problem, "g*", gx, gy, gz)
       call solve_at(self, problem, at_r, rhs, lambda, at_g, add, virial, stat, errmsg)
    end subroutine
 
@@ -88,11 +82,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_g
-      n_atoms = self%n_atoms()
-      call at_r%parts_32(n_atoms, problem, "*", x, y, z)
-      call at_g%parts_32(n_atoms, problem, "g*", gx, gy, gz)
+      call at_r%parts_32(self%n_atoms(), problem, "*", x, y, z)
+      call at_g%parts_32(self%n_atoms(), problem, "g*", gx, gy, gz)
       call solve_at(self, problem, at_r, rhs, lambda, at_g, add, virial, stat, errmsg)
    end subroutine
 

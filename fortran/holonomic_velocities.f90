@@ -1,16 +1,16 @@
 ! Velocity level: hol_project_velocities with arrays of any layout.
 module holonomic_velocities
    use, intrinsic :: iso_c_binding, only: c_ptr
-   use, intrinsic :: iso_fortran_env, only: int64, real32, real64
+   use, intrinsic :: iso_fortran_env, only: real32, real64
    use holonomic_c, only: hol_project_velocities_view
    use holonomic_place, only: list_of, place, tensor
-   use holonomic_solve, only: chain_set_solve
+   use holonomic_reactions, only: chain_set_reactions
    use holonomic_status, only: failure, settle
    implicit none
    private
    public :: chain_set_velocities
 
-   type, extends(chain_set_solve) :: chain_set_velocities
+   type, extends(chain_set_reactions) :: chain_set_velocities
    contains
       procedure, private :: velocities_rows_32, velocities_rows_64, velocities_parts_32, velocities_parts_64
       generic :: project_velocities => velocities_rows_32, velocities_rows_64, velocities_parts_32, velocities_parts_64
@@ -27,11 +27,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v
-      n_atoms = self%n_atoms()
-      call at_r%rows_64(n_atoms, problem, "r", r)
-      call at_v%rows_64(n_atoms, problem, "v", v)
+      call at_r%rows_64(self%n_atoms(), problem, "r", r)
+      call at_v%rows_64(self%n_atoms(), problem, "v", v)
       call project_at(self, problem, at_r, at_v, lambda, virial, stat, errmsg)
    end subroutine
 
@@ -44,11 +42,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v
-      n_atoms = self%n_atoms()
-      call at_r%rows_32(n_atoms, problem, "r", r)
-      call at_v%rows_32(n_atoms, problem, "v", v)
+      call at_r%rows_32(self%n_atoms(), problem, "r", r)
+      call at_v%rows_32(self%n_atoms(), problem, "v", v)
       call project_at(self, problem, at_r, at_v, lambda, virial, stat, errmsg)
    end subroutine
 
@@ -63,11 +59,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v
-      n_atoms = self%n_atoms()
-      call at_r%parts_64(n_atoms, problem, "*", x, y, z)
-      call at_v%parts_64(n_atoms, problem, "v*", vx, vy, vz)
+      call at_r%parts_64(self%n_atoms(), problem, "*", x, y, z)
+      call at_v%parts_64(self%n_atoms(), problem, "v*", vx, vy, vz)
       call project_at(self, problem, at_r, at_v, lambda, virial, stat, errmsg)
    end subroutine
 
@@ -82,11 +76,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v
-      n_atoms = self%n_atoms()
-      call at_r%parts_32(n_atoms, problem, "*", x, y, z)
-      call at_v%parts_32(n_atoms, problem, "v*", vx, vy, vz)
+      call at_r%parts_32(self%n_atoms(), problem, "*", x, y, z)
+      call at_v%parts_32(self%n_atoms(), problem, "v*", vx, vy, vz)
       call project_at(self, problem, at_r, at_v, lambda, virial, stat, errmsg)
    end subroutine
 

@@ -1,7 +1,7 @@
 ! How far positions and velocities are from the constraints: hol_violation with arrays of any layout.
 module holonomic_violation
    use, intrinsic :: iso_c_binding, only: c_loc
-   use, intrinsic :: iso_fortran_env, only: int64, real32, real64
+   use, intrinsic :: iso_fortran_env, only: real32, real64
    use holonomic_c, only: hol_violation_view, hol_worst
    use holonomic_place, only: place
    use holonomic_positions, only: chain_set_positions
@@ -26,11 +26,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v
-      n_atoms = self%n_atoms()
-      call at_r%rows_64(n_atoms, problem, "r", r)
-      call at_v%rows_64(n_atoms, problem, "v", v)
+      call at_r%rows_64(self%n_atoms(), problem, "r", r)
+      call at_v%rows_64(self%n_atoms(), problem, "v", v)
       call violation_at(self, problem, at_r, at_v, worst, stat, errmsg)
    end subroutine
 
@@ -42,11 +40,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v
-      n_atoms = self%n_atoms()
-      call at_r%rows_32(n_atoms, problem, "r", r)
-      call at_v%rows_32(n_atoms, problem, "v", v)
+      call at_r%rows_32(self%n_atoms(), problem, "r", r)
+      call at_v%rows_32(self%n_atoms(), problem, "v", v)
       call violation_at(self, problem, at_r, at_v, worst, stat, errmsg)
    end subroutine
 
@@ -58,11 +54,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v
-      n_atoms = self%n_atoms()
-      call at_r%parts_64(n_atoms, problem, "*", x, y, z)
-      call at_v%parts_64(n_atoms, problem, "v*", vx, vy, vz)
+      call at_r%parts_64(self%n_atoms(), problem, "*", x, y, z)
+      call at_v%parts_64(self%n_atoms(), problem, "v*", vx, vy, vz)
       call violation_at(self, problem, at_r, at_v, worst, stat, errmsg)
    end subroutine
 
@@ -74,11 +68,9 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
-      integer(int64) :: n_atoms
       type(place), target :: at_r, at_v
-      n_atoms = self%n_atoms()
-      call at_r%parts_32(n_atoms, problem, "*", x, y, z)
-      call at_v%parts_32(n_atoms, problem, "v*", vx, vy, vz)
+      call at_r%parts_32(self%n_atoms(), problem, "*", x, y, z)
+      call at_v%parts_32(self%n_atoms(), problem, "v*", vx, vy, vz)
       call violation_at(self, problem, at_r, at_v, worst, stat, errmsg)
    end subroutine
 

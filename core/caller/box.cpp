@@ -1,6 +1,7 @@
 #include "core/caller/box.hpp"
 
 #include <cmath>
+#include <cstring>
 
 #include "core/error.hpp"
 
@@ -67,6 +68,20 @@ Box make_box(const double *h) {
     for (int i = 0; i < 3; ++i)
         for (int c = 0; c < 3; ++c) next.inverse[3 * c + i] = periodic[i] ? columns[i][c] / volume : 0;
     return next;
+}
+
+BoxRate make_box_rate(const double *L) {
+    BoxRate rate{};
+    if (!L) return rate;
+    for (int i = 0; i < 9; ++i) {
+        if (!std::isfinite(L[i]))
+            throw make_error(Status::value, "element (%d,%d) of the rate of the box is not finite", i / 3 + 1,
+                             i % 3 + 1);
+        rate.L[i] = L[i];
+    }
+    const double strain[6] = {L[0], L[1] + L[3], L[2] + L[6], L[4], L[5] + L[7], L[8]};
+    std::memcpy(rate.strain, strain, sizeof strain);
+    return rate;
 }
 
 void minimum_image(const Box &box, double *d) {

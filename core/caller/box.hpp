@@ -23,6 +23,20 @@ inline void put_box(const Box &box, Box &of_call) {
     std::memcpy(of_call.inverse, box.inverse, sizeof box.inverse);
 }
 
+// How the box, and what follows it, changes: d(box)/dt = L box.
+struct BoxRate {
+    double L[9];
+    double strain[6];  // d.(L d) is the sum over xx xy xz yy yz zz of these times the product of the components
+};
+
+inline double stretching(const BoxRate &rate, const double *d) {
+    const double *const s = rate.strain;
+    return d[0] * (s[0] * d[0] + s[1] * d[1] + s[2] * d[2]) + d[1] * (s[3] * d[1] + s[4] * d[2]) + d[2] * s[5] * d[2];
+}
+
+// L [9] or null: none. Throws Error.
+BoxRate make_box_rate(const double *L);
+
 // Replaces a bond vector by its minimum image.
 void minimum_image(const Box &box, double *d);
 

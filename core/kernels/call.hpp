@@ -92,6 +92,7 @@ struct VelocitiesCall {
     AtomArray r, v;
     double *lambda;
     bool virial;
+    const double *strain;  // of a box that changes, arithmetic/stretching.hpp; or nullptr
     Box box;
 };
 

@@ -40,12 +40,11 @@ void Batch::take(std::int64_t atom, std::int64_t chain, std::int64_t position) {
     if (chains_.masses_.fixed(atom)) return fixed_.push_back(atom);
     if (chains_.use_.used(atom)) {
         const int base = chains_.base;
-        Error error =
-            make_error(Status::shared_atom,
-                       "atom %lld, number %lld of chain %lld, is in use already: all bonds of a molecule must "
-                       "be added in one call of hol_chains_add_bonds",
-                       static_cast<long long>(atom + base), static_cast<long long>(position + base),
-                       static_cast<long long>(chain + base));
+        Error error = make_error(Status::shared_atom,
+                                 "atom %s, number %lld of chain %lld, is in use already: all bonds of a molecule must "
+                                 "be added in one call of hol_chains_add_bonds",
+                                 chains_.name_of_atom(atom).text, static_cast<long long>(position + base),
+                                 static_cast<long long>(chain + base));
         error.atom = atom;
         error.chain = chain;
         error.base = base;
@@ -57,9 +56,9 @@ void Batch::take(std::int64_t atom, std::int64_t chain, std::int64_t position) {
 
 Error Batch::in_use(std::int64_t atom) const {
     Error error = make_error(Status::shared_atom,
-                             "atom %lld is in a molecule of an earlier call already: all bonds of a molecule must be "
+                             "atom %s is in a molecule of an earlier call already: all bonds of a molecule must be "
                              "added in one call",
-                             static_cast<long long>(atom + chains_.base));
+                             chains_.name_of_atom(atom).text);
     error.atom = atom;
     error.base = chains_.base;
     return error;

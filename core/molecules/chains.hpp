@@ -14,6 +14,7 @@
 #include "core/molecules/find.hpp"
 #include "core/molecules/group.hpp"
 #include "core/molecules/kind.hpp"
+#include "core/molecules/labels.hpp"
 #include "core/molecules/masses.hpp"
 #include "core/molecules/molecule.hpp"
 #include "core/molecules/plan.hpp"
@@ -37,8 +38,12 @@ public:
     void set_masses(const double *masses);
 
     void set_active(const unsigned char *active);
+    void set_labels(const std::int64_t *atoms, const std::int64_t *molecules) {
+        labels_.set(n_atoms_, atoms, n_chains(), molecules);
+    }
     void set_box(const double *h) { box = make_box(h); }
     void set_reference_box(const double *h);
+    void set_box_rate(const double *L);
 
     // queries.cpp. Molecules, atoms and bonds are counted from 0, but in what is written for the caller.
     std::int64_t n_atoms() const { return n_atoms_; }
@@ -52,11 +57,14 @@ public:
     void bonds(std::int64_t molecule, std::int64_t *out) const;
     void molecules_of_bonds(std::int64_t *out) const;
     std::int64_t degrees_of_freedom(int dimensions) const;
+    Name name_of_atom(std::int64_t atom) const { return labels_.of_atom(atom, base); }
+    Name name_of_molecule(std::int64_t molecule) const;
     std::int64_t memory() const;
     bool is_active(std::int64_t molecule) const;
     Molecule molecule(std::int64_t molecule) const;
     Lane lane(std::int64_t molecule) const;  // of a linear chain
     const Box &box_of_reference() const { return has_reference_box_ ? reference_box_ : box; }
+    const BoxRate *box_rate() const { return has_box_rate_ ? &box_rate_ : nullptr; }
 
     // plan.cpp
     const Plan &plan() const {  // thread-safe
@@ -99,8 +107,10 @@ private:
     Groups groups_;
     std::vector<std::int64_t> unconstrained_;  // bonds between two fixed atoms, in the caller's arrays
     std::vector<unsigned char> active_;        // [n_chains] or empty: all
+    Labels labels_;
     Box reference_box_{};
-    bool has_reference_box_ = false;
+    BoxRate box_rate_{};
+    bool has_reference_box_ = false, has_box_rate_ = false;
 
     mutable std::mutex plan_mutex_;
     mutable std::atomic<const Plan *> plan_{nullptr}, plan_of_parts_{nullptr};

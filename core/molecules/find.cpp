@@ -244,9 +244,10 @@ FoundMolecules find_molecules(const Masses &masses, std::int64_t n_atoms, const 
 
 Error bond_error(const BondList &list, Status status, std::int64_t bond, const char *what) {
     const std::int64_t *const pair = list.pairs + 2 * bond;
-    Error error =
-        make_error(status, "bond %lld of the list (atoms %lld and %lld) %s", static_cast<long long>(bond + list.base),
-                   static_cast<long long>(pair[0]), static_cast<long long>(pair[1]), what);
+    const Labels none, &labels = list.labels ? *list.labels : none;
+    Error error = make_error(
+        status, "bond %lld of the list (atoms %s and %s) %s", static_cast<long long>(bond + list.base),
+        labels.of_atom(pair[0] - list.base, list.base).text, labels.of_atom(pair[1] - list.base, list.base).text, what);
     error.bond = bond;
     error.base = list.base;
     return error;

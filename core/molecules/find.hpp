@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/molecules/labels.hpp"
 #include "core/molecules/masses.hpp"
 #include "core/molecules/shape.hpp"
 
@@ -16,6 +17,7 @@ struct BondList {
     std::int64_t n_bonds;
     const std::int64_t *pairs;  // [n_bonds][2], counted from base
     int base;
+    const Labels *labels = nullptr;  // of the atoms, for messages
 };
 
 // Atoms of a molecule are ordered along a linear chain, its lower end first, else they ascend; a fixed atom stands once

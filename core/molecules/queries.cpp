@@ -49,9 +49,9 @@ void Chains::offsets(std::int64_t *out) const {
         if (group.reordered || group.first_bond != next) {
             Error error =
                 make_error(Status::value,
-                           "the bonds of molecule %lld do not follow those of the molecule before in the arrays "
+                           "the bonds of molecule %s do not follow those of the molecule before in the arrays "
                            "per bond: hol_chains_bonds tells where they stand",
-                           static_cast<long long>(group.first_molecule + base));
+                           name_of_molecule(group.first_molecule).text);
             error.chain = group.first_molecule;
             error.base = base;
             throw error;
@@ -110,13 +110,17 @@ std::int64_t Chains::degrees_of_freedom(int dimensions) const {
     return dimensions * masses_.n_movable() - constraints;
 }
 
+Name Chains::name_of_molecule(std::int64_t number) const {
+    return labels_.of_molecule(number, molecule(number).atom(0), base);
+}
+
 std::int64_t Chains::memory() const {
     const Plan *const plan = plan_.load(std::memory_order_acquire), *const of_parts =
                                                                         plan_of_parts_.load(std::memory_order_acquire);
     return static_cast<std::int64_t>(sizeof *this + masses_.bytes() + use_.bytes() + kinds_.bytes() + shapes_.bytes() +
                                      groups_.bytes() + unconstrained_.capacity() * sizeof(std::int64_t) +
                                      active_.capacity()) +
-           (plan ? plan->bytes() : 0) + (of_parts ? of_parts->bytes() : 0);
+           labels_.bytes() + (plan ? plan->bytes() : 0) + (of_parts ? of_parts->bytes() : 0);
 }
 
 }  // namespace holonomic

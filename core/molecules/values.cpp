@@ -44,9 +44,8 @@ void Chains::set_masses(const double *masses) {
     Masses next(n_atoms_, masses, base);
     for (std::int64_t i = 0; i < n_atoms_; ++i) {
         if (!use_.used(i) || next.fixed(i) == masses_.fixed(i)) continue;
-        Error error =
-            make_error(Status::value, "the mass of atom %lld is %g: an atom that has bonds and %s must stay so",
-                       static_cast<long long>(i + base), masses[i], masses_.fixed(i) ? "is held fixed" : "can move");
+        Error error = make_error(Status::value, "the mass of atom %s is %g: an atom that has bonds and %s must stay so",
+                                 name_of_atom(i).text, masses[i], masses_.fixed(i) ? "is held fixed" : "can move");
         error.atom = i;
         error.base = base;
         throw error;

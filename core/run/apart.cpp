@@ -43,34 +43,37 @@ bool is_unwritten(const AtomArray &array, std::int64_t i) {
 
 }  // namespace
 
-Apart::Apart(const Chains &chains, const Plan &plan) : chains_(chains), plan_(plan), memory_(nullptr) {
+Apart::Apart(const Chains &chains, const Plan &plan, int wide) : chains_(chains), plan_(plan), memory_(nullptr) {
     const std::int64_t n_stage = static_cast<std::int64_t>(plan_.stage.size());
     const std::int64_t n_values = reorders() ? static_cast<std::int64_t>(chains.reordered_bonds().size()) : 0;
-    const std::int64_t bytes = most * (rounded_up(n_stage * 24) + rounded_up(n_values * 8));
+    const std::int64_t bytes =
+        most * (rounded_up(n_stage * 24) + rounded_up(n_values * 8)) + rounded_up(n_values * 8 * wide);
     if (bytes == 0) return;
     memory_ = static_cast<char *>(thread_memory(Keep::apart, bytes));
     if (!memory_) throw std::bad_alloc();
 }
 
-Apart::Values &Apart::copy_of(const double *callers) {
+Apart::Values &Apart::copy_of(const double *callers, int width) {
     for (int i = 0; i < n_values_; ++i)
         if (values_[i].callers == callers) return values_[i];
     const std::vector<std::int64_t> &places = chains_.reordered_bonds();
     double *const copy = reinterpret_cast<double *>(memory_);
-    memory_ += rounded_up(static_cast<std::int64_t>(places.size() * sizeof(double)));
-    for (std::size_t k = 0; k < places.size(); ++k) std::memcpy(copy + k, callers + places[k], sizeof(double));
-    values_[n_values_] = {callers, copy, nullptr};
+    const std::size_t bytes = sizeof(double) * static_cast<std::size_t>(width);
+    memory_ += rounded_up(static_cast<std::int64_t>(places.size() * bytes));
+    for (std::size_t k = 0; k < places.size(); ++k)
+        std::memcpy(copy + k * static_cast<std::size_t>(width), callers + places[k] * width, bytes);
+    values_[n_values_] = {callers, copy, nullptr, width};
     return values_[n_values_++];
 }
 
-double *Apart::results(double *callers) {
+double *Apart::results(double *callers, int width) {
     if (!callers) return nullptr;
-    Values &values = copy_of(callers);
+    Values &values = copy_of(callers, width);
     values.result = callers;
     return values.copy;
 }
 
-const double *Apart::inputs(const double *callers) { return callers ? copy_of(callers).copy : nullptr; }
+const double *Apart::inputs(const double *callers) { return callers ? copy_of(callers, 1).copy : nullptr; }
 
 AtomArray Apart::stage(const AtomArray &callers, Use use) {
     if (!callers.x) return callers;
@@ -128,9 +131,11 @@ void Apart::put_back(const Atoms &atoms) const {
 void Apart::put_back() const {
     const std::vector<std::int64_t> &places = chains_.reordered_bonds();
     for (int i = 0; i < n_values_; ++i) {
-        if (!values_[i].result) continue;
+        const Values &values = values_[i];
+        if (!values.result) continue;
+        const std::size_t width = static_cast<std::size_t>(values.width), bytes = sizeof(double) * width;
         for (std::size_t k = 0; k < places.size(); ++k)
-            std::memcpy(values_[i].result + places[k], values_[i].copy + k, sizeof(double));
+            std::memcpy(values.result + static_cast<std::size_t>(places[k]) * width, values.copy + k * width, bytes);
     }
     for (int i = 0; i < n_atoms_; ++i) put_back(atoms_[i]);
 }

@@ -12,15 +12,17 @@ namespace holonomic {
 
 class Apart {
 public:
-    // Takes memory of the calling thread for all arrays that a call may have. Throws std::bad_alloc.
-    explicit Apart(const Chains &chains) : Apart(chains, chains.plan()) {}
-    Apart(const Chains &chains, const Plan &plan);
+    // Takes memory of the calling thread for all arrays that a call may have: four per atom, and four per bond beside
+    // one of `wide` values for each. Throws std::bad_alloc.
+    explicit Apart(const Chains &chains, int wide = 0) : Apart(chains, chains.plan(), wide) {}
+    Apart(const Chains &chains, const Plan &plan, int wide = 0);
 
     bool reorders() const { return plan_.reordered; }
     bool stages() const { return !plan_.stage.empty(); }
 
-    // Values per bond, or null: as they are in the caller's array, in the order of the molecules. Put back at the end.
-    double *results(double *callers);
+    // Values per bond, `width` of them, or null: as they are in the caller's array, in the order of the molecules. Put
+    // back at the end.
+    double *results(double *callers, int width = 1);
     // The same of what is only read.
     const double *inputs(const double *callers);
 
@@ -41,12 +43,13 @@ private:
     struct Values {
         const double *callers;
         double *copy, *result;  // null: only read
+        int width;
     };
     struct Atoms {
         AtomArray callers, copy;
         Use use;
     };
-    Values &copy_of(const double *callers);
+    Values &copy_of(const double *callers, int width);
     AtomArray stage(const AtomArray &callers, Use use);
     void put_back(const Atoms &atoms) const;
     void sum_copies(const Atoms &atoms) const;
@@ -54,7 +57,7 @@ private:
     const Chains &chains_;
     const Plan &plan_;
     char *memory_;  // what of it is free
-    Values values_[most];
+    Values values_[most + 1];
     Atoms atoms_[most];
     int n_values_ = 0, n_atoms_ = 0;
 };
@@ -82,9 +85,10 @@ private:
 };
 
 // Bonds that are no constraints get a value of 0. Null: nothing.
-inline void clear_unconstrained(const Chains &chains, double *values) {
+inline void clear_unconstrained(const Chains &chains, double *values, int width = 1) {
     if (!values) return;
-    for (const std::int64_t bond : chains.unconstrained()) values[static_cast<std::size_t>(bond)] = 0;
+    for (const std::int64_t bond : chains.unconstrained())
+        for (int i = 0; i < width; ++i) values[bond * width + i] = 0;
 }
 
 }  // namespace holonomic

@@ -48,8 +48,9 @@ std::int64_t vanishing_pivot(const AtomArray &r, const Box &box, const Molecule 
 class Diagnosis {
 public:
     Diagnosis(const Chains &chains, const Tally &tally, const Box &box)
-        : box_(box), m_(chains.molecule(tally.first_bad)), base_(chains.base), n_bad_(tally.n_bad) {
-        std::snprintf(name_, sizeof name_, "%s %lld", m_.shape ? "molecule" : "chain", number(m_.number));
+        : chains_(chains), box_(box), m_(chains.molecule(tally.first_bad)), base_(chains.base), n_bad_(tally.n_bad) {
+        std::snprintf(name_, sizeof name_, "%s %s", m_.shape ? "molecule" : "chain",
+                      chains.name_of_molecule(m_.number).text);
         if (n_bad_ > 1)
             std::snprintf(others_, sizeof others_, " (the first of %lld bad %s)", static_cast<long long>(n_bad_),
                           m_.shape ? "molecules" : "chains");
@@ -101,8 +102,8 @@ private:
                 double x[3];
                 read_atom(*arrays[a].array, m_.atom(i), x);
                 if (std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2])) continue;
-                error = finish(make_error(Status::not_finite, "%s: the %s of atom %lld is not finite%s", name_,
-                                          arrays[a].what, number(m_.atom(i)), others_),
+                error = finish(make_error(Status::not_finite, "%s: the %s of atom %s is not finite%s", name_,
+                                          arrays[a].what, chains_.name_of_atom(m_.atom(i)).text, others_),
                                -1, m_.atom(i));
                 return true;
             }
@@ -115,27 +116,44 @@ private:
         char place[48] = "";
         if (m_.shape || m_.bond_list)
             std::snprintf(place, sizeof place, "%lld of the arrays per bond, ", number(m_.bond(k)));
-        return finish(make_error(Status::degenerate, "%s: bond %lld (%satoms %lld and %lld) %s%s", name_, number(k),
-                                 place, number(m_.atom(m_.i(k))), number(m_.atom(m_.j(k))), what, others_),
+        return finish(make_error(Status::degenerate, "%s: bond %lld (%satoms %s and %s) %s%s", name_, number(k), place,
+                                 chains_.name_of_atom(m_.atom(m_.i(k))).text,
+                                 chains_.name_of_atom(m_.atom(m_.j(k))).text, what, others_),
                       k, -1);
     }
 
     Error taut(std::int64_t k) const {
         return finish(make_error(Status::degenerate,
-                                 "%s: taut between atoms that are held fixed; the tension of bond %lld is not "
-                                 "determined%s",
-                                 name_, number(k), others_),
+                                 "%s: taut between atoms that are held fixed; the tension of bond %lld (atoms %s "
+                                 "and %s) is not determined%s",
+                                 name_, number(k), chains_.name_of_atom(m_.atom(k)).text,
+                                 chains_.name_of_atom(m_.atom(k + 1)).text, others_),
                       k, -1);
     }
 
+    const Chains &chains_;
     const Box &box_;
     const Molecule m_;
     const int base_;
     const std::int64_t n_bad_;
-    char name_[40], others_[80] = "";
+    char name_[128], others_[80] = "";
 };
 
 }  // namespace
+
+void check_values(const Chains &chains, const Tally &tally, const double *values, const char *what) {
+    const Molecule m = chains.molecule(tally.first_bad);
+    for (std::int64_t k = 0; k < m.n_bonds; ++k) {
+        if (std::isfinite(values[m.bond(k)])) continue;
+        Error error = make_error(Status::not_finite, "molecule %s: the %s of bond %lld is not finite",
+                                 chains.name_of_molecule(m.number).text, what, static_cast<long long>(k + chains.base));
+        error.chain = m.number;
+        error.bond = k;
+        error.n_bad = tally.n_bad;
+        error.base = chains.base;
+        throw error;
+    }
+}
 
 Error diagnose(const Chains &chains, const Tally &tally, const Box &box, const NamedArray *arrays, int n_arrays,
                Status otherwise) {

@@ -18,5 +18,8 @@ struct NamedArray {
 Error diagnose(const Chains &chains, const Tally &tally, const Box &box, const NamedArray *arrays, int n_arrays,
                Status otherwise);
 
+// Throws Error if one of the values per bond of the first bad molecule is not finite; `what` names them.
+void check_values(const Chains &chains, const Tally &tally, const double *values, const char *what);
+
 }  // namespace holonomic
 #endif

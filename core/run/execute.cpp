@@ -85,32 +85,26 @@ void work_on_molecules(const Work &work, const MoleculeUnit &unit, int where, do
 
 }  // namespace
 
-void Team::run(std::int64_t n, Order order, Tally &total, void (*call)(const void *, std::int64_t, double *, Tally &),
+void Team::run(std::int64_t n, Tally &total, void (*call)(const void *, std::int64_t, double *, Tally &),
                const void *body) const {
-    const auto at = [&](std::int64_t i) { return order == forwards ? i : n - 1 - i; };
 #ifdef _OPENMP
     if (n_threads_ > 1) {
         Tally *const parts = tallies(Keep::block_tallies, n);
-#pragma omp parallel num_threads(n_threads_)
-        {
-            const std::int64_t thread = omp_get_thread_num(), threads = omp_get_num_threads();
-            const std::int64_t first = n * thread / threads, end = n * (thread + 1) / threads;
-            for (std::int64_t i = first; i < end; ++i) {
-                const std::int64_t j = order == forwards ? i : first + end - 1 - i;
-                Tally tally = empty_tally();
-                call(body, j, scratch_memory(scratch_bytes_), tally);
-                parts[j] = tally;
-            }
+#pragma omp parallel for schedule(static) num_threads(n_threads_)
+        for (std::int64_t j = 0; j < n; ++j) {
+            Tally tally = empty_tally();
+            call(body, j, scratch_memory(scratch_bytes_), tally);
+            parts[j] = tally;
         }
-        for (std::int64_t i = 0; i < n; ++i) add(total, parts[at(i)]);
+        for (std::int64_t j = 0; j < n; ++j) add(total, parts[j]);
         return;
     }
 #else
     static_cast<void>(n_threads_);
 #endif
-    for (std::int64_t i = 0; i < n; ++i) {
+    for (std::int64_t j = 0; j < n; ++j) {
         Tally tally = empty_tally();
-        call(body, at(i), scratch_memory(scratch_bytes_), tally);
+        call(body, j, scratch_memory(scratch_bytes_), tally);
         add(total, tally);
     }
 }

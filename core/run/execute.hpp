@@ -14,14 +14,11 @@ class Team {
 public:
     Team(int n_threads, std::int64_t scratch_bytes) : n_threads_(n_threads), scratch_bytes_(scratch_bytes) {}
 
-    enum Order { forwards, backwards };
-
-    // Calls body(j, scratch, tally) for j = 0 .. n-1, or from n-1 to 0, and adds the tallies in that order. A thread
-    // has the same share in both, so that it finds in cache what it came to last.
+    // Calls body(j, scratch, tally) for j = 0 .. n-1, and adds the tallies in the order of j.
     template <class Body>
-    void for_each(std::int64_t n, Tally &total, const Body &body, Order order = forwards) const {
+    void for_each(std::int64_t n, Tally &total, const Body &body) const {
         run(
-            n, order, total,
+            n, total,
             [](const void *b, std::int64_t j, double *scratch, Tally &tally) {
                 (*static_cast<const Body *>(b))(j, scratch, tally);
             },
@@ -31,13 +28,12 @@ public:
     // For kernels that go through phases of their own.
     LongTeam lent() const {
         return {this, [](const void *team, std::int64_t n, Tally &total,
-                         void (*body)(const void *, std::int64_t, double *, Tally &), const void *context) {
-                    static_cast<const Team *>(team)->run(n, forwards, total, body, context);
-                }};
+                         void (*body)(const void *, std::int64_t, double *, Tally &),
+                         const void *context) { static_cast<const Team *>(team)->run(n, total, body, context); }};
     }
 
 private:
-    void run(std::int64_t n, Order order, Tally &total, void (*call)(const void *, std::int64_t, double *, Tally &),
+    void run(std::int64_t n, Tally &total, void (*call)(const void *, std::int64_t, double *, Tally &),
              const void *body) const;
     int n_threads_;
     std::int64_t scratch_bytes_;
@@ -79,10 +75,9 @@ void solve_long_chain(const Phases &phases, const Call &call, const Lane &lane, 
         result = phases.join(lane, careful, store);
     }
     if (result != join_good) return note_bad(lane, tally);
-    const auto finish = [&](std::int64_t j, double *scratch, Tally &part) {
+    team.for_each(blocks, tally, [&](std::int64_t j, double *scratch, Tally &part) {
         phases.finish(call, lane, j, store, scratch, part);
-    };
-    team.for_each(blocks, tally, finish, Team::backwards);
+    });
 }
 
 }  // namespace holonomic

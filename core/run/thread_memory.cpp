@@ -18,7 +18,7 @@ struct Block {
 };
 
 struct Blocks {
-    Block of[5];
+    Block of[static_cast<int>(Keep::last)];
     bool kept;  // whether the end of the thread will free them
 };
 

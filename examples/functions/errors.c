@@ -17,6 +17,15 @@ int main(void)
     shows("bond", (double)bond, 1);
     shows("atom (does not apply)", (double)atom, -1);
     shows("molecules", (double)hol_chains_n_chains(chains), 0); /* nothing was added */
+
+    /* With the numbers by which the program knows its atoms. */
+    const int64_t labels[3] = {90208, 90209, 90210};
+    const double r[9] = {0, 0, 0, 1, 0, 0, 1, 1, NAN}, one[2] = {1, 1};
+    ok(hol_chains_add_block(chains, 1, 2, 0, one));
+    ok(hol_chains_set_labels(chains, labels, NULL));
+    shows("not finite", hol_forces(chains, r, NULL, NULL, NULL, NULL, NULL, HOL_WRITE, NULL), HOL_ERR_NOT_FINITE);
+    printf("%s\n", hol_error_message());
+    if (!strstr(hol_error_message(), "atom 2 (label 90210)")) return 1;
     hol_chains_destroy(chains);
     return strcmp(hol_status_name(status), "HOL_ERR_VALUE") != 0;
 }

@@ -206,6 +206,27 @@ static void molecules(void)
     NEAR(g[3 * 4], -1);
     SUCCEEDS(hol_solve_view(both, &view, rhs, NULL, &out, HOL_ADD, NULL));
     NEAR(g[3 * 4], -2);
+    /* A triangle that grows: velocities against it, which the rate of the box makes up for. */
+    const double L[9] = {0.5, 0, 0, 0, 0.5, 0, 0, 0, 0.5};
+    const int64_t labels[7] = {10, 20, 30, 40, 50, 60, 70};
+    double v[21], tension[6], virials[36], virial[9];
+    for (int i = 0; i < 21; ++i) v[i] = -0.5 * (r[i] - r[9 + i % 3] * (i >= 9));
+    SUCCEEDS(hol_chains_set_box_rate(both, L));
+    SUCCEEDS(hol_chains_set_labels(both, labels, NULL));
+    SUCCEEDS(hol_project_velocities(both, r, v, lambda, NULL));
+    NEAR(lambda[1], 0);
+    NEAR(v[3], -0.5);
+    SUCCEEDS(hol_chains_set_box_rate(both, NULL));
+    SUCCEEDS(hol_reactions(both, r, HOL_BOX, rhs, tension, g, HOL_WRITE, virials, virial));
+    NEAR(tension[0], 8);
+    NEAR(g[3 * 4], -8);
+    NEAR(virials[0], -8);
+    NEAR(virial[0] + virial[4] + virial[8], -48);
+    SUCCEEDS(hol_reactions_view(both, &view, HOL_REFERENCE_BOX, rhs, NULL, &out, HOL_ADD, NULL, NULL));
+    NEAR(g[3 * 4], -16);
+    v[4] = INFINITY;
+    EXPECT(hol_project_velocities(both, r, v, NULL, NULL) == HOL_ERR_NOT_FINITE);
+    EXPECT(strstr(hol_error_message(), "label 20") != NULL);
     hol_chains_destroy(both);
 }
 #endif

@@ -35,6 +35,8 @@ static void enum_values_are_frozen(void)
     IS(HOL_FLOAT, 1);
     IS(HOL_WRITE, 0);
     IS(HOL_ADD, 1);
+    IS(HOL_BOX, 0);
+    IS(HOL_REFERENCE_BOX, 1);
     IS(HOL_UNIT_DIAGONAL, 0);
     IS(HOL_PHYSICAL, 1);
     IS(HOL_SHAPE_CHAIN, 0);

@@ -11,18 +11,18 @@ static size_t bonds(const assembly *a)
     return (size_t)a->n_bonds;
 }
 
-/* Layout of `out`: two arrays per atom, two per bond, and 16 numbers. */
+/* Layout of `out`: two arrays per atom, eight numbers per bond, and 16 numbers. */
 static double *per_bond(const assembly *a, double *out)
 {
     return out + 2 * atoms3(a);
 }
 static double *numbers(const assembly *a, double *out)
 {
-    return per_bond(a, out) + 2 * bonds(a);
+    return per_bond(a, out) + 8 * bonds(a);
 }
 size_t out_size(const assembly *a)
 {
-    return 2 * atoms3(a) + 2 * bonds(a) + 16;
+    return 2 * atoms3(a) + 8 * bonds(a) + 16;
 }
 
 void prepare(const assembly *a, double *out)
@@ -60,6 +60,30 @@ static int violation(const assembly *a, double *out)
 int given_right_hand_sides(const assembly *a, double *out)
 {
     return hol_solve(a->chains, a->r, a->length, per_bond(a, out), out, HOL_WRITE, numbers(a, out));
+}
+
+static int reactions(const assembly *a, double *out)
+{
+    double *const o = per_bond(a, out);
+    return hol_reactions(a->chains, a->r, HOL_BOX, a->length, o, out, HOL_WRITE, o + bonds(a), numbers(a, out));
+}
+
+/* With a rate of the box, which is taken away again. */
+static int in_motion(const assembly *a, double *out, int (*call)(const assembly *, double *))
+{
+    const double L[9] = {0.1, 0.3, 0, 0, -0.2, 0, 0.4, 0, 0};
+    int status = hol_chains_set_box_rate(a->chains, L);
+    if (status == HOL_OK) status = call(a, out);
+    if (hol_chains_set_box_rate(a->chains, NULL) != HOL_OK) return HOL_ERR_INTERNAL;
+    return status;
+}
+static int forces_in_motion(const assembly *a, double *out)
+{
+    return in_motion(a, out, forces);
+}
+static int velocities_in_motion(const assembly *a, double *out)
+{
+    return in_motion(a, out, velocities);
 }
 
 static int metric(const assembly *a, double *out)
@@ -156,6 +180,9 @@ const operation operations[] = {
     {"hol_project_positions", positions},
     {"hol_violation", violation},
     {"hol_solve", given_right_hand_sides},
+    {"hol_reactions", reactions},
+    {"hol_forces with a rate", forces_in_motion},
+    {"hol_project_velocities with a rate", velocities_in_motion},
     {"hol_metric", metric},
     {"hol_inverse_create", inverse},
     {"hol_inverse_row", inverse_row},

@@ -35,6 +35,7 @@ static void calculate(const assembly *a, int expected, double *out, int *wrong)
     *wrong |= hol_project_velocities(a->chains, a->r, v, NULL, NULL) != expected;
     *wrong |= hol_project_positions(a->chains, a->r, r, NULL, 0.003, NULL, 0, NULL, &report) != expected;
     *wrong |= hol_metric(a->chains, a->r, 1, log_det, NULL, NULL, force, HOL_WRITE) != expected;
+    *wrong |= hol_reactions(a->chains, a->r, HOL_BOX, a->length, NULL, force, HOL_ADD, NULL, NULL) != expected;
     *wrong |= hol_violation(a->chains, a->r, a->v, &worst) != expected;
     if (expected != HOL_OK) *wrong |= strstr(hol_error_message(), "not finite") == NULL;
 }

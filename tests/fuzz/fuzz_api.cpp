@@ -19,7 +19,7 @@ void session::run()
     create();
     for (int call = 0; call < 24 && !in.done(); ++call) {
         const int what = in.byte();
-        switch (what < 160 ? what % 16 : 16 + what % 6) {
+        switch (what < 160 ? what % 16 : 16 + what % 7) {
             case 0:
                 create();
                 break;
@@ -74,6 +74,9 @@ void session::run()
                 break;
             case 20:
                 ask_about_molecules();
+                break;
+            case 21:
+                react();
                 break;
             default:
                 solve();

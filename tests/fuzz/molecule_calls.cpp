@@ -70,6 +70,13 @@ void session::set_values()
     if (in.byte() & 1)
         for (int i = 0; i < 9; ++i) box.doubles()[i] = i % 4 == 0 ? in.size() * 8 : 0;
     check_status(hol_chains_set_reference_box(maybe(chains), maybe(box.doubles())));
+    fill(box, 9, in, true);
+    check_status(hol_chains_set_box_rate(maybe(chains), in.often() ? nullptr : box.doubles()));
+    const std::size_t n_labels = static_cast<std::size_t>(n_atoms + hol_chains_n_chains(chains));
+    block labels(n_labels * sizeof(std::int64_t));
+    fill(labels, n_labels, in);
+    std::int64_t *const numbers = reinterpret_cast<std::int64_t *>(labels.data());
+    check_status(hol_chains_set_labels(maybe(chains), maybe(numbers), maybe(numbers + n_atoms)));
 }
 
 void session::ask_about_molecules()
@@ -113,6 +120,26 @@ void session::solve()
                                                  maybe(g.plain.doubles()), mode, maybe(virial.doubles()))
                                      : hol_solve_view(maybe(chains), maybe(&r.view), maybe(rhs.doubles()), into,
                                                       maybe(&g.view), mode, maybe(virial.doubles()));
+    out.check_after(status, active());
+}
+
+void session::react()
+{
+    atom_array r(n_atoms, in), g(n_atoms, in);
+    block lambda(bonds() * sizeof(double)), tension(bonds() * sizeof(double)), of_bonds(6 * bonds() * sizeof(double)),
+        virial(9 * sizeof(double));
+    fill(lambda, bonds(), in);
+    outputs out;
+    for (block *b : {&tension, &of_bonds, &g.plain, &g.laid_out}) out.add(*b);
+    out.add_sum(virial);
+    const int mode = in.often() ? in.byte() & 1 : in.byte(), box = in.often() ? in.byte() & 1 : in.byte();
+    const int status =
+        in.byte() & 1
+            ? hol_reactions(maybe(chains), maybe(r.plain.doubles()), box, maybe(lambda.doubles()),
+                            maybe(tension.doubles()), maybe(g.plain.doubles()), mode, maybe(of_bonds.doubles()),
+                            maybe(virial.doubles()))
+            : hol_reactions_view(maybe(chains), maybe(&r.view), box, maybe(lambda.doubles()), maybe(tension.doubles()),
+                                 maybe(&g.view), mode, maybe(of_bonds.doubles()), maybe(virial.doubles()));
     out.check_after(status, active());
 }
 

@@ -66,6 +66,7 @@ struct session {
     void set_values();
     void ask_about_molecules();
     void solve();
+    void react();
     void set();
     void ask();
     void forces();

@@ -49,15 +49,22 @@ void solve(const SolveCall &call, const CarefulPlan &plan, const MoleculeLane &l
     if (call.virial) add_virial(x.m, x.m.d, x.t, 1, tally);
 }
 
+// d.(L d) in a box that changes.
+static Wide stretching_of(const double *s, const Wide3 &d) {
+    return dot(d, Wide3{s[0] * d.x + s[1] * d.y + s[2] * d.z, s[3] * d.y + s[4] * d.z, s[5] * d.z});
+}
+
 void velocities(const VelocitiesCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch,
                 Tally &tally) {
     Memory memory = {reinterpret_cast<char *>(scratch)};
     Solution x(plan, lane, memory);
     const Molecule &m = x.m;
     if (!x.open(call.r, call.box)) return note_bad_molecule(lane, tally);
-    for (int32_t k = 0; k < plan.n_bonds; ++k)
-        x.b[k] = over(dot(m.d[k], difference(read(call.v, lane, plan.atom_i[k]), read(call.v, lane, plan.atom_j[k]))),
-                      m.mass_unit);
+    for (int32_t k = 0; k < plan.n_bonds; ++k) {
+        Wide rate = dot(m.d[k], difference(read(call.v, lane, plan.atom_i[k]), read(call.v, lane, plan.atom_j[k])));
+        if (call.strain) rate += m.unit[k] * stretching_of(call.strain, m.d[k]);
+        x.b[k] = over(rate, m.mass_unit);
+    }
     if (!x.close()) return note_bad_molecule(lane, tally);
     for (int32_t i = 0; i < plan.n_atoms; ++i) {
         const Vector3<double> v = read(call.v, lane, i);

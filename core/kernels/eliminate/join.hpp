@@ -2,15 +2,21 @@
 #ifndef HOLONOMIC_KERNELS_ELIMINATE_JOIN_HPP
 #define HOLONOMIC_KERNELS_ELIMINATE_JOIN_HPP
 
+#include "core/kernels/arithmetic/stretching.hpp"
 #include "core/kernels/eliminate/segment.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 
-// Loads block j and eliminates its inner bonds.
+static inline void add_stretching(const Block &own, const double *strain, const vec3 *D, vec *B) {
+    for (long k = 0; k < own.n; ++k) B[k] = B[k] + keep(joint(own, k), stretching(strain, D[k]));
+}
+
+// Loads block j and eliminates its inner bonds. `strain` is added to rates, or nullptr.
 template <int terms, bool uniform>
 static inline void eliminate_block_of(const Box &box, const SegmentBlock &s, const Packed &r, const Packed &v,
-                                      const Packed &f, bool careful, const SegmentStore &x, Arena arena) {
+                                      const Packed &f, bool careful, const SegmentStore &x, Arena arena,
+                                      const double *strain) {
     const bool boxed = box.shape != Box::none;
     const long n = s.own_max;
     SegmentBonds in = {r, v, f, nullptr, nullptr, nullptr, {}, {}, 0};
@@ -28,12 +34,17 @@ static inline void eliminate_block_of(const Box &box, const SegmentBlock &s, con
             load_bonds<terms, uniform, true, true>(own, box, r, v, f, D, low, B);
         else
             load_bonds<terms, uniform, false, true>(own, box, r, v, f, D, low, B);
+        if (strain) add_stretching(own, strain, D, B);
         eliminate<in_scratch, uniform, true>(s.block, box, source, in, n, x);
         return;
     }
     in.full = s.own_min / group * group;
-    if (boxed) {
-        load_bonds<terms, uniform, true, false>(own, box, r, v, f, D, low, B);
+    if (boxed || strain) {
+        if (boxed)
+            load_bonds<terms, uniform, true, false>(own, box, r, v, f, D, low, B);
+        else
+            load_bonds<terms, uniform, false, false>(own, box, r, v, f, D, low, B);
+        if (strain) add_stretching(own, strain, D, B);
         eliminate<in_scratch, uniform, false>(s.block, box, source, in, n, x);
         return;
     }
@@ -43,7 +54,8 @@ static inline void eliminate_block_of(const Box &box, const SegmentBlock &s, con
 
 template <int terms, class Call>
 static inline void eliminate_block(const Call &call, const Lane &lane, int64_t j, const AtomArray &r,
-                                   const AtomArray &v, const AtomArray &f, bool careful, double *store, Arena arena) {
+                                   const AtomArray &v, const AtomArray &f, bool careful, double *store, Arena arena,
+                                   const double *strain = nullptr) {
     const Cut cut(lane.n_bonds);
     SegmentBlock s = segment_block(cut, j, lane);
     set_segment_masses(s, lane, arena);
@@ -52,9 +64,9 @@ static inline void eliminate_block(const Call &call, const Lane &lane, int64_t j
     const Packed pf = open_segments(f, s, lane, arena, true);
     const SegmentStore x(store, cut, j);
     if (s.block.uniform_w)
-        eliminate_block_of<terms, true>(call.box, s, pr, pv, pf, careful, x, arena);
+        eliminate_block_of<terms, true>(call.box, s, pr, pv, pf, careful, x, arena, strain);
     else
-        eliminate_block_of<terms, false>(call.box, s, pr, pv, pf, careful, x, arena);
+        eliminate_block_of<terms, false>(call.box, s, pr, pv, pf, careful, x, arena, strain);
 }
 
 // Solves for the separators. `careful` says how the segments were eliminated.

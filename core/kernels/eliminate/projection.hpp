@@ -2,6 +2,7 @@
 #ifndef HOLONOMIC_KERNELS_ELIMINATE_PROJECTION_HPP
 #define HOLONOMIC_KERNELS_ELIMINATE_PROJECTION_HPP
 
+#include "core/kernels/arithmetic/stretching.hpp"
 #include "core/kernels/eliminate/chain.hpp"
 
 namespace holonomic {
@@ -10,11 +11,14 @@ namespace HOL_ISA {
 // Working arrays of a projection.
 struct Projection {
     System s;
-    vec3 *v;    // of the atoms
-    vec *left;  // of the bonds: what rounding leaves of the rates, then the multipliers that correct it
-    Projection(long n, Arena &arena)
-        : s(n, arena), v(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + 1 + W)))), left(arena.vecs(n + 1)) {}
-    Projection(const System &system, vec3 *velocities, vec *rates) : s(system), v(velocities), left(rates) {}
+    vec3 *v;               // of the atoms
+    vec *left;             // of the bonds: what rounding leaves of the rates, then the multipliers that correct it
+    const double *strain;  // or nullptr
+    Projection(long n, Arena &arena, const double *of_box)
+        : s(n, arena), v(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + 1 + W)))), left(arena.vecs(n + 1)),
+          strain(of_box) {}
+    Projection(const System &system, vec3 *velocities, vec *rates)
+        : s(system), v(velocities), left(rates), strain(nullptr) {}
     System correction() const { return System(s.D, left, s.L, s.pivots); }
     // Whether nothing has overflowed: what is not finite is carried to the first bond by the backward sweep, and to the
     // last one by the substitution of the rates.
@@ -84,6 +88,7 @@ HOL_NOINLINE mask pull_back(const Block &block, const Projection &x, bool twice)
         pull.step(k);
     }
     pull.finish();
+    for (k = 0; x.strain && k < block.n; ++k) x.left[k] = x.left[k] + stretching(x.strain, x.s.D[k]);
     for (k = twice ? block.n_min : 0; k < block.n; ++k) x.left[k] = twice ? keep(joint(block, k), x.left[k]) : vec{};
     if (twice) substitute(block.n, x.correction());
     return x.finite(block.n);

@@ -4,7 +4,6 @@
 #define HOLONOMIC_KERNELS_ELIMINATE_SEGMENT_SUBSTITUTE_HPP
 
 #include "core/kernels/eliminate/segment.hpp"
-#include "core/kernels/memory/prefetch.hpp"
 #include "core/kernels/memory/pulls.hpp"
 #include "core/kernels/memory/values.hpp"
 #include "core/kernels/memory/virial.hpp"
@@ -67,25 +66,6 @@ HOL_INLINE void store_segment_chunk(const Block &own, const SegmentOutputs &out,
         store_chunk(k0 + 1, value, sink);
 }
 
-// Blocks are substituted in from the last to the first, so that those which were eliminated last are still in cache.
-// What the others need takes twice as long to read unless it is fetched early: so in chains of more bonds than these.
-constexpr int64_t long_in_cache = 65536;
-
-// Distance from a block to the one before it, in vectors per atom and in what is kept of the bonds.
-static inline long distance_before(const Cut &cut, int64_t j) {
-    return cut.n_bonds > long_in_cache && j > 0 ? -3 * W * cut.rows(j - 1) : 0;
-}
-
-// Fetches what the block before this one needs, when this one is at bond k0.
-template <Update update>
-HOL_INLINE void fetch_before(const SegmentBlock &s, const SegmentBonds &in, const SegmentStore &x,
-                             const SegmentOutputs &out, long k0) {
-    static_assert(sizeof(Kept) == 3 * sizeof(vec), "as far apart as vectors of W atoms");
-    fetch_ahead(in.r.lane[0], k0, s.block.ahead);
-    fetch_ahead(&x.kept->u[0], k0, s.block.ahead);
-    if (update == add_ && out.has_pulls) fetch_ahead(out.pulls.lane[0], k0, s.block.ahead);
-}
-
 // Atoms 1 .. own of each segment, and atom 0 of the chain.
 template <bool weighted, bool uniform, bool boxed, Update update>
 HOL_NOINLINE void finish_segments(const SegmentBlock &s, bool first_block, const Box &box, const SegmentBonds &in,
@@ -112,7 +92,6 @@ HOL_NOINLINE void finish_segments(const SegmentBlock &s, bool first_block, const
     }
     const EvenRows at(in.r, in.r, in.r);
     for (; k0 >= 0; k0 -= W) {
-        if (s.block.ahead) fetch_before<update>(s, in, x, out, k0);
         for (int b = W - 1; b > 0; --b) {
             const Kept &p = x.kept[k0 + b];
             t = mul_add(p.l, t, mul_add(p.fP, ts, p.u));
@@ -154,7 +133,6 @@ static inline void finish_block(const Box &box, const AtomArray &r, const AtomAr
     const Cut cut(lane.n_bonds);
     SegmentBlock s = segment_block(cut, j, lane);
     if (weighted) set_segment_masses(s, lane, arena);
-    if (in_place(r, lane)) s.block.ahead = distance_before(cut, j);
     SegmentBonds in = {};
     in.r = open_segments(r, s, lane, arena, true);
     find_next(s, box, in.r, in);

@@ -44,7 +44,10 @@ struct Loader {
             const Vector3<V> dv = v - e.velocity[from];
             b = dot(dv, dv);
         }
-        if (terms & rates) b = dot(d, v - e.velocity[from]);
+        if (terms & rates) {
+            b = dot(d, v - e.velocity[from]);
+            if (me.z.x.in.strain) b = b + stretching(me.z.x.in.strain, d);
+        }
         if (terms & pulls) {
             const V w0 = me.z.x.w[from];
             const Vector3<V> f0 = e.force[from];

@@ -2,6 +2,7 @@
 #ifndef HOLONOMIC_KERNELS_GRAPH_MOLECULES_HPP
 #define HOLONOMIC_KERNELS_GRAPH_MOLECULES_HPP
 
+#include "core/kernels/arithmetic/stretching.hpp"
 #include "core/kernels/graph/atoms.hpp"
 #include "core/kernels/graph/image.hpp"
 #include "core/kernels/graph/schedule.hpp"
@@ -25,7 +26,8 @@ struct BondRow {
 struct Inputs {
     const AtomArray *v, *f;
     const double *rhs;
-    bool rates;  // d.(v_j - v_i) instead of |v_j - v_i|^2
+    bool rates;                      // d.(v_j - v_i) instead of |v_j - v_i|^2
+    const double *strain = nullptr;  // added to rates: arithmetic/stretching.hpp
 };
 
 template <class V>

@@ -113,6 +113,7 @@ HOL_NOINLINE void find_residuals(const Molecules<V> &x, const Equations<V> &e, c
             sum = add_pairs(sum, dot_pairs(dv, dv));
         }
         if (e.given) sum = add_pairs(sum, {e.given[k], V{}});
+        if (x.in.strain) sum = add_pairs(sum, {stretching(x.in.strain, x.row[k].d), V{}});
         x.row[k].t = sum.hi + sum.lo;
     }
 }

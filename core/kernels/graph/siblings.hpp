@@ -70,6 +70,8 @@ double terms_of(const Molecules<V> &x, int32_t place, int lane) {
         for (int c = 0; c < 3; ++c) sum += w * __builtin_fabs(d[c] * f[c]);
         for (int c = 0; c < 3 && x.in.rates; ++c) sum += __builtin_fabs(d[c] * v[e][c]);
     }
+    for (int a = 0, e = 0; a < 3 && x.in.strain; ++a)
+        for (int b = a; b < 3; ++b, ++e) sum += __builtin_fabs(x.in.strain[e] * d[a] * d[b]);
     for (int c = 0; c < 3 && !x.in.rates; ++c) sum += (v[1][c] - v[0][c]) * (v[1][c] - v[0][c]);
     return sum;
 }

@@ -88,6 +88,7 @@ HOL_INLINE unsigned project_triangles(const VelocitiesCall &call, int used, cons
     const auto measure = [&]() HOL_FORCED {  // the largest rate at which a bond changes
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) left[k] = dot(x.d[k], v[(k + 1) % 3] - v[k]);
+        for (int k = 0; k < 3 && call.strain; ++k) left[k] = left[k] + stretching(call.strain, x.d[k]);
         return max(abs(left[0]), max(abs(left[1]), abs(left[2])));
     };
     const auto project = [&](MaskOf<V> which) HOL_FORCED {

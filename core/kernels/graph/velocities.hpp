@@ -27,7 +27,7 @@ struct VelocitiesWork {
 
     template <Layout layout, class V>
     void solve(Linear<V> &z, Memory<V> memory) const {
-        z.x.in = {&call.v, nullptr, nullptr, true};
+        z.x.in = {&call.v, nullptr, nullptr, true, call.strain};
         Loader<layout, rates, V>{z}.load();
         z.equations.start = z.equations.velocity;
         z.equations.velocity = nullptr;
@@ -59,6 +59,7 @@ struct VelocitiesWork {
             int32_t from, to;
             ends_of(x.s, k, from, to);
             x.row[k].t = dot(x.row[k].d, v[to] - v[from]);
+            if (x.in.strain) x.row[k].t = x.row[k].t + stretching(x.in.strain, x.row[k].d);
         }
     }
 

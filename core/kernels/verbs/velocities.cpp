@@ -50,26 +50,52 @@ HOL_NOINLINE mask forward_velocities(const Block &block, const Box &box, const P
     return ~sweep.doubt();
 }
 
+// All velocities, and the rates of the bonds that have been loaded.
+HOL_NOINLINE void load_rates(const Block &block, const Packed &v, const Projection &x) {
+    x.v[0] = load_atom(v);
+    for (long k0 = 0; k0 < block.n; k0 += W) load_ragged_atoms(block, v, k0, x.v);
+    for (long k = 0; k < block.n; ++k) {
+        vec b = rate_of(x.s.D[k], x.v[k], x.v[k + 1]);
+        if (x.strain) b = b + stretching(x.strain, x.s.D[k]);
+        x.s.t[k] = keep(joint(block, k), b);
+    }
+}
+
+// The same in a box that changes.
+template <bool uniform, bool boxed>
+HOL_NOINLINE mask forward_velocities_strained(const Block &block, const Box &box, const Packed &r, const Packed &v,
+                                              const Projection &x) {
+    load_bonds<bonds_alone, uniform, boxed, false>(block, box, r, r, r, x.s.D, nullptr, nullptr);
+    load_rates(block, v, x);
+    const Source source = {&r, nullptr, nullptr, &box, nullptr};
+    Sweep<uniform, true> sweep{block, source, x.s};
+    for (long k = 0; k < block.n; ++k) sweep.step(k, x.s.t[k], k % 4 == 0, k >= block.n_min);
+    return ~sweep.doubt();
+}
+
 // The same with compensated products of unrounded bond vectors: good in all lanes.
 template <bool uniform, bool boxed>
 HOL_NOINLINE mask forward_velocities_careful(const Block &block, const Box &box, const Packed &r, const Packed &v,
                                              const Projection &x) {
     load_bonds<none_, uniform, boxed, true>(block, box, r, r, r, x.s.D, x.s.D_low, x.s.t);
-    x.v[0] = load_atom(v);
-    for (long k0 = 0; k0 < block.n; k0 += W) load_ragged_atoms(block, v, k0, x.v);
-    for (long k = 0; k < block.n; ++k) x.s.t[k] = keep(joint(block, k), rate_of(x.s.D[k], x.v[k], x.v[k + 1]));
+    load_rates(block, v, x);
     forward_careful<uniform>(block, x.s);
     return ~none();
+}
+
+template <bool uniform, bool boxed>
+static inline mask forward_velocities(const Block &block, const Box &box, const Packed &r, const Packed &v,
+                                      const Projection &x, bool careful) {
+    if (careful) return forward_velocities_careful<uniform, boxed>(block, box, r, v, x);
+    return x.strain ? forward_velocities_strained<uniform, boxed>(block, box, r, v, x)
+                    : forward_velocities<uniform, boxed>(block, box, r, v, x);
 }
 
 template <bool uniform>
 static inline mask forward_velocities(const Block &block, const Box &box, const Packed &r, const Packed &v,
                                       const Projection &x, bool careful) {
-    if (box.shape != Box::none)
-        return careful ? forward_velocities_careful<uniform, true>(block, box, r, v, x)
-                       : forward_velocities<uniform, true>(block, box, r, v, x);
-    return careful ? forward_velocities_careful<uniform, false>(block, box, r, v, x)
-                   : forward_velocities<uniform, false>(block, box, r, v, x);
+    return box.shape != Box::none ? forward_velocities<uniform, true>(block, box, r, v, x, careful)
+                                  : forward_velocities<uniform, false>(block, box, r, v, x, careful);
 }
 
 // The second substitution, and the velocities of the lanes in `which` to `out`.
@@ -111,9 +137,9 @@ HOL_NOINLINE void correct_and_scatter(const Block &block, const Projection &x, c
 
 // Lists of atoms in packed arrays. Whether this did all that there was to do; else nothing has been written.
 static inline bool listed_velocities(const Block &block, const Lane *lane, const VelocitiesCall &call, Arena arena) {
-    if (!call.r.packed || call.virial || !listed(block, lane)) return false;
+    if (!call.r.packed || call.virial || call.strain || !listed(block, lane)) return false;
     const AtomLists at(lane);
-    const Projection x(block.n, arena);
+    const Projection x(block.n, arena, nullptr);
     mask good = forward_listed<rate>(block, call.box, at, call.r, call.v, call.v, x.s, x.v);
     good = good & pull_back(block, x, true);
     if (any(~good)) return false;
@@ -127,7 +153,7 @@ static void velocities_block(const Block &block, const Lane *lane, const Velocit
                              Tally &tally) {
     if (block.staged && listed_velocities(block, lane, call, arena)) return;
     const Packed r = open(call.r, block, lane, arena, true), v = open(call.v, block, lane, arena, true);
-    const Projection x(block.n, arena);
+    const Projection x(block.n, arena, call.strain);
     mask rest = block.in_use();
     for (int careful = 0; careful < 2 && any(rest); ++careful) {
         mask good = block.uniform_w ? forward_velocities<true>(block, call.box, r, v, x, careful)
@@ -149,7 +175,8 @@ void velocities(const VelocitiesCall &call, const Unit &unit, double *scratch, T
 
 void long_velocities_eliminate(const VelocitiesCall &call, const Lane &lane, int64_t j, bool careful, double *store,
                                double *scratch) {
-    eliminate_block<rate>(call, lane, j, call.r, call.v, AtomArray{}, careful, store, Arena(scratch, longest_piece));
+    eliminate_block<rate>(call, lane, j, call.r, call.v, AtomArray{}, careful, store, Arena(scratch, longest_piece),
+                          call.strain);
 }
 
 void long_velocities_finish(const VelocitiesCall &call, const Lane &lane, int64_t j, double *store, double *scratch,

@@ -10,7 +10,7 @@ namespace holonomic {
 namespace HOL_ISA {
 
 // From molecule `first` on; returns the first one that is not done.
-template <int N, bool uniform, bool boxed, template <int> class PlaceOf>
+template <int N, bool uniform, bool boxed, template <int> class PlaceOf, bool strained = false>
 static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &unit, const Block &block,
                                        int64_t first) {
     typedef PlaceOf<N> Place;
@@ -32,11 +32,16 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
         const Projection x({D, t, L, pivots}, reinterpret_cast<vec3 *>(elements), left);
         Sweep<uniform, true> sweep{block, source, x.s};
         HOL_UNROLL
-        for (int k = 0; k < N; ++k) sweep.step(k, rate_of(D[k], x.v[k], x.v[k + 1]), k % 4 == 0, false);
+        for (int k = 0; k < N; ++k) {
+            vec b = rate_of(D[k], x.v[k], x.v[k + 1]);
+            if constexpr (strained) b = b + stretching(call.strain, D[k]);
+            sweep.step(k, b, k % 4 == 0, false);
+        }
         FirstPull<uniform> pull(block, x, N);
         HOL_UNROLL
         for (int k = N - 1; k >= 0; --k) pull.step(k);
         pull.finish();
+        for (int k = 0; strained && k < N; ++k) left[k] = left[k] + stretching(call.strain, D[k]);
         substitute(N, x.correction());
         if (__builtin_expect(any(sweep.doubt() | ~x.finite(N)), 0)) break;
         Pull<uniform> correction{block, x, left};
@@ -56,10 +61,23 @@ struct VelocitiesOfMolecules {
     }
 };
 
+// In a box that changes: without one of the library's and one behind the other, as programs have them then.
+template <int N, bool uniform, bool boxed, template <int> class PlaceOf>
+struct StrainedMolecules {
+    static int64_t run(const VelocitiesCall &call, const Unit &unit, const Block &block, int64_t first, Tally &) {
+        if constexpr (boxed)
+            return first;
+        else
+            return velocities_of_molecules<N, uniform, false, PlaceOf, true>(call, unit, block, first);
+    }
+};
+
 static inline int64_t small_velocities(const VelocitiesCall &call, const Unit &unit, const Block &block, int64_t first,
                                        Tally &tally) {
     const bool plain = call.r.packed && call.v.packed && !call.virial && simple_box(call.box);
     const bool boxed = call.box.shape != Box::none;
+    if (plain && call.strain)
+        return any_molecules<StrainedMolecules>(call, unit, block, first, block.uniform_w, boxed, tally);
     return plain ? any_molecules<VelocitiesOfMolecules>(call, unit, block, first, block.uniform_w, boxed, tally)
                  : first;
 }
