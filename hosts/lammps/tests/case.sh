@@ -2,18 +2,9 @@
 # SPDX-License-Identifier: GPL-2.0-only
 # One test: runs LAMMPS with the fix and compares numbers, not exit codes.
 #
-#   case.sh NAME ARG...      with LMP (the executable), SCENE (make_scene), MPIRUN and INPUTS in the environment
-set -u
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
-export OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_mpi_yield_when_idle=1 OMP_NUM_THREADS=1
-
-fail() {
-    echo "FAILED: $*"
-    exit 1
-}
+#   case.sh NAME ARG...      with LMP (the executable), PLUGIN (to be loaded; empty: LMP knows the fix), SCENE (make_scene),
+#                            MPIRUN and INPUTS in the environment
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 # lammps RANKS OUTPUT INPUT VARIABLE VALUE...
 lammps() {
@@ -23,6 +14,10 @@ lammps() {
         variables+=(-var "$1" "$2")
         shift 2
     done
+    if [ -n "${PLUGIN:-}" ]; then
+        printf '%s\n' "plugin load $PLUGIN" "include $input" >with-plugin.lmp
+        input=with-plugin.lmp
+    fi
     if [ "$ranks" -eq 1 ]; then
         "$LMP" -in "$input" "${variables[@]}" -log none >"$output" 2>&1
     else

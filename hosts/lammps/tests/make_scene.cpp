@@ -2,12 +2,13 @@
 // Data files for LAMMPS, in reduced units, written to standard output.
 //
 //   make_scene melt N_CHAINS N_BEADS       linear chains that wind through a simple cubic lattice
+//   make_scene sheet N_CHAINS N_BEADS      linear chains that wind through a square lattice, for dimension 2
 //   make_scene line N_BEADS                one straight chain along x
 //   make_scene dimers|trimers|waters|stars N       molecules at lattice points, turned at random
 //   make_scene bent N ANGLE                three beads with a given angle, in degrees
 //
-// Bonds have the length 1.05 (melt: the lattice's spacing). Type 1: ends and light atoms; type 2: all others. Angles of
-// bent molecules, waters and stars are of type 1. Masses belong to the input script.
+// Bonds have the length 1.05 (melt, sheet: the lattice's spacing). Type 1: ends and light atoms; type 2: all others.
+// Angles of bent molecules, waters and stars are of type 1. Masses belong to the input script.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -27,15 +28,15 @@ struct Atom {
 };
 
 struct Scene {
-    double box[3];
+    double box[3];  // from 0 to there; without a height: from -0.5 to 0.5
     std::vector<Atom> atoms;
     std::vector<std::vector<int>> bonds, angles;  // atoms, counted from 1
 };
 
 /** Lattice points along a way on which each is next to the one before. */
-std::vector<std::vector<int>> winding(int n) {
+std::vector<std::vector<int>> winding(int n, int layers) {
     std::vector<std::vector<int>> points;
-    for (int k = 0; k < n; ++k)
+    for (int k = 0; k < layers; ++k)
         for (int j = 0; j < n; ++j)
             for (int i = 0; i < n; ++i) {
                 const int y = k % 2 ? n - 1 - j : j;
@@ -45,10 +46,11 @@ std::vector<std::vector<int>> winding(int n) {
     return points;
 }
 
-Scene melt(int n_chains, int n_beads) {
-    const int n = static_cast<int>(std::ceil(std::cbrt(static_cast<double>(n_chains) * n_beads) - 1e-9));
-    const auto points = winding(n);
-    Scene scene{{n * bond_length, n * bond_length, n * bond_length}, {}, {}, {}};
+Scene melt(int n_chains, int n_beads, bool flat) {
+    const double n_atoms = static_cast<double>(n_chains) * n_beads;
+    const int n = static_cast<int>(std::ceil((flat ? std::sqrt(n_atoms) : std::cbrt(n_atoms)) - 1e-9));
+    const auto points = winding(n, flat ? 1 : n);
+    Scene scene{{n * bond_length, n * bond_length, flat ? 0 : n * bond_length}, {}, {}, {}};
     for (int k = 0; k < n_chains * n_beads; ++k) {
         const bool end = k % n_beads == 0 || k % n_beads == n_beads - 1;
         scene.atoms.push_back({k / n_beads + 1, end ? 1 : 2, points[k][0] * bond_length, points[k][1] * bond_length,
@@ -154,7 +156,10 @@ void print(const Scene &scene) {
     std::printf("made by make_scene\n\n%zu atoms\n%zu bonds\n%zu angles\n2 atom types\n1 bond types\n1 angle types\n\n",
                 scene.atoms.size(), scene.bonds.size(), scene.angles.size());
     const char *axes[3] = {"xlo xhi", "ylo yhi", "zlo zhi"};
-    for (int c = 0; c < 3; ++c) std::printf("0 %.17g %s\n", scene.box[c], axes[c]);
+    for (int c = 0; c < 3; ++c) {
+        const double half = scene.box[c] > 0 ? 0 : 0.5;
+        std::printf("%g %.17g %s\n", -half, scene.box[c] + half, axes[c]);
+    }
     std::printf("\nAtoms # molecular\n\n");
     for (std::size_t k = 0; k < scene.atoms.size(); ++k) {
         const Atom &a = scene.atoms[k];
@@ -168,14 +173,14 @@ void print(const Scene &scene) {
 
 int main(int argc, char **argv) {
     if (argc < 3) {
-        std::fprintf(stderr,
-                     "make_scene melt N_CHAINS N_BEADS | line N | dimers|trimers|waters|stars N | bent N ANGLE\n");
+        std::fprintf(
+            stderr, "make_scene melt|sheet N_CHAINS N_BEADS | line N | dimers|trimers|waters|stars N | bent N ANGLE\n");
         return 2;
     }
     const int n = std::atoi(argv[2]);
     const double last = argc > 3 ? std::atof(argv[3]) : 0;
-    if (!strcmp(argv[1], "melt"))
-        print(melt(n, static_cast<int>(last)));
+    if (!strcmp(argv[1], "melt") || !strcmp(argv[1], "sheet"))
+        print(melt(n, static_cast<int>(last), !strcmp(argv[1], "sheet")));
     else if (!strcmp(argv[1], "line"))
         print(line(n));
     else

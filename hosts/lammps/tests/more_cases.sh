@@ -9,6 +9,26 @@ preload() {
     same 1e-14 TotEng own stock
 }
 
+# In two dimensions: the trajectory of fix rattle, and the same on four ranks; nothing leaves the plane.
+flat() {
+    local plane=(first "dimension 2" before "fix plane all enforce2d")
+    "$SCENE" sheet 200 3 >data
+    for rigid in rattle holonomic; do
+        run 1 $rigid "$INPUTS/beads.lmp" data data rigid $rigid dt 0.003 "${plane[@]}"
+    done
+    same 1e-11 TotEng rattle holonomic
+    same 1e-11 Temp rattle holonomic
+    "$SCENE" sheet 40 32 >data
+    for n in 1 4; do
+        run $n ranks$n "$INPUTS/beads.lmp" data data rigid holonomic dt 0.003 "${plane[@]}" \
+            after "write_dump all custom end id x y z vx vy vz modify format float %.17g"
+        awk '/^ITEM: ATOMS/ { reading = 1; next } reading { ++n; if ($4 != 0 || $7 != 0) bad = 1 } END { exit bad || n != 1280 }' end ||
+            fail "atoms have left the plane"
+    done
+    same 1e-12 TotEng ranks1 ranks4
+    below 1e-13 'f_rigid[1]' ranks4
+}
+
 # However LAMMPS keeps its bonds and cuts its box, the trajectory is the same.
 layouts() {
     "$SCENE" melt 40 32 >data
