@@ -89,7 +89,9 @@ private:
     void constrain_velocities(bool half_kick, bool with_forces, Give give);
     void receive_velocities(double half, bool with_forces);
     void collect_velocities(const Block &, double half);
-    void add_streaming(const Block &);
+    template <class Give>
+    void give_changes(const Block &, Give give);
+    bool add_streaming(const Block &);
     template <class Add>
     void return_to_atoms(const std::vector<double> &numbers, Add add);
     void exact_forces();
@@ -112,6 +114,7 @@ private:
     std::vector<holonomic_lammps::Belonging> atoms_;  // by local atom
     holonomic_lammps::Registry registry_;
     std::unique_ptr<holonomic_lammps::Plan> plan_;
+    std::vector<tagint> planned_;  // the atoms here, in their order, when it was made
     std::vector<Block> blocks_;
     std::vector<std::vector<std::array<int, 2>>> walks_;  // by shape, see walk()
 
@@ -123,7 +126,7 @@ private:
     std::vector<Shifted> shifted_;  // by slot
     std::vector<Away> away_;        // by slot
     std::vector<double> answers_;   // three numbers for each of those, in the order of the messages
-    std::vector<double> change_;    // scratch of a block
+    std::vector<double> scratch_;   // of a block
 
     double rate_[6] = {0};       // d(box)/dt box^-1, xx yy zz yz xz xy, with which atoms move beside their velocities
     double step_rate_[6] = {0};  // its mean over the last step

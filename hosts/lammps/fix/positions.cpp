@@ -48,10 +48,17 @@ void FixHolonomic::setup_pre_neighbor() {
     });
 }
 
+/** Where every rank still has the same atoms in the same order, the plan holds: on one rank until they are sorted. */
 void FixHolonomic::replan(bool fresh) {
+    const tagint *tag = atom->tag;
+    int changed = fresh || planned_.size() != static_cast<std::size_t>(atom->nlocal) ||
+                  !std::equal(planned_.begin(), planned_.end(), tag);
+    MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_MAX, world);
+    if (!changed) return;
+    planned_.assign(tag, tag + atom->nlocal);
     const std::vector<Membership> members(atoms_.begin(), atoms_.begin() + atom->nlocal);
-    const std::vector<Tag> tags(atom->tag, atom->tag + atom->nlocal);
-    int changed = plan_->renew(registry_, members.data(), tags.data(), atom->nlocal) || fresh;
+    const std::vector<Tag> tags(planned_.begin(), planned_.end());
+    changed = plan_->renew(registry_, members.data(), tags.data(), atom->nlocal) || fresh;
     MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_MAX, world);
     away_.clear();
     for (const Peer &owner : plan_->exchange.owners)
@@ -135,6 +142,7 @@ FixHolonomic::Vector FixHolonomic::image_vector(const Shifts &n) const {
 FixHolonomic::Shifts FixHolonomic::nearest_image(const double *d) const {
     const double *h = domain->h;
     Shifts n{0, 0, 0};
+    if (std::fabs(d[0]) < 0.5 * h[0] && std::fabs(d[1]) < 0.5 * h[1] && std::fabs(d[2]) < 0.5 * h[2]) return n;
     if (domain->zperiodic) n[2] = -static_cast<int>(std::lround(d[2] / h[2]));
     const double y = d[1] + n[2] * h[3];
     if (domain->yperiodic) n[1] = -static_cast<int>(std::lround(y / h[1]));
@@ -189,10 +197,10 @@ inline void FixHolonomic::move_atom(int i, const double *r, double inverse_time)
 /** A block's positions go back to its own atoms, and into the answers to other ranks. */
 void FixHolonomic::return_positions(const Block &block, double inverse_time) {
     const int first = block.packed.first_slot(), end = block.packed.end_slot();
-    if (block.first_shifted != block.end_shifted) {
-        change_.assign(&now_[3 * first], &now_[3 * first] + 3 * (end - first));
-        add_images(block, -1);
-    }
+    scratch_.resize(3 * static_cast<std::size_t>(block.end_shifted - block.first_shifted));
+    for (int k = block.first_shifted; k < block.end_shifted; ++k)
+        std::copy_n(&now_[3 * shifted_[k].slot], 3, &scratch_[3 * (k - block.first_shifted)]);
+    add_images(block, -1);
     const int *atoms = plan_->atoms().data();
     for (int slot = first; slot < end; ++slot)
         if (atoms[slot] >= 0) move_atom(atoms[slot], &now_[3 * slot], inverse_time);
@@ -200,12 +208,12 @@ void FixHolonomic::return_positions(const Block &block, double inverse_time) {
         std::copy_n(&now_[3 * away_[k].slot], 3, &answers_[3 * away_[k].order]);
     // Whole again, to the bit
     for (int k = block.first_shifted; k < block.end_shifted; ++k)
-        std::copy_n(&change_[3 * (shifted_[k].slot - first)], 3, &now_[3 * shifted_[k].slot]);
+        std::copy_n(&scratch_[3 * (k - block.first_shifted)], 3, &now_[3 * shifted_[k].slot]);
 }
 
 /**
  * Positions onto the constraints, along the bonds of those of the last step or of themselves; velocities get the
- * displacements over the time, or nothing. Gives whether any has moved.
+ * displacements over the time, or nothing. Gives whether any has moved along its own bonds.
  */
 bool FixHolonomic::constrain_positions(bool from_themselves, double time) {
     const double inverse_time = from_themselves ? 0.0 : 1 / time;
@@ -219,7 +227,7 @@ bool FixHolonomic::constrain_positions(bool from_themselves, double time) {
         if (from_themselves)
             std::copy(&now_[3 * block.packed.first_slot()], now_.data() + 3 * block.packed.end_slot(),
                       &before_[3 * block.packed.first_slot()]);
-        n_moved += block.packed.positions(before_.data(), now_.data(), time);
+        block.packed.positions(before_.data(), now_.data(), time, from_themselves ? &n_moved : nullptr);
         return_positions(block, inverse_time);
     }
     const double *answer = answers_.data();

@@ -78,26 +78,35 @@ void FixHolonomic::receive_velocities(double half, bool with_forces) {
         });
 }
 
-/** The same for a block's own atoms; then the box's motion for all. */
+/** The same for a block's own atoms; then the box's motion for all. A copy goes into scratch_. */
 void FixHolonomic::collect_velocities(const Block &block, double half) {
+    const int first = block.packed.first_slot();
+    scratch_.resize(3 * static_cast<std::size_t>(block.packed.end_slot() - first));
     if (atom->nlocal > 0) {
+        double *given = scratch_.data();
         const double *v = atom->v[0], *f = atom->f[0];
         const int *atoms = plan_->atoms().data();
         double *velocities = velocities_.data();
-        for (int slot = block.packed.first_slot(); slot < block.packed.end_slot(); ++slot) {
+        for (int slot = first; slot < block.packed.end_slot(); ++slot) {
             if (atoms[slot] < 0) continue;
             const std::ptrdiff_t i = 3 * static_cast<std::ptrdiff_t>(atoms[slot]);
             const double kick = half * inverse_masses_[slot];
             const double u0 = v[i] + kick * f[i], u1 = v[i + 1] + kick * f[i + 1], u2 = v[i + 2] + kick * f[i + 2];
-            double *to = velocities + 3 * slot;
+            double *to = velocities + 3 * slot, *copy = given + 3 * (slot - first);
             to[0] = u0, to[1] = u1, to[2] = u2;
+            copy[0] = u0, copy[1] = u1, copy[2] = u2;
         }
     }
-    add_streaming(block);
+    const bool moved = add_streaming(block);
+    if (block.first_away == block.end_away && !moved) return;
+    std::copy_n(&velocities_[3 * first], scratch_.size(), scratch_.data());
 }
 
-/** Velocities with which the slots really move: images with their box, atoms with the box that is deformed. */
-void FixHolonomic::add_streaming(const Block &block) {
+/**
+ * Velocities with which the slots really move: images with their box, atoms with the box that is deformed. Gives
+ * whether there is such a motion.
+ */
+bool FixHolonomic::add_streaming(const Block &block) {
     if (domain->deform_vremap) {
         const double *h = domain->h_rate;
         for (int k = block.first_shifted; k < block.end_shifted; ++k) {
@@ -108,7 +117,7 @@ void FixHolonomic::add_streaming(const Block &block) {
             v[2] += n[2] * h[2];
         }
     }
-    if (!streaming_) return;
+    if (!streaming_) return domain->deform_vremap != 0;
     const double *L = rate_;
     for (int m = block.packed.first_resident(); m < block.packed.end_resident(); ++m) {
         const Resident &resident = plan_->residents()[m];
@@ -123,6 +132,25 @@ void FixHolonomic::add_streaming(const Block &block) {
             v[2] += L[2] * z;
         }
     }
+    return true;
+}
+
+/** What a block's velocities have become more than scratch_: to its own atoms, and into the answers to other ranks. */
+template <class Give>
+void FixHolonomic::give_changes(const Block &block, Give give) {
+    const int first = block.packed.first_slot(), end = block.packed.end_slot();
+    const int *atoms = plan_->atoms().data();
+    const double *given = scratch_.data(), *masses = masses_.data(), *velocities = velocities_.data();
+    for (int slot = first; slot < end; ++slot) {
+        if (atoms[slot] < 0) continue;
+        const double *v = velocities + 3 * slot, *u = given + 3 * (slot - first);
+        const double change[3] = {v[0] - u[0], v[1] - u[1], v[2] - u[2]};
+        give(atoms[slot], change, masses[slot]);
+    }
+    for (int k = block.first_away; k < block.end_away; ++k)
+        for (int c = 0; c < 3; ++c)
+            answers_[3 * away_[k].order + c] =
+                velocities[3 * away_[k].slot + c] - given[3 * (away_[k].slot - first) + c];
 }
 
 /**
@@ -133,18 +161,10 @@ template <class Give>
 void FixHolonomic::constrain_velocities(bool half_kick, bool with_forces, Give give) {
     const double half = half_kick ? 0.5 * update->dt * force->ftm2v : 0.0;
     receive_velocities(half, with_forces);
-    const int *atoms = plan_->atoms().data();
     for (Block &block : blocks_) {
-        const int first = block.packed.first_slot(), n = block.packed.end_slot() - first;
-        double *velocities = &velocities_[3 * first];
         collect_velocities(block, half);
-        change_.assign(velocities, velocities + 3 * n);
         if (!reruns_) block.packed.velocities(now_.data(), velocities_.data());
-        for (int k = 0; k < 3 * n; ++k) change_[k] = velocities[k] - change_[k];
-        for (int k = 0; k < n; ++k)
-            if (atoms[first + k] >= 0) give(atoms[first + k], &change_[3 * k], masses_[first + k]);
-        for (int k = block.first_away; k < block.end_away; ++k)
-            std::copy_n(&change_[3 * (away_[k].slot - first)], 3, &answers_[3 * away_[k].order]);
+        give_changes(block, give);
     }
     const double *answer = answers_.data();
     plan_->exchange.to_owners<3>(

@@ -68,12 +68,13 @@ void Packed::add(const Resident &first, int n_molecules) {
     throw std::runtime_error(where + ": " + reason(status) + " (" + hol_error_message() + ")");
 }
 
-std::int64_t Packed::positions(const double *before, double *now, double dt) {
+void Packed::positions(const double *before, double *now, double dt, std::int64_t *n_moved) {
     hol_report report;
     const int k = 3 * first_slot_;
-    check(hol_project_positions(chains_.get(), before + k, now + k, nullptr, dt, nullptr, 0, nullptr, &report),
+    check(hol_project_positions(chains_.get(), before + k, now + k, nullptr, dt, nullptr, 0, nullptr,
+                                n_moved ? &report : nullptr),
           "positions");
-    return report.n_corrected;
+    if (n_moved) *n_moved += report.n_corrected;
 }
 
 void Packed::velocities(const double *r, double *v) {

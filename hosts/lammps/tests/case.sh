@@ -79,16 +79,22 @@ stops() {
 
 more_of() { [ "$1" = waters ] && echo "a 1" || echo " "; }
 
-# The same trajectory as fix rattle at 1e-13.
-rattle() {
-    local kind=$1 light=${2:-1.0}
-    "$SCENE" "$kind" 500 >data
-    for rigid in rattle holonomic; do
-        run 1 $rigid "$INPUTS/beads.lmp" data data rigid $rigid more "$(more_of "$kind")" light "$light" dt "${3:-0.005}"
+# agree VARIABLE VALUE...: the trajectory of fix rattle at 1e-13. Its velocities are wrong in the releases that plugins are
+# for (2025 and 2026: those of molecules across the boundary of the box, on one rank and on several), so that it is the
+# positions of fix shake there, which are the same, by the potential energy: 1e-8 of it are 1e-11 of the total energy.
+agree() {
+    local reference=rattle columns="TotEng Temp" tolerance=1e-11 column
+    [ -z "${PLUGIN:-}" ] || { reference=shake columns=PotEng tolerance=1e-8; }
+    for rigid in $reference holonomic; do
+        run 1 $rigid "$INPUTS/beads.lmp" rigid $rigid wide 3.5 "$@"
     done
-    same 1e-11 TotEng rattle holonomic
-    same 1e-11 Temp rattle holonomic
+    for column in $columns; do same $tolerance "$column" $reference holonomic; done
     below 1e-13 'f_rigid[1]' holonomic
+}
+
+rattle() {
+    "$SCENE" "$1" 500 >data
+    agree data data more "$(more_of "$1")" light "${2:-1.0}" dt "${3:-0.005}"
 }
 
 # The same trajectory on 1, 2 and 4 ranks: ranks N_CHAINS N_BEADS DT

@@ -30,13 +30,15 @@ translated() {
     sed -E "s/^(fix test [^ ]+) $style [^ ]+ [^ ]+ [^ ]+/\1 $with/" <<<"$commands"
 }
 
-# What the scene leaves to a second file, in newer releases: styles and all, or lengths and angles for the styles zero.
+# What the scene leaves to a second file, in older releases to the test's source: styles, coefficients and groups; lengths
+# and angles for the styles zero.
 coefficients() {
-    [ -f "$scenes/coeffs.fourmol" ] || return
-    case $(entry input_file) in
-        in.fourmol) cat "$scenes/coeffs.fourmol" ;;
-        *) awk '$1 ~ /^(bond|angle)_coeff$/ { print $1, $2, $4 } END { print "pair_coeff * *" }' "$scenes/coeffs.fourmol" ;;
-    esac
+    local file=$scenes/coeffs.fourmol source=$SOURCE/unittest/force-styles/test_fix_timestep.cpp
+    if [ -f "$file" ]; then cat "$file"; else
+        sed -nE 's/^ *command\("((pair_|bond_|angle_|group ).*)"\);/\1/p' "$source"
+    fi | if [ "$(entry input_file)" = in.fourmol ]; then cat; else
+        awk '$1 ~ /^(bond|angle)_coeff$/ { print $1, $2, $4 } END { print "pair_coeff * *" }'
+    fi
 }
 
 # scene WHICH START PARTS: the input. START: a restart file, or "" for the scene itself; each step in so many PARTS.
@@ -92,7 +94,10 @@ entry run_pos >reference.pos
 entry run_vel >reference.vel
 epsilon=$(entry epsilon)
 run=("run 0 post no" "thermo 2" "run 4 post no start 0 stop 8" "write_restart half" "run 4 start 0 stop 8")
-take tight tight "" 1 "${run[@]}" || fail "fix $style stopped"
+if ! take tight tight "" 1 "${run[@]}"; then
+    grep -Eq 'Unknown fix|Unrecognized fix' tight.out && { echo "SKIPPED: this LAMMPS has no fix $style"; exit 77; }
+    fail "fix $style stopped"
+fi
 take ours holonomic "" 1 "${run[0]}" "write_restart start" "${run[@]:1}" || fail "fix holonomic stopped"
 echo "fix $style at its tolerance and at 1e-13: positions $(apart reference.pos tight.pos), velocities $(apart reference.vel tight.vel)"
 if [ "$style" = ilves ]; then
