@@ -47,12 +47,23 @@ struct MoleculeLane {
 
 struct Schedule;  // order of elimination of a shape: core/molecules/schedule.hpp
 
+struct Tally;
+
+// The threads that work on one long chain, or on one large molecule, as core lends them: run() calls body(context, j,
+// scratch, part) for j = 0 .. n-1 on any of them, and adds the parts to the total in the order of j.
+struct LongTeam {
+    const void *threads;
+    void (*run)(const void *threads, int64_t n, Tally &total,
+                void (*body)(const void *context, int64_t j, double *scratch, Tally &part), const void *context);
+};
+
 // A piece of work: molecules of one shape; masses and lengths may differ among them.
 struct MoleculeUnit {
     const Schedule *schedule;
     const MoleculeLane *lanes;
     int64_t count;
-    bool regular, large;  // as in Unit
+    bool regular, large;             // as in Unit
+    const LongTeam *team = nullptr;  // of a single large molecule
 };
 
 // Chains of more bonds are cut into segments.
@@ -135,14 +146,6 @@ struct InSegments {
     void (*eliminate)(const Call &, const Lane &, int64_t block, bool careful, double *store, double *scratch);
     JoinResult (*join)(const Lane &, bool careful, double *store);
     void (*finish)(const Call &, const Lane &, int64_t block, double *store, double *scratch, Tally &);
-};
-
-// The threads that work on one long chain, as core lends them: run() calls body(context, j, scratch, part) for j = 0 ..
-// n-1 on any of them, and adds the parts to the total in the order of j.
-struct LongTeam {
-    const void *threads;
-    void (*run)(const void *threads, int64_t n, Tally &total,
-                void (*body)(const void *context, int64_t j, double *scratch, Tally &part), const void *context);
 };
 
 // Or in windows, which know nothing of each other. `solve` returns false, with nothing written, where these won't do:

@@ -5,45 +5,17 @@
 
 #include "core/molecules/careful_shape.hpp"
 #include "core/molecules/elimination_order.hpp"
+#include "core/molecules/lists.hpp"
+#include "core/molecules/schedule_runs.hpp"
 
 namespace holonomic {
-
-namespace {
-
-using Numbers = std::vector<std::int32_t>;
-
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
-
-// Lists of numbers, one per row, in one array.
-struct Lists {
-    Numbers start, item;
-    std::int32_t size(std::int32_t i) const { return start[at(i) + 1] - start[at(i)]; }
-    const std::int32_t *begin(std::int32_t i) const { return item.data() + start[at(i)]; }
-    const std::int32_t *end(std::int32_t i) const { return item.data() + start[at(i) + 1]; }
-};
-
-// Which of the pairs hold each number: calls each(k, row) for the two rows of pair k.
-template <class Each>
-Lists invert(std::int32_t n_rows, std::int32_t n_pairs, const Each &each) {
-    Lists lists;
-    lists.start.assign(at(n_rows) + 1, 0);
-    for (std::int32_t k = 0; k < n_pairs; ++k)
-        for (const std::int32_t i : {each(k, 0), each(k, 1)}) ++lists.start[at(i) + 1];
-    for (std::int32_t i = 0; i < n_rows; ++i) lists.start[at(i) + 1] += lists.start[at(i)];
-    lists.item.resize(2 * at(n_pairs));
-    Numbers next(lists.start.begin(), lists.start.end() - 1);
-    for (std::int32_t k = 0; k < n_pairs; ++k)
-        for (const std::int32_t i : {each(k, 0), each(k, 1)}) lists.item[at(next[at(i)]++)] = k;
-    return lists;
-}
-
-}  // namespace
 
 struct Schedule::Memory {
     Numbers atom_i, atom_j, atom_of, slot_of, bond_of, place_of, parent, child_start, child, pair_start, from, to,
         meet_start, meet, meet_pair, meet_pair_start, column_start, row, update;
     std::vector<std::int64_t> update_start;
     std::vector<std::uint8_t> fixed;
+    ScheduleRuns runs;
     std::unique_ptr<const CarefulShape> careful;
 };
 
@@ -281,6 +253,14 @@ void point_into(Schedule &s, const Schedule::Memory &m) {
     s.update = m.update.data();
 }
 
+void add_runs(Schedule &s, Schedule::Memory &m) {
+    m.runs = runs_of(s);
+    s.run = m.runs.run.data();
+    s.run_slot = m.runs.slot.data();
+    s.piece_start = m.runs.piece_start.data();
+    s.n_pieces = static_cast<std::int32_t>(m.runs.piece_start.size()) - 2;
+}
+
 }  // namespace
 
 std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
@@ -296,6 +276,7 @@ std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t
     for (std::int32_t i = 0; i < n_atoms; ++i) m.fixed.push_back(fixed && fixed[i]);
     Maker(*s, m).make();
     point_into(*s, m);
+    if (n_bonds > largest_in_lanes && s->n_tree > 0) add_runs(*s, m);
     m.careful = std::make_unique<const CarefulShape>(n_atoms, n_bonds, pairs);
     s->careful = &m.careful->plan();
     return s;

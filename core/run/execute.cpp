@@ -73,6 +73,13 @@ std::int64_t long_chain_bonds(const Chains &chains, const Plan &plan, std::int64
     return n > longest_lane ? n : 0;
 }
 
+// A single molecule that is large enough for several threads.
+bool is_large_molecule(const Plan &plan, std::int64_t p) {
+    const Plan::Piece &piece = plan.pieces[static_cast<std::size_t>(p)];
+    return piece.shape != linear && piece.count == 1 &&
+           plan.schedules[static_cast<std::size_t>(piece.shape)]->n_pieces > 1;
+}
+
 // Molecules whose cycles do not close are bad; the others are worked on.
 void work_on_molecules(const Work &work, const MoleculeUnit &unit, int where, double *scratch, Tally &tally) {
     Images images[2];
@@ -163,11 +170,13 @@ Tally execute(const Chains &chains, const Plan &plan, const Work &work) {
         throw std::bad_alloc();
 
     const Team alone(1, scratch_bytes);
-    const auto work_on = [&](std::int64_t p, double *scratch, Tally &tally) {
+    const auto work_on = [&](std::int64_t p, double *scratch, Tally &tally, const LongTeam *team) {
         const Plan::Piece &piece = plan.pieces[static_cast<std::size_t>(p)];
         if (piece.shape != linear) {
             MoleculeLane lanes[loose_piece];
-            return work_on_molecules(work, chains.unit(plan, piece, lanes), piece.where, scratch, tally);
+            MoleculeUnit unit = chains.unit(plan, piece, lanes);
+            unit.team = team;
+            return work_on_molecules(work, unit, piece.where, scratch, tally);
         }
         Lane lanes[loose_piece];
         const Unit unit = chains.unit(plan, piece, lanes);
@@ -181,19 +190,26 @@ Tally execute(const Chains &chains, const Plan &plan, const Work &work) {
     if (n_threads > 1) {
         Tally *const parts = tallies(Keep::piece_tallies, n_pieces);
         const auto is_shared = [&](std::int64_t p) {
+            if (is_large_molecule(plan, p)) return true;
             if (!any_shared) return false;
             const std::int64_t n = long_chain_bonds(chains, plan, p);
             return n > 0 && work.long_blocks(n) >= shared_blocks;
         };
         share(n_threads, scratch_bytes, own_store, n_pieces, Team::forwards, [&](std::int64_t p, double *scratch) {
             Tally tally = empty_tally();
-            if (!is_shared(p)) work_on(p, scratch, tally);
+            if (!is_shared(p)) work_on(p, scratch, tally, nullptr);
             parts[p] = tally;
         });
         const Team team(n_threads, scratch_bytes);
-        for (std::int64_t p = 0; any_shared && p < n_pieces; ++p) {
+        const LongTeam lent = team.lent();
+        for (std::int64_t p = 0; p < n_pieces; ++p) {
             if (!is_shared(p)) continue;
             const Plan::Piece &piece = plan.pieces[static_cast<std::size_t>(p)];
+            if (piece.shape != linear) {
+                parts[p] = empty_tally();
+                work_on(p, own_scratch, parts[p], &lent);
+                continue;
+            }
             Lane lanes[loose_piece];
             work.long_chain(chains.unit(plan, piece, lanes).lanes[0], piece.where, team, store_memory(shared_store),
                             parts[p]);
@@ -203,12 +219,12 @@ Tally execute(const Chains &chains, const Plan &plan, const Work &work) {
     }
 #endif
     if (n_pieces == 1) {
-        work_on(0, own_scratch, total);
+        work_on(0, own_scratch, total, nullptr);
         return total;
     }
     for (std::int64_t p = 0; p < n_pieces; ++p) {
         Tally tally = empty_tally();
-        work_on(p, own_scratch, tally);
+        work_on(p, own_scratch, tally, nullptr);
         add(total, tally);
     }
     return total;

@@ -9,9 +9,6 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// Molecules of more bonds are worked on one by one.
-constexpr int32_t largest_in_lanes = 2048;
-
 HOL_INLINE MoleculeLane molecule_of(const MoleculeUnit &unit, int64_t i) {
     if (!unit.regular) return unit.lanes[i];
     MoleculeLane lane = unit.lanes[0];

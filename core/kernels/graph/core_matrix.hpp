@@ -59,7 +59,7 @@ static inline void add_core_atom(Molecules<V> &x, const CoreMatrix<V> &core, int
     const int32_t n = s.meet_start[c + 1] - s.meet_start[c], *entry = s.meet_pair + s.meet_pair_start[c];
     const V w = x.w[slot];
     auto f = JointMemory<V, 0>::make(memory, k);
-    decompose(x, child, k, w, f.S, f.r, f.m, x.slack);
+    decompose(AtomRows<V>(x, slot), k, w, f.S, f.r, f.m, x.slack);
     V *const m = x.pair + s.pair_start[slot];
     for (int32_t a = 0; a < k; ++a) x.row[child[a]].r = f.r[a];
     for (int32_t a = 0; a < k * (k - 1) / 2; ++a) m[a] = f.m[a];
@@ -132,7 +132,7 @@ static inline void substitute_core(const Molecules<V> &x, const CoreMatrix<V> &c
             V &y = x.row[s.n_tree + s.meet[e] / 2].t;
             y = s.meet[e] % 2 ? y + sum : y - sum;
         }
-        substitute_joint<0, true>(x, slot, k, memory);
+        substitute_joint<0, true>(AtomRows<V>(x, slot), k, memory);
     }
     BondRow<V> *const row = x.row + s.n_tree;
     for (int32_t p = 0; p < s.n_core; ++p)

@@ -4,7 +4,7 @@
 
 #include "core/kernels/graph/blocks.hpp"
 #include "core/kernels/graph/doubtful.hpp"
-#include "core/kernels/graph/load.hpp"
+#include "core/kernels/graph/large_linear.hpp"
 #include "core/kernels/graph/store.hpp"
 #include "core/kernels/graph/triangle_blocks.hpp"
 
@@ -27,13 +27,31 @@ static inline void write_outputs(const Molecules<V> &x, const Outputs &out, unsi
     if (out.g->x) write_pulls<layout>(x, *out.g, out.add, which);
 }
 
-// Solves what has been loaded; the lanes that plain arithmetic answers for.
-template <bool keep, class V>
-static inline unsigned solve_loaded(Linear<V> &z) {
-    z.template factorize_and_solve<keep>();
+// Lanes that plain arithmetic answers for, once the equations are solved.
+template <class V>
+static inline unsigned solved_lanes(Linear<V> &z) {
+    if (z.x.in.rates) {
+        z.equations.start = z.equations.velocity;
+        z.equations.velocity = nullptr;
+    }
     MaskOf<V> good = z.x.in_use() & ~less(z.x.slack, V{});
     if (z.x.s.type == Schedule::graph) good = good & z.refine();
     return bits(good & finite_solution(z.x));
+}
+
+// Reads the molecules and solves; `masses_known`: they are those of the block before.
+template <Layout layout, int terms, bool keep, class V>
+static inline unsigned load_and_solve(Linear<V> &z, bool masses_known) {
+    if (!masses_known) z.set_masses();
+    Loader<layout, terms, V>{z}.load();
+    z.template factorize_and_solve<keep>();
+    return solved_lanes(z);
+}
+template <Layout layout, int terms, bool keep>
+static inline unsigned load_and_solve(Linear<double> &z, bool masses_known) {
+    if (!z.x.pieces) return load_and_solve<layout, terms, keep, double>(z, masses_known);
+    solve_in_pieces<layout, terms, keep>(z);
+    return solved_lanes(z);
 }
 
 struct ForcesWork {
@@ -41,30 +59,27 @@ struct ForcesWork {
     const Schedule &schedule;
     const bool packed;
     Tally &tally;
+    const LongTeam *team;
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
         Memory<V> memory = {scratch};
         Linear<V> z(schedule, lane, used, call.box, call.r, memory);
-        if (!masses_known) z.set_masses();
+        open_pieces(z, team, memory);
         if (!call.v.x) z.equations.velocity = nullptr;
         if (!call.f.x) z.equations.force = nullptr;
         z.equations.given = nullptr;
-        with_layout(z.x.at, packed, [&](auto layout) { solve<decltype(layout)::value>(z, memory); });
+        with_layout(z.x.at, packed, [&](auto layout) { solve<decltype(layout)::value>(z, masses_known, memory); });
     }
 
     template <Layout layout, class V>
-    void solve(Linear<V> &z, Memory<V> memory) const {
+    void solve(Linear<V> &z, bool masses_known, Memory<V> memory) const {
         z.x.in = {&call.v, &call.f, nullptr, false};
-        if (call.v.x && call.f.x)
-            Loader<layout, squares | pulls, V>{z}.load();
-        else if (call.f.x)
-            Loader<layout, pulls, V>{z}.load();
-        else if (call.v.x)
-            Loader<layout, squares, V>{z}.load();
-        else
-            Loader<layout, 0, V>{z}.load();
-        const unsigned good = solve_loaded<false>(z), rest = bits(z.x.in_use()) & ~good;
+        const unsigned good = call.v.x && call.f.x ? load_and_solve<layout, squares | pulls, false>(z, masses_known)
+                              : call.f.x           ? load_and_solve<layout, pulls, false>(z, masses_known)
+                              : call.v.x           ? load_and_solve<layout, squares, false>(z, masses_known)
+                                                   : load_and_solve<layout, 0, false>(z, masses_known),
+                       rest = bits(z.x.in_use()) & ~good;
         write_outputs<layout>(z.x, {&call.g, call.lambda, call.tension, call.add, call.virial}, good, tally);
         if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, z.x.lane, rest, memory.next, tally);
     }
@@ -75,21 +90,21 @@ struct SolveWork {
     const Schedule &schedule;
     const bool packed;
     Tally &tally;
+    const LongTeam *team;
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
         Memory<V> memory = {scratch};
         Linear<V> z(schedule, lane, used, call.box, call.r, memory);
-        if (!masses_known) z.set_masses();
+        open_pieces(z, team, memory);
         z.equations.velocity = z.equations.force = nullptr;
-        with_layout(z.x.at, packed, [&](auto layout) { solve<decltype(layout)::value>(z, memory); });
+        with_layout(z.x.at, packed, [&](auto layout) { solve<decltype(layout)::value>(z, masses_known, memory); });
     }
 
     template <Layout layout, class V>
-    void solve(Linear<V> &z, Memory<V> memory) const {
+    void solve(Linear<V> &z, bool masses_known, Memory<V> memory) const {
         z.x.in = {nullptr, nullptr, call.rhs, false};
-        Loader<layout, given, V>{z}.load();
-        const unsigned good = solve_loaded<false>(z), rest = bits(z.x.in_use()) & ~good;
+        const unsigned good = load_and_solve<layout, given, false>(z, masses_known), rest = bits(z.x.in_use()) & ~good;
         write_outputs<layout>(z.x, {&call.g, call.lambda, call.tension, call.add, call.virial}, good, tally);
         if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, z.x.lane, rest, memory.next, tally);
     }

@@ -21,20 +21,20 @@ constexpr int pair_of(int a, int b) { return a * (a - 1) / 2 + b; }  // a > b
 
 // Multipliers m and reciprocal pivots r of S; S is k (k + 1) / 2 values of working memory, its rows one after the
 // other.
-template <class V>
-HOL_INLINE void decompose(const Molecules<V> &x, const int32_t *child, int k, V w, V *S, V *r, V *m, V &slack) {
+template <class Rows, class V>
+HOL_INLINE void decompose(const Rows &x, int k, V w, V *S, V *r, V *m, V &slack) {
     HOL_UNROLL
     for (int a = 0; a < k; ++a) {
-        const BondRow<V> &row = x.row[child[a]];
+        const BondRow<V> &row = x.bond(a);
         HOL_UNROLL
-        for (int b = 0; b < a; ++b) S[pair_of(a + 1, b)] = w * dot(row.d, x.row[child[b]].d);
+        for (int b = 0; b < a; ++b) S[pair_of(a + 1, b)] = w * dot(row.d, x.bond(b).d);
         S[pair_of(a + 1, a)] = mul_add(w, row.q, row.E);
     }
     HOL_UNROLL
     for (int j = 0; j < k; ++j) {
         const V P = S[pair_of(j + 1, j)];
         if (j > 0) {
-            const BondRow<V> &row = x.row[child[j]];
+            const BondRow<V> &row = x.bond(j);
             const V whole = mul_add(w, row.q, row.E);
             slack = min(mul_add(Width<V>::all(-least_part), whole, P), slack);
         }
@@ -85,36 +85,35 @@ struct JointMemory<V, 0> {
     static constexpr int64_t values(int64_t k) { return k * (k + 1) / 2 + k * (k - 1) / 2 + 4 * k; }
 };
 
-// The children of slot `slot`, with the bond above it at place `slot` (top: there is none). Right-hand sides are in t
-// of the rows. `keep`: multipliers and pivots are kept for another right-hand side.
-template <int known, bool top, bool keep, class V>
-HOL_INLINE void up_joint(const Molecules<V> &x, int32_t slot, int count, Memory<V> memory, V &slack) {
+// The k children of an atom, with the bond above it (top: there is none). Right-hand sides are in t of the rows.
+// `keep`: multipliers and pivots are kept for another right-hand side.
+template <int known, bool top, bool keep, class V, class Rows>
+HOL_INLINE void up_joint(const Rows &x, int count, Memory<V> memory, V &slack) {
     const int k = known > 0 ? known : count;
-    const int32_t *const child = x.s.child + x.s.child_start[slot];
     auto f = JointMemory<V, known>::make(memory, k);
-    const V w = x.w[slot];
-    decompose(x, child, k, w, f.S, f.r, f.m, slack);
-    V *const m = keep ? x.pair + x.s.pair_start[slot] : nullptr;
+    const V w = x.w();
+    decompose(x, k, w, f.S, f.r, f.m, slack);
+    V *const m = keep ? x.multipliers() : nullptr;
     HOL_UNROLL
     for (int a = 0; a < k; ++a) {
-        x.row[child[a]].r = f.r[a];
+        x.bond(a).r = f.r[a];
         if (keep) {
             HOL_UNROLL
             for (int b = 0; b < a; ++b) m[pair_of(a, b)] = f.m[pair_of(a, b)];
         }
     }
     if (!top) {
-        BondRow<V> &e = x.row[slot];
+        BondRow<V> &e = x.above();
         HOL_UNROLL
-        for (int a = 0; a < k; ++a) f.y[a] = w * (k == 1 ? product_of(x, child[a], slot) : dot(x.row[child[a]].d, e.d));
+        for (int a = 0; a < k; ++a) f.y[a] = w * (k == 1 ? x.only_product() : dot(x.bond(a).d, e.d));
         solve_joint(k, f.r, f.m, f.y, f.z, f.l);
         const V whole = w * e.q;
         V E = whole, y = e.t;
         HOL_UNROLL
         for (int a = 0; a < k; ++a) {
             E = mul_add(-(f.z[a] * f.r[a]), f.z[a], E);
-            y = mul_add(f.l[a], x.row[child[a]].t, y);
-            x.row[child[a]].l = f.l[a];
+            y = mul_add(f.l[a], x.bond(a).t, y);
+            x.bond(a).l = f.l[a];
         }
         slack = min(mul_add(Width<V>::all(-least_part), whole, E), slack);
         e.E = E;
@@ -122,25 +121,24 @@ HOL_INLINE void up_joint(const Molecules<V> &x, int32_t slot, int count, Memory<
     }
     HOL_UNROLL
     for (int a = 0; a < k; ++a) {
-        f.y[a] = x.row[child[a]].t;
-        x.row[child[a]].E = f.y[a] * f.r[a];  // what siblings.hpp compares with
+        f.y[a] = x.bond(a).t;
+        x.bond(a).E = f.y[a] * f.r[a];  // what siblings.hpp compares with
     }
     solve_joint(k, f.r, f.m, f.y, f.z, f.l);
     HOL_UNROLL
-    for (int a = 0; a < k; ++a) x.row[child[a]].t = f.l[a];
+    for (int a = 0; a < k; ++a) x.bond(a).t = f.l[a];
 }
 
 // The same for another right-hand side.
-template <int known, bool top, class V>
-HOL_INLINE void substitute_joint(const Molecules<V> &x, int32_t slot, int count, Memory<V> memory) {
+template <int known, bool top, class V, class Rows>
+HOL_INLINE void substitute_joint(const Rows &x, int count, Memory<V> memory) {
     const int k = known > 0 ? known : count;
-    const int32_t *const child = x.s.child + x.s.child_start[slot];
     auto f = JointMemory<V, known>::make(memory, k);
-    const V *const m = x.pair + x.s.pair_start[slot];
-    V y = top ? V{} : x.row[slot].t;
+    const V *const m = x.multipliers();
+    V y = top ? V{} : x.above().t;
     HOL_UNROLL
     for (int a = 0; a < k; ++a) {
-        BondRow<V> &row = x.row[child[a]];
+        const BondRow<V> &row = x.bond(a);
         f.y[a] = row.t;
         f.r[a] = row.r;
         if (!top) y = mul_add(row.l, row.t, y);
@@ -149,8 +147,8 @@ HOL_INLINE void substitute_joint(const Molecules<V> &x, int32_t slot, int count,
     }
     solve_joint(k, f.r, f.m, f.y, f.z, f.l);
     HOL_UNROLL
-    for (int a = 0; a < k; ++a) x.row[child[a]].t = f.l[a];
-    if (!top) x.row[slot].t = y;
+    for (int a = 0; a < k; ++a) x.bond(a).t = f.l[a];
+    if (!top) x.above().t = y;
 }
 
 // Up the trees: E, l and u of all their bonds, y of what is above them. A leaf has E = w q from where it was loaded.
@@ -160,48 +158,49 @@ static inline void up_trees(Molecules<V> &x, Memory<V> memory) {
     const Schedule &s = x.s;
     for (int32_t slot = 0; slot < s.n_tree; ++slot) {
         const int k = s.child_start[slot + 1] - s.child_start[slot];
+        const AtomRows<V> rows(x, slot);
         switch (k) {
             case 0:
                 break;
             case 1:
-                up_joint<1, false, keep>(x, slot, k, memory, slack);
+                up_joint<1, false, keep>(rows, k, memory, slack);
                 break;
             case 2:
-                up_joint<2, false, keep>(x, slot, k, memory, slack);
+                up_joint<2, false, keep>(rows, k, memory, slack);
                 break;
             case 3:
-                up_joint<3, false, keep>(x, slot, k, memory, slack);
+                up_joint<3, false, keep>(rows, k, memory, slack);
                 break;
             default:
-                up_joint<0, false, keep>(x, slot, k, memory, slack);
+                up_joint<0, false, keep>(rows, k, memory, slack);
         }
     }
-    if (s.type == Schedule::tree) up_joint<1, true, keep>(x, s.n_tree, 1, memory, slack);
+    if (s.type == Schedule::tree) up_joint<1, true, keep>(AtomRows<V>(x, s.n_tree), 1, memory, slack);
     x.slack = slack;
 }
 
 template <class V>
-static inline void substitute_trees(const Molecules<V> &x, Memory<V> memory) {
-    const Schedule &s = x.s;
-    for (int32_t slot = 0; slot < s.n_tree; ++slot) {
-        const int k = s.child_start[slot + 1] - s.child_start[slot];
-        switch (k) {
-            case 0:
-                break;
-            case 1:
-                substitute_joint<1, false>(x, slot, k, memory);
-                break;
-            case 2:
-                substitute_joint<2, false>(x, slot, k, memory);
-                break;
-            case 3:
-                substitute_joint<3, false>(x, slot, k, memory);
-                break;
-            default:
-                substitute_joint<0, false>(x, slot, k, memory);
-        }
+static inline void substitute_one(const Molecules<V> &x, int32_t slot, Memory<V> memory) {
+    const AtomRows<V> rows(x, slot);
+    const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
+    switch (k) {
+        case 0:
+            break;
+        case 1:
+            return substitute_joint<1, false>(rows, k, memory);
+        case 2:
+            return substitute_joint<2, false>(rows, k, memory);
+        case 3:
+            return substitute_joint<3, false>(rows, k, memory);
+        default:
+            return substitute_joint<0, false>(rows, k, memory);
     }
-    if (s.type == Schedule::tree) substitute_joint<1, true>(x, s.n_tree, 1, memory);
+}
+
+template <class V>
+static inline void substitute_trees(const Molecules<V> &x, Memory<V> memory) {
+    for (int32_t slot = 0; slot < x.s.n_tree; ++slot) substitute_one(x, slot, memory);
+    if (x.s.type == Schedule::tree) substitute_joint<1, true>(AtomRows<V>(x, x.s.n_tree), 1, memory);
 }
 
 // Down one atom: u of its children becomes t, from that of the bond above. `look`: tests what is found.
@@ -216,33 +215,32 @@ HOL_INLINE void down_joint(const Molecules<V> &x, int32_t slot, int count, V &sl
         row.t = mul_add(row.l, above, row.t);
     }
     if (!look || known == 1) return;
-    const MaskOf<V> faint = faint_bonds(x, slot, k);
+    const MaskOf<V> faint = faint_bonds<V>(AtomRows<V>(x, slot), k);
     if (__builtin_expect(any(faint), 0)) doubt_faint_bonds(x, slot, k, bits(faint), slack);
+}
+
+template <bool look, class V>
+static inline void down_one(const Molecules<V> &x, int32_t slot, V &slack) {
+    const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
+    switch (k) {
+        case 0:
+            break;
+        case 1:
+            return down_joint<look, 1>(x, slot, k, slack);
+        case 2:
+            return down_joint<look, 2>(x, slot, k, slack);
+        case 3:
+            return down_joint<look, 3>(x, slot, k, slack);
+        default:
+            return down_joint<look, 0>(x, slot, k, slack);
+    }
 }
 
 // Down the trees.
 template <bool look, class V>
 static inline void down_trees(Molecules<V> &x) {
-    const Schedule &s = x.s;
     V slack = x.slack;
-    for (int32_t slot = s.n_tree - 1; slot >= 0; --slot) {
-        const int k = s.child_start[slot + 1] - s.child_start[slot];
-        switch (k) {
-            case 0:
-                break;
-            case 1:
-                down_joint<look, 1>(x, slot, k, slack);
-                break;
-            case 2:
-                down_joint<look, 2>(x, slot, k, slack);
-                break;
-            case 3:
-                down_joint<look, 3>(x, slot, k, slack);
-                break;
-            default:
-                down_joint<look, 0>(x, slot, k, slack);
-        }
-    }
+    for (int32_t slot = x.s.n_tree - 1; slot >= 0; --slot) down_one<look>(x, slot, slack);
     x.slack = slack;
 }
 

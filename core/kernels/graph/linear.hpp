@@ -3,9 +3,9 @@
 #define HOLONOMIC_KERNELS_GRAPH_LINEAR_HPP
 
 #include "core/kernels/graph/core_matrix.hpp"
-#include "core/kernels/graph/joint.hpp"
 #include "core/kernels/graph/residual.hpp"
 #include "core/kernels/graph/ring.hpp"
+#include "core/kernels/graph/tree_runs.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -19,6 +19,7 @@ struct Linear {
     Equations<V> equations;
     V *t, *b;           // [n_bonds] of a graph: the solution so far; right-hand sides
     Memory<V> working;  // of a joint of many bonds
+    Pieces pieces;
 
     // Values of V that the arrays take.
     static int64_t values(const Schedule &s) {
@@ -26,6 +27,7 @@ struct Linear {
                     JointMemory<V, 0>::values(s.max_children);
         if (s.type == Schedule::ring) n += sizeof(RingRow<V>) / sizeof(V) * s.n_bonds;
         n += 3 * 3 * static_cast<int64_t>(s.n_atoms);
+        if (has_pieces(s)) n += 5 + s.n_pieces * (6 + JointMemory<V, 0>::values(s.max_children));
         if (s.type == Schedule::graph) {
             const int64_t part = CoreMatrix<V>::most_parts(s);
             n += s.n_entries + reaches(s) + (part > s.max_column ? part : s.max_column) +
@@ -37,8 +39,8 @@ struct Linear {
     Linear(const Schedule &s, const MoleculeLane *lane, int used, const Box &box, const AtomArray &r, Memory<V> &memory)
         : x{s, lane, used, Atoms<V>(lane, used), &box, &r, nullptr, nullptr, nullptr, Width<V>::all(1), {}}, core(),
           ring(), equations(), t(), b() {
-        x.w = memory.values(s.n_atoms);
         x.row = reinterpret_cast<BondRow<V> *>(memory.values(sizeof(BondRow<V>) / sizeof(V) * s.n_bonds));
+        x.w = memory.values(s.n_atoms);
         x.pair = memory.values(s.n_pairs);
         if (s.type == Schedule::ring)
             ring = reinterpret_cast<RingRow<V> *>(memory.values(sizeof(RingRow<V>) / sizeof(V) * s.n_bonds));
@@ -57,6 +59,17 @@ struct Linear {
         }
         working = memory;
         memory.values(JointMemory<V, 0>::values(s.max_children));
+    }
+
+    // For one large molecule.
+    void take_pieces(const LongTeam *team, Memory<double> &memory) {
+        const int64_t joint = JointMemory<double, 0>::values(x.s.max_children);
+        double *const slack = memory.values(x.s.n_pieces);
+        Faint *const faint = reinterpret_cast<Faint *>(memory.values(5 * (x.s.n_pieces + 1)));
+        static_assert(sizeof(Faint) <= 5 * sizeof(double), "");
+        for (int32_t p = 0; p <= x.s.n_pieces; ++p) faint[p] = {0, {}, false};
+        pieces = {team, slack, faint, memory.values(x.s.n_pieces * joint), joint};
+        x.pieces = &pieces;
     }
 
     // Inverse masses by slot.
@@ -104,6 +117,12 @@ struct Linear {
         }
     }
 
+    void solve_core() {
+        substitute_core(x, core, working);
+        down_core(x, core);
+        down_trees<false>(x);
+    }
+
     // Graphs: corrections against the exact residual until they would be less than a rounding. Returns the lanes in
     // which they shrank as they should; the solution is t of the rows, as before.
     MaskOf<V> refine() {
@@ -129,12 +148,6 @@ struct Linear {
 
 private:
     static constexpr double epsilon = 2.220446049250313e-16;
-
-    void solve_core() {
-        substitute_core(x, core, working);
-        down_core(x, core);
-        down_trees<false>(x);
-    }
 
     // Adds the corrections in t of the rows, in the lanes in `active`; returns the square of the largest one relative
     // to its multiplier's size: |t_k|, |b_k| / P_k, which is no more than its scale as P_k is at least 1 / (A^-1)_kk,

@@ -83,6 +83,21 @@ struct Loader {
             BondRow<V> &row = z.x.row[slot];
             if (leaf) row.E = w * row.q;
         }
+        load_core_bonds();
+    }
+
+    // The atoms that trees hang from, and the bonds between them.
+    void load_core() const {
+        for (int32_t slot = z.x.s.n_atoms - 1; slot >= z.x.s.n_tree; --slot) {
+            Vector3<V> r, v = {}, f = {};
+            read_atom(*this, slot, r, v, f);
+            keep_atom(*this, slot, r, v, f);
+        }
+        load_core_bonds();
+    }
+
+    void load_core_bonds() const {
+        const Schedule &s = z.x.s;
         const Equations<V> &e = z.equations;
         for (int32_t p = 0; p < s.n_core; ++p) {
             const int32_t to = s.to[p];

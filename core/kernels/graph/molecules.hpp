@@ -5,6 +5,7 @@
 #include "core/kernels/arithmetic/stretching.hpp"
 #include "core/kernels/graph/atoms.hpp"
 #include "core/kernels/graph/image.hpp"
+#include "core/kernels/graph/pieces.hpp"
 #include "core/kernels/graph/schedule.hpp"
 
 namespace holonomic {
@@ -43,6 +44,7 @@ struct Molecules {
     V *pair;             // [n_pairs] multipliers among the children of an atom
     V slack;             // negative where plain products do not do
     Inputs in;
+    const Pieces *pieces = nullptr;  // where a large one is worked on in these
 
     MaskOf<V> in_use() const { return Width<V>::first(used); }
 };
@@ -88,12 +90,17 @@ HOL_NOINLINE V dots_anew(const Molecules<V> &x, int32_t a, int32_t b, unsigned w
     return g;
 }
 
+template <class V>
+HOL_INLINE MaskOf<V> nearly_orthogonal(const V &g, const V &p, const V &q) {
+    return less(Width<V>::all(1 / (least_cosine * least_cosine)) * (g * g), p * q);
+}
+
 // d . d' of two bonds, with the rule above.
 template <class V>
 HOL_INLINE V product_of(const Molecules<V> &x, int32_t a, int32_t b) {
     const BondRow<V> &p = x.row[a], &q = x.row[b];
     const V g = dot(p.d, q.d);
-    const MaskOf<V> small = less(Width<V>::all(1 / (least_cosine * least_cosine)) * (g * g), p.q * q.q);
+    const MaskOf<V> small = nearly_orthogonal(g, p.q, q.q);
     if (__builtin_expect(any(small), 0)) return dots_anew(x, a, b, bits(small), g);
     return g;
 }

@@ -7,6 +7,10 @@
 
 namespace holonomic {
 
+// Molecules of more bonds are worked on one by one, their trees in pieces.
+constexpr int32_t largest_in_lanes = 2048;
+constexpr int32_t slots_of_piece = 16384;  // a megabyte of bonds at work, a second-level cache
+
 struct CarefulPlan;  // core/kernels/careful/plan.hpp
 
 // Atoms and bonds are renumbered. The *slot* of an atom: first the atoms of the trees, each after its children
@@ -61,6 +65,18 @@ struct Schedule {
     const int32_t *update;
     int32_t n_entries;
     int32_t max_column;
+
+    // Atoms of trees with children, so that W of one molecule can be worked on at once: within a run none depends on
+    // another, and all have the same number of children, 4 standing for more. Slots [p slots_of_piece, (p + 1)
+    // slots_of_piece) are piece p; atoms whose children, and theirs, are all in the same piece stand in its runs, the
+    // others in those of piece n_pieces, the top, which comes last. No pieces: the molecule is small.
+    struct Run {
+        int32_t first, count, children;  // slots run_slot[first] ..
+    };
+    const Run *run;
+    const int32_t *run_slot;
+    const int32_t *piece_start;  // [n_pieces + 2] runs of each piece, then of the top
+    int32_t n_pieces;
 
     const CarefulPlan *careful;  // the same molecule for the careful solver
 

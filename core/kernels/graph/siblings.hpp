@@ -20,18 +20,34 @@ namespace graph {
 // How many times a bond's scale that error may be, both in roundings.
 constexpr double most_cancelled = 64;
 
-// Square of the part of the error that all bonds at an atom share.
+// The bonds of an atom, each at its place: those to its children, and the one above. tree_runs.hpp has the same of W
+// atoms of one molecule.
 template <class V>
-HOL_INLINE V shared_error(const Molecules<V> &x, int32_t slot, int k) {
-    const int32_t *const child = x.s.child + x.s.child_start[slot];
-    const BondRow<V> &e = x.row[slot];
+struct AtomRows {
+    const Molecules<V> &x;
+    const int32_t slot, *const child;
+
+    AtomRows(const Molecules<V> &m, int32_t s) : x(m), slot(s), child(m.s.child + m.s.child_start[s]) {}
+    HOL_FORCED V w() const { return x.w[slot]; }
+    HOL_FORCED BondRow<V> &bond(int a) const { return x.row[child[a]]; }
+    HOL_FORCED BondRow<V> &above() const { return x.row[slot]; }
+    HOL_FORCED V only_product() const {
+        return product_of(x, child[0], slot);
+    }  // of a single child with the bond above
+    HOL_FORCED V *multipliers() const { return x.pair + x.s.pair_start[slot]; }
+};
+
+// Square of the part of the error that all bonds at an atom share.
+template <class V, class Rows>
+HOL_INLINE V shared_error(const Rows &x, int k) {
+    const BondRow<V> &e = x.above();
     V T2 = e.q * (e.t * e.t);
     HOL_UNROLL
     for (int a = 0; a < k; ++a) {
-        const BondRow<V> &row = x.row[child[a]];
+        const BondRow<V> &row = x.bond(a);
         T2 = mul_add(row.q, row.t * row.t, T2);
     }
-    const V w = x.w[slot];
+    const V w = x.w();
     return (w * w) * ((1 / (most_cancelled * most_cancelled)) * T2);
 }
 
@@ -42,13 +58,12 @@ HOL_INLINE V left_of(const BondRow<V> &row, const V &shared) {
 }
 
 // Lanes in which a bond at this atom is faint, the one above it or one of its k children. E of the rows: y r.
-template <class V>
-HOL_INLINE MaskOf<V> faint_bonds(const Molecules<V> &x, int32_t slot, int k) {
-    const int32_t *const child = x.s.child + x.s.child_start[slot];
-    const V shared = shared_error(x, slot, k);
-    V least = left_of(x.row[slot], shared);
+template <class V, class Rows>
+HOL_INLINE MaskOf<V> faint_bonds(const Rows &x, int k) {
+    const V shared = shared_error<V>(x, k);
+    V least = left_of(x.above(), shared);
     HOL_UNROLL
-    for (int a = 0; a < k; ++a) least = min(left_of(x.row[child[a]], shared), least);
+    for (int a = 0; a < k; ++a) least = min(left_of(x.bond(a), shared), least);
     return less(least, V{});
 }
 
@@ -80,7 +95,7 @@ double terms_of(const Molecules<V> &x, int32_t place, int lane) {
 template <class V>
 HOL_NOINLINE void doubt_faint_bonds(const Molecules<V> &x, int32_t slot, int k, unsigned which, V &slack) {
     const int32_t *const child = x.s.child + x.s.child_start[slot];
-    const V shared = shared_error(x, slot, k);
+    const V shared = shared_error<V>(AtomRows<V>(x, slot), k);
     for (int a = -1; a < k; ++a) {
         const int32_t place = a < 0 ? slot : child[a];
         const V left = left_of(x.row[place], shared);

@@ -28,6 +28,22 @@ HOL_INLINE Vector3<V> pull_on(const Molecules<V> &x, int32_t slot) {
     return g;
 }
 
+#if HOL_LANES >= 4 && defined(__AVX2__)
+// The same of a single molecule: rows begin with d, so that x, y and z are done at once.
+HOL_INLINE Vector3<double> pull_on(const Molecules<double> &x, int32_t slot) {
+    if (slot >= x.s.n_tree) return pull_on<double>(x, slot);
+    const Schedule &s = x.s;
+    quad g = {};
+    for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) {
+        const BondRow<double> &row = x.row[s.child[c]];
+        g = _mm256_fmadd_pd(_mm256_set1_pd(row.t), _mm256_loadu_pd(&row.d.x), g);
+    }
+    const BondRow<double> &row = x.row[slot];
+    g = _mm256_fnmadd_pd(_mm256_set1_pd(row.t), _mm256_loadu_pd(&row.d.x), g);
+    return {g[0], g[1], g[2]};
+}
+#endif
+
 // The lanes of `which` in which this local atom may be written: not those where it is a fixed one of other molecules,
 // too.
 template <class V>
@@ -48,12 +64,14 @@ HOL_INLINE bool any_shared(const Molecules<V> &x) {
 template <Layout layout, class V>
 HOL_NOINLINE void write_pulls(const Molecules<V> &x, const AtomArray &g, bool add, unsigned which) {
     const bool shared = any_shared(x);
-    for (int32_t slot = x.s.n_atoms - 1; slot >= 0; --slot) {
-        const int32_t atom = x.s.atom_of[slot];
-        Vector3<V> pull = pull_on(x, slot);
-        if (add) pull = read<layout>(g, x.at, atom) + pull;
-        write<layout>(g, x.at, atom, pull, shared ? writable(x, atom, which) : which);
-    }
+    for_ranges(x.s, x.pieces, x.s.n_atoms, [&](int32_t first, int32_t end) {
+        for (int32_t slot = end; slot-- > first;) {
+            const int32_t atom = x.s.atom_of[slot];
+            Vector3<V> pull = pull_on(x, slot);
+            if (add) pull = read<layout>(g, x.at, atom) + pull;
+            write<layout>(g, x.at, atom, pull, shared ? writable(x, atom, which) : which);
+        }
+    });
 }
 
 // factor t of all bonds, zeros as +0; with_length: times |d|.
@@ -62,19 +80,21 @@ HOL_NOINLINE void write_bonds(const Molecules<V> &x, double factor, double *out,
     double *p[Width<V>::lanes];
     for (int i = 0; i < Width<V>::lanes; ++i) p[i] = out + x.lane[i].first_bond;
     const bool all = which == (1u << Width<V>::lanes) - 1;
-    for (int32_t k = 0; k < x.s.n_bonds; ++k) {
-        const BondRow<V> &row = x.row[k];
-        V value = mul_add(Width<V>::all(factor), row.t, V{});
-        if (with_length) value = mul_add(row.t, sqrt(row.q), V{});
-        const int32_t bond = x.s.bond_of[k];
-        if (all) {
-            HOL_UNROLL
-            for (int i = 0; i < Width<V>::lanes; ++i) p[i][bond] = Width<V>::get(value, i);
-        } else {
-            for (int i = 0; i < Width<V>::lanes; ++i)
-                if (which >> i & 1) p[i][bond] = Width<V>::get(value, i);
+    for_ranges(x.s, x.pieces, x.s.n_bonds, [&](int32_t first, int32_t end) {
+        for (int32_t k = first; k < end; ++k) {
+            const BondRow<V> &row = x.row[k];
+            V value = mul_add(Width<V>::all(factor), row.t, V{});
+            if (with_length) value = mul_add(row.t, sqrt(row.q), V{});
+            const int32_t bond = x.s.bond_of[k];
+            if (all) {
+                HOL_UNROLL
+                for (int i = 0; i < Width<V>::lanes; ++i) p[i][bond] = Width<V>::get(value, i);
+            } else {
+                for (int i = 0; i < Width<V>::lanes; ++i)
+                    if (which >> i & 1) p[i][bond] = Width<V>::get(value, i);
+            }
         }
-    }
+    });
 }
 
 // The virial of the lanes of `which`.

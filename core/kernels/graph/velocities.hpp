@@ -14,24 +14,22 @@ struct VelocitiesWork {
     const Schedule &schedule;
     const bool packed;
     Tally &tally;
+    const LongTeam *team;
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
         Memory<V> memory = {scratch};
         Linear<V> z(schedule, lane, used, call.box, call.r, memory);
-        if (!masses_known) z.set_masses();
+        open_pieces(z, team, memory);
         z.equations.force = nullptr;
         z.equations.given = nullptr;
-        with_layout(z.x.at, packed, [&](auto layout) { solve<decltype(layout)::value>(z, memory); });
+        with_layout(z.x.at, packed, [&](auto layout) { solve<decltype(layout)::value>(z, masses_known, memory); });
     }
 
     template <Layout layout, class V>
-    void solve(Linear<V> &z, Memory<V> memory) const {
+    void solve(Linear<V> &z, bool masses_known, Memory<V> memory) const {
         z.x.in = {&call.v, nullptr, nullptr, true, call.strain};
-        Loader<layout, rates, V>{z}.load();
-        z.equations.start = z.equations.velocity;
-        z.equations.velocity = nullptr;
-        const unsigned good = solve_loaded<true>(z), rest = bits(z.x.in_use()) & ~good;
+        const unsigned good = load_and_solve<layout, rates, true>(z, masses_known), rest = bits(z.x.in_use()) & ~good;
         if (good) {
             if (call.lambda) write_bonds<false>(z.x, 0.5, call.lambda, good);
             if (call.virial) add_pulls_to_virial(z.x, good, tally);
@@ -48,29 +46,34 @@ struct VelocitiesWork {
 
     template <class V>
     HOL_NOINLINE void add_pulls_to(const Molecules<V> &x, Vector3<V> *v) {
-        for (int32_t slot = x.s.n_atoms - 1; slot >= 0; --slot)
-            v[slot] = add_times(v[slot], x.w[slot], pull_on(x, slot));
+        for_ranges(x.s, x.pieces, x.s.n_atoms, [&](int32_t first, int32_t end) {
+            for (int32_t slot = end; slot-- > first;) v[slot] = add_times(v[slot], x.w[slot], pull_on(x, slot));
+        });
     }
 
     // d . (v_j - v_i) into t of the rows.
     template <class V>
     HOL_NOINLINE void find_rates(const Molecules<V> &x, const Vector3<V> *v) {
-        for (int32_t k = 0; k < x.s.n_bonds; ++k) {
-            int32_t from, to;
-            ends_of(x.s, k, from, to);
-            x.row[k].t = dot(x.row[k].d, v[to] - v[from]);
-            if (x.in.strain) x.row[k].t = x.row[k].t + stretching(x.in.strain, x.row[k].d);
-        }
+        for_ranges(x.s, x.pieces, x.s.n_bonds, [&](int32_t first, int32_t end) {
+            for (int32_t k = first; k < end; ++k) {
+                int32_t from, to;
+                ends_of(x.s, k, from, to);
+                x.row[k].t = dot(x.row[k].d, v[to] - v[from]);
+                if (x.in.strain) x.row[k].t = x.row[k].t + stretching(x.in.strain, x.row[k].d);
+            }
+        });
     }
 
     template <Layout layout, class V>
     __attribute__((noinline)) void write_velocities(const Molecules<V> &x, const Vector3<V> *v, unsigned which) const {
         const bool shared = any_shared(x);
-        for (int32_t slot = x.s.n_atoms - 1; slot >= 0; --slot) {
-            const int32_t atom = x.s.atom_of[slot];
-            write<layout>(call.v, x.at, atom, add_times(v[slot], x.w[slot], pull_on(x, slot)),
-                          shared ? writable(x, atom, which) : which);
-        }
+        for_ranges(x.s, x.pieces, x.s.n_atoms, [&](int32_t first, int32_t end) {
+            for (int32_t slot = end; slot-- > first;) {
+                const int32_t atom = x.s.atom_of[slot];
+                write<layout>(call.v, x.at, atom, add_times(v[slot], x.w[slot], pull_on(x, slot)),
+                              shared ? writable(x, atom, which) : which);
+            }
+        });
     }
 };
 

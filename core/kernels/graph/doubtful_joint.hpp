@@ -1,0 +1,114 @@
+// An atom of a tree at which plain products have lost too much, in twice the precision, by sums in which nothing is
+// subtracted (theory (54)). What comes up to it is right, so what it hands up is right, too: nothing else of a large
+// molecule need be done again.
+#ifndef HOLONOMIC_KERNELS_GRAPH_DOUBTFUL_JOINT_HPP
+#define HOLONOMIC_KERNELS_GRAPH_DOUBTFUL_JOINT_HPP
+
+#include "core/kernels/careful/joint.hpp"
+#include "core/kernels/graph/joint.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// An atom with at most three children, which are arms 0 .. k - 1; the bond above is arm k. Vectors are divided by a
+// power of two each, masses by one, so that no product overflows.
+struct DoubtfulJoint {
+    static constexpr int most = 4;
+    Wide3 D[most], X[most * most];
+    Wide rho[most];
+    bool rigid[most];
+    int others[most];
+    double unit[most], mass_unit;
+    careful::Joint joint;
+
+    static double power_of(double a) {
+        int e;
+        (void)__builtin_frexp(a, &e);
+        return __builtin_ldexp(1.0, e - 1);
+    }
+
+    bool open(const Molecules<double> &x, int32_t slot, int k) {
+        const int32_t *const child = x.s.child + x.s.child_start[slot];
+        mass_unit = power_of(x.w[slot]);
+        joint = {};
+        joint.n = k + 1;
+        joint.w = x.w[slot] / mass_unit;
+        joint.D = joint.B = D;
+        joint.rho = rho;
+        joint.rigid = rigid;
+        joint.XD = joint.XB = X;
+        joint.others = others;
+        for (int a = 0; a <= k; ++a) {
+            const int32_t place = a < k ? child[a] : slot;
+            Vector3<double> d, lo;
+            exact_bond(x, 0, place, d, lo);
+            unit[a] = power_of(__builtin_sqrt(x.row[place].q));
+            if (!(unit[a] > 0x1p-480 && unit[a] < 0x1p480)) return false;
+            const double r = 1 / unit[a];
+            D[a] = {{r * d.x, r * lo.x}, {r * d.y, r * lo.y}, {r * d.z, r * lo.z}};
+        }
+        prepare(joint);
+        for (int a = 0; a < k; ++a) set_arm(joint, a, wide(x.row[child[a]].E / unit[a] / unit[a] / mass_unit));
+        return true;
+    }
+
+    // Of the first n arms all but one.
+    bool eliminate(int n, int but) {
+        joint.n_others = 0;
+        for (int a = 0; a < n; ++a)
+            if (a != but) others[joint.n_others++] = a;
+        return eliminate_arms(joint);
+    }
+    // Of an arm, with what it offers from its far side.
+    Wide pivot(int a, double E) const { return wide(E / unit[a] / unit[a] / mass_unit) + offered(joint, a, a); }
+};
+
+// What up_joint() does, with pivots and multipliers kept where `keep`. False where the bonds depend on each other, with
+// nothing written.
+HOL_NOINLINE bool up_doubtful_joint(const Molecules<double> &x, int32_t slot, int k, bool keep) {
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    DoubtfulJoint f;
+    if (!f.open(x, slot, k)) return false;
+    double r[3], m[3] = {}, u[3], y[3], l[3];
+    Wide L[DoubtfulJoint::most];
+    for (int j = 0; j < k; ++j) {
+        y[j] = x.row[child[j]].t;
+        if (!f.eliminate(j, -1)) return false;
+        const Wide P = f.pivot(j, x.row[child[j]].E);
+        r[j] = 1 / rounded(P) / f.unit[j] / f.unit[j] / f.mass_unit;
+        for (int a = j + 1; a < k; ++a)
+            m[pair_of(a, j)] = rounded(offered(f.joint, a, j) / P) * (f.unit[a] / f.unit[j]);
+    }
+    for (int a = 0; a < k; ++a) {
+        if (!f.eliminate(k, a)) return false;
+        careful::multipliers(f.joint, a, L);
+        Wide sum = wide(y[a]);
+        for (int b = 0; b < k; ++b)
+            if (b != a) sum -= L[b] * wide(y[b] * (f.unit[a] / f.unit[b]));
+        u[a] = rounded(sum / f.pivot(a, x.row[child[a]].E)) / f.unit[a] / f.unit[a] / f.mass_unit;
+    }
+    if (!f.eliminate(k, -1)) return false;
+    careful::multipliers(f.joint, k, L);
+    Wide above = wide(x.row[slot].t);
+    for (int a = 0; a < k; ++a) {
+        above += L[a] * wide(y[a] * (f.unit[k] / f.unit[a]));
+        l[a] = rounded(L[a]) * (f.unit[k] / f.unit[a]);
+    }
+    x.row[slot].E = rounded(offered(f.joint, k, k)) * f.unit[k] * f.unit[k] * f.mass_unit;
+    x.row[slot].t = rounded(above);
+    for (int a = 0; a < k; ++a) {
+        BondRow<double> &row = x.row[child[a]];
+        row.E = y[a] * r[a];
+        row.t = u[a];
+        row.l = l[a];
+        row.r = r[a];
+    }
+    for (int i = 0; keep && i < k * (k - 1) / 2; ++i) x.pair[x.s.pair_start[slot] + i] = m[i];
+    return true;
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,84 @@
+// The pieces of one large molecule (schedule.hpp), shared among threads.
+#ifndef HOLONOMIC_KERNELS_GRAPH_PIECES_HPP
+#define HOLONOMIC_KERNELS_GRAPH_PIECES_HPP
+
+#include "core/kernels/graph/schedule.hpp"
+#include "core/kernels/graph/width.hpp"
+#include "core/kernels/tally.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// Joints of more bonds would take too much memory in each piece.
+constexpr int32_t most_children_in_pieces = 64;
+
+HOL_INLINE bool has_pieces(const Schedule &s) { return s.n_pieces > 0 && s.max_children <= most_children_in_pieces; }
+
+// Atoms at which a bond is faint (siblings.hpp): found in a first solution, then eliminated carefully in a second one.
+struct Faint {
+    static constexpr int most = 7;
+    int32_t n, slot[most];
+    bool again;  // the second solution
+    bool holds(int32_t s) const {
+        for (int i = 0; i < n && again; ++i)
+            if (slot[i] == s) return true;
+        return false;
+    }
+    bool holds_any(const int32_t *s) const {
+        bool any = false;
+        for (int i = 0; again && n > 0 && i < W; ++i) any = any || holds(s[i]);
+        return any;
+    }
+    bool note(int32_t s) {
+        for (int i = 0; i < n; ++i)
+            if (slot[i] == s) return true;
+        if (n == most) return false;
+        slot[n++] = s;
+        return true;
+    }
+};
+
+struct Pieces {
+    const LongTeam *team;  // or nullptr
+    double *slack;         // [n_pieces]
+    Faint *faint;          // [n_pieces + 1], the last one's of the top
+    double *working;       // of a joint of many bonds, one behind the other
+    int64_t working_values;
+    Memory<double> memory(int32_t piece) const { return {working + piece * working_values}; }
+};
+
+// Calls body(piece) for all but the top, on the threads that there are.
+template <class Body>
+HOL_INLINE void for_pieces(const Schedule &s, const LongTeam *team, const Body &body) {
+    if (!team) {
+        for (int32_t p = 0; p < s.n_pieces; ++p) body(p);
+        return;
+    }
+    Tally unused = empty_tally();
+    team->run(
+        team->threads, s.n_pieces, unused,
+        [](const void *context, int64_t p, double *, Tally &) {
+            (*static_cast<const Body *>(context))(static_cast<int32_t>(p));
+        },
+        &body);
+}
+
+// The slots of trees in a piece.
+HOL_INLINE int32_t first_of_piece(int32_t p) { return p * slots_of_piece; }
+HOL_INLINE int32_t end_of_piece(const Schedule &s, int32_t p) {
+    return p + 1 < s.n_pieces ? (p + 1) * slots_of_piece : s.n_tree;
+}
+
+// Calls body(first, end) for ranges of the numbers below n, places or slots, each of a thread where there are some.
+template <class Body>
+HOL_INLINE void for_ranges(const Schedule &s, const Pieces *pieces, int32_t n, const Body &body) {
+    if (!pieces) return body(0, n);
+    for_pieces(s, pieces->team, [&](int32_t p) { body(first_of_piece(p), end_of_piece(s, p)); });
+    body(s.n_tree, n);
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

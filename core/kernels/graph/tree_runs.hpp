@@ -1,0 +1,230 @@
+// Trees of one large molecule, W atoms at a time that do not depend on each other (Schedule::Run): the sweeps of
+// joint.hpp, with the same digits.
+#ifndef HOLONOMIC_KERNELS_GRAPH_TREE_RUNS_HPP
+#define HOLONOMIC_KERNELS_GRAPH_TREE_RUNS_HPP
+
+#include "core/kernels/graph/atom_lanes.hpp"
+#include "core/kernels/graph/doubtful_joint.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// One atom, with careful arithmetic where plain one does not do.
+template <bool keep>
+HOL_NOINLINE void up_one(const Molecules<double> &x, int32_t slot, Faint &faint, Memory<double> memory, double &slack) {
+    const AtomRows<double> rows(x, slot);
+    const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
+    if (__builtin_expect(faint.holds(slot), 0)) {
+        if (k > 3 || !up_doubtful_joint(x, slot, k, keep)) slack = -1;
+        return;
+    }
+    if (k > 3) return up_joint<0, false, keep>(rows, k, memory, slack);
+    double before[8], own = 1;
+    for (int a = 0; a <= k; ++a) {
+        const BondRow<double> &row = a < k ? rows.bond(a) : rows.above();
+        before[2 * a] = row.E;
+        before[2 * a + 1] = row.t;
+    }
+    if (k == 1)
+        up_joint<1, false, keep>(rows, k, memory, own);
+    else if (k == 2)
+        up_joint<2, false, keep>(rows, k, memory, own);
+    else
+        up_joint<3, false, keep>(rows, k, memory, own);
+    if (__builtin_expect(own >= 0, 1)) return;
+    for (int a = 0; a <= k; ++a) {
+        BondRow<double> &row = a < k ? rows.bond(a) : rows.above();
+        row.E = before[2 * a];
+        row.t = before[2 * a + 1];
+    }
+    if (!up_doubtful_joint(x, slot, k, keep)) slack = -1;
+}
+
+template <int k, bool keep>
+HOL_INLINE void up_lanes(const Molecules<double> &x, const int32_t *slot, Faint &faint, Memory<double> memory,
+                         double &slack) {
+    AtomLanes<k, vec> rows(x, slot);
+    rows.read_bonds();
+    vec own = Width<vec>::all(1);
+    up_joint<k, false, keep>(rows, k, Memory<vec>{nullptr}, own);
+    if (__builtin_expect(any(less(own, vec{})) || faint.holds_any(slot), 0)) {
+        for (int i = 0; i < W; ++i)
+            if (i == 0 || slot[i] != slot[i - 1]) up_one<keep>(x, slot[i], faint, memory, slack);
+        return;
+    }
+    rows.write_values();
+    scatter_values(x.row, slot, rows.top);
+    if (keep) rows.write_pairs();
+}
+
+template <int k>
+HOL_INLINE void substitute_lanes(const Molecules<double> &x, const int32_t *slot) {
+    AtomLanes<k, vec> rows(x, slot);
+    rows.read_values();
+    gather_values(x.row, slot, rows.top);
+    rows.read_pairs();
+    substitute_joint<k, false>(rows, k, Memory<vec>{nullptr});
+    rows.write_values();
+    scatter_values(x.row, slot, rows.top);
+}
+
+// An atom with faint bonds: the first time it is noted, to be eliminated carefully the next time. Then products are
+// right, and what is found must not be a small difference of what comes up and what comes down.
+HOL_NOINLINE void note_faint(const Molecules<double> &x, int32_t slot, int k, Faint &faint, double &slack) {
+    double own = 1;
+    doubt_faint_bonds(x, slot, k, 1, own);
+    if (own >= 0) return;
+    if (!faint.again) {
+        if (!faint.note(slot)) slack = -1;
+        return;
+    }
+    if (!faint.holds(slot)) slack = -1;
+    const double above = x.row[slot].t;
+    for (int a = 0; a < k; ++a) {
+        const int32_t place = x.s.child[x.s.child_start[slot] + a];
+        const BondRow<double> &row = x.row[place];
+        const double down = row.l * above, A = (x.w[slot] + x.w[place]) * row.q;
+        const double size = abs(row.t) + terms_of(x, place, 0) / A;
+        if (!(abs(row.t - down) + abs(down) <= most_cancelled * size)) slack = -1;
+    }
+}
+
+HOL_INLINE void down_atom(const Molecules<double> &x, int32_t slot, Faint &faint, double &slack, bool look) {
+    const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
+    double own = 1;
+    if (look && k > 1) {
+        down_one<true>(x, slot, own);
+        if (__builtin_expect(own < 0, 0)) note_faint(x, slot, k, faint, slack);
+    } else {
+        down_one<false>(x, slot, own);
+    }
+}
+
+template <bool look, int k>
+HOL_INLINE void down_lanes(const Molecules<double> &x, const int32_t *slot, Faint &faint, double &slack) {
+    AtomLanes<k, vec> rows(x, slot);
+    rows.read_values();
+    gather_values(x.row, slot, rows.top);
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) {
+        BondRow<vec> &row = rows.bonds[a];
+        row.t = mul_add(row.l, rows.top.t, row.t);
+    }
+    rows.write_values();
+    if (!look || k == 1) return;
+    HOL_UNROLL
+    for (int a = 0; a < k; ++a) gather_vectors(x.row, rows.child[a], rows.bonds[a]);
+    gather_vectors(x.row, slot, rows.top);
+    rows.mass = gather_numbers<vec>(x.w, slot);
+    for (unsigned left = bits(faint_bonds<vec>(rows, k)); __builtin_expect(left != 0, 0); left &= left - 1)
+        note_faint(x, slot[__builtin_ctz(left)], k, faint, slack);
+}
+
+// Calls lanes(slots, k) for W atoms of a run at a time, the last ones more than once, and one(slot) for atoms alone.
+template <class Lanes, class One>
+HOL_INLINE void for_run(const Schedule &s, const Schedule::Run &run, const Lanes &lanes, const One &one) {
+    const int32_t *const slot = s.run_slot + run.first;
+    if (run.children > 3 || run.count == 1) {
+        for (int32_t i = 0; i < run.count; ++i) one(slot[i]);
+        return;
+    }
+    int32_t i = 0;
+    for (; i + W <= run.count; i += W) lanes(slot + i);
+    if (i == run.count) return;
+    if (i + 1 == run.count) return one(slot[i]);
+    int32_t last[W];
+    for (int j = 0; j < W; ++j) last[j] = slot[i + j < run.count ? i + j : run.count - 1];
+    lanes(last);
+}
+
+// A piece, or the top.
+template <bool keep>
+static inline double up_piece(const Molecules<double> &x, int32_t piece, Memory<double> memory) {
+    const Schedule &s = x.s;
+    Faint &faint = x.pieces->faint[piece];
+    double slack = 1;
+    const auto one = [&](int32_t slot) { up_one<keep>(x, slot, faint, memory, slack); };
+    for (int32_t r = s.piece_start[piece]; r < s.piece_start[piece + 1]; ++r) {
+        const Schedule::Run &run = s.run[r];
+        if (run.children == 1)
+            for_run(
+                s, run, [&](const int32_t *slot) { up_lanes<1, keep>(x, slot, faint, memory, slack); }, one);
+        else if (run.children == 2)
+            for_run(
+                s, run, [&](const int32_t *slot) { up_lanes<2, keep>(x, slot, faint, memory, slack); }, one);
+        else
+            for_run(
+                s, run, [&](const int32_t *slot) { up_lanes<3, keep>(x, slot, faint, memory, slack); }, one);
+    }
+    return slack;
+}
+
+static inline void substitute_piece(const Molecules<double> &x, int32_t piece, Memory<double> memory) {
+    const Schedule &s = x.s;
+    const auto one = [&](int32_t slot) { substitute_one(x, slot, memory); };
+    for (int32_t r = s.piece_start[piece]; r < s.piece_start[piece + 1]; ++r) {
+        const Schedule::Run &run = s.run[r];
+        if (run.children == 1)
+            for_run(
+                s, run, [&](const int32_t *slot) { substitute_lanes<1>(x, slot); }, one);
+        else if (run.children == 2)
+            for_run(
+                s, run, [&](const int32_t *slot) { substitute_lanes<2>(x, slot); }, one);
+        else
+            for_run(
+                s, run, [&](const int32_t *slot) { substitute_lanes<3>(x, slot); }, one);
+    }
+}
+
+template <bool look>
+static inline double down_piece(const Molecules<double> &x, int32_t piece) {
+    const Schedule &s = x.s;
+    Faint &faint = x.pieces->faint[piece];
+    double slack = 1;
+    const auto one = [&](int32_t slot) { down_atom(x, slot, faint, slack, look); };
+    for (int32_t r = s.piece_start[piece + 1]; r-- > s.piece_start[piece];) {
+        const Schedule::Run &run = s.run[r];
+        if (run.children == 1)
+            for_run(
+                s, run, [&](const int32_t *slot) { down_lanes<look, 1>(x, slot, faint, slack); }, one);
+        else if (run.children == 2)
+            for_run(
+                s, run, [&](const int32_t *slot) { down_lanes<look, 2>(x, slot, faint, slack); }, one);
+        else
+            for_run(
+                s, run, [&](const int32_t *slot) { down_lanes<look, 3>(x, slot, faint, slack); }, one);
+    }
+    return slack;
+}
+
+static inline void collect_slack(Molecules<double> &x) {
+    for (int32_t p = 0; p < x.s.n_pieces; ++p) x.slack = min(x.pieces->slack[p], x.slack);
+}
+
+// Behind the pieces.
+template <bool keep>
+static inline void up_top(Molecules<double> &x, Memory<double> memory) {
+    x.slack = min(up_piece<keep>(x, x.s.n_pieces, memory), x.slack);
+    if (x.s.type == Schedule::tree) up_joint<1, true, keep>(AtomRows<double>(x, x.s.n_tree), 1, memory, x.slack);
+}
+
+// The sweeps of joint.hpp, in pieces where there are any.
+static inline void substitute_trees(const Molecules<double> &x, Memory<double> memory) {
+    if (!x.pieces) return substitute_trees<double>(x, memory);
+    for_pieces(x.s, x.pieces->team, [&](int32_t p) { substitute_piece(x, p, x.pieces->memory(p)); });
+    substitute_piece(x, x.s.n_pieces, memory);
+    if (x.s.type == Schedule::tree) substitute_joint<1, true>(AtomRows<double>(x, x.s.n_tree), 1, memory);
+}
+template <bool look>
+static inline void down_trees(Molecules<double> &x) {
+    if (!x.pieces) return down_trees<look, double>(x);
+    x.slack = min(down_piece<look>(x, x.s.n_pieces), x.slack);
+    for_pieces(x.s, x.pieces->team, [&](int32_t p) { x.pieces->slack[p] = down_piece<look>(x, p); });
+    collect_slack(x);
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,37 @@
+// Lists of numbers, one per row, in one array.
+#ifndef HOLONOMIC_LISTS_HPP
+#define HOLONOMIC_LISTS_HPP
+
+#include <cstdint>
+#include <vector>
+
+namespace holonomic {
+
+using Numbers = std::vector<std::int32_t>;
+
+inline std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+
+struct Lists {
+    Numbers start, item;
+    std::int32_t size(std::int32_t i) const { return start[at(i) + 1] - start[at(i)]; }
+    const std::int32_t *begin(std::int32_t i) const { return item.data() + start[at(i)]; }
+    const std::int32_t *end(std::int32_t i) const { return item.data() + start[at(i) + 1]; }
+};
+
+// Which of the pairs hold each number: calls each(k, row) for the two rows of pair k.
+template <class Each>
+Lists invert(std::int32_t n_rows, std::int32_t n_pairs, const Each &each) {
+    Lists lists;
+    lists.start.assign(at(n_rows) + 1, 0);
+    for (std::int32_t k = 0; k < n_pairs; ++k)
+        for (const std::int32_t i : {each(k, 0), each(k, 1)}) ++lists.start[at(i) + 1];
+    for (std::int32_t i = 0; i < n_rows; ++i) lists.start[at(i) + 1] += lists.start[at(i)];
+    lists.item.resize(2 * at(n_pairs));
+    Numbers next(lists.start.begin(), lists.start.end() - 1);
+    for (std::int32_t k = 0; k < n_pairs; ++k)
+        for (const std::int32_t i : {each(k, 0), each(k, 1)}) lists.item[at(next[at(i)]++)] = k;
+    return lists;
+}
+
+}  // namespace holonomic
+#endif

@@ -1,0 +1,80 @@
+#include "core/molecules/schedule_runs.hpp"
+
+#include <algorithm>
+
+#include "core/molecules/lists.hpp"
+
+namespace holonomic {
+
+namespace {
+
+constexpr std::int32_t most_children = 4;
+
+class RunMaker {
+public:
+    explicit RunMaker(const Schedule &s) : s_(s), n_pieces_((s.n_tree + slots_of_piece - 1) / slots_of_piece) {}
+
+    ScheduleRuns make() {
+        find_levels();
+        runs_.piece_start.push_back(0);
+        for (std::int32_t p = 0; p < n_pieces_; ++p)
+            add_runs(p * slots_of_piece, std::min((p + 1) * slots_of_piece, s_.n_tree), false);
+        add_runs(0, s_.n_tree, true);
+        return std::move(runs_);
+    }
+
+private:
+    std::int32_t children(std::int32_t slot) const { return s_.child_start[slot + 1] - s_.child_start[slot]; }
+
+    // Of atoms with children: how many others of the same piece, or of the top, must come before.
+    void find_levels() {
+        level_.assign(at(s_.n_tree), 0);
+        top_.assign(at(s_.n_tree), 0);
+        for (std::int32_t slot = 0; slot < s_.n_tree; ++slot) {
+            const std::int32_t *const child = s_.child + s_.child_start[slot];
+            for (std::int32_t c = 0; c < children(slot); ++c)
+                if (top_[at(child[c])] || child[c] / slots_of_piece != slot / slots_of_piece) top_[at(slot)] = 1;
+            for (std::int32_t c = 0; c < children(slot); ++c)
+                if (children(child[c]) > 0 && top_[at(child[c])] == top_[at(slot)])
+                    level_[at(slot)] = std::max(level_[at(slot)], level_[at(child[c])] + 1);
+        }
+    }
+
+    // The atoms with children among these slots, by level and number of children.
+    void add_runs(std::int32_t begin, std::int32_t end, bool top) {
+        std::vector<std::int32_t> count;
+        const auto row = [&](std::int32_t slot) {
+            return at(most_children * level_[at(slot)] + std::min(children(slot), most_children) - 1);
+        };
+        const auto for_each = [&](const auto &body) {
+            for (std::int32_t slot = begin; slot < end; ++slot)
+                if (children(slot) > 0 && (top_[at(slot)] != 0) == top) body(slot);
+        };
+        for_each([&](std::int32_t slot) {
+            if (row(slot) >= count.size()) count.resize(row(slot) + 1, 0);
+            ++count[row(slot)];
+        });
+        std::int32_t next = static_cast<std::int32_t>(runs_.slot.size());
+        for (std::size_t r = 0; r < count.size(); ++r) {
+            if (count[r] == 0) continue;
+            runs_.run.push_back({next, count[r], static_cast<std::int32_t>(r) % most_children + 1});
+            next += count[r];
+            count[r] = next - count[r];  // from now on where the next one goes
+        }
+        runs_.slot.resize(at(next));
+        for_each([&](std::int32_t slot) { runs_.slot[at(count[row(slot)]++)] = slot; });
+        runs_.piece_start.push_back(static_cast<std::int32_t>(runs_.run.size()));
+    }
+
+    const Schedule &s_;
+    const std::int32_t n_pieces_;
+    std::vector<std::int32_t> level_;
+    std::vector<unsigned char> top_;
+    ScheduleRuns runs_;
+};
+
+}  // namespace
+
+ScheduleRuns runs_of(const Schedule &s) { return RunMaker(s).make(); }
+
+}  // namespace holonomic

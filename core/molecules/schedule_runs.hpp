@@ -1,0 +1,21 @@
+// Which atoms of a large molecule's trees can be worked on at once (core/kernels/graph/schedule.hpp).
+#ifndef HOLONOMIC_SCHEDULE_RUNS_HPP
+#define HOLONOMIC_SCHEDULE_RUNS_HPP
+
+#include <cstdint>
+#include <vector>
+
+#include "core/kernels/graph/schedule.hpp"
+
+namespace holonomic {
+
+struct ScheduleRuns {
+    std::vector<Schedule::Run> run;
+    std::vector<std::int32_t> slot, piece_start;
+};
+
+// From the parents and the children of a schedule. Takes O(n).
+ScheduleRuns runs_of(const Schedule &s);
+
+}  // namespace holonomic
+#endif
