@@ -29,8 +29,9 @@ HOL_INLINE void read_four(const double *const *p, vec *e) {
     for (int c = 0; c < 4; ++c) e[c] = _mm512_insertf64x4(_mm512_castpd256_pd512(low[c]), high[c], 1);
 #else
     for (int c = 0; c < 4; ++c) {
-        e[c] = vec{};
-        for (int i = 0; i < W; ++i) e[c][i] = p[i][c];
+        vec a = {};
+        for (int i = 0; i < W; ++i) a[i] = p[i][c];
+        e[c] = a;
     }
 #endif
 }
