@@ -1,0 +1,276 @@
+/**
+ * Molecules of thousands of bonds, whose trees are worked on in pieces and several atoms at a time: no bit depends on
+ * layout, threads or the order of the bonds, and what is found solves the equations.
+ */
+#include "check.h"
+#include "random.h"
+
+/** A tree, or one with rings of five, and its state. */
+typedef struct large {
+    int64_t n_atoms, n_bonds;
+    int64_t *pairs, *parent;
+    double *mass, *length, *r, *v, *f;
+} large;
+
+static void add_bond(large *m, int64_t i, int64_t j)
+{
+    m->pairs[2 * m->n_bonds] = i, m->pairs[2 * m->n_bonds + 1] = j;
+    ++m->n_bonds;
+}
+
+/** Linear segments of `segment` atoms, joined at random, at most four bonds at an atom; every `ring`th closes a ring.
+ */
+static large make(int64_t n_atoms, int64_t segment, int64_t ring, uint64_t seed)
+{
+    large m = {n_atoms, 0, NULL, NULL, NULL, NULL, NULL, NULL, NULL};
+    random_stream s = random_seed(seed);
+    const size_t n = (size_t)n_atoms;
+    m.pairs = malloc(4 * n * sizeof *m.pairs), m.parent = malloc(n * sizeof *m.parent);
+    m.mass = untouched(n), m.length = untouched(2 * n);
+    m.r = untouched(3 * n), m.v = untouched(3 * n), m.f = untouched(3 * n);
+    int *neighbours = calloc(n, sizeof *neighbours);
+    for (int64_t i = 0; i < n_atoms; ++i) {
+        double u[3];
+        int64_t p = i - 1;
+        if (i > 0 && i % segment == 0) do
+                p = random_integer(&s, 0, i - 1);
+            while (neighbours[p] > 3);
+        m.parent[i] = p;
+        random_direction(&s, u);
+        m.mass[i] = pow(10, random_uniform(&s));
+        for (int c = 0; c < 3; ++c) {
+            m.r[3 * i + c] = i > 0 ? m.r[3 * p + c] + u[c] : 0;
+            m.v[3 * i + c] = random_normal(&s);
+            m.f[3 * i + c] = random_normal(&s);
+        }
+        if (i == 0) continue;
+        ++neighbours[i], ++neighbours[p];
+        add_bond(&m, p, i);
+    }
+    for (int64_t i = 4; ring > 0 && i < n_atoms; i += ring)
+        if (m.parent[i] == i - 1 && m.parent[i - 1] == i - 2 && m.parent[i - 2] == i - 3) add_bond(&m, i - 3, i);
+    for (int64_t k = 0; k < m.n_bonds; ++k) m.length[k] = 1;
+    free(neighbours);
+    return m;
+}
+
+static void release(large *m)
+{
+    free(m->pairs), free(m->parent), free(m->mass), free(m->length), free(m->r), free(m->v), free(m->f);
+}
+
+static hol_chains *chains_of(const large *m)
+{
+    hol_chains *chains = NULL;
+    CHECK(hol_chains_create(m->n_atoms, m->mass, &chains));
+    CHECK(hol_chains_add_bonds(chains, m->n_bonds, m->pairs, m->length));
+    assert_int_equal(hol_chains_n_chains(chains), 1);
+    return chains;
+}
+
+typedef struct results {
+    double *lambda, *tension, *g, *v, *mu, *solved;
+} results;
+
+static results compute(const large *m, const hol_chains *chains)
+{
+    const size_t n = (size_t)m->n_bonds, size = 3 * (size_t)m->n_atoms;
+    results x = {untouched(n), untouched(n), untouched(size), copy_of(m->v, size), untouched(n), untouched(n)};
+    CHECK(hol_forces(chains, m->r, m->v, m->f, x.lambda, x.tension, x.g, HOL_WRITE, NULL));
+    CHECK(hol_project_velocities(chains, m->r, x.v, x.mu, NULL));
+    CHECK(hol_solve(chains, m->r, m->length, x.solved, NULL, HOL_WRITE, NULL));
+    return x;
+}
+
+static void forget(results *x)
+{
+    free(x->lambda), free(x->tension), free(x->g), free(x->v), free(x->mu), free(x->solved);
+}
+
+static void assert_same(const large *m, const results *a, const results *b)
+{
+    const size_t n = (size_t)m->n_bonds, size = 3 * (size_t)m->n_atoms;
+    assert_same_bits(a->lambda, b->lambda, n);
+    assert_same_bits(a->tension, b->tension, n);
+    assert_same_bits(a->g, b->g, size);
+    assert_same_bits(a->v, b->v, size);
+    assert_same_bits(a->mu, b->mu, n);
+    assert_same_bits(a->solved, b->solved, n);
+}
+
+static int64_t size_of_test(void)
+{
+    return quick_run() ? 3000 : 40000;
+}
+
+static large example(int which)
+{
+    const int64_t n = size_of_test();
+    return which == 0 ? make(n, 1, 0, 1) : which == 1 ? make(n, 300, 0, 2) : make(n, 12, 40, 3);
+}
+
+static void number_of_threads_changes_no_bit(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 3; ++which) {
+        large m = example(which);
+        hol_chains *chains = chains_of(&m);
+        results one = compute(&m, chains);
+        double virial[2][9];
+        CHECK(hol_forces(chains, m.r, m.v, m.f, NULL, NULL, NULL, HOL_WRITE, virial[0]));
+        for (int threads = 2; threads < 4; ++threads) {
+            CHECK(hol_chains_set_threads(chains, threads));
+            results several = compute(&m, chains);
+            assert_same(&m, &several, &one);
+            CHECK(hol_forces(chains, m.r, m.v, m.f, NULL, NULL, NULL, HOL_WRITE, virial[1]));
+            assert_same_bits(virial[0], virial[1], 9);
+            forget(&several);
+        }
+        forget(&one);
+        hol_chains_destroy(chains);
+        release(&m);
+    }
+}
+
+static void order_of_bonds_changes_no_bit(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 3; ++which) {
+        large m = example(which);
+        hol_chains *chains = chains_of(&m);
+        results plain = compute(&m, chains);
+        hol_chains_destroy(chains);
+        const int64_t n = m.n_bonds;
+        for (int64_t k = 0; k < n / 2; ++k) /* backwards, and turned round */
+            for (int e = 0; e < 2; ++e) {
+                const int64_t other = m.pairs[2 * (n - 1 - k) + 1 - e];
+                m.pairs[2 * (n - 1 - k) + 1 - e] = m.pairs[2 * k + e];
+                m.pairs[2 * k + e] = other;
+            }
+        chains = chains_of(&m);
+        results turned = compute(&m, chains);
+        assert_same_bits(turned.g, plain.g, 3 * (size_t)m.n_atoms);
+        assert_same_bits(turned.v, plain.v, 3 * (size_t)m.n_atoms);
+        for (int64_t k = 0; k < n; ++k) {
+            assert_same_bits(turned.lambda + k, plain.lambda + n - 1 - k, 1);
+            assert_same_bits(turned.solved + k, plain.solved + n - 1 - k, 1);
+        }
+        forget(&plain), forget(&turned);
+        hol_chains_destroy(chains);
+        release(&m);
+    }
+}
+
+/** Rows of four doubles, the last of which is not the library's. */
+static double *padded(const double *a, int64_t n)
+{
+    double *p = untouched(4 * (size_t)n);
+    for (int64_t i = 0; i < n; ++i) memcpy(p + 4 * i, a + 3 * i, 3 * sizeof *p);
+    return p;
+}
+
+static hol_view view_of(double *p)
+{
+    const hol_view view = {p, p + 1, p + 2, 4 * sizeof *p, HOL_DOUBLE, 0};
+    return view;
+}
+
+static void layout_changes_no_bit(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 3; ++which) {
+        large m = example(which);
+        hol_chains *chains = chains_of(&m);
+        results plain = compute(&m, chains);
+        double *r = padded(m.r, m.n_atoms), *v = padded(m.v, m.n_atoms), *f = padded(m.f, m.n_atoms);
+        double *lambda = untouched((size_t)m.n_bonds);
+        const hol_view vr = view_of(r), vv = view_of(v), vf = view_of(f);
+        CHECK(hol_forces_view(chains, &vr, &vv, &vf, lambda, NULL, &vf, HOL_WRITE, NULL));
+        assert_same_bits(lambda, plain.lambda, (size_t)m.n_bonds);
+        for (int64_t i = 0; i < m.n_atoms; ++i) assert_same_bits(f + 4 * i, plain.g + 3 * i, 3);
+        CHECK(hol_project_velocities_view(chains, &vr, &vv, lambda, NULL));
+        assert_same_bits(lambda, plain.mu, (size_t)m.n_bonds);
+        for (int64_t i = 0; i < m.n_atoms; ++i) assert_same_bits(v + 4 * i, plain.v + 3 * i, 3);
+        free(r), free(v), free(f), free(lambda);
+        forget(&plain);
+        hol_chains_destroy(chains);
+        release(&m);
+    }
+}
+
+/**
+ * What lambda leaves of d.(a_j - a_i) + |dv|^2, in long double, solved for once more: the error of lambda. It is a few
+ * roundings of the largest multiplier at the bond's atoms; trees at random have atoms that plain arithmetic can't do.
+ */
+static void multipliers_are_right_to_a_few_roundings(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 3; ++which) {
+        large m = example(which);
+        hol_chains *chains = chains_of(&m);
+        results x = compute(&m, chains);
+        const size_t n = (size_t)m.n_bonds, size = 3 * (size_t)m.n_atoms;
+        long double *a = calloc(size, sizeof *a);
+        double *left = untouched(n), *error = untouched(n), *largest = calloc(size / 3, sizeof *largest);
+        for (size_t k = 0; k < n; ++k)
+            for (int e = 0; e < 2; ++e) {
+                const int64_t i = m.pairs[2 * k + e], j = m.pairs[2 * k + 1 - e];
+                largest[i] = fmax(largest[i], fabs(x.lambda[k]));
+                for (int c = 0; c < 3; ++c)
+                    a[3 * i + c] += 2 * (long double)x.lambda[k] * ((long double)m.r[3 * j + c] - m.r[3 * i + c]);
+            }
+        for (size_t i = 0; i < size; ++i) a[i] = (a[i] + m.f[i]) / m.mass[i / 3];
+        for (size_t k = 0; k < n; ++k) {
+            const int64_t i = m.pairs[2 * k], j = m.pairs[2 * k + 1];
+            long double sum = 0;
+            for (int c = 0; c < 3; ++c) {
+                const long double dv = (long double)m.v[3 * j + c] - m.v[3 * i + c];
+                sum += ((long double)m.r[3 * j + c] - m.r[3 * i + c]) * (a[3 * j + c] - a[3 * i + c]) + dv * dv;
+            }
+            left[k] = (double)(2 * sum);
+        }
+        CHECK(hol_solve(chains, m.r, left, error, NULL, HOL_WRITE, NULL));
+        for (size_t k = 0; k < n; ++k) {
+            const double most = fmax(largest[m.pairs[2 * k]], largest[m.pairs[2 * k + 1]]);
+            CHECK_AT_MOST(fabs(error[k]), 1000 * fmax(DBL_EPSILON, (double)long_double_rounding()) * most);
+        }
+        free(a), free(left), free(error), free(largest);
+        forget(&x);
+        hol_chains_destroy(chains);
+        release(&m);
+    }
+}
+
+static void bad_data_leave_everything_untouched(void **state)
+{
+    (void)state;
+    large m = example(1);
+    hol_chains *chains = chains_of(&m);
+    const size_t n = (size_t)m.n_bonds, size = 3 * (size_t)m.n_atoms;
+    double *lambda = untouched(n), *g = untouched(size);
+    m.f[size / 2] = NAN;
+    CHECK_FAILS(HOL_ERR_NOT_FINITE, hol_forces(chains, m.r, m.v, m.f, lambda, NULL, g, HOL_WRITE, NULL));
+    assert_untouched(lambda, n);
+    assert_untouched(g, size);
+    m.f[size / 2] = 0;
+    const int64_t i = m.n_atoms / 2;
+    memcpy(m.r + 3 * i, m.r + 3 * m.parent[i], 3 * sizeof *m.r);
+    CHECK_FAILS(HOL_ERR_DEGENERATE, hol_forces(chains, m.r, m.v, m.f, lambda, NULL, g, HOL_WRITE, NULL));
+    assert_untouched(lambda, n);
+    assert_untouched(g, size);
+    free(lambda), free(g);
+    hol_chains_destroy(chains);
+    release(&m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(number_of_threads_changes_no_bit),
+        cmocka_unit_test(order_of_bonds_changes_no_bit),
+        cmocka_unit_test(layout_changes_no_bit),
+        cmocka_unit_test(multipliers_are_right_to_a_few_roundings),
+        cmocka_unit_test(bad_data_leave_everything_untouched),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
