@@ -214,7 +214,7 @@ static void multipliers_are_right_to_a_few_roundings(void **state)
         double *left = untouched(n), *error = untouched(n), *largest = calloc(size / 3, sizeof *largest);
         for (size_t k = 0; k < n; ++k)
             for (int e = 0; e < 2; ++e) {
-                const int64_t i = m.pairs[2 * k + e], j = m.pairs[2 * k + 1 - e];
+                const int64_t i = m.pairs[2 * k + (size_t)e], j = m.pairs[2 * k + (size_t)(1 - e)];
                 largest[i] = fmax(largest[i], fabs(x.lambda[k]));
                 for (int c = 0; c < 3; ++c)
                     a[3 * i + c] += 2 * (long double)x.lambda[k] * ((long double)m.r[3 * j + c] - m.r[3 * i + c]);
