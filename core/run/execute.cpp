@@ -73,11 +73,13 @@ std::int64_t long_chain_bonds(const Chains &chains, const Plan &plan, std::int64
     return n > longest_lane ? n : 0;
 }
 
-// A single molecule that is large enough for several threads.
-bool is_large_molecule(const Plan &plan, std::int64_t p) {
+// A single molecule whose pieces are shared among the threads: a large one, or one of few, so that not every thread has
+// molecules of its own.
+bool is_shared_molecule(const Plan &plan, std::int64_t p, int n_threads) {
     const Plan::Piece &piece = plan.pieces[static_cast<std::size_t>(p)];
-    return piece.shape != linear && piece.count == 1 &&
-           plan.schedules[static_cast<std::size_t>(piece.shape)]->n_pieces > 1;
+    if (piece.shape == linear || piece.count != 1) return false;
+    const std::int32_t n = plan.schedules[static_cast<std::size_t>(piece.shape)]->n_pieces;
+    return n > 1 && (n >= 8 * n_threads || static_cast<std::int64_t>(plan.pieces.size()) < 4 * n_threads);
 }
 
 // Molecules whose cycles do not close are bad; the others are worked on.
@@ -190,7 +192,7 @@ Tally execute(const Chains &chains, const Plan &plan, const Work &work) {
     if (n_threads > 1) {
         Tally *const parts = tallies(Keep::piece_tallies, n_pieces);
         const auto is_shared = [&](std::int64_t p) {
-            if (is_large_molecule(plan, p)) return true;
+            if (is_shared_molecule(plan, p, n_threads)) return true;
             if (!any_shared) return false;
             const std::int64_t n = long_chain_bonds(chains, plan, p);
             return n > 0 && work.long_blocks(n) >= shared_blocks;
