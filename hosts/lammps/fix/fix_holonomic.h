@@ -131,7 +131,6 @@ private:
     double rate_[6] = {0};       // d(box)/dt box^-1, xx yy zz yz xz xy, with which atoms move beside their velocities
     double step_rate_[6] = {0};  // its mean over the last step
     double last_box_[6] = {0};   // at the end of that step
-    bool streaming_ = false;
     bool reruns_ = false;
 
     int max_rows_ = 0;  // of array_local

@@ -46,7 +46,6 @@ void FixHolonomic::measure_rate() {
         step_rate_[k] = mean;
         last_box_[k] = h[k];
     }
-    streaming_ = std::any_of(rate_, rate_ + 6, [](double x) { return x != 0; });
 }
 
 /** From other ranks: v + half f / m, or v if half is 0; and the forces of all atoms, in the library's units. */
@@ -78,7 +77,7 @@ void FixHolonomic::receive_velocities(double half, bool with_forces) {
         });
 }
 
-/** The same for a block's own atoms; then the box's motion for all. A copy goes into scratch_. */
+/** The same for a block's own atoms; then the motion of images for all. A copy goes into scratch_. */
 void FixHolonomic::collect_velocities(const Block &block, double half) {
     const int first = block.packed.first_slot();
     scratch_.resize(3 * static_cast<std::size_t>(block.packed.end_slot() - first));
@@ -102,10 +101,7 @@ void FixHolonomic::collect_velocities(const Block &block, double half) {
     std::copy_n(&velocities_[3 * first], scratch_.size(), scratch_.data());
 }
 
-/**
- * Velocities with which the slots really move: images with their box, atoms with the box that is deformed. Gives
- * whether there is such a motion.
- */
+/** Images move with their box where fix deform remaps velocities. Gives whether it does. */
 bool FixHolonomic::add_streaming(const Block &block) {
     if (domain->deform_vremap) {
         const double *h = domain->h_rate;
@@ -117,22 +113,7 @@ bool FixHolonomic::add_streaming(const Block &block) {
             v[2] += n[2] * h[2];
         }
     }
-    if (!streaming_) return domain->deform_vremap != 0;
-    const double *L = rate_;
-    for (int m = block.packed.first_resident(); m < block.packed.end_resident(); ++m) {
-        const Resident &resident = plan_->residents()[m];
-        const double *origin = &now_[3 * resident.first];
-        const int n_atoms = plan_->shapes()[resident.shape].n_atoms;
-        for (int k = 1; k < n_atoms; ++k) {
-            const double *r = origin + 3 * k;
-            const double x = r[0] - origin[0], y = r[1] - origin[1], z = r[2] - origin[2];
-            double *v = &velocities_[3 * (resident.first + k)];
-            v[0] += L[0] * x + L[5] * y + L[4] * z;
-            v[1] += L[1] * y + L[3] * z;
-            v[2] += L[2] * z;
-        }
-    }
-    return true;
+    return domain->deform_vremap != 0;
 }
 
 /** What a block's velocities have become more than scratch_: to its own atoms, and into the answers to other ranks. */
@@ -155,13 +136,16 @@ void FixHolonomic::give_changes(const Block &block, Give give) {
 
 /**
  * Velocities onto the constraints, those of now or those that a half step with the present forces would give: calls
- * give(atom, change, mass) on the owners' ranks. velocities_ is what comes out, with the box's motion.
+ * give(atom, change, mass) on the owners' ranks. velocities_ is what comes out, with the motion of images; that of
+ * atoms with a box that is deformed is the library's.
  */
 template <class Give>
 void FixHolonomic::constrain_velocities(bool half_kick, bool with_forces, Give give) {
     const double half = half_kick ? 0.5 * update->dt * force->ftm2v : 0.0;
+    const double L[9] = {rate_[0], rate_[5], rate_[4], 0, rate_[1], rate_[3], 0, 0, rate_[2]};
     receive_velocities(half, with_forces);
     for (Block &block : blocks_) {
+        block.packed.set_rate(L);
         collect_velocities(block, half);
         if (!reruns_) block.packed.velocities(now_.data(), velocities_.data());
         give_changes(block, give);
@@ -194,7 +178,6 @@ void FixHolonomic::setup(int vflag) {
             std::fill(step_rate_, step_rate_ + 6, 0.0);
         }
         std::copy(domain->h, domain->h + 6, last_box_);
-        streaming_ = std::any_of(rate_, rate_ + 6, [](double x) { return x != 0; });
         collect_all_positions();
         for (const Block &block : blocks_) add_images(block, 1);
         reruns_ = reruns();

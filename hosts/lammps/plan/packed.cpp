@@ -77,6 +77,8 @@ void Packed::positions(const double *before, double *now, double dt, std::int64_
     if (n_moved) *n_moved += report.n_corrected;
 }
 
+void Packed::set_rate(const double *L) { check(hol_chains_set_box_rate(chains_.get(), L), "the rate of the box"); }
+
 void Packed::velocities(const double *r, double *v) {
     check(hol_project_velocities(chains_.get(), r + 3 * first_slot_, v + 3 * first_slot_, nullptr, nullptr),
           "velocities");

@@ -29,6 +29,8 @@ public:
 
     /** n_moved: how many molecules have been moved is added to it; a count that nobody wants costs time. */
     void positions(const double *before, double *now, double dt, std::int64_t *n_moved = nullptr);
+    /** L [3][3] of a box that changes, for velocities, forces and violation: hol_chains_set_box_rate. */
+    void set_rate(const double *L);
     void velocities(const double *r, double *v);
     /** virial: [3][3], of these molecules. */
     void forces(const double *r, const double *v, const double *f, double *tension, double *g, double *virial);
