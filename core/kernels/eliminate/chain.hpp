@@ -11,10 +11,22 @@
 
 #include "core/kernels/eliminate/exact_joints.hpp"
 #include "core/kernels/eliminate/remainder.hpp"
-#include "core/kernels/eliminate/system.hpp"
+#include "core/kernels/memory/arena.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
+
+// Interleaved working arrays of a linear solve, with room for W bonds more in what is read from memory.
+struct System {
+    vec3 *D, *D_low;
+    vec *t, *L;   // t: right-hand side, then u = y / P, then the solution; L[0 .. n]: L[0] and L[n] are of no joint
+    vec *pivots;  // 1 / P
+    System(long n, Arena &arena)
+        : D(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + W)))),
+          D_low(reinterpret_cast<vec3 *>(arena.vecs(3 * (n + W)))), t(arena.vecs(n + W)), L(arena.vecs(n + 1)),
+          pivots(arena.vecs(n)) {}
+    System(vec3 *bonds, vec *values, vec *multipliers, vec *reciprocals)
+        : D(bonds), D_low(nullptr), t(values), L(multipliers), pivots(reciprocals) {}
+};
 
 // Plain forward sweep, a bond at a time: turns right-hand sides into u = y / P and keeps the multipliers. Within four
 // bonds E is carried as a fraction A / F, which takes the divisions out of the chain of dependences.
@@ -155,6 +167,5 @@ HOL_INLINE void substitute(long n, const System &s) {
     }
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

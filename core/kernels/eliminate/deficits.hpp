@@ -46,16 +46,16 @@ static inline void measure(const Block &block, const Geometry &x) {
     x.normal[0] = x.normal[block.n] = vec3{};
     for (long k = 0; k < block.n; ++k) {
         const vec s = reciprocal_scale(x.u[k]);
-        const vec3 d = times(s, x.u[k]), low = times(s, x.low[k]);
+        const vec3 d = s * x.u[k], low = s * x.low[k];
         const vec q = dot_compensated(d, low, d, low), r = splat(1.0) / sqrt(q);
-        x.u[k] = times(r, d);
+        x.u[k] = r * d;
         x.square[k] = q;
         x.scale[k] = s;
         x.reciprocal[k] = r * s;
         if (k > 0) {
             const vec f = r0 * r;
             vec c = dot_compensated(d0, low0, d, low) * f;
-            vec3 normal = times(f, cross_compensated(d0, low0, d, low));
+            vec3 normal = f * cross_compensated(d0, low0, d, low);
             const vec size = abs(c);
             vec complement = select(less(size, splat(0.5)), 1.0 - size, dot(normal, normal) / (1.0 + size));
             if (k >= block.n_min) {
@@ -172,7 +172,7 @@ HOL_INLINE void weigh_normal(const Block &block, const Geometry &x, long k, vec 
     const vec size = w_at<uniform>(block, k) / (e + f + (e / p) * f);
     const mask sign = mask{} + (-0x7fffffffffffffffLL - 1);
     const vec h = as_vec(as_mask(size) | (as_mask(x.cosine[k]) & sign));
-    x.normal[k] = times(keep(coupled, h), x.normal[k]);
+    x.normal[k] = keep(coupled, h) * x.normal[k];
 }
 
 // What the bonds to the right of joint k leave of row k-1.

@@ -5,8 +5,7 @@
 #include "core/kernels/arithmetic/image.hpp"
 #include "core/kernels/memory/block.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // Where the bond vectors of a block come from: lanes of coordinates, or lists of atoms in the array `base`.
 struct Source {
@@ -69,6 +68,5 @@ HOL_NOINLINE vec exact_dots(const Source &source, long k, mask which, vec g) {
     return g;
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

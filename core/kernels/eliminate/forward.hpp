@@ -5,8 +5,7 @@
 #include "core/kernels/eliminate/chain.hpp"
 #include "core/kernels/memory/packed.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // Loads the bonds of a block and eliminates: t becomes u. Returns the lanes that plain arithmetic can answer for, and
 // in `calm` those in which nothing can overflow from here on.
@@ -33,19 +32,12 @@ HOL_NOINLINE mask forward(const Block &block, const Box &box, const Packed &r, c
     return ~sweep.doubt();
 }
 
+// The same with compensated products of unrounded bond vectors: good in all lanes.
 template <int terms, bool uniform, bool boxed>
-HOL_NOINLINE void forward_careful(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
-                                  const System &s) {
+HOL_NOINLINE mask forward_careful(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
+                                  const System &s, mask &calm) {
     load_bonds<terms, uniform, boxed, true>(block, box, r, v, f, s.D, s.D_low, s.t);
     forward_careful<uniform>(block, s);
-}
-
-// The lanes for which u is good; `calm` as above.
-template <int terms, bool careful, bool uniform, bool boxed>
-static inline mask forward_by(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
-                              const System &s, mask &calm) {
-    if (!careful) return forward<terms, uniform, boxed>(block, box, r, v, f, s, calm);
-    forward_careful<terms, uniform, boxed>(block, box, r, v, f, s);
     calm = none();
     return ~none();
 }
@@ -56,13 +48,13 @@ static inline mask forward_any(const Block &block, const Box &box, const Packed 
     const bool boxed = box.shape != Box::none;
     if (!careful && (terms & velocity_squared) && block.unit_masses && !boxed)
         return forward<terms | unit_mass, true, false>(block, box, r, v, f, s, calm);
-    if (block.uniform_w)
-        return boxed ? forward_by<terms, careful, true, true>(block, box, r, v, f, s, calm)
-                     : forward_by<terms, careful, true, false>(block, box, r, v, f, s, calm);
-    return boxed ? forward_by<terms, careful, false, true>(block, box, r, v, f, s, calm)
-                 : forward_by<terms, careful, false, false>(block, box, r, v, f, s, calm);
+    return choose(
+        [&](auto uniform, auto has_box) {
+            return careful ? forward_careful<terms, uniform, has_box>(block, box, r, v, f, s, calm)
+                           : forward<terms, uniform, has_box>(block, box, r, v, f, s, calm);
+        },
+        block.uniform_w, boxed);
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

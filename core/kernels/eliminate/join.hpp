@@ -5,8 +5,7 @@
 #include "core/kernels/arithmetic/stretching.hpp"
 #include "core/kernels/eliminate/segment.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 static inline void add_stretching(const Block &own, const double *strain, const vec3 *D, vec *B) {
     for (long k = 0; k < own.n; ++k) B[k] = B[k] + keep(joint(own, k), stretching(strain, D[k]));
@@ -30,10 +29,7 @@ static inline void eliminate_block_of(const Box &box, const SegmentBlock &s, con
     in.low = low;
     in.B = B;
     if (careful) {
-        if (boxed)
-            load_bonds<terms, uniform, true, true>(own, box, r, v, f, D, low, B);
-        else
-            load_bonds<terms, uniform, false, true>(own, box, r, v, f, D, low, B);
+        choose([&](auto has_box) { load_bonds<terms, uniform, has_box, true>(own, box, r, v, f, D, low, B); }, boxed);
         if (strain) add_stretching(own, strain, D, B);
         eliminate<in_scratch, uniform, true>(s.block, box, source, in, n, x);
         return;
@@ -63,10 +59,9 @@ static inline void eliminate_block(const Call &call, const Lane &lane, int64_t j
     const Packed pr = open(r, s.block, s.lane, arena, true), pv = open(v, s.block, s.lane, arena, true);
     const Packed pf = open(f, s.block, s.lane, arena, true);
     const SegmentStore x(store, cut, j);
-    if (s.block.uniform_w)
-        eliminate_block_of<terms, true>(call.box, s, pr, pv, pf, careful, x, arena, strain);
-    else
-        eliminate_block_of<terms, false>(call.box, s, pr, pv, pf, careful, x, arena, strain);
+    choose(
+        [&](auto uniform) { eliminate_block_of<terms, uniform>(call.box, s, pr, pv, pf, careful, x, arena, strain); },
+        s.block.uniform_w);
 }
 
 // Solves for the separators. `careful` says how the segments were eliminated.
@@ -105,6 +100,5 @@ static inline JoinResult long_join(const Lane &lane, bool careful, double *store
     return join_good;
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

@@ -8,8 +8,7 @@
 #include "core/kernels/memory/terms.hpp"
 #include "core/kernels/memory/values.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // As forward(), from the lists; of rates, the velocities go to `velocities`. Returns the lanes for which plain
 // arithmetic will do, nothing overflowing.
@@ -32,13 +31,13 @@ HOL_NOINLINE mask forward_gathered(const Block &block, const Box &box, const Ato
                 if (terms & force_difference) __builtin_prefetch(f + next, 0, 2);
             }
         const vec3 r1 = gather(r, at, k + 1);
-        vec3 d = minus(r1, r0), dv = {}, df = {}, unused = {};
+        vec3 d = r1 - r0, dv = {}, df = {}, unused = {};
         if (boxed) wrap<false>(box, d, unused);
         s.D[k] = d;
         r0 = r1;
         if (terms & (velocity_squared | rate)) {
             const vec3 v1 = gather(v, at, k + 1);
-            dv = minus(v1, v0);
+            dv = v1 - v0;
             v0 = v1;
             if (terms & rate) velocities[k + 1] = v1;
         }
@@ -69,11 +68,11 @@ HOL_NOINLINE void substitute_and_scatter(const Block &block, const System &s, co
     vec3 after = {};
     s.L[block.n] = vec{};
     const auto pull = [&](long k, const vec3 &before) HOL_FORCED {
-        if (out) scatter<update>(out, at, k, minus(after, before));
+        if (out) scatter<update>(out, at, k, after - before);
     };
     const auto bond = [&](long k) HOL_FORCED {
         t = mul_add(s.L[k + 1], t, s.t[k]);
-        const vec3 p = times(t, s.D[k]);
+        const vec3 p = t * s.D[k];
         pull(k + 1, p);
         after = p;
         return mul_add(factor, t, vec{});  // zeros as +0
@@ -95,11 +94,12 @@ HOL_NOINLINE void substitute_and_scatter(const Block &block, const System &s, co
 template <int terms>
 static inline mask forward_listed(const Block &block, const Box &box, const AtomLists &at, const AtomArray &r,
                                   const AtomArray &v, const AtomArray &f, const System &s, vec3 *velocities) {
-    return block.uniform_w
-               ? forward_gathered<terms, true>(block, box, at, base_of(r), base_of(v), base_of(f), s, velocities)
-               : forward_gathered<terms, false>(block, box, at, base_of(r), base_of(v), base_of(f), s, velocities);
+    return choose(
+        [&](auto uniform) {
+            return forward_gathered<terms, uniform>(block, box, at, base_of(r), base_of(v), base_of(f), s, velocities);
+        },
+        block.uniform_w);
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

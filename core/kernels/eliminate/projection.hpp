@@ -5,8 +5,7 @@
 #include "core/kernels/arithmetic/stretching.hpp"
 #include "core/kernels/eliminate/chain.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // Working arrays of a projection.
 struct Projection {
@@ -26,7 +25,7 @@ struct Projection {
 };
 
 // d . (v_{k+1} - v_k)
-HOL_INLINE vec rate_of(const vec3 &d, const vec3 &v0, const vec3 &v1) { return dot(d, minus(v1, v0)); }
+HOL_INLINE vec rate_of(const vec3 &d, const vec3 &v0, const vec3 &v1) { return dot(d, v1 - v0); }
 
 // The backward sweep, u to t, and what it makes of velocities: v_k + w_k (t_{k+1} d_{k+1} - t_k d_k), rounded once.
 template <bool uniform>
@@ -39,13 +38,13 @@ struct Pull {
 
     inline HOL_FORCED vec3 moved(long k, const vec3 &before) const {
         const vec w = w_at<uniform>(block, k);
-        const vec3 v = x.v[k], g = minus(after, before);
+        const vec3 v = x.v[k], g = after - before;
         return {mul_add(w, g.x, v.x), mul_add(w, g.y, v.y), mul_add(w, g.z, v.z)};
     }
     // Atom k + 1; the last is atom 0.
     inline HOL_FORCED vec3 step(long k) {
         t = mul_add(x.s.L[k + 1], t, u[k]);
-        const vec3 before = times(t, x.s.D[k]), v = moved(k + 1, before);
+        const vec3 before = t * x.s.D[k], v = moved(k + 1, before);
         after = before;
         return v;
     }
@@ -98,6 +97,5 @@ static inline mask pull_back(const Block &block, const Projection &x, bool twice
     return block.uniform_w ? pull_back<true>(block, x, twice) : pull_back<false>(block, x, twice);
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

@@ -5,8 +5,7 @@
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/memory/block.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // A solution of the recursion E' = w (q' E + w X) / (w q + E), as the fraction E = A / F:
 //     F' = w q F + A,   A' = w q' A + w^2 X F
@@ -74,6 +73,5 @@ HOL_NOINLINE mask extreme_pivots(const Block &block, const vec3 *D) {
     return ~less(size, splat(largest_calm));
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

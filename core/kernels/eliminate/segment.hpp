@@ -18,8 +18,7 @@
 #include "core/kernels/eliminate/remainder.hpp"
 #include "core/kernels/memory/segments.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // What the elimination of the inner bonds of W segments leaves, and the solution at their separators.
 struct Summary {
@@ -247,6 +246,5 @@ HOL_NOINLINE void eliminate(const Block &block, const Box &box, const Source &so
     sum.doubt = doubt | ~less(e.largest_rF, splat(careful ? largest_reciprocal_of_one : largest_reciprocal_of_four));
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

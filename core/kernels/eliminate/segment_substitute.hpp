@@ -9,8 +9,7 @@
 #include "core/kernels/memory/values.hpp"
 #include "core/kernels/memory/virial.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // Copies staged segments back: the atoms that the lane wrote.
 static inline void close_segments(const AtomArray &array, const SegmentBlock &s, int64_t j, const Lane &lane,
@@ -51,8 +50,8 @@ HOL_INLINE void store_segment_chunk(const Block &own, const SegmentOutputs &out,
     vec value[3 * W];
     for (int b = W - 1; b >= 0; --b) {
         const vec3 p = {mul_add(t[b], d[b].x, zero), mul_add(t[b], d[b].y, zero), mul_add(t[b], d[b].z, zero)};
-        vec3 g = minus(after, p);
-        if (weighted && !uniform) g = times(ragged && k0 + b + 1 > own.n ? vec{} : own.w[k0 + b + 1], g);
+        vec3 g = after - p;
+        if (weighted && !uniform) g = (ragged && k0 + b + 1 > own.n ? vec{} : own.w[k0 + b + 1]) * g;
         value[3 * b] = g.x;
         value[3 * b + 1] = g.y;
         value[3 * b + 2] = g.z;
@@ -94,7 +93,7 @@ HOL_NOINLINE void finish_segments(const SegmentBlock &s, bool first_block, const
     const long n = s.own_max, full = s.own_min / W * W;
     const vec ts = x.summary->t;
     vec t = next, value[W], unused[W];
-    vec3 after = times(next, in.next), d[W];
+    vec3 after = next * in.next, d[W];
     VirialSum sum;
     long k0 = (n - 1) / W * W;
     for (; k0 >= full; k0 -= W) {
@@ -128,22 +127,8 @@ HOL_NOINLINE void finish_segments(const SegmentBlock &s, bool first_block, const
     }
     if (out.virial) sum.count(~none(), splat(out.virial_factor), tally);
     if (!first_block || !out.has_pulls) return;
-    if (weighted && !uniform) after = times(own.w[0], after);
+    if (weighted && !uniform) after = own.w[0] * after;
     store_first({after.x + 0.0, after.y + 0.0, after.z + 0.0}, 1, AtomSink<update>{out.pulls});
-}
-
-template <bool weighted, bool boxed>
-static inline void finish_segments(const SegmentBlock &s, bool first_block, const Box &box, const SegmentBonds &in,
-                                   const SegmentStore &x, vec next, const SegmentOutputs &out, Update update,
-                                   Tally &tally) {
-    if (weighted && !s.block.uniform_w && update == write_)
-        finish_segments<true, false, boxed, write_>(s, first_block, box, in, x, next, out, tally);
-    else if (weighted && !s.block.uniform_w)
-        finish_segments<true, false, boxed, add_>(s, first_block, box, in, x, next, out, tally);
-    else if (update == add_)
-        finish_segments<weighted, true, boxed, add_>(s, first_block, box, in, x, next, out, tally);
-    else
-        finish_segments<weighted, true, boxed, write_>(s, first_block, box, in, x, next, out, tally);
 }
 
 // Substitutes in block j and writes; `pulled` gets what its atoms are pulled with.
@@ -164,14 +149,14 @@ static inline void finish_block(const Box &box, const AtomArray &r, const AtomAr
     next[W - 1] = s.last < 0 ? x.summary[1].t[0] : 0.0;
     out.has_pulls = pulled.x != nullptr;
     out.pulls = open(pulled, s.block, s.lane, arena, false);
-    const Update update = in_place(pulled, lane) && add ? add_ : write_;
-    if (box.shape == Box::none)
-        finish_segments<weighted, false>(s, j == 0, box, in, x, next, out, update, tally);
-    else
-        finish_segments<weighted, true>(s, j == 0, box, in, x, next, out, update, tally);
+    choose(
+        [&](auto uniform, auto boxed, auto adds) {
+            finish_segments<weighted, !weighted || uniform, boxed, adds ? add_ : write_>(s, j == 0, box, in, x, next,
+                                                                                         out, tally);
+        },
+        !weighted || s.block.uniform_w, box.shape != Box::none, in_place(pulled, lane) && add);
     if (out.has_pulls) close_segments(pulled, s, j, lane, out.pulls, add);
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

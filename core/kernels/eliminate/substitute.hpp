@@ -7,8 +7,7 @@
 #include "core/kernels/memory/pulls.hpp"
 #include "core/kernels/memory/values.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // The backward sweep, and what it gives written at once: G (see store_pulls) to `out`, and factor t to
 // value_out[bond]; either may be absent. For blocks in which all lanes are used and good, and can't overflow (calm()).
@@ -21,7 +20,7 @@ HOL_NOINLINE void substitute_and_store(const Block &block, const System &s, cons
     if (full < block.n) {
         backward(full, block.n, s.t, s.L);
         t = s.t[full];
-        after = times(t, s.D[full]);
+        after = t * s.D[full];
     } else {
         s.L[block.n] = vec{};
     }
@@ -36,7 +35,7 @@ HOL_NOINLINE void substitute_and_store(const Block &block, const System &s, cons
             const long k = k0 + b;
             t = mul_add(s.L[k + 1], t, s.t[k]);
             bond_value[b] = mul_add(factor, t, vec{});  // zeros as +0
-            const vec3 p = times(t, s.D[k]);
+            const vec3 p = t * s.D[k];
             value[3 * b] = after.x - p.x;
             value[3 * b + 1] = after.y - p.y;
             value[3 * b + 2] = after.z - p.z;
@@ -51,6 +50,5 @@ HOL_NOINLINE void substitute_and_store(const Block &block, const System &s, cons
     if (out.lane[0]) store_first(after, all_lanes, sink);
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
 #endif

@@ -7,9 +7,9 @@
 
 namespace holonomic::HOL_ISA {
 
-template <bool condition>
+template <class T, T value>
 struct Constant {
-    constexpr operator bool() const { return condition; }
+    constexpr operator T() const { return value; }
 };
 
 template <class Body>
@@ -19,8 +19,8 @@ HOL_INLINE auto choose(const Body &body) {
 
 template <class Body, class... More>
 HOL_INLINE auto choose(const Body &body, bool condition, More... more) {
-    if (condition) return choose([&](auto... c) HOL_FORCED { return body(Constant<true>{}, c...); }, more...);
-    return choose([&](auto... c) HOL_FORCED { return body(Constant<false>{}, c...); }, more...);
+    if (condition) return choose([&](auto... c) HOL_FORCED { return body(Constant<bool, true>{}, c...); }, more...);
+    return choose([&](auto... c) HOL_FORCED { return body(Constant<bool, false>{}, c...); }, more...);
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -13,8 +13,8 @@ static inline void store_pulls(const Block &block, const vec3 *d, const vec *t, 
                                long first = 0, vec3 before = vec3{}) {
     const unsigned chosen = bits(which & block.in_use());
     const auto pull = [&](long k, const vec3 &after, vec *value) HOL_FORCED {
-        vec3 g = minus(after, before);
-        if (weighted && !uniform) g = times(block.w[k], g);
+        vec3 g = after - before;
+        if (weighted && !uniform) g = block.w[k] * g;
         value[0] = g.x;
         value[1] = g.y;
         value[2] = g.z;
@@ -24,13 +24,13 @@ static inline void store_pulls(const Block &block, const vec3 *d, const vec *t, 
     if (chosen == all_lanes)
         for (; k0 + W <= block.n_min; k0 += W) {
             vec value[3 * W];
-            for (int a = 0; a < W; ++a) pull(k0 + a, times(t[k0 + a], d[k0 + a]), value + 3 * a);
+            for (int a = 0; a < W; ++a) pull(k0 + a, t[k0 + a] * d[k0 + a], value + 3 * a);
             store_chunk(k0, value, sink);
         }
     for (; k0 <= block.n; k0 += W) {
         vec value[3 * W] = {};
         for (int a = 0; a < W && k0 + a <= block.n; ++a)
-            pull(k0 + a, k0 + a < block.n ? times(t[k0 + a], d[k0 + a]) : vec3{}, value + 3 * a);
+            pull(k0 + a, k0 + a < block.n ? t[k0 + a] * d[k0 + a] : vec3{}, value + 3 * a);
         store_ragged(block, k0, value, chosen, sink);
     }
 }

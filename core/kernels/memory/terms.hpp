@@ -4,6 +4,7 @@
 #define HOLONOMIC_KERNELS_MEMORY_TERMS_HPP
 
 #include "core/kernels/arithmetic/vector3.hpp"
+#include "core/kernels/isa/choose.hpp"
 
 namespace holonomic::HOL_ISA {
 
@@ -19,6 +20,15 @@ enum Terms {
     bonds_alone = 16,
     products = velocity_squared | force_difference | rate
 };
+
+// Calls body(terms) with the terms, as a constant, of a right-hand side from velocities and forces if they are there.
+template <class Body>
+HOL_INLINE auto choose_terms(const Body &body, bool velocities, bool forces) {
+    return choose(
+        [&](auto v, auto f)
+            HOL_FORCED { return body(Constant<int, (v ? velocity_squared : 0) | (f ? force_difference : 0)>{}); },
+        velocities, forces);
+}
 
 // A component of velocity_squared.
 template <int terms>

@@ -28,7 +28,7 @@ struct VirialSum {
 
 static inline void add_virial(long n, const vec3 *d, const vec *t, mask which, vec factor, Tally &tally) {
     VirialSum sum;
-    for (long k = 0; k < n; ++k) sum.add(d[k], times(t[k], d[k]));
+    for (long k = 0; k < n; ++k) sum.add(d[k], t[k] * d[k]);
     sum.count(which, factor, tally);
 }
 

@@ -38,12 +38,22 @@ constexpr double steady = 1.0 / 256;
 
 // Largest |coordinate| of each lane. With lists of atoms, r is where the first ones are.
 HOL_NOINLINE vec extent(const Block &block, const Packed &r, const int64_t *const *lists = nullptr) {
-    vec largest = {};
-    for (int i = 0; i < W; ++i)
-        for (long k = 0; k <= block.len[i]; ++k) {
-            const double *const p = r.lane[i] + 3 * (lists ? lists[i][k] - lists[i][0] : k);
-            for (int c = 0; c < 3; ++c) largest[i] = abs(p[c]) > largest[i] ? abs(p[c]) : largest[i];
-        }
+    vec largest;
+    for (int i = 0; i < W; ++i) {
+        double x = 0, of_rows[W];
+        const auto look = [&](const double *p, long n) {
+            for (long e = 0; e < n; ++e) x = abs(p[e]) > x ? abs(p[e]) : x;
+        };
+        const long count = 3 * (block.len[i] + 1);
+        vec m = {};
+        long e = 0;
+        for (; !lists && e + W <= count; e += W) m = max(m, abs(load(r.lane[i] + e)));
+        store(of_rows, m);
+        look(of_rows, W);
+        if (!lists) look(r.lane[i] + e, count - e);
+        for (long k = 0; lists && k <= block.len[i]; ++k) look(r.lane[i] + 3 * (lists[i][k] - lists[i][0]), 3);
+        largest[i] = x;
+    }
     return largest;
 }
 

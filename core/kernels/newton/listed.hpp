@@ -24,7 +24,7 @@ HOL_INLINE void gather_bonds(const Block &block, const PositionsCall &call, cons
                 if (v) __builtin_prefetch(v + next, 0, 2);
             }
         const vec3 b1 = gather(r_ref, at, k + 1), r1 = gather(r, at, k + 1);
-        vec3 b = minus(b1, b0), d = minus(r1, r0);
+        vec3 b = b1 - b0, d = r1 - r0;
         if (boxed) {
             wrap<false>(call.box_ref, b, unused);
             wrap<false>(call.box, d, unused);
@@ -42,7 +42,7 @@ static inline void scatter_moves(const Block &block, const Newton &x, const Atom
                                  vec rate) {
     vec3 before = {};
     for (long k = 0; k <= block.n; ++k) {
-        const vec3 after = times(x.tau[k], x.b[k]), m = times_w<uniform_w>(x, k, minus(after, before));
+        const vec3 after = x.tau[k] * x.b[k], m = times_w<uniform_w>(x, k, after - before);
         before = after;
         scatter<add_>(r, at, k, m);
         if (!to_v) continue;

@@ -50,10 +50,10 @@ HOL_INLINE void go_down(const Block &block, const One &one, const Two &two) {
 template <bool uniform_w>
 struct Mover {
     vec3 pull, left;  // of the last bond, and the displacement of the atom behind it
-    explicit HOL_FORCED Mover(const Newton &x) : pull(times(x.step[0], x.b[0])), left(times_w<uniform_w>(x, 0, pull)) {}
+    explicit HOL_FORCED Mover(const Newton &x) : pull(x.step[0] * x.b[0]), left(times_w<uniform_w>(x, 0, pull)) {}
     HOL_FORCED vec3 bond(const Newton &x, long k) {
-        const vec3 p = times(x.step[k + 1], x.b[k + 1]), right = times_w<uniform_w>(x, k + 1, minus(p, pull));
-        const vec3 d = plus(x.D[k], minus(right, left));
+        const vec3 p = x.step[k + 1] * x.b[k + 1], right = times_w<uniform_w>(x, k + 1, p - pull);
+        const vec3 d = x.D[k] + (right - left);
         pull = p;
         left = right;
         return d;

@@ -10,41 +10,31 @@
 #include "core/kernels/verbs/forces_small.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
-// Whether this did all that there was to do; else nothing has been written.
+// Lists of atoms in packed arrays. True if the block is done; on false nothing was written.
 static inline bool listed_forces(const Block &block, const Lane *lane, const ForcesCall &call, Arena arena) {
     if (!call.r.packed || (call.g.x && !call.g.packed) || call.tension || call.virial || !listed(block, lane))
         return false;
     const AtomLists at(lane);
     const System s(block.n, arena);
-    mask good;
-    if (call.v.x && call.f.x)
-        good = forward_listed<velocity_squared | force_difference>(block, call.box, at, call.r, call.v, call.f, s,
-                                                                   nullptr);
-    else if (call.f.x)
-        good = forward_listed<force_difference>(block, call.box, at, call.r, call.v, call.f, s, nullptr);
-    else if (call.v.x)
-        good = forward_listed<velocity_squared>(block, call.box, at, call.r, call.v, call.f, s, nullptr);
-    else
-        return false;
+    const mask good = choose_terms(
+        [&](auto terms) { return forward_listed<terms>(block, call.box, at, call.r, call.v, call.f, s, nullptr); },
+        call.v.x, call.f.x);
     if (any(~good)) return false;
-    if (call.add)
-        substitute_and_scatter<add_>(block, s, at, base_of(call.g), call.lambda, splat(0.5));
-    else
-        substitute_and_scatter<write_>(block, s, at, base_of(call.g), call.lambda, splat(0.5));
+    choose(
+        [&](auto add) {
+            substitute_and_scatter<add ? add_ : write_>(block, s, at, base_of(call.g), call.lambda, splat(0.5));
+        },
+        call.add);
     return true;
 }
 
 template <bool careful>
 static inline mask forward_forces(const Block &block, const ForcesCall &call, const Packed &r, const Packed &v,
                                   const Packed &f, const System &s, mask &calm) {
-    if (call.v.x && call.f.x)
-        return forward_any<velocity_squared | force_difference, careful>(block, call.box, r, v, f, s, calm);
-    if (call.f.x) return forward_any<force_difference, careful>(block, call.box, r, v, f, s, calm);
-    if (call.v.x) return forward_any<velocity_squared, careful>(block, call.box, r, v, f, s, calm);
-    return forward_any<none_, careful>(block, call.box, r, v, f, s, calm);
+    return choose_terms([&](auto terms) { return forward_any<terms, careful>(block, call.box, r, v, f, s, calm); },
+                        call.v.x, call.f.x);
 }
 
 // What a call wants of the lanes in `which`, from u.
@@ -69,10 +59,8 @@ static void forces_block(const Block &block, const Lane *lane, const ForcesCall 
     mask calm, good = forward_forces<false>(block, call, r, v, f, s, calm);
     const bool plain = block.lanes == W && !any(~(good & calm));
     if (__builtin_expect(plain && !call.tension && !call.virial, 1)) {
-        if (update == add_)
-            substitute_and_store<add_>(block, s, g, call.lambda, splat(0.5));
-        else
-            substitute_and_store<write_>(block, s, g, call.lambda, splat(0.5));
+        choose([&](auto add) { substitute_and_store<add ? add_ : write_>(block, s, g, call.lambda, splat(0.5)); },
+               update == add_);
     } else {
         backward(0, block.n, s.t, s.L);
         good = good & finite(s.t[0]) & block.in_use();
@@ -98,16 +86,10 @@ void forces(const ForcesCall &call, const Unit &unit, double *scratch, Tally &ta
 
 void long_forces_eliminate(const ForcesCall &call, const Lane &lane, int64_t j, bool careful, double *store,
                            double *scratch) {
-    constexpr int both = velocity_squared | force_difference;
     const Arena arena(scratch, longest_piece);
-    if (call.v.x && call.f.x)
-        eliminate_block<both>(call, lane, j, call.r, call.v, call.f, careful, store, arena);
-    else if (call.f.x)
-        eliminate_block<force_difference>(call, lane, j, call.r, call.v, call.f, careful, store, arena);
-    else if (call.v.x)
-        eliminate_block<velocity_squared>(call, lane, j, call.r, call.v, call.f, careful, store, arena);
-    else
-        eliminate_block<none_>(call, lane, j, call.r, call.v, call.f, careful, store, arena);
+    choose_terms(
+        [&](auto terms) { eliminate_block<terms>(call, lane, j, call.r, call.v, call.f, careful, store, arena); },
+        call.v.x, call.f.x);
 }
 
 void long_forces_finish(const ForcesCall &call, const Lane &lane, int64_t j, double *store, double *scratch,
@@ -116,5 +98,4 @@ void long_forces_finish(const ForcesCall &call, const Lane &lane, int64_t j, dou
     finish_block<false>(call.box, call.r, call.g, call.add, out, lane, j, store, Arena(scratch, longest_piece), tally);
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA

@@ -14,7 +14,7 @@ int64_t long_positions_bytes(int64_t n_bonds) { return n_bonds * static_cast<int
 template <bool uniform_w, bool to_v>
 static void move_window(const SegmentBlock &s, int64_t j, const Newton &x, const Packed &r, const Packed &v,
                         double per_dt) {
-    const vec3 first = times(x.tau[0], x.b[0]);
+    const vec3 first = x.tau[0] * x.b[0];
     const MoveSink<true, to_v> sink = {r, v, splat(per_dt)};
     Block own = own_block(s);
     own.n = s.block.n;  // the last atom of a lane is pulled by the bond behind it, too

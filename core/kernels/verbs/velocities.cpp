@@ -12,8 +12,7 @@
 #include "core/kernels/verbs/velocities_small.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // Loads and eliminates. Returns the lanes that plain arithmetic can answer for.
 template <bool uniform, bool boxed>
@@ -83,19 +82,15 @@ HOL_NOINLINE mask forward_velocities_careful(const Block &block, const Box &box,
     return ~none();
 }
 
-template <bool uniform, bool boxed>
 static inline mask forward_velocities(const Block &block, const Box &box, const Packed &r, const Packed &v,
                                       const Projection &x, bool careful) {
-    if (careful) return forward_velocities_careful<uniform, boxed>(block, box, r, v, x);
-    return x.strain ? forward_velocities_strained<uniform, boxed>(block, box, r, v, x)
-                    : forward_velocities<uniform, boxed>(block, box, r, v, x);
-}
-
-template <bool uniform>
-static inline mask forward_velocities(const Block &block, const Box &box, const Packed &r, const Packed &v,
-                                      const Projection &x, bool careful) {
-    return box.shape != Box::none ? forward_velocities<uniform, true>(block, box, r, v, x, careful)
-                                  : forward_velocities<uniform, false>(block, box, r, v, x, careful);
+    return choose(
+        [&](auto uniform, auto boxed) {
+            if (careful) return forward_velocities_careful<uniform, boxed>(block, box, r, v, x);
+            return x.strain ? forward_velocities_strained<uniform, boxed>(block, box, r, v, x)
+                            : forward_velocities<uniform, boxed>(block, box, r, v, x);
+        },
+        block.uniform_w, box.shape != Box::none);
 }
 
 // The second substitution, and the velocities of the lanes in `which` to `out`.
@@ -135,7 +130,7 @@ HOL_NOINLINE void correct_and_scatter(const Block &block, const Projection &x, c
     scatter<write_>(out, at, 0, pull.finish());
 }
 
-// Lists of atoms in packed arrays. Whether this did all that there was to do; else nothing has been written.
+// Lists of atoms in packed arrays. True if the block is done; on false nothing was written.
 static inline bool listed_velocities(const Block &block, const Lane *lane, const VelocitiesCall &call, Arena arena) {
     if (!call.r.packed || call.virial || call.strain || !listed(block, lane)) return false;
     const AtomLists at(lane);
@@ -144,8 +139,7 @@ static inline bool listed_velocities(const Block &block, const Lane *lane, const
     good = good & pull_back(block, x, true);
     if (any(~good)) return false;
     if (call.lambda) store_bonds(block, x.s.t, 0.5 * block.mass, good, call.lambda);
-    block.uniform_w ? correct_and_scatter<true>(block, x, at, base_of(call.v))
-                    : correct_and_scatter<false>(block, x, at, base_of(call.v));
+    choose([&](auto uniform) { correct_and_scatter<uniform>(block, x, at, base_of(call.v)); }, block.uniform_w);
     return true;
 }
 
@@ -156,14 +150,13 @@ static void velocities_block(const Block &block, const Lane *lane, const Velocit
     const Projection x(block.n, arena, call.strain);
     mask rest = block.in_use();
     for (int careful = 0; careful < 2 && any(rest); ++careful) {
-        mask good = block.uniform_w ? forward_velocities<true>(block, call.box, r, v, x, careful)
-                                    : forward_velocities<false>(block, call.box, r, v, x, careful);
+        mask good = forward_velocities(block, call.box, r, v, x, careful);
         good = good & pull_back(block, x, !call.v.is_float) & rest;
         rest = rest & ~good;
         if (!any(good)) continue;
         if (call.lambda) store_bonds(block, x.s.t, 0.5 * block.mass, good, call.lambda);
         if (call.virial) add_virial(block.n, x.s.D, x.s.t, good, block.mass, tally);
-        block.uniform_w ? correct_and_store<true>(block, x, good, v) : correct_and_store<false>(block, x, good, v);
+        choose([&](auto uniform) { correct_and_store<uniform>(block, x, good, v); }, block.uniform_w);
         close(call.v, block, lane, good, v, false);
     }
     if (any(rest)) note_bad(block, rest, tally);
@@ -187,5 +180,4 @@ void long_velocities_finish(const VelocitiesCall &call, const Lane &lane, int64_
     finish_block<true>(call.box, call.r, call.v, true, out, lane, j, store, Arena(scratch, longest_piece), tally);
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
