@@ -1,6 +1,6 @@
 ! Acceleration level: hol_forces with arrays of any layout.
 module holonomic_forces
-   use, intrinsic :: iso_c_binding, only: c_int, c_ptr
+   use, intrinsic :: iso_c_binding, only: c_int, c_null_ptr, c_ptr
    use, intrinsic :: iso_fortran_env, only: int64, real32, real64
    use holonomic_c, only: hol_forces_view, HOL_ADD, HOL_WRITE
    use holonomic_counts, only: chain_set_counts
@@ -207,8 +207,10 @@ contains
       call problem%need_created(self%c_handle())
       mode = HOL_WRITE
       if (present(add)) mode = merge(HOL_ADD, HOL_WRITE, add)
-      at_lambda = list_of(lambda, "lambda", self%n_bonds(), "bonds", problem)
-      at_tension = list_of(tension, "tension", self%n_bonds(), "bonds", problem)
+      at_lambda = c_null_ptr
+      if (present(lambda)) at_lambda = list_of(lambda, "lambda", self%n_bonds(), "bonds", problem)
+      at_tension = c_null_ptr
+      if (present(tension)) at_tension = list_of(tension, "tension", self%n_bonds(), "bonds", problem)
       if (problem%none()) then
          call problem%ask(hol_forces_view(self%c_handle(), at_r%address(), at_v%address(), at_f%address(), at_lambda, &
                                           at_tension, at_g%address(), mode, tensor(virial)))

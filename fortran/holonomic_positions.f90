@@ -164,7 +164,8 @@ contains
       call problem%need_created(self%c_handle())
       has_guess = 0
       if (present(guess)) has_guess = merge(1_c_int, 0_c_int, guess)
-      at_lambda = list_of(lambda, "lambda", self%n_bonds(), "bonds", problem)
+      at_lambda = c_null_ptr
+      if (present(lambda)) at_lambda = list_of(lambda, "lambda", self%n_bonds(), "bonds", problem)
       at_report = c_null_ptr
       if (present(report)) at_report = c_loc(report)
       if (problem%none()) then

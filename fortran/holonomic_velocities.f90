@@ -1,6 +1,6 @@
 ! Velocity level: hol_project_velocities with arrays of any layout.
 module holonomic_velocities
-   use, intrinsic :: iso_c_binding, only: c_ptr
+   use, intrinsic :: iso_c_binding, only: c_null_ptr, c_ptr
    use, intrinsic :: iso_fortran_env, only: int64, real32, real64
    use holonomic_c, only: hol_project_velocities_view
    use holonomic_place, only: list_of, place, tensor
@@ -100,7 +100,8 @@ contains
       character(*), intent(inout), optional :: errmsg
       type(c_ptr) :: at_lambda
       call problem%need_created(self%c_handle())
-      at_lambda = list_of(lambda, "lambda", self%n_bonds(), "bonds", problem)
+      at_lambda = c_null_ptr
+      if (present(lambda)) at_lambda = list_of(lambda, "lambda", self%n_bonds(), "bonds", problem)
       if (problem%none()) then
          call problem%ask(hol_project_velocities_view(self%c_handle(), at_r%address(), at_v%address(), at_lambda, &
                                                       tensor(virial)))
