@@ -4,6 +4,7 @@
 #ifndef HOLONOMIC_KERNELS_MEMORY_FIXED_HPP
 #define HOLONOMIC_KERNELS_MEMORY_FIXED_HPP
 
+#include "core/kernels/arithmetic/image.hpp"
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/memory/block.hpp"
 #include "core/kernels/memory/listed.hpp"
@@ -14,7 +15,7 @@ namespace holonomic {
 namespace HOL_ISA {
 
 constexpr int largest_molecule = 5;        // over consecutive atoms, without a box
-constexpr int largest_boxed_molecule = 3;  // in an orthorhombic box, or with lists of atoms
+constexpr int largest_boxed_molecule = 3;  // in a box, or with lists of atoms
 
 // Vectors of W molecules' atoms, rounded up to what is transposed at a time.
 template <int N>
@@ -31,13 +32,17 @@ HOL_INLINE void load_molecules(const double *p, vec *elements) {
     }
 }
 
-// Bonds D[k] from atoms; `boxed`: an orthorhombic box may be there.
+// Bonds D[k] from atoms; `boxed`: a box may be there.
 template <int N, bool boxed>
 HOL_INLINE void take_bonds(const Box &box, const vec *atoms, vec3 *D) {
     vec *const d = &D[0].x;
     HOL_UNROLL
     for (int c = 0; c < 3 * N; ++c) d[c] = atoms[c + 3] - atoms[c];
     if (!boxed || box.shape == Box::none) return;
+    vec3 unused = {};
+    HOL_UNROLL
+    for (int k = 0; box.shape == Box::triclinic && k < N; ++k) wrap<false>(box, D[k], unused);
+    if (box.shape == Box::triclinic) return;
     HOL_UNROLL
     for (int c = 0; c < 3 * N; ++c)
         d[c] = mul_add(round(d[c] * box.per_side[c % 3]), splat(box.minus_side[c % 3]), d[c]);
@@ -47,7 +52,9 @@ HOL_INLINE void take_bonds(const Box &box, const vec *atoms, vec3 *D) {
 template <int N, int terms, bool uniform, bool boxed, class Place>
 HOL_INLINE void load_molecules(const Block &block, const Box &box, const Place &place, const double *r, const double *v,
                                const double *f, vec3 *D, vec *t) {
-    vec e[vectors_of<N>], p[3 * N], *const d = &D[0].x;
+    const bool wait = boxed && box.shape == Box::triclinic;  // as in load_chunk_with()
+    vec e[vectors_of<N>], p[3 * N] = {}, *const d = &D[0].x;
+    vec3 other[boxed ? N : 1];
     place.load(r, e);
     take_bonds<N, boxed>(box, e, D);
     if (terms == none_) return;
@@ -64,11 +71,17 @@ HOL_INLINE void load_molecules(const Block &block, const Box &box, const Place &
         HOL_UNROLL
         for (int c = 0; c < 3 * N; ++c) {
             const vec df = uniform ? e[c + 3] - e[c] : block.w[c / 3 + 1] * e[c + 3] - block.w[c / 3] * e[c];
-            p[c] = product<terms>(d[c], vec{}, df, p[c]);
+            if (wait)
+                (&other->x)[c] = df;
+            else
+                p[c] = product<terms>(d[c], vec{}, df, p[c]);
         }
     }
     HOL_UNROLL
-    for (int k = 0; k < N; ++k) t[k] = (p[3 * k] + p[3 * k + 1]) + p[3 * k + 2];
+    for (int k = 0; k < N; ++k) {
+        t[k] = (p[3 * k] + p[3 * k + 1]) + p[3 * k + 2];
+        if (wait) t[k] = terms & velocity_squared ? dot(D[k], other[k]) + t[k] : dot(D[k], other[k]);
+    }
 }
 
 // Writes the atoms of W molecules, elements as above, transposed in place.
@@ -195,9 +208,6 @@ template <class Place>
 HOL_INLINE bool fetches_next(const Unit &unit, int64_t first) {
     return Place::listed && unit.large && unit.count - first >= 2 * W;
 }
-
-// Whether a box is of those that molecules of a known number of bonds may have.
-HOL_INLINE bool simple_box(const Box &box) { return box.shape == Box::none || box.shape == Box::orthorhombic; }
 
 }  // namespace HOL_ISA
 }  // namespace holonomic

@@ -59,7 +59,7 @@ struct ForcesOfMolecules {
 static inline int64_t small_forces(const ForcesCall &call, const Unit &unit, const Block &block, int64_t first,
                                    Tally &tally) {
     const bool plain = call.r.packed && (!call.v.x || call.v.packed) && (!call.f.x || call.f.packed) &&
-                       (!call.g.x || call.g.packed) && !call.tension && !call.virial && simple_box(call.box);
+                       (!call.g.x || call.g.packed) && !call.tension && !call.virial;
     const bool boxed = call.box.shape != Box::none;
     return plain ? any_molecules<ForcesOfMolecules>(call, unit, block, first, block.uniform_w, boxed, tally) : first;
 }

@@ -279,9 +279,7 @@ struct PositionsOfMolecules {
 
 static inline int64_t small_positions(const PositionsCall &call, const Unit &unit, const Block &block, int64_t first,
                                       Tally &tally) {
-    if (!call.r.packed || !call.r_ref.packed || (call.v.x && !call.v.packed) || call.virial || call.guess ||
-        !simple_box(call.box) || !simple_box(call.box_ref))
-        return first;
+    if (!call.r.packed || !call.r_ref.packed || (call.v.x && !call.v.packed) || call.virial || call.guess) return first;
     const bool boxed = call.box.shape != Box::none || call.box_ref.shape != Box::none;
     const bool uniform = block.uniform_w && !unit.lanes[0].length;
     return any_molecules<PositionsOfMolecules>(call, unit, block, first, uniform, boxed, tally);

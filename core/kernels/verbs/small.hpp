@@ -24,7 +24,7 @@ static int64_t molecules_of(const Call &call, const Unit &unit, const Block &blo
                    : Of<N, false, false, InRow>::run(call, unit, block, first, tally);
 }
 
-// `boxed`: there is an orthorhombic box.
+// `boxed`: there is a box.
 template <template <int, bool, bool, template <int> class> class Of, class Call>
 static int64_t any_molecules(const Call &call, const Unit &unit, const Block &block, int64_t first, bool uniform,
                              bool boxed, Tally &tally) {

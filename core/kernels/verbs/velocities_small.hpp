@@ -74,7 +74,7 @@ struct StrainedMolecules {
 
 static inline int64_t small_velocities(const VelocitiesCall &call, const Unit &unit, const Block &block, int64_t first,
                                        Tally &tally) {
-    const bool plain = call.r.packed && call.v.packed && !call.virial && simple_box(call.box);
+    const bool plain = call.r.packed && call.v.packed && !call.virial;
     const bool boxed = call.box.shape != Box::none;
     if (plain && call.strain)
         return any_molecules<StrainedMolecules>(call, unit, block, first, block.uniform_w, boxed, tally);
