@@ -5,12 +5,18 @@
 #if !defined(_WIN32)
 #include <pthread.h>
 #endif
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
 
 #include "core/kernels/call.hpp"
 
 namespace holonomic {
 
 namespace {
+
+// What is kept of a chain of a million bonds is gone through as a whole: fewer pages to look up.
+constexpr std::int64_t large_page = 2097152;
 
 struct Block {
     void *data;
@@ -72,9 +78,13 @@ void *thread_memory(Keep what, std::int64_t bytes) noexcept {
     }
     std::free(block.data);
     block = Block{nullptr, 0};
-    constexpr std::size_t alignment = sizeof(double) * most_lanes;
+    const bool large = bytes >= 4 * large_page;
+    const std::size_t alignment = large ? static_cast<std::size_t>(large_page) : sizeof(double) * most_lanes;
     const std::size_t rounded = (static_cast<std::size_t>(bytes) + alignment - 1) / alignment * alignment;
     block.data = std::aligned_alloc(alignment, rounded);
+#ifdef MADV_HUGEPAGE
+    if (large && block.data) static_cast<void>(madvise(block.data, rounded, MADV_HUGEPAGE));  // a wish
+#endif
     if (block.data) block.bytes = static_cast<std::int64_t>(rounded);
     return block.data;
 }

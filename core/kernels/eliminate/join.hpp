@@ -62,6 +62,7 @@ static inline void eliminate_block(const Call &call, const Lane &lane, int64_t j
     choose(
         [&](auto uniform) { eliminate_block_of<terms, uniform>(call.box, s, pr, pv, pf, careful, x, arena, strain); },
         s.block.uniform_w);
+    if (x.past_cache) settle_stores();
 }
 
 // Solves for the separators. `careful` says how the segments were eliminated.

@@ -16,6 +16,7 @@
 
 #include "core/kernels/eliminate/exact_joints.hpp"
 #include "core/kernels/eliminate/remainder.hpp"
+#include "core/kernels/memory/past_cache.hpp"
 #include "core/kernels/memory/segments.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -34,12 +35,26 @@ struct Kept {
     vec u, l, fP;
 };
 
+// So many bonds, of 96 bytes each, behind a block drive what is kept of it out of any cache before it is read.
+constexpr int64_t bonds_past_cache = 262144;
+
 struct SegmentStore {
     Summary *summary;
     Kept *kept;
+    bool past_cache;
     SegmentStore(double *store, const Cut &cut, int64_t block)
         : summary(reinterpret_cast<Summary *>(store) + block),
-          kept(reinterpret_cast<Kept *>(reinterpret_cast<Summary *>(store) + cut.blocks) + cut.first_row(block)) {}
+          kept(reinterpret_cast<Kept *>(reinterpret_cast<Summary *>(store) + cut.blocks) + cut.first_row(block)),
+          past_cache(cut.n_bonds - W * cut.first_row(block) > bonds_past_cache) {}
+    HOL_FORCED void keep_bond(long k, const Kept &bond) const {
+        if (!past_cache) {
+            kept[k] = bond;
+            return;
+        }
+        store_past_cache(&kept[k].u, bond.u);
+        store_past_cache(&kept[k].l, bond.l);
+        store_past_cache(&kept[k].fP, bond.fP);
+    }
 };
 
 static inline int64_t long_bytes(int64_t n_bonds) {
@@ -124,7 +139,8 @@ HOL_INLINE void normalise(Elimination &e) {
 
 // Eliminates bond k; j is the joint behind it and b1 the right-hand side behind that. ragged: lanes may end there.
 template <bool uniform, bool careful>
-HOL_INLINE void step(Elimination &e, const Block &block, Kept *kept, long k, const Joint &j, vec b1, bool ragged) {
+HOL_INLINE void step(Elimination &e, const Block &block, const SegmentStore &x, long k, const Joint &j, vec b1,
+                     bool ragged) {
     const vec w = w_at<uniform>(block, k + 1);
     const vec wq = w * e.q, F1 = e.e.next(wq), c1 = e.ac.next(wq);
     vec left = {};
@@ -135,7 +151,7 @@ HOL_INLINE void step(Elimination &e, const Block &block, Kept *kept, long k, con
     const mask live = ragged ? joint(block, k + 1) : none();
     if (ragged) wg = keep(live, wg);
     const vec l = wg * rP;
-    *kept = {e.y * rP, l, fP};
+    x.keep_bond(k, {e.y * rP, l, fP});
     e.T = mul_add(fP, e.y, e.T);
     e.y = mul_add(l, e.y, b1);
     e.f = wg * e.f;
@@ -171,7 +187,7 @@ HOL_NOINLINE void eliminate(const Block &block, const Box &box, const Source &so
         start<uniform>(e, block, x.summary->q, j[1], b[1]);
         const vec E0 = e.e.A;
         for (int i = 2; i < group; ++i) {
-            step<uniform, false>(e, block, x.kept + i - 1, i - 1, j[i], b[i], false);
+            step<uniform, false>(e, block, x, i - 1, j[i], b[i], false);
             if (i % 4 == 3) normalise(e);
         }
         const mask short_of = less(e.slack, vec{});
@@ -186,7 +202,7 @@ HOL_NOINLINE void eliminate(const Block &block, const Box &box, const Source &so
         const vec E0 = e.e.A;
 #pragma GCC unroll 8
         for (int i = 0; i < group; ++i) {
-            step<uniform, false>(e, block, x.kept + k0 + i - 1, k0 + i - 1, j[i], b[i], false);
+            step<uniform, false>(e, block, x, k0 + i - 1, j[i], b[i], false);
             if (i % 4 == 3) normalise(e);
         }
         const mask short_of = less(e.slack, vec{});
@@ -227,7 +243,7 @@ HOL_NOINLINE void eliminate(const Block &block, const Box &box, const Source &so
             joint = careful_joint(two[0], low_before, two[1], low_here);
         else
             plain_joints<1>(source, k0 - 1, two, &joint);
-        step<uniform, careful>(e, block, x.kept + k0 - 1, k0 - 1, joint, k0 < n ? *B : vec{}, true);
+        step<uniform, careful>(e, block, x, k0 - 1, joint, k0 < n ? *B : vec{}, true);
         normalise(e);
         before = two[1];
         low_before = low_here;
