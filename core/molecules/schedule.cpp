@@ -276,7 +276,7 @@ std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t
     for (std::int32_t i = 0; i < n_atoms; ++i) m.fixed.push_back(fixed && fixed[i]);
     Maker(*s, m).make();
     point_into(*s, m);
-    if (n_bonds > largest_in_lanes && s->n_tree > 0) add_runs(*s, m);
+    if (n_bonds > largest_in_lanes && s->type == Schedule::tree) add_runs(*s, m);
     m.careful = std::make_unique<const CarefulShape>(n_atoms, n_bonds, pairs);
     s->careful = &m.careful->plan();
     return s;

@@ -21,12 +21,9 @@ template <Layout layout, int terms, bool keep>
 HOL_INLINE void load_and_eliminate(Linear<double> &z) {
     Molecules<double> &x = z.x;
     const Schedule &s = x.s;
-    const bool is_graph = s.type == Schedule::graph;
     for_pieces(s, x.pieces->team, [&](int32_t p) {
         const int32_t first = first_of_piece(p), end = end_of_piece(s, p);
-        load_slots<layout, terms>(z, first, end, is_graph || (terms & rates));
-        if (is_graph)
-            for (int32_t k = first; k < end; ++k) z.b[k] = x.row[k].t;
+        load_slots<layout, terms>(z, first, end, (terms & rates) != 0);
         x.pieces->slack[p] = up_piece<keep>(x, p, x.pieces->memory(p));
     });
     collect_slack(x);
@@ -50,13 +47,6 @@ HOL_NOINLINE void solve_in_pieces(Linear<double> &z) {
     Molecules<double> &x = z.x;
     const Schedule &s = x.s;
     for (int32_t slot = s.n_tree; slot < s.n_atoms; ++slot) x.w[slot] = x.lane[0].w[s.atom_of[slot]];
-    if (s.type == Schedule::graph) {
-        load_and_eliminate<layout, terms, true>(z);
-        for (int32_t k = s.n_tree; k < s.n_bonds; ++k) z.b[k] = x.row[k].t;
-        up_top<true>(x, z.working);
-        factorize_core(x, z.core, z.working);
-        return z.solve_core();
-    }
     do {
         load_and_eliminate<layout, terms, keep>(z);
         up_top<keep>(x, z.working);

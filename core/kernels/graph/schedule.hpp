@@ -7,7 +7,7 @@
 
 namespace holonomic {
 
-// Molecules of more bonds are worked on one by one, their trees in pieces.
+// Molecules of more bonds are worked on one by one, trees in pieces.
 constexpr int32_t largest_in_lanes = 2048;
 constexpr int32_t slots_of_piece = 16384;  // a megabyte of bonds at work, a second-level cache
 
@@ -66,10 +66,10 @@ struct Schedule {
     int32_t n_entries;
     int32_t max_column;
 
-    // Atoms of trees with children, so that W of one molecule can be worked on at once: within a run none depends on
-    // another, and all have the same number of children, 4 standing for more. Slots [p slots_of_piece, (p + 1)
-    // slots_of_piece) are piece p; atoms whose children, and theirs, are all in the same piece stand in its runs, the
-    // others in those of piece n_pieces, the top, which comes last. No pieces: the molecule is small.
+    // Atoms of a large tree with children, so that W of one molecule can be worked on at once: within a run none
+    // depends on another, and all have the same number of children, 4 standing for more. Slots [p slots_of_piece, (p +
+    // 1) slots_of_piece) are piece p; atoms whose children, and theirs, are all in the same piece stand in its runs,
+    // the others in those of piece n_pieces, the top, which comes last. No pieces: the molecule is small.
     struct Run {
         int32_t first, count, children;  // slots run_slot[first] ..
     };

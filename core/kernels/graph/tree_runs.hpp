@@ -38,8 +38,7 @@ HOL_NOINLINE void up_one(const Molecules<double> &x, int32_t slot, Faint &faint,
         row.E = before[2 * a];
         row.t = before[2 * a + 1];
     }
-    // In graphs doubt may tell that bonds of the core depend on those of a tree, which the careful solver finds out.
-    if (x.s.type == Schedule::graph || !up_doubtful_joint(x, slot, k, keep)) slack = -1;
+    if (!up_doubtful_joint(x, slot, k, keep)) slack = -1;
 }
 
 template <int k, bool keep>
@@ -207,7 +206,7 @@ static inline void collect_slack(Molecules<double> &x) {
 template <bool keep>
 static inline void up_top(Molecules<double> &x, Memory<double> memory) {
     x.slack = min(up_piece<keep>(x, x.s.n_pieces, memory), x.slack);
-    if (x.s.type == Schedule::tree) up_joint<1, true, keep>(AtomRows<double>(x, x.s.n_tree), 1, memory, x.slack);
+    up_joint<1, true, keep>(AtomRows<double>(x, x.s.n_tree), 1, memory, x.slack);
 }
 
 // The sweeps of joint.hpp, in pieces where there are any.
@@ -215,7 +214,7 @@ static inline void substitute_trees(const Molecules<double> &x, Memory<double> m
     if (!x.pieces) return substitute_trees<double>(x, memory);
     for_pieces(x.s, x.pieces->team, [&](int32_t p) { substitute_piece(x, p, x.pieces->memory(p)); });
     substitute_piece(x, x.s.n_pieces, memory);
-    if (x.s.type == Schedule::tree) substitute_joint<1, true>(AtomRows<double>(x, x.s.n_tree), 1, memory);
+    substitute_joint<1, true>(AtomRows<double>(x, x.s.n_tree), 1, memory);
 }
 template <bool look>
 static inline void down_trees(Molecules<double> &x) {
