@@ -170,7 +170,7 @@ HOL_INLINE void step(Elimination &e, const Block &block, const SegmentStore &x, 
 // Eliminates the inner bonds of W segments of n bonds. block.len counts the separators behind them.
 template <int terms, bool uniform, bool careful>
 HOL_NOINLINE void eliminate(const Block &block, const Box &box, const Source &source, const SegmentBonds &in, long n,
-                            const SegmentStore &x) {
+                            const SegmentStore x) {  // by value: stores don't change it
     Elimination e;
     const vec3 absent = {};
     mask doubt = none();
