@@ -25,13 +25,15 @@ struct Lane {
     double length_uniform;
     int64_t first_bond;  // place of its first bond in arrays per bond
     int64_t chain;       // its number
+    int64_t kind;        // chains of one kind have the same masses and lengths
+    int64_t element[4];  // of chains of at most three bonds: where each atom's first component stands in packed arrays
 };
 
 // A piece of work: chains of at most longest_lane bonds, or a single longer one.
 struct Unit {
     const Lane *lanes;
     int64_t count;
-    bool regular;  // all `count` chains are like lanes[0], over consecutive atoms and bonds; else lanes[count]
+    bool regular;  // all `count` chains are like lanes[0], over consecutive atoms and bonds; else lanes[count], loose
     bool large;    // the caller's arrays are unlikely to be in cache
 };
 

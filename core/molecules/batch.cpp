@@ -33,6 +33,7 @@ Batch::~Batch() {
     chains_.kinds_.roll_back(kinds_before_);
     chains_.unconstrained_.resize(n_unconstrained_);
     chains_.active_.resize(n_active_);
+    chains_.changed();  // the tables that a plan points into may have moved
     for (const std::int64_t atom : taken_) chains_.use_.give_back(atom);
 }
 

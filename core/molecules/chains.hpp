@@ -73,8 +73,8 @@ public:
     }
     const Plan &plan_of_parts() const;  // likewise; no molecule of it is linear
     // units.cpp
-    Unit unit(const Plan &plan, const Plan::Piece &piece, Lane *lanes) const;  // lanes [loose_piece]
-    MoleculeUnit unit(const Plan &plan, const Plan::Piece &piece, MoleculeLane *lanes) const;
+    Unit unit(const Plan &plan, const Plan::Piece &piece, Lane *lane) const;  // lane: memory for the first of a group
+    MoleculeUnit unit(const Plan &plan, const Plan::Piece &piece, MoleculeLane *lane) const;
     std::int64_t piece_bonds(const Plan::Piece &piece) const;  // of one molecule of the piece; 0 if loose ones
     const std::vector<std::int64_t> &reordered_bonds() const { return groups_.reordered(); }
     const std::vector<std::int64_t> &unconstrained() const { return unconstrained_; }

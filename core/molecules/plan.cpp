@@ -15,6 +15,7 @@ constexpr std::int64_t bonds_per_piece = 4096;  // enough to hide the cost of a 
 // of any number of lanes take any number of chains.
 constexpr std::int64_t widest = 8;
 static_assert(widest <= most_lanes, "");
+constexpr std::size_t loose_window = 4096;  // molecules
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
@@ -147,7 +148,8 @@ private:
             plan_->pieces.push_back({run.group, begin, count, stage(begin), run.part, run.shape, run.where});
             begin += count;
         }
-        for (; begin < run.end; ++begin) plan_->loose.push_back({run.group, begin, stage(begin), run.part});
+        for (; begin < run.end; ++begin)
+            loose_.push_back({run.group, begin, stage(begin), run.part, run.n_bonds, run.shape, run.where});
     }
 
     void add_to_stage(const Group &group, std::int64_t index) {
@@ -160,38 +162,53 @@ private:
         }
     }
 
-    // Pieces of molecules that work in the same place, in lanes of about the same length or on one shape.
+    // A molecule, or a part of it, that goes into lanes beside others of its size or shape, wherever these stand.
+    struct Loose {
+        std::int64_t group, index, stage, part, n_bonds;
+        std::int32_t shape;
+        int where;
+    };
+
+    // Pieces of molecules that work in the same place, in lanes of about the same length or on one shape, and of one
+    // kind as far as there are such near each other in memory: sorted within windows that a cache holds.
     void gather_loose() {
-        const auto where = [this](const Plan::Reference &r) {
-            return (groups_[at(r.group)].reordered ? reordered : in_place) + (r.stage >= 0 ? staged : in_place);
+        const auto before = [this](const Loose &a, const Loose &b) {
+            return std::tie(a.where, a.shape, a.n_bonds, groups_[at(a.group)].kind, a.part) <
+                   std::tie(b.where, b.shape, b.n_bonds, groups_[at(b.group)].kind, b.part);
         };
-        const auto shape = [this](const Plan::Reference &r) {
-            return r.part < 0 ? kind(r.group).shape : plan_->parts[at(r.part)].shape;
-        };
-        const auto key = [&](const Plan::Reference &r) {
-            return std::make_tuple(where(r), shape(r), kind(r.group).n_bonds);
-        };
-        std::vector<Plan::Reference> &loose = plan_->loose;
-        std::stable_sort(loose.begin(), loose.end(),
-                         [&](const Plan::Reference &a, const Plan::Reference &b) { return key(a) < key(b); });
-        for (std::size_t first = 0, end; first < loose.size(); first = end) {
-            const auto same = [&](const Plan::Reference &r) {
-                return where(r) == where(loose[first]) && shape(r) == shape(loose[first]);
-            };
-            for (end = first + 1; end < loose.size() && end - first < at(loose_piece) && same(loose[end]);) ++end;
-            plan_->pieces.push_back({-1, static_cast<std::int64_t>(first), static_cast<std::int64_t>(end - first), -1,
-                                     -1, shape(loose[first]), where(loose[first])});
+        for (std::size_t begin = 0, end; begin < loose_.size(); begin = end) {
+            end = std::min(loose_.size(), begin + loose_window);
+            std::stable_sort(&loose_[begin], &loose_[begin] + (end - begin), before);
+        }
+        for (std::size_t first = 0, end; first < loose_.size(); first = end) {
+            const Loose &head = loose_[first];
+            const bool chains = head.shape == linear;
+            const std::size_t place = chains ? plan_->loose_chains.size() : plan_->loose_molecules.size();
+            for (end = first; end < loose_.size() && end - first < at(loose_piece); ++end) {
+                const Loose &one = loose_[end];
+                if (one.where != head.where || one.shape != head.shape) break;
+                const Group &group = groups_[at(one.group)];
+                if (chains)
+                    plan_->loose_chains.push_back(chains_.lane_of(group, one.index, one.stage));
+                else
+                    plan_->loose_molecules.push_back(
+                        chains_.molecule_lane_of(*plan_, group, one.index, one.stage, one.part));
+            }
+            plan_->pieces.push_back({-1, static_cast<std::int64_t>(place), static_cast<std::int64_t>(end - first), -1,
+                                     -1, head.shape, head.where});
         }
     }
 
     const Chains &chains_;
     const std::vector<Group> &groups_;
     const std::int32_t n_shapes_;
+    std::vector<Loose> loose_;
     std::unique_ptr<Plan> plan_ = std::make_unique<Plan>();
 };
 
 std::int64_t Plan::bytes() const {
-    std::size_t bytes = sizeof *this + pieces.capacity() * sizeof(Piece) + loose.capacity() * sizeof(Reference) +
+    std::size_t bytes = sizeof *this + pieces.capacity() * sizeof(Piece) + loose_chains.capacity() * sizeof(Lane) +
+                        loose_molecules.capacity() * sizeof(MoleculeLane) +
                         schedules.capacity() * sizeof(schedules[0]) + shapes.capacity() * sizeof(shapes[0]) +
                         (stage.capacity() + part_start.capacity()) * sizeof(std::int64_t) + is_copy.capacity() +
                         copies.capacity() * sizeof(Copy) + parts.capacity() * sizeof(Part) + part_shapes.bytes();

@@ -16,16 +16,11 @@ constexpr int n_wheres = 4;
 
 // Made at the first use after a change. Which molecules share a unit, or a block of lanes in it, changes no result.
 struct Plan {
-    struct Reference {
-        std::int64_t group, index;
-        std::int64_t stage;  // its first atom in the stage, or -1
-        std::int64_t part;   // of its chain, or -1: all of it
-    };
     struct Piece {
         std::int64_t group;         // `count` molecules of this group from `first` on, or
-        std::int64_t first, count;  // if group == -1: loose[first] .. loose[first+count-1]
+        std::int64_t first, count;  // if group == -1: these of the loose chains, or of the loose molecules
         std::int64_t stage;         // of the first, or -1
-        std::int64_t part;          // as in a reference; loose ones have their own
+        std::int64_t part;          // of its chains, or -1: all of them
         std::int32_t shape;         // of all its molecules
         int where;
     };
@@ -34,15 +29,16 @@ struct Plan {
         std::int64_t atom, place;
     };
     std::vector<Piece> pieces;
-    std::vector<Reference> loose;             // molecules that fill no block of their own kind
-    std::int64_t longest = 0;                 // bonds of linear chains
-    std::int64_t n_bonds = 0;                 // of active molecules
-    std::vector<const Schedule *> schedules;  // of all shapes
-    std::vector<std::int32_t> shapes;         // those that occur, but for linear
-    std::vector<std::int64_t> stage;          // atoms of the molecules that share fixed atoms, one after another
-    std::vector<unsigned char> is_copy;       // of each atom of the stage
-    std::vector<Copy> copies;                 // by atom, then by place
-    bool reordered = false;                   // some molecules' bonds are
+    std::vector<Lane> loose_chains;  // molecules that fill no block where they stand, in the order in which they are
+    std::vector<MoleculeLane> loose_molecules;  // worked on; the second ones are no linear chains
+    std::int64_t longest = 0;                   // bonds of linear chains
+    std::int64_t n_bonds = 0;                   // of active molecules
+    std::vector<const Schedule *> schedules;    // of all shapes
+    std::vector<std::int32_t> shapes;           // those that occur, but for linear
+    std::vector<std::int64_t> stage;            // atoms of the molecules that share fixed atoms, one after another
+    std::vector<unsigned char> is_copy;         // of each atom of the stage
+    std::vector<Copy> copies;                   // by atom, then by place
+    bool reordered = false;                     // some molecules' bonds are
 
     // For calls that work on linear chains as on other molecules: what lies between two fixed atoms is a part.
     struct Part {

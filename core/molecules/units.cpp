@@ -28,6 +28,11 @@ Lane Chains::lane_of(const Group &group, std::int64_t index, std::int64_t stage)
     lane.length_uniform = kind.length_uniform;
     lane.first_bond = group.first_bond + index * kind.n_bonds;
     lane.chain = group.first_molecule + index;
+    lane.kind = group.kind;
+    for (std::int64_t k = 0; k < 4; ++k) {
+        const bool there = kind.n_bonds < 4 && k <= kind.n_bonds;
+        lane.element[k] = there ? 3 * (lane.atoms ? lane.atoms[k] : lane.first_atom + k) : 0;
+    }
     return lane;
 }
 
@@ -58,32 +63,23 @@ Lane Chains::lane(std::int64_t molecule) const {
     return lane_of(group, molecule - group.first_molecule, -1);
 }
 
-Unit Chains::unit(const Plan &plan, const Plan::Piece &p, Lane *lanes) const {
+Unit Chains::unit(const Plan &plan, const Plan::Piece &p, Lane *lane) const {
     const bool large = plan.n_bonds > bonds_in_cache;
     if (p.group >= 0) {
-        lanes[0] = lane_of(groups_.all()[at(p.group)], p.first, p.stage);
-        return {lanes, p.count, true, large};
+        *lane = lane_of(groups_.all()[at(p.group)], p.first, p.stage);
+        return {lane, p.count, true, large};
     }
-    for (std::int64_t i = 0; i < p.count; ++i) {
-        const Plan::Reference &reference = plan.loose[at(p.first + i)];
-        lanes[i] = lane_of(groups_.all()[at(reference.group)], reference.index, reference.stage);
-    }
-    return {lanes, p.count, p.count == 1, large};  // one is like itself
+    return {&plan.loose_chains[at(p.first)], p.count, p.count == 1, large};  // one is like itself
 }
 
-MoleculeUnit Chains::unit(const Plan &plan, const Plan::Piece &p, MoleculeLane *lanes) const {
+MoleculeUnit Chains::unit(const Plan &plan, const Plan::Piece &p, MoleculeLane *lane) const {
     const bool large = plan.n_bonds > bonds_in_cache;
     const Schedule *const schedule = plan.schedules[at(p.shape)];
     if (p.group >= 0) {
-        lanes[0] = molecule_lane_of(plan, groups_.all()[at(p.group)], p.first, p.stage, p.part);
-        return {schedule, lanes, p.count, true, large};
+        *lane = molecule_lane_of(plan, groups_.all()[at(p.group)], p.first, p.stage, p.part);
+        return {schedule, lane, p.count, true, large};
     }
-    for (std::int64_t i = 0; i < p.count; ++i) {
-        const Plan::Reference &reference = plan.loose[at(p.first + i)];
-        lanes[i] = molecule_lane_of(plan, groups_.all()[at(reference.group)], reference.index, reference.stage,
-                                    reference.part);
-    }
-    return {schedule, lanes, p.count, false, large};
+    return {schedule, &plan.loose_molecules[at(p.first)], p.count, false, large};
 }
 
 }  // namespace holonomic

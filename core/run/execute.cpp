@@ -175,13 +175,13 @@ Tally execute(const Chains &chains, const Plan &plan, const Work &work) {
     const auto work_on = [&](std::int64_t p, double *scratch, Tally &tally, const LongTeam *team) {
         const Plan::Piece &piece = plan.pieces[static_cast<std::size_t>(p)];
         if (piece.shape != linear) {
-            MoleculeLane lanes[loose_piece];
-            MoleculeUnit unit = chains.unit(plan, piece, lanes);
+            MoleculeLane lane;
+            MoleculeUnit unit = chains.unit(plan, piece, &lane);
             unit.team = team;
             return work_on_molecules(work, unit, piece.where, scratch, tally);
         }
-        Lane lanes[loose_piece];
-        const Unit unit = chains.unit(plan, piece, lanes);
+        Lane lane;
+        const Unit unit = chains.unit(plan, piece, &lane);
         if (unit.lanes[0].n_bonds <= longest_lane)
             work.unit(unit, piece.where, scratch, tally);
         else
@@ -212,8 +212,8 @@ Tally execute(const Chains &chains, const Plan &plan, const Work &work) {
                 work_on(p, own_scratch, parts[p], &lent);
                 continue;
             }
-            Lane lanes[loose_piece];
-            work.long_chain(chains.unit(plan, piece, lanes).lanes[0], piece.where, team, store_memory(shared_store),
+            Lane lane;
+            work.long_chain(chains.unit(plan, piece, &lane).lanes[0], piece.where, team, store_memory(shared_store),
                             parts[p]);
         }
         for (std::int64_t p = 0; p < n_pieces; ++p) add(total, parts[p]);

@@ -13,8 +13,12 @@ struct Source {
     const double *base;
     const int64_t *const *atoms;
     const Box *box;
-    const long *len;  // of lanes that may end before the joints that are asked for; or nullptr
-    const double *atom(int lane, long k) const { return atoms ? base + 3 * atoms[lane][k] : r->lane[lane] + 3 * k; }
+    const long *len;              // of lanes that may end before the joints that are asked for; or nullptr
+    const Lane *lanes = nullptr;  // of at most three bonds each, anywhere in the array `base`
+    const double *atom(int lane, long k) const {
+        if (lanes) return base + lanes[lane].element[k];
+        return atoms ? base + 3 * atoms[lane][k] : r->lane[lane] + 3 * k;
+    }
 };
 
 // g = d . d' of nearly orthogonal bonds cancels, and what it loses shows where the right-hand side of one bond is

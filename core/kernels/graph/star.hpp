@@ -8,23 +8,20 @@
 #include "core/kernels/graph/image.hpp"
 #include "core/kernels/graph/multipliers.hpp"
 #include "core/kernels/graph/newton_joint.hpp"
+#include "core/kernels/graph/star_atoms.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// Masses and lengths. Atoms of a star are counted from its centre, 0.
+// Masses and lengths.
 template <int N, class V>
-struct StarKind {
-    V w[N + 1];
+struct StarKind : StarMasses<N, V> {
     V a2[N], per_a2[N], a_min, a_max;
-    // The atom `centre` of a molecule is the centre.
     void set(const MoleculeLane *lane, int used, int centre) {
+        StarMasses<N, V>::set(lane, used, centre);
         a_min = Width<V>::all(1e300);
         a_max = V{};
-        for (int k = 0; k <= N; ++k)
-            for (int i = 0; i < Width<V>::lanes; ++i)
-                Width<V>::set(w[k], i, lane[i < used ? i : 0].w[k == 0 ? centre : k <= centre ? k - 1 : k]);
         for (int k = 0; k < N; ++k) {
             V a = {};
             for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(a, i, lane[i < used ? i : 0].length[k]);

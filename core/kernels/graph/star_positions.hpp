@@ -10,65 +10,14 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// The centre of a star of N bonds without fixed atoms; -1 if a shape is none.
-template <int N>
-static inline int centre_of_star(const Schedule &s) {
-    if (s.type != Schedule::tree || s.n_bonds != N) return -1;
-    for (int a = 0; a <= N; ++a)
-        if (s.fixed[a]) return -1;
-    for (int c = 0; c <= N; ++c) {
-        bool all = true;
-        for (int k = 0; k < N; ++k) all = all && (s.atom_i[k] == c || s.atom_j[k] == c);
-        if (all) return c;
-    }
-    return -1;
-}
-
-// To the front, and back to its place.
-template <class V>
-HOL_NOINLINE void move_centre(Vector3<V> *atoms, int from, int to) {
-    const Vector3<V> c = atoms[from];
-    for (; from > to; --from) atoms[from] = atoms[from - 1];
-    for (; from < to; ++from) atoms[from] = atoms[from + 1];
-    atoms[to] = c;
-}
-
 template <Layout layout, int N, class V>
 struct StarPositions {
     const PositionsCall &call;
+    const StarAtoms<layout, N, V> &atoms;
     const MoleculeLane *lane;
-    const Atoms<V> &at;
     const StarKind<N, V> &m;
-    const int centre;
     Tally &tally;
     int64_t molecule(int i) const { return lane[i].molecule; }
-
-    inline HOL_FORCED void read_atoms(const AtomArray &array, Vector3<V> *r) const {
-        read_all<layout, N + 1>(array, at, r);
-        if (__builtin_expect(centre == 0, 1)) return;
-        Vector3<V> atoms[N + 1];
-        copy(r, atoms);
-        move_centre(atoms, centre, 0);
-        copy(atoms, r);
-    }
-    inline HOL_FORCED void write_atoms(const AtomArray &array, Vector3<V> *r, unsigned which) const {
-        if (__builtin_expect(centre != 0, 0)) {
-            Vector3<V> atoms[N + 1];
-            copy(r, atoms);
-            move_centre(atoms, 0, centre);
-            copy(atoms, r);
-        }
-        write_all<layout, N + 1>(array, at, r, which);
-    }
-    HOL_INLINE void copy(const Vector3<V> *from, Vector3<V> *to) {
-        HOL_UNROLL
-        for (int k = 0; k <= N; ++k) to[k] = from[k];
-    }
-    HOL_INLINE void take_bonds(const Vector3<V> *r, const Box &box, Vector3<V> *d) {
-        HOL_UNROLL
-        for (int k = 0; k < N; ++k) d[k] = r[k + 1] - r[0];
-        take_images<N>(box, d);
-    }
 
     // D.D - a^2, and the largest part of a^2.
     inline HOL_FORCED V measure(const Vector3<V> *D, V *left) const {
@@ -107,10 +56,10 @@ struct StarPositions {
     __attribute__((noinline)) unsigned solve(MaskOf<V> in_use) const {
         Vector3<V> r[N + 1], b[N], D[N], shift[N + 1];
         V sigma[N], tau[N];
-        read_atoms(call.r_ref, r);
-        take_bonds(r, call.box_ref, b);
-        read_atoms(call.r, r);
-        take_bonds(r, call.box, D);
+        atoms.read(call.r_ref, r);
+        atoms.take_bonds(r, call.box_ref, b);
+        atoms.read(call.r, r);
+        atoms.take_bonds(r, call.box, D);
         V largest = {};
         HOL_UNROLL
         for (int k = 0; k <= N; ++k) largest = max(max(abs(r[k].x), abs(r[k].y)), max(abs(r[k].z), largest));
@@ -138,13 +87,13 @@ struct StarPositions {
         if (call.virial) add_virial(b, tau, moved);
         HOL_UNROLL
         for (int k = 0; k <= N; ++k) r[k] = r[k] + shift[k];
-        write_atoms(call.r, r, moved);
+        atoms.write(call.r, r, moved);
         if (call.v.x) {
             const V per_dt = Width<V>::all(1 / call.dt);
-            read_atoms(call.v, r);
+            atoms.read(call.v, r);
             HOL_UNROLL
             for (int k = 0; k <= N; ++k) r[k] = add_times(r[k], per_dt, shift[k]);
-            write_atoms(call.v, r, moved);
+            atoms.write(call.v, r, moved);
         }
         tally.n_corrected += __builtin_popcount(moved);
         if (solves > tally.iterations) tally.iterations = solves;
@@ -156,10 +105,7 @@ struct StarPositions {
         V value[N];
         HOL_UNROLL
         for (int k = 0; k < N; ++k) value[k] = mul_add(tau[k], factor, V{});
-        if (N == 3) return write_three<layout>(call.lambda, at, {value[0], value[1], value[2]}, which);
-        for (int i = 0; i < at.lanes; ++i)
-            for (int k = 0; k < N; ++k)
-                if (which >> i & 1) call.lambda[at.bond[i] + k] = Width<V>::get(value[k], i);
+        atoms.write_bonds(call.lambda, value, which);
     }
 
     // Of copies, so that the bonds themselves need not be in memory.
@@ -175,30 +121,16 @@ struct StarPositions {
     }
 };
 
-// Stars of N bonds; `general` does any molecule.
-template <int N, class General>
-struct StarWork {
+struct StarPositionsVerb {
+    static constexpr bool in_steps = true;
+    template <int N, class V>
+    using Kind = StarKind<N, V>;
     const PositionsCall &call;
-    const General &general;
-    const int centre;
-    const bool packed;
     Tally &tally;
-    StarKind<N, vec> known;
-    StarKind<N, double> known_one;
-    StarKind<N, vec> &kind_for(vec *) { return known; }
-    StarKind<N, double> &kind_for(double *) { return known_one; }
-
-    template <class V>
-    void block(const MoleculeLane *lane, int used, bool same, double *scratch) {
-        StarKind<N, V> &kind = kind_for(static_cast<V *>(nullptr));
-        if (!same) kind.set(lane, used, centre);
-        const Atoms<V> at(lane, Width<V>::lanes);
-        const MaskOf<V> in_use = Width<V>::first(used);
-        const unsigned good = with_layout(at, packed, [&](auto layout) {
-            return StarPositions<decltype(layout)::value, N, V>{call, lane, at, kind, centre, tally}.solve(in_use);
-        });
-        for (unsigned rest = bits(in_use) & ~good; __builtin_expect(rest != 0, 0); rest &= rest - 1)
-            general.template block<double>(lane + __builtin_ctz(rest), 1, false, scratch);
+    template <Layout layout, int N, class V>
+    unsigned solve(const StarAtoms<layout, N, V> &atoms, const MoleculeLane *lane, const StarKind<N, V> &kind,
+                   MaskOf<V> in_use) const {
+        return StarPositions<layout, N, V>{call, atoms, lane, kind, tally}.solve(in_use);
     }
 };
 

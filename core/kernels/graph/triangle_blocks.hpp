@@ -6,6 +6,7 @@
 #include "core/kernels/graph/doubtful.hpp"
 #include "core/kernels/graph/triangle_linear.hpp"
 #include "core/kernels/graph/triangle_positions.hpp"
+#include "core/kernels/graph/twin.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -47,10 +48,13 @@ struct TriangleWork {
     TriangleKind<vec> &kind_for(vec *) { return known; }
     TriangleKind<double> &kind_for(double *) { return known_one; }
 
+    TriangleWork(const Verb &v, const Call &c, const Schedule &s, bool is_packed, Tally &t)
+        : verb(v), call(c), schedule(s), packed(is_packed), tally(t) {}
+
     template <class Lanes>
     HOL_NOINLINE void solve_carefully(const TriangleWork &work, const Lanes &lanes, unsigned rest, double *scratch) {
-        MoleculeLane lane[W];
-        for (int i = 0; i < W; ++i)
+        MoleculeLane lane[2 * W];
+        for (int i = 0; i < 2 * W; ++i)
             if (rest >> i & 1) lane[i] = lanes.get(i);
         solve_doubtful(work.call, work.schedule, lane, rest, scratch, work.tally);
     }
@@ -74,27 +78,37 @@ struct TriangleWork {
         if (__builtin_expect(rest != 0, 0)) solve_carefully(*this, lanes, rest, scratch);
     }
 
-    // Molecules of one kind, one behind the other, as long as there are W of them; returns how many are done.
-    __attribute__((noinline)) int64_t run(const MoleculeUnit &unit, double *scratch) {
-        MoleculeLane lane[W];
-        if (unit.count < W) return 0;
-        TrianglesOfUnit lanes = {unit, 0};
-        for (int i = 0; i < W; ++i) lane[i] = lanes.get(i);
-        known.set(lane, W, Verb::with_lengths);
-        Atoms<vec> at(lane, W);
-        for (; lanes.first + W <= unit.count; lanes.first += W) {
-            const unsigned good = verb.template solve<rows_adjacent>(lanes, W, at, known);
-            if (__builtin_expect(good != all_lanes, 0)) solve_carefully(*this, lanes, all_lanes & ~good, scratch);
-            Atoms<vec>::advance(at, 3, 3);
+    // Molecules of one kind, one behind the other, from number `first` on as long as there are enough of them for all
+    // lanes of V; returns how many are done.
+    template <class V>
+    __attribute__((noinline)) int64_t run(const MoleculeUnit &unit, int64_t first, double *scratch) {
+        constexpr int lanes = Width<V>::lanes;
+        constexpr unsigned all = (1u << lanes) - 1;
+        TrianglesOfUnit molecules = {unit, first};
+        if (unit.count - first < lanes) return first;
+        MoleculeLane lane[lanes];
+        for (int i = 0; i < lanes; ++i) lane[i] = molecules.get(i);
+        TriangleKind<V> kind;
+        kind.set(lane, lanes, Verb::with_lengths);
+        Atoms<V> at(lane, lanes);
+        for (; molecules.first + lanes <= unit.count; molecules.first += lanes) {
+            const unsigned good = verb.template solve<rows_adjacent>(molecules, lanes, at, kind);
+            if (__builtin_expect(good != all, 0)) solve_carefully(*this, molecules, all & ~good, scratch);
+            Atoms<V>::advance(at, 3, 3);
         }
-        return lanes.first;
+        return molecules.first;
+    }
+    int64_t run(const MoleculeUnit &unit, double *scratch) {
+        int64_t done = 0;
+        if constexpr (twins && Verb::in_steps) done = run<Twin>(unit, 0, scratch);
+        return run<vec>(unit, done, scratch);
     }
 };
 
 template <class Verb, class Call>
 static inline void for_each_triangle(const Verb &verb, const Call &call, const MoleculeUnit &unit, bool packed,
                                      double *scratch, Tally &tally) {
-    TriangleWork<Verb, Call> work = {verb, call, *unit.schedule, packed, tally, {}, {}};
+    TriangleWork<Verb, Call> work(verb, call, *unit.schedule, packed, tally);
     const int64_t done = unit.regular && packed && !unit.lanes[0].atoms ? work.run(unit, scratch) : 0;
     if (done == unit.count) return;
     const MoleculeLane next = molecule_of(unit, done);
@@ -104,7 +118,7 @@ static inline void for_each_triangle(const Verb &verb, const Call &call, const M
 }
 
 struct TriangleLinearVerb {
-    static constexpr bool with_lengths = false;
+    static constexpr bool with_lengths = false, in_steps = false;
     const TriangleCall &call;
     Tally &tally;
     template <Layout layout, class V, class Lanes>
@@ -114,7 +128,7 @@ struct TriangleLinearVerb {
 };
 
 struct TriangleVelocitiesVerb {
-    static constexpr bool with_lengths = false;
+    static constexpr bool with_lengths = false, in_steps = false;
     const VelocitiesCall &call;
     Tally &tally;
     template <Layout layout, class V, class Lanes>
@@ -124,7 +138,7 @@ struct TriangleVelocitiesVerb {
 };
 
 struct TrianglePositionsVerb {
-    static constexpr bool with_lengths = true;
+    static constexpr bool with_lengths = true, in_steps = true;
     const PositionsCall &call;
     Tally &tally;
     template <Layout layout, class V, class Lanes>

@@ -103,75 +103,6 @@ HOL_INLINE void store_elements(vec *value, double *out) {
         }
 }
 
-// Where W molecules of a unit stand, in the arrays of a call, from molecule `first` on: one behind the other, ..
-template <int N>
-struct InRow {
-    static constexpr bool listed = false;
-    int64_t at;  // the first one's first element
-    InRow(const Unit &unit, int64_t first) : at(3 * (unit.lanes[0].first_atom + (N + 1) * first)) {}
-    HOL_FORCED void load(const double *base, vec *elements) const { load_molecules<N>(base + at, elements); }
-    template <Update update>
-    HOL_FORCED void store(vec *value, double *base) const {
-        store_elements<N, update>(value, base + at);
-    }
-    HOL_FORCED Packed first_atoms(const double *base) const {
-        Packed p;
-        for (int i = 0; i < W; ++i) p.lane[i] = const_cast<double *>(base) + at + 3 * (N + 1) * i;
-        return p;
-    }
-    HOL_FORCED const int64_t *const *lists() const { return nullptr; }
-    HOL_FORCED void fetch_next(const double *) const {}  // the processor does that
-};
-
-// .. or as their lists say.
-template <int N>
-struct ByList {
-    static constexpr bool listed = true;
-    AtomLists at;
-    ByList(const Unit &unit, int64_t first) : at(unit.lanes[0].atoms + (N + 1) * first, N + 1) {}
-    HOL_FORCED void load(const double *base, vec *elements) const {
-        HOL_UNROLL
-        for (int k = 0; k <= N; ++k) {
-            const vec3 a = gather(base, at, k);
-            elements[3 * k] = a.x;
-            elements[3 * k + 1] = a.y;
-            elements[3 * k + 2] = a.z;
-        }
-    }
-    template <Update update>
-    HOL_FORCED void store(const vec *value, double *base) const {
-        HOL_UNROLL
-        for (int k = 0; k <= N; ++k)
-            scatter<update>(base, at, k, vec3{value[3 * k], value[3 * k + 1], value[3 * k + 2]});
-    }
-    HOL_FORCED Packed first_atoms(const double *base) const {
-        Packed p;
-        for (int i = 0; i < W; ++i) p.lane[i] = const_cast<double *>(base) + 3 * at.atoms[i][0];
-        return p;
-    }
-    HOL_FORCED const int64_t *const *lists() const { return at.atoms; }
-    HOL_FORCED void fetch_next(const double *base) const {
-        for (int i = 0; base && i < W; ++i)
-            for (int k = 0; k <= N; ++k) __builtin_prefetch(base + 3 * at.atoms[i][W * (N + 1) + k], 0, 2);
-    }
-};
-
-// G of the atoms of W molecules.
-template <int N, Update update, class Place>
-HOL_INLINE void store_pulls(const vec3 *D, const vec *t, const Place &place, double *out) {
-    vec value[vectors_of<N>];
-    vec3 before = {};
-    HOL_UNROLL
-    for (int k = 0; k <= N; ++k) {
-        const vec3 after = k < N ? times(t[k], D[k]) : vec3{}, g = minus(after, before);
-        value[3 * k] = g.x;
-        value[3 * k + 1] = g.y;
-        value[3 * k + 2] = g.z;
-        before = after;
-    }
-    place.template store<update>(value, out);
-}
-
 // Writes factor times a value per bond of W molecules; zeros as +0. Rows of W elements, the rest of which the next
 // molecule's row overwrites, as long as they stay inside.
 template <int N>
@@ -196,11 +127,116 @@ HOL_INLINE void store_multipliers(const vec *t, vec factor, double *out) {
     }
 }
 
-// Whether W molecules from `first` on may be done here: W atoms behind them can be read, or need not be.
-template <class Place>
-HOL_INLINE bool molecules_left(const Unit &unit, int64_t first) {
-    const int64_t n = unit.lanes[0].n_bonds;
-    return (unit.count - first - W) * (n + 1) >= (W == 1 || Place::listed ? 0 : W);
+// Where W molecules of a regular unit stand, in the arrays of a call, from molecule `first` on: what all its places
+// have.
+template <int N>
+struct InOrder {
+    static constexpr bool loose = false;
+    int64_t bond, chain;  // of the first one
+    InOrder(const Unit &unit, int64_t first)
+        : bond(unit.lanes[0].first_bond + N * first), chain(unit.lanes[0].chain + first) {}
+    // How many of the molecules first .. end - 1 are a block; 0: no more of them.
+    HOL_INLINE int64_t next(int64_t first, int64_t end) { return end - first >= W ? W : 0; }
+    HOL_FORCED const Lane *lanes() const { return nullptr; }
+    HOL_FORCED int64_t chain_of(int lane) const { return chain + lane; }
+    HOL_FORCED void store_multipliers(const vec *t, vec factor, double *base) const {
+        holonomic::HOL_ISA::store_multipliers<N>(t, factor, base + bond);
+    }
+};
+
+// One behind the other, ..
+template <int N>
+struct InRow : InOrder<N> {
+    static constexpr bool listed = false;
+    int64_t at;  // the first one's first element
+    InRow(const Unit &unit, int64_t first, int64_t)
+        : InOrder<N>(unit, first), at(3 * (unit.lanes[0].first_atom + (N + 1) * first)) {}
+    // The end of those from `first` on that may be done: W atoms behind them can be read.
+    HOL_INLINE int64_t end(const Unit &unit, int64_t) { return unit.count - (W == 1 ? 0 : (W + N) / (N + 1)); }
+    HOL_FORCED void load(const double *base, vec *elements) const { load_molecules<N>(base + at, elements); }
+    template <Update update>
+    HOL_FORCED void store(vec *value, double *base) const {
+        store_elements<N, update>(value, base + at);
+    }
+    HOL_FORCED Packed first_atoms(const double *base) const {
+        Packed p;
+        for (int i = 0; i < W; ++i) p.lane[i] = const_cast<double *>(base) + at + 3 * (N + 1) * i;
+        return p;
+    }
+    HOL_FORCED const int64_t *const *lists() const { return nullptr; }
+    HOL_FORCED void fetch_next(const double *) const {}  // the processor does that
+};
+
+// Atoms anywhere: Where::element(i, k) is the first element of atom k of lane i.
+template <int N, class Where>
+struct ByNumber {
+    static constexpr bool listed = true;
+    HOL_FORCED vec3 gather(const double *base, int k) const {
+        const double *p[W];
+        HOL_UNROLL
+        for (int i = 0; i < W; ++i) p[i] = base + static_cast<const Where *>(this)->element(i, k);
+        vec3 a;
+        read_rows(p, a);
+        return a;
+    }
+    HOL_FORCED void load(const double *base, vec *elements) const {
+        HOL_UNROLL
+        for (int k = 0; k <= N; ++k) {
+            const vec3 a = gather(base, k);
+            elements[3 * k] = a.x;
+            elements[3 * k + 1] = a.y;
+            elements[3 * k + 2] = a.z;
+        }
+    }
+    template <Update update>
+    HOL_FORCED void store(const vec *value, double *base) const {
+        HOL_UNROLL
+        for (int k = 0; k <= N; ++k) {
+            vec3 a = {value[3 * k], value[3 * k + 1], value[3 * k + 2]};
+            if (update == add_) a = plus(gather(base, k), a);
+            double *p[W];
+            HOL_UNROLL
+            for (int i = 0; i < W; ++i) p[i] = base + static_cast<const Where *>(this)->element(i, k);
+            write_rows(p, a);
+        }
+    }
+    HOL_FORCED Packed first_atoms(const double *base) const {
+        Packed p;
+        for (int i = 0; i < W; ++i)
+            p.lane[i] = const_cast<double *>(base) + static_cast<const Where *>(this)->element(i, 0);
+        return p;
+    }
+};
+
+// .. or as their lists say.
+template <int N>
+struct ByList : InOrder<N>, ByNumber<N, ByList<N>> {
+    AtomLists at;
+    ByList(const Unit &unit, int64_t first, int64_t)
+        : InOrder<N>(unit, first), at(unit.lanes[0].atoms + (N + 1) * first, N + 1) {}
+    HOL_INLINE int64_t end(const Unit &unit, int64_t) { return unit.count; }
+    HOL_FORCED int64_t element(int i, int k) const { return 3 * at.atoms[i][k]; }
+    HOL_FORCED const int64_t *const *lists() const { return at.atoms; }
+    HOL_FORCED void fetch_next(const double *base) const {
+        for (int i = 0; base && i < W; ++i)
+            for (int k = 0; k <= N; ++k) __builtin_prefetch(base + 3 * at.atoms[i][W * (N + 1) + k], 0, 2);
+    }
+};
+
+// G of the atoms of W molecules.
+template <int N, Update update, class Place>
+HOL_INLINE void store_pulls(const vec3 *D, const vec *t, const Place &place, double *out) {
+    vec value[vectors_of<N>];
+    vec3 before = {};
+    HOL_UNROLL
+    for (int k = 0; k <= N; ++k) {
+        const vec3 after = k < N ? times(t[k], D[k]) : vec3{}, g = minus(after, before);
+        value[3 * k] = g.x;
+        value[3 * k + 1] = g.y;
+        value[3 * k + 2] = g.z;
+        before = after;
+    }
+    place.template store<update>(value, out);
 }
 
 // Whether those behind them may be fetched, and are worth it.

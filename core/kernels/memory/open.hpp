@@ -95,26 +95,28 @@ static inline void close(const AtomArray &array, const Block &block, const Lane 
 }
 
 // Calls work(block, lane, call, arena, tally) for the blocks of a unit, after small(call, unit, block, first, tally)
-// has done what it can of W and more of them; that returns the first chain that it has left.
+// has done what it can of W and more of them, of units that are not regular without a block; that returns the first
+// chain that it has left.
 template <class Call, class Work, class Small>
 static inline void for_each_block(const Call &call, const Unit &unit, double *scratch, Tally &tally, Work work,
                                   Small small) {
     Block block;
     Lane lane[W];
     Arena arena(scratch, 0);
+    const auto leave_to_small = [&](int64_t &first) {
+        const int64_t next = small(call, unit, block, first, tally);
+        if (next == first) return false;
+        first = next - W;  // the rest goes on from there
+        return true;
+    };
     for (int64_t first = 0; first < unit.count; first += W) {
+        if (!unit.regular && leave_to_small(first)) continue;
         open_block(unit, first, block, lane);
         if (first == 0 || !unit.regular || block.lanes < W) {
             arena = Arena(scratch, block.n);
             set_masses(block, lane, arena);
         }
-        if (block.lanes == W) {
-            const int64_t next = small(call, unit, block, first, tally);
-            if (next > first) {
-                first = next - W;  // the rest goes on from there
-                continue;
-            }
-        }
+        if (unit.regular && block.lanes == W && leave_to_small(first)) continue;
         work(block, lane, call, arena, tally);
     }
 }

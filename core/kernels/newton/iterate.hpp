@@ -5,6 +5,7 @@
 #include "core/kernels/newton/criterion.hpp"
 #include "core/kernels/newton/single_bond.hpp"
 #include "core/kernels/newton/sweeps.hpp"
+#include "core/kernels/newton/two_bonds.hpp"
 
 namespace holonomic::HOL_ISA {
 
@@ -60,7 +61,7 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
         const mask renewed = careful ? active : active & worth_renewing(error, rate, i);
         if (!careful) proven = ~renewed & less(rate, splat(steady)) & less_equal(error, splat(last_error));
         if (!any(renewed)) continue;
-        renew<uniform_w, uniform_a, careful ? careful_factors : renewed_factors>(block, x, renewed);
+        renew<uniform_w, uniform_a, careful ? careful_factors : renewed_factors, fixed>(block, x, renewed);
         rate = select(renewed, error, rate);
     }
     if (out.solves == 0 && !guess)
@@ -69,12 +70,40 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
     return out;
 }
 
-// The same, chains of one bond in closed form.
+// Adds the outcome of the lanes in `which`.
+HOL_INLINE void join(Outcome &out, const Outcome &more, mask which) {
+    out.untouched = out.untouched | more.untouched;
+    out.converged = out.converged | more.converged;
+    out.error = select(which, more.error, out.error);
+    if (more.solves > out.solves) out.solves = more.solves;
+}
+
+// Whether chains of two bonds are tried without looking at the error first: where a loose tolerance saves no solves.
+HOL_INLINE bool tries_two_bonds(const PositionsCall &call) {
+    return call.max_iterations >= two_bonds_solves && !(call.tolerance > epsilon);
+}
+
+// The lanes of two bonds among `longer`, which keeps those that are left for iterate().
+template <bool uniform_w, bool uniform_a>
+HOL_NOINLINE Outcome try_two_bonds(Newton &x, Carried &carried, mask &longer) {
+    const Outcome out = solve_two_bonds<uniform_w, uniform_a>(x, carried, longer & less(x.lengths, splat(2.5)));
+    longer = longer & ~(out.converged | out.untouched);
+    return out;
+}
+
+// The same, chains of one bond in closed form, those of two bonds by two_bonds.hpp where that does.
 template <bool uniform_w, bool uniform_a, bool careful>
 HOL_NOINLINE Outcome solve_positions(const Block &block, Newton &x, const PositionsCall &call, Carried &carried,
                                      mask wanted, bool guess) {
-    const mask single = wanted & less(x.lengths, splat(1.5)), longer = wanted & ~single;
-    Outcome out = {};
+    const mask single = wanted & less(x.lengths, splat(1.5));
+    mask longer = wanted & ~single;
+    Outcome out = {}, two = {};
+    vec tau[2] = {};
+    if (!careful && !guess && tries_two_bonds(call) && any(longer & less(x.lengths, splat(2.5)))) {
+        two = try_two_bonds<uniform_w, uniform_a>(x, carried, longer);
+        tau[0] = x.tau[0];
+        tau[1] = x.tau[1];
+    }
     if (any(longer))
         out = iterate<uniform_w, uniform_a, careful>(block, x, call, carried, longer, guess);
     else
@@ -83,13 +112,14 @@ HOL_NOINLINE Outcome solve_positions(const Block &block, Newton &x, const Positi
         x.step = x.correction;
         for (long k = 0; k < block.n; ++k) x.correction[k] = vec{};
     }
+    const mask closed = two.converged | two.untouched;
+    if (any(closed)) {
+        for (int k = 0; k < 2; ++k) x.tau[k] = select(closed, tau[k], x.tau[k]);
+        join(out, two, closed);
+    }
     if (!any(single)) return out;
     x.step = x.tau;
-    const Outcome one = solve_single_bonds<uniform_w>(x, carried, single);
-    out.untouched = out.untouched | one.untouched;
-    out.converged = out.converged | one.converged;
-    out.error = select(single, one.error, out.error);
-    out.solves = one.solves > out.solves ? one.solves : out.solves;
+    join(out, solve_single_bonds<uniform_w>(x, carried, single), single);
     return out;
 }
 

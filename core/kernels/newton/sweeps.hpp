@@ -145,9 +145,9 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
 }
 
 // New factors for the lanes in `which`, out of the way of the common case.
-template <bool uniform_w, bool uniform_a, Factors factors>
+template <bool uniform_w, bool uniform_a, Factors factors, int fixed = 0>
 HOL_NOINLINE vec renew(const Block &block, const Newton &x, mask which) {
-    return eliminate<uniform_w, uniform_a, factors>(block, x, which);
+    return eliminate<uniform_w, uniform_a, factors, fixed>(block, x, which);
 }
 
 // Moves the bonds by the corrections `step` and substitutes forward what that leaves of their lengths; returns the

@@ -3,23 +3,26 @@
 #define HOLONOMIC_KERNELS_VERBS_FORCES_SMALL_HPP
 
 #include "core/kernels/eliminate/chain.hpp"
-#include "core/kernels/memory/fixed.hpp"
+#include "core/kernels/memory/loose.hpp"
 #include "core/kernels/verbs/small.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 
-// From molecule `first` on; returns the first one that is not done.
+// From molecule `first` on; returns the first one that is not done. `given`: what is set of a regular unit.
 template <int N, int terms, bool uniform, bool boxed, template <int> class PlaceOf>
-static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, const Block &block, int64_t first) {
+static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, const Block &given, int64_t first) {
     typedef PlaceOf<N> Place;
-    const Lane &head = unit.lanes[0];
     const double *const r = base_of(call.r), *const v = base_of(call.v), *const f = base_of(call.f);
     double *const g = base_of(call.g);
-    for (; molecules_left<Place>(unit, first); first += W) {
+    BlockMasses<N, Place::loose> masses(given);
+    const Block &block = masses.block;
+    const int64_t end = Place::end(unit, first);
+    for (int64_t n; (n = Place::next(first, end)) > 0; first += n) {
         vec3 D[N];
         vec t[N], L[N + 1];
-        const Place place(unit, first);
+        const Place place(unit, first, n);
+        masses.take(place);
         if (fetches_next<Place>(unit, first)) {
             place.fetch_next(r);
             place.fetch_next(v);
@@ -27,7 +30,7 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
         }
         load_molecules<N, terms, uniform, boxed>(block, call.box, place, r, v, f, D, t);
         const Packed from = place.first_atoms(r);
-        const Source source = {&from, r, place.lists(), &call.box, nullptr};
+        const Source source = {&from, r, place.lists(), &call.box, nullptr, place.lanes()};
         Sweep<uniform, false> sweep{block, source, System(D, t, L, nullptr)};
         HOL_UNROLL
         for (int k = 0; k < N; ++k) sweep.step(k, t[k], k % 4 == 0, false);
@@ -39,7 +42,7 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
             else
                 store_pulls<N, write_>(D, t, place, g);
         }
-        if (call.lambda) store_multipliers<N>(t, splat(0.5), call.lambda + head.first_bond + N * first);
+        if (call.lambda) place.store_multipliers(t, splat(0.5), call.lambda);
     }
     return first;
 }
@@ -61,7 +64,7 @@ static inline int64_t small_forces(const ForcesCall &call, const Unit &unit, con
     const bool plain = call.r.packed && (!call.v.x || call.v.packed) && (!call.f.x || call.f.packed) &&
                        (!call.g.x || call.g.packed) && !call.tension && !call.virial;
     const bool boxed = call.box.shape != Box::none;
-    return plain ? any_molecules<ForcesOfMolecules>(call, unit, block, first, block.uniform_w, boxed, tally) : first;
+    return plain ? any_molecules<ForcesOfMolecules>(call, unit, block, first, boxed, tally) : first;
 }
 
 }  // namespace HOL_ISA

@@ -1,5 +1,6 @@
 // Constraint forces of molecules that are no chains, and multipliers for given right-hand sides.
 #include "core/kernels/graph/forces.hpp"
+#include "core/kernels/graph/star_linear.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic {
@@ -17,7 +18,7 @@ void molecules_forces(const ForcesCall &call, const MoleculeUnit &unit, double *
         return;
     }
     ForcesWork work = {call, *unit.schedule, packed, tally, unit.team};
-    for_each_block(unit, scratch, work);
+    if (!do_stars<3>(StarForcesVerb{call, tally}, work, unit, scratch)) for_each_block(unit, scratch, work);
 }
 
 void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {

@@ -21,22 +21,13 @@ int64_t molecules_scratch_bytes(const Schedule &s) {
            s.careful->scratch_bytes;
 }
 
-// Does a unit of stars of N bonds, if it is one.
-template <int N>
-static bool move_stars(const PositionsWork &general, const MoleculeUnit &unit, double *scratch) {
-    const int centre = centre_of_star<N>(*unit.schedule);
-    if (centre < 0) return false;
-    StarWork<N, PositionsWork> work = {general.call, general, centre, general.packed, general.tally, {}, {}};
-    for_each_block(unit, scratch, work);
-    return true;
-}
-
 void molecules_positions(const PositionsCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
     if (unit.schedule->type == Schedule::triangle)
         return for_each_triangle(TrianglePositionsVerb{call, tally}, call, unit, packed, scratch, tally);
     PositionsWork work = {call, *unit.schedule, packed, tally};
-    if (call.guess || !(move_stars<3>(work, unit, scratch) || move_stars<4>(work, unit, scratch)))
+    const StarPositionsVerb stars = {call, tally};
+    if (call.guess || !(do_stars<3>(stars, work, unit, scratch) || do_stars<4>(stars, work, unit, scratch)))
         for_each_block(unit, scratch, work);
 }
 

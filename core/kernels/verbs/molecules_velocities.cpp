@@ -1,4 +1,5 @@
 // Velocity level of molecules that are no chains.
+#include "core/kernels/graph/star_linear.hpp"
 #include "core/kernels/graph/velocities.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
@@ -12,7 +13,7 @@ void molecules_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, 
     if (unit.schedule->type == Schedule::triangle)
         return for_each_triangle(TriangleVelocitiesVerb{call, tally}, call, unit, packed, scratch, tally);
     VelocitiesWork work = {call, *unit.schedule, packed, tally, unit.team};
-    for_each_block(unit, scratch, work);
+    if (!do_stars<3>(StarVelocitiesVerb{call, tally}, work, unit, scratch)) for_each_block(unit, scratch, work);
 }
 
 }  // namespace HOL_ISA

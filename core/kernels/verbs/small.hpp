@@ -2,7 +2,7 @@
 #ifndef HOLONOMIC_KERNELS_VERBS_SMALL_HPP
 #define HOLONOMIC_KERNELS_VERBS_SMALL_HPP
 
-#include "core/kernels/memory/fixed.hpp"
+#include "core/kernels/memory/loose.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -24,12 +24,26 @@ static int64_t molecules_of(const Call &call, const Unit &unit, const Block &blo
                    : Of<N, false, false, InRow>::run(call, unit, block, first, tally);
 }
 
-// `boxed`: there is a box.
+// `boxed`: there is a box. Units that are not regular need no block: of these, those that have as many bonds as the
+// first one are done.
 template <template <int, bool, bool, template <int> class> class Of, class Call>
-static int64_t any_molecules(const Call &call, const Unit &unit, const Block &block, int64_t first, bool uniform,
-                             bool boxed, Tally &tally) {
+static int64_t any_molecules(const Call &call, const Unit &unit, const Block &block, int64_t first, bool boxed,
+                             Tally &tally, bool one_length = true) {
+    if (!unit.regular) {
+        switch (unit.lanes[first].n_bonds) {
+            case 1:
+                return Of<1, false, true, ByLanes>::run(call, unit, block, first, tally);
+            case 2:
+                return Of<2, false, true, ByLanes>::run(call, unit, block, first, tally);
+            case 3:
+                return Of<3, false, true, ByLanes>::run(call, unit, block, first, tally);
+            default:
+                return first;
+        }
+    }
     const Lane &head = unit.lanes[0];
-    if (!unit.regular || head.n_bonds > (boxed || head.atoms ? largest_boxed_molecule : largest_molecule)) return first;
+    const bool uniform = block.uniform_w && one_length;
+    if (head.n_bonds > (boxed || head.atoms ? largest_boxed_molecule : largest_molecule)) return first;
     switch (head.n_bonds) {
         case 1:
             return molecules_of<1, Of>(call, unit, block, first, uniform, boxed, tally);

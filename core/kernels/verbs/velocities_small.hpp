@@ -3,24 +3,27 @@
 #define HOLONOMIC_KERNELS_VERBS_VELOCITIES_SMALL_HPP
 
 #include "core/kernels/eliminate/projection.hpp"
-#include "core/kernels/memory/fixed.hpp"
+#include "core/kernels/memory/loose.hpp"
 #include "core/kernels/verbs/small.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 
-// From molecule `first` on; returns the first one that is not done.
+// From molecule `first` on; returns the first one that is not done. `given`: what is set of a regular unit.
 template <int N, bool uniform, bool boxed, template <int> class PlaceOf, bool strained = false>
-static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &unit, const Block &block,
+static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &unit, const Block &given,
                                        int64_t first) {
     typedef PlaceOf<N> Place;
-    const Lane &head = unit.lanes[0];
     const double *const r = base_of(call.r);
     double *const v = base_of(call.v);
-    for (; molecules_left<Place>(unit, first); first += W) {
+    BlockMasses<N, Place::loose> masses(given);
+    const Block &block = masses.block;
+    const int64_t end = Place::end(unit, first);
+    for (int64_t n; (n = Place::next(first, end)) > 0; first += n) {
         vec3 D[N];
         vec t[N], left[N + 1], L[N + 1], pivots[N], elements[vectors_of<N>];
-        const Place place(unit, first);
+        const Place place(unit, first, n);
+        masses.take(place);
         if (fetches_next<Place>(unit, first)) {
             place.fetch_next(r);
             place.fetch_next(v);
@@ -28,7 +31,7 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
         load_molecules<N, none_, uniform, boxed>(block, call.box, place, r, nullptr, nullptr, D, t);
         place.load(v, elements);
         const Packed from = place.first_atoms(r);
-        const Source source = {&from, r, place.lists(), &call.box, nullptr};
+        const Source source = {&from, r, place.lists(), &call.box, nullptr, place.lanes()};
         const Projection x({D, t, L, pivots}, reinterpret_cast<vec3 *>(elements), left);
         Sweep<uniform, true> sweep{block, source, x.s};
         HOL_UNROLL
@@ -48,7 +51,7 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
         HOL_UNROLL
         for (int k = N - 1; k >= 0; --k) x.v[k + 1] = correction.step(k);
         x.v[0] = correction.finish();
-        if (call.lambda) store_multipliers<N>(t, 0.5 * block.mass, call.lambda + head.first_bond + N * first);
+        if (call.lambda) place.store_multipliers(t, 0.5 * block.mass, call.lambda);
         place.template store<write_>(elements, v);
     }
     return first;
@@ -76,10 +79,8 @@ static inline int64_t small_velocities(const VelocitiesCall &call, const Unit &u
                                        Tally &tally) {
     const bool plain = call.r.packed && call.v.packed && !call.virial;
     const bool boxed = call.box.shape != Box::none;
-    if (plain && call.strain)
-        return any_molecules<StrainedMolecules>(call, unit, block, first, block.uniform_w, boxed, tally);
-    return plain ? any_molecules<VelocitiesOfMolecules>(call, unit, block, first, block.uniform_w, boxed, tally)
-                 : first;
+    if (plain && call.strain) return any_molecules<StrainedMolecules>(call, unit, block, first, boxed, tally);
+    return plain ? any_molecules<VelocitiesOfMolecules>(call, unit, block, first, boxed, tally) : first;
 }
 
 }  // namespace HOL_ISA

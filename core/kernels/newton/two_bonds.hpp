@@ -1,0 +1,119 @@
+// Chains of two bonds: Newton's method for the multipliers alone, as graph/multipliers.hpp has it for triangles and
+// stars. The lengths are right where
+//     2 M tau = sigma + q(tau),   sigma_k = D_k.D_k - a_k^2,   q_k = |P_k|^2,
+//     P_0 = - (w_0 + w_1) tau_0 b_0 + w_1 tau_1 b_1,   P_1 = - (w_1 + w_2) tau_1 b_1 + w_1 tau_0 b_0:
+// nothing but products of bond vectors is needed to get there.
+#ifndef HOLONOMIC_KERNELS_NEWTON_TWO_BONDS_HPP
+#define HOLONOMIC_KERNELS_NEWTON_TWO_BONDS_HPP
+
+#include "core/kernels/newton/criterion.hpp"
+#include "core/kernels/newton/sweeps.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// Solves that are made, whatever they leave.
+constexpr int two_bonds_solves = 4;
+// What the third may leave of the lengths' squares: the fourth leaves about its power 3/2.
+constexpr double two_bonds_left = 1e-12;
+// What must be left of the determinant of M: less, and its factors are worth too little.
+constexpr double two_bonds_part = 1.0 / 64;
+
+// What depends on the bonds: b_k . b_l, D_k . b_l; and inverse masses at the bonds and between them.
+struct TwoBonds {
+    vec b00, b01, b11, g00, g01, g10, g11, s0, s1, w;
+
+    // P_k . b_l and q_k.
+    struct Change {
+        vec p00, p01, p10, p11, q0, q1;
+    };
+    HOL_FORCED Change change(vec t0, vec t1) const {
+        const vec x0 = s0 * t0, y0 = w * t1, x1 = s1 * t1, y1 = w * t0;
+        Change c;
+        c.p00 = mul_add(y0, b01, -(x0 * b00));
+        c.p01 = mul_add(y0, b11, -(x0 * b01));
+        c.p11 = mul_add(y1, b01, -(x1 * b11));
+        c.p10 = mul_add(y1, b00, -(x1 * b01));
+        c.q0 = mul_add(y0, c.p01, -(x0 * c.p00));
+        c.q1 = mul_add(y1, c.p10, -(x1 * c.p11));
+        return c;
+    }
+    // M and 1 / (2 det).
+    struct Factors {
+        vec m00, m01, m10, m11, r, whole;
+        HOL_FORCED vec first(vec y0, vec y1) const { return r * mul_add(m11, y0, -(m01 * y1)); }
+        HOL_FORCED vec second(vec y0, vec y1) const { return r * mul_add(m00, y1, -(m10 * y0)); }
+        HOL_FORCED vec part() const { return mul_add(m00, m11, -(m01 * m10)); }
+    };
+    HOL_FORCED Factors factors(vec h00, vec h01, vec h10, vec h11) const {
+        Factors f;
+        f.m00 = s0 * h00;
+        f.m11 = s1 * h11;
+        f.m01 = -(w * h01);
+        f.m10 = -(w * h10);
+        f.whole = f.m00 * f.m11;
+        f.r = splat(0.5) / f.part();
+        return f;
+    }
+    HOL_FORCED Factors factors() const { return factors(g00, g01, g10, g11); }
+    HOL_FORCED Factors factors(const Change &c) const {
+        return factors(g00 + c.p00, g01 + c.p01, g10 + c.p10, g11 + c.p11);
+    }
+};
+
+// The lanes in `wanted`, into tau. Those that are neither converged nor untouched need iterate().
+template <bool uniform_w, bool uniform_a>
+HOL_INLINE Outcome solve_two_bonds(Newton &x, Carried &carried, mask wanted) {
+    const vec3 b0 = x.b[0], b1 = x.b[1], D0 = x.D[0], D1 = x.D[1];
+    const vec w = uniform_w ? splat(1.0) : x.w[1], one = splat(1.0);
+    const TwoBonds m = {dot(b0, b0),
+                        dot(b0, b1),
+                        dot(b1, b1),
+                        dot(D0, b0),
+                        dot(D0, b1),
+                        dot(D1, b0),
+                        dot(D1, b1),
+                        (uniform_w ? one : x.w[0]) + w,
+                        w + (uniform_w ? one : x.w[2]),
+                        w};
+    vec worst = {};
+    const vec sigma0 = length_error<uniform_a>(x, 0, false, D0, worst),
+              sigma1 = length_error<uniform_a>(x, 1, false, D1, worst);
+    Outcome out = {};
+    // As elimination has it, the error is no number where a reference is none.
+    const vec before = largest_error<uniform_a>(x, worst, (sigma0 + sigma1) + (m.g00 + m.g11));
+    out.untouched = wanted & carried.within(before, one);
+    TwoBonds::Factors f = m.factors();
+    const mask open = less(two_bonds_part * f.whole, f.part());
+    vec t0 = f.first(sigma0, sigma1), t1 = f.second(sigma0, sigma1);
+    TwoBonds::Change c = m.change(t0, t1);
+    const vec y0 = sigma0 + c.q0, y1 = sigma1 + c.q1;
+    t0 = f.first(y0, y1);
+    t1 = f.second(y0, y1);
+    // 2 M tau = sigma + q, linear about the last tau: 2 M' tau = sigma - q. What that leaves is q of the change.
+    c = m.change(t0, t1);
+    f = m.factors(c);
+    const vec z0 = sigma0 - c.q0, z1 = sigma1 - c.q1, next0 = f.first(z0, z1), next1 = f.second(z0, z1);
+    c = m.change(next0 - t0, next1 - t1);
+    const vec left = uniform_a ? max(c.q0, c.q1) * x.per_a2_uniform : max(c.q0 * x.per_a2[0], c.q1 * x.per_a2[1]);
+    const mask near = wanted & ~out.untouched & open & less(left, splat(two_bonds_left));
+    x.tau[0] = keep(near, next0 + f.first(c.q0, c.q1));
+    x.tau[1] = keep(near, next1 + f.second(c.q0, c.q1));
+    // As Mover has it, where the bond behind the last one is none.
+    const vec3 p0 = times(x.tau[0], b0), p1 = times(x.tau[1], b1), middle = times_w<uniform_w>(x, 1, minus(p1, p0)),
+               d0 = plus(D0, minus(middle, times_w<uniform_w>(x, 0, p0))),
+               d1 = plus(D1, minus(times_w<uniform_w>(x, 2, minus(vec3{}, p1)), middle));
+    worst = vec{};
+    const vec after0 = length_error<uniform_a>(x, 0, false, d0, worst),
+              after1 = length_error<uniform_a>(x, 1, false, d1, worst);
+    out.error = largest_error<uniform_a>(x, worst, after0 + after1);
+    out.converged = near & less_equal(out.error, carried.always_accepted());
+    x.tau[0] = keep(out.converged, x.tau[0]);
+    x.tau[1] = keep(out.converged, x.tau[1]);
+    out.solves = any(out.converged) ? two_bonds_solves : 0;
+    return out;
+}
+
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif
