@@ -42,8 +42,8 @@ Name Labels::of_molecule(std::int64_t molecule, std::int64_t atom, int base) con
     const long long number = static_cast<long long>(molecule + base);
     if (at(molecule) < molecules_.size()) return labelled(number, molecules_[at(molecule)]);
     if (atoms_.empty()) return plain(number);
-    Name name;
-    std::snprintf(name.text, sizeof name.text, "%lld (with atom %s)", number, of_atom(atom, base).text);
+    Name name;  // that of an atom has 60 characters at most: two numbers and what joins them
+    std::snprintf(name.text, sizeof name.text, "%lld (with atom %.60s)", number, of_atom(atom, base).text);
     return name;
 }
 

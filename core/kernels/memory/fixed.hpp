@@ -39,10 +39,12 @@ HOL_INLINE void take_bonds(const Box &box, const vec *atoms, vec3 *D) {
     HOL_UNROLL
     for (int c = 0; c < 3 * N; ++c) d[c] = atoms[c + 3] - atoms[c];
     if (!boxed || box.shape == Box::none) return;
-    vec3 unused = {};
-    HOL_UNROLL
-    for (int k = 0; box.shape == Box::triclinic && k < N; ++k) wrap<false>(box, D[k], unused);
-    if (box.shape == Box::triclinic) return;
+    if (box.shape == Box::triclinic) {
+        vec3 unused = {};
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) wrap<false>(box, D[k], unused);
+        return;
+    }
     HOL_UNROLL
     for (int c = 0; c < 3 * N; ++c)
         d[c] = mul_add(round(d[c] * box.per_side[c % 3]), splat(box.minus_side[c % 3]), d[c]);
