@@ -27,7 +27,8 @@ int main(void)
     shows("the same", again[0], virial[0]);
 
     /* The position level: with the positions before the drift, g times dt^2 w is the displacement. */
-    for (int i = 0; i < 9; ++i) moved[0][i] = r[0][i] + dt * before[0][i];
+    for (int i = 0; i < 3; ++i)
+        for (int c = 0; c < 3; ++c) moved[i][c] = r[i][c] + dt * before[i][c];
     ok(hol_project_positions(chains, r[0], moved[0], NULL, dt, lambda, 0, NULL, NULL));
     ok(hol_reactions_view(chains, &view, HOL_REFERENCE_BOX, lambda, NULL, NULL, HOL_WRITE, of_bond[0], NULL));
     ok(hol_reactions(chains, r[0], HOL_REFERENCE_BOX, lambda, NULL, impulse[0], HOL_WRITE, NULL, NULL));

@@ -39,11 +39,11 @@ HOL_INLINE void read_rows(const double *const *p, vec3 &a) {
     a.y = _mm512_insertf64x4(_mm512_castpd256_pd512(y[0]), y[1], 1);
     a.z = _mm512_insertf64x4(_mm512_castpd256_pd512(z[0]), z[1], 1);
 #else
-    for (int i = 0; i < W; ++i) {
-        a.x[i] = p[i][0];
-        a.y[i] = p[i][1];
-        a.z[i] = p[i][2];
-    }
+    // gcc 12 loses elements that are written to a wide vector without a value.
+    a = vec3{};
+    for (int i = 0; i < W; ++i) a.x[i] = p[i][0];
+    for (int i = 0; i < W; ++i) a.y[i] = p[i][1];
+    for (int i = 0; i < W; ++i) a.z[i] = p[i][2];
 #endif
 }
 

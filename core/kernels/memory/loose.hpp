@@ -60,7 +60,7 @@ struct BlockMasses {
 template <int N>
 struct BlockMasses<N, true> {
     Block block;  // what is not set here is not asked for
-    vec w[N + 1];
+    vec w[N + 1] = {};
     int64_t kind[W];
     explicit BlockMasses(const Block &) {
         block.n = block.n_min = N;
@@ -69,6 +69,7 @@ struct BlockMasses<N, true> {
             kind[i] = -1;
         }
         block.lanes = W;
+        block.unit = vec{};
         block.uniform_w = block.unit_masses = false;
         block.movable = first_lanes(W);
         block.w = w;
