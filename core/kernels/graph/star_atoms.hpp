@@ -79,7 +79,7 @@ struct StarAtoms {
 // Masses; atoms of a star are counted from its centre, 0.
 template <int N, class V>
 struct StarMasses {
-    V w[N + 1];
+    V w[N + 1] = {};
     // The atom `centre` of a molecule is the centre.
     void set(const MoleculeLane *lane, int used, int centre) {
         for (int k = 0; k <= N; ++k)

@@ -58,7 +58,12 @@ struct Width<Twin> {
     HOL_INLINE TwinMask first(int n) { return {first_lanes(n), first_lanes(n - W)}; }
     HOL_INLINE TwinMask of_bits(unsigned b) { return {Width<vec>::of_bits(b), Width<vec>::of_bits(b >> W)}; }
     HOL_INLINE double get(const Twin &x, int i) { return i < W ? x.a[i % W] : x.b[i % W]; }
-    HOL_INLINE void set(Twin &x, int i, double y) { (i < W ? x.a : x.b)[i % W] = y; }
+    HOL_INLINE void set(Twin &x, int i, double y) {
+        if (i < W)
+            x.a[i] = y;
+        else
+            x.b[i - W] = y;  // not through a reference to either: gcc 12 loses elements then
+    }
 };
 
 // Found by their argument from where single blocks are read and written.
