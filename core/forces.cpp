@@ -66,8 +66,7 @@ void right_hand_sides(const Chains &chains, const double *L, const AtomArray &r,
                 read_atom(f, m.atom(i), a[0]);
                 read_atom(f, m.atom(j), a[1]);
             }
-            for (int c = 0; c < 3; ++c) d[c] = x[1][c] - x[0][c];
-            minimum_image(chains.box, d);
+            bond_vector(chains.box, x[0], x[1], d);
             double sum = 0;
             for (int c = 0; c < (r.z ? 3 : 2); ++c) {
                 const double flow = L[3 * c] * d[0] + L[3 * c + 1] * d[1] + L[3 * c + 2] * d[2];

@@ -8,6 +8,7 @@
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
+#include "core/run/lane.hpp"
 
 namespace holonomic {
 
@@ -32,19 +33,13 @@ struct Vector {
 
 inline Vector read(const AtomArray &array, std::int64_t atom) {
     Vector a;
-    if (array.packed) {
-        const double *const from = reinterpret_cast<const double *>(array.x) + 3 * atom;
-        a = {{from[0], from[1], from[2]}};
-    } else {
-        read_atom(array, atom, a.x);
-    }
+    read_atom(array, atom, a.x);
     return a;
 }
 
 inline Pull pull_of(const Call &call, const Vector &ri, const Vector &rj, std::int64_t bond) {
     Pull x;
-    for (int c = 0; c < 3; ++c) x.d[c] = rj.x[c] - ri.x[c];
-    if (call.box->shape != Box::none) minimum_image(*call.box, x.d);
+    bond_vector(*call.box, ri.x, rj.x, x.d);
     x.t = 2 * call.given[bond];
     for (int c = 0; c < 3; ++c) x.p[c] = x.t * x.d[c];
     return x;
@@ -82,12 +77,8 @@ inline void write_force(const Call &call, std::int64_t atom, Vector force) {
         const Vector before = read(call.g, atom);
         for (int c = 0; c < 3; ++c) force.x[c] = before.x[c] + force.x[c];
     }
-    if (!call.g.packed) return write_atom(call.g, atom, force.x);
-    double *const to = reinterpret_cast<double *>(call.g.x) + 3 * atom;
-    for (int c = 0; c < 3; ++c) to[c] = force.x[c];
+    write_atom(call.g, atom, force.x);
 }
-
-std::int64_t atom_of(const Lane &lane, std::int64_t i) { return lane.atoms ? lane.atoms[i] : lane.first_atom + i; }
 
 // Calls each(k, pull) for the bonds begin .. end - 1 of a chain.
 template <class Each>
@@ -121,10 +112,6 @@ void write_chain(const Call &call, const Lane &lane, std::int64_t begin, std::in
     write_force(call, atom_of(lane, end), {{0 - before.x[0], 0 - before.x[1], 0 - before.x[2]}});
 }
 
-std::int64_t atom_of(const MoleculeLane &lane, std::int64_t i) {
-    return lane.atoms ? lane.atoms[i] : lane.first_atom + i;
-}
-
 template <class Each>
 void over_bonds(const Call &call, const Schedule &shape, const MoleculeLane &lane, Each each) {
     for (std::int32_t k = 0; k < shape.n_bonds; ++k) {
@@ -136,14 +123,12 @@ void over_bonds(const Call &call, const Schedule &shape, const MoleculeLane &lan
 
 // `force` [n_atoms][3]
 void write_molecule(const Call &call, const Schedule &shape, const MoleculeLane &lane, double *force, Tally &tally) {
-    if (call.g.x) std::fill(force, force + 3 * static_cast<std::ptrdiff_t>(shape.n_atoms), 0.0);
+    if (call.g.x) std::fill_n(force, 3 * std::ptrdiff_t{shape.n_atoms}, 0.0);
     over_bonds(call, shape, lane, [&](std::int32_t k, const Pull &x) {
         write_bond(call, x, lane.first_bond + k, tally);
         if (!call.g.x) return;
-        double *const i = force + 3 * static_cast<std::ptrdiff_t>(shape.atom_i[k]), *const j =
-                                                                                        force +
-                                                                                        3 * static_cast<std::ptrdiff_t>(
-                                                                                                shape.atom_j[k]);
+        double *const i = force + 3 * std::ptrdiff_t{shape.atom_i[k]};
+        double *const j = force + 3 * std::ptrdiff_t{shape.atom_j[k]};
         for (int c = 0; c < 3; ++c) {
             i[c] += x.p[c];
             j[c] -= x.p[c];
@@ -171,17 +156,12 @@ struct ReactionsWork final : Work {
               }) {}
     void unit(const Unit &unit, int where, double *, Tally &tally) const override {
         const Call &call = calls[where];
-        Lane lane = unit.lanes[0];
         for (std::int64_t i = 0; i < unit.count; ++i) {
-            if (!unit.regular) lane = unit.lanes[i];
+            const Lane lane = lane_of(unit, i);
             if (is_finite(call, lane, 0, lane.n_bonds))
                 write_chain(call, lane, 0, lane.n_bonds, tally);
             else
-                note_bad(lane, tally);
-            lane.first_atom += lane.n_bonds + 1;
-            if (lane.atoms) lane.atoms += lane.n_bonds + 1;
-            lane.first_bond += lane.n_bonds;
-            ++lane.chain;
+                note_bad(lane.chain, tally);
         }
     }
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
@@ -192,8 +172,8 @@ struct ReactionsWork final : Work {
             over_bonds(call, *unit.schedule, lane, [&](std::int32_t, const Pull &x) { size += size_of(x); });
             if (std::isfinite(size))
                 write_molecule(call, *unit.schedule, lane, scratch, tally);
-            else if (tally.n_bad++ == 0 || lane.molecule < tally.first_bad)
-                tally.first_bad = lane.molecule;
+            else
+                note_bad(lane.molecule, tally);
         }
     }
     int images(int where, Images *images) const override {
@@ -207,9 +187,9 @@ struct ReactionsWork final : Work {
         Tally found = empty_tally();
         const auto end_of = [&](std::int64_t j) { return std::min((j + 1) * block, lane.n_bonds); };
         team.for_each(long_blocks(lane.n_bonds), found, [&](std::int64_t j, double *, Tally &part) {
-            if (!is_finite(call, lane, j * block, end_of(j))) note_bad(lane, part);
+            if (!is_finite(call, lane, j * block, end_of(j))) note_bad(lane.chain, part);
         });
-        if (found.n_bad > 0) return note_bad(lane, tally);
+        if (found.n_bad > 0) return note_bad(lane.chain, tally);
         team.for_each(long_blocks(lane.n_bonds), tally, [&](std::int64_t j, double *, Tally &part) {
             write_chain(call, lane, j * block, end_of(j), part);
         });

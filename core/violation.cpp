@@ -4,6 +4,7 @@
 
 #include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
+#include "core/kernels/tally.hpp"
 #include "core/run/diagnose.hpp"
 
 namespace holonomic {
@@ -11,12 +12,11 @@ namespace holonomic {
 void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Worst *worst) {
     const BoxRate *const of_box = chains.box_rate();
     Worst found{0, -1, -1, 0, -1, -1};
-    Tally tally{};
-    tally.first_bad = -1;
+    Tally tally = empty_tally();
     for (std::int64_t chain = 0; chain < chains.n_chains(); ++chain) {
         if (!chains.is_active(chain)) continue;
         const Molecule m = chains.molecule(chain);
-        double r0[3], v0[3] = {0, 0, 0}, r1[3], v1[3] = {0, 0, 0};
+        double r0[3], v0[3] = {0, 0, 0}, r1[3] = {0, 0, 0}, v1[3] = {0, 0, 0};
         bool finite = true;
         for (std::int64_t k = 0; k < m.n_bonds; ++k) {
             if (k > 0 && m.i(k) == m.j(k - 1)) {
@@ -32,8 +32,7 @@ void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Wor
             if (v.x) read_atom(v, m.atom(m.j(k)), v1);
             const double a = m.length(k);
             double d[3];
-            for (int c = 0; c < 3; ++c) d[c] = r1[c] - r0[c];
-            minimum_image(chains.box, d);
+            bond_vector(chains.box, r0, r1, d);
             const double length = std::fabs(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] - a * a) / (a * a);
             const double rate = std::fabs((d[0] * (v1[0] - v0[0]) + d[1] * (v1[1] - v0[1]) + d[2] * (v1[2] - v0[2])) +
                                           (of_box && v.x ? stretching(*of_box, d) : 0));
@@ -49,9 +48,7 @@ void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Wor
                 found.rate_bond = k + chains.base;
             }
         }
-        if (!finite) {
-            if (tally.n_bad++ == 0) tally.first_bad = chain;
-        }
+        if (!finite) note_bad(chain, tally);
     }
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}};

@@ -40,5 +40,11 @@ BoxRate make_box_rate(const double *L);
 // Replaces a bond vector by its minimum image.
 void minimum_image(const Box &box, double *d);
 
+// The minimum image of `to` - `from`.
+inline void bond_vector(const Box &box, const double *from, const double *to, double *d) {
+    for (int c = 0; c < 3; ++c) d[c] = to[c] - from[c];
+    if (box.shape != Box::none) minimum_image(box, d);
+}
+
 }  // namespace holonomic
 #endif

@@ -2,9 +2,7 @@
 #ifndef HOLONOMIC_VIEW_HPP
 #define HOLONOMIC_VIEW_HPP
 
-#include <cstdint>
-
-#include "core/kernels/call.hpp"
+#include "core/kernels/atom.hpp"
 
 namespace holonomic {
 
@@ -20,30 +18,6 @@ inline void unify_layout(AtomArray *const *arrays, int n) {
     bool packed = true;
     for (int i = 0; i < n; ++i) packed = packed && (arrays[i]->packed || !arrays[i]->x);
     for (int i = 0; i < n; ++i) arrays[i]->packed = packed;
-}
-
-inline void read_atom(const AtomArray &array, std::int64_t atom, double *x) {
-    const char *const components[3] = {array.x, array.y, array.z};
-    for (int c = 0; c < 3; ++c) {
-        const char *p = components[c];
-        if (p) p += atom * array.stride;
-        x[c] = !p               ? 0
-               : array.is_float ? static_cast<double>(*reinterpret_cast<const float *>(p))
-                                : *reinterpret_cast<const double *>(p);
-    }
-}
-
-inline void write_atom(const AtomArray &array, std::int64_t atom, const double *x) {
-    char *const components[3] = {array.x, array.y, array.z};
-    for (int c = 0; c < 3; ++c) {
-        char *p = components[c];
-        if (!p) continue;
-        p += atom * array.stride;
-        if (array.is_float)
-            *reinterpret_cast<float *>(p) = static_cast<float>(x[c]);
-        else
-            *reinterpret_cast<double *>(p) = x[c];
-    }
 }
 
 }  // namespace holonomic

@@ -32,9 +32,9 @@ static inline void add(Tally &total, const Tally &piece) {
     }
 }
 
-// Counts a long chain as bad.
-static inline void note_bad(const Lane &lane, Tally &tally) {
-    if (tally.n_bad++ == 0 || lane.chain < tally.first_bad) tally.first_bad = lane.chain;
+// Counts a molecule, by its number, as bad.
+static inline void note_bad(int64_t molecule, Tally &tally) {
+    if (tally.n_bad++ == 0 || molecule < tally.first_bad) tally.first_bad = molecule;
 }
 
 }  // namespace holonomic

@@ -11,7 +11,7 @@ namespace holonomic {
 namespace {
 
 void read(const MoleculeLane &lane, const AtomArray &r, std::int32_t i, double *x) {
-    read_atom(r, lane.atoms ? lane.atoms[i] : lane.first_atom + i, x);
+    read_atom(r, atom_of(lane, i), x);
 }
 
 // No two atoms are so far from each other that another image than the one that is there could be the nearest.
@@ -55,8 +55,7 @@ bool closes(const Schedule &shape, const MoleculeLane &lane, const Images &image
             const std::int32_t bond = shape.meet[m] / 2, b = shape.from[bond] + shape.to[bond] - 2 * first - a;
             read(lane, *images.r, shape.atom_of[first + b], to);
             double length = 0, gap = 0;
-            for (int c = 0; c < 3; ++c) d[c] = to[c] - from[c];
-            minimum_image(*images.box, d);
+            bond_vector(*images.box, from, to, d);
             for (int c = 0; c < 3; ++c) {
                 const double there = place[3 * a + c] + d[c];
                 if (!reached[b]) place[3 * b + c] = there;
@@ -69,16 +68,6 @@ bool closes(const Schedule &shape, const MoleculeLane &lane, const Images &image
         }
     }
     return true;
-}
-
-MoleculeLane lane_of(const MoleculeUnit &unit, std::int64_t i) {
-    if (!unit.regular) return unit.lanes[i];
-    MoleculeLane lane = unit.lanes[0];
-    lane.first_atom += i * unit.schedule->n_atoms;
-    if (lane.atoms) lane.atoms += i * unit.schedule->n_atoms;
-    lane.first_bond += i * unit.schedule->n_bonds;
-    lane.molecule += i;
-    return lane;
 }
 
 }  // namespace holonomic

@@ -23,8 +23,5 @@ inline bool may_stay_open(const Schedule &shape, const Images &images) {
 // True also if a position is not finite, which the kernels find. `scratch` is that of a kernel.
 bool closes(const Schedule &shape, const MoleculeLane &lane, const Images &images, double *scratch);
 
-// Molecule i of a unit.
-MoleculeLane lane_of(const MoleculeUnit &unit, std::int64_t i);
-
 }  // namespace holonomic
 #endif

@@ -17,8 +17,7 @@ void vector_of(const Molecule &m, std::int64_t k, const AtomArray &r, const Box 
     double a[3], b[3];
     read_atom(r, m.atom(m.i(k)), a);
     read_atom(r, m.atom(m.j(k)), b);
-    for (int c = 0; c < 3; ++c) d[c] = b[c] - a[c];
-    minimum_image(box, d);
+    bond_vector(box, a, b, d);
 }
 
 }  // namespace

@@ -15,8 +15,7 @@ bool bond_vector(const AtomArray &r, const Box &box, const Molecule &m, std::int
     double a[3], b[3];
     read_atom(r, m.atom(m.i(k)), a);
     read_atom(r, m.atom(m.j(k)), b);
-    for (int c = 0; c < 3; ++c) d[c] = b[c] - a[c];
-    minimum_image(box, d);
+    bond_vector(box, a, b, d);
     return d[0] != 0 || d[1] != 0 || d[2] != 0;
 }
 

@@ -28,9 +28,9 @@ static void force_terms(const Molecule &m, const ForcesCall &call, Wide *b) {
 void forces(const ForcesCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch, Tally &tally) {
     Memory memory = {reinterpret_cast<char *>(scratch)};
     Solution x(plan, lane, memory);
-    if (!x.open(call.r, call.box)) return note_bad_molecule(lane, tally);
+    if (!x.open(call.r, call.box)) return note_bad(lane.molecule, tally);
     force_terms(x.m, call, x.b);
-    if (!x.close()) return note_bad_molecule(lane, tally);
+    if (!x.close()) return note_bad(lane.molecule, tally);
     write_multipliers(x.m, x.t, call.lambda, call.tension);
     if (call.g.x) write_forces(x.m, call.g, call.add, x.system.pull);
     if (call.virial) add_virial(x.m, x.m.d, x.t, 1, tally);
@@ -39,11 +39,11 @@ void forces(const ForcesCall &call, const CarefulPlan &plan, const MoleculeLane 
 void solve(const SolveCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch, Tally &tally) {
     Memory memory = {reinterpret_cast<char *>(scratch)};
     Solution x(plan, lane, memory);
-    if (!x.open(call.r, call.box)) return note_bad_molecule(lane, tally);
+    if (!x.open(call.r, call.box)) return note_bad(lane.molecule, tally);
     // Z = 4 A and t = 2 lambda.
     for (int32_t k = 0; k < plan.n_bonds; ++k)
         x.b[k] = wide(0.5 * call.rhs[lane.first_bond + k] / x.m.mass_unit / x.m.unit[k]);
-    if (!x.close()) return note_bad_molecule(lane, tally);
+    if (!x.close()) return note_bad(lane.molecule, tally);
     write_multipliers(x.m, x.t, call.lambda, call.tension);
     if (call.g.x) write_forces(x.m, call.g, call.add, x.system.pull);
     if (call.virial) add_virial(x.m, x.m.d, x.t, 1, tally);
@@ -59,18 +59,18 @@ void velocities(const VelocitiesCall &call, const CarefulPlan &plan, const Molec
     Memory memory = {reinterpret_cast<char *>(scratch)};
     Solution x(plan, lane, memory);
     const Molecule &m = x.m;
-    if (!x.open(call.r, call.box)) return note_bad_molecule(lane, tally);
+    if (!x.open(call.r, call.box)) return note_bad(lane.molecule, tally);
     for (int32_t k = 0; k < plan.n_bonds; ++k) {
         Wide rate = dot(m.d[k], difference(read(call.v, lane, plan.atom_i[k]), read(call.v, lane, plan.atom_j[k])));
         if (call.strain) rate += m.unit[k] * stretching_of(call.strain, m.d[k]);
         x.b[k] = over(rate, m.mass_unit);
     }
-    if (!x.close()) return note_bad_molecule(lane, tally);
+    if (!x.close()) return note_bad(lane.molecule, tally);
     for (int32_t i = 0; i < plan.n_atoms; ++i) {
         const Vector3<double> v = read(call.v, lane, i);
         x.system.pull[i] = Wide3{wide(v.x), wide(v.y), wide(v.z)} + lane.w[i] * x.system.pull[i];
     }
-    if (!finite_pulls(m, x.system.pull)) return note_bad_molecule(lane, tally);
+    if (!finite_pulls(m, x.system.pull)) return note_bad(lane.molecule, tally);
     for (int32_t i = 0; i < plan.n_atoms; ++i)
         if (lane.w[i] > 0) write(call.v, lane, i, rounded(x.system.pull[i]));
     write_multipliers(m, x.t, call.lambda, nullptr);

@@ -42,7 +42,7 @@ static void fixman_force(const Molecule &m, const Neighbours &x, double kT, Wide
 void metric(const MetricCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch, Tally &tally) {
     Memory memory = {reinterpret_cast<char *>(scratch)};
     Solution x(plan, lane, memory);
-    if (!x.open(call.r, call.box)) return note_bad_molecule(lane, tally);
+    if (!x.open(call.r, call.box)) return note_bad(lane.molecule, tally);
     const Wide det = log_det(x.m, x.system, memory), diagonal = log_of_diagonal(x.m);
     bool good = is_finite(det.hi) && is_finite(diagonal.hi);
     if (call.force.x && good) {
@@ -51,7 +51,7 @@ void metric(const MetricCall &call, const CarefulPlan &plan, const MoleculeLane 
         fixman_force(x.m, neighbours, call.kT, memory.take<Wide3>(plan.n_bonds), x.system.pull);
         good = finite_pulls(x.m, x.system.pull);
     }
-    if (!good) return note_bad_molecule(lane, tally);
+    if (!good) return note_bad(lane.molecule, tally);
     if (call.force.x) write_forces(x.m, call.force, call.add, x.system.pull);
     if (call.log_det) call.log_det[lane.molecule] = rounded(det);
     if (call.log_det_z) call.log_det_z[lane.molecule] = rounded(det + diagonal);

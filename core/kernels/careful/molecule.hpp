@@ -2,7 +2,7 @@
 #ifndef HOLONOMIC_KERNELS_CAREFUL_MOLECULE_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_MOLECULE_HPP
 
-#include "core/kernels/call.hpp"
+#include "core/kernels/atom.hpp"
 #include "core/kernels/careful/plan.hpp"
 #include "core/kernels/careful/wide.hpp"
 
@@ -21,36 +21,15 @@ struct Memory {
     }
 };
 
-HOL_INLINE int64_t atom_of(const MoleculeLane &lane, int64_t i) {
-    return lane.atoms ? lane.atoms[i] : lane.first_atom + i;
-}
-
 HOL_INLINE Vector3<double> read(const AtomArray &array, const MoleculeLane &lane, int64_t i) {
-    const char *const component[3] = {array.x, array.y, array.z};
-    const int64_t at = atom_of(lane, i) * array.stride;
     double x[3];
-    for (int c = 0; c < 3; ++c) {
-        if (!component[c])
-            x[c] = 0;
-        else if (array.is_float)
-            x[c] = static_cast<double>(*reinterpret_cast<const float *>(component[c] + at));
-        else
-            x[c] = *reinterpret_cast<const double *>(component[c] + at);
-    }
+    read_atom(array, atom_of(lane, i), x);
     return {x[0], x[1], x[2]};
 }
 
 HOL_INLINE void write(const AtomArray &array, const MoleculeLane &lane, int64_t i, const Vector3<double> &value) {
-    char *const component[3] = {array.x, array.y, array.z};
     const double x[3] = {value.x, value.y, value.z};
-    const int64_t at = atom_of(lane, i) * array.stride;
-    for (int c = 0; c < 3; ++c) {
-        if (!component[c]) continue;
-        if (array.is_float)
-            *reinterpret_cast<float *>(component[c] + at) = static_cast<float>(x[c]);
-        else
-            *reinterpret_cast<double *>(component[c] + at) = x[c];
-    }
+    write_atom(array, atom_of(lane, i), x);
 }
 
 HOL_INLINE bool is_finite(double a) { return a - a == 0; }

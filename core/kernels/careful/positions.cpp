@@ -151,7 +151,7 @@ void positions(const PositionsCall &call, const CarefulPlan &plan, const Molecul
         if (result == projected_not) result = iterate(p, call, false, solves);
     }
     if (result == projected_not || (result == projected && !write_moves(p, call)))
-        return note_bad_molecule(lane, tally);
+        return note_bad(lane.molecule, tally);
     for (int32_t k = 0; k < plan.n_bonds; ++k) p.T[k] = over(over(p.T[k], p.m.unit[k]), p.m.mass_unit);
     for (int32_t k = 0; call.lambda && k < plan.n_bonds; ++k)
         call.lambda[lane.first_bond + k] = 0.5 / (call.dt * call.dt) * rounded(p.T[k]) + 0.0;

@@ -3,14 +3,11 @@
 #define HOLONOMIC_KERNELS_CAREFUL_SOLUTION_HPP
 
 #include "core/kernels/careful/system.hpp"
+#include "core/kernels/tally.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 namespace careful {
-
-HOL_NOINLINE void note_bad_molecule(const MoleculeLane &lane, Tally &tally) {
-    if (tally.n_bad++ == 0 || lane.molecule < tally.first_bad) tally.first_bad = lane.molecule;
-}
 
 // What multiplies b, and the t that is solved for, to give those in the caller's units: with d = unit d' and
 // w = mass_unit w' both sides are divided by mass_unit / unit.

@@ -113,14 +113,6 @@ HOL_INLINE MaskOf<V> finite_solution(const Molecules<V> &x) {
     return finite(sum);
 }
 
-static inline void note_bad_molecules(const MoleculeLane *lane, unsigned which, Tally &tally) {
-    for (; which; which &= which - 1) {
-        const int64_t molecule = lane[__builtin_ctz(which)].molecule;
-        if (tally.n_bad == 0 || molecule < tally.first_bad) tally.first_bad = molecule;
-        ++tally.n_bad;
-    }
-}
-
 }  // namespace graph
 }  // namespace HOL_ISA
 }  // namespace holonomic

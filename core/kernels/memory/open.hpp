@@ -5,16 +5,14 @@
 #include "core/kernels/memory/arena.hpp"
 #include "core/kernels/memory/masses.hpp"
 #include "core/kernels/memory/stage.hpp"
+#include "core/kernels/tally.hpp"
 
 namespace holonomic::HOL_ISA {
 
 static inline void note_bad(const Block &block, mask bad, Tally &tally) {
     const unsigned which = bits(bad & block.in_use());
-    for (int i = 0; i < block.lanes; ++i) {
-        if (!(which >> i & 1)) continue;
-        if (tally.n_bad == 0 || block.chain[i] < tally.first_bad) tally.first_bad = block.chain[i];
-        ++tally.n_bad;
-    }
+    for (int i = 0; i < block.lanes; ++i)
+        if (which >> i & 1) note_bad(block.chain[i], tally);
 }
 
 // Fills a block with the chains first .. first + lanes - 1 of a unit. In a regular unit it may hold the block before

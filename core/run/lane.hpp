@@ -1,0 +1,36 @@
+// The lanes of a piece of work one by one, for work that is not done in lanes.
+#ifndef HOLONOMIC_LANE_HPP
+#define HOLONOMIC_LANE_HPP
+
+#include <cstdint>
+
+#include "core/kernels/call.hpp"
+#include "core/kernels/graph/schedule.hpp"
+
+namespace holonomic {
+
+template <class AnyLane>
+inline AnyLane shifted(AnyLane lane, std::int64_t n_atoms, std::int64_t n_bonds) {
+    lane.first_atom += n_atoms;
+    if (lane.atoms) lane.atoms += n_atoms;
+    lane.first_bond += n_bonds;
+    return lane;
+}
+
+// Molecule i of a unit. Of a chain, `element` is not filled in.
+inline Lane lane_of(const Unit &unit, std::int64_t i) {
+    if (!unit.regular) return unit.lanes[i];
+    const std::int64_t n_bonds = unit.lanes[0].n_bonds;
+    Lane lane = shifted(unit.lanes[0], i * (n_bonds + 1), i * n_bonds);
+    lane.chain += i;
+    return lane;
+}
+inline MoleculeLane lane_of(const MoleculeUnit &unit, std::int64_t i) {
+    if (!unit.regular) return unit.lanes[i];
+    MoleculeLane lane = shifted(unit.lanes[0], i * unit.schedule->n_atoms, i * unit.schedule->n_bonds);
+    lane.molecule += i;
+    return lane;
+}
+
+}  // namespace holonomic
+#endif
