@@ -1,6 +1,5 @@
 #include "core/metric.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/run/apart.hpp"
@@ -32,12 +31,9 @@ struct MetricWork final : Work {
         return 1;
     }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_metric.blocks(n); }
-    std::int64_t long_bytes(std::int64_t n) const override {
-        return std::max(k.long_metric.bytes(n), kernels_for_one_chain().scratch_bytes(n));
-    }
+    std::int64_t long_bytes(std::int64_t n) const override { return store_bytes(k.long_metric, n); }
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
-        if (!k.long_metric.solve(calls[where], lane, team.lent(), store, tally))
-            kernels_for_one_chain().metric(calls[where], Unit{&lane, 1, false, false}, store, tally);
+        solve_long_chain(k.long_metric, kernels_for_one_chain().metric, calls[where], lane, team, store, tally);
     }
 };
 

@@ -1,7 +1,5 @@
 #include "core/positions.hpp"
 
-#include <algorithm>
-
 #include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
 #include "core/run/apart.hpp"
@@ -35,12 +33,9 @@ struct PositionsWork final : Work {
         return 2;
     }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_positions.blocks(n); }
-    std::int64_t long_bytes(std::int64_t n) const override {
-        return std::max(k.long_positions.bytes(n), kernels_for_one_chain().scratch_bytes(n));
-    }
+    std::int64_t long_bytes(std::int64_t n) const override { return store_bytes(k.long_positions, n); }
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
-        if (!k.long_positions.solve(calls[where], lane, team.lent(), store, tally))
-            kernels_for_one_chain().positions(calls[where], Unit{&lane, 1, false, false}, store, tally);
+        solve_long_chain(k.long_positions, kernels_for_one_chain().positions, calls[where], lane, team, store, tally);
     }
 };
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <new>
 
+#include "core/run/lane.hpp"
 #include "core/run/thread_memory.hpp"
 
 #ifdef _OPENMP
@@ -104,14 +105,119 @@ void work_on_molecules(const Work &work, const MoleculeUnit &unit, int where, do
         const MoleculeLane lane = lane_of(unit, j);
         if (is_closed(lane))
             lanes[closed.count++] = lane;
-        else if (tally.n_bad++ == 0 || lane.molecule < tally.first_bad)
-            tally.first_bad = lane.molecule;
+        else
+            note_bad(lane.molecule, tally);
         if (closed.count == loose_piece || (j + 1 == unit.count && closed.count > 0)) {
             work.unit(closed, where, scratch, tally);
             closed.count = 0;
         }
     }
 }
+
+// One call: what it needs, and its pieces one by one or shared.
+class Execution {
+public:
+    Execution(const Chains &chains, const Plan &plan, const Work &work)
+        : chains_(chains), plan_(plan), work_(work), n_pieces_(static_cast<std::int64_t>(plan.pieces.size())),
+          scratch_bytes_(holonomic::scratch_bytes(plan.longest)) {
+        for (const std::int32_t shape : plan.shapes)
+            scratch_bytes_ = std::max(
+                scratch_bytes_, kernels().molecules.scratch_bytes(*plan.schedules[static_cast<std::size_t>(shape)]));
+        n_threads_ = static_cast<int>(
+            std::min<std::int64_t>(chains.n_threads, std::max<std::int64_t>(plan.n_bonds / bonds_per_thread, 1)));
+        for (std::int64_t p = 0; plan.longest > longest_lane && p < n_pieces_; ++p) {
+            const std::int64_t n = long_chain_bonds(chains, plan, p);
+            if (n == 0) continue;
+            std::int64_t &store = is_shared_chain(n) ? shared_store_ : own_store_;
+            store = std::max(store, work.long_bytes(n));
+        }
+    }
+
+    Tally run() const {
+        double *const own_scratch = scratch_of_this_thread(scratch_bytes_);
+        const std::int64_t store = std::max(own_store_, shared_store_);
+        if (store > 0 && !store_memory(store)) throw std::bad_alloc();
+#ifdef _OPENMP
+        if (n_threads_ > 1) return run_on_threads(own_scratch);
+#endif
+        Tally total = empty_tally();
+        if (n_pieces_ == 1) {
+            work_on(0, own_scratch, total, nullptr);
+            return total;
+        }
+        for (std::int64_t p = 0; p < n_pieces_; ++p) {
+            Tally tally = empty_tally();
+            work_on(p, own_scratch, tally, nullptr);
+            add(total, tally);
+        }
+        return total;
+    }
+
+private:
+    // Chains long enough to keep all threads busy are shared among them; of all others each is one thread's work.
+    bool is_shared_chain(std::int64_t n_bonds) const {
+        return n_threads_ > 1 && work_.long_blocks(n_bonds) >= 8 * n_threads_;
+    }
+
+    void work_on(std::int64_t p, double *scratch, Tally &tally, const LongTeam *team) const {
+        const Plan::Piece &piece = plan_.pieces[static_cast<std::size_t>(p)];
+        if (piece.shape != linear) {
+            MoleculeLane lane;
+            MoleculeUnit unit = chains_.unit(plan_, piece, &lane);
+            unit.team = team;
+            return work_on_molecules(work_, unit, piece.where, scratch, tally);
+        }
+        Lane lane;
+        const Unit unit = chains_.unit(plan_, piece, &lane);
+        if (unit.lanes[0].n_bonds <= longest_lane)
+            work_.unit(unit, piece.where, scratch, tally);
+        else
+            work_.long_chain(unit.lanes[0], piece.where, Team(1, scratch_bytes_), store_memory(own_store_), tally);
+    }
+
+#ifdef _OPENMP
+    bool is_shared(std::int64_t p) const {
+        if (is_shared_molecule(plan_, p, n_threads_)) return true;
+        if (shared_store_ == 0) return false;
+        const std::int64_t n = long_chain_bonds(chains_, plan_, p);
+        return n > 0 && is_shared_chain(n);
+    }
+
+    // What is shared comes last, one piece after the other.
+    Tally run_on_threads(double *own_scratch) const {
+        Tally *const parts = tallies(Keep::piece_tallies, n_pieces_);
+        share(n_threads_, scratch_bytes_, own_store_, n_pieces_, Team::forwards, [&](std::int64_t p, double *scratch) {
+            Tally tally = empty_tally();
+            if (!is_shared(p)) work_on(p, scratch, tally, nullptr);
+            parts[p] = tally;
+        });
+        const Team team(n_threads_, scratch_bytes_);
+        const LongTeam lent = team.lent();
+        for (std::int64_t p = 0; p < n_pieces_; ++p) {
+            if (!is_shared(p)) continue;
+            const Plan::Piece &piece = plan_.pieces[static_cast<std::size_t>(p)];
+            if (piece.shape != linear) {
+                parts[p] = empty_tally();
+                work_on(p, own_scratch, parts[p], &lent);
+                continue;
+            }
+            Lane lane;
+            work_.long_chain(chains_.unit(plan_, piece, &lane).lanes[0], piece.where, team, store_memory(shared_store_),
+                             parts[p]);
+        }
+        Tally total = empty_tally();
+        for (std::int64_t p = 0; p < n_pieces_; ++p) add(total, parts[p]);
+        return total;
+    }
+#endif
+
+    const Chains &chains_;
+    const Plan &plan_;
+    const Work &work_;
+    std::int64_t n_pieces_, scratch_bytes_;
+    int n_threads_;
+    std::int64_t own_store_ = 0, shared_store_ = 0;  // bytes kept between the phases of long chains
+};
 
 }  // namespace
 
@@ -144,92 +250,8 @@ void write_virial(const Tally &tally, double *virial) {
     for (int i = 0; i < 9; ++i) virial[i] = tally.virial[place[i]];
 }
 
+Tally execute(const Chains &chains, const Plan &plan, const Work &work) { return Execution(chains, plan, work).run(); }
+
 Tally execute(const Chains &chains, const Work &work) { return execute(chains, chains.plan(), work); }
-
-Tally execute(const Chains &chains, const Plan &plan, const Work &work) {
-    const std::int64_t n_pieces = static_cast<std::int64_t>(plan.pieces.size());
-    std::int64_t scratch_bytes = holonomic::scratch_bytes(plan.longest);
-    for (const std::int32_t shape : plan.shapes)
-        scratch_bytes = std::max(scratch_bytes,
-                                 kernels().molecules.scratch_bytes(*plan.schedules[static_cast<std::size_t>(shape)]));
-    const int n_threads = static_cast<int>(
-        std::min<std::int64_t>(chains.n_threads, std::max<std::int64_t>(plan.n_bonds / bonds_per_thread, 1)));
-
-    // A chain long enough to keep all threads busy is shared among them; of all others each is one thread's work.
-    const std::int64_t shared_blocks = 8 * n_threads;
-    std::int64_t own_store = 0, shared_store = 0;
-    bool any_shared = false;
-    if (plan.longest > longest_lane)
-        for (std::int64_t p = 0; p < n_pieces; ++p) {
-            const std::int64_t n = long_chain_bonds(chains, plan, p);
-            if (n == 0) continue;
-            const bool shared = n_threads > 1 && work.long_blocks(n) >= shared_blocks;
-            any_shared = any_shared || shared;
-            (shared ? shared_store : own_store) = std::max(shared ? shared_store : own_store, work.long_bytes(n));
-        }
-    double *const own_scratch = scratch_of_this_thread(scratch_bytes);
-    if (std::max(own_store, shared_store) > 0 && !store_memory(std::max(own_store, shared_store)))
-        throw std::bad_alloc();
-
-    const Team alone(1, scratch_bytes);
-    const auto work_on = [&](std::int64_t p, double *scratch, Tally &tally, const LongTeam *team) {
-        const Plan::Piece &piece = plan.pieces[static_cast<std::size_t>(p)];
-        if (piece.shape != linear) {
-            MoleculeLane lane;
-            MoleculeUnit unit = chains.unit(plan, piece, &lane);
-            unit.team = team;
-            return work_on_molecules(work, unit, piece.where, scratch, tally);
-        }
-        Lane lane;
-        const Unit unit = chains.unit(plan, piece, &lane);
-        if (unit.lanes[0].n_bonds <= longest_lane)
-            work.unit(unit, piece.where, scratch, tally);
-        else
-            work.long_chain(unit.lanes[0], piece.where, alone, store_memory(own_store), tally);
-    };
-    Tally total = empty_tally();
-#ifdef _OPENMP
-    if (n_threads > 1) {
-        Tally *const parts = tallies(Keep::piece_tallies, n_pieces);
-        const auto is_shared = [&](std::int64_t p) {
-            if (is_shared_molecule(plan, p, n_threads)) return true;
-            if (!any_shared) return false;
-            const std::int64_t n = long_chain_bonds(chains, plan, p);
-            return n > 0 && work.long_blocks(n) >= shared_blocks;
-        };
-        share(n_threads, scratch_bytes, own_store, n_pieces, Team::forwards, [&](std::int64_t p, double *scratch) {
-            Tally tally = empty_tally();
-            if (!is_shared(p)) work_on(p, scratch, tally, nullptr);
-            parts[p] = tally;
-        });
-        const Team team(n_threads, scratch_bytes);
-        const LongTeam lent = team.lent();
-        for (std::int64_t p = 0; p < n_pieces; ++p) {
-            if (!is_shared(p)) continue;
-            const Plan::Piece &piece = plan.pieces[static_cast<std::size_t>(p)];
-            if (piece.shape != linear) {
-                parts[p] = empty_tally();
-                work_on(p, own_scratch, parts[p], &lent);
-                continue;
-            }
-            Lane lane;
-            work.long_chain(chains.unit(plan, piece, &lane).lanes[0], piece.where, team, store_memory(shared_store),
-                            parts[p]);
-        }
-        for (std::int64_t p = 0; p < n_pieces; ++p) add(total, parts[p]);
-        return total;
-    }
-#endif
-    if (n_pieces == 1) {
-        work_on(0, own_scratch, total, nullptr);
-        return total;
-    }
-    for (std::int64_t p = 0; p < n_pieces; ++p) {
-        Tally tally = empty_tally();
-        work_on(p, own_scratch, tally, nullptr);
-        add(total, tally);
-    }
-    return total;
-}
 
 }  // namespace holonomic

@@ -2,6 +2,8 @@
 #ifndef HOLONOMIC_EXECUTE_HPP
 #define HOLONOMIC_EXECUTE_HPP
 
+#include <algorithm>
+
 #include "core/kernels/tally.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/run/closing.hpp"
@@ -65,7 +67,8 @@ void write_virial(const Tally &tally, double *virial);
 Tally execute(const Chains &chains, const Work &work);
 Tally execute(const Chains &chains, const Plan &plan, const Work &work);
 
-// Forces and velocities: eliminate, join, finish; once more with compensated products where plain ones don't do.
+// A long chain at the levels of forces and velocities: eliminate, join, finish; once more with compensated products
+// where plain ones don't do.
 template <class Phases, class Call>
 void solve_long_chain(const Phases &phases, const Call &call, const Lane &lane, const Team &team, double *store,
                       Tally &tally) {
@@ -78,11 +81,24 @@ void solve_long_chain(const Phases &phases, const Call &call, const Lane &lane, 
         });
         result = phases.join(lane, careful, store);
     }
-    if (result != join_good) return note_bad(lane, tally);
+    if (result != join_good) return note_bad(lane.chain, tally);
     const auto finish = [&](std::int64_t j, double *scratch, Tally &part) {
         phases.finish(call, lane, j, store, scratch, part);
     };
     team.for_each(blocks, tally, finish, Team::backwards);
+}
+
+// Positions and metric: in windows, or in one lane where these won't do.
+template <class Call>
+void solve_long_chain(const InWindows<Call> &windows,
+                      void (*in_one_lane)(const Call &, const Unit &, double *, Tally &), const Call &call,
+                      const Lane &lane, const Team &team, double *store, Tally &tally) {
+    if (!windows.solve(call, lane, team.lent(), store, tally))
+        in_one_lane(call, Unit{&lane, 1, false, false}, store, tally);
+}
+template <class Call>
+std::int64_t store_bytes(const InWindows<Call> &windows, std::int64_t n_bonds) {
+    return std::max(windows.bytes(n_bonds), kernels_for_one_chain().scratch_bytes(n_bonds));
 }
 
 }  // namespace holonomic
