@@ -1,10 +1,10 @@
 ! What given multipliers do: hol_reactions with arrays of any layout.
 module holonomic_reactions
    use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
-   use, intrinsic :: iso_fortran_env, only: real32, real64
+   use, intrinsic :: iso_fortran_env, only: int64, real32, real64
    use holonomic_c, only: hol_reactions_view, HOL_ADD, HOL_BOX, HOL_ERR_VALUE, HOL_REFERENCE_BOX, &
                           HOL_WRITE
-      use holonomic_place, only: decimal, enough, list_of, place, tensor
+   use holonomic_place, only: decimal, enough, list_of, place, tensor
    use holonomic_solve, only: chain_set_solve
    use holonomic_status, only: failure, settle
    implicit none
@@ -34,9 +34,11 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
+      integer(int64) :: n_atoms
       type(place), target :: at_r, at_g
-      call at_r%rows_64(self%n_atoms(), problem, "r", r)
-      call at_g%rows_64(self%n_atoms(), problem, "g", g)
+      n_atoms = self%n_atoms()
+      call at_r%rows_64(n_atoms, problem, "r", r)
+      call at_g%rows_64(n_atoms, problem, "g", g)
       call reactions_at(self, problem, at_r, lambda, tension, at_g, add, bond_virial, virial, reference, stat, errmsg)
    end subroutine
 
@@ -54,9 +56,11 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
+      integer(int64) :: n_atoms
       type(place), target :: at_r, at_g
-      call at_r%rows_32(self%n_atoms(), problem, "r", r)
-      call at_g%rows_32(self%n_atoms(), problem, "g", g)
+      n_atoms = self%n_atoms()
+      call at_r%rows_32(n_atoms, problem, "r", r)
+      call at_g%rows_32(n_atoms, problem, "g", g)
       call reactions_at(self, problem, at_r, lambda, tension, at_g, add, bond_virial, virial, reference, stat, errmsg)
    end subroutine
 
@@ -75,9 +79,11 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
+      integer(int64) :: n_atoms
       type(place), target :: at_r, at_g
-      call at_r%parts_64(self%n_atoms(), problem, "*", x, y, z)
-      call at_g%parts_64(self%n_atoms(), problem, "g*", gx, gy, gz)
+      n_atoms = self%n_atoms()
+      call at_r%parts_64(n_atoms, problem, "*", x, y, z)
+      call at_g%parts_64(n_atoms, problem, "g*", gx, gy, gz)
       call reactions_at(self, problem, at_r, lambda, tension, at_g, add, bond_virial, virial, reference, stat, errmsg)
    end subroutine
 
@@ -96,9 +102,11 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
+      integer(int64) :: n_atoms
       type(place), target :: at_r, at_g
-      call at_r%parts_32(self%n_atoms(), problem, "*", x, y, z)
-      call at_g%parts_32(self%n_atoms(), problem, "g*", gx, gy, gz)
+      n_atoms = self%n_atoms()
+      call at_r%parts_32(n_atoms, problem, "*", x, y, z)
+      call at_g%parts_32(n_atoms, problem, "g*", gx, gy, gz)
       call reactions_at(self, problem, at_r, lambda, tension, at_g, add, bond_virial, virial, reference, stat, errmsg)
    end subroutine
 
