@@ -47,7 +47,7 @@ static molecule make_group(int which, uint64_t seed)
 /** n groups of all sorts in turn; `box`: 9 numbers or NULL. */
 static mixture make_mixture(int64_t n, mixing how, const double *box, uint64_t seed)
 {
-    molecule parts[MOST];
+    molecule parts[MOST] = {{0}};
     for (int64_t p = 0; p < n; ++p) parts[p] = make_group((int)((7 * p + p / 5) % GROUPS), seed + (uint64_t)p);
     mixture m = mixture_make(parts, n, how, seed);
     for (int64_t p = 0; p < n; ++p) molecule_free(parts + p);
