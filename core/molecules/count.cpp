@@ -27,9 +27,9 @@ public:
         for (const std::int32_t i : draft.pairs) ++start_[at(vertex_[at(i)]) + 1];
         for (std::size_t v = 0; v < n_vertices; ++v) start_[v + 1] += start_[v];
         bond_.resize(draft.pairs.size());
-        std::vector<std::int32_t> next(start_.begin(), start_.end() - 1);
+        std::vector<std::int32_t> next(start_);
         for (std::size_t e = 0; e < draft.pairs.size(); ++e)
-            bond_[at(next[at(end(e))]++)] = static_cast<std::int32_t>(e / 2);
+            bond_[at(next[end(e)]++)] = static_cast<std::int32_t>(e / 2);
     }
 
     // Takes away movable atoms with at most three bonds until there are none; false if nothing is left.

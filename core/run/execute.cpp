@@ -64,15 +64,6 @@ void share(int n_threads, std::int64_t scratch_bytes, std::int64_t store_bytes, 
         }
     }
 }
-#endif
-
-// Bonds of a chain that is worked on in segments, 0 if the piece is none.
-std::int64_t long_chain_bonds(const Chains &chains, const Plan &plan, std::int64_t p) {
-    const Plan::Piece &piece = plan.pieces[static_cast<std::size_t>(p)];
-    if (piece.shape != linear) return 0;
-    const std::int64_t n = chains.piece_bonds(piece);
-    return n > longest_lane ? n : 0;
-}
 
 // A single molecule whose pieces are shared among the threads: a large one, or one of few, so that not every thread has
 // molecules of its own.
@@ -81,6 +72,15 @@ bool is_shared_molecule(const Plan &plan, std::int64_t p, int n_threads) {
     if (piece.shape == linear || piece.count != 1) return false;
     const std::int32_t n = plan.schedules[static_cast<std::size_t>(piece.shape)]->n_pieces;
     return n > 1 && (n >= 8 * n_threads || static_cast<std::int64_t>(plan.pieces.size()) < 4 * n_threads);
+}
+#endif
+
+// Bonds of a chain that is worked on in segments, 0 if the piece is none.
+std::int64_t long_chain_bonds(const Chains &chains, const Plan &plan, std::int64_t p) {
+    const Plan::Piece &piece = plan.pieces[static_cast<std::size_t>(p)];
+    if (piece.shape != linear) return 0;
+    const std::int64_t n = chains.piece_bonds(piece);
+    return n > longest_lane ? n : 0;
 }
 
 // Molecules whose cycles do not close are bad; the others are worked on.

@@ -56,7 +56,7 @@ std::string sums(const wide_metric<REAL> &m, const wide_solution<REAL> &s)
 {
     std::string out = "lndet" + result(m.log_det) + "\nlndetz" + result(m.log_det_z) + "\nfixman_energy" +
                       result(m.log_det.scaled(-1)) + "\nvirial";
-    for (const std::size_t x : {0, 1, 2, 4, 5, 8}) out += result(s.virial[x]);
+    for (const std::size_t x : {0u, 1u, 2u, 4u, 5u, 8u}) out += result(s.virial[x]);
     return out + "\nvirial_scale" + scale(s.virial_scale) + "\ncond" + scale(m.condition) + "\nleast_pivot" +
            scale(m.least_pivot) + "\n";
 }

@@ -81,7 +81,7 @@ HOL_INLINE void fetch_before(const SegmentBlock &s, const SegmentBonds &in, cons
                              const SegmentOutputs &out, long k0) {
     static_assert(sizeof(Kept) == 3 * sizeof(vec), "as far apart as vectors of W atoms");
     fetch_ahead(in.r.lane[0], k0, s.block.ahead);
-    fetch_ahead(&x.kept->u[0], k0, s.block.ahead);
+    fetch_ahead(reinterpret_cast<const double *>(x.kept), k0, s.block.ahead);
     if (update == add_ && out.has_pulls) fetch_ahead(out.pulls.lane[0], k0, s.block.ahead);
 }
 

@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# Whether clang accepts the sources of the library without a warning, and without OpenMP. It only reads them: seconds.
+#
+#   clang.sh SOURCES CLANG FOLDER FLAG...        FOLDER: core/kernels, or core for all but the kernels and capi
+set -u
+sources=$1 folder=$3
+compile="$2 -fsyntax-only -std=c++17 -ffp-contract=off -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror
+    -Wno-psabi -Wno-unknown-warning-option -I. -Icapi ${*:4}"
+cd "$sources" || exit 1
+files=$(find "$folder" -name '*.cpp')
+if [ "$folder" = core ]; then
+    # dispatch.cpp includes a list that cmake writes.
+    files=$(printf '%s\n' "$files" | grep -v -e '^core/kernels/' -e '/dispatch\.cpp$' && find capi -name '*.cpp')
+fi
+[ -n "$files" ] || { echo "no sources in $folder"; exit 1; }
+# shellcheck disable=SC2086
+printf '%s\n' "$files" | xargs -P "$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)" -I{} $compile {}
