@@ -5,6 +5,7 @@
 
 #include "core/molecules/careful_shape.hpp"
 #include "core/molecules/elimination_order.hpp"
+#include "core/molecules/flat_list.hpp"
 #include "core/molecules/lists.hpp"
 #include "core/molecules/schedule_runs.hpp"
 
@@ -16,6 +17,7 @@ struct Schedule::Memory {
     std::vector<std::int64_t> update_start;
     std::vector<std::uint8_t> fixed;
     ScheduleRuns runs;
+    FlatArrays flat;
     std::unique_ptr<const CarefulShape> careful;
 };
 
@@ -277,6 +279,10 @@ std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t
     Maker(*s, m).make();
     point_into(*s, m);
     if (n_bonds > largest_in_lanes && s->type == Schedule::tree) add_runs(*s, m);
+    if (n_bonds > largest_in_lanes && n_bonds <= largest_in_list && s->type == Schedule::graph) {
+        make_flat_list(*s, m.flat);
+        s->flat = &m.flat.list;
+    }
     m.careful = std::make_unique<const CarefulShape>(n_atoms, n_bonds, pairs);
     s->careful = &m.careful->plan();
     return s;

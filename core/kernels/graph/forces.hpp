@@ -4,6 +4,7 @@
 
 #include "core/kernels/graph/blocks.hpp"
 #include "core/kernels/graph/doubtful.hpp"
+#include "core/kernels/graph/flat_verbs.hpp"
 #include "core/kernels/graph/large_linear.hpp"
 #include "core/kernels/graph/store.hpp"
 #include "core/kernels/graph/triangle_blocks.hpp"
@@ -63,6 +64,7 @@ struct ForcesWork {
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
+        if (schedule.flat && used == 1 && solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
         Memory<V> memory = {scratch};
         Linear<V> z(schedule, lane, used, call.box, call.r, memory);
         open_pieces(z, team, memory);
@@ -94,6 +96,7 @@ struct SolveWork {
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
+        if (schedule.flat && used == 1 && solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
         Memory<V> memory = {scratch};
         Linear<V> z(schedule, lane, used, call.box, call.r, memory);
         open_pieces(z, team, memory);

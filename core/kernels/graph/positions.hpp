@@ -4,6 +4,7 @@
 
 #include "core/kernels/graph/blocks.hpp"
 #include "core/kernels/graph/doubtful.hpp"
+#include "core/kernels/graph/flat_positions.hpp"
 #include "core/kernels/graph/iterate.hpp"
 #include "core/kernels/graph/newton.hpp"
 #include "core/kernels/graph/store.hpp"
@@ -163,6 +164,7 @@ struct PositionsWork {
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool, double *scratch) const {
+        if (schedule.flat && used == 1 && solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
         Memory<V> memory = {scratch};
         const Atoms<V> at(lane, used);
         Newton<V> newton(schedule, memory);

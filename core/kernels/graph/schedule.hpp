@@ -12,6 +12,7 @@ constexpr int32_t largest_in_lanes = 2048;
 constexpr int32_t slots_of_piece = 16384;  // a megabyte of bonds at work, a second-level cache
 
 struct CarefulPlan;  // core/kernels/careful/plan.hpp
+struct FlatList;     // core/kernels/graph/flat_list.hpp
 
 // Atoms and bonds are renumbered. The *slot* of an atom: first the atoms of the trees, each after its children
 // (post-order), then the root of a tree, or the atoms of the core. The *place* of a bond: a bond of a tree has the slot
@@ -78,6 +79,7 @@ struct Schedule {
     const int32_t *piece_start;  // [n_pieces + 2] runs of each piece, then of the top
     int32_t n_pieces;
 
+    const FlatList *flat;        // of a large graph: all its bonds along one list; else nullptr
     const CarefulPlan *careful;  // the same molecule for the careful solver
 
     Schedule() = default;

@@ -1,4 +1,5 @@
 // Position level of molecules that are no chains.
+#include "core/kernels/graph/flat_linear.hpp"
 #include "core/kernels/graph/linear.hpp"
 #include "core/kernels/graph/positions.hpp"
 #include "core/kernels/graph/star_positions.hpp"
@@ -16,9 +17,15 @@ static int64_t block_bytes(const Schedule &s) {
     return static_cast<int64_t>(sizeof(V)) * (linear > newton ? linear : newton);
 }
 
+static int64_t flat_bytes(const FlatList &s) {
+    const int64_t linear = FlatLinear::values(s), newton = FlatNewton::values(s);
+    return static_cast<int64_t>(sizeof(double)) * (linear > newton ? linear : newton);
+}
+
 int64_t molecules_scratch_bytes(const Schedule &s) {
-    return (s.n_bonds <= largest_in_lanes ? block_bytes<vec>(s) : block_bytes<double>(s)) + 64 +
-           s.careful->scratch_bytes;
+    const int64_t block = s.n_bonds <= largest_in_lanes ? block_bytes<vec>(s) : block_bytes<double>(s),
+                  flat = s.flat ? flat_bytes(*s.flat) : 0;
+    return (block > flat ? block : flat) + 64 + s.careful->scratch_bytes;
 }
 
 void molecules_positions(const PositionsCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {

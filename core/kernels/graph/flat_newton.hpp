@@ -1,0 +1,150 @@
+// Newton's method for the positions of one large molecule with cycles: the matrix of new bonds D times reference bonds
+// b as it stands, factored along a list (flat_list.hpp). Bonds and moves are found four at a time, the triangular
+// solves one by one.
+#ifndef HOLONOMIC_KERNELS_GRAPH_FLAT_NEWTON_HPP
+#define HOLONOMIC_KERNELS_GRAPH_FLAT_NEWTON_HPP
+
+#include "core/kernels/graph/flat_rows.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// As Newton (newton.hpp) for iterate().
+struct FlatNewton {
+    const FlatList &s;
+    double *mass;  // -w_0, w_0, -w_1, .. , 0
+    Rows moves, D, b, new_D;
+    double *tau, *t, *r;  // t: what is left of a length, (D.D - a^2) / 2, then its correction; r: 1 / pivot
+    double *lower, *upper, *a2, *per_a2;
+    bool moved;
+
+    static int64_t values(const FlatList &s) {
+        return 2 * in_fours(s.n_atoms + 2) + 4 * (s.n_atoms + 3 * (in_fours(s.n_bonds) + 4)) + 5 * in_fours(s.n_bonds) +
+               2 * in_fours(s.n_entries) + 4;
+    }
+    FlatNewton(const FlatList &list, Memory<double> &memory) : s(list), moved(false) {
+        const int64_t bonds = in_fours(s.n_bonds), entries = in_fours(s.n_entries);
+        moves = {memory.values(4 * s.n_atoms)};
+        D = {memory.values(4 * bonds)};
+        b = {memory.values(4 * bonds)};
+        new_D = {memory.values(4 * (bonds + 4))};  // first the coordinates: a connected molecule has one atom more
+        lower = memory.values(entries);
+        upper = memory.values(entries);
+        tau = memory.values(bonds);
+        t = memory.values(bonds);
+        r = memory.values(bonds);
+        a2 = memory.values(bonds);
+        per_a2 = memory.values(bonds);
+        mass = memory.values(2 * in_fours(s.n_atoms + 2));
+    }
+
+    struct Errors {
+        Row worst, sum;  // max() may lose a NaN, the sum keeps it
+        double largest() const { return largest_of(worst) + 0 * ((sum[0] + sum[1]) + (sum[2] + sum[3])); }
+    };
+    // What is left of the lengths of bonds k .. k + 3.
+    HOL_INLINE void measure(const FlatNewton &me, int64_t k, const Row *d, Errors &errors) {
+        const Lanes3 at = turned(d[0], d[1], d[2], d[3]);
+        const Row &a2 = *reinterpret_cast<const Row *>(me.a2 + k), &per_a2 = *reinterpret_cast<Row *>(me.per_a2 + k);
+        const Row sigma = multiply_add(at.z, at.z, multiply_add(at.y, at.y, multiply_add(at.x, at.x, -a2)));
+        errors.worst = larger(absolute(sigma) * per_a2, errors.worst);
+        errors.sum = errors.sum + sigma;
+        *reinterpret_cast<Row *>(me.t + k) = 0.5 * sigma;
+    }
+    double open() {
+        Errors errors = {};
+        for (int64_t k = 0; k < s.n_bonds; k += 4) measure(*this, k, &D[k], errors);
+        return errors.largest();
+    }
+    void forget(Flag which) {
+        if (!which.set) return;
+        for (int64_t k = 0; k < in_fours(s.n_bonds); ++k) tau[k] = 0;
+    }
+
+    HOL_FORCED Row moved_bond(int64_t k) const {
+        return D[k] + (moves.at_four_times(s.to[k]) - moves.at_four_times(s.from[k]));
+    }
+    // Displacements, times w only in the end; bonds as moved, and what is left of them.
+    __attribute__((noinline)) double move() {
+        for (int64_t i = 0; i < s.n_atoms; ++i) moves[i] = Row{};
+        for (int64_t k = 0; k < s.n_bonds; ++k) {
+            const Row pull = in_row(tau[k]) * b[k];
+            Row &from = moves.at_four_times(s.from[k]), &to = moves.at_four_times(s.to[k]);
+            from = from + pull;
+            to = to - pull;
+        }
+        for (int64_t i = 0; i < s.n_atoms; ++i) moves[i] = in_row(mass[2 * i + 1]) * moves[i];
+        Errors errors = {};
+        for (int64_t k = 0; k < s.n_bonds; k += 4) {
+            const Row d[4] = {moved_bond(k), moved_bond(k + 1), moved_bond(k + 2), moved_bond(k + 3)};
+            measure(*this, k, d, errors);
+        }
+        moved = true;
+        return errors.largest();
+    }
+
+    // Factors for the bonds as they are.
+    __attribute__((noinline)) void factorize(Flag) {
+        if (moved)
+            for (int64_t k = 0; k < in_fours(s.n_bonds); ++k) new_D[k] = moved_bond(k);
+        assemble(moved ? new_D : D);
+        eliminate();
+    }
+    void assemble(const Rows &d) {
+        for (int64_t k = 0; k < s.n_bonds; k += 4) {
+            double w[4];
+            for (int i = 0; i < 4; ++i) w[i] = mass[s.from[k + i] / 2 + 1] + mass[s.to[k + i] / 2 + 1];
+            const Row q = sums_of(d[k] * b[k], d[k + 1] * b[k + 1], d[k + 2] * b[k + 2], d[k + 3] * b[k + 3]);
+            *reinterpret_cast<Row *>(r + k) = Row{w[0], w[1], w[2], w[3]} * q;
+        }
+        for (int64_t e = 0; e < s.n_entries; e += 4) {
+            const int32_t *const row = s.row_4 + e, *const column = s.column_4 + e, *const m = s.mass + e;
+            const Row w = {mass[m[0]], mass[m[1]], mass[m[2]], mass[m[3]]};
+            Row p[4], q[4];
+            HOL_UNROLL
+            for (int i = 0; i < 4; ++i) {
+                p[i] = d.at_four_times(row[i]) * b.at_four_times(column[i]);
+                q[i] = d.at_four_times(column[i]) * b.at_four_times(row[i]);
+            }
+            *reinterpret_cast<Row *>(lower + e) = w * sums_of(p[0], p[1], p[2], p[3]);
+            *reinterpret_cast<Row *>(upper + e) = w * sums_of(q[0], q[1], q[2], q[3]);
+        }
+    }
+
+    __attribute__((noinline)) void eliminate() {
+        const int32_t *update = s.update;
+        for (int32_t k = 0; k < s.n_bonds; ++k) {
+            const int32_t first = s.column_start[k], count = s.column_start[k + 1] - first;
+            const int32_t *const row = s.row + first;
+            double *const l = lower + first, *const u = upper + first;
+            const double inverse = r[k] = 1 / r[k];
+            with_count(count, [&](auto known) HOL_FORCED {
+                const int32_t n = decltype(known)::value >= 0 ? decltype(known)::value : count;
+                HOL_UNROLL
+                for (int32_t a = 0; a < n; ++a) {
+                    const double la = l[a], ua = u[a], ur = ua * inverse;
+                    HOL_UNROLL
+                    for (int32_t c = 0; c < a; ++c, ++update) {  // l and u of c are multiplied already
+                        lower[*update] = mul_add(-la, u[c], lower[*update]);
+                        upper[*update] = mul_add(-ua, l[c], upper[*update]);
+                    }
+                    r[row[a]] = mul_add(-la, ur, r[row[a]]);
+                    l[a] = la * inverse;
+                    u[a] = ur;
+                }
+            });
+        }
+    }
+
+    // Corrections for what is left, in t, added to tau.
+    __attribute__((noinline)) void solve(Flag) {
+        solve_up(s, lower, t);
+        solve_down(s, upper, r, t, [&](int32_t k, double x) HOL_FORCED { tau[k] = tau[k] + x; });
+    }
+};
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,151 @@
+// Vectors in space of one molecule as rows of four doubles, x y z and one more, whatever the lanes are: x, y and z are
+// done at once, and four rows are turned into lanes of four where a number of each is wanted.
+#ifndef HOLONOMIC_KERNELS_GRAPH_FLAT_ROWS_HPP
+#define HOLONOMIC_KERNELS_GRAPH_FLAT_ROWS_HPP
+
+#include "core/kernels/graph/atoms.hpp"
+#include "core/kernels/graph/flat_list.hpp"
+#include "core/kernels/graph/image.hpp"
+
+// All that takes or returns a row is inlined.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+typedef double Row __attribute__((vector_size(32)));
+typedef long long RowBits __attribute__((vector_size(32)));
+
+struct Rows {
+    double *start;  // [n][4], aligned to 32
+    HOL_FORCED Row &operator[](int64_t k) const { return *reinterpret_cast<Row *>(start + 4 * k); }
+    HOL_FORCED Row &at_four_times(int32_t k) const { return *reinterpret_cast<Row *>(start + k); }
+};
+
+HOL_INLINE Row in_row(double a) { return Row{a, a, a, a}; }
+HOL_INLINE Row row_of(const Vector3<double> &a) { return Row{a.x, a.y, a.z, 0}; }
+HOL_INLINE Vector3<double> vector_of(const Row &a) { return {a[0], a[1], a[2]}; }
+HOL_INLINE Row absolute(const Row &a) {
+    return reinterpret_cast<Row>(reinterpret_cast<RowBits>(a) & (RowBits{} + 0x7fffffffffffffffLL));
+}
+
+// a b + c, in one rounding or two as mul_add().
+HOL_INLINE Row multiply_add(const Row &a, const Row &b, const Row &c) {
+#if defined(__AVX2__) && HOL_HAS_FMA
+    return _mm256_fmadd_pd(a, b, c);
+#else
+    return Row{mul_add(a[0], b[0], c[0]), mul_add(a[1], b[1], c[1]), mul_add(a[2], b[2], c[2]),
+               mul_add(a[3], b[3], c[3])};
+#endif
+}
+HOL_INLINE Row larger(const Row &a, const Row &b) {
+#if defined(__AVX2__)
+    return _mm256_max_pd(a, b);
+#else
+    return Row{max(a[0], b[0]), max(a[1], b[1]), max(a[2], b[2]), max(a[3], b[3])};
+#endif
+}
+HOL_INLINE double largest_of(const Row &a) { return max(max(a[0], a[1]), max(a[2], a[3])); }
+
+// The sums of the elements of four rows.
+HOL_INLINE Row sums_of(const Row &a, const Row &b, const Row &c, const Row &d) {
+#if defined(__AVX2__)
+    const __m256d ab = _mm256_hadd_pd(a, b), cd = _mm256_hadd_pd(c, d);
+    return _mm256_permute2f128_pd(ab, cd, 0x20) + _mm256_permute2f128_pd(ab, cd, 0x31);
+#else
+    return Row{(a[0] + a[1]) + (a[2] + a[3]), (b[0] + b[1]) + (b[2] + b[3]), (c[0] + c[1]) + (c[2] + c[3]),
+               (d[0] + d[1]) + (d[2] + d[3])};
+#endif
+}
+
+// Four rows turned into x, y, z of all of them.
+struct Lanes3 {
+    Row x, y, z;
+};
+HOL_INLINE Lanes3 turned(const Row &a, const Row &b, const Row &c, const Row &d) {
+#if defined(__AVX2__)
+    const __m256d xz = _mm256_unpacklo_pd(a, b), yw = _mm256_unpackhi_pd(a, b), xz2 = _mm256_unpacklo_pd(c, d),
+                  yw2 = _mm256_unpackhi_pd(c, d);
+    return {_mm256_permute2f128_pd(xz, xz2, 0x20), _mm256_permute2f128_pd(yw, yw2, 0x20),
+            _mm256_permute2f128_pd(xz, xz2, 0x31)};
+#else
+    return {Row{a[0], b[0], c[0], d[0]}, Row{a[1], b[1], c[1], d[1]}, Row{a[2], b[2], c[2], d[2]}};
+#endif
+}
+HOL_INLINE Row dots_of(const Lanes3 &a, const Lanes3 &b) {
+    return multiply_add(a.z, b.z, multiply_add(a.y, b.y, a.x * b.x));
+}
+
+// Calls body with n as a constant where it is small, else with -1: the entries of most columns are few.
+template <int n>
+struct Known {
+    static constexpr int32_t value = n;
+};
+template <class Body>
+HOL_INLINE void with_count(int32_t n, const Body &body) {
+    switch (n) {
+        case 1:
+            return body(Known<1>());
+        case 2:
+            return body(Known<2>());
+        case 3:
+            return body(Known<3>());
+        default:
+            return body(Known<-1>());
+    }
+}
+
+// Another right-hand side, in t: up along the columns of a factor with a diagonal of ones, and down with the pivots and
+// the factor above the diagonal, which is the same one where the matrix is symmetric.
+HOL_INLINE void solve_up(const FlatList &s, const double *lower, double *t) {
+    for (int32_t k = 0; k < s.n_bonds; ++k) {
+        const int32_t first = s.column_start[k], count = s.column_start[k + 1] - first;
+        const int32_t *const row = s.row + first;
+        const double *const l = lower + first, y = t[k];
+        with_count(count, [&](auto known) HOL_FORCED {
+            const int32_t n = decltype(known)::value >= 0 ? decltype(known)::value : count;
+            HOL_UNROLL
+            for (int32_t e = 0; e < n; ++e) t[row[e]] = mul_add(-l[e], y, t[row[e]]);
+        });
+    }
+}
+template <class Each>
+HOL_INLINE void solve_down(const FlatList &s, const double *upper, const double *r, double *t, const Each &each) {
+    for (int32_t k = s.n_bonds - 1; k >= 0; --k) {
+        const int32_t first = s.column_start[k], count = s.column_start[k + 1] - first;
+        const int32_t *const row = s.row + first;
+        const double *const u = upper + first;
+        double x = t[k] * r[k];
+        with_count(count, [&](auto known) HOL_FORCED {
+            const int32_t n = decltype(known)::value >= 0 ? decltype(known)::value : count;
+            HOL_UNROLL
+            for (int32_t e = n - 1; e >= 0; --e) x = mul_add(-u[e], t[row[e]], x);
+        });
+        t[k] = x;
+        each(k, x);
+    }
+}
+
+// The rows of all atoms of a molecule, in the order of their local numbers.
+template <Layout layout>
+HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<double> &at, int32_t n, const Rows &to) {
+    for (int32_t i = 0; i < n; ++i) to[i] = row_of(read<layout>(array, at, i));
+}
+
+// Bonds as they come, from the coordinates of their ends: four at a time, the inert ones too.
+HOL_INLINE void find_bonds(const int32_t *from, const int32_t *to, int64_t n, const Box &box, const Rows &r,
+                           const Rows &d) {
+    for (int64_t k = 0; k < in_fours(n); ++k) d[k] = r.at_four_times(to[k]) - r.at_four_times(from[k]);
+    if (box.shape == Box::none) return;
+    for (int64_t k = 0; k < n; ++k) {
+        Vector3<double> bond = vector_of(d[k]), unused = {};
+        wrap<false>(box, bond, unused);
+        d[k] = row_of(bond);
+    }
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

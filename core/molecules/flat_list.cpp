@@ -1,0 +1,150 @@
+#include "core/molecules/flat_list.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "core/molecules/elimination_order.hpp"
+
+namespace holonomic {
+
+namespace {
+
+using Rows = std::vector<Numbers>;
+
+// A post-order of the tree in which the parent of a column is its first row. Of what hangs below a column the largest
+// part comes first, so that the rest stands next to it.
+Numbers post_order(const Fill &fill) {
+    const std::int32_t n = static_cast<std::int32_t>(fill.column_start.size()) - 1;
+    const auto parent = [&](std::int32_t k) {
+        return fill.column_start[at(k)] < fill.column_start[at(k) + 1] ? fill.row[at(fill.column_start[at(k)])] : -1;
+    };
+    Numbers size(at(n), 1), order, stack;
+    Rows children(at(n));
+    for (std::int32_t k = 0; k < n; ++k) {
+        if (parent(k) < 0) continue;
+        size[at(parent(k))] += size[at(k)];
+        children[at(parent(k))].push_back(k);
+    }
+    for (Numbers &list : children)  // the last one is visited first
+        std::stable_sort(list.begin(), list.end(),
+                         [&](std::int32_t a, std::int32_t b) { return size[at(a)] < size[at(b)]; });
+    for (std::int32_t root = 0; root < n; ++root) {
+        if (parent(root) >= 0) continue;
+        stack.assign(1, root);
+        while (!stack.empty()) {
+            Numbers &below = children[at(stack.back())];
+            if (below.empty()) {
+                order.push_back(stack.back());
+                stack.pop_back();
+            } else {
+                const std::int32_t next = below.back();
+                below.pop_back();
+                stack.push_back(next);
+            }
+        }
+    }
+    return order;
+}
+
+class FlatMaker {
+public:
+    FlatMaker(const Schedule &s, FlatArrays &a) : s_(s), a_(a) {}
+
+    void make() {
+        for (std::int32_t p = 0; p < s_.n_bonds; ++p) a_.bond_of.push_back(s_.bond_of[p]);
+        const Numbers order = post_order(fill_of(neighbours()));
+        for (std::int32_t p = 0; p < s_.n_bonds; ++p) a_.bond_of[at(p)] = s_.bond_of[order[at(p)]];
+        Fill fill = fill_of(neighbours());
+        a_.column_start = std::move(fill.column_start);
+        a_.row = std::move(fill.row);
+        list_entries();
+        list_updates();
+        pad();
+    }
+
+private:
+    Lists bonds_of_atoms() const {
+        return invert(s_.n_atoms, s_.n_bonds, [&](std::int32_t p, int end) {
+            const std::int32_t k = a_.bond_of[at(p)];
+            return (end ? s_.atom_j : s_.atom_i)[k];
+        });
+    }
+    // Calls each(p, q, atom) for all columns p > q that share an atom.
+    template <class Each>
+    void for_pairs(const Each &each) const {
+        const Lists bonds = bonds_of_atoms();
+        for (std::int32_t i = 0; i < s_.n_atoms; ++i)
+            for (const std::int32_t *p = bonds.begin(i); p != bonds.end(i); ++p)
+                for (const std::int32_t *q = bonds.begin(i); q != p; ++q) each(std::max(*p, *q), std::min(*p, *q), i);
+    }
+    Rows neighbours() const {
+        Rows list(at(s_.n_bonds));
+        for_pairs([&](std::int32_t p, std::int32_t q, std::int32_t) {
+            list[at(p)].push_back(q);
+            list[at(q)].push_back(p);
+        });
+        return list;
+    }
+    std::int32_t entry(std::int32_t row, std::int32_t column) const {
+        const auto begin = a_.row.begin();
+        return static_cast<std::int32_t>(
+            std::lower_bound(begin + a_.column_start[at(column)], begin + a_.column_start[at(column) + 1], row) -
+            begin);
+    }
+    bool points_to(std::int32_t p, std::int32_t atom) const { return s_.atom_j[a_.bond_of[at(p)]] == atom; }
+
+    void list_entries() {
+        for (std::int32_t p = 0; p < s_.n_bonds; ++p) {
+            a_.from.push_back(4 * s_.atom_i[a_.bond_of[at(p)]]);
+            a_.to.push_back(4 * s_.atom_j[a_.bond_of[at(p)]]);
+            for (std::int32_t e = a_.column_start[at(p)]; e < a_.column_start[at(p) + 1]; ++e) {
+                a_.row_4.push_back(4 * a_.row[at(e)]);
+                a_.column_4.push_back(4 * p);
+            }
+        }
+        a_.mass.assign(a_.row.size(), 2 * s_.n_atoms);
+        for_pairs([&](std::int32_t p, std::int32_t q, std::int32_t i) {
+            a_.mass[at(entry(p, q))] = 2 * i + (points_to(p, i) == points_to(q, i) ? 1 : 0);
+        });
+    }
+
+    void list_updates() {
+        for (std::int32_t p = 0; p < s_.n_bonds; ++p) {
+            const std::int32_t first = a_.column_start[at(p)], end = a_.column_start[at(p) + 1];
+            for (std::int32_t i = first; i < end; ++i)
+                for (std::int32_t j = first; j < i; ++j) a_.update.push_back(entry(a_.row[at(i)], a_.row[at(j)]));
+        }
+    }
+
+    void pad() {
+        FlatList &l = a_.list;
+        l.n_atoms = s_.n_atoms;
+        l.n_bonds = s_.n_bonds;
+        l.n_entries = static_cast<std::int32_t>(a_.row.size());
+        const std::size_t bonds = static_cast<std::size_t>(in_fours(l.n_bonds)),
+                          entries = static_cast<std::size_t>(in_fours(l.n_entries));
+        a_.from.resize(bonds, 0);
+        a_.to.resize(bonds, 0);
+        a_.row_4.resize(entries, 0);
+        a_.column_4.resize(entries, 0);
+        a_.mass.resize(entries, 2 * s_.n_atoms);
+        l.bond_of = a_.bond_of.data();
+        l.from = a_.from.data();
+        l.to = a_.to.data();
+        l.column_start = a_.column_start.data();
+        l.row = a_.row.data();
+        l.row_4 = a_.row_4.data();
+        l.column_4 = a_.column_4.data();
+        l.mass = a_.mass.data();
+        l.update = a_.update.data();
+    }
+
+    const Schedule &s_;
+    FlatArrays &a_;
+};
+
+}  // namespace
+
+void make_flat_list(const Schedule &s, FlatArrays &arrays) { FlatMaker(s, arrays).make(); }
+
+}  // namespace holonomic

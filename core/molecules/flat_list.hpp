@@ -1,0 +1,21 @@
+// Makes the list along which one large molecule with cycles is eliminated.
+#ifndef HOLONOMIC_FLAT_LIST_HPP
+#define HOLONOMIC_FLAT_LIST_HPP
+
+#include "core/kernels/graph/flat_list.hpp"
+#include "core/kernels/graph/schedule.hpp"
+#include "core/molecules/lists.hpp"
+
+namespace holonomic {
+
+struct FlatArrays {
+    Numbers bond_of, from, to, column_start, row, row_4, column_4, mass, update;
+    FlatList list;
+};
+
+// Of a molecule whose bonds have been numbered: trees first, then the core in its order. Throws std::length_error where
+// the factor fills up to 2^31 entries.
+void make_flat_list(const Schedule &s, FlatArrays &arrays);
+
+}  // namespace holonomic
+#endif
