@@ -30,10 +30,10 @@ struct FlatLinear {
     const Atoms<double> at;
     const Box &box;
     const Inputs &in;
-    double *mass;             // -w_0, w_0, -w_1, .. , 0
-    Rows pull;                // first the coordinates; then G, and the sum of |t| |d| of an atom's bonds
-    Rows v, a;                // velocities; w f, then w (f + G), or v + w G where right-hand sides are rates
-    Rows d;                   // bonds
+    double *mass;  // -w_0, w_0, -w_1, .. , 0
+    Rows pull;     // first the coordinates; then G, and the sum of |t| |d| of an atom's bonds
+    Rows v, a;     // velocities, later |a| as it was; w f, then w (f + G), or v + w G where right-hand sides are rates
+    Rows d;        // bonds
     double *t, *E, *r;        // right-hand sides, then multipliers; pivots; 1 / pivot
     double *lower, *size;     // |d|
     double *diagonal, *back;  // of A; R
@@ -191,9 +191,12 @@ struct FlatLinear {
             to = to + reinterpret_cast<Row>(reinterpret_cast<RowBits>(p) ^ opposite);
         }
     }
-    // What they do to a.
-    void add_pulls() const {
-        for (int64_t i = 0; i < s.n_atoms; ++i) a[i] = multiply_add(in_row(mass[2 * i + 1]), pull[i], a[i]);
+    // What they do to a, of which v keeps what it was made of.
+    __attribute__((noinline)) void add_pulls() const {
+        for (int64_t i = 0; i < s.n_atoms; ++i) {
+            v[i] = absolute(a[i]);
+            a[i] = multiply_add(in_row(mass[2 * i + 1]), pull[i], a[i]);
+        }
     }
 
     // The terms of bond k's equation in absolute values.
@@ -222,15 +225,17 @@ struct FlatLinear {
     __attribute__((noinline)) bool is_proven() const {
         const double most = most_backward(s.n_bonds);
         for (int64_t k = 0; k < s.n_bonds; k += 4) {
-            Row p[4], q[4], T = {};
+            Row p[4], q[4], input[4], T = {};
             HOL_UNROLL
             for (int i = 0; i < 4; ++i) {
                 const Row &from = a.at_four_times(s.from[k + i]), &to = a.at_four_times(s.to[k + i]);
                 p[i] = d[k + i] * from;
                 q[i] = d[k + i] * to;
+                input[i] = absolute(d[k + i]) * (v.at_four_times(s.from[k + i]) + v.at_four_times(s.to[k + i]));
                 T[i] = from[3] + to[3];
             }
-            const Row part = absolute(sums_of(p[0], p[1], p[2], p[3])) + absolute(sums_of(q[0], q[1], q[2], q[3]));
+            const Row part = absolute(sums_of(p[0], p[1], p[2], p[3])) + absolute(sums_of(q[0], q[1], q[2], q[3])) +
+                             sums_of(input[0], input[1], input[2], input[3]);
             four(back, k) = multiply_add(four(size, k), T, four(back, k));
             const Row left = multiply_add(in_row(most), part, -four(back, k)),
                       pivot = multiply_add(in_row(-least_flat_pivot), four(diagonal, k), four(E, k));

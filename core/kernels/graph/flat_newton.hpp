@@ -15,15 +15,16 @@ struct FlatNewton {
     const FlatList &s;
     double *mass;  // -w_0, w_0, -w_1, .. , 0
     Rows moves, D, b, new_D;
-    double *tau, *t, *r;  // t: what is left of a length, (D.D - a^2) / 2, then its correction; r: 1 / pivot
+    double *tau, *t, *r;  // t: what is left of a length, then its correction; r: 1 / pivot
     double *lower, *upper, *a2, *per_a2;
-    bool moved;
+    bool moved;       // the bonds are not D any more
+    bool eliminated;  // t has been taken through the new factors already
 
     static int64_t values(const FlatList &s) {
         return 2 * in_fours(s.n_atoms + 2) + 4 * (s.n_atoms + 3 * (in_fours(s.n_bonds) + 4)) + 5 * in_fours(s.n_bonds) +
                2 * in_fours(s.n_entries) + 4;
     }
-    FlatNewton(const FlatList &list, Memory<double> &memory) : s(list), moved(false) {
+    FlatNewton(const FlatList &list, Memory<double> &memory) : s(list), moved(false), eliminated(false) {
         const int64_t bonds = in_fours(s.n_bonds), entries = in_fours(s.n_entries);
         moves = {memory.values(4 * s.n_atoms)};
         D = {memory.values(4 * bonds)};
@@ -43,14 +44,21 @@ struct FlatNewton {
         Row worst, sum;  // max() may lose a NaN, the sum keeps it
         double largest() const { return largest_of(worst) + 0 * ((sum[0] + sum[1]) + (sum[2] + sum[3])); }
     };
-    // What is left of the lengths of bonds k .. k + 3.
-    HOL_INLINE void measure(const FlatNewton &me, int64_t k, const Row *d, Errors &errors) {
+    // D.D - a^2 of bonds k .. k + 3.
+    HOL_INLINE Row excess_of(const FlatNewton &me, int64_t k, const Row *d) {
         const Lanes3 at = turned(d[0], d[1], d[2], d[3]);
-        const Row &a2 = *reinterpret_cast<const Row *>(me.a2 + k), &per_a2 = *reinterpret_cast<Row *>(me.per_a2 + k);
-        const Row sigma = multiply_add(at.z, at.z, multiply_add(at.y, at.y, multiply_add(at.x, at.x, -a2)));
-        errors.worst = larger(absolute(sigma) * per_a2, errors.worst);
+        const Row &a2 = *reinterpret_cast<const Row *>(me.a2 + k);
+        return multiply_add(at.z, at.z, multiply_add(at.y, at.y, multiply_add(at.x, at.x, -a2)));
+    }
+    // What is left of their lengths. Not of their squares: |D| (|D| - a), to third order, which is what Newton's method
+    // for |D| - a takes and spares a hundredfold of the first error, as bonds are stretched more than they turn.
+    HOL_INLINE void measure(const FlatNewton &me, int64_t k, const Row *d, Errors &errors) {
+        const Row sigma = excess_of(me, k, d), &per_a2 = *reinterpret_cast<const Row *>(me.per_a2 + k);
+        const Row excess = sigma * per_a2;
+        errors.worst = larger(absolute(excess), errors.worst);
         errors.sum = errors.sum + sigma;
-        *reinterpret_cast<Row *>(me.t + k) = 0.5 * sigma;
+        *reinterpret_cast<Row *>(me.t + k) =
+            (0.5 * sigma) * multiply_add(in_row(0.25), smaller(larger(excess, in_row(-0.5)), in_row(0.5)), in_row(1));
     }
     double open() {
         Errors errors = {};
@@ -65,6 +73,14 @@ struct FlatNewton {
     HOL_FORCED Row moved_bond(int64_t k) const {
         return D[k] + (moves.at_four_times(s.to[k]) - moves.at_four_times(s.from[k]));
     }
+    // |D.D - a^2| / a^2 of the bonds as they are.
+    double error_of(int64_t k) const {
+        const int64_t first = k / 4 * 4;
+        Row d[4];
+        for (int i = 0; i < 4; ++i) d[i] = moved ? moved_bond(first + i) : D[first + i];
+        return absolute(excess_of(*this, first, d))[k - first] * per_a2[k];
+    }
+
     // Displacements, times w only in the end; bonds as moved, and what is left of them.
     __attribute__((noinline)) double move() {
         for (int64_t i = 0; i < s.n_atoms; ++i) moves[i] = Row{};
@@ -84,12 +100,13 @@ struct FlatNewton {
         return errors.largest();
     }
 
-    // Factors for the bonds as they are.
+    // Factors for the bonds as they are; the first solve with them follows.
     __attribute__((noinline)) void factorize(Flag) {
         if (moved)
             for (int64_t k = 0; k < in_fours(s.n_bonds); ++k) new_D[k] = moved_bond(k);
         assemble(moved ? new_D : D);
         eliminate();
+        eliminated = true;
     }
     void assemble(const Rows &d) {
         for (int64_t k = 0; k < s.n_bonds; k += 4) {
@@ -118,7 +135,7 @@ struct FlatNewton {
             const int32_t first = s.column_start[k], count = s.column_start[k + 1] - first;
             const int32_t *const row = s.row + first;
             double *const l = lower + first, *const u = upper + first;
-            const double inverse = r[k] = 1 / r[k];
+            const double inverse = r[k] = 1 / r[k], y = t[k];
             with_count(count, [&](auto known) HOL_FORCED {
                 const int32_t n = decltype(known)::value >= 0 ? decltype(known)::value : count;
                 HOL_UNROLL
@@ -132,6 +149,7 @@ struct FlatNewton {
                     r[row[a]] = mul_add(-la, ur, r[row[a]]);
                     l[a] = la * inverse;
                     u[a] = ur;
+                    t[row[a]] = mul_add(-l[a], y, t[row[a]]);
                 }
             });
         }
@@ -139,7 +157,8 @@ struct FlatNewton {
 
     // Corrections for what is left, in t, added to tau.
     __attribute__((noinline)) void solve(Flag) {
-        solve_up(s, lower, t);
+        if (!eliminated) solve_up(s, lower, t);
+        eliminated = false;
         solve_down(s, upper, r, t, [&](int32_t k, double x) HOL_FORCED { tau[k] = tau[k] + x; });
     }
 };

@@ -95,8 +95,7 @@ struct FlatPositions {
         tally.worst_chain = lane.molecule;
         int32_t bond = newton.s.n_bonds;
         for (int32_t k = 0; k < newton.s.n_bonds; ++k)
-            if (abs(2.0 * newton.t[k]) * newton.per_a2[k] >= error && newton.s.bond_of[k] < bond)
-                bond = newton.s.bond_of[k];
+            if (newton.s.bond_of[k] < bond && newton.error_of(k) >= error) bond = newton.s.bond_of[k];
         tally.worst_bond = bond < newton.s.n_bonds ? bond : 0;
     }
 

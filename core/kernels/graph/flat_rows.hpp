@@ -46,6 +46,13 @@ HOL_INLINE Row larger(const Row &a, const Row &b) {
     return Row{max(a[0], b[0]), max(a[1], b[1]), max(a[2], b[2]), max(a[3], b[3])};
 #endif
 }
+HOL_INLINE Row smaller(const Row &a, const Row &b) {
+#if defined(__AVX2__)
+    return _mm256_min_pd(a, b);
+#else
+    return Row{min(a[0], b[0]), min(a[1], b[1]), min(a[2], b[2]), min(a[3], b[3])};
+#endif
+}
 HOL_INLINE double largest_of(const Row &a) { return max(max(a[0], a[1]), max(a[2], a[3])); }
 
 // The sums of the elements of four rows.

@@ -64,7 +64,10 @@ struct ForcesWork {
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
-        if (schedule.flat && used == 1 && solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
+        if (schedule.flat && used == 1) {
+            if (solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
+            masses_known = false;
+        }
         Memory<V> memory = {scratch};
         Linear<V> z(schedule, lane, used, call.box, call.r, memory);
         open_pieces(z, team, memory);
@@ -96,7 +99,10 @@ struct SolveWork {
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
-        if (schedule.flat && used == 1 && solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
+        if (schedule.flat && used == 1) {
+            if (solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
+            masses_known = false;
+        }
         Memory<V> memory = {scratch};
         Linear<V> z(schedule, lane, used, call.box, call.r, memory);
         open_pieces(z, team, memory);

@@ -21,11 +21,12 @@ struct Linear {
     Memory<V> working;  // of a joint of many bonds
     Pieces pieces;
 
+    static constexpr int64_t bond_values = sizeof(BondRow<V>) / sizeof(V), ring_values = sizeof(RingRow<V>) / sizeof(V);
+
     // Values of V that the arrays take.
     static int64_t values(const Schedule &s) {
-        int64_t n = s.n_atoms + sizeof(BondRow<V>) / sizeof(V) * s.n_bonds + s.n_pairs +
-                    JointMemory<V, 0>::values(s.max_children);
-        if (s.type == Schedule::ring) n += sizeof(RingRow<V>) / sizeof(V) * s.n_bonds;
+        int64_t n = s.n_atoms + bond_values * s.n_bonds + s.n_pairs + JointMemory<V, 0>::values(s.max_children);
+        if (s.type == Schedule::ring) n += ring_values * s.n_bonds;
         n += 3 * 3 * static_cast<int64_t>(s.n_atoms);
         if (has_pieces(s)) n += 5 + s.n_pieces * (6 + JointMemory<V, 0>::values(s.max_children));
         if (s.type == Schedule::graph) {
@@ -39,11 +40,10 @@ struct Linear {
     Linear(const Schedule &s, const MoleculeLane *lane, int used, const Box &box, const AtomArray &r, Memory<V> &memory)
         : x{s, lane, used, Atoms<V>(lane, used), &box, &r, nullptr, nullptr, nullptr, Width<V>::all(1), {}}, core(),
           ring(), equations(), t(), b() {
-        x.row = reinterpret_cast<BondRow<V> *>(memory.values(sizeof(BondRow<V>) / sizeof(V) * s.n_bonds));
+        x.row = reinterpret_cast<BondRow<V> *>(memory.values(bond_values * s.n_bonds));
         x.w = memory.values(s.n_atoms);
         x.pair = memory.values(s.n_pairs);
-        if (s.type == Schedule::ring)
-            ring = reinterpret_cast<RingRow<V> *>(memory.values(sizeof(RingRow<V>) / sizeof(V) * s.n_bonds));
+        if (s.type == Schedule::ring) ring = reinterpret_cast<RingRow<V> *>(memory.values(ring_values * s.n_bonds));
         equations.r = memory.vectors(s.n_atoms);
         equations.velocity = memory.vectors(s.n_atoms);
         equations.force = memory.vectors(s.n_atoms);

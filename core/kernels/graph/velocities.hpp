@@ -18,7 +18,10 @@ struct VelocitiesWork {
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
-        if (schedule.flat && used == 1 && solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
+        if (schedule.flat && used == 1) {
+            if (solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
+            masses_known = false;
+        }
         Memory<V> memory = {scratch};
         Linear<V> z(schedule, lane, used, call.box, call.r, memory);
         open_pieces(z, team, memory);
