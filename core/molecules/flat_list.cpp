@@ -123,6 +123,7 @@ private:
         l.n_entries = static_cast<std::int32_t>(a_.row.size());
         const std::size_t bonds = static_cast<std::size_t>(in_fours(l.n_bonds)),
                           entries = static_cast<std::size_t>(in_fours(l.n_entries));
+        a_.bond_of.resize(bonds, 0);
         a_.from.resize(bonds, 0);
         a_.to.resize(bonds, 0);
         a_.row_4.resize(entries, 0);

@@ -12,7 +12,7 @@ namespace holonomic {
 // inert ones to multiples of four.
 struct FlatList {
     int32_t n_atoms, n_bonds, n_entries;
-    const int32_t *bond_of;  // [n_bonds] local bond
+    const int32_t *bond_of;  // [n_bonds] local bond; inert ones have bond 0
     // Bond k points from one atom to another. Four times their numbers, which saves a shift where rows are read.
     const int32_t *from, *to;
     // Off-diagonal entries of column k: column_start[k] .. column_start[k + 1], rows ascending, all > k.

@@ -23,8 +23,8 @@ struct FlatPositions {
     double a_min, a_max, largest_coordinate;
 
     FlatPositions(const PositionsCall &c, const Schedule &s, const MoleculeLane &l, Memory<double> memory, Tally &sum)
-        : call(c), schedule(s), lane(l), at(&l, 1), newton(*s.flat, memory), tally(sum), a_min(1e300), a_max(0),
-          largest_coordinate(0) {}
+        : call(c), schedule(s), lane(l), at(&l, 1), newton(*s.flat, memory), tally(sum), a_min(), a_max(),
+          largest_coordinate() {}
 
     __attribute__((noinline)) void load() {
         const FlatList &s = newton.s;
@@ -41,15 +41,26 @@ struct FlatPositions {
         for (int32_t i = 0; i < s.n_atoms; ++i) largest = larger(absolute(r[i]), largest);
         largest_coordinate = largest_of(largest);
         find_bonds(s.from, s.to, s.n_bonds, call.box, r, newton.D);
-        for (int32_t k = 0; k < s.n_bonds; ++k) {
-            const double a = lane.length[s.bond_of[k]];
-            a_min = min(a, a_min);
-            a_max = max(a, a_max);
-            newton.a2[k] = a * a;
-            newton.per_a2[k] = 1 / newton.a2[k];
-            newton.tau[k] = call.guess ? 2 * call.dt * call.dt * call.lambda[lane.first_bond + s.bond_of[k]] : 0;
+        load_lengths();
+        for (int32_t k = 0; k < s.n_bonds && call.guess; ++k)
+            newton.tau[k] = 2 * call.dt * call.dt * call.lambda[lane.first_bond + s.bond_of[k]];
+    }
+    void load_lengths() {
+        const FlatList &s = newton.s;
+        Row least = in_row(1e300), most = {};
+        for (int64_t k = 0; k < s.n_bonds; k += 4) {
+            const int32_t *const bond = s.bond_of + k;
+            const Row a = {lane.length[bond[0]], lane.length[bond[1]], lane.length[bond[2]], lane.length[bond[3]]},
+                      a2 = a * a;
+            least = smaller(a, least);
+            most = larger(a, most);
+            *reinterpret_cast<Row *>(newton.a2 + k) = a2;
+            *reinterpret_cast<Row *>(newton.per_a2 + k) = in_row(1) / a2;
+            *reinterpret_cast<Row *>(newton.tau + k) = Row{};
         }
-        for (int64_t k = s.n_bonds; k < in_fours(s.n_bonds); ++k) newton.a2[k] = newton.per_a2[k] = newton.tau[k] = 0;
+        for (int64_t k = s.n_bonds; k < in_fours(s.n_bonds); ++k) newton.a2[k] = newton.per_a2[k] = 0;  // inert
+        a_min = smallest_of(least);
+        a_max = largest_of(most);
     }
 
     // Whether an atom's displacement is the difference of pulls so large that their rounding is more than the

@@ -54,6 +54,7 @@ HOL_INLINE Row smaller(const Row &a, const Row &b) {
 #endif
 }
 HOL_INLINE double largest_of(const Row &a) { return max(max(a[0], a[1]), max(a[2], a[3])); }
+HOL_INLINE double smallest_of(const Row &a) { return min(min(a[0], a[1]), min(a[2], a[3])); }
 
 // The sums of the elements of four rows.
 HOL_INLINE Row sums_of(const Row &a, const Row &b, const Row &c, const Row &d) {
