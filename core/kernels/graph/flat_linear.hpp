@@ -11,18 +11,12 @@
 
 #include "core/kernels/graph/flat_rows.hpp"
 #include "core/kernels/graph/load.hpp"
+#include "core/kernels/graph/proof.hpp"
 #include "core/kernels/graph/virial.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
-
-// R is no more than this times an equation's terms. What counts as right are 16 + sqrt(n) roundings of the scale
-// (tests/oracle/molecules/README.md), and R comes with some three of them at most: six halves for the products, as many
-// again and one for each entry of a column, of which there are few.
-HOL_INLINE double most_backward(int32_t n_bonds) { return 0.25 * (16 + __builtin_sqrt(n_bonds)); }
-// A pivot below this part of its diagonal element may come of bonds that depend on each other.
-constexpr double least_flat_pivot = 1e-6;
 
 struct FlatLinear {
     const FlatList &s;
@@ -238,7 +232,7 @@ struct FlatLinear {
                              sums_of(input[0], input[1], input[2], input[3]);
             four(back, k) = multiply_add(four(size, k), T, four(back, k));
             const Row left = multiply_add(in_row(most), part, -four(back, k)),
-                      pivot = multiply_add(in_row(-least_flat_pivot), four(diagonal, k), four(E, k));
+                      pivot = multiply_add(in_row(-least_proven_pivot), four(diagonal, k), four(E, k));
             for (int i = 0; i < 4 && k + i < s.n_bonds; ++i) {
                 if (!(pivot[i] > 0)) return false;
                 if (__builtin_expect(left[i] >= 0, 1)) continue;

@@ -2,8 +2,7 @@
 #ifndef HOLONOMIC_KERNELS_GRAPH_LINEAR_HPP
 #define HOLONOMIC_KERNELS_GRAPH_LINEAR_HPP
 
-#include "core/kernels/graph/core_matrix.hpp"
-#include "core/kernels/graph/residual.hpp"
+#include "core/kernels/graph/proof.hpp"
 #include "core/kernels/graph/ring.hpp"
 #include "core/kernels/graph/tree_runs.hpp"
 
@@ -32,7 +31,7 @@ struct Linear {
         if (s.type == Schedule::graph) {
             const int64_t part = CoreMatrix<V>::most_parts(s);
             n += s.n_entries + reaches(s) + (part > s.max_column ? part : s.max_column) +
-                 9 * static_cast<int64_t>(s.n_bonds) + 6 * static_cast<int64_t>(s.n_atoms);
+                 9 * static_cast<int64_t>(s.n_bonds) + 7 * static_cast<int64_t>(s.n_atoms);
         }
         return n;
     }
@@ -54,7 +53,7 @@ struct Linear {
             t = memory.values(s.n_bonds);
             b = memory.values(s.n_bonds);
             equations.given = memory.values(s.n_bonds);
-            equations.a = reinterpret_cast<Pair3<V> *>(memory.values(6 * static_cast<int64_t>(s.n_atoms)));
+            equations.a = reinterpret_cast<Pair3<V> *>(memory.values(7 * static_cast<int64_t>(s.n_atoms)));
             equations.d = reinterpret_cast<Pair3<V> *>(memory.values(6 * static_cast<int64_t>(s.n_bonds)));
         }
         working = memory;
@@ -123,14 +122,17 @@ struct Linear {
         down_trees<false>(x);
     }
 
-    // Graphs: corrections against the exact residual until they would be less than a rounding. Returns the lanes in
-    // which they shrank as they should; the solution is t of the rows, as before.
+    // Graphs: corrections against the exact residual until they would be less than a rounding, where it is not proven
+    // that none is needed. Returns the lanes in which they shrank as they should; the solution is t of the rows, as
+    // before.
     MaskOf<V> refine() {
         typedef MaskOf<V> Mask;
         const Schedule &s = x.s;
+        const Mask proven = x.in_use() & proven_lanes(x, core, equations, Width<V>::all(1));
+        if (!any(x.in_use() & ~proven)) return x.in_use();
         find_unrounded(x, equations);
         for (int32_t k = 0; k < s.n_bonds; ++k) t[k] = x.row[k].t;
-        Mask active = x.in_use(), good = ~x.in_use();
+        Mask active = x.in_use() & ~proven, good = proven | ~x.in_use();
         V before = Width<V>::all(1);  // squares
         for (int pass = 0; pass < 8 && any(active); ++pass) {
             find_residuals(x, equations, t);

@@ -1,0 +1,126 @@
+// A proof that the multipliers of molecules with cycles need no correction, in lanes: the bound of flat_linear.hpp on
+// what they leave of the equations (theory (55a)), of which trees take a part that needs no factors. An atom with k
+// children adds at most 1 + k times w |d| |d'| to |L| P |L^T| for two of its bonds, as every child that is eliminated
+// leaves no more of their products than they are.
+#ifndef HOLONOMIC_KERNELS_GRAPH_PROOF_HPP
+#define HOLONOMIC_KERNELS_GRAPH_PROOF_HPP
+
+#include "core/kernels/graph/core_matrix.hpp"
+#include "core/kernels/graph/residual.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// The bound is no more than this times an equation's terms, both in roundings: a part of the 16 + sqrt(n) roundings of
+// the scale that count as right (tests/oracle/molecules/README.md), and no more than in trees (siblings.hpp).
+HOL_INLINE double most_backward(int32_t n_bonds) {
+    const double part = 0.5 * (16 + __builtin_sqrt(static_cast<double>(n_bonds)));
+    return part < most_cancelled ? part : most_cancelled;
+}
+// A pivot below this part of its diagonal element may come of bonds that depend on each other.
+constexpr double least_proven_pivot = 1e-6;
+
+// Of an atom: w (f + G), or v + w G where right-hand sides are rates; the part of the bound that it gives per |d|; and
+// what a was made of, in absolute values.
+template <class V>
+struct Pulled {
+    Vector3<V> a, input;
+    V bound;
+};
+
+// Of a bond, in the same memory as its unrounded vector, which is found later.
+template <class V>
+struct Backward {
+    V size, tension, R;  // |d|, |t| |d|, of the core |L| P |L^T| |t|
+};
+
+template <class V>
+HOL_INLINE Vector3<V> absolute(const Vector3<V> &a) {
+    return {abs(a.x), abs(a.y), abs(a.z)};
+}
+
+template <class V>
+HOL_INLINE void find_core_bound(const Molecules<V> &x, const CoreMatrix<V> &core, Backward<V> *bond) {
+    const Schedule &s = x.s;
+    const BondRow<V> *const row = x.row + s.n_tree;
+    for (int32_t p = s.n_core - 1; p >= 0; --p) {
+        V sum = abs(row[p].t);
+        for (int32_t e = s.column_start[p]; e < s.column_start[p + 1]; ++e)
+            sum = mul_add(abs(core.entry[e]), abs(row[s.row[e]].t), sum);
+        const V all = row[p].E * sum;
+        bond[s.n_tree + p].R = all;
+        for (int32_t e = s.column_start[p]; e < s.column_start[p + 1]; ++e) {
+            V &R = bond[s.n_tree + s.row[e]].R;
+            R = mul_add(abs(core.entry[e]), all, R);
+        }
+    }
+}
+
+template <class V>
+HOL_INLINE Pulled<V> pulled(const Molecules<V> &x, const Equations<V> &e, const Backward<V> *bond, int32_t slot) {
+    const Schedule &s = x.s;
+    Vector3<V> g = {};
+    V sum = {};
+    const int32_t first = s.child_start[slot], end = s.child_start[slot + 1];
+    for (int32_t c = first; c < end; ++c) {
+        const int32_t place = s.child[c];
+        g = add_times(g, x.row[place].t, x.row[place].d);
+        sum = sum + bond[place].tension;
+    }
+    if (slot < s.n_tree) {
+        g = add_times(g, -x.row[slot].t, x.row[slot].d);
+        sum = sum + bond[slot].tension;
+    } else {
+        for (int32_t m = s.meet_start[slot - s.n_tree]; m < s.meet_start[slot - s.n_tree + 1]; ++m) {
+            const int32_t place = s.n_tree + s.meet[m] / 2;
+            const BondRow<V> &row = x.row[place];
+            g = add_times(g, s.meet[m] % 2 ? -row.t : row.t, row.d);
+            sum = sum + bond[place].tension;
+        }
+    }
+    const V w = x.w[slot];
+    Vector3<V> input = {};
+    if (e.start) input = e.start[slot];
+    if (e.force) input = input + w * e.force[slot];
+    return {add_times(input, w, g), absolute(input), (Width<V>::all(1.0 + (end - first)) * w) * sum};
+}
+
+// The lanes in which this holds for the solution in t of the rows. E of the core's rows: their pivots.
+template <class V>
+HOL_NOINLINE MaskOf<V> proven_lanes(const Molecules<V> &x, const CoreMatrix<V> &core, const Equations<V> &e, V least) {
+    const Schedule &s = x.s;
+    static_assert(sizeof(Pulled<V>) == 7 * sizeof(V) && sizeof(Backward<V>) <= sizeof(Pair3<V>), "");
+    Pulled<V> *const atom = reinterpret_cast<Pulled<V> *>(e.a);
+    Backward<V> *const bond = reinterpret_cast<Backward<V> *>(e.d);
+    for (int32_t k = 0; k < s.n_bonds; ++k) {
+        bond[k].size = sqrt(x.row[k].q);
+        bond[k].tension = abs(x.row[k].t) * bond[k].size;
+        bond[k].R = V{};
+    }
+    find_core_bound(x, core, bond);
+    for (int32_t slot = 0; slot < s.n_atoms; ++slot) atom[slot] = pulled(x, e, bond, slot);
+    const V most = Width<V>::all(most_backward(s.n_bonds));
+    for (int32_t k = 0; k < s.n_bonds; ++k) {
+        int32_t from, to;
+        ends_of(s, k, from, to);
+        const Pulled<V> &i = atom[from], &j = atom[to];
+        const Vector3<V> &d = x.row[k].d;
+        V terms = abs(dot(d, i.a)) + abs(dot(d, j.a)) + dot(absolute(d), i.input + j.input);
+        if (e.velocity) {
+            const Vector3<V> dv = e.velocity[to] - e.velocity[from];
+            terms = terms + dot(dv, dv);
+        }
+        if (e.given) terms = terms + abs(e.given[k]);
+        least = min(mul_add(most, terms, -mul_add(bond[k].size, i.bound + j.bound, bond[k].R)), least);
+        if (k < s.n_tree) continue;
+        const V whole = (x.w[from] + x.w[to]) * x.row[k].q;
+        least = min(mul_add(Width<V>::all(-least_proven_pivot), whole, x.row[k].E), least);
+    }
+    return less_equal(V{}, least);
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif
