@@ -47,9 +47,5 @@ HOL_INLINE V excess(const Vector3<V> &d, V a2) {
 
 typedef Vector3<vec> vec3;
 
-HOL_INLINE vec3 times(vec s, const vec3 &a) { return {s * a.x, s * a.y, s * a.z}; }
-HOL_INLINE vec3 minus(const vec3 &a, const vec3 &b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-HOL_INLINE vec3 plus(const vec3 &a, const vec3 &b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-
 }  // namespace holonomic::HOL_ISA
 #endif

@@ -1,7 +1,10 @@
 // From conditions to template arguments: choose(body, a, b) calls body(A, B), where A and B are constants of the
-// compiler with the values of a and b, so that body may write kernel<A, B>(..).
+// compiler with the values of a and b, so that body may write kernel<A, B>(..). choose_number<1, 5>(n, body) does the
+// same for n = 1 .. 5.
 #ifndef HOLONOMIC_KERNELS_ISA_CHOOSE_HPP
 #define HOLONOMIC_KERNELS_ISA_CHOOSE_HPP
+
+#include <stdint.h>
 
 #include "core/kernels/isa/target.hpp"
 
@@ -22,6 +25,19 @@ HOL_INLINE auto choose(const Body &body, bool condition, More... more) {
     if (condition) return choose([&](auto... c) HOL_FORCED { return body(Constant<bool, true>{}, c...); }, more...);
     return choose([&](auto... c) HOL_FORCED { return body(Constant<bool, false>{}, c...); }, more...);
 }
+
+template <int first, int last, class Body>
+static inline auto choose_number(int64_t n, const Body &body) {
+    if constexpr (first < last)
+        if (n != first) return choose_number<first + 1, last>(n, body);
+    return body(Constant<int, first>{});
+}
+
+// A type as an argument.
+template <class T>
+struct Type {
+    typedef T type;
+};
 
 }  // namespace holonomic::HOL_ISA
 #endif

@@ -57,5 +57,30 @@ HOL_INLINE double mul_add(double a, double b, double c) {
 #endif
 }
 
+#if HOL_LANES == 2
+typedef vec double2;
+#else
+typedef double double2 __attribute__((vector_size(16)));
+HOL_INLINE double2 mul_add(double2 a, double2 b, double2 c) {
+#if HOL_HAS_FMA && defined(__x86_64__)
+    return _mm_fmadd_pd(a, b, c);
+#else
+    return double2{mul_add(a[0], b[0], c[0]), mul_add(a[1], b[1], c[1])};
+#endif
+}
+#endif
+
+// Vectors of any width, or a double, from and to memory.
+template <class V>
+HOL_INLINE V load_any(const double *p) {
+    V a;
+    __builtin_memcpy(&a, p, sizeof a);
+    return a;
+}
+template <class V>
+HOL_INLINE void store_any(double *p, V a) {
+    __builtin_memcpy(p, &a, sizeof a);
+}
+
 }  // namespace holonomic::HOL_ISA
 #endif

@@ -1,6 +1,5 @@
-// Blocks of equally long chains with lists of atoms in packed arrays. Vectors are read and written where the list says;
-// the arithmetic is that of chains over consecutive atoms. What needs more than the plain path is left to the general
-// one, which copies such chains into staging buffers.
+// Atoms that stand anywhere in packed arrays: at.atom(base, i, k) is where atom k of lane i is. They are read and
+// written one of each lane at a time; the arithmetic is that of rows.
 #ifndef HOLONOMIC_KERNELS_MEMORY_LISTED_HPP
 #define HOLONOMIC_KERNELS_MEMORY_LISTED_HPP
 
@@ -20,26 +19,25 @@ struct AtomLists {
     AtomLists(const int64_t *first, int64_t n_atoms) {
         for (int i = 0; i < W; ++i) atoms[i] = first + i * n_atoms;
     }
+    HOL_FORCED const double *atom(const double *base, int i, long k) const { return base + 3 * atoms[i][k]; }
 };
 
-HOL_INLINE vec3 gather(const double *base, const AtomLists &at, long k) {
+template <class Place>
+HOL_INLINE vec3 gather(const double *base, const Place &at, long k) {
     const double *p[W];
     HOL_UNROLL
-    for (int i = 0; i < W; ++i) p[i] = base + 3 * at.atoms[i][k];
+    for (int i = 0; i < W; ++i) p[i] = at.atom(base, i, k);
     vec3 a;
     read_rows(p, a);
     return a;
 }
 
-template <Update update>
-HOL_INLINE void scatter(double *base, const AtomLists &at, long k, vec3 a) {
-    if (update == add_) {
-        const vec3 b = gather(base, at, k);
-        a = {b.x + a.x, b.y + a.y, b.z + a.z};
-    }
+template <Update update, class Place>
+HOL_INLINE void scatter(double *base, const Place &at, long k, vec3 a) {
+    if (update == add_) a = gather(base, at, k) + a;
     double *p[W];
     HOL_UNROLL
-    for (int i = 0; i < W; ++i) p[i] = base + 3 * at.atoms[i][k];
+    for (int i = 0; i < W; ++i) p[i] = const_cast<double *>(at.atom(base, i, k));
     write_rows(p, a);
 }
 

@@ -121,7 +121,7 @@ static inline void for_each_block(const Call &call, const Unit &unit, double *sc
 
 // For `small` of calls that have no faster path.
 template <class Call>
-static inline int64_t no_molecules(const Call &, const Unit &, const Block &, int64_t first, Tally &) {
+static inline int64_t no_molecules(const Call &, const Unit &, Block &, int64_t first, Tally &) {
     return first;
 }
 

@@ -26,7 +26,7 @@ struct Positions {
 
     template <bool to_r, bool to_v>
     void move(mask which) const {
-        store_pulls<true, uniform_w>(block, x.b, x.tau, which, MoveSink<to_r, to_v>{r, v, splat(1 / call.dt)});
+        store_pulls<true, uniform_w>(block, x.b, x.tau, which, MoveSink<to_r, to_v>{r, v, 1 / call.dt});
     }
 
     // After a coarse move, goes on from the coordinates as they are rounded: the moves that remain are small, and so

@@ -43,7 +43,7 @@ HOL_NOINLINE WorstBonds find_worst(const Newton &x, long n, vec first, vec end) 
 template <bool uniform_w, bool uniform_a>
 static inline void note_worst(const Block &block, const Newton &x, const PositionsCall &call, mask which, vec error,
                               Tally &tally) {
-    if (!call.report) return;
+    if (!call.report || (tally.worst_chain >= 0 && !any(which & ~less(error, splat(tally.worst))))) return;
     const unsigned chosen = bits(which & block.in_use());
     int worst = -1;
     for (int i = 0; i < block.lanes; ++i) {
@@ -64,10 +64,10 @@ static inline void add_virial(const Block &block, const Newton &x, mask which, d
 
 // Lanes in which an atom's displacement is the difference of pulls so large that their rounding is more than the
 // coordinates': light atoms between heavy ones in a taut chain. Elsewhere moving the atoms costs one rounding of them.
-template <bool uniform_w>
-static inline mask coarse_moves(const Block &block, const Newton &x, Carried &carried, mask which) {
+template <bool uniform_w, int fixed = 0>
+HOL_INLINE mask coarse_moves(const Block &block, const Newton &x, Carried &carried, mask which) {
     vec pull = {};
-    go_up<0>(block, [&](long k, bool) HOL_FORCED {
+    go_up<fixed>(block, [&](long k, bool) HOL_FORCED {
         const vec tau = abs(x.tau[k]);
         pull = max(uniform_w ? tau : max(x.w[k], x.w[k + 1]) * tau, pull);
     });

@@ -26,8 +26,9 @@ struct BondLengths {
     vec a2_uniform, per_a2_uniform, a_min, a_max, per_a_min;
 };
 
-static inline BondLengths bond_lengths(const Block &block, const Lane *lane, Arena &arena) {
-    bool uniform = block.n == block.n_min;
+// `tables`: even if they are the same.
+static inline BondLengths bond_lengths(const Block &block, const Lane *lane, Arena &arena, bool tables = false) {
+    bool uniform = block.n == block.n_min && !tables;
     const double *table[W];
     double first[W];
     for (int i = 0; i < W; ++i) {

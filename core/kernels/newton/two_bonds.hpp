@@ -100,9 +100,9 @@ HOL_INLINE Outcome solve_two_bonds(Newton &x, Carried &carried, mask wanted) {
     x.tau[0] = keep(near, next0 + f.first(c.q0, c.q1));
     x.tau[1] = keep(near, next1 + f.second(c.q0, c.q1));
     // As Mover has it, where the bond behind the last one is none.
-    const vec3 p0 = times(x.tau[0], b0), p1 = times(x.tau[1], b1), middle = times_w<uniform_w>(x, 1, minus(p1, p0)),
-               d0 = plus(D0, minus(middle, times_w<uniform_w>(x, 0, p0))),
-               d1 = plus(D1, minus(times_w<uniform_w>(x, 2, minus(vec3{}, p1)), middle));
+    const vec3 p0 = x.tau[0] * b0, p1 = x.tau[1] * b1, middle = times_w<uniform_w>(x, 1, p1 - p0),
+               d0 = D0 + (middle - times_w<uniform_w>(x, 0, p0)),
+               d1 = D1 + (times_w<uniform_w>(x, 2, vec3{} - p1) - middle);
     worst = vec{};
     const vec after0 = length_error<uniform_a>(x, 0, false, d0, worst),
               after1 = length_error<uniform_a>(x, 1, false, d1, worst);

@@ -15,7 +15,7 @@ template <bool uniform_w, bool to_v>
 static void move_window(const SegmentBlock &s, int64_t j, const Newton &x, const Packed &r, const Packed &v,
                         double per_dt) {
     const vec3 first = x.tau[0] * x.b[0];
-    const MoveSink<true, to_v> sink = {r, v, splat(per_dt)};
+    const MoveSink<true, to_v> sink = {r, v, per_dt};
     Block own = own_block(s);
     own.n = s.block.n;  // the last atom of a lane is pulled by the bond behind it, too
     store_pulls<true, uniform_w>(own, x.b, x.tau, first_lanes(W), sink, 1, first);

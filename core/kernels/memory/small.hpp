@@ -1,0 +1,262 @@
+// Blocks of W small molecules of N bonds each: the arithmetic of any block, with the number of bonds known to the
+// compiler, so that everything stays in registers. Here is where they stand in the arrays of a call, how they are read
+// and written, and their masses.
+#ifndef HOLONOMIC_KERNELS_MEMORY_SMALL_HPP
+#define HOLONOMIC_KERNELS_MEMORY_SMALL_HPP
+
+#include "core/kernels/arithmetic/image.hpp"
+#include "core/kernels/memory/listed.hpp"
+#include "core/kernels/memory/terms.hpp"
+
+namespace holonomic::HOL_ISA {
+
+constexpr int largest_molecule = 5;        // over consecutive atoms, without a box
+constexpr int largest_boxed_molecule = 3;  // in a box, or not over consecutive atoms
+
+// A place: the W molecules of a unit from molecule `first` on. What all have:
+//   end(unit, first)   the end of those that may be done from `first` on
+//   next(first, end)   how many of these are the next block; 0: none is left
+//   atom(base, i, k)   atom k of lane i in a packed array
+//   bond_of, chain_of  first bond and number of lane i's molecule
+
+// One behind the other in a regular unit.
+template <int N>
+struct InRow {
+    static constexpr int bonds = N;
+    static constexpr bool in_row = true, loose = false;
+    static constexpr int elements = 3 * (N + 1);
+    typedef EvenLanes<elements> Lanes;
+    int64_t at, bond, chain;  // of the first one
+    InRow(const Unit &unit, int64_t first, int64_t)
+        : at(3 * (unit.lanes[0].first_atom + (N + 1) * first)), bond(unit.lanes[0].first_bond + N * first),
+          chain(unit.lanes[0].chain + first) {}
+    HOL_FORCED Lanes lanes_of(double *base) const { return {base + at}; }
+    // W atoms behind them can be read.
+    HOL_INLINE int64_t end(const Unit &unit, int64_t) { return unit.count - (W == 1 ? 0 : (W + N) / (N + 1)); }
+    HOL_INLINE int64_t next(int64_t first, int64_t end) { return end - first >= W ? W : 0; }
+    HOL_FORCED const double *atom(const double *base, int i, long k) const { return base + at + 3 * ((N + 1) * i + k); }
+    HOL_FORCED int64_t bond_of(int i) const { return bond + N * i; }
+    HOL_FORCED int64_t chain_of(int i) const { return chain + i; }
+    HOL_FORCED const int64_t *const *lists() const { return nullptr; }
+    HOL_FORCED const Lane *lanes() const { return nullptr; }
+    HOL_FORCED void fetch_next(const double *) const {}  // the processor does that
+};
+
+// In a regular unit, with lists of atoms.
+template <int N>
+struct ByList : InRow<N>, AtomLists {
+    static constexpr bool in_row = false;
+    const bool fetches;  // whether atoms behind these may be fetched, and are worth it
+    ByList(const Unit &unit, int64_t first, int64_t used)
+        : InRow<N>(unit, first, used), AtomLists(unit.lanes[0].atoms + (N + 1) * first, N + 1),
+          fetches(unit.large && unit.count - first >= 2 * W) {}
+    HOL_INLINE int64_t end(const Unit &unit, int64_t) { return unit.count; }
+    using AtomLists::atom;
+    HOL_FORCED const int64_t *const *lists() const { return atoms; }
+    HOL_FORCED void fetch_next(const double *base) const {
+        for (int i = 0; fetches && base && i < W; ++i)
+            for (int k = 0; k <= N; ++k) __builtin_prefetch(base + 3 * atoms[i][W * (N + 1) + k], 0, 2);
+    }
+};
+
+// Anywhere, each of a kind of its own: the `used` molecules of a unit that is not regular. Lanes that are left over
+// repeat the first one: what they write is the same.
+template <int N>
+struct ByLanes {
+    static constexpr int bonds = N;
+    static constexpr bool in_row = false, loose = true;
+    const Lane *lane;
+    ByLanes(const Unit &unit, int64_t first, int64_t used) : lane(unit.lanes + first) {
+        if (__builtin_expect(used == W, 1)) return;
+        for (int i = 0; i < W; ++i) last_[i] = lane[i < used ? i : 0];
+        lane = last_;
+    }
+    ByLanes &operator=(const ByLanes &) = delete;
+    HOL_INLINE int64_t end(const Unit &unit, int64_t first) {
+        while (first < unit.count && unit.lanes[first].n_bonds == N) ++first;
+        return first;
+    }
+    HOL_INLINE int64_t next(int64_t first, int64_t end) { return end - first >= W ? W : end - first; }
+    HOL_FORCED const double *atom(const double *base, int i, long k) const { return base + lane[i].element[k]; }
+    HOL_FORCED int64_t bond_of(int i) const { return lane[i].first_bond; }
+    HOL_FORCED int64_t chain_of(int i) const { return lane[i].chain; }
+    HOL_FORCED const int64_t *const *lists() const { return nullptr; }
+    HOL_FORCED const Lane *lanes() const { return lane; }
+    HOL_FORCED void fetch_next(const double *) const {}
+
+private:
+    Lane last_[W];
+};
+
+// Vectors of n values of each lane, rounded up to what is transposed at a time.
+template <int n>
+constexpr int whole = (n + W - 1) / W *W;
+template <int N>
+constexpr int vectors_of = whole<3 * (N + 1)>;  // of the atoms of W molecules
+
+// The atoms of a place: element 3 k + c is component c of atom k. In a row, up to W - 1 doubles behind are read.
+template <class Place>
+HOL_INLINE void load_molecules(const Place &place, const double *base, vec *elements) {
+    constexpr int N = Place::bonds;
+    if constexpr (Place::in_row) {
+        HOL_UNROLL
+        for (int j = 0; j < vectors_of<N> / W; ++j) {
+            HOL_UNROLL
+            for (int i = 0; i < W; ++i) elements[j * W + i] = load(place.atom(base, i, 0) + j * W);
+            transpose(elements + j * W);
+        }
+    } else {
+        HOL_UNROLL
+        for (int k = 0; k <= N; ++k) {
+            const vec3 a = gather(base, place, k);
+            elements[3 * k] = a.x;
+            elements[3 * k + 1] = a.y;
+            elements[3 * k + 2] = a.z;
+        }
+    }
+}
+
+// Where the lanes' first atoms are.
+template <class Place>
+HOL_INLINE Packed first_atoms(const Place &place, const double *base) {
+    Packed p;
+    HOL_UNROLL
+    for (int i = 0; i < W; ++i) p.lane[i] = const_cast<double *>(place.atom(base, i, 0));
+    return p;
+}
+
+// Gives a sink n values of each lane, transposed in place.
+template <int n, class Sink>
+HOL_INLINE void store_rows(vec *value, const Sink &sink) {
+    constexpr int full = n / W, rest = n % W;
+    HOL_UNROLL
+    for (int j = 0; j < whole<n> / W; ++j) transpose(value + j * W);
+    HOL_UNROLL
+    for (int i = 0; i < W; ++i) {  // in the order of the addresses: faster from memory
+        HOL_UNROLL
+        for (int j = 0; j < full; ++j) sink.put(i, j * W, value[j * W + i]);
+        if constexpr (rest > 1) {
+            const vec last = value[full * W + i];
+            HOL_UNROLL
+            for (int e = 0; e + 1 < rest; e += 2) sink.put(i, full * W + e, double2{last[e], last[e + 1]});
+        }
+        if constexpr (rest % 2 > 0) sink.put(i, n - 1, value[full * W + i][rest - 1]);
+    }
+}
+
+// Writes the atoms of a place, or adds to them.
+template <Update update, class Place>
+HOL_INLINE void store_molecules(const Place &place, vec *value, double *base) {
+    if constexpr (Place::in_row) {
+        store_rows<Place::elements>(value, AtomSink<update, typename Place::Lanes>{place.lanes_of(base)});
+    } else {
+        HOL_UNROLL
+        for (int k = 0; k <= Place::bonds; ++k)
+            scatter<update>(base, place, k, vec3{value[3 * k], value[3 * k + 1], value[3 * k + 2]});
+    }
+}
+
+// Writes factor times a value per bond; zeros as +0.
+template <class Place>
+HOL_INLINE void store_multipliers(const Place &place, const vec *t, vec factor, double *base) {
+    constexpr int N = Place::bonds;
+    vec value[whole<N>] = {};
+    HOL_UNROLL
+    for (int k = 0; k < N; ++k) value[k] = mul_add(factor, t[k], vec{});
+    if constexpr (Place::loose) {
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k)
+            for (int i = 0; i < W; ++i) base[place.bond_of(i) + k] = value[k][i];
+    } else if constexpr (N == 1) {
+        store(base + place.bond, value[0]);
+    } else {
+        store_rows<N>(value, AtomSink<write_, EvenLanes<N>>{base + place.bond});
+    }
+}
+
+// Bonds D[k] from atoms; `boxed`: a box may be there.
+template <int N, bool boxed>
+HOL_INLINE void take_bonds(const Box &box, const vec *atoms, vec3 *D) {
+    vec *const d = &D[0].x;
+    HOL_UNROLL
+    for (int c = 0; c < 3 * N; ++c) d[c] = atoms[c + 3] - atoms[c];
+    if (!boxed || box.shape == Box::none) return;
+    if (box.shape == Box::triclinic) {
+        vec3 unused = {};
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) wrap<false>(box, D[k], unused);
+        return;
+    }
+    HOL_UNROLL
+    for (int c = 0; c < 3 * N; ++c)
+        d[c] = mul_add(round(d[c] * box.per_side[c % 3]), splat(box.minus_side[c % 3]), d[c]);
+}
+
+// The bonds of a place, and its atoms where they are needed for these. In a row without a box differences are taken as
+// they stand in memory.
+template <bool boxed, class Place>
+HOL_INLINE void load_bonds(const Box &box, const Place &place, const double *base, vec *atoms, vec3 *D) {
+    constexpr int N = Place::bonds;
+    if constexpr (Place::in_row && !boxed) {
+        vec d[whole<3 * N>];
+        HOL_UNROLL
+        for (int j = 0; j < whole<3 * N> / W; ++j) {
+            HOL_UNROLL
+            for (int i = 0; i < W; ++i) {
+                const double *const p = place.atom(base, i, 0) + j * W;
+                d[j * W + i] = load(p + 3) - load(p);
+            }
+            transpose(d + j * W);
+        }
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) D[k] = {d[3 * k], d[3 * k + 1], d[3 * k + 2]};
+    } else {
+        load_molecules(place, base, atoms);
+        take_bonds<N, boxed>(box, atoms, D);
+    }
+}
+
+// The masses of blocks: of a regular unit those that have been set; else of the lanes of each place, with what else is
+// asked of a block.
+template <class Place>
+struct BlockMasses {
+    static constexpr int N = Place::bonds;
+    Block own;  // what is not set here is not asked for
+    const Block &block;
+    vec w[N + 1] = {};
+    int64_t kind[W];
+    explicit BlockMasses(const Block &given) : block(Place::loose ? own : given) {
+        if (!Place::loose) return;
+        own.n = own.n_min = N;
+        for (int i = 0; i < W; ++i) {
+            own.len[i] = N;
+            kind[i] = -1;
+        }
+        own.lanes = W;
+        own.unit = vec{};
+        own.uniform_w = own.unit_masses = false;
+        own.movable = first_lanes(W);
+        own.w = w;
+    }
+    BlockMasses(const BlockMasses &) = delete;
+    BlockMasses &operator=(const BlockMasses &) = delete;
+
+    // Returns whether they are others than before.
+    HOL_FORCED bool take(const Place &place) {
+        if (!Place::loose) return false;
+        const Lane *const lane = place.lanes();
+        bool same = true;
+        for (int i = 0; i < W; ++i) same = same & (kind[i] == lane[i].kind);
+        if (__builtin_expect(same, 1)) return false;
+        for (int i = 0; i < W; ++i) {
+            kind[i] = lane[i].kind;
+            own.unit[i] = unit_of(lane[i]);
+            for (int k = 0; k <= N; ++k) w[k][i] = relative_w(lane[i], k);
+        }
+        own.mass = splat(1.0) / own.unit;
+        return true;
+    }
+};
+
+}  // namespace holonomic::HOL_ISA
+#endif
