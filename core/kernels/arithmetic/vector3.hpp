@@ -47,5 +47,11 @@ HOL_INLINE V excess(const Vector3<V> &d, V a2) {
 
 typedef Vector3<vec> vec3;
 
+// d.(L d), which depends on the sums of mirrored elements of L alone: s has xx xy xz yy yz zz.
+template <class V>
+HOL_INLINE V stretching(const double *s, const Vector3<V> &d) {
+    return d.x * (s[0] * d.x + s[1] * d.y + s[2] * d.z) + (d.y * (s[3] * d.y + s[4] * d.z) + d.z * (s[5] * d.z));
+}
+
 }  // namespace holonomic::HOL_ISA
 #endif

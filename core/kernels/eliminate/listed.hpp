@@ -5,8 +5,8 @@
 #include "core/kernels/arithmetic/image.hpp"
 #include "core/kernels/eliminate/chain.hpp"
 #include "core/kernels/memory/listed.hpp"
+#include "core/kernels/memory/pulls.hpp"
 #include "core/kernels/memory/terms.hpp"
-#include "core/kernels/memory/values.hpp"
 
 namespace holonomic::HOL_ISA {
 

@@ -2,7 +2,7 @@
 #ifndef HOLONOMIC_KERNELS_ELIMINATE_PROJECTION_HPP
 #define HOLONOMIC_KERNELS_ELIMINATE_PROJECTION_HPP
 
-#include "core/kernels/arithmetic/stretching.hpp"
+#include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/eliminate/chain.hpp"
 
 namespace holonomic::HOL_ISA {

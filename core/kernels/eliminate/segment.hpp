@@ -16,8 +16,8 @@
 
 #include "core/kernels/eliminate/exact_joints.hpp"
 #include "core/kernels/eliminate/remainder.hpp"
-#include "core/kernels/memory/past_cache.hpp"
-#include "core/kernels/memory/segments.hpp"
+#include "core/kernels/memory/cut.hpp"
+#include "core/kernels/memory/prefetch.hpp"
 
 namespace holonomic::HOL_ISA {
 

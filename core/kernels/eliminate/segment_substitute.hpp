@@ -6,8 +6,6 @@
 #include "core/kernels/eliminate/segment.hpp"
 #include "core/kernels/memory/prefetch.hpp"
 #include "core/kernels/memory/pulls.hpp"
-#include "core/kernels/memory/values.hpp"
-#include "core/kernels/memory/virial.hpp"
 
 namespace holonomic::HOL_ISA {
 

@@ -2,7 +2,7 @@
 #ifndef HOLONOMIC_KERNELS_GRAPH_MOLECULES_HPP
 #define HOLONOMIC_KERNELS_GRAPH_MOLECULES_HPP
 
-#include "core/kernels/arithmetic/stretching.hpp"
+#include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/graph/atoms.hpp"
 #include "core/kernels/graph/image.hpp"
 #include "core/kernels/graph/pieces.hpp"

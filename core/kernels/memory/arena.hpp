@@ -19,7 +19,8 @@ constexpr int64_t scratch_doubles(int64_t n) { return W * vectors_per_bond * (n 
 struct Arena {
     double *next;
     const double *end;
-    Arena(double *scratch, int64_t n_bonds) : next(scratch), end(scratch + scratch_doubles(n_bonds)) {}
+    Arena(double *scratch, const double *behind) : next(scratch), end(behind) {}
+    Arena(double *scratch, int64_t n_bonds) : Arena(scratch, scratch + scratch_doubles(n_bonds)) {}
     vec *vecs(long n) { return reinterpret_cast<vec *>(take(n * W)); }
     double *doubles(long n) {
         constexpr long least = W > 8 ? W : 8;  // vectors that follow are aligned

@@ -32,7 +32,7 @@ struct Block {
 
     mask in_use() const { return first_lanes(lanes); }
     vec lengths() const {
-        vec v;
+        vec v = {};
         for (int i = 0; i < W; ++i) v[i] = static_cast<double>(len[i]);
         return v;
     }

@@ -1,4 +1,4 @@
-// Fetching ahead what the next block will read.
+// Past and ahead of the cache: fetching what the next block will read, and stores of what will not be read soon.
 #ifndef HOLONOMIC_KERNELS_MEMORY_PREFETCH_HPP
 #define HOLONOMIC_KERNELS_MEMORY_PREFETCH_HPP
 
@@ -18,6 +18,24 @@ HOL_INLINE void fetch_ahead(const double *first_lane, long k0, long ahead) {
     HOL_UNROLL
     for (int line = 0; line < (3 * W * atoms + 7) / 8; ++line)
         __builtin_prefetch(reinterpret_cast<const void *>(address + static_cast<uintptr_t>(line) * 64), 0, 2);
+}
+
+// settle_stores() must follow before another thread may read it.
+HOL_INLINE void store_past_cache(vec *p, vec a) {
+#if HOL_LANES == 8 && defined(__AVX512F__)
+    _mm512_stream_pd(reinterpret_cast<double *>(p), a);
+#elif HOL_LANES == 4 && defined(__AVX__)
+    _mm256_stream_pd(reinterpret_cast<double *>(p), a);
+#elif HOL_LANES == 2 && defined(__SSE2__)
+    _mm_stream_pd(reinterpret_cast<double *>(p), a);
+#else
+    *p = a;
+#endif
+}
+HOL_INLINE void settle_stores() {
+#if defined(__SSE2__)
+    _mm_sfence();
+#endif
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -48,7 +48,7 @@ HOL_INLINE void load_atoms(const double *const *p, vec3 *atoms) {
 }
 
 HOL_INLINE vec3 load_atom(const Packed &p) {
-    vec3 a;
+    vec3 a = {};
     for (int i = 0; i < W; ++i) {
         a.x[i] = p.lane[i][0];
         a.y[i] = p.lane[i][1];

@@ -38,7 +38,7 @@ constexpr double steady = 1.0 / 256;
 
 // Largest |coordinate| of each lane. With lists of atoms, r is where the first ones are.
 HOL_NOINLINE vec extent(const Block &block, const Packed &r, const int64_t *const *lists = nullptr) {
-    vec largest;
+    vec largest = {};
     for (int i = 0; i < W; ++i) {
         double x = 0, of_rows[W];
         const auto look = [&](const double *p, long n) {
@@ -86,7 +86,7 @@ public:
         if (!boxed_ && !known_) {
             vec first = {};
             for (int c = 0; c < 3; ++c) {
-                vec component;
+                vec component = {};
                 for (int i = 0; i < W; ++i) component[i] = r_.lane[i][c];
                 first = max(abs(component), first);
             }

@@ -3,9 +3,8 @@
 #define HOLONOMIC_KERNELS_NEWTON_ITERATE_HPP
 
 #include "core/kernels/newton/criterion.hpp"
-#include "core/kernels/newton/single_bond.hpp"
+#include "core/kernels/newton/short.hpp"
 #include "core/kernels/newton/sweeps.hpp"
-#include "core/kernels/newton/two_bonds.hpp"
 
 namespace holonomic::HOL_ISA {
 
@@ -91,7 +90,7 @@ HOL_NOINLINE Outcome try_two_bonds(Newton &x, Carried &carried, mask &longer) {
     return out;
 }
 
-// The same, chains of one bond in closed form, those of two bonds by two_bonds.hpp where that does.
+// The same, chains of one bond in closed form, those of two bonds by short.hpp where that does.
 template <bool uniform_w, bool uniform_a, bool careful>
 HOL_NOINLINE Outcome solve_positions(const Block &block, Newton &x, const PositionsCall &call, Carried &carried,
                                      mask wanted, bool guess) {

@@ -3,8 +3,7 @@
 #ifndef HOLONOMIC_KERNELS_NEWTON_OUTPUTS_HPP
 #define HOLONOMIC_KERNELS_NEWTON_OUTPUTS_HPP
 
-#include "core/kernels/memory/values.hpp"
-#include "core/kernels/memory/virial.hpp"
+#include "core/kernels/memory/pulls.hpp"
 #include "core/kernels/newton/criterion.hpp"
 #include "core/kernels/newton/sweeps.hpp"
 #include "core/kernels/tally.hpp"

@@ -5,7 +5,7 @@
 #define HOLONOMIC_KERNELS_NEWTON_WINDOWS_HPP
 
 #include "core/kernels/isa/choose.hpp"
-#include "core/kernels/memory/values.hpp"
+#include "core/kernels/memory/pulls.hpp"
 #include "core/kernels/memory/windows.hpp"
 #include "core/kernels/newton/attempts.hpp"
 
@@ -18,7 +18,7 @@ template <bool uniform_w, bool uniform_a>
 HOL_NOINLINE void note_worst_of_pieces(const Newton &x, const Window &window, const Lane &lane, bool seams,
                                        Tally &tally) {
     const SegmentBlock &s = window.own;
-    vec first, end;
+    vec first = {}, end = {};
     for (int i = 0; i < W; ++i) {
         first[i] = static_cast<double>(window.skip[i] + (seams || s.from[i] == 0 ? 0 : 1));
         end[i] = static_cast<double>(window.skip[i] + s.own[i] - (seams || i == s.last ? 0 : 1));

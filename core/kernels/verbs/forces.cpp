@@ -1,16 +1,106 @@
-// Acceleration and velocity level of a block of chains: load, eliminate, substitute, store.
-#include "core/kernels/eliminate/forward.hpp"
+// Acceleration level of a block of chains: load and eliminate in one go, up the chains; substitute and store, down.
+#include "core/kernels/eliminate/chain.hpp"
 #include "core/kernels/eliminate/join.hpp"
 #include "core/kernels/eliminate/listed.hpp"
 #include "core/kernels/eliminate/segment_substitute.hpp"
-#include "core/kernels/eliminate/substitute.hpp"
 #include "core/kernels/memory/open.hpp"
-#include "core/kernels/memory/values.hpp"
-#include "core/kernels/memory/virial.hpp"
+#include "core/kernels/memory/packed.hpp"
+#include "core/kernels/memory/prefetch.hpp"
+#include "core/kernels/memory/pulls.hpp"
 #include "core/kernels/verbs/forces_small.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
+
+// Loads the bonds of a block and eliminates: t becomes u. Returns the lanes that plain arithmetic can answer for, and
+// in `calm` those in which nothing can overflow from here on.
+template <int terms, bool uniform, bool boxed>
+HOL_NOINLINE mask forward(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
+                          const System &s, mask &calm) {
+    const Places at(r, v, f);
+    const Source source = {&r, nullptr, nullptr, &box, nullptr};
+    Sweep<uniform, false> sweep{block, source, s};
+    long k0 = 0;
+    for (; k0 + group <= block.n_min; k0 += group) {
+        vec b[group];
+        HOL_UNROLL
+        for (long k = 0; k < group; k += W)
+            load_full_chunk<terms, uniform, boxed, false>(block, box, at, k0 + k, s.D + k0 + k, nullptr, b + k);
+        HOL_UNROLL
+        for (long k = 0; k < group; ++k) sweep.step(k0 + k, b[k], k % 4 == 0, false);
+    }
+    const long ragged_from = k0;
+    for (; k0 < block.n; k0 += W)
+        load_ragged<terms, uniform, boxed, false>(block, box, r, v, f, k0, s.D + k0, nullptr, s.t + k0);
+    for (long k = ragged_from; k < block.n; ++k) sweep.step(k, s.t[k], k % 4 == 0, k >= block.n_min);
+    calm = sweep.calm();
+    return ~sweep.doubt();
+}
+
+// The same with compensated products of unrounded bond vectors: good in all lanes.
+template <int terms, bool uniform, bool boxed>
+HOL_NOINLINE mask forward_careful(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
+                                  const System &s, mask &calm) {
+    load_bonds<terms, uniform, boxed, true>(block, box, r, v, f, s.D, s.D_low, s.t);
+    forward_careful<uniform>(block, s);
+    calm = none();
+    return ~none();
+}
+
+template <int terms, bool careful>
+static inline mask forward_any(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
+                               const System &s, mask &calm) {
+    const bool boxed = box.shape != Box::none;
+    if (!careful && (terms & velocity_squared) && block.unit_masses && !boxed)
+        return forward<terms | unit_mass, true, false>(block, box, r, v, f, s, calm);
+    return choose(
+        [&](auto uniform, auto has_box) {
+            return careful ? forward_careful<terms, uniform, has_box>(block, box, r, v, f, s, calm)
+                           : forward<terms, uniform, has_box>(block, box, r, v, f, s, calm);
+        },
+        block.uniform_w, boxed);
+}
+
+// The backward sweep, and what it gives written at once: G (see store_pulls) to `out`, and factor t to
+// value_out[bond]; either may be absent. For blocks in which all lanes are used and good, and can't overflow (calm()).
+template <Update update>
+HOL_NOINLINE void substitute_and_store(const Block &block, const System &s, const Packed &out, double *value_out,
+                                       vec factor) {
+    const long full = block.n_min / W * W;
+    vec t = {};
+    vec3 after = {};  // t d of the bond behind
+    if (full < block.n) {
+        backward(full, block.n, s.t, s.L);
+        t = s.t[full];
+        after = t * s.D[full];
+    } else {
+        s.L[block.n] = vec{};
+    }
+    // Bonds full .. n-1 and the atoms behind them.
+    const AtomSink<update> sink = {out};
+    if (out.lane[0] && full < block.n) store_pulls<false, true>(block, s.D, s.t, ~none(), sink, full + 1, after);
+    if (value_out) store_bonds(block, s.t, factor, ~none(), value_out, full);
+    for (long k0 = full - W; k0 >= 0; k0 -= W) {
+        vec value[3 * W], bond_value[W];
+        HOL_UNROLL
+        for (long b = W - 1; b >= 0; --b) {
+            const long k = k0 + b;
+            t = mul_add(s.L[k + 1], t, s.t[k]);
+            bond_value[b] = mul_add(factor, t, vec{});  // zeros as +0
+            const vec3 p = t * s.D[k];
+            value[3 * b] = after.x - p.x;
+            value[3 * b + 1] = after.y - p.y;
+            value[3 * b + 2] = after.z - p.z;
+            after = p;
+        }
+        if (out.lane[0]) {
+            if (update == write_ && block.ahead) fetch_ahead(out.lane[0], k0, block.ahead);
+            store_chunk(k0 + 1, value, sink);
+        }
+        if (value_out) store_values<false>(block, k0, bond_value, all_lanes, value_out);
+    }
+    if (out.lane[0]) store_first(after, all_lanes, sink);
+}
 
 // Lists of atoms in packed arrays. True if the block is done; on false nothing was written.
 static inline bool listed_forces(const Block &block, const Lane *lane, const ForcesCall &call, Arena arena) {

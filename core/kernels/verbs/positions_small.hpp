@@ -27,7 +27,7 @@ struct SmallNewton {
         if (masses.take(place)) set(place.lanes(), x);
     }
     HOL_FORCED void set(const Lane *lane, Newton &x) {
-        Arena rest(reinterpret_cast<double *>(lengths), N);
+        Arena rest(reinterpret_cast<double *>(lengths), reinterpret_cast<double *>(lengths + 2 * N));
         static_cast<BondLengths &>(x) = bond_lengths(block, lane, rest, !uniform);
         x.a2 = uniform ? nullptr : lengths;
         x.per_a2 = uniform ? nullptr : lengths + N;

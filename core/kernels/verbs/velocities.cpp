@@ -1,14 +1,12 @@
 // Velocity level of a block of chains: the same solve with d . (v_k - v_{k-1}) on the right; v_i += w_i G_i. Velocities
 // are read once, stay in lanes until they are right, and are written once.
-#include "core/kernels/eliminate/forward.hpp"
 #include "core/kernels/eliminate/join.hpp"
 #include "core/kernels/eliminate/listed.hpp"
 #include "core/kernels/eliminate/projection.hpp"
 #include "core/kernels/eliminate/segment_substitute.hpp"
 #include "core/kernels/memory/open.hpp"
+#include "core/kernels/memory/packed.hpp"
 #include "core/kernels/memory/pulls.hpp"
-#include "core/kernels/memory/values.hpp"
-#include "core/kernels/memory/virial.hpp"
 #include "core/kernels/verbs/velocities_small.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
@@ -60,34 +58,29 @@ HOL_NOINLINE void load_rates(const Block &block, const Packed &v, const Projecti
     }
 }
 
-// The same in a box that changes.
-template <bool uniform, bool boxed>
-HOL_NOINLINE mask forward_velocities_strained(const Block &block, const Box &box, const Packed &r, const Packed &v,
-                                              const Projection &x) {
-    load_bonds<bonds_alone, uniform, boxed, false>(block, box, r, r, r, x.s.D, nullptr, nullptr);
+// The same in a box that changes; or with compensated products of unrounded bond vectors, which are good in all lanes.
+template <bool uniform, bool boxed, bool careful>
+HOL_NOINLINE mask forward_loaded(const Block &block, const Box &box, const Packed &r, const Packed &v,
+                                 const Projection &x) {
+    load_bonds<careful ? none_ : bonds_alone, uniform, boxed, careful>(block, box, r, r, r, x.s.D, x.s.D_low, x.s.t);
     load_rates(block, v, x);
-    const Source source = {&r, nullptr, nullptr, &box, nullptr};
-    Sweep<uniform, true> sweep{block, source, x.s};
-    for (long k = 0; k < block.n; ++k) sweep.step(k, x.s.t[k], k % 4 == 0, k >= block.n_min);
-    return ~sweep.doubt();
-}
-
-// The same with compensated products of unrounded bond vectors: good in all lanes.
-template <bool uniform, bool boxed>
-HOL_NOINLINE mask forward_velocities_careful(const Block &block, const Box &box, const Packed &r, const Packed &v,
-                                             const Projection &x) {
-    load_bonds<none_, uniform, boxed, true>(block, box, r, r, r, x.s.D, x.s.D_low, x.s.t);
-    load_rates(block, v, x);
-    forward_careful<uniform>(block, x.s);
-    return ~none();
+    if constexpr (careful) {
+        forward_careful<uniform>(block, x.s);
+        return ~none();
+    } else {
+        const Source source = {&r, nullptr, nullptr, &box, nullptr};
+        Sweep<uniform, true> sweep{block, source, x.s};
+        for (long k = 0; k < block.n; ++k) sweep.step(k, x.s.t[k], k % 4 == 0, k >= block.n_min);
+        return ~sweep.doubt();
+    }
 }
 
 static inline mask forward_velocities(const Block &block, const Box &box, const Packed &r, const Packed &v,
                                       const Projection &x, bool careful) {
     return choose(
         [&](auto uniform, auto boxed) {
-            if (careful) return forward_velocities_careful<uniform, boxed>(block, box, r, v, x);
-            return x.strain ? forward_velocities_strained<uniform, boxed>(block, box, r, v, x)
+            if (careful) return forward_loaded<uniform, boxed, true>(block, box, r, v, x);
+            return x.strain ? forward_loaded<uniform, boxed, false>(block, box, r, v, x)
                             : forward_velocities<uniform, boxed>(block, box, r, v, x);
         },
         block.uniform_w, box.shape != Box::none);
