@@ -105,7 +105,7 @@ struct VelocitiesCall {
     AtomArray r, v;
     double *lambda;
     bool virial;
-    const double *strain;  // of a box that changes, arithmetic/stretching.hpp; or nullptr
+    const double *strain;  // of a box that changes, arithmetic/vector3.hpp; or nullptr
     Box box;
 };
 

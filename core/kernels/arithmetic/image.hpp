@@ -1,4 +1,4 @@
-// The image of a bond in a periodic box that is shortest.
+// The shortest image of a bond in a periodic box.
 #ifndef HOLONOMIC_KERNELS_ARITHMETIC_IMAGE_HPP
 #define HOLONOMIC_KERNELS_ARITHMETIC_IMAGE_HPP
 

@@ -28,8 +28,8 @@ struct System {
         : D(bonds), D_low(nullptr), t(values), L(multipliers), pivots(reciprocals) {}
 };
 
-// Plain forward sweep, a bond at a time: turns right-hand sides into u = y / P and keeps the multipliers. Within four
-// bonds E is carried as a fraction A / F, which takes the divisions out of the chain of dependences.
+// Plain forward sweep, a bond at a time. It turns right-hand sides into u = y / P and keeps the multipliers. Over four
+// bonds it carries E as a fraction A / F, so that no division waits for the one before.
 template <bool uniform, bool keep_pivots>
 struct Sweep {
     const Block &block;
@@ -41,7 +41,7 @@ struct Sweep {
     vec F1 = {}, rF = splat(1.0);    // P = F1 / F of the bond before; rF = 1 / F1
     vec rP = {}, y = {};
     vec slack = {};  // negative where the cheap tests failed
-    // Sum of |u|, q, 1 / P and w; without |u| where pivots are kept for a second solve, whose end shows an overflow.
+    // Sum of |u|, q, 1 / P and w. With kept pivots |u| is left out: the end of the second solve shows an overflow.
     vec size = {};
 
     inline HOL_FORCED void step(long k, vec b, bool starts_group, bool ragged) {
@@ -84,7 +84,7 @@ struct Sweep {
         q = q1;
     }
 
-    // A joint of nearly orthogonal bonds, or one before which little of E is left.
+    // For joints of nearly orthogonal bonds, and joints with little of E left before them.
     inline HOL_FORCED void delicate_joint(long k, const vec3 &d1, vec remainder, bool ragged, vec &g, vec &X) {
         mask little = less(remainder, vec{});
         if (ragged) little = little & joint(block, k);
@@ -98,8 +98,8 @@ struct Sweep {
     }
 
     // Lanes in which the backward sweep can't overflow: |t_k| |d_k| <= sum_j |u_j| |d_j|, because |l_k| |d_{k-1}| <=
-    // |d_k|, and |t_k| <= |u_k| + |l_{k+1} t_{k+1}|, |l_{k+1}| <= w |d_k| |d_{k+1}| / P_k. Nor have the products of
-    // five pivots that make up A lost digits by underflow.
+    // |d_k|, and |t_k| <= |u_k| + |l_{k+1} t_{k+1}|, |l_{k+1}| <= w |d_k| |d_{k+1}| / P_k. There no product of five
+    // pivots, as A is, has lost digits by underflow either.
     mask calm() const { return less(size, splat(largest_calm)); }
     // Lanes that need careful arithmetic.
     mask doubt() const {
@@ -112,11 +112,12 @@ struct Sweep {
     }
 };
 
-// Products of two pivots underflow where their reciprocals are not below this.
+// Products of two pivots don't underflow if their reciprocals are below this.
 constexpr double largest_reciprocal = 1e140;
 
-// The same with bond vectors D + D_low and compensated products, a division per bond: right for any chain whose numbers
-// don't overflow or underflow; u_0 is NaN where they do. A last bond of infinite q would pass for one without tension.
+// The same with bond vectors D + D_low and compensated products, and a division per bond. It is right for any chain
+// whose numbers don't overflow or underflow; if they do, u_0 becomes NaN. `overflow` looks at q as well: a last bond of
+// infinite q would pass for one without tension.
 template <bool uniform>
 HOL_NOINLINE void forward_careful(const Block &block, const System &s) {
     const long n = block.n;
@@ -145,8 +146,8 @@ HOL_NOINLINE void forward_careful(const Block &block, const System &s) {
     s.t[0] = select(less(size, splat(largest_reciprocal)), s.t[0] + overflow, splat(__builtin_nan("")));
 }
 
-// Backward sweep over the bonds from .. n-1: u becomes t. The last one is added to zero as all others are to something,
-// so that a chain's zeros have the same sign whether or not inert bonds follow it.
+// Backward sweep over the bonds from .. n-1: u becomes t. The last u is added to zero, so that a chain's zeros have the
+// same sign whether or not inert bonds follow.
 HOL_INLINE void backward(long from, long n, vec *u, const vec *L) {
     vec t = u[n - 1] + 0.0;
     u[n - 1] = t;
@@ -156,7 +157,7 @@ HOL_INLINE void backward(long from, long n, vec *u, const vec *L) {
     }
 }
 
-// The forward sweep for another right-hand side, with 1 / P and L of an elimination that has been done.
+// The forward sweep for another right-hand side, with 1 / P and L of an earlier elimination.
 HOL_INLINE void substitute(long n, const System &s) {
     vec y = s.t[0];
     s.t[0] = y * s.pivots[0];

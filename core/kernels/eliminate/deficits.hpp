@@ -1,6 +1,6 @@
-// Metric determinant and Fixman force of a block of chains, theory (24)-(31): elimination on unit bonds, with the
-// deficits e and f that the bonds on either side leave of a row carried instead of the diagonal, so that nothing is
-// subtracted. Products are always compensated: determinants and the inverse have no componentwise scale that forgives
+// Metric determinant and Fixman force of a block of chains, theory (24)-(31): elimination on unit bonds. It carries the
+// deficits e and f, which the bonds on either side leave of a row, instead of the diagonal. So it subtracts nothing.
+// Products are always compensated, because determinants and the inverse have no componentwise scale that would forgive
 // their rounding.
 #ifndef HOLONOMIC_KERNELS_ELIMINATE_DEFICITS_HPP
 #define HOLONOMIC_KERNELS_ELIMINATE_DEFICITS_HPP
@@ -77,7 +77,7 @@ static inline void measure(const Block &block, const Geometry &x) {
         x.delta[k] = w_at<uniform>(block, k) * x.complement[k] + w_at<uniform>(block, k + 1) * x.complement[k + 1];
 }
 
-// Sum of logarithms of products of (1 - x) and of positive numbers, a logarithm per few factors.
+// Sum of the logarithms of factors 1 - x. It takes one logarithm for every few factors.
 struct LogSum {
     static constexpr int group = 8;
     vec sum, product, removed;  // removed = 1 - product, without cancellation
@@ -97,7 +97,7 @@ struct LogSum {
     }
 };
 
-// The same for factors of any size, as mantissas and exponents.
+// The same for factors of any size. It adds up mantissas and exponents apart.
 struct LogSumWide {
     vec sum, mantissas;
     mask exponents;
@@ -131,8 +131,8 @@ struct MetricSums {
     vec log_det, log_det_z;
 };
 
-// Left to right from e of bond 0: e of all bonds, and the logarithms over the bonds first .. end-1 of each lane. Lanes
-// with a pivot that is not positive are taken out of `good`.
+// Goes from left to right, from e of bond 0. Finds e of all bonds, and the logarithms over the bonds first .. end-1 of
+// each lane. Takes lanes with a pivot that is not positive out of `good`.
 template <bool uniform>
 static inline MetricSums eliminate_metric(const Block &block, const Geometry &x, vec e, vec first, vec end,
                                           const MetricCall &call, mask &good) {
@@ -182,7 +182,7 @@ HOL_INLINE vec next_deficit(const Geometry &x, long k, vec f) {
     return x.delta[k - 1] + keep(coupled, p * (f / (f + p)));
 }
 
-// phi of bond k as t times a vector, so that the force on atom k is the pull t_k phi_k - t_{k-1} phi_{k-1}. Zeros are
+// Writes phi of bond k as t times a vector: the force on atom k is the pull t_k phi_k - t_{k-1} phi_{k-1}. Zeros are
 // +0, so that those of a chain's last atom don't depend on whether inert bonds follow.
 HOL_INLINE void turn(const Geometry &x, long k, double kT) {
     const vec3 a = x.normal[k], b = x.normal[k + 1];

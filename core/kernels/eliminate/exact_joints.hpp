@@ -1,4 +1,4 @@
-// Products of nearly orthogonal bonds, computed anew from the coordinates.
+// Computes products of nearly orthogonal bonds anew from the coordinates.
 #ifndef HOLONOMIC_KERNELS_ELIMINATE_EXACT_JOINTS_HPP
 #define HOLONOMIC_KERNELS_ELIMINATE_EXACT_JOINTS_HPP
 
@@ -7,7 +7,7 @@
 
 namespace holonomic::HOL_ISA {
 
-// Where the bond vectors of a block come from: lanes of coordinates, or lists of atoms in the array `base`.
+// Where the coordinates of a block are: in lanes, or anywhere in the array `base`.
 struct Source {
     const Packed *r;
     const double *base;
@@ -21,12 +21,12 @@ struct Source {
     }
 };
 
-// g = d . d' of nearly orthogonal bonds cancels, and what it loses shows where the right-hand side of one bond is
-// larger than its neighbour's by orders of magnitude. Below this cosine g is computed anew from the coordinates: a few
-// in a hundred joints of a coil.
+// g = d . d' of nearly orthogonal bonds cancels. The loss shows if the right-hand sides of the two bonds differ by
+// orders of magnitude. Below this cosine g is computed anew from the coordinates: at a few in a hundred joints of a
+// coil.
 constexpr double small_cosine = 1.0 / 32;
 
-// Its sign bit is set where |cos| is below that; X = q q' (1 - cos^2).
+// The sign bit is set if |cos| is below that; X = q q' (1 - cos^2).
 HOL_INLINE vec not_orthogonal(vec g2, vec X, double cosine = small_cosine) {
     return mul_sub(splat(1 / (cosine * cosine)), g2, X);
 }

@@ -1,4 +1,5 @@
-// Blocks of equally long chains with lists of atoms in packed arrays: up and down the chains.
+// Up and down the chains of a block that have lists of atoms. What needs more than plain arithmetic goes the general
+// way, which copies such chains into staging buffers.
 #ifndef HOLONOMIC_KERNELS_ELIMINATE_LISTED_HPP
 #define HOLONOMIC_KERNELS_ELIMINATE_LISTED_HPP
 
@@ -10,8 +11,8 @@
 
 namespace holonomic::HOL_ISA {
 
-// As forward(), from the lists; of rates, the velocities go to `velocities`. Returns the lanes for which plain
-// arithmetic will do, nothing overflowing.
+// As forward() in verbs/forces.cpp, from the lists. For rates it keeps the velocities in `velocities`. Returns the
+// lanes that plain arithmetic can answer for and in which nothing overflows.
 template <int terms, bool uniform>
 HOL_NOINLINE mask forward_gathered(const Block &block, const Box &box, const AtomLists &at, const double *r,
                                    const double *v, const double *f, const System &s, vec3 *velocities) {

@@ -1,4 +1,4 @@
-// Velocities that are projected: the second sweeps, for what rounding leaves of the rates.
+// Projection of velocities: the sweep down, and a second solve for the rates that rounding leaves.
 #ifndef HOLONOMIC_KERNELS_ELIMINATE_PROJECTION_HPP
 #define HOLONOMIC_KERNELS_ELIMINATE_PROJECTION_HPP
 
@@ -19,15 +19,15 @@ struct Projection {
     Projection(const System &system, vec3 *velocities, vec *rates)
         : s(system), v(velocities), left(rates), strain(nullptr) {}
     System correction() const { return System(s.D, left, s.L, s.pivots); }
-    // Whether nothing has overflowed: what is not finite is carried to the first bond by the backward sweep, and to the
-    // last one by the substitution of the rates.
+    // Lanes in which nothing has overflowed. The backward sweep carries what is not finite to the first bond, the
+    // substitution of the rates to the last one.
     mask finite(long n) const { return HOL_ISA::finite(s.t[0] + left[n - 1]); }
 };
 
 // d . (v_{k+1} - v_k)
 HOL_INLINE vec rate_of(const vec3 &d, const vec3 &v0, const vec3 &v1) { return dot(d, v1 - v0); }
 
-// The backward sweep, u to t, and what it makes of velocities: v_k + w_k (t_{k+1} d_{k+1} - t_k d_k), rounded once.
+// The backward sweep from u to t. It also moves the velocities: v_k + w_k (t_{k+1} d_{k+1} - t_k d_k), rounded once.
 template <bool uniform>
 struct Pull {
     const Block &block;
@@ -51,7 +51,7 @@ struct Pull {
     inline HOL_FORCED vec3 finish() const { return moved(0, vec3{}); }
 };
 
-// That for u in s.t, which becomes t; `left` gets the rates of the velocities as they are rounded now.
+// The first one: u in s.t becomes t, and `left` gets the rates of the velocities as they are rounded now.
 template <bool uniform>
 struct FirstPull {
     Pull<uniform> pull;
@@ -71,9 +71,9 @@ struct FirstPull {
     }
 };
 
-// From u to the velocities. The recursion gives the multipliers to a few roundings of themselves; what that leaves of
-// the rates goes with a second substitution, for the rates of the velocities as they are rounded: this prepares it,
-// unless they are to be rounded to floats. Returns the lanes in which all is finite.
+// From u to the velocities. The recursion gives the multipliers to a few roundings of themselves. A second substitution
+// removes the rates that this leaves, for the velocities as they are rounded. This function prepares it if `twice`,
+// which pays unless the velocities become floats. Returns the lanes in which all is finite.
 template <bool uniform>
 HOL_NOINLINE mask pull_back(const Block &block, const Projection &x, bool twice) {
     long k = block.n;

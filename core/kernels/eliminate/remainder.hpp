@@ -9,9 +9,9 @@ namespace holonomic::HOL_ISA {
 
 // A solution of the recursion E' = w (q' E + w X) / (w q + E), as the fraction E = A / F:
 //     F' = w q F + A,   A' = w q' A + w^2 X F
-// Both may be scaled by one factor at any time, so that no division need wait for another. A chain has one column. A
-// segment has two, its own and that of its separator, (a, c), with the same coefficients. In Newton's matrix, which is
-// not symmetric, q and X are products of old and new bonds.
+// Both may be scaled by one factor at any time, so no division has to wait for another. A chain has one column. A
+// segment has two with the same coefficients: its own, and that of its separator, (a, c). Newton's matrix is not
+// symmetric; there q and X are products of old and new bonds.
 struct Column {
     vec A, F;
     HOL_FORCED vec next(vec wq) const { return mul_add(wq, F, A); }  // F'; the pivot P is F' / F
@@ -21,24 +21,24 @@ struct Column {
     }
 };
 
-// What the cheap tests of doubt look at: negative where E < P / (1 + times). P = F' / F.
+// The cheap tests of doubt look at this: it is negative where E < P / (1 + times). P = F' / F.
 HOL_INLINE vec spare(const Column &e, vec F1, double times) { return mul_sub(splat(1 + times), e.A, F1); }
 
-// How X = |d x d'|^2 is found. It enters E' = w (q' E + w X) / P, and what its error does to E' depends on E: with
+// How X = |d x d'|^2 is found. It enters E' = w (q' E + w X) / P, and E decides how much its error harms E'. With
 // e = E / (w q),
-//  - q q' - g^2 has an error of a few roundings of q q', of which E' gets a few / (e + sin^2): harmless in ordinary
-//    chains, in which e >= least_remainder everywhere but in a row of nearly parallel bonds;
+//  - q q' - g^2 has an error of a few roundings of q q', and E' gets a few / (e + sin^2). That is harmless in ordinary
+//    chains, where e >= least_remainder but in a row of nearly parallel bonds;
 //  - the cross product has a relative error of about 2 eps |d| |d'| / sqrt X from the rounding of d and d', which is
 //    harmless where w sqrt(X q q') <= c (q' E + w X), c = joint_tolerance. This holds for every X if e >= 1 / (4 c^2);
 //  - else the chain needs compensated products of the unrounded bond vectors.
-// The tests are cheap to hot: one multiply-add for the first, one more where it fails, the full one where that fails
+// Each test is tried only if the cheaper one before it fails: a multiply-add, one more, then the exact form below
 // (docs/performance.md).
 constexpr double least_remainder = 1.0 / 4;
 constexpr double joint_tolerance = 8;
 constexpr double spare_of_cross_products = 4 * joint_tolerance * joint_tolerance;
 
-// Exact form of the test for the joints between the n + 1 bonds from D on; joint i is at atom first + i, and E is what
-// is left before D[0].
+// Exact form of the test, for the joints between the n + 1 bonds from D on. Joint i is at atom first + i; E is the
+// remainder before D[0].
 template <bool uniform>
 HOL_NOINLINE mask doubtful_joints(const Block &block, const vec3 *D, long first, long n, vec E) {
     mask doubt = none();
@@ -54,11 +54,11 @@ HOL_NOINLINE mask doubtful_joints(const Block &block, const vec3 *D, long first,
     return doubt;
 }
 
-// Up to this size of |u|, q, 1 / P and w nothing overflows behind the forward sweep, and no product of pivots within it
-// has lost digits by underflow.
+// If |u|, q, 1 / P and w are below this, nothing overflows after the forward sweep, and no product of pivots in it has
+// lost digits by underflow.
 constexpr double largest_calm = 1e60;
 
-// Lanes in which pivots are extreme, whatever the right-hand sides are: the arithmetic must not depend on their unit.
+// Lanes with extreme pivots. Right-hand sides don't count: the arithmetic must not depend on their unit.
 template <bool uniform>
 HOL_NOINLINE mask extreme_pivots(const Block &block, const vec3 *D) {
     vec q = dot(D[0], D[0]), E = w_at<uniform>(block, 0) * q, size = {};

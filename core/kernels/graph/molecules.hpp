@@ -28,7 +28,7 @@ struct Inputs {
     const AtomArray *v, *f;
     const double *rhs;
     bool rates;                      // d.(v_j - v_i) instead of |v_j - v_i|^2
-    const double *strain = nullptr;  // added to rates: arithmetic/stretching.hpp
+    const double *strain = nullptr;  // added to rates: arithmetic/vector3.hpp
 };
 
 template <class V>

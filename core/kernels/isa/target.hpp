@@ -42,10 +42,10 @@
 #define HOL_FORCED __attribute__((always_inline))  // for lambdas and members
 #endif
 #define HOL_INLINE static inline HOL_FORCED  // for functions
-// For what would only get in the way of the common case, were it inlined.
+// For rare cases, which would only make the common one longer.
 #define HOL_NOINLINE static __attribute__((noinline, unused))
 
-// Before a loop of few turns over vectors: left rolled, it would keep them in memory.
+// Stands before a short loop over vectors. Unless it is unrolled, the compiler keeps them in memory.
 #if defined(HOL_SANITIZED) || defined(HOL_TESTS_ONLY)
 #define HOL_UNROLL
 #elif defined(__clang__)

@@ -8,14 +8,14 @@
 
 namespace holonomic::HOL_ISA {
 
-// Vectors per bond that the greediest kernel takes, positions of staged chains with unequal masses and lengths: three
-// arrays (9), masses (4), lengths (2), Newton's method (12), what is put back after a coarse move (4).
+// Vectors per bond that the largest kernel needs. This is positions of staged chains with unequal masses and lengths:
+// three arrays (9), masses (4), lengths (2), Newton's method (12), a copy to go back to after a coarse move (4).
 constexpr int64_t vectors_per_bond = 32;
 
-// For a block of chains of at most n bonds, of what ends with a chunk or with a cache line too.
+// Doubles for a block of chains of at most n bonds. Arrays may end with a whole chunk, or a whole cache line.
 constexpr int64_t scratch_doubles(int64_t n) { return W * vectors_per_bond * (n + 2 * W + 8); }
 
-// Scratch memory handed out front to back. Builds with assertions and with sanitizers end where it does not suffice.
+// Hands out scratch memory from front to back. Builds with assertions or sanitizers stop if there is too little.
 struct Arena {
     double *next;
     const double *end;

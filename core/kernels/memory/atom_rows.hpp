@@ -1,4 +1,4 @@
-// One atom of each lane, a row x y z, from and to memory; what stands behind z is not touched.
+// Reads and writes one atom of each lane, a row x y z. Nothing behind z is touched.
 #ifndef HOLONOMIC_KERNELS_MEMORY_ATOM_ROWS_HPP
 #define HOLONOMIC_KERNELS_MEMORY_ATOM_ROWS_HPP
 
@@ -8,8 +8,8 @@
 namespace holonomic::HOL_ISA {
 
 #if HOL_LANES >= 4 && defined(__AVX2__)
-// Rows are read in the pieces in which they are written, and nothing of the next atom is: a load that overlaps with a
-// store just made would have to wait for it.
+// Rows are read in the same pieces as they are written, and never beyond z. A load that overlaps a recent store in any
+// other way has to wait for it.
 HOL_INLINE void read_rows(const double *const *p, quad &x, quad &y, quad &z) {
     const quad even = _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(p[0])), _mm_loadu_pd(p[2]), 1);
     const quad odd = _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(p[1])), _mm_loadu_pd(p[3]), 1);

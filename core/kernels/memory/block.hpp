@@ -1,6 +1,6 @@
-// A block: up to W chains (or W segments of one), one per lane, read from the caller's memory into interleaved arrays
-// in cache and written back. Packed coordinates are read in place, a transposition of W x W elements at a time; any
-// other layout is first copied into packed staging buffers.
+// A block: up to W chains, or W segments of one chain, one per lane. It is read from the caller's memory into
+// interleaved arrays in cache, and written back. Packed coordinates are read in place and transposed, W x W elements at
+// a time. Any other layout is first copied into packed staging buffers.
 #ifndef HOLONOMIC_KERNELS_MEMORY_BLOCK_HPP
 #define HOLONOMIC_KERNELS_MEMORY_BLOCK_HPP
 
@@ -19,12 +19,12 @@ struct Block {
     long ahead;       // doubles from a lane's vectors to those of the next block, to be fetched early; or 0
     long list_ahead;  // the same for lists of atoms
     bool staged;      // some lanes lie in staging buffers, so all do
-    // Inverse masses are relative to a unit of each lane's own: its inverse mass where that is constant along it,
-    // else 1. So equal masses cost nothing, and are rounded the same way whatever stands in the other lanes.
+    // Each lane has its own unit of inverse masses: its inverse mass if that is the same for all atoms, else 1. So
+    // equal masses cost nothing, and no lane's rounding depends on the others.
     bool uniform_w;       // they are 1 along every lane
     bool unit_masses;     // and so are the masses
     vec unit, mass;       // the unit, and 1 / unit
-    mask movable;         // lanes that do not consist of fixed atoms alone
+    mask movable;         // lanes in which an atom can move
     const vec *w;         // else [n+1], interleaved, in that unit
     const double *w3[W];  // and [len+1][3], each three times
     long first_bond[W];
@@ -38,12 +38,12 @@ struct Block {
     }
 };
 
-// One vector per atom as the lanes of a block see it: [len+1][3], in the caller's memory or staged.
+// One vector per atom of each lane: [len+1][3], in the caller's memory or staged.
 struct Packed {
     double *lane[W];
 };
 
-// n bonds of a chain from bond `from` on, as a chain.
+// Returns n bonds of a chain, from bond `from` on, as a chain.
 HOL_INLINE Lane part_of(const Lane &chain, int64_t from, int64_t n) {
     Lane part = chain;
     part.n_bonds = n;
@@ -55,19 +55,19 @@ HOL_INLINE Lane part_of(const Lane &chain, int64_t from, int64_t n) {
     return part;
 }
 
-// Unit of the inverse masses of a chain, and the one of its atom k in it: see Block.
+// The unit of a chain's inverse masses, and the inverse mass of atom k in it (see Block).
 HOL_INLINE double unit_of(const Lane &lane) { return !lane.w && lane.w_uniform > 0 ? lane.w_uniform : 1.0; }
 HOL_INLINE double relative_w(const Lane &lane, int64_t k) {
     return lane.w ? lane.w[k] : lane.w_uniform > 0 ? 1.0 : 0.0;
 }
 
-// Inverse mass of atom k in the lane's unit.
+// Inverse mass of atom k in each lane's unit.
 template <bool uniform>
 HOL_INLINE vec w_at(const Block &block, long k) {
     return uniform ? splat(1.0) : block.w[k];
 }
 
-// Whether bonds k-1 and k are both there, in each lane.
+// The lanes that have both bonds k-1 and k.
 HOL_INLINE mask joint(const Block &block, long k) { return less(splat(static_cast<double>(k)), block.lengths()); }
 
 }  // namespace holonomic::HOL_ISA

@@ -11,18 +11,18 @@
 
 namespace holonomic::HOL_ISA {
 
-// Bonds of a block of segments, in all lanes: what is kept of them stays in cache, and no segment is so long that it
-// loses digits in taut chains, nor half of the chain, as it would be with one lane. Bonds of a lane's window without
-// its margins: so much stays in the second-level cache.
+// segment_bonds: bonds of a block of segments, in all lanes. So many stay in cache, and no segment is long enough to
+// lose digits in taut chains. With one lane a block is a single segment; 256 keeps it below half of the chain.
+// window_bonds: bonds of a lane's window without its margins. So many stay in the second-level cache.
 constexpr int64_t segment_bonds = W < 2 ? 256 : 1024, window_bonds = 512, longest_margin = 96;
 
-// Bonds of a lane in the longest block that a long chain is cut into; rounding up and neighbours are at most 12 more.
+// Bonds of a lane in the longest block of a long chain. Rounding up and neighbours add at most 12.
 constexpr int64_t longest_segment = segment_bonds / W + 12, longest_window = window_bonds + 12 + 2 * longest_margin;
 constexpr int64_t longest_piece = longest_segment > longest_window ? longest_segment : longest_window;
 
-// How a chain is cut: the W segments of a block have the same number of bonds, a multiple of `step`; only the chain's
-// last one may be shorter. The cut depends on the chain's length alone, and results on neither threads nor other
-// chains.
+// How a chain is cut. The W segments of a block have the same number of bonds, a multiple of `step`; only the last one
+// of the chain may be shorter. The cut depends on nothing but the chain's length, so results depend on neither threads
+// nor other chains.
 struct Cut {
     static constexpr int64_t step = W <= 8 ? 4 : 1;
     int64_t n_bonds, blocks, base,
@@ -41,12 +41,12 @@ struct Cut {
     int64_t longest() const { return rows(0); }
 };
 
-// The last segment of the shortest chain that is cut is the shortest of all. The elimination starts from its separator
-// and the bond behind that.
+// The elimination starts from a separator and the bond behind it, so a segment needs two bonds. The shortest segment of
+// all is the last one of the shortest chain that is cut.
 constexpr int64_t steps_of_shortest = (longest_lane + Cut::step * W) / (Cut::step * W);
 static_assert(longest_lane + 1 - (W - 1) * Cut::step * steps_of_shortest >= 2, "a segment of fewer than two bonds");
 
-// The lanes of block j as chains of their own: with the separators that follow the segments.
+// The lanes of block j as chains. Each includes the separator behind its segment.
 struct SegmentBlock {
     Block block;
     Lane lane[W];

@@ -9,13 +9,13 @@
 
 namespace holonomic::HOL_ISA {
 
-// The lists of the lanes.
+// The lanes' lists of atoms.
 struct AtomLists {
     const int64_t *atoms[W];
     explicit AtomLists(const Lane *lane) {
         for (int i = 0; i < W; ++i) atoms[i] = lane[i].atoms;
     }
-    // Lists of so many atoms each, one behind the other.
+    // Lists of n_atoms each, one behind the other.
     AtomLists(const int64_t *first, int64_t n_atoms) {
         for (int i = 0; i < W; ++i) atoms[i] = first + i * n_atoms;
     }
@@ -43,7 +43,7 @@ HOL_INLINE void scatter(double *base, const Place &at, long k, vec3 a) {
 
 HOL_INLINE double *base_of(const AtomArray &array) { return reinterpret_cast<double *>(array.x); }
 
-// Whether all lanes of a full block have lists.
+// True if the block is full, its chains are equally long, and all have lists.
 HOL_INLINE bool listed(const Block &block, const Lane *lane) {
     if (block.lanes < W || block.n != block.n_min) return false;
     for (int i = 0; i < W; ++i)

@@ -64,8 +64,8 @@ static inline void note_bad(const Block &block, mask bad, Tally &tally) {
         if (which >> i & 1) note_bad(block.chain[i], tally);
 }
 
-// Fills a block with the chains first .. first + lanes - 1 of a unit. In a regular unit it may hold the block before
-// this one: what these have in common is kept.
+// Fills a block with the chains first .. first + lanes - 1 of a unit. In a regular unit `block` may still hold the
+// block before; what both have in common is kept.
 static inline void open_block(const Unit &unit, int64_t first, Block &block, Lane *lane) {
     const int64_t left = unit.count - first;
     block.lanes = left < W ? static_cast<int>(left) : W;
@@ -106,7 +106,7 @@ static inline void open_block(const Unit &unit, int64_t first, Block &block, Lan
         if (lane[i].n_bonds < block.n_min) block.n_min = lane[i].n_bonds;
     }
     for (int i = block.lanes; i < W; ++i) block.len[i] = block.len[0];
-    // Chains of the same length one behind the other: those of the next block often go on where these end.
+    // If chains of one length stand one behind the other, the next block often goes on where this one ends.
     bool consecutive = unit.large && !block.staged && block.lanes == W && block.n == block.n_min;
     for (int i = 1; i < block.lanes; ++i)
         consecutive = consecutive && lane[i].first_atom == lane[0].first_atom + i * (block.n + 1);
@@ -115,7 +115,7 @@ static inline void open_block(const Unit &unit, int64_t first, Block &block, Lan
 
 HOL_INLINE bool in_place(const AtomArray &array, const Block &block) { return array.packed && !block.staged; }
 
-// Where the lanes of a block are: in the caller's array, or in staging buffers if that can't be used in place.
+// Returns where the lanes of a block are: in the caller's array, or in staging buffers if it can't be used in place.
 static inline Packed open(const AtomArray &array, const Block &block, const Lane *lane, Arena &arena, bool read) {
     Packed packed = {};
     if (!array.x) return packed;
@@ -141,9 +141,9 @@ static inline void close(const AtomArray &array, const Block &block, const Lane 
         if (chosen >> i & 1) unstage(array, lane[i], 0, block.len[i], packed.lane[i], add);
 }
 
-// Calls work(block, lane, call, arena, tally) for the blocks of a unit, after small(call, unit, block, first, tally)
-// has done what it can of W and more of them, of units that are not regular without a block; that returns the first
-// chain that it has left.
+// Calls work(block, lane, call, arena, tally) for the blocks of a unit. Before that, small(call, unit, block, first,
+// tally) does as many chains as it can and returns the first one that it leaves. In a unit that is not regular it
+// gets no block.
 template <class Call, class Work, class Small>
 static inline void for_each_block(const Call &call, const Unit &unit, double *scratch, Tally &tally, Work work,
                                   Small small) {

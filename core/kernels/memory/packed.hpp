@@ -1,5 +1,5 @@
-// Reading a block: bond vectors and right-hand sides of W bonds of W chains at a time. Differences are taken of the
-// numbers as they stand in memory, and only those are transposed.
+// Reads a block: bond vectors and right-hand sides of W bonds of W chains at a time. It subtracts numbers as they stand
+// in memory and transposes only the differences.
 #ifndef HOLONOMIC_KERNELS_MEMORY_PACKED_HPP
 #define HOLONOMIC_KERNELS_MEMORY_PACKED_HPP
 
@@ -13,11 +13,11 @@
 
 namespace holonomic::HOL_ISA {
 
-// What the minimum image is taken of: of nothing; of the components as they stand in memory, if the box is
-// orthorhombic; of bond vectors, and then the products have to wait until these are transposed.
+// How minimum images are taken. In an orthorhombic box, of components as they stand in memory. In a triclinic one, of
+// whole bond vectors: then products have to wait until these are transposed.
 enum Images { no_images, images_of_components, images_of_bonds };
 
-// Where a chunk of W bonds is read: the rows of lane i in each array, from the chunk's first atom on.
+// Where a chunk of W bonds is read: r(i) is lane i's row of positions from the chunk's first atom on, likewise v, f.
 struct LaneRows {
     const double *pr[W], *pv[W], *pf[W];
     HOL_FORCED const double *r(int i) const { return pr[i]; }
@@ -28,7 +28,7 @@ struct LaneRows {
 HOL_INLINE uintptr_t number(const double *p) { return reinterpret_cast<uintptr_t>(p); }
 HOL_INLINE const double *pointer(uintptr_t p) { return reinterpret_cast<const double *>(p); }
 
-// The same where lanes are all equally far apart: one address per array does.
+// The same for lanes that are equally far apart. One address per array is enough.
 struct EvenRows {
     uintptr_t at, lane, to_v, to_f;
     EvenRows(const Packed &r, const Packed &v, const Packed &f)
@@ -113,8 +113,8 @@ HOL_INLINE void load_chunk(const Block &block, const Box &box, long k0, const Ro
         load_chunk_with<terms, uniform, images_of_bonds, careful>(block, box, k0, rows, d, low, rhs);
 }
 
-// The lanes' places in the arrays of a call. All arrays are laid out in the same way (all in place or all staged), so
-// that a lane is at the same distance from the first in each.
+// Where the lanes are in the arrays of a call. All arrays are in place, or all are staged, so a lane has the same
+// distance from the first one in each.
 struct Places {
     const double *r, *v, *f;  // of the first lane
     long lane[W];
@@ -142,8 +142,8 @@ HOL_INLINE void load_full_chunk(const Block &block, const Box &box, const Places
     load_chunk<terms, uniform, boxed, careful>(block, box, k0, rows, D, D_low, B);
 }
 
-// The bonds k0 .. k0 + W - 1 where lanes may end: those past the end of a lane are inert, d = (1,0,0), rhs = 0. All W
-// are written, whether or not the block has them.
+// The bonds k0 .. k0 + W - 1 where lanes may end. Bonds past the end of a lane are inert: d = (1,0,0), rhs = 0. All W
+// are written, even if the block has fewer.
 template <int terms, bool uniform, bool boxed, bool careful>
 HOL_NOINLINE void load_ragged(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
                               long k0, vec3 *d, vec3 *low, vec *rhs) {

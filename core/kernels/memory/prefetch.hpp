@@ -8,9 +8,9 @@
 
 namespace holonomic::HOL_ISA {
 
-// Starts to fetch vectors of the next block when this one is at atom k0: as many as `atoms` of each lane. The next
-// block lies `ahead` doubles further on, its lanes one behind the other; they are fetched in that order, as the
-// processor's own prefetchers like it. The addresses may lie behind the array.
+// Starts to fetch vectors of the next block, `atoms` of each lane, while this block is at atom k0. The next block lies
+// `ahead` doubles further on, with its lanes one behind the other. They are fetched in that order because the
+// processor's own prefetchers follow it. Addresses may lie behind the array.
 template <int atoms = W>
 HOL_INLINE void fetch_ahead(const double *first_lane, long k0, long ahead) {
     const uintptr_t address =

@@ -1,4 +1,4 @@
-// Rows: W doubles of one lane as they stand in memory. Many of them are transposed into lanes.
+// Rows: W doubles of one lane as they stand in memory, and their transposition into lanes.
 #ifndef HOLONOMIC_KERNELS_MEMORY_ROWS_HPP
 #define HOLONOMIC_KERNELS_MEMORY_ROWS_HPP
 
@@ -7,8 +7,8 @@
 
 namespace holonomic::HOL_ISA {
 
-// Where W + 1 atoms from atom k on of a vector [len+1][3] can be read: there, or in buffer[3 W + 3], padded with zeros,
-// if some lie past its end.
+// Returns where W + 1 atoms can be read from atom k of a vector [len+1][3] on. If some lie past its end, that is
+// buffer[3 W + 3], padded with zeros.
 HOL_INLINE const double *window(const double *p, long k, long len, bool roomy, double *buffer) {
     if (__builtin_expect(roomy || k + W <= len, 1)) return p + 3 * k;
     const long left = len - k + 1 > 0 ? 3 * (len - k + 1) : 0;
@@ -16,8 +16,8 @@ HOL_INLINE const double *window(const double *p, long k, long len, bool roomy, d
     return buffer;
 }
 
-// Values along the lanes as vectors out[n]: rows[lane][k] as long as all lanes have it, for k < count + more, then
-// value(lane, k).
+// Puts values along the lanes into out[n]. It reads rows[lane][k] while all lanes have one (k < count + more), and
+// calls value(lane, k) from there on.
 template <class Value>
 HOL_INLINE void interleave(const double *const *rows, const long *count, long more, long n, vec *out,
                            const Value &value) {
@@ -57,7 +57,7 @@ HOL_INLINE vec3 load_atom(const Packed &p) {
     return a;
 }
 
-// The atoms k0 + 1 .. k0 + W where lanes may end; anything is read behind their ends.
+// The atoms k0 + 1 .. k0 + W where lanes may end. Vectors behind an end have any value.
 HOL_NOINLINE void load_ragged_atoms(const Block &block, const Packed &p, long k0, vec3 *atoms) {
     double buffer[W][3 * W + 3];
     const double *from[W];

@@ -1,6 +1,7 @@
-// Blocks of W small molecules of N bonds each: the arithmetic of any block, with the number of bonds known to the
-// compiler, so that everything stays in registers. Here is where they stand in the arrays of a call, how they are read
-// and written, and their masses.
+// Blocks of W small molecules of N bonds each. The arithmetic is that of any block, but the compiler knows the number
+// of bonds and keeps everything in registers. Here is where the molecules stand in the arrays of a call, how they are
+// read and written, and their masses. The kernels are in verbs/*_small.hpp. They leave to the general path what needs
+// more than plain arithmetic, and the last molecules of a unit, behind which nothing may be read.
 #ifndef HOLONOMIC_KERNELS_MEMORY_SMALL_HPP
 #define HOLONOMIC_KERNELS_MEMORY_SMALL_HPP
 
@@ -60,7 +61,7 @@ struct ByList : InRow<N>, AtomLists {
 };
 
 // Anywhere, each of a kind of its own: the `used` molecules of a unit that is not regular. Lanes that are left over
-// repeat the first one: what they write is the same.
+// repeat the first molecule, and write the same as its lane.
 template <int N>
 struct ByLanes {
     static constexpr int bonds = N;
@@ -192,8 +193,8 @@ HOL_INLINE void take_bonds(const Box &box, const vec *atoms, vec3 *D) {
         d[c] = mul_add(round(d[c] * box.per_side[c % 3]), splat(box.minus_side[c % 3]), d[c]);
 }
 
-// The bonds of a place, and its atoms where they are needed for these. In a row without a box differences are taken as
-// they stand in memory.
+// The bonds of a place. In a row without a box they are differences of numbers as they stand in memory; elsewhere the
+// atoms are read first.
 template <bool boxed, class Place>
 HOL_INLINE void load_bonds(const Box &box, const Place &place, const double *base, vec *atoms, vec3 *D) {
     constexpr int N = Place::bonds;
@@ -216,12 +217,12 @@ HOL_INLINE void load_bonds(const Box &box, const Place &place, const double *bas
     }
 }
 
-// The masses of blocks: of a regular unit those that have been set; else of the lanes of each place, with what else is
-// asked of a block.
+// The masses of blocks. In a regular unit they have been set. Else they are those of each place's lanes, and `own`
+// holds the other members of a block that the kernels ask for.
 template <class Place>
 struct BlockMasses {
     static constexpr int N = Place::bonds;
-    Block own;  // what is not set here is not asked for
+    Block own;
     const Block &block;
     vec w[N + 1] = {};
     int64_t kind[W];
@@ -241,7 +242,7 @@ struct BlockMasses {
     BlockMasses(const BlockMasses &) = delete;
     BlockMasses &operator=(const BlockMasses &) = delete;
 
-    // Returns whether they are others than before.
+    // Returns whether the masses are others than before.
     HOL_FORCED bool take(const Place &place) {
         if (!Place::loose) return false;
         const Lane *const lane = place.lanes();

@@ -37,7 +37,7 @@ HOL_INLINE void for_each_element(const AtomArray &array, const Lane &lane, long 
     }
 }
 
-// Where a chain's atoms stand one behind the other in arrays of their own for x, y and z; x == nullptr elsewhere.
+// Separate arrays x, y and z in which a chain's atoms stand one behind the other. x == nullptr: another layout.
 struct Apart {
     double *x = nullptr, *y = nullptr, *z = nullptr;
     Apart(const AtomArray &array, const Lane &lane, long from) {
@@ -48,8 +48,8 @@ struct Apart {
     }
 };
 
-// Copies the atoms 0 .. n between x, y, z and packed[n+1][3], four at a time; returns the first one that is left. What
-// the compiler makes of such a loop takes twice as many instructions.
+// Copies the atoms 0 .. n between x, y, z and packed[n+1][3], four at a time. Returns the first atom that is left. A
+// plain loop takes twice as many instructions.
 #if defined(__AVX2__)
 HOL_INLINE long pack(const Apart &from, long n, double *packed) {
     long k = 0;

@@ -1,5 +1,5 @@
-// Right-hand sides of the equations for the multipliers: what they are made of, and each product once. They are
-// computed while a block is read, from components as they stand in memory or from vectors in lanes.
+// Right-hand sides of the equations for the multipliers. They are computed while a block is read, from components as
+// they stand in memory or from vectors in lanes. Each product stands here once.
 #ifndef HOLONOMIC_KERNELS_MEMORY_TERMS_HPP
 #define HOLONOMIC_KERNELS_MEMORY_TERMS_HPP
 
@@ -21,7 +21,7 @@ enum Terms {
     products = velocity_squared | force_difference | rate
 };
 
-// Calls body(terms) with the terms, as a constant, of a right-hand side from velocities and forces if they are there.
+// Calls body(terms), where terms is a constant: that of velocities, of forces, of both or of neither.
 template <class Body>
 HOL_INLINE auto choose_terms(const Body &body, bool velocities, bool forces) {
     return choose(

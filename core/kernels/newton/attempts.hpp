@@ -29,8 +29,8 @@ struct Positions {
         store_pulls<true, uniform_w>(block, x.b, x.tau, which, MoveSink<to_r, to_v>{r, v, 1 / call.dt});
     }
 
-    // After a coarse move, goes on from the coordinates as they are rounded: the moves that remain are small, and so
-    // are their roundings. Puts back the lanes that do not get there, and returns them.
+    // Goes on after a coarse move, from the coordinates as they are rounded. The moves that remain are small, and so
+    // are their roundings. Puts back the lanes in which this fails, and returns them.
     mask settle(mask coarse, Carried &carried, Outcome &out) {
         Arena rest = arena;
         double *saved[W] = {};
@@ -65,7 +65,7 @@ struct Positions {
         return wanted;
     }
 
-    // Moves the atoms of the lanes that have converged and writes what else is wanted of them.
+    // Moves the atoms of the lanes that have converged, and writes their other outputs.
     void finish(Outcome &out, Carried &carried) {
         const mask coarse = coarse_moves<uniform_w>(block, x, carried, out.converged);
         const bool settled = __builtin_expect(any(coarse), 0);

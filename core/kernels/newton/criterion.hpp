@@ -8,35 +8,35 @@ namespace holonomic::HOL_ISA {
 
 constexpr double epsilon = 2.220446049250313e-16;
 
-// A few roundings of D.D - a^2: what the iteration leaves at best in a chain of many bonds.
+// A few roundings of D.D - a^2. In a chain of many bonds the iteration gets no further.
 constexpr double floor_error = 4 * epsilon;
 
-// What is asked for where the coordinates carry it.
+// The error that is asked for if the coordinates can carry it.
 HOL_INLINE double wanted_error(const PositionsCall &call) {
     return call.tolerance > epsilon ? call.tolerance : epsilon;
 }
 
-// At the floor, the solve should have gone far below a rounding, or it gained little. There an error is accepted if the
-// coordinates carry it. `expected`: what the solve should have left.
+// An error is at the floor if the solve should have gone far below a rounding, or gained little. Then it is accepted if
+// the coordinates carry no less. `expected`: the error that the solve should have left.
 HOL_INLINE mask at_floor(vec expected, vec before, vec error) {
     return (less(expected, splat(0.125 * epsilon)) & less_equal(error, splat(floor_error))) |
            less(0.25 * before, error);
 }
 
-// The factors of an earlier D shrink the error by a constant, `rate`, each time; new ones square it at twice the price:
-// they are worth it where the old ones would take more than four solves in all. i: solves so far, less one.
+// The factors of an earlier D shrink the error by the same `rate` each time. New ones square it, at twice the price.
+// They are worth it if the old ones would take more than four solves in all. i: solves so far, less one.
 HOL_INLINE mask worth_renewing(vec error, vec rate, int64_t i) {
     vec expected = error * rate;
     for (int64_t k = i + 2; k < 4; ++k) expected = expected * rate;
     return less(splat(0.1 * epsilon), expected) & less(splat(i < 2 ? -1.0 : 1e-4), rate);
 }
 
-// From an error no larger than this, a solve with factors that have just taken the error down to less than `steady` of
-// itself needs no look at what it has done: it leaves less than a rounding, and could not leave more than this.
+// If the error is no larger than last_error, and the same factors have just taken it below `steady` of itself, nobody
+// needs to look at what the next solve does. It leaves less than a rounding, and at the worst last_error.
 constexpr double last_error = 64 * epsilon;
 constexpr double steady = 1.0 / 256;
 
-// Largest |coordinate| of each lane. With lists of atoms, r is where the first ones are.
+// Largest |coordinate| of each lane. With lists of atoms, r has the first atoms of these.
 HOL_NOINLINE vec extent(const Block &block, const Packed &r, const int64_t *const *lists = nullptr) {
     vec largest = {};
     for (int i = 0; i < W; ++i) {
@@ -57,8 +57,8 @@ HOL_NOINLINE vec extent(const Block &block, const Packed &r, const int64_t *cons
     return largest;
 }
 
-// What the coordinates of each lane carry: each end of a bond is rounded to u |r|, u = half a unit in the last place.
-// The largest coordinate is looked for when a decision hangs on it, which is rare.
+// What error the coordinates of each lane carry. Each end of a bond is rounded to u |r|, u = half a unit in the last
+// place. The largest coordinate is found only when a decision depends on it, which is rare.
 class Carried {
 public:
     Carried(const Block &block, const Newton &x, const PositionsCall &call, const Packed &r,
@@ -79,9 +79,9 @@ public:
     vec accepted() { return max(splat(tolerance_), (8 * u_) * (1.0 + largest_coordinate() / x_.a_min)); }
     vec always_accepted() const { return splat(tolerance_ > 8 * u_ ? tolerance_ : 8 * u_); }
 
-    // Whether the bonds may be accepted as they came: `error` is their |D.D - a^2| in units of `a2`. Without images, no
-    // atom is farther from the first one of its chain than the bonds are long: where this bound, which is on the safe
-    // side by much more than its roundings, excludes it, the largest coordinate is not looked for.
+    // Lanes in which the bonds may be accepted as they came; `error` is their |D.D - a^2| in units of `a2`. Without
+    // images no atom is farther from the first one of its chain than all bonds are long. If this bound already excludes
+    // all lanes, the largest coordinate is not found. The bound is too large by much more than its roundings.
     mask within(vec error, vec a2) {
         if (!boxed_ && !known_) {
             vec first = {};

@@ -1,4 +1,4 @@
-// Newton's method for the positions of a block of chains, by the sweeps of sweeps.hpp: what is done when.
+// Newton's method for the positions of a block of chains: which sweep (sweeps.hpp) is made when.
 #ifndef HOLONOMIC_KERNELS_NEWTON_ITERATE_HPP
 #define HOLONOMIC_KERNELS_NEWTON_ITERATE_HPP
 
@@ -77,12 +77,12 @@ HOL_INLINE void join(Outcome &out, const Outcome &more, mask which) {
     if (more.solves > out.solves) out.solves = more.solves;
 }
 
-// Whether chains of two bonds are tried without looking at the error first: where a loose tolerance saves no solves.
+// True if chains of two bonds are solved without looking at the error first: a loose tolerance would save solves.
 HOL_INLINE bool tries_two_bonds(const PositionsCall &call) {
     return call.max_iterations >= two_bonds_solves && !(call.tolerance > epsilon);
 }
 
-// The lanes of two bonds among `longer`, which keeps those that are left for iterate().
+// Solves the lanes of two bonds in `longer`, and takes out of it those that are done.
 template <bool uniform_w, bool uniform_a>
 HOL_NOINLINE Outcome try_two_bonds(Newton &x, Carried &carried, mask &longer) {
     const Outcome out = solve_two_bonds<uniform_w, uniform_a>(x, carried, longer & less(x.lengths, splat(2.5)));
@@ -90,7 +90,7 @@ HOL_NOINLINE Outcome try_two_bonds(Newton &x, Carried &carried, mask &longer) {
     return out;
 }
 
-// The same, chains of one bond in closed form, those of two bonds by short.hpp where that does.
+// Newton's method on any lanes. Chains of one or two bonds go by short.hpp; iterate() does what that leaves.
 template <bool uniform_w, bool uniform_a, bool careful>
 HOL_NOINLINE Outcome solve_positions(const Block &block, Newton &x, const PositionsCall &call, Carried &carried,
                                      mask wanted, bool guess) {

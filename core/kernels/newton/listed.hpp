@@ -1,6 +1,6 @@
-// Positions of blocks of equally long chains with lists of atoms in packed arrays: the arithmetic of
-// verbs/positions.cpp, on atoms where the lists say. A block in which a lane needs more than the first attempt, or
-// nothing at all, is left to the general path as it came.
+// Positions of a block of chains that have lists of atoms: the arithmetic of attempts.hpp, on atoms read where the
+// lists say. If a lane needs more than the first attempt, or no move at all, the block is left as it came, to the
+// general path.
 #ifndef HOLONOMIC_KERNELS_NEWTON_LISTED_HPP
 #define HOLONOMIC_KERNELS_NEWTON_LISTED_HPP
 

@@ -1,5 +1,4 @@
-// What Newton's method has found, to and from the caller's arrays: a guess, moves, multipliers, the worst bond, the
-// virial.
+// What Newton's method takes from the caller, a guess, and what it writes: multipliers, the worst bond, the virial.
 #ifndef HOLONOMIC_KERNELS_NEWTON_OUTPUTS_HPP
 #define HOLONOMIC_KERNELS_NEWTON_OUTPUTS_HPP
 
@@ -61,8 +60,8 @@ static inline void add_virial(const Block &block, const Newton &x, mask which, d
     add_virial(block.n, x.b, x.tau, which & block.in_use(), splat(1 / (dt * dt)) / block.unit, tally);
 }
 
-// Lanes in which an atom's displacement is the difference of pulls so large that their rounding is more than the
-// coordinates': light atoms between heavy ones in a taut chain. Elsewhere moving the atoms costs one rounding of them.
+// Lanes in which the pulls on an atom are so large that their rounding exceeds that of the coordinates. This happens to
+// light atoms between heavy ones in a taut chain. In all other lanes the move costs one rounding of the coordinates.
 template <bool uniform_w, int fixed = 0>
 HOL_INLINE mask coarse_moves(const Block &block, const Newton &x, Carried &carried, mask which) {
     vec pull = {};

@@ -51,14 +51,14 @@ HOL_INLINE Outcome solve_single_bonds(const Newton &x, Carried &carried, mask wa
 //     P_0 = - (w_0 + w_1) tau_0 b_0 + w_1 tau_1 b_1,   P_1 = - (w_1 + w_2) tau_1 b_1 + w_1 tau_0 b_0:
 // nothing but products of bond vectors is needed to get there.
 
-// Solves that are made, whatever they leave.
+// Number of solves. It does not depend on what they leave.
 constexpr int two_bonds_solves = 4;
-// What the third may leave of the lengths' squares: the fourth leaves about its power 3/2.
+// Largest error that the third may leave in the squared lengths. The fourth leaves about its power 3/2.
 constexpr double two_bonds_left = 1e-12;
-// What must be left of the determinant of M: less, and its factors are worth too little.
+// Least part of m00 m11 that must be left in the determinant of M, so that enough digits are.
 constexpr double two_bonds_part = 1.0 / 64;
 
-// What depends on the bonds: b_k . b_l, D_k . b_l; and inverse masses at the bonds and between them.
+// Products of bonds b_k . b_l and D_k . b_l; sums of inverse masses at the bonds, and the one between them.
 struct TwoBonds {
     vec b00, b01, b11, g00, g01, g10, g11, s0, s1, w;
 
@@ -119,7 +119,7 @@ HOL_INLINE Outcome solve_two_bonds(Newton &x, Carried &carried, mask wanted) {
     const vec sigma0 = length_error<uniform_a>(x, 0, false, D0, worst),
               sigma1 = length_error<uniform_a>(x, 1, false, D1, worst);
     Outcome out = {};
-    // As elimination has it, the error is no number where a reference is none.
+    // As in the elimination, the error is NaN if a reference is.
     const vec before = largest_error<uniform_a>(x, worst, (sigma0 + sigma1) + (m.g00 + m.g11));
     out.untouched = wanted & carried.within(before, one);
     TwoBonds::Factors f = m.factors();

@@ -8,8 +8,8 @@
 
 namespace holonomic::HOL_ISA {
 
-// Calls body(k, ragged) for the bonds of a block upwards, two at a time where all lanes have them. `fixed`: their
-// number if the compiler knows it, else 0.
+// Calls body(k, ragged) for the bonds of a block upwards, two at a time while all lanes have them. `fixed`: the number
+// of bonds if the compiler knows it, else 0.
 template <int fixed, int k = 0, class Body>
 HOL_INLINE void go_up(const Block &block, const Body &body) {
     if constexpr (fixed > 0) {
@@ -26,7 +26,8 @@ HOL_INLINE void go_up(const Block &block, const Body &body) {
     }
 }
 
-// Calls two(k), for bonds k and k - 1, down to the first; the pairs are the same whatever the length of the block.
+// Calls two(k), for bonds k and k - 1, down to the first bond, and one(k) for a bond without partner. The pairs don't
+// depend on the length of the block.
 template <int fixed, int k = fixed - 1, class One, class Two>
 HOL_INLINE void go_down(const Block &block, const One &one, const Two &two) {
     if constexpr (fixed > 0) {
@@ -46,7 +47,7 @@ HOL_INLINE void go_down(const Block &block, const One &one, const Two &two) {
     }
 }
 
-// The bond vectors as the corrections `step` have moved them, one after the other.
+// Gives the bond vectors as the corrections `step` have moved them, one after the other.
 template <bool uniform_w>
 struct Mover {
     vec3 pull, left;  // of the last bond, and the displacement of the atom behind it
@@ -83,10 +84,11 @@ HOL_INLINE vec largest_error(const Newton &x, vec worst, vec y) {
 
 enum Factors { first_factors, renewed_factors, careful_factors };
 
-// Eliminates with the Jacobian at D and substitutes forward; returns the largest error. E is a fraction over four
-// bonds, as in Sweep. first_factors: D is as it was loaded, and all lanes get factors; renewed_factors: D has been
-// moved by the corrections so far, the lanes in `which` get factors; careful_factors: the same with D as it stands, a
-// division per bond, and nothing that cancels.
+// Eliminates with the Jacobian at D and substitutes forward. Returns the largest error. E is a fraction over four
+// bonds, as in Sweep.
+//   first_factors    D is as it was loaded; all lanes get factors
+//   renewed_factors  D moved by the corrections so far; the lanes in `which` get factors
+//   careful_factors  D as it stands; the lanes in `which`; a division per bond, and nothing that cancels
 template <bool uniform_w, bool uniform_a, Factors factors, int fixed = 0>
 HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
     constexpr bool moved = factors == renewed_factors, all = factors == first_factors,
@@ -144,15 +146,15 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
     return largest_error<uniform_a>(x, worst, y + last);
 }
 
-// New factors for the lanes in `which`, out of the way of the common case.
+// The same out of line, so that the common case stays short.
 template <bool uniform_w, bool uniform_a, Factors factors, int fixed = 0>
 HOL_NOINLINE vec renew(const Block &block, const Newton &x, mask which) {
     return eliminate<uniform_w, uniform_a, factors, fixed>(block, x, which);
 }
 
-// Moves the bonds by the corrections `step` and substitutes forward what that leaves of their lengths; returns the
-// largest error. `keep_bonds`: D becomes the moved bonds. `fetch`: atoms of this block, so that those of the next are
-// fetched meanwhile, or nullptr.
+// Moves the bonds by the corrections `step` and substitutes forward the errors that their lengths have then. Returns
+// the largest. `keep_bonds`: D becomes the moved bonds. `fetch`: nullptr, or atoms of this block; those of the next
+// block are fetched meanwhile.
 template <bool uniform_w, bool uniform_a, bool keep_bonds, int fixed = 0>
 HOL_INLINE vec correct(const Block &block, const Newton &x, const double *fetch) {
     Mover<uniform_w> mover(x);
@@ -179,7 +181,7 @@ static inline vec residuals(const Block &block, const Newton &x) {
     return largest_error<uniform_a>(x, worst, y);
 }
 
-// Goes down the chain: adds the corrections of the lanes in `which`, or of all, to tau, which is 0 the first time.
+// Goes down the chain and adds the corrections to tau, which is 0 the first time. `all`: in all lanes, else in `which`.
 template <bool first, bool separate, bool all, int fixed>
 HOL_INLINE void substitute_back(const Block &block, const Newton &x, mask which) {
     vec t = {};
@@ -188,7 +190,7 @@ HOL_INLINE void substitute_back(const Block &block, const Newton &x, mask which)
         if (separate) x.step[k] = change;
         x.tau[k] = first ? change : x.tau[k] + change;
     };
-    // Two bonds depend on the one behind them at once, by the product of their factors.
+    // Two bonds wait for the one behind them together, by the product of their factors.
     go_down<fixed>(
         block,
         [&](long k) HOL_FORCED {
@@ -204,7 +206,7 @@ HOL_INLINE void substitute_back(const Block &block, const Newton &x, mask which)
         });
 }
 
-// A branch, so that the next step does not wait for what this one's errors say of the lanes.
+// Branches on the lanes, so that the next step does not wait for the errors of this one.
 template <bool first, bool separate, int fixed = 0>
 HOL_INLINE void substitute_back(const Block &block, const Newton &x, mask which) {
     if (!separate && __builtin_expect(bits(which) == all_lanes, 1))

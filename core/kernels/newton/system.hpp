@@ -2,9 +2,9 @@
 // reference positions and D the new ones, the corrections w_i (tau_{i+1} b_{i+1} - tau_i b_i) of the atoms must bring
 // every D.D to a^2. Newton's Jacobian is tridiagonal and its elimination the one of the forces, with
 //     q_k = D_k . b_k,   X_{k+1} = (D_k x D_{k+1}) . (b_k x b_{k+1}) = q_k q_{k+1} - (D_{k+1} . b_k) (D_k . b_{k+1}).
-// The bonds are moved from D, in scratch, by all corrections so far: each step is one sweep up the chain, which moves
-// the bonds, finds what is left of D.D - a^2 and substitutes forward at once, and one sweep down. The coordinates are
-// rounded once, at the end. Chains (lanes) that are done take no more corrections while the rest of the block goes on.
+// The bonds are moved from D, in scratch, by all corrections so far. A step is one sweep up the chain and one down. The
+// sweep up moves the bonds, finds D.D - a^2 and substitutes forward. The coordinates are rounded once, at the end.
+// Lanes that are done take no more corrections while the others go on.
 #ifndef HOLONOMIC_KERNELS_NEWTON_SYSTEM_HPP
 #define HOLONOMIC_KERNELS_NEWTON_SYSTEM_HPP
 
@@ -14,19 +14,19 @@
 
 namespace holonomic::HOL_ISA {
 
-// A bond's row: its share of the row before on the way up, 1 / (2 P), its share of the row behind on the way down; and
-// y / (2 P).
+// A bond's row: the factor of the row before on the way up, 1 / (2 P), the factor of the row behind on the way down,
+// and y / (2 P).
 struct Row {
     vec down, half_rP, up, u;
 };
 
-// The lengths of the bonds, a. Errors relative to a^2 are products with 1 / a^2, whether it differs among bonds or not.
+// The lengths a of the bonds. Relative errors are products with 1 / a^2, so that equal and unequal lengths round alike.
 struct BondLengths {
     const vec *a2, *per_a2;  // nullptr: the same for all bonds of a lane
     vec a2_uniform, per_a2_uniform, a_min, a_max, per_a_min;
 };
 
-// `tables`: even if they are the same.
+// `tables`: gives tables even if all lengths are the same.
 static inline BondLengths bond_lengths(const Block &block, const Lane *lane, Arena &arena, bool tables = false) {
     bool uniform = block.n == block.n_min && !tables;
     const double *table[W];

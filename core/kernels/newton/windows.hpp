@@ -1,6 +1,6 @@
-// Position level of one long chain in windows, each solved by the kernel of short chains. That their multipliers solve
-// the chain's equations does not rest on how far a margin is felt: inside a piece it is what Newton's method has found,
-// and where two pieces meet the lengths of the bonds are computed before anything is written.
+// Position level of one long chain in windows. The kernel of short chains solves each. The result does not rest on how
+// far a margin is felt: inside a piece Newton's method has tested all lengths, and where two pieces meet they are
+// tested here before anything is written.
 #ifndef HOLONOMIC_KERNELS_NEWTON_WINDOWS_HPP
 #define HOLONOMIC_KERNELS_NEWTON_WINDOWS_HPP
 
@@ -11,9 +11,9 @@
 
 namespace holonomic::HOL_ISA {
 
-// Notes the largest error of the pieces without their margins, and the first bond that has it, if it is greater than
-// the one in the tally. `seams`: the bonds on either side of a seam count too; elsewhere not all their multipliers are
-// here.
+// Notes the largest error of the pieces without their margins, and the first bond that has it, if it exceeds that of
+// the tally. `seams`: the bonds on either side of a seam count, too. They can't while a neighbour has multipliers that
+// this window does not know.
 template <bool uniform_w, bool uniform_a>
 HOL_NOINLINE void note_worst_of_pieces(const Newton &x, const Window &window, const Lane &lane, bool seams,
                                        Tally &tally) {
@@ -34,7 +34,7 @@ HOL_NOINLINE void note_worst_of_pieces(const Newton &x, const Window &window, co
 
 enum WindowResult { window_failed, window_untouched, window_solved };
 
-// Finds the multipliers of the pieces, for tau[n_bonds] of the chain.
+// Finds the multipliers of the pieces and puts them into tau[n_bonds] of the chain.
 template <bool uniform_w, bool uniform_a>
 static inline WindowResult solve_window(const Window &window, const PositionsCall &call, const BondLengths &a,
                                         const Lane &lane, Arena arena, double *tau, Tally &tally) {

@@ -61,8 +61,8 @@ static inline mask forward_any(const Block &block, const Box &box, const Packed 
         block.uniform_w, boxed);
 }
 
-// The backward sweep, and what it gives written at once: G (see store_pulls) to `out`, and factor t to
-// value_out[bond]; either may be absent. For blocks in which all lanes are used and good, and can't overflow (calm()).
+// The backward sweep, which writes at once what it finds: G (see store_pulls) to `out`, and factor t to
+// value_out[bond]. Either may be absent. For blocks in which all lanes are used, good and calm().
 template <Update update>
 HOL_NOINLINE void substitute_and_store(const Block &block, const System &s, const Packed &out, double *value_out,
                                        vec factor) {
@@ -127,7 +127,7 @@ static inline mask forward_forces(const Block &block, const ForcesCall &call, co
                         call.v.x, call.f.x);
 }
 
-// What a call wants of the lanes in `which`, from u.
+// Writes the outputs of the lanes in `which`, from t.
 static void finish_forces(const Block &block, const ForcesCall &call, const System &s, mask which, const Packed &g,
                           Update update, Arena arena, Tally &tally) {
     if (call.lambda) store_bonds(block, s.t, splat(0.5), which, call.lambda);
@@ -158,7 +158,7 @@ static void forces_block(const Block &block, const Lane *lane, const ForcesCall 
     }
     mask rest = block.in_use() & ~good;
     if (__builtin_expect(any(rest), 0)) {
-        // The lanes that plain arithmetic can't answer for, once more with compensated products.
+        // Once more, with compensated products, for the lanes that plain arithmetic can't answer for.
         forward_forces<true>(block, call, r, v, f, s, calm);
         backward(0, block.n, s.t, s.L);
         const mask mended = finite(s.t[0]) & rest;

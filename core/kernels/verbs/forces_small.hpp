@@ -54,7 +54,7 @@ HOL_INLINE void store_pulls(const vec3 *D, const vec *t, const Place &place, dou
     store_molecules<update>(place, value, out);
 }
 
-// From molecule `first` on; returns the first one that is not done. `given`: what is set of a regular unit.
+// Does molecules from `first` on. Returns the first one that is not done. `given`: the block of a regular unit.
 template <class Place, int terms, bool uniform, bool boxed>
 static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, const Block &given, int64_t first) {
     constexpr int N = Place::bonds;

@@ -10,8 +10,8 @@
 
 namespace holonomic::HOL_ISA {
 
-// The logarithms of all bonds, or of those that are the window's own. Lanes that are bad are taken out of `good`. The
-// forces are the pulls of t and phi, which are left in x.t and x.u.
+// Returns the logarithms of all bonds, or of those that are the window's own. Takes bad lanes out of `good`. The forces
+// are the pulls of t and phi, which it leaves in x.t and x.u.
 template <bool uniform, bool boxed>
 HOL_NOINLINE MetricSums solve_metric(const Block &block, const MetricCall &call, const Packed &r, const Window *window,
                                      const Geometry &x, mask &good) {
@@ -68,8 +68,8 @@ void metric(const MetricCall &call, const Unit &unit, double *scratch, Tally &ta
     for_each_block(call, unit, scratch, tally, metric_block, no_molecules<MetricCall>);
 }
 
-// The forces of a window, until all windows are known to be good: those on the atoms of each piece, as packed vectors,
-// and which of these is the first that is the piece's own.
+// Keeps the forces of a window until all windows are known to be good: packed vectors of each lane's atoms, and which
+// of these is the first that is the piece's own.
 struct KeptForces {
     Packed forces;
     double *first_own;

@@ -1,5 +1,5 @@
-// Position level of one long chain in windows (newton/windows.hpp). Core leaves chains for which they won't do to
-// positions(), as a unit of one.
+// Position level of one long chain in windows (newton/windows.hpp). If they can't do the chain, core hands it to
+// positions() as a unit of one.
 #include "core/kernels/eliminate/segment_substitute.hpp"
 #include "core/kernels/isa/choose.hpp"
 #include "core/kernels/newton/windows.hpp"
@@ -22,7 +22,7 @@ static void move_window(const SegmentBlock &s, int64_t j, const Newton &x, const
     if (j == 0) store_first(times_w<uniform_w>(x, 0, first), 1, sink);
 }
 
-// Writes what the multipliers of window j do; with `moved` false the chain was within the tolerance as it came.
+// Writes the multipliers of window j, and moves its atoms. `moved` is false if the chain came within the tolerance.
 static void finish_window(const PositionsCall &call, const Lane &lane, int64_t j, bool moved, const double *tau,
                           double *scratch, Tally &tally) {
     SegmentBlock s = segment_block(windows(lane.n_bonds), j, lane);
@@ -40,7 +40,7 @@ static void finish_window(const PositionsCall &call, const Lane &lane, int64_t j
     for (int i = 0; i < W; ++i) own_tau[i] = tau + s.from[i];
     interleave(own_tau, s.block.len, 0, s.block.n, x.tau,
                [&](int i, long k) HOL_FORCED { return k < s.block.len[i] ? own_tau[i][k] : 0.0; });
-    // Of what is staged, only the atoms that are written here: others may be being written by other threads.
+    // Stages only the atoms that are written here. Other threads may be writing the others.
     const auto open_own = [&](const AtomArray &array) {
         const Packed packed = open(array, s.block, s.lane, arena, false);
         for (int i = 0; i < W && array.x && !in_place(array, lane); ++i) {
@@ -80,7 +80,7 @@ bool long_positions(const PositionsCall &call, const Lane &lane, const LongTeam 
     Tally sum = empty_tally();
     for_each_window(team, n, sum, [&](int64_t j, double *scratch, Tally &part) {
         if (__atomic_load_n(&seen[window_failed], __ATOMIC_RELAXED)) return;
-        // Which bond has a window's largest error is looked for only if no other's is known to be larger.
+        // A window looks for the bond with its largest error only if no other window is known to have a larger one.
         const double most = worst.seen(), known = most > 0 ? most * (1 - epsilon) : -4.9e-324;
         part.worst = known;
         part.worst_chain = lane.chain;

@@ -9,8 +9,8 @@
 
 namespace holonomic::HOL_ISA {
 
-// What Newton's method knows of blocks of N bonds beside their vectors; `uniform`: only one inverse mass, and one
-// length. Nothing of the vectors' memory goes through a call, so that they stay in registers.
+// Masses and lengths of blocks of N bonds for Newton's method. `uniform`: there is only one inverse mass, and one
+// length. No function that is called gets the memory of the bond vectors, so that these stay in registers.
 template <class Place, bool uniform>
 struct SmallNewton {
     static constexpr int N = Place::bonds;
@@ -37,7 +37,7 @@ struct SmallNewton {
     }
 };
 
-// Vectors of scratch that it takes.
+// Vectors of scratch that Newton's method takes.
 template <int N>
 constexpr int64_t small_scratch = vectors_per_bond *(N + 2 * W + 8);
 
@@ -52,7 +52,7 @@ HOL_INLINE void load_positions(const PositionsCall &call, const Place &place, co
     load_bonds<boxed>(call.box_ref, place, base_of(call.r_ref), atoms, x.b);
     load_bonds<boxed>(call.box, place, base_of(call.r), atoms, x.D);
     if (!boxed) return;
-    vec largest = {};  // is wanted: a bond of a box says nothing of it
+    vec largest = {};  // in a box the lengths of bonds say nothing of coordinates
     HOL_UNROLL
     for (int e = 0; e < 3 * (N + 1); ++e) largest = max(largest, abs(atoms[e]));
     carried.know_largest(largest);
@@ -127,7 +127,7 @@ HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit
     return first;
 }
 
-// From molecule `first` on; returns the first one that is not done.
+// Does molecules from `first` on. Returns the first one that is not done.
 template <class Place, bool uniform, bool boxed>
 HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Unit &unit, Block &given, int64_t first,
                                             Tally &tally) {

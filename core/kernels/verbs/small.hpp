@@ -7,9 +7,9 @@
 
 namespace holonomic::HOL_ISA {
 
-// Calls kernel(place, uniform, boxed) for the molecules from `first` on, place.type being of memory/small.hpp; it
-// returns the first one that is not done. `uniform`: equal masses, and `one_length`. `boxed`: there is a box. Units
-// that are not regular need no block: of these, those that have as many bonds as the first one are done.
+// Calls kernel(place, uniform, boxed) for the molecules from `first` on, where place.type is one of memory/small.hpp.
+// The kernel returns the first molecule that is not done. `uniform`: equal masses, and `one_length`. `boxed`: there may
+// be a box. Units that are not regular need no block: molecules with as many bonds as the first one are done.
 template <class Kernel>
 static inline int64_t any_molecules(const Unit &unit, const Block &block, int64_t first, bool boxed, bool one_length,
                                     const Kernel &kernel) {

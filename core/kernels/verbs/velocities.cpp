@@ -1,5 +1,5 @@
-// Velocity level of a block of chains: the same solve with d . (v_k - v_{k-1}) on the right; v_i += w_i G_i. Velocities
-// are read once, stay in lanes until they are right, and are written once.
+// Velocity level of a block of chains: the solve of the forces with d . (v_k - v_{k-1}) on the right; v_i += w_i G_i.
+// Velocities are read once, stay in lanes until they are right, and are written once.
 #include "core/kernels/eliminate/join.hpp"
 #include "core/kernels/eliminate/listed.hpp"
 #include "core/kernels/eliminate/projection.hpp"
@@ -47,7 +47,7 @@ HOL_NOINLINE mask forward_velocities(const Block &block, const Box &box, const P
     return ~sweep.doubt();
 }
 
-// All velocities, and the rates of the bonds that have been loaded.
+// Loads all velocities, and finds the rates of bonds that have been loaded.
 HOL_NOINLINE void load_rates(const Block &block, const Packed &v, const Projection &x) {
     x.v[0] = load_atom(v);
     for (long k0 = 0; k0 < block.n; k0 += W) load_ragged_atoms(block, v, k0, x.v);
@@ -58,7 +58,7 @@ HOL_NOINLINE void load_rates(const Block &block, const Packed &v, const Projecti
     }
 }
 
-// The same in a box that changes; or with compensated products of unrounded bond vectors, which are good in all lanes.
+// The same in a box that changes; or with compensated products of unrounded bond vectors, which all lanes can rely on.
 template <bool uniform, bool boxed, bool careful>
 HOL_NOINLINE mask forward_loaded(const Block &block, const Box &box, const Packed &r, const Packed &v,
                                  const Projection &x) {
@@ -86,7 +86,7 @@ static inline mask forward_velocities(const Block &block, const Box &box, const 
         block.uniform_w, box.shape != Box::none);
 }
 
-// The second substitution, and the velocities of the lanes in `which` to `out`.
+// Makes the second substitution and writes the velocities of the lanes in `which` to `out`.
 template <bool uniform>
 HOL_NOINLINE void correct_and_store(const Block &block, const Projection &x, mask which, const Packed &out) {
     Pull<uniform> pull{block, x, x.left};

@@ -7,7 +7,7 @@
 
 namespace holonomic::HOL_ISA {
 
-// From molecule `first` on; returns the first one that is not done. `given`: what is set of a regular unit.
+// Does molecules from `first` on. Returns the first one that is not done. `given`: the block of a regular unit.
 template <class Place, bool uniform, bool boxed, bool strained>
 static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &unit, const Block &given,
                                        int64_t first) {
@@ -53,7 +53,7 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
     return first;
 }
 
-// In a box that changes: without one of the library's and one behind the other, as programs have them then.
+// With a rate of the box, only molecules in a row and without images have a kernel: those are what programs have then.
 static inline int64_t small_velocities(const VelocitiesCall &call, const Unit &unit, Block &block, int64_t first,
                                        Tally &) {
     if (!call.r.packed || !call.v.packed || call.virial) return first;
