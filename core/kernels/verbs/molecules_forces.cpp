@@ -3,8 +3,7 @@
 #include "core/kernels/graph/star_linear.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 using namespace graph;
 
@@ -34,5 +33,4 @@ void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *sc
     for_each_block(unit, scratch, work);
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA

@@ -3,8 +3,7 @@
 #include "core/kernels/graph/schedule.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 void molecules_metric(const MetricCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const Schedule &schedule = *unit.schedule;
@@ -19,5 +18,4 @@ void molecules_metric(const MetricCall &call, const MoleculeUnit &unit, double *
     }
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA

@@ -5,8 +5,7 @@
 #include "core/kernels/graph/star_positions.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 using namespace graph;
 
@@ -38,5 +37,4 @@ void molecules_positions(const PositionsCall &call, const MoleculeUnit &unit, do
         for_each_block(unit, scratch, work);
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA

@@ -3,8 +3,7 @@
 #include "core/kernels/graph/velocities.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 using namespace graph;
 
@@ -16,5 +15,4 @@ void molecules_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, 
     if (!do_stars<3>(StarVelocitiesVerb{call, tally}, work, unit, scratch)) for_each_block(unit, scratch, work);
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA
