@@ -1,5 +1,6 @@
-// The core of a molecule, what is left when hanging trees are stripped: its matrix eliminated bond by bond in the order
-// of the plan, in twice the precision. With D on the left and B on the right (theory (58)) it is not symmetric.
+// The core of a molecule is what remains when its hanging trees are stripped. Its matrix is eliminated bond by bond, in
+// the order of the plan and in twice the precision. With D on the left and B on the right (theory (58)) it is not
+// symmetric.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_CORE_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_CORE_HPP
 
@@ -77,7 +78,7 @@ HOL_NOINLINE void eliminate_column(const Core &x, int32_t c, bool &good) {
     good = good && is_finite(r.hi);
 }
 
-// Pivots below this part of their diagonal are refused: in twice the precision, dependent constraints show as 1e-30.
+// Pivots below this part of their diagonal are refused. In twice the precision dependent constraints leave 1e-30.
 constexpr double redundant = 1e-22;
 
 HOL_NOINLINE bool factorize(const Core &x, int32_t &bad) {

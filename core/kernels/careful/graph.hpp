@@ -11,7 +11,7 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace careful {
 
-// At every atom the arms that lead away from the core, its children, are eliminated.
+// Eliminates, at every atom, the arms that lead away from the core: its children.
 struct Graph {
     const Wide3 *D, *B;  // [n_bonds], the same if symmetric
     Wide *up;            // [n_bonds] of hanging bonds: inverse mass that the far side offers
@@ -46,7 +46,7 @@ HOL_NOINLINE bool eliminate_children(const CarefulPlan &plan, Joint &x, int32_t 
     return eliminate_arms(x);
 }
 
-// What atom i, its children eliminated, gives to the elements of its core bonds.
+// Adds atom i, with its children eliminated, to the elements of its core bonds.
 HOL_NOINLINE void add_to_core(const Molecule &m, const Graph &g, const Joint &x, int32_t i, const Wide *L) {
     const int32_t *const arms = m.plan.arms + m.plan.arm_start[i];
     for (int e = 0; e < x.n; ++e) {
@@ -99,7 +99,7 @@ HOL_NOINLINE bool factorize_atom(const Molecule &m, const Graph &g, Joint &x, in
     return true;
 }
 
-// False, with the number of a bond that depends on others, if there is one.
+// Returns false, and the number of the bond, if a bond depends on others.
 HOL_NOINLINE bool factorize(const Molecule &m, const Graph &g, Joint &x, int32_t &bad) {
     const CarefulPlan &plan = m.plan;
     clear(g.core);

@@ -1,5 +1,5 @@
-// ln det Z~ as the sum of the logarithms of pivots over their diagonal elements (theory (61)): of what is taken
-// from the diagonal where that is less than half of it, so that small ones keep their digits.
+// ln det Z~ as the sum of the logarithms of pivots over their diagonal elements (theory (61)). If less than half of the
+// diagonal was taken away, log1p of that part keeps the digits of small logarithms.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_LOGARITHMS_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_LOGARITHMS_HPP
 

@@ -1,6 +1,5 @@
-// Position level of one molecule: Newton's method with the mixed Jacobian (theory (58)) anew at each step. The
-// decisions are those of the chains (newton/iterate.hpp). In twice the precision, differences of large pulls lose
-// nothing.
+// Position level of one molecule: Newton's method with a new mixed Jacobian (theory (58)) at each step. It decides as
+// chains do (newton/iterate.hpp). In twice the precision differences of large pulls lose nothing.
 #include "core/kernels/careful/careful.hpp"
 #include "core/kernels/careful/solution.hpp"
 #include "core/kernels/tally.hpp"

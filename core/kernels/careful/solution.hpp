@@ -1,4 +1,4 @@
-// A molecule loaded, solved, and what is written of it at every level.
+// Loads a molecule, solves it, and writes its outputs at every level.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_SOLUTION_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_SOLUTION_HPP
 

@@ -1,6 +1,5 @@
-// Trees in the two-sided form (theory (52), (54), (59)): over every bond each of its ends sends the other what
-// all bonds behind it leave of the inverse mass, and of the right-hand sides. Nothing large cancels, whatever the
-// masses.
+// Trees in the two-sided form (theory (52), (54), (59)). Over every bond each end sends the other a message: what all
+// bonds behind it leave of the inverse mass and of the right-hand sides. Nothing large cancels, whatever the masses.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_TREES_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_TREES_HPP
 
@@ -70,7 +69,7 @@ HOL_NOINLINE Tree take_tree(const CarefulPlan &plan, Memory &memory) {
     return x;
 }
 
-// A pivot below this part of the diagonal is none: the bond is a combination of others.
+// If a pivot is below this part of the diagonal, its bond is a combination of others.
 constexpr double vanishing = 1e-56;
 
 // Calls body(i) for the atoms from the root outwards.
@@ -95,7 +94,7 @@ HOL_NOINLINE bool send(const Molecule &m, const Tree &tree, Joint &x, int32_t i,
     return true;
 }
 
-// False, with the number of a bond that depends on others, if there is one.
+// Returns false, and the number of the bond, if a bond depends on others.
 HOL_NOINLINE bool factorize(const Molecule &m, const Tree &tree, Joint &x, int32_t &bad) {
     const CarefulPlan &plan = m.plan;
     for (int32_t s = 0; s < plan.n_hanging; ++s) {

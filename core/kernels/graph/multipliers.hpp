@@ -1,7 +1,7 @@
 // Newton's method for the multipliers alone of small molecules. The lengths are right where
 //     2 M tau = sigma + q(tau),   sigma = D.D - a^2,   q_k = |P_k|^2,   P what tau does to the bonds;
-// q is a quadratic form of products of the reference bonds b, and small: nothing cancels, and what a step leaves is
-// known to many more digits than the bonds have.
+// q is a quadratic form of products of the reference bonds b, and small. So nothing cancels, and the error that a step
+// leaves is known to many more digits than the bonds have.
 #ifndef HOLONOMIC_KERNELS_GRAPH_MULTIPLIERS_HPP
 #define HOLONOMIC_KERNELS_GRAPH_MULTIPLIERS_HPP
 
@@ -13,13 +13,13 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// What the third solve may leave of the lengths' squares: the fourth leaves about its power 3/2, which must be far
-// below a rounding.
+// Largest error that the third solve may leave in the squared lengths. The fourth leaves about its power 3/2, which
+// must be far below a rounding.
 constexpr double small_enough = 1e-12;
 
 // A model of N bonds has: sigma[N], per_a2[N];  change(tau), with q[N];  inverse() of 2 M for tau = 0, and
-// inverse(change) for the bonds as changed;  solve(inverse, y, tau). tau in the lanes of `active`, which keeps those
-// that would need more; returns the number of solves. Two with the factors of D leave the third power of the first
+// inverse(change) for the bonds as changed;  solve(inverse, y, tau). Finds tau in the lanes of `active`, which keeps
+// the lanes that need more. Returns the number of solves. Two with the factors of D leave the third power of the first
 // error e, one with new factors its square, one more with the same factors e^9.
 template <int N, class V, class Model>
 HOL_INLINE int64_t solve_for_multipliers(const Model &x, V *tau, MaskOf<V> &active) {

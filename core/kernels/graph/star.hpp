@@ -1,6 +1,5 @@
-// An atom, the centre, with bonds to N others and nothing else: positions of CH3, NH3, CH4. Bond k points from the
-// centre to atom k of the others, which ascend, and so is bond k of the molecule. For multipliers.hpp, bond k becomes
-// D_k + P_k,
+// Positions of stars: a centre with bonds to N other atoms, as in CH3, NH3, CH4. Bond k points from the centre to atom
+// k of the others. They ascend, so it is also bond k of the molecule. For multipliers.hpp, bond k becomes D_k + P_k,
 //     P_k = - w_k tau_k b_k - w_c sum of tau_l b_l.
 #ifndef HOLONOMIC_KERNELS_GRAPH_STAR_HPP
 #define HOLONOMIC_KERNELS_GRAPH_STAR_HPP

@@ -11,7 +11,7 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// The centre of a star of N bonds without fixed atoms; -1 if a shape is none.
+// Returns the centre of a star of N bonds without fixed atoms, or -1 if the shape is none.
 template <int N>
 static inline int centre_of_star(const Schedule &s) {
     if (s.type != Schedule::tree || s.n_bonds != N) return -1;
@@ -25,7 +25,7 @@ static inline int centre_of_star(const Schedule &s) {
     return -1;
 }
 
-// To the front, and back to its place.
+// Moves the centre to the front, or back to its place.
 template <class V>
 HOL_NOINLINE void move_centre(Vector3<V> *atoms, int from, int to) {
     const Vector3<V> c = atoms[from];
@@ -88,8 +88,8 @@ struct StarMasses {
     }
 };
 
-// Stars of N bonds: of a block, verb.solve(atoms, lane, kind, lanes in use) returns the lanes that are done; `general`
-// does any molecule. verb.in_steps: each step waits for the one before, which two blocks side by side make up for.
+// Stars of N bonds. verb.solve(atoms, lane, kind, lanes in use) does a block and returns the lanes that are done;
+// `general` does any molecule. verb.in_steps: each step waits for the one before, so two blocks go side by side.
 template <int N, class Verb, class General>
 struct StarWork {
     const Verb &verb;
@@ -118,7 +118,7 @@ struct StarWork {
     }
 };
 
-// As many as fill two blocks at a time; returns how many.
+// Does as many as fill two blocks at a time. Returns how many.
 template <class Work>
 static inline int64_t do_twins(const MoleculeUnit &unit, double *scratch, Work &work) {
     constexpr int lanes = Width<Twin>::lanes;

@@ -1,5 +1,5 @@
 // Forces and velocities of stars of three bonds, CH3 and NH3, in registers: the equations of joint.hpp with the centre
-// as the root and S^-1 in closed form. What that does not answer for is left to the general path.
+// as the root and S^-1 in closed form. Lanes for which that is not good enough go the general way.
 #ifndef HOLONOMIC_KERNELS_GRAPH_STAR_LINEAR_HPP
 #define HOLONOMIC_KERNELS_GRAPH_STAR_LINEAR_HPP
 

@@ -1,4 +1,4 @@
-// Positions of stars: a block in registers; what that does not answer for is left to the general path.
+// Positions of stars, a block in registers. Lanes that need more go the general way.
 #ifndef HOLONOMIC_KERNELS_GRAPH_STAR_POSITIONS_HPP
 #define HOLONOMIC_KERNELS_GRAPH_STAR_POSITIONS_HPP
 
@@ -44,7 +44,7 @@ struct StarPositions {
         }
     }
 
-    // Lanes in which pulls on an atom are so large that their rounding is more than the coordinates'.
+    // Lanes in which the pulls on an atom are so large that their rounding exceeds that of the coordinates.
     inline HOL_FORCED MaskOf<V> coarse_moves(const V *tau, V largest) const {
         V pull = {};
         HOL_UNROLL

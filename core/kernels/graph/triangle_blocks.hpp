@@ -1,4 +1,4 @@
-// Units of triangles, a block after the other, at each level.
+// Goes through units of triangles, block by block, at each level.
 #ifndef HOLONOMIC_KERNELS_GRAPH_TRIANGLE_BLOCKS_HPP
 #define HOLONOMIC_KERNELS_GRAPH_TRIANGLE_BLOCKS_HPP
 
@@ -25,7 +25,7 @@ struct TrianglesOfUnit {
     int64_t molecule(int i) const { return unit.lanes[0].molecule + first + i; }
 };
 
-// Masses and lengths of a block, kept for the next one where that has the same.
+// Masses and lengths of a block. The next block keeps them if it has the same.
 template <class V>
 struct TriangleKind {
     TriangleMasses<V> masses;

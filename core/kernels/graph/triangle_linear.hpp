@@ -105,8 +105,8 @@ HOL_INLINE unsigned project_triangles(const VelocitiesCall &call, int used, cons
     if (call.lambda) write_triangle_bonds<layout>(at, t, Width<V>::all(0.5), call.lambda, good);
     if (call.virial) add_bonds_virial<3>(x.d, t, 1, good, tally);
     if (!call.v.is_float) {
-        // Where the triangle is so nearly straight that the first time left as much as there was, what it left is
-        // rounding, and the second time would only enlarge it.
+        // In a nearly straight triangle the first solve may leave as much as there was. That is rounding, and the
+        // second solve would only enlarge it.
         const V after = measure();
         project(less(after, 0.25 * before));
     }

@@ -91,7 +91,7 @@ struct TriangleNewton {
         return measure();
     }
 
-    // Lanes in which pulls on an atom are so large that their rounding is more than the coordinates'.
+    // Lanes in which the pulls on an atom are so large that their rounding exceeds that of the coordinates.
     MaskOf<V> coarse_moves(V largest_coordinate) const {
         const V p0 = max(m.w[0], m.w[1]) * abs(tau[0]), p1 = max(m.w[1], m.w[2]) * abs(tau[1]),
                 p2 = max(m.w[2], m.w[0]) * abs(tau[2]);

@@ -1,5 +1,5 @@
-// Two blocks of W molecules side by side, as if there were 2 W lanes: while one waits for a quotient, or for the end of
-// a chain of products, the other is worked on.
+// Two blocks of W molecules side by side, as if there were 2 W lanes. While one waits for a quotient, or for the end of
+// a chain of products, the processor works on the other.
 #ifndef HOLONOMIC_KERNELS_GRAPH_TWIN_HPP
 #define HOLONOMIC_KERNELS_GRAPH_TWIN_HPP
 
@@ -15,7 +15,7 @@ struct TwinMask {
     mask a, b;
 };
 
-// Whether it is of use: the bits of its masks fit, and a single lane waits for nothing that a second one could fill.
+// True if twins pay: the bits of their masks fit, and there is more than one lane.
 constexpr bool twins = W > 1 && W <= 8;
 
 HOL_INLINE Twin operator+(const Twin &x, const Twin &y) { return {x.a + y.a, x.b + y.b}; }
