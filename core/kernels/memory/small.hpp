@@ -193,12 +193,12 @@ HOL_INLINE void take_bonds(const Box &box, const vec *atoms, vec3 *D) {
         d[c] = mul_add(round(d[c] * box.per_side[c % 3]), splat(box.minus_side[c % 3]), d[c]);
 }
 
-// The bonds of a place. In a row without a box they are differences of numbers as they stand in memory; elsewhere the
-// atoms are read first.
+// The bonds of a place. In a row without a box they are differences of numbers as they stand in memory, if that
+// transposes fewer vectors; elsewhere the atoms are read first.
 template <bool boxed, class Place>
 HOL_INLINE void load_bonds(const Box &box, const Place &place, const double *base, vec *atoms, vec3 *D) {
     constexpr int N = Place::bonds;
-    if constexpr (Place::in_row && !boxed) {
+    if constexpr (Place::in_row && !boxed && whole<3 * N> < vectors_of<N>) {
         vec d[whole<3 * N>];
         HOL_UNROLL
         for (int j = 0; j < whole<3 * N> / W; ++j) {

@@ -41,16 +41,26 @@ struct SmallNewton {
 template <int N>
 constexpr int64_t small_scratch = vectors_per_bond *(N + 2 * W + 8);
 
+// What is asked of a call for every block, found once.
+struct SmallCall {
+    const Box &box_ref, &box;
+    double *r_ref, *r, *v, *lambda;
+    double per_dt, factor;  // of multipliers, without the unit of masses
+    explicit SmallCall(const PositionsCall &c)
+        : box_ref(c.box_ref), box(c.box), r_ref(base_of(c.r_ref)), r(base_of(c.r)), v(base_of(c.v)), lambda(c.lambda),
+          per_dt(1 / c.dt), factor(0.5 / (c.dt * c.dt)) {}
+};
+
 // The bond vectors of a block, and its atoms as they come.
 template <bool boxed, class Place>
-HOL_INLINE void load_positions(const PositionsCall &call, const Place &place, const Newton &x, vec *atoms,
+HOL_INLINE void load_positions(const SmallCall &call, const Place &place, const Newton &x, vec *atoms,
                                Carried &carried) {
     constexpr int N = Place::bonds;
-    place.fetch_next(base_of(call.r_ref));
-    place.fetch_next(base_of(call.r));
-    place.fetch_next(base_of(call.v));
-    load_bonds<boxed>(call.box_ref, place, base_of(call.r_ref), atoms, x.b);
-    load_bonds<boxed>(call.box, place, base_of(call.r), atoms, x.D);
+    place.fetch_next(call.r_ref);
+    place.fetch_next(call.r);
+    place.fetch_next(call.v);
+    load_bonds<boxed>(call.box_ref, place, call.r_ref, atoms, x.b);
+    load_bonds<boxed>(call.box, place, call.r, atoms, x.D);
     if (!boxed) return;
     vec largest = {};  // in a box the lengths of bonds say nothing of coordinates
     HOL_UNROLL
@@ -60,11 +70,10 @@ HOL_INLINE void load_positions(const PositionsCall &call, const Place &place, co
 
 // Moves the atoms of a block, and writes its multipliers.
 template <bool uniform, class Place>
-HOL_INLINE void write_positions(const PositionsCall &call, const Place &place, const Block &block, const Newton &x,
+HOL_INLINE void write_positions(const SmallCall &call, const Place &place, const Block &block, const Newton &x,
                                 const vec *atoms) {
     constexpr int N = Place::bonds;
-    double *const r = base_of(call.r), *const v = base_of(call.v);
-    const double per_dt = 1 / call.dt;
+    double *const r = call.r, *const v = call.v;
     vec move[vectors_of<N>] = {}, moved[vectors_of<N>];
     vec3 before = {};
     HOL_UNROLL
@@ -78,9 +87,10 @@ HOL_INLINE void write_positions(const PositionsCall &call, const Place &place, c
     if constexpr (Place::in_row) {
         typedef typename Place::Lanes Lanes;
         if (v)
-            store_rows<3 * (N + 1)>(move, MoveSink<true, true, Lanes>{place.lanes_of(r), place.lanes_of(v), per_dt});
+            store_rows<3 * (N + 1)>(move,
+                                    MoveSink<true, true, Lanes>{place.lanes_of(r), place.lanes_of(v), call.per_dt});
         else
-            store_rows<3 * (N + 1)>(move, MoveSink<true, false, Lanes>{place.lanes_of(r), {}, per_dt});
+            store_rows<3 * (N + 1)>(move, MoveSink<true, false, Lanes>{place.lanes_of(r), {}, call.per_dt});
     } else {
         HOL_UNROLL
         for (int e = 0; e < 3 * (N + 1); ++e) moved[e] = atoms[e] + move[e];
@@ -88,11 +98,11 @@ HOL_INLINE void write_positions(const PositionsCall &call, const Place &place, c
         if (v) {
             load_molecules(place, v, moved);
             HOL_UNROLL
-            for (int e = 0; e < 3 * (N + 1); ++e) moved[e] = mul_add(move[e], splat(per_dt), moved[e]);
+            for (int e = 0; e < 3 * (N + 1); ++e) moved[e] = mul_add(move[e], splat(call.per_dt), moved[e]);
             store_molecules<write_>(place, moved, v);
         }
     }
-    if (call.lambda) store_multipliers(place, x.tau, splat(0.5 / (call.dt * call.dt)) / block.unit, call.lambda);
+    if (call.lambda) store_multipliers(place, x.tau, splat(call.factor) / block.unit, call.lambda);
 }
 
 // Single bonds, two blocks at a time: while one waits for its root and its quotient, the other is worked on. Ends
@@ -100,6 +110,7 @@ HOL_INLINE void write_positions(const PositionsCall &call, const Place &place, c
 template <class Place, bool uniform, bool boxed>
 HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit &unit, const Block &given,
                                            int64_t first, Tally &tally) {
+    const SmallCall arrays(call);
     vec memory[2][small_scratch<1>];
     Arena arena_a(reinterpret_cast<double *>(memory[0]), 1), arena_b(reinterpret_cast<double *>(memory[1]), 1);
     Newton x_a(1, arena_a), x_b(1, arena_b);
@@ -109,18 +120,18 @@ HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit
         const Place at_a(unit, first, W), at_b(unit, first + W, n);
         a.take(at_a, x_a);
         b.take(at_b, x_b);
-        const Packed r_a = first_atoms(at_a, base_of(call.r)), r_b = first_atoms(at_b, base_of(call.r));
+        const Packed r_a = first_atoms(at_a, arrays.r), r_b = first_atoms(at_b, arrays.r);
         Carried carried_a(a.block, x_a, call, r_a, at_a.lists()), carried_b(b.block, x_b, call, r_b, at_b.lists());
         vec atoms_a[vectors_of<1>], atoms_b[vectors_of<1>];
-        load_positions<boxed>(call, at_a, x_a, atoms_a, carried_a);
-        load_positions<boxed>(call, at_b, x_b, atoms_b, carried_b);
+        load_positions<boxed>(arrays, at_a, x_a, atoms_a, carried_a);
+        load_positions<boxed>(arrays, at_b, x_b, atoms_b, carried_b);
         const mask done = solve_single_bonds<uniform>(x_a, carried_a, first_lanes(W)).converged &
                           solve_single_bonds<uniform>(x_b, carried_b, first_lanes(W)).converged;
         if (any(~done | coarse_moves<uniform, 1>(a.block, x_a, carried_a, done) |
                 coarse_moves<uniform, 1>(b.block, x_b, carried_b, done)))
             break;
-        write_positions<uniform>(call, at_a, a.block, x_a, atoms_a);
-        write_positions<uniform>(call, at_b, b.block, x_b, atoms_b);
+        write_positions<uniform>(arrays, at_a, a.block, x_a, atoms_a);
+        write_positions<uniform>(arrays, at_b, b.block, x_b, atoms_b);
         tally.n_corrected += W + n;
         if (tally.iterations < 1) tally.iterations = 1;
     }
@@ -132,6 +143,7 @@ template <class Place, bool uniform, bool boxed>
 HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Unit &unit, Block &given, int64_t first,
                                             Tally &tally) {
     constexpr int N = Place::bonds;
+    const SmallCall arrays(call);
     vec memory[small_scratch<N>];
     Arena arena(reinterpret_cast<double *>(memory), N);
     Newton x(N, arena);
@@ -142,10 +154,10 @@ HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Uni
     for (int64_t n; (n = Place::next(first, end)) > 0; first += n) {
         const Place place(unit, first, n);
         newton.take(place, x);
-        const Packed r = first_atoms(place, base_of(call.r));
+        const Packed r = first_atoms(place, arrays.r);
         Carried carried(block, x, call, r, place.lists());
         vec atoms[vectors_of<N>];
-        load_positions<boxed>(call, place, x, atoms, carried);
+        load_positions<boxed>(arrays, place, x, atoms, carried);
         Outcome out;
         if (N == 1)
             out = solve_single_bonds<uniform>(x, carried, all);
@@ -159,7 +171,7 @@ HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Uni
             for (int i = 0; i < W; ++i) reported.chain[i] = place.chain_of(i);
             note_worst<uniform, uniform>(reported, x, call, all, out.error, tally);
         }
-        write_positions<uniform>(call, place, block, x, atoms);
+        write_positions<uniform>(arrays, place, block, x, atoms);
         tally.n_corrected += n;
         if (out.solves > tally.iterations) tally.iterations = out.solves;
     }
