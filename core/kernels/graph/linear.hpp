@@ -128,7 +128,8 @@ struct Linear {
     MaskOf<V> refine() {
         typedef MaskOf<V> Mask;
         const Schedule &s = x.s;
-        const Mask proven = x.in_use() & proven_lanes(x, core, equations, Width<V>::all(1));
+        const Mask proven =
+            worth_a_proof(s) ? x.in_use() & proven_lanes(x, core, equations, Width<V>::all(1)) : Width<V>::none();
         if (!any(x.in_use() & ~proven)) return x.in_use();
         find_unrounded(x, equations);
         for (int32_t k = 0; k < s.n_bonds; ++k) t[k] = x.row[k].t;

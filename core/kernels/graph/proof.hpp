@@ -35,6 +35,10 @@ struct Backward {
     V size, tension, R;  // |d|, |t| |d|, of the core |L| P |L^T| |t|
 };
 
+// Whether it is likely to succeed in all lanes of a block, so that the look at it pays: in a few dozen bonds, half of
+// them in trees at least. In strips of triangles it never does.
+HOL_INLINE bool worth_a_proof(const Schedule &s) { return s.n_bonds <= 64 && 2 * s.n_core <= s.n_bonds; }
+
 template <class V>
 HOL_INLINE Vector3<V> absolute(const Vector3<V> &a) {
     return {abs(a.x), abs(a.y), abs(a.z)};
