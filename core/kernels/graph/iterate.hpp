@@ -55,11 +55,13 @@ constexpr double steady = 1.0 / 256;
 // Newton's method in the lanes of `wanted`, from tau = 0 or, with `guess`, from tau as it is where that is better.
 // System:
 //   V open()                       largest error of the bonds as they came
+//   void first_factors()           with these
 //   void forget(mask)              tau = 0
-//   void factorize(mask)           with the bonds as they are
+//   void factorize(mask)           with the bonds as they have been moved
 //   void solve(mask)               corrections for what is left, added to tau
 //   V move()                       the bonds as tau moves them, and their largest error
-template <class V, class System>
+// look_last: also after the last solve, for what move() leaves of it.
+template <class V, bool look_last, class System>
 HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const PositionsCall &call, MaskOf<V> wanted) {
     typedef MaskOf<V> Mask;
     const Mask none = Width<V>::none();
@@ -74,18 +76,20 @@ HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const Posi
         error = newton.move();
         out.converged = active & less_equal(error, done);
         active = active & ~out.converged;
+        if (any(active)) newton.factorize(~none);
     } else {
         newton.forget(~none);
+        if (any(active)) newton.first_factors();
     }
     V rate = error;  // new factors square the error
     Mask proven = none;
-    if (any(active)) newton.factorize(~none);  // the first ones: there is nothing yet that other lanes keep
     for (int i = 0; i < call.max_iterations && any(active); ++i) {
         newton.solve(active);
         ++out.solves;
         const Mask last = active & proven & less(rate * error, Width<V>::all(0.125 * rounding));
         out.converged = out.converged | last;  // whatever the other lanes have to do
         active = active & ~last;
+        if (!look_last && !any(active) && !call.report) break;
         const V before = error, expected = rate * before;
         error = newton.move();
         // At the floor: the solve should have gone far below a rounding, or it gained little, and what is left is no

@@ -1,8 +1,8 @@
-// Reads a block of molecules: bond vectors and right-hand sides at their places, from the roots down, so that every
-// atom is read once.
+// Reads a block of molecules: its atoms, each once, then bond vectors and right-hand sides at their places.
 #ifndef HOLONOMIC_KERNELS_GRAPH_LOAD_HPP
 #define HOLONOMIC_KERNELS_GRAPH_LOAD_HPP
 
+#include "core/kernels/graph/atom_groups.hpp"
 #include "core/kernels/graph/linear.hpp"
 
 namespace holonomic {
@@ -18,39 +18,42 @@ template <Layout layout, int terms, class V>
 struct Loader {
     Linear<V> &z;
 
-    // The atom at a slot, kept for the bonds below it.
-    HOL_INLINE void read_atom(const Loader &me, int32_t slot, Vector3<V> &r, Vector3<V> &v, Vector3<V> &f) {
-        const int32_t atom = me.z.x.s.atom_of[slot];
-        r = read<layout>(*me.z.x.r, me.z.x.at, atom);
-        if (terms & (squares | rates)) v = read<layout>(*me.z.x.in.v, me.z.x.at, atom);
-        if (terms & pulls) f = read<layout>(*me.z.x.in.f, me.z.x.at, atom);
+    // Atoms first .. first + count - 1 as the caller has them, to their slots.
+    template <int count>
+    HOL_INLINE void read_atoms(const Loader &me, int32_t first) {
+        const Molecules<V> &x = me.z.x;
+        const Equations<V> &e = me.z.equations;
+        const int32_t *const slot = x.s.slot_of + first;
+        Vector3<V> a[count] = {};
+        const auto take = [&](const AtomArray &array, Vector3<V> *to) HOL_FORCED {
+            read_group<layout, count>(array, x.at, first, a);
+            HOL_UNROLL
+            for (int j = 0; j < count; ++j) to[slot[j]] = a[j];
+        };
+        take(*x.r, e.r);
+        if (terms & (squares | rates)) take(*x.in.v, e.velocity);
+        if (terms & pulls) take(*x.in.f, e.force);
     }
-    HOL_INLINE void keep_atom(const Loader &me, int32_t slot, const Vector3<V> &r, const Vector3<V> &v,
-                              const Vector3<V> &f) {
-        me.z.equations.r[slot] = r;
-        if (terms & (squares | rates)) me.z.equations.velocity[slot] = v;
-        if (terms & pulls) me.z.equations.force[slot] = f;
-    }
+    HOL_INLINE void read_atom(const Loader &me, int32_t slot) { read_atoms<1>(me, me.z.x.s.atom_of[slot]); }
 
-    // The bond to an atom r, v, f from the atom in slot `from`; `row` gets d, q and t.
-    HOL_INLINE void make_row(const Loader &me, int32_t place, int32_t from, V w, const Vector3<V> &r,
-                             const Vector3<V> &v, const Vector3<V> &f) {
+    // The bond between the atoms in two slots; `row` gets d, q and t.
+    HOL_INLINE void make_row(const Loader &me, int32_t place, int32_t from, int32_t to) {
         const Equations<V> &e = me.z.equations;
         BondRow<V> &row = me.z.x.row[place];
-        Vector3<V> d = r - e.r[from], unused = {};
+        Vector3<V> d = e.r[to] - e.r[from], unused = {};
         take_image<false>(*me.z.x.box, d, unused);
         V b = {};
         if (terms & squares) {
-            const Vector3<V> dv = v - e.velocity[from];
+            const Vector3<V> dv = e.velocity[to] - e.velocity[from];
             b = dot(dv, dv);
         }
         if (terms & rates) {
-            b = dot(d, v - e.velocity[from]);
+            b = dot(d, e.velocity[to] - e.velocity[from]);
             if (me.z.x.in.strain) b = b + stretching(me.z.x.in.strain, d);
         }
         if (terms & pulls) {
-            const V w0 = me.z.x.w[from];
-            const Vector3<V> f0 = e.force[from];
+            const V w0 = me.z.x.w[from], w = me.z.x.w[to];
+            const Vector3<V> f0 = e.force[from], f = e.force[to];
             const Vector3<V> df = {mul_add(w, f.x, -(w0 * f0.x)), mul_add(w, f.y, -(w0 * f0.y)),
                                    mul_add(w, f.z, -(w0 * f0.z))};
             b = mul_add(d.z, df.z, mul_add(d.y, df.y, mul_add(d.x, df.x, b)));
@@ -71,40 +74,25 @@ struct Loader {
 
     __attribute__((noinline)) void load() const {
         const Schedule &s = z.x.s;
-        const bool keep_all = s.type == Schedule::graph || (terms & rates);
-        for (int32_t slot = s.n_atoms - 1; slot >= 0; --slot) {
-            const bool leaf = s.child_start[slot + 1] == s.child_start[slot];
-            Vector3<V> r, v = {}, f = {};
-            read_atom(*this, slot, r, v, f);
-            if (!leaf || keep_all || slot >= s.n_tree) keep_atom(*this, slot, r, v, f);
-            if (slot >= s.n_tree) continue;
-            const V w = z.x.w[slot];
-            make_row(*this, slot, s.parent[slot], w, r, v, f);
+        for_groups(s.n_atoms,
+                   [&](int32_t first, auto number) HOL_FORCED { read_atoms<decltype(number)::count>(*this, first); });
+        for (int32_t slot = 0; slot < s.n_tree; ++slot) {
+            make_row(*this, slot, s.parent[slot], slot);
             BondRow<V> &row = z.x.row[slot];
-            if (leaf) row.E = w * row.q;
+            row.E = z.x.w[slot] * row.q;  // of a leaf
         }
         load_core_bonds();
     }
 
     // The atoms that trees hang from, and the bonds between them.
     void load_core() const {
-        for (int32_t slot = z.x.s.n_atoms - 1; slot >= z.x.s.n_tree; --slot) {
-            Vector3<V> r, v = {}, f = {};
-            read_atom(*this, slot, r, v, f);
-            keep_atom(*this, slot, r, v, f);
-        }
+        for (int32_t slot = z.x.s.n_atoms - 1; slot >= z.x.s.n_tree; --slot) read_atom(*this, slot);
         load_core_bonds();
     }
 
     void load_core_bonds() const {
         const Schedule &s = z.x.s;
-        const Equations<V> &e = z.equations;
-        for (int32_t p = 0; p < s.n_core; ++p) {
-            const int32_t to = s.to[p];
-            make_row(*this, s.n_tree + p, s.from[p], z.x.w[to], e.r[to],
-                     terms & (squares | rates) ? e.velocity[to] : Vector3<V>{},
-                     terms & pulls ? e.force[to] : Vector3<V>{});
-        }
+        for (int32_t p = 0; p < s.n_core; ++p) make_row(*this, s.n_tree + p, s.from[p], s.to[p]);
     }
 };
 

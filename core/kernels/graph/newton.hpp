@@ -12,25 +12,28 @@ namespace graph {
 
 template <class V>
 struct Newton {
+    typedef V Value;
     NewtonSystem<V> x;
-    V *spare;  // for the core's factors
+    V *spare;    // for the core's factors
+    V *lengths;  // least and largest
 
     static int64_t values(const Schedule &s) {
         const int64_t part = CoreMatrix<V>::most_parts(s), n_atoms = s.n_atoms, n_bonds = s.n_bonds;
-        return 4 * n_atoms + 3 + (sizeof(NewtonRow<V>) / sizeof(V) + 3) * n_bonds +
+        return 7 * n_atoms + 2 + (sizeof(NewtonRow<V>) / sizeof(V) + 3) * n_bonds +
                2 * static_cast<int64_t>(s.n_pairs) + 4 * static_cast<int64_t>(s.n_entries) + 2 * reaches(s) + 2 * part +
                NewtonMemory<V, 0>::values(s.max_children);
     }
 
     Newton(const Schedule &s, Memory<V> &memory)
-        : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, spare() {
+        : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, spare(), lengths(memory.values(2)) {
         const int64_t part = CoreMatrix<V>::most_parts(s);
         x.w = memory.values(s.n_atoms);
         x.row = reinterpret_cast<NewtonRow<V> *>(memory.values(sizeof(NewtonRow<V>) / sizeof(V) * s.n_bonds));
         x.lower = memory.values(s.n_pairs);
         x.upper = memory.values(s.n_pairs);
         x.move = memory.vectors(s.n_atoms);
-        x.new_D = memory.vectors(s.n_bonds + 1);
+        x.r = memory.vectors(s.n_atoms);
+        x.new_D = memory.vectors(s.n_bonds);
         x.core_lower = memory.values(s.n_entries);
         x.core_upper = memory.values(s.n_entries);
         x.reach_up = memory.values(reaches(s));
@@ -131,23 +134,27 @@ struct Newton {
         }
     }
 
+    // What tau moves an atom by.
+    HOL_FORCED Vector3<V> displacement(int32_t slot) const {
+        const Schedule &s = x.s;
+        Vector3<V> pull = {};
+        for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c)
+            pull = add_times(pull, x.row[s.child[c]].tau, x.row[s.child[c]].b);
+        if (slot < s.n_tree) {
+            pull = add_times(pull, -x.row[slot].tau, x.row[slot].b);
+        } else if (s.n_core_atoms > 0) {
+            for (int32_t e = s.meet_start[slot - s.n_tree]; e < s.meet_start[slot - s.n_tree + 1]; ++e) {
+                const NewtonRow<V> &row = x.row[s.n_tree + s.meet[e] / 2];
+                pull = add_times(pull, s.meet[e] % 2 ? -row.tau : row.tau, row.b);
+            }
+        }
+        return x.w[slot] * pull;
+    }
+
     // The atoms and bonds as tau moves them, and their largest error.
     __attribute__((noinline)) V move() {
         const Schedule &s = x.s;
-        for (int32_t slot = s.n_atoms - 1; slot >= 0; --slot) {
-            Vector3<V> pull = {};
-            for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c)
-                pull = add_times(pull, x.row[s.child[c]].tau, x.row[s.child[c]].b);
-            if (slot < s.n_tree) {
-                pull = add_times(pull, -x.row[slot].tau, x.row[slot].b);
-            } else if (s.n_core_atoms > 0) {
-                for (int32_t e = s.meet_start[slot - s.n_tree]; e < s.meet_start[slot - s.n_tree + 1]; ++e) {
-                    const NewtonRow<V> &row = x.row[s.n_tree + s.meet[e] / 2];
-                    pull = add_times(pull, s.meet[e] % 2 ? -row.tau : row.tau, row.b);
-                }
-            }
-            x.move[slot] = x.w[slot] * pull;
-        }
+        for (int32_t slot = s.n_atoms - 1; slot >= 0; --slot) x.move[slot] = displacement(slot);
         Errors errors = {};
         for (int32_t k = 0; k < s.n_bonds; ++k) {
             int32_t from, to;
@@ -163,6 +170,9 @@ struct Newton {
         for (int32_t k = 0; k < x.s.n_bonds; ++k) x.row[k].tau = select(which, V{}, x.row[k].tau);
     }
 
+    // The relative error of one bond, as it was measured last.
+    V left_of(int32_t k) const { return abs(2.0 * x.row[k].t) * x.row[k].per_a2; }
+
     // D as it stands: the first factors' bonds, and what they leave.
     V open() {
         Errors errors = {};
@@ -172,6 +182,7 @@ struct Newton {
         }
         return errors.largest();
     }
+    void first_factors() { factorize<true>(Width<V>::none()); }
 };
 
 }  // namespace graph

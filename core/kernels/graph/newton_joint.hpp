@@ -33,6 +33,7 @@ struct NewtonSystem {
     NewtonRow<V> *row;
     V *lower, *upper;            // [n_pairs] each
     Vector3<V> *move;            // [n_atoms] displacements
+    Vector3<V> *r;               // [n_atoms] coordinates, until the bonds are made
     Vector3<V> *new_D;           // [n_bonds] bonds as moved, for new factors
     V *core_lower, *core_upper;  // [n_entries] each
     V *reach_up, *reach_down;    // as CoreMatrix

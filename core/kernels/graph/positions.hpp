@@ -7,6 +7,7 @@
 #include "core/kernels/graph/flat_positions.hpp"
 #include "core/kernels/graph/iterate.hpp"
 #include "core/kernels/graph/newton.hpp"
+#include "core/kernels/graph/ring_atoms.hpp"
 #include "core/kernels/graph/store.hpp"
 #include "core/kernels/graph/triangle_blocks.hpp"
 #include "core/kernels/tally.hpp"
@@ -15,57 +16,103 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// A block of molecules at the position level.
+template <class V>
+HOL_INLINE void make_bond(NewtonRow<V> &row, const PositionsCall &call, const Vector3<V> &b, const Vector3<V> &D) {
+    Vector3<V> unused = {};
+    row.b = b;
+    row.D = D;
+    take_image<false>(call.box_ref, row.b, unused);
+    take_image<false>(call.box, row.D, unused);
+}
+
+// Bonds of the reference positions and of the new ones; returns the largest coordinate of the latter.
 template <Layout layout, class V>
+HOL_NOINLINE V load_bonds(Newton<V> &newton, const PositionsCall &call, const Atoms<V> &at) {
+    const Schedule &s = newton.x.s;
+    NewtonRow<V> *const row = newton.x.row;
+    Vector3<V> *const r_ref = newton.x.move, *const r = newton.x.r;
+    V largest = {};
+    for_groups(s.n_atoms, [&](int32_t first, auto number) HOL_FORCED {
+        constexpr int count = decltype(number)::count;
+        Vector3<V> ref[count] = {}, now[count] = {};
+        read_group<layout, count>(call.r_ref, at, first, ref);
+        read_group<layout, count>(call.r, at, first, now);
+        HOL_UNROLL
+        for (int j = 0; j < count; ++j) {
+            const int32_t slot = s.slot_of[first + j];
+            largest = max(max(abs(now[j].x), abs(now[j].y)), max(abs(now[j].z), largest));
+            r_ref[slot] = ref[j];
+            r[slot] = now[j];
+        }
+    });
+    for (int32_t k = 0; k < s.n_tree; ++k)
+        make_bond(row[k], call, r_ref[k] - r_ref[s.parent[k]], r[k] - r[s.parent[k]]);
+    for (int32_t k = s.n_tree; k < s.n_bonds; ++k) {
+        const int32_t from = s.from[k - s.n_tree], to = s.to[k - s.n_tree];
+        make_bond(row[k], call, r_ref[to] - r_ref[from], r[to] - r[from]);
+    }
+    return largest;
+}
+
+// Moves the atoms of the lanes in `which`, and their velocities, but fixed ones.
+template <Layout layout, class V>
+HOL_NOINLINE void write_moves(const Newton<V> &newton, const PositionsCall &call, const Atoms<V> &at, unsigned which) {
+    const Schedule &s = newton.x.s;
+    const V per_dt = Width<V>::all(1 / call.dt);
+    for_groups(s.n_atoms, [&](int32_t first, auto number) HOL_FORCED {
+        constexpr int count = decltype(number)::count;
+        Vector3<V> move[count] = {}, a[count] = {};
+        bool fixed = false;
+        HOL_UNROLL
+        for (int j = 0; j < count; ++j) {
+            move[j] = newton.displacement(s.slot_of[first + j]);
+            fixed = fixed || s.fixed[first + j];
+        }
+        const auto put = [&](const AtomArray &array) HOL_FORCED {
+            if (!fixed) return write_group<layout, count>(array, at, first, a, which);
+            for (int j = 0; j < count; ++j)
+                if (!s.fixed[first + j]) write<layout>(array, at, first + j, a[j], which);
+        };
+        read_group<layout, count>(call.r, at, first, a);
+        HOL_UNROLL
+        for (int j = 0; j < count; ++j) a[j] = a[j] + move[j];
+        put(call.r);
+        if (!call.v.x) return;
+        read_group<layout, count>(call.v, at, first, a);
+        HOL_UNROLL
+        for (int j = 0; j < count; ++j) a[j] = add_times(a[j], per_dt, move[j]);
+        put(call.v);
+    });
+}
+
+// A block of molecules at the position level. System: Newton or RingNewton.
+template <Layout layout, class System>
 struct PositionsBlock {
+    typedef typename System::Value V;
     const PositionsCall &call;
     const Schedule &s;
     const MoleculeLane *lane;  // [lanes]
     const Atoms<V> &at;
-    Newton<V> &newton;
+    System &newton;
     Tally &tally;
     V a_min, a_max, largest_coordinate;
 
-    // a^2 of all bonds.
-    void set_lengths() {
-        a_min = Width<V>::all(1e300);
-        a_max = V{};
-        for (int32_t k = 0; k < s.n_bonds; ++k) {
-            V a = {};
-            for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(a, i, lane[i].length[s.bond_of[k]]);
-            a_min = min(a, a_min);
-            a_max = max(a, a_max);
-            newton.x.row[k].a2 = a * a;
-            newton.x.row[k].per_a2 = Width<V>::all(1) / newton.x.row[k].a2;
+    // a^2 of all bonds, unless they are those of the block before.
+    void set_lengths(bool known) {
+        if (!known) {
+            newton.lengths[0] = Width<V>::all(1e300);
+            newton.lengths[1] = V{};
+            for (int32_t k = 0; k < s.n_bonds; ++k) {
+                V a = {};
+                for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(a, i, lane[i].length[s.bond_of[k]]);
+                newton.lengths[0] = min(a, newton.lengths[0]);
+                newton.lengths[1] = max(a, newton.lengths[1]);
+                newton.x.row[k].a2 = a * a;
+                newton.x.row[k].per_a2 = Width<V>::all(1) / newton.x.row[k].a2;
+            }
         }
-    }
-
-    __attribute__((noinline)) void load() {
-        Vector3<V> *const r_ref = newton.x.move, *const r = newton.x.new_D;  // until the bonds are made
-        V largest = {};
-        for (int32_t slot = s.n_atoms - 1; slot >= 0; --slot) {
-            const int32_t atom = s.atom_of[slot];
-            const Vector3<V> before = read<layout>(call.r_ref, at, atom), now = read<layout>(call.r, at, atom);
-            largest = max(max(abs(now.x), abs(now.y)), max(abs(now.z), largest));
-            r_ref[slot] = before;
-            if (slot < s.n_tree) make_bond(slot, r_ref[s.parent[slot]], before, r[s.parent[slot]], now);
-            if (slot < s.n_bonds + 1) r[slot] = now;
-        }
-        for (int32_t k = s.n_tree; k < s.n_bonds; ++k) {
-            const int32_t from = s.from[k - s.n_tree], to = s.to[k - s.n_tree];
-            make_bond(k, r_ref[from], r_ref[to], r[from], r[to]);
-        }
-        largest_coordinate = largest;
-    }
-    HOL_INLINE void make_bond(NewtonRow<V> &row, const PositionsCall &call, const Vector3<V> &b, const Vector3<V> &D) {
-        Vector3<V> unused = {};
-        row.b = b;
-        row.D = D;
-        take_image<false>(call.box_ref, row.b, unused);
-        take_image<false>(call.box, row.D, unused);
-    }
-    void make_bond(int32_t k, const Vector3<V> &b0, const Vector3<V> &b1, const Vector3<V> &D0, const Vector3<V> &D1) {
-        make_bond(newton.x.row[k], call, b1 - b0, D1 - D0);
+        a_min = newton.lengths[0];
+        a_max = newton.lengths[1];
     }
 
     void load_guess() {
@@ -87,24 +134,28 @@ struct PositionsBlock {
         return less(0.25 * (largest_coordinate + a_min), pull * a_max);
     }
 
-    void write_multipliers(unsigned which) const {
-        const V factor = Width<V>::all(0.5 / (call.dt * call.dt));
-        for (int32_t k = 0; k < s.n_bonds; ++k) {
-            const V value = mul_add(newton.x.row[k].tau, factor, V{});
+    HOL_NOINLINE void write_multipliers(const PositionsBlock &me, unsigned which) {
+        const Schedule &s = me.s;
+        const V factor = Width<V>::all(0.5 / (me.call.dt * me.call.dt));
+        double *p[Width<V>::lanes];
+        for (int i = 0; i < Width<V>::lanes; ++i) p[i] = me.call.lambda + me.lane[i].first_bond;
+        const bool all = which == (1u << Width<V>::lanes) - 1;
+        const auto value = [&](int32_t k) HOL_FORCED { return mul_add(me.newton.x.row[k].tau, factor, V{}); };
+        int32_t k = 0;
+        while (k < s.n_bonds) {
+            const int32_t *const bond = s.bond_of + k;
+            if (all && k + 4 <= s.n_bonds && follow_each_other<4>(bond)) {
+                const V four[4] = {value(k), value(k + 1), value(k + 2), value(k + 3)};
+                double *q[Width<V>::lanes];
+                HOL_UNROLL
+                for (int i = 0; i < Width<V>::lanes; ++i) q[i] = p[i] + *bond;
+                write_four(q, four);
+                k += 4;
+                continue;
+            }
+            const V one = value(k++);
             for (int i = 0; i < Width<V>::lanes; ++i)
-                if (which >> i & 1) call.lambda[lane[i].first_bond + s.bond_of[k]] = Width<V>::get(value, i);
-        }
-    }
-
-    __attribute__((noinline)) void write_atoms(unsigned which) const {
-        const V per_dt = Width<V>::all(1 / call.dt);
-        for (int32_t slot = s.n_atoms - 1; slot >= 0; --slot) {
-            const int32_t atom = s.atom_of[slot];
-            if (s.fixed[atom]) continue;
-            const Vector3<V> move = newton.x.move[slot];
-            write<layout>(call.r, at, atom, read<layout>(call.r, at, atom) + move, which);
-            if (call.v.x)
-                write<layout>(call.v, at, atom, add_times(read<layout>(call.v, at, atom), per_dt, move), which);
+                if (which >> i & 1) p[i][*bond] = Width<V>::get(one, i);
         }
     }
 
@@ -131,8 +182,7 @@ struct PositionsBlock {
         if (worst < 0) return;
         int32_t bond = s.n_bonds;
         for (int32_t k = 0; k < s.n_bonds; ++k) {
-            const NewtonRow<V> &row = newton.x.row[k];
-            const double e = Width<V>::get(abs(2.0 * row.t) * row.per_a2, worst);
+            const double e = Width<V>::get(newton.left_of(k), worst);
             if (e >= tally.worst && s.bond_of[k] < bond) bond = s.bond_of[k];
         }
         tally.worst_bond = bond < s.n_bonds ? bond : 0;
@@ -140,16 +190,16 @@ struct PositionsBlock {
 
     // Returns the lanes that need careful arithmetic; nothing of them has been written.
     unsigned solve(MaskOf<V> in_use) {
-        load();
+        largest_coordinate = load_bonds<layout>(newton, call, at);
         if (call.guess) load_guess();
         const Limits<V> limits(call, largest_coordinate, a_min);
-        const Solved<V> out = iterate<V>(newton, limits, call, in_use);
+        const Solved<V> out = iterate<V, false>(newton, limits, call, in_use);
         const MaskOf<V> coarse = out.converged & coarse_moves();
         const unsigned moved = bits(out.converged & ~coarse), good = moved | bits(out.untouched);
         if (call.report) note_worst(good, out.error);
-        if (call.lambda) write_multipliers(good);
+        if (call.lambda) write_multipliers(*this, good);
         if (call.virial) add_virial(moved);
-        if (moved) write_atoms(moved);
+        if (moved) write_moves<layout>(newton, call, at, moved);
         tally.n_corrected += __builtin_popcount(moved);
         if (moved && out.solves > tally.iterations) tally.iterations = out.solves;
         return bits(in_use) & ~good;
@@ -163,24 +213,30 @@ struct PositionsWork {
     Tally &tally;
 
     template <class V>
-    void block(const MoleculeLane *lane, int used, bool, double *scratch) const {
+    void block(const MoleculeLane *lane, int used, bool known, double *scratch) const {
         if (schedule.flat && used == 1 && solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
-        Memory<V> memory = {scratch};
-        const Atoms<V> at(lane, used);
-        Newton<V> newton(schedule, memory);
-        for (int32_t slot = 0; slot < schedule.n_atoms; ++slot)
-            for (int i = 0; i < Width<V>::lanes; ++i)
-                Width<V>::set(newton.x.w[slot], i, lane[i].w[schedule.atom_of[slot]]);
-        const unsigned rest = with_layout(
-            at, packed, [&](auto layout) { return solve<decltype(layout)::value>(newton, lane, used, at); });
-        if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, lane, rest, memory.next, tally);
+        if (schedule.type == Schedule::ring)
+            solve<RingNewton<V>>(lane, used, known, scratch);
+        else
+            solve<Newton<V>>(lane, used, known, scratch);
     }
 
-    template <Layout layout, class V>
-    unsigned solve(Newton<V> &newton, const MoleculeLane *lane, int used, const Atoms<V> &at) const {
-        PositionsBlock<layout, V> block = {call, schedule, lane, at, newton, tally, V{}, V{}, V{}};
-        block.set_lengths();
-        return block.solve(Width<V>::first(used));
+    template <class System>
+    void solve(const MoleculeLane *lane, int used, bool known, double *scratch) const {
+        typedef typename System::Value V;
+        Memory<V> memory = {scratch};
+        const Atoms<V> at(lane, used);
+        System newton(schedule, memory);
+        for (int32_t slot = 0; slot < schedule.n_atoms && !known; ++slot)
+            for (int i = 0; i < Width<V>::lanes; ++i)
+                Width<V>::set(newton.x.w[slot], i, lane[i].w[schedule.atom_of[slot]]);
+        const unsigned rest = with_layout(at, packed, [&](auto layout) {
+            PositionsBlock<decltype(layout)::value, System> block = {call,  schedule, lane, at, newton,
+                                                                     tally, V{},      V{},  V{}};
+            block.set_lengths(known);
+            return block.solve(Width<V>::first(used));
+        });
+        if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, lane, rest, memory.next, tally);
     }
 };
 

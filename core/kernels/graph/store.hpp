@@ -3,6 +3,7 @@
 #ifndef HOLONOMIC_KERNELS_GRAPH_STORE_HPP
 #define HOLONOMIC_KERNELS_GRAPH_STORE_HPP
 
+#include "core/kernels/graph/atom_groups.hpp"
 #include "core/kernels/graph/molecules.hpp"
 #include "core/kernels/graph/virial.hpp"
 
@@ -60,18 +61,33 @@ HOL_INLINE bool any_shared(const Molecules<V> &x) {
     return shared;
 }
 
+// Writes value(slot) of all atoms in the lanes of `which`, in the order of the atoms where the molecule is small.
+template <Layout layout, class V, class Value>
+HOL_INLINE void write_atoms(const Molecules<V> &x, const AtomArray &array, unsigned which, const Value &value) {
+    const bool shared = any_shared(x);
+    const auto write_one = [&](int32_t slot) HOL_FORCED {
+        const int32_t atom = x.s.atom_of[slot];
+        write<layout>(array, x.at, atom, value(slot), shared ? writable(x, atom, which) : which);
+    };
+    if (x.pieces || shared)
+        return for_ranges(x.s, x.pieces, x.s.n_atoms, [&](int32_t first, int32_t end) {
+            for (int32_t slot = end; slot-- > first;) write_one(slot);
+        });
+    for_groups(x.s.n_atoms, [&](int32_t first, auto number) HOL_FORCED {
+        constexpr int count = decltype(number)::count;
+        Vector3<V> a[count] = {};
+        HOL_UNROLL
+        for (int j = 0; j < count; ++j) a[j] = value(x.s.slot_of[first + j]);
+        write_group<layout, count>(array, x.at, first, a, which);
+    });
+}
+
 // G of all atoms in the lanes of `which`, written or added.
 template <Layout layout, class V>
 HOL_NOINLINE void write_pulls(const Molecules<V> &x, const AtomArray &g, bool add, unsigned which) {
-    const bool shared = any_shared(x);
-    for_ranges(x.s, x.pieces, x.s.n_atoms, [&](int32_t first, int32_t end) {
-        for (int32_t slot = end; slot-- > first;) {
-            const int32_t atom = x.s.atom_of[slot];
-            Vector3<V> pull = pull_on(x, slot);
-            if (add) pull = read<layout>(g, x.at, atom) + pull;
-            write<layout>(g, x.at, atom, pull, shared ? writable(x, atom, which) : which);
-        }
-    });
+    if (!add) return write_atoms<layout>(x, g, which, [&](int32_t slot) HOL_FORCED { return pull_on(x, slot); });
+    write_atoms<layout>(x, g, which,
+                        [&](int32_t slot) { return read<layout>(g, x.at, x.s.atom_of[slot]) + pull_on(x, slot); });
 }
 
 // factor t of all bonds, zeros as +0; with_length: times |d|.

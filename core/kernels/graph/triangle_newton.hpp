@@ -61,6 +61,7 @@ struct TriangleNewton {
     inline HOL_FORCED void forget(MaskOf<V> which) {
         for (int k = 0; k < 3; ++k) tau[k] = select(which, V{}, tau[k]);
     }
+    inline HOL_FORCED void first_factors() { factorize(~Width<V>::none()); }
     inline HOL_FORCED void factorize(MaskOf<V> which) {
         V g[3][3];
         HOL_UNROLL

@@ -77,7 +77,7 @@ struct TrianglePositions {
         p.read_bonds(x);
         if (p.call.guess) read_triangle_bonds(p.at, p.call.lambda, 2 * p.call.dt * p.call.dt, x.tau);
         const Limits<V> limits(p.call, p.largest, p.a.a_min);
-        const Solved<V> out = iterate<V>(x, limits, p.call, Width<V>::of_bits(wanted));
+        const Solved<V> out = iterate<V, true>(x, limits, p.call, Width<V>::of_bits(wanted));
         const unsigned moved = bits(out.converged & ~x.coarse_moves(p.largest)), good = moved | bits(out.untouched);
         p.write(x, out.error, good, moved, out.solves);
         return good;

@@ -70,14 +70,8 @@ struct VelocitiesWork {
 
     template <Layout layout, class V>
     __attribute__((noinline)) void write_velocities(const Molecules<V> &x, const Vector3<V> *v, unsigned which) const {
-        const bool shared = any_shared(x);
-        for_ranges(x.s, x.pieces, x.s.n_atoms, [&](int32_t first, int32_t end) {
-            for (int32_t slot = end; slot-- > first;) {
-                const int32_t atom = x.s.atom_of[slot];
-                write<layout>(call.v, x.at, atom, add_times(v[slot], x.w[slot], pull_on(x, slot)),
-                              shared ? writable(x, atom, which) : which);
-            }
-        });
+        write_atoms<layout>(x, call.v, which,
+                            [&](int32_t slot) HOL_FORCED { return add_times(v[slot], x.w[slot], pull_on(x, slot)); });
     }
 };
 

@@ -1,0 +1,96 @@
+// The atoms of rings at the position level: read and written four at a time where they stand one behind the other.
+#ifndef HOLONOMIC_KERNELS_GRAPH_RING_ATOMS_HPP
+#define HOLONOMIC_KERNELS_GRAPH_RING_ATOMS_HPP
+
+#include "core/kernels/graph/atom_groups.hpp"
+#include "core/kernels/graph/ring_newton.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// The atoms of these local numbers, which may follow each other.
+template <Layout layout, int count, class V>
+HOL_INLINE void read_few(const AtomArray &array, const Atoms<V> &at, const int32_t *atom, bool follow, Vector3<V> *a) {
+    if (follow) return read_group<layout, count>(array, at, atom[0], a);
+    HOL_UNROLL
+    for (int j = 0; j < count; ++j) a[j] = read<layout>(array, at, atom[j]);
+}
+
+// The same in the lanes of `which`; `a` is used up.
+template <Layout layout, int count, class V>
+HOL_INLINE void write_few(const AtomArray &array, const Atoms<V> &at, const int32_t *atom, bool follow, Vector3<V> *a,
+                          unsigned which) {
+    if (follow) return write_group<layout, count>(array, at, atom[0], a, which);
+    for (int j = 0; j < count; ++j) write<layout>(array, at, atom[j], a[j], which);
+}
+
+// Bonds of the reference positions and of the new ones; returns the largest coordinate of the latter.
+template <Layout layout, class V>
+HOL_NOINLINE V load_bonds(RingNewton<V> &z, const PositionsCall &call, const Atoms<V> &at) {
+    const Schedule &s = z.x.s;
+    Vector3<V> before[2] = {}, unused = {};
+    V largest = {};
+    NewtonRow<V> *const row = z.x.row;
+    const auto bond = [&](int32_t k, const Vector3<V> &b, const Vector3<V> &D) HOL_FORCED {
+        row[k].b = b;
+        row[k].D = D;
+        take_image<false>(call.box_ref, row[k].b, unused);
+        take_image<false>(call.box, row[k].D, unused);
+    };
+    // The first atom's place is row N-1, until it gets its bond.
+    for_groups(s.n_atoms, [&](int32_t slot, auto number) HOL_FORCED {
+        constexpr int count = decltype(number)::count;
+        const bool follow = follow_each_other<count>(s.atom_of + slot);
+        Vector3<V> ref[count] = {}, now[count] = {};
+        read_few<layout, count>(call.r_ref, at, s.atom_of + slot, follow, ref);
+        read_few<layout, count>(call.r, at, s.atom_of + slot, follow, now);
+        HOL_UNROLL
+        for (int j = 0; j < count; ++j) largest = max(max(abs(now[j].x), abs(now[j].y)), max(abs(now[j].z), largest));
+        if (slot > 0) {
+            bond(slot - 1, ref[0] - before[0], now[0] - before[1]);
+        } else {
+            row[s.n_bonds - 1].b = ref[0];
+            row[s.n_bonds - 1].D = now[0];
+        }
+        HOL_UNROLL
+        for (int j = 1; j < count; ++j) bond(slot + j - 1, ref[j] - ref[j - 1], now[j] - now[j - 1]);
+        before[0] = ref[count - 1];
+        before[1] = now[count - 1];
+    });
+    bond(s.n_bonds - 1, row[s.n_bonds - 1].b - before[0], row[s.n_bonds - 1].D - before[1]);
+    return largest;
+}
+
+// Moves the atoms of the lanes in `which`, and their velocities.
+template <Layout layout, class V>
+HOL_NOINLINE void write_moves(const RingNewton<V> &z, const PositionsCall &call, const Atoms<V> &at, unsigned which) {
+    const V per_dt = Width<V>::all(1 / call.dt);
+    Vector3<V> pull = z.pull_of(z.x.s.n_bonds - 1);
+    for_groups(z.x.s.n_atoms, [&](int32_t slot, auto number) HOL_FORCED {
+        constexpr int count = decltype(number)::count;
+        const int32_t *const atom = z.x.s.atom_of + slot;
+        const bool follow = follow_each_other<count>(atom);
+        Vector3<V> move[count], a[count] = {};
+        HOL_UNROLL
+        for (int j = 0; j < count; ++j) {
+            const Vector3<V> next = z.pull_of(slot + j);
+            move[j] = z.x.w[slot + j] * (next - pull);
+            pull = next;
+        }
+        read_few<layout, count>(call.r, at, atom, follow, a);
+        HOL_UNROLL
+        for (int j = 0; j < count; ++j) a[j] = a[j] + move[j];
+        write_few<layout, count>(call.r, at, atom, follow, a, which);
+        if (!call.v.x) return;
+        read_few<layout, count>(call.v, at, atom, follow, a);
+        HOL_UNROLL
+        for (int j = 0; j < count; ++j) a[j] = add_times(a[j], per_dt, move[j]);
+        write_few<layout, count>(call.v, at, atom, follow, a, which);
+    });
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif
