@@ -17,23 +17,25 @@ struct Newton {
     V *spare;    // for the core's factors
     V *lengths;  // least and largest
 
+    static constexpr int64_t row_values = static_cast<int64_t>(sizeof(NewtonRow<V>) / sizeof(V));
     static int64_t values(const Schedule &s) {
         const int64_t part = CoreMatrix<V>::most_parts(s), n_atoms = s.n_atoms, n_bonds = s.n_bonds;
-        return 7 * n_atoms + 2 + (sizeof(NewtonRow<V>) / sizeof(V) + 3) * n_bonds +
-               2 * static_cast<int64_t>(s.n_pairs) + 4 * static_cast<int64_t>(s.n_entries) + 2 * reaches(s) + 2 * part +
+        return 7 * n_atoms + 2 + (row_values + 4) * n_bonds + 2 * static_cast<int64_t>(s.n_pairs) +
+               4 * static_cast<int64_t>(s.n_entries) + 2 * reaches(s) + 2 * part +
                NewtonMemory<V, 0>::values(s.max_children);
     }
 
     Newton(const Schedule &s, Memory<V> &memory)
-        : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, spare(), lengths(memory.values(2)) {
+        : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, spare(), lengths(memory.values(2)) {
         const int64_t part = CoreMatrix<V>::most_parts(s);
         x.w = memory.values(s.n_atoms);
-        x.row = reinterpret_cast<NewtonRow<V> *>(memory.values(sizeof(NewtonRow<V>) / sizeof(V) * s.n_bonds));
+        x.row = reinterpret_cast<NewtonRow<V> *>(memory.values(row_values * s.n_bonds));
         x.lower = memory.values(s.n_pairs);
         x.upper = memory.values(s.n_pairs);
         x.move = memory.vectors(s.n_atoms);
         x.r = memory.vectors(s.n_atoms);
         x.new_D = memory.vectors(s.n_bonds);
+        x.core = memory.values(s.n_core);
         x.core_lower = memory.values(s.n_entries);
         x.core_upper = memory.values(s.n_entries);
         x.reach_up = memory.values(reaches(s));
@@ -126,7 +128,7 @@ struct Newton {
         const Schedule &s = x.s;
         substitute();
         if (s.n_core_atoms > 0) down_core(x);
-        for (int32_t k = s.n_bonds - 1; k >= s.n_tree; --k) x.row[k].tau = x.row[k].tau + keep(active, x.row[k].t);
+        for (int32_t k = s.n_tree; k < s.n_bonds; ++k) x.row[k].tau = x.row[k].tau + keep(active, x.row[k].t);
         for (int32_t k = s.n_tree - 1; k >= 0; --k) {
             NewtonRow<V> &row = x.row[k];
             if (s.parent[k] < s.n_tree) row.t = mul_add(row.down, x.row[s.parent[k]].t, row.t);
@@ -143,10 +145,17 @@ struct Newton {
         if (slot < s.n_tree) {
             pull = add_times(pull, -x.row[slot].tau, x.row[slot].b);
         } else if (s.n_core_atoms > 0) {
-            for (int32_t e = s.meet_start[slot - s.n_tree]; e < s.meet_start[slot - s.n_tree + 1]; ++e) {
-                const NewtonRow<V> &row = x.row[s.n_tree + s.meet[e] / 2];
-                pull = add_times(pull, s.meet[e] % 2 ? -row.tau : row.tau, row.b);
-            }
+            const int32_t *const meet = s.meet + s.meet_start[slot - s.n_tree];
+            const int n = s.meet_start[slot - s.n_tree + 1] - s.meet_start[slot - s.n_tree];
+            const V sign[2] = {Width<V>::all(1), Width<V>::all(-1)};
+            choose_count(n, [&](auto number) HOL_FORCED {
+                constexpr int known = decltype(number)::count;
+                HOL_UNROLL
+                for (int e = 0; e < (known > 0 ? known : n); ++e) {
+                    const NewtonRow<V> &row = x.row[s.n_tree + meet[e] / 2];
+                    pull = add_times(pull, sign[meet[e] & 1] * row.tau, row.b);
+                }
+            });
         }
         return x.w[slot] * pull;
     }
@@ -156,12 +165,12 @@ struct Newton {
         const Schedule &s = x.s;
         for (int32_t slot = s.n_atoms - 1; slot >= 0; --slot) x.move[slot] = displacement(slot);
         Errors errors = {};
-        for (int32_t k = 0; k < s.n_bonds; ++k) {
-            int32_t from, to;
-            ends_of(s, k, from, to);
+        const auto bond = [&](int32_t k, int32_t from, int32_t to) HOL_FORCED {
             x.new_D[k] = x.row[k].D + (x.move[to] - x.move[from]);
             measure(x.row[k], x.new_D[k], errors);
-        }
+        };
+        for (int32_t k = 0; k < s.n_tree; ++k) bond(k, s.parent[k], k);
+        for (int32_t k = s.n_tree; k < s.n_bonds; ++k) bond(k, s.from[k - s.n_tree], s.to[k - s.n_tree]);
         return errors.largest();
     }
 

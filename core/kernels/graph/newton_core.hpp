@@ -2,12 +2,52 @@
 #ifndef HOLONOMIC_KERNELS_GRAPH_NEWTON_CORE_HPP
 #define HOLONOMIC_KERNELS_GRAPH_NEWTON_CORE_HPP
 
+#include "core/kernels/graph/atom_groups.hpp"
 #include "core/kernels/graph/core_matrix.hpp"
 #include "core/kernels/graph/newton_joint.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
+
+// Bonds that meet at an atom stand in the order of their places, so that the later one of a pair is its row below the
+// diagonal.
+template <int known, class V>
+HOL_INLINE void add_bare_atom(const NewtonSystem<V> &x, int32_t c, int count, V *entry_lower, V *entry_upper) {
+    const Schedule &s = x.s;
+    const int32_t *const meet = s.meet + s.meet_start[c], *entry = s.meet_pair + s.meet_pair_start[c];
+    const int n = known > 0 ? known : count;
+    const V w = x.w[s.n_tree + c], signed_w[2] = {w, -w};
+    HOL_UNROLL
+    for (int e = 0; e < n; ++e) {
+        const int32_t place = s.n_tree + meet[e] / 2;
+        const Vector3<V> D = x.new_D[place], b = x.row[place].b;
+        V &pivot = x.core[meet[e] / 2];
+        pivot = mul_add(w, dot(D, b), pivot);
+        HOL_UNROLL
+        for (int o = 0; o < e; ++o, ++entry) {
+            const int32_t other = s.n_tree + meet[o] / 2;
+            const V times = signed_w[(meet[e] ^ meet[o]) & 1];
+            entry_lower[*entry] = times * dot(D, x.row[other].b);
+            entry_upper[*entry] = times * dot(x.new_D[other], b);
+        }
+    }
+}
+
+template <class V>
+static inline void add_bare_atom(const NewtonSystem<V> &x, int32_t c, V *entry_lower, V *entry_upper) {
+    const int n = x.s.meet_start[c + 1] - x.s.meet_start[c];
+    switch (n) {
+        case 2:
+            return add_bare_atom<2>(x, c, n, entry_lower, entry_upper);
+        case 3:
+            return add_bare_atom<3>(x, c, n, entry_lower, entry_upper);
+        case 4:
+            return add_bare_atom<4>(x, c, n, entry_lower, entry_upper);
+        default:
+            return add_bare_atom<0>(x, c, n, entry_lower, entry_upper);
+    }
+}
 
 // The elements of one atom of the core. Row k and column l: s_k s_l (w D_k.b_l - sum over its children).
 template <bool all, class V>
@@ -17,14 +57,16 @@ static inline void add_core_atom(const NewtonSystem<V> &x, int32_t c, int64_t re
     const int32_t slot = s.n_tree + c, k = s.child_start[slot + 1] - s.child_start[slot];
     const int32_t *const meet = s.meet + s.meet_start[c], *entry = s.meet_pair + s.meet_pair_start[c];
     const int32_t n = s.meet_start[c + 1] - s.meet_start[c];
+    if (k == 0) return add_bare_atom(x, c, entry_lower, entry_upper);
     const V w = x.w[slot];
     auto f = NewtonMemory<V, 0>::make(x.working, k);
     factorize_children<all>(x, slot, k, f, which);
     for (int32_t e = 0; e < n; ++e) {
         const int32_t place = s.n_tree + meet[e] / 2;
         V *const z = x.part_down + e * k, *const h = x.part_up + e * k;
-        NewtonRow<V> &row = x.row[place];
-        row.E = row.E + couple(x, slot, k, place, f, z, h, f.S, f.u);
+        const NewtonRow<V> &row = x.row[place];
+        V &pivot = x.core[meet[e] / 2];
+        pivot = pivot + couple(x, slot, k, place, f, z, h, f.S, f.u);
         for (int32_t a = 0; a < k; ++a) {
             put_where<all>(which, x.reach_up[reach + e * k + a], f.S[a]);
             put_where<all>(which, x.reach_down[reach + e * k + a], f.u[a]);
@@ -45,14 +87,54 @@ static inline void add_core_atom(const NewtonSystem<V> &x, int32_t c, int64_t re
     }
 }
 
-// New factors in the lanes of `which`, or in all; `spare` has 2 n_entries + n_core values.
+// Eliminates column p with n entries.
+template <int known, class V>
+HOL_INLINE void eliminate_column(const Schedule &s, V *pivot, int32_t p, int count, V r, V *lower, V *upper) {
+    const int n = known > 0 ? known : count;
+    const int32_t first = s.column_start[p];
+    const int32_t *const below = s.row + first, *update = s.update + s.update_start[p];
+    HOL_UNROLL
+    for (int a = 0; a < n; ++a) {
+        const V l = lower[first + a], u = upper[first + a], la = l * r, ua = u * r;
+        HOL_UNROLL
+        for (int b = 0; b < a; ++b, ++update) {
+            // element (a, b) below the diagonal and (b, a) above it; l and u of b are multiplied by r already
+            lower[*update] = mul_add(-l, upper[first + b], lower[*update]);
+            upper[*update] = mul_add(-u, lower[first + b], upper[*update]);
+        }
+        pivot[below[a]] = mul_add(-l, ua, pivot[below[a]]);
+        lower[first + a] = la;
+        upper[first + a] = ua;
+    }
+}
+
+// Calls body(n), a constant, for columns of few entries, else body(Count<0>()).
+template <class Body>
+HOL_INLINE void choose_count(int n, const Body &body) {
+    switch (n) {
+        case 0:
+            return;
+        case 1:
+            return body(Count<1>());
+        case 2:
+            return body(Count<2>());
+        case 3:
+            return body(Count<3>());
+        case 4:
+            return body(Count<4>());
+        default:
+            return body(Count<0>());
+    }
+}
+
+// New factors in the lanes of `which`, or in all; `spare` has 2 n_entries values.
 template <bool all, class V>
 static inline void factorize_core(const NewtonSystem<V> &x, V *spare, MaskOf<V> which) {
     const Schedule &s = x.s;
-    V *const lower = spare, *const upper = spare + s.n_entries;
-    for (int32_t e = 0; e < 2 * s.n_entries; ++e) spare[e] = V{};
+    V *const lower = all ? x.core_lower : spare, *const upper = all ? x.core_upper : spare + s.n_entries;
+    for (int32_t e = 0; e < s.n_entries; ++e) lower[e] = upper[e] = V{};
     NewtonRow<V> *const row = x.row + s.n_tree;
-    for (int32_t p = 0; p < s.n_core; ++p) row[p].E = V{};
+    for (int32_t p = 0; p < s.n_core; ++p) x.core[p] = V{};
     int64_t reach = 0;
     for (int32_t c = 0; c < s.n_core_atoms; ++c) {
         add_core_atom<all>(x, c, reach, lower, upper, which);
@@ -60,26 +142,17 @@ static inline void factorize_core(const NewtonSystem<V> &x, V *spare, MaskOf<V> 
                  (s.child_start[s.n_tree + c + 1] - s.child_start[s.n_tree + c]);
     }
     for (int32_t p = 0; p < s.n_core; ++p) {
-        const int32_t first = s.column_start[p], n = s.column_start[p + 1] - first;
-        const int32_t *const below = s.row + first, *update = s.update + s.update_start[p];
-        const V r = Width<V>::all(1) / row[p].E;
+        const V r = Width<V>::all(1) / x.core[p];
         put_where<all>(which, row[p].r, r);
-        for (int32_t a = 0; a < n; ++a) {
-            V &l = lower[first + a], &u = upper[first + a];
-            const V la = l * r, ua = u * r;
-            for (int32_t b = 0; b < a; ++b, ++update) {
-                // element (a, b) below the diagonal and (b, a) above it; l and u of b are multiplied by r already
-                lower[*update] = mul_add(-l, upper[first + b], lower[*update]);
-                upper[*update] = mul_add(-u, lower[first + b], upper[*update]);
-            }
-            row[below[a]].E = mul_add(-l, ua, row[below[a]].E);
-            l = la;
-            u = ua;
-        }
-        for (int32_t e = first; e < first + n; ++e) {
-            put_where<all>(which, x.core_lower[e], lower[e]);
-            put_where<all>(which, x.core_upper[e], upper[e]);
-        }
+        const int n = s.column_start[p + 1] - s.column_start[p];
+        choose_count(n, [&](auto number) HOL_FORCED {
+            eliminate_column<decltype(number)::count>(s, x.core, p, n, r, lower, upper);
+        });
+    }
+    if (all) return;
+    for (int32_t e = 0; e < s.n_entries; ++e) {
+        put_where<all>(which, x.core_lower[e], lower[e]);
+        put_where<all>(which, x.core_upper[e], upper[e]);
     }
 }
 
@@ -100,10 +173,21 @@ static inline void substitute_core(const NewtonSystem<V> &x) {
         }
         substitute_joint<0, true>(x, slot, k);
     }
-    NewtonRow<V> *const row = x.row + s.n_tree;
-    for (int32_t p = 0; p < s.n_core; ++p)
-        for (int32_t e = s.column_start[p]; e < s.column_start[p + 1]; ++e)
-            row[s.row[e]].t = mul_add(-x.core_lower[e], row[p].t, row[s.row[e]].t);
+    V *const y = x.core;
+    const V *const lower = x.core_lower;
+    const int32_t *const start = s.column_start, *const below = s.row;
+    for (int32_t p = 0; p < s.n_core; ++p) y[p] = x.row[s.n_tree + p].t;
+    for (int32_t p = 0; p < s.n_core; ++p) {
+        const int32_t first = start[p];
+        const int n = start[p + 1] - first;
+        const V one = y[p];
+        choose_count(n, [&](auto number) HOL_FORCED {
+            constexpr int known = decltype(number)::count;
+            HOL_UNROLL
+            for (int a = 0; a < (known > 0 ? known : n); ++a)
+                y[below[first + a]] = mul_add(-lower[first + a], one, y[below[first + a]]);
+        });
+    }
 }
 
 // Down: the corrections of the core into t, then of the first bonds of its hanging trees.
@@ -111,11 +195,21 @@ template <class V>
 static inline void down_core(const NewtonSystem<V> &x) {
     const Schedule &s = x.s;
     NewtonRow<V> *const row = x.row + s.n_tree;
+    V *const y = x.core;
+    const V *const upper = x.core_upper;
+    const int32_t *const start = s.column_start, *const below = s.row;
     for (int32_t p = s.n_core - 1; p >= 0; --p) {
-        V t = row[p].t * row[p].r;
-        for (int32_t e = s.column_start[p]; e < s.column_start[p + 1]; ++e)
-            t = mul_add(-x.core_upper[e], row[s.row[e]].t, t);
-        row[p].t = t;
+        V t = y[p] * row[p].r;
+        const int32_t first = start[p];
+        const int n = start[p + 1] - first;
+        // The nearest one, which has just been found, comes last.
+        choose_count(n, [&](auto number) HOL_FORCED {
+            constexpr int known = decltype(number)::count;
+            HOL_UNROLL
+            for (int a = (known > 0 ? known : n) - 1; a >= 0; --a)
+                t = mul_add(-upper[first + a], y[below[first + a]], t);
+        });
+        y[p] = row[p].t = t;
     }
     const V *reach = x.reach_down;
     for (int32_t c = 0; c < s.n_core_atoms; ++c) {

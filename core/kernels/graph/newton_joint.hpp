@@ -22,7 +22,7 @@ struct NewtonRow {
     V t;         // what is left of the length, (D.D - a^2) / 2 and y; then u
     V up, down;  // what the bond above gets of y, and this one of its correction
     V r;         // 1 / pivot
-    V E;         // as in BondRow; of the core: the pivot
+    V E;         // as in BondRow
     V a2, per_a2;
 };
 
@@ -36,6 +36,7 @@ struct NewtonSystem {
     Vector3<V> *r;               // [n_atoms] coordinates, until the bonds are made
     Vector3<V> *new_D;           // [n_bonds] bonds as moved, for new factors
     V *core_lower, *core_upper;  // [n_entries] each
+    V *core;                     // [n_core] pivots while they are found, then y and the corrections
     V *reach_up, *reach_down;    // as CoreMatrix
     V *part_up, *part_down;      // working memory of a core atom or column
     Memory<V> working;           // of a joint of many bonds

@@ -29,12 +29,11 @@ struct RingNewton {
     Closure *closure;  // [N - 1]
     V *lengths;        // least and largest
 
-    static int64_t values(const Schedule &s) {
-        return 2 + (3 + static_cast<int64_t>(sizeof(NewtonRow<V>) / sizeof(V))) * s.n_bonds;
-    }
+    static constexpr int64_t row_values = static_cast<int64_t>(sizeof(NewtonRow<V>) / sizeof(V));
+    static int64_t values(const Schedule &s) { return 2 + (3 + row_values) * s.n_bonds; }
     RingNewton(const Schedule &s, Memory<V> &memory) : x{s, nullptr, nullptr}, closure(), lengths(memory.values(2)) {
         x.w = memory.values(s.n_atoms);
-        x.row = reinterpret_cast<NewtonRow<V> *>(memory.values(sizeof(NewtonRow<V>) / sizeof(V) * s.n_bonds));
+        x.row = reinterpret_cast<NewtonRow<V> *>(memory.values(row_values * s.n_bonds));
         closure = reinterpret_cast<Closure *>(memory.values(2 * static_cast<int64_t>(s.n_bonds)));
     }
 
@@ -47,15 +46,15 @@ struct RingNewton {
     // The bond vectors as tau moves them, one after the other, the last one first.
     struct Mover {
         Vector3<V> pull, left, first;  // of the bond before, and the displacement of the atom behind it; of atom 0
-        HOL_FORCED Vector3<V> last(const RingNewton &x) {
-            const int32_t n = x.x.s.n_bonds - 1;
-            pull = x.pull_of(0);
-            first = left = x.x.w[0] * (pull - x.pull_of(n));
-            return x.x.row[n].D + (first - x.displacement(n));
+        HOL_FORCED Vector3<V> last(const RingNewton &z) {
+            const int32_t n = z.x.s.n_bonds - 1;
+            pull = z.pull_of(0);
+            first = left = z.x.w[0] * (pull - z.pull_of(n));
+            return z.x.row[n].D + (first - z.displacement(n));
         }
-        HOL_FORCED Vector3<V> bond(const RingNewton &x, int32_t k) {
-            const Vector3<V> p = x.pull_of(k + 1), right = x.x.w[k + 1] * (p - pull);
-            const Vector3<V> d = x.x.row[k].D + (right - left);
+        HOL_FORCED Vector3<V> bond(const RingNewton &z, int32_t k) {
+            const Vector3<V> p = z.pull_of(k + 1), right = z.x.w[k + 1] * (p - pull);
+            const Vector3<V> d = z.x.row[k].D + (right - left);
             pull = p;
             left = right;
             return d;
