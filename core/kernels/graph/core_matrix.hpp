@@ -3,6 +3,7 @@
 #ifndef HOLONOMIC_KERNELS_GRAPH_CORE_MATRIX_HPP
 #define HOLONOMIC_KERNELS_GRAPH_CORE_MATRIX_HPP
 
+#include "core/kernels/graph/core_columns.hpp"
 #include "core/kernels/graph/joint.hpp"
 
 namespace holonomic {
@@ -14,6 +15,7 @@ struct CoreMatrix {
     V *entry;  // [n_entries] off-diagonal elements, then multipliers; the pivots are E of the rows
     V *reach;  // for every core atom: l of each of its bonds for each of its children
     V *part;   // working memory: bonds of an atom times its children
+    V *y;      // working memory of a substitution: core_columns.hpp
     static constexpr int64_t most_parts(const Schedule &s) {
         return static_cast<int64_t>(s.max_core_bonds) * s.max_children;
     }
@@ -134,10 +136,8 @@ static inline void substitute_core(const Molecules<V> &x, const CoreMatrix<V> &c
         }
         substitute_joint<0, true>(AtomRows<V>(x, slot), k, memory);
     }
-    BondRow<V> *const row = x.row + s.n_tree;
-    for (int32_t p = 0; p < s.n_core; ++p)
-        for (int32_t e = s.column_start[p]; e < s.column_start[p + 1]; ++e)
-            row[s.row[e]].t = mul_add(-core.entry[e], row[p].t, row[s.row[e]].t);
+    for (int32_t p = 0; p < s.n_core; ++p) core.y[p] = x.row[s.n_tree + p].t;
+    forward_columns(s, core.entry, core.y);
 }
 
 // Back: t of the core, then of the first bonds of its hanging trees.
@@ -145,12 +145,9 @@ template <class V>
 static inline void down_core(const Molecules<V> &x, const CoreMatrix<V> &core) {
     const Schedule &s = x.s;
     BondRow<V> *const row = x.row + s.n_tree;
-    for (int32_t p = s.n_core - 1; p >= 0; --p) {
-        V t = row[p].t * row[p].r;
-        for (int32_t e = s.column_start[p]; e < s.column_start[p + 1]; ++e)
-            t = mul_add(-core.entry[e], row[s.row[e]].t, t);
-        row[p].t = t;
-    }
+    back_columns(
+        s, core.entry, core.y, [&](int32_t p) HOL_FORCED { return row[p].r; },
+        [&](int32_t p, V t) HOL_FORCED { row[p].t = t; });
     const V *reach = core.reach;
     for (int32_t c = 0; c < s.n_core_atoms; ++c) {
         const int32_t slot = s.n_tree + c, k = s.child_start[slot + 1] - s.child_start[slot];

@@ -30,7 +30,7 @@ struct Linear {
         if (has_pieces(s)) n += 5 + s.n_pieces * (6 + JointMemory<V, 0>::values(s.max_children));
         if (s.type == Schedule::graph) {
             const int64_t part = CoreMatrix<V>::most_parts(s);
-            n += s.n_entries + reaches(s) + (part > s.max_column ? part : s.max_column) +
+            n += s.n_core + columns_ahead + 1 + s.n_entries + reaches(s) + (part > s.max_column ? part : s.max_column) +
                  9 * static_cast<int64_t>(s.n_bonds) + 7 * static_cast<int64_t>(s.n_atoms);
         }
         return n;
@@ -49,7 +49,8 @@ struct Linear {
         if (s.type == Schedule::graph) {
             const int64_t part = CoreMatrix<V>::most_parts(s);
             core = {memory.values(s.n_entries), memory.values(reaches(s)),
-                    memory.values(part > s.max_column ? part : s.max_column)};
+                    memory.values(part > s.max_column ? part : s.max_column),
+                    memory.values(s.n_core + columns_ahead + 1)};
             t = memory.values(s.n_bonds);
             b = memory.values(s.n_bonds);
             equations.given = memory.values(s.n_bonds);

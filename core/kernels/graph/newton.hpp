@@ -20,7 +20,7 @@ struct Newton {
     static constexpr int64_t row_values = static_cast<int64_t>(sizeof(NewtonRow<V>) / sizeof(V));
     static int64_t values(const Schedule &s) {
         const int64_t part = CoreMatrix<V>::most_parts(s), n_atoms = s.n_atoms, n_bonds = s.n_bonds;
-        return 7 * n_atoms + 2 + (row_values + 4) * n_bonds + 2 * static_cast<int64_t>(s.n_pairs) +
+        return 7 * n_atoms + 2 + columns_ahead + 1 + (row_values + 4) * n_bonds + 2 * static_cast<int64_t>(s.n_pairs) +
                4 * static_cast<int64_t>(s.n_entries) + 2 * reaches(s) + 2 * part +
                NewtonMemory<V, 0>::values(s.max_children);
     }
@@ -35,7 +35,7 @@ struct Newton {
         x.move = memory.vectors(s.n_atoms);
         x.r = memory.vectors(s.n_atoms);
         x.new_D = memory.vectors(s.n_bonds);
-        x.core = memory.values(s.n_core);
+        x.core = memory.values(s.n_core + columns_ahead + 1);
         x.core_lower = memory.values(s.n_entries);
         x.core_upper = memory.values(s.n_entries);
         x.reach_up = memory.values(reaches(s));
@@ -127,8 +127,7 @@ struct Newton {
     __attribute__((noinline)) void solve(MaskOf<V> active) {
         const Schedule &s = x.s;
         substitute();
-        if (s.n_core_atoms > 0) down_core(x);
-        for (int32_t k = s.n_tree; k < s.n_bonds; ++k) x.row[k].tau = x.row[k].tau + keep(active, x.row[k].t);
+        if (s.n_core_atoms > 0) down_core(x, active);
         for (int32_t k = s.n_tree - 1; k >= 0; --k) {
             NewtonRow<V> &row = x.row[k];
             if (s.parent[k] < s.n_tree) row.t = mul_add(row.down, x.row[s.parent[k]].t, row.t);

@@ -3,6 +3,7 @@
 #define HOLONOMIC_KERNELS_GRAPH_NEWTON_CORE_HPP
 
 #include "core/kernels/graph/atom_groups.hpp"
+#include "core/kernels/graph/core_columns.hpp"
 #include "core/kernels/graph/core_matrix.hpp"
 #include "core/kernels/graph/newton_joint.hpp"
 
@@ -173,44 +174,22 @@ static inline void substitute_core(const NewtonSystem<V> &x) {
         }
         substitute_joint<0, true>(x, slot, k);
     }
-    V *const y = x.core;
-    const V *const lower = x.core_lower;
-    const int32_t *const start = s.column_start, *const below = s.row;
-    for (int32_t p = 0; p < s.n_core; ++p) y[p] = x.row[s.n_tree + p].t;
-    for (int32_t p = 0; p < s.n_core; ++p) {
-        const int32_t first = start[p];
-        const int n = start[p + 1] - first;
-        const V one = y[p];
-        choose_count(n, [&](auto number) HOL_FORCED {
-            constexpr int known = decltype(number)::count;
-            HOL_UNROLL
-            for (int a = 0; a < (known > 0 ? known : n); ++a)
-                y[below[first + a]] = mul_add(-lower[first + a], one, y[below[first + a]]);
-        });
-    }
+    for (int32_t p = 0; p < s.n_core; ++p) x.core[p] = x.row[s.n_tree + p].t;
+    forward_columns(s, x.core_lower, x.core);
 }
 
-// Down: the corrections of the core into t, then of the first bonds of its hanging trees.
+// Down: the corrections of the core into t, and to tau in the lanes of `active`; then what the first bonds of its
+// hanging trees get of them.
 template <class V>
-static inline void down_core(const NewtonSystem<V> &x) {
+static inline void down_core(const NewtonSystem<V> &x, MaskOf<V> active) {
     const Schedule &s = x.s;
     NewtonRow<V> *const row = x.row + s.n_tree;
-    V *const y = x.core;
-    const V *const upper = x.core_upper;
-    const int32_t *const start = s.column_start, *const below = s.row;
-    for (int32_t p = s.n_core - 1; p >= 0; --p) {
-        V t = y[p] * row[p].r;
-        const int32_t first = start[p];
-        const int n = start[p + 1] - first;
-        // The nearest one, which has just been found, comes last.
-        choose_count(n, [&](auto number) HOL_FORCED {
-            constexpr int known = decltype(number)::count;
-            HOL_UNROLL
-            for (int a = (known > 0 ? known : n) - 1; a >= 0; --a)
-                t = mul_add(-upper[first + a], y[below[first + a]], t);
+    back_columns(
+        s, x.core_upper, x.core, [&](int32_t p) HOL_FORCED { return row[p].r; },
+        [&](int32_t p, V t) HOL_FORCED {
+            row[p].t = t;
+            row[p].tau = row[p].tau + keep(active, t);
         });
-        y[p] = row[p].t = t;
-    }
     const V *reach = x.reach_down;
     for (int32_t c = 0; c < s.n_core_atoms; ++c) {
         const int32_t slot = s.n_tree + c, k = s.child_start[slot + 1] - s.child_start[slot];
