@@ -45,6 +45,25 @@ struct Count {
     static constexpr int count = value;
 };
 
+// Calls body(Count<n>()) for few, else body(Count<0>()).
+template <class Body>
+HOL_INLINE void choose_count(int n, const Body &body) {
+    switch (n) {
+        case 0:
+            return;
+        case 1:
+            return body(Count<1>());
+        case 2:
+            return body(Count<2>());
+        case 3:
+            return body(Count<3>());
+        case 4:
+            return body(Count<4>());
+        default:
+            return body(Count<0>());
+    }
+}
+
 // Calls body(first, Count<4>()) for the numbers below n, four at a time, then body(first, Count<1>()) for the rest.
 template <class Body>
 HOL_INLINE void for_groups(int32_t n, const Body &body) {

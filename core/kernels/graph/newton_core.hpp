@@ -109,25 +109,6 @@ HOL_INLINE void eliminate_column(const Schedule &s, V *pivot, int32_t p, int cou
     }
 }
 
-// Calls body(n), a constant, for columns of few entries, else body(Count<0>()).
-template <class Body>
-HOL_INLINE void choose_count(int n, const Body &body) {
-    switch (n) {
-        case 0:
-            return;
-        case 1:
-            return body(Count<1>());
-        case 2:
-            return body(Count<2>());
-        case 3:
-            return body(Count<3>());
-        case 4:
-            return body(Count<4>());
-        default:
-            return body(Count<0>());
-    }
-}
-
 // New factors in the lanes of `which`, or in all; `spare` has 2 n_entries values.
 template <bool all, class V>
 static inline void factorize_core(const NewtonSystem<V> &x, V *spare, MaskOf<V> which) {

@@ -154,6 +154,11 @@ struct PositionsBlock {
                 continue;
             }
             const V one = value(k++);
+            if (all) {
+                HOL_UNROLL
+                for (int i = 0; i < Width<V>::lanes; ++i) p[i][*bond] = Width<V>::get(one, i);
+                continue;
+            }
             for (int i = 0; i < Width<V>::lanes; ++i)
                 if (which >> i & 1) p[i][*bond] = Width<V>::get(one, i);
         }

@@ -22,10 +22,17 @@ HOL_INLINE Vector3<V> pull_on(const Molecules<V> &x, int32_t slot) {
     }
     if (slot < s.n_tree) return add_times(g, -x.row[slot].t, x.row[slot].d);
     if (s.n_core_atoms == 0) return g;
-    for (int32_t e = s.meet_start[slot - s.n_tree]; e < s.meet_start[slot - s.n_tree + 1]; ++e) {
-        const BondRow<V> &row = x.row[s.n_tree + s.meet[e] / 2];
-        g = add_times(g, s.meet[e] % 2 ? -row.t : row.t, row.d);
-    }
+    const int32_t *const meet = s.meet + s.meet_start[slot - s.n_tree];
+    const int n = s.meet_start[slot - s.n_tree + 1] - s.meet_start[slot - s.n_tree];
+    const V sign[2] = {Width<V>::all(1), Width<V>::all(-1)};
+    choose_count(n, [&](auto number) HOL_FORCED {
+        constexpr int known = decltype(number)::count;
+        HOL_UNROLL
+        for (int e = 0; e < (known > 0 ? known : n); ++e) {
+            const BondRow<V> &row = x.row[s.n_tree + meet[e] / 2];
+            g = add_times(g, sign[meet[e] & 1] * row.t, row.d);
+        }
+    });
     return g;
 }
 
