@@ -101,6 +101,7 @@ struct FlatNewton {
     }
 
     // Factors for the bonds as they are; the first solve with them follows.
+    void first_factors() { factorize({true}); }
     __attribute__((noinline)) void factorize(Flag) {
         if (moved)
             for (int64_t k = 0; k < in_fours(s.n_bonds); ++k) new_D[k] = moved_bond(k);

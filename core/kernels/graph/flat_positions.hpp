@@ -114,7 +114,7 @@ struct FlatPositions {
     bool solve() {
         load();
         const Limits<double> limits(call, largest_coordinate, a_min);
-        const Solved<double> out = iterate<double>(newton, limits, call, Flag{true});
+        const Solved<double> out = iterate<double, true>(newton, limits, call, Flag{true});
         const bool moved = out.converged.set && !coarse_moves();
         if (!moved && !out.untouched.set) return false;
         if (call.report) note_worst(out.error);
