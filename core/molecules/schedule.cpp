@@ -7,6 +7,7 @@
 #include "core/molecules/elimination_order.hpp"
 #include "core/molecules/flat_list.hpp"
 #include "core/molecules/lists.hpp"
+#include "core/molecules/schedule_arms.hpp"
 #include "core/molecules/schedule_runs.hpp"
 
 namespace holonomic {
@@ -18,6 +19,7 @@ struct Schedule::Memory {
     std::vector<std::uint8_t> fixed;
     ScheduleRuns runs;
     FlatArrays flat;
+    ScheduleArms arms;
     std::unique_ptr<const CarefulShape> careful;
 };
 
@@ -257,10 +259,17 @@ void point_into(Schedule &s, const Schedule::Memory &m) {
 
 void add_runs(Schedule &s, Schedule::Memory &m) {
     m.runs = runs_of(s);
-    s.run = m.runs.run.data();
-    s.run_slot = m.runs.slot.data();
-    s.piece_start = m.runs.piece_start.data();
+    s.runs = m.runs.runs();
     s.n_pieces = static_cast<std::int32_t>(m.runs.piece_start.size()) - 2;
+    m.arms = arms_of(s);
+    s.n_arms = static_cast<std::int32_t>(m.arms.arm.size());
+    if (s.n_arms == 0) return;
+    s.arm = m.arms.arm.data();
+    s.runs_of_arms = m.arms.runs.runs();
+    s.stretch = m.arms.stretch.data();
+    s.stretch_start = m.arms.stretch_start.data();
+    s.share_start = m.arms.share_start.data();
+    s.n_shares = static_cast<std::int32_t>(m.arms.share_start.size()) - 1;
 }
 
 }  // namespace

@@ -12,10 +12,13 @@ namespace holonomic {
 struct ScheduleRuns {
     std::vector<Schedule::Run> run;
     std::vector<std::int32_t> slot, piece_start;
+    Schedule::Runs runs() const { return {run.data(), slot.data(), piece_start.data()}; }
 };
 
 // From the parents and the children of a schedule. Takes O(n).
 ScheduleRuns runs_of(const Schedule &s);
+// The same where these arms stand for their inner atoms.
+ScheduleRuns runs_of(const Schedule &s, const std::vector<Schedule::Arm> &arms);
 
 }  // namespace holonomic
 #endif

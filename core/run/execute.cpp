@@ -70,8 +70,10 @@ void share(int n_threads, std::int64_t scratch_bytes, std::int64_t store_bytes, 
 bool is_shared_molecule(const Plan &plan, std::int64_t p, int n_threads) {
     const Plan::Piece &piece = plan.pieces[static_cast<std::size_t>(p)];
     if (piece.shape == linear || piece.count != 1) return false;
-    const std::int32_t n = plan.schedules[static_cast<std::size_t>(piece.shape)]->n_pieces;
-    return n > 1 && (n >= 8 * n_threads || static_cast<std::int64_t>(plan.pieces.size()) < 4 * n_threads);
+    const Schedule &s = *plan.schedules[static_cast<std::size_t>(piece.shape)];
+    const std::int64_t n = s.n_pieces, n_molecules = static_cast<std::int64_t>(plan.pieces.size());
+    if (n_molecules < n_threads && s.n_arms > 0 && s.n_shares > 1) return true;
+    return n > 1 && (n >= 8 * n_threads || n_molecules < 4 * n_threads);
 }
 #endif
 

@@ -48,30 +48,31 @@ static inline void eliminate_block_of(const Box &box, const SegmentBlock &s, con
     eliminate<terms, uniform, false>(s.block, box, source, in, n, x);
 }
 
-template <int terms, class Call>
-static inline void eliminate_block(const Call &call, const Lane &lane, int64_t j, const AtomArray &r,
+template <int terms>
+static inline void eliminate_block(const Box &box, const Cut &cut, const Lane &lane, int64_t j, const AtomArray &r,
                                    const AtomArray &v, const AtomArray &f, bool careful, double *store, Arena arena,
                                    const double *strain = nullptr) {
-    const Cut cut(lane.n_bonds);
     SegmentBlock s = segment_block(cut, j, lane);
     set_masses(s.block, s.lane, arena);
     // All are in place or none is, so that the segments are equally far apart in each array.
     const Packed pr = open(r, s.block, s.lane, arena, true), pv = open(v, s.block, s.lane, arena, true);
     const Packed pf = open(f, s.block, s.lane, arena, true);
     const SegmentStore x(store, cut, j);
-    choose(
-        [&](auto uniform) { eliminate_block_of<terms, uniform>(call.box, s, pr, pv, pf, careful, x, arena, strain); },
-        s.block.uniform_w);
+    choose([&](auto uniform) { eliminate_block_of<terms, uniform>(box, s, pr, pv, pf, careful, x, arena, strain); },
+           s.block.uniform_w);
     if (x.past_cache) settle_stores();
 }
 
-// Solves for the separators. `careful` says how the segments were eliminated.
-//
 // The rounding of the X of nearly parallel bonds reaches E' through a. With a = sum alpha_j X_j, its error is about
 // 2 eps sqrt(a sum alpha_j q_j q_{j+1} / n) <= 2 eps sqrt(a w_max q c), because sum alpha_j q_j q_{j+1} <= n w_max q c;
-// it is harmless where that is below join_tolerance (E_free E + a).
+// it is harmless where that is below join_tolerance S, S = E_free E + a.
+constexpr double join_tolerance = 8;
+HOL_INLINE bool is_doubtful_join(const Summary &s, int i, double S) {
+    return !(4 * s.a[i] * s.span[i] * s.c[i] <= join_tolerance * join_tolerance * S * S);
+}
+
+// Solves for the separators. `careful` says how the segments were eliminated.
 static inline JoinResult long_join(const Lane &lane, bool careful, double *store) {
-    const double join_tolerance = 8;
     const Cut cut(lane.n_bonds);
     Summary *const all = SegmentStore(store, cut, 0).summary;
     double E = 0, y = 0;
@@ -81,8 +82,7 @@ static inline JoinResult long_join(const Lane &lane, bool careful, double *store
         if (any(s.doubt)) return careful ? join_bad : join_doubtful;
         for (int i = 0; i < W; ++i) {
             const double P = E + s.c[i], yhat = (y + s.b[i]) + s.T[i], S = s.E[i] * E + s.a[i];
-            if (!careful && !(4 * s.a[i] * s.span[i] * s.c[i] <= join_tolerance * join_tolerance * S * S))
-                return join_doubtful;
+            if (!careful && is_doubtful_join(s, i, S)) return join_doubtful;
             s.t[i] = yhat / P;
             s.up[i] = s.f[i] / P;
             E = S / P;

@@ -39,13 +39,14 @@ struct Kept {
 constexpr int64_t bonds_past_cache = 262144;
 
 struct SegmentStore {
-    Summary *summary;
+    Summary *summary;  // of all blocks; inside a molecule one more, for the separator behind the last segment
     Kept *kept;
     bool past_cache;
     SegmentStore(double *store, const Cut &cut, int64_t block)
         : summary(reinterpret_cast<Summary *>(store) + block),
-          kept(reinterpret_cast<Kept *>(reinterpret_cast<Summary *>(store) + cut.blocks) + cut.first_row(block)),
-          past_cache(cut.n_bonds - W * cut.first_row(block) > bonds_past_cache) {}
+          kept(reinterpret_cast<Kept *>(reinterpret_cast<Summary *>(store) + cut.blocks + cut.inside) +
+               cut.first_row(block)),
+          past_cache(cut.n_bonds + cut.bonds_behind - W * cut.first_row(block) > bonds_past_cache) {}
     HOL_FORCED void keep_bond(long k, const Kept &bond) const {
         if (!past_cache) {
             kept[k] = bond;

@@ -10,11 +10,11 @@
 namespace holonomic::HOL_ISA {
 
 // Copies staged segments back: the atoms that the lane wrote.
-static inline void close_segments(const AtomArray &array, const SegmentBlock &s, int64_t j, const Lane &lane,
-                                  const Packed &packed, bool add) {
+static inline void close_segments(const AtomArray &array, const SegmentBlock &s, const Lane &lane, const Packed &packed,
+                                  bool add) {
     if (in_place(array, lane)) return;
     for (int i = 0; i < W; ++i) {
-        const long first = j == 0 && i == 0 ? 0 : 1;
+        const long first = s.begins && i == 0 ? 0 : 1;
         unstage(array, lane, s.from[i] + first, s.own[i] - first, packed.lane[i] + 3 * first, add);
     }
 }
@@ -68,25 +68,30 @@ HOL_INLINE void store_segment_chunk(const Block &own, const SegmentOutputs &out,
 // What the others need takes twice as long to read unless it is fetched early: so in chains of more bonds than these.
 constexpr int64_t long_in_cache = 65536;
 
-// Distance from a block to the one before it, in vectors per atom and in what is kept of the bonds.
-static inline long distance_before(const Cut &cut, int64_t j) {
-    return cut.n_bonds > long_in_cache && j > 0 ? -3 * W * cut.rows(j - 1) : 0;
+// Distances from a block to the one before it, in vectors per atom and in what is kept of the bonds.
+static inline void find_block_before(const Cut &cut, int64_t j, SegmentBlock &s) {
+    static_assert(sizeof(Kept) == 3 * sizeof(vec), "as far apart as vectors of W atoms");
+    if (j == 0) {
+        s.block.ahead = cut.to_atoms_before;
+        s.kept_ahead = cut.to_kept_before;
+    } else if (cut.n_bonds > long_in_cache) {
+        s.block.ahead = s.kept_ahead = -3 * W * cut.rows(j - 1);
+    }
 }
 
 // Fetches what the block before this one needs, when this one is at bond k0.
 template <Update update>
 HOL_INLINE void fetch_before(const SegmentBlock &s, const SegmentBonds &in, const SegmentStore &x,
                              const SegmentOutputs &out, long k0) {
-    static_assert(sizeof(Kept) == 3 * sizeof(vec), "as far apart as vectors of W atoms");
     fetch_ahead(in.r.lane[0], k0, s.block.ahead);
-    fetch_ahead(reinterpret_cast<const double *>(x.kept), k0, s.block.ahead);
+    fetch_ahead(reinterpret_cast<const double *>(x.kept), k0, s.kept_ahead);
     if (update == add_ && out.has_pulls) fetch_ahead(out.pulls.lane[0], k0, s.block.ahead);
 }
 
-// Atoms 1 .. own of each segment, and atom 0 of the chain.
+// Atoms 1 .. own of each segment, and atom 0 of a chain that begins here.
 template <bool weighted, bool uniform, bool boxed, Update update>
-HOL_NOINLINE void finish_segments(const SegmentBlock &s, bool first_block, const Box &box, const SegmentBonds &in,
-                                  const SegmentStore &x, vec next, const SegmentOutputs &out, Tally &tally) {
+HOL_NOINLINE void finish_segments(const SegmentBlock &s, const Box &box, const SegmentBonds &in, const SegmentStore &x,
+                                  vec next, const SegmentOutputs &out, Tally &tally) {
     const Block own = own_block(s);
     const long n = s.own_max, full = s.own_min / W * W;
     const vec ts = x.summary->t;
@@ -124,7 +129,7 @@ HOL_NOINLINE void finish_segments(const SegmentBlock &s, bool first_block, const
         store_segment_chunk<weighted, uniform, update, false>(own, out, k0, d, value, after, sum);
     }
     if (out.virial) sum.count(~none(), splat(out.virial_factor), tally);
-    if (!first_block || !out.has_pulls) return;
+    if (!s.begins || !out.has_pulls) return;
     if (weighted && !uniform) after = own.w[0] * after;
     store_first({after.x + 0.0, after.y + 0.0, after.z + 0.0}, 1, AtomSink<update>{out.pulls});
 }
@@ -132,12 +137,11 @@ HOL_NOINLINE void finish_segments(const SegmentBlock &s, bool first_block, const
 // Substitutes in block j and writes; `pulled` gets what its atoms are pulled with.
 template <bool weighted>
 static inline void finish_block(const Box &box, const AtomArray &r, const AtomArray &pulled, bool add,
-                                SegmentOutputs out, const Lane &lane, int64_t j, double *store, Arena arena,
-                                Tally &tally) {
-    const Cut cut(lane.n_bonds);
+                                SegmentOutputs out, const Cut &cut, const Lane &lane, int64_t j, double *store,
+                                Arena arena, Tally &tally) {
     SegmentBlock s = segment_block(cut, j, lane);
     if (weighted) set_masses(s.block, s.lane, arena);
-    if (in_place(r, lane)) s.block.ahead = distance_before(cut, j);
+    if (in_place(r, lane)) find_block_before(cut, j, s);
     SegmentBonds in = {};
     in.r = open(r, s.block, s.lane, arena, true);
     find_next(s, box, in.r, in);
@@ -149,11 +153,11 @@ static inline void finish_block(const Box &box, const AtomArray &r, const AtomAr
     out.pulls = open(pulled, s.block, s.lane, arena, false);
     choose(
         [&](auto uniform, auto boxed, auto adds) {
-            finish_segments<weighted, !weighted || uniform, boxed, adds ? add_ : write_>(s, j == 0, box, in, x, next,
-                                                                                         out, tally);
+            finish_segments<weighted, !weighted || uniform, boxed, adds ? add_ : write_>(s, box, in, x, next, out,
+                                                                                         tally);
         },
         !weighted || s.block.uniform_w, box.shape != Box::none, in_place(pulled, lane) && add);
-    if (out.has_pulls) close_segments(pulled, s, j, lane, out.pulls, add);
+    if (out.has_pulls) close_segments(pulled, s, lane, out.pulls, add);
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -13,19 +13,17 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// Where the results of a linear solve go.
-struct Outputs {
-    const AtomArray *g;
-    double *lambda, *tension;
-    bool add, virial;
-};
-
 template <Layout layout, class V>
 static inline void write_outputs(const Molecules<V> &x, const Outputs &out, unsigned which, Tally &tally) {
     if (out.lambda) write_bonds<false>(x, 0.5, out.lambda, which);
     if (out.tension) write_bonds<true>(x, 1, out.tension, which);
     if (out.virial) add_pulls_to_virial(x, which, tally);
     if (out.g->x) write_pulls<layout>(x, *out.g, out.add, which);
+}
+template <Layout layout>
+static inline void write_outputs(const Molecules<double> &x, const Outputs &out, unsigned which, Tally &tally) {
+    write_outputs<layout, double>(x, out, which, tally);
+    if (which && x.pieces && x.pieces->arms.store) write_arms<layout, false>(x, out, tally);
 }
 
 // Lanes that plain arithmetic answers for, once the equations are solved.
@@ -71,6 +69,7 @@ struct ForcesWork {
         Memory<V> memory = {scratch};
         Linear<V> z(schedule, lane, used, call.box, call.r, memory);
         open_pieces(z, team, memory);
+        open_arms(z, scratch, memory);
         if (!call.v.x) z.equations.velocity = nullptr;
         if (!call.f.x) z.equations.force = nullptr;
         z.equations.given = nullptr;

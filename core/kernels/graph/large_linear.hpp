@@ -3,7 +3,7 @@
 #ifndef HOLONOMIC_KERNELS_GRAPH_LARGE_LINEAR_HPP
 #define HOLONOMIC_KERNELS_GRAPH_LARGE_LINEAR_HPP
 
-#include "core/kernels/graph/load_lanes.hpp"
+#include "core/kernels/graph/arms.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -15,16 +15,25 @@ HOL_INLINE void open_pieces(Linear<V> &, const LongTeam *, Memory<V> &) {}
 HOL_INLINE void open_pieces(Linear<double> &z, const LongTeam *team, Memory<double> &memory) {
     if (has_pieces(z.x.s)) z.take_pieces(team, memory);
 }
+template <class V>
+HOL_INLINE void open_arms(Linear<V> &, const double *, Memory<V> &) {}
+HOL_INLINE void open_arms(Linear<double> &z, const double *scratch, Memory<double> &memory) {
+    if (z.x.pieces) z.pieces.arms = take_arms(z.x.s, scratch, memory);
+}
 
-// Reads what the pieces hold, and eliminates it.
-template <Layout layout, int terms, bool keep>
-HOL_INLINE void load_and_eliminate(Linear<double> &z) {
+// Reads what the pieces hold, and eliminates it; up_arm(a, faint, slack) does so at an arm.
+template <Layout layout, int terms, bool keep, class Arm>
+HOL_INLINE void load_and_eliminate(Linear<double> &z, const Arm &up_arm) {
     Molecules<double> &x = z.x;
     const Schedule &s = x.s;
+    constexpr bool keep_all = keep && (terms & rates);
     for_pieces(s, x.pieces->team, [&](int32_t p) {
-        const int32_t first = first_of_piece(p), end = end_of_piece(s, p);
-        load_slots<layout, terms>(z, first, end, (terms & rates) != 0);
-        x.pieces->slack[p] = up_piece<keep>(x, p, x.pieces->memory(p));
+        if (x.pieces->arms.store)
+            for (int32_t i = s.stretch_start[p]; i < s.stretch_start[p + 1]; ++i)
+                load_slots<layout, terms>(z, s.stretch[i].first, s.stretch[i].end, keep_all);
+        else
+            load_slots<layout, terms>(z, first_of_piece(p), end_of_piece(s, p), keep_all);
+        x.pieces->slack[p] = up_piece<keep>(x, p, x.pieces->memory(p), up_arm);
     });
     collect_slack(x);
     Loader<layout, terms, double>{z}.load_core();
@@ -41,17 +50,29 @@ static inline bool to_be_repeated(Molecules<double> &x) {
     return any && x.slack >= 0;
 }
 
-// Reads, and solves what has been read. `keep`: for more than one right-hand side.
-template <Layout layout, int terms, bool keep>
+// Reads, and solves what has been read. `keep`: for more than one right-hand side, which arms don't do. `look`: tests
+// what is found.
+template <Layout layout, int terms, bool keep, bool look = true>
 HOL_NOINLINE void solve_in_pieces(Linear<double> &z) {
     Molecules<double> &x = z.x;
     const Schedule &s = x.s;
     for (int32_t slot = s.n_tree; slot < s.n_atoms; ++slot) x.w[slot] = x.lane[0].w[s.atom_of[slot]];
-    do {
-        load_and_eliminate<layout, terms, keep>(z);
-        up_top<keep>(x, z.working);
-        down_trees<true>(x);
-    } while (to_be_repeated(x));
+    const auto solve = [&](const auto &up, const auto &down) {
+        do {
+            load_and_eliminate<layout, terms, keep>(z, up);
+            up_top<keep>(x, z.working, up);
+            down_pieces<look>(x, down);
+        } while (to_be_repeated(x));
+    };
+    if constexpr (!keep && !(terms & given)) {
+        if (x.pieces->arms.store) {
+            eliminate_arms<terms>(x);
+            return solve(
+                [&](int32_t a, Faint &faint, double &slack) { up_arm<layout, terms>(z, a, faint, z.working, slack); },
+                [&](int32_t a, Faint &faint, double &slack) { down_arm<look>(x, a, faint, slack); });
+        }
+    }
+    solve(NoArms{}, NoArms{});
 }
 
 }  // namespace graph

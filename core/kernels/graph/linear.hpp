@@ -27,7 +27,7 @@ struct Linear {
         int64_t n = s.n_atoms + bond_values * s.n_bonds + s.n_pairs + JointMemory<V, 0>::values(s.max_children);
         if (s.type == Schedule::ring) n += ring_values * s.n_bonds;
         n += 3 * 3 * static_cast<int64_t>(s.n_atoms);
-        if (has_pieces(s)) n += 5 + s.n_pieces * (6 + JointMemory<V, 0>::values(s.max_children));
+        if (has_pieces(s)) n += 5 + s.n_pieces * (6 + JointMemory<V, 0>::values(s.max_children)) + arm_values(s);
         if (s.type == Schedule::graph) {
             const int64_t part = CoreMatrix<V>::most_parts(s);
             n += s.n_core + columns_ahead + 1 + s.n_entries + reaches(s) + (part > s.max_column ? part : s.max_column) +

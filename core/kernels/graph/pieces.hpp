@@ -2,6 +2,7 @@
 #ifndef HOLONOMIC_KERNELS_GRAPH_PIECES_HPP
 #define HOLONOMIC_KERNELS_GRAPH_PIECES_HPP
 
+#include "core/kernels/graph/arm_store.hpp"
 #include "core/kernels/graph/schedule.hpp"
 #include "core/kernels/graph/width.hpp"
 #include "core/kernels/tally.hpp"
@@ -45,6 +46,8 @@ struct Pieces {
     Faint *faint;          // [n_pieces + 1], the last one's of the top
     double *working;       // of a joint of many bonds, one behind the other
     int64_t working_values;
+    Arms arms = {};
+    const Schedule::Runs &runs(const Schedule &s) const { return arms.store ? s.runs_of_arms : s.runs; }
     Memory<double> memory(int32_t piece) const { return {working + piece * working_values}; }
 };
 
@@ -76,6 +79,33 @@ HOL_INLINE void for_ranges(const Schedule &s, const Pieces *pieces, int32_t n, c
     if (!pieces) return body(0, n);
     for_pieces(s, pieces->team, [&](int32_t p) { body(first_of_piece(p), end_of_piece(s, p)); });
     body(s.n_tree, n);
+}
+
+// Calls body(stretch) for all that is between the arms, on the threads that there are.
+template <class Body>
+HOL_INLINE void for_stretches(const Schedule &s, const LongTeam *team, const Body &body) {
+    for_pieces(s, team, [&](int32_t p) {
+        for (int32_t i = s.stretch_start[p]; i < s.stretch_start[p + 1]; ++i) body(s.stretch[i]);
+    });
+}
+
+// As for_ranges, of all slots or of all places but those that arms stand for.
+template <class Body>
+HOL_INLINE void for_slots(const Schedule &s, const Pieces *pieces, const Body &body) {
+    if (!pieces || !pieces->arms.store) return for_ranges(s, pieces, s.n_atoms, body);
+    for_stretches(s, pieces->team, [&](const Schedule::Stretch &x) { body(x.first, x.end); });
+    body(s.n_tree, s.n_atoms);
+}
+template <class Body>
+HOL_INLINE void for_places(const Schedule &s, const Pieces *pieces, const Body &body) {
+    if (!pieces || !pieces->arms.store) return for_ranges(s, pieces, s.n_bonds, body);
+    for_stretches(s, pieces->team, [&](const Schedule::Stretch &x) { body(x.first_place, x.end_place); });
+}
+// One behind the other.
+template <class Body>
+HOL_INLINE void for_places_in_order(const Schedule &s, const Pieces *pieces, const Body &body) {
+    if (!pieces || !pieces->arms.store) return body(0, s.n_bonds);
+    for_stretches(s, nullptr, [&](const Schedule::Stretch &x) { body(x.first_place, x.end_place); });
 }
 
 }  // namespace graph

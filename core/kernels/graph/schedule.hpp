@@ -11,6 +11,10 @@ namespace holonomic {
 constexpr int32_t largest_in_lanes = 2048;
 constexpr int32_t slots_of_piece = 16384;  // a megabyte of bonds at work, a second-level cache
 
+// Bonds of an arm: what is done once an arm is little beside what is done for its bonds, and these stay in cache. All
+// but one are a multiple of arm_step, so that segments in as many lanes are equally long.
+constexpr int32_t arm_step = 8, shortest_arm = 5 * arm_step + 1, longest_arm = 128 * arm_step + 1;
+
 struct CarefulPlan;  // core/kernels/careful/plan.hpp
 struct FlatList;     // core/kernels/graph/flat_list.hpp
 
@@ -72,14 +76,46 @@ struct Schedule {
     // 1) slots_of_piece) are piece p; atoms whose children, and theirs, are all in the same piece stand in its runs,
     // the others in those of piece n_pieces, the top, which comes last. No pieces: the molecule is small.
     struct Run {
-        int32_t first, count, children;  // slots run_slot[first] ..
+        int32_t first, count, children;  // slots slot[first] ..
     };
-    const Run *run;
-    const int32_t *run_slot;
-    const int32_t *piece_start;  // [n_pieces + 2] runs of each piece, then of the top
+    struct Runs {
+        const Run *run;
+        const int32_t *slot;
+        const int32_t *piece_start;  // [n_pieces + 2] runs of each piece, then of the top
+    };
+    Runs runs;
     int32_t n_pieces;
 
-    const FlatList *flat;        // of a large graph: all its bonds along one list; else nullptr
+    const FlatList *flat;  // of a large graph: all its bonds along one list; else nullptr
+
+    // An arm: a path between two atoms of a large tree, whose inner atoms have one child each. Its atoms and its bonds
+    // have consecutive numbers, so that it can be worked on as a chain is, without looking at the other arms. Its slots
+    // and places are consecutive in any case.
+    struct Arm {
+        int32_t bottom;  // slot of its lowest atom: the places of its bonds are bottom, bottom + 1 .., upwards
+        int32_t n_bonds;
+        int32_t first_atom, first_bond;                       // the first of its local atoms and bonds
+        bool ascending;                                       // upwards
+        int32_t inner_before;                                 // bonds but one of all arms before it
+        int32_t top() const { return bottom + n_bonds - 1; }  // the place of its highest bond
+    };
+    // What is between arms: atoms that are no arm's inner ones, and bonds that are not in an arm's segments - those of
+    // the chain that the arm is without its last bond. Each lies in one piece.
+    struct Stretch {
+        int32_t first, end;              // slots
+        int32_t first_place, end_place;  // and places
+    };
+    // The arms in runs of their own stand for their inner atoms: arms_in_run in place of the number of children, and
+    // the numbers of arms in place of slots.
+    static constexpr int32_t arms_in_run = 5;
+    const Arm *arm;
+    int32_t n_arms;                // 0: none is worth it
+    Runs runs_of_arms;             // of all arms, and of what is between them
+    const Stretch *stretch;        // of all pieces
+    const int32_t *stretch_start;  // [n_pieces + 1]
+    const int32_t *share_start;    // [n_shares + 1] arms that one thread works on at a time
+    int32_t n_shares;
+
     const CarefulPlan *careful;  // the same molecule for the careful solver
 
     Schedule() = default;

@@ -68,18 +68,31 @@ HOL_INLINE bool any_shared(const Molecules<V> &x) {
     return shared;
 }
 
-// Writes value(slot) of all atoms in the lanes of `which`, in the order of the atoms where the molecule is small.
+// Where the results of a linear solve go.
+struct Outputs {
+    const AtomArray *g;
+    double *lambda, *tension;
+    bool add, virial;
+};
+
+// Writes value(slot) of the atoms in these slots in the lanes of `which`.
 template <Layout layout, class V, class Value>
-HOL_INLINE void write_atoms(const Molecules<V> &x, const AtomArray &array, unsigned which, const Value &value) {
+HOL_INLINE void write_slots(const Molecules<V> &x, const AtomArray &array, unsigned which, int32_t first, int32_t end,
+                            const Value &value) {
     const bool shared = any_shared(x);
-    const auto write_one = [&](int32_t slot) HOL_FORCED {
+    for (int32_t slot = end; slot-- > first;) {
         const int32_t atom = x.s.atom_of[slot];
         write<layout>(array, x.at, atom, value(slot), shared ? writable(x, atom, which) : which);
-    };
-    if (x.pieces || shared)
-        return for_ranges(x.s, x.pieces, x.s.n_atoms, [&](int32_t first, int32_t end) {
-            for (int32_t slot = end; slot-- > first;) write_one(slot);
-        });
+    }
+}
+
+// Writes value(slot) of all atoms but those of arms in the lanes of `which`, in the order of the atoms where the
+// molecule is small.
+template <Layout layout, class V, class Value>
+HOL_INLINE void write_atoms(const Molecules<V> &x, const AtomArray &array, unsigned which, const Value &value) {
+    if (x.pieces || any_shared(x))
+        return for_slots(x.s, x.pieces,
+                         [&](int32_t first, int32_t end) { write_slots<layout>(x, array, which, first, end, value); });
     for_groups(x.s.n_atoms, [&](int32_t first, auto number) HOL_FORCED {
         constexpr int count = decltype(number)::count;
         Vector3<V> a[count] = {};
@@ -89,7 +102,7 @@ HOL_INLINE void write_atoms(const Molecules<V> &x, const AtomArray &array, unsig
     });
 }
 
-// G of all atoms in the lanes of `which`, written or added.
+// G of all atoms but those of arms in the lanes of `which`, written or added.
 template <Layout layout, class V>
 HOL_NOINLINE void write_pulls(const Molecules<V> &x, const AtomArray &g, bool add, unsigned which) {
     if (!add) return write_atoms<layout>(x, g, which, [&](int32_t slot) HOL_FORCED { return pull_on(x, slot); });
@@ -97,42 +110,51 @@ HOL_NOINLINE void write_pulls(const Molecules<V> &x, const AtomArray &g, bool ad
                         [&](int32_t slot) { return read<layout>(g, x.at, x.s.atom_of[slot]) + pull_on(x, slot); });
 }
 
-// factor t of all bonds, zeros as +0; with_length: times |d|.
+// factor t of the bonds at these places, zeros as +0; with_length: times |d|.
 template <bool with_length, class V>
-HOL_NOINLINE void write_bonds(const Molecules<V> &x, double factor, double *out, unsigned which) {
+HOL_INLINE void write_bonds(const Molecules<V> &x, double factor, double *out, unsigned which, int32_t first,
+                            int32_t end) {
     double *p[Width<V>::lanes];
     for (int i = 0; i < Width<V>::lanes; ++i) p[i] = out + x.lane[i].first_bond;
     const bool all = which == (1u << Width<V>::lanes) - 1;
-    for_ranges(x.s, x.pieces, x.s.n_bonds, [&](int32_t first, int32_t end) {
-        for (int32_t k = first; k < end; ++k) {
-            const BondRow<V> &row = x.row[k];
-            V value = mul_add(Width<V>::all(factor), row.t, V{});
-            if (with_length) value = mul_add(row.t, sqrt(row.q), V{});
-            const int32_t bond = x.s.bond_of[k];
-            if (all) {
-                HOL_UNROLL
-                for (int i = 0; i < Width<V>::lanes; ++i) p[i][bond] = Width<V>::get(value, i);
-            } else {
-                for (int i = 0; i < Width<V>::lanes; ++i)
-                    if (which >> i & 1) p[i][bond] = Width<V>::get(value, i);
-            }
+    for (int32_t k = first; k < end; ++k) {
+        const BondRow<V> &row = x.row[k];
+        V value = mul_add(Width<V>::all(factor), row.t, V{});
+        if (with_length) value = mul_add(row.t, sqrt(row.q), V{});
+        const int32_t bond = x.s.bond_of[k];
+        if (all) {
+            HOL_UNROLL
+            for (int i = 0; i < Width<V>::lanes; ++i) p[i][bond] = Width<V>::get(value, i);
+        } else {
+            for (int i = 0; i < Width<V>::lanes; ++i)
+                if (which >> i & 1) p[i][bond] = Width<V>::get(value, i);
         }
-    });
+    }
+}
+// Of all but those of arms.
+template <bool with_length, class V>
+HOL_NOINLINE void write_bonds(const Molecules<V> &x, double factor, double *out, unsigned which) {
+    for_places(x.s, x.pieces,
+               [&](int32_t first, int32_t end) { write_bonds<with_length>(x, factor, out, which, first, end); });
 }
 
-// The virial of the lanes of `which`.
+// The virial of the lanes of `which`, of all bonds but those of arms.
 template <class V>
 HOL_NOINLINE void add_pulls_to_virial(const Molecules<V> &x, unsigned which, Tally &tally) {
     MoleculesVirial<V> virial;
-    for (int32_t k = 0; k < x.s.n_bonds; ++k) virial.add(x.row[k].d, x.row[k].t * x.row[k].d);
+    for_places_in_order(x.s, x.pieces, [&](int32_t first, int32_t end) {
+        for (int32_t k = first; k < end; ++k) virial.add(x.row[k].d, x.row[k].t * x.row[k].d);
+    });
     virial.count(which, 1, tally);
 }
 
-// Lanes in which all multipliers are finite.
+// Lanes in which all multipliers are finite, but for those of arms.
 template <class V>
 HOL_INLINE MaskOf<V> finite_solution(const Molecules<V> &x) {
     V sum = {};
-    for (int32_t k = 0; k < x.s.n_bonds; ++k) sum = sum + abs(x.row[k].t);
+    for_places_in_order(x.s, x.pieces, [&](int32_t first, int32_t end) {
+        for (int32_t k = first; k < end; ++k) sum = sum + abs(x.row[k].t);
+    });
     return finite(sum);
 }
 

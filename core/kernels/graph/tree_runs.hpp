@@ -123,8 +123,8 @@ HOL_INLINE void down_lanes(const Molecules<double> &x, const int32_t *slot, Fain
 
 // Calls lanes(slots, k) for W atoms of a run at a time, the last ones more than once, and one(slot) for atoms alone.
 template <class Lanes, class One>
-HOL_INLINE void for_run(const Schedule &s, const Schedule::Run &run, const Lanes &lanes, const One &one) {
-    const int32_t *const slot = s.run_slot + run.first;
+HOL_INLINE void for_run(const Schedule::Runs &runs, const Schedule::Run &run, const Lanes &lanes, const One &one) {
+    const int32_t *const slot = runs.slot + run.first;
     if (run.children > 3 || run.count == 1) {
         for (int32_t i = 0; i < run.count; ++i) one(slot[i]);
         return;
@@ -138,15 +138,30 @@ HOL_INLINE void for_run(const Schedule &s, const Schedule::Run &run, const Lanes
     lanes(last);
 }
 
+// Where there are no arms.
+struct NoArms {
+    HOL_FORCED void operator()(int32_t, Faint &, double &) const {}
+};
+
+// Calls arm(a, faint, slack) for the arms of a run.
+template <class Arm>
+HOL_INLINE bool do_arms(const Schedule::Runs &runs, const Schedule::Run &run, const Arm &arm, Faint &faint,
+                        double &slack) {
+    if (run.children != Schedule::arms_in_run) return false;
+    for (int32_t i = 0; i < run.count; ++i) arm(runs.slot[run.first + i], faint, slack);
+    return true;
+}
+
 // A piece, or the top.
-template <bool keep>
-static inline double up_piece(const Molecules<double> &x, int32_t piece, Memory<double> memory) {
-    const Schedule &s = x.s;
+template <bool keep, class Arm>
+static inline double up_piece(const Molecules<double> &x, int32_t piece, Memory<double> memory, const Arm &arm) {
+    const Schedule::Runs &s = x.pieces->runs(x.s);
     Faint &faint = x.pieces->faint[piece];
     double slack = 1;
     const auto one = [&](int32_t slot) { up_one<keep>(x, slot, faint, memory, slack); };
     for (int32_t r = s.piece_start[piece]; r < s.piece_start[piece + 1]; ++r) {
         const Schedule::Run &run = s.run[r];
+        if (do_arms(s, run, arm, faint, slack)) continue;
         if (run.children == 1)
             for_run(
                 s, run, [&](const int32_t *slot) { up_lanes<1, keep>(x, slot, faint, memory, slack); }, one);
@@ -161,7 +176,7 @@ static inline double up_piece(const Molecules<double> &x, int32_t piece, Memory<
 }
 
 static inline void substitute_piece(const Molecules<double> &x, int32_t piece, Memory<double> memory) {
-    const Schedule &s = x.s;
+    const Schedule::Runs &s = x.pieces->runs(x.s);
     const auto one = [&](int32_t slot) { substitute_one(x, slot, memory); };
     for (int32_t r = s.piece_start[piece]; r < s.piece_start[piece + 1]; ++r) {
         const Schedule::Run &run = s.run[r];
@@ -177,14 +192,15 @@ static inline void substitute_piece(const Molecules<double> &x, int32_t piece, M
     }
 }
 
-template <bool look>
-static inline double down_piece(const Molecules<double> &x, int32_t piece) {
-    const Schedule &s = x.s;
+template <bool look, class Arm>
+static inline double down_piece(const Molecules<double> &x, int32_t piece, const Arm &arm) {
+    const Schedule::Runs &s = x.pieces->runs(x.s);
     Faint &faint = x.pieces->faint[piece];
     double slack = 1;
     const auto one = [&](int32_t slot) { down_atom(x, slot, faint, slack, look); };
     for (int32_t r = s.piece_start[piece + 1]; r-- > s.piece_start[piece];) {
         const Schedule::Run &run = s.run[r];
+        if (do_arms(s, run, arm, faint, slack)) continue;
         if (run.children == 1)
             for_run(
                 s, run, [&](const int32_t *slot) { down_lanes<look, 1>(x, slot, faint, slack); }, one);
@@ -203,9 +219,9 @@ static inline void collect_slack(Molecules<double> &x) {
 }
 
 // Behind the pieces.
-template <bool keep>
-static inline void up_top(Molecules<double> &x, Memory<double> memory) {
-    x.slack = min(up_piece<keep>(x, x.s.n_pieces, memory), x.slack);
+template <bool keep, class Arm>
+static inline void up_top(Molecules<double> &x, Memory<double> memory, const Arm &arm) {
+    x.slack = min(up_piece<keep>(x, x.s.n_pieces, memory, arm), x.slack);
     up_joint<1, true, keep>(AtomRows<double>(x, x.s.n_tree), 1, memory, x.slack);
 }
 
@@ -216,12 +232,16 @@ static inline void substitute_trees(const Molecules<double> &x, Memory<double> m
     substitute_piece(x, x.s.n_pieces, memory);
     substitute_joint<1, true>(AtomRows<double>(x, x.s.n_tree), 1, memory);
 }
+template <bool look, class Arm>
+static inline void down_pieces(Molecules<double> &x, const Arm &arm) {
+    x.slack = min(down_piece<look>(x, x.s.n_pieces, arm), x.slack);
+    for_pieces(x.s, x.pieces->team, [&](int32_t p) { x.pieces->slack[p] = down_piece<look>(x, p, arm); });
+    collect_slack(x);
+}
 template <bool look>
 static inline void down_trees(Molecules<double> &x) {
     if (!x.pieces) return down_trees<look, double>(x);
-    x.slack = min(down_piece<look>(x, x.s.n_pieces), x.slack);
-    for_pieces(x.s, x.pieces->team, [&](int32_t p) { x.pieces->slack[p] = down_piece<look>(x, p); });
-    collect_slack(x);
+    down_pieces<look>(x, NoArms{});
 }
 
 }  // namespace graph

@@ -3,7 +3,7 @@
 #ifndef HOLONOMIC_KERNELS_GRAPH_VELOCITIES_HPP
 #define HOLONOMIC_KERNELS_GRAPH_VELOCITIES_HPP
 
-#include "core/kernels/graph/forces.hpp"
+#include "core/kernels/graph/arms_velocities.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -25,11 +25,17 @@ struct VelocitiesWork {
         Memory<V> memory = {scratch};
         Linear<V> z(schedule, lane, used, call.box, call.r, memory);
         open_pieces(z, team, memory);
+        open_arms(z, scratch, memory);
         z.equations.force = nullptr;
         z.equations.given = nullptr;
         with_layout(z.x.at, packed, [&](auto layout) { solve<decltype(layout)::value>(z, masses_known, memory); });
     }
 
+    template <Layout layout>
+    void solve(Linear<double> &z, bool masses_known, Memory<double> memory) const {
+        if (!z.pieces.arms.store) return solve<layout, double>(z, masses_known, memory);
+        if (!project_with_arms<layout>(z, call, tally)) solve_doubtful(call, schedule, z.x.lane, 1, memory.next, tally);
+    }
     template <Layout layout, class V>
     void solve(Linear<V> &z, bool masses_known, Memory<V> memory) const {
         z.x.in = {&call.v, nullptr, nullptr, true, call.strain};

@@ -22,13 +22,18 @@ constexpr int64_t longest_piece = longest_segment > longest_window ? longest_seg
 
 // How a chain is cut. The W segments of a block have the same number of bonds, a multiple of `step`; only the last one
 // of the chain may be shorter. The cut depends on nothing but the chain's length, so results depend on neither threads
-// nor other chains.
+// nor other chains. A chain inside a molecule goes on at both ends: the bond behind its last segment is a separator,
+// too. It has a multiple of W bonds, so that all segments of a block are equally long.
 struct Cut {
-    static constexpr int64_t step = W <= 8 ? 4 : 1;
-    int64_t n_bonds, blocks, base,
+    static constexpr int64_t longest_step = W <= 8 ? 4 : 1;
+    int64_t n_bonds, step, blocks, base,
         extra;  // the first `extra` blocks have step W bonds more than the others, step W base
+    bool inside;
+    int64_t bonds_behind = 0;                      // inside a molecule: bonds of chains that are eliminated later
+    long to_atoms_before = 0, to_kept_before = 0;  // and distances to the chain before it, see find_block_before()
     // bonds_per_block: of all lanes.
-    explicit Cut(int64_t n, int64_t bonds_per_block = segment_bonds) : n_bonds(n) {
+    explicit Cut(int64_t n, int64_t bonds_per_block = segment_bonds, bool within = false)
+        : n_bonds(n), step(within ? 1 : longest_step), inside(within) {
         const int64_t steps = (n + step * W - 1) / (step * W);
         blocks = (n + bonds_per_block - 1) / bonds_per_block;
         base = steps / blocks;
@@ -43,8 +48,9 @@ struct Cut {
 
 // The elimination starts from a separator and the bond behind it, so a segment needs two bonds. The shortest segment of
 // all is the last one of the shortest chain that is cut.
-constexpr int64_t steps_of_shortest = (longest_lane + Cut::step * W) / (Cut::step * W);
-static_assert(longest_lane + 1 - (W - 1) * Cut::step * steps_of_shortest >= 2, "a segment of fewer than two bonds");
+constexpr int64_t steps_of_shortest = (longest_lane + Cut::longest_step * W) / (Cut::longest_step * W);
+static_assert(longest_lane + 1 - (W - 1) * Cut::longest_step * steps_of_shortest >= 2,
+              "a segment of fewer than two bonds");
 
 // The lanes of block j as chains. Each includes the separator behind its segment.
 struct SegmentBlock {
@@ -52,7 +58,9 @@ struct SegmentBlock {
     Lane lane[W];
     long own[W], own_min, own_max;  // bonds of each segment
     int64_t from[W];                // its first bond in the chain
-    int last;                       // lane of the chain's last segment, or -1
+    int last;                       // lane of the segment that the chain ends with, or -1
+    bool begins;                    // whether the chain begins with lane 0
+    long kept_ahead;                // as block.ahead, of what is kept of the bonds
 };
 
 static inline SegmentBlock segment_block(const Cut &cut, int64_t j, const Lane &chain) {
@@ -60,7 +68,9 @@ static inline SegmentBlock segment_block(const Cut &cut, int64_t j, const Lane &
     Lane part[W];
     s.own_min = cut.longest() + 1;
     s.own_max = 0;
-    s.last = j == cut.blocks - 1 ? W - 1 : -1;
+    s.kept_ahead = 0;
+    s.last = j == cut.blocks - 1 && !cut.inside ? W - 1 : -1;
+    s.begins = j == 0 && !cut.inside;
     for (int i = 0; i < W; ++i) {
         s.from[i] = cut.first(j * W + i);
         s.own[i] = cut.length(j * W + i);

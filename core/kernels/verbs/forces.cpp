@@ -178,14 +178,17 @@ void long_forces_eliminate(const ForcesCall &call, const Lane &lane, int64_t j, 
                            double *scratch) {
     const Arena arena(scratch, longest_piece);
     choose_terms(
-        [&](auto terms) { eliminate_block<terms>(call, lane, j, call.r, call.v, call.f, careful, store, arena); },
+        [&](auto terms) {
+            eliminate_block<terms>(call.box, Cut(lane.n_bonds), lane, j, call.r, call.v, call.f, careful, store, arena);
+        },
         call.v.x, call.f.x);
 }
 
 void long_forces_finish(const ForcesCall &call, const Lane &lane, int64_t j, double *store, double *scratch,
                         Tally &tally) {
     const SegmentOutputs out = {{}, false, call.lambda, call.tension, splat(0.5), 1.0, call.virial};
-    finish_block<false>(call.box, call.r, call.g, call.add, out, lane, j, store, Arena(scratch, longest_piece), tally);
+    finish_block<false>(call.box, call.r, call.g, call.add, out, Cut(lane.n_bonds), lane, j, store,
+                        Arena(scratch, longest_piece), tally);
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -52,8 +52,8 @@ static void finish_window(const PositionsCall &call, const Lane &lane, int64_t j
     const Packed r = open_own(call.r), v = open_own(call.v);
     choose([&](auto uniform_w, auto to_v) { move_window<uniform_w, to_v>(s, j, x, r, v, 1 / call.dt); },
            s.block.uniform_w, call.v.x != nullptr);
-    close_segments(call.r, s, j, lane, r, false);
-    if (call.v.x) close_segments(call.v, s, j, lane, v, false);
+    close_segments(call.r, s, lane, r, false);
+    if (call.v.x) close_segments(call.v, s, lane, v, false);
     if (call.virial) add_virial(own_block(s), x, first_lanes(W), call.dt, tally);
 }
 

@@ -161,8 +161,8 @@ void velocities(const VelocitiesCall &call, const Unit &unit, double *scratch, T
 
 void long_velocities_eliminate(const VelocitiesCall &call, const Lane &lane, int64_t j, bool careful, double *store,
                                double *scratch) {
-    eliminate_block<rate>(call, lane, j, call.r, call.v, AtomArray{}, careful, store, Arena(scratch, longest_piece),
-                          call.strain);
+    eliminate_block<rate>(call.box, Cut(lane.n_bonds), lane, j, call.r, call.v, AtomArray{}, careful, store,
+                          Arena(scratch, longest_piece), call.strain);
 }
 
 void long_velocities_finish(const VelocitiesCall &call, const Lane &lane, int64_t j, double *store, double *scratch,
@@ -170,7 +170,8 @@ void long_velocities_finish(const VelocitiesCall &call, const Lane &lane, int64_
     // With equal masses, t is w times 2 lambda here.
     const double mass = 1 / unit_of(lane);
     const SegmentOutputs out = {{}, false, call.lambda, nullptr, splat(0.5 * mass), mass, call.virial};
-    finish_block<true>(call.box, call.r, call.v, true, out, lane, j, store, Arena(scratch, longest_piece), tally);
+    finish_block<true>(call.box, call.r, call.v, true, out, Cut(lane.n_bonds), lane, j, store,
+                       Arena(scratch, longest_piece), tally);
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -1,0 +1,24 @@
+// The arms of a large molecule's trees (core/kernels/graph/schedule.hpp).
+#ifndef HOLONOMIC_SCHEDULE_ARMS_HPP
+#define HOLONOMIC_SCHEDULE_ARMS_HPP
+
+#include <cstdint>
+#include <vector>
+
+#include "core/kernels/graph/schedule.hpp"
+#include "core/molecules/schedule_runs.hpp"
+
+namespace holonomic {
+
+struct ScheduleArms {
+    std::vector<Schedule::Arm> arm;
+    std::vector<Schedule::Stretch> stretch;
+    std::vector<std::int32_t> stretch_start, share_start;
+    ScheduleRuns runs;
+};
+
+// From the parents, the children and the numbers of a schedule. Takes O(n).
+ScheduleArms arms_of(const Schedule &s);
+
+}  // namespace holonomic
+#endif
