@@ -60,6 +60,9 @@ struct DoubtfulJoint {
             if (a != but) others[joint.n_others++] = a;
         return eliminate_arms(joint);
     }
+    // An atom that gives way to the bond above by less than this is held: its bonds may depend on each other, which the
+    // careful solver has to say.
+    bool gives_way(const Wide &E) const { return E.hi > 1e-40 * (joint.w * dot(D[joint.n - 1], D[joint.n - 1]).hi); }
     // Of an arm, with what it offers from its far side.
     Wide pivot(int a, double E) const { return wide(E / unit[a] / unit[a] / mass_unit) + offered(joint, a, a); }
 };
@@ -89,13 +92,15 @@ HOL_NOINLINE bool up_doubtful_joint(const Molecules<double> &x, int32_t slot, in
         u[a] = rounded(sum / f.pivot(a, x.row[child[a]].E)) / f.unit[a] / f.unit[a] / f.mass_unit;
     }
     if (!f.eliminate(k, -1)) return false;
+    const Wide left = offered(f.joint, k, k);
+    if (!f.gives_way(left)) return false;
     careful::multipliers(f.joint, k, L);
     Wide above = wide(x.row[slot].t);
     for (int a = 0; a < k; ++a) {
         above += L[a] * wide(y[a] * (f.unit[k] / f.unit[a]));
         l[a] = rounded(L[a]) * (f.unit[k] / f.unit[a]);
     }
-    x.row[slot].E = rounded(offered(f.joint, k, k)) * f.unit[k] * f.unit[k] * f.mass_unit;
+    x.row[slot].E = rounded(left) * f.unit[k] * f.unit[k] * f.mass_unit;
     x.row[slot].t = rounded(above);
     for (int a = 0; a < k; ++a) {
         BondRow<double> &row = x.row[child[a]];

@@ -219,7 +219,10 @@ struct PositionsWork {
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool known, double *scratch) const {
-        if (schedule.flat && used == 1 && solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
+        if (schedule.flat && used == 1) {
+            if (solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
+            known = false;  // the list has overwritten the scratch
+        }
         if (schedule.type == Schedule::ring)
             solve<RingNewton<V>>(lane, used, known, scratch);
         else
