@@ -3,71 +3,9 @@
  * multipliers can't be proven right without a correction.
  */
 #include "check.h"
-#include "random.h"
-
-/** A chain that closes rings of six, with atoms on its sides, and its state. */
-typedef struct graph {
-    int64_t n_atoms, n_bonds;
-    int64_t *pairs;
-    double *mass, *length, *r, *drifted, *v, *f;
-} graph;
+#include "large.h"
 
 static const double dt = 0.002;
-
-static void add_bond(graph *m, int64_t i, int64_t j)
-{
-    double square = 0;
-    for (int c = 0; c < 3; ++c) square += pow(m->r[3 * j + c] - m->r[3 * i + c], 2);
-    m->pairs[2 * m->n_bonds] = i, m->pairs[2 * m->n_bonds + 1] = j;
-    m->length[m->n_bonds++] = sqrt(square);
-}
-
-/** Every fourth atom hangs at the one before it; the others follow each other, and every 12 of them close a ring. */
-static graph make(int64_t n_atoms)
-{
-    random_stream s = random_seed(4);
-    const size_t n = (size_t)n_atoms;
-    graph m = {n_atoms,
-               0,
-               malloc(4 * n * sizeof(int64_t)),
-               untouched(n),
-               untouched(2 * n),
-               untouched(3 * n),
-               untouched(3 * n),
-               untouched(3 * n),
-               untouched(3 * n)};
-    int64_t backbone[8] = {0};
-    for (int64_t i = 0, last = 0, count = 0; i < n_atoms; ++i) {
-        double u[3];
-        random_direction(&s, u);
-        m.mass[i] = pow(10, random_uniform(&s));
-        for (int c = 0; c < 3; ++c) {
-            m.r[3 * i + c] = i > 0 ? m.r[3 * last + c] + u[c] : 0;
-            m.v[3 * i + c] = random_normal(&s);
-            m.f[3 * i + c] = random_normal(&s);
-            m.drifted[3 * i + c] = m.r[3 * i + c] + dt * m.v[3 * i + c];
-        }
-        if (i > 0) add_bond(&m, last, i);
-        if (i % 4 == 3) continue;
-        backbone[count % 8] = last = i;
-        if (++count % 12 == 0) add_bond(&m, backbone[(count - 6) % 8], i);
-    }
-    return m;
-}
-
-static void release(graph *m)
-{
-    free(m->pairs), free(m->mass), free(m->length), free(m->r), free(m->drifted), free(m->v), free(m->f);
-}
-
-static hol_chains *chains_of(const graph *m)
-{
-    hol_chains *chains = NULL;
-    CHECK(hol_chains_create(m->n_atoms, m->mass, &chains));
-    CHECK(hol_chains_add_bonds(chains, m->n_bonds, m->pairs, m->length));
-    assert_int_equal(hol_chains_n_of_shape(chains, HOL_SHAPE_OTHER), 1);
-    return chains;
-}
 
 static int64_t size_of_test(void)
 {
@@ -75,7 +13,7 @@ static int64_t size_of_test(void)
 }
 
 /** |d.d - a^2| / a^2 of a bond. */
-static double error_of(const graph *m, const double *r, int64_t k)
+static double error_of(const molecule *m, const double *r, int64_t k)
 {
     const int64_t i = m->pairs[2 * k], j = m->pairs[2 * k + 1];
     long double sum = -(long double)m->length[k] * m->length[k];
@@ -86,10 +24,11 @@ static double error_of(const graph *m, const double *r, int64_t k)
 static void bonds_get_their_lengths_by_the_forces_that_lambda_says(void **state)
 {
     (void)state;
-    graph m = make(size_of_test());
-    hol_chains *chains = chains_of(&m);
+    molecule m = large_rings(size_of_test());
+    hol_chains *chains = large_chains(&m);
     const size_t n = (size_t)m.n_bonds, size = 3 * (size_t)m.n_atoms;
-    double *r = copy_of(m.drifted, size), *v = copy_of(m.v, size), *lambda = untouched(n);
+    double *start = molecule_drifted(&m, dt), *r = copy_of(start, size), *v = copy_of(m.v, size);
+    double *lambda = untouched(n);
     hol_report report;
     CHECK(hol_project_positions(chains, m.r, r, v, dt, lambda, 0, NULL, &report));
     assert_int_equal(report.n_corrected, 1);
@@ -107,26 +46,24 @@ static void bonds_get_their_lengths_by_the_forces_that_lambda_says(void **state)
                 move[3 * i + c] += 2 * dt * dt / m.mass[i] * lambda[k] * (m.r[3 * j + c] - m.r[3 * i + c]);
         }
     for (size_t i = 0; i < size; ++i) {
-        CHECK_AT_MOST(fabs(m.drifted[i] + move[i] - r[i]), 4 * DBL_EPSILON * extent + 16 * DBL_EPSILON * largest);
+        CHECK_AT_MOST(fabs(start[i] + move[i] - r[i]), 4 * DBL_EPSILON * extent + 16 * DBL_EPSILON * largest);
         CHECK_AT_MOST(fabs(m.v[i] + move[i] / dt - v[i]), 4 * DBL_EPSILON * 8 + 16 * DBL_EPSILON * largest / dt);
     }
     /* Once more, with these as a guess: nothing but roundings can have changed. */
-    double *again = copy_of(m.drifted, size);
-    CHECK(hol_project_positions(chains, m.r, again, NULL, dt, lambda, 1, NULL, NULL));
-    for (size_t i = 0; i < size; ++i) CHECK_AT_MOST(fabs(again[i] - r[i]), 64 * DBL_EPSILON * extent);
-    free(r), free(v), free(lambda), free(move), free(again);
+    CHECK(hol_project_positions(chains, m.r, start, NULL, dt, lambda, 1, NULL, NULL));
+    for (size_t i = 0; i < size; ++i) CHECK_AT_MOST(fabs(start[i] - r[i]), 64 * DBL_EPSILON * extent);
+    free(start), free(r), free(v), free(lambda), free(move);
     hol_chains_destroy(chains);
-    release(&m);
+    molecule_free(&m);
 }
 
 static void the_worst_bond_is_reported(void **state)
 {
     (void)state;
-    graph m = make(size_of_test());
-    hol_chains *chains = chains_of(&m);
-    const size_t size = 3 * (size_t)m.n_atoms;
+    molecule m = large_rings(size_of_test());
+    hol_chains *chains = large_chains(&m);
     for (int turn = 0; turn < 2; ++turn) { /* moved, and near enough as they are */
-        double *r = copy_of(m.drifted, size), worst = 0;
+        double *r = molecule_drifted(&m, dt), worst = 0;
         hol_report report;
         int64_t bond = 0, *order = malloc((size_t)m.n_bonds * sizeof *order);
         CHECK(hol_chains_set_tolerance(chains, turn == 0 ? 1e-5 : 0.5));
@@ -140,54 +77,47 @@ static void the_worst_bond_is_reported(void **state)
         free(r), free(order);
     }
     hol_chains_destroy(chains);
-    release(&m);
+    molecule_free(&m);
 }
 
 static void order_threads_and_layout_change_no_bit_of_positions(void **state)
 {
     (void)state;
-    graph m = make(size_of_test());
-    hol_chains *chains = chains_of(&m);
+    molecule m = large_rings(size_of_test());
+    hol_chains *chains = large_chains(&m);
     const size_t n = (size_t)m.n_bonds, size = 3 * (size_t)m.n_atoms;
-    double *r = copy_of(m.drifted, size), *other = copy_of(m.drifted, size), *lambda = untouched(n);
+    double *start = molecule_drifted(&m, dt), *r = copy_of(start, size), *other = copy_of(start, size);
+    double *lambda = untouched(n);
     double *components = untouched(size);
     CHECK(hol_project_positions(chains, m.r, r, NULL, dt, lambda, 0, NULL, NULL));
     CHECK(hol_chains_set_threads(chains, 3));
     CHECK(hol_project_positions(chains, m.r, other, NULL, dt, NULL, 0, NULL, NULL));
     assert_same_bits(other, r, size);
-    for (size_t i = 0; i < size; ++i) components[i % 3 * (size / 3) + i / 3] = m.drifted[i];
+    for (size_t i = 0; i < size; ++i) components[i % 3 * (size / 3) + i / 3] = start[i];
     const hol_view ref = {m.r, m.r + 1, m.r + 2, 3 * sizeof(double), HOL_DOUBLE, 0},
                    now = {components, components + size / 3, components + 2 * (size / 3), sizeof(double), HOL_DOUBLE,
                           0};
     CHECK(hol_project_positions_view(chains, &ref, &now, NULL, dt, NULL, 0, NULL, NULL));
     for (size_t i = 0; i < size; ++i) assert_same_bits(components + i % 3 * (size / 3) + i / 3, r + i, 1);
     hol_chains_destroy(chains);
-    for (size_t k = 0; k < n / 2; ++k) { /* backwards, and turned round */
-        const double length = m.length[k];
-        m.length[k] = m.length[n - 1 - k], m.length[n - 1 - k] = length;
-        for (size_t e = 0; e < 2; ++e) {
-            const int64_t end = m.pairs[2 * (n - 1 - k) + 1 - e];
-            m.pairs[2 * (n - 1 - k) + 1 - e] = m.pairs[2 * k + e];
-            m.pairs[2 * k + e] = end;
-        }
-    }
-    chains = chains_of(&m);
-    memcpy(other, m.drifted, size * sizeof *other);
+    large_turn_bonds(&m);
+    chains = large_chains(&m);
+    memcpy(other, start, size * sizeof *other);
     double *turned = untouched(n);
     CHECK(hol_project_positions(chains, m.r, other, NULL, dt, turned, 0, NULL, NULL));
     assert_same_bits(other, r, size);
     for (size_t k = 0; k < n; ++k) assert_same_bits(turned + k, lambda + n - 1 - k, 1);
-    free(r), free(other), free(lambda), free(turned), free(components);
+    free(start), free(r), free(other), free(lambda), free(turned), free(components);
     hol_chains_destroy(chains);
-    release(&m);
+    molecule_free(&m);
 }
 
 /** Where a single atom is pulled, most equations have no terms but what is left of that pull. */
 static void pulled_at_one_atom_each_of_two_molecules_gets_its_own_digits(void **state)
 {
     (void)state;
-    graph m = make(size_of_test());
-    hol_chains *one = chains_of(&m), *two = NULL;
+    molecule m = large_rings(size_of_test());
+    hol_chains *one = large_chains(&m), *two = NULL;
     const size_t n = (size_t)m.n_bonds, atoms = (size_t)m.n_atoms, size = 3 * atoms;
     double *mass = untouched(2 * atoms), *r = untouched(2 * size), *f = calloc(2 * size, sizeof *f);
     double *v = untouched(2 * size), *lambda = untouched(2 * n), *alone = untouched(n);
@@ -211,7 +141,7 @@ static void pulled_at_one_atom_each_of_two_molecules_gets_its_own_digits(void **
     assert_same_bits(v, v + size, size);
     free(mass), free(r), free(f), free(v), free(lambda), free(alone);
     hol_chains_destroy(one), hol_chains_destroy(two);
-    release(&m);
+    molecule_free(&m);
 }
 
 int main(void)

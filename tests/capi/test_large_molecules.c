@@ -3,76 +3,13 @@
  * layout, threads or the order of the bonds, and what is found solves the equations.
  */
 #include "check.h"
-#include "random.h"
-
-/** A tree, or one with rings of five, and its state. */
-typedef struct large {
-    int64_t n_atoms, n_bonds;
-    int64_t *pairs, *parent;
-    double *mass, *length, *r, *v, *f;
-} large;
-
-static void add_bond(large *m, int64_t i, int64_t j)
-{
-    m->pairs[2 * m->n_bonds] = i, m->pairs[2 * m->n_bonds + 1] = j;
-    ++m->n_bonds;
-}
-
-/** Linear segments of `segment` atoms, joined at random, at most four bonds at an atom; every `ring`th closes a ring.
- */
-static large make(int64_t n_atoms, int64_t segment, int64_t ring, uint64_t seed)
-{
-    large m = {n_atoms, 0, NULL, NULL, NULL, NULL, NULL, NULL, NULL};
-    random_stream s = random_seed(seed);
-    const size_t n = (size_t)n_atoms;
-    m.pairs = malloc(4 * n * sizeof *m.pairs), m.parent = malloc(n * sizeof *m.parent);
-    m.mass = untouched(n), m.length = untouched(2 * n);
-    m.r = untouched(3 * n), m.v = untouched(3 * n), m.f = untouched(3 * n);
-    int *neighbours = calloc(n, sizeof *neighbours);
-    for (int64_t i = 0; i < n_atoms; ++i) {
-        double u[3];
-        int64_t p = i - 1;
-        if (i > 0 && i % segment == 0) do
-                p = random_integer(&s, 0, i - 1);
-            while (neighbours[p] > 3);
-        m.parent[i] = p;
-        random_direction(&s, u);
-        m.mass[i] = pow(10, random_uniform(&s));
-        for (int c = 0; c < 3; ++c) {
-            m.r[3 * i + c] = i > 0 ? m.r[3 * p + c] + u[c] : 0;
-            m.v[3 * i + c] = random_normal(&s);
-            m.f[3 * i + c] = random_normal(&s);
-        }
-        if (i == 0) continue;
-        ++neighbours[i], ++neighbours[p];
-        add_bond(&m, p, i);
-    }
-    for (int64_t i = 4; ring > 0 && i < n_atoms; i += ring)
-        if (m.parent[i] == i - 1 && m.parent[i - 1] == i - 2 && m.parent[i - 2] == i - 3) add_bond(&m, i - 3, i);
-    for (int64_t k = 0; k < m.n_bonds; ++k) m.length[k] = 1;
-    free(neighbours);
-    return m;
-}
-
-static void release(large *m)
-{
-    free(m->pairs), free(m->parent), free(m->mass), free(m->length), free(m->r), free(m->v), free(m->f);
-}
-
-static hol_chains *chains_of(const large *m)
-{
-    hol_chains *chains = NULL;
-    CHECK(hol_chains_create(m->n_atoms, m->mass, &chains));
-    CHECK(hol_chains_add_bonds(chains, m->n_bonds, m->pairs, m->length));
-    assert_int_equal(hol_chains_n_chains(chains), 1);
-    return chains;
-}
+#include "large.h"
 
 typedef struct results {
     double *lambda, *tension, *g, *v, *mu, *solved;
 } results;
 
-static results compute(const large *m, const hol_chains *chains)
+static results compute(const molecule *m, const hol_chains *chains)
 {
     const size_t n = (size_t)m->n_bonds, size = 3 * (size_t)m->n_atoms;
     results x = {untouched(n), untouched(n), untouched(size), copy_of(m->v, size), untouched(n), untouched(n)};
@@ -87,7 +24,7 @@ static void forget(results *x)
     free(x->lambda), free(x->tension), free(x->g), free(x->v), free(x->mu), free(x->solved);
 }
 
-static void assert_same(const large *m, const results *a, const results *b)
+static void assert_same(const molecule *m, const results *a, const results *b)
 {
     const size_t n = (size_t)m->n_bonds, size = 3 * (size_t)m->n_atoms;
     assert_same_bits(a->lambda, b->lambda, n);
@@ -103,18 +40,20 @@ static int64_t size_of_test(void)
     return quick_run() ? 3000 : 40000;
 }
 
-static large example(int which)
+static molecule example(int which)
 {
     const int64_t n = size_of_test();
-    return which == 0 ? make(n, 1, 0, 1) : which == 1 ? make(n, 300, 0, 2) : make(n, 12, 40, 3);
+    return which == 0   ? large_segments(n, 1, 0, 1)
+           : which == 1 ? large_segments(n, 300, 0, 2)
+                        : large_segments(n, 12, 40, 3);
 }
 
 static void number_of_threads_changes_no_bit(void **state)
 {
     (void)state;
     for (int which = 0; which < 3; ++which) {
-        large m = example(which);
-        hol_chains *chains = chains_of(&m);
+        molecule m = example(which);
+        hol_chains *chains = large_chains(&m);
         results one = compute(&m, chains);
         double virial[2][9];
         CHECK(hol_forces(chains, m.r, m.v, m.f, NULL, NULL, NULL, HOL_WRITE, virial[0]));
@@ -128,7 +67,7 @@ static void number_of_threads_changes_no_bit(void **state)
         }
         forget(&one);
         hol_chains_destroy(chains);
-        release(&m);
+        molecule_free(&m);
     }
 }
 
@@ -136,18 +75,13 @@ static void order_of_bonds_changes_no_bit(void **state)
 {
     (void)state;
     for (int which = 0; which < 3; ++which) {
-        large m = example(which);
-        hol_chains *chains = chains_of(&m);
+        molecule m = example(which);
+        hol_chains *chains = large_chains(&m);
         results plain = compute(&m, chains);
         hol_chains_destroy(chains);
         const int64_t n = m.n_bonds;
-        for (int64_t k = 0; k < n / 2; ++k) /* backwards, and turned round */
-            for (int e = 0; e < 2; ++e) {
-                const int64_t other = m.pairs[2 * (n - 1 - k) + 1 - e];
-                m.pairs[2 * (n - 1 - k) + 1 - e] = m.pairs[2 * k + e];
-                m.pairs[2 * k + e] = other;
-            }
-        chains = chains_of(&m);
+        large_turn_bonds(&m);
+        chains = large_chains(&m);
         results turned = compute(&m, chains);
         assert_same_bits(turned.g, plain.g, 3 * (size_t)m.n_atoms);
         assert_same_bits(turned.v, plain.v, 3 * (size_t)m.n_atoms);
@@ -157,7 +91,7 @@ static void order_of_bonds_changes_no_bit(void **state)
         }
         forget(&plain), forget(&turned);
         hol_chains_destroy(chains);
-        release(&m);
+        molecule_free(&m);
     }
 }
 
@@ -179,8 +113,8 @@ static void layout_changes_no_bit(void **state)
 {
     (void)state;
     for (int which = 0; which < 3; ++which) {
-        large m = example(which);
-        hol_chains *chains = chains_of(&m);
+        molecule m = example(which);
+        hol_chains *chains = large_chains(&m);
         results plain = compute(&m, chains);
         double *r = padded(m.r, m.n_atoms), *v = padded(m.v, m.n_atoms), *f = padded(m.f, m.n_atoms);
         double *lambda = untouched((size_t)m.n_bonds);
@@ -194,7 +128,7 @@ static void layout_changes_no_bit(void **state)
         free(r), free(v), free(f), free(lambda);
         forget(&plain);
         hol_chains_destroy(chains);
-        release(&m);
+        molecule_free(&m);
     }
 }
 
@@ -206,8 +140,8 @@ static void multipliers_are_right_to_a_few_roundings(void **state)
 {
     (void)state;
     for (int which = 0; which < 3; ++which) {
-        large m = example(which);
-        hol_chains *chains = chains_of(&m);
+        molecule m = example(which);
+        hol_chains *chains = large_chains(&m);
         results x = compute(&m, chains);
         const size_t n = (size_t)m.n_bonds, size = 3 * (size_t)m.n_atoms;
         long double *a = calloc(size, sizeof *a);
@@ -237,15 +171,15 @@ static void multipliers_are_right_to_a_few_roundings(void **state)
         free(a), free(left), free(error), free(largest);
         forget(&x);
         hol_chains_destroy(chains);
-        release(&m);
+        molecule_free(&m);
     }
 }
 
 static void bad_data_leave_everything_untouched(void **state)
 {
     (void)state;
-    large m = example(1);
-    hol_chains *chains = chains_of(&m);
+    molecule m = example(1);
+    hol_chains *chains = large_chains(&m);
     const size_t n = (size_t)m.n_bonds, size = 3 * (size_t)m.n_atoms;
     double *lambda = untouched(n), *g = untouched(size);
     m.f[size / 2] = NAN;
@@ -253,14 +187,14 @@ static void bad_data_leave_everything_untouched(void **state)
     assert_untouched(lambda, n);
     assert_untouched(g, size);
     m.f[size / 2] = 0;
-    const int64_t i = m.n_atoms / 2;
-    memcpy(m.r + 3 * i, m.r + 3 * m.parent[i], 3 * sizeof *m.r);
+    const int64_t *const ends = m.pairs + m.n_bonds / 2 * 2;
+    memcpy(m.r + 3 * ends[1], m.r + 3 * ends[0], 3 * sizeof *m.r);
     CHECK_FAILS(HOL_ERR_DEGENERATE, hol_forces(chains, m.r, m.v, m.f, lambda, NULL, g, HOL_WRITE, NULL));
     assert_untouched(lambda, n);
     assert_untouched(g, size);
     free(lambda), free(g);
     hol_chains_destroy(chains);
-    release(&m);
+    molecule_free(&m);
 }
 
 int main(void)

@@ -1,0 +1,148 @@
+#include "large.h"
+
+#include "check.h"
+
+/** The ends of the arms that have grown so far, and the stream that they come from. */
+typedef struct crown {
+    molecule m;
+    int64_t n_ends, *end;
+    int *neighbours; /* of each end */
+    random_stream stream;
+} crown;
+
+static double some_mass(random_stream *s)
+{
+    return pow(10, random_uniform(s));
+}
+
+static crown sapling(int64_t most_ends, uint64_t seed)
+{
+    crown t = {molecule_empty(), 1, NULL, NULL, random_seed(seed)};
+    t.end = calloc((size_t)most_ends, sizeof *t.end);
+    t.neighbours = calloc((size_t)most_ends, sizeof *t.neighbours);
+    molecule_add_atom(&t.m, some_mass(&t.stream), (const double[]){0, 0, 0});
+    return t;
+}
+
+/** An arm of n bonds from any end; with the first number at its far end if `inwards`. */
+static void grow(crown *t, int64_t n, int inwards, double bend)
+{
+    int64_t from;
+    do from = random_integer(&t->stream, 0, t->n_ends - 1);
+    while (t->neighbours[from] > 3);
+    ++t->neighbours[from];
+    const int64_t root = t->end[from], first = t->m.n_atoms;
+    double u[3], at[3], *r = untouched(3 * (size_t)n);
+    memcpy(at, t->m.r + 3 * root, sizeof at);
+    random_direction(&t->stream, u);
+    for (int64_t k = 0; k < n; ++k) {
+        double turn[3], size = 0;
+        random_direction(&t->stream, turn);
+        for (int c = 0; c < 3; ++c) u[c] = bend > 1 ? turn[c] : u[c] + bend * turn[c], size += u[c] * u[c];
+        for (int c = 0; c < 3; ++c) u[c] /= sqrt(size), at[c] += u[c];
+        memcpy(r + 3 * (inwards ? n - 1 - k : k), at, sizeof at);
+    }
+    for (int64_t k = 0; k < n; ++k) molecule_add_atom(&t->m, some_mass(&t->stream), r + 3 * k);
+    for (int64_t k = 0, last = root; k < n; ++k) {
+        const int64_t i = first + (inwards ? n - 1 - k : k);
+        molecule_add_bond(&t->m, last, i);
+        last = i;
+    }
+    t->end[t->n_ends] = inwards ? first : first + n - 1, t->neighbours[t->n_ends++] = 1;
+    free(r);
+}
+
+static molecule full_grown(crown *t)
+{
+    molecule_finish(&t->m, &t->stream);
+    free(t->end), free(t->neighbours);
+    return t->m;
+}
+
+molecule large_arms(int64_t first, int64_t last, double bend)
+{
+    crown t = sapling(2 * (last - first + 1) + 1, (uint64_t)first);
+    for (int64_t n = first; n <= last; ++n)
+        for (int inwards = 0; inwards < 2; ++inwards) grow(&t, n, inwards, bend);
+    return full_grown(&t);
+}
+
+molecule large_mixed_arms(int64_t n)
+{
+    crown t = sapling(n / 70 + 2, 7);
+    for (int i = 0; t.m.n_atoms < n; ++i) {
+        const double bend[] = {2, 1e-3, 2, 0.2, 1e-7};
+        grow(&t, random_integer(&t.stream, 70, 700), i % 2, bend[i % 5]);
+        if (i % 7 == 3) t.neighbours[t.n_ends - 1] = 4; /* nothing else grows there */
+    }
+    for (int64_t e = 4; e < t.n_ends; e += 7) t.m.mass[t.end[e]] = t.m.inverse_mass[t.end[e]] = 0;
+    return full_grown(&t);
+}
+
+molecule large_segments(int64_t n_atoms, int64_t segment, int64_t ring, uint64_t seed)
+{
+    molecule m = molecule_empty();
+    random_stream s = random_seed(seed);
+    int *neighbours = calloc((size_t)n_atoms, sizeof *neighbours);
+    int64_t *parent = calloc((size_t)n_atoms, sizeof *parent);
+    molecule_add_atom(&m, some_mass(&s), (const double[]){0, 0, 0});
+    for (int64_t i = 1; i < n_atoms; ++i) {
+        double u[3];
+        int64_t p = i - 1;
+        if (i % segment == 0) do
+                p = random_integer(&s, 0, i - 1);
+            while (neighbours[p] > 3);
+        random_direction(&s, u);
+        ++neighbours[i], ++neighbours[p];
+        parent[i] = p;
+        molecule_grow(&m, p, some_mass(&s), 1, u);
+    }
+    for (int64_t i = 4; ring > 0 && i < n_atoms; i += ring)
+        if (parent[i] == i - 1 && parent[i - 1] == i - 2 && parent[i - 2] == i - 3) molecule_add_bond(&m, i - 3, i);
+    molecule_finish(&m, &s);
+    free(neighbours), free(parent);
+    return m;
+}
+
+/** Every fourth atom hangs at the one before it; the others follow each other, and every 12 of them close a ring. */
+molecule large_rings(int64_t n_atoms)
+{
+    molecule m = molecule_empty();
+    random_stream s = random_seed(4);
+    int64_t backbone[8] = {0}, last = 0, count = 1;
+    molecule_add_atom(&m, some_mass(&s), (const double[]){0, 0, 0});
+    while (m.n_atoms < n_atoms) {
+        double u[3];
+        random_direction(&s, u);
+        const int64_t i = molecule_grow(&m, last, some_mass(&s), 1, u);
+        if (i % 4 == 3) continue;
+        backbone[count % 8] = last = i;
+        if (++count % 12 == 0) molecule_add_bond(&m, backbone[(count - 6) % 8], i);
+    }
+    molecule_finish(&m, &s);
+    return m;
+}
+
+void large_turn_bonds(molecule *m)
+{
+    for (int64_t k = 0, last = m->n_bonds - 1; k < last; ++k, --last) {
+        const double length = m->length[k];
+        m->length[k] = m->length[last], m->length[last] = length;
+        for (int e = 0; e < 2; ++e) {
+            const int64_t end = m->pairs[2 * last + 1 - e];
+            m->pairs[2 * last + 1 - e] = m->pairs[2 * k + e];
+            m->pairs[2 * k + e] = end;
+        }
+    }
+}
+
+hol_chains *large_chains(const molecule *m)
+{
+    hol_chains *chains = NULL;
+    CHECK(hol_chains_create(m->n_atoms, m->mass, &chains));
+    CHECK(hol_chains_add_bonds(chains, m->n_bonds, m->pairs, m->length));
+    assert_int_equal(hol_chains_n_chains(chains), 1);
+    const hol_shape shape = m->n_bonds < m->n_atoms ? HOL_SHAPE_TREE : HOL_SHAPE_OTHER;
+    assert_int_equal(hol_chains_n_of_shape(chains, shape), 1);
+    return chains;
+}

@@ -1,0 +1,33 @@
+/**
+ * @file large.h
+ * Molecules of thousands of bonds.
+ */
+#ifndef TESTS_LARGE_H
+#define TESTS_LARGE_H
+
+#include <holonomic.h>
+#include <stdint.h>
+
+#include "molecule.h"
+
+/** Arms of the lengths first .. last, each with its numbers outwards and inwards. Each bond is turned by `bend` at the
+ * most; above 1: anywhere. */
+molecule large_arms(int64_t first, int64_t last, double bend);
+
+/** Straight arms beside coils, at least n atoms; some end at fixed atoms. */
+molecule large_mixed_arms(int64_t n);
+
+/** Segments of so many atoms, joined at random, at most four bonds at an atom; every `ring`th atom closes a ring of
+ * four, if `ring` is not 0. */
+molecule large_segments(int64_t n_atoms, int64_t segment, int64_t ring, uint64_t seed);
+
+/** A chain that closes rings of six, with atoms on its sides. */
+molecule large_rings(int64_t n_atoms);
+
+/** Puts the bonds backwards, and turns them round. */
+void large_turn_bonds(molecule *m);
+
+/** Chains that hold it, as a tree or as a molecule with cycles. */
+hol_chains *large_chains(const molecule *m);
+
+#endif
