@@ -40,36 +40,12 @@ HOL_INLINE void write_group(const AtomArray &array, const Atoms<V> &at, int64_t 
     for (int j = 0; j < count; ++j) write<layout>(array, at, first + j, a[j], which);
 }
 
-template <int value>
-struct Count {
-    static constexpr int count = value;
-};
-
-// Calls body(Count<n>()) for few, else body(Count<0>()).
-template <class Body>
-HOL_INLINE void choose_count(int n, const Body &body) {
-    switch (n) {
-        case 0:
-            return;
-        case 1:
-            return body(Count<1>());
-        case 2:
-            return body(Count<2>());
-        case 3:
-            return body(Count<3>());
-        case 4:
-            return body(Count<4>());
-        default:
-            return body(Count<0>());
-    }
-}
-
-// Calls body(first, Count<4>()) for the numbers below n, four at a time, then body(first, Count<1>()) for the rest.
+// Calls body(first, count) for the numbers below n, with the constant 4 as long as there are four, then with 1.
 template <class Body>
 HOL_INLINE void for_groups(int32_t n, const Body &body) {
     int32_t k = 0;
-    for (; k + 4 <= n; k += 4) body(k, Count<4>());
-    for (; k < n; ++k) body(k, Count<1>());
+    for (; k + 4 <= n; k += 4) body(k, Constant<int, 4>{});
+    for (; k < n; ++k) body(k, Constant<int, 1>{});
 }
 
 // Whether so many numbers of a list follow each other.

@@ -5,6 +5,7 @@
 
 #include "core/kernels/call.hpp"
 #include "core/kernels/graph/width.hpp"
+#include "core/kernels/isa/choose.hpp"
 #include "core/kernels/memory/atom_rows.hpp"
 
 namespace holonomic {
@@ -39,14 +40,14 @@ struct Atoms {
         }
     }
     // To the next block of molecules that follow each other, of so many atoms and bonds.
-    HOL_INLINE void advance(Atoms &a, int64_t n_atoms, int64_t n_bonds) {
+    HOL_FORCED void advance(int64_t n_atoms, int64_t n_bonds) {
         HOL_UNROLL
         for (int i = 0; i < lanes; ++i) {
-            a.first[i] += lanes * n_atoms;
-            a.bond[i] += lanes * n_bonds;
+            first[i] += lanes * n_atoms;
+            bond[i] += lanes * n_bonds;
         }
     }
-    HOL_INLINE int64_t number(const Atoms &a, int i, int64_t k) { return a.list[i] ? a.list[i][k] : a.first[i] + k; }
+    HOL_FORCED int64_t number(int i, int64_t k) const { return list[i] ? list[i][k] : first[i] + k; }
 };
 
 template <class T>
@@ -60,7 +61,7 @@ HOL_INLINE Vector3<V> read(const AtomArray &array, const Atoms<V> &at, int64_t k
     Vector3<V> a = {};
     if (layout == elements) {
         for (int i = 0; i < at.lanes; ++i) {
-            const int64_t offset = Atoms<V>::number(at, i, k) * array.stride;
+            const int64_t offset = at.number(i, k) * array.stride;
             const char *const p[3] = {array.x + offset, array.y + offset, array.z ? array.z + offset : nullptr};
             V *const component[3] = {&a.x, &a.y, &a.z};
             for (int c = 0; c < 3; ++c)
@@ -108,8 +109,7 @@ HOL_INLINE void write(const AtomArray &array, const Atoms<V> &at, int64_t k, con
     }
     for (int i = 0; i < at.lanes; ++i)
         if (which >> i & 1)
-            write_one(array, Atoms<V>::number(at, i, k),
-                      {Width<V>::get(a.x, i), Width<V>::get(a.y, i), Width<V>::get(a.z, i)});
+            write_one(array, at.number(i, k), {Width<V>::get(a.x, i), Width<V>::get(a.y, i), Width<V>::get(a.z, i)});
 }
 
 // How a call's arrays can be read together.
@@ -124,20 +124,16 @@ HOL_INLINE Layout layout_of(const Atoms<V> &at, bool packed) {
     return none ? rows_in_order : lists ? rows_listed : elements;
 }
 
-// Calls f with that layout as a constant: decltype(argument)::value.
-template <Layout layout>
-struct Constant {
-    static constexpr Layout value = layout;
-};
+// Calls f with that layout as a constant.
 template <class V, class F>
 HOL_INLINE auto with_layout(const Atoms<V> &at, bool packed, F f) {
     switch (layout_of(at, packed)) {
         case rows_in_order:
-            return f(Constant<rows_in_order>());
+            return f(Constant<Layout, rows_in_order>{});
         case rows_listed:
-            return f(Constant<rows_listed>());
+            return f(Constant<Layout, rows_listed>{});
         default:
-            return f(Constant<elements>());
+            return f(Constant<Layout, elements>{});
     }
 }
 

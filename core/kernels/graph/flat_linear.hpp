@@ -116,8 +116,8 @@ struct FlatLinear {
             const int32_t *const row = s.row + first;
             double *const l = lower + first;
             const double inverse = r[k] = 1 / E[k], y = t[k];
-            with_count(count, [&](auto known) HOL_FORCED {
-                const int32_t n = decltype(known)::value >= 0 ? decltype(known)::value : count;
+            choose_few<known_entries>(count, [&](auto known) HOL_FORCED {
+                const int32_t n = known > 0 ? known : count;
                 HOL_UNROLL
                 for (int32_t i = 0; i < n; ++i) {
                     const double li = l[i], lr = li * inverse;
@@ -139,8 +139,8 @@ struct FlatLinear {
             const int32_t *const row = s.row + first;
             const double *const l = lower + first;
             double x = t[k] * r[k], sum = 0;
-            with_count(count, [&](auto known) HOL_FORCED {
-                const int32_t n = decltype(known)::value >= 0 ? decltype(known)::value : count;
+            choose_few<known_entries>(count, [&](auto known) HOL_FORCED {
+                const int32_t n = known > 0 ? known : count;
                 HOL_UNROLL
                 for (int32_t e = 0; e < n; ++e) {
                     const double part = l[e] * t[row[e]];
@@ -200,7 +200,7 @@ struct FlatLinear {
         for (int e = 0; e < 2; ++e) {
             const Row product = d[k] * a.at_four_times(end[e]);
             sum += abs((product[0] + product[1]) + product[2]);
-            const int64_t number = Atoms<double>::number(at, 0, end[e] / 4);
+            const int64_t number = at.number(0, end[e] / 4);
             double f[3] = {};
             if (in.v && in.v->x) read_row(*in.v, number, velocity[e]);
             if (in.f && in.f->x) read_row(*in.f, number, f);

@@ -45,24 +45,23 @@ struct FlatNewton {
         double largest() const { return largest_of(worst) + 0 * ((sum[0] + sum[1]) + (sum[2] + sum[3])); }
     };
     // D.D - a^2 of bonds k .. k + 3.
-    HOL_INLINE Row excess_of(const FlatNewton &me, int64_t k, const Row *d) {
+    HOL_FORCED Row excess_of(int64_t k, const Row *d) const {
         const Lanes3 at = turned(d[0], d[1], d[2], d[3]);
-        const Row &a2 = *reinterpret_cast<const Row *>(me.a2 + k);
-        return multiply_add(at.z, at.z, multiply_add(at.y, at.y, multiply_add(at.x, at.x, -a2)));
+        const Row squares = *reinterpret_cast<const Row *>(a2 + k);
+        return multiply_add(at.z, at.z, multiply_add(at.y, at.y, multiply_add(at.x, at.x, -squares)));
     }
     // What is left of their lengths. Not of their squares: |D| (|D| - a), to third order, which is what Newton's method
     // for |D| - a takes and spares a hundredfold of the first error, as bonds are stretched more than they turn.
-    HOL_INLINE void measure(const FlatNewton &me, int64_t k, const Row *d, Errors &errors) {
-        const Row sigma = excess_of(me, k, d), &per_a2 = *reinterpret_cast<const Row *>(me.per_a2 + k);
-        const Row excess = sigma * per_a2;
+    HOL_FORCED void measure(int64_t k, const Row *d, Errors &errors) const {
+        const Row sigma = excess_of(k, d), excess = sigma * *reinterpret_cast<const Row *>(per_a2 + k);
         errors.worst = larger(absolute(excess), errors.worst);
         errors.sum = errors.sum + sigma;
-        *reinterpret_cast<Row *>(me.t + k) =
+        *reinterpret_cast<Row *>(t + k) =
             (0.5 * sigma) * multiply_add(in_row(0.25), smaller(larger(excess, in_row(-0.5)), in_row(0.5)), in_row(1));
     }
     double open() {
         Errors errors = {};
-        for (int64_t k = 0; k < s.n_bonds; k += 4) measure(*this, k, &D[k], errors);
+        for (int64_t k = 0; k < s.n_bonds; k += 4) measure(k, &D[k], errors);
         return errors.largest();
     }
     void forget(Flag which) {
@@ -78,7 +77,7 @@ struct FlatNewton {
         const int64_t first = k / 4 * 4;
         Row d[4];
         for (int i = 0; i < 4; ++i) d[i] = moved ? moved_bond(first + i) : D[first + i];
-        return absolute(excess_of(*this, first, d))[k - first] * per_a2[k];
+        return absolute(excess_of(first, d))[k - first] * per_a2[k];
     }
 
     // Displacements, times w only in the end; bonds as moved, and what is left of them.
@@ -94,7 +93,7 @@ struct FlatNewton {
         Errors errors = {};
         for (int64_t k = 0; k < s.n_bonds; k += 4) {
             const Row d[4] = {moved_bond(k), moved_bond(k + 1), moved_bond(k + 2), moved_bond(k + 3)};
-            measure(*this, k, d, errors);
+            measure(k, d, errors);
         }
         moved = true;
         return errors.largest();
@@ -137,8 +136,8 @@ struct FlatNewton {
             const int32_t *const row = s.row + first;
             double *const l = lower + first, *const u = upper + first;
             const double inverse = r[k] = 1 / r[k], y = t[k];
-            with_count(count, [&](auto known) HOL_FORCED {
-                const int32_t n = decltype(known)::value >= 0 ? decltype(known)::value : count;
+            choose_few<known_entries>(count, [&](auto known) HOL_FORCED {
+                const int32_t n = known > 0 ? known : count;
                 HOL_UNROLL
                 for (int32_t a = 0; a < n; ++a) {
                     const double la = l[a], ua = u[a], ur = ua * inverse;

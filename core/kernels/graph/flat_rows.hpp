@@ -6,6 +6,7 @@
 #include "core/kernels/graph/atoms.hpp"
 #include "core/kernels/graph/flat_list.hpp"
 #include "core/kernels/graph/image.hpp"
+#include "core/kernels/isa/choose.hpp"
 
 // All that takes or returns a row is inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -85,24 +86,8 @@ HOL_INLINE Row dots_of(const Lanes3 &a, const Lanes3 &b) {
     return multiply_add(a.z, b.z, multiply_add(a.y, b.y, a.x * b.x));
 }
 
-// Calls body with n as a constant where it is small, else with -1: the entries of most columns are few.
-template <int n>
-struct Known {
-    static constexpr int32_t value = n;
-};
-template <class Body>
-HOL_INLINE void with_count(int32_t n, const Body &body) {
-    switch (n) {
-        case 1:
-            return body(Known<1>());
-        case 2:
-            return body(Known<2>());
-        case 3:
-            return body(Known<3>());
-        default:
-            return body(Known<-1>());
-    }
-}
+// Most columns have few entries: up to three are known to the compiler.
+constexpr int32_t known_entries = 3;
 
 // Another right-hand side, in t: up along the columns of a factor with a diagonal of ones, and down with the pivots and
 // the factor above the diagonal, which is the same one where the matrix is symmetric.
@@ -111,8 +96,8 @@ HOL_INLINE void solve_up(const FlatList &s, const double *lower, double *t) {
         const int32_t first = s.column_start[k], count = s.column_start[k + 1] - first;
         const int32_t *const row = s.row + first;
         const double *const l = lower + first, y = t[k];
-        with_count(count, [&](auto known) HOL_FORCED {
-            const int32_t n = decltype(known)::value >= 0 ? decltype(known)::value : count;
+        choose_few<known_entries>(count, [&](auto known) HOL_FORCED {
+            const int32_t n = known > 0 ? known : count;
             HOL_UNROLL
             for (int32_t e = 0; e < n; ++e) t[row[e]] = mul_add(-l[e], y, t[row[e]]);
         });
@@ -125,8 +110,8 @@ HOL_INLINE void solve_down(const FlatList &s, const double *upper, const double 
         const int32_t *const row = s.row + first;
         const double *const u = upper + first;
         double x = t[k] * r[k];
-        with_count(count, [&](auto known) HOL_FORCED {
-            const int32_t n = decltype(known)::value >= 0 ? decltype(known)::value : count;
+        choose_few<known_entries>(count, [&](auto known) HOL_FORCED {
+            const int32_t n = known > 0 ? known : count;
             HOL_UNROLL
             for (int32_t e = n - 1; e >= 0; --e) x = mul_add(-u[e], t[row[e]], x);
         });

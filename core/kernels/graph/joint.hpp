@@ -159,21 +159,12 @@ static inline void up_trees(Molecules<V> &x, Memory<V> memory) {
     for (int32_t slot = 0; slot < s.n_tree; ++slot) {
         const int k = s.child_start[slot + 1] - s.child_start[slot];
         const AtomRows<V> rows(x, slot);
-        switch (k) {
-            case 0:
-                break;
-            case 1:
-                up_joint<1, false, keep>(rows, k, memory, slack);
-                break;
-            case 2:
-                up_joint<2, false, keep>(rows, k, memory, slack);
-                break;
-            case 3:
-                up_joint<3, false, keep>(rows, k, memory, slack);
-                break;
-            default:
-                up_joint<0, false, keep>(rows, k, memory, slack);
-        }
+        if (k == 0) continue;
+        slack = choose_few<3>(k, [=](auto known) HOL_FORCED {  // captured by value: so slack stays in a register
+            V least = slack;
+            up_joint<known, false, keep>(rows, k, memory, least);
+            return least;
+        });
     }
     if (s.type == Schedule::tree) up_joint<1, true, keep>(AtomRows<V>(x, s.n_tree), 1, memory, slack);
     x.slack = slack;
@@ -183,18 +174,7 @@ template <class V>
 static inline void substitute_one(const Molecules<V> &x, int32_t slot, Memory<V> memory) {
     const AtomRows<V> rows(x, slot);
     const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
-    switch (k) {
-        case 0:
-            break;
-        case 1:
-            return substitute_joint<1, false>(rows, k, memory);
-        case 2:
-            return substitute_joint<2, false>(rows, k, memory);
-        case 3:
-            return substitute_joint<3, false>(rows, k, memory);
-        default:
-            return substitute_joint<0, false>(rows, k, memory);
-    }
+    if (k > 0) choose_few<3>(k, [&](auto known) HOL_FORCED { substitute_joint<known, false>(rows, k, memory); });
 }
 
 template <class V>
@@ -222,18 +202,7 @@ HOL_INLINE void down_joint(const Molecules<V> &x, int32_t slot, int count, V &sl
 template <bool look, class V>
 static inline void down_one(const Molecules<V> &x, int32_t slot, V &slack) {
     const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
-    switch (k) {
-        case 0:
-            break;
-        case 1:
-            return down_joint<look, 1>(x, slot, k, slack);
-        case 2:
-            return down_joint<look, 2>(x, slot, k, slack);
-        case 3:
-            return down_joint<look, 3>(x, slot, k, slack);
-        default:
-            return down_joint<look, 0>(x, slot, k, slack);
-    }
+    if (k > 0) choose_few<3>(k, [&](auto known) HOL_FORCED { down_joint<look, known>(x, slot, k, slack); });
 }
 
 // Down the trees.

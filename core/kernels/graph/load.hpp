@@ -20,9 +20,9 @@ struct Loader {
 
     // Atoms first .. first + count - 1 as the caller has them, to their slots.
     template <int count>
-    HOL_INLINE void read_atoms(const Loader &me, int32_t first) {
-        const Molecules<V> &x = me.z.x;
-        const Equations<V> &e = me.z.equations;
+    HOL_FORCED void read_atoms(int32_t first) const {
+        const Molecules<V> &x = z.x;
+        const Equations<V> &e = z.equations;
         const int32_t *const slot = x.s.slot_of + first;
         Vector3<V> a[count] = {};
         const auto take = [&](const AtomArray &array, Vector3<V> *to) HOL_FORCED {
@@ -34,14 +34,14 @@ struct Loader {
         if (terms & (squares | rates)) take(*x.in.v, e.velocity);
         if (terms & pulls) take(*x.in.f, e.force);
     }
-    HOL_INLINE void read_atom(const Loader &me, int32_t slot) { read_atoms<1>(me, me.z.x.s.atom_of[slot]); }
+    HOL_FORCED void read_atom(int32_t slot) const { read_atoms<1>(z.x.s.atom_of[slot]); }
 
     // The bond between the atoms in two slots; `row` gets d, q and t.
-    HOL_INLINE void make_row(const Loader &me, int32_t place, int32_t from, int32_t to) {
-        const Equations<V> &e = me.z.equations;
-        BondRow<V> &row = me.z.x.row[place];
+    HOL_FORCED void make_row(int32_t place, int32_t from, int32_t to) const {
+        const Equations<V> &e = z.equations;
+        BondRow<V> &row = z.x.row[place];
         Vector3<V> d = e.r[to] - e.r[from], unused = {};
-        take_image<false>(*me.z.x.box, d, unused);
+        take_image<false>(*z.x.box, d, unused);
         V b = {};
         if (terms & squares) {
             const Vector3<V> dv = e.velocity[to] - e.velocity[from];
@@ -49,35 +49,34 @@ struct Loader {
         }
         if (terms & rates) {
             b = dot(d, e.velocity[to] - e.velocity[from]);
-            if (me.z.x.in.strain) b = b + stretching(me.z.x.in.strain, d);
+            if (z.x.in.strain) b = b + stretching(z.x.in.strain, d);
         }
         if (terms & pulls) {
-            const V w0 = me.z.x.w[from], w = me.z.x.w[to];
+            const V w0 = z.x.w[from], w = z.x.w[to];
             const Vector3<V> f0 = e.force[from], f = e.force[to];
             const Vector3<V> df = {mul_add(w, f.x, -(w0 * f0.x)), mul_add(w, f.y, -(w0 * f0.y)),
                                    mul_add(w, f.z, -(w0 * f0.z))};
             b = mul_add(d.z, df.z, mul_add(d.y, df.y, mul_add(d.x, df.x, b)));
         }
-        if (terms & given) b = given_value(me, place);
+        if (terms & given) b = given_value(place);
         row.d = d;
         row.q = dot(d, d);
         row.t = b;
     }
 
-    HOL_INLINE V given_value(const Loader &me, int32_t place) {
+    HOL_FORCED V given_value(int32_t place) const {
         V b = {};
         for (int i = 0; i < Width<V>::lanes; ++i)
-            Width<V>::set(b, i, 0.5 * me.z.x.in.rhs[me.z.x.lane[i].first_bond + me.z.x.s.bond_of[place]]);
-        if (me.z.equations.given) me.z.equations.given[place] = b;
+            Width<V>::set(b, i, 0.5 * z.x.in.rhs[z.x.lane[i].first_bond + z.x.s.bond_of[place]]);
+        if (z.equations.given) z.equations.given[place] = b;
         return b;
     }
 
     __attribute__((noinline)) void load() const {
         const Schedule &s = z.x.s;
-        for_groups(s.n_atoms,
-                   [&](int32_t first, auto number) HOL_FORCED { read_atoms<decltype(number)::count>(*this, first); });
+        for_groups(s.n_atoms, [&](int32_t first, auto number) HOL_FORCED { read_atoms<number>(first); });
         for (int32_t slot = 0; slot < s.n_tree; ++slot) {
-            make_row(*this, slot, s.parent[slot], slot);
+            make_row(slot, s.parent[slot], slot);
             BondRow<V> &row = z.x.row[slot];
             row.E = z.x.w[slot] * row.q;  // of a leaf
         }
@@ -86,13 +85,13 @@ struct Loader {
 
     // The atoms that trees hang from, and the bonds between them.
     void load_core() const {
-        for (int32_t slot = z.x.s.n_atoms - 1; slot >= z.x.s.n_tree; --slot) read_atom(*this, slot);
+        for (int32_t slot = z.x.s.n_atoms - 1; slot >= z.x.s.n_tree; --slot) read_atom(slot);
         load_core_bonds();
     }
 
     void load_core_bonds() const {
         const Schedule &s = z.x.s;
-        for (int32_t p = 0; p < s.n_core; ++p) make_row(*this, s.n_tree + p, s.from[p], s.to[p]);
+        for (int32_t p = 0; p < s.n_core; ++p) make_row(s.n_tree + p, s.from[p], s.to[p]);
     }
 };
 

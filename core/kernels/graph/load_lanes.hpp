@@ -20,7 +20,7 @@ struct AtomsInLanes {
             const int32_t atom = x.s.atom_of[slot[i]];
             number[i] = layout == rows_listed     ? 3 * x.at.list[0][atom]
                         : layout == rows_in_order ? 3 * (atom + x.at.first[0])
-                                                  : Atoms<double>::number(x.at, 0, atom);
+                                                  : x.at.number(0, atom);
         }
     }
     HOL_FORCED vec3 read(const AtomArray &array) const {
@@ -98,8 +98,7 @@ HOL_INLINE void load_lanes(Linear<double> &z, const int32_t *slot, bool keep_all
         row.t = mul_add(row.d.z, df.z, mul_add(row.d.y, df.y, mul_add(row.d.x, df.x, row.t)));
     }
     if (terms & given)
-        for (int i = 0; i < W; ++i)
-            row.t[i] = Loader<layout, terms, double>::given_value(Loader<layout, terms, double>{z}, slot[i]);
+        for (int i = 0; i < W; ++i) row.t[i] = Loader<layout, terms, double>{z}.given_value(slot[i]);
     row.q = dot(row.d, row.d);
     row.E = w * row.q;  // of a leaf
     scatter_vectors(x.row, slot, row);

@@ -7,6 +7,7 @@
 #include "core/kernels/graph/image.hpp"
 #include "core/kernels/graph/pieces.hpp"
 #include "core/kernels/graph/schedule.hpp"
+#include "core/kernels/isa/choose.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -64,13 +65,29 @@ HOL_INLINE void ends_of(const Schedule &s, int32_t place, int32_t &from, int32_t
     to = place < s.n_tree ? place : s.to[place - s.n_tree];
 }
 
+// Calls body(place, sign) for the bonds of the atom at a slot. The sign is 1 if the bond points away from it, else -1.
+template <class V, class Body>
+HOL_INLINE void for_bonds_of(const Schedule &s, int32_t slot, const Body &body) {
+    const V sign[2] = {Width<V>::all(1), Width<V>::all(-1)};
+    for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) body(s.child[c], sign[0]);
+    if (slot < s.n_tree) return body(slot, sign[1]);
+    if (s.n_core_atoms == 0) return;
+    const int32_t *const meet = s.meet + s.meet_start[slot - s.n_tree];
+    const int n = s.meet_start[slot - s.n_tree + 1] - s.meet_start[slot - s.n_tree];
+    choose_few<4>(n, [&](auto known) HOL_FORCED {
+        const int count = known > 0 ? known : n;
+        HOL_UNROLL
+        for (int e = 0; e < count; ++e) body(s.n_tree + meet[e] / 2, sign[meet[e] & 1]);
+    });
+}
+
 template <class V>
 HOL_INLINE void exact_bond(const Molecules<V> &x, int lane, int32_t place, Vector3<double> &d, Vector3<double> &lo) {
     int32_t from, to;
     ends_of(x.s, place, from, to);
     Vector3<double> a, b;
-    read_row(*x.r, Atoms<V>::number(x.at, lane, x.s.atom_of[from]), &a.x);
-    read_row(*x.r, Atoms<V>::number(x.at, lane, x.s.atom_of[to]), &b.x);
+    read_row(*x.r, x.at.number(lane, x.s.atom_of[from]), &a.x);
+    read_row(*x.r, x.at.number(lane, x.s.atom_of[to]), &b.x);
     unrounded_bond(*x.box, a, b, d, lo);
 }
 

@@ -53,7 +53,7 @@ struct Newton {
         V largest() const { return mul_add(sum, V{}, worst); }
     };
     // What is left of a bond's length into its t, for D as given.
-    HOL_INLINE void measure(NewtonRow<V> &row, const Vector3<V> &D, Errors &errors) {
+    HOL_FORCED static void measure(NewtonRow<V> &row, const Vector3<V> &D, Errors &errors) {
         const V sigma = excess(D, row.a2);
         errors.worst = max(abs(sigma) * row.per_a2, errors.worst);
         errors.sum = errors.sum + sigma;
@@ -73,22 +73,10 @@ struct Newton {
         const Schedule &s = x.s;
         for (int32_t slot = 0; slot < s.n_tree; ++slot) {
             const int k = s.child_start[slot + 1] - s.child_start[slot];
-            switch (k) {
-                case 0:
-                    x.row[slot].E = x.w[slot] * dot(x.new_D[slot], x.row[slot].b);
-                    break;
-                case 1:
-                    factorize_joint<1, false, all>(x, slot, k, which);
-                    break;
-                case 2:
-                    factorize_joint<2, false, all>(x, slot, k, which);
-                    break;
-                case 3:
-                    factorize_joint<3, false, all>(x, slot, k, which);
-                    break;
-                default:
-                    factorize_joint<0, false, all>(x, slot, k, which);
-            }
+            if (k == 0)
+                x.row[slot].E = x.w[slot] * dot(x.new_D[slot], x.row[slot].b);
+            else
+                choose_few<3>(k, [&](auto known) HOL_FORCED { factorize_joint<known, false, all>(x, slot, k, which); });
         }
         if (s.n_core_atoms == 0)
             factorize_joint<1, true, all>(x, s.n_tree, 1, which);
@@ -101,21 +89,7 @@ struct Newton {
         const Schedule &s = x.s;
         for (int32_t slot = 0; slot < s.n_tree; ++slot) {
             const int k = s.child_start[slot + 1] - s.child_start[slot];
-            switch (k) {
-                case 0:
-                    break;
-                case 1:
-                    substitute_joint<1, false>(x, slot, k);
-                    break;
-                case 2:
-                    substitute_joint<2, false>(x, slot, k);
-                    break;
-                case 3:
-                    substitute_joint<3, false>(x, slot, k);
-                    break;
-                default:
-                    substitute_joint<0, false>(x, slot, k);
-            }
+            if (k > 0) choose_few<3>(k, [&](auto known) HOL_FORCED { substitute_joint<known, false>(x, slot, k); });
         }
         if (s.n_core_atoms == 0)
             substitute_joint<1, true>(x, s.n_tree, 1);
@@ -137,25 +111,10 @@ struct Newton {
 
     // What tau moves an atom by.
     HOL_FORCED Vector3<V> displacement(int32_t slot) const {
-        const Schedule &s = x.s;
         Vector3<V> pull = {};
-        for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c)
-            pull = add_times(pull, x.row[s.child[c]].tau, x.row[s.child[c]].b);
-        if (slot < s.n_tree) {
-            pull = add_times(pull, -x.row[slot].tau, x.row[slot].b);
-        } else if (s.n_core_atoms > 0) {
-            const int32_t *const meet = s.meet + s.meet_start[slot - s.n_tree];
-            const int n = s.meet_start[slot - s.n_tree + 1] - s.meet_start[slot - s.n_tree];
-            const V sign[2] = {Width<V>::all(1), Width<V>::all(-1)};
-            choose_count(n, [&](auto number) HOL_FORCED {
-                constexpr int known = decltype(number)::count;
-                HOL_UNROLL
-                for (int e = 0; e < (known > 0 ? known : n); ++e) {
-                    const NewtonRow<V> &row = x.row[s.n_tree + meet[e] / 2];
-                    pull = add_times(pull, sign[meet[e] & 1] * row.tau, row.b);
-                }
-            });
-        }
+        for_bonds_of<V>(x.s, slot, [&](int32_t place, V sign) HOL_FORCED {
+            pull = add_times(pull, sign * x.row[place].tau, x.row[place].b);
+        });
         return x.w[slot] * pull;
     }
 

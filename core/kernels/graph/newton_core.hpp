@@ -38,16 +38,7 @@ HOL_INLINE void add_bare_atom(const NewtonSystem<V> &x, int32_t c, int count, V 
 template <class V>
 static inline void add_bare_atom(const NewtonSystem<V> &x, int32_t c, V *entry_lower, V *entry_upper) {
     const int n = x.s.meet_start[c + 1] - x.s.meet_start[c];
-    switch (n) {
-        case 2:
-            return add_bare_atom<2>(x, c, n, entry_lower, entry_upper);
-        case 3:
-            return add_bare_atom<3>(x, c, n, entry_lower, entry_upper);
-        case 4:
-            return add_bare_atom<4>(x, c, n, entry_lower, entry_upper);
-        default:
-            return add_bare_atom<0>(x, c, n, entry_lower, entry_upper);
-    }
+    choose_few<4, 2>(n, [&](auto known) HOL_FORCED { add_bare_atom<known>(x, c, n, entry_lower, entry_upper); });
 }
 
 // The elements of one atom of the core. Row k and column l: s_k s_l (w D_k.b_l - sum over its children).
@@ -127,9 +118,7 @@ static inline void factorize_core(const NewtonSystem<V> &x, V *spare, MaskOf<V> 
         const V r = Width<V>::all(1) / x.core[p];
         put_where<all>(which, row[p].r, r);
         const int n = s.column_start[p + 1] - s.column_start[p];
-        choose_count(n, [&](auto number) HOL_FORCED {
-            eliminate_column<decltype(number)::count>(s, x.core, p, n, r, lower, upper);
-        });
+        choose_few<4>(n, [&](auto known) HOL_FORCED { eliminate_column<known>(s, x.core, p, n, r, lower, upper); });
     }
     if (all) return;
     for (int32_t e = 0; e < s.n_entries; ++e) {

@@ -33,7 +33,7 @@ HOL_NOINLINE V load_bonds(Newton<V> &newton, const PositionsCall &call, const At
     Vector3<V> *const r_ref = newton.x.move, *const r = newton.x.r;
     V largest = {};
     for_groups(s.n_atoms, [&](int32_t first, auto number) HOL_FORCED {
-        constexpr int count = decltype(number)::count;
+        constexpr int count = number;
         Vector3<V> ref[count] = {}, now[count] = {};
         read_group<layout, count>(call.r_ref, at, first, ref);
         read_group<layout, count>(call.r, at, first, now);
@@ -60,7 +60,7 @@ HOL_NOINLINE void write_moves(const Newton<V> &newton, const PositionsCall &call
     const Schedule &s = newton.x.s;
     const V per_dt = Width<V>::all(1 / call.dt);
     for_groups(s.n_atoms, [&](int32_t first, auto number) HOL_FORCED {
-        constexpr int count = decltype(number)::count;
+        constexpr int count = number;
         Vector3<V> move[count] = {}, a[count] = {};
         bool fixed = false;
         HOL_UNROLL
@@ -134,34 +134,10 @@ struct PositionsBlock {
         return less(0.25 * (largest_coordinate + a_min), pull * a_max);
     }
 
-    HOL_NOINLINE void write_multipliers(const PositionsBlock &me, unsigned which) {
-        const Schedule &s = me.s;
-        const V factor = Width<V>::all(0.5 / (me.call.dt * me.call.dt));
-        double *p[Width<V>::lanes];
-        for (int i = 0; i < Width<V>::lanes; ++i) p[i] = me.call.lambda + me.lane[i].first_bond;
-        const bool all = which == (1u << Width<V>::lanes) - 1;
-        const auto value = [&](int32_t k) HOL_FORCED { return mul_add(me.newton.x.row[k].tau, factor, V{}); };
-        int32_t k = 0;
-        while (k < s.n_bonds) {
-            const int32_t *const bond = s.bond_of + k;
-            if (all && k + 4 <= s.n_bonds && follow_each_other<4>(bond)) {
-                const V four[4] = {value(k), value(k + 1), value(k + 2), value(k + 3)};
-                double *q[Width<V>::lanes];
-                HOL_UNROLL
-                for (int i = 0; i < Width<V>::lanes; ++i) q[i] = p[i] + *bond;
-                write_four(q, four);
-                k += 4;
-                continue;
-            }
-            const V one = value(k++);
-            if (all) {
-                HOL_UNROLL
-                for (int i = 0; i < Width<V>::lanes; ++i) p[i][*bond] = Width<V>::get(one, i);
-                continue;
-            }
-            for (int i = 0; i < Width<V>::lanes; ++i)
-                if (which >> i & 1) p[i][*bond] = Width<V>::get(one, i);
-        }
+    __attribute__((noinline)) void write_multipliers(unsigned which) const {
+        const V factor = Width<V>::all(0.5 / (call.dt * call.dt));
+        write_values<V>(s, lane, call.lambda, which, 0, s.n_bonds,
+                        [&](int32_t k) HOL_FORCED { return mul_add(newton.x.row[k].tau, factor, V{}); });
     }
 
     void add_virial(unsigned which) const {
@@ -202,7 +178,7 @@ struct PositionsBlock {
         const MaskOf<V> coarse = out.converged & coarse_moves();
         const unsigned moved = bits(out.converged & ~coarse), good = moved | bits(out.untouched);
         if (call.report) note_worst(good, out.error);
-        if (call.lambda) write_multipliers(*this, good);
+        if (call.lambda) write_multipliers(good);
         if (call.virial) add_virial(moved);
         if (moved) write_moves<layout>(newton, call, at, moved);
         tally.n_corrected += __builtin_popcount(moved);

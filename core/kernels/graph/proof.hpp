@@ -63,31 +63,18 @@ HOL_INLINE void find_core_bound(const Molecules<V> &x, const CoreMatrix<V> &core
 
 template <class V>
 HOL_INLINE Pulled<V> pulled(const Molecules<V> &x, const Equations<V> &e, const Backward<V> *bond, int32_t slot) {
-    const Schedule &s = x.s;
     Vector3<V> g = {};
     V sum = {};
-    const int32_t first = s.child_start[slot], end = s.child_start[slot + 1];
-    for (int32_t c = first; c < end; ++c) {
-        const int32_t place = s.child[c];
-        g = add_times(g, x.row[place].t, x.row[place].d);
+    for_bonds_of<V>(x.s, slot, [&](int32_t place, V sign) HOL_FORCED {
+        g = add_times(g, sign * x.row[place].t, x.row[place].d);
         sum = sum + bond[place].tension;
-    }
-    if (slot < s.n_tree) {
-        g = add_times(g, -x.row[slot].t, x.row[slot].d);
-        sum = sum + bond[slot].tension;
-    } else {
-        for (int32_t m = s.meet_start[slot - s.n_tree]; m < s.meet_start[slot - s.n_tree + 1]; ++m) {
-            const int32_t place = s.n_tree + s.meet[m] / 2;
-            const BondRow<V> &row = x.row[place];
-            g = add_times(g, s.meet[m] % 2 ? -row.t : row.t, row.d);
-            sum = sum + bond[place].tension;
-        }
-    }
+    });
     const V w = x.w[slot];
+    const int32_t children = x.s.child_start[slot + 1] - x.s.child_start[slot];
     Vector3<V> input = {};
     if (e.start) input = e.start[slot];
     if (e.force) input = input + w * e.force[slot];
-    return {add_times(input, w, g), absolute(input), (Width<V>::all(1.0 + (end - first)) * w) * sum};
+    return {add_times(input, w, g), absolute(input), (Width<V>::all(1.0 + children) * w) * sum};
 }
 
 // The lanes in which this holds for the solution in t of the rows. E of the core's rows: their pivots.

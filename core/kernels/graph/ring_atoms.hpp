@@ -40,7 +40,7 @@ HOL_NOINLINE V load_bonds(RingNewton<V> &z, const PositionsCall &call, const Ato
     };
     // The first atom's place is row N-1, until it gets its bond.
     for_groups(s.n_atoms, [&](int32_t slot, auto number) HOL_FORCED {
-        constexpr int count = decltype(number)::count;
+        constexpr int count = number;
         const bool follow = follow_each_other<count>(s.atom_of + slot);
         Vector3<V> ref[count] = {}, now[count] = {};
         read_few<layout, count>(call.r_ref, at, s.atom_of + slot, follow, ref);
@@ -68,7 +68,7 @@ HOL_NOINLINE void write_moves(const RingNewton<V> &z, const PositionsCall &call,
     const V per_dt = Width<V>::all(1 / call.dt);
     Vector3<V> pull = z.pull_of(z.x.s.n_bonds - 1);
     for_groups(z.x.s.n_atoms, [&](int32_t slot, auto number) HOL_FORCED {
-        constexpr int count = decltype(number)::count;
+        constexpr int count = number;
         const int32_t *const atom = z.x.s.atom_of + slot;
         const bool follow = follow_each_other<count>(atom);
         Vector3<V> move[count], a[count] = {};

@@ -86,20 +86,20 @@ struct RingNewton {
 
     // Eliminates with the bonds as they came or as tau moves them, and substitutes forward; returns the largest error.
     template <bool moved, bool all>
-    HOL_NOINLINE V eliminate(RingNewton &z, MaskOf<V> which) {
-        NewtonRow<V> *const row = z.x.row;
-        const int32_t n = z.x.s.n_bonds - 1;
+    __attribute__((noinline)) V eliminate(MaskOf<V> which) {
+        NewtonRow<V> *const row = x.row;
+        const int32_t n = x.s.n_bonds - 1;
         Mover mover;
-        const Vector3<V> D_n = moved ? mover.last(z) : row[n].D;
-        Vector3<V> d = moved ? mover.bond(z, 0) : row[0].D;
+        const Vector3<V> D_n = moved ? mover.last(*this) : row[n].D;
+        Vector3<V> d = moved ? mover.bond(*this, 0) : row[0].D;
         V worst = {}, y = {}, down = {}, q = dot(d, row[0].b), y_n = length_error(row[n], D_n, worst);
-        V to_last = z.x.w[0] * dot(D_n, row[0].b), from_last = z.x.w[0] * dot(d, row[n].b);
-        V P_n = (z.x.w[n] + z.x.w[0]) * dot(D_n, row[n].b);
-        Fraction e = {z.x.w[0] * q, Width<V>::all(1)};
+        V to_last = x.w[0] * dot(D_n, row[0].b), from_last = x.w[0] * dot(d, row[n].b);
+        V P_n = (x.w[n] + x.w[0]) * dot(D_n, row[n].b);
+        Fraction e = {x.w[0] * q, Width<V>::all(1)};
         for (int32_t k = 0; k < n; ++k) {
             NewtonRow<V> &here = row[k];
-            const V w = z.x.w[k + 1];
-            const Vector3<V> d1 = k + 1 == n ? D_n : moved ? mover.bond(z, k + 1) : row[k + 1].D;
+            const V w = x.w[k + 1];
+            const Vector3<V> d1 = k + 1 == n ? D_n : moved ? mover.bond(*this, k + 1) : row[k + 1].D;
             const V q1 = dot(d1, row[k + 1].b), lower = dot(d1, here.b), upper = dot(row[k + 1].b, d);
             const V F1 = mul_add(w * q, e.F, e.A), rF = Width<V>::all(1) / F1, rP = e.F * rF, half = 0.5 * rP;
             const V sigma = length_error(here, d, worst);
@@ -116,9 +116,9 @@ struct RingNewton {
             const V wP = w * rP, up = wP * upper;
             down = wP * lower;
             put_where<all>(which, here.down, up);
-            put_where<all>(which, z.closure[k].l, l);
-            put_where<all>(which, z.closure[k].c, c);
-            y_n = mul_add(z.closure[k].l, y, y_n);
+            put_where<all>(which, closure[k].l, l);
+            put_where<all>(which, closure[k].c, c);
+            y_n = mul_add(closure[k].l, y, y_n);
             to_last = to_last * up;
             from_last = down * from_last;
             e.A = mul_add((w * w) * mul_add(q, q1, -(lower * upper)), e.F, (w * q1) * e.A);
@@ -132,51 +132,50 @@ struct RingNewton {
         return largest(worst, y_n);
     }
 
-    V open() { return eliminate<false, true>(*this, Width<V>::none()); }
+    V open() { return eliminate<false, true>(Width<V>::none()); }
     void first_factors() {}  // they are there already
 
     // New factors for the bonds as moved, in the lanes of `which`.
     void factorize(MaskOf<V> which) {
         if (bits(which) == (1u << Width<V>::lanes) - 1)
-            eliminate<true, true>(*this, which);
+            eliminate<true, true>(which);
         else
-            eliminate<true, false>(*this, which);
+            eliminate<true, false>(which);
     }
 
     // The bonds as tau moves them, what that leaves of their lengths substituted forward, and the largest error.
-    HOL_NOINLINE V move(RingNewton &z) {
-        NewtonRow<V> *const row = z.x.row;
-        const int32_t n = z.x.s.n_bonds - 1;
+    __attribute__((noinline)) V move() {
+        NewtonRow<V> *const row = x.row;
+        const int32_t n = x.s.n_bonds - 1;
         Mover mover;
-        V worst = {}, y = {}, y_n = length_error(row[n], mover.last(z), worst);
+        V worst = {}, y = {}, y_n = length_error(row[n], mover.last(*this), worst);
 #pragma GCC unroll 2
         for (int32_t k = 0; k < n; ++k) {
-            y = mul_add(row[k].up, y, length_error(row[k], mover.bond(z, k), worst));
-            y_n = mul_add(z.closure[k].l, y, y_n);
+            y = mul_add(row[k].up, y, length_error(row[k], mover.bond(*this, k), worst));
+            y_n = mul_add(closure[k].l, y, y_n);
             row[k].t = y * row[k].r;
         }
         row[n].t = y_n * row[n].r;
         return largest(worst, y_n);
     }
-    V move() { return move(*this); }
 
     // Corrections from u, added to tau in the lanes of `active`.
     void solve(MaskOf<V> active) {
         if (bits(active) == (1u << Width<V>::lanes) - 1)
-            down<true>(*this, active);
+            down<true>(active);
         else
-            down<false>(*this, active);
+            down<false>(active);
     }
     template <bool all>
-    HOL_NOINLINE void down(RingNewton &z, MaskOf<V> active) {
-        NewtonRow<V> *const row = z.x.row;
+    __attribute__((noinline)) void down(MaskOf<V> active) {
+        NewtonRow<V> *const row = x.row;
         const auto add = [&](int32_t bond, V change)
                              HOL_FORCED { row[bond].tau = row[bond].tau + (all ? change : keep(active, change)); };
-        int32_t k = z.x.s.n_bonds - 1;
+        int32_t k = x.s.n_bonds - 1;
         const V last = row[k].t;
         V t = last;
         add(k--, t);
-        const auto u_of = [&](int32_t bond) HOL_FORCED { return mul_add(z.closure[bond].c, last, row[bond].t); };
+        const auto u_of = [&](int32_t bond) HOL_FORCED { return mul_add(closure[bond].c, last, row[bond].t); };
         // The bond next to the last one has the joint between them in c, too.
         t = u_of(k);
         add(k--, t);

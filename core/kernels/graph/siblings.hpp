@@ -77,7 +77,7 @@ double terms_of(const Molecules<V> &x, int32_t place, int lane) {
     ends_of(x.s, place, end[0], end[1]);
     double sum = 0, v[2][3] = {};
     for (int e = 0; e < 2; ++e) {
-        const int64_t number = Atoms<V>::number(x.at, lane, x.s.atom_of[end[e]]);
+        const int64_t number = x.at.number(lane, x.s.atom_of[end[e]]);
         double f[3] = {};
         if (x.in.v->x) read_row(*x.in.v, number, v[e]);
         if (x.in.f && x.in.f->x) read_row(*x.in.f, number, f);

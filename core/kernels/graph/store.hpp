@@ -14,25 +14,9 @@ namespace graph {
 // G of the atom at a slot: t d of the bonds that point away from it, less t d of those that point to it.
 template <class V>
 HOL_INLINE Vector3<V> pull_on(const Molecules<V> &x, int32_t slot) {
-    const Schedule &s = x.s;
     Vector3<V> g = {};
-    for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) {
-        const BondRow<V> &row = x.row[s.child[c]];
-        g = add_times(g, row.t, row.d);
-    }
-    if (slot < s.n_tree) return add_times(g, -x.row[slot].t, x.row[slot].d);
-    if (s.n_core_atoms == 0) return g;
-    const int32_t *const meet = s.meet + s.meet_start[slot - s.n_tree];
-    const int n = s.meet_start[slot - s.n_tree + 1] - s.meet_start[slot - s.n_tree];
-    const V sign[2] = {Width<V>::all(1), Width<V>::all(-1)};
-    choose_count(n, [&](auto number) HOL_FORCED {
-        constexpr int known = decltype(number)::count;
-        HOL_UNROLL
-        for (int e = 0; e < (known > 0 ? known : n); ++e) {
-            const BondRow<V> &row = x.row[s.n_tree + meet[e] / 2];
-            g = add_times(g, sign[meet[e] & 1] * row.t, row.d);
-        }
-    });
+    for_bonds_of<V>(x.s, slot,
+                    [&](int32_t place, V sign) HOL_FORCED { g = add_times(g, sign * x.row[place].t, x.row[place].d); });
     return g;
 }
 
@@ -94,7 +78,7 @@ HOL_INLINE void write_atoms(const Molecules<V> &x, const AtomArray &array, unsig
         return for_slots(x.s, x.pieces,
                          [&](int32_t first, int32_t end) { write_slots<layout>(x, array, which, first, end, value); });
     for_groups(x.s.n_atoms, [&](int32_t first, auto number) HOL_FORCED {
-        constexpr int count = decltype(number)::count;
+        constexpr int count = number;
         Vector3<V> a[count] = {};
         HOL_UNROLL
         for (int j = 0; j < count; ++j) a[j] = value(x.s.slot_of[first + j]);
@@ -110,26 +94,45 @@ HOL_NOINLINE void write_pulls(const Molecules<V> &x, const AtomArray &g, bool ad
                         [&](int32_t slot) { return read<layout>(g, x.at, x.s.atom_of[slot]) + pull_on(x, slot); });
 }
 
+// Writes value(place) of the bonds at these places to out[bond] of the lanes in `which`, four at a time where bonds
+// follow each other.
+template <class V, class Value>
+HOL_INLINE void write_values(const Schedule &s, const MoleculeLane *lane, double *out, unsigned which, int32_t first,
+                             int32_t end, const Value &value) {
+    double *p[Width<V>::lanes];
+    for (int i = 0; i < Width<V>::lanes; ++i) p[i] = out + lane[i].first_bond;
+    const bool all = which == (1u << Width<V>::lanes) - 1;
+    for (int32_t k = first; k < end;) {
+        const int32_t *const bond = s.bond_of + k;
+        if (all && k + 4 <= end && follow_each_other<4>(bond)) {
+            const V four[4] = {value(k), value(k + 1), value(k + 2), value(k + 3)};
+            double *q[Width<V>::lanes];
+            HOL_UNROLL
+            for (int i = 0; i < Width<V>::lanes; ++i) q[i] = p[i] + *bond;
+            write_four(q, four);
+            k += 4;
+            continue;
+        }
+        const V one = value(k++);
+        if (all) {
+            HOL_UNROLL
+            for (int i = 0; i < Width<V>::lanes; ++i) p[i][*bond] = Width<V>::get(one, i);
+            continue;
+        }
+        for (int i = 0; i < Width<V>::lanes; ++i)
+            if (which >> i & 1) p[i][*bond] = Width<V>::get(one, i);
+    }
+}
+
 // factor t of the bonds at these places, zeros as +0; with_length: times |d|.
 template <bool with_length, class V>
 HOL_INLINE void write_bonds(const Molecules<V> &x, double factor, double *out, unsigned which, int32_t first,
                             int32_t end) {
-    double *p[Width<V>::lanes];
-    for (int i = 0; i < Width<V>::lanes; ++i) p[i] = out + x.lane[i].first_bond;
-    const bool all = which == (1u << Width<V>::lanes) - 1;
-    for (int32_t k = first; k < end; ++k) {
+    const V f = Width<V>::all(factor);
+    write_values<V>(x.s, x.lane, out, which, first, end, [&](int32_t k) HOL_FORCED {
         const BondRow<V> &row = x.row[k];
-        V value = mul_add(Width<V>::all(factor), row.t, V{});
-        if (with_length) value = mul_add(row.t, sqrt(row.q), V{});
-        const int32_t bond = x.s.bond_of[k];
-        if (all) {
-            HOL_UNROLL
-            for (int i = 0; i < Width<V>::lanes; ++i) p[i][bond] = Width<V>::get(value, i);
-        } else {
-            for (int i = 0; i < Width<V>::lanes; ++i)
-                if (which >> i & 1) p[i][bond] = Width<V>::get(value, i);
-        }
-    }
+        return mul_add(row.t, with_length ? sqrt(row.q) : f, V{});
+    });
 }
 // Of all but those of arms.
 template <bool with_length, class V>

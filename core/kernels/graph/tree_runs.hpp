@@ -26,12 +26,7 @@ HOL_NOINLINE void up_one(const Molecules<double> &x, int32_t slot, Faint &faint,
         before[2 * a] = row.E;
         before[2 * a + 1] = row.t;
     }
-    if (k == 1)
-        up_joint<1, false, keep>(rows, k, memory, own);
-    else if (k == 2)
-        up_joint<2, false, keep>(rows, k, memory, own);
-    else
-        up_joint<3, false, keep>(rows, k, memory, own);
+    choose_number<1, 3>(k, [&](auto known) { up_joint<known, false, keep>(rows, k, memory, own); });
     if (__builtin_expect(own >= 0, 1)) return;
     for (int a = 0; a <= k; ++a) {
         BondRow<double> &row = a < k ? rows.bond(a) : rows.above();
@@ -121,7 +116,8 @@ HOL_INLINE void down_lanes(const Molecules<double> &x, const int32_t *slot, Fain
         note_faint(x, slot[__builtin_ctz(left)], k, faint, slack);
 }
 
-// Calls lanes(slots, k) for W atoms of a run at a time, the last ones more than once, and one(slot) for atoms alone.
+// Calls lanes(k, slots) for W atoms of a run at a time, the last ones more than once: k, the number of their children,
+// is a constant. Calls one(slot) for atoms alone.
 template <class Lanes, class One>
 HOL_INLINE void for_run(const Schedule::Runs &runs, const Schedule::Run &run, const Lanes &lanes, const One &one) {
     const int32_t *const slot = runs.slot + run.first;
@@ -129,13 +125,15 @@ HOL_INLINE void for_run(const Schedule::Runs &runs, const Schedule::Run &run, co
         for (int32_t i = 0; i < run.count; ++i) one(slot[i]);
         return;
     }
-    int32_t i = 0;
-    for (; i + W <= run.count; i += W) lanes(slot + i);
-    if (i == run.count) return;
-    if (i + 1 == run.count) return one(slot[i]);
-    int32_t last[W];
-    for (int j = 0; j < W; ++j) last[j] = slot[i + j < run.count ? i + j : run.count - 1];
-    lanes(last);
+    choose_number<1, 3>(run.children, [&](auto k) HOL_FORCED {
+        int32_t i = 0;
+        for (; i + W <= run.count; i += W) lanes(k, slot + i);
+        if (i == run.count) return;
+        if (i + 1 == run.count) return one(slot[i]);
+        int32_t last[W];
+        for (int j = 0; j < W; ++j) last[j] = slot[i + j < run.count ? i + j : run.count - 1];
+        lanes(k, last);
+    });
 }
 
 // Where there are no arms.
@@ -162,15 +160,8 @@ static inline double up_piece(const Molecules<double> &x, int32_t piece, Memory<
     for (int32_t r = s.piece_start[piece]; r < s.piece_start[piece + 1]; ++r) {
         const Schedule::Run &run = s.run[r];
         if (do_arms(s, run, arm, faint, slack)) continue;
-        if (run.children == 1)
-            for_run(
-                s, run, [&](const int32_t *slot) { up_lanes<1, keep>(x, slot, faint, memory, slack); }, one);
-        else if (run.children == 2)
-            for_run(
-                s, run, [&](const int32_t *slot) { up_lanes<2, keep>(x, slot, faint, memory, slack); }, one);
-        else
-            for_run(
-                s, run, [&](const int32_t *slot) { up_lanes<3, keep>(x, slot, faint, memory, slack); }, one);
+        for_run(
+            s, run, [&](auto k, const int32_t *slot) { up_lanes<k, keep>(x, slot, faint, memory, slack); }, one);
     }
     return slack;
 }
@@ -180,15 +171,8 @@ static inline void substitute_piece(const Molecules<double> &x, int32_t piece, M
     const auto one = [&](int32_t slot) { substitute_one(x, slot, memory); };
     for (int32_t r = s.piece_start[piece]; r < s.piece_start[piece + 1]; ++r) {
         const Schedule::Run &run = s.run[r];
-        if (run.children == 1)
-            for_run(
-                s, run, [&](const int32_t *slot) { substitute_lanes<1>(x, slot); }, one);
-        else if (run.children == 2)
-            for_run(
-                s, run, [&](const int32_t *slot) { substitute_lanes<2>(x, slot); }, one);
-        else
-            for_run(
-                s, run, [&](const int32_t *slot) { substitute_lanes<3>(x, slot); }, one);
+        for_run(
+            s, run, [&](auto k, const int32_t *slot) { substitute_lanes<k>(x, slot); }, one);
     }
 }
 
@@ -201,15 +185,8 @@ static inline double down_piece(const Molecules<double> &x, int32_t piece, const
     for (int32_t r = s.piece_start[piece + 1]; r-- > s.piece_start[piece];) {
         const Schedule::Run &run = s.run[r];
         if (do_arms(s, run, arm, faint, slack)) continue;
-        if (run.children == 1)
-            for_run(
-                s, run, [&](const int32_t *slot) { down_lanes<look, 1>(x, slot, faint, slack); }, one);
-        else if (run.children == 2)
-            for_run(
-                s, run, [&](const int32_t *slot) { down_lanes<look, 2>(x, slot, faint, slack); }, one);
-        else
-            for_run(
-                s, run, [&](const int32_t *slot) { down_lanes<look, 3>(x, slot, faint, slack); }, one);
+        for_run(
+            s, run, [&](auto k, const int32_t *slot) { down_lanes<look, k>(x, slot, faint, slack); }, one);
     }
     return slack;
 }

@@ -94,7 +94,7 @@ struct TriangleWork {
         for (; molecules.first + lanes <= unit.count; molecules.first += lanes) {
             const unsigned good = verb.template solve<rows_adjacent>(molecules, lanes, at, kind);
             if (__builtin_expect(good != all, 0)) solve_carefully(*this, molecules, all & ~good, scratch);
-            Atoms<V>::advance(at, 3, 3);
+            at.advance(3, 3);
         }
         return molecules.first;
     }

@@ -55,7 +55,7 @@ struct VelocitiesWork {
     }
 
     template <class V>
-    HOL_NOINLINE void add_pulls_to(const Molecules<V> &x, Vector3<V> *v) {
+    __attribute__((noinline)) void add_pulls_to(const Molecules<V> &x, Vector3<V> *v) const {
         for_ranges(x.s, x.pieces, x.s.n_atoms, [&](int32_t first, int32_t end) {
             for (int32_t slot = end; slot-- > first;) v[slot] = add_times(v[slot], x.w[slot], pull_on(x, slot));
         });
@@ -63,7 +63,7 @@ struct VelocitiesWork {
 
     // d . (v_j - v_i) into t of the rows.
     template <class V>
-    HOL_NOINLINE void find_rates(const Molecules<V> &x, const Vector3<V> *v) {
+    __attribute__((noinline)) void find_rates(const Molecules<V> &x, const Vector3<V> *v) const {
         for_ranges(x.s, x.pieces, x.s.n_bonds, [&](int32_t first, int32_t end) {
             for (int32_t k = first; k < end; ++k) {
                 int32_t from, to;

@@ -1,6 +1,6 @@
 // From conditions to template arguments: choose(body, a, b) calls body(A, B), where A and B are constants of the
 // compiler with the values of a and b, so that body may write kernel<A, B>(..). choose_number<1, 5>(n, body) does the
-// same for n = 1 .. 5.
+// same for n = 1 .. 5. choose_few<4>(n, body) does it for n = 1 .. 4, and for any other number gives 0.
 #ifndef HOLONOMIC_KERNELS_ISA_CHOOSE_HPP
 #define HOLONOMIC_KERNELS_ISA_CHOOSE_HPP
 
@@ -10,9 +10,10 @@
 
 namespace holonomic::HOL_ISA {
 
-template <class T, T value>
+template <class T, T number>
 struct Constant {
-    constexpr operator T() const { return value; }
+    static constexpr T value = number;
+    constexpr operator T() const { return number; }
 };
 
 template <class Body>
@@ -31,6 +32,16 @@ static inline auto choose_number(int64_t n, const Body &body) {
     if constexpr (first < last)
         if (n != first) return choose_number<first + 1, last>(n, body);
     return body(Constant<int, first>{});
+}
+
+template <int most, int first = 1, class Body>
+HOL_INLINE auto choose_few(int n, const Body &body) {
+    if constexpr (first <= most) {
+        if (n == first) return body(Constant<int, first>{});
+        return choose_few<most, first + 1>(n, body);
+    } else {
+        return body(Constant<int, 0>{});
+    }
 }
 
 // A type as an argument.
