@@ -54,6 +54,7 @@ public:
         for (std::int32_t p = 0; p < s_.n_bonds; ++p) a_.bond_of.push_back(s_.bond_of[p]);
         const Numbers order = post_order(fill_of(neighbours()));
         for (std::int32_t p = 0; p < s_.n_bonds; ++p) a_.bond_of[at(p)] = s_.bond_of[order[at(p)]];
+        number_atoms();
         Fill fill = fill_of(neighbours());
         a_.column_start = std::move(fill.column_start);
         a_.row = std::move(fill.row);
@@ -91,12 +92,22 @@ private:
             std::lower_bound(begin + a_.column_start[at(column)], begin + a_.column_start[at(column) + 1], row) -
             begin);
     }
+    // In the order in which the bonds come to them.
+    void number_atoms() {
+        number_.assign(at(s_.n_atoms), -1);
+        for (const std::int32_t k : a_.bond_of)
+            for (const std::int32_t i : {s_.atom_i[k], s_.atom_j[k]}) {
+                if (number_[at(i)] >= 0) continue;
+                number_[at(i)] = static_cast<std::int32_t>(a_.atom_of.size());
+                a_.atom_of.push_back(i);
+            }
+    }
     bool points_to(std::int32_t p, std::int32_t atom) const { return s_.atom_j[a_.bond_of[at(p)]] == atom; }
 
     void list_entries() {
         for (std::int32_t p = 0; p < s_.n_bonds; ++p) {
-            a_.from.push_back(4 * s_.atom_i[a_.bond_of[at(p)]]);
-            a_.to.push_back(4 * s_.atom_j[a_.bond_of[at(p)]]);
+            a_.from.push_back(4 * number_[at(s_.atom_i[a_.bond_of[at(p)]])]);
+            a_.to.push_back(4 * number_[at(s_.atom_j[a_.bond_of[at(p)]])]);
             for (std::int32_t e = a_.column_start[at(p)]; e < a_.column_start[at(p) + 1]; ++e) {
                 a_.row_4.push_back(4 * a_.row[at(e)]);
                 a_.column_4.push_back(4 * p);
@@ -104,7 +115,7 @@ private:
         }
         a_.mass.assign(a_.row.size(), 2 * s_.n_atoms);
         for_pairs([&](std::int32_t p, std::int32_t q, std::int32_t i) {
-            a_.mass[at(entry(p, q))] = 2 * i + (points_to(p, i) == points_to(q, i) ? 1 : 0);
+            a_.mass[at(entry(p, q))] = 2 * number_[at(i)] + (points_to(p, i) == points_to(q, i) ? 1 : 0);
         });
     }
 
@@ -129,6 +140,7 @@ private:
         a_.row_4.resize(entries, 0);
         a_.column_4.resize(entries, 0);
         a_.mass.resize(entries, 2 * s_.n_atoms);
+        l.atom_of = a_.atom_of.data();
         l.bond_of = a_.bond_of.data();
         l.from = a_.from.data();
         l.to = a_.to.data();
@@ -142,9 +154,23 @@ private:
 
     const Schedule &s_;
     FlatArrays &a_;
+    Numbers number_;  // of local atoms
 };
 
 }  // namespace
+
+bool fits_flat_list(const Schedule &s) {
+    constexpr std::int64_t most_updates = 16;  // for each bond
+    Numbers bonds(at(s.n_atoms));
+    for (std::int32_t k = 0; k < s.n_bonds; ++k)
+        for (const std::int32_t i : {s.atom_i[k], s.atom_j[k]}) ++bonds[at(i)];
+    std::int64_t updates = 0;
+    for (const std::int64_t n : bonds) {
+        if (n > 3000) return false;  // more than the most of the largest list
+        updates += n * (n - 1) / 2 * (n - 2) / 3;
+    }
+    return s.n_bonds <= largest_in_list && updates <= most_updates * s.n_bonds;
+}
 
 void make_flat_list(const Schedule &s, FlatArrays &arrays) { FlatMaker(s, arrays).make(); }
 

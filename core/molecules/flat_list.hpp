@@ -1,4 +1,4 @@
-// Makes the list along which one large molecule with cycles is eliminated.
+// Makes the list along which one large molecule is eliminated.
 #ifndef HOLONOMIC_FLAT_LIST_HPP
 #define HOLONOMIC_FLAT_LIST_HPP
 
@@ -9,9 +9,12 @@
 namespace holonomic {
 
 struct FlatArrays {
-    Numbers bond_of, from, to, column_start, row, row_4, column_4, mass, update;
+    Numbers atom_of, bond_of, from, to, column_start, row, row_4, column_4, mass, update;
     FlatList list;
 };
+
+// Whether the list is not much longer than the molecule: an atom of n bonds brings n^3 / 6 updates.
+bool fits_flat_list(const Schedule &s);
 
 // Of a molecule whose bonds have been numbered: trees first, then the core in its order. Throws std::length_error where
 // the factor fills up to 2^31 entries.

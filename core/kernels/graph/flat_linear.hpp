@@ -57,15 +57,16 @@ struct FlatLinear {
     template <Layout layout, int terms>
     __attribute__((noinline)) void load(const AtomArray &coordinates) const {
         for (int32_t i = 0; i < s.n_atoms; ++i) {
-            mass[2 * i] = -lane.w[i];
-            mass[2 * i + 1] = lane.w[i];
+            mass[2 * i + 1] = lane.w[s.atom_of[i]];
+            mass[2 * i] = -mass[2 * i + 1];
         }
         mass[2 * s.n_atoms] = 0;
-        read_atoms<layout>(coordinates, at, s.n_atoms, pull);
+        read_atoms<layout>(coordinates, at, s, pull);
         find_bonds(s.from, s.to, s.n_bonds, box, pull, d);
-        if (terms & (squares | rates)) read_atoms<layout>(*in.v, at, s.n_atoms, terms & rates ? a : v);
+        if (terms & (squares | rates)) read_atoms<layout>(*in.v, at, s, terms & rates ? a : v);
         if (terms & pulls) {
-            for (int32_t i = 0; i < s.n_atoms; ++i) a[i] = in_row(mass[2 * i + 1]) * row_of(read<layout>(*in.f, at, i));
+            for (int32_t i = 0; i < s.n_atoms; ++i)
+                a[i] = in_row(mass[2 * i + 1]) * read_row_of<layout>(*in.f, at, s.atom_of[i]);
         } else if (!(terms & rates)) {
             for (int32_t i = 0; i < s.n_atoms; ++i) a[i] = Row{};
         }
@@ -200,7 +201,7 @@ struct FlatLinear {
         for (int e = 0; e < 2; ++e) {
             const Row product = d[k] * a.at_four_times(end[e]);
             sum += abs((product[0] + product[1]) + product[2]);
-            const int64_t number = at.number(0, end[e] / 4);
+            const int64_t number = at.number(0, s.atom_of[end[e] / 4]);
             double f[3] = {};
             if (in.v && in.v->x) read_row(*in.v, number, velocity[e]);
             if (in.f && in.f->x) read_row(*in.f, number, f);
@@ -268,7 +269,7 @@ struct FlatLinear {
         }
         virial.count(1, 1, tally);
     }
-    bool writable(int32_t i) const { return !lane.shared || !lane.shared[i]; }
+    bool writable(int32_t atom) const { return !lane.shared || !lane.shared[atom]; }
 };
 
 }  // namespace graph

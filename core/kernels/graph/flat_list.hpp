@@ -1,4 +1,4 @@
-// The elimination of one large molecule with cycles: all its bonds, those of trees too, along one list, as flat arrays.
+// The elimination of one large molecule: all its bonds, those of trees too, along one list, as flat arrays.
 // Plain data, the same for every instruction set; core/molecules/flat_list.hpp makes it.
 #ifndef HOLONOMIC_KERNELS_GRAPH_FLAT_LIST_HPP
 #define HOLONOMIC_KERNELS_GRAPH_FLAT_LIST_HPP
@@ -8,10 +8,11 @@
 namespace holonomic {
 
 // Bonds are renumbered in the order of their elimination, in which what depends on each other stands together: a
-// post-order of the elimination's tree. Atoms keep their local numbers. Arrays over bonds and entries are padded with
-// inert ones to multiples of four.
+// post-order of the elimination's tree; atoms as these bonds come to them. Arrays over bonds and entries are padded
+// with inert ones to multiples of four.
 struct FlatList {
     int32_t n_atoms, n_bonds, n_entries;
+    const int32_t *atom_of;  // [n_atoms] local atom
     const int32_t *bond_of;  // [n_bonds] local bond; inert ones have bond 0
     // Bond k points from one atom to another. Four times their numbers, which saves a shift where rows are read.
     const int32_t *from, *to;

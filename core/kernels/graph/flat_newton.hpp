@@ -17,14 +17,17 @@ struct FlatNewton {
     Rows moves, D, b, new_D;
     double *tau, *t, *r;  // t: what is left of a length, then its correction; r: 1 / pivot
     double *lower, *upper, *a2, *per_a2;
+    double *stretch;  // |D| / a of the bonds that the factors were made of
+    bool displaced;   // `moves` are those of tau
     bool moved;       // the bonds are not D any more
     bool eliminated;  // t has been taken through the new factors already
 
     static int64_t values(const FlatList &s) {
-        return 2 * in_fours(s.n_atoms + 2) + 4 * (s.n_atoms + 3 * (in_fours(s.n_bonds) + 4)) + 5 * in_fours(s.n_bonds) +
+        return 2 * in_fours(s.n_atoms + 2) + 4 * (s.n_atoms + 3 * (in_fours(s.n_bonds) + 4)) + 6 * in_fours(s.n_bonds) +
                2 * in_fours(s.n_entries) + 4;
     }
-    FlatNewton(const FlatList &list, Memory<double> &memory) : s(list), moved(false), eliminated(false) {
+    FlatNewton(const FlatList &list, Memory<double> &memory)
+        : s(list), displaced(false), moved(false), eliminated(false) {
         const int64_t bonds = in_fours(s.n_bonds), entries = in_fours(s.n_entries);
         moves = {memory.values(4 * s.n_atoms)};
         D = {memory.values(4 * bonds)};
@@ -37,6 +40,7 @@ struct FlatNewton {
         r = memory.values(bonds);
         a2 = memory.values(bonds);
         per_a2 = memory.values(bonds);
+        stretch = memory.values(bonds);
         mass = memory.values(2 * in_fours(s.n_atoms + 2));
     }
 
@@ -44,29 +48,40 @@ struct FlatNewton {
         Row worst, sum;  // max() may lose a NaN, the sum keeps it
         double largest() const { return largest_of(worst) + 0 * ((sum[0] + sum[1]) + (sum[2] + sum[3])); }
     };
+    HOL_FORCED Row &four(double *values, int64_t k) const { return *reinterpret_cast<Row *>(values + k); }
+
     // D.D - a^2 of bonds k .. k + 3.
     HOL_FORCED Row excess_of(int64_t k, const Row *d) const {
         const Lanes3 at = turned(d[0], d[1], d[2], d[3]);
-        const Row squares = *reinterpret_cast<const Row *>(a2 + k);
-        return multiply_add(at.z, at.z, multiply_add(at.y, at.y, multiply_add(at.x, at.x, -squares)));
+        return multiply_add(at.z, at.z, multiply_add(at.y, at.y, multiply_add(at.x, at.x, -four(a2, k))));
     }
-    // What is left of their lengths. Not of their squares: |D| (|D| - a), to third order, which is what Newton's method
-    // for |D| - a takes and spares a hundredfold of the first error, as bonds are stretched more than they turn.
+    // What is left of their lengths. Not of their squares: a change of |D|, which is D/|D| . dD, is nearly what it was
+    // when the factors were made, as bonds are stretched more than they turn; that of D.D grows with |D|. So with the
+    // factors of D_0, of which row k is D_0 . dD, |D_0| (|D| - a). `fresh`: the factors will be those of this D.
+    template <bool fresh>
     HOL_FORCED void measure(int64_t k, const Row *d, Errors &errors) const {
-        const Row sigma = excess_of(k, d), excess = sigma * *reinterpret_cast<const Row *>(per_a2 + k);
+        const Row sigma = excess_of(k, d), excess = sigma * four(per_a2, k);
         errors.worst = larger(absolute(excess), errors.worst);
         errors.sum = errors.sum + sigma;
-        *reinterpret_cast<Row *>(t + k) =
-            (0.5 * sigma) * multiply_add(in_row(0.25), smaller(larger(excess, in_row(-0.5)), in_row(0.5)), in_row(1));
+        if (fresh) {
+            const Row root = root_of(in_row(1) + excess);
+            four(stretch, k) = root;
+            four(t, k) = sigma * (root / (in_row(1) + root));
+        } else {  // 2 (sqrt(1 + e) - 1) / e
+            const Row e = smaller(larger(excess, in_row(-0.5)), in_row(0.5));
+            four(t, k) = (in_row(0.5) * four(stretch, k)) *
+                         (sigma * multiply_add(e, multiply_add(in_row(0.125), e, in_row(-0.25)), in_row(1)));
+        }
     }
     double open() {
         Errors errors = {};
-        for (int64_t k = 0; k < s.n_bonds; k += 4) measure(k, &D[k], errors);
+        for (int64_t k = 0; k < s.n_bonds; k += 4) measure<true>(k, &D[k], errors);
         return errors.largest();
     }
     void forget(Flag which) {
         if (!which.set) return;
         for (int64_t k = 0; k < in_fours(s.n_bonds); ++k) tau[k] = 0;
+        displaced = false;
     }
 
     HOL_FORCED Row moved_bond(int64_t k) const {
@@ -80,8 +95,10 @@ struct FlatNewton {
         return absolute(excess_of(first, d))[k - first] * per_a2[k];
     }
 
-    // Displacements, times w only in the end; bonds as moved, and what is left of them.
-    __attribute__((noinline)) double move() {
+    // Displacements, times w only in the end.
+    __attribute__((noinline)) void displace() {
+        if (displaced) return;
+        displaced = true;
         for (int64_t i = 0; i < s.n_atoms; ++i) moves[i] = Row{};
         for (int64_t k = 0; k < s.n_bonds; ++k) {
             const Row pull = in_row(tau[k]) * b[k];
@@ -90,10 +107,14 @@ struct FlatNewton {
             to = to - pull;
         }
         for (int64_t i = 0; i < s.n_atoms; ++i) moves[i] = in_row(mass[2 * i + 1]) * moves[i];
+    }
+    // Bonds as moved, and what is left of them.
+    __attribute__((noinline)) double move() {
+        displace();
         Errors errors = {};
         for (int64_t k = 0; k < s.n_bonds; k += 4) {
             const Row d[4] = {moved_bond(k), moved_bond(k + 1), moved_bond(k + 2), moved_bond(k + 3)};
-            measure(k, d, errors);
+            measure<false>(k, d, errors);
         }
         moved = true;
         return errors.largest();
@@ -102,8 +123,12 @@ struct FlatNewton {
     // Factors for the bonds as they are; the first solve with them follows.
     void first_factors() { factorize({true}); }
     __attribute__((noinline)) void factorize(Flag) {
-        if (moved)
-            for (int64_t k = 0; k < in_fours(s.n_bonds); ++k) new_D[k] = moved_bond(k);
+        Errors unused = {};
+        for (int64_t k = 0; moved && k < s.n_bonds; k += 4) {
+            HOL_UNROLL
+            for (int i = 0; i < 4; ++i) new_D[k + i] = moved_bond(k + i);
+            measure<true>(k, &new_D[k], unused);
+        }
         assemble(moved ? new_D : D);
         eliminate();
         eliminated = true;
@@ -158,7 +183,7 @@ struct FlatNewton {
     // Corrections for what is left, in t, added to tau.
     __attribute__((noinline)) void solve(Flag) {
         if (!eliminated) solve_up(s, lower, t);
-        eliminated = false;
+        eliminated = displaced = false;
         solve_down(s, upper, r, t, [&](int32_t k, double x) HOL_FORCED { tau[k] = tau[k] + x; });
     }
 };

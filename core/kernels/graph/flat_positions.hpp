@@ -29,14 +29,14 @@ struct FlatPositions {
     __attribute__((noinline)) void load() {
         const FlatList &s = newton.s;
         for (int32_t i = 0; i < s.n_atoms; ++i) {
-            newton.mass[2 * i] = -lane.w[i];
-            newton.mass[2 * i + 1] = lane.w[i];
+            newton.mass[2 * i + 1] = lane.w[s.atom_of[i]];
+            newton.mass[2 * i] = -newton.mass[2 * i + 1];
         }
         newton.mass[2 * s.n_atoms] = 0;
         const Rows r = newton.new_D;  // until the bonds are made
-        read_atoms<layout>(call.r_ref, at, s.n_atoms, r);
+        read_atoms<layout>(call.r_ref, at, s, r);
         find_bonds(s.from, s.to, s.n_bonds, call.box_ref, r, newton.b);
-        read_atoms<layout>(call.r, at, s.n_atoms, r);
+        read_atoms<layout>(call.r, at, s, r);
         Row largest = {};
         for (int32_t i = 0; i < s.n_atoms; ++i) largest = larger(absolute(r[i]), largest);
         largest_coordinate = largest_of(largest);
@@ -77,10 +77,13 @@ struct FlatPositions {
     __attribute__((noinline)) void write_atoms() const {
         const double per_dt = 1 / call.dt;
         for (int32_t i = 0; i < newton.s.n_atoms; ++i) {
-            if (schedule.fixed[i]) continue;
-            const Vector3<double> move = vector_of(newton.moves[i]);
-            write<layout>(call.r, at, i, read<layout>(call.r, at, i) + move, 1);
-            if (call.v.x) write<layout>(call.v, at, i, add_times(read<layout>(call.v, at, i), per_dt, move), 1);
+            const int32_t atom = newton.s.atom_of[i];
+            if (schedule.fixed[atom]) continue;
+            const Row &move = newton.moves[i];
+            write<layout>(call.r, at, atom, vector_of(read_row_of<layout>(call.r, at, atom) + move), 1);
+            if (call.v.x)
+                write<layout>(call.v, at, atom,
+                              vector_of(multiply_add(in_row(per_dt), move, read_row_of<layout>(call.v, at, atom))), 1);
         }
     }
 
@@ -114,12 +117,13 @@ struct FlatPositions {
     bool solve() {
         load();
         const Limits<double> limits(call, largest_coordinate, a_min);
-        const Solved<double> out = iterate<double, true>(newton, limits, call, Flag{true});
+        const Solved<double> out = iterate<double, false, true>(newton, limits, call, Flag{true});
         const bool moved = out.converged.set && !coarse_moves();
         if (!moved && !out.untouched.set) return false;
         if (call.report) note_worst(out.error);
         if (call.lambda) write_multipliers();
         if (!moved) return true;
+        newton.displace();
         if (call.virial) add_virial();
         write_atoms();
         ++tally.n_corrected;

@@ -54,6 +54,13 @@ HOL_INLINE Row smaller(const Row &a, const Row &b) {
     return Row{min(a[0], b[0]), min(a[1], b[1]), min(a[2], b[2]), min(a[3], b[3])};
 #endif
 }
+HOL_INLINE Row root_of(const Row &a) {
+#if defined(__AVX2__)
+    return _mm256_sqrt_pd(a);
+#else
+    return Row{__builtin_sqrt(a[0]), __builtin_sqrt(a[1]), __builtin_sqrt(a[2]), __builtin_sqrt(a[3])};
+#endif
+}
 HOL_INLINE double largest_of(const Row &a) { return max(max(a[0], a[1]), max(a[2], a[3])); }
 HOL_INLINE double smallest_of(const Row &a) { return min(min(a[0], a[1]), min(a[2], a[3])); }
 
@@ -120,10 +127,22 @@ HOL_INLINE void solve_down(const FlatList &s, const double *upper, const double 
     }
 }
 
-// The rows of all atoms of a molecule, in the order of their local numbers.
+// A local atom's row.
 template <Layout layout>
-HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<double> &at, int32_t n, const Rows &to) {
-    for (int32_t i = 0; i < n; ++i) to[i] = row_of(read<layout>(array, at, i));
+HOL_INLINE Row read_row_of(const AtomArray &array, const Atoms<double> &at, int32_t i) {
+#if defined(__AVX2__)
+    if (layout != elements) {
+        const double *const base = reinterpret_cast<const double *>(array.x);
+        const double *const p = base + 3 * (layout == rows_listed ? at.list[0][i] : at.first[0] + i);
+        return _mm256_maskload_pd(p, _mm256_set_epi64x(0, -1, -1, -1));
+    }
+#endif
+    return row_of(read<layout>(array, at, i));
+}
+// The rows of all atoms of a molecule, in the order of the list.
+template <Layout layout>
+HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<double> &at, const FlatList &s, const Rows &to) {
+    for (int32_t i = 0; i < s.n_atoms; ++i) to[i] = read_row_of<layout>(array, at, s.atom_of[i]);
 }
 
 // Bonds as they come, from the coordinates of their ends: four at a time, the inert ones too.

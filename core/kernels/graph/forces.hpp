@@ -62,7 +62,7 @@ struct ForcesWork {
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
-        if (schedule.flat && used == 1) {
+        if (schedule.flat && schedule.type == Schedule::graph && used == 1) {
             if (solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
             masses_known = false;
         }
@@ -98,7 +98,7 @@ struct SolveWork {
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
-        if (schedule.flat && used == 1) {
+        if (schedule.flat && schedule.type == Schedule::graph && used == 1) {
             if (solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
             masses_known = false;
         }

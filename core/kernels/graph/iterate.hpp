@@ -40,8 +40,12 @@ struct Solved {
 
 // The factors of an earlier D shrink the error by a constant each time, new ones square it at twice the price: they are
 // worth it where the old ones would take more than four solves in all.
-template <class V>
+// `by_length`: the rate of the first solve says nothing of those that follow. It leaves the square of the angles by
+// which bonds have turned, the others are slowed down by the angles themselves. New factors are as good after a second
+// solve, unless that would leave too much for a third one with them.
+template <bool by_length, class V>
 HOL_INLINE MaskOf<V> worth_new_factors(V error, V rate, int i) {
+    if (by_length && i == 0) return less(Width<V>::all(1e-5), error);
     V expected = error * rate;
     for (int k = i + 2; k < 4; ++k) expected = expected * rate;
     return less(Width<V>::all(0.1 * rounding), expected) & less(Width<V>::all(i < 2 ? -1.0 : 1e-4), rate);
@@ -60,8 +64,9 @@ constexpr double steady = 1.0 / 256;
 //   void factorize(mask)           with the bonds as they have been moved
 //   void solve(mask)               corrections for what is left, added to tau
 //   V move()                       the bonds as tau moves them, and their largest error
-// look_last: also after the last solve, for what move() leaves of it.
-template <class V, bool look_last, class System>
+// look_last: also after the last solve, for what move() leaves of it. by_length: solve() takes |D_0| (|D| - a) on the
+// right where its factors are those of D_0, not (D.D - a^2) / 2.
+template <class V, bool look_last, bool by_length = false, class System>
 HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const PositionsCall &call, MaskOf<V> wanted) {
     typedef MaskOf<V> Mask;
     const Mask none = Width<V>::none();
@@ -103,7 +108,7 @@ HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const Posi
         active = active & ~finished & finite(error);
         if (!any(active)) break;
         rate = error / before;
-        const Mask renewed = active & worth_new_factors(error, rate, i);
+        const Mask renewed = active & worth_new_factors<by_length>(error, rate, i);
         proven = ~renewed & less(rate, Width<V>::all(steady)) & less_equal(error, Width<V>::all(last_error));
         if (!any(renewed)) continue;
         newton.factorize(renewed);

@@ -86,7 +86,8 @@ struct Schedule {
     Runs runs;
     int32_t n_pieces;
 
-    const FlatList *flat;  // of a large graph: all its bonds along one list; else nullptr
+    // Of a large graph or tree, unless the list would be long: all its bonds along one list; else nullptr.
+    const FlatList *flat;
 
     // An arm: a path between two atoms of a large tree, whose inner atoms have one child each. Its atoms and its bonds
     // have consecutive numbers, so that it can be worked on as a chain is, without looking at the other arms. Its slots

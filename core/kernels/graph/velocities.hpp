@@ -18,7 +18,7 @@ struct VelocitiesWork {
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
-        if (schedule.flat && used == 1) {
+        if (schedule.flat && schedule.type == Schedule::graph && used == 1) {
             if (solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
             masses_known = false;
         }
