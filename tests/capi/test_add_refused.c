@@ -1,6 +1,6 @@
 /**
- * Lists of bonds and blocks of molecules: what is refused, with nothing added; blocks are lists of their bonds;
- * questions about what was added.
+ * Chains, lists of bonds and blocks of molecules: what is refused, with nothing added; blocks are lists of their
+ * bonds; questions about what was added; lengths and masses that are refused.
  */
 #include "check.h"
 #include "random.h"
@@ -19,6 +19,71 @@ static void assert_counts(const hol_chains *c, int64_t chains, int64_t bonds)
 {
     assert_int_equal(hol_chains_n_chains(c), chains);
     assert_int_equal(hol_chains_n_bonds(c), bonds);
+}
+
+static void add_refuses_wrong_arguments_and_adds_nothing(void **state)
+{
+    (void)state;
+    hol_chains *c = make(10);
+    const int64_t good[3] = {0, 1, 2}, low[3] = {0, -1, 2}, high[3] = {0, 1, 10}, twice[3] = {4, 5, 4},
+                  far[3] = {0, INT64_MIN, 1};
+    const int64_t huge[3] = {3, INT64_MAX, 4}, shared[3] = {6, 7, 1};
+    const double lengths[2] = {1, 1};
+    CHECK(hol_chains_add(c, 2, good, lengths));
+    CHECK_FAILS(HOL_ERR_NULL, hol_chains_add(NULL, 2, good, lengths));
+    CHECK_FAILS(HOL_ERR_NULL, hol_chains_add(c, 2, NULL, lengths));
+    CHECK_FAILS(HOL_ERR_NULL, hol_chains_add(c, 2, good, NULL));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add(c, 0, good, lengths));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add(c, -1, good, lengths));
+    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add(c, 2, low, lengths));
+    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add(c, 2, high, lengths));
+    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add(c, 2, far, lengths));
+    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add(c, 2, huge, lengths));
+    CHECK_FAILS(HOL_ERR_SHARED_ATOM, hol_chains_add(c, 2, twice, lengths));
+    assert_message_names("4");
+    CHECK_FAILS(HOL_ERR_SHARED_ATOM, hol_chains_add(c, 2, shared, lengths));
+    assert_message_names("1");
+    CHECK_FAILS(HOL_ERR_SHARED_ATOM, hol_chains_add(c, 2, good, lengths));
+    const double wrong[] = {0, -1, NAN, INFINITY, -INFINITY};
+    const int64_t others[3] = {7, 8, 9};
+    for (int i = 0; i < 5; ++i) {
+        const double bad[2] = {1, wrong[i]};
+        CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add(c, 2, others, bad));
+        CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_block(c, 1, 2, 7, bad));
+    }
+    assert_counts(c, 1, 2);
+    /* An atom that a refused chain named is free. */
+    const int64_t again[7] = {4, 5, 6, 7, 8, 9, 3};
+    const double six[6] = {1, 1, 1, 1, 1, 1};
+    CHECK(hol_chains_add(c, 6, again, six));
+    assert_counts(c, 2, 8);
+    hol_chains_destroy(c);
+}
+
+static void add_block_refuses_wrong_arguments_and_adds_nothing(void **state)
+{
+    (void)state;
+    hol_chains *c = make(10);
+    const double lengths[3] = {1, 1, 1};
+    CHECK_FAILS(HOL_ERR_NULL, hol_chains_add_block(NULL, 1, 1, 0, lengths));
+    CHECK_FAILS(HOL_ERR_NULL, hol_chains_add_block(c, 1, 1, 0, NULL));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_block(c, 0, 1, 0, lengths));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_block(c, 1, 0, 0, lengths));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_block(c, -1, 1, 0, lengths));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_block(c, 1, -1, 0, lengths));
+    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add_block(c, 1, 1, -1, lengths));
+    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add_block(c, 1, 1, 9, lengths));
+    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add_block(c, 3, 3, 0, lengths));
+    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add_block(c, INT64_MAX, 3, 0, lengths));
+    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add_block(c, INT64_MAX / 2, 1, 0, lengths));
+    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add_block(c, 1, 1, INT64_MAX, lengths));
+    CHECK(hol_chains_add_block(c, 1, 1, 4, lengths));
+    CHECK_FAILS(HOL_ERR_SHARED_ATOM, hol_chains_add_block(c, 2, 2, 0, lengths));
+    assert_counts(c, 1, 1);
+    CHECK(hol_chains_add_block(c, 1, 3, 0, lengths));
+    CHECK(hol_chains_add_block(c, 2, 1, 6, lengths));
+    assert_counts(c, 4, 6);
+    hol_chains_destroy(c);
 }
 
 static void wrong_bonds_are_refused_and_nothing_is_added(void **state)
@@ -172,9 +237,50 @@ static void offsets_are_told_only_where_there_are_any(void **state)
     hol_chains_destroy(c);
 }
 
+static void wrong_lengths_and_masses_change_nothing(void **state)
+{
+    (void)state;
+    const double masses[5] = {1, 2, 0, 4, 5}, lengths[3] = {1, 1.5, 2};
+    const int64_t from_one[6] = {4, 3, 2, 1, 5, 4};
+    hol_chains *c;
+    CHECK(hol_chains_create(5, masses, &c));
+    CHECK(hol_chains_set_index_base(c, 1));
+    CHECK(hol_chains_add_bonds(c, 3, from_one, lengths));
+    CHECK(hol_chains_set_index_base(c, 0));
+    double r[15], worst_before, bad_lengths[3] = {1, 1, -1}, bad_masses[5] = {1, 2, 0, 4, NAN};
+    for (int i = 0; i < 15; ++i) r[i] = 0.3 * i * i;
+    hol_worst worst;
+    CHECK(hol_violation(c, r, NULL, &worst));
+    worst_before = worst.length;
+    CHECK_FAILS(HOL_ERR_NULL, hol_chains_set_lengths(NULL, lengths));
+    CHECK_FAILS(HOL_ERR_NULL, hol_chains_set_lengths(c, NULL));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_lengths(c, bad_lengths));
+    assert_message_names("bond 2");
+    CHECK_FAILS(HOL_ERR_NULL, hol_chains_set_masses(NULL, masses));
+    CHECK_FAILS(HOL_ERR_NULL, hol_chains_set_masses(c, NULL));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_masses(c, bad_masses));
+    assert_message_names("atom 4");
+    bad_masses[4] = 5;
+    bad_masses[2] = 1; /* it was fixed */
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_masses(c, bad_masses));
+    assert_message_names("atom 2");
+    bad_masses[2] = INFINITY;
+    bad_masses[3] = 0; /* it could move */
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_masses(c, bad_masses));
+    assert_message_names("atom 3");
+    CHECK(hol_violation(c, r, NULL, &worst));
+    assert_true(worst.length == worst_before);
+    bad_masses[3] = 7;
+    CHECK(hol_chains_set_masses(c, bad_masses));
+    hol_chains_destroy(c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(add_refuses_wrong_arguments_and_adds_nothing),
+        cmocka_unit_test(add_block_refuses_wrong_arguments_and_adds_nothing),
+        cmocka_unit_test(wrong_lengths_and_masses_change_nothing),
         cmocka_unit_test(wrong_bonds_are_refused_and_nothing_is_added),
         cmocka_unit_test(blocks_of_molecules_are_lists_of_their_bonds),
         cmocka_unit_test(wrong_blocks_are_refused_and_nothing_is_added),

@@ -142,71 +142,6 @@ static void destroying_null_does_nothing(void **state)
     hol_chains_destroy(NULL);
 }
 
-static void add_refuses_wrong_arguments_and_adds_nothing(void **state)
-{
-    (void)state;
-    hol_chains *c = make(10);
-    const int64_t good[3] = {0, 1, 2}, low[3] = {0, -1, 2}, high[3] = {0, 1, 10}, twice[3] = {4, 5, 4},
-                  far[3] = {0, INT64_MIN, 1};
-    const int64_t huge[3] = {3, INT64_MAX, 4}, shared[3] = {6, 7, 1};
-    const double lengths[2] = {1, 1};
-    CHECK(hol_chains_add(c, 2, good, lengths));
-    CHECK_FAILS(HOL_ERR_NULL, hol_chains_add(NULL, 2, good, lengths));
-    CHECK_FAILS(HOL_ERR_NULL, hol_chains_add(c, 2, NULL, lengths));
-    CHECK_FAILS(HOL_ERR_NULL, hol_chains_add(c, 2, good, NULL));
-    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add(c, 0, good, lengths));
-    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add(c, -1, good, lengths));
-    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add(c, 2, low, lengths));
-    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add(c, 2, high, lengths));
-    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add(c, 2, far, lengths));
-    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add(c, 2, huge, lengths));
-    CHECK_FAILS(HOL_ERR_SHARED_ATOM, hol_chains_add(c, 2, twice, lengths));
-    assert_message_names("4");
-    CHECK_FAILS(HOL_ERR_SHARED_ATOM, hol_chains_add(c, 2, shared, lengths));
-    assert_message_names("1");
-    CHECK_FAILS(HOL_ERR_SHARED_ATOM, hol_chains_add(c, 2, good, lengths));
-    const double wrong[] = {0, -1, NAN, INFINITY, -INFINITY};
-    const int64_t others[3] = {7, 8, 9};
-    for (int i = 0; i < 5; ++i) {
-        const double bad[2] = {1, wrong[i]};
-        CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add(c, 2, others, bad));
-        CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_block(c, 1, 2, 7, bad));
-    }
-    assert_counts(c, 10, 1, 2);
-    /* An atom that a refused chain named is free. */
-    const int64_t again[7] = {4, 5, 6, 7, 8, 9, 3};
-    const double six[6] = {1, 1, 1, 1, 1, 1};
-    CHECK(hol_chains_add(c, 6, again, six));
-    assert_counts(c, 10, 2, 8);
-    hol_chains_destroy(c);
-}
-
-static void add_block_refuses_wrong_arguments_and_adds_nothing(void **state)
-{
-    (void)state;
-    hol_chains *c = make(10);
-    const double lengths[3] = {1, 1, 1};
-    CHECK_FAILS(HOL_ERR_NULL, hol_chains_add_block(NULL, 1, 1, 0, lengths));
-    CHECK_FAILS(HOL_ERR_NULL, hol_chains_add_block(c, 1, 1, 0, NULL));
-    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_block(c, 0, 1, 0, lengths));
-    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_block(c, 1, 0, 0, lengths));
-    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_block(c, -1, 1, 0, lengths));
-    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_block(c, 1, -1, 0, lengths));
-    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add_block(c, 1, 1, -1, lengths));
-    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add_block(c, 1, 1, 9, lengths));
-    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add_block(c, 3, 3, 0, lengths));
-    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add_block(c, INT64_MAX, 3, 0, lengths));
-    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add_block(c, INT64_MAX / 2, 1, 0, lengths));
-    CHECK_FAILS(HOL_ERR_INDEX, hol_chains_add_block(c, 1, 1, INT64_MAX, lengths));
-    CHECK(hol_chains_add_block(c, 1, 1, 4, lengths));
-    CHECK_FAILS(HOL_ERR_SHARED_ATOM, hol_chains_add_block(c, 2, 2, 0, lengths));
-    assert_counts(c, 10, 1, 1);
-    CHECK(hol_chains_add_block(c, 1, 3, 0, lengths));
-    CHECK(hol_chains_add_block(c, 2, 1, 6, lengths));
-    assert_counts(c, 10, 4, 6);
-    hol_chains_destroy(c);
-}
-
 static void options_refuse_wrong_values(void **state)
 {
     (void)state;
@@ -307,8 +242,6 @@ int main(void)
         cmocka_unit_test(create_refuses_wrong_arguments),
         cmocka_unit_test(create_refuses_sizes_that_no_memory_holds),
         cmocka_unit_test(destroying_null_does_nothing),
-        cmocka_unit_test(add_refuses_wrong_arguments_and_adds_nothing),
-        cmocka_unit_test(add_block_refuses_wrong_arguments_and_adds_nothing),
         cmocka_unit_test(options_refuse_wrong_values),
         cmocka_unit_test(getters_take_null),
         cmocka_unit_test(degrees_of_freedom_count_what_can_move),

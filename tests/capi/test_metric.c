@@ -200,9 +200,29 @@ static void physical_determinant_adds_the_diagonal(void **state)
         }
 }
 
+static void a_bond_between_two_fixed_atoms_is_in_no_determinant(void **state)
+{
+    (void)state;
+    const double masses[4] = {1, 0, 0, 1}, r[12] = {0, 0, 0, 1, 0, 0, 2, 3, 0, 3, 3, 0}, length[3] = {1, 3, 1};
+    double log_det[2], log_det_z[2], *force = untouched(12);
+    hol_chains *chains;
+    CHECK(hol_chains_create(4, masses, &chains));
+    CHECK(hol_chains_add_block(chains, 1, 3, 0, length));
+    assert_int_equal(hol_chains_n_chains(chains), 2);
+    CHECK(hol_metric(chains, r, 1, log_det, log_det_z, NULL, force, HOL_WRITE));
+    for (int c = 0; c < 2; ++c) {
+        assert_true(log_det[c] == 0);
+        CHECK_AT_MOST(fabs(log_det_z[c] - log(4)), 4 * DBL_EPSILON); /* Z = 4 w d.d, some roundings of a logarithm */
+    }
+    for (int i = 0; i < 12; ++i) assert_true(force[i] == 0);
+    free(force);
+    hol_chains_destroy(chains);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_bond_between_two_fixed_atoms_is_in_no_determinant),
         cmocka_unit_test(metric_agrees_with_113_bits_for_every_kind_of_chain),
         cmocka_unit_test(metric_of_long_chains_agrees_with_113_bits),
         cmocka_unit_test(force_is_minus_the_gradient),

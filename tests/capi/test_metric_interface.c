@@ -244,25 +244,6 @@ static void singular_chains_are_degenerate(void **state)
     }
 }
 
-static void a_bond_between_two_fixed_atoms_is_in_no_determinant(void **state)
-{
-    (void)state;
-    const double masses[4] = {1, 0, 0, 1}, r[12] = {0, 0, 0, 1, 0, 0, 2, 3, 0, 3, 3, 0}, length[3] = {1, 3, 1};
-    double log_det[2], log_det_z[2], *force = untouched(12);
-    hol_chains *chains;
-    CHECK(hol_chains_create(4, masses, &chains));
-    CHECK(hol_chains_add_block(chains, 1, 3, 0, length));
-    assert_int_equal(hol_chains_n_chains(chains), 2);
-    CHECK(hol_metric(chains, r, 1, log_det, log_det_z, NULL, force, HOL_WRITE));
-    for (int c = 0; c < 2; ++c) {
-        assert_true(log_det[c] == 0);
-        CHECK_AT_MOST(fabs(log_det_z[c] - log(4)), 4 * DBL_EPSILON); /* Z = 4 w d.d, some roundings of a logarithm */
-    }
-    for (int i = 0; i < 12; ++i) assert_true(force[i] == 0);
-    free(force);
-    hol_chains_destroy(chains);
-}
-
 static void wrong_arguments_write_nothing(void **state)
 {
     (void)state;
@@ -296,7 +277,6 @@ int main(void)
         cmocka_unit_test(inactive_chains_are_left_out),
         cmocka_unit_test(bad_chains_keep_their_outputs_and_the_others_are_complete),
         cmocka_unit_test(singular_chains_are_degenerate),
-        cmocka_unit_test(a_bond_between_two_fixed_atoms_is_in_no_determinant),
         cmocka_unit_test(wrong_arguments_write_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

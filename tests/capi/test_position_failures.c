@@ -182,32 +182,6 @@ static void a_wild_guess_ends_on_the_lengths_or_in_a_status(void **state)
     assembly_free(&a);
 }
 
-static void check_report(int64_t n_chains, int64_t n_bonds)
-{
-    assembly a = assembly_of_kind(CHAIN_COIL, n_chains, n_bonds, n_bonds, IN_ORDER, 95);
-    arrays s = begin(&a);
-    hol_report report;
-    hol_worst worst;
-    CHECK(hol_chains_set_tolerance(a.chains, 1e-3));
-    CHECK(hol_project_positions(a.chains, a.r, s.r, s.v, time_step, s.lambda, 0, NULL, &report));
-    CHECK(hol_violation(a.chains, s.r, NULL, &worst));
-    assert_int_equal(report.chain, worst.length_chain);
-    assert_int_equal(report.bond, worst.length_bond);
-    /* before the positions are rounded, which is far less than the error */
-    CHECK_AT_MOST(fabs(report.max_error - worst.length), (n_bonds > 1000 ? 2000 : 100) * DBL_EPSILON);
-    assert_true(report.max_error <= 1e-3);
-    end(&s);
-    assembly_free(&a);
-}
-
-static void the_report_names_the_bond_with_the_largest_error(void **state)
-{
-    (void)state;
-    check_report(7, 12);
-    check_report(1, 5000);
-    check_report(3, 2100);
-}
-
 static void an_ill_posed_step_fails_cleanly_or_succeeds(void **state)
 {
     (void)state;
@@ -311,7 +285,6 @@ int main(void)
         cmocka_unit_test(a_hard_bound_on_iterations_ends_in_a_status),
         cmocka_unit_test(wrong_arguments_are_refused_and_nothing_is_written),
         cmocka_unit_test(a_wild_guess_ends_on_the_lengths_or_in_a_status),
-        cmocka_unit_test(the_report_names_the_bond_with_the_largest_error),
         cmocka_unit_test(an_ill_posed_step_fails_cleanly_or_succeeds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

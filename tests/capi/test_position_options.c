@@ -165,6 +165,32 @@ static void a_report_changes_nothing(void **state)
     }
 }
 
+static void check_worst_bond(int64_t n_chains, int64_t n_bonds)
+{
+    assembly a = assembly_of_kind(CHAIN_COIL, n_chains, n_bonds, n_bonds, IN_ORDER, 95);
+    double *r = drift(&a, 0.004, 0);
+    hol_report report;
+    hol_worst worst;
+    CHECK(hol_chains_set_tolerance(a.chains, 1e-3));
+    CHECK(hol_project_positions(a.chains, a.r, r, NULL, 0.004, NULL, 0, NULL, &report));
+    CHECK(hol_violation(a.chains, r, NULL, &worst));
+    assert_int_equal(report.chain, worst.length_chain);
+    assert_int_equal(report.bond, worst.length_bond);
+    /* before the positions are rounded, which is far less than the error */
+    CHECK_AT_MOST(fabs(report.max_error - worst.length), (n_bonds > 1000 ? 2000 : 100) * DBL_EPSILON);
+    assert_true(report.max_error <= 1e-3);
+    free(r);
+    assembly_free(&a);
+}
+
+static void the_report_names_the_bond_with_the_largest_error(void **state)
+{
+    (void)state;
+    check_worst_bond(7, 12);
+    check_worst_bond(1, 5000);
+    check_worst_bond(3, 2100);
+}
+
 static void check_fixed_atoms(int is_long)
 {
     assembly a = short_or_long(CHAIN_FIXED_ENDS, is_long, SCATTERED, 88);
@@ -194,6 +220,7 @@ int main(void)
         cmocka_unit_test(a_guess_saves_an_iteration_and_changes_the_result_by_rounding_only),
         cmocka_unit_test(a_larger_tolerance_is_obeyed_and_costs_less),
         cmocka_unit_test(a_report_changes_nothing),
+        cmocka_unit_test(the_report_names_the_bond_with_the_largest_error),
         cmocka_unit_test(fixed_atoms_keep_every_bit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
