@@ -9,7 +9,6 @@
 #ifndef HOLONOMIC_KERNELS_ELIMINATE_CHAIN_HPP
 #define HOLONOMIC_KERNELS_ELIMINATE_CHAIN_HPP
 
-#include "core/kernels/eliminate/exact_joints.hpp"
 #include "core/kernels/eliminate/remainder.hpp"
 #include "core/kernels/memory/arena.hpp"
 

@@ -5,9 +5,9 @@
 
 #include "core/kernels/arithmetic/image.hpp"
 #include "core/kernels/eliminate/chain.hpp"
-#include "core/kernels/memory/listed.hpp"
-#include "core/kernels/memory/pulls.hpp"
-#include "core/kernels/memory/terms.hpp"
+#include "core/kernels/memory/atom_rows.hpp"
+#include "core/kernels/memory/outputs.hpp"
+#include "core/kernels/memory/packed.hpp"
 
 namespace holonomic::HOL_ISA {
 
@@ -24,13 +24,8 @@ HOL_NOINLINE mask forward_gathered(const Block &block, const Box &box, const Ato
     if (terms & force_difference) f0 = gather(f, at, 0);
     if (terms & rate) velocities[0] = v0;
     const auto bond = [&](long k, bool starts_group) HOL_FORCED {
-        if (block.list_ahead)
-            for (int i = 0; i < W; ++i) {
-                const int64_t next = 3 * at.atoms[i][k + block.list_ahead];
-                __builtin_prefetch(r + next, 0, 2);
-                if (terms & (velocity_squared | rate)) __builtin_prefetch(v + next, 0, 2);
-                if (terms & force_difference) __builtin_prefetch(f + next, 0, 2);
-            }
+        at.fetch(k, block.list_ahead, r, terms & (velocity_squared | rate) ? v : nullptr,
+                 terms & force_difference ? f : nullptr);
         const vec3 r1 = gather(r, at, k + 1);
         vec3 d = r1 - r0, dv = {}, df = {}, unused = {};
         if (boxed) wrap<false>(box, d, unused);
@@ -52,10 +47,8 @@ HOL_NOINLINE mask forward_gathered(const Block &block, const Box &box, const Ato
     };
     long k = 0;
     for (; k + 4 <= block.n; k += 4) {
-        bond(k, true);
-        bond(k + 1, false);
-        bond(k + 2, false);
-        bond(k + 3, false);
+        HOL_UNROLL
+        for (int i = 0; i < 4; ++i) bond(k + i, i == 0);
     }
     for (; k < block.n; ++k) bond(k, k % 4 == 0);
     return ~sweep.doubt() & sweep.calm();

@@ -14,7 +14,6 @@
 #ifndef HOLONOMIC_KERNELS_ELIMINATE_SEGMENT_HPP
 #define HOLONOMIC_KERNELS_ELIMINATE_SEGMENT_HPP
 
-#include "core/kernels/eliminate/exact_joints.hpp"
 #include "core/kernels/eliminate/remainder.hpp"
 #include "core/kernels/memory/cut.hpp"
 #include "core/kernels/memory/prefetch.hpp"
@@ -79,7 +78,7 @@ HOL_INLINE Joint careful_joint(const vec3 &d, const vec3 &low, const vec3 &d1, c
     return {dot_compensated(d, low, d1, low1), dot(c, c), dot(d1, d1)};
 }
 
-// As small_cosine in exact_joints.hpp; the error bound of chains of more than longest_lane bonds is twice as large.
+// As small_cosine in remainder.hpp; the error bound of chains of more than longest_lane bonds is twice as large.
 constexpr double segment_cosine = 1.0 / 64;
 
 // Computes g anew where bonds are nearly orthogonal: of n joints, the first of which is that of bonds k and k + 1.
@@ -168,18 +167,23 @@ HOL_INLINE void step(Elimination &e, const Block &block, const SegmentStore &x, 
     e.q = j.q;
 }
 
-// Eliminates the inner bonds of W segments of n bonds. block.len counts the separators behind them.
-template <int terms, bool uniform, bool careful>
-HOL_NOINLINE void eliminate(const Block &block, const Box &box, const Source &source, const SegmentBonds &in, long n,
-                            const SegmentStore x) {  // by value: stores don't change it
-    Elimination e;
-    const vec3 absent = {};
-    mask doubt = none();
+// The bonds that all segments have, a group at a time. Returns how many have been read; one less has been eliminated.
+// The last of them is left in `last`.
+template <int terms, bool uniform>
+HOL_INLINE long eliminate_groups(Elimination &e, const Block &block, const Box &box, const Source &source,
+                                 const SegmentBonds &in, const SegmentStore &x, vec3 &last, mask &doubt) {
     vec3 d[group + 1];
     vec b[group];
     Joint j[group];
     const EvenRows rows(in.r, terms & (velocity_squared | rate) ? in.v : in.r, terms & force_difference ? in.f : in.r);
-    long k0 = 0;  // bonds that have been read; one less has been eliminated
+    // Joints that have failed the cheap test. E0: E before the first of the n joints of D.
+    const auto look = [&](const vec3 *D, long first, long n, vec E0) HOL_FORCED {
+        const mask short_of = less(e.slack, vec{});
+        if (__builtin_expect(!any(short_of), 1)) return;
+        doubt = doubt | (doubtful_joints<uniform>(block, D, first, n, E0) & short_of);
+        e.slack = vec{};
+    };
+    long k0 = 0;
     if (in.full > 0) {
         load_group<terms, uniform>(block, box, in, rows, 0, d + 1, b);
         x.summary->q = dot(d[1], d[1]);
@@ -191,9 +195,7 @@ HOL_NOINLINE void eliminate(const Block &block, const Box &box, const Source &so
             step<uniform, false>(e, block, x, i - 1, j[i], b[i], false);
             if (i % 4 == 3) normalise(e);
         }
-        const mask short_of = less(e.slack, vec{});
-        if (any(short_of)) doubt = doubtful_joints<uniform>(block, d + 2, 2, group - 2, E0) & short_of;
-        e.slack = vec{};
+        look(d + 2, 2, group - 2, E0);
         d[0] = d[group];
         k0 = group;
     }
@@ -206,48 +208,47 @@ HOL_NOINLINE void eliminate(const Block &block, const Box &box, const Source &so
             step<uniform, false>(e, block, x, k0 + i - 1, j[i], b[i], false);
             if (i % 4 == 3) normalise(e);
         }
-        const mask short_of = less(e.slack, vec{});
-        if (__builtin_expect(any(short_of), 0)) {
-            doubt = doubt | (doubtful_joints<uniform>(block, d, k0, group, E0) & short_of);
-            e.slack = vec{};
-        }
+        look(d, k0, group, E0);
         d[0] = d[group];
     }
+    last = d[0];
+    return k0;
+}
+
+// Eliminates the inner bonds of W segments of n bonds. block.len counts the separators behind them.
+template <int terms, bool uniform, bool careful>
+HOL_NOINLINE void eliminate(const Block &block, const Box &box, const Source &source, const SegmentBonds &in, long n,
+                            const SegmentStore x) {  // by value: stores don't change it
+    Elimination e;
+    mask doubt = none();
+    vec3 before = {}, low_before = {};
+    long k0 = eliminate_groups<terms, uniform>(e, block, box, source, in, x, before, doubt);
     const long read = terms == in_scratch ? k0 : 0;
-    const vec3 *D = in.D + read, *low = careful ? in.low : &absent;
-    const int low_step = careful ? 1 : 0;
-    const vec *B = in.B + read;
-    vec3 before = d[0], low_before = {};
+    const vec3 *const D = in.D + read - k0, *const low = careful ? in.low - k0 + read : nullptr;
+    const vec *const B = in.B + read - k0;
+    const auto joint = [&](long k, const vec3 *two, const vec3 *low_two) HOL_FORCED {
+        Joint j;
+        if (careful) return careful_joint(two[0], low_two[0], two[1], low_two[1]);
+        plain_joints<1>(source, k, two, &j);
+        return j;
+    };
     if (k0 == 0) {
         x.summary->q = dot(D[0], D[0]);
         x.summary->b = B[0];
-        Joint first;
-        if (careful)
-            first = careful_joint(D[0], low[0], D[1], low[low_step]);
-        else
-            plain_joints<1>(source, 0, D, &first);
-        start<uniform>(e, block, x.summary->q, first, B[1]);
+        start<uniform>(e, block, x.summary->q, joint(0, D, low), B[1]);
         before = D[1];
-        low_before = low[low_step];
-        D += 2;
-        low += 2 * low_step;
-        B += 2;
+        if (careful) low_before = low[1];
         k0 = 2;
     }
-    for (; k0 <= n; ++k0, ++D, low += low_step, ++B) {
+    for (; k0 <= n; ++k0) {
         const vec E0 = e.e.A;
-        const vec3 two[2] = {before, k0 < n ? *D : in.next};
-        const vec3 low_here = k0 < n ? *low : in.next_low;
+        const vec3 two[2] = {before, k0 < n ? D[k0] : in.next};
+        const vec3 low_two[2] = {low_before, careful && k0 < n ? low[k0] : in.next_low};
         // The last joint is masked in the chain's last segment, others where that ends.
-        Joint joint;
-        if (careful)
-            joint = careful_joint(two[0], low_before, two[1], low_here);
-        else
-            plain_joints<1>(source, k0 - 1, two, &joint);
-        step<uniform, careful>(e, block, x, k0 - 1, joint, k0 < n ? *B : vec{}, true);
+        step<uniform, careful>(e, block, x, k0 - 1, joint(k0 - 1, two, low_two), k0 < n ? B[k0] : vec{}, true);
         normalise(e);
         before = two[1];
-        low_before = low_here;
+        low_before = low_two[1];
         if (careful || !any(less(e.slack, vec{}))) continue;
         doubt = doubt | (doubtful_joints<uniform>(block, two, k0, 1, E0) & less(e.slack, vec{}));
         e.slack = vec{};

@@ -1,12 +1,11 @@
 // Arms of one large molecule (schedule.hpp), each as a chain inside of it: the inner bonds of its W segments are
 // eliminated at once, without knowing anything else (eliminate/segment.hpp). What a segment leaves to the separators at
 // its two ends is the matrix [c, -f; -f, E] with a = E c - f^2, and T and y on the right: so the joining of
-// eliminate/join.hpp, which subtracts nothing, can go from either end to the other, whichever is the upper one.
+// eliminate/long_chain.hpp, which subtracts nothing, can go from either end to the other, whichever is the upper one.
 #ifndef HOLONOMIC_KERNELS_GRAPH_ARMS_HPP
 #define HOLONOMIC_KERNELS_GRAPH_ARMS_HPP
 
-#include "core/kernels/eliminate/join.hpp"
-#include "core/kernels/eliminate/segment_substitute.hpp"
+#include "core/kernels/eliminate/long_chain.hpp"
 #include "core/kernels/graph/load_lanes.hpp"
 #include "core/kernels/graph/store.hpp"
 

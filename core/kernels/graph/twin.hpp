@@ -25,6 +25,7 @@ HOL_INLINE Twin operator/(const Twin &x, const Twin &y) { return {x.a / y.a, x.b
 HOL_INLINE Twin operator-(const Twin &x) { return {-x.a, -x.b}; }
 HOL_INLINE Twin operator+(const Twin &x, double y) { return {x.a + y, x.b + y}; }
 HOL_INLINE Twin operator-(const Twin &x, double y) { return {x.a - y, x.b - y}; }
+HOL_INLINE Twin operator-(double x, const Twin &y) { return {x - y.a, x - y.b}; }
 HOL_INLINE Twin operator*(const Twin &x, double y) { return {x.a * y, x.b * y}; }
 HOL_INLINE Twin operator*(double x, const Twin &y) { return {x * y.a, x * y.b}; }
 HOL_INLINE Twin mul_add(const Twin &x, const Twin &y, const Twin &z) {

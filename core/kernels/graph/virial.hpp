@@ -9,7 +9,7 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// The counterpart of memory/pulls.hpp: what a molecule adds does not depend on which of the two widths it has.
+// The counterpart of memory/outputs.hpp: what a molecule adds does not depend on which of the two widths it has.
 template <class V>
 struct MoleculesVirial {
     V sum[6] = {};

@@ -4,7 +4,6 @@
 
 #include "core/kernels/memory/arena.hpp"
 #include "core/kernels/memory/block.hpp"
-#include "core/kernels/memory/rows.hpp"
 #include "core/kernels/memory/stage.hpp"
 #include "core/kernels/tally.hpp"
 

@@ -1,13 +1,15 @@
 // Blocks of W small molecules of N bonds each. The arithmetic is that of any block, but the compiler knows the number
 // of bonds and keeps everything in registers. Here is where the molecules stand in the arrays of a call, how they are
-// read and written, and their masses. The kernels are in verbs/*_small.hpp. They leave to the general path what needs
-// more than plain arithmetic, and the last molecules of a unit, behind which nothing may be read.
+// read and written, their masses, and which kernel gets them. The kernels are those of verbs/*.cpp that end in
+// _of_molecules. They leave to the general path what needs more than plain arithmetic, and the last molecules of a
+// unit, behind which nothing may be read.
 #ifndef HOLONOMIC_KERNELS_MEMORY_SMALL_HPP
 #define HOLONOMIC_KERNELS_MEMORY_SMALL_HPP
 
 #include "core/kernels/arithmetic/image.hpp"
-#include "core/kernels/memory/listed.hpp"
-#include "core/kernels/memory/terms.hpp"
+#include "core/kernels/isa/choose.hpp"
+#include "core/kernels/memory/atom_rows.hpp"
+#include "core/kernels/memory/packed.hpp"
 
 namespace holonomic::HOL_ISA {
 
@@ -182,15 +184,9 @@ HOL_INLINE void take_bonds(const Box &box, const vec *atoms, vec3 *D) {
     HOL_UNROLL
     for (int c = 0; c < 3 * N; ++c) d[c] = atoms[c + 3] - atoms[c];
     if (!boxed || box.shape == Box::none) return;
-    if (box.shape == Box::triclinic) {
-        vec3 unused = {};
-        HOL_UNROLL
-        for (int k = 0; k < N; ++k) wrap<false>(box, D[k], unused);
-        return;
-    }
+    vec3 unused = {};
     HOL_UNROLL
-    for (int c = 0; c < 3 * N; ++c)
-        d[c] = mul_add(round(d[c] * box.per_side[c % 3]), splat(box.minus_side[c % 3]), d[c]);
+    for (int k = 0; k < N; ++k) wrap<false>(box, D[k], unused);
 }
 
 // The bonds of a place. In a row without a box they are differences of numbers as they stand in memory, if that
@@ -258,6 +254,33 @@ struct BlockMasses {
         return true;
     }
 };
+
+// Calls kernel(place, uniform, boxed) for the molecules from `first` on, where place.type is one of memory/small.hpp.
+// The kernel returns the first molecule that is not done. `uniform`: equal masses, and `one_length`. `boxed`: there may
+// be a box. Units that are not regular need no block: molecules with as many bonds as the first one are done.
+template <class Kernel>
+static inline int64_t any_molecules(const Unit &unit, const Block &block, int64_t first, bool boxed, bool one_length,
+                                    const Kernel &kernel) {
+    constexpr Constant<bool, true> yes{};
+    constexpr Constant<bool, false> no{};
+    const Lane &head = unit.lanes[unit.regular ? 0 : first];
+    const bool in_row = unit.regular && !head.atoms;
+    if (head.n_bonds > (boxed || !in_row ? largest_boxed_molecule : largest_molecule)) return first;
+    if (!unit.regular)
+        return choose_number<1, largest_boxed_molecule>(head.n_bonds,
+                                                        [&](auto n) { return kernel(Type<ByLanes<n>>{}, no, yes); });
+    return choose_number<1, largest_molecule>(head.n_bonds, [&](auto n) {
+        return choose(
+            [&](auto uniform) {
+                if constexpr (n <= largest_boxed_molecule) {
+                    if (!in_row) return kernel(Type<ByList<n>>{}, uniform, yes);
+                    if (boxed) return kernel(Type<InRow<n>>{}, uniform, yes);
+                }
+                return kernel(Type<InRow<n>>{}, uniform, no);
+            },
+            block.uniform_w && one_length);
+    });
+}
 
 }  // namespace holonomic::HOL_ISA
 #endif

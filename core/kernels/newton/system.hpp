@@ -10,7 +10,7 @@
 
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/memory/arena.hpp"
-#include "core/kernels/memory/rows.hpp"
+#include "core/kernels/memory/block.hpp"
 
 namespace holonomic::HOL_ISA {
 

@@ -1,13 +1,12 @@
 // Acceleration level of a block of chains: load and eliminate in one go, up the chains; substitute and store, down.
 #include "core/kernels/eliminate/chain.hpp"
-#include "core/kernels/eliminate/join.hpp"
 #include "core/kernels/eliminate/listed.hpp"
-#include "core/kernels/eliminate/segment_substitute.hpp"
+#include "core/kernels/eliminate/long_chain.hpp"
 #include "core/kernels/memory/open.hpp"
+#include "core/kernels/memory/outputs.hpp"
 #include "core/kernels/memory/packed.hpp"
 #include "core/kernels/memory/prefetch.hpp"
-#include "core/kernels/memory/pulls.hpp"
-#include "core/kernels/verbs/forces_small.hpp"
+#include "core/kernels/memory/small.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -37,16 +36,7 @@ HOL_NOINLINE mask forward(const Block &block, const Box &box, const Packed &r, c
     return ~sweep.doubt();
 }
 
-// The same with compensated products of unrounded bond vectors: good in all lanes.
-template <int terms, bool uniform, bool boxed>
-HOL_NOINLINE mask forward_careful(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
-                                  const System &s, mask &calm) {
-    load_bonds<terms, uniform, boxed, true>(block, box, r, v, f, s.D, s.D_low, s.t);
-    forward_careful<uniform>(block, s);
-    calm = none();
-    return ~none();
-}
-
+// `careful`: with compensated products of unrounded bond vectors, which are good in all lanes.
 template <int terms, bool careful>
 static inline mask forward_any(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
                                const System &s, mask &calm) {
@@ -55,8 +45,10 @@ static inline mask forward_any(const Block &block, const Box &box, const Packed 
         return forward<terms | unit_mass, true, false>(block, box, r, v, f, s, calm);
     return choose(
         [&](auto uniform, auto has_box) {
-            return careful ? forward_careful<terms, uniform, has_box>(block, box, r, v, f, s, calm)
-                           : forward<terms, uniform, has_box>(block, box, r, v, f, s, calm);
+            if (!careful) return forward<terms, uniform, has_box>(block, box, r, v, f, s, calm);
+            load_bonds<terms, uniform, has_box, true>(block, box, r, v, f, s.D, s.D_low, s.t);
+            forward_careful<uniform>(block, s);
+            return ~none();
         },
         block.uniform_w, boxed);
 }
@@ -151,23 +143,106 @@ static void forces_block(const Block &block, const Lane *lane, const ForcesCall 
     if (__builtin_expect(plain && !call.tension && !call.virial, 1)) {
         choose([&](auto add) { substitute_and_store<add ? add_ : write_>(block, s, g, call.lambda, splat(0.5)); },
                update == add_);
-    } else {
+        if (call.g.x) close(call.g, block, lane, good, g, call.add);
+        return;
+    }
+    // Lanes that plain arithmetic can't answer for: once more, with compensated products.
+    mask rest = block.in_use();
+    for (int careful = 0; careful < 2 && any(rest); ++careful) {
+        if (careful) good = forward_forces<true>(block, call, r, v, f, s, calm);
         backward(0, block.n, s.t, s.L);
-        good = good & finite(s.t[0]) & block.in_use();
+        good = good & finite(s.t[0]) & rest;
         finish_forces(block, call, s, good, g, update, arena, tally);
+        rest = rest & ~good;
     }
-    mask rest = block.in_use() & ~good;
-    if (__builtin_expect(any(rest), 0)) {
-        // Once more, with compensated products, for the lanes that plain arithmetic can't answer for.
-        forward_forces<true>(block, call, r, v, f, s, calm);
-        backward(0, block.n, s.t, s.L);
-        const mask mended = finite(s.t[0]) & rest;
-        finish_forces(block, call, s, mended, g, update, arena, tally);
-        good = good | mended;
-        rest = rest & ~mended;
-        if (any(rest)) note_bad(block, rest, tally);
+    if (any(rest)) note_bad(block, rest, tally);
+    if (call.g.x) close(call.g, block, lane, ~rest, g, call.add);
+}
+
+// Bonds D[k] of W molecules and their right-hand sides t[k].
+template <int terms, bool uniform, bool boxed, class Place>
+HOL_INLINE void load_sides(const Block &block, const Box &box, const Place &place, const double *r, const double *v,
+                           const double *f, vec3 *D, vec *t) {
+    constexpr int N = Place::bonds;
+    vec e[vectors_of<N>];
+    vec3 dv[N] = {}, *const x = reinterpret_cast<vec3 *>(e);
+    load_bonds<boxed>(box, place, r, e, D);
+    if (terms & velocity_squared) {
+        load_molecules(place, v, e);
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) dv[k] = x[k + 1] - x[k];
     }
-    if (call.g.x) close(call.g, block, lane, good, g, call.add);
+    load_molecules(place, f, e);
+    choose(
+        [&](auto waited) HOL_FORCED {
+            HOL_UNROLL
+            for (int k = 0; k < N; ++k) {
+                const vec3 df = uniform ? x[k + 1] - x[k] : block.w[k + 1] * x[k + 1] - block.w[k] * x[k];
+                t[k] = right_hand_side<terms>(waited, block.mass, D[k], dv[k], df);
+            }
+        },
+        boxed && box.shape == Box::triclinic);
+}
+
+// G of the atoms of W molecules.
+template <Update update, class Place>
+HOL_INLINE void store_pulls(const vec3 *D, const vec *t, const Place &place, double *out) {
+    constexpr int N = Place::bonds;
+    vec value[vectors_of<N>] = {};
+    vec3 before = {};
+    HOL_UNROLL
+    for (int k = 0; k <= N; ++k) {
+        const vec3 after = k < N ? t[k] * D[k] : vec3{}, g = after - before;
+        value[3 * k] = g.x;
+        value[3 * k + 1] = g.y;
+        value[3 * k + 2] = g.z;
+        before = after;
+    }
+    store_molecules<update>(place, value, out);
+}
+
+// Does molecules from `first` on. Returns the first one that is not done. `given`: the block of a regular unit.
+template <class Place, int terms, bool uniform, bool boxed>
+static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, const Block &given, int64_t first) {
+    constexpr int N = Place::bonds;
+    const double *const r = base_of(call.r), *const v = base_of(call.v), *const f = base_of(call.f);
+    double *const g = base_of(call.g);
+    BlockMasses<Place> masses(given);
+    const Block &block = masses.block;
+    const int64_t end = Place::end(unit, first);
+    for (int64_t n; (n = Place::next(first, end)) > 0; first += n) {
+        vec3 D[N];
+        vec t[N], L[N + 1];
+        const Place place(unit, first, n);
+        masses.take(place);
+        place.fetch_next(r);
+        place.fetch_next(v);
+        place.fetch_next(f);
+        load_sides<terms, uniform, boxed>(block, call.box, place, r, v, f, D, t);
+        const Packed from = first_atoms(place, r);
+        const Source source = {&from, r, place.lists(), &call.box, nullptr, place.lanes()};
+        Sweep<uniform, false> sweep{block, source, System(D, t, L, nullptr)};
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) sweep.step(k, t[k], k % 4 == 0, false);
+        if (__builtin_expect(any(sweep.doubt() | ~sweep.calm()), 0)) break;
+        backward(0, N, t, L);
+        if (g) call.add ? store_pulls<add_>(D, t, place, g) : store_pulls<write_>(D, t, place, g);
+        if (call.lambda) store_multipliers(place, t, splat(0.5), call.lambda);
+    }
+    return first;
+}
+
+static inline int64_t small_forces(const ForcesCall &call, const Unit &unit, Block &block, int64_t first, Tally &) {
+    const bool plain = call.r.packed && (!call.v.x || call.v.packed) && call.f.packed && (!call.g.x || call.g.packed) &&
+                       !call.tension && !call.virial;
+    if (!plain || !call.f.x) return first;
+    return any_molecules(
+        unit, block, first, call.box.shape != Box::none, true, [&](auto place, auto uniform, auto boxed) {
+            typedef typename decltype(place)::type Place;
+            constexpr int both = velocity_squared | force_difference;
+            return call.v.x ? forces_of_molecules<Place, both, uniform, boxed>(call, unit, block, first)
+                            : forces_of_molecules<Place, force_difference, uniform, boxed>(call, unit, block, first);
+        });
 }
 
 void forces(const ForcesCall &call, const Unit &unit, double *scratch, Tally &tally) {

@@ -1,10 +1,10 @@
-// Metric determinant and Fixman force of blocks of chains, and of one long chain in windows (memory/windows.hpp).
+// Metric determinant and Fixman force of blocks of chains, and of one long chain in windows (memory/cut.hpp).
 #include "core/kernels/eliminate/deficits.hpp"
 #include "core/kernels/isa/choose.hpp"
+#include "core/kernels/memory/cut.hpp"
 #include "core/kernels/memory/open.hpp"
+#include "core/kernels/memory/outputs.hpp"
 #include "core/kernels/memory/packed.hpp"
-#include "core/kernels/memory/pulls.hpp"
-#include "core/kernels/memory/windows.hpp"
 #include "core/kernels/tally.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 

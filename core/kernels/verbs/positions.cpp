@@ -1,11 +1,261 @@
 // Position level of a block of chains: load, iterate (newton/iterate.hpp), move the atoms, store.
+#include "core/kernels/arithmetic/image.hpp"
 #include "core/kernels/isa/choose.hpp"
+#include "core/kernels/memory/atom_rows.hpp"
+#include "core/kernels/memory/small.hpp"
 #include "core/kernels/newton/attempts.hpp"
-#include "core/kernels/newton/listed.hpp"
-#include "core/kernels/verbs/positions_small.hpp"
+#include "core/kernels/newton/iterate.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
+
+// Small molecules. Where a lane needs more than the first attempt, its W molecules are left to the general path.
+
+// Masses and lengths of blocks of N bonds for Newton's method. `uniform`: there is only one inverse mass, and one
+// length. No function that is called gets the memory of the bond vectors, so that these stay in registers.
+template <class Place, bool uniform>
+struct SmallNewton {
+    static constexpr int N = Place::bonds;
+    BlockMasses<Place> masses;
+    const Block &block;
+    vec w[N + 1], lengths[2 * N];
+
+    SmallNewton(const Unit &unit, const Block &given, Newton &x) : masses(given), block(masses.block) {
+        Lane lane[W];
+        for (int i = 0; i < W; ++i) lane[i] = unit.lanes[0];
+        if (!Place::loose) set(lane, x);
+    }
+    HOL_FORCED void take(const Place &place, Newton &x) {
+        if (masses.take(place)) set(place.lanes(), x);
+    }
+    HOL_FORCED void set(const Lane *lane, Newton &x) {
+        Arena rest(reinterpret_cast<double *>(lengths), reinterpret_cast<double *>(lengths + 2 * N));
+        static_cast<BondLengths &>(x) = bond_lengths(block, lane, rest, !uniform);
+        x.a2 = uniform ? nullptr : lengths;
+        x.per_a2 = uniform ? nullptr : lengths + N;
+        x.lengths = splat(N);
+        for (int k = 0; k <= N; ++k) w[k] = block.uniform_w ? splat(1.0) : block.w[k];
+        x.w = uniform ? nullptr : w;
+    }
+};
+
+// Vectors of scratch that Newton's method takes.
+template <int N>
+constexpr int64_t small_scratch = vectors_per_bond *(N + 2 * W + 8);
+
+// What is asked of a call for every block, found once.
+struct SmallCall {
+    const Box &box_ref, &box;
+    double *r_ref, *r, *v, *lambda;
+    double per_dt, factor;  // of multipliers, without the unit of masses
+    explicit SmallCall(const PositionsCall &c)
+        : box_ref(c.box_ref), box(c.box), r_ref(base_of(c.r_ref)), r(base_of(c.r)), v(base_of(c.v)), lambda(c.lambda),
+          per_dt(1 / c.dt), factor(0.5 / (c.dt * c.dt)) {}
+};
+
+// The bond vectors of a block, and its atoms as they come.
+template <bool boxed, class Place>
+HOL_INLINE void load_positions(const SmallCall &call, const Place &place, const Newton &x, vec *atoms,
+                               Carried &carried) {
+    constexpr int N = Place::bonds;
+    place.fetch_next(call.r_ref);
+    place.fetch_next(call.r);
+    place.fetch_next(call.v);
+    load_bonds<boxed>(call.box_ref, place, call.r_ref, atoms, x.b);
+    load_bonds<boxed>(call.box, place, call.r, atoms, x.D);
+    if (!boxed) return;
+    vec largest = {};  // in a box the lengths of bonds say nothing of coordinates
+    HOL_UNROLL
+    for (int e = 0; e < 3 * (N + 1); ++e) largest = max(largest, abs(atoms[e]));
+    carried.know_largest(largest);
+}
+
+// Moves the atoms of a block, and writes its multipliers.
+template <bool uniform, class Place>
+HOL_INLINE void write_positions(const SmallCall &call, const Place &place, const Block &block, const Newton &x,
+                                const vec *atoms) {
+    constexpr int N = Place::bonds;
+    double *const r = call.r, *const v = call.v;
+    vec move[vectors_of<N>] = {}, moved[vectors_of<N>];
+    vec3 before = {};
+    HOL_UNROLL
+    for (int k = 0; k <= N; ++k) {
+        const vec3 after = x.tau[k] * x.b[k], m = times_w<uniform>(x, k, after - before);
+        move[3 * k] = m.x;
+        move[3 * k + 1] = m.y;
+        move[3 * k + 2] = m.z;
+        before = after;
+    }
+    if constexpr (Place::in_row) {
+        typedef typename Place::Lanes Lanes;
+        if (v)
+            store_rows<3 * (N + 1)>(move,
+                                    MoveSink<true, true, Lanes>{place.lanes_of(r), place.lanes_of(v), call.per_dt});
+        else
+            store_rows<3 * (N + 1)>(move, MoveSink<true, false, Lanes>{place.lanes_of(r), {}, call.per_dt});
+    } else {
+        HOL_UNROLL
+        for (int e = 0; e < 3 * (N + 1); ++e) moved[e] = atoms[e] + move[e];
+        store_molecules<write_>(place, moved, r);
+        if (v) {
+            load_molecules(place, v, moved);
+            HOL_UNROLL
+            for (int e = 0; e < 3 * (N + 1); ++e) moved[e] = mul_add(move[e], splat(call.per_dt), moved[e]);
+            store_molecules<write_>(place, moved, v);
+        }
+    }
+    if (call.lambda) store_multipliers(place, x.tau, splat(call.factor) / block.unit, call.lambda);
+}
+
+// Single bonds, two blocks at a time: while one waits for its root and its quotient, the other is worked on. Ends
+// before a pair of blocks of which one needs more than this.
+template <class Place, bool uniform, bool boxed>
+HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit &unit, const Block &given,
+                                           int64_t first, Tally &tally) {
+    const SmallCall arrays(call);
+    vec memory[2][small_scratch<1>];
+    Arena arena_a(reinterpret_cast<double *>(memory[0]), 1), arena_b(reinterpret_cast<double *>(memory[1]), 1);
+    Newton x_a(1, arena_a), x_b(1, arena_b);
+    SmallNewton<Place, uniform> a(unit, given, x_a), b(unit, given, x_b);
+    const int64_t end = Place::end(unit, first);
+    for (int64_t n; (n = Place::next(first + W, end)) > 0; first += W + n) {
+        const Place at_a(unit, first, W), at_b(unit, first + W, n);
+        a.take(at_a, x_a);
+        b.take(at_b, x_b);
+        const Packed r_a = first_atoms(at_a, arrays.r), r_b = first_atoms(at_b, arrays.r);
+        Carried carried_a(a.block, x_a, call, r_a, at_a.lists()), carried_b(b.block, x_b, call, r_b, at_b.lists());
+        vec atoms_a[vectors_of<1>], atoms_b[vectors_of<1>];
+        load_positions<boxed>(arrays, at_a, x_a, atoms_a, carried_a);
+        load_positions<boxed>(arrays, at_b, x_b, atoms_b, carried_b);
+        const mask done = solve_single_bonds<uniform>(x_a, carried_a, first_lanes(W)).converged &
+                          solve_single_bonds<uniform>(x_b, carried_b, first_lanes(W)).converged;
+        if (any(~done | coarse_moves<uniform, 1>(a.block, x_a, carried_a, done) |
+                coarse_moves<uniform, 1>(b.block, x_b, carried_b, done)))
+            break;
+        write_positions<uniform>(arrays, at_a, a.block, x_a, atoms_a);
+        write_positions<uniform>(arrays, at_b, b.block, x_b, atoms_b);
+        tally.n_corrected += W + n;
+        if (tally.iterations < 1) tally.iterations = 1;
+    }
+    return first;
+}
+
+// Does molecules from `first` on. Returns the first one that is not done.
+template <class Place, bool uniform, bool boxed>
+HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Unit &unit, Block &given, int64_t first,
+                                            Tally &tally) {
+    constexpr int N = Place::bonds;
+    const SmallCall arrays(call);
+    vec memory[small_scratch<N>];
+    Arena arena(reinterpret_cast<double *>(memory), N);
+    Newton x(N, arena);
+    SmallNewton<Place, uniform> newton(unit, given, x);
+    const Block &block = newton.block;
+    const mask all = first_lanes(W);
+    const int64_t end = Place::end(unit, first);
+    for (int64_t n; (n = Place::next(first, end)) > 0; first += n) {
+        const Place place(unit, first, n);
+        newton.take(place, x);
+        const Packed r = first_atoms(place, arrays.r);
+        Carried carried(block, x, call, r, place.lists());
+        vec atoms[vectors_of<N>];
+        load_positions<boxed>(arrays, place, x, atoms, carried);
+        Outcome out;
+        if (N == 1)
+            out = solve_single_bonds<uniform>(x, carried, all);
+        else if (N == 2 && tries_two_bonds(call))
+            out = solve_two_bonds<uniform, uniform>(x, carried, all);
+        else
+            out = iterate<uniform, uniform, false, N>(block, x, call, carried, all, false);
+        if (any(~out.converged) || any(coarse_moves<uniform, N>(block, x, carried, all))) break;
+        if (call.report) {
+            Block &reported = Place::loose ? newton.masses.own : given;
+            for (int i = 0; i < W; ++i) reported.chain[i] = place.chain_of(i);
+            note_worst<uniform, uniform>(reported, x, call, all, out.error, tally);
+        }
+        write_positions<uniform>(arrays, place, block, x, atoms);
+        tally.n_corrected += n;
+        if (out.solves > tally.iterations) tally.iterations = out.solves;
+    }
+    return first;
+}
+
+static inline int64_t small_positions(const PositionsCall &call, const Unit &unit, Block &block, int64_t first,
+                                      Tally &tally) {
+    if (!call.r.packed || !call.r_ref.packed || (call.v.x && !call.v.packed) || call.virial || call.guess) return first;
+    const bool has_box = call.box.shape != Box::none || call.box_ref.shape != Box::none;
+    return any_molecules(unit, block, first, has_box, !unit.lanes[0].length, [&](auto place, auto uniform, auto boxed) {
+        typedef typename decltype(place)::type Place;
+        if constexpr (Place::bonds == 1 && W > 1)
+            if (!call.report) first = pairs_of_single_bonds<Place, uniform, boxed>(call, unit, block, first, tally);
+        return positions_of_molecules<Place, uniform, boxed>(call, unit, block, first, tally);
+    });
+}
+
+// Chains that have lists of atoms: the arithmetic of attempts.hpp, on atoms read where the lists say. If a lane needs
+// more than the first attempt, or no move at all, the block is left as it came, to the general path.
+
+template <bool boxed>
+HOL_INLINE void gather_bonds(const Block &block, const PositionsCall &call, const AtomLists &at, const Newton &x) {
+    const double *const r_ref = base_of(call.r_ref), *const r = base_of(call.r), *const v = base_of(call.v);
+    vec3 b0 = gather(r_ref, at, 0), r0 = gather(r, at, 0), unused = {};
+    for (long k = 0; k < block.n; ++k) {
+        at.fetch(k, block.list_ahead, r_ref, r, v);
+        const vec3 b1 = gather(r_ref, at, k + 1), r1 = gather(r, at, k + 1);
+        vec3 b = b1 - b0, d = r1 - r0;
+        if (boxed) {
+            wrap<false>(call.box_ref, b, unused);
+            wrap<false>(call.box, d, unused);
+        }
+        x.b[k] = b;
+        x.D[k] = d;
+        b0 = b1;
+        r0 = r1;
+    }
+}
+
+// As store_pulls() with a MoveSink, of all lanes.
+template <bool uniform_w, bool to_v>
+static inline void scatter_moves(const Block &block, const Newton &x, const AtomLists &at, double *r, double *v,
+                                 vec rate) {
+    vec3 before = {};
+    for (long k = 0; k <= block.n; ++k) {
+        const vec3 after = x.tau[k] * x.b[k], m = times_w<uniform_w>(x, k, after - before);
+        before = after;
+        scatter<add_>(r, at, k, m);
+        if (!to_v) continue;
+        const vec3 q = gather(v, at, k);
+        scatter<write_>(v, at, k, {mul_add(m.x, rate, q.x), mul_add(m.y, rate, q.y), mul_add(m.z, rate, q.z)});
+    }
+}
+
+// True if the block is done; on false nothing was written.
+template <bool uniform_w, bool uniform_a>
+HOL_NOINLINE bool listed_positions(const Block &block, const Lane *lane, const PositionsCall &call,
+                                   const BondLengths &a, Arena arena, Tally &tally) {
+    if (!call.r_ref.packed || !call.r.packed || (call.v.x && !call.v.packed) || !listed(block, lane)) return false;
+    const AtomLists at(lane);
+    Newton x(block, a, arena);
+    if (call.box.shape == Box::none && call.box_ref.shape == Box::none)
+        gather_bonds<false>(block, call, at, x);
+    else
+        gather_bonds<true>(block, call, at, x);
+    if (call.guess) load_guess(block, call, x);
+    Packed first;
+    for (int i = 0; i < W; ++i) first.lane[i] = base_of(call.r) + 3 * lane[i].atoms[0];
+    Carried carried(block, x, call, first, at.atoms);
+    const Outcome out =
+        solve_positions<uniform_w, uniform_a, false>(block, x, call, carried, block.in_use(), call.guess);
+    if (any(~out.converged) || any(coarse_moves<uniform_w>(block, x, carried, out.converged))) return false;
+    note_worst<uniform_w, uniform_a>(block, x, call, out.converged, out.error, tally);
+    if (call.v.x)
+        scatter_moves<uniform_w, true>(block, x, at, base_of(call.r), base_of(call.v), splat(1 / call.dt));
+    else
+        scatter_moves<uniform_w, false>(block, x, at, base_of(call.r), nullptr, vec{});
+    if (call.virial) add_virial(block, x, out.converged, call.dt, tally);
+    note_solved(block, x, call, out, tally);
+    return true;
+}
 
 template <bool uniform_w, bool uniform_a>
 static inline void positions_block(const Block &block, const Lane *lane, const PositionsCall &call,

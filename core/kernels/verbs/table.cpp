@@ -1,5 +1,5 @@
 // The table through which core calls the kernels of one instruction set.
-#include "core/kernels/eliminate/join.hpp"
+#include "core/kernels/eliminate/long_chain.hpp"
 #include "core/kernels/isa/lanes.hpp"
 #include "core/kernels/memory/arena.hpp"
 #include "core/kernels/memory/cut.hpp"

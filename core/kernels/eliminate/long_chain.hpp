@@ -1,13 +1,96 @@
-// Acceleration and velocity level of one long chain, once its separators are solved for: substitute inside the segments
-// from their ends to their beginnings, and store what comes out.
-#ifndef HOLONOMIC_KERNELS_ELIMINATE_SEGMENT_SUBSTITUTE_HPP
-#define HOLONOMIC_KERNELS_ELIMINATE_SEGMENT_SUBSTITUTE_HPP
+// One long chain block by block (segment.hpp): it is eliminated, the separators are solved for, and for forces and
+// velocities the segments are substituted in from their ends to their beginnings, and what comes out is stored.
+#ifndef HOLONOMIC_KERNELS_ELIMINATE_LONG_CHAIN_HPP
+#define HOLONOMIC_KERNELS_ELIMINATE_LONG_CHAIN_HPP
 
+#include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/eliminate/segment.hpp"
+#include "core/kernels/memory/outputs.hpp"
 #include "core/kernels/memory/prefetch.hpp"
-#include "core/kernels/memory/pulls.hpp"
 
 namespace holonomic::HOL_ISA {
+
+// Loads block j and eliminates its inner bonds. `strain` is added to rates, or nullptr.
+template <int terms, bool uniform>
+static inline void eliminate_block_of(const Box &box, const SegmentBlock &s, const Packed &r, const Packed &v,
+                                      const Packed &f, bool careful, const SegmentStore &x, Arena arena,
+                                      const double *strain) {
+    const long n = s.own_max;
+    SegmentBonds in = {r, v, f, nullptr, nullptr, nullptr, {}, {}, 0};
+    find_next(s, box, r, in);
+    const Block own = own_block(s);
+    const auto vectors = [&] { return reinterpret_cast<vec3 *>(arena.vecs(3 * (n + W))); };
+    vec3 *const D = vectors(), *const low = vectors();
+    vec *const B = arena.vecs(n + W);
+    const Source source = {&in.r, nullptr, nullptr, &box, s.block.len};
+    in.D = D;
+    in.low = low;
+    in.B = B;
+    in.full = careful ? 0 : s.own_min / group * group;
+    if (careful || strain || box.shape != Box::none)
+        return choose(
+            [&](auto boxed, auto exactly) {
+                load_bonds<terms, uniform, boxed, exactly>(own, box, r, v, f, D, low, B);
+                for (long k = 0; strain && k < own.n; ++k) B[k] = B[k] + keep(joint(own, k), stretching(strain, D[k]));
+                eliminate<in_scratch, uniform, exactly>(s.block, box, source, in, n, x);
+            },
+            box.shape != Box::none, careful);
+    if (in.full < n) load_tail<terms, uniform>(own, box, r, v, f, in.full, D, B);
+    eliminate<terms, uniform, false>(s.block, box, source, in, n, x);
+}
+
+template <int terms>
+static inline void eliminate_block(const Box &box, const Cut &cut, const Lane &lane, int64_t j, const AtomArray &r,
+                                   const AtomArray &v, const AtomArray &f, bool careful, double *store, Arena arena,
+                                   const double *strain = nullptr) {
+    SegmentBlock s = segment_block(cut, j, lane);
+    set_masses(s.block, s.lane, arena);
+    // All are in place or none is, so that the segments are equally far apart in each array.
+    const Packed pr = open(r, s.block, s.lane, arena, true), pv = open(v, s.block, s.lane, arena, true);
+    const Packed pf = open(f, s.block, s.lane, arena, true);
+    const SegmentStore x(store, cut, j);
+    choose([&](auto uniform) { eliminate_block_of<terms, uniform>(box, s, pr, pv, pf, careful, x, arena, strain); },
+           s.block.uniform_w);
+    if (x.past_cache) settle_stores();
+}
+
+// The rounding of the X of nearly parallel bonds reaches E' through a. With a = sum alpha_j X_j, its error is about
+// 2 eps sqrt(a sum alpha_j q_j q_{j+1} / n) <= 2 eps sqrt(a w_max q c), because sum alpha_j q_j q_{j+1} <= n w_max q c;
+// it is harmless where that is below join_tolerance S, S = E_free E + a.
+constexpr double join_tolerance = 8;
+HOL_INLINE bool is_doubtful_join(const Summary &s, int i, double S) {
+    return !(4 * s.a[i] * s.span[i] * s.c[i] <= join_tolerance * join_tolerance * S * S);
+}
+
+// Solves for the separators. `careful` says how the segments were eliminated.
+static inline JoinResult long_join(const Lane &lane, bool careful, double *store) {
+    const Cut cut(lane.n_bonds);
+    Summary *const all = SegmentStore(store, cut, 0).summary;
+    double E = 0, y = 0;
+    for (int64_t j = 0; j < cut.blocks; ++j) {
+        Summary &s = all[j];
+        if (j == 0) E = relative_w(lane, 0) * s.q[0];
+        if (any(s.doubt)) return careful ? join_bad : join_doubtful;
+        for (int i = 0; i < W; ++i) {
+            const double P = E + s.c[i], yhat = (y + s.b[i]) + s.T[i], S = s.E[i] * E + s.a[i];
+            if (!careful && is_doubtful_join(s, i, S)) return join_doubtful;
+            s.t[i] = yhat / P;
+            s.up[i] = s.f[i] / P;
+            E = S / P;
+            y = s.y[i] + s.up[i] * yhat;
+        }
+    }
+    double t = 0;
+    for (int64_t j = cut.blocks - 1; j >= 0; --j) {
+        Summary &s = all[j];
+        for (int i = W - 1; i >= 0; --i) {
+            t = j == cut.blocks - 1 && i == W - 1 ? s.t[i] : s.t[i] + s.up[i] * t;
+            s.t[i] = t;
+            if (!(t - t == 0)) return careful ? join_bad : join_doubtful;
+        }
+    }
+    return join_good;
+}
 
 // Copies staged segments back: the atoms that the lane wrote.
 static inline void close_segments(const AtomArray &array, const SegmentBlock &s, const Lane &lane, const Packed &packed,
@@ -98,14 +181,15 @@ HOL_NOINLINE void finish_segments(const SegmentBlock &s, const Box &box, const S
     vec t = next, value[W], unused[W];
     vec3 after = next * in.next, d[W];
     VirialSum sum;
+    const auto substituted = [&](long k) HOL_FORCED {
+        const Kept &p = x.kept[k];
+        return mul_add(p.l, t, mul_add(p.fP, ts, p.u));
+    };
     long k0 = (n - 1) / W * W;
     for (; k0 >= full; k0 -= W) {
         for (int b = W - 1; b >= 0; --b) {
             const long k = k0 + b;
-            if (k == 0)  // a lane of fewer than W bonds: its separator is in this chunk
-                t = ts;
-            else if (k < n)
-                t = mul_add(x.kept[k].l, t, mul_add(x.kept[k].fP, ts, x.kept[k].u));
+            if (k < n) t = k == 0 ? ts : substituted(k);  // k = 0: a lane of fewer than W bonds begins in this chunk
             value[b] = k <= n ? t : vec{};
         }
         load_ragged<none_, true, boxed, false>(own, box, in.r, in.r, in.r, k0, d, nullptr, unused);
@@ -115,16 +199,8 @@ HOL_NOINLINE void finish_segments(const SegmentBlock &s, const Box &box, const S
     const EvenRows at(in.r, in.r, in.r);
     for (; k0 >= 0; k0 -= W) {
         if (s.block.ahead) fetch_before<update>(s, in, x, out, k0);
-        for (int b = W - 1; b > 0; --b) {
-            const Kept &p = x.kept[k0 + b];
-            t = mul_add(p.l, t, mul_add(p.fP, ts, p.u));
-            value[b] = t;
-        }
-        if (k0 > 0)
-            t = mul_add(x.kept[k0].l, t, mul_add(x.kept[k0].fP, ts, x.kept[k0].u));
-        else
-            t = ts;
-        value[0] = t;
+        for (int b = W - 1; b > 0; --b) value[b] = t = substituted(k0 + b);
+        value[0] = t = k0 > 0 ? substituted(k0) : ts;
         load_chunk<none_, true, boxed, false>(own, box, k0, at.from(k0), d, nullptr, unused);
         store_segment_chunk<weighted, uniform, update, false>(own, out, k0, d, value, after, sum);
     }
