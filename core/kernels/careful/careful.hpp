@@ -1,9 +1,9 @@
-// The careful solver: one molecule of any shape by itself, right whatever its conditioning, in twice the precision.
+// The careful solver does one molecule of any shape by itself, in twice the precision. It is right whatever the
+// conditioning is.
 //
-// Each function reads the molecule's atoms from the arrays of the call, in any layout and box, solves, writes what the
-// call wants of it and adds to the tally. A bad molecule is noted in the tally, and nothing of it is written.
-// `scratch`: plan.scratch_bytes, aligned to 64. G is not written for atoms that the lane marks as shared, nor r and v
-// for those that are fixed.
+// Each function reads the molecule's atoms in any layout and box, solves, writes the outputs of the call and adds to
+// the tally. It notes a bad molecule in the tally and writes nothing of it. `scratch` has plan.scratch_bytes, aligned
+// to 64. G of atoms that the lane marks as shared is not written, nor are r and v of fixed atoms.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_CAREFUL_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_CAREFUL_HPP
 

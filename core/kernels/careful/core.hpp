@@ -1,6 +1,5 @@
-// The core of a molecule is what remains when its hanging trees are stripped. Its matrix is eliminated bond by bond, in
-// the order of the plan and in twice the precision. With D on the left and B on the right (theory (58)) it is not
-// symmetric.
+// The core of a molecule is what remains when its hanging trees are stripped. Its matrix is eliminated bond by bond in
+// the order of the plan. It is not symmetric with D on the left and B on the right (theory (58)).
 #ifndef HOLONOMIC_KERNELS_CAREFUL_CORE_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_CORE_HPP
 
@@ -16,9 +15,9 @@ struct Core {
     bool mixed;
     Wide *diagonal;  // [n_core] of the matrix, then the pivots
     Wide *removed;   // [n_core] what has been subtracted from the diagonal
-    Wide *full;      // [n_core] the diagonal before anything was
+    Wide *full;      // [n_core] the diagonal as it was before
     Wide *lower;     // elements of the columns below the diagonal; then over the pivot
-    Wide *upper;     // those of the rows beside it; the same if not mixed, but never over the pivot
+    Wide *upper;     // elements of the rows beside it, never over the pivot; equal to lower at first if not mixed
 };
 
 HOL_NOINLINE Core take_core(const CarefulPlan &plan, bool mixed, Memory &memory) {
@@ -33,7 +32,7 @@ HOL_NOINLINE Core take_core(const CarefulPlan &plan, bool mixed, Memory &memory)
     return x;
 }
 
-// Where the element of a row stands in a column; it is there.
+// Returns where a row's element stands in a column. The column must have one.
 HOL_NOINLINE int64_t element(const CarefulPlan &plan, int32_t row, int32_t column) {
     int64_t first = plan.column_start[column], end = plan.column_start[column + 1];
     while (end - first > 1) {
@@ -57,7 +56,7 @@ HOL_NOINLINE void add_element(const Core &x, int32_t k, int32_t l, const Wide &v
         x.upper[element(*x.plan, column, row)] += value;
 }
 
-// Takes column c out of those behind it.
+// Eliminates column c from the columns behind it.
 HOL_NOINLINE void eliminate_column(const Core &x, int32_t c, bool &good) {
     const int64_t first = x.plan->column_start[c], end = x.plan->column_start[c + 1];
     const Wide r = wide(1) / x.diagonal[c];
@@ -78,7 +77,7 @@ HOL_NOINLINE void eliminate_column(const Core &x, int32_t c, bool &good) {
     good = good && is_finite(r.hi);
 }
 
-// Pivots below this part of their diagonal are refused. In twice the precision dependent constraints leave 1e-30.
+// A pivot below this part of its diagonal element is refused. Constraints that depend on each other leave 1e-30.
 constexpr double redundant = 1e-22;
 
 HOL_NOINLINE bool factorize(const Core &x, int32_t &bad) {
@@ -92,7 +91,7 @@ HOL_NOINLINE bool factorize(const Core &x, int32_t &bad) {
     return true;
 }
 
-// In place: y is the right-hand side by place, then the solution.
+// y is the right-hand side, in the order of elimination; the solution takes its place.
 HOL_NOINLINE void solve(const Core &x, Wide *y) {
     const CarefulPlan &plan = *x.plan;
     for (int32_t c = 0; c < plan.n_core; ++c)

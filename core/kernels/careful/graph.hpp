@@ -1,5 +1,5 @@
-// Any molecule: hanging trees by theory (52)-(54), the core by its factors, (55) between them. Symmetric, or with D on
-// the left and B on the right for Newton's method.
+// Solves any molecule: hanging trees by theory (52)-(54), the core by its factors, and (55) between them. The matrix is
+// symmetric, or has D on the left and B on the right for Newton's method.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_GRAPH_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_GRAPH_HPP
 
@@ -11,12 +11,12 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace careful {
 
-// Eliminates, at every atom, the arms that lead away from the core: its children.
+// Eliminates the children of every atom, the arms that lead away from the core.
 struct Graph {
     const Wide3 *D, *B;  // [n_bonds], the same if symmetric
-    Wide *up;            // [n_bonds] of hanging bonds: inverse mass that the far side offers
-    Wide *pivot;         // [n_bonds] of hanging bonds: among its siblings, S over all of them eliminated
-    Wide *L;             // row of arm e of atom i: multipliers of the children (without e, if it is one)
+    Wide *up;            // [n_bonds] inverse mass that the far side of a hanging bond offers
+    Wide *pivot;         // [n_bonds] pivot of a hanging bond when S over its siblings has been eliminated
+    Wide *L;             // multipliers of the children of atom i, a row for each arm e (without e, if it is a child)
     Wide *y;             // [n_bonds] right-hand sides as a solve passes them on
     Wide *core_y;        // [n_core]
     Core core;
@@ -46,7 +46,7 @@ HOL_NOINLINE bool eliminate_children(const CarefulPlan &plan, Joint &x, int32_t 
     return eliminate_arms(x);
 }
 
-// Adds atom i, with its children eliminated, to the elements of its core bonds.
+// Adds what atom i gives to the elements of its core bonds, once its children are eliminated.
 HOL_NOINLINE void add_to_core(const Molecule &m, const Graph &g, const Joint &x, int32_t i, const Wide *L) {
     const int32_t *const arms = m.plan.arms + m.plan.arm_start[i];
     for (int e = 0; e < x.n; ++e) {
@@ -66,7 +66,7 @@ HOL_NOINLINE void add_to_core(const Molecule &m, const Graph &g, const Joint &x,
     }
 }
 
-// Eliminates the children of atom i: for its other arms, all at once, and for each child its siblings.
+// Eliminates the children of atom i: all of them for its other arms, and its siblings for each child.
 HOL_NOINLINE bool factorize_atom(const Molecule &m, const Graph &g, Joint &x, int32_t i, int32_t &bad) {
     const CarefulPlan &plan = m.plan;
     const int32_t *const arms = plan.arms + plan.arm_start[i];
@@ -99,7 +99,7 @@ HOL_NOINLINE bool factorize_atom(const Molecule &m, const Graph &g, Joint &x, in
     return true;
 }
 
-// Returns false, and the number of the bond, if a bond depends on others.
+// Returns false if a bond depends on others, and sets its number.
 HOL_NOINLINE bool factorize(const Molecule &m, const Graph &g, Joint &x, int32_t &bad) {
     const CarefulPlan &plan = m.plan;
     clear(g.core);
@@ -110,7 +110,7 @@ HOL_NOINLINE bool factorize(const Molecule &m, const Graph &g, Joint &x, int32_t
     return factorize(g.core, bad);
 }
 
-// y of the arms of atom i that are no children, less what its children pass on.
+// Takes what the children of atom i pass on from y of its other arms.
 HOL_NOINLINE void pass_on(const CarefulPlan &plan, const Graph &g, int32_t i) {
     const int32_t *const arms = plan.arms + plan.arm_start[i];
     const int n = plan.arm_start[i + 1] - plan.arm_start[i];
@@ -121,7 +121,7 @@ HOL_NOINLINE void pass_on(const CarefulPlan &plan, const Graph &g, int32_t i) {
     }
 }
 
-// t of the children of atom i, from t of its other arms.
+// Finds t of the children of atom i from t of its other arms.
 HOL_NOINLINE void solve_children(const Molecule &m, const Graph &g, int32_t i, Wide *t) {
     const CarefulPlan &plan = m.plan;
     const int32_t *const arms = plan.arms + plan.arm_start[i];
@@ -140,7 +140,7 @@ HOL_NOINLINE void solve_children(const Molecule &m, const Graph &g, int32_t i, W
     }
 }
 
-// A t = b by the factors at hand.
+// Solves A t = b with the factors.
 HOL_NOINLINE void solve(const Molecule &m, const Graph &g, const Wide *b, Wide *t) {
     const CarefulPlan &plan = m.plan;
     for (int32_t k = 0; k < plan.n_bonds; ++k) g.y[k] = b[k];

@@ -1,9 +1,10 @@
-// One atom and the bonds that meet there: what some of them, eliminated together, leave of the atom's inverse mass
-// along another one. All bond vectors point away from the atom; arm a offers the inverse mass E_a from its far side.
-// With
-//     S = diag(E) + w D^T B over the arms eliminated, D = B but for Newton's method (theory (58)),
-// everything is a sum over sets T of at most three of these arms of products of Gram determinants, in which nothing is
-// subtracted (Cauchy and Binet). All of it is relative to the product of the E; an E = 0 must then be in every set.
+// One atom and the bonds that meet there, its arms. Some of them are eliminated together; this finds what they leave of
+// the atom's inverse mass along another one. All bond vectors point away from the atom. Arm a offers the inverse mass
+// E_a from its far side. With
+//     S = diag(E) + w D^T B over the eliminated arms, where D = B except in Newton's method (theory (58)),
+// each result is a sum over sets T of at most three of these arms. Its terms are products of Gram determinants, and
+// nothing is subtracted (Cauchy and Binet). All sums are relative to the product of the E; so an arm of E = 0 must be
+// in every set.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_JOINT_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_JOINT_HPP
 
@@ -13,19 +14,19 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace careful {
 
-// Atoms of more bonds are worked on by their inertia alone, the sum of rho D B^T: O(n) instead of O(n^3) terms per arm.
-// It has digits enough while it is no larger than `mild`; where it is, only atoms of still more bonds make do with it.
+// An atom of more bonds is done by its inertia alone, the sum of rho D B^T: O(n) instead of O(n^3) terms per arm. That
+// has digits enough while it is no larger than `mild`; beyond, only atoms of still more bonds make do with it.
 constexpr int few_arms = 16, most_arms = 64;
 constexpr double mild = 0x1p20;
 
-// An E below this part of w d.d does not give way at all.
+// An arm with an E below this part of w d.d does not give way at all.
 constexpr double stiff = 0x1p-280;
 
-// Arms that don't give way and whose Gram determinant is below this are linearly dependent: two bonds in line to 1e-12
-// and a third one as near to their plane are still solved.
+// Arms that don't give way are linearly dependent if their Gram determinant is below this. Two bonds in line to 1e-12,
+// and a third one as near to their plane, are still solved.
 constexpr double flat = 1e-52;
 
-// Of many arms those that do not give way, three at most, take their directions out of all the others.
+// Among many arms, those that don't give way, three at most, take their directions out of all the others.
 struct Rigid {
     int n, arm[3];
     Wide gram[9];  // inverse of D.B of these arms
@@ -41,16 +42,16 @@ struct Joint {
     Wide3 *XD, *XB;  // [n][n] cross products of arms a and b at [a n + b]
     int n_others, n_rigid;
     int *others;       // [n] the arms that are eliminated
-    Wide det;          // of S over these arms, relative to the product of the E that are not 0
+    Wide det;          // of S over these arms, relative to the product of their E that are not 0
     bool by_inertia;   // how they are eliminated
-    Wide inverse[9];   // if so, of 1 + sum rho D B^T of those that give way,
-    Rigid rigid_arms;  // the directions of the others being taken out
+    Wide inverse[9];   // if so: the inverse of 1 + sum rho D B^T over those that give way,
+    Rigid rigid_arms;  // with the directions of the others taken out
 
     const Wide3 &cross_D(int a, int b) const { return XD[a * n + b]; }
     const Wide3 &cross_B(int a, int b) const { return XB[a * n + b]; }
 };
 
-// The cross products of all arms, once their vectors are there.
+// Finds the cross products of all arms, once their vectors are there.
 HOL_NOINLINE void prepare(Joint &x) {
     if (x.n > most_arms) return;
     for (int a = 0; a < x.n; ++a)
@@ -95,7 +96,8 @@ HOL_NOINLINE bool take_rigid(Joint &x, Rigid &rigid) {
     return invert(m, rigid.gram);
 }
 
-// The multipliers of the rigid arms that take a vector of the side of D, or of B, off their directions.
+// Returns the multiplier of rigid arm p. With those of the others it takes a vector on the side of D, or of B, off the
+// directions of the rigid arms.
 HOL_INLINE Wide share(const Joint &x, const Rigid &rigid, const Wide3 &v, bool of_D, int p) {
     Wide sum = wide(0);
     for (int q = 0; q < rigid.n; ++q)
@@ -125,7 +127,7 @@ HOL_NOINLINE bool eliminate_by_inertia(Joint &x) {
     return invert(m, x.inverse);
 }
 
-// Sets the arms that are eliminated: those in others[0 .. n_others). False if their S is singular.
+// Sets the arms that are eliminated, others[0 .. n_others). Returns false if their S is singular.
 HOL_NOINLINE bool eliminate_arms(Joint &x) {
     x.n_rigid = 0;
     double inertia = 0;
@@ -158,9 +160,9 @@ HOL_NOINLINE bool eliminate_arms(Joint &x) {
     return x.n_rigid <= 3 && abs(sum.hi) > flat;
 }
 
-// <x^T, y^T> summed over the sets T of arms eliminated, without `skip`, that hold all rigid ones but `in`, which is x
-// or y or neither; times what is left of the product of the E. x on the side of D, y on that of B, or the other way
-// round.
+// Returns the sum of <x^T, y^T> over sets T of eliminated arms, times what is left of the product of the E. A set holds
+// all rigid arms but `in`, which is x or y or neither; no set holds `skip`. x is on the side of D and y on that of B,
+// or the other way round.
 HOL_NOINLINE Wide gram_sum(const Joint &j, int x, int y, int skip, bool swapped) {
     const Wide3 *const D = swapped ? j.B : j.D, *const B = swapped ? j.D : j.B;
     const Wide3 *const XD = swapped ? j.XB : j.XD, *const XB = swapped ? j.XD : j.XB;
@@ -188,7 +190,7 @@ HOL_NOINLINE Wide through_inverse(const Joint &x, const Wide3 &of_D, const Wide3
     return dot(D, v);
 }
 
-// Those of the arms that give way first; what they leave of the vector is shared by the others.
+// First those of the arms that give way; the others share what these leave of the vector.
 HOL_NOINLINE void multipliers_by_inertia(const Joint &x, int e, Wide *l) {
     Wide3 left = x.D[e];
     for (int o = 0; o < x.n_others; ++o) {
@@ -200,14 +202,14 @@ HOL_NOINLINE void multipliers_by_inertia(const Joint &x, int e, Wide *l) {
     for (int p = 0; p < x.rigid_arms.n; ++p) l[x.rigid_arms.arm[p]] = share(x, x.rigid_arms, left, true, p);
 }
 
-// d_e . W d_f, the inverse mass between two arms e and f that are not eliminated.
+// Returns d_e . W d_f, the inverse mass between two arms e and f that are not eliminated.
 HOL_NOINLINE Wide offered(const Joint &x, int e, int f) {
     if (x.w == 0) return wide(0);
     if (x.by_inertia) return x.w * through_inverse(x, x.D[e], x.B[f]);
     return x.w * (gram_sum(x, e, f, -1, false) / x.det);
 }
 
-// Row e of S over the arms eliminated, times the inverse: y_e -= sum l_a y_a.
+// Finds the multipliers l of arm e: its row of S times the inverse of S over the eliminated arms; y_e -= sum l_a y_a.
 HOL_NOINLINE void multipliers(const Joint &x, int e, Wide *l) {
     if (x.w != 0 && x.by_inertia) return multipliers_by_inertia(x, e, l);
     for (int o = 0; o < x.n_others; ++o) {
@@ -216,7 +218,7 @@ HOL_NOINLINE void multipliers(const Joint &x, int e, Wide *l) {
     }
 }
 
-// What the arms eliminated have taken of w d_e . d_e, or between e and f; from their multipliers.
+// Returns what the eliminated arms have taken of w d_e . d_e, or of w d_e . d_f, from their multipliers.
 HOL_NOINLINE Wide taken(const Joint &x, const Wide *l, int f) {
     Wide sum = wide(0);
     for (int o = 0; o < x.n_others; ++o) sum += l[x.others[o]] * dot(x.D[x.others[o]], x.B[f]);

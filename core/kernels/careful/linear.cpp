@@ -6,7 +6,7 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace careful {
 
-// d.(w_j f_j - w_i f_i) + |v_j - v_i|^2 of each bond, both in the solver's units.
+// Finds d.(w_j f_j - w_i f_i) + |v_j - v_i|^2 of each bond, both terms in the solver's units.
 static void force_terms(const Molecule &m, const ForcesCall &call, Wide *b) {
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
         const int32_t i = m.plan.atom_i[k], j = m.plan.atom_j[k];

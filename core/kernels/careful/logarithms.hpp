@@ -1,5 +1,5 @@
-// ln det Z~ as the sum of the logarithms of pivots over their diagonal elements (theory (61)). If less than half of the
-// diagonal was taken away, log1p of that part keeps the digits of small logarithms.
+// ln det Z~ is the sum of the logarithms of pivots over their diagonal elements (theory (61)). If elimination has taken
+// less than half of a diagonal element, log1p of that part keeps the digits of a small logarithm.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_LOGARITHMS_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_LOGARITHMS_HPP
 
@@ -16,12 +16,12 @@ HOL_NOINLINE double log_of_ratio(const Wide &removed, const Wide &pivot, const W
     return __builtin_log(ratio.hi) + ratio.lo / ratio.hi;
 }
 
-// w d.d of both ends of a bond.
+// Returns w d.d, summed over both ends of a bond.
 HOL_INLINE Wide full_diagonal(const Molecule &m, int32_t k) {
     return (wide(m.w[m.plan.atom_i[k]]) + wide(m.w[m.plan.atom_j[k]])) * dot(m.d[k], m.d[k]);
 }
 
-// The children of atom i, one after the other; and what all of them take from its parent bond, in F.
+// Adds the logarithms of the children of atom i, one after the other. F gets what all of them take of its parent bond.
 HOL_NOINLINE Wide log_of_children(const Molecule &m, const Wide *up, Wide *F, Joint &x, Wide *l, int32_t i) {
     const CarefulPlan &plan = m.plan;
     const int32_t *const arms = plan.arms + plan.arm_start[i];
@@ -72,14 +72,14 @@ HOL_NOINLINE Wide log_of_ring(const Molecule &m, const Ring &x) {
     return sum;
 }
 
-// ln det Z~ of a molecule that has been factorized.
+// Returns ln det Z~ of a molecule that has been factorized.
 HOL_NOINLINE Wide log_det(const Molecule &m, System &x, const Memory &memory) {
     if (is_ring(m.plan)) return log_of_ring(m, x.ring);
     if (is_tree(m.plan)) return log_of_trees(m, x.tree.up, x.joint, memory);
     return log_of_trees(m, x.graph.up, x.joint, memory) + log_of_core(x.graph.core);
 }
 
-// Sum of ln Z_kk, Z_kk = 4 (w_i + w_j) d.d.
+// Returns the sum of ln Z_kk, where Z_kk = 4 (w_i + w_j) d.d.
 HOL_NOINLINE Wide log_of_diagonal(const Molecule &m) {
     constexpr double ln2 = 0.69314718055994530942;
     Wide sum = wide(0);

@@ -8,7 +8,8 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace careful {
 
-// w_i sum over the other bonds l of atom i of H_kl d_k x d_l, for its arm a; d pointing away from the atom.
+// Returns w_i times the sum of H_kl d_k x d_l over the other bonds l of atom i, for its arm a. All d point away from
+// it.
 static Wide3 weighed_normal(const Molecule &m, const Neighbours &x, int32_t i, int a) {
     const int32_t *const arms = m.plan.arms + m.plan.arm_start[i];
     const int n = m.plan.arm_start[i + 1] - m.plan.arm_start[i];

@@ -1,4 +1,4 @@
-// A molecule as the careful solver sees it: its bond vectors, unrounded, in units in which no product can overflow.
+// A molecule as the careful solver sees it: unrounded bond vectors, in units in which no product can overflow.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_MOLECULE_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_MOLECULE_HPP
 
@@ -10,7 +10,7 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace careful {
 
-// Scratch memory handed out front to back.
+// Hands out scratch memory from front to back.
 struct Memory {
     char *next;
     template <class T>
@@ -39,7 +39,7 @@ HOL_INLINE Wide3 difference(const Vector3<double> &from, const Vector3<double> &
     return {two_difference(to.x, from.x), two_difference(to.y, from.y), two_difference(to.z, from.z)};
 }
 
-// The minimum image of a bond vector, unrounded.
+// Takes the minimum image of a bond vector, unrounded.
 HOL_NOINLINE void wrap(const Box &box, Wide3 &d) {
     Wide *const component[3] = {&d.x, &d.y, &d.z};
     const double *const in = box.inverse;
@@ -50,7 +50,7 @@ HOL_NOINLINE void wrap(const Box &box, Wide3 &d) {
             if (box.h[3 * i + c] != 0) *component[c] -= n[i] * wide(box.h[3 * i + c]);
 }
 
-// The power of two next to a from below, and its reciprocal.
+// Returns the largest power of two that is not above a.
 HOL_INLINE double power_below(double a) {
     long long bits;
     __builtin_memcpy(&bits, &a, sizeof a);
@@ -70,7 +70,7 @@ struct Molecule {
         : plan(p), lane(l), d(memory.take<Wide3>(p.n_bonds)), unit(memory.take<double>(p.n_bonds)),
           w(memory.take<double>(p.n_atoms)), mass_unit(1) {}
 
-    // The vector of bond k away from atom i.
+    // Returns the vector of bond k away from atom i.
     Wide3 outward(const Wide3 *v, int32_t k, int32_t i) const { return plan.atom_i[k] == i ? v[k] : -v[k]; }
     int32_t other(int32_t k, int32_t i) const { return plan.atom_i[k] + plan.atom_j[k] - i; }
 };
@@ -82,7 +82,7 @@ HOL_NOINLINE void load_masses(Molecule &m) {
     for (int32_t i = 0; i < m.plan.n_atoms; ++i) m.w[i] = m.lane.w[i] / m.mass_unit;
 }
 
-// Bond vectors as they are in the caller's array; false if one is zero or not finite.
+// Reads bond vectors from the caller's array. Returns false if one is zero or not finite.
 HOL_NOINLINE bool load_vectors(const Molecule &m, const AtomArray &r, const Box &box, Wide3 *d) {
     bool good = true;
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
@@ -99,7 +99,7 @@ HOL_INLINE double largest_component(const Wide3 &a) {
     return xy > z ? xy : z;
 }
 
-// Loads the molecule; false if a bond is of no use.
+// Loads the molecule. Returns false if a bond is zero or not finite.
 HOL_NOINLINE bool load(Molecule &m, const AtomArray &r, const Box &box) {
     load_masses(m);
     if (!load_vectors(m, r, box, m.d)) return false;

@@ -1,4 +1,4 @@
-// Elements of A^-1 for bonds that share an atom, which the Fixman force needs (theory (60)).
+// Finds the elements of A^-1 of bonds that share an atom. The Fixman force needs them (theory (60)).
 #ifndef HOLONOMIC_KERNELS_CAREFUL_NEIGHBOURS_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_NEIGHBOURS_HPP
 
@@ -24,7 +24,7 @@ HOL_NOINLINE Neighbours take_neighbours(const CarefulPlan &plan, Memory &memory)
     return x;
 }
 
-// Trees: rows of the inverse of S over all bonds of each atom.
+// Trees: they are the rows of the inverse of S over all bonds of each atom.
 HOL_NOINLINE void find_neighbours(const CarefulPlan &plan, const Tree &tree, const Neighbours &x) {
     for (int32_t i = 0; i < plan.n_atoms; ++i) {
         const int n = plan.arm_start[i + 1] - plan.arm_start[i];
@@ -37,13 +37,13 @@ HOL_NOINLINE void find_neighbours(const CarefulPlan &plan, const Tree &tree, con
     }
 }
 
-// The element of the core's inverse in these rows, which couple somewhere in the factor.
+// Returns the element of the core's inverse for two rows that couple somewhere in the factor.
 HOL_INLINE Wide core_element(const CarefulPlan &plan, const Neighbours &x, int32_t a, int32_t b) {
     if (a == b) return x.pivot[a];
     return x.lower[a > b ? element(plan, a, b) : element(plan, b, a)];
 }
 
-// The inverse of the core where its factor has elements, from the last column back.
+// Finds the core's inverse where the factor has elements, from the last column back.
 HOL_NOINLINE void invert(const Core &core, const Neighbours &x) {
     const CarefulPlan &plan = *core.plan;
     for (int32_t c = plan.n_core; c-- > 0;) {
@@ -60,7 +60,7 @@ HOL_NOINLINE void invert(const Core &core, const Neighbours &x) {
     }
 }
 
-// From the arms of atom i that are no children to those that are.
+// Goes from the arms of atom i that are no children to those that are.
 HOL_NOINLINE void hand_down(const CarefulPlan &plan, const Graph &g, const Neighbours &x, int32_t i) {
     const int32_t *const arms = plan.arms + plan.arm_start[i];
     const int n = plan.arm_start[i + 1] - plan.arm_start[i];

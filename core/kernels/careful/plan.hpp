@@ -6,8 +6,8 @@
 
 namespace holonomic {
 
-// Atoms with one bond are stripped until none is left. What was stripped are the hanging trees, the bonds that remain
-// are the core; of a molecule without cycles one atom remains, its root.
+// Atoms with one bond are stripped until none is left. They are the hanging trees, and the bonds that remain are the
+// core. A molecule without cycles keeps one atom, its root.
 struct CarefulPlan {
     int32_t n_atoms, n_bonds;
     const int32_t *atom_i, *atom_j;   // [n_bonds]

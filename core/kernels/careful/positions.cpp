@@ -1,5 +1,5 @@
 // Position level of one molecule: Newton's method with a new mixed Jacobian (theory (58)) at each step. It decides as
-// chains do (newton/iterate.hpp). In twice the precision differences of large pulls lose nothing.
+// that of chains does (newton/iterate.hpp). Differences of large pulls lose nothing in twice the precision.
 #include "core/kernels/careful/careful.hpp"
 #include "core/kernels/careful/solution.hpp"
 #include "core/kernels/tally.hpp"
@@ -8,7 +8,7 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace careful {
 
-// tau of the caller's units is T / (unit mass_unit); atoms are displaced by w sum T b.
+// In the caller's units tau is T / (unit mass_unit). Atoms are displaced by w times the sum of T b.
 struct Projection {
     Molecule m;  // m.d: reference bonds b
     Joint joint;
@@ -72,7 +72,7 @@ static bool step(Projection &p) {
 
 enum Projected { projected_not, projected_untouched, projected };
 
-// What the coordinates carry: an error |D.D - a^2| / a^2 of this size is accepted.
+// Returns the error |D.D - a^2| / a^2 that the coordinates carry. It is accepted.
 static double carried(const Projection &p, const PositionsCall &call) {
     double extent = 0, shortest = p.m.lane.length[0];
     for (int32_t i = 0; i < p.m.plan.n_atoms; ++i) {
@@ -121,7 +121,7 @@ static void note_worst(const Projection &p, Tally &tally) {
     tally.worst_bond = p.worst;
 }
 
-// New positions and velocities; false if one would not be finite.
+// Writes new positions and velocities. Returns false, with nothing written, if one would not be finite.
 static bool write_moves(const Projection &p, const PositionsCall &call) {
     const Molecule &m = p.m;
     for (int pass = 0; pass < 2; ++pass)

@@ -1,6 +1,6 @@
-// A ring without side atoms, triangles among them (theory (57)): elimination on unit bonds that carries the
-// off-diagonals and the deficits of diagonal dominance, of which nothing that matters is subtracted, whatever the signs
-// (Q. Ye, Math. Comp. 77, 2195 (2008)). Rows are the bonds round the ring; joint k lies between rows k - 1 and k.
+// A ring without side atoms; triangles are rings, too (theory (57)). Elimination on unit bonds carries the
+// off-diagonals and the deficits of diagonal dominance. It subtracts nothing that matters, whatever the signs are (Q.
+// Ye, Math. Comp. 77, 2195 (2008)). Rows are the bonds round the ring; joint k lies between rows k - 1 and k.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_RING_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_RING_HPP
 
@@ -41,7 +41,7 @@ HOL_INLINE int32_t joint_atom(const Molecule &m, const Ring &x, int32_t k) {
     return x.backwards[k] ? m.plan.atom_j[bond] : m.plan.atom_i[bond];
 }
 
-// Three points on a line to this, as the square of the sine, are refused; so is a ring of which all bonds are.
+// Three points are refused as in line if the square of the sine is below this; so is a ring of bonds all in line.
 constexpr double straight = 1e-28;
 
 HOL_NOINLINE bool measure(const Molecule &m, const Ring &x) {

@@ -1,4 +1,4 @@
-// How much memory the careful solver takes at most: the sum of what its parts take of `Memory`, whatever the verb.
+// The most memory that the careful solver takes: the sum of what its parts take of `Memory`, whatever the verb.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_SCRATCH_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_SCRATCH_HPP
 

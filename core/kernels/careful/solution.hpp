@@ -9,11 +9,11 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace careful {
 
-// What multiplies b, and the t that is solved for, to give those in the caller's units: with d = unit d' and
-// w = mass_unit w' both sides are divided by mass_unit / unit.
+// Factors from the solver's b and t to those in the caller's units. With d = unit d' and w = mass_unit w', both sides
+// of an equation are divided by mass_unit / unit.
 HOL_INLINE Wide over(const Wide &a, double power_of_two) { return {a.hi / power_of_two, a.lo / power_of_two}; }
 
-// t in the caller's units; false if one is no number.
+// Turns t into the caller's units. Returns false if one is no number.
 HOL_NOINLINE bool to_callers_units(const Molecule &m, Wide *t) {
     bool good = true;
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
@@ -23,7 +23,7 @@ HOL_NOINLINE bool to_callers_units(const Molecule &m, Wide *t) {
     return good;
 }
 
-// The bond vectors in the caller's units, for sums in which their unit would differ.
+// The bond vectors in the caller's units: sums over bonds need one unit.
 HOL_NOINLINE void restore_vectors(const Molecule &m) {
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) m.d[k] = m.unit[k] * m.d[k];
 }
@@ -49,7 +49,7 @@ HOL_NOINLINE void add_virial(const Molecule &m, const Wide3 *d, const Wide *t, d
     for (int c = 0; c < 6; ++c) tally.virial[c] -= factor * rounded(s[c]);
 }
 
-// The forces of all atoms; those of fixed atoms that other molecules share are left to the core.
+// Writes the forces of all atoms, but leaves those of fixed atoms that other molecules share to core.
 HOL_NOINLINE void write_forces(const Molecule &m, const AtomArray &g, bool add, const Wide3 *pull) {
     for (int32_t i = 0; i < m.plan.n_atoms; ++i) {
         if (m.lane.shared && m.lane.shared[i]) continue;
@@ -68,7 +68,8 @@ HOL_NOINLINE bool finite_pulls(const Molecule &m, const Wide3 *pull) {
     return good;
 }
 
-// The molecule's t in the caller's units, and the pulls of it on the atoms; false if it is bad.
+// Loads and factorizes a molecule, then finds t in the caller's units, and its pulls on the atoms. Both steps return
+// false if the molecule is bad.
 struct Solution {
     Molecule m;
     System system;

@@ -1,4 +1,4 @@
-// The equations A t = b of one molecule, by what its shape allows: a tree, a bare ring, or anything else.
+// Solves the equations A t = b of one molecule as its shape allows: as a tree, a bare ring, or anything else.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_SYSTEM_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_SYSTEM_HPP
 
@@ -45,7 +45,7 @@ HOL_NOINLINE bool factorize(const Molecule &m, System &x) {
     return factorize(m, x.graph, x.joint, x.bad);
 }
 
-// sum over its bonds of t times the vector away from the atom, times the bond's unit of t.
+// Finds the pull on each atom: the sum over its bonds of t times the vector away from it, times the bond's unit of t.
 HOL_NOINLINE void pulls(const Molecule &m, const Wide3 *d, const Wide *t, Wide3 *pull) {
     for (int32_t i = 0; i < m.plan.n_atoms; ++i) pull[i] = Wide3{};
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
@@ -55,7 +55,7 @@ HOL_NOINLINE void pulls(const Molecule &m, const Wide3 *d, const Wide *t, Wide3 
     }
 }
 
-// rest = b - A t, from the accelerations of the atoms.
+// Finds rest = b - A t from the accelerations of the atoms.
 HOL_NOINLINE void residual(const Molecule &m, const System &x, const Wide *b, const Wide *t) {
     pulls(m, m.d, t, x.pull);
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
@@ -64,8 +64,8 @@ HOL_NOINLINE void residual(const Molecule &m, const System &x, const Wide *b, co
     }
 }
 
-// Solves A t = b. Beside cycles hanging trees are eliminated from one side, which may lose digits: refined until a
-// correction changes nothing that is kept.
+// Solves A t = b. Hanging trees beside cycles are eliminated from one side alone, which may lose digits. So the
+// solution is refined until a correction changes nothing that is kept.
 HOL_NOINLINE void solve(const Molecule &m, const System &x, const Wide *b, Wide *t) {
     if (is_tree(m.plan)) return solve(m, x.tree, b, t);
     if (is_ring(m.plan)) return solve(m, x.ring, b, t);

@@ -1,5 +1,6 @@
 // Trees in the two-sided form (theory (52), (54), (59)). Over every bond each end sends the other a message: what all
-// bonds behind it leave of the inverse mass and of the right-hand sides. Nothing large cancels, whatever the masses.
+// bonds behind it leave of the inverse mass and of the right-hand sides. Nothing large cancels, whatever the masses
+// are.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_TREES_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_TREES_HPP
 
@@ -45,7 +46,7 @@ HOL_NOINLINE bool eliminate_others(Joint &x, int target) {
     return eliminate_arms(x);
 }
 
-// Of the arms eliminated one that gives way least: the last that does not at all.
+// Returns the eliminated arm that gives way least: the last of those that don't at all.
 HOL_NOINLINE int stiffest(const Joint &x) {
     int arm = x.n_others > 0 ? x.others[0] : 0;
     for (int o = 0; o < x.n_others; ++o)
@@ -94,7 +95,7 @@ HOL_NOINLINE bool send(const Molecule &m, const Tree &tree, Joint &x, int32_t i,
     return true;
 }
 
-// Returns false, and the number of the bond, if a bond depends on others.
+// Returns false if a bond depends on others, and sets its number.
 HOL_NOINLINE bool factorize(const Molecule &m, const Tree &tree, Joint &x, int32_t &bad) {
     const CarefulPlan &plan = m.plan;
     for (int32_t s = 0; s < plan.n_hanging; ++s) {
@@ -131,7 +132,7 @@ HOL_NOINLINE bool factorize(const Molecule &m, const Tree &tree, Joint &x, int32
     return true;
 }
 
-// The right-hand sides behind arm e of atom i, as they pass over it.
+// Returns the right-hand sides behind arm e of atom i, as they pass over it.
 HOL_NOINLINE Wide passed(const CarefulPlan &plan, const Tree &tree, const Wide *b, int32_t i, int e) {
     const int32_t *const arms = plan.arms + plan.arm_start[i];
     const int n = plan.arm_start[i + 1] - plan.arm_start[i];
@@ -145,7 +146,7 @@ HOL_NOINLINE Wide passed(const CarefulPlan &plan, const Tree &tree, const Wide *
     return sum;
 }
 
-// A t = b.
+// Solves A t = b.
 HOL_NOINLINE void solve(const Molecule &m, const Tree &tree, const Wide *b, Wide *t) {
     const CarefulPlan &plan = m.plan;
     for (int32_t s = 0; s < plan.n_hanging; ++s) {

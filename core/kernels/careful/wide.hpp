@@ -1,4 +1,4 @@
-// Numbers of twice the precision, hi + lo: for what is solved once and must not lose digits.
+// Numbers hi + lo of twice the precision, for what is solved once and must not lose digits.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_WIDE_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_WIDE_HPP
 
