@@ -77,8 +77,8 @@ HOL_NOINLINE void eliminate_arms(const Molecules<double> &x) {
     });
 }
 
-// Up an arm: what its lowest bond gets from below, E and the right-hand side y, through the segments to its highest
-// one. False where a joint is in doubt, with nothing changed.
+// Goes up an arm: takes E and the right-hand side y, which its lowest bond gets from below, through the segments to the
+// highest bond. Returns false, with nothing changed, if a joint is in doubt.
 static inline bool up_segments(const Molecules<double> &x, int32_t a) {
     const Schedule::Arm &arm = x.s.arm[a];
     Summary *const all = summaries_of(x, a);
@@ -122,7 +122,7 @@ HOL_NOINLINE void up_arm(Linear<double> &z, int32_t a, Faint &faint, Memory<doub
     for (int32_t slot = arm.bottom + 1; slot <= arm.top(); ++slot) up_one<false>(x, slot, faint, memory, slack);
 }
 
-// Down an arm: the multipliers of its separators.
+// Goes down an arm and finds the multipliers of its separators.
 template <bool look>
 HOL_NOINLINE void down_arm(const Molecules<double> &x, int32_t a, Faint &faint, double &slack) {
     const Schedule::Arm &arm = x.s.arm[a];
@@ -157,7 +157,7 @@ HOL_INLINE void move_velocities(const Molecules<double> &x, const AtomArray &v, 
     });
 }
 
-// What is wanted of an arm that was worked on atom by atom.
+// Writes the outputs of an arm that was worked on atom by atom.
 template <Layout layout, bool weighted>
 HOL_NOINLINE void write_alone(const Molecules<double> &x, const Schedule::Arm &arm, const Outputs &out, Tally &tally) {
     const int32_t first = arm.ascending ? arm.bottom : arm.bottom + 1, end = first + arm.n_bonds - 1;
@@ -178,7 +178,7 @@ HOL_NOINLINE void write_alone(const Molecules<double> &x, const Schedule::Arm &a
     virial.count(1, 1, tally);
 }
 
-// What is wanted of the arms; weighted: v += w G, with v in place of G.
+// Writes the outputs of the arms. weighted: v += w G, with v in place of G.
 template <Layout layout, bool weighted>
 HOL_NOINLINE void write_arms(const Molecules<double> &x, const Outputs &out, Tally &tally) {
     const SegmentOutputs outputs = {{}, false, out.lambda, out.tension, splat(0.5), 1.0, out.virial};

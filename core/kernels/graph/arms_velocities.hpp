@@ -1,5 +1,6 @@
-// Velocity level of a large molecule with arms: solved, and the velocities moved, twice from the beginning, as a long
-// chain is. The matrix is the same both times; the second time the rates are those that the rounded velocities leave.
+// Velocity level of a large molecule with arms. It is solved, and its velocities are moved, twice from the beginning,
+// as in a long chain. The matrix is the same both times. The second time the rates are those that the rounded
+// velocities leave.
 #ifndef HOLONOMIC_KERNELS_GRAPH_ARMS_VELOCITIES_HPP
 #define HOLONOMIC_KERNELS_GRAPH_ARMS_VELOCITIES_HPP
 
@@ -9,7 +10,7 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// False where plain arithmetic can't answer, with nothing written.
+// Returns false, with nothing written, if plain arithmetic can't answer.
 template <Layout layout>
 HOL_NOINLINE bool project_with_arms(Linear<double> &z, const VelocitiesCall &call, Tally &tally) {
     Molecules<double> &x = z.x;

@@ -1,5 +1,5 @@
-// Atoms of a block of molecules in the order in which they stand in the caller's arrays, four at a time: where rows
-// follow each other, these are twelve doubles of each lane.
+// Reads and writes atoms of a block of molecules in the order of the caller's arrays, four at a time. Where rows follow
+// each other, four atoms are twelve doubles of each lane.
 #ifndef HOLONOMIC_KERNELS_GRAPH_ATOM_GROUPS_HPP
 #define HOLONOMIC_KERNELS_GRAPH_ATOM_GROUPS_HPP
 
@@ -9,7 +9,7 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// Where atom k of each lane stands, of rows in order.
+// Finds where atom k of each lane stands, for rows in order.
 template <class V>
 HOL_INLINE void rows_from(const AtomArray &array, const Atoms<V> &at, int64_t k, double **p) {
     double *const base = reinterpret_cast<double *>(array.x) + 3 * k;
@@ -17,7 +17,7 @@ HOL_INLINE void rows_from(const AtomArray &array, const Atoms<V> &at, int64_t k,
     for (int i = 0; i < at.lanes; ++i) p[i] = base + 3 * at.first[i];
 }
 
-// Atoms first .. first + count - 1, local numbers; count is four or one.
+// Reads atoms first .. first + count - 1, local numbers; count is four or one.
 template <Layout layout, int count, class V>
 HOL_INLINE void read_group(const AtomArray &array, const Atoms<V> &at, int64_t first, Vector3<V> *a) {
     if (layout == rows_in_order && count == 4) {
@@ -29,7 +29,7 @@ HOL_INLINE void read_group(const AtomArray &array, const Atoms<V> &at, int64_t f
     for (int j = 0; j < count; ++j) a[j] = read<layout>(array, at, first + j);
 }
 
-// The same in the lanes of `which`; `a` is used up.
+// Writes them in the lanes of `which`; `a` is used up.
 template <Layout layout, int count, class V>
 HOL_INLINE void write_group(const AtomArray &array, const Atoms<V> &at, int64_t first, Vector3<V> *a, unsigned which) {
     if (layout == rows_in_order && count == 4 && __builtin_expect(which == (1u << at.lanes) - 1, 1)) {
@@ -48,7 +48,7 @@ HOL_INLINE void for_groups(int32_t n, const Body &body) {
     for (; k < n; ++k) body(k, Constant<int, 1>{});
 }
 
-// Whether so many numbers of a list follow each other.
+// Returns whether so many numbers of a list follow each other.
 template <int count>
 HOL_INLINE bool follow_each_other(const int32_t *list) {
     for (int j = 1; j < count; ++j)

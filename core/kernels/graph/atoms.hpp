@@ -1,5 +1,6 @@
-// Reading and writing the atoms of a block of molecules in the caller's arrays, one atom of every lane at a time: where
-// packed rows x y z stand one behind the other or where a list says, by whole rows; in any other layout by elements.
+// Reads and writes the atoms of a block of molecules in the caller's arrays, one atom of every lane at a time. It takes
+// whole rows if packed rows x y z stand one behind the other, or where a list says. In any other layout it takes single
+// elements.
 #ifndef HOLONOMIC_KERNELS_GRAPH_ATOMS_HPP
 #define HOLONOMIC_KERNELS_GRAPH_ATOMS_HPP
 
@@ -39,7 +40,7 @@ struct Atoms {
             bond[i] = one.first_bond;
         }
     }
-    // To the next block of molecules that follow each other, of so many atoms and bonds.
+    // Goes on to the next block of molecules that follow each other, of so many atoms and bonds.
     HOL_FORCED void advance(int64_t n_atoms, int64_t n_bonds) {
         HOL_UNROLL
         for (int i = 0; i < lanes; ++i) {
@@ -55,7 +56,7 @@ HOL_INLINE double element(const char *p) {
     return static_cast<double>(*reinterpret_cast<const T *>(p));
 }
 
-// Atom k (local number) of all lanes.
+// Reads atom k (local number) of all lanes.
 template <Layout layout, class V>
 HOL_INLINE Vector3<V> read(const AtomArray &array, const Atoms<V> &at, int64_t k) {
     Vector3<V> a = {};
@@ -83,7 +84,7 @@ HOL_INLINE void put(char *p, double x) {
     *reinterpret_cast<T *>(p) = static_cast<T>(x);
 }
 
-// One atom of one lane, in any layout.
+// Writes one atom of one lane, in any layout.
 HOL_INLINE void write_one(const AtomArray &array, int64_t number, const Vector3<double> &a) {
     const double value[3] = {a.x, a.y, a.z};
     char *const p[3] = {array.x, array.y, array.z};
@@ -96,7 +97,7 @@ HOL_INLINE void write_one(const AtomArray &array, int64_t number, const Vector3<
     }
 }
 
-// Atom k of the lanes in `which`, a bit per lane.
+// Writes atom k of the lanes in `which`, a bit per lane.
 template <Layout layout, class V>
 HOL_INLINE void write(const AtomArray &array, const Atoms<V> &at, int64_t k, const Vector3<V> &a, unsigned which) {
     if (layout != elements && __builtin_expect(which == (1u << at.lanes) - 1, 1)) {
@@ -112,7 +113,7 @@ HOL_INLINE void write(const AtomArray &array, const Atoms<V> &at, int64_t k, con
             write_one(array, at.number(i, k), {Width<V>::get(a.x, i), Width<V>::get(a.y, i), Width<V>::get(a.z, i)});
 }
 
-// How a call's arrays can be read together.
+// Returns how a call's arrays can be read together.
 template <class V>
 HOL_INLINE Layout layout_of(const Atoms<V> &at, bool packed) {
     if (!packed) return elements;

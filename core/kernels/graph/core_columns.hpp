@@ -1,6 +1,6 @@
-// The two halves of a substitution through the columns of a core. Where a column's rows are the next ones, as in a
-// strip of triangles, what they hold stays in registers, four numbers ahead: through memory, each column would wait for
-// what the one before has stored.
+// The two halves of a substitution through the columns of a core. If a column's rows are the next ones, as in a strip
+// of triangles, their numbers stay in registers, four ahead. Through memory, each column would wait for the stores of
+// the one before.
 #ifndef HOLONOMIC_KERNELS_GRAPH_CORE_COLUMNS_HPP
 #define HOLONOMIC_KERNELS_GRAPH_CORE_COLUMNS_HPP
 

@@ -1,5 +1,5 @@
-// The core of a molecule with cycles: what hanging trees leave of its atoms' inverse masses is a tensor per atom, never
-// formed (theory (55)); the core's bonds are eliminated by LDL^T in the order of the schedule.
+// The core of a molecule with cycles. Hanging trees leave a tensor of each atom's inverse mass, which is never formed
+// (theory (55)). The core's bonds are eliminated by LDL^T in the order of the schedule.
 #ifndef HOLONOMIC_KERNELS_GRAPH_CORE_MATRIX_HPP
 #define HOLONOMIC_KERNELS_GRAPH_CORE_MATRIX_HPP
 
@@ -21,7 +21,7 @@ struct CoreMatrix {
     }
 };
 
-// The number of products of bonds and children over all atoms of the core.
+// Returns the number of products of bonds and children over all atoms of the core.
 HOL_INLINE int64_t reaches(const Schedule &s) {
     int64_t n = 0;
     for (int32_t c = 0; c < s.n_core_atoms; ++c)
@@ -32,8 +32,8 @@ HOL_INLINE int64_t reaches(const Schedule &s) {
 
 HOL_INLINE double sign_of(int32_t meet) { return meet % 2 ? 1.0 : -1.0; }
 
-// The elements that an atom without children gives: s_k s_l w d_k.d_l. Refinement mends what nearly orthogonal bonds
-// leave of a product.
+// Adds the elements of an atom without children, s_k s_l w d_k.d_l. Refinement mends the products of nearly orthogonal
+// bonds.
 template <class V>
 static inline void add_bare_atom(const Molecules<V> &x, const CoreMatrix<V> &core, int32_t c) {
     const Schedule &s = x.s;
@@ -51,7 +51,8 @@ static inline void add_bare_atom(const Molecules<V> &x, const CoreMatrix<V> &cor
     }
 }
 
-// The same of one with children: s_k s_l (w d_k.d_l - sum over children of z_k z_l r), z = the forward half of l.
+// Adds those of an atom with children, s_k s_l (w d_k.d_l - sum over children of z_k z_l r), where z is the forward
+// half of l.
 template <class V>
 static inline void add_core_atom(Molecules<V> &x, const CoreMatrix<V> &core, int32_t c, V *reach, Memory<V> memory) {
     const Schedule &s = x.s;
@@ -84,8 +85,8 @@ static inline void add_core_atom(Molecules<V> &x, const CoreMatrix<V> &core, int
     }
 }
 
-// A pivot below this part of its diagonal element may be nothing but rounding: the bonds may depend on each other,
-// which corrections don't show where the right-hand side does not.
+// A pivot below this part of its diagonal element may be nothing but rounding. The bonds may depend on each other;
+// corrections don't show that if the right-hand side does not.
 constexpr double least_pivot = 1e-10;
 
 template <class V>
@@ -119,7 +120,7 @@ static inline void factorize_core(Molecules<V> &x, const CoreMatrix<V> &core, Me
     }
 }
 
-// What the children of the core's atoms leave of the right-hand sides, then the core's own; all of u.
+// Finds u: first what the children of the core's atoms leave of the right-hand sides, then the core's own.
 template <class V>
 static inline void substitute_core(const Molecules<V> &x, const CoreMatrix<V> &core, Memory<V> memory) {
     const Schedule &s = x.s;
@@ -140,7 +141,7 @@ static inline void substitute_core(const Molecules<V> &x, const CoreMatrix<V> &c
     forward_columns(s, core.entry, core.y);
 }
 
-// Back: t of the core, then of the first bonds of its hanging trees.
+// Goes back: finds t of the core, then of the first bonds of its hanging trees.
 template <class V>
 static inline void down_core(const Molecules<V> &x, const CoreMatrix<V> &core) {
     const Schedule &s = x.s;

@@ -1,6 +1,6 @@
-// An atom of a tree at which plain products have lost too much, in twice the precision, by sums in which nothing is
-// subtracted (theory (54)). What comes up to it is right, so what it hands up is right, too: nothing else of a large
-// molecule need be done again.
+// Eliminates an atom of a tree at which plain products have lost too much, in twice the precision, by sums in which
+// nothing is subtracted (theory (54)). What comes up to it is right, so what it hands up is right, too. Nothing else of
+// a large molecule needs to be done again.
 #ifndef HOLONOMIC_KERNELS_GRAPH_DOUBTFUL_JOINT_HPP
 #define HOLONOMIC_KERNELS_GRAPH_DOUBTFUL_JOINT_HPP
 
@@ -67,8 +67,8 @@ struct DoubtfulJoint {
     Wide pivot(int a, double E) const { return wide(E / unit[a] / unit[a] / mass_unit) + offered(joint, a, a); }
 };
 
-// What up_joint() does, with pivots and multipliers kept where `keep`. False where the bonds depend on each other, with
-// nothing written.
+// Does what up_joint() does, and keeps pivots and multipliers if `keep`. Returns false, with nothing written, if the
+// bonds depend on each other.
 HOL_NOINLINE bool up_doubtful_joint(const Molecules<double> &x, int32_t slot, int k, bool keep) {
     const int32_t *const child = x.s.child + x.s.child_start[slot];
     DoubtfulJoint f;

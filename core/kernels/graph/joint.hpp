@@ -1,10 +1,10 @@
-// An atom of a tree: the k bonds to its children are eliminated together (theory (51)-(53)). With their E, bond vectors
-// D = (d_1 .. d_k), all pointing away from the root, and S = diag(E) + w D^T D,
+// Eliminates the k bonds from an atom of a tree to its children together (theory (51)-(53)). The bond vectors
+// D = (d_1 .. d_k) all point away from the root. With S = diag(E) + w D^T D,
 //
 //     S u = y,   S l = w D^T d_e,   y_e = b_e + l.y,   E_e = w (q_e - w d_e^T D S^-1 D^T d_e),   t_c = u_c + l_c t_e.
 //
-// S = L P L^T as it stands: this subtracts. As long as every pivot and every E keep a sixteenth of what they are
-// subtracted from, errors stay at a few roundings; `slack` is negative where they don't.
+// S = L P L^T is decomposed as it stands, which subtracts. Errors stay at a few roundings while every pivot and every E
+// keep a sixteenth of what they are subtracted from. `slack` is negative where they don't.
 #ifndef HOLONOMIC_KERNELS_GRAPH_JOINT_HPP
 #define HOLONOMIC_KERNELS_GRAPH_JOINT_HPP
 
@@ -14,13 +14,12 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// What must be left of a pivot's diagonal element.
+// The part of a diagonal element that its pivot must keep.
 constexpr double least_part = 1.0 / 16;
 
 constexpr int pair_of(int a, int b) { return a * (a - 1) / 2 + b; }  // a > b
 
-// Multipliers m and reciprocal pivots r of S; S is k (k + 1) / 2 values of working memory, its rows one after the
-// other.
+// Finds multipliers m and reciprocal pivots r of S. S is k (k + 1) / 2 values of working memory, row after row.
 template <class Rows, class V>
 HOL_INLINE void decompose(const Rows &x, int k, V w, V *S, V *r, V *m, V &slack) {
     HOL_UNROLL
@@ -50,7 +49,7 @@ HOL_INLINE void decompose(const Rows &x, int k, V w, V *S, V *r, V *m, V &slack)
     }
 }
 
-// S^-1 times y, with what y is after its forward half in z.
+// u = S^-1 y; z keeps y as it is after the forward half.
 template <class V>
 HOL_INLINE void solve_joint(int k, const V *r, const V *m, const V *y, V *z, V *u) {
     HOL_UNROLL
@@ -85,8 +84,8 @@ struct JointMemory<V, 0> {
     static constexpr int64_t values(int64_t k) { return k * (k + 1) / 2 + k * (k - 1) / 2 + 4 * k; }
 };
 
-// The k children of an atom, with the bond above it (top: there is none). Right-hand sides are in t of the rows.
-// `keep`: multipliers and pivots are kept for another right-hand side.
+// Eliminates the k children of an atom towards the bond above it (top: there is none). Right-hand sides are in t of the
+// rows. `keep`: keeps multipliers and pivots for another right-hand side.
 template <int known, bool top, bool keep, class V, class Rows>
 HOL_INLINE void up_joint(const Rows &x, int count, Memory<V> memory, V &slack) {
     const int k = known > 0 ? known : count;
@@ -151,7 +150,8 @@ HOL_INLINE void substitute_joint(const Rows &x, int count, Memory<V> memory) {
     if (!top) x.above().t = y;
 }
 
-// Up the trees: E, l and u of all their bonds, y of what is above them. A leaf has E = w q from where it was loaded.
+// Goes up the trees. Finds E, l and u of all their bonds, and y of what is above them. A leaf has E = w q since it was
+// loaded.
 template <bool keep, class V>
 static inline void up_trees(Molecules<V> &x, Memory<V> memory) {
     V slack = x.slack;  // in a register
@@ -160,7 +160,7 @@ static inline void up_trees(Molecules<V> &x, Memory<V> memory) {
         const int k = s.child_start[slot + 1] - s.child_start[slot];
         const AtomRows<V> rows(x, slot);
         if (k == 0) continue;
-        slack = choose_few<3>(k, [=](auto known) HOL_FORCED {  // captured by value: so slack stays in a register
+        slack = choose_few<3>(k, [=](auto known) HOL_FORCED {  // captures by value, so that slack stays in a register
             V least = slack;
             up_joint<known, false, keep>(rows, k, memory, least);
             return least;
@@ -183,7 +183,7 @@ static inline void substitute_trees(const Molecules<V> &x, Memory<V> memory) {
     if (x.s.type == Schedule::tree) substitute_joint<1, true>(AtomRows<V>(x, x.s.n_tree), 1, memory);
 }
 
-// Down one atom: u of its children becomes t, from that of the bond above. `look`: tests what is found.
+// Goes down at one atom: u of its children becomes t, from t of the bond above. `look`: tests the result.
 template <bool look, int known, class V>
 HOL_INLINE void down_joint(const Molecules<V> &x, int32_t slot, int count, V &slack) {
     const int k = known > 0 ? known : count;
@@ -205,7 +205,7 @@ static inline void down_one(const Molecules<V> &x, int32_t slot, V &slack) {
     if (k > 0) choose_few<3>(k, [&](auto known) HOL_FORCED { down_joint<look, known>(x, slot, k, slack); });
 }
 
-// Down the trees.
+// Goes down the trees.
 template <bool look, class V>
 static inline void down_trees(Molecules<V> &x) {
     V slack = x.slack;

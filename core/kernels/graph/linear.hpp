@@ -123,9 +123,9 @@ struct Linear {
         down_trees<false>(x);
     }
 
-    // Graphs: corrections against the exact residual until they would be less than a rounding, where it is not proven
-    // that none is needed. Returns the lanes in which they shrank as they should; the solution is t of the rows, as
-    // before.
+    // Corrects the solution of a graph against the exact residual until a correction would be less than a rounding,
+    // unless a proof shows that none is needed. Returns the lanes in which corrections shrank as they should. The
+    // solution is t of the rows, as before.
     MaskOf<V> refine() {
         typedef MaskOf<V> Mask;
         const Schedule &s = x.s;
@@ -153,9 +153,9 @@ struct Linear {
 private:
     static constexpr double epsilon = 2.220446049250313e-16;
 
-    // Adds the corrections in t of the rows, in the lanes in `active`; returns the square of the largest one relative
-    // to its multiplier's size: |t_k|, |b_k| / P_k, which is no more than its scale as P_k is at least 1 / (A^-1)_kk,
-    // and a millionth of the molecule's largest tension.
+    // Adds the corrections in t of the rows, in the lanes in `active`. Returns the square of the largest one, relative
+    // to its multiplier's size. That is the largest of |t_k|, |b_k| / P_k - which is no more than the multiplier's
+    // scale, as P_k is at least 1 / (A^-1)_kk - and a millionth of the molecule's largest tension.
     V correct(MaskOf<V> active) {
         const int32_t n = x.s.n_bonds;
         V largest = {}, part = {};

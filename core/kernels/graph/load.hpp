@@ -1,4 +1,4 @@
-// Reads a block of molecules: its atoms, each once, then bond vectors and right-hand sides at their places.
+// Reads a block of molecules: each atom once, then bond vectors and right-hand sides at their places.
 #ifndef HOLONOMIC_KERNELS_GRAPH_LOAD_HPP
 #define HOLONOMIC_KERNELS_GRAPH_LOAD_HPP
 
@@ -9,16 +9,15 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// What a right-hand side b of a bond from atom i to atom j is made of:
-// squares: |v_j - v_i|^2;  pulls: d.(w_j f_j - w_i f_i);  rates: d.(v_j - v_i);  given: half of what is given for the
-// bond.
+// The terms of the right-hand side b of a bond from atom i to atom j:
+// squares: |v_j - v_i|^2;  pulls: d.(w_j f_j - w_i f_i);  rates: d.(v_j - v_i);  given: half of the bond's given value.
 enum RightHandSide { squares = 1, pulls = 2, rates = 4, given = 8 };
 
 template <Layout layout, int terms, class V>
 struct Loader {
     Linear<V> &z;
 
-    // Atoms first .. first + count - 1 as the caller has them, to their slots.
+    // Reads atoms first .. first + count - 1, in the caller's order, to their slots.
     template <int count>
     HOL_FORCED void read_atoms(int32_t first) const {
         const Molecules<V> &x = z.x;
@@ -36,7 +35,7 @@ struct Loader {
     }
     HOL_FORCED void read_atom(int32_t slot) const { read_atoms<1>(z.x.s.atom_of[slot]); }
 
-    // The bond between the atoms in two slots; `row` gets d, q and t.
+    // Makes d, q and t of the bond between the atoms in two slots.
     HOL_FORCED void make_row(int32_t place, int32_t from, int32_t to) const {
         const Equations<V> &e = z.equations;
         BondRow<V> &row = z.x.row[place];
@@ -83,7 +82,7 @@ struct Loader {
         load_core_bonds();
     }
 
-    // The atoms that trees hang from, and the bonds between them.
+    // Reads the atoms that trees hang from, and makes the bonds between them.
     void load_core() const {
         for (int32_t slot = z.x.s.n_atoms - 1; slot >= z.x.s.n_tree; --slot) read_atom(slot);
         load_core_bonds();

@@ -50,7 +50,7 @@ struct Molecules {
     MaskOf<V> in_use() const { return Width<V>::first(used); }
 };
 
-// The bond vectors of a lane, in double, with the low word that the difference of the coordinates leaves.
+// Reads one atom, in double; a component that the array does not have is 0.
 HOL_INLINE void read_row(const AtomArray &array, int64_t number, double *x) {
     const char *const p[3] = {array.x, array.y, array.z};
     for (int c = 0; c < 3; ++c)
@@ -59,7 +59,7 @@ HOL_INLINE void read_row(const AtomArray &array, int64_t number, double *x) {
                                 : element<double>(p[c] + number * array.stride);
 }
 
-// The slots at the two ends of a bond; it points from the first to the second.
+// Finds the slots at the two ends of a bond. It points from the first to the second.
 HOL_INLINE void ends_of(const Schedule &s, int32_t place, int32_t &from, int32_t &to) {
     from = place < s.n_tree ? s.parent[place] : s.from[place - s.n_tree];
     to = place < s.n_tree ? place : s.to[place - s.n_tree];
@@ -81,6 +81,7 @@ HOL_INLINE void for_bonds_of(const Schedule &s, int32_t slot, const Body &body) 
     });
 }
 
+// Finds a bond vector of one lane, with the low word that the difference of the coordinates leaves.
 template <class V>
 HOL_INLINE void exact_bond(const Molecules<V> &x, int lane, int32_t place, Vector3<double> &d, Vector3<double> &lo) {
     int32_t from, to;
@@ -112,7 +113,7 @@ HOL_INLINE MaskOf<V> nearly_orthogonal(const V &g, const V &p, const V &q) {
     return less(Width<V>::all(1 / (least_cosine * least_cosine)) * (g * g), p * q);
 }
 
-// d . d' of two bonds, with the rule above.
+// Returns d . d' of two bonds, by the rule above.
 template <class V>
 HOL_INLINE V product_of(const Molecules<V> &x, int32_t a, int32_t b) {
     const BondRow<V> &p = x.row[a], &q = x.row[b];

@@ -1,6 +1,6 @@
-// Newton's method for the positions of a block of molecules (theory (15)-(17), (58)): the corrections
-// move_i = w_i (sum of tau b of the bonds that point away - that of those that point to it) must bring every D.D to
-// a^2.
+// Newton's method for the positions of a block of molecules (theory (15)-(17), (58)). The corrections move_i of the
+// atoms must bring every D.D to a^2. move_i is w_i times the sum of tau b over the bonds that point away from atom i,
+// less the same sum over those that point to it.
 #ifndef HOLONOMIC_KERNELS_GRAPH_NEWTON_HPP
 #define HOLONOMIC_KERNELS_GRAPH_NEWTON_HPP
 
@@ -47,12 +47,12 @@ struct Newton {
         memory.values(NewtonMemory<V, 0>::values(s.max_children));
     }
 
-    // The largest |D.D - a^2| / a^2 of the bonds that have been measured; max() may lose a NaN, the sum keeps it.
+    // The largest |D.D - a^2| / a^2 of the bonds measured so far. max() may lose a NaN, the sum keeps it.
     struct Errors {
         V worst, sum;
         V largest() const { return mul_add(sum, V{}, worst); }
     };
-    // What is left of a bond's length into its t, for D as given.
+    // Puts half of D.D - a^2 into t of the bond.
     HOL_FORCED static void measure(NewtonRow<V> &row, const Vector3<V> &D, Errors &errors) {
         const V sigma = excess(D, row.a2);
         errors.worst = max(abs(sigma) * row.per_a2, errors.worst);
@@ -60,7 +60,7 @@ struct Newton {
         row.t = 0.5 * sigma;
     }
 
-    // Factors for the bonds in new_D, in the lanes of `which`.
+    // Makes factors for the bonds in new_D, in the lanes of `which`.
     void factorize(MaskOf<V> which) {
         if (bits(which) == (1u << Width<V>::lanes) - 1)
             factorize<true>(which);
@@ -84,7 +84,7 @@ struct Newton {
             factorize_core<all>(x, spare, which);
     }
 
-    // From what is left, in t of the rows, to u.
+    // Substitutes up: t of the rows, what is left of the lengths, becomes u.
     __attribute__((noinline)) void substitute() {
         const Schedule &s = x.s;
         for (int32_t slot = 0; slot < s.n_tree; ++slot) {
@@ -97,7 +97,7 @@ struct Newton {
             substitute_core(x);
     }
 
-    // Corrections for what is left, in t of the rows, added to tau in the lanes of `active`.
+    // Solves for what is left, in t of the rows, and adds the corrections to tau in the lanes of `active`.
     __attribute__((noinline)) void solve(MaskOf<V> active) {
         const Schedule &s = x.s;
         substitute();
@@ -109,7 +109,7 @@ struct Newton {
         }
     }
 
-    // What tau moves an atom by.
+    // Returns the displacement of an atom by tau.
     HOL_FORCED Vector3<V> displacement(int32_t slot) const {
         Vector3<V> pull = {};
         for_bonds_of<V>(x.s, slot, [&](int32_t place, V sign) HOL_FORCED {
@@ -118,7 +118,7 @@ struct Newton {
         return x.w[slot] * pull;
     }
 
-    // The atoms and bonds as tau moves them, and their largest error.
+    // Moves atoms and bonds by tau. Returns the largest error.
     __attribute__((noinline)) V move() {
         const Schedule &s = x.s;
         for (int32_t slot = s.n_atoms - 1; slot >= 0; --slot) x.move[slot] = displacement(slot);
@@ -132,15 +132,15 @@ struct Newton {
         return errors.largest();
     }
 
-    // tau = 0 in the lanes of `which`.
+    // Sets tau = 0 in the lanes of `which`.
     void forget(MaskOf<V> which) {
         for (int32_t k = 0; k < x.s.n_bonds; ++k) x.row[k].tau = select(which, V{}, x.row[k].tau);
     }
 
-    // The relative error of one bond, as it was measured last.
+    // Returns the relative error of one bond, as it was measured last.
     V left_of(int32_t k) const { return abs(2.0 * x.row[k].t) * x.row[k].per_a2; }
 
-    // D as it stands: the first factors' bonds, and what they leave.
+    // Takes D as it stands: the first factors are for these bonds. Returns the largest error.
     V open() {
         Errors errors = {};
         for (int32_t k = 0; k < x.s.n_bonds; ++k) {

@@ -1,4 +1,4 @@
-// The core at the position level: LU in the order and with the pattern of the symmetric elimination.
+// The core at the position level. Its LU has the order and the pattern of the symmetric elimination.
 #ifndef HOLONOMIC_KERNELS_GRAPH_NEWTON_CORE_HPP
 #define HOLONOMIC_KERNELS_GRAPH_NEWTON_CORE_HPP
 
@@ -41,7 +41,7 @@ static inline void add_bare_atom(const NewtonSystem<V> &x, int32_t c, V *entry_l
     choose_few<4, 2>(n, [&](auto known) HOL_FORCED { add_bare_atom<known>(x, c, n, entry_lower, entry_upper); });
 }
 
-// The elements of one atom of the core. Row k and column l: s_k s_l (w D_k.b_l - sum over its children).
+// Adds the elements of one atom of the core: in row k and column l, s_k s_l (w D_k.b_l - the sum over its children).
 template <bool all, class V>
 static inline void add_core_atom(const NewtonSystem<V> &x, int32_t c, int64_t reach, V *entry_lower, V *entry_upper,
                                  MaskOf<V> which) {
@@ -100,7 +100,7 @@ HOL_INLINE void eliminate_column(const Schedule &s, V *pivot, int32_t p, int cou
     }
 }
 
-// New factors in the lanes of `which`, or in all; `spare` has 2 n_entries values.
+// Makes new factors in the lanes of `which`, or in all. `spare` has 2 n_entries values.
 template <bool all, class V>
 static inline void factorize_core(const NewtonSystem<V> &x, V *spare, MaskOf<V> which) {
     const Schedule &s = x.s;
@@ -127,7 +127,7 @@ static inline void factorize_core(const NewtonSystem<V> &x, V *spare, MaskOf<V> 
     }
 }
 
-// Up, behind the trees: y of the core, then its forward half.
+// Goes up, behind the trees: finds y of the core and makes the forward half of its substitution.
 template <class V>
 static inline void substitute_core(const NewtonSystem<V> &x) {
     const Schedule &s = x.s;
@@ -148,8 +148,8 @@ static inline void substitute_core(const NewtonSystem<V> &x) {
     forward_columns(s, x.core_lower, x.core);
 }
 
-// Down: the corrections of the core into t, and to tau in the lanes of `active`; then what the first bonds of its
-// hanging trees get of them.
+// Goes down: puts the corrections of the core into t, and adds them to tau in the lanes of `active`. Then it gives the
+// first bonds of the hanging trees their share.
 template <class V>
 static inline void down_core(const NewtonSystem<V> &x, MaskOf<V> active) {
     const Schedule &s = x.s;

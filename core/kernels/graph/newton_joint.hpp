@@ -1,6 +1,5 @@
-// The joints of trees at the position level (theory (58)): rows belong to the new bond vectors D, columns to the
-// reference bonds b, so that S = diag(E) + w D^T b is not symmetric and there are two kinds of multipliers, for the way
-// up and for the way down:
+// The joints of trees at the position level (theory (58)). Rows belong to the new bond vectors D and columns to the
+// reference bonds b. So S = diag(E) + w D^T b is not symmetric, and the ways up and down have multipliers of their own:
 //
 //     y_e = y_e + w (b_c . D_e) S^-1 y,   E_e = w (D_e . b_e) - w^2 (D_e . b) S^-1 (D . b_e),   t_c = u_c + (S^-1 w D .
 //     b_e)_c t_e
@@ -42,7 +41,8 @@ struct NewtonSystem {
     Memory<V> working;           // of a joint of many bonds
 };
 
-// LU of S: r, lower l_aj = S_aj / P_j, upper n_ja = S_ja / P_j, both at pair_of(a, j), a > j. S has k k values.
+// LU of S, which has k k values: r = 1 / P, lower l_aj = S_aj / P_j, upper n_ja = S_ja / P_j, both at pair_of(a, j),
+// a > j.
 template <class V>
 HOL_INLINE void decompose(int k, V *S, V *r, V *lower, V *upper) {
     HOL_UNROLL
@@ -61,7 +61,7 @@ HOL_INLINE void decompose(int k, V *S, V *r, V *lower, V *upper) {
     }
 }
 
-// S^-1 y with (lower, upper); y S^-1 with (upper, lower). z: y after the first half.
+// u = S^-1 y with (lower, upper), u = y S^-1 with (upper, lower). z keeps y as it is after the first half.
 template <class V>
 HOL_INLINE void solve_joint(int k, const V *r, const V *first, const V *second, const V *y, V *z, V *u) {
     HOL_UNROLL
@@ -102,13 +102,13 @@ struct NewtonMemory<V, 0> {
     static constexpr int64_t values(int64_t k) { return k * k + k * (k - 1) + 5 * k; }
 };
 
-// Into `to` in the lanes of `which`, or in all.
+// Puts a value into `to` in the lanes of `which`, or in all.
 template <bool all, class V>
 HOL_INLINE void put_where(MaskOf<V> which, V &to, V value) {
     to = all ? value : select(which, value, to);
 }
 
-// Factors of the children of a slot into f and, in the lanes of `which`, to where they are kept. `D` of all bonds.
+// Finds the factors of the children of a slot. Puts them into f and, in the lanes of `which`, where they are kept.
 template <bool all, class V, class Joint>
 HOL_INLINE void factorize_children(const NewtonSystem<V> &x, int32_t slot, int k, Joint &f, MaskOf<V> which) {
     const int32_t *const child = x.s.child + x.s.child_start[slot];
@@ -135,8 +135,8 @@ HOL_INLINE void factorize_children(const NewtonSystem<V> &x, int32_t slot, int k
     }
 }
 
-// What the children leave of the inverse mass along the bond at `place`, and its multipliers for each of them in f.h
-// (up) and f.u (down).
+// Returns what the children leave of the inverse mass along the bond at `place`. Finds its multipliers for each of
+// them, `up` and `down`.
 template <class V, class Joint>
 HOL_INLINE V couple(const NewtonSystem<V> &x, int32_t slot, int k, int32_t place, Joint &f, V *z, V *h, V *up,
                     V *down) {
@@ -171,7 +171,7 @@ HOL_INLINE void factorize_joint(const NewtonSystem<V> &x, int32_t slot, int coun
     }
 }
 
-// Up: y of the bond above, u of the children.
+// Substitutes up: finds u of the children, and y of the bond above.
 template <int known, bool top, class V>
 HOL_INLINE void substitute_joint(const NewtonSystem<V> &x, int32_t slot, int count) {
     const int k = known > 0 ? known : count;

@@ -1,7 +1,7 @@
-// A proof that the multipliers of molecules with cycles need no correction, in lanes: the bound of flat_linear.hpp on
-// what they leave of the equations (theory (55a)), of which trees take a part that needs no factors. An atom with k
-// children adds at most 1 + k times w |d| |d'| to |L| P |L^T| for two of its bonds, as every child that is eliminated
-// leaves no more of their products than they are.
+// Proves in lanes that the multipliers of molecules with cycles need no correction, by the bound of flat_linear.hpp on
+// what they leave of the equations (theory (55a)). The part of trees needs no factors: an atom with k children adds at
+// most 1 + k times w |d| |d'| to |L| P |L^T| for two of its bonds, because no eliminated child makes their products
+// larger.
 #ifndef HOLONOMIC_KERNELS_GRAPH_PROOF_HPP
 #define HOLONOMIC_KERNELS_GRAPH_PROOF_HPP
 
@@ -12,8 +12,9 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// The bound is no more than this times an equation's terms, both in roundings: a part of the 16 + sqrt(n) roundings of
-// the scale that count as right (tests/oracle/molecules/README.md), and no more than in trees (siblings.hpp).
+// The bound must be no more than this times an equation's terms, both in roundings. This is a part of the 16 + sqrt(n)
+// roundings of the scale that count as right (tests/oracle/molecules/README.md), and no more than in trees
+// (siblings.hpp).
 HOL_INLINE double most_backward(int32_t n_bonds) {
     const double part = 0.5 * (16 + __builtin_sqrt(static_cast<double>(n_bonds)));
     return part < most_cancelled ? part : most_cancelled;
@@ -21,8 +22,8 @@ HOL_INLINE double most_backward(int32_t n_bonds) {
 // A pivot below this part of its diagonal element may come of bonds that depend on each other.
 constexpr double least_proven_pivot = 1e-6;
 
-// Of an atom: w (f + G), or v + w G where right-hand sides are rates; the part of the bound that it gives per |d|; and
-// what a was made of, in absolute values.
+// Of an atom: a = w (f + G), or v + w G where right-hand sides are rates; what a was made of, in absolute values; and
+// the part of the bound that the atom gives per |d|.
 template <class V>
 struct Pulled {
     Vector3<V> a, input;
@@ -35,8 +36,8 @@ struct Backward {
     V size, tension, R;  // |d|, |t| |d|, of the core |L| P |L^T| |t|
 };
 
-// Whether it is likely to succeed in all lanes of a block, so that the look at it pays: in a few dozen bonds, half of
-// them in trees at least. In strips of triangles it never does.
+// Returns whether the proof is likely to succeed in all lanes of a block, so that it pays to try: with a few dozen
+// bonds, half of them in trees at least. In strips of triangles it never succeeds.
 HOL_INLINE bool worth_a_proof(const Schedule &s) { return s.n_bonds <= 64 && 2 * s.n_core <= s.n_bonds; }
 
 template <class V>
@@ -77,7 +78,7 @@ HOL_INLINE Pulled<V> pulled(const Molecules<V> &x, const Equations<V> &e, const 
     return {add_times(input, w, g), absolute(input), (Width<V>::all(1.0 + children) * w) * sum};
 }
 
-// The lanes in which this holds for the solution in t of the rows. E of the core's rows: their pivots.
+// Returns the lanes in which the bound holds for the solution in t of the rows. E of the core's rows are their pivots.
 template <class V>
 HOL_NOINLINE MaskOf<V> proven_lanes(const Molecules<V> &x, const CoreMatrix<V> &core, const Equations<V> &e, V least) {
     const Schedule &s = x.s;

@@ -1,6 +1,6 @@
-// What a solution leaves of the equations of a whole molecule, in twice the precision: the accelerations a = w (f + G)
-// and then, per bond, d.(a_j - a_i) + c, which vanishes at the exact solution. Refinement against it mends what LDL^T
-// of a core loses.
+// Finds what a solution leaves of the equations of a whole molecule, in twice the precision: the accelerations
+// a = w (f + G) and then, per bond, d.(a_j - a_i) + c, which vanishes at the exact solution. Refinement against it
+// mends what LDL^T of a core loses.
 #ifndef HOLONOMIC_KERNELS_GRAPH_RESIDUAL_HPP
 #define HOLONOMIC_KERNELS_GRAPH_RESIDUAL_HPP
 
@@ -10,8 +10,7 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// Low words are added up as they come: the high ones stay right to a rounding, which is all that a sum of few terms
-// needs.
+// Adds up low words as they come. High words stay right to a rounding, and a sum of few terms needs no more.
 template <class V>
 HOL_INLINE Pair<V> add_pairs(const Pair<V> &a, const Pair<V> &b) {
     const Pair<V> s = two_sum<V>(a.hi, b.hi);
@@ -63,7 +62,7 @@ HOL_INLINE Pair3<V> difference_of(const Vector3<V> &from, const Vector3<V> &to) 
     return {two_difference<V>(to.x, from.x), two_difference<V>(to.y, from.y), two_difference<V>(to.z, from.z)};
 }
 
-// What the right-hand sides are made of, kept for this: per atom by slot, per bond by place; absent ones are nullptr.
+// What the right-hand sides are made of, kept for residuals: per atom by slot, per bond by place; or nullptr.
 template <class V>
 struct Equations {
     Vector3<V> *r;         // coordinates
@@ -75,7 +74,7 @@ struct Equations {
     Pair3<V> *d;           // [n_bonds] unrounded bonds
 };
 
-// The unrounded bonds, once for all residuals.
+// Finds the unrounded bonds, once for all residuals.
 template <class V>
 HOL_INLINE void find_unrounded(const Molecules<V> &x, const Equations<V> &e) {
     for (int32_t k = 0; k < x.s.n_bonds; ++k) {
@@ -87,7 +86,7 @@ HOL_INLINE void find_unrounded(const Molecules<V> &x, const Equations<V> &e) {
     }
 }
 
-// Residuals into t of the rows; the solution is t[place].
+// Puts the residuals into t of the rows. The solution is t[place].
 template <class V>
 HOL_NOINLINE void find_residuals(const Molecules<V> &x, const Equations<V> &e, const V *t) {
     const Schedule &s = x.s;

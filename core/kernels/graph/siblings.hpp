@@ -1,13 +1,14 @@
-// Where bonds meet at an atom of a tree, what is found may be a small difference of large terms: the multiplier of a
-// bond that is not pulled itself, beside a sibling or a parent that is. The products d.d' at atom i are right to a
-// rounding of |d| |d'|, so with the sum T of the tensions |t| |d| around the atom, t_c is right to a few roundings of
+// A multiplier may be a small difference of large terms where bonds meet at an atom of a tree: if its bond is not
+// pulled itself, but a sibling or the parent is. The products d.d' at atom i are right to a rounding of |d| |d'|. So
+// with the sum T of the tensions |t| |d| around the atom, t_c is right to a few roundings of
 //
 //     w_i |d_c| T r_c,   r_c = 1 / pivot,
 //
-// beside what its scale |A^-1| S (docs/theory.md) allows. That scale is at least |t_c|, |y_c| r_c - y_c is what c and
-// the bonds below it are pulled by, r_c <= (A^-1)_cc - and S_c / A_cc, S_c the terms of its right-hand side in absolute
-// values. Bonds for which none of these is large enough are `faint`; the first two are looked at always, the third
-// where those do not do.
+// beside what its scale |A^-1| S (docs/theory.md) allows. That scale is at least
+//   - |t_c|;
+//   - |y_c| r_c, as c and the bonds below it are pulled by y_c, and r_c <= (A^-1)_cc;
+//   - S_c / A_cc, where S_c are the terms of its right-hand side in absolute values.
+// A bond is `faint` if none of these is large enough. The first two are always looked at, the third if they don't do.
 #ifndef HOLONOMIC_KERNELS_GRAPH_SIBLINGS_HPP
 #define HOLONOMIC_KERNELS_GRAPH_SIBLINGS_HPP
 
@@ -17,10 +18,10 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// How many times a bond's scale that error may be, both in roundings.
+// That error may be so many times a bond's scale, both in roundings.
 constexpr double most_cancelled = 64;
 
-// The bonds of an atom, each at its place: those to its children, and the one above. tree_runs.hpp has the same of W
+// The bonds of an atom, each at its place: those to its children, and the one above. tree_runs.hpp has the same for W
 // atoms of one molecule.
 template <class V>
 struct AtomRows {
@@ -37,7 +38,7 @@ struct AtomRows {
     HOL_FORCED V *multipliers() const { return x.pair + x.s.pair_start[slot]; }
 };
 
-// Square of the part of the error that all bonds at an atom share.
+// Returns the square of that part of the error which all bonds at an atom share.
 template <class V, class Rows>
 HOL_INLINE V shared_error(const Rows &x, int k) {
     const BondRow<V> &e = x.above();
@@ -51,13 +52,14 @@ HOL_INLINE V shared_error(const Rows &x, int k) {
     return (w * w) * ((1 / (most_cancelled * most_cancelled)) * T2);
 }
 
-// What a bond's own size leaves when the error is taken away: negative where it is faint.
+// Returns a bond's own size less the error, in squares. It is negative if the bond is faint.
 template <class V>
 HOL_INLINE V left_of(const BondRow<V> &row, const V &shared) {
     return mul_add(-shared, row.q * (row.r * row.r), mul_add(row.t, row.t, row.E * row.E));
 }
 
-// Lanes in which a bond at this atom is faint, the one above it or one of its k children. E of the rows: y r.
+// Returns the lanes in which a bond at this atom is faint, the one above it or one of its k children. E of the rows is
+// y r.
 template <class V, class Rows>
 HOL_INLINE MaskOf<V> faint_bonds(const Rows &x, int k) {
     const V shared = shared_error<V>(x, k);
@@ -67,7 +69,7 @@ HOL_INLINE MaskOf<V> faint_bonds(const Rows &x, int k) {
     return less(least, V{});
 }
 
-// The terms of a bond's right-hand side in absolute values, in one lane.
+// Returns the terms of a bond's right-hand side in absolute values, in one lane.
 template <class V>
 double terms_of(const Molecules<V> &x, int32_t place, int lane) {
     if (x.in.rhs) return __builtin_fabs(0.5 * x.in.rhs[x.lane[lane].first_bond + x.s.bond_of[place]]);
@@ -91,7 +93,7 @@ double terms_of(const Molecules<V> &x, int32_t place, int lane) {
     return sum;
 }
 
-// Looks again at the bonds of an atom in the lanes of `which`: slack becomes negative where one is faint all the same.
+// Looks again at the bonds of an atom in the lanes of `which`. Slack becomes negative where one is faint all the same.
 template <class V>
 HOL_NOINLINE void doubt_faint_bonds(const Molecules<V> &x, int32_t slot, int k, unsigned which, V &slack) {
     const int32_t *const child = x.s.child + x.s.child_start[slot];

@@ -1,5 +1,4 @@
-// What the multipliers of a block of molecules do, written to the caller's arrays: values per bond, pulls on atoms,
-// virial.
+// Writes what comes of the multipliers of a block of molecules: values per bond, pulls on atoms, the virial.
 #ifndef HOLONOMIC_KERNELS_GRAPH_STORE_HPP
 #define HOLONOMIC_KERNELS_GRAPH_STORE_HPP
 
@@ -11,7 +10,7 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// G of the atom at a slot: t d of the bonds that point away from it, less t d of those that point to it.
+// Returns G of the atom at a slot: t d of the bonds that point away from it, less t d of those that point to it.
 template <class V>
 HOL_INLINE Vector3<V> pull_on(const Molecules<V> &x, int32_t slot) {
     Vector3<V> g = {};
@@ -21,7 +20,7 @@ HOL_INLINE Vector3<V> pull_on(const Molecules<V> &x, int32_t slot) {
 }
 
 #if HOL_LANES >= 4 && defined(__AVX2__)
-// The same of a single molecule: rows begin with d, so that x, y and z are done at once.
+// The same for a single molecule: rows begin with d, so x, y and z are done at once.
 HOL_INLINE Vector3<double> pull_on(const Molecules<double> &x, int32_t slot) {
     if (slot >= x.s.n_tree) return pull_on<double>(x, slot);
     const Schedule &s = x.s;
@@ -36,8 +35,8 @@ HOL_INLINE Vector3<double> pull_on(const Molecules<double> &x, int32_t slot) {
 }
 #endif
 
-// The lanes of `which` in which this local atom may be written: not those where it is a fixed one of other molecules,
-// too.
+// Returns the lanes of `which` in which this local atom may be written: not those where it is fixed and belongs to
+// other molecules, too.
 template <class V>
 HOL_INLINE unsigned writable(const Molecules<V> &x, int32_t atom, unsigned which) {
     for (int i = 0; i < Width<V>::lanes; ++i)
@@ -86,7 +85,7 @@ HOL_INLINE void write_atoms(const Molecules<V> &x, const AtomArray &array, unsig
     });
 }
 
-// G of all atoms but those of arms in the lanes of `which`, written or added.
+// Writes or adds G of all atoms but those of arms, in the lanes of `which`.
 template <Layout layout, class V>
 HOL_NOINLINE void write_pulls(const Molecules<V> &x, const AtomArray &g, bool add, unsigned which) {
     if (!add) return write_atoms<layout>(x, g, which, [&](int32_t slot) HOL_FORCED { return pull_on(x, slot); });
@@ -124,7 +123,7 @@ HOL_INLINE void write_values(const Schedule &s, const MoleculeLane *lane, double
     }
 }
 
-// factor t of the bonds at these places, zeros as +0; with_length: times |d|.
+// Writes factor t of the bonds at these places, zeros as +0. with_length: |d| is the factor.
 template <bool with_length, class V>
 HOL_INLINE void write_bonds(const Molecules<V> &x, double factor, double *out, unsigned which, int32_t first,
                             int32_t end) {
@@ -134,14 +133,14 @@ HOL_INLINE void write_bonds(const Molecules<V> &x, double factor, double *out, u
         return mul_add(row.t, with_length ? sqrt(row.q) : f, V{});
     });
 }
-// Of all but those of arms.
+// Writes those of all bonds but those of arms.
 template <bool with_length, class V>
 HOL_NOINLINE void write_bonds(const Molecules<V> &x, double factor, double *out, unsigned which) {
     for_places(x.s, x.pieces,
                [&](int32_t first, int32_t end) { write_bonds<with_length>(x, factor, out, which, first, end); });
 }
 
-// The virial of the lanes of `which`, of all bonds but those of arms.
+// Counts the virial of all bonds but those of arms, in the lanes of `which`.
 template <class V>
 HOL_NOINLINE void add_pulls_to_virial(const Molecules<V> &x, unsigned which, Tally &tally) {
     MoleculesVirial<V> virial;
@@ -151,7 +150,7 @@ HOL_NOINLINE void add_pulls_to_virial(const Molecules<V> &x, unsigned which, Tal
     virial.count(which, 1, tally);
 }
 
-// Lanes in which all multipliers are finite, but for those of arms.
+// Returns the lanes in which all multipliers are finite. Those of arms are not looked at.
 template <class V>
 HOL_INLINE MaskOf<V> finite_solution(const Molecules<V> &x) {
     V sum = {};

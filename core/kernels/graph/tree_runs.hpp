@@ -1,5 +1,5 @@
-// Trees of one large molecule, W atoms at a time that do not depend on each other (Schedule::Run): the sweeps of
-// joint.hpp, with the same digits.
+// The sweeps of joint.hpp over the trees of one large molecule, with the same digits. W atoms that do not depend on
+// each other (Schedule::Run) are worked on at a time.
 #ifndef HOLONOMIC_KERNELS_GRAPH_TREE_RUNS_HPP
 #define HOLONOMIC_KERNELS_GRAPH_TREE_RUNS_HPP
 
@@ -10,7 +10,7 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// One atom, with careful arithmetic where plain one does not do.
+// Goes up at one atom, with careful arithmetic where plain arithmetic does not do.
 template <bool keep>
 HOL_NOINLINE void up_one(const Molecules<double> &x, int32_t slot, Faint &faint, Memory<double> memory, double &slack) {
     const AtomRows<double> rows(x, slot);
@@ -64,8 +64,8 @@ HOL_INLINE void substitute_lanes(const Molecules<double> &x, const int32_t *slot
     scatter_values(x.row, slot, rows.top);
 }
 
-// An atom with faint bonds: the first time it is noted, to be eliminated carefully the next time. Then products are
-// right, and what is found must not be a small difference of what comes up and what comes down.
+// Deals with an atom with faint bonds. The first time it notes the atom, to be eliminated carefully the next time. Then
+// products are right, and a result must not be a small difference of what comes up and what comes down.
 HOL_NOINLINE void note_faint(const Molecules<double> &x, int32_t slot, int k, Faint &faint, double &slack) {
     double own = 1;
     doubt_faint_bonds(x, slot, k, 1, own);
@@ -195,7 +195,7 @@ static inline void collect_slack(Molecules<double> &x) {
     for (int32_t p = 0; p < x.s.n_pieces; ++p) x.slack = min(x.pieces->slack[p], x.slack);
 }
 
-// Behind the pieces.
+// Goes up behind the pieces.
 template <bool keep, class Arm>
 static inline void up_top(Molecules<double> &x, Memory<double> memory, const Arm &arm) {
     x.slack = min(up_piece<keep>(x, x.s.n_pieces, memory, arm), x.slack);
