@@ -11,6 +11,7 @@
 
 #include "core/kernels/eliminate/remainder.hpp"
 #include "core/kernels/memory/arena.hpp"
+#include "core/kernels/memory/packed.hpp"
 
 namespace holonomic::HOL_ISA {
 
@@ -110,6 +111,43 @@ struct Sweep {
         return any(wild) ? doubtful | (extreme_pivots<uniform>(block, s.D) & wild) : doubtful;
     }
 };
+
+// d . (v_{k+1} - v_k)
+HOL_INLINE vec rate_of(const vec3 &d, const vec3 &v0, const vec3 &v1) { return dot(d, v1 - v0); }
+
+// Loads the bonds of a block and eliminates: t becomes u. For rates it keeps the velocities in `velocities`. Returns
+// the lanes that plain arithmetic can answer for, and in `calm` those in which nothing can overflow from here on.
+template <int terms, bool uniform, bool boxed>
+HOL_NOINLINE mask forward(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
+                          const System &s, vec3 *velocities, mask &calm) {
+    constexpr bool rates = terms == rate;
+    constexpr int with_bonds = rates ? none_ : terms;  // right-hand sides that are found while bonds are read
+    const Places at(r, v, f);
+    const Source source = {&r, nullptr, nullptr, &box, nullptr};
+    Sweep<uniform, rates> sweep{block, source, s};
+    const auto rate_at = [&](long k) HOL_FORCED { return rate_of(s.D[k], velocities[k], velocities[k + 1]); };
+    if (rates) velocities[0] = load_atom(v);
+    long k0 = 0;
+    for (; k0 + group <= block.n_min; k0 += group) {
+        vec b[group];
+        HOL_UNROLL
+        for (long k = 0; k < group; k += W) {
+            load_full_chunk<with_bonds, uniform, boxed, false>(block, box, at, k0 + k, s.D + k0 + k, nullptr, b + k);
+            if (rates) load_next_atoms(block, at, k0 + k, velocities);
+        }
+        HOL_UNROLL
+        for (long k = 0; k < group; ++k) sweep.step(k0 + k, rates ? rate_at(k0 + k) : b[k], k % 4 == 0, false);
+    }
+    const long ragged_from = k0;
+    for (; k0 < block.n; k0 += W) {
+        load_ragged<with_bonds, uniform, boxed, false>(block, box, r, v, f, k0, s.D + k0, nullptr, s.t + k0);
+        if (rates) load_ragged_atoms(block, v, k0, velocities);
+    }
+    for (long k = ragged_from; k < block.n; ++k)
+        sweep.step(k, rates ? keep(joint(block, k), rate_at(k)) : s.t[k], k % 4 == 0, k >= block.n_min);
+    calm = sweep.calm();
+    return ~sweep.doubt();
+}
 
 // Products of two pivots don't underflow if their reciprocals are below this.
 constexpr double largest_reciprocal = 1e140;

@@ -24,9 +24,6 @@ struct Projection {
     mask finite(long n) const { return HOL_ISA::finite(s.t[0] + left[n - 1]); }
 };
 
-// d . (v_{k+1} - v_k)
-HOL_INLINE vec rate_of(const vec3 &d, const vec3 &v0, const vec3 &v1) { return dot(d, v1 - v0); }
-
 // The backward sweep from u to t. It also moves the velocities: v_k + w_k (t_{k+1} d_{k+1} - t_k d_k), rounded once.
 template <bool uniform>
 struct Pull {

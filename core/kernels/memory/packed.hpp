@@ -194,6 +194,15 @@ HOL_INLINE void load_full_chunk(const Block &block, const Box &box, const Places
     load_chunk<terms, uniform, boxed, careful>(block, box, k0, rows, D, D_low, B);
 }
 
+// The velocities of the atoms behind a full chunk's bonds.
+HOL_INLINE void load_next_atoms(const Block &block, const Places &at, long k0, vec3 *velocities) {
+    const double *pv[W];
+    HOL_UNROLL
+    for (int i = 0; i < W; ++i) pv[i] = at.v + 3 * (k0 + 1) + at.lane[i];
+    if (__builtin_expect(block.ahead != 0, 0)) fetch_ahead(at.v, k0, block.ahead);
+    load_atoms(pv, velocities + k0 + 1);
+}
+
 // The bonds k0 .. k0 + W - 1 where lanes may end. Bonds past the end of a lane are inert: d = (1,0,0), rhs = 0. All W
 // are written, even if the block has fewer.
 template <int terms, bool uniform, bool boxed, bool careful>

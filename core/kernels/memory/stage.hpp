@@ -87,44 +87,40 @@ HOL_INLINE long unpack(const double *, long, const Apart &) {
 }
 #endif
 
-template <class T>
-HOL_INLINE void stage_elements(const AtomArray &array, const Lane &lane, long from, long n, double *__restrict packed) {
-    for_each_element<T>(array, lane, from, n, [=](const T &element, long i) HOL_FORCED { packed[i] = element; });
-    for (long k = 0; !array.z && k <= n; ++k) packed[3 * k + 2] = 0;
+enum Copy { copy_in, copy_back, copy_back_and_add };
+
+template <Copy way, class T>
+HOL_INLINE void copy_elements(const AtomArray &array, const Lane &lane, long from, long n, double *__restrict packed) {
+    for_each_element<T>(array, lane, from, n, [=](T &element, long i) HOL_FORCED {
+        if (way == copy_in)
+            packed[i] = element;
+        else
+            element = static_cast<T>(way == copy_back ? packed[i] : static_cast<double>(element) + packed[i]);
+    });
+    for (long k = 0; way == copy_in && !array.z && k <= n; ++k) packed[3 * k + 2] = 0;
+}
+
+template <Copy way>
+HOL_INLINE void copy_atoms(const AtomArray &array, const Lane &lane, long from, long n, double *packed) {
+    const Apart apart(array, lane, from);
+    long done = 0;
+    if (apart.x) done = way == copy_in ? pack(apart, n, packed) : unpack<way == copy_back_and_add>(packed, n, apart);
+    if (done > n) return;
+    if (array.is_float)
+        copy_elements<way, float>(array, lane, from, n, packed);
+    else
+        copy_elements<way, double>(array, lane, from + done, n - done, packed + 3 * done);
 }
 
 // Copies atoms `from` .. `from + n` of a chain into packed[n+1][3].
 HOL_NOINLINE void stage(const AtomArray &array, const Lane &lane, long from, long n, double *packed) {
-    const Apart apart(array, lane, from);
-    const long done = apart.x ? pack(apart, n, packed) : 0;
-    if (done > n) return;
-    if (array.is_float)
-        stage_elements<float>(array, lane, from, n, packed);
-    else
-        stage_elements<double>(array, lane, from + done, n - done, packed + 3 * done);
+    copy_atoms<copy_in>(array, lane, from, n, packed);
 }
 
-template <class T, bool add>
-HOL_INLINE void unstage_elements(const AtomArray &array, const Lane &lane, long from, long n,
-                                 const double *__restrict packed) {
-    for_each_element<T>(array, lane, from, n, [=](T &element, long i) HOL_FORCED {
-        element = static_cast<T>(add ? static_cast<double>(element) + packed[i] : packed[i]);
-    });
-}
-
-template <bool add>
-HOL_INLINE void unstage(const AtomArray &array, const Lane &lane, long from, long n, const double *packed) {
-    const Apart apart(array, lane, from);
-    const long done = apart.x ? unpack<add>(packed, n, apart) : 0;
-    if (done > n) return;
-    if (array.is_float)
-        unstage_elements<float, add>(array, lane, from, n, packed);
-    else
-        unstage_elements<double, add>(array, lane, from + done, n - done, packed + 3 * done);
-}
-
-HOL_NOINLINE void unstage(const AtomArray &array, const Lane &lane, long from, long n, const double *packed, bool add) {
-    add ? unstage<true>(array, lane, from, n, packed) : unstage<false>(array, lane, from, n, packed);
+// Copies them back, or adds them.
+HOL_NOINLINE void unstage(const AtomArray &array, const Lane &lane, long from, long n, double *packed, bool add) {
+    add ? copy_atoms<copy_back_and_add>(array, lane, from, n, packed)
+        : copy_atoms<copy_back>(array, lane, from, n, packed);
 }
 
 HOL_INLINE bool in_place(const AtomArray &array, const Lane &lane) { return array.packed && !lane.atoms; }

@@ -11,41 +11,6 @@
 
 namespace holonomic::HOL_ISA {
 
-// Loads and eliminates. Returns the lanes that plain arithmetic can answer for.
-template <bool uniform, bool boxed>
-HOL_NOINLINE mask forward_velocities(const Block &block, const Box &box, const Packed &r, const Packed &v,
-                                     const Projection &x) {
-    const System &s = x.s;
-    const Source source = {&r, nullptr, nullptr, &box, nullptr};
-    Sweep<uniform, true> sweep{block, source, s};
-    const Places at(r, v, v);
-    x.v[0] = load_atom(v);
-    long k0 = 0;
-    for (; k0 + group <= block.n_min; k0 += group) {
-        HOL_UNROLL
-        for (long k = k0; k < k0 + group; k += W) {
-            vec unused[W];
-            load_full_chunk<none_, uniform, boxed, false>(block, box, at, k, s.D + k, nullptr, unused);
-            const double *pv[W];
-            HOL_UNROLL
-            for (int i = 0; i < W; ++i) pv[i] = at.v + 3 * (k + 1) + at.lane[i];
-            if (__builtin_expect(block.ahead != 0, 0)) fetch_ahead(at.v, k, block.ahead);
-            load_atoms(pv, x.v + k + 1);
-        }
-        HOL_UNROLL
-        for (long k = k0; k < k0 + group; ++k)
-            sweep.step(k, rate_of(s.D[k], x.v[k], x.v[k + 1]), (k - k0) % 4 == 0, false);
-    }
-    const long ragged_from = k0;
-    for (; k0 < block.n; k0 += W) {
-        load_ragged<none_, uniform, boxed, false>(block, box, r, r, r, k0, s.D + k0, nullptr, s.t + k0);
-        load_ragged_atoms(block, v, k0, x.v);
-    }
-    for (long k = ragged_from; k < block.n; ++k)
-        sweep.step(k, keep(joint(block, k), rate_of(s.D[k], x.v[k], x.v[k + 1])), k % 4 == 0, k >= block.n_min);
-    return ~sweep.doubt();
-}
-
 // Loads all velocities, and finds the rates of bonds that have been loaded.
 HOL_NOINLINE void load_rates(const Block &block, const Packed &v, const Projection &x) {
     x.v[0] = load_atom(v);
@@ -79,8 +44,9 @@ static inline mask forward_velocities(const Block &block, const Box &box, const 
     return choose(
         [&](auto uniform, auto boxed) {
             if (careful) return forward_loaded<uniform, boxed, true>(block, box, r, v, x);
-            return x.strain ? forward_loaded<uniform, boxed, false>(block, box, r, v, x)
-                            : forward_velocities<uniform, boxed>(block, box, r, v, x);
+            if (x.strain) return forward_loaded<uniform, boxed, false>(block, box, r, v, x);
+            mask calm;
+            return forward<rate, uniform, boxed>(block, box, r, v, v, x.s, x.v, calm);
         },
         block.uniform_w, box.shape != Box::none);
 }
