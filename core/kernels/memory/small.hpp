@@ -184,9 +184,15 @@ HOL_INLINE void take_bonds(const Box &box, const vec *atoms, vec3 *D) {
     HOL_UNROLL
     for (int c = 0; c < 3 * N; ++c) d[c] = atoms[c + 3] - atoms[c];
     if (!boxed || box.shape == Box::none) return;
-    vec3 unused = {};
+    if (box.shape == Box::triclinic) {
+        vec3 unused = {};
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) wrap<false>(box, D[k], unused);
+        return;
+    }
     HOL_UNROLL
-    for (int k = 0; k < N; ++k) wrap<false>(box, D[k], unused);
+    for (int c = 0; c < 3 * N; ++c)
+        d[c] = mul_add(round(d[c] * box.per_side[c % 3]), splat(box.minus_side[c % 3]), d[c]);
 }
 
 // The bonds of a place. In a row without a box they are differences of numbers as they stand in memory, if that
