@@ -5,8 +5,7 @@ module holonomic_bonds
    use, intrinsic :: iso_fortran_env, only: int32, int64, real64
    use holonomic_c, only: hol_chains_add_bonds, hol_chains_add_molecules, HOL_ERR_VALUE
    use holonomic_chains, only: chain_set, repeated
-   use holonomic_place, only: decimal
-   use holonomic_status, only: failure, settle
+   use holonomic_status, only: decimal, failure, settle
    implicit none
    private
    public :: chain_set_bonds

@@ -6,8 +6,7 @@ module holonomic_chains
    use, intrinsic :: iso_fortran_env, only: int32, int64, real64
    use holonomic_c, only: hol_chains_add, hol_chains_add_block, hol_chains_create, hol_chains_destroy, &
                           hol_chains_set_index_base, hol_error_location, HOL_ERR_VALUE
-   use holonomic_place, only: decimal
-   use holonomic_status, only: failure, settle
+   use holonomic_status, only: decimal, failure, settle
    implicit none
    private
    public :: chain_set, repeated

@@ -7,8 +7,8 @@ module holonomic_inverse
                           hol_inverse_destroy, hol_inverse_entry, hol_inverse_error_bound_view, hol_inverse_matrix, &
                           hol_inverse_n_bonds, hol_inverse_row, HOL_ERR_NULL, HOL_ERR_VALUE, HOL_UNIT_DIAGONAL
    use holonomic_chains, only: chain_set
-   use holonomic_place, only: decimal, enough, list_of, number_at, place
-   use holonomic_status, only: failure, settle
+   use holonomic_place, only: enough, list_of, number_at, place
+   use holonomic_status, only: decimal, failure, settle
    implicit none
    private
    public :: hol_inverse

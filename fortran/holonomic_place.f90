@@ -6,10 +6,10 @@ module holonomic_place
    use, intrinsic :: iso_c_binding, only: c_int32_t, c_int64_t, c_int8_t, c_intptr_t, c_loc, c_null_ptr, c_ptr, c_size_t
    use, intrinsic :: iso_fortran_env, only: real32, real64
    use holonomic_c, only: hol_view, HOL_DOUBLE, HOL_FLOAT, HOL_ERR_MEMORY, HOL_ERR_NULL, HOL_ERR_VALUE
-   use holonomic_status, only: failure
+   use holonomic_status, only: decimal, failure, named
    implicit none
    private
-   public :: place, decimal, enough, list_of, number_at, tensor
+   public :: place, enough, list_of, number_at, tensor
 
    ! One component of all atoms.
    type :: line
@@ -288,23 +288,6 @@ contains
       real(real64), optional, target :: matrix(3, 3)
       tensor = c_null_ptr
       if (present(matrix)) tensor = c_loc(matrix)
-   end function
-
-   pure recursive function named(pattern, component) result(name)
-      character(*), intent(in) :: pattern, component
-      character(:), allocatable :: name
-      integer :: at
-      at = index(pattern, "*")
-      name = pattern
-      if (at > 0) name = pattern(:at - 1)//component//pattern(at + 1:)
-   end function
-
-   pure recursive function decimal(n) result(text)
-      integer(c_int64_t), intent(in) :: n
-      character(:), allocatable :: text
-      character(20) :: digits
-      write (digits, "(i0)") n
-      text = trim(digits)
    end function
 
 end module

@@ -4,9 +4,9 @@ module holonomic_reactions
    use, intrinsic :: iso_fortran_env, only: int64, real32, real64
    use holonomic_c, only: hol_reactions_view, HOL_ADD, HOL_BOX, HOL_ERR_VALUE, HOL_REFERENCE_BOX, &
                           HOL_WRITE
-   use holonomic_place, only: decimal, enough, list_of, place, tensor
+   use holonomic_place, only: enough, list_of, place, tensor
    use holonomic_solve, only: chain_set_solve
-   use holonomic_status, only: failure, settle
+   use holonomic_status, only: decimal, failure, settle
    implicit none
    private
    public :: chain_set_reactions

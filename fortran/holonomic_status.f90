@@ -2,11 +2,11 @@
 ! a hol_status in it (0 on success) and the reason in `errmsg`, which a success leaves alone; if `stat` is absent a
 ! failure stops the program with the reason.
 module holonomic_status
-   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_int, c_ptr, c_size_t
+   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_int, c_int64_t, c_ptr, c_size_t
    use holonomic_c, only: hol_error_message, HOL_ERR_NULL, HOL_OK
    implicit none
    private
-   public :: failure, settle, text_of
+   public :: failure, settle, text_of, decimal, named
 
    ! The first thing found wrong with the arguments of a call, or what the library said about it.
    ! The message is of fixed length, as C's is: there may be no memory left for another. Undefined while there is none.
@@ -101,6 +101,24 @@ contains
       do i = 1, size(letters)
          text(i:i) = letters(i)
       end do
+   end function
+
+   ! The name of an array of a component, where `pattern` has a star for it.
+   pure recursive function named(pattern, component) result(name)
+      character(*), intent(in) :: pattern, component
+      character(:), allocatable :: name
+      integer :: at
+      at = index(pattern, "*")
+      name = pattern
+      if (at > 0) name = pattern(:at - 1)//component//pattern(at + 1:)
+   end function
+
+   pure recursive function decimal(n) result(text)
+      integer(c_int64_t), intent(in) :: n
+      character(:), allocatable :: text
+      character(20) :: digits
+      write (digits, "(i0)") n
+      text = trim(digits)
    end function
 
 end module

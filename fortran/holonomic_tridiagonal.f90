@@ -7,8 +7,8 @@ module holonomic_tridiagonal
                           hol_tridiagonal_inverse_entry, hol_tridiagonal_log_det, hol_tridiagonal_pivots, &
                           hol_tridiagonal_solve, HOL_ERR_DEGENERATE, HOL_ERR_INDEX, HOL_ERR_NOT_DEFINITE, &
                           HOL_ERR_NOT_FINITE, HOL_ERR_VALUE
-   use holonomic_place, only: decimal, enough, list_of, number_at
-   use holonomic_status, only: failure, settle
+   use holonomic_place, only: enough, list_of, number_at
+   use holonomic_status, only: decimal, failure, settle
    implicit none
    private
    public :: pivots, log_det, solve, inverse_entry, inverse_band, partition_of_masses, partition_of_equal_masses
