@@ -180,7 +180,7 @@ private:
 #ifdef _OPENMP
     bool is_shared(std::int64_t p) const {
         if (is_shared_molecule(plan_, p, n_threads_)) return true;
-        if (shared_store_ == 0) return false;
+        if (plan_.longest <= longest_lane) return false;
         const std::int64_t n = long_chain_bonds(chains_, plan_, p);
         return n > 0 && is_shared_chain(n);
     }
