@@ -13,15 +13,17 @@ using Rows = std::vector<std::int32_t>;
 // Rows by degree, in doubly linked lists: taking the first of the least degree and moving a row cost nothing.
 class Degrees {
 public:
-    explicit Degrees(std::size_t n) : first_(n + 1, -1), next_(n, -1), before_(n, -1), degree_(n, -1) {}
+    Degrees(std::size_t n, Ties ties)
+        : ties_(ties), first_(n + 1, -1), last_(n + 1, -1), next_(n, -1), before_(n, -1), degree_(n, -1) {}
 
     void insert(std::int32_t i, std::size_t degree) {
-        const std::int32_t d = static_cast<std::int32_t>(degree), head = first_[degree];
-        degree_[at(i)] = d;
-        before_[at(i)] = -1;
+        const bool front = ties_ == Ties::latest;
+        const std::int32_t head = front ? first_[degree] : -1, tail = front ? -1 : last_[degree];
+        degree_[at(i)] = static_cast<std::int32_t>(degree);
+        before_[at(i)] = tail;
         next_[at(i)] = head;
-        if (head >= 0) before_[at(head)] = i;
-        first_[degree] = i;
+        (tail < 0 ? first_[degree] : next_[at(tail)]) = i;
+        (head < 0 ? last_[degree] : before_[at(head)]) = i;
         least_ = std::min(least_, degree);
     }
     void remove(std::int32_t i) {
@@ -30,7 +32,10 @@ public:
             next_[at(b)] = n;
         else
             first_[at(degree_[at(i)])] = n;
-        if (n >= 0) before_[at(n)] = b;
+        if (n >= 0)
+            before_[at(n)] = b;
+        else
+            last_[at(degree_[at(i)])] = b;
     }
     std::int32_t take_least() {
         while (first_[least_] < 0) ++least_;
@@ -41,15 +46,16 @@ public:
 
 private:
     static std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
-    Rows first_, next_, before_, degree_;
+    const Ties ties_;
+    Rows first_, last_, next_, before_, degree_;
     std::size_t least_ = 0;
 };
 
 }  // namespace
 
-std::vector<std::int32_t> minimum_degree(std::vector<Rows> neighbours) {
+std::vector<std::int32_t> minimum_degree(std::vector<Rows> neighbours, Ties ties) {
     const std::size_t n = neighbours.size();
-    Degrees degrees(n);
+    Degrees degrees(n, ties);
     for (std::size_t i = n; i-- > 0;) degrees.insert(static_cast<std::int32_t>(i), neighbours[i].size());
     Rows order, seen(n, -1);
     order.reserve(n);

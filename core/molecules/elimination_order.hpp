@@ -9,8 +9,10 @@ namespace holonomic {
 
 // Minimum degree: the row with the fewest neighbours first, its neighbours then being coupled to each other.
 // `neighbours` of each row without itself; they are used up. Of rows of equal degree the one that got it last is taken,
-// so that the elimination goes along a chain of rows and not to and fro.
-std::vector<std::int32_t> minimum_degree(std::vector<std::vector<std::int32_t>> neighbours);
+// so that the elimination goes along a chain of rows and not to and fro; or the first one, so that it goes on
+// everywhere at once and few rows wait for many others.
+enum class Ties { latest, first };
+std::vector<std::int32_t> minimum_degree(std::vector<std::vector<std::int32_t>> neighbours, Ties ties = Ties::latest);
 
 // The pattern of the factor below its diagonal for rows in the order of elimination, column by column, rows ascending.
 // `neighbours` in the same numbers.

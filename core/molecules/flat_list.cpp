@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/molecules/elimination_order.hpp"
+#include "core/molecules/flat_order.hpp"
 
 namespace holonomic {
 
@@ -11,55 +12,22 @@ namespace {
 
 using Rows = std::vector<Numbers>;
 
-// A post-order of the tree in which the parent of a column is its first row. Of what hangs below a column the largest
-// part comes first, so that the rest stands next to it.
-Numbers post_order(const Fill &fill) {
-    const std::int32_t n = static_cast<std::int32_t>(fill.column_start.size()) - 1;
-    const auto parent = [&](std::int32_t k) {
-        return fill.column_start[at(k)] < fill.column_start[at(k) + 1] ? fill.row[at(fill.column_start[at(k)])] : -1;
-    };
-    Numbers size(at(n), 1), order, stack;
-    Rows children(at(n));
-    for (std::int32_t k = 0; k < n; ++k) {
-        if (parent(k) < 0) continue;
-        size[at(parent(k))] += size[at(k)];
-        children[at(parent(k))].push_back(k);
-    }
-    for (Numbers &list : children)  // the last one is visited first
-        std::stable_sort(list.begin(), list.end(),
-                         [&](std::int32_t a, std::int32_t b) { return size[at(a)] < size[at(b)]; });
-    for (std::int32_t root = 0; root < n; ++root) {
-        if (parent(root) >= 0) continue;
-        stack.assign(1, root);
-        while (!stack.empty()) {
-            Numbers &below = children[at(stack.back())];
-            if (below.empty()) {
-                order.push_back(stack.back());
-                stack.pop_back();
-            } else {
-                const std::int32_t next = below.back();
-                below.pop_back();
-                stack.push_back(next);
-            }
-        }
-    }
-    return order;
-}
-
 class FlatMaker {
 public:
     FlatMaker(const Schedule &s, FlatArrays &a) : s_(s), a_(a) {}
 
     void make() {
-        for (std::int32_t p = 0; p < s_.n_bonds; ++p) a_.bond_of.push_back(s_.bond_of[p]);
-        const Numbers order = post_order(fill_of(neighbours()));
-        for (std::int32_t p = 0; p < s_.n_bonds; ++p) a_.bond_of[at(p)] = s_.bond_of[order[at(p)]];
+        const Numbers order = bonds_from_the_leaves(s_);
+        a_.bond_of = order;
+        const Numbers rounds = in_rounds(fill_of(neighbours()));
+        for (std::int32_t p = 0; p < s_.n_bonds; ++p) a_.bond_of[at(p)] = order[at(rounds[at(p)])];
         number_atoms();
         Fill fill = fill_of(neighbours());
-        a_.column_start = std::move(fill.column_start);
+        start_ = std::move(fill.column_start);
         a_.row = std::move(fill.row);
         list_entries();
         list_updates();
+        list_runs();
         pad();
     }
 
@@ -89,8 +57,7 @@ private:
     std::int32_t entry(std::int32_t row, std::int32_t column) const {
         const auto begin = a_.row.begin();
         return static_cast<std::int32_t>(
-            std::lower_bound(begin + a_.column_start[at(column)], begin + a_.column_start[at(column) + 1], row) -
-            begin);
+            std::lower_bound(begin + start_[at(column)], begin + start_[at(column) + 1], row) - begin);
     }
     // In the order in which the bonds come to them.
     void number_atoms() {
@@ -108,7 +75,7 @@ private:
         for (std::int32_t p = 0; p < s_.n_bonds; ++p) {
             a_.from.push_back(4 * number_[at(s_.atom_i[a_.bond_of[at(p)]])]);
             a_.to.push_back(4 * number_[at(s_.atom_j[a_.bond_of[at(p)]])]);
-            for (std::int32_t e = a_.column_start[at(p)]; e < a_.column_start[at(p) + 1]; ++e) {
+            for (std::int32_t e = start_[at(p)]; e < start_[at(p) + 1]; ++e) {
                 a_.row_4.push_back(4 * a_.row[at(e)]);
                 a_.column_4.push_back(4 * p);
             }
@@ -121,9 +88,17 @@ private:
 
     void list_updates() {
         for (std::int32_t p = 0; p < s_.n_bonds; ++p) {
-            const std::int32_t first = a_.column_start[at(p)], end = a_.column_start[at(p) + 1];
+            const std::int32_t first = start_[at(p)], end = start_[at(p) + 1];
             for (std::int32_t i = first; i < end; ++i)
                 for (std::int32_t j = first; j < i; ++j) a_.update.push_back(entry(a_.row[at(i)], a_.row[at(j)]));
+        }
+    }
+
+    void list_runs() {
+        for (std::int32_t p = 0; p < s_.n_bonds; ++p) {
+            const std::int32_t entries = start_[at(p) + 1] - start_[at(p)];
+            if (a_.run.empty() || a_.run.back().entries != entries) a_.run.push_back({0, entries});
+            ++a_.run.back().columns;
         }
     }
 
@@ -144,7 +119,8 @@ private:
         l.bond_of = a_.bond_of.data();
         l.from = a_.from.data();
         l.to = a_.to.data();
-        l.column_start = a_.column_start.data();
+        l.run = a_.run.data();
+        l.n_runs = static_cast<std::int32_t>(a_.run.size());
         l.row = a_.row.data();
         l.row_4 = a_.row_4.data();
         l.column_4 = a_.column_4.data();
@@ -155,6 +131,7 @@ private:
     const Schedule &s_;
     FlatArrays &a_;
     Numbers number_;  // of local atoms
+    Numbers start_;   // of the columns' entries
 };
 
 }  // namespace

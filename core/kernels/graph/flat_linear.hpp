@@ -112,49 +112,41 @@ struct FlatLinear {
     // Right-hand sides with it.
     __attribute__((noinline)) void eliminate() const {
         const int32_t *update = s.update;
-        for (int32_t k = 0; k < s.n_bonds; ++k) {
-            const int32_t first = s.column_start[k], count = s.column_start[k + 1] - first;
+        for_columns_up(s, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
             const int32_t *const row = s.row + first;
             double *const l = lower + first;
             const double inverse = r[k] = 1 / E[k], y = t[k];
-            choose_few<known_entries>(count, [&](auto known) HOL_FORCED {
-                const int32_t n = known > 0 ? known : count;
+            HOL_UNROLL
+            for (int32_t i = 0; i < n; ++i) {
+                const double li = l[i], lr = li * inverse;
                 HOL_UNROLL
-                for (int32_t i = 0; i < n; ++i) {
-                    const double li = l[i], lr = li * inverse;
-                    HOL_UNROLL
-                    for (int32_t j = 0; j < i; ++j, ++update)  // l of j is multiplied already
-                        lower[*update] = mul_add(-li, l[j], lower[*update]);
-                    E[row[i]] = mul_add(-li, lr, E[row[i]]);
-                    t[row[i]] = mul_add(-lr, y, t[row[i]]);
-                    l[i] = lr;
-                }
-            });
-        }
+                for (int32_t j = 0; j < i; ++j, ++update)  // l of j is multiplied already
+                    lower[*update] = mul_add(-li, l[j], lower[*update]);
+                E[row[i]] = mul_add(-li, lr, E[row[i]]);
+                t[row[i]] = mul_add(-lr, y, t[row[i]]);
+                l[i] = lr;
+            }
+        });
     }
 
     // Back, with the part of R that elimination and substitutions have.
     __attribute__((noinline)) void substitute_back() const {
-        for (int32_t k = s.n_bonds - 1; k >= 0; --k) {
-            const int32_t first = s.column_start[k], count = s.column_start[k + 1] - first;
+        for_columns_down(s, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
             const int32_t *const row = s.row + first;
             const double *const l = lower + first;
             double x = t[k] * r[k], sum = 0;
-            choose_few<known_entries>(count, [&](auto known) HOL_FORCED {
-                const int32_t n = known > 0 ? known : count;
-                HOL_UNROLL
-                for (int32_t e = 0; e < n; ++e) {
-                    const double part = l[e] * t[row[e]];
-                    x = x - part;
-                    sum = sum + abs(part);
-                }
-                const double all = E[k] * (abs(x) + sum);
-                back[k] = all;
-                HOL_UNROLL
-                for (int32_t e = 0; e < n; ++e) back[row[e]] = mul_add(abs(l[e]), all, back[row[e]]);
-            });
+            HOL_UNROLL
+            for (int32_t e = 0; e < n; ++e) {
+                const double part = l[e] * t[row[e]];
+                x = x - part;
+                sum = sum + abs(part);
+            }
+            const double all = E[k] * (abs(x) + sum);
+            back[k] = all;
+            HOL_UNROLL
+            for (int32_t e = 0; e < n; ++e) back[row[e]] = mul_add(abs(l[e]), all, back[row[e]]);
             t[k] = x;
-        }
+        });
     }
     // Another right-hand side, in t.
     __attribute__((noinline)) void solve_again() const {

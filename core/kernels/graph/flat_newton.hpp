@@ -156,28 +156,24 @@ struct FlatNewton {
 
     __attribute__((noinline)) void eliminate() {
         const int32_t *update = s.update;
-        for (int32_t k = 0; k < s.n_bonds; ++k) {
-            const int32_t first = s.column_start[k], count = s.column_start[k + 1] - first;
+        for_columns_up(s, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
             const int32_t *const row = s.row + first;
             double *const l = lower + first, *const u = upper + first;
             const double inverse = r[k] = 1 / r[k], y = t[k];
-            choose_few<known_entries>(count, [&](auto known) HOL_FORCED {
-                const int32_t n = known > 0 ? known : count;
+            HOL_UNROLL
+            for (int32_t a = 0; a < n; ++a) {
+                const double la = l[a], ua = u[a], ur = ua * inverse;
                 HOL_UNROLL
-                for (int32_t a = 0; a < n; ++a) {
-                    const double la = l[a], ua = u[a], ur = ua * inverse;
-                    HOL_UNROLL
-                    for (int32_t c = 0; c < a; ++c, ++update) {  // l and u of c are multiplied already
-                        lower[*update] = mul_add(-la, u[c], lower[*update]);
-                        upper[*update] = mul_add(-ua, l[c], upper[*update]);
-                    }
-                    r[row[a]] = mul_add(-la, ur, r[row[a]]);
-                    l[a] = la * inverse;
-                    u[a] = ur;
-                    t[row[a]] = mul_add(-l[a], y, t[row[a]]);
+                for (int32_t c = 0; c < a; ++c, ++update) {  // l and u of c are multiplied already
+                    lower[*update] = mul_add(-la, u[c], lower[*update]);
+                    upper[*update] = mul_add(-ua, l[c], upper[*update]);
                 }
-            });
-        }
+                r[row[a]] = mul_add(-la, ur, r[row[a]]);
+                l[a] = la * inverse;
+                u[a] = ur;
+                t[row[a]] = mul_add(-l[a], y, t[row[a]]);
+            }
+        });
     }
 
     // Corrections for what is left, in t, added to tau.

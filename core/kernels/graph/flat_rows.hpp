@@ -96,35 +96,52 @@ HOL_INLINE Row dots_of(const Lanes3 &a, const Lanes3 &b) {
 // Most columns have few entries: up to three are known to the compiler.
 constexpr int32_t known_entries = 3;
 
-// Another right-hand side, in t: up along the columns of a factor with a diagonal of ones, and down with the pivots and
-// the factor above the diagonal, which is the same one where the matrix is symmetric.
-HOL_INLINE void solve_up(const FlatList &s, const double *lower, double *t) {
-    for (int32_t k = 0; k < s.n_bonds; ++k) {
-        const int32_t first = s.column_start[k], count = s.column_start[k + 1] - first;
-        const int32_t *const row = s.row + first;
-        const double *const l = lower + first, y = t[k];
-        choose_few<known_entries>(count, [&](auto known) HOL_FORCED {
-            const int32_t n = known > 0 ? known : count;
-            HOL_UNROLL
-            for (int32_t e = 0; e < n; ++e) t[row[e]] = mul_add(-l[e], y, t[row[e]]);
+// Calls body(k, first, n) for all columns, up or down; first is that of their entries, n is a constant where it is
+// small.
+template <class Body>
+HOL_INLINE void for_columns_up(const FlatList &s, const Body &body) {
+    int32_t k = 0, first = 0;
+    for (int32_t r = 0; r < s.n_runs; ++r) {
+        const int32_t end = k + s.run[r].columns, entries = s.run[r].entries;
+        choose_few<known_entries>(entries, [&](auto known) HOL_FORCED {
+            const int32_t n = known > 0 ? known : entries;
+            for (; k < end; ++k, first += n) body(k, first, n);
         });
     }
 }
+template <class Body>
+HOL_INLINE void for_columns_down(const FlatList &s, const Body &body) {
+    int32_t k = s.n_bonds, first = s.n_entries;
+    for (int32_t r = s.n_runs; r-- > 0;) {
+        const int32_t start = k - s.run[r].columns, entries = s.run[r].entries;
+        choose_few<known_entries>(entries, [&](auto known) HOL_FORCED {
+            const int32_t n = known > 0 ? known : entries;
+            while (k > start) body(--k, first -= n, n);
+        });
+    }
+}
+
+// Another right-hand side, in t: up along the columns of a factor with a diagonal of ones, and down with the pivots and
+// the factor above the diagonal, which is the same one where the matrix is symmetric.
+HOL_INLINE void solve_up(const FlatList &s, const double *lower, double *t) {
+    for_columns_up(s, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
+        const int32_t *const row = s.row + first;
+        const double *const l = lower + first, y = t[k];
+        HOL_UNROLL
+        for (int32_t e = 0; e < n; ++e) t[row[e]] = mul_add(-l[e], y, t[row[e]]);
+    });
+}
 template <class Each>
 HOL_INLINE void solve_down(const FlatList &s, const double *upper, const double *r, double *t, const Each &each) {
-    for (int32_t k = s.n_bonds - 1; k >= 0; --k) {
-        const int32_t first = s.column_start[k], count = s.column_start[k + 1] - first;
+    for_columns_down(s, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
         const int32_t *const row = s.row + first;
         const double *const u = upper + first;
         double x = t[k] * r[k];
-        choose_few<known_entries>(count, [&](auto known) HOL_FORCED {
-            const int32_t n = known > 0 ? known : count;
-            HOL_UNROLL
-            for (int32_t e = n - 1; e >= 0; --e) x = mul_add(-u[e], t[row[e]], x);
-        });
+        HOL_UNROLL
+        for (int32_t e = n - 1; e >= 0; --e) x = mul_add(-u[e], t[row[e]], x);
         t[k] = x;
         each(k, x);
-    }
+    });
 }
 
 // A local atom's row.

@@ -1,0 +1,147 @@
+#include "core/molecules/flat_order.hpp"
+
+#include <algorithm>
+#include <queue>
+#include <utility>
+
+namespace holonomic {
+
+namespace {
+
+using Rows = std::vector<Numbers>;
+
+std::int32_t entries_of(const Fill &fill, std::int32_t k) {
+    return fill.column_start[at(k) + 1] - fill.column_start[at(k)];
+}
+// Of a column in the elimination's tree; -1: a root.
+std::int32_t parent_of(const Fill &fill, std::int32_t k) {
+    return entries_of(fill, k) > 0 ? fill.row[at(fill.column_start[at(k)])] : -1;
+}
+
+// A post-order of the tree in which the parent of a column is its first row. Of what hangs below a column the largest
+// part comes first, so that the rest stands next to it.
+Numbers post_order(const Fill &fill) {
+    const std::int32_t n = static_cast<std::int32_t>(fill.column_start.size()) - 1;
+    const auto parent = [&](std::int32_t k) { return parent_of(fill, k); };
+    Numbers size(at(n), 1), order, stack;
+    Rows children(at(n));
+    for (std::int32_t k = 0; k < n; ++k) {
+        if (parent(k) < 0) continue;
+        size[at(parent(k))] += size[at(k)];
+        children[at(parent(k))].push_back(k);
+    }
+    for (Numbers &list : children)  // the last one is visited first
+        std::stable_sort(list.begin(), list.end(),
+                         [&](std::int32_t a, std::int32_t b) { return size[at(a)] < size[at(b)]; });
+    for (std::int32_t root = 0; root < n; ++root) {
+        if (parent(root) >= 0) continue;
+        stack.assign(1, root);
+        while (!stack.empty()) {
+            Numbers &below = children[at(stack.back())];
+            if (below.empty()) {
+                order.push_back(stack.back());
+                stack.pop_back();
+            } else {
+                const std::int32_t next = below.back();
+                below.pop_back();
+                stack.push_back(next);
+            }
+        }
+    }
+    return order;
+}
+
+// That order in rounds of columns that do not wait for each other, so that a processor can work on them at once: those
+// farthest from the root among the next ones. Within a round by the number of entries.
+class Rounds {
+public:
+    Rounds(const Fill &fill, Numbers order)
+        : fill_(fill), order_(std::move(order)), depth_(order_.size()), waits_for_(order_.size()),
+          place_(order_.size()), done_(order_.size()) {
+        for (std::size_t p = order_.size(); p-- > 0;) {
+            const std::int32_t k = order_[p], parent = parent_of(fill, k);
+            if (parent < 0) continue;
+            depth_[at(k)] = depth_[at(parent)] + 1;
+            ++waits_for_[at(parent)];
+        }
+    }
+
+    Numbers make() {
+        Numbers made, round;
+        for (std::size_t p = 0; p < order_.size(); ++p) place_[at(order_[p])] = static_cast<std::int32_t>(p);
+        while (made.size() < order_.size()) {
+            advance();
+            round.clear();
+            while (!ready_.empty() && round.size() < most_in_round) {
+                const std::size_t place = static_cast<std::size_t>(-ready_.top().second);
+                ready_.pop();
+                round.push_back(order_[place]);
+                done_[place] = 1;
+            }
+            std::stable_sort(round.begin(), round.end(), [&](std::int32_t a, std::int32_t b) {
+                return entries_of(fill_, a) < entries_of(fill_, b);
+            });
+            made.insert(made.end(), round.begin(), round.end());
+            for (const std::int32_t k : round) release(parent_of(fill_, k));
+        }
+        return made;
+    }
+
+private:
+    static constexpr std::size_t most_in_round = 32, columns_ahead = 8192;
+
+    // To the first column that is not done, and as far ahead of it as may be looked.
+    void advance() {
+        while (done_[first_]) ++first_;
+        for (; seen_ < std::min(order_.size(), first_ + columns_ahead); ++seen_)
+            if (waits_for_[at(order_[seen_])] == 0) push(seen_);
+    }
+    void push(std::size_t place) { ready_.emplace(depth_[at(order_[place])], -static_cast<std::int64_t>(place)); }
+    void release(std::int32_t k) {
+        if (k >= 0 && --waits_for_[at(k)] == 0 && at(place_[at(k)]) < seen_) push(at(place_[at(k)]));
+    }
+
+    const Fill &fill_;
+    const Numbers order_;
+    Numbers depth_, waits_for_, place_;  // by column
+    std::vector<unsigned char> done_;    // by place in order_
+    std::size_t first_ = 0, seen_ = 0;
+    // By depth, of equally deep ones the first.
+    std::priority_queue<std::pair<std::int32_t, std::int64_t>> ready_;
+};
+
+}  // namespace
+
+Numbers bonds_from_the_leaves(const Schedule &s) {
+    const Lists bonds =
+        invert(s.n_atoms, s.n_bonds, [&](std::int32_t k, int end) { return (end ? s.atom_j : s.atom_i)[k]; });
+    Numbers order, leaves, left(at(s.n_atoms));
+    std::vector<unsigned char> gone(at(s.n_bonds));
+    for (std::int32_t i = 0; i < s.n_atoms; ++i)
+        if ((left[at(i)] = bonds.size(i)) == 1) leaves.push_back(i);
+    for (std::size_t next = 0; next < leaves.size(); ++next)
+        for (const std::int32_t *k = bonds.begin(leaves[next]); k != bonds.end(leaves[next]); ++k) {
+            if (gone[at(*k)]) continue;
+            gone[at(*k)] = 1;
+            order.push_back(*k);
+            const std::int32_t other = s.atom_i[*k] == leaves[next] ? s.atom_j[*k] : s.atom_i[*k];
+            if (--left[at(other)] == 1) leaves.push_back(other);
+        }
+    Numbers core, number(at(s.n_bonds), -1);
+    for (std::int32_t k = 0; k < s.n_bonds; ++k) {
+        if (gone[at(k)]) continue;
+        number[at(k)] = static_cast<std::int32_t>(core.size());
+        core.push_back(k);
+    }
+    Rows neighbours(core.size());
+    for (std::size_t p = 0; p < core.size(); ++p)
+        for (const std::int32_t i : {s.atom_i[core[p]], s.atom_j[core[p]]})
+            for (const std::int32_t *l = bonds.begin(i); l != bonds.end(i); ++l)
+                if (*l != core[p] && !gone[at(*l)]) neighbours[p].push_back(number[at(*l)]);
+    for (const std::int32_t p : minimum_degree(std::move(neighbours), Ties::first)) order.push_back(core[at(p)]);
+    return order;
+}
+
+Numbers in_rounds(const Fill &fill) { return Rounds(fill, post_order(fill)).make(); }
+
+}  // namespace holonomic

@@ -1,0 +1,21 @@
+// The order in which the bonds of one large molecule are eliminated.
+#ifndef HOLONOMIC_FLAT_ORDER_HPP
+#define HOLONOMIC_FLAT_ORDER_HPP
+
+#include "core/kernels/graph/schedule.hpp"
+#include "core/molecules/elimination_order.hpp"
+#include "core/molecules/lists.hpp"
+
+namespace holonomic {
+
+// The bonds of trees as they come free when all atoms with one bond are taken away, and again, so that no bond waits
+// for more others than it must; then those of the core, by minimum degree.
+Numbers bonds_from_the_leaves(const Schedule &s);
+
+// The columns of a factor in another order with the same fill: what depends on each other stands near each other, a
+// post-order of the elimination's tree, but in rounds of columns that do not wait for each other, so that a processor
+// works on them at once. Within a round columns of as many entries follow each other.
+Numbers in_rounds(const Fill &fill);
+
+}  // namespace holonomic
+#endif
