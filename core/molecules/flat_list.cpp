@@ -136,6 +136,13 @@ private:
 
 }  // namespace
 
+std::size_t FlatArrays::bytes() const {
+    std::size_t count = 0;
+    for (const Numbers *numbers : {&atom_of, &bond_of, &from, &to, &row, &row_4, &column_4, &mass, &update})
+        count += numbers->capacity();
+    return count * sizeof(std::int32_t) + run.capacity() * sizeof(FlatList::Run);
+}
+
 bool fits_flat_list(const Schedule &s) {
     constexpr std::int64_t most_updates = 16;  // for each bond
     Numbers bonds(at(s.n_atoms));

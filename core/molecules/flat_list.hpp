@@ -2,6 +2,9 @@
 #ifndef HOLONOMIC_FLAT_LIST_HPP
 #define HOLONOMIC_FLAT_LIST_HPP
 
+#include <cstddef>
+#include <vector>
+
 #include "core/kernels/graph/flat_list.hpp"
 #include "core/kernels/graph/schedule.hpp"
 #include "core/molecules/lists.hpp"
@@ -12,6 +15,8 @@ struct FlatArrays {
     Numbers atom_of, bond_of, from, to, row, row_4, column_4, mass, update;
     std::vector<FlatList::Run> run;
     FlatList list;
+
+    std::size_t bytes() const;
 };
 
 // Whether the list is not much longer than the molecule: an atom of n bonds brings n^3 / 6 updates.

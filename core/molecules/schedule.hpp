@@ -2,6 +2,7 @@
 #ifndef HOLONOMIC_SCHEDULE_HPP
 #define HOLONOMIC_SCHEDULE_HPP
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 
@@ -14,6 +15,9 @@ namespace holonomic {
 // Throws std::bad_alloc, and std::length_error where the core fills up to 2^31 entries.
 std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
                                               const bool *fixed);
+
+// Memory that it occupies, in bytes.
+std::size_t bytes_of(const Schedule &s);
 
 }  // namespace holonomic
 #endif

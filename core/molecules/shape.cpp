@@ -16,14 +16,6 @@ bool is(const Shape &shape, std::int32_t n_atoms, std::int32_t n_bonds, const st
            std::equal(shape.fixed.begin(), shape.fixed.end(), fixed);
 }
 
-// What the arrays of a schedule take.
-std::size_t bytes_of(const Schedule &s) {
-    const auto n = [](std::int64_t count) { return static_cast<std::size_t>(count) * sizeof(std::int32_t); };
-    const std::int64_t n_updates = s.n_core > 0 ? s.update_start[s.n_core] : 0;
-    return sizeof s + 4 * n(s.n_atoms) + 4 * n(s.n_bonds) + 2 * n(s.n_tree) + 7 * n(s.n_core) + n(s.n_entries) +
-           n(n_updates) + static_cast<std::size_t>(s.n_atoms);
-}
-
 }  // namespace
 
 std::int32_t Shapes::find(Form form, std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,

@@ -1,6 +1,6 @@
 /**
- * Molecules of thousands of bonds with cycles, which are eliminated along one list: positions, and what is done where
- * multipliers can't be proven right without a correction.
+ * Molecules of thousands of bonds that are eliminated along one list: positions, of trees too, and what is done where
+ * multipliers of those with cycles can't be proven right without a correction.
  */
 #include "check.h"
 #include "large.h"
@@ -12,6 +12,14 @@ static int64_t size_of_test(void)
     return quick_run() ? 2500 : 20000;
 }
 
+/** With cycles, a random tree, and a tree of arms. */
+static molecule example(int which)
+{
+    return which == 0   ? large_rings(size_of_test())
+           : which == 1 ? large_segments(size_of_test(), 1, 0, 1)
+                        : large_segments(size_of_test(), 300, 0, 2);
+}
+
 /** |d.d - a^2| / a^2 of a bond. */
 static double error_of(const molecule *m, const double *r, int64_t k)
 {
@@ -21,10 +29,8 @@ static double error_of(const molecule *m, const double *r, int64_t k)
     return (double)(fabsl(sum) / (m->length[k] * m->length[k]));
 }
 
-static void bonds_get_their_lengths_by_the_forces_that_lambda_says(void **state)
+static void get_their_lengths(molecule m)
 {
-    (void)state;
-    molecule m = large_rings(size_of_test());
     hol_chains *chains = large_chains(&m);
     const size_t n = (size_t)m.n_bonds, size = 3 * (size_t)m.n_atoms;
     double *start = molecule_drifted(&m, dt), *r = copy_of(start, size), *v = copy_of(m.v, size);
@@ -56,11 +62,14 @@ static void bonds_get_their_lengths_by_the_forces_that_lambda_says(void **state)
     hol_chains_destroy(chains);
     molecule_free(&m);
 }
-
-static void the_worst_bond_is_reported(void **state)
+static void bonds_get_their_lengths_by_the_forces_that_lambda_says(void **state)
 {
     (void)state;
-    molecule m = large_rings(size_of_test());
+    for (int which = 0; which < 3; ++which) get_their_lengths(example(which));
+}
+
+static void report_the_worst(molecule m)
+{
     hol_chains *chains = large_chains(&m);
     for (int turn = 0; turn < 2; ++turn) { /* moved, and near enough as they are */
         double *r = molecule_drifted(&m, dt), worst = 0;
@@ -79,11 +88,14 @@ static void the_worst_bond_is_reported(void **state)
     hol_chains_destroy(chains);
     molecule_free(&m);
 }
-
-static void order_threads_and_layout_change_no_bit_of_positions(void **state)
+static void the_worst_bond_is_reported(void **state)
 {
     (void)state;
-    molecule m = large_rings(size_of_test());
+    for (int which = 0; which < 3; ++which) report_the_worst(example(which));
+}
+
+static void change_no_bit(molecule m)
+{
     hol_chains *chains = large_chains(&m);
     const size_t n = (size_t)m.n_bonds, size = 3 * (size_t)m.n_atoms;
     double *start = molecule_drifted(&m, dt), *r = copy_of(start, size), *other = copy_of(start, size);
@@ -110,6 +122,11 @@ static void order_threads_and_layout_change_no_bit_of_positions(void **state)
     free(start), free(r), free(other), free(lambda), free(turned), free(components);
     hol_chains_destroy(chains);
     molecule_free(&m);
+}
+static void order_threads_and_layout_change_no_bit_of_positions(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 3; ++which) change_no_bit(example(which));
 }
 
 /** Where a single atom is pulled, most equations have no terms but what is left of that pull. */
