@@ -13,6 +13,7 @@ namespace graph {
 template <class V>
 struct Newton {
     typedef V Value;
+    static constexpr bool by_length = true;
     NewtonSystem<V> x;
     V *spare;    // for the core's factors
     V *lengths;  // least and largest
@@ -52,16 +53,25 @@ struct Newton {
         V worst, sum;
         V largest() const { return mul_add(sum, V{}, worst); }
     };
-    // Puts half of D.D - a^2 into t of the bond.
+    // Puts what is left of a bond's length into its t, for D as given; first: for the factors that will be made of it.
+    template <bool first>
     HOL_FORCED static void measure(NewtonRow<V> &row, const Vector3<V> &D, Errors &errors) {
-        const V sigma = excess(D, row.a2);
-        errors.worst = max(abs(sigma) * row.per_a2, errors.worst);
+        const V sigma = excess(D, row.a2), e = sigma * row.per_a2;
+        errors.worst = max(abs(e), errors.worst);
         errors.sum = errors.sum + sigma;
-        row.t = 0.5 * sigma;
+        row.t = first ? row.first_left(sigma, e) : row.left(sigma, e);
     }
 
     // Makes factors for the bonds in new_D, in the lanes of `which`.
     void factorize(MaskOf<V> which) {
+        Errors unused = {};
+        for (int32_t k = 0; k < x.s.n_bonds; ++k) {
+            NewtonRow<V> &row = x.row[k];
+            const V stretch = row.stretch, t = row.t;
+            measure<true>(row, x.new_D[k], unused);
+            row.stretch = select(which, row.stretch, stretch);
+            row.t = select(which, row.t, t);
+        }
         if (bits(which) == (1u << Width<V>::lanes) - 1)
             factorize<true>(which);
         else
@@ -125,7 +135,7 @@ struct Newton {
         Errors errors = {};
         const auto bond = [&](int32_t k, int32_t from, int32_t to) HOL_FORCED {
             x.new_D[k] = x.row[k].D + (x.move[to] - x.move[from]);
-            measure(x.row[k], x.new_D[k], errors);
+            measure<false>(x.row[k], x.new_D[k], errors);
         };
         for (int32_t k = 0; k < s.n_tree; ++k) bond(k, s.parent[k], k);
         for (int32_t k = s.n_tree; k < s.n_bonds; ++k) bond(k, s.from[k - s.n_tree], s.to[k - s.n_tree]);
@@ -138,14 +148,14 @@ struct Newton {
     }
 
     // Returns the relative error of one bond, as it was measured last.
-    V left_of(int32_t k) const { return abs(2.0 * x.row[k].t) * x.row[k].per_a2; }
+    V left_of(int32_t k) const { return abs(excess(x.new_D[k], x.row[k].a2)) * x.row[k].per_a2; }
 
     // Takes D as it stands: the first factors are for these bonds. Returns the largest error.
     V open() {
         Errors errors = {};
         for (int32_t k = 0; k < x.s.n_bonds; ++k) {
             x.new_D[k] = x.row[k].D;
-            measure(x.row[k], x.row[k].D, errors);
+            measure<true>(x.row[k], x.row[k].D, errors);
         }
         return errors.largest();
     }

@@ -18,11 +18,27 @@ template <class V>
 struct NewtonRow {
     Vector3<V> D, b;
     V tau;       // the multiplier so far, 2 dt^2 lambda
-    V t;         // what is left of the length, (D.D - a^2) / 2 and y; then u
+    V t;         // what is left of the length, and y; then u
     V up, down;  // what the bond above gets of y, and this one of its correction
     V r;         // 1 / pivot
     V E;         // as in BondRow
     V a2, per_a2;
+    V stretch;  // |D_0| / 2 a of the bond that the factors were made of
+
+    // What is left of the length, e = D.D / a^2 - 1. Not (D.D - a^2) / 2: a change of |D|, which is D/|D| . dD, is
+    // nearly what it was when the factors were made, as bonds are stretched more than they turn; that of D.D grows with
+    // |D|. So with the factors of D_0, of which row k is D_0 . dD, it is |D_0| (|D| - a), to second order in e
+    // unless the bond is far too long.
+    HOL_FORCED V left(V sigma, V e) const {
+        return (stretch * sigma) * max(mul_add(Width<V>::all(-0.25), e, Width<V>::all(1)), Width<V>::all(0.5));
+    }
+    // Where the factors will be those of this D; to third order.
+    HOL_FORCED V first_left(V sigma, V excess) {
+        const V one = Width<V>::all(1), eighth = Width<V>::all(0.125), quarter = Width<V>::all(0.25);
+        const V e = max(min(excess, Width<V>::all(0.5)), Width<V>::all(-0.5));
+        stretch = 0.5 * mul_add(mul_add(-eighth, e, Width<V>::all(0.5)), e, one);
+        return (0.5 * sigma) * mul_add(mul_add(-eighth, e, quarter), e, one);
+    }
 };
 
 template <class V>

@@ -174,7 +174,7 @@ struct PositionsBlock {
         largest_coordinate = load_bonds<layout>(newton, call, at);
         if (call.guess) load_guess();
         const Limits<V> limits(call, largest_coordinate, a_min);
-        const Solved<V> out = iterate<V, false>(newton, limits, call, in_use);
+        const Solved<V> out = iterate<V, false, System::by_length>(newton, limits, call, in_use);
         const MaskOf<V> coarse = out.converged & coarse_moves();
         const unsigned moved = bits(out.converged & ~coarse), good = moved | bits(out.untouched);
         if (call.report) note_worst(good, out.error);

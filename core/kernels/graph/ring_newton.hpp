@@ -15,6 +15,7 @@ namespace graph {
 template <class V>
 struct RingNewton {
     typedef V Value;
+    static constexpr bool by_length = false;
     // What is shared with the last bond.
     struct Closure {
         V l, c;
