@@ -61,11 +61,11 @@ private:
     }
     // In the order in which the bonds come to them.
     void number_atoms() {
-        number_.assign(at(s_.n_atoms), -1);
+        a_.place_of.assign(at(s_.n_atoms), -1);
         for (const std::int32_t k : a_.bond_of)
             for (const std::int32_t i : {s_.atom_i[k], s_.atom_j[k]}) {
-                if (number_[at(i)] >= 0) continue;
-                number_[at(i)] = static_cast<std::int32_t>(a_.atom_of.size());
+                if (a_.place_of[at(i)] >= 0) continue;
+                a_.place_of[at(i)] = static_cast<std::int32_t>(a_.atom_of.size());
                 a_.atom_of.push_back(i);
             }
     }
@@ -73,8 +73,8 @@ private:
 
     void list_entries() {
         for (std::int32_t p = 0; p < s_.n_bonds; ++p) {
-            a_.from.push_back(4 * number_[at(s_.atom_i[a_.bond_of[at(p)]])]);
-            a_.to.push_back(4 * number_[at(s_.atom_j[a_.bond_of[at(p)]])]);
+            a_.from.push_back(4 * a_.place_of[at(s_.atom_i[a_.bond_of[at(p)]])]);
+            a_.to.push_back(4 * a_.place_of[at(s_.atom_j[a_.bond_of[at(p)]])]);
             for (std::int32_t e = start_[at(p)]; e < start_[at(p) + 1]; ++e) {
                 a_.row_4.push_back(4 * a_.row[at(e)]);
                 a_.column_4.push_back(4 * p);
@@ -82,7 +82,7 @@ private:
         }
         a_.mass.assign(a_.row.size(), 2 * s_.n_atoms);
         for_pairs([&](std::int32_t p, std::int32_t q, std::int32_t i) {
-            a_.mass[at(entry(p, q))] = 2 * number_[at(i)] + (points_to(p, i) == points_to(q, i) ? 1 : 0);
+            a_.mass[at(entry(p, q))] = 2 * a_.place_of[at(i)] + (points_to(p, i) == points_to(q, i) ? 1 : 0);
         });
     }
 
@@ -116,6 +116,7 @@ private:
         a_.column_4.resize(entries, 0);
         a_.mass.resize(entries, 2 * s_.n_atoms);
         l.atom_of = a_.atom_of.data();
+        l.place_of = a_.place_of.data();
         l.bond_of = a_.bond_of.data();
         l.from = a_.from.data();
         l.to = a_.to.data();
@@ -130,15 +131,14 @@ private:
 
     const Schedule &s_;
     FlatArrays &a_;
-    Numbers number_;  // of local atoms
-    Numbers start_;   // of the columns' entries
+    Numbers start_;  // of the columns' entries
 };
 
 }  // namespace
 
 std::size_t FlatArrays::bytes() const {
     std::size_t count = 0;
-    for (const Numbers *numbers : {&atom_of, &bond_of, &from, &to, &row, &row_4, &column_4, &mass, &update})
+    for (const Numbers *numbers : {&atom_of, &place_of, &bond_of, &from, &to, &row, &row_4, &column_4, &mass, &update})
         count += numbers->capacity();
     return count * sizeof(std::int32_t) + run.capacity() * sizeof(FlatList::Run);
 }

@@ -12,7 +12,7 @@
 namespace holonomic {
 
 struct FlatArrays {
-    Numbers atom_of, bond_of, from, to, row, row_4, column_4, mass, update;
+    Numbers atom_of, place_of, bond_of, from, to, row, row_4, column_4, mass, update;
     std::vector<FlatList::Run> run;
     FlatList list;
 

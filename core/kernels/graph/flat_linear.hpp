@@ -57,8 +57,8 @@ struct FlatLinear {
     template <Layout layout, int terms>
     __attribute__((noinline)) void load(const AtomArray &coordinates) const {
         for (int32_t i = 0; i < s.n_atoms; ++i) {
-            mass[2 * i + 1] = lane.w[s.atom_of[i]];
-            mass[2 * i] = -mass[2 * i + 1];
+            mass[2 * s.place_of[i]] = -lane.w[i];
+            mass[2 * s.place_of[i] + 1] = lane.w[i];
         }
         mass[2 * s.n_atoms] = 0;
         read_atoms<layout>(coordinates, at, s, pull);
@@ -66,7 +66,7 @@ struct FlatLinear {
         if (terms & (squares | rates)) read_atoms<layout>(*in.v, at, s, terms & rates ? a : v);
         if (terms & pulls) {
             for (int32_t i = 0; i < s.n_atoms; ++i)
-                a[i] = in_row(mass[2 * i + 1]) * read_row_of<layout>(*in.f, at, s.atom_of[i]);
+                a[s.place_of[i]] = in_row(lane.w[i]) * read_row_of<layout>(*in.f, at, i);
         } else if (!(terms & rates)) {
             for (int32_t i = 0; i < s.n_atoms; ++i) a[i] = Row{};
         }

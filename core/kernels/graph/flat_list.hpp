@@ -12,8 +12,9 @@ namespace holonomic {
 // bonds come to them. Arrays over bonds and entries are padded with inert ones to multiples of four.
 struct FlatList {
     int32_t n_atoms, n_bonds, n_entries;
-    const int32_t *atom_of;  // [n_atoms] local atom
-    const int32_t *bond_of;  // [n_bonds] local bond; inert ones have bond 0
+    const int32_t *atom_of;   // [n_atoms] local atom
+    const int32_t *place_of;  // [n_atoms] and back
+    const int32_t *bond_of;   // [n_bonds] local bond; inert ones have bond 0
     // Bond k points from one atom to another. Four times their numbers, which saves a shift where rows are read.
     const int32_t *from, *to;
     // Off-diagonal entries of the factor, column by column: rows ascending, all > k in column k. The columns of a run

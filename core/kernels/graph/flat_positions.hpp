@@ -29,8 +29,8 @@ struct FlatPositions {
     __attribute__((noinline)) void load() {
         const FlatList &s = newton.s;
         for (int32_t i = 0; i < s.n_atoms; ++i) {
-            newton.mass[2 * i + 1] = lane.w[s.atom_of[i]];
-            newton.mass[2 * i] = -newton.mass[2 * i + 1];
+            newton.mass[2 * s.place_of[i]] = -lane.w[i];
+            newton.mass[2 * s.place_of[i] + 1] = lane.w[i];
         }
         newton.mass[2 * s.n_atoms] = 0;
         const Rows r = newton.new_D;  // until the bonds are made
@@ -77,13 +77,12 @@ struct FlatPositions {
     __attribute__((noinline)) void write_atoms() const {
         const double per_dt = 1 / call.dt;
         for (int32_t i = 0; i < newton.s.n_atoms; ++i) {
-            const int32_t atom = newton.s.atom_of[i];
-            if (schedule.fixed[atom]) continue;
-            const Row &move = newton.moves[i];
-            write<layout>(call.r, at, atom, vector_of(read_row_of<layout>(call.r, at, atom) + move), 1);
+            if (schedule.fixed[i]) continue;
+            const Row &move = newton.moves[newton.s.place_of[i]];
+            write<layout>(call.r, at, i, vector_of(read_row_of<layout>(call.r, at, i) + move), 1);
             if (call.v.x)
-                write<layout>(call.v, at, atom,
-                              vector_of(multiply_add(in_row(per_dt), move, read_row_of<layout>(call.v, at, atom))), 1);
+                write<layout>(call.v, at, i,
+                              vector_of(multiply_add(in_row(per_dt), move, read_row_of<layout>(call.v, at, i))), 1);
         }
     }
 

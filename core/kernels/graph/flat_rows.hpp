@@ -156,10 +156,11 @@ HOL_INLINE Row read_row_of(const AtomArray &array, const Atoms<double> &at, int3
 #endif
     return row_of(read<layout>(array, at, i));
 }
-// The rows of all atoms of a molecule, in the order of the list.
+// The rows of all atoms of a molecule, in the order of the list. They are read, and written elsewhere, in the order in
+// which they stand in memory.
 template <Layout layout>
 HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<double> &at, const FlatList &s, const Rows &to) {
-    for (int32_t i = 0; i < s.n_atoms; ++i) to[i] = read_row_of<layout>(array, at, s.atom_of[i]);
+    for (int32_t i = 0; i < s.n_atoms; ++i) to[s.place_of[i]] = read_row_of<layout>(array, at, i);
 }
 
 // Bonds as they come, from the coordinates of their ends: four at a time, the inert ones too.

@@ -18,11 +18,10 @@ HOL_NOINLINE bool pull_flat(const Call &call, const FlatLinear &x, Tally &tally)
     if (call.tension) x.write_tensions(call.tension);
     if (call.virial) x.add_virial(tally);
     for (int32_t i = 0; i < x.s.n_atoms && call.g.x; ++i) {
-        const int32_t atom = x.s.atom_of[i];
-        if (!x.writable(atom)) continue;
-        Vector3<double> pull = vector_of(x.pull[i]);
-        if (call.add) pull = read<layout>(call.g, x.at, atom) + pull;
-        write<layout>(call.g, x.at, atom, pull, 1);
+        if (!x.writable(i)) continue;
+        Vector3<double> pull = vector_of(x.pull[x.s.place_of[i]]);
+        if (call.add) pull = read<layout>(call.g, x.at, i) + pull;
+        write<layout>(call.g, x.at, i, pull, 1);
     }
     return true;
 }
@@ -60,7 +59,7 @@ HOL_NOINLINE bool project_flat(const VelocitiesCall &call, const FlatLinear &x, 
         x.add_pulls();
     }
     for (int32_t i = 0; i < x.s.n_atoms; ++i)
-        if (x.writable(x.s.atom_of[i])) write<layout>(call.v, x.at, x.s.atom_of[i], vector_of(x.a[i]), 1);
+        if (x.writable(i)) write<layout>(call.v, x.at, i, vector_of(x.a[x.s.place_of[i]]), 1);
     return true;
 }
 

@@ -48,7 +48,8 @@ HOL_INLINE MaskOf<V> worth_new_factors(V error, V rate, int i) {
     if (by_length && i == 0) return less(Width<V>::all(1e-5), error);
     V expected = error * rate;
     for (int k = i + 2; k < 4; ++k) expected = expected * rate;
-    return less(Width<V>::all(0.1 * rounding), expected) & less(Width<V>::all(i < 2 ? -1.0 : 1e-4), rate);
+    return less(Width<V>::all((by_length ? 0.4 : 0.1) * rounding), expected) &
+           less(Width<V>::all(i < 2 ? -1.0 : 1e-4), rate);
 }
 
 // From an error no larger than this, a solve with factors that have just taken the error down to less than `steady` of
@@ -70,6 +71,7 @@ template <class V, bool look_last, bool by_length = false, class System>
 HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const PositionsCall &call, MaskOf<V> wanted) {
     typedef MaskOf<V> Mask;
     const Mask none = Width<V>::none();
+    constexpr double negligible = (by_length ? 0.5 : 0.125) * rounding;
     const V done = Width<V>::all(limits.wanted);
     V error = newton.open();
     Solved<V> out = {wanted & less_equal(error, limits.accepted), none, error, 0};
@@ -91,7 +93,7 @@ HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const Posi
     for (int i = 0; i < call.max_iterations && any(active); ++i) {
         newton.solve(active);
         ++out.solves;
-        const Mask last = active & proven & less(rate * error, Width<V>::all(0.125 * rounding));
+        const Mask last = active & proven & less(rate * error, Width<V>::all(negligible));
         out.converged = out.converged | last;  // whatever the other lanes have to do
         active = active & ~last;
         if (!look_last && !any(active) && !call.report) break;
@@ -100,7 +102,7 @@ HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const Posi
         // At the floor: the solve should have gone far below a rounding, or it gained little, and what is left is no
         // more than the coordinates carry.
         const Mask floor =
-            (less(expected, Width<V>::all(0.125 * rounding)) & less_equal(error, Width<V>::all(4 * rounding))) |
+            (less(expected, Width<V>::all(negligible)) & less_equal(error, Width<V>::all(4 * rounding))) |
             less(0.25 * before, error);
         const Mask near = active & (less_equal(error, done) | floor);
         const Mask finished = near & less_equal(error, max(done, max(limits.accepted, limits.always_accepted)));
