@@ -1,0 +1,29 @@
+// Where the arrays of a schedule are.
+#ifndef HOLONOMIC_SCHEDULE_MEMORY_HPP
+#define HOLONOMIC_SCHEDULE_MEMORY_HPP
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/molecules/careful_shape.hpp"
+#include "core/molecules/flat_list.hpp"
+#include "core/molecules/lists.hpp"
+#include "core/molecules/schedule_arms.hpp"
+#include "core/molecules/schedule_runs.hpp"
+
+namespace holonomic {
+
+struct Schedule::Memory {
+    Numbers atom_i, atom_j, atom_of, slot_of, bond_of, place_of, parent, child_start, child, pair_start, from, to,
+        meet_start, meet, meet_pair, meet_pair_start, column_start, row, update;
+    std::vector<std::int64_t> update_start;
+    std::vector<std::uint8_t> fixed;
+    ScheduleRuns runs;
+    FlatArrays flat;
+    ScheduleArms arms;
+    std::unique_ptr<const CarefulShape> careful;
+};
+
+}  // namespace holonomic
+#endif
