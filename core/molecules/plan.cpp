@@ -184,9 +184,11 @@ private:
             const Loose &head = loose_[first];
             const bool chains = head.shape == linear;
             const std::size_t place = chains ? plan_->loose_chains.size() : plan_->loose_molecules.size();
-            for (end = first; end < loose_.size() && end - first < at(loose_piece); ++end) {
+            std::int64_t bonds = 0;
+            for (end = first; end < loose_.size(); bonds += loose_[end++].n_bonds) {
                 const Loose &one = loose_[end];
                 if (one.where != head.where || one.shape != head.shape) break;
+                if (end > first && (end - first) % at(loose_piece) == 0 && bonds >= loose_piece_bonds) break;
                 const Group &group = groups_[at(one.group)];
                 if (chains)
                     plan_->loose_chains.push_back(chains_.lane_of(group, one.index, one.stage));

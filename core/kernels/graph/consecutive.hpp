@@ -37,6 +37,30 @@ HOL_INLINE void write_elements(double *const *p, quad *e) {
         for (int i = 0; i < 4; ++i) p[i][c] = e[c][i];
     }
 }
+
+// Adds element e, used up, to r, and factor times it to v, unless v[0] is nullptr.
+template <int n>
+HOL_INLINE void add_elements(double *const *r, double *const *v, double factor, quad *e) {
+    const quad f = _mm256_set1_pd(factor);
+    HOL_UNROLL
+    for (int j = 0; j < n / 4; ++j) {
+        transpose(e + 4 * j);
+        HOL_UNROLL
+        for (int i = 0; i < 4; ++i) _mm256_storeu_pd(r[i] + 4 * j, _mm256_loadu_pd(r[i] + 4 * j) + e[4 * j + i]);
+        if (!v) continue;
+        HOL_UNROLL
+        for (int i = 0; i < 4; ++i)
+            _mm256_storeu_pd(v[i] + 4 * j, _mm256_fmadd_pd(f, e[4 * j + i], _mm256_loadu_pd(v[i] + 4 * j)));
+    }
+    HOL_UNROLL
+    for (int c = n / 4 * 4; c < n; ++c) {
+        HOL_UNROLL
+        for (int i = 0; i < 4; ++i) {
+            r[i][c] += e[c][i];
+            if (v) v[i][c] = mul_add(factor, e[c][i], v[i][c]);
+        }
+    }
+}
 #endif
 
 template <int n>
@@ -90,6 +114,38 @@ HOL_INLINE void write_elements(double *const *p, Vector3<double> *a) {
     }
 }
 
+template <int n>
+HOL_INLINE void add_elements(double *const *r, double *const *v, double factor, Vector3<vec> *a) {
+    vec *const e = &a->x;
+#if HOL_LANES == 4 && defined(__AVX2__)
+    add_elements<n>(r, v, factor, reinterpret_cast<quad *>(e));
+#elif HOL_LANES == 8 && defined(__AVX512F__)
+    quad low[n], high[n];
+    HOL_UNROLL
+    for (int c = 0; c < n; ++c) {
+        low[c] = _mm512_castpd512_pd256(e[c]);
+        high[c] = _mm512_extractf64x4_pd(e[c], 1);
+    }
+    add_elements<n>(r, v, factor, low);
+    add_elements<n>(r + 4, v ? v + 4 : nullptr, factor, high);
+#else
+    for (int c = 0; c < n; ++c)
+        for (int i = 0; i < W; ++i) {
+            r[i][c] += e[c][i];
+            if (v) v[i][c] = mul_add(factor, e[c][i], v[i][c]);
+        }
+#endif
+}
+template <int n>
+HOL_INLINE void add_elements(double *const *r, double *const *v, double factor, Vector3<double> *a) {
+    const double *const e = &a->x;
+    HOL_UNROLL
+    for (int c = 0; c < n; ++c) {
+        r[0][c] += e[c];
+        if (v) v[0][c] = mul_add(factor, e[c], v[0][c]);
+    }
+}
+
 // The rows of molecules of n atoms.
 template <Layout layout, int n, class V>
 HOL_INLINE double *row_of(const AtomArray &array, const Atoms<V> &at, int i) {
@@ -127,6 +183,35 @@ HOL_INLINE void write_all(const AtomArray &array, const Atoms<V> &at, Vector3<V>
         return;
     }
     write_some<layout, n>(array, at, atoms, which);
+}
+
+template <Layout layout, int n, class V>
+HOL_NOINLINE void move_some(const PositionsCall &call, const Atoms<V> &at, const Vector3<V> *shift, unsigned which) {
+    constexpr Layout anywhere = layout == rows_adjacent ? rows_in_order : layout;
+    const V per_dt = Width<V>::all(1 / call.dt);
+    for (int k = 0; k < n; ++k) {
+        write<anywhere>(call.r, at, k, read<anywhere>(call.r, at, k) + shift[k], which);
+        if (call.v.x) write<anywhere>(call.v, at, k, add_times(read<anywhere>(call.v, at, k), per_dt, shift[k]), which);
+    }
+}
+
+// Moves the atoms of the lanes in `which` by `shift`, which is used up, and their velocities with them. Where rows
+// stand in order the moves are transposed, once, and not what they are added to.
+template <Layout layout, int n, class V>
+HOL_INLINE void move_all(const PositionsCall &call, const Atoms<V> &at, Vector3<V> *shift, unsigned which) {
+    if ((layout == rows_in_order || layout == rows_adjacent) && __builtin_expect(which == (1u << at.lanes) - 1, 1)) {
+        double *r[Width<V>::lanes], *v[Width<V>::lanes];
+        HOL_UNROLL
+        for (int i = 0; i < at.lanes; ++i) r[i] = row_of<layout, n>(call.r, at, i);
+        if (!call.v.x) return add_elements<3 * n>(r, nullptr, 0, shift);
+        HOL_UNROLL
+        for (int i = 0; i < at.lanes; ++i) v[i] = row_of<layout, n>(call.v, at, i);
+        return add_elements<3 * n>(r, v, 1 / call.dt, shift);
+    }
+    Vector3<V> copy[n];
+    HOL_UNROLL
+    for (int k = 0; k < n; ++k) copy[k] = shift[k];
+    move_some<layout, n>(call, at, copy, which);
 }
 
 // Three values per bond, in the order of the bonds.

@@ -17,9 +17,11 @@ template <class V>
 struct Limits {
     V accepted, always_accepted;
     double wanted;
-    Limits(const PositionsCall &call, V largest_coordinate, V a_min) {
+    Limits(const PositionsCall &call, V largest_coordinate, V a_min) : Limits(call, largest_coordinate / a_min) {}
+    // The largest coordinate in units of the shortest bond.
+    Limits(const PositionsCall &call, V coordinate) {
         const double u = call.r.is_float ? 5.97e-8 : 1.11e-16;
-        accepted = max(Width<V>::all(call.tolerance), (8 * u) * (Width<V>::all(1) + largest_coordinate / a_min));
+        accepted = max(Width<V>::all(call.tolerance), (8 * u) * (Width<V>::all(1) + coordinate));
         always_accepted = Width<V>::all(call.tolerance > 8 * u ? call.tolerance : 8 * u);
         wanted = call.tolerance > rounding ? call.tolerance : rounding;
     }

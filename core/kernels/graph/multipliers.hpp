@@ -7,34 +7,32 @@
 
 #include "core/kernels/graph/consecutive.hpp"
 #include "core/kernels/graph/iterate.hpp"
+#include "core/kernels/newton/first_side.hpp"
 #include "core/kernels/tally.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// Largest error that the third solve may leave in the squared lengths. The fourth leaves about its power 3/2, which
+// Largest error that the second solve may leave in the squared lengths. The third leaves about its power 3/2, which
 // must be far below a rounding.
-constexpr double small_enough = 1e-12;
+constexpr double small_enough = 1e-11;
 
 // A model of N bonds has: sigma[N], per_a2[N];  change(tau), with q[N];  inverse() of 2 M for tau = 0, and
 // inverse(change) for the bonds as changed;  solve(inverse, y, tau). Finds tau in the lanes of `active`, which keeps
-// the lanes that need more. Returns the number of solves. Two with the factors of D leave the third power of the first
-// error e, one with new factors its square, one more with the same factors e^9.
+// the lanes that need more. Returns the number of solves. One with new factors squares the error, one more with the
+// same factors takes it to the third power.
 template <int N, class V, class Model>
 HOL_INLINE int64_t solve_for_multipliers(const Model &x, V *tau, MaskOf<V> &active) {
-    auto f = x.inverse();
     V y[N], next[N], rest[N];
-    Model::solve(f, x.sigma, tau);
-    auto p = x.change(tau);
     HOL_UNROLL
-    for (int k = 0; k < N; ++k) y[k] = x.sigma[k] + p.q[k];
-    Model::solve(f, y, tau);
-    int64_t solves = 2;
+    for (int k = 0; k < N; ++k) y[k] = first_side(x.sigma[k], x.per_a2[k]);
+    Model::solve(x.inverse(), y, tau);
+    int64_t solves = 1;
     do {
         // 2 M tau = sigma + q, linear about the last tau: 2 M' tau = sigma - q. What that leaves is q of the change.
-        p = x.change(tau);
-        f = x.inverse(p);
+        auto p = x.change(tau);
+        const auto f = x.inverse(p);
         HOL_UNROLL
         for (int k = 0; k < N; ++k) y[k] = x.sigma[k] - p.q[k];
         Model::solve(f, y, next);
@@ -49,7 +47,7 @@ HOL_INLINE int64_t solve_for_multipliers(const Model &x, V *tau, MaskOf<V> &acti
         for (int k = 0; k < N; ++k) tau[k] = select(active, next[k] + rest[k], tau[k]);
         active = active & ~less(left, Width<V>::all(small_enough));
         solves += 2;
-    } while (__builtin_expect(any(active), 0) && solves < 8);
+    } while (__builtin_expect(any(active), 0) && solves < 9);
     return solves;
 }
 

@@ -16,7 +16,7 @@ namespace graph {
 // Masses and lengths.
 template <int N, class V>
 struct StarKind : StarMasses<N, V> {
-    V a2[N], per_a2[N], a_min, a_max;
+    V a2[N], per_a2[N], a_min, a_max, per_a_min;
     void set(const MoleculeLane *lane, int used, int centre) {
         StarMasses<N, V>::set(lane, used, centre);
         a_min = Width<V>::all(1e300);
@@ -29,6 +29,7 @@ struct StarKind : StarMasses<N, V> {
             a2[k] = a * a;
             per_a2[k] = Width<V>::all(1) / a2[k];
         }
+        per_a_min = Width<V>::all(1) / a_min;
     }
 };
 

@@ -57,6 +57,15 @@ struct StarAtoms {
         }
         write_all<layout, N + 1>(array, at, r, which);
     }
+    inline HOL_FORCED void move(const PositionsCall &call, Vector3<V> *r, unsigned which) const {
+        if (__builtin_expect(centre != 0, 0)) {
+            Vector3<V> atoms[N + 1];
+            copy(r, atoms);
+            move_centre(atoms, 0, centre);
+            copy(atoms, r);
+        }
+        move_all<layout, N + 1>(call, at, r, which);
+    }
     HOL_INLINE void copy(const Vector3<V> *from, Vector3<V> *to) {
         HOL_UNROLL
         for (int k = 0; k <= N; ++k) to[k] = from[k];

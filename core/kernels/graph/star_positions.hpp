@@ -64,7 +64,7 @@ struct StarPositions {
         HOL_UNROLL
         for (int k = 0; k <= N; ++k) largest = max(max(abs(r[k].x), abs(r[k].y)), max(abs(r[k].z), largest));
         V error = measure(D, sigma);
-        const Limits<V> limits(call, largest, m.a_min);
+        const Limits<V> limits(call, largest * m.per_a_min);
         const MaskOf<V> untouched = in_use & less_equal(error, limits.accepted), wanted = in_use & ~untouched;
         MaskOf<V> unsure = wanted;
         const StarModel<N, V> model(m, b, D, sigma);
@@ -85,16 +85,7 @@ struct StarPositions {
         if (call.lambda) write_multipliers(tau, good);
         if (!moved) return good;
         if (call.virial) add_virial(b, tau, moved);
-        HOL_UNROLL
-        for (int k = 0; k <= N; ++k) r[k] = r[k] + shift[k];
-        atoms.write(call.r, r, moved);
-        if (call.v.x) {
-            const V per_dt = Width<V>::all(1 / call.dt);
-            atoms.read(call.v, r);
-            HOL_UNROLL
-            for (int k = 0; k <= N; ++k) r[k] = add_times(r[k], per_dt, shift[k]);
-            atoms.write(call.v, r, moved);
-        }
+        atoms.move(call, shift, moved);
         tally.n_corrected += __builtin_popcount(moved);
         if (solves > tally.iterations) tally.iterations = solves;
         return good;

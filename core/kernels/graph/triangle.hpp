@@ -21,21 +21,25 @@ template <class V>
 struct TriangleMasses {
     V w[3];
     V both[3];  // w_k + w_{k+1}: of bond k
-    V p;        // w_0 w_1 + w_1 w_2 + w_2 w_0
-    V s[3];     // w_i (w_j + w_k)
-    V w2[3];    // w_i^2
-    V all;      // w_0 w_1 w_2
-    V sum[3];   // what det has of q_k: all + w^2 (w' + w''), w of the atom opposite to bond k
+    V most[3];  // the larger one of the two
+    // Divided by p = w_0 w_1 + w_1 w_2 + w_2 w_0:
+    V s[3];    // w_i (w_j + w_k)
+    V w2[3];   // w_i^2
+    V sum[3];  // what det has of q_k: w_0 w_1 w_2 + w^2 (w' + w''), w of the atom opposite to bond k
     void set(const MoleculeLane *lane, int used) {
-        for (int a = 0; a < 3; ++a)
-            for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(w[a], i, lane[i < used ? i : 0].w[a]);
-        p = mul_add(w[2], w[0] + w[1], w[0] * w[1]);
-        all = (w[0] * w[1]) * w[2];
         for (int a = 0; a < 3; ++a) {
-            both[a] = w[a] + w[(a + 1) % 3];
-            s[a] = w[a] * (w[(a + 1) % 3] + w[(a + 2) % 3]);
-            w2[a] = w[a] * w[a];
-            sum[(a + 1) % 3] = mul_add(w[a], s[a], all);
+            w[a] = V{};
+            for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(w[a], i, lane[i < used ? i : 0].w[a]);
+        }
+        const V p = mul_add(w[2], w[0] + w[1], w[0] * w[1]), all = (w[0] * w[1]) * w[2];
+        for (int a = 0; a < 3; ++a) {
+            const int b = (a + 1) % 3, c = (a + 2) % 3;
+            both[a] = w[a] + w[b];
+            most[a] = max(w[a], w[b]);
+            const V apart = w[a] * (w[b] + w[c]);
+            s[a] = apart / p;
+            w2[a] = (w[a] * w[a]) / p;
+            sum[b] = mul_add(w[a], apart, all) / p;
         }
     }
 };
@@ -55,7 +59,7 @@ struct TriangleInverse {
 // From the products g[k][l] = D_k . b_l and X = (D_k x D_l).(b_k x b_l), the same for any two bonds:
 //     det = X [w_0 w_1 w_2 (q_0 + q_1 + q_2) + sum over bonds of w^2 (w' + w'') q, w of the atom opposite to it],
 //     adj_kk = p q_l q_m + w^2 X,   adj_kl = p g_km g_ml - w (w' + w'') X, w of the atom between bonds k and l.
-// symmetric: D and b are the same. The inverse is of the matrix times `factor`.
+// both divided by p. symmetric: D and b are the same. The inverse is of the matrix times `factor`.
 template <bool symmetric, class V>
 HOL_INLINE TriangleInverse<V> invert_triangle(const TriangleMasses<V> &m, const V g[3][3], V X, double factor) {
     TriangleInverse<V> inverse;
@@ -64,10 +68,10 @@ HOL_INLINE TriangleInverse<V> invert_triangle(const TriangleMasses<V> &m, const 
     HOL_UNROLL
     for (int k = 0; k < 3; ++k) {
         const int l = (k + 1) % 3, o = (k + 2) % 3;  // bond k ends at atom l, and is opposite to atom o
-        inverse.adj[k][k] = mul_add(m.p * g[l][l], g[o][o], m.w2[o] * X);
+        inverse.adj[k][k] = mul_add(g[l][l], g[o][o], m.w2[o] * X);
         const V apart = m.s[l] * X;
-        inverse.adj[k][l] = mul_add(m.p * g[k][o], g[o][l], -apart);
-        inverse.adj[l][k] = symmetric ? inverse.adj[k][l] : mul_add(m.p * g[l][o], g[o][k], -apart);
+        inverse.adj[k][l] = mul_add(g[k][o], g[o][l], -apart);
+        inverse.adj[l][k] = symmetric ? inverse.adj[k][l] : mul_add(g[l][o], g[o][k], -apart);
     }
     return inverse;
 }

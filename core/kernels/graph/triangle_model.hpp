@@ -14,18 +14,18 @@ template <class V>
 struct TriangleModel {
     const TriangleMasses<V> &m;
     const V *per_a2;
-    V u[3], c[3];  // b_k . b_k, b_k . b_{k+1}
+    const V *sigma;
+    V u[3], c[3];  // b_k . b_k, - b_k . b_{k+1}
     V g[3][3];     // D_k . b_l
-    V sigma[3];
 
     // The bonds of either sort add up to zero.
-    inline HOL_FORCED TriangleModel(const TriangleNewton<V> &x) : m(x.m), per_a2(x.a.per_a2) {
+    inline HOL_FORCED TriangleModel(const TriangleNewton<V> &x) : m(x.m), per_a2(x.a.per_a2), sigma(x.left) {
         u[0] = dot(x.b[0], x.b[0]);
         u[1] = dot(x.b[1], x.b[1]);
-        c[0] = dot(x.b[0], x.b[1]);
-        c[1] = -(u[1] + c[0]);
-        c[2] = -(u[0] + c[0]);
-        u[2] = -(c[1] + c[2]);
+        c[0] = -dot(x.b[0], x.b[1]);
+        c[1] = u[1] - c[0];
+        c[2] = u[0] - c[0];
+        u[2] = c[1] + c[2];
         HOL_UNROLL
         for (int k = 0; k < 2; ++k) {
             g[k][0] = dot(x.D[k], x.b[0]);
@@ -34,8 +34,6 @@ struct TriangleModel {
         }
         HOL_UNROLL
         for (int l = 0; l < 3; ++l) g[2][l] = -(g[0][l] + g[1][l]);
-        HOL_UNROLL
-        for (int k = 0; k < 3; ++k) sigma[k] = 2.0 * x.left[k];
     }
 
     // Lanes in which X is no small difference.
@@ -44,7 +42,7 @@ struct TriangleModel {
         return less(least_sine2 * abs(whole), whole - g[0][1] * g[1][0]);
     }
 
-    // P_k . b_k, P_k . b_{k+1} and q_k.
+    // - P_k . b_k, P_k . b_{k+1} and q_k.
     struct Change {
         V own[3], next[3], q[3];
     };
@@ -57,9 +55,9 @@ struct TriangleModel {
         for (int k = 0; k < 3; ++k) {  // P_k = - x b_k + y b_{k+1}
             const int next = (k + 1) % 3;
             const V x = mul_add(m.both[k], tau[k], before[k]), y = mul_add(m.w[next], tau[next], -before[k]);
-            p.own[k] = mul_add(y, c[k], -(x * u[k]));
-            p.next[k] = mul_add(y, u[next], -(x * c[k]));
-            p.q[k] = mul_add(y, p.next[k], -(x * p.own[k]));
+            p.own[k] = mul_add(y, c[k], x * u[k]);
+            p.next[k] = mul_add(x, c[k], y * u[next]);
+            p.q[k] = mul_add(y, p.next[k], x * p.own[k]);
         }
         return p;
     }
@@ -69,9 +67,9 @@ struct TriangleModel {
         V h[3][3];
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) {
-            h[k][k] = g[k][k] + p.own[k];
+            h[k][k] = g[k][k] - p.own[k];
             h[k][(k + 1) % 3] = g[k][(k + 1) % 3] + p.next[k];
-            h[k][(k + 2) % 3] = g[k][(k + 2) % 3] - (p.own[k] + p.next[k]);
+            h[k][(k + 2) % 3] = g[k][(k + 2) % 3] + (p.own[k] - p.next[k]);
         }
         return invert(h);
     }

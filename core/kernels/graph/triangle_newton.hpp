@@ -12,7 +12,7 @@ namespace graph {
 
 template <class V>
 struct TriangleLengths {
-    V a2[3], per_a2[3], a_min, a_max;
+    V a2[3], per_a2[3], a_min, a_max, per_a_min;
     void set(const MoleculeLane *lane, int used) {
         a_min = Width<V>::all(1e300);
         a_max = V{};
@@ -25,6 +25,7 @@ struct TriangleLengths {
             a2[k] = a * a;
             per_a2[k] = Width<V>::all(1) / a2[k];
         }
+        per_a_min = Width<V>::all(1) / a_min;
     }
 };
 
@@ -35,7 +36,7 @@ struct TriangleNewton {
     const TriangleLengths<V> &a;
     Vector3<V> b[3], D[3], now[3];
     Vector3<V> shift[3];  // of the atoms, by tau
-    V tau[3], left[3];
+    V tau[3], left[3];    // D.D - a^2
     TriangleInverse<V> inverse;
 
     // Nothing else is set: filling it with zeros took a fifth of the instructions.
@@ -46,9 +47,8 @@ struct TriangleNewton {
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) {
             const Vector3<V> d = now[k];
-            const V sigma = mul_add(d.z, d.z, mul_add(d.y, d.y, mul_add(d.x, d.x, -a.a2[k])));
-            size[k] = abs(sigma) * a.per_a2[k];
-            left[k] = 0.5 * sigma;
+            left[k] = excess(d, a.a2[k]);
+            size[k] = abs(left[k] * a.per_a2[k]);
         }
         // max() may lose a NaN, the sum keeps it
         return mul_add(left[0] + (left[1] + left[2]), V{}, max(size[0], max(size[1], size[2])));
@@ -70,7 +70,7 @@ struct TriangleNewton {
             for (int l = 0; l < 3; ++l) g[k][l] = dot(now[k], b[l]);
         }
         const V X = dot(cross(now[1], now[2]), cross(b[1], b[2]));
-        const TriangleInverse<V> fresh = invert_triangle<false>(m, g, X, 1);
+        const TriangleInverse<V> fresh = invert_triangle<false>(m, g, X, 2);
         inverse.r = select(which, fresh.r, inverse.r);
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) {
@@ -94,8 +94,7 @@ struct TriangleNewton {
 
     // Lanes in which the pulls on an atom are so large that their rounding exceeds that of the coordinates.
     MaskOf<V> coarse_moves(V largest_coordinate) const {
-        const V p0 = max(m.w[0], m.w[1]) * abs(tau[0]), p1 = max(m.w[1], m.w[2]) * abs(tau[1]),
-                p2 = max(m.w[2], m.w[0]) * abs(tau[2]);
+        const V p0 = m.most[0] * abs(tau[0]), p1 = m.most[1] * abs(tau[1]), p2 = m.most[2] * abs(tau[2]);
         return less(0.25 * (largest_coordinate + a.a_min), max(p0, max(p1, p2)) * a.a_max);
     }
 };

@@ -17,7 +17,6 @@ struct TrianglePositions {
     const TriangleMasses<V> &m;
     const TriangleLengths<V> &a;
     Tally &tally;
-    Vector3<V> r[3];
     V largest;  // coordinate
 
     TrianglePositions(const PositionsCall &c, const Lanes &list, const Atoms<V> &atoms, const TriangleMasses<V> &masses,
@@ -25,6 +24,7 @@ struct TrianglePositions {
         : call(c), lanes(list), at(atoms), m(masses), a(lengths), tally(sums) {}
 
     inline HOL_FORCED void read_bonds(TriangleNewton<V> &x) {
+        Vector3<V> r[3];
         read_all<layout, 3>(call.r_ref, at, r);
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) x.b[k] = r[(k + 1) % 3] - r[k];
@@ -44,24 +44,17 @@ struct TrianglePositions {
     inline HOL_FORCED void write(const TriangleNewton<V> &x, V error, unsigned good, unsigned moved, int64_t solves) {
         if (call.report) {
             V left[3];
-            for (int k = 0; k < 3; ++k) left[bond_number(k)] = abs(2.0 * x.left[k]) * a.per_a2[k];
+            for (int k = 0; k < 3; ++k) left[bond_number(k)] = abs(x.left[k]) * a.per_a2[k];
             note_worst_bond<3>(left, lanes, error, good, tally);
         }
         if (call.lambda)
             write_triangle_bonds<layout>(at, x.tau, Width<V>::all(0.5 / (call.dt * call.dt)), call.lambda, good);
         if (!moved) return;
         if (call.virial) add_bonds_virial<3>(x.b, x.tau, 1 / (call.dt * call.dt), moved, tally);
-        Vector3<V> v[3];
+        Vector3<V> shift[3];
         HOL_UNROLL
-        for (int i = 0; i < 3; ++i) r[i] = r[i] + x.shift[i];
-        write_all<layout, 3>(call.r, at, r, moved);
-        if (call.v.x) {
-            const V per_dt = Width<V>::all(1 / call.dt);
-            read_all<layout, 3>(call.v, at, v);
-            HOL_UNROLL
-            for (int i = 0; i < 3; ++i) v[i] = add_times(v[i], per_dt, x.shift[i]);
-            write_all<layout, 3>(call.v, at, v, moved);
-        }
+        for (int i = 0; i < 3; ++i) shift[i] = x.shift[i];
+        move_all<layout, 3>(call, at, shift, moved);
         tally.n_corrected += __builtin_popcount(moved);
         if (solves > tally.iterations) tally.iterations = solves;
     }
@@ -76,7 +69,7 @@ struct TrianglePositions {
         }
         p.read_bonds(x);
         if (p.call.guess) read_triangle_bonds(p.at, p.call.lambda, 2 * p.call.dt * p.call.dt, x.tau);
-        const Limits<V> limits(p.call, p.largest, p.a.a_min);
+        const Limits<V> limits(p.call, p.largest * p.a.per_a_min);
         const Solved<V> out = iterate<V, true>(x, limits, p.call, Width<V>::of_bits(wanted));
         const unsigned moved = bits(out.converged & ~x.coarse_moves(p.largest)), good = moved | bits(out.untouched);
         p.write(x, out.error, good, moved, out.solves);
@@ -88,7 +81,7 @@ struct TrianglePositions {
         if (__builtin_expect(call.guess, 0)) return solve_step_by_step(*this, bits(in_use));
         TriangleNewton<V> x(m, a);
         read_bonds(x);
-        const Limits<V> limits(call, largest, a.a_min);
+        const Limits<V> limits(call, largest * a.per_a_min);
         V error = x.open();
         const MaskOf<V> untouched = in_use & less_equal(error, limits.accepted);
         if (__builtin_expect(bits(untouched) == bits(in_use), 0)) {

@@ -3,6 +3,7 @@
 #define HOLONOMIC_KERNELS_NEWTON_SHORT_HPP
 
 #include "core/kernels/newton/criterion.hpp"
+#include "core/kernels/newton/first_side.hpp"
 #include "core/kernels/newton/sweeps.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -52,9 +53,9 @@ HOL_INLINE Outcome solve_single_bonds(const Newton &x, Carried &carried, mask wa
 // nothing but products of bond vectors is needed to get there.
 
 // Number of solves. It does not depend on what they leave.
-constexpr int two_bonds_solves = 4;
-// Largest error that the third may leave in the squared lengths. The fourth leaves about its power 3/2.
-constexpr double two_bonds_left = 1e-12;
+constexpr int two_bonds_solves = 3;
+// Largest error that the second may leave in the squared lengths. The third leaves about its power 3/2.
+constexpr double two_bonds_left = 1e-11;
 // Least part of m00 m11 that must be left in the determinant of M, so that enough digits are.
 constexpr double two_bonds_part = 1.0 / 64;
 
@@ -124,13 +125,11 @@ HOL_INLINE Outcome solve_two_bonds(Newton &x, Carried &carried, mask wanted) {
     out.untouched = wanted & carried.within(before, one);
     TwoBonds::Factors f = m.factors();
     const mask open = less(two_bonds_part * f.whole, f.part());
-    vec t0 = f.first(sigma0, sigma1), t1 = f.second(sigma0, sigma1);
-    TwoBonds::Change c = m.change(t0, t1);
-    const vec y0 = sigma0 + c.q0, y1 = sigma1 + c.q1;
-    t0 = f.first(y0, y1);
-    t1 = f.second(y0, y1);
+    const vec s0 = first_side(sigma0, uniform_a ? x.per_a2_uniform : x.per_a2[0]),
+              s1 = first_side(sigma1, uniform_a ? x.per_a2_uniform : x.per_a2[1]);
+    const vec t0 = f.first(s0, s1), t1 = f.second(s0, s1);
     // 2 M tau = sigma + q, linear about the last tau: 2 M' tau = sigma - q. What that leaves is q of the change.
-    c = m.change(t0, t1);
+    TwoBonds::Change c = m.change(t0, t1);
     f = m.factors(c);
     const vec z0 = sigma0 - c.q0, z1 = sigma1 - c.q1, next0 = f.first(z0, z1), next1 = f.second(z0, z1);
     c = m.change(next0 - t0, next1 - t1);
