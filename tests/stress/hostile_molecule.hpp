@@ -54,6 +54,9 @@ struct hostile_molecule {
     std::string words() const;
 };
 
+/** From this number on all graphs are strips of triangles. */
+constexpr std::uint64_t first_strip = 10000000;
+
 /** The molecule with this number; the same on every machine. Every fourth number is of each class. */
 hostile_molecule make_hostile_molecule(std::uint64_t seed);
 

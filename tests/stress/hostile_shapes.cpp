@@ -103,9 +103,32 @@ void draw_ring(hostile_molecule &m, molecule_dice &d, std::int64_t size)
     }
 }
 
-/** One of the shapes of molecule.h that have cycles, or a ring with trees on it. */
+/** A chain whose angles are all rigid: each atom is bonded to the next and to the one behind that. */
+void draw_strip(hostile_molecule &m, molecule_dice &d)
+{
+    const std::int64_t n = d.chance(0.05) ? d.whole(60, 200) : d.whole(4, 40);
+    const double aligned = m.features & ALIGNED ? d.uniform(0.2, 1) : 0, fold = d.chance(0.5) ? 0 : d.uniform(0, 1);
+    const double thickness = m.features & FLAT ? d.decades(-12, 0) : 1;
+    point r{0, 0, 0}, u = d.direction();
+    add_atom(m, r);
+    for (std::int64_t i = 1; i < n; ++i) {
+        const bool nearly = d.chance(aligned);
+        u = d.turned(u, nearly ? d.decades(-5, 0) : d.uniform(0.5, 2));
+        u[2] *= thickness;
+        if (nearly && d.chance(fold))
+            for (double &x : u) x = -x;
+        const double size = std::sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]), a = bond_length(m, d) / size;
+        for (std::size_t x = 0; x < 3; ++x) r[x] += a * u[x], u[x] /= size;
+        add_atom(m, r);
+        add_bond(m, i - 1, i);
+        if (i > 1) add_bond(m, i - 2, i);
+    }
+}
+
+/** One of the shapes of molecule.h that have cycles, or a ring with trees on it; from first_strip on a strip. */
 void draw_graph(hostile_molecule &m, molecule_dice &d)
 {
+    if (m.seed >= first_strip) return draw_strip(m, d);
     static const molecule_kind kinds[] = {MOLECULE_BENZENE, MOLECULE_PUCKERED_BENZENE, MOLECULE_TRIANGLES,
                                           MOLECULE_ZIGZAG,  MOLECULE_TRIANGLES_179,    MOLECULE_FUSED_RINGS,
                                           MOLECULE_CUBE,    MOLECULE_LARIAT,           MOLECULE_PEPTIDE};

@@ -4,6 +4,7 @@
 
 #include "core/kernels/graph/proof.hpp"
 #include "core/kernels/graph/ring.hpp"
+#include "core/kernels/graph/strip_linear.hpp"
 #include "core/kernels/graph/tree_runs.hpp"
 
 namespace holonomic {
@@ -15,17 +16,20 @@ struct Linear {
     Molecules<V> x;
     CoreMatrix<V> core;
     RingRow<V> *ring;
+    StripColumns<V> *strip;  // [n_atoms]
     Equations<V> equations;
     V *t, *b;           // [n_bonds] of a graph: the solution so far; right-hand sides
     Memory<V> working;  // of a joint of many bonds
     Pieces pieces;
 
-    static constexpr int64_t bond_values = sizeof(BondRow<V>) / sizeof(V), ring_values = sizeof(RingRow<V>) / sizeof(V);
+    static constexpr int64_t bond_values = sizeof(BondRow<V>) / sizeof(V), ring_values = sizeof(RingRow<V>) / sizeof(V),
+                             strip_values = sizeof(StripColumns<V>) / sizeof(V);
 
     // Values of V that the arrays take.
     static int64_t values(const Schedule &s) {
         int64_t n = s.n_atoms + bond_values * s.n_bonds + s.n_pairs + JointMemory<V, 0>::values(s.max_children);
         if (s.type == Schedule::ring) n += ring_values * s.n_bonds;
+        if (s.is_strip) n += strip_values * s.n_atoms + bond_values * more_strip_rows;
         n += 3 * 3 * static_cast<int64_t>(s.n_atoms);
         if (has_pieces(s)) n += 5 + s.n_pieces * (6 + JointMemory<V, 0>::values(s.max_children)) + arm_values(s);
         if (s.type == Schedule::graph) {
@@ -38,11 +42,14 @@ struct Linear {
 
     Linear(const Schedule &s, const MoleculeLane *lane, int used, const Box &box, const AtomArray &r, Memory<V> &memory)
         : x{s, lane, used, Atoms<V>(lane, used), &box, &r, nullptr, nullptr, nullptr, Width<V>::all(1), {}}, core(),
-          ring(), equations(), t(), b() {
-        x.row = reinterpret_cast<BondRow<V> *>(memory.values(bond_values * s.n_bonds));
+          ring(), strip(), equations(), t(), b() {
+        x.row = reinterpret_cast<BondRow<V> *>(
+            memory.values(bond_values * (s.n_bonds + (s.is_strip ? more_strip_rows : 0))));
+        if (s.is_strip) x.row += strip_rows_before;
         x.w = memory.values(s.n_atoms);
         x.pair = memory.values(s.n_pairs);
         if (s.type == Schedule::ring) ring = reinterpret_cast<RingRow<V> *>(memory.values(ring_values * s.n_bonds));
+        if (s.is_strip) strip = reinterpret_cast<StripColumns<V> *>(memory.values(strip_values * s.n_atoms));
         equations.r = memory.vectors(s.n_atoms);
         equations.velocity = memory.vectors(s.n_atoms);
         equations.force = memory.vectors(s.n_atoms);
@@ -94,6 +101,11 @@ struct Linear {
                 break;
             case Schedule::graph:
                 for (int32_t k = 0; k < x.s.n_bonds; ++k) b[k] = x.row[k].t;
+                if (x.s.is_strip) {
+                    factorize_strip(x, strip);
+                    down_strip(x, strip);
+                    break;
+                }
                 up_trees<true>(x, working);
                 factorize_core(x, core, working);
                 solve_core();
@@ -112,6 +124,11 @@ struct Linear {
                 solve_ring(x, ring);
                 break;
             case Schedule::graph:
+                if (x.s.is_strip) {
+                    substitute_strip(x, strip);
+                    down_strip(x, strip);
+                    break;
+                }
                 substitute_trees(x, working);
                 solve_core();
         }
@@ -137,8 +154,13 @@ struct Linear {
         Mask active = x.in_use() & ~proven, good = proven | ~x.in_use();
         V before = Width<V>::all(1);  // squares
         for (int pass = 0; pass < 8 && any(active); ++pass) {
-            find_residuals(x, equations, t);
-            solve_again();
+            if (s.is_strip) {
+                substitute_residuals(x, equations, t, strip);
+                down_strip(x, strip);
+            } else {
+                find_residuals(x, equations, t);
+                solve_again();
+            }
             const V part = correct(active);
             const Mask contracts = less_equal(part, (0.125 * 0.125) * before);
             const Mask done = active & contracts & less_equal(part * part, (epsilon * epsilon) * before);

@@ -9,6 +9,7 @@
 #include "core/kernels/graph/newton.hpp"
 #include "core/kernels/graph/ring_atoms.hpp"
 #include "core/kernels/graph/store.hpp"
+#include "core/kernels/graph/strip_atoms.hpp"
 #include "core/kernels/graph/triangle_blocks.hpp"
 #include "core/kernels/tally.hpp"
 
@@ -85,7 +86,7 @@ HOL_NOINLINE void write_moves(const Newton<V> &newton, const PositionsCall &call
     });
 }
 
-// A block of molecules at the position level. System: Newton or RingNewton.
+// A block of molecules at the position level. System: Newton, RingNewton or StripNewton.
 template <Layout layout, class System>
 struct PositionsBlock {
     typedef typename System::Value V;
@@ -143,7 +144,7 @@ struct PositionsBlock {
     void add_virial(unsigned which) const {
         MoleculesVirial<V> virial;
         for (int32_t k = 0; k < s.n_bonds; ++k) {
-            const NewtonRow<V> &row = newton.x.row[k];
+            const auto &row = newton.x.row[k];
             virial.add(row.b, row.tau * row.b);
         }
         virial.count(which, 1 / (call.dt * call.dt), tally);
@@ -201,6 +202,8 @@ struct PositionsWork {
         }
         if (schedule.type == Schedule::ring)
             solve<RingNewton<V>>(lane, used, known, scratch);
+        else if (schedule.is_strip)
+            solve<StripNewton<V>>(lane, used, known, scratch);
         else
             solve<Newton<V>>(lane, used, known, scratch);
     }

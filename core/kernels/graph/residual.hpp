@@ -86,6 +86,20 @@ HOL_INLINE void find_unrounded(const Molecules<V> &x, const Equations<V> &e) {
     }
 }
 
+// The residual of the bond at place k, from the accelerations of the atoms in the slots of its ends.
+template <class V>
+HOL_INLINE V residual_of(const Molecules<V> &x, const Equations<V> &e, int32_t k, int32_t from, int32_t to,
+                         const Pair3<V> &a_from, const Pair3<V> &a_to) {
+    Pair<V> sum = dot_pairs(e.d[k], subtract_pairs(a_to, a_from));
+    if (e.velocity) {
+        const Pair3<V> dv = difference_of(e.velocity[from], e.velocity[to]);
+        sum = add_pairs(sum, dot_pairs(dv, dv));
+    }
+    if (e.given) sum = add_pairs(sum, {e.given[k], V{}});
+    if (x.in.strain) sum = add_pairs(sum, {stretching(x.in.strain, x.row[k].d), V{}});
+    return sum.hi + sum.lo;
+}
+
 // Puts the residuals into t of the rows. The solution is t[place].
 template <class V>
 HOL_NOINLINE void find_residuals(const Molecules<V> &x, const Equations<V> &e, const V *t) {
@@ -106,14 +120,7 @@ HOL_NOINLINE void find_residuals(const Molecules<V> &x, const Equations<V> &e, c
     for (int32_t k = 0; k < s.n_bonds; ++k) {
         int32_t from, to;
         ends_of(s, k, from, to);
-        Pair<V> sum = dot_pairs(e.d[k], subtract_pairs(e.a[to], e.a[from]));
-        if (e.velocity) {
-            const Pair3<V> dv = difference_of(e.velocity[from], e.velocity[to]);
-            sum = add_pairs(sum, dot_pairs(dv, dv));
-        }
-        if (e.given) sum = add_pairs(sum, {e.given[k], V{}});
-        if (x.in.strain) sum = add_pairs(sum, {stretching(x.in.strain, x.row[k].d), V{}});
-        x.row[k].t = sum.hi + sum.lo;
+        x.row[k].t = residual_of(x, e, k, from, to, e.a[from], e.a[to]);
     }
 }
 

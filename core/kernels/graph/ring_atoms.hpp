@@ -2,28 +2,12 @@
 #ifndef HOLONOMIC_KERNELS_GRAPH_RING_ATOMS_HPP
 #define HOLONOMIC_KERNELS_GRAPH_RING_ATOMS_HPP
 
-#include "core/kernels/graph/atom_groups.hpp"
+#include "core/kernels/graph/along.hpp"
 #include "core/kernels/graph/ring_newton.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
-
-// The atoms of these local numbers, which may follow each other.
-template <Layout layout, int count, class V>
-HOL_INLINE void read_few(const AtomArray &array, const Atoms<V> &at, const int32_t *atom, bool follow, Vector3<V> *a) {
-    if (follow) return read_group<layout, count>(array, at, atom[0], a);
-    HOL_UNROLL
-    for (int j = 0; j < count; ++j) a[j] = read<layout>(array, at, atom[j]);
-}
-
-// The same in the lanes of `which`; `a` is used up.
-template <Layout layout, int count, class V>
-HOL_INLINE void write_few(const AtomArray &array, const Atoms<V> &at, const int32_t *atom, bool follow, Vector3<V> *a,
-                          unsigned which) {
-    if (follow) return write_group<layout, count>(array, at, atom[0], a, which);
-    for (int j = 0; j < count; ++j) write<layout>(array, at, atom[j], a[j], which);
-}
 
 // Bonds of the reference positions and of the new ones; returns the largest coordinate of the latter.
 template <Layout layout, class V>

@@ -2,7 +2,7 @@
 #ifndef HOLONOMIC_KERNELS_GRAPH_STORE_HPP
 #define HOLONOMIC_KERNELS_GRAPH_STORE_HPP
 
-#include "core/kernels/graph/atom_groups.hpp"
+#include "core/kernels/graph/along.hpp"
 #include "core/kernels/graph/molecules.hpp"
 #include "core/kernels/graph/virial.hpp"
 
@@ -88,6 +88,13 @@ HOL_INLINE void write_atoms(const Molecules<V> &x, const AtomArray &array, unsig
 // Writes or adds G of all atoms but those of arms, in the lanes of `which`.
 template <Layout layout, class V>
 HOL_NOINLINE void write_pulls(const Molecules<V> &x, const AtomArray &g, bool add, unsigned which) {
+    if (with_pulls_along(x, [&](auto pulls) HOL_FORCED {
+            write_along<layout>(x, g, which, [&](int32_t slot) HOL_FORCED {
+                const Vector3<V> pull = pulls.next(slot);
+                return __builtin_expect(add, 0) ? read<layout>(g, x.at, x.s.atom_of[slot]) + pull : pull;
+            });
+        }))
+        return;
     if (!add) return write_atoms<layout>(x, g, which, [&](int32_t slot) HOL_FORCED { return pull_on(x, slot); });
     write_atoms<layout>(x, g, which,
                         [&](int32_t slot) { return read<layout>(g, x.at, x.s.atom_of[slot]) + pull_on(x, slot); });

@@ -56,6 +56,11 @@ struct VelocitiesWork {
 
     template <class V>
     __attribute__((noinline)) void add_pulls_to(const Molecules<V> &x, Vector3<V> *v) const {
+        if (with_pulls_along(x, [&](auto pulls) HOL_FORCED {
+                for (int32_t slot = 0; slot < x.s.n_atoms; ++slot)
+                    v[slot] = add_times(v[slot], x.w[slot], pulls.next(slot));
+            }))
+            return;
         for_ranges(x.s, x.pieces, x.s.n_atoms, [&](int32_t first, int32_t end) {
             for (int32_t slot = end; slot-- > first;) v[slot] = add_times(v[slot], x.w[slot], pull_on(x, slot));
         });
@@ -76,6 +81,12 @@ struct VelocitiesWork {
 
     template <Layout layout, class V>
     __attribute__((noinline)) void write_velocities(const Molecules<V> &x, const Vector3<V> *v, unsigned which) const {
+        if (with_pulls_along(x, [&](auto pulls) HOL_FORCED {
+                write_along<layout>(x, call.v, which, [&](int32_t slot) HOL_FORCED {
+                    return add_times(v[slot], x.w[slot], pulls.next(slot));
+                });
+            }))
+            return;
         write_atoms<layout>(x, call.v, which,
                             [&](int32_t slot) HOL_FORCED { return add_times(v[slot], x.w[slot], pull_on(x, slot)); });
     }
