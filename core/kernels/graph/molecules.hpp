@@ -65,13 +65,25 @@ HOL_INLINE void ends_of(const Schedule &s, int32_t place, int32_t &from, int32_t
     to = place < s.n_tree ? place : s.to[place - s.n_tree];
 }
 
-// Calls body(place, sign) for the bonds of the atom at a slot. The sign is 1 if the bond points away from it, else -1.
+// Signs that cost no product.
+struct Plus {};
+struct Minus {};
+template <class V>
+HOL_INLINE V operator*(Plus, const V &x) {
+    return x;
+}
+template <class V>
+HOL_INLINE V operator*(Minus, const V &x) {
+    return -x;
+}
+
+// Calls body(place, sign) for the bonds of the atom at a slot. The sign is positive if the bond points away from it.
 template <class V, class Body>
 HOL_INLINE void for_bonds_of(const Schedule &s, int32_t slot, const Body &body) {
-    const V sign[2] = {Width<V>::all(1), Width<V>::all(-1)};
-    for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) body(s.child[c], sign[0]);
-    if (slot < s.n_tree) return body(slot, sign[1]);
+    for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) body(s.child[c], Plus{});
+    if (slot < s.n_tree) return body(slot, Minus{});
     if (s.n_core_atoms == 0) return;
+    const V sign[2] = {Width<V>::all(1), Width<V>::all(-1)};
     const int32_t *const meet = s.meet + s.meet_start[slot - s.n_tree];
     const int n = s.meet_start[slot - s.n_tree + 1] - s.meet_start[slot - s.n_tree];
     choose_few<4>(n, [&](auto known) HOL_FORCED {

@@ -122,7 +122,7 @@ struct Newton {
     // Returns the displacement of an atom by tau.
     HOL_FORCED Vector3<V> displacement(int32_t slot) const {
         Vector3<V> pull = {};
-        for_bonds_of<V>(x.s, slot, [&](int32_t place, V sign) HOL_FORCED {
+        for_bonds_of<V>(x.s, slot, [&](int32_t place, auto sign) HOL_FORCED {
             pull = add_times(pull, sign * x.row[place].tau, x.row[place].b);
         });
         return x.w[slot] * pull;

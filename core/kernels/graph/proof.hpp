@@ -66,7 +66,7 @@ template <class V>
 HOL_INLINE Pulled<V> pulled(const Molecules<V> &x, const Equations<V> &e, const Backward<V> *bond, int32_t slot) {
     Vector3<V> g = {};
     V sum = {};
-    for_bonds_of<V>(x.s, slot, [&](int32_t place, V sign) HOL_FORCED {
+    for_bonds_of<V>(x.s, slot, [&](int32_t place, auto sign) HOL_FORCED {
         g = add_times(g, sign * x.row[place].t, x.row[place].d);
         sum = sum + bond[place].tension;
     });

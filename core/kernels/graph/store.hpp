@@ -14,8 +14,9 @@ namespace graph {
 template <class V>
 HOL_INLINE Vector3<V> pull_on(const Molecules<V> &x, int32_t slot) {
     Vector3<V> g = {};
-    for_bonds_of<V>(x.s, slot,
-                    [&](int32_t place, V sign) HOL_FORCED { g = add_times(g, sign * x.row[place].t, x.row[place].d); });
+    for_bonds_of<V>(x.s, slot, [&](int32_t place, auto sign) HOL_FORCED {
+        g = add_times(g, sign * x.row[place].t, x.row[place].d);
+    });
     return g;
 }
 
@@ -100,33 +101,24 @@ HOL_NOINLINE void write_pulls(const Molecules<V> &x, const AtomArray &g, bool ad
                         [&](int32_t slot) { return read<layout>(g, x.at, x.s.atom_of[slot]) + pull_on(x, slot); });
 }
 
-// Writes value(place) of the bonds at these places to out[bond] of the lanes in `which`, four at a time where bonds
-// follow each other.
+// Writes value(place) of the bonds at these places to out[bond] of the lanes in `which`. To look whether four bonds
+// follow each other takes more instructions than it saves, in rings, too.
 template <class V, class Value>
 HOL_INLINE void write_values(const Schedule &s, const MoleculeLane *lane, double *out, unsigned which, int32_t first,
                              int32_t end, const Value &value) {
     double *p[Width<V>::lanes];
     for (int i = 0; i < Width<V>::lanes; ++i) p[i] = out + lane[i].first_bond;
     const bool all = which == (1u << Width<V>::lanes) - 1;
-    for (int32_t k = first; k < end;) {
-        const int32_t *const bond = s.bond_of + k;
-        if (all && k + 4 <= end && follow_each_other<4>(bond)) {
-            const V four[4] = {value(k), value(k + 1), value(k + 2), value(k + 3)};
-            double *q[Width<V>::lanes];
-            HOL_UNROLL
-            for (int i = 0; i < Width<V>::lanes; ++i) q[i] = p[i] + *bond;
-            write_four(q, four);
-            k += 4;
-            continue;
-        }
-        const V one = value(k++);
+    for (int32_t k = first; k < end; ++k) {
+        const int32_t bond = s.bond_of[k];
+        const V one = value(k);
         if (all) {
             HOL_UNROLL
-            for (int i = 0; i < Width<V>::lanes; ++i) p[i][*bond] = Width<V>::get(one, i);
-            continue;
+            for (int i = 0; i < Width<V>::lanes; ++i) p[i][bond] = Width<V>::get(one, i);
+        } else {
+            for (int i = 0; i < Width<V>::lanes; ++i)
+                if (which >> i & 1) p[i][bond] = Width<V>::get(one, i);
         }
-        for (int i = 0; i < Width<V>::lanes; ++i)
-            if (which >> i & 1) p[i][*bond] = Width<V>::get(one, i);
     }
 }
 

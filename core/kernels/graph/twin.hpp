@@ -135,7 +135,7 @@ HOL_INLINE vec3 first_half(const Vector3<Twin> &a) { return {first_half(a.x), fi
 HOL_INLINE vec3 second_half(const Vector3<Twin> &a) { return {second_half(a.x), second_half(a.y), second_half(a.z)}; }
 
 HOL_INLINE void read_rows(const double *const *p, Vector3<Twin> &x) {
-    vec3 a, b;
+    vec3 a = {}, b = {};
     read_rows(p, a);
     read_rows(p + W, b);
     x = side_by_side(a, b);
@@ -146,7 +146,7 @@ HOL_INLINE void write_rows(double *const *p, const Vector3<Twin> &x) {
 }
 template <int n>
 HOL_INLINE void read_elements(const double *const *p, Vector3<Twin> *x) {
-    vec3 a[n / 3], b[n / 3];
+    vec3 a[n / 3] = {}, b[n / 3] = {};
     graph::read_elements<n>(p, a);
     graph::read_elements<n>(p + W, b);
     HOL_UNROLL
@@ -154,7 +154,7 @@ HOL_INLINE void read_elements(const double *const *p, Vector3<Twin> *x) {
 }
 template <int n>
 HOL_INLINE void write_elements(double *const *p, Vector3<Twin> *x) {
-    vec3 a[n / 3], b[n / 3];
+    vec3 a[n / 3] = {}, b[n / 3] = {};
     HOL_UNROLL
     for (int k = 0; k < n / 3; ++k) {
         a[k] = first_half(x[k]);
@@ -165,7 +165,7 @@ HOL_INLINE void write_elements(double *const *p, Vector3<Twin> *x) {
 }
 template <int n>
 HOL_INLINE void add_elements(double *const *r, double *const *v, double factor, Vector3<Twin> *x) {
-    vec3 a[n / 3], b[n / 3];
+    vec3 a[n / 3] = {}, b[n / 3] = {};
     HOL_UNROLL
     for (int k = 0; k < n / 3; ++k) {
         a[k] = first_half(x[k]);
