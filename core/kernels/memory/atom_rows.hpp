@@ -39,12 +39,12 @@ HOL_INLINE void read_rows(const double *const *p, vec3 &a) {
     a.x = _mm512_insertf64x4(_mm512_castpd256_pd512(x[0]), x[1], 1);
     a.y = _mm512_insertf64x4(_mm512_castpd256_pd512(y[0]), y[1], 1);
     a.z = _mm512_insertf64x4(_mm512_castpd256_pd512(z[0]), z[1], 1);
+#elif HOL_LANES == 2
+    a = {vec{p[0][0], p[1][0]}, vec{p[0][1], p[1][1]}, vec{p[0][2], p[1][2]}};
 #else
     // gcc 12 loses elements that are written to a wide vector without a value.
     a = vec3{};
-    for (int i = 0; i < W; ++i) a.x[i] = p[i][0];
-    for (int i = 0; i < W; ++i) a.y[i] = p[i][1];
-    for (int i = 0; i < W; ++i) a.z[i] = p[i][2];
+    for (int i = 0; i < W; ++i) a.x[i] = p[i][0], a.y[i] = p[i][1], a.z[i] = p[i][2];
 #endif
 }
 
