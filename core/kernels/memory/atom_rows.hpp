@@ -42,9 +42,11 @@ HOL_INLINE void read_rows(const double *const *p, vec3 &a) {
 #elif HOL_LANES == 2
     a = {vec{p[0][0], p[1][0]}, vec{p[0][1], p[1][1]}, vec{p[0][2], p[1][2]}};
 #else
-    // gcc 12 loses elements that are written to a wide vector without a value.
+    // gcc 12 loses elements that are written to a wide vector without a value, or to several of them in turns.
     a = vec3{};
-    for (int i = 0; i < W; ++i) a.x[i] = p[i][0], a.y[i] = p[i][1], a.z[i] = p[i][2];
+    for (int i = 0; i < W; ++i) a.x[i] = p[i][0];
+    for (int i = 0; i < W; ++i) a.y[i] = p[i][1];
+    for (int i = 0; i < W; ++i) a.z[i] = p[i][2];
 #endif
 }
 
