@@ -40,6 +40,30 @@ HOL_INLINE void write_along(const Molecules<V> &x, const AtomArray &array, unsig
     });
 }
 
+// Moves the atoms of the lanes in `which` by next(slot), and their velocities with them; slots ascend.
+template <Layout layout, class V, class Next>
+HOL_INLINE void move_along(const Schedule &s, const PositionsCall &call, const Atoms<V> &at, unsigned which,
+                           const Next &next) {
+    const V per_dt = Width<V>::all(1 / call.dt);
+    for_groups(s.n_atoms, [&](int32_t slot, auto number) HOL_FORCED {
+        constexpr int count = number;
+        const int32_t *const atom = s.atom_of + slot;
+        const bool follow = follow_each_other<count>(atom);
+        Vector3<V> move[count] = {}, a[count] = {};
+        HOL_UNROLL
+        for (int j = 0; j < count; ++j) move[j] = next(slot + j);
+        read_few<layout, count>(call.r, at, atom, follow, a);
+        HOL_UNROLL
+        for (int j = 0; j < count; ++j) a[j] = a[j] + move[j];
+        write_few<layout, count>(call.r, at, atom, follow, a, which);
+        if (!call.v.x) return;
+        read_few<layout, count>(call.v, at, atom, follow, a);
+        HOL_UNROLL
+        for (int j = 0; j < count; ++j) a[j] = add_times(a[j], per_dt, move[j]);
+        write_few<layout, count>(call.v, at, atom, follow, a, which);
+    });
+}
+
 // G of the atoms, one slot after the other.
 template <class V>
 struct RingPulls {
@@ -57,17 +81,12 @@ struct RingPulls {
 template <class V>
 struct StripPulls {
     const BondRow<V> *row;
-    Vector3<V> in[3];  // of the bonds that end at the next atom, and of the long one that passes by
-    HOL_FORCED explicit StripPulls(const Molecules<V> &x) : row(x.row), in{} {}
+    StripSums<V> sums;
+    HOL_FORCED explicit StripPulls(const Molecules<V> &x) : row(x.row), sums{} {}
     HOL_FORCED Vector3<V> pull_of(int32_t place) const { return row[place].t * row[place].d; }
     HOL_FORCED Vector3<V> next(int32_t slot) {
         const int32_t place = first_place_at(slot) + begin_short;
-        const Vector3<V> to_short = pull_of(place), to_long = pull_of(place + 1),
-                         sum = (to_short + to_long) - (in[0] + in[1]);
-        in[0] = in[2];
-        in[1] = to_short;
-        in[2] = to_long;
-        return sum;
+        return sums.next(pull_of(place), pull_of(place + 1));
     }
 };
 

@@ -63,6 +63,17 @@ HOL_INLINE void add_elements(double *const *r, double *const *v, double factor, 
 }
 #endif
 
+#if HOL_LANES == 8 && defined(__AVX512F__)
+template <int n>
+HOL_INLINE void halves(const vec *e, quad *low, quad *high) {
+    HOL_UNROLL
+    for (int c = 0; c < n; ++c) {
+        low[c] = _mm512_castpd512_pd256(e[c]);
+        high[c] = _mm512_extractf64x4_pd(e[c], 1);
+    }
+}
+#endif
+
 template <int n>
 HOL_INLINE void read_elements(const double *const *p, Vector3<vec> *a) {
     vec *const e = &a->x;
@@ -92,11 +103,7 @@ HOL_INLINE void write_elements(double *const *p, Vector3<vec> *a) {
     write_elements<n>(p, reinterpret_cast<quad *>(e));
 #elif HOL_LANES == 8 && defined(__AVX512F__)
     quad low[n], high[n];
-    HOL_UNROLL
-    for (int c = 0; c < n; ++c) {
-        low[c] = _mm512_castpd512_pd256(e[c]);
-        high[c] = _mm512_extractf64x4_pd(e[c], 1);
-    }
+    halves<n>(e, low, high);
     write_elements<n>(p, low);
     write_elements<n>(p + 4, high);
 #else
@@ -121,11 +128,7 @@ HOL_INLINE void add_elements(double *const *r, double *const *v, double factor, 
     add_elements<n>(r, v, factor, reinterpret_cast<quad *>(e));
 #elif HOL_LANES == 8 && defined(__AVX512F__)
     quad low[n], high[n];
-    HOL_UNROLL
-    for (int c = 0; c < n; ++c) {
-        low[c] = _mm512_castpd512_pd256(e[c]);
-        high[c] = _mm512_extractf64x4_pd(e[c], 1);
-    }
+    halves<n>(e, low, high);
     add_elements<n>(r, v, factor, low);
     add_elements<n>(r + 4, v ? v + 4 : nullptr, factor, high);
 #else

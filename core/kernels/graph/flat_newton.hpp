@@ -1,4 +1,4 @@
-// Newton's method for the positions of one large molecule with cycles: the matrix of new bonds D times reference bonds
+// Newton's method for the positions of one large molecule: the matrix of new bonds D times reference bonds
 // b as it stands, factored along a list (flat_list.hpp). Bonds and moves are found four at a time, the triangular
 // solves one by one.
 #ifndef HOLONOMIC_KERNELS_GRAPH_FLAT_NEWTON_HPP

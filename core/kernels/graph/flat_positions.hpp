@@ -1,4 +1,4 @@
-// Position level of one large molecule with cycles: positions.hpp along a list.
+// Position level of one large molecule: positions.hpp along a list.
 #ifndef HOLONOMIC_KERNELS_GRAPH_FLAT_POSITIONS_HPP
 #define HOLONOMIC_KERNELS_GRAPH_FLAT_POSITIONS_HPP
 

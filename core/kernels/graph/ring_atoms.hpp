@@ -49,28 +49,11 @@ HOL_NOINLINE V load_bonds(RingNewton<V> &z, const PositionsCall &call, const Ato
 // Moves the atoms of the lanes in `which`, and their velocities.
 template <Layout layout, class V>
 HOL_NOINLINE void write_moves(const RingNewton<V> &z, const PositionsCall &call, const Atoms<V> &at, unsigned which) {
-    const V per_dt = Width<V>::all(1 / call.dt);
     Vector3<V> pull = z.pull_of(z.x.s.n_bonds - 1);
-    for_groups(z.x.s.n_atoms, [&](int32_t slot, auto number) HOL_FORCED {
-        constexpr int count = number;
-        const int32_t *const atom = z.x.s.atom_of + slot;
-        const bool follow = follow_each_other<count>(atom);
-        Vector3<V> move[count], a[count] = {};
-        HOL_UNROLL
-        for (int j = 0; j < count; ++j) {
-            const Vector3<V> next = z.pull_of(slot + j);
-            move[j] = z.x.w[slot + j] * (next - pull);
-            pull = next;
-        }
-        read_few<layout, count>(call.r, at, atom, follow, a);
-        HOL_UNROLL
-        for (int j = 0; j < count; ++j) a[j] = a[j] + move[j];
-        write_few<layout, count>(call.r, at, atom, follow, a, which);
-        if (!call.v.x) return;
-        read_few<layout, count>(call.v, at, atom, follow, a);
-        HOL_UNROLL
-        for (int j = 0; j < count; ++j) a[j] = add_times(a[j], per_dt, move[j]);
-        write_few<layout, count>(call.v, at, atom, follow, a, which);
+    move_along<layout>(z.x.s, call, at, which, [&](int32_t slot) HOL_FORCED {
+        const Vector3<V> next = z.pull_of(slot), move = z.x.w[slot] * (next - pull);
+        pull = next;
+        return move;
     });
 }
 

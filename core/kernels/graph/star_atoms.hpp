@@ -49,22 +49,19 @@ struct StarAtoms {
         copy(atoms, r);
     }
     inline HOL_FORCED void write(const AtomArray &array, Vector3<V> *r, unsigned which) const {
-        if (__builtin_expect(centre != 0, 0)) {
-            Vector3<V> atoms[N + 1];
-            copy(r, atoms);
-            move_centre(atoms, 0, centre);
-            copy(atoms, r);
-        }
+        to_callers_order(r);
         write_all<layout, N + 1>(array, at, r, which);
     }
     inline HOL_FORCED void move(const PositionsCall &call, Vector3<V> *r, unsigned which) const {
-        if (__builtin_expect(centre != 0, 0)) {
-            Vector3<V> atoms[N + 1];
-            copy(r, atoms);
-            move_centre(atoms, 0, centre);
-            copy(atoms, r);
-        }
+        to_callers_order(r);
         move_all<layout, N + 1>(call, at, r, which);
+    }
+    inline HOL_FORCED void to_callers_order(Vector3<V> *r) const {
+        if (__builtin_expect(centre == 0, 1)) return;
+        Vector3<V> atoms[N + 1];
+        copy(r, atoms);
+        move_centre(atoms, 0, centre);
+        copy(atoms, r);
     }
     HOL_INLINE void copy(const Vector3<V> *from, Vector3<V> *to) {
         HOL_UNROLL

@@ -8,6 +8,7 @@
 #ifndef HOLONOMIC_KERNELS_GRAPH_STRIP_HPP
 #define HOLONOMIC_KERNELS_GRAPH_STRIP_HPP
 
+#include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/graph/schedule.hpp"
 #include "core/kernels/graph/width.hpp"
 
@@ -37,6 +38,19 @@ HOL_INLINE void to_atom_before(T *of_bond) {
     HOL_UNROLL
     for (int e = begin_long; e >= passing; --e) of_bond[e] = of_bond[e - 2];
 }
+
+// What the bonds of a strip pull its atoms with, one atom after the other, from the pulls of the two that begin there.
+template <class V>
+struct StripSums {
+    Vector3<V> in[3];  // of the bonds that end at the next atom, and of the long one that passes by
+    HOL_FORCED Vector3<V> next(const Vector3<V> &to_short, const Vector3<V> &to_long) {
+        const Vector3<V> sum = (to_short + to_long) - (in[0] + in[1]);
+        in[0] = in[2];
+        in[1] = to_short;
+        in[2] = to_long;
+        return sum;
+    }
+};
 
 // Multipliers of the two columns that are eliminated at an atom, of the first for the bonds 1 .. 4 of StripBond, of the
 // second for 2 .. 4.

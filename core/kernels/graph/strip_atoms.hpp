@@ -47,25 +47,8 @@ HOL_NOINLINE V load_bonds(StripNewton<V> &z, const PositionsCall &call, const At
 // Moves the atoms of the lanes in `which`, and their velocities.
 template <Layout layout, class V>
 HOL_NOINLINE void write_moves(const StripNewton<V> &z, const PositionsCall &call, const Atoms<V> &at, unsigned which) {
-    const V per_dt = Width<V>::all(1 / call.dt);
     typename StripNewton<V>::Displacements displacements = {};
-    for_groups(z.x.s.n_atoms, [&](int32_t slot, auto number) HOL_FORCED {
-        constexpr int count = number;
-        const int32_t *const atom = z.x.s.atom_of + slot;
-        const bool follow = follow_each_other<count>(atom);
-        Vector3<V> move[count] = {}, a[count] = {};
-        HOL_UNROLL
-        for (int j = 0; j < count; ++j) move[j] = displacements.next(z, slot + j);
-        read_few<layout, count>(call.r, at, atom, follow, a);
-        HOL_UNROLL
-        for (int j = 0; j < count; ++j) a[j] = a[j] + move[j];
-        write_few<layout, count>(call.r, at, atom, follow, a, which);
-        if (!call.v.x) return;
-        read_few<layout, count>(call.v, at, atom, follow, a);
-        HOL_UNROLL
-        for (int j = 0; j < count; ++j) a[j] = add_times(a[j], per_dt, move[j]);
-        write_few<layout, count>(call.v, at, atom, follow, a, which);
-    });
+    move_along<layout>(z.x.s, call, at, which, [&](int32_t slot) HOL_FORCED { return displacements.next(z, slot); });
 }
 
 }  // namespace graph

@@ -62,15 +62,10 @@ struct StripNewton {
 
     // The same of all atoms, one after the other.
     struct Displacements {
-        Vector3<V> pull[3];  // of the bonds that end at the next atom, and of the long one that passes by
+        StripSums<V> sums;
         HOL_FORCED Vector3<V> next(const StripNewton &z, int32_t atom) {
             const int32_t place = first_place_at(atom) + begin_short;
-            const Vector3<V> to_short = z.pull_of(place), to_long = z.pull_of(place + 1),
-                             sum = (to_short + to_long) - (pull[0] + pull[1]);
-            pull[0] = pull[2];
-            pull[1] = to_short;
-            pull[2] = to_long;
-            return z.x.w[atom] * sum;
+            return z.x.w[atom] * sums.next(z.pull_of(place), z.pull_of(place + 1));
         }
     };
     // In a sweep of their own: with the bonds they would need twice the registers.

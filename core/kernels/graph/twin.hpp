@@ -152,25 +152,25 @@ HOL_INLINE void read_elements(const double *const *p, Vector3<Twin> *x) {
     HOL_UNROLL
     for (int k = 0; k < n / 3; ++k) x[k] = side_by_side(a[k], b[k]);
 }
-template <int n>
-HOL_INLINE void write_elements(double *const *p, Vector3<Twin> *x) {
-    vec3 a[n / 3] = {}, b[n / 3] = {};
+template <int count>
+HOL_INLINE void halves(const Vector3<Twin> *x, vec3 *a, vec3 *b) {
     HOL_UNROLL
-    for (int k = 0; k < n / 3; ++k) {
+    for (int k = 0; k < count; ++k) {
         a[k] = first_half(x[k]);
         b[k] = second_half(x[k]);
     }
+}
+template <int n>
+HOL_INLINE void write_elements(double *const *p, Vector3<Twin> *x) {
+    vec3 a[n / 3] = {}, b[n / 3] = {};
+    halves<n / 3>(x, a, b);
     graph::write_elements<n>(p, a);
     graph::write_elements<n>(p + W, b);
 }
 template <int n>
 HOL_INLINE void add_elements(double *const *r, double *const *v, double factor, Vector3<Twin> *x) {
     vec3 a[n / 3] = {}, b[n / 3] = {};
-    HOL_UNROLL
-    for (int k = 0; k < n / 3; ++k) {
-        a[k] = first_half(x[k]);
-        b[k] = second_half(x[k]);
-    }
+    halves<n / 3>(x, a, b);
     graph::add_elements<n>(r, v, factor, a);
     graph::add_elements<n>(r + W, v ? v + W : nullptr, factor, b);
 }
