@@ -77,6 +77,7 @@ struct Linear {
         for (int32_t p = 0; p <= x.s.n_pieces; ++p) faint[p] = {0, {}, false};
         pieces = {team, slack, faint, memory.values(x.s.n_pieces * joint), joint};
         x.pieces = &pieces;
+        x.per_cancelled2 = 1 / most_cancelled2(x.s.n_bonds);
     }
 
     // Inverse masses by slot.

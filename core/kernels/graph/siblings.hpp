@@ -18,8 +18,6 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// That error may be so many times a bond's scale, both in roundings.
-constexpr double most_cancelled = 64;
 
 // The bonds of an atom, each at its place: those to its children, and the one above. tree_runs.hpp has the same for W
 // atoms of one molecule.
@@ -49,7 +47,7 @@ HOL_INLINE V shared_error(const Rows &x, int k) {
         T2 = mul_add(row.q, row.t * row.t, T2);
     }
     const V w = x.w();
-    return (w * w) * ((1 / (most_cancelled * most_cancelled)) * T2);
+    return (w * w) * (x.x.per_cancelled2 * T2);
 }
 
 // Returns a bond's own size less the error, in squares. It is negative if the bond is faint.

@@ -81,7 +81,7 @@ HOL_NOINLINE void note_faint(const Molecules<double> &x, int32_t slot, int k, Fa
         const BondRow<double> &row = x.row[place];
         const double down = row.l * above, A = (x.w[slot] + x.w[place]) * row.q;
         const double size = abs(row.t) + terms_of(x, place, 0) / A;
-        if (!(abs(row.t - down) + abs(down) <= most_cancelled * size)) slack = -1;
+        if (!(abs(row.t - down) + abs(down) <= sqrt(most_cancelled2(x.s.n_bonds)) * size)) slack = -1;
     }
 }
 
