@@ -32,12 +32,12 @@ struct Inputs {
     const double *strain = nullptr;  // added to rates: arithmetic/vector3.hpp
 };
 
-// The error of a multiplier that is a small difference (siblings.hpp) may be so many times its scale, both in roundings:
-// of n bonds a part of the 16 + sqrt(n) roundings of the scale that count as right (tests/oracle/molecules/README.md),
-// the same part in all molecules of more than a thousand bonds.
+// The error of a multiplier that is a small difference (siblings.hpp) may be so many times its scale, both in
+// roundings: no more than the 16 + sqrt(n) roundings of the scale that count as right
+// (tests/oracle/molecules/README.md) where a molecule is large.
 constexpr double most_cancelled = 64;
 HOL_INLINE double most_cancelled2(int32_t n_bonds) {
-    const double large = 4 * static_cast<double>(n_bonds);
+    const double large = static_cast<double>(n_bonds);
     return large > most_cancelled * most_cancelled ? large : most_cancelled * most_cancelled;
 }
 

@@ -18,7 +18,6 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-
 // The bonds of an atom, each at its place: those to its children, and the one above. tree_runs.hpp has the same for W
 // atoms of one molecule.
 template <class V>
