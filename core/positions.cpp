@@ -32,6 +32,7 @@ struct PositionsWork final : Work {
         images[1] = {&calls[where].r, &calls[where].box};
         return 2;
     }
+    bool shares_lists() const override { return true; }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_positions.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return store_bytes(k.long_positions, n); }
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {

@@ -1,7 +1,6 @@
 #include "core/molecules/flat_list.hpp"
 
 #include <algorithm>
-#include <vector>
 
 #include "core/molecules/elimination_order.hpp"
 #include "core/molecules/flat_order.hpp"
@@ -11,6 +10,15 @@ namespace holonomic {
 namespace {
 
 using Rows = std::vector<Numbers>;
+using Tile = FlatList::Tile;
+
+template <class T>
+std::int32_t size_of(const std::vector<T> &list) {
+    return static_cast<std::int32_t>(list.size());
+}
+void pad(Numbers &list, std::int32_t inert) {
+    list.resize(static_cast<std::size_t>(in_fours(static_cast<std::int64_t>(list.size()))), inert);
+}
 
 class FlatMaker {
 public:
@@ -21,127 +29,258 @@ public:
         a_.bond_of = order;
         const Numbers rounds = in_rounds(fill_of(neighbours()));
         for (std::int32_t p = 0; p < s_.n_bonds; ++p) a_.bond_of[at(p)] = order[at(rounds[at(p)])];
-        number_atoms();
         Fill fill = fill_of(neighbours());
         start_ = std::move(fill.column_start);
-        a_.row = std::move(fill.row);
-        list_entries();
-        list_updates();
-        list_runs();
-        pad();
+        row_ = std::move(fill.row);
+        bonds_ = bonds_of_atoms();
+        open_tiles();
+        for (Tile &t : a_.tile) list_bonds(t);
+        list_homes();
+        for (Tile &t : a_.tile) list_entries(t);
+        for (Tile &t : a_.tile) list_updates(t);
+        for (Tile &t : a_.tile) list_sides(t);
+        close();
     }
 
 private:
     Lists bonds_of_atoms() const {
-        return invert(s_.n_atoms, s_.n_bonds, [&](std::int32_t p, int end) {
-            const std::int32_t k = a_.bond_of[at(p)];
-            return (end ? s_.atom_j : s_.atom_i)[k];
-        });
+        return invert(s_.n_atoms, s_.n_bonds, [&](std::int32_t p, int end) { return end_of(p, end); });
     }
-    // Calls each(p, q, atom) for all columns p > q that share an atom.
-    template <class Each>
-    void for_pairs(const Each &each) const {
-        const Lists bonds = bonds_of_atoms();
-        for (std::int32_t i = 0; i < s_.n_atoms; ++i)
-            for (const std::int32_t *p = bonds.begin(i); p != bonds.end(i); ++p)
-                for (const std::int32_t *q = bonds.begin(i); q != p; ++q) each(std::max(*p, *q), std::min(*p, *q), i);
+    // The atoms of column p.
+    std::int32_t end_of(std::int32_t p, int end) const {
+        const std::int32_t k = a_.bond_of[at(p)];
+        return (end ? s_.atom_j : s_.atom_i)[k];
     }
     Rows neighbours() const {
+        const Lists bonds = bonds_of_atoms();
         Rows list(at(s_.n_bonds));
-        for_pairs([&](std::int32_t p, std::int32_t q, std::int32_t) {
-            list[at(p)].push_back(q);
-            list[at(q)].push_back(p);
-        });
+        for (std::int32_t i = 0; i < s_.n_atoms; ++i)
+            for (const std::int32_t *p = bonds.begin(i); p != bonds.end(i); ++p)
+                for (const std::int32_t *q = bonds.begin(i); q != p; ++q) {
+                    list[at(*p)].push_back(*q);
+                    list[at(*q)].push_back(*p);
+                }
         return list;
     }
+    std::int32_t tile_of(std::int32_t p) const { return p / FlatList::columns_of_tile; }
+    // Where an entry is.
     std::int32_t entry(std::int32_t row, std::int32_t column) const {
-        const auto begin = a_.row.begin();
-        return static_cast<std::int32_t>(
+        const auto begin = row_.begin();
+        const std::int32_t e = static_cast<std::int32_t>(
             std::lower_bound(begin + start_[at(column)], begin + start_[at(column) + 1], row) - begin);
+        const Tile &t = a_.tile[at(tile_of(column))];
+        return t.first_entry + e - start_[at(t.first)];
     }
-    // In the order in which the bonds come to them.
-    void number_atoms() {
-        a_.place_of.assign(at(s_.n_atoms), -1);
-        for (const std::int32_t k : a_.bond_of)
-            for (const std::int32_t i : {s_.atom_i[k], s_.atom_j[k]}) {
-                if (a_.place_of[at(i)] >= 0) continue;
-                a_.place_of[at(i)] = static_cast<std::int32_t>(a_.atom_of.size());
-                a_.atom_of.push_back(i);
-            }
-    }
-    bool points_to(std::int32_t p, std::int32_t atom) const { return s_.atom_j[a_.bond_of[at(p)]] == atom; }
 
-    void list_entries() {
-        for (std::int32_t p = 0; p < s_.n_bonds; ++p) {
-            a_.from.push_back(4 * a_.place_of[at(s_.atom_i[a_.bond_of[at(p)]])]);
-            a_.to.push_back(4 * a_.place_of[at(s_.atom_j[a_.bond_of[at(p)]])]);
+    void open_tiles() {
+        constexpr std::int32_t columns = FlatList::columns_of_tile;
+        std::int64_t entries = 0;
+        for (std::int32_t first = 0; first < s_.n_bonds; first += columns) {
+            Tile t = {};
+            t.first = first;
+            t.end = std::min(s_.n_bonds, first + columns);
+            t.first_entry = static_cast<std::int32_t>(entries);
+            t.end_entry = t.first_entry + start_[at(t.end)] - start_[at(t.first)];
+            entries = in_fours(t.end_entry);
+            a_.tile.push_back(t);
+        }
+        a_.list.n_entries = static_cast<std::int32_t>(entries);
+        a_.list.n_columns = static_cast<std::int32_t>(in_fours(s_.n_bonds));
+        a_.place_of.assign(at(s_.n_atoms), -1);
+        number_.assign(at(s_.n_atoms), -1);
+        side_of_.assign(at(s_.n_bonds), -1);
+        row_of_.assign(at(s_.n_bonds), -1);
+    }
+
+    // The atoms and bonds of a tile: its own in the order of memory, then guests.
+    void list_bonds(Tile &t) {
+        Numbers bonds, own, guests;
+        for (std::int32_t p = t.first; p < t.end; ++p) bonds.push_back(p);
+        for (std::int32_t p = t.first; p < t.end; ++p)
+            for (int end = 0; end < 2; ++end) {
+                const std::int32_t i = end_of(p, end);
+                if (number_[at(i)] >= 0) continue;
+                number_[at(i)] = 0;
+                (a_.place_of[at(i)] < 0 ? own : guests).push_back(i);
+                for (const std::int32_t *q = bonds_.begin(i); q != bonds_.end(i); ++q)
+                    if (*q >= t.end) bonds.push_back(*q);
+            }
+        const auto extra = bonds.begin() + (t.end - t.first);
+        std::sort(extra, bonds.end());
+        bonds.erase(std::unique(extra, bonds.end()), bonds.end());
+        t.first_row = size_of(a_.from);
+        const std::size_t visiting = guests.size();
+        for (std::size_t b = at(t.end - t.first); b < bonds.size(); ++b)
+            for (int end = 0; end < 2; ++end) {
+                const std::int32_t i = end_of(bonds[b], end);
+                if (number_[at(i)] >= 0) continue;
+                number_[at(i)] = 0;
+                guests.push_back(i);
+            }
+        std::sort(own.begin(), own.end());
+        std::sort(guests.begin(), guests.begin() + static_cast<std::ptrdiff_t>(visiting));
+        t.first_site = size_of(a_.atom_of);
+        t.own_end = t.first_site + size_of(own);
+        t.first_mass = 2 * t.first_site + tile_of(t.first);
+        for (const std::int32_t i : own) a_.place_of[at(i)] = add_site(t, i);
+        for (const std::int32_t i : guests) add_site(t, i);
+        t.end_site = size_of(a_.atom_of);
+        visiting_.push_back(size_of(own) + static_cast<std::int32_t>(visiting));
+        for (std::size_t b = 0; b < bonds.size(); ++b) {
+            if (b == at(t.end - t.first)) pad(a_.from, 0), pad(a_.to, 0);
+            a_.from.push_back(4 * number_[at(end_of(bonds[b], 0))]);
+            a_.to.push_back(4 * number_[at(end_of(bonds[b], 1))]);
+        }
+        pad(a_.from, 0), pad(a_.to, 0);
+        t.end_row = size_of(a_.from);
+        extra_.emplace_back(extra, bonds.end());
+        for (std::int32_t site = t.first_site; site < t.end_site; ++site) number_[at(a_.atom_of[at(site)])] = -1;
+        a_.list.most_sites = std::max(a_.list.most_sites, t.end_site - t.first_site);
+    }
+    std::int32_t add_site(const Tile &t, std::int32_t atom) {
+        const std::int32_t site = size_of(a_.atom_of);
+        number_[at(atom)] = site - t.first_site;
+        a_.atom_of.push_back(atom);
+        return site;
+    }
+
+    void list_homes() {
+        for (const std::int32_t i : a_.atom_of) a_.home.push_back(a_.place_of[at(i)]);
+        std::vector<std::vector<FlatList::Visit>> visits(a_.tile.size());
+        for (std::size_t n = 0; n < a_.tile.size(); ++n)
+            for (std::int32_t site = a_.tile[n].own_end; site < a_.tile[n].first_site + visiting_[n]; ++site) {
+                std::size_t host = n;  // a tile before
+                while (a_.home[at(site)] < a_.tile[host].first_site) --host;
+                visits[host].push_back({a_.home[at(site)], site});
+            }
+        for (std::size_t n = 0; n < a_.tile.size(); ++n) {
+            a_.tile[n].first_visit = size_of(a_.visit);
+            a_.visit.insert(a_.visit.end(), visits[n].begin(), visits[n].end());
+            a_.tile[n].end_visit = size_of(a_.visit);
+        }
+    }
+
+    // The side of a column that a tile before reaches.
+    std::int32_t side_of(std::int32_t column) {
+        std::int32_t &side = side_of_[at(column)];
+        if (side < 0) side = a_.list.n_columns++;
+        return side;
+    }
+
+    void list_entries(Tile &t) {
+        const std::vector<std::int32_t> &extra = extra_[at(tile_of(t.first))];
+        const std::int32_t own_rows = static_cast<std::int32_t>(in_fours(t.end - t.first)),
+                           none = 2 * (t.end_site - t.first_site);
+        for (std::size_t b = 0; b < extra.size(); ++b) row_of_[at(extra[b])] = own_rows + static_cast<std::int32_t>(b);
+        const auto row_of = [&](std::int32_t p) { return p < t.end ? p - t.first : row_of_[at(p)]; };
+        t.first_run = size_of(a_.run);
+        for (std::int32_t p = t.first; p < t.end; ++p) {
+            const std::int32_t n = start_[at(p) + 1] - start_[at(p)];
+            if (size_of(a_.run) == t.first_run || a_.run.back().entries != n) a_.run.push_back({0, n});
+            ++a_.run.back().columns;
             for (std::int32_t e = start_[at(p)]; e < start_[at(p) + 1]; ++e) {
-                a_.row_4.push_back(4 * a_.row[at(e)]);
-                a_.column_4.push_back(4 * p);
+                const std::int32_t q = row_[at(e)], shared = shared_atom(p, q);
+                a_.row.push_back(q < t.end ? q : side_of(q));
+                a_.row_4.push_back(shared < 0 ? 0 : 4 * row_of(q));
+                a_.column_4.push_back(4 * (p - t.first));
+                a_.mass.push_back(shared < 0 ? none
+                                             : 2 * number_in(t, p, shared) +
+                                                   ((end_of(p, 1) == shared) == (end_of(q, 1) == shared) ? 1 : 0));
             }
         }
-        a_.mass.assign(a_.row.size(), 2 * s_.n_atoms);
-        for_pairs([&](std::int32_t p, std::int32_t q, std::int32_t i) {
-            a_.mass[at(entry(p, q))] = 2 * a_.place_of[at(i)] + (points_to(p, i) == points_to(q, i) ? 1 : 0);
-        });
+        t.end_run = size_of(a_.run);
+        pad(a_.row, 0);
+        pad(a_.row_4, 0);
+        pad(a_.column_4, 0);
+        pad(a_.mass, none);
+        for (const std::int32_t q : extra) row_of_[at(q)] = -1;
+    }
+    std::int32_t shared_atom(std::int32_t p, std::int32_t q) const {
+        for (int a = 0; a < 2; ++a)
+            for (int b = 0; b < 2; ++b)
+                if (end_of(p, a) == end_of(q, b)) return end_of(p, a);
+        return -1;
+    }
+    // The number in a tile of an atom of its column p.
+    std::int32_t number_in(const Tile &t, std::int32_t p, std::int32_t atom) const {
+        const std::size_t row = at(t.first_row + p - t.first);
+        return (end_of(p, 0) == atom ? a_.from : a_.to)[row] / 4;
     }
 
-    void list_updates() {
-        for (std::int32_t p = 0; p < s_.n_bonds; ++p) {
+    void list_updates(Tile &t) {
+        t.first_update = static_cast<std::int64_t>(a_.update.size());
+        for (std::int32_t p = t.first; p < t.end; ++p) {
             const std::int32_t first = start_[at(p)], end = start_[at(p) + 1];
             for (std::int32_t i = first; i < end; ++i)
-                for (std::int32_t j = first; j < i; ++j) a_.update.push_back(entry(a_.row[at(i)], a_.row[at(j)]));
+                for (std::int32_t j = first; j < i; ++j) {
+                    const std::int32_t e = entry(row_[at(i)], row_[at(j)]);
+                    a_.update.push_back(row_[at(j)] < t.end ? e : side_of_entry(e));
+                }
         }
     }
-
-    void list_runs() {
-        for (std::int32_t p = 0; p < s_.n_bonds; ++p) {
-            const std::int32_t entries = start_[at(p) + 1] - start_[at(p)];
-            if (a_.run.empty() || a_.run.back().entries != entries) a_.run.push_back({0, entries});
-            ++a_.run.back().columns;
-        }
+    std::int32_t side_of_entry(std::int32_t e) {
+        if (entry_side_.empty()) entry_side_.assign(at(a_.list.n_entries), -1);
+        std::int32_t &side = entry_side_[at(e)];
+        if (side < 0) side = a_.list.n_entries++;
+        return side;
     }
 
-    void pad() {
+    void list_sides(Tile &t) {
+        t.first_late = size_of(a_.late);
+        t.first_outer = size_of(a_.outer);
+        for (std::int32_t p = t.first; p < t.end; ++p) {
+            const std::int32_t side = side_of_[at(p)];
+            if (side >= 0) a_.late.push_back({p, side});
+            bool outer = side >= 0;
+            for (int end = 0; end < 2; ++end) outer = outer || a_.place_of[at(end_of(p, end))] < t.first_site;
+            if (outer) a_.outer.push_back(p);
+        }
+        t.end_late = size_of(a_.late);
+        t.end_outer = size_of(a_.outer);
+        t.first_late_entry = size_of(a_.late_entry);
+        for (std::int32_t e = t.first_entry; e < t.end_entry && !entry_side_.empty(); ++e)
+            if (entry_side_[at(e)] >= 0) a_.late_entry.push_back({e, entry_side_[at(e)]});
+        t.end_late_entry = size_of(a_.late_entry);
+    }
+
+    void close() {
         FlatList &l = a_.list;
         l.n_atoms = s_.n_atoms;
         l.n_bonds = s_.n_bonds;
-        l.n_entries = static_cast<std::int32_t>(a_.row.size());
-        const std::size_t bonds = static_cast<std::size_t>(in_fours(l.n_bonds)),
-                          entries = static_cast<std::size_t>(in_fours(l.n_entries));
-        a_.bond_of.resize(bonds, 0);
-        a_.from.resize(bonds, 0);
-        a_.to.resize(bonds, 0);
-        a_.row_4.resize(entries, 0);
-        a_.column_4.resize(entries, 0);
-        a_.mass.resize(entries, 2 * s_.n_atoms);
+        l.n_sites = size_of(a_.atom_of);
+        l.n_rows = size_of(a_.from);
+        l.n_tiles = size_of(a_.tile);
+        pad(a_.bond_of, 0);
+        l.tile = a_.tile.data();
         l.atom_of = a_.atom_of.data();
+        l.home = a_.home.data();
         l.place_of = a_.place_of.data();
         l.bond_of = a_.bond_of.data();
         l.from = a_.from.data();
         l.to = a_.to.data();
         l.run = a_.run.data();
-        l.n_runs = static_cast<std::int32_t>(a_.run.size());
         l.row = a_.row.data();
         l.row_4 = a_.row_4.data();
         l.column_4 = a_.column_4.data();
         l.mass = a_.mass.data();
         l.update = a_.update.data();
+        l.late = a_.late.data();
+        l.late_entry = a_.late_entry.data();
+        l.visit = a_.visit.data();
+        l.outer = a_.outer.data();
     }
 
     const Schedule &s_;
     FlatArrays &a_;
-    Numbers start_;  // of the columns' entries
+    Numbers start_, row_;  // of the factor's columns
+    Lists bonds_;          // columns of an atom
+    Rows extra_;           // columns that are a tile's extra bonds
+    Numbers number_;       // of an atom in the tile that is listed
+    Numbers visiting_;     // by tile, its atoms that its own bonds have
+    Numbers side_of_, row_of_, entry_side_;
 };
 
 }  // namespace
-
-std::size_t FlatArrays::bytes() const {
-    std::size_t count = 0;
-    for (const Numbers *numbers : {&atom_of, &place_of, &bond_of, &from, &to, &row, &row_4, &column_4, &mass, &update})
-        count += numbers->capacity();
-    return count * sizeof(std::int32_t) + run.capacity() * sizeof(FlatList::Run);
-}
 
 bool fits_flat_list(const Schedule &s) {
     constexpr std::int64_t most_updates = 16;  // for each bond

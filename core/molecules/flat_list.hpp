@@ -2,7 +2,6 @@
 #ifndef HOLONOMIC_FLAT_LIST_HPP
 #define HOLONOMIC_FLAT_LIST_HPP
 
-#include <cstddef>
 #include <vector>
 
 #include "core/kernels/graph/flat_list.hpp"
@@ -12,11 +11,12 @@
 namespace holonomic {
 
 struct FlatArrays {
-    Numbers atom_of, place_of, bond_of, from, to, row, row_4, column_4, mass, update;
+    Numbers atom_of, home, place_of, bond_of, from, to, row, row_4, column_4, mass, update, outer;
+    std::vector<FlatList::Tile> tile;
     std::vector<FlatList::Run> run;
+    std::vector<FlatList::Late> late, late_entry;
+    std::vector<FlatList::Visit> visit;
     FlatList list;
-
-    std::size_t bytes() const;
 };
 
 // Whether the list is not much longer than the molecule: an atom of n bonds brings n^3 / 6 updates.

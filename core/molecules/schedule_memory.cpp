@@ -17,6 +17,10 @@ std::size_t bytes(const Lists &...lists) {
     return (bytes(lists) + ...);
 }
 std::size_t bytes(const ScheduleRuns &r) { return bytes(r.run, r.slot, r.piece_start); }
+std::size_t bytes(const FlatArrays &f) {
+    return bytes(f.atom_of, f.home, f.place_of, f.bond_of, f.from, f.to, f.row, f.row_4, f.column_4, f.mass, f.update,
+                 f.outer, f.tile, f.run, f.late, f.late_entry, f.visit);
+}
 
 }  // namespace
 
@@ -27,7 +31,7 @@ std::size_t bytes_of(const Schedule &s) {
                  m.pair_start, m.from, m.to, m.meet_start, m.meet, m.meet_pair, m.meet_pair_start, m.column_start,
                  m.row, m.update, m.update_start, m.fixed, m.arms.arm, m.arms.stretch, m.arms.stretch_start,
                  m.arms.share_start) +
-           bytes(m.runs) + bytes(m.arms.runs) + m.flat.bytes() + static_cast<std::size_t>(m.careful->memory());
+           bytes(m.runs) + bytes(m.arms.runs) + bytes(m.flat) + static_cast<std::size_t>(m.careful->memory());
 }
 
 }  // namespace holonomic

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <new>
 
+#include "core/kernels/graph/flat_list.hpp"
 #include "core/run/lane.hpp"
 #include "core/run/thread_memory.hpp"
 
@@ -67,11 +68,13 @@ void share(int n_threads, std::int64_t scratch_bytes, std::int64_t store_bytes, 
 
 // A single molecule whose pieces are shared among the threads: a large one, or one of few, so that not every thread has
 // molecules of its own.
-bool is_shared_molecule(const Plan &plan, std::int64_t p, int n_threads) {
+bool is_shared_molecule(const Plan &plan, std::int64_t p, int n_threads, bool lists) {
     const Plan::Piece &piece = plan.pieces[static_cast<std::size_t>(p)];
     if (piece.shape == linear || piece.count != 1) return false;
     const Schedule &s = *plan.schedules[static_cast<std::size_t>(piece.shape)];
-    const std::int64_t n = s.n_pieces, n_molecules = static_cast<std::int64_t>(plan.pieces.size());
+    const std::int64_t n = std::max(s.n_pieces, s.flat ? s.flat->n_tiles : 0),
+                       n_molecules = static_cast<std::int64_t>(plan.pieces.size());
+    if (n_molecules < n_threads && lists && s.flat && s.flat->n_tiles > 1) return true;
     if (n_molecules < n_threads && s.n_arms > 0 && s.n_shares > 1) return true;
     return n > 1 && (n >= 8 * n_threads || n_molecules < 4 * n_threads);
 }
@@ -179,7 +182,7 @@ private:
 
 #ifdef _OPENMP
     bool is_shared(std::int64_t p) const {
-        if (is_shared_molecule(plan_, p, n_threads_)) return true;
+        if (is_shared_molecule(plan_, p, n_threads_, work_.shares_lists())) return true;
         if (plan_.longest <= longest_lane) return false;
         const std::int64_t n = long_chain_bonds(chains_, plan_, p);
         return n > 0 && is_shared_chain(n);

@@ -175,6 +175,54 @@ static void multipliers_are_right_to_a_few_roundings(void **state)
     }
 }
 
+/** Positions and the metric, which compute() leaves out. */
+typedef struct more_results {
+    double *r, *v, *lambda, *force, log_det, energy;
+} more_results;
+
+static more_results compute_more(const molecule *m, const hol_chains *chains)
+{
+    const double dt = 0.002;
+    const size_t size = 3 * (size_t)m->n_atoms;
+    more_results x = {
+        molecule_drifted(m, dt), copy_of(m->v, size), untouched((size_t)m->n_bonds), untouched(size), 0, 0};
+    CHECK(hol_project_positions(chains, m->r, x.r, x.v, dt, x.lambda, 0, NULL, NULL));
+    CHECK(hol_metric(chains, m->r, 1, &x.log_det, NULL, &x.energy, x.force, HOL_WRITE));
+    return x;
+}
+
+static void masses_and_lengths_given_later_are_as_those_of_a_new_set(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 3; ++which) {
+        molecule m = example(which), other = example(which);
+        const size_t n = (size_t)m.n_bonds, size = 3 * (size_t)m.n_atoms;
+        for (size_t i = 0; i < size / 3; ++i) other.mass[i] = 1 + (double)(i % 7);
+        for (size_t k = 0; k < n; ++k) other.length[k] = m.length[k] * (1 + 1e-3 * (double)(k % 3));
+        hol_chains *chains = large_chains(&m), *changed = large_chains(&other);
+        results of_other = compute(&other, changed);
+        more_results more_of_other = compute_more(&other, changed);
+        CHECK(hol_chains_set_masses(changed, m.mass));
+        CHECK(hol_chains_set_lengths(changed, m.length));
+        results a = compute(&m, chains), b = compute(&m, changed);
+        assert_same(&m, &a, &b);
+        assert_true(memcmp(a.lambda, of_other.lambda, n * sizeof *a.lambda) != 0);
+        more_results c = compute_more(&m, chains), d = compute_more(&m, changed);
+        assert_same_bits(c.r, d.r, size);
+        assert_same_bits(c.v, d.v, size);
+        assert_same_bits(c.lambda, d.lambda, n);
+        assert_same_bits(c.force, d.force, size);
+        assert_same_bits(&c.log_det, &d.log_det, 1);
+        assert_same_bits(&c.energy, &d.energy, 1);
+        assert_true(memcmp(c.r, more_of_other.r, size * sizeof *c.r) != 0);
+        more_results *const more[] = {&more_of_other, &c, &d};
+        for (int i = 0; i < 3; ++i) free(more[i]->r), free(more[i]->v), free(more[i]->lambda), free(more[i]->force);
+        forget(&of_other), forget(&a), forget(&b);
+        hol_chains_destroy(chains), hol_chains_destroy(changed);
+        molecule_free(&m), molecule_free(&other);
+    }
+}
+
 static void bad_data_leave_everything_untouched(void **state)
 {
     (void)state;
@@ -204,6 +252,7 @@ int main(void)
         cmocka_unit_test(order_of_bonds_changes_no_bit),
         cmocka_unit_test(layout_changes_no_bit),
         cmocka_unit_test(multipliers_are_right_to_a_few_roundings),
+        cmocka_unit_test(masses_and_lengths_given_later_are_as_those_of_a_new_set),
         cmocka_unit_test(bad_data_leave_everything_untouched),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

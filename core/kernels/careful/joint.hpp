@@ -8,7 +8,7 @@
 #ifndef HOLONOMIC_KERNELS_CAREFUL_JOINT_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_JOINT_HPP
 
-#include "core/kernels/careful/loss.hpp"
+#include "core/kernels/careful/wide.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -36,34 +36,32 @@ struct Joint {
     int n;
     double w;
     bool mixed;
-    Wide3 *D, *B;                 // [n], the same if not mixed
-    Wide *rho;                    // [n] w / E; 1 where E = 0
-    bool *rigid;                  // [n] E = 0
-    Wide3 *XD, *XB;               // [n][n] cross products of arms a and b at [a n + b]
-    double *sD, *sB, *sXD, *sXB;  // [n], [n][n] sizes of these vectors: sums of their components in absolute values
+    Wide3 *D, *B;    // [n], the same if not mixed
+    Wide *rho;       // [n] w / E; 1 where E = 0
+    bool *rigid;     // [n] E = 0
+    Wide3 *XD, *XB;  // [n][n] cross products of arms a and b at [a n + b]
     int n_others, n_rigid;
-    int *others;        // [n] the arms that are eliminated
-    Wide det;           // of S over these arms, relative to the product of their E that are not 0
-    bool by_inertia;    // how they are eliminated
-    Wide inverse[9];    // if so: the inverse of 1 + sum rho D B^T over those that give way,
-    Rigid rigid_arms;   // with the directions of the others taken out
-    mutable Loss loss;  // of all sums so far
+    int *others;       // [n] the arms that are eliminated
+    Wide det;          // of S over these arms, relative to the product of their E that are not 0
+    bool by_inertia;   // how they are eliminated
+    Wide inverse[9];   // if so: the inverse of 1 + sum rho D B^T over those that give way,
+    Rigid rigid_arms;  // with the directions of the others taken out
+
+    const Wide3 &cross_D(int a, int b) const { return XD[a * n + b]; }
+    const Wide3 &cross_B(int a, int b) const { return XB[a * n + b]; }
 };
 
-// Finds the cross products and sizes of all arms, once their vectors are there.
-HOL_NOINLINE void find_crosses(int n, const Wide3 *d, double *size, Wide3 *X, double *size_X) {
-    for (int a = 0; a < n; ++a) size[a] = size_of(d[a]);
-    for (int a = 0; a < n && n <= most_arms; ++a)
-        for (int b = 0; b < a; ++b) {
-            X[a * n + b] = cross(d[a], d[b]);
-            X[b * n + a] = -X[a * n + b];
-            size_X[a * n + b] = size_X[b * n + a] = size_of(X[a * n + b]);
-        }
-}
-
+// Finds the cross products of all arms, once their vectors are there.
 HOL_NOINLINE void prepare(Joint &x) {
-    find_crosses(x.n, x.D, x.sD, x.XD, x.sXD);
-    if (x.mixed) find_crosses(x.n, x.B, x.sB, x.XB, x.sXB);
+    if (x.n > most_arms) return;
+    for (int a = 0; a < x.n; ++a)
+        for (int b = 0; b < a; ++b) {
+            x.XD[a * x.n + b] = cross(x.D[a], x.D[b]);
+            x.XD[b * x.n + a] = -x.XD[a * x.n + b];
+            if (!x.mixed) continue;
+            x.XB[a * x.n + b] = cross(x.B[a], x.B[b]);
+            x.XB[b * x.n + a] = -x.XB[a * x.n + b];
+        }
 }
 
 // Arm a offers E from its far side.
@@ -140,12 +138,8 @@ HOL_NOINLINE bool eliminate_arms(Joint &x) {
     }
     x.by_inertia = x.n > most_arms || (x.n > few_arms && x.n_rigid == 0 && inertia < mild);
     if (x.w == 0) return true;
-    if (x.by_inertia) {
-        if (x.n_rigid > 0 || inertia >= mild) x.loss.note(1, wide(0));
-        return eliminate_by_inertia(x);
-    }
+    if (x.by_inertia) return eliminate_by_inertia(x);
     Wide sum = x.n_rigid == 0 ? wide(1) : wide(0);
-    double size = 0;
     for (int o = 0; o < x.n_others; ++o) {
         const int a = x.others[o];
         const Wide q = dot(x.D[a], x.B[a]), t = x.rho[a] * q;
@@ -153,85 +147,38 @@ HOL_NOINLINE bool eliminate_arms(Joint &x) {
         for (int p = 0; p < o; ++p) {
             const int b = x.others[p], rigid = x.rigid[a] + x.rigid[b];
             const Wide both = x.rho[a] * x.rho[b];
-            const int ab = a * x.n + b;
-            if (rigid == x.n_rigid) {
-                sum += both * dot(x.XD[ab], x.XB[ab]);
-                size += abs(both.hi) * (x.sD[a] * x.sD[b] * x.sXB[ab] + x.sXD[ab] * x.sB[a] * x.sB[b]);
-            }
+            if (rigid == x.n_rigid) sum += both * dot(x.cross_D(a, b), x.cross_B(a, b));
             for (int s = 0; s < p; ++s) {
                 const int c = x.others[s];
                 if (rigid + x.rigid[c] != x.n_rigid) continue;
-                const Wide of_D = dot(x.D[c], x.XD[ab]), of_B = x.mixed ? dot(x.B[c], x.XB[ab]) : of_D;
-                sum += both * x.rho[c] * (of_D * of_B);
-                size += abs(both.hi * x.rho[c].hi) *
-                        (x.sD[a] * x.sD[b] * x.sD[c] * abs(of_B.hi) + abs(of_D.hi) * x.sB[a] * x.sB[b] * x.sB[c]);
+                const Wide volume = dot(x.D[c], x.cross_D(a, b));
+                sum += both * x.rho[c] * (volume * (x.mixed ? dot(x.B[c], x.cross_B(a, b)) : volume));
             }
         }
     }
-    x.loss.note(size, sum);
     x.det = sum;
     return x.n_rigid <= 3 && abs(sum.hi) > flat;
-}
-
-// The arms of a joint as they stand on the two sides of <x^T, y^T>.
-struct Sides {
-    const Wide3 *D, *B, *XD, *XB;
-    const double *sD, *sB, *sXD, *sXB;
-    HOL_INLINE Sides of(const Joint &j, bool swapped) {
-        if (swapped) return {j.B, j.D, j.XB, j.XD, j.sB, j.sD, j.sXB, j.sXD};
-        return {j.D, j.B, j.XD, j.XB, j.sD, j.sB, j.sXD, j.sXB};
-    }
-};
-
-// Returns the sizes of what gram_sum() adds up, component by component: 0 for zeros of vectors along the axes.
-HOL_NOINLINE double gram_size(const Joint &j, int x, int y, int skip, bool swapped) {
-    const Sides s = Sides::of(j, swapped);
-    const int n = j.n, wanted = j.n_rigid - (skip >= 0 && j.rigid[skip] ? 1 : 0);
-    double size = wanted == 0 ? size_of_dot(s.D[x], s.B[y]) : 0;
-    for (int o = 0; o < j.n_others; ++o) {
-        const int a = j.others[o];
-        if (a == skip) continue;
-        const double rho = abs(j.rho[a].hi);
-        if (j.rigid[a] == wanted)
-            size += rho * size_of_crosses(s.D[x], s.D[a], s.XD[x * n + a], s.B[y], s.B[a], s.XB[y * n + a]);
-        for (int p = 0; p < o; ++p) {
-            const int b = j.others[p];
-            if (b == skip || j.rigid[a] + j.rigid[b] != wanted) continue;
-            size += rho * abs(j.rho[b].hi) *
-                    (abs(dot(s.D[x], s.XD[a * n + b]).hi) * size_of_volume(s.B[y], s.B[a], s.B[b]) +
-                     size_of_volume(s.D[x], s.D[a], s.D[b]) * abs(dot(s.B[y], s.XB[a * n + b]).hi));
-        }
-    }
-    return size;
 }
 
 // Returns the sum of <x^T, y^T> over sets T of eliminated arms, times what is left of the product of the E. A set holds
 // all rigid arms but `in`, which is x or y or neither; no set holds `skip`. x is on the side of D and y on that of B,
 // or the other way round.
 HOL_NOINLINE Wide gram_sum(const Joint &j, int x, int y, int skip, bool swapped) {
-    const Sides s = Sides::of(j, swapped);
+    const Wide3 *const D = swapped ? j.B : j.D, *const B = swapped ? j.D : j.B;
+    const Wide3 *const XD = swapped ? j.XB : j.XD, *const XB = swapped ? j.XD : j.XB;
     const int n = j.n, wanted = j.n_rigid - (skip >= 0 && j.rigid[skip] ? 1 : 0);
-    Wide sum = wanted == 0 ? dot(s.D[x], s.B[y]) : wide(0);
-    double size = wanted == 0 ? s.sD[x] * s.sB[y] : 0;
+    Wide sum = wanted == 0 ? dot(D[x], B[y]) : wide(0);
     for (int o = 0; o < j.n_others; ++o) {
-        const int a = j.others[o], xa = x * n + a, ya = y * n + a;
+        const int a = j.others[o];
         if (a == skip) continue;
-        const double rho = abs(j.rho[a].hi);
-        if (j.rigid[a] == wanted) {
-            sum += j.rho[a] * dot(s.XD[xa], s.XB[ya]);
-            size += rho * (s.sD[x] * s.sD[a] * s.sXB[ya] + s.sXD[xa] * s.sB[y] * s.sB[a]);
-        }
+        if (j.rigid[a] == wanted) sum += j.rho[a] * dot(XD[x * n + a], XB[y * n + a]);
         for (int p = 0; p < o; ++p) {
-            const int b = j.others[p], ab = a * n + b;
+            const int b = j.others[p];
             if (b == skip || j.rigid[a] + j.rigid[b] != wanted) continue;
-            const Wide vx = dot(s.D[x], s.XD[ab]), vy = x == y && !j.mixed ? vx : dot(s.B[y], s.XB[ab]);
-            sum += j.rho[a] * j.rho[b] * (vx * vy);
-            size += rho * abs(j.rho[b].hi) *
-                    (s.sD[x] * s.sD[a] * s.sD[b] * abs(vy.hi) + abs(vx.hi) * s.sB[y] * s.sB[a] * s.sB[b]);
+            const Wide vx = dot(D[x], XD[a * n + b]);
+            sum += j.rho[a] * j.rho[b] * (vx * (x == y && !j.mixed ? vx : dot(B[y], XB[a * n + b])));
         }
     }
-    if (is_too_large(size, sum)) size = gram_size(j, x, y, skip, swapped);
-    j.loss.note(size, sum);
     return sum;
 }
 
@@ -274,13 +221,7 @@ HOL_NOINLINE void multipliers(const Joint &x, int e, Wide *l) {
 // Returns what the eliminated arms have taken of w d_e . d_e, or of w d_e . d_f, from their multipliers.
 HOL_NOINLINE Wide taken(const Joint &x, const Wide *l, int f) {
     Wide sum = wide(0);
-    double size = 0;
-    for (int o = 0; o < x.n_others; ++o) {
-        const int a = x.others[o];
-        sum += l[a] * dot(x.D[a], x.B[f]);
-        size += abs(l[a].hi) * x.sD[a] * x.sB[f];
-    }
-    x.loss.note(size, sum);
+    for (int o = 0; o < x.n_others; ++o) sum += l[x.others[o]] * dot(x.D[x.others[o]], x.B[f]);
     return x.w * sum;
 }
 

@@ -1,17 +1,10 @@
-// Linear equations of one large molecule with cycles: A t = b as it stands, L D L^T along a list (flat_list.hpp), and a
-// proof that no refinement is needed. With |.| by elements, what is found solves equations that are off by a few
-// roundings of
-//
-//     R = |L| D |L^T| |t| + sum over both ends i of w_i |d| sum over the bonds of i of |t| |d|
-//
-// (elimination and substitutions; the products d.d' and w). Where R is no more than the terms that an equation is made
-// of, all errors are of the size of its scale |A^-1| S. Elsewhere, or where a pivot is small, linear.hpp refines.
+// Linear equations of one large molecule with cycles: A t = b as it stands, L D L^T along a list (flat_list.hpp).
+// Whether that will do without refinement, flat_proof.hpp says.
 #ifndef HOLONOMIC_KERNELS_GRAPH_FLAT_LINEAR_HPP
 #define HOLONOMIC_KERNELS_GRAPH_FLAT_LINEAR_HPP
 
 #include "core/kernels/graph/flat_rows.hpp"
 #include "core/kernels/graph/load.hpp"
-#include "core/kernels/graph/proof.hpp"
 #include "core/kernels/graph/virial.hpp"
 
 namespace holonomic {
@@ -23,99 +16,120 @@ struct FlatLinear {
     const MoleculeLane &lane;
     const Atoms<double> at;
     const Box &box;
+    const AtomArray &coordinates;
     const Inputs &in;
-    double *mass;  // -w_0, w_0, -w_1, .. , 0
-    Rows pull;     // first the coordinates; then G, and the sum of |t| |d| of an atom's bonds
-    Rows v, a;     // velocities, later |a| as it was; w f, then w (f + G), or v + w G where right-hand sides are rates
-    Rows d;        // bonds
-    double *t, *E, *r;        // right-hand sides, then multipliers; pivots; 1 / pivot
-    double *lower, *size;     // |d|
-    double *diagonal, *back;  // of A; R
+    double *mass;  // -w_0, w_0, -w_1, .. , 0 of each tile
+    Rows pull, d;  // of all tiles: G, and the sum of |t| |d| of an atom's bonds; bonds
+    Rows a;        // w f, then w (f + G), of one tile; or where right-hand sides are rates v + w G, of all tiles
+    Rows r, v;     // of one tile: coordinates, velocities; |a| as it was
+    double *t, *E, *per_pivot;  // right-hand sides, then multipliers; pivots
+    double *lower, *size;       // |d|
+    double *diagonal, *back;    // of A; R
 
     static int64_t values(const FlatList &s) {
-        return 2 * in_fours(s.n_atoms + 2) + 12 * static_cast<int64_t>(s.n_atoms) + 10 * in_fours(s.n_bonds) +
+        return mass_values(s) + 4 * (2 * static_cast<int64_t>(s.n_sites) + static_cast<int64_t>(s.n_rows)) +
+               8 * static_cast<int64_t>(s.most_sites) + 2 * in_fours(s.n_bonds) + 4 * in_fours(s.n_columns) +
                in_fours(s.n_entries);
     }
-    FlatLinear(const FlatList &list, const MoleculeLane &l, const Box &b, const Inputs &inputs, Memory<double> memory)
-        : s(list), lane(l), at(&l, 1), box(b), in(inputs) {
-        const int64_t bonds = in_fours(s.n_bonds);
-        pull = {memory.values(4 * static_cast<int64_t>(s.n_atoms))};
-        v = {memory.values(4 * static_cast<int64_t>(s.n_atoms))};
-        a = {memory.values(4 * static_cast<int64_t>(s.n_atoms))};
-        d = {memory.values(4 * bonds)};
-        mass = memory.values(2 * in_fours(s.n_atoms + 2));
+    FlatLinear(const FlatList &list, const MoleculeLane &l, const Box &b, const AtomArray &positions,
+               const Inputs &inputs, Memory<double> memory)
+        : s(list), lane(l), at(&l, 1), box(b), coordinates(positions), in(inputs) {
+        const int64_t bonds = in_fours(s.n_bonds), columns = in_fours(s.n_columns);
+        pull = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
+        d = {memory.values(4 * static_cast<int64_t>(s.n_rows))};
+        r = {memory.values(4 * static_cast<int64_t>(s.most_sites))};
+        v = {memory.values(4 * static_cast<int64_t>(s.most_sites))};
         lower = memory.values(in_fours(s.n_entries));
-        t = memory.values(bonds);
-        E = memory.values(bonds);
-        r = memory.values(bonds);
+        t = memory.values(columns);
+        E = memory.values(columns);
+        per_pivot = memory.values(columns);
+        back = memory.values(columns);
         size = memory.values(bonds);
         diagonal = memory.values(bonds);
-        back = memory.values(bonds);
+        a = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
+        mass = memory.values(mass_values(s));
     }
-    HOL_INLINE Row &four(double *values, int64_t k) { return *reinterpret_cast<Row *>(values + k); }
+    HOL_FORCED Row &four(double *values, int64_t k) const { return *reinterpret_cast<Row *>(values + k); }
+    HOL_FORCED Rows a_of(const Tile &tile) const { return in.rates ? rows_from(a, tile.first_site) : a; }
+    HOL_FORCED Rows d_of(const Tile &tile) const { return rows_from(d, tile.first_row); }
+
+    // w f, or v where right-hand sides are rates.
+    template <Layout layout, int terms>
+    HOL_FORCED void load_inputs(const Tile &tile, const Rows &to) const {
+        if (terms & rates) read_atoms<layout>(*in.v, at, s, tile, to);
+        for (int32_t i = tile.first_site; i < tile.end_site && !(terms & rates); ++i) {
+            Row &one = to[i - tile.first_site];
+            if (terms & pulls)
+                one = in_row(mass[tile.first_mass + 2 * (i - tile.first_site) + 1]) *
+                      read_row_of<layout>(*in.f, at, s.atom_of[i]);
+            else
+                one = Row{};
+        }
+    }
 
     template <Layout layout, int terms>
-    __attribute__((noinline)) void load(const AtomArray &coordinates) const {
-        for (int32_t i = 0; i < s.n_atoms; ++i) {
-            mass[2 * s.place_of[i]] = -lane.w[i];
-            mass[2 * s.place_of[i] + 1] = lane.w[i];
-        }
-        mass[2 * s.n_atoms] = 0;
-        read_atoms<layout>(coordinates, at, s, pull);
-        find_bonds(s.from, s.to, s.n_bonds, box, pull, d);
-        if (terms & (squares | rates)) read_atoms<layout>(*in.v, at, s, terms & rates ? a : v);
-        if (terms & pulls) {
-            for (int32_t i = 0; i < s.n_atoms; ++i)
-                a[s.place_of[i]] = in_row(lane.w[i]) * read_row_of<layout>(*in.f, at, i);
-        } else if (!(terms & rates)) {
-            for (int32_t i = 0; i < s.n_atoms; ++i) a[i] = Row{};
-        }
-        for (int64_t k = 0; k < s.n_bonds; k += 4) {
+    __attribute__((noinline)) void load(const Tile &tile) const {
+        read_masses(lane.w, s, tile, mass);
+        read_atoms<layout>(coordinates, at, s, tile, r);
+        find_bonds(s, tile, box, r, d);
+        if (terms & squares) read_atoms<layout>(*in.v, at, s, tile, v);
+        const Rows of = a_of(tile), bonds = d_of(tile);
+        if (terms & (pulls | rates)) load_inputs<layout, terms>(tile, of);
+        const double *const w = mass + tile.first_mass;
+        for (int64_t k = tile.first; k < tile.end; k += 4) {
+            const int32_t *const from = s.from + tile.first_row + (k - tile.first), *const to = s.to + (from - s.from);
             Row e[4] = {}, q[4];
             HOL_UNROLL
             for (int i = 0; i < 4; ++i) {
-                const int32_t from = s.from[k + i], to = s.to[k + i];
-                const Row &bond = d[k + i];
+                const Row &bond = bonds[k - tile.first + i];
                 q[i] = bond * bond;
                 if (terms & squares) {
-                    const Row dv = v.at_four_times(to) - v.at_four_times(from);
+                    const Row dv = v.at_four_times(to[i]) - v.at_four_times(from[i]);
                     e[i] = dv * dv;
                 }
                 if (terms & (pulls | rates))
-                    e[i] = multiply_add(bond, a.at_four_times(to) - a.at_four_times(from), e[i]);
+                    e[i] = multiply_add(bond, of.at_four_times(to[i]) - of.at_four_times(from[i]), e[i]);
             }
             const Row square = sums_of(q[0], q[1], q[2], q[3]);
             four(t, k) = sums_of(e[0], e[1], e[2], e[3]);
             HOL_UNROLL
             for (int i = 0; i < 4; ++i) {
-                E[k + i] = diagonal[k + i] = (mass[s.from[k + i] / 2 + 1] + mass[s.to[k + i] / 2 + 1]) * square[i];
+                E[k + i] = diagonal[k + i] = (w[from[i] / 2 + 1] + w[to[i] / 2 + 1]) * square[i];
                 size[k + i] = __builtin_sqrt(square[i]);
             }
         }
-        if (terms & given)
-            for (int32_t k = 0; k < s.n_bonds; ++k) t[k] = 0.5 * in.rhs[lane.first_bond + s.bond_of[k]];
-        if ((terms & rates) && in.strain)
-            for (int32_t k = 0; k < s.n_bonds; ++k) t[k] = t[k] + stretching(in.strain, vector_of(d[k]));
+        for (int32_t k = tile.first; (terms & given) && k < tile.end; ++k)
+            t[k] = 0.5 * in.rhs[lane.first_bond + s.bond_of[k]];
+        if (terms & rates) add_strain(tile);
+    }
+    HOL_FORCED void add_strain(const Tile &tile) const {
+        for (int32_t k = tile.first; k < tile.end && in.strain; ++k)
+            t[k] = t[k] + stretching(in.strain, vector_of(d_of(tile)[k - tile.first]));
     }
 
     // The entries of A off its diagonal.
-    __attribute__((noinline)) void assemble() const {
-        for (int64_t e = 0; e < s.n_entries; e += 4) {
+    __attribute__((noinline)) void assemble(const Tile &tile) const {
+        const Rows bond = d_of(tile);
+        const double *const w = mass + tile.first_mass;
+        for (int64_t e = tile.first_entry; e < tile.end_entry; e += 4) {
             const int32_t *const row = s.row_4 + e, *const column = s.column_4 + e, *const m = s.mass + e;
             Row p[4];
             HOL_UNROLL
-            for (int i = 0; i < 4; ++i) p[i] = d.at_four_times(row[i]) * d.at_four_times(column[i]);
-            four(lower, e) = Row{mass[m[0]], mass[m[1]], mass[m[2]], mass[m[3]]} * sums_of(p[0], p[1], p[2], p[3]);
+            for (int i = 0; i < 4; ++i) p[i] = bond.at_four_times(row[i]) * bond.at_four_times(column[i]);
+            four(lower, e) = Row{w[m[0]], w[m[1]], w[m[2]], w[m[3]]} * sums_of(p[0], p[1], p[2], p[3]);
         }
     }
 
     // Right-hand sides with it.
-    __attribute__((noinline)) void eliminate() const {
-        const int32_t *update = s.update;
-        for_columns_up(s, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
+    __attribute__((noinline)) void eliminate(const Tile &tile) const {
+        add_sides(s, tile, t);
+        add_sides(s, tile, E);
+        add_entries(s, tile, lower);
+        const int32_t *update = s.update + tile.first_update;
+        for_columns_up(s, tile, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
             const int32_t *const row = s.row + first;
             double *const l = lower + first;
-            const double inverse = r[k] = 1 / E[k], y = t[k];
+            const double inverse = per_pivot[k] = 1 / E[k], y = t[k];
             HOL_UNROLL
             for (int32_t i = 0; i < n; ++i) {
                 const double li = l[i], lr = li * inverse;
@@ -130,11 +144,11 @@ struct FlatLinear {
     }
 
     // Back, with the part of R that elimination and substitutions have.
-    __attribute__((noinline)) void substitute_back() const {
-        for_columns_down(s, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
+    __attribute__((noinline)) void substitute_back(const Tile &tile) const {
+        for_columns_down(s, tile, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
             const int32_t *const row = s.row + first;
             const double *const l = lower + first;
-            double x = t[k] * r[k], sum = 0;
+            double x = t[k] * per_pivot[k], sum = 0;
             HOL_UNROLL
             for (int32_t e = 0; e < n; ++e) {
                 const double part = l[e] * t[row[e]];
@@ -147,104 +161,59 @@ struct FlatLinear {
             for (int32_t e = 0; e < n; ++e) back[row[e]] = mul_add(abs(l[e]), all, back[row[e]]);
             t[k] = x;
         });
-    }
-    // Another right-hand side, in t.
-    __attribute__((noinline)) void solve_again() const {
-        solve_up(s, lower, t);
-        solve_down(s, lower, r, t, [](int32_t, double) HOL_FORCED {});
+        give_sides(s, tile, t);
     }
 
-    // The rates of the bonds as they are, d.(v_j - v_i), into t.
-    void find_rates() const {
-        for (int64_t k = 0; k < s.n_bonds; k += 4) {
+    // G of a tile's atoms, and beside it the sum of |t| |d|.
+    __attribute__((noinline)) void find_pulls(const Tile &tile) const {
+        const RowBits opposite = {INT64_MIN, INT64_MIN, INT64_MIN, 0};
+        const Rows of = rows_from(pull, tile.first_site), bond = rows_from(d, tile.first_row - tile.first);
+        const int32_t *const from = s.from + (tile.first_row - tile.first), *const to = s.to + (from - s.from);
+        for (int64_t i = 0; i < tile.end_site - tile.first_site; ++i) of[i] = Row{};
+        for (int64_t k = tile.first; k < tile.end; ++k) {
+            Row p = in_row(t[k]) * bond[k];
+            p[3] = abs(t[k]) * size[k];
+            Row &head = of.at_four_times(from[k]), &tail = of.at_four_times(to[k]);
+            head = head + p;
+            tail = tail + reinterpret_cast<Row>(reinterpret_cast<RowBits>(p) ^ opposite);
+        }
+        add_visits(s, tile, pull);
+    }
+    // What they do to a, of which v keeps what it was made of.
+    HOL_FORCED void add_pulls(const Tile &tile) const {
+        const Rows of = a_of(tile), g = rows_from(pull, tile.first_site);
+        const double *const w = mass + tile.first_mass;
+        for (int64_t i = 0; i < tile.own_end - tile.first_site; ++i) {
+            v[i] = absolute(of[i]);
+            of[i] = multiply_add(in_row(w[2 * i + 1]), g[i], of[i]);
+        }
+    }
+
+    // Once more for velocities, for the rates of the bonds as they are, d.(v_j - v_i).
+    void solve_again() const {
+        clear_sides(s, t);
+        for (int32_t i = 0; i < s.n_tiles; ++i) {
+            copy_guests(s, s.tile[i], a);
+            find_rates(s.tile[i]);
+            add_strain(s.tile[i]);
+            solve_up(s, s.tile[i], lower, t);
+        }
+        for (int32_t i = s.n_tiles; i-- > 0;) {
+            solve_down(s, s.tile[i], lower, per_pivot, t, [](int32_t, double) HOL_FORCED {});
+            find_pulls(s.tile[i]);
+            add_pulls(s.tile[i]);
+        }
+    }
+    HOL_FORCED void find_rates(const Tile &tile) const {
+        const Rows of = a_of(tile);
+        for (int64_t k = tile.first; k < tile.end; k += 4) {
+            const int64_t row = tile.first_row + (k - tile.first);
             Row e[4];
             HOL_UNROLL
             for (int i = 0; i < 4; ++i)
-                e[i] = d[k + i] * (a.at_four_times(s.to[k + i]) - a.at_four_times(s.from[k + i]));
+                e[i] = d[row + i] * (of.at_four_times(s.to[row + i]) - of.at_four_times(s.from[row + i]));
             four(t, k) = sums_of(e[0], e[1], e[2], e[3]);
         }
-        for (int32_t k = 0; k < s.n_bonds && in.strain; ++k) t[k] = t[k] + stretching(in.strain, vector_of(d[k]));
-    }
-
-    // G of all atoms, and beside it the sum of |t| |d|.
-    __attribute__((noinline)) void find_pulls() const {
-        const RowBits opposite = {INT64_MIN, INT64_MIN, INT64_MIN, 0};
-        for (int64_t i = 0; i < s.n_atoms; ++i) pull[i] = Row{};
-        for (int64_t k = 0; k < s.n_bonds; ++k) {
-            Row p = in_row(t[k]) * d[k];
-            p[3] = abs(t[k]) * size[k];
-            Row &from = pull.at_four_times(s.from[k]), &to = pull.at_four_times(s.to[k]);
-            from = from + p;
-            to = to + reinterpret_cast<Row>(reinterpret_cast<RowBits>(p) ^ opposite);
-        }
-    }
-    // What they do to a, of which v keeps what it was made of.
-    __attribute__((noinline)) void add_pulls() const {
-        for (int64_t i = 0; i < s.n_atoms; ++i) {
-            v[i] = absolute(a[i]);
-            a[i] = multiply_add(in_row(mass[2 * i + 1]), pull[i], a[i]);
-        }
-    }
-
-    // The terms of bond k's equation in absolute values.
-    __attribute__((noinline)) double terms_of(int32_t k) const {
-        const int32_t end[2] = {s.from[k], s.to[k]};
-        double sum = 0, velocity[2][3] = {};
-        for (int e = 0; e < 2; ++e) {
-            const Row product = d[k] * a.at_four_times(end[e]);
-            sum += abs((product[0] + product[1]) + product[2]);
-            const int64_t number = at.number(0, s.atom_of[end[e] / 4]);
-            double f[3] = {};
-            if (in.v && in.v->x) read_row(*in.v, number, velocity[e]);
-            if (in.f && in.f->x) read_row(*in.f, number, f);
-            for (int c = 0; c < 3; ++c) sum += mass[end[e] / 2 + 1] * abs(d[k][c] * f[c]);
-            for (int c = 0; c < 3 && in.rates; ++c) sum += abs(d[k][c] * velocity[e][c]);
-        }
-        if (in.rhs) sum += abs(0.5 * in.rhs[lane.first_bond + s.bond_of[k]]);
-        for (int x = 0, e = 0; x < 3 && in.strain; ++x)
-            for (int y = x; y < 3; ++y, ++e) sum += abs(in.strain[e] * d[k][x] * d[k][y]);
-        for (int c = 0; c < 3 && !in.rates; ++c)
-            sum += (velocity[1][c] - velocity[0][c]) * (velocity[1][c] - velocity[0][c]);
-        return sum;
-    }
-
-    // Whether t needs no correction. A part of the terms does for most bonds.
-    __attribute__((noinline)) bool is_proven() const {
-        const double most = most_backward(s.n_bonds);
-        for (int64_t k = 0; k < s.n_bonds; k += 4) {
-            Row p[4], q[4], input[4], T = {};
-            HOL_UNROLL
-            for (int i = 0; i < 4; ++i) {
-                const Row &from = a.at_four_times(s.from[k + i]), &to = a.at_four_times(s.to[k + i]);
-                p[i] = d[k + i] * from;
-                q[i] = d[k + i] * to;
-                input[i] = absolute(d[k + i]) * (v.at_four_times(s.from[k + i]) + v.at_four_times(s.to[k + i]));
-                T[i] = from[3] + to[3];
-            }
-            const Row part = absolute(sums_of(p[0], p[1], p[2], p[3])) + absolute(sums_of(q[0], q[1], q[2], q[3])) +
-                             sums_of(input[0], input[1], input[2], input[3]);
-            four(back, k) = multiply_add(four(size, k), T, four(back, k));
-            const Row left = multiply_add(in_row(most), part, -four(back, k)),
-                      pivot = multiply_add(in_row(-least_proven_pivot), four(diagonal, k), four(E, k));
-            for (int i = 0; i < 4 && k + i < s.n_bonds; ++i) {
-                if (!(pivot[i] > 0)) return false;
-                if (__builtin_expect(left[i] >= 0, 1)) continue;
-                if (!(back[k + i] <= most * terms_of(static_cast<int32_t>(k + i)))) return false;
-            }
-        }
-        return true;
-    }
-
-    // Reads the molecule and solves; false where that is in doubt.
-    template <Layout layout, int terms>
-    bool solve(const AtomArray &coordinates) const {
-        load<layout, terms>(coordinates);
-        assemble();
-        eliminate();
-        substitute_back();
-        find_pulls();
-        add_pulls();
-        return is_proven();
     }
 
     void write_bonds(double factor, double *out) const {
@@ -255,10 +224,11 @@ struct FlatLinear {
     }
     void add_virial(Tally &tally) const {
         MoleculesVirial<double> virial;
-        for (int32_t k = 0; k < s.n_bonds; ++k) {
-            const Vector3<double> bond = vector_of(d[k]);
-            virial.add(bond, t[k] * bond);
-        }
+        for (int32_t i = 0; i < s.n_tiles; ++i)
+            for (int32_t k = s.tile[i].first; k < s.tile[i].end; ++k) {
+                const Vector3<double> bond = vector_of(d_of(s.tile[i])[k - s.tile[i].first]);
+                virial.add(bond, t[k] * bond);
+            }
         virial.count(1, 1, tally);
     }
     bool writable(int32_t atom) const { return !lane.shared || !lane.shared[atom]; }

@@ -96,12 +96,14 @@ HOL_INLINE Row dots_of(const Lanes3 &a, const Lanes3 &b) {
 // Most columns have few entries: up to three are known to the compiler.
 constexpr int32_t known_entries = 3;
 
-// Calls body(k, first, n) for all columns, up or down; first is that of their entries, n is a constant where it is
-// small.
+typedef FlatList::Tile Tile;
+
+// Calls body(k, first, n) for all columns of a tile, up or down; first is that of their entries, n is a constant where
+// it is small.
 template <class Body>
-HOL_INLINE void for_columns_up(const FlatList &s, const Body &body) {
-    int32_t k = 0, first = 0;
-    for (int32_t r = 0; r < s.n_runs; ++r) {
+HOL_INLINE void for_columns_up(const FlatList &s, const Tile &tile, const Body &body) {
+    int32_t k = tile.first, first = tile.first_entry;
+    for (int32_t r = tile.first_run; r < tile.end_run; ++r) {
         const int32_t end = k + s.run[r].columns, entries = s.run[r].entries;
         choose_few<known_entries>(entries, [&](auto known) HOL_FORCED {
             const int32_t n = known > 0 ? known : entries;
@@ -110,9 +112,9 @@ HOL_INLINE void for_columns_up(const FlatList &s, const Body &body) {
     }
 }
 template <class Body>
-HOL_INLINE void for_columns_down(const FlatList &s, const Body &body) {
-    int32_t k = s.n_bonds, first = s.n_entries;
-    for (int32_t r = s.n_runs; r-- > 0;) {
+HOL_INLINE void for_columns_down(const FlatList &s, const Tile &tile, const Body &body) {
+    int32_t k = tile.end, first = tile.end_entry;
+    for (int32_t r = tile.end_run; r-- > tile.first_run;) {
         const int32_t start = k - s.run[r].columns, entries = s.run[r].entries;
         choose_few<known_entries>(entries, [&](auto known) HOL_FORCED {
             const int32_t n = known > 0 ? known : entries;
@@ -121,10 +123,32 @@ HOL_INLINE void for_columns_down(const FlatList &s, const Body &body) {
     }
 }
 
+// What tiles have given to columns of later ones: none so far; added to the columns of a tile; as the columns of a tile
+// are now, for the tiles before.
+HOL_INLINE void clear_sides(const FlatList &s, double *t) {
+    for (int64_t k = in_fours(s.n_bonds); k < s.n_columns; ++k) t[k] = 0;
+}
+HOL_INLINE void add_sides(const FlatList &s, const Tile &tile, double *t) {
+    for (int32_t i = tile.first_late; i < tile.end_late; ++i) t[s.late[i].number] += t[s.late[i].side];
+}
+HOL_INLINE void give_sides(const FlatList &s, const Tile &tile, double *t) {
+    for (int32_t i = tile.first_late; i < tile.end_late; ++i) t[s.late[i].side] = t[s.late[i].number];
+}
+// The same of entries.
+HOL_INLINE void clear_entries(const FlatList &s, double *lower) {
+    const Tile &last = s.tile[s.n_tiles - 1];
+    for (int64_t e = in_fours(last.end_entry); e < s.n_entries; ++e) lower[e] = 0;
+}
+HOL_INLINE void add_entries(const FlatList &s, const Tile &tile, double *lower) {
+    for (int32_t i = tile.first_late_entry; i < tile.end_late_entry; ++i)
+        lower[s.late_entry[i].number] += lower[s.late_entry[i].side];
+}
+
 // Another right-hand side, in t: up along the columns of a factor with a diagonal of ones, and down with the pivots and
 // the factor above the diagonal, which is the same one where the matrix is symmetric.
-HOL_INLINE void solve_up(const FlatList &s, const double *lower, double *t) {
-    for_columns_up(s, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
+HOL_INLINE void solve_up(const FlatList &s, const Tile &tile, const double *lower, double *t) {
+    add_sides(s, tile, t);
+    for_columns_up(s, tile, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
         const int32_t *const row = s.row + first;
         const double *const l = lower + first, y = t[k];
         HOL_UNROLL
@@ -132,8 +156,9 @@ HOL_INLINE void solve_up(const FlatList &s, const double *lower, double *t) {
     });
 }
 template <class Each>
-HOL_INLINE void solve_down(const FlatList &s, const double *upper, const double *r, double *t, const Each &each) {
-    for_columns_down(s, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
+HOL_INLINE void solve_down(const FlatList &s, const Tile &tile, const double *upper, const double *r, double *t,
+                           const Each &each) {
+    for_columns_down(s, tile, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
         const int32_t *const row = s.row + first;
         const double *const u = upper + first;
         double x = t[k] * r[k];
@@ -142,7 +167,20 @@ HOL_INLINE void solve_down(const FlatList &s, const double *upper, const double 
         t[k] = x;
         each(k, x);
     });
+    give_sides(s, tile, t);
 }
+
+// Of an atom of a tile, and of a guest the pull on it added to that on its atom.
+HOL_INLINE void add_visits(const FlatList &s, const Tile &tile, const Rows &pull) {
+    for (int32_t i = tile.first_visit; i < tile.end_visit; ++i)
+        pull[s.visit[i].own] = pull[s.visit[i].own] + pull[s.visit[i].guest];
+}
+// Guests are as their atoms are.
+HOL_INLINE void copy_guests(const FlatList &s, const Tile &tile, const Rows &x) {
+    for (int32_t site = tile.own_end; site < tile.end_site; ++site) x[site] = x[s.home[site]];
+}
+
+HOL_INLINE Rows rows_from(const Rows &rows, int64_t first) { return {rows.start + 4 * first}; }
 
 // A local atom's row.
 template <Layout layout>
@@ -156,19 +194,31 @@ HOL_INLINE Row read_row_of(const AtomArray &array, const Atoms<double> &at, int3
 #endif
     return row_of(read<layout>(array, at, i));
 }
-// The rows of all atoms of a molecule, in the order of the list. They are read, and written elsewhere, in the order in
-// which they stand in memory.
+// The rows of a tile's atoms.
 template <Layout layout>
-HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<double> &at, const FlatList &s, const Rows &to) {
-    for (int32_t i = 0; i < s.n_atoms; ++i) to[s.place_of[i]] = read_row_of<layout>(array, at, i);
+HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<double> &at, const FlatList &s, const Tile &tile,
+                           const Rows &to) {
+    for (int32_t i = tile.first_site; i < tile.end_site; ++i)
+        to[i - tile.first_site] = read_row_of<layout>(array, at, s.atom_of[i]);
 }
+// Their masses, -w_0, w_0, -w_1, .. , 0.
+HOL_INLINE void read_masses(const double *w, const FlatList &s, const Tile &tile, double *mass) {
+    double *to = mass + tile.first_mass;
+    for (int32_t i = tile.first_site; i < tile.end_site; ++i, to += 2) {
+        const double one = w[s.atom_of[i]];
+        to[0] = -one;
+        to[1] = one;
+    }
+    *to = 0;
+}
+HOL_INLINE int64_t mass_values(const FlatList &s) { return in_fours(2 * static_cast<int64_t>(s.n_sites) + s.n_tiles); }
 
-// Bonds as they come, from the coordinates of their ends: four at a time, the inert ones too.
-HOL_INLINE void find_bonds(const int32_t *from, const int32_t *to, int64_t n, const Box &box, const Rows &r,
-                           const Rows &d) {
-    for (int64_t k = 0; k < in_fours(n); ++k) d[k] = r.at_four_times(to[k]) - r.at_four_times(from[k]);
+// A tile's bonds as they come, from the coordinates of their ends: four at a time, the inert ones too.
+HOL_INLINE void find_bonds(const FlatList &s, const Tile &tile, const Box &box, const Rows &r, const Rows &d) {
+    for (int64_t k = tile.first_row; k < tile.end_row; ++k)
+        d[k] = r.at_four_times(s.to[k]) - r.at_four_times(s.from[k]);
     if (box.shape == Box::none) return;
-    for (int64_t k = 0; k < n; ++k) {
+    for (int64_t k = tile.first_row; k < tile.end_row; ++k) {
         Vector3<double> bond = vector_of(d[k]), unused = {};
         wrap<false>(box, bond, unused);
         d[k] = row_of(bond);

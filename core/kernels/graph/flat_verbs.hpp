@@ -3,7 +3,7 @@
 #ifndef HOLONOMIC_KERNELS_GRAPH_FLAT_VERBS_HPP
 #define HOLONOMIC_KERNELS_GRAPH_FLAT_VERBS_HPP
 
-#include "core/kernels/graph/flat_linear.hpp"
+#include "core/kernels/graph/flat_proof.hpp"
 #include "core/kernels/graph/schedule.hpp"
 
 namespace holonomic {
@@ -13,7 +13,7 @@ namespace graph {
 // Call: of forces or of given right-hand sides.
 template <Layout layout, int terms, class Call>
 HOL_NOINLINE bool pull_flat(const Call &call, const FlatLinear &x, Tally &tally) {
-    if (!x.solve<layout, terms>(call.r)) return false;
+    if (!FlatProof(x).solve<layout, terms>()) return false;
     if (call.lambda) x.write_bonds(0.5, call.lambda);
     if (call.tension) x.write_tensions(call.tension);
     if (call.virial) x.add_virial(tally);
@@ -29,7 +29,7 @@ HOL_NOINLINE bool pull_flat(const Call &call, const FlatLinear &x, Tally &tally)
 static inline bool solve_flat(const ForcesCall &call, const Schedule &s, const MoleculeLane &lane, bool packed,
                               Memory<double> memory, Tally &tally) {
     const Inputs in = {&call.v, &call.f, nullptr, false};
-    const FlatLinear x(*s.flat, lane, call.box, in, memory);
+    const FlatLinear x(*s.flat, lane, call.box, call.r, in, memory);
     return with_layout(x.at, packed, [&](auto layout) {
         constexpr Layout as = decltype(layout)::value;
         return call.v.x && call.f.x ? pull_flat<as, squares | pulls>(call, x, tally)
@@ -42,21 +42,18 @@ static inline bool solve_flat(const ForcesCall &call, const Schedule &s, const M
 static inline bool solve_flat(const SolveCall &call, const Schedule &s, const MoleculeLane &lane, bool packed,
                               Memory<double> memory, Tally &tally) {
     const Inputs in = {nullptr, nullptr, call.rhs, false};
-    const FlatLinear x(*s.flat, lane, call.box, in, memory);
+    const FlatLinear x(*s.flat, lane, call.box, call.r, in, memory);
     return with_layout(x.at, packed,
                        [&](auto layout) { return pull_flat<decltype(layout)::value, given>(call, x, tally); });
 }
 
 template <Layout layout>
 HOL_NOINLINE bool project_flat(const VelocitiesCall &call, const FlatLinear &x, Tally &tally) {
-    if (!x.solve<layout, rates>(call.r)) return false;
+    if (!FlatProof(x).solve<layout, rates>()) return false;
     if (call.lambda) x.write_bonds(0.5, call.lambda);
     if (call.virial) x.add_virial(tally);
     if (!call.v.is_float) {
-        x.find_rates();
         x.solve_again();
-        x.find_pulls();
-        x.add_pulls();
     }
     for (int32_t i = 0; i < x.s.n_atoms; ++i)
         if (x.writable(i)) write<layout>(call.v, x.at, i, vector_of(x.a[x.s.place_of[i]]), 1);
@@ -66,7 +63,7 @@ HOL_NOINLINE bool project_flat(const VelocitiesCall &call, const FlatLinear &x, 
 static inline bool solve_flat(const VelocitiesCall &call, const Schedule &s, const MoleculeLane &lane, bool packed,
                               Memory<double> memory, Tally &tally) {
     const Inputs in = {&call.v, nullptr, nullptr, true, call.strain};
-    const FlatLinear x(*s.flat, lane, call.box, in, memory);
+    const FlatLinear x(*s.flat, lane, call.box, call.r, in, memory);
     return with_layout(x.at, packed,
                        [&](auto layout) { return project_flat<decltype(layout)::value>(call, x, tally); });
 }

@@ -51,20 +51,26 @@ struct Pieces {
     Memory<double> memory(int32_t piece) const { return {working + piece * working_values}; }
 };
 
-// Calls body(piece) for all but the top, on the threads that there are.
+// Calls body(i) for i = 0 .. n - 1, on the threads that there are.
 template <class Body>
-HOL_INLINE void for_pieces(const Schedule &s, const LongTeam *team, const Body &body) {
+HOL_INLINE void share_out(const LongTeam *team, int32_t n, const Body &body) {
     if (!team) {
-        for (int32_t p = 0; p < s.n_pieces; ++p) body(p);
+        for (int32_t i = 0; i < n; ++i) body(i);
         return;
     }
     Tally unused = empty_tally();
     team->run(
-        team->threads, s.n_pieces, unused,
-        [](const void *context, int64_t p, double *, Tally &) {
-            (*static_cast<const Body *>(context))(static_cast<int32_t>(p));
+        team->threads, n, unused,
+        [](const void *context, int64_t i, double *, Tally &) {
+            (*static_cast<const Body *>(context))(static_cast<int32_t>(i));
         },
         &body);
+}
+
+// Calls body(piece) for all but the top.
+template <class Body>
+HOL_INLINE void for_pieces(const Schedule &s, const LongTeam *team, const Body &body) {
+    share_out(team, s.n_pieces, body);
 }
 
 // The slots of trees in a piece.

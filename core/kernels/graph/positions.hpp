@@ -193,11 +193,12 @@ struct PositionsWork {
     const Schedule &schedule;
     const bool packed;
     Tally &tally;
+    const LongTeam *team;
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool known, double *scratch) const {
         if (schedule.flat && used == 1) {
-            if (solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
+            if (solve_flat(call, schedule, *lane, packed, team, {scratch}, tally)) return;
             known = false;  // the list has overwritten the scratch
         }
         if (schedule.type == Schedule::ring)

@@ -1,4 +1,4 @@
-// Proves in lanes that the multipliers of molecules with cycles need no correction, by the bound of flat_linear.hpp on
+// Proves in lanes that the multipliers of molecules with cycles need no correction, by the bound of flat_proof.hpp on
 // what they leave of the equations (theory (55a)). The part of trees needs no factors: an atom with k children adds at
 // most 1 + k times w |d| |d'| to |L| P |L^T| for two of its bonds, because no eliminated child makes their products
 // larger.

@@ -1,5 +1,5 @@
 // Position level of molecules that are no chains.
-#include "core/kernels/graph/flat_linear.hpp"
+#include "core/kernels/graph/flat_proof.hpp"
 #include "core/kernels/graph/linear.hpp"
 #include "core/kernels/graph/positions.hpp"
 #include "core/kernels/graph/star_positions.hpp"
@@ -32,7 +32,7 @@ void molecules_positions(const PositionsCall &call, const MoleculeUnit &unit, do
     const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
     if (unit.schedule->type == Schedule::triangle)
         return for_each_triangle(TrianglePositionsVerb{call, tally}, call, unit, packed, scratch, tally);
-    PositionsWork work = {call, *unit.schedule, packed, tally};
+    PositionsWork work = {call, *unit.schedule, packed, tally, unit.team};
     const StarPositionsVerb stars = {call, tally};
     if (call.guess || !(do_stars<3>(stars, work, unit, scratch) || do_stars<4>(stars, work, unit, scratch)))
         for_each_block(unit, scratch, work);
