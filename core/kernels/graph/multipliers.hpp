@@ -19,35 +19,50 @@ namespace graph {
 constexpr double small_enough = 1e-11;
 
 // A model of N bonds has: sigma[N], per_a2[N];  change(tau), with q[N];  inverse() of 2 M for tau = 0, and
-// inverse(change) for the bonds as changed;  solve(inverse, y, tau). Finds tau in the lanes of `active`, which keeps
-// the lanes that need more. Returns the number of solves. One with new factors squares the error, one more with the
-// same factors takes it to the third power.
+// inverse(change) for the bonds as changed;  solve(inverse, y, tau).
+
+// Two solves from tau, in all lanes. The one with new factors squares the error, the other with the same factors takes
+// it to the third power. Returns what the first has left of a^2.
+template <int N, class V, class Model>
+HOL_INLINE V solve_twice(const Model &x, V *tau) {
+    V y[N], next[N], rest[N];
+    // 2 M tau = sigma + q, linear about the last tau: 2 M' tau = sigma - q. What that leaves is q of the change.
+    auto p = x.change(tau);
+    const auto f = x.inverse(p);
+    HOL_UNROLL
+    for (int k = 0; k < N; ++k) y[k] = x.sigma[k] - p.q[k];
+    Model::solve(f, y, next);
+    HOL_UNROLL
+    for (int k = 0; k < N; ++k) y[k] = next[k] - tau[k];
+    p = x.change(y);
+    Model::solve(f, p.q, rest);
+    V left = p.q[0] * x.per_a2[0];
+    HOL_UNROLL
+    for (int k = 1; k < N; ++k) left = max(p.q[k] * x.per_a2[k], left);
+    HOL_UNROLL
+    for (int k = 0; k < N; ++k) tau[k] = next[k] + rest[k];
+    return left;
+}
+
+// Finds tau in the lanes of `active`, which keeps the lanes that need more; in others it is anything. Returns the
+// number of solves.
 template <int N, class V, class Model>
 HOL_INLINE int64_t solve_for_multipliers(const Model &x, V *tau, MaskOf<V> &active) {
-    V y[N], next[N], rest[N];
+    V y[N];
     HOL_UNROLL
     for (int k = 0; k < N; ++k) y[k] = first_side(x.sigma[k], x.per_a2[k]);
     Model::solve(x.inverse(), y, tau);
-    int64_t solves = 1;
-    do {
-        // 2 M tau = sigma + q, linear about the last tau: 2 M' tau = sigma - q. What that leaves is q of the change.
-        auto p = x.change(tau);
-        const auto f = x.inverse(p);
+    int64_t solves = 3;
+    active = active & ~less(solve_twice<N>(x, tau), Width<V>::all(small_enough));
+    for (; __builtin_expect(any(active), 0) && solves < 9; solves += 2) {
+        V before[N];
         HOL_UNROLL
-        for (int k = 0; k < N; ++k) y[k] = x.sigma[k] - p.q[k];
-        Model::solve(f, y, next);
+        for (int k = 0; k < N; ++k) before[k] = tau[k];
+        const V left = solve_twice<N>(x, tau);
         HOL_UNROLL
-        for (int k = 0; k < N; ++k) y[k] = next[k] - tau[k];
-        p = x.change(y);
-        Model::solve(f, p.q, rest);
-        V left = p.q[0] * x.per_a2[0];
-        HOL_UNROLL
-        for (int k = 1; k < N; ++k) left = max(p.q[k] * x.per_a2[k], left);
-        HOL_UNROLL
-        for (int k = 0; k < N; ++k) tau[k] = select(active, next[k] + rest[k], tau[k]);
+        for (int k = 0; k < N; ++k) tau[k] = select(active, tau[k], before[k]);
         active = active & ~less(left, Width<V>::all(small_enough));
-        solves += 2;
-    } while (__builtin_expect(any(active), 0) && solves < 9);
+    }
     return solves;
 }
 

@@ -40,6 +40,18 @@ struct TrianglePositions {
         largest = max(size[0], max(size[1], size[2]));
     }
 
+    // Of copies: if the address of any part of x were passed on, all of x would go to memory in every block.
+    inline HOL_FORCED void add_virial(const TriangleNewton<V> &x, unsigned which) {
+        Vector3<V> bonds[3];
+        V pulls[3];
+        HOL_UNROLL
+        for (int k = 0; k < 3; ++k) {
+            bonds[k] = x.b[k];
+            pulls[k] = x.tau[k];
+        }
+        add_bonds_virial<3>(bonds, pulls, 1 / (call.dt * call.dt), which, tally);
+    }
+
     // The lanes of `good` have their multipliers, those of `moved` are written.
     inline HOL_FORCED void write(const TriangleNewton<V> &x, V error, unsigned good, unsigned moved, int64_t solves) {
         if (call.report) {
@@ -50,7 +62,7 @@ struct TrianglePositions {
         if (call.lambda)
             write_triangle_bonds<layout>(at, x.tau, Width<V>::all(0.5 / (call.dt * call.dt)), call.lambda, good);
         if (!moved) return;
-        if (call.virial) add_bonds_virial<3>(x.b, x.tau, 1 / (call.dt * call.dt), moved, tally);
+        if (call.virial) add_virial(x, moved);
         Vector3<V> shift[3];
         HOL_UNROLL
         for (int i = 0; i < 3; ++i) shift[i] = x.shift[i];
@@ -93,11 +105,13 @@ struct TrianglePositions {
         const MaskOf<V> wanted = in_use & ~untouched & model.open_angle();
         MaskOf<V> unsure = wanted;
         const int64_t solves = solve_for_multipliers<3>(model, x.tau, unsure);
-        HOL_UNROLL
-        for (int k = 0; k < 3; ++k) x.tau[k] = keep(wanted, x.tau[k]);
+        // Bits from here on: masks of vectors take registers that the moves need.
+        const unsigned solved = bits(wanted & ~unsure), as_they_came = bits(untouched);
+        if (__builtin_expect(bits(wanted) != all_of<V>, 0))
+            for (int k = 0; k < 3; ++k) x.tau[k] = keep(wanted, x.tau[k]);
         error = x.move();
-        const MaskOf<V> converged = wanted & ~unsure & less_equal(error, limits.enough()) & ~x.coarse_moves(largest);
-        const unsigned moved = bits(converged), good = moved | bits(untouched), rest = bits(in_use) & ~good;
+        const unsigned moved = solved & bits(less_equal(error, limits.enough())) & ~bits(x.coarse_moves(largest));
+        const unsigned good = moved | as_they_came, rest = bits(in_use) & ~good;
         write(x, error, good, moved, solves);
         return __builtin_expect(rest != 0, 0) ? good | solve_step_by_step(*this, rest) : good;
     }

@@ -15,6 +15,13 @@ constexpr bool twins = W > 1 && W <= 8;
 // In one register of AVX-512, of which there are as many as of half the size.
 struct Twin {
     __m512d x;
+    Twin() = default;
+    HOL_FORCED Twin(__m512d value) : x(value) {}
+    HOL_FORCED Twin(const Twin &y) : x(y.x) {}
+    HOL_FORCED Twin &operator=(const Twin &y) {
+        x = y.x;
+        return *this;
+    }
 };
 struct TwinMask {
     __mmask8 m;
@@ -63,9 +70,26 @@ HOL_INLINE void set(Twin &a, int i, double b) { a.x[i] = b; }
 #else
 struct Twin {
     vec a, b;
+    Twin() = default;
+    HOL_FORCED Twin(vec first, vec second) : a(first), b(second) {}
+    // Register by register. As a copy of memory gcc 12 makes it of halves of these, and what reads them must wait.
+    HOL_FORCED Twin(const Twin &x) : a(x.a), b(x.b) {}
+    HOL_FORCED Twin &operator=(const Twin &x) {
+        a = x.a;
+        b = x.b;
+        return *this;
+    }
 };
 struct TwinMask {
     mask a, b;
+    TwinMask() = default;
+    HOL_FORCED TwinMask(mask first, mask second) : a(first), b(second) {}
+    HOL_FORCED TwinMask(const TwinMask &x) : a(x.a), b(x.b) {}
+    HOL_FORCED TwinMask &operator=(const TwinMask &x) {
+        a = x.a;
+        b = x.b;
+        return *this;
+    }
 };
 
 HOL_INLINE Twin operator+(const Twin &x, const Twin &y) { return {x.a + y.a, x.b + y.b}; }

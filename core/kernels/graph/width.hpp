@@ -62,6 +62,8 @@ struct Width<double> {
 
 template <class V>
 using MaskOf = typename Width<V>::Mask;
+template <class V>
+constexpr unsigned all_of = (1u << Width<V>::lanes) - 1;  // bits() of a mask with all lanes set
 
 namespace graph {
 
