@@ -25,11 +25,17 @@ struct Linear {
     static constexpr int64_t bond_values = sizeof(BondRow<V>) / sizeof(V), ring_values = sizeof(RingRow<V>) / sizeof(V),
                              strip_values = sizeof(StripColumns<V>) / sizeof(V);
 
+    // Rows beside those of bonds: of a tree the root's, see load.hpp.
+    static int64_t more_rows(const Schedule &s) {
+        return s.is_strip ? more_strip_rows : s.type == Schedule::tree ? 1 : 0;
+    }
+
     // Values of V that the arrays take.
     static int64_t values(const Schedule &s) {
         int64_t n = s.n_atoms + bond_values * s.n_bonds + s.n_pairs + JointMemory<V, 0>::values(s.max_children);
         if (s.type == Schedule::ring) n += ring_values * s.n_bonds;
-        if (s.is_strip) n += strip_values * s.n_atoms + bond_values * more_strip_rows;
+        n += bond_values * more_rows(s);
+        if (s.is_strip) n += strip_values * s.n_atoms;
         n += 3 * 3 * static_cast<int64_t>(s.n_atoms);
         if (has_pieces(s)) n += 5 + s.n_pieces * (6 + JointMemory<V, 0>::values(s.max_children)) + arm_values(s);
         if (s.type == Schedule::graph) {
@@ -43,8 +49,7 @@ struct Linear {
     Linear(const Schedule &s, const MoleculeLane *lane, int used, const Box &box, const AtomArray &r, Memory<V> &memory)
         : x{s, lane, used, Atoms<V>(lane, used), &box, &r, nullptr, nullptr, nullptr, Width<V>::all(1), {}}, core(),
           ring(), strip(), equations(), t(), b() {
-        x.row = reinterpret_cast<BondRow<V> *>(
-            memory.values(bond_values * (s.n_bonds + (s.is_strip ? more_strip_rows : 0))));
+        x.row = reinterpret_cast<BondRow<V> *>(memory.values(bond_values * (s.n_bonds + more_rows(s))));
         if (s.is_strip) x.row += strip_rows_before;
         x.w = memory.values(s.n_atoms);
         x.pair = memory.values(s.n_pairs);

@@ -35,6 +35,13 @@ struct Loader {
     }
     HOL_FORCED void read_atom(int32_t slot) const { read_atoms<1>(z.x.s.atom_of[slot]); }
 
+    // b + d.(w f - w0 f0)
+    HOL_INLINE V with_pull(const Vector3<V> &d, V w0, const Vector3<V> &f0, V w, const Vector3<V> &f, V b) {
+        const Vector3<V> df = {mul_add(w, f.x, -(w0 * f0.x)), mul_add(w, f.y, -(w0 * f0.y)),
+                               mul_add(w, f.z, -(w0 * f0.z))};
+        return mul_add(d.z, df.z, mul_add(d.y, df.y, mul_add(d.x, df.x, b)));
+    }
+
     // Makes d, q and t of the bond between the atoms in two slots.
     HOL_FORCED void make_row(int32_t place, int32_t from, int32_t to) const {
         const Equations<V> &e = z.equations;
@@ -50,13 +57,7 @@ struct Loader {
             b = dot(d, e.velocity[to] - e.velocity[from]);
             if (z.x.in.strain) b = b + stretching(z.x.in.strain, d);
         }
-        if (terms & pulls) {
-            const V w0 = z.x.w[from], w = z.x.w[to];
-            const Vector3<V> f0 = e.force[from], f = e.force[to];
-            const Vector3<V> df = {mul_add(w, f.x, -(w0 * f0.x)), mul_add(w, f.y, -(w0 * f0.y)),
-                                   mul_add(w, f.z, -(w0 * f0.z))};
-            b = mul_add(d.z, df.z, mul_add(d.y, df.y, mul_add(d.x, df.x, b)));
-        }
+        if (terms & pulls) b = with_pull(d, z.x.w[from], e.force[from], z.x.w[to], e.force[to], b);
         if (terms & given) b = given_value(place);
         row.d = d;
         row.q = dot(d, d);
@@ -71,8 +72,70 @@ struct Loader {
         return b;
     }
 
+    // Of a tree at the level of forces nothing but the rows is needed later. The atoms are kept in these, too, each in
+    // the row of the bond above it: r in d, v in q, E, t, and f in l, r and a value elsewhere. That is half the memory,
+    // and of molecules of a hundred bonds what fits into the first-level cache. A bond is made from its two rows when
+    // those below it have been made.
+    static constexpr bool fits_rows = !(terms & (rates | given));
+
+    template <int count>
+    HOL_FORCED void read_atoms_to_rows(int32_t first) const {
+        const Molecules<V> &x = z.x;
+        const int32_t *const slot = x.s.slot_of + first;
+        V *const rest = &z.equations.r->x;
+        Vector3<V> a[count] = {};
+        read_group<layout, count>(*x.r, x.at, first, a);
+        HOL_UNROLL
+        for (int j = 0; j < count; ++j) x.row[slot[j]].d = a[j];
+        if (terms & squares) {
+            read_group<layout, count>(*x.in.v, x.at, first, a);
+            HOL_UNROLL
+            for (int j = 0; j < count; ++j) {
+                BondRow<V> &row = x.row[slot[j]];
+                row.q = a[j].x;
+                row.E = a[j].y;
+                row.t = a[j].z;
+            }
+        }
+        if (terms & pulls) {
+            read_group<layout, count>(*x.in.f, x.at, first, a);
+            HOL_UNROLL
+            for (int j = 0; j < count; ++j) {
+                BondRow<V> &row = x.row[slot[j]];
+                row.l = a[j].x;
+                row.r = a[j].y;
+                rest[slot[j]] = a[j].z;
+            }
+        }
+    }
+
+    HOL_FORCED void make_row_in_place(int32_t slot, int32_t parent) const {
+        const BondRow<V> &from = z.x.row[parent];
+        BondRow<V> &row = z.x.row[slot];
+        const V *const rest = &z.equations.r->x;
+        const V w = z.x.w[slot];
+        Vector3<V> d = row.d - from.d, unused = {};
+        take_image<false>(*z.x.box, d, unused);
+        V b = {};
+        if (terms & squares) {
+            const Vector3<V> dv = {row.q - from.q, row.E - from.E, row.t - from.t};
+            b = dot(dv, dv);
+        }
+        if (terms & pulls)
+            b = with_pull(d, z.x.w[parent], {from.l, from.r, rest[parent]}, w, {row.l, row.r, rest[slot]}, b);
+        row.d = d;
+        row.q = dot(d, d);
+        row.E = w * row.q;  // of a leaf
+        row.t = b;
+    }
+
     __attribute__((noinline)) void load() const {
         const Schedule &s = z.x.s;
+        if (fits_rows && s.type == Schedule::tree) {
+            for_groups(s.n_atoms, [&](int32_t first, auto number) HOL_FORCED { read_atoms_to_rows<number>(first); });
+            for (int32_t slot = 0; slot < s.n_tree; ++slot) make_row_in_place(slot, s.parent[slot]);
+            return;
+        }
         for_groups(s.n_atoms, [&](int32_t first, auto number) HOL_FORCED { read_atoms<number>(first); });
         for (int32_t slot = 0; slot < s.n_tree; ++slot) {
             make_row(slot, s.parent[slot], slot);
