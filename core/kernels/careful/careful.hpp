@@ -1,5 +1,6 @@
 // The careful solver does one molecule of any shape by itself, in twice the precision. It is right whatever the
-// conditioning is.
+// conditioning is: it notes what cancels (loss.hpp), and where that is too much, `fourfold`, the same code compiled once
+// for numbers of four times the precision, does the molecule again.
 //
 // Each function reads the molecule's atoms in any layout and box, solves, writes the outputs of the call and adds to
 // the tally. It notes a bad molecule in the tally and writes nothing of it. `scratch` has plan.scratch_bytes, aligned
@@ -12,6 +13,19 @@
 #include "core/kernels/isa/target.hpp"
 
 namespace holonomic {
+
+namespace fourfold {
+namespace careful {
+
+void forces(const ForcesCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
+void velocities(const VelocitiesCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
+void positions(const PositionsCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
+void metric(const MetricCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
+void solve(const SolveCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
+
+}  // namespace careful
+}  // namespace fourfold
+
 namespace HOL_ISA {
 namespace careful {
 

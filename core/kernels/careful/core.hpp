@@ -3,6 +3,7 @@
 #ifndef HOLONOMIC_KERNELS_CAREFUL_CORE_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_CORE_HPP
 
+#include "core/kernels/careful/loss.hpp"
 #include "core/kernels/careful/molecule.hpp"
 
 namespace holonomic {
@@ -80,11 +81,12 @@ HOL_NOINLINE void eliminate_column(const Core &x, int32_t c, bool &good) {
 // A pivot below this part of its diagonal element is refused. Constraints that depend on each other leave 1e-30.
 constexpr double redundant = 1e-22;
 
-HOL_NOINLINE bool factorize(const Core &x, int32_t &bad) {
+HOL_NOINLINE bool factorize(const Core &x, Loss &loss, int32_t &bad) {
     bool good = true;
     for (int32_t c = 0; c < x.plan->n_core; ++c) {
         bad = x.plan->core[c];
         if (!(abs(x.diagonal[c].hi) > redundant * abs(x.full[c].hi))) return false;
+        loss.note(abs(x.full[c].hi), x.diagonal[c]);
         eliminate_column(x, c, good);
         if (!good) return false;
     }

@@ -107,7 +107,7 @@ HOL_NOINLINE bool factorize(const Molecule &m, const Graph &g, Joint &x, int32_t
         if (!factorize_atom(m, g, x, plan.hanging[s], bad)) return false;
     for (int32_t i = 0; i < plan.n_atoms; ++i)
         if (plan.parent[i] < 0 && !factorize_atom(m, g, x, i, bad)) return false;
-    return factorize(g.core, bad);
+    return factorize(g.core, x.loss, bad);
 }
 
 // Takes what the children of atom i pass on from y of its other arms.

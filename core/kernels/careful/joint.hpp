@@ -8,7 +8,7 @@
 #ifndef HOLONOMIC_KERNELS_CAREFUL_JOINT_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_JOINT_HPP
 
-#include "core/kernels/careful/wide.hpp"
+#include "core/kernels/careful/loss.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -46,6 +46,7 @@ struct Joint {
     bool by_inertia;   // how they are eliminated
     Wide inverse[9];   // if so: the inverse of 1 + sum rho D B^T over those that give way,
     Rigid rigid_arms;  // with the directions of the others taken out
+    mutable Loss loss;  // of all sums so far
 
     const Wide3 &cross_D(int a, int b) const { return XD[a * n + b]; }
     const Wide3 &cross_B(int a, int b) const { return XB[a * n + b]; }
@@ -138,8 +139,12 @@ HOL_NOINLINE bool eliminate_arms(Joint &x) {
     }
     x.by_inertia = x.n > most_arms || (x.n > few_arms && x.n_rigid == 0 && inertia < mild);
     if (x.w == 0) return true;
-    if (x.by_inertia) return eliminate_by_inertia(x);
+    if (x.by_inertia) {
+        if (x.n_rigid > 0 || inertia >= mild) x.loss.note(1, wide(0));
+        return eliminate_by_inertia(x);
+    }
     Wide sum = x.n_rigid == 0 ? wide(1) : wide(0);
+    double size = 0;
     for (int o = 0; o < x.n_others; ++o) {
         const int a = x.others[o];
         const Wide q = dot(x.D[a], x.B[a]), t = x.rho[a] * q;
@@ -147,15 +152,21 @@ HOL_NOINLINE bool eliminate_arms(Joint &x) {
         for (int p = 0; p < o; ++p) {
             const int b = x.others[p], rigid = x.rigid[a] + x.rigid[b];
             const Wide both = x.rho[a] * x.rho[b];
-            if (rigid == x.n_rigid) sum += both * dot(x.cross_D(a, b), x.cross_B(a, b));
+            if (rigid == x.n_rigid) {
+                sum += both * dot(x.cross_D(a, b), x.cross_B(a, b));
+                size += abs(both.hi) *
+                        size_of_crosses(x.D[a], x.D[b], x.cross_D(a, b), x.B[a], x.B[b], x.cross_B(a, b));
+            }
             for (int s = 0; s < p; ++s) {
                 const int c = x.others[s];
                 if (rigid + x.rigid[c] != x.n_rigid) continue;
-                const Wide volume = dot(x.D[c], x.cross_D(a, b));
-                sum += both * x.rho[c] * (volume * (x.mixed ? dot(x.B[c], x.cross_B(a, b)) : volume));
+                const Wide of_D = dot(x.D[c], x.cross_D(a, b)), of_B = x.mixed ? dot(x.B[c], x.cross_B(a, b)) : of_D;
+                sum += both * x.rho[c] * (of_D * of_B);
+                size += abs((both * x.rho[c]).hi) * size_of_product(of_D, x.D[c], x.D[a], x.D[b], of_B, x.B[c], x.B[a], x.B[b]);
             }
         }
     }
+    x.loss.note(size, sum);
     x.det = sum;
     return x.n_rigid <= 3 && abs(sum.hi) > flat;
 }
@@ -168,17 +179,25 @@ HOL_NOINLINE Wide gram_sum(const Joint &j, int x, int y, int skip, bool swapped)
     const Wide3 *const XD = swapped ? j.XB : j.XD, *const XB = swapped ? j.XD : j.XB;
     const int n = j.n, wanted = j.n_rigid - (skip >= 0 && j.rigid[skip] ? 1 : 0);
     Wide sum = wanted == 0 ? dot(D[x], B[y]) : wide(0);
+    double size = wanted == 0 ? size_of_dot(D[x], B[y]) : 0;
     for (int o = 0; o < j.n_others; ++o) {
         const int a = j.others[o];
         if (a == skip) continue;
-        if (j.rigid[a] == wanted) sum += j.rho[a] * dot(XD[x * n + a], XB[y * n + a]);
+        if (j.rigid[a] == wanted) {
+            sum += j.rho[a] * dot(XD[x * n + a], XB[y * n + a]);
+            size +=
+                abs(j.rho[a].hi) * size_of_crosses(D[x], D[a], XD[x * n + a], B[y], B[a], XB[y * n + a]);
+        }
         for (int p = 0; p < o; ++p) {
             const int b = j.others[p];
             if (b == skip || j.rigid[a] + j.rigid[b] != wanted) continue;
-            const Wide vx = dot(D[x], XD[a * n + b]);
-            sum += j.rho[a] * j.rho[b] * (vx * (x == y && !j.mixed ? vx : dot(B[y], XB[a * n + b])));
+            const Wide vx = dot(D[x], XD[a * n + b]), vy = x == y && !j.mixed ? vx : dot(B[y], XB[a * n + b]);
+            const Wide both = j.rho[a] * j.rho[b];
+            sum += both * (vx * vy);
+            size += abs(both.hi) * size_of_product(vx, D[x], D[a], D[b], vy, B[y], B[a], B[b]);
         }
     }
+    j.loss.note(size, sum);
     return sum;
 }
 
@@ -221,7 +240,13 @@ HOL_NOINLINE void multipliers(const Joint &x, int e, Wide *l) {
 // Returns what the eliminated arms have taken of w d_e . d_e, or of w d_e . d_f, from their multipliers.
 HOL_NOINLINE Wide taken(const Joint &x, const Wide *l, int f) {
     Wide sum = wide(0);
-    for (int o = 0; o < x.n_others; ++o) sum += l[x.others[o]] * dot(x.D[x.others[o]], x.B[f]);
+    double size = 0;
+    for (int o = 0; o < x.n_others; ++o) {
+        const int a = x.others[o];
+        sum += l[a] * dot(x.D[a], x.B[f]);
+        size += abs(l[a].hi) * size_of_dot(x.D[a], x.B[f]);
+    }
+    x.loss.note(size, sum);
     return x.w * sum;
 }
 

@@ -31,6 +31,7 @@ void forces(const ForcesCall &call, const CarefulPlan &plan, const MoleculeLane 
     if (!x.open(call.r, call.box)) return note_bad(lane.molecule, tally);
     force_terms(x.m, call, x.b);
     if (!x.close()) return note_bad(lane.molecule, tally);
+    if (x.lacks_digits()) return fourfold::careful::forces(call, plan, lane, scratch, tally);
     write_multipliers(x.m, x.t, call.lambda, call.tension);
     if (call.g.x) write_forces(x.m, call.g, call.add, x.system.pull);
     if (call.virial) add_virial(x.m, x.m.d, x.t, 1, tally);
@@ -44,6 +45,7 @@ void solve(const SolveCall &call, const CarefulPlan &plan, const MoleculeLane &l
     for (int32_t k = 0; k < plan.n_bonds; ++k)
         x.b[k] = wide(0.5 * call.rhs[lane.first_bond + k] / x.m.mass_unit / x.m.unit[k]);
     if (!x.close()) return note_bad(lane.molecule, tally);
+    if (x.lacks_digits()) return fourfold::careful::solve(call, plan, lane, scratch, tally);
     write_multipliers(x.m, x.t, call.lambda, call.tension);
     if (call.g.x) write_forces(x.m, call.g, call.add, x.system.pull);
     if (call.virial) add_virial(x.m, x.m.d, x.t, 1, tally);
@@ -66,6 +68,7 @@ void velocities(const VelocitiesCall &call, const CarefulPlan &plan, const Molec
         x.b[k] = over(rate, m.mass_unit);
     }
     if (!x.close()) return note_bad(lane.molecule, tally);
+    if (x.lacks_digits()) return fourfold::careful::velocities(call, plan, lane, scratch, tally);
     for (int32_t i = 0; i < plan.n_atoms; ++i) {
         const Vector3<double> v = read(call.v, lane, i);
         x.system.pull[i] = Wide3{wide(v.x), wide(v.y), wide(v.z)} + lane.w[i] * x.system.pull[i];

@@ -11,9 +11,9 @@ namespace careful {
 
 HOL_NOINLINE double log_of_ratio(const Wide &removed, const Wide &pivot, const Wide &full) {
     const Wide x = removed / full;
-    if (x.hi < 0.5) return __builtin_log1p(-x.hi) - x.lo / (1 - x.hi);
+    if (x.hi < 0.5) return __builtin_log1p(-x.hi) - beyond_first(x) / (1 - x.hi);
     const Wide ratio = pivot / full;
-    return __builtin_log(ratio.hi) + ratio.lo / ratio.hi;
+    return __builtin_log(ratio.hi) + beyond_first(ratio) / ratio.hi;
 }
 
 // Returns w d.d, summed over both ends of a bond.
@@ -88,7 +88,7 @@ HOL_NOINLINE Wide log_of_diagonal(const Molecule &m) {
         const double unit = 4 * m.mass_unit * m.unit[k] * m.unit[k], scaled = 4 * full.hi, z = unit * full.hi;
         const Wide beyond = unit * full - wide(1);  // small where the logarithm is
         if (abs(beyond.hi) < 0.5)
-            sum += wide(__builtin_log1p(beyond.hi) + beyond.lo / (1 + beyond.hi));
+            sum += wide(__builtin_log1p(beyond.hi) + beyond_first(beyond) / (1 + beyond.hi));
         else if (z > 0x1p-1000 && z < 0x1p1000)
             sum += wide(__builtin_log(z));
         else

@@ -52,6 +52,7 @@ void metric(const MetricCall &call, const CarefulPlan &plan, const MoleculeLane 
         fixman_force(x.m, neighbours, call.kT, memory.take<Wide3>(plan.n_bonds), x.system.pull);
         good = finite_pulls(x.m, x.system.pull);
     }
+    if (x.lacks_digits()) return fourfold::careful::metric(call, plan, lane, scratch, tally);
     if (!good) return note_bad(lane.molecule, tally);
     if (call.force.x) write_forces(x.m, call.force, call.add, x.system.pull);
     if (call.log_det) call.log_det[lane.molecule] = rounded(det);

@@ -26,5 +26,8 @@ struct CarefulPlan {
     int64_t scratch_bytes;            // of any function of the careful solver
 };
 
+// Molecules of more bonds are not done again in four times the precision, which would take a kilobyte per bond.
+constexpr int32_t most_fourfold = 65536;
+
 }  // namespace holonomic
 #endif

@@ -149,6 +149,7 @@ void positions(const PositionsCall &call, const CarefulPlan &plan, const Molecul
         if (call.guess) result = iterate(p, call, true, solves);
         if (result == projected_not) result = iterate(p, call, false, solves);
     }
+    if (Solution::lacks_digits(plan, p.joint)) return fourfold::careful::positions(call, plan, lane, scratch, tally);
     if (result == projected_not || (result == projected && !write_moves(p, call)))
         return note_bad(lane.molecule, tally);
     for (int32_t k = 0; k < plan.n_bonds; ++k) p.T[k] = over(over(p.T[k], p.m.unit[k]), p.m.mass_unit);

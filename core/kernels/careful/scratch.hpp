@@ -7,7 +7,7 @@
 namespace holonomic {
 
 inline int64_t careful_scratch_bytes(const CarefulPlan &plan) {
-    constexpr int64_t wide = 16, vector = 48, most_arrays = 64;
+    const int64_t wide = plan.n_bonds > most_fourfold ? 16 : 32, vector = 3 * wide, most_arrays = 64;
     const int64_t fill = plan.column_start[plan.n_core], arms = plan.most_arms;
     const int64_t per_bond = 4 * vector + 14 * wide + 32, per_atom = 2 * vector + 16;
     const int64_t joint = arms * (2 * vector + wide + 16) + 2 * vector * (arms > 64 ? 0 : arms * arms);

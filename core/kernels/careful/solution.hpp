@@ -9,11 +9,8 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace careful {
 
-// Factors from the solver's b and t to those in the caller's units. With d = unit d' and w = mass_unit w', both sides
+// Turns t into the caller's units. Returns false if one is no number. With d = unit d' and w = mass_unit w', both sides
 // of an equation are divided by mass_unit / unit.
-HOL_INLINE Wide over(const Wide &a, double power_of_two) { return {a.hi / power_of_two, a.lo / power_of_two}; }
-
-// Turns t into the caller's units. Returns false if one is no number.
 HOL_NOINLINE bool to_callers_units(const Molecule &m, Wide *t) {
     bool good = true;
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
@@ -84,6 +81,11 @@ struct Solution {
         restore_vectors(m);
         pulls(m, m.d, t, system.pull);
         return finite_pulls(m, system.pull);
+    }
+    // Nothing has been written yet: the molecule is to be done in four times the precision.
+    bool lacks_digits() const { return lacks_digits(m.plan, system.joint); }
+    static bool lacks_digits(const CarefulPlan &plan, const Joint &joint) {
+        return joint.loss.too_much() && plan.n_bonds <= most_fourfold;
     }
 };
 

@@ -65,21 +65,22 @@ HOL_NOINLINE void residual(const Molecule &m, const System &x, const Wide *b, co
 }
 
 // Solves A t = b. Hanging trees beside cycles are eliminated from one side alone, which may lose digits. So the
-// solution is refined until a correction changes nothing that is kept.
+// solution is refined until a correction changes nothing that is kept. If none is as small, that is a loss.
 HOL_NOINLINE void solve(const Molecule &m, const System &x, const Wide *b, Wide *t) {
     if (is_tree(m.plan)) return solve(m, x.tree, b, t);
     if (is_ring(m.plan)) return solve(m, x.ring, b, t);
     solve(m, x.graph, b, t);
-    for (int pass = 0; pass < 3; ++pass) {
+    bool small = false;
+    for (int pass = 0; pass < 3 && !small; ++pass) {
         residual(m, x, b, t);
         solve(m, x.graph, x.rest, x.change);
-        bool small = true;
+        small = true;
         for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
             small = small && abs(x.change[k].hi) <= 0x1p-60 * abs(t[k].hi);
             t[k] += x.change[k];
         }
-        if (small) break;
     }
+    if (!small) x.joint.loss.note(1, wide(0));
 }
 
 }  // namespace careful

@@ -1,16 +1,30 @@
-// Numbers hi + lo of twice the precision, for what is solved once and must not lose digits.
+// Numbers of twice the precision, hi + lo, for what is solved once and must not lose digits; or of four times the
+// precision in the set of kernels `fourfold`, which does what twice is not enough for (careful.hpp).
 #ifndef HOLONOMIC_KERNELS_CAREFUL_WIDE_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_WIDE_HPP
 
 #include "core/kernels/arithmetic/exact.hpp"
+#ifdef HOL_FOURFOLD
+#include "core/kernels/careful/four.hpp"
+#endif
 
 namespace holonomic {
 namespace HOL_ISA {
 
-typedef Pair<double> Wide;
-typedef Vector3<Wide> Wide3;
+#ifdef HOL_FOURFOLD
 
+constexpr bool is_fourfold = true;
+typedef Four Wide;
+HOL_INLINE Wide wide(double a) { return four(a); }
+
+#else
+
+constexpr bool is_fourfold = false;
+typedef Pair<double> Wide;
 HOL_INLINE Wide wide(double a) { return {a, 0}; }
+// What its first word leaves of a number.
+HOL_INLINE double beyond_first(const Wide &a) { return a.lo; }
+HOL_INLINE Wide over(const Wide &a, double power_of_two) { return {a.hi / power_of_two, a.lo / power_of_two}; }
 HOL_INLINE double rounded(const Wide &a) { return a.hi + a.lo; }
 HOL_INLINE Wide operator-(const Wide &a) { return {-a.hi, -a.lo}; }
 
@@ -48,6 +62,10 @@ HOL_NOINLINE Wide square_root(const Wide &a) {  // a > 0
     const Wide rest = a - two_product(s, s);
     return fast_two_sum(s, rest.hi / (2 * s));
 }
+
+#endif
+
+typedef Vector3<Wide> Wide3;
 
 HOL_INLINE Wide &operator+=(Wide &a, const Wide &b) { return a = a + b; }
 HOL_INLINE Wide &operator-=(Wide &a, const Wide &b) { return a = a - b; }

@@ -1,0 +1,49 @@
+// How many digits a careful solution has lost. What is found from terms of one sign is right whatever the conditioning
+// is. Multipliers of a joint and pivots of a core are not: their terms cancel. `largest` is the largest ratio, over all
+// sums of a molecule, of the sizes of the terms to their sum (theory (54a)); a size includes what a term has itself been
+// made of.
+#ifndef HOLONOMIC_KERNELS_CAREFUL_LOSS_HPP
+#define HOLONOMIC_KERNELS_CAREFUL_LOSS_HPP
+
+#include "core/kernels/careful/wide.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace careful {
+
+struct Loss {
+    double largest;
+    // A sum of nothing but zeros is exact.
+    void note(double size, const Wide &sum) {
+        const double of_sum = abs(sum.hi);
+        if (size > largest * of_sum) largest = of_sum > 0 ? size / of_sum : __builtin_inf();
+    }
+    // Twice the precision leaves less than a few roundings of a double.
+    bool too_much() const { return !is_fourfold && !(largest < 0x1p46); }
+};
+
+HOL_INLINE Vector3<double> size_of(const Wide3 &a) { return {abs(a.x.hi), abs(a.y.hi), abs(a.z.hi)}; }
+HOL_INLINE double size_of_dot(const Wide3 &a, const Wide3 &b) { return dot(size_of(a), size_of(b)); }
+HOL_INLINE Vector3<double> size_of_cross(const Wide3 &a, const Wide3 &b) {
+    const Vector3<double> p = size_of(a), q = size_of(b);
+    return {p.y * q.z + p.z * q.y, p.z * q.x + p.x * q.z, p.x * q.y + p.y * q.x};
+}
+// (a x b).(c x d).
+HOL_INLINE double size_of_crosses(const Wide3 &a, const Wide3 &b, const Wide3 &ab, const Wide3 &c, const Wide3 &d,
+                                  const Wide3 &cd) {
+    return dot(size_of_cross(a, b), size_of(cd)) + dot(size_of(ab), size_of_cross(c, d));
+}
+HOL_INLINE double size_of_volume(const Wide3 &v, const Wide3 &a, const Wide3 &b) {
+    return dot(size_of(v), size_of_cross(a, b));
+}
+
+// The product of two volumes u = x.(a x b) and v = y.(c x d).
+HOL_INLINE double size_of_product(const Wide &u, const Wide3 &x, const Wide3 &a, const Wide3 &b, const Wide &v,
+                                  const Wide3 &y, const Wide3 &c, const Wide3 &d) {
+    return abs(u.hi) * size_of_volume(y, c, d) + size_of_volume(x, a, b) * abs(v.hi);
+}
+
+}  // namespace careful
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif
