@@ -69,8 +69,8 @@ HOL_NOINLINE Four operator*(const Four &a, const Four &b) {
                        p10 = two_product(a.second, b.hi), p02 = two_product(a.hi, b.third),
                        p11 = two_product(a.second, b.second), p20 = two_product(a.third, b.hi);
     const double rest = (a.hi * b.fourth + a.fourth * b.hi) + (a.second * b.third + a.third * b.second);
-    double x[10] = {p00.hi, p01.hi, p10.hi, p00.lo, p02.hi, p11.hi, p20.hi, p01.lo, p10.lo,
-                    rest + (p02.lo + p11.lo + p20.lo)};
+    double x[10] = {p00.hi, p01.hi, p10.hi, p00.lo, p02.hi,
+                    p11.hi, p20.hi, p01.lo, p10.lo, rest + (p02.lo + p11.lo + p20.lo)};
     return sum_of(x, 10);
 }
 

@@ -41,11 +41,11 @@ struct Joint {
     bool *rigid;     // [n] E = 0
     Wide3 *XD, *XB;  // [n][n] cross products of arms a and b at [a n + b]
     int n_others, n_rigid;
-    int *others;       // [n] the arms that are eliminated
-    Wide det;          // of S over these arms, relative to the product of their E that are not 0
-    bool by_inertia;   // how they are eliminated
-    Wide inverse[9];   // if so: the inverse of 1 + sum rho D B^T over those that give way,
-    Rigid rigid_arms;  // with the directions of the others taken out
+    int *others;        // [n] the arms that are eliminated
+    Wide det;           // of S over these arms, relative to the product of their E that are not 0
+    bool by_inertia;    // how they are eliminated
+    Wide inverse[9];    // if so: the inverse of 1 + sum rho D B^T over those that give way,
+    Rigid rigid_arms;   // with the directions of the others taken out
     mutable Loss loss;  // of all sums so far
 
     const Wide3 &cross_D(int a, int b) const { return XD[a * n + b]; }
@@ -154,15 +154,16 @@ HOL_NOINLINE bool eliminate_arms(Joint &x) {
             const Wide both = x.rho[a] * x.rho[b];
             if (rigid == x.n_rigid) {
                 sum += both * dot(x.cross_D(a, b), x.cross_B(a, b));
-                size += abs(both.hi) *
-                        size_of_crosses(x.D[a], x.D[b], x.cross_D(a, b), x.B[a], x.B[b], x.cross_B(a, b));
+                size +=
+                    abs(both.hi) * size_of_crosses(x.D[a], x.D[b], x.cross_D(a, b), x.B[a], x.B[b], x.cross_B(a, b));
             }
             for (int s = 0; s < p; ++s) {
                 const int c = x.others[s];
                 if (rigid + x.rigid[c] != x.n_rigid) continue;
                 const Wide of_D = dot(x.D[c], x.cross_D(a, b)), of_B = x.mixed ? dot(x.B[c], x.cross_B(a, b)) : of_D;
                 sum += both * x.rho[c] * (of_D * of_B);
-                size += abs((both * x.rho[c]).hi) * size_of_product(of_D, x.D[c], x.D[a], x.D[b], of_B, x.B[c], x.B[a], x.B[b]);
+                size += abs((both * x.rho[c]).hi) *
+                        size_of_product(of_D, x.D[c], x.D[a], x.D[b], of_B, x.B[c], x.B[a], x.B[b]);
             }
         }
     }
@@ -185,8 +186,7 @@ HOL_NOINLINE Wide gram_sum(const Joint &j, int x, int y, int skip, bool swapped)
         if (a == skip) continue;
         if (j.rigid[a] == wanted) {
             sum += j.rho[a] * dot(XD[x * n + a], XB[y * n + a]);
-            size +=
-                abs(j.rho[a].hi) * size_of_crosses(D[x], D[a], XD[x * n + a], B[y], B[a], XB[y * n + a]);
+            size += abs(j.rho[a].hi) * size_of_crosses(D[x], D[a], XD[x * n + a], B[y], B[a], XB[y * n + a]);
         }
         for (int p = 0; p < o; ++p) {
             const int b = j.others[p];

@@ -1,7 +1,7 @@
 // How many digits a careful solution has lost. What is found from terms of one sign is right whatever the conditioning
 // is. Multipliers of a joint and pivots of a core are not: their terms cancel. `largest` is the largest ratio, over all
-// sums of a molecule, of the sizes of the terms to their sum (theory (54a)); a size includes what a term has itself been
-// made of.
+// sums of a molecule, of the sizes of the terms to their sum (theory (54a)); a size includes what a term has itself
+// been made of.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_LOSS_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_LOSS_HPP
 

@@ -6,13 +6,19 @@
 
 namespace holonomic {
 
-inline int64_t careful_scratch_bytes(const CarefulPlan &plan) {
-    const int64_t wide = plan.n_bonds > most_fourfold ? 16 : 32, vector = 3 * wide, most_arrays = 64;
-    const int64_t fill = plan.column_start[plan.n_core], arms = plan.most_arms;
+inline constexpr int64_t careful_scratch_bytes(int64_t n_atoms, int64_t n_bonds, int64_t most_arms, int64_t table,
+                                               int64_t n_core, int64_t fill) {
+    const int64_t wide = n_bonds > most_fourfold ? 16 : 32, vector = 3 * wide, most_arrays = 64;
     const int64_t per_bond = 4 * vector + 14 * wide + 32, per_atom = 2 * vector + 16;
-    const int64_t joint = arms * (2 * vector + wide + 16) + 2 * vector * (arms > 64 ? 0 : arms * arms);
-    return per_bond * plan.n_bonds + per_atom * plan.n_atoms + joint + wide * 2 * plan.table_start[plan.n_atoms] +
-           wide * (5 * plan.n_core + 3 * fill) + 64 * most_arrays;
+    const int64_t joint =
+        most_arms * (2 * vector + wide + 16) + 2 * vector * (most_arms > 64 ? 0 : most_arms * most_arms);
+    return per_bond * n_bonds + per_atom * n_atoms + joint + wide * (2 * table + 5 * n_core + 3 * fill) +
+           64 * most_arrays;
+}
+
+inline int64_t careful_scratch_bytes(const CarefulPlan &plan) {
+    return careful_scratch_bytes(plan.n_atoms, plan.n_bonds, plan.most_arms, plan.table_start[plan.n_atoms],
+                                 plan.n_core, plan.column_start[plan.n_core]);
 }
 
 }  // namespace holonomic

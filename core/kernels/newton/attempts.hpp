@@ -3,6 +3,7 @@
 #ifndef HOLONOMIC_KERNELS_NEWTON_ATTEMPTS_HPP
 #define HOLONOMIC_KERNELS_NEWTON_ATTEMPTS_HPP
 
+#include "core/kernels/careful/chain.hpp"
 #include "core/kernels/memory/open.hpp"
 #include "core/kernels/memory/outputs.hpp"
 #include "core/kernels/memory/packed.hpp"
@@ -66,16 +67,19 @@ static inline void add_virial(const Block &block, const Newton &x, mask which, d
 
 // Lanes in which the pulls on an atom are so large that their rounding exceeds that of the coordinates. This happens to
 // light atoms between heavy ones in a taut chain. In all other lanes the move costs one rounding of the coordinates.
+// `part`: of the coordinates, which pulls exceed.
+constexpr double coarse_part = 0.25, turning_part = 0x1p14;
 template <bool uniform_w, int fixed = 0>
-HOL_INLINE mask coarse_moves(const Block &block, const Newton &x, Carried &carried, mask which) {
+HOL_INLINE mask coarse_moves(const Block &block, const Newton &x, Carried &carried, mask which,
+                             double part = coarse_part) {
     vec pull = {};
     go_up<fixed>(block, [&](long k, bool) HOL_FORCED {
         const vec tau = abs(x.tau[k]);
         pull = max(uniform_w ? tau : max(x.w[k], x.w[k + 1]) * tau, pull);
     });
     pull = pull * x.a_max;
-    if (!any(which & less(0.25 * x.a_min, pull))) return none();
-    return which & less(0.25 * (carried.largest_coordinate() + x.a_min), pull);
+    if (!any(which & less(part * x.a_min, pull))) return none();
+    return which & less(part * (carried.largest_coordinate() + x.a_min), pull);
 }
 
 // Multipliers and counts of the lanes that are good.
@@ -98,6 +102,7 @@ struct Positions {
     Tally &tally;
     Packed r_ref, r, v;
     Newton x;
+    mask careful_lanes = {};  // done by the careful solver
 
     Positions(const Block &b, const Lane *l, const PositionsCall &c, const BondLengths &a, Arena memory, Tally &t)
         : block(b), lane(l), call(c), arena(memory), tally(t), r_ref(open(c.r_ref, b, l, arena, true)),
@@ -144,9 +149,26 @@ struct Positions {
         return wanted;
     }
 
+    // Does the lanes in which multipliers depend on the last digits of the reference's bonds: such pulls, of atoms some
+    // 1e5 times lighter than their neighbours, turn with them. There the bonds must not be rounded. Returns the lanes
+    // that are done; the others are settled.
+    __attribute__((noinline)) mask solve_carefully(mask coarse, Carried &carried) {
+        mask done = {};
+        const unsigned chosen = bits(coarse_moves<uniform_w>(block, x, carried, coarse, turning_part));
+        for (int i = 0; i < block.lanes; ++i)
+            if (chosen >> i & 1 && careful::chain_positions(call, lane[i], const_cast<double *>(arena.end), tally))
+                done[i] = -1;
+        return done;
+    }
+
     // Moves the atoms of the lanes that have converged, and writes their other outputs.
     void finish(Outcome &out, Carried &carried) {
-        const mask coarse = coarse_moves<uniform_w>(block, x, carried, out.converged);
+        mask coarse = coarse_moves<uniform_w>(block, x, carried, out.converged);
+        if (__builtin_expect(any(coarse), 0)) {
+            careful_lanes = careful_lanes | solve_carefully(coarse, carried);
+            out.converged = out.converged & ~careful_lanes;
+            coarse = coarse & ~careful_lanes;
+        }
         const bool settled = __builtin_expect(any(coarse), 0);
         note_worst<uniform_w, uniform_a>(block, x, call, (out.converged | out.untouched) & ~coarse, out.error, tally);
         if (settled) out.converged = out.converged & ~settle(coarse, carried, out);
@@ -183,13 +205,13 @@ struct Positions {
         Carried carried(block, x, call, r);
         Outcome out = solve_positions<uniform_w, uniform_a, false>(block, x, call, carried, all, call.guess);
         finish(out, carried);
-        mask rest = all & ~(out.converged | out.untouched);
+        mask rest = all & ~(out.converged | out.untouched | careful_lanes);
         if (__builtin_expect(!any(rest), 1)) return;
         // Once more from the start, with new factors at every step and nothing that can overflow on the way.
         load();
         out = solve_positions<uniform_w, uniform_a, true>(block, x, call, carried, rest, false);
         finish(out, carried);
-        rest = rest & ~(out.converged | out.untouched);
+        rest = rest & ~(out.converged | out.untouched | careful_lanes);
         if (any(rest)) note_bad(block, rest, tally);
     }
 };

@@ -1,4 +1,5 @@
 // The table through which core calls the kernels of one instruction set.
+#include "core/kernels/careful/chain.hpp"
 #include "core/kernels/eliminate/long_chain.hpp"
 #include "core/kernels/isa/lanes.hpp"
 #include "core/kernels/memory/arena.hpp"
@@ -12,8 +13,9 @@ namespace holonomic::HOL_ISA {
 
 static_assert(W <= most_lanes, "Box and the alignment of a thread's memory are made for fewer lanes");
 
+// The careful solver's memory stands behind that of a block.
 static int64_t scratch_bytes(int64_t n_bonds) {
-    return scratch_doubles(n_bonds) * static_cast<int64_t>(sizeof(double));
+    return scratch_doubles(n_bonds) * static_cast<int64_t>(sizeof(double)) + careful::chain_scratch_bytes(n_bonds);
 }
 
 static int64_t long_blocks(int64_t n_bonds) { return Cut(n_bonds).blocks; }
