@@ -13,8 +13,8 @@ namespace
 {
 
 constexpr long double eps = DBL_EPSILON;
-constexpr long double graph_limit = 1e-17L;     // graphs with a pivot below it are promised nothing
-constexpr long double metric_limit = 1e-16L;    // nor their determinants, Fixman force and inverse below this
+constexpr long double graph_limit = 1e-20L;     // graphs with a pivot below it are promised nothing
+constexpr long double inverse_limit = 1e-16L;   // nor their inverse below this
 constexpr long double straight_sine2 = 1e-21L;  // triangles below it are straight but for rounding
 constexpr long double singular = 1e-60L;
 
@@ -120,7 +120,7 @@ void check_inverse(const placement &a, const hostile_molecule &m, const molecule
 }
 
 void check_metric(const placement &a, const hostile_molecule &m, const molecule_metric &exact,
-                  const molecule_results &alone, molecule_verdict &out)
+                  const molecule_results &alone, bool inverse, molecule_verdict &out)
 {
     if (alone.metric != HOL_OK) return;
     const long double k = k_eps(m);
@@ -131,7 +131,7 @@ void check_metric(const placement &a, const hostile_molecule &m, const molecule_
     for (std::size_t i = 0; i < m.r.size(); ++i)
         if (exact.fixman_scale[i / 3] > 0 || !is_blank(alone.fixman[i]))
             out.compare(M_FIXMAN, alone.fixman[i], exact.fixman_force[i], 2 * k * exact.fixman_scale[i / 3]);
-    check_inverse(a, m, exact, out);
+    if (inverse) check_inverse(a, m, exact, out);
 }
 
 void check_lengths(const hostile_molecule &m, const numbers &r, molecule_verdict &out)
@@ -268,7 +268,7 @@ molecule_verdict check_alone(const hostile_molecule &m, molecule_facts &facts)
     if (facts.promised) {
         check_forces(m, alone, out);
         check_velocities(m, alone, out);
-        if (!graph || exact.least_pivot > metric_limit) check_metric(a, m, exact, alone, out);
+        check_metric(a, m, exact, alone, !graph || exact.least_pivot > inverse_limit, out);
         check_positions(a, m, alone, out);
     }
     molecule_metric_free(&exact);

@@ -19,7 +19,7 @@ namespace stress
 struct molecule_facts {
     bool regular = false;
     long double condition = 0, least_pivot = 0;
-    /** Whether bounds are promised: trees, rings and triangles always, graphs as long as no pivot of Z~ is below 1e-17.
+    /** Whether bounds are promised: trees, rings and triangles always, graphs as long as no pivot of Z~ is below 1e-20.
      */
     bool promised = false;
 };

@@ -36,10 +36,11 @@ struct Joint {
     int n;
     double w;
     bool mixed;
-    Wide3 *D, *B;    // [n], the same if not mixed
-    Wide *rho;       // [n] w / E; 1 where E = 0
-    bool *rigid;     // [n] E = 0
-    Wide3 *XD, *XB;  // [n][n] cross products of arms a and b at [a n + b]
+    Wide3 *D, *B;                 // [n], the same if not mixed
+    Wide *rho;                    // [n] w / E; 1 where E = 0
+    bool *rigid;                  // [n] E = 0
+    Wide3 *XD, *XB;               // [n][n] cross products of arms a and b at [a n + b]
+    double *sD, *sB, *sXD, *sXB;  // [n], [n][n] sizes of these vectors: sums of their components in absolute values
     int n_others, n_rigid;
     int *others;        // [n] the arms that are eliminated
     Wide det;           // of S over these arms, relative to the product of their E that are not 0
@@ -47,22 +48,22 @@ struct Joint {
     Wide inverse[9];    // if so: the inverse of 1 + sum rho D B^T over those that give way,
     Rigid rigid_arms;   // with the directions of the others taken out
     mutable Loss loss;  // of all sums so far
-
-    const Wide3 &cross_D(int a, int b) const { return XD[a * n + b]; }
-    const Wide3 &cross_B(int a, int b) const { return XB[a * n + b]; }
 };
 
-// Finds the cross products of all arms, once their vectors are there.
-HOL_NOINLINE void prepare(Joint &x) {
-    if (x.n > most_arms) return;
-    for (int a = 0; a < x.n; ++a)
+// Finds the cross products and sizes of all arms, once their vectors are there.
+HOL_NOINLINE void find_crosses(int n, const Wide3 *d, double *size, Wide3 *X, double *size_X) {
+    for (int a = 0; a < n; ++a) size[a] = size_of(d[a]);
+    for (int a = 0; a < n && n <= most_arms; ++a)
         for (int b = 0; b < a; ++b) {
-            x.XD[a * x.n + b] = cross(x.D[a], x.D[b]);
-            x.XD[b * x.n + a] = -x.XD[a * x.n + b];
-            if (!x.mixed) continue;
-            x.XB[a * x.n + b] = cross(x.B[a], x.B[b]);
-            x.XB[b * x.n + a] = -x.XB[a * x.n + b];
+            X[a * n + b] = cross(d[a], d[b]);
+            X[b * n + a] = -X[a * n + b];
+            size_X[a * n + b] = size_X[b * n + a] = size_of(X[a * n + b]);
         }
+}
+
+HOL_NOINLINE void prepare(Joint &x) {
+    find_crosses(x.n, x.D, x.sD, x.XD, x.sXD);
+    if (x.mixed) find_crosses(x.n, x.B, x.sB, x.XB, x.sXB);
 }
 
 // Arm a offers E from its far side.
@@ -152,18 +153,18 @@ HOL_NOINLINE bool eliminate_arms(Joint &x) {
         for (int p = 0; p < o; ++p) {
             const int b = x.others[p], rigid = x.rigid[a] + x.rigid[b];
             const Wide both = x.rho[a] * x.rho[b];
+            const int ab = a * x.n + b;
             if (rigid == x.n_rigid) {
-                sum += both * dot(x.cross_D(a, b), x.cross_B(a, b));
-                size +=
-                    abs(both.hi) * size_of_crosses(x.D[a], x.D[b], x.cross_D(a, b), x.B[a], x.B[b], x.cross_B(a, b));
+                sum += both * dot(x.XD[ab], x.XB[ab]);
+                size += abs(both.hi) * (x.sD[a] * x.sD[b] * x.sXB[ab] + x.sXD[ab] * x.sB[a] * x.sB[b]);
             }
             for (int s = 0; s < p; ++s) {
                 const int c = x.others[s];
                 if (rigid + x.rigid[c] != x.n_rigid) continue;
-                const Wide of_D = dot(x.D[c], x.cross_D(a, b)), of_B = x.mixed ? dot(x.B[c], x.cross_B(a, b)) : of_D;
+                const Wide of_D = dot(x.D[c], x.XD[ab]), of_B = x.mixed ? dot(x.B[c], x.XB[ab]) : of_D;
                 sum += both * x.rho[c] * (of_D * of_B);
-                size += abs((both * x.rho[c]).hi) *
-                        size_of_product(of_D, x.D[c], x.D[a], x.D[b], of_B, x.B[c], x.B[a], x.B[b]);
+                size += abs(both.hi * x.rho[c].hi) *
+                        (x.sD[a] * x.sD[b] * x.sD[c] * abs(of_B.hi) + abs(of_D.hi) * x.sB[a] * x.sB[b] * x.sB[c]);
             }
         }
     }
@@ -172,31 +173,64 @@ HOL_NOINLINE bool eliminate_arms(Joint &x) {
     return x.n_rigid <= 3 && abs(sum.hi) > flat;
 }
 
+// The arms of a joint as they stand on the two sides of <x^T, y^T>.
+struct Sides {
+    const Wide3 *D, *B, *XD, *XB;
+    const double *sD, *sB, *sXD, *sXB;
+    HOL_INLINE Sides of(const Joint &j, bool swapped) {
+        if (swapped) return {j.B, j.D, j.XB, j.XD, j.sB, j.sD, j.sXB, j.sXD};
+        return {j.D, j.B, j.XD, j.XB, j.sD, j.sB, j.sXD, j.sXB};
+    }
+};
+
+// Returns the sizes of what gram_sum() adds up, component by component: 0 for zeros of vectors along the axes.
+HOL_NOINLINE double gram_size(const Joint &j, int x, int y, int skip, bool swapped) {
+    const Sides s = Sides::of(j, swapped);
+    const int n = j.n, wanted = j.n_rigid - (skip >= 0 && j.rigid[skip] ? 1 : 0);
+    double size = wanted == 0 ? size_of_dot(s.D[x], s.B[y]) : 0;
+    for (int o = 0; o < j.n_others; ++o) {
+        const int a = j.others[o];
+        if (a == skip) continue;
+        const double rho = abs(j.rho[a].hi);
+        if (j.rigid[a] == wanted)
+            size += rho * size_of_crosses(s.D[x], s.D[a], s.XD[x * n + a], s.B[y], s.B[a], s.XB[y * n + a]);
+        for (int p = 0; p < o; ++p) {
+            const int b = j.others[p];
+            if (b == skip || j.rigid[a] + j.rigid[b] != wanted) continue;
+            size += rho * abs(j.rho[b].hi) *
+                    (abs(dot(s.D[x], s.XD[a * n + b]).hi) * size_of_volume(s.B[y], s.B[a], s.B[b]) +
+                     size_of_volume(s.D[x], s.D[a], s.D[b]) * abs(dot(s.B[y], s.XB[a * n + b]).hi));
+        }
+    }
+    return size;
+}
+
 // Returns the sum of <x^T, y^T> over sets T of eliminated arms, times what is left of the product of the E. A set holds
 // all rigid arms but `in`, which is x or y or neither; no set holds `skip`. x is on the side of D and y on that of B,
 // or the other way round.
 HOL_NOINLINE Wide gram_sum(const Joint &j, int x, int y, int skip, bool swapped) {
-    const Wide3 *const D = swapped ? j.B : j.D, *const B = swapped ? j.D : j.B;
-    const Wide3 *const XD = swapped ? j.XB : j.XD, *const XB = swapped ? j.XD : j.XB;
+    const Sides s = Sides::of(j, swapped);
     const int n = j.n, wanted = j.n_rigid - (skip >= 0 && j.rigid[skip] ? 1 : 0);
-    Wide sum = wanted == 0 ? dot(D[x], B[y]) : wide(0);
-    double size = wanted == 0 ? size_of_dot(D[x], B[y]) : 0;
+    Wide sum = wanted == 0 ? dot(s.D[x], s.B[y]) : wide(0);
+    double size = wanted == 0 ? s.sD[x] * s.sB[y] : 0;
     for (int o = 0; o < j.n_others; ++o) {
-        const int a = j.others[o];
+        const int a = j.others[o], xa = x * n + a, ya = y * n + a;
         if (a == skip) continue;
+        const double rho = abs(j.rho[a].hi);
         if (j.rigid[a] == wanted) {
-            sum += j.rho[a] * dot(XD[x * n + a], XB[y * n + a]);
-            size += abs(j.rho[a].hi) * size_of_crosses(D[x], D[a], XD[x * n + a], B[y], B[a], XB[y * n + a]);
+            sum += j.rho[a] * dot(s.XD[xa], s.XB[ya]);
+            size += rho * (s.sD[x] * s.sD[a] * s.sXB[ya] + s.sXD[xa] * s.sB[y] * s.sB[a]);
         }
         for (int p = 0; p < o; ++p) {
-            const int b = j.others[p];
+            const int b = j.others[p], ab = a * n + b;
             if (b == skip || j.rigid[a] + j.rigid[b] != wanted) continue;
-            const Wide vx = dot(D[x], XD[a * n + b]), vy = x == y && !j.mixed ? vx : dot(B[y], XB[a * n + b]);
-            const Wide both = j.rho[a] * j.rho[b];
-            sum += both * (vx * vy);
-            size += abs(both.hi) * size_of_product(vx, D[x], D[a], D[b], vy, B[y], B[a], B[b]);
+            const Wide vx = dot(s.D[x], s.XD[ab]), vy = x == y && !j.mixed ? vx : dot(s.B[y], s.XB[ab]);
+            sum += j.rho[a] * j.rho[b] * (vx * vy);
+            size += rho * abs(j.rho[b].hi) *
+                    (s.sD[x] * s.sD[a] * s.sD[b] * abs(vy.hi) + abs(vx.hi) * s.sB[y] * s.sB[a] * s.sB[b]);
         }
     }
+    if (is_too_large(size, sum)) size = gram_size(j, x, y, skip, swapped);
     j.loss.note(size, sum);
     return sum;
 }
@@ -244,7 +278,7 @@ HOL_NOINLINE Wide taken(const Joint &x, const Wide *l, int f) {
     for (int o = 0; o < x.n_others; ++o) {
         const int a = x.others[o];
         sum += l[a] * dot(x.D[a], x.B[f]);
-        size += abs(l[a].hi) * size_of_dot(x.D[a], x.B[f]);
+        size += abs(l[a].hi) * x.sD[a] * x.sB[f];
     }
     x.loss.note(size, sum);
     return x.w * sum;

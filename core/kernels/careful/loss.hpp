@@ -11,6 +11,11 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace careful {
 
+// Twice the precision leaves less than a few roundings of a double while no ratio is larger.
+constexpr double largest_loss = 0x1p46;
+
+HOL_INLINE bool is_too_large(double size, const Wide &sum) { return !is_fourfold && size > largest_loss * abs(sum.hi); }
+
 struct Loss {
     double largest;
     // A sum of nothing but zeros is exact.
@@ -18,29 +23,24 @@ struct Loss {
         const double of_sum = abs(sum.hi);
         if (size > largest * of_sum) largest = of_sum > 0 ? size / of_sum : __builtin_inf();
     }
-    // Twice the precision leaves less than a few roundings of a double.
-    bool too_much() const { return !is_fourfold && !(largest < 0x1p46); }
+    bool too_much() const { return !is_fourfold && !(largest <= largest_loss); }
 };
 
-HOL_INLINE Vector3<double> size_of(const Wide3 &a) { return {abs(a.x.hi), abs(a.y.hi), abs(a.z.hi)}; }
-HOL_INLINE double size_of_dot(const Wide3 &a, const Wide3 &b) { return dot(size_of(a), size_of(b)); }
-HOL_INLINE Vector3<double> size_of_cross(const Wide3 &a, const Wide3 &b) {
-    const Vector3<double> p = size_of(a), q = size_of(b);
+HOL_INLINE double size_of(const Wide3 &a) { return abs(a.x.hi) + abs(a.y.hi) + abs(a.z.hi); }
+HOL_INLINE Vector3<double> sizes_of(const Wide3 &a) { return {abs(a.x.hi), abs(a.y.hi), abs(a.z.hi)}; }
+HOL_INLINE double size_of_dot(const Wide3 &a, const Wide3 &b) { return dot(sizes_of(a), sizes_of(b)); }
+HOL_INLINE Vector3<double> sizes_of_cross(const Wide3 &a, const Wide3 &b) {
+    const Vector3<double> p = sizes_of(a), q = sizes_of(b);
     return {p.y * q.z + p.z * q.y, p.z * q.x + p.x * q.z, p.x * q.y + p.y * q.x};
 }
 // (a x b).(c x d).
 HOL_INLINE double size_of_crosses(const Wide3 &a, const Wide3 &b, const Wide3 &ab, const Wide3 &c, const Wide3 &d,
                                   const Wide3 &cd) {
-    return dot(size_of_cross(a, b), size_of(cd)) + dot(size_of(ab), size_of_cross(c, d));
+    return dot(sizes_of_cross(a, b), sizes_of(cd)) + dot(sizes_of(ab), sizes_of_cross(c, d));
 }
+// v.(a x b).
 HOL_INLINE double size_of_volume(const Wide3 &v, const Wide3 &a, const Wide3 &b) {
-    return dot(size_of(v), size_of_cross(a, b));
-}
-
-// The product of two volumes u = x.(a x b) and v = y.(c x d).
-HOL_INLINE double size_of_product(const Wide &u, const Wide3 &x, const Wide3 &a, const Wide3 &b, const Wide &v,
-                                  const Wide3 &y, const Wide3 &c, const Wide3 &d) {
-    return abs(u.hi) * size_of_volume(y, c, d) + size_of_volume(x, a, b) * abs(v.hi);
+    return dot(sizes_of(v), sizes_of_cross(a, b));
 }
 
 }  // namespace careful

@@ -22,6 +22,10 @@ HOL_NOINLINE Joint take_joint(int32_t most, bool mixed, Memory &memory) {
     x.XD = memory.take<Wide3>(pairs);
     x.XB = mixed ? memory.take<Wide3>(pairs) : x.XD;
     x.others = memory.take<int>(n);
+    x.sD = memory.take<double>(n);
+    x.sB = mixed ? memory.take<double>(n) : x.sD;
+    x.sXD = memory.take<double>(pairs);
+    x.sXB = mixed ? memory.take<double>(pairs) : x.sXD;
     return x;
 }
 

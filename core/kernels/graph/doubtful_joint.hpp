@@ -19,6 +19,7 @@ struct DoubtfulJoint {
     Wide rho[most];
     bool rigid[most];
     int others[most];
+    double size[most], size_X[most * most];
     double unit[most], mass_unit;
     careful::Joint joint;
 
@@ -39,6 +40,8 @@ struct DoubtfulJoint {
         joint.rigid = rigid;
         joint.XD = joint.XB = X;
         joint.others = others;
+        joint.sD = joint.sB = size;
+        joint.sXD = joint.sXB = size_X;
         for (int a = 0; a <= k; ++a) {
             const int32_t place = a < k ? child[a] : slot;
             Vector3<double> d, lo;
