@@ -168,7 +168,8 @@ struct Linear {
                 solve_again();
             }
             const V part = correct(active);
-            const Mask contracts = less_equal(part, (0.125 * 0.125) * before);
+            Mask contracts = less_equal(part, (0.125 * 0.125) * before);
+            if (pass == 0 && any(active & ~contracts)) contracts = contracts | (active & lanes_of_rounded_sides());
             const Mask done = active & contracts & less_equal(part * part, (epsilon * epsilon) * before);
             good = good | done;
             active = active & contracts & ~done;
@@ -180,6 +181,22 @@ struct Linear {
 
 private:
     static constexpr double epsilon = 2.220446049250313e-16;
+
+    // Returns the lanes whose first corrections, in t of the rows, are no more than what rounding does to right-hand
+    // sides: of velocities that are projected already, or in free fall. Such corrections are as large as the
+    // multipliers and tell nothing about the factors.
+    MaskOf<V> lanes_of_rounded_sides() const {
+        V least = Width<V>::all(1);
+        for (int32_t k = 0; k < x.s.n_bonds; ++k) {
+            int32_t from, to;
+            ends_of(x.s, k, from, to);
+            const Vector3<V> terms =
+                absolute(equations.input_of(from, x.w[from])) + absolute(equations.input_of(to, x.w[to]));
+            const V rounding = (4 * epsilon) * (dot(absolute(x.row[k].d), terms) * x.row[k].r);
+            least = min(rounding - abs(x.row[k].t), least);
+        }
+        return less_equal(V{}, least);
+    }
 
     // Adds the corrections in t of the rows, in the lanes in `active`. Returns the square of the largest one, relative
     // to its multiplier's size. That is the largest of |t_k|, |b_k| / P_k - which is no more than the multiplier's

@@ -72,9 +72,7 @@ HOL_INLINE Pulled<V> pulled(const Molecules<V> &x, const Equations<V> &e, const 
     });
     const V w = x.w[slot];
     const int32_t children = x.s.child_start[slot + 1] - x.s.child_start[slot];
-    Vector3<V> input = {};
-    if (e.start) input = e.start[slot];
-    if (e.force) input = input + w * e.force[slot];
+    const Vector3<V> input = e.input_of(slot, w);
     return {add_times(input, w, g), absolute(input), (Width<V>::all(1.0 + children) * w) * sum};
 }
 

@@ -72,6 +72,14 @@ struct Equations {
     V *given;              // c = given
     Pair3<V> *a;           // [n_atoms] working memory
     Pair3<V> *d;           // [n_bonds] unrounded bonds
+
+    // The velocity or acceleration of an atom of inverse mass w, but for G.
+    HOL_FORCED Vector3<V> input_of(int32_t slot, const V &w) const {
+        Vector3<V> input = {};
+        if (start) input = start[slot];
+        if (force) input = input + w * force[slot];
+        return input;
+    }
 };
 
 // Finds the unrounded bonds, once for all residuals.
