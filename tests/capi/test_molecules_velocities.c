@@ -3,22 +3,20 @@
 #include "mixture.h"
 #include "molecule_solution.h"
 
-static void velocities_agree_with_a_dense_solution_and_obey_the_constraints(void **state)
+static void assert_projected(const mixture *m)
 {
-    (void)state;
-    mixture m = mixture_of_all(quick_run() ? 1 : 4, MIXED, 10);
-    double *v = copy_of(m.v, mixture_size(&m)), *lambda = untouched((size_t)m.n_bonds), virial[9];
+    double *v = copy_of(m->v, mixture_size(m)), *lambda = untouched((size_t)m->n_bonds), virial[9];
     long double expected[9] = {0}, allowed = 0;
-    CHECK(hol_project_velocities(m.chains, m.r, v, lambda, virial));
-    for (int64_t p = 0; p < m.n_parts; ++p) {
-        const molecule *part = m.parts + p;
+    CHECK(hol_project_velocities(m->chains, m->r, v, lambda, virial));
+    for (int64_t p = 0; p < m->n_parts; ++p) {
+        const molecule *part = m->parts + p;
         const molecule_problem problem = molecule_problem_of(part);
         const long double unit = oracle_bound(part->n_bonds) * DBL_EPSILON;
         double *got = untouched(3 * (size_t)part->n_atoms), *mu = untouched((size_t)part->n_bonds);
         molecule_solution exact;
         assert_int_equal(molecule_velocities(&problem, &exact), 0);
-        mixture_take(&m, p, v, got);
-        mixture_take_bonds(&m, p, lambda, mu);
+        mixture_take(m, p, v, got);
+        mixture_take_bonds(m, p, lambda, mu);
         for (int64_t k = 0; k < part->n_bonds; ++k) {
             const int64_t i = part->pairs[2 * k], j = part->pairs[2 * k + 1];
             long double rate = 0, size = 0;
@@ -39,6 +37,24 @@ static void velocities_agree_with_a_dense_solution_and_obey_the_constraints(void
     }
     for (int i = 0; i < 9; ++i) CHECK_AT_MOST(fabsl(virial[i] - expected[i]), 2 * allowed);
     free(v), free(lambda);
+}
+
+static void velocities_agree_with_a_dense_solution_and_obey_the_constraints(void **state)
+{
+    (void)state;
+    mixture m = mixture_of_all(quick_run() ? 1 : 4, MIXED, 10);
+    assert_projected(&m);
+    mixture_free(&m);
+}
+
+/** Their multipliers are what rounding left of the first projection, and as right as any. */
+static void velocities_that_are_projected_already_agree_with_a_dense_solution(void **state)
+{
+    (void)state;
+    mixture m = mixture_of_all(quick_run() ? 1 : 4, MIXED, 10);
+    CHECK(hol_project_velocities(m.chains, m.r, m.v, NULL, NULL));
+    for (int64_t p = 0; p < m.n_parts; ++p) mixture_take(&m, p, m.v, m.parts[p].v);
+    assert_projected(&m);
     mixture_free(&m);
 }
 
@@ -90,6 +106,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(velocities_agree_with_a_dense_solution_and_obey_the_constraints),
+        cmocka_unit_test(velocities_that_are_projected_already_agree_with_a_dense_solution),
         cmocka_unit_test(projection_keeps_momentum_and_removes_kinetic_energy_alone),
         cmocka_unit_test(a_second_projection_changes_velocities_by_rounding_alone),
     };

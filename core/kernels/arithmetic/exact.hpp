@@ -8,6 +8,8 @@
 
 namespace holonomic::HOL_ISA {
 
+constexpr double epsilon = 2.220446049250313e-16;
+
 template <class V>
 struct Pair {
     V hi, lo;

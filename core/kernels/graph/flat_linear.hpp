@@ -25,11 +25,15 @@ struct FlatLinear {
     double *t, *E, *per_pivot;  // right-hand sides, then multipliers; pivots
     double *lower, *size;       // |d|
     double *diagonal, *back;    // of A; R
+    Rows d_low, a_low;          // what refinement adds to bonds and accelerations, of a list of one tile
 
     static int64_t values(const FlatList &s) {
         return mass_values(s) + 4 * (2 * static_cast<int64_t>(s.n_sites) + static_cast<int64_t>(s.n_rows)) +
                8 * static_cast<int64_t>(s.most_sites) + 2 * in_fours(s.n_bonds) + 4 * in_fours(s.n_columns) +
-               in_fours(s.n_entries);
+               in_fours(s.n_entries) + refinement_values(s);
+    }
+    static int64_t refinement_values(const FlatList &s) {
+        return s.n_tiles > 1 ? 0 : 4 * (static_cast<int64_t>(s.n_rows) + s.n_sites);
     }
     FlatLinear(const FlatList &list, const MoleculeLane &l, const Box &b, const AtomArray &positions,
                const Inputs &inputs, Memory<double> memory)
@@ -48,6 +52,9 @@ struct FlatLinear {
         diagonal = memory.values(bonds);
         a = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
         mass = memory.values(mass_values(s));
+        if (s.n_tiles > 1) return;
+        d_low = {memory.values(4 * static_cast<int64_t>(s.n_rows))};
+        a_low = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
     }
     HOL_FORCED Row &four(double *values, int64_t k) const { return *reinterpret_cast<Row *>(values + k); }
     HOL_FORCED Rows a_of(const Tile &tile) const { return in.rates ? rows_from(a, tile.first_site) : a; }
@@ -73,38 +80,49 @@ struct FlatLinear {
         read_atoms<layout>(coordinates, at, s, tile, r);
         find_bonds(s, tile, box, r, d);
         if (terms & squares) read_atoms<layout>(*in.v, at, s, tile, v);
-        const Rows of = a_of(tile), bonds = d_of(tile);
-        if (terms & (pulls | rates)) load_inputs<layout, terms>(tile, of);
+        const Rows bonds = d_of(tile);
+        if (terms & (pulls | rates)) load_inputs<layout, terms>(tile, a_of(tile));
         const double *const w = mass + tile.first_mass;
         for (int64_t k = tile.first; k < tile.end; k += 4) {
             const int32_t *const from = s.from + tile.first_row + (k - tile.first), *const to = s.to + (from - s.from);
-            Row e[4] = {}, q[4];
+            Row q[4];
             HOL_UNROLL
-            for (int i = 0; i < 4; ++i) {
-                const Row &bond = bonds[k - tile.first + i];
-                q[i] = bond * bond;
-                if (terms & squares) {
-                    const Row dv = v.at_four_times(to[i]) - v.at_four_times(from[i]);
-                    e[i] = dv * dv;
-                }
-                if (terms & (pulls | rates))
-                    e[i] = multiply_add(bond, of.at_four_times(to[i]) - of.at_four_times(from[i]), e[i]);
-            }
+            for (int i = 0; i < 4; ++i) q[i] = bonds[k - tile.first + i] * bonds[k - tile.first + i];
             const Row square = sums_of(q[0], q[1], q[2], q[3]);
-            four(t, k) = sums_of(e[0], e[1], e[2], e[3]);
+            four(t, k) = sides_of<terms>(tile, k);
             HOL_UNROLL
             for (int i = 0; i < 4; ++i) {
                 E[k + i] = diagonal[k + i] = (w[from[i] / 2 + 1] + w[to[i] / 2 + 1]) * square[i];
                 size[k + i] = __builtin_sqrt(square[i]);
             }
         }
-        for (int32_t k = tile.first; (terms & given) && k < tile.end; ++k)
-            t[k] = 0.5 * in.rhs[lane.first_bond + s.bond_of[k]];
-        if (terms & rates) add_strain(tile);
+        if (terms & (given | rates)) add_given(tile, t);
     }
-    HOL_FORCED void add_strain(const Tile &tile) const {
-        for (int32_t k = tile.first; k < tile.end && in.strain; ++k)
-            t[k] = t[k] + stretching(in.strain, vector_of(d_of(tile)[k - tile.first]));
+    // What velocities and inputs give to the right-hand sides of columns k .. k + 3.
+    template <int terms>
+    HOL_FORCED Row sides_of(const Tile &tile, int64_t k) const {
+        const int64_t row = tile.first_row + (k - tile.first);
+        const int32_t *const from = s.from + row, *const to = s.to + row;
+        const Rows of = a_of(tile);
+        Row e[4] = {};
+        HOL_UNROLL
+        for (int i = 0; i < 4; ++i) {
+            if (terms & squares) {
+                const Row dv = v.at_four_times(to[i]) - v.at_four_times(from[i]);
+                e[i] = dv * dv;
+            }
+            if (terms & (pulls | rates))
+                e[i] = multiply_add(d[row + i], of.at_four_times(to[i]) - of.at_four_times(from[i]), e[i]);
+        }
+        return sums_of(e[0], e[1], e[2], e[3]);
+    }
+    // What the caller gives to them.
+    HOL_FORCED void add_given(const Tile &tile, double *side) const {
+        for (int32_t k = tile.first; k < tile.end && (in.rhs || in.strain); ++k) side[k] = side[k] + given_to(tile, k);
+    }
+    double given_to(const Tile &tile, int32_t k) const {
+        return in.rhs ? 0.5 * in.rhs[lane.first_bond + s.bond_of[k]]
+                      : stretching(in.strain, vector_of(d_of(tile)[k - tile.first]));
     }
 
     // The entries of A off its diagonal.
@@ -195,7 +213,7 @@ struct FlatLinear {
         for (int32_t i = 0; i < s.n_tiles; ++i) {
             copy_guests(s, s.tile[i], a);
             find_rates(s.tile[i]);
-            add_strain(s.tile[i]);
+            add_given(s.tile[i], t);
             solve_up(s, s.tile[i], lower, t);
         }
         for (int32_t i = s.n_tiles; i-- > 0;) {
@@ -205,15 +223,7 @@ struct FlatLinear {
         }
     }
     HOL_FORCED void find_rates(const Tile &tile) const {
-        const Rows of = a_of(tile);
-        for (int64_t k = tile.first; k < tile.end; k += 4) {
-            const int64_t row = tile.first_row + (k - tile.first);
-            Row e[4];
-            HOL_UNROLL
-            for (int i = 0; i < 4; ++i)
-                e[i] = d[row + i] * (of.at_four_times(s.to[row + i]) - of.at_four_times(s.from[row + i]));
-            four(t, k) = sums_of(e[0], e[1], e[2], e[3]);
-        }
+        for (int64_t k = tile.first; k < tile.end; k += 4) four(t, k) = sides_of<rates>(tile, k);
     }
 
     void write_bonds(double factor, double *out) const {

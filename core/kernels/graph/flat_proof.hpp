@@ -4,7 +4,8 @@
 //     R = |L| D |L^T| |t| + sum over both ends i of w_i |d| sum over the bonds of i of |t| |d|
 //
 // (elimination and substitutions; the products d.d' and w). Where R is no more than the terms that an equation is made
-// of, all errors are of the size of its scale |A^-1| S. Elsewhere, or where a pivot is small, linear.hpp refines.
+// of, all errors are of the size of its scale |A^-1| S. Elsewhere, or where a pivot is small,
+// flat_refine.hpp corrects, or linear.hpp.
 #ifndef HOLONOMIC_KERNELS_GRAPH_FLAT_PROOF_HPP
 #define HOLONOMIC_KERNELS_GRAPH_FLAT_PROOF_HPP
 

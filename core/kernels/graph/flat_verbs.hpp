@@ -1,9 +1,9 @@
-// Forces, given right-hand sides and velocities of one large molecule with cycles, along a list. False where plain
-// arithmetic without refinement is in doubt: then nothing has been written.
+// Forces, given right-hand sides and velocities of one large molecule with cycles, along a list. False where a
+// refinement is in doubt: then nothing has been written.
 #ifndef HOLONOMIC_KERNELS_GRAPH_FLAT_VERBS_HPP
 #define HOLONOMIC_KERNELS_GRAPH_FLAT_VERBS_HPP
 
-#include "core/kernels/graph/flat_proof.hpp"
+#include "core/kernels/graph/flat_refine.hpp"
 #include "core/kernels/graph/schedule.hpp"
 
 namespace holonomic {
@@ -13,7 +13,7 @@ namespace graph {
 // Call: of forces or of given right-hand sides.
 template <Layout layout, int terms, class Call>
 HOL_NOINLINE bool pull_flat(const Call &call, const FlatLinear &x, Tally &tally) {
-    if (!FlatProof(x).solve<layout, terms>()) return false;
+    if (!solve_and_refine<layout, terms>(x)) return false;
     if (call.lambda) x.write_bonds(0.5, call.lambda);
     if (call.tension) x.write_tensions(call.tension);
     if (call.virial) x.add_virial(tally);
@@ -49,7 +49,7 @@ static inline bool solve_flat(const SolveCall &call, const Schedule &s, const Mo
 
 template <Layout layout>
 HOL_NOINLINE bool project_flat(const VelocitiesCall &call, const FlatLinear &x, Tally &tally) {
-    if (!FlatProof(x).solve<layout, rates>()) return false;
+    if (!solve_and_refine<layout, rates>(x)) return false;
     if (call.lambda) x.write_bonds(0.5, call.lambda);
     if (call.virial) x.add_virial(tally);
     if (!call.v.is_float) {

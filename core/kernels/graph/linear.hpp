@@ -3,6 +3,7 @@
 #define HOLONOMIC_KERNELS_GRAPH_LINEAR_HPP
 
 #include "core/kernels/graph/proof.hpp"
+#include "core/kernels/graph/refine.hpp"
 #include "core/kernels/graph/ring.hpp"
 #include "core/kernels/graph/strip_linear.hpp"
 #include "core/kernels/graph/tree_runs.hpp"
@@ -157,34 +158,27 @@ struct Linear {
         if (!any(x.in_use() & ~proven)) return x.in_use();
         find_unrounded(x, equations);
         for (int32_t k = 0; k < s.n_bonds; ++k) t[k] = x.row[k].t;
-        Mask active = x.in_use() & ~proven, good = proven | ~x.in_use();
-        V before = Width<V>::all(1);  // squares
-        for (int pass = 0; pass < 8 && any(active); ++pass) {
-            if (s.is_strip) {
-                substitute_residuals(x, equations, t, strip);
-                down_strip(x, strip);
-            } else {
-                find_residuals(x, equations, t);
-                solve_again();
-            }
-            const V part = correct(active);
-            Mask contracts = less_equal(part, (0.125 * 0.125) * before);
-            if (pass == 0 && any(active & ~contracts)) contracts = contracts | (active & lanes_of_rounded_sides());
-            const Mask done = active & contracts & less_equal(part * part, (epsilon * epsilon) * before);
-            good = good | done;
-            active = active & contracts & ~done;
-            before = part;
-        }
+        const Mask good = correct_until_right<V>(
+            x.in_use() & ~proven, [&]() HOL_FORCED { solve_for_residuals(); },
+            [&](Mask active) HOL_FORCED { return correct(active); },
+            [&]() HOL_FORCED { return lanes_of_rounded_sides(); });
         for (int32_t k = 0; k < s.n_bonds; ++k) x.row[k].t = t[k];
-        return good;
+        return good | proven | ~x.in_use();
     }
 
 private:
-    static constexpr double epsilon = 2.220446049250313e-16;
+    void solve_for_residuals() {
+        if (x.s.is_strip) {
+            substitute_residuals(x, equations, t, strip);
+            down_strip(x, strip);
+        } else {
+            find_residuals(x, equations, t);
+            solve_again();
+        }
+    }
 
-    // Returns the lanes whose first corrections, in t of the rows, are no more than what rounding does to right-hand
-    // sides: of velocities that are projected already, or in free fall. Such corrections are as large as the
-    // multipliers and tell nothing about the factors.
+    // Returns the lanes whose corrections, in t of the rows, are no more than what rounding does to right-hand sides:
+    // of velocities that are projected already, or in free fall.
     MaskOf<V> lanes_of_rounded_sides() const {
         V least = Width<V>::all(1);
         for (int32_t k = 0; k < x.s.n_bonds; ++k) {
@@ -198,22 +192,12 @@ private:
         return less_equal(V{}, least);
     }
 
-    // Adds the corrections in t of the rows, in the lanes in `active`. Returns the square of the largest one, relative
-    // to its multiplier's size. That is the largest of |t_k|, |b_k| / P_k - which is no more than the multiplier's
-    // scale, as P_k is at least 1 / (A^-1)_kk - and a millionth of the molecule's largest tension.
+    // Adds the corrections in t of the rows, in the lanes in `active`.
     V correct(MaskOf<V> active) {
-        const int32_t n = x.s.n_bonds;
-        V largest = {}, part = {};
-        for (int32_t k = 0; k < n; ++k) largest = max((t[k] * t[k]) * x.row[k].q, largest);
-        const V least = mul_add(Width<V>::all(1e-12), largest, Width<V>::all(1e-290));
-        for (int32_t k = 0; k < n; ++k) {
+        return add_corrections<V>(x.s.n_bonds, [&](int32_t k) HOL_FORCED {
             const BondRow<V> &row = x.row[k];
-            const V change = keep(active, row.t), alone = b[k] * row.r;
-            t[k] = t[k] + change;
-            const V size = mul_add(t[k], t[k], alone * alone);
-            part = max((change * change) * row.q / mul_add(size, row.q, least), part);
-        }
-        return part;
+            return Correction<V>{keep(active, row.t), b[k] * row.r, row.q, t[k]};
+        });
     }
 };
 
