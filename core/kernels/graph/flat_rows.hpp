@@ -8,9 +8,6 @@
 #include "core/kernels/graph/image.hpp"
 #include "core/kernels/isa/choose.hpp"
 
-// All that takes or returns a row is inlined.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 namespace holonomic {
 namespace HOL_ISA {
 namespace graph {

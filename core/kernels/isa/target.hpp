@@ -45,6 +45,11 @@
 // For rare cases, which would only make the common one longer.
 #define HOL_NOINLINE static __attribute__((noinline, unused))
 
+// All that takes or returns a vector wider than a register is inlined, so that how such a one is passed does not matter.
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+
 // Stands before a short loop over vectors. Unless it is unrolled, the compiler keeps them in memory.
 #if defined(HOL_SANITIZED) || defined(HOL_TESTS_ONLY)
 #define HOL_UNROLL
