@@ -45,7 +45,8 @@
 // For rare cases, which would only make the common one longer.
 #define HOL_NOINLINE static __attribute__((noinline, unused))
 
-// All that takes or returns a vector wider than a register is inlined, so that how such a one is passed does not matter.
+// All that takes or returns a vector wider than a register is inlined, so that how such a one is passed does not
+// matter.
 #ifdef __GNUC__
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif

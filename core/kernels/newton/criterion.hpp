@@ -6,7 +6,6 @@
 
 namespace holonomic::HOL_ISA {
 
-
 // A few roundings of D.D - a^2. In a chain of many bonds the iteration gets no further.
 constexpr double floor_error = 4 * epsilon;
 
