@@ -19,18 +19,11 @@ module holonomic_inverse
       logical :: is_owner = .false.
       integer(c_int64_t) :: n_atoms = 0   ! of the arrays v and f of error_bound
    contains
-      procedure, private :: create_rows_32, create_rows_64, create_parts_32, create_parts_64
+      procedure, private :: create_rows_32, create_rows_64, create_parts_32, create_parts_64, share
       generic :: create => create_rows_32, create_rows_64, create_parts_32, create_parts_64
-      procedure :: destroy
-      procedure :: n_bonds
-      procedure :: entry => inverse_entry
-      procedure :: row
-      procedure :: band
-      procedure :: matrix
-      procedure :: condition
+      procedure :: destroy, n_bonds, entry => inverse_entry, row, band, matrix, condition
       procedure, private :: bound_at_rest, bound_rows_32, bound_rows_64, bound_parts_32, bound_parts_64
       generic :: error_bound => bound_at_rest, bound_rows_32, bound_rows_64, bound_parts_32, bound_parts_64
-      procedure, private :: share
       generic :: assignment(=) => share
    end type
 

@@ -282,7 +282,9 @@ private:
 
 }  // namespace
 
-bool fits_flat_list(const Schedule &s) {
+bool takes_flat_list(const Schedule &s) {
+    if (s.type == Schedule::ring || s.type == Schedule::triangle || s.is_strip) return false;
+    if (s.n_bonds <= (s.type == Schedule::graph ? largest_graph_in_lanes : largest_in_lanes)) return false;
     constexpr std::int64_t most_updates = 16;  // for each bond
     Numbers bonds(at(s.n_atoms));
     for (std::int32_t k = 0; k < s.n_bonds; ++k)

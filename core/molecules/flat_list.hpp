@@ -19,8 +19,9 @@ struct FlatArrays {
     FlatList list;
 };
 
-// Whether the list is not much longer than the molecule: an atom of n bonds brings n^3 / 6 updates.
-bool fits_flat_list(const Schedule &s);
+// Whether a molecule is worked on along a list. It is large, and the list is not much longer than it: an atom of n bonds
+// brings n^3 / 6 updates.
+bool takes_flat_list(const Schedule &s);
 
 // Of a molecule whose bonds have been numbered: trees first, then the core in its order. Throws std::length_error where
 // the factor fills up to 2^31 entries.

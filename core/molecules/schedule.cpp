@@ -288,9 +288,7 @@ std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t
     Maker(*s, m).make();
     point_into(*s, m);
     if (n_bonds > largest_in_lanes && s->type == Schedule::tree) add_runs(*s, m);
-    const bool along_list = s->type == Schedule::graph ? n_bonds > largest_graph_in_lanes && !s->is_strip
-                                                       : s->type == Schedule::tree && n_bonds > largest_in_lanes;
-    if (along_list && fits_flat_list(*s)) {
+    if (takes_flat_list(*s)) {
         make_flat_list(*s, m.flat);
         s->flat = &m.flat.list;
     }

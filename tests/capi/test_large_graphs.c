@@ -4,6 +4,7 @@
  */
 #include "check.h"
 #include "large.h"
+#include "molecule_solution.h"
 
 static const double dt = 0.002;
 
@@ -161,6 +162,42 @@ static void pulled_at_one_atom_each_of_two_molecules_gets_its_own_digits(void **
     molecule_free(&m);
 }
 
+static void agree(const double *lambda, const double *moved, const molecule *m, molecule_solution *exact)
+{
+    const long double unit = oracle_bound(m->n_bonds) * DBL_EPSILON;
+    for (int64_t k = 0; k < m->n_bonds; ++k)
+        CHECK_AT_MOST(fabsl(lambda[k] - exact->lambda[k]), unit * exact->lambda_scale[k]);
+    for (int64_t i = 0; moved && i < 3 * m->n_atoms; ++i)
+        CHECK_AT_MOST(fabsl(moved[i] - exact->moved[i]), unit * exact->moved_scale[i / 3]);
+    molecule_solution_free(exact);
+}
+/** Below some size they are worked on in lanes, above it along the list. Velocities twice: when they are projected
+ * already, multipliers are rounding. */
+static void every_size_about_the_limit_agrees_with_a_dense_solution(void **state)
+{
+    (void)state;
+    const int64_t middle = 242, more = quick_run() ? 1 : 5;
+    for (int64_t n = middle - more; n <= middle + more; ++n) {
+        molecule m = large_rings(n);
+        hol_chains *chains = large_chains(&m);
+        double *lambda = untouched((size_t)m.n_bonds), *v = copy_of(m.v, 3 * (size_t)m.n_atoms);
+        molecule_problem problem = molecule_problem_of(&m);
+        molecule_solution exact;
+        CHECK(hol_forces(chains, m.r, m.v, m.f, lambda, NULL, NULL, HOL_WRITE, NULL));
+        assert_int_equal(molecule_forces(&problem, &exact), 0);
+        agree(lambda, NULL, &m, &exact);
+        for (int turn = 0; turn < 2; ++turn) {
+            assert_int_equal(molecule_velocities(&problem, &exact), 0);
+            CHECK(hol_project_velocities(chains, m.r, v, lambda, NULL));
+            agree(lambda, v, &m, &exact);
+            for (size_t i = 0; i < 3 * (size_t)m.n_atoms; ++i) m.v[i] = v[i];
+        }
+        free(lambda), free(v);
+        hol_chains_destroy(chains);
+        molecule_free(&m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -168,6 +205,7 @@ int main(void)
         cmocka_unit_test(the_worst_bond_is_reported),
         cmocka_unit_test(order_threads_and_layout_change_no_bit_of_positions),
         cmocka_unit_test(pulled_at_one_atom_each_of_two_molecules_gets_its_own_digits),
+        cmocka_unit_test(every_size_about_the_limit_agrees_with_a_dense_solution),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
