@@ -81,7 +81,7 @@ struct FlatLinear {
         find_bonds(s, tile, box, r, d);
         if (terms & squares) read_atoms<layout>(*in.v, at, s, tile, v);
         const Rows bonds = d_of(tile);
-        if (terms & (pulls | rates)) load_inputs<layout, terms>(tile, a_of(tile));
+        if ((terms & (pulls | rates)) || s.n_tiles == 1) load_inputs<layout, terms>(tile, a_of(tile));
         const double *const w = mass + tile.first_mass;
         for (int64_t k = tile.first; k < tile.end; k += 4) {
             const int32_t *const from = s.from + tile.first_row + (k - tile.first), *const to = s.to + (from - s.from);
