@@ -19,8 +19,8 @@ struct FlatArrays {
     FlatList list;
 };
 
-// Whether a molecule is worked on along a list. It is large, and the list is not much longer than it: an atom of n bonds
-// brings n^3 / 6 updates.
+// Whether a molecule is worked on along a list. It is large, and the list is not much longer than it: an atom of n
+// bonds brings n^3 / 6 updates.
 bool takes_flat_list(const Schedule &s);
 
 // Of a molecule whose bonds have been numbered: trees first, then the core in its order. Throws std::length_error where

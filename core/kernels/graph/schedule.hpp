@@ -9,8 +9,8 @@ namespace holonomic {
 
 // Molecules of more bonds are worked on one by one, trees in pieces.
 constexpr int32_t largest_in_lanes = 2048;
-// Those with cycles gain nothing by lanes from fewer on: a list (flat_list.hpp) serves one of them as fast as lanes serve
-// each of four, and most are the only one of their kind.
+// Those with cycles gain nothing by lanes from fewer on: a list (flat_list.hpp) serves one of them as fast as lanes
+// serve each of four, and most are the only one of their kind.
 constexpr int32_t largest_graph_in_lanes = 256;
 constexpr int32_t slots_of_piece = 16384;  // a megabyte of bonds at work, a second-level cache
 
