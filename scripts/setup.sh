@@ -7,6 +7,7 @@
 #   build_jobs              prints how many compilations to run at once
 #   few_instruction_sets    for HOLONOMIC_INSTRUCTION_SETS where a build is slow and what it is for needs no others: four
 #                           lanes and one, the same whatever processor this is
+#   own_instruction_sets    prints those that this processor runs, for a library that stays on this machine
 
 say() {
     printf '== %s\n' "$*"
@@ -18,6 +19,13 @@ fail() {
 }
 
 few_instruction_sets="avx2;scalar"
+
+own_instruction_sets() {
+    case " $(grep -m 1 '^flags' /proc/cpuinfo 2>/dev/null) " in
+        *" avx512vl "*) echo "avx512vl;scalar" ;;
+        *" avx2 "*) echo "avx2;scalar" ;;
+    esac
+}
 
 build_jobs() {
     local cores memory_gb
