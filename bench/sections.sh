@@ -20,16 +20,6 @@ measuring_estimate() {
     if [ -n "$run" ]; then echo "measuring, about $(seconds_from 0) s"; else echo "the report"; fi
 }
 
-# The instruction sets of this machine for which there are kernels, as CMake's list; all where that can't be known.
-instruction_sets() {
-    local flags sets=
-    flags=" $(awk '/^flags/ { print; exit }' /proc/cpuinfo 2>/dev/null) "
-    case $flags in *' avx2 '*) case $flags in *' fma '*) sets="avx2;scalar" ;; esac ;; esac
-    case $flags in *' avx512f '*' avx512vl '*) sets="$sets;avx512;avx512vl" ;; esac
-    if [ "$flags" = "  " ]; then sets="avx2;scalar;avx512;avx512vl"; fi
-    echo "${sets#;}"
-}
-
 # A section is a process of its own, so that one that fails does not take the others with it.
 measure_all() {
     local i section isa left

@@ -7,7 +7,7 @@
 #   build_jobs              prints how many compilations to run at once
 #   few_instruction_sets    for HOLONOMIC_INSTRUCTION_SETS where a build is slow and what it is for needs no others: four
 #                           lanes and one, the same whatever processor this is
-#   own_instruction_sets    prints those that this processor runs, for a library that stays on this machine
+#   own_instruction_sets    prints those that this processor runs, the one that it takes last; all where that is not known
 
 say() {
     printf '== %s\n' "$*"
@@ -21,10 +21,12 @@ fail() {
 few_instruction_sets="avx2;scalar"
 
 own_instruction_sets() {
-    case " $(grep -m 1 '^flags' /proc/cpuinfo 2>/dev/null) " in
-        *" avx512vl "*) echo "avx512vl;scalar" ;;
-        *" avx2 "*) echo "avx2;scalar" ;;
-    esac
+    local flags sets=
+    flags=" $(awk '/^flags/ { print; exit }' /proc/cpuinfo 2>/dev/null) "
+    case $flags in *' avx2 '*) case $flags in *' fma '*) sets="scalar;avx2" ;; esac ;; esac
+    case $flags in *' avx512f '*' avx512vl '*) sets="$sets;avx512;avx512vl" ;; esac
+    if [ "$flags" = "  " ]; then sets="scalar;avx2;avx512;avx512vl"; fi
+    echo "${sets#;}"
 }
 
 build_jobs() {
