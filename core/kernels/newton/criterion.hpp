@@ -2,6 +2,7 @@
 #ifndef HOLONOMIC_KERNELS_NEWTON_CRITERION_HPP
 #define HOLONOMIC_KERNELS_NEWTON_CRITERION_HPP
 
+#include "core/kernels/arithmetic/exact.hpp"
 #include "core/kernels/newton/system.hpp"
 
 namespace holonomic::HOL_ISA {
