@@ -283,9 +283,8 @@ private:
 }  // namespace
 
 bool takes_flat_list(const Schedule &s) {
-    if (s.type == Schedule::ring || s.type == Schedule::triangle || s.is_strip) return false;
-    if (s.n_bonds <= (s.type == Schedule::graph ? largest_graph_in_lanes : largest_in_lanes)) return false;
-    constexpr std::int64_t most_updates = 16;  // for each bond
+    const std::int32_t largest = s.type == Schedule::graph ? largest_graph_in_lanes : largest_in_lanes;
+    if (s.type == Schedule::ring || s.is_strip || s.n_bonds <= largest) return false;
     Numbers bonds(at(s.n_atoms));
     for (std::int32_t k = 0; k < s.n_bonds; ++k)
         for (const std::int32_t i : {s.atom_i[k], s.atom_j[k]}) ++bonds[at(i)];
@@ -294,9 +293,8 @@ bool takes_flat_list(const Schedule &s) {
         if (n > 3000) return false;  // more than the most of the largest list
         updates += n * (n - 1) / 2 * (n - 2) / 3;
     }
-    return s.n_bonds <= largest_in_list && updates <= most_updates * s.n_bonds;
+    return s.n_bonds <= largest_in_list && updates <= 16 * static_cast<std::int64_t>(s.n_bonds);
 }
-
 void make_flat_list(const Schedule &s, FlatArrays &arrays) { FlatMaker(s, arrays).make(); }
 
 }  // namespace holonomic
