@@ -72,8 +72,7 @@ bool is_shared_molecule(const Plan &plan, std::int64_t p, int n_threads, bool li
     const Plan::Piece &piece = plan.pieces[static_cast<std::size_t>(p)];
     if (piece.shape == linear || piece.count != 1) return false;
     const Schedule &s = *plan.schedules[static_cast<std::size_t>(piece.shape)];
-    const std::int64_t n = std::max(s.n_pieces, s.flat ? s.flat->n_tiles : 0),
-                       n_molecules = static_cast<std::int64_t>(plan.pieces.size());
+    const std::int64_t n = s.n_pieces, n_molecules = static_cast<std::int64_t>(plan.pieces.size());
     if (n_molecules < n_threads && lists && s.flat && s.flat->n_tiles > 1) return true;
     if (n_molecules < n_threads && s.n_arms > 0 && s.n_shares > 1) return true;
     return n > 1 && (n >= 8 * n_threads || n_molecules < 4 * n_threads);

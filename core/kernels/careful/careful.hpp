@@ -12,30 +12,23 @@
 #include "core/kernels/careful/plan.hpp"
 #include "core/kernels/isa/target.hpp"
 
-namespace holonomic {
+// The five verbs of a set.
+#define HOL_DECLARE_CAREFUL(isa)                                                                                  \
+    namespace holonomic {                                                                                         \
+    namespace isa {                                                                                               \
+    namespace careful {                                                                                           \
+    void forces(const ForcesCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);         \
+    void velocities(const VelocitiesCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &); \
+    void positions(const PositionsCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);   \
+    void metric(const MetricCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);         \
+    void solve(const SolveCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);           \
+    }                                                                                                             \
+    }                                                                                                             \
+    }
 
-namespace fourfold {
-namespace careful {
+HOL_DECLARE_CAREFUL(HOL_ISA)
+#ifndef HOL_FOURFOLD
+HOL_DECLARE_CAREFUL(fourfold)
+#endif
 
-void forces(const ForcesCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
-void velocities(const VelocitiesCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
-void positions(const PositionsCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
-void metric(const MetricCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
-void solve(const SolveCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
-
-}  // namespace careful
-}  // namespace fourfold
-
-namespace HOL_ISA {
-namespace careful {
-
-void forces(const ForcesCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
-void velocities(const VelocitiesCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
-void positions(const PositionsCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
-void metric(const MetricCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
-void solve(const SolveCall &, const CarefulPlan &, const MoleculeLane &, double *scratch, Tally &);
-
-}  // namespace careful
-}  // namespace HOL_ISA
-}  // namespace holonomic
 #endif

@@ -87,7 +87,6 @@ static double carried(const Projection &p, const PositionsCall &call) {
 }
 
 static Projected iterate(Projection &p, const PositionsCall &call, bool guess, int64_t &solves) {
-    constexpr double epsilon = 2.220446049250313e-16;
     const Molecule &m = p.m;
     const double accepted = carried(p, call), done = call.tolerance > epsilon ? call.tolerance : epsilon;
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) p.T[k] = wide(0);

@@ -77,9 +77,9 @@ struct FlatPositions {
                       a2 = a * a;
             least = smaller(a, least);
             most = larger(a, most);
-            *reinterpret_cast<Row *>(newton.a2 + k) = a2;
-            *reinterpret_cast<Row *>(newton.per_a2 + k) = in_row(1) / a2;
-            *reinterpret_cast<Row *>(newton.tau + k) = Row{};
+            newton.four(newton.a2, k) = a2;
+            newton.four(newton.per_a2, k) = in_row(1) / a2;
+            newton.four(newton.tau, k) = Row{};
         }
         found.least = least;
         found.most = most;

@@ -68,29 +68,21 @@ HOL_INLINE Twin splat_twin(double a) { return {_mm512_set1_pd(a)}; }
 HOL_INLINE double get(const Twin &a, int i) { return a.x[i]; }
 HOL_INLINE void set(Twin &a, int i, double b) { a.x[i] = b; }
 #else
-struct Twin {
-    vec a, b;
-    Twin() = default;
-    HOL_FORCED Twin(vec first, vec second) : a(first), b(second) {}
-    // Register by register. As a copy of memory gcc 12 makes it of halves of these, and what reads them must wait.
-    HOL_FORCED Twin(const Twin &x) : a(x.a), b(x.b) {}
-    HOL_FORCED Twin &operator=(const Twin &x) {
+// Copied register by register. As a copy of memory gcc 12 makes it of halves of these, and what reads them must wait.
+template <class T>
+struct SideBySide {
+    T a, b;
+    SideBySide() = default;
+    HOL_FORCED SideBySide(T first, T second) : a(first), b(second) {}
+    HOL_FORCED SideBySide(const SideBySide &x) : a(x.a), b(x.b) {}
+    HOL_FORCED SideBySide &operator=(const SideBySide &x) {
         a = x.a;
         b = x.b;
         return *this;
     }
 };
-struct TwinMask {
-    mask a, b;
-    TwinMask() = default;
-    HOL_FORCED TwinMask(mask first, mask second) : a(first), b(second) {}
-    HOL_FORCED TwinMask(const TwinMask &x) : a(x.a), b(x.b) {}
-    HOL_FORCED TwinMask &operator=(const TwinMask &x) {
-        a = x.a;
-        b = x.b;
-        return *this;
-    }
-};
+typedef SideBySide<vec> Twin;
+typedef SideBySide<mask> TwinMask;
 
 HOL_INLINE Twin operator+(const Twin &x, const Twin &y) { return {x.a + y.a, x.b + y.b}; }
 HOL_INLINE Twin operator-(const Twin &x, const Twin &y) { return {x.a - y.a, x.b - y.b}; }

@@ -1,4 +1,5 @@
 // Position level of molecules that are no chains.
+#include "core/kernels/graph/flat_linear.hpp"
 #include "core/kernels/graph/flat_proof.hpp"
 #include "core/kernels/graph/linear.hpp"
 #include "core/kernels/graph/positions.hpp"
