@@ -10,7 +10,7 @@ rm -rf "$work"
 mkdir -p "$work"
 cp "$here/projects/subdirectory/CMakeLists.txt" "$here/programs/rotor.c" "$work"
 "$CMAKE" -S "$work" -B "$work/build" -DHOW="$how" -DHOLONOMIC_SOURCE="$source" -DPROGRAM=rotor.c \
-    -DHOLONOMIC_INSTRUCTION_SETS= -DCMAKE_BUILD_TYPE=Debug
+    -DHOLONOMIC_INSTRUCTION_SETS= -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS=-DHOL_TESTS_ONLY
 # The library is the same either way: it is compiled once.
 [ "$how" = subdirectory ] || exit 0
 "$CMAKE" --build "$work/build" -j 2

@@ -177,7 +177,7 @@ HOL_NOINLINE bool eliminate_arms(Joint &x) {
 struct Sides {
     const Wide3 *D, *B, *XD, *XB;
     const double *sD, *sB, *sXD, *sXB;
-    HOL_INLINE Sides of(const Joint &j, bool swapped) {
+    HOL_STATIC Sides of(const Joint &j, bool swapped) {
         if (swapped) return {j.B, j.D, j.XB, j.XD, j.sB, j.sD, j.sXB, j.sXD};
         return {j.D, j.B, j.XD, j.XB, j.sD, j.sB, j.sXD, j.sXB};
     }

@@ -123,7 +123,7 @@ HOL_NOINLINE mask forward(const Block &block, const Box &box, const Packed &r, c
     constexpr bool rates = terms == rate;
     constexpr int with_bonds = rates ? none_ : terms;  // right-hand sides that are found while bonds are read
     const Places at(r, v, f);
-    const Source source = {&r, nullptr, nullptr, &box, nullptr};
+    const Source source = {&box, &r};
     Sweep<uniform, rates> sweep{block, source, s};
     const auto rate_at = [&](long k) HOL_FORCED { return rate_of(s.D[k], velocities[k], velocities[k + 1]); };
     if (rates) velocities[0] = load_atom(v);

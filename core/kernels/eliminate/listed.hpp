@@ -16,7 +16,7 @@ namespace holonomic::HOL_ISA {
 template <int terms, bool uniform>
 HOL_NOINLINE mask forward_gathered(const Block &block, const Box &box, const AtomLists &at, const double *r,
                                    const double *v, const double *f, const System &s, vec3 *velocities) {
-    const Source source = {nullptr, r, at.atoms, &box, nullptr};
+    const Source source = {&box, nullptr, r, at.atoms};
     Sweep<uniform, terms == rate> sweep{block, source, s};
     const bool boxed = box.shape != Box::none;
     vec3 r0 = gather(r, at, 0), v0 = {}, f0 = {};

@@ -8,20 +8,6 @@
 
 namespace holonomic::HOL_ISA {
 
-// Where the coordinates of a block are: in lanes, or anywhere in the array `base`.
-struct Source {
-    const Packed *r;
-    const double *base;
-    const int64_t *const *atoms;
-    const Box *box;
-    const long *len;              // of lanes that may end before the joints that are asked for; or nullptr
-    const Lane *lanes = nullptr;  // of at most three bonds each, anywhere in the array `base`
-    const double *atom(int lane, long k) const {
-        if (lanes) return base + lanes[lane].element[k];
-        return atoms ? base + 3 * atoms[lane][k] : r->lane[lane] + 3 * k;
-    }
-};
-
 // g = d . d' of nearly orthogonal bonds cancels. The loss shows if the right-hand sides of the two bonds differ by
 // orders of magnitude. Below this cosine g is computed anew from the coordinates: at a few in a hundred joints of a
 // coil.

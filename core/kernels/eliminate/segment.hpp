@@ -264,5 +264,33 @@ HOL_NOINLINE void eliminate(const Block &block, const Box &box, const Source &so
     sum.doubt = doubt | ~less(e.largest_rF, splat(careful ? largest_reciprocal_of_one : largest_reciprocal_of_four));
 }
 
+// The rounding of the X of nearly parallel bonds reaches E' through a. With a = sum alpha_j X_j, its error is about
+// 2 eps sqrt(a sum alpha_j q_j q_{j+1} / n) <= 2 eps sqrt(a w_max q c), because sum alpha_j q_j q_{j+1} <= n w_max q c;
+// it is harmless where that is below join_tolerance S, S = E_free E + a.
+constexpr double join_tolerance = 8;
+HOL_INLINE bool is_doubtful_join(const Summary &s, int i, double S) {
+    return !(4 * s.a[i] * s.span[i] * s.c[i] <= join_tolerance * join_tolerance * S * S);
+}
+
+// What is to be written of W segments.
+struct SegmentOutputs {
+    Packed pulls;  // per atom
+    bool has_pulls;
+    double *lambda, *tension;
+    vec lambda_factor;
+    double virial_factor;
+    bool virial;
+};
+
+// Loads block j and eliminates its inner bonds. `terms`: of the right-hand sides; `strain` is added to rates, or
+// nullptr.
+void eliminate_block(int terms, const Box &, const Cut &, const Lane &, int64_t j, const AtomArray &r,
+                     const AtomArray &v, const AtomArray &f, bool careful, double *store, const Arena &,
+                     const double *strain = nullptr);
+
+// Substitutes in block j and writes; `pulled` gets what its atoms are pulled with, times w_i if `weighted`.
+void finish_block(bool weighted, const Box &, const AtomArray &r, const AtomArray &pulled, bool add,
+                  const SegmentOutputs &, const Cut &, const Lane &, int64_t j, double *store, const Arena &, Tally &);
+
 }  // namespace holonomic::HOL_ISA
 #endif

@@ -20,7 +20,7 @@ struct Arms {
 // Its last bond is the separator behind its last segment.
 HOL_INLINE Cut cut_of(const Schedule::Arm &arm) { return Cut(arm.n_bonds - 1, segment_bonds, true); }
 
-// In molecules of more than these, the arm before is fetched early (eliminate/long_chain.hpp).
+// In molecules of more than these, the arm before is fetched early (verbs/segments.cpp).
 constexpr int64_t bonds_of_cache = 65536;
 
 constexpr int64_t blocks_of_arm = (longest_arm - 2) / segment_bonds + 1;

@@ -1,11 +1,11 @@
 // Arms of one large molecule (schedule.hpp), each as a chain inside of it: the inner bonds of its W segments are
 // eliminated at once, without knowing anything else (eliminate/segment.hpp). What a segment leaves to the separators at
 // its two ends is the matrix [c, -f; -f, E] with a = E c - f^2, and T and y on the right: so the joining of
-// eliminate/long_chain.hpp, which subtracts nothing, can go from either end to the other, whichever is the upper one.
+// verbs/segments.cpp, which subtracts nothing, can go from either end to the other, whichever is the upper one.
 #ifndef HOLONOMIC_KERNELS_GRAPH_ARMS_HPP
 #define HOLONOMIC_KERNELS_GRAPH_ARMS_HPP
 
-#include "core/kernels/eliminate/long_chain.hpp"
+#include "core/kernels/eliminate/segment.hpp"
 #include "core/kernels/graph/load_lanes.hpp"
 #include "core/kernels/graph/store.hpp"
 
@@ -56,9 +56,8 @@ HOL_INLINE void for_arms(const Molecules<double> &x, bool backwards, Tally &tall
     }
 }
 
-// Eliminates the inner bonds of all arms.
-template <int terms>
-HOL_NOINLINE void eliminate_arms(const Molecules<double> &x) {
+// Eliminates the inner bonds of all arms. The terms have the numbers of Terms in memory/packed.hpp.
+static inline void eliminate_arms(const Molecules<double> &x, int terms) {
     Tally unused = empty_tally();
     const AtomArray none = {}, &f = x.in.f ? *x.in.f : none;
     for_arms(x, false, unused, [&](int32_t a, const Arena &arena, Tally &) {
@@ -69,8 +68,8 @@ HOL_NOINLINE void eliminate_arms(const Molecules<double> &x) {
         x.w[arm.bottom + 1] = x.lane[0].w[x.s.atom_of[arm.bottom + 1]];  // for siblings.hpp at the lowest atom
         bool alone = cut.n_bonds % W != 0;
         for (int64_t j = 0; !alone && j < cut.blocks; ++j) {
-            eliminate_block<terms>(*x.box, cut, lane, j, *x.r, *x.in.v, f, false, reinterpret_cast<double *>(all),
-                                   arena, x.in.strain);
+            eliminate_block(terms, *x.box, cut, lane, j, *x.r, *x.in.v, f, false, reinterpret_cast<double *>(all),
+                            arena, x.in.strain);
             alone = any(all[j].doubt);
         }
         x.pieces->arms.alone[a] = alone;
@@ -189,8 +188,8 @@ HOL_NOINLINE void write_arms(const Molecules<double> &x, const Outputs &out, Tal
         const Lane lane = chain_of(arm, x.lane[0]);
         double *const store = store_of(x.s, x.pieces->arms, a);
         for (int64_t j = cut.blocks; j-- > 0;)
-            finish_block<weighted>(*x.box, *x.r, *out.g, weighted || out.add, outputs, cut, lane, j, store, arena,
-                                   part);
+            finish_block(weighted, *x.box, *x.r, *out.g, weighted || out.add, outputs, cut, lane, j, store, arena,
+                         part);
     });
 }
 

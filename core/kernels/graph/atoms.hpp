@@ -56,19 +56,25 @@ HOL_INLINE double element(const char *p) {
     return static_cast<double>(*reinterpret_cast<const T *>(p));
 }
 
+// In any layout. Out of line: wherever atoms are read it would be the larger part of the code.
+template <class V>
+HOL_NOINLINE void read_anywhere(const AtomArray &array, const Atoms<V> &at, int64_t k, Vector3<V> &a) {
+    a = Vector3<V>{};
+    for (int i = 0; i < at.lanes; ++i) {
+        const int64_t offset = at.number(i, k) * array.stride;
+        const char *const p[3] = {array.x + offset, array.y + offset, array.z ? array.z + offset : nullptr};
+        V *const component[3] = {&a.x, &a.y, &a.z};
+        for (int c = 0; c < 3; ++c)
+            if (p[c]) Width<V>::set(*component[c], i, array.is_float ? element<float>(p[c]) : element<double>(p[c]));
+    }
+}
+
 // Reads atom k (local number) of all lanes.
 template <Layout layout, class V>
 HOL_INLINE Vector3<V> read(const AtomArray &array, const Atoms<V> &at, int64_t k) {
     Vector3<V> a = {};
     if (layout == elements) {
-        for (int i = 0; i < at.lanes; ++i) {
-            const int64_t offset = at.number(i, k) * array.stride;
-            const char *const p[3] = {array.x + offset, array.y + offset, array.z ? array.z + offset : nullptr};
-            V *const component[3] = {&a.x, &a.y, &a.z};
-            for (int c = 0; c < 3; ++c)
-                if (p[c])
-                    Width<V>::set(*component[c], i, array.is_float ? element<float>(p[c]) : element<double>(p[c]));
-        }
+        read_anywhere(array, at, k, a);
         return a;
     }
     const double *const base = reinterpret_cast<const double *>(array.x) + (layout == rows_in_order ? 3 * k : 0);
@@ -97,6 +103,14 @@ HOL_INLINE void write_one(const AtomArray &array, int64_t number, const Vector3<
     }
 }
 
+template <class V>
+HOL_NOINLINE void write_anywhere(const AtomArray &array, const Atoms<V> &at, int64_t k, const Vector3<V> &a,
+                                 unsigned which) {
+    for (int i = 0; i < at.lanes; ++i)
+        if (which >> i & 1)
+            write_one(array, at.number(i, k), {Width<V>::get(a.x, i), Width<V>::get(a.y, i), Width<V>::get(a.z, i)});
+}
+
 // Writes atom k of the lanes in `which`, a bit per lane.
 template <Layout layout, class V>
 HOL_INLINE void write(const AtomArray &array, const Atoms<V> &at, int64_t k, const Vector3<V> &a, unsigned which) {
@@ -108,9 +122,8 @@ HOL_INLINE void write(const AtomArray &array, const Atoms<V> &at, int64_t k, con
         write_rows(p, a);
         return;
     }
-    for (int i = 0; i < at.lanes; ++i)
-        if (which >> i & 1)
-            write_one(array, at.number(i, k), {Width<V>::get(a.x, i), Width<V>::get(a.y, i), Width<V>::get(a.z, i)});
+    const Vector3<V> copy = a;  // what is passed by its address stays in memory
+    write_anywhere(array, at, k, copy, which);
 }
 
 // Returns how a call's arrays can be read together.

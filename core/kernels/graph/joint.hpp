@@ -72,12 +72,12 @@ HOL_INLINE void solve_joint(int k, const V *r, const V *m, const V *y, V *z, V *
 template <class V, int known>
 struct JointMemory {
     V S[known * (known + 1) / 2], r[known], m[known * (known - 1) / 2 + 1], y[known], z[known], l[known];
-    HOL_INLINE JointMemory make(Memory<V>, int) { return {}; }
+    HOL_STATIC JointMemory make(Memory<V>, int) { return {}; }
 };
 template <class V>
 struct JointMemory<V, 0> {
     V *S, *r, *m, *y, *z, *l;
-    HOL_INLINE JointMemory make(Memory<V> a, int k) {
+    HOL_STATIC JointMemory make(Memory<V> a, int k) {
         return {
             a.values(k * (k + 1) / 2), a.values(k), a.values(k * (k - 1) / 2), a.values(k), a.values(k), a.values(k)};
     }

@@ -21,9 +21,9 @@ HOL_INLINE void open_arms(Linear<double> &z, const double *scratch, Memory<doubl
     if (z.x.pieces) z.pieces.arms = take_arms(z.x.s, scratch, memory);
 }
 
-// Reads what the pieces hold, and eliminates it; up_arm(a, faint, slack) does so at an arm.
-template <Layout layout, int terms, bool keep, class Arm>
-HOL_INLINE void load_and_eliminate(Linear<double> &z, const Arm &up_arm) {
+// Reads what the pieces hold, and eliminates it; up_arm does so at an arm.
+template <Layout layout, int terms, bool keep>
+HOL_INLINE void load_and_eliminate(Linear<double> &z, const ArmWork &up_arm) {
     Molecules<double> &x = z.x;
     const Schedule &s = x.s;
     constexpr bool keep_all = keep && (terms & rates);
@@ -57,7 +57,7 @@ HOL_NOINLINE void solve_in_pieces(Linear<double> &z) {
     Molecules<double> &x = z.x;
     const Schedule &s = x.s;
     for (int32_t slot = s.n_tree; slot < s.n_atoms; ++slot) x.w[slot] = x.lane[0].w[s.atom_of[slot]];
-    const auto solve = [&](const auto &up, const auto &down) {
+    const auto solve = [&](const ArmWork &up, const ArmWork &down) {
         do {
             load_and_eliminate<layout, terms, keep>(z, up);
             up_top<keep>(x, z.working, up);
@@ -66,13 +66,15 @@ HOL_NOINLINE void solve_in_pieces(Linear<double> &z) {
     };
     if constexpr (!keep && !(terms & given)) {
         if (x.pieces->arms.store) {
-            eliminate_arms<terms>(x);
-            return solve(
-                [&](int32_t a, Faint &faint, double &slack) { up_arm<layout, terms>(z, a, faint, z.working, slack); },
-                [&](int32_t a, Faint &faint, double &slack) { down_arm<look>(x, a, faint, slack); });
+            eliminate_arms(x, terms);
+            const auto up = [&](int32_t a, Faint &faint, double &slack) {
+                up_arm<layout, terms>(z, a, faint, z.working, slack);
+            };
+            const auto down = [&](int32_t a, Faint &faint, double &slack) { down_arm<look>(x, a, faint, slack); };
+            return solve(ArmWork(up), ArmWork(down));
         }
     }
-    solve(NoArms{}, NoArms{});
+    solve(ArmWork(), ArmWork());
 }
 
 }  // namespace graph

@@ -100,12 +100,12 @@ template <class V, int known>
 struct NewtonMemory {
     V S[known * known], r[known], lower[known * (known - 1) / 2 + 1], upper[known * (known - 1) / 2 + 1], y[known],
         z[known], h[known], u[known];
-    HOL_INLINE NewtonMemory make(Memory<V>, int) { return {}; }
+    HOL_STATIC NewtonMemory make(Memory<V>, int) { return {}; }
 };
 template <class V>
 struct NewtonMemory<V, 0> {
     V *S, *r, *lower, *upper, *y, *z, *h, *u;
-    HOL_INLINE NewtonMemory make(Memory<V> a, int k) {
+    HOL_STATIC NewtonMemory make(Memory<V> a, int k) {
         return {a.values(k * k),
                 a.values(k),
                 a.values(k * (k - 1) / 2),

@@ -37,12 +37,12 @@ struct StarKind : StarMasses<N, V> {
 template <int N, class V>
 struct SmallInverse {
     V r[N], lower[N * (N - 1) / 2], upper[N * (N - 1) / 2];
-    HOL_INLINE SmallInverse of(V m[N][N]) {
+    HOL_STATIC SmallInverse of(V m[N][N]) {
         SmallInverse f;
         decompose(N, &m[0][0], f.r, f.lower, f.upper);
         return f;
     }
-    HOL_INLINE void solve(const SmallInverse &f, const V *y, V *t) {
+    HOL_STATIC void solve(const SmallInverse &f, const V *y, V *t) {
         V z[N];
         solve_joint(N, f.r, f.lower, f.upper, y, z, t);
     }
@@ -51,7 +51,7 @@ struct SmallInverse {
 template <class V>
 struct SmallInverse<3, V> {
     V adj[3][3], r;
-    HOL_INLINE SmallInverse of(const V m[3][3]) {
+    HOL_STATIC SmallInverse of(const V m[3][3]) {
         SmallInverse f;
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) {
@@ -64,7 +64,7 @@ struct SmallInverse<3, V> {
         f.r = Width<V>::all(1) / mul_add(m[0][2], f.adj[2][0], mul_add(m[0][1], f.adj[1][0], m[0][0] * f.adj[0][0]));
         return f;
     }
-    HOL_INLINE void solve(const SmallInverse &f, const V *y, V *t) {
+    HOL_STATIC void solve(const SmallInverse &f, const V *y, V *t) {
         HOL_UNROLL
         for (int k = 0; k < 3; ++k)
             t[k] = f.r * mul_add(f.adj[k][2], y[2], mul_add(f.adj[k][1], y[1], f.adj[k][0] * y[0]));
@@ -138,7 +138,7 @@ struct StarModel {
         }
         return SmallInverse<N, V>::of(M);
     }
-    HOL_INLINE void solve(const SmallInverse<N, V> &f, const V *y, V *tau) { SmallInverse<N, V>::solve(f, y, tau); }
+    HOL_STATIC void solve(const SmallInverse<N, V> &f, const V *y, V *tau) { SmallInverse<N, V>::solve(f, y, tau); }
 };
 
 }  // namespace graph

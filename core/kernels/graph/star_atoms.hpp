@@ -63,11 +63,11 @@ struct StarAtoms {
         move_centre(atoms, 0, centre);
         copy(atoms, r);
     }
-    HOL_INLINE void copy(const Vector3<V> *from, Vector3<V> *to) {
+    HOL_STATIC void copy(const Vector3<V> *from, Vector3<V> *to) {
         HOL_UNROLL
         for (int k = 0; k <= N; ++k) to[k] = from[k];
     }
-    HOL_INLINE void take_bonds(const Vector3<V> *r, const Box &box, Vector3<V> *d) {
+    HOL_STATIC void take_bonds(const Vector3<V> *r, const Box &box, Vector3<V> *d) {
         HOL_UNROLL
         for (int k = 0; k < N; ++k) d[k] = r[k + 1] - r[0];
         take_images<N>(box, d);

@@ -187,13 +187,13 @@ struct StarVelocitiesVerb {
     }
 
     template <class V>
-    HOL_INLINE void find_rates(const double *strain, const Star<V> &star, const Vector3<V> *v, V *y) {
+    HOL_STATIC void find_rates(const double *strain, const Star<V> &star, const Vector3<V> *v, V *y) {
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) y[k] = dot(star.d[k], v[k + 1] - v[0]);
         for (int k = 0; k < 3 && strain; ++k) y[k] = y[k] + stretching(strain, star.d[k]);
     }
     template <class V>
-    HOL_INLINE void move(const Star<V> &star, const V *t, Vector3<V> *v) {
+    HOL_STATIC void move(const Star<V> &star, const V *t, Vector3<V> *v) {
         Vector3<V> g[4];
         star.pull(t, g);
         HOL_UNROLL

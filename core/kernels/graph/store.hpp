@@ -96,9 +96,10 @@ HOL_NOINLINE void write_pulls(const Molecules<V> &x, const AtomArray &g, bool ad
             });
         }))
         return;
-    if (!add) return write_atoms<layout>(x, g, which, [&](int32_t slot) HOL_FORCED { return pull_on(x, slot); });
-    write_atoms<layout>(x, g, which,
-                        [&](int32_t slot) { return read<layout>(g, x.at, x.s.atom_of[slot]) + pull_on(x, slot); });
+    write_atoms<layout>(x, g, which, [&](int32_t slot) HOL_FORCED {
+        const Vector3<V> pull = pull_on(x, slot);
+        return __builtin_expect(add, 0) ? read<layout>(g, x.at, x.s.atom_of[slot]) + pull : pull;
+    });
 }
 
 // Writes value(place) of the bonds at these places to out[bond] of the lanes in `which`. To look whether four bonds

@@ -136,23 +136,29 @@ HOL_INLINE void for_run(const Schedule::Runs &runs, const Schedule::Run &run, co
     });
 }
 
-// Where there are no arms.
-struct NoArms {
-    HOL_FORCED void operator()(int32_t, Faint &, double &) const {}
+// What is done at an arm, work(context, arm, faint, slack). By its address, so that pieces are compiled once for all.
+struct ArmWork {
+    const void *context = nullptr;
+    void (*work)(const void *, int32_t, Faint &, double &) = nullptr;
+    ArmWork() = default;  // there are no arms
+    template <class Body>
+    explicit ArmWork(const Body &body)
+        : context(&body), work([](const void *c, int32_t arm, Faint &faint, double &slack) {
+              (*static_cast<const Body *>(c))(arm, faint, slack);
+          }) {}
 };
 
-// Calls arm(a, faint, slack) for the arms of a run.
-template <class Arm>
-HOL_INLINE bool do_arms(const Schedule::Runs &runs, const Schedule::Run &run, const Arm &arm, Faint &faint,
+// Does the arms of a run.
+HOL_INLINE bool do_arms(const Schedule::Runs &runs, const Schedule::Run &run, const ArmWork &arm, Faint &faint,
                         double &slack) {
     if (run.children != Schedule::arms_in_run) return false;
-    for (int32_t i = 0; i < run.count; ++i) arm(runs.slot[run.first + i], faint, slack);
+    for (int32_t i = 0; i < run.count; ++i) arm.work(arm.context, runs.slot[run.first + i], faint, slack);
     return true;
 }
 
 // A piece, or the top.
-template <bool keep, class Arm>
-static inline double up_piece(const Molecules<double> &x, int32_t piece, Memory<double> memory, const Arm &arm) {
+template <bool keep>
+static inline double up_piece(const Molecules<double> &x, int32_t piece, Memory<double> memory, const ArmWork &arm) {
     const Schedule::Runs &s = x.pieces->runs(x.s);
     Faint &faint = x.pieces->faint[piece];
     double slack = 1;
@@ -176,8 +182,8 @@ static inline void substitute_piece(const Molecules<double> &x, int32_t piece, M
     }
 }
 
-template <bool look, class Arm>
-static inline double down_piece(const Molecules<double> &x, int32_t piece, const Arm &arm) {
+template <bool look>
+static inline double down_piece(const Molecules<double> &x, int32_t piece, const ArmWork &arm) {
     const Schedule::Runs &s = x.pieces->runs(x.s);
     Faint &faint = x.pieces->faint[piece];
     double slack = 1;
@@ -196,8 +202,8 @@ static inline void collect_slack(Molecules<double> &x) {
 }
 
 // Goes up behind the pieces.
-template <bool keep, class Arm>
-static inline void up_top(Molecules<double> &x, Memory<double> memory, const Arm &arm) {
+template <bool keep>
+static inline void up_top(Molecules<double> &x, Memory<double> memory, const ArmWork &arm) {
     x.slack = min(up_piece<keep>(x, x.s.n_pieces, memory, arm), x.slack);
     up_joint<1, true, keep>(AtomRows<double>(x, x.s.n_tree), 1, memory, x.slack);
 }
@@ -209,8 +215,8 @@ static inline void substitute_trees(const Molecules<double> &x, Memory<double> m
     substitute_piece(x, x.s.n_pieces, memory);
     substitute_joint<1, true>(AtomRows<double>(x, x.s.n_tree), 1, memory);
 }
-template <bool look, class Arm>
-static inline void down_pieces(Molecules<double> &x, const Arm &arm) {
+template <bool look>
+static inline void down_pieces(Molecules<double> &x, const ArmWork &arm) {
     x.slack = min(down_piece<look>(x, x.s.n_pieces, arm), x.slack);
     for_pieces(x.s, x.pieces->team, [&](int32_t p) { x.pieces->slack[p] = down_piece<look>(x, p, arm); });
     collect_slack(x);
@@ -218,7 +224,7 @@ static inline void down_pieces(Molecules<double> &x, const Arm &arm) {
 template <bool look>
 static inline void down_trees(Molecules<double> &x) {
     if (!x.pieces) return down_trees<look, double>(x);
-    down_pieces<look>(x, NoArms{});
+    down_pieces<look>(x, ArmWork());
 }
 
 }  // namespace graph

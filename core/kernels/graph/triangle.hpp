@@ -49,7 +49,7 @@ template <class V>
 struct TriangleInverse {
     V adj[3][3];
     V r;  // 1 / det
-    HOL_INLINE void solve(const TriangleInverse &m, const V *y, V *t) {
+    HOL_STATIC void solve(const TriangleInverse &m, const V *y, V *t) {
         const V y0 = y[0], y1 = y[1], y2 = y[2];
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) t[k] = m.r * mul_add(m.adj[k][2], y2, mul_add(m.adj[k][1], y1, m.adj[k][0] * y0));

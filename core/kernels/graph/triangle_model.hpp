@@ -77,7 +77,7 @@ struct TriangleModel {
     inline HOL_FORCED TriangleInverse<V> invert(const V h[3][3]) const {
         return invert_triangle<false>(m, h, mul_add(h[0][0], h[1][1], -(h[0][1] * h[1][0])), 2);
     }
-    HOL_INLINE void solve(const TriangleInverse<V> &f, const V *y, V *tau) { TriangleInverse<V>::solve(f, y, tau); }
+    HOL_STATIC void solve(const TriangleInverse<V> &f, const V *y, V *tau) { TriangleInverse<V>::solve(f, y, tau); }
 };
 
 }  // namespace graph

@@ -135,12 +135,12 @@ template <>
 struct Width<Twin> {
     typedef TwinMask Mask;
     static constexpr int lanes = 2 * W;
-    HOL_INLINE Twin all(double x) { return splat_twin(x); }
-    HOL_INLINE TwinMask none() { return twin_mask(0); }
-    HOL_INLINE TwinMask first(int n) { return first_of_twin(n); }
-    HOL_INLINE TwinMask of_bits(unsigned b) { return twin_mask(b); }
-    HOL_INLINE double get(const Twin &x, int i) { return HOL_ISA::get(x, i); }
-    HOL_INLINE void set(Twin &x, int i, double y) { HOL_ISA::set(x, i, y); }
+    HOL_STATIC Twin all(double x) { return splat_twin(x); }
+    HOL_STATIC TwinMask none() { return twin_mask(0); }
+    HOL_STATIC TwinMask first(int n) { return first_of_twin(n); }
+    HOL_STATIC TwinMask of_bits(unsigned b) { return twin_mask(b); }
+    HOL_STATIC double get(const Twin &x, int i) { return HOL_ISA::get(x, i); }
+    HOL_STATIC void set(Twin &x, int i, double y) { HOL_ISA::set(x, i, y); }
 };
 
 // Found by their argument from where single blocks are read and written.

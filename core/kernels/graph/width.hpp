@@ -36,28 +36,28 @@ template <>
 struct Width<vec> {
     typedef mask Mask;
     static constexpr int lanes = W;
-    HOL_INLINE vec all(double a) { return splat(a); }
-    HOL_INLINE mask none() { return mask{}; }
-    HOL_INLINE mask first(int n) { return first_lanes(n); }
-    HOL_INLINE mask of_bits(unsigned b) {
+    HOL_STATIC vec all(double a) { return splat(a); }
+    HOL_STATIC mask none() { return mask{}; }
+    HOL_STATIC mask first(int n) { return first_lanes(n); }
+    HOL_STATIC mask of_bits(unsigned b) {
         mask m{};
         for (int i = 0; i < W; ++i) m[i] = b >> i & 1 ? -1 : 0;
         return m;
     }
-    HOL_INLINE double get(const vec &a, int i) { return a[i]; }
-    HOL_INLINE void set(vec &a, int i, double x) { a[i] = x; }
+    HOL_STATIC double get(const vec &a, int i) { return a[i]; }
+    HOL_STATIC void set(vec &a, int i, double x) { a[i] = x; }
 };
 
 template <>
 struct Width<double> {
     typedef Flag Mask;
     static constexpr int lanes = 1;
-    HOL_INLINE double all(double a) { return a; }
-    HOL_INLINE Flag none() { return {false}; }
-    HOL_INLINE Flag first(int n) { return {n > 0}; }
-    HOL_INLINE Flag of_bits(unsigned b) { return {(b & 1) != 0}; }
-    HOL_INLINE double get(double a, int) { return a; }
-    HOL_INLINE void set(double &a, int, double x) { a = x; }
+    HOL_STATIC double all(double a) { return a; }
+    HOL_STATIC Flag none() { return {false}; }
+    HOL_STATIC Flag first(int n) { return {n > 0}; }
+    HOL_STATIC Flag of_bits(unsigned b) { return {(b & 1) != 0}; }
+    HOL_STATIC double get(double a, int) { return a; }
+    HOL_STATIC void set(double &a, int, double x) { a = x; }
 };
 
 template <class V>

@@ -42,6 +42,7 @@
 #define HOL_FORCED __attribute__((always_inline))  // for lambdas and members
 #endif
 #define HOL_INLINE static inline HOL_FORCED  // for functions
+#define HOL_STATIC static inline HOL_FORCED  // for members that need no object
 // For rare cases, which would only make the common one longer.
 #define HOL_NOINLINE static __attribute__((noinline, unused))
 

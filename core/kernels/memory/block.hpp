@@ -44,6 +44,22 @@ struct Packed {
     double *lane[W];
 };
 
+// Where the coordinates of a block are: in lanes, or anywhere in the array `base`.
+struct Source {
+    const Box *box;
+    const Packed *r = nullptr;
+    const double *base = nullptr;           // where lists or lanes say, else molecules of `apart` atoms in a row
+    const int64_t *const *atoms = nullptr;  // lists
+    const Lane *lanes = nullptr;            // of at most three bonds each
+    long apart = 0;
+    const long *len = nullptr;  // of lanes that may end before the joints that are asked for; or nullptr
+    const double *atom(int lane, long k) const {
+        if (r) return r->lane[lane] + 3 * k;
+        if (lanes) return base + lanes[lane].element[k];
+        return base + 3 * (atoms ? atoms[lane][k] : apart * lane + k);
+    }
+};
+
 // Returns n bonds of a chain, from bond `from` on, as a chain.
 HOL_INLINE Lane part_of(const Lane &chain, int64_t from, int64_t n) {
     Lane part = chain;

@@ -91,6 +91,16 @@ static inline Block own_block(const SegmentBlock &s) {
     return block;
 }
 
+// Copies staged segments back: the atoms that the lane wrote.
+static inline void close_segments(const AtomArray &array, const SegmentBlock &s, const Lane &lane, const Packed &packed,
+                                  bool add) {
+    if (in_place(array, lane)) return;
+    for (int i = 0; i < W; ++i) {
+        const long first = s.begins && i == 0 ? 0 : 1;
+        unstage(array, lane, s.from[i] + first, s.own[i] - first, packed.lane[i] + 3 * first, add);
+    }
+}
+
 // Bond vectors and right-hand sides of W segments: in the caller's arrays, or as they were put into scratch.
 struct SegmentBonds {
     Packed r, v, f;

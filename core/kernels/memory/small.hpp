@@ -21,6 +21,7 @@ constexpr int largest_boxed_molecule = 3;  // in a box, or not over consecutive 
 //   next(first, end)   how many of these are the next block; 0: none is left
 //   atom(base, i, k)   atom k of lane i in a packed array
 //   bond_of, chain_of  first bond and number of lane i's molecule
+//   source(base, box)  where it is, for what is rare
 
 // One behind the other in a regular unit.
 template <int N>
@@ -35,13 +36,14 @@ struct InRow {
           chain(unit.lanes[0].chain + first) {}
     HOL_FORCED Lanes lanes_of(double *base) const { return {base + at}; }
     // W atoms behind them can be read.
-    HOL_INLINE int64_t end(const Unit &unit, int64_t) { return unit.count - (W == 1 ? 0 : (W + N) / (N + 1)); }
-    HOL_INLINE int64_t next(int64_t first, int64_t end) { return end - first >= W ? W : 0; }
+    HOL_STATIC int64_t end(const Unit &unit, int64_t) { return unit.count - (W == 1 ? 0 : (W + N) / (N + 1)); }
+    HOL_STATIC int64_t next(int64_t first, int64_t end) { return end - first >= W ? W : 0; }
     HOL_FORCED const double *atom(const double *base, int i, long k) const { return base + at + 3 * ((N + 1) * i + k); }
     HOL_FORCED int64_t bond_of(int i) const { return bond + N * i; }
     HOL_FORCED int64_t chain_of(int i) const { return chain + i; }
-    HOL_FORCED const int64_t *const *lists() const { return nullptr; }
-    HOL_FORCED const Lane *lanes() const { return nullptr; }
+    HOL_FORCED Source source(const double *base, const Box &box) const {
+        return {&box, nullptr, base + at, nullptr, nullptr, N + 1};
+    }
     HOL_FORCED void fetch_next(const double *) const {}  // the processor does that
 };
 
@@ -53,9 +55,9 @@ struct ByList : InRow<N>, AtomLists {
     ByList(const Unit &unit, int64_t first, int64_t used)
         : InRow<N>(unit, first, used), AtomLists(unit.lanes[0].atoms + (N + 1) * first, N + 1),
           fetches(unit.large && unit.count - first >= 2 * W) {}
-    HOL_INLINE int64_t end(const Unit &unit, int64_t) { return unit.count; }
+    HOL_STATIC int64_t end(const Unit &unit, int64_t) { return unit.count; }
     using AtomLists::atom;
-    HOL_FORCED const int64_t *const *lists() const { return atoms; }
+    HOL_FORCED Source source(const double *base, const Box &box) const { return {&box, nullptr, base, atoms}; }
     HOL_FORCED void fetch_next(const double *base) const {
         for (int i = 0; fetches && base && i < W; ++i)
             for (int k = 0; k <= N; ++k) __builtin_prefetch(base + 3 * atoms[i][W * (N + 1) + k], 0, 2);
@@ -75,16 +77,15 @@ struct ByLanes {
         lane = last_;
     }
     ByLanes &operator=(const ByLanes &) = delete;
-    HOL_INLINE int64_t end(const Unit &unit, int64_t first) {
+    HOL_STATIC int64_t end(const Unit &unit, int64_t first) {
         while (first < unit.count && unit.lanes[first].n_bonds == N) ++first;
         return first;
     }
-    HOL_INLINE int64_t next(int64_t first, int64_t end) { return end - first >= W ? W : end - first; }
+    HOL_STATIC int64_t next(int64_t first, int64_t end) { return end - first >= W ? W : end - first; }
     HOL_FORCED const double *atom(const double *base, int i, long k) const { return base + lane[i].element[k]; }
     HOL_FORCED int64_t bond_of(int i) const { return lane[i].first_bond; }
     HOL_FORCED int64_t chain_of(int i) const { return lane[i].chain; }
-    HOL_FORCED const int64_t *const *lists() const { return nullptr; }
-    HOL_FORCED const Lane *lanes() const { return lane; }
+    HOL_FORCED Source source(const double *base, const Box &box) const { return {&box, nullptr, base, nullptr, lane}; }
     HOL_FORCED void fetch_next(const double *) const {}
 
 private:
@@ -117,15 +118,6 @@ HOL_INLINE void load_molecules(const Place &place, const double *base, vec *elem
             elements[3 * k + 2] = a.z;
         }
     }
-}
-
-// Where the lanes' first atoms are.
-template <class Place>
-HOL_INLINE Packed first_atoms(const Place &place, const double *base) {
-    Packed p;
-    HOL_UNROLL
-    for (int i = 0; i < W; ++i) p.lane[i] = const_cast<double *>(place.atom(base, i, 0));
-    return p;
 }
 
 // Gives a sink n values of each lane, transposed in place.
@@ -246,18 +238,20 @@ struct BlockMasses {
 
     // Returns whether the masses are others than before.
     HOL_FORCED bool take(const Place &place) {
-        if (!Place::loose) return false;
-        const Lane *const lane = place.lanes();
-        bool same = true;
-        for (int i = 0; i < W; ++i) same = same & (kind[i] == lane[i].kind);
-        if (__builtin_expect(same, 1)) return false;
-        for (int i = 0; i < W; ++i) {
-            kind[i] = lane[i].kind;
-            own.unit[i] = unit_of(lane[i]);
-            for (int k = 0; k <= N; ++k) w[k][i] = relative_w(lane[i], k);
+        if constexpr (Place::loose) {
+            const Lane *const lane = place.lane;
+            bool same = true;
+            for (int i = 0; i < W; ++i) same = same & (kind[i] == lane[i].kind);
+            if (__builtin_expect(same, 1)) return false;
+            for (int i = 0; i < W; ++i) {
+                kind[i] = lane[i].kind;
+                own.unit[i] = unit_of(lane[i]);
+                for (int k = 0; k <= N; ++k) w[k][i] = relative_w(lane[i], k);
+            }
+            own.mass = splat(1.0) / own.unit;
+            return true;
         }
-        own.mass = splat(1.0) / own.unit;
-        return true;
+        return false;
     }
 };
 

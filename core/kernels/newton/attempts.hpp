@@ -202,7 +202,8 @@ struct Positions {
             x.next[2] = v.lane[0];
         }
         if (call.guess) load_guess(block, call, x);
-        Carried carried(block, x, call, r);
+        const Source source = {&call.box, &r};
+        Carried carried(block, x, call, source);
         Outcome out = solve_positions<uniform_w, uniform_a, false>(block, x, call, carried, all, call.guess);
         finish(out, carried);
         mask rest = all & ~(out.converged | out.untouched | careful_lanes);

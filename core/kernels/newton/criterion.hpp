@@ -35,22 +35,24 @@ HOL_INLINE mask worth_renewing(vec error, vec rate, int64_t i) {
 constexpr double last_error = 64 * epsilon;
 constexpr double steady = 1.0 / 256;
 
-// Largest |coordinate| of each lane. With lists of atoms, r has the first atoms of these.
-HOL_NOINLINE vec extent(const Block &block, const Packed &r, const int64_t *const *lists = nullptr) {
+// Largest |coordinate| of each lane.
+HOL_NOINLINE vec extent(const Block &block, const Source &source) {
+    const bool in_rows = !source.atoms && !source.lanes;
     vec largest = {};
     for (int i = 0; i < W; ++i) {
         double x = 0, of_rows[W];
         const auto look = [&](const double *p, long n) {
             for (long e = 0; e < n; ++e) x = abs(p[e]) > x ? abs(p[e]) : x;
         };
+        const double *const row = source.atom(i, 0);
         const long count = 3 * (block.len[i] + 1);
         vec m = {};
         long e = 0;
-        for (; !lists && e + W <= count; e += W) m = max(m, abs(load(r.lane[i] + e)));
+        for (; in_rows && e + W <= count; e += W) m = max(m, abs(load(row + e)));
         store(of_rows, m);
         look(of_rows, W);
-        if (!lists) look(r.lane[i] + e, count - e);
-        for (long k = 0; lists && k <= block.len[i]; ++k) look(r.lane[i] + 3 * (lists[i][k] - lists[i][0]), 3);
+        if (in_rows) look(row + e, count - e);
+        for (long k = 0; !in_rows && k <= block.len[i]; ++k) look(source.atom(i, k), 3);
         largest[i] = x;
     }
     return largest;
@@ -60,17 +62,16 @@ HOL_NOINLINE vec extent(const Block &block, const Packed &r, const int64_t *cons
 // place. The largest coordinate is found only when a decision depends on it, which is rare.
 class Carried {
 public:
-    Carried(const Block &block, const Newton &x, const PositionsCall &call, const Packed &r,
-            const int64_t *const *lists = nullptr)
-        : block_(block), x_(x), r_(r), lists_(lists), tolerance_(call.tolerance),
-          u_(call.r.is_float ? 5.97e-8 : 1.11e-16), boxed_(call.box.shape != Box::none) {}
+    Carried(const Block &block, const Newton &x, const PositionsCall &call, const Source &r)
+        : block_(block), x_(x), r_(r), tolerance_(call.tolerance), u_(call.r.is_float ? 5.97e-8 : 1.11e-16),
+          boxed_(call.box.shape != Box::none) {}
 
     void know_largest(vec coordinate) {
         largest_ = coordinate;
         known_ = true;
     }
     vec largest_coordinate() {
-        if (!known_) largest_ = extent(block_, r_, lists_);
+        if (!known_) largest_ = extent(block_, r_);
         known_ = true;
         return largest_;
     }
@@ -86,7 +87,7 @@ public:
             vec first = {};
             for (int c = 0; c < 3; ++c) {
                 vec component = {};
-                for (int i = 0; i < W; ++i) component[i] = r_.lane[i][c];
+                for (int i = 0; i < W; ++i) component[i] = r_.atom(i, 0)[c];
                 first = max(abs(component), first);
             }
             const vec per_a = x_.per_a_min, a = mul_add(error * x_.a_max, per_a * per_a, x_.a_max);
@@ -99,8 +100,7 @@ public:
 private:
     const Block &block_;
     const Newton &x_;
-    const Packed &r_;
-    const int64_t *const *const lists_;
+    const Source &r_;
     const double tolerance_, u_;
     const bool boxed_;
     bool known_ = false;

@@ -1,7 +1,6 @@
 // Acceleration level of a block of chains: load and eliminate in one go, up the chains; substitute and store, down.
 #include "core/kernels/eliminate/chain.hpp"
 #include "core/kernels/eliminate/listed.hpp"
-#include "core/kernels/eliminate/long_chain.hpp"
 #include "core/kernels/memory/open.hpp"
 #include "core/kernels/memory/outputs.hpp"
 #include "core/kernels/memory/packed.hpp"
@@ -194,8 +193,7 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
         place.fetch_next(v);
         place.fetch_next(f);
         load_sides<terms, uniform, boxed>(block, call.box, place, r, v, f, D, t);
-        const Packed from = first_atoms(place, r);
-        const Source source = {&from, r, place.lists(), &call.box, nullptr, place.lanes()};
+        const Source source = place.source(r, call.box);
         Sweep<uniform, false> sweep{block, source, System(D, t, L, nullptr)};
         HOL_UNROLL
         for (int k = 0; k < N; ++k) sweep.step(k, t[k], k % 4 == 0, false);
@@ -222,23 +220,6 @@ static inline int64_t small_forces(const ForcesCall &call, const Unit &unit, Blo
 
 void forces(const ForcesCall &call, const Unit &unit, double *scratch, Tally &tally) {
     for_each_block(call, unit, scratch, tally, forces_block, small_forces);
-}
-
-void long_forces_eliminate(const ForcesCall &call, const Lane &lane, int64_t j, bool careful, double *store,
-                           double *scratch) {
-    const Arena arena(scratch, longest_piece);
-    choose_terms(
-        [&](auto terms) {
-            eliminate_block<terms>(call.box, Cut(lane.n_bonds), lane, j, call.r, call.v, call.f, careful, store, arena);
-        },
-        call.v.x, call.f.x);
-}
-
-void long_forces_finish(const ForcesCall &call, const Lane &lane, int64_t j, double *store, double *scratch,
-                        Tally &tally) {
-    const SegmentOutputs out = {{}, false, call.lambda, call.tension, splat(0.5), 1.0, call.virial};
-    finish_block<false>(call.box, call.r, call.g, call.add, out, Cut(lane.n_bonds), lane, j, store,
-                        Arena(scratch, longest_piece), tally);
 }
 
 }  // namespace holonomic::HOL_ISA

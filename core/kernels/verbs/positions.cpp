@@ -26,7 +26,8 @@ struct SmallNewton {
         if (!Place::loose) set(lane, x);
     }
     HOL_FORCED void take(const Place &place, Newton &x) {
-        if (masses.take(place)) set(place.lanes(), x);
+        if constexpr (Place::loose)
+            if (masses.take(place)) set(place.lane, x);
     }
     HOL_FORCED void set(const Lane *lane, Newton &x) {
         Arena rest(reinterpret_cast<double *>(lengths), reinterpret_cast<double *>(lengths + 2 * N));
@@ -132,8 +133,8 @@ HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit
         const Place at_a(unit, first, W), at_b(unit, first + W, n);
         a.take(at_a, x_a);
         b.take(at_b, x_b);
-        const Packed r_a = first_atoms(at_a, arrays.r), r_b = first_atoms(at_b, arrays.r);
-        Carried carried_a(a.block, x_a, call, r_a, at_a.lists()), carried_b(b.block, x_b, call, r_b, at_b.lists());
+        const Source r_a = at_a.source(arrays.r, call.box), r_b = at_b.source(arrays.r, call.box);
+        Carried carried_a(a.block, x_a, call, r_a), carried_b(b.block, x_b, call, r_b);
         vec atoms_a[vectors_of<1>], atoms_b[vectors_of<1>];
         load_positions<boxed>(arrays, at_a, x_a, atoms_a, carried_a);
         load_positions<boxed>(arrays, at_b, x_b, atoms_b, carried_b);
@@ -166,8 +167,8 @@ HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Uni
     for (int64_t n; (n = next_block<Place>(unit, first, end)) > 0; first += n) {
         const Place place(unit, first, n);
         newton.take(place, x);
-        const Packed r = first_atoms(place, arrays.r);
-        Carried carried(block, x, call, r, place.lists());
+        const Source r = place.source(arrays.r, call.box);
+        Carried carried(block, x, call, r);
         vec atoms[vectors_of<N>];
         load_positions<boxed>(arrays, place, x, atoms, carried);
         Outcome out;
@@ -251,9 +252,8 @@ HOL_NOINLINE bool listed_positions(const Block &block, const Lane *lane, const P
     else
         gather_bonds<true>(block, call, at, x);
     if (call.guess) load_guess(block, call, x);
-    Packed first;
-    for (int i = 0; i < W; ++i) first.lane[i] = base_of(call.r) + 3 * lane[i].atoms[0];
-    Carried carried(block, x, call, first, at.atoms);
+    const Source source = {&call.box, nullptr, base_of(call.r), at.atoms};
+    Carried carried(block, x, call, source);
     const Outcome out =
         solve_positions<uniform_w, uniform_a, false>(block, x, call, carried, block.in_use(), call.guess);
     if (any(~out.converged) || any(coarse_moves<uniform_w>(block, x, carried, out.converged))) return false;

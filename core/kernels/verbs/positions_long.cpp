@@ -2,7 +2,6 @@
 // not rest on how far a margin is felt: inside a piece Newton's method has tested all lengths, and where two pieces
 // meet they are tested here before anything is written. If windows can't do the chain, core hands it to positions() as
 // a unit of one.
-#include "core/kernels/eliminate/long_chain.hpp"
 #include "core/kernels/isa/choose.hpp"
 #include "core/kernels/memory/cut.hpp"
 #include "core/kernels/memory/outputs.hpp"
@@ -47,7 +46,8 @@ static inline WindowResult solve_window(const Window &window, const PositionsCal
     strict.v = AtomArray{};
     Positions<uniform_w, uniform_a> positions(block, window.lane, strict, a, arena, tally);
     Newton &x = positions.x;
-    Carried carried(block, x, call, positions.r);
+    const Source source = {&call.box, &positions.r};
+    Carried carried(block, x, call, source);
     const mask all = first_lanes(W);
     positions.load();
     // A guess does not help: it knows of the pulls beyond the ends of a piece, which are not there.

@@ -1,6 +1,6 @@
 // The table through which core calls the kernels of one instruction set.
 #include "core/kernels/careful/chain.hpp"
-#include "core/kernels/eliminate/long_chain.hpp"
+#include "core/kernels/eliminate/segment.hpp"
 #include "core/kernels/isa/lanes.hpp"
 #include "core/kernels/memory/arena.hpp"
 #include "core/kernels/memory/cut.hpp"

@@ -1,7 +1,6 @@
 // Velocity level of a block of chains: the solve of the forces with d . (v_k - v_{k-1}) on the right; v_i += w_i G_i.
 // Velocities are read once, stay in lanes until they are right, and are written once.
 #include "core/kernels/eliminate/listed.hpp"
-#include "core/kernels/eliminate/long_chain.hpp"
 #include "core/kernels/eliminate/projection.hpp"
 #include "core/kernels/memory/open.hpp"
 #include "core/kernels/memory/outputs.hpp"
@@ -32,7 +31,7 @@ HOL_NOINLINE mask forward_loaded(const Block &block, const Box &box, const Packe
         forward_careful<uniform>(block, x.s);
         return ~none();
     } else {
-        const Source source = {&r, nullptr, nullptr, &box, nullptr};
+        const Source source = {&box, &r};
         Sweep<uniform, true> sweep{block, source, x.s};
         for (long k = 0; k < block.n; ++k) sweep.step(k, x.s.t[k], k % 4 == 0, k >= block.n_min);
         return ~sweep.doubt();
@@ -139,8 +138,7 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
         place.fetch_next(v);
         load_bonds<boxed>(call.box, place, r, elements, D);
         load_molecules(place, v, elements);
-        const Packed from = first_atoms(place, r);
-        const Source source = {&from, r, place.lists(), &call.box, nullptr, place.lanes()};
+        const Source source = place.source(r, call.box);
         const Projection x({D, t, L, pivots}, reinterpret_cast<vec3 *>(elements), left);
         Sweep<uniform, true> sweep{block, source, x.s};
         HOL_UNROLL
@@ -184,21 +182,6 @@ static inline int64_t small_velocities(const VelocitiesCall &call, const Unit &u
 
 void velocities(const VelocitiesCall &call, const Unit &unit, double *scratch, Tally &tally) {
     for_each_block(call, unit, scratch, tally, velocities_block, small_velocities);
-}
-
-void long_velocities_eliminate(const VelocitiesCall &call, const Lane &lane, int64_t j, bool careful, double *store,
-                               double *scratch) {
-    eliminate_block<rate>(call.box, Cut(lane.n_bonds), lane, j, call.r, call.v, AtomArray{}, careful, store,
-                          Arena(scratch, longest_piece), call.strain);
-}
-
-void long_velocities_finish(const VelocitiesCall &call, const Lane &lane, int64_t j, double *store, double *scratch,
-                            Tally &tally) {
-    // With equal masses, t is w times 2 lambda here.
-    const double mass = 1 / unit_of(lane);
-    const SegmentOutputs out = {{}, false, call.lambda, nullptr, splat(0.5 * mass), mass, call.virial};
-    finish_block<true>(call.box, call.r, call.v, true, out, Cut(lane.n_bonds), lane, j, store,
-                       Arena(scratch, longest_piece), tally);
 }
 
 }  // namespace holonomic::HOL_ISA

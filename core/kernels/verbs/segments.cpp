@@ -1,20 +1,19 @@
-// One long chain block by block (segment.hpp): it is eliminated, the separators are solved for, and for forces and
-// velocities the segments are substituted in from their ends to their beginnings, and what comes out is stored.
-#ifndef HOLONOMIC_KERNELS_ELIMINATE_LONG_CHAIN_HPP
-#define HOLONOMIC_KERNELS_ELIMINATE_LONG_CHAIN_HPP
-
-#include "core/kernels/arithmetic/vector3.hpp"
+// Forces and velocities of long chains in segments. Arms of large molecules are done by the same two functions, so that
+// they are compiled once.
 #include "core/kernels/eliminate/segment.hpp"
+#include "core/kernels/isa/choose.hpp"
+#include "core/kernels/memory/open.hpp"
 #include "core/kernels/memory/outputs.hpp"
 #include "core/kernels/memory/prefetch.hpp"
+#include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
 
 // Loads block j and eliminates its inner bonds. `strain` is added to rates, or nullptr.
 template <int terms, bool uniform>
-static inline void eliminate_block_of(const Box &box, const SegmentBlock &s, const Packed &r, const Packed &v,
-                                      const Packed &f, bool careful, const SegmentStore &x, Arena arena,
-                                      const double *strain) {
+static inline void eliminate_loaded(const Box &box, const SegmentBlock &s, const Packed &r, const Packed &v,
+                                    const Packed &f, bool careful, const SegmentStore &x, Arena arena,
+                                    const double *strain) {
     const long n = s.own_max;
     SegmentBonds in = {r, v, f, nullptr, nullptr, nullptr, {}, {}, 0};
     find_next(s, box, r, in);
@@ -22,7 +21,7 @@ static inline void eliminate_block_of(const Box &box, const SegmentBlock &s, con
     const auto vectors = [&] { return reinterpret_cast<vec3 *>(arena.vecs(3 * (n + W))); };
     vec3 *const D = vectors(), *const low = vectors();
     vec *const B = arena.vecs(n + W);
-    const Source source = {&in.r, nullptr, nullptr, &box, s.block.len};
+    const Source source = {&box, &in.r, nullptr, nullptr, nullptr, 0, s.block.len};
     in.D = D;
     in.low = low;
     in.B = B;
@@ -39,31 +38,29 @@ static inline void eliminate_block_of(const Box &box, const SegmentBlock &s, con
     eliminate<terms, uniform, false>(s.block, box, source, in, n, x);
 }
 
-template <int terms>
-static inline void eliminate_block(const Box &box, const Cut &cut, const Lane &lane, int64_t j, const AtomArray &r,
-                                   const AtomArray &v, const AtomArray &f, bool careful, double *store, Arena arena,
-                                   const double *strain = nullptr) {
+void eliminate_block(int terms, const Box &box, const Cut &cut, const Lane &lane, int64_t j, const AtomArray &r,
+                     const AtomArray &v, const AtomArray &f, bool careful, double *store, const Arena &memory,
+                     const double *strain) {
+    Arena arena = memory;
     SegmentBlock s = segment_block(cut, j, lane);
     set_masses(s.block, s.lane, arena);
     // All are in place or none is, so that the segments are equally far apart in each array.
     const Packed pr = open(r, s.block, s.lane, arena, true), pv = open(v, s.block, s.lane, arena, true);
     const Packed pf = open(f, s.block, s.lane, arena, true);
     const SegmentStore x(store, cut, j);
-    choose([&](auto uniform) { eliminate_block_of<terms, uniform>(box, s, pr, pv, pf, careful, x, arena, strain); },
-           s.block.uniform_w);
+    const auto go = [&](auto wanted) {
+        choose([&](auto uniform) { eliminate_loaded<wanted, uniform>(box, s, pr, pv, pf, careful, x, arena, strain); },
+               s.block.uniform_w);
+    };
+    if (terms == rate)
+        go(Constant<int, rate>{});
+    else
+        choose_terms(go, terms & velocity_squared, terms & force_difference);
     if (x.past_cache) settle_stores();
 }
 
-// The rounding of the X of nearly parallel bonds reaches E' through a. With a = sum alpha_j X_j, its error is about
-// 2 eps sqrt(a sum alpha_j q_j q_{j+1} / n) <= 2 eps sqrt(a w_max q c), because sum alpha_j q_j q_{j+1} <= n w_max q c;
-// it is harmless where that is below join_tolerance S, S = E_free E + a.
-constexpr double join_tolerance = 8;
-HOL_INLINE bool is_doubtful_join(const Summary &s, int i, double S) {
-    return !(4 * s.a[i] * s.span[i] * s.c[i] <= join_tolerance * join_tolerance * S * S);
-}
-
 // Solves for the separators. `careful` says how the segments were eliminated.
-static inline JoinResult long_join(const Lane &lane, bool careful, double *store) {
+JoinResult long_join(const Lane &lane, bool careful, double *store) {
     const Cut cut(lane.n_bonds);
     Summary *const all = SegmentStore(store, cut, 0).summary;
     double E = 0, y = 0;
@@ -91,26 +88,6 @@ static inline JoinResult long_join(const Lane &lane, bool careful, double *store
     }
     return join_good;
 }
-
-// Copies staged segments back: the atoms that the lane wrote.
-static inline void close_segments(const AtomArray &array, const SegmentBlock &s, const Lane &lane, const Packed &packed,
-                                  bool add) {
-    if (in_place(array, lane)) return;
-    for (int i = 0; i < W; ++i) {
-        const long first = s.begins && i == 0 ? 0 : 1;
-        unstage(array, lane, s.from[i] + first, s.own[i] - first, packed.lane[i] + 3 * first, add);
-    }
-}
-
-// What is to be written of W segments.
-struct SegmentOutputs {
-    Packed pulls;  // per atom
-    bool has_pulls;
-    double *lambda, *tension;
-    vec lambda_factor;
-    double virial_factor;
-    bool virial;
-};
 
 // The bonds k0 .. k0 + W - 1 with their t, once those behind them are done; `after` is t d of bond k0 + W, then of k0.
 template <bool weighted, bool uniform, Update update, bool ragged>
@@ -210,11 +187,11 @@ HOL_NOINLINE void finish_segments(const SegmentBlock &s, const Box &box, const S
     store_first({after.x + 0.0, after.y + 0.0, after.z + 0.0}, 1, AtomSink<update>{out.pulls});
 }
 
-// Substitutes in block j and writes; `pulled` gets what its atoms are pulled with.
-template <bool weighted>
-static inline void finish_block(const Box &box, const AtomArray &r, const AtomArray &pulled, bool add,
-                                SegmentOutputs out, const Cut &cut, const Lane &lane, int64_t j, double *store,
-                                Arena arena, Tally &tally) {
+void finish_block(bool weighted, const Box &box, const AtomArray &r, const AtomArray &pulled, bool add,
+                  const SegmentOutputs &outputs, const Cut &cut, const Lane &lane, int64_t j, double *store,
+                  const Arena &memory, Tally &tally) {
+    Arena arena = memory;
+    SegmentOutputs out = outputs;
     SegmentBlock s = segment_block(cut, j, lane);
     if (weighted) set_masses(s.block, s.lane, arena);
     if (in_place(r, lane)) find_block_before(cut, j, s);
@@ -228,13 +205,45 @@ static inline void finish_block(const Box &box, const AtomArray &r, const AtomAr
     out.has_pulls = pulled.x != nullptr;
     out.pulls = open(pulled, s.block, s.lane, arena, false);
     choose(
-        [&](auto uniform, auto boxed, auto adds) {
-            finish_segments<weighted, !weighted || uniform, boxed, adds ? add_ : write_>(s, box, in, x, next, out,
-                                                                                         tally);
+        [&](auto boxed, auto adds) {
+            constexpr Update update = adds ? add_ : write_;
+            if (!weighted)
+                finish_segments<false, true, boxed, update>(s, box, in, x, next, out, tally);
+            else if (s.block.uniform_w)
+                finish_segments<true, true, boxed, update>(s, box, in, x, next, out, tally);
+            else
+                finish_segments<true, false, boxed, update>(s, box, in, x, next, out, tally);
         },
-        !weighted || s.block.uniform_w, box.shape != Box::none, in_place(pulled, lane) && add);
+        box.shape != Box::none, in_place(pulled, lane) && add);
     if (out.has_pulls) close_segments(pulled, s, lane, out.pulls, add);
 }
 
+void long_forces_eliminate(const ForcesCall &call, const Lane &lane, int64_t j, bool careful, double *store,
+                           double *scratch) {
+    eliminate_block((call.v.x ? velocity_squared : 0) | (call.f.x ? force_difference : 0), call.box, Cut(lane.n_bonds),
+                    lane, j, call.r, call.v, call.f, careful, store, Arena(scratch, longest_piece));
+}
+
+void long_forces_finish(const ForcesCall &call, const Lane &lane, int64_t j, double *store, double *scratch,
+                        Tally &tally) {
+    const SegmentOutputs out = {{}, false, call.lambda, call.tension, splat(0.5), 1.0, call.virial};
+    finish_block(false, call.box, call.r, call.g, call.add, out, Cut(lane.n_bonds), lane, j, store,
+                 Arena(scratch, longest_piece), tally);
+}
+
+void long_velocities_eliminate(const VelocitiesCall &call, const Lane &lane, int64_t j, bool careful, double *store,
+                               double *scratch) {
+    eliminate_block(rate, call.box, Cut(lane.n_bonds), lane, j, call.r, call.v, AtomArray{}, careful, store,
+                    Arena(scratch, longest_piece), call.strain);
+}
+
+void long_velocities_finish(const VelocitiesCall &call, const Lane &lane, int64_t j, double *store, double *scratch,
+                            Tally &tally) {
+    // With equal masses, t is w times 2 lambda here.
+    const double mass = 1 / unit_of(lane);
+    const SegmentOutputs out = {{}, false, call.lambda, nullptr, splat(0.5 * mass), mass, call.virial};
+    finish_block(true, call.box, call.r, call.v, true, out, Cut(lane.n_bonds), lane, j, store,
+                 Arena(scratch, longest_piece), tally);
+}
+
 }  // namespace holonomic::HOL_ISA
-#endif
