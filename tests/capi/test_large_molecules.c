@@ -175,6 +175,53 @@ static void multipliers_are_right_to_a_few_roundings(void **state)
     }
 }
 
+/** A tree with an atom of 1e-6 between two of 1e12 nearly in line, and two more atoms in line behind it. */
+static molecule with_a_light_atom_between_heavy_ones(void)
+{
+    molecule m = large_segments(3000, 1, 0, 1);
+    random_stream s = random_seed(5);
+    const double mass[] = {1e12, 1e-6, 1e12, 1e-3, 1e3}, side[] = {0, 0, 1e-5, -1e-5, 3e-6};
+    const int64_t from[] = {0, 1, 2, 2, 4};
+    int64_t at[6] = {m.n_atoms - 1};
+    for (int i = 0; i < 5; ++i) {
+        const double u[3] = {0.93, -0.36 + side[i], 1e-6 * i};
+        at[i + 1] = molecule_grow(&m, at[from[i]], mass[i], 1, u);
+    }
+    molecule_finish(&m, &s);
+    return m;
+}
+
+/**
+ * Multipliers as doubles move a light atom between heavy ones by more than the rounding of its velocity. That must not
+ * move its neighbours: they get what their multipliers give them, to a few roundings.
+ */
+static void light_atoms_between_heavy_ones_do_not_move_their_neighbours(void **state)
+{
+    (void)state;
+    molecule m = with_a_light_atom_between_heavy_ones();
+    hol_chains *chains = large_chains(&m);
+    const size_t n = (size_t)m.n_bonds, size = 3 * (size_t)m.n_atoms;
+    double *v = copy_of(m.v, size), *mu = untouched(n);
+    CHECK(hol_project_velocities(chains, m.r, v, mu, NULL));
+    long double *moved = calloc(size, sizeof *moved), *terms = calloc(size, sizeof *terms);
+    for (size_t k = 0; k < n; ++k)
+        for (size_t e = 0; e < 2; ++e) {
+            const int64_t i = m.pairs[2 * k + e], j = m.pairs[2 * k + 1 - e];
+            for (int c = 0; c < 3; ++c) {
+                const long double term = 2 * (long double)mu[k] * ((long double)m.r[3 * j + c] - m.r[3 * i + c]);
+                moved[3 * i + c] += term / m.mass[i];
+                terms[3 * i + c] += fabsl(term) / m.mass[i];
+            }
+        }
+    for (size_t i = 0; i < size; ++i) {
+        const double error = (double)fabsl(m.v[i] + moved[i] - v[i]);
+        CHECK_AT_MOST(error, 16 * DBL_EPSILON * (fabs(m.v[i]) + fabs(v[i]) + (double)terms[i]));
+    }
+    free(v), free(mu), free(moved), free(terms);
+    hol_chains_destroy(chains);
+    molecule_free(&m);
+}
+
 /** Positions and the metric, which compute() leaves out. */
 typedef struct more_results {
     double *r, *v, *lambda, *force, log_det, energy;
@@ -252,6 +299,7 @@ int main(void)
         cmocka_unit_test(order_of_bonds_changes_no_bit),
         cmocka_unit_test(layout_changes_no_bit),
         cmocka_unit_test(multipliers_are_right_to_a_few_roundings),
+        cmocka_unit_test(light_atoms_between_heavy_ones_do_not_move_their_neighbours),
         cmocka_unit_test(masses_and_lengths_given_later_are_as_those_of_a_new_set),
         cmocka_unit_test(bad_data_leave_everything_untouched),
     };

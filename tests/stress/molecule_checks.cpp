@@ -13,10 +13,12 @@ namespace
 {
 
 constexpr long double eps = DBL_EPSILON;
-constexpr long double graph_limit = 1e-20L;     // graphs with a pivot below it are promised nothing
-constexpr long double inverse_limit = 1e-16L;   // nor their inverse below this
-constexpr long double straight_sine2 = 1e-21L;  // triangles below it are straight but for rounding
-constexpr long double singular = 1e-60L;
+constexpr long double graph_limit = 1e-20L;      // graphs with a pivot below it are promised nothing
+constexpr long double inverse_limit = 1e-16L;    // nor their inverse below this
+constexpr long double inverse_of_tree = 1e-50L;  // nor that of trees
+constexpr long double straight_sine2 = 1e-21L;   // triangles below it are straight but for rounding
+constexpr long double singular = 1e-60L;         // a pivot below it is taken for zero
+constexpr long double singular_tree = 1e-80L;    // the same in trees
 
 long double k_eps(const hostile_molecule &m)
 {
@@ -248,7 +250,8 @@ molecule_verdict check_alone(const hostile_molecule &m, molecule_facts &facts)
     molecule_verdict out;
     const molecule_problem p = m.problem();
     molecule_metric exact;
-    facts.regular = molecule_metric_make(&p, &exact) == 0 && exact.least_pivot > singular;
+    facts.regular =
+        molecule_metric_make(&p, &exact) == 0 && exact.least_pivot > (m.shape == TREES ? singular_tree : singular);
     facts.least_pivot = exact.least_pivot;
     facts.condition = exact.condition;
     const placement a = place({&m}, 0);
@@ -268,7 +271,7 @@ molecule_verdict check_alone(const hostile_molecule &m, molecule_facts &facts)
     if (facts.promised) {
         check_forces(m, alone, out);
         check_velocities(m, alone, out);
-        check_metric(a, m, exact, alone, !graph || exact.least_pivot > inverse_limit, out);
+        check_metric(a, m, exact, alone, exact.least_pivot > (graph ? inverse_limit : inverse_of_tree), out);
         check_positions(a, m, alone, out);
     }
     molecule_metric_free(&exact);

@@ -23,8 +23,8 @@ constexpr double mild = 0x1p20;
 constexpr double stiff = 0x1p-280;
 
 // Arms that don't give way are linearly dependent if their Gram determinant is below this. Two bonds in line to 1e-12,
-// and a third one as near to their plane, are still solved.
-constexpr double flat = 1e-52;
+// and a third one as near to their plane, are still solved. `coplanar`: as a sum of squares, which subtracts nothing.
+constexpr double flat = 1e-52, coplanar = is_fourfold ? 1e-80 : flat;
 
 // Among many arms, those that don't give way, three at most, take their directions out of all the others.
 struct Rigid {
@@ -170,7 +170,7 @@ HOL_NOINLINE bool eliminate_arms(Joint &x) {
     }
     x.loss.note(size, sum);
     x.det = sum;
-    return x.n_rigid <= 3 && abs(sum.hi) > flat;
+    return x.n_rigid <= 3 && abs(sum.hi) > coplanar;
 }
 
 // The arms of a joint as they stand on the two sides of <x^T, y^T>.

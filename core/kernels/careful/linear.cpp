@@ -28,10 +28,13 @@ static void force_terms(const Molecule &m, const ForcesCall &call, Wide *b) {
 void forces(const ForcesCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch, Tally &tally) {
     Memory memory = {reinterpret_cast<char *>(scratch)};
     Solution x(plan, lane, memory);
-    if (!x.open(call.r, call.box)) return note_bad(lane.molecule, tally);
-    force_terms(x.m, call, x.b);
-    if (!x.close()) return note_bad(lane.molecule, tally);
+    bool good = x.open(call.r, call.box);
+    if (good) {
+        force_terms(x.m, call, x.b);
+        good = x.close();
+    }
     if (x.lacks_digits()) return fourfold::careful::forces(call, plan, lane, scratch, tally);
+    if (!good) return note_bad(lane.molecule, tally);
     write_multipliers(x.m, x.t, call.lambda, call.tension);
     if (call.g.x) write_forces(x.m, call.g, call.add, x.system.pull);
     if (call.virial) add_virial(x.m, x.m.d, x.t, 1, tally);
@@ -40,12 +43,15 @@ void forces(const ForcesCall &call, const CarefulPlan &plan, const MoleculeLane 
 void solve(const SolveCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch, Tally &tally) {
     Memory memory = {reinterpret_cast<char *>(scratch)};
     Solution x(plan, lane, memory);
-    if (!x.open(call.r, call.box)) return note_bad(lane.molecule, tally);
-    // Z = 4 A and t = 2 lambda.
-    for (int32_t k = 0; k < plan.n_bonds; ++k)
-        x.b[k] = wide(0.5 * call.rhs[lane.first_bond + k] / x.m.mass_unit / x.m.unit[k]);
-    if (!x.close()) return note_bad(lane.molecule, tally);
+    bool good = x.open(call.r, call.box);
+    if (good) {
+        // Z = 4 A and t = 2 lambda.
+        for (int32_t k = 0; k < plan.n_bonds; ++k)
+            x.b[k] = wide(0.5 * call.rhs[lane.first_bond + k] / x.m.mass_unit / x.m.unit[k]);
+        good = x.close();
+    }
     if (x.lacks_digits()) return fourfold::careful::solve(call, plan, lane, scratch, tally);
+    if (!good) return note_bad(lane.molecule, tally);
     write_multipliers(x.m, x.t, call.lambda, call.tension);
     if (call.g.x) write_forces(x.m, call.g, call.add, x.system.pull);
     if (call.virial) add_virial(x.m, x.m.d, x.t, 1, tally);
@@ -56,19 +62,28 @@ static Wide stretching_of(const double *s, const Wide3 &d) {
     return dot(d, Wide3{s[0] * d.x + s[1] * d.y + s[2] * d.z, s[3] * d.y + s[4] * d.z, s[5] * d.z});
 }
 
+// d.(v_j - v_i) of each bond.
+static void rate_terms(const Molecule &m, const VelocitiesCall &call, Wide *b) {
+    for (int32_t k = 0; k < m.plan.n_bonds; ++k) {
+        const int32_t i = m.plan.atom_i[k], j = m.plan.atom_j[k];
+        Wide rate = dot(m.d[k], difference(read(call.v, m.lane, i), read(call.v, m.lane, j)));
+        if (call.strain) rate += m.unit[k] * stretching_of(call.strain, m.d[k]);
+        b[k] = over(rate, m.mass_unit);
+    }
+}
+
 void velocities(const VelocitiesCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch,
                 Tally &tally) {
     Memory memory = {reinterpret_cast<char *>(scratch)};
     Solution x(plan, lane, memory);
     const Molecule &m = x.m;
-    if (!x.open(call.r, call.box)) return note_bad(lane.molecule, tally);
-    for (int32_t k = 0; k < plan.n_bonds; ++k) {
-        Wide rate = dot(m.d[k], difference(read(call.v, lane, plan.atom_i[k]), read(call.v, lane, plan.atom_j[k])));
-        if (call.strain) rate += m.unit[k] * stretching_of(call.strain, m.d[k]);
-        x.b[k] = over(rate, m.mass_unit);
+    bool good = x.open(call.r, call.box);
+    if (good) {
+        rate_terms(m, call, x.b);
+        good = x.close();
     }
-    if (!x.close()) return note_bad(lane.molecule, tally);
     if (x.lacks_digits()) return fourfold::careful::velocities(call, plan, lane, scratch, tally);
+    if (!good) return note_bad(lane.molecule, tally);
     for (int32_t i = 0; i < plan.n_atoms; ++i) {
         const Vector3<double> v = read(call.v, lane, i);
         x.system.pull[i] = Wide3{wide(v.x), wide(v.y), wide(v.z)} + lane.w[i] * x.system.pull[i];

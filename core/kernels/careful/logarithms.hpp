@@ -1,5 +1,6 @@
 // ln det Z~ is the sum of the logarithms of pivots over their diagonal elements (theory (61)). If elimination has taken
-// less than half of a diagonal element, log1p of that part keeps the digits of a small logarithm.
+// less than half of a diagonal element, log1p of that part keeps the digits of a small logarithm. The part is what the
+// pivot leaves of the element where that has digits enough: what multipliers take may be a small difference of theirs.
 #ifndef HOLONOMIC_KERNELS_CAREFUL_LOGARITHMS_HPP
 #define HOLONOMIC_KERNELS_CAREFUL_LOGARITHMS_HPP
 
@@ -10,7 +11,8 @@ namespace HOL_ISA {
 namespace careful {
 
 HOL_NOINLINE double log_of_ratio(const Wide &removed, const Wide &pivot, const Wide &full) {
-    const Wide x = removed / full;
+    const Wide rest = full - pivot;
+    const Wide x = (rest.hi > 0x1p-30 * full.hi ? rest : removed) / full;
     if (x.hi < 0.5) return __builtin_log1p(-x.hi) - beyond_first(x) / (1 - x.hi);
     const Wide ratio = pivot / full;
     return __builtin_log(ratio.hi) + beyond_first(ratio) / ratio.hi;

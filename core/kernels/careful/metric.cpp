@@ -43,7 +43,10 @@ static void fixman_force(const Molecule &m, const Neighbours &x, double kT, Wide
 void metric(const MetricCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch, Tally &tally) {
     Memory memory = {reinterpret_cast<char *>(scratch)};
     Solution x(plan, lane, memory);
-    if (!x.open(call.r, call.box)) return note_bad(lane.molecule, tally);
+    if (!x.open(call.r, call.box)) {
+        if (x.lacks_digits()) return fourfold::careful::metric(call, plan, lane, scratch, tally);
+        return note_bad(lane.molecule, tally);
+    }
     const Wide det = log_det(x.m, x.system, memory), diagonal = log_of_diagonal(x.m);
     bool good = is_finite(det.hi) && is_finite(diagonal.hi);
     if (call.force.x && good) {

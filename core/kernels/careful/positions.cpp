@@ -62,7 +62,10 @@ static void move(Projection &p) {
 static bool step(Projection &p) {
     const Molecule &m = p.m;
     int32_t bad;
-    if (!factorize(m, p.graph, p.joint, bad)) return false;
+    if (!factorize(m, p.graph, p.joint, bad)) {
+        if (is_tree(m.plan)) p.joint.loss.largest = __builtin_inf();  // it may be regular all the same
+        return false;
+    }
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) p.sigma[k] = (0.5 * m.unit[k]) * p.sigma[k];
     solve(m, p.graph, p.sigma, p.change);
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) p.T[k] += p.change[k];

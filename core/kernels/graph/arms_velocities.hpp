@@ -24,7 +24,7 @@ HOL_NOINLINE bool project_with_arms(Linear<double> &z, const VelocitiesCall &cal
         write_arms<layout, true>(x, out, tally);
     };
     solve_in_pieces<layout, rates, false>(z);
-    if (!solved_lanes(z)) return false;
+    if (!solved_lanes(z) || (!call.v.is_float && has_torn_atoms(x))) return false;
     move(call.lambda, call.virial);
     if (call.v.is_float) return true;
     z.equations.velocity = velocity;

@@ -54,6 +54,15 @@ HOL_INLINE MaskOf<V> worth_new_factors(V error, V rate, int i) {
            less(Width<V>::all(i < 2 ? -1.0 : 1e-4), rate);
 }
 
+// New factors square the error. Where they leave much more, bonds are so nearly straight that they can bend either way,
+// and the way that Newton's method takes decides. Such a molecule is left to the careful solver, which takes the
+// straight one, with new factors at each solve. `before`: the error from which a solve with new factors came.
+template <class V>
+HOL_INLINE MaskOf<V> lost_its_way(V error, V before) {
+    const V part = max(Width<V>::all(0.01), 1e3 * before);
+    return less(Width<V>::all(1e-10), error) & less(part * before, error);
+}
+
 // From an error no larger than this, a solve with factors that have just taken the error down to less than `steady` of
 // itself needs no look at what it has done: it leaves less than a rounding, and could not leave more than this.
 constexpr double last_error = 64 * rounding;
@@ -91,7 +100,7 @@ HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const Posi
         if (any(active)) newton.first_factors();
     }
     V rate = error;  // new factors square the error
-    Mask proven = none;
+    Mask proven = none, fresh = active;
     for (int i = 0; i < call.max_iterations && any(active); ++i) {
         newton.solve(active);
         ++out.solves;
@@ -109,11 +118,12 @@ HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const Posi
         const Mask near = active & (less_equal(error, done) | floor);
         const Mask finished = near & less_equal(error, max(done, max(limits.accepted, limits.always_accepted)));
         out.converged = out.converged | finished;
-        active = active & ~finished & finite(error);
+        active = active & ~finished & finite(error) & ~(fresh & lost_its_way(error, before));
         if (!any(active)) break;
         rate = error / before;
         const Mask renewed = active & worth_new_factors<by_length>(error, rate, i);
         proven = ~renewed & less(rate, Width<V>::all(steady)) & less_equal(error, Width<V>::all(last_error));
+        fresh = renewed;
         if (!any(renewed)) continue;
         newton.factorize(renewed);
         rate = select(renewed, error, rate);

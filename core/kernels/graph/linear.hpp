@@ -26,6 +26,8 @@ struct Linear {
     static constexpr int64_t bond_values = sizeof(BondRow<V>) / sizeof(V), ring_values = sizeof(RingRow<V>) / sizeof(V),
                              strip_values = sizeof(StripColumns<V>) / sizeof(V);
 
+    static constexpr int64_t faint_values = (sizeof(Faint) + sizeof(double) - 1) / sizeof(double);
+
     // Rows beside those of bonds: of a tree the root's, see load.hpp.
     static int64_t more_rows(const Schedule &s) {
         return s.is_strip ? more_strip_rows : s.type == Schedule::tree ? 1 : 0;
@@ -38,7 +40,9 @@ struct Linear {
         n += bond_values * more_rows(s);
         if (s.is_strip) n += strip_values * s.n_atoms;
         n += 3 * 3 * static_cast<int64_t>(s.n_atoms);
-        if (has_pieces(s)) n += 5 + s.n_pieces * (6 + JointMemory<V, 0>::values(s.max_children)) + arm_values(s);
+        if (has_pieces(s))
+            n += faint_values + s.n_pieces * (1 + faint_values + JointMemory<V, 0>::values(s.max_children)) +
+                 arm_values(s);
         if (s.type == Schedule::graph) {
             const int64_t part = CoreMatrix<V>::most_parts(s);
             n += s.n_core + columns_ahead + 1 + s.n_entries + reaches(s) + (part > s.max_column ? part : s.max_column) +
@@ -78,9 +82,8 @@ struct Linear {
     void take_pieces(const LongTeam *team, Memory<double> &memory) {
         const int64_t joint = JointMemory<double, 0>::values(x.s.max_children);
         double *const slack = memory.values(x.s.n_pieces);
-        Faint *const faint = reinterpret_cast<Faint *>(memory.values(5 * (x.s.n_pieces + 1)));
-        static_assert(sizeof(Faint) <= 5 * sizeof(double), "");
-        for (int32_t p = 0; p <= x.s.n_pieces; ++p) faint[p] = {0, {}, false};
+        Faint *const faint = reinterpret_cast<Faint *>(memory.values(faint_values * (x.s.n_pieces + 1)));
+        for (int32_t p = 0; p <= x.s.n_pieces; ++p) faint[p] = {};
         pieces = {team, slack, faint, memory.values(x.s.n_pieces * joint), joint};
         x.pieces = &pieces;
         x.per_cancelled2 = 1 / most_cancelled2(x.s.n_bonds);

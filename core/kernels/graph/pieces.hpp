@@ -17,10 +17,16 @@ constexpr int32_t most_children_in_pieces = 64;
 HOL_INLINE bool has_pieces(const Schedule &s) { return s.n_pieces > 0 && s.max_children <= most_children_in_pieces; }
 
 // Atoms at which a bond is faint (siblings.hpp): found in a first solution, then eliminated carefully in a second one.
+// And all that have been eliminated carefully, or more than fit.
 struct Faint {
-    static constexpr int most = 7;
+    static constexpr int most = 7, most_careful = 20;
     int32_t n, slot[most];
+    int32_t n_careful, careful[most_careful];
     bool again;  // the second solution
+    void note_careful(int32_t s) {
+        if (n_careful < most_careful) careful[n_careful] = s;
+        ++n_careful;
+    }
     bool holds(int32_t s) const {
         for (int i = 0; i < n && again; ++i)
             if (slot[i] == s) return true;

@@ -17,7 +17,7 @@ HOL_NOINLINE void up_one(const Molecules<double> &x, int32_t slot, Faint &faint,
     const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
     if (__builtin_expect(faint.holds(slot), 0)) {
         if (k > 3 || !up_doubtful_joint(x, slot, k, keep)) slack = -1;
-        return;
+        return faint.note_careful(slot);
     }
     if (k > 3) return up_joint<0, false, keep>(rows, k, memory, slack);
     double before[8], own = 1;
@@ -34,6 +34,7 @@ HOL_NOINLINE void up_one(const Molecules<double> &x, int32_t slot, Faint &faint,
         row.t = before[2 * a + 1];
     }
     if (!up_doubtful_joint(x, slot, k, keep)) slack = -1;
+    faint.note_careful(slot);
 }
 
 template <int k, bool keep>
@@ -161,6 +162,7 @@ template <bool keep>
 static inline double up_piece(const Molecules<double> &x, int32_t piece, Memory<double> memory, const ArmWork &arm) {
     const Schedule::Runs &s = x.pieces->runs(x.s);
     Faint &faint = x.pieces->faint[piece];
+    faint.n_careful = 0;
     double slack = 1;
     const auto one = [&](int32_t slot) { up_one<keep>(x, slot, faint, memory, slack); };
     for (int32_t r = s.piece_start[piece]; r < s.piece_start[piece + 1]; ++r) {
@@ -206,6 +208,50 @@ template <bool keep>
 static inline void up_top(Molecules<double> &x, Memory<double> memory, const ArmWork &arm) {
     x.slack = min(up_piece<keep>(x, x.s.n_pieces, memory, arm), x.slack);
     up_joint<1, true, keep>(AtomRows<double>(x, x.s.n_tree), 1, memory, x.slack);
+}
+
+// Light atoms between heavy ones in line are pulled from both sides with much more than what moves them. Then the
+// rounding of multipliers moves them by more than their velocity's, and when that is projected away, their neighbours,
+// too. All such atoms have been eliminated carefully. Returns whether this one is torn so.
+constexpr double torn_part = 0x1p10;
+HOL_NOINLINE bool is_torn(const Molecules<double> &x, int32_t slot) {
+    double v[3];
+    read_row(*x.in.v, x.at.number(0, x.s.atom_of[slot]), v);
+    Vector3<double> pull = -x.row[slot].t * x.row[slot].d;
+    double sizes = abs(x.row[slot].t) * sqrt(x.row[slot].q);
+    for (int32_t c = x.s.child_start[slot]; c < x.s.child_start[slot + 1]; ++c) {
+        const BondRow<double> &row = x.row[x.s.child[c]];
+        pull = add_times(pull, row.t, row.d);
+        sizes += abs(row.t) * sqrt(row.q);
+    }
+    const Vector3<double> before = {v[0], v[1], v[2]}, after = add_times(before, x.w[slot], pull);
+    const auto size_of = [](const Vector3<double> &a) { return abs(a.x) + abs(a.y) + abs(a.z); };
+    return !(x.w[slot] * sizes <= torn_part * (size_of(before) + size_of(after)));
+}
+
+// Returns whether any atom is torn by the solution, of a molecule in pieces.
+template <class V>
+HOL_INLINE bool has_torn_atoms(const Molecules<V> &) {
+    return false;
+}
+static inline bool has_torn_atoms(const Molecules<double> &x) {
+    bool torn = false, all = false;
+    for (int32_t p = 0; x.pieces && p <= x.s.n_pieces; ++p) {
+        const Faint &faint = x.pieces->faint[p];
+        all = all || faint.n_careful > Faint::most_careful;
+        for (int32_t i = 0; i < faint.n_careful && !all; ++i) torn = torn || is_torn(x, faint.careful[i]);
+    }
+    if (!all) return torn;
+    const auto look = [&](int32_t first, int32_t end) {
+        for (int32_t slot = first; slot < end && !torn; ++slot) torn = is_torn(x, slot);
+    };
+    const Arms &arms = x.pieces->arms;
+    if (!arms.store) look(0, x.s.n_tree);
+    for (int32_t i = 0; arms.store && i < x.s.stretch_start[x.s.n_pieces]; ++i)
+        look(x.s.stretch[i].first, x.s.stretch[i].end);
+    for (int32_t a = 0; arms.store && a < x.s.n_arms; ++a)
+        if (arms.alone[a]) look(x.s.arm[a].bottom + 1, x.s.arm[a].top() + 1);
+    return torn;
 }
 
 // The sweeps of joint.hpp, in pieces where there are any.

@@ -39,7 +39,9 @@ struct VelocitiesWork {
     template <Layout layout, class V>
     void solve(Linear<V> &z, bool masses_known, Memory<V> memory) const {
         z.x.in = {&call.v, nullptr, nullptr, true, call.strain};
-        const unsigned good = load_and_solve<layout, rates, true>(z, masses_known), rest = bits(z.x.in_use()) & ~good;
+        const unsigned solved = load_and_solve<layout, rates, true>(z, masses_known);
+        const unsigned good = solved && !call.v.is_float && has_torn_atoms(z.x) ? 0 : solved;
+        const unsigned rest = bits(z.x.in_use()) & ~good;
         if (good) {
             if (call.lambda) write_bonds<false>(z.x, 0.5, call.lambda, good);
             if (call.virial) add_pulls_to_virial(z.x, good, tally);
