@@ -233,30 +233,6 @@ private:
     Numbers upper_bond_;  // of the atoms of trees, by local atom; -1: a root, or of the core
 };
 
-void point_into(Schedule &s, const Schedule::Memory &m) {
-    s.atom_i = m.atom_i.data();
-    s.atom_j = m.atom_j.data();
-    s.fixed = m.fixed.data();
-    s.atom_of = m.atom_of.data();
-    s.slot_of = m.slot_of.data();
-    s.bond_of = m.bond_of.data();
-    s.place_of = m.place_of.data();
-    s.parent = m.parent.data();
-    s.child_start = m.child_start.data();
-    s.child = m.child.data();
-    s.pair_start = m.pair_start.data();
-    s.from = m.from.data();
-    s.to = m.to.data();
-    s.meet_start = m.meet_start.data();
-    s.meet = m.meet.data();
-    s.meet_pair = m.meet_pair.data();
-    s.meet_pair_start = m.meet_pair_start.data();
-    s.column_start = m.column_start.data();
-    s.row = m.row.data();
-    s.update_start = m.update_start.data();
-    s.update = m.update.data();
-}
-
 void add_runs(Schedule &s, Schedule::Memory &m) {
     m.runs = runs_of(s);
     s.runs = m.runs.runs();
@@ -272,10 +248,8 @@ void add_runs(Schedule &s, Schedule::Memory &m) {
     s.n_shares = static_cast<std::int32_t>(m.arms.share_start.size()) - 1;
 }
 
-}  // namespace
-
-std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
-                                              const bool *fixed) {
+std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
+                                        const bool *fixed) {
     std::unique_ptr<Schedule> s(new Schedule());
     Schedule::Memory &m = *(s->memory = new Schedule::Memory());
     s->n_atoms = n_atoms;
@@ -287,14 +261,29 @@ std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t
     for (std::int32_t i = 0; i < n_atoms; ++i) m.fixed.push_back(fixed && fixed[i]);
     Maker(*s, m).make();
     point_into(*s, m);
+    return s;
+}
+
+}  // namespace
+
+std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
+                                              const bool *fixed) {
+    std::unique_ptr<Schedule> s = bare_schedule(n_atoms, n_bonds, pairs, fixed);
+    Schedule::Memory &m = *s->memory;
     if (n_bonds > largest_in_lanes && s->type == Schedule::tree) add_runs(*s, m);
     if (takes_flat_list(*s)) {
         make_flat_list(*s, m.flat);
         s->flat = &m.flat.list;
     }
+    if (n_bonds > largest_in_lanes && make_path_plan(*s, m.paths)) s->paths = &m.paths.plan;
     m.careful = std::make_unique<const CarefulShape>(n_atoms, n_bonds, pairs);
     s->careful = &m.careful->plan();
     return s;
+}
+
+std::unique_ptr<const Schedule> make_bare_schedule(std::int32_t n_atoms, std::int32_t n_bonds,
+                                                   const std::int32_t *pairs, const bool *fixed) {
+    return bare_schedule(n_atoms, n_bonds, pairs, fixed);
 }
 
 }  // namespace holonomic

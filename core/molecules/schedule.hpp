@@ -16,6 +16,10 @@ namespace holonomic {
 std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
                                               const bool *fixed);
 
+// The same without what large molecules and careful solvers need.
+std::unique_ptr<const Schedule> make_bare_schedule(std::int32_t n_atoms, std::int32_t n_bonds,
+                                                   const std::int32_t *pairs, const bool *fixed);
+
 // Memory that it occupies, in bytes.
 std::size_t bytes_of(const Schedule &s);
 

@@ -6,6 +6,30 @@ namespace holonomic {
 
 Schedule::~Schedule() { delete memory; }
 
+void point_into(Schedule &s, const Schedule::Memory &m) {
+    s.atom_i = m.atom_i.data();
+    s.atom_j = m.atom_j.data();
+    s.fixed = m.fixed.data();
+    s.atom_of = m.atom_of.data();
+    s.slot_of = m.slot_of.data();
+    s.bond_of = m.bond_of.data();
+    s.place_of = m.place_of.data();
+    s.parent = m.parent.data();
+    s.child_start = m.child_start.data();
+    s.child = m.child.data();
+    s.pair_start = m.pair_start.data();
+    s.from = m.from.data();
+    s.to = m.to.data();
+    s.meet_start = m.meet_start.data();
+    s.meet = m.meet.data();
+    s.meet_pair = m.meet_pair.data();
+    s.meet_pair_start = m.meet_pair_start.data();
+    s.column_start = m.column_start.data();
+    s.row = m.row.data();
+    s.update_start = m.update_start.data();
+    s.update = m.update.data();
+}
+
 namespace {
 
 template <class T>
@@ -22,6 +46,12 @@ std::size_t bytes(const FlatArrays &f) {
                  f.outer, f.tile, f.run, f.late, f.late_entry, f.visit);
 }
 
+std::size_t bytes(const PathArrays &p) {
+    std::size_t sum = bytes(p.path, p.piece, p.kind, p.leg, p.atom, p.bond, p.schedule);
+    for (const auto &schedule : p.schedule) sum += bytes_of(*schedule);
+    return sum;
+}
+
 }  // namespace
 
 std::size_t bytes_of(const Schedule &s) {
@@ -31,7 +61,8 @@ std::size_t bytes_of(const Schedule &s) {
                  m.pair_start, m.from, m.to, m.meet_start, m.meet, m.meet_pair, m.meet_pair_start, m.column_start,
                  m.row, m.update, m.update_start, m.fixed, m.arms.arm, m.arms.stretch, m.arms.stretch_start,
                  m.arms.share_start) +
-           bytes(m.runs) + bytes(m.arms.runs) + bytes(m.flat) + static_cast<std::size_t>(m.careful->memory());
+           bytes(m.runs) + bytes(m.arms.runs) + bytes(m.flat) + bytes(m.paths) +
+           (m.careful ? static_cast<std::size_t>(m.careful->memory()) : 0);
 }
 
 }  // namespace holonomic

@@ -9,6 +9,7 @@
 #include "core/molecules/careful_shape.hpp"
 #include "core/molecules/flat_list.hpp"
 #include "core/molecules/lists.hpp"
+#include "core/molecules/path_plan.hpp"
 #include "core/molecules/schedule_arms.hpp"
 #include "core/molecules/schedule_runs.hpp"
 
@@ -22,8 +23,12 @@ struct Schedule::Memory {
     ScheduleRuns runs;
     FlatArrays flat;
     ScheduleArms arms;
+    PathArrays paths;
     std::unique_ptr<const CarefulShape> careful;
 };
+
+// Lets a schedule point to its arrays, all but those of large molecules.
+void point_into(Schedule &s, const Schedule::Memory &m);
 
 }  // namespace holonomic
 #endif

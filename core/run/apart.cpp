@@ -41,6 +41,15 @@ bool is_unwritten(const AtomArray &array, std::int64_t i) {
                           : std::memcmp(array.x + i * array.stride, &unwritten, sizeof unwritten) == 0;
 }
 
+// Calls each(k, n) for places k .. k + n - 1 that follow each other in the caller's array.
+template <class Each>
+void for_runs(const std::vector<std::int64_t> &places, Each each) {
+    for (std::size_t k = 0, end; k < places.size(); k = end) {
+        for (end = k + 1; end < places.size() && places[end] == places[end - 1] + 1; ++end) continue;
+        each(k, end - k);
+    }
+}
+
 }  // namespace
 
 Apart::Apart(const Chains &chains, const Plan &plan, int wide) : chains_(chains), plan_(plan), memory_(nullptr) {
@@ -58,10 +67,11 @@ Apart::Values &Apart::copy_of(const double *callers, int width) {
         if (values_[i].callers == callers) return values_[i];
     const std::vector<std::int64_t> &places = chains_.reordered_bonds();
     double *const copy = reinterpret_cast<double *>(memory_);
-    const std::size_t bytes = sizeof(double) * static_cast<std::size_t>(width);
+    const std::size_t each = static_cast<std::size_t>(width), bytes = sizeof(double) * each;
     memory_ += rounded_up(static_cast<std::int64_t>(places.size() * bytes));
-    for (std::size_t k = 0; k < places.size(); ++k)
-        std::memcpy(copy + k * static_cast<std::size_t>(width), callers + places[k] * width, bytes);
+    for_runs(places, [&](std::size_t k, std::size_t n) {
+        std::memcpy(copy + k * each, callers + places[k] * width, n * bytes);
+    });
     values_[n_values_] = {callers, copy, nullptr, width};
     return values_[n_values_++];
 }
@@ -134,8 +144,10 @@ void Apart::put_back() const {
         const Values &values = values_[i];
         if (!values.result) continue;
         const std::size_t width = static_cast<std::size_t>(values.width), bytes = sizeof(double) * width;
-        for (std::size_t k = 0; k < places.size(); ++k)
-            std::memcpy(values.result + static_cast<std::size_t>(places[k]) * width, values.copy + k * width, bytes);
+        for_runs(places, [&](std::size_t k, std::size_t n) {
+            std::memcpy(values.result + static_cast<std::size_t>(places[k]) * width, values.copy + k * width,
+                        n * bytes);
+        });
     }
     for (int i = 0; i < n_atoms_; ++i) put_back(atoms_[i]);
 }

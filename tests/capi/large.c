@@ -67,6 +67,15 @@ molecule large_arms(int64_t first, int64_t last, double bend)
     return full_grown(&t);
 }
 
+molecule large_coils(const int64_t *length, int64_t count, int fixed)
+{
+    crown t = sapling(count + 1, (uint64_t)count);
+    for (int64_t a = 0; a < count; ++a) grow(&t, length[a], (int)(a % 2), 2);
+    for (int64_t e = 0; fixed && e < t.n_ends; e += 3)
+        if (t.neighbours[e] == 1) t.m.mass[t.end[e]] = t.m.inverse_mass[t.end[e]] = 0;
+    return full_grown(&t);
+}
+
 molecule large_mixed_arms(int64_t n)
 {
     crown t = sapling(n / 70 + 2, 7);

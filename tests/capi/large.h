@@ -14,6 +14,9 @@
  * most; above 1: anywhere. */
 molecule large_arms(int64_t first, int64_t last, double bend);
 
+/** Coils of these lengths, every other one with its numbers inwards; every third end is a fixed atom, if `fixed`. */
+molecule large_coils(const int64_t *length, int64_t count, int fixed);
+
 /** Straight arms beside coils, at least n atoms; some end at fixed atoms. */
 molecule large_mixed_arms(int64_t n);
 

@@ -170,12 +170,17 @@ struct PositionsBlock {
         tally.worst_bond = bond < s.n_bonds ? bond : 0;
     }
 
-    // Returns the lanes that need careful arithmetic; nothing of them has been written.
-    unsigned solve(MaskOf<V> in_use) {
+    // Finds multipliers, and writes nothing.
+    Solved<V> find(MaskOf<V> in_use) {
         largest_coordinate = load_bonds<layout>(newton, call, at);
         if (call.guess) load_guess();
         const Limits<V> limits(call, largest_coordinate, a_min);
-        const Solved<V> out = iterate<V, false, System::by_length>(newton, limits, call, in_use);
+        return iterate<V, false, System::by_length>(newton, limits, call, in_use);
+    }
+
+    // Returns the lanes that need careful arithmetic; nothing of them has been written.
+    unsigned solve(MaskOf<V> in_use) {
+        const Solved<V> out = find(in_use);
         const MaskOf<V> coarse = out.converged & coarse_moves();
         const unsigned moved = bits(out.converged & ~coarse), good = moved | bits(out.untouched);
         if (call.report) note_worst(good, out.error);

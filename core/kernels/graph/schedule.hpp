@@ -20,6 +20,7 @@ constexpr int32_t arm_step = 8, shortest_arm = 5 * arm_step + 1, longest_arm = 1
 
 struct CarefulPlan;  // core/kernels/careful/plan.hpp
 struct FlatList;     // core/kernels/graph/flat_list.hpp
+struct PathPlan;     // core/kernels/graph/paths.hpp
 
 // Atoms and bonds are renumbered. The *slot* of an atom: first the atoms of the trees, each after its children
 // (post-order), then the root of a tree, or the atoms of the core. The *place* of a bond: a bond of a tree has the slot
@@ -93,6 +94,8 @@ struct Schedule {
 
     // Of a large graph or tree, unless the list would be long: all its bonds along one list; else nullptr.
     const FlatList *flat;
+    // Of a large molecule of few knots and long paths; else nullptr.
+    const PathPlan *paths;
 
     // An arm: a path between two atoms of a large tree, whose inner atoms have one child each. Its atoms and its bonds
     // have consecutive numbers, so that it can be worked on as a chain is, without looking at the other arms. Its slots
@@ -122,7 +125,7 @@ struct Schedule {
     const int32_t *share_start;    // [n_shares + 1] arms that one thread works on at a time
     int32_t n_shares;
 
-    const CarefulPlan *careful;  // the same molecule for the careful solver
+    const CarefulPlan *careful;  // the same molecule for the careful solver; not of a knot
 
     Schedule() = default;
     Schedule(const Schedule &) = delete;

@@ -9,8 +9,9 @@
 
 namespace holonomic::HOL_ISA {
 
-// Inverse masses of the lanes: constant along each, or tables in scratch.
-static inline void set_masses(Block &block, const Lane *lane, Arena &arena) {
+// Inverse masses of the lanes: constant along each, or tables in scratch. `thrice`: also those that forces are
+// multiplied with as they are read.
+static inline void set_masses(Block &block, const Lane *lane, Arena &arena, bool thrice = true) {
     const double *table[W];
     double constant[W];  // where there is no table
     block.uniform_w = true;
@@ -34,7 +35,8 @@ static inline void set_masses(Block &block, const Lane *lane, Arena &arena) {
         return k > block.len[i] ? 1.0 : (table[i] ? table[i][k] : constant[i]);
     };
     interleave(table, block.len, 1, block.n + 1, w, value);
-    for (int i = 0; i < W; ++i) {
+    block.w = w;
+    for (int i = 0; i < W && thrice; ++i) {
         if (i > 0 && same) {
             block.w3[i] = block.w3[0];
             continue;
@@ -54,7 +56,6 @@ static inline void set_masses(Block &block, const Lane *lane, Arena &arena) {
         for (; k < block.n + 1 + W; ++k) w3[3 * k] = w3[3 * k + 1] = w3[3 * k + 2] = value(i, k);
         block.w3[i] = w3;
     }
-    block.w = w;
 }
 
 static inline void note_bad(const Block &block, mask bad, Tally &tally) {

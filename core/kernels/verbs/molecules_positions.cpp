@@ -25,15 +25,25 @@ static int64_t flat_bytes(const FlatList &s) {
 
 int64_t molecules_scratch_bytes(const Schedule &s) {
     const int64_t block = s.n_bonds <= largest_in_lanes ? block_bytes<vec>(s) : block_bytes<double>(s),
-                  flat = s.flat ? flat_bytes(*s.flat) : 0;
-    return (block > flat ? block : flat) + 64 + s.careful->scratch_bytes;
+                  flat = s.flat ? flat_bytes(*s.flat) : 0, paths = s.paths ? path_positions_bytes(s) : 0,
+                  most = block > flat ? block : flat;
+    return (most > paths ? most : paths) + 64 + s.careful->scratch_bytes;
 }
+
+// Along paths, where there are some and they will do.
+struct LargePositionsWork : PositionsWork {
+    template <class V>
+    void block(const MoleculeLane *lane, int used, bool known, double *scratch) const {
+        if (schedule.paths && path_positions(call, schedule, *lane, team, scratch, tally)) return;
+        PositionsWork::block<V>(lane, used, known && !schedule.paths, scratch);
+    }
+};
 
 void molecules_positions(const PositionsCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
     if (unit.schedule->type == Schedule::triangle)
         return for_each_triangle(TrianglePositionsVerb{call, tally}, call, unit, packed, scratch, tally);
-    PositionsWork work = {call, *unit.schedule, packed, tally, unit.team};
+    LargePositionsWork work = {{call, *unit.schedule, packed, tally, unit.team}};
     const StarPositionsVerb stars = {call, tally};
     if (call.guess || !(do_stars<3>(stars, work, unit, scratch) || do_stars<4>(stars, work, unit, scratch)))
         for_each_block(unit, scratch, work);

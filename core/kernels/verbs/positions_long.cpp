@@ -6,6 +6,7 @@
 #include "core/kernels/memory/cut.hpp"
 #include "core/kernels/memory/outputs.hpp"
 #include "core/kernels/newton/attempts.hpp"
+#include "core/kernels/newton/seams.hpp"
 #include "core/kernels/tally.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
@@ -32,18 +33,13 @@ HOL_NOINLINE void note_worst_of_pieces(const Newton &x, const Window &window, co
     }
 }
 
-enum WindowResult { window_failed, window_untouched, window_solved };
-
 // Finds the multipliers of the pieces and puts them into tau[n_bonds] of the chain.
 template <bool uniform_w, bool uniform_a>
 static inline WindowResult solve_window(const Window &window, const PositionsCall &call, const BondLengths &a,
                                         const Lane &lane, Arena arena, double *tau, Tally &tally) {
     const Block &block = window.block;
     const SegmentBlock &s = window.own;
-    // The lengths at the ends of a piece must be within the tolerance with the multipliers of its neighbour, too.
-    PositionsCall strict = call;
-    strict.tolerance = call.tolerance / 8;
-    strict.v = AtomArray{};
+    const PositionsCall strict = call_for_pieces(call);
     Positions<uniform_w, uniform_a> positions(block, window.lane, strict, a, arena, tally);
     Newton &x = positions.x;
     const Source source = {&call.box, &positions.r};
@@ -82,40 +78,12 @@ static inline WindowResult solve_window(const PositionsCall &call, const Lane &l
         window.block.uniform_w, !a.a2);
 }
 
-// Returns the largest |D.D - a^2| / a^2 of the bonds on either side of atom `seam`, moved by tau; notes it if it is the
-// largest so far.
-static inline double seam_error(const PositionsCall &call, const Lane &lane, int64_t seam, const double *tau,
-                                Arena arena, Tally &tally) {
-    const int64_t from = seam - 2 > 0 ? seam - 2 : 0, end = seam + 2 < lane.n_bonds ? seam + 2 : lane.n_bonds;
-    const long n = static_cast<long>(end - from);
-    Packed r_ref = {}, r = {};
-    open_lane(call.r_ref, lane, from, n, n, r_ref, 0, arena.doubles(staged_size(n)), true);
-    open_lane(call.r, lane, from, n, n, r, 0, arena.doubles(staged_size(n)), true);
-    Vector3<double> pull[6] = {}, move[5];  // pull[k + 1]: of bond from + k
-    const auto bond = [](const Box &box, const double *p) { return bond_vector(box, p, p + 3); };
-    for (long k = 0; k < n; ++k) pull[k + 1] = tau[from + k] * bond(call.box_ref, r_ref.lane[0] + 3 * k);
-    for (long k = 0; k <= n; ++k) move[k] = relative_w(lane, from + k) * (pull[k + 1] - pull[k]);
-    double worst = 0;
-    for (int64_t k = seam - 1; k <= seam; ++k) {
-        const long i = static_cast<long>(k - from);
-        const double a = lane.length ? lane.length[k] : lane.length_uniform;
-        const Vector3<double> d = bond(call.box, r.lane[0] + 3 * i) + (move[i + 1] - move[i]);
-        const double error = abs(excess(d, a * a)) / (a * a);
-        if (!(error <= worst)) worst = error;
-        if (!(error > tally.worst)) continue;
-        tally.worst = error;
-        tally.worst_bond = k;
-    }
-    return worst;
-}
-
 // Whether the multipliers of the pieces fit together.
 static inline bool windows_fit(const PositionsCall &call, const Lane &lane, const double *tau, Arena arena,
                                Tally &tally) {
     const Cut cut = windows(lane.n_bonds);
-    const double enough = call.tolerance > floor_error ? call.tolerance : floor_error;
     for (int64_t i = 1; i < cut.blocks * W; ++i)
-        if (!(seam_error(call, lane, cut.first(i), tau, arena, tally) <= enough)) return false;
+        if (!(seam_error(call, lane, cut.first(i), tau, arena, tally) <= enough_at_seams(call))) return false;
     return true;
 }
 
@@ -144,7 +112,7 @@ static void finish_window(const PositionsCall &call, const Lane &lane, int64_t j
             call.lambda[lane.first_bond + k] = moved ? mul_add(factor, tau[k], 0.0) : 0.0;  // zeros as +0
     if (!moved) return;
     Arena arena(scratch, longest_piece);
-    set_masses(s.block, s.lane, arena);
+    set_masses(s.block, s.lane, arena, false);
     Newton x(s.block, BondLengths{}, arena);
     load_bond_vectors(s.block, call.box_ref, open(call.r_ref, s.block, s.lane, arena, true), x.b);
     const double *own_tau[W];
@@ -168,21 +136,6 @@ static void finish_window(const PositionsCall &call, const Lane &lane, int64_t j
     if (call.virial) add_virial(own_block(s), x, first_lanes(W), call.dt, tally);
 }
 
-// A largest number that threads share.
-struct SharedLargest {
-    double value = 0;
-    double seen() const {
-        double a;
-        __atomic_load(&value, &a, __ATOMIC_RELAXED);
-        return a;
-    }
-    void raise(double to) {
-        double a = seen();
-        while (to > a && !__atomic_compare_exchange(&value, &a, &to, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
-        }
-    }
-};
-
 bool long_positions(const PositionsCall &call, const Lane &lane, const LongTeam &team, double *tau, Tally &tally) {
     if (call.r_ref.x == call.r.x) return false;  // the bonds of the reference are needed while atoms are moved
     const int64_t n = windows(lane.n_bonds).blocks;
@@ -192,14 +145,8 @@ bool long_positions(const PositionsCall &call, const Lane &lane, const LongTeam 
     for_each_window(team, n, sum, [&](int64_t j, double *scratch, Tally &part) {
         if (__atomic_load_n(&seen[window_failed], __ATOMIC_RELAXED)) return;
         // A window looks for the bond with its largest error only if no other window is known to have a larger one.
-        const double most = worst.seen(), known = most > 0 ? most * (1 - epsilon) : -4.9e-324;
-        part.worst = known;
-        part.worst_chain = lane.chain;
-        const WindowResult result = solve_window(call, lane, j, tau, Arena(scratch, longest_piece), part);
-        if (part.worst == known)
-            part.worst_chain = -1;
-        else
-            worst.raise(part.worst);
+        const WindowResult result = worst.look(
+            lane.chain, part, [&] { return solve_window(call, lane, j, tau, Arena(scratch, longest_piece), part); });
         __atomic_store_n(&seen[result], true, __ATOMIC_RELAXED);
     });
     const bool solved = seen[window_solved];

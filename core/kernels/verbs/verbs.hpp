@@ -34,6 +34,9 @@ int64_t molecules_scratch_bytes(const Schedule &);
 void molecules_forces(const ForcesCall &, const MoleculeUnit &, double *scratch, Tally &);
 void molecules_velocities(const VelocitiesCall &, const MoleculeUnit &, double *scratch, Tally &);
 void molecules_positions(const PositionsCall &, const MoleculeUnit &, double *scratch, Tally &);
+int64_t path_positions_bytes(const Schedule &);
+bool path_positions(const PositionsCall &, const Schedule &, const MoleculeLane &, const LongTeam *, double *scratch,
+                    Tally &);
 void molecules_solve(const SolveCall &, const MoleculeUnit &, double *scratch, Tally &);
 
 }  // namespace holonomic::HOL_ISA

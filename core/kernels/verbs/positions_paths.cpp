@@ -1,0 +1,85 @@
+// Position level of one large molecule along its paths (graph/paths.hpp): knots, then pieces of paths, then whether what
+// they have found fits where they meet, and only then anything is written. As in a long chain (positions_long.cpp) the
+// result does not rest on how far a bond is felt: all lengths have been tested by then.
+#include "core/kernels/graph/path_knots.hpp"
+#include "core/kernels/graph/path_pieces.hpp"
+#include "core/kernels/verbs/verbs.hpp"
+
+namespace holonomic::HOL_ISA {
+
+using namespace graph;
+
+static int64_t part_values(const PathPlan &plan) {
+    const int64_t knots = knot_values(plan), pieces = scratch_doubles(longest_piece);
+    return knots > pieces ? knots : pieces;
+}
+static int64_t up_to_line(int64_t n) { return (n + most_lanes - 1) / most_lanes * most_lanes; }
+
+int64_t path_positions_bytes(const Schedule &s) {
+    return static_cast<int64_t>(sizeof(double)) *
+           (up_to_line(s.n_bonds + 3 * static_cast<int64_t>(s.paths->n_atoms)) + part_values(*s.paths));
+}
+
+static void solve(PathsWork &x, Tally &sum) {
+    solve_parts(x, n_knot_blocks(x.plan), sum, [&](int64_t j, double *scratch, Tally &part) {
+        return solve_knots(x, knots_of_block(x.plan, j), scratch, part);
+    });
+    if (x.has(window_failed)) return;
+    solve_parts(x, n_piece_blocks(x.plan), sum,
+                [&](int64_t j, double *scratch, Tally &part) { return solve_pieces(x, j, scratch, part); });
+}
+
+static bool all_fit(PathsWork &x, Tally &sum) {
+    for_parts(x, n_piece_blocks(x.plan), sum, [&](int64_t j, double *scratch, Tally &part) {
+        for (int64_t i = j * W; i < x.plan.n_pieces && i < (j + 1) * W; ++i)
+            if (!piece_fits(x, x.plan.piece[i], Arena(scratch, longest_piece), part)) x.note(window_failed);
+    });
+    return !x.has(window_failed);
+}
+
+// Bonds of no path.
+static void add_virial_of_knots(const PathsWork &x, const Schedule &s, Tally &sum) {
+    const Atoms<double> at(&x.molecule, 1);
+    MoleculesVirial<double> virial;
+    for (int32_t k = 0; k < x.plan.n_bonds; ++k) {
+        const int32_t bond = x.plan.bond[k];
+        Vector3<double> b = read<elements>(x.call.r_ref, at, s.atom_j[bond]) -
+                            read<elements>(x.call.r_ref, at, s.atom_i[bond]),
+                        unused = {};
+        take_image<false>(x.call.box_ref, b, unused);
+        virial.add(b, x.tau[bond] * b);
+    }
+    virial.count(1, 1 / (x.call.dt * x.call.dt), sum);
+}
+
+static void write_all(PathsWork &x, const Schedule &s, bool moved, Tally &sum) {
+    for_parts(x, n_piece_blocks(x.plan), sum,
+              [&](int64_t j, double *scratch, Tally &part) { finish_pieces(x, j, moved, scratch, part); });
+    for (int32_t k = 0; k < x.plan.n_bonds && x.call.lambda; ++k) write_lambda(x, x.plan.bond[k], 1, moved);
+    if (!moved) return;
+    with_layout(Atoms<double>(&x.molecule, 1), x.packed, [&](auto layout) {
+        move_knots<decltype(layout)::value>(x, s.fixed);
+        return true;
+    });
+    if (x.call.virial) add_virial_of_knots(x, s, sum);
+}
+
+bool path_positions(const PositionsCall &call, const Schedule &s, const MoleculeLane &molecule, const LongTeam *team,
+                    double *scratch, Tally &tally) {
+    if (call.r_ref.x == call.r.x) return false;  // the bonds of the reference are needed while atoms are moved
+    const PositionsCall strict = call_for_pieces(call);
+    const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
+    Vector3<double> *const move = reinterpret_cast<Vector3<double> *>(scratch + s.n_bonds);
+    double *const work = scratch + up_to_line(s.n_bonds + 3 * static_cast<int64_t>(s.paths->n_atoms));
+    PathsWork x = {call, strict, *s.paths, molecule, packed, team, scratch, move, work, scratch};
+    Tally sum = empty_tally();
+    solve(x, sum);
+    const bool moved = x.has(window_solved);
+    if (x.has(window_failed) || (moved && x.has(window_untouched)) || (moved && !all_fit(x, sum))) return false;
+    write_all(x, s, moved, sum);
+    sum.n_corrected = moved;
+    add(tally, sum);
+    return true;
+}
+
+}  // namespace holonomic::HOL_ISA
