@@ -61,9 +61,8 @@ private:
         Numbers ends;
         for (const PathPlan::Path &path : a_.path)
             for (const std::int32_t atom : {path.first_atom, path.first_atom + path.n_bonds}) ends.push_back(atom);
-        begin_ = invert(s_.n_atoms, static_cast<std::int32_t>(a_.path.size()), [&](std::int32_t p, int end) {
-            return ends[at(2 * p + end)];
-        });
+        begin_ = invert(s_.n_atoms, static_cast<std::int32_t>(a_.path.size()),
+                        [&](std::int32_t p, int end) { return ends[at(2 * p + end)]; });
         for (const PathPlan::Path &path : a_.path) {
             if (!path.begins_free()) find_knot(path.first_atom);
             if (!path.ends_free()) find_knot(path.first_atom + path.n_bonds);
@@ -128,9 +127,9 @@ private:
                 a_.piece.push_back({static_cast<std::int32_t>(p), from, from + n / parts + (i < n % parts ? 1 : 0)});
             }
         }
-        std::stable_sort(
-            a_.piece.begin(), a_.piece.end(),
-            [](const PathPlan::Piece &a, const PathPlan::Piece &b) { return a.end - a.from > b.end - b.from; });
+        std::stable_sort(a_.piece.begin(), a_.piece.end(), [](const PathPlan::Piece &a, const PathPlan::Piece &b) {
+            return a.end - a.from > b.end - b.from;
+        });
     }
 
     void list_kinds() {
@@ -189,9 +188,9 @@ private:
     const Schedule &s_;
     PathArrays &a_;
     const Lists bonds_;
-    Lists begin_;                               // paths by the atoms at their ends
-    Numbers knot_of_;                           // an atom's number in its knot
-    std::vector<unsigned char> in_path_;        // bonds that are in paths, or done
+    Lists begin_;                         // paths by the atoms at their ends
+    Numbers knot_of_;                     // an atom's number in its knot
+    std::vector<unsigned char> in_path_;  // bonds that are in paths, or done
     std::map<Numbers, std::vector<Knot>> of_kind_;
 };
 

@@ -48,8 +48,8 @@ static long double *moves_of(const step *s)
     for (int64_t k = 0; k < s->m.n_bonds; ++k)
         for (int c = 0; c < 3; ++c) {
             const int64_t i = s->m.pairs[2 * k], j = s->m.pairs[2 * k + 1];
-            const long double pull = 2 * (long double)dt * dt * s->lambda[k] *
-                                     ((long double)s->m.r[3 * j + c] - s->m.r[3 * i + c]);
+            const long double pull =
+                2 * (long double)dt * dt * s->lambda[k] * ((long double)s->m.r[3 * j + c] - s->m.r[3 * i + c]);
             move[3 * i + c] += s->m.inverse_mass[i] * pull;
             move[3 * j + c] -= s->m.inverse_mass[j] * pull;
         }
@@ -106,8 +106,9 @@ static void check_step(const step *s)
 /** Lengths about those at which a path is one, and at which it is cut in two and in three. */
 static molecule coils(int fixed)
 {
-    static const int64_t lengths[] = {512, 513, 514, 515, 516, 517, 518, 519, 1026, 1027, 1028, 1029, 1030, 127, 128,
-                                      129, 130, 131, 1300, 700, 1540, 1541, 2000, 900, 3, 1600, 1, 1700, 800, 1800};
+    static const int64_t lengths[] = {512,  513,  514,  515, 516, 517,  518, 519,  1026, 1027,
+                                      1028, 1029, 1030, 127, 128, 129,  130, 131,  1300, 700,
+                                      1540, 1541, 2000, 900, 3,   1600, 1,   1700, 800,  1800};
     return large_coils(lengths, quick_run() ? 13 : (int64_t)(sizeof lengths / sizeof *lengths), fixed);
 }
 

@@ -147,10 +147,9 @@ static inline WindowResult solve_knots(const PathsWork &x, const Knots &knots, d
         const bool untouched = !any(all & ~out.untouched);
         if (!untouched && any(all & (~out.converged | block.coarse_moves()))) return window_failed;
         if (x.call.report)
-            for_bonds_of_knots(x.plan, knots, s, reach, untouched ? PathPlan::bonds_of_end : 1,
-                               [&](int32_t i, int32_t bond, int32_t place) {
-                                   note_worse(x, newton.left_of(place)[i], bond, part);
-                               });
+            for_bonds_of_knots(
+                x.plan, knots, s, reach, untouched ? PathPlan::bonds_of_end : 1,
+                [&](int32_t i, int32_t bond, int32_t place) { note_worse(x, newton.left_of(place)[i], bond, part); });
         if (untouched) return window_untouched;
         if (out.solves > part.iterations) part.iterations = out.solves;
         keep_knots(x, knots, newton, reach);

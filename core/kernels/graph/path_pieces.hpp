@@ -54,8 +54,7 @@ static inline bool open_pieces(const PathsWork &x, int64_t j, Arena &arena, Path
 static inline Vector3<double> pull_of(const PathsWork &x, const Lane &path, int64_t k, int64_t atom, Arena arena) {
     Packed r_ref = {};
     open_lane(x.call.r_ref, path, k, 1, 1, r_ref, 0, arena.doubles(staged_size(1)), true);
-    return (path.w[atom] * x.tau[path.first_bond + k]) *
-           bond_vector(x.call.box_ref, r_ref.lane[0], r_ref.lane[0] + 3);
+    return (path.w[atom] * x.tau[path.first_bond + k]) * bond_vector(x.call.box_ref, r_ref.lane[0], r_ref.lane[0] + 3);
 }
 
 // Where a lane begins or ends with its path's own bonds, the bond beyond displaces the atom there.
@@ -102,8 +101,7 @@ static inline WindowResult solve_pieces(const PathsWork &x, int64_t j, double *s
     const mask all = p.block.in_use();
     positions.load();
     displace_ends(x, p, newton.D, positions.arena);
-    const Outcome out =
-        solve_positions<false, false, false>(p.block, newton, x.strict, carried, all, false);
+    const Outcome out = solve_positions<false, false, false>(p.block, newton, x.strict, carried, all, false);
     const bool untouched = !any(all & ~out.untouched);
     if (!untouched && any(all & (~out.converged | coarse_moves<false>(p.block, newton, carried, all))))
         return window_failed;
@@ -134,8 +132,8 @@ static inline bool piece_fits(const PathsWork &x, const PathPlan::Piece &piece, 
     return fits;
 }
 
-// W pieces to be written: the bonds of their paths from where the piece before ends, and the atoms behind them. The bond
-// behind the last atom is in the lane, too.
+// W pieces to be written: the bonds of their paths from where the piece before ends, and the atoms behind them. The
+// bond behind the last atom is in the lane, too.
 struct WrittenPieces {
     Block block, own;  // own: without that bond
     Lane lane[W];

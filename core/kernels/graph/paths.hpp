@@ -30,9 +30,9 @@ struct PathPlan {
     const Piece *piece;
     int32_t n_pieces;
 
-    // A knot: bonds that are in no path, the atoms at their ends and at those of paths, and of each path that ends there
-    // a leg, its first bonds from there. A bond is felt along a leg no farther than the leg reaches; how far that is
-    // depends on the bonds, so there are schedules for several reaches.
+    // A knot: bonds that are in no path, the atoms at their ends and at those of paths, and of each path that ends
+    // there a leg, its first bonds from there. A bond is felt along a leg no farther than the leg reaches; how far that
+    // is depends on the bonds, so there are schedules for several reaches.
     static constexpr int n_reaches = 3;
     static int32_t reach(int i) { return i == 0 ? 40 : i == 1 ? 56 : 98; }
     struct Leg {
@@ -44,7 +44,7 @@ struct PathPlan {
     struct Kind {
         const Schedule *schedule[n_reaches];
         int32_t n_atoms, n_bonds, n_legs;
-        int32_t first, count;                      // knots
+        int32_t first, count;                       // knots
         int32_t first_atom, first_bond, first_leg;  // of the first of them in the lists below
     };
     const Kind *kind;
