@@ -97,7 +97,8 @@ static inline WindowResult solve_pieces(const PathsWork &x, int64_t j, double *s
     const BondLengths a = bond_lengths(p.block, p.lane, arena);
     Positions<false, false> positions(p.block, p.lane, x.strict, a, arena, part);
     ChainNewton &newton = positions.x;
-    Carried carried(p.block, newton, x.strict, positions.r);
+    const Source source = {&x.strict.box, &positions.r};
+    Carried carried(p.block, newton, x.strict, source);
     const mask all = p.block.in_use();
     positions.load();
     displace_ends(x, p, newton.D, positions.arena);
