@@ -4,6 +4,7 @@
 #include <limits>
 #include <tuple>
 
+#include "core/kernels/graph/schedule.hpp"
 #include "core/molecules/chains.hpp"
 
 namespace holonomic {
@@ -44,6 +45,13 @@ public:
 
 private:
     const Kind &kind(std::int64_t group) const { return chains_.kind_of(groups_[at(group)]); }
+
+    // Not in lanes beside others of its kind (core/kernels/graph/blocks.hpp): a piece of its own, so that threads
+    // share what is large.
+    bool works_alone(std::int32_t shape, std::int64_t n_bonds) const {
+        if (shape == linear) return n_bonds > longest_lane;
+        return n_bonds > largest_in_lanes || plan_->schedules[at(shape)]->flat;
+    }
 
     // Whether a molecule has fixed atoms that stand elsewhere, too.
     bool shares(const Group &group, std::int64_t index) const {
@@ -137,10 +145,10 @@ private:
             plan_->shapes.push_back(run.shape);
         }
         // Molecules that are not alike from one to the next are loose, and so are parts of a chain of several.
-        const bool single = run.shape == linear && run.n_bonds > longest_lane;
+        const bool alone = works_alone(run.shape, run.n_bonds);
         const bool whole = run.part < 0 || plan_->parts[at(run.part)].n_bonds == run.n_bonds;
-        const std::int64_t block = single ? 1 : widest, size = kind(run.group).n_atoms();
-        const std::int64_t per_piece = single ? 1 : std::max(widest, bonds_per_piece / run.n_bonds / widest * widest);
+        const std::int64_t block = alone ? 1 : widest, size = kind(run.group).n_atoms();
+        const std::int64_t per_piece = alone ? 1 : std::max(widest, bonds_per_piece / run.n_bonds / widest * widest);
         const auto stage = [&](std::int64_t i) { return run.stage < 0 ? -1 : run.stage + (i - run.begin) * size; };
         std::int64_t begin = run.begin;
         while (whole && run.end - begin >= block) {
@@ -188,6 +196,7 @@ private:
             for (end = first; end < loose_.size(); bonds += loose_[end++].n_bonds) {
                 const Loose &one = loose_[end];
                 if (one.where != head.where || one.shape != head.shape) break;
+                if (end > first && works_alone(one.shape, one.n_bonds)) break;
                 if (end > first && (end - first) % at(loose_piece) == 0 && bonds >= loose_piece_bonds) break;
                 const Group &group = groups_[at(one.group)];
                 if (chains)
