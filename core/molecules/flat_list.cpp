@@ -284,7 +284,7 @@ private:
 
 bool takes_flat_list(const Schedule &s) {
     const std::int32_t largest = s.type == Schedule::graph ? largest_graph_in_lanes : largest_in_lanes;
-    if (s.type == Schedule::ring || s.is_strip || s.n_bonds <= largest) return false;
+    if (s.type == Schedule::ring || s.n_bonds <= largest) return false;
     Numbers bonds(at(s.n_atoms));
     for (std::int32_t k = 0; k < s.n_bonds; ++k)
         for (const std::int32_t i : {s.atom_i[k], s.atom_j[k]}) ++bonds[at(i)];

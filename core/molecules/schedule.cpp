@@ -5,7 +5,6 @@
 
 #include "core/molecules/elimination_order.hpp"
 #include "core/molecules/schedule_memory.hpp"
-#include "core/molecules/strip_order.hpp"
 
 namespace holonomic {
 
@@ -25,7 +24,7 @@ public:
             number_ring();
         } else {
             s_.type = Schedule::graph;
-            if (!number_strip()) number_core();
+            number_core();
         }
         invert_numbers();
         list_children();
@@ -112,21 +111,6 @@ private:
         } while (atom != 0);
     }
 
-    // Along a strip of triangles, if it is one that fits into lanes.
-    bool number_strip() {
-        if (s_.n_tree > 0 || s_.n_bonds > largest_in_lanes) return false;
-        Numbers order = order_of_strip(s_.n_atoms, m_.atom_i, m_.atom_j);
-        if (order.empty()) return false;
-        s_.is_strip = true;
-        m_.atom_of = std::move(order);
-        Numbers slot_of(at(s_.n_atoms));
-        for (std::int32_t i = 0; i < s_.n_atoms; ++i) slot_of[at(m_.atom_of[at(i)])] = i;
-        m_.bond_of.resize(at(s_.n_bonds));
-        for (std::int32_t k = 0; k < s_.n_bonds; ++k)
-            m_.bond_of[at(place_in_strip(slot_of[at(m_.atom_i[at(k)])], slot_of[at(m_.atom_j[at(k)])]))] = k;
-        return true;
-    }
-
     void number_core() {
         Numbers core, core_number(at(s_.n_bonds), -1);
         for (std::int32_t k = 0; k < s_.n_bonds; ++k) {
@@ -154,8 +138,8 @@ private:
         for (std::int32_t p = 0; p < s_.n_core; ++p) {
             const std::int32_t k = m_.bond_of[at(s_.n_tree + p)];
             const std::int32_t i = m_.slot_of[at(m_.atom_i[at(k)])], j = m_.slot_of[at(m_.atom_j[at(k)])];
-            m_.from.push_back(round ? p : s_.is_strip ? std::min(i, j) : i);
-            m_.to.push_back(round ? (p + 1) % s_.n_core : s_.is_strip ? std::max(i, j) : j);
+            m_.from.push_back(round ? p : i);
+            m_.to.push_back(round ? (p + 1) % s_.n_core : j);
         }
     }
 

@@ -109,21 +109,19 @@ static inline bool up_segments(const Molecules<double> &x, int32_t a) {
     return true;
 }
 
-template <Layout layout, int terms>
-HOL_NOINLINE void up_arm(Linear<double> &z, int32_t a, Faint &faint, Memory<double> memory, double &slack) {
+HOL_NOINLINE void up_arm(Linear<double> &z, int terms, int32_t a, Faint &faint, Memory<double> memory, double &slack) {
     const Molecules<double> &x = z.x;
     const Schedule::Arm &arm = x.s.arm[a];
     unsigned char &alone = x.pieces->arms.alone[a];
-    load_slots<layout, terms>(z, arm.top(), arm.top() + 1, false);
+    load_slots(z, terms, arm.top(), arm.top() + 1, false);
     if (!alone && up_segments(x, a)) return;
     alone = 1;
-    load_slots<layout, terms>(z, arm.bottom + 1, arm.top(), false);
+    load_slots(z, terms, arm.bottom + 1, arm.top(), false);
     for (int32_t slot = arm.bottom + 1; slot <= arm.top(); ++slot) up_one<false>(x, slot, faint, memory, slack);
 }
 
 // Goes down an arm and finds the multipliers of its separators.
-template <bool look>
-HOL_NOINLINE void down_arm(const Molecules<double> &x, int32_t a, Faint &faint, double &slack) {
+HOL_NOINLINE void down_arm(const Molecules<double> &x, int32_t a, Faint &faint, double &slack, bool look) {
     const Schedule::Arm &arm = x.s.arm[a];
     if (x.pieces->arms.alone[a]) {
         for (int32_t slot = arm.top(); slot > arm.bottom; --slot) down_atom(x, slot, faint, slack, look);
@@ -149,26 +147,24 @@ HOL_NOINLINE void down_arm(const Molecules<double> &x, int32_t a, Faint &faint, 
 }
 
 // v += w G of the atoms in these slots.
-template <Layout layout>
 HOL_INLINE void move_velocities(const Molecules<double> &x, const AtomArray &v, int32_t first, int32_t end) {
-    write_slots<layout>(x, v, 1, first, end, [&](int32_t slot) {
-        return add_times(read<layout>(v, x.at, x.s.atom_of[slot]), x.w[slot], pull_on(x, slot));
+    write_slots(x, v, first, end, [&](int32_t slot) {
+        return add_times(read(v, x.at, x.s.atom_of[slot]), x.w[slot], pull_on(x, slot));
     });
 }
 
 // Writes the outputs of an arm that was worked on atom by atom.
-template <Layout layout, bool weighted>
-HOL_NOINLINE void write_alone(const Molecules<double> &x, const Schedule::Arm &arm, const Outputs &out, Tally &tally) {
+HOL_NOINLINE void write_alone(const Molecules<double> &x, bool weighted, const Schedule::Arm &arm, const Outputs &out, Tally &tally) {
     const int32_t first = arm.ascending ? arm.bottom : arm.bottom + 1, end = first + arm.n_bonds - 1;
     if (out.lambda) write_bonds<false>(x, 0.5, out.lambda, 1, first, end);
     if (out.tension) write_bonds<true>(x, 1, out.tension, 1, first, end);
     if (out.g->x) {
         if (weighted)
-            move_velocities<layout>(x, *out.g, arm.bottom + 1, arm.top() + 1);
+            move_velocities(x, *out.g, arm.bottom + 1, arm.top() + 1);
         else
-            write_slots<layout>(x, *out.g, 1, arm.bottom + 1, arm.top() + 1, [&](int32_t slot) {
+            write_slots(x, *out.g, arm.bottom + 1, arm.top() + 1, [&](int32_t slot) {
                 const Vector3<double> pull = pull_on(x, slot);
-                return out.add ? read<layout>(*out.g, x.at, x.s.atom_of[slot]) + pull : pull;
+                return out.add ? read(*out.g, x.at, x.s.atom_of[slot]) + pull : pull;
             });
     }
     if (!out.virial) return;
@@ -178,12 +174,11 @@ HOL_NOINLINE void write_alone(const Molecules<double> &x, const Schedule::Arm &a
 }
 
 // Writes the outputs of the arms. weighted: v += w G, with v in place of G.
-template <Layout layout, bool weighted>
-HOL_NOINLINE void write_arms(const Molecules<double> &x, const Outputs &out, Tally &tally) {
+HOL_NOINLINE void write_arms(const Molecules<double> &x, bool weighted, const Outputs &out, Tally &tally) {
     const SegmentOutputs outputs = {{}, false, out.lambda, out.tension, splat(0.5), 1.0, out.virial};
     for_arms(x, true, tally, [&](int32_t a, const Arena &arena, Tally &part) {
         const Schedule::Arm &arm = x.s.arm[a];
-        if (x.pieces->arms.alone[a]) return write_alone<layout, weighted>(x, arm, out, part);
+        if (x.pieces->arms.alone[a]) return write_alone(x, weighted, arm, out, part);
         const Cut cut = cut_in_order(x.s, x.pieces->arms, a);
         const Lane lane = chain_of(arm, x.lane[0]);
         double *const store = store_of(x.s, x.pieces->arms, a);

@@ -11,7 +11,6 @@ namespace HOL_ISA {
 namespace graph {
 
 // Returns false, with nothing written, if plain arithmetic can't answer.
-template <Layout layout>
 HOL_NOINLINE bool project_with_arms(Linear<double> &z, const VelocitiesCall &call, Tally &tally) {
     Molecules<double> &x = z.x;
     x.in = {&call.v, nullptr, nullptr, true, call.strain};
@@ -20,15 +19,15 @@ HOL_NOINLINE bool project_with_arms(Linear<double> &z, const VelocitiesCall &cal
         const Outputs out = {&call.v, lambda, nullptr, true, virial};
         if (lambda) write_bonds<false>(x, 0.5, lambda, 1);
         if (virial) add_pulls_to_virial(x, 1, tally);
-        for_slots(x.s, x.pieces, [&](int32_t first, int32_t end) { move_velocities<layout>(x, call.v, first, end); });
-        write_arms<layout, true>(x, out, tally);
+        for_slots(x.s, x.pieces, [&](int32_t first, int32_t end) { move_velocities(x, call.v, first, end); });
+        write_arms(x, true, out, tally);
     };
-    solve_in_pieces<layout, rates, false>(z);
+    solve_in_pieces<false>(z, rates);
     if (!solved_lanes(z) || (!call.v.is_float && has_torn_atoms(x))) return false;
     move(call.lambda, call.virial);
     if (call.v.is_float) return true;
     z.equations.velocity = velocity;
-    solve_in_pieces<layout, rates, false, false>(z);
+    solve_in_pieces<false>(z, rates, false);
     if (finite_solution(x).set) move(nullptr, false);
     return true;
 }

@@ -1,20 +1,19 @@
-// Reads and writes the atoms of a block of molecules in the caller's arrays, one atom of every lane at a time. It takes
-// whole rows if packed rows x y z stand one behind the other, or where a list says. In any other layout it takes single
-// elements.
+// Reads and writes the atoms of a block of molecules in the caller's arrays, one atom of every lane at a time: whole
+// rows x y z of packed arrays, or single elements in any other layout. The layout is looked up as the program runs, so
+// that what reads and writes is compiled once.
 #ifndef HOLONOMIC_KERNELS_GRAPH_ATOMS_HPP
 #define HOLONOMIC_KERNELS_GRAPH_ATOMS_HPP
 
 #include "core/kernels/call.hpp"
 #include "core/kernels/graph/width.hpp"
-#include "core/kernels/isa/choose.hpp"
 #include "core/kernels/memory/atom_rows.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// rows_adjacent: rows in order, and the molecules one behind the other.
-enum Layout { rows_in_order, rows_listed, elements, rows_adjacent };
+// Of all arrays of a call. rows_in_order: a molecule's atoms stand one behind the other; rows_listed: where lists say.
+enum Layout { rows_in_order, rows_listed, elements };
 
 // A single molecule's, as memory/atom_rows.hpp has those of W.
 HOL_INLINE void read_rows(const double *const *p, Vector3<double> &a) { a = {p[0][0], p[0][1], p[0][2]}; }
@@ -32,13 +31,19 @@ struct Atoms {
     const int64_t *list[lanes];  // or nullptr
     int64_t first[lanes];        // offset of the first atom in rows of three doubles, or its number
     int64_t bond[lanes];         // the first bond in arrays per bond
-    Atoms(const MoleculeLane *lane, int used) {
+    Layout layout;
+    // packed: all arrays of the call are.
+    Atoms(const MoleculeLane *lane, int used, bool packed) {
+        bool lists = packed, none = packed;
         for (int i = 0; i < lanes; ++i) {
             const MoleculeLane &one = lane[i < used ? i : 0];
             list[i] = one.atoms;
             first[i] = one.first_atom;
             bond[i] = one.first_bond;
+            lists = lists && one.atoms;
+            none = none && !one.atoms;
         }
+        layout = none ? rows_in_order : lists ? rows_listed : elements;
     }
     // Goes on to the next block of molecules that follow each other, of so many atoms and bonds.
     HOL_FORCED void advance(int64_t n_atoms, int64_t n_bonds) {
@@ -69,18 +74,24 @@ HOL_NOINLINE void read_anywhere(const AtomArray &array, const Atoms<V> &at, int6
     }
 }
 
-// Reads atom k (local number) of all lanes.
-template <Layout layout, class V>
+// Where atom k (local number) of each lane stands in an array of rows.
+template <class V>
+HOL_INLINE void rows_of_atom(const AtomArray &array, const Atoms<V> &at, int64_t k, double **p) {
+    double *const base = reinterpret_cast<double *>(array.x);
+    HOL_UNROLL
+    for (int i = 0; i < at.lanes; ++i) p[i] = base + 3 * (at.layout == rows_listed ? at.list[i][k] : at.first[i] + k);
+}
+
+// Reads atom k of all lanes.
+template <class V>
 HOL_INLINE Vector3<V> read(const AtomArray &array, const Atoms<V> &at, int64_t k) {
     Vector3<V> a = {};
-    if (layout == elements) {
+    if (__builtin_expect(at.layout == elements, 0)) {
         read_anywhere(array, at, k, a);
         return a;
     }
-    const double *const base = reinterpret_cast<const double *>(array.x) + (layout == rows_in_order ? 3 * k : 0);
-    const double *p[Width<V>::lanes];
-    HOL_UNROLL
-    for (int i = 0; i < at.lanes; ++i) p[i] = base + 3 * (layout == rows_listed ? at.list[i][k] : at.first[i]);
+    double *p[Width<V>::lanes];
+    rows_of_atom(array, at, k, p);
     read_rows(p, a);
     return a;
 }
@@ -112,43 +123,15 @@ HOL_NOINLINE void write_anywhere(const AtomArray &array, const Atoms<V> &at, int
 }
 
 // Writes atom k of the lanes in `which`, a bit per lane.
-template <Layout layout, class V>
+template <class V>
 HOL_INLINE void write(const AtomArray &array, const Atoms<V> &at, int64_t k, const Vector3<V> &a, unsigned which) {
-    if (layout != elements && __builtin_expect(which == (1u << at.lanes) - 1, 1)) {
-        double *const base = reinterpret_cast<double *>(array.x) + (layout == rows_in_order ? 3 * k : 0);
+    if (__builtin_expect(at.layout != elements && which == all_of<V>, 1)) {
         double *p[Width<V>::lanes];
-        HOL_UNROLL
-        for (int i = 0; i < at.lanes; ++i) p[i] = base + 3 * (layout == rows_listed ? at.list[i][k] : at.first[i]);
-        write_rows(p, a);
-        return;
+        rows_of_atom(array, at, k, p);
+        return write_rows(p, a);
     }
     const Vector3<V> copy = a;  // what is passed by its address stays in memory
     write_anywhere(array, at, k, copy, which);
-}
-
-// Returns how a call's arrays can be read together.
-template <class V>
-HOL_INLINE Layout layout_of(const Atoms<V> &at, bool packed) {
-    if (!packed) return elements;
-    bool lists = true, none = true;
-    for (int i = 0; i < at.lanes; ++i) {
-        lists = lists && at.list[i];
-        none = none && !at.list[i];
-    }
-    return none ? rows_in_order : lists ? rows_listed : elements;
-}
-
-// Calls f with that layout as a constant.
-template <class V, class F>
-HOL_INLINE auto with_layout(const Atoms<V> &at, bool packed, F f) {
-    switch (layout_of(at, packed)) {
-        case rows_in_order:
-            return f(Constant<Layout, rows_in_order>{});
-        case rows_listed:
-            return f(Constant<Layout, rows_listed>{});
-        default:
-            return f(Constant<Layout, elements>{});
-    }
 }
 
 }  // namespace graph

@@ -18,6 +18,7 @@ struct FlatLinear {
     const Box &box;
     const AtomArray &coordinates;
     const Inputs &in;
+    const int terms;  // of right-hand sides
     double *mass;  // -w_0, w_0, -w_1, .. , 0 of each tile
     Rows pull, d;  // of all tiles: G, and the sum of |t| |d| of an atom's bonds; bonds
     Rows a;        // w f, then w (f + G), of one tile; or where right-hand sides are rates v + w G, of all tiles
@@ -35,9 +36,9 @@ struct FlatLinear {
     static int64_t refinement_values(const FlatList &s) {
         return s.n_tiles > 1 ? 0 : 4 * (static_cast<int64_t>(s.n_rows) + s.n_sites);
     }
-    FlatLinear(const FlatList &list, const MoleculeLane &l, const Box &b, const AtomArray &positions,
-               const Inputs &inputs, Memory<double> memory)
-        : s(list), lane(l), at(&l, 1), box(b), coordinates(positions), in(inputs) {
+    FlatLinear(const FlatList &list, const MoleculeLane &l, bool packed, const Box &b, const AtomArray &positions,
+               const Inputs &inputs, int sides, Memory<double> memory)
+        : s(list), lane(l), at(&l, 1, packed), box(b), coordinates(positions), in(inputs), terms(sides) {
         const int64_t bonds = in_fours(s.n_bonds), columns = in_fours(s.n_columns);
         pull = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
         d = {memory.values(4 * static_cast<int64_t>(s.n_rows))};
@@ -61,36 +62,34 @@ struct FlatLinear {
     HOL_FORCED Rows d_of(const Tile &tile) const { return rows_from(d, tile.first_row); }
 
     // w f, or v where right-hand sides are rates.
-    template <Layout layout, int terms>
     HOL_FORCED void load_inputs(const Tile &tile, const Rows &to) const {
-        if (terms & rates) read_atoms<layout>(*in.v, at, s, tile, to);
+        if (terms & rates) read_atoms(*in.v, at, s, tile, to);
         for (int32_t i = tile.first_site; i < tile.end_site && !(terms & rates); ++i) {
             Row &one = to[i - tile.first_site];
             if (terms & pulls)
                 one = in_row(mass[tile.first_mass + 2 * (i - tile.first_site) + 1]) *
-                      read_row_of<layout>(*in.f, at, s.atom_of[i]);
+                      read_row_of(*in.f, at, s.atom_of[i]);
             else
                 one = Row{};
         }
     }
 
-    template <Layout layout, int terms>
     __attribute__((noinline)) void load(const Tile &tile) const {
         read_masses(lane.w, s, tile, mass);
-        read_atoms<layout>(coordinates, at, s, tile, r);
+        read_atoms(coordinates, at, s, tile, r);
         find_bonds(s, tile, box, r, d);
-        if (terms & squares) read_atoms<layout>(*in.v, at, s, tile, v);
+        if (terms & squares) read_atoms(*in.v, at, s, tile, v);
         const Rows bonds = d_of(tile);
-        if ((terms & (pulls | rates)) || s.n_tiles == 1) load_inputs<layout, terms>(tile, a_of(tile));
+        if ((terms & (pulls | rates)) || s.n_tiles == 1) load_inputs(tile, a_of(tile));
         const double *const w = mass + tile.first_mass;
         for (int64_t k = tile.first; k < tile.end; k += 4) {
             const int32_t *const from = s.from + tile.first_row + (k - tile.first), *const to = s.to + (from - s.from);
             Row q[4];
-            HOL_UNROLL
+            HOL_UNROLL_FEW
             for (int i = 0; i < 4; ++i) q[i] = bonds[k - tile.first + i] * bonds[k - tile.first + i];
             const Row square = sums_of(q[0], q[1], q[2], q[3]);
-            four(t, k) = sides_of<terms>(tile, k);
-            HOL_UNROLL
+            four(t, k) = sides_of(tile, k, terms);
+            HOL_UNROLL_FEW
             for (int i = 0; i < 4; ++i) {
                 E[k + i] = diagonal[k + i] = (w[from[i] / 2 + 1] + w[to[i] / 2 + 1]) * square[i];
                 size[k + i] = __builtin_sqrt(square[i]);
@@ -99,19 +98,18 @@ struct FlatLinear {
         if (terms & (given | rates)) add_given(tile, t);
     }
     // What velocities and inputs give to the right-hand sides of columns k .. k + 3.
-    template <int terms>
-    HOL_FORCED Row sides_of(const Tile &tile, int64_t k) const {
+    HOL_FORCED Row sides_of(const Tile &tile, int64_t k, int wanted) const {
         const int64_t row = tile.first_row + (k - tile.first);
         const int32_t *const from = s.from + row, *const to = s.to + row;
         const Rows of = a_of(tile);
         Row e[4] = {};
-        HOL_UNROLL
+        HOL_UNROLL_FEW
         for (int i = 0; i < 4; ++i) {
-            if (terms & squares) {
+            if (wanted & squares) {
                 const Row dv = v.at_four_times(to[i]) - v.at_four_times(from[i]);
                 e[i] = dv * dv;
             }
-            if (terms & (pulls | rates))
+            if (wanted & (pulls | rates))
                 e[i] = multiply_add(d[row + i], of.at_four_times(to[i]) - of.at_four_times(from[i]), e[i]);
         }
         return sums_of(e[0], e[1], e[2], e[3]);
@@ -132,7 +130,7 @@ struct FlatLinear {
         for (int64_t e = tile.first_entry; e < tile.end_entry; e += 4) {
             const int32_t *const row = s.row_4 + e, *const column = s.column_4 + e, *const m = s.mass + e;
             Row p[4];
-            HOL_UNROLL
+            HOL_UNROLL_FEW
             for (int i = 0; i < 4; ++i) p[i] = bond.at_four_times(row[i]) * bond.at_four_times(column[i]);
             four(lower, e) = Row{w[m[0]], w[m[1]], w[m[2]], w[m[3]]} * sums_of(p[0], p[1], p[2], p[3]);
         }
@@ -148,10 +146,10 @@ struct FlatLinear {
             const int32_t *const row = s.row + first;
             double *const l = lower + first;
             const double inverse = per_pivot[k] = 1 / E[k], y = t[k];
-            HOL_UNROLL
+            HOL_UNROLL_FEW
             for (int32_t i = 0; i < n; ++i) {
                 const double li = l[i], lr = li * inverse;
-                HOL_UNROLL
+                HOL_UNROLL_FEW
                 for (int32_t j = 0; j < i; ++j, ++update)  // l of j is multiplied already
                     lower[*update] = mul_add(-li, l[j], lower[*update]);
                 E[row[i]] = mul_add(-li, lr, E[row[i]]);
@@ -167,7 +165,7 @@ struct FlatLinear {
             const int32_t *const row = s.row + first;
             const double *const l = lower + first;
             double x = t[k] * per_pivot[k], sum = 0;
-            HOL_UNROLL
+            HOL_UNROLL_FEW
             for (int32_t e = 0; e < n; ++e) {
                 const double part = l[e] * t[row[e]];
                 x = x - part;
@@ -175,7 +173,7 @@ struct FlatLinear {
             }
             const double all = E[k] * (abs(x) + sum);
             back[k] = all;
-            HOL_UNROLL
+            HOL_UNROLL_FEW
             for (int32_t e = 0; e < n; ++e) back[row[e]] = mul_add(abs(l[e]), all, back[row[e]]);
             t[k] = x;
         });
@@ -223,7 +221,7 @@ struct FlatLinear {
         }
     }
     HOL_FORCED void find_rates(const Tile &tile) const {
-        for (int64_t k = tile.first; k < tile.end; k += 4) four(t, k) = sides_of<rates>(tile, k);
+        for (int64_t k = tile.first; k < tile.end; k += 4) four(t, k) = sides_of(tile, k, rates);
     }
 
     void write_bonds(double factor, double *out) const {

@@ -224,7 +224,7 @@ struct FlatNewton {
             const int32_t *const row = s.row_4 + e, *const column = s.column_4 + e, *const m = s.mass + e;
             const Row shared = {w[m[0]], w[m[1]], w[m[2]], w[m[3]]};
             Row p[4], q[4];
-            HOL_UNROLL
+            HOL_UNROLL_FEW
             for (int i = 0; i < 4; ++i) {
                 p[i] = d.at_four_times(row[i]) * ref.at_four_times(column[i]);
                 q[i] = d.at_four_times(column[i]) * ref.at_four_times(row[i]);
@@ -241,10 +241,10 @@ struct FlatNewton {
             const int32_t *const row = s.row + first;
             double *const l = lower + first, *const u = upper + first;
             const double inverse = pivot[k] = 1 / pivot[k], y = t[k];
-            HOL_UNROLL
+            HOL_UNROLL_FEW
             for (int32_t a = 0; a < n; ++a) {
                 const double la = l[a], ua = u[a], ur = ua * inverse;
-                HOL_UNROLL
+                HOL_UNROLL_FEW
                 for (int32_t c = 0; c < a; ++c, ++update) {  // l and u of c are multiplied already
                     lower[*update] = mul_add(-la, u[c], lower[*update]);
                     upper[*update] = mul_add(-ua, l[c], upper[*update]);

@@ -12,7 +12,6 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-template <Layout layout>
 struct FlatPositions {
     const PositionsCall &call;
     const Schedule &schedule;
@@ -22,9 +21,9 @@ struct FlatPositions {
     Tally &tally;
     double a_min, a_max, largest_coordinate;
 
-    FlatPositions(const PositionsCall &c, const Schedule &s, const MoleculeLane &l, const LongTeam *team,
+    FlatPositions(const PositionsCall &c, const Schedule &s, const MoleculeLane &l, bool packed, const LongTeam *team,
                   Memory<double> memory, Tally &sum)
-        : call(c), schedule(s), lane(l), at(&l, 1), newton(*s.flat, team, memory), tally(sum), a_min(), a_max(),
+        : call(c), schedule(s), lane(l), at(&l, 1, packed), newton(*s.flat, team, memory), tally(sum), a_min(), a_max(),
           largest_coordinate() {}
 
     // Reads all tiles, and makes the factors that a solve without a guess begins with.
@@ -47,9 +46,9 @@ struct FlatPositions {
         const Rows r = newton.coordinates_of(tile);
         FlatFound &found = newton.found[&tile - s.tile];
         read_masses(lane.w, s, tile, newton.mass);
-        read_atoms<layout>(call.r_ref, at, s, tile, r);
+        read_atoms(call.r_ref, at, s, tile, r);
         find_bonds(s, tile, call.box_ref, r, newton.b);
-        read_atoms<layout>(call.r, at, s, tile, r);
+        read_atoms(call.r, at, s, tile, r);
         find_bonds(s, tile, call.box, r, newton.D);
         found.coordinate = Row{};
         for (int32_t k = 0; k < tile.own_end - tile.first_site; ++k)
@@ -112,10 +111,10 @@ struct FlatPositions {
         for (int32_t i = first; i < end; ++i) {
             if (schedule.fixed[i]) continue;
             const Row &move = newton.moves[newton.s.place_of[i]];
-            write<layout>(call.r, at, i, vector_of(read_row_of<layout>(call.r, at, i) + move), 1);
+            write(call.r, at, i, vector_of(read_row_of(call.r, at, i) + move), 1);
             if (call.v.x)
-                write<layout>(call.v, at, i,
-                              vector_of(multiply_add(in_row(per_dt), move, read_row_of<layout>(call.v, at, i))), 1);
+                write(call.v, at, i,
+                              vector_of(multiply_add(in_row(per_dt), move, read_row_of(call.v, at, i))), 1);
         }
     }
 
@@ -167,12 +166,9 @@ struct FlatPositions {
     }
 };
 
-// The same in any layout.
 static inline bool solve_flat(const PositionsCall &call, const Schedule &s, const MoleculeLane &lane, bool packed,
                               const LongTeam *team, Memory<double> memory, Tally &tally) {
-    return with_layout(Atoms<double>(&lane, 1), packed, [&](auto layout) {
-        return FlatPositions<decltype(layout)::value>(call, s, lane, team, memory, tally).solve();
-    });
+    return FlatPositions(call, s, lane, packed, team, memory, tally).solve();
 }
 
 }  // namespace graph

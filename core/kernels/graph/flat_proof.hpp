@@ -91,21 +91,20 @@ struct FlatProof {
     }
 
     // Reads the molecule and solves; false where that is in doubt.
-    template <Layout layout, int terms>
     bool solve() const {
         clear_sides(s, x.t);
         clear_sides(s, x.E);
         clear_sides(s, x.back);
         clear_entries(s, x.lower);
         for (int32_t i = 0; i < s.n_tiles; ++i) {
-            x.load<layout, terms>(s.tile[i]);
+            x.load(s.tile[i]);
             x.assemble(s.tile[i]);
             x.eliminate(s.tile[i]);
         }
         for (int32_t i = s.n_tiles; i-- > 0;) {
             x.substitute_back(s.tile[i]);
             x.find_pulls(s.tile[i]);
-            if (!(terms & rates) && s.n_tiles > 1) x.load_inputs<layout, terms>(s.tile[i], x.a);
+            if (!(x.terms & rates) && s.n_tiles > 1) x.load_inputs(s.tile[i], x.a);
             x.add_pulls(s.tile[i]);
             if (!is_proven(s.tile[i])) return false;
         }

@@ -28,16 +28,16 @@ HOL_INLINE Pair<Row> product_of(const Pair<Row> &a, const Pair<Row> &b) {
     return {p.hi, multiply_add(a.hi, b.lo, multiply_add(a.lo, b.hi, p.lo))};
 }
 
-template <Layout layout, int terms>
 struct FlatRefine {
     const FlatLinear &x;
     const FlatList &s;
     const Tile &tile;
+    const int terms;
     double *const solution;  // in the memory of what the proof needed
     double *const side;
 
     explicit FlatRefine(const FlatLinear &linear)
-        : x(linear), s(linear.s), tile(s.tile[0]), solution(x.back), side(x.diagonal) {}
+        : x(linear), s(linear.s), tile(s.tile[0]), terms(linear.terms), solution(x.back), side(x.diagonal) {}
 
     // As in core_matrix.hpp.
     bool has_good_pivots() const {
@@ -48,9 +48,9 @@ struct FlatRefine {
 
     // Inputs once more, right-hand sides, and bonds with their low words.
     __attribute__((noinline)) void start() const {
-        x.template load_inputs<layout, terms>(tile, x.a);
-        if (terms & squares) read_atoms<layout>(*x.in.v, x.at, s, tile, x.v);
-        for (int64_t k = 0; k < s.n_bonds; k += 4) x.four(side, k) = x.template sides_of<terms>(tile, k);
+        x.load_inputs(tile, x.a);
+        if (terms & squares) read_atoms(*x.in.v, x.at, s, tile, x.v);
+        for (int64_t k = 0; k < s.n_bonds; k += 4) x.four(side, k) = x.sides_of(tile, k, terms);
         x.add_given(tile, side);
         for (int32_t k = 0; k < s.n_rows; ++k) {
             Vector3<double> d = {}, low = {};
@@ -65,7 +65,7 @@ struct FlatRefine {
     // Accelerations, or velocities: high words in pull.
     __attribute__((noinline)) void pull_atoms() const {
         if (terms & pulls)
-            read_atoms<layout>(*x.in.f, x.at, s, tile, x.pull);
+            read_atoms(*x.in.f, x.at, s, tile, x.pull);
         else
             for (int64_t i = 0; i < s.n_sites; ++i) x.pull[i] = Row{};
         for (int64_t i = 0; i < s.n_sites; ++i) x.a_low[i] = Row{};
@@ -152,9 +152,8 @@ struct FlatRefine {
 };
 
 // Reads the molecule and solves; false where that is in doubt.
-template <Layout layout, int terms>
 HOL_INLINE bool solve_and_refine(const FlatLinear &x) {
-    return FlatProof(x).solve<layout, terms>() || FlatRefine<layout, terms>(x).refine();
+    return FlatProof(x).solve() || FlatRefine(x).refine();
 }
 
 }  // namespace graph

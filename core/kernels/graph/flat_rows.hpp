@@ -148,7 +148,7 @@ HOL_INLINE void solve_up(const FlatList &s, const Tile &tile, const double *lowe
     for_columns_up(s, tile, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
         const int32_t *const row = s.row + first;
         const double *const l = lower + first, y = t[k];
-        HOL_UNROLL
+        HOL_UNROLL_FEW
         for (int32_t e = 0; e < n; ++e) t[row[e]] = mul_add(-l[e], y, t[row[e]]);
     });
 }
@@ -159,7 +159,7 @@ HOL_INLINE void solve_down(const FlatList &s, const Tile &tile, const double *up
         const int32_t *const row = s.row + first;
         const double *const u = upper + first;
         double x = t[k] * r[k];
-        HOL_UNROLL
+        HOL_UNROLL_FEW
         for (int32_t e = n - 1; e >= 0; --e) x = mul_add(-u[e], t[row[e]], x);
         t[k] = x;
         each(k, x);
@@ -180,23 +180,20 @@ HOL_INLINE void copy_guests(const FlatList &s, const Tile &tile, const Rows &x) 
 HOL_INLINE Rows rows_from(const Rows &rows, int64_t first) { return {rows.start + 4 * first}; }
 
 // A local atom's row.
-template <Layout layout>
 HOL_INLINE Row read_row_of(const AtomArray &array, const Atoms<double> &at, int32_t i) {
 #if defined(__AVX2__)
-    if (layout != elements) {
-        const double *const base = reinterpret_cast<const double *>(array.x);
-        const double *const p = base + 3 * (layout == rows_listed ? at.list[0][i] : at.first[0] + i);
+    if (at.layout != elements) {
+        const double *const p = reinterpret_cast<const double *>(array.x) + 3 * at.number(0, i);
         return _mm256_maskload_pd(p, _mm256_set_epi64x(0, -1, -1, -1));
     }
 #endif
-    return row_of(read<layout>(array, at, i));
+    return row_of(read(array, at, i));
 }
 // The rows of a tile's atoms.
-template <Layout layout>
 HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<double> &at, const FlatList &s, const Tile &tile,
                            const Rows &to) {
     for (int32_t i = tile.first_site; i < tile.end_site; ++i)
-        to[i - tile.first_site] = read_row_of<layout>(array, at, s.atom_of[i]);
+        to[i - tile.first_site] = read_row_of(array, at, s.atom_of[i]);
 }
 // Their masses, -w_0, w_0, -w_1, .. , 0.
 HOL_INLINE void read_masses(const double *w, const FlatList &s, const Tile &tile, double *mass) {

@@ -11,17 +11,17 @@ namespace HOL_ISA {
 namespace graph {
 
 // Call: of forces or of given right-hand sides.
-template <Layout layout, int terms, class Call>
-HOL_NOINLINE bool pull_flat(const Call &call, const FlatLinear &x, Tally &tally) {
-    if (!solve_and_refine<layout, terms>(x)) return false;
+template <class Call>
+static inline bool pull_flat(const Call &call, const FlatLinear &x, Tally &tally) {
+    if (!solve_and_refine(x)) return false;
     if (call.lambda) x.write_bonds(0.5, call.lambda);
     if (call.tension) x.write_tensions(call.tension);
     if (call.virial) x.add_virial(tally);
     for (int32_t i = 0; i < x.s.n_atoms && call.g.x; ++i) {
         if (!x.writable(i)) continue;
         Vector3<double> pull = vector_of(x.pull[x.s.place_of[i]]);
-        if (call.add) pull = read<layout>(call.g, x.at, i) + pull;
-        write<layout>(call.g, x.at, i, pull, 1);
+        if (call.add) pull = read(call.g, x.at, i) + pull;
+        write(call.g, x.at, i, pull, 1);
     }
     return true;
 }
@@ -29,43 +29,27 @@ HOL_NOINLINE bool pull_flat(const Call &call, const FlatLinear &x, Tally &tally)
 static inline bool solve_flat(const ForcesCall &call, const Schedule &s, const MoleculeLane &lane, bool packed,
                               Memory<double> memory, Tally &tally) {
     const Inputs in = {&call.v, &call.f, nullptr, false};
-    const FlatLinear x(*s.flat, lane, call.box, call.r, in, memory);
-    return with_layout(x.at, packed, [&](auto layout) {
-        constexpr Layout as = decltype(layout)::value;
-        return call.v.x && call.f.x ? pull_flat<as, squares | pulls>(call, x, tally)
-               : call.f.x           ? pull_flat<as, pulls>(call, x, tally)
-               : call.v.x           ? pull_flat<as, squares>(call, x, tally)
-                                    : pull_flat<as, 0>(call, x, tally);
-    });
+    const int terms = (call.v.x ? squares : 0) | (call.f.x ? pulls : 0);
+    return pull_flat(call, FlatLinear(*s.flat, lane, packed, call.box, call.r, in, terms, memory), tally);
 }
 
 static inline bool solve_flat(const SolveCall &call, const Schedule &s, const MoleculeLane &lane, bool packed,
                               Memory<double> memory, Tally &tally) {
     const Inputs in = {nullptr, nullptr, call.rhs, false};
-    const FlatLinear x(*s.flat, lane, call.box, call.r, in, memory);
-    return with_layout(x.at, packed,
-                       [&](auto layout) { return pull_flat<decltype(layout)::value, given>(call, x, tally); });
-}
-
-template <Layout layout>
-HOL_NOINLINE bool project_flat(const VelocitiesCall &call, const FlatLinear &x, Tally &tally) {
-    if (!solve_and_refine<layout, rates>(x)) return false;
-    if (call.lambda) x.write_bonds(0.5, call.lambda);
-    if (call.virial) x.add_virial(tally);
-    if (!call.v.is_float) {
-        x.solve_again();
-    }
-    for (int32_t i = 0; i < x.s.n_atoms; ++i)
-        if (x.writable(i)) write<layout>(call.v, x.at, i, vector_of(x.a[x.s.place_of[i]]), 1);
-    return true;
+    return pull_flat(call, FlatLinear(*s.flat, lane, packed, call.box, call.r, in, given, memory), tally);
 }
 
 static inline bool solve_flat(const VelocitiesCall &call, const Schedule &s, const MoleculeLane &lane, bool packed,
                               Memory<double> memory, Tally &tally) {
     const Inputs in = {&call.v, nullptr, nullptr, true, call.strain};
-    const FlatLinear x(*s.flat, lane, call.box, call.r, in, memory);
-    return with_layout(x.at, packed,
-                       [&](auto layout) { return project_flat<decltype(layout)::value>(call, x, tally); });
+    const FlatLinear x(*s.flat, lane, packed, call.box, call.r, in, rates, memory);
+    if (!solve_and_refine(x)) return false;
+    if (call.lambda) x.write_bonds(0.5, call.lambda);
+    if (call.virial) x.add_virial(tally);
+    if (!call.v.is_float) x.solve_again();
+    for (int32_t i = 0; i < x.s.n_atoms; ++i)
+        if (x.writable(i)) write(call.v, x.at, i, vector_of(x.a[x.s.place_of[i]]), 1);
+    return true;
 }
 
 }  // namespace graph

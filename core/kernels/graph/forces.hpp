@@ -13,17 +13,17 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-template <Layout layout, class V>
-static inline void write_outputs(const Molecules<V> &x, const Outputs &out, unsigned which, Tally &tally) {
+template <class V>
+static inline void write_outputs(Linear<V> &z, const Outputs &out, unsigned which, Tally &tally) {
+    const Molecules<V> &x = z.x;
     if (out.lambda) write_bonds<false>(x, 0.5, out.lambda, which);
     if (out.tension) write_bonds<true>(x, 1, out.tension, which);
     if (out.virial) add_pulls_to_virial(x, which, tally);
-    if (out.g->x) write_pulls<layout>(x, *out.g, out.add, which);
+    if (out.g->x) write_pulls(x, *out.g, out.add, which, z.equations.r);
 }
-template <Layout layout>
-static inline void write_outputs(const Molecules<double> &x, const Outputs &out, unsigned which, Tally &tally) {
-    write_outputs<layout, double>(x, out, which, tally);
-    if (which && x.pieces && x.pieces->arms.store) write_arms<layout, false>(x, out, tally);
+static inline void write_outputs(Linear<double> &z, const Outputs &out, unsigned which, Tally &tally) {
+    write_outputs<double>(z, out, which, tally);
+    if (which && z.x.pieces && z.x.pieces->arms.store) write_arms(z.x, false, out, tally);
 }
 
 // Lanes that plain arithmetic answers for, once the equations are solved.
@@ -39,17 +39,17 @@ static inline unsigned solved_lanes(Linear<V> &z) {
 }
 
 // Reads the molecules and solves; `masses_known`: they are those of the block before.
-template <Layout layout, int terms, bool keep, class V>
-static inline unsigned load_and_solve(Linear<V> &z, bool masses_known) {
+template <bool keep, class V>
+static inline unsigned load_and_solve(Linear<V> &z, int terms, bool masses_known) {
     if (!masses_known) z.set_masses();
-    Loader<layout, terms, V>{z}.load();
+    Loader<V>{z, terms}.load();
     z.template factorize_and_solve<keep>();
     return solved_lanes(z);
 }
-template <Layout layout, int terms, bool keep>
-static inline unsigned load_and_solve(Linear<double> &z, bool masses_known) {
-    if (!z.x.pieces) return load_and_solve<layout, terms, keep, double>(z, masses_known);
-    solve_in_pieces<layout, terms, keep>(z);
+template <bool keep>
+static inline unsigned load_and_solve(Linear<double> &z, int terms, bool masses_known) {
+    if (!z.x.pieces) return load_and_solve<keep, double>(z, terms, masses_known);
+    solve_in_pieces<keep>(z, terms);
     return solved_lanes(z);
 }
 
@@ -67,24 +67,17 @@ struct ForcesWork {
             masses_known = false;
         }
         Memory<V> memory = {scratch};
-        Linear<V> z(schedule, lane, used, call.box, call.r, memory);
+        Linear<V> z(schedule, lane, used, packed, call.box, call.r, memory);
         open_pieces(z, team, memory);
         open_arms(z, scratch, memory);
         if (!call.v.x) z.equations.velocity = nullptr;
         if (!call.f.x) z.equations.force = nullptr;
         z.equations.given = nullptr;
-        with_layout(z.x.at, packed, [&](auto layout) { solve<decltype(layout)::value>(z, masses_known, memory); });
-    }
-
-    template <Layout layout, class V>
-    void solve(Linear<V> &z, bool masses_known, Memory<V> memory) const {
         z.x.in = {&call.v, &call.f, nullptr, false};
-        const unsigned good = call.v.x && call.f.x ? load_and_solve<layout, squares | pulls, false>(z, masses_known)
-                              : call.f.x           ? load_and_solve<layout, pulls, false>(z, masses_known)
-                              : call.v.x           ? load_and_solve<layout, squares, false>(z, masses_known)
-                                                   : load_and_solve<layout, 0, false>(z, masses_known),
+        const unsigned good =
+                           load_and_solve<false>(z, (call.v.x ? squares : 0) | (call.f.x ? pulls : 0), masses_known),
                        rest = bits(z.x.in_use()) & ~good;
-        write_outputs<layout>(z.x, {&call.g, call.lambda, call.tension, call.add, call.virial}, good, tally);
+        write_outputs(z, {&call.g, call.lambda, call.tension, call.add, call.virial}, good, tally);
         if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, z.x.lane, rest, memory.next, tally);
     }
 };
@@ -103,17 +96,12 @@ struct SolveWork {
             masses_known = false;
         }
         Memory<V> memory = {scratch};
-        Linear<V> z(schedule, lane, used, call.box, call.r, memory);
+        Linear<V> z(schedule, lane, used, packed, call.box, call.r, memory);
         open_pieces(z, team, memory);
         z.equations.velocity = z.equations.force = nullptr;
-        with_layout(z.x.at, packed, [&](auto layout) { solve<decltype(layout)::value>(z, masses_known, memory); });
-    }
-
-    template <Layout layout, class V>
-    void solve(Linear<V> &z, bool masses_known, Memory<V> memory) const {
         z.x.in = {nullptr, nullptr, call.rhs, false};
-        const unsigned good = load_and_solve<layout, given, false>(z, masses_known), rest = bits(z.x.in_use()) & ~good;
-        write_outputs<layout>(z.x, {&call.g, call.lambda, call.tension, call.add, call.virial}, good, tally);
+        const unsigned good = load_and_solve<false>(z, given, masses_known), rest = bits(z.x.in_use()) & ~good;
+        write_outputs(z, {&call.g, call.lambda, call.tension, call.add, call.virial}, good, tally);
         if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, z.x.lane, rest, memory.next, tally);
     }
 };

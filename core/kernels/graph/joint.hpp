@@ -22,14 +22,14 @@ constexpr int pair_of(int a, int b) { return a * (a - 1) / 2 + b; }  // a > b
 // Finds multipliers m and reciprocal pivots r of S. S is k (k + 1) / 2 values of working memory, row after row.
 template <class Rows, class V>
 HOL_INLINE void decompose(const Rows &x, int k, V w, V *S, V *r, V *m, V &slack) {
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
         const BondRow<V> &row = x.bond(a);
-        HOL_UNROLL
+        HOL_UNROLL_FEW
         for (int b = 0; b < a; ++b) S[pair_of(a + 1, b)] = w * dot(row.d, x.bond(b).d);
         S[pair_of(a + 1, a)] = mul_add(w, row.q, row.E);
     }
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int j = 0; j < k; ++j) {
         const V P = S[pair_of(j + 1, j)];
         if (j > 0) {
@@ -38,11 +38,11 @@ HOL_INLINE void decompose(const Rows &x, int k, V w, V *S, V *r, V *m, V &slack)
             slack = min(mul_add(Width<V>::all(-least_part), whole, P), slack);
         }
         r[j] = Width<V>::all(1) / P;
-        HOL_UNROLL
+        HOL_UNROLL_FEW
         for (int a = j + 1; a < k; ++a) {
             const V l = S[pair_of(a + 1, j)] * r[j];
             m[pair_of(a, j)] = l;
-            HOL_UNROLL
+            HOL_UNROLL_FEW
             for (int b = j + 1; b <= a; ++b)
                 S[pair_of(a + 1, b)] = mul_add(-l, S[pair_of(b + 1, j)], S[pair_of(a + 1, b)]);
         }
@@ -52,17 +52,17 @@ HOL_INLINE void decompose(const Rows &x, int k, V w, V *S, V *r, V *m, V &slack)
 // u = S^-1 y; z keeps y as it is after the forward half.
 template <class V>
 HOL_INLINE void solve_joint(int k, const V *r, const V *m, const V *y, V *z, V *u) {
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
         V sum = y[a];
-        HOL_UNROLL
+        HOL_UNROLL_FEW
         for (int j = 0; j < a; ++j) sum = mul_add(-m[pair_of(a, j)], z[j], sum);
         z[a] = sum;
     }
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = k - 1; a >= 0; --a) {
         V sum = z[a] * r[a];
-        HOL_UNROLL
+        HOL_UNROLL_FEW
         for (int j = a + 1; j < k; ++j) sum = mul_add(-m[pair_of(j, a)], u[j], sum);
         u[a] = sum;
     }
@@ -93,22 +93,22 @@ HOL_INLINE void up_joint(const Rows &x, int count, Memory<V> memory, V &slack) {
     const V w = x.w();
     decompose(x, k, w, f.S, f.r, f.m, slack);
     V *const m = keep ? x.multipliers() : nullptr;
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
         x.bond(a).r = f.r[a];
         if (keep) {
-            HOL_UNROLL
+            HOL_UNROLL_FEW
             for (int b = 0; b < a; ++b) m[pair_of(a, b)] = f.m[pair_of(a, b)];
         }
     }
     if (!top) {
         BondRow<V> &e = x.above();
-        HOL_UNROLL
+        HOL_UNROLL_FEW
         for (int a = 0; a < k; ++a) f.y[a] = w * (k == 1 ? x.only_product() : dot(x.bond(a).d, e.d));
         solve_joint(k, f.r, f.m, f.y, f.z, f.l);
         const V whole = w * e.q;
         V E = whole, y = e.t;
-        HOL_UNROLL
+        HOL_UNROLL_FEW
         for (int a = 0; a < k; ++a) {
             E = mul_add(-(f.z[a] * f.r[a]), f.z[a], E);
             y = mul_add(f.l[a], x.bond(a).t, y);
@@ -118,13 +118,13 @@ HOL_INLINE void up_joint(const Rows &x, int count, Memory<V> memory, V &slack) {
         e.E = E;
         e.t = y;
     }
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
         f.y[a] = x.bond(a).t;
         x.bond(a).E = f.y[a] * f.r[a];  // what siblings.hpp compares with
     }
     solve_joint(k, f.r, f.m, f.y, f.z, f.l);
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) x.bond(a).t = f.l[a];
 }
 
@@ -135,17 +135,17 @@ HOL_INLINE void substitute_joint(const Rows &x, int count, Memory<V> memory) {
     auto f = JointMemory<V, known>::make(memory, k);
     const V *const m = x.multipliers();
     V y = top ? V{} : x.above().t;
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
         const BondRow<V> &row = x.bond(a);
         f.y[a] = row.t;
         f.r[a] = row.r;
         if (!top) y = mul_add(row.l, row.t, y);
-        HOL_UNROLL
+        HOL_UNROLL_FEW
         for (int b = 0; b < a; ++b) f.m[pair_of(a, b)] = m[pair_of(a, b)];
     }
     solve_joint(k, f.r, f.m, f.y, f.z, f.l);
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) x.bond(a).t = f.l[a];
     if (!top) x.above().t = y;
 }
@@ -189,7 +189,7 @@ HOL_INLINE void down_joint(const Molecules<V> &x, int32_t slot, int count, V &sl
     const int k = known > 0 ? known : count;
     const int32_t *const child = x.s.child + x.s.child_start[slot];
     const V above = x.row[slot].t;
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
         BondRow<V> &row = x.row[child[a]];
         row.t = mul_add(row.l, above, row.t);

@@ -22,21 +22,21 @@ HOL_INLINE void open_arms(Linear<double> &z, const double *scratch, Memory<doubl
 }
 
 // Reads what the pieces hold, and eliminates it; up_arm does so at an arm.
-template <Layout layout, int terms, bool keep>
-HOL_INLINE void load_and_eliminate(Linear<double> &z, const ArmWork &up_arm) {
+template <bool keep>
+HOL_INLINE void load_and_eliminate(Linear<double> &z, int terms, const ArmWork &up_arm) {
     Molecules<double> &x = z.x;
     const Schedule &s = x.s;
-    constexpr bool keep_all = keep && (terms & rates);
+    const bool keep_all = keep && (terms & rates);
     for_pieces(s, x.pieces->team, [&](int32_t p) {
         if (x.pieces->arms.store)
             for (int32_t i = s.stretch_start[p]; i < s.stretch_start[p + 1]; ++i)
-                load_slots<layout, terms>(z, s.stretch[i].first, s.stretch[i].end, keep_all);
+                load_slots(z, terms, s.stretch[i].first, s.stretch[i].end, keep_all);
         else
-            load_slots<layout, terms>(z, first_of_piece(p), end_of_piece(s, p), keep_all);
+            load_slots(z, terms, first_of_piece(p), end_of_piece(s, p), keep_all);
         x.pieces->slack[p] = up_piece<keep>(x, p, x.pieces->memory(p), up_arm);
     });
     collect_slack(x);
-    Loader<layout, terms, double>{z}.load_core();
+    Loader<double>{z, terms}.load_core();
 }
 
 // Faint bonds have been found, and are to be looked at again.
@@ -52,29 +52,23 @@ static inline bool to_be_repeated(Molecules<double> &x) {
 
 // Reads, and solves what has been read. `keep`: for more than one right-hand side, which arms don't do. `look`: tests
 // what is found.
-template <Layout layout, int terms, bool keep, bool look = true>
-HOL_NOINLINE void solve_in_pieces(Linear<double> &z) {
+template <bool keep>
+HOL_NOINLINE void solve_in_pieces(Linear<double> &z, int terms, bool look = true) {
     Molecules<double> &x = z.x;
     const Schedule &s = x.s;
     for (int32_t slot = s.n_tree; slot < s.n_atoms; ++slot) x.w[slot] = x.lane[0].w[s.atom_of[slot]];
     const auto solve = [&](const ArmWork &up, const ArmWork &down) {
         do {
-            load_and_eliminate<layout, terms, keep>(z, up);
+            load_and_eliminate<keep>(z, terms, up);
             up_top<keep>(x, z.working, up);
-            down_pieces<look>(x, down);
+            down_pieces(x, down, look);
         } while (to_be_repeated(x));
     };
-    if constexpr (!keep && !(terms & given)) {
-        if (x.pieces->arms.store) {
-            eliminate_arms(x, terms);
-            const auto up = [&](int32_t a, Faint &faint, double &slack) {
-                up_arm<layout, terms>(z, a, faint, z.working, slack);
-            };
-            const auto down = [&](int32_t a, Faint &faint, double &slack) { down_arm<look>(x, a, faint, slack); };
-            return solve(ArmWork(up), ArmWork(down));
-        }
-    }
-    solve(ArmWork(), ArmWork());
+    if (keep || (terms & given) || !x.pieces->arms.store) return solve(ArmWork(), ArmWork());
+    eliminate_arms(x, terms);
+    const auto up = [&](int32_t a, Faint &faint, double &slack) { up_arm(z, terms, a, faint, z.working, slack); };
+    const auto down = [&](int32_t a, Faint &faint, double &slack) { down_arm(x, a, faint, slack, look); };
+    solve(ArmWork(up), ArmWork(down));
 }
 
 }  // namespace graph

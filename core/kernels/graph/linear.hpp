@@ -5,7 +5,6 @@
 #include "core/kernels/graph/proof.hpp"
 #include "core/kernels/graph/refine.hpp"
 #include "core/kernels/graph/ring.hpp"
-#include "core/kernels/graph/strip_linear.hpp"
 #include "core/kernels/graph/tree_runs.hpp"
 
 namespace holonomic {
@@ -17,20 +16,18 @@ struct Linear {
     Molecules<V> x;
     CoreMatrix<V> core;
     RingRow<V> *ring;
-    StripColumns<V> *strip;  // [n_atoms]
     Equations<V> equations;
     V *t, *b;           // [n_bonds] of a graph: the solution so far; right-hand sides
     Memory<V> working;  // of a joint of many bonds
     Pieces pieces;
 
-    static constexpr int64_t bond_values = sizeof(BondRow<V>) / sizeof(V), ring_values = sizeof(RingRow<V>) / sizeof(V),
-                             strip_values = sizeof(StripColumns<V>) / sizeof(V);
+    static constexpr int64_t bond_values = sizeof(BondRow<V>) / sizeof(V), ring_values = sizeof(RingRow<V>) / sizeof(V);
 
     static constexpr int64_t faint_values = (sizeof(Faint) + sizeof(double) - 1) / sizeof(double);
 
     // Rows beside those of bonds: of a tree the root's, see load.hpp.
     static int64_t more_rows(const Schedule &s) {
-        return s.is_strip ? more_strip_rows : s.type == Schedule::tree ? 1 : 0;
+        return s.type == Schedule::tree ? 1 : 0;
     }
 
     // Values of V that the arrays take.
@@ -38,7 +35,6 @@ struct Linear {
         int64_t n = s.n_atoms + bond_values * s.n_bonds + s.n_pairs + JointMemory<V, 0>::values(s.max_children);
         if (s.type == Schedule::ring) n += ring_values * s.n_bonds;
         n += bond_values * more_rows(s);
-        if (s.is_strip) n += strip_values * s.n_atoms;
         n += 3 * 3 * static_cast<int64_t>(s.n_atoms);
         if (has_pieces(s))
             n += faint_values + s.n_pieces * (1 + faint_values + JointMemory<V, 0>::values(s.max_children)) +
@@ -51,15 +47,14 @@ struct Linear {
         return n;
     }
 
-    Linear(const Schedule &s, const MoleculeLane *lane, int used, const Box &box, const AtomArray &r, Memory<V> &memory)
-        : x{s, lane, used, Atoms<V>(lane, used), &box, &r, nullptr, nullptr, nullptr, Width<V>::all(1), {}}, core(),
-          ring(), strip(), equations(), t(), b() {
+    Linear(const Schedule &s, const MoleculeLane *lane, int used, bool packed, const Box &box, const AtomArray &r,
+           Memory<V> &memory)
+        : x{s, lane, used, Atoms<V>(lane, used, packed), &box, &r, nullptr, nullptr, nullptr, Width<V>::all(1), {}},
+          core(), ring(), equations(), t(), b() {
         x.row = reinterpret_cast<BondRow<V> *>(memory.values(bond_values * (s.n_bonds + more_rows(s))));
-        if (s.is_strip) x.row += strip_rows_before;
         x.w = memory.values(s.n_atoms);
         x.pair = memory.values(s.n_pairs);
         if (s.type == Schedule::ring) ring = reinterpret_cast<RingRow<V> *>(memory.values(ring_values * s.n_bonds));
-        if (s.is_strip) strip = reinterpret_cast<StripColumns<V> *>(memory.values(strip_values * s.n_atoms));
         equations.r = memory.vectors(s.n_atoms);
         equations.velocity = memory.vectors(s.n_atoms);
         equations.force = memory.vectors(s.n_atoms);
@@ -111,11 +106,6 @@ struct Linear {
                 break;
             case Schedule::graph:
                 for (int32_t k = 0; k < x.s.n_bonds; ++k) b[k] = x.row[k].t;
-                if (x.s.is_strip) {
-                    factorize_strip(x, strip);
-                    down_strip(x, strip);
-                    break;
-                }
                 up_trees<true>(x, working);
                 factorize_core(x, core, working);
                 solve_core();
@@ -134,11 +124,6 @@ struct Linear {
                 solve_ring(x, ring);
                 break;
             case Schedule::graph:
-                if (x.s.is_strip) {
-                    substitute_strip(x, strip);
-                    down_strip(x, strip);
-                    break;
-                }
                 substitute_trees(x, working);
                 solve_core();
         }
@@ -171,13 +156,8 @@ struct Linear {
 
 private:
     void solve_for_residuals() {
-        if (x.s.is_strip) {
-            substitute_residuals(x, equations, t, strip);
-            down_strip(x, strip);
-        } else {
-            find_residuals(x, equations, t);
-            solve_again();
-        }
+        find_residuals(x, equations, t);
+        solve_again();
     }
 
     // Returns the lanes whose corrections, in t of the rows, are no more than what rounding does to right-hand sides:

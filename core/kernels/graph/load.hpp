@@ -2,8 +2,8 @@
 #ifndef HOLONOMIC_KERNELS_GRAPH_LOAD_HPP
 #define HOLONOMIC_KERNELS_GRAPH_LOAD_HPP
 
-#include "core/kernels/graph/atom_groups.hpp"
 #include "core/kernels/graph/linear.hpp"
+#include "core/kernels/graph/vectors.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -13,27 +13,16 @@ namespace graph {
 // squares: |v_j - v_i|^2;  pulls: d.(w_j f_j - w_i f_i);  rates: d.(v_j - v_i);  given: half of the bond's given value.
 enum RightHandSide { squares = 1, pulls = 2, rates = 4, given = 8 };
 
-template <Layout layout, int terms, class V>
+template <class V>
 struct Loader {
     Linear<V> &z;
+    const int terms;
 
-    // Reads atoms first .. first + count - 1, in the caller's order, to their slots.
-    template <int count>
-    HOL_FORCED void read_atoms(int32_t first) const {
-        const Molecules<V> &x = z.x;
-        const Equations<V> &e = z.equations;
-        const int32_t *const slot = x.s.slot_of + first;
-        Vector3<V> a[count] = {};
-        const auto take = [&](const AtomArray &array, Vector3<V> *to) HOL_FORCED {
-            read_group<layout, count>(array, x.at, first, a);
-            HOL_UNROLL
-            for (int j = 0; j < count; ++j) to[slot[j]] = a[j];
-        };
-        take(*x.r, e.r);
-        if (terms & (squares | rates)) take(*x.in.v, e.velocity);
-        if (terms & pulls) take(*x.in.f, e.force);
+    bool has(int wanted) const { return (terms & wanted) != 0; }
+
+    void read_atoms(const AtomArray &array, Slots<V> to) const {
+        read_vectors(array, z.x.at, z.x.s.slot_of, z.x.s.n_atoms, to);
     }
-    HOL_FORCED void read_atom(int32_t slot) const { read_atoms<1>(z.x.s.atom_of[slot]); }
 
     // b + d.(w f - w0 f0)
     HOL_STATIC V with_pull(const Vector3<V> &d, V w0, const Vector3<V> &f0, V w, const Vector3<V> &f, V b) {
@@ -49,16 +38,16 @@ struct Loader {
         Vector3<V> d = e.r[to] - e.r[from], unused = {};
         take_image<false>(*z.x.box, d, unused);
         V b = {};
-        if (terms & squares) {
+        if (has(squares)) {
             const Vector3<V> dv = e.velocity[to] - e.velocity[from];
             b = dot(dv, dv);
         }
-        if (terms & rates) {
+        if (has(rates)) {
             b = dot(d, e.velocity[to] - e.velocity[from]);
             if (z.x.in.strain) b = b + stretching(z.x.in.strain, d);
         }
-        if (terms & pulls) b = with_pull(d, z.x.w[from], e.force[from], z.x.w[to], e.force[to], b);
-        if (terms & given) b = given_value(place);
+        if (has(pulls)) b = with_pull(d, z.x.w[from], e.force[from], z.x.w[to], e.force[to], b);
+        if (has(given)) b = given_value(place);
         row.d = d;
         row.q = dot(d, d);
         row.t = b;
@@ -72,71 +61,50 @@ struct Loader {
         return b;
     }
 
-    // Of a tree at the level of forces nothing but the rows is needed later. The atoms are kept in these, too, each in
-    // the row of the bond above it: r in d, v in q, E, t, and f in l, r and a value elsewhere. That is half the memory,
-    // and of molecules of a hundred bonds what fits into the first-level cache. A bond is made from its two rows when
-    // those below it have been made.
-    static constexpr bool fits_rows = !(terms & (rates | given));
-
-    template <int count>
-    HOL_FORCED void read_atoms_to_rows(int32_t first) const {
-        const Molecules<V> &x = z.x;
-        const int32_t *const slot = x.s.slot_of + first;
-        V *const rest = &z.equations.r->x;
-        Vector3<V> a[count] = {};
-        read_group<layout, count>(*x.r, x.at, first, a);
-        HOL_UNROLL
-        for (int j = 0; j < count; ++j) x.row[slot[j]].d = a[j];
-        if (terms & squares) {
-            read_group<layout, count>(*x.in.v, x.at, first, a);
-            HOL_UNROLL
-            for (int j = 0; j < count; ++j) {
-                BondRow<V> &row = x.row[slot[j]];
-                row.q = a[j].x;
-                row.E = a[j].y;
-                row.t = a[j].z;
-            }
-        }
-        if (terms & pulls) {
-            read_group<layout, count>(*x.in.f, x.at, first, a);
-            HOL_UNROLL
-            for (int j = 0; j < count; ++j) {
-                BondRow<V> &row = x.row[slot[j]];
-                row.l = a[j].x;
-                row.r = a[j].y;
-                rest[slot[j]] = a[j].z;
-            }
-        }
+    // Of a tree at the level of forces nothing but the rows is needed later. The atoms are kept in these, too, r and v in
+    // the row of the bond above it, in d and in q, E, t. That is less memory, and of molecules of a hundred bonds what
+    // fits into the first-level cache. A bond is made from its two rows when those below it have been made.
+    void read_atoms_to_rows() const {
+        BondRow<V> *const row = z.x.row;
+        read_atoms(*z.x.r, Slots<V>(row, &row->d.x));
+        if (has(squares)) read_atoms(*z.x.in.v, Slots<V>(row, &row->q));
+        if (has(pulls)) read_atoms(*z.x.in.f, Slots<V>(z.equations.r));
     }
 
-    HOL_FORCED void make_row_in_place(int32_t slot, int32_t parent) const {
-        const BondRow<V> &from = z.x.row[parent];
-        BondRow<V> &row = z.x.row[slot];
-        const V *const rest = &z.equations.r->x;
-        const V w = z.x.w[slot];
-        Vector3<V> d = row.d - from.d, unused = {};
-        take_image<false>(*z.x.box, d, unused);
-        V b = {};
-        if (terms & squares) {
-            const Vector3<V> dv = {row.q - from.q, row.E - from.E, row.t - from.t};
-            b = dot(dv, dv);
+    template <bool has_v, bool has_f>
+    __attribute__((noinline)) void make_rows_in_place() const {
+        const Schedule &s = z.x.s;
+        const V *const mass = z.x.w;
+        const Vector3<V> *const f = z.equations.r;
+        for (int32_t slot = 0; slot < s.n_tree; ++slot) {
+            const int32_t parent = s.parent[slot];
+            const BondRow<V> &from = z.x.row[parent];
+            BondRow<V> &row = z.x.row[slot];
+            const V w = mass[slot];
+            Vector3<V> d = row.d - from.d, unused = {};
+            take_image<false>(*z.x.box, d, unused);
+            V b = {};
+            if (has_v) {
+                const Vector3<V> dv = {row.q - from.q, row.E - from.E, row.t - from.t};
+                b = dot(dv, dv);
+            }
+            if (has_f) b = with_pull(d, mass[parent], f[parent], w, f[slot], b);
+            row.d = d;
+            row.q = dot(d, d);
+            row.E = w * row.q;  // of a leaf
+            row.t = b;
         }
-        if (terms & pulls)
-            b = with_pull(d, z.x.w[parent], {from.l, from.r, rest[parent]}, w, {row.l, row.r, rest[slot]}, b);
-        row.d = d;
-        row.q = dot(d, d);
-        row.E = w * row.q;  // of a leaf
-        row.t = b;
     }
 
     __attribute__((noinline)) void load() const {
         const Schedule &s = z.x.s;
-        if (fits_rows && s.type == Schedule::tree) {
-            for_groups(s.n_atoms, [&](int32_t first, auto number) HOL_FORCED { read_atoms_to_rows<number>(first); });
-            for (int32_t slot = 0; slot < s.n_tree; ++slot) make_row_in_place(slot, s.parent[slot]);
-            return;
+        if (!has(rates | given) && s.type == Schedule::tree) {
+            read_atoms_to_rows();
+            return choose([&](auto v, auto f) { make_rows_in_place<v, f>(); }, has(squares), has(pulls));
         }
-        for_groups(s.n_atoms, [&](int32_t first, auto number) HOL_FORCED { read_atoms<number>(first); });
+        read_atoms(*z.x.r, Slots<V>(z.equations.r));
+        if (has(squares | rates)) read_atoms(*z.x.in.v, Slots<V>(z.equations.velocity));
+        if (has(pulls)) read_atoms(*z.x.in.f, Slots<V>(z.equations.force));
         for (int32_t slot = 0; slot < s.n_tree; ++slot) {
             make_row(slot, s.parent[slot], slot);
             BondRow<V> &row = z.x.row[slot];
@@ -147,7 +115,13 @@ struct Loader {
 
     // Reads the atoms that trees hang from, and makes the bonds between them.
     void load_core() const {
-        for (int32_t slot = z.x.s.n_atoms - 1; slot >= z.x.s.n_tree; --slot) read_atom(slot);
+        const Molecules<V> &x = z.x;
+        for (int32_t slot = x.s.n_atoms - 1; slot >= x.s.n_tree; --slot) {
+            const int32_t atom = x.s.atom_of[slot];
+            z.equations.r[slot] = read(*x.r, x.at, atom);
+            if (has(squares | rates)) z.equations.velocity[slot] = read(*x.in.v, x.at, atom);
+            if (has(pulls)) z.equations.force[slot] = read(*x.in.f, x.at, atom);
+        }
         load_core_bonds();
     }
 

@@ -11,10 +11,10 @@ namespace HOL_ISA {
 namespace graph {
 
 // Atoms of one molecule, one in each lane.
-template <Layout layout>
 struct AtomsInLanes {
+    const Layout layout;
     int64_t number[W];  // in the caller's arrays; of rows of three doubles, where they begin
-    HOL_FORCED AtomsInLanes(const Molecules<double> &x, const int32_t *slot) {
+    HOL_FORCED AtomsInLanes(const Molecules<double> &x, const int32_t *slot) : layout(x.at.layout) {
         HOL_UNROLL
         for (int i = 0; i < W; ++i) {
             const int32_t atom = x.s.atom_of[slot[i]];
@@ -68,13 +68,12 @@ HOL_INLINE vec mass_of(const Molecules<double> &x, const int32_t *slot) {
 }
 
 // The masses and bonds of W slots of trees.
-template <Layout layout, int terms>
-HOL_INLINE void load_lanes(Linear<double> &z, const int32_t *slot, bool keep_all) {
+HOL_INLINE void load_lanes(Linear<double> &z, int terms, const int32_t *slot, bool keep_all) {
     const Molecules<double> &x = z.x;
     int32_t above[W];
     HOL_UNROLL
     for (int i = 0; i < W; ++i) above[i] = x.s.parent[slot[i]];
-    const AtomsInLanes<layout> child(x, slot), parent(x, above);
+    const AtomsInLanes child(x, slot), parent(x, above);
     const vec3 r = child.read(*x.r);
     const vec w = mass_of(x, slot);
     HOL_UNROLL
@@ -98,20 +97,19 @@ HOL_INLINE void load_lanes(Linear<double> &z, const int32_t *slot, bool keep_all
         row.t = mul_add(row.d.z, df.z, mul_add(row.d.y, df.y, mul_add(row.d.x, df.x, row.t)));
     }
     if (terms & given)
-        for (int i = 0; i < W; ++i) row.t[i] = Loader<layout, terms, double>{z}.given_value(slot[i]);
+        for (int i = 0; i < W; ++i) row.t[i] = Loader<double>{z, terms}.given_value(slot[i]);
     row.q = dot(row.d, row.d);
     row.E = w * row.q;  // of a leaf
     scatter_vectors(x.row, slot, row);
     scatter_values(x.row, slot, row);
 }
 
-template <Layout layout, int terms>
-HOL_NOINLINE void load_slots(Linear<double> &z, int32_t first, int32_t end, bool keep_all) {
+HOL_NOINLINE void load_slots(Linear<double> &z, int terms, int32_t first, int32_t end, bool keep_all) {
     for (int32_t s = first; s < end; s += W) {
         int32_t slot[W];
         HOL_UNROLL
         for (int i = 0; i < W; ++i) slot[i] = s + i < end ? s + i : end - 1;
-        load_lanes<layout, terms>(z, slot, keep_all);
+        load_lanes(z, terms, slot, keep_all);
     }
 }
 

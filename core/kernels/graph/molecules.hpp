@@ -98,7 +98,7 @@ HOL_INLINE void for_bonds_of(const Schedule &s, int32_t slot, const Body &body) 
     const int n = s.meet_start[slot - s.n_tree + 1] - s.meet_start[slot - s.n_tree];
     choose_few<4>(n, [&](auto known) HOL_FORCED {
         const int count = known > 0 ? known : n;
-        HOL_UNROLL
+        HOL_UNROLL_FEW
         for (int e = 0; e < count; ++e) body(s.n_tree + meet[e] / 2, sign[meet[e] & 1]);
     });
 }

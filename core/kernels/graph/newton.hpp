@@ -5,6 +5,7 @@
 #define HOLONOMIC_KERNELS_GRAPH_NEWTON_HPP
 
 #include "core/kernels/graph/newton_core.hpp"
+#include "core/kernels/graph/vectors.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -15,19 +16,19 @@ struct Newton {
     typedef V Value;
     static constexpr bool by_length = true;
     NewtonSystem<V> x;
-    V *spare;    // for the core's factors
+    V *kept;     // factors, while new ones are made for some lanes
     V *lengths;  // least and largest
 
     static constexpr int64_t row_values = static_cast<int64_t>(sizeof(NewtonRow<V>) / sizeof(V));
     static int64_t values(const Schedule &s) {
         const int64_t part = CoreMatrix<V>::most_parts(s), n_atoms = s.n_atoms, n_bonds = s.n_bonds;
-        return 7 * n_atoms + 2 + columns_ahead + 1 + (row_values + 4) * n_bonds + 2 * static_cast<int64_t>(s.n_pairs) +
-               4 * static_cast<int64_t>(s.n_entries) + 2 * reaches(s) + 2 * part +
+        return 7 * n_atoms + 2 + columns_ahead + 1 + (row_values + 7) * n_bonds + 4 * static_cast<int64_t>(s.n_pairs) +
+               4 * static_cast<int64_t>(s.n_entries) + 4 * reaches(s) + 2 * part +
                NewtonMemory<V, 0>::values(s.max_children);
     }
 
     Newton(const Schedule &s, Memory<V> &memory)
-        : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, spare(), lengths(memory.values(2)) {
+        : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, kept(), lengths(memory.values(2)) {
         const int64_t part = CoreMatrix<V>::most_parts(s);
         x.w = memory.values(s.n_atoms);
         x.row = reinterpret_cast<NewtonRow<V> *>(memory.values(row_values * s.n_bonds));
@@ -43,7 +44,7 @@ struct Newton {
         x.reach_down = memory.values(reaches(s));
         x.part_up = memory.values(part);
         x.part_down = memory.values(part);
-        spare = memory.values(2 * static_cast<int64_t>(s.n_entries));
+        kept = memory.values(3 * static_cast<int64_t>(s.n_bonds) + 2 * (s.n_pairs + static_cast<int64_t>(s.n_entries) + reaches(s)));
         x.working = memory;
         memory.values(NewtonMemory<V, 0>::values(s.max_children));
     }
@@ -72,26 +73,50 @@ struct Newton {
             row.stretch = select(which, row.stretch, stretch);
             row.t = select(which, row.t, t);
         }
-        if (bits(which) == (1u << Width<V>::lanes) - 1)
-            factorize<true>(which);
-        else
-            factorize<false>(which);
+        if (bits(which) == all_of<V>) return make_factors();
+        V *to = kept;
+        const V *from = kept;
+        for_factors([&](V &value) HOL_FORCED { *to++ = value; });
+        make_factors();
+        for_factors([&](V &value) HOL_FORCED { value = select(which, value, *from++); });
     }
 
-    template <bool all>
-    __attribute__((noinline)) void factorize(MaskOf<V> which) {
+    // Calls body(value) for all values that factors are made of.
+    template <class Body>
+    HOL_FORCED void for_factors(const Body &body) const {
+        const Schedule &s = x.s;
+        for (int32_t k = 0; k < s.n_bonds; ++k) {
+            body(x.row[k].r);
+            body(x.row[k].up);
+            body(x.row[k].down);
+        }
+        for (int32_t p = 0; p < s.n_pairs; ++p) {
+            body(x.lower[p]);
+            body(x.upper[p]);
+        }
+        for (int32_t e = 0; e < s.n_entries; ++e) {
+            body(x.core_lower[e]);
+            body(x.core_upper[e]);
+        }
+        for (int64_t e = 0; e < reaches(s); ++e) {
+            body(x.reach_up[e]);
+            body(x.reach_down[e]);
+        }
+    }
+
+    __attribute__((noinline)) void make_factors() const {
         const Schedule &s = x.s;
         for (int32_t slot = 0; slot < s.n_tree; ++slot) {
             const int k = s.child_start[slot + 1] - s.child_start[slot];
             if (k == 0)
                 x.row[slot].E = x.w[slot] * dot(x.new_D[slot], x.row[slot].b);
             else
-                choose_few<3>(k, [&](auto known) HOL_FORCED { factorize_joint<known, false, all>(x, slot, k, which); });
+                choose_few<3>(k, [&](auto known) HOL_FORCED { factorize_joint<known, false>(x, slot, k); });
         }
         if (s.n_core_atoms == 0)
-            factorize_joint<1, true, all>(x, s.n_tree, 1, which);
+            factorize_joint<1, true>(x, s.n_tree, 1);
         else
-            factorize_core<all>(x, spare, which);
+            factorize_core(x);
     }
 
     // Substitutes up: t of the rows, what is left of the lengths, becomes u.
@@ -128,10 +153,16 @@ struct Newton {
         return x.w[slot] * pull;
     }
 
+    // Of all atoms.
+    HOL_FORCED Slots<V> displace() const {
+        for (int32_t slot = x.s.n_atoms - 1; slot >= 0; --slot) x.move[slot] = displacement(slot);
+        return Slots<V>(x.move);
+    }
+
     // Moves atoms and bonds by tau. Returns the largest error.
     __attribute__((noinline)) V move() {
         const Schedule &s = x.s;
-        for (int32_t slot = s.n_atoms - 1; slot >= 0; --slot) x.move[slot] = displacement(slot);
+        displace();
         Errors errors = {};
         const auto bond = [&](int32_t k, int32_t from, int32_t to) HOL_FORCED {
             x.new_D[k] = x.row[k].D + (x.move[to] - x.move[from]);
@@ -159,7 +190,7 @@ struct Newton {
         }
         return errors.largest();
     }
-    void first_factors() { factorize<true>(Width<V>::none()); }
+    void first_factors() { make_factors(); }
 };
 
 }  // namespace graph

@@ -2,7 +2,6 @@
 #ifndef HOLONOMIC_KERNELS_GRAPH_NEWTON_CORE_HPP
 #define HOLONOMIC_KERNELS_GRAPH_NEWTON_CORE_HPP
 
-#include "core/kernels/graph/atom_groups.hpp"
 #include "core/kernels/graph/core_columns.hpp"
 #include "core/kernels/graph/core_matrix.hpp"
 #include "core/kernels/graph/newton_joint.hpp"
@@ -14,45 +13,44 @@ namespace graph {
 // Bonds that meet at an atom stand in the order of their places, so that the later one of a pair is its row below the
 // diagonal.
 template <int known, class V>
-HOL_INLINE void add_bare_atom(const NewtonSystem<V> &x, int32_t c, int count, V *entry_lower, V *entry_upper) {
+HOL_INLINE void add_bare_atom(const NewtonSystem<V> &x, int32_t c, int count) {
     const Schedule &s = x.s;
     const int32_t *const meet = s.meet + s.meet_start[c], *entry = s.meet_pair + s.meet_pair_start[c];
     const int n = known > 0 ? known : count;
     const V w = x.w[s.n_tree + c], signed_w[2] = {w, -w};
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int e = 0; e < n; ++e) {
         const int32_t place = s.n_tree + meet[e] / 2;
         const Vector3<V> D = x.new_D[place], b = x.row[place].b;
         V &pivot = x.core[meet[e] / 2];
         pivot = mul_add(w, dot(D, b), pivot);
-        HOL_UNROLL
+        HOL_UNROLL_FEW
         for (int o = 0; o < e; ++o, ++entry) {
             const int32_t other = s.n_tree + meet[o] / 2;
             const V times = signed_w[(meet[e] ^ meet[o]) & 1];
-            entry_lower[*entry] = times * dot(D, x.row[other].b);
-            entry_upper[*entry] = times * dot(x.new_D[other], b);
+            x.core_lower[*entry] = times * dot(D, x.row[other].b);
+            x.core_upper[*entry] = times * dot(x.new_D[other], b);
         }
     }
 }
 
 template <class V>
-static inline void add_bare_atom(const NewtonSystem<V> &x, int32_t c, V *entry_lower, V *entry_upper) {
+static inline void add_bare_atom(const NewtonSystem<V> &x, int32_t c) {
     const int n = x.s.meet_start[c + 1] - x.s.meet_start[c];
-    choose_few<4, 2>(n, [&](auto known) HOL_FORCED { add_bare_atom<known>(x, c, n, entry_lower, entry_upper); });
+    choose_few<4, 2>(n, [&](auto known) HOL_FORCED { add_bare_atom<known>(x, c, n); });
 }
 
 // Adds the elements of one atom of the core: in row k and column l, s_k s_l (w D_k.b_l - the sum over its children).
-template <bool all, class V>
-static inline void add_core_atom(const NewtonSystem<V> &x, int32_t c, int64_t reach, V *entry_lower, V *entry_upper,
-                                 MaskOf<V> which) {
+template <class V>
+static inline void add_core_atom(const NewtonSystem<V> &x, int32_t c, int64_t reach) {
     const Schedule &s = x.s;
     const int32_t slot = s.n_tree + c, k = s.child_start[slot + 1] - s.child_start[slot];
     const int32_t *const meet = s.meet + s.meet_start[c], *entry = s.meet_pair + s.meet_pair_start[c];
     const int32_t n = s.meet_start[c + 1] - s.meet_start[c];
-    if (k == 0) return add_bare_atom(x, c, entry_lower, entry_upper);
+    if (k == 0) return add_bare_atom(x, c);
     const V w = x.w[slot];
     auto f = NewtonMemory<V, 0>::make(x.working, k);
-    factorize_children<all>(x, slot, k, f, which);
+    factorize_children(x, slot, k, f);
     for (int32_t e = 0; e < n; ++e) {
         const int32_t place = s.n_tree + meet[e] / 2;
         V *const z = x.part_down + e * k, *const h = x.part_up + e * k;
@@ -60,8 +58,8 @@ static inline void add_core_atom(const NewtonSystem<V> &x, int32_t c, int64_t re
         V &pivot = x.core[meet[e] / 2];
         pivot = pivot + couple(x, slot, k, place, f, z, h, f.S, f.u);
         for (int32_t a = 0; a < k; ++a) {
-            put_where<all>(which, x.reach_up[reach + e * k + a], f.S[a]);
-            put_where<all>(which, x.reach_down[reach + e * k + a], f.u[a]);
+            x.reach_up[reach + e * k + a] = f.S[a];
+            x.reach_down[reach + e * k + a] = f.u[a];
         }
         for (int32_t o = 0; o < e; ++o, ++entry) {
             const int32_t other = s.n_tree + meet[o] / 2;
@@ -73,8 +71,8 @@ static inline void add_core_atom(const NewtonSystem<V> &x, int32_t c, int64_t re
             }
             const double sign = sign_of(meet[e]) * sign_of(meet[o]);
             const bool below = place > other;  // row e, column o
-            entry_lower[*entry] = sign * (below ? eo : oe);
-            entry_upper[*entry] = sign * (below ? oe : eo);
+            x.core_lower[*entry] = sign * (below ? eo : oe);
+            x.core_upper[*entry] = sign * (below ? oe : eo);
         }
     }
 }
@@ -85,10 +83,10 @@ HOL_INLINE void eliminate_column(const Schedule &s, V *pivot, int32_t p, int cou
     const int n = known > 0 ? known : count;
     const int32_t first = s.column_start[p];
     const int32_t *const below = s.row + first, *update = s.update + s.update_start[p];
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < n; ++a) {
         const V l = lower[first + a], u = upper[first + a], la = l * r, ua = u * r;
-        HOL_UNROLL
+        HOL_UNROLL_FEW
         for (int b = 0; b < a; ++b, ++update) {
             // element (a, b) below the diagonal and (b, a) above it; l and u of b are multiplied by r already
             lower[*update] = mul_add(-l, upper[first + b], lower[*update]);
@@ -100,30 +98,22 @@ HOL_INLINE void eliminate_column(const Schedule &s, V *pivot, int32_t p, int cou
     }
 }
 
-// Makes new factors in the lanes of `which`, or in all. `spare` has 2 n_entries values.
-template <bool all, class V>
-static inline void factorize_core(const NewtonSystem<V> &x, V *spare, MaskOf<V> which) {
+template <class V>
+static inline void factorize_core(const NewtonSystem<V> &x) {
     const Schedule &s = x.s;
-    V *const lower = all ? x.core_lower : spare, *const upper = all ? x.core_upper : spare + s.n_entries;
-    for (int32_t e = 0; e < s.n_entries; ++e) lower[e] = upper[e] = V{};
-    NewtonRow<V> *const row = x.row + s.n_tree;
+    for (int32_t e = 0; e < s.n_entries; ++e) x.core_lower[e] = x.core_upper[e] = V{};
     for (int32_t p = 0; p < s.n_core; ++p) x.core[p] = V{};
     int64_t reach = 0;
     for (int32_t c = 0; c < s.n_core_atoms; ++c) {
-        add_core_atom<all>(x, c, reach, lower, upper, which);
+        add_core_atom(x, c, reach);
         reach += static_cast<int64_t>(s.meet_start[c + 1] - s.meet_start[c]) *
                  (s.child_start[s.n_tree + c + 1] - s.child_start[s.n_tree + c]);
     }
     for (int32_t p = 0; p < s.n_core; ++p) {
-        const V r = Width<V>::all(1) / x.core[p];
-        put_where<all>(which, row[p].r, r);
+        const V r = x.row[s.n_tree + p].r = Width<V>::all(1) / x.core[p];
         const int n = s.column_start[p + 1] - s.column_start[p];
-        choose_few<4>(n, [&](auto known) HOL_FORCED { eliminate_column<known>(s, x.core, p, n, r, lower, upper); });
-    }
-    if (all) return;
-    for (int32_t e = 0; e < s.n_entries; ++e) {
-        put_where<all>(which, x.core_lower[e], lower[e]);
-        put_where<all>(which, x.core_upper[e], upper[e]);
+        choose_few<4>(
+            n, [&](auto known) HOL_FORCED { eliminate_column<known>(s, x.core, p, n, r, x.core_lower, x.core_upper); });
     }
 }
 

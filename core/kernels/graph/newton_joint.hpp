@@ -61,17 +61,17 @@ struct NewtonSystem {
 // a > j.
 template <class V>
 HOL_INLINE void decompose(int k, V *S, V *r, V *lower, V *upper) {
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int j = 0; j < k; ++j) {
         r[j] = Width<V>::all(1) / S[j * k + j];
-        HOL_UNROLL
+        HOL_UNROLL_FEW
         for (int a = j + 1; a < k; ++a) {
             lower[pair_of(a, j)] = S[a * k + j] * r[j];
             upper[pair_of(a, j)] = S[j * k + a] * r[j];
         }
-        HOL_UNROLL
+        HOL_UNROLL_FEW
         for (int a = j + 1; a < k; ++a) {
-            HOL_UNROLL
+            HOL_UNROLL_FEW
             for (int b = j + 1; b < k; ++b) S[a * k + b] = mul_add(-lower[pair_of(a, j)], S[j * k + b], S[a * k + b]);
         }
     }
@@ -80,17 +80,17 @@ HOL_INLINE void decompose(int k, V *S, V *r, V *lower, V *upper) {
 // u = S^-1 y with (lower, upper), u = y S^-1 with (upper, lower). z keeps y as it is after the first half.
 template <class V>
 HOL_INLINE void solve_joint(int k, const V *r, const V *first, const V *second, const V *y, V *z, V *u) {
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
         V sum = y[a];
-        HOL_UNROLL
+        HOL_UNROLL_FEW
         for (int j = 0; j < a; ++j) sum = mul_add(-first[pair_of(a, j)], z[j], sum);
         z[a] = sum;
     }
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = k - 1; a >= 0; --a) {
         V sum = z[a] * r[a];
-        HOL_UNROLL
+        HOL_UNROLL_FEW
         for (int j = a + 1; j < k; ++j) sum = mul_add(-second[pair_of(j, a)], u[j], sum);
         u[a] = sum;
     }
@@ -118,20 +118,14 @@ struct NewtonMemory<V, 0> {
     static constexpr int64_t values(int64_t k) { return k * k + k * (k - 1) + 5 * k; }
 };
 
-// Puts a value into `to` in the lanes of `which`, or in all.
-template <bool all, class V>
-HOL_INLINE void put_where(MaskOf<V> which, V &to, V value) {
-    to = all ? value : select(which, value, to);
-}
-
-// Finds the factors of the children of a slot. Puts them into f and, in the lanes of `which`, where they are kept.
-template <bool all, class V, class Joint>
-HOL_INLINE void factorize_children(const NewtonSystem<V> &x, int32_t slot, int k, Joint &f, MaskOf<V> which) {
+// Finds the factors of the children of a slot. Puts them into f and where they are kept.
+template <class V, class Joint>
+HOL_INLINE void factorize_children(const NewtonSystem<V> &x, int32_t slot, int k, Joint &f) {
     const int32_t *const child = x.s.child + x.s.child_start[slot];
     const V w = x.w[slot];
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
-        HOL_UNROLL
+        HOL_UNROLL_FEW
         for (int b = 0; b < k; ++b) {
             const V g = w * dot(x.new_D[child[a]], x.row[child[b]].b);
             f.S[a * k + b] = a == b ? g + x.row[child[a]].E : g;
@@ -139,14 +133,14 @@ HOL_INLINE void factorize_children(const NewtonSystem<V> &x, int32_t slot, int k
     }
     decompose(k, f.S, f.r, f.lower, f.upper);
     V *const lower = x.lower + x.s.pair_start[slot], *const upper = x.upper + x.s.pair_start[slot];
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
         NewtonRow<V> &row = x.row[child[a]];
-        put_where<all>(which, row.r, f.r[a]);
-        HOL_UNROLL
+        row.r = f.r[a];
+        HOL_UNROLL_FEW
         for (int b = 0; b < a; ++b) {
-            put_where<all>(which, lower[pair_of(a, b)], f.lower[pair_of(a, b)]);
-            put_where<all>(which, upper[pair_of(a, b)], f.upper[pair_of(a, b)]);
+            lower[pair_of(a, b)] = f.lower[pair_of(a, b)];
+            upper[pair_of(a, b)] = f.upper[pair_of(a, b)];
         }
     }
 }
@@ -158,32 +152,32 @@ HOL_INLINE V couple(const NewtonSystem<V> &x, int32_t slot, int k, int32_t place
                     V *down) {
     const int32_t *const child = x.s.child + x.s.child_start[slot];
     const V w = x.w[slot];
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) f.y[a] = w * dot(x.new_D[child[a]], x.row[place].b);
     solve_joint(k, f.r, f.lower, f.upper, f.y, z, down);
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) f.y[a] = w * dot(x.new_D[place], x.row[child[a]].b);
     solve_joint(k, f.r, f.upper, f.lower, f.y, h, up);
     V E = w * dot(x.new_D[place], x.row[place].b);
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) E = mul_add(-(h[a] * f.r[a]), z[a], E);
     return E;
 }
 
-template <int known, bool top, bool all, class V>
-HOL_INLINE void factorize_joint(const NewtonSystem<V> &x, int32_t slot, int count, MaskOf<V> which) {
+template <int known, bool top, class V>
+HOL_INLINE void factorize_joint(const NewtonSystem<V> &x, int32_t slot, int count) {
     const int k = known > 0 ? known : count;
     auto f = NewtonMemory<V, known>::make(x.working, k);
-    factorize_children<all>(x, slot, k, f, which);
+    factorize_children(x, slot, k, f);
     if (top) return;
     V *const up = f.S, *const down = f.u;  // S is done with
     x.row[slot].E = couple(x, slot, k, slot, f, f.z, f.h, up, down);
     const int32_t *const child = x.s.child + x.s.child_start[slot];
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
         NewtonRow<V> &row = x.row[child[a]];
-        put_where<all>(which, row.up, up[a]);
-        put_where<all>(which, row.down, down[a]);
+        row.up = up[a];
+        row.down = down[a];
     }
 }
 
@@ -202,7 +196,7 @@ HOL_INLINE void substitute_joint(const NewtonSystem<V> &x, int32_t slot, int cou
     auto f = NewtonMemory<V, known>::make(x.working, k);
     const V *const lower = x.lower + x.s.pair_start[slot], *const upper = x.upper + x.s.pair_start[slot];
     V above = top ? V{} : x.row[slot].t;
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
         const NewtonRow<V> &row = x.row[child[a]];
         f.y[a] = row.t;
@@ -210,7 +204,7 @@ HOL_INLINE void substitute_joint(const NewtonSystem<V> &x, int32_t slot, int cou
         if (!top) above = mul_add(row.up, row.t, above);
     }
     solve_joint(k, f.r, lower, upper, f.y, f.z, f.u);
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) x.row[child[a]].t = f.u[a];
     if (!top) x.row[slot].t = above;
 }

@@ -134,39 +134,35 @@ static inline WindowResult solve_knots(const PathsWork &x, const Knots &knots, d
     Memory<double> lists = {scratch};
     for (int i = 0; i < W; ++i) lane[i] = i < knots.used ? lane_of_knot(x, knots, i, reach, lists) : lane[0];
     Memory<vec> memory = {scratch + (W * lane_values(s) + most_lanes - 1) / most_lanes * most_lanes};
-    const Atoms<vec> at(lane, knots.used);
+    const Atoms<vec> at(lane, knots.used, x.packed);
     Newton<vec> newton(s, memory);
     for (int32_t slot = 0; slot < s.n_atoms; ++slot)
         for (int i = 0; i < W; ++i) newton.x.w[slot][i] = lane[i].w[s.atom_of[slot]];
     const mask all = first_lanes(knots.used);
-    return with_layout(at, x.packed, [&](auto layout) {
-        PositionsBlock<decltype(layout)::value, Newton<vec>> block = {x.strict, s,     lane,  at,   newton,
-                                                                      part,     vec{}, vec{}, vec{}};
-        block.set_lengths(false);
-        const Solved<vec> out = block.find(all);
-        const bool untouched = !any(all & ~out.untouched);
-        if (!untouched && any(all & (~out.converged | block.coarse_moves()))) return window_failed;
-        if (x.call.report)
-            for_bonds_of_knots(
-                x.plan, knots, s, reach, untouched ? PathPlan::bonds_of_end : 1,
-                [&](int32_t i, int32_t bond, int32_t place) { note_worse(x, newton.left_of(place)[i], bond, part); });
-        if (untouched) return window_untouched;
-        if (out.solves > part.iterations) part.iterations = out.solves;
-        keep_knots(x, knots, newton, reach);
-        return window_solved;
-    });
+    PositionsBlock<Newton<vec>> block = {x.strict, s, lane, at, newton, part, vec{}, vec{}, vec{}};
+    block.set_lengths(false);
+    const Solved<vec> out = block.find(all);
+    const bool untouched = !any(all & ~out.untouched);
+    if (!untouched && any(all & (~out.converged | block.coarse_moves()))) return window_failed;
+    if (x.call.report)
+        for_bonds_of_knots(
+            x.plan, knots, s, reach, untouched ? PathPlan::bonds_of_end : 1,
+            [&](int32_t i, int32_t bond, int32_t place) { note_worse(x, newton.left_of(place)[i], bond, part); });
+    if (untouched) return window_untouched;
+    if (out.solves > part.iterations) part.iterations = out.solves;
+    keep_knots(x, knots, newton, reach);
+    return window_solved;
 }
 
 // Moves the atoms of knots.
-template <Layout layout>
 static inline void move_knots(const PathsWork &x, const uint8_t *fixed) {
-    const Atoms<double> at(&x.molecule, 1);
+    const Atoms<double> at(&x.molecule, 1, x.packed);
     for (int32_t k = 0; k < x.plan.n_atoms; ++k) {
         const int32_t atom = x.plan.atom[k];
         if (fixed[atom]) continue;
-        write<layout>(x.call.r, at, atom, read<layout>(x.call.r, at, atom) + x.move[k], 1);
+        write(x.call.r, at, atom, read(x.call.r, at, atom) + x.move[k], 1);
         if (!x.call.v.x) continue;
-        write<layout>(x.call.v, at, atom, add_times(read<layout>(x.call.v, at, atom), 1 / x.call.dt, x.move[k]), 1);
+        write(x.call.v, at, atom, add_times(read(x.call.v, at, atom), 1 / x.call.dt, x.move[k]), 1);
     }
 }
 

@@ -7,9 +7,8 @@
 #include "core/kernels/graph/flat_positions.hpp"
 #include "core/kernels/graph/iterate.hpp"
 #include "core/kernels/graph/newton.hpp"
-#include "core/kernels/graph/ring_atoms.hpp"
+#include "core/kernels/graph/ring_newton.hpp"
 #include "core/kernels/graph/store.hpp"
-#include "core/kernels/graph/strip_atoms.hpp"
 #include "core/kernels/graph/triangle_blocks.hpp"
 #include "core/kernels/tally.hpp"
 
@@ -26,26 +25,27 @@ HOL_INLINE void make_bond(NewtonRow<V> &row, const PositionsCall &call, const Ve
     take_image<false>(call.box, row.D, unused);
 }
 
+// Reads the reference positions and the new ones, by slot; returns the latter's largest coordinate.
+template <class V>
+HOL_NOINLINE V read_positions(const Schedule &s, const PositionsCall &call, const Atoms<V> &at, const Slots<V> ref,
+                              const Slots<V> now) {
+    read_vectors(call.r_ref, at, s.slot_of, s.n_atoms, ref);
+    read_vectors(call.r, at, s.slot_of, s.n_atoms, now);
+    V largest = {};
+    for (int32_t i = 0; i < s.n_atoms; ++i) {
+        const Vector3<V> r = now[i];
+        largest = max(max(abs(r.x), abs(r.y)), max(abs(r.z), largest));
+    }
+    return largest;
+}
+
 // Bonds of the reference positions and of the new ones; returns the largest coordinate of the latter.
-template <Layout layout, class V>
+template <class V>
 HOL_NOINLINE V load_bonds(Newton<V> &newton, const PositionsCall &call, const Atoms<V> &at) {
     const Schedule &s = newton.x.s;
     NewtonRow<V> *const row = newton.x.row;
     Vector3<V> *const r_ref = newton.x.move, *const r = newton.x.r;
-    V largest = {};
-    for_groups(s.n_atoms, [&](int32_t first, auto number) HOL_FORCED {
-        constexpr int count = number;
-        Vector3<V> ref[count] = {}, now[count] = {};
-        read_group<layout, count>(call.r_ref, at, first, ref);
-        read_group<layout, count>(call.r, at, first, now);
-        HOL_UNROLL
-        for (int j = 0; j < count; ++j) {
-            const int32_t slot = s.slot_of[first + j];
-            largest = max(max(abs(now[j].x), abs(now[j].y)), max(abs(now[j].z), largest));
-            r_ref[slot] = ref[j];
-            r[slot] = now[j];
-        }
-    });
+    const V largest = read_positions(s, call, at, Slots<V>(r_ref), Slots<V>(r));
     for (int32_t k = 0; k < s.n_tree; ++k)
         make_bond(row[k], call, r_ref[k] - r_ref[s.parent[k]], r[k] - r[s.parent[k]]);
     for (int32_t k = s.n_tree; k < s.n_bonds; ++k) {
@@ -54,40 +54,34 @@ HOL_NOINLINE V load_bonds(Newton<V> &newton, const PositionsCall &call, const At
     }
     return largest;
 }
-
-// Moves the atoms of the lanes in `which`, and their velocities, but fixed ones.
-template <Layout layout, class V>
-HOL_NOINLINE void write_moves(const Newton<V> &newton, const PositionsCall &call, const Atoms<V> &at, unsigned which) {
-    const Schedule &s = newton.x.s;
-    const V per_dt = Width<V>::all(1 / call.dt);
-    for_groups(s.n_atoms, [&](int32_t first, auto number) HOL_FORCED {
-        constexpr int count = number;
-        Vector3<V> move[count] = {}, a[count] = {};
-        bool fixed = false;
-        HOL_UNROLL
-        for (int j = 0; j < count; ++j) {
-            move[j] = newton.displacement(s.slot_of[first + j]);
-            fixed = fixed || s.fixed[first + j];
-        }
-        const auto put = [&](const AtomArray &array) HOL_FORCED {
-            if (!fixed) return write_group<layout, count>(array, at, first, a, which);
-            for (int j = 0; j < count; ++j)
-                if (!s.fixed[first + j]) write<layout>(array, at, first + j, a[j], which);
-        };
-        read_group<layout, count>(call.r, at, first, a);
-        HOL_UNROLL
-        for (int j = 0; j < count; ++j) a[j] = a[j] + move[j];
-        put(call.r);
-        if (!call.v.x) return;
-        read_group<layout, count>(call.v, at, first, a);
-        HOL_UNROLL
-        for (int j = 0; j < count; ++j) a[j] = add_times(a[j], per_dt, move[j]);
-        put(call.v);
-    });
+// The atoms of a ring are read into the rows of the bonds behind them.
+template <class V>
+HOL_NOINLINE V load_bonds(RingNewton<V> &newton, const PositionsCall &call, const Atoms<V> &at) {
+    NewtonRow<V> *const row = newton.x.row;
+    const V largest = read_positions(newton.x.s, call, at, Slots<V>(row, &row->b.x),
+                                     Slots<V>(row, &row->D.x));
+    const Vector3<V> first_ref = row[0].b, first = row[0].D;
+    const int32_t n = newton.x.s.n_bonds;
+    for (int32_t k = 0; k + 1 < n; ++k) make_bond(row[k], call, row[k + 1].b - row[k].b, row[k + 1].D - row[k].D);
+    make_bond(row[n - 1], call, first_ref - row[n - 1].b, first - row[n - 1].D);
+    return largest;
 }
 
-// A block of molecules at the position level. System: Newton, RingNewton or StripNewton.
-template <Layout layout, class System>
+// Moves the atoms of the lanes in `which`, and their velocities, but fixed ones.
+template <class System, class V>
+HOL_NOINLINE void write_moves(const System &newton, const PositionsCall &call, const Atoms<V> &at, unsigned which) {
+    const Schedule &s = newton.x.s;
+    const Slots<V> moves = newton.displace();
+    bool any_fixed = false;
+    for (int32_t i = 0; i < s.n_atoms; ++i) any_fixed = any_fixed || s.fixed[i];
+    const unsigned char *const fixed = any_fixed ? s.fixed : nullptr;
+    write_vectors(call.r, at, s.slot_of, s.n_atoms, moves, Written<V>{which, fixed, nullptr, true});
+    if (call.v.x)
+        write_vectors(call.v, at, s.slot_of, s.n_atoms, moves, Written<V>{which, fixed, nullptr, true, 1 / call.dt});
+}
+
+// A block of molecules at the position level. System: Newton or RingNewton.
+template <class System>
 struct PositionsBlock {
     typedef typename System::Value V;
     const PositionsCall &call;
@@ -172,7 +166,7 @@ struct PositionsBlock {
 
     // Finds multipliers, and writes nothing.
     Solved<V> find(MaskOf<V> in_use) {
-        largest_coordinate = load_bonds<layout>(newton, call, at);
+        largest_coordinate = load_bonds(newton, call, at);
         if (call.guess) load_guess();
         const Limits<V> limits(call, largest_coordinate, a_min);
         return iterate<V, false, System::by_length>(newton, limits, call, in_use);
@@ -186,7 +180,7 @@ struct PositionsBlock {
         if (call.report) note_worst(good, out.error);
         if (call.lambda) write_multipliers(good);
         if (call.virial) add_virial(moved);
-        if (moved) write_moves<layout>(newton, call, at, moved);
+        if (moved) write_moves(newton, call, at, moved);
         tally.n_corrected += __builtin_popcount(moved);
         if (moved && out.solves > tally.iterations) tally.iterations = out.solves;
         return bits(in_use) & ~good;
@@ -208,8 +202,6 @@ struct PositionsWork {
         }
         if (schedule.type == Schedule::ring)
             solve<RingNewton<V>>(lane, used, known, scratch);
-        else if (schedule.is_strip)
-            solve<StripNewton<V>>(lane, used, known, scratch);
         else
             solve<Newton<V>>(lane, used, known, scratch);
     }
@@ -218,17 +210,14 @@ struct PositionsWork {
     void solve(const MoleculeLane *lane, int used, bool known, double *scratch) const {
         typedef typename System::Value V;
         Memory<V> memory = {scratch};
-        const Atoms<V> at(lane, used);
+        const Atoms<V> at(lane, used, packed);
         System newton(schedule, memory);
         for (int32_t slot = 0; slot < schedule.n_atoms && !known; ++slot)
             for (int i = 0; i < Width<V>::lanes; ++i)
                 Width<V>::set(newton.x.w[slot], i, lane[i].w[schedule.atom_of[slot]]);
-        const unsigned rest = with_layout(at, packed, [&](auto layout) {
-            PositionsBlock<decltype(layout)::value, System> block = {call,  schedule, lane, at, newton,
-                                                                     tally, V{},      V{},  V{}};
-            block.set_lengths(known);
-            return block.solve(Width<V>::first(used));
-        });
+        PositionsBlock<System> block = {call, schedule, lane, at, newton, tally, V{}, V{}, V{}};
+        block.set_lengths(known);
+        const unsigned rest = block.solve(Width<V>::first(used));
         if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, lane, rest, memory.next, tally);
     }
 };

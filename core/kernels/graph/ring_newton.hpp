@@ -7,10 +7,17 @@
 #define HOLONOMIC_KERNELS_GRAPH_RING_NEWTON_HPP
 
 #include "core/kernels/graph/newton_joint.hpp"
+#include "core/kernels/graph/vectors.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
+
+// Puts a value into `to` in the lanes of `which`, or in all.
+template <bool all, class V>
+HOL_INLINE void put_where(MaskOf<V> which, V &to, V value) {
+    to = all ? value : select(which, value, to);
+}
 
 template <class V>
 struct RingNewton {
@@ -42,6 +49,18 @@ struct RingNewton {
     HOL_FORCED Vector3<V> pull_of(int32_t bond) const { return x.row[bond].tau * x.row[bond].b; }
     HOL_FORCED Vector3<V> displacement(int32_t atom) const {
         return x.w[atom] * (pull_of(atom) - pull_of(atom > 0 ? atom - 1 : x.s.n_bonds - 1));
+    }
+
+    // Of all atoms; the bonds as they came are done with.
+    Slots<V> displace() const {
+        NewtonRow<V> *const row = x.row;
+        Vector3<V> before = pull_of(x.s.n_bonds - 1);
+        for (int32_t k = 0; k < x.s.n_atoms; ++k) {
+            const Vector3<V> next = pull_of(k);
+            row[k].D = x.w[k] * (next - before);
+            before = next;
+        }
+        return Slots<V>(row, &row->D.x);
     }
 
     // The bond vectors as tau moves them, one after the other, the last one first.

@@ -32,7 +32,6 @@ struct PathPlan;     // core/kernels/graph/paths.hpp
 struct Schedule {
     enum Type : int32_t { tree, triangle, ring, graph };
     Type type;
-    bool is_strip = false;  // a graph that is a strip of triangles: graph/strip.hpp
     int32_t n_atoms, n_bonds;
     int32_t n_tree;        // bonds of trees
     int32_t n_core;        // bonds of the core
@@ -57,8 +56,8 @@ struct Schedule {
     int32_t n_pairs;
 
     // The core: bond p, at place n_tree + p, points from slot from[p] to slot to[p]. In a ring or triangle bond p joins
-    // slots p and p + 1, the last one to slot 0, and all point that way round; elsewhere from the smaller local atom,
-    // in a strip from the smaller slot.
+    // slots p and p + 1, the last one to slot 0, and all point that way round; elsewhere from the smaller local
+    // atom.
     const int32_t *from, *to;   // [n_core]
     const int32_t *meet_start;  // [n_core_atoms + 1] bonds that meet at core atom c, slot n_tree + c
     const int32_t *meet;        // [2 n_core] 2 p + 1 where bond p points to the atom, 2 p where it points away

@@ -40,7 +40,7 @@ template <class V, class Rows>
 HOL_INLINE V shared_error(const Rows &x, int k) {
     const BondRow<V> &e = x.above();
     V T2 = e.q * (e.t * e.t);
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
         const BondRow<V> &row = x.bond(a);
         T2 = mul_add(row.q, row.t * row.t, T2);
@@ -61,7 +61,7 @@ template <class V, class Rows>
 HOL_INLINE MaskOf<V> faint_bonds(const Rows &x, int k) {
     const V shared = shared_error<V>(x, k);
     V least = left_of(x.above(), shared);
-    HOL_UNROLL
+    HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) least = min(left_of(x.bond(a), shared), least);
     return less(least, V{});
 }

@@ -35,13 +35,13 @@ HOL_NOINLINE void move_centre(Vector3<V> *atoms, int from, int to) {
 }
 
 // Atoms of the lanes, the centre first.
-template <Layout layout, int N, class V>
+template <Inlined where, int N, class V>
 struct StarAtoms {
     const Atoms<V> &at;
     const int centre;
 
     inline HOL_FORCED void read(const AtomArray &array, Vector3<V> *r) const {
-        read_all<layout, N + 1>(array, at, r);
+        read_all<where, N + 1>(array, at, r);
         if (__builtin_expect(centre == 0, 1)) return;
         Vector3<V> atoms[N + 1];
         copy(r, atoms);
@@ -50,11 +50,11 @@ struct StarAtoms {
     }
     inline HOL_FORCED void write(const AtomArray &array, Vector3<V> *r, unsigned which) const {
         to_callers_order(r);
-        write_all<layout, N + 1>(array, at, r, which);
+        write_all<where, N + 1>(array, at, r, which);
     }
     inline HOL_FORCED void move(const PositionsCall &call, Vector3<V> *r, unsigned which) const {
         to_callers_order(r);
-        move_all<layout, N + 1>(call, at, r, which);
+        move_all<where, N + 1>(call, at, r, which);
     }
     inline HOL_FORCED void to_callers_order(Vector3<V> *r) const {
         if (__builtin_expect(centre == 0, 1)) return;
@@ -75,7 +75,7 @@ struct StarAtoms {
 
     // Values per bond.
     inline HOL_FORCED void write_bonds(double *out, const V *value, unsigned which) const {
-        if (N == 3) return write_three<layout>(out, at, {value[0], value[1], value[2]}, which);
+        if (N == 3) return write_three<where>(out, at, {value[0], value[1], value[2]}, which);
         for (int i = 0; i < at.lanes; ++i)
             for (int k = 0; k < N; ++k)
                 if (which >> i & 1) out[at.bond[i] + k] = Width<V>::get(value[k], i);
@@ -101,6 +101,7 @@ struct StarWork {
     const Verb &verb;
     const General &general;
     const int centre;
+    static constexpr bool in_twins = twins && Verb::in_steps;
     typename Verb::template Kind<N, vec> known;
     typename Verb::template Kind<N, double> known_one;
     typename Verb::template Kind<N, vec> &kind_for(vec *) { return known; }
@@ -110,15 +111,31 @@ struct StarWork {
 
     StarWork(const Verb &v, const General &g, int c) : verb(v), general(g), centre(c) {}
 
+    void in_halves(const MoleculeLane *lane, double *scratch) {
+        block<vec>(lane, W, false, scratch);
+        block<vec>(lane + W, W, false, scratch);
+    }
+
     template <class V>
     void block(const MoleculeLane *lane, int used, bool same, double *scratch) {
         auto &kind = kind_for(static_cast<V *>(nullptr));
         if (!same) kind.set(lane, used, centre);
-        const Atoms<V> at(lane, Width<V>::lanes);
+        const Atoms<V> at(lane, Width<V>::lanes, general.packed);
         const MaskOf<V> in_use = Width<V>::first(used);
-        const unsigned good = with_layout(at, general.packed, [&](auto layout) {
-            return verb.solve(StarAtoms<decltype(layout)::value, N, V>{at, centre}, lane, kind, in_use);
-        });
+        const auto solve = [&](auto where) {
+            return verb.solve(StarAtoms<decltype(where)::value, N, V>{at, centre}, lane, kind, in_use);
+        };
+        unsigned good;
+        if constexpr (!in_twins)
+            good = where_atoms_are(at, solve);
+        else if constexpr (Width<V>::lanes <= W)
+            good = solve(Constant<Inlined, anywhere>{});  // what twins have left
+        else if (at.layout == rows_in_order)
+            good = solve(Constant<Inlined, in_order>{});
+        else if (N == 3 && at.layout == rows_listed)
+            good = solve(Constant<Inlined, N == 3 ? listed : in_order>{});
+        else
+            return in_halves(lane, scratch);
         for (unsigned rest = bits(in_use) & ~good; __builtin_expect(rest != 0, 0); rest &= rest - 1)
             general.template block<double>(lane + __builtin_ctz(rest), 1, false, scratch);
     }
@@ -146,7 +163,7 @@ static inline bool do_stars(const Verb &verb, const General &general, const Mole
     if (centre < 0) return false;
     StarWork<N, Verb, General> work(verb, general, centre);
     int64_t done = 0;
-    if constexpr (twins && Verb::in_steps) done = do_twins(unit, scratch, work);
+    if constexpr (StarWork<N, Verb, General>::in_twins) done = do_twins(unit, scratch, work);
     if (done == unit.count) return true;
     const MoleculeLane next = molecule_of(unit, done);
     for_each_block(MoleculeUnit{unit.schedule, unit.regular ? &next : unit.lanes + done, unit.count - done,

@@ -94,8 +94,8 @@ struct StarForcesVerb {
     Tally &tally;
 
     // Returns the lanes that are done.
-    template <Layout layout, class V>
-    __attribute__((noinline)) unsigned solve(const StarAtoms<layout, 3, V> &atoms, const MoleculeLane *,
+    template <Inlined where, class V>
+    __attribute__((noinline)) unsigned solve(const StarAtoms<where, 3, V> &atoms, const MoleculeLane *,
                                              const StarMasses<3, V> &m, MaskOf<V> in_use) const {
         Vector3<V> r[4];
         V y[3], t[3];
@@ -126,8 +126,8 @@ struct StarForcesVerb {
     }
 
     // As load.hpp makes them.
-    template <Layout layout, class V>
-    inline HOL_FORCED void find_sides(const StarAtoms<layout, 3, V> &atoms, const Star<V> &star, V *y) const {
+    template <Inlined where, class V>
+    inline HOL_FORCED void find_sides(const StarAtoms<where, 3, V> &atoms, const Star<V> &star, V *y) const {
         Vector3<V> a[4];
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) y[k] = V{};
@@ -160,8 +160,8 @@ struct StarVelocitiesVerb {
     Tally &tally;
 
     // Returns the lanes that are done.
-    template <Layout layout, class V>
-    __attribute__((noinline)) unsigned solve(const StarAtoms<layout, 3, V> &atoms, const MoleculeLane *,
+    template <Inlined where, class V>
+    __attribute__((noinline)) unsigned solve(const StarAtoms<where, 3, V> &atoms, const MoleculeLane *,
                                              const StarMasses<3, V> &m, MaskOf<V> in_use) const {
         Vector3<V> r[4], v[4];
         V y[3], t[3], again[3];

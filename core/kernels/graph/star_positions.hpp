@@ -10,10 +10,10 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-template <Layout layout, int N, class V>
+template <Inlined where, int N, class V>
 struct StarPositions {
     const PositionsCall &call;
-    const StarAtoms<layout, N, V> &atoms;
+    const StarAtoms<where, N, V> &atoms;
     const MoleculeLane *lane;
     const StarKind<N, V> &m;
     Tally &tally;
@@ -120,10 +120,10 @@ struct StarPositionsVerb {
     using Kind = StarKind<N, V>;
     const PositionsCall &call;
     Tally &tally;
-    template <Layout layout, int N, class V>
-    unsigned solve(const StarAtoms<layout, N, V> &atoms, const MoleculeLane *lane, const StarKind<N, V> &kind,
+    template <Inlined where, int N, class V>
+    unsigned solve(const StarAtoms<where, N, V> &atoms, const MoleculeLane *lane, const StarKind<N, V> &kind,
                    MaskOf<V> in_use) const {
-        return StarPositions<layout, N, V>{call, atoms, lane, kind, tally}.solve(in_use);
+        return StarPositions<where, N, V>{call, atoms, lane, kind, tally}.solve(in_use);
     }
 };
 

@@ -2,8 +2,8 @@
 #ifndef HOLONOMIC_KERNELS_GRAPH_STORE_HPP
 #define HOLONOMIC_KERNELS_GRAPH_STORE_HPP
 
-#include "core/kernels/graph/along.hpp"
 #include "core/kernels/graph/molecules.hpp"
+#include "core/kernels/graph/vectors.hpp"
 #include "core/kernels/graph/virial.hpp"
 
 namespace holonomic {
@@ -36,22 +36,6 @@ HOL_INLINE Vector3<double> pull_on(const Molecules<double> &x, int32_t slot) {
 }
 #endif
 
-// Returns the lanes of `which` in which this local atom may be written: not those where it is fixed and belongs to
-// other molecules, too.
-template <class V>
-HOL_INLINE unsigned writable(const Molecules<V> &x, int32_t atom, unsigned which) {
-    for (int i = 0; i < Width<V>::lanes; ++i)
-        if (x.lane[i].shared && x.lane[i].shared[atom]) which &= ~(1u << i);
-    return which;
-}
-
-template <class V>
-HOL_INLINE bool any_shared(const Molecules<V> &x) {
-    bool shared = false;
-    for (int i = 0; i < Width<V>::lanes; ++i) shared = shared || x.lane[i].shared;
-    return shared;
-}
-
 // Where the results of a linear solve go.
 struct Outputs {
     const AtomArray *g;
@@ -59,46 +43,47 @@ struct Outputs {
     bool add, virial;
 };
 
-// Writes value(slot) of the atoms in these slots in the lanes of `which`.
-template <Layout layout, class V, class Value>
-HOL_INLINE void write_slots(const Molecules<V> &x, const AtomArray &array, unsigned which, int32_t first, int32_t end,
+// Writes value(slot) of the atoms of one molecule in these slots.
+template <class Value>
+HOL_INLINE void write_slots(const Molecules<double> &x, const AtomArray &array, int32_t first, int32_t end,
                             const Value &value) {
-    const bool shared = any_shared(x);
+    const unsigned char *const shared = x.lane[0].shared;
     for (int32_t slot = end; slot-- > first;) {
         const int32_t atom = x.s.atom_of[slot];
-        write<layout>(array, x.at, atom, value(slot), shared ? writable(x, atom, which) : which);
+        if (!(shared && shared[atom])) write(array, x.at, atom, value(slot), 1);
     }
 }
 
-// Writes value(slot) of all atoms but those of arms in the lanes of `which`, in the order of the atoms where the
-// molecule is small.
-template <Layout layout, class V, class Value>
-HOL_INLINE void write_atoms(const Molecules<V> &x, const AtomArray &array, unsigned which, const Value &value) {
-    if (x.pieces || any_shared(x))
-        return for_slots(x.s, x.pieces,
-                         [&](int32_t first, int32_t end) { write_slots<layout>(x, array, which, first, end, value); });
-    for_groups(x.s.n_atoms, [&](int32_t first, auto number) HOL_FORCED {
-        constexpr int count = number;
-        Vector3<V> a[count] = {};
-        HOL_UNROLL
-        for (int j = 0; j < count; ++j) a[j] = value(x.s.slot_of[first + j]);
-        write_group<layout, count>(array, x.at, first, a, which);
-    });
+// Puts G of all atoms by slot.
+template <class V>
+HOL_INLINE void find_pulls(const Molecules<V> &x, Vector3<V> *pull) {
+    if (x.s.type == Schedule::ring) {
+        Vector3<V> last = x.row[x.s.n_bonds - 1].t * x.row[x.s.n_bonds - 1].d;
+        for (int32_t k = 0; k < x.s.n_bonds; ++k) {
+            const Vector3<V> next = x.row[k].t * x.row[k].d;
+            pull[k] = next - last;
+            last = next;
+        }
+        return;
+    }
+    for (int32_t slot = 0; slot < x.s.n_atoms; ++slot) pull[slot] = pull_on(x, slot);
 }
 
-// Writes or adds G of all atoms but those of arms, in the lanes of `which`.
-template <Layout layout, class V>
-HOL_NOINLINE void write_pulls(const Molecules<V> &x, const AtomArray &g, bool add, unsigned which) {
-    if (with_pulls_along(x, [&](auto pulls) HOL_FORCED {
-            write_along<layout>(x, g, which, [&](int32_t slot) HOL_FORCED {
-                const Vector3<V> pull = pulls.next(slot);
-                return __builtin_expect(add, 0) ? read<layout>(g, x.at, x.s.atom_of[slot]) + pull : pull;
+// Writes or adds G of all atoms but those of arms, in the lanes of `which`. `work` has room for a vector per atom.
+template <class V>
+HOL_NOINLINE void write_pulls(const Molecules<V> &x, const AtomArray &g, bool add, unsigned which, Vector3<V> *work) {
+    find_pulls(x, work);
+    write_vectors(g, x.at, x.s.slot_of, x.s.n_atoms, Slots<V>(work), Written<V>{which, nullptr, x.lane, add});
+}
+HOL_NOINLINE void write_pulls(const Molecules<double> &x, const AtomArray &g, bool add, unsigned which,
+                              Vector3<double> *work) {
+    if (!x.pieces) return write_pulls<double>(x, g, add, which, work);
+    for_slots(x.s, x.pieces, [&](int32_t first, int32_t end) {
+        if (which)
+            write_slots(x, g, first, end, [&](int32_t slot) {
+                const Vector3<double> pull = pull_on(x, slot);
+                return add ? read(g, x.at, x.s.atom_of[slot]) + pull : pull;
             });
-        }))
-        return;
-    write_atoms<layout>(x, g, which, [&](int32_t slot) HOL_FORCED {
-        const Vector3<V> pull = pull_on(x, slot);
-        return __builtin_expect(add, 0) ? read<layout>(g, x.at, x.s.atom_of[slot]) + pull : pull;
     });
 }
 

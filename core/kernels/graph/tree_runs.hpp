@@ -97,8 +97,8 @@ HOL_INLINE void down_atom(const Molecules<double> &x, int32_t slot, Faint &faint
     }
 }
 
-template <bool look, int k>
-HOL_INLINE void down_lanes(const Molecules<double> &x, const int32_t *slot, Faint &faint, double &slack) {
+template <int k>
+HOL_INLINE void down_lanes(const Molecules<double> &x, const int32_t *slot, Faint &faint, double &slack, bool look) {
     AtomLanes<k, vec> rows(x, slot);
     rows.read_values();
     gather_values(x.row, slot, rows.top);
@@ -184,8 +184,7 @@ static inline void substitute_piece(const Molecules<double> &x, int32_t piece, M
     }
 }
 
-template <bool look>
-static inline double down_piece(const Molecules<double> &x, int32_t piece, const ArmWork &arm) {
+static inline double down_piece(const Molecules<double> &x, int32_t piece, const ArmWork &arm, bool look) {
     const Schedule::Runs &s = x.pieces->runs(x.s);
     Faint &faint = x.pieces->faint[piece];
     double slack = 1;
@@ -194,7 +193,7 @@ static inline double down_piece(const Molecules<double> &x, int32_t piece, const
         const Schedule::Run &run = s.run[r];
         if (do_arms(s, run, arm, faint, slack)) continue;
         for_run(
-            s, run, [&](auto k, const int32_t *slot) { down_lanes<look, k>(x, slot, faint, slack); }, one);
+            s, run, [&](auto k, const int32_t *slot) { down_lanes<k>(x, slot, faint, slack, look); }, one);
     }
     return slack;
 }
@@ -261,16 +260,15 @@ static inline void substitute_trees(const Molecules<double> &x, Memory<double> m
     substitute_piece(x, x.s.n_pieces, memory);
     substitute_joint<1, true>(AtomRows<double>(x, x.s.n_tree), 1, memory);
 }
-template <bool look>
-static inline void down_pieces(Molecules<double> &x, const ArmWork &arm) {
-    x.slack = min(down_piece<look>(x, x.s.n_pieces, arm), x.slack);
-    for_pieces(x.s, x.pieces->team, [&](int32_t p) { x.pieces->slack[p] = down_piece<look>(x, p, arm); });
+static inline void down_pieces(Molecules<double> &x, const ArmWork &arm, bool look) {
+    x.slack = min(down_piece(x, x.s.n_pieces, arm, look), x.slack);
+    for_pieces(x.s, x.pieces->team, [&](int32_t p) { x.pieces->slack[p] = down_piece(x, p, arm, look); });
     collect_slack(x);
 }
 template <bool look>
 static inline void down_trees(Molecules<double> &x) {
     if (!x.pieces) return down_trees<look, double>(x);
-    down_pieces<look>(x, ArmWork());
+    down_pieces(x, ArmWork(), look);
 }
 
 }  // namespace graph

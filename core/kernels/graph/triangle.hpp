@@ -138,12 +138,12 @@ HOL_INLINE Vector3<V> triangle_pull(const Vector3<V> *d, const V *t, int i) {
 }
 
 // Writes factor t, zeros as +0.
-template <Layout layout, class V>
+template <Inlined where, class V>
 HOL_INLINE void write_triangle_bonds(const Atoms<V> &at, const V *value, V factor, double *out, unsigned which) {
     V v[3];
     HOL_UNROLL
     for (int k = 0; k < 3; ++k) v[bond_number(k)] = mul_add(value[k], factor, V{});
-    write_three<layout>(out, at, {v[0], v[1], v[2]}, which);
+    write_three<where>(out, at, {v[0], v[1], v[2]}, which);
 }
 
 // factor times what is given for each bond.

@@ -51,31 +51,41 @@ struct TriangleWork {
     TriangleWork(const Verb &v, const Call &c, const Schedule &s, bool is_packed, Tally &t)
         : verb(v), call(c), schedule(s), packed(is_packed), tally(t) {}
 
+    // Molecules for which closed forms won't do: the verb's other way, if it has one, and then careful arithmetic.
     template <class Lanes>
-    HOL_NOINLINE void solve_carefully(const TriangleWork &work, const Lanes &lanes, unsigned rest, double *scratch) {
-        MoleculeLane lane[2 * W];
-        for (int i = 0; i < 2 * W; ++i)
-            if (rest >> i & 1) lane[i] = lanes.get(i);
-        solve_doubtful(work.call, work.schedule, lane, rest, scratch, work.tally);
+    HOL_NOINLINE void solve_rest(const TriangleWork &work, const Lanes &lanes, unsigned rest, double *scratch) {
+        MoleculeLane lane[W];
+        while (rest) {
+            int used = 0;
+            for (; rest && used < W; rest &= rest - 1) lane[used++] = lanes.get(__builtin_ctz(rest));
+            TriangleKind<vec> kind;
+            kind.set(lane, used, Verb::with_lengths);
+            const unsigned all = (1u << used) - 1, left = all & ~work.again(lane, used, kind);
+            if (left) solve_doubtful(work.call, work.schedule, lane, left, scratch, work.tally);
+        }
+    }
+    unsigned again(const MoleculeLane *lane, int used, const TriangleKind<vec> &kind) const {
+        return verb.again(TrianglesGiven{lane}, used, Atoms<vec>(lane, used, packed), kind);
     }
 
-    // Apart from block(), which then has one call for each layout.
-    template <Layout layout, class V, class Lanes>
-    HOL_NOINLINE unsigned solve(const TriangleWork &work, const Lanes &lanes, int used, const Atoms<V> &at,
+    // Apart from block(), so that what is done in registers has a function of its own.
+    template <Inlined where, class V>
+    HOL_NOINLINE unsigned solve(const TriangleWork &work, const MoleculeLane *lane, int used, const Atoms<V> &at,
                                 const TriangleKind<V> &kind) {
-        return work.verb.template solve<layout>(lanes, used, at, kind);
+        return work.verb.template solve<where>(TrianglesGiven{lane}, used, at, kind);
     }
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool same, double *scratch) {
         TriangleKind<V> &kind = kind_for(static_cast<V *>(nullptr));
         if (!same) kind.set(lane, used, Verb::with_lengths);
-        const Atoms<V> at(lane, Width<V>::lanes);
-        const TrianglesGiven lanes = {lane};
-        const unsigned good = with_layout(
-            at, packed, [&](auto layout) { return solve<decltype(layout)::value>(*this, lanes, used, at, kind); });
-        const unsigned rest = bits(Width<V>::first(used)) & ~good;
-        if (__builtin_expect(rest != 0, 0)) solve_carefully(*this, lanes, rest, scratch);
+        const Atoms<V> at(lane, Width<V>::lanes, packed);
+        unsigned rest = (1u << used) - 1;
+        if (!verb.other_way())
+            rest &= ~where_atoms_are(at, [&](auto where) {
+                return solve<decltype(where)::value, V>(*this, lane, used, at, kind);
+            });
+        if (__builtin_expect(rest != 0, 0)) solve_rest(*this, TrianglesGiven{lane}, rest, scratch);
     }
 
     // Molecules of one kind, one behind the other, from number `first` on as long as there are enough of them for all
@@ -90,18 +100,19 @@ struct TriangleWork {
         for (int i = 0; i < lanes; ++i) lane[i] = molecules.get(i);
         TriangleKind<V> kind;
         kind.set(lane, lanes, Verb::with_lengths);
-        Atoms<V> at(lane, lanes);
+        Atoms<V> at(lane, lanes, true);
         for (; molecules.first + lanes <= unit.count; molecules.first += lanes) {
-            const unsigned good = verb.template solve<rows_adjacent>(molecules, lanes, at, kind);
-            if (__builtin_expect(good != all, 0)) solve_carefully(*this, molecules, all & ~good, scratch);
+            const unsigned good = verb.template solve<adjacent>(molecules, lanes, at, kind);
+            if (__builtin_expect(good != all, 0)) solve_rest(*this, molecules, all & ~good, scratch);
             at.advance(3, 3);
         }
         return molecules.first;
     }
     int64_t run(const MoleculeUnit &unit, double *scratch) {
-        int64_t done = 0;
-        if constexpr (twins && Verb::in_steps) done = run<Twin>(unit, 0, scratch);
-        return run<vec>(unit, done, scratch);
+        if constexpr (twins && Verb::in_steps)
+            return run<Twin>(unit, 0, scratch);  // few are left
+        else
+            return run<vec>(unit, 0, scratch);
     }
 };
 
@@ -109,7 +120,8 @@ template <class Verb, class Call>
 static inline void for_each_triangle(const Verb &verb, const Call &call, const MoleculeUnit &unit, bool packed,
                                      double *scratch, Tally &tally) {
     TriangleWork<Verb, Call> work(verb, call, *unit.schedule, packed, tally);
-    const int64_t done = unit.regular && packed && !unit.lanes[0].atoms ? work.run(unit, scratch) : 0;
+    const bool in_a_row = unit.regular && packed && !unit.lanes[0].atoms;
+    const int64_t done = in_a_row && !verb.other_way() ? work.run(unit, scratch) : 0;
     if (done == unit.count) return;
     const MoleculeLane next = molecule_of(unit, done);
     for_each_block(
@@ -117,23 +129,33 @@ static inline void for_each_triangle(const Verb &verb, const Call &call, const M
         scratch, work);
 }
 
-struct TriangleLinearVerb {
+// What is done with a block of triangles. again(): for lanes that solve() does not answer for, and for all if
+// other_way(). Both return the lanes that are done.
+struct OneWay {
     static constexpr bool with_lengths = false, in_steps = false;
-    const TriangleCall &call;
-    Tally &tally;
-    template <Layout layout, class V, class Lanes>
-    inline HOL_FORCED unsigned solve(const Lanes &, int used, const Atoms<V> &at, const TriangleKind<V> &kind) const {
-        return solve_triangles<layout>(call, used, at, kind.masses, tally);
+    HOL_FORCED bool other_way() const { return false; }
+    HOL_FORCED unsigned again(const TrianglesGiven &, int, const Atoms<vec> &, const TriangleKind<vec> &) const {
+        return 0;
     }
 };
 
-struct TriangleVelocitiesVerb {
-    static constexpr bool with_lengths = false, in_steps = false;
+struct TriangleLinearVerb : OneWay {
+    const TriangleCall &call;
+    Tally &tally;
+    TriangleLinearVerb(const TriangleCall &c, Tally &t) : call(c), tally(t) {}
+    template <Inlined where, class V, class Lanes>
+    inline HOL_FORCED unsigned solve(const Lanes &, int used, const Atoms<V> &at, const TriangleKind<V> &kind) const {
+        return solve_triangles<where>(call, used, at, kind.masses, tally);
+    }
+};
+
+struct TriangleVelocitiesVerb : OneWay {
     const VelocitiesCall &call;
     Tally &tally;
-    template <Layout layout, class V, class Lanes>
+    TriangleVelocitiesVerb(const VelocitiesCall &c, Tally &t) : call(c), tally(t) {}
+    template <Inlined where, class V, class Lanes>
     inline HOL_FORCED unsigned solve(const Lanes &, int used, const Atoms<V> &at, const TriangleKind<V> &kind) const {
-        return project_triangles<layout>(call, used, at, kind.masses, tally);
+        return project_triangles<where>(call, used, at, kind.masses, tally);
     }
 };
 
@@ -141,10 +163,16 @@ struct TrianglePositionsVerb {
     static constexpr bool with_lengths = true, in_steps = true;
     const PositionsCall &call;
     Tally &tally;
-    template <Layout layout, class V, class Lanes>
+    template <Inlined where, class V, class Lanes>
     inline HOL_FORCED unsigned solve(const Lanes &lanes, int used, const Atoms<V> &at,
                                      const TriangleKind<V> &kind) const {
-        return move_triangles<layout>(call, lanes, used, at, kind.masses, kind.lengths, tally);
+        return TrianglePositions<where, V, Lanes>(call, lanes, at, kind.masses, kind.lengths, tally)
+            .solve(Width<V>::first(used));
+    }
+    HOL_FORCED bool other_way() const { return call.guess; }
+    unsigned again(const TrianglesGiven &lanes, int used, const Atoms<vec> &at, const TriangleKind<vec> &kind) const {
+        return TrianglePositions<anywhere, vec, TrianglesGiven>(call, lanes, at, kind.masses, kind.lengths, tally)
+            .solve_step_by_step((1u << used) - 1);
     }
 };
 

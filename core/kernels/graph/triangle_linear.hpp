@@ -20,13 +20,13 @@ struct TriangleCall {
 };
 
 // Right-hand sides as load.hpp makes them.
-template <Layout layout, class V>
+template <Inlined where, class V>
 HOL_INLINE void triangle_sides(const TriangleCall &call, const Atoms<V> &at, const TriangleMasses<V> &m,
                                const Vector3<V> *d, V *y) {
     Vector3<V> a[3];
     for (int k = 0; k < 3; ++k) y[k] = V{};
     if (call.v.x) {
-        read_all<layout, 3>(call.v, at, a);
+        read_all<where, 3>(call.v, at, a);
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) {
             const Vector3<V> dv = a[(k + 1) % 3] - a[k];
@@ -34,7 +34,7 @@ HOL_INLINE void triangle_sides(const TriangleCall &call, const Atoms<V> &at, con
         }
     }
     if (call.f.x) {
-        read_all<layout, 3>(call.f, at, a);
+        read_all<where, 3>(call.f, at, a);
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) a[k] = m.w[k] * a[k];
         HOL_UNROLL
@@ -44,21 +44,21 @@ HOL_INLINE void triangle_sides(const TriangleCall &call, const Atoms<V> &at, con
 }
 
 // Returns the lanes that are done.
-template <Layout layout, class V>
+template <Inlined where, class V>
 HOL_INLINE unsigned solve_triangles(const TriangleCall &call, int used, const Atoms<V> &at, const TriangleMasses<V> &m,
                                     Tally &tally) {
     Vector3<V> r[3];
     V t[3];
-    read_all<layout, 3>(call.r, at, r);
+    read_all<where, 3>(call.r, at, r);
     const Triangle<V> x = triangle_of(call.box, r);
-    triangle_sides<layout>(call, at, m, x.d, t);
+    triangle_sides<where>(call, at, m, x.d, t);
     TriangleInverse<V>::solve(invert_triangle(m, x), t, t);
     const unsigned good = bits(Width<V>::first(used) & x.closed & finite(t[0] + (t[1] + t[2])));
     if (!good) return good;
-    if (call.lambda) write_triangle_bonds<layout>(at, t, Width<V>::all(0.5), call.lambda, good);
+    if (call.lambda) write_triangle_bonds<where>(at, t, Width<V>::all(0.5), call.lambda, good);
     if (call.tension) {
         const V T[3] = {t[0] * sqrt(x.q[0]), t[1] * sqrt(x.q[1]), t[2] * sqrt(x.q[2])};
-        write_triangle_bonds<layout>(at, T, Width<V>::all(1), call.tension, good);
+        write_triangle_bonds<where>(at, T, Width<V>::all(1), call.tension, good);
     }
     if (call.virial) add_bonds_virial<3>(x.d, t, 1, good, tally);
     if (!call.g.x) return good;
@@ -66,22 +66,22 @@ HOL_INLINE unsigned solve_triangles(const TriangleCall &call, int used, const At
     HOL_UNROLL
     for (int i = 0; i < 3; ++i) g[i] = triangle_pull(x.d, t, i);
     if (call.add) {
-        read_all<layout, 3>(call.g, at, before);
+        read_all<where, 3>(call.g, at, before);
         HOL_UNROLL
         for (int i = 0; i < 3; ++i) g[i] = before[i] + g[i];
     }
-    write_all<layout, 3>(call.g, at, g, good);
+    write_all<where, 3>(call.g, at, g, good);
     return good;
 }
 
 // The velocity level: twice, as velocities.hpp says.
-template <Layout layout, class V>
+template <Inlined where, class V>
 HOL_INLINE unsigned project_triangles(const VelocitiesCall &call, int used, const Atoms<V> &at,
                                       const TriangleMasses<V> &m, Tally &tally) {
     Vector3<V> r[3], v[3];
     V t[3];
-    read_all<layout, 3>(call.r, at, r);
-    read_all<layout, 3>(call.v, at, v);
+    read_all<where, 3>(call.r, at, r);
+    read_all<where, 3>(call.v, at, v);
     const Triangle<V> x = triangle_of(call.box, r);
     const TriangleInverse<V> inverse = invert_triangle(m, x);
     V left[3];
@@ -102,7 +102,7 @@ HOL_INLINE unsigned project_triangles(const VelocitiesCall &call, int used, cons
     project(~Width<V>::none());
     const unsigned good = bits(Width<V>::first(used) & x.closed & finite(t[0] + (t[1] + t[2])));
     if (!good) return good;
-    if (call.lambda) write_triangle_bonds<layout>(at, t, Width<V>::all(0.5), call.lambda, good);
+    if (call.lambda) write_triangle_bonds<where>(at, t, Width<V>::all(0.5), call.lambda, good);
     if (call.virial) add_bonds_virial<3>(x.d, t, 1, good, tally);
     if (!call.v.is_float) {
         // In a nearly straight triangle the first solve may leave as much as there was. That is rounding, and the
@@ -110,7 +110,7 @@ HOL_INLINE unsigned project_triangles(const VelocitiesCall &call, int used, cons
         const V after = measure();
         project(less(after, 0.25 * before));
     }
-    write_all<layout, 3>(call.v, at, v, good);
+    write_all<where, 3>(call.v, at, v, good);
     return good;
 }
 

@@ -9,7 +9,7 @@ namespace HOL_ISA {
 namespace graph {
 
 // A block at the position level: what is read, and how it is written.
-template <Layout layout, class V, class Lanes>
+template <Inlined where, class V, class Lanes>
 struct TrianglePositions {
     const PositionsCall &call;
     const Lanes &lanes;
@@ -25,11 +25,11 @@ struct TrianglePositions {
 
     inline HOL_FORCED void read_bonds(TriangleNewton<V> &x) {
         Vector3<V> r[3];
-        read_all<layout, 3>(call.r_ref, at, r);
+        read_all<where, 3>(call.r_ref, at, r);
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) x.b[k] = r[(k + 1) % 3] - r[k];
         take_images<3>(call.box_ref, x.b);
-        read_all<layout, 3>(call.r, at, r);
+        read_all<where, 3>(call.r, at, r);
         V size[3];
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) {
@@ -60,37 +60,36 @@ struct TrianglePositions {
             note_worst_bond<3>(left, lanes, error, good, tally);
         }
         if (call.lambda)
-            write_triangle_bonds<layout>(at, x.tau, Width<V>::all(0.5 / (call.dt * call.dt)), call.lambda, good);
+            write_triangle_bonds<where>(at, x.tau, Width<V>::all(0.5 / (call.dt * call.dt)), call.lambda, good);
         if (!moved) return;
         if (call.virial) add_virial(x, moved);
         Vector3<V> shift[3];
         HOL_UNROLL
         for (int i = 0; i < 3; ++i) shift[i] = x.shift[i];
-        move_all<layout, 3>(call, at, shift, moved);
+        move_all<where, 3>(call, at, shift, moved);
         tally.n_corrected += __builtin_popcount(moved);
         if (solves > tally.iterations) tally.iterations = solves;
     }
 
     // Any lanes, from a guess if there is one: as other molecules are done. Returns those that are.
-    HOL_NOINLINE unsigned solve_step_by_step(TrianglePositions &p, unsigned wanted) {
-        TriangleNewton<V> x(p.m, p.a);
+    __attribute__((noinline)) unsigned solve_step_by_step(unsigned wanted) {
+        TriangleNewton<V> x(m, a);
         x.inverse = TriangleInverse<V>{};
         for (int k = 0; k < 3; ++k) {
             x.tau[k] = V{};
             x.shift[k] = Vector3<V>{};
         }
-        p.read_bonds(x);
-        if (p.call.guess) read_triangle_bonds(p.at, p.call.lambda, 2 * p.call.dt * p.call.dt, x.tau);
-        const Limits<V> limits(p.call, p.largest * p.a.per_a_min);
-        const Solved<V> out = iterate<V, true>(x, limits, p.call, Width<V>::of_bits(wanted));
-        const unsigned moved = bits(out.converged & ~x.coarse_moves(p.largest)), good = moved | bits(out.untouched);
-        p.write(x, out.error, good, moved, out.solves);
+        read_bonds(x);
+        if (call.guess) read_triangle_bonds(at, call.lambda, 2 * call.dt * call.dt, x.tau);
+        const Limits<V> limits(call, largest * a.per_a_min);
+        const Solved<V> out = iterate<V, true>(x, limits, call, Width<V>::of_bits(wanted));
+        const unsigned moved = bits(out.converged & ~x.coarse_moves(largest)), good = moved | bits(out.untouched);
+        write(x, out.error, good, moved, out.solves);
         return good;
     }
 
     // The lanes of `in_use`. Returns those that are done.
     inline HOL_FORCED unsigned solve(MaskOf<V> in_use) {
-        if (__builtin_expect(call.guess, 0)) return solve_step_by_step(*this, bits(in_use));
         TriangleNewton<V> x(m, a);
         read_bonds(x);
         const Limits<V> limits(call, largest * a.per_a_min);
@@ -111,17 +110,11 @@ struct TrianglePositions {
             for (int k = 0; k < 3; ++k) x.tau[k] = keep(wanted, x.tau[k]);
         error = x.move();
         const unsigned moved = solved & bits(less_equal(error, limits.enough())) & ~bits(x.coarse_moves(largest));
-        const unsigned good = moved | as_they_came, rest = bits(in_use) & ~good;
+        const unsigned good = moved | as_they_came;
         write(x, error, good, moved, solves);
-        return __builtin_expect(rest != 0, 0) ? good | solve_step_by_step(*this, rest) : good;
+        return good;
     }
 };
-
-template <Layout layout, class V, class Lanes>
-HOL_INLINE unsigned move_triangles(const PositionsCall &call, const Lanes &lanes, int used, const Atoms<V> &at,
-                                   const TriangleMasses<V> &m, const TriangleLengths<V> &a, Tally &tally) {
-    return TrianglePositions<layout, V, Lanes>(call, lanes, at, m, a, tally).solve(Width<V>::first(used));
-}
 
 }  // namespace graph
 }  // namespace HOL_ISA

@@ -23,46 +23,50 @@ struct VelocitiesWork {
             masses_known = false;
         }
         Memory<V> memory = {scratch};
-        Linear<V> z(schedule, lane, used, call.box, call.r, memory);
+        Linear<V> z(schedule, lane, used, packed, call.box, call.r, memory);
         open_pieces(z, team, memory);
         open_arms(z, scratch, memory);
         z.equations.force = nullptr;
         z.equations.given = nullptr;
-        with_layout(z.x.at, packed, [&](auto layout) { solve<decltype(layout)::value>(z, masses_known, memory); });
+        solve(z, masses_known, memory);
     }
 
-    template <Layout layout>
     void solve(Linear<double> &z, bool masses_known, Memory<double> memory) const {
-        if (!z.pieces.arms.store) return solve<layout, double>(z, masses_known, memory);
-        if (!project_with_arms<layout>(z, call, tally)) solve_doubtful(call, schedule, z.x.lane, 1, memory.next, tally);
+        if (!z.pieces.arms.store) return solve<double>(z, masses_known, memory);
+        if (!project_with_arms(z, call, tally)) solve_doubtful(call, schedule, z.x.lane, 1, memory.next, tally);
     }
-    template <Layout layout, class V>
+    template <class V>
     void solve(Linear<V> &z, bool masses_known, Memory<V> memory) const {
         z.x.in = {&call.v, nullptr, nullptr, true, call.strain};
-        const unsigned solved = load_and_solve<layout, rates, true>(z, masses_known);
+        const unsigned solved = load_and_solve<true>(z, rates, masses_known);
         const unsigned good = solved && !call.v.is_float && has_torn_atoms(z.x) ? 0 : solved;
         const unsigned rest = bits(z.x.in_use()) & ~good;
         if (good) {
             if (call.lambda) write_bonds<false>(z.x, 0.5, call.lambda, good);
             if (call.virial) add_pulls_to_virial(z.x, good, tally);
             Vector3<V> *const v = z.equations.start;
+            add_pulls_to(z.x, v);
             if (!call.v.is_float) {
-                add_pulls_to(z.x, v);
                 find_rates(z.x, v);
                 z.solve_again();
+                add_pulls_to(z.x, v);
             }
-            write_velocities<layout>(z.x, v, good);
+            write_velocities(z.x, v, good);
         }
         if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, z.x.lane, rest, memory.next, tally);
     }
 
     template <class V>
     __attribute__((noinline)) void add_pulls_to(const Molecules<V> &x, Vector3<V> *v) const {
-        if (with_pulls_along(x, [&](auto pulls) HOL_FORCED {
-                for (int32_t slot = 0; slot < x.s.n_atoms; ++slot)
-                    v[slot] = add_times(v[slot], x.w[slot], pulls.next(slot));
-            }))
+        if (x.s.type == Schedule::ring) {
+            Vector3<V> last = x.row[x.s.n_bonds - 1].t * x.row[x.s.n_bonds - 1].d;
+            for (int32_t k = 0; k < x.s.n_bonds; ++k) {
+                const Vector3<V> next = x.row[k].t * x.row[k].d;
+                v[k] = add_times(v[k], x.w[k], next - last);
+                last = next;
+            }
             return;
+        }
         for_ranges(x.s, x.pieces, x.s.n_atoms, [&](int32_t first, int32_t end) {
             for (int32_t slot = end; slot-- > first;) v[slot] = add_times(v[slot], x.w[slot], pull_on(x, slot));
         });
@@ -81,16 +85,15 @@ struct VelocitiesWork {
         });
     }
 
-    template <Layout layout, class V>
-    __attribute__((noinline)) void write_velocities(const Molecules<V> &x, const Vector3<V> *v, unsigned which) const {
-        if (with_pulls_along(x, [&](auto pulls) HOL_FORCED {
-                write_along<layout>(x, call.v, which, [&](int32_t slot) HOL_FORCED {
-                    return add_times(v[slot], x.w[slot], pulls.next(slot));
-                });
-            }))
-            return;
-        write_atoms<layout>(x, call.v, which,
-                            [&](int32_t slot) HOL_FORCED { return add_times(v[slot], x.w[slot], pull_on(x, slot)); });
+    template <class V>
+    void write_velocities(const Molecules<V> &x, Vector3<V> *v, unsigned which) const {
+        write_vectors(call.v, x.at, x.s.slot_of, x.s.n_atoms, Slots<V>(v), Written<V>{which, nullptr, x.lane});
+    }
+    void write_velocities(const Molecules<double> &x, Vector3<double> *v, unsigned which) const {
+        if (!x.pieces) return write_velocities<double>(x, v, which);
+        for_slots(x.s, x.pieces, [&](int32_t first, int32_t end) {
+            write_slots(x, call.v, first, end, [&](int32_t slot) { return v[slot]; });
+        });
     }
 };
 

@@ -52,13 +52,18 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
-// Stands before a short loop over vectors. Unless it is unrolled, the compiler keeps them in memory.
+// Stands before a short loop over vectors. Unless it is unrolled, the compiler keeps them in memory. HOL_UNROLL_FEW is
+// for loops of up to four rounds where the compiler knows how many there are; where it does not, gcc repeats the body as
+// often as the number says.
 #if defined(HOL_SANITIZED) || defined(HOL_TESTS_ONLY)
 #define HOL_UNROLL
+#define HOL_UNROLL_FEW
 #elif defined(__clang__)
 #define HOL_UNROLL _Pragma("clang loop unroll(full)")
+#define HOL_UNROLL_FEW HOL_UNROLL
 #else
 #define HOL_UNROLL _Pragma("GCC unroll 16")
+#define HOL_UNROLL_FEW _Pragma("GCC unroll 4")
 #endif
 
 #endif

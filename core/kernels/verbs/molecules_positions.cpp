@@ -13,9 +13,8 @@ using namespace graph;
 // What a block takes at the greediest level, and the careful solver behind it.
 template <class V>
 static int64_t block_bytes(const Schedule &s) {
-    const int64_t linear = Linear<V>::values(s), newton = Newton<V>::values(s), strip = StripNewton<V>::values(s),
-                  most = linear > newton ? linear : newton;
-    return static_cast<int64_t>(sizeof(V)) * (s.is_strip && strip > most ? strip : most);
+    const int64_t linear = Linear<V>::values(s), newton = Newton<V>::values(s);
+    return static_cast<int64_t>(sizeof(V)) * (linear > newton ? linear : newton);
 }
 
 static int64_t flat_bytes(const FlatList &s) {

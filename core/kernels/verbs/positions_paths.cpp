@@ -39,12 +39,12 @@ static bool all_fit(PathsWork &x, Tally &sum) {
 
 // Bonds of no path.
 static void add_virial_of_knots(const PathsWork &x, const Schedule &s, Tally &sum) {
-    const Atoms<double> at(&x.molecule, 1);
+    const Atoms<double> at(&x.molecule, 1, x.packed);
     MoleculesVirial<double> virial;
     for (int32_t k = 0; k < x.plan.n_bonds; ++k) {
         const int32_t bond = x.plan.bond[k];
-        Vector3<double> b = read<elements>(x.call.r_ref, at, s.atom_j[bond]) -
-                            read<elements>(x.call.r_ref, at, s.atom_i[bond]),
+        Vector3<double> b = read(x.call.r_ref, at, s.atom_j[bond]) -
+                            read(x.call.r_ref, at, s.atom_i[bond]),
                         unused = {};
         take_image<false>(x.call.box_ref, b, unused);
         virial.add(b, x.tau[bond] * b);
@@ -57,10 +57,7 @@ static void write_all(PathsWork &x, const Schedule &s, bool moved, Tally &sum) {
               [&](int64_t j, double *scratch, Tally &part) { finish_pieces(x, j, moved, scratch, part); });
     for (int32_t k = 0; k < x.plan.n_bonds && x.call.lambda; ++k) write_lambda(x, x.plan.bond[k], 1, moved);
     if (!moved) return;
-    with_layout(Atoms<double>(&x.molecule, 1), x.packed, [&](auto layout) {
-        move_knots<decltype(layout)::value>(x, s.fixed);
-        return true;
-    });
+    move_knots(x, s.fixed);
     if (x.call.virial) add_virial_of_knots(x, s, sum);
 }
 
