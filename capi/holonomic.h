@@ -98,10 +98,9 @@ HOL_API const char *hol_error_message(void);
 HOL_API void hol_error_location(int64_t *chain, int64_t *bond, int64_t *atom, int64_t *n_bad);
 
 /**
- * The instruction set that the calculations use on this machine: "baseline", "avx2", "avx512vl" (four lanes with the
- * registers of AVX-512), "avx512" (eight lanes) or "scalar" (one lane, with AVX2's instructions). Never NULL. Chains of
- * up to 256 bonds may run with another of these in calls for which that is faster, a chain that comes alone with
- * "scalar"; their results are the same bits. The environment variable HOLONOMIC_ISA, read at the first use in a
+ * The instruction set that the calculations use on this machine: "baseline", "avx2" or "avx512vl" (four lanes with the
+ * registers of AVX-512). Never NULL. A chain of up to 256 bonds that comes alone runs with "scalar" (one lane, with
+ * AVX2's instructions) where one of the last two runs: the same bits, in less time. The environment variable HOLONOMIC_ISA, read at the first use in a
  * process, forces one of these names if the machine has it. Since 0.1.
  */
 HOL_API const char *hol_instruction_set(void);

@@ -74,4 +74,4 @@ void hol_error_location(int64_t *chain, int64_t *bond, int64_t *atom, int64_t *n
     if (n_bad) *n_bad = any ? error.n_bad : 0;
 }
 
-const char *hol_instruction_set(void) { return holonomic::kernels().name; }
+const char *hol_instruction_set(void) { return holonomic::name_of_kernels(); }

@@ -15,12 +15,11 @@ const Kernels &kernels();
 const Kernels &kernels(const Unit &unit);
 const Kernels &kernels_for_one_chain();
 
+// The set that HOLONOMIC_ISA has chosen, or that of kernels().
+const char *name_of_kernels();
+
 // Scratch that either needs for chains of up to n_bonds bonds.
 int64_t scratch_bytes(int64_t n_bonds);
-
-// Whether eight lanes (AVX-512) are faster than four for a unit, on AMD's processors of this family (0: any other): the
-// rule and what it was made from are in dispatch.cpp.
-bool eight_lanes_pay(unsigned amd_family, const Unit &unit);
 
 }  // namespace holonomic
 #endif

@@ -33,12 +33,9 @@ int main()
     for (const std::int64_t count : counts)
         for (const bool large : {false, true}) {
             const Unit unit = unit_of(count, large);
-            expect(!eight_lanes_pay(25, unit), "eight lanes never run on Zen 4, where they are slower");
-            expect(!eight_lanes_pay(0, unit), "eight lanes don't run where they have not been measured");
-            expect(eight_lanes_pay(26, unit) == (count >= 8 && !large), "on Zen 5 eight lanes run full and in cache");
             const Kernels &chosen = kernels(unit);
-            expect(chosen.lanes == kernels().lanes || chosen.lanes == 8 || (chosen.lanes == 1 && count == 1),
-                   "a unit runs with the common lanes or with eight, a chain alone with one");
+            expect(&chosen == &kernels() || (chosen.lanes == 1 && count == 1),
+                   "a unit runs with the common kernels, a chain alone with those of one lane");
             expect(chosen.lanes == kernels().lanes || kernels().lanes >= 4, "the baseline's bits are of its own");
             expect(chosen.scratch_bytes(256) <= scratch_bytes(256), "there is scratch for the set that runs");
         }

@@ -26,7 +26,7 @@
     }                                                                                                             \
     }
 
-HOL_DECLARE_CAREFUL(HOL_ISA)
+HOL_DECLARE_CAREFUL(HOL_CAREFUL)
 #ifndef HOL_FOURFOLD
 HOL_DECLARE_CAREFUL(fourfold)
 #endif

@@ -61,7 +61,7 @@ HOL_NOINLINE bool chain_positions(const PositionsCall &call, const Lane &chain, 
     ChainPlan &of = *memory.take<ChainPlan>(1);
     of.set(chain);
     Tally own = empty_tally();
-    positions(call, of.plan, of.lane, reinterpret_cast<double *>(memory.next), own);
+    HOL_CAREFUL::careful::positions(call, of.plan, of.lane, reinterpret_cast<double *>(memory.next), own);
     if (own.n_bad > 0) return false;
     add(tally, own);
     return true;

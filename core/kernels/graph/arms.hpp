@@ -117,7 +117,7 @@ HOL_NOINLINE void up_arm(Linear<double> &z, int terms, int32_t a, Faint &faint, 
     if (!alone && up_segments(x, a)) return;
     alone = 1;
     load_slots(z, terms, arm.bottom + 1, arm.top(), false);
-    for (int32_t slot = arm.bottom + 1; slot <= arm.top(); ++slot) up_one<false>(x, slot, faint, memory, slack);
+    for (int32_t slot = arm.bottom + 1; slot <= arm.top(); ++slot) up_one(x, slot, faint, memory, slack);
 }
 
 // Goes down an arm and finds the multipliers of its separators.
@@ -146,13 +146,6 @@ HOL_NOINLINE void down_arm(const Molecules<double> &x, int32_t a, Faint &faint, 
     if (!good) slack = -1;
 }
 
-// v += w G of the atoms in these slots.
-HOL_INLINE void move_velocities(const Molecules<double> &x, const AtomArray &v, int32_t first, int32_t end) {
-    write_slots(x, v, first, end, [&](int32_t slot) {
-        return add_times(read(v, x.at, x.s.atom_of[slot]), x.w[slot], pull_on(x, slot));
-    });
-}
-
 // Writes the outputs of an arm that was worked on atom by atom.
 HOL_NOINLINE void write_alone(const Molecules<double> &x, bool weighted, const Schedule::Arm &arm, const Outputs &out, Tally &tally) {
     const int32_t first = arm.ascending ? arm.bottom : arm.bottom + 1, end = first + arm.n_bonds - 1;
@@ -174,7 +167,7 @@ HOL_NOINLINE void write_alone(const Molecules<double> &x, bool weighted, const S
 }
 
 // Writes the outputs of the arms. weighted: v += w G, with v in place of G.
-HOL_NOINLINE void write_arms(const Molecules<double> &x, bool weighted, const Outputs &out, Tally &tally) {
+HOL_NOINLINE void write_all_arms(const Molecules<double> &x, bool weighted, const Outputs &out, Tally &tally) {
     const SegmentOutputs outputs = {{}, false, out.lambda, out.tension, splat(0.5), 1.0, out.virial};
     for_arms(x, true, tally, [&](int32_t a, const Arena &arena, Tally &part) {
         const Schedule::Arm &arm = x.s.arm[a];

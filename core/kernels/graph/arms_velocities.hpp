@@ -22,12 +22,12 @@ HOL_NOINLINE bool project_with_arms(Linear<double> &z, const VelocitiesCall &cal
         for_slots(x.s, x.pieces, [&](int32_t first, int32_t end) { move_velocities(x, call.v, first, end); });
         write_arms(x, true, out, tally);
     };
-    solve_in_pieces<false>(z, rates);
+    solve_in_pieces(z, rates);
     if (!solved_lanes(z) || (!call.v.is_float && has_torn_atoms(x))) return false;
     move(call.lambda, call.virial);
     if (call.v.is_float) return true;
     z.equations.velocity = velocity;
-    solve_in_pieces<false>(z, rates, false);
+    solve_in_pieces(z, rates, false);
     if (finite_solution(x).set) move(nullptr, false);
     return true;
 }

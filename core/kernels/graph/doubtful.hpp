@@ -11,19 +11,19 @@ namespace graph {
 
 inline void careful_one(const ForcesCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch,
                         Tally &tally) {
-    careful::forces(call, plan, lane, scratch, tally);
+    HOL_CAREFUL::careful::forces(call, plan, lane, scratch, tally);
 }
 inline void careful_one(const SolveCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch,
                         Tally &tally) {
-    careful::solve(call, plan, lane, scratch, tally);
+    HOL_CAREFUL::careful::solve(call, plan, lane, scratch, tally);
 }
 inline void careful_one(const VelocitiesCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch,
                         Tally &tally) {
-    careful::velocities(call, plan, lane, scratch, tally);
+    HOL_CAREFUL::careful::velocities(call, plan, lane, scratch, tally);
 }
 inline void careful_one(const PositionsCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch,
                         Tally &tally) {
-    careful::positions(call, plan, lane, scratch, tally);
+    HOL_CAREFUL::careful::positions(call, plan, lane, scratch, tally);
 }
 
 // The lanes of `rest`; nothing of them has been written. `scratch` is what the block has left of its memory.

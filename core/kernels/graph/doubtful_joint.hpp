@@ -72,7 +72,7 @@ struct DoubtfulJoint {
 
 // Does what up_joint() does, and keeps pivots and multipliers if `keep`. Returns false, with nothing written, if the
 // bonds depend on each other.
-HOL_NOINLINE bool up_doubtful_joint(const Molecules<double> &x, int32_t slot, int k, bool keep) {
+HOL_NOINLINE bool up_doubtful_joint(const Molecules<double> &x, int32_t slot, int k) {
     const int32_t *const child = x.s.child + x.s.child_start[slot];
     DoubtfulJoint f;
     if (!f.open(x, slot, k)) return false;
@@ -112,7 +112,7 @@ HOL_NOINLINE bool up_doubtful_joint(const Molecules<double> &x, int32_t slot, in
         row.l = l[a];
         row.r = r[a];
     }
-    for (int i = 0; keep && i < k * (k - 1) / 2; ++i) x.pair[x.s.pair_start[slot] + i] = m[i];
+    for (int i = 0; i < k * (k - 1) / 2; ++i) x.pair[x.s.pair_start[slot] + i] = m[i];
     return true;
 }
 

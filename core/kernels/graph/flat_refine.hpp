@@ -151,11 +151,6 @@ struct FlatRefine {
     }
 };
 
-// Reads the molecule and solves; false where that is in doubt.
-HOL_INLINE bool solve_and_refine(const FlatLinear &x) {
-    return FlatProof(x).solve() || FlatRefine(x).refine();
-}
-
 }  // namespace graph
 }  // namespace HOL_ISA
 }  // namespace holonomic

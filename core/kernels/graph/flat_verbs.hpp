@@ -3,8 +3,9 @@
 #ifndef HOLONOMIC_KERNELS_GRAPH_FLAT_VERBS_HPP
 #define HOLONOMIC_KERNELS_GRAPH_FLAT_VERBS_HPP
 
-#include "core/kernels/graph/flat_refine.hpp"
+#include "core/kernels/graph/flat_linear.hpp"
 #include "core/kernels/graph/schedule.hpp"
+#include "core/kernels/graph/solve.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {

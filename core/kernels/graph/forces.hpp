@@ -5,7 +5,7 @@
 #include "core/kernels/graph/blocks.hpp"
 #include "core/kernels/graph/doubtful.hpp"
 #include "core/kernels/graph/flat_verbs.hpp"
-#include "core/kernels/graph/large_linear.hpp"
+#include "core/kernels/graph/solve.hpp"
 #include "core/kernels/graph/store.hpp"
 #include "core/kernels/graph/triangle_blocks.hpp"
 
@@ -19,38 +19,11 @@ static inline void write_outputs(Linear<V> &z, const Outputs &out, unsigned whic
     if (out.lambda) write_bonds<false>(x, 0.5, out.lambda, which);
     if (out.tension) write_bonds<true>(x, 1, out.tension, which);
     if (out.virial) add_pulls_to_virial(x, which, tally);
-    if (out.g->x) write_pulls(x, *out.g, out.add, which, z.equations.r);
+    if (out.g->x) write_pulls(x, *out.g, out.add, which);
 }
 static inline void write_outputs(Linear<double> &z, const Outputs &out, unsigned which, Tally &tally) {
     write_outputs<double>(z, out, which, tally);
     if (which && z.x.pieces && z.x.pieces->arms.store) write_arms(z.x, false, out, tally);
-}
-
-// Lanes that plain arithmetic answers for, once the equations are solved.
-template <class V>
-static inline unsigned solved_lanes(Linear<V> &z) {
-    if (z.x.in.rates) {
-        z.equations.start = z.equations.velocity;
-        z.equations.velocity = nullptr;
-    }
-    MaskOf<V> good = z.x.in_use() & ~less(z.x.slack, V{});
-    if (z.x.s.type == Schedule::graph) good = good & z.refine();
-    return bits(good & finite_solution(z.x));
-}
-
-// Reads the molecules and solves; `masses_known`: they are those of the block before.
-template <bool keep, class V>
-static inline unsigned load_and_solve(Linear<V> &z, int terms, bool masses_known) {
-    if (!masses_known) z.set_masses();
-    Loader<V>{z, terms}.load();
-    z.template factorize_and_solve<keep>();
-    return solved_lanes(z);
-}
-template <bool keep>
-static inline unsigned load_and_solve(Linear<double> &z, int terms, bool masses_known) {
-    if (!z.x.pieces) return load_and_solve<keep, double>(z, terms, masses_known);
-    solve_in_pieces<keep>(z, terms);
-    return solved_lanes(z);
 }
 
 struct ForcesWork {
@@ -75,7 +48,7 @@ struct ForcesWork {
         z.equations.given = nullptr;
         z.x.in = {&call.v, &call.f, nullptr, false};
         const unsigned good =
-                           load_and_solve<false>(z, (call.v.x ? squares : 0) | (call.f.x ? pulls : 0), masses_known),
+                           load_and_solve(z, (call.v.x ? squares : 0) | (call.f.x ? pulls : 0), masses_known),
                        rest = bits(z.x.in_use()) & ~good;
         write_outputs(z, {&call.g, call.lambda, call.tension, call.add, call.virial}, good, tally);
         if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, z.x.lane, rest, memory.next, tally);
@@ -100,7 +73,7 @@ struct SolveWork {
         open_pieces(z, team, memory);
         z.equations.velocity = z.equations.force = nullptr;
         z.x.in = {nullptr, nullptr, call.rhs, false};
-        const unsigned good = load_and_solve<false>(z, given, masses_known), rest = bits(z.x.in_use()) & ~good;
+        const unsigned good = load_and_solve(z, given, masses_known), rest = bits(z.x.in_use()) & ~good;
         write_outputs(z, {&call.g, call.lambda, call.tension, call.add, call.virial}, good, tally);
         if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, z.x.lane, rest, memory.next, tally);
     }

@@ -85,21 +85,19 @@ struct JointMemory<V, 0> {
 };
 
 // Eliminates the k children of an atom towards the bond above it (top: there is none). Right-hand sides are in t of the
-// rows. `keep`: keeps multipliers and pivots for another right-hand side.
-template <int known, bool top, bool keep, class V, class Rows>
+// rows. Multipliers and pivots are kept for another right-hand side.
+template <int known, bool top, class V, class Rows>
 HOL_INLINE void up_joint(const Rows &x, int count, Memory<V> memory, V &slack) {
     const int k = known > 0 ? known : count;
     auto f = JointMemory<V, known>::make(memory, k);
     const V w = x.w();
     decompose(x, k, w, f.S, f.r, f.m, slack);
-    V *const m = keep ? x.multipliers() : nullptr;
+    V *const m = x.multipliers();
     HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
         x.bond(a).r = f.r[a];
-        if (keep) {
-            HOL_UNROLL_FEW
-            for (int b = 0; b < a; ++b) m[pair_of(a, b)] = f.m[pair_of(a, b)];
-        }
+        HOL_UNROLL_FEW
+        for (int b = 0; b < a; ++b) m[pair_of(a, b)] = f.m[pair_of(a, b)];
     }
     if (!top) {
         BondRow<V> &e = x.above();
@@ -152,7 +150,7 @@ HOL_INLINE void substitute_joint(const Rows &x, int count, Memory<V> memory) {
 
 // Goes up the trees. Finds E, l and u of all their bonds, and y of what is above them. A leaf has E = w q since it was
 // loaded.
-template <bool keep, class V>
+template <class V>
 static inline void up_trees(Molecules<V> &x, Memory<V> memory) {
     V slack = x.slack;  // in a register
     const Schedule &s = x.s;
@@ -162,11 +160,11 @@ static inline void up_trees(Molecules<V> &x, Memory<V> memory) {
         if (k == 0) continue;
         slack = choose_few<3>(k, [=](auto known) HOL_FORCED {  // captures by value, so that slack stays in a register
             V least = slack;
-            up_joint<known, false, keep>(rows, k, memory, least);
+            up_joint<known, false>(rows, k, memory, least);
             return least;
         });
     }
-    if (s.type == Schedule::tree) up_joint<1, true, keep>(AtomRows<V>(x, s.n_tree), 1, memory, slack);
+    if (s.type == Schedule::tree) up_joint<1, true>(AtomRows<V>(x, s.n_tree), 1, memory, slack);
     x.slack = slack;
 }
 

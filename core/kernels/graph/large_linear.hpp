@@ -9,31 +9,18 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// Molecules in lanes are small.
-template <class V>
-HOL_INLINE void open_pieces(Linear<V> &, const LongTeam *, Memory<V> &) {}
-HOL_INLINE void open_pieces(Linear<double> &z, const LongTeam *team, Memory<double> &memory) {
-    if (has_pieces(z.x.s)) z.take_pieces(team, memory);
-}
-template <class V>
-HOL_INLINE void open_arms(Linear<V> &, const double *, Memory<V> &) {}
-HOL_INLINE void open_arms(Linear<double> &z, const double *scratch, Memory<double> &memory) {
-    if (z.x.pieces) z.pieces.arms = take_arms(z.x.s, scratch, memory);
-}
-
 // Reads what the pieces hold, and eliminates it; up_arm does so at an arm.
-template <bool keep>
 HOL_INLINE void load_and_eliminate(Linear<double> &z, int terms, const ArmWork &up_arm) {
     Molecules<double> &x = z.x;
     const Schedule &s = x.s;
-    const bool keep_all = keep && (terms & rates);
+    const bool keep_all = terms & rates;
     for_pieces(s, x.pieces->team, [&](int32_t p) {
         if (x.pieces->arms.store)
             for (int32_t i = s.stretch_start[p]; i < s.stretch_start[p + 1]; ++i)
                 load_slots(z, terms, s.stretch[i].first, s.stretch[i].end, keep_all);
         else
             load_slots(z, terms, first_of_piece(p), end_of_piece(s, p), keep_all);
-        x.pieces->slack[p] = up_piece<keep>(x, p, x.pieces->memory(p), up_arm);
+        x.pieces->slack[p] = up_piece(x, p, x.pieces->memory(p), up_arm);
     });
     collect_slack(x);
     Loader<double>{z, terms}.load_core();
@@ -50,21 +37,18 @@ static inline bool to_be_repeated(Molecules<double> &x) {
     return any && x.slack >= 0;
 }
 
-// Reads, and solves what has been read. `keep`: for more than one right-hand side, which arms don't do. `look`: tests
-// what is found.
-template <bool keep>
-HOL_NOINLINE void solve_in_pieces(Linear<double> &z, int terms, bool look = true) {
+static inline void solve_all_pieces(Linear<double> &z, int terms, bool look) {
     Molecules<double> &x = z.x;
     const Schedule &s = x.s;
     for (int32_t slot = s.n_tree; slot < s.n_atoms; ++slot) x.w[slot] = x.lane[0].w[s.atom_of[slot]];
     const auto solve = [&](const ArmWork &up, const ArmWork &down) {
         do {
-            load_and_eliminate<keep>(z, terms, up);
-            up_top<keep>(x, z.working, up);
+            load_and_eliminate(z, terms, up);
+            up_top(x, z.working, up);
             down_pieces(x, down, look);
         } while (to_be_repeated(x));
     };
-    if (keep || (terms & given) || !x.pieces->arms.store) return solve(ArmWork(), ArmWork());
+    if ((terms & given) || !x.pieces->arms.store) return solve(ArmWork(), ArmWork());
     eliminate_arms(x, terms);
     const auto up = [&](int32_t a, Faint &faint, double &slack) { up_arm(z, terms, a, faint, z.working, slack); };
     const auto down = [&](int32_t a, Faint &faint, double &slack) { down_arm(x, a, faint, slack, look); };

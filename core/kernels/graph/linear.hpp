@@ -90,12 +90,11 @@ struct Linear {
             for (int l = 0; l < Width<V>::lanes; ++l) Width<V>::set(x.w[i], l, x.lane[l].w[x.s.atom_of[i]]);
     }
 
-    // From right-hand sides to the solution, both in t of the rows; `keep`: for more than one of them.
-    template <bool keep>
+    // From right-hand sides to the solution, both in t of the rows.
     void factorize_and_solve() {
         switch (x.s.type) {
             case Schedule::tree:
-                up_trees<keep>(x, working);
+                up_trees(x, working);
                 down_trees<true>(x);
                 break;
             case Schedule::triangle:
@@ -106,7 +105,7 @@ struct Linear {
                 break;
             case Schedule::graph:
                 for (int32_t k = 0; k < x.s.n_bonds; ++k) b[k] = x.row[k].t;
-                up_trees<true>(x, working);
+                up_trees(x, working);
                 factorize_core(x, core, working);
                 solve_core();
         }

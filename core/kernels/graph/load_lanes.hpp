@@ -11,21 +11,19 @@ namespace HOL_ISA {
 namespace graph {
 
 // Atoms of one molecule, one in each lane.
+template <bool packed>
 struct AtomsInLanes {
-    const Layout layout;
     int64_t number[W];  // in the caller's arrays; of rows of three doubles, where they begin
-    HOL_FORCED AtomsInLanes(const Molecules<double> &x, const int32_t *slot) : layout(x.at.layout) {
+    HOL_FORCED AtomsInLanes(const Molecules<double> &x, const int32_t *slot) {
         HOL_UNROLL
         for (int i = 0; i < W; ++i) {
             const int32_t atom = x.s.atom_of[slot[i]];
-            number[i] = layout == rows_listed     ? 3 * x.at.list[0][atom]
-                        : layout == rows_in_order ? 3 * (atom + x.at.first[0])
-                                                  : x.at.number(0, atom);
+            number[i] = (packed ? 3 : 1) * x.at.number(0, atom);
         }
     }
     HOL_FORCED vec3 read(const AtomArray &array) const {
         vec3 a = {};
-        if (layout == elements) {
+        if (!packed) {
             for (int i = 0; i < W; ++i) {
                 double one[3];
                 read_row(array, number[i], one);
@@ -68,12 +66,13 @@ HOL_INLINE vec mass_of(const Molecules<double> &x, const int32_t *slot) {
 }
 
 // The masses and bonds of W slots of trees.
+template <bool packed>
 HOL_INLINE void load_lanes(Linear<double> &z, int terms, const int32_t *slot, bool keep_all) {
     const Molecules<double> &x = z.x;
     int32_t above[W];
     HOL_UNROLL
     for (int i = 0; i < W; ++i) above[i] = x.s.parent[slot[i]];
-    const AtomsInLanes child(x, slot), parent(x, above);
+    const AtomsInLanes<packed> child(x, slot), parent(x, above);
     const vec3 r = child.read(*x.r);
     const vec w = mass_of(x, slot);
     HOL_UNROLL
@@ -104,13 +103,18 @@ HOL_INLINE void load_lanes(Linear<double> &z, int terms, const int32_t *slot, bo
     scatter_values(x.row, slot, row);
 }
 
-HOL_NOINLINE void load_slots(Linear<double> &z, int terms, int32_t first, int32_t end, bool keep_all) {
+template <bool packed>
+HOL_NOINLINE void load_slots_of(Linear<double> &z, int terms, int32_t first, int32_t end, bool keep_all) {
     for (int32_t s = first; s < end; s += W) {
         int32_t slot[W];
         HOL_UNROLL
         for (int i = 0; i < W; ++i) slot[i] = s + i < end ? s + i : end - 1;
-        load_lanes(z, terms, slot, keep_all);
+        load_lanes<packed>(z, terms, slot, keep_all);
     }
+}
+
+HOL_INLINE void load_slots(Linear<double> &z, int terms, int32_t first, int32_t end, bool keep_all) {
+    choose([&](auto packed) { load_slots_of<packed>(z, terms, first, end, keep_all); }, z.x.at.layout != elements);
 }
 
 }  // namespace graph

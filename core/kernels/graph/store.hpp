@@ -48,36 +48,53 @@ template <class Value>
 HOL_INLINE void write_slots(const Molecules<double> &x, const AtomArray &array, int32_t first, int32_t end,
                             const Value &value) {
     const unsigned char *const shared = x.lane[0].shared;
+    if (x.at.layout == rows_in_order && !shared) {
+        double *const base = reinterpret_cast<double *>(array.x) + 3 * x.at.first[0];
+        for (int32_t slot = end; slot-- > first;) {
+            double *const p = base + 3 * static_cast<int64_t>(x.s.atom_of[slot]);
+            write_rows(&p, value(slot));
+        }
+        return;
+    }
     for (int32_t slot = end; slot-- > first;) {
         const int32_t atom = x.s.atom_of[slot];
         if (!(shared && shared[atom])) write(array, x.at, atom, value(slot), 1);
     }
 }
 
-// Puts G of all atoms by slot.
-template <class V>
-HOL_INLINE void find_pulls(const Molecules<V> &x, Vector3<V> *pull) {
-    if (x.s.type == Schedule::ring) {
-        Vector3<V> last = x.row[x.s.n_bonds - 1].t * x.row[x.s.n_bonds - 1].d;
-        for (int32_t k = 0; k < x.s.n_bonds; ++k) {
-            const Vector3<V> next = x.row[k].t * x.row[k].d;
-            pull[k] = next - last;
-            last = next;
-        }
-        return;
-    }
-    for (int32_t slot = 0; slot < x.s.n_atoms; ++slot) pull[slot] = pull_on(x, slot);
+// v += w G of the atoms in these slots.
+HOL_INLINE void move_velocities(const Molecules<double> &x, const AtomArray &v, int32_t first, int32_t end) {
+    write_slots(x, v, first, end, [&](int32_t slot) {
+        return add_times(read(v, x.at, x.s.atom_of[slot]), x.w[slot], pull_on(x, slot));
+    });
 }
 
-// Writes or adds G of all atoms but those of arms, in the lanes of `which`. `work` has room for a vector per atom.
+// G of the atom in a slot, [slot]: of any molecule, and of a ring, whose bond k stands between slots k and k + 1.
 template <class V>
-HOL_NOINLINE void write_pulls(const Molecules<V> &x, const AtomArray &g, bool add, unsigned which, Vector3<V> *work) {
-    find_pulls(x, work);
-    write_vectors(g, x.at, x.s.slot_of, x.s.n_atoms, Slots<V>(work), Written<V>{which, nullptr, x.lane, add});
+struct Pulls {
+    const Molecules<V> &x;
+    HOL_FORCED Vector3<V> operator[](int32_t slot) const { return pull_on(x, slot); }
+};
+template <class V>
+struct RingPulls {
+    const Molecules<V> &x;
+    HOL_FORCED Vector3<V> operator[](int32_t slot) const {
+        const BondRow<V> &behind = x.row[slot], &before = x.row[slot > 0 ? slot - 1 : x.s.n_bonds - 1];
+        return behind.t * behind.d - before.t * before.d;
+    }
+};
+
+// Writes or adds G of all atoms but those of arms, in the lanes of `which`.
+template <class V>
+HOL_INLINE void write_pulls(const Molecules<V> &x, const AtomArray &g, bool add, unsigned which) {
+    const Written<V> how = {which, nullptr, x.lane, add};
+    if (x.s.type == Schedule::ring)
+        write_vectors(g, x.at, x.s.slot_of, x.s.n_atoms, RingPulls<V>{x}, how);
+    else
+        write_vectors(g, x.at, x.s.slot_of, x.s.n_atoms, Pulls<V>{x}, how);
 }
-HOL_NOINLINE void write_pulls(const Molecules<double> &x, const AtomArray &g, bool add, unsigned which,
-                              Vector3<double> *work) {
-    if (!x.pieces) return write_pulls<double>(x, g, add, which, work);
+HOL_NOINLINE void write_pulls(const Molecules<double> &x, const AtomArray &g, bool add, unsigned which) {
+    if (!x.pieces) return write_pulls<double>(x, g, add, which);
     for_slots(x.s, x.pieces, [&](int32_t first, int32_t end) {
         if (which)
             write_slots(x, g, first, end, [&](int32_t slot) {

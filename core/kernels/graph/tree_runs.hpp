@@ -11,47 +11,46 @@ namespace HOL_ISA {
 namespace graph {
 
 // Goes up at one atom, with careful arithmetic where plain arithmetic does not do.
-template <bool keep>
 HOL_NOINLINE void up_one(const Molecules<double> &x, int32_t slot, Faint &faint, Memory<double> memory, double &slack) {
     const AtomRows<double> rows(x, slot);
     const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
     if (__builtin_expect(faint.holds(slot), 0)) {
-        if (k > 3 || !up_doubtful_joint(x, slot, k, keep)) slack = -1;
+        if (k > 3 || !up_doubtful_joint(x, slot, k)) slack = -1;
         return faint.note_careful(slot);
     }
-    if (k > 3) return up_joint<0, false, keep>(rows, k, memory, slack);
+    if (k > 3) return up_joint<0, false>(rows, k, memory, slack);
     double before[8], own = 1;
     for (int a = 0; a <= k; ++a) {
         const BondRow<double> &row = a < k ? rows.bond(a) : rows.above();
         before[2 * a] = row.E;
         before[2 * a + 1] = row.t;
     }
-    choose_number<1, 3>(k, [&](auto known) { up_joint<known, false, keep>(rows, k, memory, own); });
+    choose_number<1, 3>(k, [&](auto known) { up_joint<known, false>(rows, k, memory, own); });
     if (__builtin_expect(own >= 0, 1)) return;
     for (int a = 0; a <= k; ++a) {
         BondRow<double> &row = a < k ? rows.bond(a) : rows.above();
         row.E = before[2 * a];
         row.t = before[2 * a + 1];
     }
-    if (!up_doubtful_joint(x, slot, k, keep)) slack = -1;
+    if (!up_doubtful_joint(x, slot, k)) slack = -1;
     faint.note_careful(slot);
 }
 
-template <int k, bool keep>
+template <int k>
 HOL_INLINE void up_lanes(const Molecules<double> &x, const int32_t *slot, Faint &faint, Memory<double> memory,
                          double &slack) {
     AtomLanes<k, vec> rows(x, slot);
     rows.read_bonds();
     vec own = Width<vec>::all(1);
-    up_joint<k, false, keep>(rows, k, Memory<vec>{nullptr}, own);
+    up_joint<k, false>(rows, k, Memory<vec>{nullptr}, own);
     if (__builtin_expect(any(less(own, vec{})) || faint.holds_any(slot), 0)) {
         for (int i = 0; i < W; ++i)
-            if (i == 0 || slot[i] != slot[i - 1]) up_one<keep>(x, slot[i], faint, memory, slack);
+            if (i == 0 || slot[i] != slot[i - 1]) up_one(x, slot[i], faint, memory, slack);
         return;
     }
     rows.write_values();
     scatter_values(x.row, slot, rows.top);
-    if (keep) rows.write_pairs();
+    rows.write_pairs();
 }
 
 template <int k>
@@ -158,18 +157,17 @@ HOL_INLINE bool do_arms(const Schedule::Runs &runs, const Schedule::Run &run, co
 }
 
 // A piece, or the top.
-template <bool keep>
 static inline double up_piece(const Molecules<double> &x, int32_t piece, Memory<double> memory, const ArmWork &arm) {
     const Schedule::Runs &s = x.pieces->runs(x.s);
     Faint &faint = x.pieces->faint[piece];
     faint.n_careful = 0;
     double slack = 1;
-    const auto one = [&](int32_t slot) { up_one<keep>(x, slot, faint, memory, slack); };
+    const auto one = [&](int32_t slot) { up_one(x, slot, faint, memory, slack); };
     for (int32_t r = s.piece_start[piece]; r < s.piece_start[piece + 1]; ++r) {
         const Schedule::Run &run = s.run[r];
         if (do_arms(s, run, arm, faint, slack)) continue;
         for_run(
-            s, run, [&](auto k, const int32_t *slot) { up_lanes<k, keep>(x, slot, faint, memory, slack); }, one);
+            s, run, [&](auto k, const int32_t *slot) { up_lanes<k>(x, slot, faint, memory, slack); }, one);
     }
     return slack;
 }
@@ -203,10 +201,9 @@ static inline void collect_slack(Molecules<double> &x) {
 }
 
 // Goes up behind the pieces.
-template <bool keep>
 static inline void up_top(Molecules<double> &x, Memory<double> memory, const ArmWork &arm) {
-    x.slack = min(up_piece<keep>(x, x.s.n_pieces, memory, arm), x.slack);
-    up_joint<1, true, keep>(AtomRows<double>(x, x.s.n_tree), 1, memory, x.slack);
+    x.slack = min(up_piece(x, x.s.n_pieces, memory, arm), x.slack);
+    up_joint<1, true>(AtomRows<double>(x, x.s.n_tree), 1, memory, x.slack);
 }
 
 // Light atoms between heavy ones in line are pulled from both sides with much more than what moves them. Then the
@@ -229,11 +226,7 @@ HOL_NOINLINE bool is_torn(const Molecules<double> &x, int32_t slot) {
 }
 
 // Returns whether any atom is torn by the solution, of a molecule in pieces.
-template <class V>
-HOL_INLINE bool has_torn_atoms(const Molecules<V> &) {
-    return false;
-}
-static inline bool has_torn_atoms(const Molecules<double> &x) {
+static inline bool any_torn_atom(const Molecules<double> &x) {
     bool torn = false, all = false;
     for (int32_t p = 0; x.pieces && p <= x.s.n_pieces; ++p) {
         const Faint &faint = x.pieces->faint[p];

@@ -119,10 +119,10 @@ struct Written {
     }
 };
 
-// Writes the vectors of n atoms, from their slots.
-template <class V>
+// Writes the vectors of n atoms, from[slot].
+template <class V, class From>
 HOL_NOINLINE void write_vectors(const AtomArray &array, const Atoms<V> &at, const int32_t *slot_of, int32_t n,
-                                const Slots<V> from, const Written<V> what) {
+                                const From from, const Written<V> what) {
     const V factor = Width<V>::all(what.factor);
     if (!what.all() || at.layout == elements) {
         for (int32_t k = 0; k < n; ++k) {

@@ -38,7 +38,7 @@ struct VelocitiesWork {
     template <class V>
     void solve(Linear<V> &z, bool masses_known, Memory<V> memory) const {
         z.x.in = {&call.v, nullptr, nullptr, true, call.strain};
-        const unsigned solved = load_and_solve<true>(z, rates, masses_known);
+        const unsigned solved = load_and_solve(z, rates, masses_known);
         const unsigned good = solved && !call.v.is_float && has_torn_atoms(z.x) ? 0 : solved;
         const unsigned rest = bits(z.x.in_use()) & ~good;
         if (good) {
@@ -48,7 +48,7 @@ struct VelocitiesWork {
             add_pulls_to(z.x, v);
             if (!call.v.is_float) {
                 find_rates(z.x, v);
-                z.solve_again();
+                solve_again(z);
                 add_pulls_to(z.x, v);
             }
             write_velocities(z.x, v, good);

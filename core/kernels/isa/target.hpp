@@ -1,5 +1,5 @@
 // What a translation unit of the kernels is compiled for: HOL_ISA, the namespace of its instruction set, and HOL_LANES,
-// how many doubles are worked on at once. core/CMakeLists.txt defines both; the defaults here let every header open
+// how many doubles are worked on at once. core/kernels/sets.cmake defines both; the defaults here let every header open
 // alone.
 //
 // All code of a set is in its namespace, so that no function compiled for a newer processor can be linked into code
@@ -18,6 +18,11 @@
 #else
 #define HOL_LANES 2
 #endif
+#endif
+
+// The careful solver of this set is in the namespace of another (careful/careful.hpp).
+#ifndef HOL_CAREFUL
+#define HOL_CAREFUL HOL_ISA
 #endif
 
 #if defined(__FMA__) || defined(__aarch64__)

@@ -14,7 +14,7 @@ void molecules_metric(const MetricCall &call, const MoleculeUnit &unit, double *
             if (lane.atoms) lane.atoms += i * schedule.n_atoms;
             lane.molecule += i;
         }
-        careful::metric(call, *schedule.careful, lane, scratch, tally);
+        HOL_CAREFUL::careful::metric(call, *schedule.careful, lane, scratch, tally);
     }
 }
 

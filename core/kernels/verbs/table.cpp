@@ -18,7 +18,9 @@ static int64_t scratch_bytes(int64_t n_bonds) {
     return scratch_doubles(n_bonds) * static_cast<int64_t>(sizeof(double)) + careful::chain_scratch_bytes(n_bonds);
 }
 
+#ifndef HOL_CHAINS_ONLY
 static int64_t long_blocks(int64_t n_bonds) { return Cut(n_bonds).blocks; }
+#endif
 
 extern const Kernels kernels;
 const Kernels kernels = {
@@ -30,12 +32,16 @@ const Kernels kernels = {
     velocities,
     positions,
     metric,
+#ifndef HOL_CHAINS_ONLY
     {long_blocks, long_bytes, long_forces_eliminate, long_join, long_forces_finish},
     {long_blocks, long_bytes, long_velocities_eliminate, long_join, long_velocities_finish},
     {long_blocks, long_positions_bytes, long_positions},
     {long_blocks, long_metric_bytes, long_metric},
     {molecules_scratch_bytes, molecules_forces, molecules_velocities, molecules_positions, molecules_metric,
      molecules_solve},
+#else
+    {}, {}, {}, {}, {},
+#endif
 };
 
 }  // namespace holonomic::HOL_ISA

@@ -1,0 +1,138 @@
+# The kernels: the same sources once per instruction set, each into a namespace of its own; run/dispatch.cpp picks a set at
+# run time. Only these may be compiled for more than the baseline, so that no shared inline function of theirs can end up in
+# another path.
+
+# Chains that fit into lanes: what every set has.
+set(chain_kernels
+    kernels/verbs/forces.cpp
+    kernels/verbs/metric.cpp
+    kernels/verbs/positions.cpp
+    kernels/verbs/table.cpp
+    kernels/verbs/velocities.cpp
+)
+# Long chains, and molecules that are no chains.
+set(other_kernels
+    kernels/verbs/molecules_forces.cpp
+    kernels/verbs/molecules_linear.cpp
+    kernels/verbs/molecules_metric.cpp
+    kernels/verbs/molecules_positions.cpp
+    kernels/verbs/molecules_velocities.cpp
+    kernels/verbs/positions_long.cpp
+    kernels/verbs/positions_paths.cpp
+    kernels/verbs/segments.cpp
+)
+set(careful_kernels
+    kernels/careful/linear.cpp
+    kernels/careful/metric.cpp
+    kernels/careful/positions.cpp
+)
+
+# The kernels have vectors of their own. What gcc makes of their other loops doubles the code of this file and the time to
+# compile it, and saves no instruction.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    set_source_files_properties(kernels/verbs/positions.cpp PROPERTIES COMPILE_OPTIONS -fno-tree-loop-vectorize)
+endif()
+
+option(HOLONOMIC_TEST_SETS "With the tests, kernels of other numbers of lanes in a library for tests alone" ON)
+set(HOLONOMIC_TEST_LANES "8" CACHE STRING "Their lanes; one, two and four are installed")
+
+# Objects of kernels in the namespace of that name.
+function(holonomic_kernel_objects name lanes)
+    cmake_parse_arguments(PARSE_ARGV 2 objects "" "" "SOURCES;DEFINES;FLAGS")
+    set(target holonomic_kernels_${name})
+    add_library(${target} OBJECT ${objects_SOURCES})
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_compile_definitions(${target} PRIVATE HOL_ISA=${name} HOL_LANES=${lanes} ${objects_DEFINES})
+    target_compile_options(${target} PRIVATE ${objects_FLAGS})
+    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
+    target_link_libraries(${target} PRIVATE holonomic_flags holonomic_warnings)
+endfunction()
+
+# holonomic_kernels(NAME LANES CAREFUL set [TESTS_ONLY] [CHAINS_ONLY] [FLAGS flag...] [NEEDS feature...])
+#   NAME         of the namespace, of the object library holonomic_kernels_NAME, and for HOLONOMIC_ISA
+#   LANES        doubles worked on at once
+#   CAREFUL      the careful solver that it uses, see below
+#   TESTS_ONLY   in no library but the one of tests/lanes; runs only if HOLONOMIC_ISA names it
+#   CHAINS_ONLY  runs for chains that fit into lanes, beside another set
+#   FLAGS        of the compiler
+#   NEEDS        of the processor, as __builtin_cpu_supports() names it
+set(kernel_objects)
+set(test_kernel_objects)
+set(kernel_sets)
+set(test_kernel_sets)
+set(set_names)
+set(careful_solvers)
+function(holonomic_kernels name lanes)
+    cmake_parse_arguments(PARSE_ARGV 2 set "TESTS_ONLY;CHAINS_ONLY" "CAREFUL" "FLAGS;NEEDS")
+    if((set_TESTS_ONLY AND NOT (HOLONOMIC_BUILD_TESTS AND HOLONOMIC_TEST_SETS)) OR
+       (NOT set_TESTS_ONLY AND NOT name IN_LIST HOLONOMIC_INSTRUCTION_SETS AND NOT name STREQUAL "baseline"))
+        return()
+    endif()
+    set(sources ${chain_kernels} ${other_kernels})
+    set(defines HOL_CAREFUL=${set_CAREFUL})
+    set(kind "")
+    if(set_CHAINS_ONLY)
+        set(sources ${chain_kernels})
+        list(APPEND defines HOL_CHAINS_ONLY)
+    endif()
+    if(set_TESTS_ONLY)
+        list(APPEND defines HOL_TESTS_ONLY)
+        set(kind test_)
+    endif()
+    holonomic_kernel_objects(${name} ${lanes} SOURCES ${sources} DEFINES ${defines} FLAGS ${set_FLAGS})
+    # What the tests of headers compile with.
+    list(TRANSFORM defines PREPEND -D)
+    set(HOLONOMIC_COMPILES_${name} -DHOL_ISA=${name} -DHOL_LANES=${lanes} ${defines} ${set_FLAGS} CACHE INTERNAL "")
+    set(condition true)
+    foreach(feature IN LISTS set_NEEDS)
+        string(APPEND condition " && __builtin_cpu_supports(\"${feature}\")")
+    endforeach()
+    set(${kind}kernel_objects ${${kind}kernel_objects} $<TARGET_OBJECTS:holonomic_kernels_${name}> PARENT_SCOPE)
+    set(${kind}kernel_sets "${${kind}kernel_sets} \\\n    set(${name}, (${condition}))" PARENT_SCOPE)
+    set(set_names ${set_names} ${name} PARENT_SCOPE)
+    set(careful_solvers ${careful_solvers} ${set_CAREFUL} PARENT_SCOPE)
+endfunction()
+
+# The sets, the one to be preferred first; run/dispatch.cpp has the measurements, and where another runs.
+set(HOLONOMIC_INSTRUCTION_SETS "avx2;avx512vl;scalar" CACHE STRING "Kernels to compile beside those of baseline x86-64")
+set(HOLONOMIC_X86_64 OFF)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND CMAKE_SIZEOF_VOID_P EQUAL 8
+   AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+    set(HOLONOMIC_X86_64 ON)
+endif()
+set(avx2 -mavx2 -mfma)
+if(HOLONOMIC_X86_64)
+    holonomic_kernels(avx512vl 4 CAREFUL twofold_fma NEEDS avx512f avx512dq avx512vl fma
+        FLAGS -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=256)
+    holonomic_kernels(avx2 4 CAREFUL twofold_fma FLAGS ${avx2} NEEDS avx2 fma)
+    # Numbers of lanes that other processors have or may have, on any that has AVX2.
+    foreach(lanes IN LISTS HOLONOMIC_TEST_LANES)
+        holonomic_kernels(lanes${lanes} ${lanes} TESTS_ONLY CAREFUL twofold_fma FLAGS ${avx2} -O1 -Wno-psabi
+            NEEDS avx2 fma)
+    endforeach()
+endif()
+# For x86-64 processors of before 2013, where size counts, and for all others, where it is the only set.
+set(small)
+if(HOLONOMIC_X86_64)
+    set(small -Os)
+endif()
+holonomic_kernels(baseline 2 CAREFUL twofold FLAGS ${small})
+if(HOLONOMIC_X86_64)
+    # One lane: chains that come alone, beside any of the sets above. Pairs of components stored at once and loaded one by
+    # one, or the other way round, would wait for each other.
+    holonomic_kernels(scalar 1 CHAINS_ONLY CAREFUL twofold_fma FLAGS ${avx2} -fno-tree-slp-vectorize NEEDS avx2 fma)
+endif()
+set(HOLONOMIC_KERNEL_SET_NAMES ${set_names} CACHE INTERNAL "")
+
+# The careful solver, in twice the precision for sets that fuse products and sums and for those that don't; and what it
+# leaves to four times the precision, for all.
+holonomic_kernel_objects(fourfold 2 SOURCES ${careful_kernels} DEFINES HOL_FOURFOLD)
+list(APPEND kernel_objects $<TARGET_OBJECTS:holonomic_kernels_fourfold>)
+if("twofold" IN_LIST careful_solvers)
+    holonomic_kernel_objects(twofold 2 SOURCES ${careful_kernels} FLAGS ${small})
+    list(APPEND kernel_objects $<TARGET_OBJECTS:holonomic_kernels_twofold>)
+endif()
+if("twofold_fma" IN_LIST careful_solvers)
+    holonomic_kernel_objects(twofold_fma 2 SOURCES ${careful_kernels} FLAGS ${avx2})
+    list(APPEND kernel_objects $<TARGET_OBJECTS:holonomic_kernels_twofold_fma>)
+endif()
