@@ -13,8 +13,8 @@ typedef struct worst {
 } worst;
 
 /**
- * Takes in one number, judged by its scale, also where the reference is zero: what is zero by symmetry comes out as what
- * rounding leaves of its parts. Where the scale is zero the reference must be met exactly.
+ * Takes in one number, judged by its scale, also where the reference is zero: what is zero by symmetry comes out as
+ * what rounding leaves of its parts. Where the scale is zero the reference must be met exactly.
  */
 void compare(worst *w, double value, long double reference, long double scale, long double bound);
 
