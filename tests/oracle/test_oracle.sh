@@ -60,7 +60,7 @@ spoil G atoms_out 3 4
 spoil 'Fixman force' atoms_out 2 6
 spoil zinv zinv '1 2' 3
 run 1 'zinv .*OUT OF BOUND' "$work/spoilt"
-# a reference of exactly zero must be met exactly: lambda of a chain at rest
+# a reference beside a scale of zero must be met exactly: lambda of a chain at rest
 fresh zero
 echo zero_n008.txt >"$work/zero/INDEX"
 check 0 'lambda .* 0 of .* ok' "$work/zero"
@@ -68,8 +68,22 @@ sed -i '/^bonds_out/,/^atoms_out/{s/^3 0.0 0.0/3 1.0e-300 0.0/}' "$work/zero/zer
 check 1 'lambda .*OUT OF BOUND' "$work/zero"
 
 # The format of molecules of any shape (tests/oracle/molecules/README.md).
-check 0 '^oracle: 21 cases, worst ratio 0\.' "$top/tests/oracle/molecules"
+check 0 '^oracle: 23 cases, worst ratio 0\.' "$top/tests/oracle/molecules"
 [ "$(grep -c '^refused.*refused' "$work/out")" -eq 4 ] || complain 'the four degenerate molecules are not refused'
+
+# What is zero by symmetry is judged by the scale beside it, either way.
+cp -r "$top/tests/oracle/molecules" "$work/symmetric"
+echo naphthalene_n001_1.txt >"$work/symmetric/INDEX"
+out_of_plane() { # NUMBER: the reference of an atom's Fixman force across the plane, 0.0
+    awk -v to="$1" '/^atoms_out/ { inside = 1 } inside && !done && /^2 / { $8 = to; done = 1 } { print }' \
+        "$top/tests/oracle/molecules/naphthalene_n001_1.txt" >"$work/symmetric/naphthalene_n001_1.txt"
+}
+awk '/^atoms_out/ { inside = 1 } inside && /^2 / { exit $8 != "0.0" }' "$top/tests/oracle/molecules/naphthalene_n001_1.txt" ||
+    complain 'the Fixman force across the plane of naphthalene is not zero in the file'
+out_of_plane 1.0e-34
+check 0 'Fixman force .*ok' "$work/symmetric"
+out_of_plane 1.0e-12
+check 1 'Fixman force .*OUT OF BOUND' "$work/symmetric"
 
 # A linear chain in it, alone and among the others.
 mkdir "$work/molecule"

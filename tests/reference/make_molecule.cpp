@@ -83,7 +83,7 @@ int main(int argc, char **argv)
     std::snprintf(name, sizeof name, "%s_n%03lld_%lld", molecule_kind_name(static_cast<molecule_kind>(kind)), size,
                   seed);
     std::replace(name, name + sizeof name, ' ', '_');
-    const bool degenerate = kind >= MOLECULE_GOOD_KINDS;
+    const bool degenerate = kind >= MOLECULE_GOOD_KINDS && kind < MOLECULE_REFUSED_END;
     std::vector<double> drifted(m.r, m.r + 3 * m.n_atoms);
     const double dt = degenerate ? 1 : possible_step(m, projected(m), drifted);
     const std::string text =

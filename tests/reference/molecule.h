@@ -60,7 +60,10 @@ typedef enum molecule_kind {
     MOLECULE_LINEAR,                              /**< three distances on a line */
     MOLECULE_PLANAR_SQUARE,                       /**< a square with both diagonals */
     MOLECULE_TAUT_EXACTLY,                        /**< straight between two fixed atoms */
-    MOLECULE_KINDS                                /**< how many kinds there are */
+    MOLECULE_REFUSED_END, /**< from here on again with an answer, of which a part is zero by symmetry alone */
+    MOLECULE_CUBANE = MOLECULE_REFUSED_END, /**< C8H8 with all bonds */
+    MOLECULE_NAPHTHALENE,                   /**< C10H8 with all bonds, in a plane */
+    MOLECULE_KINDS                          /**< how many kinds there are */
 } molecule_kind;
 
 /** Words for a kind. */

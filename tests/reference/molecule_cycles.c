@@ -92,6 +92,50 @@ void make_cube(molecule *m, random_stream *s)
             if (!(i >> x & 1)) molecule_add_bond(m, i, i | 1 << x);
 }
 
+void make_cubane(molecule *m)
+{
+    const double half = 0.785, diagonal = 1 / sqrt(3.0);
+    for (int i = 0; i < 8; ++i) {
+        double r[3];
+        for (int x = 0; x < 3; ++x) r[x] = i >> x & 1 ? half : -half;
+        molecule_add_atom(m, 12.011, r);
+    }
+    for (int i = 0; i < 8; ++i) {
+        double u[3];
+        for (int x = 0; x < 3; ++x) {
+            u[x] = i >> x & 1 ? diagonal : -diagonal;
+            if (!(i >> x & 1)) molecule_add_bond(m, i, i | 1 << x);
+        }
+        molecule_grow(m, i, 1.008, 1.09, u);
+    }
+}
+
+void make_naphthalene(molecule *m)
+{
+    const double side = 1.40, across = side * sqrt(0.75);
+    for (int end = -1; end <= 1; end += 2) { /* the bond that the rings share */
+        const double r[3] = {0, end * side / 2, 0};
+        molecule_add_atom(m, 12.011, r);
+    }
+    molecule_add_bond(m, 0, 1);
+    for (int ring = -1; ring <= 1; ring += 2) {
+        const int64_t first = m->n_atoms;
+        for (int c = 0; c < 4; ++c) { /* round the ring from the lower end of that bond to the upper one */
+            const double angle = pi / 3 * (c - 1.5);
+            const double u[3] = {ring * cos(angle), sin(angle), 0};
+            const double r[3] = {ring * across + side * u[0], side * u[1], 0};
+            molecule_add_atom(m, 12.011, r);
+            molecule_add_bond(m, c == 0 ? 0 : first + c - 1, first + c);
+        }
+        molecule_add_bond(m, first + 3, 1);
+        for (int c = 0; c < 4; ++c) {
+            const double angle = pi / 3 * (c - 1.5);
+            const double u[3] = {ring * cos(angle), sin(angle), 0};
+            molecule_grow(m, first + c, 1.008, 1.09, u);
+        }
+    }
+}
+
 /** On every third atom of the ring a tail that branches, nearly straight, of atoms a million times lighter. */
 void make_lariat(molecule *m, random_stream *s, int64_t size)
 {

@@ -35,6 +35,8 @@ const char *molecule_kind_name(molecule_kind kind)
         "refused linear",
         "refused planar square",
         "refused taut exactly",
+        "cubane",
+        "naphthalene",
     };
     return names[kind];
 }
@@ -145,6 +147,12 @@ static void make_cyclic_kind(molecule *m, random_stream *s, molecule_kind kind, 
             return;
         case MOLECULE_PEPTIDE:
             make_peptide(m, s, size);
+            return;
+        case MOLECULE_CUBANE:
+            make_cubane(m);
+            return;
+        case MOLECULE_NAPHTHALENE:
+            make_naphthalene(m);
             return;
         case MOLECULE_TEN_DISTANCES:
             make_ten_distances(m, s);

@@ -38,6 +38,10 @@ void make_benzene(molecule *m, random_stream *s, double pucker, int rigid_angles
 void make_triangles(molecule *m, random_stream *s, int64_t size, double low, double high, int planar);
 void make_fused_rings(molecule *m, random_stream *s, int64_t size);
 void make_cube(molecule *m, random_stream *s);
+
+/** With hydrogens along the diagonals; hexagons in the plane z = 0. */
+void make_cubane(molecule *m);
+void make_naphthalene(molecule *m);
 void make_lariat(molecule *m, random_stream *s, int64_t size);
 void make_peptide(molecule *m, random_stream *s, int64_t residues);
 void make_ten_distances(molecule *m, random_stream *s);

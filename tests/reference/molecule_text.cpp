@@ -14,6 +14,8 @@ namespace
 {
 
 constexpr int digits = 35, scale_digits = 6;
+/** 512 bits leave less than 2^-400 of a zero's scale; no result of interest is below 1e-90 of its own. */
+constexpr int analytic_zero = 300;
 
 std::string text(const char *format, ...) __attribute__((format(printf, 1, 2)));
 std::string text(const char *format, ...)
@@ -39,10 +41,17 @@ std::string result(const REAL &x)
     return " " + decimal(x, digits);
 }
 
+/** A result beside the scale of what cancels in it: what is zero but for the rounding of this arithmetic is zero. */
 template <class REAL>
-std::string result(const vector3<REAL> &x)
+std::string result(const REAL &x, const REAL &scale)
 {
-    return result(x[0]) + result(x[1]) + result(x[2]);
+    return absolute(x) < scale.scaled(-analytic_zero) ? " 0.0" : result(x);
+}
+
+template <class REAL>
+std::string result(const vector3<REAL> &x, const REAL &scale)
+{
+    return result(x[0], scale) + result(x[1], scale) + result(x[2], scale);
 }
 
 template <class REAL>
@@ -56,7 +65,7 @@ std::string sums(const wide_metric<REAL> &m, const wide_solution<REAL> &s)
 {
     std::string out = "lndet" + result(m.log_det) + "\nlndetz" + result(m.log_det_z) + "\nfixman_energy" +
                       result(m.log_det.scaled(-1)) + "\nvirial";
-    for (const std::size_t x : {0u, 1u, 2u, 4u, 5u, 8u}) out += result(s.virial[x]);
+    for (const std::size_t x : {0u, 1u, 2u, 4u, 5u, 8u}) out += result(s.virial[x], s.virial_scale);
     return out + "\nvirial_scale" + scale(s.virial_scale) + "\ncond" + scale(m.condition) + "\nleast_pivot" +
            scale(m.least_pivot) + "\n";
 }
@@ -66,12 +75,13 @@ std::string tables(const wide_metric<REAL> &m, const wide_solution<REAL> &s, con
 {
     std::string out = "# k lambda lambda_scale mu mu_scale\nbonds_out\n";
     for (std::size_t k = 0; k < s.lambda.size(); ++k)
-        out += text("%zu", k) + result(s.lambda[k]) + scale(s.lambda_scale[k]) + result(v.lambda[k]) +
-               scale(v.lambda_scale[k]) + "\n";
+        out += text("%zu", k) + result(s.lambda[k], s.lambda_scale[k]) + scale(s.lambda_scale[k]) +
+               result(v.lambda[k], v.lambda_scale[k]) + scale(v.lambda_scale[k]) + "\n";
     out += "# i Gx Gy Gz G_scale FFx FFy FFz FF_scale vx vy vz v_scale\natoms_out\n";
     for (std::size_t i = 0; i < s.g.size(); ++i)
-        out += text("%zu", i) + result(s.g[i]) + scale(s.g_scale[i]) + result(m.force[i]) + scale(m.force_scale[i]) +
-               result(v.moved[i]) + scale(v.moved_scale[i]) + "\n";
+        out += text("%zu", i) + result(s.g[i], s.g_scale[i]) + scale(s.g_scale[i]) +
+               result(m.force[i], m.force_scale[i]) + scale(m.force_scale[i]) + result(v.moved[i], v.moved_scale[i]) +
+               scale(v.moved_scale[i]) + "\n";
     return out;
 }
 
@@ -82,10 +92,11 @@ std::string positions(const molecule_problem &p, const molecule_step &step)
     if (!s.regular) return "positions none\n";
     std::string out = text("positions %.16e\n# i x y z (in)  x y z r_scale (out)\n", step.dt);
     for (std::size_t i = 0; i < s.g.size(); ++i)
-        out += text("%zu", i) + exact(step.drifted + 3 * i, 3) + result(s.moved[i]) + scale(s.moved_scale[i]) + "\n";
+        out += text("%zu", i) + exact(step.drifted + 3 * i, 3) + result(s.moved[i], s.moved_scale[i]) +
+               scale(s.moved_scale[i]) + "\n";
     out += "# k lambda lambda_scale\n";
     for (std::size_t k = 0; k < s.lambda.size(); ++k)
-        out += text("%zu", k) + result(s.lambda[k]) + scale(s.lambda_scale[k]) + "\n";
+        out += text("%zu", k) + result(s.lambda[k], s.lambda_scale[k]) + scale(s.lambda_scale[k]) + "\n";
     return out;
 }
 

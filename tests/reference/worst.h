@@ -12,7 +12,10 @@ typedef struct worst {
     long double bound; /**< in the same units */
 } worst;
 
-/** Takes in one number: an exactly zero reference or scale must be met exactly. */
+/**
+ * Takes in one number, judged by its scale, also where the reference is zero: what is zero by symmetry comes out as
+ * what rounding leaves of its parts. Where the scale is zero the reference must be met exactly.
+ */
 void compare(worst *w, double value, long double reference, long double scale, long double bound);
 
 /** Takes in an error in units of eps times its scale. */
