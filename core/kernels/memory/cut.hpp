@@ -191,7 +191,8 @@ static inline long margin(const AtomArray &array, const Box &box, const Lane &la
             const double spare = 1 + (lane.w ? w_before / w : 1.0) * sin2;
             left *= gg / (qq * (spare * spare));
             if (left < negligible * negligible) return k;
-            sin2 = 1 - gg / qq;
+            sin2 = 1 - gg / qq - 0x1p-48;  // less its rounding, which w' / w might blow up
+            if (sin2 < 0) sin2 = 0;
         }
         w_before = w;
         before = d;
