@@ -7,7 +7,7 @@
 #ifndef STRESS_CHECKS_HPP
 #define STRESS_CHECKS_HPP
 
-#include "exact_metric.hpp"
+#include "chain_reference.hpp"
 #include "hostile_chain.hpp"
 #include "library_results.hpp"
 #include "quantities.hpp"
@@ -15,33 +15,25 @@
 namespace stress
 {
 
-/** K of the README. */
-long double oracle_bound(std::int64_t n_bonds);
-
-/** What underflow may cost each multiplier; far below everything in ordinary units. */
-std::vector<long double> underflow_of(const hostile_chain &c);
-
-/** Sizes of what projecting velocities (or displacements) of the given sizes pulls each atom with, times w. */
-std::vector<long double> pulls_by(const hostile_chain &c, const std::vector<long double> &size);
-
 /**
  * lambda, G and virial of hol_forces; lambda and v of hol_project_velocities.
  * Velocities: |v_i - ref| <= K eps (|v_i0| + w_i g_scale_i), g_scale with all terms of the velocities in its right-hand
  * side: what rounding them may do. These terms are what goes in, what comes out and the pulls 2 w lambda |d|. Of d.dv
  * may be left K eps |d| times those of its two atoms, with the pulls of projecting their rounding.
  */
-void check_linear_levels(const hostile_chain &c, const library_results &alone, verdict &out);
+void check_linear_levels(const hostile_chain &c, const chain_reference &exact, const library_results &alone,
+                         verdict &out);
 
 /** ln det, Fixman force, elements of the inverse, its condition number (2 K eps) and the guaranteed error bound. */
-void check_metric(const hostile_chain &c, const exact_metric &exact, const arrangement &a, const library_results &alone,
-                  verdict &out);
+void check_metric(const hostile_chain &c, const chain_reference &ref, const arrangement &a,
+                  const library_results &alone, verdict &out);
 
 /**
  * Bond lengths: |d.d - a^2| / a^2 <= 8 eps (1 + extent / shortest bond), twice what hol_chains_set_tolerance describes
  * as the default because rounding the coordinates comes on top. Shift: r - drift = dt^2 w G(lambda) along the old bonds
  * to K eps of the terms of that sum, with the pulls of projecting their rounding.
  */
-void check_positions(const hostile_chain &c, const library_results &alone, verdict &out);
+void check_positions(const hostile_chain &c, const chain_reference &exact, const library_results &alone, verdict &out);
 
 /** A chain that failed keeps its outputs bit for bit; one that did not has only finite ones. */
 void check_outputs(const hostile_chain &c, const library_results &part, verdict &out);
@@ -49,8 +41,8 @@ void check_outputs(const hostile_chain &c, const library_results &part, verdict 
 /** Whether everything is the same to the last bit. */
 void check_same(const library_results &one, const library_results &other, verdict &out);
 
-/** Everything about one chain on its own; `regular` tells whether Z has an inverse. */
-verdict check_alone(const hostile_chain &c, bool &regular, long double &condition);
+/** Everything about one chain on its own. */
+verdict check_alone(const hostile_chain &c, const chain_reference &exact);
 
 }  // namespace stress
 

@@ -16,9 +16,10 @@ std::size_t at(std::int64_t i)
     return static_cast<std::size_t>(i);
 }
 
-void check_inverse(const hostile_chain &c, const exact_metric &exact, const arrangement &a,
+void check_inverse(const hostile_chain &c, const chain_reference &ref, const arrangement &a,
                    const library_results &alone, verdict &out)
 {
+    const exact_metric &exact = ref.metric;
     hol_inverse *made = nullptr;
     const int status = hol_inverse_create(a.chains.get(), 0, a.r.data(), &made);
     const inverse_handle inverse(made);
@@ -50,27 +51,24 @@ void check_inverse(const hostile_chain &c, const exact_metric &exact, const arra
     out.compare(CONDITION, condition, exact.condition, 2 * k_eps * exact.condition);
 
     if (alone.forces != HOL_OK) return;
-    solution s;
-    const solution_problem p = c.problem();
+    const level_reference &s = ref.forces;
     vec bound(at(n));
     double relative = 0;
-    if (solution_forces(&p, &s)) return;
     const int bounded =
         hol_inverse_error_bound(made, a.v.data(), a.f.data(), alone.lambda.data(), bound.data(), &relative);
     out.note(ERROR_BOUND, bounded != HOL_OK);
-    const std::vector<long double> slack = underflow_of(c);
     for (std::size_t k = 0; k < at(n) && bounded == HOL_OK; ++k)
-        out.compare(
-            ERROR_BOUND, alone.lambda[k], s.lambda[k],
-            bound[k] + 4 * slack[k] + std::fabs(s.lambda[k]) * 0x1p-62L);  // the reference is rounded to 64 bits
-    solution_free(&s);
+        out.compare(ERROR_BOUND, alone.lambda[k], s.lambda[k],
+                    bound[k] + 4 * ref.underflow[k] +
+                        std::fabs(s.lambda[k]) * 0x1p-62L);  // the reference is rounded to 64 bits
 }
 
 }  // namespace
 
-void check_metric(const hostile_chain &c, const exact_metric &exact, const arrangement &a, const library_results &alone,
-                  verdict &out)
+void check_metric(const hostile_chain &c, const chain_reference &ref, const arrangement &a,
+                  const library_results &alone, verdict &out)
 {
+    const exact_metric &exact = ref.metric;
     const long double k_eps = oracle_bound(c.n_bonds) * eps;
     if (alone.metric == HOL_OK) {
         // The reference takes its logarithm of a product that may differ from 1 by less than it can hold.
@@ -79,7 +77,7 @@ void check_metric(const hostile_chain &c, const exact_metric &exact, const arran
         for (std::size_t i = 0; i < exact.force.size(); ++i)
             out.compare(FIXMAN_FORCE, alone.fixman[i], exact.force[i], 2 * k_eps * exact.force_scale[i / 3]);
     }
-    check_inverse(c, exact, a, alone, out);
+    check_inverse(c, ref, a, alone, out);
 }
 
 }  // namespace stress

@@ -1,13 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bond_matrix.hpp"
 #include "checks.hpp"
 
 namespace stress
 {
-
-using namespace reference;
 
 namespace
 {
@@ -42,7 +39,7 @@ bool all_unwritten(const vec &x)
 
 }  // namespace
 
-void check_positions(const hostile_chain &c, const library_results &alone, verdict &out)
+void check_positions(const hostile_chain &c, const chain_reference &exact, const library_results &alone, verdict &out)
 {
     if (c.dt == 0) return;
     if (alone.positions != HOL_OK) {
@@ -50,7 +47,6 @@ void check_positions(const hostile_chain &c, const library_results &alone, verdi
         return;
     }
     out.note(REFUSED_STEP, false);
-    const exact_chain old(c.problem());
     const vec drift = drifted(c);
     const std::size_t n = at(c.n_bonds);
     const long double k_eps = oracle_bound(c.n_bonds) * eps;
@@ -60,29 +56,35 @@ void check_positions(const hostile_chain &c, const library_results &alone, verdi
         extent = std::max(
             {extent, std::fabs(static_cast<long double>(drift[i])), std::fabs(static_cast<long double>(c.r[i]))});
     const long double shortest = *std::min_element(c.length.begin(), c.length.end());
-    std::vector<long double> term(n + 1, 0);
-    std::vector<quad3> shift(n + 1, quad3{});
+    long_vec term(n + 1, 0);
+    long_vec shift(3 * (n + 1), 0);
     for (std::size_t k = 0; k < n; ++k) {
-        const quad3 d = row(alone.r.data(), k + 1) - row(alone.r.data(), k);
-        const quad a = c.length[k];
-        const long double error = static_cast<long double>(absolute(dot(d, d) - a * a) / (a * a));
+        const long double a = c.length[k], lambda = alone.position_lambda[k];
+        long double square = 0;
+        for (std::size_t x = 0; x < 3; ++x) {
+            const long double d = static_cast<long double>(alone.r[3 * k + 3 + x]) - alone.r[3 * k + x];
+            square += d * d;
+        }
+        const long double error = std::fabs(square - a * a) / (a * a);
         // a bond between atoms that are both fixed stays as it is; there is none here
         out.note(POSITION_LENGTH, error / (8 * eps * (1 + extent / shortest)));
         out.note(POSITION_LENGTH_LOCAL, error / (8 * eps * (1 + extent / c.length[k])));
-        const quad3 pull = 2 * quad(alone.position_lambda[k]) * old.d[k];
-        shift[k] = shift[k] + pull;
-        shift[k + 1] = shift[k + 1] - pull;
-        const long double size = 2 * std::fabs(static_cast<long double>(alone.position_lambda[k])) * c.length[k];
+        for (std::size_t x = 0; x < 3; ++x) {
+            const long double pull = 2 * lambda * exact.d[3 * k + x];
+            shift[3 * k + x] += pull;
+            shift[3 * k + 3 + x] -= pull;
+        }
+        const long double size = 2 * std::fabs(lambda) * a;
         term[k] += dt2 * c.w[k] * size;
         term[k + 1] += dt2 * c.w[k + 1] * size;
     }
     for (std::size_t i = 0; i <= n; ++i)
         for (std::size_t x = 0; x < 3; ++x) term[i] += std::fabs(static_cast<long double>(drift[3 * i + x]));
-    const std::vector<long double> second = pulls_by(c, term);
+    const long_vec second = exact.pulls_by(c, term);
     for (std::size_t i = 0; i <= n; ++i)
         for (std::size_t x = 0; x < 3; ++x) {
-            const quad exact = quad(drift[3 * i + x]) + quad(dt2) * old.w[i] * shift[i][x];
-            const long double error = static_cast<long double>(absolute(quad(alone.r[3 * i + x]) - exact));
+            const long double after = drift[3 * i + x] + dt2 * c.w[i] * shift[3 * i + x];
+            const long double error = std::fabs(alone.r[3 * i + x] - after);
             const long double allowed = k_eps * (term[i] + eps * second[i]);
             out.note(POSITION_SHIFT, error == 0 ? 0 : error / allowed);
         }
@@ -141,26 +143,22 @@ bool is_covered(const hostile_chain &c, const exact_metric &exact)
 
 }  // namespace
 
-verdict check_alone(const hostile_chain &c, bool &regular, long double &condition)
+verdict check_alone(const hostile_chain &c, const chain_reference &exact)
 {
     verdict out;
-    const solution_problem p = c.problem();
-    const exact_metric exact = metric_of(p);
-    condition = exact.condition;
-    regular = exact.regular;
     const arrangement a = arrange({&c}, 0);
     const library_results alone = compute(a, c.dt > 0 ? c.dt : 1);
     check_outputs(c, alone, out);
-    if (!is_covered(c, exact)) return out;
-    if (!regular) {  // nothing to compare with: the chain is taut between fixed atoms
+    if (!is_covered(c, exact.metric)) return out;
+    if (!exact.metric.regular) {  // nothing to compare with: the chain is taut between fixed atoms
         out.note(ACCEPTED, alone.forces != HOL_ERR_DEGENERATE || alone.velocities != HOL_ERR_DEGENERATE ||
                                alone.metric != HOL_ERR_DEGENERATE);
         return out;
     }
     out.note(REFUSED, alone.forces != HOL_OK || alone.velocities != HOL_OK || alone.metric != HOL_OK);
-    check_linear_levels(c, alone, out);
+    check_linear_levels(c, exact, alone, out);
     check_metric(c, exact, a, alone, out);
-    check_positions(c, alone, out);
+    check_positions(c, exact, alone, out);
     return out;
 }
 

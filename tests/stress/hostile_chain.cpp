@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "seam_features.hpp"
+
 namespace stress
 {
 
@@ -43,16 +45,6 @@ struct dice {
 std::size_t at(std::int64_t i)
 {
     return static_cast<std::size_t>(i);
-}
-
-/** Sets a mass whose reciprocal is the stored inverse mass to the last bit. */
-void set_mass(hostile_chain &c, std::size_t i, double mass)
-{
-    for (int attempt = 0; attempt < 100; ++attempt, mass = std::nextafter(mass, HUGE_VAL)) {
-        c.w[i] = 1 / mass;
-        c.mass[i] = 1 / c.w[i];
-        if (1 / c.mass[i] == c.w[i]) return;
-    }
 }
 
 void draw_masses(hostile_chain &c, dice &d)
@@ -207,7 +199,28 @@ void make_denormal(vec &out, dice &d)
         if (d.chance(share)) x = d.sign() * d.decades(-323, -300);
 }
 
+/** Of chains that are cut, every third one has something at the seams of some number of lanes. */
+seam_features draw_seams(const hostile_chain &c, dice &d)
+{
+    if (c.seed < first_with_seams || !d.chance(1.0 / 3)) return {FIXED_THERE, {}};
+    const cuts where = cuts_of_chain(lane_counts[d.one_of(n_lane_counts)], c.n_bonds);
+    const std::vector<std::int64_t> &seams = d.chance(0.7) ? where.windows : where.segments;
+    const seam_feature feature = static_cast<seam_feature>(d.one_of(N_SEAM_FEATURES));
+    const int offset = first_seam_offset + d.one_of(n_seam_offsets);
+    return d.chance(0.7) ? at_all_seams(feature, seams, offset)
+                         : at_one_seam(feature, seams, offset, at(random_integer(&d.stream, 0, 1000)));
+}
+
 }  // namespace
+
+void set_mass(hostile_chain &c, std::size_t i, double mass)
+{
+    for (int attempt = 0; attempt < 100; ++attempt, mass = std::nextafter(mass, HUGE_VAL)) {
+        c.w[i] = 1 / mass;
+        c.mass[i] = 1 / c.w[i];
+        if (1 / c.mass[i] == c.w[i]) return;
+    }
+}
 
 const char *feature_name(int bit)
 {
@@ -271,20 +284,25 @@ hostile_chain make_hostile_chain(std::uint64_t seed, std::int64_t longest)
     const std::size_t atoms = at(c.n_bonds) + 1;
     c.w.resize(atoms), c.mass.resize(atoms);
     c.r.resize(3 * atoms), c.v.resize(3 * atoms), c.f.resize(3 * atoms);
-    do draw_masses(c, d);
-    while (c.n_bonds == 1 && c.w[0] == 0 && c.w[1] == 0);
+    const seam_features seams = draw_seams(c, d);
+    do {
+        draw_masses(c, d);
+        seams.put_masses(c);
+    } while (c.n_bonds == 1 && c.w[0] == 0 && c.w[1] == 0);
     draw_vectors(c.f, c, d, false);
     draw_vectors(c.v, c, d, true);
     if (c.features & DENORMAL_FORCES) {
         make_denormal(c.f, d);
         if (d.chance(0.5)) make_denormal(c.v, d);
     }
+    seams.put_forces(c);
     if (d.chance(0.7))  // fixed atoms may be given a velocity, too: a wall that moves
         for (std::size_t i = 0; i < atoms; ++i)
             if (c.w[i] == 0) c.v[3 * i] = c.v[3 * i + 1] = c.v[3 * i + 2] = 0;
     const double drift = d.decades(-9, -1.5);
     for (int attempt = 0;; ++attempt) {
         draw_positions(c, d);
+        seams.put_bends(c);
         if (c.features & FAR_AWAY) shift(c, d);
         if (complete(c, drift)) return c;
         // the coordinates' rounding has swallowed a bond

@@ -43,6 +43,12 @@ struct hostile_chain {
     std::string words() const;  ///< its features
 };
 
+/** Sets a mass whose reciprocal is the stored inverse mass to the last bit. */
+void set_mass(hostile_chain &c, std::size_t i, double mass);
+
+/** From this number on some chains have what is hard at the places where the kernels cut them (seam_features.hpp). */
+constexpr std::uint64_t first_with_seams = UINT64_C(1) << 32;
+
 /** The chain with this number; the same on every machine. */
 hostile_chain make_hostile_chain(std::uint64_t seed, std::int64_t longest);
 

@@ -54,8 +54,8 @@ struct hostile_molecule {
     std::string words() const;
 };
 
-/** From this number on all graphs are strips of triangles. */
-constexpr std::uint64_t first_strip = 10000000;
+/** From this number on graphs are strips of triangles: all, and half of them in the numbers of scripts/soak. */
+constexpr std::uint64_t first_strip = 10000000, first_of_soaks = UINT64_C(1) << 32;
 
 /** The molecule with this number; the same on every machine. Every fourth number is of each class. */
 hostile_molecule make_hostile_molecule(std::uint64_t seed);

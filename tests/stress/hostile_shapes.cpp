@@ -125,10 +125,11 @@ void draw_strip(hostile_molecule &m, molecule_dice &d)
     }
 }
 
-/** One of the shapes of molecule.h that have cycles, or a ring with trees on it; from first_strip on a strip. */
+/** One of the shapes of molecule.h that have cycles, or a ring with trees on it; from first_strip on a strip, in soaks
+ * half of the time. */
 void draw_graph(hostile_molecule &m, molecule_dice &d)
 {
-    if (m.seed >= first_strip) return draw_strip(m, d);
+    if (m.seed >= first_strip && (m.seed < first_of_soaks || m.seed / 64 % 2 == 0)) return draw_strip(m, d);
     static const molecule_kind kinds[] = {MOLECULE_BENZENE, MOLECULE_PUCKERED_BENZENE, MOLECULE_TRIANGLES,
                                           MOLECULE_ZIGZAG,  MOLECULE_TRIANGLES_179,    MOLECULE_FUSED_RINGS,
                                           MOLECULE_CUBE,    MOLECULE_LARIAT,           MOLECULE_PEPTIDE};

@@ -4,8 +4,6 @@
 #include <cfloat>
 #include <cmath>
 
-#include "molecule_solution.h"
-
 namespace stress
 {
 
@@ -17,8 +15,6 @@ constexpr long double graph_limit = 1e-20L;      // graphs with a pivot below it
 constexpr long double inverse_limit = 1e-16L;    // nor their inverse below this
 constexpr long double inverse_of_tree = 1e-50L;  // nor that of trees
 constexpr long double straight_sine2 = 1e-21L;   // triangles below it are straight but for rounding
-constexpr long double singular = 1e-60L;         // a pivot below it is taken for zero
-constexpr long double singular_tree = 1e-80L;    // the same in trees
 
 long double k_eps(const hostile_molecule &m)
 {
@@ -36,45 +32,36 @@ long double slack(const hostile_molecule &m, const molecule_solution &s, long do
     return bound * least * *std::max_element(s.lambda_scale, s.lambda_scale + s.n_bonds);
 }
 
-void check_forces(const hostile_molecule &m, const molecule_results &alone, molecule_verdict &out)
+void check_multipliers(const hostile_molecule &m, const molecule_solution &s, const numbers &lambda,
+                       molecule_quantity q, molecule_verdict &out)
 {
-    const molecule_problem p = m.problem();
-    const long double k = k_eps(m);
-    molecule_solution s;
-    if (alone.forces == HOL_OK && molecule_forces(&p, &s) == 0) {
-        const long double tail = slack(m, s, k);
-        for (std::size_t b = 0; b < m.length.size(); ++b)
-            out.compare(M_LAMBDA, alone.lambda[b], s.lambda[b],
-                        k * s.lambda_scale[b] + (s.lambda_scale[b] > 0 ? tail : 0));
-        const long double pull = 2 * tail * *std::max_element(m.length.begin(), m.length.end());
-        for (std::size_t i = 0; i < m.r.size(); ++i)
-            if (s.g_scale[i / 3] > 0 || !is_blank(alone.g[i]))  // atoms without a constraint are not written
-                out.compare(M_FORCE, alone.g[i], s.g[i], k * s.g_scale[i / 3] + (s.g_scale[i / 3] > 0 ? pull : 0));
-        for (std::size_t i = 0; i < 9; ++i) out.compare(M_VIRIAL, alone.virial[i], s.virial[i], k * s.virial_scale);
-        molecule_solution_free(&s);
-    }
-    const numbers rhs = right_hand_side(m);
-    if (alone.solve == HOL_OK && molecule_solve(&p, rhs.data(), &s) == 0) {
-        const long double tail = slack(m, s, k);
-        for (std::size_t b = 0; b < m.length.size(); ++b)
-            out.compare(M_SOLVE, alone.solved[b], s.lambda[b],
-                        k * s.lambda_scale[b] + (s.lambda_scale[b] > 0 ? tail : 0));
-        molecule_solution_free(&s);
-    }
+    const long double k = k_eps(m), tail = slack(m, s, k);
+    for (std::size_t b = 0; b < m.length.size(); ++b)
+        out.compare(q, lambda[b], s.lambda[b], k * s.lambda_scale[b] + (s.lambda_scale[b] > 0 ? tail : 0));
 }
 
-void check_velocities(const hostile_molecule &m, const molecule_results &alone, molecule_verdict &out)
+void check_forces(const hostile_molecule &m, const molecule_reference &exact, const molecule_results &alone,
+                  molecule_verdict &out)
 {
-    const molecule_problem p = m.problem();
-    const long double k = k_eps(m);
-    molecule_solution s;
-    if (alone.velocities != HOL_OK || molecule_velocities(&p, &s)) return;
-    const long double tail = slack(m, s, k);
-    for (std::size_t b = 0; b < m.length.size(); ++b)
-        out.compare(M_MU, alone.mu[b], s.lambda[b], k * s.lambda_scale[b] + (s.lambda_scale[b] > 0 ? tail : 0));
+    if (alone.solve == HOL_OK && exact.solve.there) check_multipliers(m, exact.solve.s, alone.solved, M_SOLVE, out);
+    if (alone.forces != HOL_OK || !exact.forces.there) return;
+    const molecule_solution &s = exact.forces.s;
+    check_multipliers(m, s, alone.lambda, M_LAMBDA, out);
+    const long double k = k_eps(m), pull = 2 * slack(m, s, k) * *std::max_element(m.length.begin(), m.length.end());
     for (std::size_t i = 0; i < m.r.size(); ++i)
-        out.compare(M_VELOCITY, alone.v[i], s.moved[i], k * s.moved_scale[i / 3]);
-    molecule_solution_free(&s);
+        if (s.g_scale[i / 3] > 0 || !is_blank(alone.g[i]))  // atoms without a constraint are not written
+            out.compare(M_FORCE, alone.g[i], s.g[i], k * s.g_scale[i / 3] + (s.g_scale[i / 3] > 0 ? pull : 0));
+    for (std::size_t i = 0; i < 9; ++i) out.compare(M_VIRIAL, alone.virial[i], s.virial[i], k * s.virial_scale);
+}
+
+void check_velocities(const hostile_molecule &m, const molecule_reference &exact, const molecule_results &alone,
+                      molecule_verdict &out)
+{
+    if (alone.velocities != HOL_OK || !exact.velocities.there) return;
+    const molecule_solution &s = exact.velocities.s;
+    check_multipliers(m, s, alone.mu, M_MU, out);
+    for (std::size_t i = 0; i < m.r.size(); ++i)
+        out.compare(M_VELOCITY, alone.v[i], s.moved[i], k_eps(m) * s.moved_scale[i / 3]);
 }
 
 /** The sum of values per molecule, which come per bond. */
@@ -163,23 +150,21 @@ bool is_linear(const placement &a, std::size_t b)
     return a.molecule_of_bond[b] >= 0 && shape == HOL_SHAPE_CHAIN;
 }
 
-void check_positions(const placement &a, const hostile_molecule &m, const molecule_results &alone,
-                     molecule_verdict &out)
+void check_positions(const placement &a, const hostile_molecule &m, const molecule_level &exact,
+                     const molecule_results &alone, molecule_verdict &out)
 {
     if (m.dt == 0) return;
-    const molecule_problem p = m.problem();
-    molecule_solution s;
-    const bool converged = molecule_positions(&p, m.drifted().data(), nullptr, m.length.data(), m.dt, &s) == 0;
-    out.note(M_REFUSED_STEP, alone.positions != HOL_OK && converged);
-    if (alone.positions == HOL_OK) check_lengths(m, alone.r, out);
-    if (!converged) return;
+    out.note(M_REFUSED_STEP, alone.positions != HOL_OK && exact.there);
+    if (alone.positions != HOL_OK) return;
+    check_lengths(m, alone.r, out);
+    if (!exact.there) return;
+    const molecule_solution &s = exact.s;
     const long double k = k_eps(m), tail = slack(m, s, k);
-    for (std::size_t b = 0; b < m.length.size() && alone.positions == HOL_OK; ++b)
+    for (std::size_t b = 0; b < m.length.size(); ++b)
         out.compare(is_linear(a, b) ? M_CHAIN_LAMBDA : M_POSITION_LAMBDA, alone.position_lambda[b], s.lambda[b],
                     k * s.lambda_scale[b] + (s.lambda_scale[b] > 0 ? tail : 0));
-    for (std::size_t i = 0; i < m.r.size() && alone.positions == HOL_OK; ++i)
+    for (std::size_t i = 0; i < m.r.size(); ++i)
         out.compare(M_POSITION, alone.r[i], s.moved[i], k * s.moved_scale[i / 3]);
-    molecule_solution_free(&s);
 }
 
 bool all_finite(const numbers &x)
@@ -245,21 +230,18 @@ bool is_straight_triangle(const hostile_molecule &m)
 
 }  // namespace
 
-molecule_verdict check_alone(const hostile_molecule &m, molecule_facts &facts)
+molecule_verdict check_alone(const hostile_molecule &m, const molecule_reference &exact, molecule_facts &facts)
 {
     molecule_verdict out;
-    const molecule_problem p = m.problem();
-    molecule_metric exact;
-    facts.regular =
-        molecule_metric_make(&p, &exact) == 0 && exact.least_pivot > (m.shape == TREES ? singular_tree : singular);
-    facts.least_pivot = exact.least_pivot;
-    facts.condition = exact.condition;
+    const long double least_pivot = exact.metric.least_pivot;
+    facts.regular = exact.regular;
+    facts.least_pivot = least_pivot;
+    facts.condition = exact.metric.condition;
     const placement a = place({&m}, 0);
     const bool graph = a.status == HOL_OK && has_graph(a), doubtful = is_straight_triangle(m);
-    facts.promised = facts.regular && !doubtful && (!graph || exact.least_pivot > graph_limit);
+    facts.promised = facts.regular && !doubtful && (!graph || least_pivot > graph_limit);
     if (a.status != HOL_OK) {
         out.note(M_REFUSED, a.status != HOL_ERR_DEGENERATE || facts.regular);
-        molecule_metric_free(&exact);
         return out;
     }
     const molecule_results alone = compute(a, m.dt > 0 ? m.dt : 1);
@@ -268,13 +250,11 @@ molecule_verdict check_alone(const hostile_molecule &m, molecule_facts &facts)
         if (facts.promised) out.note(M_REFUSED, status != HOL_OK);
         if (!facts.regular) out.note(M_ACCEPTED, status != HOL_ERR_DEGENERATE);
     }
-    if (facts.promised) {
-        check_forces(m, alone, out);
-        check_velocities(m, alone, out);
-        check_metric(a, m, exact, alone, exact.least_pivot > (graph ? inverse_limit : inverse_of_tree), out);
-        check_positions(a, m, alone, out);
-    }
-    molecule_metric_free(&exact);
+    if (!facts.promised) return out;
+    check_forces(m, exact, alone, out);
+    check_velocities(m, exact, alone, out);
+    check_metric(a, m, exact.metric, alone, least_pivot > (graph ? inverse_limit : inverse_of_tree), out);
+    check_positions(a, m, exact.positions, alone, out);
     return out;
 }
 

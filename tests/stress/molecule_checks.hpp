@@ -10,6 +10,7 @@
 
 #include "hostile_molecule.hpp"
 #include "molecule_quantities.hpp"
+#include "molecule_reference.hpp"
 #include "molecule_results.hpp"
 
 namespace stress
@@ -25,7 +26,7 @@ struct molecule_facts {
 };
 
 /** Everything about one molecule on its own. */
-molecule_verdict check_alone(const hostile_molecule &m, molecule_facts &facts);
+molecule_verdict check_alone(const hostile_molecule &m, const molecule_reference &exact, molecule_facts &facts);
 
 /**
  * To the bit: alone, among the others with bonds in any order and direction, in separate arrays backwards, a second

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <utility>
 
+#include "molecule_reference.hpp"
 #include "random.h"
 
 namespace stress
@@ -102,14 +103,6 @@ bool is_blank(double x)
 bool identical(const numbers &a, const numbers &b)
 {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
-}
-
-numbers right_hand_side(const hostile_molecule &m)
-{
-    random_stream stream = random_seed(m.seed + 11);
-    numbers rhs;
-    for (double a : m.length) rhs.push_back(a * a * random_normal(&stream));
-    return rhs;
 }
 
 placement place(const std::vector<const hostile_molecule *> &parts, std::uint64_t shuffle)

@@ -59,9 +59,6 @@ molecule_results compute_in_views(const placement &a, double dt);
 /** The part of one molecule, in its own order. */
 molecule_results part_of(const molecule_results &all, const placement &a, std::size_t molecule);
 
-/** A right-hand side for hol_solve. */
-numbers right_hand_side(const hostile_molecule &m);
-
 /** A number that no calculation gives, told by its bits. */
 double blank();
 bool is_blank(double x);

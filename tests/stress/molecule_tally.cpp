@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "markdown_table.hpp"
+
 namespace stress
 {
 
@@ -62,26 +64,63 @@ bool molecule_tally::within(long double excess, double share) const
     return true;
 }
 
-void molecule_tally::print() const
+namespace
 {
-    for (std::size_t c = 0; c < classes.size(); ++c) {
-        const of_class &here = classes[c];
-        std::printf(
-            "\n%s: %lld, %lld bonds, condition numbers up to %.1Le, %lld singular, %lld promised nothing, "
-            "%lld exceed a bound\n",
-            class_name(static_cast<int>(c)), static_cast<long long>(here.molecules), static_cast<long long>(here.bonds),
-            here.largest_condition, static_cast<long long>(here.singular), static_cast<long long>(here.not_promised),
-            static_cast<long long>(here.exceeded));
-        std::printf("%-14s %10s %16s %9s %10s\n", "quantity", "checked", "worst err/bound", "exceeded", "molecule");
-        for (std::size_t q = 0; q < here.quantity.size(); ++q) {
-            const of_quantity &of = here.quantity[q];
-            if (of.checked == 0) continue;
-            std::printf("%-14s %10lld %16.3Lg %9lld %10llu%s\n", molecule_quantity_name(static_cast<int>(q)),
-                        static_cast<long long>(of.checked), of.worst, static_cast<long long>(of.exceeded),
-                        static_cast<unsigned long long>(of.seed),
+
+void write_markdown(const std::vector<std::string> &sets, const std::vector<molecule_tally> &of_set)
+{
+    const markdown_table table(sets);
+    for (std::size_t c = 0; c < N_CLASSES && table.out; ++c) {
+        table.row(class_name(static_cast<int>(c)),
+                  [&](std::size_t s) { return std::to_string(of_set[s].classes[c].molecules); });
+        table.row("above a bound", [&](std::size_t s) { return std::to_string(of_set[s].classes[c].exceeded); });
+        table.row("largest error", [&](std::size_t s) {
+            std::size_t most = 0;
+            const auto &quantity = of_set[s].classes[c].quantity;
+            for (std::size_t q = 1; q < M_QUANTITIES; ++q)
+                if (!is_information(static_cast<int>(q)) && quantity[q].worst > quantity[most].worst) most = q;
+            return table.number(quantity[most].worst) + ", " + molecule_quantity_name(static_cast<int>(most));
+        });
+    }
+}
+
+}  // namespace
+
+void print(const std::vector<std::string> &sets, const std::vector<molecule_tally> &of_set)
+{
+    for (std::size_t c = 0; c < N_CLASSES; ++c) {
+        std::printf("\n%s\n%-15s %10s", class_name(static_cast<int>(c)), "worst err/bound", "checked");
+        for (const std::string &set : sets) std::printf(" %9s", set.c_str());
+        std::printf(" %9s %8s\n", "exceeded", "molecule");
+        for (std::size_t q = 0; q < M_QUANTITIES; ++q) {
+            molecule_tally::of_quantity all;
+            for (const molecule_tally &t : of_set) {
+                const molecule_tally::of_quantity &here = t.classes[c].quantity[q];
+                all.checked += here.checked;
+                all.exceeded += here.exceeded;
+                if (here.worst > all.worst) all.worst = here.worst, all.seed = here.seed;
+            }
+            if (all.checked == 0) continue;
+            std::printf("%-15s %10lld", molecule_quantity_name(static_cast<int>(q)),
+                        static_cast<long long>(all.checked));
+            for (const molecule_tally &t : of_set) std::printf(" %9.3Lg", t.classes[c].quantity[q].worst);
+            std::printf(" %9lld %8llu%s\n", static_cast<long long>(all.exceeded),
+                        static_cast<unsigned long long>(all.seed),
                         is_information(static_cast<int>(q)) ? "  (for information)" : "");
         }
     }
+    write_markdown(sets, of_set);
+    std::printf("\n");
+    for (std::size_t s = 0; s < sets.size(); ++s)
+        for (std::size_t c = 0; c < N_CLASSES; ++c) {
+            const molecule_tally::of_class &here = of_set[s].classes[c];
+            std::printf(
+                "stress: %lld %s with %s, %lld bonds, condition numbers up to %.1Le, %lld singular, %lld "
+                "promised nothing, %lld exceed a bound\n",
+                static_cast<long long>(here.molecules), class_name(static_cast<int>(c)), sets[s].c_str(),
+                static_cast<long long>(here.bonds), here.largest_condition, static_cast<long long>(here.singular),
+                static_cast<long long>(here.not_promised), static_cast<long long>(here.exceeded));
+        }
 }
 
 }  // namespace stress

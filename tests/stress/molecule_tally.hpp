@@ -1,12 +1,14 @@
 /**
  * @file molecule_tally.hpp
- * Counts over all molecules of a run by class, and the tables at its end.
+ * Counts over all molecules of a run by class with one set of kernels, and the tables at its end.
  */
 #ifndef STRESS_MOLECULE_TALLY_HPP
 #define STRESS_MOLECULE_TALLY_HPP
 
 #include <array>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "molecule_checks.hpp"
 
@@ -29,11 +31,12 @@ struct molecule_tally {
     /** Whether the molecule exceeds a bound that is promised. */
     bool add(const hostile_molecule &m, const molecule_facts &facts, const molecule_verdict &v);
     void add(const molecule_tally &other);
-    void print() const;
-
     /** Whether no error is above `excess` times its bound and at most `share` of each class exceed one at all. */
     bool within(long double excess, double share) const;
 };
+
+/** A table for each class, with a column for each set; and the largest of each class as Markdown, as for chains. */
+void print(const std::vector<std::string> &sets, const std::vector<molecule_tally> &of_set);
 
 }  // namespace stress
 

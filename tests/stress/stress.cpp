@@ -1,19 +1,21 @@
 /**
- * Hostile chains against the reference solution for a given time:
- *     stress SECONDS [DIRECTORY [FIRST [THREADS [LONGEST [PERCENT]]]]]
+ * Hostile chains against the reference solution for a given time, with every set of kernels that runs here or with that
+ * which HOLONOMIC_ISA names:
+ *     stress SECONDS [DIRECTORY [FIRST [PROCESSES [LONGEST [PERCENT]]]]]
  *         chains from number FIRST on, of at most LONGEST bonds; those that exceed a bound go to DIRECTORY. PERCENT of
  *         them may exceed one, by a factor of three at most: for a test that guards what docs/stability.md says
- *     stress --case FILE
- *         one file in the format of tests/oracle
- * Exit status 0: everything within its bounds; 1: something is not; 2: wrong usage.
+ *     stress --group FIRST [LONGEST]
+ *         the group that begins with number FIRST
+ *     stress --seams [FIRST COUNT]
+ *         chains with what is hard exactly at the places where the kernels cut them, and beside these
+ * (seam_features.hpp) stress --case FILE one file in the format of tests/oracle Exit status 0: everything within its
+ * bounds; 1: something is not; 2: wrong usage.
  */
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -21,6 +23,8 @@
 #include "case_file.hpp"
 #include "checks.hpp"
 #include "invariances.hpp"
+#include "seam_features.hpp"
+#include "soak.hpp"
 #include "tally.hpp"
 
 using namespace stress;
@@ -28,31 +32,51 @@ using namespace stress;
 namespace
 {
 
-std::int64_t longest = 2000;
-constexpr std::uint64_t group_size = 8;
-constexpr int most_files = 1000;  // the disk stays free
 constexpr long double largest_excess = 3;
 
-using clock_type = std::chrono::steady_clock;
-
-struct run {
-    double seconds;
-    std::string directory;
-    clock_type::time_point start = clock_type::now();
-    std::atomic<std::uint64_t> next;
-    std::atomic<int> files{0};
-    std::mutex lock;
-    tally total;  // under the lock
-
-    double elapsed() const
+/** A chain on its own, with what it is compared with. */
+struct checked_chain {
+    hostile_chain c;
+    chain_reference exact;
+    std::string name;
+    explicit checked_chain(const hostile_chain &chain, const char *kind)
+        : c(chain), exact(chain), name(kind + std::to_string(chain.seed))
     {
-        return std::chrono::duration<double>(clock_type::now() - start).count();
+    }
+};
+
+/** Chains that are computed together, each of them alone, and the first reversed and turned. */
+struct group_of_chains {
+    chain_group group;
+    std::vector<checked_chain> chains;
+
+    group_of_chains(std::uint64_t first, std::int64_t longest)
+    {
+        random_stream stream = random_seed(first);
+        const std::int64_t size = random_integer(&stream, 1, static_cast<std::int64_t>(group_size));
+        group = {first, static_cast<std::uint64_t>(size), longest};
+        for (std::uint64_t k = 0; k < group.size; ++k)
+            chains.emplace_back(make_hostile_chain(first + k, longest), "chain_");
+        const hostile_chain c = chains[0].c;
+        chains.emplace_back(reversed(c), "reversed_");
+        chains.emplace_back(turned(c), "turned_");
+    }
+    /** One chain by itself, some of them in other layouts, too. */
+    explicit group_of_chains(const hostile_chain &c) : group{c.seed, c.seed % 4 == 0 ? 1u : 0u, 0}
+    {
+        chains.emplace_back(c, "seam_");
+    }
+    std::vector<hostile_chain> together() const
+    {
+        std::vector<hostile_chain> out;
+        for (std::uint64_t k = 0; k < group.size; ++k) out.push_back(chains[k].c);
+        return out;
     }
 };
 
 std::string exceeded_words(const verdict &v)
 {
-    std::string words = "exceeds:";
+    std::string words;
     char text[64];
     for (int q = 0; q < N_QUANTITIES; ++q) {
         const long double x = v.ratio[static_cast<std::size_t>(q)];
@@ -63,69 +87,34 @@ std::string exceeded_words(const verdict &v)
     return words;
 }
 
-void keep(run &all, const hostile_chain &c, const std::string &name, const chain_group &group, const verdict &v)
+void report(const checked_chain &x, const chain_group &group, const verdict &v, const std::string &directory)
 {
-    if (!v.exceeded() || all.directory.empty()) return;
-    if (all.files.fetch_add(1) >= most_files || !write_case(all.directory, name, exceeded_words(v), group, c))
-        std::fprintf(stderr, "stress: no file for %s: there are %d already, it is singular, or %s can't be written\n",
-                     name.c_str(), most_files, all.directory.c_str());
+    const std::string words = exceeded_words(v);
+    const bool seam = group.longest == 0;
+    std::printf(
+        "%s%s%s, %lld bonds, condition number %.1Le:%s repeat with HOLONOMIC_ISA=%s tests/stress/stress %s %llu "
+        "%lld\n",
+        x.name.c_str(), seam ? ", " : "", seam ? words_of_seam_chain(x.c.seed).c_str() : "",
+        static_cast<long long>(x.c.n_bonds), x.exact.metric.condition, words.c_str(), hol_instruction_set(),
+        seam ? "--seams" : "--group", static_cast<unsigned long long>(group.first),
+        seam ? 1 : static_cast<long long>(group.longest));
+    if (!directory.empty() && !write_case(directory, x.name, "exceeds:" + words, group, x.c))
+        std::printf("no file for %s: it is there, it is singular, or %s can't be written\n", x.name.c_str(),
+                    directory.c_str());
 }
 
-void check_one(run &all, const hostile_chain &c, verdict v, const std::string &name, const chain_group &group,
-               tally &sum)
+void check(const group_of_chains &g, const std::string &directory, tally &sum)
 {
-    bool regular = true;
-    long double condition = 0;
-    const verdict alone = check_alone(c, regular, condition);
-    for (std::size_t q = 0; q < v.ratio.size(); ++q) v.ratio[q] = std::max(v.ratio[q], alone.ratio[q]);
-    sum.add(c, v);
-    sum.singular += !regular;
-    if (regular) sum.largest_condition = std::max(sum.largest_condition, condition);
-    keep(all, c, name, group, v);
-}
-
-std::vector<hostile_chain> chains_of(const chain_group &group)
-{
-    std::vector<hostile_chain> chains;
-    for (std::uint64_t k = 0; k < group.size; ++k) chains.push_back(make_hostile_chain(group.first + k, group.longest));
-    return chains;
-}
-
-void check_group(run &all, std::uint64_t first)
-{
-    tally sum;
-    random_stream stream = random_seed(first);
-    const std::int64_t size = random_integer(&stream, 1, static_cast<std::int64_t>(group_size));
-    const chain_group group{first, static_cast<std::uint64_t>(size), longest}, none{0, 0, 0};
-    const std::vector<hostile_chain> chains = chains_of(group);
-    std::vector<verdict> verdicts(chains.size());
-    check_invariances(chains, first + 1, verdicts);
-    for (std::size_t k = 0; k < chains.size(); ++k)
-        check_one(all, chains[k], verdicts[k], "chain_" + std::to_string(chains[k].seed), group, sum);
-    check_one(all, reversed(chains[0]), verdict(), "reversed_" + std::to_string(chains[0].seed), none, sum);
-    check_one(all, turned(chains[0]), verdict(), "turned_" + std::to_string(chains[0].seed), none, sum);
-    const std::lock_guard<std::mutex> guard(all.lock);
-    all.total.add(sum);
-}
-
-void work(run &all)
-{
-    do {
-        check_group(all, all.next.fetch_add(group_size));
-    } while (all.elapsed() < all.seconds);
-}
-
-void show_progress(run &all, const std::atomic<bool> &done)
-{
-    for (int tick = 0; !done; ++tick) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
-        if (tick % 100 != 99) continue;
-        const std::lock_guard<std::mutex> guard(all.lock);
-        std::fprintf(
-            stderr,
-            "%6.0f of %.0f s: %lld chains, %lld exceed a bound, the largest error of lambda is %.2Lg of its bound\n",
-            all.elapsed(), all.seconds, static_cast<long long>(all.total.chains),
-            static_cast<long long>(all.total.exceeded), all.total.quantity[LAMBDA].worst);
+    std::vector<verdict> verdicts(g.chains.size());
+    if (g.group.size > 0) check_invariances(g.together(), g.group.first + 1, verdicts);
+    for (std::size_t k = 0; k < g.chains.size(); ++k) {
+        const checked_chain &x = g.chains[k];
+        verdict v = check_alone(x.c, x.exact);
+        for (std::size_t q = 0; q < v.ratio.size(); ++q) v.ratio[q] = std::max(v.ratio[q], verdicts[k].ratio[q]);
+        sum.add(x.c, v);
+        sum.singular += !x.exact.metric.regular;
+        if (x.exact.metric.regular) sum.largest_condition = std::max(sum.largest_condition, x.exact.metric.condition);
+        if (v.exceeded()) report(x, g.group, v, directory);
     }
 }
 
@@ -133,10 +122,10 @@ int check_file(const char *path)
 {
     chain_group group;
     const hostile_chain c = read_case(path, group);
-    bool regular;
-    long double condition;
-    verdict v = check_alone(c, regular, condition);
-    std::vector<hostile_chain> chains = chains_of(group);  // what it was computed together with
+    const chain_reference exact(c);
+    verdict v = check_alone(c, exact);
+    std::vector<hostile_chain> chains;  // what it was computed together with
+    for (std::uint64_t k = 0; k < group.size; ++k) chains.push_back(make_hostile_chain(group.first + k, group.longest));
     const auto here =
         std::find_if(chains.begin(), chains.end(), [&](const hostile_chain &x) { return x.seed == c.seed; });
     const std::size_t place = here == chains.end() ? 0 : static_cast<std::size_t>(here - chains.begin());
@@ -146,42 +135,84 @@ int check_file(const char *path)
     check_invariances(chains, group.first + 1, same);
     v.note(SAME_BITS, same[place].ratio[SAME_BITS]);
     v.note(OUTPUTS_KEPT, same[place].ratio[OUTPUTS_KEPT]);
-    std::printf("%s: %lld bonds, condition number %.2Le\n", path, static_cast<long long>(c.n_bonds), condition);
+    std::printf("%s: %lld bonds, condition number %.2Le\n", path, static_cast<long long>(c.n_bonds),
+                exact.metric.condition);
     for (int q = 0; q < N_QUANTITIES; ++q)
         if (v.ratio[static_cast<std::size_t>(q)] >= 0)
             std::printf("%-14s %12.3Lg of its bound\n", quantity_name(q), v.ratio[static_cast<std::size_t>(q)]);
     return v.exceeded();
 }
 
+/** longest 0: chains by features at seams. */
+int run(const soak_options &options, std::int64_t longest, const std::string &directory, double percent)
+{
+    const std::vector<std::string> sets = sets_of_kernels();
+    shared_tallies<tally> tallies(options.workers, sets.size());
+    std::vector<group_of_chains> batch;
+    soak_work work;
+    work.prepare = [&](std::uint64_t first) {
+        if (longest > 0) batch.emplace_back(first, longest);
+        for (std::uint64_t k = 0; longest == 0 && k < group_size && first + k < options.end; ++k)
+            batch.emplace_back(make_seam_chain(first + k));
+    };
+    work.check = [&](unsigned worker, std::size_t set) {
+        for (const group_of_chains &g : batch) check(g, directory, tallies.of(worker, set));
+    };
+    work.clear = [&] { batch.clear(); };
+    const auto sum = [&] {
+        tally all;
+        for (const tally &t : tallies.of_all_sets()) all.add(t);
+        return all;
+    };
+    work.progress = [&] {
+        const tally all = sum();
+        std::fprintf(stderr, "%lld chains, %lld above a bound, the largest error of lambda is %.2Lg of its bound\n",
+                     static_cast<long long>(all.chains), static_cast<long long>(all.exceeded),
+                     all.quantity[LAMBDA].worst);
+    };
+    work.repeat = longest > 0 ? "tests/stress/stress --group" : "tests/stress/stress --seams";
+    const auto start = std::chrono::steady_clock::now();
+    const int lost = soak(options, sets, work);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    print(sets, tallies.of_all_sets());
+    const tally all = sum();
+    std::printf("stress: %.0f chains an hour in %u processes, a chain counted for each set of kernels\n",
+                3600 * static_cast<double>(all.chains) / seconds, options.workers);
+    if (lost > 0) std::printf("stress: %d processes ended before their time\n", lost);
+    if (lost > 0 || percent < 0) return lost > 0 || all.exceeded > 0;
+    if (all.worst() > largest_excess) return 1;
+    return static_cast<double>(all.exceeded) > percent / 100 * static_cast<double>(all.chains);
+}
+
 }  // namespace
 
 int main(int argc, char **argv)
 {
+    const auto integer = [&](int i, long long otherwise) { return argc > i ? std::atoll(argv[i]) : otherwise; };
     if (argc == 3 && std::strcmp(argv[1], "--case") == 0) return check_file(argv[2]);
-    const double seconds = argc >= 2 ? std::atof(argv[1]) : 0;
-    if (!(seconds > 0) || argc > 7) {
+    if (argc >= 3 && std::strcmp(argv[1], "--group") == 0)
+        return run({1e-9, static_cast<std::uint64_t>(integer(2, 1)), 1}, std::max(1LL, integer(3, 2000)), "", -1);
+    const auto processes = [&](int i) {
+        return static_cast<unsigned>(
+            std::max(1LL, integer(i, static_cast<long long>(std::thread::hardware_concurrency()))));
+    };
+    soak_options options;
+    if (argc >= 2 && std::strcmp(argv[1], "--seams") == 0) {
+        options.seconds = 1e9;
+        options.first = static_cast<std::uint64_t>(integer(2, 0));
+        options.end = argc > 3 ? options.first + static_cast<std::uint64_t>(integer(3, 0)) : n_seam_chains();
+        options.workers = processes(4);
+        return run(options, 0, "", -1);
+    }
+    options.seconds = argc >= 2 ? std::atof(argv[1]) : 0;
+    if (!(options.seconds > 0) || argc > 7) {
         std::fprintf(stderr,
-                     "usage: stress SECONDS [DIRECTORY [FIRST [THREADS [LONGEST [PERCENT]]]]] | stress --case FILE\n");
+                     "usage: stress SECONDS [DIRECTORY [FIRST [PROCESSES [LONGEST [PERCENT]]]]] | stress --group "
+                     "FIRST [LONGEST] | stress --case FILE\n");
         return 2;
     }
-    run all;
-    all.seconds = seconds;
-    if (argc >= 3) all.directory = argv[2];
-    all.next = argc >= 4 ? std::strtoull(argv[3], nullptr, 10) : 1;
-    const unsigned n_threads = argc >= 5 ? static_cast<unsigned>(std::max(1, std::atoi(argv[4])))
-                                         : std::max(1u, std::thread::hardware_concurrency());
-    if (argc >= 6) longest = std::max(1, std::atoi(argv[5]));
-    std::vector<std::thread> threads;
-    std::atomic<bool> done{false};
-    std::thread progress(show_progress, std::ref(all), std::cref(done));
-    for (unsigned t = 0; t < n_threads; ++t) threads.emplace_back(work, std::ref(all));
-    for (std::thread &t : threads) t.join();
-    done = true;
-    progress.join();
-    all.total.print();
-    std::printf("stress: %.0f chains an hour on %u threads, instruction set %s\n",
-                3600 * static_cast<double>(all.total.chains) / all.elapsed(), n_threads, hol_instruction_set());
-    if (argc < 7) return all.total.exceeded > 0;
-    if (all.total.worst() > largest_excess) return 1;
-    return static_cast<double>(all.total.exceeded) > std::atof(argv[6]) / 100 * static_cast<double>(all.total.chains);
+    options.first = static_cast<std::uint64_t>(integer(3, 1));
+    options.workers =
+        static_cast<unsigned>(std::max(1LL, integer(4, static_cast<long long>(std::thread::hardware_concurrency()))));
+    return run(options, std::max(1LL, integer(5, 2000)), argc >= 3 ? argv[2] : "", argc >= 7 ? std::atof(argv[6]) : -1);
 }

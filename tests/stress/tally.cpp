@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "markdown_table.hpp"
+
 namespace stress
 {
 
@@ -57,25 +59,60 @@ long double tally::worst() const
     return largest;
 }
 
-void tally::print() const
+namespace
 {
-    std::printf("\n%-14s %10s %16s %9s %8s\n", "quantity", "checked", "worst err/bound", "exceeded", "chain");
-    for (int q = 0; q < N_QUANTITIES; ++q) {
-        const of_quantity &here = quantity[static_cast<std::size_t>(q)];
-        if (here.checked == 0) continue;
-        std::printf("%-14s %10lld %16.3Lg %9lld %8llu%s\n", quantity_name(q), static_cast<long long>(here.checked),
-                    here.worst, static_cast<long long>(here.exceeded), static_cast<unsigned long long>(here.seed),
-                    for_information(q) ? "  (for information)" : "");
+
+void write_markdown(const std::vector<std::string> &sets, const std::vector<tally> &of_set)
+{
+    const markdown_table table(sets);
+    if (!table.out) return;
+    table.row("chains", [&](std::size_t s) { return std::to_string(of_set[s].chains); });
+    table.row("above a bound", [&](std::size_t s) { return std::to_string(of_set[s].exceeded); });
+    for (std::size_t q = 0; q < N_QUANTITIES; ++q)
+        if (!for_information(static_cast<int>(q)) && of_set[0].quantity[q].checked > 0)
+            table.row(quantity_name(static_cast<int>(q)),
+                      [&](std::size_t s) { return table.number(of_set[s].quantity[q].worst); });
+}
+
+}  // namespace
+
+void print(const std::vector<std::string> &sets, const std::vector<tally> &of_set)
+{
+    std::printf("\n%-14s %10s", "worst err/bound", "checked");
+    for (const std::string &set : sets) std::printf(" %9s", set.c_str());
+    std::printf(" %9s %8s\n", "exceeded", "chain");
+    for (std::size_t q = 0; q < N_QUANTITIES; ++q) {
+        tally::of_quantity all;
+        for (const tally &t : of_set) {
+            const tally::of_quantity &here = t.quantity[q];
+            all.checked += here.checked;
+            all.exceeded += here.exceeded;
+            if (here.worst > all.worst) all.worst = here.worst, all.seed = here.seed;
+        }
+        if (all.checked == 0) continue;
+        std::printf("%-15s %10lld", quantity_name(static_cast<int>(q)), static_cast<long long>(all.checked));
+        for (const tally &t : of_set) std::printf(" %9.3Lg", t.quantity[q].worst);
+        std::printf(" %9lld %8llu%s\n", static_cast<long long>(all.exceeded), static_cast<unsigned long long>(all.seed),
+                    for_information(static_cast<int>(q)) ? "  (for information)" : "");
     }
+    write_markdown(sets, of_set);
+    tally all;
+    for (const tally &t : of_set) all.add(t);
     std::printf("\n%-20s %10s %10s\n", "chains with", "checked", "exceeded");
     for (int bit = 0; bit < n_features; ++bit)
         std::printf("%-20s %10lld %10lld\n", feature_name(bit),
-                    static_cast<long long>(with_feature[static_cast<std::size_t>(bit)]),
-                    static_cast<long long>(exceeded_with_feature[static_cast<std::size_t>(bit)]));
-    std::printf(
-        "\nstress: %lld chains, %lld bonds, condition numbers up to %.1Le, %lld singular, %lld exceed a bound\n",
-        static_cast<long long>(chains), static_cast<long long>(bonds), largest_condition,
-        static_cast<long long>(singular), static_cast<long long>(exceeded));
+                    static_cast<long long>(all.with_feature[static_cast<std::size_t>(bit)]),
+                    static_cast<long long>(all.exceeded_with_feature[static_cast<std::size_t>(bit)]));
+    std::printf("\n");
+    for (std::size_t s = 0; s < sets.size(); ++s)
+        std::printf(
+            "stress: %lld chains with %s, %lld bonds, condition numbers up to %.1Le, %lld singular, %lld exceed "
+            "a bound\n",
+            static_cast<long long>(of_set[s].chains), sets[s].c_str(), static_cast<long long>(of_set[s].bonds),
+            of_set[s].largest_condition, static_cast<long long>(of_set[s].singular),
+            static_cast<long long>(of_set[s].exceeded));
+    std::printf("stress: %lld chains, %lld exceed a bound\n", static_cast<long long>(all.chains),
+                static_cast<long long>(all.exceeded));
 }
 
 }  // namespace stress

@@ -1,12 +1,14 @@
 /**
  * @file tally.hpp
- * Counts over all chains of a run, and the tables at its end.
+ * Counts over all chains of a run with one set of kernels, and the tables at its end.
  */
 #ifndef STRESS_TALLY_HPP
 #define STRESS_TALLY_HPP
 
 #include <array>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "hostile_chain.hpp"
 #include "quantities.hpp"
@@ -28,8 +30,10 @@ struct tally {
     void add(const hostile_chain &c, const verdict &v);
     void add(const tally &other);
     long double worst() const;  ///< largest error over its bound of everything that is promised
-    void print() const;
 };
+
+/** A column for each set; and the same as Markdown to the end of the file that STRESS_MARKDOWN (environment) names. */
+void print(const std::vector<std::string> &sets, const std::vector<tally> &of_set);
 
 }  // namespace stress
 

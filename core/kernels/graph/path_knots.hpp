@@ -51,7 +51,7 @@ static inline int reach_of(const PathsWork &x, const Knots &knots, Arena arena) 
         const Lane path = lane_of_path(x, leg.path);
         const int64_t end = PathPlan::bonds_of_end;
         const long n = margin(x.call.r_ref, x.call.box_ref, path, leg.backwards ? path.n_bonds - end : end,
-                              leg.backwards ? -1 : 1, arena);
+                              leg.backwards ? -1 : 1, 0, arena);
         if (n < 0) return PathPlan::n_reaches;
         most = n > most ? static_cast<int32_t>(n) : most;
     }

@@ -39,8 +39,8 @@ static inline bool open_pieces(const PathsWork &x, int64_t j, Arena &arena, Path
         const PathPlan::Path &path = path_of(x, piece);
         const Lane own = part_of(lane_of_path(x, piece.path), path.own, path.own_end - path.own);
         const int64_t from = piece.from - path.own, end = piece.end - path.own;
-        const long before = from == 0 ? 0 : margin(x.call.r_ref, x.call.box_ref, own, from, -1, arena);
-        const long behind = end == own.n_bonds ? 0 : margin(x.call.r_ref, x.call.box_ref, own, end, 1, arena);
+        const long before = from == 0 ? 0 : margin(x.call.r_ref, x.call.box_ref, own, from, -1, 0, arena);
+        const long behind = end == own.n_bonds ? 0 : margin(x.call.r_ref, x.call.box_ref, own, end, 1, 0, arena);
         if (before < 0 || behind < 0) return false;
         part[i] = part_of(own, from - before, end - from + before + behind);
         p.skip[i] = before;

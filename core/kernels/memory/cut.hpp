@@ -171,25 +171,28 @@ static inline Cut windows(int64_t n_bonds) { return Cut(n_bonds, window_bonds * 
 //
 // Elimination towards the margin finds P = w q + E at a joint and E >= w' q sin'^2, where ' is the joint before, at an
 // atom of inverse mass w': |l| <= |cos| / (1 + (w' / w) sin'^2), for equal lengths.
-static inline long margin(const AtomArray &array, const Box &box, const Lane &lane, int64_t atom, int step,
+//
+// `beyond`: so many of the bonds there must be right, too, and it counts from behind them.
+static inline long margin(const AtomArray &array, const Box &box, const Lane &lane, int64_t atom, int step, long beyond,
                           Arena arena) {
     const int64_t to_end = step > 0 ? lane.n_bonds - atom : atom;
     const long most = to_end < longest_margin ? static_cast<long>(to_end) : longest_margin;
     Packed r = {};
     open_lane(array, lane, step > 0 ? atom : atom - most, most, most, r, 0, arena.next, true);
-    const double *p = r.lane[0] + (step > 0 ? 0 : 3 * most);
+    const double *p = r.lane[0] + (step > 0 ? 0 : 3 * most) + 3 * step * beyond;
     Vector3<double> before = {};
     double q = 1, w_before = 0, sin2 = 0, left = 1;  // left: the square of what is left
-    for (long k = 0; k < most; ++k, p += 3 * step) {
+    for (long k = beyond; k < most; ++k, p += 3 * step) {
         const double w = relative_w(lane, atom + step * k);
         if (w == 0) return k;
         const Vector3<double> d = bond_vector(box, p, p + 3 * step);
         const double q1 = dot(d, d), g = dot(before, d), qq = q * q1, gg = g * g;
-        if (k > 0) {
+        if (k > beyond) {
             const double spare = 1 + (lane.w ? w_before / w : 1.0) * sin2;
             left *= gg / (qq * (spare * spare));
             if (left < negligible * negligible) return k;
-            sin2 = 1 - gg / qq;
+            sin2 = 1 - gg / qq - 0x1p-48;  // less its rounding, which w' / w might blow up
+            if (sin2 < 0) sin2 = 0;
         }
         w_before = w;
         before = d;
@@ -206,16 +209,17 @@ struct Window {
     bool even;         // the same in all
 };
 
-// Window j of a chain, whose bonds are those of `r`. Returns false if windows don't pay or won't do.
-static inline bool open_window(const AtomArray &r, const Box &box, const Lane &chain, int64_t j, Arena &arena,
-                               Window &x) {
+// Window j of a chain, whose bonds are those of `r`. `beyond`: bonds behind a piece whose pull it needs to write its
+// last atom. Returns false if windows don't pay or won't do.
+static inline bool open_window(const AtomArray &r, const Box &box, const Lane &chain, int64_t j, long beyond,
+                               Arena &arena, Window &x) {
     x.own = segment_block(windows(chain.n_bonds), j, chain);
     const SegmentBlock &s = x.own;
     if (s.own_max < shortest_piece) return false;
     long before = 0, behind = 0;
     for (int i = 0; i < W; ++i) {
-        const long left = margin(r, box, chain, s.from[i], -1, arena);
-        const long right = margin(r, box, chain, s.from[i] + s.own[i], 1, arena);
+        const long left = margin(r, box, chain, s.from[i], -1, 0, arena);
+        const long right = margin(r, box, chain, s.from[i] + s.own[i], 1, beyond, arena);
         if (left < 0 || right < 0) return false;
         before = left > before ? left : before;
         behind = right > behind ? right : behind;

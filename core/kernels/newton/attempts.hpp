@@ -161,9 +161,10 @@ struct Positions {
         return done;
     }
 
-    // Moves the atoms of the lanes that have converged, and writes their other outputs.
-    void finish(Outcome &out, Carried &carried) {
-        mask coarse = coarse_moves<uniform_w>(block, x, carried, out.converged);
+    // Moves the atoms of the lanes that have converged, and writes their other outputs. `moved`: D has been moved by
+    // all corrections, some of them larger than what they add up to, and has their roundings: so look at the bonds.
+    void finish(Outcome &out, Carried &carried, bool moved) {
+        mask coarse = moved ? out.converged : coarse_moves<uniform_w>(block, x, carried, out.converged);
         if (__builtin_expect(any(coarse), 0)) {
             careful_lanes = careful_lanes | solve_carefully(coarse, carried);
             out.converged = out.converged & ~careful_lanes;
@@ -205,13 +206,13 @@ struct Positions {
         const Source source = {&call.box, &r};
         Carried carried(block, x, call, source);
         Outcome out = solve_positions<uniform_w, uniform_a, false>(block, x, call, carried, all, call.guess);
-        finish(out, carried);
+        finish(out, carried, false);
         mask rest = all & ~(out.converged | out.untouched | careful_lanes);
         if (__builtin_expect(!any(rest), 1)) return;
         // Once more from the start, with new factors at every step and nothing that can overflow on the way.
         load();
         out = solve_positions<uniform_w, uniform_a, true>(block, x, call, carried, rest, false);
-        finish(out, carried);
+        finish(out, carried, true);
         rest = rest & ~(out.converged | out.untouched | careful_lanes);
         if (any(rest)) note_bad(block, rest, tally);
     }

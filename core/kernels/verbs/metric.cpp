@@ -89,7 +89,9 @@ int64_t long_metric_bytes(int64_t n_bonds) {
 static bool metric_window(const MetricCall &call, const Lane &lane, int64_t j, const KeptForces &kept, Arena arena,
                           Tally &tally) {
     Window window;
-    if (!open_window(call.r, call.box, lane, j, arena, window)) return false;
+    // The force on a piece's last atom is t phi of the bond behind it less that of its own last bond. That phi has h of
+    // the joint at its far end, too, and h the deficit f of the bond behind the joint: the margin counts from there.
+    if (!open_window(call.r, call.box, lane, j, 1, arena, window)) return false;
     const Block &block = window.block;
     const Packed r = open(call.r, block, window.lane, arena, true);
     const Geometry x(block.n, arena);

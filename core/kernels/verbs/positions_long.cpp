@@ -69,7 +69,7 @@ static inline WindowResult solve_window(const Window &window, const PositionsCal
 static inline WindowResult solve_window(const PositionsCall &call, const Lane &lane, int64_t j, double *tau,
                                         Arena arena, Tally &tally) {
     Window window;
-    if (!open_window(call.r_ref, call.box_ref, lane, j, arena, window)) return window_failed;
+    if (!open_window(call.r_ref, call.box_ref, lane, j, 0, arena, window)) return window_failed;
     const BondLengths a = bond_lengths(window.block, window.lane, arena);
     return choose(
         [&](auto uniform_w, auto uniform_a) {

@@ -1,0 +1,229 @@
+#include "chain_reference.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bond_matrix.hpp"
+
+namespace stress
+{
+
+using namespace reference;
+
+namespace
+{
+
+constexpr long double smallest = 4.9406564584124654e-324L;
+
+long double narrow(const quad &x)
+{
+    return static_cast<long double>(x);
+}
+
+/** Z of a chain and its pivots, P_k = Z_kk - Z_{k,k-1}^2 / P_{k-1}. */
+struct elimination {
+    std::vector<quad> diagonal, beside, pivot, ratio;  // beside[k] = Z_{k,k-1}, ratio[k] = beside[k] / pivot[k-1]
+    bool good = true;                                  // all pivots are positive
+
+    explicit elimination(const exact_chain &c)
+    {
+        const std::size_t n = c.n_bonds();
+        diagonal.reserve(n), beside.reserve(n), pivot.reserve(n), ratio.reserve(n);
+        for (std::size_t k = 0; k < n && good; ++k) {
+            diagonal.push_back(4 * (c.w[k] + c.w[k + 1]) * dot(c.d[k], c.d[k]));
+            beside.push_back(k > 0 ? -4 * c.w[k] * dot(c.d[k - 1], c.d[k]) : quad(0));
+            ratio.push_back(k > 0 ? beside[k] / pivot[k - 1] : quad(0));
+            pivot.push_back(k > 0 ? diagonal[k] - ratio[k] * beside[k] : diagonal[k]);
+            good = pivot[k] > 0;
+        }
+    }
+
+    long_vec solve(std::vector<quad> b) const
+    {
+        const std::size_t n = b.size();
+        long_vec x(n);
+        for (std::size_t k = 1; k < n; ++k) b[k] -= ratio[k] * b[k - 1];
+        for (std::size_t k = n; k-- > 0;) {
+            b[k] /= pivot[k];
+            if (k + 1 < n) b[k] -= ratio[k + 1] * b[k + 1];
+            x[k] = narrow(b[k]);
+        }
+        return x;
+    }
+};
+
+/** ln of the product of P_k / Z_kk; it is kept near one by powers of two, so that its logarithm keeps its digits. */
+long double log_det(const elimination &z)
+{
+    quad product = 1;
+    long exponent = 0;
+    for (std::size_t k = 0; k < z.pivot.size(); ++k) {
+        product *= z.pivot[k] / z.diagonal[k];
+        for (; product < 0.5; product *= 2) --exponent;
+    }
+    return std::log1p(narrow(product - 1)) + static_cast<long double>(exponent) * std::log(2.0L);
+}
+
+struct sizes {
+    long_vec size, w;  // |d| and inverse masses
+};
+
+/** (Z~^-1)_kk and its neighbours, and the normals u x u' of the joints. */
+void fill_metric(const exact_chain &c, const elimination &z, const sizes &s, const long_vec &d, exact_metric &out)
+{
+    const std::size_t n = c.n_bonds();
+    std::vector<quad> backward(n);
+    for (std::size_t k = n; k-- > 0;)
+        backward[k] = k + 1 < n ? z.diagonal[k] - z.beside[k + 1] * z.beside[k + 1] / backward[k + 1] : z.diagonal[k];
+    long_vec h(n + 1, 0), normal(3 * (n + 1), 0), phi(3 * (n + 2), 0), scale(n + 2, 0);
+    for (std::size_t k = 0; k < n; ++k) {
+        const quad whole = z.pivot[k] + backward[k] - z.diagonal[k];
+        if (!(whole > 0)) return;
+        const long double diagonal = narrow(z.diagonal[k]) / narrow(whole);
+        out.diagonal.push_back(diagonal);
+        out.step.push_back(
+            k > 0 ? -narrow(z.ratio[k]) * std::sqrt(narrow(z.diagonal[k - 1])) / std::sqrt(narrow(z.diagonal[k])) : 0);
+        if (k == 0) continue;
+        h[k] = s.w[k] * out.step[k] * diagonal /
+               (std::sqrt(s.w[k - 1] + s.w[k]) * std::sqrt(s.w[k] + s.w[k + 1]));  // of M^-1, M_kk = w + w'
+        const quad3 area = cross(c.d[k - 1], c.d[k]);
+        for (std::size_t x = 0; x < 3; ++x) normal[3 * k + x] = narrow(area[x]) / s.size[k - 1] / s.size[k];
+    }
+    const auto weight = [&](std::size_t k) {
+        return std::fabs(h[k]) * std::hypot(normal[3 * k], normal[3 * k + 1], normal[3 * k + 2]);
+    };
+    for (std::size_t k = 0; k < n; ++k) {
+        long double u[3], v[3];
+        for (std::size_t x = 0; x < 3; ++x) {
+            u[x] = d[3 * k + x] / s.size[k];
+            v[x] = h[k] * normal[3 * k + x] - h[k + 1] * normal[3 * k + 3 + x];
+        }
+        for (std::size_t x = 0; x < 3; ++x) {
+            const std::size_t y = (x + 1) % 3, q = (x + 2) % 3;
+            phi[3 * (k + 1) + x] = (u[y] * v[q] - u[q] * v[y]) / s.size[k];
+        }
+        scale[k + 1] = (weight(k) + weight(k + 1)) / s.size[k];
+    }
+    for (std::size_t i = 0; i <= n; ++i) {
+        for (std::size_t x = 0; x < 3; ++x) out.force.push_back(phi[3 * i + x] - phi[3 * i + 3 + x]);
+        out.force_scale.push_back(scale[i] + scale[i + 1]);
+    }
+    out.log_det = log_det(z);
+    out.regular = true;
+}
+
+level_reference level_of(long_vec lambda, long_vec scale, const long_vec &d, const long_vec &size)
+{
+    level_reference out;
+    const std::size_t n = lambda.size();
+    out.g.assign(3 * (n + 1), 0);
+    out.g_scale.assign(n + 1, 0);
+    for (std::size_t k = 0; k < n; ++k) {
+        for (std::size_t x = 0; x < 3; ++x) {
+            const long double pull = 2 * lambda[k] * d[3 * k + x];
+            out.g[3 * k + x] += pull;
+            out.g[3 * k + 3 + x] -= pull;
+            for (std::size_t y = 0; y < 3; ++y) out.virial[3 * x + y] -= pull * d[3 * k + y];
+        }
+        out.g_scale[k] += 2 * scale[k] * size[k];
+        out.g_scale[k + 1] += 2 * scale[k] * size[k];
+        out.virial_scale += 2 * scale[k] * size[k] * size[k];
+    }
+    out.lambda = std::move(lambda);
+    out.scale = std::move(scale);
+    return out;
+}
+
+}  // namespace
+
+long_vec chain_reference::spread(long_vec size) const
+{
+    for (std::size_t k = 1; k < size.size(); ++k) size[k] += ratio_[k] * size[k - 1];
+    for (std::size_t k = size.size(); k-- > 0;)
+        size[k] = size[k] / pivot_[k] + (k + 1 < size.size() ? ratio_[k + 1] * size[k + 1] : 0);
+    return size;
+}
+
+long_vec chain_reference::pulls_by(const hostile_chain &c, const long_vec &size) const
+{
+    const std::size_t n = pivot_.size();
+    long_vec pull(n + 1, 0), lambda(n);
+    for (std::size_t k = 0; k < n; ++k)
+        lambda[k] =
+            2 * (std::fabs(d[3 * k]) + std::fabs(d[3 * k + 1]) + std::fabs(d[3 * k + 2])) * (size[k] + size[k + 1]);
+    lambda = spread(std::move(lambda));
+    for (std::size_t k = 0; k < n; ++k)
+        for (std::size_t i = k; i <= k + 1; ++i) pull[i] += c.w[i] * 2 * lambda[k] * c.length[k];
+    return pull;
+}
+
+chain_reference::chain_reference(const hostile_chain &c)
+{
+    const exact_chain e(c.problem());
+    const std::size_t n = e.n_bonds();
+    for (std::size_t k = 0; k < n; ++k)
+        if (!(c.w[k] + c.w[k + 1] > 0) || !(dot(e.d[k], e.d[k]) > 0)) return;
+    const elimination z(e);
+    if (!z.good) return;
+    sizes s;
+    for (std::size_t i = 0; i <= n; ++i) s.w.push_back(narrow(e.w[i]));
+    long_vec root(n), row_sum(n, 1);
+    for (std::size_t k = 0; k < n; ++k) {
+        for (std::size_t x = 0; x < 3; ++x) d.push_back(narrow(e.d[k][x]));
+        s.size.push_back(std::hypot(d[3 * k], d[3 * k + 1], d[3 * k + 2]));
+        pivot_.push_back(narrow(z.pivot[k]));
+        ratio_.push_back(std::fabs(narrow(z.ratio[k])));
+        root[k] = std::sqrt(narrow(z.diagonal[k]));
+        if (k == 0) continue;
+        const long double beside = std::fabs(narrow(z.beside[k])) / root[k - 1] / root[k];
+        row_sum[k] += beside;
+        row_sum[k - 1] += beside;
+    }
+    long_vec inverse_row_sum = spread(root);
+    for (std::size_t k = 0; k < n; ++k) inverse_row_sum[k] *= root[k];
+    metric.condition = *std::max_element(row_sum.begin(), row_sum.end()) *
+                       *std::max_element(inverse_row_sum.begin(), inverse_row_sum.end());
+    if (!(metric.condition < 1e60L)) return;  // singular but for the rounding of this arithmetic
+    fill_metric(e, z, s, d, metric);
+    if (!metric.regular) return;
+
+    std::vector<quad> force_side, velocity_side;
+    long_vec force_size, velocity_size, one;
+    for (std::size_t k = 0; k < n; ++k) {
+        const quad3 f0 = row(c.f.data(), k), f1 = row(c.f.data(), k + 1);
+        const quad3 dv = row(c.v.data(), k + 1) - row(c.v.data(), k);
+        const quad squared = 2 * dot(dv, dv);
+        force_side.push_back(2 * dot(e.d[k], e.w[k + 1] * f1 - e.w[k] * f0) + squared);
+        velocity_side.push_back(2 * dot(e.d[k], dv));
+        long double of_forces = narrow(squared), of_velocities = 0, reach = 1;
+        for (std::size_t x = 0; x < 3; ++x) {
+            const long double along = 2 * std::fabs(d[3 * k + x]);
+            const auto size = [&](const std::vector<double> &v, std::size_t i) {
+                return std::fabs(static_cast<long double>(v[3 * i + x]));
+            };
+            of_forces += along * (s.w[k + 1] * size(c.f, k + 1) + s.w[k] * size(c.f, k));
+            of_velocities += along * (size(c.v, k + 1) + size(c.v, k));
+            reach += along / 2;
+        }
+        force_size.push_back(of_forces);
+        velocity_size.push_back(of_velocities);
+        one.push_back(64 * reach * (1 + s.w[k] + s.w[k + 1]));
+    }
+    forces = level_of(z.solve(std::move(force_side)), spread(std::move(force_size)), d, s.size);
+    velocities = level_of(z.solve(std::move(velocity_side)), spread(std::move(velocity_size)), d, s.size);
+
+    // Every product and sum of a right-hand side may be off by the smallest number, and so may each step of the two
+    // sweeps, whose unit of mass is the chain's own where all are equal; what a multiplier is off by, its bond pulls at
+    // the others. That is seen where forces are denormal numbers, or where multipliers die away until they are.
+    underflow = spread(std::move(one));
+    const long double longest = *std::max_element(c.length.begin(), c.length.end());
+    const long double steps = 4 * static_cast<long double>(n) * (1 + static_cast<long double>(c.mass[0]));
+    for (std::size_t k = 0; k < n; ++k) underflow[k] = smallest * (underflow[k] + steps * (longest / c.length[k]));
+}
+
+long double oracle_bound(std::int64_t n_bonds)
+{
+    return 16 + std::sqrt(static_cast<long double>(n_bonds));
+}
+
+}  // namespace stress
