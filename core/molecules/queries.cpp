@@ -119,7 +119,7 @@ std::int64_t Chains::memory() const {
                                                                         plan_of_parts_.load(std::memory_order_acquire);
     return static_cast<std::int64_t>(sizeof *this + masses_.bytes() + use_.bytes() + kinds_.bytes() + shapes_.bytes() +
                                      groups_.bytes() + unconstrained_.capacity() * sizeof(std::int64_t) +
-                                     active_.capacity()) +
+                                     active_.capacity() + backwards_.capacity()) +
            labels_.bytes() + (plan ? plan->bytes() : 0) + (of_parts ? of_parts->bytes() : 0);
 }
 
