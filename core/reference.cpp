@@ -84,7 +84,7 @@ Reference::Reference(const Chains &chains, const AtomArray &bonds) : chains_(cha
             array->packed = false;
         }
     for (const Plan::Piece &piece : plan.pieces) {
-        const AtomArray &to = piece.where & staged ? staged_ : atoms_;
+        const AtomArray &to = piece.where & holonomic::staged ? staged_ : atoms_;
         const auto take = [&](const auto &lane, std::int64_t number) {
             lay_out(chains.molecule(number), to, [&](std::int64_t i) { return atom_of(lane, i); });
         };

@@ -49,6 +49,27 @@ static int positions(const assembly *a, double *out)
                                  NULL);
 }
 
+/* The bond vectors are not among the outputs. */
+static int positions_along(const assembly *a, double *out)
+{
+    static double b[3 * 20000];
+    int64_t place = 0;
+    if (3 * bonds(a) > sizeof b / sizeof *b) return HOL_ERR_INTERNAL;
+    for (int64_t c = 0; c < a->n_chains; ++c)
+        for (int64_t k = 0; k < assembly_bonds(a, c); ++k, ++place)
+            for (int x = 0; x < 3; ++x)
+                b[3 * place + x] =
+                    a->r[3 * a->atoms[a->first[c] + k + 1] + x] - a->r[3 * a->atoms[a->first[c] + k] + x];
+    return hol_project_positions_along(a->chains, b, out + atoms3(a), out, 0.003, per_bond(a, out), 0, numbers(a, out),
+                                       NULL);
+}
+
+static int check(const assembly *a, double *out)
+{
+    (void)out;
+    return hol_chains_check(a->chains, a->r, HOL_BOX);
+}
+
 static int violation(const assembly *a, double *out)
 {
     hol_worst worst = {0, 0, 0, 0, 0, 0};
@@ -178,6 +199,8 @@ const operation operations[] = {
     {"hol_forces", forces},
     {"hol_project_velocities", velocities},
     {"hol_project_positions", positions},
+    {"hol_project_positions_along", positions_along},
+    {"hol_chains_check", check},
     {"hol_violation", violation},
     {"hol_solve", given_right_hand_sides},
     {"hol_reactions", reactions},
