@@ -13,7 +13,13 @@ namespace holonomic {
 
 namespace {
 
-// Calls each(molecule, bond, d.d) for all bonds of a molecule.
+// Where squares overflow, the bond is too long all the same.
+double length_of(const double *d) {
+    const double dd = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+    return std::isfinite(dd) ? std::sqrt(dd) : std::hypot(d[0], d[1], d[2]);
+}
+
+// Calls each(bond, vector) for all bonds of a molecule.
 template <class Each>
 void for_bonds(const BondVectors &bonds, const Molecule &m, const Each &each) {
     double from[3], to[3] = {0, 0, 0}, d[3];
@@ -28,7 +34,7 @@ void for_bonds(const BondVectors &bonds, const Molecule &m, const Each &each) {
             read_atom(*bonds.r, m.atom(m.j(k)), to);
             bond_vector(*bonds.box, from, to, d);
         }
-        each(k, d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        each(k, d);
     }
 }
 
@@ -61,12 +67,13 @@ Misfit find_misfit(const Chains &chains, const BondVectors &bonds, const IsBad &
     Misfit found;
     for_active(chains, [&](const Molecule &m) {
         bool bad = false;
-        for_bonds(bonds, m, [&](std::int64_t k, double dd) {
-            if (!std::isfinite(dd)) return;
-            const double a = m.length(k), ratio = std::sqrt(dd) / a, off = std::max(ratio, 1 / ratio);
+        for_bonds(bonds, m, [&](std::int64_t k, const double *d) {
+            const double length = length_of(d);
+            if (!std::isfinite(length)) return;
+            const double a = m.length(k), ratio = length / a, off = std::max(ratio, 1 / ratio);
             found.least = std::min(found.least, ratio);
             found.most = std::max(found.most, ratio);
-            if (!is_bad(dd, a)) return;
+            if (!is_bad(length, a)) return;
             bad = true;
             if (found.molecule >= 0 && !(off > found.worst)) return;
             found.worst = off;
@@ -100,8 +107,8 @@ void write_causes(const Misfit &found, const Box *box, int base, char *text, std
 Error misfit_error(const Chains &chains, const Misfit &found, const BondVectors &bonds, const char *what) {
     const Molecule m = chains.molecule(found.molecule);
     double length = 0;
-    for_bonds(bonds, m, [&](std::int64_t k, double dd) {
-        if (k == found.bond) length = std::sqrt(dd);
+    for_bonds(bonds, m, [&](std::int64_t k, const double *d) {
+        if (k == found.bond) length = length_of(d);
     });
     char causes[280];
     write_causes(found, bonds.box, chains.base, causes, sizeof causes);
@@ -119,15 +126,14 @@ Error misfit_error(const Chains &chains, const Misfit &found, const BondVectors 
     return error;
 }
 
-bool is_too_long(double dd, double a) { return dd > most_stretched * most_stretched * a * a; }
+bool is_too_long(double length, double a) { return length > most_stretched * a; }
 
 }  // namespace
 
 void check_reference(const Chains &chains, const BondVectors &bonds, const char *what) {
     const double half = bonds.box ? half_width(*bonds.box) : std::numeric_limits<double>::infinity();
-    const double too_long = half * half * (1 + 1e-6);
-    const Misfit found = find_misfit(chains, bonds, [&](double dd, double a) {
-        return std::fabs(std::sqrt(dd) - a) > most_off * a || dd > too_long;
+    const Misfit found = find_misfit(chains, bonds, [&](double length, double a) {
+        return std::fabs(length - a) > most_off * a || length > half * (1 + 1e-6);
     });
     if (found.molecule >= 0) throw misfit_error(chains, found, bonds, what);
 }
@@ -143,10 +149,10 @@ bool is_stretched(const Chains &chains, std::int64_t molecule, const AtomArray &
     const Molecule m = chains.molecule(molecule);
     double worst = 0;
     std::int64_t bond = -1;
-    for_bonds(bonds, m, [&](std::int64_t k, double dd) {
-        const double a = m.length(k);
-        if (!is_too_long(dd, a) || !(std::sqrt(dd) / a > worst)) return;
-        worst = std::sqrt(dd) / a;
+    for_bonds(bonds, m, [&](std::int64_t k, const double *d) {
+        const double a = m.length(k), length = length_of(d);
+        if (!std::isfinite(length) || !is_too_long(length, a) || !(length / a > worst)) return;
+        worst = length / a;
         bond = k;
     });
     if (bond < 0) return false;
@@ -170,8 +176,8 @@ bool is_stretched(const Chains &chains, std::int64_t molecule, const AtomArray &
 WorstLength worst_length(const Chains &chains, const BondVectors &bonds) {
     WorstLength worst{0, -1, -1};
     for_active(chains, [&](const Molecule &m) {
-        for_bonds(bonds, m, [&](std::int64_t k, double dd) {
-            const double a = m.length(k), error = std::fabs(dd - a * a) / (a * a);
+        for_bonds(bonds, m, [&](std::int64_t k, const double *d) {
+            const double a = m.length(k), error = std::fabs(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] - a * a) / (a * a);
             if (worst.molecule >= 0 && !(error > worst.error)) return;
             worst = {error, m.number + chains.base, k + chains.base};
         });
