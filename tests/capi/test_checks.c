@@ -111,28 +111,29 @@ static void crude_positions_are_projected_without_checks(void **state)
     free_waters(&w);
 }
 
-/* After the first call: molecules that come with a bond of several times its length are left as they are. */
-static void a_step_over_several_bond_lengths_is_refused(hol_chains *chains, int64_t n_atoms, const double *r_ref,
-                                                        int64_t bad, int64_t first_atom, int64_t atom)
+/* After the first call: a molecule that comes with bonds of several times their lengths is left as it is, also where
+ * Newton's method would find the way back: all of its bonds are blown up along themselves. Returns whether it would. */
+static int a_step_over_several_bond_lengths_is_refused(hol_chains *chains, int64_t n_atoms, const double *r_ref,
+                                                       int64_t bad, int64_t first_atom)
 {
     const size_t n = 3 * (size_t)n_atoms;
     double *const r = copy_of(r_ref, n), *const sound = copy_of(r_ref, n);
     disturb(r, n, 1e-3, 7);
     memcpy(sound, r, sizeof *r * n);
     CHECK(hol_project_positions(chains, r_ref, sound, NULL, 1, NULL, 0, NULL, NULL));
-    r[3 * atom] += 12;
+    int64_t own, list[64], molecule;
+    CHECK(hol_chains_molecule(chains, bad, NULL, &own, NULL));
+    assert_in_range(own, 2, 64);
+    CHECK(hol_chains_atoms(chains, bad, list));
+    for (int64_t i = 1; i < own; ++i)
+        for (int c = 0; c < 3; ++c) r[3 * list[i] + c] += 5 * (r_ref[3 * list[i] + c] - r_ref[3 * list[0] + c]);
     double *const before = copy_of(r, n);
     hol_report report;
-    int64_t molecule;
     CHECK_FAILS(HOL_ERR_LENGTHS, hol_project_positions(chains, r_ref, r, NULL, 1, NULL, 0, NULL, &report));
     hol_error_location(&molecule, NULL, NULL, NULL);
     assert_int_equal(molecule, bad);
     assert_message_names("in the positions to be projected");
     assert_int_equal(report.n_failed, 1);
-    int64_t own, list[64];
-    CHECK(hol_chains_molecule(chains, bad, NULL, &own, NULL));
-    assert_in_range(own, 2, 64);
-    CHECK(hol_chains_atoms(chains, bad, list));
     for (int64_t i = 0; i < own; ++i) {
         assert_in_range(list[i], first_atom, first_atom + own - 1);
         assert_same_bits(r + 3 * list[i], before + 3 * list[i], 3);
@@ -141,11 +142,13 @@ static void a_step_over_several_bond_lengths_is_refused(hol_chains *chains, int6
         if (i < first_atom || i >= first_atom + own) assert_same_bits(r + 3 * i, sound + 3 * i, 3);
     /* Nobody is refused for that once the check is off. */
     CHECK(hol_chains_set_checks(chains, HOL_NEVER));
-    assert_true(hol_project_positions(chains, r_ref, before, NULL, 1, NULL, 0, NULL, NULL) != HOL_ERR_LENGTHS);
+    const int status = hol_project_positions(chains, r_ref, before, NULL, 1, NULL, 0, NULL, NULL);
+    assert_true(status == HOL_OK || status == HOL_ERR_NO_CONVERGENCE);
     CHECK(hol_chains_set_checks(chains, HOL_AT_START));
     free(r);
     free(sound);
     free(before);
+    return status == HOL_OK;
 }
 
 static void water_leaps(void **state)
@@ -156,7 +159,7 @@ static void water_leaps(void **state)
     CHECK(hol_chains_create(w.n_atoms, w.mass, &chains));
     CHECK(hol_chains_add_molecules(chains, w.n_molecules, 3, 0, 3, water_pairs, water_lengths));
     for (int64_t m = 0; m < w.n_molecules; m += 5)
-        a_step_over_several_bond_lengths_is_refused(chains, w.n_atoms, w.r, m, 3 * m, 3 * m + m % 3);
+        assert_true(a_step_over_several_bond_lengths_is_refused(chains, w.n_atoms, w.r, m, 3 * m));
     hol_chains_destroy(chains);
     free_waters(&w);
 }
@@ -174,6 +177,7 @@ static void other_shapes_leap(void **state)
                   {40, 39, none}, {4, 3, star}, {6, 5, branched}, {5, 5, ring}, {5, 6, kite}};
     enum { COPIES = 9, MOST = 40 * COPIES };
     double mass[MOST], r[3 * MOST], length[MOST];
+    int found = 0;
     for (size_t s = 0; s < sizeof shapes / sizeof *shapes; ++s) {
         const int64_t size = shapes[s].n_atoms, n_bonds = shapes[s].n_bonds, n = size * COPIES;
         hol_chains *chains;
@@ -198,9 +202,11 @@ static void other_shapes_leap(void **state)
         else
             CHECK(hol_chains_add_molecules(chains, COPIES, size, 0, n_bonds, shapes[s].pairs, length));
         for (int64_t m = 0; m < COPIES; m += 4)
-            a_step_over_several_bond_lengths_is_refused(chains, n, r, m, size * m, size * m + m % size);
+            found += a_step_over_several_bond_lengths_is_refused(chains, n, r, m, size * m);
         hol_chains_destroy(chains);
     }
+    print_message("%d of 30 would have been solved\n", found);
+    assert_true(found >= 20);
 }
 
 static void the_check_on_request(void **state)
