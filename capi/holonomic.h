@@ -284,10 +284,11 @@ typedef enum hol_when {
  * molecule cut by a face of the cell, a box forgotten or stale: all of these still have solutions, and Newton's method
  * would find them, atoms moved by half the cell. With HOL_AT_START (default)
  *
- * - the first call, and the first after new molecules, lengths or masses, after hol_chains_set_active, and after a box
- *   that differs by more than 2 per cent from the one before, returns HOL_ERR_LENGTHS, and moves nothing, if a bond of
- *   the reference is off by more than a tenth of its length or longer than half the box, or a bond of the positions to
- *   be projected is more than 5 times as long as it should be. It costs one pass over the bonds, once.
+ * - the first call, and the first after new molecules, after hol_chains_set_active, after lengths of more than 1.5
+ * times or less than two thirds of those before, and after a box that differs by more than 2 per cent, returns
+ * HOL_ERR_LENGTHS, and moves nothing, if a bond of the reference is off by more than a tenth of its length or longer
+ * than half the box, or a bond of the positions to be projected is more than 5 times as long as it should be. It costs
+ * one pass over the bonds, once.
  * - in every later call a molecule with a bond of more than 5 times its length in the positions to be projected is bad
  *   (HOL_ERR_LENGTHS): it is left as it is, all others are complete. That costs nothing that can be measured.
  *

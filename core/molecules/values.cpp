@@ -50,9 +50,22 @@ void Chains::rebuild(const Masses &masses, const double *lengths) {
     changed();
 }
 
+// Lengths that a program changes step by step: the reference still has those before. Where they change by no more than
+// this factor, positions that fitted are not looked at again.
+constexpr double small_change = 1.5;
+
 void Chains::set_lengths(const double *lengths) {
     check_lengths(n_bonds_, lengths, base);
+    bool small = fits_.load();
+    for (std::int64_t c = 0; small && c < n_chains(); ++c) {
+        const Molecule m = molecule(c);
+        for (std::int64_t k = 0; small && k < m.n_bonds; ++k) {
+            const double ratio = lengths[m.bond(k)] / m.length(k);
+            small = ratio < small_change && ratio * small_change > 1;
+        }
+    }
     rebuild(masses_, lengths);
+    fits_.store(small);
 }
 
 void Chains::set_masses(const double *masses) {
@@ -65,7 +78,9 @@ void Chains::set_masses(const double *masses) {
         error.base = base;
         throw error;
     }
+    const bool fitted = fits_.load();
     rebuild(next, nullptr);
+    fits_.store(fitted);
     masses_ = std::move(next);
 }
 
