@@ -38,10 +38,79 @@ void for_bonds(const BondVectors &bonds, const Molecule &m, const Each &each) {
     }
 }
 
+// How vectors are read: most arrays are packed, and most programs have no box or a rectangular one.
+struct Packed {
+    const double *x;
+    explicit Packed(const AtomArray &array) : x(reinterpret_cast<const double *>(array.x)) {}
+    void read(std::int64_t i, double *d) const {
+        for (int c = 0; c < 3; ++c) d[c] = x[3 * i + c];
+    }
+    void difference(std::int64_t i, std::int64_t j, double *d) const {
+        for (int c = 0; c < 3; ++c) d[c] = x[3 * j + c] - x[3 * i + c];
+    }
+};
+struct AnyLayout {
+    const AtomArray &array;
+    explicit AnyLayout(const AtomArray &a) : array(a) {}
+    void read(std::int64_t i, double *d) const { read_atom(array, i, d); }
+    void difference(std::int64_t i, std::int64_t j, double *d) const {
+        double from[3];
+        read_atom(array, i, from);
+        read_atom(array, j, d);
+        for (int c = 0; c < 3; ++c) d[c] -= from[c];
+    }
+};
+struct NoBox {
+    explicit NoBox(const Box *) {}
+    void image(double *) const {}
+};
+struct InBox {
+    const Box &box;
+    explicit InBox(const Box *b) : box(*b) {}
+    void image(double *d) const { minimum_image(box, d); }
+};
+
+// Calls each(molecule, k, d.d, a) for all bonds of active molecules as long as it returns true: once per run, and in
+// every call with a report, so that no bond waits for what all of them have in common.
+template <class Vectors, class Images, class Each>
+bool go_through(const Chains &chains, const BondVectors &bonds, const Each &each) {
+    const Vectors vectors(bonds.r ? *bonds.r : *bonds.d);
+    const Images images(bonds.box);
+    const bool of_atoms = bonds.r != nullptr;
+    return chains.for_active([&](const Molecule &m) {
+        const std::int32_t *const pairs = m.shape ? m.shape->pairs.data() : nullptr;
+        const std::int64_t *const list = m.atom_list, first = m.first_atom, n_bonds = m.n_bonds;
+        const double *const lengths = m.length_table, uniform = m.length_uniform;
+        for (std::int64_t k = 0; k < n_bonds; ++k) {
+            double d[3];
+            if (of_atoms) {
+                const std::int64_t i = pairs ? pairs[2 * k] : k, j = pairs ? pairs[2 * k + 1] : k + 1;
+                vectors.difference(list ? list[i] : first + i, list ? list[j] : first + j, d);
+                images.image(d);
+            } else {
+                vectors.read(m.bond(k), d);
+            }
+            const double a = lengths ? lengths[k] : uniform;
+            if (!each(m, k, d[0] * d[0] + d[1] * d[1] + d[2] * d[2], a)) return false;
+        }
+        return true;
+    });
+}
 template <class Each>
-void for_active(const Chains &chains, const Each &each) {
-    for (std::int64_t number = 0; number < chains.n_chains(); ++number)
-        if (chains.is_active(number)) each(chains.molecule(number));
+bool go_through(const Chains &chains, const BondVectors &bonds, const Each &each) {
+    const bool packed = (bonds.r ? bonds.r : bonds.d)->packed, box = bonds.r && bonds.box->shape != Box::none;
+    if (packed)
+        return box ? go_through<Packed, InBox>(chains, bonds, each) : go_through<Packed, NoBox>(chains, bonds, each);
+    return box ? go_through<AnyLayout, InBox>(chains, bonds, each) : go_through<AnyLayout, NoBox>(chains, bonds, each);
+}
+
+// Whether no bond's length is outside least a .. most a, nor above `longest`. Not a number is inside.
+bool all_within(const Chains &chains, const BondVectors &bonds, double least, double most, double longest) {
+    const double low = least * least, high = most * most, end = longest * longest;
+    return go_through(chains, bonds, [=](const Molecule &, std::int64_t, double dd, double a) {
+        const double a2 = a * a;
+        return !((dd < low * a2) | (dd > high * a2) | (dd > end));
+    });
 }
 
 // Half the smallest distance between opposite faces, beyond which the image may be another one.
@@ -65,7 +134,7 @@ struct Misfit {
 template <class IsBad>
 Misfit find_misfit(const Chains &chains, const BondVectors &bonds, const IsBad &is_bad) {
     Misfit found;
-    for_active(chains, [&](const Molecule &m) {
+    chains.for_active([&](const Molecule &m) {
         bool bad = false;
         for_bonds(bonds, m, [&](std::int64_t k, const double *d) {
             const double length = length_of(d);
@@ -82,6 +151,7 @@ Misfit find_misfit(const Chains &chains, const BondVectors &bonds, const IsBad &
         });
         ++found.n_molecules;
         found.n_bad += bad;
+        return true;
     });
     return found;
 }
@@ -132,14 +202,17 @@ bool is_too_long(double length, double a) { return length > most_stretched * a; 
 
 void check_reference(const Chains &chains, const BondVectors &bonds, const char *what) {
     const double half = bonds.box ? half_width(*bonds.box) : std::numeric_limits<double>::infinity();
+    const double longest = half * (1 + 1e-6);
+    if (all_within(chains, bonds, 1 - most_off, 1 + most_off, longest)) return;
     const Misfit found = find_misfit(chains, bonds, [&](double length, double a) {
-        return std::fabs(length - a) > most_off * a || length > half * (1 + 1e-6);
+        return std::fabs(length - a) > most_off * a || length > longest;
     });
     if (found.molecule >= 0) throw misfit_error(chains, found, bonds, what);
 }
 
 void check_trial(const Chains &chains, const AtomArray &r) {
     const BondVectors bonds{&r, nullptr, &chains.box};
+    if (all_within(chains, bonds, 0, most_stretched, std::numeric_limits<double>::infinity())) return;
     const Misfit found = find_misfit(chains, bonds, is_too_long);
     if (found.molecule >= 0) throw misfit_error(chains, found, bonds, "in the positions to be projected");
 }
@@ -174,15 +247,20 @@ bool is_stretched(const Chains &chains, std::int64_t molecule, const AtomArray &
 }
 
 WorstLength worst_length(const Chains &chains, const BondVectors &bonds) {
-    WorstLength worst{0, -1, -1};
-    for_active(chains, [&](const Molecule &m) {
-        for_bonds(bonds, m, [&](std::int64_t k, const double *d) {
-            const double a = m.length(k), error = std::fabs(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] - a * a) / (a * a);
-            if (worst.molecule >= 0 && !(error > worst.error)) return;
-            worst = {error, m.number + chains.base, k + chains.base};
-        });
+    double a2_of_worst = 1, worst = -1;
+    std::int64_t molecule = -1, bond = -1;
+    go_through(chains, bonds, [&](const Molecule &m, std::int64_t k, double dd, double a) {
+        const double a2 = a * a, off = std::fabs(dd - a2);
+        if (off * a2_of_worst > worst * a2) { /* without a division for each bond */
+            worst = off;
+            a2_of_worst = a2;
+            molecule = m.number;
+            bond = k;
+        }
+        return true;
     });
-    return worst;
+    if (molecule < 0) return {0, -1, -1};
+    return {worst / a2_of_worst, molecule + chains.base, bond + chains.base};
 }
 
 }  // namespace holonomic

@@ -65,6 +65,18 @@ public:
     std::int64_t memory() const;
     bool is_active(std::int64_t molecule) const;
     Molecule molecule(std::int64_t molecule) const;
+    // Calls each(molecule) for all that are active, as long as it returns true; returns whether it always did.
+    template <class Each>
+    bool for_active(const Each &each) const {
+        for (const Group &group : groups_.all()) {
+            Molecule m = molecule_of(group, 0);
+            for (std::int64_t index = 0; index < group.count; ++index) {
+                if (index > 0) place_molecule(group, index, m);
+                if (is_active(m.number) && !each(static_cast<const Molecule &>(m))) return false;
+            }
+        }
+        return true;
+    }
     Lane lane(std::int64_t molecule) const;  // of a linear chain
     const Box &box_of_reference() const { return has_reference_box_ ? reference_box_ : box; }
     const BoxRate *box_rate() const { return has_box_rate_ ? &box_rate_ : nullptr; }
@@ -88,8 +100,8 @@ public:
 
     Checks checks() const { return checks_; }
     void set_checks(Checks when) {
+        if (checks_ != when) fits_.store(false, std::memory_order_relaxed);
         checks_ = when;
-        fits_.store(false, std::memory_order_relaxed);
     }
     // Whether positions are to be compared with the lengths before they are used (core/fit.hpp): at the first call
     // after a change of the molecules, their lengths or the box. Thread-safe: several threads may find that it is so.
@@ -114,6 +126,8 @@ private:
         fits_.store(false);
     }
     void box_changed(const Box &next, Box &seen);
+    Molecule molecule_of(const Group &group, std::int64_t index) const;
+    void place_molecule(const Group &group, std::int64_t index, Molecule &m) const;
     const Kind &kind_of(const Group &group) const { return kinds_[group.kind]; }
     Lane lane_of(const Group &group, std::int64_t index, std::int64_t stage) const;
     MoleculeLane molecule_lane_of(const Plan &plan, const Group &group, std::int64_t index, std::int64_t stage,
