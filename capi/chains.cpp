@@ -2,6 +2,7 @@
 
 #include "boundary.hpp"
 
+using holonomic::Checks;
 using holonomic::guarded;
 using holonomic::make_error;
 using holonomic::need;
@@ -104,6 +105,19 @@ int hol_chains_set_masses(hol_chains *chains, const double *masses) {
         need(chains, "chains");
         if (chains->chains.n_atoms() != 0) need(masses, "masses");
         chains->chains.set_masses(masses);
+    });
+}
+
+static_assert(static_cast<int>(Checks::never) == HOL_NEVER && static_cast<int>(Checks::at_start) == HOL_AT_START &&
+                  static_cast<int>(Checks::always) == HOL_ALWAYS,
+              "core/molecules/chains.hpp and the public header disagree");
+
+int hol_chains_set_checks(hol_chains *chains, int when) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        if (when != HOL_NEVER && when != HOL_AT_START && when != HOL_ALWAYS)
+            throw make_error(Status::value, "when is %d; it must be HOL_NEVER, HOL_AT_START or HOL_ALWAYS", when);
+        chains->chains.set_checks(static_cast<Checks>(when));
     });
 }
 

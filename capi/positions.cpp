@@ -9,7 +9,9 @@ using holonomic::AtomArray;
 using holonomic::guarded;
 using holonomic::make_error;
 using holonomic::need;
+using holonomic::packed_array;
 using holonomic::Status;
+using holonomic::viewed_array;
 
 namespace {
 
@@ -20,14 +22,17 @@ void check(double dt, const double *lambda, int guess) {
     if (guess) need(lambda, "lambda, which holds the guess,");
 }
 
+// Of the reference of this thread's last call with a report.
+thread_local holonomic::WorstLength reference_error{0, -1, -1};
+
 // The caller's report: written once there is one, also if the call fails then.
 class ReportTo {
 public:
     explicit ReportTo(hol_report *to) : to_(to) {}
     ~ReportTo() {
-        if (to_ && found_.made)
-            *to_ = {found_.iterations, found_.n_corrected, found_.n_failed,
-                    found_.chain,      found_.bond,        found_.max_error};
+        if (!to_ || !found_.made) return;
+        *to_ = {found_.iterations, found_.n_corrected, found_.n_failed, found_.chain, found_.bond, found_.max_error};
+        reference_error = found_.reference;
     }
     ReportTo(const ReportTo &) = delete;
     ReportTo &operator=(const ReportTo &) = delete;
@@ -47,9 +52,10 @@ int hol_project_positions(const hol_chains *chains, const double *r_ref, double 
         need(r_ref, "r_ref");
         need(r, "r");
         check(dt, lambda, guess);
+        const AtomArray a0 = packed_array(r_ref);
         ReportTo found(report);
-        holonomic::project_positions(chains->chains, holonomic::packed_array(r_ref), holonomic::packed_array(r),
-                                     holonomic::packed_array(v), dt, lambda, guess == 1, virial, found.get());
+        holonomic::project_positions(chains->chains, {&a0, nullptr}, packed_array(r), packed_array(v), dt, lambda,
+                                     guess == 1, virial, found.get());
     });
 }
 
@@ -60,11 +66,47 @@ int hol_project_positions_view(const hol_chains *chains, const hol_view *r_ref, 
         need(r_ref, "r_ref");
         need(r, "r");
         check(dt, lambda, guess);
-        const AtomArray a0 = holonomic::viewed_array(r_ref, "r_ref"), a1 = holonomic::viewed_array(r, "r"),
-                        av = holonomic::viewed_array(v, "v");
+        const AtomArray a0 = viewed_array(r_ref, "r_ref"), a1 = viewed_array(r, "r"), av = viewed_array(v, "v");
         const AtomArray *const all[] = {&a0, &a1, &av};
         holonomic::check_dimensions(all, 3);
         ReportTo found(report);
-        holonomic::project_positions(chains->chains, a0, a1, av, dt, lambda, guess == 1, virial, found.get());
+        holonomic::project_positions(chains->chains, {&a0, nullptr}, a1, av, dt, lambda, guess == 1, virial,
+                                     found.get());
     });
+}
+
+int hol_project_positions_along(const hol_chains *chains, const double *b, double *r, double *v, double dt,
+                                double *lambda, int guess, double *virial, hol_report *report) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        if (chains->chains.n_bonds() != 0) need(b, "b");
+        need(r, "r");
+        check(dt, lambda, guess);
+        const AtomArray bonds = packed_array(b);
+        ReportTo found(report);
+        holonomic::project_positions(chains->chains, {nullptr, &bonds}, packed_array(r), packed_array(v), dt, lambda,
+                                     guess == 1, virial, found.get());
+    });
+}
+
+int hol_project_positions_along_view(const hol_chains *chains, const hol_view *b, const hol_view *r, const hol_view *v,
+                                     double dt, double *lambda, int guess, double *virial, hol_report *report) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        need(b, "b");
+        need(r, "r");
+        check(dt, lambda, guess);
+        const AtomArray bonds = viewed_array(b, "b"), a1 = viewed_array(r, "r"), av = viewed_array(v, "v");
+        const AtomArray *const all[] = {&bonds, &a1, &av};
+        holonomic::check_dimensions(all, 3);
+        ReportTo found(report);
+        holonomic::project_positions(chains->chains, {nullptr, &bonds}, a1, av, dt, lambda, guess == 1, virial,
+                                     found.get());
+    });
+}
+
+void hol_reference_error(double *error, int64_t *chain, int64_t *bond) {
+    if (error) *error = reference_error.error;
+    if (chain) *chain = reference_error.molecule;
+    if (bond) *bond = reference_error.bond;
 }

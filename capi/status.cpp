@@ -16,7 +16,8 @@ static_assert(same(Status::ok, HOL_OK) && same(Status::null, HOL_ERR_NULL) && sa
                   same(Status::memory, HOL_ERR_MEMORY) && same(Status::not_finite, HOL_ERR_NOT_FINITE) &&
                   same(Status::degenerate, HOL_ERR_DEGENERATE) &&
                   same(Status::no_convergence, HOL_ERR_NO_CONVERGENCE) &&
-                  same(Status::not_definite, HOL_ERR_NOT_DEFINITE) && same(Status::internal, HOL_ERR_INTERNAL),
+                  same(Status::not_definite, HOL_ERR_NOT_DEFINITE) && same(Status::internal, HOL_ERR_INTERNAL) &&
+                  same(Status::lengths, HOL_ERR_LENGTHS),
               "core/status.hpp and the public header disagree");
 
 }  // namespace
@@ -58,6 +59,8 @@ const char *hol_status_name(int status) {
             return "HOL_ERR_NOT_DEFINITE";
         case HOL_ERR_INTERNAL:
             return "HOL_ERR_INTERNAL";
+        case HOL_ERR_LENGTHS:
+            return "HOL_ERR_LENGTHS";
         default:
             return "unknown status";
     }

@@ -11,7 +11,7 @@ namespace holonomic {
 // Thrown after every output that is due has been written. Numbers are counted from 0; -1: does not apply.
 struct Error {
     Status status;
-    char message[360];  // text, with the numbers already in the caller's counting
+    char message[640];  // text, with the numbers already in the caller's counting
     std::int64_t chain = -1, bond = -1, atom = -1, n_bad = 0;
     int base = 0;  // of the caller's counting
 };

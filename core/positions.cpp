@@ -1,7 +1,11 @@
 #include "core/positions.hpp"
 
+#include <optional>
+
 #include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
+#include "core/fit.hpp"
+#include "core/reference.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
@@ -13,11 +17,11 @@ namespace {
 struct PositionsWork final : Work {
     const Variants<PositionsCall> calls;
     const Kernels &k = kernels();
-    PositionsWork(const PositionsCall &call, Apart &apart)
+    PositionsWork(const PositionsCall &call, Apart &apart, const Reference *reference)
         : calls(
               call, apart, [&](PositionsCall &c) { c.lambda = apart.results(call.lambda); },
               [&](PositionsCall &c) {
-                  c.r_ref = apart.atoms(call.r_ref);
+                  c.r_ref = reference ? reference->staged() : apart.atoms(call.r_ref);
                   c.r = apart.moved_atoms(call.r);
                   c.v = apart.moved_atoms(call.v);
               }) {}
@@ -40,12 +44,40 @@ struct PositionsWork final : Work {
     }
 };
 
+// Once for a set of molecules, their lengths and the box, and before anything is moved.
+void check_start(const Chains &chains, const BondVectors &reference, const AtomArray &r) {
+    if (!chains.wants_fit()) return;
+    check_reference(chains, reference, reference.r ? "in the reference positions" : "among the reference vectors");
+    check_trial(chains, r);
+    chains.note_fit();
+}
+
+Report report_of(const Chains &chains, const Tally &tally, const WorstLength &reference) {
+    const bool none = tally.worst_chain < 0;
+    return {tally.iterations,
+            tally.n_corrected,
+            tally.n_bad,
+            none ? -1 : tally.worst_chain + chains.base,
+            none ? -1 : tally.worst_bond + chains.base,
+            tally.worst,
+            true,
+            reference};
+}
+
 }  // namespace
 
-void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomArray &r, const AtomArray &v, double dt,
+void project_positions(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v, double dt,
                        double *lambda, bool guess, double *virial, Report *report) {
+    const Box none{}, &box_ref = along.r_ref ? chains.box_of_reference() : none;
+    const BondVectors given{along.r_ref, along.bonds, along.r_ref ? &box_ref : nullptr};
+    check_start(chains, given, r);
+    // What r_ref may be: r itself, of which the error is gone afterwards.
+    const WorstLength before = report ? worst_length(chains, given) : WorstLength{};
+    std::optional<Reference> made;
+    if (!along.r_ref) made.emplace(chains, *along.bonds);
+    const Reference *const reference = made ? &*made : nullptr;
     PositionsCall call;
-    call.r_ref = r_ref;
+    call.r_ref = reference ? reference->atoms() : *along.r_ref;
     call.r = r;
     call.v = v;
     call.lambda = lambda;
@@ -54,26 +86,22 @@ void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomA
     call.virial = virial != nullptr;
     call.report = report != nullptr;
     call.tolerance = chains.tolerance;
+    if (chains.checks() != Checks::never) call.worst_trial = most_stretched * most_stretched - 1;
     call.max_iterations = chains.max_iterations;
     put_box(chains.box, call.box);
-    put_box(chains.box_of_reference(), call.box_ref);
+    put_box(box_ref, call.box_ref);
     Apart apart(chains);
-    const Tally tally = execute(chains, PositionsWork(call, apart));
+    const Tally tally = execute(chains, PositionsWork(call, apart, reference));
     apart.put_back();
     clear_unconstrained(chains, lambda);
-    if (report) {
-        const bool none = tally.worst_chain < 0;
-        *report = {tally.iterations,
-                   tally.n_corrected,
-                   tally.n_bad,
-                   none ? -1 : tally.worst_chain + chains.base,
-                   none ? -1 : tally.worst_bond + chains.base,
-                   tally.worst,
-                   true};
-    }
+    if (report) *report = report_of(chains, tally, before);
     if (tally.n_bad > 0) {
-        const NamedArray arrays[] = {{"reference position", &r_ref}, {"position", &r}, {"velocity", &v}};
-        throw diagnose(chains, tally, chains.box_of_reference(), arrays, 3, Status::no_convergence);
+        if (reference) reference->show(tally.first_bad);
+        Error error;
+        if (chains.checks() != Checks::never && is_stretched(chains, tally.first_bad, r, tally.n_bad, &error))
+            throw error;
+        const NamedArray arrays[] = {{"reference position", &call.r_ref}, {"position", &r}, {"velocity", &v}};
+        throw diagnose(chains, tally, box_ref, arrays, 3, Status::no_convergence);
     }
     if (virial) write_virial(tally, virial);
 }

@@ -2,6 +2,7 @@
 #ifndef HOLONOMIC_POSITIONS_HPP
 #define HOLONOMIC_POSITIONS_HPP
 
+#include "core/fit.hpp"
 #include "core/molecules/chains.hpp"
 
 namespace holonomic {
@@ -10,11 +11,18 @@ namespace holonomic {
 struct Report {
     std::int64_t iterations, n_corrected, n_failed, chain, bond;
     double max_error;
-    bool made;  // false: the call failed before it did anything
+    bool made;              // false: the call failed before it did anything
+    WorstLength reference;  // the error that the reference had
+};
+
+// What the positions are projected along.
+struct Along {
+    const AtomArray *r_ref;  // [n_atoms], or null:
+    const AtomArray *bonds;  // [n_bonds] vectors
 };
 
 // virial [9], report: or nullptr. Throws Error once everything that is due has been written.
-void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomArray &r, const AtomArray &v, double dt,
+void project_positions(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v, double dt,
                        double *lambda, bool guess, double *virial, Report *report);
 
 }  // namespace holonomic

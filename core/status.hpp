@@ -16,7 +16,8 @@ enum class Status {
     degenerate = 7,
     no_convergence = 8,
     not_definite = 9,
-    internal = 10
+    internal = 10,
+    lengths = 11
 };
 
 }  // namespace holonomic

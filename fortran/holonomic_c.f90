@@ -20,6 +20,12 @@ module holonomic_c
    integer(c_int), parameter :: HOL_ERR_NO_CONVERGENCE = 8
    integer(c_int), parameter :: HOL_ERR_NOT_DEFINITE = 9
    integer(c_int), parameter :: HOL_ERR_INTERNAL = 10
+   integer(c_int), parameter :: HOL_ERR_LENGTHS = 11
+
+   ! hol_when
+   integer(c_int), parameter :: HOL_NEVER = 0
+   integer(c_int), parameter :: HOL_AT_START = 1
+   integer(c_int), parameter :: HOL_ALWAYS = 2
 
    ! hol_element
    integer(c_int32_t), parameter :: HOL_DOUBLE = 0
@@ -177,6 +183,32 @@ module holonomic_c
          type(c_ptr), value :: virial, report
          integer(c_int) :: status
       end function
+
+      function hol_project_positions_along(chains, b, r, v, dt, lambda, guess, virial, report) bind(c) result(status)
+         import :: c_double, c_int, c_ptr
+         type(c_ptr), value :: chains, b, r, v
+         real(c_double), value :: dt
+         type(c_ptr), value :: lambda
+         integer(c_int), value :: guess
+         type(c_ptr), value :: virial, report
+         integer(c_int) :: status
+      end function
+
+      function hol_project_positions_along_view(chains, b, r, v, dt, lambda, guess, virial, report) &
+         bind(c) result(status)
+         import :: c_double, c_int, c_ptr
+         type(c_ptr), value :: chains, b, r, v
+         real(c_double), value :: dt
+         type(c_ptr), value :: lambda
+         integer(c_int), value :: guess
+         type(c_ptr), value :: virial, report
+         integer(c_int) :: status
+      end function
+
+      subroutine hol_reference_error(error, chain, bond) bind(c)
+         import :: c_ptr
+         type(c_ptr), value :: error, chain, bond
+      end subroutine
 
       function hol_violation(chains, r, v, worst) bind(c) result(status)
          import :: c_int, c_ptr

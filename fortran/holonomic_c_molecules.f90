@@ -98,6 +98,27 @@ module holonomic_c_molecules
          integer(c_int) :: status
       end function
 
+      function hol_chains_set_checks(chains, when) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int), value :: when
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_check(chains, r, box) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, r
+         integer(c_int), value :: box
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_check_view(chains, r, box) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, r
+         integer(c_int), value :: box
+         integer(c_int) :: status
+      end function
+
       function hol_chains_set_labels(chains, atoms, molecules) bind(c) result(status)
          import :: c_int, c_ptr
          type(c_ptr), value :: chains, atoms, molecules

@@ -32,6 +32,7 @@ module holonomic_place
    contains
       ! rows_*(n_atoms, problem, name, array): an array (3, n) or (2, n).
       ! parts_*(n_atoms, problem, name, x, y, z): separate arrays, where a * in the name stands for x, y and z.
+      ! A last argument: vectors per bond, "bonds", instead of per atom.
       procedure :: rows_32, rows_64, parts_32, parts_64
       procedure :: address
       procedure :: give_back   ! after the call, for arrays that it writes
@@ -56,14 +57,15 @@ contains
       if (self%given) address = c_loc(self%view)
    end function
 
-   recursive subroutine rows_32(self, n_atoms, problem, name, array)
+   recursive subroutine rows_32(self, n_atoms, problem, name, array, what)
       class(place), intent(inout), target :: self
       integer(c_int64_t), intent(in) :: n_atoms
       type(failure), intent(inout) :: problem
       character(*), intent(in) :: name
       real(real32), optional, target :: array(:, :)
+      character(*), intent(in), optional :: what
       if (.not. present(array)) return
-      if (.not. has_rows(size(array, 1), size(array, 2, c_int64_t), n_atoms, name, problem)) return
+      if (.not. has_rows(size(array, 1), size(array, 2, c_int64_t), n_atoms, name, problem, what)) return
       self%given = .true.
       self%view%element = HOL_FLOAT
       self%view%stride = storage_size(array)/8
@@ -77,14 +79,15 @@ contains
       if (n_atoms > 1) self%view%stride = distance(c_loc(array(1, 1)), c_loc(array(1, 2)))
    end subroutine
 
-   recursive subroutine rows_64(self, n_atoms, problem, name, array)
+   recursive subroutine rows_64(self, n_atoms, problem, name, array, what)
       class(place), intent(inout), target :: self
       integer(c_int64_t), intent(in) :: n_atoms
       type(failure), intent(inout) :: problem
       character(*), intent(in) :: name
       real(real64), optional, target :: array(:, :)
+      character(*), intent(in), optional :: what
       if (.not. present(array)) return
-      if (.not. has_rows(size(array, 1), size(array, 2, c_int64_t), n_atoms, name, problem)) return
+      if (.not. has_rows(size(array, 1), size(array, 2, c_int64_t), n_atoms, name, problem, what)) return
       self%given = .true.
       self%view%element = HOL_DOUBLE
       self%view%stride = storage_size(array)/8
@@ -98,24 +101,26 @@ contains
       if (n_atoms > 1) self%view%stride = distance(c_loc(array(1, 1)), c_loc(array(1, 2)))
    end subroutine
 
-   recursive subroutine parts_32(self, n_atoms, problem, name, x, y, z)
+   recursive subroutine parts_32(self, n_atoms, problem, name, x, y, z, what)
       class(place), intent(inout), target :: self
       integer(c_int64_t), intent(in) :: n_atoms
       type(failure), intent(inout) :: problem
       character(*), intent(in) :: name
       real(real32), optional, target :: x(:), y(:)
       real(real32), optional, target :: z(:)
-      call self%put(n_atoms, problem, name, HOL_FLOAT, line_of_32(x), line_of_32(y), line_of_32(z))
+      character(*), intent(in), optional :: what
+      call self%put(n_atoms, problem, name, HOL_FLOAT, line_of_32(x), line_of_32(y), line_of_32(z), what)
    end subroutine
 
-   recursive subroutine parts_64(self, n_atoms, problem, name, x, y, z)
+   recursive subroutine parts_64(self, n_atoms, problem, name, x, y, z, what)
       class(place), intent(inout), target :: self
       integer(c_int64_t), intent(in) :: n_atoms
       type(failure), intent(inout) :: problem
       character(*), intent(in) :: name
       real(real64), optional, target :: x(:), y(:)
       real(real64), optional, target :: z(:)
-      call self%put(n_atoms, problem, name, HOL_DOUBLE, line_of_64(x), line_of_64(y), line_of_64(z))
+      character(*), intent(in), optional :: what
+      call self%put(n_atoms, problem, name, HOL_DOUBLE, line_of_64(x), line_of_64(y), line_of_64(z), what)
    end subroutine
 
    ! An array of one atom has no stride, and gets the size of its element.
@@ -139,19 +144,28 @@ contains
       if (found%extent >= 2) found%stride = transfer(c_loc(array(2)), found%first) - found%first
    end function
 
-   recursive logical function has_rows(n_rows, extent, n_atoms, name, problem)
+   recursive logical function has_rows(n_rows, extent, n_atoms, name, problem, what)
       integer, intent(in) :: n_rows
       integer(c_int64_t), intent(in) :: extent, n_atoms
       character(*), intent(in) :: name
       type(failure), intent(inout) :: problem
+      character(*), intent(in), optional :: what
       has_rows = (n_rows == 3 .or. n_rows == 2) .and. extent >= n_atoms
       if (has_rows) return
       if (n_rows /= 3 .and. n_rows /= 2) then
          call problem%set(HOL_ERR_VALUE, "the first dimension of "//name//" must be 3 (or 2), not " &
                           //decimal(int(n_rows, c_int64_t)))
       else
-         call too_few(name, extent, n_atoms, "atoms", problem)
+         call too_few(name, extent, n_atoms, things(what), problem)
       end if
+   end function
+
+   ! What an array has one vector for each of: atoms, if nothing else is said.
+   recursive function things(what)
+      character(*), intent(in), optional :: what
+      character(5) :: things
+      things = "atoms"
+      if (present(what)) things = what
    end function
 
    ! Without atoms there is nothing to point at, but NULL would mean that the array is not there.
@@ -168,13 +182,14 @@ contains
       distance = transfer(to, distance) - transfer(from, distance)
    end function
 
-   recursive subroutine put(self, n_atoms, problem, name, element, x, y, z)
+   recursive subroutine put(self, n_atoms, problem, name, element, x, y, z, what)
       class(place), intent(inout), target :: self
       integer(c_int64_t), intent(in) :: n_atoms
       type(failure), intent(inout) :: problem
       character(*), intent(in) :: name
       integer(c_int32_t), intent(in) :: element
       type(line), intent(in) :: x, y, z
+      character(*), intent(in), optional :: what
       type(line) :: lines(3)
       integer :: part, n_parts
       lines = [x, y, z]
@@ -186,7 +201,7 @@ contains
       n_parts = merge(3, 2, z%extent >= 0)
       do part = 1, n_parts
          if (lines(part)%extent >= n_atoms) cycle
-         call too_few(named(name, "xyz"(part:part)), lines(part)%extent, n_atoms, "atoms", problem)
+         call too_few(named(name, "xyz"(part:part)), lines(part)%extent, n_atoms, things(what), problem)
          return
       end do
       self%given = .true.

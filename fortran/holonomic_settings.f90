@@ -4,8 +4,8 @@ module holonomic_settings
    use, intrinsic :: iso_fortran_env, only: int32, int64, real64
    use holonomic_bonds, only: chain_set_bonds
    use holonomic_c, only: hol_chains_n_atoms, hol_chains_n_bonds, hol_chains_n_chains, hol_chains_set_active, &
-                          hol_chains_set_box, hol_chains_set_box_rate, hol_chains_set_labels, hol_chains_set_lengths, &
-                          hol_chains_set_masses, &
+                          hol_chains_set_box, hol_chains_set_box_rate, hol_chains_set_checks, hol_chains_set_labels, &
+                          hol_chains_set_lengths, hol_chains_set_masses, &
                           hol_chains_set_max_iterations, hol_chains_set_reference_box, hol_chains_set_threads, &
                           hol_chains_set_tolerance, HOL_ERR_MEMORY
    use holonomic_place, only: enough, list_of, tensor
@@ -21,6 +21,7 @@ module holonomic_settings
       procedure, private :: set_reference_box_matrix, set_reference_box_lengths
       generic :: set_reference_box => set_reference_box_matrix, set_reference_box_lengths
       procedure :: set_box_rate
+      procedure :: set_checks
       procedure, private :: set_labels_none, set_labels_32, set_labels_64
       generic :: set_labels => set_labels_none, set_labels_32, set_labels_64
       procedure :: set_threads
@@ -97,6 +98,18 @@ contains
       call problem%need_created(self%c_handle())
       call problem%ask(hol_chains_set_box_rate(self%c_handle(), tensor(rows)))
       call settle(problem, "set_box_rate", stat, errmsg)
+   end subroutine
+
+   ! HOL_NEVER, HOL_AT_START (the default) or HOL_ALWAYS: when project_positions compares positions with the lengths.
+   subroutine set_checks(self, when, stat, errmsg)
+      class(chain_set_settings), intent(inout) :: self
+      integer, intent(in) :: when
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      call problem%need_created(self%c_handle())
+      call problem%ask(hol_chains_set_checks(self%c_handle(), int(when, c_int)))
+      call settle(problem, "set_checks", stat, errmsg)
    end subroutine
 
    ! Numbers of atoms and molecules for messages; of size 0 or absent: none.

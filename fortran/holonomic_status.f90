@@ -12,7 +12,7 @@ module holonomic_status
    ! The message is of fixed length, as C's is: there may be no memory left for another. Undefined while there is none.
    type :: failure
       integer(c_int) :: status = HOL_OK
-      character(256) :: message
+      character(640) :: message
    contains
       procedure :: none
       procedure :: set

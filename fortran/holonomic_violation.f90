@@ -3,14 +3,14 @@ module holonomic_violation
    use, intrinsic :: iso_c_binding, only: c_loc
    use, intrinsic :: iso_fortran_env, only: int64, real32, real64
    use holonomic_c, only: hol_violation_view, hol_worst
+   use holonomic_check, only: chain_set_check
    use holonomic_place, only: place
-   use holonomic_positions, only: chain_set_positions
    use holonomic_status, only: failure, settle
    implicit none
    private
    public :: chain_set_violation
 
-   type, extends(chain_set_positions) :: chain_set_violation
+   type, extends(chain_set_check) :: chain_set_violation
    contains
       procedure, private :: violation_rows_32, violation_rows_64, violation_parts_32, violation_parts_64
       generic :: violation => violation_rows_32, violation_rows_64, violation_parts_32, violation_parts_64

@@ -28,6 +28,15 @@ Box make_box(const double *h) {
     const auto cross = [](const double *a, const double *b, double *c) {
         for (int k = 0; k < 3; ++k) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
     };
+    // A side that was meant for the diagonal stands elsewhere, as where three sides fill the first row.
+    for (int i = 0; i < 3; ++i)
+        for (int c = 0; c < 3; ++c)
+            if (m[i][c] != 0 && !periodic[c])
+                throw make_error(Status::value,
+                                 "box vector %d is zero, and box vector %d has a component (%g) along that axis: this "
+                                 "is no cell; the box is three vectors, one in each row, and the sides of a "
+                                 "rectangular box stand on the diagonal",
+                                 c + 1, i + 1, m[i][c]);
     const int n = periodic[0] + periodic[1] + periodic[2];
     if (n == 0) return next;
     next.shape = diagonal ? Box::orthorhombic : Box::triclinic;
@@ -68,6 +77,20 @@ Box make_box(const double *h) {
     for (int i = 0; i < 3; ++i)
         for (int c = 0; c < 3; ++c) next.inverse[3 * c + i] = periodic[i] ? columns[i][c] / volume : 0;
     return next;
+}
+
+void check_width(const Box &box, double longest_bond) {
+    if (box.shape == Box::none || longest_bond == 0) return;
+    for (int i = 0; i < 3; ++i) {
+        // The distance of opposite faces is one over the gradient of the fractional coordinate.
+        const double *const g = box.inverse + i;
+        const double gradient = std::sqrt(g[0] * g[0] + g[3] * g[3] + g[6] * g[6]);
+        if (!(gradient * 2 * longest_bond > 1 + 1e-12)) continue;
+        throw make_error(Status::value,
+                         "the box is %g wide along box vector %d, less than twice the longest bond, %g: images of its "
+                         "atoms can't be told apart; are box and lengths in the same unit?",
+                         1 / gradient, i + 1, longest_bond);
+    }
 }
 
 BoxRate make_box_rate(const double *L) {

@@ -23,6 +23,9 @@ inline void put_box(const Box &box, Box &of_call) {
     std::memcpy(of_call.inverse, box.inverse, sizeof box.inverse);
 }
 
+// Throws Error if a bond of this length is longer than half the smallest distance between opposite faces.
+void check_width(const Box &box, double longest_bond);
+
 // How the box, and what follows it, changes: d(box)/dt = L box.
 struct BoxRate {
     double L[9];

@@ -113,8 +113,9 @@ struct PositionsCall {
     AtomArray r_ref, r, v;
     double *lambda;
     double dt;
-    bool guess, virial, report;  // report: the errors left are wanted
-    double tolerance;            // 0: what the coordinates carry
+    bool guess, virial, report;            // report: the errors left are wanted
+    double tolerance;                      // 0: what the coordinates carry
+    double worst_trial = __builtin_inf();  // a molecule that comes with a larger error |D.D - a^2| / a^2 is bad
     int max_iterations;
     Box box, box_ref;  // of r; of r_ref
 };

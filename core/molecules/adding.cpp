@@ -98,9 +98,10 @@ void Chains::add_bonds(std::int64_t n_bonds, const std::int64_t *pairs, const do
         throw make_error(Status::value, "n_bonds is %lld; it must be at most %lld in a call",
                          static_cast<long long>(n_bonds), static_cast<long long>(most_bonds));
     check_lengths(n_bonds, lengths, base);
-    const FoundMolecules found = find_molecules(masses_, n_atoms_, {n_bonds, pairs, base, &labels_});
+    const BondList list{n_bonds, pairs, base, &labels_};
+    const FoundMolecules found = find_molecules(masses_, n_atoms_, list);
     Batch batch(*this);
-    batch.append_found(found, n_bonds, lengths, n_bonds);
+    batch.append_found(found, list, lengths, n_bonds);
     batch.commit();
 }
 
@@ -129,9 +130,10 @@ void Chains::add_molecules(std::int64_t count, std::int64_t n_atoms, std::int64_
     std::vector<std::int64_t> all(at(2 * count * n_bonds));
     for (std::int64_t m = 0; m < count; ++m)
         for (std::int64_t e = 0; e < 2 * n_bonds; ++e) all[at(2 * m * n_bonds + e)] = first + m * n_atoms + pairs[e];
-    const FoundMolecules found = find_molecules(masses_, n_atoms_, {count * n_bonds, all.data(), base, &labels_});
+    const BondList list{count * n_bonds, all.data(), base, &labels_};
+    const FoundMolecules found = find_molecules(masses_, n_atoms_, list);
     Batch batch(*this);
-    batch.append_found(found, count * n_bonds, lengths, n_bonds);
+    batch.append_found(found, list, lengths, n_bonds);
     batch.commit();
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/molecules/closable.hpp"
+
 namespace holonomic {
 
 namespace {
@@ -105,14 +107,27 @@ void Batch::append_block(std::int64_t count, std::int64_t n_bonds, std::int64_t 
     }
 }
 
+// Of a kind that is new.
+void Batch::check_closable(const Shape &shape, const std::int64_t *atoms, const std::int64_t *bonds,
+                           const double *lengths) const {
+    Unclosable found;
+    if (!find_unclosable(shape, lengths, &found)) return;
+    const auto name = [&](std::int32_t i) { return chains_.name_of_atom(atoms[i < 0 ? 0 : i]); };
+    const std::int32_t *const pair = &shape.pairs[2 * at(found.bond)];
+    const Name names[3] = {name(pair[0]), name(pair[1]), name(found.corner)};
+    throw unclosable_error(found, names, bonds[found.bond], chains_.base);
+}
+
 // Where neighbours of the same size don't follow each other in memory, they all go by lists, so that they are one
 // group.
 void Batch::append_one(const FoundMolecules &found, std::size_t m, std::int32_t shape, const double *lengths) {
     const FoundMolecule &molecule = found.molecules[m];
     const std::int64_t *const atoms = &found.atoms[at(molecule.first_atom)];
     const std::int64_t *const bonds = &found.bonds[at(molecule.first_bond)];
+    const std::int64_t n_kinds = chains_.kinds_.size();
     const std::int64_t kind =
         chains_.kinds_.find(shape, molecule.n_atoms, molecule.n_bonds, w_.data(), lengths, chains_.groups_.last_kind());
+    if (kind == n_kinds && shape != linear) check_closable(chains_.shapes_[shape], atoms, bonds, lengths);
     bool list_atoms = !ascend(atoms, molecule.n_atoms), list_bonds = !ascend(bonds, molecule.n_bonds);
     if (!list_atoms || !list_bonds) {
         const bool before = alike(found, m, m - 1), after = alike(found, m, m + 1);
@@ -130,8 +145,18 @@ void Batch::append_one(const FoundMolecules &found, std::size_t m, std::int32_t 
                            list_bonds ? places_.data() : nullptr);
 }
 
-void Batch::append_found(const FoundMolecules &found, std::int64_t n_bonds, const double *lengths,
+void Batch::note_direction(const FoundMolecules &found, const FoundMolecule &molecule, const BondList &list) {
+    const std::int64_t *const atoms = &found.atoms[at(molecule.first_atom)];
+    for (std::int32_t k = 0; k < molecule.n_bonds; ++k) {
+        const std::size_t place = at(molecule.first_bond + k);
+        const std::int64_t bond = found.bonds[place];
+        if (list.pairs[2 * bond] - list.base != atoms[found.pairs[2 * place]]) backwards_.push_back(bond);
+    }
+}
+
+void Batch::append_found(const FoundMolecules &found, const BondList &list, const double *lengths,
                          std::int64_t n_lengths) {
+    const std::int64_t n_bonds = list.n_bonds;
     for (std::size_t i = 0; i < found.atoms.size(); ++i)
         if (!found.fixed[i] && chains_.use_.used(found.atoms[i])) throw in_use(found.atoms[i]);
     found_ = &found;
@@ -151,6 +176,7 @@ void Batch::append_found(const FoundMolecules &found, std::int64_t n_bonds, cons
                 chains_.shapes_.find(molecule.form, molecule.n_atoms, molecule.n_bonds,
                                      &found.pairs[2 * at(molecule.first_bond)], &found.fixed[first], last_shape);
         }
+        note_direction(found, molecule, list);
         append_one(found, m, shape, &in_order[at(molecule.first_bond)]);
         if (molecule.n_fixed == 0) continue;
         for (std::size_t i = first; i < first + n_atoms; ++i)
@@ -162,6 +188,14 @@ void Batch::append_found(const FoundMolecules &found, std::int64_t n_bonds, cons
 }
 
 void Batch::commit() {
+    const double longest = chains_.kinds_.longest(static_cast<std::int64_t>(kinds_before_.n_kinds), chains_.longest_);
+    check_width(chains_.box, longest);
+    check_width(chains_.box_of_reference(), longest);
+    if (!backwards_.empty() || !chains_.backwards_.empty()) {
+        chains_.backwards_.resize(at(chains_.n_bonds_ + n_bonds_), 0);
+        for (const std::int64_t bond : backwards_) chains_.backwards_[at(chains_.n_bonds_ + bond)] = 1;
+    }
+    chains_.longest_ = longest;
     if (!chains_.active_.empty()) chains_.active_.resize(at(chains_.n_chains()), 1);
     chains_.n_bonds_ += n_bonds_;
     if (found_)

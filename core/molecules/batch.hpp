@@ -24,13 +24,16 @@ public:
     void append_chain(std::int64_t n_bonds, const std::int64_t *atoms, const double *lengths);
     void append_block(std::int64_t count, std::int64_t n_bonds, std::int64_t first_atom, const double *lengths);
     // Bond k of the list has the length lengths[k % n_lengths]. Throws Error if an atom is not free.
-    void append_found(const FoundMolecules &found, std::int64_t n_bonds, const double *lengths, std::int64_t n_lengths);
+    void append_found(const FoundMolecules &found, const BondList &list, const double *lengths, std::int64_t n_lengths);
     void commit();
 
 private:
     void append_part(std::int64_t n_bonds, const std::int64_t *atoms, const double *lengths, std::int64_t first_bond);
     void append_one(const FoundMolecules &found, std::size_t m, std::int32_t shape, const double *lengths);
+    void note_direction(const FoundMolecules &found, const FoundMolecule &molecule, const BondList &list);
     Error in_use(std::int64_t atom) const;
+    void check_closable(const Shape &shape, const std::int64_t *atoms, const std::int64_t *bonds,
+                        const double *lengths) const;
 
     Chains &chains_;
     const Groups::Mark before_;
@@ -41,6 +44,7 @@ private:
     std::vector<std::int64_t> taken_, fixed_;
     std::vector<double> w_;
     std::vector<std::int64_t> places_;
+    std::vector<std::int64_t> backwards_;  // bonds of the list whose atoms were given the other way round
     bool committed_ = false;
 };
 

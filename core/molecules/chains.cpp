@@ -1,6 +1,7 @@
 #include "core/molecules/chains.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace holonomic {
 
@@ -15,9 +16,32 @@ void Chains::set_active(const unsigned char *active) {
     changed();
 }
 
+// A barostat sets a box at every step: positions are looked at again once it has changed by so much of its size.
+void Chains::box_changed(const Box &next, Box &seen) {
+    constexpr double small = 0.02;
+    double size = 0, change = 0;
+    for (int i = 0; i < 9; ++i) {
+        size = std::max(size, std::fabs(seen.h[i]));
+        change = std::max(change, std::fabs(next.h[i] - seen.h[i]));
+    }
+    if (next.shape == seen.shape && !(change > small * size)) return;
+    seen = next;
+    fits_.store(false, std::memory_order_relaxed);
+}
+
+void Chains::set_box(const double *h) {
+    const Box next = make_box(h);
+    check_width(next, longest_);
+    box = next;
+    box_changed(box, seen_box_);
+}
+
 void Chains::set_reference_box(const double *h) {
-    reference_box_ = make_box(h);
+    const Box next = make_box(h);
+    check_width(next, longest_);
+    reference_box_ = next;
     has_reference_box_ = h != nullptr;
+    box_changed(reference_box_, seen_reference_);
 }
 
 void Chains::set_box_rate(const double *L) {

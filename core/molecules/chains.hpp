@@ -22,6 +22,9 @@
 
 namespace holonomic {
 
+// When positions are compared with the lengths. The values are those of hol_when, which capi/chains.cpp asserts.
+enum class Checks { never = 0, at_start = 1, always = 2 };
+
 class Chains {
 public:
     Chains(std::int64_t n_atoms, const double *masses);
@@ -41,7 +44,7 @@ public:
     void set_labels(const std::int64_t *atoms, const std::int64_t *molecules) {
         labels_.set(n_atoms_, atoms, n_chains(), molecules);
     }
-    void set_box(const double *h) { box = make_box(h); }
+    void set_box(const double *h);
     void set_reference_box(const double *h);
     void set_box_rate(const double *L);
 
@@ -62,6 +65,18 @@ public:
     std::int64_t memory() const;
     bool is_active(std::int64_t molecule) const;
     Molecule molecule(std::int64_t molecule) const;
+    // Calls each(molecule) for all that are active, as long as it returns true; returns whether it always did.
+    template <class Each>
+    bool for_active(const Each &each) const {
+        for (const Group &group : groups_.all()) {
+            Molecule m = molecule_of(group, 0);
+            for (std::int64_t index = 0; index < group.count; ++index) {
+                if (index > 0) place_molecule(group, index, m);
+                if (is_active(m.number) && !each(static_cast<const Molecule &>(m))) return false;
+            }
+        }
+        return true;
+    }
     Lane lane(std::int64_t molecule) const;  // of a linear chain
     const Box &box_of_reference() const { return has_reference_box_ ? reference_box_ : box; }
     const BoxRate *box_rate() const { return has_box_rate_ ? &box_rate_ : nullptr; }
@@ -78,6 +93,22 @@ public:
     std::int64_t piece_bonds(const Plan::Piece &piece) const;  // of one molecule of the piece; 0 if loose ones
     const std::vector<std::int64_t> &reordered_bonds() const { return groups_.reordered(); }
     const std::vector<std::int64_t> &unconstrained() const { return unconstrained_; }
+    // Whether a bond was given from the atom at which it ends here; by its place in the caller's arrays.
+    bool is_backwards(std::int64_t bond) const {
+        return !backwards_.empty() && backwards_[static_cast<std::size_t>(bond)] != 0;
+    }
+
+    Checks checks() const { return checks_; }
+    void set_checks(Checks when) {
+        if (checks_ != when) fits_.store(false, std::memory_order_relaxed);
+        checks_ = when;
+    }
+    // Whether positions are to be compared with the lengths before they are used (core/fit.hpp): at the first call
+    // after a change of the molecules, their lengths or the box. Thread-safe: several threads may find that it is so.
+    bool wants_fit() const {
+        return checks_ == Checks::always || (checks_ == Checks::at_start && !fits_.load(std::memory_order_relaxed));
+    }
+    void note_fit() const { fits_.store(true, std::memory_order_relaxed); }
 
     int base = 0;
     int n_threads = 1;
@@ -92,7 +123,11 @@ private:
     void changed() {
         plan_.store(nullptr);
         plan_of_parts_.store(nullptr);
+        fits_.store(false);
     }
+    void box_changed(const Box &next, Box &seen);
+    Molecule molecule_of(const Group &group, std::int64_t index) const;
+    void place_molecule(const Group &group, std::int64_t index, Molecule &m) const;
     const Kind &kind_of(const Group &group) const { return kinds_[group.kind]; }
     Lane lane_of(const Group &group, std::int64_t index, std::int64_t stage) const;
     MoleculeLane molecule_lane_of(const Plan &plan, const Group &group, std::int64_t index, std::int64_t stage,
@@ -106,11 +141,16 @@ private:
     Shapes shapes_;
     Groups groups_;
     std::vector<std::int64_t> unconstrained_;  // bonds between two fixed atoms, in the caller's arrays
+    std::vector<unsigned char> backwards_;     // [n_bonds], or empty: no bond is
     std::vector<unsigned char> active_;        // [n_chains] or empty: all
     Labels labels_;
     Box reference_box_{};
     BoxRate box_rate_{};
     bool has_reference_box_ = false, has_box_rate_ = false;
+    Checks checks_ = Checks::at_start;
+    double longest_ = 0;                 // of the bonds' lengths
+    Box seen_box_{}, seen_reference_{};  // those that positions were last to be compared in
+    mutable std::atomic<bool> fits_{false};
 
     mutable std::mutex plan_mutex_;
     mutable std::atomic<const Plan *> plan_{nullptr}, plan_of_parts_{nullptr};

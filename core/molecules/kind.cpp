@@ -72,6 +72,16 @@ void Kinds::roll_back(const Mark &mark) noexcept {
     length_.resize(mark.n_lengths);
 }
 
+double Kinds::longest(std::int64_t first, double least) const {
+    double longest = least;
+    for (std::int64_t k = first; k < size(); ++k) {
+        const Kind &kind = (*this)[k];
+        const double *const table = length(kind);
+        longest = std::max(longest, table ? *std::max_element(table, table + kind.n_bonds) : kind.length_uniform);
+    }
+    return longest;
+}
+
 std::size_t Kinds::bytes() const {
     return kinds_.capacity() * sizeof(Kind) + (w_.capacity() + length_.capacity()) * sizeof(double) +
            by_hash_.size() * 40 + by_hash_.bucket_count() * sizeof(void *);

@@ -41,6 +41,8 @@ public:
     const double *length(const Kind &kind) const {
         return kind.length_offset < 0 ? nullptr : length_.data() + kind.length_offset;
     }
+    // The largest length of the kinds from `first` on, if that is more than `least`.
+    double longest(std::int64_t first, double least) const;
     std::size_t bytes() const;
 
 private:

@@ -27,6 +27,11 @@ Masses::Masses(std::int64_t n_atoms, const double *masses, int base) : n_atoms_(
         }
         uniform = uniform && masses[i] == masses[0];
     }
+    if (uniform && n_atoms > 0 && masses[0] == 0)
+        throw make_error(Status::value,
+                         "all %lld masses are 0, so that no atom can move: they have not been set; if that is meant, "
+                         "atoms that are held fixed may have the mass +infinity, too",
+                         static_cast<long long>(n_atoms));
     if (uniform && n_atoms > 0) {
         w_uniform_ = masses[0] == 0 ? 0 : 1 / masses[0];
         return;

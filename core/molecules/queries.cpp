@@ -13,24 +13,32 @@ std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 bool Chains::is_active(std::int64_t molecule) const { return active_.empty() || active_[at(molecule)] != 0; }
 
-Molecule Chains::molecule(std::int64_t molecule) const {
-    const Group &group = groups_.of_molecule(molecule);
+void Chains::place_molecule(const Group &group, std::int64_t index, Molecule &m) const {
+    m.number = group.first_molecule + index;
+    m.atom_list = groups_.atoms(group, index, m.n_atoms);
+    m.first_atom = m.atom_list ? m.atom_list[0] : group.first_atom + index * m.n_atoms;
+    const std::int64_t bonds = group.first_bond + index * m.n_bonds;
+    m.bond_list = group.reordered ? groups_.reordered().data() + bonds : nullptr;
+    m.first_bond = m.bond_list ? m.bond_list[0] : bonds;
+}
+
+Molecule Chains::molecule_of(const Group &group, std::int64_t index) const {
     const Kind &kind = kind_of(group);
-    const std::int64_t index = molecule - group.first_molecule, bonds = group.first_bond + index * kind.n_bonds;
     Molecule m;
-    m.number = molecule;
     m.n_atoms = kind.n_atoms();
     m.n_bonds = kind.n_bonds;
     m.shape = kind.shape == linear ? nullptr : &shapes_[kind.shape];
-    m.atom_list = groups_.atoms(group, index, kind.n_atoms());
-    m.first_atom = m.atom_list ? m.atom_list[0] : group.first_atom + index * kind.n_atoms();
     m.w_table = kinds_.w(kind);
     m.length_table = kinds_.length(kind);
     m.w_uniform = kind.w_uniform;
     m.length_uniform = kind.length_uniform;
-    m.bond_list = group.reordered ? groups_.reordered().data() + bonds : nullptr;
-    m.first_bond = m.bond_list ? m.bond_list[0] : bonds;
+    place_molecule(group, index, m);
     return m;
+}
+
+Molecule Chains::molecule(std::int64_t molecule) const {
+    const Group &group = groups_.of_molecule(molecule);
+    return molecule_of(group, molecule - group.first_molecule);
 }
 
 std::int64_t Chains::n_of_form(int form) const {
@@ -119,7 +127,7 @@ std::int64_t Chains::memory() const {
                                                                         plan_of_parts_.load(std::memory_order_acquire);
     return static_cast<std::int64_t>(sizeof *this + masses_.bytes() + use_.bytes() + kinds_.bytes() + shapes_.bytes() +
                                      groups_.bytes() + unconstrained_.capacity() * sizeof(std::int64_t) +
-                                     active_.capacity()) +
+                                     active_.capacity() + backwards_.capacity()) +
            labels_.bytes() + (plan ? plan->bytes() : 0) + (of_parts ? of_parts->bytes() : 0);
 }
 

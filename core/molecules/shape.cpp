@@ -16,6 +16,35 @@ bool is(const Shape &shape, std::int32_t n_atoms, std::int32_t n_bonds, const st
            std::equal(shape.fixed.begin(), shape.fixed.end(), fixed);
 }
 
+std::vector<std::int32_t> spanning_walk(std::int32_t n_atoms, const std::vector<std::int32_t> &pairs) {
+    const std::int32_t n_bonds = static_cast<std::int32_t>(pairs.size() / 2);
+    const auto at = [](std::int32_t i) { return static_cast<std::size_t>(i); };
+    std::vector<std::int32_t> start(at(n_atoms) + 1, 0), arms(pairs.size()), walk, stack{0};
+    for (const std::int32_t i : pairs) ++start[at(i) + 1];
+    for (std::int32_t i = 0; i < n_atoms; ++i) start[at(i) + 1] += start[at(i)];
+    std::vector<std::int32_t> next(start.begin(), start.end() - 1);
+    for (std::int32_t k = 0; k < n_bonds; ++k) {
+        arms[at(next[at(pairs[2 * at(k)])]++)] = k;
+        arms[at(next[at(pairs[2 * at(k) + 1])]++)] = ~k;
+    }
+    std::vector<unsigned char> reached(at(n_atoms), 0);
+    reached[0] = 1;
+    walk.reserve(at(n_atoms) - 1);
+    while (!stack.empty()) {
+        const std::int32_t i = stack.back();
+        stack.pop_back();
+        for (std::int32_t a = start[at(i)]; a < start[at(i) + 1]; ++a) {
+            const std::int32_t step = arms[at(a)];
+            const std::int32_t j = step < 0 ? pairs[2 * at(~step)] : pairs[2 * at(step) + 1];
+            if (reached[at(j)]) continue;
+            reached[at(j)] = 1;
+            walk.push_back(step);
+            stack.push_back(j);
+        }
+    }
+    return walk;
+}
+
 }  // namespace
 
 std::int32_t Shapes::find(Form form, std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
@@ -28,7 +57,8 @@ std::int32_t Shapes::find(Form form, std::int32_t n_atoms, std::int32_t n_bonds,
     for (auto it = candidates.first; it != candidates.second; ++it)
         if (is((*this)[it->second], n_atoms, n_bonds, pairs, fixed)) return it->second;
 
-    Shape shape{form, n_atoms, n_bonds, {pairs, pairs + 2 * std::int64_t{n_bonds}}, {fixed, fixed + n_atoms}, {}};
+    Shape shape{form, n_atoms, n_bonds, {pairs, pairs + 2 * std::int64_t{n_bonds}}, {fixed, fixed + n_atoms}, {}, {}};
+    shape.walk = spanning_walk(n_atoms, shape.pairs);
     const std::unique_ptr<bool[]> flags(new bool[static_cast<std::size_t>(n_atoms)]);
     std::transform(fixed, fixed + n_atoms, flags.get(), [](unsigned char f) { return f != 0; });
     shape.schedule = make_schedule(n_atoms, n_bonds, pairs, flags.get());
@@ -46,7 +76,8 @@ std::size_t Shapes::bytes() const {
     std::size_t bytes =
         shapes_.capacity() * sizeof(Shape) + by_hash_.size() * 40 + by_hash_.bucket_count() * sizeof(void *);
     for (const Shape &shape : shapes_)
-        bytes += shape.pairs.capacity() * sizeof(std::int32_t) + shape.fixed.capacity() + bytes_of(*shape.schedule);
+        bytes += shape.pairs.capacity() * sizeof(std::int32_t) + shape.fixed.capacity() +
+                 shape.walk.capacity() * sizeof(std::int32_t) + bytes_of(*shape.schedule);
     return bytes;
 }
 

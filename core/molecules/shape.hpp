@@ -19,6 +19,8 @@ struct Shape {
     std::int32_t n_atoms, n_bonds;
     std::vector<std::int32_t> pairs;   // [n_bonds][2] local atoms, the lower one first
     std::vector<unsigned char> fixed;  // [n_atoms]
+    std::vector<std::int32_t> walk;    // bonds to every atom but the first, each from one that is reached: k, or ~k if
+                                       // it is gone along from its higher atom
     std::unique_ptr<const Schedule> schedule;
 };
 

@@ -4,12 +4,21 @@
 
 #include "core/molecules/batch.hpp"
 #include "core/molecules/chains.hpp"
+#include "core/molecules/closable.hpp"
 
 namespace holonomic {
 
 namespace {
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+void check_closable(const Chains &chains, const Molecule &m, const double *length) {
+    Unclosable found;
+    if (!find_unclosable(*m.shape, length, &found)) return;
+    const auto name = [&](std::int64_t i) { return chains.name_of_atom(m.atom(i < 0 ? 0 : i)); };
+    const Name names[3] = {name(m.i(found.bond)), name(m.j(found.bond)), name(found.corner)};
+    throw unclosable_error(found, names, m.bond(found.bond), chains.base);
+}
 
 }  // namespace
 
@@ -26,18 +35,37 @@ void Chains::rebuild(const Masses &masses, const double *lengths) {
             length.resize(at(m.n_bonds));
             for (std::int64_t i = 0; i < m.n_atoms; ++i) w[at(i)] = masses.w(m.atom(i));
             for (std::int64_t k = 0; k < m.n_bonds; ++k) length[at(k)] = lengths ? lengths[m.bond(k)] : m.length(k);
+            const std::int64_t n_kinds = kinds.size();
             const std::int64_t kind =
                 kinds.find(kind_of(group).shape, m.n_atoms, m.n_bonds, w.data(), length.data(), groups.last_kind());
+            if (lengths && kind == n_kinds && m.shape) check_closable(*this, m, length.data());
             groups.append(kinds, kind, 1, m.first_atom, m.atom_list, m.first_bond, m.bond_list);
         }
+    const double longest = kinds.longest(0, 0);
+    check_width(box, longest);
+    check_width(box_of_reference(), longest);
+    longest_ = longest;
     kinds_ = std::move(kinds);
     groups_ = std::move(groups);
     changed();
 }
 
+// Lengths that a program changes step by step: the reference still has those before. Where they change by no more than
+// this factor, positions that fitted are not looked at again.
+constexpr double small_change = 1.5;
+
 void Chains::set_lengths(const double *lengths) {
     check_lengths(n_bonds_, lengths, base);
+    bool small = fits_.load();
+    for (std::int64_t c = 0; small && c < n_chains(); ++c) {
+        const Molecule m = molecule(c);
+        for (std::int64_t k = 0; small && k < m.n_bonds; ++k) {
+            const double ratio = lengths[m.bond(k)] / m.length(k);
+            small = ratio < small_change && ratio * small_change > 1;
+        }
+    }
     rebuild(masses_, lengths);
+    fits_.store(small);
 }
 
 void Chains::set_masses(const double *masses) {
@@ -50,7 +78,9 @@ void Chains::set_masses(const double *masses) {
         error.base = base;
         throw error;
     }
+    const bool fitted = fits_.load();
     rebuild(next, nullptr);
+    fits_.store(fitted);
     masses_ = std::move(next);
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
+#include "core/run/bond_words.hpp"
 #include "core/run/dependent_bond.hpp"
 
 namespace holonomic {
@@ -48,17 +49,18 @@ class Diagnosis {
 public:
     Diagnosis(const Chains &chains, const Tally &tally, const Box &box)
         : chains_(chains), box_(box), m_(chains.molecule(tally.first_bad)), base_(chains.base), n_bad_(tally.n_bad) {
-        std::snprintf(name_, sizeof name_, "%s %s", m_.shape ? "molecule" : "chain",
-                      chains.name_of_molecule(m_.number).text);
+        std::snprintf(name_, sizeof name_, "molecule %s", chains.name_of_molecule(m_.number).text);
         if (n_bad_ > 1)
-            std::snprintf(others_, sizeof others_, " (the first of %lld bad %s)", static_cast<long long>(n_bad_),
-                          m_.shape ? "molecules" : "chains");
+            std::snprintf(others_, sizeof others_, " (the first of %lld bad molecules)",
+                          static_cast<long long>(n_bad_));
     }
 
     Error find(const NamedArray *arrays, int n_arrays, Status otherwise) {
         Error error;
         if (not_finite(arrays, n_arrays, error)) return error;
         const AtomArray &r = *arrays[0].array;
+        reference_ = &r;
+        if (otherwise == Status::no_convergence) trial_ = arrays[1].array;
         for (std::int64_t k = 0; k < m_.n_bonds; ++k) {
             double d[3];
             if (!bond_vector(r, box_, m_, k, d)) return of_bond(k, "has length zero");
@@ -71,20 +73,13 @@ public:
         if (bond >= 0 && m_.shape)
             return of_bond(bond, "depends on the others: their constraints hold it already at these positions");
         if (bond >= 0) return taut(bond);
-        if (bond == -1 && otherwise == Status::no_convergence)
-            return finish(make_error(otherwise,
-                                     "%s: no corrections along the reference bonds bring the bonds back to their "
-                                     "lengths; the step is too large, or a length can't be reached%s",
-                                     name_, others_),
-                          -1, -1);
+        if (bond == -1 && otherwise == Status::no_convergence) return out_of_reach();
         return finish(make_error(Status::not_finite, "%s: the numbers overflow or underflow; choose other units%s",
                                  name_, others_),
                       -1, -1);
     }
 
 private:
-    long long number(std::int64_t i) const { return static_cast<long long>(i + base_); }
-
     Error finish(Error error, std::int64_t bond, std::int64_t atom) const {
         error.chain = m_.number;
         error.bond = bond;
@@ -110,23 +105,57 @@ private:
         return false;
     }
 
-    // Its number within the molecule, and the atoms; in the caller's arrays it may have another number.
+    // "it should be 1, is 1.1 in the reference and 3 in the positions to be projected; no box is set"
+    Words lengths_of(std::int64_t k) const {
+        Words words;
+        const double a = m_.length(k), before = length_of_bond(m_, k, *reference_, box_);
+        if (trial_)
+            std::snprintf(words.text, sizeof words.text,
+                          "it should be %.6g long, is %.6g in the reference and %.6g in the positions to be projected; "
+                          "%s",
+                          a, before, length_of_bond(m_, k, *trial_, chains_.box), box_in_words(chains_.box));
+        else
+            std::snprintf(words.text, sizeof words.text, "it should be %.6g long and is %.6g; %s", a, before,
+                          box_in_words(box_));
+        return words;
+    }
+
+    // The bond that is farthest from its length, by the trial positions or the reference.
+    std::int64_t worst_bond() const {
+        std::int64_t worst = 0;
+        double most = -1;
+        for (std::int64_t k = 0; k < m_.n_bonds; ++k)
+            for (int which = 0; which < 2; ++which) {
+                const double length =
+                    which == 0 ? length_of_bond(m_, k, *trial_, chains_.box) : length_of_bond(m_, k, *reference_, box_);
+                const double off = std::fabs(length / m_.length(k) - 1);
+                if (!(off > most)) continue;
+                most = off;
+                worst = k;
+            }
+        return worst;
+    }
+
+    Error out_of_reach() const {
+        const std::int64_t k = worst_bond();
+        return finish(make_error(Status::no_convergence,
+                                 "%s: no corrections along the reference bonds bring the bonds back to their lengths; "
+                                 "the step is too large, or a length can't be reached. The worst is %s: %s%s",
+                                 name_, name_of_bond(chains_, m_, k).text, lengths_of(k).text, others_),
+                      k, -1);
+    }
+
     Error of_bond(std::int64_t k, const char *what) const {
-        char place[48] = "";
-        if (m_.shape || m_.bond_list)
-            std::snprintf(place, sizeof place, "%lld of the arrays per bond, ", number(m_.bond(k)));
-        return finish(make_error(Status::degenerate, "%s: bond %lld (%satoms %s and %s) %s%s", name_, number(k), place,
-                                 chains_.name_of_atom(m_.atom(m_.i(k))).text,
-                                 chains_.name_of_atom(m_.atom(m_.j(k))).text, what, others_),
+        return finish(make_error(Status::degenerate, "%s: %s %s; %s%s", name_, name_of_bond(chains_, m_, k).text, what,
+                                 lengths_of(k).text, others_),
                       k, -1);
     }
 
     Error taut(std::int64_t k) const {
         return finish(make_error(Status::degenerate,
-                                 "%s: taut between atoms that are held fixed; the tension of bond %lld (atoms %s "
-                                 "and %s) is not determined%s",
-                                 name_, number(k), chains_.name_of_atom(m_.atom(k)).text,
-                                 chains_.name_of_atom(m_.atom(k + 1)).text, others_),
+                                 "%s: taut between atoms that are held fixed; the tension of %s is not determined: "
+                                 "%s%s",
+                                 name_, name_of_bond(chains_, m_, k).text, lengths_of(k).text, others_),
                       k, -1);
     }
 
@@ -135,6 +164,7 @@ private:
     const Molecule m_;
     const int base_;
     const std::int64_t n_bad_;
+    const AtomArray *reference_ = nullptr, *trial_ = nullptr;  // trial: at the position level
     char name_[128], others_[80] = "";
 };
 

@@ -172,6 +172,29 @@ static void tridiagonal(void)
 }
 
 #if HOL_VERSION_MAJOR > 0 || HOL_VERSION_MINOR >= 2
+/* The first beads of the triangle and of the star, displaced, and put back along bond vectors. */
+static void along(hol_chains *both, const double *r)
+{
+    static const int from[6] = {0, 1, 2, 4, 5, 3}, to[6] = {1, 2, 0, 3, 3, 6};
+    double b[18], moved[21], error = -1;
+    int64_t molecule = -7, bond = -7;
+    int k, c;
+    hol_report report;
+    const hol_view vectors = view_of(b), positions = view_of(moved);
+    for (k = 0; k < 6; ++k)
+        for (c = 0; c < 3; ++c) b[3 * k + c] = r[3 * to[k] + c] - r[3 * from[k] + c];
+    memcpy(moved, r, sizeof moved);
+    moved[3] += 0.01;
+    moved[12] += 0.01;
+    SUCCEEDS(hol_project_positions_along(both, b, moved, NULL, 0.01, NULL, 0, NULL, &report));
+    EXPECT(report.n_corrected == 2 && report.max_error < 1e-12);
+    hol_reference_error(&error, &molecule, &bond);
+    EXPECT(error >= 0 && error < 1e-12 && molecule >= 0 && bond >= 0);
+    SUCCEEDS(hol_project_positions_along_view(both, &vectors, &positions, NULL, 0.01, NULL, 0, NULL, NULL));
+    moved[3] += 5;
+    EXPECT(hol_chains_check(both, moved, HOL_BOX) == HOL_ERR_LENGTHS);
+}
+
 /* A rigid triangle and three beads on one, all of mass 1, pulled apart. */
 static void molecules(void)
 {
@@ -227,6 +250,11 @@ static void molecules(void)
     v[4] = INFINITY;
     EXPECT(hol_project_velocities(both, r, v, NULL, NULL) == HOL_ERR_NOT_FINITE);
     EXPECT(strstr(hol_error_message(), "label 20") != NULL);
+    v[4] = 0;
+    SUCCEEDS(hol_chains_set_checks(both, HOL_AT_START));
+    SUCCEEDS(hol_chains_check(both, r, HOL_BOX));
+    SUCCEEDS(hol_chains_check_view(both, &view, HOL_REFERENCE_BOX));
+    along(both, r);
     hol_chains_destroy(both);
 }
 #endif

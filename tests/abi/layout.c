@@ -31,6 +31,10 @@ static void enum_values_are_frozen(void)
     IS(HOL_ERR_NO_CONVERGENCE, 8);
     IS(HOL_ERR_NOT_DEFINITE, 9);
     IS(HOL_ERR_INTERNAL, 10);
+    IS(HOL_ERR_LENGTHS, 11);
+    IS(HOL_NEVER, 0);
+    IS(HOL_AT_START, 1);
+    IS(HOL_ALWAYS, 2);
     IS(HOL_DOUBLE, 0);
     IS(HOL_FLOAT, 1);
     IS(HOL_WRITE, 0);

@@ -30,6 +30,8 @@ static outcome step(chain_kind kind, int64_t n, double dt, uint64_t seed)
     assembly a = assembly_make(&one, 1, IN_ORDER, 0);
     hol_report report;
     outcome o = {0, 0, 0, HOL_OK};
+    /* A bond of 1e-6 between others: a step is many times its length. */
+    if (kind == CHAIN_BOND_RATIO_1E6) CHECK(hol_chains_set_checks(a.chains, HOL_NEVER));
     CHECK(hol_project_velocities(a.chains, a.r, a.v, NULL, NULL));
     double *q = copy_of(a.r, assembly_size(&a)), *v = copy_of(a.v, assembly_size(&a));
     for (size_t i = 0; i < assembly_size(&a); ++i) q[i] += dt * a.v[i];

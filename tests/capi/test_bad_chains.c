@@ -98,6 +98,7 @@ static void positions_with(spoiler how, int spoilt, const int64_t *bad, int n_ba
 {
     const double dt = 0.004;
     assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, CHAINS, 2, 40, SCATTERED, 23);
+    CHECK(hol_chains_set_checks(a.chains, HOL_NEVER)); /* what the arithmetic itself finds */
     const size_t n = (size_t)a.n_bonds, size = assembly_size(&a);
     double *drifted = copy_of(a.r, size);
     for (size_t i = 0; i < size; ++i) drifted[i] += dt * a.v[i];
@@ -197,6 +198,7 @@ static void an_overflowing_bond_is_found_wherever_it_is(void **state)
                 assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, chains, n, n, at % 2 ? IN_ORDER : SCATTERED, 26);
                 const size_t size = assembly_size(&a), bonds = (size_t)a.n_bonds;
                 const int64_t bad = chains / 2;
+                CHECK(hol_chains_set_checks(a.chains, HOL_NEVER));
                 spoil(&a, bad, at, OVERFLOWING_BOND);
                 double *lambda = untouched(bonds), *g = untouched(size), *before = untouched(size);
                 double *v = copy_of(a.v, size), *r = copy_of(a.r, size);

@@ -73,10 +73,10 @@ static void a_bond_is_shown_by_the_labels_of_its_atoms(void **state)
     CHECK(hol_chains_add_block(other, 1, 1, 2, length));
     v[0] = INFINITY;
     CHECK_FAILS(HOL_ERR_NOT_FINITE, hol_project_velocities(other, r, v, NULL, NULL));
-    assert_message_names("chain 0 (label 5): the velocity of atom 0 is");
+    assert_message_names("molecule 0 (label 5): the velocity of atom 0 is");
     v[0] = 0, v[6] = NAN;
     CHECK_FAILS(HOL_ERR_NOT_FINITE, hol_project_velocities(other, r, v, NULL, NULL));
-    assert_message_names("chain 1: the velocity of atom 2 is");
+    assert_message_names("molecule 1: the velocity of atom 2 is");
     hol_chains_destroy(other);
 }
 

@@ -146,7 +146,7 @@ static void positions_of_bad_molecules_stay(void **state)
     static const molecule_kind kinds[] = {MOLECULE_WATER, MOLECULE_TREE, MOLECULE_RING, MOLECULE_CUBE};
     const double dt = 1e-3;
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k)
-        for (int how = 0; how < 3; ++how) {
+        for (int how = 0; how < 4; ++how) {
             mixture m = mixture_of_kind(kinds[k], 15, 4, 6, MIXED, 31);
             const size_t size = mixture_size(&m), n = (size_t)m.n_bonds;
             double *drifted = mixture_drifted(&m, dt), *nothing = untouched(n);
@@ -155,14 +155,16 @@ static void positions_of_bad_molecules_stay(void **state)
             const molecule *part = m.parts + 7;
             const int64_t *atoms = m.atoms + m.first_atom[7];
             if (how == 0) drifted[3 * atoms[part->pairs[1]]] = NAN;
-            if (how == 1) drifted[3 * atoms[part->pairs[1]]] += 1e4; /* nowhere near its bonds' lengths */
+            if (how == 3) CHECK(hol_chains_set_checks(m.chains, HOL_NEVER));
+            if (how == 1 || how == 3) drifted[3 * atoms[part->pairs[1]]] += 1e4; /* nowhere near its bonds' lengths */
             if (how == 2) spoil(&m, 7, 5);
             double *r = copy_of(drifted, size), *v = copy_of(m.v, size), *lambda = untouched(n);
             double *virial = untouched(9);
             hol_report report;
             CHECK_FAILS(how == 0   ? HOL_ERR_NOT_FINITE
-                        : how == 1 ? HOL_ERR_NO_CONVERGENCE
-                                   : HOL_ERR_DEGENERATE,
+                        : how == 1 ? HOL_ERR_LENGTHS
+                        : how == 2 ? HOL_ERR_DEGENERATE
+                                   : HOL_ERR_NO_CONVERGENCE,
                         hol_project_positions(m.chains, m.r, r, v, dt, lambda, 0, virial, &report));
             int64_t chain, count;
             hol_error_location(&chain, NULL, NULL, &count);

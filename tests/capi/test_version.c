@@ -24,9 +24,10 @@ static void every_status_has_its_own_name(void **state)
         "HOL_ERR_NO_CONVERGENCE",
         "HOL_ERR_NOT_DEFINITE",
         "HOL_ERR_INTERNAL",
+        "HOL_ERR_LENGTHS",
     };
-    for (int s = 0; s < 11; ++s) assert_string_equal(hol_status_name(s), names[s]);
-    assert_string_equal(hol_status_name(11), "unknown status");
+    for (int s = 0; s < 12; ++s) assert_string_equal(hol_status_name(s), names[s]);
+    assert_string_equal(hol_status_name(12), "unknown status");
     assert_string_equal(hol_status_name(-1), "unknown status");
     assert_string_equal(hol_status_name(1 << 30), "unknown status");
 }

@@ -31,7 +31,7 @@ tensions_refuses(too_many_numbers "line 1: more than ten numbers" "1 0 0 0 0 0 0
 tensions_refuses(a_word "line 2: this is not a number" "# two atoms" "1 0 0 zero 0 0 0 0 0 0")
 tensions_refuses(a_negative_mass "[Aa]tom 1" "1 0 0 0 0 0 0 0 0 0" "-1 0 0 1 0 0 0 0 0 0")
 tensions_refuses(a_bond_of_length_zero "bond 0" "1 0 0 0 0 0 0 0 0 0" "1 0 0 0 0 0 0 0 0 0")
-tensions_refuses(a_number_that_is_not_finite "chain 0" "1 0 0 0 0 0 0 0 0 0" "1 0 0 1 0 0 nan 0 0 0")
+tensions_refuses(a_number_that_is_not_finite "molecule 0" "1 0 0 0 0 0 0 0 0 0" "1 0 0 1 0 0 nan 0 0 0")
 
 # With the Makefile, as by hand.
 add_test(NAME examples.c.makefile COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/make_with_pkg_config.sh

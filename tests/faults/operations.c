@@ -49,6 +49,29 @@ static int positions(const assembly *a, double *out)
                                  NULL);
 }
 
+const int64_t *pairs_of_bonds;
+
+/* The bond vectors are not among the outputs. */
+static int positions_along(const assembly *a, double *out)
+{
+    static double b[3 * 20000];
+    if (3 * bonds(a) > sizeof b / sizeof *b) return HOL_ERR_INTERNAL;
+    int64_t k = 0;
+    for (int64_t c = 0; c < (pairs_of_bonds ? 1 : a->n_chains); ++c)
+        for (int64_t in_chain = 0; in_chain < (pairs_of_bonds ? a->n_bonds : assembly_bonds(a, c)); ++in_chain, ++k) {
+            const int64_t *const ends = pairs_of_bonds ? pairs_of_bonds + 2 * k : a->atoms + a->first[c] + in_chain;
+            for (int x = 0; x < 3; ++x) b[3 * k + x] = a->r[3 * ends[1] + x] - a->r[3 * ends[0] + x];
+        }
+    return hol_project_positions_along(a->chains, b, out + atoms3(a), out, 0.003, per_bond(a, out), 0, numbers(a, out),
+                                       NULL);
+}
+
+static int check(const assembly *a, double *out)
+{
+    (void)out;
+    return hol_chains_check(a->chains, a->r, HOL_BOX);
+}
+
 static int violation(const assembly *a, double *out)
 {
     hol_worst worst = {0, 0, 0, 0, 0, 0};
@@ -178,6 +201,8 @@ const operation operations[] = {
     {"hol_forces", forces},
     {"hol_project_velocities", velocities},
     {"hol_project_positions", positions},
+    {"hol_project_positions_along", positions_along},
+    {"hol_chains_check", check},
     {"hol_violation", violation},
     {"hol_solve", given_right_hand_sides},
     {"hol_reactions", reactions},

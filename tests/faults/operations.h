@@ -17,6 +17,9 @@ extern const size_t n_operations;
 int forces(const assembly *a, double *out);
 int given_right_hand_sides(const assembly *a, double *out);
 
+/** The atoms of the bonds, [n_bonds][2], if they do not follow each other along chains; else NULL. */
+extern const int64_t *pairs_of_bonds;
+
 /** Of the inverse's calls; to be made before allocations fail. */
 extern hol_inverse *prepared;
 

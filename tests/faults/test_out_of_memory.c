@@ -111,7 +111,9 @@ static assembly molecules(void)
     a.n_bonds = n;
     CHECK(hol_chains_create(a.n_atoms, a.mass, &a.chains));
     CHECK(hol_chains_add_bonds(a.chains, n, pairs, lengths));
-    free(pairs);
+    static int64_t *kept; /* for the operations */
+    free(kept);
+    pairs_of_bonds = kept = pairs;
     return a;
 }
 
@@ -121,6 +123,7 @@ static void every_allocation_of_a_calculation_can_fail(void **state)
     static const int64_t shapes[][3] = {{9, 3, 30}, {1, 2000, 2000}, {3, 2, 3000}};
     static const char *const names[] = {"short chains", "one long chain", "long and short"};
     for (int i = 0; i < 3; ++i) {
+        pairs_of_bonds = NULL;
         assembly a = assembly_of_kind(CHAIN_HETEROGENEOUS, shapes[i][0], shapes[i][1], shapes[i][2], SCATTERED, 5);
         fail_each_of_all(&a, names[i]);
         assembly_free(&a);

@@ -201,7 +201,7 @@ contains
       v(2, 8) = nan               ! chain 2
       r(:, 17) = r(:, 16)         ! chain 4, first bond
       call chains%forces(r, v, f, lambda, tension, g, virial=virial, stat=stat, errmsg=message)
-      call check(stat == HOL_ERR_NOT_FINITE .and. says("chain 2") .and. says("atom 8"), "the first one is named")
+      call check(stat == HOL_ERR_NOT_FINITE .and. says("molecule 2") .and. says("atom 8"), "the first one is named")
       call hol_error_location(chain, bond, atom, n_bad)
       call check(chain == 2 .and. atom == 8 .and. n_bad == 2, "in numbers, too, with how many there are")
       call check(all(same_bits(g(:, 6:10), -7.0_real64)) .and. all(same_bits(g(:, 16:20), -7.0_real64)) .and. &
@@ -212,16 +212,16 @@ contains
       call check(all(same_bits(virial, -7.0_real64)), "sums are not written")
       v(2, 8) = 0
       call chains%forces(r, v, f, stat=stat, errmsg=message)
-      call check(stat == HOL_ERR_DEGENERATE .and. says("chain 4") .and. says("bond 1"), "a bond of length zero")
+      call check(stat == HOL_ERR_DEGENERATE .and. says("molecule 4") .and. says("bond 1"), "a bond of length zero")
       before = v
       call chains%project_velocities(r, v, virial=virial, stat=stat, errmsg=message)
-      call check(stat == HOL_ERR_DEGENERATE .and. says("chain 4"), "in project_velocities")
+      call check(stat == HOL_ERR_DEGENERATE .and. says("molecule 4"), "in project_velocities")
       call check(all(same_bits(v(:, 16:20), before(:, 16:20))) .and. .not. all(same_bits(v(:, :5), before(:, :5))), &
                  "its velocities are left alone, the others are projected")
       r(1, 3) = nan
       worst%length = -7
       call chains%violation(r, worst=worst, stat=stat, errmsg=message)
-      call check(stat == HOL_ERR_NOT_FINITE .and. says("chain 1") .and. same_bits(worst%length, -7.0_real64), &
+      call check(stat == HOL_ERR_NOT_FINITE .and. says("molecule 1") .and. same_bits(worst%length, -7.0_real64), &
                  "in violation")
    end subroutine
 
@@ -231,11 +231,12 @@ contains
       call reset()
       r = r + 0.01_real64*v
       r(1, 12) = r(1, 12) + 1000   ! chain 3
+      call chains%set_checks(HOL_NEVER)   ! which would refuse the whole call
       before = r
       before_v = v
       call chains%project_positions(r_ref, r, 0.01_real64, v, lambda, virial=virial, report=report, stat=stat, &
                                     errmsg=message)
-      call check(stat == HOL_ERR_NO_CONVERGENCE .and. says("chain 3"), "the chain is named")
+      call check(stat == HOL_ERR_NO_CONVERGENCE .and. says("molecule 3"), "the chain is named")
       call check(report%n_failed == 1 .and. report%n_corrected == 3, "and counted in the report")
       call check(all(same_bits(r(:, 11:15), before(:, 11:15))) .and. all(same_bits(v(:, 11:15), before_v(:, 11:15))) &
                  .and. all(same_bits(lambda(9:12), -7.0_real64)), "it is left alone")

@@ -82,10 +82,10 @@ program test_motion
    call check(stat == HOL_ERR_NOT_FINITE .and. index(message, "atom 6 (label 90210)") > 0, trim(message))
    call chains%set_labels([integer(int64) ::], [55_int64, 2_int64**40])
    call chains%project_velocities(r, v, stat=stat, errmsg=message)
-   call check(index(message, "chain 2 (label 1099511627776): the velocity of atom 6 is") > 0, trim(message))
+   call check(index(message, "molecule 2 (label 1099511627776): the velocity of atom 6 is") > 0, trim(message))
    call chains%set_labels()
    call chains%project_velocities(r, v, stat=stat, errmsg=message)
-   call check(index(message, "chain 2: the velocity of atom 6 is") > 0, trim(message))
+   call check(index(message, "molecule 2: the velocity of atom 6 is") > 0, trim(message))
 
    call test("arguments that do not fit")
    call chains%set_labels([1, 2, 3], stat=stat, errmsg=message)

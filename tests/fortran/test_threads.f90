@@ -35,7 +35,7 @@ program test_threads
       u(2, 1 + 10*mod(round, 30)) = 1/(u(2, 1)*0)
       call chains%project_velocities(r, u, stat=stat, errmsg=message)
       ! Not a function with a result of deferred length, for which gfortran keeps a static variable here.
-      write (expected, '("chain ", i0, ":")') 1 + mod(round, 30)
+      write (expected, '("molecule ", i0, ":")') 1 + mod(round, 30)
       if (stat /= HOL_ERR_NOT_FINITE .or. index(message, trim(expected)) == 0) n_misplaced = n_misplaced + 1
    end do
    !$omp end parallel do

@@ -1,4 +1,5 @@
 // Forces, velocities, positions and what is left of the constraints.
+#include <cmath>
 #include <initializer_list>
 
 #include "session.hpp"
@@ -69,6 +70,43 @@ void session::positions()
         check(said->n_failed == 0, "a report of failures without one");
         check(said->max_error >= 0, "a success whose largest error is no number");
     }
+}
+
+void session::compare()
+{
+    atom_array r(n_atoms, in);
+    outputs out;
+    for (block *b : {&r.plain, &r.laid_out}) out.add(*b);
+    check_status(hol_chains_set_checks(maybe(chains), in.often() ? in.byte() % 3 : in.byte()));
+    const int box = in.often() ? in.byte() & 1 : in.byte();
+    const int status = in.byte() & 1 ? hol_chains_check(maybe(chains), maybe(r.plain.doubles()), box)
+                                     : hol_chains_check_view(maybe(chains), maybe(&r.view), box);
+    out.check_after(status, 0);
+}
+
+void session::along()
+{
+    atom_array r(n_atoms, in), v(n_atoms, in), b(static_cast<std::int64_t>(bonds()), in);
+    block lambda(bonds() * sizeof(double)), virial(9 * sizeof(double)), report(sizeof(hol_report));
+    fill(lambda, bonds(), in);
+    outputs out;
+    for (block *one : {&lambda, &r.plain, &r.laid_out, &v.plain, &v.laid_out}) out.add(*one);
+    out.add_sum(virial);
+    const int guess = in.byte() & 1;
+    hol_report *const said = maybe(reinterpret_cast<hol_report *>(report.data()));
+    const int status =
+        in.byte() & 1
+            ? hol_project_positions_along(maybe(chains), maybe(b.plain.doubles()), maybe(r.plain.doubles()),
+                                          maybe(v.plain.doubles()), 0.01, maybe(lambda.doubles()), guess,
+                                          maybe(virial.doubles()), said)
+            : hol_project_positions_along_view(maybe(chains), maybe(&b.view), maybe(&r.view), maybe(&v.view), 0.01,
+                                               maybe(lambda.doubles()), guess, maybe(virial.doubles()), said);
+    // Lengths that do not fit, and vectors that make no sense, change nothing at all.
+    double error;
+    std::int64_t molecule, bond;
+    out.check_after(status, active());
+    hol_reference_error(&error, &molecule, &bond);
+    check(error >= 0 || std::isnan(error), "an error of the reference that is negative");
 }
 
 void session::violation()

@@ -19,7 +19,7 @@ void session::run()
     create();
     for (int call = 0; call < 24 && !in.done(); ++call) {
         const int what = in.byte();
-        switch (what < 160 ? what % 16 : 16 + what % 7) {
+        switch (what < 160 ? what % 16 : what < 250 ? 16 + what % 7 : 23) {
             case 0:
                 create();
                 break;
@@ -77,6 +77,10 @@ void session::run()
                 break;
             case 21:
                 react();
+                break;
+            case 23:
+                compare();
+                along();
                 break;
             default:
                 solve();

@@ -73,6 +73,8 @@ struct session {
     void velocities();
     void positions();
     void violation();
+    void compare();
+    void along();
     void metric();
     void inverse();
     void tridiagonal();

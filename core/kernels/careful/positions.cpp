@@ -94,7 +94,7 @@ static Projected iterate(Projection &p, const PositionsCall &call, bool guess, i
     const double accepted = carried(p, call), done = call.tolerance > epsilon ? call.tolerance : epsilon;
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) p.T[k] = wide(0);
     move(p);
-    if (!is_finite(p.error)) return projected_not;
+    if (!is_finite(p.error) || p.error > call.worst_trial) return projected_not;
     if (p.error <= accepted) return projected_untouched;
     if (guess) {
         const double before = p.error;

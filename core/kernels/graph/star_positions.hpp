@@ -65,7 +65,8 @@ struct StarPositions {
         for (int k = 0; k <= N; ++k) largest = max(max(abs(r[k].x), abs(r[k].y)), max(abs(r[k].z), largest));
         V error = measure(D, sigma);
         const Limits<V> limits(call, largest * m.per_a_min);
-        const MaskOf<V> untouched = in_use & less_equal(error, limits.accepted), wanted = in_use & ~untouched;
+        const MaskOf<V> untouched = in_use & less_equal(error, limits.accepted);
+        const MaskOf<V> wanted = in_use & ~untouched & less_equal(error, Width<V>::all(call.worst_trial));
         MaskOf<V> unsure = wanted;
         const StarModel<N, V> model(m, b, D, sigma);
         const int64_t solves = solve_for_multipliers<N>(model, tau, unsure);

@@ -101,7 +101,8 @@ struct TrianglePositions {
             return bits(untouched);
         }
         const TriangleModel<V> model(x);
-        const MaskOf<V> wanted = in_use & ~untouched & model.open_angle();
+        const MaskOf<V> near = less_equal(error, Width<V>::all(call.worst_trial));
+        const MaskOf<V> wanted = in_use & ~untouched & near & model.open_angle();
         MaskOf<V> unsure = wanted;
         const int64_t solves = solve_for_multipliers<3>(model, x.tau, unsure);
         // Bits from here on: masks of vectors take registers that the moves need.

@@ -64,7 +64,7 @@ class Carried {
 public:
     Carried(const Block &block, const Newton &x, const PositionsCall &call, const Source &r)
         : block_(block), x_(x), r_(r), tolerance_(call.tolerance), u_(call.r.is_float ? 5.97e-8 : 1.11e-16),
-          boxed_(call.box.shape != Box::none) {}
+          worst_trial_(call.worst_trial), boxed_(call.box.shape != Box::none) {}
 
     void know_largest(vec coordinate) {
         largest_ = coordinate;
@@ -77,6 +77,7 @@ public:
     }
     // An error |D.D - a^2| / a^2 no larger than this, or than the caller's tolerance, is accepted.
     vec accepted() { return max(splat(tolerance_), (8 * u_) * (1.0 + largest_coordinate() / x_.a_min)); }
+    mask not_too_far(vec error, vec a2) const { return less_equal(error, worst_trial_ * a2); }
     vec always_accepted() const { return splat(tolerance_ > 8 * u_ ? tolerance_ : 8 * u_); }
 
     // Lanes in which the bonds may be accepted as they came; `error` is their |D.D - a^2| in units of `a2`. Without
@@ -101,7 +102,7 @@ private:
     const Block &block_;
     const Newton &x_;
     const Source &r_;
-    const double tolerance_, u_;
+    const double tolerance_, u_, worst_trial_;
     const bool boxed_;
     bool known_ = false;
     vec largest_ = {};

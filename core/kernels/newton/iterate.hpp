@@ -18,7 +18,7 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
     vec error = careful ? renew<uniform_w, uniform_a, careful_factors>(block, x, wanted)
                         : eliminate<uniform_w, uniform_a, first_factors, fixed>(block, x, wanted);
     out.untouched = wanted & carried.within(error, splat(1.0));
-    mask active = wanted & block.movable & ~out.untouched & finite(error);
+    mask active = wanted & block.movable & ~out.untouched & finite(error) & less_equal(error, splat(call.worst_trial));
     if (guess) {
         for (long k = 0; k < block.n; ++k) x.tau[k] = keep(active, x.tau[k]);
         const vec before = error;

@@ -21,7 +21,7 @@ HOL_INLINE Outcome solve_single_bonds(const Newton &x, Carried &carried, mask wa
     const vec s = sigma / (db + select(less(db, vec{}), -root, root));
     const mask known = wanted & finite(db);
     out.untouched = known & carried.within(abs(sigma), a2);
-    const mask reached = known & ~out.untouched & finite(s / w) & less(vec{}, w);
+    const mask reached = known & ~out.untouched & carried.not_too_far(sigma, a2) & finite(s / w) & less(vec{}, w);
     vec step = keep(reached, s);
     vec3 moved;
     const auto excess_left = [&]() HOL_FORCED {
@@ -134,7 +134,8 @@ HOL_INLINE Outcome solve_two_bonds(Newton &x, Carried &carried, mask wanted) {
     const vec z0 = sigma0 - c.q0, z1 = sigma1 - c.q1, next0 = f.first(z0, z1), next1 = f.second(z0, z1);
     c = m.change(next0 - t0, next1 - t1);
     const vec left = uniform_a ? max(c.q0, c.q1) * x.per_a2_uniform : max(c.q0 * x.per_a2[0], c.q1 * x.per_a2[1]);
-    const mask near = wanted & ~out.untouched & open & less(left, splat(two_bonds_left));
+    const mask near =
+        wanted & ~out.untouched & open & less(left, splat(two_bonds_left)) & carried.not_too_far(before, one);
     x.tau[0] = keep(near, next0 + f.first(c.q0, c.q1));
     x.tau[1] = keep(near, next1 + f.second(c.q0, c.q1));
     // As Mover has it, where the bond behind the last one is none.

@@ -69,7 +69,8 @@ typedef enum hol_status {
     HOL_ERR_DEGENERATE = 7,     /**< a bond of length zero, bonds that are not independent of each other */
     HOL_ERR_NO_CONVERGENCE = 8, /**< the bond lengths can't be reached from these positions */
     HOL_ERR_NOT_DEFINITE = 9,   /**< hol_tridiagonal_*: the matrix is not positive definite */
-    HOL_ERR_INTERNAL = 10       /**< a bug in the library: please report the message */
+    HOL_ERR_INTERNAL = 10,      /**< a bug in the library: please report the message */
+    HOL_ERR_LENGTHS = 11        /**< positions do not fit the bonds' lengths (hol_chains_set_checks). Since 0.2. */
 } hol_status;
 
 /** Version of the library that runs, "MAJOR.MINOR.PATCH". Never NULL. Since 0.1. */
@@ -117,7 +118,7 @@ typedef struct hol_chains hol_chains;
  * @param[in]  masses   [n_atoms], mass; 0 or +infinity: the atom is held fixed. Copied.
  * @param[out] chains   the new handle, to be given to hol_chains_destroy; NULL on an error
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (n_atoms < 0; a mass negative, NaN, or so small that 1/m overflows: the
- *         message names the atom, counted from 0); HOL_ERR_MEMORY. Since 0.1.
+ *         message names the atom, counted from 0; all masses 0, since 0.2); HOL_ERR_MEMORY. Since 0.1.
  */
 HOL_API int hol_chains_create(int64_t n_atoms, const double *masses, hol_chains **chains);
 
@@ -131,7 +132,8 @@ HOL_API void hol_chains_destroy(hol_chains *chains);
  * @param[in]     atoms    [n_bonds+1], any numbers of atoms of the caller's arrays; one that can move is used once
  * @param[in]     lengths  [n_bonds], bond lengths, 1e-150 .. 1e150. Used by hol_project_positions and hol_violation;
  *                         the acceleration and velocity levels use the bond vectors as they are. Copied.
- * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (n_bonds, a length); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM; HOL_ERR_MEMORY.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (n_bonds, a length; since 0.2 a length of more than half the box that is
+ *         set); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM; HOL_ERR_MEMORY.
  *         On an error nothing is added. Not thread-safe on one handle. Since 0.1.
  *
  * The chain is one molecule, whatever atoms of it are fixed; only a bond between two fixed atoms divides it into
@@ -167,7 +169,8 @@ HOL_API int hol_chains_add_block(hol_chains *chains, int64_t n_chains, int64_t n
  * list, after those of earlier calls. All bonds of a molecule have to be given in one call, but a fixed
  * atom may occur in any number of bonds and calls: it couples nothing.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (n_bonds, a length, a bond of an atom with itself, a molecule of more
- *         than 2^31 - 1 bonds); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM (an atom that can move is in a molecule of an
+ *         than 2^31 - 1 bonds; lengths of a triangle or ring that can't close: the message names the atoms);
+ *         HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM (an atom that can move is in a molecule of an
  *         earlier call; the message names it); HOL_ERR_DEGENERATE (a bond that is given twice, or more bonds within a
  *         part of a molecule than it has freedoms, as all distances between five atoms: the message names a bond; bonds
  *         that depend on each other through the positions alone are found by the calls that meet them);
@@ -196,8 +199,9 @@ HOL_API int hol_chains_add_molecules(hol_chains *chains, int64_t n_molecules, in
  * New lengths for all bonds, without building the set again.
  * @param[in,out] chains
  * @param[in] lengths  [n_bonds], 1e-150 .. 1e150. Copied.
- * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (a length: the message names the bond); HOL_ERR_MEMORY. On an error
- *         nothing is changed. Not thread-safe on one handle. O(n_bonds). Since 0.2.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (a length, lengths of a triangle or ring that can't close, or one of more
+ *         than half the box: the message names the bond); HOL_ERR_MEMORY. On an error nothing is changed. Not
+ * thread-safe on one handle. O(n_bonds). Since 0.2.
  */
 HOL_API int hol_chains_set_lengths(hol_chains *chains, const double *lengths);
 
@@ -206,8 +210,8 @@ HOL_API int hol_chains_set_lengths(hol_chains *chains, const double *lengths);
  * @param[in,out] chains
  * @param[in] masses  [n_atoms], as in hol_chains_create. What is held fixed divides molecules, so that an atom that is
  *                    in use stays fixed if it was, and movable if it was.
- * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (a mass: the message names the atom); HOL_ERR_MEMORY. On an error nothing
- *         is changed. Not thread-safe on one handle. O(n_atoms). Since 0.2.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (a mass: the message names the atom; all 0); HOL_ERR_MEMORY. On an error
+ * nothing is changed. Not thread-safe on one handle. O(n_atoms). Since 0.2.
  */
 HOL_API int hol_chains_set_masses(hol_chains *chains, const double *masses);
 
@@ -221,11 +225,13 @@ HOL_API int hol_chains_set_index_base(hol_chains *chains, int base);
 /**
  * Periodic box: bond vectors are taken as the minimum image. The default is none.
  * @param[in,out] chains
- * @param[in] box  [3][3], row i is box vector i, length; a row of zeros: not periodic along that axis. NULL: no box.
+ * @param[in] box  [3][3], row i is box vector i, length; a row of zeros: not periodic along that axis, in which no
+ * other vector may have a component. NULL: no box. Three sides stand on the diagonal: {a,0,0, 0,b,0, 0,0,c}.
  *
  * Orthorhombic boxes (off-diagonal elements all zero) cost less than triclinic ones. The image is the right one for
  * bonds shorter than half the smallest distance between opposite faces. May be set again before every call.
- * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_VALUE (not finite, or singular). Since 0.1.
+ * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_VALUE (not finite, or no cell; since 0.2 narrower than twice the
+ * longest bond). On an error nothing is changed. Since 0.1.
  */
 HOL_API int hol_chains_set_box(hol_chains *chains, const double *box);
 
@@ -265,6 +271,49 @@ HOL_API int hol_chains_set_box_rate(hol_chains *chains, const double *L);
  *         Since 0.2.
  */
 HOL_API int hol_chains_set_labels(hol_chains *chains, const int64_t *atoms, const int64_t *molecules);
+
+/** When positions are compared with the lengths of the bonds. Values are never changed nor reused. Since 0.2. */
+typedef enum hol_when {
+    HOL_NEVER = 0,    /**< not at all: crude positions are projected whatever they are like */
+    HOL_AT_START = 1, /**< in the first call at the position level, and in the first after a change (default) */
+    HOL_ALWAYS = 2    /**< in every such call: to find the step at which something goes wrong */
+} hol_when;
+
+/**
+ * When hol_project_positions compares positions with the lengths. A unit, an order or a numbering that is mistaken, a
+ * molecule cut by a face of the cell, a box forgotten or stale: all of these still have solutions, and Newton's method
+ * would find them, atoms moved by half the cell. With HOL_AT_START (default)
+ *
+ * - the first call, and the first after new molecules, after hol_chains_set_active, after lengths of more than 1.5
+ * times or less than two thirds of those before, and after a box that differs by more than 2 per cent, returns
+ * HOL_ERR_LENGTHS, and moves nothing, if a bond of the reference is off by more than a tenth of its length or longer
+ * than half the box, or a bond of the positions to be projected is more than 5 times as long as it should be. It costs
+ * one pass over the bonds, once.
+ * - in every later call a molecule with a bond of more than 5 times its length in the positions to be projected is bad
+ *   (HOL_ERR_LENGTHS): it is left as it is, all others are complete. That costs nothing that can be measured.
+ *
+ * The message names the worst bond, its atoms, its length and the length wanted, whether a box is set, and what is
+ * likely to be the cause. Programs whose references are crude - coordinates of a file with three decimals are not, a
+ * model built by hand may be - set HOL_NEVER, project with r_ref = r until the positions are right, and set
+ * HOL_AT_START again (docs/integrators.md).
+ *
+ * @param[in,out] chains
+ * @param[in]     when    an hol_when
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.2.
+ */
+HOL_API int hol_chains_set_checks(hol_chains *chains, int when);
+
+/**
+ * Compares positions with the lengths now, as the first call of hol_project_positions does with its reference, whatever
+ * hol_chains_set_checks says: for programs that use forces or velocities alone, which take bond vectors as they are.
+ * @param[in] chains
+ * @param[in] r    positions [n_atoms][3]
+ * @param[in] box  HOL_BOX or HOL_REFERENCE_BOX: the box that they belong to
+ * @return HOL_OK: no bond of an active molecule is off by more than a tenth of its length, or longer than half the box;
+ *         HOL_ERR_LENGTHS: some are, and message and hol_error_location name the worst; HOL_ERR_NULL; HOL_ERR_VALUE
+ *         (box); HOL_ERR_NOT_FINITE. Thread-safe on one handle. O(n_bonds). Since 0.2.
+ */
+HOL_API int hol_chains_check(const hol_chains *chains, const double *r, int box);
 
 /**
  * Number of threads that a call may use, >= 1. The default is 1. Without OpenMP at build time all calls use one.
@@ -395,6 +444,9 @@ typedef struct hol_view {
     int32_t element;  /**< HOL_DOUBLE or HOL_FLOAT */
     int32_t reserved; /**< 0 */
 } hol_view;
+
+/** hol_chains_check with positions of any layout. Since 0.2. */
+HOL_API int hol_chains_check_view(const hol_chains *chains, const hol_view *r, int box);
 
 /* -------------------------------------------------------------------------------------------- acceleration level */
 
@@ -533,7 +585,8 @@ typedef struct hol_report {
  * Newton's method with the exact Jacobian. docs/theory.md (15)-(19), docs/integrators.md.
  *
  * @param[in]     chains
- * @param[in]     r_ref   positions before the drift [n_atoms][3]; may be r itself
+ * @param[in]     r_ref   positions before the drift [n_atoms][3]; may be r itself. Only their differences within a
+ *                        molecule are used: each molecule may stand anywhere, at an origin of its own
  * @param[in,out] r       positions after the drift [n_atoms][3]; in: unconstrained, out: constrained
  * @param[in,out] v       velocities [n_atoms][3], or NULL; v_i += dt w_i G_i, the displacement over dt. Only added to:
  *                        what is there is not checked, and a NaN stays one
@@ -545,9 +598,10 @@ typedef struct hol_report {
  * @param[out]    virial  [3][3], energy, or NULL: sum_i r_ref,i (x) G_i = - sum_k 2 lambda_k b_k (x) b_k
  * @param[out]    report  or NULL; written whenever the arguments are valid, also if molecules fail
  * @return HOL_OK; HOL_ERR_NULL (chains, r_ref or r; lambda with guess = 1); HOL_ERR_VALUE (dt, guess);
- *         HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE; HOL_ERR_NO_CONVERGENCE; HOL_ERR_MEMORY. A molecule already within
- *         the tolerance (hol_chains_set_tolerance) is not touched and has lambda = 0. A molecule that fails keeps r, v
- *         and lambda. Thread-safe on one handle, each thread with arrays of its own. Since 0.1.
+ *         HOL_ERR_LENGTHS (hol_chains_set_checks); HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE; HOL_ERR_NO_CONVERGENCE;
+ *         HOL_ERR_MEMORY. A molecule already within the tolerance (hol_chains_set_tolerance) is not touched and has
+ *         lambda = 0. A molecule that fails keeps r, v and lambda: r stays the trial, and r_ref is where to go on from.
+ *         Thread-safe on one handle, each thread with arrays of its own. Since 0.1.
  */
 HOL_API int hol_project_positions(const hol_chains *chains, const double *r_ref, double *r, double *v, double dt,
                                   double *lambda, int guess, double *virial, hol_report *report);
@@ -556,6 +610,42 @@ HOL_API int hol_project_positions(const hol_chains *chains, const double *r_ref,
 HOL_API int hol_project_positions_view(const hol_chains *chains, const hol_view *r_ref, const hol_view *r,
                                        const hol_view *v, double dt, double *lambda, int guess, double *virial,
                                        hol_report *report);
+
+/**
+ * hol_project_positions with bond vectors in place of reference positions, for programs that keep those of the
+ * beginning of a step: b_k = r_j - r_i of bond k, from the first atom of the bond as it was given to the second, images
+ * taken.
+ *
+ * @param[in] chains
+ * @param[in] b  [n_bonds][3] (Fortran: (3, n_bonds)), in the order in which the bonds were given. Not read for bonds
+ *               between two fixed atoms
+ * All other arguments are those of hol_project_positions. The reference box is not used.
+ *
+ * The vectors are laid one after the other, from an origin at the first atom of each molecule, each rounded once as
+ * coordinates there are: results are those of hol_project_positions with such coordinates. In a molecule with cycles, a
+ * vector that the others determine is taken from them; it must agree with them to a thousandth of its length.
+ * @return as hol_project_positions; HOL_ERR_NOT_FINITE (a vector) and HOL_ERR_DEGENERATE (vectors that do not close
+ *         their cycle) with nothing changed at all. O(n_bonds) more, by one thread. Since 0.2.
+ */
+HOL_API int hol_project_positions_along(const hol_chains *chains, const double *b, double *r, double *v, double dt,
+                                        double *lambda, int guess, double *virial, hol_report *report);
+
+/** hol_project_positions_along with arrays of any layout: element k of the view of b is bond k. Since 0.2. */
+HOL_API int hol_project_positions_along_view(const hol_chains *chains, const hol_view *b, const hol_view *r,
+                                             const hol_view *v, double dt, double *lambda, int guess, double *virial,
+                                             hol_report *report);
+
+/**
+ * The error that the reference itself had, in this thread's last call at the position level that asked for an
+ * hol_report: what is left of the constraints at the beginning of a step. Each pointer may be NULL. It is measured in
+ * a pass of its own before anything is moved, 6 to 10 ns per bond (a processor of type Zen 4), so ask for a report now
+ * and then.
+ * @param[out] error  largest |b.b - a^2| / a^2 over active molecules; 0 before the first such call
+ * @param[out] chain  its molecule, -1 if there is none
+ * @param[out] bond   its bond within the molecule
+ * Since 0.2.
+ */
+HOL_API void hol_reference_error(double *error, int64_t *chain, int64_t *bond);
 
 /** How far positions and velocities are from the constraints. */
 typedef struct hol_worst {

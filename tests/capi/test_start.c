@@ -1,0 +1,250 @@
+/*
+ * Mistakes that are made where a program begins: each is an error, at the first call that can know of it, which names
+ * atoms and lengths; and nothing is moved.
+ */
+#include "check.h"
+#include "water.h"
+
+enum { SIDE = 10, DT = 1 };
+
+static hol_chains *water_set(const waters *w, const double *lengths)
+{
+    hol_chains *chains;
+    CHECK(hol_chains_create(w->n_atoms, w->mass, &chains));
+    CHECK(hol_chains_add_molecules(chains, w->n_molecules, 3, 0, 3, water_pairs, lengths));
+    return chains;
+}
+
+/* The first step with these positions: refused, nothing is written, and the message has these words. */
+static void assert_refused(const hol_chains *chains, const waters *w, const char *const *words)
+{
+    const size_t n = 3 * (size_t)w->n_atoms;
+    double *const r = copy_of(w->r, n), *const v = untouched(n), *const lambda = untouched(n);
+    double *const virial = untouched(9);
+    hol_report report = {-7, -7, -7, -7, -7, -7};
+    int64_t molecule, bond, n_bad;
+    for (size_t i = 0; i < n; i += 7) r[i] += 1e-3; /* a drift */
+    double *const before = copy_of(r, n);
+    CHECK_FAILS(HOL_ERR_LENGTHS, hol_project_positions(chains, w->r, r, v, DT, lambda, 0, virial, &report));
+    for (; *words; ++words) assert_message_names(*words);
+    hol_error_location(&molecule, &bond, NULL, &n_bad);
+    assert_in_range(molecule, 0, w->n_molecules - 1);
+    assert_in_range(bond, 0, 2);
+    assert_true(n_bad >= 1);
+    assert_same_bits(r, before, n);
+    assert_untouched(v, n);
+    assert_untouched(lambda, n);
+    assert_untouched(virial, 9);
+    assert_true(report.iterations == -7 && report.max_error == -7);
+    /* And so again: one call does not let the next one pass. */
+    CHECK_FAILS(HOL_ERR_LENGTHS, hol_project_positions(chains, w->r, r, NULL, DT, NULL, 0, NULL, NULL));
+    CHECK_FAILS(HOL_ERR_LENGTHS, hol_chains_check(chains, w->r, HOL_BOX));
+    assert_same_bits(r, before, n);
+    free(r);
+    free(before);
+    free(v);
+    free(lambda);
+    free(virial);
+}
+#define WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
+
+static void molecules_cut_by_the_cell_without_a_box(void **state)
+{
+    (void)state;
+    waters w = make_waters(SIDE, 1);
+    cut_by_the_faces(&w);
+    hol_chains *chains = water_set(&w, water_lengths);
+    assert_refused(chains, &w, WORDS("atoms ", "no box is set", "cut by a face", "should be 1"));
+    CHECK(hol_chains_set_box(chains, w.box));
+    CHECK(hol_project_positions(chains, w.r, w.r, NULL, DT, NULL, 0, NULL, NULL));
+    hol_chains_destroy(chains);
+    free_waters(&w);
+}
+
+static void lengths_in_another_unit(void **state)
+{
+    (void)state;
+    waters w = make_waters(4, 2);
+    for (int which = 0; which < 2; ++which) {
+        const double unit = which ? 10 : 0.1;
+        const double lengths[3] = {unit * WATER_OH, unit * WATER_OH, unit * WATER_HH};
+        hol_chains *chains = water_set(&w, lengths);
+        assert_refused(chains, &w, WORDS("atoms ", which ? "about 0.1 times" : "about 10 times", "same unit"));
+        if (!which) CHECK(hol_chains_set_box(chains, w.box));
+        if (!which) assert_refused(chains, &w, WORDS("same unit", "a box is set"));
+        hol_chains_destroy(chains);
+    }
+    free_waters(&w);
+}
+
+static void lengths_in_another_order(void **state)
+{
+    (void)state;
+    waters w = make_waters(4, 3);
+    const double lengths[3] = {WATER_HH, WATER_OH, WATER_OH};
+    hol_chains *chains = water_set(&w, lengths);
+    CHECK(hol_chains_set_box(chains, w.box));
+    assert_refused(chains, &w, WORDS("atoms ", "1.63299", "another order", "64 of 64 molecules"));
+    hol_chains_destroy(chains);
+    free_waters(&w);
+}
+
+/* A list that counts from 1, in a set that counts from 0, but for the last molecule. */
+static void atoms_counted_from_one(void **state)
+{
+    (void)state;
+    waters w = make_waters(4, 4);
+    const int64_t n_bonds = 3 * (w.n_molecules - 1);
+    int64_t *const pairs = malloc(sizeof *pairs * 2 * (size_t)n_bonds);
+    double *const lengths = malloc(sizeof *lengths * (size_t)n_bonds);
+    for (int64_t k = 0; k < n_bonds; ++k) {
+        for (int e = 0; e < 2; ++e) pairs[2 * k + e] = 1 + 3 * (k / 3) + water_pairs[2 * (k % 3) + e];
+        lengths[k] = water_lengths[k % 3];
+    }
+    hol_chains *chains;
+    CHECK(hol_chains_create(w.n_atoms, w.mass, &chains));
+    CHECK(hol_chains_add_bonds(chains, n_bonds, pairs, lengths));
+    CHECK(hol_chains_set_box(chains, w.box));
+    w.n_molecules -= 1;
+    assert_refused(chains, &w, WORDS("atoms counted from 1 (here from 0)"));
+    hol_chains_destroy(chains);
+    CHECK(hol_chains_create(w.n_atoms, w.mass, &chains));
+    CHECK(hol_chains_set_index_base(chains, 1));
+    CHECK(hol_chains_add_bonds(chains, n_bonds, pairs, lengths));
+    CHECK(hol_chains_check(chains, w.r, HOL_BOX));
+    hol_chains_destroy(chains);
+    free(pairs);
+    free(lengths);
+    free_waters(&w);
+}
+
+static void a_stale_box(void **state)
+{
+    (void)state;
+    waters w = make_waters(4, 5);
+    cut_by_the_faces(&w);
+    double stale[9];
+    for (int i = 0; i < 9; ++i) stale[i] = 1.1 * w.box[i];
+    hol_chains *chains = water_set(&w, water_lengths);
+    CHECK(hol_chains_set_box(chains, stale));
+    assert_refused(chains, &w, WORDS("a box is set", "another time"));
+    CHECK(hol_chains_set_box(chains, w.box));
+    CHECK(hol_chains_set_reference_box(chains, stale));
+    const size_t n = 3 * (size_t)w.n_atoms;
+    double *const r = copy_of(w.r, n);
+    CHECK_FAILS(HOL_ERR_LENGTHS, hol_project_positions(chains, w.r, r, NULL, DT, NULL, 0, NULL, NULL));
+    assert_same_bits(r, w.r, n);
+    CHECK(hol_chains_check(chains, w.r, HOL_BOX));
+    CHECK_FAILS(HOL_ERR_LENGTHS, hol_chains_check(chains, w.r, HOL_REFERENCE_BOX));
+    free(r);
+    hol_chains_destroy(chains);
+    free_waters(&w);
+}
+
+static void masses_that_are_all_zero(void **state)
+{
+    (void)state;
+    const double zero[4] = {0, 0, 0, 0}, one[4] = {1, 1, 1, 1};
+    const double held[2] = {INFINITY, INFINITY};
+    hol_chains *chains;
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_create(4, zero, &chains));
+    assert_message_names("all 4 masses are 0");
+    assert_null(chains);
+    CHECK(hol_chains_create(2, held, &chains)); /* on purpose */
+    hol_chains_destroy(chains);
+    CHECK(hol_chains_create(4, one, &chains));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_masses(chains, zero));
+    assert_message_names("all 4 masses are 0");
+    hol_chains_destroy(chains);
+}
+
+static void boxes_that_are_no_cell(void **state)
+{
+    (void)state;
+    const double three[9] = {20, 21, 22, 0, 0, 0, 0, 0, 0}, slab[9] = {20, 0, 0, 5, 20, 0, 0, 0, 0};
+    const double tilted_out[9] = {20, 0, 3, 0, 20, 0, 0, 0, 0}, mass[2] = {1, 1}, a[1] = {1};
+    hol_chains *chains;
+    CHECK(hol_chains_create(2, mass, &chains));
+    CHECK(hol_chains_add_block(chains, 1, 1, 0, a));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_box(chains, three));
+    assert_message_names("box vector 1 has a component (21)");
+    assert_message_names("diagonal");
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_reference_box(chains, three));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_box(chains, tilted_out));
+    CHECK(hol_chains_set_box(chains, slab));
+    hol_chains_destroy(chains);
+}
+
+static void boxes_narrower_than_two_bonds(void **state)
+{
+    (void)state;
+    waters w = make_waters(6, 6);
+    double nm[9], other[9] = {40, 0, 0, 39, 3, 0, 0, 0, 40};
+    for (int i = 0; i < 9; ++i) nm[i] = 0.1 * w.box[i]; /* beside lengths in angstrom */
+    hol_chains *chains = water_set(&w, water_lengths);
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_box(chains, nm));
+    assert_message_names("1.86 wide");
+    assert_message_names("longest bond, 1.63299");
+    assert_message_names("same unit");
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_reference_box(chains, nm));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_box(chains, other)); /* 3 high, and its planes are nearer */
+    CHECK(hol_chains_set_box(chains, w.box));
+    double *const lengths = malloc(sizeof *lengths * 3 * (size_t)w.n_molecules);
+    for (int64_t k = 0; k < 3 * w.n_molecules; ++k) lengths[k] = 10 * water_lengths[k % 3];
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_lengths(chains, lengths));
+    assert_message_names("longest bond, 16.3299");
+    hol_chains_destroy(chains);
+    CHECK(hol_chains_create(w.n_atoms, w.mass, &chains));
+    CHECK(hol_chains_set_box(chains, nm));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_molecules(chains, w.n_molecules, 3, 0, 3, water_pairs, water_lengths));
+    assert_int_equal(hol_chains_n_bonds(chains), 0);
+    hol_chains_destroy(chains);
+    free(lengths);
+    free_waters(&w);
+}
+
+static void lengths_that_make_no_triangle(void **state)
+{
+    (void)state;
+    const double mass[8] = {1, 1, 1, 1, 1, 1, 1, 1}, angle[3] = {1, 1, 2.1}, line[3] = {1, 1, 2};
+    hol_chains *chains;
+    CHECK(hol_chains_create(8, mass, &chains));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_molecules(chains, 2, 3, 2, 3, water_pairs, angle));
+    assert_message_names("bond 2 (atoms 3 and 4) has the length 2.1");
+    assert_message_names("triangle with atom 2");
+    int64_t bond;
+    hol_error_location(NULL, &bond, NULL, NULL);
+    assert_int_equal(bond, 2);
+    assert_int_equal(hol_chains_n_bonds(chains), 0);
+    CHECK(hol_chains_add_molecules(chains, 1, 3, 5, 3, water_pairs, line)); /* what it is at is found by the calls */
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_lengths(chains, angle));
+    assert_message_names("atoms 6 and 7");
+    hol_chains_destroy(chains);
+
+    /* Within a larger molecule, and a ring. */
+    const int64_t kite[10] = {0, 1, 1, 2, 2, 3, 3, 1, 0, 4}, ring[8] = {0, 1, 1, 2, 2, 3, 3, 0};
+    const double kite_lengths[5] = {1, 1, 3, 1, 1}, ring_lengths[4] = {1, 1, 3.5, 1};
+    CHECK(hol_chains_create(8, mass, &chains));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_bonds(chains, 5, kite, kite_lengths));
+    assert_message_names("bond 2 (atoms 2 and 3) has the length 3");
+    assert_message_names("with atom 1");
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_bonds(chains, 4, ring, ring_lengths));
+    assert_message_names("ring can't close");
+    hol_chains_destroy(chains);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(molecules_cut_by_the_cell_without_a_box),
+        cmocka_unit_test(lengths_in_another_unit),
+        cmocka_unit_test(lengths_in_another_order),
+        cmocka_unit_test(atoms_counted_from_one),
+        cmocka_unit_test(a_stale_box),
+        cmocka_unit_test(masses_that_are_all_zero),
+        cmocka_unit_test(boxes_that_are_no_cell),
+        cmocka_unit_test(boxes_narrower_than_two_bonds),
+        cmocka_unit_test(lengths_that_make_no_triangle),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
