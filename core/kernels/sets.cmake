@@ -4,6 +4,14 @@
 
 # Chains that fit into lanes: what every set has.
 set(chain_kernels
+    kernels/memory/load.cpp
+    kernels/memory/open.cpp
+    kernels/memory/outputs.cpp
+    kernels/memory/stage.cpp
+    kernels/newton/attempts.cpp
+    kernels/newton/criterion.cpp
+    kernels/newton/solve.cpp
+    kernels/newton/system.cpp
     kernels/verbs/forces.cpp
     kernels/verbs/metric.cpp
     kernels/verbs/positions.cpp

@@ -1,4 +1,4 @@
-/** Chains whose angles are all rigid, strips of triangles, which have kernels of their own. */
+/** Chains whose angles are all rigid: strips of triangles. */
 #include "check.h"
 #include "mixture.h"
 #include "molecule_solution.h"
@@ -77,64 +77,11 @@ static void nearly_strips_are_right_too(void **state)
     molecule_free(&strip);
 }
 
-/** Results of one molecule whose atom i stands at place[i] of the arrays, in the order of its own atoms and bonds. */
-static void compute_renumbered(const molecule *m, const int64_t *place, double *lambda, double *atoms)
-{
-    const size_t size = 3 * (size_t)m->n_atoms, n_bonds = (size_t)m->n_bonds;
-    double *mass = untouched((size_t)m->n_atoms), *r = untouched(size), *v = untouched(size), *f = untouched(size);
-    double *g = untouched(size), *drifted = untouched(size);
-    int64_t *pairs = malloc(2 * n_bonds * sizeof *pairs);
-    assert_non_null(pairs);
-    for (int64_t i = 0; i < m->n_atoms; ++i) {
-        mass[place[i]] = m->mass[i];
-        memcpy(r + 3 * place[i], m->r + 3 * i, 24);
-        memcpy(v + 3 * place[i], m->v + 3 * i, 24);
-        memcpy(f + 3 * place[i], m->f + 3 * i, 24);
-    }
-    for (size_t k = 0; k < 2 * n_bonds; ++k) pairs[k] = place[m->pairs[k]];
-    hol_chains *chains = NULL;
-    CHECK(hol_chains_create(m->n_atoms, mass, &chains));
-    CHECK(hol_chains_add_bonds(chains, m->n_bonds, pairs, m->length));
-    CHECK(hol_forces(chains, r, v, f, lambda, NULL, g, HOL_WRITE, NULL));
-    CHECK(hol_project_velocities(chains, r, v, lambda + n_bonds, NULL));
-    for (size_t i = 0; i < size; ++i) drifted[i] = r[i] + 1e-3 * v[i];
-    CHECK(hol_project_positions(chains, r, drifted, v, 1e-3, lambda + 2 * n_bonds, 0, NULL, NULL));
-    for (int64_t i = 0; i < m->n_atoms; ++i) {
-        memcpy(atoms + 3 * i, g + 3 * place[i], 24);
-        memcpy(atoms + size + 3 * i, v + 3 * place[i], 24);
-        memcpy(atoms + 2 * size + 3 * i, drifted + 3 * place[i], 24);
-    }
-    hol_chains_destroy(chains);
-    free(mass), free(r), free(v), free(f), free(g), free(drifted), free(pairs);
-}
-
-/** As long as the same end has the smaller number. */
-static void numbers_of_the_atoms_of_a_strip_change_no_bit(void **state)
-{
-    (void)state;
-    enum { N = 30 };
-    molecule m = molecule_make(MOLECULE_TRIANGLES, N, 3);
-    assert_int_equal(m.n_atoms, N);
-    int64_t place[N];
-    double lambda[2][3 * 2 * N], atoms[2][9 * N];
-    for (int64_t i = 0; i < N; ++i) place[i] = i;
-    compute_renumbered(&m, place, lambda[0], atoms[0]);
-    for (int64_t step = 7; step < 30; step += 4) {
-        if (step % 3 == 0 || step % 5 == 0) continue; /* numbers would not be different */
-        for (int64_t i = 0; i < N; ++i) place[i] = i * step % N;
-        compute_renumbered(&m, place, lambda[1], atoms[1]);
-        assert_same_bits(lambda[0], lambda[1], 3 * (size_t)m.n_bonds);
-        assert_same_bits(atoms[0], atoms[1], 9 * N);
-    }
-    molecule_free(&m);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(strips_of_every_size_agree_with_a_solution_in_many_digits),
         cmocka_unit_test(nearly_strips_are_right_too),
-        cmocka_unit_test(numbers_of_the_atoms_of_a_strip_change_no_bit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

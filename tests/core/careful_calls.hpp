@@ -1,12 +1,12 @@
 /**
  * @file careful_calls.hpp
- * The careful solver of the baseline's instructions, called for one molecule.
+ * The careful solver in twice the precision, called for one molecule.
  */
 #ifndef CAREFUL_CALLS_HPP
 #define CAREFUL_CALLS_HPP
 
 #ifndef HOL_ISA
-#define HOL_ISA baseline
+#define HOL_ISA twofold
 #endif
 #include "careful_case.hpp"
 #include "core/kernels/careful/careful.hpp"
@@ -14,7 +14,7 @@
 namespace careful_case
 {
 
-namespace solver = holonomic::baseline::careful;
+namespace solver = holonomic::twofold::careful;
 
 struct calls {
     molecule m;

@@ -1,5 +1,5 @@
 // The careful solver of one molecule: against dense elimination in 113 bits, and what it refuses.
-#define HOL_ISA baseline
+#define HOL_ISA twofold
 #include "core/kernels/careful/careful.hpp"
 
 #include <cmath>

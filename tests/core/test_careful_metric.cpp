@@ -1,5 +1,5 @@
 // Metric determinant and Fixman force of single molecules, against dense elimination and differences in 113 bits.
-#define HOL_ISA baseline
+#define HOL_ISA twofold
 #include "core/kernels/careful/careful.hpp"
 
 #include "careful_case.hpp"
@@ -57,7 +57,7 @@ results metric_of(molecule &m)
     call.kT = 2;
     call.log_det = &found.log_det;
     call.log_det_z = &found.log_det_z;
-    holonomic::baseline::careful::metric(call, shape.plan(), lane, scratch, found.tally);
+    holonomic::twofold::careful::metric(call, shape.plan(), lane, scratch, found.tally);
     require(!overrun(shape.plan(), scratch), m.name, "scratch memory is overrun");
     return found;
 }

@@ -1,4 +1,4 @@
-// The order of elimination of chains, trees, rings, strips and other graphs.
+// The order of elimination of chains, trees, rings and other graphs.
 #include <algorithm>
 #include <random>
 
@@ -54,47 +54,6 @@ void small_shapes()
     require(s->n_entries < 4 * s->n_core, "a strip fills");
 }
 
-// A strip of triangles, its atoms numbered and its bonds given in any order.
-Bonds strip_of(int n, std::mt19937 &random)
-{
-    std::vector<int> name(static_cast<std::size_t>(n));
-    for (int i = 0; i < n; ++i) name[static_cast<std::size_t>(i)] = i;
-    std::shuffle(name.begin(), name.end(), random);
-    Bonds bonds;
-    for (int i = 0; i < n; ++i)
-        for (int j = i + 1; j < n && j <= i + 2; ++j)
-            bonds.push_back({name[static_cast<std::size_t>(i)], name[static_cast<std::size_t>(j)]});
-    std::shuffle(bonds.begin(), bonds.end(), random);
-    return bonds;
-}
-
-void strips()
-{
-    std::mt19937 random(11);
-    for (int n = 4; n < 80; ++n) {
-        Bonds bonds = strip_of(n, random);
-        const auto s = check("strip", bonds, n, Schedule::graph);
-        require(s->is_strip, "a strip is not recognised");
-        for (int i = 1; i < n; ++i) {
-            joins(*s, 2 * i - 2, i - 1, i, "a short bond of a strip stands elsewhere");
-            require(s->from[2 * i - 2] == i - 1, "a short bond points backwards");
-            if (i < 2) continue;
-            joins(*s, 2 * i - 3, i - 2, i, "a long bond of a strip stands elsewhere");
-            require(s->from[2 * i - 3] == i - 2, "a long bond points backwards");
-        }
-        require(s->atom_of[0] < s->atom_of[n - 1], "a strip begins at its other end");
-        bonds.push_back({s->atom_of[0], n});
-        require(!schedule_of(bonds, n + 1)->is_strip, "a strip with a bond more is one");
-        if (n < 6) continue;
-        bonds.pop_back();
-        bonds[static_cast<std::size_t>(s->bond_of[n])] = {std::min(s->atom_of[0], s->atom_of[n - 1]),
-                                                          std::max(s->atom_of[0], s->atom_of[n - 1])};
-        require(!schedule_of(bonds, n)->is_strip, "with another bond it is a strip");
-    }
-    require(!schedule_of(strip_of(holonomic::largest_in_lanes, random), holonomic::largest_in_lanes)->is_strip,
-            "a strip that does not fit into lanes is one");
-}
-
 void random_shapes()
 {
     std::mt19937 random(7);
@@ -131,7 +90,6 @@ void large_shapes()
 int main()
 {
     small_shapes();
-    strips();
     random_shapes();
     large_shapes();
     return 0;

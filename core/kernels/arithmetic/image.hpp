@@ -39,6 +39,13 @@ HOL_INLINE void wrap(const Box &box, Vector3<V> &d, Vector3<V> &lo) {
     }
 }
 
+// Out of line and by value: what it is made of stays in registers where there is no such box.
+HOL_NOINLINE Vector3<vec> triclinic_image(const Box &box, Vector3<vec> d) {
+    Vector3<vec> unused = {};
+    wrap<false>(box, d, unused);
+    return d;
+}
+
 // The vector from one atom to another.
 HOL_INLINE Vector3<double> bond_vector(const Box &box, const double *from, const double *to) {
     Vector3<double> d = {to[0] - from[0], to[1] - from[1], to[2] - from[2]}, unused = {};

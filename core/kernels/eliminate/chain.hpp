@@ -11,7 +11,7 @@
 
 #include "core/kernels/eliminate/remainder.hpp"
 #include "core/kernels/memory/arena.hpp"
-#include "core/kernels/memory/packed.hpp"
+#include "core/kernels/memory/load.hpp"
 
 namespace holonomic::HOL_ISA {
 
@@ -44,12 +44,14 @@ struct Sweep {
     // Sum of |u|, q, 1 / P and w. With kept pivots |u| is left out: the end of the second solve shows an overflow.
     vec size = {};
 
-    inline HOL_FORCED void step(long k, vec b, bool starts_group, bool ragged) {
+    // b(): the right-hand side; asked for when it is needed, so that it waits in no register.
+    template <class Side>
+    inline HOL_FORCED void step(long k, const Side &b, bool starts_group, bool ragged) {
         const vec w = w_at<uniform>(block, k), w1 = w_at<uniform>(block, k + 1);
         const vec3 d1 = s.D[k];
         const vec q1 = dot(d1, d1);
         if (__builtin_constant_p(k) && k == 0) {  // what the rest comes to without a bond before
-            y = b + 0.0;
+            y = b() + 0.0;
             e = {w * q1, splat(1.0)};
             return finish_step(k, d1, q1, w1, true);
         }
@@ -64,8 +66,8 @@ struct Sweep {
         const mask signs = as_mask(not_orthogonal(g2, X)) | as_mask(remainder);
         if (__builtin_expect(any(signs), 0)) delicate_joint(k, d1, remainder, ragged, g, X);
         const vec l = (w * g) * rP;
+        y = mul_add(l, y, b());
         s.L[k] = l;
-        y = mul_add(l, y, b);
         e.pass(F1, (w * w) * X, w * q1);
         if (starts_group) e = {e.A * rF, splat(1.0)};
         finish_step(k, d1, q1, w1, starts_group);
@@ -84,7 +86,8 @@ struct Sweep {
         q = q1;
     }
 
-    // For joints of nearly orthogonal bonds, and joints with little of E left before them.
+    // For joints of nearly orthogonal bonds, and joints with little of E left before them. A call in its place took 10
+    // instructions a bond more, because of the registers that it may change.
     inline HOL_FORCED void delicate_joint(long k, const vec3 &d1, vec remainder, bool ragged, vec &g, vec &X) {
         mask little = less(remainder, vec{});
         if (ragged) little = little & joint(block, k);
@@ -112,39 +115,28 @@ struct Sweep {
     }
 };
 
-// d . (v_{k+1} - v_k)
-HOL_INLINE vec rate_of(const vec3 &d, const vec3 &v0, const vec3 &v1) { return dot(d, v1 - v0); }
-
-// Loads the bonds of a block and eliminates: t becomes u. For rates it keeps the velocities in `velocities`. Returns
-// the lanes that plain arithmetic can answer for, and in `calm` those in which nothing can overflow from here on.
-template <int terms, bool uniform, bool boxed>
-HOL_NOINLINE mask forward(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
-                          const System &s, vec3 *velocities, mask &calm) {
-    constexpr bool rates = terms == rate;
-    constexpr int with_bonds = rates ? none_ : terms;  // right-hand sides that are found while bonds are read
-    const Places at(r, v, f);
-    const Source source = {&box, &r};
-    Sweep<uniform, rates> sweep{block, source, s};
-    const auto rate_at = [&](long k) HOL_FORCED { return rate_of(s.D[k], velocities[k], velocities[k + 1]); };
-    if (rates) velocities[0] = load_atom(v);
-    long k0 = 0;
-    for (; k0 + group <= block.n_min; k0 += group) {
-        vec b[group];
-        HOL_UNROLL
-        for (long k = 0; k < group; k += W) {
-            load_full_chunk<with_bonds, uniform, boxed, false>(block, box, at, k0 + k, s.D + k0 + k, nullptr, b + k);
-            if (rates) load_next_atoms(block, at, k0 + k, velocities);
+// Loads the bonds of a block, stage by stage, and eliminates: t becomes u. With kept pivots velocities are kept, too.
+// Returns the lanes that plain arithmetic can answer for, and in `calm` those in which nothing can overflow from here
+// on.
+template <bool uniform, bool keep_pivots>
+HOL_NOINLINE mask forward(const Block &block, const Reader &in, const System &s, vec3 *velocities, mask &calm) {
+    const Source source = in.source();
+    Sweep<uniform, keep_pivots> sweep{block, source, s};
+    for (long k0 = 0; k0 < block.n; k0 += stage_bonds) {
+        const long end = k0 + stage_bonds < block.n ? k0 + stage_bonds : block.n;
+        const long full = (end < block.n_min ? end : block.n_min) - 3;
+        in.load(k0, end, s.D + k0, nullptr, s.t + k0, velocities);
+        long k = k0;
+        for (; k < full; k += 4) {
+            HOL_UNROLL
+            for (int i = 0; i < 4; ++i)
+                sweep.step(
+                    k + i, [&]() HOL_FORCED { return s.t[k + i]; }, i == 0, false);
         }
-        HOL_UNROLL
-        for (long k = 0; k < group; ++k) sweep.step(k0 + k, rates ? rate_at(k0 + k) : b[k], k % 4 == 0, false);
+        for (; k < end; ++k)
+            sweep.step(
+                k, [&]() HOL_FORCED { return s.t[k]; }, k % 4 == 0, k >= block.n_min);
     }
-    const long ragged_from = k0;
-    for (; k0 < block.n; k0 += W) {
-        load_ragged<with_bonds, uniform, boxed, false>(block, box, r, v, f, k0, s.D + k0, nullptr, s.t + k0);
-        if (rates) load_ragged_atoms(block, v, k0, velocities);
-    }
-    for (long k = ragged_from; k < block.n; ++k)
-        sweep.step(k, rates ? keep(joint(block, k), rate_at(k)) : s.t[k], k % 4 == 0, k >= block.n_min);
     calm = sweep.calm();
     return ~sweep.doubt();
 }

@@ -16,6 +16,7 @@
 
 #include "core/kernels/eliminate/remainder.hpp"
 #include "core/kernels/memory/cut.hpp"
+#include "core/kernels/memory/load.hpp"
 #include "core/kernels/memory/prefetch.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -168,91 +169,80 @@ HOL_INLINE void step(Elimination &e, const Block &block, const SegmentStore &x, 
     e.q = j.q;
 }
 
-// The bonds that all segments have, a group at a time. Returns how many have been read; one less has been eliminated.
-// The last of them is left in `last`.
-template <int terms, bool uniform>
-HOL_INLINE long eliminate_groups(Elimination &e, const Block &block, const Box &box, const Source &source,
-                                 const SegmentBonds &in, const SegmentStore &x, vec3 &last, mask &doubt) {
-    vec3 d[group + 1];
-    vec b[group];
-    Joint j[group];
-    const EvenRows rows(in.r, terms & (velocity_squared | rate) ? in.v : in.r, terms & force_difference ? in.f : in.r);
-    // Joints that have failed the cheap test. E0: E before the first of the n joints of D.
-    const auto look = [&](const vec3 *D, long first, long n, vec E0) HOL_FORCED {
-        const mask short_of = less(e.slack, vec{});
-        if (__builtin_expect(!any(short_of), 1)) return;
-        doubt = doubt | (doubtful_joints<uniform>(block, D, first, n, E0) & short_of);
-        e.slack = vec{};
-    };
-    long k0 = 0;
-    if (in.full > 0) {
-        load_group<terms, uniform>(block, box, in, rows, 0, d + 1, b);
-        x.summary->q = dot(d[1], d[1]);
-        x.summary->b = b[0];
-        plain_joints<group - 1>(source, 0, d + 1, j + 1);
-        start<uniform>(e, block, x.summary->q, j[1], b[1]);
-        const vec E0 = e.e.A;
-        for (int i = 2; i < group; ++i) {
-            step<uniform, false>(e, block, x, i - 1, j[i], b[i], false);
-            if (i % 4 == 3) normalise(e);
-        }
-        look(d + 2, 2, group - 2, E0);
-        d[0] = d[group];
-        k0 = group;
-    }
-    for (; k0 < in.full; k0 += group) {
-        load_group<terms, uniform>(block, box, in, rows, k0, d + 1, b);
-        plain_joints<group>(source, k0 - 1, d, j);
-        const vec E0 = e.e.A;
-#pragma GCC unroll 8
-        for (int i = 0; i < group; ++i) {
-            step<uniform, false>(e, block, x, k0 + i - 1, j[i], b[i], false);
-            if (i % 4 == 3) normalise(e);
-        }
-        look(d, k0, group, E0);
-        d[0] = d[group];
-    }
-    last = d[0];
-    return k0;
-}
-
-// Eliminates the inner bonds of W segments of n bonds. block.len counts the separators behind them.
-template <int terms, bool uniform, bool careful>
-HOL_NOINLINE void eliminate(const Block &block, const Box &box, const Source &source, const SegmentBonds &in, long n,
+// Loads W segments, stage by stage, and eliminates their inner bonds: a group at a time where all have these bonds,
+// with one quick test for all of it, then one at a time. block.len counts the separators behind them; `in` reads the
+// segments alone.
+template <bool uniform, bool careful>
+HOL_NOINLINE void eliminate(const SegmentBlock &s, const Reader &in, const SeparatorsBehind &behind,
                             const SegmentStore x) {  // by value: stores don't change it
-    Elimination e;
+    const Block &block = s.block;
+    const Source source = {&in.box, in.r, nullptr, nullptr, nullptr, 0, block.len};
+    const long n = s.own_max, grouped = careful ? 0 : s.own_min / group * group;
+    vec3 D[stage_bonds + 2 + W], low[careful ? stage_bonds + 2 + W : 1];  // D[0]: the last one of the stage before
+    vec B[stage_bonds + 1 + W];
+    Elimination e = {};
     mask doubt = none();
-    vec3 before = {}, low_before = {};
-    long k0 = eliminate_groups<terms, uniform>(e, block, box, source, in, x, before, doubt);
-    const long read = terms == in_scratch ? k0 : 0;
-    const vec3 *const D = in.D + read - k0, *const low = careful ? in.low - k0 + read : nullptr;
-    const vec *const B = in.B + read - k0;
-    const auto joint = [&](long k, const vec3 *two, const vec3 *low_two) HOL_FORCED {
-        Joint j;
-        if (careful) return careful_joint(two[0], low_two[0], two[1], low_two[1]);
-        plain_joints<1>(source, k, two, &j);
-        return j;
-    };
-    if (k0 == 0) {
-        x.summary->q = dot(D[0], D[0]);
-        x.summary->b = B[0];
-        start<uniform>(e, block, x.summary->q, joint(0, D, low), B[1]);
-        before = D[1];
-        if (careful) low_before = low[1];
-        k0 = 2;
-    }
-    for (; k0 <= n; ++k0) {
-        const vec E0 = e.e.A;
-        const vec3 two[2] = {before, k0 < n ? D[k0] : in.next};
-        const vec3 low_two[2] = {low_before, careful && k0 < n ? low[k0] : in.next_low};
-        // The last joint is masked in the chain's last segment, others where that ends.
-        step<uniform, careful>(e, block, x, k0 - 1, joint(k0 - 1, two, low_two), k0 < n ? B[k0] : vec{}, true);
-        normalise(e);
-        before = two[1];
-        low_before = low_two[1];
-        if (careful || !any(less(e.slack, vec{}))) continue;
-        doubt = doubt | (doubtful_joints<uniform>(block, two, k0, 1, E0) & less(e.slack, vec{}));
+    vec E0 = {};
+    // Joints that have failed the cheap test, of m joints of bonds from d on. E0: E before the first, that of bond k.
+    const auto look = [&](const vec3 *d, long k, long m) HOL_FORCED {
+        const mask short_of = less(e.slack, vec{});
+        if (careful || __builtin_expect(!any(short_of), 1)) return;
+        doubt = doubt | (doubtful_joints<uniform>(block, d, k, m, E0) & short_of);
         e.slack = vec{};
+    };
+    for (long k0 = 0; k0 < n; k0 += stage_bonds) {
+        long end = k0 + stage_bonds < n ? k0 + stage_bonds : n, k = k0;
+        in.load(k0, end, D + 1, careful ? low + 1 : nullptr, B);
+        if (end == n) {
+            D[1 + n - k0] = behind.d;
+            if (careful) low[1 + n - k0] = behind.low;
+            B[n - k0] = vec{};
+            ++end;
+        }
+        while (k < end) {
+            for (; k >= group && k < grouped && k < end; k += group) {
+                const vec3 *const d = D + (k - k0);  // bonds k - 1, k ..
+                const vec *const b = B + (k - k0);
+                Joint j[group];
+                plain_joints<group>(source, k - 1, d, j);
+                E0 = e.e.A;
+#pragma GCC unroll 8
+                for (int i = 0; i < group; ++i) {
+                    step<uniform, false>(e, block, x, k + i - 1, j[i], b[i], false);
+                    if (i % 4 == 3) normalise(e);
+                }
+                look(d, k, group);
+            }
+            if (k == end) break;
+            const vec3 *const d = D + (k - k0), *const l = careful ? low + (k - k0) : nullptr;
+            const vec *const b = B + (k - k0);
+            const bool alone = k >= grouped;  // else of the first group
+            Joint j;
+            if (k == 0) {
+                x.summary->q = dot(d[1], d[1]);
+                x.summary->b = b[0];
+            } else if (careful) {
+                j = careful_joint(d[0], l[0], d[1], l[1]);
+            } else {
+                plain_joints<1>(source, k - 1, d, &j);
+            }
+            if (k == 1) {
+                start<uniform>(e, block, x.summary->q, j, b[0]);
+                E0 = e.e.A;
+            } else if (k > 1) {
+                // The last joint is masked in the chain's last segment, others where that ends.
+                if (alone) E0 = e.e.A;
+                step<uniform, careful>(e, block, x, k - 1, j, b[0], true);
+                if (alone || k % 4 == 3) normalise(e);
+                if (alone)
+                    look(d, k, 1);
+                else if (k == group - 1)
+                    look(D + 2, 2, group - 2);
+            }
+            ++k;
+        }
+        D[0] = D[end - k0];
+        if (careful) low[0] = low[end - k0];
     }
     Summary &sum = *x.summary;
     sum.E = e.e.A;
@@ -281,6 +271,7 @@ struct SegmentOutputs {
     vec lambda_factor;
     double virial_factor;
     bool virial;
+    bool adds = false;  // to the pulls that are there
 };
 
 // Loads block j and eliminates its inner bonds. `terms`: of the right-hand sides; `strain` is added to rates, or

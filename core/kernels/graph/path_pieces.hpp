@@ -5,6 +5,7 @@
 #define HOLONOMIC_KERNELS_GRAPH_PATH_PIECES_HPP
 
 #include "core/kernels/graph/path_work.hpp"
+#include "core/kernels/memory/load.hpp"
 #include "core/kernels/newton/attempts.hpp"
 
 namespace holonomic {
@@ -84,7 +85,7 @@ static inline void note_worst_of_pieces(const PathsWork &x, const PathPieces &p,
         first[i] = static_cast<double>(p.skip[i] + inside);
         end[i] = static_cast<double>(p.skip[i] + (p.piece[i].end - p.piece[i].from) - inside);
     }
-    const WorstBonds worst = find_worst<false, false>(newton, p.block.n, first, end);
+    const WorstBonds worst = find_worst(newton, p.block.n, first, end);
     for (int i = 0; i < p.used; ++i)
         note_worse(x, worst.error[i], p.lane[i].first_bond + static_cast<int64_t>(worst.bond[i]), part);
 }
@@ -95,17 +96,16 @@ static inline WindowResult solve_pieces(const PathsWork &x, int64_t j, double *s
     PathPieces p = {};
     if (!open_pieces(x, j, arena, p)) return window_failed;
     const BondLengths a = bond_lengths(p.block, p.lane, arena);
-    Positions<false, false> positions(p.block, p.lane, x.strict, a, arena, part);
+    Positions positions(p.block, p.lane, x.strict, a, arena, part);
     ChainNewton &newton = positions.x;
     const Source source = {&x.strict.box, &positions.r};
     Carried carried(p.block, newton, x.strict, source);
     const mask all = p.block.in_use();
     positions.load();
     displace_ends(x, p, newton.D, positions.arena);
-    const Outcome out = solve_positions<false, false, false>(p.block, newton, x.strict, carried, all, false);
+    const Outcome out = solve_positions(p.block, newton, x.strict, carried, all, false);
     const bool untouched = !any(all & ~out.untouched);
-    if (!untouched && any(all & (~out.converged | coarse_moves<false>(p.block, newton, carried, all))))
-        return window_failed;
+    if (!untouched && any(all & (~out.converged | coarse_moves(p.block, newton, carried, all)))) return window_failed;
     if (x.call.report && any(all & less(splat(part.worst), out.error)))
         note_worst_of_pieces(x, p, newton, untouched, part);
     if (untouched) return window_untouched;
@@ -194,13 +194,11 @@ static inline void close_own(const AtomArray &array, const WrittenPieces &p, con
     }
 }
 
-template <bool to_v>
 static inline void move_pieces(const PathsWork &x, const WrittenPieces &p, const ChainNewton &newton, Arena arena) {
     const Packed r = open_own(x.call.r, p, arena), v = open_own(x.call.v, p, arena);
-    const MoveSink<true, to_v> sink = {r, v, to_v ? 1 / x.call.dt : 0};
-    const vec3 first = newton.tau[0] * newton.b[0];
-    store_pulls<true, false>(p.own, newton.b, newton.tau, p.block.in_use(), sink, 1, first);
-    if (p.free_begin) store_first(p.block.w[0] * first, p.free_begin, sink);
+    const double per_dt = 1 / x.call.dt;
+    move_atoms(p.own, newton, p.block.in_use(), r, v, per_dt, 1, newton.tau[0] * newton.b[0]);
+    if (p.free_begin) move_first(newton, p.free_begin, r, v, per_dt);
     close_own(x.call.r, p, r);
     close_own(x.call.v, p, v);
 }
@@ -225,7 +223,7 @@ static inline void finish_pieces(const PathsWork &x, int64_t j, bool moved, doub
     for (int i = 0; i < block.lanes; ++i) tau[i] = x.tau + p.lane[i].first_bond;
     interleave(tau, block.len, 0, block.n, newton.tau,
                [&](int i, long k) HOL_FORCED { return i < block.lanes && k < block.len[i] ? tau[i][k] : 0.0; });
-    choose([&](auto to_v) { move_pieces<to_v>(x, p, newton, arena); }, x.call.v.x != nullptr);
+    move_pieces(x, p, newton, arena);
     if (x.call.virial) add_virial(x, p, newton, part);
 }
 

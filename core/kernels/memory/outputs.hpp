@@ -102,58 +102,41 @@ HOL_INLINE void store_values(const Block &block, long k0, vec *value, unsigned c
 }
 
 // Writes factor times a value per bond, for the bonds first .. n - 1 of the lanes in `which`; zeros as +0.
-static inline void store_bonds(const Block &block, const vec *value, vec factor, mask which, double *out,
-                               long first = 0) {
-    const unsigned chosen = bits(which & block.in_use());
-    vec m[W];
-    long k0 = first;
-    if (chosen == all_lanes)
-        for (; k0 + W <= block.n_min; k0 += W) {
-            for (int b = 0; b < W; ++b) m[b] = mul_add(factor, value[k0 + b], vec{});
-            store_values<false>(block, k0, m, chosen, out);
-        }
-    for (; k0 < block.n; k0 += W) {
-        for (int b = 0; b < W; ++b) m[b] = k0 + b < block.n ? mul_add(factor, value[k0 + b], vec{}) : vec{};
-        store_values<true>(block, k0, m, chosen, out);
-    }
-}
+void store_bonds(const Block &, const vec *value, vec factor, mask which, double *out, long first = 0);
 
-// Gives the sink the pulls on the atoms first .. n of the lanes in `which`, times w_i if `weighted`. `before` is t d of
-// the bond before atom `first`.
-template <bool weighted, bool uniform, class Sink>
-static inline void store_pulls(const Block &block, const vec3 *d, const vec *t, mask which, const Sink sink,
-                               long first = 0, vec3 before = vec3{}) {
+// Gives the sink the pulls on the atoms first .. n of the lanes in `which`, times w_i if there are `w`. `before` is t d
+// of the bond before atom `first`.
+template <class Sink>
+static void store_pulls(const Block &block, const vec *w, const vec3 *d, const vec *t, mask which, const Sink sink,
+                        long first = 0, vec3 before = vec3{}) {
     const unsigned chosen = bits(which & block.in_use());
-    const auto pull = [&](long k, const vec3 &after, vec *value) HOL_FORCED {
+    const auto pull = [&](long k, bool weigh, const vec3 &after, vec *value) HOL_FORCED {
         vec3 g = after - before;
-        if (weighted && !uniform) g = block.w[k] * g;
+        if (weigh) g = w[k] * g;
         value[0] = g.x;
         value[1] = g.y;
         value[2] = g.z;
         before = after;
     };
     long k0 = first;
-    if (chosen == all_lanes)
+    const auto whole_chunks = [&](bool weigh) HOL_FORCED {
         for (; k0 + W <= block.n_min; k0 += W) {
             vec value[3 * W];
-            for (int a = 0; a < W; ++a) pull(k0 + a, t[k0 + a] * d[k0 + a], value + 3 * a);
+            for (int a = 0; a < W; ++a) pull(k0 + a, weigh, t[k0 + a] * d[k0 + a], value + 3 * a);
             store_chunk(k0, value, sink);
         }
+    };
+    if (chosen == all_lanes) w ? whole_chunks(true) : whole_chunks(false);
     for (; k0 <= block.n; k0 += W) {
         vec value[3 * W] = {};
         for (int a = 0; a < W && k0 + a <= block.n; ++a)
-            pull(k0 + a, k0 + a < block.n ? t[k0 + a] * d[k0 + a] : vec3{}, value + 3 * a);
+            pull(k0 + a, w != nullptr, k0 + a < block.n ? t[k0 + a] * d[k0 + a] : vec3{}, value + 3 * a);
         store_ragged(block, k0, value, chosen, sink);
     }
 }
 
-static inline void store_pulls(const Block &block, const vec3 *d, const vec *t, mask which, Update update,
-                               const Packed &out) {
-    if (update == add_)
-        store_pulls<false, true>(block, d, t, which, AtomSink<add_>{out});
-    else
-        store_pulls<false, true>(block, d, t, which, AtomSink<write_>{out});
-}
+// To an array per atom.
+void store_pulls(const Block &, const vec3 *d, const vec *t, mask which, Update, const Packed &out);
 
 // Of W lanes.
 struct VirialSum {
@@ -174,11 +157,7 @@ struct VirialSum {
     }
 };
 
-static inline void add_virial(long n, const vec3 *d, const vec *t, mask which, vec factor, Tally &tally) {
-    VirialSum sum;
-    for (long k = 0; k < n; ++k) sum.add(d[k], t[k] * d[k]);
-    sum.count(which, factor, tally);
-}
+void add_virial(long n, const vec3 *d, const vec *t, mask which, vec factor, Tally &);
 
 }  // namespace holonomic::HOL_ISA
 #endif

@@ -9,7 +9,7 @@
 #include "core/kernels/arithmetic/image.hpp"
 #include "core/kernels/isa/choose.hpp"
 #include "core/kernels/memory/atom_rows.hpp"
-#include "core/kernels/memory/packed.hpp"
+#include "core/kernels/memory/load.hpp"
 
 namespace holonomic::HOL_ISA {
 
@@ -169,17 +169,16 @@ HOL_INLINE void store_multipliers(const Place &place, const vec *t, vec factor, 
     }
 }
 
-// Bonds D[k] from atoms; `boxed`: a box may be there.
+// Bonds D[k] from atoms. `boxed`: there may be a box.
 template <int N, bool boxed>
 HOL_INLINE void take_bonds(const Box &box, const vec *atoms, vec3 *D) {
     vec *const d = &D[0].x;
     HOL_UNROLL
     for (int c = 0; c < 3 * N; ++c) d[c] = atoms[c + 3] - atoms[c];
     if (!boxed || box.shape == Box::none) return;
-    if (box.shape == Box::triclinic) {
-        vec3 unused = {};
+    if (__builtin_expect(box.shape == Box::triclinic, 0)) {
         HOL_UNROLL
-        for (int k = 0; k < N; ++k) wrap<false>(box, D[k], unused);
+        for (int k = 0; k < N; ++k) D[k] = triclinic_image(box, D[k]);
         return;
     }
     HOL_UNROLL
@@ -192,27 +191,33 @@ HOL_INLINE void take_bonds(const Box &box, const vec *atoms, vec3 *D) {
 template <bool boxed, class Place>
 HOL_INLINE void load_bonds(const Box &box, const Place &place, const double *base, vec *atoms, vec3 *D) {
     constexpr int N = Place::bonds;
-    if constexpr (Place::in_row && !boxed && whole<3 * N> < vectors_of<N>) {
-        vec d[whole<3 * N>];
-        HOL_UNROLL
-        for (int j = 0; j < whole<3 * N> / W; ++j) {
+    if constexpr (Place::in_row && whole<3 * N> < vectors_of<N>)
+        if (!boxed || __builtin_expect(box.shape == Box::none, 1)) {
+            vec d[whole<3 * N>];
             HOL_UNROLL
-            for (int i = 0; i < W; ++i) {
-                const double *const p = place.atom(base, i, 0) + j * W;
-                d[j * W + i] = load(p + 3) - load(p);
+            for (int j = 0; j < whole<3 * N> / W; ++j) {
+                HOL_UNROLL
+                for (int i = 0; i < W; ++i) {
+                    const double *const p = place.atom(base, i, 0) + j * W;
+                    d[j * W + i] = load(p + 3) - load(p);
+                }
+                transpose(d + j * W);
             }
-            transpose(d + j * W);
+            HOL_UNROLL
+            for (int k = 0; k < N; ++k) D[k] = {d[3 * k], d[3 * k + 1], d[3 * k + 2]};
+            return;
         }
-        HOL_UNROLL
-        for (int k = 0; k < N; ++k) D[k] = {d[3 * k], d[3 * k + 1], d[3 * k + 2]};
-    } else {
-        load_molecules(place, base, atoms);
-        take_bonds<N, boxed>(box, atoms, D);
-    }
+    load_molecules(place, base, atoms);
+    take_bonds<N, boxed>(box, atoms, D);
 }
 
-// The masses of blocks. In a regular unit they have been set. Else they are those of each place's lanes, and `own`
-// holds the other members of a block that the kernels ask for.
+// Whether molecules of a place may have a box, if its kernel is one for both.
+template <class Place>
+constexpr bool may_be_boxed = Place::bonds <= largest_boxed_molecule;
+
+// The masses of blocks. Those in a row are the given ones; lists have them in any case as a table, so that there is one
+// kernel for equal and unequal ones. Where each lane is of a kind of its own, `own` holds also the other members of a
+// block that the kernels ask for.
 template <class Place>
 struct BlockMasses {
     static constexpr int N = Place::bonds;
@@ -220,8 +225,15 @@ struct BlockMasses {
     const Block &block;
     vec w[N + 1] = {};
     int64_t kind[W];
-    explicit BlockMasses(const Block &given) : block(Place::loose ? own : given) {
-        if (!Place::loose) return;
+    explicit BlockMasses(const Block &given) : block(Place::in_row ? given : own) {
+        if (Place::in_row) return;
+        if (!Place::loose) {
+            own = given;
+            for (int k = 0; k <= N; ++k) w[k] = given.uniform_w ? splat(1.0) : given.w[k];
+            own.w = w;
+            own.uniform_w = false;
+            return;
+        }
         own.n = own.n_min = N;
         for (int i = 0; i < W; ++i) {
             own.len[i] = N;
@@ -255,9 +267,10 @@ struct BlockMasses {
     }
 };
 
-// Calls kernel(place, uniform, boxed) for the molecules from `first` on, where place.type is one of memory/small.hpp.
-// The kernel returns the first molecule that is not done. `uniform`: equal masses, and `one_length`. `boxed`: there may
-// be a box. Units that are not regular need no block: molecules with as many bonds as the first one are done.
+// Calls kernel(place, uniform) for the molecules from `first` on, where place.type is one of memory/small.hpp. The
+// kernel returns the first molecule that is not done. `uniform`: not of loose lanes, with equal masses, and
+// `one_length`. `boxed`: there is a box. Units that are not regular need no block: molecules with as many bonds as the
+// first one are done.
 template <class Kernel>
 static inline int64_t any_molecules(const Unit &unit, const Block &block, int64_t first, bool boxed, bool one_length,
                                     const Kernel &kernel) {
@@ -266,20 +279,16 @@ static inline int64_t any_molecules(const Unit &unit, const Block &block, int64_
     const Lane &head = unit.lanes[unit.regular ? 0 : first];
     const bool in_row = unit.regular && !head.atoms;
     if (head.n_bonds > (boxed || !in_row ? largest_boxed_molecule : largest_molecule)) return first;
+    const bool uniform = block.uniform_w && one_length;
     if (!unit.regular)
         return choose_number<1, largest_boxed_molecule>(head.n_bonds,
-                                                        [&](auto n) { return kernel(Type<ByLanes<n>>{}, no, yes); });
-    return choose_number<1, largest_molecule>(head.n_bonds, [&](auto n) {
-        return choose(
-            [&](auto uniform) {
-                if constexpr (n <= largest_boxed_molecule) {
-                    if (!in_row) return kernel(Type<ByList<n>>{}, uniform, yes);
-                    if (boxed) return kernel(Type<InRow<n>>{}, uniform, yes);
-                }
-                return kernel(Type<InRow<n>>{}, uniform, no);
-            },
-            block.uniform_w && one_length);
-    });
+                                                        [&](auto n) { return kernel(Type<ByLanes<n>>{}, no); });
+    if (!in_row)
+        return choose_number<1, largest_boxed_molecule>(head.n_bonds, [&](auto n) {
+            return uniform ? kernel(Type<ByList<n>>{}, yes) : kernel(Type<ByList<n>>{}, no);
+        });
+    return choose_number<1, largest_molecule>(
+        head.n_bonds, [&](auto n) { return uniform ? kernel(Type<InRow<n>>{}, yes) : kernel(Type<InRow<n>>{}, no); });
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -36,27 +36,7 @@ constexpr double last_error = 64 * epsilon;
 constexpr double steady = 1.0 / 256;
 
 // Largest |coordinate| of each lane.
-HOL_NOINLINE vec extent(const Block &block, const Source &source) {
-    const bool in_rows = !source.atoms && !source.lanes;
-    vec largest = {};
-    for (int i = 0; i < W; ++i) {
-        double x = 0, of_rows[W];
-        const auto look = [&](const double *p, long n) {
-            for (long e = 0; e < n; ++e) x = abs(p[e]) > x ? abs(p[e]) : x;
-        };
-        const double *const row = source.atom(i, 0);
-        const long count = 3 * (block.len[i] + 1);
-        vec m = {};
-        long e = 0;
-        for (; in_rows && e + W <= count; e += W) m = max(m, abs(load(row + e)));
-        store(of_rows, m);
-        look(of_rows, W);
-        if (in_rows) look(row + e, count - e);
-        for (long k = 0; !in_rows && k <= block.len[i]; ++k) look(source.atom(i, k), 3);
-        largest[i] = x;
-    }
-    return largest;
-}
+vec extent(const Block &, const Source &);
 
 // What error the coordinates of each lane carry. Each end of a bond is rounded to u |r|, u = half a unit in the last
 // place. The largest coordinate is found only when a decision depends on it, which is rare.

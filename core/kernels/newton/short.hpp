@@ -10,11 +10,11 @@ namespace holonomic::HOL_ISA {
 
 // A chain of one bond in closed form: with sigma = D.D - a^2, D - s b has the length a for
 // s = sigma / (D.b + sqrt((D.b)^2 - b.b sigma)), and tau = s / (w_0 + w_1).
-template <bool uniform_w>
+template <Same masses>
 HOL_INLINE Outcome solve_single_bonds(const Newton &x, Carried &carried, mask wanted) {
     Outcome out = {};
     const vec3 b = x.b[0], d = x.D[0];
-    const vec w = uniform_w ? splat(2.0) : x.w[0] + x.w[1];
+    const vec w = times_w<masses>(x, 0, splat(1.0)) + times_w<masses>(x, 1, splat(1.0));
     const vec a2 = x.a2 ? x.a2[0] : x.a2_uniform, db = dot(d, b);
     const vec sigma = excess(d, a2);
     const vec root = sqrt(mul_add(db, db, -(dot(b, b) * sigma)));  // NaN where the length can't be reached
@@ -102,10 +102,10 @@ struct TwoBonds {
 };
 
 // The lanes in `wanted`, into tau. Those that are neither converged nor untouched need iterate().
-template <bool uniform_w, bool uniform_a>
+template <Same masses, Same a>
 HOL_INLINE Outcome solve_two_bonds(Newton &x, Carried &carried, mask wanted) {
     const vec3 b0 = x.b[0], b1 = x.b[1], D0 = x.D[0], D1 = x.D[1];
-    const vec w = uniform_w ? splat(1.0) : x.w[1], one = splat(1.0);
+    const vec one = splat(1.0), w = times_w<masses>(x, 1, one);
     const TwoBonds m = {dot(b0, b0),
                         dot(b0, b1),
                         dot(b1, b1),
@@ -113,39 +113,37 @@ HOL_INLINE Outcome solve_two_bonds(Newton &x, Carried &carried, mask wanted) {
                         dot(D0, b1),
                         dot(D1, b0),
                         dot(D1, b1),
-                        (uniform_w ? one : x.w[0]) + w,
-                        w + (uniform_w ? one : x.w[2]),
+                        times_w<masses>(x, 0, one) + w,
+                        w + times_w<masses>(x, 2, one),
                         w};
+    const auto per_a2 = [&](int k)
+                            HOL_FORCED { return a == same || (a == either && !x.a2) ? x.per_a2_uniform : x.per_a2[k]; };
     vec worst = {};
-    const vec sigma0 = length_error<uniform_a>(x, 0, false, D0, worst),
-              sigma1 = length_error<uniform_a>(x, 1, false, D1, worst);
+    const vec sigma0 = length_error<a>(x, 0, false, D0, worst), sigma1 = length_error<a>(x, 1, false, D1, worst);
     Outcome out = {};
     // As in the elimination, the error is NaN if a reference is.
-    const vec before = largest_error<uniform_a>(x, worst, (sigma0 + sigma1) + (m.g00 + m.g11));
+    const vec before = largest_error<a>(x, worst, (sigma0 + sigma1) + (m.g00 + m.g11));
     out.untouched = wanted & carried.within(before, one);
     TwoBonds::Factors f = m.factors();
     const mask open = less(two_bonds_part * f.whole, f.part());
-    const vec s0 = first_side(sigma0, uniform_a ? x.per_a2_uniform : x.per_a2[0]),
-              s1 = first_side(sigma1, uniform_a ? x.per_a2_uniform : x.per_a2[1]);
+    const vec s0 = first_side(sigma0, per_a2(0)), s1 = first_side(sigma1, per_a2(1));
     const vec t0 = f.first(s0, s1), t1 = f.second(s0, s1);
     // 2 M tau = sigma + q, linear about the last tau: 2 M' tau = sigma - q. What that leaves is q of the change.
     TwoBonds::Change c = m.change(t0, t1);
     f = m.factors(c);
     const vec z0 = sigma0 - c.q0, z1 = sigma1 - c.q1, next0 = f.first(z0, z1), next1 = f.second(z0, z1);
     c = m.change(next0 - t0, next1 - t1);
-    const vec left = uniform_a ? max(c.q0, c.q1) * x.per_a2_uniform : max(c.q0 * x.per_a2[0], c.q1 * x.per_a2[1]);
+    const vec left = a == same ? max(c.q0, c.q1) * per_a2(0) : max(c.q0 * per_a2(0), c.q1 * per_a2(1));
     const mask near =
         wanted & ~out.untouched & open & less(left, splat(two_bonds_left)) & carried.not_too_far(before, one);
     x.tau[0] = keep(near, next0 + f.first(c.q0, c.q1));
     x.tau[1] = keep(near, next1 + f.second(c.q0, c.q1));
     // As Mover has it, where the bond behind the last one is none.
-    const vec3 p0 = x.tau[0] * b0, p1 = x.tau[1] * b1, middle = times_w<uniform_w>(x, 1, p1 - p0),
-               d0 = D0 + (middle - times_w<uniform_w>(x, 0, p0)),
-               d1 = D1 + (times_w<uniform_w>(x, 2, vec3{} - p1) - middle);
+    const vec3 p0 = x.tau[0] * b0, p1 = x.tau[1] * b1, middle = times_w<masses>(x, 1, p1 - p0),
+               d0 = D0 + (middle - times_w<masses>(x, 0, p0)), d1 = D1 + (times_w<masses>(x, 2, vec3{} - p1) - middle);
     worst = vec{};
-    const vec after0 = length_error<uniform_a>(x, 0, false, d0, worst),
-              after1 = length_error<uniform_a>(x, 1, false, d1, worst);
-    out.error = largest_error<uniform_a>(x, worst, after0 + after1);
+    const vec after0 = length_error<a>(x, 0, false, d0, worst), after1 = length_error<a>(x, 1, false, d1, worst);
+    out.error = largest_error<a>(x, worst, after0 + after1);
     out.converged = near & less_equal(out.error, carried.always_accepted());
     x.tau[0] = keep(out.converged, x.tau[0]);
     x.tau[1] = keep(out.converged, x.tau[1]);

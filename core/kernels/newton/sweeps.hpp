@@ -48,12 +48,12 @@ HOL_INLINE void go_down(const Block &block, const One &one, const Two &two) {
 }
 
 // Gives the bond vectors as the corrections `step` have moved them, one after the other.
-template <bool uniform_w>
+template <Same masses>
 struct Mover {
     vec3 pull, left;  // of the last bond, and the displacement of the atom behind it
-    explicit HOL_FORCED Mover(const Newton &x) : pull(x.step[0] * x.b[0]), left(times_w<uniform_w>(x, 0, pull)) {}
+    explicit HOL_FORCED Mover(const Newton &x) : pull(x.step[0] * x.b[0]), left(times_w<masses>(x, 0, pull)) {}
     HOL_FORCED vec3 bond(const Newton &x, long k) {
-        const vec3 p = x.step[k + 1] * x.b[k + 1], right = times_w<uniform_w>(x, k + 1, p - pull);
+        const vec3 p = x.step[k + 1] * x.b[k + 1], right = times_w<masses>(x, k + 1, p - pull);
         const vec3 d = x.D[k] + (right - left);
         pull = p;
         left = right;
@@ -62,24 +62,25 @@ struct Mover {
 };
 
 // D.D - a^2 of bond k, and its largest size, relative to a^2 if that differs among the bonds.
-template <bool uniform_a>
+template <Same a>
 HOL_INLINE vec length_error(const Newton &x, long k, bool ragged, const vec3 &d, vec &worst) {
-    const vec a2 = uniform_a ? x.a2_uniform : x.a2[k];
+    const bool all = a == same || (a == either && !x.a2);
+    const vec a2 = all ? x.a2_uniform : x.a2[k];
     vec sigma = excess(d, a2);
     if (ragged) sigma = keep(live(x, k), sigma);
-    worst = max(uniform_a ? abs(sigma) : abs(sigma) * x.per_a2[k], worst);
+    worst = max(a == same ? abs(sigma) : abs(sigma) * (all ? x.per_a2_uniform : x.per_a2[k]), worst);
     return sigma;
 }
 
-template <bool uniform_a>
+template <Same a>
 HOL_INLINE vec relative_error(const Newton &x, vec worst) {
-    return uniform_a ? worst * x.per_a2_uniform : worst;
+    return a == same ? worst * x.per_a2_uniform : worst;
 }
 
 // Largest |D.D - a^2| / a^2; max() may lose a NaN, the sum y over all bonds keeps it.
-template <bool uniform_a>
+template <Same a>
 HOL_INLINE vec largest_error(const Newton &x, vec worst, vec y) {
-    return mul_add(y, vec{}, relative_error<uniform_a>(x, worst));
+    return mul_add(y, vec{}, relative_error<a>(x, worst));
 }
 
 enum Factors { first_factors, renewed_factors, careful_factors };
@@ -89,21 +90,21 @@ enum Factors { first_factors, renewed_factors, careful_factors };
 //   first_factors    D is as it was loaded; all lanes get factors
 //   renewed_factors  D moved by the corrections so far; the lanes in `which` get factors
 //   careful_factors  D as it stands; the lanes in `which`; a division per bond, and nothing that cancels
-template <bool uniform_w, bool uniform_a, Factors factors, int fixed = 0>
+template <Same masses, Same a, Factors factors, int fixed = 0>
 HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
     constexpr bool moved = factors == renewed_factors, all = factors == first_factors,
                    careful = factors == careful_factors;
     const long n = fixed > 0 ? fixed : block.n;
-    Mover<uniform_w> mover(x);
+    Mover<masses> mover(x);
     vec3 d = moved ? mover.bond(x, 0) : x.D[0];
     vec worst = {}, y = {}, down = {}, last = {}, q = dot(d, x.b[0]);
-    Column e = {times_w<uniform_w>(x, 0, q), splat(1.0)};
+    Column e = {times_w<masses>(x, 0, q), splat(1.0)};
     const auto bond = [&](long k, bool ragged) HOL_FORCED {
         Row &row = x.row[k];
-        const vec F1 = e.next(times_w<uniform_w>(x, k + 1, q)), rF = splat(1.0) / F1, rP = e.F * rF;
+        const vec F1 = e.next(times_w<masses>(x, k + 1, q)), rF = splat(1.0) / F1, rP = e.F * rF;
         row.half_rP = all ? 0.5 * rP : select(which, 0.5 * rP, row.half_rP);
         row.down = down = all ? down : select(which, down, row.down);
-        y = mul_add(down, y, length_error<uniform_a>(x, k, ragged, moved ? d : x.D[k], worst));
+        y = mul_add(down, y, length_error<a>(x, k, ragged, moved ? d : x.D[k], worst));
         row.u = y * row.half_rP;
         if (ragged || k + 1 == n) last = last + q;  // y knows nothing of a chain's last b, which must be a number, too
         if (k + 1 == n) {
@@ -115,7 +116,7 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
         const vec q1 = dot(d1, b1);
         const vec lower = dot(d1, x.b[k]), upper = dot(b1, d);
         vec X = careful ? dot(cross(d, d1), cross(x.b[k], b1)) : mul_add(q, q1, -(lower * upper));
-        const vec wP = times_w<uniform_w>(x, k + 1, rP);
+        const vec wP = times_w<masses>(x, k + 1, rP);
         vec up = wP * upper;
         down = wP * lower;
         if (ragged) {  // the last pivot of a chain may be 0: no product with its reciprocal
@@ -125,7 +126,7 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
             X = keep(m, X);
         }
         row.up = all ? up : select(which, up, row.up);
-        e.pass(F1, times_w<uniform_w>(x, k + 1, times_w<uniform_w>(x, k + 1, X)), times_w<uniform_w>(x, k + 1, q1));
+        e.pass(F1, times_w<masses>(x, k + 1, times_w<masses>(x, k + 1, X)), times_w<masses>(x, k + 1, q1));
         if (careful || (k & 3) == 3) e = {e.A * rF, splat(1.0)};
         q = q1;
         if (moved) d = d1;
@@ -134,7 +135,7 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
         go_up<fixed>(block, bond);
     } else {
         long k = 0;
-        if (!careful)
+        if (all)
             for (; k + 4 < block.n_min; k += 4) {
                 bond(k, false);
                 bond(k + 1, false);
@@ -143,21 +144,18 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
             }
         for (; k < n; ++k) bond(k, k + 1 >= block.n_min);
     }
-    return largest_error<uniform_a>(x, worst, y + last);
+    return largest_error<a>(x, worst, y + last);
 }
 
-// The same out of line, so that the common case stays short.
-template <bool uniform_w, bool uniform_a, Factors factors, int fixed = 0>
-HOL_NOINLINE vec renew(const Block &block, const Newton &x, mask which) {
-    return eliminate<uniform_w, uniform_a, factors, fixed>(block, x, which);
-}
+// The same for chains of any length, masses and lengths, so that the common case stays short.
+vec renew(const Block &, const Newton &, Factors, mask which);
 
 // Moves the bonds by the corrections `step` and substitutes forward the errors that their lengths have then. Returns
 // the largest. `keep_bonds`: D becomes the moved bonds. `fetch`: nullptr, or atoms of this block; those of the next
 // block are fetched meanwhile.
-template <bool uniform_w, bool uniform_a, bool keep_bonds, int fixed = 0>
+template <Same masses, Same a, bool keep_bonds, int fixed = 0>
 HOL_INLINE vec correct(const Block &block, const Newton &x, const double *fetch) {
-    Mover<uniform_w> mover(x);
+    Mover<masses> mover(x);
     vec worst = {}, y = {};
     go_up<fixed>(block, [&](long k, bool ragged) HOL_FORCED {
         if (!keep_bonds && fixed == 0 && k % 2 == 0 && fetch) fetch_ahead<2>(fetch, k, block.ahead);
@@ -166,24 +164,15 @@ HOL_INLINE vec correct(const Block &block, const Newton &x, const double *fetch)
             const mask m = live(x, k);
             x.D[k] = {select(m, d.x, x.D[k].x), select(m, d.y, x.D[k].y), select(m, d.z, x.D[k].z)};
         }
-        y = mul_add(x.row[k].down, y, length_error<uniform_a>(x, k, ragged, d, worst));
+        y = mul_add(x.row[k].down, y, length_error<a>(x, k, ragged, d, worst));
         x.row[k].u = y * x.row[k].half_rP;
     });
-    return largest_error<uniform_a>(x, worst, y);
-}
-
-// The largest error alone.
-template <bool uniform_w, bool uniform_a>
-static inline vec residuals(const Block &block, const Newton &x) {
-    Mover<uniform_w> mover(x);
-    vec worst = {}, y = {};
-    for (long k = 0; k < block.n; ++k) y = y + length_error<uniform_a>(x, k, true, mover.bond(x, k), worst);
-    return largest_error<uniform_a>(x, worst, y);
+    return largest_error<a>(x, worst, y);
 }
 
 // Goes down the chain and adds the corrections to tau, which is 0 the first time. `all`: in all lanes, else in `which`.
-template <bool first, bool separate, bool all, int fixed>
-HOL_INLINE void substitute_back(const Block &block, const Newton &x, mask which) {
+template <int fixed>
+HOL_INLINE void substitute_back(const Block &block, const Newton &x, bool first, bool separate, bool all, mask which) {
     vec t = {};
     const auto add = [&](long k, vec correction) HOL_FORCED {
         const vec change = all ? correction : keep(which, correction);
@@ -206,14 +195,12 @@ HOL_INLINE void substitute_back(const Block &block, const Newton &x, mask which)
         });
 }
 
-// Branches on the lanes, so that the next step does not wait for the errors of this one.
-template <bool first, bool separate, int fixed = 0>
-HOL_INLINE void substitute_back(const Block &block, const Newton &x, mask which) {
-    if (!separate && __builtin_expect(bits(which) == all_lanes, 1))
-        substitute_back<first, separate, true, fixed>(block, x, which);
-    else
-        substitute_back<first, separate, false, fixed>(block, x, which);
-}
+// What is rarer, for chains of any length, masses and lengths (newton/solve.cpp). The largest error alone:
+vec residuals(const Block &, const Newton &);
+// correct(), where D becomes the moved bonds:
+vec correct_bonds(const Block &, const Newton &);
+// Back in some of the lanes:
+void substitute_back_in(const Block &, const Newton &, bool first, bool separate, mask which);
 
 }  // namespace holonomic::HOL_ISA
 #endif

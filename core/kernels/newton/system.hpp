@@ -27,38 +27,7 @@ struct BondLengths {
 };
 
 // `tables`: gives tables even if all lengths are the same.
-static inline BondLengths bond_lengths(const Block &block, const Lane *lane, Arena &arena, bool tables = false) {
-    bool uniform = block.n == block.n_min && !tables;
-    const double *table[W];
-    double first[W];
-    for (int i = 0; i < W; ++i) {
-        const Lane &one = lane[i < block.lanes ? i : 0];
-        uniform = uniform && !one.length;
-        table[i] = one.length;
-        first[i] = one.length ? one.length[0] : one.length_uniform;
-    }
-    BondLengths x = {};
-    x.a_min = x.a_max = load(first);
-    if (!uniform) {
-        vec *const a2 = arena.vecs(block.n), *const per_a2 = arena.vecs(block.n);
-        interleave(table, block.len, 0, block.n, a2,
-                   [&](int i, long k) HOL_FORCED { return table[i] && k < block.len[i] ? table[i][k] : first[i]; });
-        const vec lengths = block.lengths();
-        for (long k = 0; k < block.n; ++k) {
-            const vec a = a2[k];
-            x.a_min = min(a, x.a_min);
-            x.a_max = max(a, x.a_max);
-            a2[k] = k < block.n_min ? a * a : select(less(splat(static_cast<double>(k)), lengths), a * a, splat(1.0));
-            per_a2[k] = splat(1.0) / a2[k];
-        }
-        x.a2 = a2;
-        x.per_a2 = per_a2;
-    }
-    x.per_a_min = splat(1.0) / x.a_min;
-    x.a2_uniform = x.a_min * x.a_min;
-    x.per_a2_uniform = splat(1.0) / x.a2_uniform;
-    return x;
-}
+BondLengths bond_lengths(const Block &, const Lane *, Arena &, bool tables = false);
 
 struct Newton : BondLengths {
     vec3 *b, *D;  // [n+W]: behind the last bond is one whose multiplier is 0
@@ -66,7 +35,7 @@ struct Newton : BondLengths {
     vec *tau;                    // [n+1], times `unit`
     vec *correction;             // [n+1], the last one
     vec *step;                   // what D has not been moved by yet: tau, or the last correction
-    const vec *w;                // [n+1] inverse masses, those of the block; not if all are 1
+    const vec *w = nullptr;      // [n+1] inverse masses, those of the block; nullptr: all are 1
     vec lengths;                 // numbers of bonds
     const double *next[3] = {};  // where the block's atoms begin, for those of the next one to be fetched early
     Newton(long n, Arena &arena)
@@ -79,18 +48,23 @@ struct Newton : BondLengths {
     Newton(const Block &block, const BondLengths &a, Arena &arena) : Newton(block.n, arena) {
         static_cast<BondLengths &>(*this) = a;
         lengths = block.lengths();
-        w = block.w;
+        w = block.uniform_w ? nullptr : block.w;
     }
 };
 
-template <bool uniform_w>
+// Whether masses, or lengths, are all the same: as the compiler knows, or as is found at each bond, where little is
+// done.
+enum Same { differ, same, either };
+constexpr Same same_if(bool all) { return all ? same : differ; }
+
+template <Same masses>
 HOL_INLINE vec times_w(const Newton &x, long k, vec a) {
-    return uniform_w ? a : x.w[k] * a;
+    return masses == same || (masses == either && !x.w) ? a : x.w[k] * a;
 }
 
-template <bool uniform_w>
+template <Same masses>
 HOL_INLINE vec3 times_w(const Newton &x, long k, const vec3 &a) {
-    return {times_w<uniform_w>(x, k, a.x), times_w<uniform_w>(x, k, a.y), times_w<uniform_w>(x, k, a.z)};
+    return {times_w<masses>(x, k, a.x), times_w<masses>(x, k, a.y), times_w<masses>(x, k, a.z)};
 }
 
 // Whether a lane has a bond k.

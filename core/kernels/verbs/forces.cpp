@@ -1,30 +1,25 @@
 // Acceleration level of a block of chains: load and eliminate in one go, up the chains; substitute and store, down.
 #include "core/kernels/eliminate/chain.hpp"
 #include "core/kernels/eliminate/listed.hpp"
+#include "core/kernels/memory/load.hpp"
 #include "core/kernels/memory/open.hpp"
 #include "core/kernels/memory/outputs.hpp"
-#include "core/kernels/memory/packed.hpp"
 #include "core/kernels/memory/prefetch.hpp"
 #include "core/kernels/memory/small.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
 
-// `careful`: with compensated products of unrounded bond vectors, which are good in all lanes.
-template <int terms, bool careful>
-static inline mask forward_any(const Block &block, const Box &box, const Packed &r, const Packed &v, const Packed &f,
-                               const System &s, mask &calm) {
-    const bool boxed = box.shape != Box::none;
-    if (!careful && (terms & velocity_squared) && block.unit_masses && !boxed)
-        return forward<terms | unit_mass, true, false>(block, box, r, v, f, s, nullptr, calm);
-    return choose(
-        [&](auto uniform, auto has_box) {
-            if (!careful) return forward<terms, uniform, has_box>(block, box, r, v, f, s, nullptr, calm);
-            load_bonds<terms, uniform, has_box, true>(block, box, r, v, f, s.D, s.D_low, s.t);
-            forward_careful<uniform>(block, s);
-            return ~none();
-        },
-        block.uniform_w, boxed);
+static mask forward_forces(const Block &block, const Reader &in, const System &s, mask &calm) {
+    return block.uniform_w ? forward<true, false>(block, in, s, nullptr, calm)
+                           : forward<false, false>(block, in, s, nullptr, calm);
+}
+
+// With compensated products of unrounded bond vectors, which are good in all lanes.
+static mask forward_carefully(const Block &block, const Reader &in, const System &s) {
+    in.load(0, block.n, s.D, s.D_low, s.t);
+    block.uniform_w ? forward_careful<true>(block, s) : forward_careful<false>(block, s);
+    return ~none();
 }
 
 // The backward sweep, which writes at once what it finds: G (see store_pulls) to `out`, and factor t to
@@ -44,7 +39,7 @@ HOL_NOINLINE void substitute_and_store(const Block &block, const System &s, cons
     }
     // Bonds full .. n-1 and the atoms behind them.
     const AtomSink<update> sink = {out};
-    if (out.lane[0] && full < block.n) store_pulls<false, true>(block, s.D, s.t, ~none(), sink, full + 1, after);
+    if (out.lane[0] && full < block.n) store_pulls(block, nullptr, s.D, s.t, ~none(), sink, full + 1, after);
     if (value_out) store_bonds(block, s.t, factor, ~none(), value_out, full);
     for (long k0 = full - W; k0 >= 0; k0 -= W) {
         vec value[3 * W], bond_value[W];
@@ -74,23 +69,16 @@ static inline bool listed_forces(const Block &block, const Lane *lane, const For
         return false;
     const AtomLists at(lane);
     const System s(block.n, arena);
-    const mask good = choose_terms(
-        [&](auto terms) { return forward_listed<terms>(block, call.box, at, call.r, call.v, call.f, s, nullptr); },
-        call.v.x, call.f.x);
-    if (any(~good)) return false;
+    const Reader in(block, call.box, terms_of(call.v.x, call.f.x), at, call.r, call.v, call.f);
+    mask calm;
+    const mask good = forward_forces(block, in, s, calm);
+    if (any(~(good & calm))) return false;
     choose(
         [&](auto add) {
             substitute_and_scatter<add ? add_ : write_>(block, s, at, base_of(call.g), call.lambda, splat(0.5));
         },
         call.add);
     return true;
-}
-
-template <bool careful>
-static inline mask forward_forces(const Block &block, const ForcesCall &call, const Packed &r, const Packed &v,
-                                  const Packed &f, const System &s, mask &calm) {
-    return choose_terms([&](auto terms) { return forward_any<terms, careful>(block, call.box, r, v, f, s, calm); },
-                        call.v.x, call.f.x);
 }
 
 // Writes the outputs of the lanes in `which`, from t.
@@ -112,7 +100,8 @@ static void forces_block(const Block &block, const Lane *lane, const ForcesCall 
     const Packed f = open(call.f, block, lane, arena, true), g = open(call.g, block, lane, arena, false);
     const Update update = call.add && in_place(call.g, block) ? add_ : write_;  // else unstage() adds
     const System s(block.n, arena);
-    mask calm, good = forward_forces<false>(block, call, r, v, f, s, calm);
+    const int terms = terms_of(call.v.x, call.f.x);
+    mask calm, good = forward_forces(block, Reader(block, call.box, terms, r, v, f), s, calm);
     const bool plain = block.lanes == W && !any(~(good & calm));
     if (__builtin_expect(plain && !call.tension && !call.virial, 1)) {
         choose([&](auto add) { substitute_and_store<add ? add_ : write_>(block, s, g, call.lambda, splat(0.5)); },
@@ -123,7 +112,7 @@ static void forces_block(const Block &block, const Lane *lane, const ForcesCall 
     // Lanes that plain arithmetic can't answer for: once more, with compensated products.
     mask rest = block.in_use();
     for (int careful = 0; careful < 2 && any(rest); ++careful) {
-        if (careful) good = forward_forces<true>(block, call, r, v, f, s, calm);
+        if (careful) good = forward_carefully(block, Reader(block, call.box, terms, r, v, f, true), s);
         backward(0, block.n, s.t, s.L);
         good = good & finite(s.t[0]) & rest;
         finish_forces(block, call, s, good, g, update, arena, tally);
@@ -134,33 +123,35 @@ static void forces_block(const Block &block, const Lane *lane, const ForcesCall 
 }
 
 // Bonds D[k] of W molecules and their right-hand sides t[k].
-template <int terms, bool uniform, bool boxed, class Place>
+template <bool uniform, class Place>
 HOL_INLINE void load_sides(const Block &block, const Box &box, const Place &place, const double *r, const double *v,
                            const double *f, vec3 *D, vec *t) {
     constexpr int N = Place::bonds;
     vec e[vectors_of<N>];
     vec3 dv[N] = {}, *const x = reinterpret_cast<vec3 *>(e);
-    load_bonds<boxed>(box, place, r, e, D);
-    if (terms & velocity_squared) {
+    load_bonds<may_be_boxed<Place>>(box, place, r, e, D);
+    if (v) {
         load_molecules(place, v, e);
         HOL_UNROLL
         for (int k = 0; k < N; ++k) dv[k] = x[k + 1] - x[k];
     }
     load_molecules(place, f, e);
-    choose(
-        [&](auto waited) HOL_FORCED {
-            HOL_UNROLL
-            for (int k = 0; k < N; ++k) {
-                const vec3 df = uniform ? x[k + 1] - x[k] : block.w[k + 1] * x[k + 1] - block.w[k] * x[k];
-                t[k] = right_hand_side<terms>(waited, block.mass, D[k], dv[k], df);
-            }
-        },
-        boxed && box.shape == Box::triclinic);
+    vec3 df[N];
+    HOL_UNROLL
+    for (int k = 0; k < N; ++k) df[k] = uniform ? x[k + 1] - x[k] : block.w[k + 1] * x[k + 1] - block.w[k] * x[k];
+    if (v) {
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k)
+            t[k] = right_hand_side(velocity_squared | force_difference, block.mass, D[k], dv[k], df[k]);
+    } else {
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) t[k] = right_hand_side(force_difference, block.mass, D[k], dv[k], df[k]);
+    }
 }
 
-// G of the atoms of W molecules.
-template <Update update, class Place>
-HOL_INLINE void store_pulls(const vec3 *D, const vec *t, const Place &place, double *out) {
+// G of the atoms of W molecules, written or added.
+template <class Place>
+HOL_INLINE void store_pulls(const vec3 *D, const vec *t, const Place &place, double *out, bool add) {
     constexpr int N = Place::bonds;
     vec value[vectors_of<N>] = {};
     vec3 before = {};
@@ -172,11 +163,11 @@ HOL_INLINE void store_pulls(const vec3 *D, const vec *t, const Place &place, dou
         value[3 * k + 2] = g.z;
         before = after;
     }
-    store_molecules<update>(place, value, out);
+    add ? store_molecules<add_>(place, value, out) : store_molecules<write_>(place, value, out);
 }
 
 // Does molecules from `first` on. Returns the first one that is not done. `given`: the block of a regular unit.
-template <class Place, int terms, bool uniform, bool boxed>
+template <class Place, bool uniform>
 static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, const Block &given, int64_t first) {
     constexpr int N = Place::bonds;
     const double *const r = base_of(call.r), *const v = base_of(call.v), *const f = base_of(call.f);
@@ -192,30 +183,28 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
         place.fetch_next(r);
         place.fetch_next(v);
         place.fetch_next(f);
-        load_sides<terms, uniform, boxed>(block, call.box, place, r, v, f, D, t);
+        load_sides<uniform>(block, call.box, place, r, v, f, D, t);
         const Source source = place.source(r, call.box);
         Sweep<uniform, false> sweep{block, source, System(D, t, L, nullptr)};
         HOL_UNROLL
-        for (int k = 0; k < N; ++k) sweep.step(k, t[k], k % 4 == 0, false);
+        for (int k = 0; k < N; ++k)
+            sweep.step(
+                k, [&]() HOL_FORCED { return t[k]; }, k % 4 == 0, false);
         if (__builtin_expect(any(sweep.doubt() | ~sweep.calm()), 0)) break;
         backward(0, N, t, L);
-        if (g) call.add ? store_pulls<add_>(D, t, place, g) : store_pulls<write_>(D, t, place, g);
+        if (g) store_pulls(D, t, place, g, call.add);
         if (call.lambda) store_multipliers(place, t, splat(0.5), call.lambda);
     }
     return first;
 }
 
-static inline int64_t small_forces(const ForcesCall &call, const Unit &unit, Block &block, int64_t first, Tally &) {
+static int64_t small_forces(const ForcesCall &call, const Unit &unit, Block &block, int64_t first, Tally &) {
     const bool plain = call.r.packed && (!call.v.x || call.v.packed) && call.f.packed && (!call.g.x || call.g.packed) &&
                        !call.tension && !call.virial;
     if (!plain || !call.f.x) return first;
-    return any_molecules(
-        unit, block, first, call.box.shape != Box::none, true, [&](auto place, auto uniform, auto boxed) {
-            typedef typename decltype(place)::type Place;
-            constexpr int both = velocity_squared | force_difference;
-            return call.v.x ? forces_of_molecules<Place, both, uniform, boxed>(call, unit, block, first)
-                            : forces_of_molecules<Place, force_difference, uniform, boxed>(call, unit, block, first);
-        });
+    return any_molecules(unit, block, first, call.box.shape != Box::none, true, [&](auto place, auto uniform) {
+        return forces_of_molecules<typename decltype(place)::type, uniform>(call, unit, block, first);
+    });
 }
 
 void forces(const ForcesCall &call, const Unit &unit, double *scratch, Tally &tally) {

@@ -1,10 +1,9 @@
 // Metric determinant and Fixman force of blocks of chains, and of one long chain in windows (memory/cut.hpp).
 #include "core/kernels/eliminate/deficits.hpp"
-#include "core/kernels/isa/choose.hpp"
 #include "core/kernels/memory/cut.hpp"
+#include "core/kernels/memory/load.hpp"
 #include "core/kernels/memory/open.hpp"
 #include "core/kernels/memory/outputs.hpp"
-#include "core/kernels/memory/packed.hpp"
 #include "core/kernels/tally.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
@@ -12,16 +11,15 @@ namespace holonomic::HOL_ISA {
 
 // Returns the logarithms of all bonds, or of those that are the window's own. Takes bad lanes out of `good`. The forces
 // are the pulls of t and phi, which it leaves in x.t and x.u.
-template <bool uniform, bool boxed>
+template <bool uniform>
 HOL_NOINLINE MetricSums solve_metric(const Block &block, const MetricCall &call, const Packed &r, const Window *window,
                                      const Geometry &x, mask &good) {
-    const Packed absent = {};
     vec first = {}, end = block.lengths();
     for (int i = 0; window && i < W; ++i) {
         first[i] = static_cast<double>(window->skip[i]);
         end[i] = static_cast<double>(window->skip[i] + window->own.own[i]);
     }
-    load_bonds<none_, uniform, boxed, true>(block, call.box, r, absent, absent, x.u, x.low, x.t);
+    Reader(block, call.box, none_, r, r, r, true).load(0, block.n, x.u, x.low, nullptr);
     measure<uniform>(block, x);
     const MetricSums sums = eliminate_metric<uniform>(block, x, x.delta[0], first, end, call, good);
     good = good & finite(sums.log_det) & finite(sums.log_det_z);
@@ -38,9 +36,8 @@ HOL_NOINLINE MetricSums solve_metric(const Block &block, const MetricCall &call,
 
 static inline MetricSums solve_metric(const Block &block, const MetricCall &call, const Packed &r, const Window *window,
                                       const Geometry &x, mask &good) {
-    return choose(
-        [&](auto uniform, auto boxed) { return solve_metric<uniform, boxed>(block, call, r, window, x, good); },
-        block.uniform_w, call.box.shape != Box::none);
+    return block.uniform_w ? solve_metric<true>(block, call, r, window, x, good)
+                           : solve_metric<false>(block, call, r, window, x, good);
 }
 
 static void metric_block(const Block &block, const Lane *lane, const MetricCall &call, Arena arena, Tally &tally) {

@@ -4,7 +4,6 @@
 #include "core/kernels/memory/atom_rows.hpp"
 #include "core/kernels/memory/small.hpp"
 #include "core/kernels/newton/attempts.hpp"
-#include "core/kernels/newton/iterate.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -12,7 +11,8 @@ namespace holonomic::HOL_ISA {
 // Small molecules. Where a lane needs more than the first attempt, its W molecules are left to the general path.
 
 // Masses and lengths of blocks of N bonds for Newton's method. `uniform`: there is only one inverse mass, and one
-// length. No function that is called gets the memory of the bond vectors, so that these stay in registers.
+// length; else both have tables. No function that is called gets the memory of the bond vectors, so that these stay in
+// registers.
 template <class Place, bool uniform>
 struct SmallNewton {
     static constexpr int N = Place::bonds;
@@ -31,7 +31,12 @@ struct SmallNewton {
     }
     HOL_FORCED void set(const Lane *lane, Newton &x) {
         Arena rest(reinterpret_cast<double *>(lengths), reinterpret_cast<double *>(lengths + 2 * N));
-        static_cast<BondLengths &>(x) = bond_lengths(block, lane, rest, !uniform);
+        const BondLengths found = bond_lengths(block, lane, rest, !uniform);
+        x.a_min = found.a_min;  // one by one: x is shown to no function that is not known here, and stays in registers
+        x.a_max = found.a_max;
+        x.per_a_min = found.per_a_min;
+        x.a2_uniform = found.a2_uniform;
+        x.per_a2_uniform = found.per_a2_uniform;
         x.a2 = uniform ? nullptr : lengths;
         x.per_a2 = uniform ? nullptr : lengths + N;
         x.lengths = splat(N);
@@ -54,7 +59,7 @@ struct SmallCall {
           per_dt(1 / c.dt), factor(0.5 / (c.dt * c.dt)) {}
 };
 
-// The bond vectors of a block, and its atoms as they come.
+// The bond vectors of a block, and its atoms as they come: in a row only where there is a box.
 template <bool boxed, class Place>
 HOL_INLINE void load_positions(const SmallCall &call, const Place &place, const Newton &x, vec *atoms,
                                Carried &carried) {
@@ -64,7 +69,7 @@ HOL_INLINE void load_positions(const SmallCall &call, const Place &place, const 
     place.fetch_next(call.v);
     load_bonds<boxed>(call.box_ref, place, call.r_ref, atoms, x.b);
     load_bonds<boxed>(call.box, place, call.r, atoms, x.D);
-    if (!boxed) return;
+    if (!boxed || call.box.shape == Box::none) return;
     vec largest = {};  // in a box the lengths of bonds say nothing of coordinates
     HOL_UNROLL
     for (int e = 0; e < 3 * (N + 1); ++e) largest = max(largest, abs(atoms[e]));
@@ -81,7 +86,7 @@ HOL_INLINE void write_positions(const SmallCall &call, const Place &place, const
     vec3 before = {};
     HOL_UNROLL
     for (int k = 0; k <= N; ++k) {
-        const vec3 after = x.tau[k] * x.b[k], m = times_w<uniform>(x, k, after - before);
+        const vec3 after = x.tau[k] * x.b[k], m = times_w<same_if(uniform)>(x, k, after - before);
         move[3 * k] = m.x;
         move[3 * k + 1] = m.y;
         move[3 * k + 2] = m.z;
@@ -117,9 +122,24 @@ HOL_INLINE int64_t next_block(const Unit &unit, int64_t first, int64_t end) {
     return n;
 }
 
+// The first attempt at a block. False if that is not enough for one of its lanes.
+template <bool uniform, int N>
+HOL_INLINE bool solve_molecules(const Block &block, Newton &x, const PositionsCall &call, Carried &carried,
+                                Outcome &out) {
+    constexpr Same all = same_if(uniform);
+    const mask lanes = first_lanes(W);
+    if (N == 1)
+        out = solve_single_bonds<all>(x, carried, lanes);
+    else if (N == 2)
+        out = solve_two_bonds<all, all>(x, carried, lanes);
+    else
+        out = iterate<all, all, N>(block, x, call, carried, lanes, false, false);
+    return !any(~out.converged) && !any(coarse_moves<all, N>(block, x, carried, lanes, coarse_part));
+}
+
 // Single bonds, two blocks at a time: while one waits for its root and its quotient, the other is worked on. Ends
 // before a pair of blocks of which one needs more than this.
-template <class Place, bool uniform, bool boxed>
+template <class Place, bool uniform>
 HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit &unit, const Block &given,
                                            int64_t first, Tally &tally) {
     const SmallCall arrays(call);
@@ -127,25 +147,21 @@ HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit
     Arena arena_a(reinterpret_cast<double *>(memory[0]), 1), arena_b(reinterpret_cast<double *>(memory[1]), 1);
     Newton x_a(1, arena_a), x_b(1, arena_b);
     SmallNewton<Place, uniform> a(unit, given, x_a), b(unit, given, x_b);
-    const int64_t end = Place::loose ? unit.count : Place::end(unit, first);
-    for (int64_t n; next_block<Place>(unit, first, end) == W && (n = next_block<Place>(unit, first + W, end)) > 0;
-         first += W + n) {
-        const Place at_a(unit, first, W), at_b(unit, first + W, n);
-        a.take(at_a, x_a);
-        b.take(at_b, x_b);
+    const int64_t end = Place::end(unit, first);
+    for (; end - first >= 2 * W; first += 2 * W) {
+        const Place at_a(unit, first, W), at_b(unit, first + W, W);
         const Source r_a = at_a.source(arrays.r, call.box), r_b = at_b.source(arrays.r, call.box);
         Carried carried_a(a.block, x_a, call, r_a), carried_b(b.block, x_b, call, r_b);
         vec atoms_a[vectors_of<1>], atoms_b[vectors_of<1>];
-        load_positions<boxed>(arrays, at_a, x_a, atoms_a, carried_a);
-        load_positions<boxed>(arrays, at_b, x_b, atoms_b, carried_b);
-        const mask done = solve_single_bonds<uniform>(x_a, carried_a, first_lanes(W)).converged &
-                          solve_single_bonds<uniform>(x_b, carried_b, first_lanes(W)).converged;
-        if (any(~done | coarse_moves<uniform, 1>(a.block, x_a, carried_a, done) |
-                coarse_moves<uniform, 1>(b.block, x_b, carried_b, done)))
+        Outcome out_a, out_b;
+        load_positions<true>(arrays, at_a, x_a, atoms_a, carried_a);
+        load_positions<true>(arrays, at_b, x_b, atoms_b, carried_b);
+        if (!solve_molecules<uniform, 1>(a.block, x_a, call, carried_a, out_a) ||
+            !solve_molecules<uniform, 1>(b.block, x_b, call, carried_b, out_b))
             break;
         write_positions<uniform>(arrays, at_a, a.block, x_a, atoms_a);
         write_positions<uniform>(arrays, at_b, b.block, x_b, atoms_b);
-        tally.n_corrected += W + n;
+        tally.n_corrected += 2 * W;
         if (tally.iterations < 1) tally.iterations = 1;
     }
     return first;
@@ -162,7 +178,6 @@ HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Uni
     Newton x(N, arena);
     SmallNewton<Place, uniform> newton(unit, given, x);
     const Block &block = newton.block;
-    const mask all = first_lanes(W);
     const int64_t end = Place::loose ? unit.count : Place::end(unit, first);
     for (int64_t n; (n = next_block<Place>(unit, first, end)) > 0; first += n) {
         const Place place(unit, first, n);
@@ -170,19 +185,14 @@ HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Uni
         const Source r = place.source(arrays.r, call.box);
         Carried carried(block, x, call, r);
         vec atoms[vectors_of<N>];
-        load_positions<boxed>(arrays, place, x, atoms, carried);
         Outcome out;
-        if (N == 1)
-            out = solve_single_bonds<uniform>(x, carried, all);
-        else if (N == 2 && tries_two_bonds(call))
-            out = solve_two_bonds<uniform, uniform>(x, carried, all);
-        else
-            out = iterate<uniform, uniform, false, N>(block, x, call, carried, all, false);
-        if (any(~out.converged) || any(coarse_moves<uniform, N>(block, x, carried, all))) break;
+        load_positions<boxed>(arrays, place, x, atoms, carried);
+        if (!solve_molecules<uniform, N>(block, x, call, carried, out)) break;
         if (call.report) {
-            Block &reported = Place::loose ? newton.masses.own : given;
+            Block &reported = Place::in_row ? given : newton.masses.own;
             for (int i = 0; i < W; ++i) reported.chain[i] = place.chain_of(i);
-            note_worst<uniform, uniform>(reported, x, call, all, out.error, tally);
+            const Newton copy = x;
+            note_worst(reported, copy, call, first_lanes(W), out.error, tally);
         }
         write_positions<uniform>(arrays, place, block, x, atoms);
         tally.n_corrected += n;
@@ -194,84 +204,19 @@ HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Uni
 static inline int64_t small_positions(const PositionsCall &call, const Unit &unit, Block &block, int64_t first,
                                       Tally &tally) {
     if (!call.r.packed || !call.r_ref.packed || (call.v.x && !call.v.packed) || call.virial || call.guess) return first;
+    if (unit.lanes[unit.regular ? 0 : first].n_bonds == 2 && !tries_two_bonds(call)) return first;
     const bool has_box = call.box.shape != Box::none || call.box_ref.shape != Box::none;
-    return any_molecules(unit, block, first, has_box, !unit.lanes[0].length, [&](auto place, auto uniform, auto boxed) {
+    return any_molecules(unit, block, first, has_box, !unit.lanes[0].length, [&](auto place, auto uniform) {
         typedef typename decltype(place)::type Place;
-        if constexpr (Place::bonds == 1 && W > 1)
-            if (!call.report) first = pairs_of_single_bonds<Place, uniform, boxed>(call, unit, block, first, tally);
-        return positions_of_molecules<Place, uniform, boxed>(call, unit, block, first, tally);
+        if constexpr (Place::in_row && Place::bonds == 1 && W > 1)
+            if (!call.report) first = pairs_of_single_bonds<Place, uniform>(call, unit, block, first, tally);
+        // A kernel for both, of two or three bonds in a row, takes 7 % more instructions.
+        if constexpr (Place::in_row && Place::bonds > 1)
+            if (!has_box) return positions_of_molecules<Place, uniform, false>(call, unit, block, first, tally);
+        if constexpr (may_be_boxed<Place>)
+            return positions_of_molecules<Place, uniform, true>(call, unit, block, first, tally);
+        return first;
     });
-}
-
-// Chains that have lists of atoms: the arithmetic of attempts.hpp, on atoms read where the lists say. If a lane needs
-// more than the first attempt, or no move at all, the block is left as it came, to the general path.
-
-template <bool boxed>
-HOL_INLINE void gather_bonds(const Block &block, const PositionsCall &call, const AtomLists &at, const Newton &x) {
-    const double *const r_ref = base_of(call.r_ref), *const r = base_of(call.r), *const v = base_of(call.v);
-    vec3 b0 = gather(r_ref, at, 0), r0 = gather(r, at, 0), unused = {};
-    for (long k = 0; k < block.n; ++k) {
-        at.fetch(k, block.list_ahead, r_ref, r, v);
-        const vec3 b1 = gather(r_ref, at, k + 1), r1 = gather(r, at, k + 1);
-        vec3 b = b1 - b0, d = r1 - r0;
-        if (boxed) {
-            wrap<false>(call.box_ref, b, unused);
-            wrap<false>(call.box, d, unused);
-        }
-        x.b[k] = b;
-        x.D[k] = d;
-        b0 = b1;
-        r0 = r1;
-    }
-}
-
-// As store_pulls() with a MoveSink, of all lanes.
-template <bool uniform_w, bool to_v>
-static inline void scatter_moves(const Block &block, const Newton &x, const AtomLists &at, double *r, double *v,
-                                 vec rate) {
-    vec3 before = {};
-    for (long k = 0; k <= block.n; ++k) {
-        const vec3 after = x.tau[k] * x.b[k], m = times_w<uniform_w>(x, k, after - before);
-        before = after;
-        scatter<add_>(r, at, k, m);
-        if (!to_v) continue;
-        const vec3 q = gather(v, at, k);
-        scatter<write_>(v, at, k, {mul_add(m.x, rate, q.x), mul_add(m.y, rate, q.y), mul_add(m.z, rate, q.z)});
-    }
-}
-
-// True if the block is done; on false nothing was written.
-template <bool uniform_w, bool uniform_a>
-HOL_NOINLINE bool listed_positions(const Block &block, const Lane *lane, const PositionsCall &call,
-                                   const BondLengths &a, Arena arena, Tally &tally) {
-    if (!call.r_ref.packed || !call.r.packed || (call.v.x && !call.v.packed) || !listed(block, lane)) return false;
-    const AtomLists at(lane);
-    Newton x(block, a, arena);
-    if (call.box.shape == Box::none && call.box_ref.shape == Box::none)
-        gather_bonds<false>(block, call, at, x);
-    else
-        gather_bonds<true>(block, call, at, x);
-    if (call.guess) load_guess(block, call, x);
-    const Source source = {&call.box, nullptr, base_of(call.r), at.atoms};
-    Carried carried(block, x, call, source);
-    const Outcome out =
-        solve_positions<uniform_w, uniform_a, false>(block, x, call, carried, block.in_use(), call.guess);
-    if (any(~out.converged) || any(coarse_moves<uniform_w>(block, x, carried, out.converged))) return false;
-    note_worst<uniform_w, uniform_a>(block, x, call, out.converged, out.error, tally);
-    if (call.v.x)
-        scatter_moves<uniform_w, true>(block, x, at, base_of(call.r), base_of(call.v), splat(1 / call.dt));
-    else
-        scatter_moves<uniform_w, false>(block, x, at, base_of(call.r), nullptr, vec{});
-    if (call.virial) add_virial(block, x, out.converged, call.dt, tally);
-    note_solved(block, x, call, out, tally);
-    return true;
-}
-
-template <bool uniform_w, bool uniform_a>
-static inline void positions_block(const Block &block, const Lane *lane, const PositionsCall &call,
-                                   const BondLengths &a, Arena arena, Tally &tally) {
-    if (block.staged && listed_positions<uniform_w, uniform_a>(block, lane, call, a, arena, tally)) return;
-    Positions<uniform_w, uniform_a>(block, lane, call, a, arena, tally).solve();
 }
 
 void positions(const PositionsCall &call, const Unit &unit, double *scratch, Tally &tally) {
@@ -288,11 +233,8 @@ void positions(const PositionsCall &call, const Unit &unit, double *scratch, Tal
                 lengths = bond_lengths(block, lane, arena);
                 end = arena.next;
             }
-            choose(
-                [&](auto uniform_w, auto uniform_a) {
-                    positions_block<uniform_w, uniform_a>(block, lane, call, lengths, arena, tally);
-                },
-                block.uniform_w, !lengths.a2);
+            if (!block.staged || !listed_positions(block, lane, call, lengths, arena, tally))
+                Positions(block, lane, call, lengths, arena, tally).solve();
         },
         small_positions);
 }

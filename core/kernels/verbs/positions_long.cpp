@@ -2,8 +2,8 @@
 // not rest on how far a margin is felt: inside a piece Newton's method has tested all lengths, and where two pieces
 // meet they are tested here before anything is written. If windows can't do the chain, core hands it to positions() as
 // a unit of one.
-#include "core/kernels/isa/choose.hpp"
 #include "core/kernels/memory/cut.hpp"
+#include "core/kernels/memory/load.hpp"
 #include "core/kernels/memory/outputs.hpp"
 #include "core/kernels/newton/attempts.hpp"
 #include "core/kernels/newton/seams.hpp"
@@ -15,16 +15,14 @@ namespace holonomic::HOL_ISA {
 // Notes the largest error of the pieces without their margins, and the first bond that has it, if it exceeds that of
 // the tally. `seams`: the bonds on either side of a seam count, too. They can't while a neighbour has multipliers that
 // this window does not know.
-template <bool uniform_w, bool uniform_a>
-HOL_NOINLINE void note_worst_of_pieces(const Newton &x, const Window &window, const Lane &lane, bool seams,
-                                       Tally &tally) {
+static void note_worst_of_pieces(const Newton &x, const Window &window, const Lane &lane, bool seams, Tally &tally) {
     const SegmentBlock &s = window.own;
     vec first = {}, end = {};
     for (int i = 0; i < W; ++i) {
         first[i] = static_cast<double>(window.skip[i] + (seams || s.from[i] == 0 ? 0 : 1));
         end[i] = static_cast<double>(window.skip[i] + s.own[i] - (seams || i == s.last ? 0 : 1));
     }
-    const WorstBonds worst = find_worst<uniform_w, uniform_a>(x, window.skip[W - 1] + s.own_max, first, end);
+    const WorstBonds worst = find_worst(x, window.skip[W - 1] + s.own_max, first, end);
     for (int i = 0; i < W; ++i) {
         if (!(worst.error[i] > tally.worst)) continue;
         tally.worst = worst.error[i];
@@ -34,25 +32,26 @@ HOL_NOINLINE void note_worst_of_pieces(const Newton &x, const Window &window, co
 }
 
 // Finds the multipliers of the pieces and puts them into tau[n_bonds] of the chain.
-template <bool uniform_w, bool uniform_a>
-static inline WindowResult solve_window(const Window &window, const PositionsCall &call, const BondLengths &a,
-                                        const Lane &lane, Arena arena, double *tau, Tally &tally) {
+static WindowResult solve_window(const PositionsCall &call, const Lane &lane, int64_t j, double *tau, Arena arena,
+                                 Tally &tally) {
+    Window window;
+    if (!open_window(call.r_ref, call.box_ref, lane, j, 0, arena, window)) return window_failed;
     const Block &block = window.block;
+    const BondLengths a = bond_lengths(block, window.lane, arena);
     const SegmentBlock &s = window.own;
     const PositionsCall strict = call_for_pieces(call);
-    Positions<uniform_w, uniform_a> positions(block, window.lane, strict, a, arena, tally);
+    Positions positions(block, window.lane, strict, a, arena, tally);
     Newton &x = positions.x;
     const Source source = {&call.box, &positions.r};
     Carried carried(block, x, call, source);
     const mask all = first_lanes(W);
     positions.load();
     // A guess does not help: it knows of the pulls beyond the ends of a piece, which are not there.
-    const Outcome out = solve_positions<uniform_w, uniform_a, false>(block, x, strict, carried, all, false);
+    const Outcome out = solve_positions(block, x, strict, carried, all, false);
     const bool untouched = !any(all & ~out.untouched);
-    if (!untouched && (any(all & ~out.converged) || any(coarse_moves<uniform_w>(block, x, carried, all))))
-        return window_failed;
+    if (!untouched && (any(all & ~out.converged) || any(coarse_moves(block, x, carried, all)))) return window_failed;
     if (call.report && any(less(splat(tally.worst), out.error)))
-        note_worst_of_pieces<uniform_w, uniform_a>(x, window, lane, untouched, tally);
+        note_worst_of_pieces(x, window, lane, untouched, tally);
     if (untouched) return window_untouched;
     if (out.solves > tally.iterations) tally.iterations = out.solves;
     if (window.even) {
@@ -66,18 +65,6 @@ static inline WindowResult solve_window(const Window &window, const PositionsCal
     return window_solved;
 }
 
-static inline WindowResult solve_window(const PositionsCall &call, const Lane &lane, int64_t j, double *tau,
-                                        Arena arena, Tally &tally) {
-    Window window;
-    if (!open_window(call.r_ref, call.box_ref, lane, j, 0, arena, window)) return window_failed;
-    const BondLengths a = bond_lengths(window.block, window.lane, arena);
-    return choose(
-        [&](auto uniform_w, auto uniform_a) {
-            return solve_window<uniform_w, uniform_a>(window, call, a, lane, arena, tau, tally);
-        },
-        window.block.uniform_w, !a.a2);
-}
-
 // Whether the multipliers of the pieces fit together.
 static inline bool windows_fit(const PositionsCall &call, const Lane &lane, const double *tau, Arena arena,
                                Tally &tally) {
@@ -88,18 +75,6 @@ static inline bool windows_fit(const PositionsCall &call, const Lane &lane, cons
 }
 
 int64_t long_positions_bytes(int64_t n_bonds) { return n_bonds * static_cast<int64_t>(sizeof(double)); }
-
-// Moves the atoms 1 .. own of the pieces, and the first one of the chain.
-template <bool uniform_w, bool to_v>
-static void move_window(const SegmentBlock &s, int64_t j, const Newton &x, const Packed &r, const Packed &v,
-                        double per_dt) {
-    const vec3 first = x.tau[0] * x.b[0];
-    const MoveSink<true, to_v> sink = {r, v, per_dt};
-    Block own = own_block(s);
-    own.n = s.block.n;  // the last atom of a lane is pulled by the bond behind it, too
-    store_pulls<true, uniform_w>(own, x.b, x.tau, first_lanes(W), sink, 1, first);
-    if (j == 0) store_first(times_w<uniform_w>(x, 0, first), 1, sink);
-}
 
 // Writes the multipliers of window j, and moves its atoms. `moved` is false if the chain came within the tolerance.
 static void finish_window(const PositionsCall &call, const Lane &lane, int64_t j, bool moved, const double *tau,
@@ -129,11 +104,14 @@ static void finish_window(const PositionsCall &call, const Lane &lane, int64_t j
         return packed;
     };
     const Packed r = open_own(call.r), v = open_own(call.v);
-    choose([&](auto uniform_w, auto to_v) { move_window<uniform_w, to_v>(s, j, x, r, v, 1 / call.dt); },
-           s.block.uniform_w, call.v.x != nullptr);
+    const mask all = first_lanes(W);
+    Block moved_atoms = own_block(s);  // atoms 1 .. own of the pieces, and the first one of the chain
+    moved_atoms.n = s.block.n;         // the last atom of a lane is pulled by the bond behind it, too
+    move_atoms(moved_atoms, x, all, r, v, 1 / call.dt, 1, x.tau[0] * x.b[0]);
+    if (j == 0) move_first(x, 1, r, v, 1 / call.dt);
     close_segments(call.r, s, lane, r, false);
     if (call.v.x) close_segments(call.v, s, lane, v, false);
-    if (call.virial) add_virial(own_block(s), x, first_lanes(W), call.dt, tally);
+    if (call.virial) add_virial(own_block(s), x, all, call.dt, tally);
 }
 
 bool long_positions(const PositionsCall &call, const Lane &lane, const LongTeam &team, double *tau, Tally &tally) {

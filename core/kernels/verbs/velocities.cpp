@@ -2,52 +2,25 @@
 // Velocities are read once, stay in lanes until they are right, and are written once.
 #include "core/kernels/eliminate/listed.hpp"
 #include "core/kernels/eliminate/projection.hpp"
+#include "core/kernels/memory/load.hpp"
 #include "core/kernels/memory/open.hpp"
 #include "core/kernels/memory/outputs.hpp"
-#include "core/kernels/memory/packed.hpp"
 #include "core/kernels/memory/small.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
 
-// Loads all velocities, and finds the rates of bonds that have been loaded.
-HOL_NOINLINE void load_rates(const Block &block, const Packed &v, const Projection &x) {
-    x.v[0] = load_atom(v);
-    for (long k0 = 0; k0 < block.n; k0 += W) load_ragged_atoms(block, v, k0, x.v);
-    for (long k = 0; k < block.n; ++k) {
-        vec b = rate_of(x.s.D[k], x.v[k], x.v[k + 1]);
-        if (x.strain) b = b + stretching(x.strain, x.s.D[k]);
-        x.s.t[k] = keep(joint(block, k), b);
-    }
+static mask forward_velocities(const Block &block, const Reader &in, const Projection &x) {
+    mask calm;
+    return block.uniform_w ? forward<true, true>(block, in, x.s, x.v, calm)
+                           : forward<false, true>(block, in, x.s, x.v, calm);
 }
 
-// The same in a box that changes; or with compensated products of unrounded bond vectors, which all lanes can rely on.
-template <bool uniform, bool boxed, bool careful>
-HOL_NOINLINE mask forward_loaded(const Block &block, const Box &box, const Packed &r, const Packed &v,
-                                 const Projection &x) {
-    load_bonds<careful ? none_ : bonds_alone, uniform, boxed, careful>(block, box, r, r, r, x.s.D, x.s.D_low, x.s.t);
-    load_rates(block, v, x);
-    if constexpr (careful) {
-        forward_careful<uniform>(block, x.s);
-        return ~none();
-    } else {
-        const Source source = {&box, &r};
-        Sweep<uniform, true> sweep{block, source, x.s};
-        for (long k = 0; k < block.n; ++k) sweep.step(k, x.s.t[k], k % 4 == 0, k >= block.n_min);
-        return ~sweep.doubt();
-    }
-}
-
-static inline mask forward_velocities(const Block &block, const Box &box, const Packed &r, const Packed &v,
-                                      const Projection &x, bool careful) {
-    return choose(
-        [&](auto uniform, auto boxed) {
-            if (careful) return forward_loaded<uniform, boxed, true>(block, box, r, v, x);
-            if (x.strain) return forward_loaded<uniform, boxed, false>(block, box, r, v, x);
-            mask calm;
-            return forward<rate, uniform, boxed>(block, box, r, v, v, x.s, x.v, calm);
-        },
-        block.uniform_w, box.shape != Box::none);
+// With compensated products of unrounded bond vectors, which are good in all lanes.
+static mask forward_carefully(const Block &block, const Reader &in, const Projection &x) {
+    in.load(0, block.n, x.s.D, x.s.D_low, x.s.t, x.v);
+    block.uniform_w ? forward_careful<true>(block, x.s) : forward_careful<false>(block, x.s);
+    return ~none();
 }
 
 // Makes the second substitution and writes the velocities of the lanes in `which` to `out`.
@@ -92,7 +65,8 @@ static inline bool listed_velocities(const Block &block, const Lane *lane, const
     if (!call.r.packed || call.virial || call.strain || !listed(block, lane)) return false;
     const AtomLists at(lane);
     const Projection x(block.n, arena, nullptr);
-    mask good = forward_listed<rate>(block, call.box, at, call.r, call.v, call.v, x.s, x.v);
+    const Reader in(block, call.box, kept_rate, at, call.r, call.v, AtomArray{});
+    mask good = forward_velocities(block, in, x);
     good = good & pull_back(block, x, true);
     if (any(~good)) return false;
     if (call.lambda) store_bonds(block, x.s.t, 0.5 * block.mass, good, call.lambda);
@@ -107,7 +81,9 @@ static void velocities_block(const Block &block, const Lane *lane, const Velocit
     const Projection x(block.n, arena, call.strain);
     mask rest = block.in_use();
     for (int careful = 0; careful < 2 && any(rest); ++careful) {
-        mask good = forward_velocities(block, call.box, r, v, x, careful);
+        Reader in(block, call.box, kept_rate, r, v, v, careful);
+        in.strain = call.strain;
+        mask good = careful ? forward_carefully(block, in, x) : forward_velocities(block, in, x);
         good = good & pull_back(block, x, !call.v.is_float) & rest;
         rest = rest & ~good;
         if (!any(good)) continue;
@@ -119,8 +95,11 @@ static void velocities_block(const Block &block, const Lane *lane, const Velocit
     if (any(rest)) note_bad(block, rest, tally);
 }
 
+// Out of line and by value: rates of the box are rare.
+HOL_NOINLINE vec stretching_of(const double *strain, vec3 d) { return stretching(strain, d); }
+
 // Does molecules from `first` on. Returns the first one that is not done. `given`: the block of a regular unit.
-template <class Place, bool uniform, bool boxed, bool strained>
+template <class Place, bool uniform>
 static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &unit, const Block &given,
                                        int64_t first) {
     constexpr int N = Place::bonds;
@@ -136,7 +115,7 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
         masses.take(place);
         place.fetch_next(r);
         place.fetch_next(v);
-        load_bonds<boxed>(call.box, place, r, elements, D);
+        load_bonds<may_be_boxed<Place>>(call.box, place, r, elements, D);
         load_molecules(place, v, elements);
         const Source source = place.source(r, call.box);
         const Projection x({D, t, L, pivots}, reinterpret_cast<vec3 *>(elements), left);
@@ -144,14 +123,18 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
         HOL_UNROLL
         for (int k = 0; k < N; ++k) {
             vec b = rate_of(D[k], x.v[k], x.v[k + 1]);
-            if constexpr (strained) b = b + stretching(call.strain, D[k]);
-            sweep.step(k, b, k % 4 == 0, false);
+            if (__builtin_expect(call.strain != nullptr, 0)) b = b + stretching_of(call.strain, D[k]);
+            sweep.step(
+                k, [&]() HOL_FORCED { return b; }, k % 4 == 0, false);
         }
         FirstPull<uniform> pull(block, x, N);
         HOL_UNROLL
         for (int k = N - 1; k >= 0; --k) pull.step(k);
         pull.finish();
-        for (int k = 0; strained && k < N; ++k) left[k] = left[k] + stretching(call.strain, D[k]);
+        if (__builtin_expect(call.strain != nullptr, 0)) {
+            HOL_UNROLL
+            for (int k = 0; k < N; ++k) left[k] = left[k] + stretching_of(call.strain, D[k]);
+        }
         substitute(N, x.correction());
         if (__builtin_expect(any(sweep.doubt() | ~x.finite(N)), 0)) break;
         Pull<uniform> correction{block, x, left};
@@ -164,20 +147,12 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
     return first;
 }
 
-// With a rate of the box, only molecules in a row and without images have a kernel: those are what programs have then.
-static inline int64_t small_velocities(const VelocitiesCall &call, const Unit &unit, Block &block, int64_t first,
-                                       Tally &) {
+static int64_t small_velocities(const VelocitiesCall &call, const Unit &unit, Block &block, int64_t first, Tally &) {
     if (!call.r.packed || !call.v.packed || call.virial) return first;
-    return any_molecules(unit, block, first, call.box.shape != Box::none, true,
-                         [&](auto place, auto uniform, auto boxed) {
-                             typedef typename decltype(place)::type Place;
-                             if (!call.strain)
-                                 return velocities_of_molecules<Place, uniform, boxed, false>(call, unit, block, first);
-                             if constexpr (boxed)
-                                 return first;
-                             else
-                                 return velocities_of_molecules<Place, uniform, false, true>(call, unit, block, first);
-                         });
+    return any_molecules(unit, block, first, call.box.shape != Box::none, true, [&](auto place, auto uniform) {
+        typedef typename decltype(place)::type Place;
+        return velocities_of_molecules < Place, uniform && Place::in_row > (call, unit, block, first);
+    });
 }
 
 void velocities(const VelocitiesCall &call, const Unit &unit, double *scratch, Tally &tally) {

@@ -1,0 +1,353 @@
+#include "core/kernels/memory/load.hpp"
+
+#include "core/kernels/arithmetic/image.hpp"
+#include "core/kernels/memory/prefetch.hpp"
+
+namespace holonomic::HOL_ISA {
+
+// Whole chunks of W bonds. It subtracts numbers as they stand in memory, folds components into an orthorhombic box,
+// multiplies, and transposes only what comes out: vectors that are transposed before that take 4 % more instructions
+// per bond of forces, and all of them are shuffles, of which most processors do one at a time.
+template <int terms, bool uniform, bool boxed>
+static void load_chunks(const Reader &in, long k0, long end, vec3 *D, vec *B) {
+    constexpr bool has_v = terms & (velocity_squared | rate), has_f = terms & force_difference;
+    const Block &block = in.block;
+    const Box &box = in.box;
+    // All arrays are in place, or all are staged, so a lane has the same distance from the first one in each.
+    const double *const first_r = in.r->lane[0], *const first_v = has_v ? in.v->lane[0] : nullptr,
+                        *const first_f = has_f ? in.f->lane[0] : nullptr;
+    long lane[W];
+    for (int i = 0; i < W; ++i) lane[i] = in.r->lane[i] - first_r;
+    for (; k0 < end; k0 += W, D += W) {
+        if (__builtin_expect(in.ahead != 0, 0)) {
+            fetch_ahead(first_r, k0, in.ahead);
+            if (has_v) fetch_ahead(first_v, k0, in.ahead);
+            if (has_f) fetch_ahead(first_f, k0, in.ahead);
+        }
+        vec *const d = &D->x;
+        vec p[3 * W];
+        HOL_UNROLL
+        for (int j = 0; j < 3; ++j) {
+            const long at = 3 * k0 + W * j;
+            vec e[W];
+            HOL_UNROLL
+            for (int i = 0; i < W; ++i) {
+                const double *const r = first_r + at + lane[i];
+                e[i] = load(r + 3) - load(r);
+                if (boxed) {
+                    const int first = W * j % 3;
+                    e[i] = mul_add(round(e[i] * load(box.per_side + first)), load(box.minus_side + first), e[i]);
+                }
+                vec dv = {}, df = {}, vv = {};
+                if (has_v) dv = load(first_v + at + lane[i] + 3) - load(first_v + at + lane[i]);
+                if (terms & velocity_squared) vv = square(terms, splat(block.mass[i]), dv);
+                if (has_f) {
+                    const vec f0 = load(first_f + at + lane[i]), f1 = load(first_f + at + lane[i] + 3);
+                    const double *const w3 = uniform ? nullptr : block.w3[i] + at;
+                    df = uniform ? f1 - f0 : load(w3 + 3) * f1 - load(w3) * f0;
+                }
+                if (terms & products) p[j * W + i] = product(terms, e[i], dv, df, vv);
+            }
+            transpose(e);
+            HOL_UNROLL
+            for (int i = 0; i < W; ++i) d[j * W + i] = e[i];
+            if (terms & products) transpose(p + j * W);
+        }
+        if (!(terms & products)) {
+            for (int b = 0; in.terms == none_ && B && b < W; ++b) *B++ = vec{};
+            continue;
+        }
+        HOL_UNROLL
+        for (int b = 0; b < W; ++b) B[b] = (p[3 * b] + p[3 * b + 1]) + p[3 * b + 2];
+        B += W;
+    }
+}
+
+// Those that whole chunks of a block have, or nullptr: bond by bond.
+static Reader::LoadChunks *chunks_of(const Block &block, const Box &box, int terms, bool careful) {
+    constexpr int forces = force_difference, both = velocity_squared | force_difference;
+    if (careful || box.shape == Box::triclinic) return nullptr;
+    const bool boxed = box.shape != Box::none, uniform = block.uniform_w;
+    switch (terms) {
+        case none_:
+        case kept_rate:
+            return boxed ? load_chunks<none_, true, true> : load_chunks<none_, true, false>;
+        case rate:
+            return boxed ? load_chunks<rate, true, true> : load_chunks<rate, true, false>;
+        case forces:
+            if (uniform) return boxed ? load_chunks<forces, true, true> : load_chunks<forces, true, false>;
+            return boxed ? load_chunks<forces, false, true> : load_chunks<forces, false, false>;
+        case both:
+            if (block.unit_masses && !boxed) return load_chunks<both | unit_mass, true, false>;
+            if (uniform) return boxed ? load_chunks<both, true, true> : load_chunks<both, true, false>;
+            return boxed ? load_chunks<both, false, true> : load_chunks<both, false, false>;
+        default:
+            return nullptr;
+    }
+}
+
+// Differences of a vector per atom, of whole chunks, and what rounding leaves off them.
+template <bool careful>
+static void subtract_chunks(const Packed &rows, long k0, long end, vec3 *out, vec3 *low) {
+    const RowsOfLanes at(rows);
+    for (; k0 < end; k0 += W, out += W) {
+        subtract_chunk<careful>(at, k0, out, low);
+        if (careful) low += W;
+    }
+}
+
+// Atom k of all lanes; of one that ends before, its last one.
+HOL_INLINE vec3 read_atom(const Block &block, const Packed &rows, long k) {
+    const double *p[W];
+    for (int i = 0; i < W; ++i) p[i] = rows.lane[i] + 3 * (k < block.len[i] ? k : block.len[i]);
+    vec3 a;
+    read_rows(p, a);
+    return a;
+}
+
+// The same of any bonds. low: of bond vectors, or nullptr. `weigh`: of vectors times inverse masses.
+HOL_NOINLINE void subtract(const Block &block, const Packed &rows, bool weigh, long k0, long end, vec3 *out,
+                           vec3 *low) {
+    const long full = ((block.n_min < end ? block.n_min : end) - k0) / W * W;
+    if (full > 0 && !weigh) {
+        low ? subtract_chunks<true>(rows, k0, k0 + full, out, low)
+            : subtract_chunks<false>(rows, k0, k0 + full, out, low);
+        k0 += full;
+        out += full;
+        if (low) low += full;
+    }
+    if (k0 >= end) return;
+    vec3 x = read_atom(block, rows, k0);
+    if (weigh) x = block.w[k0] * x;
+    for (long k = k0 + 1; k <= end; ++k, ++out) {
+        vec3 x1 = read_atom(block, rows, k);
+        if (weigh) x1 = block.w[k] * x1;
+        *out = x1 - x;
+        if (low)
+            *low++ = {two_difference<vec>(x1.x, x.x).lo, two_difference<vec>(x1.y, x.y).lo,
+                      two_difference<vec>(x1.z, x.z).lo};
+        x = x1;
+    }
+}
+
+// The velocities of the atoms behind bonds, and rates of these.
+HOL_NOINLINE void load_rates(const Reader &in, long from, long end, const vec3 *D, vec *B, vec3 *velocities) {
+    const Block &block = in.block;
+    if (from == 0) velocities[0] = load_atom(*in.v);
+    vec3 v = velocities[from];
+    long k = from;
+    const long n = end <= block.n_min && block.roomy ? end : (end < block.n_min ? end : block.n_min) - W + 1;
+    vec3 *x = velocities + from;
+    for (; k < n; k += W, x += W, D += W, B += W) {
+        const double *p[W];
+        for (int i = 0; i < W; ++i) p[i] = in.v->lane[i] + 3 * (k + 1);
+        if (__builtin_expect(in.ahead != 0, 0)) fetch_ahead(in.v->lane[0], k, in.ahead);
+        load_atoms(p, x + 1);
+        HOL_UNROLL
+        for (int b = 0; b < W; ++b) {
+            const vec3 behind = x[b + 1];
+            B[b] = rate_of(D[b], v, behind);
+            v = behind;
+        }
+    }
+    for (; k < end; ++k, ++x, ++D, ++B) {
+        const vec3 behind = read_atom(block, *in.v, k + 1);
+        x[1] = behind;
+        *B = keep(joint(block, k), rate_of(*D, v, behind));
+        v = behind;
+    }
+}
+
+static void add_strain(const Reader &in, long k0, long end, const vec3 *D, vec *B) {
+    for (long k = k0; k < end; ++k, ++D, ++B) *B = *B + keep(joint(in.block, k), stretching(in.strain, *D));
+}
+
+// Bonds past the end of a lane become inert: n of them from k0 on.
+static void make_inert(const Block &block, long k0, long n, vec3 *D, vec3 *low, vec *B) {
+    const vec lengths = block.lengths();
+    for (long k = block.n_min > k0 ? block.n_min - k0 : 0; k < n; ++k) {
+        const mask live = less(splat(static_cast<double>(k0 + k)), lengths);
+        D[k] = {select(live, D[k].x, splat(1.0)), keep(live, D[k].y), keep(live, D[k].z)};
+        if (low) low[k] = {keep(live, low[k].x), keep(live, low[k].y), keep(live, low[k].z)};
+        if (B) B[k] = keep(live, B[k]);
+    }
+}
+
+// Bonds of any block and in any box, and where lanes end, in steps: at most stage_bonds.
+HOL_NOINLINE void load_bonds(const Reader &in, long k0, long end, vec3 *D, vec3 *low, vec *B) {
+    const Block &block = in.block;
+    const long n = end - k0;
+    const int terms = in.terms;
+    subtract(block, *in.r, false, k0, end, D, low);
+    vec3 unused = {};
+    if (low && in.box.shape != Box::none) {
+        for (long k = 0; k < n; ++k) wrap<true>(in.box, D[k], low[k]);
+    } else if (in.box.shape != Box::none) {
+        const Box box = in.box;  // by value: stores don't change it
+        for (long k = 0; k < n; ++k) wrap<false>(box, D[k], unused);
+    }
+    if (terms & products) {
+        vec3 dv[stage_bonds + W], df[stage_bonds + W];
+        if (terms & of_velocities) subtract(block, *in.v, false, k0, end, dv, nullptr);
+        if (terms & force_difference) subtract(block, *in.f, !block.uniform_w, k0, end, df, nullptr);
+        for (long k = 0; k < n; ++k) B[k] = right_hand_side(terms, block.mass, D[k], dv[k], df[k]);
+    } else if (B) {
+        for (long k = 0; k < n; ++k) B[k] = vec{};
+    }
+    make_inert(block, k0, n, D, low, B);
+}
+
+// From lists: one bond after the other, in the order of the addresses in these.
+template <int terms>
+static void load_listed(const Reader &in, long k0, long end, vec3 *D, vec *B, vec3 *velocities) {
+    constexpr bool has_v = terms & of_velocities, has_f = terms & force_difference, keeps = terms & kept_rate;
+    const Block &block = in.block;
+    const Box &box = in.box;
+    const AtomLists at = *in.lists;
+    const double *const r = in.of_r, *const v = in.of_v, *const f = in.of_f;
+    const vec *const w = block.uniform_w ? nullptr : block.w;
+    const vec mass = block.mass;
+    const Box::Shape shape = box.shape;
+    vec3 r0 = gather(r, at, k0), v0 = {}, f0 = {}, unused = {};
+    if (has_v) v0 = gather(v, at, k0);
+    if (has_f) f0 = gather(f, at, k0);
+    if (keeps) velocities[k0] = v0;
+    const auto bond = [&](long k) HOL_FORCED {
+        at.fetch(k, block.list_ahead, r, v, f);
+        const vec3 r1 = gather(r, at, k + 1);
+        vec3 d = r1 - r0, dv = {}, df = {};
+        r0 = r1;
+        if (shape == Box::triclinic)
+            d = triclinic_image(box, d);
+        else if (shape == Box::orthorhombic)
+            wrap<false>(box, d, unused);
+        D[k - k0] = d;
+        if (has_v) {
+            const vec3 v1 = gather(v, at, k + 1);
+            dv = v1 - v0;
+            v0 = v1;
+            if (keeps) velocities[k + 1] = v1;
+        }
+        if (has_f) {
+            const vec3 f1 = gather(f, at, k + 1);
+            df = w ? w[k + 1] * f1 - w[k] * f0 : f1 - f0;
+            f0 = f1;
+        }
+        if (terms != none_) B[k - k0] = keeps ? dot(d, dv) : right_hand_side(terms, mass, d, dv, df);
+    };
+    long k = k0;
+    for (; k + 2 <= end; k += 2) {  // so that what is carried to the next bond stays where it is
+        bond(k);
+        bond(k + 1);
+    }
+    if (k < end) bond(k);
+    for (k = 0; terms == none_ && B && k < end - k0; ++k) B[k] = vec{};
+}
+
+static void load_listed(const Reader &in, long k0, long end, vec3 *D, vec *B, vec3 *velocities) {
+    constexpr int both = velocity_squared | force_difference;
+    switch (in.terms) {
+        case kept_rate:
+            return load_listed<kept_rate>(in, k0, end, D, B, velocities);
+        case velocity_squared:
+            return load_listed<velocity_squared>(in, k0, end, D, B, velocities);
+        case force_difference:
+            return load_listed<force_difference>(in, k0, end, D, B, velocities);
+        case both:
+            return load_listed<both>(in, k0, end, D, B, velocities);
+        default:
+            return load_listed<none_>(in, k0, end, D, B, velocities);
+    }
+}
+
+// Where lanes end: rows of the chunk from k0 on, padded with zeros, at places that begin at k0.
+struct PaddedRows {
+    double row[W][3 * W + 3];
+    Packed rows;
+    const Packed *take(const Block &block, const Packed &from, long k0) {
+        constexpr long size = 3 * W + 3;
+        for (int i = 0; i < W; ++i) {
+            const long left = 3 * (block.len[i] + 1 - k0);
+            const double *const x = from.lane[i] + 3 * k0;
+            if (left >= size) {
+                for (int j = 0; j < 3; ++j) store(row[i] + W * j, load(x + W * j));
+                for (int j = 0; j < 3; ++j) row[i][3 * W + j] = x[3 * W + j];
+            } else {
+                for (int j = 0; j < 3; ++j) store(row[i] + W * j, vec{});
+                for (int j = 0; j < 3; ++j) row[i][3 * W + j] = 0;
+                for (long e = 0; e < left; e += 3)
+                    for (int c = 0; c < 3; ++c) row[i][e + c] = x[e + c];
+            }
+            rows.lane[i] = reinterpret_cast<double *>(reinterpret_cast<uintptr_t>(row[i]) -
+                                                      static_cast<uintptr_t>(3 * k0) * sizeof(double));
+        }
+        return &rows;
+    }
+};
+
+// A chunk in which lanes end. Those that have ended before it read what another one has there, and if there are no
+// others, no row is copied.
+HOL_NOINLINE void load_last_chunk(const Reader &in, long k0, long end, vec3 *D, vec *B) {
+    const Block &block = in.block;
+    const bool has_v = in.terms & (velocity_squared | rate), has_f = in.terms & force_difference;
+    int whole = -1;  // a lane that has the chunk
+    bool copies = false;
+    for (int i = 0; i < W; ++i) {
+        if (block.len[i] >= k0 + W) whole = i;
+        copies = copies || (block.len[i] > k0 && block.len[i] < k0 + W);
+    }
+    copies = copies || whole < 0;
+    PaddedRows padded_r, padded_v, padded_f;
+    Packed rows[3];
+    const auto rows_of = [&](const Packed &from, PaddedRows &padded, Packed &row) {
+        if (copies) return padded.take(block, from, k0);
+        for (int i = 0; i < W; ++i) row.lane[i] = from.lane[block.len[i] > k0 ? i : whole];
+        return static_cast<const Packed *>(&row);
+    };
+    Reader last = in;
+    last.ahead = 0;
+    last.r = rows_of(*in.r, padded_r, rows[0]);
+    if (has_v) last.v = rows_of(*in.v, padded_v, rows[1]);
+    if (has_f) last.f = rows_of(*in.f, padded_f, rows[2]);
+    in.load_chunks(last, k0, k0 + W, D, B);
+    make_inert(block, k0, end - k0, D, nullptr, B);
+}
+
+void Reader::load_any(long from, long end, vec3 *D, vec3 *low, vec *B, vec3 *velocities) const {
+    if (lists) return load_listed(*this, from, end, D, B, velocities);
+    long k = 0;
+    if (load_chunks) {
+        // Where more can be read behind the lanes, so are chunks that end behind them.
+        const long all = block.n_min < end ? block.n_min : end;
+        k = block.roomy && all == end ? (end - from + W - 1) / W * W : (all > from ? (all - from) / W * W : 0);
+        if (k > 0) load_chunks(*this, from, from + k, D, B);
+        for (; from + k < end; k += W)
+            load_last_chunk(*this, from + k, end < from + k + W ? end : from + k + W, D + k, B ? B + k : nullptr);
+    }
+    for (; from + k < end; k += stage_bonds) {
+        const long last = from + k + stage_bonds < end ? from + k + stage_bonds : end;
+        load_bonds(*this, from + k, last, D + k, low ? low + k : nullptr, B ? B + k : nullptr);
+    }
+    if (terms == kept_rate) load_rates(*this, from, end, D, B, velocities);
+    if (strain) add_strain(*this, from, end, D, B);
+}
+
+Reader::Reader(const Block &of, const Box &in, int wanted, const Packed &pr, const Packed &pv, const Packed &pf,
+               bool with_low)
+    : block(of), box(in), terms(wanted), careful(with_low), ahead(of.ahead), r(&pr), v(&pv), f(&pf),
+      load_chunks(chunks_of(of, in, wanted, with_low)) {}
+
+Reader::Reader(const Block &of, const Box &in, int wanted, const AtomLists &at, const AtomArray &ar,
+               const AtomArray &av, const AtomArray &af)
+    : block(of), box(in), terms(wanted), ahead(0), lists(&at), of_r(base_of(ar)), of_v(base_of(av)), of_f(base_of(af)) {
+}
+
+void load_bond_vectors(const Block &block, const Box &box, const Packed &r, vec3 *D) {
+    if (box.shape == Box::none && block.n == block.n_min && (block.n % W == 0 || block.roomy))
+        return subtract_chunks<false>(r, 0, block.n, D, nullptr);
+    Reader reader(block, box, none_, r, r, r);
+    reader.ahead = 0;  // it is fetched later, while these are worked on
+    reader.load(0, block.n, D, nullptr, nullptr);
+}
+
+}  // namespace holonomic::HOL_ISA
