@@ -61,8 +61,10 @@ public:
 
     std::vector<REAL> solve(std::vector<REAL> b) const
     {
-        for (const std::size_t k : order_)
+        for (const std::size_t k : order_) {
+            if (b[k] == REAL(0)) continue;
             for (const auto &[i, l] : lower_[k]) b[i] -= l * b[k];
+        }
         for (std::size_t step = order_.size(); step-- > 0;) {
             const std::size_t k = order_[step];
             b[k] /= pivot_[k];

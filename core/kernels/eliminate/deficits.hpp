@@ -131,6 +131,14 @@ struct MetricSums {
     vec log_det, log_det_z;
 };
 
+// Less what a coupling p passes on of a deficit e: - p e / P, P = e + p. Along a rod e is the same at each joint, so
+// that the factor p / P would be rounded the same way each time, which adds up as the number of joints. What the
+// smaller one of both loses is never more than half of it.
+HOL_INLINE vec less_passed_on(vec e, vec p, vec P) {
+    const vec s = min(e, p);
+    return mul_sub(s, s / P, s);
+}
+
 // Goes from left to right, from e of bond 0. Finds e of all bonds, and the logarithms over the bonds first .. end-1 of
 // each lane. Takes lanes with a pivot that is not positive out of `good`.
 template <bool uniform>
@@ -154,9 +162,8 @@ static inline MetricSums eliminate_metric(const Block &block, const Geometry &x,
                                select(counted, x.scale[k], splat(1.0)));
         }
         if (k + 1 == block.n) break;
-        const vec l = x.p[k + 1] / P;
-        removed = x.p[k + 1] * l;
-        e = mul_add(l, e, x.delta[k + 1]);
+        removed = x.p[k + 1] * (x.p[k + 1] / P);
+        e = x.delta[k + 1] - less_passed_on(e, x.p[k + 1], P);
     }
     det.flush();
     MetricSums sums = {det.sum, vec{}};
@@ -179,7 +186,7 @@ HOL_INLINE void weigh_normal(const Block &block, const Geometry &x, long k, vec 
 HOL_INLINE vec next_deficit(const Geometry &x, long k, vec f) {
     const mask coupled = less(vec{}, x.p[k]);
     const vec p = select(coupled, x.p[k], splat(1.0));
-    return x.delta[k - 1] + keep(coupled, p * (f / (f + p)));
+    return x.delta[k - 1] - less_passed_on(f, x.p[k], f + p);  // P = 0 would be a division by it
 }
 
 // Writes phi of bond k as t times a vector: the force on atom k is the pull t_k phi_k - t_{k-1} phi_{k-1}. Zeros are
