@@ -35,8 +35,8 @@ static void place_waters(double *r, noise *random)
     }
 }
 
-/* Puts each atom by itself to the image that is nearest to the origin: into the Wigner-Seitz cell of the lattice, which
- * is the truncated octahedron, or the dodecahedron. */
+/* Puts each atom by itself to the image that is nearest to the origin: into the Wigner-Seitz cell of the lattice,
+ * which is the truncated octahedron, the dodecahedron or the prism. */
 static void wrap(double *r, const double *box)
 {
     for (long i = 0; i < ATOMS; ++i) {
@@ -64,13 +64,14 @@ int main(void)
 {
     const cell cells[] = {
         {"truncated octahedron", 4 / sqrt(27), {1, 0, 0, 1 / 3.0, sqrt(8) / 3, 0, -1 / 3.0, sqrt(2) / 3, sqrt(6) / 3}},
-        {"rhombic dodecahedron", sqrt(0.5), {1, 0, 0, 0, 1, 0, 0.5, 0.5, sqrt(0.5)}}};
+        {"rhombic dodecahedron", sqrt(0.5), {1, 0, 0, 0, 1, 0, 0.5, 0.5, sqrt(0.5)}},
+        {"hexagonal prism", sqrt(0.75), {1, 0, 0, 0.5, sqrt(0.75), 0, 0, 0, 1}}};
     const int64_t bonds[6] = {0, 1, 0, 2, 1, 2};
     const double lengths[3] = {1, 1, hh};
     double mass[ATOMS], whole[3 * ATOMS], r[3 * ATOMS], v[3 * ATOMS], T[ATOMS], T_whole[ATOMS];
     noise random = noise_start(2);
     for (long i = 0; i < ATOMS; ++i) mass[i] = i % 3 ? 1 : 16;
-    for (int which = 0; which < 2; ++which) {
+    for (int which = 0; which < 3; ++which) {
         const cell *const c = &cells[which];
         double box[9];
         hol_chains *chains;

@@ -15,6 +15,16 @@ headers=$(find . -name '*.h' -o -name '*.hpp' -o -name '*.inl')
 cmp include/holonomic.h "$source/capi/holonomic.h"
 [ -f share/doc/holonomic/LICENSE ] || fail "no licence"
 
+# Every page that the header cites, and the manual, which names every function.
+for page in $(grep -o 'docs/[a-z_]*\.md' include/holonomic.h | sort -u); do
+    [ -f "share/doc/holonomic/$page" ] || fail "the header cites $page, which is not installed"
+done
+[ -f share/doc/holonomic/docs/fortran_reference.md ] || fail "no reference of the Fortran module"
+for function in $(sed -n 's/^ *\(hol_[a-z_0-9]*\);.*/\1/p' "$source/capi/holonomic.map"); do
+    grep -q "$function" share/man/man3/holonomic.3 || fail "the manual does not name $function"
+done
+! grep -n '@' share/man/man3/holonomic.3 || fail "the manual is not filled in"
+
 # The text files that others read; object code may name the files that it was compiled from.
 text=$(find . -name '*.pc' -o -name '*.cmake')
 [ -n "$text" ] || fail "no package files"

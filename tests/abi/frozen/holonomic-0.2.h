@@ -616,10 +616,16 @@ HOL_API int hol_project_positions_view(const hol_chains *chains, const hol_view 
  * beginning of a step: b_k = r_j - r_i of bond k, from the first atom of the bond as it was given to the second, images
  * taken.
  *
- * @param[in] chains
- * @param[in] b  [n_bonds][3] (Fortran: (3, n_bonds)), in the order in which the bonds were given. Not read for bonds
- *               between two fixed atoms
- * All other arguments are those of hol_project_positions. The reference box is not used.
+ * @param[in]     chains
+ * @param[in]     b        [n_bonds][3] (Fortran: (3, n_bonds)), in the order in which the bonds were given. Not read
+ * for bonds between two fixed atoms. The reference box is not used
+ * @param[in,out] r        this and all others as in hol_project_positions
+ * @param[in,out] v        or NULL
+ * @param[in]     dt       time step
+ * @param[in,out] lambda   or NULL
+ * @param[in]     guess    0 or 1
+ * @param[out]    virial   or NULL
+ * @param[out]    report   or NULL
  *
  * The vectors are laid one after the other, from an origin at the first atom of each molecule, each rounded once as
  * coordinates there are: results are those of hol_project_positions with such coordinates. In a molecule with cycles, a
