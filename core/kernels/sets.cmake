@@ -41,6 +41,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     set_source_files_properties(kernels/verbs/positions.cpp PROPERTIES COMPILE_OPTIONS -fno-tree-loop-vectorize)
 endif()
 
+option(HOLONOMIC_BASELINE "The kernels that every x86-64 processor runs; OFF for trying changes with one other set (scripts/try)" ON)
 option(HOLONOMIC_TEST_SETS "With the tests, kernels of other numbers of lanes in a library for tests alone" ON)
 set(HOLONOMIC_TEST_LANES "8" CACHE STRING "Their lanes; one, two and four are installed")
 
@@ -73,7 +74,7 @@ set(careful_solvers)
 function(holonomic_kernels name lanes)
     cmake_parse_arguments(PARSE_ARGV 2 set "TESTS_ONLY;CHAINS_ONLY" "CAREFUL" "FLAGS;NEEDS")
     if((set_TESTS_ONLY AND NOT (HOLONOMIC_BUILD_TESTS AND HOLONOMIC_TEST_SETS)) OR
-       (NOT set_TESTS_ONLY AND NOT name IN_LIST HOLONOMIC_INSTRUCTION_SETS AND NOT name STREQUAL "baseline"))
+       (NOT set_TESTS_ONLY AND NOT name IN_LIST HOLONOMIC_INSTRUCTION_SETS AND NOT (name STREQUAL "baseline" AND HOLONOMIC_BASELINE)))
         return()
     endif()
     set(sources ${chain_kernels} ${other_kernels})

@@ -187,9 +187,11 @@ static void every_size_about_the_limit_agrees_with_a_dense_solution(void **state
         assert_int_equal(molecule_forces(&problem, &exact), 0);
         agree(lambda, NULL, &m, &exact);
         CHECK(hol_solve(chains, m.r, m.length, lambda, NULL, HOL_WRITE, NULL));
-        assert_int_equal(molecule_solve(&problem, m.length, &exact), 0);
-        agree(lambda, NULL, &m, &exact);
-        for (int turn = 0; turn < 2; ++turn) {
+        if (!quick_run()) { /* under slow tools dense solutions take most of the time: one of them will do */
+            assert_int_equal(molecule_solve(&problem, m.length, &exact), 0);
+            agree(lambda, NULL, &m, &exact);
+        }
+        for (int turn = 0; turn < 2 && !quick_run(); ++turn) {
             assert_int_equal(molecule_velocities(&problem, &exact), 0);
             CHECK(hol_project_velocities(chains, m.r, v, lambda, NULL));
             agree(lambda, v, &m, &exact);
