@@ -61,7 +61,7 @@ struct Reader {
     // From rows. `terms`: of right-hand sides; w in the lane's unit. careful: the low words of differences, too.
     Reader(const Block &, const Box &, int terms, const Packed &r, const Packed &v, const Packed &f,
            bool careful = false);
-    // From lists of atoms in packed arrays, of lanes that are equally long.
+    // From lists of atoms in packed arrays, of lanes that are equally long, where there are forces, or for kept rates.
     Reader(const Block &, const Box &, int terms, const AtomLists &, const AtomArray &r, const AtomArray &v,
            const AtomArray &f);
 
@@ -82,6 +82,9 @@ struct Reader {
 private:
     void load_any(long from, long end, vec3 *D, vec3 *low, vec *B, vec3 *velocities) const;
 };
+
+// Reader::load() of lists.
+void load_listed(const Reader &, long from, long end, vec3 *D, vec *B, vec3 *velocities);
 
 // The bond vectors of all bonds.
 void load_bond_vectors(const Block &, const Box &, const Packed &r, vec3 *D);

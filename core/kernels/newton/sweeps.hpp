@@ -135,7 +135,7 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
         go_up<fixed>(block, bond);
     } else {
         long k = 0;
-        if (all)
+        if (!careful)
             for (; k + 4 < block.n_min; k += 4) {
                 bond(k, false);
                 bond(k + 1, false);

@@ -65,7 +65,8 @@ HOL_NOINLINE void substitute_and_store(const Block &block, const System &s, cons
 
 // Lists of atoms in packed arrays. True if the block is done; on false nothing was written.
 static inline bool listed_forces(const Block &block, const Lane *lane, const ForcesCall &call, Arena arena) {
-    if (!call.r.packed || (call.g.x && !call.g.packed) || call.tension || call.virial || !listed(block, lane))
+    if (!call.r.packed || !call.f.x || (call.g.x && !call.g.packed) || call.tension || call.virial ||
+        !listed(block, lane))
         return false;
     const AtomLists at(lane);
     const System s(block.n, arena);

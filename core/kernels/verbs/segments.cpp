@@ -20,7 +20,7 @@ void eliminate_block(int terms, const Box &box, const Cut &cut, const Lane &lane
     const Packed pf = open(f, s.block, s.lane, arena, true);
     const SegmentStore x(store, cut, j);
     const Block own = own_block(s);
-    Reader in(own, box, terms, pr, pv, pf, careful);
+    Reader in(own, box, terms == rate ? rate : terms & (velocity_squared | force_difference), pr, pv, pf, careful);
     in.strain = strain;
     const SeparatorsBehind behind(s, box, pr);
     choose([&](auto uniform, auto exactly) { eliminate<uniform, exactly>(s, in, behind, x); }, s.block.uniform_w,
