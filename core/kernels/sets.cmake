@@ -5,6 +5,7 @@
 # Chains that fit into lanes: what every set has.
 set(chain_kernels
     kernels/memory/load.cpp
+    kernels/memory/load_lists.cpp
     kernels/memory/open.cpp
     kernels/memory/outputs.cpp
     kernels/memory/stage.cpp
@@ -35,10 +36,16 @@ set(careful_kernels
     kernels/careful/positions.cpp
 )
 
-# The kernels have vectors of their own. What gcc makes of their other loops doubles the code of this file and the time to
-# compile it, and saves no instruction.
+# The kernels have vectors of their own. What gcc makes of their other loops doubles the code of these files and the time
+# to compile them, and saves no instruction. Loops in stage.cpp are meant for it.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    set_source_files_properties(kernels/verbs/positions.cpp PROPERTIES COMPILE_OPTIONS -fno-tree-loop-vectorize)
+    set_source_files_properties(
+        kernels/memory/open.cpp
+        kernels/newton/attempts.cpp
+        kernels/newton/solve.cpp
+        kernels/newton/system.cpp
+        kernels/verbs/positions.cpp
+        PROPERTIES COMPILE_OPTIONS -fno-tree-loop-vectorize)
 endif()
 
 option(HOLONOMIC_BASELINE "The kernels that every x86-64 processor runs; OFF for trying changes with one other set (scripts/try)" ON)

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "core/kernels/graph/flat_list.hpp"
-#include "core/kernels/graph/schedule.hpp"
+#include "core/kernels/molecules/list/flat_list.hpp"
+#include "core/kernels/molecules/schedule.hpp"
 #include "core/molecules/lists.hpp"
 
 namespace holonomic {

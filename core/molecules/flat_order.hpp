@@ -2,7 +2,7 @@
 #ifndef HOLONOMIC_FLAT_ORDER_HPP
 #define HOLONOMIC_FLAT_ORDER_HPP
 
-#include "core/kernels/graph/schedule.hpp"
+#include "core/kernels/molecules/schedule.hpp"
 #include "core/molecules/elimination_order.hpp"
 #include "core/molecules/lists.hpp"
 

@@ -1,12 +1,12 @@
-// The paths and knots of a large molecule (core/kernels/graph/paths.hpp).
+// The paths and knots of a large molecule (core/kernels/molecules/paths/paths.hpp).
 #ifndef HOLONOMIC_PATH_PLAN_HPP
 #define HOLONOMIC_PATH_PLAN_HPP
 
 #include <memory>
 #include <vector>
 
-#include "core/kernels/graph/paths.hpp"
-#include "core/kernels/graph/schedule.hpp"
+#include "core/kernels/molecules/paths/paths.hpp"
+#include "core/kernels/molecules/schedule.hpp"
 #include "core/molecules/lists.hpp"
 
 namespace holonomic {

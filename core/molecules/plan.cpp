@@ -4,7 +4,7 @@
 #include <limits>
 #include <tuple>
 
-#include "core/kernels/graph/schedule.hpp"
+#include "core/kernels/molecules/schedule.hpp"
 #include "core/molecules/chains.hpp"
 
 namespace holonomic {
@@ -46,7 +46,7 @@ public:
 private:
     const Kind &kind(std::int64_t group) const { return chains_.kind_of(groups_[at(group)]); }
 
-    // Not in lanes beside others of its kind (core/kernels/graph/blocks.hpp): a piece of its own, so that threads
+    // Not in lanes beside others of its kind (core/kernels/molecules/blocks.hpp): a piece of its own, so that threads
     // share what is large.
     bool works_alone(std::int32_t shape, std::int64_t n_bonds) const {
         if (shape == linear) return n_bonds > longest_lane;

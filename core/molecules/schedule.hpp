@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "core/kernels/graph/schedule.hpp"
+#include "core/kernels/molecules/schedule.hpp"
 
 namespace holonomic {
 

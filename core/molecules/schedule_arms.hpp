@@ -1,11 +1,11 @@
-// The arms of a large molecule's trees (core/kernels/graph/schedule.hpp).
+// The arms of a large molecule's trees (core/kernels/molecules/schedule.hpp).
 #ifndef HOLONOMIC_SCHEDULE_ARMS_HPP
 #define HOLONOMIC_SCHEDULE_ARMS_HPP
 
 #include <cstdint>
 #include <vector>
 
-#include "core/kernels/graph/schedule.hpp"
+#include "core/kernels/molecules/schedule.hpp"
 #include "core/molecules/schedule_runs.hpp"
 
 namespace holonomic {

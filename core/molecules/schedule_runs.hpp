@@ -1,11 +1,11 @@
-// Which atoms of a large molecule's trees can be worked on at once (core/kernels/graph/schedule.hpp).
+// Which atoms of a large molecule's trees can be worked on at once (core/kernels/molecules/schedule.hpp).
 #ifndef HOLONOMIC_SCHEDULE_RUNS_HPP
 #define HOLONOMIC_SCHEDULE_RUNS_HPP
 
 #include <cstdint>
 #include <vector>
 
-#include "core/kernels/graph/schedule.hpp"
+#include "core/kernels/molecules/schedule.hpp"
 
 namespace holonomic {
 

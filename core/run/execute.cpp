@@ -4,7 +4,7 @@
 #include <atomic>
 #include <new>
 
-#include "core/kernels/graph/flat_list.hpp"
+#include "core/kernels/molecules/list/flat_list.hpp"
 #include "core/run/lane.hpp"
 #include "core/run/thread_memory.hpp"
 

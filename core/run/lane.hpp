@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "core/kernels/call.hpp"
-#include "core/kernels/graph/schedule.hpp"
+#include "core/kernels/molecules/schedule.hpp"
 
 namespace holonomic {
 

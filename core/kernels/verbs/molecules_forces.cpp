@@ -1,6 +1,6 @@
 // Constraint forces of molecules that are no chains, and multipliers for given right-hand sides.
-#include "core/kernels/graph/forces.hpp"
-#include "core/kernels/graph/star_linear.hpp"
+#include "core/kernels/molecules/forces.hpp"
+#include "core/kernels/molecules/star/star_linear.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {

@@ -1,7 +1,7 @@
-// The linear equations of molecules that are no chains (graph/solve.hpp), for the verbs that have some.
-#include "core/kernels/graph/flat_refine.hpp"
-#include "core/kernels/graph/large_linear.hpp"
-#include "core/kernels/graph/solve.hpp"
+// The linear equations of molecules that are no chains (molecules/solve.hpp), for the verbs that have some.
+#include "core/kernels/molecules/list/flat_refine.hpp"
+#include "core/kernels/molecules/large_tree/large_linear.hpp"
+#include "core/kernels/molecules/solve.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {

@@ -1,6 +1,6 @@
 // Metric determinant and Fixman force of molecules that are no chains, one by one.
 #include "core/kernels/careful/careful.hpp"
-#include "core/kernels/graph/schedule.hpp"
+#include "core/kernels/molecules/schedule.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {

@@ -1,9 +1,9 @@
 // Position level of molecules that are no chains.
-#include "core/kernels/graph/flat_linear.hpp"
-#include "core/kernels/graph/flat_proof.hpp"
-#include "core/kernels/graph/linear.hpp"
-#include "core/kernels/graph/positions.hpp"
-#include "core/kernels/graph/star_positions.hpp"
+#include "core/kernels/molecules/list/flat_linear.hpp"
+#include "core/kernels/molecules/list/flat_proof.hpp"
+#include "core/kernels/molecules/linear.hpp"
+#include "core/kernels/molecules/positions.hpp"
+#include "core/kernels/molecules/star/star_positions.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {

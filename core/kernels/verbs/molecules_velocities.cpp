@@ -1,6 +1,6 @@
 // Velocity level of molecules that are no chains.
-#include "core/kernels/graph/star_linear.hpp"
-#include "core/kernels/graph/velocities.hpp"
+#include "core/kernels/molecules/star/star_linear.hpp"
+#include "core/kernels/molecules/velocities.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {

@@ -1,8 +1,8 @@
-// Position level of one large molecule along its paths (graph/paths.hpp): knots, then pieces of paths, then whether
+// Position level of one large molecule along its paths (molecules/paths/paths.hpp): knots, then pieces of paths, then whether
 // what they have found fits where they meet, and only then anything is written. As in a long chain (positions_long.cpp)
 // the result does not rest on how far a bond is felt: all lengths have been tested by then.
-#include "core/kernels/graph/path_knots.hpp"
-#include "core/kernels/graph/path_pieces.hpp"
+#include "core/kernels/molecules/paths/path_knots.hpp"
+#include "core/kernels/molecules/paths/path_pieces.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {

@@ -1,0 +1,160 @@
+// Vectors of all atoms of a block of molecules: from the caller's arrays to the atoms' slots, and back. Each way is
+// compiled once, with a loop for each layout, and what is done with the vectors knows nothing of where they came from.
+// Atoms are taken in the order of the caller's arrays; where their rows follow each other, four are twelve doubles of
+// each lane.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_ATOMS_VECTORS_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_ATOMS_VECTORS_HPP
+
+#include "core/kernels/molecules/atoms/consecutive.hpp"
+#include "core/kernels/molecules/schedule.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// Where the vector of slot s stands: in a working array, or as three members, one behind the other, of a row per slot.
+template <class V>
+struct Slots {
+    V *first;
+    int64_t stride;
+    explicit Slots(Vector3<V> *a) : first(&a->x), stride(3) {}
+    template <class Row>
+    Slots(Row *, V *member) : first(member), stride(sizeof(Row) / sizeof(V)) {}
+    HOL_FORCED Vector3<V> &operator[](int64_t slot) const {
+        return *reinterpret_cast<Vector3<V> *>(first + slot * stride);
+    }
+    HOL_FORCED void put(int64_t slot, const Vector3<V> &a) const {
+        V *const to = first + slot * stride;
+        to[0] = a.x;
+        to[1] = a.y;
+        to[2] = a.z;
+    }
+};
+
+constexpr int atoms_at_once = 4;
+
+// The rows of the atoms from number `first` on, of lanes whose rows stand in order.
+template <class V>
+HOL_INLINE void rows_from(const AtomArray &array, const Atoms<V> &at, int64_t first, double **p) {
+    double *const base = reinterpret_cast<double *>(array.x) + 3 * first;
+    HOL_UNROLL
+    for (int i = 0; i < at.lanes; ++i) p[i] = base + 3 * at.first[i];
+}
+// Calls body(first, p) for groups of four atoms of lanes whose rows stand in order; returns the first atom left.
+template <class V, class Body>
+HOL_INLINE int32_t for_groups(const AtomArray &array, const Atoms<V> &at, int32_t n, const Body &body) {
+    int32_t k = 0;
+    for (; k + atoms_at_once <= n; k += atoms_at_once) {
+        double *p[Width<V>::lanes];
+        rows_from(array, at, k, p);
+        body(k, p);
+    }
+    return k;
+}
+// Calls body(k, p) for the atoms first .. n - 1 of packed arrays.
+template <class V, class Body>
+HOL_INLINE void for_rows(const AtomArray &array, const Atoms<V> &at, int32_t first, int32_t n, const Body &body) {
+    double *const base = reinterpret_cast<double *>(array.x);
+    if (at.layout == rows_in_order) {
+        for (int32_t k = first; k < n; ++k) {
+            double *p[Width<V>::lanes];
+            rows_from(array, at, k, p);
+            body(k, p);
+        }
+        return;
+    }
+    const int64_t *list[Width<V>::lanes];
+    HOL_UNROLL
+    for (int i = 0; i < at.lanes; ++i) list[i] = at.list[i];
+    for (int32_t k = first; k < n; ++k) {
+        double *p[Width<V>::lanes];
+        HOL_UNROLL
+        for (int i = 0; i < at.lanes; ++i) p[i] = base + 3 * list[i][k];
+        body(k, p);
+    }
+}
+
+// Reads the vectors of n atoms; slot_of has their slots.
+template <class V>
+HOL_NOINLINE void read_vectors(const AtomArray &array, const Atoms<V> &at, const int32_t *slot_of, int32_t n,
+                               const Slots<V> to) {
+    if (at.layout == elements) {
+        for (int32_t k = 0; k < n; ++k) to[slot_of[k]] = read(array, at, k);
+        return;
+    }
+    int32_t first = 0;
+    if (at.layout == rows_in_order)
+        first = for_groups(array, at, n, [&](int32_t k, double **p) HOL_FORCED {
+            Vector3<V> a[atoms_at_once];
+            read_elements<3 * atoms_at_once>(p, a);
+            HOL_UNROLL
+            for (int j = 0; j < atoms_at_once; ++j) to.put(slot_of[k + j], a[j]);
+        });
+    for_rows(array, at, first, n, [&](int32_t k, double **p) HOL_FORCED {
+        Vector3<V> a;
+        read_rows(p, a);
+        to.put(slot_of[k], a);
+    });
+}
+
+// What is written of a block, and how.
+template <class V>
+struct Written {
+    unsigned which;              // lanes
+    const unsigned char *fixed;  // [n] atoms that are left out, or nullptr
+    const MoleculeLane *lane;    // whose atoms may belong to others, too, and are left out then; or nullptr
+    bool add = false;            // to what is there,
+    double factor = 1;           // so many times
+
+    unsigned lanes_of(int32_t atom) const {
+        unsigned left = fixed && fixed[atom] ? 0 : which;
+        for (int i = 0; lane && i < Width<V>::lanes; ++i)
+            if (lane[i].shared && lane[i].shared[atom]) left &= ~(1u << i);
+        return left;
+    }
+    bool all() const {
+        bool all = which == all_of<V> && !fixed;
+        for (int i = 0; lane && i < Width<V>::lanes; ++i) all = all && !lane[i].shared;
+        return all;
+    }
+};
+
+// Writes the vectors of n atoms, from[slot].
+template <class V, class From>
+HOL_NOINLINE void write_vectors(const AtomArray &array, const Atoms<V> &at, const int32_t *slot_of, int32_t n,
+                                const From from, const Written<V> what) {
+    const V factor = Width<V>::all(what.factor);
+    if (!what.all() || at.layout == elements) {
+        for (int32_t k = 0; k < n; ++k) {
+            const unsigned which = what.lanes_of(k);
+            if (!which) continue;
+            const Vector3<V> a = from[slot_of[k]];
+            write(array, at, k, what.add ? add_times(read(array, at, k), factor, a) : a, which);
+        }
+        return;
+    }
+    int32_t first = 0;
+    if (at.layout == rows_in_order)
+        first = for_groups(array, at, n, [&](int32_t k, double **p) HOL_FORCED {
+            Vector3<V> a[atoms_at_once];
+            HOL_UNROLL
+            for (int j = 0; j < atoms_at_once; ++j) a[j] = from[slot_of[k + j]];
+            if (what.add)
+                add_elements<3 * atoms_at_once>(nullptr, p, what.factor, a);
+            else
+                write_elements<3 * atoms_at_once>(p, a);
+        });
+    for_rows(array, at, first, n, [&](int32_t k, double **p) HOL_FORCED {
+        Vector3<V> a = from[slot_of[k]], before;
+        if (what.add) {
+            read_rows(p, before);
+            a = add_times(before, factor, a);
+        }
+        write_rows(p, a);
+    });
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

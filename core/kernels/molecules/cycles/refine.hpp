@@ -1,0 +1,66 @@
+// Iterative refinement of multipliers against exact residuals: which corrections are good, and when to stop.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_CYCLES_REFINE_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_CYCLES_REFINE_HPP
+
+#include "core/kernels/molecules/width.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// A correction of a multiplier, |b_k| / P_k or the same with a sign, |d|^2, and the multiplier.
+template <class V>
+struct Correction {
+    V change, alone, q;
+    V &t;
+};
+
+// Adds the corrections of n bonds. Returns the square of the largest one, relative to its multiplier's size. That is
+// the largest of |t_k|, |b_k| / P_k - which is no more than the multiplier's scale, as P_k is at least 1 / (A^-1)_kk -
+// and a millionth of the molecule's largest tension.
+template <class V, class Bond>
+HOL_INLINE V add_corrections(int32_t n, const Bond &bond) {
+    V largest = {}, part = {};
+    for (int32_t k = 0; k < n; ++k) {
+        const Correction<V> c = bond(k);
+        largest = max((c.t * c.t) * c.q, largest);
+    }
+    const V least = mul_add(Width<V>::all(1e-12), largest, Width<V>::all(1e-290));
+    for (int32_t k = 0; k < n; ++k) {
+        const Correction<V> c = bond(k);
+        c.t = c.t + c.change;
+        const V size = mul_add(c.t, c.t, c.alone * c.alone);
+        part = max((c.change * c.change) * c.q / mul_add(size, c.q, least), part);
+    }
+    return part;
+}
+
+// Corrects the lanes in `active` until another correction would be less than a rounding. Returns those in which each
+// was no more than an eighth of the one before. The first is no more than that of the multipliers themselves, or it is
+// what rounding does to right-hand sides, which tells nothing about the factors.
+//
+// solve(): corrections from residuals; correct(active): adds them, and returns add_corrections(); rounded(): lanes
+// whose corrections are what rounding does to right-hand sides.
+template <class V, class Solve, class Correct, class Rounded>
+HOL_INLINE MaskOf<V> correct_until_right(MaskOf<V> active, const Solve &solve, const Correct &correct,
+                                         const Rounded &rounded) {
+    typedef MaskOf<V> Mask;
+    Mask good = Width<V>::none();
+    V before = Width<V>::all(1);  // squares
+    for (int pass = 0; pass < 8 && any(active); ++pass) {
+        solve();
+        const V part = correct(active);
+        Mask contracts = less_equal(part, (0.125 * 0.125) * before);
+        if (pass == 0 && any(active & ~contracts)) contracts = contracts | (active & rounded());
+        const Mask done = active & contracts & less_equal(part * part, (epsilon * epsilon) * before);
+        good = good | done;
+        active = active & contracts & ~done;
+        before = part;
+    }
+    return good;
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,40 @@
+// Molecules for which plain arithmetic in lanes can't answer, one by one by the careful solver.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_DOUBTFUL_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_DOUBTFUL_HPP
+
+#include "core/kernels/careful/careful.hpp"
+#include "core/kernels/molecules/schedule.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+inline void careful_one(const ForcesCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch,
+                        Tally &tally) {
+    HOL_CAREFUL::careful::forces(call, plan, lane, scratch, tally);
+}
+inline void careful_one(const SolveCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch,
+                        Tally &tally) {
+    HOL_CAREFUL::careful::solve(call, plan, lane, scratch, tally);
+}
+inline void careful_one(const VelocitiesCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch,
+                        Tally &tally) {
+    HOL_CAREFUL::careful::velocities(call, plan, lane, scratch, tally);
+}
+inline void careful_one(const PositionsCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch,
+                        Tally &tally) {
+    HOL_CAREFUL::careful::positions(call, plan, lane, scratch, tally);
+}
+
+// The lanes of `rest`; nothing of them has been written. `scratch` is what the block has left of its memory.
+template <class Call>
+HOL_NOINLINE void solve_doubtful(const Call &call, const Schedule &schedule, const MoleculeLane *lane, unsigned rest,
+                                 double *scratch, Tally &tally) {
+    double *const aligned = reinterpret_cast<double *>((reinterpret_cast<uintptr_t>(scratch) + 63) / 64 * 64);
+    for (; rest; rest &= rest - 1) careful_one(call, *schedule.careful, lane[__builtin_ctz(rest)], aligned, tally);
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

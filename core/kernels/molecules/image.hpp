@@ -1,0 +1,39 @@
+// The image of one bond.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_IMAGE_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_IMAGE_HPP
+
+#include "core/kernels/arithmetic/image.hpp"
+#include "core/kernels/molecules/width.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// Minimum image of a bond vector; `lo` gets what the rounding of d leaves off.
+template <bool careful, class V>
+HOL_INLINE void take_image(const Box &box, Vector3<V> &d, Vector3<V> &lo) {
+    if (box.shape != Box::none) wrap<careful>(box, d, lo);
+}
+
+template <int n, class V>
+HOL_NOINLINE void take_images_of(const Box &box, Vector3<V> *d) {
+    Vector3<V> unused = {};
+    for (int k = 0; k < n; ++k) wrap<false>(box, d[k], unused);
+}
+
+// Minimum images of n bond vectors, which stay in registers where there is no box.
+template <int n, class V>
+HOL_INLINE void take_images(const Box &box, Vector3<V> *d) {
+    if (__builtin_expect(box.shape == Box::none, 1)) return;
+    Vector3<V> image[n];
+    HOL_UNROLL
+    for (int k = 0; k < n; ++k) image[k] = d[k];
+    take_images_of<n>(box, image);
+    HOL_UNROLL
+    for (int k = 0; k < n; ++k) d[k] = image[k];
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,138 @@
+// Newton's method on a block of molecules: what is done when. The decisions are those of chains.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_ITERATE_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_ITERATE_HPP
+
+#include "core/kernels/call.hpp"
+#include "core/kernels/molecules/width.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+constexpr double rounding = 2.220446049250313e-16;
+
+// Errors |D.D - a^2| / a^2 that are accepted: what the coordinates of a molecule carry, whose ends of bonds are rounded
+// to u |r|, and what is so for any coordinates; but no less than the tolerance.
+template <class V>
+struct Limits {
+    V accepted, always_accepted;
+    double wanted;
+    Limits(const PositionsCall &call, V largest_coordinate, V a_min) : Limits(call, largest_coordinate / a_min) {}
+    // The largest coordinate in units of the shortest bond.
+    Limits(const PositionsCall &call, V coordinate) {
+        const double u = call.r.is_float ? 5.97e-8 : 1.11e-16;
+        accepted = max(Width<V>::all(call.tolerance), (8 * u) * (Width<V>::all(1) + coordinate));
+        always_accepted = Width<V>::all(call.tolerance > 8 * u ? call.tolerance : 8 * u);
+        wanted = call.tolerance > rounding ? call.tolerance : rounding;
+    }
+    // What is enough where the last solve must have gone far below a rounding: the floor, as in iterate().
+    V enough() const {
+        const V carried = max(accepted, always_accepted);
+        return max(Width<V>::all(wanted), min(Width<V>::all(4 * rounding), carried));
+    }
+};
+
+// What became of the lanes.
+template <class V>
+struct Solved {
+    MaskOf<V> untouched, converged;
+    V error;
+    int64_t solves;
+};
+
+// The factors of an earlier D shrink the error by a constant each time, new ones square it at twice the price: they are
+// worth it where the old ones would take more than four solves in all.
+// `by_length`: the rate of the first solve says nothing of those that follow. It leaves the square of the angles by
+// which bonds have turned, the others are slowed down by the angles themselves. New factors are as good after a second
+// solve, unless that would leave too much for a third one with them.
+template <bool by_length, class V>
+HOL_INLINE MaskOf<V> worth_new_factors(V error, V rate, int i) {
+    if (by_length && i == 0) return less(Width<V>::all(1e-5), error);
+    V expected = error * rate;
+    for (int k = i + 2; k < 4; ++k) expected = expected * rate;
+    return less(Width<V>::all((by_length ? 0.4 : 0.1) * rounding), expected) &
+           less(Width<V>::all(i < 2 ? -1.0 : 1e-4), rate);
+}
+
+// New factors square the error. Where they leave much more, bonds are so nearly straight that they can bend either way,
+// and the way that Newton's method takes decides. Such a molecule is left to the careful solver, which takes the
+// straight one, with new factors at each solve. `before`: the error from which a solve with new factors came.
+template <class V>
+HOL_INLINE MaskOf<V> lost_its_way(V error, V before) {
+    const V part = max(Width<V>::all(0.01), 1e3 * before);
+    return less(Width<V>::all(1e-10), error) & less(part * before, error);
+}
+
+// From an error no larger than this, a solve with factors that have just taken the error down to less than `steady` of
+// itself needs no look at what it has done: it leaves less than a rounding, and could not leave more than this.
+constexpr double last_error = 64 * rounding;
+constexpr double steady = 1.0 / 256;
+
+// Newton's method in the lanes of `wanted`, from tau = 0 or, with `guess`, from tau as it is where that is better.
+// System:
+//   V open()                       largest error of the bonds as they came
+//   void first_factors()           with these
+//   void forget(mask)              tau = 0
+//   void factorize(mask)           with the bonds as they have been moved
+//   void solve(mask)               corrections for what is left, added to tau
+//   V move()                       the bonds as tau moves them, and their largest error
+// look_last: also after the last solve, for what move() leaves of it. by_length: solve() takes |D_0| (|D| - a) on the
+// right where its factors are those of D_0, not (D.D - a^2) / 2.
+template <class V, bool look_last, bool by_length = false, class System>
+HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const PositionsCall &call, MaskOf<V> wanted) {
+    typedef MaskOf<V> Mask;
+    const Mask none = Width<V>::none();
+    constexpr double negligible = (by_length ? 0.5 : 0.125) * rounding;
+    const V done = Width<V>::all(limits.wanted);
+    V error = newton.open();
+    Solved<V> out = {wanted & less_equal(error, limits.accepted), none, error, 0};
+    Mask active = wanted & ~out.untouched & finite(error) & less_equal(error, Width<V>::all(call.worst_trial));
+    if (call.guess) {
+        newton.forget(~active);
+        const V with_guess = newton.move();
+        newton.forget(~less_equal(with_guess, error));
+        error = newton.move();
+        out.converged = active & less_equal(error, done);
+        active = active & ~out.converged;
+        if (any(active)) newton.factorize(~none);
+    } else {
+        newton.forget(~none);
+        if (any(active)) newton.first_factors();
+    }
+    V rate = error;  // new factors square the error
+    Mask proven = none, fresh = active;
+    for (int i = 0; i < call.max_iterations && any(active); ++i) {
+        newton.solve(active);
+        ++out.solves;
+        const Mask last = active & proven & less(rate * error, Width<V>::all(negligible));
+        out.converged = out.converged | last;  // whatever the other lanes have to do
+        active = active & ~last;
+        if (!look_last && !any(active) && !call.report) break;
+        const V before = error, expected = rate * before;
+        error = newton.move();
+        // At the floor: the solve should have gone far below a rounding, or it gained little, and what is left is no
+        // more than the coordinates carry.
+        const Mask floor =
+            (less(expected, Width<V>::all(negligible)) & less_equal(error, Width<V>::all(4 * rounding))) |
+            less(0.25 * before, error);
+        const Mask near = active & (less_equal(error, done) | floor);
+        const Mask finished = near & less_equal(error, max(done, max(limits.accepted, limits.always_accepted)));
+        out.converged = out.converged | finished;
+        active = active & ~finished & finite(error) & ~(fresh & lost_its_way(error, before));
+        if (!any(active)) break;
+        rate = error / before;
+        const Mask renewed = active & worth_new_factors<by_length>(error, rate, i);
+        proven = ~renewed & less(rate, Width<V>::all(steady)) & less_equal(error, Width<V>::all(last_error));
+        fresh = renewed;
+        if (!any(renewed)) continue;
+        newton.factorize(renewed);
+        rate = select(renewed, error, rate);
+    }
+    out.error = error;
+    return out;
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,189 @@
+// Solves the linear equations of a block of molecules, whatever their shape.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_LINEAR_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_LINEAR_HPP
+
+#include "core/kernels/molecules/cycles/proof.hpp"
+#include "core/kernels/molecules/cycles/refine.hpp"
+#include "core/kernels/molecules/ring/ring.hpp"
+#include "core/kernels/molecules/large_tree/tree_runs.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+template <class V>
+struct Linear {
+    Molecules<V> x;
+    CoreMatrix<V> core;
+    RingRow<V> *ring;
+    Equations<V> equations;
+    V *t, *b;           // [n_bonds] of a graph: the solution so far; right-hand sides
+    Memory<V> working;  // of a joint of many bonds
+    Pieces pieces;
+
+    static constexpr int64_t bond_values = sizeof(BondRow<V>) / sizeof(V), ring_values = sizeof(RingRow<V>) / sizeof(V);
+
+    static constexpr int64_t faint_values = (sizeof(Faint) + sizeof(double) - 1) / sizeof(double);
+
+    // Rows beside those of bonds: of a tree the root's, see load.hpp.
+    static int64_t more_rows(const Schedule &s) {
+        return s.type == Schedule::tree ? 1 : 0;
+    }
+
+    // Values of V that the arrays take.
+    static int64_t values(const Schedule &s) {
+        int64_t n = s.n_atoms + bond_values * s.n_bonds + s.n_pairs + JointMemory<V, 0>::values(s.max_children);
+        if (s.type == Schedule::ring) n += ring_values * s.n_bonds;
+        n += bond_values * more_rows(s);
+        n += 3 * 3 * static_cast<int64_t>(s.n_atoms);
+        if (has_pieces(s))
+            n += faint_values + s.n_pieces * (1 + faint_values + JointMemory<V, 0>::values(s.max_children)) +
+                 arm_values(s);
+        if (s.type == Schedule::graph) {
+            const int64_t part = CoreMatrix<V>::most_parts(s);
+            n += s.n_core + columns_ahead + 1 + s.n_entries + reaches(s) + (part > s.max_column ? part : s.max_column) +
+                 9 * static_cast<int64_t>(s.n_bonds) + 7 * static_cast<int64_t>(s.n_atoms);
+        }
+        return n;
+    }
+
+    Linear(const Schedule &s, const MoleculeLane *lane, int used, bool packed, const Box &box, const AtomArray &r,
+           Memory<V> &memory)
+        : x{s, lane, used, Atoms<V>(lane, used, packed), &box, &r, nullptr, nullptr, nullptr, Width<V>::all(1), {}},
+          core(), ring(), equations(), t(), b() {
+        x.row = reinterpret_cast<BondRow<V> *>(memory.values(bond_values * (s.n_bonds + more_rows(s))));
+        x.w = memory.values(s.n_atoms);
+        x.pair = memory.values(s.n_pairs);
+        if (s.type == Schedule::ring) ring = reinterpret_cast<RingRow<V> *>(memory.values(ring_values * s.n_bonds));
+        equations.r = memory.vectors(s.n_atoms);
+        equations.velocity = memory.vectors(s.n_atoms);
+        equations.force = memory.vectors(s.n_atoms);
+        if (s.type == Schedule::graph) {
+            const int64_t part = CoreMatrix<V>::most_parts(s);
+            core = {memory.values(s.n_entries), memory.values(reaches(s)),
+                    memory.values(part > s.max_column ? part : s.max_column),
+                    memory.values(s.n_core + columns_ahead + 1)};
+            t = memory.values(s.n_bonds);
+            b = memory.values(s.n_bonds);
+            equations.given = memory.values(s.n_bonds);
+            equations.a = reinterpret_cast<Pair3<V> *>(memory.values(7 * static_cast<int64_t>(s.n_atoms)));
+            equations.d = reinterpret_cast<Pair3<V> *>(memory.values(6 * static_cast<int64_t>(s.n_bonds)));
+        }
+        working = memory;
+        memory.values(JointMemory<V, 0>::values(s.max_children));
+    }
+
+    // For one large molecule.
+    void take_pieces(const LongTeam *team, Memory<double> &memory) {
+        const int64_t joint = JointMemory<double, 0>::values(x.s.max_children);
+        double *const slack = memory.values(x.s.n_pieces);
+        Faint *const faint = reinterpret_cast<Faint *>(memory.values(faint_values * (x.s.n_pieces + 1)));
+        for (int32_t p = 0; p <= x.s.n_pieces; ++p) faint[p] = {};
+        pieces = {team, slack, faint, memory.values(x.s.n_pieces * joint), joint};
+        x.pieces = &pieces;
+        x.per_cancelled2 = 1 / most_cancelled2(x.s.n_bonds);
+    }
+
+    // Inverse masses by slot.
+    void set_masses() {
+        for (int32_t i = 0; i < x.s.n_atoms; ++i)
+            for (int l = 0; l < Width<V>::lanes; ++l) Width<V>::set(x.w[i], l, x.lane[l].w[x.s.atom_of[i]]);
+    }
+
+    // From right-hand sides to the solution, both in t of the rows.
+    void factorize_and_solve() {
+        switch (x.s.type) {
+            case Schedule::tree:
+                up_trees(x, working);
+                down_trees<true>(x);
+                break;
+            case Schedule::triangle:
+                break;  // triangle_linear.hpp
+            case Schedule::ring:
+                factorize_ring(x, ring);
+                solve_ring(x, ring);
+                break;
+            case Schedule::graph:
+                for (int32_t k = 0; k < x.s.n_bonds; ++k) b[k] = x.row[k].t;
+                up_trees(x, working);
+                factorize_core(x, core, working);
+                solve_core();
+        }
+    }
+
+    void solve_again() {
+        switch (x.s.type) {
+            case Schedule::tree:
+                substitute_trees(x, working);
+                down_trees<false>(x);
+                break;
+            case Schedule::triangle:
+                break;
+            case Schedule::ring:
+                solve_ring(x, ring);
+                break;
+            case Schedule::graph:
+                substitute_trees(x, working);
+                solve_core();
+        }
+    }
+
+    void solve_core() {
+        substitute_core(x, core, working);
+        down_core(x, core);
+        down_trees<false>(x);
+    }
+
+    // Corrects the solution of a graph against the exact residual until a correction would be less than a rounding,
+    // unless a proof shows that none is needed. Returns the lanes in which corrections shrank as they should. The
+    // solution is t of the rows, as before.
+    MaskOf<V> refine() {
+        typedef MaskOf<V> Mask;
+        const Schedule &s = x.s;
+        const Mask proven =
+            worth_a_proof(s) ? x.in_use() & proven_lanes(x, core, equations, Width<V>::all(1)) : Width<V>::none();
+        if (!any(x.in_use() & ~proven)) return x.in_use();
+        find_unrounded(x, equations);
+        for (int32_t k = 0; k < s.n_bonds; ++k) t[k] = x.row[k].t;
+        const Mask good = correct_until_right<V>(
+            x.in_use() & ~proven, [&]() HOL_FORCED { solve_for_residuals(); },
+            [&](Mask active) HOL_FORCED { return correct(active); },
+            [&]() HOL_FORCED { return lanes_of_rounded_sides(); });
+        for (int32_t k = 0; k < s.n_bonds; ++k) x.row[k].t = t[k];
+        return good | proven | ~x.in_use();
+    }
+
+private:
+    void solve_for_residuals() {
+        find_residuals(x, equations, t);
+        solve_again();
+    }
+
+    // Returns the lanes whose corrections, in t of the rows, are no more than what rounding does to right-hand sides:
+    // of velocities that are projected already, or in free fall.
+    MaskOf<V> lanes_of_rounded_sides() const {
+        V least = Width<V>::all(1);
+        for (int32_t k = 0; k < x.s.n_bonds; ++k) {
+            int32_t from, to;
+            ends_of(x.s, k, from, to);
+            const Vector3<V> terms =
+                absolute(equations.input_of(from, x.w[from])) + absolute(equations.input_of(to, x.w[to]));
+            const V rounding = (4 * epsilon) * (dot(absolute(x.row[k].d), terms) * x.row[k].r);
+            least = min(rounding - abs(x.row[k].t), least);
+        }
+        return less_equal(V{}, least);
+    }
+
+    // Adds the corrections in t of the rows, in the lanes in `active`.
+    V correct(MaskOf<V> active) {
+        return add_corrections<V>(x.s.n_bonds, [&](int32_t k) HOL_FORCED {
+            const BondRow<V> &row = x.row[k];
+            return Correction<V>{keep(active, row.t), b[k] * row.r, row.q, t[k]};
+        });
+    }
+};
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

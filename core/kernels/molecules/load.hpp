@@ -1,0 +1,137 @@
+// Reads a block of molecules: each atom once, then bond vectors and right-hand sides at their places.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_LOAD_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_LOAD_HPP
+
+#include "core/kernels/molecules/linear.hpp"
+#include "core/kernels/molecules/atoms/vectors.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// The terms of the right-hand side b of a bond from atom i to atom j:
+// squares: |v_j - v_i|^2;  pulls: d.(w_j f_j - w_i f_i);  rates: d.(v_j - v_i);  given: half of the bond's given value.
+enum RightHandSide { squares = 1, pulls = 2, rates = 4, given = 8 };
+
+template <class V>
+struct Loader {
+    Linear<V> &z;
+    const int terms;
+
+    bool has(int wanted) const { return (terms & wanted) != 0; }
+
+    void read_atoms(const AtomArray &array, Slots<V> to) const {
+        read_vectors(array, z.x.at, z.x.s.slot_of, z.x.s.n_atoms, to);
+    }
+
+    // b + d.(w f - w0 f0)
+    HOL_STATIC V with_pull(const Vector3<V> &d, V w0, const Vector3<V> &f0, V w, const Vector3<V> &f, V b) {
+        const Vector3<V> df = {mul_add(w, f.x, -(w0 * f0.x)), mul_add(w, f.y, -(w0 * f0.y)),
+                               mul_add(w, f.z, -(w0 * f0.z))};
+        return mul_add(d.z, df.z, mul_add(d.y, df.y, mul_add(d.x, df.x, b)));
+    }
+
+    // Makes d, q and t of the bond between the atoms in two slots.
+    HOL_FORCED void make_row(int32_t place, int32_t from, int32_t to) const {
+        const Equations<V> &e = z.equations;
+        BondRow<V> &row = z.x.row[place];
+        Vector3<V> d = e.r[to] - e.r[from], unused = {};
+        take_image<false>(*z.x.box, d, unused);
+        V b = {};
+        if (has(squares)) {
+            const Vector3<V> dv = e.velocity[to] - e.velocity[from];
+            b = dot(dv, dv);
+        }
+        if (has(rates)) {
+            b = dot(d, e.velocity[to] - e.velocity[from]);
+            if (z.x.in.strain) b = b + stretching(z.x.in.strain, d);
+        }
+        if (has(pulls)) b = with_pull(d, z.x.w[from], e.force[from], z.x.w[to], e.force[to], b);
+        if (has(given)) b = given_value(place);
+        row.d = d;
+        row.q = dot(d, d);
+        row.t = b;
+    }
+
+    HOL_FORCED V given_value(int32_t place) const {
+        V b = {};
+        for (int i = 0; i < Width<V>::lanes; ++i)
+            Width<V>::set(b, i, 0.5 * z.x.in.rhs[z.x.lane[i].first_bond + z.x.s.bond_of[place]]);
+        if (z.equations.given) z.equations.given[place] = b;
+        return b;
+    }
+
+    // Of a tree at the level of forces nothing but the rows is needed later. The atoms are kept in these, too, r and v in
+    // the row of the bond above it, in d and in q, E, t. That is less memory, and of molecules of a hundred bonds what
+    // fits into the first-level cache. A bond is made from its two rows when those below it have been made.
+    void read_atoms_to_rows() const {
+        BondRow<V> *const row = z.x.row;
+        read_atoms(*z.x.r, Slots<V>(row, &row->d.x));
+        if (has(squares)) read_atoms(*z.x.in.v, Slots<V>(row, &row->q));
+        if (has(pulls)) read_atoms(*z.x.in.f, Slots<V>(z.equations.r));
+    }
+
+    template <bool has_v, bool has_f>
+    __attribute__((noinline)) void make_rows_in_place() const {
+        const Schedule &s = z.x.s;
+        const V *const mass = z.x.w;
+        const Vector3<V> *const f = z.equations.r;
+        for (int32_t slot = 0; slot < s.n_tree; ++slot) {
+            const int32_t parent = s.parent[slot];
+            const BondRow<V> &from = z.x.row[parent];
+            BondRow<V> &row = z.x.row[slot];
+            const V w = mass[slot];
+            Vector3<V> d = row.d - from.d, unused = {};
+            take_image<false>(*z.x.box, d, unused);
+            V b = {};
+            if (has_v) {
+                const Vector3<V> dv = {row.q - from.q, row.E - from.E, row.t - from.t};
+                b = dot(dv, dv);
+            }
+            if (has_f) b = with_pull(d, mass[parent], f[parent], w, f[slot], b);
+            row.d = d;
+            row.q = dot(d, d);
+            row.E = w * row.q;  // of a leaf
+            row.t = b;
+        }
+    }
+
+    __attribute__((noinline)) void load() const {
+        const Schedule &s = z.x.s;
+        if (!has(rates | given) && s.type == Schedule::tree) {
+            read_atoms_to_rows();
+            return choose([&](auto v, auto f) { make_rows_in_place<v, f>(); }, has(squares), has(pulls));
+        }
+        read_atoms(*z.x.r, Slots<V>(z.equations.r));
+        if (has(squares | rates)) read_atoms(*z.x.in.v, Slots<V>(z.equations.velocity));
+        if (has(pulls)) read_atoms(*z.x.in.f, Slots<V>(z.equations.force));
+        for (int32_t slot = 0; slot < s.n_tree; ++slot) {
+            make_row(slot, s.parent[slot], slot);
+            BondRow<V> &row = z.x.row[slot];
+            row.E = z.x.w[slot] * row.q;  // of a leaf
+        }
+        load_core_bonds();
+    }
+
+    // Reads the atoms that trees hang from, and makes the bonds between them.
+    void load_core() const {
+        const Molecules<V> &x = z.x;
+        for (int32_t slot = x.s.n_atoms - 1; slot >= x.s.n_tree; --slot) {
+            const int32_t atom = x.s.atom_of[slot];
+            z.equations.r[slot] = read(*x.r, x.at, atom);
+            if (has(squares | rates)) z.equations.velocity[slot] = read(*x.in.v, x.at, atom);
+            if (has(pulls)) z.equations.force[slot] = read(*x.in.f, x.at, atom);
+        }
+        load_core_bonds();
+    }
+
+    void load_core_bonds() const {
+        const Schedule &s = z.x.s;
+        for (int32_t p = 0; p < s.n_core; ++p) make_row(s.n_tree + p, s.from[p], s.to[p]);
+    }
+};
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

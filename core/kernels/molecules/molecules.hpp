@@ -1,0 +1,151 @@
+// A block of molecules of one shape: what is known of their atoms and bonds while they are solved.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_MOLECULES_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_MOLECULES_HPP
+
+#include "core/kernels/arithmetic/vector3.hpp"
+#include "core/kernels/molecules/atoms/atoms.hpp"
+#include "core/kernels/molecules/image.hpp"
+#include "core/kernels/molecules/large_tree/pieces.hpp"
+#include "core/kernels/molecules/schedule.hpp"
+#include "core/kernels/isa/choose.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// A bond at its place (schedule.hpp).
+template <class V>
+struct BondRow {
+    Vector3<V> d;
+    V q;  // d.d
+    V E;  // inverse mass that what hangs on the bond offers along it, times q; of the core: the pivot
+    V t;  // right-hand side y, then u, then the solution
+    V l;  // what the bond above gets of y, and this one of its t
+    V r;  // 1 / pivot
+};
+
+// What right-hand sides are made of; absent ones are nullptr, or arrays without x.
+struct Inputs {
+    const AtomArray *v, *f;
+    const double *rhs;
+    bool rates;                      // d.(v_j - v_i) instead of |v_j - v_i|^2
+    const double *strain = nullptr;  // added to rates: arithmetic/vector3.hpp
+};
+
+// The error of a multiplier that is a small difference (siblings.hpp) may be so many times its scale, both in
+// roundings: no more than the 16 + sqrt(n) roundings of the scale that count as right
+// (tests/oracle/molecules/README.md) where a molecule is large.
+constexpr double most_cancelled = 64;
+HOL_INLINE double most_cancelled2(int32_t n_bonds) {
+    const double large = static_cast<double>(n_bonds);
+    return large > most_cancelled * most_cancelled ? large : most_cancelled * most_cancelled;
+}
+
+template <class V>
+struct Molecules {
+    const Schedule &s;
+    const MoleculeLane *lane;  // of all lanes; those without a molecule repeat the first one
+    int used;                  // lanes with a molecule
+    Atoms<V> at;
+    const Box *box;
+    const AtomArray *r;  // of the bond vectors, for what is computed anew
+    V *w;                // [n_atoms] by slot
+    BondRow<V> *row;     // [n_bonds] by place
+    V *pair;             // [n_pairs] multipliers among the children of an atom
+    V slack;             // negative where plain products do not do
+    Inputs in;
+    const Pieces *pieces = nullptr;  // where a large one is worked on in these
+    double per_cancelled2 = 1 / (most_cancelled * most_cancelled);
+
+    MaskOf<V> in_use() const { return Width<V>::first(used); }
+};
+
+// Reads one atom, in double; a component that the array does not have is 0.
+HOL_INLINE void read_row(const AtomArray &array, int64_t number, double *x) {
+    const char *const p[3] = {array.x, array.y, array.z};
+    for (int c = 0; c < 3; ++c)
+        x[c] = !p[c]            ? 0.0
+               : array.is_float ? element<float>(p[c] + number * array.stride)
+                                : element<double>(p[c] + number * array.stride);
+}
+
+// Finds the slots at the two ends of a bond. It points from the first to the second.
+HOL_INLINE void ends_of(const Schedule &s, int32_t place, int32_t &from, int32_t &to) {
+    from = place < s.n_tree ? s.parent[place] : s.from[place - s.n_tree];
+    to = place < s.n_tree ? place : s.to[place - s.n_tree];
+}
+
+// Signs that cost no product.
+struct Plus {};
+struct Minus {};
+template <class V>
+HOL_INLINE V operator*(Plus, const V &x) {
+    return x;
+}
+template <class V>
+HOL_INLINE V operator*(Minus, const V &x) {
+    return -x;
+}
+
+// Calls body(place, sign) for the bonds of the atom at a slot. The sign is positive if the bond points away from it.
+template <class V, class Body>
+HOL_INLINE void for_bonds_of(const Schedule &s, int32_t slot, const Body &body) {
+    for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) body(s.child[c], Plus{});
+    if (slot < s.n_tree) return body(slot, Minus{});
+    if (s.n_core_atoms == 0) return;
+    const V sign[2] = {Width<V>::all(1), Width<V>::all(-1)};
+    const int32_t *const meet = s.meet + s.meet_start[slot - s.n_tree];
+    const int n = s.meet_start[slot - s.n_tree + 1] - s.meet_start[slot - s.n_tree];
+    choose_few<4>(n, [&](auto known) HOL_FORCED {
+        const int count = known > 0 ? known : n;
+        HOL_UNROLL_FEW
+        for (int e = 0; e < count; ++e) body(s.n_tree + meet[e] / 2, sign[meet[e] & 1]);
+    });
+}
+
+// Finds a bond vector of one lane, with the low word that the difference of the coordinates leaves.
+template <class V>
+HOL_INLINE void exact_bond(const Molecules<V> &x, int lane, int32_t place, Vector3<double> &d, Vector3<double> &lo) {
+    int32_t from, to;
+    ends_of(x.s, place, from, to);
+    Vector3<double> a, b;
+    read_row(*x.r, x.at.number(lane, x.s.atom_of[from]), &a.x);
+    read_row(*x.r, x.at.number(lane, x.s.atom_of[to]), &b.x);
+    unrounded_bond(*x.box, a, b, d, lo);
+}
+
+// g = d . d' of nearly orthogonal bonds cancels, which shows where one right-hand side is much larger than the other.
+// Below this cosine it is computed anew from the coordinates.
+constexpr double least_cosine = 1.0 / 32;
+
+template <class V>
+HOL_NOINLINE V dots_anew(const Molecules<V> &x, int32_t a, int32_t b, unsigned which, V g) {
+    for (unsigned left = which; left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        Vector3<double> d[2], low[2];
+        exact_bond(x, i, a, d[0], low[0]);
+        exact_bond(x, i, b, d[1], low[1]);
+        Width<V>::set(g, i, dot_compensated(d[0], low[0], d[1], low[1]));
+    }
+    return g;
+}
+
+template <class V>
+HOL_INLINE MaskOf<V> nearly_orthogonal(const V &g, const V &p, const V &q) {
+    return less(Width<V>::all(1 / (least_cosine * least_cosine)) * (g * g), p * q);
+}
+
+// Returns d . d' of two bonds, by the rule above.
+template <class V>
+HOL_INLINE V product_of(const Molecules<V> &x, int32_t a, int32_t b) {
+    const BondRow<V> &p = x.row[a], &q = x.row[b];
+    const V g = dot(p.d, q.d);
+    const MaskOf<V> small = nearly_orthogonal(g, p.q, q.q);
+    if (__builtin_expect(any(small), 0)) return dots_anew(x, a, b, bits(small), g);
+    return g;
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

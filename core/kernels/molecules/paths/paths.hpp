@@ -1,0 +1,58 @@
+// A large molecule of linear parts at the position level: paths, which are worked on as chains are, and the knots at
+// which they end. Plain data, the same for every instruction set; core/molecules/path_plan.hpp makes it.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_PATHS_PATHS_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_PATHS_PATHS_HPP
+
+#include <stdint.h>
+
+namespace holonomic {
+
+struct Schedule;
+
+struct PathPlan {
+    // Bonds between consecutive atoms with consecutive numbers; no other bond is at an atom between them. A knot finds
+    // the multipliers of bonds_of_end bonds at each end; where an end is free, there is no knot. The others are the
+    // path's own; its own atoms are those between all of its bonds, and at free ends.
+    static constexpr int32_t bonds_of_end = 2, shortest_path = 128, bonds_of_piece = 512;
+    struct Path {
+        int32_t first_atom, first_bond, n_bonds;
+        int32_t own, own_end;  // the bonds that are its own, counted from its first
+        bool begins_free() const { return own == 0; }
+        bool ends_free() const { return own_end == n_bonds; }
+    };
+    const Path *path;
+    int32_t n_paths;
+
+    // Own bonds of a path that one lane solves for, counted from its first bond. The longest come first.
+    struct Piece {
+        int32_t path, from, end;
+    };
+    const Piece *piece;
+    int32_t n_pieces;
+
+    // A knot: bonds that are in no path, the atoms at their ends and at those of paths, and of each path that ends
+    // there a leg, its first bonds from there. A bond is felt along a leg no farther than the leg reaches; how far that
+    // is depends on the bonds, so there are schedules for several reaches.
+    static constexpr int n_reaches = 3;
+    static int32_t reach(int i) { return i == 0 ? 40 : i == 1 ? 56 : 98; }
+    struct Leg {
+        int32_t path;
+        bool backwards;  // from the path's last bond on
+    };
+    // Knots that differ in nothing but masses and lengths. Local atoms are the knot's own, then those of the legs, one
+    // leg behind the other; bonds likewise.
+    struct Kind {
+        const Schedule *schedule[n_reaches];
+        int32_t n_atoms, n_bonds, n_legs;
+        int32_t first, count;                       // knots
+        int32_t first_atom, first_bond, first_leg;  // of the first of them in the lists below
+    };
+    const Kind *kind;
+    int32_t n_kinds;
+    const int32_t *atom, *bond;  // [n_atoms], [n_bonds] local ones of the molecule
+    const Leg *leg;
+    int32_t n_atoms, n_bonds, n_knots;
+};
+
+}  // namespace holonomic
+#endif

@@ -1,0 +1,228 @@
+// Position level of molecules: load, iterate, move the atoms, store.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_POSITIONS_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_POSITIONS_HPP
+
+#include "core/kernels/molecules/blocks.hpp"
+#include "core/kernels/molecules/doubtful.hpp"
+#include "core/kernels/molecules/list/flat_positions.hpp"
+#include "core/kernels/molecules/iterate.hpp"
+#include "core/kernels/molecules/tree/newton.hpp"
+#include "core/kernels/molecules/ring/ring_newton.hpp"
+#include "core/kernels/molecules/store.hpp"
+#include "core/kernels/molecules/triangle/triangle_blocks.hpp"
+#include "core/kernels/tally.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+template <class V>
+HOL_INLINE void make_bond(NewtonRow<V> &row, const PositionsCall &call, const Vector3<V> &b, const Vector3<V> &D) {
+    Vector3<V> unused = {};
+    row.b = b;
+    row.D = D;
+    take_image<false>(call.box_ref, row.b, unused);
+    take_image<false>(call.box, row.D, unused);
+}
+
+// Reads the reference positions and the new ones, by slot; returns the latter's largest coordinate.
+template <class V>
+HOL_NOINLINE V read_positions(const Schedule &s, const PositionsCall &call, const Atoms<V> &at, const Slots<V> ref,
+                              const Slots<V> now) {
+    read_vectors(call.r_ref, at, s.slot_of, s.n_atoms, ref);
+    read_vectors(call.r, at, s.slot_of, s.n_atoms, now);
+    V largest = {};
+    for (int32_t i = 0; i < s.n_atoms; ++i) {
+        const Vector3<V> r = now[i];
+        largest = max(max(abs(r.x), abs(r.y)), max(abs(r.z), largest));
+    }
+    return largest;
+}
+
+// Bonds of the reference positions and of the new ones; returns the largest coordinate of the latter.
+template <class V>
+HOL_NOINLINE V load_bonds(Newton<V> &newton, const PositionsCall &call, const Atoms<V> &at) {
+    const Schedule &s = newton.x.s;
+    NewtonRow<V> *const row = newton.x.row;
+    Vector3<V> *const r_ref = newton.x.move, *const r = newton.x.r;
+    const V largest = read_positions(s, call, at, Slots<V>(r_ref), Slots<V>(r));
+    for (int32_t k = 0; k < s.n_tree; ++k)
+        make_bond(row[k], call, r_ref[k] - r_ref[s.parent[k]], r[k] - r[s.parent[k]]);
+    for (int32_t k = s.n_tree; k < s.n_bonds; ++k) {
+        const int32_t from = s.from[k - s.n_tree], to = s.to[k - s.n_tree];
+        make_bond(row[k], call, r_ref[to] - r_ref[from], r[to] - r[from]);
+    }
+    return largest;
+}
+// The atoms of a ring are read into the rows of the bonds behind them.
+template <class V>
+HOL_NOINLINE V load_bonds(RingNewton<V> &newton, const PositionsCall &call, const Atoms<V> &at) {
+    NewtonRow<V> *const row = newton.x.row;
+    const V largest = read_positions(newton.x.s, call, at, Slots<V>(row, &row->b.x),
+                                     Slots<V>(row, &row->D.x));
+    const Vector3<V> first_ref = row[0].b, first = row[0].D;
+    const int32_t n = newton.x.s.n_bonds;
+    for (int32_t k = 0; k + 1 < n; ++k) make_bond(row[k], call, row[k + 1].b - row[k].b, row[k + 1].D - row[k].D);
+    make_bond(row[n - 1], call, first_ref - row[n - 1].b, first - row[n - 1].D);
+    return largest;
+}
+
+// Moves the atoms of the lanes in `which`, and their velocities, but fixed ones.
+template <class System, class V>
+HOL_NOINLINE void write_moves(const System &newton, const PositionsCall &call, const Atoms<V> &at, unsigned which) {
+    const Schedule &s = newton.x.s;
+    const Slots<V> moves = newton.displace();
+    bool any_fixed = false;
+    for (int32_t i = 0; i < s.n_atoms; ++i) any_fixed = any_fixed || s.fixed[i];
+    const unsigned char *const fixed = any_fixed ? s.fixed : nullptr;
+    write_vectors(call.r, at, s.slot_of, s.n_atoms, moves, Written<V>{which, fixed, nullptr, true});
+    if (call.v.x)
+        write_vectors(call.v, at, s.slot_of, s.n_atoms, moves, Written<V>{which, fixed, nullptr, true, 1 / call.dt});
+}
+
+// A block of molecules at the position level. System: Newton or RingNewton.
+template <class System>
+struct PositionsBlock {
+    typedef typename System::Value V;
+    const PositionsCall &call;
+    const Schedule &s;
+    const MoleculeLane *lane;  // [lanes]
+    const Atoms<V> &at;
+    System &newton;
+    Tally &tally;
+    V a_min, a_max, largest_coordinate;
+
+    // a^2 of all bonds, unless they are those of the block before.
+    void set_lengths(bool known) {
+        if (!known) {
+            newton.lengths[0] = Width<V>::all(1e300);
+            newton.lengths[1] = V{};
+            for (int32_t k = 0; k < s.n_bonds; ++k) {
+                V a = {};
+                for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(a, i, lane[i].length[s.bond_of[k]]);
+                newton.lengths[0] = min(a, newton.lengths[0]);
+                newton.lengths[1] = max(a, newton.lengths[1]);
+                newton.x.row[k].a2 = a * a;
+                newton.x.row[k].per_a2 = Width<V>::all(1) / newton.x.row[k].a2;
+            }
+        }
+        a_min = newton.lengths[0];
+        a_max = newton.lengths[1];
+    }
+
+    void load_guess() {
+        const double factor = 2 * call.dt * call.dt;
+        for (int32_t k = 0; k < s.n_bonds; ++k)
+            for (int i = 0; i < Width<V>::lanes; ++i)
+                Width<V>::set(newton.x.row[k].tau, i, factor * call.lambda[lane[i].first_bond + s.bond_of[k]]);
+    }
+
+    // Lanes in which an atom's displacement is the difference of pulls so large that their rounding is more than the
+    // coordinates'.
+    MaskOf<V> coarse_moves() const {
+        V pull = {};
+        for (int32_t k = 0; k < s.n_bonds; ++k) {
+            int32_t from, to;
+            ends_of(s, k, from, to);
+            pull = max(max(newton.x.w[from], newton.x.w[to]) * abs(newton.x.row[k].tau), pull);
+        }
+        return less(0.25 * (largest_coordinate + a_min), pull * a_max);
+    }
+
+    __attribute__((noinline)) void write_multipliers(unsigned which) const {
+        const V factor = Width<V>::all(0.5 / (call.dt * call.dt));
+        write_values<V>(s, lane, call.lambda, which, 0, s.n_bonds,
+                        [&](int32_t k) HOL_FORCED { return mul_add(newton.x.row[k].tau, factor, V{}); });
+    }
+
+    void add_virial(unsigned which) const {
+        MoleculesVirial<V> virial;
+        for (int32_t k = 0; k < s.n_bonds; ++k) {
+            const auto &row = newton.x.row[k];
+            virial.add(row.b, row.tau * row.b);
+        }
+        virial.count(which, 1 / (call.dt * call.dt), tally);
+    }
+
+    // The worst bond of the molecules in `which`: of a molecule the one with the smallest number among those.
+    void note_worst(unsigned which, V error) {
+        int worst = -1;
+        for (int i = 0; i < Width<V>::lanes; ++i) {
+            if (!(which >> i & 1)) continue;
+            const double e = Width<V>::get(error, i);
+            if (!is_worse(tally, e, lane[i].molecule)) continue;
+            tally.worst = e;
+            tally.worst_chain = lane[i].molecule;
+            worst = i;
+        }
+        if (worst < 0) return;
+        int32_t bond = s.n_bonds;
+        for (int32_t k = 0; k < s.n_bonds; ++k) {
+            const double e = Width<V>::get(newton.left_of(k), worst);
+            if (e >= tally.worst && s.bond_of[k] < bond) bond = s.bond_of[k];
+        }
+        tally.worst_bond = bond < s.n_bonds ? bond : 0;
+    }
+
+    // Finds multipliers, and writes nothing.
+    Solved<V> find(MaskOf<V> in_use) {
+        largest_coordinate = load_bonds(newton, call, at);
+        if (call.guess) load_guess();
+        const Limits<V> limits(call, largest_coordinate, a_min);
+        return iterate<V, false, System::by_length>(newton, limits, call, in_use);
+    }
+
+    // Returns the lanes that need careful arithmetic; nothing of them has been written.
+    unsigned solve(MaskOf<V> in_use) {
+        const Solved<V> out = find(in_use);
+        const MaskOf<V> coarse = out.converged & coarse_moves();
+        const unsigned moved = bits(out.converged & ~coarse), good = moved | bits(out.untouched);
+        if (call.report) note_worst(good, out.error);
+        if (call.lambda) write_multipliers(good);
+        if (call.virial) add_virial(moved);
+        if (moved) write_moves(newton, call, at, moved);
+        tally.n_corrected += __builtin_popcount(moved);
+        if (moved && out.solves > tally.iterations) tally.iterations = out.solves;
+        return bits(in_use) & ~good;
+    }
+};
+
+struct PositionsWork {
+    const PositionsCall &call;
+    const Schedule &schedule;
+    const bool packed;
+    Tally &tally;
+    const LongTeam *team;
+
+    template <class V>
+    void block(const MoleculeLane *lane, int used, bool known, double *scratch) const {
+        if (schedule.flat && used == 1) {
+            if (solve_flat(call, schedule, *lane, packed, team, {scratch}, tally)) return;
+            known = false;  // the list has overwritten the scratch
+        }
+        if (schedule.type == Schedule::ring)
+            solve<RingNewton<V>>(lane, used, known, scratch);
+        else
+            solve<Newton<V>>(lane, used, known, scratch);
+    }
+
+    template <class System>
+    void solve(const MoleculeLane *lane, int used, bool known, double *scratch) const {
+        typedef typename System::Value V;
+        Memory<V> memory = {scratch};
+        const Atoms<V> at(lane, used, packed);
+        System newton(schedule, memory);
+        for (int32_t slot = 0; slot < schedule.n_atoms && !known; ++slot)
+            for (int i = 0; i < Width<V>::lanes; ++i)
+                Width<V>::set(newton.x.w[slot], i, lane[i].w[schedule.atom_of[slot]]);
+        PositionsBlock<System> block = {call, schedule, lane, at, newton, tally, V{}, V{}, V{}};
+        block.set_lengths(known);
+        const unsigned rest = block.solve(Width<V>::first(used));
+        if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, lane, rest, memory.next, tally);
+    }
+};
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,138 @@
+// The order in which the bonds of a molecule that is no chain are eliminated, as flat arrays that a kernel runs
+// through. Plain data, the same for every instruction set; core/molecules/schedule.hpp makes it.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_SCHEDULE_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_SCHEDULE_HPP
+
+#include <stdint.h>
+
+namespace holonomic {
+
+// Molecules of more bonds are worked on one by one, trees in pieces.
+constexpr int32_t largest_in_lanes = 2048;
+// Those with cycles gain nothing by lanes from fewer on: a list (flat_list.hpp) serves one of them as fast as lanes
+// serve each of four, and most are the only one of their kind.
+constexpr int32_t largest_graph_in_lanes = 256;
+constexpr int32_t slots_of_piece = 16384;  // a megabyte of bonds at work, a second-level cache
+
+// Bonds of an arm: what is done once an arm is little beside what is done for its bonds, and these stay in cache. All
+// but one are a multiple of arm_step, so that segments in as many lanes are equally long.
+constexpr int32_t arm_step = 8, shortest_arm = 5 * arm_step + 1, longest_arm = 128 * arm_step + 1;
+
+struct CarefulPlan;  // core/kernels/careful/plan.hpp
+struct FlatList;     // core/kernels/molecules/list/flat_list.hpp
+struct PathPlan;     // core/kernels/molecules/paths/paths.hpp
+
+// Atoms and bonds are renumbered. The *slot* of an atom: first the atoms of the trees, each after its children
+// (post-order), then the root of a tree, or the atoms of the core. The *place* of a bond: a bond of a tree has the slot
+// of its lower atom, the one away from the root; the bonds of the core follow in the order of their elimination. So
+// slot s < n_tree has its bond to its parent at place s, and there are no bonds but n_tree + n_core.
+//
+// A core is what is left when atoms with one bond are stripped until there are none; a tree has none. All its atoms are
+// movable, because fixed atoms are leaves.
+struct Schedule {
+    enum Type : int32_t { tree, triangle, ring, graph };
+    Type type;
+    int32_t n_atoms, n_bonds;
+    int32_t n_tree;        // bonds of trees
+    int32_t n_core;        // bonds of the core
+    int32_t n_core_atoms;  // 0 for a tree, whose root has slot n_tree
+    int32_t max_children;
+    int32_t max_core_bonds;  // of an atom of the core
+
+    // As they were given: bond k joins the local atoms atom_i[k] and atom_j[k].
+    const int32_t *atom_i, *atom_j;
+    const uint8_t *fixed;  // [n_atoms] by local atom
+
+    const int32_t *atom_of;   // [n_atoms] local atom of a slot
+    const int32_t *slot_of;   // [n_atoms] and back
+    const int32_t *bond_of;   // [n_bonds] local bond of a place
+    const int32_t *place_of;  // [n_bonds] and back
+
+    // Trees: the bond vector at place s points from slot parent[s] to slot s, away from the root or the core.
+    const int32_t *parent;       // [n_tree] slot
+    const int32_t *child_start;  // [n_atoms + 1] the children of slot s are child[child_start[s] ..]: slots, ascending
+    const int32_t *child;        // [n_tree]
+    const int32_t *pair_start;   // [n_atoms + 1] sums of k (k - 1) / 2, k children: places for a joint's multipliers
+    int32_t n_pairs;
+
+    // The core: bond p, at place n_tree + p, points from slot from[p] to slot to[p]. In a ring or triangle bond p joins
+    // slots p and p + 1, the last one to slot 0, and all point that way round; elsewhere from the smaller local
+    // atom.
+    const int32_t *from, *to;   // [n_core]
+    const int32_t *meet_start;  // [n_core_atoms + 1] bonds that meet at core atom c, slot n_tree + c
+    const int32_t *meet;        // [2 n_core] 2 p + 1 where bond p points to the atom, 2 p where it points away
+    const int32_t *
+        meet_pair;  // for every core atom, the off-diagonal entries of pairs a > b of its bonds: (1,0), (2,0), (2,1) ..
+    const int32_t *meet_pair_start;  // [n_core_atoms + 1]
+
+    // A symmetric elimination of the core's matrix, column after column. Off-diagonal entries e of column p are
+    // column_start[p] .. column_start[p + 1], with rows row[e] > p, ascending. Column p takes from the entry
+    // (row[a], row[b]), a > b, its product a b / pivot: entry update[update_start[p] + (a (a-1) / 2 + b)], a and b
+    // counted from the column's start; and from the diagonal elements of all row[a].
+    const int32_t *column_start;  // [n_core + 1]
+    const int32_t *row;           // [n_entries]
+    const int64_t *update_start;  // [n_core + 1]
+    const int32_t *update;
+    int32_t n_entries;
+    int32_t max_column;
+
+    // Atoms of a large tree with children, so that W of one molecule can be worked on at once: within a run none
+    // depends on another, and all have the same number of children, 4 standing for more. Slots [p slots_of_piece, (p +
+    // 1) slots_of_piece) are piece p; atoms whose children, and theirs, are all in the same piece stand in its runs,
+    // the others in those of piece n_pieces, the top, which comes last. No pieces: the molecule is small.
+    struct Run {
+        int32_t first, count, children;  // slots slot[first] ..
+    };
+    struct Runs {
+        const Run *run;
+        const int32_t *slot;
+        const int32_t *piece_start;  // [n_pieces + 2] runs of each piece, then of the top
+    };
+    Runs runs;
+    int32_t n_pieces;
+
+    // Of a large graph or tree, unless the list would be long: all its bonds along one list; else nullptr.
+    const FlatList *flat;
+    // Of a large molecule of few knots and long paths; else nullptr.
+    const PathPlan *paths;
+
+    // An arm: a path between two atoms of a large tree, whose inner atoms have one child each. Its atoms and its bonds
+    // have consecutive numbers, so that it can be worked on as a chain is, without looking at the other arms. Its slots
+    // and places are consecutive in any case.
+    struct Arm {
+        int32_t bottom;  // slot of its lowest atom: the places of its bonds are bottom, bottom + 1 .., upwards
+        int32_t n_bonds;
+        int32_t first_atom, first_bond;                       // the first of its local atoms and bonds
+        bool ascending;                                       // upwards
+        int32_t inner_before;                                 // bonds but one of all arms before it
+        int32_t top() const { return bottom + n_bonds - 1; }  // the place of its highest bond
+    };
+    // What is between arms: atoms that are no arm's inner ones, and bonds that are not in an arm's segments - those of
+    // the chain that the arm is without its last bond. Each lies in one piece.
+    struct Stretch {
+        int32_t first, end;              // slots
+        int32_t first_place, end_place;  // and places
+    };
+    // The arms in runs of their own stand for their inner atoms: arms_in_run in place of the number of children, and
+    // the numbers of arms in place of slots.
+    static constexpr int32_t arms_in_run = 5;
+    const Arm *arm;
+    int32_t n_arms;                // 0: none is worth it
+    Runs runs_of_arms;             // of all arms, and of what is between them
+    const Stretch *stretch;        // of all pieces
+    const int32_t *stretch_start;  // [n_pieces + 1]
+    const int32_t *share_start;    // [n_shares + 1] arms that one thread works on at a time
+    int32_t n_shares;
+
+    const CarefulPlan *careful;  // the same molecule for the careful solver; not of a knot
+
+    Schedule() = default;
+    Schedule(const Schedule &) = delete;
+    Schedule &operator=(const Schedule &) = delete;
+    ~Schedule();
+    struct Memory;
+    Memory *memory = nullptr;  // where the arrays are
+};
+
+}  // namespace holonomic
+#endif

@@ -1,0 +1,88 @@
+// Newton's method for the multipliers alone of small molecules. The lengths are right where
+//     2 M tau = sigma + q(tau),   sigma = D.D - a^2,   q_k = |P_k|^2,   P what tau does to the bonds;
+// q is a quadratic form of products of the reference bonds b, and small. So nothing cancels, and the error that a step
+// leaves is known to many more digits than the bonds have.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_SMALL_MULTIPLIERS_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_SMALL_MULTIPLIERS_HPP
+
+#include "core/kernels/molecules/atoms/consecutive.hpp"
+#include "core/kernels/molecules/iterate.hpp"
+#include "core/kernels/newton/first_side.hpp"
+#include "core/kernels/tally.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// Largest error that the second solve may leave in the squared lengths. The third leaves about its power 3/2, which
+// must be far below a rounding.
+constexpr double small_enough = 1e-11;
+
+// A model of N bonds has: sigma[N], per_a2[N];  change(tau), with q[N];  inverse() of 2 M for tau = 0, and
+// inverse(change) for the bonds as changed;  solve(inverse, y, tau).
+
+// Two solves from tau, in all lanes. The one with new factors squares the error, the other with the same factors takes
+// it to the third power. Returns what the first has left of a^2.
+template <int N, class V, class Model>
+HOL_INLINE V solve_twice(const Model &x, V *tau) {
+    V y[N], next[N], rest[N];
+    // 2 M tau = sigma + q, linear about the last tau: 2 M' tau = sigma - q. What that leaves is q of the change.
+    auto p = x.change(tau);
+    const auto f = x.inverse(p);
+    HOL_UNROLL
+    for (int k = 0; k < N; ++k) y[k] = x.sigma[k] - p.q[k];
+    Model::solve(f, y, next);
+    HOL_UNROLL
+    for (int k = 0; k < N; ++k) y[k] = next[k] - tau[k];
+    p = x.change(y);
+    Model::solve(f, p.q, rest);
+    V left = p.q[0] * x.per_a2[0];
+    HOL_UNROLL
+    for (int k = 1; k < N; ++k) left = max(p.q[k] * x.per_a2[k], left);
+    HOL_UNROLL
+    for (int k = 0; k < N; ++k) tau[k] = next[k] + rest[k];
+    return left;
+}
+
+// Finds tau in the lanes of `active`, which keeps the lanes that need more; in others it is anything. Returns the
+// number of solves.
+template <int N, class V, class Model>
+HOL_INLINE int64_t solve_for_multipliers(const Model &x, V *tau, MaskOf<V> &active) {
+    V y[N];
+    HOL_UNROLL
+    for (int k = 0; k < N; ++k) y[k] = first_side(x.sigma[k], x.per_a2[k]);
+    Model::solve(x.inverse(), y, tau);
+    int64_t solves = 3;
+    active = active & ~less(solve_twice<N>(x, tau), Width<V>::all(small_enough));
+    for (; __builtin_expect(any(active), 0) && solves < 9; solves += 2) {
+        V before[N];
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) before[k] = tau[k];
+        const V left = solve_twice<N>(x, tau);
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) tau[k] = select(active, tau[k], before[k]);
+        active = active & ~less(left, Width<V>::all(small_enough));
+    }
+    return solves;
+}
+
+// The worst bond of the molecules in `which`, from the errors of all, N in the order of the bonds: of a molecule the
+// one with the smallest number.
+template <int N, class V, class Lanes>
+HOL_NOINLINE void note_worst_bond(const V *size, const Lanes &lanes, V error, unsigned which, Tally &tally) {
+    for (int i = 0; i < Width<V>::lanes; ++i) {
+        if (!(which >> i & 1)) continue;
+        const double e = Width<V>::get(error, i);
+        if (!is_worse(tally, e, lanes.molecule(i))) continue;
+        tally.worst = e;
+        tally.worst_chain = lanes.molecule(i);
+        tally.worst_bond = 0;
+        for (int k = N - 1; k >= 0; --k)
+            if (Width<V>::get(size[k], i) >= e) tally.worst_bond = k;
+    }
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,168 @@
+// Writes what comes of the multipliers of a block of molecules: values per bond, pulls on atoms, the virial.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_STORE_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_STORE_HPP
+
+#include "core/kernels/molecules/molecules.hpp"
+#include "core/kernels/molecules/atoms/vectors.hpp"
+#include "core/kernels/molecules/virial.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// Returns G of the atom at a slot: t d of the bonds that point away from it, less t d of those that point to it.
+template <class V>
+HOL_INLINE Vector3<V> pull_on(const Molecules<V> &x, int32_t slot) {
+    Vector3<V> g = {};
+    for_bonds_of<V>(x.s, slot, [&](int32_t place, auto sign) HOL_FORCED {
+        g = add_times(g, sign * x.row[place].t, x.row[place].d);
+    });
+    return g;
+}
+
+#if HOL_LANES >= 4 && defined(__AVX2__)
+// The same for a single molecule: rows begin with d, so x, y and z are done at once.
+HOL_INLINE Vector3<double> pull_on(const Molecules<double> &x, int32_t slot) {
+    if (slot >= x.s.n_tree) return pull_on<double>(x, slot);
+    const Schedule &s = x.s;
+    quad g = {};
+    for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) {
+        const BondRow<double> &row = x.row[s.child[c]];
+        g = _mm256_fmadd_pd(_mm256_set1_pd(row.t), _mm256_loadu_pd(&row.d.x), g);
+    }
+    const BondRow<double> &row = x.row[slot];
+    g = _mm256_fnmadd_pd(_mm256_set1_pd(row.t), _mm256_loadu_pd(&row.d.x), g);
+    return {g[0], g[1], g[2]};
+}
+#endif
+
+// Where the results of a linear solve go.
+struct Outputs {
+    const AtomArray *g;
+    double *lambda, *tension;
+    bool add, virial;
+};
+
+// Writes value(slot) of the atoms of one molecule in these slots.
+template <class Value>
+HOL_INLINE void write_slots(const Molecules<double> &x, const AtomArray &array, int32_t first, int32_t end,
+                            const Value &value) {
+    const unsigned char *const shared = x.lane[0].shared;
+    if (x.at.layout == rows_in_order && !shared) {
+        double *const base = reinterpret_cast<double *>(array.x) + 3 * x.at.first[0];
+        for (int32_t slot = end; slot-- > first;) {
+            double *const p = base + 3 * static_cast<int64_t>(x.s.atom_of[slot]);
+            write_rows(&p, value(slot));
+        }
+        return;
+    }
+    for (int32_t slot = end; slot-- > first;) {
+        const int32_t atom = x.s.atom_of[slot];
+        if (!(shared && shared[atom])) write(array, x.at, atom, value(slot), 1);
+    }
+}
+
+// v += w G of the atoms in these slots.
+HOL_INLINE void move_velocities(const Molecules<double> &x, const AtomArray &v, int32_t first, int32_t end) {
+    write_slots(x, v, first, end, [&](int32_t slot) {
+        return add_times(read(v, x.at, x.s.atom_of[slot]), x.w[slot], pull_on(x, slot));
+    });
+}
+
+// G of the atom in a slot, [slot]: of any molecule, and of a ring, whose bond k stands between slots k and k + 1.
+template <class V>
+struct Pulls {
+    const Molecules<V> &x;
+    HOL_FORCED Vector3<V> operator[](int32_t slot) const { return pull_on(x, slot); }
+};
+template <class V>
+struct RingPulls {
+    const Molecules<V> &x;
+    HOL_FORCED Vector3<V> operator[](int32_t slot) const {
+        const BondRow<V> &behind = x.row[slot], &before = x.row[slot > 0 ? slot - 1 : x.s.n_bonds - 1];
+        return behind.t * behind.d - before.t * before.d;
+    }
+};
+
+// Writes or adds G of all atoms but those of arms, in the lanes of `which`.
+template <class V>
+HOL_INLINE void write_pulls(const Molecules<V> &x, const AtomArray &g, bool add, unsigned which) {
+    const Written<V> how = {which, nullptr, x.lane, add};
+    if (x.s.type == Schedule::ring)
+        write_vectors(g, x.at, x.s.slot_of, x.s.n_atoms, RingPulls<V>{x}, how);
+    else
+        write_vectors(g, x.at, x.s.slot_of, x.s.n_atoms, Pulls<V>{x}, how);
+}
+HOL_NOINLINE void write_pulls(const Molecules<double> &x, const AtomArray &g, bool add, unsigned which) {
+    if (!x.pieces) return write_pulls<double>(x, g, add, which);
+    for_slots(x.s, x.pieces, [&](int32_t first, int32_t end) {
+        if (which)
+            write_slots(x, g, first, end, [&](int32_t slot) {
+                const Vector3<double> pull = pull_on(x, slot);
+                return add ? read(g, x.at, x.s.atom_of[slot]) + pull : pull;
+            });
+    });
+}
+
+// Writes value(place) of the bonds at these places to out[bond] of the lanes in `which`. To look whether four bonds
+// follow each other takes more instructions than it saves, in rings, too.
+template <class V, class Value>
+HOL_INLINE void write_values(const Schedule &s, const MoleculeLane *lane, double *out, unsigned which, int32_t first,
+                             int32_t end, const Value &value) {
+    double *p[Width<V>::lanes];
+    for (int i = 0; i < Width<V>::lanes; ++i) p[i] = out + lane[i].first_bond;
+    const bool all = which == (1u << Width<V>::lanes) - 1;
+    for (int32_t k = first; k < end; ++k) {
+        const int32_t bond = s.bond_of[k];
+        const V one = value(k);
+        if (all) {
+            HOL_UNROLL
+            for (int i = 0; i < Width<V>::lanes; ++i) p[i][bond] = Width<V>::get(one, i);
+        } else {
+            for (int i = 0; i < Width<V>::lanes; ++i)
+                if (which >> i & 1) p[i][bond] = Width<V>::get(one, i);
+        }
+    }
+}
+
+// Writes factor t of the bonds at these places, zeros as +0. with_length: |d| is the factor.
+template <bool with_length, class V>
+HOL_INLINE void write_bonds(const Molecules<V> &x, double factor, double *out, unsigned which, int32_t first,
+                            int32_t end) {
+    const V f = Width<V>::all(factor);
+    write_values<V>(x.s, x.lane, out, which, first, end, [&](int32_t k) HOL_FORCED {
+        const BondRow<V> &row = x.row[k];
+        return mul_add(row.t, with_length ? sqrt(row.q) : f, V{});
+    });
+}
+// Writes those of all bonds but those of arms.
+template <bool with_length, class V>
+HOL_NOINLINE void write_bonds(const Molecules<V> &x, double factor, double *out, unsigned which) {
+    for_places(x.s, x.pieces,
+               [&](int32_t first, int32_t end) { write_bonds<with_length>(x, factor, out, which, first, end); });
+}
+
+// Counts the virial of all bonds but those of arms, in the lanes of `which`.
+template <class V>
+HOL_NOINLINE void add_pulls_to_virial(const Molecules<V> &x, unsigned which, Tally &tally) {
+    MoleculesVirial<V> virial;
+    for_places_in_order(x.s, x.pieces, [&](int32_t first, int32_t end) {
+        for (int32_t k = first; k < end; ++k) virial.add(x.row[k].d, x.row[k].t * x.row[k].d);
+    });
+    virial.count(which, 1, tally);
+}
+
+// Returns the lanes in which all multipliers are finite. Those of arms are not looked at.
+template <class V>
+HOL_INLINE MaskOf<V> finite_solution(const Molecules<V> &x) {
+    V sum = {};
+    for_places_in_order(x.s, x.pieces, [&](int32_t first, int32_t end) {
+        for (int32_t k = first; k < end; ++k) sum = sum + abs(x.row[k].t);
+    });
+    return finite(sum);
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

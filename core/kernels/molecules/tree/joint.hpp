@@ -1,0 +1,217 @@
+// Eliminates the k bonds from an atom of a tree to its children together (theory (51)-(53)). The bond vectors
+// D = (d_1 .. d_k) all point away from the root. With S = diag(E) + w D^T D,
+//
+//     S u = y,   S l = w D^T d_e,   y_e = b_e + l.y,   E_e = w (q_e - w d_e^T D S^-1 D^T d_e),   t_c = u_c + l_c t_e.
+//
+// S = L P L^T is decomposed as it stands, which subtracts. Errors stay at a few roundings while every pivot and every E
+// keep a sixteenth of what they are subtracted from. `slack` is negative where they don't.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_TREE_JOINT_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_TREE_JOINT_HPP
+
+#include "core/kernels/molecules/tree/siblings.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// The part of a diagonal element that its pivot must keep.
+constexpr double least_part = 1.0 / 16;
+
+constexpr int pair_of(int a, int b) { return a * (a - 1) / 2 + b; }  // a > b
+
+// Finds multipliers m and reciprocal pivots r of S. S is k (k + 1) / 2 values of working memory, row after row.
+template <class Rows, class V>
+HOL_INLINE void decompose(const Rows &x, int k, V w, V *S, V *r, V *m, V &slack) {
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) {
+        const BondRow<V> &row = x.bond(a);
+        HOL_UNROLL_FEW
+        for (int b = 0; b < a; ++b) S[pair_of(a + 1, b)] = w * dot(row.d, x.bond(b).d);
+        S[pair_of(a + 1, a)] = mul_add(w, row.q, row.E);
+    }
+    HOL_UNROLL_FEW
+    for (int j = 0; j < k; ++j) {
+        const V P = S[pair_of(j + 1, j)];
+        if (j > 0) {
+            const BondRow<V> &row = x.bond(j);
+            const V whole = mul_add(w, row.q, row.E);
+            slack = min(mul_add(Width<V>::all(-least_part), whole, P), slack);
+        }
+        r[j] = Width<V>::all(1) / P;
+        HOL_UNROLL_FEW
+        for (int a = j + 1; a < k; ++a) {
+            const V l = S[pair_of(a + 1, j)] * r[j];
+            m[pair_of(a, j)] = l;
+            HOL_UNROLL_FEW
+            for (int b = j + 1; b <= a; ++b)
+                S[pair_of(a + 1, b)] = mul_add(-l, S[pair_of(b + 1, j)], S[pair_of(a + 1, b)]);
+        }
+    }
+}
+
+// u = S^-1 y; z keeps y as it is after the forward half.
+template <class V>
+HOL_INLINE void solve_joint(int k, const V *r, const V *m, const V *y, V *z, V *u) {
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) {
+        V sum = y[a];
+        HOL_UNROLL_FEW
+        for (int j = 0; j < a; ++j) sum = mul_add(-m[pair_of(a, j)], z[j], sum);
+        z[a] = sum;
+    }
+    HOL_UNROLL_FEW
+    for (int a = k - 1; a >= 0; --a) {
+        V sum = z[a] * r[a];
+        HOL_UNROLL_FEW
+        for (int j = a + 1; j < k; ++j) sum = mul_add(-m[pair_of(j, a)], u[j], sum);
+        u[a] = sum;
+    }
+}
+
+// Working memory of a joint: in registers where k is known to the compiler.
+template <class V, int known>
+struct JointMemory {
+    V S[known * (known + 1) / 2], r[known], m[known * (known - 1) / 2 + 1], y[known], z[known], l[known];
+    HOL_STATIC JointMemory make(Memory<V>, int) { return {}; }
+};
+template <class V>
+struct JointMemory<V, 0> {
+    V *S, *r, *m, *y, *z, *l;
+    HOL_STATIC JointMemory make(Memory<V> a, int k) {
+        return {
+            a.values(k * (k + 1) / 2), a.values(k), a.values(k * (k - 1) / 2), a.values(k), a.values(k), a.values(k)};
+    }
+    static constexpr int64_t values(int64_t k) { return k * (k + 1) / 2 + k * (k - 1) / 2 + 4 * k; }
+};
+
+// Eliminates the k children of an atom towards the bond above it (top: there is none). Right-hand sides are in t of the
+// rows. Multipliers and pivots are kept for another right-hand side.
+template <int known, bool top, class V, class Rows>
+HOL_INLINE void up_joint(const Rows &x, int count, Memory<V> memory, V &slack) {
+    const int k = known > 0 ? known : count;
+    auto f = JointMemory<V, known>::make(memory, k);
+    const V w = x.w();
+    decompose(x, k, w, f.S, f.r, f.m, slack);
+    V *const m = x.multipliers();
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) {
+        x.bond(a).r = f.r[a];
+        HOL_UNROLL_FEW
+        for (int b = 0; b < a; ++b) m[pair_of(a, b)] = f.m[pair_of(a, b)];
+    }
+    if (!top) {
+        BondRow<V> &e = x.above();
+        HOL_UNROLL_FEW
+        for (int a = 0; a < k; ++a) f.y[a] = w * (k == 1 ? x.only_product() : dot(x.bond(a).d, e.d));
+        solve_joint(k, f.r, f.m, f.y, f.z, f.l);
+        const V whole = w * e.q;
+        V E = whole, y = e.t;
+        HOL_UNROLL_FEW
+        for (int a = 0; a < k; ++a) {
+            E = mul_add(-(f.z[a] * f.r[a]), f.z[a], E);
+            y = mul_add(f.l[a], x.bond(a).t, y);
+            x.bond(a).l = f.l[a];
+        }
+        slack = min(mul_add(Width<V>::all(-least_part), whole, E), slack);
+        e.E = E;
+        e.t = y;
+    }
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) {
+        f.y[a] = x.bond(a).t;
+        x.bond(a).E = f.y[a] * f.r[a];  // what siblings.hpp compares with
+    }
+    solve_joint(k, f.r, f.m, f.y, f.z, f.l);
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) x.bond(a).t = f.l[a];
+}
+
+// The same for another right-hand side.
+template <int known, bool top, class V, class Rows>
+HOL_INLINE void substitute_joint(const Rows &x, int count, Memory<V> memory) {
+    const int k = known > 0 ? known : count;
+    auto f = JointMemory<V, known>::make(memory, k);
+    const V *const m = x.multipliers();
+    V y = top ? V{} : x.above().t;
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) {
+        const BondRow<V> &row = x.bond(a);
+        f.y[a] = row.t;
+        f.r[a] = row.r;
+        if (!top) y = mul_add(row.l, row.t, y);
+        HOL_UNROLL_FEW
+        for (int b = 0; b < a; ++b) f.m[pair_of(a, b)] = m[pair_of(a, b)];
+    }
+    solve_joint(k, f.r, f.m, f.y, f.z, f.l);
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) x.bond(a).t = f.l[a];
+    if (!top) x.above().t = y;
+}
+
+// Goes up the trees. Finds E, l and u of all their bonds, and y of what is above them. A leaf has E = w q since it was
+// loaded.
+template <class V>
+static inline void up_trees(Molecules<V> &x, Memory<V> memory) {
+    V slack = x.slack;  // in a register
+    const Schedule &s = x.s;
+    for (int32_t slot = 0; slot < s.n_tree; ++slot) {
+        const int k = s.child_start[slot + 1] - s.child_start[slot];
+        const AtomRows<V> rows(x, slot);
+        if (k == 0) continue;
+        slack = choose_few<3>(k, [=](auto known) HOL_FORCED {  // captures by value, so that slack stays in a register
+            V least = slack;
+            up_joint<known, false>(rows, k, memory, least);
+            return least;
+        });
+    }
+    if (s.type == Schedule::tree) up_joint<1, true>(AtomRows<V>(x, s.n_tree), 1, memory, slack);
+    x.slack = slack;
+}
+
+template <class V>
+static inline void substitute_one(const Molecules<V> &x, int32_t slot, Memory<V> memory) {
+    const AtomRows<V> rows(x, slot);
+    const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
+    if (k > 0) choose_few<3>(k, [&](auto known) HOL_FORCED { substitute_joint<known, false>(rows, k, memory); });
+}
+
+template <class V>
+static inline void substitute_trees(const Molecules<V> &x, Memory<V> memory) {
+    for (int32_t slot = 0; slot < x.s.n_tree; ++slot) substitute_one(x, slot, memory);
+    if (x.s.type == Schedule::tree) substitute_joint<1, true>(AtomRows<V>(x, x.s.n_tree), 1, memory);
+}
+
+// Goes down at one atom: u of its children becomes t, from t of the bond above. `look`: tests the result.
+template <bool look, int known, class V>
+HOL_INLINE void down_joint(const Molecules<V> &x, int32_t slot, int count, V &slack) {
+    const int k = known > 0 ? known : count;
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    const V above = x.row[slot].t;
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) {
+        BondRow<V> &row = x.row[child[a]];
+        row.t = mul_add(row.l, above, row.t);
+    }
+    if (!look || known == 1) return;
+    const MaskOf<V> faint = faint_bonds<V>(AtomRows<V>(x, slot), k);
+    if (__builtin_expect(any(faint), 0)) doubt_faint_bonds(x, slot, k, bits(faint), slack);
+}
+
+template <bool look, class V>
+static inline void down_one(const Molecules<V> &x, int32_t slot, V &slack) {
+    const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
+    if (k > 0) choose_few<3>(k, [&](auto known) HOL_FORCED { down_joint<look, known>(x, slot, k, slack); });
+}
+
+// Goes down the trees.
+template <bool look, class V>
+static inline void down_trees(Molecules<V> &x) {
+    V slack = x.slack;
+    for (int32_t slot = x.s.n_tree - 1; slot >= 0; --slot) down_one<look>(x, slot, slack);
+    x.slack = slack;
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

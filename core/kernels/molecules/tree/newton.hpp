@@ -1,0 +1,199 @@
+// Newton's method for the positions of a block of molecules (theory (15)-(17), (58)). The corrections move_i of the
+// atoms must bring every D.D to a^2. move_i is w_i times the sum of tau b over the bonds that point away from atom i,
+// less the same sum over those that point to it.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_TREE_NEWTON_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_TREE_NEWTON_HPP
+
+#include "core/kernels/molecules/cycles/newton_core.hpp"
+#include "core/kernels/molecules/atoms/vectors.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+template <class V>
+struct Newton {
+    typedef V Value;
+    static constexpr bool by_length = true;
+    NewtonSystem<V> x;
+    V *kept;     // factors, while new ones are made for some lanes
+    V *lengths;  // least and largest
+
+    static constexpr int64_t row_values = static_cast<int64_t>(sizeof(NewtonRow<V>) / sizeof(V));
+    static int64_t values(const Schedule &s) {
+        const int64_t part = CoreMatrix<V>::most_parts(s), n_atoms = s.n_atoms, n_bonds = s.n_bonds;
+        return 7 * n_atoms + 2 + columns_ahead + 1 + (row_values + 7) * n_bonds + 4 * static_cast<int64_t>(s.n_pairs) +
+               4 * static_cast<int64_t>(s.n_entries) + 4 * reaches(s) + 2 * part +
+               NewtonMemory<V, 0>::values(s.max_children);
+    }
+
+    Newton(const Schedule &s, Memory<V> &memory)
+        : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, kept(), lengths(memory.values(2)) {
+        const int64_t part = CoreMatrix<V>::most_parts(s);
+        x.w = memory.values(s.n_atoms);
+        x.row = reinterpret_cast<NewtonRow<V> *>(memory.values(row_values * s.n_bonds));
+        x.lower = memory.values(s.n_pairs);
+        x.upper = memory.values(s.n_pairs);
+        x.move = memory.vectors(s.n_atoms);
+        x.r = memory.vectors(s.n_atoms);
+        x.new_D = memory.vectors(s.n_bonds);
+        x.core = memory.values(s.n_core + columns_ahead + 1);
+        x.core_lower = memory.values(s.n_entries);
+        x.core_upper = memory.values(s.n_entries);
+        x.reach_up = memory.values(reaches(s));
+        x.reach_down = memory.values(reaches(s));
+        x.part_up = memory.values(part);
+        x.part_down = memory.values(part);
+        kept = memory.values(3 * static_cast<int64_t>(s.n_bonds) + 2 * (s.n_pairs + static_cast<int64_t>(s.n_entries) + reaches(s)));
+        x.working = memory;
+        memory.values(NewtonMemory<V, 0>::values(s.max_children));
+    }
+
+    // The largest |D.D - a^2| / a^2 of the bonds measured so far. max() may lose a NaN, the sum keeps it.
+    struct Errors {
+        V worst, sum;
+        V largest() const { return mul_add(sum, V{}, worst); }
+    };
+    // Puts what is left of a bond's length into its t, for D as given; first: for the factors that will be made of it.
+    template <bool first>
+    HOL_FORCED static void measure(NewtonRow<V> &row, const Vector3<V> &D, Errors &errors) {
+        const V sigma = excess(D, row.a2), e = sigma * row.per_a2;
+        errors.worst = max(abs(e), errors.worst);
+        errors.sum = errors.sum + sigma;
+        row.t = first ? row.first_left(sigma, e) : row.left(sigma, e);
+    }
+
+    // Makes factors for the bonds in new_D, in the lanes of `which`.
+    void factorize(MaskOf<V> which) {
+        Errors unused = {};
+        for (int32_t k = 0; k < x.s.n_bonds; ++k) {
+            NewtonRow<V> &row = x.row[k];
+            const V stretch = row.stretch, t = row.t;
+            measure<true>(row, x.new_D[k], unused);
+            row.stretch = select(which, row.stretch, stretch);
+            row.t = select(which, row.t, t);
+        }
+        if (bits(which) == all_of<V>) return make_factors();
+        V *to = kept;
+        const V *from = kept;
+        for_factors([&](V &value) HOL_FORCED { *to++ = value; });
+        make_factors();
+        for_factors([&](V &value) HOL_FORCED { value = select(which, value, *from++); });
+    }
+
+    // Calls body(value) for all values that factors are made of.
+    template <class Body>
+    HOL_FORCED void for_factors(const Body &body) const {
+        const Schedule &s = x.s;
+        for (int32_t k = 0; k < s.n_bonds; ++k) {
+            body(x.row[k].r);
+            body(x.row[k].up);
+            body(x.row[k].down);
+        }
+        for (int32_t p = 0; p < s.n_pairs; ++p) {
+            body(x.lower[p]);
+            body(x.upper[p]);
+        }
+        for (int32_t e = 0; e < s.n_entries; ++e) {
+            body(x.core_lower[e]);
+            body(x.core_upper[e]);
+        }
+        for (int64_t e = 0; e < reaches(s); ++e) {
+            body(x.reach_up[e]);
+            body(x.reach_down[e]);
+        }
+    }
+
+    __attribute__((noinline)) void make_factors() const {
+        const Schedule &s = x.s;
+        for (int32_t slot = 0; slot < s.n_tree; ++slot) {
+            const int k = s.child_start[slot + 1] - s.child_start[slot];
+            if (k == 0)
+                x.row[slot].E = x.w[slot] * dot(x.new_D[slot], x.row[slot].b);
+            else
+                choose_few<3>(k, [&](auto known) HOL_FORCED { factorize_joint<known, false>(x, slot, k); });
+        }
+        if (s.n_core_atoms == 0)
+            factorize_joint<1, true>(x, s.n_tree, 1);
+        else
+            factorize_core(x);
+    }
+
+    // Substitutes up: t of the rows, what is left of the lengths, becomes u.
+    __attribute__((noinline)) void substitute() {
+        const Schedule &s = x.s;
+        for (int32_t slot = 0; slot < s.n_tree; ++slot) {
+            const int k = s.child_start[slot + 1] - s.child_start[slot];
+            if (k > 0) choose_few<3>(k, [&](auto known) HOL_FORCED { substitute_joint<known, false>(x, slot, k); });
+        }
+        if (s.n_core_atoms == 0)
+            substitute_joint<1, true>(x, s.n_tree, 1);
+        else
+            substitute_core(x);
+    }
+
+    // Solves for what is left, in t of the rows, and adds the corrections to tau in the lanes of `active`.
+    __attribute__((noinline)) void solve(MaskOf<V> active) {
+        const Schedule &s = x.s;
+        substitute();
+        if (s.n_core_atoms > 0) down_core(x, active);
+        for (int32_t k = s.n_tree - 1; k >= 0; --k) {
+            NewtonRow<V> &row = x.row[k];
+            if (s.parent[k] < s.n_tree) row.t = mul_add(row.down, x.row[s.parent[k]].t, row.t);
+            row.tau = row.tau + keep(active, row.t);
+        }
+    }
+
+    // Returns the displacement of an atom by tau.
+    HOL_FORCED Vector3<V> displacement(int32_t slot) const {
+        Vector3<V> pull = {};
+        for_bonds_of<V>(x.s, slot, [&](int32_t place, auto sign) HOL_FORCED {
+            pull = add_times(pull, sign * x.row[place].tau, x.row[place].b);
+        });
+        return x.w[slot] * pull;
+    }
+
+    // Of all atoms.
+    HOL_FORCED Slots<V> displace() const {
+        for (int32_t slot = x.s.n_atoms - 1; slot >= 0; --slot) x.move[slot] = displacement(slot);
+        return Slots<V>(x.move);
+    }
+
+    // Moves atoms and bonds by tau. Returns the largest error.
+    __attribute__((noinline)) V move() {
+        const Schedule &s = x.s;
+        displace();
+        Errors errors = {};
+        const auto bond = [&](int32_t k, int32_t from, int32_t to) HOL_FORCED {
+            x.new_D[k] = x.row[k].D + (x.move[to] - x.move[from]);
+            measure<false>(x.row[k], x.new_D[k], errors);
+        };
+        for (int32_t k = 0; k < s.n_tree; ++k) bond(k, s.parent[k], k);
+        for (int32_t k = s.n_tree; k < s.n_bonds; ++k) bond(k, s.from[k - s.n_tree], s.to[k - s.n_tree]);
+        return errors.largest();
+    }
+
+    // Sets tau = 0 in the lanes of `which`.
+    void forget(MaskOf<V> which) {
+        for (int32_t k = 0; k < x.s.n_bonds; ++k) x.row[k].tau = select(which, V{}, x.row[k].tau);
+    }
+
+    // Returns the relative error of one bond, as it was measured last.
+    V left_of(int32_t k) const { return abs(excess(x.new_D[k], x.row[k].a2)) * x.row[k].per_a2; }
+
+    // Takes D as it stands: the first factors are for these bonds. Returns the largest error.
+    V open() {
+        Errors errors = {};
+        for (int32_t k = 0; k < x.s.n_bonds; ++k) {
+            x.new_D[k] = x.row[k].D;
+            measure<true>(x.row[k], x.row[k].D, errors);
+        }
+        return errors.largest();
+    }
+    void first_factors() { make_factors(); }
+};
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

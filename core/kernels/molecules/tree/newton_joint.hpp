@@ -1,0 +1,215 @@
+// The joints of trees at the position level (theory (58)). Rows belong to the new bond vectors D and columns to the
+// reference bonds b. So S = diag(E) + w D^T b is not symmetric, and the ways up and down have multipliers of their own:
+//
+//     y_e = y_e + w (b_c . D_e) S^-1 y,   E_e = w (D_e . b_e) - w^2 (D_e . b) S^-1 (D . b_e),   t_c = u_c + (S^-1 w D .
+//     b_e)_c t_e
+//
+// Newton's residuals are exact whatever the factors are, so nothing here needs a test of doubt.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_TREE_NEWTON_JOINT_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_TREE_NEWTON_JOINT_HPP
+
+#include "core/kernels/molecules/tree/joint.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+template <class V>
+struct NewtonRow {
+    Vector3<V> D, b;
+    V tau;       // the multiplier so far, 2 dt^2 lambda
+    V t;         // what is left of the length, and y; then u
+    V up, down;  // what the bond above gets of y, and this one of its correction
+    V r;         // 1 / pivot
+    V E;         // as in BondRow
+    V a2, per_a2;
+    V stretch;  // |D_0| / 2 a of the bond that the factors were made of
+
+    // What is left of the length, e = D.D / a^2 - 1. Not (D.D - a^2) / 2: a change of |D|, which is D/|D| . dD, is
+    // nearly what it was when the factors were made, as bonds are stretched more than they turn; that of D.D grows with
+    // |D|. So with the factors of D_0, of which row k is D_0 . dD, it is |D_0| (|D| - a), to second order in e
+    // unless the bond is far too long.
+    HOL_FORCED V left(V sigma, V e) const {
+        return (stretch * sigma) * max(mul_add(Width<V>::all(-0.25), e, Width<V>::all(1)), Width<V>::all(0.5));
+    }
+    // Where the factors will be those of this D; to third order.
+    HOL_FORCED V first_left(V sigma, V excess) {
+        const V one = Width<V>::all(1), eighth = Width<V>::all(0.125), quarter = Width<V>::all(0.25);
+        const V e = max(min(excess, Width<V>::all(0.5)), Width<V>::all(-0.5));
+        stretch = 0.5 * mul_add(mul_add(-eighth, e, Width<V>::all(0.5)), e, one);
+        return (0.5 * sigma) * mul_add(mul_add(-eighth, e, quarter), e, one);
+    }
+};
+
+template <class V>
+struct NewtonSystem {
+    const Schedule &s;
+    V *w;  // [n_atoms] by slot
+    NewtonRow<V> *row;
+    V *lower, *upper;            // [n_pairs] each
+    Vector3<V> *move;            // [n_atoms] displacements
+    Vector3<V> *r;               // [n_atoms] coordinates, until the bonds are made
+    Vector3<V> *new_D;           // [n_bonds] bonds as moved, for new factors
+    V *core_lower, *core_upper;  // [n_entries] each
+    V *core;                     // [n_core] pivots while they are found, then y and the corrections
+    V *reach_up, *reach_down;    // as CoreMatrix
+    V *part_up, *part_down;      // working memory of a core atom or column
+    Memory<V> working;           // of a joint of many bonds
+};
+
+// LU of S, which has k k values: r = 1 / P, lower l_aj = S_aj / P_j, upper n_ja = S_ja / P_j, both at pair_of(a, j),
+// a > j.
+template <class V>
+HOL_INLINE void decompose(int k, V *S, V *r, V *lower, V *upper) {
+    HOL_UNROLL_FEW
+    for (int j = 0; j < k; ++j) {
+        r[j] = Width<V>::all(1) / S[j * k + j];
+        HOL_UNROLL_FEW
+        for (int a = j + 1; a < k; ++a) {
+            lower[pair_of(a, j)] = S[a * k + j] * r[j];
+            upper[pair_of(a, j)] = S[j * k + a] * r[j];
+        }
+        HOL_UNROLL_FEW
+        for (int a = j + 1; a < k; ++a) {
+            HOL_UNROLL_FEW
+            for (int b = j + 1; b < k; ++b) S[a * k + b] = mul_add(-lower[pair_of(a, j)], S[j * k + b], S[a * k + b]);
+        }
+    }
+}
+
+// u = S^-1 y with (lower, upper), u = y S^-1 with (upper, lower). z keeps y as it is after the first half.
+template <class V>
+HOL_INLINE void solve_joint(int k, const V *r, const V *first, const V *second, const V *y, V *z, V *u) {
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) {
+        V sum = y[a];
+        HOL_UNROLL_FEW
+        for (int j = 0; j < a; ++j) sum = mul_add(-first[pair_of(a, j)], z[j], sum);
+        z[a] = sum;
+    }
+    HOL_UNROLL_FEW
+    for (int a = k - 1; a >= 0; --a) {
+        V sum = z[a] * r[a];
+        HOL_UNROLL_FEW
+        for (int j = a + 1; j < k; ++j) sum = mul_add(-second[pair_of(j, a)], u[j], sum);
+        u[a] = sum;
+    }
+}
+
+template <class V, int known>
+struct NewtonMemory {
+    V S[known * known], r[known], lower[known * (known - 1) / 2 + 1], upper[known * (known - 1) / 2 + 1], y[known],
+        z[known], h[known], u[known];
+    HOL_STATIC NewtonMemory make(Memory<V>, int) { return {}; }
+};
+template <class V>
+struct NewtonMemory<V, 0> {
+    V *S, *r, *lower, *upper, *y, *z, *h, *u;
+    HOL_STATIC NewtonMemory make(Memory<V> a, int k) {
+        return {a.values(k * k),
+                a.values(k),
+                a.values(k * (k - 1) / 2),
+                a.values(k * (k - 1) / 2),
+                a.values(k),
+                a.values(k),
+                a.values(k),
+                a.values(k)};
+    }
+    static constexpr int64_t values(int64_t k) { return k * k + k * (k - 1) + 5 * k; }
+};
+
+// Finds the factors of the children of a slot. Puts them into f and where they are kept.
+template <class V, class Joint>
+HOL_INLINE void factorize_children(const NewtonSystem<V> &x, int32_t slot, int k, Joint &f) {
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    const V w = x.w[slot];
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) {
+        HOL_UNROLL_FEW
+        for (int b = 0; b < k; ++b) {
+            const V g = w * dot(x.new_D[child[a]], x.row[child[b]].b);
+            f.S[a * k + b] = a == b ? g + x.row[child[a]].E : g;
+        }
+    }
+    decompose(k, f.S, f.r, f.lower, f.upper);
+    V *const lower = x.lower + x.s.pair_start[slot], *const upper = x.upper + x.s.pair_start[slot];
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) {
+        NewtonRow<V> &row = x.row[child[a]];
+        row.r = f.r[a];
+        HOL_UNROLL_FEW
+        for (int b = 0; b < a; ++b) {
+            lower[pair_of(a, b)] = f.lower[pair_of(a, b)];
+            upper[pair_of(a, b)] = f.upper[pair_of(a, b)];
+        }
+    }
+}
+
+// Returns what the children leave of the inverse mass along the bond at `place`. Finds its multipliers for each of
+// them, `up` and `down`.
+template <class V, class Joint>
+HOL_INLINE V couple(const NewtonSystem<V> &x, int32_t slot, int k, int32_t place, Joint &f, V *z, V *h, V *up,
+                    V *down) {
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    const V w = x.w[slot];
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) f.y[a] = w * dot(x.new_D[child[a]], x.row[place].b);
+    solve_joint(k, f.r, f.lower, f.upper, f.y, z, down);
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) f.y[a] = w * dot(x.new_D[place], x.row[child[a]].b);
+    solve_joint(k, f.r, f.upper, f.lower, f.y, h, up);
+    V E = w * dot(x.new_D[place], x.row[place].b);
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) E = mul_add(-(h[a] * f.r[a]), z[a], E);
+    return E;
+}
+
+template <int known, bool top, class V>
+HOL_INLINE void factorize_joint(const NewtonSystem<V> &x, int32_t slot, int count) {
+    const int k = known > 0 ? known : count;
+    auto f = NewtonMemory<V, known>::make(x.working, k);
+    factorize_children(x, slot, k, f);
+    if (top) return;
+    V *const up = f.S, *const down = f.u;  // S is done with
+    x.row[slot].E = couple(x, slot, k, slot, f, f.z, f.h, up, down);
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) {
+        NewtonRow<V> &row = x.row[child[a]];
+        row.up = up[a];
+        row.down = down[a];
+    }
+}
+
+// Substitutes up: finds u of the children, and y of the bond above.
+template <int known, bool top, class V>
+HOL_INLINE void substitute_joint(const NewtonSystem<V> &x, int32_t slot, int count) {
+    const int k = known > 0 ? known : count;
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    if (known == 1) {
+        NewtonRow<V> &row = x.row[child[0]];
+        const V y = row.t;
+        row.t = y * row.r;
+        if (!top) x.row[slot].t = mul_add(row.up, y, x.row[slot].t);
+        return;
+    }
+    auto f = NewtonMemory<V, known>::make(x.working, k);
+    const V *const lower = x.lower + x.s.pair_start[slot], *const upper = x.upper + x.s.pair_start[slot];
+    V above = top ? V{} : x.row[slot].t;
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) {
+        const NewtonRow<V> &row = x.row[child[a]];
+        f.y[a] = row.t;
+        f.r[a] = row.r;
+        if (!top) above = mul_add(row.up, row.t, above);
+    }
+    solve_joint(k, f.r, lower, upper, f.y, f.z, f.u);
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) x.row[child[a]].t = f.u[a];
+    if (!top) x.row[slot].t = above;
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,115 @@
+// A multiplier may be a small difference of large terms where bonds meet at an atom of a tree: if its bond is not
+// pulled itself, but a sibling or the parent is. The products d.d' at atom i are right to a rounding of |d| |d'|. So
+// with the sum T of the tensions |t| |d| around the atom, t_c is right to a few roundings of
+//
+//     w_i |d_c| T r_c,   r_c = 1 / pivot,
+//
+// beside what its scale |A^-1| S (docs/theory.md) allows. That scale is at least
+//   - |t_c|;
+//   - |y_c| r_c, as c and the bonds below it are pulled by y_c, and r_c <= (A^-1)_cc;
+//   - S_c / A_cc, where S_c are the terms of its right-hand side in absolute values.
+// A bond is `faint` if none of these is large enough. The first two are always looked at, the third if they don't do.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_TREE_SIBLINGS_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_TREE_SIBLINGS_HPP
+
+#include "core/kernels/molecules/molecules.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// The bonds of an atom, each at its place: those to its children, and the one above. tree_runs.hpp has the same for W
+// atoms of one molecule.
+template <class V>
+struct AtomRows {
+    const Molecules<V> &x;
+    const int32_t slot, *const child;
+
+    AtomRows(const Molecules<V> &m, int32_t s) : x(m), slot(s), child(m.s.child + m.s.child_start[s]) {}
+    HOL_FORCED V w() const { return x.w[slot]; }
+    HOL_FORCED BondRow<V> &bond(int a) const { return x.row[child[a]]; }
+    HOL_FORCED BondRow<V> &above() const { return x.row[slot]; }
+    HOL_FORCED V only_product() const {
+        return product_of(x, child[0], slot);
+    }  // of a single child with the bond above
+    HOL_FORCED V *multipliers() const { return x.pair + x.s.pair_start[slot]; }
+};
+
+// Returns the square of that part of the error which all bonds at an atom share.
+template <class V, class Rows>
+HOL_INLINE V shared_error(const Rows &x, int k) {
+    const BondRow<V> &e = x.above();
+    V T2 = e.q * (e.t * e.t);
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) {
+        const BondRow<V> &row = x.bond(a);
+        T2 = mul_add(row.q, row.t * row.t, T2);
+    }
+    const V w = x.w();
+    return (w * w) * (x.x.per_cancelled2 * T2);
+}
+
+// Returns a bond's own size less the error, in squares. It is negative if the bond is faint.
+template <class V>
+HOL_INLINE V left_of(const BondRow<V> &row, const V &shared) {
+    return mul_add(-shared, row.q * (row.r * row.r), mul_add(row.t, row.t, row.E * row.E));
+}
+
+// Returns the lanes in which a bond at this atom is faint, the one above it or one of its k children. E of the rows is
+// y r.
+template <class V, class Rows>
+HOL_INLINE MaskOf<V> faint_bonds(const Rows &x, int k) {
+    const V shared = shared_error<V>(x, k);
+    V least = left_of(x.above(), shared);
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) least = min(left_of(x.bond(a), shared), least);
+    return less(least, V{});
+}
+
+// Returns the terms of a bond's right-hand side in absolute values, in one lane.
+template <class V>
+double terms_of(const Molecules<V> &x, int32_t place, int lane) {
+    if (x.in.rhs) return __builtin_fabs(0.5 * x.in.rhs[x.lane[lane].first_bond + x.s.bond_of[place]]);
+    const Vector3<V> &row = x.row[place].d;
+    const double d[3] = {Width<V>::get(row.x, lane), Width<V>::get(row.y, lane), Width<V>::get(row.z, lane)};
+    int32_t end[2];
+    ends_of(x.s, place, end[0], end[1]);
+    double sum = 0, v[2][3] = {};
+    for (int e = 0; e < 2; ++e) {
+        const int64_t number = x.at.number(lane, x.s.atom_of[end[e]]);
+        double f[3] = {};
+        if (x.in.v->x) read_row(*x.in.v, number, v[e]);
+        if (x.in.f && x.in.f->x) read_row(*x.in.f, number, f);
+        const double w = Width<V>::get(x.w[end[e]], lane);
+        for (int c = 0; c < 3; ++c) sum += w * __builtin_fabs(d[c] * f[c]);
+        for (int c = 0; c < 3 && x.in.rates; ++c) sum += __builtin_fabs(d[c] * v[e][c]);
+    }
+    for (int a = 0, e = 0; a < 3 && x.in.strain; ++a)
+        for (int b = a; b < 3; ++b, ++e) sum += __builtin_fabs(x.in.strain[e] * d[a] * d[b]);
+    for (int c = 0; c < 3 && !x.in.rates; ++c) sum += (v[1][c] - v[0][c]) * (v[1][c] - v[0][c]);
+    return sum;
+}
+
+// Looks again at the bonds of an atom in the lanes of `which`. Slack becomes negative where one is faint all the same.
+template <class V>
+HOL_NOINLINE void doubt_faint_bonds(const Molecules<V> &x, int32_t slot, int k, unsigned which, V &slack) {
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    const V shared = shared_error<V>(AtomRows<V>(x, slot), k);
+    for (int a = -1; a < k; ++a) {
+        const int32_t place = a < 0 ? slot : child[a];
+        const V left = left_of(x.row[place], shared);
+        int32_t from, to;
+        ends_of(x.s, place, from, to);
+        const V A = (x.w[from] + x.w[to]) * x.row[place].q;
+        for (unsigned rest = which & bits(less(left, V{})); rest; rest &= rest - 1) {
+            const int i = __builtin_ctz(rest);
+            const double own = terms_of(x, place, i) / Width<V>::get(A, i);
+            if (!(Width<V>::get(left, i) + own * own >= 0)) Width<V>::set(slack, i, -1);
+        }
+    }
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

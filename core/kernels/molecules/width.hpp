@@ -1,0 +1,85 @@
+// The arithmetic of molecules is written once for W of them in lanes (V = vec) and for a single one (V = double), with
+// the same operations in the same order, so that a molecule's digits do not depend on which of the two it gets.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_WIDTH_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_WIDTH_HPP
+
+#include "core/kernels/arithmetic/exact.hpp"
+#include "core/kernels/isa/lanes.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+
+// The mask of a single lane.
+struct Flag {
+    bool set;
+};
+HOL_INLINE Flag operator&(Flag a, Flag b) { return {a.set && b.set}; }
+HOL_INLINE Flag operator|(Flag a, Flag b) { return {a.set || b.set}; }
+HOL_INLINE Flag operator~(Flag a) { return {!a.set}; }
+
+HOL_INLINE bool any(Flag a) { return a.set; }
+HOL_INLINE unsigned bits(Flag a) { return a.set; }
+HOL_INLINE Flag less(double a, double b) { return {a < b}; }
+HOL_INLINE Flag less_equal(double a, double b) { return {a <= b}; }
+HOL_INLINE Flag finite(double a) { return {a - a == 0}; }
+HOL_INLINE double select(Flag m, double a, double b) { return m.set ? a : b; }
+HOL_INLINE double keep(Flag m, double a) { return m.set ? a : 0; }
+HOL_INLINE double max(double a, double b) { return a > b ? a : b; }  // b where one is NaN, as the instruction has it
+HOL_INLINE double min(double a, double b) { return a < b ? a : b; }
+HOL_INLINE double sqrt(double a) { return __builtin_sqrt(a); }
+HOL_INLINE double mul_sub(double a, double b, double c) { return mul_add(a, b, -c); }
+
+template <class V>
+struct Width;
+
+template <>
+struct Width<vec> {
+    typedef mask Mask;
+    static constexpr int lanes = W;
+    HOL_STATIC vec all(double a) { return splat(a); }
+    HOL_STATIC mask none() { return mask{}; }
+    HOL_STATIC mask first(int n) { return first_lanes(n); }
+    HOL_STATIC mask of_bits(unsigned b) {
+        mask m{};
+        for (int i = 0; i < W; ++i) m[i] = b >> i & 1 ? -1 : 0;
+        return m;
+    }
+    HOL_STATIC double get(const vec &a, int i) { return a[i]; }
+    HOL_STATIC void set(vec &a, int i, double x) { a[i] = x; }
+};
+
+template <>
+struct Width<double> {
+    typedef Flag Mask;
+    static constexpr int lanes = 1;
+    HOL_STATIC double all(double a) { return a; }
+    HOL_STATIC Flag none() { return {false}; }
+    HOL_STATIC Flag first(int n) { return {n > 0}; }
+    HOL_STATIC Flag of_bits(unsigned b) { return {(b & 1) != 0}; }
+    HOL_STATIC double get(double a, int) { return a; }
+    HOL_STATIC void set(double &a, int, double x) { a = x; }
+};
+
+template <class V>
+using MaskOf = typename Width<V>::Mask;
+template <class V>
+constexpr unsigned all_of = (1u << Width<V>::lanes) - 1;  // bits() of a mask with all lanes set
+
+namespace graph {
+
+// Working arrays, handed out front to back.
+template <class V>
+struct Memory {
+    double *next;
+    V *values(int64_t n) {
+        V *p = reinterpret_cast<V *>(next);
+        next += n * Width<V>::lanes;
+        return p;
+    }
+    Vector3<V> *vectors(int64_t n) { return reinterpret_cast<Vector3<V> *>(values(3 * n)); }
+};
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif
