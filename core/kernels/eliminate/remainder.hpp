@@ -84,7 +84,7 @@ HOL_INLINE vec spare(const Column &e, vec F1, double times) { return mul_sub(spl
 //    harmless where w sqrt(X q q') <= c (q' E + w X), c = joint_tolerance. This holds for every X if e >= 1 / (4 c^2);
 //  - else the chain needs compensated products of the unrounded bond vectors.
 // Each test is tried only if the cheaper one before it fails: a multiply-add, one more, then the exact form below
-// (docs/performance.md).
+// (docs/development/measurements.md).
 constexpr double least_remainder = 1.0 / 4;
 constexpr double joint_tolerance = 8;
 constexpr double spare_of_cross_products = 4 * joint_tolerance * joint_tolerance;
