@@ -34,7 +34,7 @@ measure_all() {
             "$program" $extent --out "$out" "$section" || failed="$failed $section"
             continue
         fi
-        for isa in baseline avx2 avx512 avx512vl; do
+        for isa in baseline avx2 avx512vl; do
             # The variable is obeyed only where the machine and the build have the set.
             [ "$(HOLONOMIC_ISA=$isa "$program" --isa)" = "$isa" ] || continue
             # shellcheck disable=SC2086

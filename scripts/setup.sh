@@ -24,8 +24,8 @@ own_instruction_sets() {
     local flags sets=
     flags=" $(awk '/^flags/ { print; exit }' /proc/cpuinfo 2>/dev/null) "
     case $flags in *' avx2 '*) case $flags in *' fma '*) sets="scalar;avx2" ;; esac ;; esac
-    case $flags in *' avx512f '*' avx512vl '*) sets="$sets;avx512;avx512vl" ;; esac
-    if [ "$flags" = "  " ]; then sets="scalar;avx2;avx512;avx512vl"; fi
+    case $flags in *' avx512f '*' avx512vl '*) sets="$sets;avx512vl" ;; esac
+    if [ "$flags" = "  " ]; then sets="scalar;avx2;avx512vl"; fi
     echo "${sets#;}"
 }
 
