@@ -101,8 +101,8 @@ HOL_API void hol_error_location(int64_t *chain, int64_t *bond, int64_t *atom, in
 /**
  * The instruction set that the calculations use on this machine: "baseline", "avx2" or "avx512vl" (four lanes with the
  * registers of AVX-512). Never NULL. A chain of up to 256 bonds that comes alone runs with "scalar" (one lane, with
- * AVX2's instructions) where one of the last two runs: the same bits, in less time. The environment variable HOLONOMIC_ISA, read at the first use in a
- * process, forces one of these names if the machine has it. Since 0.1.
+ * AVX2's instructions) where one of the last two runs: the same bits, in less time. The environment variable
+ * HOLONOMIC_ISA, read at the first use in a process, forces one of these names if the machine has it. Since 0.1.
  */
 HOL_API const char *hol_instruction_set(void);
 

@@ -4,8 +4,8 @@
 // registers of AVX-512 (`avx512vl`) run wherever they can: beside avx2 they were faster or as fast. Eight lanes were
 // slower on AMD's family 25 in all scenes but one, and are no set any more (docs/development/trials.md).
 //
-// ns per bond: lambda and G from r, v, f / velocities / positions; equal masses, packed arrays, one thread, AMD family 25
-// (Zen 4).
+// ns per bond: lambda and G from r, v, f / velocities / positions; equal masses, packed arrays, one thread, AMD family
+// 25 (Zen 4).
 //
 //     chains x bonds             avx2                avx512vl
 //          1 x 12             31.0 31.0 39.9      29.9 26.8 39.5

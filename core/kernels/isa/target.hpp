@@ -58,8 +58,8 @@
 #endif
 
 // Stands before a short loop over vectors. Unless it is unrolled, the compiler keeps them in memory. HOL_UNROLL_FEW is
-// for loops of up to four rounds where the compiler knows how many there are; where it does not, gcc repeats the body as
-// often as the number says.
+// for loops of up to four rounds where the compiler knows how many there are; where it does not, gcc repeats the body
+// as often as the number says.
 #if defined(HOL_SANITIZED) || defined(HOL_TESTS_ONLY)
 #define HOL_UNROLL
 #define HOL_UNROLL_FEW

@@ -47,8 +47,7 @@ struct ForcesWork {
         if (!call.f.x) z.equations.force = nullptr;
         z.equations.given = nullptr;
         z.x.in = {&call.v, &call.f, nullptr, false};
-        const unsigned good =
-                           load_and_solve(z, (call.v.x ? squares : 0) | (call.f.x ? pulls : 0), masses_known),
+        const unsigned good = load_and_solve(z, (call.v.x ? squares : 0) | (call.f.x ? pulls : 0), masses_known),
                        rest = bits(z.x.in_use()) & ~good;
         write_outputs(z, {&call.g, call.lambda, call.tension, call.add, call.virial}, good, tally);
         if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, z.x.lane, rest, memory.next, tally);

@@ -4,8 +4,8 @@
 
 #include "core/kernels/molecules/cycles/proof.hpp"
 #include "core/kernels/molecules/cycles/refine.hpp"
-#include "core/kernels/molecules/ring/ring.hpp"
 #include "core/kernels/molecules/large_tree/tree_runs.hpp"
+#include "core/kernels/molecules/ring/ring.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -26,9 +26,7 @@ struct Linear {
     static constexpr int64_t faint_values = (sizeof(Faint) + sizeof(double) - 1) / sizeof(double);
 
     // Rows beside those of bonds: of a tree the root's, see load.hpp.
-    static int64_t more_rows(const Schedule &s) {
-        return s.type == Schedule::tree ? 1 : 0;
-    }
+    static int64_t more_rows(const Schedule &s) { return s.type == Schedule::tree ? 1 : 0; }
 
     // Values of V that the arrays take.
     static int64_t values(const Schedule &s) {

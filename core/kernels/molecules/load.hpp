@@ -2,8 +2,8 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_LOAD_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_LOAD_HPP
 
-#include "core/kernels/molecules/linear.hpp"
 #include "core/kernels/molecules/atoms/vectors.hpp"
+#include "core/kernels/molecules/linear.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -61,9 +61,9 @@ struct Loader {
         return b;
     }
 
-    // Of a tree at the level of forces nothing but the rows is needed later. The atoms are kept in these, too, r and v in
-    // the row of the bond above it, in d and in q, E, t. That is less memory, and of molecules of a hundred bonds what
-    // fits into the first-level cache. A bond is made from its two rows when those below it have been made.
+    // Of a tree at the level of forces nothing but the rows is needed later. The atoms are kept in these, too, r and v
+    // in the row of the bond above it, in d and in q, E, t. That is less memory, and of molecules of a hundred bonds
+    // what fits into the first-level cache. A bond is made from its two rows when those below it have been made.
     void read_atoms_to_rows() const {
         BondRow<V> *const row = z.x.row;
         read_atoms(*z.x.r, Slots<V>(row, &row->d.x));

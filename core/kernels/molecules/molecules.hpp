@@ -3,11 +3,11 @@
 #define HOLONOMIC_KERNELS_MOLECULES_MOLECULES_HPP
 
 #include "core/kernels/arithmetic/vector3.hpp"
+#include "core/kernels/isa/choose.hpp"
 #include "core/kernels/molecules/atoms/atoms.hpp"
 #include "core/kernels/molecules/image.hpp"
 #include "core/kernels/molecules/large_tree/pieces.hpp"
 #include "core/kernels/molecules/schedule.hpp"
-#include "core/kernels/isa/choose.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {

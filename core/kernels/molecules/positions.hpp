@@ -4,11 +4,11 @@
 
 #include "core/kernels/molecules/blocks.hpp"
 #include "core/kernels/molecules/doubtful.hpp"
-#include "core/kernels/molecules/list/flat_positions.hpp"
 #include "core/kernels/molecules/iterate.hpp"
-#include "core/kernels/molecules/tree/newton.hpp"
+#include "core/kernels/molecules/list/flat_positions.hpp"
 #include "core/kernels/molecules/ring/ring_newton.hpp"
 #include "core/kernels/molecules/store.hpp"
+#include "core/kernels/molecules/tree/newton.hpp"
 #include "core/kernels/molecules/triangle/triangle_blocks.hpp"
 #include "core/kernels/tally.hpp"
 
@@ -58,8 +58,7 @@ HOL_NOINLINE V load_bonds(Newton<V> &newton, const PositionsCall &call, const At
 template <class V>
 HOL_NOINLINE V load_bonds(RingNewton<V> &newton, const PositionsCall &call, const Atoms<V> &at) {
     NewtonRow<V> *const row = newton.x.row;
-    const V largest = read_positions(newton.x.s, call, at, Slots<V>(row, &row->b.x),
-                                     Slots<V>(row, &row->D.x));
+    const V largest = read_positions(newton.x.s, call, at, Slots<V>(row, &row->b.x), Slots<V>(row, &row->D.x));
     const Vector3<V> first_ref = row[0].b, first = row[0].D;
     const int32_t n = newton.x.s.n_bonds;
     for (int32_t k = 0; k + 1 < n; ++k) make_bond(row[k], call, row[k + 1].b - row[k].b, row[k + 1].D - row[k].D);

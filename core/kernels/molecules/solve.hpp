@@ -3,8 +3,8 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_SOLVE_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_SOLVE_HPP
 
-#include "core/kernels/molecules/list/flat_linear.hpp"
 #include "core/kernels/molecules/linear.hpp"
+#include "core/kernels/molecules/list/flat_linear.hpp"
 #include "core/kernels/molecules/store.hpp"
 
 namespace holonomic {

@@ -2,8 +2,8 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_STORE_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_STORE_HPP
 
-#include "core/kernels/molecules/molecules.hpp"
 #include "core/kernels/molecules/atoms/vectors.hpp"
+#include "core/kernels/molecules/molecules.hpp"
 #include "core/kernels/molecules/virial.hpp"
 
 namespace holonomic {
@@ -64,9 +64,8 @@ HOL_INLINE void write_slots(const Molecules<double> &x, const AtomArray &array, 
 
 // v += w G of the atoms in these slots.
 HOL_INLINE void move_velocities(const Molecules<double> &x, const AtomArray &v, int32_t first, int32_t end) {
-    write_slots(x, v, first, end, [&](int32_t slot) {
-        return add_times(read(v, x.at, x.s.atom_of[slot]), x.w[slot], pull_on(x, slot));
-    });
+    write_slots(x, v, first, end,
+                [&](int32_t slot) { return add_times(read(v, x.at, x.s.atom_of[slot]), x.w[slot], pull_on(x, slot)); });
 }
 
 // G of the atom in a slot, [slot]: of any molecule, and of a ring, whose bond k stands between slots k and k + 1.

@@ -1,7 +1,7 @@
 // Position level of molecules that are no chains.
+#include "core/kernels/molecules/linear.hpp"
 #include "core/kernels/molecules/list/flat_linear.hpp"
 #include "core/kernels/molecules/list/flat_proof.hpp"
-#include "core/kernels/molecules/linear.hpp"
 #include "core/kernels/molecules/positions.hpp"
 #include "core/kernels/molecules/star/star_positions.hpp"
 #include "core/kernels/verbs/verbs.hpp"

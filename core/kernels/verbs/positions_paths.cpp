@@ -1,6 +1,6 @@
-// Position level of one large molecule along its paths (molecules/paths/paths.hpp): knots, then pieces of paths, then whether
-// what they have found fits where they meet, and only then anything is written. As in a long chain (positions_long.cpp)
-// the result does not rest on how far a bond is felt: all lengths have been tested by then.
+// Position level of one large molecule along its paths (molecules/paths/paths.hpp): knots, then pieces of paths, then
+// whether what they have found fits where they meet, and only then anything is written. As in a long chain
+// (positions_long.cpp) the result does not rest on how far a bond is felt: all lengths have been tested by then.
 #include "core/kernels/molecules/paths/path_knots.hpp"
 #include "core/kernels/molecules/paths/path_pieces.hpp"
 #include "core/kernels/verbs/verbs.hpp"
@@ -43,8 +43,7 @@ static void add_virial_of_knots(const PathsWork &x, const Schedule &s, Tally &su
     MoleculesVirial<double> virial;
     for (int32_t k = 0; k < x.plan.n_bonds; ++k) {
         const int32_t bond = x.plan.bond[k];
-        Vector3<double> b = read(x.call.r_ref, at, s.atom_j[bond]) -
-                            read(x.call.r_ref, at, s.atom_i[bond]),
+        Vector3<double> b = read(x.call.r_ref, at, s.atom_j[bond]) - read(x.call.r_ref, at, s.atom_i[bond]),
                         unused = {};
         take_image<false>(x.call.box_ref, b, unused);
         virial.add(b, x.tau[bond] * b);

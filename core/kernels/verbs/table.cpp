@@ -40,7 +40,11 @@ const Kernels kernels = {
     {molecules_scratch_bytes, molecules_forces, molecules_velocities, molecules_positions, molecules_metric,
      molecules_solve},
 #else
-    {}, {}, {}, {}, {},
+    {},
+    {},
+    {},
+    {},
+    {},
 #endif
 };
 

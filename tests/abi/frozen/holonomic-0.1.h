@@ -269,7 +269,8 @@ HOL_API int hol_forces_view(const hol_chains *chains, const hol_view *r, const h
  * @param[in]     chains
  * @param[in]     r       positions [n_atoms][3]
  * @param[in,out] v       velocities [n_atoms][3]
- * @param[out]    lambda  multipliers of the impulse [n_bonds], force time/length, or NULL: m_i dv_i = - sum lambda grad sigma
+ * @param[out]    lambda  multipliers of the impulse [n_bonds], force time/length, or NULL: m_i dv_i = - sum lambda grad
+ * sigma
  * @param[out]    virial  [3][3], energy time, or NULL: sum_i r_i (x) (m_i dv_i). Divide by the time over which the
  *                        impulse acts (docs/integrators.md).
  * @return HOL_OK; HOL_ERR_NULL (chains, r or v); HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE; HOL_ERR_MEMORY.
@@ -309,7 +310,8 @@ typedef struct hol_report {
  * @param[in]     dt      time step, time, > 0 and finite
  * @param[in,out] lambda  multipliers [n_bonds], force/length, or NULL. The constraint force over a leap-frog step; half
  *                        of it for velocity Verlet, whose position update carries dt^2/2.
- * @param[in]     guess   0, or 1: lambda holds a first guess, the multipliers of the last step, which saves an iteration
+ * @param[in]     guess   0, or 1: lambda holds a first guess, the multipliers of the last step, which saves an
+ * iteration
  * @param[out]    virial  [3][3], energy, or NULL: sum_i r_ref,i (x) G_i = - sum_k 2 lambda_k b_k (x) b_k
  * @param[out]    report  or NULL; written whenever the arguments are valid, also if chains fail
  * @return HOL_OK; HOL_ERR_NULL (chains, r_ref or r; lambda with guess = 1); HOL_ERR_VALUE (dt, guess);
@@ -327,10 +329,10 @@ HOL_API int hol_project_positions_view(const hol_chains *chains, const hol_view 
 
 /** How far positions and velocities are from the constraints. */
 typedef struct hol_worst {
-    double length;         /**< largest |d.d - a^2| / a^2 */
-    int64_t length_chain;  /**< its chain, -1 if there is no bond */
-    int64_t length_bond;   /**< its bond within the chain */
-    double rate;           /**< largest |d . (v_k - v_{k-1})|, length^2/time; 0 without v */
+    double length;        /**< largest |d.d - a^2| / a^2 */
+    int64_t length_chain; /**< its chain, -1 if there is no bond */
+    int64_t length_bond;  /**< its bond within the chain */
+    double rate;          /**< largest |d . (v_k - v_{k-1})|, length^2/time; 0 without v */
     int64_t rate_chain;
     int64_t rate_bond;
 } hol_worst;
@@ -448,9 +450,9 @@ HOL_API int hol_inverse_band(const hol_inverse *inverse, int scaling, int64_t wi
 HOL_API int hol_inverse_matrix(const hol_inverse *inverse, int scaling, double *matrix);
 
 /**
- * Condition number of Z~ in the infinity norm, |Z~| |Z~^-1|, in O(N): by how much relative errors in the matrix can grow
- * in the multipliers, at worst and in norm. About N^2/2 for a straight chain of equal masses. The library's own rounding
- * does not grow with it; the effect of errors in the caller's positions does.
+ * Condition number of Z~ in the infinity norm, |Z~| |Z~^-1|, in O(N): by how much relative errors in the matrix can
+ * grow in the multipliers, at worst and in norm. About N^2/2 for a straight chain of equal masses. The library's own
+ * rounding does not grow with it; the effect of errors in the caller's positions does.
  * @return HOL_OK; HOL_ERR_NULL. Since 0.1.
  */
 HOL_API int hol_inverse_condition(const hol_inverse *inverse, double *condition);
@@ -482,8 +484,8 @@ HOL_API int hol_inverse_error_bound_view(const hol_inverse *inverse, const hol_v
 
 /*
  * The symmetric tridiagonal matrix T of n rows with ones on its diagonal and -gamma beside it, T_{k-1,k} = -gamma_k, as
- * it appears in spin models, harmonic chains and other one-dimensional models. gamma is [n-1]: gamma[0] couples the first
- * two rows (gamma_2 in the paper), gamma[k] rows k and k+1 counted from 0.
+ * it appears in spin models, harmonic chains and other one-dimensional models. gamma is [n-1]: gamma[0] couples the
+ * first two rows (gamma_2 in the paper), gamma[k] rows k and k+1 counted from 0.
  *
  * Accuracy. Results are those of the given doubles to a few roundings (plus one or two for each row between i and j in
  * inverse elements), as all recursions run in twice the precision; this holds up to a condition number of about 1e14.
@@ -535,11 +537,10 @@ HOL_API int hol_tridiagonal_inverse_band(int64_t n, const double *gamma, int64_t
 
 /**
  * Means of powers of the metric determinant over all conformations of the freely jointed chain of given masses, i.e.
- * over independent bond directions, each uniform on the sphere; as logarithms. With x_n = m_n m_{n-2} / ((m_{n-1} + m_n)
- * (m_{n-1} + m_{n-2})) and gamma_n uniform in 0 .. sqrt(x_n):
- *     log_he      ln < det Z~^(-1/2) >: the multiple hypergeometric function He(1/2; 3/2; x_2..x_N), the integral of
- *                 Mazars 2007, Eq. (31)
- *     log_rigid   ln < det Z~^(+1/2) >: the rigid chain's partition function over that of the freely jointed chain;
+ * over independent bond directions, each uniform on the sphere; as logarithms. With x_n = m_n m_{n-2} / ((m_{n-1} +
+ * m_n) (m_{n-1} + m_{n-2})) and gamma_n uniform in 0 .. sqrt(x_n): log_he      ln < det Z~^(-1/2) >: the multiple
+ * hypergeometric function He(1/2; 3/2; x_2..x_N), the integral of Mazars 2007, Eq. (31) log_rigid   ln < det Z~^(+1/2)
+ * >: the rigid chain's partition function over that of the freely jointed chain;
  *                 - kT log_rigid is what the metric contributes to the free energy of a rigid chain
  *     log_volume  sum of ln sqrt(x_n): log_he + log_volume is the integral of Eq. (34) (with x_n in its product), and
  *                 likewise for log_rigid; -infinity if an inner atom is fixed
@@ -550,10 +551,10 @@ HOL_API int hol_tridiagonal_inverse_band(int64_t n, const double *gamma, int64_t
  * @param[out] log_rigid   or NULL
  * @param[out] log_volume  or NULL
  *
- * Method: a transfer operator in the pivots Omega, docs/theory.md (42)-(49), in O(N); a chain of 10,000 bonds takes about
- * a second, two or three if its masses span many decades. exp(log_he) and exp(log_rigid) have the relative error of the
- * logarithm's own rounding as a double, about 1e-16 (1 + |logarithm|), where long double has 64 bits or more; elsewhere
- * about 1e-16 N.
+ * Method: a transfer operator in the pivots Omega, docs/theory.md (42)-(49), in O(N); a chain of 10,000 bonds takes
+ * about a second, two or three if its masses span many decades. exp(log_he) and exp(log_rigid) have the relative error
+ * of the logarithm's own rounding as a double, about 1e-16 (1 + |logarithm|), where long double has 64 bits or more;
+ * elsewhere about 1e-16 N.
  * @return HOL_OK; HOL_ERR_NULL (all three outputs); HOL_ERR_VALUE (n_bonds, a mass: the message names the atom, counted
  *         from 0); HOL_ERR_DEGENERATE (a bond between two fixed atoms); HOL_ERR_MEMORY. On an error nothing is written.
  *         Thread-safe. Since 0.1.

@@ -5,8 +5,8 @@
 #define HOLONOMIC_KERNELS_MOLECULES_ATOMS_ATOMS_HPP
 
 #include "core/kernels/call.hpp"
-#include "core/kernels/molecules/width.hpp"
 #include "core/kernels/memory/atom_rows.hpp"
+#include "core/kernels/molecules/width.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {

@@ -3,8 +3,8 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_ATOMS_CONSECUTIVE_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_ATOMS_CONSECUTIVE_HPP
 
-#include "core/kernels/molecules/atoms/atoms.hpp"
 #include "core/kernels/isa/choose.hpp"
+#include "core/kernels/molecules/atoms/atoms.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {

@@ -147,7 +147,8 @@ HOL_NOINLINE void down_arm(const Molecules<double> &x, int32_t a, Faint &faint, 
 }
 
 // Writes the outputs of an arm that was worked on atom by atom.
-HOL_NOINLINE void write_alone(const Molecules<double> &x, bool weighted, const Schedule::Arm &arm, const Outputs &out, Tally &tally) {
+HOL_NOINLINE void write_alone(const Molecules<double> &x, bool weighted, const Schedule::Arm &arm, const Outputs &out,
+                              Tally &tally) {
     const int32_t first = arm.ascending ? arm.bottom : arm.bottom + 1, end = first + arm.n_bonds - 1;
     if (out.lambda) write_bonds<false>(x, 0.5, out.lambda, 1, first, end);
     if (out.tension) write_bonds<true>(x, 1, out.tension, 1, first, end);

@@ -19,10 +19,10 @@ struct FlatLinear {
     const AtomArray &coordinates;
     const Inputs &in;
     const int terms;  // of right-hand sides
-    double *mass;  // -w_0, w_0, -w_1, .. , 0 of each tile
-    Rows pull, d;  // of all tiles: G, and the sum of |t| |d| of an atom's bonds; bonds
-    Rows a;        // w f, then w (f + G), of one tile; or where right-hand sides are rates v + w G, of all tiles
-    Rows r, v;     // of one tile: coordinates, velocities; |a| as it was
+    double *mass;     // -w_0, w_0, -w_1, .. , 0 of each tile
+    Rows pull, d;     // of all tiles: G, and the sum of |t| |d| of an atom's bonds; bonds
+    Rows a;           // w f, then w (f + G), of one tile; or where right-hand sides are rates v + w G, of all tiles
+    Rows r, v;        // of one tile: coordinates, velocities; |a| as it was
     double *t, *E, *per_pivot;  // right-hand sides, then multipliers; pivots
     double *lower, *size;       // |d|
     double *diagonal, *back;    // of A; R

@@ -6,8 +6,8 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_NEWTON_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_NEWTON_HPP
 
-#include "core/kernels/molecules/list/flat_rows.hpp"
 #include "core/kernels/molecules/large_tree/pieces.hpp"
+#include "core/kernels/molecules/list/flat_rows.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {

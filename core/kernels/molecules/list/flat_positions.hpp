@@ -2,8 +2,8 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_POSITIONS_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_POSITIONS_HPP
 
-#include "core/kernels/molecules/list/flat_newton.hpp"
 #include "core/kernels/molecules/iterate.hpp"
+#include "core/kernels/molecules/list/flat_newton.hpp"
 #include "core/kernels/molecules/schedule.hpp"
 #include "core/kernels/molecules/virial.hpp"
 #include "core/kernels/tally.hpp"
@@ -113,8 +113,7 @@ struct FlatPositions {
             const Row &move = newton.moves[newton.s.place_of[i]];
             write(call.r, at, i, vector_of(read_row_of(call.r, at, i) + move), 1);
             if (call.v.x)
-                write(call.v, at, i,
-                              vector_of(multiply_add(in_row(per_dt), move, read_row_of(call.v, at, i))), 1);
+                write(call.v, at, i, vector_of(multiply_add(in_row(per_dt), move, read_row_of(call.v, at, i))), 1);
         }
     }
 

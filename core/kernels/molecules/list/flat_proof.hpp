@@ -9,8 +9,8 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_PROOF_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_PROOF_HPP
 
-#include "core/kernels/molecules/list/flat_linear.hpp"
 #include "core/kernels/molecules/cycles/proof.hpp"
+#include "core/kernels/molecules/list/flat_linear.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {

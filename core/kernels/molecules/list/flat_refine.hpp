@@ -3,8 +3,8 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_REFINE_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_REFINE_HPP
 
-#include "core/kernels/molecules/list/flat_proof.hpp"
 #include "core/kernels/molecules/cycles/refine.hpp"
+#include "core/kernels/molecules/list/flat_proof.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {

@@ -3,10 +3,10 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_ROWS_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_ROWS_HPP
 
-#include "core/kernels/molecules/atoms/atoms.hpp"
-#include "core/kernels/molecules/list/flat_list.hpp"
-#include "core/kernels/molecules/image.hpp"
 #include "core/kernels/isa/choose.hpp"
+#include "core/kernels/molecules/atoms/atoms.hpp"
+#include "core/kernels/molecules/image.hpp"
+#include "core/kernels/molecules/list/flat_list.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {

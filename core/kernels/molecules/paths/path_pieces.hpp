@@ -4,8 +4,8 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_PATHS_PATH_PIECES_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_PATHS_PATH_PIECES_HPP
 
-#include "core/kernels/molecules/paths/path_work.hpp"
 #include "core/kernels/memory/load.hpp"
+#include "core/kernels/molecules/paths/path_work.hpp"
 #include "core/kernels/newton/attempts.hpp"
 
 namespace holonomic {

@@ -2,10 +2,10 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_PATHS_PATH_WORK_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_PATHS_PATH_WORK_HPP
 
-#include "core/kernels/molecules/paths/paths.hpp"
-#include "core/kernels/molecules/schedule.hpp"
 #include "core/kernels/memory/arena.hpp"
 #include "core/kernels/memory/cut.hpp"
+#include "core/kernels/molecules/paths/paths.hpp"
+#include "core/kernels/molecules/schedule.hpp"
 #include "core/kernels/newton/seams.hpp"
 
 namespace holonomic {

@@ -6,8 +6,8 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_RING_RING_NEWTON_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_RING_RING_NEWTON_HPP
 
-#include "core/kernels/molecules/tree/newton_joint.hpp"
 #include "core/kernels/molecules/atoms/vectors.hpp"
+#include "core/kernels/molecules/tree/newton_joint.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {

@@ -6,8 +6,8 @@
 
 #include "core/kernels/molecules/image.hpp"
 #include "core/kernels/molecules/small/multipliers.hpp"
-#include "core/kernels/molecules/tree/newton_joint.hpp"
 #include "core/kernels/molecules/star/star_atoms.hpp"
+#include "core/kernels/molecules/tree/newton_joint.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {

@@ -2,8 +2,8 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_STAR_STAR_ATOMS_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_STAR_STAR_ATOMS_HPP
 
-#include "core/kernels/molecules/blocks.hpp"
 #include "core/kernels/molecules/atoms/consecutive.hpp"
+#include "core/kernels/molecules/blocks.hpp"
 #include "core/kernels/molecules/schedule.hpp"
 #include "core/kernels/molecules/small/twin.hpp"
 
@@ -133,7 +133,7 @@ struct StarWork {
         else if (at.layout == rows_in_order)
             good = solve(Constant<Inlined, in_order>{});
         else if (N == 3 && at.layout == rows_listed)
-            good = solve(Constant<Inlined, N == 3 ? listed : in_order>{});
+            good = solve(Constant < Inlined, N == 3 ? listed : in_order > {});
         else
             return in_halves(lane, scratch);
         for (unsigned rest = bits(in_use) & ~good; __builtin_expect(rest != 0, 0); rest &= rest - 1)

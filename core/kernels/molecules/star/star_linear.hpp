@@ -3,9 +3,9 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_STAR_STAR_LINEAR_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_STAR_STAR_LINEAR_HPP
 
-#include "core/kernels/molecules/tree/joint.hpp"
 #include "core/kernels/molecules/star/star_atoms.hpp"
 #include "core/kernels/molecules/store.hpp"
+#include "core/kernels/molecules/tree/joint.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {

@@ -4,8 +4,8 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_TREE_NEWTON_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_TREE_NEWTON_HPP
 
-#include "core/kernels/molecules/cycles/newton_core.hpp"
 #include "core/kernels/molecules/atoms/vectors.hpp"
+#include "core/kernels/molecules/cycles/newton_core.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -44,7 +44,8 @@ struct Newton {
         x.reach_down = memory.values(reaches(s));
         x.part_up = memory.values(part);
         x.part_down = memory.values(part);
-        kept = memory.values(3 * static_cast<int64_t>(s.n_bonds) + 2 * (s.n_pairs + static_cast<int64_t>(s.n_entries) + reaches(s)));
+        kept = memory.values(3 * static_cast<int64_t>(s.n_bonds) +
+                             2 * (s.n_pairs + static_cast<int64_t>(s.n_entries) + reaches(s)));
         x.working = memory;
         memory.values(NewtonMemory<V, 0>::values(s.max_children));
     }

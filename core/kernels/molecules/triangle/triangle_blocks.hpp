@@ -4,9 +4,9 @@
 
 #include "core/kernels/molecules/blocks.hpp"
 #include "core/kernels/molecules/doubtful.hpp"
+#include "core/kernels/molecules/small/twin.hpp"
 #include "core/kernels/molecules/triangle/triangle_linear.hpp"
 #include "core/kernels/molecules/triangle/triangle_positions.hpp"
-#include "core/kernels/molecules/small/twin.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -82,9 +82,8 @@ struct TriangleWork {
         const Atoms<V> at(lane, Width<V>::lanes, packed);
         unsigned rest = (1u << used) - 1;
         if (!verb.other_way())
-            rest &= ~where_atoms_are(at, [&](auto where) {
-                return solve<decltype(where)::value, V>(*this, lane, used, at, kind);
-            });
+            rest &= ~where_atoms_are(
+                at, [&](auto where) { return solve<decltype(where)::value, V>(*this, lane, used, at, kind); });
         if (__builtin_expect(rest != 0, 0)) solve_rest(*this, TrianglesGiven{lane}, rest, scratch);
     }
 
