@@ -144,7 +144,7 @@ set(HOLONOMIC_KERNEL_SET_NAMES ${set_names} CACHE INTERNAL "")
 # leaves to four times the precision, for all.
 holonomic_kernel_objects(fourfold 2 SOURCES ${careful_kernels} DEFINES HOL_FOURFOLD)
 list(APPEND kernel_objects $<TARGET_OBJECTS:holonomic_kernels_fourfold>)
-if("twofold" IN_LIST careful_solvers)
+if("twofold" IN_LIST careful_solvers OR HOLONOMIC_BUILD_TESTS)
     holonomic_kernel_objects(twofold 2 SOURCES ${careful_kernels} FLAGS ${small})
     list(APPEND kernel_objects $<TARGET_OBJECTS:holonomic_kernels_twofold>)
 endif()
