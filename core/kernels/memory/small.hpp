@@ -279,7 +279,7 @@ static inline int64_t any_molecules(const Unit &unit, const Block &block, int64_
     const Lane &head = unit.lanes[unit.regular ? 0 : first];
     const bool in_row = unit.regular && !head.atoms;
     if (head.n_bonds > (boxed || !in_row ? largest_boxed_molecule : largest_molecule)) return first;
-    const bool uniform = block.uniform_w && one_length;
+    const bool uniform = unit.regular && block.uniform_w && one_length;  // only a regular unit has a block
     if (!unit.regular)
         return choose_number<1, largest_boxed_molecule>(head.n_bonds,
                                                         [&](auto n) { return kernel(Type<ByLanes<n>>{}, no); });
