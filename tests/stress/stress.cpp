@@ -6,7 +6,7 @@
  *         them may exceed one, by a factor of three at most: for a test that guards what docs/stability.md says
  *     stress --group FIRST [LONGEST]
  *         the group that begins with number FIRST
- *     stress --seams [FIRST COUNT]
+ *     stress --seams [FIRST COUNT [PROCESSES [STEP]]]
  *         chains with what is hard exactly at the places where the kernels cut them, and beside these
  * (seam_features.hpp) stress --case FILE one file in the format of tests/oracle Exit status 0: everything within its
  * bounds; 1: something is not; 2: wrong usage.
@@ -143,8 +143,9 @@ int check_file(const char *path)
     return v.exceeded();
 }
 
-/** longest 0: chains by features at seams. */
-int run(const soak_options &options, std::int64_t longest, const std::string &directory, double percent)
+/** longest 0: chains by features at seams, every `step`th of them round and round. */
+int run(const soak_options &options, std::int64_t longest, const std::string &directory, double percent,
+        std::uint64_t step = 1)
 {
     const std::vector<std::string> sets = sets_of_kernels();
     shared_tallies<tally> tallies(options.workers, sets.size());
@@ -153,7 +154,7 @@ int run(const soak_options &options, std::int64_t longest, const std::string &di
     work.prepare = [&](std::uint64_t first) {
         if (longest > 0) batch.emplace_back(first, longest);
         for (std::uint64_t k = 0; longest == 0 && k < group_size && first + k < options.end; ++k)
-            batch.emplace_back(make_seam_chain(first + k));
+            batch.emplace_back(make_seam_chain((first + k) * step % n_seam_chains()));
     };
     work.check = [&](unsigned worker, std::size_t set) {
         for (const group_of_chains &g : batch) check(g, directory, tallies.of(worker, set));
@@ -202,7 +203,7 @@ int main(int argc, char **argv)
         options.first = static_cast<std::uint64_t>(integer(2, 0));
         options.end = argc > 3 ? options.first + static_cast<std::uint64_t>(integer(3, 0)) : n_seam_chains();
         options.workers = processes(4);
-        return run(options, 0, "", -1);
+        return run(options, 0, "", -1, static_cast<std::uint64_t>(std::max(1LL, integer(5, 1))));
     }
     options.seconds = argc >= 2 ? std::atof(argv[1]) : 0;
     if (!(options.seconds > 0) || argc > 7) {
