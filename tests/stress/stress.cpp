@@ -8,8 +8,10 @@
  *         the group that begins with number FIRST
  *     stress --seams [FIRST COUNT [PROCESSES [STEP]]]
  *         chains with what is hard exactly at the places where the kernels cut them, and beside these
- * (seam_features.hpp) stress --case FILE one file in the format of tests/oracle Exit status 0: everything within its
- * bounds; 1: something is not; 2: wrong usage.
+ *         (seam_features.hpp)
+ *     stress --case FILE
+ *         one file in the format of tests/oracle
+ * Exit status 0: everything within its bounds; 1: something is not; 2: wrong usage.
  */
 #include <algorithm>
 #include <chrono>
