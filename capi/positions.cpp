@@ -22,7 +22,7 @@ void check(double dt, const double *lambda, int guess) {
     if (guess) need(lambda, "lambda, which holds the guess,");
 }
 
-// Of the reference of this thread's last call with a report.
+// Of the last reference that this thread's calls have compared with the lengths.
 thread_local holonomic::WorstLength reference_error{0, -1, -1};
 
 // The caller's report: written once there is one, also if the call fails then.
@@ -32,7 +32,6 @@ public:
     ~ReportTo() {
         if (!to_ || !found_.made) return;
         *to_ = {found_.iterations, found_.n_corrected, found_.n_failed, found_.chain, found_.bond, found_.max_error};
-        reference_error = found_.reference;
     }
     ReportTo(const ReportTo &) = delete;
     ReportTo &operator=(const ReportTo &) = delete;
@@ -55,7 +54,7 @@ int hol_project_positions(const hol_chains *chains, const double *r_ref, double 
         const AtomArray a0 = packed_array(r_ref);
         ReportTo found(report);
         holonomic::project_positions(chains->chains, {&a0, nullptr}, packed_array(r), packed_array(v), dt, lambda,
-                                     guess == 1, virial, found.get());
+                                     guess == 1, virial, found.get(), &reference_error);
     });
 }
 
@@ -71,7 +70,7 @@ int hol_project_positions_view(const hol_chains *chains, const hol_view *r_ref, 
         holonomic::check_dimensions(all, 3);
         ReportTo found(report);
         holonomic::project_positions(chains->chains, {&a0, nullptr}, a1, av, dt, lambda, guess == 1, virial,
-                                     found.get());
+                                     found.get(), &reference_error);
     });
 }
 
@@ -85,7 +84,7 @@ int hol_project_positions_along(const hol_chains *chains, const double *b, doubl
         const AtomArray bonds = packed_array(b);
         ReportTo found(report);
         holonomic::project_positions(chains->chains, {nullptr, &bonds}, packed_array(r), packed_array(v), dt, lambda,
-                                     guess == 1, virial, found.get());
+                                     guess == 1, virial, found.get(), &reference_error);
     });
 }
 
@@ -101,7 +100,7 @@ int hol_project_positions_along_view(const hol_chains *chains, const hol_view *b
         holonomic::check_dimensions(all, 3);
         ReportTo found(report);
         holonomic::project_positions(chains->chains, {nullptr, &bonds}, a1, av, dt, lambda, guess == 1, virial,
-                                     found.get());
+                                     found.get(), &reference_error);
     });
 }
 

@@ -52,7 +52,7 @@ void check_start(const Chains &chains, const BondVectors &reference, const AtomA
     chains.note_fit();
 }
 
-Report report_of(const Chains &chains, const Tally &tally, const WorstLength &reference) {
+Report report_of(const Chains &chains, const Tally &tally) {
     const bool none = tally.worst_chain < 0;
     return {tally.iterations,
             tally.n_corrected,
@@ -60,19 +60,18 @@ Report report_of(const Chains &chains, const Tally &tally, const WorstLength &re
             none ? -1 : tally.worst_chain + chains.base,
             none ? -1 : tally.worst_bond + chains.base,
             tally.worst,
-            true,
-            reference};
+            true};
 }
 
 }  // namespace
 
 void project_positions(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v, double dt,
-                       double *lambda, bool guess, double *virial, Report *report) {
+                       double *lambda, bool guess, double *virial, Report *report, WorstLength *reference_error) {
     const Box none{}, &box_ref = along.r_ref ? chains.box_of_reference() : none;
     const BondVectors given{along.r_ref, along.bonds, along.r_ref ? &box_ref : nullptr};
+    if (chains.wants_fit() || (report && chains.checks() == Checks::never))
+        *reference_error = worst_length(chains, given);
     check_start(chains, given, r);
-    // What r_ref may be: r itself, of which the error is gone afterwards.
-    const WorstLength before = report ? worst_length(chains, given) : WorstLength{};
     std::optional<Reference> made;
     if (!along.r_ref) made.emplace(chains, *along.bonds);
     const Reference *const reference = made ? &*made : nullptr;
@@ -94,7 +93,7 @@ void project_positions(const Chains &chains, const Along &along, const AtomArray
     const Tally tally = execute(chains, PositionsWork(call, apart, reference));
     apart.put_back();
     clear_unconstrained(chains, lambda);
-    if (report) *report = report_of(chains, tally, before);
+    if (report) *report = report_of(chains, tally);
     if (tally.n_bad > 0) {
         if (reference) reference->show(tally.first_bad);
         Error error;

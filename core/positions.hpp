@@ -11,8 +11,7 @@ namespace holonomic {
 struct Report {
     std::int64_t iterations, n_corrected, n_failed, chain, bond;
     double max_error;
-    bool made;              // false: the call failed before it did anything
-    WorstLength reference;  // the error that the reference had
+    bool made;  // false: the call failed before it did anything
 };
 
 // What the positions are projected along.
@@ -21,9 +20,10 @@ struct Along {
     const AtomArray *bonds;  // [n_bonds] vectors
 };
 
-// virial [9], report: or nullptr. Throws Error once everything that is due has been written.
+// virial [9], report: or nullptr. The error that the reference has is written where it is compared with the lengths,
+// and with a report where nothing is compared. Throws Error once everything that is due has been written.
 void project_positions(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v, double dt,
-                       double *lambda, bool guess, double *virial, Report *report);
+                       double *lambda, bool guess, double *virial, Report *report, WorstLength *reference_error);
 
 }  // namespace holonomic
 #endif

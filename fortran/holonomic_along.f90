@@ -21,7 +21,7 @@ module holonomic_along
 
 contains
 
-   ! The largest |b.b - a^2| / a^2 that the reference had in this thread's last call with a report, and where.
+   ! The largest |b.b - a^2| / a^2 of the last reference that this thread's calls have compared with the lengths, and where.
    subroutine reference_error(error, chain, bond)
       real(real64), intent(out) :: error
       integer(int64), intent(out), optional :: chain, bond

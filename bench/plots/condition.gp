@@ -1,9 +1,8 @@
 # Does the error of the multipliers grow with the condition number? Chains of 64 bonds.
 set logscale xy
-set format xy "%.0e"
-set xlabel "condition number of Z, scaled to ones on its diagonal"
-set ylabel "largest |lambda - exact| / scale"
-set key left top
+set format xy "10^{%T}"
+set xlabel "condition number of Z, scaled to ones on its diagonal" offset 0,0.6
+set ylabel "largest error of lambda / componentwise scale"
 set yrange [1e-17:10]
 set title "Error of the multipliers against the condition number, chains of 64 bonds"
 pick(method) = sprintf("$6 == \"%s\" && $7 ~ /^condition/", method)

@@ -1,9 +1,8 @@
 # Which tolerance does a simulation at constant energy need? Textbook RATTLE against the library.
 set logscale xy
-set format xy "%.0e"
-set xlabel "tolerance of RATTLE's sweeps"
+set format xy "10^{%T}"
+set xlabel "tolerance of RATTLE's sweeps" offset 0,0.6
 set ylabel "drift of the energy / (kinetic energy x unit of time)"
-set key left top
 set title "Energy drift of a melt of 64 chains of 31 bonds, WCA beads, dt = 0.003"
 set xrange [*:*] reverse
 do for [kind in "png svg"] {

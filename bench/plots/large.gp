@@ -1,13 +1,13 @@
 # One large molecule: does the time per bond depend on its size? Given: level.
 set logscale x
-set format x "%.0e"
-set xlabel "bonds of the molecule"
-set ylabel "time per bond / ns"
+set format x "10^{%T}"
+set xlabel "bonds of the molecule" offset 0,0.6
+set ylabel "time per bond (ns)"
 set yrange [0:*]
-set key outside right top
+set xrange [8e3:1.3e6]
 other = level eq "position" ? "sparse-newton" : "sparse-ldl"
 setting = level eq "position" ? "tolerance 1e-12" : "pattern reused"
-set title sprintf("One large molecule, %s, one thread", level eq "position" ? "positions" : "forces") font ",11"
+set title sprintf("One large molecule, %s, one thread", level eq "position" ? "positions" : "forces")
 array molecules[3] = ["arms", "random_tree", "protein"]
 array hues[3] = ["#111111", "#0072b2", "#d55e00"]
 pick(problem, method, setting) = sprintf("$1 == \"%s\" && $2 == \"%s\" && $3 == 1 && $5 == 1 && $6 == \"%s\" && $7 == \"%s\"", level, problem, method, setting)

@@ -5,9 +5,9 @@ set style histogram clustered gap 1
 set style fill solid 0.8 noborder
 set boxwidth 1
 set logscale y
-set ylabel "time per bond / ns"
+set ylabel "time per bond (ns)"
 set xtics rotate by -35 font ",10" scale 0
-set key top left
+set key inside top left vertical
 set rmargin 12
 set title sprintf("%s, one thread", level eq "acceleration" ? "Forces (lambda and G)" : level eq "velocity" ? "Velocities" : "Positions, with velocities and lambda") font ",11"
 other = level eq "position" ? "sparse-newton,tolerance 1e-12" : "sparse-ldl,pattern reused"

@@ -1,10 +1,9 @@
 # Does the time per bond depend on the length of the chain? One chain per call, one thread. Also given: level.
 set logscale xy
-set format x "%.0e"
-set xlabel "bonds of the chain, N (one chain per call)"
-set ylabel "time per bond / ns"
-set key outside right top
-set title sprintf("Time per bond, %s level, coils%s", level, level eq "position" ? "; iterative methods to 1e-12, LINCS order 4 with 1 iteration" : "") font ",11"
+set format x "10^{%T}"
+set xlabel "bonds of the chain, N (one chain per call)" offset 0,0.6
+set ylabel "time per bond (ns)"
+set title sprintf("Time per bond, %s level, coils%s", level, level eq "position" ? "; iterative methods to 1e-12, LINCS of order 4" : "")
 # A batch of 256 x 32 or the like is not a single chain; rows of one chain only.
 pick(method, setting) = sprintf("$1 == \"%s\" && $2 == \"coil\" && $3 == 1 && $5 == 1 && $6 == \"%s\" && $7 ~ /%s/", level, method, setting)
 sorted(c, what) = rows(c, what) . " | sort -t, -k1,1g"

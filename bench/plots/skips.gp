@@ -1,6 +1,6 @@
 # What does each thing cost that a scene may do without? Melt of 1000 chains of 100 bonds, one thread. Also given: level.
 set style fill solid 0.7 noborder
-set xlabel "time per bond / ns"
+set xlabel "time per bond (ns)"
 set xrange [0:*]
 set yrange [*:*] reverse
 set offsets 0, 0, 0.6, 0.6

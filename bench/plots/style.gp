@@ -2,7 +2,9 @@
 set datafile separator ","
 set grid lc rgb "#dddddd"
 set border lc rgb "#555555"
-set key font ",10"
+# Below the plot, so that the plot has the whole width. Names of methods and problems have underscores that mean none.
+set key below horizontal Left reverse noenhanced samplen 2.5 font ",12"
+set title noenhanced font ",14"
 # One colour and mark per method in all plots; the library is the thick dark one.
 array names[12] = ["holonomic", "sparse-newton", "milc-shake", "rattle", "lincs", "openmm-ccma", "lapack-dptsv", "lapack-dgtsv", "eigen-simplicial", "eigen-ldlt", "omega-recursion", "eq20"]
 array colours[12] = ["#111111", "#d55e00", "#009e73", "#0072b2", "#cc79a7", "#e69f00", "#0072b2", "#56b4e9", "#009e73", "#e69f00", "#d55e00", "#cc79a7"]
@@ -11,5 +13,8 @@ width(i) = i == 1 ? 3 : 1.5
 # Rows of the CSV file that fulfil an awk condition, printed as the awk expression says.
 rows(condition, what) = sprintf("< awk -F, 'NR > 1 && %s { print %s }' OFS=, '%s'", condition, what, results)
 count(condition) = int(system(sprintf("awk -F, 'NR > 1 && %s { n++ } END { print n+0 }' '%s'", condition, results)))
-png = "pngcairo noenhanced size 960,640 font 'Sans,12'"
-svg = "svg noenhanced size 960,640 font 'Sans,14' background 'white'"
+png = "pngcairo enhanced size 960,680 font 'Sans,15'"
+svg = "svg enhanced size 960,680 font 'Sans,16' background 'white'"
+# The same rows with the quartiles of their repetitions, for error bars: what is printed may use low and high.
+spread = system(sprintf("dirname '%s'", results)) . "/spread.csv"
+with_quartiles(condition, what) = sprintf("< awk -F, 'FNR == NR { k = $1 FS $2 FS $3 FS $4 FS $5 FS $6 FS $7; l[k] = $10; h[k] = $12; next } FNR > 1 && %s { k = $1 FS $2 FS $3 FS $4 FS $5 FS $6 FS $7; low = (k in l ? l[k] : $9); high = (k in h ? h[k] : $9); print %s }' OFS=, '%s' '%s'", condition, what, spread, results)

@@ -252,8 +252,17 @@ static void the_references_own_error_is_reported(void **state)
     CHECK(hol_project_positions(chains, w.r, r, NULL, 1, NULL, 0, NULL, &report));
     hol_reference_error(&error, &molecule, &bond);
     assert_true(error == worst.length && molecule == 11 && bond == worst.length_bond);
+    CHECK(hol_chains_set_checks(chains, HOL_ALWAYS));
     memcpy(r, w.r, sizeof *r * n);
     CHECK(hol_project_positions(chains, r, r, NULL, 1, NULL, 0, NULL, &report)); /* before r is moved */
+    hol_reference_error(&error, NULL, NULL);
+    assert_true(error == worst.length);
+    CHECK(hol_project_positions(chains, r, r, NULL, 1, NULL, 0, NULL, NULL));
+    hol_reference_error(&error, NULL, NULL);
+    CHECK_AT_MOST(error, 1e-13);
+    CHECK(hol_chains_set_checks(chains, HOL_NEVER));
+    memcpy(r, w.r, sizeof *r * n);
+    CHECK(hol_project_positions(chains, r, r, NULL, 1, NULL, 0, NULL, &report));
     hol_reference_error(&error, NULL, NULL);
     assert_true(error == worst.length);
     CHECK_AT_MOST(report.max_error, 1e-14);

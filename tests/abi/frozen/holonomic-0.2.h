@@ -575,7 +575,7 @@ typedef struct hol_report {
     int64_t chain;       /**< molecule and */
     int64_t bond;        /**< bond (within the molecule) with the largest error; -1 if there is none */
     double max_error;    /**< largest |d.d - a^2| / a^2 left in a molecule that did not fail, before the positions are
-                              rounded to the caller's element type */
+                              rounded to the caller's element type. That of the reference: hol_reference_error */
 } hol_report;
 
 /**
@@ -642,10 +642,9 @@ HOL_API int hol_project_positions_along_view(const hol_chains *chains, const hol
                                              hol_report *report);
 
 /**
- * The error that the reference itself had, in this thread's last call at the position level that asked for an
- * hol_report: what is left of the constraints at the beginning of a step. Each pointer may be NULL. It is measured in
- * a pass of its own before anything is moved, 6 to 10 ns per bond (a processor of type Zen 4), so ask for a report now
- * and then.
+ * The error that a reference itself had, of the last that this thread's calls at the position level have compared with
+ * the lengths: those of the first call and after changes; with HOL_ALWAYS all (hol_chains_set_checks); with HOL_NEVER
+ * those of calls with a report. It is measured before anything is moved. Each pointer may be NULL.
  * @param[out] error  largest |b.b - a^2| / a^2 over active molecules; 0 before the first such call
  * @param[out] chain  its molecule, -1 if there is none
  * @param[out] bond   its bond within the molecule
