@@ -62,7 +62,8 @@ static void a_cycle_that_does_not_close_is_an_error(void **state)
     }
     for (int i = 0; i < 4; ++i) molecule_add_bond(&ring, i, (i + 1) % 4);
     molecule_finish(&ring, &s);
-    for (int i = 0; i < 4; ++i) ring.length[i] = sqrt(1 + 0.01 + 0.0025); /* also of the image from the last to the first */
+    for (int i = 0; i < 4; ++i)
+        ring.length[i] = sqrt(1 + 0.01 + 0.0025); /* also of the image from the last to the first */
     ring.length[3] = sqrt(1 + 0.01 + 0.0225);
     mixture m = mixture_make(&ring, 1, ONE_AFTER_THE_OTHER, 0);
     double *lambda = untouched(4), *v = copy_of(m.v, 12), *r = copy_of(m.r, 12), log_det = 7;
