@@ -69,10 +69,8 @@ contains
       self%given = .true.
       self%view%element = HOL_FLOAT
       self%view%stride = storage_size(array)/8
-      if (n_atoms == 0) then
-         call self%put_nothing(size(array, 1))
-         return
-      end if
+      if (n_atoms == 0) call self%put_nothing(size(array, 1))
+      if (n_atoms == 0) return
       self%view%x = c_loc(array(1, 1))
       self%view%y = c_loc(array(2, 1))
       if (size(array, 1) == 3) self%view%z = c_loc(array(3, 1))
@@ -91,10 +89,8 @@ contains
       self%given = .true.
       self%view%element = HOL_DOUBLE
       self%view%stride = storage_size(array)/8
-      if (n_atoms == 0) then
-         call self%put_nothing(size(array, 1))
-         return
-      end if
+      if (n_atoms == 0) call self%put_nothing(size(array, 1))
+      if (n_atoms == 0) return
       self%view%x = c_loc(array(1, 1))
       self%view%y = c_loc(array(2, 1))
       if (size(array, 1) == 3) self%view%z = c_loc(array(3, 1))
@@ -106,8 +102,7 @@ contains
       integer(c_int64_t), intent(in) :: n_atoms
       type(failure), intent(inout) :: problem
       character(*), intent(in) :: name
-      real(real32), optional, target :: x(:), y(:)
-      real(real32), optional, target :: z(:)
+      real(real32), optional, target :: x(:), y(:), z(:)
       character(*), intent(in), optional :: what
       call self%put(n_atoms, problem, name, HOL_FLOAT, line_of_32(x), line_of_32(y), line_of_32(z), what)
    end subroutine
@@ -117,8 +112,7 @@ contains
       integer(c_int64_t), intent(in) :: n_atoms
       type(failure), intent(inout) :: problem
       character(*), intent(in) :: name
-      real(real64), optional, target :: x(:), y(:)
-      real(real64), optional, target :: z(:)
+      real(real64), optional, target :: x(:), y(:), z(:)
       character(*), intent(in), optional :: what
       call self%put(n_atoms, problem, name, HOL_DOUBLE, line_of_64(x), line_of_64(y), line_of_64(z), what)
    end subroutine
@@ -152,15 +146,12 @@ contains
       character(*), intent(in), optional :: what
       has_rows = (n_rows == 3 .or. n_rows == 2) .and. extent >= n_atoms
       if (has_rows) return
-      if (n_rows /= 3 .and. n_rows /= 2) then
-         call problem%set(HOL_ERR_VALUE, "the first dimension of "//name//" must be 3 (or 2), not " &
-                          //decimal(int(n_rows, c_int64_t)))
-      else
-         call too_few(name, extent, n_atoms, things(what), problem)
-      end if
+      if (n_rows /= 3 .and. n_rows /= 2) call problem%set(HOL_ERR_VALUE, "the first dimension of "//name// &
+                                                          " must be 3 (or 2), not "//decimal(int(n_rows, c_int64_t)))
+      call too_few(name, extent, n_atoms, things(what), problem)
    end function
 
-   ! What an array has one vector for each of: atoms, if nothing else is said.
+   ! What an array has one vector for each of.
    recursive function things(what)
       character(*), intent(in), optional :: what
       character(5) :: things
