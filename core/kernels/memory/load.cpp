@@ -68,7 +68,8 @@ static void load_chunks(const Reader &in, long k0, long end, vec3 *D, vec *B) {
 static Reader::LoadChunks *chunks_of(const Block &block, const Box &box, int terms, bool careful) {
     constexpr int forces = force_difference, both = velocity_squared | force_difference;
     if (careful || box.shape == Box::triclinic) return nullptr;
-    const bool boxed = box.shape != Box::none, uniform = block.uniform_w;
+    const bool boxed = box.shape != Box::none;
+    const bool uniform = (terms & force_difference) && block.uniform_w;  // else masses may not have been set
     switch (terms) {
         case none_:
         case kept_rate:

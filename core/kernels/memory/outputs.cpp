@@ -7,7 +7,7 @@ void store_bonds(const Block &block, const vec *value, vec factor, mask which, d
     vec m[W];
     long k0 = first;
     double *to[W];
-    for (int i = 0; i < W; ++i) to[i] = out + block.first_bond[i];
+    for (int i = 0; i < W; ++i) to[i] = out + block.first_bond[i < block.lanes ? i : 0];
     for (const long full = chosen == all_lanes ? block.n_min - W : -1; k0 <= full; k0 += W) {
         HOL_UNROLL
         for (int b = 0; b < W; ++b) m[b] = mul_add(factor, value[k0 + b], vec{});
