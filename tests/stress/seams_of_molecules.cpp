@@ -118,21 +118,35 @@ void check(seam_shape shape, const seam_molecule &m)
     compare("positions", one.r, r.moved, r.moved_scale, 3, 0);
 }
 
-/** Two or three seams of one sort, all with the same; or with large molecules, each with something else. */
-std::vector<put_at> draw_puts(const seam_graph &g, const std::vector<std::vector<std::int64_t>> &seams, int kind,
-                              int steps, random_stream &s)
+/** Whether an atom can be held fixed without taking the molecule apart, so that it is no longer cut there. */
+bool is_leaf(const seam_graph &g, std::int64_t atom)
+{
+    return g.neighbours[static_cast<std::size_t>(atom)].size() == 1;
+}
+
+/** The same at some seams of each sort: `steps` behind them, or in large molecules anywhere about them. One sort of
+ * feature at a time: what is refused for one of them is worked on in another way everywhere. */
+std::vector<put_at> draw_puts(const seam_graph &g, const std::vector<std::vector<std::int64_t>> &seams, seam_kind kind,
+                              int steps, bool large, random_stream &s)
 {
     std::vector<put_at> puts;
     for (const std::vector<std::int64_t> &list : seams)
-        for (int n = 0; n < (kind < 0 ? N_SEAM_KINDS : 2); ++n) {
+        for (int n = 0; n < (large ? 4 : 2); ++n) {
             const std::int64_t seam =
                 list[static_cast<std::size_t>(random_integer(&s, 0, static_cast<std::int64_t>(list.size()) - 1))];
-            const std::int64_t atom = g.walk(seam, steps), next = g.walk(atom, 1);
+            const std::int64_t anywhere = random_integer(&s, first_seam_step, first_seam_step + n_seam_steps - 1);
+            std::int64_t atom = g.walk(seam, large ? static_cast<int>(anywhere) : steps);
+            if (large && kind == FIXED_SEAM) {
+                for (const std::int64_t i : g.neighbours[static_cast<std::size_t>(atom)])
+                    if (is_leaf(g, i)) atom = i;
+                if (!is_leaf(g, atom)) continue;
+            }
+            const std::int64_t next = g.walk(atom, 1);
             bool is_free = true;  // features do not touch
             for (const put_at &p : puts)
                 for (const std::int64_t i : g.neighbours[static_cast<std::size_t>(p.atom)])
                     is_free = is_free && i != atom && i != next && p.atom != atom && p.atom != next;
-            if (is_free) puts.push_back({atom, static_cast<seam_kind>(kind < 0 ? n : kind)});
+            if (is_free) puts.push_back({atom, kind});
         }
     return puts;
 }
@@ -145,17 +159,17 @@ int main(int argc, char **argv)
     const int only = argc > 1 + verbose ? std::atoi(argv[1 + verbose]) : -1;
     int round = 0;
     for (int shape = 0; shape < N_SEAM_SHAPES; ++shape) {
-        const bool small = shape == ARMS || shape == PATHS;
+        const bool large = shape == PIECES || shape == TILES;
         const seam_graph g = make_seam_graph(static_cast<seam_shape>(shape));
         const std::vector<std::vector<std::int64_t>> seams = seams_of(static_cast<seam_shape>(shape), g);
-        for (int kind = small ? 0 : -1; kind < (small ? N_SEAM_KINDS : 0); ++kind)
-            for (int steps = first_seam_step; steps < first_seam_step + n_seam_steps; ++steps, ++round) {
+        for (int kind = 0; kind < N_SEAM_KINDS; ++kind)
+            for (int steps = first_seam_step; steps < first_seam_step + (large ? 1 : n_seam_steps); ++steps, ++round) {
                 if (only >= 0 && only != round) continue;
                 random_stream s = random_seed(static_cast<std::uint64_t>(round) + 1);
-                const auto puts = draw_puts(g, seams, kind, steps, s);
+                const auto puts = draw_puts(g, seams, static_cast<seam_kind>(kind), steps, large, s);
                 current = "round " + std::to_string(round) + ", " + seam_shape_name(shape) + ", " +
-                          (kind < 0 ? "all sorts" : seam_kind_name(kind)) + " " + std::to_string(steps) +
-                          " behind the seam";
+                          seam_kind_name(kind) + (large ? " about" : " " + std::to_string(steps) + " behind") +
+                          " the seam";
                 worst = 0;
                 check(static_cast<seam_shape>(shape), make_seam_molecule(g, puts, static_cast<std::uint64_t>(round)));
                 if (verbose) std::printf("%s: %zu features, %.3g of the bounds\n", current.c_str(), puts.size(), worst);
