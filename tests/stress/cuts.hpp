@@ -23,6 +23,9 @@ constexpr int n_lane_counts = 5;
 /** Both are empty if a chain of so many bonds is not cut. */
 cuts cuts_of_chain(int lanes, std::int64_t n_bonds);
 
+/** Atoms, counted from its first, at which the segments of an arm of so many bonds meet. */
+std::vector<std::int64_t> segments_of_arm(int lanes, std::int64_t n_bonds);
+
 }  // namespace stress
 
 #endif

@@ -29,5 +29,14 @@ cuts of_chain(std::int64_t n_bonds)
             of_windows.rows(0) < shortest_piece ? std::vector<std::int64_t>() : starts(of_windows)};
 }
 
+// As cut_of() in core/kernels/molecules/large_tree/arm_store.hpp says. The last bond is a separator.
+std::vector<std::int64_t> of_arm(std::int64_t n_bonds)
+{
+    const Cut cut(n_bonds - 1, segment_bonds, true);
+    std::vector<std::int64_t> atoms = starts(cut);
+    atoms.push_back(cut.n_bonds);
+    return atoms;
+}
+
 }  // namespace HOL_ISA
 }  // namespace stress
