@@ -73,6 +73,7 @@ bool is_shared_molecule(const Plan &plan, std::int64_t p, int n_threads, bool li
     if (piece.shape == linear || piece.count != 1) return false;
     const Schedule &s = *plan.schedules[static_cast<std::size_t>(piece.shape)];
     const std::int64_t n = s.n_pieces, n_molecules = static_cast<std::int64_t>(plan.pieces.size());
+    if (n_molecules < n_threads && s.network) return true;
     if (n_molecules < n_threads && lists && (s.paths || (s.flat && s.flat->n_tiles > 1))) return true;
     if (n_molecules < n_threads && s.n_arms > 0 && s.n_shares > 1) return true;
     return n > 1 && (n >= 8 * n_threads || n_molecules < 4 * n_threads);

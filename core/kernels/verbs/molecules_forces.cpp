@@ -1,5 +1,6 @@
 // Constraint forces of molecules that are no chains, and multipliers for given right-hand sides.
 #include "core/kernels/molecules/forces.hpp"
+#include "core/kernels/molecules/network/network.hpp"
 #include "core/kernels/molecules/star/star_linear.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
@@ -10,6 +11,7 @@ using namespace graph;
 void molecules_forces(const ForcesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const bool packed =
         call.r.packed && (!call.v.x || call.v.packed) && (!call.f.x || call.f.packed) && (!call.g.x || call.g.packed);
+    if (unit.schedule->network) return solve_networks(call, unit, packed, scratch, tally);
     if (unit.schedule->type == Schedule::triangle) {
         const TriangleCall triangles = {call.r,      call.v,       call.f,   nullptr,     call.g,
                                         call.lambda, call.tension, call.add, call.virial, call.box};
@@ -22,6 +24,7 @@ void molecules_forces(const ForcesCall &call, const MoleculeUnit &unit, double *
 
 void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const bool packed = call.r.packed && (!call.g.x || call.g.packed);
+    if (unit.schedule->network) return solve_networks(call, unit, packed, scratch, tally);
     if (unit.schedule->type == Schedule::triangle) {
         const AtomArray none = {};
         const TriangleCall triangles = {call.r,      none,         none,     call.rhs,    call.g,
