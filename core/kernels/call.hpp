@@ -172,8 +172,8 @@ struct MoleculeKernels {
 };
 
 // The tridiagonal matrix of n rows with ones on its diagonal and -gamma beside it, by plain products. Both return false
-// where these cannot answer for the last digits, or an argument is not finite; then x is as it was, and what is in pivots
-// means nothing.
+// where these cannot answer for the last digits, or an argument is not finite; then x is as it was, and what is in
+// pivots means nothing.
 struct TridiagonalKernels {
     bool (*solve)(int64_t n, const double *gamma, const double *b, double *x, double *scratch);  // scratch: [3 n]
     bool (*pivots)(int64_t n, const double *gamma, double *pivots);
