@@ -8,7 +8,19 @@ namespace holonomic::HOL_ISA {
 
 namespace {
 
-constexpr double smallest = 1e-280;  // below, the rounding of a product is no double any more
+// A solution below `smallest` has products whose rounding is no double any more; one from a right-hand side above
+// `largest` could overflow.
+constexpr double smallest = 1e-280, largest = 1e250;
+
+// Whether no |a| is above `most`. As integers: what is no number must not raise an exception.
+bool bounded(int64_t n, const double *a, double most) {
+    const mask limit = as_mask(splat(most));
+    mask above{};
+    int64_t k = 0;
+    for (; k + W <= n; k += W) above = above | (limit - as_mask(abs(load(a + k))));
+    for (; k < n; ++k) above = above | (limit - as_mask(abs(splat(a[k]))));
+    return bits(above) == 0;  // their signs
+}
 
 struct Factors {
     int64_t n, middle;
@@ -53,20 +65,21 @@ HOL_FORCED bool factorize_and_solve(const Factors &t, const double *b, double *x
     double pivot[2] = {1, 1}, error[2] = {0, 0}, y[2] = {0, 0};
     bool good = true;
     inwards(t, [&](int64_t k, int end) {
+        good &= error[end] < 0.25 * pivot[end];
+        pivot[end] = good ? pivot[end] : 1;
         const double inverse = 1 / pivot[end], g = t.beside(k), factor = g * inverse;
         t.inverse[k] = inverse;
-        good &= error[end] < 0.25 * pivot[end];
         pivot[end] = mul_add(-g * g, inverse, 1.0);
         error[end] = mul_add(factor * factor, error[end], unit);
         x[k] = b[k] + y[end];
         y[end] = x[k] * factor;
     });
     const double last = pivot[0] + (pivot[1] - 1);
-    good &= error[0] + error[1] + unit < 0.25 * last;
+    if (!(good && error[0] + error[1] + unit < 0.25 * last)) return false;
     t.inverse[t.middle] = 1 / last;
     x[t.middle] = b[t.middle] + (y[0] + y[1]);
     outwards(t, x);
-    return good;
+    return true;
 }
 
 // T x = x.
@@ -111,7 +124,7 @@ double correct(int64_t n, const double *correction, double *x) {
     vec worst{};
     const vec least = splat(smallest), huge = splat(__builtin_inf()), zero{};
     const auto take = [&](vec d, vec a) {
-        const vec ratio = select(less(abs(a), least), huge, abs(d) / abs(a));
+        const vec ratio = select(less(abs(a), least), huge, abs(d) / max(abs(a), least));
         const vec known = keep(~(equal(a, zero) & equal(d, zero)), ratio);
         worst = select(less_equal(known, worst), worst, known);  // not max(): what is no number stays
     };
@@ -136,6 +149,7 @@ double correct(int64_t n, const double *correction, double *x) {
 // Corrections by the residual shrink by about as much as the first one is smaller than x. Where the next one would be
 // below 2^-62, with some digits left for what is not known of that, x is the rounded solution.
 bool tridiagonal_solve(int64_t n, const double *gamma, const double *b, double *x, double *scratch) {
+    if (!bounded(n - 1, gamma, 1) || !bounded(n, b, largest)) return false;
     const Factors t{n, n / 2, gamma, scratch};
     double *const solution = scratch + n, *const correction = scratch + 2 * n;
     if (!factorize_and_solve(t, b, solution)) return false;
@@ -156,10 +170,11 @@ bool tridiagonal_solve(int64_t n, const double *gamma, const double *b, double *
 // Pivots from the first row on, with the first order of what rounding does to them. False if that is too large for the
 // second order to be left out.
 bool tridiagonal_pivots(int64_t n, const double *gamma, double *pivots) {
+    if (!bounded(n - 1, gamma, 1)) return false;
     double pivot = 1, error = 0;  // the exact one is pivot + error
     bool good = true;
     pivots[0] = 1;
-    for (int64_t k = 1; k < n; ++k) {
+    for (int64_t k = 1; k < n && good; ++k) {
         const double g = gamma[k - 1], factor = g / pivot;
         const Pair<double> back = two_product(factor, pivot), removed = two_product(g, factor);
         const double missed = ((g - back.hi) - back.lo) * factor;  // of g factor, as the division has been rounded
