@@ -6,8 +6,8 @@ module holonomic_settings
    use holonomic_c, only: hol_chains_n_atoms, hol_chains_n_bonds, hol_chains_n_chains, hol_chains_set_active, &
                           hol_chains_set_box, hol_chains_set_box_rate, hol_chains_set_checks, hol_chains_set_labels, &
                           hol_chains_set_lengths, hol_chains_set_masses, &
-                          hol_chains_set_max_iterations, hol_chains_set_memory_limit, hol_chains_set_reference_box, hol_chains_set_threads, &
-                          hol_chains_set_tolerance, HOL_ERR_MEMORY
+                          hol_chains_set_max_iterations, hol_chains_set_memory_limit, hol_chains_set_reference_box, &
+                          hol_chains_set_threads, hol_chains_set_tolerance, HOL_ERR_MEMORY
    use holonomic_place, only: enough, list_of, tensor
    use holonomic_status, only: failure, settle
    implicit none
