@@ -836,7 +836,10 @@ HOL_API int hol_inverse_error_bound_view(const hol_inverse *inverse, const hol_v
  * first two rows (gamma_2 in the paper), gamma[k] rows k and k+1 counted from 0.
  *
  * Accuracy. Results are those of the given doubles to a few roundings (plus one or two for each row between i and j in
- * inverse elements), as all recursions run in twice the precision; this holds up to a condition number of about 1e14.
+ * inverse elements), up to a condition number of about 1e14. Solutions, pivots and determinants are computed in doubles
+ * and corrected by what their rounding has done, which costs as much as a plain elimination. Where the corrections show
+ * that this is not enough (condition numbers above some 1e6), and for inverse elements, the recursions run in twice the
+ * precision and take 10 to 20 times as long.
  * But gamma alone carries only so much: changing each gamma by half a unit in its last place changes the results by up
  * to 1.1e-16 times the condition number, relatively. Chains whose masses and bond vectors are known should go through
  * hol_metric and hol_inverse, which lose nothing. A matrix that its rounding has made singular is reported as such.
