@@ -132,8 +132,8 @@ HOL_API void hol_chains_destroy(hol_chains *chains);
  * @param[in]     lengths  [n_bonds], bond lengths, 1e-150 .. 1e150. Used by hol_project_positions and hol_violation;
  *                         the acceleration and velocity levels use the bond vectors as they are. Copied.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (n_bonds, a length; since 0.2 a length of more than half the box that is
- *         set); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM; HOL_ERR_MEMORY.
- *         On an error nothing is added. Not thread-safe on one handle. Since 0.1.
+ *         set); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM; HOL_ERR_MEMORY (also: more than hol_chains_set_memory_limit
+ *         allows). On an error nothing is added. Not thread-safe on one handle. Since 0.1.
  *
  * The chain is one molecule, whatever atoms of it are fixed; only a bond between two fixed atoms divides it in two.
  */
@@ -171,7 +171,8 @@ HOL_API int hol_chains_add_block(hol_chains *chains, int64_t n_chains, int64_t n
  *         HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM (an atom that can move is in a molecule of an earlier call; the message
  *         names it); HOL_ERR_DEGENERATE (a bond given twice, or more bonds within a part of a molecule than it has
  *         freedoms, as all distances between five atoms: the message names a bond. Bonds that depend on each other
- *         through the positions alone are found by the calls that meet them); HOL_ERR_MEMORY.
+ *         through the positions alone are found by the calls that meet them); HOL_ERR_MEMORY (also: more than
+ *         hol_chains_set_memory_limit allows; the message names the molecule).
  *         On an error nothing is added. Not thread-safe on one handle. O(n_bonds). Since 0.2.
  */
 HOL_API int hol_chains_add_bonds(hol_chains *chains, int64_t n_bonds, const int64_t *pairs, const double *lengths);
@@ -432,6 +433,17 @@ HOL_API int64_t hol_chains_degrees_of_freedom(const hol_chains *chains, int dime
 
 /** Memory that the handle occupies, in bytes; 0 if chains is NULL. Since 0.1. */
 HOL_API int64_t hol_chains_memory(const hol_chains *chains);
+
+/**
+ * Bound on the memory that a set of molecules takes. Of a molecule with many cycles (a lattice, a sheet) the
+ * elimination fills its matrix: adding it counts what that takes before it takes anything, and refuses it with
+ * HOL_ERR_MEMORY and both numbers in the message where that, with what the set has, is more than the bound.
+ * @param[in,out] chains
+ * @param[in]     bytes  > 0, or 0 for the default: a quarter of the machine's memory. It holds for what is added later,
+ *                       and for the scratch that calls need for it.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.2.
+ */
+HOL_API int hol_chains_set_memory_limit(hol_chains *chains, int64_t bytes);
 
 /* --------------------------------------------------------------------------------------------------------- views */
 
