@@ -1,6 +1,6 @@
 # Which method gives which accuracy at which price? Position level, chains of 100 bonds, one thread. Also given: problem.
 set logscale xy
-set format y "10^{%T}"
+set format xy "10^{%T}"
 set xlabel "time per bond and call (ns); bars: quartiles"
 set ylabel "largest |d^2 - a^2| / a^2 left"
 set bars small
