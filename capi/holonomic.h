@@ -603,7 +603,7 @@ typedef struct hol_report {
  * Newton's method with the exact Jacobian. docs/theory.md (15)-(19), docs/integrators.md.
  *
  * @param[in]     chains
- * @param[in]     r_ref   positions before the drift [n_atoms][3]; may be r itself (Fortran: docs/fortran.md). Only their
+ * @param[in]     r_ref   positions before the drift [n_atoms][3]; may be r itself (in Fortran: docs/fortran.md). Only
  *                        differences within a molecule are used: each may stand anywhere, at an origin of its own
  * @param[in,out] r       positions after the drift [n_atoms][3]; in: unconstrained, out: constrained
  * @param[in,out] v       velocities [n_atoms][3], or NULL; v_i += dt w_i G_i, the displacement over dt. Only added to:
