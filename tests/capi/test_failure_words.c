@@ -175,7 +175,7 @@ static void bonds_that_depend_on_each_other(void **state)
     CHECK(hol_chains_set_box(chains, box));
     assert_refused(chains, line, "depends on the others", "atoms ", "a box is set");
 
-    /* A straight ring round the cell: its lengths add up to the side of the box whatever the fourth is. */
+    /* A straight ring round the cell: three of its lengths and the side of the box make the fourth. */
     const double round[12] = {0, 0, 0, 5, 0, 0, 10, 0, 0, 15, 0, 0}, fives[4] = {5, 5, 5, 5};
     const int64_t ring[8] = {0, 1, 1, 2, 2, 3, 0, 3};
     CHECK(hol_chains_create(4, mass, &chains));
