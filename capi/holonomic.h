@@ -228,7 +228,8 @@ HOL_API int hol_chains_set_index_base(hol_chains *chains, int base);
  * other vector may have a component. NULL: no box. Three sides stand on the diagonal: {a,0,0, 0,b,0, 0,0,c}.
  *
  * Orthorhombic boxes (off-diagonal elements all zero) cost less than triclinic ones. The image is the right one for
- * bonds shorter than half the smallest distance between opposite faces. May be set again before every call.
+ * bonds shorter than half the smallest distance between opposite faces; molecules may be larger, and their cycles may
+ * go round the box (networks, zeolites). May be set again before every call.
  * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_VALUE (not finite, or no cell; since 0.2 narrower than twice the
  * longest bond). On an error nothing is changed. Since 0.1.
  */
@@ -540,8 +541,8 @@ typedef enum hol_which_box { HOL_BOX = 0, HOL_REFERENCE_BOX = 1 } hol_which_box;
  * Multipliers of hol_project_velocities leave out what its last correction of rounding changes: G agrees with m dv to
  * the rounding of v.
  * @return HOL_OK; HOL_ERR_NULL (chains, r or lambda); HOL_ERR_VALUE (box, mode); HOL_ERR_NOT_FINITE;
- *         HOL_ERR_DEGENERATE (bonds that do not close their cycle in the box); HOL_ERR_MEMORY. Inactive molecules are
- *         neither read nor written. Thread-safe on one handle. O(n_bonds). Since 0.2.
+ *         HOL_ERR_MEMORY. Inactive molecules are neither read nor written. Thread-safe on one handle. O(n_bonds). Since
+ * 0.2.
  */
 HOL_API int hol_reactions(const hol_chains *chains, const double *r, int box, const double *lambda, double *tension,
                           double *g, int mode, double *bond_virial, double *virial);
@@ -628,7 +629,7 @@ HOL_API int hol_project_positions_view(const hol_chains *chains, const hol_view 
  *
  * @param[in]     chains
  * @param[in]     b        [n_bonds][3] (Fortran: (3, n_bonds)), in the order in which the bonds were given. Not read
- * for bonds between two fixed atoms. The reference box is not used
+ * for bonds between two fixed atoms. The reference box is used for cycles that go round it alone
  * @param[in,out] r        this and all others as in hol_project_positions
  * @param[in,out] v        or NULL
  * @param[in]     dt       time step
@@ -639,7 +640,8 @@ HOL_API int hol_project_positions_view(const hol_chains *chains, const hol_view 
  *
  * The vectors are laid one after the other, from an origin at the first atom of each molecule, each rounded once as
  * coordinates there are: results are those of hol_project_positions with such coordinates. In a molecule with cycles, a
- * vector that the others determine is taken from them; it must agree with them to a thousandth of its length.
+ * vector that the others determine is taken from them; it must agree with them to a thousandth of its length, but for
+ * sides of the reference box where a cycle goes round that.
  * @return as hol_project_positions; HOL_ERR_NOT_FINITE (a vector) and HOL_ERR_DEGENERATE (vectors that do not close
  *         their cycle) with nothing changed at all. O(n_bonds) more, by one thread. Since 0.2.
  */
