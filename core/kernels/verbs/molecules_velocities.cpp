@@ -11,7 +11,7 @@ void molecules_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, 
     const bool packed = call.r.packed && call.v.packed;
     if (unit.schedule->type == Schedule::triangle)
         return for_each_triangle(TriangleVelocitiesVerb{call, tally}, call, unit, packed, scratch, tally);
-    VelocitiesWork work = {call, *unit.schedule, packed, tally, unit.team};
+    const LinearWork<VelocitiesCall> work = {call, *unit.schedule, packed, tally, unit.team};
     if (!do_stars<3>(StarVelocitiesVerb{call, tally}, work, unit, scratch)) for_each_block(unit, scratch, work);
 }
 
