@@ -18,7 +18,7 @@ void molecules_forces(const ForcesCall &call, const MoleculeUnit &unit, double *
         for_each_triangle(TriangleLinearVerb{triangles, tally}, call, unit, packed, scratch, tally);
         return;
     }
-    ForcesWork work = {call, *unit.schedule, packed, tally, unit.team};
+    const LinearWork<ForcesCall> work = {call, *unit.schedule, packed, tally, unit.team};
     if (!do_stars<3>(StarForcesVerb{call, tally}, work, unit, scratch)) for_each_block(unit, scratch, work);
 }
 
@@ -32,7 +32,7 @@ void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *sc
         for_each_triangle(TriangleLinearVerb{triangles, tally}, call, unit, packed, scratch, tally);
         return;
     }
-    SolveWork work = {call, *unit.schedule, packed, tally, unit.team};
+    const LinearWork<SolveCall> work = {call, *unit.schedule, packed, tally, unit.team};
     for_each_block(unit, scratch, work);
 }
 
