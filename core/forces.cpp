@@ -40,6 +40,7 @@ struct ForcesWork final : Work {
         images[0] = {&calls[where].r, &calls[where].box};
         return 1;
     }
+    bool walks_forests() const override { return true; }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_forces.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return k.long_forces.bytes(n); }
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {

@@ -38,6 +38,7 @@ struct SolveWork final : Work {
         images[0] = {&calls[where].r, &calls[where].box};
         return 1;
     }
+    bool walks_forests() const override { return true; }
     std::int64_t long_blocks(std::int64_t) const override { return 0; }
     std::int64_t long_bytes(std::int64_t) const override { return 0; }
     void long_chain(const Lane &, int, const Team &, double *, Tally &) const override {}

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <new>
 
+#include "core/kernels/molecules/forest/forest.hpp"
 #include "core/kernels/molecules/list/flat_list.hpp"
 #include "core/run/lane.hpp"
 #include "core/run/thread_memory.hpp"
@@ -87,8 +88,17 @@ std::int64_t long_chain_bonds(const Chains &chains, const Plan &plan, std::int64
     return n > longest_lane ? n : 0;
 }
 
+void work_on_forests(const Work &work, const MoleculeUnit &unit, int where, double *scratch, Tally &tally) {
+    if (work.walks_forests()) return work.unit(unit, where, scratch, tally);
+    const MoleculeLane *lane = unit.lanes;
+    for (std::int64_t i = 0; i < unit.n_forests; ++i)
+        for (int l = 0; l < unit.forests[i].n_trees; ++l)
+            work.unit(MoleculeUnit{unit.forests[i].schedule[l], lane++, 1, true, unit.large}, where, scratch, tally);
+}
+
 // Molecules whose cycles do not close are bad; the others are worked on.
 void work_on_molecules(const Work &work, const MoleculeUnit &unit, int where, double *scratch, Tally &tally) {
+    if (unit.forests) return work_on_forests(work, unit, where, scratch, tally);
     Images images[2];
     const int n = work.images(where, images);
     const auto is_closed = [&](const MoleculeLane &lane) {
@@ -123,10 +133,7 @@ class Execution {
 public:
     Execution(const Chains &chains, const Plan &plan, const Work &work)
         : chains_(chains), plan_(plan), work_(work), n_pieces_(static_cast<std::int64_t>(plan.pieces.size())),
-          scratch_bytes_(holonomic::scratch_bytes(plan.longest)) {
-        for (const std::int32_t shape : plan.shapes)
-            scratch_bytes_ = std::max(
-                scratch_bytes_, kernels().molecules.scratch_bytes(*plan.schedules[static_cast<std::size_t>(shape)]));
+          scratch_bytes_(std::max(holonomic::scratch_bytes(plan.longest), plan.scratch_bytes)) {
         n_threads_ = static_cast<int>(
             std::min<std::int64_t>(chains.n_threads, std::max<std::int64_t>(plan.n_bonds / bonds_per_thread, 1)));
         for (std::int64_t p = 0; plan.longest > longest_lane && p < n_pieces_; ++p) {
