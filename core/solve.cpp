@@ -34,10 +34,6 @@ struct SolveWork final : Work {
     }
     // The plan has no linear chains.
     void unit(const Unit &, int, double *, Tally &) const override {}
-    int images(int where, Images *images) const override {
-        images[0] = {&calls[where].r, &calls[where].box};
-        return 1;
-    }
     bool walks_forests() const override { return true; }
     std::int64_t long_blocks(std::int64_t) const override { return 0; }
     std::int64_t long_bytes(std::int64_t) const override { return 0; }

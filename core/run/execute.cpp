@@ -88,44 +88,13 @@ std::int64_t long_chain_bonds(const Chains &chains, const Plan &plan, std::int64
     return n > longest_lane ? n : 0;
 }
 
-void work_on_forests(const Work &work, const MoleculeUnit &unit, int where, double *scratch, Tally &tally) {
-    if (work.walks_forests()) return work.unit(unit, where, scratch, tally);
+// Different trees side by side, or one by one for a verb that has no way for these.
+void work_on_molecules(const Work &work, const MoleculeUnit &unit, int where, double *scratch, Tally &tally) {
+    if (!unit.forests || work.walks_forests()) return work.unit(unit, where, scratch, tally);
     const MoleculeLane *lane = unit.lanes;
     for (std::int64_t i = 0; i < unit.n_forests; ++i)
         for (int l = 0; l < unit.forests[i].n_trees; ++l)
             work.unit(MoleculeUnit{unit.forests[i].schedule[l], lane++, 1, true, unit.large}, where, scratch, tally);
-}
-
-// Molecules whose cycles do not close are bad; the others are worked on.
-void work_on_molecules(const Work &work, const MoleculeUnit &unit, int where, double *scratch, Tally &tally) {
-    if (unit.forests) return work_on_forests(work, unit, where, scratch, tally);
-    Images images[2];
-    const int n = work.images(where, images);
-    const auto is_closed = [&](const MoleculeLane &lane) {
-        for (int i = 0; i < n; ++i)
-            if (may_stay_open(*unit.schedule, images[i]) && !closes(*unit.schedule, lane, images[i], scratch))
-                return false;
-        return true;
-    };
-    bool all = true;
-    for (int i = 0; i < n; ++i)
-        if (may_stay_open(*unit.schedule, images[i]))
-            for (std::int64_t j = 0; all && j < unit.count; ++j)
-                all = closes(*unit.schedule, lane_of(unit, j), images[i], scratch);
-    if (all) return work.unit(unit, where, scratch, tally);
-    MoleculeLane lanes[loose_piece];
-    MoleculeUnit closed{unit.schedule, lanes, 0, false, unit.large};
-    for (std::int64_t j = 0; j < unit.count; ++j) {
-        const MoleculeLane lane = lane_of(unit, j);
-        if (is_closed(lane))
-            lanes[closed.count++] = lane;
-        else
-            note_bad(lane.molecule, tally);
-        if (closed.count == loose_piece || (j + 1 == unit.count && closed.count > 0)) {
-            work.unit(closed, where, scratch, tally);
-            closed.count = 0;
-        }
-    }
 }
 
 // One call: what it needs, and its pieces one by one or shared.
