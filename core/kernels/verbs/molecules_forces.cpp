@@ -9,6 +9,7 @@ namespace holonomic::HOL_ISA {
 using namespace graph;
 
 void molecules_forces(const ForcesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+    if (unit.forests) return forests_forces(call, unit, scratch, tally);
     const bool packed =
         call.r.packed && (!call.v.x || call.v.packed) && (!call.f.x || call.f.packed) && (!call.g.x || call.g.packed);
     if (unit.schedule->network) return solve_networks(call, unit, packed, scratch, tally);
@@ -23,6 +24,7 @@ void molecules_forces(const ForcesCall &call, const MoleculeUnit &unit, double *
 }
 
 void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+    if (unit.forests) return forests_solve(call, unit, scratch, tally);
     const bool packed = call.r.packed && (!call.g.x || call.g.packed);
     if (unit.schedule->network) return solve_networks(call, unit, packed, scratch, tally);
     if (unit.schedule->type == Schedule::triangle) {

@@ -9,6 +9,7 @@ namespace holonomic::HOL_ISA {
 using namespace graph;
 
 void molecules_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+    if (unit.forests) return forests_velocities(call, unit, scratch, tally);
     const bool packed = call.r.packed && call.v.packed;
     if (unit.schedule->network) return solve_networks(call, unit, packed, scratch, tally);
     if (unit.schedule->type == Schedule::triangle)
