@@ -24,6 +24,9 @@ namespace {
 
 void create(const hol_chains *chains, std::int64_t chain, const AtomArray &r, hol_inverse **inverse) {
     const holonomic::Chains &all = chains->chains;
+    if (chain - all.base >= all.n_chains() && chain - all.base < all.n_molecules() && chain >= all.base)
+        throw make_error(Status::value, "molecule %lld has rigid bodies: the inverse of its matrix is not implemented",
+                         static_cast<long long>(chain));
     if (chain < all.base || chain - all.base >= all.n_chains()) {
         holonomic::Error error =
             make_error(Status::index, "chain %lld is outside %d .. %lld", static_cast<long long>(chain), all.base,

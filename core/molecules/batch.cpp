@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/molecules/closable.hpp"
+#include "core/rigid/bodies.hpp"
 
 namespace holonomic {
 
@@ -188,6 +189,8 @@ void Batch::append_found(const FoundMolecules &found, const BondList &list, cons
 }
 
 void Batch::commit() {
+    for (const std::int64_t atom : fixed_)
+        if (chains_.bodies_ && chains_.bodies_->is_site(atom)) throw in_use(atom);
     const double longest = chains_.kinds_.longest(static_cast<std::int64_t>(kinds_before_.n_kinds), chains_.longest_);
     check_width(chains_.box, longest);
     check_width(chains_.box_of_reference(), longest);

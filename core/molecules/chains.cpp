@@ -3,12 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/rigid/bodies.hpp"
+
 namespace holonomic {
 
 Chains::Chains(std::int64_t n_atoms, const double *masses)
     : n_atoms_(n_atoms), masses_(n_atoms, masses, 0), use_(n_atoms) {}
 
+Chains::~Chains() = default;
+
+// Of a bond, or of what else is taken as a nearest image.
+double Chains::longest() const { return bodies_ ? std::max(longest_, bodies_->longest()) : longest_; }
+
 void Chains::set_active(const unsigned char *active) {
+    if (bodies_) bodies_->set_active(active ? active + n_chains() : nullptr);
     if (active)
         active_.assign(active, active + n_chains());
     else
@@ -31,14 +39,14 @@ void Chains::box_changed(const Box &next, Box &seen) {
 
 void Chains::set_box(const double *h) {
     const Box next = make_box(h);
-    check_width(next, longest_);
+    check_width(next, longest());
     box = next;
     box_changed(box, seen_box_);
 }
 
 void Chains::set_reference_box(const double *h) {
     const Box next = make_box(h);
-    check_width(next, longest_);
+    check_width(next, longest());
     reference_box_ = next;
     has_reference_box_ = h != nullptr;
     box_changed(reference_box_, seen_reference_);
