@@ -183,6 +183,16 @@ int hol_chains_set_tolerance(hol_chains *chains, double tolerance) {
     });
 }
 
+int hol_chains_set_memory_limit(hol_chains *chains, int64_t bytes) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        if (bytes < 0)
+            throw make_error(Status::value, "bytes is %lld; it must be positive, or 0 for the default",
+                             static_cast<long long>(bytes));
+        chains->chains.memory_limit = bytes;
+    });
+}
+
 int hol_chains_set_max_iterations(hol_chains *chains, int max_iterations) {
     return guarded(__func__, [&] {
         need(chains, "chains");

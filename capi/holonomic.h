@@ -132,8 +132,8 @@ HOL_API void hol_chains_destroy(hol_chains *chains);
  * @param[in]     lengths  [n_bonds], bond lengths, 1e-150 .. 1e150. Used by hol_project_positions and hol_violation;
  *                         the acceleration and velocity levels use the bond vectors as they are. Copied.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (n_bonds, a length; since 0.2 a length of more than half the box that is
- *         set); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM; HOL_ERR_MEMORY.
- *         On an error nothing is added. Not thread-safe on one handle. Since 0.1.
+ *         set); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM; HOL_ERR_MEMORY (also: more than hol_chains_set_memory_limit
+ * allows). On an error nothing is added. Not thread-safe on one handle. Since 0.1.
  *
  * The chain is one molecule, whatever atoms of it are fixed; only a bond between two fixed atoms divides it into
  * molecules of their own, as it belongs to none.
@@ -173,7 +173,7 @@ HOL_API int hol_chains_add_block(hol_chains *chains, int64_t n_chains, int64_t n
  *         earlier call; the message names it); HOL_ERR_DEGENERATE (a bond that is given twice, or more bonds within a
  *         part of a molecule than it has freedoms, as all distances between five atoms: the message names a bond; bonds
  *         that depend on each other through the positions alone are found by the calls that meet them);
- *         HOL_ERR_MEMORY.
+ *         HOL_ERR_MEMORY (also: more than hol_chains_set_memory_limit allows; the message names the molecule).
  *         On an error nothing is added. Not thread-safe on one handle. O(n_bonds). Since 0.2.
  */
 HOL_API int hol_chains_add_bonds(hol_chains *chains, int64_t n_bonds, const int64_t *pairs, const double *lengths);
@@ -288,7 +288,8 @@ HOL_API int hol_chains_set_index_base(hol_chains *chains, int base);
  * other vector may have a component. NULL: no box. Three sides stand on the diagonal: {a,0,0, 0,b,0, 0,0,c}.
  *
  * Orthorhombic boxes (off-diagonal elements all zero) cost less than triclinic ones. The image is the right one for
- * bonds shorter than half the smallest distance between opposite faces. May be set again before every call.
+ * bonds shorter than half the smallest distance between opposite faces; molecules may be larger, and their cycles may
+ * go round the box (networks, zeolites). May be set again before every call.
  * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_VALUE (not finite, or no cell; since 0.2 narrower than twice the
  * longest bond). On an error nothing is changed. Since 0.1.
  */
@@ -489,6 +490,17 @@ HOL_API int64_t hol_chains_degrees_of_freedom(const hol_chains *chains, int dime
 /** Memory that the handle occupies, in bytes; 0 if chains is NULL. Since 0.1. */
 HOL_API int64_t hol_chains_memory(const hol_chains *chains);
 
+/**
+ * Bound on the memory that a set of molecules takes. Of a molecule with many cycles (a lattice, a sheet) the
+ * elimination fills its matrix: adding it counts what that takes before it takes anything, and refuses it with
+ * HOL_ERR_MEMORY and both numbers in the message where that, with what the set has, is more than the bound.
+ * @param[in,out] chains
+ * @param[in]     bytes  > 0, or 0 for the default: a quarter of the machine's memory. It holds for what is added later,
+ *                       and for the scratch that calls need for it.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.2.
+ */
+HOL_API int hol_chains_set_memory_limit(hol_chains *chains, int64_t bytes);
+
 /* --------------------------------------------------------------------------------------------------------- views */
 
 /** Element type of a view. */
@@ -591,8 +603,8 @@ typedef enum hol_which_box { HOL_BOX = 0, HOL_REFERENCE_BOX = 1 } hol_which_box;
  * Multipliers of hol_project_velocities leave out what its last correction of rounding changes: G agrees with m dv to
  * the rounding of v.
  * @return HOL_OK; HOL_ERR_NULL (chains, r or lambda); HOL_ERR_VALUE (box, mode); HOL_ERR_NOT_FINITE;
- *         HOL_ERR_DEGENERATE (bonds that do not close their cycle in the box); HOL_ERR_MEMORY. Inactive molecules are
- *         neither read nor written. Thread-safe on one handle. O(n_bonds). Since 0.2.
+ *         HOL_ERR_MEMORY. Inactive molecules are neither read nor written. Thread-safe on one handle. O(n_bonds). Since
+ * 0.2.
  */
 HOL_API int hol_reactions(const hol_chains *chains, const double *r, int box, const double *lambda, double *tension,
                           double *g, int mode, double *bond_virial, double *virial);
@@ -679,7 +691,7 @@ HOL_API int hol_project_positions_view(const hol_chains *chains, const hol_view 
  *
  * @param[in]     chains
  * @param[in]     b        [n_bonds][3] (Fortran: (3, n_bonds)), in the order in which the bonds were given. Not read
- * for bonds between two fixed atoms. The reference box is not used
+ * for bonds between two fixed atoms. The reference box is used for cycles that go round it alone
  * @param[in,out] r        this and all others as in hol_project_positions
  * @param[in,out] v        or NULL
  * @param[in]     dt       time step
@@ -690,7 +702,8 @@ HOL_API int hol_project_positions_view(const hol_chains *chains, const hol_view 
  *
  * The vectors are laid one after the other, from an origin at the first atom of each molecule, each rounded once as
  * coordinates there are: results are those of hol_project_positions with such coordinates. In a molecule with cycles, a
- * vector that the others determine is taken from them; it must agree with them to a thousandth of its length.
+ * vector that the others determine is taken from them; it must agree with them to a thousandth of its length, but for
+ * sides of the reference box where a cycle goes round that.
  * @return as hol_project_positions; HOL_ERR_NOT_FINITE (a vector) and HOL_ERR_DEGENERATE (vectors that do not close
  *         their cycle) with nothing changed at all. O(n_bonds) more, by one thread. Since 0.2.
  */
@@ -890,7 +903,10 @@ HOL_API int hol_inverse_error_bound_view(const hol_inverse *inverse, const hol_v
  * first two rows (gamma_2 in the paper), gamma[k] rows k and k+1 counted from 0.
  *
  * Accuracy. Results are those of the given doubles to a few roundings (plus one or two for each row between i and j in
- * inverse elements), as all recursions run in twice the precision; this holds up to a condition number of about 1e14.
+ * inverse elements), up to a condition number of about 1e14. Solutions, pivots and determinants are computed in doubles
+ * and corrected by what their rounding has done, which costs as much as a plain elimination. Where the corrections show
+ * that this is not enough (condition numbers above some 1e6), and for inverse elements, the recursions run in twice the
+ * precision and take 10 to 20 times as long.
  * But gamma alone carries only so much: changing each gamma by half a unit in its last place changes the results by up
  * to 1.1e-16 times the condition number, relatively. Chains whose masses and bond vectors are known should go through
  * hol_metric and hol_inverse, which lose nothing. A matrix that its rounding has made singular is reported as such.

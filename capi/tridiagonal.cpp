@@ -8,8 +8,12 @@ using holonomic::Tridiagonal;
 
 namespace {
 
-Tridiagonal matrix(std::int64_t n, const double *gamma) {
+void need_gamma(std::int64_t n, const double *gamma) {
     if (n > 1) need(gamma, "gamma");
+}
+
+Tridiagonal matrix(std::int64_t n, const double *gamma) {
+    need_gamma(n, gamma);
     return Tridiagonal(n, gamma);
 }
 
@@ -18,14 +22,16 @@ Tridiagonal matrix(std::int64_t n, const double *gamma) {
 int hol_tridiagonal_pivots(int64_t n, const double *gamma, double *omega2) {
     return guarded(__func__, [&] {
         need(omega2, "omega2");
-        matrix(n, gamma).pivots(omega2);
+        need_gamma(n, gamma);
+        holonomic::tridiagonal_pivots(n, gamma, omega2);
     });
 }
 
 int hol_tridiagonal_log_det(int64_t n, const double *gamma, double *log_det) {
     return guarded(__func__, [&] {
         need(log_det, "log_det");
-        *log_det = matrix(n, gamma).log_det();
+        need_gamma(n, gamma);
+        *log_det = holonomic::tridiagonal_log_det(n, gamma);
     });
 }
 
@@ -33,7 +39,8 @@ int hol_tridiagonal_solve(int64_t n, const double *gamma, const double *b, doubl
     return guarded(__func__, [&] {
         need(b, "b");
         need(x, "x");
-        matrix(n, gamma).solve(b, x);
+        need_gamma(n, gamma);
+        holonomic::tridiagonal_solve(n, gamma, b, x);
     });
 }
 

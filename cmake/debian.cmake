@@ -3,15 +3,18 @@
 #   libholonomic0        both shared libraries
 #   libholonomic-dev     header, static libraries, pkg-config, CMake package, Fortran modules and their sources
 #   holonomic-examples   the programs of examples/
+#   python3-holonomic    the Python package
 
 install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/holonomic-examples/examples
     COMPONENT examples EXCLUDE_FROM_ALL)
+install(DIRECTORY python/holonomic DESTINATION lib/python3/dist-packages
+    COMPONENT python EXCLUDE_FROM_ALL FILES_MATCHING PATTERN "*.py" PATTERN py.typed PATTERN __pycache__ EXCLUDE)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGE_CONTACT "The holonomic authors <holonomic@example.org>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
-set(CPACK_COMPONENTS_ALL libraries development examples)
+set(CPACK_COMPONENTS_ALL libraries development examples python)
 set(CPACK_STRIP_FILES ON)
 # A package's folders and files must not depend on the umask of whoever made it.
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
@@ -24,7 +27,7 @@ set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS OFF)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "exact constraint forces of rigid bonds for molecular dynamics")
 set(what "Lagrange multipliers and constraint forces of molecules of rigid bonds, to
 the rounding of the coordinates, in time linear in the number of bonds. For
-molecular and Brownian dynamics codes in C, C++ and Fortran.")
+molecular and Brownian dynamics codes in C, C++, Fortran and Python.")
 
 # describe(COMPONENT PACKAGE SECTION TEXT)
 function(describe component package section text)
@@ -37,6 +40,7 @@ describe(libraries libholonomic${HOLONOMIC_SOVERSION} libs "This package has the
 describe(development libholonomic-dev libdevel
     "This package has the C header, the Fortran modules and their sources, static\nlibraries, and files for pkg-config and CMake.")
 describe(examples holonomic-examples doc "This package has example programs in C and Fortran.")
+describe(python python3-holonomic python "This package has the module for Python 3, and a constraint for ASE.")
 
 set(same_version "libholonomic${HOLONOMIC_SOVERSION} (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_LIBRARIES_PACKAGE_SHLIBDEPS ON)
@@ -45,6 +49,13 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "pkgconf | pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "holonomic-examples, cmake, gfortran")
 set(CPACK_DEBIAN_EXAMPLES_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_EXAMPLES_PACKAGE_SUGGESTS "libholonomic-dev")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3:any (>= 3.8), python3-numpy, libholonomic${HOLONOMIC_SOVERSION} (>= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-ase")
+# What Python keeps compiled comes and goes with the package.
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/cmake/debian/python/postinst
+    ${PROJECT_SOURCE_DIR}/cmake/debian/python/prerm)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_STRICT_PERMISSION TRUE)
 set(CPACK_DEBIAN_LIBRARIES_PACKAGE_MULTIARCH same)
 
 # The symbols file says since which release a program needs each function: the nodes of the version script say so.
@@ -78,7 +89,7 @@ if(GZIP)
     execute_process(COMMAND ${GZIP} -9nc ${PROJECT_BINARY_DIR}/debian/changelog
         OUTPUT_FILE ${PROJECT_BINARY_DIR}/debian/changelog.gz)
 endif()
-foreach(component libraries development examples)
+foreach(component libraries development examples python)
     string(TOUPPER ${component} key)
     set(documents ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_${key}_PACKAGE_NAME})
     install(FILES cmake/debian/copyright DESTINATION ${documents} COMPONENT ${component} EXCLUDE_FROM_ALL)

@@ -39,10 +39,6 @@ struct ForcesWork final : Work {
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
         k.molecules.forces(calls[where], unit, scratch, tally);
     }
-    int images(int where, Images *images) const override {
-        images[0] = {&calls[where].r, &calls[where].box};
-        return 1;
-    }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_forces.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return k.long_forces.bytes(n); }
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {

@@ -26,10 +26,6 @@ struct MetricWork final : Work {
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
         k.molecules.metric(calls[where], unit, scratch, tally);
     }
-    int images(int where, Images *images) const override {
-        images[0] = {&calls[where].r, &calls[where].box};
-        return 1;
-    }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_metric.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return store_bytes(k.long_metric, n); }
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {

@@ -34,11 +34,6 @@ struct PositionsWork final : Work {
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
         k.molecules.positions(calls[where], unit, scratch, tally);
     }
-    int images(int where, Images *images) const override {
-        images[0] = {&calls[where].r_ref, &calls[where].box_ref};
-        images[1] = {&calls[where].r, &calls[where].box};
-        return 2;
-    }
     bool shares_lists() const override { return true; }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_positions.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return store_bytes(k.long_positions, n); }
@@ -69,14 +64,14 @@ Report report_of(const Chains &chains, const Tally &tally) {
 void project_positions_of_bonds(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v,
                                 double dt, double *lambda, bool guess, double *virial, Report *report,
                                 WorstLength *reference_error) {
-    const Box none{}, &box_ref = along.r_ref ? chains.box_of_reference() : none;
-    const BondVectors given{along.r_ref, along.bonds, along.r_ref ? &box_ref : nullptr};
+    const BondVectors given{along.r_ref, along.bonds, along.r_ref ? &chains.box_of_reference() : nullptr};
     if (chains.wants_fit() || (report && chains.checks() == Checks::never))
         *reference_error = worst_length(chains, given);
     check_start(chains, given, r);
     std::optional<Reference> made;
     if (!along.r_ref) made.emplace(chains, *along.bonds);
     const Reference *const reference = made ? &*made : nullptr;
+    const Box none{}, &box_ref = !reference || reference->winds() ? chains.box_of_reference() : none;
     PositionsCall call;
     call.r_ref = reference ? reference->atoms() : *along.r_ref;
     call.r = r;

@@ -178,10 +178,6 @@ struct ReactionsWork final : Work {
                 note_bad(lane.molecule, tally);
         }
     }
-    int images(int where, Images *images) const override {
-        images[0] = {&calls[where].r, calls[where].box};
-        return 1;
-    }
     std::int64_t long_blocks(std::int64_t n) const override { return (n + block - 1) / block; }
     std::int64_t long_bytes(std::int64_t) const override { return 0; }
     void long_chain(const Lane &lane, int where, const Team &team, double *, Tally &tally) const override {

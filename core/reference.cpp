@@ -4,6 +4,7 @@
 #include <cmath>
 #include <new>
 
+#include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
 #include "core/run/bond_words.hpp"
 #include "core/run/lane.hpp"
@@ -60,13 +61,19 @@ void Reference::lay_out(const Molecule &m, const AtomArray &to, const Place &pla
         vector_of(k);
         read_atom(to, place(m.i(k)), at);
         read_atom(to, place(m.j(k)), other);
-        double gap = 0, size = 0;
+        double open[3], gap = 0, size = 0;
         for (int c = 0; c < 3; ++c) {
-            gap = std::max(gap, std::fabs(other[c] - at[c] - d[c]));
+            open[c] = other[c] - at[c] - d[c];
             size = std::max(size, std::fabs(d[c]));
         }
-        if (gap > most_open * size)
-            throw of_bond(chains_, m, k, Status::degenerate, "does not close its cycle with the others");
+        const auto is_open = [&] {
+            gap = std::max({std::fabs(open[0]), std::fabs(open[1]), std::fabs(open[2])});
+            return gap > most_open * size;
+        };
+        if (!is_open()) continue;
+        minimum_image(chains_.box_of_reference(), open);  // of a cycle round the box
+        if (is_open()) throw of_bond(chains_, m, k, Status::degenerate, "does not close its cycle with the others");
+        winds_ = true;
     }
 }
 

@@ -15,6 +15,9 @@ public:
 
     const AtomArray &atoms() const { return atoms_; }    // [n_atoms], of molecules that are worked on in place
     const AtomArray &staged() const { return staged_; }  // in the order of the plan's stage
+    // Whether a cycle goes round the reference box: then bonds are the nearest images of these coordinates'
+    // differences.
+    bool winds() const { return winds_; }
     // Puts a molecule that may be staged where atoms() has it, for messages.
     void show(std::int64_t molecule) const;
 
@@ -25,6 +28,7 @@ private:
     const Chains &chains_;
     const AtomArray &bonds_;
     AtomArray atoms_, staged_;
+    mutable bool winds_ = false;
 };
 
 }  // namespace holonomic

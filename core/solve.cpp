@@ -36,10 +36,6 @@ struct SolveWork final : Work {
     }
     // The plan has no linear chains.
     void unit(const Unit &, int, double *, Tally &) const override {}
-    int images(int where, Images *images) const override {
-        images[0] = {&calls[where].r, &calls[where].box};
-        return 1;
-    }
     std::int64_t long_blocks(std::int64_t) const override { return 0; }
     std::int64_t long_bytes(std::int64_t) const override { return 0; }
     void long_chain(const Lane &, int, const Team &, double *, Tally &) const override {}

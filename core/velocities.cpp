@@ -30,10 +30,6 @@ struct VelocitiesWork final : Work {
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
         k.molecules.velocities(calls[where], unit, scratch, tally);
     }
-    int images(int where, Images *images) const override {
-        images[0] = {&calls[where].r, &calls[where].box};
-        return 1;
-    }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_velocities.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return k.long_velocities.bytes(n); }
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {

@@ -145,6 +145,13 @@ module holonomic_c_molecules
          integer(c_int) :: status
       end function
 
+      function hol_chains_set_memory_limit(chains, bytes) bind(c) result(status)
+         import :: c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t), value :: bytes
+         integer(c_int) :: status
+      end function
+
       function hol_chains_set_max_iterations(chains, max_iterations) bind(c) result(status)
          import :: c_int, c_ptr
          type(c_ptr), value :: chains

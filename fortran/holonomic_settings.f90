@@ -6,8 +6,8 @@ module holonomic_settings
    use holonomic_c, only: hol_chains_n_atoms, hol_chains_n_bonds, hol_chains_n_chains, hol_chains_set_active, &
                           hol_chains_set_box, hol_chains_set_box_rate, hol_chains_set_checks, hol_chains_set_labels, &
                           hol_chains_set_lengths, hol_chains_set_masses, &
-                          hol_chains_set_max_iterations, hol_chains_set_reference_box, hol_chains_set_threads, &
-                          hol_chains_set_tolerance, HOL_ERR_MEMORY
+                          hol_chains_set_max_iterations, hol_chains_set_memory_limit, hol_chains_set_reference_box, &
+                          hol_chains_set_threads, hol_chains_set_tolerance, HOL_ERR_MEMORY
    use holonomic_place, only: enough, list_of, tensor
    use holonomic_status, only: failure, settle
    implicit none
@@ -28,6 +28,8 @@ module holonomic_settings
       procedure :: set_active
       procedure :: set_tolerance
       procedure :: set_max_iterations
+      procedure, private :: set_memory_limit_32, set_memory_limit_64
+      generic :: set_memory_limit => set_memory_limit_32, set_memory_limit_64
       procedure :: set_lengths
       procedure :: set_masses
    end type
@@ -215,6 +217,26 @@ contains
       call problem%need_created(self%c_handle())
       call problem%ask(hol_chains_set_max_iterations(self%c_handle(), int(max_iterations, c_int)))
       call settle(problem, "set_max_iterations", stat, errmsg)
+   end subroutine
+
+   ! Bytes that molecules added later may take in all; 0: a quarter of the machine's memory.
+   subroutine set_memory_limit_64(self, bytes, stat, errmsg)
+      class(chain_set_settings), intent(inout) :: self
+      integer(int64), intent(in) :: bytes
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      call problem%need_created(self%c_handle())
+      call problem%ask(hol_chains_set_memory_limit(self%c_handle(), int(bytes, c_int64_t)))
+      call settle(problem, "set_memory_limit", stat, errmsg)
+   end subroutine
+
+   subroutine set_memory_limit_32(self, bytes, stat, errmsg)
+      class(chain_set_settings), intent(inout) :: self
+      integer(int32), intent(in) :: bytes
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      call self%set_memory_limit(int(bytes, int64), stat, errmsg)
    end subroutine
 
    ! New lengths of all bonds, in the order in which these were given.

@@ -65,9 +65,20 @@ int main() { OpenMM::System system; }' | c++ -x c++ - -lOpenMM -o /dev/null 2>/d
         gromacs-data) [ -e /usr/share/gromacs/top/spc216.gro ] ;;
         flang) present_any flang flang-new flang-22 flang-21 flang-20 flang-new-19 flang-new-18 ;;
         arm) command -v aarch64-linux-gnu-g++ >/dev/null && command -v qemu-aarch64 >/dev/null ;;
+        numpy) [ -n "$(python_with numpy)" ] ;;
+        ase) [ -n "$(python_with numpy, ase)" ] ;;
+        venv) [ -n "$(python_with numpy, venv, ensurepip)" ] ;;
         eigen) [ -e /usr/include/eigen3/Eigen/Core ] || pkg-config --exists eigen3 2>/dev/null ;;
         *) command -v "$1" >/dev/null ;;
     esac
+}
+
+# The first Python that has these modules, the system's among them.
+python_with() { # python_with MODULE[, MODULE...]
+    local name
+    for name in python3 /usr/bin/python3; do
+        "$name" -c "import $*" >/dev/null 2>&1 && echo "$name" && return
+    done
 }
 
 present_any() {
@@ -95,6 +106,9 @@ debian_package() {
         benchmark) echo libbenchmark-dev ;;
         lapack) echo liblapack-dev ;;
         openmm) echo libopenmm-dev ;;
+        numpy) echo python3-numpy ;;
+        ase) echo python3-numpy python3-ase ;;
+        venv) echo python3-numpy python3-venv ;;
         abidiff) echo abigail-tools ;;
         dpkg-shlibdeps) echo dpkg-dev ;;
         mpi) echo openmpi-bin libopenmpi-dev ;;

@@ -1,16 +1,67 @@
 // Theory (38)-(41).
 #include "core/inverse/tridiagonal.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "core/error.hpp"
+#include "core/run/dispatch.hpp"
 
 namespace holonomic {
 
-Tridiagonal::Tridiagonal(std::int64_t n, const double *gamma) : n_(static_cast<std::size_t>(n)), gamma_(gamma) {
+namespace {
+
+void check_rows(std::int64_t n) {
     if (n < 1 || n > std::numeric_limits<std::int64_t>::max() / 64)
         throw make_error(Status::value, "n is %lld; it must be at least 1", static_cast<long long>(n));
+}
+
+// What an Omega^2 adds to ln det. `removed` is 1 - Omega^2, with its own digits.
+double log_of(double removed, double omega2) { return removed < 0.5 ? std::log1p(-removed) : std::log(omega2); }
+
+// Memory for a call: small matrices need none of the system's.
+class Scratch {
+public:
+    explicit Scratch(std::size_t size) {
+        if (size > sizeof here_ / sizeof *here_) far_.reset(new double[size]);
+    }
+    double *data() { return far_ ? far_.get() : here_; }
+
+private:
+    double here_[384];
+    std::unique_ptr<double[]> far_;
+};
+
+}  // namespace
+
+void tridiagonal_pivots(std::int64_t n, const double *gamma, double *omega2) {
+    check_rows(n);
+    Scratch pivots(static_cast<std::size_t>(n));
+    if (!kernels().tridiagonal.pivots(n, gamma, pivots.data())) return Tridiagonal(n, gamma).pivots(omega2);
+    std::copy(pivots.data(), pivots.data() + n, omega2);
+}
+
+double tridiagonal_log_det(std::int64_t n, const double *gamma) {
+    check_rows(n);
+    Scratch scratch(static_cast<std::size_t>(n));
+    double *const pivots = scratch.data();
+    if (!kernels().tridiagonal.pivots(n, gamma, pivots)) return Tridiagonal(n, gamma).log_det();
+    DoublePair sum = as_pair(0);
+    for (std::int64_t k = 1; k < n; ++k)
+        sum = sum + as_pair(log_of(gamma[k - 1] * gamma[k - 1] / pivots[k - 1], pivots[k]));
+    return rounded(sum);
+}
+
+void tridiagonal_solve(std::int64_t n, const double *gamma, const double *b, double *x) {
+    check_rows(n);
+    Scratch scratch(3 * static_cast<std::size_t>(n));
+    if (!kernels().tridiagonal.solve(n, gamma, b, x, scratch.data())) Tridiagonal(n, gamma).solve(b, x);
+}
+
+Tridiagonal::Tridiagonal(std::int64_t n, const double *gamma) : n_(static_cast<std::size_t>(n)), gamma_(gamma) {
+    check_rows(n);
     for (std::size_t k = 1; k < n_; ++k) {
         if (std::isfinite(gamma_[k - 1])) continue;
         Error error = make_error(Status::not_finite, "gamma between rows %lld and %lld is not finite",
@@ -40,7 +91,7 @@ double Tridiagonal::log_det() const {
     DoublePair sum = as_pair(0);  // of terms that all have the same sign
     for (std::size_t k = 1; k < n_; ++k) {
         const double removed = rounded(gamma(k) * factor(k));
-        sum = sum + as_pair(removed < 0.5 ? std::log1p(-removed) : std::log(rounded(omega2_[k])));
+        sum = sum + as_pair(log_of(removed, rounded(omega2_[k])));
     }
     return rounded(sum);
 }

@@ -9,6 +9,12 @@
 
 namespace holonomic {
 
+// By plain products where these are sure of the last digits, else as Tridiagonal has it. x may be b; on an Error
+// nothing is written.
+void tridiagonal_pivots(std::int64_t n, const double *gamma, double *omega2);
+double tridiagonal_log_det(std::int64_t n, const double *gamma);
+void tridiagonal_solve(std::int64_t n, const double *gamma, const double *b, double *x);
+
 // Elimination from the first row on, in twice the precision: without the bonds there is no form without subtractions,
 // so the digits that they cost are carried along. Throws Error.
 class Tridiagonal {

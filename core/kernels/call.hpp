@@ -171,6 +171,14 @@ struct MoleculeKernels {
     void (*solve)(const SolveCall &, const MoleculeUnit &, double *scratch, Tally &);
 };
 
+// The tridiagonal matrix of n rows with ones on its diagonal and -gamma beside it, by plain products. Both return false
+// where these cannot answer for the last digits, or an argument is not finite; then x is as it was, and what is in
+// pivots means nothing.
+struct TridiagonalKernels {
+    bool (*solve)(int64_t n, const double *gamma, const double *b, double *x, double *scratch);  // scratch: [3 n]
+    bool (*pivots)(int64_t n, const double *gamma, double *pivots);
+};
+
 // The kernels of one instruction set. `scratch` has scratch_bytes(bonds of the longest chain), aligned to 64; for long
 // chains piece_bytes.
 struct Kernels {
@@ -187,6 +195,7 @@ struct Kernels {
     InWindows<PositionsCall> long_positions;
     InWindows<MetricCall> long_metric;
     MoleculeKernels molecules{};
+    TridiagonalKernels tridiagonal{};
 };
 
 }  // namespace holonomic

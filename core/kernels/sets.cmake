@@ -29,6 +29,7 @@ set(other_kernels
     kernels/verbs/positions_long.cpp
     kernels/verbs/positions_paths.cpp
     kernels/verbs/segments.cpp
+    kernels/verbs/tridiagonal.cpp
 )
 set(careful_kernels
     kernels/careful/linear.cpp

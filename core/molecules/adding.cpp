@@ -4,6 +4,7 @@
 
 #include "core/molecules/batch.hpp"
 #include "core/molecules/chains.hpp"
+#include "core/molecules/memory_limit.hpp"
 
 namespace holonomic {
 
@@ -58,6 +59,7 @@ void Chains::add(std::int64_t n_bonds, const std::int64_t *atoms, const double *
     if (n_bonds > 2 * n_atoms_)
         throw make_error(Status::value, "n_bonds is %lld: a chain of so many bonds has more than the %lld atoms",
                          static_cast<long long>(n_bonds), static_cast<long long>(n_atoms_));
+    check_memory(*this, n_bonds, bytes_of_chain_bond);
     check_lengths(n_bonds, lengths, base);
     std::vector<std::int64_t> list;
     for (std::int64_t k = 0; k <= n_bonds; ++k) {
@@ -84,6 +86,7 @@ void Chains::add_block(std::int64_t count, std::int64_t n_bonds, std::int64_t fi
     const std::int64_t first = from_zero(first_atom, base);
     if (first < 0 || first >= n_atoms_ || n_bonds >= n_atoms_ || count > (n_atoms_ - first) / (n_bonds + 1))
         throw outside("chains", count, n_bonds, first_atom, n_atoms_, base);
+    check_memory(*this, count * n_bonds, bytes_of_chain_bond);
     check_lengths(n_bonds, lengths, base);
     Batch batch(*this);
     for (std::int64_t c = 0; c < count; ++c)
@@ -97,6 +100,7 @@ void Chains::add_bonds(std::int64_t n_bonds, const std::int64_t *pairs, const do
     if (n_bonds > most_bonds)
         throw make_error(Status::value, "n_bonds is %lld; it must be at most %lld in a call",
                          static_cast<long long>(n_bonds), static_cast<long long>(most_bonds));
+    check_memory(*this, n_bonds, bytes_of_listed_bond);
     check_lengths(n_bonds, lengths, base);
     const BondList list{n_bonds, pairs, base, &labels_};
     const FoundMolecules found = find_molecules(masses_, n_atoms_, list);
@@ -117,6 +121,7 @@ void Chains::add_molecules(std::int64_t count, std::int64_t n_atoms, std::int64_
     const std::int64_t first = from_zero(first_atom, base);
     if (first < 0 || first >= n_atoms_ || n_atoms > n_atoms_ || count > (n_atoms_ - first) / n_atoms)
         throw outside("molecules", count, n_atoms, first_atom, n_atoms_, base);
+    check_memory(*this, count * n_bonds, bytes_of_listed_bond);
     check_lengths(n_bonds, lengths, base);
     for (std::int64_t e = 0; e < 2 * n_bonds; ++e)
         if (pairs[e] < base || pairs[e] - base >= n_atoms) {

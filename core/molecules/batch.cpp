@@ -1,8 +1,10 @@
 #include "core/molecules/batch.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "core/molecules/closable.hpp"
+#include "core/molecules/memory_limit.hpp"
 #include "core/rigid/bodies.hpp"
 
 namespace holonomic {
@@ -155,6 +157,30 @@ void Batch::note_direction(const FoundMolecules &found, const FoundMolecule &mol
     }
 }
 
+std::int32_t Batch::shape_of(const FoundMolecules &found, std::size_t m, std::int32_t likely) {
+    const FoundMolecule &molecule = found.molecules[m];
+    const std::int32_t before = chains_.shapes_.size();
+    if (room_ < 0) room_ = memory_left(chains_);
+    try {
+        const std::int32_t shape = chains_.shapes_.find(molecule.form, molecule.n_atoms, molecule.n_bonds,
+                                                        &found.pairs[2 * at(molecule.first_bond)],
+                                                        &found.fixed[at(molecule.first_atom)], likely, room_);
+        if (shape == before)
+            room_ = std::max<std::int64_t>(
+                room_ - static_cast<std::int64_t>(bytes_of(*chains_.shapes_[shape].schedule)), 0);
+        return shape;
+    } catch (const TooMuchMemory &needed) {
+        const std::int64_t atom = found.atoms[at(molecule.first_atom)];
+        char what[200];
+        std::snprintf(what, sizeof what, "the molecule of %lld bonds with atom %s",
+                      static_cast<long long>(molecule.n_bonds), chains_.name_of_atom(atom).text);
+        Error error = too_much_memory(chains_, what, needed.bytes);
+        error.atom = atom;
+        error.base = chains_.base;
+        throw error;
+    }
+}
+
 void Batch::append_found(const FoundMolecules &found, const BondList &list, const double *lengths,
                          std::int64_t n_lengths) {
     const std::int64_t n_bonds = list.n_bonds;
@@ -172,11 +198,7 @@ void Batch::append_found(const FoundMolecules &found, const BondList &list, cons
         w_.resize(n_atoms);
         for (std::size_t i = 0; i < n_atoms; ++i) w_[i] = chains_.masses_.w(found.atoms[first + i]);
         std::int32_t shape = linear;
-        if (molecule.form != Form::chain) {
-            shape = last_shape =
-                chains_.shapes_.find(molecule.form, molecule.n_atoms, molecule.n_bonds,
-                                     &found.pairs[2 * at(molecule.first_bond)], &found.fixed[first], last_shape);
-        }
+        if (molecule.form != Form::chain) shape = last_shape = shape_of(found, m, last_shape);
         note_direction(found, molecule, list);
         append_one(found, m, shape, &in_order[at(molecule.first_bond)]);
         if (molecule.n_fixed == 0) continue;

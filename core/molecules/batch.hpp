@@ -29,6 +29,7 @@ public:
 
 private:
     void append_part(std::int64_t n_bonds, const std::int64_t *atoms, const double *lengths, std::int64_t first_bond);
+    std::int32_t shape_of(const FoundMolecules &found, std::size_t m, std::int32_t likely);
     void append_one(const FoundMolecules &found, std::size_t m, std::int32_t shape, const double *lengths);
     void note_direction(const FoundMolecules &found, const FoundMolecule &molecule, const BondList &list);
     Error in_use(std::int64_t atom) const;
@@ -40,6 +41,7 @@ private:
     const Kinds::Mark kinds_before_;
     const std::size_t n_unconstrained_, n_active_;
     std::int64_t n_bonds_ = 0;
+    std::int64_t room_ = -1;                 // memory that new shapes may take; -1: not asked for yet
     const FoundMolecules *found_ = nullptr;  // of which the movable atoms are to be taken
     std::vector<std::int64_t> taken_, fixed_;
     std::vector<double> w_;

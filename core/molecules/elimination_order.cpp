@@ -53,16 +53,19 @@ private:
 
 }  // namespace
 
-std::vector<std::int32_t> minimum_degree(std::vector<Rows> neighbours, Ties ties) {
+std::vector<std::int32_t> minimum_degree(std::vector<Rows> neighbours, Ties ties, std::int64_t most_bytes) {
     const std::size_t n = neighbours.size();
     Degrees degrees(n, ties);
     for (std::size_t i = n; i-- > 0;) degrees.insert(static_cast<std::int32_t>(i), neighbours[i].size());
     Rows order, seen(n, -1);
+    std::int64_t bytes = 0;
     order.reserve(n);
     for (std::size_t step = 0; step < n; ++step) {
         const std::int32_t k = degrees.take_least();
         order.push_back(k);
         const Rows front = std::move(neighbours[static_cast<std::size_t>(k)]);
+        bytes += bytes_of_column(static_cast<std::int64_t>(front.size()));
+        if (bytes > most_bytes) throw TooMuchMemory{bytes};
         for (const std::int32_t i : front) {
             // The neighbours of i without k, and all others of k.
             Rows &mine = neighbours[static_cast<std::size_t>(i)];

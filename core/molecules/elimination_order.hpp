@@ -3,16 +3,29 @@
 #define HOLONOMIC_ELIMINATION_ORDER_HPP
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace holonomic {
+
+// Thrown before memory is taken that is more than may be.
+struct TooMuchMemory {
+    std::int64_t bytes;  // at least
+};
+constexpr std::int64_t no_limit = std::numeric_limits<std::int64_t>::max();
+
+// What a column with so many entries takes: the products that it gives to others, in two lists, and its entries there
+// and in the scratch of the solvers.
+constexpr std::int64_t bytes_of_column(std::int64_t entries) { return 4 * entries * (entries - 1) + 128 * entries; }
 
 // Minimum degree: the row with the fewest neighbours first, its neighbours then being coupled to each other.
 // `neighbours` of each row without itself; they are used up. Of rows of equal degree the one that got it last is taken,
 // so that the elimination goes along a chain of rows and not to and fro; or the first one, so that it goes on
 // everywhere at once and few rows wait for many others.
+// Counts meanwhile what the elimination fills, so that nothing has to be stored to know it.
 enum class Ties { latest, first };
-std::vector<std::int32_t> minimum_degree(std::vector<std::vector<std::int32_t>> neighbours, Ties ties = Ties::latest);
+std::vector<std::int32_t> minimum_degree(std::vector<std::vector<std::int32_t>> neighbours, Ties ties = Ties::latest,
+                                         std::int64_t most_bytes = no_limit);
 
 // The pattern of the factor below its diagonal for rows in the order of elimination, column by column, rows ascending.
 // `neighbours` in the same numbers.

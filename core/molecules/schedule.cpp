@@ -12,7 +12,8 @@ namespace {
 
 class Maker {
 public:
-    Maker(Schedule &s, Schedule::Memory &m) : s_(s), m_(m), bonds_(bonds_of_atoms()) {}
+    Maker(Schedule &s, Schedule::Memory &m, std::int64_t most_bytes)
+        : s_(s), m_(m), most_bytes_(most_bytes), bonds_(bonds_of_atoms()) {}
 
     void make() {
         strip();
@@ -119,12 +120,23 @@ private:
             core_number[at(k)] = static_cast<std::int32_t>(core.size());
             core.push_back(k);
         }
+        check_atoms(core);
         std::vector<Numbers> neighbours(core.size());
         for (std::size_t p = 0; p < core.size(); ++p)
             for (const std::int32_t i : {m_.atom_i[at(core[p])], m_.atom_j[at(core[p])]})
                 for (const std::int32_t *l = bonds_.begin(i); l != bonds_.end(i); ++l)
                     if (*l != core[p] && core_number[at(*l)] >= 0) neighbours[p].push_back(core_number[at(*l)]);
-        for (const std::int32_t p : minimum_degree(std::move(neighbours))) m_.bond_of.push_back(core[at(p)]);
+        for (const std::int32_t p : minimum_degree(std::move(neighbours), Ties::latest, most_bytes_))
+            m_.bond_of.push_back(core[at(p)]);
+    }
+    // Bonds at one atom are all neighbours of each other: n of them fill at least what n columns do.
+    void check_atoms(const Numbers &core) const {
+        Numbers degree(at(s_.n_atoms));
+        std::int64_t bytes = 0;
+        for (const std::int32_t k : core)
+            for (const std::int32_t i : {m_.atom_i[at(k)], m_.atom_j[at(k)]})
+                bytes += 8 * std::int64_t{++degree[at(i)]};
+        if (bytes > most_bytes_) throw TooMuchMemory{bytes};
     }
 
     void invert_numbers() {
@@ -213,6 +225,7 @@ private:
 
     Schedule &s_;
     Schedule::Memory &m_;
+    const std::int64_t most_bytes_;
     const Lists bonds_;
     Numbers upper_bond_;  // of the atoms of trees, by local atom; -1: a root, or of the core
 };
@@ -233,7 +246,7 @@ void add_runs(Schedule &s, Schedule::Memory &m) {
 }
 
 std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
-                                        const bool *fixed) {
+                                        const bool *fixed, std::int64_t most_bytes) {
     std::unique_ptr<Schedule> s(new Schedule());
     Schedule::Memory &m = *(s->memory = new Schedule::Memory());
     s->n_atoms = n_atoms;
@@ -243,7 +256,7 @@ std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bon
         m.atom_j.push_back(pairs[2 * k + 1]);
     }
     for (std::int32_t i = 0; i < n_atoms; ++i) m.fixed.push_back(fixed && fixed[i]);
-    Maker(*s, m).make();
+    Maker(*s, m, most_bytes).make();
     point_into(*s, m);
     return s;
 }
@@ -251,8 +264,8 @@ std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bon
 }  // namespace
 
 std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
-                                              const bool *fixed) {
-    std::unique_ptr<Schedule> s = bare_schedule(n_atoms, n_bonds, pairs, fixed);
+                                              const bool *fixed, std::int64_t most_bytes) {
+    std::unique_ptr<Schedule> s = bare_schedule(n_atoms, n_bonds, pairs, fixed, most_bytes);
     Schedule::Memory &m = *s->memory;
     if (n_bonds > largest_in_lanes && s->type == Schedule::tree) add_runs(*s, m);
     if (takes_flat_list(*s)) {
@@ -267,7 +280,7 @@ std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t
 
 std::unique_ptr<const Schedule> make_bare_schedule(std::int32_t n_atoms, std::int32_t n_bonds,
                                                    const std::int32_t *pairs, const bool *fixed) {
-    return bare_schedule(n_atoms, n_bonds, pairs, fixed);
+    return bare_schedule(n_atoms, n_bonds, pairs, fixed, no_limit);
 }
 
 }  // namespace holonomic

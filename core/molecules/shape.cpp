@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/molecules/hash.hpp"
+#include "core/molecules/memory_limit.hpp"
 
 namespace holonomic {
 
@@ -48,7 +49,7 @@ std::vector<std::int32_t> spanning_walk(std::int32_t n_atoms, const std::vector<
 }  // namespace
 
 std::int32_t Shapes::find(Form form, std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
-                          const unsigned char *fixed, std::int32_t likely) {
+                          const unsigned char *fixed, std::int32_t likely, std::int64_t most_bytes) {
     if (likely >= 0 && is((*this)[likely], n_atoms, n_bonds, pairs, fixed)) return likely;
     std::uint64_t hash = mix(static_cast<std::uint64_t>(n_bonds), static_cast<std::uint64_t>(n_atoms));
     for (std::int64_t k = 0; k < 2 * std::int64_t{n_bonds}; ++k) hash = mix(hash, static_cast<std::uint64_t>(pairs[k]));
@@ -57,11 +58,12 @@ std::int32_t Shapes::find(Form form, std::int32_t n_atoms, std::int32_t n_bonds,
     for (auto it = candidates.first; it != candidates.second; ++it)
         if (is((*this)[it->second], n_atoms, n_bonds, pairs, fixed)) return it->second;
 
+    if (n_bonds > most_bytes / bytes_of_shape_bond) throw TooMuchMemory{n_bonds * bytes_of_shape_bond};
     Shape shape{form, n_atoms, n_bonds, {pairs, pairs + 2 * std::int64_t{n_bonds}}, {fixed, fixed + n_atoms}, {}, {}};
     shape.walk = spanning_walk(n_atoms, shape.pairs);
     const std::unique_ptr<bool[]> flags(new bool[static_cast<std::size_t>(n_atoms)]);
     std::transform(fixed, fixed + n_atoms, flags.get(), [](unsigned char f) { return f != 0; });
-    shape.schedule = make_schedule(n_atoms, n_bonds, pairs, flags.get());
+    shape.schedule = make_schedule(n_atoms, n_bonds, pairs, flags.get(), most_bytes);
     shapes_.push_back(std::move(shape));
     try {
         by_hash_.emplace(hash, size() - 1);

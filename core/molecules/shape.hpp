@@ -27,9 +27,9 @@ struct Shape {
 class Shapes {
 public:
     // The shape with these bonds and fixed atoms; a new one if there is none yet. Looks at `likely` first. Throws
-    // std::bad_alloc, changing nothing.
+    // std::bad_alloc, or TooMuchMemory where a new one would take more than most_bytes; then nothing is changed.
     std::int32_t find(Form form, std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
-                      const unsigned char *fixed, std::int32_t likely);
+                      const unsigned char *fixed, std::int32_t likely, std::int64_t most_bytes = no_limit);
 
     const Shape &operator[](std::int32_t shape) const { return shapes_[static_cast<std::size_t>(shape)]; }
     std::int32_t size() const { return static_cast<std::int32_t>(shapes_.size()); }

@@ -12,9 +12,5 @@ namespace holonomic {
 // -2 if the bond vectors are of no use. Throws std::bad_alloc.
 std::int64_t dependent_bond(const Molecule &molecule, const AtomArray &r, const Box &box);
 
-// The first bond that does not fit to the others in its cycle, because the images of the periodic box that are next to
-// each other do not close it; -1 if all do.
-std::int64_t open_cycle(const Molecule &molecule, const AtomArray &r, const Box &box);
-
 }  // namespace holonomic
 #endif

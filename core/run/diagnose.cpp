@@ -65,10 +65,6 @@ public:
             double d[3];
             if (!bond_vector(r, box_, m_, k, d)) return of_bond(k, "has length zero");
         }
-        const std::int64_t open = open_cycle(m_, r, box_);
-        if (open >= 0)
-            return of_bond(
-                open, "does not close its cycle: the nearest images of its bonds lead to another image of the atom");
         const std::int64_t bond = m_.shape ? dependent_bond(m_, r, box_) : vanishing_pivot(r, box_, m_);
         if (bond >= 0 && m_.shape)
             return of_bond(bond, "depends on the others: their constraints hold it already at these positions");

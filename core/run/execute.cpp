@@ -87,37 +87,6 @@ std::int64_t long_chain_bonds(const Chains &chains, const Plan &plan, std::int64
     return n > longest_lane ? n : 0;
 }
 
-// Molecules whose cycles do not close are bad; the others are worked on.
-void work_on_molecules(const Work &work, const MoleculeUnit &unit, int where, double *scratch, Tally &tally) {
-    Images images[2];
-    const int n = work.images(where, images);
-    const auto is_closed = [&](const MoleculeLane &lane) {
-        for (int i = 0; i < n; ++i)
-            if (may_stay_open(*unit.schedule, images[i]) && !closes(*unit.schedule, lane, images[i], scratch))
-                return false;
-        return true;
-    };
-    bool all = true;
-    for (int i = 0; i < n; ++i)
-        if (may_stay_open(*unit.schedule, images[i]))
-            for (std::int64_t j = 0; all && j < unit.count; ++j)
-                all = closes(*unit.schedule, lane_of(unit, j), images[i], scratch);
-    if (all) return work.unit(unit, where, scratch, tally);
-    MoleculeLane lanes[loose_piece];
-    MoleculeUnit closed{unit.schedule, lanes, 0, false, unit.large};
-    for (std::int64_t j = 0; j < unit.count; ++j) {
-        const MoleculeLane lane = lane_of(unit, j);
-        if (is_closed(lane))
-            lanes[closed.count++] = lane;
-        else
-            note_bad(lane.molecule, tally);
-        if (closed.count == loose_piece || (j + 1 == unit.count && closed.count > 0)) {
-            work.unit(closed, where, scratch, tally);
-            closed.count = 0;
-        }
-    }
-}
-
 // One call: what it needs, and its pieces one by one or shared.
 class Execution {
 public:
@@ -169,7 +138,7 @@ private:
             MoleculeLane lane;
             MoleculeUnit unit = chains_.unit(plan_, piece, &lane);
             unit.team = team;
-            return work_on_molecules(work_, unit, piece.where, scratch, tally);
+            return work_.unit(unit, piece.where, scratch, tally);
         }
         Lane lane;
         const Unit unit = chains_.unit(plan_, piece, &lane);

@@ -6,7 +6,6 @@
 
 #include "core/kernels/tally.hpp"
 #include "core/molecules/chains.hpp"
-#include "core/run/closing.hpp"
 #include "core/run/dispatch.hpp"
 
 namespace holonomic {
@@ -50,8 +49,6 @@ class Work {
 public:
     virtual void unit(const Unit &unit, int where, double *scratch, Tally &tally) const = 0;
     virtual void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const = 0;
-    // Positions whose images must close the cycles of a molecule; how many there are, at most two.
-    virtual int images(int where, Images *images) const = 0;
     // Whether threads share the work on one large molecule that goes along a list, whatever its shape.
     virtual bool shares_lists() const { return false; }
     virtual std::int64_t long_blocks(std::int64_t n_bonds) const = 0;

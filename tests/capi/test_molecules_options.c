@@ -49,40 +49,6 @@ static void molecules_across_the_boundary_of_a_box_are_solved_by_their_images(vo
         }
 }
 
-/** A ring round the whole box is not closed: its bonds, as the images that they are, do not add up to zero. */
-static void a_cycle_that_does_not_close_is_an_error(void **state)
-{
-    (void)state;
-    const double box[9] = {4, 0, 0, 0, 20, 0, 0, 0, 20};
-    molecule ring = molecule_empty();
-    random_stream s = random_seed(1);
-    for (int i = 0; i < 4; ++i) {
-        const double r[3] = {i, 0.1 * (i % 2), 0.05 * i};
-        molecule_add_atom(&ring, 1, r);
-    }
-    for (int i = 0; i < 4; ++i) molecule_add_bond(&ring, i, (i + 1) % 4);
-    molecule_finish(&ring, &s);
-    for (int i = 0; i < 4; ++i)
-        ring.length[i] = sqrt(1 + 0.01 + 0.0025); /* also of the image from the last to the first */
-    ring.length[3] = sqrt(1 + 0.01 + 0.0225);
-    mixture m = mixture_make(&ring, 1, ONE_AFTER_THE_OTHER, 0);
-    double *lambda = untouched(4), *v = copy_of(m.v, 12), *r = copy_of(m.r, 12), log_det = 7;
-    CHECK(hol_chains_set_box(m.chains, box));
-    CHECK_FAILS(HOL_ERR_DEGENERATE, hol_forces(m.chains, m.r, m.v, m.f, lambda, NULL, NULL, HOL_WRITE, NULL));
-    CHECK_FAILS(HOL_ERR_DEGENERATE, hol_project_velocities(m.chains, m.r, v, lambda, NULL));
-    CHECK_FAILS(HOL_ERR_DEGENERATE, hol_metric(m.chains, m.r, 1, &log_det, NULL, NULL, NULL, HOL_WRITE));
-    CHECK_FAILS(HOL_ERR_DEGENERATE, hol_project_positions(m.chains, m.r, r, NULL, 1e-3, lambda, 0, NULL, NULL));
-    assert_untouched(lambda, 4);
-    assert_same_bits(v, m.v, 12);
-    assert_same_bits(r, m.r, 12);
-    assert_true(log_det == 7);
-    CHECK(hol_chains_set_box(m.chains, NULL));
-    CHECK(hol_forces(m.chains, m.r, m.v, m.f, lambda, NULL, NULL, HOL_WRITE, NULL));
-    free(lambda), free(v), free(r);
-    mixture_free(&m);
-    molecule_free(&ring);
-}
-
 /** The reference positions lie in another cell than the new ones: each bond is an image in its own. */
 static void positions_use_the_reference_box_for_the_old_bonds(void **state)
 {
@@ -211,7 +177,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(molecules_across_the_boundary_of_a_box_are_solved_by_their_images),
-        cmocka_unit_test(a_cycle_that_does_not_close_is_an_error),
         cmocka_unit_test(positions_use_the_reference_box_for_the_old_bonds),
         cmocka_unit_test(inactive_molecules_are_neither_read_nor_written),
         cmocka_unit_test(new_lengths_and_masses_give_the_bits_of_a_new_handle),

@@ -58,31 +58,69 @@ static void equal_gammas_of_one_half_have_the_closed_form_up_to_a_million_rows(v
     free(g), free(x);
 }
 
-/** As near to singular as the note in the header allows: the residual tells, as it does not know the solution. */
+/** The residual tells, as it does not know the solution: each x is rounded once. */
+static void check_solution(int64_t n, const double *g, const double *b, const double *x)
+{
+    for (int64_t k = 0; k < n; ++k) {
+        long double rest = b[k] - (long double)x[k], size = fabs(b[k]) + fabs(x[k]);
+        if (k > 0) rest += (long double)g[k - 1] * x[k - 1], size += fabs(g[k - 1] * x[k - 1]);
+        if (k + 1 < n) rest += (long double)g[k] * x[k + 1], size += fabs(g[k] * x[k + 1]);
+        CHECK_AT_MOST(fabsl(rest), DBL_EPSILON * size);
+    }
+}
+
+/** From far from singular, where plain products with a correction do, to as near as the note in the header allows. */
 static void solutions_are_exact_for_the_given_doubles(void **state)
 {
     (void)state;
     random_stream random = random_seed(2);
-    for (int64_t n = 1; n <= 400; n = 3 * n + 2) {
-        double *g = malloc(sizeof(double) * (size_t)n), *b = malloc(sizeof(double) * (size_t)n),
-               *x = untouched((size_t)n);
-        assert_true(g && b);
-        for (int64_t k = 0; k < n; ++k) {
-            g[k] = 0.5 - 1e-9 * random_uniform(&random);
-            b[k] = random_normal(&random);
+    const double below[] = {0.4, 1e-2, 1e-4, 1e-6, 1e-9}, scales[] = {1, 1e-150, 1e150};
+    for (int64_t n = 1; n <= 400; n = 2 * n + 1)
+        for (int way = 0; way < 45; ++way) {
+            double *g = malloc(sizeof(double) * (size_t)n), *b = malloc(sizeof(double) * (size_t)n),
+                   *x = untouched((size_t)n);
+            assert_true(g && b);
+            for (int64_t k = 0; k < n; ++k) {
+                g[k] = 0.5 - below[way % 5] * random_uniform(&random);
+                if (way % 2 && random_uniform(&random) < 0.5) g[k] = -g[k];
+                b[k] = way / 15 && random_uniform(&random) < 0.3 ? 0 : scales[way / 5 % 3] * random_normal(&random);
+            }
+            CHECK(hol_tridiagonal_solve(n, g, b, x));
+            check_solution(n, g, b, x);
+            double *in_place = copy_of(b, (size_t)n);
+            CHECK(hol_tridiagonal_solve(n, g, in_place, in_place));
+            assert_same_bits(x, in_place, (size_t)n);
+            free(g), free(b), free(x), free(in_place);
         }
-        CHECK(hol_tridiagonal_solve(n, g, b, x));
-        for (int64_t k = 0; k < n; ++k) {
-            long double rest = b[k] - (long double)x[k], size = fabs(b[k]) + fabs(x[k]);
-            if (k > 0) rest += (long double)g[k - 1] * x[k - 1], size += fabs(g[k - 1] * x[k - 1]);
-            if (k + 1 < n) rest += (long double)g[k] * x[k + 1], size += fabs(g[k] * x[k + 1]);
-            CHECK_AT_MOST(fabsl(rest), DBL_EPSILON * size); /* each x rounded once */
+}
+
+/** One row with a pivot of `small`, between rows that are far from singular. */
+static void one_small_pivot_is_found_wherever_it_stands(void **state)
+{
+    (void)state;
+    random_stream random = random_seed(4);
+    enum { N = 41 };
+    double g[N - 1], b[N], x[N], pivots[N], log_det;
+    for (int row = 1; row < N; ++row)
+        for (double small = 1e-2; small > 1e-12; small /= 100) {
+            for (int k = 0; k < N - 1; ++k) g[k] = 0.3 * random_uniform(&random);
+            if (row > 1) g[row - 2] = 0;
+            if (row < N - 1) g[row] = 0;
+            g[row - 1] = 1 - small;
+            for (int k = 0; k < N; ++k) b[k] = random_normal(&random);
+            CHECK(hol_tridiagonal_solve(N, g, b, x));
+            check_solution(N, g, b, x);
+            CHECK(hol_tridiagonal_pivots(N, g, pivots));
+            CHECK(hol_tridiagonal_log_det(N, g, &log_det));
+            long double pivot = 1, sum = 0;
+            for (int k = 1; k < N; ++k) {
+                const long double c = g[k - 1];
+                sum += k == row ? logl((1 - c) * (1 + c)) : logl(1 - c * c / pivot);
+                pivot = k == row ? (1 - c) * (1 + c) : 1 - c * c / pivot;
+                CHECK_AT_MOST(fabsl(pivots[k] - pivot), DBL_EPSILON * pivot);
+            }
+            CHECK_AT_MOST(fabsl(log_det - sum), 4 * DBL_EPSILON * fabsl(sum));
         }
-        double *in_place = copy_of(b, (size_t)n);
-        CHECK(hol_tridiagonal_solve(n, g, in_place, in_place));
-        assert_same_bits(x, in_place, (size_t)n);
-        free(g), free(b), free(x), free(in_place);
-    }
 }
 
 static void elements_solve_for_unit_vectors(void **state)
@@ -186,6 +224,7 @@ int main(void)
         cmocka_unit_test(small_matrices_have_the_closed_forms_of_the_appendix),
         cmocka_unit_test(equal_gammas_of_one_half_have_the_closed_form_up_to_a_million_rows),
         cmocka_unit_test(solutions_are_exact_for_the_given_doubles),
+        cmocka_unit_test(one_small_pivot_is_found_wherever_it_stands),
         cmocka_unit_test(elements_solve_for_unit_vectors),
         cmocka_unit_test(nearly_singular_matrices_keep_all_digits),
         cmocka_unit_test(indefinite_matrices_are_refused_with_the_row),

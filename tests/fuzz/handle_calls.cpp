@@ -104,6 +104,8 @@ void session::set()
             check_status(hol_chains_set_tolerance(maybe(chains), in.number()));
             break;
         default:
+            check_status(
+                hol_chains_set_memory_limit(maybe(chains), (std::int64_t{in.byte()} - 1) * (std::int64_t{1} << 40)));
             check_status(hol_chains_set_max_iterations(maybe(chains), static_cast<int>(in.byte()) * 5 - 10));
             break;
     }

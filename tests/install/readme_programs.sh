@@ -1,7 +1,7 @@
 #!/bin/sh
-# README's programs: each compiled by README's own line, in this folder, runs and prints what README says.
+# README's programs: each compiled and run by README's own line, in this folder, prints what README says.
 #
-#   readme_programs.sh README LANGUAGE...        LANGUAGE: c, fortran
+#   readme_programs.sh README LANGUAGE...        LANGUAGE: c, fortran, python
 set -eu
 readme=$1
 shift
@@ -21,11 +21,12 @@ for language in "$@"; do
     case $language in
         c) section=C ;;
         fortran) section=Fortran ;;
+        python) section=Python ;;
     esac
     # The first line is the command, which names the program, and the others are what it prints.
     lines_of "$section" | head -n 1 >command_line
     lines_of "$section" | tail -n +2 >expected
-    program=$(sed 's/^[a-z]* \([a-z0-9.]*\) .*/\1/' command_line)
+    program=$(sed 's/^[a-z0-9]* \([a-z0-9.]*\).*/\1/' command_line)
     program_in "$language" >"$program"
     [ -s "$program" ] && [ -s expected ] || { echo "README has no program in $language, or does not say what it prints"; exit 1; }
     cat command_line

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the packages that scripts/package made on a machine with nothing on it, and does there what README tells a
-# newcomer to do: its programs in C and Fortran by its own lines, and a CMake project.
+# newcomer to do: its programs in C, Fortran and Python by its own lines, and a CMake project.
 #
 #   fresh_machine.sh PACKAGES SUITE WORK [MIRROR]
 #       PACKAGES  folder of the .deb files        SUITE   bookworm, noble, ...
@@ -57,7 +57,7 @@ mkdir -p "$root/srv/try/tests/install"
 cp "$source/README.md" "$root/srv/try"
 cp -r "$source/tests/install/programs" "$source/tests/install/projects" "$root/srv/try/tests/install"
 cp "$source/tests/install/readme_programs.sh" "$root/srv/try"
-inside sh -c "mkdir /srv/try/readme && cd /srv/try/readme && ../readme_programs.sh ../README.md c fortran"
+inside sh -c "mkdir /srv/try/readme && cd /srv/try/readme && ../readme_programs.sh ../README.md c fortran python"
 
 for language in c fortran; do
     program=$([ $language = c ] && echo rotor.c || echo rotor_free.f90)

@@ -205,7 +205,7 @@ seam_features draw_seams(const hostile_chain &c, dice &d)
     if (c.seed < first_with_seams || !d.chance(1.0 / 3)) return {FIXED_THERE, {}};
     const cuts where = cuts_of_chain(lane_counts[d.one_of(n_lane_counts)], c.n_bonds);
     const std::vector<std::int64_t> &seams = d.chance(0.7) ? where.windows : where.segments;
-    const seam_feature feature = static_cast<seam_feature>(d.one_of(N_SEAM_FEATURES));
+    const seam_feature feature = static_cast<seam_feature>(d.one_of(n_drawn_features));
     const int offset = first_seam_offset + d.one_of(n_seam_offsets);
     return d.chance(0.7) ? at_all_seams(feature, seams, offset)
                          : at_one_seam(feature, seams, offset, at(random_integer(&d.stream, 0, 1000)));

@@ -45,10 +45,9 @@ void bend(hostile_chain &c, seam_feature feature, std::int64_t atom)
     if (atom < 1 || atom >= c.n_bonds) return;
     double before[3], u[3];
     unit_of_bond(c, atom - 1, before);
-    if (feature == SQUARE_THERE)
-        square_to(before, u);
-    else
-        for (std::size_t x = 0; x < 3; ++x) u[x] = feature == STRAIGHT_THERE ? before[x] : -before[x];
+    square_to(before, u);
+    const double along = feature == FOLDED_THERE ? -1 : 1, beside = feature == IN_LINE_THERE ? 1e-6 : 0;
+    for (std::size_t x = 0; x < 3 && feature != SQUARE_THERE; ++x) u[x] = along * before[x] + beside * u[x];
     set_direction(c, atom, u);
 }
 
@@ -62,9 +61,9 @@ void set_mass_at(hostile_chain &c, std::int64_t atom, double factor)
 
 const char *seam_feature_name(int feature)
 {
-    static const char *const names[N_SEAM_FEATURES] = {"a fixed atom",       "a right angle", "a straight joint",
-                                                       "a folded joint",     "a heavy atom",  "a light atom",
-                                                       "heavy beside light", "a large force", "a large velocity"};
+    static const char *const names[N_SEAM_FEATURES] = {
+        "a fixed atom", "a right angle",      "a straight joint", "a folded joint",   "a heavy atom",
+        "a light atom", "heavy beside light", "a large force",    "a large velocity", "a light atom in line"};
     return names[feature];
 }
 
@@ -74,6 +73,7 @@ void seam_features::put_masses(hostile_chain &c) const
         if (feature == HEAVY_THERE || feature == HEAVY_BESIDE_LIGHT) set_mass_at(c, i, 1e12);
         if (feature == LIGHT_THERE) set_mass_at(c, i, 1e-12);
         if (feature == HEAVY_BESIDE_LIGHT) set_mass_at(c, i + 1, 1e-12);
+        if (feature == IN_LINE_THERE) set_mass_at(c, i, 1e-14);
         if (feature != FIXED_THERE || i < 0 || i > c.n_bonds) continue;
         if ((i > 0 && c.w[at(i - 1)] == 0) || (i < c.n_bonds && c.w[at(i + 1)] == 0)) continue;
         c.w[at(i)] = c.mass[at(i)] = 0;
@@ -86,11 +86,20 @@ void seam_features::put_forces(hostile_chain &c) const
         for (std::size_t x = 0; x < 3 && i >= 0 && i <= c.n_bonds; ++x) {
             if (feature == PULLED_THERE) c.f[3 * at(i) + x] *= 1e18;
             if (feature == FAST_THERE) c.v[3 * at(i) + x] *= 1e6;
+            if (feature == IN_LINE_THERE) c.f[3 * at(i) + x] = c.v[3 * at(i) + x] = 0;
         }
 }
 
 void seam_features::put_bends(hostile_chain &c) const
 {
+    if (feature == IN_LINE_THERE) {
+        for (std::size_t k = 0; k < atoms.size(); k += 2) bend(c, feature, atoms[k]);
+        if (atoms.empty() || atoms[0] < 0 || atoms[0] > c.n_bonds) return;
+        // near the origin, where differences of coordinates have roundings
+        double off[3];
+        for (std::size_t x = 0; x < 3; ++x) off[x] = 0.9999 * c.r[3 * at(atoms[0]) + x];
+        for (std::size_t i = 0; i < c.r.size(); ++i) c.r[i] -= off[i % 3];
+    }
     if (feature != SQUARE_THERE && feature != STRAIGHT_THERE && feature != FOLDED_THERE) return;
     for (const std::int64_t i : atoms) bend(c, feature, i);
 }
@@ -98,13 +107,16 @@ void seam_features::put_bends(hostile_chain &c) const
 seam_features at_all_seams(seam_feature feature, const std::vector<std::int64_t> &seams, int offset)
 {
     seam_features out{feature, seams};
-    for (std::int64_t &i : out.atoms) i += offset;
+    for (std::size_t k = 0; k < seams.size(); ++k) out.atoms[k] += feature == IN_LINE_THERE && k % 2 ? 0 : offset;
     return out;
 }
 
 seam_features at_one_seam(seam_feature feature, const std::vector<std::int64_t> &seams, int offset, std::size_t one)
 {
-    return seams.empty() ? seam_features{feature, {}} : seam_features{feature, {seams[one % seams.size()] + offset}};
+    if (seams.empty()) return {feature, {}};
+    seam_features out{feature, {seams[one % seams.size()] + offset}};
+    if (feature == IN_LINE_THERE) out.atoms.push_back(seams[(one + 1) % seams.size()]);
+    return out;
 }
 
 namespace

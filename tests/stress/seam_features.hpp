@@ -19,10 +19,12 @@ enum seam_feature {
     HEAVY_THERE,
     LIGHT_THERE,
     HEAVY_BESIDE_LIGHT,
-    PULLED_THERE,  ///< a force 1e18 times the others
-    FAST_THERE,    ///< a velocity 1e6 times the others
+    PULLED_THERE,   ///< a force 1e18 times the others
+    FAST_THERE,     ///< a velocity 1e6 times the others
+    IN_LINE_THERE,  ///< a light atom nearly in line, which nothing pulls; another one exactly at the seam behind
     N_SEAM_FEATURES
 };
+constexpr int n_drawn_features = IN_LINE_THERE;  // by chains with numbers; what follows has come later
 const char *seam_feature_name(int feature);
 
 /** Which feature stands where. */

@@ -14,7 +14,7 @@
 #ifndef HOLONOMIC_KERNELS_ELIMINATE_SEGMENT_HPP
 #define HOLONOMIC_KERNELS_ELIMINATE_SEGMENT_HPP
 
-#include "core/kernels/eliminate/remainder.hpp"
+#include "core/kernels/eliminate/joint.hpp"
 #include "core/kernels/memory/cut.hpp"
 #include "core/kernels/memory/load.hpp"
 #include "core/kernels/memory/prefetch.hpp"
@@ -25,7 +25,7 @@ namespace holonomic::HOL_ISA {
 struct Summary {
     vec E, y, a, c, f, T;  // y without the right-hand side of the separator behind
     vec q, b;              // of the separators: d.d and the right-hand side
-    vec span;              // largest w times the last q: see long_join()
+    vec span, reach;       // largest w times the last q, times the separator's: see is_doubtful_join()
     vec t, up;             // at the separators: y^ / P^, then t; f / P^
     mask doubt;
 };
@@ -64,45 +64,6 @@ static inline int64_t long_bytes(int64_t n_bonds) {
            cut.first_row(cut.blocks) * static_cast<int64_t>(sizeof(Kept));
 }
 
-// Products of the bond vectors of a joint and of the bond behind it.
-struct Joint {
-    vec g, X, q;
-};
-
-HOL_INLINE Joint plain_joint(const vec3 &d, const vec3 &d1) {
-    const vec3 c = cross(d, d1);
-    return {dot(d, d1), dot(c, c), dot(d1, d1)};
-}
-
-HOL_INLINE Joint careful_joint(const vec3 &d, const vec3 &low, const vec3 &d1, const vec3 &low1) {
-    const vec3 c = cross_compensated(d, low, d1, low1);
-    return {dot_compensated(d, low, d1, low1), dot(c, c), dot(d1, d1)};
-}
-
-// As small_cosine in remainder.hpp; the error bound of chains of more than longest_lane bonds is twice as large, which
-// products that are rounded before they are added use up. One lane has no segments but on request.
-constexpr double segment_cosine = HOL_HAS_FMA && W > 1 ? 1.0 / 64 : 1.0 / 32;
-
-// Computes g anew where bonds are nearly orthogonal: of n joints, the first of which is that of bonds k and k + 1.
-HOL_NOINLINE void refine_joints(const Source &source, long k, Joint *j, long n) {
-    for (long i = 0; i < n; ++i) {
-        const mask orthogonal = nearly_orthogonal(j[i].g, j[i].X, segment_cosine);
-        if (any(orthogonal)) j[i].g = exact_dots(source, k + i + 1, orthogonal, j[i].g);
-    }
-}
-
-// The joints between n + 1 bonds from d on, the first of which is bond k.
-template <int n>
-HOL_INLINE void plain_joints(const Source &source, long k, const vec3 *d, Joint *j) {
-    vec least = {};
-#pragma GCC unroll 8
-    for (int i = 0; i < n; ++i) {
-        j[i] = plain_joint(d[i], d[i + 1]);
-        least = min(least, not_orthogonal(j[i].g * j[i].g, j[i].X, segment_cosine));
-    }
-    if (any(less(least, vec{}))) refine_joints(source, k, j, n);
-}
-
 // Products of six pivots, of which a consists after four bonds, underflow where the reciprocal of four of them is not
 // below the first of these; products of three, where that of one is not below the second.
 constexpr double largest_reciprocal_of_four = 1e190, largest_reciprocal_of_one = 1e90;
@@ -138,6 +99,20 @@ HOL_INLINE void normalise(Elimination &e) {
     e.ac = {e.ac.A * e.rF, e.ac.F * e.rF};
     e.largest_rF = max(e.largest_rF, e.rF);
 }
+
+// What a segment leaves at its left joint, once that no longer changes. All further bonds together take at most
+// n f^2 / E of c, n bonds being left; but the roundings of as many products would add up in it, and they are alike
+// where bonds are alike.
+struct Settled {
+    mask which = none();
+    vec c = {};
+    // After normalise().
+    void look(const Elimination &e) {
+        const mask now = less(e.f * e.f, 0x1p-64 * (e.e.A * e.ac.F)) & ~which;
+        c = select(now, e.ac.F, c);
+        which = which | now;
+    }
+};
 
 // Eliminates bond k; j is the joint behind it and b1 the right-hand side behind that. ragged: lanes may end there.
 template <bool uniform, bool careful>
@@ -181,6 +156,7 @@ HOL_NOINLINE void eliminate(const SegmentBlock &s, const Reader &in, const Separ
     vec3 D[stage_bonds + 2 + W], low[careful ? stage_bonds + 2 + W : 1];  // D[0]: the last one of the stage before
     vec B[stage_bonds + 1 + W];
     Elimination e = {};
+    Settled settled;
     mask doubt = none();
     vec E0 = {};
     // Joints that have failed the cheap test, of m joints of bonds from d on. E0: E before the first, that of bond k.
@@ -241,26 +217,35 @@ HOL_NOINLINE void eliminate(const SegmentBlock &s, const Reader &in, const Separ
             }
             ++k;
         }
+        settled.look(e);
         D[0] = D[end - k0];
         if (careful) low[0] = low[end - k0];
     }
     Summary &sum = *x.summary;
     sum.E = e.e.A;
-    sum.a = e.ac.A;
-    sum.c = e.ac.F;
+    sum.c = select(settled.which, settled.c, e.ac.F);
+    sum.a = select(settled.which, e.e.A * settled.c, e.ac.A);
     sum.y = e.y;
     sum.f = e.f;
     sum.T = e.T;
     sum.span = e.w_max * e.q;
+    sum.reach = uniform ? vec{} : e.w_max * sum.q;
     sum.doubt = doubt | ~less(e.largest_rF, splat(careful ? largest_reciprocal_of_one : largest_reciprocal_of_four));
 }
 
 // The rounding of the X of nearly parallel bonds reaches E' through a. With a = sum alpha_j X_j, its error is about
 // 2 eps sqrt(a sum alpha_j q_j q_{j+1} / n) <= 2 eps sqrt(a w_max q c), because sum alpha_j q_j q_{j+1} <= n w_max q c;
 // it is harmless where that is below join_tolerance S, S = E_free E + a.
+//
+// It reaches c, too, and there no test of the segment's own E sees it: a light atom in a straight joint just behind the
+// separator, say. Seen from the far end, c is a remainder E' as any other, and its error at most 2 eps sqrt(w_max q_s
+// c), q_s being the separator's. It is harmless where that is below join_tolerance sum, `sum` being what c is added to,
+// c itself included, or times `factor`. With equal masses c >= w q_s / n, which is enough.
 constexpr double join_tolerance = 8;
-HOL_INLINE bool is_doubtful_join(const Summary &s, int i, double S) {
-    return !(4 * s.a[i] * s.span[i] * s.c[i] <= join_tolerance * join_tolerance * S * S);
+HOL_INLINE bool is_doubtful_join(const Summary &s, int i, double S, double sum, double factor) {
+    constexpr double most = join_tolerance * join_tolerance;
+    return !(4 * s.a[i] * s.span[i] * s.c[i] <= most * S * S) ||
+           !(s.reach[i] * s.c[i] * (factor * factor) <= most * (sum * sum));
 }
 
 // What is to be written of W segments.

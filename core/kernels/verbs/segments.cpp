@@ -39,7 +39,7 @@ JoinResult long_join(const Lane &lane, bool careful, double *store) {
         if (any(s.doubt)) return careful ? join_bad : join_doubtful;
         for (int i = 0; i < W; ++i) {
             const double P = E + s.c[i], yhat = (y + s.b[i]) + s.T[i], S = s.E[i] * E + s.a[i];
-            if (!careful && is_doubtful_join(s, i, S)) return join_doubtful;
+            if (!careful && is_doubtful_join(s, i, S, P, 1.0)) return join_doubtful;
             s.t[i] = yhat / P;
             s.up[i] = s.f[i] / P;
             E = S / P;

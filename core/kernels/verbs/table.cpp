@@ -39,7 +39,9 @@ const Kernels kernels = {
     {long_blocks, long_metric_bytes, long_metric},
     {molecules_scratch_bytes, molecules_forces, molecules_velocities, molecules_positions, molecules_metric,
      molecules_solve},
+    {tridiagonal_solve, tridiagonal_pivots},
 #else
+    {},
     {},
     {},
     {},

@@ -39,5 +39,8 @@ bool path_positions(const PositionsCall &, const Schedule &, const MoleculeLane 
                     Tally &);
 void molecules_solve(const SolveCall &, const MoleculeUnit &, double *scratch, Tally &);
 
+bool tridiagonal_solve(int64_t n, const double *gamma, const double *b, double *x, double *scratch);
+bool tridiagonal_pivots(int64_t n, const double *gamma, double *pivots);
+
 }  // namespace holonomic::HOL_ISA
 #endif

@@ -91,7 +91,7 @@ static inline bool up_segments(const Molecules<double> &x, int32_t a) {
         if (arm.ascending && k > 0) y += s.b[i];
         const double below = arm.ascending ? s.c[i] : s.E[i], above = arm.ascending ? s.E[i] : s.c[i];
         const double P = E + below, sum = y + (arm.ascending ? s.T[i] : s.y[i]), S = above * E + s.a[i];
-        if (is_doubtful_join(s, i, S)) return false;
+        if (is_doubtful_join(s, i, S, arm.ascending ? P : S, arm.ascending ? 1.0 : E)) return false;
         s.t[i] = sum / P;
         s.up[i] = s.f[i] / P;
         if (k == 0) {

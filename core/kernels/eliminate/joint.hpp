@@ -1,0 +1,49 @@
+// Products of the bonds of a joint, for segments.
+#ifndef HOLONOMIC_KERNELS_ELIMINATE_JOINT_HPP
+#define HOLONOMIC_KERNELS_ELIMINATE_JOINT_HPP
+
+#include "core/kernels/eliminate/remainder.hpp"
+
+namespace holonomic::HOL_ISA {
+
+// Products of the bond vectors of a joint and of the bond behind it.
+struct Joint {
+    vec g, X, q;
+};
+
+HOL_INLINE Joint plain_joint(const vec3 &d, const vec3 &d1) {
+    const vec3 c = cross(d, d1);
+    return {dot(d, d1), dot(c, c), dot(d1, d1)};
+}
+
+HOL_INLINE Joint careful_joint(const vec3 &d, const vec3 &low, const vec3 &d1, const vec3 &low1) {
+    const vec3 c = cross_compensated(d, low, d1, low1);
+    return {dot_compensated(d, low, d1, low1), dot(c, c), dot(d1, d1)};
+}
+
+// As small_cosine in remainder.hpp; the error bound of chains of more than longest_lane bonds is twice as large, which
+// products that are rounded before they are added use up. One lane has no segments but on request.
+constexpr double segment_cosine = HOL_HAS_FMA && W > 1 ? 1.0 / 64 : 1.0 / 32;
+
+// Computes g anew where bonds are nearly orthogonal: of n joints, the first of which is that of bonds k and k + 1.
+HOL_NOINLINE void refine_joints(const Source &source, long k, Joint *j, long n) {
+    for (long i = 0; i < n; ++i) {
+        const mask orthogonal = nearly_orthogonal(j[i].g, j[i].X, segment_cosine);
+        if (any(orthogonal)) j[i].g = exact_dots(source, k + i + 1, orthogonal, j[i].g);
+    }
+}
+
+// The joints between n + 1 bonds from d on, the first of which is bond k.
+template <int n>
+HOL_INLINE void plain_joints(const Source &source, long k, const vec3 *d, Joint *j) {
+    vec least = {};
+#pragma GCC unroll 8
+    for (int i = 0; i < n; ++i) {
+        j[i] = plain_joint(d[i], d[i + 1]);
+        least = min(least, not_orthogonal(j[i].g * j[i].g, j[i].X, segment_cosine));
+    }
+    if (any(less(least, vec{}))) refine_joints(source, k, j, n);
+}
+
+}  // namespace holonomic::HOL_ISA
+#endif

@@ -1,0 +1,29 @@
+"""Exact Lagrange multipliers and constraint forces of molecules with rigid bonds.
+
+    import holonomic as hol
+    molecules = hol.Molecules(masses)                      # (n_atoms,); 0: held fixed
+    molecules.add(bonds, lengths)                          # (n, 2) and (n,): any molecules, in any order
+    molecules.project_positions(r_ref, r, dt, v)           # SHAKE, RATTLE's first half: r and v in place
+    molecules.project_velocities(r, v)                     # RATTLE's second half
+    result = molecules.forces(r, v, f)                     # .lambda_ .tensions .forces .virial
+
+`help(holonomic.Molecules)` has all of it; errors are subclasses of `holonomic.Error`. For ASE: `holonomic.ase`.
+"""
+
+from . import tridiagonal
+from ._bonds import Molecule
+from ._library import instruction_set, version
+from .errors import (ArgumentError, DegenerateError, Error, LengthsError, NoConvergenceError, NotDefiniteError,
+                     NotFiniteError, NumberError, OutOfMemoryError, SharedAtomError)
+from .inverse import Inverse
+from .molecules import Molecules
+from .partition import PartitionFunction, partition_function
+from .results import Forces, Impulse, Metric, Reactions, Report, Violation
+
+__version__ = "0.2.0"
+__all__ = [
+    "ArgumentError", "DegenerateError", "Error", "Forces", "Impulse", "Inverse", "LengthsError", "Metric", "Molecule",
+    "Molecules", "NoConvergenceError", "NotDefiniteError", "NotFiniteError", "NumberError", "OutOfMemoryError",
+    "PartitionFunction", "Reactions", "Report", "SharedAtomError", "Violation", "instruction_set", "partition_function",
+    "tridiagonal", "version",
+]

@@ -1,0 +1,130 @@
+"""The shared library: where it is, and its functions as capi/holonomic.h declares them."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from ctypes import c_double, c_int, c_int32, c_int64, c_void_p
+
+_NEEDED = (0, 2)
+_NAME = "libholonomic.so.0"
+
+# Result and arguments: p a pointer, i int, l int64_t, d double, s a text, - nothing. A test reads the header beside this.
+SIGNATURES = {
+    "hol_version": "s",
+    "hol_status_name": "s i",
+    "hol_error_message": "s",
+    "hol_error_location": "- pppp",
+    "hol_instruction_set": "s",
+    "hol_chains_create": "i lpp",
+    "hol_chains_destroy": "- p",
+    "hol_chains_add": "i plpp",
+    "hol_chains_add_block": "i plllp",
+    "hol_chains_add_bonds": "i plpp",
+    "hol_chains_add_molecules": "i pllllpp",
+    "hol_chains_set_lengths": "i pp",
+    "hol_chains_set_masses": "i pp",
+    "hol_chains_set_box": "i pp",
+    "hol_chains_set_reference_box": "i pp",
+    "hol_chains_set_box_rate": "i pp",
+    "hol_chains_set_labels": "i ppp",
+    "hol_chains_set_checks": "i pi",
+    "hol_chains_set_threads": "i pi",
+    "hol_chains_set_active": "i pp",
+    "hol_chains_set_tolerance": "i pd",
+    "hol_chains_set_max_iterations": "i pi",
+    "hol_chains_n_atoms": "l p",
+    "hol_chains_n_chains": "l p",
+    "hol_chains_n_bonds": "l p",
+    "hol_chains_n_of_shape": "l pi",
+    "hol_chains_n_kinds": "l p",
+    "hol_chains_molecule": "i plppp",
+    "hol_chains_atoms": "i plp",
+    "hol_chains_bonds": "i plp",
+    "hol_chains_molecules_of_bonds": "i pp",
+    "hol_chains_degrees_of_freedom": "l pi",
+    "hol_chains_memory": "l p",
+    "hol_chains_check_view": "i ppi",
+    "hol_forces": "i pppppppip",
+    "hol_forces_view": "i pppppppip",
+    "hol_solve_view": "i pppppip",
+    "hol_reactions_view": "i ppipppipp",
+    "hol_project_velocities": "i ppppp",
+    "hol_project_velocities_view": "i ppppp",
+    "hol_project_positions": "i ppppdpipp",
+    "hol_project_positions_view": "i ppppdpipp",
+    "hol_project_positions_along_view": "i ppppdpipp",
+    "hol_reference_error": "- ppp",
+    "hol_violation_view": "i pppp",
+    "hol_metric_view": "i ppdppppi",
+    "hol_inverse_create_view": "i plpp",
+    "hol_inverse_destroy": "- p",
+    "hol_inverse_n_bonds": "l p",
+    "hol_inverse_entry": "i pillp",
+    "hol_inverse_row": "i pilp",
+    "hol_inverse_band": "i pilp",
+    "hol_inverse_matrix": "i pip",
+    "hol_inverse_condition": "i pp",
+    "hol_inverse_error_bound_view": "i pppppp",
+    "hol_tridiagonal_pivots": "i lpp",
+    "hol_tridiagonal_log_det": "i lpp",
+    "hol_tridiagonal_solve": "i lppp",
+    "hol_tridiagonal_inverse_entry": "i lpllp",
+    "hol_tridiagonal_inverse_band": "i lplp",
+    "hol_partition_function": "i lpppp",
+}
+_TYPES = {"p": c_void_p, "i": c_int, "l": c_int64, "d": c_double, "s": ctypes.c_char_p, "-": None}
+
+
+class View(ctypes.Structure):
+    """hol_view: where a vector per atom stands in memory."""
+
+    _fields_ = [("x", c_void_p), ("y", c_void_p), ("z", c_void_p), ("stride", c_int64), ("element", c_int32),
+                ("reserved", c_int32)]
+
+
+def _load() -> ctypes.CDLL:
+    """HOLONOMIC_LIBRARY if it is set, else the library in this folder (wheels), else the system's."""
+    named = os.environ.get("HOLONOMIC_LIBRARY")
+    beside = os.path.join(os.path.dirname(os.path.abspath(__file__)), _NAME)
+    path = named or (beside if os.path.exists(beside) else _NAME)
+    try:
+        library = ctypes.CDLL(path)
+    except OSError as error:
+        raise ImportError(
+            f"the library of holonomic could not be loaded ({error}). Install it (package libholonomic0, or "
+            "`cmake --install`, then ldconfig), or name the file in the environment variable HOLONOMIC_LIBRARY."
+        ) from None
+    if not hasattr(library, "hol_version"):
+        raise ImportError(f"{path} is not the library of holonomic")
+    library.hol_version.restype = ctypes.c_char_p
+    version = library.hol_version().decode()
+    if tuple(int(number) for number in version.split(".")[:2]) < _NEEDED:
+        raise ImportError(f"{path} is holonomic {version}; this package needs {_NEEDED[0]}.{_NEEDED[1]} or later")
+    for name, signature in SIGNATURES.items():
+        function = getattr(library, name)
+        result, _, arguments = signature.partition(" ")
+        function.restype = _TYPES[result]
+        function.argtypes = [_TYPES[letter] for letter in arguments]
+    return library
+
+
+library = _load()
+
+
+def bare(name: str):
+    """The function without conversion of arguments, for calls that have to be short: it is to be given None, integers
+    for int, and objects of ctypes for all else."""
+    function = library[name]  # by index: an object of its own
+    function.restype = c_int
+    return function
+
+
+def version() -> str:
+    """Version of the library that runs, "MAJOR.MINOR.PATCH"."""
+    return library.hol_version().decode()
+
+
+def instruction_set() -> str:
+    """The instruction set that the calculations use on this machine: "baseline", "avx2" or "avx512vl"."""
+    return library.hol_instruction_set().decode()

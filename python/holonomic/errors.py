@@ -1,0 +1,86 @@
+"""What goes wrong, as exceptions: each has the library's message, and says where it happened."""
+
+from __future__ import annotations
+
+from ctypes import byref, c_int64
+from typing import NoReturn, Optional
+
+from ._library import library
+
+
+class Error(Exception):
+    """Base of all errors of the library.
+
+    status    number of the status, as hol_status in holonomic.h
+    molecule  number of the first bad molecule, or None where it does not apply; likewise
+    bond      the bond within the molecule (`Molecules.molecule(i).bonds` has its place in the arrays per bond); of a bond
+              that was refused when it was to be added, its number in the list of that call
+    atom      the atom
+    n_bad     how many molecules were bad; 0 for a wrong argument
+
+    All are counted from 0. After a wrong argument nothing has been written. After bad data (NotFiniteError,
+    DegenerateError, NoConvergenceError, LengthsError) the arrays of the bad molecules are as they were, and those of all
+    other molecules are complete.
+    """
+
+    status: int = 0
+    molecule: Optional[int] = None
+    bond: Optional[int] = None
+    atom: Optional[int] = None
+    n_bad: int = 0
+
+
+class ArgumentError(Error, ValueError):
+    """A size, mass, length or option is out of its range, or an array does not fit."""
+
+
+class NumberError(Error, IndexError):
+    """An atom, bond or molecule number is out of range."""
+
+
+class SharedAtomError(Error, ValueError):
+    """An atom that can move belongs to a molecule of an earlier call already."""
+
+
+class OutOfMemoryError(Error, MemoryError):
+    """Out of memory."""
+
+
+class NotFiniteError(Error, ArithmeticError):
+    """An infinity or NaN in the data of a molecule, or an overflow or underflow."""
+
+
+class DegenerateError(Error, ArithmeticError):
+    """A bond of length zero, or bonds that are not independent of each other."""
+
+
+class NoConvergenceError(Error, ArithmeticError):
+    """The bond lengths can't be reached from these positions."""
+
+
+class NotDefiniteError(Error, ArithmeticError):
+    """The tridiagonal matrix is not positive definite."""
+
+
+class LengthsError(Error, ValueError):
+    """Positions do not fit the bonds' lengths (`Molecules.checks`)."""
+
+
+_CLASSES = {1: ArgumentError, 2: ArgumentError, 3: NumberError, 4: SharedAtomError, 5: OutOfMemoryError,
+            6: NotFiniteError, 7: DegenerateError, 8: NoConvergenceError, 9: NotDefiniteError, 11: LengthsError}
+
+
+def fail(status: int) -> NoReturn:
+    """Raises the exception of this thread's last failing call."""
+    places = [c_int64() for _ in range(4)]
+    library.hol_error_location(*(byref(place) for place in places))
+    error = _CLASSES.get(status, Error)(library.hol_error_message().decode(errors="replace"))
+    error.status = status
+    chain, bond, atom, error.n_bad = (place.value for place in places)
+    error.molecule, error.bond, error.atom = (None if place < 0 else place for place in (chain, bond, atom))
+    raise error
+
+
+def ask(status: int) -> None:
+    if status:
+        fail(status)
