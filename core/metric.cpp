@@ -52,6 +52,10 @@ void metric(const Chains &chains, const AtomArray &r, double kT, double *log_det
             const AtomArray &force, bool add) {
     if (!(kT >= 0) || !std::isfinite(kT))
         throw make_error(Status::value, "kT is %g; it must be finite and not negative", kT);
+    if (chains.bodies())
+        throw make_error(Status::value,
+                         "the metric determinant of molecules with rigid bodies is not implemented: of a body alone it "
+                         "is a constant; molecules without bodies need a set of their own");
     const MetricCall call{r, force, kT, log_det, log_det_z, energy != nullptr, add, chains.box};
     for (const std::int32_t shape : chains.plan().shapes) {
         const Schedule &s = *chains.plan().schedules[static_cast<std::size_t>(shape)];
