@@ -42,7 +42,7 @@ void Chains::check_width(const Box &next, double longest, const double *lengths)
     double width;
     const int side = narrow_side(next, longest, &width);
     if (side < 0) return;
-    char atoms[120] = "";
+    char atoms[256] = "";
     for (std::int64_t c = n_chains(); c-- > 0;) {
         const Molecule m = molecule(c);
         for (std::int64_t k = m.n_bonds; k-- > 0;)
