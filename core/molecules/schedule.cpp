@@ -304,10 +304,9 @@ std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bon
 
 // Small networks have it for what does not converge.
 constexpr std::int32_t largest_with_careful = 8192;
-void make_careful_too(Schedule &s, Schedule::Memory &m, const std::int32_t *pairs) {
+void make_careful_too(Schedule &s, Schedule::Memory &m, const std::int32_t *pairs, std::int64_t most_bytes) {
     try {
-        m.careful = std::make_unique<const CarefulShape>(s.n_atoms, s.n_bonds, pairs,
-                                                         most_bytes_of_list * static_cast<std::int64_t>(s.n_core));
+        m.careful = std::make_unique<const CarefulShape>(s.n_atoms, s.n_bonds, pairs, most_bytes);
         s.careful = &m.careful->plan();
     } catch (const TooMuchMemory &) {
         m.careful = nullptr;  // then there is none
@@ -321,7 +320,9 @@ std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t
     std::unique_ptr<Schedule> s = bare_schedule(n_atoms, n_bonds, pairs, fixed, most_bytes, true);
     Schedule::Memory &m = *s->memory;
     if (s->network) {
-        if (n_bonds <= largest_with_careful) make_careful_too(*s, m, pairs);
+        if (n_bonds <= largest_with_careful)
+            make_careful_too(*s, m, pairs,
+                             std::min(most_bytes, most_bytes_of_list * static_cast<std::int64_t>(s->n_core)));
         return s;
     }
     if (n_bonds > largest_in_lanes && s->type == Schedule::tree) add_runs(*s, m);

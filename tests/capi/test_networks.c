@@ -106,8 +106,8 @@ static void destroy(scene s)
 }
 
 static const sort sorts[] = {
-    {70, 5, 5, 0, 0, 0, 1}, {64, 4, 6, 0, 0, 0, 1},    {56, 5, 9, 0, 1, 0, 1},
-    {70, 5, 8, 4, 1, 1, 1}, {70, 4, 6, 0, 0, 1, 0.02},
+    {36, 5, 5, 0, 0, 0, 1}, {36, 4, 6, 0, 0, 0, 1},    {34, 5, 7, 0, 1, 0, 1},
+    {48, 4, 5, 4, 1, 1, 1}, {46, 4, 5, 0, 0, 1, 0.02},
 };
 enum { n_sorts = sizeof sorts / sizeof *sorts };
 
@@ -252,7 +252,7 @@ static void threads_and_layouts_change_no_bit(void **state)
 static void what_a_lattice_leaves_of_its_equations_is_rounding(void **state)
 {
     (void)state;
-    const int64_t n = quick_run() ? 10 : 16;
+    const int64_t n = quick_run() ? 8 : 10;
     molecule m = molecule_empty();
     random_stream random = random_seed(9);
     for (int64_t i = 0; i < n * n * n; ++i) {
