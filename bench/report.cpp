@@ -86,7 +86,8 @@ void write(const std::string &name, const std::string &text) {
 
 std::string report(const std::vector<Block> &list) {
     std::string text =
-        "# Run time against error\n\nMade by scripts/bench from results.csv; docs/benchmarks.md of the source tree "
+        "# Run time against error\n\nMade by scripts/bench from results.csv; docs/benchmarks/rows.md of the source "
+        "tree "
         "explains rows, methods and errors. Medians; spread is the range between the quartiles.\n";
     for (const Block &block : list) text += "\n## " + block.title + "\n\n" + block.text;
     return text;

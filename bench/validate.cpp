@@ -150,6 +150,7 @@ int main() {
     accelerations();
     determinants();
     validate_molecules();
+    validate_checks();
     std::printf(failures ? "%d of the expectations above failed\n" : "all as published\n", failures);
     return failures != 0;
 }

@@ -25,22 +25,6 @@ Outcome run(Level level, const Molecules &m, const Method &method) {
     return {MoleculeReference(m, level, 2000).error(s), s.iterations};
 }
 
-std::vector<Molecules> scenes() {
-    std::vector<Molecules> list;
-    list.push_back(make_molecules("water", {water_kind()}, 100));
-    list.push_back(
-        make_molecules("hydrogens", {formula_kind("CH"), formula_kind("NHH"), formula_kind("C(H)(H)H")}, 90));
-    list.push_back(make_molecules("ethane", {formula_kind("C(H)(H)(H)C(H)(H)H")}, 20));
-    list.push_back(make_molecules("dendrimer", {dendrimer_kind(3, 2, 4)}, 4));
-    list.push_back(make_molecules("comb", {comb_kind(10, 2)}, 4));
-    list.push_back(make_molecules("ring", {ring_kind(50)}, 4));
-    list.push_back(make_molecules("triangles", {triangles_kind(20)}, 4));
-    list.push_back(make_molecules("arms", {arms_kind(400, 50)}, 1));
-    list.push_back(make_molecules("random_tree", {random_tree_kind(300)}, 1));
-    list.push_back(make_molecules("protein", {protein_kind(400)}, 1));
-    return list;
-}
-
 void positions(const Molecules &m) {
     const Level level = Level::position;
     const std::string name = m.name + ": ";
@@ -123,8 +107,24 @@ void water() {
 
 }  // namespace
 
+std::vector<Molecules> validated_scenes() {
+    std::vector<Molecules> list;
+    list.push_back(make_molecules("water", {water_kind()}, 100));
+    list.push_back(
+        make_molecules("hydrogens", {formula_kind("CH"), formula_kind("NHH"), formula_kind("C(H)(H)H")}, 90));
+    list.push_back(make_molecules("ethane", {formula_kind("C(H)(H)(H)C(H)(H)H")}, 20));
+    list.push_back(make_molecules("dendrimer", {dendrimer_kind(3, 2, 4)}, 4));
+    list.push_back(make_molecules("comb", {comb_kind(10, 2)}, 4));
+    list.push_back(make_molecules("ring", {ring_kind(50)}, 4));
+    list.push_back(make_molecules("triangles", {triangles_kind(20)}, 4));
+    list.push_back(make_molecules("arms", {arms_kind(400, 50)}, 1));
+    list.push_back(make_molecules("random_tree", {random_tree_kind(300)}, 1));
+    list.push_back(make_molecules("protein", {protein_kind(400)}, 1));
+    return list;
+}
+
 void validate_molecules() {
-    for (const Molecules &m : scenes()) {
+    for (const Molecules &m : validated_scenes()) {
         positions(m);
         velocities(m);
         accelerations(m);

@@ -22,16 +22,16 @@ struct hol_inverse {
 
 namespace {
 
-void create(const hol_chains *chains, std::int64_t chain, const AtomArray &r, hol_inverse **inverse) {
+void create(const hol_chains *chains, std::int64_t molecule, const AtomArray &r, hol_inverse **inverse) {
     const holonomic::Chains &all = chains->chains;
-    if (chain < all.base || chain - all.base >= all.n_chains()) {
+    if (molecule < all.base || molecule - all.base >= all.n_chains()) {
         holonomic::Error error =
-            make_error(Status::index, "chain %lld is outside %d .. %lld", static_cast<long long>(chain), all.base,
+            make_error(Status::index, "molecule %lld is outside %d .. %lld", static_cast<long long>(molecule), all.base,
                        static_cast<long long>(all.n_chains() - 1 + all.base));
         error.base = all.base;
         throw error;
     }
-    *inverse = new hol_inverse{holonomic::Inverse::make(all, chain - all.base, r)};
+    *inverse = new hol_inverse{holonomic::Inverse::make(all, molecule - all.base, r)};
 }
 
 // Number of a bond counted from 0; -1, which the core refuses, for one below the base.
@@ -64,23 +64,23 @@ void error_bound(const hol_inverse *inverse, const AtomArray &v, const AtomArray
 
 }  // namespace
 
-int hol_inverse_create(const hol_chains *chains, int64_t chain, const double *r, hol_inverse **inverse) {
+int hol_inverse_create(const hol_chains *chains, int64_t molecule, const double *r, hol_inverse **inverse) {
     if (inverse) *inverse = nullptr;
     return guarded(__func__, [&] {
         need(chains, "chains");
         need(r, "r");
         need(inverse, "inverse");
-        create(chains, chain, packed_array(r), inverse);
+        create(chains, molecule, packed_array(r), inverse);
     });
 }
 
-int hol_inverse_create_view(const hol_chains *chains, int64_t chain, const hol_view *r, hol_inverse **inverse) {
+int hol_inverse_create_view(const hol_chains *chains, int64_t molecule, const hol_view *r, hol_inverse **inverse) {
     if (inverse) *inverse = nullptr;
     return guarded(__func__, [&] {
         need(chains, "chains");
         need(r, "r");
         need(inverse, "inverse");
-        create(chains, chain, viewed_array(r, "r"), inverse);
+        create(chains, molecule, viewed_array(r, "r"), inverse);
     });
 }
 

@@ -104,8 +104,8 @@ int hol_project_positions_along_view(const hol_chains *chains, const hol_view *b
     });
 }
 
-void hol_reference_error(double *error, int64_t *chain, int64_t *bond) {
+void hol_reference_error(double *error, int64_t *molecule, int64_t *bond) {
     if (error) *error = reference_error.error;
-    if (chain) *chain = reference_error.molecule;
+    if (molecule) *molecule = reference_error.molecule;
     if (bond) *bond = reference_error.bond;
 }

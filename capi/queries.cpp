@@ -51,11 +51,11 @@ int hol_chains_molecule(const hol_chains *chains, int64_t molecule, int *shape, 
     });
 }
 
-int hol_chains_atoms(const hol_chains *chains, int64_t chain, int64_t *atoms) {
+int hol_chains_atoms(const hol_chains *chains, int64_t molecule, int64_t *atoms) {
     return guarded(__func__, [&] {
         need(chains, "chains");
         need(atoms, "atoms");
-        chains->chains.atoms(from_zero(chains->chains, chain), atoms);
+        chains->chains.atoms(from_zero(chains->chains, molecule), atoms);
     });
 }
 

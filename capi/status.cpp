@@ -68,10 +68,10 @@ const char *hol_status_name(int status) {
 
 const char *hol_error_message(void) { return holonomic::last_message; }
 
-void hol_error_location(int64_t *chain, int64_t *bond, int64_t *atom, int64_t *n_bad) {
+void hol_error_location(int64_t *molecule, int64_t *bond, int64_t *atom, int64_t *n_bad) {
     const holonomic::Error &error = holonomic::last_error;
     const bool any = error.status != holonomic::Status::ok;
-    if (chain) *chain = any && error.chain >= 0 ? error.chain + error.base : -1;
+    if (molecule) *molecule = any && error.chain >= 0 ? error.chain + error.base : -1;
     if (bond) *bond = any && error.bond >= 0 ? error.bond + error.base : -1;
     if (atom) *atom = any && error.atom >= 0 ? error.atom + error.base : -1;
     if (n_bad) *n_bad = any ? error.n_bad : 0;

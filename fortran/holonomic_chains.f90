@@ -20,7 +20,7 @@ module holonomic_chains
       procedure :: destroy
       procedure, private :: add_list_32, add_list_64, add_list_one_length_32, add_list_one_length_64
       procedure, private :: add_block_32, add_block_64, add_block_one_length_32, add_block_one_length_64
-      ! add(atoms, lengths): one chain by its atoms. add(n_chains, n_bonds, first_atom, lengths): a block of chains.
+      ! add(atoms, lengths): one linear chain by its atoms. add(n_chains, n_bonds, first_atom, lengths): a block of them.
       generic :: add => add_list_32, add_list_64, add_list_one_length_32, add_list_one_length_64, &
          add_block_32, add_block_64, add_block_one_length_32, add_block_one_length_64
       procedure :: c_handle   ! for calls of the module holonomic_c
@@ -40,7 +40,7 @@ contains
       real(real64), target :: no_mass(1)
       integer(c_int) :: status
       if (c_associated(self%handle)) then
-         call problem%set(HOL_ERR_VALUE, "these chains have been created already; destroy them first")
+         call problem%set(HOL_ERR_VALUE, "this variable has been created already; destroy it first")
       else
          no_mass = 0
          if (size(masses) == 0) then
@@ -61,7 +61,7 @@ contains
       call settle(problem, "create", stat, errmsg)
    end subroutine
 
-   ! A copy made by assignment only forgets the chains: they belong to the variable that created them.
+   ! A copy made by assignment only forgets the molecules: they belong to the variable that created them.
    impure elemental subroutine destroy(self)
       class(chain_set), intent(inout) :: self
       if (self%is_owner) call hol_chains_destroy(self%handle)

@@ -76,8 +76,8 @@ contains
       n_kinds = hol_chains_n_kinds(self%c_handle())
    end function
 
-   ! Where the bonds of each molecule follow one another, as in a set of chains alone:
-   ! first_bond(n_chains + 1): chain c has the bonds first_bond(c) .. first_bond(c + 1) - 1 of arrays per bond.
+   ! Where the bonds of each molecule follow one another, as in a set of linear chains alone:
+   ! first_bond(n_chains + 1): molecule m has the bonds first_bond(m) .. first_bond(m + 1) - 1 of arrays per bond.
    recursive subroutine offsets(self, first_bond, stat, errmsg)
       class(chain_set_counts), intent(in) :: self
       integer(int64), intent(inout), contiguous, target :: first_bond(:)

@@ -1,4 +1,4 @@
-! The inverse of the matrix Z of one chain. Bonds are counted from 1. As with type(hol_chains), the variable that was
+! The inverse of the matrix Z of one molecule. Bonds are counted from 1. As with type(hol_chains), the variable that was
 ! created owns what it has until its destroy, and copies don't.
 module holonomic_inverse
    use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
@@ -92,7 +92,7 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       if (.not. c_associated(chains%c_handle())) &
-         call problem%set(HOL_ERR_NULL, "create has not been called for the chains")
+         call problem%set(HOL_ERR_NULL, "create has not been called for the set of molecules")
       if (c_associated(self%handle)) call problem%set(HOL_ERR_VALUE, "this inverse has been created already; " &
                                                       //"destroy it first")
       if (problem%none()) then

@@ -273,7 +273,7 @@ contains
       call problem%set(HOL_ERR_VALUE, name//" has "//decimal(extent)//" elements, too few for "//decimal(needed)//" "//what)
    end subroutine
 
-   ! Of an array per bond or per chain, after a check of its size; NULL if the caller gave none.
+   ! Of an array per bond or per molecule, after a check of its size; NULL if the caller gave none.
    recursive type(c_ptr) function list_of(array, name, needed, what, problem)
       real(real64), optional, contiguous, target :: array(:)
       character(*), intent(in) :: name, what

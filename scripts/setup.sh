@@ -67,6 +67,7 @@ int main() { OpenMM::System system; }' | c++ -x c++ - -lOpenMM -o /dev/null 2>/d
         arm) command -v aarch64-linux-gnu-g++ >/dev/null && command -v qemu-aarch64 >/dev/null ;;
         numpy) [ -n "$(python_with numpy)" ] ;;
         ase) [ -n "$(python_with numpy, ase)" ] ;;
+        openmm-python) [ -n "$(python_with numpy, openmm)" ] ;;
         venv) [ -n "$(python_with numpy, venv, ensurepip)" ] ;;
         eigen) [ -e /usr/include/eigen3/Eigen/Core ] || pkg-config --exists eigen3 2>/dev/null ;;
         *) command -v "$1" >/dev/null ;;
@@ -109,6 +110,7 @@ debian_package() {
         numpy) echo python3-numpy ;;
         ase) echo python3-numpy python3-ase ;;
         venv) echo python3-numpy python3-venv ;;
+        openmm-python) echo python3-numpy python3-simtk libopenmm-plugins ;;
         abidiff) echo abigail-tools ;;
         dpkg-shlibdeps) echo dpkg-dev ;;
         mpi) echo openmpi-bin libopenmpi-dev ;;

@@ -1,7 +1,7 @@
 # One large molecule: does the time per bond depend on its size? Given: level.
 set logscale x
 set format x "10^{%T}"
-set xlabel "bonds of the molecule" offset 0,0.6
+set xlabel "bonds of the molecule"
 set ylabel "time per bond (ns)"
 set yrange [0:*]
 set xrange [8e3:1.3e6]
@@ -14,8 +14,8 @@ pick(problem, method, setting) = sprintf("$1 == \"%s\" && $2 == \"%s\" && $3 == 
 do for [kind in "png svg"] {
     eval "set terminal " . (kind eq "png" ? png : svg)
     set output sprintf("%s/large_%s.%s", out, level, kind)
-    plot for [i=1:3] rows(pick(molecules[i], "holonomic", "default"), "$4, $9") using 1:2 with linespoints lw 3 lc rgb hues[i] pt 7 title "holonomic, ".molecules[i], \
-         for [i=1:3] rows(pick(molecules[i], other, setting), "$4, $9") using 1:2 with linespoints lw 1.5 dt 2 lc rgb hues[i] pt 5 title other.", ".molecules[i], \
+    plot for [i=1:3] rows(pick(molecules[i], "holonomic", "default"), "$4, $9") using 1:2 with linespoints lw 3 lc rgb hues[i] pt 7 title "holonomic, ".scene(molecules[i]), \
+         for [i=1:3] rows(pick(molecules[i], other, setting), "$4, $9") using 1:2 with linespoints lw 1.5 dt 2 lc rgb hues[i] pt 5 title (level eq "position" ? "sparse Newton, " : "sparse L D L^T, ").scene(molecules[i]), \
          rows(pick("arms", "holonomic", "chains instead"), "$4, $9") using 1:2 with linespoints lw 1.5 dt 3 lc rgb "#888888" pt 9 title "holonomic, one chain"
     unset output
 }

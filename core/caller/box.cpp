@@ -79,18 +79,16 @@ Box make_box(const double *h) {
     return next;
 }
 
-void check_width(const Box &box, double longest_bond) {
-    if (box.shape == Box::none || longest_bond == 0) return;
+int narrow_side(const Box &box, double longest_bond, double *width) {
+    if (box.shape == Box::none || longest_bond == 0) return -1;
     for (int i = 0; i < 3; ++i) {
         // The distance of opposite faces is one over the gradient of the fractional coordinate.
         const double *const g = box.inverse + i;
         const double gradient = std::sqrt(g[0] * g[0] + g[3] * g[3] + g[6] * g[6]);
-        if (!(gradient * 2 * longest_bond > 1 + 1e-12)) continue;
-        throw make_error(Status::value,
-                         "the box is %g wide along box vector %d, less than twice the longest bond, %g: images of its "
-                         "atoms can't be told apart; are box and lengths in the same unit?",
-                         1 / gradient, i + 1, longest_bond);
+        *width = 1 / gradient;
+        if (gradient * 2 * longest_bond > 1 + 1e-12) return i;
     }
+    return -1;
 }
 
 BoxRate make_box_rate(const double *L) {

@@ -23,8 +23,8 @@ inline void put_box(const Box &box, Box &of_call) {
     std::memcpy(of_call.inverse, box.inverse, sizeof box.inverse);
 }
 
-// Throws Error if a bond of this length is longer than half the smallest distance between opposite faces.
-void check_width(const Box &box, double longest_bond);
+// The box vector along which opposite faces are nearer than twice this length, and how near; -1 if they are not.
+int narrow_side(const Box &box, double longest_bond, double *width);
 
 // How the box, and what follows it, changes: d(box)/dt = L box.
 struct BoxRate {

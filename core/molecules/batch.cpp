@@ -211,8 +211,8 @@ void Batch::append_found(const FoundMolecules &found, const BondList &list, cons
 
 void Batch::commit() {
     const double longest = chains_.kinds_.longest(static_cast<std::int64_t>(kinds_before_.n_kinds), chains_.longest_);
-    check_width(chains_.box, longest);
-    check_width(chains_.box_of_reference(), longest);
+    chains_.check_width(chains_.box, longest, nullptr);
+    chains_.check_width(chains_.box_of_reference(), longest, nullptr);
     if (!backwards_.empty() || !chains_.backwards_.empty()) {
         chains_.backwards_.resize(at(chains_.n_bonds_ + n_bonds_), 0);
         for (const std::int64_t bond : backwards_) chains_.backwards_[at(chains_.n_bonds_ + bond)] = 1;

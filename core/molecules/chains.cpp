@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace holonomic {
 
@@ -29,16 +30,34 @@ void Chains::box_changed(const Box &next, Box &seen) {
     fits_.store(false, std::memory_order_relaxed);
 }
 
+void Chains::check_width(const Box &next, double longest, const double *lengths) const {
+    double width;
+    const int side = narrow_side(next, longest, &width);
+    if (side < 0) return;
+    char atoms[120] = "";
+    for (std::int64_t c = n_chains(); c-- > 0;) {
+        const Molecule m = molecule(c);
+        for (std::int64_t k = m.n_bonds; k-- > 0;)
+            if ((lengths ? lengths[m.bond(k)] : m.length(k)) == longest)
+                std::snprintf(atoms, sizeof atoms, " (atoms %s and %s)", name_of_atom(m.atom(m.i(k))).text,
+                              name_of_atom(m.atom(m.j(k))).text);
+    }
+    throw make_error(Status::value,
+                     "the box is %g wide along box vector %d, less than twice the longest bond, %g%s: images of its "
+                     "atoms can't be told apart; are box and lengths in the same unit?",
+                     width, side + 1, longest, atoms);
+}
+
 void Chains::set_box(const double *h) {
     const Box next = make_box(h);
-    check_width(next, longest_);
+    check_width(next, longest_, nullptr);
     box = next;
     box_changed(box, seen_box_);
 }
 
 void Chains::set_reference_box(const double *h) {
     const Box next = make_box(h);
-    check_width(next, longest_);
+    check_width(next, longest_, nullptr);
     reference_box_ = next;
     has_reference_box_ = h != nullptr;
     box_changed(reference_box_, seen_reference_);

@@ -134,6 +134,9 @@ private:
     MoleculeLane molecule_lane_of(const Plan &plan, const Group &group, std::int64_t index, std::int64_t stage,
                                   std::int64_t part) const;
     void rebuild(const Masses &masses, const double *lengths);
+    // Throws Error, naming a bond of this length, if the box is narrower than twice that. lengths: those that molecules
+    // are to have, in the caller's order, or null: as they are.
+    void check_width(const Box &next, double longest, const double *lengths) const;
 
     std::int64_t n_atoms_, n_bonds_ = 0;
     Masses masses_;

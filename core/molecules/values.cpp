@@ -42,8 +42,8 @@ void Chains::rebuild(const Masses &masses, const double *lengths) {
             groups.append(kinds, kind, 1, m.first_atom, m.atom_list, m.first_bond, m.bond_list);
         }
     const double longest = kinds.longest(0, 0);
-    check_width(box, longest);
-    check_width(box_of_reference(), longest);
+    check_width(box, longest, lengths);
+    check_width(box_of_reference(), longest, lengths);
     longest_ = longest;
     kinds_ = std::move(kinds);
     groups_ = std::move(groups);

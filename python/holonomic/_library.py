@@ -31,6 +31,7 @@ SIGNATURES = {
     "hol_chains_set_checks": "i pi",
     "hol_chains_set_threads": "i pi",
     "hol_chains_set_active": "i pp",
+    "hol_chains_set_memory_limit": "i pl",
     "hol_chains_set_tolerance": "i pd",
     "hol_chains_set_max_iterations": "i pi",
     "hol_chains_n_atoms": "l p",

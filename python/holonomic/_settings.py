@@ -23,6 +23,7 @@ class Settings:
     _tolerance = 0.0
     _max_iterations = 50
     _checks = "at start"
+    _memory_limit = 0
     _active: Optional[np.ndarray] = None
 
     @property
@@ -91,6 +92,17 @@ class Settings:
     def max_iterations(self, count: int) -> None:
         ask(library.hol_chains_set_max_iterations(self._handle, count))
         self._max_iterations = count
+
+    @property
+    def memory_limit(self) -> int:
+        """Bound on the memory that the set takes, in bytes: a molecule of so many cycles that it needs more is refused when
+        it is added. 0 (default): a quarter of the machine's memory."""
+        return self._memory_limit
+
+    @memory_limit.setter
+    def memory_limit(self, limit: int) -> None:
+        ask(library.hol_chains_set_memory_limit(self._handle, limit))
+        self._memory_limit = limit
 
     @property
     def checks(self) -> str:

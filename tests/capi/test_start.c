@@ -118,6 +118,42 @@ static void atoms_counted_from_one(void **state)
     free_waters(&w);
 }
 
+/* The same in separate arrays and in single precision: no layout passes by the check. */
+static void a_mistake_is_seen_in_every_layout(void **state)
+{
+    (void)state;
+    waters w = make_waters(4, 7);
+    const size_t n = (size_t)w.n_atoms;
+    const double tenths[3] = {0.1 * WATER_OH, 0.1 * WATER_OH, 0.1 * WATER_HH};
+    hol_chains *chains = water_set(&w, tenths);
+    double *const x = malloc(sizeof *x * 3 * n), *const next = malloc(sizeof *next * 3 * n);
+    float *const packed = malloc(sizeof *packed * 3 * n), *const moved = malloc(sizeof *moved * 3 * n);
+    for (size_t i = 0; i < 3 * n; ++i) {
+        next[n * (i % 3) + i / 3] = x[n * (i % 3) + i / 3] = w.r[i];
+        moved[i] = packed[i] = (float)w.r[i];
+    }
+    double *const before = copy_of(next, 3 * n);
+    const hol_view apart = {x, x + n, x + 2 * n, sizeof *x, HOL_DOUBLE, 0};
+    const hol_view apart_next = {next, next + n, next + 2 * n, sizeof *x, HOL_DOUBLE, 0};
+    const hol_view single = {packed, packed + 1, packed + 2, 3 * sizeof(float), HOL_FLOAT, 0};
+    const hol_view single_next = {moved, moved + 1, moved + 2, 3 * sizeof(float), HOL_FLOAT, 0};
+    CHECK_FAILS(HOL_ERR_LENGTHS,
+                hol_project_positions_view(chains, &apart, &apart_next, NULL, DT, NULL, 0, NULL, NULL));
+    assert_message_names("about 10 times");
+    assert_same_bits(next, before, 3 * n);
+    CHECK_FAILS(HOL_ERR_LENGTHS,
+                hol_project_positions_view(chains, &single, &single_next, NULL, DT, NULL, 0, NULL, NULL));
+    assert_message_names("about 10 times");
+    assert_memory_equal(moved, packed, sizeof *moved * 3 * n);
+    free(x);
+    free(next);
+    free(before);
+    free(packed);
+    free(moved);
+    hol_chains_destroy(chains);
+    free_waters(&w);
+}
+
 static void a_stale_box(void **state)
 {
     (void)state;
@@ -184,7 +220,7 @@ static void boxes_narrower_than_two_bonds(void **state)
     hol_chains *chains = water_set(&w, water_lengths);
     CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_box(chains, nm));
     assert_message_names("1.86 wide");
-    assert_message_names("longest bond, 1.63299");
+    assert_message_names("longest bond, 1.63299 (atoms 1 and 2)");
     assert_message_names("same unit");
     CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_reference_box(chains, nm));
     CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_box(chains, other)); /* 3 high, and its planes are nearer */
@@ -192,11 +228,12 @@ static void boxes_narrower_than_two_bonds(void **state)
     double *const lengths = malloc(sizeof *lengths * 3 * (size_t)w.n_molecules);
     for (int64_t k = 0; k < 3 * w.n_molecules; ++k) lengths[k] = 10 * water_lengths[k % 3];
     CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_lengths(chains, lengths));
-    assert_message_names("longest bond, 16.3299");
+    assert_message_names("longest bond, 16.3299 (atoms 1 and 2)");
     hol_chains_destroy(chains);
     CHECK(hol_chains_create(w.n_atoms, w.mass, &chains));
     CHECK(hol_chains_set_box(chains, nm));
     CHECK_FAILS(HOL_ERR_VALUE, hol_chains_add_molecules(chains, w.n_molecules, 3, 0, 3, water_pairs, water_lengths));
+    assert_message_names("longest bond, 1.63299 (atoms 1 and 2)");
     assert_int_equal(hol_chains_n_bonds(chains), 0);
     hol_chains_destroy(chains);
     free(lengths);
@@ -219,6 +256,9 @@ static void lengths_that_make_no_triangle(void **state)
     CHECK(hol_chains_add_molecules(chains, 1, 3, 5, 3, water_pairs, line)); /* what it is at is found by the calls */
     CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_lengths(chains, angle));
     assert_message_names("atoms 6 and 7");
+    const double degrees[3] = {1, 1, 109.47};
+    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_lengths(chains, degrees));
+    assert_message_names("has the length 109.47");
     hol_chains_destroy(chains);
 
     /* Within a larger molecule, and a ring. */
@@ -240,6 +280,7 @@ int main(void)
         cmocka_unit_test(lengths_in_another_unit),
         cmocka_unit_test(lengths_in_another_order),
         cmocka_unit_test(atoms_counted_from_one),
+        cmocka_unit_test(a_mistake_is_seen_in_every_layout),
         cmocka_unit_test(a_stale_box),
         cmocka_unit_test(masses_that_are_all_zero),
         cmocka_unit_test(boxes_that_are_no_cell),

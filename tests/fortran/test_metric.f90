@@ -224,7 +224,7 @@ contains
       call inverse%entry(1, 1, value, stat=stat)
       call check(stat == HOL_ERR_NULL, "an inverse that was not created")
       call inverse%create(chains, 3, r, stat, message)
-      call check(stat == HOL_ERR_INDEX .and. index(message, "chain 3 is outside 1 .. 2") > 0, "there is no chain 3")
+      call check(stat == HOL_ERR_INDEX .and. index(message, "molecule 3 is outside 1 .. 2") > 0, "there is no such molecule")
       call inverse%create(chains, 1, r(:, :7), stat, message)
       call check(stat == HOL_ERR_VALUE .and. index(message, "r has 7") > 0, "r too small")
       call inverse%create(chains, 1, r)

@@ -51,7 +51,7 @@ program test_not_created
    call none%atoms(list, stat, message)
    call expect_not_created("atoms")
    call inverse%create(none, 1, r, stat, message)
-   call check(stat == HOL_ERR_NULL .and. message == "create: create has not been called for the chains", "an inverse")
+   call check(stat == HOL_ERR_NULL .and. message == "create: create has not been called for the set of molecules", "an inverse")
    call inverse%condition(lambda(1), stat, message)
    call expect_not_created("condition")
    call inverse%entry(1, 1, lambda(1), stat=stat, errmsg=message)

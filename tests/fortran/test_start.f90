@@ -164,7 +164,7 @@ contains
       call chains%set_box(0.1_dp*whole_box, stat=stat, errmsg=message)
       call check(stat == HOL_ERR_VALUE .and. says("1.55 wide") .and. says("same unit"), trim(message))
       call chains%set_box(2.1_dp*[oh, oh, oh], stat=stat, errmsg=message)
-      call check(stat == HOL_ERR_VALUE .and. says("longest bond, 1.63299"), trim(message))
+      call check(stat == HOL_ERR_VALUE .and. says("longest bond, 1.63299 (atoms 2 and 3)"), trim(message))
       call chains%destroy()
    end subroutine
 

@@ -119,6 +119,7 @@ long double check_chain_case(const oracle_case *c)
         ratio = check_forces(c, chains);
         ratio = fmaxl(ratio, check_metric(c, chains));
         ratio = fmaxl(ratio, check_inverse(c, chains));
+        ratio = fmaxl(ratio, check_fit(c->name, chains, c->n_bonds + 1, c->n_bonds, NULL, c->length, c->r));
     } else {
         printf("%-36s the library takes no such chain: %s\n", c->name, m ? hol_error_message() : "out of memory");
     }

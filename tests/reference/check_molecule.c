@@ -208,6 +208,7 @@ long double check_molecule_case(const molecule_file *c)
             ratio = fmaxl(ratio, check_positions(c, chains, &o));
             ratio = fmaxl(ratio, check_metric(c, chains, &o));
         }
+        ratio = fmaxl(ratio, check_fit(c->name, chains, c->n_atoms, c->n_bonds, c->pairs, c->length, c->r));
         free(o.memory);
     }
     hol_chains_destroy(chains);

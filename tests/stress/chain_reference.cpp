@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "bond_matrix.hpp"
 
@@ -14,6 +15,7 @@ namespace
 {
 
 constexpr long double smallest = 4.9406564584124654e-324L;
+constexpr long double eps_of_joint = 4;  // that a multiplier may be off by for each joint that a pull has passed
 
 long double narrow(const quad &x)
 {
@@ -112,28 +114,6 @@ void fill_metric(const exact_chain &c, const elimination &z, const sizes &s, con
     out.regular = true;
 }
 
-level_reference level_of(long_vec lambda, long_vec scale, const long_vec &d, const long_vec &size)
-{
-    level_reference out;
-    const std::size_t n = lambda.size();
-    out.g.assign(3 * (n + 1), 0);
-    out.g_scale.assign(n + 1, 0);
-    for (std::size_t k = 0; k < n; ++k) {
-        for (std::size_t x = 0; x < 3; ++x) {
-            const long double pull = 2 * lambda[k] * d[3 * k + x];
-            out.g[3 * k + x] += pull;
-            out.g[3 * k + 3 + x] -= pull;
-            for (std::size_t y = 0; y < 3; ++y) out.virial[3 * x + y] -= pull * d[3 * k + y];
-        }
-        out.g_scale[k] += 2 * scale[k] * size[k];
-        out.g_scale[k + 1] += 2 * scale[k] * size[k];
-        out.virial_scale += 2 * scale[k] * size[k] * size[k];
-    }
-    out.lambda = std::move(lambda);
-    out.scale = std::move(scale);
-    return out;
-}
-
 }  // namespace
 
 long_vec chain_reference::spread(long_vec size) const
@@ -155,6 +135,55 @@ long_vec chain_reference::pulls_by(const hostile_chain &c, const long_vec &size)
     for (std::size_t k = 0; k < n; ++k)
         for (std::size_t i = k; i <= k + 1; ++i) pull[i] += c.w[i] * 2 * lambda[k] * c.length[k];
     return pull;
+}
+
+long_vec chain_reference::spread_by_joints(const long_vec &size) const
+{
+    // (Z^-1)_kl = (Z^-1)_kk times the ratios of the joints between them, of the elimination that comes from l.
+    const std::size_t n = size.size();
+    long_vec out(n);
+    const auto sweep = [&](std::size_t from, std::size_t step, const auto &ratio) {
+        long double sum = 0, far = 0;  // of the bonds so far, without and with numbers of joints
+        for (std::size_t i = 0, k = from; i < n; ++i, k += step) {
+            const long double l = i > 0 ? ratio(k) : 0;
+            far = l * (far + sum);
+            out[k] += inverse_[k] * far;
+            sum = l * sum + size[k];
+        }
+    };
+    sweep(0, 1, [&](std::size_t k) { return ratio_[k]; });
+    sweep(n - 1, SIZE_MAX, [&](std::size_t k) { return inverse_[k + 1] * ratio_[k + 1] / inverse_[k]; });
+    return out;
+}
+
+level_reference chain_reference::level(long_vec lambda, const long_vec &right_side, const long_vec &size) const
+{
+    level_reference out;
+    const std::size_t n = lambda.size();
+    const long double bound = oracle_bound(static_cast<std::int64_t>(n));
+    const long_vec scale = spread(right_side), far = spread_by_joints(right_side);
+    out.g.assign(3 * (n + 1), 0);
+    out.g_scale.assign(n + 1, 0);
+    out.g_allowed = out.g_scale;
+    for (std::size_t k = 0; k < n; ++k) {
+        for (std::size_t x = 0; x < 3; ++x) {
+            const long double pull = 2 * lambda[k] * d[3 * k + x];
+            out.g[3 * k + x] += pull;
+            out.g[3 * k + 3 + x] -= pull;
+            for (std::size_t y = 0; y < 3; ++y) out.virial[3 * x + y] -= pull * d[3 * k + y];
+        }
+        const long double allowed = bound * scale[k] + eps_of_joint * far[k];
+        for (std::size_t i = k; i <= k + 1; ++i) {
+            out.g_scale[i] += 2 * scale[k] * size[k];
+            out.g_allowed[i] += 2 * allowed * size[k];
+        }
+        out.virial_scale += 2 * scale[k] * size[k] * size[k];
+        out.virial_allowed += 2 * allowed * size[k] * size[k];
+        out.allowed.push_back(allowed);
+    }
+    out.lambda = std::move(lambda);
+    out.scale = scale;
+    return out;
 }
 
 chain_reference::chain_reference(const hostile_chain &c)
@@ -186,6 +215,7 @@ chain_reference::chain_reference(const hostile_chain &c)
     if (!(metric.condition < 1e60L)) return;  // singular but for the rounding of this arithmetic
     fill_metric(e, z, s, d, metric);
     if (!metric.regular) return;
+    for (std::size_t k = 0; k < n; ++k) inverse_.push_back(metric.diagonal[k] / root[k] / root[k]);
 
     std::vector<quad> force_side, velocity_side;
     long_vec force_size, velocity_size, one;
@@ -209,8 +239,8 @@ chain_reference::chain_reference(const hostile_chain &c)
         velocity_size.push_back(of_velocities);
         one.push_back(64 * reach * (1 + s.w[k] + s.w[k + 1]));
     }
-    forces = level_of(z.solve(std::move(force_side)), spread(std::move(force_size)), d, s.size);
-    velocities = level_of(z.solve(std::move(velocity_side)), spread(std::move(velocity_size)), d, s.size);
+    forces = level(z.solve(std::move(force_side)), force_size, s.size);
+    velocities = level(z.solve(std::move(velocity_side)), velocity_size, s.size);
 
     // Every product and sum of a right-hand side may be off by the smallest number, and so may each step of the two
     // sweeps, whose unit of mass is the chain's own where all are equal; what a multiplier is off by, its bond pulls at

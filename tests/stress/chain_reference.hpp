@@ -18,11 +18,16 @@ namespace stress
 
 using long_vec = std::vector<long double>;
 
-/** Multipliers of one level, what they do, and the scales of solution.h. */
+/**
+ * Multipliers of one level, what they do, the scales of solution.h, and how many eps each may be off by:
+ *     allowed_k = K scale_k + 4 sum_l |k-l| |Z^-1|_kl S_l,   scale_k = sum_l |Z^-1|_kl S_l,   K = 16 + sqrt(N).
+ * What pulls at bond l reaches bond k through the joints between them, as a product of their multipliers. Each of these
+ * has some sixteen roundings of half an eps at most (docs/stability.md).
+ */
 struct level_reference {
-    long_vec lambda, scale;  ///< [n_bonds]
-    long_vec g, g_scale;     ///< [n_bonds+1][3] and [n_bonds+1]
-    long double virial[9] = {}, virial_scale = 0;
+    long_vec lambda, scale, allowed;  ///< [n_bonds]
+    long_vec g, g_scale, g_allowed;   ///< [n_bonds+1][3] and [n_bonds+1]
+    long double virial[9] = {}, virial_scale = 0, virial_allowed = 0;
 };
 
 struct chain_reference {
@@ -36,11 +41,17 @@ struct chain_reference {
     /** |Z^-1| times these sizes. */
     long_vec spread(long_vec size) const;
 
+    /** Elements of |Z^-1| times the number of joints between the two bonds, times these sizes. */
+    long_vec spread_by_joints(const long_vec &size) const;
+
     /** Sizes of what projecting velocities (or displacements) of the given sizes pulls each atom with, times w. */
     long_vec pulls_by(const hostile_chain &c, const long_vec &size) const;
 
 private:
+    level_reference level(long_vec lambda, const long_vec &right_side, const long_vec &size) const;
+
     long_vec pivot_, ratio_;  // P_k of Z, and |Z_{k,k-1}| / P_{k-1}
+    long_vec inverse_;        // (Z^-1)_kk
 };
 
 /** K of tests/oracle/README.md. */

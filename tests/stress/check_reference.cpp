@@ -60,6 +60,28 @@ void compare_metric(const exact_metric &x, const exact_metric &y)
         compare(x.force_scale[i], y.force_scale[i], y.force_scale[i]);
 }
 
+/** Against the elements of the inverse one by one. */
+void compare_spread(const hostile_chain &c, const chain_reference &x)
+{
+    const std::int64_t n = c.n_bonds;
+    const auto at = [](std::int64_t i) { return static_cast<std::size_t>(i); };
+    long_vec size, root;
+    for (std::int64_t k = 0; k < n; ++k) {
+        size.push_back(1 + static_cast<long double>(k % 7));
+        root.push_back(2 * std::sqrt(static_cast<long double>(c.w[at(k)]) + c.w[at(k + 1)]) *
+                       std::hypot(x.d[3 * at(k)], x.d[3 * at(k) + 1], x.d[3 * at(k) + 2]));
+    }
+    const long_vec far = x.spread_by_joints(size);
+    for (std::int64_t k = 0; k < n; ++k) {
+        long double sum = 0;
+        for (std::int64_t l = 0; l < n; ++l) {
+            const long double element = std::fabs(x.metric.entry(k < l ? k : l, k < l ? l : k));
+            sum += static_cast<long double>(k < l ? l - k : k - l) * element / root[at(k)] / root[at(l)] * size[at(l)];
+        }
+        compare(far[at(k)], sum, sum);
+    }
+}
+
 }  // namespace
 
 int main(int argc, char **argv)
@@ -80,6 +102,7 @@ int main(int argc, char **argv)
         compare_level(c, x.forces, solution_forces);
         compare_level(c, x.velocities, solution_velocities);
         compare_metric(x.metric, metric);
+        compare_spread(c, x);
         if (worst > 4 * (16 + 300)) {
             std::printf("chain %llu: off by %.3Lg roundings of long double\n", static_cast<unsigned long long>(seed),
                         worst);

@@ -1,8 +1,9 @@
 /**
  * @file checks.hpp
  * Compares what the library says about one chain with the reference solution. Bounds are those of
- * tests/oracle/README.md, K = 16 + sqrt(N) in units of eps times the componentwise scale; where the README has none,
- * they are given here.
+ * tests/oracle/README.md, K = 16 + sqrt(N) in units of eps times the componentwise scale, for multipliers with four
+ * more for each joint between a bond and what pulls at it (chain_reference.hpp); where the README has none, they are
+ * given here.
  */
 #ifndef STRESS_CHECKS_HPP
 #define STRESS_CHECKS_HPP
@@ -17,9 +18,9 @@ namespace stress
 
 /**
  * lambda, G and virial of hol_forces; lambda and v of hol_project_velocities.
- * Velocities: |v_i - ref| <= K eps (|v_i0| + w_i g_scale_i), g_scale with all terms of the velocities in its right-hand
- * side: what rounding them may do. These terms are what goes in, what comes out and the pulls 2 w lambda |d|. Of d.dv
- * may be left K eps |d| times those of its two atoms, with the pulls of projecting their rounding.
+ * Velocities: |v_i - ref| <= K eps |v_i0| + eps w_i g_allowed_i, g_allowed with all terms of the velocities in its
+ * right-hand side: what rounding them may do. These terms are what goes in, what comes out and the pulls 2 w lambda
+ * |d|. Of d.dv may be left K eps |d| times those of its two atoms, with the pulls of projecting their rounding.
  */
 void check_linear_levels(const hostile_chain &c, const chain_reference &exact, const library_results &alone,
                          verdict &out);

@@ -49,16 +49,17 @@ void check_forces(const hostile_chain &c, const chain_reference &exact, const li
     long_vec g_slack(n + 1, 0);
     long double virial_slack = 0;
     for (std::size_t k = 0; k < n; ++k) {
-        out.compare(LAMBDA, alone.lambda[k], ref.lambda[k], k_eps * ref.scale[k] + slack[k]);
+        out.compare(LAMBDA, alone.lambda[k], ref.lambda[k], eps * ref.allowed[k] + slack[k]);
+        out.compare(LAMBDA_NEAR, alone.lambda[k], ref.lambda[k], k_eps * ref.scale[k] + slack[k]);
         const long double pull = slack[k] > 0 ? 2 * slack[k] * size_of(c, k) + 8 * smallest : 0;
         g_slack[k] += pull;
         g_slack[k + 1] += pull;
         virial_slack += pull * size_of(c, k) + 8 * (pull > 0 ? smallest : 0);
     }
     for (std::size_t i = 0; i < 3 * (n + 1); ++i)
-        out.compare(FORCE, alone.g[i], ref.g[i], k_eps * ref.g_scale[i / 3] + g_slack[i / 3]);
+        out.compare(FORCE, alone.g[i], ref.g[i], eps * ref.g_allowed[i / 3] + g_slack[i / 3]);
     for (std::size_t i = 0; i < 9; ++i)
-        out.compare(VIRIAL, alone.virial[i], ref.virial[i], k_eps * ref.virial_scale + virial_slack);
+        out.compare(VIRIAL, alone.virial[i], ref.virial[i], eps * ref.virial_allowed + virial_slack);
 }
 
 void check_velocities(const hostile_chain &c, const chain_reference &exact, const library_results &alone, verdict &out)
@@ -69,7 +70,7 @@ void check_velocities(const hostile_chain &c, const chain_reference &exact, cons
     const std::size_t n = at(c.n_bonds);
     long_vec term(n + 1, 0), g_slack(n + 1, 0);  // sizes of what adds up to the velocity of an atom
     for (std::size_t k = 0; k < n; ++k) {
-        out.compare(VELOCITY_LAMBDA, alone.velocity_lambda[k], ref.lambda[k], k_eps * ref.scale[k] + slack[k]);
+        out.compare(VELOCITY_LAMBDA, alone.velocity_lambda[k], ref.lambda[k], eps * ref.allowed[k] + slack[k]);
         const long double larger =
             std::max(std::fabs(ref.lambda[k]), std::fabs(static_cast<long double>(alone.velocity_lambda[k])));
         const long double pull = 2 * larger * size_of(c, k);
@@ -87,7 +88,7 @@ void check_velocities(const hostile_chain &c, const chain_reference &exact, cons
         for (std::size_t x = 0; x < 3; ++x) {
             const long double before = c.v[3 * i + x], after = before + c.w[i] * ref.g[3 * i + x];
             out.compare(VELOCITY, alone.v[3 * i + x], after,
-                        k_eps * (std::fabs(before) + c.w[i] * ref.g_scale[i] + second[i]) + g_slack[i]);
+                        k_eps * (std::fabs(before) + second[i]) + eps * c.w[i] * ref.g_allowed[i] + g_slack[i]);
         }
     for (std::size_t i = 0; i <= n; ++i) term[i] += eps * second[i];
     for (std::size_t k = 0; k < n; ++k) {

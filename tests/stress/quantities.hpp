@@ -13,10 +13,11 @@ namespace stress
 {
 
 enum quantity {
-    LAMBDA,   ///< multipliers of hol_forces
-    FORCE,    ///< constraint forces
-    VIRIAL,   ///< of hol_forces
-    LOG_DET,  ///< ln det Z~
+    LAMBDA,       ///< multipliers of hol_forces
+    LAMBDA_NEAR,  ///< the same against K eps of its scale alone; for information
+    FORCE,        ///< constraint forces
+    VIRIAL,       ///< of hol_forces
+    LOG_DET,      ///< ln det Z~
     FIXMAN_FORCE,
     INVERSE,                ///< elements of Z~^-1
     CONDITION,              ///< condition number of Z~
@@ -38,9 +39,9 @@ enum quantity {
 inline const char *quantity_name(int q)
 {
     static const char *const names[N_QUANTITIES] = {
-        "lambda",       "G",          "virial",     "ln det",       "Fixman force", "inverse",      "condition",
-        "error bound",  "lambda (v)", "velocities", "d.dv left",    "bond lengths", "bond by bond", "shift (r)",
-        "refused step", "refused",    "accepted",   "outputs kept", "same bits"};
+        "lambda",    "lambda, K",    "G",          "virial",     "ln det",       "Fixman force", "inverse",
+        "condition", "error bound",  "lambda (v)", "velocities", "d.dv left",    "bond lengths", "bond by bond",
+        "shift (r)", "refused step", "refused",    "accepted",   "outputs kept", "same bits"};
     return names[q];
 }
 
@@ -75,7 +76,7 @@ struct verdict {
 /** Quantities that are counted but promised nowhere. */
 inline bool for_information(int q)
 {
-    return q == POSITION_LENGTH_LOCAL || q == REFUSED_STEP;
+    return q == LAMBDA_NEAR || q == POSITION_LENGTH_LOCAL || q == REFUSED_STEP;
 }
 
 inline bool verdict::exceeded() const

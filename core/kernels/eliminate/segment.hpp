@@ -140,7 +140,7 @@ HOL_INLINE void step(Elimination &e, const Block &block, const SegmentStore &x, 
         left = keep(live, left);
     }
     if (!careful) e.slack = min(e.slack, left);
-    if (!uniform) e.w_max = max(e.w_max, w);
+    if (!uniform) e.w_max = max(e.w_max, ragged ? keep(live, w) : w);  // inert bonds have masses of their own
     e.q = j.q;
 }
 

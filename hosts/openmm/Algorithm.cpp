@@ -1,0 +1,73 @@
+#include "Algorithm.h"
+
+#include <cstring>
+#include <string>
+
+#include "openmm/OpenMMException.h"
+
+using namespace OpenMM;
+
+namespace {
+
+void ask(int status) {
+    if (status != HOL_OK) throw OpenMMException(std::string("holonomic: ") + hol_error_message());
+}
+
+// OpenMM's vectors are three doubles each, one after the other.
+static_assert(sizeof(Vec3) == 3 * sizeof(double), "");
+double *packed(std::vector<Vec3> &vectors) { return reinterpret_cast<double *>(vectors.data()); }
+
+}  // namespace
+
+HolonomicAlgorithm::HolonomicAlgorithm(const System &system, int nThreads) {
+    std::vector<double> masses(system.getNumParticles());
+    for (int i = 0; i < system.getNumParticles(); ++i) masses[i] = system.getParticleMass(i);
+    hol_chains *made = nullptr;
+    ask(hol_chains_create(system.getNumParticles(), masses.data(), &made));
+    molecules.reset(made);
+    ask(hol_chains_set_threads(made, nThreads));
+    // Lengths belong to the System, so that a wrong unit or order is not to be feared; and OpenMM's users apply
+    // constraints to crude positions.
+    ask(hol_chains_set_checks(made, HOL_NEVER));
+    addConstraints(system);
+}
+
+void HolonomicAlgorithm::addConstraints(const System &system) {
+    std::vector<std::int64_t> pairs;
+    std::vector<double> lengths;
+    for (int k = 0; k < system.getNumConstraints(); ++k) {
+        int i, j;
+        double length;
+        system.getConstraintParameters(k, i, j, length);
+        pairs.push_back(i);
+        pairs.push_back(j);
+        lengths.push_back(length);
+    }
+    if (lengths.empty()) return;
+    ask(hol_chains_add_bonds(molecules.get(), static_cast<std::int64_t>(lengths.size()), pairs.data(), lengths.data()));
+}
+
+void HolonomicAlgorithm::takeMasses(const std::vector<double> &inverse) {
+    if (inverse.size() == inverseMasses.size() &&
+        std::memcmp(inverse.data(), inverseMasses.data(), inverse.size() * sizeof(double)) == 0)
+        return;
+    std::vector<double> masses(inverse.size());
+    for (std::size_t i = 0; i < inverse.size(); ++i) masses[i] = inverse[i] == 0 ? 0 : 1 / inverse[i];
+    ask(hol_chains_set_masses(molecules.get(), masses.data()));
+    inverseMasses = inverse;
+}
+
+void HolonomicAlgorithm::apply(std::vector<Vec3> &reference, std::vector<Vec3> &positions, std::vector<double> &inverse,
+                               double) {
+    takeMasses(inverse);
+    // The unit of time is that of a displacement: 1 leaves the multipliers, which nobody asks for, in a unit of their
+    // own.
+    ask(hol_project_positions(molecules.get(), packed(reference), packed(positions), nullptr, 1, nullptr, 0, nullptr,
+                              nullptr));
+}
+
+void HolonomicAlgorithm::applyToVelocities(std::vector<Vec3> &positions, std::vector<Vec3> &velocities,
+                                           std::vector<double> &inverse, double) {
+    takeMasses(inverse);
+    ask(hol_project_velocities(molecules.get(), packed(positions), packed(velocities), nullptr, nullptr));
+}
