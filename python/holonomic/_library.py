@@ -57,6 +57,8 @@ SIGNATURES = {
     "hol_project_positions_along_view": "i ppppdpipp",
     "hol_reference_error": "- ppp",
     "hol_violation_view": "i pppp",
+    "hol_residuals_view": "i ppppp",
+    "hol_impose_view": "i ppp",
     "hol_metric_view": "i ppdppppi",
     "hol_inverse_create_view": "i plpp",
     "hol_inverse_destroy": "- p",
