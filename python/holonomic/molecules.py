@@ -81,7 +81,7 @@ class Molecules(Bonds, Settings):
         return self._view(out, "out", True), columns
 
     def _view(self, array: Any, name: str, is_output: bool = False) -> Any:
-        return view_of(array, self._n_atoms, name, output=is_output)
+        return self._views.view(array, name, is_output)
 
     def solve(self, r: Any, rhs: Any, *, out: Optional[np.ndarray] = None, add: bool = False) -> Forces:
         """Multipliers of any right-hand side: Z lambda = rhs, with the matrix Z that `forces` solves.
