@@ -39,22 +39,3 @@ int hol_violation_view(const hol_chains *chains, const hol_view *r, const hol_vi
         write(worst, found);
     });
 }
-
-int hol_residuals(const hol_chains *chains, const double *r, const double *v, double *length, double *rate) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
-        need(r, "r");
-        holonomic::residuals(chains->chains, holonomic::packed_array(r), holonomic::packed_array(v), length, rate);
-    });
-}
-
-int hol_residuals_view(const hol_chains *chains, const hol_view *r, const hol_view *v, double *length, double *rate) {
-    return guarded(__func__, [&] {
-        need(chains, "chains");
-        need(r, "r");
-        const AtomArray ar = holonomic::viewed_array(r, "r"), av = holonomic::viewed_array(v, "v");
-        const AtomArray *const all[] = {&ar, &av};
-        holonomic::check_dimensions(all, 2);
-        holonomic::residuals(chains->chains, ar, av, length, rate);
-    });
-}

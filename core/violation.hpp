@@ -14,10 +14,7 @@ struct Worst {
     std::int64_t rate_chain, rate_bond;
 };
 
-// Throw Error of Status::not_finite once all molecules that give numbers are done.
 void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Worst *worst);
-// Of each bond, [n_bonds] in the caller's order: (d.d - a^2) / a^2 and d.(v_j - v_i + L d); either may be nullptr.
-void residuals(const Chains &chains, const AtomArray &r, const AtomArray &v, double *length, double *rate);
 
 }  // namespace holonomic
 #endif
