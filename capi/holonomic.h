@@ -716,9 +716,9 @@ HOL_API int hol_residuals_view(const hol_chains *chains, const hol_view *r, cons
 /* --------------------------------------------------------------------------------------------- crude positions */
 
 /**
- * Moves positions that lie anywhere onto the constraints: a model built by hand, coordinates of a builder, another force
- * field's lengths. hol_project_positions with r_ref = r does it where bonds are off by a third or less; this does it
- * from bonds several times too long or too short, too. Each step of Newton's method goes along the bonds as they are
+ * Moves positions that lie anywhere onto the constraints: a model built by hand, coordinates of a builder, another
+ * force field's lengths. hol_project_positions with r_ref = r does it where bonds are off by a third or less; this does
+ * it from bonds several times too long or too short, too. Each step of Newton's method goes along the bonds as they are
  * then, by what w G allows, and only so far that no bond changes by more than a third; near the end steps are whole
  * ones, and the result is right to the rounding of the coordinates.
  *
@@ -731,8 +731,8 @@ HOL_API int hol_residuals_view(const hol_chains *chains, const hol_view *r, cons
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE (atoms on each other, bonds that depend on each
  *         other in these positions, such as a triangle that has become a line: shift an atom, and call again);
  *         HOL_ERR_NO_CONVERGENCE; HOL_ERR_MEMORY. Molecules that fail stay as they were, all others are done; one that
- *         is right already is not touched. Thread-safe on one handle, each thread with positions of its own. Allocates
- *         some 60 bytes per atom. Since 0.2.
+ *         is within the tolerance (hol_chains_set_tolerance) already is not touched. Thread-safe on one handle, each
+ *         thread with positions of its own. Allocates some 60 bytes per atom. Since 0.2.
  */
 HOL_API int hol_impose(const hol_chains *chains, double *r, hol_report *report);
 

@@ -89,6 +89,7 @@ private:
 
     void measure(const Molecule &m, Progress &p) {
         const double before = p.error;
+        double shortest = std::numeric_limits<double>::infinity(), largest = 0;
         p.error = 0;
         for (std::int64_t k = 0; k < m.n_bonds; ++k) {
             double d[3];
@@ -97,6 +98,8 @@ private:
             const double error = std::fabs(dd - a * a) / (a * a), length = std::sqrt(dd);
             const double aim = std::min(std::max(a, length / (1 + most_change)), length * (1 + most_change));
             rhs_[static_cast<std::size_t>(m.bond(k))] = dd - aim * aim;
+            shortest = std::min(shortest, a);
+            for (int c = 0; c < 3; ++c) largest = std::max(largest, std::fabs(position(m.atom(m.j(k)))[c]));
             if (!(error <= p.error)) {
                 p.error = error;
                 p.bond = k;
@@ -106,7 +109,7 @@ private:
                 return;
             }
         }
-        const double rounding = 4 * std::numeric_limits<double>::epsilon();
+        const double rounding = 4 * std::numeric_limits<double>::epsilon() * (1 + largest / shortest);
         if (p.error <= std::max(chains_.tolerance, rounding) || (p.error < nearly_there && p.error > before / 4))
             p.state = State::arrived;
     }

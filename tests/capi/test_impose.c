@@ -102,7 +102,6 @@ static void crude_positions_of_every_shape_get_their_lengths(void **state)
             /* What is right is not touched. */
             double again[3 * most_atoms];
             memcpy(again, r, sizeof r);
-            CHECK(hol_chains_set_tolerance(chains, 1e-12));
             CHECK(hol_impose(chains, again, &report));
             assert_same_bits(again, r, (size_t)(3 * m.n_atoms));
             assert_int_equal(report.n_corrected, 0);
