@@ -222,6 +222,30 @@ module holonomic_c
          integer(c_int) :: status
       end function
 
+      function hol_residuals(chains, r, v, length, rate) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, r, v, length, rate
+         integer(c_int) :: status
+      end function
+
+      function hol_residuals_view(chains, r, v, length, rate) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, r, v, length, rate
+         integer(c_int) :: status
+      end function
+
+      function hol_impose(chains, r, report) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, r, report
+         integer(c_int) :: status
+      end function
+
+      function hol_impose_view(chains, r, report) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, r, report
+         integer(c_int) :: status
+      end function
+
    end interface
 
 end module

@@ -20,7 +20,7 @@ int main(void)
     ok(hol_chains_check(chains, r, HOL_BOX)); /* on request; project_positions does it by itself in its first call */
     ok(hol_project_positions(chains, r, r, NULL, 1, NULL, 0, NULL, NULL));
 
-    /* A crude model, built by hand: said so, it is projected; then checks are as they were. */
+    /* A crude model, built by hand: by a call of its own, or, if it is nearly right, projected with checks off. */
     const double model[9] = {10, 5, 5, 10.8, 5.5, 5, 9.2, 5.5, 5};
     for (int i = 0; i < 9; ++i) r[i] = model[i];
     const hol_view view = {r, r + 1, r + 2, 3 * sizeof(double), HOL_DOUBLE, 0};
@@ -40,6 +40,13 @@ int main(void)
     printf("the reference was off by %.2g in bond %lld; what is left is %.2g\n", error, (long long)bond,
            report.max_error);
     shows("bond", (double)bond, 0);
+    const double crude[9] = {10, 5, 5, 14, 5.5, 5, 10.3, 4.8, 5.1};
+    for (int i = 0; i < 9; ++i) r[i] = crude[i];
+    ok(hol_impose(chains, r, &report));
+    ok(hol_impose_view(chains, &view, NULL)); /* right already */
+    hol_worst worst;
+    ok(hol_violation(chains, r, NULL, &worst));
+    shows("lengths after hol_impose", worst.length < 1e-14, 1);
     hol_chains_destroy(chains);
     return 0;
 }

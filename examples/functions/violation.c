@@ -18,6 +18,11 @@ int main(void)
     shows("in bond", (double)worst.rate_bond, 0);
     ok(hol_violation_view(chains, &view, NULL, &worst));
     shows("without velocities", worst.rate, 0);
+    double left[2], rate[2]; /* of each bond */
+    ok(hol_residuals(chains, r[0], v[0], left, rate));
+    shows("(d.d - a^2) / a^2 of the first", left[0], 0);
+    shows("of the second", left[1], 1.25);
+    ok(hol_residuals_view(chains, &view, NULL, left, NULL));
     hol_chains_destroy(chains);
     return 0;
 }

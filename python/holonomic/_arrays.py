@@ -79,8 +79,28 @@ def view_of(array: Any, rows: int, name: str, what: str = "atoms", output: bool 
     start, column = a.__array_interface__["data"][0] if a.size else 8, a.strides[1]
     view = View(start, start + column, start + 2 * column if a.shape[1] == 3 else None, a.strides[0] or a.itemsize,
                 0 if a.dtype == _DOUBLE else 1, 0)
-    view.array = a  # lives as long as what points to it
+    if a is not array:
+        view.array = a  # lives as long as what points to it
     return byref(view)
+
+
+class KnownViews:
+    """Views of arrays that have been seen before, as PackedArrays has addresses."""
+
+    def __init__(self, rows: int):
+        self._rows = rows
+        self._known: dict = {}
+
+    def view(self, array: Any, name: str, output: bool) -> Any:
+        known = self._known.get(id(array))
+        if known is not None and known[0]() is array and (known[2] or not output):
+            return known[1]
+        pointer = view_of(array, self._rows, name, output=output)
+        if type(array) is np.ndarray and not hasattr(pointer._obj, "array"):  # used where it stands
+            if len(self._known) >= 64:
+                self._known.clear()
+            self._known[id(array)] = (weakref.ref(array), pointer, array.flags.writeable)
+        return pointer
 
 
 def dimensions(array: Any) -> int:

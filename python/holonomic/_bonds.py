@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Optional
 
 import numpy as np
 
-from ._arrays import PackedArrays, address, integers, numbers
+from ._arrays import KnownViews, PackedArrays, address, integers, numbers
 from ._library import library
 from .errors import ArgumentError, ask
 
@@ -38,7 +38,7 @@ class Bonds:
         self._handle = handle
         self._n_atoms = len(masses)
         self._destroy = weakref.finalize(self, library.hol_chains_destroy, handle)
-        self._packed = PackedArrays((self._n_atoms, 3))
+        self._packed, self._views = PackedArrays((self._n_atoms, 3)), KnownViews(self._n_atoms)
         self._grown()
 
     def _grown(self) -> None:

@@ -57,6 +57,8 @@ SIGNATURES = {
     "hol_project_positions_along_view": "i ppppdpipp",
     "hol_reference_error": "- ppp",
     "hol_violation_view": "i pppp",
+    "hol_residuals_view": "i ppppp",
+    "hol_impose_view": "i ppp",
     "hol_metric_view": "i ppdppppi",
     "hol_inverse_create_view": "i plpp",
     "hol_inverse_destroy": "- p",
@@ -103,7 +105,9 @@ def _load() -> ctypes.CDLL:
     if tuple(int(number) for number in version.split(".")[:2]) < _NEEDED:
         raise ImportError(f"{path} is holonomic {version}; this package needs {_NEEDED[0]}.{_NEEDED[1]} or later")
     for name, signature in SIGNATURES.items():
-        function = getattr(library, name)
+        function = getattr(library, name, None)
+        if function is None:
+            raise ImportError(f"{path} has no {name}: it is older than this package")
         result, _, arguments = signature.partition(" ")
         function.restype = _TYPES[result]
         function.argtypes = [_TYPES[letter] for letter in arguments]

@@ -110,11 +110,7 @@ class Constraint(FixConstraint):
     def impose(self, atoms: Any) -> None:
         """Moves the atoms onto the constraints from positions that may be crude, and their momenta."""
         self._prepare(atoms)
-        self._molecules.checks = "never"
-        try:
-            self._molecules.project_positions(atoms.positions, atoms.positions, 1.0)
-        finally:
-            self._molecules.checks = "at start"
+        self._molecules.impose(atoms.positions)
         if atoms.has("momenta"):
             atoms.set_momenta(atoms.get_momenta())
 

@@ -81,7 +81,7 @@ class Molecules(Bonds, Settings):
         return self._view(out, "out", True), columns
 
     def _view(self, array: Any, name: str, is_output: bool = False) -> Any:
-        return view_of(array, self._n_atoms, name, output=is_output)
+        return self._views.view(array, name, is_output)
 
     def solve(self, r: Any, rhs: Any, *, out: Optional[np.ndarray] = None, add: bool = False) -> Forces:
         """Multipliers of any right-hand side: Z lambda = rhs, with the matrix Z that `forces` solves.
@@ -197,6 +197,20 @@ class Molecules(Bonds, Settings):
         worst = Violation()
         ask(library.hol_violation_view(self._handle, self._view(r, "r"), self._view(v, "v"), byref(worst)))
         return worst
+
+    def residuals(self, r: Any, v: Any = None) -> Tuple[np.ndarray, np.ndarray]:
+        """What is left of each constraint: (d.d - a^2) / a^2 and d.(v_j - v_i + L d), each (n_bonds,)."""
+        length, rate = np.zeros(self._n_bonds), np.zeros(self._n_bonds)
+        ask(library.hol_residuals_view(self._handle, self._view(r, "r"), self._view(v, "v"), address(length), address(rate)))
+        return length, rate
+
+    def impose(self, r: np.ndarray) -> Report:
+        """Moves positions r (n_atoms, 3) that lie anywhere onto the constraints, in place: a model built by hand, another
+        force field's lengths. By steps of Newton's method in which no bond changes by more than a third; `project_positions`
+        with r_ref = r does it only where bonds are off by a third or less."""
+        report = Report()
+        ask(library.hol_impose_view(self._handle, self._view(r, "r", True), byref(report)))
+        return report
 
     def check(self, r: Any, *, box: str = "box") -> None:
         """Raises LengthsError if a bond of r is off by more than a tenth of its length, or longer than half the box."""

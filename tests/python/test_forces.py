@@ -148,6 +148,34 @@ class Positions(unittest.TestCase):
         molecules.project_positions_along(dense.bond_vectors(r_ref, bonds), r, 0.1)
         np.testing.assert_allclose(r, plain, atol=1e-14)
 
+    def test_crude_ones_are_imposed_on(self):
+        refused = 0
+        for seed in range(20):
+            rng, r, bonds, lengths, masses, molecules = made(100 + seed, 20, ("chain", "tree", "ring")[seed % 3])
+            r = r + rng.normal(size=r.shape)
+            centre = masses @ r
+            plain = r.copy()
+            report = molecules.impose(r)
+            d = dense.bond_vectors(r, bonds)
+            np.testing.assert_allclose((d * d).sum(1), lengths**2, rtol=1e-13)
+            np.testing.assert_allclose(masses @ r, centre, atol=1e-11)
+            self.assertEqual(report.n_corrected, 1)
+            molecules.checks = "never"
+            try:
+                molecules.project_positions(plain, plain, 1)
+            except hol.NoConvergenceError:
+                refused += 1
+        self.assertGreater(refused, 5)  # what makes it worth a call of its own
+
+    def test_residuals_are_those_of_each_bond(self):
+        rng, r, bonds, lengths, _, molecules = made(37, 10, "ring")
+        r = r + 0.01 * rng.normal(size=r.shape)
+        v = rng.normal(size=r.shape)
+        d, u = dense.bond_vectors(r, bonds), v[bonds[:, 1]] - v[bonds[:, 0]]
+        length, rate = molecules.residuals(r, v)
+        np.testing.assert_allclose(length, (d * d).sum(1) / lengths**2 - 1, atol=1e-14)
+        np.testing.assert_allclose(rate, (d * u).sum(1), atol=1e-14)
+
     def test_with_a_reference_in_another_box(self):
         rng, r_ref, bonds, lengths, masses, molecules = made(36, 10, "tree")
         plain = r_ref + 0.01 * rng.normal(size=r_ref.shape)

@@ -1,6 +1,6 @@
-"""A peptide in water at constant energy: OpenMM's own constraints at two tolerances beside holonomic's.
+"""A peptide at constant energy, in water or alone: OpenMM's own constraints at two tolerances beside holonomic's.
 
-    beside.py [--steps N] [--platform CPU|Reference] [--step FEMTOSECONDS]
+    beside.py [--steps N] [--platform CPU|Reference] [--step FEMTOSECONDS] [--vacuum]
 
 All bonds and the angles of hydrogens are rigid. Prints drift of the energy, largest error of a bond, and time per step, of all of it and
 of the constraints alone (positions and velocities once, from a trial displacement).
@@ -15,7 +15,7 @@ import openmm as mm
 from openmm import app, unit
 
 from holonomic_openmm import add_holonomic
-from peptide import peptide_in_water, worst_bond
+from peptide import peptide, worst_bond
 
 
 def run(base, start, velocities, platform, tolerance, holonomic, options):
@@ -66,11 +66,13 @@ def main():
     parser.add_argument("--samples", type=int, default=40)
     parser.add_argument("--step", type=float, default=2.0)
     parser.add_argument("--platform", default="CPU")
+    parser.add_argument("--vacuum", action="store_true")
     options = parser.parse_args()
     platform = mm.Platform.getPlatformByName(options.platform)
     forcefield = app.ForceField("amber14-all.xml", "amber14/tip3p.xml")
-    modeller = peptide_in_water(forcefield)
-    system = forcefield.createSystem(modeller.topology, nonbondedMethod=app.PME, nonbondedCutoff=0.8 * unit.nanometer,
+    modeller = peptide(forcefield, None if options.vacuum else 0.9)
+    system = forcefield.createSystem(modeller.topology, nonbondedMethod=app.NoCutoff if options.vacuum else app.PME,
+                                     nonbondedCutoff=0.8 * unit.nanometer,
                                      constraints=app.HAngles, rigidWater=True, removeCMMotion=False)
     print(f"{system.getNumParticles()} particles, {system.getNumConstraints()} constraints, {options.step} fs, "
           f"{options.steps} steps on {options.platform}")

@@ -12,8 +12,8 @@ _RESIDUES = ("ACE", "ALA", "NME")
 _BONDS = [(0, 1), (1, 2), (1, 3), (3, 4), (4, 5), (5, 6), (4, 7), (5, 8), (8, 9)]
 
 
-def peptide_in_water(forcefield, padding=0.9):
-    """Topology and positions, with hydrogens and TIP3P water."""
+def peptide(forcefield, padding=0.9):
+    """Topology and positions, with hydrogens and TIP3P water; without water if padding is None."""
     topology = app.Topology()
     chain = topology.addChain()
     residues = [topology.addResidue(name, chain) for name in _RESIDUES]
@@ -23,7 +23,8 @@ def peptide_in_water(forcefield, padding=0.9):
     positions = [Vec3(*place) for _, _, place in _ATOMS] * unit.nanometer
     modeller = app.Modeller(topology, positions)
     modeller.addHydrogens(forcefield)
-    modeller.addSolvent(forcefield, padding=padding * unit.nanometer)
+    if padding is not None:
+        modeller.addSolvent(forcefield, padding=padding * unit.nanometer)
     return modeller
 
 

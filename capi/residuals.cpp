@@ -1,0 +1,27 @@
+#include "core/residuals.hpp"
+
+#include "boundary.hpp"
+#include "view.hpp"
+
+using holonomic::AtomArray;
+using holonomic::guarded;
+using holonomic::need;
+
+int hol_residuals(const hol_chains *chains, const double *r, const double *v, double *length, double *rate) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        need(r, "r");
+        holonomic::residuals(chains->chains, holonomic::packed_array(r), holonomic::packed_array(v), length, rate);
+    });
+}
+
+int hol_residuals_view(const hol_chains *chains, const hol_view *r, const hol_view *v, double *length, double *rate) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        need(r, "r");
+        const AtomArray ar = holonomic::viewed_array(r, "r"), av = holonomic::viewed_array(v, "v");
+        const AtomArray *const all[] = {&ar, &av};
+        holonomic::check_dimensions(all, 2);
+        holonomic::residuals(chains->chains, ar, av, length, rate);
+    });
+}

@@ -1,0 +1,14 @@
+// Positions that lie anywhere are moved onto the constraints.
+#ifndef HOLONOMIC_IMPOSE_HPP
+#define HOLONOMIC_IMPOSE_HPP
+
+#include "core/positions.hpp"
+
+namespace holonomic {
+
+// A damped Newton's method, each step along the bonds as they are then. Throws Error once everything that is due has
+// been written; molecules that fail stay as they were.
+void impose(const Chains &chains, const AtomArray &r, Report *report);
+
+}  // namespace holonomic
+#endif

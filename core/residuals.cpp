@@ -1,0 +1,65 @@
+#include "core/residuals.hpp"
+
+#include <cmath>
+
+#include "core/caller/box.hpp"
+#include "core/caller/view.hpp"
+#include "core/kernels/tally.hpp"
+#include "core/run/apart.hpp"
+#include "core/run/diagnose.hpp"
+
+namespace holonomic {
+
+namespace {
+
+struct Residual {
+    double length, rate;
+};
+
+Residual residual_of(const Chains &chains, const Molecule &m, std::int64_t k, const AtomArray &r, const AtomArray &v) {
+    double from[3], to[3], d[3], from_v[3] = {0, 0, 0}, to_v[3] = {0, 0, 0};
+    read_atom(r, m.atom(m.i(k)), from);
+    read_atom(r, m.atom(m.j(k)), to);
+    if (v.x) {
+        read_atom(v, m.atom(m.i(k)), from_v);
+        read_atom(v, m.atom(m.j(k)), to_v);
+    }
+    bond_vector(chains.box, from, to, d);
+    const double a = m.length(k);
+    double dd = 0, du = 0;
+    for (int c = 0; c < 3; ++c) {
+        dd += d[c] * d[c];
+        du += d[c] * (to_v[c] - from_v[c]);
+    }
+    if (v.x && chains.box_rate()) du += stretching(*chains.box_rate(), d);
+    return {(dd - a * a) / (a * a), du};
+}
+
+}  // namespace
+
+void residuals(const Chains &chains, const AtomArray &r, const AtomArray &v, double *length, double *rate) {
+    Tally tally = empty_tally();
+    chains.for_active([&](const Molecule &m) {
+        bool finite = true;
+        for (std::int64_t k = 0; k < m.n_bonds && finite; ++k) {
+            const Residual left = residual_of(chains, m, k, r, v);
+            finite = std::isfinite(left.length) && std::isfinite(left.rate);
+        }
+        if (!finite) note_bad(m.number, tally);
+        for (std::int64_t k = 0; k < m.n_bonds && finite; ++k) {
+            const Residual left = residual_of(chains, m, k, r, v);
+            if (length) length[m.bond(k)] = left.length;
+            if (rate) rate[m.bond(k)] = left.rate;
+        }
+        return true;
+    });
+    clear_unconstrained(chains, length);
+    clear_unconstrained(chains, rate);
+    if (tally.n_bad == 0) return;
+    const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}};
+    Error error = diagnose(chains, tally, chains.box, arrays, 2, Status::not_finite);
+    error.status = Status::not_finite;  // whatever else is wrong with that molecule, it gives no number
+    throw error;
+}
+
+}  // namespace holonomic
