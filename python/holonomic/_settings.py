@@ -95,8 +95,8 @@ class Settings:
 
     @property
     def memory_limit(self) -> int:
-        """Bytes that one molecule's cycles may fill; what needs more is refused when it is added. 0 (default): a quarter of
-        the machine's memory."""
+        """Bound on the memory that the set takes, in bytes: a molecule of so many cycles that it needs more is refused when
+        it is added. 0 (default): a quarter of the machine's memory."""
         return self._memory_limit
 
     @memory_limit.setter

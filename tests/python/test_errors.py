@@ -84,8 +84,8 @@ class Errors(unittest.TestCase):
 
     def test_settings_out_of_range_change_nothing(self):
         molecules, _ = dimers(2)
-        for name, wrong in (("threads", 0), ("tolerance", -1.0), ("max_iterations", 0), ("box", 0.5), ("checks", "perhaps"), ("memory_limit", -1),
-                            ("active", [True]), ("box", [1, 2]), ("box_rate", np.nan)):
+        for name, wrong in (("threads", 0), ("tolerance", -1.0), ("max_iterations", 0), ("box", 0.5), ("checks", "perhaps"),
+                            ("memory_limit", -1), ("active", [True]), ("box", [1, 2]), ("box_rate", np.nan)):
             before = getattr(molecules, name)
             with self.assertRaises(ValueError, msg=name):
                 setattr(molecules, name, wrong)
