@@ -26,9 +26,10 @@
  * - Every function that can fail returns an hol_status. hol_error_message() then says in words what was wrong and
  *   where, hol_error_location() in numbers; both are the calling thread's own.
  * - A wrong argument: nothing is written. Bad data in some molecules (HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE,
- *   HOL_ERR_NO_CONVERGENCE): their outputs stay as they were, bit for bit; all other molecules are complete; sums over
- *   molecules (virial, energy) are not written. Status, message and location are those of the first bad molecule. A
- *   fixed atom of several molecules gets the sum over those that are not bad.
+ *   HOL_ERR_NO_CONVERGENCE, after the first call also HOL_ERR_LENGTHS): their outputs stay as they were, bit for bit;
+ *   all other molecules are complete; sums over molecules (virial, energy) are not written. Status, message and
+ *   location are those of the first bad molecule. A fixed atom of several molecules gets the sum over those that are
+ *   not bad.
  * - An output may overlap another argument only where its description says so.
  * - The library never prints, exits, aborts or throws, and changes no floating-point environment.
  * - Threads: any number of them may use a handle at once that none changes (create, add, set, destroy). Scratch memory
