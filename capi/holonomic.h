@@ -222,8 +222,8 @@ HOL_API int hol_chains_add_molecules(hol_chains *chains, int64_t n_molecules, in
  * be given in one call. The verbs treat them as other molecules: multipliers of bonds, constraint forces
  * G_i = m_i a_i - f_i (of a site -f_i), velocities and positions of all atoms, the virial sum r_i (x) G_i. What holds a
  * body together has no multipliers of its own. hol_violation, hol_report and hol_error_location name -1 for the bond
- * where it is the body that is meant. hol_metric, hol_inverse_create and hol_project_positions_along refuse such sets
- * or molecules.
+ * where it is the body that is meant. hol_metric, hol_inverse_create, hol_impose and hol_project_positions_along refuse
+ * such sets or molecules.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (sizes; a length; a body without mass, with mass at one point, with a
  *         fixed atom, or with a site that it cannot carry; a bond within a body of another length; a bond in no
  * molecule with a body); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM (an atom in two bodies or in a molecule of an earlier

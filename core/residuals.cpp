@@ -5,6 +5,8 @@
 #include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
 #include "core/kernels/tally.hpp"
+#include "core/rigid/run.hpp"
+#include "core/rigid/verbs.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 
@@ -37,7 +39,9 @@ Residual residual_of(const Chains &chains, const Molecule &m, std::int64_t k, co
 
 }  // namespace
 
-void residuals(const Chains &chains, const AtomArray &r, const AtomArray &v, double *length, double *rate) {
+namespace {
+
+void residuals_of_bonds(const Chains &chains, const AtomArray &r, const AtomArray &v, double *length, double *rate) {
     Tally tally = empty_tally();
     chains.for_active([&](const Molecule &m) {
         bool finite = true;
@@ -60,6 +64,16 @@ void residuals(const Chains &chains, const AtomArray &r, const AtomArray &v, dou
     Error error = diagnose(chains, tally, chains.box, arrays, 2, Status::not_finite);
     error.status = Status::not_finite;  // whatever else is wrong with that molecule, it gives no number
     throw error;
+}
+
+}  // namespace
+
+void residuals(const Chains &chains, const AtomArray &r, const AtomArray &v, double *length, double *rate) {
+    if (!chains.bodies()) return residuals_of_bonds(chains, r, v, length, rate);
+    rigid::Parts parts;
+    parts.run([&] { residuals_of_bonds(chains, r, v, length, rate); });
+    parts.run([&] { rigid::residuals(chains, r, v, length, rate); });
+    parts.finish();
 }
 
 }  // namespace holonomic

@@ -153,6 +153,13 @@ Body make_body(std::int32_t n, const double *masses, const double *place) {
             body.share[at(a * (1 + body.rank) + 1 + p)] = (masses[a] * y) / mass;
         }
     }
+    double farthest = 0;
+    for (const DoublePair &y : body.y) {
+        body.y_rounded.push_back(rounded(y));
+        farthest = std::max(farthest, std::fabs(y.hi));
+    }
+    for (const DoublePair &share : body.share) body.share_rounded.push_back(rounded(share));
+    body.is_thick = body.length[body.rank - 1] > 1e-3 * body.length[0] && farthest < 100;
     return body;
 }
 

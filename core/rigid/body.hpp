@@ -24,11 +24,13 @@ struct Body {
     std::int32_t rank;       // 1: on a line, 2: in a plane, 3
     std::int32_t n_massive;  // atoms that are no sites
     double mass, inverse_mass;
-    double length[3];               // L_p, descending
-    DoublePair square[3];           // L_p^2
-    double extent;                  // the largest distance of an atom from the centre
-    std::vector<double> masses;     // [n_atoms], 0: a massless site
-    std::vector<double> place;      // [n_atoms][3] the reference coordinates as they were given
+    double length[3];                              // L_p, descending
+    DoublePair square[3];                          // L_p^2
+    double extent;                                 // the largest distance of an atom from the centre
+    std::vector<double> masses;                    // [n_atoms], 0: a massless site
+    std::vector<double> place;                     // [n_atoms][3] the reference coordinates as they were given
+    std::vector<double> y_rounded, share_rounded;  // of y and share
+    bool is_thick;                  // plain doubles do: neither thin nor with atoms far out for their mass
     std::vector<DoublePair> y;      // [n_atoms][rank]
     std::vector<DoublePair> share;  // [n_atoms][1 + rank]: m/M, m y_p / M
 };

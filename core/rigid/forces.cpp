@@ -1,6 +1,7 @@
 // Accelerations: forces, and the multipliers of given right-hand sides.
 #include <cmath>
 
+#include "core/rigid/alone.hpp"
 #include "core/rigid/rates.hpp"
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
@@ -79,6 +80,9 @@ struct ForcesWork final : Work {
 
     Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
         const Shape &s = system.shape();
+        if (s.is_lone_body && !rate &&
+            forces_alone(system.lone(place), r, box, v, f, out.g, out.add, virial ? tally.virial : nullptr))
+            return Outcome::good;
         system.read(r, box, place, system.now);
         system.differentiate(system.now);
         const bool moves = v.x || rate;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/rigid/alone.hpp"
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
 
@@ -84,6 +85,14 @@ struct PositionsWork final : Work {
 
     Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
         const Shape &s = system.shape();
+        int taken;
+        double left;
+        if (s.is_lone_body && tolerance == 0 &&
+            positions_alone(system.lone(place), r_ref, box_ref, r, box, v, dt, virial ? tally.virial : nullptr, &taken,
+                            &left)) {
+            note(place, taken, true, left, -1, tally);
+            return Outcome::good;
+        }
         system.read(r_ref, box_ref, place, system.reference);
         system.read(r, box, place, system.now);
         std::int32_t worst_bond;

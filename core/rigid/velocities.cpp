@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "core/rigid/alone.hpp"
 #include "core/rigid/rates.hpp"
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
@@ -22,6 +23,8 @@ struct VelocitiesWork final : Work {
 
     Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
         const Shape &s = system.shape();
+        if (s.is_lone_body && !rate && velocities_alone(system.lone(place), r, box, v, virial ? tally.virial : nullptr))
+            return Outcome::good;
         system.read(r, box, place, system.now);
         system.differentiate(system.now);
         if (rate)

@@ -29,6 +29,8 @@ void reactions(const Chains &chains, const AtomArray &r, const Box &box, const d
 void check_reference(const Chains &chains, const AtomArray &r, const Box &box, const char *what);
 // The largest |d.d - a^2| / a^2 of bonds and of the bodies' own distances, where it is larger than what is there.
 void worst_length(const Chains &chains, const AtomArray &r, const Box &box, WorstLength *worst);
+// Of bonds alone.
+void residuals(const Chains &chains, const AtomArray &r, const AtomArray &v, double *length, double *rate);
 void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Worst *worst);
 
 }  // namespace holonomic::rigid

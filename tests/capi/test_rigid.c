@@ -180,6 +180,9 @@ static void right_hand_sides_of_the_forces_give_their_multipliers(void **state)
     for (int k = 0; k < 2; ++k) rhs[k] = 1 + k;
     CHECK(hol_solve(chains, r, rhs, lambda, g, HOL_WRITE, NULL));
     CHECK(hol_reactions(chains, r, HOL_BOX, lambda, tension, pull, HOL_WRITE, parts[0], virial));
+    CHECK(hol_residuals(chains, r, v, parts[0], parts[1]));
+    CHECK_AT_MOST(fabs(parts[0][0]) + fabs(parts[0][1]), 1e-14);
+    assert_true(parts[1][0] != 0 && parts[1][1] != 0);
     /* accelerations G/m change the square of each bond's length by -rhs */
     for (int k = 0; k < 2; ++k) {
         const int64_t i = pairs[k][0], j = pairs[k][1];
@@ -310,6 +313,7 @@ static void bad_data_of_a_molecule_leave_it_alone(void **state)
     r[3 * 6] += 0.9; /* a body far from its shape */
     CHECK_FAILS(HOL_ERR_LENGTHS, hol_project_positions(chains, r, r, NULL, 1, NULL, 0, NULL, NULL));
     assert_message_names("far from its place");
+    CHECK_FAILS(HOL_ERR_VALUE, hol_impose(chains, r, NULL));
     double kT = 1;
     CHECK_FAILS(HOL_ERR_VALUE, hol_metric(chains, r, kT, NULL, NULL, sums, NULL, HOL_WRITE));
     CHECK_FAILS(HOL_ERR_VALUE, hol_project_positions_along(chains, v, r, NULL, 1, NULL, 0, NULL, NULL));

@@ -1,0 +1,64 @@
+// What is left of each bond of molecules with bodies, between the atoms as they are.
+#include <cmath>
+
+#include "core/caller/box.hpp"
+#include "core/rigid/run.hpp"
+#include "core/rigid/verbs.hpp"
+
+namespace holonomic::rigid {
+
+namespace {
+
+struct ResidualsWork final : Work {
+    AtomArray r, v;
+    const Box &box;
+    const BoxRate *box_rate;
+    double *length, *rate;
+
+    ResidualsWork(const Chains &chains, const AtomArray &r_, const AtomArray &v_, double *length_, double *rate_)
+        : r(r_), v(v_), box(chains.box), box_rate(chains.box_rate()), length(length_), rate(rate_) {}
+
+    struct Residual {
+        double length, rate;
+    };
+    Residual residual_of(const Bond &bond, const std::int64_t *atoms) const {
+        double x[2][3], u[2][3] = {}, d[3], dd = 0, du = 0;
+        const std::int32_t ends[2] = {bond.i, bond.j};
+        for (int end = 0; end < 2; ++end) {
+            read_atom(r, atoms[ends[end]], x[end]);
+            if (v.x) read_atom(v, atoms[ends[end]], u[end]);
+        }
+        holonomic::bond_vector(box, x[0], x[1], d);
+        for (int c = 0; c < 3; ++c) {
+            dd += d[c] * d[c];
+            du += d[c] * (u[1][c] - u[0][c]);
+        }
+        if (v.x && box_rate) du += stretching(*box_rate, d);
+        return {(dd - bond.length * bond.length) / (bond.length * bond.length), du};
+    }
+
+    Outcome molecule(const System &system, const Place &place, Tally &) const override {
+        const std::vector<Bond> &bonds = system.shape().bonds;
+        for (const Bond &bond : bonds) {
+            const Residual left = residual_of(bond, place.atoms);
+            if (!std::isfinite(left.length) || !std::isfinite(left.rate)) return Outcome::not_finite;
+        }
+        for (std::size_t k = 0; k < bonds.size(); ++k) {
+            const Residual left = residual_of(bonds[k], place.atoms);
+            if (length) length[place.bonds[k]] = left.length;
+            if (rate) rate[place.bonds[k]] = left.rate;
+        }
+        return Outcome::good;
+    }
+};
+
+}  // namespace
+
+void residuals(const Chains &chains, const AtomArray &r, const AtomArray &v, double *length, double *rate) {
+    const Found found = run(chains, ResidualsWork(chains, r, v, length, rate));
+    if (found.tally.n_bad == 0) return;
+    const Named arrays[] = {{"position", &r}, {"velocity", &v}};
+    throw error_of(chains, found, arrays, 2);
+}
+
+}  // namespace holonomic::rigid
