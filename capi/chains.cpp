@@ -8,6 +8,23 @@ using holonomic::make_error;
 using holonomic::need;
 using holonomic::Status;
 
+namespace {
+
+void need_bodies(const hol_chains *chains, const int64_t *sizes, const int64_t *atoms, const double *places) {
+    need(chains, "chains");
+    need(sizes, "sizes");
+    need(atoms, "atoms");
+    need(places, "places");
+}
+
+void need_bonds(int64_t n_bonds, const int64_t *pairs, const double *lengths) {
+    if (n_bonds == 0) return;
+    need(pairs, "pairs");
+    need(lengths, "lengths");
+}
+
+}  // namespace
+
 int hol_chains_create(int64_t n_atoms, const double *masses, hol_chains **chains) {
     return guarded(__func__, [&] {
         need(chains, "chains");
@@ -53,6 +70,26 @@ int hol_chains_add_molecules(hol_chains *chains, int64_t n_molecules, int64_t n_
         need(pairs, "pairs");
         need(lengths, "lengths");
         chains->chains.add_molecules(n_molecules, n_atoms, first_atom, n_bonds, pairs, lengths);
+    });
+}
+
+int hol_chains_add_rigid(hol_chains *chains, int64_t n_bodies, const int64_t *sizes, const int64_t *atoms,
+                         const double *places, int64_t n_bonds, const int64_t *pairs, const double *lengths) {
+    return guarded(__func__, [&] {
+        need_bodies(chains, sizes, atoms, places);
+        need_bonds(n_bonds, pairs, lengths);
+        chains->chains.add_rigid(n_bodies, sizes, atoms, places, n_bonds, pairs, lengths);
+    });
+}
+
+int hol_chains_add_rigid_molecules(hol_chains *chains, int64_t n_molecules, int64_t n_atoms, int64_t first_atom,
+                                   int64_t n_bodies, const int64_t *sizes, const int64_t *atoms, const double *places,
+                                   int64_t n_bonds, const int64_t *pairs, const double *lengths) {
+    return guarded(__func__, [&] {
+        need_bodies(chains, sizes, atoms, places);
+        need_bonds(n_bonds, pairs, lengths);
+        chains->chains.add_rigid_molecules(n_molecules, n_atoms, first_atom, n_bodies, sizes, atoms, places, n_bonds,
+                                           pairs, lengths);
     });
 }
 

@@ -1,5 +1,6 @@
 #include "boundary.hpp"
 #include "core/fit.hpp"
+#include "core/rigid/verbs.hpp"
 #include "core/violation.hpp"
 #include "view.hpp"
 
@@ -17,7 +18,9 @@ void check(const hol_chains *chains, const AtomArray &r, int box) {
     const holonomic::Chains &c = chains->chains;
     holonomic::Worst worst;
     holonomic::violation(c, r, AtomArray{}, &worst);  // finds what is not finite
-    holonomic::check_reference(c, {&r, nullptr, box == HOL_BOX ? &c.box : &c.box_of_reference()}, "in the positions");
+    const holonomic::Box &its = box == HOL_BOX ? c.box : c.box_of_reference();
+    holonomic::check_reference(c, {&r, nullptr, &its}, "in the positions");
+    if (c.bodies()) holonomic::rigid::check_reference(c, r, its, "in the positions");
 }
 
 }  // namespace

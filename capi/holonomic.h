@@ -194,6 +194,66 @@ HOL_API int hol_chains_add_molecules(hol_chains *chains, int64_t n_molecules, in
                                      int64_t n_bonds, const int64_t *pairs, const double *lengths);
 
 /**
+ * Adds rigid bodies, and bonds at them: any number of atoms held as one whole (CO2, benzene, a cage, a patchy
+ * particle), with massless sites (TIP4P) among them, alone or in molecules with bonds, such as side chains, rings in a
+ * row, or a body tethered to a fixed atom. docs/rigid.md.
+ *
+ * @param[in,out] chains
+ * @param[in]     n_bodies  >= 1
+ * @param[in]     sizes     [n_bodies], how many atoms each body has, >= 2
+ * @param[in]     atoms     [sum of sizes], the atoms of one body after the other, any numbers of the caller's arrays.
+ * An atom of mass 0 is a massless site here: its place is written with the others' and the force on it goes to them.
+ * (Everywhere else mass 0 means held fixed, as it did. An atom of infinite mass is always held fixed, and can be in no
+ * body.)
+ * @param[in]     places    [sum of sizes][3], reference coordinates of these atoms, each body in any frame of its own.
+ *                          They say what the body looks like; where it is, and which way it points, say the positions
+ *                          given to the verbs. Copied.
+ * @param[in]     n_bonds   >= 0; 0: the bodies are alone
+ * @param[in]     pairs     [n_bonds][2], bonds between an atom of a body and another atom: of another body, of none, or
+ *                          held fixed; and between other atoms of these molecules. May be NULL if n_bonds is 0
+ * @param[in]     lengths   [n_bonds], as in hol_chains_add. May be NULL if n_bonds is 0. Copied.
+ *
+ * Bodies are taken as thin as they are: three atoms on a line to 1e-8 of its length are linear. A site must lie on the
+ * line of a linear body and in the plane of a planar one. A bond within a body is satisfied by it: its multiplier is 0.
+ *
+ * Molecules with bodies are numbered behind all others of the set, in the order of their first bodies; their bonds
+ * stand in the arrays per bond in the order of the list, after those of earlier calls. All bonds of a molecule have to
+ * be given in one call. The verbs treat them as other molecules: multipliers of bonds, constraint forces
+ * G_i = m_i a_i - f_i (of a site -f_i), velocities and positions of all atoms, the virial sum r_i (x) G_i. What holds a
+ * body together has no multipliers of its own. hol_violation, hol_report and hol_error_location name -1 for the bond
+ * where it is the body that is meant. hol_metric, hol_inverse_create and hol_project_positions_along refuse such sets
+ * or molecules.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (sizes; a length; a body without mass, with mass at one point, with a
+ *         fixed atom, or with a site that it cannot carry; a bond within a body of another length; a bond in no
+ * molecule with a body); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM (an atom in two bodies or in a molecule of an earlier
+ * call); HOL_ERR_NOT_FINITE (places); HOL_ERR_DEGENERATE (a bond given twice, more bonds than freedoms);
+ *         HOL_ERR_MEMORY. On an error nothing is added. Not thread-safe on one handle. Since 0.2.
+ */
+HOL_API int hol_chains_add_rigid(hol_chains *chains, int64_t n_bodies, const int64_t *sizes, const int64_t *atoms,
+                                 const double *places, int64_t n_bonds, const int64_t *pairs, const double *lengths);
+
+/**
+ * Adds the same bodies and bonds for n_molecules molecules of n_atoms consecutive atoms each, as
+ * hol_chains_add_molecules does for bonds alone: a box of CO2 or of TIP4P in one call.
+ * @param[in,out] chains
+ * @param[in] n_molecules  >= 1
+ * @param[in] n_atoms      >= 2, atoms from one molecule to the next
+ * @param[in] first_atom   number of the first atom of the first molecule
+ * @param[in] n_bodies     >= 1, bodies of one molecule
+ * @param[in] sizes        [n_bodies]
+ * @param[in] atoms        [sum of sizes], numbers within the molecule, counted from the index base
+ * @param[in] places       [sum of sizes][3], the same for every molecule
+ * @param[in] n_bonds      >= 0, bonds of one molecule
+ * @param[in] pairs        [n_bonds][2], numbers within the molecule; or NULL if n_bonds is 0
+ * @param[in] lengths      [n_bonds]; or NULL if n_bonds is 0
+ * @return as hol_chains_add_rigid. Since 0.2.
+ */
+HOL_API int hol_chains_add_rigid_molecules(hol_chains *chains, int64_t n_molecules, int64_t n_atoms, int64_t first_atom,
+                                           int64_t n_bodies, const int64_t *sizes, const int64_t *atoms,
+                                           const double *places, int64_t n_bonds, const int64_t *pairs,
+                                           const double *lengths);
+
+/**
  * New lengths for all bonds, without building the set again.
  * @param[in,out] chains
  * @param[in] lengths  [n_bonds], 1e-150 .. 1e150. Copied.
@@ -364,7 +424,8 @@ typedef enum hol_shape {
     HOL_SHAPE_TREE = 1,     /**< branched, without a cycle */
     HOL_SHAPE_RING = 2,     /**< one cycle of at least four bonds and nothing else */
     HOL_SHAPE_TRIANGLE = 3, /**< three atoms and their three distances */
-    HOL_SHAPE_OTHER = 4     /**< anything else that has a cycle */
+    HOL_SHAPE_OTHER = 4,    /**< anything else that has a cycle */
+    HOL_SHAPE_RIGID = 5     /**< with rigid bodies (hol_chains_add_rigid) */
 } hol_shape;
 
 /** Number of molecules of an hol_shape; 0 if chains is NULL or for any other number. O(n_chains). Since 0.2. */
@@ -425,7 +486,8 @@ HOL_API int hol_chains_offsets(const hol_chains *chains, int64_t *offsets);
 
 /**
  * Degrees of freedom of all n_atoms atoms: dimensions times the number of atoms that can move, less one for each bond
- * of an active molecule. A conserved total momentum is not subtracted.
+ * of an active molecule; a rigid body has six, a linear one five, three in two dimensions. A conserved total momentum
+ * is not subtracted.
  * @param[in] chains
  * @param[in] dimensions  3, or 2 for views without z
  * @return the number; -1 if chains is NULL or dimensions is neither. Since 0.1.

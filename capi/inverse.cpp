@@ -24,6 +24,9 @@ namespace {
 
 void create(const hol_chains *chains, std::int64_t molecule, const AtomArray &r, hol_inverse **inverse) {
     const holonomic::Chains &all = chains->chains;
+    if (molecule - all.base >= all.n_chains() && molecule - all.base < all.n_molecules() && molecule >= all.base)
+        throw make_error(Status::value, "molecule %lld has rigid bodies: the inverse of its matrix is not implemented",
+                         static_cast<long long>(molecule));
     if (molecule < all.base || molecule - all.base >= all.n_chains()) {
         holonomic::Error error =
             make_error(Status::index, "molecule %lld is outside %d .. %lld", static_cast<long long>(molecule), all.base,

@@ -12,15 +12,15 @@ namespace {
 constexpr bool same(Form form, hol_shape shape) { return static_cast<int>(form) == static_cast<int>(shape); }
 static_assert(same(Form::chain, HOL_SHAPE_CHAIN) && same(Form::tree, HOL_SHAPE_TREE) &&
                   same(Form::ring, HOL_SHAPE_RING) && same(Form::triangle, HOL_SHAPE_TRIANGLE) &&
-                  same(Form::other, HOL_SHAPE_OTHER),
+                  same(Form::other, HOL_SHAPE_OTHER) && holonomic::Chains::form_with_bodies == HOL_SHAPE_RIGID,
               "core/molecules/shape.hpp and the public header disagree");
 
 // The number of a molecule counted from 0. Throws Error if there is none of that number.
 std::int64_t from_zero(const holonomic::Chains &chains, std::int64_t molecule) {
-    if (molecule >= chains.base && molecule - chains.base < chains.n_chains()) return molecule - chains.base;
+    if (molecule >= chains.base && molecule - chains.base < chains.n_molecules()) return molecule - chains.base;
     holonomic::Error error =
         make_error(Status::index, "molecule %lld is outside %d .. %lld", static_cast<long long>(molecule), chains.base,
-                   static_cast<long long>(chains.n_chains() - 1 + chains.base));
+                   static_cast<long long>(chains.n_molecules() - 1 + chains.base));
     error.base = chains.base;
     throw error;
 }
@@ -28,7 +28,7 @@ std::int64_t from_zero(const holonomic::Chains &chains, std::int64_t molecule) {
 }  // namespace
 
 int64_t hol_chains_n_atoms(const hol_chains *chains) { return chains ? chains->chains.n_atoms() : 0; }
-int64_t hol_chains_n_chains(const hol_chains *chains) { return chains ? chains->chains.n_chains() : 0; }
+int64_t hol_chains_n_chains(const hol_chains *chains) { return chains ? chains->chains.n_molecules() : 0; }
 int64_t hol_chains_n_bonds(const hol_chains *chains) { return chains ? chains->chains.n_bonds() : 0; }
 
 int hol_chains_offsets(const hol_chains *chains, int64_t *offsets) {
@@ -44,10 +44,9 @@ int hol_chains_molecule(const hol_chains *chains, int64_t molecule, int *shape, 
         need(chains, "chains");
         const holonomic::Chains &all = chains->chains;
         const int64_t number = from_zero(all, molecule);
-        const holonomic::Molecule one = all.molecule(number);
-        if (shape) *shape = static_cast<int>(one.form());
+        if (shape) *shape = all.form_of(number);
         if (n_atoms) *n_atoms = all.count_atoms(number);
-        if (n_bonds) *n_bonds = one.n_bonds;
+        if (n_bonds) *n_bonds = all.count_bonds(number);
     });
 }
 

@@ -1,9 +1,12 @@
 #include "core/forces.hpp"
 
+#include <algorithm>
 #include <new>
 
 #include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
+#include "core/rigid/run.hpp"
+#include "core/rigid/verbs.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
@@ -36,6 +39,7 @@ struct ForcesWork final : Work {
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
         k.molecules.forces(calls[where], unit, scratch, tally);
     }
+    bool walks_forests() const override { return true; }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_forces.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return k.long_forces.bytes(n); }
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
@@ -94,10 +98,8 @@ Tally forces_at_rest(const Chains &chains, ForcesCall &call) {
     return tally;
 }
 
-}  // namespace
-
-void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
-            double *tension, const AtomArray &g, bool add, double *virial) {
+void forces_of_bonds(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
+                     double *tension, const AtomArray &g, bool add, double *virial) {
     ForcesCall call;
     call.r = r;
     call.v = v;
@@ -115,6 +117,20 @@ void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const 
         throw diagnose(chains, tally, chains.box, arrays, 3, Status::not_finite);
     }
     if (virial) write_virial(tally, virial);
+}
+
+}  // namespace
+
+void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
+            double *tension, const AtomArray &g, bool add, double *virial) {
+    if (!chains.bodies()) return forces_of_bonds(chains, r, v, f, lambda, tension, g, add, virial);
+    double sum[9];
+    rigid::Parts parts;
+    if (g.x && !add) rigid::clear_fixed(chains, g);
+    parts.run([&] { forces_of_bonds(chains, r, v, f, lambda, tension, g, add, virial ? sum : nullptr); });
+    parts.run([&] { rigid::forces(chains, r, v, f, lambda, tension, g, add, virial ? sum : nullptr); });
+    parts.finish();
+    if (virial) std::copy(sum, sum + 9, virial);
 }
 
 }  // namespace holonomic

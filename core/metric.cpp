@@ -1,7 +1,9 @@
 #include "core/metric.hpp"
 
 #include <cmath>
+#include <cstdio>
 
+#include "core/molecules/memory_limit.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
@@ -33,13 +35,32 @@ struct MetricWork final : Work {
     }
 };
 
+// The metric of a network needs the factor that its other calls do without.
+void make_careful_of(const Chains &chains, const Schedule &s) {
+    try {
+        make_careful(s, memory_left(chains));
+    } catch (const TooMuchMemory &needed) {
+        char what[64];
+        std::snprintf(what, sizeof what, "the metric of a network of %d bonds", static_cast<int>(s.n_bonds));
+        throw too_much_memory(chains, what, needed.bytes);
+    }
+}
+
 }  // namespace
 
 void metric(const Chains &chains, const AtomArray &r, double kT, double *log_det, double *log_det_z, double *energy,
             const AtomArray &force, bool add) {
     if (!(kT >= 0) || !std::isfinite(kT))
         throw make_error(Status::value, "kT is %g; it must be finite and not negative", kT);
+    if (chains.bodies())
+        throw make_error(Status::value,
+                         "the metric determinant of molecules with rigid bodies is not implemented: of a body alone it "
+                         "is a constant; molecules without bodies need a set of their own");
     const MetricCall call{r, force, kT, log_det, log_det_z, energy != nullptr, add, chains.box};
+    for (const std::int32_t shape : chains.plan().shapes) {
+        const Schedule &s = *chains.plan().schedules[static_cast<std::size_t>(shape)];
+        if (!s.careful) make_careful_of(chains, s);
+    }
     Apart apart(chains);
     const Tally tally = execute(chains, MetricWork(call, apart));
     apart.put_back();

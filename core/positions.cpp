@@ -1,11 +1,14 @@
 #include "core/positions.hpp"
 
+#include <algorithm>
 #include <optional>
 
 #include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
 #include "core/fit.hpp"
 #include "core/reference.hpp"
+#include "core/rigid/run.hpp"
+#include "core/rigid/verbs.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
@@ -58,10 +61,9 @@ Report report_of(const Chains &chains, const Tally &tally) {
             true};
 }
 
-}  // namespace
-
-void project_positions(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v, double dt,
-                       double *lambda, bool guess, double *virial, Report *report, WorstLength *reference_error) {
+void project_positions_of_bonds(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v,
+                                double dt, double *lambda, bool guess, double *virial, Report *report,
+                                WorstLength *reference_error) {
     const BondVectors given{along.r_ref, along.bonds, along.r_ref ? &chains.box_of_reference() : nullptr};
     if (chains.wants_fit() || (report && chains.checks() == Checks::never))
         *reference_error = worst_length(chains, given);
@@ -98,6 +100,43 @@ void project_positions(const Chains &chains, const Along &along, const AtomArray
         throw diagnose(chains, tally, box_ref, arrays, 3, Status::no_convergence);
     }
     if (virial) write_virial(tally, virial);
+}
+
+// All molecules are looked at before any is moved.
+void check_start_of_all(const Chains &chains, const AtomArray &r_ref, const AtomArray &r) {
+    if (!chains.wants_fit()) return;
+    const Box &box = chains.box_of_reference();
+    check_reference(chains, {&r_ref, nullptr, &box}, "in the reference positions");
+    check_trial(chains, r);
+    rigid::check_reference(chains, r_ref, box, "in the reference positions");
+    chains.note_fit();
+}
+
+}  // namespace
+
+void project_positions(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v, double dt,
+                       double *lambda, bool guess, double *virial, Report *report, WorstLength *reference_error) {
+    if (!chains.bodies())
+        return project_positions_of_bonds(chains, along, r, v, dt, lambda, guess, virial, report, reference_error);
+    if (!along.r_ref)
+        throw make_error(Status::value,
+                         "rigid bodies have no bond vectors to project along: hol_project_positions takes reference "
+                         "positions");
+    const AtomArray &r_ref = *along.r_ref;
+    if (chains.wants_fit() || (report && chains.checks() == Checks::never)) {
+        *reference_error = worst_length(chains, {&r_ref, nullptr, &chains.box_of_reference()});
+        rigid::worst_length(chains, r_ref, chains.box_of_reference(), reference_error);
+    }
+    check_start_of_all(chains, r_ref, r);
+    double sum[9];
+    WorstLength of_bonds{0, -1, -1};
+    rigid::Parts parts;
+    parts.run([&] {
+        project_positions_of_bonds(chains, along, r, v, dt, lambda, guess, virial ? sum : nullptr, report, &of_bonds);
+    });
+    parts.run([&] { rigid::project_positions(chains, r_ref, r, v, dt, lambda, virial ? sum : nullptr, report); });
+    parts.finish();
+    if (virial) std::copy(sum, sum + 9, virial);
 }
 
 }  // namespace holonomic

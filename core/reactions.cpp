@@ -5,6 +5,8 @@
 
 #include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
+#include "core/rigid/run.hpp"
+#include "core/rigid/verbs.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
@@ -205,8 +207,10 @@ Tally react(const Chains &chains, const AtomArray &r, const Box &box, const doub
     return tally;
 }
 
-void reactions(const Chains &chains, const AtomArray &r, const Box &box, const double *lambda, Reactions out,
-               double *virial) {
+namespace {
+
+void reactions_of_bonds(const Chains &chains, const AtomArray &r, const Box &box, const double *lambda, Reactions out,
+                        double *virial) {
     out.virial = virial != nullptr;
     const Tally tally = react(chains, r, box, lambda, out);
     if (tally.n_bad > 0) {
@@ -215,6 +219,21 @@ void reactions(const Chains &chains, const AtomArray &r, const Box &box, const d
         throw diagnose(chains, tally, box, arrays, 1, Status::not_finite);
     }
     if (virial) write_virial(tally, virial);
+}
+
+}  // namespace
+
+void reactions(const Chains &chains, const AtomArray &r, const Box &box, const double *lambda, Reactions out,
+               double *virial) {
+    if (!chains.bodies()) return reactions_of_bonds(chains, r, box, lambda, out, virial);
+    double sum[9];
+    out.virial = virial != nullptr;
+    rigid::Parts parts;
+    if (out.g.x && !out.add) rigid::clear_fixed(chains, out.g);
+    parts.run([&] { reactions_of_bonds(chains, r, box, lambda, out, virial ? sum : nullptr); });
+    parts.run([&] { rigid::reactions(chains, r, box, lambda, out, virial ? sum : nullptr); });
+    parts.finish();
+    if (virial) std::copy(sum, sum + 9, virial);
 }
 
 }  // namespace holonomic

@@ -5,6 +5,8 @@
 #include <new>
 
 #include "core/reactions.hpp"
+#include "core/rigid/run.hpp"
+#include "core/rigid/verbs.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
@@ -34,6 +36,7 @@ struct SolveWork final : Work {
     }
     // The plan has no linear chains.
     void unit(const Unit &, int, double *, Tally &) const override {}
+    bool walks_forests() const override { return true; }
     std::int64_t long_blocks(std::int64_t) const override { return 0; }
     std::int64_t long_bytes(std::int64_t) const override { return 0; }
     void long_chain(const Lane &, int, const Team &, double *, Tally &) const override {}
@@ -75,8 +78,10 @@ Tally solve_equations(const Chains &chains, const AtomArray &r, const double *rh
     return react(chains, r, chains.box, lambda, {out.lambda, out.tension, out.g, out.add, nullptr, out.virial});
 }
 
-void solve(const Chains &chains, const AtomArray &r, const double *rhs, double *lambda, const AtomArray &g, bool add,
-           double *virial) {
+namespace {
+
+void solve_bonds(const Chains &chains, const AtomArray &r, const double *rhs, double *lambda, const AtomArray &g,
+                 bool add, double *virial) {
     const Tally tally = solve_equations(chains, r, rhs, {lambda, nullptr, g, add, virial != nullptr});
     if (tally.n_bad > 0) {
         check_values(chains, tally, rhs, "right-hand side");  // a bad molecule's lambda was not written
@@ -84,6 +89,20 @@ void solve(const Chains &chains, const AtomArray &r, const double *rhs, double *
         throw diagnose(chains, tally, chains.box, arrays, 1, Status::not_finite);
     }
     if (virial) write_virial(tally, virial);
+}
+
+}  // namespace
+
+void solve(const Chains &chains, const AtomArray &r, const double *rhs, double *lambda, const AtomArray &g, bool add,
+           double *virial) {
+    if (!chains.bodies()) return solve_bonds(chains, r, rhs, lambda, g, add, virial);
+    double sum[9];
+    rigid::Parts parts;
+    if (g.x && !add) rigid::clear_fixed(chains, g);
+    parts.run([&] { solve_bonds(chains, r, rhs, lambda, g, add, virial ? sum : nullptr); });
+    parts.run([&] { rigid::solve(chains, r, rhs, lambda, g, add, virial ? sum : nullptr); });
+    parts.finish();
+    if (virial) std::copy(sum, sum + 9, virial);
 }
 
 }  // namespace holonomic

@@ -1,7 +1,11 @@
 #include "core/velocities.hpp"
 
+#include <algorithm>
+
 #include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
+#include "core/rigid/run.hpp"
+#include "core/rigid/verbs.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
@@ -26,6 +30,7 @@ struct VelocitiesWork final : Work {
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
         k.molecules.velocities(calls[where], unit, scratch, tally);
     }
+    bool walks_forests() const override { return true; }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_velocities.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return k.long_velocities.bytes(n); }
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
@@ -42,9 +47,8 @@ struct VelocitiesWork final : Work {
     }
 };
 
-}  // namespace
-
-void project_velocities(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda, double *virial) {
+void project_velocities_of_bonds(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda,
+                                 double *virial) {
     VelocitiesCall call;
     call.r = r;
     call.v = v;
@@ -63,6 +67,18 @@ void project_velocities(const Chains &chains, const AtomArray &r, const AtomArra
         throw diagnose(chains, tally, chains.box, arrays, 2, Status::not_finite);
     }
     if (virial) write_virial(tally, virial);
+}
+
+}  // namespace
+
+void project_velocities(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda, double *virial) {
+    if (!chains.bodies()) return project_velocities_of_bonds(chains, r, v, lambda, virial);
+    double sum[9];
+    rigid::Parts parts;
+    parts.run([&] { project_velocities_of_bonds(chains, r, v, lambda, virial ? sum : nullptr); });
+    parts.run([&] { rigid::project_velocities(chains, r, v, lambda, virial ? sum : nullptr); });
+    parts.finish();
+    if (virial) std::copy(sum, sum + 9, virial);
 }
 
 }  // namespace holonomic

@@ -5,11 +5,15 @@
 #include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
 #include "core/kernels/tally.hpp"
+#include "core/rigid/run.hpp"
+#include "core/rigid/verbs.hpp"
 #include "core/run/diagnose.hpp"
 
 namespace holonomic {
 
-void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Worst *worst) {
+namespace {
+
+void violation_of_bonds(const Chains &chains, const AtomArray &r, const AtomArray &v, Worst *worst) {
     const BoxRate *const of_box = chains.box_rate();
     Worst found{0, -1, -1, 0, -1, -1};
     Tally tally = empty_tally();
@@ -56,6 +60,18 @@ void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Wor
         error.status = Status::not_finite;  // whatever else is wrong with that chain, it gives no number
         throw error;
     }
+    *worst = found;
+}
+
+}  // namespace
+
+void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Worst *worst) {
+    if (!chains.bodies()) return violation_of_bonds(chains, r, v, worst);
+    Worst found{0, -1, -1, 0, -1, -1};
+    rigid::Parts parts;
+    parts.run([&] { violation_of_bonds(chains, r, v, &found); });
+    parts.run([&] { rigid::violation(chains, r, v, &found); });
+    parts.finish();
     *worst = found;
 }
 

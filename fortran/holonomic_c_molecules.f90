@@ -61,6 +61,27 @@ module holonomic_c_molecules
          integer(c_int) :: status
       end function
 
+      function hol_chains_add_rigid(chains, n_bodies, sizes, atoms, places, n_bonds, pairs, lengths) bind(c) result(status)
+         import :: c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t), value :: n_bodies
+         type(c_ptr), value :: sizes, atoms, places
+         integer(c_int64_t), value :: n_bonds
+         type(c_ptr), value :: pairs, lengths
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_add_rigid_molecules(chains, n_molecules, n_atoms, first_atom, n_bodies, sizes, atoms, places, &
+         n_bonds, pairs, lengths) bind(c) result(status)
+         import :: c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int64_t), value :: n_molecules, n_atoms, first_atom, n_bodies
+         type(c_ptr), value :: sizes, atoms, places
+         integer(c_int64_t), value :: n_bonds
+         type(c_ptr), value :: pairs, lengths
+         integer(c_int) :: status
+      end function
+
       function hol_chains_set_lengths(chains, lengths) bind(c) result(status)
          import :: c_int, c_ptr
          type(c_ptr), value :: chains, lengths

@@ -5,6 +5,7 @@
 
 #include "core/double_pair.hpp"
 #include "core/molecules/careful_shape.hpp"
+#include "core/molecules/memory_limit.hpp"
 
 #define HOL_ISA plain
 #define HOL_LANES 2
@@ -46,8 +47,8 @@ struct CarefulMolecule::State {
     bool good = false;
 
     explicit State(const holonomic::Molecule &m)
-        : shape(m.shape->n_atoms, m.shape->n_bonds, m.shape->pairs.data()), atoms(at(m.n_atoms)),
-          w(at(m.n_atoms)), lane{}, owned(shape.plan().scratch_bytes), memory(owned.begin()),
+        : shape(m.shape->n_atoms, m.shape->n_bonds, m.shape->pairs.data(), default_memory_limit()),
+          atoms(at(m.n_atoms)), w(at(m.n_atoms)), lane{}, owned(shape.plan().scratch_bytes), memory(owned.begin()),
           molecule(shape.plan(), lane, memory), system(plain::careful::take_system(molecule, memory)) {
         for (std::int64_t i = 0; i < m.n_atoms; ++i) {
             atoms[at(i)] = m.atom(i);

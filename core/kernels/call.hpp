@@ -47,6 +47,7 @@ struct MoleculeLane {
     int64_t molecule;             // its number
 };
 
+struct Forest;    // different trees side by side: core/molecules/forests.hpp
 struct Schedule;  // order of elimination of a shape: core/molecules/schedule.hpp
 
 struct Tally;
@@ -59,13 +60,16 @@ struct LongTeam {
                 void (*body)(const void *context, int64_t j, double *scratch, Tally &part), const void *context);
 };
 
-// A piece of work: molecules of one shape; masses and lengths may differ among them.
+// A piece of work: molecules of one shape; masses and lengths may differ among them. Or forests, whose trees are the
+// lanes, one after the other, none regular: for verbs that work on such, and `schedule` is that of the first.
 struct MoleculeUnit {
     const Schedule *schedule;
     const MoleculeLane *lanes;
     int64_t count;
     bool regular, large;             // as in Unit
     const LongTeam *team = nullptr;  // of a single large molecule
+    const Forest *forests = nullptr;
+    int64_t n_forests = 0;
 };
 
 // Chains of more bonds are cut into segments.
@@ -160,10 +164,11 @@ struct InWindows {
     bool (*solve)(const Call &, const Lane &, const LongTeam &, double *store, Tally &);
 };
 
-// Molecules that are no linear chains. `scratch` has the largest scratch_bytes of the schedules, aligned to 64. A value
-// that solve writes may stand where its right-hand side did.
+// Molecules that are no linear chains. `scratch` has the largest scratch_bytes of the schedules and forests, aligned
+// to 64. A value that solve writes may stand where its right-hand side did.
 struct MoleculeKernels {
     int64_t (*scratch_bytes)(const Schedule &);
+    int64_t (*forest_bytes)(const Forest &);
     void (*forces)(const ForcesCall &, const MoleculeUnit &, double *scratch, Tally &);
     void (*velocities)(const VelocitiesCall &, const MoleculeUnit &, double *scratch, Tally &);
     void (*positions)(const PositionsCall &, const MoleculeUnit &, double *scratch, Tally &);

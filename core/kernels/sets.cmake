@@ -22,8 +22,10 @@ set(chain_kernels
 # Long chains, and molecules that are no chains.
 set(other_kernels
     kernels/verbs/molecules_forces.cpp
+    kernels/verbs/molecules_forests.cpp
     kernels/verbs/molecules_linear.cpp
     kernels/verbs/molecules_metric.cpp
+    kernels/verbs/molecules_network.cpp
     kernels/verbs/molecules_positions.cpp
     kernels/verbs/molecules_velocities.cpp
     kernels/verbs/positions_long.cpp

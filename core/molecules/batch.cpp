@@ -5,6 +5,7 @@
 
 #include "core/molecules/closable.hpp"
 #include "core/molecules/memory_limit.hpp"
+#include "core/rigid/bodies.hpp"
 
 namespace holonomic {
 
@@ -210,6 +211,8 @@ void Batch::append_found(const FoundMolecules &found, const BondList &list, cons
 }
 
 void Batch::commit() {
+    for (const std::int64_t atom : fixed_)
+        if (chains_.bodies_ && chains_.bodies_->is_site(atom)) throw in_use(atom);
     const double longest = chains_.kinds_.longest(static_cast<std::int64_t>(kinds_before_.n_kinds), chains_.longest_);
     chains_.check_width(chains_.box, longest, nullptr);
     chains_.check_width(chains_.box_of_reference(), longest, nullptr);

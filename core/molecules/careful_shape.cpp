@@ -14,7 +14,8 @@ std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
-CarefulShape::CarefulShape(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs) {
+CarefulShape::CarefulShape(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
+                           std::int64_t most_bytes) {
     plan_.n_atoms = n_atoms;
     plan_.n_bonds = n_bonds;
     for (std::int32_t k = 0; k < n_bonds; ++k) {
@@ -23,7 +24,7 @@ CarefulShape::CarefulShape(std::int32_t n_atoms, std::int32_t n_bonds, const std
     }
     find_arms();
     strip();
-    order_core();
+    order_core(most_bytes);
     find_ring();
     plan_.atom_i = atom_i_.data();
     plan_.atom_j = atom_j_.data();
@@ -107,7 +108,7 @@ void CarefulShape::find_ring() {
     } while (bond != 0);
 }
 
-void CarefulShape::order_core() {
+void CarefulShape::order_core(std::int64_t most_bytes) {
     List number(at(plan_.n_bonds), -1), bonds;
     for (std::int32_t k = 0; k < plan_.n_bonds; ++k)
         if (place_[at(k)] >= 0) {
@@ -124,7 +125,7 @@ void CarefulShape::order_core() {
                 }
         return lists;
     };
-    for (const std::int32_t p : minimum_degree(neighbours(number))) {
+    for (const std::int32_t p : minimum_degree(neighbours(number), Ties::latest, most_bytes)) {
         const std::int32_t k = bonds[at(p)];
         place_[at(k)] = static_cast<std::int32_t>(core_.size());
         core_.push_back(k);

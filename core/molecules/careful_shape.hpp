@@ -6,13 +6,16 @@
 #include <vector>
 
 #include "core/kernels/careful/plan.hpp"
+#include "core/molecules/elimination_order.hpp"
 
 namespace holonomic {
 
 class CarefulShape {
 public:
     // A connected molecule: bond k joins the atoms pairs[2 k] < pairs[2 k + 1].
-    CarefulShape(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs);
+    // Throws TooMuchMemory where its core would fill more than most_bytes.
+    CarefulShape(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
+                 std::int64_t most_bytes = no_limit);
     CarefulShape(const CarefulShape &) = delete;
     CarefulShape &operator=(const CarefulShape &) = delete;
 
@@ -24,7 +27,7 @@ private:
 
     void find_arms();
     void strip();
-    void order_core();
+    void order_core(std::int64_t most_bytes);
     void find_ring();
 
     List atom_i_, atom_j_, arm_start_, arms_, parent_, hanging_, core_, place_, rows_, ring_, column_start_;

@@ -4,12 +4,20 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/rigid/bodies.hpp"
+
 namespace holonomic {
 
 Chains::Chains(std::int64_t n_atoms, const double *masses)
     : n_atoms_(n_atoms), masses_(n_atoms, masses, 0), use_(n_atoms) {}
 
+Chains::~Chains() = default;
+
+// Of a bond, or of what else is taken as a nearest image.
+double Chains::longest() const { return bodies_ ? std::max(longest_, bodies_->longest()) : longest_; }
+
 void Chains::set_active(const unsigned char *active) {
+    if (bodies_) bodies_->set_active(active ? active + n_chains() : nullptr);
     if (active)
         active_.assign(active, active + n_chains());
     else
@@ -34,7 +42,7 @@ void Chains::check_width(const Box &next, double longest, const double *lengths)
     double width;
     const int side = narrow_side(next, longest, &width);
     if (side < 0) return;
-    char atoms[120] = "";
+    char atoms[256] = "";
     for (std::int64_t c = n_chains(); c-- > 0;) {
         const Molecule m = molecule(c);
         for (std::int64_t k = m.n_bonds; k-- > 0;)
@@ -50,14 +58,14 @@ void Chains::check_width(const Box &next, double longest, const double *lengths)
 
 void Chains::set_box(const double *h) {
     const Box next = make_box(h);
-    check_width(next, longest_, nullptr);
+    check_width(next, longest(), nullptr);
     box = next;
     box_changed(box, seen_box_);
 }
 
 void Chains::set_reference_box(const double *h) {
     const Box next = make_box(h);
-    check_width(next, longest_, nullptr);
+    check_width(next, longest(), nullptr);
     reference_box_ = next;
     has_reference_box_ = h != nullptr;
     box_changed(reference_box_, seen_reference_);

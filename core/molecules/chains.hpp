@@ -22,12 +22,18 @@
 
 namespace holonomic {
 
+namespace rigid {
+class Bodies;
+struct Given;
+}  // namespace rigid
+
 // When positions are compared with the lengths. The values are those of hol_when, which capi/chains.cpp asserts.
 enum class Checks { never = 0, at_start = 1, always = 2 };
 
 class Chains {
 public:
     Chains(std::int64_t n_atoms, const double *masses);
+    ~Chains();
 
     // adding.cpp. On an Error or std::bad_alloc nothing is added.
     void add(std::int64_t n_bonds, const std::int64_t *atoms, const double *lengths);
@@ -36,32 +42,50 @@ public:
     void add_molecules(std::int64_t n_molecules, std::int64_t n_atoms, std::int64_t first_atom, std::int64_t n_bonds,
                        const std::int64_t *pairs, const double *lengths);
 
+    // core/rigid/adding.cpp. Bodies of sizes[b] atoms each, one after the other in `atoms`, at these places [..][3],
+    // and bonds between them, or of them and other atoms; the same for `count` molecules of n_atoms consecutive ones.
+    void add_rigid(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms, const double *places,
+                   std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths);
+    void add_rigid_molecules(std::int64_t count, std::int64_t n_atoms, std::int64_t first_atom, std::int64_t n_bodies,
+                             const std::int64_t *sizes, const std::int64_t *atoms, const double *places,
+                             std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths);
+    // Molecules with rigid bodies, or null: there are none. What is asked of the others below does not count these.
+    const rigid::Bodies *bodies() const { return bodies_.get(); }
+
     // values.cpp. On an Error or std::bad_alloc nothing is changed.
     void set_lengths(const double *lengths);
     void set_masses(const double *masses);
 
     void set_active(const unsigned char *active);
     void set_labels(const std::int64_t *atoms, const std::int64_t *molecules) {
-        labels_.set(n_atoms_, atoms, n_chains(), molecules);
+        labels_.set(n_atoms_, atoms, n_molecules(), molecules);
     }
     void set_box(const double *h);
     void set_reference_box(const double *h);
     void set_box_rate(const double *L);
 
-    // queries.cpp. Molecules, atoms and bonds are counted from 0, but in what is written for the caller.
+    // queries.cpp; those up to `memory` know molecules with bodies, too. Molecules, atoms and bonds are counted from 0,
+    // but in what is written for the caller.
     std::int64_t n_atoms() const { return n_atoms_; }
     std::int64_t n_chains() const { return groups_.n_molecules(); }
+    std::int64_t n_molecules() const;  // with those that have bodies, which come last
     std::int64_t n_bonds() const { return n_bonds_; }
     std::int64_t n_of_form(int form) const;
-    std::int64_t n_kinds() const { return kinds_.size(); }
+    int form_of(std::int64_t molecule) const;  // a Form, or:
+    static constexpr int form_with_bodies = 5;
+    std::int64_t n_kinds() const;
     void offsets(std::int64_t *out) const;
     std::int64_t count_atoms(std::int64_t molecule) const;  // that `atoms` writes
     void atoms(std::int64_t molecule, std::int64_t *out) const;
+    std::int64_t count_bonds(std::int64_t molecule) const;  // that `bonds` writes
     void bonds(std::int64_t molecule, std::int64_t *out) const;
     void molecules_of_bonds(std::int64_t *out) const;
     std::int64_t degrees_of_freedom(int dimensions) const;
     Name name_of_atom(std::int64_t atom) const { return labels_.of_atom(atom, base); }
     Name name_of_molecule(std::int64_t molecule) const;
+    Name name_of_rigid(std::int64_t molecule, std::int64_t atom) const {  // of a molecule with bodies, by one atom
+        return labels_.of_molecule(molecule, atom, base);
+    }
     std::int64_t memory() const;
     bool is_active(std::int64_t molecule) const;
     Molecule molecule(std::int64_t molecule) const;
@@ -137,6 +161,12 @@ private:
     // Throws Error, naming a bond of this length, if the box is narrower than twice that. lengths: those that molecules
     // are to have, in the caller's order, or null: as they are.
     void check_width(const Box &next, double longest, const double *lengths) const;
+    std::vector<rigid::Given> sort_rigid(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
+                                         std::int64_t offset, const double *places, std::int64_t n_bonds,
+                                         const std::int64_t *pairs, const double *lengths) const;
+    void commit_rigid(const std::vector<rigid::Given> &molecules, std::int64_t n_bonds);
+    std::unique_ptr<rigid::Bodies> rebuild_bodies(const Masses &masses, const double *lengths) const;
+    double longest() const;
 
     std::int64_t n_atoms_, n_bonds_ = 0;
     Masses masses_;
@@ -147,6 +177,7 @@ private:
     std::vector<std::int64_t> unconstrained_;  // bonds between two fixed atoms, in the caller's arrays
     std::vector<unsigned char> backwards_;     // [n_bonds], or empty: no bond is
     std::vector<unsigned char> active_;        // [n_chains] or empty: all
+    std::unique_ptr<rigid::Bodies> bodies_;
     Labels labels_;
     Box reference_box_{};
     BoxRate box_rate_{};

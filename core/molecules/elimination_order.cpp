@@ -65,7 +65,7 @@ std::vector<std::int32_t> minimum_degree(std::vector<Rows> neighbours, Ties ties
         order.push_back(k);
         const Rows front = std::move(neighbours[static_cast<std::size_t>(k)]);
         bytes += bytes_of_column(static_cast<std::int64_t>(front.size()));
-        if (bytes > most_bytes) throw TooMuchMemory{bytes};
+        if (bytes > most_bytes) throw TooMuchMemory(bytes);
         for (const std::int32_t i : front) {
             // The neighbours of i without k, and all others of k.
             Rows &mine = neighbours[static_cast<std::size_t>(i)];

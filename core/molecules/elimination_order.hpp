@@ -4,13 +4,15 @@
 
 #include <cstdint>
 #include <limits>
+#include <new>
 #include <vector>
 
 namespace holonomic {
 
 // Thrown before memory is taken that is more than may be.
-struct TooMuchMemory {
+struct TooMuchMemory : std::bad_alloc {
     std::int64_t bytes;  // at least
+    explicit TooMuchMemory(std::int64_t n) : bytes(n) {}
 };
 constexpr std::int64_t no_limit = std::numeric_limits<std::int64_t>::max();
 

@@ -26,6 +26,7 @@ Masses::Masses(std::int64_t n_atoms, const double *masses, int base) : n_atoms_(
             throw error;
         }
         uniform = uniform && masses[i] == masses[0];
+        if (std::isinf(masses[i])) infinite_.push_back(i);
     }
     if (uniform && n_atoms > 0 && masses[0] == 0)
         throw make_error(Status::value,

@@ -11,7 +11,7 @@ namespace holonomic {
 class Chains;
 
 // What adding a bond takes at the most while it is done and afterwards, but for what the cycles of its molecule fill.
-constexpr std::int64_t bytes_of_chain_bond = 40, bytes_of_listed_bond = 120, bytes_of_shape_bond = 200;
+constexpr std::int64_t bytes_of_chain_bond = 40, bytes_of_listed_bond = 120, bytes_of_shape_bond = 400;
 
 // A quarter of the machine's memory; where that is not known, no limit.
 std::int64_t default_memory_limit();

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <limits>
 #include <tuple>
+#include <unordered_map>
 
 #include "core/kernels/molecules/schedule.hpp"
 #include "core/molecules/chains.hpp"
+#include "core/run/dispatch.hpp"
 
 namespace holonomic {
 
@@ -17,6 +19,9 @@ constexpr std::int64_t bonds_per_piece = 4096;  // enough to hide the cost of a 
 constexpr std::int64_t widest = 8;
 static_assert(widest <= most_lanes, "");
 constexpr std::size_t loose_window = 4096;  // molecules
+// Different trees are sorted within so many bonds, so that those that are worked on together are close in memory.
+constexpr std::int64_t forest_window = 16384;
+constexpr std::int32_t most_in_star = 4;  // a tree of no more may be one, which has kernels of its own
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
@@ -35,11 +40,16 @@ public:
     std::unique_ptr<Plan> make() {
         for (std::size_t g = 0; g < groups_.size(); ++g) divide(static_cast<std::int64_t>(g));
         gather_loose();
+        plan_->forests.finish();
         std::sort(plan_->copies.begin(), plan_->copies.end(), [](const Plan::Copy &a, const Plan::Copy &b) {
             return std::tie(a.atom, a.place) < std::tie(b.atom, b.place);
         });
         std::sort(plan_->shapes.begin(), plan_->shapes.end());
         plan_->shapes.erase(std::unique(plan_->shapes.begin(), plan_->shapes.end()), plan_->shapes.end());
+        const auto need = [&](std::int64_t bytes) { plan_->scratch_bytes = std::max(plan_->scratch_bytes, bytes); };
+        for (const std::int32_t s : plan_->shapes) need(kernels().molecules.scratch_bytes(*plan_->schedules[at(s)]));
+        for (std::int64_t i = 0; i < plan_->forests.size(); ++i)
+            need(kernels().molecules.forest_bytes(*plan_->forests[i]));
         return std::move(plan_);
     }
 
@@ -50,7 +60,7 @@ private:
     // share what is large.
     bool works_alone(std::int32_t shape, std::int64_t n_bonds) const {
         if (shape == linear) return n_bonds > longest_lane;
-        return n_bonds > largest_in_lanes || plan_->schedules[at(shape)]->flat;
+        return n_bonds > largest_in_lanes || plan_->schedules[at(shape)]->flat || plan_->schedules[at(shape)]->network;
     }
 
     // Whether a molecule has fixed atoms that stand elsewhere, too.
@@ -157,7 +167,7 @@ private:
             begin += count;
         }
         for (; begin < run.end; ++begin)
-            loose_.push_back({run.group, begin, stage(begin), run.part, run.n_bonds, run.shape, run.where});
+            loose_.push_back({run.group, begin, stage(begin), run.part, run.n_bonds, run.shape, run.where, 0, {}});
     }
 
     void add_to_stage(const Group &group, std::int64_t index) {
@@ -175,17 +185,20 @@ private:
         std::int64_t group, index, stage, part, n_bonds;
         std::int32_t shape;
         int where;
+        std::int32_t window;  // a tree without enough of its shape nearby: which trees it is put beside; else 0
+        TreeProfile profile;
     };
 
     // Pieces of molecules that work in the same place, in lanes of about the same length or on one shape, and of one
     // kind as far as there are such near each other in memory: sorted within windows that a cache holds.
     void gather_loose() {
         const auto before = [this](const Loose &a, const Loose &b) {
-            return std::tie(a.where, a.shape, a.n_bonds, groups_[at(a.group)].kind, a.part) <
-                   std::tie(b.where, b.shape, b.n_bonds, groups_[at(b.group)].kind, b.part);
+            return std::tie(a.where, a.window, a.profile, a.shape, a.n_bonds, groups_[at(a.group)].kind, a.part) <
+                   std::tie(b.where, b.window, b.profile, b.shape, b.n_bonds, groups_[at(b.group)].kind, b.part);
         };
         for (std::size_t begin = 0, end; begin < loose_.size(); begin = end) {
             end = std::min(loose_.size(), begin + loose_window);
+            mark_mixed(begin, end);
             std::stable_sort(&loose_[begin], &loose_[begin] + (end - begin), before);
         }
         for (std::size_t first = 0, end; first < loose_.size(); first = end) {
@@ -195,7 +208,8 @@ private:
             std::int64_t bonds = 0;
             for (end = first; end < loose_.size(); bonds += loose_[end++].n_bonds) {
                 const Loose &one = loose_[end];
-                if (one.where != head.where || one.shape != head.shape) break;
+                if (one.where != head.where || one.window != head.window) break;
+                if (one.shape != head.shape && !one.window) break;
                 if (end > first && works_alone(one.shape, one.n_bonds)) break;
                 if (end > first && (end - first) % at(loose_piece) == 0 && bonds >= loose_piece_bonds) break;
                 const Group &group = groups_[at(one.group)];
@@ -207,7 +221,39 @@ private:
             }
             plan_->pieces.push_back({-1, static_cast<std::int64_t>(place), static_cast<std::int64_t>(end - first), -1,
                                      -1, head.shape, head.where});
+            if (head.window && end - first > 1) plant(first, end, plan_->pieces.back());
         }
+    }
+
+    // Trees of the loose molecules in a range that are fewer of a shape than a block has lanes.
+    void mark_mixed(std::size_t begin, std::size_t end) {
+        std::unordered_map<std::int32_t, std::int64_t> count;
+        for (std::size_t i = begin; i < end; ++i) ++count[loose_[i].shape];
+        std::int64_t bonds = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            Loose &one = loose_[i];
+            if (one.part >= 0 || one.shape == linear || count[one.shape] >= widest ||
+                works_alone(one.shape, one.n_bonds))
+                continue;
+            const Schedule &s = *plan_->schedules[at(one.shape)];
+            if (s.type != Schedule::tree || s.n_bonds <= most_in_star) continue;
+            one.profile = TreeProfile(s);
+            one.window = static_cast<std::int32_t>(1 + bonds / forest_window);
+            bonds += one.n_bonds;
+        }
+    }
+
+    // Puts the trees of a piece into forests.
+    void plant(std::size_t first, std::size_t end, Plan::Piece &piece) {
+        const std::size_t lanes = static_cast<std::size_t>(kernels().lanes);
+        const Schedule *tree[most_lanes];
+        piece.first_forest = plan_->forests.size();
+        for (std::size_t i = first; i < end; i += lanes) {
+            const std::size_t n = std::min(lanes, end - i);
+            for (std::size_t l = 0; l < n; ++l) tree[l] = plan_->schedules[at(loose_[i + l].shape)];
+            plan_->forests.add(static_cast<int>(lanes), tree, static_cast<int>(n));
+        }
+        piece.n_forests = plan_->forests.size() - piece.first_forest;
     }
 
     const Chains &chains_;
@@ -222,7 +268,8 @@ std::int64_t Plan::bytes() const {
                         loose_molecules.capacity() * sizeof(MoleculeLane) +
                         schedules.capacity() * sizeof(schedules[0]) + shapes.capacity() * sizeof(shapes[0]) +
                         (stage.capacity() + part_start.capacity()) * sizeof(std::int64_t) + is_copy.capacity() +
-                        copies.capacity() * sizeof(Copy) + parts.capacity() * sizeof(Part) + part_shapes.bytes();
+                        copies.capacity() * sizeof(Copy) + parts.capacity() * sizeof(Part) + part_shapes.bytes() +
+                        forests.bytes();
     for (const std::vector<double> &table : w) bytes += table.capacity() * sizeof(double);
     return static_cast<std::int64_t>(bytes);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/kernels/call.hpp"
+#include "core/molecules/forests.hpp"
 #include "core/molecules/shape.hpp"
 
 namespace holonomic {
@@ -21,8 +22,9 @@ struct Plan {
         std::int64_t first, count;  // if group == -1: these of the loose chains, or of the loose molecules
         std::int64_t stage;         // of the first, or -1
         std::int64_t part;          // of its chains, or -1: all of them
-        std::int32_t shape;         // of all its molecules
+        std::int32_t shape;         // of all its molecules; of forests, of the first
         int where;
+        std::int64_t first_forest = 0, n_forests = 0;  // into which its molecules are put
     };
     // A fixed atom that stands in the stage more than once.
     struct Copy {
@@ -31,10 +33,12 @@ struct Plan {
     std::vector<Piece> pieces;
     std::vector<Lane> loose_chains;  // molecules that fill no block where they stand, in the order in which they are
     std::vector<MoleculeLane> loose_molecules;  // worked on; the second ones are no linear chains
+    Forests forests;                            // of loose trees of different shapes
     std::int64_t longest = 0;                   // bonds of linear chains
     std::int64_t n_bonds = 0;                   // of active molecules
     std::vector<const Schedule *> schedules;    // of all shapes
     std::vector<std::int32_t> shapes;           // those that occur, but for linear
+    std::int64_t scratch_bytes = 0;             // that the kernels need for these and for forests
     std::vector<std::int64_t> stage;            // atoms of the molecules that share fixed atoms, one after another
     std::vector<unsigned char> is_copy;         // of each atom of the stage
     std::vector<Copy> copies;                   // by atom, then by place

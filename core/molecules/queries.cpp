@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "core/molecules/chains.hpp"
+#include "core/rigid/bodies.hpp"
 
 namespace holonomic {
 
@@ -10,6 +11,8 @@ namespace {
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
+
+std::int64_t Chains::n_molecules() const { return n_chains() + (bodies_ ? bodies_->n_molecules() : 0); }
 
 bool Chains::is_active(std::int64_t molecule) const { return active_.empty() || active_[at(molecule)] != 0; }
 
@@ -41,7 +44,14 @@ Molecule Chains::molecule(std::int64_t molecule) const {
     return molecule_of(group, molecule - group.first_molecule);
 }
 
+int Chains::form_of(std::int64_t number) const {
+    return number < n_chains() ? static_cast<int>(molecule(number).form()) : form_with_bodies;
+}
+
+std::int64_t Chains::n_kinds() const { return kinds_.size() + (bodies_ ? bodies_->n_shapes() : 0); }
+
 std::int64_t Chains::n_of_form(int form) const {
+    if (form == form_with_bodies) return bodies_ ? bodies_->n_molecules() : 0;
     std::int64_t n = 0;
     for (const Group &group : groups_.all()) {
         const std::int32_t shape = kind_of(group).shape;
@@ -52,6 +62,10 @@ std::int64_t Chains::n_of_form(int form) const {
 }
 
 void Chains::offsets(std::int64_t *out) const {
+    if (bodies_)
+        throw make_error(Status::value,
+                         "molecules with rigid bodies have their bonds in any order: hol_chains_bonds tells where they "
+                         "stand");
     std::int64_t next = 0;
     for (const Group &group : groups_.all()) {
         if (group.reordered || group.first_bond != next) {
@@ -78,6 +92,7 @@ void Chains::offsets(std::int64_t *out) const {
 }
 
 std::int64_t Chains::count_atoms(std::int64_t number) const {
+    if (number >= n_chains()) return bodies_->shape(number - n_chains()).n_atoms;
     const Molecule m = molecule(number);
     if (!m.shape) return m.n_atoms;
     std::int64_t n = 1;
@@ -86,12 +101,28 @@ std::int64_t Chains::count_atoms(std::int64_t number) const {
 }
 
 void Chains::atoms(std::int64_t number, std::int64_t *out) const {
+    if (number >= n_chains()) {
+        const std::int64_t *const list = bodies_->atoms(number - n_chains());
+        std::transform(list, list + count_atoms(number), out, [this](std::int64_t atom) { return base + atom; });
+        std::sort(out, out + count_atoms(number));
+        return;
+    }
     const Molecule m = molecule(number);
     for (std::int64_t i = 0; i < m.n_atoms; ++i)
         if (i == 0 || !m.shape || m.atom(i) != m.atom(i - 1)) *out++ = base + m.atom(i);
 }
 
+std::int64_t Chains::count_bonds(std::int64_t number) const {
+    if (number < n_chains()) return molecule(number).n_bonds;
+    return static_cast<std::int64_t>(bodies_->shape(number - n_chains()).bonds.size());
+}
+
 void Chains::bonds(std::int64_t number, std::int64_t *out) const {
+    if (number >= n_chains()) {
+        const std::int64_t *const list = bodies_->bonds(number - n_chains());
+        std::transform(list, list + count_bonds(number), out, [this](std::int64_t bond) { return base + bond; });
+        return;
+    }
     const Molecule m = molecule(number);
     for (std::int64_t k = 0; k < m.n_bonds; ++k) out[k] = base + m.bond(k);
 }
@@ -103,6 +134,10 @@ void Chains::molecules_of_bonds(std::int64_t *out) const {
             out[groups_.bond(group, group.first_bond + k)] = base + group.first_molecule + k / n_bonds;
     }
     for (const std::int64_t bond : unconstrained_) out[bond] = -1;
+    for (std::int64_t m = 0; bodies_ && m < bodies_->n_molecules(); ++m) {
+        const std::int64_t number = n_chains() + m, *const list = bodies_->bonds(m);
+        for (std::int64_t k = 0; k < count_bonds(number); ++k) out[list[k]] = base + number;
+    }
 }
 
 std::int64_t Chains::degrees_of_freedom(int dimensions) const {
@@ -115,6 +150,7 @@ std::int64_t Chains::degrees_of_freedom(int dimensions) const {
         }
         constraints += active * kind_of(group).n_bonds;
     }
+    if (bodies_) constraints += bodies_->constraints(dimensions);
     return dimensions * masses_.n_movable() - constraints;
 }
 
@@ -128,7 +164,8 @@ std::int64_t Chains::memory() const {
     return static_cast<std::int64_t>(sizeof *this + masses_.bytes() + use_.bytes() + kinds_.bytes() + shapes_.bytes() +
                                      groups_.bytes() + unconstrained_.capacity() * sizeof(std::int64_t) +
                                      active_.capacity() + backwards_.capacity()) +
-           labels_.bytes() + (plan ? plan->bytes() : 0) + (of_parts ? of_parts->bytes() : 0);
+           labels_.bytes() + (bodies_ ? bodies_->bytes() : 0) + (plan ? plan->bytes() : 0) +
+           (of_parts ? of_parts->bytes() : 0);
 }
 
 }  // namespace holonomic

@@ -1,6 +1,7 @@
 #include "core/molecules/schedule.hpp"
 
 #include <algorithm>
+#include <mutex>
 #include <vector>
 
 #include "core/molecules/elimination_order.hpp"
@@ -12,8 +13,9 @@ namespace {
 
 class Maker {
 public:
-    Maker(Schedule &s, Schedule::Memory &m, std::int64_t most_bytes)
-        : s_(s), m_(m), most_bytes_(most_bytes), bonds_(bonds_of_atoms()) {}
+    // `networks`: a large graph may become one.
+    Maker(Schedule &s, Schedule::Memory &m, std::int64_t most_bytes, bool networks)
+        : s_(s), m_(m), most_bytes_(most_bytes), networks_(networks), bonds_(bonds_of_atoms()) {}
 
     void make() {
         strip();
@@ -30,8 +32,11 @@ public:
         invert_numbers();
         list_children();
         list_meetings();
+        if (is_network_) return;
+        list_fill();
         list_updates();
     }
+    bool is_network() const { return is_network_; }
 
 private:
     Lists bonds_of_atoms() const {
@@ -120,23 +125,44 @@ private:
             core_number[at(k)] = static_cast<std::int32_t>(core.size());
             core.push_back(k);
         }
-        check_atoms(core);
+        if (!networks_ || s_.n_bonds <= largest_graph_in_lanes) return order_core(core, core_number, most_bytes_);
+        is_network_ = has_long_strands(core);
+        try {
+            const std::int64_t most = most_bytes_of_list * static_cast<std::int64_t>(core.size());
+            if (!is_network_) return order_core(core, core_number, std::min(most_bytes_, most));
+        } catch (const TooMuchMemory &) {
+            is_network_ = true;
+        }
+        m_.bond_of.insert(m_.bond_of.end(), core.begin(), core.end());
+    }
+    void order_core(const Numbers &core, const Numbers &core_number, std::int64_t most_bytes) {
+        check_atoms(core, most_bytes);
         std::vector<Numbers> neighbours(core.size());
         for (std::size_t p = 0; p < core.size(); ++p)
             for (const std::int32_t i : {m_.atom_i[at(core[p])], m_.atom_j[at(core[p])]})
                 for (const std::int32_t *l = bonds_.begin(i); l != bonds_.end(i); ++l)
                     if (*l != core[p] && core_number[at(*l)] >= 0) neighbours[p].push_back(core_number[at(*l)]);
-        for (const std::int32_t p : minimum_degree(std::move(neighbours), Ties::latest, most_bytes_))
+        for (const std::int32_t p : minimum_degree(std::move(neighbours), Ties::latest, most_bytes))
             m_.bond_of.push_back(core[at(p)]);
     }
+    // Between atoms with other than two bonds of the core, or with trees.
+    bool has_long_strands(const Numbers &core) const {
+        Numbers degree(at(s_.n_atoms));
+        for (const std::int32_t k : core)
+            for (const std::int32_t i : {m_.atom_i[at(k)], m_.atom_j[at(k)]}) ++degree[at(i)];
+        std::int64_t ends = 0;
+        for (std::int32_t i = 0; i < s_.n_atoms; ++i)
+            if (degree[at(i)] > 2 || bonds_.size(i) > 2) ends += degree[at(i)];
+        return ends >= 2 * many_strands && 2 * static_cast<std::int64_t>(core.size()) >= long_strand * ends;
+    }
     // Bonds at one atom are all neighbours of each other: n of them fill at least what n columns do.
-    void check_atoms(const Numbers &core) const {
+    void check_atoms(const Numbers &core, std::int64_t most_bytes) const {
         Numbers degree(at(s_.n_atoms));
         std::int64_t bytes = 0;
         for (const std::int32_t k : core)
             for (const std::int32_t i : {m_.atom_i[at(k)], m_.atom_j[at(k)]})
                 bytes += 8 * std::int64_t{++degree[at(i)]};
-        if (bytes > most_bytes_) throw TooMuchMemory{bytes};
+        if (bytes > most_bytes) throw TooMuchMemory(bytes);
     }
 
     void invert_numbers() {
@@ -172,36 +198,45 @@ private:
         for (std::int32_t k = 0; k < s_.n_tree; ++k) m_.child[at(next[at(m_.parent[at(k)])]++)] = k;
     }
 
-    // Which bonds meet at each atom of the core, and the factor's pattern.
+    // Which bonds meet at each atom of the core.
     void list_meetings() {
         Lists meet = invert(s_.n_core_atoms, s_.n_core,
                             [&](std::int32_t p, int end) { return (end ? m_.to : m_.from)[at(p)] - s_.n_tree; });
-        std::vector<Numbers> neighbours(at(s_.n_core));
         s_.max_core_bonds = 0;
         for (std::int32_t c = 0; c < s_.n_core_atoms; ++c) {
             s_.max_core_bonds = std::max(s_.max_core_bonds, meet.size(c));
-            for (const std::int32_t *a = meet.begin(c); a != meet.end(c); ++a)
-                for (const std::int32_t *b = meet.begin(c); b != meet.end(c); ++b)
-                    if (a != b) neighbours[at(*a)].push_back(*b);
+            for (std::int32_t m = meet.start[at(c)]; m < meet.start[at(c) + 1]; ++m) {
+                std::int32_t &p = meet.item[at(m)];
+                p = 2 * p + (m_.to[at(p)] == s_.n_tree + c ? 1 : 0);
+            }
         }
+        m_.meet_start = std::move(meet.start);
+        m_.meet = std::move(meet.item);
+    }
+    // Calls each(p, q) for all pairs p != q of bonds that meet at atom c of the core.
+    template <class Each>
+    void for_meetings(std::int32_t c, const Each &each) const {
+        for (std::int32_t a = m_.meet_start[at(c)]; a < m_.meet_start[at(c) + 1]; ++a)
+            for (std::int32_t b = m_.meet_start[at(c)]; b < m_.meet_start[at(c) + 1]; ++b)
+                if (a != b) each(m_.meet[at(a)] / 2, m_.meet[at(b)] / 2, b < a);
+    }
+
+    // The factor's pattern.
+    void list_fill() {
+        std::vector<Numbers> neighbours(at(s_.n_core));
+        for (std::int32_t c = 0; c < s_.n_core_atoms; ++c)
+            for_meetings(c, [&](std::int32_t p, std::int32_t q, bool) { neighbours[at(p)].push_back(q); });
         Fill fill = fill_of(neighbours);
         m_.column_start = std::move(fill.column_start);
         m_.row = std::move(fill.row);
         s_.n_entries = static_cast<std::int32_t>(m_.row.size());
         m_.meet_pair_start.assign(1, 0);
         for (std::int32_t c = 0; c < s_.n_core_atoms; ++c) {
-            for (const std::int32_t *a = meet.begin(c); a != meet.end(c); ++a)
-                for (const std::int32_t *b = meet.begin(c); b != a; ++b)
-                    m_.meet_pair.push_back(entry(std::max(*a, *b), std::min(*a, *b)));
+            for_meetings(c, [&](std::int32_t p, std::int32_t q, bool before) {
+                if (before) m_.meet_pair.push_back(entry(std::max(p, q), std::min(p, q)));
+            });
             m_.meet_pair_start.push_back(static_cast<std::int32_t>(m_.meet_pair.size()));
         }
-        for (std::int32_t c = 0; c < s_.n_core_atoms; ++c)
-            for (std::int32_t m = meet.start[at(c)]; m < meet.start[at(c) + 1]; ++m) {
-                std::int32_t &p = meet.item[at(m)];
-                p = 2 * p + (m_.to[at(p)] == s_.n_tree + c ? 1 : 0);
-            }
-        m_.meet_start = std::move(meet.start);
-        m_.meet = std::move(meet.item);
     }
 
     std::int32_t entry(std::int32_t row, std::int32_t column) const {
@@ -226,6 +261,8 @@ private:
     Schedule &s_;
     Schedule::Memory &m_;
     const std::int64_t most_bytes_;
+    const bool networks_;
+    bool is_network_ = false;
     const Lists bonds_;
     Numbers upper_bond_;  // of the atoms of trees, by local atom; -1: a root, or of the core
 };
@@ -246,7 +283,7 @@ void add_runs(Schedule &s, Schedule::Memory &m) {
 }
 
 std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
-                                        const bool *fixed, std::int64_t most_bytes) {
+                                        const bool *fixed, std::int64_t most_bytes, bool networks) {
     std::unique_ptr<Schedule> s(new Schedule());
     Schedule::Memory &m = *(s->memory = new Schedule::Memory());
     s->n_atoms = n_atoms;
@@ -256,17 +293,38 @@ std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bon
         m.atom_j.push_back(pairs[2 * k + 1]);
     }
     for (std::int32_t i = 0; i < n_atoms; ++i) m.fixed.push_back(fixed && fixed[i]);
-    Maker(*s, m, most_bytes).make();
+    Maker maker(*s, m, most_bytes, networks);
+    maker.make();
     point_into(*s, m);
+    if (!maker.is_network()) return s;
+    make_network(*s, m.network);
+    s->network = &m.network.plan;
     return s;
+}
+
+// Small networks have it for what does not converge.
+constexpr std::int32_t largest_with_careful = 8192;
+void make_careful_too(Schedule &s, Schedule::Memory &m, const std::int32_t *pairs, std::int64_t most_bytes) {
+    try {
+        m.careful = std::make_unique<const CarefulShape>(s.n_atoms, s.n_bonds, pairs, most_bytes);
+        s.careful = &m.careful->plan();
+    } catch (const TooMuchMemory &) {
+        m.careful = nullptr;  // then there is none
+    }
 }
 
 }  // namespace
 
 std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
                                               const bool *fixed, std::int64_t most_bytes) {
-    std::unique_ptr<Schedule> s = bare_schedule(n_atoms, n_bonds, pairs, fixed, most_bytes);
+    std::unique_ptr<Schedule> s = bare_schedule(n_atoms, n_bonds, pairs, fixed, most_bytes, true);
     Schedule::Memory &m = *s->memory;
+    if (s->network) {
+        if (n_bonds <= largest_with_careful)
+            make_careful_too(*s, m, pairs,
+                             std::min(most_bytes, most_bytes_of_list * static_cast<std::int64_t>(s->n_core)));
+        return s;
+    }
     if (n_bonds > largest_in_lanes && s->type == Schedule::tree) add_runs(*s, m);
     if (takes_flat_list(*s)) {
         make_flat_list(*s, m.flat);
@@ -280,7 +338,18 @@ std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t
 
 std::unique_ptr<const Schedule> make_bare_schedule(std::int32_t n_atoms, std::int32_t n_bonds,
                                                    const std::int32_t *pairs, const bool *fixed) {
-    return bare_schedule(n_atoms, n_bonds, pairs, fixed, no_limit);
+    return bare_schedule(n_atoms, n_bonds, pairs, fixed, no_limit, false);
+}
+
+void make_careful(const Schedule &s, std::int64_t most_bytes) {
+    static std::mutex mutex;
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (s.careful || s.late_careful) return;
+    Schedule::Memory &m = *s.memory;
+    std::vector<std::int32_t> pairs;
+    for (std::int32_t k = 0; k < s.n_bonds; ++k) pairs.insert(pairs.end(), {s.atom_i[k], s.atom_j[k]});
+    m.careful = std::make_unique<const CarefulShape>(s.n_atoms, s.n_bonds, pairs.data(), most_bytes);
+    s.late_careful = &m.careful->plan();
 }
 
 }  // namespace holonomic

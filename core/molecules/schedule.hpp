@@ -22,6 +22,9 @@ std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t
 std::unique_ptr<const Schedule> make_bare_schedule(std::int32_t n_atoms, std::int32_t n_bonds,
                                                    const std::int32_t *pairs, const bool *fixed);
 
+// Makes what the careful solver needs of a network, once, for metrics. Throws TooMuchMemory. Thread-safe.
+void make_careful(const Schedule &s, std::int64_t most_bytes);
+
 // Memory that it occupies, in bytes.
 std::size_t bytes_of(const Schedule &s);
 

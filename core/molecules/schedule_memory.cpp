@@ -61,7 +61,7 @@ std::size_t bytes_of(const Schedule &s) {
                  m.pair_start, m.from, m.to, m.meet_start, m.meet, m.meet_pair, m.meet_pair_start, m.column_start,
                  m.row, m.update, m.update_start, m.fixed, m.arms.arm, m.arms.stretch, m.arms.stretch_start,
                  m.arms.share_start) +
-           bytes(m.runs) + bytes(m.arms.runs) + bytes(m.flat) + bytes(m.paths) +
+           bytes(m.runs) + bytes(m.arms.runs) + bytes(m.flat) + bytes(m.paths) + bytes_of(m.network) +
            (m.careful ? static_cast<std::size_t>(m.careful->memory()) : 0);
 }
 

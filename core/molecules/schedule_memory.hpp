@@ -9,6 +9,7 @@
 #include "core/molecules/careful_shape.hpp"
 #include "core/molecules/flat_list.hpp"
 #include "core/molecules/lists.hpp"
+#include "core/molecules/network.hpp"
 #include "core/molecules/path_plan.hpp"
 #include "core/molecules/schedule_arms.hpp"
 #include "core/molecules/schedule_runs.hpp"
@@ -24,6 +25,7 @@ struct Schedule::Memory {
     FlatArrays flat;
     ScheduleArms arms;
     PathArrays paths;
+    NetworkArrays network;
     std::unique_ptr<const CarefulShape> careful;
 };
 

@@ -58,7 +58,7 @@ std::int32_t Shapes::find(Form form, std::int32_t n_atoms, std::int32_t n_bonds,
     for (auto it = candidates.first; it != candidates.second; ++it)
         if (is((*this)[it->second], n_atoms, n_bonds, pairs, fixed)) return it->second;
 
-    if (n_bonds > most_bytes / bytes_of_shape_bond) throw TooMuchMemory{n_bonds * bytes_of_shape_bond};
+    if (n_bonds > most_bytes / bytes_of_shape_bond) throw TooMuchMemory(n_bonds * bytes_of_shape_bond);
     Shape shape{form, n_atoms, n_bonds, {pairs, pairs + 2 * std::int64_t{n_bonds}}, {fixed, fixed + n_atoms}, {}, {}};
     shape.walk = spanning_walk(n_atoms, shape.pairs);
     const std::unique_ptr<bool[]> flags(new bool[static_cast<std::size_t>(n_atoms)]);

@@ -79,7 +79,14 @@ MoleculeUnit Chains::unit(const Plan &plan, const Plan::Piece &p, MoleculeLane *
         *lane = molecule_lane_of(plan, groups_.all()[at(p.group)], p.first, p.stage, p.part);
         return {schedule, lane, p.count, true, large};
     }
-    return {schedule, &plan.loose_molecules[at(p.first)], p.count, false, large};
+    return {schedule,
+            &plan.loose_molecules[at(p.first)],
+            p.count,
+            false,
+            large,
+            nullptr,
+            p.n_forests > 0 ? plan.forests[p.first_forest] : nullptr,
+            p.n_forests};
 }
 
 }  // namespace holonomic

@@ -5,6 +5,7 @@
 #include "core/molecules/batch.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/molecules/closable.hpp"
+#include "core/rigid/bodies.hpp"
 
 namespace holonomic {
 
@@ -64,7 +65,9 @@ void Chains::set_lengths(const double *lengths) {
             small = ratio < small_change && ratio * small_change > 1;
         }
     }
+    std::unique_ptr<rigid::Bodies> bodies = rebuild_bodies(masses_, lengths);
     rebuild(masses_, lengths);
+    bodies_ = std::move(bodies);
     fits_.store(small);
 }
 
@@ -79,7 +82,9 @@ void Chains::set_masses(const double *masses) {
         throw error;
     }
     const bool fitted = fits_.load();
+    std::unique_ptr<rigid::Bodies> bodies = rebuild_bodies(next, nullptr);
     rebuild(next, nullptr);
+    bodies_ = std::move(bodies);
     fits_.store(fitted);
     masses_ = std::move(next);
 }

@@ -65,6 +65,14 @@ public:
             double d[3];
             if (!bond_vector(r, box_, m_, k, d)) return of_bond(k, "has length zero");
         }
+        if (m_.shape && !m_.shape->schedule->careful) {
+            if (otherwise == Status::no_convergence) return out_of_reach();
+            return finish(make_error(Status::degenerate,
+                                     "%s: the iteration for its multipliers does not converge: its bonds depend on "
+                                     "each other, or nearly so%s",
+                                     name_, others_),
+                          -1, -1);
+        }
         const std::int64_t bond = m_.shape ? dependent_bond(m_, r, box_) : vanishing_pivot(r, box_, m_);
         if (bond >= 0 && m_.shape)
             return of_bond(bond, "depends on the others: their constraints hold it already at these positions");

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <new>
 
+#include "core/kernels/molecules/forest/forest.hpp"
 #include "core/kernels/molecules/list/flat_list.hpp"
 #include "core/run/lane.hpp"
 #include "core/run/thread_memory.hpp"
@@ -73,6 +74,7 @@ bool is_shared_molecule(const Plan &plan, std::int64_t p, int n_threads, bool li
     if (piece.shape == linear || piece.count != 1) return false;
     const Schedule &s = *plan.schedules[static_cast<std::size_t>(piece.shape)];
     const std::int64_t n = s.n_pieces, n_molecules = static_cast<std::int64_t>(plan.pieces.size());
+    if (n_molecules < n_threads && s.network) return true;
     if (n_molecules < n_threads && lists && (s.paths || (s.flat && s.flat->n_tiles > 1))) return true;
     if (n_molecules < n_threads && s.n_arms > 0 && s.n_shares > 1) return true;
     return n > 1 && (n >= 8 * n_threads || n_molecules < 4 * n_threads);
@@ -87,15 +89,21 @@ std::int64_t long_chain_bonds(const Chains &chains, const Plan &plan, std::int64
     return n > longest_lane ? n : 0;
 }
 
+// Different trees side by side, or one by one for a verb that has no way for these.
+void work_on_molecules(const Work &work, const MoleculeUnit &unit, int where, double *scratch, Tally &tally) {
+    if (!unit.forests || work.walks_forests()) return work.unit(unit, where, scratch, tally);
+    const MoleculeLane *lane = unit.lanes;
+    for (std::int64_t i = 0; i < unit.n_forests; ++i)
+        for (int l = 0; l < unit.forests[i].n_trees; ++l)
+            work.unit(MoleculeUnit{unit.forests[i].schedule[l], lane++, 1, true, unit.large}, where, scratch, tally);
+}
+
 // One call: what it needs, and its pieces one by one or shared.
 class Execution {
 public:
     Execution(const Chains &chains, const Plan &plan, const Work &work)
         : chains_(chains), plan_(plan), work_(work), n_pieces_(static_cast<std::int64_t>(plan.pieces.size())),
-          scratch_bytes_(holonomic::scratch_bytes(plan.longest)) {
-        for (const std::int32_t shape : plan.shapes)
-            scratch_bytes_ = std::max(
-                scratch_bytes_, kernels().molecules.scratch_bytes(*plan.schedules[static_cast<std::size_t>(shape)]));
+          scratch_bytes_(std::max(holonomic::scratch_bytes(plan.longest), plan.scratch_bytes)) {
         n_threads_ = static_cast<int>(
             std::min<std::int64_t>(chains.n_threads, std::max<std::int64_t>(plan.n_bonds / bonds_per_thread, 1)));
         for (std::int64_t p = 0; plan.longest > longest_lane && p < n_pieces_; ++p) {
@@ -138,7 +146,7 @@ private:
             MoleculeLane lane;
             MoleculeUnit unit = chains_.unit(plan_, piece, &lane);
             unit.team = team;
-            return work_.unit(unit, piece.where, scratch, tally);
+            return work_on_molecules(work_, unit, piece.where, scratch, tally);
         }
         Lane lane;
         const Unit unit = chains_.unit(plan_, piece, &lane);

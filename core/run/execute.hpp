@@ -49,6 +49,8 @@ class Work {
 public:
     virtual void unit(const Unit &unit, int where, double *scratch, Tally &tally) const = 0;
     virtual void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const = 0;
+    // Whether it has a way of its own for different trees side by side; else each comes as a unit.
+    virtual bool walks_forests() const { return false; }
     // Whether threads share the work on one large molecule that goes along a list, whatever its shape.
     virtual bool shares_lists() const { return false; }
     virtual std::int64_t long_blocks(std::int64_t n_bonds) const = 0;

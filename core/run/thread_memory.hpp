@@ -6,7 +6,18 @@
 
 namespace holonomic {
 
-enum class Keep { scratch, store, piece_tallies, block_tallies, apart, right_hand_sides, multipliers, reference, last };
+enum class Keep {
+    scratch,
+    store,
+    piece_tallies,
+    block_tallies,
+    apart,
+    right_hand_sides,
+    multipliers,
+    reference,
+    rigid,
+    last
+};
 
 // At least `bytes` of the calling thread's memory for this purpose, aligned to 64; its contents are lost when it has to
 // grow. Null if there is no memory.

@@ -170,8 +170,10 @@ static void assert_bits_of_each_alone(const molecule *parts, int64_t n, mixture 
     for (int64_t p = 0; p < n; ++p) {
         mixture one = mixture_make(parts + p, 1, ONE_AFTER_THE_OTHER, 0);
         everything alone = compute(&one);
-        for (int a = 0; a < ARRAYS; ++a)
-            assert_same_bits(alone.part[a], together.part[a] + (size_t)p * alone.size[a], alone.size[a]);
+        for (int a = 0; a < ARRAYS; ++a) {
+            const int64_t before = a < 4 ? all->first_bond[p] : 3 * all->first_atom[p];
+            assert_same_bits(alone.part[a], together.part[a] + before, alone.size[a]);
+        }
         release(&alone);
         mixture_free(&one);
     }
@@ -203,6 +205,32 @@ static void equal_molecules_have_the_bits_of_each_alone(void **state)
         assert_int_equal(hol_chains_n_kinds(in_order.chains), 1);
         assert_bits_of_each_alone(parts, N, &listed);
         assert_bits_of_each_alone(parts, N, &in_order);
+        for (int p = 0; p < N; ++p) molecule_free(parts + p);
+    }
+}
+
+/** Trees of which no two are alike share the lanes of a vector: full blocks and a rest, in order and by lists. */
+static void different_trees_have_the_bits_of_each_alone(void **state)
+{
+    (void)state;
+    enum { N = 23 };
+    static const molecule_kind kinds[] = {MOLECULE_TREE,        MOLECULE_STAR, MOLECULE_COMB,
+                                          MOLECULE_ALKANE,      MOLECULE_TREE, MOLECULE_DENDRIMER,
+                                          MOLECULE_FIXED_ATOMS, MOLECULE_TREE, MOLECULE_NEARLY_STRAIGHT_COMB,
+                                          MOLECULE_LIGHT_JOINTS};
+    const int64_t n_kinds = (int64_t)(sizeof kinds / sizeof *kinds);
+    for (uint64_t seed = 1; seed <= 3; ++seed) {
+        molecule parts[N];
+        for (int64_t p = 0; p < N; ++p) {
+            const molecule_kind kind = kinds[p % n_kinds];
+            const int64_t size = kind == MOLECULE_DENDRIMER ? 2 + p / n_kinds : 5 + p;
+            parts[p] = molecule_make(kind, size, seed + (uint64_t)p);
+            for (int64_t i = 0; i < 3 * parts[p].n_atoms; ++i) /* light atoms are fast */
+                parts[p].v[i] /= 1 + fabs(parts[p].v[i]);
+        }
+        mixture in_order = mixture_make(parts, N, ONE_AFTER_THE_OTHER, 0), listed = mixture_make(parts, N, MIXED, seed);
+        assert_bits_of_each_alone(parts, N, &in_order);
+        assert_bits_of_each_alone(parts, N, &listed);
         for (int p = 0; p < N; ++p) molecule_free(parts + p);
     }
 }
@@ -280,6 +308,7 @@ int main(void)
         cmocka_unit_test(number_of_threads_changes_no_bit),
         cmocka_unit_test(one_call_for_copies_gives_the_bits_of_the_list),
         cmocka_unit_test(equal_molecules_have_the_bits_of_each_alone),
+        cmocka_unit_test(different_trees_have_the_bits_of_each_alone),
         cmocka_unit_test(layouts_of_doubles_change_no_bit),
         cmocka_unit_test(floats_and_two_dimensions_give_the_solution_of_the_rounded_numbers),
     };

@@ -105,7 +105,7 @@ static scene example(int which)
            : which == 1 ? make(9, 1, 1, 1, 2)
            : which == 2 ? make(3, 0, 0, 0, 3)
            : which == 3 ? make(3, 1, 0, 1, 4)
-                        : make(5, 1, 0, 1, 5);
+                        : make(4, 1, 0, 1, 5);
 }
 enum { examples = 5 };
 

@@ -34,3 +34,13 @@ example_test(brush molecules brush steps=20000 --
     "mean tension backbone" 1 > 4
     "mean tension arm    8" 1 > 1.7
     "mean tension arm    8" 1 < 2.5)
+
+# ------------------------------------------------------------------------------------------------------------- gel
+# Stretched to twice its length a phantom network pulls with 3.5; the blocks of so short a run say 0.2 for its error.
+example_test(gel molecules gel points=1 steps=400 --
+    "128 strands" 1 = 10
+    "128 strands" 2 = 1
+    "     2.000" 1 > 2.5
+    "     2.000" 1 < 4.8
+    "largest bond error" 1 < 1e-12
+    "largest |d.v|" 1 < 1e-13)

@@ -1,6 +1,6 @@
 /**
  * @file check_cases.h
- * What check_oracle does with one case of either format: a line per quantity, and the largest error over its bound.
+ * What check_oracle does with one case of any format: a line per quantity, and the largest error over its bound.
  */
 #ifndef REFERENCE_CHECK_CASES_H
 #define REFERENCE_CHECK_CASES_H
@@ -9,6 +9,7 @@
 
 #include "molecule_file.h"
 #include "oracle_file.h"
+#include "rigid_file.h"
 
 /** All quantities of a chain; infinite if a call fails. */
 long double check_chain_case(const oracle_case *c);
@@ -22,5 +23,8 @@ long double check_molecule_case(const molecule_file *c);
  */
 long double check_fit(const char *name, hol_chains *chains, int64_t n_atoms, int64_t n_bonds, const int64_t *pairs,
                       const double *length, const double *r);
+
+/** All quantities of a molecule with rigid bodies. */
+long double check_rigid_case(const rigid_file *c);
 
 #endif

@@ -1,6 +1,7 @@
 /**
  * Checks the library against reference files: check_oracle DIR reads DIR/INDEX and the files that it lists, of chains
- * (tests/oracle/README.md) or of molecules of any shape (tests/oracle/molecules/README.md), mixed as they come.
+ * (tests/oracle/README.md), of molecules of any shape (tests/oracle/molecules/README.md) or with rigid bodies
+ * (tests/oracle/rigid/README.md), mixed as they come.
  * A line per case and quantity: the worst error in units of eps times its scale, and its bound. Exit status 0: all are
  * within their bounds; 1: one is not; 2: the files cannot be read.
  */
@@ -29,6 +30,11 @@ static int check_file(const char *path, long double *ratio, char *message, size_
         if (molecule_file_read(path, &m, message, message_size)) return -1;
         of_case = check_molecule_case(&m);
         molecule_file_free(&m);
+    } else if (is_rigid_file(path)) {
+        rigid_file m;
+        if (rigid_file_read(path, &m, message, message_size)) return -1;
+        of_case = check_rigid_case(&m);
+        rigid_file_free(&m);
     } else {
         oracle_case c;
         if (oracle_read(path, &c, message, message_size)) return -1;

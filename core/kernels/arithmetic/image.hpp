@@ -74,13 +74,17 @@ HOL_INLINE Pair<vec> unrounded_bond(const Box &box, vec from, vec to) {
     Pair<vec> d = two_difference<vec>(to, from);
     if (box.shape == Box::none) return d;
     const double *const h = box.h, *const in = box.inverse;
+    const auto fold = [&](vec n, vec side) HOL_FORCED {
+        const Pair<vec> p = two_product<vec>(n, side), s = two_difference<vec>(d.hi, p.hi);
+        d = fast_two_sum<vec>(s.hi, s.lo - p.lo + d.lo);
+    };
+    if (box.shape == Box::orthorhombic) {
+        fold(round(d.hi * vec{in[0], in[4], in[8], 0}), vec{h[0], h[4], h[8], 0});
+        return d;
+    }
     const vec n = round(d.hi[0] * vec{in[0], in[1], in[2], 0} + d.hi[1] * vec{in[3], in[4], in[5], 0} +
                         d.hi[2] * vec{in[6], in[7], in[8], 0});
-    for (int i = 0; i < 3; ++i) {
-        const Pair<vec> p = two_product<vec>(splat(n[i]), vec{h[3 * i], h[3 * i + 1], h[3 * i + 2], 0});
-        const Pair<vec> s = two_difference<vec>(d.hi, p.hi);
-        d = fast_two_sum<vec>(s.hi, s.lo - p.lo + d.lo);
-    }
+    for (int i = 0; i < 3; ++i) fold(splat(n[i]), vec{h[3 * i], h[3 * i + 1], h[3 * i + 2], 0});
     return d;
 }
 #endif

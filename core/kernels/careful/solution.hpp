@@ -74,11 +74,12 @@ struct Solution {
     Solution(const CarefulPlan &plan, const MoleculeLane &lane, Memory &memory)
         : m(plan, lane, memory), system(take_system(m, memory)), b(memory.take<Wide>(plan.n_bonds)),
           t(memory.take<Wide>(plan.n_bonds)) {}
-    // A tree of which a pivot seems to vanish may be regular all the same; more digits say so.
+    // A molecule of which a pivot seems to vanish may be regular all the same; more digits say so. Those of a ring are
+    // right as they are.
     bool open(const AtomArray &r, const Box &box) {
         if (!load(m, r, box)) return false;
         const bool good = factorize(m, system);
-        if (!good) system.joint.loss.largest = is_tree(m.plan) ? __builtin_inf() : 0;
+        if (!good) system.joint.loss.largest = is_ring(m.plan) ? 0 : __builtin_inf();
         return good;
     }
     bool close() {

@@ -97,7 +97,10 @@ struct Sweep {
             slack = min(slack, keep(little, spare(e, F1, spare_of_cross_products)));
         }
         const mask orthogonal = nearly_orthogonal(g, X);
-        if (any(orthogonal)) g = exact_dots(source, k, orthogonal, g);
+        if (any(orthogonal)) {
+            const Source copy = source;  // so that it is not kept in memory for this
+            g = exact_dots(copy, k, orthogonal, g);
+        }
     }
 
     // Lanes in which the backward sweep can't overflow: |t_k| |d_k| <= sum_j |u_j| |d_j|, because |l_k| |d_{k-1}| <=

@@ -256,7 +256,6 @@ struct SegmentOutputs {
     vec lambda_factor;
     double virial_factor;
     bool virial;
-    bool adds = false;  // to the pulls that are there
 };
 
 // Loads block j and eliminates its inner bonds. `terms`: of the right-hand sides; `strain` is added to rates, or

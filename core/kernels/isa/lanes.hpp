@@ -162,24 +162,7 @@ HOL_INLINE void transpose(quad *m) {
     m[3] = _mm256_permute2f128_pd(b, d, 0x31);
 }
 #endif
-#if HOL_LANES == 8 && defined(__AVX512F__)
-HOL_INLINE void transpose(vec *m) {
-    vec a[8], b[8];
-    for (int i = 0; i < 8; i += 2) {
-        a[i] = _mm512_unpacklo_pd(m[i], m[i + 1]);
-        a[i + 1] = _mm512_unpackhi_pd(m[i], m[i + 1]);
-    }
-    for (int i = 0; i < 8; i += 4)
-        for (int j = 0; j < 2; ++j) {
-            b[i + j] = _mm512_shuffle_f64x2(a[i + j], a[i + j + 2], 0x88);      // 128-bit parts 0, 2 of both
-            b[i + j + 2] = _mm512_shuffle_f64x2(a[i + j], a[i + j + 2], 0xdd);  // parts 1, 3 of both
-        }
-    for (int j = 0; j < 4; ++j) {
-        m[j] = _mm512_shuffle_f64x2(b[j], b[j + 4], 0x88);
-        m[j + 4] = _mm512_shuffle_f64x2(b[j], b[j + 4], 0xdd);
-    }
-}
-#elif HOL_LANES != 4 || !defined(__AVX2__)
+#if HOL_LANES != 4 || !defined(__AVX2__)
 HOL_INLINE void transpose(vec *m) {
     for (int i = 0; i < W; ++i)
         for (int j = i + 1; j < W; ++j) {
@@ -190,25 +173,15 @@ HOL_INLINE void transpose(vec *m) {
 }
 #endif
 
-// Four lanes by AVX2 and FMA, eight by AVX-512: the same instructions of other widths.
-#if HOL_LANES == 8 && defined(__AVX512F__)
-#define HOL_INTRINSIC(name) _mm512_##name
-#elif HOL_LANES == 4 && defined(__AVX2__) && defined(__FMA__)
-#define HOL_INTRINSIC(name) _mm256_##name
-#endif
-#ifdef HOL_INTRINSIC
-HOL_INLINE vec mul_add(vec a, vec b, vec c) { return HOL_INTRINSIC(fmadd_pd)(a, b, c); }
-HOL_INLINE vec mul_sub(vec a, vec b, vec c) { return HOL_INTRINSIC(fmsub_pd)(a, b, c); }
-HOL_INLINE vec max(vec a, vec b) { return HOL_INTRINSIC(max_pd)(a, b); }
-HOL_INLINE vec min(vec a, vec b) { return HOL_INTRINSIC(min_pd)(a, b); }
-HOL_INLINE vec sqrt(vec a) { return HOL_INTRINSIC(sqrt_pd)(a); }
-#if HOL_LANES == 8
-HOL_INLINE vec round(vec a) { return _mm512_roundscale_pd(a, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC); }
-HOL_INLINE unsigned bits(mask m) { return static_cast<unsigned>(_mm512_movepi64_mask(reinterpret_cast<__m512i>(m))); }
-#else
+// Four lanes by AVX2 and FMA.
+#if HOL_LANES == 4 && defined(__AVX2__) && defined(__FMA__)
+HOL_INLINE vec mul_add(vec a, vec b, vec c) { return _mm256_fmadd_pd(a, b, c); }
+HOL_INLINE vec mul_sub(vec a, vec b, vec c) { return _mm256_fmsub_pd(a, b, c); }
+HOL_INLINE vec max(vec a, vec b) { return _mm256_max_pd(a, b); }
+HOL_INLINE vec min(vec a, vec b) { return _mm256_min_pd(a, b); }
+HOL_INLINE vec sqrt(vec a) { return _mm256_sqrt_pd(a); }
 HOL_INLINE vec round(vec a) { return _mm256_round_pd(a, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC); }
 HOL_INLINE unsigned bits(mask m) { return static_cast<unsigned>(_mm256_movemask_pd(as_vec(m))); }
-#endif
 #else
 // Any number of lanes on any processor: what the compiler makes of the vectors.
 

@@ -11,9 +11,7 @@
 #define HOL_ISA baseline
 #endif
 #ifndef HOL_LANES
-#if defined(__AVX512F__)
-#define HOL_LANES 8
-#elif defined(__AVX2__)
+#if defined(__AVX2__)
 #define HOL_LANES 4
 #else
 #define HOL_LANES 2

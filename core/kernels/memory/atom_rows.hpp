@@ -33,12 +33,6 @@ HOL_INLINE void write_rows(double *const *p, quad x, quad y, quad z) {
 HOL_INLINE void read_rows(const double *const *p, vec3 &a) {
 #if HOL_LANES == 4 && defined(__AVX2__)
     read_rows(p, a.x, a.y, a.z);
-#elif HOL_LANES == 8 && defined(__AVX512F__)
-    quad x[2], y[2], z[2];
-    for (int h = 0; h < 2; ++h) read_rows(p + 4 * h, x[h], y[h], z[h]);
-    a.x = _mm512_insertf64x4(_mm512_castpd256_pd512(x[0]), x[1], 1);
-    a.y = _mm512_insertf64x4(_mm512_castpd256_pd512(y[0]), y[1], 1);
-    a.z = _mm512_insertf64x4(_mm512_castpd256_pd512(z[0]), z[1], 1);
 #elif HOL_LANES == 2
     a = {vec{p[0][0], p[1][0]}, vec{p[0][1], p[1][1]}, vec{p[0][2], p[1][2]}};
 #else
@@ -53,9 +47,6 @@ HOL_INLINE void read_rows(const double *const *p, vec3 &a) {
 HOL_INLINE void write_rows(double *const *p, const vec3 &a) {
 #if HOL_LANES == 4 && defined(__AVX2__)
     write_rows(p, a.x, a.y, a.z);
-#elif HOL_LANES == 8 && defined(__AVX512F__)
-    write_rows(p, _mm512_castpd512_pd256(a.x), _mm512_castpd512_pd256(a.y), _mm512_castpd512_pd256(a.z));
-    write_rows(p + 4, _mm512_extractf64x4_pd(a.x, 1), _mm512_extractf64x4_pd(a.y, 1), _mm512_extractf64x4_pd(a.z, 1));
 #else
     for (int i = 0; i < W; ++i) {
         p[i][0] = a.x[i];

@@ -89,11 +89,12 @@ static Reader::LoadChunks *chunks_of(const Block &block, const Box &box, int ter
 }
 
 // Differences of a vector per atom, of whole chunks, and what rounding leaves off them.
-template <bool careful>
-static void subtract_chunks(const Packed &rows, long k0, long end, vec3 *out, vec3 *low) {
+template <bool careful, bool weigh = false>
+static void subtract_chunks(const Packed &rows, long k0, long end, vec3 *out, vec3 *low,
+                            const double *const *w3 = nullptr) {
     const RowsOfLanes at(rows);
     for (; k0 < end; k0 += W, out += W) {
-        subtract_chunk<careful>(at, k0, out, low);
+        subtract_chunk<careful, weigh>(at, k0, out, low, w3);
         if (careful) low += W;
     }
 }
@@ -107,13 +108,16 @@ HOL_INLINE vec3 read_atom(const Block &block, const Packed &rows, long k) {
     return a;
 }
 
-// The same of any bonds. low: of bond vectors, or nullptr. `weigh`: of vectors times inverse masses.
+// The same of any bonds. low: of bond vectors, or nullptr. `weigh`: of vectors times inverse masses, which have no low.
 HOL_NOINLINE void subtract(const Block &block, const Packed &rows, bool weigh, long k0, long end, vec3 *out,
                            vec3 *low) {
     const long full = ((block.n_min < end ? block.n_min : end) - k0) / W * W;
-    if (full > 0 && !weigh) {
-        low ? subtract_chunks<true>(rows, k0, k0 + full, out, low)
-            : subtract_chunks<false>(rows, k0, k0 + full, out, low);
+    if (full > 0) {
+        if (weigh)
+            subtract_chunks<false, true>(rows, k0, k0 + full, out, nullptr, block.w3);
+        else
+            low ? subtract_chunks<true>(rows, k0, k0 + full, out, low)
+                : subtract_chunks<false>(rows, k0, k0 + full, out, low);
         k0 += full;
         out += full;
         if (low) low += full;
@@ -144,12 +148,13 @@ HOL_NOINLINE void load_rates(const Reader &in, long from, long end, const vec3 *
         const double *p[W];
         for (int i = 0; i < W; ++i) p[i] = in.v->lane[i] + 3 * (k + 1);
         if (__builtin_expect(in.ahead != 0, 0)) fetch_ahead(in.v->lane[0], k, in.ahead);
-        load_atoms(p, x + 1);
+        vec3 behind[W];
+        load_atoms(p, behind);
         HOL_UNROLL
         for (int b = 0; b < W; ++b) {
-            const vec3 behind = x[b + 1];
-            B[b] = rate_of(D[b], v, behind);
-            v = behind;
+            x[b + 1] = behind[b];
+            B[b] = rate_of(D[b], v, behind[b]);
+            v = behind[b];
         }
     }
     for (; k < end; ++k, ++x, ++D, ++B) {

@@ -24,9 +24,10 @@ struct RowsOfLanes {
 };
 
 // Differences out[W] of a vector per atom, x_{k+1} - x_k from atom k0 on, and what rounding leaves off them: numbers
-// are subtracted as they stand in memory.
-template <bool careful>
-HOL_INLINE void subtract_chunk(const RowsOfLanes &at, long k0, vec3 *out, vec3 *low) {
+// are subtracted as they stand in memory. weigh: vectors times the inverse masses w3, as Block has them.
+template <bool careful, bool weigh = false>
+HOL_INLINE void subtract_chunk(const RowsOfLanes &at, long k0, vec3 *out, vec3 *low,
+                               const double *const *w3 = nullptr) {
     HOL_UNROLL
     for (int j = 0; j < 3; ++j) {
         vec e[W], l[W];
@@ -34,6 +35,10 @@ HOL_INLINE void subtract_chunk(const RowsOfLanes &at, long k0, vec3 *out, vec3 *
         for (int i = 0; i < W; ++i) {
             const double *const x = at.first + 3 * k0 + W * j + at.lane[i];
             e[i] = load(x + 3) - load(x);
+            if (weigh) {
+                const double *const w = w3[i] + 3 * k0 + W * j;
+                e[i] = load(w + 3) * load(x + 3) - load(w) * load(x);
+            }
             if (careful) l[i] = two_difference<vec>(load(x + 3), load(x)).lo;
         }
         transpose(e);

@@ -9,7 +9,8 @@ namespace holonomic::HOL_ISA {
 
 // With d the bond vector, dv the difference of velocities, df that of forces times inverse masses:
 //   velocity_squared: dv.dv / unit,  force_difference: d.df,  rate: d.dv
-// unit_mass: velocities need no factor. kept_rate: rates, found in lanes from velocities that are kept there.
+// unit_mass: velocities need no factor. kept_rate: rates, found in lanes from velocities that are kept there. given:
+// half of the caller's value of the bond; of molecules that are no chains.
 enum Terms {
     none_ = 0,
     velocity_squared = 1,
@@ -17,6 +18,7 @@ enum Terms {
     rate = 4,
     unit_mass = 8,
     kept_rate = 16,
+    given = 32,
     products = velocity_squared | force_difference | rate,
     of_velocities = velocity_squared | rate | kept_rate
 };

@@ -22,9 +22,7 @@ HOL_INLINE void fetch_ahead(const double *first_lane, long k0, long ahead) {
 
 // settle_stores() must follow before another thread may read it.
 HOL_INLINE void store_past_cache(vec *p, vec a) {
-#if HOL_LANES == 8 && defined(__AVX512F__)
-    _mm512_stream_pd(reinterpret_cast<double *>(p), a);
-#elif HOL_LANES == 4 && defined(__AVX__)
+#if HOL_LANES == 4 && defined(__AVX__)
     _mm256_stream_pd(reinterpret_cast<double *>(p), a);
 #elif HOL_LANES == 2 && defined(__SSE2__)
     _mm_stream_pd(reinterpret_cast<double *>(p), a);

@@ -169,51 +169,55 @@ HOL_INLINE void store_multipliers(const Place &place, const vec *t, vec factor, 
     }
 }
 
-// Bonds D[k] from atoms. `boxed`: there may be a box.
-template <int N, bool boxed>
-HOL_INLINE void take_bonds(const Box &box, const vec *atoms, vec3 *D) {
-    vec *const d = &D[0].x;
-    HOL_UNROLL
-    for (int c = 0; c < 3 * N; ++c) d[c] = atoms[c + 3] - atoms[c];
-    if (!boxed || box.shape == Box::none) return;
+// Minimum images of the bonds of a place. In a triclinic box that is compiled into the kernels of molecules in a row
+// alone: in the others it would take the registers of what is common.
+template <class Place>
+HOL_INLINE void take_images(const Box &box, vec3 *D) {
+    constexpr int N = Place::bonds;
+    if (box.shape == Box::none) return;
     if (__builtin_expect(box.shape == Box::triclinic, 0)) {
+        vec3 unused = {};
         HOL_UNROLL
-        for (int k = 0; k < N; ++k) D[k] = triclinic_image(box, D[k]);
+        for (int k = 0; k < N; ++k) {
+            if constexpr (Place::in_row)
+                wrap<false>(box, D[k], unused);
+            else
+                D[k] = triclinic_image(box, D[k]);
+        }
         return;
     }
+    vec *const d = &D[0].x;
     HOL_UNROLL
     for (int c = 0; c < 3 * N; ++c)
         d[c] = mul_add(round(d[c] * box.per_side[c % 3]), splat(box.minus_side[c % 3]), d[c]);
 }
 
-// The bonds of a place. In a row without a box they are differences of numbers as they stand in memory, if that
-// transposes fewer vectors; elsewhere the atoms are read first.
-template <bool boxed, class Place>
+// The bonds of a place. `boxed`: there may be a box. In a row they are differences of numbers as they stand in memory,
+// if that transposes fewer vectors and nobody needs the atoms; elsewhere the atoms are read first.
+template <bool boxed, bool with_atoms, class Place>
 HOL_INLINE void load_bonds(const Box &box, const Place &place, const double *base, vec *atoms, vec3 *D) {
     constexpr int N = Place::bonds;
-    if constexpr (Place::in_row && whole<3 * N> < vectors_of<N>)
-        if (!boxed || __builtin_expect(box.shape == Box::none, 1)) {
-            vec d[whole<3 * N>];
+    if constexpr (Place::in_row && !with_atoms && whole<3 * N> < vectors_of<N>) {
+        vec d[whole<3 * N>];
+        HOL_UNROLL
+        for (int j = 0; j < whole<3 * N> / W; ++j) {
             HOL_UNROLL
-            for (int j = 0; j < whole<3 * N> / W; ++j) {
-                HOL_UNROLL
-                for (int i = 0; i < W; ++i) {
-                    const double *const p = place.atom(base, i, 0) + j * W;
-                    d[j * W + i] = load(p + 3) - load(p);
-                }
-                transpose(d + j * W);
+            for (int i = 0; i < W; ++i) {
+                const double *const p = place.atom(base, i, 0) + j * W;
+                d[j * W + i] = load(p + 3) - load(p);
             }
-            HOL_UNROLL
-            for (int k = 0; k < N; ++k) D[k] = {d[3 * k], d[3 * k + 1], d[3 * k + 2]};
-            return;
+            transpose(d + j * W);
         }
-    load_molecules(place, base, atoms);
-    take_bonds<N, boxed>(box, atoms, D);
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) D[k] = {d[3 * k], d[3 * k + 1], d[3 * k + 2]};
+    } else {
+        load_molecules(place, base, atoms);
+        vec *const d = &D[0].x;
+        HOL_UNROLL
+        for (int c = 0; c < 3 * N; ++c) d[c] = atoms[c + 3] - atoms[c];
+    }
+    if (boxed) take_images<Place>(box, D);
 }
-
-// Whether molecules of a place may have a box, if its kernel is one for both.
-template <class Place>
-constexpr bool may_be_boxed = Place::bonds <= largest_boxed_molecule;
 
 // The masses of blocks. Those in a row are the given ones; lists have them in any case as a table, so that there is one
 // kernel for equal and unequal ones. Where each lane is of a kind of its own, `own` holds also the other members of a
@@ -267,10 +271,10 @@ struct BlockMasses {
     }
 };
 
-// Calls kernel(place, uniform) for the molecules from `first` on, where place.type is one of memory/small.hpp. The
-// kernel returns the first molecule that is not done. `uniform`: not of loose lanes, with equal masses, and
-// `one_length`. `boxed`: there is a box. Units that are not regular need no block: molecules with as many bonds as the
-// first one are done.
+// Calls kernel(place, uniform, boxed) for the molecules from `first` on, where place.type is one of memory/small.hpp.
+// The kernel returns the first molecule that is not done. `uniform`: not of loose lanes, with equal masses, and
+// `one_length`. `boxed`: there is a box, or, of molecules that are not in a row, there may be one. Units that are not
+// regular need no block: molecules with as many bonds as the first one are done.
 template <class Kernel>
 static inline int64_t any_molecules(const Unit &unit, const Block &block, int64_t first, bool boxed, bool one_length,
                                     const Kernel &kernel) {
@@ -282,13 +286,20 @@ static inline int64_t any_molecules(const Unit &unit, const Block &block, int64_
     const bool uniform = unit.regular && block.uniform_w && one_length;  // only a regular unit has a block
     if (!unit.regular)
         return choose_number<1, largest_boxed_molecule>(head.n_bonds,
-                                                        [&](auto n) { return kernel(Type<ByLanes<n>>{}, no); });
+                                                        [&](auto n) { return kernel(Type<ByLanes<n>>{}, no, yes); });
     if (!in_row)
         return choose_number<1, largest_boxed_molecule>(head.n_bonds, [&](auto n) {
-            return uniform ? kernel(Type<ByList<n>>{}, yes) : kernel(Type<ByList<n>>{}, no);
+            return uniform ? kernel(Type<ByList<n>>{}, yes, yes) : kernel(Type<ByList<n>>{}, no, yes);
         });
-    return choose_number<1, largest_molecule>(
-        head.n_bonds, [&](auto n) { return uniform ? kernel(Type<InRow<n>>{}, yes) : kernel(Type<InRow<n>>{}, no); });
+    return choose_number<1, largest_molecule>(head.n_bonds, [&](auto n) {
+        return choose(
+            [&](auto equal) {
+                if constexpr (n <= largest_boxed_molecule)
+                    if (boxed) return kernel(Type<InRow<n>>{}, equal, yes);
+                return kernel(Type<InRow<n>>{}, equal, no);
+            },
+            uniform);
+    });
 }
 
 }  // namespace holonomic::HOL_ISA

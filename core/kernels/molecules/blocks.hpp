@@ -3,7 +3,9 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_BLOCKS_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_BLOCKS_HPP
 
-#include "core/kernels/molecules/linear.hpp"
+#include "core/kernels/molecules/doubtful.hpp"
+#include "core/kernels/molecules/list/flat_verbs.hpp"
+#include "core/kernels/molecules/solve.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -71,6 +73,31 @@ static inline void for_each_block(const MoleculeUnit &unit, double *scratch, Wor
         first += used;
     }
 }
+
+// Work whose blocks are solved by linear equations. Call: of forces, of velocities, or for given right-hand sides; each
+// has a solve_block(), which writes, and returns the lanes that plain arithmetic does not answer for.
+template <class Call>
+struct LinearWork {
+    const Call &call;
+    const Schedule &schedule;
+    const bool packed;
+    Tally &tally;
+    const LongTeam *team;
+
+    template <class V>
+    void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
+        if (schedule.flat && schedule.type == Schedule::graph && used == 1) {
+            if (solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
+            masses_known = false;
+        }
+        Memory<V> memory = {scratch};
+        Linear<V> z(schedule, lane, used, packed, call.box, call.r, memory);
+        open_pieces(z, team, memory);
+        open_arms(call, z, scratch, memory);
+        const unsigned rest = solve_block(call, z, masses_known, tally);
+        if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, z.x.lane, rest, memory.next, tally);
+    }
+};
 
 }  // namespace graph
 }  // namespace HOL_ISA

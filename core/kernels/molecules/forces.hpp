@@ -26,57 +26,29 @@ static inline void write_outputs(Linear<double> &z, const Outputs &out, unsigned
     if (which && z.x.pieces && z.x.pieces->arms.store) write_arms(z.x, false, out, tally);
 }
 
-struct ForcesWork {
-    const ForcesCall &call;
-    const Schedule &schedule;
-    const bool packed;
-    Tally &tally;
-    const LongTeam *team;
+// The right-hand sides of a call into z, and their terms.
+template <class V>
+static inline int open_sides(const ForcesCall &call, Linear<V> &z) {
+    if (!call.v.x) z.equations.velocity = nullptr;
+    if (!call.f.x) z.equations.force = nullptr;
+    z.equations.given = nullptr;
+    z.x.in = {&call.v, &call.f, nullptr, false};
+    return (call.v.x ? squares : 0) | (call.f.x ? pulls : 0);
+}
+template <class V>
+static inline int open_sides(const SolveCall &call, Linear<V> &z) {
+    z.equations.velocity = z.equations.force = nullptr;
+    z.x.in = {nullptr, nullptr, call.rhs, false};
+    return given;
+}
 
-    template <class V>
-    void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
-        if (schedule.flat && schedule.type == Schedule::graph && used == 1) {
-            if (solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
-            masses_known = false;
-        }
-        Memory<V> memory = {scratch};
-        Linear<V> z(schedule, lane, used, packed, call.box, call.r, memory);
-        open_pieces(z, team, memory);
-        open_arms(z, scratch, memory);
-        if (!call.v.x) z.equations.velocity = nullptr;
-        if (!call.f.x) z.equations.force = nullptr;
-        z.equations.given = nullptr;
-        z.x.in = {&call.v, &call.f, nullptr, false};
-        const unsigned good = load_and_solve(z, (call.v.x ? squares : 0) | (call.f.x ? pulls : 0), masses_known),
-                       rest = bits(z.x.in_use()) & ~good;
-        write_outputs(z, {&call.g, call.lambda, call.tension, call.add, call.virial}, good, tally);
-        if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, z.x.lane, rest, memory.next, tally);
-    }
-};
-
-struct SolveWork {
-    const SolveCall &call;
-    const Schedule &schedule;
-    const bool packed;
-    Tally &tally;
-    const LongTeam *team;
-
-    template <class V>
-    void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
-        if (schedule.flat && schedule.type == Schedule::graph && used == 1) {
-            if (solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
-            masses_known = false;
-        }
-        Memory<V> memory = {scratch};
-        Linear<V> z(schedule, lane, used, packed, call.box, call.r, memory);
-        open_pieces(z, team, memory);
-        z.equations.velocity = z.equations.force = nullptr;
-        z.x.in = {nullptr, nullptr, call.rhs, false};
-        const unsigned good = load_and_solve(z, given, masses_known), rest = bits(z.x.in_use()) & ~good;
-        write_outputs(z, {&call.g, call.lambda, call.tension, call.add, call.virial}, good, tally);
-        if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, z.x.lane, rest, memory.next, tally);
-    }
-};
+// Solves a block and writes: Call is ForcesCall or SolveCall.
+template <class Call, class V>
+static inline unsigned solve_block(const Call &call, Linear<V> &z, bool masses_known, Tally &tally) {
+    const unsigned good = load_and_solve(z, open_sides(call, z), masses_known);
+    write_outputs(z, {&call.g, call.lambda, call.tension, call.add, call.virial}, good, tally);
+    return bits(z.x.in_use()) & ~good;
+}
 
 }  // namespace graph
 }  // namespace HOL_ISA

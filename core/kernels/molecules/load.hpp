@@ -2,6 +2,7 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_LOAD_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_LOAD_HPP
 
+#include "core/kernels/memory/packed.hpp"
 #include "core/kernels/molecules/atoms/vectors.hpp"
 #include "core/kernels/molecules/linear.hpp"
 
@@ -9,9 +10,9 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// The terms of the right-hand side b of a bond from atom i to atom j:
+// Terms (memory/packed.hpp) of the right-hand side b of a bond from atom i to atom j, as they are called here:
 // squares: |v_j - v_i|^2;  pulls: d.(w_j f_j - w_i f_i);  rates: d.(v_j - v_i);  given: half of the bond's given value.
-enum RightHandSide { squares = 1, pulls = 2, rates = 4, given = 8 };
+constexpr int squares = velocity_squared, pulls = force_difference, rates = rate;
 
 template <class V>
 struct Loader {
@@ -31,23 +32,23 @@ struct Loader {
         return mul_add(d.z, df.z, mul_add(d.y, df.y, mul_add(d.x, df.x, b)));
     }
 
-    // Makes d, q and t of the bond between the atoms in two slots.
-    HOL_FORCED void make_row(int32_t place, int32_t from, int32_t to) const {
+    // Makes d, q and t of the bond between the atoms in two slots. `sides`: the terms.
+    HOL_FORCED void make_row(int sides, int32_t place, int32_t from, int32_t to) const {
         const Equations<V> &e = z.equations;
         BondRow<V> &row = z.x.row[place];
         Vector3<V> d = e.r[to] - e.r[from], unused = {};
         take_image<false>(*z.x.box, d, unused);
         V b = {};
-        if (has(squares)) {
+        if (sides & squares) {
             const Vector3<V> dv = e.velocity[to] - e.velocity[from];
             b = dot(dv, dv);
         }
-        if (has(rates)) {
+        if (sides & rates) {
             b = dot(d, e.velocity[to] - e.velocity[from]);
             if (z.x.in.strain) b = b + stretching(z.x.in.strain, d);
         }
-        if (has(pulls)) b = with_pull(d, z.x.w[from], e.force[from], z.x.w[to], e.force[to], b);
-        if (has(given)) b = given_value(place);
+        if (sides & pulls) b = with_pull(d, z.x.w[from], e.force[from], z.x.w[to], e.force[to], b);
+        if (sides & given) b = given_value(place);
         row.d = d;
         row.q = dot(d, d);
         row.t = b;
@@ -105,12 +106,20 @@ struct Loader {
         read_atoms(*z.x.r, Slots<V>(z.equations.r));
         if (has(squares | rates)) read_atoms(*z.x.in.v, Slots<V>(z.equations.velocity));
         if (has(pulls)) read_atoms(*z.x.in.f, Slots<V>(z.equations.force));
+        if (terms == rates) return make_rows<rates>();
+        if (terms == given) return make_rows<given>();
+        choose([&](auto v, auto f) { make_rows<(v ? squares : 0) | (f ? pulls : 0)>(); }, has(squares), has(pulls));
+    }
+
+    template <int sides>
+    __attribute__((noinline)) void make_rows() const {
+        const Schedule &s = z.x.s;
         for (int32_t slot = 0; slot < s.n_tree; ++slot) {
-            make_row(slot, s.parent[slot], slot);
+            make_row(sides, slot, s.parent[slot], slot);
             BondRow<V> &row = z.x.row[slot];
             row.E = z.x.w[slot] * row.q;  // of a leaf
         }
-        load_core_bonds();
+        for (int32_t p = 0; p < s.n_core; ++p) make_row(sides, s.n_tree + p, s.from[p], s.to[p]);
     }
 
     // Reads the atoms that trees hang from, and makes the bonds between them.
@@ -122,12 +131,7 @@ struct Loader {
             if (has(squares | rates)) z.equations.velocity[slot] = read(*x.in.v, x.at, atom);
             if (has(pulls)) z.equations.force[slot] = read(*x.in.f, x.at, atom);
         }
-        load_core_bonds();
-    }
-
-    void load_core_bonds() const {
-        const Schedule &s = z.x.s;
-        for (int32_t p = 0; p < s.n_core; ++p) make_row(s.n_tree + p, s.from[p], s.to[p]);
+        for (int32_t p = 0; p < x.s.n_core; ++p) make_row(terms, x.s.n_tree + p, x.s.from[p], x.s.to[p]);
     }
 };
 

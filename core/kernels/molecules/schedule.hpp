@@ -21,6 +21,7 @@ constexpr int32_t arm_step = 8, shortest_arm = 5 * arm_step + 1, longest_arm = 1
 struct CarefulPlan;  // core/kernels/careful/plan.hpp
 struct FlatList;     // core/kernels/molecules/list/flat_list.hpp
 struct PathPlan;     // core/kernels/molecules/paths/paths.hpp
+struct NetworkPlan;  // core/kernels/molecules/network/network_plan.hpp
 
 // Atoms and bonds are renumbered. The *slot* of an atom: first the atoms of the trees, each after its children
 // (post-order), then the root of a tree, or the atoms of the core. The *place* of a bond: a bond of a tree has the slot
@@ -96,6 +97,10 @@ struct Schedule {
     // Of a large molecule of few knots and long paths; else nullptr.
     const PathPlan *paths;
 
+    // Of a large graph whose elimination would fill too much: its strands and nodes; then nothing is known of the
+    // core's elimination, and there is no list and no path, and `careful` only if it is not too large.
+    const NetworkPlan *network;
+
     // An arm: a path between two atoms of a large tree, whose inner atoms have one child each. Its atoms and its bonds
     // have consecutive numbers, so that it can be worked on as a chain is, without looking at the other arms. Its slots
     // and places are consecutive in any case.
@@ -124,7 +129,8 @@ struct Schedule {
     const int32_t *share_start;    // [n_shares + 1] arms that one thread works on at a time
     int32_t n_shares;
 
-    const CarefulPlan *careful;  // the same molecule for the careful solver; not of a knot
+    const CarefulPlan *careful;                         // the same molecule for the careful solver; not of a knot
+    mutable const CarefulPlan *late_careful = nullptr;  // of a network, once a metric has been asked for
 
     Schedule() = default;
     Schedule(const Schedule &) = delete;

@@ -17,11 +17,16 @@ HOL_INLINE void open_pieces(Linear<V> &, const LongTeam *, Memory<V> &) {}
 HOL_INLINE void open_pieces(Linear<double> &z, const LongTeam *team, Memory<double> &memory) {
     if (has_pieces(z.x.s)) z.take_pieces(team, memory);
 }
-template <class V>
-HOL_INLINE void open_arms(Linear<V> &, const double *, Memory<V> &) {}
-HOL_INLINE void open_arms(Linear<double> &z, const double *scratch, Memory<double> &memory) {
+// Given right-hand sides have no use for arms.
+template <class Call, class V>
+HOL_INLINE void open_arms(const Call &, Linear<V> &, const double *, Memory<V> &) {}
+template <class Call>
+HOL_INLINE void open_arms(const Call &, Linear<double> &z, const double *scratch, Memory<double> &memory) {
     if (z.x.pieces) z.pieces.arms = take_arms(z.x.s, scratch, memory);
 }
+HOL_INLINE void open_arms(const SolveCall &, Linear<double> &, const double *, Memory<double> &) {}
+HOL_INLINE bool has_arms(const Linear<vec> &) { return false; }
+HOL_INLINE bool has_arms(const Linear<double> &z) { return z.pieces.arms.store != nullptr; }
 
 // Reads the molecules and solves, with right-hand sides of these terms (load.hpp). Returns the lanes that plain
 // arithmetic answers for. `masses_known`: they are those of the block before.

@@ -51,7 +51,10 @@ public:
         known_ = true;
     }
     vec largest_coordinate() {
-        if (!known_) largest_ = extent(block_, r_);
+        if (!known_) {
+            const Source copy = r_;  // so that r_ stays in registers
+            largest_ = extent(block_, copy);
+        }
         known_ = true;
         return largest_;
     }
@@ -81,7 +84,7 @@ public:
 private:
     const Block &block_;
     const Newton &x_;
-    const Source &r_;
+    const Source r_;
     const double tolerance_, u_, worst_trial_;
     const bool boxed_;
     bool known_ = false;

@@ -17,6 +17,7 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
     // Functions that are not known here get a copy: x itself stays in registers.
     const auto renew_factors = [&](Factors factors, mask which) HOL_FORCED {
         const Newton copy = x;
+        if (fixed > 0 && factors == renewed_factors) return renew<masses, a, fixed>(block, copy, which);
         return renew(block, copy, factors, which);
     };
     x.step = careful ? x.correction : x.tau;

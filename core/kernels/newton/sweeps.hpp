@@ -149,6 +149,10 @@ HOL_INLINE vec eliminate(const Block &block, const Newton &x, mask which) {
 
 // The same for chains of any length, masses and lengths, so that the common case stays short.
 vec renew(const Block &, const Newton &, Factors, mask which);
+template <Same masses, Same a, int fixed>
+HOL_NOINLINE vec renew(const Block &block, const Newton &x, mask which) {
+    return eliminate<masses, a, renewed_factors, fixed>(block, x, which);
+}
 
 // Moves the bonds by the corrections `step` and substitutes forward the errors that their lengths have then. Returns
 // the largest. `keep_bonds`: D becomes the moved bonds. `fetch`: nullptr, or atoms of this block; those of the next

@@ -3,7 +3,7 @@
 namespace holonomic::HOL_ISA {
 
 BondLengths bond_lengths(const Block &block, const Lane *lane, Arena &arena, bool tables) {
-    bool uniform = block.n == block.n_min && !tables;
+    bool uniform = !tables;
     const double *table[W];
     double first[W];
     for (int i = 0; i < W; ++i) {

@@ -124,13 +124,13 @@ static void forces_block(const Block &block, const Lane *lane, const ForcesCall 
 }
 
 // Bonds D[k] of W molecules and their right-hand sides t[k].
-template <bool uniform, class Place>
+template <bool uniform, bool boxed, class Place>
 HOL_INLINE void load_sides(const Block &block, const Box &box, const Place &place, const double *r, const double *v,
                            const double *f, vec3 *D, vec *t) {
     constexpr int N = Place::bonds;
     vec e[vectors_of<N>];
     vec3 dv[N] = {}, *const x = reinterpret_cast<vec3 *>(e);
-    load_bonds<may_be_boxed<Place>>(box, place, r, e, D);
+    load_bonds<boxed, false>(box, place, r, e, D);
     if (v) {
         load_molecules(place, v, e);
         HOL_UNROLL
@@ -168,7 +168,7 @@ HOL_INLINE void store_pulls(const vec3 *D, const vec *t, const Place &place, dou
 }
 
 // Does molecules from `first` on. Returns the first one that is not done. `given`: the block of a regular unit.
-template <class Place, bool uniform>
+template <class Place, bool uniform, bool boxed>
 static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, const Block &given, int64_t first) {
     constexpr int N = Place::bonds;
     const double *const r = base_of(call.r), *const v = base_of(call.v), *const f = base_of(call.f);
@@ -184,7 +184,7 @@ static int64_t forces_of_molecules(const ForcesCall &call, const Unit &unit, con
         place.fetch_next(r);
         place.fetch_next(v);
         place.fetch_next(f);
-        load_sides<uniform>(block, call.box, place, r, v, f, D, t);
+        load_sides<uniform, boxed>(block, call.box, place, r, v, f, D, t);
         const Source source = place.source(r, call.box);
         Sweep<uniform, false> sweep{block, source, System(D, t, L, nullptr)};
         HOL_UNROLL
@@ -203,9 +203,10 @@ static int64_t small_forces(const ForcesCall &call, const Unit &unit, Block &blo
     const bool plain = call.r.packed && (!call.v.x || call.v.packed) && call.f.packed && (!call.g.x || call.g.packed) &&
                        !call.tension && !call.virial;
     if (!plain || !call.f.x) return first;
-    return any_molecules(unit, block, first, call.box.shape != Box::none, true, [&](auto place, auto uniform) {
-        return forces_of_molecules<typename decltype(place)::type, uniform>(call, unit, block, first);
-    });
+    return any_molecules(
+        unit, block, first, call.box.shape != Box::none, true, [&](auto place, auto uniform, auto boxed) {
+            return forces_of_molecules<typename decltype(place)::type, uniform, boxed>(call, unit, block, first);
+        });
 }
 
 void forces(const ForcesCall &call, const Unit &unit, double *scratch, Tally &tally) {

@@ -1,5 +1,6 @@
 // Constraint forces of molecules that are no chains, and multipliers for given right-hand sides.
 #include "core/kernels/molecules/forces.hpp"
+#include "core/kernels/molecules/network/network.hpp"
 #include "core/kernels/molecules/star/star_linear.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
@@ -8,20 +9,24 @@ namespace holonomic::HOL_ISA {
 using namespace graph;
 
 void molecules_forces(const ForcesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+    if (unit.forests) return forests_forces(call, unit, scratch, tally);
     const bool packed =
         call.r.packed && (!call.v.x || call.v.packed) && (!call.f.x || call.f.packed) && (!call.g.x || call.g.packed);
+    if (unit.schedule->network) return solve_networks(call, unit, packed, scratch, tally);
     if (unit.schedule->type == Schedule::triangle) {
         const TriangleCall triangles = {call.r,      call.v,       call.f,   nullptr,     call.g,
                                         call.lambda, call.tension, call.add, call.virial, call.box};
         for_each_triangle(TriangleLinearVerb{triangles, tally}, call, unit, packed, scratch, tally);
         return;
     }
-    ForcesWork work = {call, *unit.schedule, packed, tally, unit.team};
+    const LinearWork<ForcesCall> work = {call, *unit.schedule, packed, tally, unit.team};
     if (!do_stars<3>(StarForcesVerb{call, tally}, work, unit, scratch)) for_each_block(unit, scratch, work);
 }
 
 void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+    if (unit.forests) return forests_solve(call, unit, scratch, tally);
     const bool packed = call.r.packed && (!call.g.x || call.g.packed);
+    if (unit.schedule->network) return solve_networks(call, unit, packed, scratch, tally);
     if (unit.schedule->type == Schedule::triangle) {
         const AtomArray none = {};
         const TriangleCall triangles = {call.r,      none,         none,     call.rhs,    call.g,
@@ -29,7 +34,7 @@ void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *sc
         for_each_triangle(TriangleLinearVerb{triangles, tally}, call, unit, packed, scratch, tally);
         return;
     }
-    SolveWork work = {call, *unit.schedule, packed, tally, unit.team};
+    const LinearWork<SolveCall> work = {call, *unit.schedule, packed, tally, unit.team};
     for_each_block(unit, scratch, work);
 }
 

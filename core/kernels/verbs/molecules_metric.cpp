@@ -14,7 +14,8 @@ void molecules_metric(const MetricCall &call, const MoleculeUnit &unit, double *
             if (lane.atoms) lane.atoms += i * schedule.n_atoms;
             lane.molecule += i;
         }
-        HOL_CAREFUL::careful::metric(call, *schedule.careful, lane, scratch, tally);
+        const CarefulPlan &plan = *(schedule.careful ? schedule.careful : schedule.late_careful);
+        HOL_CAREFUL::careful::metric(call, plan, lane, scratch, tally);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "core/kernels/molecules/linear.hpp"
 #include "core/kernels/molecules/list/flat_linear.hpp"
 #include "core/kernels/molecules/list/flat_proof.hpp"
+#include "core/kernels/molecules/network/network.hpp"
 #include "core/kernels/molecules/positions.hpp"
 #include "core/kernels/molecules/star/star_positions.hpp"
 #include "core/kernels/verbs/verbs.hpp"
@@ -23,6 +24,11 @@ static int64_t flat_bytes(const FlatList &s) {
 }
 
 int64_t molecules_scratch_bytes(const Schedule &s) {
+    if (s.network) {
+        const CarefulPlan *const plan = s.careful ? s.careful : s.late_careful;
+        const int64_t careful = plan ? plan->scratch_bytes + 64 : 0, own = network_bytes(*s.network);
+        return own > careful ? own : careful;
+    }
     const int64_t block = s.n_bonds <= largest_in_lanes ? block_bytes<vec>(s) : block_bytes<double>(s),
                   flat = s.flat ? flat_bytes(*s.flat) : 0, paths = s.paths ? path_positions_bytes(s) : 0,
                   most = block > flat ? block : flat;
@@ -40,6 +46,7 @@ struct LargePositionsWork : PositionsWork {
 
 void molecules_positions(const PositionsCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
+    if (unit.schedule->network) return solve_networks(call, unit, packed, scratch, tally);
     if (unit.schedule->type == Schedule::triangle)
         return for_each_triangle(TrianglePositionsVerb{call, tally}, call, unit, packed, scratch, tally);
     LargePositionsWork work = {{call, *unit.schedule, packed, tally, unit.team}};

@@ -1,4 +1,5 @@
 // Velocity level of molecules that are no chains.
+#include "core/kernels/molecules/network/network.hpp"
 #include "core/kernels/molecules/star/star_linear.hpp"
 #include "core/kernels/molecules/velocities.hpp"
 #include "core/kernels/verbs/verbs.hpp"
@@ -8,10 +9,12 @@ namespace holonomic::HOL_ISA {
 using namespace graph;
 
 void molecules_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+    if (unit.forests) return forests_velocities(call, unit, scratch, tally);
     const bool packed = call.r.packed && call.v.packed;
+    if (unit.schedule->network) return solve_networks(call, unit, packed, scratch, tally);
     if (unit.schedule->type == Schedule::triangle)
         return for_each_triangle(TriangleVelocitiesVerb{call, tally}, call, unit, packed, scratch, tally);
-    VelocitiesWork work = {call, *unit.schedule, packed, tally, unit.team};
+    const LinearWork<VelocitiesCall> work = {call, *unit.schedule, packed, tally, unit.team};
     if (!do_stars<3>(StarVelocitiesVerb{call, tally}, work, unit, scratch)) for_each_block(unit, scratch, work);
 }
 

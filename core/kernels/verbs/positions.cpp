@@ -67,9 +67,9 @@ HOL_INLINE void load_positions(const SmallCall &call, const Place &place, const 
     place.fetch_next(call.r_ref);
     place.fetch_next(call.r);
     place.fetch_next(call.v);
-    load_bonds<boxed>(call.box_ref, place, call.r_ref, atoms, x.b);
-    load_bonds<boxed>(call.box, place, call.r, atoms, x.D);
-    if (!boxed || call.box.shape == Box::none) return;
+    load_bonds<boxed, false>(call.box_ref, place, call.r_ref, atoms, x.b);
+    load_bonds<boxed, boxed || !Place::in_row>(call.box, place, call.r, atoms, x.D);
+    if (!boxed) return;
     vec largest = {};  // in a box the lengths of bonds say nothing of coordinates
     HOL_UNROLL
     for (int e = 0; e < 3 * (N + 1); ++e) largest = max(largest, abs(atoms[e]));
@@ -208,18 +208,11 @@ static inline int64_t small_positions(const PositionsCall &call, const Unit &uni
     if (!call.r.packed || !call.r_ref.packed || (call.v.x && !call.v.packed) || call.virial || call.guess) return first;
     if (unit.lanes[unit.regular ? 0 : first].n_bonds == 2 && !tries_two_bonds(call)) return first;
     const bool has_box = call.box.shape != Box::none || call.box_ref.shape != Box::none;
-    return any_molecules(unit, block, first, has_box, !unit.lanes[0].length, [&](auto place, auto uniform) {
+    return any_molecules(unit, block, first, has_box, !unit.lanes[0].length, [&](auto place, auto uniform, auto boxed) {
         typedef typename decltype(place)::type Place;
         if constexpr (Place::in_row && Place::bonds == 1 && W > 1)
-            if (!call.report)
-                first = has_box ? pairs_of_single_bonds<Place, uniform, true>(call, unit, block, first, tally)
-                                : pairs_of_single_bonds<Place, uniform, false>(call, unit, block, first, tally);
-        // A kernel for both, of one to three bonds in a row, takes 7 to 30 % more instructions.
-        if constexpr (Place::in_row)
-            if (!has_box) return positions_of_molecules<Place, uniform, false>(call, unit, block, first, tally);
-        if constexpr (may_be_boxed<Place>)
-            return positions_of_molecules<Place, uniform, true>(call, unit, block, first, tally);
-        return first;
+            if (!call.report) first = pairs_of_single_bonds<Place, uniform, boxed>(call, unit, block, first, tally);
+        return positions_of_molecules<Place, uniform, boxed>(call, unit, block, first, tally);
     });
 }
 

@@ -59,7 +59,8 @@ JoinResult long_join(const Lane &lane, bool careful, double *store) {
 }
 
 // The bonds k0 .. k0 + W - 1 with their t, once those behind them are done; `after` is t d of bond k0 + W, then of k0.
-// `w`: pulls are multiplied with these, or nullptr. ragged: lanes may end there.
+// `w`: pulls are multiplied with these if they are `weighted`. ragged: lanes may end there.
+template <Update update, bool weighted>
 HOL_INLINE void store_segment_chunk(const Block &own, const SegmentOutputs &out, const vec *w, bool ragged, long k0,
                                     const vec3 *d, const vec *t, vec3 &after, VirialSum &sum) {
     const vec zero = {};  // added to products: a zero is +0, and so are differences of such
@@ -80,7 +81,7 @@ HOL_INLINE void store_segment_chunk(const Block &own, const SegmentOutputs &out,
     for (int b = W - 1; b >= 0; --b) {
         const vec3 p = {mul_add(t[b], d[b].x, zero), mul_add(t[b], d[b].y, zero), mul_add(t[b], d[b].z, zero)};
         vec3 g = after - p;
-        if (w) g = (ragged && k0 + b + 1 > own.n ? vec{} : w[k0 + b + 1]) * g;
+        if (weighted) g = (ragged && k0 + b + 1 > own.n ? vec{} : w[k0 + b + 1]) * g;
         value[3 * b] = g.x;
         value[3 * b + 1] = g.y;
         value[3 * b + 2] = g.z;
@@ -88,12 +89,8 @@ HOL_INLINE void store_segment_chunk(const Block &own, const SegmentOutputs &out,
         after = p;
     }
     if (!out.has_pulls) return;
-    if (ragged)
-        out.adds ? store_ragged(own, k0 + 1, value, all_lanes, AtomSink<add_>{out.pulls})
-                 : store_ragged(own, k0 + 1, value, all_lanes, AtomSink<write_>{out.pulls});
-    else
-        out.adds ? store_chunk(k0 + 1, value, AtomSink<add_>{out.pulls})
-                 : store_chunk(k0 + 1, value, AtomSink<write_>{out.pulls});
+    const AtomSink<update> sink = {out.pulls};
+    ragged ? store_ragged(own, k0 + 1, value, all_lanes, sink) : store_chunk(k0 + 1, value, sink);
 }
 
 // Blocks are substituted in from the last to the first, so that those which were eliminated last are still in cache.
@@ -112,14 +109,16 @@ static inline void find_block_before(const Cut &cut, int64_t j, SegmentBlock &s)
 }
 
 // Fetches what the block before this one needs, when this one is at bond k0.
+template <Update update>
 HOL_INLINE void fetch_before(const SegmentBlock &s, const Reader &in, const SegmentStore &x, const SegmentOutputs &out,
                              long k0) {
     fetch_ahead(in.r->lane[0], k0, s.block.ahead);
     fetch_ahead(reinterpret_cast<const double *>(x.kept), k0, s.kept_ahead);
-    if (out.adds && out.has_pulls) fetch_ahead(out.pulls.lane[0], k0, s.block.ahead);
+    if (update == add_ && out.has_pulls) fetch_ahead(out.pulls.lane[0], k0, s.block.ahead);
 }
 
 // Atoms 1 .. own of each segment, and atom 0 of a chain that begins here. `next`: t of the separators behind them.
+template <Update update, bool weighted>
 static void finish_segments(const SegmentBlock &s, const Reader &in, const SeparatorsBehind &behind,
                             const SegmentStore &x, vec next, const SegmentOutputs &out, const vec *w, Tally &tally) {
     const Block &own = in.block;
@@ -139,7 +138,7 @@ static void finish_segments(const SegmentBlock &s, const Reader &in, const Separ
             if (!ragged || k < n) t = b == 0 && k == 0 ? ts : substituted(k);
             value[b] = !ragged || k <= n ? t : vec{};
         }
-        store_segment_chunk(own, out, w, ragged, k0, d, value, after, sum);
+        store_segment_chunk<update, weighted>(own, out, w, ragged, k0, d, value, after, sum);
     };
     // Without a box bonds are found chunk by chunk, in registers: 5 % fewer instructions of forces.
     const bool plain = in.box.shape == Box::none;
@@ -154,7 +153,7 @@ static void finish_segments(const SegmentBlock &s, const Reader &in, const Separ
         long k0 = from + (end - from - 1) / W * W;
         for (; k0 >= from && k0 >= full; k0 -= W) chunk(k0, D + (k0 - from), true);
         for (; k0 >= from; k0 -= W) {
-            if (s.block.ahead) fetch_before(s, in, x, out, k0);
+            if (s.block.ahead) fetch_before<update>(s, in, x, out, k0);
             vec3 d[W];
             if (plain)
                 subtract_chunk<false>(rows, k0, d, nullptr);
@@ -165,9 +164,8 @@ static void finish_segments(const SegmentBlock &s, const Reader &in, const Separ
     }
     if (out.virial) sum.count(~none(), splat(out.virial_factor), tally);
     if (!s.begins || !out.has_pulls) return;
-    if (w) after = w[0] * after;
-    after = {after.x + 0.0, after.y + 0.0, after.z + 0.0};
-    out.adds ? store_first(after, 1, AtomSink<add_>{out.pulls}) : store_first(after, 1, AtomSink<write_>{out.pulls});
+    if (weighted) after = w[0] * after;
+    store_first({after.x + 0.0, after.y + 0.0, after.z + 0.0}, 1, AtomSink<update>{out.pulls});
 }
 
 void finish_block(bool weighted, const Box &box, const AtomArray &r, const AtomArray &pulled, bool add,
@@ -187,10 +185,12 @@ void finish_block(bool weighted, const Box &box, const AtomArray &r, const AtomA
     for (int i = 0; i + 1 < W; ++i) next[i] = x.summary->t[i + 1];
     next[W - 1] = s.last < 0 ? x.summary[1].t[0] : 0.0;
     out.has_pulls = pulled.x != nullptr;
-    out.adds = add && in_place(pulled, lane);
     out.pulls = open(pulled, s.block, s.lane, arena, false);
-    finish_segments(s, in, SeparatorsBehind(s, box, pr), x, next, out, weighted && !s.block.uniform_w ? own.w : nullptr,
-                    tally);
+    const SeparatorsBehind behind(s, box, pr);
+    const vec *const w = weighted && !s.block.uniform_w ? own.w : nullptr;
+    choose([&](auto adds,
+               auto weigh) { finish_segments<adds ? add_ : write_, weigh>(s, in, behind, x, next, out, w, tally); },
+           add && in_place(pulled, lane), w != nullptr);
     if (out.has_pulls) close_segments(pulled, s, lane, out.pulls, add);
 }
 

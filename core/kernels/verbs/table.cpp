@@ -37,8 +37,8 @@ const Kernels kernels = {
     {long_blocks, long_bytes, long_velocities_eliminate, long_join, long_velocities_finish},
     {long_blocks, long_positions_bytes, long_positions},
     {long_blocks, long_metric_bytes, long_metric},
-    {molecules_scratch_bytes, molecules_forces, molecules_velocities, molecules_positions, molecules_metric,
-     molecules_solve},
+    {molecules_scratch_bytes, forest_scratch_bytes, molecules_forces, molecules_velocities, molecules_positions,
+     molecules_metric, molecules_solve},
     {tridiagonal_solve, tridiagonal_pivots},
 #else
     {},

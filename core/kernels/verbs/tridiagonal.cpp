@@ -9,12 +9,12 @@ namespace holonomic::HOL_ISA {
 namespace {
 
 // A solution below `smallest` has products whose rounding is no double any more; one from a right-hand side above
-// `largest` could overflow.
-constexpr double smallest = 1e-280, largest = 1e250;
+// `most` could overflow.
+constexpr double smallest = 1e-280, most = 1e250;
 
-// Whether no |a| is above `most`. As integers: what is no number must not raise an exception.
-bool bounded(int64_t n, const double *a, double most) {
-    const mask limit = as_mask(splat(most));
+// Whether no |a| is above the bound. As integers: what is no number must not raise an exception.
+bool bounded(int64_t n, const double *a, double bound) {
+    const mask limit = as_mask(splat(bound));
     mask above{};
     int64_t k = 0;
     for (; k + W <= n; k += W) above = above | (limit - as_mask(abs(load(a + k))));
@@ -32,7 +32,7 @@ struct Factors {
 
 // Both ends at once: one(row, end) for the rows before the middle upwards, and for those behind it downwards.
 template <class One>
-HOL_FORCED void inwards(const Factors &t, const One &one) {
+HOL_INLINE void inwards(const Factors &t, const One &one) {
     int64_t low = 0, high = t.n - 1;
     for (; low < t.middle && high > t.middle; ++low, --high) {
         one(low, 0);
@@ -43,7 +43,7 @@ HOL_FORCED void inwards(const Factors &t, const One &one) {
 }
 
 // T x = b, once what both ends bring to the middle row is known. x holds b and what the outer rows bring to it.
-HOL_FORCED void outwards(const Factors &t, double *x) {
+HOL_INLINE void outwards(const Factors &t, double *x) {
     const int64_t middle = t.middle, n = t.n;
     double low = x[middle] * t.inverse[middle], high = low;
     x[middle] = low;
@@ -60,7 +60,7 @@ HOL_FORCED void outwards(const Factors &t, double *x) {
 }
 
 // Factorizes and solves T x = b. False if a pivot may not be positive, by a bound of its error.
-HOL_FORCED bool factorize_and_solve(const Factors &t, const double *b, double *x) {
+HOL_INLINE bool factorize_and_solve(const Factors &t, const double *b, double *x) {
     constexpr double unit = 2 * epsilon;
     double pivot[2] = {1, 1}, error[2] = {0, 0}, y[2] = {0, 0};
     bool good = true;
@@ -83,7 +83,7 @@ HOL_FORCED bool factorize_and_solve(const Factors &t, const double *b, double *x
 }
 
 // T x = x.
-HOL_FORCED void solve(const Factors &t, double *x) {
+HOL_INLINE void solve(const Factors &t, double *x) {
     double y[2] = {0, 0};
     inwards(t, [&](int64_t k, int end) {
         const double factor = t.beside(k) * t.inverse[k];
@@ -96,7 +96,7 @@ HOL_FORCED void solve(const Factors &t, double *x) {
 
 // b - T x as if in twice the precision, rounded.
 template <class V>
-HOL_FORCED V residual(V b, V x, V g_before, V x_before, V g_behind, V x_behind) {
+HOL_INLINE V residual(V b, V x, V g_before, V x_before, V g_behind, V x_behind) {
     const Pair<V> p = two_product(g_before, x_before), q = two_product(g_behind, x_behind);
     const Pair<V> s = two_difference(b, x), u = two_sum(p.hi, q.hi), r = two_sum(s.hi, u.hi);
     return r.hi + ((s.lo + u.lo) + (r.lo + (p.lo + q.lo)));
@@ -149,7 +149,7 @@ double correct(int64_t n, const double *correction, double *x) {
 // Corrections by the residual shrink by about as much as the first one is smaller than x. Where the next one would be
 // below 2^-62, with some digits left for what is not known of that, x is the rounded solution.
 bool tridiagonal_solve(int64_t n, const double *gamma, const double *b, double *x, double *scratch) {
-    if (!bounded(n - 1, gamma, 1) || !bounded(n, b, largest)) return false;
+    if (!bounded(n - 1, gamma, 1) || !bounded(n, b, most)) return false;
     const Factors t{n, n / 2, gamma, scratch};
     double *const solution = scratch + n, *const correction = scratch + 2 * n;
     if (!factorize_and_solve(t, b, solution)) return false;

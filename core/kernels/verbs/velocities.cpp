@@ -99,7 +99,7 @@ static void velocities_block(const Block &block, const Lane *lane, const Velocit
 HOL_NOINLINE vec stretching_of(const double *strain, vec3 d) { return stretching(strain, d); }
 
 // Does molecules from `first` on. Returns the first one that is not done. `given`: the block of a regular unit.
-template <class Place, bool uniform>
+template <class Place, bool uniform, bool boxed>
 static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &unit, const Block &given,
                                        int64_t first) {
     constexpr int N = Place::bonds;
@@ -115,7 +115,7 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
         masses.take(place);
         place.fetch_next(r);
         place.fetch_next(v);
-        load_bonds<may_be_boxed<Place>>(call.box, place, r, elements, D);
+        load_bonds<boxed, false>(call.box, place, r, elements, D);
         load_molecules(place, v, elements);
         const Source source = place.source(r, call.box);
         const Projection x({D, t, L, pivots}, reinterpret_cast<vec3 *>(elements), left);
@@ -149,10 +149,11 @@ static int64_t velocities_of_molecules(const VelocitiesCall &call, const Unit &u
 
 static int64_t small_velocities(const VelocitiesCall &call, const Unit &unit, Block &block, int64_t first, Tally &) {
     if (!call.r.packed || !call.v.packed || call.virial) return first;
-    return any_molecules(unit, block, first, call.box.shape != Box::none, true, [&](auto place, auto uniform) {
-        typedef typename decltype(place)::type Place;
-        return velocities_of_molecules < Place, uniform && Place::in_row > (call, unit, block, first);
-    });
+    return any_molecules(
+        unit, block, first, call.box.shape != Box::none, true, [&](auto place, auto uniform, auto boxed) {
+            typedef typename decltype(place)::type Place;
+            return velocities_of_molecules < Place, uniform && Place::in_row, boxed > (call, unit, block, first);
+        });
 }
 
 void velocities(const VelocitiesCall &call, const Unit &unit, double *scratch, Tally &tally) {

@@ -31,6 +31,10 @@ bool long_metric(const MetricCall &, const Lane &, const LongTeam &, double *sto
 void molecules_metric(const MetricCall &, const MoleculeUnit &, double *scratch, Tally &);
 
 int64_t molecules_scratch_bytes(const Schedule &);
+int64_t forest_scratch_bytes(const Forest &);
+void forests_forces(const ForcesCall &, const MoleculeUnit &, double *scratch, Tally &);
+void forests_solve(const SolveCall &, const MoleculeUnit &, double *scratch, Tally &);
+void forests_velocities(const VelocitiesCall &, const MoleculeUnit &, double *scratch, Tally &);
 void molecules_forces(const ForcesCall &, const MoleculeUnit &, double *scratch, Tally &);
 void molecules_velocities(const VelocitiesCall &, const MoleculeUnit &, double *scratch, Tally &);
 void molecules_positions(const PositionsCall &, const MoleculeUnit &, double *scratch, Tally &);

@@ -23,8 +23,9 @@ struct AtomLanes {
     HOL_FORCED BondRow<V> &bond(int a) const { return bonds[a]; }
     HOL_FORCED BondRow<V> &above() const { return top; }
     HOL_FORCED V *multipliers() const { return pair; }
-    HOL_FORCED V only_product() const {
-        const V g = dot(bonds[0].d, top.d);
+    HOL_FORCED V product(int a, int) const {
+        const V g = dot(bonds[a].d, top.d);
+        if (k > 1) return g;
         const MaskOf<V> small = nearly_orthogonal(g, bonds[0].q, top.q);
         if (__builtin_expect(any(small), 0)) return products_anew(x, child[0], slot, bits(small), g);
         return g;

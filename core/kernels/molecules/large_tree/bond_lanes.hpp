@@ -16,17 +16,6 @@ HOL_INLINE void read_four(const double *const *p, vec *e) {
     HOL_UNROLL
     for (int i = 0; i < 4; ++i) e[i] = _mm256_loadu_pd(p[i]);
     transpose(e);
-#elif HOL_LANES == 8 && defined(__AVX512F__)
-    quad low[4], high[4];
-    HOL_UNROLL
-    for (int i = 0; i < 4; ++i) {
-        low[i] = _mm256_loadu_pd(p[i]);
-        high[i] = _mm256_loadu_pd(p[4 + i]);
-    }
-    transpose(low);
-    transpose(high);
-    HOL_UNROLL
-    for (int c = 0; c < 4; ++c) e[c] = _mm512_insertf64x4(_mm512_castpd256_pd512(low[c]), high[c], 1);
 #else
     for (int c = 0; c < 4; ++c) {
         vec a = {};
@@ -41,20 +30,6 @@ HOL_INLINE void write_four(double *const *p, const vec *e) {
     transpose(m);
     HOL_UNROLL
     for (int i = 0; i < 4; ++i) _mm256_storeu_pd(p[i], m[i]);
-#elif HOL_LANES == 8 && defined(__AVX512F__)
-    quad low[4], high[4];
-    HOL_UNROLL
-    for (int c = 0; c < 4; ++c) {
-        low[c] = _mm512_castpd512_pd256(e[c]);
-        high[c] = _mm512_extractf64x4_pd(e[c], 1);
-    }
-    transpose(low);
-    transpose(high);
-    HOL_UNROLL
-    for (int i = 0; i < 4; ++i) {
-        _mm256_storeu_pd(p[i], low[i]);
-        _mm256_storeu_pd(p[4 + i], high[i]);
-    }
 #else
     for (int i = 0; i < W; ++i)
         for (int c = 0; c < 4; ++c) p[i][c] = e[c][i];

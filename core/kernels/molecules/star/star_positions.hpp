@@ -105,13 +105,13 @@ struct StarPositions {
     // Of copies, so that the bonds themselves need not be in memory.
     inline HOL_FORCED void add_virial(const Vector3<V> *b, const V *tau, unsigned which) const {
         Vector3<V> bonds[N];
-        V pulls[N];
+        V copies[N];
         HOL_UNROLL
         for (int k = 0; k < N; ++k) {
             bonds[k] = b[k];
-            pulls[k] = tau[k];
+            copies[k] = tau[k];
         }
-        add_bonds_virial<N>(bonds, pulls, 1 / (call.dt * call.dt), which, tally);
+        add_bonds_virial<N>(bonds, copies, 1 / (call.dt * call.dt), which, tally);
     }
 };
 

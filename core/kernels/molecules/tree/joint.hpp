@@ -102,7 +102,7 @@ HOL_INLINE void up_joint(const Rows &x, int count, Memory<V> memory, V &slack) {
     if (!top) {
         BondRow<V> &e = x.above();
         HOL_UNROLL_FEW
-        for (int a = 0; a < k; ++a) f.y[a] = w * (k == 1 ? x.only_product() : dot(x.bond(a).d, e.d));
+        for (int a = 0; a < k; ++a) f.y[a] = w * x.product(a, k);
         solve_joint(k, f.r, f.m, f.y, f.z, f.l);
         const V whole = w * e.q;
         V E = whole, y = e.t;

@@ -18,8 +18,8 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// The bonds of an atom, each at its place: those to its children, and the one above. tree_runs.hpp has the same for W
-// atoms of one molecule.
+// The bonds of an atom, each at its place: those to its children, and the one above. large_tree/atom_lanes.hpp has the
+// same for W atoms of one molecule, forest/forest_joint.hpp for atoms of W different trees.
 template <class V>
 struct AtomRows {
     const Molecules<V> &x;
@@ -29,9 +29,10 @@ struct AtomRows {
     HOL_FORCED V w() const { return x.w[slot]; }
     HOL_FORCED BondRow<V> &bond(int a) const { return x.row[child[a]]; }
     HOL_FORCED BondRow<V> &above() const { return x.row[slot]; }
-    HOL_FORCED V only_product() const {
-        return product_of(x, child[0], slot);
-    }  // of a single child with the bond above
+    // Of a child with the bond above; of a single one by the rule of product_of().
+    HOL_FORCED V product(int a, int k) const {
+        return k == 1 ? product_of(x, child[0], slot) : dot(bond(a).d, above().d);
+    }
     HOL_FORCED V *multipliers() const { return x.pair + x.s.pair_start[slot]; }
 };
 
@@ -66,7 +67,24 @@ HOL_INLINE MaskOf<V> faint_bonds(const Rows &x, int k) {
     return less(least, V{});
 }
 
-// Returns the terms of a bond's right-hand side in absolute values, in one lane.
+// Returns the terms of a right-hand side in absolute values: of a bond d between two atoms, given by their numbers in
+// the caller's arrays and their inverse masses.
+HOL_NOINLINE double terms_of(const Inputs &in, const double *d, const int64_t *number, const double *w) {
+    double sum = 0, v[2][3] = {};
+    for (int e = 0; e < 2; ++e) {
+        double f[3] = {};
+        if (in.v->x) read_row(*in.v, number[e], v[e]);
+        if (in.f && in.f->x) read_row(*in.f, number[e], f);
+        for (int c = 0; c < 3; ++c) sum += w[e] * __builtin_fabs(d[c] * f[c]);
+        for (int c = 0; c < 3 && in.rates; ++c) sum += __builtin_fabs(d[c] * v[e][c]);
+    }
+    for (int a = 0, e = 0; a < 3 && in.strain; ++a)
+        for (int b = a; b < 3; ++b, ++e) sum += __builtin_fabs(in.strain[e] * d[a] * d[b]);
+    for (int c = 0; c < 3 && !in.rates; ++c) sum += (v[1][c] - v[0][c]) * (v[1][c] - v[0][c]);
+    return sum;
+}
+
+// Those of a bond at a place, in one lane.
 template <class V>
 double terms_of(const Molecules<V> &x, int32_t place, int lane) {
     if (x.in.rhs) return __builtin_fabs(0.5 * x.in.rhs[x.lane[lane].first_bond + x.s.bond_of[place]]);
@@ -74,20 +92,9 @@ double terms_of(const Molecules<V> &x, int32_t place, int lane) {
     const double d[3] = {Width<V>::get(row.x, lane), Width<V>::get(row.y, lane), Width<V>::get(row.z, lane)};
     int32_t end[2];
     ends_of(x.s, place, end[0], end[1]);
-    double sum = 0, v[2][3] = {};
-    for (int e = 0; e < 2; ++e) {
-        const int64_t number = x.at.number(lane, x.s.atom_of[end[e]]);
-        double f[3] = {};
-        if (x.in.v->x) read_row(*x.in.v, number, v[e]);
-        if (x.in.f && x.in.f->x) read_row(*x.in.f, number, f);
-        const double w = Width<V>::get(x.w[end[e]], lane);
-        for (int c = 0; c < 3; ++c) sum += w * __builtin_fabs(d[c] * f[c]);
-        for (int c = 0; c < 3 && x.in.rates; ++c) sum += __builtin_fabs(d[c] * v[e][c]);
-    }
-    for (int a = 0, e = 0; a < 3 && x.in.strain; ++a)
-        for (int b = a; b < 3; ++b, ++e) sum += __builtin_fabs(x.in.strain[e] * d[a] * d[b]);
-    for (int c = 0; c < 3 && !x.in.rates; ++c) sum += (v[1][c] - v[0][c]) * (v[1][c] - v[0][c]);
-    return sum;
+    const int64_t number[2] = {x.at.number(lane, x.s.atom_of[end[0]]), x.at.number(lane, x.s.atom_of[end[1]])};
+    const double w[2] = {Width<V>::get(x.w[end[0]], lane), Width<V>::get(x.w[end[1]], lane)};
+    return terms_of(x.in, d, number, w);
 }
 
 // Looks again at the bonds of an atom in the lanes of `which`. Slack becomes negative where one is faint all the same.

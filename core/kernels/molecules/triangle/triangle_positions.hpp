@@ -43,13 +43,13 @@ struct TrianglePositions {
     // Of copies: if the address of any part of x were passed on, all of x would go to memory in every block.
     inline HOL_FORCED void add_virial(const TriangleNewton<V> &x, unsigned which) {
         Vector3<V> bonds[3];
-        V pulls[3];
+        V tau[3];
         HOL_UNROLL
         for (int k = 0; k < 3; ++k) {
             bonds[k] = x.b[k];
-            pulls[k] = x.tau[k];
+            tau[k] = x.tau[k];
         }
-        add_bonds_virial<3>(bonds, pulls, 1 / (call.dt * call.dt), which, tally);
+        add_bonds_virial<3>(bonds, tau, 1 / (call.dt * call.dt), which, tally);
     }
 
     // The lanes of `good` have their multipliers, those of `moved` are written.

@@ -1,0 +1,38 @@
+// Trees of any shapes side by side, one in each lane, as flat arrays that a kernel runs through. Plain data, the same
+// for every instruction set of as many lanes; core/molecules/forests.hpp makes it.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_HPP
+
+#include <stdint.h>
+
+#include "core/kernels/molecules/schedule.hpp"
+
+namespace holonomic {
+
+// A step deals with one atom of each tree and with the bonds to its children, which have been dealt with before. The
+// bonds of a step have consecutive *places*, the same in all lanes. Where an atom has fewer children, or a tree has
+// nothing to do, places are empty: what is eliminated there is a bond of length 0 with E = 1, which leaves every digit
+// as it is. An atom of at most three children may share a step with others of at most three, one of more with others
+// of more. The last step has the roots.
+//
+// Numbers per step or place are [..][lanes].
+struct Forest {
+    struct Step {
+        int32_t first, children;  // its places; the most that an atom of it has
+    };
+    int32_t n_trees;  // in the first lanes; the others are empty
+    int32_t n_steps, n_places;
+    int32_t n_pairs;        // sum of k (k - 1) / 2 over the steps
+    int32_t most_children;  // of a step
+    int64_t most_atoms;     // of a tree
+    const Step *step;
+    const uint16_t *atom;   // per step: its atom; 0 in lanes that have none
+    const uint16_t *above;  // per step: the place of the bond above; of a root n_places, without an atom n_places + 1
+    const uint16_t *lower;  // per place: the child; of an empty place the step's atom
+    const uint16_t *bond;   // per place, or 0
+    const uint16_t *held;   // [n_places] bits: the lanes that have a bond here
+    const Schedule *const *schedule;  // [n_trees]
+};
+
+}  // namespace holonomic
+#endif

@@ -1,0 +1,211 @@
+// The linear equations of W different trees (forest.hpp). The arithmetic is that of tree/joint.hpp, so that a tree's
+// digits do not depend on whether it comes with others of its shape, with others, or alone.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_LINEAR_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_LINEAR_HPP
+
+#include <stddef.h>
+
+#include "core/kernels/molecules/forest/forest_lanes.hpp"
+#include "core/kernels/molecules/load.hpp"
+#include "core/kernels/molecules/virial.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+struct ForestLinear {
+    const Forest &f;
+    const MoleculeLane *lane;  // of all lanes; those without a tree repeat the first one
+    const Atoms<vec> at;
+    const Box &box;
+    const AtomArray &r;
+    Inputs in;
+    const int terms;      // of right-hand sides: RightHandSide
+    BondRow<vec> *row;    // [n_places + 2] by place
+    vec3 *pull;           // [n_places + 2] of the lower atom by its children; at n_places, of the root
+    vec3 *velocity;       // likewise, for rates
+    vec *w, *lower_w;     // [n_steps], [n_places]
+    vec *pair;            // [n_pairs] multipliers among the children of an atom
+    vec slack;            // negative where plain products do not do
+    Memory<vec> working;  // of a joint of many bonds
+    double per_cancelled2 = 1 / (most_cancelled * most_cancelled);
+
+    static int64_t values(const Forest &f) {
+        const int64_t rows = f.n_places + 2, row_values = sizeof(BondRow<vec>) / sizeof(vec);
+        return (row_values + 6 + 1) * rows + f.n_steps + f.n_pairs + JointMemory<vec, 0>::values(f.most_children);
+    }
+
+    ForestLinear(const Forest &forest, const MoleculeLane *lanes, bool packed, const Box &b, const AtomArray &positions,
+                 const Inputs &inputs, int right_hand_side, Memory<vec> &memory)
+        : f(forest), lane(lanes), at(lanes, forest.n_trees, packed), box(b), r(positions), in(inputs),
+          terms(right_hand_side), slack(splat(1)) {
+        const int64_t rows = f.n_places + 2;
+        row = reinterpret_cast<BondRow<vec> *>(memory.values(rows * static_cast<int64_t>(sizeof *row / sizeof(vec))));
+        pull = memory.vectors(rows);
+        velocity = memory.vectors(rows);
+        lower_w = memory.values(rows);
+        w = memory.values(f.n_steps);
+        pair = memory.values(f.n_pairs);
+        working = memory;
+        memory.values(JointMemory<vec, 0>::values(f.most_children));
+    }
+
+    bool has(int wanted) const { return (terms & wanted) != 0; }
+    const uint16_t *atom_of(int32_t step) const { return f.atom + static_cast<int64_t>(step) * W; }
+    const uint16_t *above_of(int32_t step) const { return f.above + static_cast<int64_t>(step) * W; }
+    const uint16_t *lower_of(int32_t place) const { return f.lower + static_cast<int64_t>(place) * W; }
+
+    // The place in the schedule of the bond at a place, in one lane.
+    int32_t scheduled(int i, int32_t place) const { return f.schedule[i]->slot_of[lower_of(place)[i]]; }
+    // The local atoms that it joins.
+    void ends(int i, int32_t place, int32_t *atom) const {
+        const Schedule &s = *f.schedule[i];
+        atom[0] = s.atom_of[s.parent[scheduled(i, place)]];
+        atom[1] = lower_of(place)[i];
+    }
+
+    // What load.hpp does.
+    template <bool packed, bool squared, bool pulled, bool rated>
+    __attribute__((noinline)) void load_terms() {
+        for (int32_t s = 0; s < f.n_steps; ++s) {
+            const ForestAtom<packed> atom(at, atom_of(s));
+            const vec3 r0 = atom.read(r), v0 = squared || rated ? atom.read(*in.v) : vec3{},
+                       f0 = pulled ? atom.read(*in.f) : vec3{};
+            const vec w0 = masses_of(lane, atom_of(s));
+            w[s] = w0;
+            for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
+                const ForestAtom<packed> lower(at, lower_of(p));
+                vec3 d = lower.read(r) - r0, unused = {};
+                take_image<false>(box, d, unused);
+                const vec w1 = masses_of(lane, lower_of(p));
+                vec b = {};
+                if (squared || rated) {
+                    const vec3 v = lower.read(*in.v), dv = v - v0;
+                    if (squared) b = dot(dv, dv);
+                    if (rated) b = dot(d, dv);
+                    if (rated) velocity[p] = v;
+                }
+                if (rated && in.strain) b = b + stretching(in.strain, d);
+                if (pulled) b = Loader<vec>::with_pull(d, w0, f0, w1, lower.read(*in.f), b);
+                if (has(given)) b = given_value(p);
+                BondRow<vec> &to = row[p];
+                to.d = d;
+                to.q = dot(d, d);
+                to.E = select(lanes_of(f.held[p]), w1 * to.q, splat(1));  // of a leaf, or of no bond
+                to.t = b;
+                lower_w[p] = w1;
+                pull[p] = vec3{};
+            }
+            if (rated) velocity[f.n_places] = v0;  // of the root at last
+        }
+        row[f.n_places] = row[f.n_places + 1] = BondRow<vec>{};
+        velocity[f.n_places + 1] = vec3{};
+    }
+    void load() {
+        choose(
+            [&](auto packed, auto squared, auto pulled, auto rated) {
+                if constexpr (!(rated && (squared || pulled))) load_terms<packed, squared, pulled, rated>();
+            },
+            at.layout != elements, has(squares), has(pulls), has(rates));
+    }
+
+    vec given_value(int32_t place) const {
+        vec b = {};
+        for (int i = 0; i < W; ++i)
+            if (f.held[place] >> i & 1)
+                b[i] = 0.5 * in.rhs[lane[i].first_bond + f.bond[static_cast<int64_t>(place) * W + i]];
+        return b;
+    }
+
+    // Calls body(step, pairs) with the step's multipliers, for all but that of the roots.
+    template <class Body>
+    HOL_FORCED void for_steps_up(const Body &body) const {
+        vec *pairs = pair;
+        for (int32_t s = 0; s + 1 < f.n_steps; ++s) {
+            body(s, pairs);
+            pairs += pair_of(f.step[s].children, 0);
+        }
+    }
+    template <class Body>
+    HOL_FORCED void for_steps_down(const Body &body) const {
+        for (int32_t s = f.n_steps - 1; s-- > 0;) body(s);
+    }
+
+    void factorize_and_solve();
+    void substitute();
+    template <bool look>
+    void down();
+    unsigned solve();
+    void solve_again();
+
+    void add_pulls_to_velocities() {
+        for (int32_t p = 0; p <= f.n_places; ++p) {
+            const vec mass = p < f.n_places ? lower_w[p] : w[f.n_steps - 1];
+            velocity[p] = add_times(velocity[p], mass, pull_at(p));
+        }
+    }
+    // G of the lower atom of a place, or of the root.
+    HOL_FORCED vec3 pull_at(int32_t place) const {
+        return place < f.n_places ? add_times(pull[place], -row[place].t, row[place].d) : pull[place];
+    }
+    // d . (v_j - v_i) into t of the rows.
+    void find_rates() {
+        for (int32_t s = 0; s < f.n_steps; ++s) {
+            const vec3 v0 = AtPlaces<vec3>(velocity, above_of(s)).get3(0);
+            for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
+                row[p].t = dot(row[p].d, velocity[p] - v0);
+                if (in.strain) row[p].t = row[p].t + stretching(in.strain, row[p].d);
+            }
+        }
+    }
+
+    // Calls body(place, bits of the lanes of `which` that hold a bond there).
+    template <class Body>
+    HOL_FORCED void for_held(unsigned which, const Body &body) const {
+        for (int32_t p = 0; p < f.n_places; ++p)
+            if (const unsigned held = f.held[p] & which) body(p, held);
+    }
+    // Writes value(place, atom) of the atoms' vectors.
+    template <class Value>
+    HOL_FORCED void write_atoms(const AtomArray &array, unsigned which, const Value &value) const {
+        choose(
+            [&](auto packed) HOL_FORCED {
+                for_held(which, [&](int32_t p, unsigned lanes) HOL_FORCED {
+                    const ForestAtom<packed> atom(at, lower_of(p));
+                    atom.write(array, value(p, atom), lanes);
+                });
+                const ForestAtom<packed> root(at, atom_of(f.n_steps - 1));
+                root.write(array, value(f.n_places, root), which);
+            },
+            at.layout != elements);
+    }
+    __attribute__((noinline)) void write_pulls(const AtomArray &g, bool add, unsigned which) const {
+        write_atoms(g, which, [&](int32_t place, const auto &atom) HOL_FORCED {
+            const vec3 a = pull_at(place);
+            return add ? add_times(atom.read(g), splat(1), a) : a;
+        });
+    }
+    __attribute__((noinline)) void write_velocities(const AtomArray &v, unsigned which) const {
+        write_atoms(v, which, [&](int32_t place, const auto &) HOL_FORCED { return velocity[place]; });
+    }
+    // Writes factor t of the bonds, zeros as +0. with_length: |d| is the factor.
+    template <bool with_length>
+    __attribute__((noinline)) void write_bonds(double factor, double *out, unsigned which) const {
+        for_held(which, [&](int32_t p, unsigned lanes) HOL_FORCED {
+            const vec a = mul_add(row[p].t, with_length ? sqrt(row[p].q) : splat(factor), vec{});
+            const uint16_t *const bond = f.bond + static_cast<int64_t>(p) * W;
+            for (int i = 0; i < W; ++i)
+                if (lanes >> i & 1) out[lane[i].first_bond + bond[i]] = a[i];
+        });
+    }
+    __attribute__((noinline)) void add_virial(unsigned which, Tally &tally) const {
+        MoleculesVirial<vec> virial;
+        for (int32_t p = 0; p < f.n_places; ++p) virial.add(row[p].d, row[p].t * row[p].d);
+        virial.count(which, 1, tally);
+    }
+};
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,233 @@
+// The equations of a network: strands and trees are eliminated, from what is left between the nodes its unknowns are
+// found by iteration (unknowns.hpp). The matrix is w D . b, of new bonds D and reference bonds b; at the levels of
+// forces and velocities these are the same.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_FACTOR_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_FACTOR_HPP
+
+#include "core/kernels/molecules/network/unknowns.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// A bond or a side that offers less than this part of an inverse mass is taken to offer so much: the factors need not
+// be exact, as what they leave is corrected.
+constexpr double least_offer = 1e-10;
+HOL_INLINE double offer_of(double E, double whole) { return max(E, least_offer * whole); }
+
+struct NetFactor {
+    const Net &net;
+    const NetworkPlan &s;
+    Net3 b;  // of all places; D is given to factorize()
+    double *to_last,
+        *from_last;  // multipliers of a strand's next bond: what it gives to this one's t, and gets of its y
+    double *to_first, *from_first;  // the same of the first bond
+    double *per_pivot;              // 1 / P; of trees: of a bond below an atom with several E, else 1 / P
+    Tensor *joint;                  // [n_tree] of atoms with several children: the inverse mass that they leave
+    Vector3<double> *push;          // [n_tree] of those: from their y
+    Unknowns unknowns;
+
+    static int64_t values(const NetworkPlan &s) {
+        return 5 * in_fours(s.n_bonds) + in_fours(12 * static_cast<int64_t>(s.n_tree)) + Unknowns::values(s);
+    }
+    // D != b: a matrix that is not symmetric.
+    NetFactor(const Net &of, const Net3 &bonds, bool symmetric, Memory<double> &memory)
+        : net(of), s(of.s), b(bonds), unknowns(of, memory) {
+        const int64_t n = in_fours(s.n_bonds);
+        to_last = memory.values(n);
+        from_last = symmetric ? to_last : memory.values(n);
+        to_first = memory.values(n);
+        from_first = symmetric ? to_first : memory.values(n);
+        per_pivot = memory.values(n);
+        joint = reinterpret_cast<Tensor *>(memory.values(in_fours(12 * static_cast<int64_t>(s.n_tree))));
+        push = reinterpret_cast<Vector3<double> *>(joint + s.n_tree);
+    }
+
+    // Makes the factors, and takes the right-hand sides y up.
+    __attribute__((noinline)) void factorize(const Net3 &D, double *y) const {
+        factorize_trees(D, y);
+        net.for_strands([&](auto width, const NetStrands &g, int32_t)
+                            HOL_FORCED { factorize_strands<decltype(width)>(g, D, y); });
+        unknowns.open(D, b);
+        unknowns.factorize();
+    }
+    // Other right-hand sides.
+    __attribute__((noinline)) void take_up(double *y) const {
+        for (int32_t i = 0; i < s.n_tree; ++i) take_up_tree(i, y);
+        take_up_nodes(y);
+        net.for_strands([&](auto width, const NetStrands &g, int32_t) HOL_FORCED {
+            typedef decltype(width) V;
+            V last = {}, first = load_any<V>(y + g.place), before = {}, part = {};
+            for (int32_t k = 1; k < g.length; ++k) {
+                const int32_t place = g.place + k * g.step;
+                last = mul_add(part, before, load_any<V>(y + place));
+                if (k + 1 == g.length) break;
+                store_any(y + place, last);
+                first = first - load_any<V>(from_first + place) * last;
+                part = load_any<V>(from_last + place);
+                before = last;
+            }
+            net.to_end(g, 0, first, unknowns.y);
+            if (g.length > 1) net.to_end(g, 1, last, unknowns.y);
+        });
+        unknowns.add_pushes();
+    }
+    // From the unknowns, down to all bonds: y becomes t.
+    __attribute__((noinline)) void take_down(double *y) const {
+        net.for_strands([&](auto width, const NetStrands &g, int32_t) HOL_FORCED {
+            typedef decltype(width) V;
+            const V first = net.of_end<V>(g, 0, unknowns.x);
+            V next = net.of_end<V>(g, 1, unknowns.x);
+            store_any(y + g.place, first);
+            if (g.length > 1) store_any(y + g.place + (g.length - 1) * g.step, next);
+            for (int32_t k = g.length - 2; k > 0; --k) {
+                const int32_t place = g.place + k * g.step;
+                next = mul_add(
+                    load_any<V>(to_last + place), next,
+                    load_any<V>(y + place) * load_any<V>(per_pivot + place) - load_any<V>(to_first + place) * first);
+                store_any(y + place, next);
+            }
+        });
+        for (int32_t n = 0; n < s.n_nodes && s.n_tree > 0; ++n) {
+            if (s.child_start[n] == s.child_start[n + 1]) continue;
+            solve_children(n, unknowns.acceleration_of(n, unknowns.x), y);
+        }
+        for (int32_t i = s.n_tree; i-- > 0;) take_down_tree(i, y);
+    }
+
+private:
+    template <class V>
+    HOL_FORCED void factorize_strands(const NetStrands &g, const Net3 &D, double *y) const {
+        Vector3<V> Dk = D.get<V>(g.place), bk = b.get<V>(g.place);
+        V first = load_any<V>(y + g.place);
+        if (g.length == 1) return net.to_end(g, 0, first, unknowns.y);
+        V w = load_any<V>(net.w + g.site);
+        const Vector3<V> D0 = Dk, b0 = bk;
+        Dk = D.get<V>(g.place + g.step);
+        bk = b.get<V>(g.place + g.step);
+        const V whole = w * dot(D0, b0);
+        V E0 = whole, row = -(w * dot(D0, bk)), column = -(w * dot(Dk, b0)), q = dot(Dk, bk), E = w * q,
+          yk = load_any<V>(y + g.place + g.step);
+        for (int32_t k = 1; k + 1 < g.length; ++k) {
+            const int32_t place = g.place + k * g.step;
+            w = load_any<V>(net.w + g.site + k * g.step);
+            const Vector3<V> Dn = D.get<V>(place + g.step), bn = b.get<V>(place + g.step);
+            const V per = Width<V>::all(1) / mul_add(w, q, E), next = dot(Dn, bn), part = w * per;
+            const V up = part * dot(Dn, bk), down = part * dot(Dk, bn), from = row * per, to = column * per;
+            const V X = dot(cross(Dk, Dn), cross(bk, bn));
+            E0 = E0 - from * column;
+            first = first - from * yk;
+            store_any(y + place, yk);
+            store_any(per_pivot + place, per);
+            store_any(from_last + place, up);
+            store_any(to_last + place, down);
+            store_any(from_first + place, from);
+            store_any(to_first + place, to);
+            yk = mul_add(up, yk, load_any<V>(y + place + g.step));
+            row = row * down;
+            column = column * up;
+            E = part * mul_add(next, E, w * X);
+            Dk = Dn;
+            bk = bn;
+            q = next;
+        }
+        net.to_end(g, 0, max(E0, Width<V>::all(least_offer) * whole), unknowns.E);
+        net.to_end(g, 1, max(E, Width<V>::all(least_offer) * (w * q)), unknowns.E);
+        net.to_end(g, 0, row, unknowns.coupling);
+        net.to_end(g, 1, column, unknowns.coupling);
+        net.to_end(g, 0, first, unknowns.y);
+        net.to_end(g, 1, yk, unknowns.y);
+    }
+
+    int32_t first_child(int32_t joint_number) const { return s.child_start[joint_number]; }
+    int32_t n_children(int32_t number) const { return s.child_start[number + 1] - s.child_start[number]; }
+
+    // E of the bonds above trees' atoms stand in to_last until they are used, and 1 / P or E in per_pivot.
+    void factorize_trees(const Net3 &D, double *y) const {
+        for (int32_t i = 0; i < s.n_tree; ++i) {
+            const int32_t e = s.first_tree_place + i, n = n_children(s.n_nodes + i);
+            const Vector3<double> De = D.get<double>(e), be = b.get<double>(e);
+            const double w = net.w[s.first_tree + i], q = dot(De, be);
+            if (n == 0) {
+                to_first[e] = w * q;
+            } else if (n == 1) {
+                const int32_t c = s.first_tree_place + s.child[first_child(s.n_nodes + i)];
+                const Vector3<double> Dc = D.get<double>(c), bc = b.get<double>(c);
+                const double E = to_first[c], per = 1 / mul_add(w, dot(Dc, bc), E), part = w * per;
+                per_pivot[c] = per;
+                from_last[c] = part * dot(De, bc);
+                to_last[c] = part * dot(Dc, be);
+                to_first[e] = part * mul_add(q, E, w * dot(cross(Dc, De), cross(bc, be)));
+            } else {
+                Tensor sum = diagonal_tensor(1 / w);
+                add_children(s.n_nodes + i, w, D, sum);
+                joint[i] = inverse_of(sum);
+                to_first[e] = dot(De, joint[i] * be);
+            }
+            keep_new_bond(i, De);
+            take_up_tree(i, y);
+        }
+        for (int32_t n = 0; n < s.n_nodes; ++n) {
+            const double w = net.w[s.first_node + n];
+            Tensor sum = diagonal_tensor(1 / w);
+            add_children(n, w, D, sum);
+            unknowns.node[n].per_mass = sum;
+            unknowns.node[n].mass = n_children(n) > 0 ? inverse_of(sum) : diagonal_tensor(w);
+        }
+        take_up_nodes(y);
+    }
+    // D of the bonds of trees, for other right-hand sides.
+    void keep_new_bond(int32_t i, const Vector3<double> &D) const { unknowns.tree_bond[i] = D; }
+
+    void add_children(int32_t number, double w, const Net3 &D, Tensor &sum) const {
+        for (int32_t j = s.child_start[number]; j < s.child_start[number + 1]; ++j) {
+            const int32_t c = s.first_tree_place + s.child[j];
+            const Vector3<double> Dc = D.get<double>(c), bc = b.get<double>(c);
+            per_pivot[c] = 1 / offer_of(to_first[c], w * dot(Dc, bc));
+            add_product(sum, per_pivot[c], bc, Dc);
+        }
+    }
+    // sum b y / E over children.
+    Vector3<double> push_of(int32_t number, const double *y) const {
+        Vector3<double> sum = {};
+        for (int32_t j = s.child_start[number]; j < s.child_start[number + 1]; ++j) {
+            const int32_t c = s.first_tree_place + s.child[j];
+            sum = add_times(sum, y[c] * per_pivot[c], b.get<double>(c));
+        }
+        return sum;
+    }
+    void take_up_tree(int32_t i, double *y) const {
+        const int32_t e = s.first_tree_place + i, n = n_children(s.n_nodes + i);
+        if (n == 1) {
+            const int32_t c = s.first_tree_place + s.child[first_child(s.n_nodes + i)];
+            y[e] = mul_add(from_last[c], y[c], y[e]);
+        } else if (n > 1) {
+            push[i] = push_of(s.n_nodes + i, y);
+            y[e] += dot(unknowns.tree_bond[i], joint[i] * push[i]);
+        }
+    }
+    void take_up_nodes(const double *y) const {
+        for (int32_t n = 0; n < s.n_nodes; ++n) unknowns.node[n].push = push_of(n, y);
+    }
+    // t of the children of an atom that is accelerated so much.
+    void solve_children(int32_t number, const Vector3<double> &a, double *t) const {
+        for (int32_t j = s.child_start[number]; j < s.child_start[number + 1]; ++j) {
+            const int32_t i = s.child[j], c = s.first_tree_place + i;
+            t[c] = (t[c] - dot(unknowns.tree_bond[i], a)) * per_pivot[c];
+        }
+    }
+    void take_down_tree(int32_t i, double *t) const {
+        const int32_t e = s.first_tree_place + i, n = n_children(s.n_nodes + i);
+        if (n == 1) {
+            const int32_t c = s.first_tree_place + s.child[first_child(s.n_nodes + i)];
+            t[c] = mul_add(to_last[c], t[e], t[c] * per_pivot[c]);
+        } else if (n > 1) {
+            solve_children(s.n_nodes + i, joint[i] * (push[i] - t[e] * b.get<double>(e)), t);
+        }
+    }
+};
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

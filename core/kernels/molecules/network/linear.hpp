@@ -1,0 +1,270 @@
+// Linear equations of a network: solved by factors and iteration, then looked at. What multipliers leave of each
+// equation, with what rounding can hide there, is compared with the terms that it is made of; where it is too much the
+// residual is found in twice the precision and solved for, until that changes nothing.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_LINEAR_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_LINEAR_HPP
+
+#include "core/kernels/molecules/cycles/proof.hpp"
+#include "core/kernels/molecules/cycles/refine.hpp"
+#include "core/kernels/molecules/load.hpp"
+#include "core/kernels/molecules/network/factor.hpp"
+#include "core/kernels/molecules/virial.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+struct NetLinear {
+    // Of the right-hand side in the first solution, of residuals in the others.
+    static constexpr double first_part = 2e-15, next_part = 1e-6;
+
+    const Net net;
+    const NetworkPlan &s;
+    const Box &box;
+    const AtomArray &coordinates;
+    const Inputs &in;
+    const int terms;
+    Net3 r, v, f, d, G;               // v: velocities; f: w f; G: pulls, or where right-hand sides are rates v + w G
+    double *t, *side, *size_of_side;  // multipliers; right-hand sides, and the sizes of their terms
+    double *tension;                  // by site, sum of |t| |d|
+    double *worst;                    // [n_shares + 1]
+    NetFactor factor;
+    Pair3<double> *a;  // by site, in twice the precision
+
+    static int64_t values(const NetworkPlan &s) {
+        return Net::values(s) + 12 * in_fours(s.n_atoms) + 6 * in_fours(s.n_bonds) + in_fours(s.n_atoms) +
+               in_fours(s.n_shares + 1) + NetFactor::values(s) + 6 * in_fours(s.n_atoms);
+    }
+    NetLinear(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
+              const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> memory)
+        : net(plan, l, packed, team, memory), s(plan), box(b), coordinates(positions), in(inputs), terms(sides),
+          r(Net3::take(memory, s.n_atoms)), v(Net3::take(memory, s.n_atoms)), f(Net3::take(memory, s.n_atoms)),
+          d(Net3::take(memory, s.n_bonds)), G(Net3::take(memory, s.n_atoms)), t(memory.values(in_fours(s.n_bonds))),
+          side(memory.values(in_fours(s.n_bonds))), size_of_side(memory.values(in_fours(s.n_bonds))),
+          tension(memory.values(in_fours(s.n_atoms))), worst(memory.values(in_fours(s.n_shares + 1))),
+          factor(net, d, true, memory), a(reinterpret_cast<Pair3<double> *>(memory.values(6 * in_fours(s.n_atoms)))) {}
+
+    bool has(int wanted) const { return (terms & wanted) != 0; }
+
+    __attribute__((noinline)) void load() const {
+        net.read_masses();
+        net.read_sites(coordinates, r, false);
+        if (has(squares | rates)) net.read_sites(*in.v, v, false);
+        if (has(pulls)) net.read_sites(*in.f, f, true);
+        net.find_bonds(box, r, d);
+        find_sides(v);
+    }
+    // Right-hand sides, and the sum of their terms' sizes.
+    __attribute__((noinline)) void find_sides(const Net3 &of) const {
+        if (!has(pulls | squares | rates))
+            net.for_ranges_of(s.n_bonds, [&](int32_t first, int32_t end) {
+                for (int32_t k = first; k < end; ++k) side[k] = size_of_side[k] = 0;
+            });
+        if (has(pulls)) add_products(f, false);
+        if (has(rates)) add_products(of, false);
+        if (has(squares)) add_products(v, true);
+        if (!in.rhs && !in.strain) return;
+        for (int32_t k = 0; k < s.n_bonds; ++k) {
+            const double value =
+                in.rhs ? 0.5 * in.rhs[net.lane.first_bond + s.bond_of[k]] : stretching(in.strain, d.get<double>(k));
+            side[k] += value;
+            size_of_side[k] += abs(value);
+        }
+    }
+    // d.(x_j - x_i), the first of the terms where there are two, or |x_j - x_i|^2.
+    void add_products(const Net3 &x, bool square) const {
+        const bool more = square && has(pulls);
+        net.for_bonds(x, [&](auto width, int32_t k, const auto &from, const auto &to, int32_t) HOL_FORCED {
+            typedef decltype(width) V;
+            const Vector3<V> change = to - from, bond = d.get<V>(k);
+            V value = square ? dot(change, change) : dot(bond, change),
+              size = square ? value : dot(absolute(bond), absolute(from) + absolute(to));
+            if (more) {
+                value = value + load_any<V>(side + k);
+                size = size + load_any<V>(size_of_side + k);
+            }
+            store_any(side + k, value);
+            store_any(size_of_side + k, size);
+        });
+    }
+
+    // Multipliers for what is in t.
+    bool solve_for(double part) const {
+        if (factor.unknowns.solve(part) < 0) return false;
+        factor.take_down(t);
+        return true;
+    }
+    __attribute__((noinline)) bool solve() const {
+        load();
+        copy_sides();
+        factor.factorize(d, t);
+        if (!solve_for(first_part)) return false;
+        net.find_pulls(t, d, G, tension);
+        return is_proven() || refine();
+    }
+    void copy_sides() const {
+        net.for_ranges_of(s.n_bonds, [&](int32_t first, int32_t end) {
+            for (int32_t k = first; k < end; ++k) t[k] = side[k];
+        });
+    }
+
+    // Whether no equation is left with more than rounding. The terms of right-hand sides alone do for most.
+    __attribute__((noinline)) bool is_proven() const {
+        const double most = most_backward(s.n_bonds) * epsilon;
+        for (int32_t i = 0; i <= s.n_shares; ++i) worst[i] = 0;
+        net.for_strands([&](auto width, const NetStrands &g, int32_t share) HOL_FORCED {
+            typedef decltype(width) V;
+            V w = net.at_node<V>(g, 0, net.w), T = net.at_node<V>(g, 0, tension);
+            Vector3<V> pull = net.at_node<V>(g, 0, G);
+            for (int32_t k = 0; k < g.length; ++k) {
+                const bool last = k + 1 == g.length;
+                const int32_t place = g.place + k * g.step, site = g.site + k * g.step;
+                const V wn = last ? net.at_node<V>(g, 1, net.w) : load_any<V>(net.w + site);
+                const V Tn = last ? net.at_node<V>(g, 1, tension) : load_any<V>(tension + site);
+                const Vector3<V> next = last ? net.at_node<V>(g, 1, G) : G.get<V>(site), bond = d.get<V>(place);
+                const V over = excess_of(bond, w * pull, wn * next, mul_add(w, T, wn * Tn), load_any<V>(side + place),
+                                         load_any<V>(size_of_side + place), most);
+                const MaskOf<V> bad = ~less_equal(over, V{});
+                if (__builtin_expect(any(bad), 0))
+                    for (int i = 0; i < Width<V>::lanes; ++i)
+                        if ((bits(bad) >> i & 1) && !holds(place + i)) worst[share] = 1;
+                w = wn;
+                T = Tn;
+                pull = next;
+            }
+        });
+        bool good = largest_in(worst, s.n_shares) == 0;
+        for (int32_t k = s.first_tree_place; good && k < s.n_bonds; ++k) good = holds(k);
+        return good;
+    }
+    // Of one bond, with all terms of its equation: the accelerations of its two atoms too.
+    __attribute__((noinline)) bool holds(int32_t k) const {
+        const int32_t i = s.from[k], j = s.to[k];
+        const Vector3<double> bond = d.get<double>(k), from = net.w[i] * G.get<double>(i),
+                              to = net.w[j] * G.get<double>(j);
+        const Net3 &input = has(rates) ? v : f;
+        double terms_of_b = size_of_side[k];
+        if (has(rates | pulls))
+            terms_of_b += abs(dot(bond, input.get<double>(i) + from)) + abs(dot(bond, input.get<double>(j) + to));
+        const double over = excess_of(bond, from, to, mul_add(net.w[i], tension[i], net.w[j] * tension[j]), side[k],
+                                      terms_of_b, most_backward(s.n_bonds) * epsilon);
+        return over <= 0;
+    }
+    // What is left of an equation, and what rounding can hide there, beyond what may be left.
+    template <class V>
+    HOL_STATIC V excess_of(const Vector3<V> &bond, const Vector3<V> &from, const Vector3<V> &to, const V &tensions,
+                           const V &b, const V &terms_of_b, double most) {
+        const V left = abs(b + dot(bond, to - from)) + (4 * epsilon) * (sqrt(dot(bond, bond)) * tensions);
+        return left - most * terms_of_b;
+    }
+
+    // Solves for what is left in twice the precision; the multipliers so far are kept in `side`, whose terms are not
+    // needed any more.
+    __attribute__((noinline)) bool refine() const {
+        double *const solution = side, *const alone = size_of_side;
+        for (int32_t k = 0; k < s.n_bonds; ++k) {
+            const Vector3<double> bond = d.get<double>(k);
+            alone[k] = side[k] / ((net.w[s.from[k]] + net.w[s.to[k]]) * dot(bond, bond));
+            solution[k] = t[k];
+        }
+        const Flag good = correct_until_right<double>(
+            Flag{true},
+            [&]() {
+                find_residuals(solution);
+                factor.take_up(t);
+                if (!solve_for(next_part)) t[0] = 0 / (t[0] - t[0]);  // not a number, which is no contraction
+            },
+            [&](Flag) {
+                return add_corrections<double>(s.n_bonds, [&](int32_t k) {
+                    const Vector3<double> bond = d.get<double>(k);
+                    return Correction<double>{t[k], alone[k], dot(bond, bond), solution[k]};
+                });
+            },
+            [&]() { return Flag{false}; });
+        if (!good.set) return false;
+        for (int32_t k = 0; k < s.n_bonds; ++k) t[k] = solution[k];
+        net.find_pulls(t, d, G, nullptr);
+        return true;
+    }
+    Pair3<double> unrounded(int32_t k) const {
+        Vector3<double> bond, low;
+        unrounded_bond(box, r.get<double>(s.from[k]), r.get<double>(s.to[k]), bond, low);
+        return pairs_of(bond, low);
+    }
+    __attribute__((noinline)) void find_residuals(const double *solution) const {
+        const Vector3<double> zero = {};
+        net.for_ranges_of(s.n_atoms, [&](int32_t first, int32_t end) {
+            for (int32_t i = first; i < end; ++i)
+                a[i] = pairs_of(has(pulls) ? read(*in.f, net.at, s.atom_of[i]) : zero, zero);
+        });
+        for (int32_t k = 0; k < s.n_bonds; ++k) {
+            const Pair3<double> pull = scale_pairs(solution[k], unrounded(k));
+            a[s.from[k]] = add_pairs(a[s.from[k]], pull);
+            a[s.to[k]] = subtract_pairs(a[s.to[k]], pull);
+        }
+        net.for_ranges_of(s.n_atoms, [&](int32_t first, int32_t end) {
+            for (int32_t i = first; i < end; ++i) {
+                a[i] = scale_pairs(net.w[i], a[i]);
+                if (has(rates)) a[i] = add_pairs(a[i], pairs_of(v.get<double>(i), zero));
+            }
+        });
+        net.for_ranges_of(s.n_bonds, [&](int32_t first, int32_t end) {
+            for (int32_t k = first; k < end; ++k) {
+                const int32_t i = s.from[k], j = s.to[k];
+                Pair<double> sum = dot_pairs(unrounded(k), subtract_pairs(a[j], a[i]));
+                if (has(squares)) {
+                    const Pair3<double> dv = difference_of(v.get<double>(i), v.get<double>(j));
+                    sum = add_pairs(sum, dot_pairs(dv, dv));
+                }
+                if (in.rhs) sum = add_pairs(sum, {0.5 * in.rhs[net.lane.first_bond + s.bond_of[k]], 0.0});
+                if (in.strain) sum = add_pairs(sum, {stretching(in.strain, d.get<double>(k)), 0.0});
+                t[k] = sum.hi + sum.lo;
+            }
+        });
+    }
+
+    // Velocities v + w G, once more projected: what their rounding leaves.
+    void add_pulls() const {
+        net.for_ranges_of(s.n_atoms, [&](int32_t first, int32_t end) {
+            for (int32_t i = first; i < end; ++i) v.set(i, add_times(v.get<double>(i), net.w[i], G.get<double>(i)));
+        });
+    }
+    void solve_again() const {
+        find_sides(v);
+        copy_sides();
+        factor.take_up(t);
+        if (!solve_for(next_part)) return;
+        net.find_pulls(t, d, G, nullptr);
+        add_pulls();
+    }
+
+    void write_bonds(double scale, bool sizes, double *out) const {
+        net.for_ranges_of(s.n_bonds, [&](int32_t first, int32_t end) {
+            for (int32_t k = first; k < end; ++k) {
+                const Vector3<double> bond = d.get<double>(k);
+                out[net.lane.first_bond + s.bond_of[k]] = mul_add(t[k], sizes ? sqrt(dot(bond, bond)) : scale, 0.0);
+            }
+        });
+    }
+    void add_virial(Tally &tally) const {
+        MoleculesVirial<double> virial;
+        for (int32_t k = 0; k < s.n_bonds; ++k) {
+            const Vector3<double> bond = d.get<double>(k);
+            virial.add(bond, t[k] * bond);
+        }
+        virial.count(1, 1, tally);
+    }
+    // Calls write(atom, site) for the atoms that this molecule may write.
+    template <class Write>
+    void for_written(const Write &write) const {
+        net.for_ranges_of(s.n_atoms, [&](int32_t first, int32_t end) {
+            for (int32_t i = first; i < end; ++i)
+                if (!net.lane.shared || !net.lane.shared[s.atom_of[i]]) write(s.atom_of[i], i);
+        });
+    }
+};
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,38 @@
+// One large molecule as a network of strands and nodes: the three levels. False where that has not converged: then
+// nothing has been written.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_NETWORK_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_NETWORK_HPP
+
+#include "core/kernels/call.hpp"
+#include "core/kernels/molecules/blocks.hpp"
+#include "core/kernels/molecules/doubtful.hpp"
+#include "core/kernels/tally.hpp"
+
+namespace holonomic::HOL_ISA {
+
+int64_t network_bytes(const NetworkPlan &);
+bool solve_network(const ForcesCall &, const Schedule &, const MoleculeLane &, bool packed, const LongTeam *,
+                   double *scratch, Tally &);
+bool solve_network(const SolveCall &, const Schedule &, const MoleculeLane &, bool packed, const LongTeam *,
+                   double *scratch, Tally &);
+bool solve_network(const VelocitiesCall &, const Schedule &, const MoleculeLane &, bool packed, const LongTeam *,
+                   double *scratch, Tally &);
+bool solve_network(const PositionsCall &, const Schedule &, const MoleculeLane &, bool packed, const LongTeam *,
+                   double *scratch, Tally &);
+
+// All networks of a unit.
+template <class Call>
+static inline void solve_networks(const Call &call, const MoleculeUnit &unit, bool packed, double *scratch,
+                                  Tally &tally) {
+    for (int64_t i = 0; i < unit.count; ++i) {
+        const MoleculeLane lane = graph::molecule_of(unit, i);
+        if (solve_network(call, *unit.schedule, lane, packed, unit.team, scratch, tally)) continue;
+        if (unit.schedule->careful)
+            graph::solve_doubtful(call, *unit.schedule, &lane, 1, scratch, tally);
+        else
+            note_bad(lane.molecule, tally);
+    }
+}
+
+}  // namespace holonomic::HOL_ISA
+#endif

@@ -1,0 +1,228 @@
+// The strands of a network in lanes, and what is read and found for all its atoms and bonds.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_STRANDS_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_STRANDS_HPP
+
+#include "core/kernels/molecules/atoms/atoms.hpp"
+#include "core/kernels/molecules/image.hpp"
+#include "core/kernels/molecules/large_tree/pieces.hpp"
+#include "core/kernels/molecules/list/flat_list.hpp"
+#include "core/kernels/molecules/network/network_plan.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// Vectors x y z of all sites or of all places.
+struct Net3 {
+    double *x, *y, *z;
+    template <class V>
+    HOL_FORCED Vector3<V> get(int64_t i) const {
+        return {load_any<V>(x + i), load_any<V>(y + i), load_any<V>(z + i)};
+    }
+    template <class V>
+    HOL_FORCED void set(int64_t i, const Vector3<V> &a) const {
+        store_any(x + i, a.x);
+        store_any(y + i, a.y);
+        store_any(z + i, a.z);
+    }
+    static Net3 take(Memory<double> &memory, int64_t n) {
+        Net3 a;
+        a.x = memory.values(in_fours(n));
+        a.y = memory.values(in_fours(n));
+        a.z = memory.values(in_fours(n));
+        return a;
+    }
+};
+
+// Equally long strands of a bundle, one per lane: bond k at place + k step, the atom behind it at site + k step.
+struct NetStrands {
+    int32_t length, place, site, strand, step;
+};
+
+struct Net {
+    const NetworkPlan &s;
+    const MoleculeLane &lane;
+    const Atoms<double> at;
+    const LongTeam *team;
+    double *w;  // by site
+
+    static int64_t values(const NetworkPlan &s) { return in_fours(s.n_atoms); }
+    Net(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *threads, Memory<double> &memory)
+        : s(plan), lane(l), at(&l, 1, packed), team(threads), w(memory.values(values(plan))) {}
+
+    // Calls body(value of the width, strands, share) for all strands, on the threads that there are.
+    template <class Body>
+    HOL_FORCED void for_strands(const Body &body) const {
+        share_out(team, s.n_shares, [&](int32_t share) {
+            for (int32_t i = s.bundle_start[share]; i < s.bundle_start[share + 1]; ++i) {
+                const NetworkPlan::Bundle &b = s.bundle[i];
+                int32_t j = 0;
+                const auto strands = [&] {
+                    return NetStrands{b.length, b.first_place + j, b.first_site + j, b.first_strand + j, b.width};
+                };
+                for (; j + W <= b.width; j += W) body(vec{}, strands(), share);
+                for (; j < b.width; ++j) body(double{}, strands(), share);
+            }
+        });
+    }
+    // Calls body(first, end, share) for ranges of nodes.
+    template <class Body>
+    HOL_FORCED void for_nodes(const Body &body) const {
+        share_out(team, s.n_node_shares,
+                  [&](int32_t share) { body(s.node_start[share], s.node_start[share + 1], share); });
+    }
+    // Calls body(first, end) for ranges of n numbers.
+    template <class Body>
+    HOL_FORCED void for_ranges_of(int32_t n, const Body &body) const {
+        constexpr int32_t step = 4096;
+        share_out(team, (n + step - 1) / step, [&](int32_t i) {
+            const int32_t end = (i + 1) * step;
+            body(i * step, end < n ? end : n);
+        });
+    }
+
+    // Values of the nodes at the ends of strands, by their sites.
+    template <class V>
+    HOL_FORCED V at_node(const NetStrands &g, int end, const double *value) const {
+        V a = {};
+        for (int i = 0; i < Width<V>::lanes; ++i)
+            Width<V>::set(a, i, value[s.first_node + s.strand_node[2 * (g.strand + i) + end]]);
+        return a;
+    }
+    template <class V>
+    HOL_FORCED Vector3<V> at_node(const NetStrands &g, int end, const Net3 &value) const {
+        return {at_node<V>(g, end, value.x), at_node<V>(g, end, value.y), at_node<V>(g, end, value.z)};
+    }
+    // And of their unknowns.
+    template <class V>
+    HOL_FORCED V of_end(const NetStrands &g, int end, const double *value) const {
+        V a = {};
+        for (int i = 0; i < Width<V>::lanes; ++i)
+            Width<V>::set(a, i, value[s.strand_unknown[2 * (g.strand + i) + end]]);
+        return a;
+    }
+    template <class V>
+    HOL_FORCED void to_end(const NetStrands &g, int end, const V &a, double *value) const {
+        for (int i = 0; i < Width<V>::lanes; ++i)
+            value[s.strand_unknown[2 * (g.strand + i) + end]] = Width<V>::get(a, i);
+    }
+
+    // Reads an array per atom, times the inverse masses if `weighed`.
+    __attribute__((noinline)) void read_sites(const AtomArray &array, const Net3 &to, bool weighed) const {
+        for_ranges_of(s.n_atoms, [&](int32_t first, int32_t end) {
+            int32_t i = first;
+#if HOL_LANES > 1
+            for (; i + W <= end && at.layout != elements; i += W) {
+                const double *p[W];
+                for (int j = 0; j < W; ++j)
+                    p[j] = reinterpret_cast<const double *>(array.x) + 3 * at.number(0, s.atom_of[i + j]);
+                vec3 a;
+                read_rows(p, a);
+                to.set(i, weighed ? holonomic::HOL_ISA::load(w + i) * a : a);
+            }
+#endif
+            for (; i < end; ++i) {
+                const Vector3<double> a = read(array, at, s.atom_of[i]);
+                to.set(i, weighed ? w[i] * a : a);
+            }
+        });
+    }
+    void read_masses() const {
+        for_ranges_of(s.n_atoms, [&](int32_t first, int32_t end) {
+            for (int32_t i = first; i < end; ++i) w[i] = lane.w[s.atom_of[i]];
+        });
+    }
+
+    // Calls body(V, place, from, to) for all bonds: the values of `of` at the two atoms of each, along strands in
+    // lanes, and bonds of trees one by one.
+    template <class Body>
+    HOL_FORCED void for_bonds(const Net3 &of, const Body &body) const {
+        for_strands([&](auto width, const NetStrands &g, int32_t share) HOL_FORCED {
+            typedef decltype(width) V;
+            Vector3<V> before = at_node<V>(g, 0, of);
+            for (int32_t k = 0; k < g.length; ++k) {
+                const Vector3<V> next = k + 1 < g.length ? of.get<V>(g.site + k * g.step) : at_node<V>(g, 1, of);
+                body(width, g.place + k * g.step, before, next, share);
+                before = next;
+            }
+        });
+        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k)
+            body(double{}, k, of.get<double>(s.from[k]), of.get<double>(s.to[k]), s.n_shares);
+    }
+
+    __attribute__((noinline)) void find_bonds(const Box &box, const Net3 &r, const Net3 &d) const {
+        for_bonds(r, [&](auto width, int32_t place, const auto &from, const auto &to, int32_t) HOL_FORCED {
+            typedef decltype(width) V;
+            Vector3<V> bond = to - from, unused = {};
+            take_image<false>(box, bond, unused);
+            d.set(place, bond);
+        });
+    }
+
+    // What multipliers t of bonds d do to atoms: G, and where `tension` is wanted the sum of |t| |d|.
+    __attribute__((noinline)) void find_pulls(const double *t, const Net3 &d, const Net3 &G, double *tension) const {
+        for_strands([&](auto width, const NetStrands &g, int32_t) HOL_FORCED {
+            typedef decltype(width) V;
+            const Vector3<V> first = d.get<V>(g.place);
+            Vector3<V> before = load_any<V>(t + g.place) * first;
+            V size = {};
+            if (tension) size = sqrt(dot(before, before));
+            for (int32_t k = 1; k < g.length; ++k) {
+                const int32_t place = g.place + k * g.step, site = g.site + (k - 1) * g.step;
+                const Vector3<V> pull = load_any<V>(t + place) * d.get<V>(place);
+                G.set(site, pull - before);
+                if (tension) {
+                    const V next = sqrt(dot(pull, pull));
+                    store_any(tension + site, size + next);
+                    size = next;
+                }
+                before = pull;
+            }
+        });
+        for_nodes([&](int32_t first, int32_t end, int32_t) {
+            for (int32_t n = first; n < end; ++n) {
+                Vector3<double> sum = {};
+                double size = 0;
+                const auto add = [&](int32_t place, double sign) {
+                    const Vector3<double> pull = t[place] * d.get<double>(place);
+                    sum = add_times(sum, sign, pull);
+                    if (tension) size += sqrt(dot(pull, pull));
+                };
+                for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u) add(s.place_of[u], s.sign[u]);
+                for (int32_t f = s.foreign_start[n]; f < s.foreign_start[n + 1]; ++f) add(s.place_of[s.foreign[f]], -1);
+                for (int32_t c = s.child_start[n]; c < s.child_start[n + 1]; ++c)
+                    add(s.first_tree_place + s.child[c], 1);
+                G.set(s.first_node + n, sum);
+                if (tension) tension[s.first_node + n] = size;
+            }
+        });
+        for (int32_t i = 0; i < s.n_tree; ++i) {
+            const int32_t own = s.first_tree_place + i;
+            const Vector3<double> up = t[own] * d.get<double>(own);
+            Vector3<double> sum = Vector3<double>{} - up;
+            double size = tension ? sqrt(dot(up, up)) : 0;
+            for (int32_t c = s.child_start[s.n_nodes + i]; c < s.child_start[s.n_nodes + i + 1]; ++c) {
+                const int32_t place = s.first_tree_place + s.child[c];
+                const Vector3<double> pull = t[place] * d.get<double>(place);
+                sum = sum + pull;
+                if (tension) size += sqrt(dot(pull, pull));
+            }
+            G.set(s.first_tree + i, sum);
+            if (tension) tension[s.first_tree + i] = size;
+        }
+    }
+};
+
+HOL_INLINE double largest_in(const double *values, int32_t n) {
+    double most = 0, sum = 0;  // a maximum may lose a NaN, the sum keeps it
+    for (int32_t i = 0; i < n; ++i) {
+        most = max(values[i], most);
+        sum += values[i];
+    }
+    return most + 0 * sum;
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

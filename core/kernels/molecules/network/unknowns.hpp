@@ -1,0 +1,209 @@
+// What is left of a network's equations: the ends of strands, coupled at the nodes and from end to end. Stabilised
+// bi-conjugate gradients (H. van der Vorst, SIAM J. Sci. Stat. Comput. 13, 631 (1992)), with the ends of each node
+// solved exactly as the preconditioner M: what strands couple dies out along them, so that it takes few rounds.
+// With p' = M^-1 p the product with the matrix is p + (matrix - M) p'.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_UNKNOWNS_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_UNKNOWNS_HPP
+
+#include "core/kernels/molecules/network/strands.hpp"
+#include "core/kernels/molecules/network/tensor.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+struct NetNode {
+    Tensor per_mass, mass;         // with the trees that hang from it; of the atom alone, and its inverse
+    Tensor with_ends;              // inverse of per_mass and what its own ends offer
+    Vector3<double> push;          // from the trees' right-hand sides
+    Vector3<double> foreign, all;  // accelerations by foreign ends, and by all, of a vector that is multiplied
+};
+
+struct Unknowns {
+    const Net &net;
+    const NetworkPlan &s;
+    double *E, *per_E, *coupling;  // what the far side of an end offers; to the partner's value
+    double *y, *x;                 // right-hand sides, solution
+    Vector3<double> *D, *b, *tree_bond;
+    NetNode *node;
+    double *sum;                                       // [n_node_shares][2]
+    double *r, *shadow, *p, *p_node, *v, *s_node, *t;  // s takes the place of r
+
+    static int64_t values(const NetworkPlan &s) {
+        return in_fours(sizeof(NetNode) / sizeof(double) * static_cast<int64_t>(s.n_nodes)) +
+               in_fours(3 * static_cast<int64_t>(s.n_tree)) + in_fours(2 * static_cast<int64_t>(s.n_node_shares)) +
+               2 * in_fours(3 * static_cast<int64_t>(s.n_unknowns)) + 12 * in_fours(s.n_unknowns);
+    }
+    Unknowns(const Net &of, Memory<double> &memory) : net(of), s(of.s) {
+        const int64_t n = in_fours(s.n_unknowns);
+        node = reinterpret_cast<NetNode *>(
+            memory.values(in_fours(sizeof(NetNode) / sizeof(double) * static_cast<int64_t>(s.n_nodes))));
+        tree_bond = reinterpret_cast<Vector3<double> *>(memory.values(in_fours(3 * static_cast<int64_t>(s.n_tree))));
+        sum = memory.values(in_fours(2 * static_cast<int64_t>(s.n_node_shares)));
+        D = reinterpret_cast<Vector3<double> *>(memory.values(in_fours(3 * static_cast<int64_t>(s.n_unknowns))));
+        b = reinterpret_cast<Vector3<double> *>(memory.values(in_fours(3 * static_cast<int64_t>(s.n_unknowns))));
+        double **const arrays[] = {&E, &per_E, &coupling, &y, &x, &r, &shadow, &p, &p_node, &v, &s_node, &t};
+        for (double **array : arrays) *array = memory.values(n);
+    }
+
+    // Bonds of the ends, and what trees at the nodes give to right-hand sides.
+    void open(const Net3 &new_D, const Net3 &ref) const {
+        for_each([&](int32_t u) {
+            D[u] = new_D.get<double>(s.place_of[u]);
+            b[u] = ref.get<double>(s.place_of[u]);
+            const int32_t other = s.other_node[u];
+            if (other < 0) return;
+            const double offer = dot(D[u], node[other].mass * b[u]);
+            E[u] = offer;
+            coupling[u] = 0;
+        });
+        add_pushes();
+    }
+    void add_pushes() const {
+        if (s.n_tree == 0) return;
+        for_each([&](int32_t u) {
+            const NetNode &own = node[s.node_of[u]];
+            y[u] -= s.sign[u] * dot(D[u], own.mass * own.push);
+            if (s.other_node[u] < 0) return;
+            const NetNode &other = node[s.other_node[u]];
+            y[u] += dot(D[u], other.mass * other.push);
+        });
+    }
+    void factorize() const {
+        net.for_nodes([&](int32_t first, int32_t end, int32_t) {
+            for (int32_t n = first; n < end; ++n) {
+                Tensor a = node[n].per_mass;
+                for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u) {
+                    per_E[u] = 1 / E[u];
+                    add_product(a, per_E[u], b[u], D[u]);
+                }
+                node[n].with_ends = inverse_of(a);
+            }
+        });
+    }
+    // Of a node with its trees, by these values of the ends.
+    Vector3<double> acceleration_of(int32_t n, const double *of) const {
+        Vector3<double> sum_of = node[n].push;
+        for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u)
+            sum_of = add_times(sum_of, s.sign[u] * of[u], b[u]);
+        for (int32_t f = s.foreign_start[n]; f < s.foreign_start[n + 1]; ++f)
+            sum_of = add_times(sum_of, -of[s.foreign[f]], b[s.foreign[f]]);
+        return node[n].mass * sum_of;
+    }
+
+    // Solves for y until what is left is `part` of it, both as sums of squares' roots; how many rounds it took, or -1.
+    __attribute__((noinline)) int32_t solve(double part) const {
+        Sums all = sums_of_nodes([&](int32_t u, Sums &one) {
+            x[u] = 0;
+            r[u] = shadow[u] = p[u] = y[u];
+            one.a = mul_add(y[u], y[u], one.a);
+        });
+        const double enough = part * part * all.a;
+        if (!(all.a > 0)) return all.a == 0 ? 0 : -1;
+        double rho = all.a;
+        for (int32_t round = 1; round <= most_rounds; ++round) {
+            precondition(p, p_node);
+            multiply(p, p_node, v);
+            all = sums_of_nodes([&](int32_t u, Sums &one) { one.a = mul_add(shadow[u], v[u], one.a); });
+            const double alpha = rho / all.a;
+            all = sums_of_nodes([&](int32_t u, Sums &one) {
+                x[u] = mul_add(alpha, p_node[u], x[u]);
+                r[u] = mul_add(-alpha, v[u], r[u]);
+                one.a = mul_add(r[u], r[u], one.a);
+            });
+            if (all.a <= enough) return round;
+            if (!(all.a < 1e300)) return -1;
+            precondition(r, s_node);
+            multiply(r, s_node, t);
+            all = sums_of_nodes([&](int32_t u, Sums &one) {
+                one.a = mul_add(t[u], r[u], one.a);
+                one.b = mul_add(t[u], t[u], one.b);
+            });
+            const double omega = all.a / all.b;
+            all = sums_of_nodes([&](int32_t u, Sums &one) {
+                x[u] = mul_add(omega, s_node[u], x[u]);
+                r[u] = mul_add(-omega, t[u], r[u]);
+                one.a = mul_add(r[u], r[u], one.a);
+                one.b = mul_add(shadow[u], r[u], one.b);
+            });
+            if (all.a <= enough) return round;
+            const double beta = all.b / rho * (alpha / omega);
+            if (!(abs(beta) < 1e300)) return -1;
+            rho = all.b;
+            for_each([&](int32_t u) { p[u] = mul_add(beta, mul_add(-omega, v[u], p[u]), r[u]); });
+        }
+        return -1;
+    }
+
+private:
+    static constexpr int32_t most_rounds = 2000;
+    struct Sums {
+        double a, b;
+    };
+
+    template <class Body>
+    HOL_FORCED void for_each(const Body &body) const {
+        net.for_nodes([&](int32_t first, int32_t end, int32_t) {
+            for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) body(u);
+        });
+    }
+    // Sums over each share, then over these in order: the same for any number of threads.
+    template <class Body>
+    HOL_FORCED Sums sums_of_nodes(const Body &body) const {
+        net.for_nodes([&](int32_t first, int32_t end, int32_t share) {
+            Sums one = {0, 0};
+            for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) body(u, one);
+            sum[2 * share] = one.a;
+            sum[2 * share + 1] = one.b;
+        });
+        Sums all = {0, 0};
+        for (int32_t i = 0; i < s.n_node_shares; ++i) {
+            all.a += sum[2 * i];
+            all.b += sum[2 * i + 1];
+        }
+        return all;
+    }
+
+    // M^-1: the ends of each node by themselves.
+    __attribute__((noinline)) void precondition(const double *of, double *to) const {
+        net.for_nodes([&](int32_t first, int32_t end, int32_t) {
+            for (int32_t n = first; n < end; ++n) {
+                Vector3<double> pull = {};
+                for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u) {
+                    to[u] = of[u] * per_E[u];
+                    pull = add_times(pull, s.sign[u] * to[u], b[u]);
+                }
+                const Vector3<double> a = node[n].with_ends * pull;
+                for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u)
+                    to[u] = mul_add(-s.sign[u] * per_E[u], dot(D[u], a), to[u]);
+            }
+        });
+    }
+    // What strands couple, and what bonds do at the nodes where they are foreign, added to `own`, which is M times
+    // `of`.
+    __attribute__((noinline)) void multiply(const double *own, const double *of, double *to) const {
+        if (!s.has_foreign) return for_each([&](int32_t u) { to[u] = mul_add(coupling[u], of[s.partner[u]], own[u]); });
+        net.for_nodes([&](int32_t first, int32_t end, int32_t) {
+            for (int32_t n = first; n < end; ++n) {
+                Vector3<double> by_own = {}, by_foreign = {};
+                for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u)
+                    by_own = add_times(by_own, s.sign[u] * of[u], b[u]);
+                for (int32_t f = s.foreign_start[n]; f < s.foreign_start[n + 1]; ++f)
+                    by_foreign = add_times(by_foreign, -of[s.foreign[f]], b[s.foreign[f]]);
+                node[n].foreign = node[n].mass * by_foreign;
+                node[n].all = node[n].foreign + node[n].mass * by_own;
+            }
+        });
+        for_each([&](int32_t u) {
+            double value = mul_add(coupling[u], of[s.partner[u]], own[u]);
+            value = mul_add(s.sign[u], dot(D[u], node[s.node_of[u]].foreign), value);
+            if (s.other_node[u] >= 0) value -= dot(D[u], node[s.other_node[u]].all) + E[u] * of[u];
+            to[u] = value;
+        });
+    }
+};
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,63 @@
+// Networks (molecules/network/): their equations for all verbs, compiled once.
+#include "core/kernels/molecules/network/linear.hpp"
+#include "core/kernels/molecules/network/network.hpp"
+#include "core/kernels/molecules/network/positions.hpp"
+#include "core/kernels/verbs/verbs.hpp"
+
+namespace holonomic::HOL_ISA {
+
+using namespace graph;
+
+int64_t network_bytes(const NetworkPlan &s) {
+    const int64_t linear = NetLinear::values(s), newton = NetNewton::values(s);
+    return static_cast<int64_t>(sizeof(double)) * (linear > newton ? linear : newton);
+}
+
+// Call: of forces or of given right-hand sides.
+template <class Call>
+static inline bool pull_network(const Call &call, const NetLinear &x, Tally &tally) {
+    if (!x.solve()) return false;
+    if (call.lambda) x.write_bonds(0.5, false, call.lambda);
+    if (call.tension) x.write_bonds(1, true, call.tension);
+    if (call.virial) x.add_virial(tally);
+    if (!call.g.x) return true;
+    x.for_written([&](int32_t atom, int32_t site) {
+        Vector3<double> pull = x.G.get<double>(site);
+        if (call.add) pull = read(call.g, x.net.at, atom) + pull;
+        write(call.g, x.net.at, atom, pull, 1);
+    });
+    return true;
+}
+
+bool solve_network(const ForcesCall &call, const Schedule &s, const MoleculeLane &lane, bool packed,
+                   const LongTeam *team, double *scratch, Tally &tally) {
+    const Inputs in = {&call.v, &call.f, nullptr, false};
+    const int terms = (call.v.x ? squares : 0) | (call.f.x ? pulls : 0);
+    return pull_network(call, NetLinear(*s.network, lane, packed, team, call.box, call.r, in, terms, {scratch}), tally);
+}
+
+bool solve_network(const SolveCall &call, const Schedule &s, const MoleculeLane &lane, bool packed,
+                   const LongTeam *team, double *scratch, Tally &tally) {
+    const Inputs in = {nullptr, nullptr, call.rhs, false};
+    return pull_network(call, NetLinear(*s.network, lane, packed, team, call.box, call.r, in, given, {scratch}), tally);
+}
+
+bool solve_network(const VelocitiesCall &call, const Schedule &s, const MoleculeLane &lane, bool packed,
+                   const LongTeam *team, double *scratch, Tally &tally) {
+    const Inputs in = {&call.v, nullptr, nullptr, true, call.strain};
+    const NetLinear x(*s.network, lane, packed, team, call.box, call.r, in, rates, {scratch});
+    if (!x.solve()) return false;
+    if (call.lambda) x.write_bonds(0.5, false, call.lambda);
+    if (call.virial) x.add_virial(tally);
+    x.add_pulls();
+    if (!call.v.is_float) x.solve_again();
+    x.for_written([&](int32_t atom, int32_t site) { write(call.v, x.net.at, atom, x.v.get<double>(site), 1); });
+    return true;
+}
+
+bool solve_network(const PositionsCall &call, const Schedule &s, const MoleculeLane &lane, bool packed,
+                   const LongTeam *team, double *scratch, Tally &tally) {
+    return NetPositions(call, *s.network, s.fixed, lane, packed, team, {scratch}, tally).solve();
+}
+
+}  // namespace holonomic::HOL_ISA

@@ -1,0 +1,48 @@
+// Trees whose shapes differ, put side by side so that they share the lanes of a vector (kernels/molecules/forest/).
+#ifndef HOLONOMIC_FORESTS_HPP
+#define HOLONOMIC_FORESTS_HPP
+
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+#include "core/kernels/molecules/forest/forest.hpp"
+
+namespace holonomic {
+
+class Forests {
+public:
+    // Appends one of these trees, as many as there are lanes at most. Throws std::bad_alloc.
+    void add(int lanes, const Schedule *const *tree, int n_trees);
+    // To be called once, when all have been added.
+    void finish();
+
+    const Forest *operator[](std::int64_t i) const { return &forest_[static_cast<std::size_t>(i)]; }
+    std::int64_t size() const { return static_cast<std::int64_t>(forest_.size()); }
+    std::size_t bytes() const;
+
+private:
+    struct Offsets {
+        std::size_t step, numbers, held, schedule;
+    };
+    int lanes_ = 0;
+    std::vector<Forest> forest_;
+    std::vector<Offsets> offset_;
+    std::vector<Forest::Step> step_;
+    std::vector<std::uint16_t> numbers_, held_;  // the numbers per step and place of one forest after the other
+    std::vector<const Schedule *> schedule_;
+};
+
+// Trees with nearly the same profile leave few places empty: how many atoms have four children and more, three, two.
+struct TreeProfile {
+    std::int32_t n_bonds = 0, many = 0, three = 0, two = 0;
+    TreeProfile() = default;
+    explicit TreeProfile(const Schedule &s);
+    friend bool operator<(const TreeProfile &a, const TreeProfile &b) {
+        return std::tie(a.n_bonds, a.many, a.three, a.two) < std::tie(b.n_bonds, b.many, b.three, b.two);
+    }
+};
+
+}  // namespace holonomic
+#endif

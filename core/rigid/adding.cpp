@@ -1,0 +1,210 @@
+// Adding molecules with rigid bodies to a set, and building them again with other masses or lengths.
+#include <cmath>
+#include <limits>
+
+#include "core/molecules/batch.hpp"
+#include "core/molecules/chains.hpp"
+#include "core/rigid/bodies.hpp"
+
+namespace holonomic {
+
+namespace {
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+long long number(std::int64_t i, int base) { return static_cast<long long>(i + base); }
+
+[[noreturn]] void fail(Error error, int base, std::int64_t bond, std::int64_t atom) {
+    error.bond = bond;
+    error.atom = atom;
+    error.base = base;
+    throw error;
+}
+
+// Numbers within a molecule are kept in 32 bits.
+constexpr std::int64_t most = std::int64_t{1} << 30;
+
+// Returns the number of atoms of all bodies.
+std::int64_t check_sizes(std::int64_t n_bodies, const std::int64_t *sizes, std::int64_t n_bonds, int base) {
+    if (n_bodies < 1)
+        throw make_error(Status::value, "n_bodies is %lld; it must be at least 1", static_cast<long long>(n_bodies));
+    if (n_bonds < 0 || n_bonds > most)
+        throw make_error(Status::value, "n_bonds is %lld; it must be in 0 .. %lld", static_cast<long long>(n_bonds),
+                         static_cast<long long>(most));
+    std::int64_t n_held = 0;
+    for (std::int64_t b = 0; b < n_bodies; ++b) {
+        if (sizes[b] < 2 || sizes[b] > most || n_held > most)
+            throw make_error(Status::value, "body %lld has %lld atoms; a body has at least 2", number(b, base),
+                             static_cast<long long>(sizes[b]));
+        n_held += sizes[b];
+    }
+    return n_held;
+}
+
+// "body 0 of molecule 3 (atoms 9, 10, 11)": by its first atoms.
+struct BodyName {
+    char text[320];
+};
+BodyName name_of_body(const Chains &chains, const rigid::Given &given, std::int64_t body) {
+    std::size_t first = 0;
+    for (std::int64_t b = 0; b < body; ++b) first += at(given.sizes[at(b)]);
+    const std::int32_t n = given.sizes[at(body)];
+    BodyName name;
+    if (n == 2)
+        std::snprintf(name.text, sizeof name.text, "the body of atoms %s and %s",
+                      chains.name_of_atom(given.atoms[first]).text, chains.name_of_atom(given.atoms[first + 1]).text);
+    else
+        std::snprintf(name.text, sizeof name.text, "the body of %d atoms, from atom %s to atom %s", static_cast<int>(n),
+                      chains.name_of_atom(given.atoms[first]).text,
+                      chains.name_of_atom(given.atoms[first + at(n) - 1]).text);
+    return name;
+}
+
+[[noreturn]] void refuse(const Chains &chains, const rigid::Given &given, const rigid::Refusal &refusal) {
+    using rigid::BodyFault;
+    using rigid::Unsolvable;
+    const auto name = [&](std::int64_t atom) { return chains.name_of_atom(given.atoms[at(atom)]); };
+    if (refusal.cause == rigid::Refusal::of_body) {
+        const BodyFault &fault = refusal.fault;
+        const bool named = fault.atom >= 0;
+        const Status status = fault.cause == BodyFault::not_finite ? Status::not_finite : Status::value;
+        fail(make_error(status, "%s %s%s%s", name_of_body(chains, given, refusal.body).text,
+                        rigid::fault_in_words(fault.cause), named ? ": atom " : "", named ? name(fault.atom).text : ""),
+             chains.base, -1, named ? given.atoms[at(fault.atom)] : -1);
+    }
+    if (refusal.unsolvable.cause == Unsolvable::length_in_body) {
+        const rigid::Bond &bond = given.bonds[at(refusal.unsolvable.bond)];
+        fail(make_error(Status::value,
+                        "the bond between atoms %s and %s lies within a body, whose atoms are at another distance than "
+                        "its length, %g",
+                        name(bond.i).text, name(bond.j).text, bond.length),
+             chains.base, given.bond_numbers[at(refusal.unsolvable.bond)], given.atoms[at(bond.i)]);
+    }
+    fail(make_error(Status::degenerate,
+                    "the molecule of %s has more bonds than its bodies and atoms have freedoms: they depend on each "
+                    "other",
+                    name_of_body(chains, given, 0).text),
+         chains.base, -1, given.atoms[0]);
+}
+
+}  // namespace
+
+void Chains::add_rigid(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
+                       const double *places, std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths) {
+    check_sizes(n_bodies, sizes, n_bonds, base);
+    check_lengths(n_bonds, lengths, base);
+    commit_rigid(sort_rigid(n_bodies, sizes, atoms, 0, places, n_bonds, pairs, lengths), n_bonds);
+}
+
+void Chains::add_rigid_molecules(std::int64_t count, std::int64_t n_atoms, std::int64_t first_atom,
+                                 std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
+                                 const double *places, std::int64_t n_bonds, const std::int64_t *pairs,
+                                 const double *lengths) {
+    const std::int64_t n_held = check_sizes(n_bodies, sizes, n_bonds, base);
+    check_lengths(n_bonds, lengths, base);
+    const std::int64_t first = first_atom < base ? -1 : first_atom - base;
+    if (count < 1 || n_atoms < 2)
+        throw make_error(Status::value, "n_molecules is %lld and n_atoms %lld; they must be at least 1 and 2",
+                         static_cast<long long>(count), static_cast<long long>(n_atoms));
+    if (first < 0 || first >= n_atoms_ || n_atoms > n_atoms_ || count > (n_atoms_ - first) / n_atoms)
+        fail(make_error(Status::index,
+                        "%lld molecules of %lld atoms from atom %lld on reach outside the atoms %d .. %lld",
+                        static_cast<long long>(count), static_cast<long long>(n_atoms),
+                        static_cast<long long>(first_atom), base, number(n_atoms_ - 1, base)),
+             base, -1, first);
+    const auto check = [&](const std::int64_t *list, std::int64_t n, bool bonds) {
+        for (std::int64_t e = 0; e < n; ++e)
+            if (list[e] < base || list[e] - base >= n_atoms)
+                fail(make_error(Status::index, "atom %lld of the molecule is outside %d .. %lld",
+                                static_cast<long long>(list[e]), base, number(n_atoms - 1, base)),
+                     base, bonds ? e / 2 : -1, -1);
+    };
+    check(atoms, n_held, false);
+    check(pairs, 2 * n_bonds, true);
+    std::vector<rigid::Given> all;
+    // Where masses are those of the first copy at the same places, the molecules are its own.
+    const std::vector<rigid::Given> model = sort_rigid(n_bodies, sizes, atoms, first, places, n_bonds, pairs, lengths);
+    for (std::int64_t m = 0; m < count; ++m) {
+        std::vector<rigid::Given> copy = model;
+        bool alike = true;
+        for (rigid::Given &given : copy)
+            for (std::size_t i = 0; i < given.atoms.size(); ++i) {
+                std::int64_t &atom = given.atoms[i];
+                atom += m * n_atoms;
+                const bool held = i >= at(given.n_movable);
+                alike = alike && masses_.w(atom) == given.w[i] &&
+                        (held ? !(bodies_ && bodies_->is_site(atom)) : !use_.used(atom) && !masses_.infinite(atom));
+            }
+        if (!alike) copy = sort_rigid(n_bodies, sizes, atoms, first + m * n_atoms, places, n_bonds, pairs, lengths);
+        for (rigid::Given &given : copy) {
+            for (std::int64_t &bond : given.bond_numbers) bond += m * n_bonds;
+            all.push_back(std::move(given));
+        }
+    }
+    commit_rigid(all, count * n_bonds);
+}
+
+void Chains::commit_rigid(const std::vector<rigid::Given> &molecules, std::int64_t n_bonds) {
+    std::unique_ptr<rigid::Bodies> made;
+    if (!bodies_) made = std::make_unique<rigid::Bodies>();
+    rigid::Bodies &bodies = bodies_ ? *bodies_ : *made;
+    const rigid::Bodies::Mark before = bodies.mark();
+    try {
+        for (const rigid::Given &given : molecules) {
+            try {
+                bodies.add(given);
+            } catch (const rigid::Refusal &refusal) {
+                refuse(*this, given, refusal);
+            }
+        }
+        check_width(box, bodies.longest(), nullptr);
+        check_width(box_of_reference(), bodies.longest(), nullptr);
+    } catch (...) {
+        bodies.roll_back(before);
+        throw;
+    }
+    for (const rigid::Given &given : molecules)
+        for (std::size_t i = 0; i < given.atoms.size(); ++i) {
+            if (i < at(given.n_movable))
+                use_.take(given.atoms[i]);
+            else
+                use_.take_fixed(given.atoms[i]);
+        }
+    if (made) bodies_ = std::move(made);
+    n_bonds_ += n_bonds;
+    changed();
+}
+
+// The same molecules with other masses or lengths; null if there are none.
+std::unique_ptr<rigid::Bodies> Chains::rebuild_bodies(const Masses &masses, const double *lengths) const {
+    if (!bodies_) return nullptr;
+    std::unique_ptr<rigid::Bodies> next = std::make_unique<rigid::Bodies>();
+    std::vector<unsigned char> active;
+    for (std::int64_t m = 0; m < bodies_->n_molecules(); ++m) {
+        rigid::Given given = bodies_->given(m);
+        for (std::size_t i = 0; i < given.atoms.size(); ++i) {
+            const std::int64_t atom = given.atoms[i];
+            const double w = masses.w(atom);
+            given.w.push_back(w);
+            given.masses[i] = w > 0 ? 1 / w : 0;
+            if (bodies_->is_site(atom) && masses.infinite(atom))
+                fail(make_error(Status::value, "the mass of atom %s, a massless site of a body, is infinite",
+                                name_of_atom(atom).text),
+                     base, -1, atom);
+        }
+        for (std::size_t k = 0; lengths && k < given.bonds.size(); ++k)
+            given.bonds[k].length = lengths[given.bond_numbers[k]];
+        try {
+            next->add(given);
+        } catch (const rigid::Refusal &refusal) {
+            refuse(*this, given, refusal);
+        }
+        active.push_back(bodies_->is_active(m));
+    }
+    check_width(box, next->longest(), nullptr);
+    check_width(box_of_reference(), next->longest(), nullptr);
+    next->set_active(active.data());
+    return next;
+}
+
+}  // namespace holonomic

@@ -1,0 +1,215 @@
+#include "core/rigid/bodies.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/rigid/system.hpp"
+
+namespace holonomic::rigid {
+
+namespace {
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+// FNV-1a over words.
+class Hash {
+public:
+    void take(double x) {
+        std::uint64_t word;
+        std::memcpy(&word, &x, sizeof word);
+        value_ = (value_ ^ word) * UINT64_C(1099511628211);
+        value_ ^= value_ >> 29;
+    }
+    std::uint64_t value() const { return value_; }
+
+private:
+    std::uint64_t value_ = UINT64_C(14695981039346656037);
+};
+
+std::uint64_t hash_of(const std::vector<double> &words) {
+    Hash hash;
+    for (const double word : words) hash.take(word);
+    return hash.value();
+}
+
+bool same_words(const double *a, const double *b, std::size_t n) { return std::memcmp(a, b, n * sizeof(double)) == 0; }
+
+std::vector<double> signature_of(const Given &given) {
+    std::vector<double> words;
+    words.reserve(8 + given.sizes.size() + given.place.size() + 2 * given.masses.size() + 3 * given.bonds.size());
+    const auto count = [&](std::size_t n) { words.push_back(static_cast<double>(n)); };
+    count(given.sizes.size());
+    count(given.atoms.size());
+    count(given.bonds.size());
+    words.push_back(given.n_movable);
+    for (const std::int32_t size : given.sizes) words.push_back(size);
+    words.insert(words.end(), given.place.begin(), given.place.end());
+    words.insert(words.end(), given.masses.begin(), given.masses.end());
+    words.insert(words.end(), given.w.begin(), given.w.end());
+    for (const Bond &bond : given.bonds) {
+        words.push_back(bond.i);
+        words.push_back(bond.j);
+        words.push_back(bond.length);
+    }
+    return words;
+}
+
+}  // namespace
+
+std::int32_t Bodies::find_body(std::int32_t n, const double *masses, const double *place) {
+    Hash hash;
+    for (std::int32_t a = 0; a < n; ++a) hash.take(masses[a]);
+    for (std::int32_t a = 0; a < 3 * n; ++a) hash.take(place[a]);
+    const auto range = kind_of_hash_.equal_range(hash.value());
+    for (auto found = range.first; found != range.second; ++found) {
+        const Body &body = kinds_[at(found->second)];
+        if (body.n_atoms == n && same_words(body.masses.data(), masses, at(n)) &&
+            same_words(body.place.data(), place, 3 * at(n)))
+            return found->second;
+    }
+    const std::int32_t number = static_cast<std::int32_t>(kinds_.size());
+    kinds_.push_back(make_body(n, masses, place));
+    kind_of_hash_.emplace(hash.value(), number);
+    return number;
+}
+
+std::int32_t Bodies::find_shape(const Given &given) {
+    std::vector<double> words = signature_of(given);
+    if (!molecules_.empty()) {  // most are like the one before
+        const std::int32_t last = molecules_.back().shape;
+        const std::vector<double> &its = shapes_[at(last)].signature;
+        if (its.size() == words.size() && same_words(its.data(), words.data(), words.size())) return last;
+    }
+    const std::uint64_t hash = hash_of(words);
+    const auto range = shape_of_hash_.equal_range(hash);
+    for (auto found = range.first; found != range.second; ++found) {
+        const std::vector<double> &its = shapes_[at(found->second)].signature;
+        if (its.size() == words.size() && same_words(its.data(), words.data(), words.size())) return found->second;
+    }
+    Shape shape;
+    shape.signature = std::move(words);
+    shape.n_atoms = static_cast<std::int32_t>(given.atoms.size());
+    shape.n_movable = given.n_movable;
+    shape.mass = given.masses;
+    shape.bonds = given.bonds;
+    for (std::size_t b = 0; b < given.sizes.size(); ++b) {
+        try {
+            const std::int32_t body = find_body(given.sizes[b], given.masses.data() + shape.n_held,
+                                                given.place.data() + 3 * std::ptrdiff_t{shape.n_held});
+            shape.parts.push_back({body, shape.n_held, 0});
+        } catch (const BodyFault &fault) {
+            const std::int32_t atom = fault.atom < 0 ? -1 : shape.n_held + fault.atom;
+            throw Refusal{Refusal::of_body, {fault.cause, atom}, {}, static_cast<std::int64_t>(b)};
+        }
+        shape.n_held += given.sizes[b];
+    }
+    try {
+        complete(shape, kinds_, given.w);
+    } catch (const Unsolvable &unsolvable) {
+        throw Refusal{Refusal::of_bonds, {}, unsolvable, 0};
+    }
+    const std::int32_t number = static_cast<std::int32_t>(shapes_.size());
+    scratch_bytes_ = std::max(scratch_bytes_, System::bytes(shape));
+    longest_ = std::max(longest_, shape.longest);
+    shapes_.push_back(std::move(shape));
+    shape_of_hash_.emplace(hash, number);
+    return number;
+}
+
+void Bodies::add(const Given &given) {
+    const std::int32_t number = find_shape(given);
+    const Shape &its = shapes_[at(number)];
+    molecules_.push_back({number, static_cast<std::int64_t>(atoms_.size()), static_cast<std::int64_t>(bonds_.size())});
+    atoms_.insert(atoms_.end(), given.atoms.begin(), given.atoms.end());
+    bonds_.insert(bonds_.end(), given.bond_numbers.begin(), given.bond_numbers.end());
+    for (std::int32_t a = 0; a < its.n_held; ++a)
+        if (given.masses[at(a)] == 0) sites_.insert(given.atoms[at(a)]);
+    fixed_.insert(fixed_.end(), given.atoms.begin() + its.n_movable, given.atoms.end());
+    if (!active_.empty()) active_.push_back(1);
+    work_ += its.n_rows + its.n_atoms;
+}
+
+Given Bodies::given(std::int64_t molecule) const {
+    const Shape &its = shape(molecule);
+    Given given;
+    const std::int64_t *const list = atoms(molecule), *const numbers = bonds(molecule);
+    given.atoms.assign(list, list + its.n_atoms);
+    given.bonds = its.bonds;
+    given.bond_numbers.assign(numbers, numbers + its.bonds.size());
+    given.n_movable = its.n_movable;
+    given.masses = its.mass;
+    for (const Part &part : its.parts) {
+        const Body &kind = body(part);
+        given.sizes.push_back(kind.n_atoms);
+        given.place.insert(given.place.end(), kind.place.begin(), kind.place.end());
+    }
+    return given;
+}
+
+Bodies::Mark Bodies::mark() const {
+    return {molecules_.size(), kinds_.size(),  shapes_.size(), atoms_.size(),  bonds_.size(),
+            fixed_.size(),     active_.size(), longest_,       scratch_bytes_, work_};
+}
+
+void Bodies::roll_back(const Mark &before) {
+    for (std::size_t i = before.atoms; i < atoms_.size(); ++i) sites_.erase(atoms_[i]);
+    const auto forget = [](std::unordered_multimap<std::uint64_t, std::int32_t> &numbers, std::size_t n) {
+        for (auto entry = numbers.begin(); entry != numbers.end();)
+            entry = at(entry->second) < n ? std::next(entry) : numbers.erase(entry);
+    };
+    forget(kind_of_hash_, before.kinds);
+    forget(shape_of_hash_, before.shapes);
+    kinds_.erase(kinds_.begin() + static_cast<std::ptrdiff_t>(before.kinds), kinds_.end());
+    shapes_.erase(shapes_.begin() + static_cast<std::ptrdiff_t>(before.shapes), shapes_.end());
+    molecules_.erase(molecules_.begin() + static_cast<std::ptrdiff_t>(before.molecules), molecules_.end());
+    atoms_.resize(before.atoms);
+    bonds_.resize(before.bonds);
+    fixed_.resize(before.fixed);
+    active_.resize(before.active);
+    longest_ = before.longest;
+    scratch_bytes_ = before.scratch_bytes;
+    work_ = before.work;
+}
+
+void Bodies::set_active(const unsigned char *active) {
+    if (active)
+        active_.assign(active, active + n_molecules());
+    else
+        active_.clear();
+}
+
+std::int64_t Bodies::constraints(int dimensions) const {
+    std::vector<std::int64_t> of_shape(shapes_.size(), -1);
+    std::int64_t sum = 0;
+    for (std::int64_t m = 0; m < n_molecules(); ++m) {
+        if (!is_active(m)) continue;
+        const Shape &its = shape(m);
+        std::int64_t &taken = of_shape[at(molecules_[at(m)].shape)];
+        if (taken < 0) {
+            taken = 0;
+            for (const Bond &bond : its.bonds) taken += bond.row >= 0;
+            for (const Part &part : its.parts) {
+                const Body &kind = body(part);
+                const int left = dimensions == 2 ? 3 : kind.rank == 1 ? 5 : 6;
+                taken += dimensions * kind.n_massive - left;
+            }
+        }
+        sum += taken;
+    }
+    return sum;
+}
+
+std::int64_t Bodies::bytes() const {
+    std::int64_t sum =
+        static_cast<std::int64_t>(sizeof *this + molecules_.capacity() * sizeof(Molecule) + active_.capacity() +
+                                  (atoms_.capacity() + bonds_.capacity() + fixed_.capacity()) * sizeof(std::int64_t)) +
+        static_cast<std::int64_t>(32 * sites_.size());
+    for (const Shape &its : shapes_) sum += its.bytes();
+    for (const Body &kind : kinds_)
+        sum +=
+            static_cast<std::int64_t>((kind.masses.capacity() + kind.place.capacity()) * sizeof(double) +
+                                      (kind.y.capacity() + kind.share.capacity()) * sizeof(DoublePair) + sizeof kind);
+    return sum;
+}
+
+}  // namespace holonomic::rigid

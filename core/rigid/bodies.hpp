@@ -1,0 +1,98 @@
+// The molecules of a set that have rigid bodies. Their numbers follow those of all other molecules of the set.
+#ifndef HOLONOMIC_RIGID_BODIES_HPP
+#define HOLONOMIC_RIGID_BODIES_HPP
+
+#include <cstdint>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "core/rigid/shape.hpp"
+
+namespace holonomic::rigid {
+
+// Bodies and bonds of one molecule as they are given; atoms are the caller's, counted from 0.
+struct Given {
+    std::vector<std::int32_t> sizes;  // of the bodies
+    std::vector<std::int64_t> atoms;  // bodies' atoms, others that can move, fixed ones
+    std::vector<double> place;        // [atoms of bodies][3]
+    std::vector<double> masses;       // [atoms], 0: site; of fixed atoms 0
+    std::vector<double> w;            // [atoms]
+    std::int32_t n_movable = 0;
+    std::vector<Bond> bonds;
+    std::vector<std::int64_t> bond_numbers;  // in the arrays per bond
+};
+
+// What makes given bodies impossible: a body's fault or that of their bonds.
+struct Refusal {
+    enum Cause { of_body, of_bonds } cause;
+    BodyFault fault;
+    Unsolvable unsolvable;
+    std::int64_t body;  // of the molecule's
+};
+
+class Bodies {
+public:
+    std::int64_t n_molecules() const { return static_cast<std::int64_t>(molecules_.size()); }
+    std::int64_t n_shapes() const { return static_cast<std::int64_t>(shapes_.size()); }
+    const Shape &shape(std::int64_t molecule) const {
+        return shapes_[static_cast<std::size_t>(molecules_[static_cast<std::size_t>(molecule)].shape)];
+    }
+    std::int32_t shape_number(std::int64_t molecule) const {
+        return molecules_[static_cast<std::size_t>(molecule)].shape;
+    }
+    const std::int64_t *atoms(std::int64_t molecule) const {
+        return atoms_.data() + molecules_[static_cast<std::size_t>(molecule)].first_atom;
+    }
+    const std::int64_t *bonds(std::int64_t molecule) const {
+        return bonds_.data() + molecules_[static_cast<std::size_t>(molecule)].first_bond;
+    }
+    const Body *kinds() const { return kinds_.data(); }
+    const Body &body(const Part &part) const { return kinds_[static_cast<std::size_t>(part.body)]; }
+    bool is_active(std::int64_t molecule) const {
+        return active_.empty() || active_[static_cast<std::size_t>(molecule)] != 0;
+    }
+    bool is_site(std::int64_t atom) const { return sites_.count(atom) > 0; }
+    // [n_molecules] or null: all
+    void set_active(const unsigned char *active);
+    double longest() const { return longest_; }  // of what is taken as a nearest image
+    std::int64_t scratch_bytes() const { return scratch_bytes_; }
+    std::int64_t work() const { return work_; }  // rows of all molecules
+    // That active ones take from the freedoms of the atoms that have mass.
+    std::int64_t constraints(int dimensions) const;
+    const std::vector<std::int64_t> &fixed_atoms() const { return fixed_; }
+    std::int64_t bytes() const;
+
+    // Adds a molecule. Throws Refusal or std::bad_alloc; roll_back then takes away what has been added since.
+    void add(const Given &given);
+    struct Mark {
+        std::size_t molecules, kinds, shapes, atoms, bonds, fixed, active;
+        double longest;
+        std::int64_t scratch_bytes, work;
+    };
+    Mark mark() const;
+    void roll_back(const Mark &before);
+    // As it was given, but for w of its atoms: to build the set again.
+    Given given(std::int64_t molecule) const;
+
+private:
+    struct Molecule {
+        std::int32_t shape;
+        std::int64_t first_atom, first_bond;
+    };
+    std::int32_t find_shape(const Given &given);
+    std::int32_t find_body(std::int32_t n, const double *masses, const double *place);
+
+    std::vector<Body> kinds_;
+    std::unordered_multimap<std::uint64_t, std::int32_t> kind_of_hash_, shape_of_hash_;
+    std::vector<Shape> shapes_;
+    std::vector<Molecule> molecules_;
+    std::vector<std::int64_t> atoms_, bonds_, fixed_;
+    std::unordered_set<std::int64_t> sites_;
+    std::vector<unsigned char> active_;
+    double longest_ = 0;
+    std::int64_t scratch_bytes_ = 0, work_ = 0;
+};
+
+}  // namespace holonomic::rigid
+#endif

@@ -1,0 +1,56 @@
+// A kind of rigid body: its mass and its atoms' places in whitened coordinates.
+//
+// With X reference positions, c = sum m X / M, x = X - c and S = sum m x x^T / M, the frame of S has the axes e_p and
+// the lengths L_p = sqrt of its eigenvalues; y_ap = e_p.x_a / L_p. A body's motion is that of its centre c and of rank
+// vectors u_p (L_p e_p in the reference):
+//
+//     r_a = c + sum_p y_ap u_p,    c = sum_a (m_a/M) r_a,    u_p = sum_a (m_a y_ap / M) r_a,    u_p.u_q = L_p^2 [p = q]
+//
+// because sum m y = 0 and sum m y y^T = M 1: as far as masses go, c and the u_p are points of mass M each, and what
+// keeps the body rigid is rank (rank+1)/2 products of them, whatever the number of its atoms. A massless site is
+// carried along: its force goes to c and the u_p like the others'.
+#ifndef HOLONOMIC_RIGID_BODY_HPP
+#define HOLONOMIC_RIGID_BODY_HPP
+
+#include <cstdint>
+#include <vector>
+
+#include "core/double_pair.hpp"
+
+namespace holonomic::rigid {
+
+struct Body {
+    std::int32_t n_atoms;
+    std::int32_t rank;       // 1: on a line, 2: in a plane, 3
+    std::int32_t n_massive;  // atoms that are no sites
+    double mass, inverse_mass;
+    double length[3];               // L_p, descending
+    DoublePair square[3];           // L_p^2
+    double extent;                  // the largest distance of an atom from the centre
+    std::vector<double> masses;     // [n_atoms], 0: a massless site
+    std::vector<double> place;      // [n_atoms][3] the reference coordinates as they were given
+    std::vector<DoublePair> y;      // [n_atoms][rank]
+    std::vector<DoublePair> share;  // [n_atoms][1 + rank]: m/M, m y_p / M
+};
+
+// What makes a body impossible; `atom` within it, -1 if it is none in particular.
+struct BodyFault {
+    enum Cause { no_mass, one_mass, one_point, not_finite, size, outside, light } cause;
+    std::int32_t atom;
+};
+
+// masses [n], of which 0 are sites; place [n][3]. Throws BodyFault.
+Body make_body(std::int32_t n, const double *masses, const double *place);
+
+// "has no mass", ...
+const char *fault_in_words(BodyFault::Cause cause);
+
+// Which atom of a body is nearest to one of those before it, so that images are taken step by step: pairs of an atom
+// and the one before it, beginning at `first`.
+struct Step {
+    std::int32_t atom, before;
+};
+std::vector<Step> nearest_steps(const Body &body, std::int32_t first);
+
+}  // namespace holonomic::rigid
+#endif

@@ -1,0 +1,173 @@
+// Accelerations: forces, and the multipliers of given right-hand sides.
+#include <cmath>
+
+#include "core/rigid/rates.hpp"
+#include "core/rigid/run.hpp"
+#include "core/rigid/verbs.hpp"
+
+namespace holonomic::rigid {
+
+namespace {
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+struct Outputs {
+    double *lambda, *tension;
+    AtomArray g;
+    bool add;
+};
+
+bool is_finite(const PairVector &a) { return std::isfinite(a.x.hi) && std::isfinite(a.y.hi) && std::isfinite(a.z.hi); }
+
+void write_force(const Outputs &out, std::int64_t atom, const PairVector &force, bool add) {
+    double x[3] = {rounded(force.x), rounded(force.y), rounded(force.z)};
+    if (add) {
+        double before[3];
+        read_atom(out.g, atom, before);
+        for (int c = 0; c < 3; ++c) x[c] = before[c] + x[c];
+    }
+    write_atom(out.g, atom, x);
+}
+
+// z: accelerations of the nodes.
+void write(const System &system, const Place &place, const PairVector *z, const AtomArray &f, const Outputs &out,
+           bool virial, Tally &tally) {
+    const Shape &s = system.shape();
+    for (std::size_t k = 0; k < s.bonds.size(); ++k) {
+        const std::int32_t row = s.bonds[k].row;
+        const double t = row < 0 ? 0 : rounded(system.t[row]);
+        if (out.lambda) out.lambda[place.bonds[k]] = t / 2;
+        if (!out.tension) continue;
+        const Vector3<double> d =
+            row < 0 ? Vector3<double>{0, 0, 0} : rounded(system.bond_vector(system.now, static_cast<std::int32_t>(k)));
+        out.tension[place.bonds[k]] = t * std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+    }
+    if (virial) system.add_virial(system.now, system.t, 1, tally.virial);
+    if (!out.g.x) return;
+    for (std::int32_t i = 0; i < s.n_held; ++i) {
+        double x[3] = {0, 0, 0};
+        if (f.x) read_atom(f, place.atoms[i], x);
+        const PairVector applied = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
+        write_force(out, place.atoms[i], s.mass[at(i)] * system.at_atom(z, i) - applied, out.add);
+    }
+    if (s.n_held == s.n_atoms) return;
+    system.pulls(system.now, system.t, system.b);
+    for (std::int32_t i = s.n_held; i < s.n_atoms; ++i)
+        write_force(out, place.atoms[i], system.b[s.node_of[at(i)]], out.add || i >= s.n_movable);
+}
+
+bool all_finite(const System &system, const PairVector *z) {
+    const Shape &s = system.shape();
+    bool finite = true;
+    for (std::int32_t n = 0; n < s.n_nodes; ++n) finite = finite && is_finite(z[n]) && is_finite(system.now.q[n]);
+    for (std::int32_t i = 0; i < s.n_atoms; ++i) finite = finite && is_finite(system.now.x[i]);
+    return finite;
+}
+
+struct ForcesWork final : Work {
+    AtomArray r, v, f;
+    const Box &box;
+    const BoxRate *rate;
+    Outputs out;
+    bool virial, in_order;
+
+    ForcesWork(const Chains &chains, const AtomArray &r_, const AtomArray &v_, const AtomArray &f_, const Outputs &out_,
+               bool virial_)
+        : r(r_), v(v_), f(f_), box(chains.box), rate(chains.box_rate()), out(out_), virial(virial_),
+          in_order(out_.g.x && !chains.bodies()->fixed_atoms().empty()) {}
+    bool is_in_order() const override { return in_order; }
+
+    Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
+        const Shape &s = system.shape();
+        system.read(r, box, place, system.now);
+        system.differentiate(system.now);
+        const bool moves = v.x || rate;
+        if (v.x) system.velocities(v, place, system.b);
+        if (moves)
+            for_rates(system, v.x ? system.b : nullptr, rate,
+                      [&](std::int32_t row, std::int32_t, bool square, const PairVector &, const PairVector &,
+                          const PairVector &u, const PairVector &w) {
+                          const DoublePair product = dot(u, w);
+                          system.c[row] = square ? product : 2.0 * product;
+                      });
+        PairVector *const z = system.a;
+        if (f.x) system.forces(f, place, z);
+        for (std::int32_t n = 0; n < s.n_nodes; ++n)
+            z[n] = f.x ? s.w[at(n)] * z[n] : PairVector{as_pair(0), as_pair(0), as_pair(0)};
+        const Outcome outcome = system.project(system.now, moves ? system.c : nullptr, z, system.t);
+        if (outcome != Outcome::good) return outcome;
+        if (!all_finite(system, z)) return Outcome::not_finite;
+        write(system, place, z, f, out, virial, tally);
+        return outcome;
+    }
+};
+
+struct SolveWork final : Work {
+    AtomArray r;
+    const Box &box;
+    const double *rhs;
+    Outputs out;
+    bool virial, in_order;
+
+    SolveWork(const Chains &chains, const AtomArray &r_, const double *rhs_, const Outputs &out_, bool virial_)
+        : r(r_), box(chains.box), rhs(rhs_), out(out_), virial(virial_),
+          in_order(out_.g.x && !chains.bodies()->fixed_atoms().empty()) {}
+    bool is_in_order() const override { return in_order; }
+
+    Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
+        const Shape &s = system.shape();
+        system.read(r, box, place, system.now);
+        system.differentiate(system.now);
+        for (std::int32_t k = 0; k < s.n_rows; ++k) {
+            const std::int32_t bond = s.bond_of_row[at(k)];
+            system.c[k] = as_pair(bond < 0 ? 0 : rhs[place.bonds[bond]] / 2);
+        }
+        PairVector *const z = system.a;
+        for (std::int32_t n = 0; n < s.n_nodes; ++n) z[n] = {as_pair(0), as_pair(0), as_pair(0)};
+        const Outcome outcome = system.project(system.now, system.c, z, system.t);
+        if (outcome != Outcome::good) return outcome;
+        if (!all_finite(system, z)) return Outcome::not_finite;
+        write(system, place, z, AtomArray{}, out, virial, tally);
+        return outcome;
+    }
+};
+
+void add_virial(const Tally &tally, double *virial) {
+    const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    for (int i = 0; i < 9; ++i) virial[i] += tally.virial[place[i]];
+}
+
+}  // namespace
+
+void clear_fixed(const Chains &chains, const AtomArray &g) {
+    const double none[3] = {0, 0, 0};
+    const Bodies &bodies = *chains.bodies();
+    for (std::int64_t m = 0; !bodies.fixed_atoms().empty() && m < bodies.n_molecules(); ++m) {
+        if (!bodies.is_active(m)) continue;
+        const Shape &s = bodies.shape(m);
+        for (std::int32_t i = s.n_movable; i < s.n_atoms; ++i) write_atom(g, bodies.atoms(m)[i], none);
+    }
+}
+
+void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
+            double *tension, const AtomArray &g, bool add, double *virial) {
+    const Found found = run(chains, ForcesWork(chains, r, v, f, {lambda, tension, g, add}, virial != nullptr));
+    if (found.tally.n_bad > 0) {
+        const Named arrays[] = {{"position", &r}, {"velocity", &v}, {"force", &f}};
+        throw error_of(chains, found, arrays, 3);
+    }
+    if (virial) add_virial(found.tally, virial);
+}
+
+void solve(const Chains &chains, const AtomArray &r, const double *rhs, double *lambda, const AtomArray &g, bool add,
+           double *virial) {
+    const Found found = run(chains, SolveWork(chains, r, rhs, {lambda, nullptr, g, add}, virial != nullptr));
+    if (found.tally.n_bad > 0) {
+        const Named arrays[] = {{"position", &r}};
+        throw error_of_values(chains, found.tally.first_bad - chains.n_chains(), rhs, "right-hand side",
+                              error_of(chains, found, arrays, 1));
+    }
+    if (virial) add_virial(found.tally, virial);
+}
+
+}  // namespace holonomic::rigid

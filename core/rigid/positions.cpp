@@ -1,0 +1,173 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/rigid/run.hpp"
+#include "core/rigid/verbs.hpp"
+
+namespace holonomic::rigid {
+
+namespace {
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+// Below this residuals are far beyond the rounding of coordinates, and multipliers have all their digits.
+constexpr double exact = 1e-20;
+
+double size_of(const PairVector &a) {
+    const Vector3<double> v = rounded(a);
+    return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+struct PositionsWork final : Work {
+    AtomArray r_ref, r, v;
+    const Box &box_ref, &box;
+    double dt, *lambda, tolerance;
+    int most_iterations;
+    bool virial, report, check;
+
+    PositionsWork(const Chains &chains, const AtomArray &r_ref_, const AtomArray &r_, const AtomArray &v_, double dt_,
+                  double *lambda_, bool virial_, bool report_)
+        : r_ref(r_ref_), r(r_), v(v_), box_ref(chains.box_of_reference()), box(chains.box), dt(dt_), lambda(lambda_),
+          tolerance(chains.tolerance), most_iterations(chains.max_iterations), virial(virial_), report(report_),
+          check(chains.checks() != Checks::never) {}
+
+    // Whether everything is where it should be, to the rounding of the coordinates. system.t: residuals of rows.
+    bool is_done(const System &system) const {
+        const Shape &s = system.shape();
+        double largest = 0;
+        for (std::int64_t i = 0; i < 3 * std::int64_t{s.n_atoms}; ++i)
+            largest = std::max(largest, std::fabs(system.raw[i]));
+        const double rounding = (r.is_float ? 1.2e-7 : std::numeric_limits<double>::epsilon()) * largest;
+        for (std::int32_t k = 0; k < s.n_rows; ++k)
+            if (!(std::fabs(system.t[k].hi) <= std::max(tolerance / 2 * s.scale[at(k)], rounding * s.reach[at(k)])))
+                return false;
+        for (std::int32_t i = 0; i < s.n_held; ++i) {
+            const double size = system.body(s.parts[at(s.part_of[at(i)])]).extent;
+            if (!(size_of(system.at_atom(system.now.q, i) - system.now.x[i]) <=
+                  std::max(2 * rounding, tolerance / 2 * size)))
+                return false;
+        }
+        return true;
+    }
+
+    bool is_stretched(const System &system) const {
+        const Shape &s = system.shape();
+        for (std::int32_t k = 0; k < s.n_rows; ++k) {
+            const std::int32_t bond = s.bond_of_row[at(k)];
+            if (bond >= 0 && size_of(system.bond_vector(system.now, bond)) > most_stretched * s.bonds[at(bond)].length)
+                return true;
+        }
+        for (std::int32_t i = 0; i < s.n_held; ++i) {
+            const Part &part = s.parts[at(s.part_of[at(i)])];
+            if (size_of(system.now.x[i] - system.now.q[part.first_node]) > most_stretched * system.body(part).extent)
+                return true;
+        }
+        return false;
+    }
+
+    void note(const Place &place, int iterations, bool corrected, double error, std::int32_t bond, Tally &tally) const {
+        if (!report) return;
+        tally.iterations = std::max<std::int64_t>(tally.iterations, iterations);
+        tally.n_corrected += corrected;
+        if (!is_worse(tally, error, place.number)) return;
+        tally.worst = error;
+        tally.worst_chain = place.number;
+        tally.worst_bond = bond;
+    }
+
+    void write_lambda(const System &system, const Place &place, double factor) const {
+        const Shape &s = system.shape();
+        for (std::size_t k = 0; lambda && k < s.bonds.size(); ++k)
+            lambda[place.bonds[k]] = s.bonds[k].row < 0 ? 0 : factor * rounded(system.t[s.bonds[k].row]);
+    }
+
+    Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
+        const Shape &s = system.shape();
+        system.read(r_ref, box_ref, place, system.reference);
+        system.read(r, box, place, system.now);
+        std::int32_t worst_bond;
+        const double before = system.residuals(system.now, system.t, &worst_bond);
+        if (!std::isfinite(before)) return Outcome::not_finite;
+        if (check && is_stretched(system)) return Outcome::stretched;
+        if (is_done(system)) {
+            std::fill(system.t, system.t + s.n_rows, as_pair(0));
+            write_lambda(system, place, 1);
+            note(place, 0, false, before, worst_bond, tally);
+            return Outcome::good;
+        }
+        system.differentiate(system.reference);
+        int iterations;
+        double error;
+        const Outcome outcome = system.restore(system.reference, system.now, std::max(tolerance, exact),
+                                               most_iterations, system.t, &iterations, &error);
+        if (outcome != Outcome::good) return outcome;
+        double sum = 0;
+        for (std::int32_t i = 0; i < s.n_movable; ++i)
+            sum += size_of(system.at_atom(system.now.q, i)) + size_of(system.now.x[i]) + size_of(system.reference.x[i]);
+        if (!std::isfinite(sum)) return Outcome::not_finite;
+        write_atoms(system, place);
+        write_lambda(system, place, 0.5 / (dt * dt));
+        if (virial) system.add_virial(system.reference, system.t, 1 / (dt * dt), tally.virial);
+        note(place, iterations, true, error, -1, tally);
+        return outcome;
+    }
+
+    // Sites have no momentum of their own: their velocities are those of the body at their places.
+    void write_atoms(const System &system, const Place &place) const {
+        const Shape &s = system.shape();
+        for (std::int32_t i = 0; i < s.n_movable; ++i) {
+            const PairVector moved = system.at_atom(system.now.q, i) - system.now.x[i];
+            const double *const from = system.raw + 3 * std::ptrdiff_t{i};
+            const double x[3] = {rounded(as_pair(from[0]) + moved.x), rounded(as_pair(from[1]) + moved.y),
+                                 rounded(as_pair(from[2]) + moved.z)};
+            write_atom(r, place.atoms[i], x);
+            if (!v.x || s.mass[at(i)] == 0) continue;
+            double u[3];
+            read_atom(v, place.atoms[i], u);
+            u[0] += rounded(moved.x) / dt;
+            u[1] += rounded(moved.y) / dt;
+            u[2] += rounded(moved.z) / dt;
+            write_atom(v, place.atoms[i], u);
+        }
+        if (!v.x) return;
+        bool any = false;
+        for (std::int32_t i = 0; i < s.n_held; ++i) any = any || s.mass[at(i)] == 0;
+        if (!any) return;
+        system.velocities(v, place, system.a);
+        for (std::int32_t i = 0; i < s.n_held; ++i) {
+            if (s.mass[at(i)] > 0) continue;
+            const Vector3<double> u = rounded(system.at_atom(system.a, i));
+            const double x[3] = {u.x, u.y, u.z};
+            write_atom(v, place.atoms[i], x);
+        }
+    }
+};
+
+}  // namespace
+
+void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomArray &r, const AtomArray &v, double dt,
+                       double *lambda, double *virial, Report *report) {
+    const Found found =
+        run(chains, PositionsWork(chains, r_ref, r, v, dt, lambda, virial != nullptr, report != nullptr));
+    const Tally &tally = found.tally;
+    if (report) {
+        report->iterations = std::max(report->iterations, tally.iterations);
+        report->n_corrected += tally.n_corrected;
+        report->n_failed += tally.n_bad;
+        report->made = true;
+        if (tally.worst_chain >= 0 && (report->chain < 0 || tally.worst > report->max_error)) {
+            report->max_error = tally.worst;
+            report->chain = tally.worst_chain + chains.base;
+            report->bond = tally.worst_bond < 0 ? -1 : tally.worst_bond + chains.base;
+        }
+    }
+    if (tally.n_bad > 0) {
+        const Named arrays[] = {{"reference position", &r_ref}, {"position", &r}};
+        throw error_of(chains, found, arrays, 2);
+    }
+    const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    for (int i = 0; virial && i < 9; ++i) virial[i] += tally.virial[place[i]];
+}
+
+}  // namespace holonomic::rigid

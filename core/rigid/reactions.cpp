@@ -1,0 +1,84 @@
+// What multipliers of bonds do in molecules with bodies. Bonds alone: what holds a body together is not in them.
+#include <algorithm>
+#include <cmath>
+
+#include "core/rigid/run.hpp"
+#include "core/rigid/verbs.hpp"
+
+namespace holonomic::rigid {
+
+namespace {
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+struct ReactionsWork final : Work {
+    AtomArray r;
+    const Box &box;
+    const double *lambda;
+    Reactions out;
+    bool in_order;
+
+    ReactionsWork(const Chains &chains, const AtomArray &r_, const Box &box_, const double *lambda_,
+                  const Reactions &out_)
+        : r(r_), box(box_), lambda(lambda_), out(out_), in_order(out.g.x && !chains.bodies()->fixed_atoms().empty()) {}
+    bool is_in_order() const override { return in_order; }
+
+    Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
+        const Shape &s = system.shape();
+        system.read(r, box, place, system.now);
+        double size = 0;
+        for (const Bond &bond : s.bonds) {
+            if (bond.row < 0) continue;
+            const std::int32_t k = static_cast<std::int32_t>(&bond - s.bonds.data());
+            const Vector3<double> d = rounded(system.bond_vector(system.now, k));
+            const double square = d.x * d.x + d.y * d.y + d.z * d.z, t = 2 * lambda[place.bonds[k]];
+            size += std::fabs(t) * (square + 4 * std::sqrt(square)) + square;
+        }
+        if (!std::isfinite(size)) return Outcome::not_finite;
+        double *const force = system.raw;  // positions have been read
+        std::fill(force, force + 3 * std::ptrdiff_t{s.n_atoms}, 0.0);
+        for (const Bond &bond : s.bonds) {
+            const std::int32_t k = static_cast<std::int32_t>(&bond - s.bonds.data());
+            const std::int64_t number = place.bonds[k];
+            if (bond.row < 0) {
+                if (out.tension) out.tension[number] = 0;
+                if (out.bond_virial) std::fill(out.bond_virial + 6 * number, out.bond_virial + 6 * number + 6, 0.0);
+                continue;
+            }
+            const Vector3<double> v = rounded(system.bond_vector(system.now, k));
+            const double d[3] = {v.x, v.y, v.z}, t = 2 * lambda[number];
+            if (out.tension) out.tension[number] = t * std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+            double w[6], *next = w;
+            for (int a = 0; a < 3; ++a) {
+                force[3 * bond.i + a] += t * d[a];
+                force[3 * bond.j + a] -= t * d[a];
+                for (int b = a; b < 3; ++b) *next++ = 0 - t * d[a] * d[b];
+            }
+            if (out.bond_virial) std::copy(w, w + 6, out.bond_virial + 6 * number);
+            for (int c = 0; out.virial && c < 6; ++c) tally.virial[c] += w[c];
+        }
+        for (std::int32_t i = 0; out.g.x && i < s.n_atoms; ++i) {
+            double x[3] = {0, 0, 0};
+            if (out.add || i >= s.n_movable) read_atom(out.g, place.atoms[i], x);
+            for (int c = 0; c < 3; ++c) x[c] += force[3 * at(i) + at(c)];
+            write_atom(out.g, place.atoms[i], x);
+        }
+        return Outcome::good;
+    }
+};
+
+}  // namespace
+
+void reactions(const Chains &chains, const AtomArray &r, const Box &box, const double *lambda, const Reactions &out,
+               double *virial) {
+    const Found found = run(chains, ReactionsWork(chains, r, box, lambda, out));
+    if (found.tally.n_bad > 0) {
+        const Named arrays[] = {{"position", &r}};
+        throw error_of_values(chains, found.tally.first_bad - chains.n_chains(), lambda, "multiplier",
+                              error_of(chains, found, arrays, 1));
+    }
+    const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    for (int i = 0; virial && i < 9; ++i) virial[i] += found.tally.virial[place[i]];
+}
+
+}  // namespace holonomic::rigid

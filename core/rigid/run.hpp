@@ -1,0 +1,71 @@
+// Goes through the molecules with rigid bodies, on as many threads as the work is worth.
+#ifndef HOLONOMIC_RIGID_RUN_HPP
+#define HOLONOMIC_RIGID_RUN_HPP
+
+#include "core/kernels/tally.hpp"
+#include "core/molecules/chains.hpp"
+#include "core/rigid/bodies.hpp"
+#include "core/rigid/system.hpp"
+
+namespace holonomic::rigid {
+
+// What a call has found: sums, and why the first bad molecule is bad. Numbers of molecules are those of the set.
+struct Found {
+    Tally tally;
+    Outcome first_outcome;
+};
+
+// What a verb does with one molecule. Nothing of a molecule that is not good has been written.
+class Work {
+public:
+    virtual Outcome molecule(const System &system, const Place &place, Tally &tally) const = 0;
+    // Whether molecules add to atoms that they share, fixed ones: one after the other.
+    virtual bool is_in_order() const { return false; }
+
+protected:
+    ~Work() = default;
+};
+
+// Throws std::bad_alloc before anything is done. Results do not depend on the number of threads.
+Found run(const Chains &chains, const Work &work);
+
+// The error of the first bad molecule, once all others are complete.
+struct Named {
+    const char *what;
+    const AtomArray *array;
+};
+Error error_of(const Chains &chains, const Found &found, const Named *arrays, int n_arrays);
+
+// The same, or that of a value per bond that is not finite, if there is one.
+Error error_of_values(const Chains &chains, std::int64_t molecule, const double *values, const char *what,
+                      const Error &otherwise);
+
+// Runs the parts of a call one after the other, each to its end; then throws the first Error, with all bad molecules
+// counted.
+class Parts {
+public:
+    template <class Part>
+    void run(const Part &part) {
+        try {
+            part();
+        } catch (const Error &error) {
+            if (error.n_bad == 0) throw;
+            if (failed_)
+                error_.n_bad += error.n_bad;
+            else
+                error_ = error;
+            failed_ = true;
+        }
+    }
+    // Throws if one has failed.
+    void finish() const {
+        if (failed_) throw error_;
+    }
+
+private:
+    bool failed_ = false;
+    Error error_{};
+};
+
+}  // namespace holonomic::rigid
+#endif

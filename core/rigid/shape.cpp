@@ -1,0 +1,250 @@
+#include "core/rigid/shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/molecules/elimination_order.hpp"
+
+namespace holonomic::rigid {
+
+namespace {
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+// A bond's length and the body's own distance between its atoms: equal to what a file's digits allow.
+constexpr double same_length = 1e-6;
+
+struct Row {
+    std::vector<Entry> entries;
+    std::int32_t bond;
+    DoublePair target;
+    double scale, reach;
+};
+
+class Completion {
+public:
+    Completion(Shape &shape, const std::vector<Body> &bodies) : s_(shape), bodies_(bodies) {}
+
+    void run(const std::vector<double> &w_of_atom) {
+        place_nodes(w_of_atom);
+        make_rows();
+        find_way();
+        eliminate();
+    }
+
+private:
+    const Body &body_of(const Part &part) const { return bodies_[at(part.body)]; }
+
+    void place_nodes(const std::vector<double> &w_of_atom) {
+        s_.part_of.assign(at(s_.n_held), -1);
+        s_.node_of.assign(at(s_.n_atoms), -1);
+        for (std::size_t p = 0; p < s_.parts.size(); ++p) {
+            Part &part = s_.parts[p];
+            const Body &body = body_of(part);
+            part.first_node = s_.n_nodes;
+            s_.n_nodes += 1 + body.rank;
+            s_.w.insert(s_.w.end(), at(1 + body.rank), body.inverse_mass);
+            for (std::int32_t a = 0; a < body.n_atoms; ++a)
+                s_.part_of[at(part.first_atom + a)] = static_cast<std::int32_t>(p);
+        }
+        for (std::int32_t a = s_.n_held; a < s_.n_atoms; ++a) {
+            s_.node_of[at(a)] = s_.n_nodes++;
+            s_.w.push_back(w_of_atom[at(a)]);
+        }
+    }
+
+    // The entries of an atom at the end of a bond; sign +1 at its second atom.
+    void add_end(std::int32_t atom, double sign, std::vector<Entry> &to) const {
+        if (atom >= s_.n_held) return to.push_back({s_.node_of[at(atom)], -1, as_pair(sign)});
+        const Part &part = s_.parts[at(s_.part_of[at(atom)])];
+        const Body &body = body_of(part);
+        to.push_back({part.first_node, -1, as_pair(sign)});
+        for (std::int32_t p = 0; p < body.rank; ++p)
+            to.push_back({part.first_node + 1 + p, -1, sign * body.y[at((atom - part.first_atom) * body.rank + p)]});
+    }
+
+    void check_within(const Bond &bond, std::int32_t number) const {
+        const Part &part = s_.parts[at(s_.part_of[at(bond.i)])];
+        const Body &body = body_of(part);
+        double square = 0;
+        for (int c = 0; c < 3; ++c) {
+            const double d =
+                body.place[at(3 * (bond.j - part.first_atom) + c)] - body.place[at(3 * (bond.i - part.first_atom) + c)];
+            square += d * d;
+        }
+        if (!(std::fabs(std::sqrt(square) - bond.length) <= same_length * bond.length))
+            throw Unsolvable{Unsolvable::length_in_body, number};
+    }
+
+    void make_rows() {
+        for (std::size_t k = 0; k < s_.bonds.size(); ++k) {
+            Bond &bond = s_.bonds[k];
+            bond.row = -1;
+            if (bond.i < s_.n_held && bond.j < s_.n_held && s_.part_of[at(bond.i)] == s_.part_of[at(bond.j)]) {
+                check_within(bond, static_cast<std::int32_t>(k));
+                continue;
+            }
+            Row row{{},
+                    static_cast<std::int32_t>(k),
+                    as_pair(bond.length) * as_pair(bond.length),
+                    bond.length * bond.length,
+                    bond.length};
+            add_end(bond.j, 1, row.entries);
+            add_end(bond.i, -1, row.entries);
+            rows_.push_back(std::move(row));
+            s_.longest = std::max(s_.longest, bond.length);
+        }
+        for (const Part &part : s_.parts) {
+            const Body &body = body_of(part);
+            const std::int32_t u = part.first_node + 1;
+            for (std::int32_t p = 0; p < body.rank; ++p)
+                for (std::int32_t q = p; q < body.rank; ++q) {
+                    Row row{{{u + p, u + q, as_pair(1)}},
+                            -1,
+                            p == q ? body.square[p] : as_pair(0),
+                            body.length[p] * body.length[q],
+                            body.length[p] + body.length[q]};
+                    if (p != q) row.entries.push_back({u + q, u + p, as_pair(1)});
+                    rows_.push_back(std::move(row));
+                }
+        }
+        s_.n_rows = static_cast<std::int32_t>(rows_.size());
+    }
+
+    // From the first atom through bodies and along bonds, but not through fixed atoms.
+    void find_way() {
+        std::vector<std::vector<std::int32_t>> partners(at(s_.n_atoms));
+        for (const Bond &bond : s_.bonds) {
+            partners[at(bond.i)].push_back(bond.j);
+            partners[at(bond.j)].push_back(bond.i);
+        }
+        std::vector<bool> seen(at(s_.n_atoms), false);
+        std::vector<std::int32_t> found;
+        const auto reach = [&](std::int32_t atom, std::int32_t before) {
+            if (seen[at(atom)]) return;
+            seen[at(atom)] = true;
+            found.push_back(atom);
+            if (before >= 0) s_.steps.push_back({atom, before});
+            if (atom >= s_.n_held) return;
+            const Part &part = s_.parts[at(s_.part_of[at(atom)])];
+            const Body &body = body_of(part);
+            for (const Step &step : nearest_steps(body, atom - part.first_atom)) {
+                s_.steps.push_back({part.first_atom + step.atom, part.first_atom + step.before});
+                seen[at(part.first_atom + step.atom)] = true;
+                found.push_back(part.first_atom + step.atom);
+                double square = 0;
+                for (int c = 0; c < 3; ++c) {
+                    const double d = body.place[at(3 * step.atom + c)] - body.place[at(3 * step.before + c)];
+                    square += d * d;
+                }
+                s_.longest = std::max(s_.longest, std::sqrt(square));
+            }
+        };
+        reach(0, -1);
+        for (std::size_t next = 0; next < found.size(); ++next) {
+            const std::int32_t atom = found[next];
+            if (atom >= s_.n_movable) continue;
+            for (const std::int32_t partner : partners[at(atom)]) reach(partner, atom);
+        }
+        if (static_cast<std::int32_t>(found.size()) < s_.n_atoms) throw Unsolvable{Unsolvable::unconnected, -1};
+    }
+
+    // Rows that meet at a node are coupled.
+    void eliminate() {
+        std::vector<std::vector<std::int32_t>> rows_of(at(s_.n_nodes)), neighbours(rows_.size());
+        for (std::size_t k = 0; k < rows_.size(); ++k)
+            for (const Entry &entry : rows_[k].entries)
+                if (s_.w[at(entry.node)] > 0) rows_of[at(entry.node)].push_back(static_cast<std::int32_t>(k));
+        for (const auto &rows : rows_of)
+            for (const std::int32_t a : rows)
+                for (const std::int32_t b : rows)
+                    if (a != b) neighbours[at(a)].push_back(b);
+        const auto sort_each = [](std::vector<std::vector<std::int32_t>> &lists) {
+            for (auto &list : lists) {
+                std::sort(list.begin(), list.end());
+                list.erase(std::unique(list.begin(), list.end()), list.end());
+            }
+        };
+        sort_each(neighbours);
+        const std::vector<std::int32_t> order = minimum_degree(neighbours);
+        std::vector<std::int32_t> number(order.size());
+        for (std::size_t k = 0; k < order.size(); ++k) number[at(order[k])] = static_cast<std::int32_t>(k);
+        std::vector<std::vector<std::int32_t>> ordered(order.size());
+        for (std::size_t k = 0; k < order.size(); ++k)
+            for (const std::int32_t other : neighbours[at(order[k])]) ordered[k].push_back(number[at(other)]);
+        sort_each(ordered);
+        const Fill fill = fill_of(ordered);
+        s_.column_start = fill.column_start;
+        s_.row = fill.row;
+        write_rows(order);
+        find_products();
+    }
+
+    void write_rows(const std::vector<std::int32_t> &order) {
+        s_.entry_start.push_back(0);
+        for (std::size_t k = 0; k < order.size(); ++k) {
+            const Row &row = rows_[at(order[k])];
+            s_.entries.insert(s_.entries.end(), row.entries.begin(), row.entries.end());
+            s_.entry_start.push_back(static_cast<std::int32_t>(s_.entries.size()));
+            s_.bond_of_row.push_back(row.bond);
+            s_.target.push_back(row.target);
+            s_.scale.push_back(row.scale);
+            s_.reach.push_back(row.reach);
+            if (row.bond >= 0) s_.bonds[at(row.bond)].row = static_cast<std::int32_t>(k);
+        }
+    }
+
+    void find_products() {
+        struct Place {
+            std::int32_t entry, row;
+        };
+        std::vector<std::vector<Place>> of_node(at(s_.n_nodes));
+        for (std::int32_t k = 0; k < s_.n_rows; ++k)
+            for (std::int32_t e = s_.entry_start[at(k)]; e < s_.entry_start[at(k + 1)]; ++e)
+                if (s_.w[at(s_.entries[at(e)].node)] > 0) of_node[at(s_.entries[at(e)].node)].push_back({e, k});
+        for (const auto &places : of_node)
+            for (std::size_t a = 0; a < places.size(); ++a)
+                for (std::size_t b = a; b < places.size(); ++b) {
+                    const Place first = places[a], second = places[b];  // rows ascend
+                    if (first.row == second.row) {
+                        s_.products.push_back({first.entry, second.entry, first.row, a == b ? 1 : 2});
+                        continue;
+                    }
+                    const auto begin = s_.row.begin() + s_.column_start[at(first.row)],
+                               end = s_.row.begin() + s_.column_start[at(first.row + 1)];
+                    const auto found = std::lower_bound(begin, end, second.row);
+                    s_.products.push_back(
+                        {first.entry, second.entry, static_cast<std::int32_t>(found - s_.row.begin()), 0});
+                }
+    }
+
+    Shape &s_;
+    const std::vector<Body> &bodies_;
+    std::vector<Row> rows_;
+};
+
+}  // namespace
+
+void complete(Shape &shape, const std::vector<Body> &bodies, const std::vector<double> &w_of_atom) {
+    Completion(shape, bodies).run(w_of_atom);
+    // A rigid whole has three or six motions left unless a fixed atom holds it: more equations than freedoms depend.
+    std::int64_t freedoms = 3 * (shape.n_movable - shape.n_held), rows = 0;
+    for (const Part &part : shape.parts) {
+        const Body &body = bodies[static_cast<std::size_t>(part.body)];
+        freedoms += body.rank == 1 ? 5 : 6;
+    }
+    for (const Bond &bond : shape.bonds) rows += bond.row >= 0;
+    const bool free = shape.n_atoms == shape.n_movable;
+    if (rows > 0 && rows > freedoms - (free ? 5 : 0)) throw Unsolvable{Unsolvable::too_many, -1};
+}
+
+std::int64_t Shape::bytes() const {
+    return static_cast<std::int64_t>(
+        signature.capacity() * sizeof(double) + entries.capacity() * sizeof(Entry) +
+        products.capacity() * sizeof(Product) + bonds.capacity() * sizeof(Bond) + steps.capacity() * sizeof(Step) +
+        (row.capacity() + column_start.capacity() + part_of.capacity() + node_of.capacity()) * sizeof(std::int32_t) +
+        (w.capacity() + mass.capacity() + scale.capacity() + reach.capacity()) * sizeof(double) +
+        target.capacity() * sizeof(DoublePair) + sizeof *this);
+}
+
+}  // namespace holonomic::rigid

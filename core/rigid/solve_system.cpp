@@ -1,0 +1,153 @@
+// The equations of one molecule: Newton's method and the linear ones, corrected by residuals in twice the precision.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/rigid/system.hpp"
+
+namespace holonomic::rigid {
+
+namespace {
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+// Pivots below this part of the diagonal are too inaccurate as doubles; below the other one, rows depend.
+constexpr double least_plain = 1e-9, least_wide = 1e-24;
+// Corrections end here: beyond what a double holds, so that small multipliers beside large ones are right, too.
+constexpr double small_correction = 1e-19;
+
+double dot3(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+void round_to(double *to, const PairVector *from, std::int64_t n) {
+    for (std::int64_t e = 0; e < n; ++e) {
+        to[3 * e] = from[e].x.hi;
+        to[3 * e + 1] = from[e].y.hi;
+        to[3 * e + 2] = from[e].z.hi;
+    }
+}
+
+void add_to(double &sum, double x) { sum += x; }
+void add_to(DoublePair &sum, const DoublePair &x) { sum = sum + x; }
+void put(double &to, const DoublePair &x) { to = rounded(x); }
+void put(DoublePair &to, const DoublePair &x) { to = x; }
+DoublePair wide_of(double x) { return as_pair(x); }
+DoublePair wide_of(const DoublePair &x) { return x; }
+
+}  // namespace
+
+// Entry (k, l) is the sum of w gradient_k . gradient_l, of the first conformation and of the second.
+template <class T>
+std::int32_t System::assemble(const Factor<T> &f, const Conformation &rows, const Conformation &columns) const {
+    constexpr bool plain = std::is_same_v<T, double>;
+    const std::int64_t n_entries = static_cast<std::int64_t>(s_.entries.size());
+    const bool same = rows.gradient == columns.gradient;
+    if constexpr (plain) {
+        round_to(gradient_[0], rows.gradient, n_entries);
+        if (!same) round_to(gradient_[1], columns.gradient, n_entries);
+    }
+    const auto product = [&](std::int32_t p, std::int32_t q) {
+        if constexpr (plain)
+            return dot3(gradient_[0] + 3 * p, gradient_[same ? 0 : 1] + 3 * q);
+        else
+            return dot(rows.gradient[p], columns.gradient[q]);
+    };
+    std::fill(f.diagonal, f.diagonal + s_.n_rows, T{});
+    std::fill(f.l, f.l + s_.row.size(), T{});
+    std::fill(f.u, f.u + s_.row.size(), T{});
+    for (const Product &p : s_.products) {
+        const double w = s_.w[at(s_.entries[at(p.a)].node)];
+        const T upper = w * product(p.a, p.b);
+        if (p.of_diagonal) {
+            add_to(f.diagonal[p.place], upper);
+            continue;
+        }
+        add_to(f.u[p.place], upper);
+        add_to(f.l[p.place], same ? upper : w * product(p.b, p.a));
+    }
+    return f.eliminate(s_, plain ? least_plain : least_wide);
+}
+
+// Sizes of corrections are compared in the units of each row: |x| sqrt of its diagonal.
+template <class T>
+Outcome System::project_with(const Factor<T> &f, T *x, const Conformation &where, const DoublePair *constant,
+                             PairVector *z, DoublePair *multipliers) const {
+    if (assemble(f, where, where) >= 0) return Outcome::degenerate;
+    for (std::int32_t k = 0; k < s_.n_rows; ++k) multipliers[k] = as_pair(0);
+    double before = std::numeric_limits<double>::infinity();
+    for (int pass = 0; pass < 12; ++pass) {
+        for (std::int32_t k = 0; k < s_.n_rows; ++k) {
+            DoublePair sum = constant ? constant[k] : as_pair(0);
+            for (std::int32_t e = s_.entry_start[at(k)]; e < s_.entry_start[at(k + 1)]; ++e)
+                sum = sum + dot(where.gradient[e], z[s_.entries[at(e)].node]);
+            put(x[k], sum);
+        }
+        f.solve(s_, x);
+        double correction = 0, whole = 0;
+        for (std::int32_t k = 0; k < s_.n_rows; ++k) {
+            const double unit = std::sqrt(f.before[k]);
+            multipliers[k] = multipliers[k] + wide_of(x[k]);
+            correction = std::max(correction, std::fabs(first_word(x[k])) * unit);
+            whole = std::max(whole, std::fabs(multipliers[k].hi) * unit);
+            for (std::int32_t e = s_.entry_start[at(k)]; e < s_.entry_start[at(k + 1)]; ++e) {
+                const std::int32_t node = s_.entries[at(e)].node;
+                if (s_.w[at(node)] > 0) z[node] = z[node] - (s_.w[at(node)] * wide_of(x[k])) * where.gradient[e];
+            }
+        }
+        if (!std::isfinite(correction) || !std::isfinite(whole)) return Outcome::not_finite;
+        if (correction <= small_correction * whole) return Outcome::good;
+        if (pass > 1 && correction > 0.1 * before) break;
+        before = correction;
+    }
+    // At the end of twice the precision nothing more is to be gained.
+    return std::is_same_v<T, double> ? Outcome::no_convergence : Outcome::good;
+}
+
+Outcome System::project(const Conformation &where, const DoublePair *constant, PairVector *z,
+                        DoublePair *multipliers) const {
+    if (s_.n_rows == 0) return Outcome::good;
+    std::copy(z, z + s_.n_nodes, start_);
+    const Outcome first = project_with(plain_, x_, where, constant, z, multipliers);
+    if (first == Outcome::good) return first;
+    std::copy(start_, start_ + s_.n_nodes, z);
+    return project_with(wide_, wide_x_, where, constant, z, multipliers);
+}
+
+template <class T>
+Outcome System::restore_with(const Factor<T> &f, T *x, const Conformation &from, const Conformation &to,
+                             double tolerance, int most_iterations, DoublePair *multipliers, int *iterations,
+                             double *error) const {
+    for (std::int32_t k = 0; k < s_.n_rows; ++k) multipliers[k] = as_pair(0);
+    double before = std::numeric_limits<double>::infinity();
+    for (*iterations = 0;; ++*iterations) {
+        *error = residuals(to, residual_);
+        if (!std::isfinite(*error)) return Outcome::not_finite;
+        if (*error <= tolerance) return Outcome::good;
+        // Where residuals do not fall any more, near the end of twice the precision, all is done.
+        if (*error < 1e-20 && *error > 0.1 * before) return Outcome::good;
+        if (*iterations >= most_iterations) return Outcome::no_convergence;
+        before = *error;
+        differentiate(to);
+        if (assemble(f, to, from) >= 0) return Outcome::degenerate;
+        for (std::int32_t k = 0; k < s_.n_rows; ++k) put(x[k], residual_[k]);
+        f.solve(s_, x);
+        for (std::int32_t k = 0; k < s_.n_rows; ++k) {
+            multipliers[k] = multipliers[k] + wide_of(x[k]);
+            for (std::int32_t e = s_.entry_start[at(k)]; e < s_.entry_start[at(k + 1)]; ++e) {
+                const std::int32_t node = s_.entries[at(e)].node;
+                if (s_.w[at(node)] > 0) to.q[node] = to.q[node] - (s_.w[at(node)] * wide_of(x[k])) * from.gradient[e];
+            }
+        }
+    }
+}
+
+Outcome System::restore(const Conformation &from, const Conformation &to, double tolerance, int most_iterations,
+                        DoublePair *multipliers, int *iterations, double *error) const {
+    std::copy(to.q, to.q + s_.n_nodes, start_);
+    const Outcome first =
+        restore_with(plain_, x_, from, to, tolerance, most_iterations, multipliers, iterations, error);
+    if (first == Outcome::good) return first;
+    std::copy(start_, start_ + s_.n_nodes, to.q);
+    return restore_with(wide_, wide_x_, from, to, tolerance, most_iterations, multipliers, iterations, error);
+}
+
+}  // namespace holonomic::rigid

@@ -1,0 +1,229 @@
+// Which bodies, atoms and bonds of a call make a molecule.
+#include <algorithm>
+#include <numeric>
+#include <set>
+#include <unordered_map>
+#include <utility>
+
+#include "core/molecules/chains.hpp"
+#include "core/rigid/bodies.hpp"
+
+namespace holonomic {
+
+namespace {
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+long long number(std::int64_t i, int base) { return static_cast<long long>(i + base); }
+
+[[noreturn]] void fail(Error error, int base, std::int64_t bond, std::int64_t atom) {
+    error.bond = bond;
+    error.atom = atom;
+    error.base = base;
+    throw error;
+}
+
+// Groups of things that belong together.
+class Joined {
+public:
+    explicit Joined(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
+    std::size_t add() {
+        parent_.push_back(parent_.size());
+        return parent_.size() - 1;
+    }
+    std::size_t of(std::size_t i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return i;
+    }
+    void join(std::size_t a, std::size_t b) {
+        a = of(a);
+        b = of(b);
+        parent_[std::max(a, b)] = std::min(a, b);
+    }
+
+private:
+    std::vector<std::size_t> parent_;
+};
+
+// The call that is sorted, its atoms counted from 0.
+class Sorting {
+public:
+    Sorting(const Chains &chains, const Masses &masses, const AtomUse &use, std::int64_t n_bodies,
+            const std::int64_t *sizes, const std::int64_t *atoms, std::int64_t offset, std::int64_t n_bonds,
+            const std::int64_t *pairs)
+        : chains_(chains), masses_(masses), use_(use), base_(chains.base), n_bodies_(n_bodies), n_bonds_(n_bonds),
+          offset_(offset), sizes_(sizes), given_atoms_(atoms), given_pairs_(pairs), joined_(at(n_bodies)) {}
+
+    std::vector<rigid::Given> sort(const double *places, const double *lengths) {
+        take_bodies();
+        take_bonds();
+        make_molecules(places);
+        add_bonds(lengths);
+        return std::move(molecules_);
+    }
+
+private:
+    std::int64_t take(std::int64_t given, std::int64_t bond) const {
+        const std::int64_t atom = given < base_ ? -1 : given - base_ + offset_;
+        if (atom < 0 || atom >= chains_.n_atoms())
+            fail(make_error(Status::index, "atom %lld is outside %d .. %lld", static_cast<long long>(given), base_,
+                            number(chains_.n_atoms() - 1, base_)),
+                 base_, bond, atom);
+        return atom;
+    }
+
+    void check_free(std::int64_t atom, std::int64_t bond) const {
+        if (!use_.used(atom)) return;
+        fail(make_error(Status::shared_atom,
+                        "atom %s is in a molecule of an earlier call already: a body with all its bonds must be added "
+                        "in one call",
+                        chains_.name_of_atom(atom).text),
+             base_, bond, atom);
+    }
+
+    std::int64_t end(std::int64_t bond, int which) const { return given_pairs_[2 * bond + which] - base_ + offset_; }
+
+    void take_bodies() {
+        const std::int64_t *next = given_atoms_;
+        for (std::int64_t b = 0; b < n_bodies_; ++b)
+            for (std::int64_t a = 0; a < sizes_[b]; ++a) {
+                const std::int64_t atom = take(*next++, -1);
+                check_free(atom, -1);
+                if (masses_.infinite(atom))
+                    fail(make_error(Status::value,
+                                    "atom %s of body %lld has an infinite mass, so that it is held fixed: a fixed atom "
+                                    "can be in no body (mass 0 makes it a massless site)",
+                                    chains_.name_of_atom(atom).text, number(b, base_)),
+                         base_, -1, atom);
+                if (!group_of_.emplace(atom, at(b)).second)
+                    fail(make_error(Status::shared_atom, "atom %s is given twice: an atom belongs to one body",
+                                    chains_.name_of_atom(atom).text),
+                         base_, -1, atom);
+            }
+    }
+
+    void take_bonds() {
+        for (std::int64_t e = 0; e < 2 * n_bonds_; ++e) {
+            const std::int64_t atom = take(given_pairs_[e], e / 2);
+            if (group_of_.count(atom)) continue;
+            if (masses_.fixed(atom)) {
+                if (chains_.bodies() && chains_.bodies()->is_site(atom)) check_free(atom, e / 2);
+                continue;
+            }
+            check_free(atom, e / 2);
+            group_of_.emplace(atom, joined_.add());
+            others_.push_back(atom);
+        }
+        for (std::int64_t k = 0; k < n_bonds_; ++k) {
+            const auto i = group_of_.find(end(k, 0)), j = group_of_.find(end(k, 1));
+            if (i != group_of_.end() && j != group_of_.end()) joined_.join(i->second, j->second);
+        }
+    }
+
+    // -1: a fixed atom, or one of a molecule without bodies. A group's root is its first body, if it has any.
+    std::int64_t molecule_of_atom(std::int64_t atom) {
+        const auto found = group_of_.find(atom);
+        if (found == group_of_.end()) return -1;
+        const std::size_t root = joined_.of(found->second);
+        return root < at(n_bodies_) ? molecule_of_body_[root] : -1;
+    }
+
+    std::int32_t append(rigid::Given &given, std::int64_t atom) const {
+        const double w = masses_.w(atom);
+        given.atoms.push_back(atom);
+        given.w.push_back(w);
+        given.masses.push_back(w > 0 ? 1 / w : 0);
+        return static_cast<std::int32_t>(given.atoms.size() - 1);
+    }
+
+    // In the order of their first bodies.
+    void make_molecules(const double *places) {
+        molecule_of_body_.assign(at(n_bodies_), -1);
+        const std::int64_t *next = given_atoms_;
+        for (std::int64_t b = 0; b < n_bodies_; ++b) {
+            const std::size_t root = joined_.of(at(b));
+            if (molecule_of_body_[root] < 0) {
+                molecule_of_body_[root] = static_cast<std::int64_t>(molecules_.size());
+                molecules_.emplace_back();
+            }
+            rigid::Given &given = molecules_[at(molecule_of_body_[root])];
+            given.sizes.push_back(static_cast<std::int32_t>(sizes_[b]));
+            for (std::int64_t a = 0; a < sizes_[b]; ++a, ++next, places += 3) {
+                const std::int64_t atom = *next - base_ + offset_;
+                local_[atom] = append(given, atom);
+                given.place.insert(given.place.end(), places, places + 3);
+            }
+        }
+        for (std::int64_t k = 0; k < n_bonds_; ++k)
+            if (molecule_of_atom(end(k, 0)) < 0 && molecule_of_atom(end(k, 1)) < 0)
+                fail(make_error(Status::value,
+                                "bond %lld, of atoms %s and %s, is in no molecule with a body: hol_chains_add_bonds "
+                                "takes such bonds",
+                                number(k, base_), chains_.name_of_atom(end(k, 0)).text,
+                                chains_.name_of_atom(end(k, 1)).text),
+                     base_, k, -1);
+        for (const std::int64_t atom : others_) local_[atom] = append(molecules_[at(molecule_of_atom(atom))], atom);
+        for (rigid::Given &given : molecules_) given.n_movable = static_cast<std::int32_t>(given.atoms.size());
+    }
+
+    void add_bonds(const double *lengths) {
+        std::vector<std::unordered_map<std::int64_t, std::int32_t>> fixed(molecules_.size());
+        std::set<std::pair<std::int64_t, std::int64_t>> seen;
+        for (std::int64_t k = 0; k < n_bonds_; ++k) {
+            const std::int64_t i = end(k, 0), j = end(k, 1);
+            const auto name = [&](std::int64_t atom) { return chains_.name_of_atom(atom); };
+            if (i == j)
+                fail(make_error(Status::value, "bond %lld joins atom %s with itself", number(k, base_), name(i).text),
+                     base_, k, i);
+            if (!seen.emplace(std::min(i, j), std::max(i, j)).second)
+                fail(make_error(Status::degenerate, "bond %lld, of atoms %s and %s, is given twice", number(k, base_),
+                                name(i).text, name(j).text),
+                     base_, k, -1);
+            const std::int64_t of_first = molecule_of_atom(i);
+            const std::size_t m = at(of_first >= 0 ? of_first : molecule_of_atom(j));
+            rigid::Given &given = molecules_[m];
+            std::int32_t ends[2];
+            for (int which = 0; which < 2; ++which) {
+                const std::int64_t atom = end(k, which);
+                if (const auto found = local_.find(atom); found != local_.end()) {
+                    ends[which] = found->second;
+                    continue;
+                }
+                const auto known = fixed[m].find(atom);
+                if (known != fixed[m].end()) {
+                    ends[which] = known->second;
+                    continue;
+                }
+                ends[which] = append(given, atom);
+                fixed[m].emplace(atom, ends[which]);
+            }
+            given.bonds.push_back({ends[0], ends[1], lengths[k], -1});
+            given.bond_numbers.push_back(chains_.n_bonds() + k);
+        }
+    }
+
+    const Chains &chains_;
+    const Masses &masses_;
+    const AtomUse &use_;
+    const int base_;
+    const std::int64_t n_bodies_, n_bonds_, offset_;
+    const std::int64_t *const sizes_, *const given_atoms_, *const given_pairs_;
+    Joined joined_;  // bodies, then atoms of none
+    std::unordered_map<std::int64_t, std::size_t> group_of_;
+    std::vector<std::int64_t> others_;  // atoms that can move and are in no body
+    std::vector<std::int64_t> molecule_of_body_;
+    std::unordered_map<std::int64_t, std::int32_t> local_;  // number of a movable atom within its molecule
+    std::vector<rigid::Given> molecules_;
+};
+
+}  // namespace
+
+// The molecules of one call, or of one copy of its molecules, whose atoms stand `offset` further on.
+std::vector<rigid::Given> Chains::sort_rigid(std::int64_t n_bodies, const std::int64_t *sizes,
+                                             const std::int64_t *atoms, std::int64_t offset, const double *places,
+                                             std::int64_t n_bonds, const std::int64_t *pairs,
+                                             const double *lengths) const {
+    return Sorting(*this, masses_, use_, n_bodies, sizes, atoms, offset, n_bonds, pairs).sort(places, lengths);
+}
+
+}  // namespace holonomic

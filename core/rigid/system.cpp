@@ -1,0 +1,271 @@
+#include "core/rigid/system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace holonomic::rigid {
+
+namespace {
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+PairVector zero() { return {as_pair(0), as_pair(0), as_pair(0)}; }
+PairVector difference(const double *a, const double *b) {
+    return {plain::two_difference(a[0], b[0]), plain::two_difference(a[1], b[1]), plain::two_difference(a[2], b[2])};
+}
+
+// Nearest image, without a rounding.
+PairVector image(const Box &box, PairVector d) {
+    if (box.shape == Box::none) return d;
+    const double v[3] = {d.x.hi, d.y.hi, d.z.hi};
+    for (int i = 0; i < 3; ++i) {
+        const double n = std::nearbyint(v[0] * box.inverse[i] + v[1] * box.inverse[3 + i] + v[2] * box.inverse[6 + i]);
+        if (n == 0) continue;
+        d.x = d.x - n * as_pair(box.h[3 * i]);
+        d.y = d.y - n * as_pair(box.h[3 * i + 1]);
+        d.z = d.z - n * as_pair(box.h[3 * i + 2]);
+    }
+    return d;
+}
+
+double largest(const PairVector &v) {
+    return std::max(std::max(std::fabs(v.x.hi), std::fabs(v.y.hi)), std::fabs(v.z.hi));
+}
+
+// Pieces of a block of memory, one after the other.
+class Pieces {
+public:
+    explicit Pieces(char *memory) : next_(memory) {}
+    template <class T>
+    T *take(std::int64_t n) {
+        T *const here = reinterpret_cast<T *>(next_);
+        next_ += n * static_cast<std::int64_t>(sizeof(T));
+        return here;
+    }
+    std::int64_t used(const char *memory) const { return next_ - memory; }
+
+private:
+    char *next_;
+};
+
+struct Layout {
+    Conformation now, reference;
+    PairVector *a, *b, *start;
+    DoublePair *t, *c, *residual, *wide_x;
+    Factor<double> plain;
+    Factor<DoublePair> wide;
+    double *x, *raw, *gradient[2];
+    std::int64_t bytes;
+};
+
+Layout lay_out(const Shape &s, char *memory) {
+    const std::int64_t entries = static_cast<std::int64_t>(s.entries.size()),
+                       fill = static_cast<std::int64_t>(s.row.size()),
+                       bonds = static_cast<std::int64_t>(s.bonds.size()), rows = s.n_rows, nodes = s.n_nodes;
+    Pieces pieces(memory);
+    Layout m;
+    for (Conformation *which : {&m.now, &m.reference}) {
+        which->x = pieces.take<PairVector>(s.n_atoms);
+        which->q = pieces.take<PairVector>(nodes);
+        which->shift = pieces.take<PairVector>(bonds);
+        which->gradient = pieces.take<PairVector>(entries);
+    }
+    m.a = pieces.take<PairVector>(nodes);
+    m.b = pieces.take<PairVector>(nodes);
+    m.start = pieces.take<PairVector>(nodes);
+    m.t = pieces.take<DoublePair>(rows);
+    m.c = pieces.take<DoublePair>(rows);
+    m.residual = pieces.take<DoublePair>(rows);
+    m.wide_x = pieces.take<DoublePair>(rows);
+    m.wide = {pieces.take<DoublePair>(rows), pieces.take<DoublePair>(fill), pieces.take<DoublePair>(fill), nullptr};
+    m.plain = {pieces.take<double>(rows), pieces.take<double>(fill), pieces.take<double>(fill),
+               pieces.take<double>(rows)};
+    m.wide.before = m.plain.before;
+    m.x = pieces.take<double>(rows);
+    m.raw = pieces.take<double>(3 * std::int64_t{s.n_atoms});
+    m.gradient[0] = pieces.take<double>(3 * entries);
+    m.gradient[1] = pieces.take<double>(3 * entries);
+    m.bytes = pieces.used(memory);
+    return m;
+}
+
+}  // namespace
+
+std::int64_t System::bytes(const Shape &shape) {
+    alignas(64) static char nowhere[64];
+    return lay_out(shape, nowhere).bytes;
+}
+
+System::System(const Shape &shape, const Body *bodies, char *memory) : s_(shape), bodies_(bodies) {
+    const Layout m = lay_out(shape, memory);
+    now = m.now;
+    reference = m.reference;
+    a = m.a;
+    b = m.b;
+    t = m.t;
+    c = m.c;
+    raw = m.raw;
+    plain_ = m.plain;
+    wide_ = m.wide;
+    x_ = m.x;
+    wide_x_ = m.wide_x;
+    residual_ = m.residual;
+    start_ = m.start;
+    gradient_[0] = m.gradient[0];
+    gradient_[1] = m.gradient[1];
+}
+
+void System::read(const AtomArray &r, const Box &box, const Place &place, const Conformation &to) const {
+    for (std::int32_t i = 0; i < s_.n_atoms; ++i) read_atom(r, place.atoms[i], raw + 3 * i);
+    // A first atom that is not finite makes all of them so.
+    to.x[0] = difference(raw, raw);
+    for (const Step &step : s_.steps)
+        to.x[step.atom] = to.x[step.before] + image(box, difference(raw + 3 * step.atom, raw + 3 * step.before));
+    for (const Part &part : s_.parts) {
+        const Body &its = body(part);
+        PairVector *const q = to.q + part.first_node;
+        for (std::int32_t p = 0; p <= its.rank; ++p) q[p] = zero();
+        const DoublePair *share = its.share.data();
+        for (std::int32_t i = 0; i < its.n_atoms; ++i, share += 1 + its.rank)
+            for (std::int32_t p = 0; its.masses[at(i)] > 0 && p <= its.rank; ++p)
+                q[p] = q[p] + share[p] * to.x[part.first_atom + i];
+    }
+    for (std::int32_t i = s_.n_held; i < s_.n_atoms; ++i) to.q[s_.node_of[at(i)]] = to.x[i];
+    for (std::size_t k = 0; k < s_.bonds.size(); ++k) {
+        const Bond &bond = s_.bonds[k];
+        to.shift[k] = zero();
+        if (box.shape == Box::none || bond.row < 0) continue;
+        const PairVector nearest = image(box, difference(raw + 3 * bond.j, raw + 3 * bond.i));
+        const PairVector other = nearest - (to.x[bond.j] - to.x[bond.i]);
+        if (largest(other) > 1e-6 * bond.length) to.shift[k] = other;
+    }
+}
+
+PairVector System::bond_vector(const Conformation &where, std::int32_t bond) const {
+    const std::int32_t row = s_.bonds[at(bond)].row;
+    PairVector d = where.shift[bond];
+    for (std::int32_t e = s_.entry_start[at(row)]; e < s_.entry_start[at(row + 1)]; ++e)
+        d = d + s_.entries[at(e)].factor * where.q[s_.entries[at(e)].node];
+    return d;
+}
+
+void System::differentiate(const Conformation &where) const {
+    for (std::int32_t k = 0; k < s_.n_rows; ++k) {
+        const std::int32_t bond = s_.bond_of_row[at(k)];
+        const PairVector d = bond >= 0 ? bond_vector(where, bond) : zero();
+        for (std::int32_t e = s_.entry_start[at(k)]; e < s_.entry_start[at(k + 1)]; ++e) {
+            const Entry &entry = s_.entries[at(e)];
+            where.gradient[e] = bond >= 0 ? entry.factor * d : where.q[entry.other];
+        }
+    }
+}
+
+void System::velocities(const AtomArray &v, const Place &place, PairVector *nodes) const {
+    double x[3];
+    for (const Part &part : s_.parts) {
+        const Body &its = body(part);
+        PairVector *const q = nodes + part.first_node;
+        for (std::int32_t p = 0; p <= its.rank; ++p) q[p] = zero();
+        const DoublePair *share = its.share.data();
+        for (std::int32_t i = 0; i < its.n_atoms; ++i, share += 1 + its.rank) {
+            if (!(its.masses[at(i)] > 0)) continue;
+            read_atom(v, place.atoms[part.first_atom + i], x);
+            const PairVector of_atom = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
+            for (std::int32_t p = 0; p <= its.rank; ++p) q[p] = q[p] + share[p] * of_atom;
+        }
+    }
+    for (std::int32_t i = s_.n_held; i < s_.n_atoms; ++i) {
+        read_atom(v, place.atoms[i], x);
+        nodes[s_.node_of[at(i)]] = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
+    }
+}
+
+void System::forces(const AtomArray &f, const Place &place, PairVector *nodes) const {
+    double x[3];
+    for (const Part &part : s_.parts) {
+        const Body &its = body(part);
+        PairVector *const q = nodes + part.first_node;
+        for (std::int32_t p = 0; p <= its.rank; ++p) q[p] = zero();
+        for (std::int32_t i = 0; i < its.n_atoms; ++i) {
+            read_atom(f, place.atoms[part.first_atom + i], x);
+            const PairVector of_atom = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
+            q[0] = q[0] + of_atom;
+            for (std::int32_t p = 0; p < its.rank; ++p) q[1 + p] = q[1 + p] + its.y[at(i * its.rank + p)] * of_atom;
+        }
+    }
+    for (std::int32_t i = s_.n_held; i < s_.n_atoms; ++i) {
+        if (i < s_.n_movable) read_atom(f, place.atoms[i], x);
+        nodes[s_.node_of[at(i)]] = i < s_.n_movable ? PairVector{as_pair(x[0]), as_pair(x[1]), as_pair(x[2])} : zero();
+    }
+}
+
+PairVector System::at_atom(const PairVector *nodes, std::int32_t atom) const {
+    if (atom >= s_.n_held) return nodes[s_.node_of[at(atom)]];
+    const Part &part = s_.parts[at(s_.part_of[at(atom)])];
+    const Body &its = body(part);
+    const DoublePair *const y = its.y.data() + (atom - part.first_atom) * its.rank;
+    PairVector sum = nodes[part.first_node];
+    for (std::int32_t p = 0; p < its.rank; ++p) sum = sum + y[p] * nodes[part.first_node + 1 + p];
+    return sum;
+}
+
+double System::residuals(const Conformation &where, DoublePair *to, std::int32_t *worst_bond) const {
+    double worst = 0;
+    if (worst_bond) *worst_bond = -1;
+    for (std::int32_t k = 0; k < s_.n_rows; ++k) {
+        const std::int32_t bond = s_.bond_of_row[at(k)];
+        DoublePair value;
+        bool half = true;
+        if (bond >= 0) {
+            const PairVector d = bond_vector(where, bond);
+            value = dot(d, d) - s_.target[at(k)];
+        } else {
+            const Entry &entry = s_.entries[at(s_.entry_start[at(k)])];
+            value = dot(where.q[entry.node], where.q[entry.other]) - s_.target[at(k)];
+            half = entry.node == entry.other;
+        }
+        const double error = std::fabs(value.hi) / s_.scale[at(k)];
+        if (!(error <= worst)) {
+            worst = error;  // also if it is no number
+            if (worst_bond) *worst_bond = bond;
+        }
+        to[k] = half ? DoublePair{value.hi / 2, value.lo / 2} : value;
+        if (std::isnan(error)) return error;
+    }
+    return worst;
+}
+
+void System::pulls(const Conformation &where, const DoublePair *multipliers, PairVector *nodes) const {
+    for (std::int32_t n = 0; n < s_.n_nodes; ++n) nodes[n] = zero();
+    for (std::int32_t k = 0; k < s_.n_rows; ++k)
+        for (std::int32_t e = s_.entry_start[at(k)]; e < s_.entry_start[at(k + 1)]; ++e) {
+            PairVector &node = nodes[s_.entries[at(e)].node];
+            node = node - multipliers[k] * where.gradient[e];
+        }
+}
+
+void System::add_virial(const Conformation &where, const DoublePair *multipliers, double factor, double *virial) const {
+    double sum[6] = {0, 0, 0, 0, 0, 0};
+    const auto add = [&](double s, const PairVector &p, const PairVector &q) {
+        const double u[3] = {rounded(p.x), rounded(p.y), rounded(p.z)},
+                     v[3] = {rounded(q.x), rounded(q.y), rounded(q.z)};
+        double *to = sum;
+        for (int i = 0; i < 3; ++i)
+            for (int j = i; j < 3; ++j) *to++ -= 0.5 * s * (u[i] * v[j] + u[j] * v[i]);
+    };
+    for (std::int32_t k = 0; k < s_.n_rows; ++k) {
+        const std::int32_t bond = s_.bond_of_row[at(k)];
+        const double m = factor * rounded(multipliers[k]);
+        if (bond >= 0) {
+            const PairVector d = bond_vector(where, bond);
+            add(m, d, d);
+        } else {
+            const Entry &entry = s_.entries[at(s_.entry_start[at(k)])];
+            add(entry.node == entry.other ? m : 2 * m, where.q[entry.node], where.q[entry.other]);
+        }
+    }
+    for (int i = 0; i < 6; ++i) virial[i] += sum[i];
+}
+
+}  // namespace holonomic::rigid

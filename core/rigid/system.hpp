@@ -1,0 +1,94 @@
+// One molecule with bodies in one conformation: its nodes, the gradients of its rows, and the solution of its
+// equations.
+//
+// All is kept in twice the precision. The factors are plain doubles; residuals, which are sums over the nodes, are not,
+// so that a few corrections give what twice the precision would. Where the factors lose too much they are made in twice
+// the precision, too.
+#ifndef HOLONOMIC_RIGID_SYSTEM_HPP
+#define HOLONOMIC_RIGID_SYSTEM_HPP
+
+#include <cstdint>
+
+#include "core/caller/box.hpp"
+#include "core/kernels/atom.hpp"
+#include "core/rigid/factor.hpp"
+
+namespace holonomic::rigid {
+
+enum class Outcome { good, not_finite, degenerate, no_convergence, stretched };
+
+// Where the caller has the atoms of a molecule.
+struct Place {
+    const std::int64_t *atoms;
+    const std::int64_t *bonds;
+    std::int64_t number;  // of the molecule
+};
+
+// Where a molecule is at an instant.
+struct Conformation {
+    PairVector *x;         // [n_atoms] from the first atom, images taken; places of sites are read like the others
+    PairVector *q;         // [n_nodes]
+    PairVector *shift;     // [n_bonds] by which a bond reaches another image than the way through the molecule
+    PairVector *gradient;  // [entries]
+};
+
+class System {
+public:
+    static std::int64_t bytes(const Shape &shape);
+    // memory: bytes(shape)
+    System(const Shape &shape, const Body *bodies, char *memory);
+
+    // Nodes and gradients.
+    void read(const AtomArray &r, const Box &box, const Place &place, const Conformation &to) const;
+    void differentiate(const Conformation &at) const;
+    // Nodes of a vector per atom, by masses: velocities. What sites have is not looked at.
+    void velocities(const AtomArray &v, const Place &place, PairVector *nodes) const;
+    // Nodes of forces, on the centre and the u_p; sites' too.
+    void forces(const AtomArray &f, const Place &place, PairVector *nodes) const;
+    // What a vector per node is at an atom.
+    PairVector at_atom(const PairVector *nodes, std::int32_t atom) const;
+    // d of a bond, between the nodes' places.
+    PairVector bond_vector(const Conformation &at, std::int32_t bond) const;
+
+    // Adds to z multiples -w t of gradients so that sum of gradient.z + c = 0 in each row; t is written.
+    Outcome project(const Conformation &at, const DoublePair *c, PairVector *z, DoublePair *t) const;
+    // Moves q along the gradients of the reference until each row is fulfilled to `tolerance` of its scale.
+    Outcome restore(const Conformation &reference, const Conformation &now, double tolerance, int most_iterations,
+                    DoublePair *t, int *iterations, double *error) const;
+    // The largest residual of a row as |d.d - a^2| / a^2 is one, and its bond (-1: of a body).
+    double residuals(const Conformation &at, DoublePair *to, std::int32_t *worst_bond = nullptr) const;
+    // -sum t gradient, per node.
+    void pulls(const Conformation &at, const DoublePair *t, PairVector *nodes) const;
+    // xx xy xz yy yz zz of the sum of q (x) pull.
+    void add_virial(const Conformation &at, const DoublePair *t, double factor, double *virial) const;
+
+    const Shape &shape() const { return s_; }
+    const Body &body(const Part &part) const { return bodies_[part.body]; }
+
+    Conformation now, reference;
+    PairVector *a, *b;  // [n_nodes] each
+    DoublePair *t, *c;  // [n_rows] each
+    double *raw;        // [n_atoms][3]
+
+private:
+    template <class T>
+    std::int32_t assemble(const Factor<T> &f, const Conformation &rows, const Conformation &columns) const;
+    template <class T>
+    Outcome project_with(const Factor<T> &f, T *x, const Conformation &at, const DoublePair *c, PairVector *z,
+                         DoublePair *t) const;
+    template <class T>
+    Outcome restore_with(const Factor<T> &f, T *x, const Conformation &reference, const Conformation &now,
+                         double tolerance, int most_iterations, DoublePair *t, int *iterations, double *error) const;
+
+    const Shape &s_;
+    const Body *const bodies_;
+    Factor<double> plain_;
+    Factor<DoublePair> wide_;
+    double *x_;
+    DoublePair *wide_x_, *residual_;
+    PairVector *start_;
+    double *gradient_[2];  // [entries][3] as doubles
+};
+
+}  // namespace holonomic::rigid
+#endif

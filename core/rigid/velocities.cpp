@@ -1,0 +1,67 @@
+#include <cmath>
+
+#include "core/rigid/rates.hpp"
+#include "core/rigid/run.hpp"
+#include "core/rigid/verbs.hpp"
+
+namespace holonomic::rigid {
+
+namespace {
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+struct VelocitiesWork final : Work {
+    AtomArray r, v;
+    const Box &box;
+    const BoxRate *rate;
+    double *lambda;
+    bool virial;
+
+    VelocitiesWork(const Chains &chains, const AtomArray &r_, const AtomArray &v_, double *lambda_, bool virial_)
+        : r(r_), v(v_), box(chains.box), rate(chains.box_rate()), lambda(lambda_), virial(virial_) {}
+
+    Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
+        const Shape &s = system.shape();
+        system.read(r, box, place, system.now);
+        system.differentiate(system.now);
+        if (rate)
+            for_rates(system, nullptr, rate,
+                      [&](std::int32_t row, std::int32_t, bool square, const PairVector &p, const PairVector &q,
+                          const PairVector &u,
+                          const PairVector &w) { system.c[row] = square ? dot(p, u) : dot(p, w) + dot(q, u); });
+        PairVector *const z = system.a;
+        system.velocities(v, place, z);
+        const Outcome outcome = system.project(system.now, rate ? system.c : nullptr, z, system.t);
+        if (outcome != Outcome::good) return outcome;
+        double sum = 0;
+        for (std::int32_t i = 0; i < s.n_movable; ++i) {
+            const Vector3<double> of_atom = rounded(system.at_atom(z, i)), x = rounded(system.now.x[i]);
+            sum += std::fabs(of_atom.x) + std::fabs(of_atom.y) + std::fabs(of_atom.z) + x.x + x.y + x.z;
+        }
+        if (!std::isfinite(sum)) return Outcome::not_finite;
+        for (std::int32_t i = 0; i < s.n_movable; ++i) {
+            const Vector3<double> of_atom = rounded(system.at_atom(z, i));
+            const double x[3] = {of_atom.x, of_atom.y, of_atom.z};
+            write_atom(v, place.atoms[i], x);
+        }
+        for (std::size_t k = 0; lambda && k < s.bonds.size(); ++k)
+            lambda[place.bonds[k]] =
+                s.bonds[k].row < 0 ? 0 : rounded(system.t[s.bonds[at(static_cast<std::int64_t>(k))].row]) / 2;
+        if (virial) system.add_virial(system.now, system.t, 1, tally.virial);
+        return outcome;
+    }
+};
+
+}  // namespace
+
+void project_velocities(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda, double *virial) {
+    const Found found = run(chains, VelocitiesWork(chains, r, v, lambda, virial != nullptr));
+    if (found.tally.n_bad > 0) {
+        const Named arrays[] = {{"position", &r}, {"velocity", &v}};
+        throw error_of(chains, found, arrays, 2);
+    }
+    const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    for (int i = 0; virial && i < 9; ++i) virial[i] += found.tally.virial[place[i]];
+}
+
+}  // namespace holonomic::rigid

@@ -1,0 +1,35 @@
+// The verbs for molecules with rigid bodies. Each throws Error once everything that is due has been written; sums are
+// added to the caller's, which already hold those of the other molecules.
+#ifndef HOLONOMIC_RIGID_VERBS_HPP
+#define HOLONOMIC_RIGID_VERBS_HPP
+
+#include "core/fit.hpp"
+#include "core/molecules/chains.hpp"
+#include "core/positions.hpp"
+#include "core/reactions.hpp"
+#include "core/violation.hpp"
+
+namespace holonomic::rigid {
+
+// g of fixed atoms at these molecules is zero before anything is added to it.
+void clear_fixed(const Chains &chains, const AtomArray &g);
+
+void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
+            double *tension, const AtomArray &g, bool add, double *virial);
+void solve(const Chains &chains, const AtomArray &r, const double *rhs, double *lambda, const AtomArray &g, bool add,
+           double *virial);
+void project_velocities(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda, double *virial);
+void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomArray &r, const AtomArray &v, double dt,
+                       double *lambda, double *virial, Report *report);
+
+void reactions(const Chains &chains, const AtomArray &r, const Box &box, const double *lambda, const Reactions &out,
+               double *virial);
+
+// Throws Error of Status::lengths if a reference does not fit, or a trial is stretched beyond reason.
+void check_reference(const Chains &chains, const AtomArray &r, const Box &box, const char *what);
+// The largest |d.d - a^2| / a^2 of bonds and of the bodies' own distances, where it is larger than what is there.
+void worst_length(const Chains &chains, const AtomArray &r, const Box &box, WorstLength *worst);
+void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Worst *worst);
+
+}  // namespace holonomic::rigid
+#endif

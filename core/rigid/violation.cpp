@@ -1,0 +1,186 @@
+// How far molecules with bodies are from their constraints. Of a body: how far its atoms are from their places in it,
+// and its axes from their lengths and right angles, relative to its size; it has no bond to name.
+#include <algorithm>
+#include <cmath>
+
+#include "core/rigid/rates.hpp"
+#include "core/rigid/run.hpp"
+#include "core/rigid/verbs.hpp"
+#include "core/run/bond_words.hpp"
+#include "core/run/thread_memory.hpp"
+
+namespace holonomic::rigid {
+
+namespace {
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+double size_of(const PairVector &a) {
+    const Vector3<double> v = rounded(a);
+    return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+// An error of |d.d - a^2| / a^2, or of a rate.
+struct Worst1 {
+    double error = -1;
+    std::int64_t molecule = -1, bond = -1, atom = -1;
+    void take(double value, std::int64_t m, std::int64_t k, std::int64_t a) {
+        if (!(value > error) && molecule >= 0) return;
+        error = value;
+        molecule = m;
+        bond = k;
+        atom = a;
+    }
+};
+
+class Measure {
+public:
+    explicit Measure(const Chains &chains) : chains_(chains), bodies_(*chains.bodies()) {
+        memory_ = static_cast<char *>(thread_memory(Keep::rigid, bodies_.scratch_bytes()));
+        if (!memory_) throw std::bad_alloc();
+    }
+
+    // Calls each(system, place) for the active molecules, positions read.
+    template <class Each>
+    void for_each(const AtomArray &r, const Box &box, const Each &each) const {
+        for (std::int64_t m = 0; m < bodies_.n_molecules(); ++m) {
+            if (!bodies_.is_active(m)) continue;
+            const System system(bodies_.shape(m), bodies_.kinds(), memory_);
+            const Place place{bodies_.atoms(m), bodies_.bonds(m), chains_.n_chains() + m};
+            system.read(r, box, place, system.now);
+            each(system, place);
+        }
+    }
+
+    // Calls each(error, bond within the molecule or -1, atom or -1); the error is that of squares of lengths.
+    template <class Each>
+    static void lengths(const System &system, const Place &place, const Each &each) {
+        const Shape &s = system.shape();
+        for (std::size_t k = 0; k < s.bonds.size(); ++k) {
+            if (s.bonds[k].row < 0) continue;
+            const double a = s.bonds[k].length,
+                         d = size_of(system.bond_vector(system.now, static_cast<std::int32_t>(k)));
+            each(std::fabs((d - a) * (d + a)) / (a * a), static_cast<std::int64_t>(k), std::int64_t{-1});
+        }
+        for (const Part &part : s.parts) {
+            const Body &body = system.body(part);
+            const PairVector *const u = system.now.q + part.first_node + 1;
+            for (std::int32_t p = 0; p < body.rank; ++p)
+                for (std::int32_t q = p; q < body.rank; ++q) {
+                    const DoublePair off = dot(u[p], u[q]) - (p == q ? body.square[p] : as_pair(0));
+                    each(std::fabs(off.hi) / body.square[0].hi, std::int64_t{-1}, place.atoms[part.first_atom]);
+                }
+            for (std::int32_t i = part.first_atom; i < part.first_atom + body.n_atoms; ++i)
+                each(2 * size_of(system.at_atom(system.now.q, i) - system.now.x[i]) / body.extent, std::int64_t{-1},
+                     place.atoms[i]);
+        }
+    }
+
+    template <class Each>
+    static void rates(const System &system, const Place &place, const AtomArray &v, const BoxRate *rate,
+                      const Each &each) {
+        const Shape &s = system.shape();
+        system.velocities(v, place, system.b);
+        for_rates(system, system.b, rate,
+                  [&](std::int32_t, std::int32_t bond, bool square, const PairVector &p, const PairVector &q,
+                      const PairVector &u, const PairVector &w) {
+                      each(std::fabs(rounded(square ? dot(p, u) : dot(p, w) + dot(q, u))), bond);
+                  });
+        for (std::int32_t i = 0; i < s.n_held; ++i) {
+            double x[3];
+            read_atom(v, place.atoms[i], x);
+            const PairVector of_atom = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
+            each(size_of(system.at_atom(system.b, i) - of_atom) * system.body(s.parts[at(s.part_of[at(i)])]).extent,
+                 -1);
+        }
+    }
+
+private:
+    const Chains &chains_;
+    const Bodies &bodies_;
+    char *memory_;
+};
+
+}  // namespace
+
+void check_reference(const Chains &chains, const AtomArray &r, const Box &box, const char *what) {
+    Worst1 worst;
+    Measure(chains).for_each(r, box, [&](const System &system, const Place &place) {
+        Measure::lengths(system, place, [&](double error, std::int64_t bond, std::int64_t atom) {
+            // off by a tenth of the length: its square by a fifth
+            if (std::isfinite(error) && error > 2 * most_off) worst.take(error, place.number, bond, atom);
+        });
+    });
+    if (worst.molecule < 0) return;
+    const std::int64_t m = worst.molecule - chains.n_chains();
+    const std::int64_t *const atoms = chains.bodies()->atoms(m);
+    const auto name = [&](std::int64_t atom) { return chains.name_of_atom(atom); };
+    Error error;
+    if (worst.bond >= 0) {
+        const Bond &bond = chains.bodies()->shape(m).bonds[at(worst.bond)];
+        error = make_error(Status::lengths,
+                           "molecule %s, its bond between atoms %s and %s: far from its length, %.6g, %s; %s. Nothing "
+                           "was changed (hol_chains_set_checks)",
+                           chains.name_of_rigid(worst.molecule, atoms[0]).text, name(atoms[bond.i]).text,
+                           name(atoms[bond.j]).text, bond.length, what, box_in_words(box));
+    } else {
+        error = make_error(
+            Status::lengths,
+            "molecule %s, atom %s: far from its place in its body %s; %s; likely causes: another order of "
+            "atoms than in the body's reference coordinates, another unit, a molecule cut by a face of "
+            "the cell. Nothing was changed (hol_chains_set_checks)",
+            chains.name_of_rigid(worst.molecule, atoms[0]).text, name(worst.atom).text, what, box_in_words(box));
+    }
+    error.chain = worst.molecule;
+    error.bond = worst.bond;
+    error.atom = worst.atom;
+    error.n_bad = 1;
+    error.base = chains.base;
+    throw error;
+}
+
+void worst_length(const Chains &chains, const AtomArray &r, const Box &box, WorstLength *worst) {
+    Worst1 found;
+    Measure(chains).for_each(r, box, [&](const System &system, const Place &place) {
+        Measure::lengths(system, place, [&](double error, std::int64_t bond, std::int64_t) {
+            found.take(error, place.number, bond, -1);
+        });
+    });
+    if (found.molecule < 0 || (worst->molecule >= 0 && !(found.error > worst->error))) return;
+    *worst = {found.error, found.molecule + chains.base, found.bond < 0 ? -1 : found.bond + chains.base};
+}
+
+void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Worst *worst) {
+    Worst1 length, rate;
+    Found bad{empty_tally(), Outcome::not_finite};
+    Measure(chains).for_each(r, chains.box, [&](const System &system, const Place &place) {
+        bool finite = true;
+        Measure::lengths(system, place, [&](double error, std::int64_t bond, std::int64_t) {
+            finite = finite && std::isfinite(error);
+            length.take(error, place.number, bond, -1);
+        });
+        if (v.x)
+            Measure::rates(system, place, v, chains.box_rate(), [&](double error, std::int64_t bond) {
+                finite = finite && std::isfinite(error);
+                rate.take(error, place.number, bond, -1);
+            });
+        if (!finite) note_bad(place.number, bad.tally);
+    });
+    if (bad.tally.n_bad > 0) {
+        const Named arrays[] = {{"position", &r}, {"velocity", &v}};
+        throw error_of(chains, bad, arrays, 2);
+    }
+    const auto shown = [&](std::int64_t bond) { return bond < 0 ? -1 : bond + chains.base; };
+    if (length.molecule >= 0 && (worst->length_chain < 0 || length.error > worst->length)) {
+        worst->length = length.error;
+        worst->length_chain = length.molecule + chains.base;
+        worst->length_bond = shown(length.bond);
+    }
+    if (rate.molecule >= 0 && (worst->rate_chain < 0 || rate.error > worst->rate)) {
+        worst->rate = rate.error;
+        worst->rate_chain = rate.molecule + chains.base;
+        worst->rate_bond = shown(rate.bond);
+    }
+}
+
+}  // namespace holonomic::rigid

@@ -1,0 +1,147 @@
+! Rigid bodies: any number of atoms held as one whole, massless sites among them, and bonds at them. Each procedure takes
+! default or 64-bit integers.
+module holonomic_rigid
+   use, intrinsic :: iso_c_binding, only: c_int64_t, c_loc, c_null_ptr, c_ptr
+   use, intrinsic :: iso_fortran_env, only: int32, int64, real64
+   use holonomic_c, only: hol_chains_add_rigid, hol_chains_add_rigid_molecules, HOL_ERR_VALUE
+   use holonomic_bonds, only: chain_set_bonds
+   use holonomic_status, only: decimal, failure, settle
+   implicit none
+   private
+   public :: chain_set_rigid
+
+   type, extends(chain_set_bonds) :: chain_set_rigid
+   contains
+      procedure, private :: add_rigid_32, add_rigid_64, add_rigid_molecules_32, add_rigid_molecules_64
+      ! add_rigid(atoms, places, [sizes], [bonds, lengths]): a body of these atoms, whose reference coordinates are
+      ! places(3, n); with sizes several bodies, one after the other in atoms and places. bonds(2, n_bonds) join them with
+      ! each other, with other atoms or with fixed ones. An atom of mass 0 in a body is a massless site.
+      generic :: add_rigid => add_rigid_32, add_rigid_64
+      ! add_rigid_molecules(n_molecules, n_atoms, first_atom, atoms, places, [sizes], [bonds, lengths]): the same in each
+      ! of n_molecules molecules of n_atoms consecutive atoms; atoms and bonds are counted within the molecule.
+      generic :: add_rigid_molecules => add_rigid_molecules_32, add_rigid_molecules_64
+   end type
+
+contains
+
+   ! Whether the arrays have sizes that go together; if not, `problem` says why.
+   logical function fit(atoms, places, sizes, bonds, lengths, problem)
+      integer(int64), intent(in) :: atoms(:)
+      real(real64), intent(in) :: places(:, :)
+      integer(int64), intent(in) :: sizes(:)
+      integer(int64), intent(in), optional :: bonds(:, :)
+      real(real64), intent(in), optional :: lengths(:)
+      type(failure), intent(inout) :: problem
+      if (size(places, 1) /= 3 .or. size(places, 2) /= size(atoms)) then
+         call problem%set(HOL_ERR_VALUE, "places must be (3, "//decimal(size(atoms, kind=c_int64_t))//"), not ("// &
+                          decimal(size(places, 1, c_int64_t))//", "//decimal(size(places, 2, c_int64_t))//")")
+      else if (sum(sizes) /= size(atoms)) then
+         call problem%set(HOL_ERR_VALUE, "sizes add up to "//decimal(sum(sizes))//" atoms, "// &
+                          decimal(size(atoms, kind=c_int64_t))//" were given")
+      else if (present(bonds) .neqv. present(lengths)) then
+         call problem%set(HOL_ERR_VALUE, "bonds and lengths must be given together")
+      else if (present(bonds)) then
+         if (size(bonds, 1) /= 2 .or. size(bonds, 2) /= size(lengths)) &
+            call problem%set(HOL_ERR_VALUE, "bonds must be (2, "//decimal(size(lengths, kind=c_int64_t))//")")
+      end if
+      fit = problem%none()
+   end function
+
+   subroutine add_rigid_64(self, atoms, places, sizes, bonds, lengths, stat, errmsg)
+      class(chain_set_rigid), intent(inout) :: self
+      integer(int64), intent(in), contiguous, target :: atoms(:)
+      real(real64), intent(in), contiguous, target :: places(:, :)
+      integer(int64), intent(in), optional :: sizes(:)
+      integer(int64), intent(in), contiguous, optional, target :: bonds(:, :)
+      real(real64), intent(in), contiguous, optional, target :: lengths(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      integer(int64), allocatable, target :: bodies(:)
+      type(failure) :: problem
+      type(c_ptr) :: pairs, of_pairs
+      integer(c_int64_t) :: n_bonds
+      call problem%need_created(self%c_handle())
+      bodies = [size(atoms, kind=int64)]
+      if (present(sizes)) bodies = sizes
+      if (fit(atoms, places, bodies, bonds, lengths, problem)) then
+         call take_bonds(bonds, lengths, n_bonds, pairs, of_pairs)
+         call problem%ask(hol_chains_add_rigid(self%c_handle(), size(bodies, kind=c_int64_t), c_loc(bodies), c_loc(atoms), &
+                                               c_loc(places), n_bonds, pairs, of_pairs))
+      end if
+      call settle(problem, "add_rigid", stat, errmsg)
+   end subroutine
+
+   subroutine add_rigid_molecules_64(self, n_molecules, n_atoms, first_atom, atoms, places, sizes, bonds, lengths, stat, &
+                                     errmsg)
+      class(chain_set_rigid), intent(inout) :: self
+      integer(int64), intent(in) :: n_molecules, n_atoms, first_atom
+      integer(int64), intent(in), contiguous, target :: atoms(:)
+      real(real64), intent(in), contiguous, target :: places(:, :)
+      integer(int64), intent(in), optional :: sizes(:)
+      integer(int64), intent(in), contiguous, optional, target :: bonds(:, :)
+      real(real64), intent(in), contiguous, optional, target :: lengths(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      integer(int64), allocatable, target :: bodies(:)
+      type(failure) :: problem
+      type(c_ptr) :: pairs, of_pairs
+      integer(c_int64_t) :: n_bonds
+      call problem%need_created(self%c_handle())
+      bodies = [size(atoms, kind=int64)]
+      if (present(sizes)) bodies = sizes
+      if (fit(atoms, places, bodies, bonds, lengths, problem)) then
+         call take_bonds(bonds, lengths, n_bonds, pairs, of_pairs)
+         call problem%ask(hol_chains_add_rigid_molecules(self%c_handle(), n_molecules, n_atoms, first_atom, &
+                                                         size(bodies, kind=c_int64_t), c_loc(bodies), c_loc(atoms), &
+                                                         c_loc(places), n_bonds, pairs, of_pairs))
+      end if
+      call settle(problem, "add_rigid_molecules", stat, errmsg)
+   end subroutine
+
+   subroutine take_bonds(bonds, lengths, n_bonds, pairs, of_pairs)
+      integer(int64), intent(in), contiguous, optional, target :: bonds(:, :)
+      real(real64), intent(in), contiguous, optional, target :: lengths(:)
+      integer(c_int64_t), intent(out) :: n_bonds
+      type(c_ptr), intent(out) :: pairs, of_pairs
+      n_bonds = 0
+      pairs = c_null_ptr
+      of_pairs = c_null_ptr
+      if (.not. present(bonds)) return
+      n_bonds = size(bonds, 2, c_int64_t)
+      if (n_bonds == 0) return
+      pairs = c_loc(bonds)
+      of_pairs = c_loc(lengths)
+   end subroutine
+
+   subroutine add_rigid_32(self, atoms, places, sizes, bonds, lengths, stat, errmsg)
+      class(chain_set_rigid), intent(inout) :: self
+      integer(int32), intent(in) :: atoms(:)
+      real(real64), intent(in), contiguous, target :: places(:, :)
+      integer(int32), intent(in), optional :: sizes(:), bonds(:, :)
+      real(real64), intent(in), contiguous, optional, target :: lengths(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      integer(int64), allocatable :: bodies(:), pairs(:, :)
+      if (present(sizes)) bodies = int(sizes, int64)
+      if (present(bonds)) pairs = int(bonds, int64)
+      call self%add_rigid(int(atoms, int64), places, bodies, pairs, lengths, stat, errmsg) ! unallocated: not present
+   end subroutine
+
+   subroutine add_rigid_molecules_32(self, n_molecules, n_atoms, first_atom, atoms, places, sizes, bonds, lengths, stat, &
+                                     errmsg)
+      class(chain_set_rigid), intent(inout) :: self
+      integer(int32), intent(in) :: n_molecules, n_atoms, first_atom
+      integer(int32), intent(in) :: atoms(:)
+      real(real64), intent(in), contiguous, target :: places(:, :)
+      integer(int32), intent(in), optional :: sizes(:), bonds(:, :)
+      real(real64), intent(in), contiguous, optional, target :: lengths(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      integer(int64), allocatable :: bodies(:), pairs(:, :)
+      if (present(sizes)) bodies = int(sizes, int64)
+      if (present(bonds)) pairs = int(bonds, int64)
+      call self%add_rigid_molecules(int(n_molecules, int64), int(n_atoms, int64), int(first_atom, int64), &
+                                    int(atoms, int64), places, bodies, pairs, lengths, stat, errmsg)
+   end subroutine
+
+end module
