@@ -8,6 +8,7 @@
 
 #include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
+#include "core/error.hpp"
 #include "core/kernels/tally.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/solve.hpp"
@@ -149,6 +150,10 @@ private:
 }  // namespace
 
 void impose(const Chains &chains, const AtomArray &r, Report *report) {
+    if (chains.bodies())
+        throw make_error(Status::value,
+                         "there are rigid bodies, which have no way of their own from crude positions: "
+                         "hol_project_positions with r_ref = r takes them to their shapes");
     Approach approach(chains, r);
     Tally tally = empty_tally();
     Report found{approach.run(), 0, 0, -1, -1, 0, true};

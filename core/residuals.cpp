@@ -4,6 +4,7 @@
 
 #include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
+#include "core/error.hpp"
 #include "core/kernels/tally.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
@@ -38,6 +39,9 @@ Residual residual_of(const Chains &chains, const Molecule &m, std::int64_t k, co
 }  // namespace
 
 void residuals(const Chains &chains, const AtomArray &r, const AtomArray &v, double *length, double *rate) {
+    if (chains.bodies())
+        throw make_error(Status::value,
+                         "residuals are those of bonds alone, and there are rigid bodies: hol_violation has both");
     Tally tally = empty_tally();
     chains.for_active([&](const Molecule &m) {
         bool finite = true;
