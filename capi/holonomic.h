@@ -26,9 +26,10 @@
  * - Every function that can fail returns an hol_status. hol_error_message() then says in words what was wrong and
  *   where, hol_error_location() in numbers; both are the calling thread's own.
  * - A wrong argument: nothing is written. Bad data in some molecules (HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE,
- *   HOL_ERR_NO_CONVERGENCE): their outputs stay as they were, bit for bit; all other molecules are complete; sums over
- *   molecules (virial, energy) are not written. Status, message and location are those of the first bad molecule. A
- *   fixed atom of several molecules gets the sum over those that are not bad.
+ *   HOL_ERR_NO_CONVERGENCE, after the first call also HOL_ERR_LENGTHS): their outputs stay as they were, bit for bit;
+ *   all other molecules are complete; sums over molecules (virial, energy) are not written. Status, message and
+ *   location are those of the first bad molecule. A fixed atom of several molecules gets the sum over those that are
+ *   not bad.
  * - An output may overlap another argument only where its description says so.
  * - The library never prints, exits, aborts or throws, and changes no floating-point environment.
  * - Threads: any number of them may use a handle at once that none changes (create, add, set, destroy). Scratch memory
@@ -766,8 +767,9 @@ HOL_API int hol_violation_view(const hol_chains *chains, const hol_view *r, cons
  * @param[in]  v       velocities [n_atoms][3], or NULL
  * @param[out] length  (d.d - a^2) / a^2 [n_bonds], > 0 where a bond is too long, or NULL
  * @param[out] rate    d . (v_j - v_i + L d) [n_bonds], length^2/time, 0 without v, or NULL
- * @return HOL_OK; HOL_ERR_NULL (chains or r); HOL_ERR_NOT_FINITE. Entries of inactive and of bad molecules are not
- *         written; those of bonds between two fixed atoms are 0. Thread-safe on one handle. O(n_bonds). Since 0.2.
+ * @return HOL_OK; HOL_ERR_NULL (chains or r); HOL_ERR_VALUE (a set with rigid bodies); HOL_ERR_NOT_FINITE. Entries of
+ *         inactive and of bad molecules are not written; those of bonds between two fixed atoms are 0. Thread-safe on
+ *         one handle. O(n_bonds). Since 0.2.
  */
 HOL_API int hol_residuals(const hol_chains *chains, const double *r, const double *v, double *length, double *rate);
 
@@ -790,11 +792,12 @@ HOL_API int hol_residuals_view(const hol_chains *chains, const hol_view *r, cons
  * @param[in]     chains
  * @param[in,out] r       positions [n_atoms][3], in the box of hol_chains_set_box
  * @param[out]    report  or NULL: iterations is the number of steps, at most that of hol_chains_set_max_iterations
- * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE (atoms on each other, bonds that depend on each
- *         other in these positions, such as a triangle that has become a line: shift an atom, and call again);
- *         HOL_ERR_NO_CONVERGENCE; HOL_ERR_MEMORY. Molecules that fail stay as they were, all others are done; one that
- *         is within the tolerance (hol_chains_set_tolerance) already is not touched. Thread-safe on one handle, each
- *         thread with positions of its own. Allocates some 60 bytes per atom. Since 0.2.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (a set with rigid bodies); HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE (atoms
+ *         on each other, bonds that depend on each other in these positions, such as a triangle that has become a line:
+ *         shift an atom, and call again); HOL_ERR_NO_CONVERGENCE; HOL_ERR_MEMORY. Molecules that fail stay as they
+ *         were, all others are done; one that is within the tolerance (hol_chains_set_tolerance) already is not
+ *         touched. Thread-safe on one handle, each thread with positions of its own. Allocates some 60 bytes per atom.
+ *         Since 0.2.
  */
 HOL_API int hol_impose(const hol_chains *chains, double *r, hol_report *report);
 

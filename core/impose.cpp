@@ -8,6 +8,7 @@
 
 #include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
+#include "core/error.hpp"
 #include "core/kernels/tally.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/solve.hpp"

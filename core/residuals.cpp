@@ -37,10 +37,6 @@ Residual residual_of(const Chains &chains, const Molecule &m, std::int64_t k, co
     return {(dd - a * a) / (a * a), du};
 }
 
-}  // namespace
-
-namespace {
-
 void residuals_of_bonds(const Chains &chains, const AtomArray &r, const AtomArray &v, double *length, double *rate) {
     Tally tally = empty_tally();
     chains.for_active([&](const Molecule &m) {

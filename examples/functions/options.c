@@ -19,7 +19,8 @@ int main(void)
     ok(hol_chains_set_threads(chains, 2));
     ok(hol_chains_set_tolerance(chains, 1e-10)); /* of hol_project_positions; 0: the rounding of the coordinates */
     ok(hol_chains_set_max_iterations(chains, 20));
-    ok(hol_chains_set_active(chains, active)); /* the second chain is left out of every call */
+    ok(hol_chains_set_memory_limit(chains, 1 << 30)); /* what cycles may fill; 0: a quarter of the machine's */
+    ok(hol_chains_set_active(chains, active));        /* the second chain is left out of every call */
     shows("degrees of freedom", (double)hol_chains_degrees_of_freedom(chains, 3), 3 * 4 - 1);
     ok(hol_chains_set_active(chains, NULL));
     hol_chains_destroy(chains);

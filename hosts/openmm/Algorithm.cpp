@@ -62,8 +62,13 @@ void HolonomicAlgorithm::apply(std::vector<Vec3> &reference, std::vector<Vec3> &
     takeMasses(inverse);
     // The unit of time is that of a displacement: 1 leaves the multipliers, which nobody asks for, in a unit of their
     // own.
-    ask(hol_project_positions(molecules.get(), packed(reference), packed(positions), nullptr, 1, nullptr, 0, nullptr,
-                              nullptr));
+    const int status = hol_project_positions(molecules.get(), packed(reference), packed(positions), nullptr, 1, nullptr,
+                                             0, nullptr, nullptr);
+    // Context::applyConstraints: where nothing is known but crude positions, there is more that can be done.
+    if (status == HOL_ERR_NO_CONVERGENCE && &reference == &positions)
+        ask(hol_impose(molecules.get(), packed(positions), nullptr));
+    else
+        ask(status);
 }
 
 void HolonomicAlgorithm::applyToVelocities(std::vector<Vec3> &positions, std::vector<Vec3> &velocities,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import weakref
 from ctypes import byref, c_double, c_int, c_int64, c_void_p
-from typing import Any, NamedTuple, Optional
+from typing import Any, NamedTuple, Optional, Tuple
 
 import numpy as np
 
@@ -12,13 +12,13 @@ from ._arrays import KnownViews, PackedArrays, address, integers, numbers
 from ._library import library
 from .errors import ArgumentError, ask
 
-SHAPES = ("chain", "tree", "ring", "triangle", "other")
+SHAPES = ("chain", "tree", "ring", "triangle", "other", "rigid")
 
 
 class Molecule(NamedTuple):
     """One molecule as the library sees it.
 
-    shape  "chain", "tree", "ring", "triangle" or "other"
+    shape  "chain", "tree", "ring", "triangle", "other", or "rigid": with rigid bodies
     atoms  its atoms, along a linear chain, ascending otherwise
     bonds  its bonds by their places in the arrays per bond, in the order in which errors count them
     """
@@ -94,6 +94,51 @@ class Bonds:
         ask(library.hol_chains_add_block(self._handle, n_chains, n_bonds, first_atom, address(lengths)))
         self._grown()
 
+    def add_rigid(self, bodies: Any, places: Any, bonds: Any = (), lengths: Any = ()) -> None:
+        """Adds rigid bodies, any number of atoms held as one whole each, and bonds at them.
+
+        bodies   the atoms of each body, a list of lists; in a body an atom of mass 0 is a massless site
+        places   reference coordinates of these atoms, an array (n, 3) for each body, in any frame: what it looks like
+        bonds    (n, 2) integers, bonds of bodies with other atoms, and between other atoms of these molecules
+        lengths  (n,) lengths, or one number for all
+
+        docs/rigid.md. What holds a body together has no multipliers.
+        """
+        sizes, atoms, where = self._bodies(bodies, places)
+        bonds, lengths = self._at_bodies(bonds, lengths)
+        ask(library.hol_chains_add_rigid(self._handle, len(sizes), address(sizes), address(atoms), address(where), len(bonds),
+                                         address(bonds), address(lengths)))
+        self._grown()
+
+    def add_rigid_molecules(self, n_molecules: int, n_atoms: int, bodies: Any, places: Any, bonds: Any = (),
+                            lengths: Any = (), first_atom: int = 0) -> None:
+        """Adds the same bodies and bonds for n_molecules molecules of n_atoms consecutive atoms each; numbers of atoms are
+        those within the molecule. 1000 CO2: ``add_rigid_molecules(1000, 3, [[0, 1, 2]], [[(-d, 0, 0), (0, 0, 0), (d, 0, 0)]])``.
+        """
+        sizes, atoms, where = self._bodies(bodies, places)
+        bonds, lengths = self._at_bodies(bonds, lengths)
+        ask(library.hol_chains_add_rigid_molecules(self._handle, n_molecules, n_atoms, first_atom, len(sizes), address(sizes),
+                                                   address(atoms), address(where), len(bonds), address(bonds),
+                                                   address(lengths)))
+        self._grown()
+
+    @staticmethod
+    def _bodies(bodies: Any, places: Any) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+        atoms = [integers(body, "bodies") for body in bodies]
+        where = [np.asarray(place, dtype=np.float64) for place in places]
+        if len(atoms) != len(where) or not atoms:
+            raise ArgumentError(f"there are {len(atoms)} bodies and places of {len(where)}; it must be as many, at least one")
+        for body, place in zip(atoms, where):
+            if body.ndim != 1 or place.shape != (len(body), 3):
+                raise ArgumentError(f"places of a body have the shape {place.shape}; its atoms have {body.shape}, and it must be "
+                                    "(n, 3) and (n,)")
+        sizes = np.array([len(body) for body in atoms], dtype=np.int64)
+        return sizes, np.concatenate(atoms), np.ascontiguousarray(np.concatenate(where))
+
+    def _at_bodies(self, bonds: Any, lengths: Any) -> Tuple[np.ndarray, np.ndarray]:
+        bonds = np.zeros((0, 2), np.int64) if len(bonds) == 0 else self._pairs(bonds)
+        return bonds, numbers(lengths, len(bonds), "lengths", "bond")
+
     @staticmethod
     def _pairs(bonds: Any) -> np.ndarray:
         bonds = integers(bonds, "bonds")
@@ -138,7 +183,7 @@ class Bonds:
         return library.hol_chains_memory(self._handle)
 
     def n_of_shape(self, shape: str) -> int:
-        """Number of molecules of a shape: "chain", "tree", "ring", "triangle" or "other"."""
+        """Number of molecules of a shape: "chain", "tree", "ring", "triangle", "other" or "rigid"."""
         if shape not in SHAPES:
             raise ArgumentError(f"shape is {shape!r}; it must be one of {', '.join(SHAPES)}")
         return library.hol_chains_n_of_shape(self._handle, SHAPES.index(shape))

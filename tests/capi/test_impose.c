@@ -26,7 +26,10 @@ static molecule make(shape kind, int64_t n_atoms, uint64_t *state)
         if (i == 0) continue;
         const int64_t parent = kind == TREE ? (i - 1) / 2 : i - 1;
         double u[3], square = 0;
-        for (int c = 0; c < 3; ++c) square += (u[c] = dice(state)) * u[c];
+        for (int c = 0; c < 3; ++c) {
+            u[c] = dice(state);
+            square += u[c] * u[c];
+        }
         for (int c = 0; c < 3; ++c)
             m.r[3 * i + c] = m.r[3 * parent + c] + u[c] / sqrt(square) * (1 + 0.3 * dice(state));
         m.pairs[2 * m.n_bonds] = parent;
