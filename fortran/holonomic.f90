@@ -20,7 +20,8 @@ module holonomic
                           HOL_ERR_NO_CONVERGENCE, HOL_ERR_NOT_DEFINITE, HOL_ERR_INTERNAL, HOL_ERR_LENGTHS, &
                           HOL_NEVER, HOL_AT_START, HOL_ALWAYS, c_version => hol_version, c_status_name => hol_status_name, &
                           c_instruction_set => hol_instruction_set, c_error_location => hol_error_location, &
-                          HOL_PHYSICAL, HOL_SHAPE_CHAIN, HOL_SHAPE_OTHER, HOL_SHAPE_RING, HOL_SHAPE_TREE, &
+                          HOL_PHYSICAL, HOL_SHAPE_CHAIN, HOL_SHAPE_OTHER, HOL_SHAPE_RIGID, HOL_SHAPE_RING, &
+                          HOL_SHAPE_TREE, &
                           HOL_SHAPE_TRIANGLE, HOL_UNIT_DIAGONAL
    use holonomic_inverse, only: hol_inverse
    use holonomic_metric, only: chain_set_metric
@@ -36,7 +37,8 @@ module holonomic
    public :: HOL_OK, HOL_ERR_NULL, HOL_ERR_VALUE, HOL_ERR_INDEX, HOL_ERR_SHARED_ATOM, HOL_ERR_MEMORY, &
              HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE, HOL_ERR_NO_CONVERGENCE, HOL_ERR_NOT_DEFINITE, HOL_ERR_INTERNAL, &
              HOL_ERR_LENGTHS, HOL_NEVER, HOL_AT_START, HOL_ALWAYS, HOL_PHYSICAL, HOL_UNIT_DIAGONAL, HOL_SHAPE_CHAIN, &
-             HOL_SHAPE_TREE, HOL_SHAPE_RING, HOL_SHAPE_TRIANGLE, HOL_SHAPE_OTHER
+             HOL_SHAPE_TREE, HOL_SHAPE_RING, HOL_SHAPE_TRIANGLE, HOL_SHAPE_OTHER, &
+             HOL_SHAPE_RIGID
 
    ! Molecules with rigid bonds. The variable that was created owns them until its destroy: there is no finalizer. A copy
    ! made by assignment refers to the same molecules, owns nothing, and must not be used after the owner's destroy.

@@ -12,6 +12,7 @@ module holonomic_c_molecules
    integer(c_int), parameter :: HOL_SHAPE_RING = 2
    integer(c_int), parameter :: HOL_SHAPE_TRIANGLE = 3
    integer(c_int), parameter :: HOL_SHAPE_OTHER = 4
+   integer(c_int), parameter :: HOL_SHAPE_RIGID = 5
 
    interface
 

@@ -186,7 +186,7 @@ static void handles_are_not_made_without_memory(void **state)
     assert_int_equal(blocks_in_use(), in_use);
 }
 
-enum { ADD = 0, ADD_BLOCK, ADD_BONDS, ADD_MOLECULES, SET_LENGTHS, SET_MASSES, SET_ACTIVE, CHANGES };
+enum { ADD = 0, ADD_BLOCK, ADD_BONDS, ADD_MOLECULES, ADD_RIGID, SET_LENGTHS, SET_MASSES, SET_ACTIVE, CHANGES };
 
 static int change(hol_chains *chains, int which)
 {
@@ -197,6 +197,9 @@ static int change(hol_chains *chains, int which)
     static const int64_t bonds[20] = {20, 22, 20, 24, 20, 26, 12, 11, 11, 14, 14, 13, 13, 12, 41, 40, 40, 39, 39, 38};
     static const int64_t triangle[6] = {0, 1, 1, 2, 2, 0};
     static const double ones[10] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+    /* a tetrahedron with a tail, and a rod */
+    static const int64_t sizes[2] = {4, 2}, held[6] = {20, 21, 22, 23, 30, 31}, tail[4] = {23, 24, 24, 25};
+    static const double places[18] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     double mass[50];
     for (int i = 0; i < 50; ++i) mass[i] = 2 + i % 5;
     switch (which) {
@@ -204,6 +207,8 @@ static int change(hol_chains *chains, int which)
             return hol_chains_add_bonds(chains, 10, bonds, ones);
         case ADD_MOLECULES:
             return hol_chains_add_molecules(chains, 9, 3, 20, 3, triangle, ones);
+        case ADD_RIGID:
+            return hol_chains_add_rigid(chains, 2, sizes, held, places, 2, tail, ones);
         case SET_LENGTHS:
             return hol_chains_set_lengths(chains, length);
         case SET_MASSES:
