@@ -767,9 +767,8 @@ HOL_API int hol_violation_view(const hol_chains *chains, const hol_view *r, cons
  * @param[in]  v       velocities [n_atoms][3], or NULL
  * @param[out] length  (d.d - a^2) / a^2 [n_bonds], > 0 where a bond is too long, or NULL
  * @param[out] rate    d . (v_j - v_i + L d) [n_bonds], length^2/time, 0 without v, or NULL
- * @return HOL_OK; HOL_ERR_NULL (chains or r); HOL_ERR_VALUE (a set with rigid bodies); HOL_ERR_NOT_FINITE. Entries of
- *         inactive and of bad molecules are not written; those of bonds between two fixed atoms are 0. Thread-safe on
- *         one handle. O(n_bonds). Since 0.2.
+ * @return HOL_OK; HOL_ERR_NULL (chains or r); HOL_ERR_NOT_FINITE. Entries of inactive and of bad molecules are not
+ *         written; those of bonds between two fixed atoms are 0. Thread-safe on one handle. O(n_bonds). Since 0.2.
  */
 HOL_API int hol_residuals(const hol_chains *chains, const double *r, const double *v, double *length, double *rate);
 
