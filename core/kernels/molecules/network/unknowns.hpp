@@ -29,15 +29,16 @@ struct Unknowns {
     double *sum;                                       // [n_node_shares][2]
     double *r, *shadow, *p, *p_node, *v, *s_node, *t;  // s takes the place of r
 
+    static constexpr int64_t node_values = static_cast<int64_t>(sizeof(NetNode) / sizeof(double));
+
     static int64_t values(const NetworkPlan &s) {
-        return in_fours(sizeof(NetNode) / sizeof(double) * static_cast<int64_t>(s.n_nodes)) +
-               in_fours(3 * static_cast<int64_t>(s.n_tree)) + in_fours(2 * static_cast<int64_t>(s.n_node_shares)) +
+        return in_fours(node_values * static_cast<int64_t>(s.n_nodes)) + in_fours(3 * static_cast<int64_t>(s.n_tree)) +
+               in_fours(2 * static_cast<int64_t>(s.n_node_shares)) +
                2 * in_fours(3 * static_cast<int64_t>(s.n_unknowns)) + 12 * in_fours(s.n_unknowns);
     }
     Unknowns(const Net &of, Memory<double> &memory) : net(of), s(of.s) {
         const int64_t n = in_fours(s.n_unknowns);
-        node = reinterpret_cast<NetNode *>(
-            memory.values(in_fours(sizeof(NetNode) / sizeof(double) * static_cast<int64_t>(s.n_nodes))));
+        node = reinterpret_cast<NetNode *>(memory.values(in_fours(node_values * static_cast<int64_t>(s.n_nodes))));
         tree_bond = reinterpret_cast<Vector3<double> *>(memory.values(in_fours(3 * static_cast<int64_t>(s.n_tree))));
         sum = memory.values(in_fours(2 * static_cast<int64_t>(s.n_node_shares)));
         D = reinterpret_cast<Vector3<double> *>(memory.values(in_fours(3 * static_cast<int64_t>(s.n_unknowns))));
