@@ -61,8 +61,11 @@ contains
       type(c_ptr) :: pairs, of_pairs
       integer(c_int64_t) :: n_bonds
       call problem%need_created(self%c_handle())
-      bodies = [size(atoms, kind=int64)]
-      if (present(sizes)) bodies = sizes
+      if (present(sizes)) then
+         allocate (bodies, source=sizes)
+      else
+         allocate (bodies, source=[size(atoms, kind=int64)])
+      end if
       if (fit(atoms, places, bodies, bonds, lengths, problem)) then
          call take_bonds(bonds, lengths, n_bonds, pairs, of_pairs)
          call problem%ask(hol_chains_add_rigid(self%c_handle(), size(bodies, kind=c_int64_t), c_loc(bodies), c_loc(atoms), &
@@ -87,8 +90,11 @@ contains
       type(c_ptr) :: pairs, of_pairs
       integer(c_int64_t) :: n_bonds
       call problem%need_created(self%c_handle())
-      bodies = [size(atoms, kind=int64)]
-      if (present(sizes)) bodies = sizes
+      if (present(sizes)) then
+         allocate (bodies, source=sizes)
+      else
+         allocate (bodies, source=[size(atoms, kind=int64)])
+      end if
       if (fit(atoms, places, bodies, bonds, lengths, problem)) then
          call take_bonds(bonds, lengths, n_bonds, pairs, of_pairs)
          call problem%ask(hol_chains_add_rigid_molecules(self%c_handle(), n_molecules, n_atoms, first_atom, &
@@ -122,8 +128,8 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       integer(int64), allocatable :: bodies(:), pairs(:, :)
-      if (present(sizes)) bodies = int(sizes, int64)
-      if (present(bonds)) pairs = int(bonds, int64)
+      if (present(sizes)) allocate (bodies, source=int(sizes, int64))
+      if (present(bonds)) allocate (pairs, source=int(bonds, int64))
       call self%add_rigid(int(atoms, int64), places, bodies, pairs, lengths, stat, errmsg) ! unallocated: not present
    end subroutine
 
@@ -138,8 +144,8 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       integer(int64), allocatable :: bodies(:), pairs(:, :)
-      if (present(sizes)) bodies = int(sizes, int64)
-      if (present(bonds)) pairs = int(bonds, int64)
+      if (present(sizes)) allocate (bodies, source=int(sizes, int64))
+      if (present(bonds)) allocate (pairs, source=int(bonds, int64))
       call self%add_rigid_molecules(int(n_molecules, int64), int(n_atoms, int64), int(first_atom, int64), &
                                     int(atoms, int64), places, bodies, pairs, lengths, stat, errmsg)
    end subroutine
