@@ -21,6 +21,13 @@ long double k_eps(const hostile_molecule &m)
     return (16 + std::sqrt(static_cast<long double>(m.n_bonds()))) * eps;
 }
 
+/** The same for multipliers and forces. Trees take plain products where theory (53a) is at most so many scales. */
+long double linear_eps(const hostile_molecule &m)
+{
+    const long double plain = std::max(64.0L, std::sqrt(static_cast<long double>(m.n_bonds())));
+    return k_eps(m) + (m.shape == TREES ? plain * eps : 0);
+}
+
 /**
  * What the multipliers may be off by beside K eps times their scale: K eps times 1e-80 of the largest one. They die
  * away as products of many factors. In graphs that elimination has to subtract for, a multiplier that is zero because
@@ -35,7 +42,7 @@ long double slack(const hostile_molecule &m, const molecule_solution &s, long do
 void check_multipliers(const hostile_molecule &m, const molecule_solution &s, const numbers &lambda,
                        molecule_quantity q, molecule_verdict &out)
 {
-    const long double k = k_eps(m), tail = slack(m, s, k);
+    const long double k = linear_eps(m), tail = slack(m, s, k);
     for (std::size_t b = 0; b < m.length.size(); ++b)
         out.compare(q, lambda[b], s.lambda[b], k * s.lambda_scale[b] + (s.lambda_scale[b] > 0 ? tail : 0));
 }
@@ -47,7 +54,8 @@ void check_forces(const hostile_molecule &m, const molecule_reference &exact, co
     if (alone.forces != HOL_OK || !exact.forces.there) return;
     const molecule_solution &s = exact.forces.s;
     check_multipliers(m, s, alone.lambda, M_LAMBDA, out);
-    const long double k = k_eps(m), pull = 2 * slack(m, s, k) * *std::max_element(m.length.begin(), m.length.end());
+    const long double k = linear_eps(m),
+                      pull = 2 * slack(m, s, k) * *std::max_element(m.length.begin(), m.length.end());
     for (std::size_t i = 0; i < m.r.size(); ++i)
         if (s.g_scale[i / 3] > 0 || !is_blank(alone.g[i]))  // atoms without a constraint are not written
             out.compare(M_FORCE, alone.g[i], s.g[i], k * s.g_scale[i / 3] + (s.g_scale[i / 3] > 0 ? pull : 0));

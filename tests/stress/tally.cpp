@@ -68,8 +68,10 @@ void write_markdown(const std::vector<std::string> &sets, const std::vector<tall
     if (!table.out) return;
     table.row("chains", [&](std::size_t s) { return std::to_string(of_set[s].chains); });
     table.row("above a bound", [&](std::size_t s) { return std::to_string(of_set[s].exceeded); });
+    table.row("lambda above K alone",
+              [&](std::size_t s) { return std::to_string(of_set[s].quantity[LAMBDA_NEAR].exceeded); });
     for (std::size_t q = 0; q < N_QUANTITIES; ++q)
-        if (!for_information(static_cast<int>(q)) && of_set[0].quantity[q].checked > 0)
+        if ((!for_information(static_cast<int>(q)) || q == LAMBDA_NEAR) && of_set[0].quantity[q].checked > 0)
             table.row(quantity_name(static_cast<int>(q)),
                       [&](std::size_t s) { return table.number(of_set[s].quantity[q].worst); });
 }
