@@ -1,6 +1,7 @@
 #include "chain_reference.hpp"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <cstdint>
 
@@ -16,6 +17,9 @@ namespace
 
 constexpr long double smallest = 4.9406564584124654e-324L;
 constexpr long double eps_of_joint = 4;  // that a multiplier may be off by for each joint that a pull has passed
+// Of the cosine of a joint, which is a sum of three products in twice the precision. More than eps_of_joint of it only
+// below 1e-17.
+constexpr long double rounding_of_square = 0x1p-106L;
 
 long double narrow(const quad &x)
 {
@@ -143,10 +147,11 @@ long_vec chain_reference::spread_by_joints(const long_vec &size) const
     const std::size_t n = size.size();
     long_vec out(n);
     const auto sweep = [&](std::size_t from, std::size_t step, const auto &ratio) {
-        long double sum = 0, far = 0;  // of the bonds so far, without and with numbers of joints
+        long double sum = 0, far = 0;  // of the bonds so far, without and with the roundings of joints
         for (std::size_t i = 0, k = from; i < n; ++i, k += step) {
+            const std::size_t joint = std::max(k, k - step);
             const long double l = i > 0 ? ratio(k) : 0;
-            far = l * (far + sum);
+            far = i > 0 ? l * (far + roundings_[joint] * sum) : 0;
             out[k] += inverse_[k] * far;
             sum = l * sum + size[k];
         }
@@ -197,6 +202,7 @@ chain_reference::chain_reference(const hostile_chain &c)
     sizes s;
     for (std::size_t i = 0; i <= n; ++i) s.w.push_back(narrow(e.w[i]));
     long_vec root(n), row_sum(n, 1);
+    roundings_.assign(n, 1);
     for (std::size_t k = 0; k < n; ++k) {
         for (std::size_t x = 0; x < 3; ++x) d.push_back(narrow(e.d[k][x]));
         s.size.push_back(std::hypot(d[3 * k], d[3 * k + 1], d[3 * k + 2]));
@@ -204,6 +210,8 @@ chain_reference::chain_reference(const hostile_chain &c)
         ratio_.push_back(std::fabs(narrow(z.ratio[k])));
         root[k] = std::sqrt(narrow(z.diagonal[k]));
         if (k == 0) continue;
+        const long double cosine = std::fabs(narrow(dot(e.d[k - 1], e.d[k]))) / s.size[k - 1] / s.size[k];
+        roundings_[k] = 1 + (cosine > 0 ? rounding_of_square / (eps_of_joint * DBL_EPSILON) / cosine : 0);
         const long double beside = std::fabs(narrow(z.beside[k])) / root[k - 1] / root[k];
         row_sum[k] += beside;
         row_sum[k - 1] += beside;

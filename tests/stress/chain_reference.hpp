@@ -20,9 +20,10 @@ using long_vec = std::vector<long double>;
 
 /**
  * Multipliers of one level, what they do, the scales of solution.h, and how many eps each may be off by:
- *     allowed_k = K scale_k + 4 sum_l |k-l| |Z^-1|_kl S_l,   scale_k = sum_l |Z^-1|_kl S_l,   K = 16 + sqrt(N).
+ *     allowed_k = K scale_k + 4 sum_l n_kl |Z^-1|_kl S_l,   scale_k = sum_l |Z^-1|_kl S_l,   K = 16 + sqrt(N).
  * What pulls at bond l reaches bond k through the joints between them, as a product of their multipliers. Each of these
- * has some sixteen roundings of half an eps at most (docs/stability.md).
+ * has some sixteen roundings of half an eps at most, and one that is square to less than 1e-17 more, as its cosine is
+ * known to 2^-106 (docs/stability.md): n_kl is their number, each with 2^-56 / |cos| more.
  */
 struct level_reference {
     long_vec lambda, scale, allowed;  ///< [n_bonds]
@@ -41,7 +42,7 @@ struct chain_reference {
     /** |Z^-1| times these sizes. */
     long_vec spread(long_vec size) const;
 
-    /** Elements of |Z^-1| times the number of joints between the two bonds, times these sizes. */
+    /** Elements of |Z^-1| times n_kl, times these sizes. */
     long_vec spread_by_joints(const long_vec &size) const;
 
     /** Sizes of what projecting velocities (or displacements) of the given sizes pulls each atom with, times w. */
@@ -52,6 +53,7 @@ private:
 
     long_vec pivot_, ratio_;  // P_k of Z, and |Z_{k,k-1}| / P_{k-1}
     long_vec inverse_;        // (Z^-1)_kk
+    long_vec roundings_;      // [k]: what the joint between bonds k-1 and k adds to n_kl
 };
 
 /** K of tests/oracle/README.md. */

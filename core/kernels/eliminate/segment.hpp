@@ -233,11 +233,12 @@ HOL_NOINLINE void eliminate(const SegmentBlock &s, const Reader &in, const Separ
     sum.doubt = doubt | ~less(e.largest_rF, splat(careful ? largest_reciprocal_of_one : largest_reciprocal_of_four));
 }
 
-// The rounding of the X of nearly parallel bonds reaches E' through a. With a = sum alpha_j X_j over n joints, its error
-// is about 2 eps sqrt(a sum alpha_j q_j q_{j+1} / n) <= 2 eps sqrt(a w_max q c), q being the last of them; it is harmless
-// where that is below join_tolerance S, S = E_free E + a. The sum A = sum alpha_j q_j q_{j+1} is at most n w_max q c by
-// induction: it starts as w_s^2 q_s q_1 = w_s q_1 c, and a bond makes A' = w_k q_{k+1} (A + w_k q_k c) / P_k of it, while
-// c' >= w_k q_k c / P_k by (21); so A' <= w_k q_{k+1} (n + 1) w_max q_k c / P_k <= (n + 1) w_max q_{k+1} c'.
+// The rounding of the X of nearly parallel bonds reaches E' through a. With a = sum alpha_j X_j over n joints, its
+// error is about 2 eps sqrt(a sum alpha_j q_j q_{j+1} / n) <= 2 eps sqrt(a w_max q c), q being the last of them; it is
+// harmless where that is below join_tolerance S, S = E_free E + a. The sum A = sum alpha_j q_j q_{j+1} is at most n
+// w_max q c by induction: it starts as w_s^2 q_s q_1 = w_s q_1 c, and a bond makes A' = w_k q_{k+1} (A + w_k q_k c) /
+// P_k of it, while c' >= w_k q_k c / P_k by (21); so A' <= w_k q_{k+1} (n + 1) w_max q_k c / P_k <= (n + 1) w_max
+// q_{k+1} c'.
 //
 // It reaches c, too, and there no test of the segment's own E sees it: a light atom in a straight joint just behind the
 // separator, say. Seen from the far end, c is a remainder E' as any other, and its error at most 2 eps sqrt(w_max q_s
