@@ -17,9 +17,9 @@ namespace
 
 constexpr long double smallest = 4.9406564584124654e-324L;
 constexpr long double eps_of_joint = 4;  // that a multiplier may be off by for each joint that a pull has passed
-// Of the cosine of a joint, which is a sum of three products in twice the precision. More than eps_of_joint of it only
-// below 1e-17.
-constexpr long double rounding_of_square = 0x1p-106L;
+// Of the cosine and of the sine of a joint, sums of products in twice the precision. It counts where they are below
+// 1e-17.
+constexpr long double rounding_of_products = 0x1p-106L;
 
 long double narrow(const quad &x)
 {
@@ -96,7 +96,8 @@ void fill_metric(const exact_chain &c, const elimination &z, const sizes &s, con
         for (std::size_t x = 0; x < 3; ++x) normal[3 * k + x] = narrow(area[x]) / s.size[k - 1] / s.size[k];
     }
     const auto weight = [&](std::size_t k) {
-        return std::fabs(h[k]) * std::hypot(normal[3 * k], normal[3 * k + 1], normal[3 * k + 2]);
+        return std::fabs(h[k]) *
+               (std::hypot(normal[3 * k], normal[3 * k + 1], normal[3 * k + 2]) + rounding_of_products / DBL_EPSILON);
     };
     for (std::size_t k = 0; k < n; ++k) {
         long double u[3], v[3];
@@ -211,7 +212,7 @@ chain_reference::chain_reference(const hostile_chain &c)
         root[k] = std::sqrt(narrow(z.diagonal[k]));
         if (k == 0) continue;
         const long double cosine = std::fabs(narrow(dot(e.d[k - 1], e.d[k]))) / s.size[k - 1] / s.size[k];
-        roundings_[k] = 1 + (cosine > 0 ? rounding_of_square / (eps_of_joint * DBL_EPSILON) / cosine : 0);
+        roundings_[k] = 1 + (cosine > 0 ? rounding_of_products / (eps_of_joint * DBL_EPSILON) / cosine : 0);
         const long double beside = std::fabs(narrow(z.beside[k])) / root[k - 1] / root[k];
         row_sum[k] += beside;
         row_sum[k - 1] += beside;
