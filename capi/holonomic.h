@@ -12,8 +12,8 @@
  *   2 (lambda_{i+1} d_{i+1} - lambda_i d_i). T_k = 2 lambda_k |d_k| is the tension of the bond, a force; > 0 pulls its
  *   atoms together. Neither depends on which atom of a bond comes first.
  * - A molecule is a set of atoms joined by bonds, directly or through each other. Fixed atoms join nothing, so one may
- *   belong to many molecules. Molecules are numbered in the order in which they were added. A chain is a linear
- *   molecule; but in names (hol_chains, n_chains, hol_report.chain, length_chain) it means a molecule of any shape.
+ *   belong to many molecules. Molecules are numbered call after call, those of one call by their lowest atom that can
+ *   move, those with rigid bodies behind all others. A chain is a linear molecule; but in names (hol_chains, n_chains, hol_report.chain, length_chain) it means a molecule of any shape.
  * - Bonds of a molecule are counted along a linear chain, otherwise by their lower and then by their higher atom:
  *   hol_chains_bonds gives their places in the arrays per bond.
  * - A bond between two fixed atoms is no constraint: it belongs to no molecule, removes no degree of freedom, and its
@@ -357,8 +357,9 @@ typedef enum hol_when {
  * HOL_ALWAYS makes calls 1.6 to 2 times as long, of every shape.
  *
  * The message names the worst bond, its atoms, its length and the length wanted, whether a box is set, and the likely
- * cause. A crude start (a model built by hand; files with two decimals are no such case) sets HOL_NEVER, projects with
- * r_ref = r until the positions are right, and sets HOL_AT_START again (docs/recipes.md).
+ * cause. A crude start (a model built by hand; files with two decimals are no such case) calls hol_impose once
+ * (docs/recipes.md); with rigid bodies it sets HOL_NEVER, calls hol_project_positions with r_ref = r, and sets
+ * HOL_AT_START again.
  *
  * @param[in,out] chains
  * @param[in]     when    an hol_when
@@ -401,8 +402,9 @@ HOL_API int hol_chains_set_active(hol_chains *chains, const unsigned char *activ
  * @param[in] tolerance  > 0, or 0 for the default: the rounding of the coordinates, i.e. of the largest coordinate of
  *                       the molecule in the element type of the caller's positions.
  * A tolerance below what the coordinates can carry means the default. A loose one lets the energy drift, and saves
- * little: 1e-8 takes a fifth of the time off chains, trees and rings; water and atoms with three others are
- * solved to the rounding at once and come out the same, bit for bit (docs/recipes.md has a table).
+ * little: 1e-8 takes a fifth of the time off chains, trees and rings, and none off water and atoms with three others,
+ * which are solved to the rounding at once (docs/recipes.md has a table). A molecule that is within the tolerance
+ * already is left where it is.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.1.
  */
 HOL_API int hol_chains_set_tolerance(hol_chains *chains, double tolerance);
@@ -780,8 +782,8 @@ HOL_API int hol_residuals_view(const hol_chains *chains, const hol_view *r, cons
 
 /**
  * Moves positions that lie anywhere onto the constraints: a model built by hand, coordinates of a builder, another
- * force field's lengths. hol_project_positions with r_ref = r does it where bonds are off by a third or less; this does
- * it from bonds several times too long or too short, too. Each step of Newton's method goes along the bonds as they are
+ * force field's lengths. hol_project_positions with r_ref = r does it where bonds are off by a third or less, and with
+ * HOL_NEVER above a tenth (hol_chains_set_checks); this does it from bonds several times too long or too short, too. Each step of Newton's method goes along the bonds as they are
  * then, by what w G allows, and only so far that no bond changes by more than a third; near the end steps are whole
  * ones, and the result is right to the rounding of the coordinates.
  *

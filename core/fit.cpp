@@ -158,10 +158,11 @@ Misfit find_misfit(const Chains &chains, const BondVectors &bonds, const IsBad &
 
 // What is likely to have gone wrong, by what the bonds look like.
 void write_causes(const Misfit &found, const Box *box, int base, char *text, std::size_t size) {
-    if (found.most < 1.2 * found.least) {
+    const bool none_is_right = found.least > 1 + most_off || found.most < 1 - most_off;
+    if (none_is_right && found.most < 1.2 * found.least) {
         std::snprintf(text, size,
-                      "all bonds are about %.3g times as long as they should be: are lengths and positions "
-                      "in the same unit?",
+                      "all bonds are about %.3g times as long as they should be: lengths and positions are hardly "
+                      "in the same unit",
                       found.most);
         return;
     }

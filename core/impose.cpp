@@ -152,8 +152,8 @@ private:
 void impose(const Chains &chains, const AtomArray &r, Report *report) {
     if (chains.bodies())
         throw make_error(Status::value,
-                         "hol_impose does not move rigid bodies: hol_project_positions with r_ref = r brings crude "
-                         "positions of such molecules into shape");
+                         "hol_impose does not move rigid bodies: hol_project_positions with r_ref = r, after "
+                         "hol_chains_set_checks(HOL_NEVER), brings crude positions of such molecules into shape");
     Approach approach(chains, r);
     Tally tally = empty_tally();
     Report found{approach.run(), 0, 0, -1, -1, 0, true};

@@ -77,6 +77,22 @@ static void lengths_in_another_unit(void **state)
     free_waters(&w);
 }
 
+/* One bond of three is: no word of all of them. */
+static void one_length_that_is_wrong(void **state)
+{
+    (void)state;
+    const double lengths[3] = {1, 1, 1}, masses[4] = {1, 1, 1, 1};
+    const double r[12] = {0, 0, 0, 1, 0, 0, 1, 1.18, 0, 2, 1.18, 0};
+    hol_chains *chains = NULL;
+    CHECK(hol_chains_create(4, masses, &chains));
+    CHECK(hol_chains_add_block(chains, 1, 3, 0, lengths));
+    CHECK_FAILS(HOL_ERR_LENGTHS, hol_chains_check(chains, r, HOL_BOX));
+    assert_message_names("atoms 1 and 2");
+    assert_message_names("1.18 long");
+    assert_null(strstr(hol_error_message(), "all bonds"));
+    hol_chains_destroy(chains);
+}
+
 static void lengths_in_another_order(void **state)
 {
     (void)state;
@@ -278,6 +294,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(molecules_cut_by_the_cell_without_a_box),
         cmocka_unit_test(lengths_in_another_unit),
+        cmocka_unit_test(one_length_that_is_wrong),
         cmocka_unit_test(lengths_in_another_order),
         cmocka_unit_test(atoms_counted_from_one),
         cmocka_unit_test(a_mistake_is_seen_in_every_layout),
