@@ -388,6 +388,40 @@ HOL_API int hol_chains_check(const hol_chains *chains, const double *r, int box)
 HOL_API int hol_chains_set_threads(hol_chains *chains, int n_threads);
 
 /**
+ * Whether calls keep a status and a number of iterations for each molecule, for hol_outcomes. By default they don't,
+ * and it costs nothing.
+ *
+ * Kept, molecules go through the kernels one by one, not several side by side: results for molecules are the same, sums
+ * over them (virial, energy) may differ in the last digits, and calls with many small molecules take several times as
+ * long. So it is for the search for what is wrong, or for a call made again after one that failed: a call that fails
+ * leaves bad molecules as they were, and to make it again names them all. 8 bytes per molecule of each thread.
+ * @param[in,out] chains
+ * @param[in]     keep    0 or 1
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.2.
+ */
+HOL_API int hol_chains_set_outcomes(hol_chains *chains, int keep);
+
+/**
+ * What the calling thread's last call of hol_forces, hol_solve, hol_project_velocities, hol_project_positions,
+ * hol_project_positions_along, hol_metric or hol_impose with this handle has done with each molecule: where
+ * hol_error_location names the first bad one, this names all, and why each is bad. Only of calls made while
+ * hol_chains_set_outcomes has it kept.
+ * @param[in]  chains
+ * @param[out] status      [n_chains] an hol_status each: HOL_OK, or what the call would have returned were it the only
+ *                         bad molecule. Or NULL
+ * @param[out] iterations  [n_chains] linear solves that the positions of the molecule took, of hol_impose steps; 0
+ * where it obeyed the tolerance, and in calls without iterations. Of a bad molecule what it took as far as that is
+ * known, or 0. Or NULL
+ *
+ * An inactive molecule has HOL_OK and 0. Where positions or forces were refused before anything was done
+ * (HOL_ERR_LENGTHS in the first step), all molecules that do not fit have that status.
+ * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_VALUE: the thread has made no such call since, it ended by a wrong
+ *         argument or by HOL_ERR_MEMORY, molecules have been added after it, or this thread has called with another
+ *         handle that keeps outcomes. Thread-safe on one handle. Since 0.2.
+ */
+HOL_API int hol_outcomes(const hol_chains *chains, int *status, int *iterations);
+
+/**
  * Leaves molecules out: the data of an inactive molecule are neither read nor written, and it counts in no sum.
  * @param[in,out] chains
  * @param[in] active  [n_chains], 0 = inactive, anything else = active; copied. NULL: all active (default). Molecules

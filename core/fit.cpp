@@ -8,6 +8,7 @@
 #include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
 #include "core/run/bond_words.hpp"
+#include "core/run/outcomes.hpp"
 
 namespace holonomic {
 
@@ -151,6 +152,7 @@ Misfit find_misfit(const Chains &chains, const BondVectors &bonds, const IsBad &
         });
         ++found.n_molecules;
         found.n_bad += bad;
+        if (bad) note_status(m.number, Status::lengths);
         return true;
     });
     return found;

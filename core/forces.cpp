@@ -10,6 +10,7 @@
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
+#include "core/run/outcomes.hpp"
 #include "core/run/thread_memory.hpp"
 #include "core/solve.hpp"
 
@@ -114,15 +115,14 @@ void forces_of_bonds(const Chains &chains, const AtomArray &r, const AtomArray &
     const Tally tally = rate ? forces_in_motion(chains, rate->L, call) : forces_at_rest(chains, call);
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}, {"force", &f}};
-        throw diagnose(chains, tally, chains.box, arrays, 3, Status::not_finite);
+        throw_error(chains, tally,
+                    [&](const Tally &bad) { return diagnose(chains, bad, chains.box, arrays, 3, Status::not_finite); });
     }
     if (virial) write_virial(tally, virial);
 }
 
-}  // namespace
-
-void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
-            double *tension, const AtomArray &g, bool add, double *virial) {
+void forces_of_all(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
+                   double *tension, const AtomArray &g, bool add, double *virial) {
     if (!chains.bodies()) return forces_of_bonds(chains, r, v, f, lambda, tension, g, add, virial);
     double sum[9];
     rigid::Parts parts;
@@ -131,6 +131,13 @@ void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const 
     parts.run([&] { rigid::forces(chains, r, v, f, lambda, tension, g, add, virial ? sum : nullptr); });
     parts.finish();
     if (virial) std::copy(sum, sum + 9, virial);
+}
+
+}  // namespace
+
+void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
+            double *tension, const AtomArray &g, bool add, double *virial) {
+    with_outcomes(chains, [&] { forces_of_all(chains, r, v, f, lambda, tension, g, add, virial); });
 }
 
 }  // namespace holonomic

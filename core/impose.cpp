@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "core/caller/box.hpp"
@@ -11,6 +10,7 @@
 #include "core/error.hpp"
 #include "core/kernels/tally.hpp"
 #include "core/run/diagnose.hpp"
+#include "core/run/outcomes.hpp"
 #include "core/solve.hpp"
 
 namespace holonomic {
@@ -27,7 +27,7 @@ enum class State : unsigned char { on_the_way, arrived, lost };
 
 struct Progress {
     State state = State::on_the_way;
-    bool moved = false;
+    std::int32_t steps = 0;
     double error = std::numeric_limits<double>::infinity();
     std::int64_t bond = -1;  // with that error
 };
@@ -135,7 +135,7 @@ private:
         const double part = std::min(1.0, 2 * most_change / std::sqrt(largest));
         for (std::int64_t i = 0; i < m.n_atoms; ++i)
             for (int c = 0; c < 3; ++c) at(x_, m.atom(i))[c] += part * shift(m, i, c);
-        p.moved = true;
+        ++p.steps;
     }
 
     double shift(const Molecule &m, std::int64_t i, int c) const {
@@ -149,16 +149,14 @@ private:
 
 }  // namespace
 
-void impose(const Chains &chains, const AtomArray &r, Report *report) {
-    if (chains.bodies())
-        throw make_error(Status::value,
-                         "hol_impose does not move rigid bodies: hol_project_positions with r_ref = r, after "
-                         "hol_chains_set_checks(HOL_NEVER), brings crude positions of such molecules into shape");
-    Approach approach(chains, r);
+namespace {
+
+void finish(const Chains &chains, const AtomArray &r, const Approach &approach, Report found, Report *report) {
     Tally tally = empty_tally();
-    Report found{approach.run(), 0, 0, -1, -1, 0, true};
+    OutcomeOf *const outcomes = outcomes_under_way();
     chains.for_active([&](const Molecule &m) {
-        const Progress &p = std::as_const(approach).of(m);
+        const Progress &p = approach.of(m);
+        if (outcomes) note_outcome(outcomes[m.number], p.state == State::arrived, p.steps);
         if (p.state != State::arrived) {
             note_bad(m.number, tally);
             return true;
@@ -168,7 +166,7 @@ void impose(const Chains &chains, const AtomArray &r, Report *report) {
             found.chain = m.number + chains.base;
             found.bond = p.bond < 0 ? chains.base : p.bond + chains.base;
         }
-        if (!p.moved) return true;
+        if (p.steps == 0) return true;
         ++found.n_corrected;
         for (std::int64_t i = 0; i < m.n_atoms; ++i)
             if (m.w(i) != 0) write_atom(r, m.atom(i), approach.position(m.atom(i)));
@@ -178,7 +176,20 @@ void impose(const Chains &chains, const AtomArray &r, Report *report) {
     if (report) *report = found;
     if (tally.n_bad == 0) return;
     const NamedArray arrays[] = {{"position", &r}, {"position", &r}};  // the reference is r itself
-    throw diagnose(chains, tally, chains.box, arrays, 2, Status::no_convergence);
+    throw_error(chains, tally,
+                [&](const Tally &bad) { return diagnose(chains, bad, chains.box, arrays, 2, Status::no_convergence); });
+}
+
+}  // namespace
+
+void impose(const Chains &chains, const AtomArray &r, Report *report) {
+    if (chains.bodies())
+        throw make_error(Status::value,
+                         "hol_impose does not move rigid bodies: hol_project_positions with r_ref = r, after "
+                         "hol_chains_set_checks(HOL_NEVER), brings crude positions of such molecules into shape");
+    Approach approach(chains, r);
+    const Report found{approach.run(), 0, 0, -1, -1, 0, true};
+    with_outcomes(chains, [&] { finish(chains, r, approach, found, report); });
 }
 
 }  // namespace holonomic

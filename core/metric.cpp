@@ -7,6 +7,7 @@
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
+#include "core/run/outcomes.hpp"
 
 namespace holonomic {
 
@@ -46,10 +47,8 @@ void make_careful_of(const Chains &chains, const Schedule &s) {
     }
 }
 
-}  // namespace
-
-void metric(const Chains &chains, const AtomArray &r, double kT, double *log_det, double *log_det_z, double *energy,
-            const AtomArray &force, bool add) {
+void metric_of_all(const Chains &chains, const AtomArray &r, double kT, double *log_det, double *log_det_z,
+                   double *energy, const AtomArray &force, bool add) {
     if (!(kT >= 0) || !std::isfinite(kT))
         throw make_error(Status::value, "kT is %g; it must be finite and not negative", kT);
     if (chains.bodies())
@@ -66,9 +65,17 @@ void metric(const Chains &chains, const AtomArray &r, double kT, double *log_det
     apart.put_back();
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &r}};
-        throw diagnose(chains, tally, chains.box, arrays, 1, Status::not_finite);
+        throw_error(chains, tally,
+                    [&](const Tally &bad) { return diagnose(chains, bad, chains.box, arrays, 1, Status::not_finite); });
     }
     if (energy) *energy = 0.5 * kT * tally.log_det;
+}
+
+}  // namespace
+
+void metric(const Chains &chains, const AtomArray &r, double kT, double *log_det, double *log_det_z, double *energy,
+            const AtomArray &force, bool add) {
+    with_outcomes(chains, [&] { metric_of_all(chains, r, kT, log_det, log_det_z, energy, force, add); });
 }
 
 }  // namespace holonomic

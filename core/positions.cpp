@@ -12,6 +12,7 @@
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
+#include "core/run/outcomes.hpp"
 
 namespace holonomic {
 
@@ -92,12 +93,14 @@ void project_positions_of_bonds(const Chains &chains, const Along &along, const 
     clear_unconstrained(chains, lambda);
     if (report) *report = report_of(chains, tally);
     if (tally.n_bad > 0) {
-        if (reference) reference->show(tally.first_bad);
-        Error error;
-        if (chains.checks() != Checks::never && is_stretched(chains, tally.first_bad, r, tally.n_bad, &error))
-            throw error;
         const NamedArray arrays[] = {{"reference position", &call.r_ref}, {"position", &r}, {"velocity", &v}};
-        throw diagnose(chains, tally, box_ref, arrays, 3, Status::no_convergence);
+        throw_error(chains, tally, [&](const Tally &bad) {
+            Error error;
+            if (chains.checks() != Checks::never && is_stretched(chains, bad.first_bad, r, bad.n_bad, &error))
+                return error;
+            if (reference) reference->show(bad.first_bad);
+            return diagnose(chains, bad, box_ref, arrays, 3, Status::no_convergence);
+        });
     }
     if (virial) write_virial(tally, virial);
 }
@@ -112,10 +115,9 @@ void check_start_of_all(const Chains &chains, const AtomArray &r_ref, const Atom
     chains.note_fit();
 }
 
-}  // namespace
-
-void project_positions(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v, double dt,
-                       double *lambda, bool guess, double *virial, Report *report, WorstLength *reference_error) {
+void project_positions_of_all(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v,
+                              double dt, double *lambda, bool guess, double *virial, Report *report,
+                              WorstLength *reference_error) {
     if (!chains.bodies())
         return project_positions_of_bonds(chains, along, r, v, dt, lambda, guess, virial, report, reference_error);
     if (!along.r_ref)
@@ -137,6 +139,15 @@ void project_positions(const Chains &chains, const Along &along, const AtomArray
     parts.run([&] { rigid::project_positions(chains, r_ref, r, v, dt, lambda, virial ? sum : nullptr, report); });
     parts.finish();
     if (virial) std::copy(sum, sum + 9, virial);
+}
+
+}  // namespace
+
+void project_positions(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v, double dt,
+                       double *lambda, bool guess, double *virial, Report *report, WorstLength *reference_error) {
+    with_outcomes(chains, [&] {
+        project_positions_of_all(chains, along, r, v, dt, lambda, guess, virial, report, reference_error);
+    });
 }
 
 }  // namespace holonomic

@@ -10,6 +10,7 @@
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
+#include "core/run/outcomes.hpp"
 #include "core/run/thread_memory.hpp"
 
 namespace holonomic {
@@ -84,17 +85,17 @@ void solve_bonds(const Chains &chains, const AtomArray &r, const double *rhs, do
                  bool add, double *virial) {
     const Tally tally = solve_equations(chains, r, rhs, {lambda, nullptr, g, add, virial != nullptr});
     if (tally.n_bad > 0) {
-        check_values(chains, tally, rhs, "right-hand side");  // a bad molecule's lambda was not written
         const NamedArray arrays[] = {{"position", &r}};
-        throw diagnose(chains, tally, chains.box, arrays, 1, Status::not_finite);
+        throw_error(chains, tally, [&](const Tally &bad) {
+            check_values(chains, bad, rhs, "right-hand side");  // a bad molecule's lambda was not written
+            return diagnose(chains, bad, chains.box, arrays, 1, Status::not_finite);
+        });
     }
     if (virial) write_virial(tally, virial);
 }
 
-}  // namespace
-
-void solve(const Chains &chains, const AtomArray &r, const double *rhs, double *lambda, const AtomArray &g, bool add,
-           double *virial) {
+void solve_of_all(const Chains &chains, const AtomArray &r, const double *rhs, double *lambda, const AtomArray &g,
+                  bool add, double *virial) {
     if (!chains.bodies()) return solve_bonds(chains, r, rhs, lambda, g, add, virial);
     double sum[9];
     rigid::Parts parts;
@@ -103,6 +104,13 @@ void solve(const Chains &chains, const AtomArray &r, const double *rhs, double *
     parts.run([&] { rigid::solve(chains, r, rhs, lambda, g, add, virial ? sum : nullptr); });
     parts.finish();
     if (virial) std::copy(sum, sum + 9, virial);
+}
+
+}  // namespace
+
+void solve(const Chains &chains, const AtomArray &r, const double *rhs, double *lambda, const AtomArray &g, bool add,
+           double *virial) {
+    with_outcomes(chains, [&] { solve_of_all(chains, r, rhs, lambda, g, add, virial); });
 }
 
 }  // namespace holonomic

@@ -9,6 +9,7 @@
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
+#include "core/run/outcomes.hpp"
 
 namespace holonomic {
 
@@ -64,14 +65,14 @@ void project_velocities_of_bonds(const Chains &chains, const AtomArray &r, const
     clear_unconstrained(chains, lambda);
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}};
-        throw diagnose(chains, tally, chains.box, arrays, 2, Status::not_finite);
+        throw_error(chains, tally,
+                    [&](const Tally &bad) { return diagnose(chains, bad, chains.box, arrays, 2, Status::not_finite); });
     }
     if (virial) write_virial(tally, virial);
 }
 
-}  // namespace
-
-void project_velocities(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda, double *virial) {
+void project_velocities_of_all(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda,
+                               double *virial) {
     if (!chains.bodies()) return project_velocities_of_bonds(chains, r, v, lambda, virial);
     double sum[9];
     rigid::Parts parts;
@@ -79,6 +80,12 @@ void project_velocities(const Chains &chains, const AtomArray &r, const AtomArra
     parts.run([&] { rigid::project_velocities(chains, r, v, lambda, virial ? sum : nullptr); });
     parts.finish();
     if (virial) std::copy(sum, sum + 9, virial);
+}
+
+}  // namespace
+
+void project_velocities(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda, double *virial) {
+    with_outcomes(chains, [&] { project_velocities_of_all(chains, r, v, lambda, virial); });
 }
 
 }  // namespace holonomic

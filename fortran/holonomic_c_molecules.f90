@@ -154,6 +154,19 @@ module holonomic_c_molecules
          integer(c_int) :: status
       end function
 
+      function hol_chains_set_outcomes(chains, keep) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains
+         integer(c_int), value :: keep
+         integer(c_int) :: status
+      end function
+
+      function hol_outcomes(chains, statuses, iterations) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains, statuses, iterations
+         integer(c_int) :: status
+      end function
+
       function hol_chains_set_active(chains, active) bind(c) result(status)
          import :: c_int, c_ptr
          type(c_ptr), value :: chains, active

@@ -5,12 +5,12 @@ module holonomic_metric
    use holonomic_c, only: hol_metric_view, HOL_ADD, HOL_ERR_VALUE, HOL_WRITE
    use holonomic_place, only: list_of, number_at, place
    use holonomic_status, only: failure, settle
-   use holonomic_impose, only: chain_set_impose
+   use holonomic_outcomes, only: chain_set_outcomes
    implicit none
    private
    public :: chain_set_metric
 
-   type, extends(chain_set_impose) :: chain_set_metric
+   type, extends(chain_set_outcomes) :: chain_set_metric
    contains
       procedure, private :: metric_rows_32, metric_rows_64, metric_parts_32, metric_parts_64
       generic :: metric => metric_rows_32, metric_rows_64, metric_parts_32, metric_parts_64

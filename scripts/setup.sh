@@ -62,6 +62,7 @@ int main() { OpenMM::System system; }' | c++ -x c++ - -lOpenMM -o /dev/null 2>/d
         mpi) command -v mpirun >/dev/null && command -v mpicxx >/dev/null ;;
         lammps) command -v lmp >/dev/null && [ -e /usr/include/lammps/lammps.h ] ;;
         lammps-examples) [ -e /usr/share/lammps/examples/HEAT/data.spce ] ;;
+        openblas | mctc-lib) pkg-config --exists "$1" 2>/dev/null ;;
         gromacs-data) [ -e /usr/share/gromacs/top/spc216.gro ] ;;
         flang) present_any flang flang-new flang-22 flang-21 flang-20 flang-new-19 flang-new-18 ;;
         arm) command -v aarch64-linux-gnu-g++ >/dev/null && command -v qemu-aarch64 >/dev/null ;;
@@ -111,6 +112,8 @@ debian_package() {
         ase) echo python3-numpy python3-ase ;;
         venv) echo python3-numpy python3-venv ;;
         openmm-python) echo python3-numpy python3-simtk libopenmm-plugins ;;
+        ninja) echo ninja-build ;;
+        openblas | mctc-lib) echo "lib$1-dev" ;;
         abidiff) echo abigail-tools ;;
         dpkg-shlibdeps) echo dpkg-dev ;;
         mpi) echo openmpi-bin libopenmpi-dev ;;

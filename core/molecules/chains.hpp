@@ -138,6 +138,7 @@ public:
     int n_threads = 1;
     double tolerance = 0;
     int max_iterations = 50;
+    bool keeps_outcomes = false;    // core/run/outcomes.hpp
     std::int64_t memory_limit = 0;  // bytes; 0: the default (memory_limit.hpp)
     Box box{};
 

@@ -157,8 +157,8 @@ struct PositionsWork final : Work {
 
 void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomArray &r, const AtomArray &v, double dt,
                        double *lambda, double *virial, Report *report) {
-    const Found found =
-        run(chains, PositionsWork(chains, r_ref, r, v, dt, lambda, virial != nullptr, report != nullptr));
+    const Found found = run(chains, PositionsWork(chains, r_ref, r, v, dt, lambda, virial != nullptr,
+                                                  report != nullptr || chains.keeps_outcomes));
     const Tally &tally = found.tally;
     if (report) {
         report->iterations = std::max(report->iterations, tally.iterations);

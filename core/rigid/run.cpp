@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <new>
 
+#include "core/run/outcomes.hpp"
 #include "core/run/thread_memory.hpp"
 
 #ifdef _OPENMP
@@ -24,7 +25,11 @@ void add(Found &total, const Found &part) {
     holonomic::add(total.tally, part.tally);
 }
 
-Found run_block(const Chains &chains, const Work &work, std::int64_t first, char *memory) {
+// Why a molecule is bad, until its status is known.
+std::int32_t noted(Outcome why) { return bad_outcome - static_cast<std::int32_t>(why); }
+Outcome why(std::int32_t noted) { return static_cast<Outcome>(bad_outcome - noted); }
+
+Found run_block(const Chains &chains, const Work &work, std::int64_t first, char *memory, OutcomeOf *outcomes) {
     const Bodies &bodies = *chains.bodies();
     Found found{empty_tally(), Outcome::good};
     const std::int64_t end = std::min(first + block, bodies.n_molecules());
@@ -32,7 +37,13 @@ Found run_block(const Chains &chains, const Work &work, std::int64_t first, char
         if (!bodies.is_active(m)) continue;
         const System system(bodies.shape(m), bodies.kinds(), memory);
         const Place place{bodies.atoms(m), bodies.bonds(m), chains.n_chains() + m};
-        const Outcome outcome = work.molecule(system, place, found.tally);
+        Tally own = empty_tally();
+        const Outcome outcome = work.molecule(system, place, outcomes ? own : found.tally);
+        if (outcomes) {
+            holonomic::add(found.tally, own);
+            outcomes[place.number] = {outcome == Outcome::good ? 0 : noted(outcome),
+                                      static_cast<std::int32_t>(own.iterations)};
+        }
         if (outcome == Outcome::good) continue;
         if (found.tally.n_bad == 0) found.first_outcome = outcome;
         note_bad(place.number, found.tally);
@@ -49,10 +60,11 @@ Found run(const Chains &chains, const Work &work) {
     Found *const parts =
         static_cast<Found *>(thread_memory(Keep::piece_tallies, n_blocks * static_cast<std::int64_t>(sizeof(Found))));
     if (!own || !parts) throw std::bad_alloc();
+    OutcomeOf *const outcomes = outcomes_under_way();
     const int n_threads = static_cast<int>(std::min(std::min<std::int64_t>(chains.n_threads, n_blocks),
                                                     std::max<std::int64_t>(bodies.work() / rows_per_thread, 1)));
     if (n_threads <= 1 || work.is_in_order()) {
-        for (std::int64_t j = 0; j < n_blocks; ++j) parts[j] = run_block(chains, work, j * block, own);
+        for (std::int64_t j = 0; j < n_blocks; ++j) parts[j] = run_block(chains, work, j * block, own, outcomes);
     } else {
 #ifdef _OPENMP
         std::atomic<std::int64_t> next{0};
@@ -61,10 +73,10 @@ Found run(const Chains &chains, const Work &work) {
         {
             char *const memory = static_cast<char *>(thread_memory(Keep::rigid, bytes));
             for (std::int64_t j; memory && (j = next.fetch_add(1)) < n_blocks;)
-                parts[j] = run_block(chains, work, j * block, memory);
+                parts[j] = run_block(chains, work, j * block, memory, outcomes);
         }
 #else
-        for (std::int64_t j = 0; j < n_blocks; ++j) parts[j] = run_block(chains, work, j * block, own);
+        for (std::int64_t j = 0; j < n_blocks; ++j) parts[j] = run_block(chains, work, j * block, own, outcomes);
 #endif
     }
     Found total{empty_tally(), Outcome::good};
@@ -89,7 +101,9 @@ Error error_of_values(const Chains &chains, std::int64_t molecule, const double 
     return otherwise;
 }
 
-Error error_of(const Chains &chains, const Found &found, const Named *arrays, int n_arrays) {
+namespace {
+
+Error error_of_first(const Chains &chains, const Found &found, const Named *arrays, int n_arrays) {
     const Bodies &bodies = *chains.bodies();
     const std::int64_t m = found.tally.first_bad - chains.n_chains();
     const Shape &shape = bodies.shape(m);
@@ -147,6 +161,19 @@ Error error_of(const Chains &chains, const Found &found, const Named *arrays, in
                                      name, others),
                           -1);
     }
+}
+
+}  // namespace
+
+Error error_of(const Chains &chains, const Found &found, const Named *arrays, int n_arrays) {
+    OutcomeOf *const outcomes = outcomes_under_way();
+    for (std::int64_t m = chains.n_chains(); outcomes && m < chains.n_molecules(); ++m) {
+        if (outcomes[m].status >= 0) continue;
+        Found alone{found.tally, why(outcomes[m].status)};
+        alone.tally.first_bad = m;
+        outcomes[m].status = static_cast<std::int32_t>(error_of_first(chains, alone, arrays, n_arrays).status);
+    }
+    return error_of_first(chains, found, arrays, n_arrays);
 }
 
 }  // namespace holonomic::rigid

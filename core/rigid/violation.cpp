@@ -7,6 +7,7 @@
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/run/bond_words.hpp"
+#include "core/run/outcomes.hpp"
 #include "core/run/thread_memory.hpp"
 
 namespace holonomic::rigid {
@@ -108,7 +109,9 @@ void check_reference(const Chains &chains, const AtomArray &r, const Box &box, c
     Measure(chains).for_each(r, box, [&](const System &system, const Place &place) {
         Measure::lengths(system, place, [&](double error, std::int64_t bond, std::int64_t atom) {
             // off by a tenth of the length: its square by a fifth
-            if (std::isfinite(error) && error > 2 * most_off) worst.take(error, place.number, bond, atom);
+            if (!std::isfinite(error) || !(error > 2 * most_off)) return;
+            worst.take(error, place.number, bond, atom);
+            note_status(place.number, Status::lengths);
         });
     });
     if (worst.molecule < 0) return;

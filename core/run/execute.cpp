@@ -7,6 +7,7 @@
 #include "core/kernels/molecules/forest/forest.hpp"
 #include "core/kernels/molecules/list/flat_list.hpp"
 #include "core/run/lane.hpp"
+#include "core/run/outcomes.hpp"
 #include "core/run/thread_memory.hpp"
 
 #ifdef _OPENMP
@@ -102,7 +103,8 @@ void work_on_molecules(const Work &work, const MoleculeUnit &unit, int where, do
 class Execution {
 public:
     Execution(const Chains &chains, const Plan &plan, const Work &work)
-        : chains_(chains), plan_(plan), work_(work), n_pieces_(static_cast<std::int64_t>(plan.pieces.size())),
+        : chains_(chains), plan_(plan), work_(work), outcomes_(outcomes_under_way()),
+          n_pieces_(static_cast<std::int64_t>(plan.pieces.size())),
           scratch_bytes_(std::max(holonomic::scratch_bytes(plan.longest), plan.scratch_bytes)) {
         n_threads_ = static_cast<int>(
             std::min<std::int64_t>(chains.n_threads, std::max<std::int64_t>(plan.n_bonds / bonds_per_thread, 1)));
@@ -146,14 +148,52 @@ private:
             MoleculeLane lane;
             MoleculeUnit unit = chains_.unit(plan_, piece, &lane);
             unit.team = team;
+            if (outcomes_) return work_on_each(unit, piece.where, scratch, tally);
             return work_on_molecules(work_, unit, piece.where, scratch, tally);
         }
         Lane lane;
         const Unit unit = chains_.unit(plan_, piece, &lane);
-        if (unit.lanes[0].n_bonds <= longest_lane)
-            work_.unit(unit, piece.where, scratch, tally);
+        if (unit.lanes[0].n_bonds > longest_lane)
+            work_on_long_chain(unit.lanes[0], piece.where, Team(1, scratch_bytes_), store_memory(own_store_), tally);
+        else if (outcomes_)
+            work_on_each(unit, piece.where, scratch, tally);
         else
-            work_.long_chain(unit.lanes[0], piece.where, Team(1, scratch_bytes_), store_memory(own_store_), tally);
+            work_.unit(unit, piece.where, scratch, tally);
+    }
+
+    void work_on_long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const {
+        noted(lane.chain, tally, [&](Tally &own) { work_.long_chain(lane, where, team, store, own); });
+    }
+
+    // The molecules of a unit one by one, so that each has a tally of its own: the same results, for lanes are
+    // independent of each other, in more time.
+    void work_on_each(const Unit &unit, int where, double *scratch, Tally &tally) const {
+        for (std::int64_t i = 0; i < unit.count; ++i) {
+            const Lane lane = unit.regular ? lane_of(unit, i) : unit.lanes[i];
+            const Unit one{&lane, 1, unit.regular, unit.large};
+            noted(lane.chain, tally, [&](Tally &own) { work_.unit(one, where, scratch, own); });
+        }
+    }
+    void work_on_each(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const {
+        const auto one = [&](const Schedule *schedule, const MoleculeLane &lane, bool regular) {
+            noted(lane.molecule, tally, [&](Tally &own) {
+                work_.unit(MoleculeUnit{schedule, &lane, 1, regular, unit.large, unit.team}, where, scratch, own);
+            });
+        };
+        const MoleculeLane *lane = unit.lanes;
+        for (std::int64_t i = 0; i < unit.n_forests; ++i)
+            for (int l = 0; l < unit.forests[i].n_trees; ++l) one(unit.forests[i].schedule[l], *lane++, true);
+        for (std::int64_t i = 0; !unit.forests && i < unit.count; ++i)
+            one(unit.schedule, lane_of(unit, i), unit.regular);
+    }
+
+    template <class One>
+    void noted(std::int64_t molecule, Tally &tally, const One &one) const {
+        if (!outcomes_) return one(tally);
+        Tally own = empty_tally();
+        one(own);
+        note_outcome(outcomes_[molecule], own.n_bad == 0, own.iterations);
+        add(tally, own);
     }
 
 #ifdef _OPENMP
@@ -183,8 +223,8 @@ private:
                 continue;
             }
             Lane lane;
-            work_.long_chain(chains_.unit(plan_, piece, &lane).lanes[0], piece.where, team, store_memory(shared_store_),
-                             parts[p]);
+            work_on_long_chain(chains_.unit(plan_, piece, &lane).lanes[0], piece.where, team,
+                               store_memory(shared_store_), parts[p]);
         }
         Tally total = empty_tally();
         for (std::int64_t p = 0; p < n_pieces_; ++p) add(total, parts[p]);
@@ -195,6 +235,7 @@ private:
     const Chains &chains_;
     const Plan &plan_;
     const Work &work_;
+    OutcomeOf *const outcomes_;
     std::int64_t n_pieces_, scratch_bytes_;
     int n_threads_;
     std::int64_t own_store_ = 0, shared_store_ = 0;  // bytes kept between the phases of long chains

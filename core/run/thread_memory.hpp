@@ -16,6 +16,7 @@ enum class Keep {
     multipliers,
     reference,
     rigid,
+    outcomes,
     last
 };
 

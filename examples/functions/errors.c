@@ -26,6 +26,13 @@ int main(void)
     shows("not finite", hol_forces(chains, r, NULL, NULL, NULL, NULL, NULL, HOL_WRITE, NULL), HOL_ERR_NOT_FINITE);
     printf("%s\n", hol_error_message());
     if (!strstr(hol_error_message(), "atom 2 (label 90210)")) return 1;
+
+    /* What became of each molecule, if that is to be kept. */
+    int outcome[1], iterations[1];
+    ok(hol_chains_set_outcomes(chains, 1));
+    hol_forces(chains, r, NULL, NULL, NULL, NULL, NULL, HOL_WRITE, NULL);
+    ok(hol_outcomes(chains, outcome, iterations));
+    shows("the molecule", outcome[0], HOL_ERR_NOT_FINITE);
     hol_chains_destroy(chains);
     return strcmp(hol_status_name(status), "HOL_ERR_VALUE") != 0;
 }

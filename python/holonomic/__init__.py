@@ -18,12 +18,12 @@ from .errors import (ArgumentError, DegenerateError, Error, LengthsError, NoConv
 from .inverse import Inverse
 from .molecules import Molecules
 from .partition import PartitionFunction, partition_function
-from .results import Forces, Impulse, Metric, Reactions, Report, Violation
+from .results import Forces, Impulse, Metric, Outcomes, Reactions, Report, Violation
 
 __version__ = "0.2.0"
 __all__ = [
     "ArgumentError", "DegenerateError", "Error", "Forces", "Impulse", "Inverse", "LengthsError", "Metric", "Molecule",
-    "Molecules", "NoConvergenceError", "NotDefiniteError", "NotFiniteError", "NumberError", "OutOfMemoryError",
+    "Molecules", "NoConvergenceError", "NotDefiniteError", "NotFiniteError", "NumberError", "OutOfMemoryError", "Outcomes",
     "PartitionFunction", "Reactions", "Report", "SharedAtomError", "Violation", "instruction_set", "partition_function",
     "tridiagonal", "version",
 ]

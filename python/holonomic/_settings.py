@@ -24,6 +24,7 @@ class Settings:
     _max_iterations = 50
     _checks = "at start"
     _memory_limit = 0
+    _keep_outcomes = False
     _active: Optional[np.ndarray] = None
 
     @property
@@ -72,6 +73,17 @@ class Settings:
     def threads(self, count: int) -> None:
         ask(library.hol_chains_set_threads(self._handle, count))
         self._threads = count
+
+    @property
+    def keep_outcomes(self) -> bool:
+        """Whether calls keep a status and a number of iterations for each molecule, for `outcomes`. False by default: many small
+        molecules take several times as long with it."""
+        return self._keep_outcomes
+
+    @keep_outcomes.setter
+    def keep_outcomes(self, keep: bool) -> None:
+        ask(library.hol_chains_set_outcomes(self._handle, bool(keep)))
+        self._keep_outcomes = bool(keep)
 
     @property
     def tolerance(self) -> float:

@@ -13,7 +13,7 @@ from ._library import bare, library
 from ._settings import Settings
 from .errors import ArgumentError, ask, fail
 from .inverse import Inverse
-from .results import Forces, Impulse, Metric, Reactions, Report, Violation
+from .results import Forces, Impulse, Metric, Outcomes, Reactions, Report, Violation
 
 _BOXES = ("box", "reference")
 _forces, _forces_view = bare("hol_forces"), bare("hol_forces_view")
@@ -211,6 +211,13 @@ class Molecules(Bonds, Settings):
         report = Report()
         ask(library.hol_impose_view(self._handle, self._view(r, "r", True), byref(report)))
         return report
+
+    def outcomes(self) -> Outcomes:
+        """What this thread's last call has done with each molecule, if `keep_outcomes` was True then: where an Error names
+        the first bad molecule, this names all. After a call that failed, set `keep_outcomes` and make it once more."""
+        found = Outcomes(np.zeros(self.n_molecules, np.int32), np.zeros(self.n_molecules, np.int32))
+        ask(library.hol_outcomes(self._handle, address(found.status), address(found.iterations)))
+        return found
 
     def check(self, r: Any, *, box: str = "box") -> None:
         """Raises LengthsError if a bond of r is off by more than a tenth of its length, or longer than half the box."""

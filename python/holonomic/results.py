@@ -110,6 +110,23 @@ class Reactions(NamedTuple):
     virial: np.ndarray
 
 
+class Outcomes(NamedTuple):
+    """What a call has done with each molecule, from `Molecules.outcomes`.
+
+    status      (n_molecules,) of int32: 0, or the `status` of the Error that it alone would have raised
+    iterations  (n_molecules,) of int32: linear solves of `project_positions`, steps of `impose`, else 0
+    bad         numbers of the molecules whose status is not 0
+    """
+
+    status: np.ndarray
+    iterations: np.ndarray
+
+    @property
+    def bad(self) -> np.ndarray:
+        """Numbers of the molecules whose status is not 0."""
+        return np.flatnonzero(self.status)
+
+
 class Violation(ctypes.Structure):
     """How far positions and velocities are from the constraints.
 

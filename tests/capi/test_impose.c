@@ -116,6 +116,58 @@ static void crude_positions_of_every_shape_get_their_lengths(void **state)
     assert_in_range(refused, 20, 240);
 }
 
+/** SHAKE as programs have it, along the bonds of the positions as they come: does it bring them home? */
+static int shake(const molecule *m, double *r)
+{
+    double reference[3 * most_atoms], worst_now = 1;
+    memcpy(reference, r, sizeof reference);
+    for (int round = 0; round < 20000 && worst_now > 1e-8; ++round) {
+        worst_now = 0;
+        for (int64_t k = 0; k < m->n_bonds; ++k) {
+            const int64_t i = m->pairs[2 * k], j = m->pairs[2 * k + 1];
+            double square = 0, along = 0;
+            for (int c = 0; c < 3; ++c) {
+                const double d = r[3 * j + c] - r[3 * i + c];
+                square += d * d;
+                along += d * (reference[3 * j + c] - reference[3 * i + c]);
+            }
+            const double left = square - m->length[k] * m->length[k];
+            const double g = left / (2 * (1 / m->mass[i] + 1 / m->mass[j]) * along);
+            worst_now = fmax(worst_now, isfinite(g) ? fabs(left) / square : INFINITY);
+            for (int c = 0; c < 3; ++c) {
+                const double b = reference[3 * j + c] - reference[3 * i + c];
+                r[3 * i + c] += g / m->mass[i] * b;
+                r[3 * j + c] -= g / m->mass[j] * b;
+            }
+        }
+        if (!isfinite(worst_now)) return 0;
+    }
+    return worst_now <= 1e-8;
+}
+
+static void what_shake_brings_home_is_brought_home(void **state)
+{
+    (void)state;
+    uint64_t dice_state = 3;
+    int64_t home = 0;
+    const int rounds = quick_run() ? 5 : 50;
+    for (int round = 0; round < rounds; ++round)
+        for (int kind = 0; kind < N_SHAPES; ++kind) {
+            const molecule m = make((shape)kind, 5 + round % 20, &dice_state);
+            hol_chains *chains = handle_of(&m);
+            double r[3 * most_atoms], by_shake[3 * most_atoms];
+            for (int64_t i = 0; i < 3 * m.n_atoms; ++i) r[i] = m.r[i] + 0.4 * dice(&dice_state);
+            memcpy(by_shake, r, sizeof r);
+            if (shake(&m, by_shake)) {
+                ++home;
+                CHECK(hol_impose(chains, r, NULL));
+                CHECK_AT_MOST(worst(&m, r, 0), 1e-13);
+            }
+            hol_chains_destroy(chains);
+        }
+    assert_true(home > rounds && home < N_SHAPES * rounds);
+}
+
 static void molecules_cut_by_a_box_and_in_floats_are_imposed_on(void **state)
 {
     (void)state;
@@ -229,6 +281,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(crude_positions_of_every_shape_get_their_lengths),
+        cmocka_unit_test(what_shake_brings_home_is_brought_home),
         cmocka_unit_test(molecules_cut_by_a_box_and_in_floats_are_imposed_on),
         cmocka_unit_test(held_atoms_stay_and_bad_molecules_are_left_alone),
         cmocka_unit_test(residuals_are_those_of_each_bond),

@@ -55,6 +55,30 @@ class Errors(unittest.TestCase):
         np.testing.assert_array_equal(out[6:8], 99.0)
         np.testing.assert_array_equal(out[[0, 2, 4, 8], 0], 1.0)
 
+    def test_every_bad_molecule_is_named(self):
+        molecules, r = dimers(6)
+        with self.assertRaises(hol.ArgumentError):
+            molecules.outcomes()
+        trial = r + 0.0
+        trial[1::2, 0] += 0.1
+        trial[2:4] = r[2:4]
+        molecules.keep_outcomes = True
+        self.assertTrue(molecules.keep_outcomes)
+        report = molecules.project_positions(r, trial, 1)
+        found = molecules.outcomes()
+        self.assertEqual(found.bad.size, 0)
+        self.assertEqual(found.iterations[1], 0)
+        self.assertTrue(np.all(found.iterations[[0, 2, 3, 4, 5]] > 0))
+        self.assertEqual(found.iterations.max(), report.iterations)
+        r[3, 1] = np.nan
+        r[9] = r[8]
+        with self.assertRaises(hol.NotFiniteError) as caught:
+            molecules.forces(r)
+        self.assertEqual(caught.exception.n_bad, 2)
+        found = molecules.outcomes()
+        np.testing.assert_array_equal(found.bad, [1, 4])
+        np.testing.assert_array_equal(found.status, [0, 6, 0, 0, 7, 0])
+
     def test_positions_that_cannot_be_reached_stay(self):
         molecules, r = dimers(3)
         moved = r + 0.0

@@ -1,0 +1,54 @@
+! What a call has done with each molecule.
+module holonomic_outcomes
+   use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
+   use holonomic_c, only: hol_chains_set_outcomes, hol_outcomes
+   use holonomic_impose, only: chain_set_impose
+   use holonomic_place, only: enough
+   use holonomic_status, only: failure, settle
+   implicit none
+   private
+   public :: chain_set_outcomes
+
+   type, extends(chain_set_impose) :: chain_set_outcomes
+   contains
+      procedure :: set_outcomes
+      procedure :: outcomes
+   end type
+
+contains
+
+   subroutine set_outcomes(self, keep, stat, errmsg)
+      class(chain_set_outcomes), intent(inout) :: self
+      logical, intent(in) :: keep
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      call problem%need_created(self%c_handle())
+      call problem%ask(hol_chains_set_outcomes(self%c_handle(), merge(1_c_int, 0_c_int, keep)))
+      call settle(problem, "set_outcomes", stat, errmsg)
+   end subroutine
+
+   ! Of each molecule, in this thread's last call: a status as `stat`, and the number of iterations.
+   recursive subroutine outcomes(self, status, iterations, stat, errmsg)
+      class(chain_set_outcomes), intent(in) :: self
+      integer(c_int), intent(inout), optional, contiguous, target :: status(:), iterations(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      type(c_ptr) :: to_status, to_iterations
+      call problem%need_created(self%c_handle())
+      to_status = c_null_ptr
+      to_iterations = c_null_ptr
+      if (present(status)) then
+         if (enough("status", size(status, kind=c_int64_t), self%n_chains(), "molecules", problem)) &
+            to_status = c_loc(status)
+      end if
+      if (present(iterations)) then
+         if (enough("iterations", size(iterations, kind=c_int64_t), self%n_chains(), "molecules", problem)) &
+            to_iterations = c_loc(iterations)
+      end if
+      if (problem%none()) call problem%ask(hol_outcomes(self%c_handle(), to_status, to_iterations))
+      call settle(problem, "outcomes", stat, errmsg)
+   end subroutine
+
+end module
