@@ -108,7 +108,8 @@ struct NetLinear {
         });
     }
 
-    // Whether no equation is left with more than rounding. The terms of right-hand sides alone do for most.
+    // Whether no equation is left with more than rounding. The terms of right-hand sides alone, and a bound on what
+    // rounding hides, do for most.
     __attribute__((noinline)) bool is_proven() const {
         const double most = most_backward(s.n_bonds) * epsilon;
         for (int32_t i = 0; i <= s.n_shares; ++i) worst[i] = 0;
@@ -127,28 +128,32 @@ struct NetLinear {
                 const MaskOf<V> bad = ~less_equal(over, V{});
                 if (__builtin_expect(any(bad), 0))
                     for (int i = 0; i < Width<V>::lanes; ++i)
-                        if ((bits(bad) >> i & 1) && !holds(place + i)) worst[share] = 1;
+                        if ((bits(bad) >> i & 1) && worst[share] == 0 && !holds(place + i)) worst[share] = 1;
                 w = wn;
                 T = Tn;
                 pull = next;
             }
         });
         bool good = largest_in(worst, s.n_shares) == 0;
-        for (int32_t k = s.first_tree_place; good && k < s.n_bonds; ++k) good = holds(k);
+        for (int32_t k = s.first_tree_place; good && k < s.n_bonds; ++k) {
+            const int32_t i = s.from[k], j = s.to[k];
+            const double over = excess_of(d.get<double>(k), net.w[i] * G.get<double>(i), net.w[j] * G.get<double>(j),
+                                          mul_add(net.w[i], tension[i], net.w[j] * tension[j]), side[k],
+                                          size_of_side[k], most);
+            good = over <= 0 || holds(k);
+        }
         return good;
     }
-    // Of one bond, with all terms of its equation: the accelerations of its two atoms too.
+    // Of one bond, in twice the precision, with all terms of its equation: the accelerations of its two atoms too. Only
+    // the rounding of bonds is left; that of images, which is no more than their own, counts in no test of bonds.
     __attribute__((noinline)) bool holds(int32_t k) const {
         const int32_t i = s.from[k], j = s.to[k];
-        const Vector3<double> bond = d.get<double>(k), from = net.w[i] * G.get<double>(i),
-                              to = net.w[j] * G.get<double>(j);
-        const Net3 &input = has(rates) ? v : f;
-        double terms_of_b = size_of_side[k];
-        if (has(rates | pulls))
-            terms_of_b += abs(dot(bond, input.get<double>(i) + from)) + abs(dot(bond, input.get<double>(j) + to));
-        const double over = excess_of(bond, from, to, mul_add(net.w[i], tension[i], net.w[j] * tension[j]), side[k],
-                                      terms_of_b, most_backward(s.n_bonds) * epsilon);
-        return over <= 0;
+        const Pair3<double> from = acceleration_of(i, t, false), to = acceleration_of(j, t, false), bond = exact(k);
+        const double left = residual_of(k, bond, from, to),
+                     terms_of_b = size_of_side[k] + abs(dot_pairs(bond, from).hi) + abs(dot_pairs(bond, to).hi),
+                     hidden = sqrt(dot(d.get<double>(k), d.get<double>(k))) *
+                              mul_add(net.w[i], tension[i], net.w[j] * tension[j]);
+        return abs(left) + epsilon * hidden <= most_backward(s.n_bonds) * epsilon * terms_of_b;
     }
     // What is left of an equation, and what rounding can hide there, beyond what may be left.
     template <class V>
@@ -186,40 +191,38 @@ struct NetLinear {
         net.find_pulls(t, d, G, nullptr);
         return true;
     }
+    Pair3<double> exact(int32_t k) const { return pairs_of(d.get<double>(k), Vector3<double>{}); }
     Pair3<double> unrounded(int32_t k) const {
         Vector3<double> bond, low;
         unrounded_bond(box, r.get<double>(s.from[k]), r.get<double>(s.to[k]), bond, low);
         return pairs_of(bond, low);
     }
-    __attribute__((noinline)) void find_residuals(const double *solution) const {
+    // In twice the precision: of an atom with these multipliers; and what is left of a bond's equation.
+    Pair3<double> acceleration_of(int32_t site, const double *solution, bool low) const {
         const Vector3<double> zero = {};
-        net.for_ranges_of(s.n_atoms, [&](int32_t first, int32_t end) {
-            for (int32_t i = first; i < end; ++i)
-                a[i] = pairs_of(has(pulls) ? read(*in.f, net.at, s.atom_of[i]) : zero, zero);
+        Pair3<double> sum = pairs_of(has(pulls) ? read(*in.f, net.at, s.atom_of[site]) : zero, zero);
+        net.for_bonds_of(site, [&](int32_t k, double sign) {
+            sum = add_pairs(sum, scale_pairs(sign * solution[k], low ? unrounded(k) : exact(k)));
         });
-        for (int32_t k = 0; k < s.n_bonds; ++k) {
-            const Pair3<double> pull = scale_pairs(solution[k], unrounded(k));
-            a[s.from[k]] = add_pairs(a[s.from[k]], pull);
-            a[s.to[k]] = subtract_pairs(a[s.to[k]], pull);
+        sum = scale_pairs(net.w[site], sum);
+        return has(rates) ? add_pairs(sum, pairs_of(v.get<double>(site), zero)) : sum;
+    }
+    double residual_of(int32_t k, const Pair3<double> &bond, const Pair3<double> &from, const Pair3<double> &to) const {
+        Pair<double> sum = dot_pairs(bond, subtract_pairs(to, from));
+        if (has(squares)) {
+            const Pair3<double> dv = difference_of(v.get<double>(s.from[k]), v.get<double>(s.to[k]));
+            sum = add_pairs(sum, dot_pairs(dv, dv));
         }
+        if (in.rhs) sum = add_pairs(sum, {0.5 * in.rhs[net.lane.first_bond + s.bond_of[k]], 0.0});
+        if (in.strain) sum = add_pairs(sum, {stretching(in.strain, d.get<double>(k)), 0.0});
+        return sum.hi + sum.lo;
+    }
+    __attribute__((noinline)) void find_residuals(const double *solution) const {
         net.for_ranges_of(s.n_atoms, [&](int32_t first, int32_t end) {
-            for (int32_t i = first; i < end; ++i) {
-                a[i] = scale_pairs(net.w[i], a[i]);
-                if (has(rates)) a[i] = add_pairs(a[i], pairs_of(v.get<double>(i), zero));
-            }
+            for (int32_t i = first; i < end; ++i) a[i] = acceleration_of(i, solution, true);
         });
         net.for_ranges_of(s.n_bonds, [&](int32_t first, int32_t end) {
-            for (int32_t k = first; k < end; ++k) {
-                const int32_t i = s.from[k], j = s.to[k];
-                Pair<double> sum = dot_pairs(unrounded(k), subtract_pairs(a[j], a[i]));
-                if (has(squares)) {
-                    const Pair3<double> dv = difference_of(v.get<double>(i), v.get<double>(j));
-                    sum = add_pairs(sum, dot_pairs(dv, dv));
-                }
-                if (in.rhs) sum = add_pairs(sum, {0.5 * in.rhs[net.lane.first_bond + s.bond_of[k]], 0.0});
-                if (in.strain) sum = add_pairs(sum, {stretching(in.strain, d.get<double>(k)), 0.0});
-                t[k] = sum.hi + sum.lo;
-            }
+            for (int32_t k = first; k < end; ++k) t[k] = residual_of(k, unrounded(k), a[s.from[k]], a[s.to[k]]);
         });
     }
 

@@ -159,6 +159,34 @@ struct Net {
         });
     }
 
+    // Calls each(place, sign) for the bonds of a node or, after the nodes, of a tree's atom; sign: 1 where they begin
+    // there, else -1.
+    template <class Each>
+    HOL_FORCED void for_bonds_of_joint(int32_t number, const Each &each) const {
+        if (number < s.n_nodes) {
+            for (int32_t u = s.own_start[number]; u < s.own_start[number + 1]; ++u) each(s.place_of[u], s.sign[u]);
+            for (int32_t f = s.foreign_start[number]; f < s.foreign_start[number + 1]; ++f)
+                each(s.place_of[s.foreign[f]], -1.0);
+        } else {
+            each(s.first_tree_place + number - s.n_nodes, -1.0);
+        }
+        for (int32_t c = s.child_start[number]; c < s.child_start[number + 1]; ++c)
+            each(s.first_tree_place + s.child[c], 1.0);
+    }
+    // Likewise for any site.
+    template <class Each>
+    HOL_FORCED void for_bonds_of(int32_t site, const Each &each) const {
+        if (site >= s.first_node) return for_bonds_of_joint(site - s.first_node, each);
+        int32_t bundle = 0, end = s.bundle_start[s.n_shares];
+        while (end - bundle > 1) {
+            const int32_t middle = bundle + (end - bundle) / 2;
+            (s.bundle[middle].first_site <= site ? bundle : end) = middle;
+        }
+        const NetworkPlan::Bundle &b = s.bundle[bundle];
+        each(b.first_place + site - b.first_site, -1.0);
+        each(b.first_place + site - b.first_site + b.width, 1.0);
+    }
+
     // What multipliers t of bonds d do to atoms: G, and where `tension` is wanted the sum of |t| |d|.
     __attribute__((noinline)) void find_pulls(const double *t, const Net3 &d, const Net3 &G, double *tension) const {
         for_strands([&](auto width, const NetStrands &g, int32_t) HOL_FORCED {
@@ -179,36 +207,21 @@ struct Net {
                 before = pull;
             }
         });
-        for_nodes([&](int32_t first, int32_t end, int32_t) {
-            for (int32_t n = first; n < end; ++n) {
-                Vector3<double> sum = {};
-                double size = 0;
-                const auto add = [&](int32_t place, double sign) {
-                    const Vector3<double> pull = t[place] * d.get<double>(place);
-                    sum = add_times(sum, sign, pull);
-                    if (tension) size += sqrt(dot(pull, pull));
-                };
-                for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u) add(s.place_of[u], s.sign[u]);
-                for (int32_t f = s.foreign_start[n]; f < s.foreign_start[n + 1]; ++f) add(s.place_of[s.foreign[f]], -1);
-                for (int32_t c = s.child_start[n]; c < s.child_start[n + 1]; ++c)
-                    add(s.first_tree_place + s.child[c], 1);
-                G.set(s.first_node + n, sum);
-                if (tension) tension[s.first_node + n] = size;
-            }
-        });
-        for (int32_t i = 0; i < s.n_tree; ++i) {
-            const int32_t own = s.first_tree_place + i;
-            const Vector3<double> up = t[own] * d.get<double>(own);
-            Vector3<double> sum = Vector3<double>{} - up;
-            double size = tension ? sqrt(dot(up, up)) : 0;
-            for (int32_t c = s.child_start[s.n_nodes + i]; c < s.child_start[s.n_nodes + i + 1]; ++c) {
-                const int32_t place = s.first_tree_place + s.child[c];
+        for_nodes([&](int32_t first, int32_t end, int32_t) { find_pulls_of_joints(first, end, t, d, G, tension); });
+        find_pulls_of_joints(s.n_nodes, s.n_nodes + s.n_tree, t, d, G, tension);
+    }
+    __attribute__((noinline)) void find_pulls_of_joints(int32_t first, int32_t end, const double *t, const Net3 &d,
+                                                        const Net3 &G, double *tension) const {
+        for (int32_t n = first; n < end; ++n) {
+            Vector3<double> sum = {};
+            double size = 0;
+            for_bonds_of_joint(n, [&](int32_t place, double sign) HOL_FORCED {
                 const Vector3<double> pull = t[place] * d.get<double>(place);
-                sum = sum + pull;
+                sum = add_times(sum, sign, pull);
                 if (tension) size += sqrt(dot(pull, pull));
-            }
-            G.set(s.first_tree + i, sum);
-            if (tension) tension[s.first_tree + i] = size;
+            });
+            G.set(s.first_node + n, sum);
+            if (tension) tension[s.first_node + n] = size;
         }
     }
 };
