@@ -10,16 +10,17 @@ namespace HOL_ISA {
 namespace graph {
 
 struct NetNewton {
-    static constexpr double part = 1e-4;  // of right-hand sides that a solve leaves
+    static constexpr double part_left = 1e-4;  // of right-hand sides that a solve leaves
 
     const Net net;
     const NetworkPlan &s;
     Net3 r, moves, b, D, new_D;
     double *tau, *t, *a2, *per_a2, *stretch;
-    double *worst;  // [n_shares + 1] of shares
+    double *worst;  // [n_shares + 1] of parts
     NetFactor factor;
     double opening = 0;
-    bool displaced = false, moved = false, taken_up = false, failed = false;
+    // found: the unknowns have been, and all else has yet to follow; displaced: `moves` are those of tau.
+    bool found = false, displaced = false, moved = false, taken_up = false, failed = false;
 
     static int64_t values(const NetworkPlan &s) {
         return Net::values(s) + 6 * in_fours(s.n_atoms) + 16 * in_fours(s.n_bonds) + in_fours(s.n_shares + 1) +
@@ -51,33 +52,29 @@ struct NetNewton {
         }
         return abs(e);
     }
-    template <class V>
-    HOL_FORCED void note(int32_t share, const V &error) const {
-        for (int i = 0; i < Width<V>::lanes; ++i) {
-            const double one = Width<V>::get(error, i);
-            if (!(one <= worst[share])) worst[share] = one;
-        }
-    }
-    void clear_worst() const {
-        for (int32_t i = 0; i <= s.n_shares; ++i) worst[i] = 0;
-    }
+    // Returns the largest error of a part. A NaN stays.
     template <bool fresh>
-    __attribute__((noinline)) double measure_all(const Net3 &bonds) const {
-        clear_worst();
-        net.for_strands([&](auto width, const NetStrands &g, int32_t share) HOL_FORCED {
-            typedef decltype(width) V;
-            V most = {}, sum = {};
-            for (int32_t k = 0; k < g.length; ++k) {
-                const int32_t place = g.place + k * g.step;
-                const V error = measure<fresh>(place, bonds.get<V>(place));
-                most = max(error, most);
-                sum = sum + error;
-            }
-            note(share, most + 0 * sum);
-        });
-        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k)
-            note(s.n_shares, measure<fresh>(k, bonds.get<double>(k)));
-        return largest_in(worst, s.n_shares + 1);
+    __attribute__((noinline)) double measure_all(const NetPart &part, const Net3 &bonds) const {
+        vec most = {}, sum = {};
+        int32_t k = part.first_place;
+        for (; k + W <= part.end_place; k += W) {
+            const vec error = measure<fresh>(k, bonds.get<vec>(k));
+            most = max(error, most);
+            sum = sum + error;
+        }
+        most = most + 0 * sum;
+        double worst_of = 0;
+        for (int i = 0; i < W; ++i) worst_of = larger(Width<vec>::get(most, i), worst_of);
+        for (; k < part.end_place; ++k) worst_of = larger(measure<fresh>(k, bonds.get<double>(k)), worst_of);
+        return worst_of;
+    }
+    static double larger(double error, double than) { return error <= than ? than : error; }
+    double worst_of_all() const { return largest_in(worst, s.n_shares + 1); }
+    // Calls body(part), first for the rest.
+    template <class Body>
+    HOL_FORCED void for_all_parts(const Body &body) const {
+        body(net.rest());
+        net.for_parts(body);
     }
 
     double open() const { return opening; }
@@ -86,42 +83,74 @@ struct NetNewton {
         for (int32_t k = 0; k < s.n_bonds; ++k) tau[k] = 0;
         displaced = false;
     }
+    // What tau does to the sites of a part; before that, if the unknowns have just been found, all bonds' corrections.
+    void displace(const NetPart &part) const {
+        const bool rest = part.share == s.n_shares;
+        if (found && rest) {
+            factor.take_down_rest(t);
+            for (int32_t k = part.first_place; k < part.end_place; ++k) tau[k] += t[k];
+            factor.unknowns.for_each([&](int32_t u) { tau[s.place_of[u]] += t[s.place_of[u]]; });
+        } else if (found) {
+            factor.take_down(part, t);
+            net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
+                typedef decltype(width) V;
+                for (int32_t k = 1; k + 1 < g.length; ++k) {
+                    const int32_t place = g.place + k * g.step;
+                    store_any(tau + place, load_any<V>(tau + place) + load_any<V>(t + place));
+                }
+            });
+        }
+        if (rest)
+            net.find_pulls_of_rest(tau, b, moves, nullptr);
+        else
+            net.find_pulls(part, tau, b, moves, nullptr);
+        for (int32_t i = part.first_site; i < part.end_site; ++i) moves.set(i, net.w[i] * moves.get<double>(i));
+    }
     __attribute__((noinline)) void displace() {
-        if (displaced) return;
+        if (!displaced) for_all_parts([&](const NetPart &part) { displace(part); });
         displaced = true;
-        net.find_pulls(tau, b, moves, nullptr);
-        net.for_ranges_of(s.n_atoms, [&](int32_t first, int32_t end) {
-            for (int32_t i = first; i < end; ++i) moves.set(i, net.w[i] * moves.get<double>(i));
-        });
+        found = false;
     }
     __attribute__((noinline)) double move() {
-        displace();
-        net.for_bonds(moves, [&](auto width, int32_t k, const auto &from, const auto &to, int32_t) HOL_FORCED {
-            typedef decltype(width) V;
-            new_D.set(k, D.get<V>(k) + (to - from));
+        for_all_parts([&](const NetPart &part) {
+            if (!displaced) displace(part);
+            net.for_bonds(part, moves, [&](auto width, int32_t k, const auto &from, const auto &to) HOL_FORCED {
+                typedef decltype(width) V;
+                new_D.set(k, D.get<V>(k) + (to - from));
+            });
+            worst[part.share] = measure_all<false>(part, new_D);
         });
-        moved = true;
-        taken_up = false;
-        const double error = measure_all<false>(new_D);
-        return failed ? __builtin_nan("") : error;
+        displaced = moved = true;
+        found = taken_up = false;
+        return failed ? __builtin_nan("") : worst_of_all();
     }
     double error_of(int32_t k) const { return abs(excess((moved ? new_D : D).get<double>(k), a2[k])) * per_a2[k]; }
 
-    void first_factors() { factorize({true}); }
+    void factorize_part(const NetPart &part, const Net3 &bonds) const {
+        if (part.share == s.n_shares)
+            factor.factorize_rest(bonds, t);
+        else
+            factor.factorize(part, bonds, t);
+    }
+    // Without a guess, each part's factors have been made when it was read.
+    void first_factors() {
+        factor.close(D);
+        taken_up = true;
+    }
     void factorize(Flag) {
         const Net3 &bonds = moved ? new_D : D;
-        measure_all<true>(bonds);
-        factor.factorize(bonds, t);
+        for_all_parts([&](const NetPart &part) {
+            measure_all<true>(part, bonds);
+            factorize_part(part, bonds);
+        });
+        factor.close(bonds);
         taken_up = true;
     }
     __attribute__((noinline)) void solve(Flag) {
-        if (!taken_up) factor.take_up(t);
+        if (!taken_up) factor.take_up_all(t);
         taken_up = false;
-        failed = failed || factor.unknowns.solve(part) < 0;
-        factor.take_down(t);
-        net.for_ranges_of(s.n_bonds, [&](int32_t first, int32_t end) {
-            for (int32_t k = first; k < end; ++k) tau[k] += t[k];
-        });
+        failed = failed || factor.unknowns.solve(part_left) < 0;
+        found = true;
         displaced = false;
     }
 };

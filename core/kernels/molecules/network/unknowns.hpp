@@ -92,46 +92,62 @@ struct Unknowns {
         return node[n].mass * sum_of;
     }
 
+    // Calls body(u) for all unknowns, node by node.
+    template <class Body>
+    HOL_FORCED void for_each(const Body &body) const {
+        net.for_nodes([&](int32_t first, int32_t end, int32_t) {
+            for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) body(u);
+        });
+    }
+
     // Solves for y until what is left is `part` of it, both as sums of squares' roots; how many rounds it took, or -1.
     __attribute__((noinline)) int32_t solve(double part) const {
-        Sums all = sums_of_nodes([&](int32_t u, Sums &one) {
-            x[u] = 0;
-            r[u] = shadow[u] = p[u] = y[u];
-            one.a = mul_add(y[u], y[u], one.a);
+        Sums all = sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
+            for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
+                x[u] = 0;
+                r[u] = shadow[u] = p[u] = y[u];
+                one.a = mul_add(y[u], y[u], one.a);
+            }
+            precondition(first, end, p, p_node);
         });
         const double enough = part * part * all.a;
         if (!(all.a > 0)) return all.a == 0 ? 0 : -1;
         double rho = all.a;
         for (int32_t round = 1; round <= most_rounds; ++round) {
-            precondition(p, p_node);
-            multiply(p, p_node, v);
-            all = sums_of_nodes([&](int32_t u, Sums &one) { one.a = mul_add(shadow[u], v[u], one.a); });
+            all = multiply(p, p_node, v, [&](int32_t u, Sums &one) { one.a = mul_add(shadow[u], v[u], one.a); });
             const double alpha = rho / all.a;
-            all = sums_of_nodes([&](int32_t u, Sums &one) {
-                x[u] = mul_add(alpha, p_node[u], x[u]);
-                r[u] = mul_add(-alpha, v[u], r[u]);
-                one.a = mul_add(r[u], r[u], one.a);
+            all = sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
+                for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
+                    x[u] = mul_add(alpha, p_node[u], x[u]);
+                    r[u] = mul_add(-alpha, v[u], r[u]);
+                    one.a = mul_add(r[u], r[u], one.a);
+                }
+                precondition(first, end, r, s_node);
             });
             if (all.a <= enough) return round;
             if (!(all.a < 1e300)) return -1;
-            precondition(r, s_node);
-            multiply(r, s_node, t);
-            all = sums_of_nodes([&](int32_t u, Sums &one) {
+            all = multiply(r, s_node, t, [&](int32_t u, Sums &one) {
                 one.a = mul_add(t[u], r[u], one.a);
                 one.b = mul_add(t[u], t[u], one.b);
             });
             const double omega = all.a / all.b;
-            all = sums_of_nodes([&](int32_t u, Sums &one) {
-                x[u] = mul_add(omega, s_node[u], x[u]);
-                r[u] = mul_add(-omega, t[u], r[u]);
-                one.a = mul_add(r[u], r[u], one.a);
-                one.b = mul_add(shadow[u], r[u], one.b);
+            all = sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
+                for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
+                    x[u] = mul_add(omega, s_node[u], x[u]);
+                    r[u] = mul_add(-omega, t[u], r[u]);
+                    one.a = mul_add(r[u], r[u], one.a);
+                    one.b = mul_add(shadow[u], r[u], one.b);
+                }
             });
             if (all.a <= enough) return round;
             const double beta = all.b / rho * (alpha / omega);
             if (!(abs(beta) < 1e300)) return -1;
             rho = all.b;
-            for_each([&](int32_t u) { p[u] = mul_add(beta, mul_add(-omega, v[u], p[u]), r[u]); });
+            net.for_nodes([&](int32_t first, int32_t end, int32_t) {
+                for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u)
+                    p[u] = mul_add(beta, mul_add(-omega, v[u], p[u]), r[u]);
+                precondition(first, end, p, p_node);
+            });
         }
         return -1;
     }
@@ -142,18 +158,13 @@ private:
         double a, b;
     };
 
-    template <class Body>
-    HOL_FORCED void for_each(const Body &body) const {
-        net.for_nodes([&](int32_t first, int32_t end, int32_t) {
-            for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) body(u);
-        });
-    }
-    // Sums over each share, then over these in order: the same for any number of threads.
+    // Sums that body(first, end, sums) adds up over each share, then over these in order: the same for any number of
+    // threads.
     template <class Body>
     HOL_FORCED Sums sums_of_nodes(const Body &body) const {
         net.for_nodes([&](int32_t first, int32_t end, int32_t share) {
             Sums one = {0, 0};
-            for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) body(u, one);
+            body(first, end, one);
             sum[2 * share] = one.a;
             sum[2 * share + 1] = one.b;
         });
@@ -166,24 +177,36 @@ private:
     }
 
     // M^-1: the ends of each node by themselves.
-    __attribute__((noinline)) void precondition(const double *of, double *to) const {
-        net.for_nodes([&](int32_t first, int32_t end, int32_t) {
-            for (int32_t n = first; n < end; ++n) {
-                Vector3<double> pull = {};
-                for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u) {
-                    to[u] = of[u] * per_E[u];
-                    pull = add_times(pull, s.sign[u] * to[u], b[u]);
-                }
-                const Vector3<double> a = node[n].with_ends * pull;
-                for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u)
-                    to[u] = mul_add(-s.sign[u] * per_E[u], dot(D[u], a), to[u]);
+    __attribute__((noinline)) void precondition(int32_t first, int32_t end, const double *of, double *to) const {
+        for (int32_t n = first; n < end; ++n) {
+            Vector3<double> pull = {};
+            for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u) {
+                to[u] = of[u] * per_E[u];
+                pull = add_times(pull, s.sign[u] * to[u], b[u]);
             }
-        });
+            const Vector3<double> a = node[n].with_ends * pull;
+            for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u)
+                to[u] = mul_add(-s.sign[u] * per_E[u], dot(D[u], a), to[u]);
+        }
     }
     // What strands couple, and what bonds do at the nodes where they are foreign, added to `own`, which is M times
     // `of`.
-    __attribute__((noinline)) void multiply(const double *own, const double *of, double *to) const {
-        if (!s.has_foreign) return for_each([&](int32_t u) { to[u] = mul_add(coupling[u], of[s.partner[u]], own[u]); });
+    template <class Body>
+    HOL_FORCED Sums multiply(const double *own, const double *of, double *to, const Body &body) const {
+        if (s.has_foreign) accelerate_nodes(of);
+        return sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
+            for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
+                double value = mul_add(coupling[u], of[s.partner[u]], own[u]);
+                if (s.has_foreign) {
+                    value = mul_add(s.sign[u], dot(D[u], node[s.node_of[u]].foreign), value);
+                    if (s.other_node[u] >= 0) value -= dot(D[u], node[s.other_node[u]].all) + E[u] * of[u];
+                }
+                to[u] = value;
+                body(u, one);
+            }
+        });
+    }
+    __attribute__((noinline)) void accelerate_nodes(const double *of) const {
         net.for_nodes([&](int32_t first, int32_t end, int32_t) {
             for (int32_t n = first; n < end; ++n) {
                 Vector3<double> by_own = {}, by_foreign = {};
@@ -194,12 +217,6 @@ private:
                 node[n].foreign = node[n].mass * by_foreign;
                 node[n].all = node[n].foreign + node[n].mass * by_own;
             }
-        });
-        for_each([&](int32_t u) {
-            double value = mul_add(coupling[u], of[s.partner[u]], own[u]);
-            value = mul_add(s.sign[u], dot(D[u], node[s.node_of[u]].foreign), value);
-            if (s.other_node[u] >= 0) value -= dot(D[u], node[s.other_node[u]].all) + E[u] * of[u];
-            to[u] = value;
         });
     }
 };
