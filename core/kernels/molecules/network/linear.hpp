@@ -15,8 +15,8 @@ namespace HOL_ISA {
 namespace graph {
 
 struct NetLinear {
-    // Of the right-hand side in the first solution, of residuals in the others.
-    static constexpr double first_part = 2e-15, next_part = 1e-6;
+    // Of residuals that are corrected.
+    static constexpr double next_part = 1e-6;
 
     const Net net;
     const NetworkPlan &s;
@@ -111,8 +111,8 @@ struct NetLinear {
 
     // Multipliers for what is in t, as far up as it has been taken; what they do to atoms, if `pulls`; then each(part).
     template <class Each>
-    HOL_FORCED bool solve_for(double part_left, bool with_pulls, double *tensions, const Each &each) const {
-        if (factor.unknowns.solve(part_left) < 0) return false;
+    HOL_FORCED bool solve_for(const double *sizes, bool with_pulls, double *tensions, const Each &each) const {
+        if (factor.unknowns.solve(next_part, sizes) < 0) return false;
         for_rest_and_parts(
             [&](const NetPart &rest) {
                 factor.take_down_rest(t);
@@ -128,14 +128,16 @@ struct NetLinear {
     }
     __attribute__((noinline)) bool solve() const {
         load();
-        return solve_for(first_part, true, tension, [&](const NetPart &part) { prove(part); }) &&
+        return solve_for(size_of_side, true, tension, [&](const NetPart &part) { prove(part); }) &&
                (largest_in(worst, s.n_shares + 1) == 0 || refine());
     }
 
+    // What may be left of equations, of their terms: half of what counts as right (proof.hpp).
+    double most_left() const { return 0.5 * epsilon * (16 + __builtin_sqrt(static_cast<double>(s.n_bonds))); }
     // Whether an equation is left with more than rounding: 1 in `worst`. The terms of right-hand sides alone, and a
     // bound on what rounding hides, do for most.
     __attribute__((noinline)) void prove(const NetPart &part) const {
-        const double most = most_backward(s.n_bonds) * epsilon;
+        const double most = most_left();
         double &bad_part = worst[part.share];
         bad_part = 0;
         net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
@@ -176,7 +178,7 @@ struct NetLinear {
                      terms_of_b = size_of_side[k] + abs(dot_pairs(bond, from).hi) + abs(dot_pairs(bond, to).hi),
                      hidden = sqrt(dot(d.get<double>(k), d.get<double>(k))) *
                               mul_add(net.w[i], tension[i], net.w[j] * tension[j]);
-        return abs(left) + epsilon * hidden <= most_backward(s.n_bonds) * epsilon * terms_of_b;
+        return abs(left) + epsilon * hidden <= most_left() * terms_of_b;
     }
     // What is left of an equation, and what rounding can hide there, beyond what may be left.
     template <class V>
@@ -200,7 +202,7 @@ struct NetLinear {
             [&]() {
                 find_residuals(solution);
                 factor.take_up_all(t);
-                if (!solve_for(next_part, false, nullptr, [](const NetPart &) {})) t[0] = 0 / (t[0] - t[0]);  // not a number, which is no contraction
+                if (!solve_for(nullptr, false, nullptr, [](const NetPart &) {})) t[0] = 0 / (t[0] - t[0]);  // not a number, which is no contraction
             },
             [&](Flag) {
                 return add_corrections<double>(s.n_bonds, [&](int32_t k) {
@@ -267,7 +269,7 @@ struct NetLinear {
             });
         if (!again) return;
         factor.unknowns.add_pushes();
-        solve_for(next_part, true, nullptr, [&](const NetPart &part) { push_on(part); });
+        solve_for(nullptr, true, nullptr, [&](const NetPart &part) { push_on(part); });
     }
     void push_on(const NetPart &part) const {
         for (int32_t i = part.first_site; i < part.end_site; ++i)

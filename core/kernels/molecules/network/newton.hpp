@@ -149,7 +149,7 @@ struct NetNewton {
     __attribute__((noinline)) void solve(Flag) {
         if (!taken_up) factor.take_up_all(t);
         taken_up = false;
-        failed = failed || factor.unknowns.solve(part_left) < 0;
+        failed = failed || factor.unknowns.solve(part_left, nullptr) < 0;
         found = true;
         displaced = false;
     }

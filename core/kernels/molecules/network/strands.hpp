@@ -72,17 +72,18 @@ struct Net {
     HOL_FORCED void for_parts(const Body &body) const {
         share_out(team, s.n_shares, [&](int32_t share) { body(part(share)); });
     }
-    // Calls body(first, end, share) for ranges of nodes.
+    // Calls body(first, end, share) for ranges of nodes. A thread is not worth waiting for where these are few.
     template <class Body>
     HOL_FORCED void for_nodes(const Body &body) const {
-        share_out(team, s.n_node_shares,
+        constexpr int32_t many_unknowns = 65536;
+        share_out(s.n_unknowns < many_unknowns ? nullptr : team, s.n_node_shares,
                   [&](int32_t share) { body(s.node_start[share], s.node_start[share + 1], share); });
     }
     // Calls body(first, end) for ranges of these numbers.
     template <class Body>
     HOL_FORCED void for_ranges(int32_t begin, int32_t end, const Body &body) const {
         constexpr int32_t step = 4096;
-        share_out(team, (end - begin + step - 1) / step, [&](int32_t i) {
+        share_out(end - begin > 4 * step ? team : nullptr, (end - begin + step - 1) / step, [&](int32_t i) {
             const int32_t first = begin + i * step;
             body(first, end - first < step ? end : first + step);
         });
