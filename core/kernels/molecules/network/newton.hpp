@@ -20,7 +20,7 @@ struct NetNewton {
     NetFactor factor;
     double opening = 0;
     // found: the unknowns have been, and all else has yet to follow; displaced: `moves` are those of tau.
-    bool found = false, displaced = false, moved = false, taken_up = false, failed = false;
+    bool found = false, displaced = false, moved = false, failed = false;
 
     static int64_t values(const NetworkPlan &s) {
         return Net::values(s) + 6 * in_fours(s.n_atoms) + 16 * in_fours(s.n_bonds) + in_fours(s.n_shares + 1) +
@@ -52,21 +52,29 @@ struct NetNewton {
         }
         return abs(e);
     }
-    // Returns the largest error of a part. A NaN stays.
-    template <bool fresh>
-    __attribute__((noinline)) double measure_all(const NetPart &part, const Net3 &bonds) const {
+    // Returns the largest error of a part whose bonds get(V, place, from, to) gives, of values of `of` at their atoms. A
+    // NaN stays.
+    template <bool fresh, class Get>
+    HOL_FORCED double measure_part(const NetPart &part, const Net3 &of, const Get &get) const {
         vec most = {}, sum = {};
-        int32_t k = part.first_place;
-        for (; k + W <= part.end_place; k += W) {
-            const vec error = measure<fresh>(k, bonds.get<vec>(k));
-            most = max(error, most);
-            sum = sum + error;
-        }
+        double most_of_rest = 0;
+        net.for_bonds(part, of, [&](auto width, int32_t k, const auto &from, const auto &to) HOL_FORCED {
+            typedef decltype(width) V;
+            const V error = measure<fresh>(k, get(width, k, from, to));
+            if constexpr (Width<V>::lanes == W) {
+                most = max(error, most);
+                sum = sum + error;
+            } else {
+                most_of_rest = larger(error, most_of_rest);
+            }
+        });
         most = most + 0 * sum;
-        double worst_of = 0;
-        for (int i = 0; i < W; ++i) worst_of = larger(Width<vec>::get(most, i), worst_of);
-        for (; k < part.end_place; ++k) worst_of = larger(measure<fresh>(k, bonds.get<double>(k)), worst_of);
-        return worst_of;
+        for (int i = 0; i < W; ++i) most_of_rest = larger(Width<vec>::get(most, i), most_of_rest);
+        return most_of_rest;
+    }
+    __attribute__((noinline)) double measure_fresh(const NetPart &part, const Net3 &bonds) const {
+        return measure_part<true>(part, moves, [&](auto width, int32_t k, const auto &, const auto &)
+                                                   HOL_FORCED { return bonds.get<decltype(width)>(k); });
     }
     static double larger(double error, double than) { return error <= than ? than : error; }
     double worst_of_all() const { return largest_in(worst, s.n_shares + 1); }
@@ -111,20 +119,34 @@ struct NetNewton {
         displaced = true;
         found = false;
     }
+    // As tau moves a bond.
+    template <class V>
+    HOL_FORCED Vector3<V> moved_bond(int32_t k, const Vector3<V> &from, const Vector3<V> &to) const {
+        return D.get<V>(k) + (to - from);
+    }
+    // What is left is taken up at once, while it is in cache.
     __attribute__((noinline)) double move() {
         for_all_parts([&](const NetPart &part) {
             if (!displaced) displace(part);
-            net.for_bonds(part, moves, [&](auto width, int32_t k, const auto &from, const auto &to) HOL_FORCED {
-                typedef decltype(width) V;
-                new_D.set(k, D.get<V>(k) + (to - from));
-            });
-            worst[part.share] = measure_all<false>(part, new_D);
+            worst[part.share] = measure_moved(part);
+            if (part.share == s.n_shares)
+                factor.take_up_rest(t);
+            else
+                factor.take_up(part, t);
         });
+        factor.unknowns.add_pushes();
         displaced = moved = true;
-        found = taken_up = false;
+        found = false;
         return failed ? __builtin_nan("") : worst_of_all();
     }
-    double error_of(int32_t k) const { return abs(excess((moved ? new_D : D).get<double>(k), a2[k])) * per_a2[k]; }
+    __attribute__((noinline)) double measure_moved(const NetPart &part) const {
+        return measure_part<false>(part, moves, [&](auto, int32_t k, const auto &from, const auto &to)
+                                                    HOL_FORCED { return moved_bond(k, from, to); });
+    }
+    double error_of(int32_t k) const {
+        const Vector3<double> zero = {}, from = moves.get<double>(s.from[k]), to = moves.get<double>(s.to[k]);
+        return abs(excess(moved_bond(k, moved ? from : zero, moved ? to : zero), a2[k])) * per_a2[k];
+    }
 
     void factorize_part(const NetPart &part, const Net3 &bonds) const {
         if (part.share == s.n_shares)
@@ -133,22 +155,18 @@ struct NetNewton {
             factor.factorize(part, bonds, t);
     }
     // Without a guess, each part's factors have been made when it was read.
-    void first_factors() {
-        factor.close(D);
-        taken_up = true;
-    }
+    void first_factors() { factor.close(D); }
     void factorize(Flag) {
-        const Net3 &bonds = moved ? new_D : D;
         for_all_parts([&](const NetPart &part) {
-            measure_all<true>(part, bonds);
-            factorize_part(part, bonds);
+            if (moved)
+                net.for_bonds(part, moves, [&](auto, int32_t k, const auto &from, const auto &to)
+                                               HOL_FORCED { new_D.set(k, moved_bond(k, from, to)); });
+            measure_fresh(part, moved ? new_D : D);
+            factorize_part(part, moved ? new_D : D);
         });
-        factor.close(bonds);
-        taken_up = true;
+        factor.close(moved ? new_D : D);
     }
     __attribute__((noinline)) void solve(Flag) {
-        if (!taken_up) factor.take_up_all(t);
-        taken_up = false;
         failed = failed || factor.unknowns.solve(part_left, nullptr) < 0;
         found = true;
         displaced = false;

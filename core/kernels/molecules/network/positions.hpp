@@ -38,7 +38,7 @@ struct NetPositions {
             newton.tau[k] =
                 call.guess ? 2 * call.dt * call.dt * call.lambda[net.lane.first_bond + newton.s.bond_of[k]] : 0;
         }
-        newton.worst[part.share] = newton.measure_all<true>(part, newton.D);
+        newton.worst[part.share] = newton.measure_fresh(part, newton.D);
         if (!call.guess) newton.factorize_part(part, newton.D);
     }
     __attribute__((noinline)) void load() {
