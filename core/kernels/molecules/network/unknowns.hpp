@@ -115,7 +115,7 @@ struct Unknowns {
         const double enough = part * part * all.a, enough_of_one = (least_of_mean * rounding_part) * all.a / s.n_unknowns;
         const auto is_enough = [&] { return sizes ? all.most <= enough_of_one : all.a <= enough; };
         if (!(all.a > 0)) return all.a == 0 ? 0 : -1;
-        double rho = all.a;
+        double rho = all.a, looked_at = all.a;
         for (int32_t round = 1; round <= most_rounds; ++round) {
             all = multiply(p, p_node, v, [&](int32_t u, Sums &one) { one.a = mul_add(shadow[u], v[u], one.a); });
             const double alpha = rho / all.a;
@@ -143,6 +143,10 @@ struct Unknowns {
                 }
             });
             if (all.a < 1e300 && is_enough()) return round;
+            if (round % look_after == 0) {
+                if (!(all.a < least_progress * looked_at)) return -1;
+                looked_at = all.a;
+            }
             const double beta = all.b / rho * (alpha / omega);
             if (!(abs(beta) < 1e300)) return -1;
             rho = all.b;
@@ -156,7 +160,9 @@ struct Unknowns {
     }
 
 private:
-    static constexpr int32_t most_rounds = 2000;
+    // So many rounds have to take squares down to less than this part.
+    static constexpr int32_t most_rounds = 2000, look_after = 64;
+    static constexpr double least_progress = 0.1;
     static constexpr double rounding_part = 16 * epsilon * 16 * epsilon, least_of_mean = 1. / 256;  // of squares
     struct Sums {
         double a, b, most;
