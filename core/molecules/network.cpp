@@ -7,7 +7,7 @@ namespace holonomic {
 
 namespace {
 
-constexpr std::int32_t bonds_of_share = 4096, nodes_of_share = 512;
+constexpr std::int32_t bonds_of_share = 2048, nodes_of_share = 512;
 
 std::int32_t size_of(const Numbers &list) { return static_cast<std::int32_t>(list.size()); }
 

@@ -49,8 +49,7 @@ bool solve_network(const VelocitiesCall &call, const Schedule &s, const Molecule
     if (!x.solve()) return false;
     if (call.lambda) x.write_bonds(0.5, false, call.lambda);
     if (call.virial) x.add_virial(tally);
-    x.add_pulls();
-    if (!call.v.is_float) x.solve_again();
+    x.add_pulls(!call.v.is_float);
     x.for_written([&](int32_t atom, int32_t site) { write(call.v, x.net.at, atom, x.v.get<double>(site), 1); });
     return true;
 }

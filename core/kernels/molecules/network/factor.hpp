@@ -43,43 +43,56 @@ struct NetFactor {
         push = reinterpret_cast<Vector3<double> *>(joint + s.n_tree);
     }
 
-    // Makes the factors, and takes the right-hand sides y up.
-    __attribute__((noinline)) void factorize(const Net3 &D, double *y) const {
-        factorize_trees(D, y);
-        net.for_strands([&](auto width, const NetStrands &g, int32_t)
-                            HOL_FORCED { factorize_strands<decltype(width)>(g, D, y); });
+    // Makes the factors, and takes the right-hand sides y up: of the rest, of each part, then of what is left.
+    __attribute__((noinline)) void factorize(const NetPart &part, const Net3 &D, double *y) const {
+        net.for_strands(part, [&](auto width, const NetStrands &g)
+                                  HOL_FORCED { factorize_strands<decltype(width)>(g, D, y); });
+    }
+    void close(const Net3 &D) const {
         unknowns.open(D, b);
         unknowns.factorize();
     }
     // Other right-hand sides.
-    __attribute__((noinline)) void take_up(double *y) const {
+    void take_up_rest(double *y) const {
         for (int32_t i = 0; i < s.n_tree; ++i) take_up_tree(i, y);
         take_up_nodes(y);
-        net.for_strands([&](auto width, const NetStrands &g, int32_t) HOL_FORCED {
+    }
+    __attribute__((noinline)) void take_up(const NetPart &part, double *y) const {
+        net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
-            V last = {}, first = load_any<V>(y + g.place), before = {}, part = {};
+            V last = {}, first = load_any<V>(y + g.place), before = {}, share = {};
             for (int32_t k = 1; k < g.length; ++k) {
                 const int32_t place = g.place + k * g.step;
-                last = mul_add(part, before, load_any<V>(y + place));
+                last = mul_add(share, before, load_any<V>(y + place));
                 if (k + 1 == g.length) break;
                 store_any(y + place, last);
                 first = first - load_any<V>(from_first + place) * last;
-                part = load_any<V>(from_last + place);
+                share = load_any<V>(from_last + place);
                 before = last;
             }
             net.to_end(g, 0, first, unknowns.y);
             if (g.length > 1) net.to_end(g, 1, last, unknowns.y);
         });
+    }
+    void take_up_all(double *y) const {
+        take_up_rest(y);
+        net.for_parts([&](const NetPart &part) { take_up(part, y); });
         unknowns.add_pushes();
     }
-    // From the unknowns, down to all bonds: y becomes t.
-    __attribute__((noinline)) void take_down(double *y) const {
-        net.for_strands([&](auto width, const NetStrands &g, int32_t) HOL_FORCED {
+    // From the unknowns, down to all bonds: y becomes t. The rest: ends of strands, and trees.
+    __attribute__((noinline)) void take_down_rest(double *y) const {
+        unknowns.for_each([&](int32_t u) { y[s.place_of[u]] = unknowns.x[u]; });
+        for (int32_t n = 0; n < s.n_nodes && s.n_tree > 0; ++n) {
+            if (s.child_start[n] == s.child_start[n + 1]) continue;
+            solve_children(n, unknowns.acceleration_of(n, unknowns.x), y);
+        }
+        for (int32_t i = s.n_tree; i-- > 0;) take_down_tree(i, y);
+    }
+    __attribute__((noinline)) void take_down(const NetPart &part, double *y) const {
+        net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
-            const V first = net.of_end<V>(g, 0, unknowns.x);
-            V next = net.of_end<V>(g, 1, unknowns.x);
-            store_any(y + g.place, first);
-            if (g.length > 1) store_any(y + g.place + (g.length - 1) * g.step, next);
+            const V first = load_any<V>(y + g.place);
+            V next = load_any<V>(y + g.place + (g.length - 1) * g.step);
             for (int32_t k = g.length - 2; k > 0; --k) {
                 const int32_t place = g.place + k * g.step;
                 next = mul_add(
@@ -88,14 +101,19 @@ struct NetFactor {
                 store_any(y + place, next);
             }
         });
-        for (int32_t n = 0; n < s.n_nodes && s.n_tree > 0; ++n) {
-            if (s.child_start[n] == s.child_start[n + 1]) continue;
-            solve_children(n, unknowns.acceleration_of(n, unknowns.x), y);
-        }
-        for (int32_t i = s.n_tree; i-- > 0;) take_down_tree(i, y);
+    }
+
+    // E of the bonds above trees' atoms stand in to_first until they are used, and 1 / P or E in per_pivot.
+    void factorize_rest(const Net3 &D, double *y) const {
+        factorize_trees(D, y);
+        factorize_nodes(D);
+        take_up_nodes(y);
     }
 
 private:
+    // From the first to the last bond, those between being eliminated. What the far side offers to the last one is found
+    // as in trees, without a subtraction. To the first one it is what the first bond's own atom does, times what each
+    // pivot loses when it is eliminated before and not after those between: P' / P.
     template <class V>
     HOL_FORCED void factorize_strands(const NetStrands &g, const Net3 &D, double *y) const {
         Vector3<V> Dk = D.get<V>(g.place), bk = b.get<V>(g.place);
@@ -105,17 +123,19 @@ private:
         const Vector3<V> D0 = Dk, b0 = bk;
         Dk = D.get<V>(g.place + g.step);
         bk = b.get<V>(g.place + g.step);
-        const V whole = w * dot(D0, b0);
+        const V whole = w * dot(D0, b0), one = Width<V>::all(1);
         V E0 = whole, row = -(w * dot(D0, bk)), column = -(w * dot(Dk, b0)), q = dot(Dk, bk), E = w * q,
-          yk = load_any<V>(y + g.place + g.step);
+          beyond = w * dot(cross(D0, Dk), cross(b0, bk)) / dot(D0, b0), yk = load_any<V>(y + g.place + g.step);
         for (int32_t k = 1; k + 1 < g.length; ++k) {
             const int32_t place = g.place + k * g.step;
             w = load_any<V>(net.w + g.site + k * g.step);
             const Vector3<V> Dn = D.get<V>(place + g.step), bn = b.get<V>(place + g.step);
-            const V per = Width<V>::all(1) / mul_add(w, q, E), next = dot(Dn, bn), part = w * per;
+            const V P_beyond = mul_add(w, q, beyond);
+            const V per = one / mul_add(w, q, E), next = dot(Dn, bn), part = w * per;
             const V up = part * dot(Dn, bk), down = part * dot(Dk, bn), from = row * per, to = column * per;
-            const V X = dot(cross(Dk, Dn), cross(bk, bn));
-            E0 = E0 - from * column;
+            const V X = w * dot(cross(Dk, Dn), cross(bk, bn));
+            E0 = E0 * (P_beyond * per);
+            beyond = w * mul_add(next, beyond, X) / P_beyond;
             first = first - from * yk;
             store_any(y + place, yk);
             store_any(per_pivot + place, per);
@@ -126,7 +146,7 @@ private:
             yk = mul_add(up, yk, load_any<V>(y + place + g.step));
             row = row * down;
             column = column * up;
-            E = part * mul_add(next, E, w * X);
+            E = part * mul_add(next, E, X);
             Dk = Dn;
             bk = bn;
             q = next;
@@ -142,7 +162,6 @@ private:
     int32_t first_child(int32_t joint_number) const { return s.child_start[joint_number]; }
     int32_t n_children(int32_t number) const { return s.child_start[number + 1] - s.child_start[number]; }
 
-    // E of the bonds above trees' atoms stand in to_last until they are used, and 1 / P or E in per_pivot.
     void factorize_trees(const Net3 &D, double *y) const {
         for (int32_t i = 0; i < s.n_tree; ++i) {
             const int32_t e = s.first_tree_place + i, n = n_children(s.n_nodes + i);
@@ -167,6 +186,8 @@ private:
             keep_new_bond(i, De);
             take_up_tree(i, y);
         }
+    }
+    void factorize_nodes(const Net3 &D) const {
         for (int32_t n = 0; n < s.n_nodes; ++n) {
             const double w = net.w[s.first_node + n];
             Tensor sum = diagonal_tensor(1 / w);
@@ -174,7 +195,6 @@ private:
             unknowns.node[n].per_mass = sum;
             unknowns.node[n].mass = n_children(n) > 0 ? inverse_of(sum) : diagonal_tensor(w);
         }
-        take_up_nodes(y);
     }
     // D of the bonds of trees, for other right-hand sides.
     void keep_new_bond(int32_t i, const Vector3<double> &D) const { unknowns.tree_bond[i] = D; }
@@ -206,7 +226,7 @@ private:
             y[e] += dot(unknowns.tree_bond[i], joint[i] * push[i]);
         }
     }
-    void take_up_nodes(const double *y) const {
+    void take_up_nodes(const double *y) const {  // what their trees give
         for (int32_t n = 0; n < s.n_nodes; ++n) unknowns.node[n].push = push_of(n, y);
     }
     // t of the children of an atom that is accelerated so much.

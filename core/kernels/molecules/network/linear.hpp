@@ -15,8 +15,8 @@ namespace HOL_ISA {
 namespace graph {
 
 struct NetLinear {
-    // Of the right-hand side in the first solution, of residuals in the others.
-    static constexpr double first_part = 2e-15, next_part = 1e-6;
+    // Of residuals that are corrected.
+    static constexpr double next_part = 1e-6;
 
     const Net net;
     const NetworkPlan &s;
@@ -46,35 +46,56 @@ struct NetLinear {
 
     bool has(int wanted) const { return (terms & wanted) != 0; }
 
-    __attribute__((noinline)) void load() const {
-        net.read_masses();
-        net.read_sites(coordinates, r, false);
-        if (has(squares | rates)) net.read_sites(*in.v, v, false);
-        if (has(pulls)) net.read_sites(*in.f, f, true);
-        net.find_bonds(box, r, d);
-        find_sides(v);
+    // Calls rest(part), then each(part) for the others: the nodes' values, which these need, first. One part after the
+    // other goes through all that it needs, in cache.
+    template <class Rest, class Each>
+    HOL_FORCED void for_rest_and_parts(const Rest &rest, const Each &each) const {
+        rest(net.rest());
+        net.for_parts(each);
+    }
+    void read_atoms(int32_t first, int32_t end) const {
+        net.read_masses(first, end);
+        net.read_sites(first, end, coordinates, r, false);
+        if (has(squares | rates)) net.read_sites(first, end, *in.v, v, false);
+        if (has(pulls)) net.read_sites(first, end, *in.f, f, true);
+    }
+    void load() const {
+        for_rest_and_parts(
+            [&](const NetPart &rest) {
+                net.for_ranges(rest.first_site, rest.end_site, [&](int32_t first, int32_t end) { read_atoms(first, end); });
+                find_equations(rest);
+                factor.factorize_rest(d, t);
+            },
+            [&](const NetPart &part) {
+                read_atoms(part.first_site, part.end_site);
+                find_equations(part);
+                factor.factorize(part, d, t);
+            });
+        factor.close(d);
+    }
+    void find_equations(const NetPart &part) const {
+        net.find_bonds(part, box, r, d);
+        find_sides(part);
     }
     // Right-hand sides, and the sum of their terms' sizes.
-    __attribute__((noinline)) void find_sides(const Net3 &of) const {
+    __attribute__((noinline)) void find_sides(const NetPart &part) const {
         if (!has(pulls | squares | rates))
-            net.for_ranges_of(s.n_bonds, [&](int32_t first, int32_t end) {
-                for (int32_t k = first; k < end; ++k) side[k] = size_of_side[k] = 0;
-            });
-        if (has(pulls)) add_products(f, false);
-        if (has(rates)) add_products(of, false);
-        if (has(squares)) add_products(v, true);
-        if (!in.rhs && !in.strain) return;
-        for (int32_t k = 0; k < s.n_bonds; ++k) {
+            for (int32_t k = part.first_place; k < part.end_place; ++k) side[k] = size_of_side[k] = 0;
+        if (has(pulls)) add_products(part, f, false);
+        if (has(rates)) add_products(part, v, false);
+        if (has(squares)) add_products(part, v, true);
+        for (int32_t k = part.first_place; (in.rhs || in.strain) && k < part.end_place; ++k) {
             const double value =
                 in.rhs ? 0.5 * in.rhs[net.lane.first_bond + s.bond_of[k]] : stretching(in.strain, d.get<double>(k));
             side[k] += value;
             size_of_side[k] += abs(value);
         }
+        for (int32_t k = part.first_place; k < part.end_place; ++k) t[k] = side[k];
     }
     // d.(x_j - x_i), the first of the terms where there are two, or |x_j - x_i|^2.
-    void add_products(const Net3 &x, bool square) const {
+    void add_products(const NetPart &part, const Net3 &x, bool square) const {
         const bool more = square && has(pulls);
-        net.for_bonds(x, [&](auto width, int32_t k, const auto &from, const auto &to, int32_t) HOL_FORCED {
+        net.for_bonds(part, x, [&](auto width, int32_t k, const auto &from, const auto &to) HOL_FORCED {
             typedef decltype(width) V;
             const Vector3<V> change = to - from, bond = d.get<V>(k);
             V value = square ? dot(change, change) : dot(bond, change),
@@ -88,31 +109,38 @@ struct NetLinear {
         });
     }
 
-    // Multipliers for what is in t.
-    bool solve_for(double part) const {
-        if (factor.unknowns.solve(part) < 0) return false;
-        factor.take_down(t);
+    // Multipliers for what is in t, as far up as it has been taken; what they do to atoms, if `pulls`; then each(part).
+    template <class Each>
+    HOL_FORCED bool solve_for(const double *sizes, bool with_pulls, double *tensions, const Each &each) const {
+        if (factor.unknowns.solve(next_part, sizes) < 0) return false;
+        for_rest_and_parts(
+            [&](const NetPart &rest) {
+                factor.take_down_rest(t);
+                if (with_pulls) net.find_pulls_of_rest(t, d, G, tensions);
+                each(rest);
+            },
+            [&](const NetPart &part) {
+                factor.take_down(part, t);
+                if (with_pulls) net.find_pulls(part, t, d, G, tensions);
+                each(part);
+            });
         return true;
     }
     __attribute__((noinline)) bool solve() const {
         load();
-        copy_sides();
-        factor.factorize(d, t);
-        if (!solve_for(first_part)) return false;
-        net.find_pulls(t, d, G, tension);
-        return is_proven() || refine();
-    }
-    void copy_sides() const {
-        net.for_ranges_of(s.n_bonds, [&](int32_t first, int32_t end) {
-            for (int32_t k = first; k < end; ++k) t[k] = side[k];
-        });
+        return solve_for(size_of_side, true, tension, [&](const NetPart &part) { prove(part); }) &&
+               (largest_in(worst, s.n_shares + 1) == 0 || refine());
     }
 
-    // Whether no equation is left with more than rounding. The terms of right-hand sides alone do for most.
-    __attribute__((noinline)) bool is_proven() const {
-        const double most = most_backward(s.n_bonds) * epsilon;
-        for (int32_t i = 0; i <= s.n_shares; ++i) worst[i] = 0;
-        net.for_strands([&](auto width, const NetStrands &g, int32_t share) HOL_FORCED {
+    // What may be left of equations, of their terms: half of what counts as right (proof.hpp).
+    double most_left() const { return 0.5 * epsilon * (16 + __builtin_sqrt(static_cast<double>(s.n_bonds))); }
+    // Whether an equation is left with more than rounding: 1 in `worst`. The terms of right-hand sides alone, and a
+    // bound on what rounding hides, do for most.
+    __attribute__((noinline)) void prove(const NetPart &part) const {
+        const double most = most_left();
+        double &bad_part = worst[part.share];
+        bad_part = 0;
+        net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
             V w = net.at_node<V>(g, 0, net.w), T = net.at_node<V>(g, 0, tension);
             Vector3<V> pull = net.at_node<V>(g, 0, G);
@@ -127,28 +155,30 @@ struct NetLinear {
                 const MaskOf<V> bad = ~less_equal(over, V{});
                 if (__builtin_expect(any(bad), 0))
                     for (int i = 0; i < Width<V>::lanes; ++i)
-                        if ((bits(bad) >> i & 1) && !holds(place + i)) worst[share] = 1;
+                        if ((bits(bad) >> i & 1) && bad_part == 0 && !holds(place + i)) bad_part = 1;
                 w = wn;
                 T = Tn;
                 pull = next;
             }
         });
-        bool good = largest_in(worst, s.n_shares) == 0;
-        for (int32_t k = s.first_tree_place; good && k < s.n_bonds; ++k) good = holds(k);
-        return good;
+        for (int32_t k = part.first_place; part.share == s.n_shares && k < part.end_place; ++k) {
+            const int32_t i = s.from[k], j = s.to[k];
+            const double over = excess_of(d.get<double>(k), net.w[i] * G.get<double>(i), net.w[j] * G.get<double>(j),
+                                          mul_add(net.w[i], tension[i], net.w[j] * tension[j]), side[k],
+                                          size_of_side[k], most);
+            if (!(over <= 0) && bad_part == 0 && !holds(k)) bad_part = 1;
+        }
     }
-    // Of one bond, with all terms of its equation: the accelerations of its two atoms too.
+    // Of one bond, in twice the precision, with all terms of its equation: the accelerations of its two atoms too. Only
+    // the rounding of bonds is left; that of images, which is no more than their own, counts in no test of bonds.
     __attribute__((noinline)) bool holds(int32_t k) const {
         const int32_t i = s.from[k], j = s.to[k];
-        const Vector3<double> bond = d.get<double>(k), from = net.w[i] * G.get<double>(i),
-                              to = net.w[j] * G.get<double>(j);
-        const Net3 &input = has(rates) ? v : f;
-        double terms_of_b = size_of_side[k];
-        if (has(rates | pulls))
-            terms_of_b += abs(dot(bond, input.get<double>(i) + from)) + abs(dot(bond, input.get<double>(j) + to));
-        const double over = excess_of(bond, from, to, mul_add(net.w[i], tension[i], net.w[j] * tension[j]), side[k],
-                                      terms_of_b, most_backward(s.n_bonds) * epsilon);
-        return over <= 0;
+        const Pair3<double> from = acceleration_of(i, t, false), to = acceleration_of(j, t, false), bond = exact(k);
+        const double left = residual_of(k, bond, from, to),
+                     terms_of_b = size_of_side[k] + abs(dot_pairs(bond, from).hi) + abs(dot_pairs(bond, to).hi),
+                     hidden = sqrt(dot(d.get<double>(k), d.get<double>(k))) *
+                              mul_add(net.w[i], tension[i], net.w[j] * tension[j]);
+        return abs(left) + epsilon * hidden <= most_left() * terms_of_b;
     }
     // What is left of an equation, and what rounding can hide there, beyond what may be left.
     template <class V>
@@ -171,8 +201,8 @@ struct NetLinear {
             Flag{true},
             [&]() {
                 find_residuals(solution);
-                factor.take_up(t);
-                if (!solve_for(next_part)) t[0] = 0 / (t[0] - t[0]);  // not a number, which is no contraction
+                factor.take_up_all(t);
+                if (!solve_for(nullptr, false, nullptr, [](const NetPart &) {})) t[0] = 0 / (t[0] - t[0]);  // not a number, which is no contraction
             },
             [&](Flag) {
                 return add_corrections<double>(s.n_bonds, [&](int32_t k) {
@@ -183,63 +213,71 @@ struct NetLinear {
             [&]() { return Flag{false}; });
         if (!good.set) return false;
         for (int32_t k = 0; k < s.n_bonds; ++k) t[k] = solution[k];
-        net.find_pulls(t, d, G, nullptr);
+        for_rest_and_parts([&](const NetPart &) { net.find_pulls_of_rest(t, d, G, nullptr); },
+                           [&](const NetPart &part) { net.find_pulls(part, t, d, G, nullptr); });
         return true;
     }
+    Pair3<double> exact(int32_t k) const { return pairs_of(d.get<double>(k), Vector3<double>{}); }
     Pair3<double> unrounded(int32_t k) const {
         Vector3<double> bond, low;
         unrounded_bond(box, r.get<double>(s.from[k]), r.get<double>(s.to[k]), bond, low);
         return pairs_of(bond, low);
     }
-    __attribute__((noinline)) void find_residuals(const double *solution) const {
+    // In twice the precision: of an atom with these multipliers; and what is left of a bond's equation.
+    Pair3<double> acceleration_of(int32_t site, const double *solution, bool low) const {
         const Vector3<double> zero = {};
-        net.for_ranges_of(s.n_atoms, [&](int32_t first, int32_t end) {
-            for (int32_t i = first; i < end; ++i)
-                a[i] = pairs_of(has(pulls) ? read(*in.f, net.at, s.atom_of[i]) : zero, zero);
+        Pair3<double> sum = pairs_of(has(pulls) ? read(*in.f, net.at, s.atom_of[site]) : zero, zero);
+        net.for_bonds_of(site, [&](int32_t k, double sign) {
+            sum = add_pairs(sum, scale_pairs(sign * solution[k], low ? unrounded(k) : exact(k)));
         });
-        for (int32_t k = 0; k < s.n_bonds; ++k) {
-            const Pair3<double> pull = scale_pairs(solution[k], unrounded(k));
-            a[s.from[k]] = add_pairs(a[s.from[k]], pull);
-            a[s.to[k]] = subtract_pairs(a[s.to[k]], pull);
+        sum = scale_pairs(net.w[site], sum);
+        return has(rates) ? add_pairs(sum, pairs_of(v.get<double>(site), zero)) : sum;
+    }
+    double residual_of(int32_t k, const Pair3<double> &bond, const Pair3<double> &from, const Pair3<double> &to) const {
+        Pair<double> sum = dot_pairs(bond, subtract_pairs(to, from));
+        if (has(squares)) {
+            const Pair3<double> dv = difference_of(v.get<double>(s.from[k]), v.get<double>(s.to[k]));
+            sum = add_pairs(sum, dot_pairs(dv, dv));
         }
-        net.for_ranges_of(s.n_atoms, [&](int32_t first, int32_t end) {
-            for (int32_t i = first; i < end; ++i) {
-                a[i] = scale_pairs(net.w[i], a[i]);
-                if (has(rates)) a[i] = add_pairs(a[i], pairs_of(v.get<double>(i), zero));
-            }
+        if (in.rhs) sum = add_pairs(sum, {0.5 * in.rhs[net.lane.first_bond + s.bond_of[k]], 0.0});
+        if (in.strain) sum = add_pairs(sum, {stretching(in.strain, d.get<double>(k)), 0.0});
+        return sum.hi + sum.lo;
+    }
+    __attribute__((noinline)) void find_residuals(const double *solution) const {
+        net.for_ranges(0, s.n_atoms, [&](int32_t first, int32_t end) {
+            for (int32_t i = first; i < end; ++i) a[i] = acceleration_of(i, solution, true);
         });
-        net.for_ranges_of(s.n_bonds, [&](int32_t first, int32_t end) {
-            for (int32_t k = first; k < end; ++k) {
-                const int32_t i = s.from[k], j = s.to[k];
-                Pair<double> sum = dot_pairs(unrounded(k), subtract_pairs(a[j], a[i]));
-                if (has(squares)) {
-                    const Pair3<double> dv = difference_of(v.get<double>(i), v.get<double>(j));
-                    sum = add_pairs(sum, dot_pairs(dv, dv));
-                }
-                if (in.rhs) sum = add_pairs(sum, {0.5 * in.rhs[net.lane.first_bond + s.bond_of[k]], 0.0});
-                if (in.strain) sum = add_pairs(sum, {stretching(in.strain, d.get<double>(k)), 0.0});
-                t[k] = sum.hi + sum.lo;
-            }
+        net.for_ranges(0, s.n_bonds, [&](int32_t first, int32_t end) {
+            for (int32_t k = first; k < end; ++k) t[k] = residual_of(k, unrounded(k), a[s.from[k]], a[s.to[k]]);
         });
     }
 
-    // Velocities v + w G, once more projected: what their rounding leaves.
-    void add_pulls() const {
-        net.for_ranges_of(s.n_atoms, [&](int32_t first, int32_t end) {
-            for (int32_t i = first; i < end; ++i) v.set(i, add_times(v.get<double>(i), net.w[i], G.get<double>(i)));
-        });
+    // Velocities v + w G; with `again` once more projected: what their rounding leaves.
+    __attribute__((noinline)) void add_pulls(bool again) const {
+        for_rest_and_parts(
+            [&](const NetPart &rest) {
+                push_on(rest);
+                if (!again) return;
+                find_sides(rest);
+                factor.take_up_rest(t);
+            },
+            [&](const NetPart &part) {
+                push_on(part);
+                if (!again) return;
+                find_sides(part);
+                factor.take_up(part, t);
+            });
+        if (!again) return;
+        factor.unknowns.add_pushes();
+        solve_for(nullptr, true, nullptr, [&](const NetPart &part) { push_on(part); });
     }
-    void solve_again() const {
-        find_sides(v);
-        copy_sides();
-        factor.take_up(t);
-        if (!solve_for(next_part)) return;
-        net.find_pulls(t, d, G, nullptr);
-        add_pulls();
+    void push_on(const NetPart &part) const {
+        for (int32_t i = part.first_site; i < part.end_site; ++i)
+            v.set(i, add_times(v.get<double>(i), net.w[i], G.get<double>(i)));
     }
 
     void write_bonds(double scale, bool sizes, double *out) const {
-        net.for_ranges_of(s.n_bonds, [&](int32_t first, int32_t end) {
+        net.for_ranges(0, s.n_bonds, [&](int32_t first, int32_t end) {
             for (int32_t k = first; k < end; ++k) {
                 const Vector3<double> bond = d.get<double>(k);
                 out[net.lane.first_bond + s.bond_of[k]] = mul_add(t[k], sizes ? sqrt(dot(bond, bond)) : scale, 0.0);
@@ -257,7 +295,7 @@ struct NetLinear {
     // Calls write(atom, site) for the atoms that this molecule may write.
     template <class Write>
     void for_written(const Write &write) const {
-        net.for_ranges_of(s.n_atoms, [&](int32_t first, int32_t end) {
+        net.for_ranges(0, s.n_atoms, [&](int32_t first, int32_t end) {
             for (int32_t i = first; i < end; ++i)
                 if (!net.lane.shared || !net.lane.shared[s.atom_of[i]]) write(s.atom_of[i], i);
         });

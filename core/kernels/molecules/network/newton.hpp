@@ -10,16 +10,17 @@ namespace HOL_ISA {
 namespace graph {
 
 struct NetNewton {
-    static constexpr double part = 1e-4;  // of right-hand sides that a solve leaves
+    static constexpr double part_left = 1e-4;  // of right-hand sides that a solve leaves
 
     const Net net;
     const NetworkPlan &s;
     Net3 r, moves, b, D, new_D;
     double *tau, *t, *a2, *per_a2, *stretch;
-    double *worst;  // [n_shares + 1] of shares
+    double *worst;  // [n_shares + 1] of parts
     NetFactor factor;
     double opening = 0;
-    bool displaced = false, moved = false, taken_up = false, failed = false;
+    // found: the unknowns have been, and all else has yet to follow; displaced: `moves` are those of tau.
+    bool found = false, displaced = false, moved = false, failed = false;
 
     static int64_t values(const NetworkPlan &s) {
         return Net::values(s) + 6 * in_fours(s.n_atoms) + 16 * in_fours(s.n_bonds) + in_fours(s.n_shares + 1) +
@@ -51,33 +52,37 @@ struct NetNewton {
         }
         return abs(e);
     }
-    template <class V>
-    HOL_FORCED void note(int32_t share, const V &error) const {
-        for (int i = 0; i < Width<V>::lanes; ++i) {
-            const double one = Width<V>::get(error, i);
-            if (!(one <= worst[share])) worst[share] = one;
-        }
-    }
-    void clear_worst() const {
-        for (int32_t i = 0; i <= s.n_shares; ++i) worst[i] = 0;
-    }
-    template <bool fresh>
-    __attribute__((noinline)) double measure_all(const Net3 &bonds) const {
-        clear_worst();
-        net.for_strands([&](auto width, const NetStrands &g, int32_t share) HOL_FORCED {
+    // Returns the largest error of a part whose bonds get(V, place, from, to) gives, of values of `of` at their atoms. A
+    // NaN stays.
+    template <bool fresh, class Get>
+    HOL_FORCED double measure_part(const NetPart &part, const Net3 &of, const Get &get) const {
+        vec most = {}, sum = {};
+        double most_of_rest = 0;
+        net.for_bonds(part, of, [&](auto width, int32_t k, const auto &from, const auto &to) HOL_FORCED {
             typedef decltype(width) V;
-            V most = {}, sum = {};
-            for (int32_t k = 0; k < g.length; ++k) {
-                const int32_t place = g.place + k * g.step;
-                const V error = measure<fresh>(place, bonds.get<V>(place));
+            const V error = measure<fresh>(k, get(width, k, from, to));
+            if constexpr (Width<V>::lanes == W) {
                 most = max(error, most);
                 sum = sum + error;
+            } else {
+                most_of_rest = larger(error, most_of_rest);
             }
-            note(share, most + 0 * sum);
         });
-        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k)
-            note(s.n_shares, measure<fresh>(k, bonds.get<double>(k)));
-        return largest_in(worst, s.n_shares + 1);
+        most = most + 0 * sum;
+        for (int i = 0; i < W; ++i) most_of_rest = larger(Width<vec>::get(most, i), most_of_rest);
+        return most_of_rest;
+    }
+    __attribute__((noinline)) double measure_fresh(const NetPart &part, const Net3 &bonds) const {
+        return measure_part<true>(part, moves, [&](auto width, int32_t k, const auto &, const auto &)
+                                                   HOL_FORCED { return bonds.get<decltype(width)>(k); });
+    }
+    static double larger(double error, double than) { return error <= than ? than : error; }
+    double worst_of_all() const { return largest_in(worst, s.n_shares + 1); }
+    // Calls body(part), first for the rest.
+    template <class Body>
+    HOL_FORCED void for_all_parts(const Body &body) const {
+        body(net.rest());
+        net.for_parts(body);
     }
 
     double open() const { return opening; }
@@ -86,42 +91,84 @@ struct NetNewton {
         for (int32_t k = 0; k < s.n_bonds; ++k) tau[k] = 0;
         displaced = false;
     }
+    // What tau does to the sites of a part; before that, if the unknowns have just been found, all bonds' corrections.
+    void displace(const NetPart &part) const {
+        const bool rest = part.share == s.n_shares;
+        if (found && rest) {
+            factor.take_down_rest(t);
+            for (int32_t k = part.first_place; k < part.end_place; ++k) tau[k] += t[k];
+            factor.unknowns.for_each([&](int32_t u) { tau[s.place_of[u]] += t[s.place_of[u]]; });
+        } else if (found) {
+            factor.take_down(part, t);
+            net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
+                typedef decltype(width) V;
+                for (int32_t k = 1; k + 1 < g.length; ++k) {
+                    const int32_t place = g.place + k * g.step;
+                    store_any(tau + place, load_any<V>(tau + place) + load_any<V>(t + place));
+                }
+            });
+        }
+        if (rest)
+            net.find_pulls_of_rest(tau, b, moves, nullptr);
+        else
+            net.find_pulls(part, tau, b, moves, nullptr);
+        for (int32_t i = part.first_site; i < part.end_site; ++i) moves.set(i, net.w[i] * moves.get<double>(i));
+    }
     __attribute__((noinline)) void displace() {
-        if (displaced) return;
+        if (!displaced) for_all_parts([&](const NetPart &part) { displace(part); });
         displaced = true;
-        net.find_pulls(tau, b, moves, nullptr);
-        net.for_ranges_of(s.n_atoms, [&](int32_t first, int32_t end) {
-            for (int32_t i = first; i < end; ++i) moves.set(i, net.w[i] * moves.get<double>(i));
-        });
+        found = false;
     }
+    // As tau moves a bond.
+    template <class V>
+    HOL_FORCED Vector3<V> moved_bond(int32_t k, const Vector3<V> &from, const Vector3<V> &to) const {
+        return D.get<V>(k) + (to - from);
+    }
+    // What is left is taken up at once, while it is in cache.
     __attribute__((noinline)) double move() {
-        displace();
-        net.for_bonds(moves, [&](auto width, int32_t k, const auto &from, const auto &to, int32_t) HOL_FORCED {
-            typedef decltype(width) V;
-            new_D.set(k, D.get<V>(k) + (to - from));
+        for_all_parts([&](const NetPart &part) {
+            if (!displaced) displace(part);
+            worst[part.share] = measure_moved(part);
+            if (part.share == s.n_shares)
+                factor.take_up_rest(t);
+            else
+                factor.take_up(part, t);
         });
-        moved = true;
-        taken_up = false;
-        const double error = measure_all<false>(new_D);
-        return failed ? __builtin_nan("") : error;
+        factor.unknowns.add_pushes();
+        displaced = moved = true;
+        found = false;
+        return failed ? __builtin_nan("") : worst_of_all();
     }
-    double error_of(int32_t k) const { return abs(excess((moved ? new_D : D).get<double>(k), a2[k])) * per_a2[k]; }
+    __attribute__((noinline)) double measure_moved(const NetPart &part) const {
+        return measure_part<false>(part, moves, [&](auto, int32_t k, const auto &from, const auto &to)
+                                                    HOL_FORCED { return moved_bond(k, from, to); });
+    }
+    double error_of(int32_t k) const {
+        const Vector3<double> zero = {}, from = moves.get<double>(s.from[k]), to = moves.get<double>(s.to[k]);
+        return abs(excess(moved_bond(k, moved ? from : zero, moved ? to : zero), a2[k])) * per_a2[k];
+    }
 
-    void first_factors() { factorize({true}); }
+    void factorize_part(const NetPart &part, const Net3 &bonds) const {
+        if (part.share == s.n_shares)
+            factor.factorize_rest(bonds, t);
+        else
+            factor.factorize(part, bonds, t);
+    }
+    // Without a guess, each part's factors have been made when it was read.
+    void first_factors() { factor.close(D); }
     void factorize(Flag) {
-        const Net3 &bonds = moved ? new_D : D;
-        measure_all<true>(bonds);
-        factor.factorize(bonds, t);
-        taken_up = true;
+        for_all_parts([&](const NetPart &part) {
+            if (moved)
+                net.for_bonds(part, moves, [&](auto, int32_t k, const auto &from, const auto &to)
+                                               HOL_FORCED { new_D.set(k, moved_bond(k, from, to)); });
+            measure_fresh(part, moved ? new_D : D);
+            factorize_part(part, moved ? new_D : D);
+        });
+        factor.close(moved ? new_D : D);
     }
     __attribute__((noinline)) void solve(Flag) {
-        if (!taken_up) factor.take_up(t);
-        taken_up = false;
-        failed = failed || factor.unknowns.solve(part) < 0;
-        factor.take_down(t);
-        net.for_ranges_of(s.n_bonds, [&](int32_t first, int32_t end) {
-            for (int32_t k = first; k < end; ++k) tau[k] += t[k];
-        });
+        failed = failed || factor.unknowns.solve(part_left, nullptr) < 0;
+        found = true;
         displaced = false;
     }
 };

@@ -20,41 +20,69 @@ struct NetPositions {
                  bool packed, const LongTeam *team, Memory<double> memory, Tally &sum)
         : call(c), fixed(held), newton(plan, lane, packed, team, memory), tally(sum) {}
 
+    // Reference positions stand in `moves` until bonds are made of them.
+    void read_atoms(int32_t first, int32_t end) const {
+        const Net &net = newton.net;
+        net.read_masses(first, end);
+        net.read_sites(first, end, call.r_ref, newton.moves, false);
+        net.read_sites(first, end, call.r, newton.r, false);
+    }
+    void read_part(const NetPart &part) const {
+        const Net &net = newton.net;
+        net.find_bonds(part, call.box_ref, newton.moves, newton.b);
+        net.find_bonds(part, call.box, newton.r, newton.D);
+        for (int32_t k = part.first_place; k < part.end_place; ++k) {
+            const double a = net.lane.length[newton.s.bond_of[k]];
+            newton.a2[k] = a * a;
+            newton.per_a2[k] = 1 / (a * a);
+            newton.tau[k] =
+                call.guess ? 2 * call.dt * call.dt * call.lambda[net.lane.first_bond + newton.s.bond_of[k]] : 0;
+        }
+        newton.worst[part.share] = newton.measure_fresh(part, newton.D);
+        if (!call.guess) newton.factorize_part(part, newton.D);
+    }
     __attribute__((noinline)) void load() {
         const Net &net = newton.net;
         const NetworkPlan &s = newton.s;
-        net.read_masses();
-        net.read_sites(call.r_ref, newton.r, false);
-        net.find_bonds(call.box_ref, newton.r, newton.b);
-        net.read_sites(call.r, newton.r, false);
-        net.find_bonds(call.box, newton.r, newton.D);
+        const NetPart rest = net.rest();
+        net.for_ranges(rest.first_site, rest.end_site, [&](int32_t first, int32_t end) { read_atoms(first, end); });
+        read_part(rest);
+        net.for_parts([&](const NetPart &part) {
+            read_atoms(part.first_site, part.end_site);
+            read_part(part);
+        });
+        newton.opening = newton.worst_of_all();
         const double *const components[] = {newton.r.x, newton.r.y, newton.r.z};
-        for (const double *x : components)
-            for (int32_t i = 0; i < s.n_atoms; ++i) largest_coordinate = max(abs(x[i]), largest_coordinate);
-        for (int32_t k = 0; k < s.n_bonds; ++k) {
-            const double a = net.lane.length[s.bond_of[k]];
-            a_min = min(a, a_min);
-            a_max = max(a, a_max);
-            newton.a2[k] = a * a;
-            newton.per_a2[k] = 1 / (a * a);
-            newton.tau[k] = call.guess ? 2 * call.dt * call.dt * call.lambda[net.lane.first_bond + s.bond_of[k]] : 0;
-        }
-        newton.opening = newton.measure_all<true>(newton.D);
+        for (const double *x : components) largest_coordinate = max(largest_of(x, s.n_atoms), largest_coordinate);
+        a_max = sqrt(largest_of(newton.a2, s.n_bonds));
+        a_min = 1 / sqrt(largest_of(newton.per_a2, s.n_bonds));
+    }
+    static double largest_of(const double *x, int32_t n) {
+        vec most = {};
+        int32_t i = 0;
+        for (; i + W <= n; i += W) most = max(abs(load_any<vec>(x + i)), most);
+        double all = 0;
+        for (int j = 0; j < W; ++j) all = max(Width<vec>::get(most, j), all);
+        for (; i < n; ++i) all = max(abs(x[i]), all);
+        return all;
     }
 
     // Whether a displacement is the difference of pulls whose rounding is more than the coordinates'.
     bool coarse_moves() const {
         const NetworkPlan &s = newton.s;
-        double pull = 0;
+        const double most = 0.25 * (largest_coordinate + a_min);
+        double pull = largest_of(newton.net.w, s.n_atoms) * largest_of(newton.tau, s.n_bonds);
+        if (pull * a_max <= most) return false;
+        pull = 0;
         for (int32_t k = 0; k < s.n_bonds; ++k)
             pull = max(max(newton.net.w[s.from[k]], newton.net.w[s.to[k]]) * abs(newton.tau[k]), pull);
-        return 0.25 * (largest_coordinate + a_min) < pull * a_max;
+        return most < pull * a_max;
     }
 
     void write_atoms() const {
         const double per_dt = 1 / call.dt;
         const Net &net = newton.net;
-        net.for_ranges_of(newton.s.n_atoms, [&](int32_t first, int32_t end) {
+        net.for_ranges(0, newton.s.n_atoms, [&](int32_t first, int32_t end) {
             for (int32_t i = first; i < end; ++i) {
                 const int32_t atom = newton.s.atom_of[i];
                 if (fixed[atom]) continue;
@@ -81,7 +109,6 @@ struct NetPositions {
         for (int32_t k = 0; k < s.n_bonds && call.lambda; ++k)
             call.lambda[newton.net.lane.first_bond + s.bond_of[k]] = mul_add(newton.tau[k], 0.5 * per_dt2, 0.0);
         if (!moved) return;
-        newton.displace();
         if (call.virial) {
             MoleculesVirial<double> virial;
             for (int32_t k = 0; k < s.n_bonds; ++k) {
@@ -98,6 +125,7 @@ struct NetPositions {
         load();
         const Limits<double> limits(call, largest_coordinate, a_min);
         const Solved<double> out = iterate<double, false, true>(newton, limits, call, Flag{true});
+        if (out.converged.set) newton.displace();
         const bool moved = out.converged.set && !coarse_moves() && !newton.failed;
         if (!moved && !out.untouched.set) return false;
         if (call.report) note_worst(out.error);

@@ -39,6 +39,12 @@ struct NetStrands {
     int32_t length, place, site, strand, step;
 };
 
+// What a thread works on at a time, so little that it stays in cache: some bundles, with the places of their bonds and
+// the sites between the ends; or, after these parts, the *rest*: all sites of nodes and of trees, and trees' bonds.
+struct NetPart {
+    int32_t share, first_bundle, end_bundle, first_site, end_site, first_place, end_place;
+};
+
 struct Net {
     const NetworkPlan &s;
     const MoleculeLane &lane;
@@ -50,35 +56,50 @@ struct Net {
     Net(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *threads, Memory<double> &memory)
         : s(plan), lane(l), at(&l, 1, packed), team(threads), w(memory.values(values(plan))) {}
 
-    // Calls body(value of the width, strands, share) for all strands, on the threads that there are.
-    template <class Body>
-    HOL_FORCED void for_strands(const Body &body) const {
-        share_out(team, s.n_shares, [&](int32_t share) {
-            for (int32_t i = s.bundle_start[share]; i < s.bundle_start[share + 1]; ++i) {
-                const NetworkPlan::Bundle &b = s.bundle[i];
-                int32_t j = 0;
-                const auto strands = [&] {
-                    return NetStrands{b.length, b.first_place + j, b.first_site + j, b.first_strand + j, b.width};
-                };
-                for (; j + W <= b.width; j += W) body(vec{}, strands(), share);
-                for (; j < b.width; ++j) body(double{}, strands(), share);
-            }
-        });
+    NetPart part(int32_t share) const {
+        const int32_t end = s.bundle_start[share + 1];
+        const NetworkPlan::Bundle &b = s.bundle[s.bundle_start[share]];
+        NetPart p = {share, s.bundle_start[share], end, b.first_site, s.first_node, b.first_place, s.first_tree_place};
+        if (share + 1 == s.n_shares) return p;
+        p.end_site = s.bundle[end].first_site;
+        p.end_place = s.bundle[end].first_place;
+        return p;
     }
-    // Calls body(first, end, share) for ranges of nodes.
+    NetPart rest() const { return {s.n_shares, 0, 0, s.first_node, s.n_atoms, s.first_tree_place, s.n_bonds}; }
+
+    // Calls body(part) for all but the rest, on the threads that there are.
+    template <class Body>
+    HOL_FORCED void for_parts(const Body &body) const {
+        share_out(team, s.n_shares, [&](int32_t share) { body(part(share)); });
+    }
+    // Calls body(first, end, share) for ranges of nodes. A thread is not worth waiting for where these are few.
     template <class Body>
     HOL_FORCED void for_nodes(const Body &body) const {
-        share_out(team, s.n_node_shares,
+        constexpr int32_t many_unknowns = 65536;
+        share_out(s.n_unknowns < many_unknowns ? nullptr : team, s.n_node_shares,
                   [&](int32_t share) { body(s.node_start[share], s.node_start[share + 1], share); });
     }
-    // Calls body(first, end) for ranges of n numbers.
+    // Calls body(first, end) for ranges of these numbers.
     template <class Body>
-    HOL_FORCED void for_ranges_of(int32_t n, const Body &body) const {
+    HOL_FORCED void for_ranges(int32_t begin, int32_t end, const Body &body) const {
         constexpr int32_t step = 4096;
-        share_out(team, (n + step - 1) / step, [&](int32_t i) {
-            const int32_t end = (i + 1) * step;
-            body(i * step, end < n ? end : n);
+        share_out(end - begin > 4 * step ? team : nullptr, (end - begin + step - 1) / step, [&](int32_t i) {
+            const int32_t first = begin + i * step;
+            body(first, end - first < step ? end : first + step);
         });
+    }
+    // Calls body(value of the width, strands).
+    template <class Body>
+    HOL_FORCED void for_strands(const NetPart &part, const Body &body) const {
+        for (int32_t i = part.first_bundle; i < part.end_bundle; ++i) {
+            const NetworkPlan::Bundle &b = s.bundle[i];
+            int32_t j = 0;
+            const auto strands = [&] {
+                return NetStrands{b.length, b.first_place + j, b.first_site + j, b.first_strand + j, b.width};
+            };
+            for (; j + W <= b.width; j += W) body(vec{}, strands());
+            for (; j < b.width; ++j) body(double{}, strands());
+        }
     }
 
     // Values of the nodes at the ends of strands, by their sites.
@@ -108,50 +129,50 @@ struct Net {
     }
 
     // Reads an array per atom, times the inverse masses if `weighed`.
-    __attribute__((noinline)) void read_sites(const AtomArray &array, const Net3 &to, bool weighed) const {
-        for_ranges_of(s.n_atoms, [&](int32_t first, int32_t end) {
-            int32_t i = first;
+    __attribute__((noinline)) void read_sites(int32_t first, int32_t end, const AtomArray &array, const Net3 &to,
+                                              bool weighed) const {
+        int32_t i = first;
 #if HOL_LANES > 1
-            for (; i + W <= end && at.layout != elements; i += W) {
-                const double *p[W];
-                for (int j = 0; j < W; ++j)
-                    p[j] = reinterpret_cast<const double *>(array.x) + 3 * at.number(0, s.atom_of[i + j]);
-                vec3 a;
-                read_rows(p, a);
-                to.set(i, weighed ? holonomic::HOL_ISA::load(w + i) * a : a);
-            }
+        constexpr int32_t ahead = 64;
+        const double *const x = reinterpret_cast<const double *>(array.x);
+        for (; i + W <= end && at.layout != elements; i += W) {
+            const double *p[W];
+            for (int j = 0; j < W; ++j) p[j] = x + 3 * at.number(0, s.atom_of[i + j]);
+            if (i + W + ahead <= end)
+                for (int j = 0; j < W; ++j) __builtin_prefetch(x + 3 * at.number(0, s.atom_of[i + j + ahead]));
+            vec3 a;
+            read_rows(p, a);
+            to.set(i, weighed ? holonomic::HOL_ISA::load(w + i) * a : a);
+        }
 #endif
-            for (; i < end; ++i) {
-                const Vector3<double> a = read(array, at, s.atom_of[i]);
-                to.set(i, weighed ? w[i] * a : a);
-            }
-        });
+        for (; i < end; ++i) {
+            const Vector3<double> a = read(array, at, s.atom_of[i]);
+            to.set(i, weighed ? w[i] * a : a);
+        }
     }
-    void read_masses() const {
-        for_ranges_of(s.n_atoms, [&](int32_t first, int32_t end) {
-            for (int32_t i = first; i < end; ++i) w[i] = lane.w[s.atom_of[i]];
-        });
+    void read_masses(int32_t first, int32_t end) const {
+        for (int32_t i = first; i < end; ++i) w[i] = lane.w[s.atom_of[i]];
     }
 
-    // Calls body(V, place, from, to) for all bonds: the values of `of` at the two atoms of each, along strands in
-    // lanes, and bonds of trees one by one.
+    // Calls body(V, place, from, to) for the bonds of a part: the values of `of` at the two atoms of each.
     template <class Body>
-    HOL_FORCED void for_bonds(const Net3 &of, const Body &body) const {
-        for_strands([&](auto width, const NetStrands &g, int32_t share) HOL_FORCED {
+    HOL_FORCED void for_bonds(const NetPart &part, const Net3 &of, const Body &body) const {
+        for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
             Vector3<V> before = at_node<V>(g, 0, of);
             for (int32_t k = 0; k < g.length; ++k) {
                 const Vector3<V> next = k + 1 < g.length ? of.get<V>(g.site + k * g.step) : at_node<V>(g, 1, of);
-                body(width, g.place + k * g.step, before, next, share);
+                body(width, g.place + k * g.step, before, next);
                 before = next;
             }
         });
-        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k)
-            body(double{}, k, of.get<double>(s.from[k]), of.get<double>(s.to[k]), s.n_shares);
+        if (part.share < s.n_shares) return;
+        for (int32_t k = part.first_place; k < part.end_place; ++k)
+            body(double{}, k, of.get<double>(s.from[k]), of.get<double>(s.to[k]));
     }
 
-    __attribute__((noinline)) void find_bonds(const Box &box, const Net3 &r, const Net3 &d) const {
-        for_bonds(r, [&](auto width, int32_t place, const auto &from, const auto &to, int32_t) HOL_FORCED {
+    __attribute__((noinline)) void find_bonds(const NetPart &part, const Box &box, const Net3 &r, const Net3 &d) const {
+        for_bonds(part, r, [&](auto width, int32_t place, const auto &from, const auto &to) HOL_FORCED {
             typedef decltype(width) V;
             Vector3<V> bond = to - from, unused = {};
             take_image<false>(box, bond, unused);
@@ -159,9 +180,39 @@ struct Net {
         });
     }
 
-    // What multipliers t of bonds d do to atoms: G, and where `tension` is wanted the sum of |t| |d|.
-    __attribute__((noinline)) void find_pulls(const double *t, const Net3 &d, const Net3 &G, double *tension) const {
-        for_strands([&](auto width, const NetStrands &g, int32_t) HOL_FORCED {
+    // Calls each(place, sign) for the bonds of a node or, after the nodes, of a tree's atom; sign: 1 where they begin
+    // there, else -1.
+    template <class Each>
+    HOL_FORCED void for_bonds_of_joint(int32_t number, const Each &each) const {
+        if (number < s.n_nodes) {
+            for (int32_t u = s.own_start[number]; u < s.own_start[number + 1]; ++u) each(s.place_of[u], s.sign[u]);
+            for (int32_t f = s.foreign_start[number]; f < s.foreign_start[number + 1]; ++f)
+                each(s.place_of[s.foreign[f]], -1.0);
+        } else {
+            each(s.first_tree_place + number - s.n_nodes, -1.0);
+        }
+        for (int32_t c = s.child_start[number]; c < s.child_start[number + 1]; ++c)
+            each(s.first_tree_place + s.child[c], 1.0);
+    }
+    // Likewise for any site.
+    template <class Each>
+    HOL_FORCED void for_bonds_of(int32_t site, const Each &each) const {
+        if (site >= s.first_node) return for_bonds_of_joint(site - s.first_node, each);
+        int32_t bundle = 0, end = s.bundle_start[s.n_shares];
+        while (end - bundle > 1) {
+            const int32_t middle = bundle + (end - bundle) / 2;
+            (s.bundle[middle].first_site <= site ? bundle : end) = middle;
+        }
+        const NetworkPlan::Bundle &b = s.bundle[bundle];
+        each(b.first_place + site - b.first_site, -1.0);
+        each(b.first_place + site - b.first_site + b.width, 1.0);
+    }
+
+    // What multipliers t of bonds d do to the atoms between the nodes: G, and where `tension` is wanted the sum of
+    // |t| |d|.
+    __attribute__((noinline)) void find_pulls(const NetPart &part, const double *t, const Net3 &d, const Net3 &G,
+                                              double *tension) const {
+        for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
             const Vector3<V> first = d.get<V>(g.place);
             Vector3<V> before = load_any<V>(t + g.place) * first;
@@ -179,36 +230,24 @@ struct Net {
                 before = pull;
             }
         });
-        for_nodes([&](int32_t first, int32_t end, int32_t) {
-            for (int32_t n = first; n < end; ++n) {
-                Vector3<double> sum = {};
-                double size = 0;
-                const auto add = [&](int32_t place, double sign) {
-                    const Vector3<double> pull = t[place] * d.get<double>(place);
-                    sum = add_times(sum, sign, pull);
-                    if (tension) size += sqrt(dot(pull, pull));
-                };
-                for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u) add(s.place_of[u], s.sign[u]);
-                for (int32_t f = s.foreign_start[n]; f < s.foreign_start[n + 1]; ++f) add(s.place_of[s.foreign[f]], -1);
-                for (int32_t c = s.child_start[n]; c < s.child_start[n + 1]; ++c)
-                    add(s.first_tree_place + s.child[c], 1);
-                G.set(s.first_node + n, sum);
-                if (tension) tension[s.first_node + n] = size;
-            }
-        });
-        for (int32_t i = 0; i < s.n_tree; ++i) {
-            const int32_t own = s.first_tree_place + i;
-            const Vector3<double> up = t[own] * d.get<double>(own);
-            Vector3<double> sum = Vector3<double>{} - up;
-            double size = tension ? sqrt(dot(up, up)) : 0;
-            for (int32_t c = s.child_start[s.n_nodes + i]; c < s.child_start[s.n_nodes + i + 1]; ++c) {
-                const int32_t place = s.first_tree_place + s.child[c];
+    }
+    // To nodes and atoms of trees. Of strands t at their ends is enough.
+    void find_pulls_of_rest(const double *t, const Net3 &d, const Net3 &G, double *tension) const {
+        for_nodes([&](int32_t first, int32_t end, int32_t) { find_pulls_of_joints(first, end, t, d, G, tension); });
+        find_pulls_of_joints(s.n_nodes, s.n_nodes + s.n_tree, t, d, G, tension);
+    }
+    __attribute__((noinline)) void find_pulls_of_joints(int32_t first, int32_t end, const double *t, const Net3 &d,
+                                                        const Net3 &G, double *tension) const {
+        for (int32_t n = first; n < end; ++n) {
+            Vector3<double> sum = {};
+            double size = 0;
+            for_bonds_of_joint(n, [&](int32_t place, double sign) HOL_FORCED {
                 const Vector3<double> pull = t[place] * d.get<double>(place);
-                sum = sum + pull;
+                sum = add_times(sum, sign, pull);
                 if (tension) size += sqrt(dot(pull, pull));
-            }
-            G.set(s.first_tree + i, sum);
-            if (tension) tension[s.first_tree + i] = size;
+            });
+            G.set(s.first_node + n, sum);
+            if (tension) tension[s.first_node + n] = size;
         }
     }
 };

@@ -23,27 +23,27 @@ struct Unknowns {
     const Net &net;
     const NetworkPlan &s;
     double *E, *per_E, *coupling;  // what the far side of an end offers; to the partner's value
-    double *y, *x;                 // right-hand sides, solution
+    double *y, *x, *size;          // right-hand sides, solution, squares of the sizes of right-hand sides' terms
     Vector3<double> *D, *b, *tree_bond;
     NetNode *node;
-    double *sum;                                       // [n_node_shares][2]
+    double *sum;                                       // [n_node_shares][3]
     double *r, *shadow, *p, *p_node, *v, *s_node, *t;  // s takes the place of r
 
     static constexpr int64_t node_values = static_cast<int64_t>(sizeof(NetNode) / sizeof(double));
 
     static int64_t values(const NetworkPlan &s) {
         return in_fours(node_values * static_cast<int64_t>(s.n_nodes)) + in_fours(3 * static_cast<int64_t>(s.n_tree)) +
-               in_fours(2 * static_cast<int64_t>(s.n_node_shares)) +
-               2 * in_fours(3 * static_cast<int64_t>(s.n_unknowns)) + 12 * in_fours(s.n_unknowns);
+               in_fours(3 * static_cast<int64_t>(s.n_node_shares)) +
+               2 * in_fours(3 * static_cast<int64_t>(s.n_unknowns)) + 13 * in_fours(s.n_unknowns);
     }
     Unknowns(const Net &of, Memory<double> &memory) : net(of), s(of.s) {
         const int64_t n = in_fours(s.n_unknowns);
         node = reinterpret_cast<NetNode *>(memory.values(in_fours(node_values * static_cast<int64_t>(s.n_nodes))));
         tree_bond = reinterpret_cast<Vector3<double> *>(memory.values(in_fours(3 * static_cast<int64_t>(s.n_tree))));
-        sum = memory.values(in_fours(2 * static_cast<int64_t>(s.n_node_shares)));
+        sum = memory.values(in_fours(3 * static_cast<int64_t>(s.n_node_shares)));
         D = reinterpret_cast<Vector3<double> *>(memory.values(in_fours(3 * static_cast<int64_t>(s.n_unknowns))));
         b = reinterpret_cast<Vector3<double> *>(memory.values(in_fours(3 * static_cast<int64_t>(s.n_unknowns))));
-        double **const arrays[] = {&E, &per_E, &coupling, &y, &x, &r, &shadow, &p, &p_node, &v, &s_node, &t};
+        double **const arrays[] = {&E, &per_E, &coupling, &y, &x, &size, &r, &shadow, &p, &p_node, &v, &s_node, &t};
         for (double **array : arrays) *array = memory.values(n);
     }
 
@@ -92,98 +92,138 @@ struct Unknowns {
         return node[n].mass * sum_of;
     }
 
-    // Solves for y until what is left is `part` of it, both as sums of squares' roots; how many rounds it took, or -1.
-    __attribute__((noinline)) int32_t solve(double part) const {
-        Sums all = sums_of_nodes([&](int32_t u, Sums &one) {
-            x[u] = 0;
-            r[u] = shadow[u] = p[u] = y[u];
-            one.a = mul_add(y[u], y[u], one.a);
-        });
-        const double enough = part * part * all.a;
-        if (!(all.a > 0)) return all.a == 0 ? 0 : -1;
-        double rho = all.a;
-        for (int32_t round = 1; round <= most_rounds; ++round) {
-            precondition(p, p_node);
-            multiply(p, p_node, v);
-            all = sums_of_nodes([&](int32_t u, Sums &one) { one.a = mul_add(shadow[u], v[u], one.a); });
-            const double alpha = rho / all.a;
-            all = sums_of_nodes([&](int32_t u, Sums &one) {
-                x[u] = mul_add(alpha, p_node[u], x[u]);
-                r[u] = mul_add(-alpha, v[u], r[u]);
-                one.a = mul_add(r[u], r[u], one.a);
-            });
-            if (all.a <= enough) return round;
-            if (!(all.a < 1e300)) return -1;
-            precondition(r, s_node);
-            multiply(r, s_node, t);
-            all = sums_of_nodes([&](int32_t u, Sums &one) {
-                one.a = mul_add(t[u], r[u], one.a);
-                one.b = mul_add(t[u], t[u], one.b);
-            });
-            const double omega = all.a / all.b;
-            all = sums_of_nodes([&](int32_t u, Sums &one) {
-                x[u] = mul_add(omega, s_node[u], x[u]);
-                r[u] = mul_add(-omega, t[u], r[u]);
-                one.a = mul_add(r[u], r[u], one.a);
-                one.b = mul_add(shadow[u], r[u], one.b);
-            });
-            if (all.a <= enough) return round;
-            const double beta = all.b / rho * (alpha / omega);
-            if (!(abs(beta) < 1e300)) return -1;
-            rho = all.b;
-            for_each([&](int32_t u) { p[u] = mul_add(beta, mul_add(-omega, v[u], p[u]), r[u]); });
-        }
-        return -1;
-    }
-
-private:
-    static constexpr int32_t most_rounds = 2000;
-    struct Sums {
-        double a, b;
-    };
-
+    // Calls body(u) for all unknowns, node by node.
     template <class Body>
     HOL_FORCED void for_each(const Body &body) const {
         net.for_nodes([&](int32_t first, int32_t end, int32_t) {
             for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) body(u);
         });
     }
-    // Sums over each share, then over these in order: the same for any number of threads.
+
+    // Solves for y until what is left is `part` of it, both as sums of squares' roots; with `sizes`, of right-hand sides'
+    // terms by place, until every unknown's is a rounding of its own, or of the mean. How many rounds it took, or -1.
+    __attribute__((noinline)) int32_t solve(double part, const double *sizes) const {
+        Sums all = sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
+            for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
+                x[u] = 0;
+                r[u] = shadow[u] = p[u] = y[u];
+                one.a = mul_add(y[u], y[u], one.a);
+                size[u] = sizes ? rounding_part * (sizes[s.place_of[u]] * sizes[s.place_of[u]]) : 0;
+            }
+            precondition(first, end, p, p_node);
+        });
+        const double enough = part * part * all.a, enough_of_one = (least_of_mean * rounding_part) * all.a / s.n_unknowns;
+        const auto is_enough = [&] { return sizes ? all.most <= enough_of_one : all.a <= enough; };
+        if (!(all.a > 0)) return all.a == 0 ? 0 : -1;
+        double rho = all.a, looked_at = all.a;
+        for (int32_t round = 1; round <= most_rounds; ++round) {
+            all = multiply(p, p_node, v, [&](int32_t u, Sums &one) { one.a = mul_add(shadow[u], v[u], one.a); });
+            const double alpha = rho / all.a;
+            all = sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
+                for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
+                    x[u] = mul_add(alpha, p_node[u], x[u]);
+                    r[u] = mul_add(-alpha, v[u], r[u]);
+                    note_left(u, one);
+                }
+                precondition(first, end, r, s_node);
+            });
+            if (!(all.a < 1e300)) return -1;
+            if (is_enough()) return round;
+            all = multiply(r, s_node, t, [&](int32_t u, Sums &one) {
+                one.a = mul_add(t[u], r[u], one.a);
+                one.b = mul_add(t[u], t[u], one.b);
+            });
+            const double omega = all.a / all.b;
+            all = sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
+                for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
+                    x[u] = mul_add(omega, s_node[u], x[u]);
+                    r[u] = mul_add(-omega, t[u], r[u]);
+                    note_left(u, one);
+                    one.b = mul_add(shadow[u], r[u], one.b);
+                }
+            });
+            if (all.a < 1e300 && is_enough()) return round;
+            if (round % look_after == 0) {
+                if (!(all.a < least_progress * looked_at)) return -1;
+                looked_at = all.a;
+            }
+            const double beta = all.b / rho * (alpha / omega);
+            if (!(abs(beta) < 1e300)) return -1;
+            rho = all.b;
+            net.for_nodes([&](int32_t first, int32_t end, int32_t) {
+                for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u)
+                    p[u] = mul_add(beta, mul_add(-omega, v[u], p[u]), r[u]);
+                precondition(first, end, p, p_node);
+            });
+        }
+        return -1;
+    }
+
+private:
+    // So many rounds have to take squares down to less than this part.
+    static constexpr int32_t most_rounds = 2000, look_after = 64;
+    static constexpr double least_progress = 0.1;
+    static constexpr double rounding_part = 16 * epsilon * 16 * epsilon, least_of_mean = 1. / 256;  // of squares
+    struct Sums {
+        double a, b, most;
+    };
+    void note_left(int32_t u, Sums &of) const {
+        const double square = r[u] * r[u];
+        of.a += square;
+        of.most = max(square - size[u], of.most);
+    }
+
+    // Sums that body(first, end, sums) adds up over each share, then over these in order: the same for any number of
+    // threads.
     template <class Body>
     HOL_FORCED Sums sums_of_nodes(const Body &body) const {
         net.for_nodes([&](int32_t first, int32_t end, int32_t share) {
-            Sums one = {0, 0};
-            for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) body(u, one);
-            sum[2 * share] = one.a;
-            sum[2 * share + 1] = one.b;
+            Sums one = {0, 0, 0};
+            body(first, end, one);
+            sum[3 * share] = one.a;
+            sum[3 * share + 1] = one.b;
+            sum[3 * share + 2] = one.most;
         });
-        Sums all = {0, 0};
+        Sums all = {0, 0, 0};
         for (int32_t i = 0; i < s.n_node_shares; ++i) {
-            all.a += sum[2 * i];
-            all.b += sum[2 * i + 1];
+            all.a += sum[3 * i];
+            all.b += sum[3 * i + 1];
+            all.most = max(sum[3 * i + 2], all.most);
         }
         return all;
     }
 
     // M^-1: the ends of each node by themselves.
-    __attribute__((noinline)) void precondition(const double *of, double *to) const {
-        net.for_nodes([&](int32_t first, int32_t end, int32_t) {
-            for (int32_t n = first; n < end; ++n) {
-                Vector3<double> pull = {};
-                for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u) {
-                    to[u] = of[u] * per_E[u];
-                    pull = add_times(pull, s.sign[u] * to[u], b[u]);
-                }
-                const Vector3<double> a = node[n].with_ends * pull;
-                for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u)
-                    to[u] = mul_add(-s.sign[u] * per_E[u], dot(D[u], a), to[u]);
+    __attribute__((noinline)) void precondition(int32_t first, int32_t end, const double *of, double *to) const {
+        for (int32_t n = first; n < end; ++n) {
+            Vector3<double> pull = {};
+            for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u) {
+                to[u] = of[u] * per_E[u];
+                pull = add_times(pull, s.sign[u] * to[u], b[u]);
             }
-        });
+            const Vector3<double> a = node[n].with_ends * pull;
+            for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u)
+                to[u] = mul_add(-s.sign[u] * per_E[u], dot(D[u], a), to[u]);
+        }
     }
     // What strands couple, and what bonds do at the nodes where they are foreign, added to `own`, which is M times
     // `of`.
-    __attribute__((noinline)) void multiply(const double *own, const double *of, double *to) const {
-        if (!s.has_foreign) return for_each([&](int32_t u) { to[u] = mul_add(coupling[u], of[s.partner[u]], own[u]); });
+    template <class Body>
+    HOL_FORCED Sums multiply(const double *own, const double *of, double *to, const Body &body) const {
+        if (s.has_foreign) accelerate_nodes(of);
+        return sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
+            for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
+                double value = mul_add(coupling[u], of[s.partner[u]], own[u]);
+                if (s.has_foreign) {
+                    value = mul_add(s.sign[u], dot(D[u], node[s.node_of[u]].foreign), value);
+                    if (s.other_node[u] >= 0) value -= dot(D[u], node[s.other_node[u]].all) + E[u] * of[u];
+                }
+                to[u] = value;
+                body(u, one);
+            }
+        });
+    }
+    __attribute__((noinline)) void accelerate_nodes(const double *of) const {
         net.for_nodes([&](int32_t first, int32_t end, int32_t) {
             for (int32_t n = first; n < end; ++n) {
                 Vector3<double> by_own = {}, by_foreign = {};
@@ -194,12 +234,6 @@ private:
                 node[n].foreign = node[n].mass * by_foreign;
                 node[n].all = node[n].foreign + node[n].mass * by_own;
             }
-        });
-        for_each([&](int32_t u) {
-            double value = mul_add(coupling[u], of[s.partner[u]], own[u]);
-            value = mul_add(s.sign[u], dot(D[u], node[s.node_of[u]].foreign), value);
-            if (s.other_node[u] >= 0) value -= dot(D[u], node[s.other_node[u]].all) + E[u] * of[u];
-            to[u] = value;
         });
     }
 };
