@@ -12,9 +12,9 @@ std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 std::int32_t children_of(const Schedule &s, std::int32_t slot) { return s.child_start[slot + 1] - s.child_start[slot]; }
 
-// Atoms with 1, 2, 3 and more children.
-constexpr int n_classes = 4;
-int class_of(std::int32_t children) { return std::min(children, n_classes) - 1; }
+// Atoms with 1, 2, 3, up to most_decomposed and more children.
+constexpr int n_classes = 5;
+int class_of(std::int32_t children) { return children > most_decomposed ? 4 : std::min(children, 4) - 1; }
 
 // One tree: which of its atoms are ready, as all their children have been dealt with.
 class Tree {
@@ -35,7 +35,7 @@ public:
 
     // The atom to be taken in a step of a class, or -1: the one of most children, as deep as possible.
     std::int32_t best(int c) const {
-        const int last = c == n_classes - 1 ? c : 0;
+        const int last = c > 2 ? c : 0;
         for (int i = c; i >= last; --i)
             if (!ready_[i].empty()) return ready_[i].front().slot;
         return -1;
@@ -129,7 +129,7 @@ void Forests::add(int lanes, const Schedule *const *tree, int n_trees) {
                 trees[at(l)].place(s.child[s.child_start[slot[l]] + a]) = static_cast<std::uint16_t>(f.n_places + a);
         }
         f.n_places += children;
-        f.n_pairs += children * (children - 1) / 2;
+        f.n_pairs += values_of_joint(children);
         f.most_children = std::max(f.most_children, children);
     };
     while (!std::all_of(trees.begin(), trees.end(), [](const Tree &t) { return t.done(); })) {

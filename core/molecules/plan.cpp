@@ -221,18 +221,19 @@ private:
             }
             plan_->pieces.push_back({-1, static_cast<std::int64_t>(place), static_cast<std::int64_t>(end - first), -1,
                                      -1, head.shape, head.where});
-            if (head.window && end - first > 1) plant(first, end, plan_->pieces.back());
+            if (head.shape != loose_[end - 1].shape) plant(first, end, plan_->pieces.back());
         }
     }
 
     // Trees of the loose molecules in a range that are fewer of a shape than a block has lanes.
     void mark_mixed(std::size_t begin, std::size_t end) {
+        const std::int64_t lanes = kernels().lanes;
         std::unordered_map<std::int32_t, std::int64_t> count;
         for (std::size_t i = begin; i < end; ++i) ++count[loose_[i].shape];
         std::int64_t bonds = 0;
         for (std::size_t i = begin; i < end; ++i) {
             Loose &one = loose_[i];
-            if (one.part >= 0 || one.shape == linear || count[one.shape] >= widest ||
+            if (one.part >= 0 || one.shape == linear || count[one.shape] >= lanes ||
                 works_alone(one.shape, one.n_bonds))
                 continue;
             const Schedule &s = *plan_->schedules[at(one.shape)];

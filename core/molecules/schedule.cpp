@@ -185,12 +185,14 @@ private:
         m_.child_start.assign(at(s_.n_atoms) + 1, 0);
         for (const std::int32_t p : m_.parent) ++m_.child_start[at(p) + 1];
         m_.pair_start.assign(at(s_.n_atoms) + 1, 0);
-        s_.max_children = 0;
+        s_.max_children = s_.max_joint = 0;
         for (std::int32_t i = 0; i < s_.n_atoms; ++i) {
             const std::int32_t k = m_.child_start[at(i) + 1];
             m_.child_start[at(i) + 1] += m_.child_start[at(i)];
-            m_.pair_start[at(i) + 1] = m_.pair_start[at(i)] + k * (k - 1) / 2;
+            const bool decomposed = i >= s_.n_tree || k <= most_decomposed;
+            m_.pair_start[at(i) + 1] = m_.pair_start[at(i)] + (decomposed ? k * (k - 1) / 2 : values_of_joint(k));
             s_.max_children = std::max(s_.max_children, k);
+            if (decomposed) s_.max_joint = std::max(s_.max_joint, k);
         }
         s_.n_pairs = m_.pair_start[at(s_.n_atoms)];
         m_.child.resize(at(s_.n_tree));

@@ -41,24 +41,15 @@ bool is_unwritten(const AtomArray &array, std::int64_t i) {
                           : std::memcmp(array.x + i * array.stride, &unwritten, sizeof unwritten) == 0;
 }
 
-// Whether eight places follow each other from `first` on. Without a branch, so that the compiler takes several at once.
-bool are_eight(const std::int64_t *places, std::int64_t first) {
-    std::int64_t off = 0;
-    for (std::int64_t i = 0; i < 8; ++i) off |= places[i] - (first + i);
-    return off == 0;
-}
-
-// Calls each(k, n) for places k .. k + n - 1 that follow each other in the caller's array.
+// Calls each(k, place) for all numbers in two arrays: of each bond in the order of the molecules, and where the caller
+// has it. `width` of them for each.
 template <class Each>
-void for_runs(const std::vector<std::int64_t> &places, Each each) {
+void for_values(const std::vector<std::int64_t> &places, std::int64_t width, Each each) {
     const std::int64_t *const p = places.data(), n = static_cast<std::int64_t>(places.size());
-    for (std::int64_t k = 0, last = 0; k < n; k = ++last) {
-        while (last + 1 < n && p[last + 1] == p[last] + 1) {
-            ++last;
-            while (last - k >= 8 && last + 8 < n && are_eight(p + last + 1, p[last] + 1)) last += 8;
-        }
-        each(k, static_cast<std::size_t>(last + 1 - k));
-    }
+    if (width == 1)
+        for (std::int64_t k = 0; k < n; ++k) each(k, p[k]);
+    else
+        for (std::int64_t k = 0; k < n * width; ++k) each(k, p[k / width] * width + k % width);
 }
 
 }  // namespace
@@ -78,11 +69,8 @@ Apart::Values &Apart::copy_of(const double *callers, int width) {
         if (values_[i].callers == callers) return values_[i];
     const std::vector<std::int64_t> &places = chains_.reordered_bonds();
     double *const copy = reinterpret_cast<double *>(memory_);
-    const std::size_t bytes = sizeof(double) * static_cast<std::size_t>(width);
-    memory_ += rounded_up(static_cast<std::int64_t>(places.size() * bytes));
-    for_runs(places, [&](std::int64_t k, std::size_t n) {
-        std::memcpy(copy + k * width, callers + places[static_cast<std::size_t>(k)] * width, n * bytes);
-    });
+    memory_ += rounded_up(static_cast<std::int64_t>(places.size() * sizeof(double)) * width);
+    for_values(places, width, [=](std::int64_t k, std::int64_t place) { copy[k] = callers[place]; });
     values_[n_values_] = {callers, copy, nullptr, width};
     return values_[n_values_++];
 }
@@ -152,13 +140,10 @@ void Apart::put_back(const Atoms &atoms) const {
 void Apart::put_back() const {
     const std::vector<std::int64_t> &places = chains_.reordered_bonds();
     for (int i = 0; i < n_values_; ++i) {
-        const Values &values = values_[i];
-        if (!values.result) continue;
-        const std::size_t bytes = sizeof(double) * static_cast<std::size_t>(values.width);
-        for_runs(places, [&](std::int64_t k, std::size_t n) {
-            std::memcpy(values.result + places[static_cast<std::size_t>(k)] * values.width,
-                        values.copy + k * values.width, n * bytes);
-        });
+        double *const result = values_[i].result;
+        const double *const copy = values_[i].copy;
+        if (!result) continue;
+        for_values(places, values_[i].width, [=](std::int64_t k, std::int64_t place) { result[place] = copy[k]; });
     }
     for (int i = 0; i < n_atoms_; ++i) put_back(atoms_[i]);
 }

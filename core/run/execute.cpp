@@ -90,13 +90,23 @@ std::int64_t long_chain_bonds(const Chains &chains, const Plan &plan, std::int64
     return n > longest_lane ? n : 0;
 }
 
-// Different trees side by side, or one by one for a verb that has no way for these.
+// Different trees side by side, or those of each shape for a verb that has no way for forests: the plan has them one
+// after the other.
 void work_on_molecules(const Work &work, const MoleculeUnit &unit, int where, double *scratch, Tally &tally) {
     if (!unit.forests || work.walks_forests()) return work.unit(unit, where, scratch, tally);
-    const MoleculeLane *lane = unit.lanes;
+    MoleculeUnit alike{nullptr, unit.lanes, 0, false, unit.large};
+    const auto work_on_alike = [&] {
+        if (alike.count > 0) work.unit(alike, where, scratch, tally);
+        alike.lanes += alike.count;
+        alike.count = 0;
+    };
     for (std::int64_t i = 0; i < unit.n_forests; ++i)
-        for (int l = 0; l < unit.forests[i].n_trees; ++l)
-            work.unit(MoleculeUnit{unit.forests[i].schedule[l], lane++, 1, true, unit.large}, where, scratch, tally);
+        for (int l = 0; l < unit.forests[i].n_trees; ++l, ++alike.count) {
+            const Schedule *const shape = unit.forests[i].schedule[l];
+            if (shape != alike.schedule) work_on_alike();
+            alike.schedule = shape;
+        }
+    work_on_alike();
 }
 
 // One call: what it needs, and its pieces one by one or shared.

@@ -52,7 +52,9 @@ std::int64_t choose_parent(molecule_dice &d, int style, std::int64_t n)
 void draw_tree(hostile_molecule &m, molecule_dice &d)
 {
     const std::int64_t n = d.chance(0.02) ? d.whole(100, 300) : d.whole(1, 40);
-    const int style = static_cast<int>(d.whole(0, 2)), valence = static_cast<int>(d.whole(2, 6));
+    const bool bushy = m.seed >= first_bush && (m.seed < first_of_soaks || m.seed / 128 % 4 == 0);
+    const int style = bushy ? 2 : static_cast<int>(d.whole(0, 2));
+    const int valence = static_cast<int>(bushy ? d.whole(8, 40) : d.whole(2, 6));
     const double aligned = m.features & ALIGNED ? d.uniform(0.2, 1) : 0, fold = d.chance(0.5) ? 0 : d.uniform(0, 1);
     const double thickness = m.features & FLAT ? d.decades(-12, 0) : 1;
     std::vector<int> bonds{0};

@@ -30,12 +30,12 @@ struct Linear {
 
     // Values of V that the arrays take.
     static int64_t values(const Schedule &s) {
-        int64_t n = s.n_atoms + bond_values * s.n_bonds + s.n_pairs + JointMemory<V, 0>::values(s.max_children);
+        int64_t n = s.n_atoms + bond_values * s.n_bonds + s.n_pairs + JointMemory<V, 0>::values(s.max_joint);
         if (s.type == Schedule::ring) n += ring_values * s.n_bonds;
         n += bond_values * more_rows(s);
         n += 3 * 3 * static_cast<int64_t>(s.n_atoms);
         if (has_pieces(s))
-            n += faint_values + s.n_pieces * (1 + faint_values + JointMemory<V, 0>::values(s.max_children)) +
+            n += faint_values + s.n_pieces * (1 + faint_values + JointMemory<V, 0>::values(s.max_joint)) +
                  arm_values(s);
         if (s.type == Schedule::graph) {
             const int64_t part = CoreMatrix<V>::most_parts(s);
@@ -68,12 +68,12 @@ struct Linear {
             equations.d = reinterpret_cast<Pair3<V> *>(memory.values(6 * static_cast<int64_t>(s.n_bonds)));
         }
         working = memory;
-        memory.values(JointMemory<V, 0>::values(s.max_children));
+        memory.values(JointMemory<V, 0>::values(s.max_joint));
     }
 
     // For one large molecule.
     void take_pieces(const LongTeam *team, Memory<double> &memory) {
-        const int64_t joint = JointMemory<double, 0>::values(x.s.max_children);
+        const int64_t joint = JointMemory<double, 0>::values(x.s.max_joint);
         double *const slack = memory.values(x.s.n_pieces);
         Faint *const faint = reinterpret_cast<Faint *>(memory.values(faint_values * (x.s.n_pieces + 1)));
         for (int32_t p = 0; p <= x.s.n_pieces; ++p) faint[p] = {};

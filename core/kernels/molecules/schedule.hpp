@@ -18,6 +18,11 @@ constexpr int32_t slots_of_piece = 16384;  // a megabyte of bonds at work, a sec
 // but one are a multiple of arm_step, so that segments in as many lanes are equally long.
 constexpr int32_t arm_step = 8, shortest_arm = 5 * arm_step + 1, longest_arm = 128 * arm_step + 1;
 
+// An atom of a tree with more children is eliminated by a matrix of three rows (tree/many.hpp). How many values are kept
+// of k children: multipliers of their decomposition; or of that matrix, and with k products for positions.
+constexpr int32_t most_decomposed = 7;
+constexpr int32_t values_of_joint(int32_t k) { return k > most_decomposed ? 9 + 3 * k : k * (k - 1) / 2; }
+
 struct CarefulPlan;  // core/kernels/careful/plan.hpp
 struct FlatList;     // core/kernels/molecules/list/flat_list.hpp
 struct PathPlan;     // core/kernels/molecules/paths/paths.hpp
@@ -38,6 +43,7 @@ struct Schedule {
     int32_t n_core;        // bonds of the core
     int32_t n_core_atoms;  // 0 for a tree, whose root has slot n_tree
     int32_t max_children;
+    int32_t max_joint;       // children of an atom that are eliminated as one matrix of as many rows
     int32_t max_core_bonds;  // of an atom of the core
 
     // As they were given: bond k joins the local atoms atom_i[k] and atom_j[k].
@@ -53,7 +59,7 @@ struct Schedule {
     const int32_t *parent;       // [n_tree] slot
     const int32_t *child_start;  // [n_atoms + 1] the children of slot s are child[child_start[s] ..]: slots, ascending
     const int32_t *child;        // [n_tree]
-    const int32_t *pair_start;   // [n_atoms + 1] sums of k (k - 1) / 2, k children: places for a joint's multipliers
+    const int32_t *pair_start;   // [n_atoms + 1] sums of values_of_joint(): places for a joint's multipliers
     int32_t n_pairs;
 
     // The core: bond p, at place n_tree + p, points from slot from[p] to slot to[p]. In a ring or triangle bond p joins

@@ -51,6 +51,8 @@ HOL_INLINE void write_slots(const Molecules<double> &x, const AtomArray &array, 
     if (x.at.layout == rows_in_order && !shared) {
         double *const base = reinterpret_cast<double *>(array.x) + 3 * x.at.first[0];
         for (int32_t slot = end; slot-- > first;) {
+            if (slot >= first + rows_ahead)
+                fetch_row<1>(array, 3 * (x.at.first[0] + x.s.atom_of[slot - rows_ahead]));
             double *const p = base + 3 * static_cast<int64_t>(x.s.atom_of[slot]);
             write_rows(&p, value(slot));
         }
@@ -112,6 +114,7 @@ HOL_INLINE void write_values(const Schedule &s, const MoleculeLane *lane, double
     for (int i = 0; i < Width<V>::lanes; ++i) p[i] = out + lane[i].first_bond;
     const bool all = which == (1u << Width<V>::lanes) - 1;
     for (int32_t k = first; k < end; ++k) {
+        if (Width<V>::lanes == 1 && k + rows_ahead < end) __builtin_prefetch(p[0] + s.bond_of[k + rows_ahead], 1, 2);
         const int32_t bond = s.bond_of[k];
         const V one = value(k);
         if (all) {

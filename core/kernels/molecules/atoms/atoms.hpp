@@ -24,6 +24,15 @@ HOL_INLINE void write_rows(double *const *p, const Vector3<double> &a) {
     p[0][2] = a.z;
 }
 
+// Atoms of one large molecule stand anywhere: the rows of so many are fetched ahead.
+constexpr int32_t rows_ahead = 48;
+template <int for_writing = 0>
+HOL_INLINE void fetch_row(const AtomArray &array, int64_t element) {
+    const double *const p = reinterpret_cast<const double *>(array.x) + element;
+    __builtin_prefetch(p, for_writing, 2);
+    __builtin_prefetch(p + 2, for_writing, 2);  // it may begin at the end of a line
+}
+
 // Which atoms the lanes hold; lanes without a molecule repeat the first one and are never written.
 template <class V>
 struct Atoms {

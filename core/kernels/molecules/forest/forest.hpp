@@ -12,8 +12,8 @@ namespace holonomic {
 // A step deals with one atom of each tree and with the bonds to its children, which have been dealt with before. The
 // bonds of a step have consecutive *places*, the same in all lanes. Where an atom has fewer children, or a tree has
 // nothing to do, places are empty: what is eliminated there is a bond of length 0 with E = 1, which leaves every digit
-// as it is. An atom of at most three children may share a step with others of at most three, one of more with others
-// of more. The last step has the roots.
+// as it is. An atom of at most three children may share a step with others of at most three, one of up to
+// most_decomposed with others of as many, and so on. The last step has the roots.
 //
 // Numbers per step or place are [..][lanes].
 struct Forest {
@@ -22,7 +22,7 @@ struct Forest {
     };
     int32_t n_trees;  // in the first lanes; the others are empty
     int32_t n_steps, n_places;
-    int32_t n_pairs;        // sum of k (k - 1) / 2 over the steps
+    int32_t n_pairs;        // sum of values_of_joint() over the steps
     int32_t most_children;  // of a step
     int64_t most_atoms;     // of a tree
     const Step *step;

@@ -30,9 +30,12 @@ struct ForestLinear {
     Memory<vec> working;  // of a joint of many bonds
     double per_cancelled2 = 1 / (most_cancelled * most_cancelled);
 
+    static int64_t joint_values(const Forest &f) {
+        return JointMemory<vec, 0>::values(f.most_children < most_decomposed ? f.most_children : most_decomposed);
+    }
     static int64_t values(const Forest &f) {
         const int64_t rows = f.n_places + 2, row_values = sizeof(BondRow<vec>) / sizeof(vec);
-        return (row_values + 6 + 1) * rows + f.n_steps + f.n_pairs + JointMemory<vec, 0>::values(f.most_children);
+        return (row_values + 6 + 1) * rows + f.n_steps + f.n_pairs + joint_values(f);
     }
 
     ForestLinear(const Forest &forest, const MoleculeLane *lanes, bool packed, const Box &b, const AtomArray &positions,
@@ -47,7 +50,7 @@ struct ForestLinear {
         w = memory.values(f.n_steps);
         pair = memory.values(f.n_pairs);
         working = memory;
-        memory.values(JointMemory<vec, 0>::values(f.most_children));
+        memory.values(joint_values(f));
     }
 
     bool has(int wanted) const { return (terms & wanted) != 0; }
@@ -123,12 +126,16 @@ struct ForestLinear {
         vec *pairs = pair;
         for (int32_t s = 0; s + 1 < f.n_steps; ++s) {
             body(s, pairs);
-            pairs += pair_of(f.step[s].children, 0);
+            pairs += values_of_joint(f.step[s].children);
         }
     }
     template <class Body>
     HOL_FORCED void for_steps_down(const Body &body) const {
-        for (int32_t s = f.n_steps - 1; s-- > 0;) body(s);
+        vec *pairs = pair + f.n_pairs;
+        for (int32_t s = f.n_steps - 1; s-- > 0;) {
+            pairs -= values_of_joint(f.step[s].children);
+            body(s, pairs);
+        }
     }
 
     void factorize_and_solve();

@@ -122,9 +122,9 @@ inline __attribute__((noinline)) void ForestLinear::substitute() {
 // u of the children becomes t, and the sum of t d what they pull. `look`: tests the result.
 template <bool look>
 inline __attribute__((noinline)) void ForestLinear::down() {
-    const auto step = [&](int32_t s, auto known, auto top) HOL_FORCED {
+    const auto step = [&](int32_t s, vec *pairs, auto known, auto top) HOL_FORCED {
         const int k = known > 0 ? known : f.step[s].children;
-        const ForestJoint joint(*this, s, nullptr);
+        const ForestJoint joint(*this, s, pairs);
         if (!top) joint.read_t();
         vec3 sum = {};
         HOL_UNROLL_FEW
@@ -141,9 +141,9 @@ inline __attribute__((noinline)) void ForestLinear::down() {
         const unsigned faint = bits(faint_bonds<vec>(joint, k)) & f.held[f.step[s].first + 1];
         if (__builtin_expect(faint != 0, 0)) joint.doubt_faint(k, faint, slack);
     };
-    step(f.n_steps - 1, Constant<int, 1>{}, Constant<bool, true>{});
-    for_steps_down([&](int32_t s) HOL_FORCED {
-        choose_few<3>(f.step[s].children, [&](auto known) HOL_FORCED { step(s, known, Constant<bool, false>{}); });
+    step(f.n_steps - 1, pair, Constant<int, 1>{}, Constant<bool, true>{});
+    for_steps_down([&](int32_t s, vec *pairs) HOL_FORCED {
+        choose_few<3>(f.step[s].children, [&](auto known) HOL_FORCED { step(s, pairs, known, Constant<bool, false>{}); });
     });
 }
 

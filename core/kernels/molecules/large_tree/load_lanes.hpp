@@ -103,10 +103,22 @@ HOL_INLINE void load_lanes(Linear<double> &z, int terms, const int32_t *slot, bo
     scatter_values(x.row, slot, row);
 }
 
+// Starts to fetch the rows of an atom, of all arrays that are read.
+HOL_INLINE void fetch_rows(const Linear<double> &z, int terms, int32_t slot) {
+    const Molecules<double> &x = z.x;
+    const int32_t atom = x.s.atom_of[slot];
+    const int64_t row = 3 * x.at.number(0, atom);
+    __builtin_prefetch(x.lane[0].w + atom, 0, 2);
+    fetch_row(*x.r, row);
+    if (terms & (squares | rates)) fetch_row(*x.in.v, row);
+    if (terms & pulls) fetch_row(*x.in.f, row);
+}
+
 template <bool packed>
 HOL_NOINLINE void load_slots_of(Linear<double> &z, int terms, int32_t first, int32_t end, bool keep_all) {
     for (int32_t s = first; s < end; s += W) {
         int32_t slot[W];
+        for (int32_t i = s + rows_ahead; packed && i < s + rows_ahead + W && i < end; ++i) fetch_rows(z, terms, i);
         HOL_UNROLL
         for (int i = 0; i < W; ++i) slot[i] = s + i < end ? s + i : end - 1;
         load_lanes<packed>(z, terms, slot, keep_all);

@@ -14,7 +14,7 @@ namespace graph {
 // Joints of more bonds would take too much memory in each piece.
 constexpr int32_t most_children_in_pieces = 64;
 
-HOL_INLINE bool has_pieces(const Schedule &s) { return s.n_pieces > 0 && s.max_children <= most_children_in_pieces; }
+HOL_INLINE bool has_pieces(const Schedule &s) { return s.n_pieces > 0 && s.max_joint <= most_children_in_pieces; }
 
 // Atoms at which a bond is faint (siblings.hpp): found in a first solution, then eliminated carefully in a second one.
 // And all that have been eliminated carefully, or more than fit.

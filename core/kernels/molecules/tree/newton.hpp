@@ -24,7 +24,7 @@ struct Newton {
         const int64_t part = CoreMatrix<V>::most_parts(s), n_atoms = s.n_atoms, n_bonds = s.n_bonds;
         return 7 * n_atoms + 2 + columns_ahead + 1 + (row_values + 7) * n_bonds + 4 * static_cast<int64_t>(s.n_pairs) +
                4 * static_cast<int64_t>(s.n_entries) + 4 * reaches(s) + 2 * part +
-               NewtonMemory<V, 0>::values(s.max_children);
+               NewtonMemory<V, 0>::values(s.max_joint);
     }
 
     Newton(const Schedule &s, Memory<V> &memory)
@@ -47,7 +47,7 @@ struct Newton {
         kept = memory.values(3 * static_cast<int64_t>(s.n_bonds) +
                              2 * (s.n_pairs + static_cast<int64_t>(s.n_entries) + reaches(s)));
         x.working = memory;
-        memory.values(NewtonMemory<V, 0>::values(s.max_children));
+        memory.values(NewtonMemory<V, 0>::values(s.max_joint));
     }
 
     // The largest |D.D - a^2| / a^2 of the bonds measured so far. max() may lose a NaN, the sum keeps it.

@@ -9,6 +9,7 @@
 #define HOLONOMIC_KERNELS_MOLECULES_TREE_NEWTON_JOINT_HPP
 
 #include "core/kernels/molecules/tree/joint.hpp"
+#include "core/kernels/molecules/tree/many.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -164,9 +165,61 @@ HOL_INLINE V couple(const NewtonSystem<V> &x, int32_t slot, int k, int32_t place
     return E;
 }
 
+// An atom with many children, as in many.hpp:
+//
+//     M = 1 + w sum_c b_c D_c^T / E_c,   N = M^-1,   E_e = w D_e^T N b_e,   t_c = (y_c - D_c.a) / E_c,   a = w N sum_c b_c y_c / E_c
+//
+// Keeps w N and the D_c / E_c: bonds turn before there are new factors.
+template <class V>
+HOL_INLINE void factorize_many(const NewtonSystem<V> &x, int32_t slot, int k) {
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    const V w = x.w[slot];
+    Matrix3<V> M = Matrix3<V>::one();
+    V *const kept = x.lower + x.s.pair_start[slot];
+    Vector3<V> *const D = reinterpret_cast<Vector3<V> *>(kept + 9);
+    for (int a = 0; a < k; ++a) {
+        NewtonRow<V> &row = x.row[child[a]];
+        row.r = Width<V>::all(1) / row.E;
+        D[a] = row.r * x.new_D[child[a]];
+        M.add(w * row.b, D[a]);
+    }
+    const Matrix3<V> B = divided_by(M, w);
+    *reinterpret_cast<Matrix3<V> *>(kept) = B;
+    const Vector3<V> D_e = x.new_D[slot], down = B * x.row[slot].b,
+                     up = D_e.x * B.x + (D_e.y * B.y + D_e.z * B.z);
+    x.row[slot].E = dot(D_e, down);
+    for (int a = 0; a < k; ++a) {
+        NewtonRow<V> &row = x.row[child[a]];
+        row.up = row.r * dot(up, row.b);
+        row.down = dot(D[a], down);
+    }
+}
+
+template <class V>
+HOL_INLINE void substitute_many(const NewtonSystem<V> &x, int32_t slot, int k) {
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    const V *const kept = x.lower + x.s.pair_start[slot];
+    const Vector3<V> *const D = reinterpret_cast<const Vector3<V> *>(kept + 9);
+    Vector3<V> sum = {};
+    V above = x.row[slot].t;
+    for (int a = 0; a < k; ++a) {
+        NewtonRow<V> &row = x.row[child[a]];
+        above = mul_add(row.up, row.t, above);
+        row.t = row.t * row.r;
+        sum = add_times(sum, row.t, row.b);
+    }
+    sum = *reinterpret_cast<const Matrix3<V> *>(kept) * sum;
+    for (int a = 0; a < k; ++a) {
+        NewtonRow<V> &row = x.row[child[a]];
+        row.t = row.t - dot(D[a], sum);
+    }
+    x.row[slot].t = above;
+}
+
 template <int known, bool top, class V>
 HOL_INLINE void factorize_joint(const NewtonSystem<V> &x, int32_t slot, int count) {
     const int k = known > 0 ? known : count;
+    if (k > most_decomposed) return factorize_many(x, slot, k);
     auto f = NewtonMemory<V, known>::make(x.working, k);
     factorize_children(x, slot, k, f);
     if (top) return;
@@ -185,6 +238,7 @@ HOL_INLINE void factorize_joint(const NewtonSystem<V> &x, int32_t slot, int coun
 template <int known, bool top, class V>
 HOL_INLINE void substitute_joint(const NewtonSystem<V> &x, int32_t slot, int count) {
     const int k = known > 0 ? known : count;
+    if (k > most_decomposed) return substitute_many(x, slot, k);
     const int32_t *const child = x.s.child + x.s.child_start[slot];
     if (known == 1) {
         NewtonRow<V> &row = x.row[child[0]];

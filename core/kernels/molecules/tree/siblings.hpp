@@ -12,7 +12,7 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_TREE_SIBLINGS_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_TREE_SIBLINGS_HPP
 
-#include "core/kernels/molecules/molecules.hpp"
+#include "core/kernels/molecules/tree/many.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -41,6 +41,10 @@ template <class V, class Rows>
 HOL_INLINE V shared_error(const Rows &x, int k) {
     const BondRow<V> &e = x.above();
     V T2 = e.q * (e.t * e.t);
+    if (k > most_decomposed) {
+        const V *const kept = x.multipliers();
+        return kept[of_rounding] * (x.x.per_cancelled2 * (T2 + kept[of_pulls]));
+    }
     HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
         const BondRow<V> &row = x.bond(a);
