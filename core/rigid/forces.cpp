@@ -1,10 +1,10 @@
 // Accelerations: forces, and the multipliers of given right-hand sides.
 #include <cmath>
 
-#include "core/rigid/alone.hpp"
 #include "core/rigid/rates.hpp"
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
+#include "core/run/dispatch.hpp"
 
 namespace holonomic::rigid {
 
@@ -71,18 +71,27 @@ struct ForcesWork final : Work {
     const BoxRate *rate;
     Outputs out;
     bool virial, in_order;
+    ForcesCall call;
 
     ForcesWork(const Chains &chains, const AtomArray &r_, const AtomArray &v_, const AtomArray &f_, const Outputs &out_,
                bool virial_)
         : r(r_), v(v_), f(f_), box(chains.box), rate(chains.box_rate()), out(out_), virial(virial_),
-          in_order(out_.g.x && !chains.bodies()->fixed_atoms().empty()) {}
+          in_order(out_.g.x && !chains.bodies()->fixed_atoms().empty()), call{r_, v_, f_, out_.g, nullptr, nullptr,
+                                                                              out_.add, virial_, {}} {
+        put_box(box, call.box);
+    }
     bool is_in_order() const override { return in_order; }
+    bool takes_blocks() const override { return !rate; }
+    unsigned bodies(const BodyUnit &unit, double *scratch, BodyResult *results) const override {
+        return kernels().bodies.forces(call, unit, scratch, results);
+    }
+    bool has_results() const override { return virial; }
+    void done(const BodyResult &result, std::int64_t, Tally &tally) const override {
+        for (int i = 0; i < 6; ++i) tally.virial[i] += result.virial[i];
+    }
 
     Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
         const Shape &s = system.shape();
-        if (s.is_lone_body && !rate &&
-            forces_alone(system.lone(place), r, box, v, f, out.g, out.add, virial ? tally.virial : nullptr))
-            return Outcome::good;
         system.read(r, box, place, system.now);
         system.differentiate(system.now);
         const bool moves = v.x || rate;

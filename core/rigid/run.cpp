@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <new>
 
+#include "core/rigid/blocks.hpp"
+#include "core/run/dispatch.hpp"
 #include "core/run/thread_memory.hpp"
 
 #ifdef _OPENMP
@@ -24,27 +26,85 @@ void add(Found &total, const Found &part) {
     holonomic::add(total.tally, part.tally);
 }
 
-Found run_block(const Chains &chains, const Work &work, std::int64_t first, char *memory) {
-    const Bodies &bodies = *chains.bodies();
-    Found found{empty_tally(), Outcome::good};
-    const std::int64_t end = std::min(first + block, bodies.n_molecules());
-    for (std::int64_t m = first; m < end; ++m) {
-        if (!bodies.is_active(m)) continue;
-        const System system(bodies.shape(m), bodies.kinds(), memory);
-        const Place place{bodies.atoms(m), bodies.bonds(m), chains.n_chains() + m};
-        const Outcome outcome = work.molecule(system, place, found.tally);
-        if (outcome == Outcome::good) continue;
-        if (found.tally.n_bad == 0) found.first_outcome = outcome;
-        note_bad(place.number, found.tally);
+class Block {
+public:
+    Block(const Chains &chains, const Work &work, char *memory)
+        : chains_(chains), bodies_(*chains.bodies()), work_(work), memory_(memory),
+          widest_(work.takes_blocks() ? kernels().lanes : 1) {}
+
+    Found run(std::int64_t first) {
+        const std::int64_t end = std::min(first + block, bodies_.n_molecules());
+        for (std::int64_t m = first; m < end; ++m) {
+            if (!bodies_.is_active(m)) continue;
+            if (!work_.takes_blocks() || !bodies_.shape(m).is_lone_body) {
+                molecule(m);
+                continue;
+            }
+            std::int64_t alike[most_lanes];
+            int n = 0;
+            std::int64_t next = m;
+            for (; next < end && n < widest_ && bodies_.shape_number(next) == bodies_.shape_number(m); ++next)
+                if (bodies_.is_active(next)) alike[n++] = next;
+            side_by_side(alike, n);
+            m = next - 1;
+        }
+        return found_;
     }
-    return found;
-}
+
+private:
+    Place place(std::int64_t m) const { return {bodies_.atoms(m), bodies_.bonds(m), chains_.n_chains() + m}; }
+
+    void molecule(std::int64_t m) {
+        const System system(bodies_.shape(m), bodies_.kinds(), memory_);
+        const Outcome outcome = work_.molecule(system, place(m), found_.tally);
+        if (outcome == Outcome::good) return;
+        if (found_.tally.n_bad == 0) found_.first_outcome = outcome;
+        note_bad(chains_.n_chains() + m, found_.tally);
+    }
+
+    void side_by_side(const std::int64_t *alike, int n) {
+        if (shape_ != bodies_.shape_number(alike[0])) {
+            shape_ = bodies_.shape_number(alike[0]);
+            const Shape &shape = bodies_.shape(alike[0]);
+            kind_ = kind_of(bodies_.body(shape.parts[0]), shape);
+        }
+        BodyUnit unit;
+        unit.kind = &kind_;
+        unit.count = n;
+        unit.consecutive = true;
+        for (int l = 0; l < n; ++l) {
+            unit.atoms[l] = bodies_.atoms(alike[l]);
+            unit.consecutive = unit.consecutive && bodies_.is_consecutive(alike[l]);
+        }
+        for (int l = n; l < widest_; ++l) unit.atoms[l] = unit.atoms[0];
+        BodyResult results[most_lanes];
+        const unsigned done =
+            work_.bodies(unit, reinterpret_cast<double *>(memory_ + bodies_.scratch_bytes()), results);
+        if (done == (1u << n) - 1 && !work_.has_results()) return;
+        for (int l = 0; l < n; ++l) {
+            if (!(done >> l & 1)) {
+                molecule(alike[l]);
+                continue;
+            }
+            work_.done(results[l], chains_.n_chains() + alike[l], found_.tally);
+        }
+    }
+
+    const Chains &chains_;
+    const Bodies &bodies_;
+    const Work &work_;
+    char *const memory_;
+    const int widest_;
+    Found found_{empty_tally(), Outcome::good};
+    BodyKind kind_;
+    std::int32_t shape_ = -1;
+};
 
 }  // namespace
 
 Found run(const Chains &chains, const Work &work) {
     const Bodies &bodies = *chains.bodies();
-    const std::int64_t bytes = bodies.scratch_bytes(), n_blocks = (bodies.n_molecules() + block - 1) / block;
+    const std::int64_t bytes = bodies.scratch_bytes() + bodies.block_bytes(), n_blocks = (bodies.n_molecules() + block - 1) / block;
     char *const own = static_cast<char *>(thread_memory(Keep::rigid, bytes));
     Found *const parts =
         static_cast<Found *>(thread_memory(Keep::piece_tallies, n_blocks * static_cast<std::int64_t>(sizeof(Found))));
@@ -52,7 +112,7 @@ Found run(const Chains &chains, const Work &work) {
     const int n_threads = static_cast<int>(std::min(std::min<std::int64_t>(chains.n_threads, n_blocks),
                                                     std::max<std::int64_t>(bodies.work() / rows_per_thread, 1)));
     if (n_threads <= 1 || work.is_in_order()) {
-        for (std::int64_t j = 0; j < n_blocks; ++j) parts[j] = run_block(chains, work, j * block, own);
+        for (std::int64_t j = 0; j < n_blocks; ++j) parts[j] = Block(chains, work, own).run(j * block);
     } else {
 #ifdef _OPENMP
         std::atomic<std::int64_t> next{0};
@@ -61,10 +121,10 @@ Found run(const Chains &chains, const Work &work) {
         {
             char *const memory = static_cast<char *>(thread_memory(Keep::rigid, bytes));
             for (std::int64_t j; memory && (j = next.fetch_add(1)) < n_blocks;)
-                parts[j] = run_block(chains, work, j * block, memory);
+                parts[j] = Block(chains, work, memory).run(j * block);
         }
 #else
-        for (std::int64_t j = 0; j < n_blocks; ++j) parts[j] = run_block(chains, work, j * block, own);
+        for (std::int64_t j = 0; j < n_blocks; ++j) parts[j] = Block(chains, work, own).run(j * block);
 #endif
     }
     Found total{empty_tally(), Outcome::good};

@@ -86,7 +86,7 @@ Layout lay_out(const Shape &s, char *memory) {
     m.raw = pieces.take<double>(3 * std::int64_t{s.n_atoms});
     m.gradient[0] = pieces.take<double>(3 * entries);
     m.gradient[1] = pieces.take<double>(3 * entries);
-    m.bytes = pieces.used(memory);
+    m.bytes = (pieces.used(memory) + 63) / 64 * 64;
     return m;
 }
 

@@ -1,9 +1,9 @@
 #include <cmath>
 
-#include "core/rigid/alone.hpp"
 #include "core/rigid/rates.hpp"
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
+#include "core/run/dispatch.hpp"
 
 namespace holonomic::rigid {
 
@@ -17,14 +17,23 @@ struct VelocitiesWork final : Work {
     const BoxRate *rate;
     double *lambda;
     bool virial;
+    VelocitiesCall call;
 
     VelocitiesWork(const Chains &chains, const AtomArray &r_, const AtomArray &v_, double *lambda_, bool virial_)
-        : r(r_), v(v_), box(chains.box), rate(chains.box_rate()), lambda(lambda_), virial(virial_) {}
+        : r(r_), v(v_), box(chains.box), rate(chains.box_rate()), lambda(lambda_), virial(virial_), call{r_, v_, nullptr, virial_, nullptr, {}} {
+        put_box(box, call.box);
+    }
+    bool takes_blocks() const override { return !rate; }
+    unsigned bodies(const BodyUnit &unit, double *scratch, BodyResult *results) const override {
+        return kernels().bodies.velocities(call, unit, scratch, results);
+    }
+    bool has_results() const override { return virial; }
+    void done(const BodyResult &result, std::int64_t, Tally &tally) const override {
+        for (int i = 0; i < 6; ++i) tally.virial[i] += result.virial[i];
+    }
 
     Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
         const Shape &s = system.shape();
-        if (s.is_lone_body && !rate && velocities_alone(system.lone(place), r, box, v, virial ? tally.virial : nullptr))
-            return Outcome::good;
         system.read(r, box, place, system.now);
         system.differentiate(system.now);
         if (rate)
