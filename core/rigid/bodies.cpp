@@ -43,6 +43,7 @@ std::vector<double> signature_of(const Given &given) {
     count(given.atoms.size());
     count(given.bonds.size());
     words.push_back(given.n_movable);
+    words.push_back(given.by_lengths);
     for (const std::int32_t size : given.sizes) words.push_back(size);
     words.insert(words.end(), given.place.begin(), given.place.end());
     words.insert(words.end(), given.masses.begin(), given.masses.end());
@@ -93,6 +94,7 @@ std::int32_t Bodies::find_shape(const Given &given) {
     shape.n_movable = given.n_movable;
     shape.mass = given.masses;
     shape.bonds = given.bonds;
+    shape.by_lengths = given.by_lengths;
     for (std::size_t b = 0; b < given.sizes.size(); ++b) {
         try {
             const std::int32_t body = find_body(given.sizes[b], given.masses.data() + shape.n_held,
@@ -143,6 +145,7 @@ Given Bodies::given(std::int64_t molecule) const {
     given.bonds = its.bonds;
     given.bond_numbers.assign(numbers, numbers + its.bonds.size());
     given.n_movable = its.n_movable;
+    given.by_lengths = its.by_lengths;
     given.masses = its.mass;
     for (const Part &part : its.parts) {
         const Body &kind = body(part);

@@ -21,6 +21,7 @@ struct Given {
     std::int32_t n_movable = 0;
     std::vector<Bond> bonds;
     std::vector<std::int64_t> bond_numbers;  // in the arrays per bond
+    bool by_lengths = false;                 // bonds within bodies are what holds these, and have multipliers
 };
 
 // What makes given bodies impossible: a body's fault or that of their bonds.

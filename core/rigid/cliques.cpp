@@ -212,7 +212,7 @@ int places_of(std::int64_t n, const double *squares, std::vector<double> &places
     return heights.dimension();
 }
 
-bool has_flat_clique(const Shape &shape, const double *w, const double *lengths) {
+bool has_flat_clique(const holonomic::Shape &shape, const double *w, const double *lengths) {
     if (shape.form == Form::chain || shape.form == Form::tree || (shape.form == Form::ring && shape.n_bonds > 3))
         return false;
     std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> higher(at(shape.n_atoms));  // atoms and bonds

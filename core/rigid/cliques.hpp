@@ -15,7 +15,7 @@ namespace holonomic::rigid {
 int places_of(std::int64_t n, const double *squares, std::vector<double> &places);
 
 // Whether three or four atoms that can move, each bonded to all others, are on a line or in a plane, by their lengths.
-bool has_flat_clique(const Shape &shape, const double *w, const double *lengths);
+bool has_flat_clique(const holonomic::Shape &shape, const double *w, const double *lengths);
 
 struct Cliques {
     std::vector<std::int64_t> sizes, atoms;  // of the bodies; atoms counted as the list counts them

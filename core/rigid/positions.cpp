@@ -4,6 +4,7 @@
 
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
+#include "core/rigid/within.hpp"
 #include "core/run/dispatch.hpp"
 
 namespace holonomic::rigid {
@@ -43,7 +44,7 @@ struct PositionsWork final : Work {
         put_box(box, call.box);
         put_box(box_ref, call.box_ref);
     }
-    bool takes_blocks() const override { return tolerance == 0; }
+    bool takes_blocks(bool bonds) const override { return tolerance == 0 && !(bonds && lambda); }
     unsigned bodies(const BodyUnit &unit, double *scratch, BodyResult *results) const override {
         return kernels().bodies.positions(call, unit, scratch, results);
     }
@@ -100,7 +101,7 @@ struct PositionsWork final : Work {
     void write_lambda(const System &system, const Place &place, double factor) const {
         const Shape &s = system.shape();
         for (std::size_t k = 0; lambda && k < s.bonds.size(); ++k)
-            lambda[place.bonds[k]] = s.bonds[k].row < 0 ? 0 : factor * rounded(system.t[s.bonds[k].row]);
+            lambda[place.bonds[k]] = factor * multiplier_of(system, k);
     }
 
     Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
@@ -113,6 +114,7 @@ struct PositionsWork final : Work {
         if (check && is_stretched(system)) return Outcome::stretched;
         if (is_done(system)) {
             std::fill(system.t, system.t + s.n_rows, as_pair(0));
+            if (s.by_lengths) std::fill(system.within, system.within + s.bonds.size(), 0.0);
             write_lambda(system, place, 1);
             note(place.number, 0, false, before, worst_bond, tally);
             return Outcome::good;
@@ -127,11 +129,24 @@ struct PositionsWork final : Work {
         for (std::int32_t i = 0; i < s.n_movable; ++i)
             sum += size_of(system.at_atom(system.now.q, i)) + size_of(system.now.x[i]) + size_of(system.reference.x[i]);
         if (!std::isfinite(sum)) return Outcome::not_finite;
+        if (s.by_lengths && lambda) share(system);
         write_atoms(system, place);
         write_lambda(system, place, 0.5 / (dt * dt));
         if (virial) system.add_virial(system.reference, system.t, 1 / (dt * dt), tally.virial);
         note(place.number, iterations, true, error, -1, tally);
         return outcome;
+    }
+
+    // The moves, times the masses.
+    void share(const System &system) const {
+        const Shape &s = system.shape();
+        double *force = force_within(system);
+        for (std::int32_t i = 0; i < s.n_held; ++i) {
+            const PairVector moved = system.at_atom(system.now.q, i) - system.now.x[i];
+            const Vector3<double> push = rounded(s.mass[at(i)] * moved);
+            *force++ = push.x, *force++ = push.y, *force++ = push.z;
+        }
+        share_within(system, system.reference);
     }
 
     // Sites have no momentum of their own: their velocities are those of the body at their places.

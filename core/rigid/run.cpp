@@ -30,13 +30,14 @@ class Block {
 public:
     Block(const Chains &chains, const Work &work, char *memory)
         : chains_(chains), bodies_(*chains.bodies()), work_(work), memory_(memory),
-          widest_(work.takes_blocks() ? kernels().lanes : 1) {}
+          widest_(work.takes_blocks(false) ? kernels().lanes : 1) {}
 
     Found run(std::int64_t first) {
         const std::int64_t end = std::min(first + block, bodies_.n_molecules());
         for (std::int64_t m = first; m < end; ++m) {
             if (!bodies_.is_active(m)) continue;
-            if (!work_.takes_blocks() || !bodies_.shape(m).is_lone_body) {
+            const Shape &shape = bodies_.shape(m);
+            if (!shape.is_lone_body || !work_.takes_blocks(!shape.bonds.empty())) {
                 molecule(m);
                 continue;
             }

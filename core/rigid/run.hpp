@@ -20,7 +20,8 @@ class Work {
 public:
     virtual Outcome molecule(const System &system, const Place &place, Tally &tally) const = 0;
     // The same for bodies without bonds, side by side: bits of those that are done. The others come one by one.
-    virtual bool takes_blocks() const { return false; }
+    // bonds: also those that have some within them, whose values are wanted.
+    virtual bool takes_blocks(bool bonds) const { return static_cast<void>(bonds), false; }
     virtual unsigned bodies(const BodyUnit &, double *, BodyResult *) const { return 0; }
     // What a body that is done adds to the tally, if anything.
     virtual bool has_results() const { return false; }

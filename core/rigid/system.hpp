@@ -69,6 +69,7 @@ public:
     PairVector *a, *b;  // [n_nodes] each
     DoublePair *t, *c;  // [n_rows] each
     double *raw;        // [n_atoms][3]
+    double *within;     // of molecules by lengths: [n_bonds][3] and [n_held][3] twice
 
 private:
     template <class T>
