@@ -176,6 +176,31 @@ struct MoleculeKernels {
     void (*solve)(const SolveCall &, const MoleculeUnit &, double *scratch, Tally &);
 };
 
+struct BodyKind;  // a kind of rigid body that stands alone: core/kernels/bodies/kind.hpp
+
+// A block of such bodies: as many as there are lanes, or fewer. The other lanes' lists are that of the first.
+struct BodyUnit {
+    const BodyKind *kind;
+    const int64_t *atoms[most_lanes];
+    int count;
+    bool consecutive;  // the atoms of each stand one behind the other
+};
+
+// What a body adds to the result of a call.
+struct BodyResult {
+    double virial[6], error;
+    int iterations;
+};
+
+// Each returns bit by bit which bodies it has done; nothing of the others has been written. `scratch` has bytes(n_atoms),
+// aligned to 64.
+struct BodyKernels {
+    int64_t (*scratch_bytes)(int64_t n_atoms);
+    unsigned (*forces)(const ForcesCall &, const BodyUnit &, double *scratch, BodyResult *);
+    unsigned (*velocities)(const VelocitiesCall &, const BodyUnit &, double *scratch, BodyResult *);
+    unsigned (*positions)(const PositionsCall &, const BodyUnit &, double *scratch, BodyResult *);
+};
+
 // The tridiagonal matrix of n rows with ones on its diagonal and -gamma beside it, by plain products. Both return false
 // where these cannot answer for the last digits, or an argument is not finite; then x is as it was, and what is in
 // pivots means nothing.
@@ -201,6 +226,7 @@ struct Kernels {
     InWindows<MetricCall> long_metric;
     MoleculeKernels molecules{};
     TridiagonalKernels tridiagonal{};
+    BodyKernels bodies{};
 };
 
 }  // namespace holonomic

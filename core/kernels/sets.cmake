@@ -21,6 +21,7 @@ set(chain_kernels
 )
 # Long chains, and molecules that are no chains.
 set(other_kernels
+    kernels/verbs/bodies.cpp
     kernels/verbs/molecules_forces.cpp
     kernels/verbs/molecules_forests.cpp
     kernels/verbs/molecules_linear.cpp

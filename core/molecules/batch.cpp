@@ -6,6 +6,7 @@
 #include "core/molecules/closable.hpp"
 #include "core/molecules/memory_limit.hpp"
 #include "core/rigid/bodies.hpp"
+#include "core/rigid/cliques.hpp"
 
 namespace holonomic {
 
@@ -130,7 +131,10 @@ void Batch::append_one(const FoundMolecules &found, std::size_t m, std::int32_t 
     const std::int64_t n_kinds = chains_.kinds_.size();
     const std::int64_t kind =
         chains_.kinds_.find(shape, molecule.n_atoms, molecule.n_bonds, w_.data(), lengths, chains_.groups_.last_kind());
-    if (kind == n_kinds && shape != linear) check_closable(chains_.shapes_[shape], atoms, bonds, lengths);
+    if (kind == n_kinds && shape != linear) {
+        check_closable(chains_.shapes_[shape], atoms, bonds, lengths);
+        flat_ = flat_ || rigid::has_flat_clique(chains_.shapes_[shape], w_.data(), lengths);
+    }
     bool list_atoms = !ascend(atoms, molecule.n_atoms), list_bonds = !ascend(bonds, molecule.n_bonds);
     if (!list_atoms || !list_bonds) {
         const bool before = alike(found, m, m - 1), after = alike(found, m, m + 1);

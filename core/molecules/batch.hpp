@@ -25,6 +25,8 @@ public:
     void append_block(std::int64_t count, std::int64_t n_bonds, std::int64_t first_atom, const double *lengths);
     // Bond k of the list has the length lengths[k % n_lengths]. Throws Error if an atom is not free.
     void append_found(const FoundMolecules &found, const BondList &list, const double *lengths, std::int64_t n_lengths);
+    // Whether a molecule has atoms on a line or in a plane that are all bonded to each other.
+    bool is_flat() const { return flat_; }
     void commit();
 
 private:
@@ -47,6 +49,7 @@ private:
     std::vector<double> w_;
     std::vector<std::int64_t> places_;
     std::vector<std::int64_t> backwards_;  // bonds of the list whose atoms were given the other way round
+    bool flat_ = false;
     bool committed_ = false;
 };
 

@@ -30,6 +30,8 @@ struct Given;
 // When positions are compared with the lengths. The values are those of hol_when, which capi/chains.cpp asserts.
 enum class Checks { never = 0, at_start = 1, always = 2 };
 
+class Batch;
+
 class Chains {
 public:
     Chains(std::int64_t n_atoms, const double *masses);
@@ -165,7 +167,11 @@ private:
     std::vector<rigid::Given> sort_rigid(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
                                          std::int64_t offset, const double *places, std::int64_t n_bonds,
                                          const std::int64_t *pairs, const double *lengths) const;
-    void commit_rigid(const std::vector<rigid::Given> &molecules, std::int64_t n_bonds);
+    // `also`, of another addition in the same call: done when nothing else can fail but it.
+    void commit_rigid(const std::vector<rigid::Given> &molecules, std::int64_t n_bonds, Batch *also = nullptr);
+    // Bond k of the list has the length lengths[k % n_lengths]. Parts that depend become bodies (rigid/cliques.hpp).
+    void add_listed(const BondList &list, const double *lengths, std::int64_t n_lengths);
+    void add_with_bodies(const BondList &list, const double *lengths, std::int64_t n_lengths);
     std::unique_ptr<rigid::Bodies> rebuild_bodies(const Masses &masses, const double *lengths) const;
     double longest() const;
 

@@ -12,6 +12,8 @@ class Chains;
 
 // What adding a bond takes at the most while it is done and afterwards, but for what the cycles of its molecule fill.
 constexpr std::int64_t bytes_of_chain_bond = 40, bytes_of_listed_bond = 120, bytes_of_shape_bond = 400;
+// The same of an atom of a body; what a kind of body takes is counted once it is there.
+constexpr std::int64_t bytes_of_body_atom = 100;
 
 // A quarter of the machine's memory; where that is not known, no limit.
 std::int64_t default_memory_limit();

@@ -1,10 +1,13 @@
 // Adding molecules with rigid bodies to a set, and building them again with other masses or lengths.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/molecules/batch.hpp"
 #include "core/molecules/chains.hpp"
+#include "core/molecules/memory_limit.hpp"
 #include "core/rigid/bodies.hpp"
+#include "core/rigid/cliques.hpp"
 
 namespace holonomic {
 
@@ -91,7 +94,8 @@ BodyName name_of_body(const Chains &chains, const rigid::Given &given, std::int6
 
 void Chains::add_rigid(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
                        const double *places, std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths) {
-    check_sizes(n_bodies, sizes, n_bonds, base);
+    const std::int64_t n_held = check_sizes(n_bodies, sizes, n_bonds, base);
+    check_memory(*this, n_held + n_bonds, bytes_of_body_atom);
     check_lengths(n_bonds, lengths, base);
     commit_rigid(sort_rigid(n_bodies, sizes, atoms, 0, places, n_bonds, pairs, lengths), n_bonds);
 }
@@ -119,6 +123,7 @@ void Chains::add_rigid_molecules(std::int64_t count, std::int64_t n_atoms, std::
                                 static_cast<long long>(list[e]), base, number(n_atoms - 1, base)),
                      base, bonds ? e / 2 : -1, -1);
     };
+    check_memory(*this, count * (n_held + std::min(n_bonds, most)), bytes_of_body_atom);
     check(atoms, n_held, false);
     check(pairs, 2 * n_bonds, true);
     std::vector<rigid::Given> all;
@@ -144,11 +149,53 @@ void Chains::add_rigid_molecules(std::int64_t count, std::int64_t n_atoms, std::
     commit_rigid(all, count * n_bonds);
 }
 
-void Chains::commit_rigid(const std::vector<rigid::Given> &molecules, std::int64_t n_bonds) {
+// Where parts of the list depend, their molecules are added as bodies, the others as ever.
+void Chains::add_with_bodies(const BondList &list, const double *lengths, std::int64_t n_lengths) {
+    const rigid::Cliques cliques = rigid::find_cliques(masses_, list, lengths, n_lengths);
+    FoundMolecules found;
+    std::vector<std::int64_t> pairs, rest, rest_pairs;
+    std::vector<double> its_lengths;
+    std::size_t next = 0;
+    for (std::int64_t k = 0; k < list.n_bonds; ++k) {
+        const bool of_body = next < cliques.bonds.size() && cliques.bonds[next] == k;
+        next += of_body;
+        std::vector<std::int64_t> &to = of_body ? pairs : rest_pairs;
+        to.push_back(list.pairs[2 * k]);
+        to.push_back(list.pairs[2 * k + 1]);
+        if (of_body)
+            its_lengths.push_back(lengths[k % n_lengths]);
+        else
+            rest.push_back(k);
+    }
+    try {
+        const std::int64_t n_rest = static_cast<std::int64_t>(rest.size());
+        if (n_rest > 0) found = find_molecules(masses_, n_atoms_, {n_rest, rest_pairs.data(), base, &labels_});
+    } catch (const Error &error) {
+        if (error.bond < 0 || rest.size() == at(list.n_bonds)) throw;
+        throw bond_error(list, error.status, rest[at(error.bond)], "is one too many: others of the list say the same");
+    }
+    for (std::int64_t &bond : found.bonds) bond = rest[at(bond)];
+    for (std::int64_t &bond : found.unconstrained) bond = rest[at(bond)];
+    Batch batch(*this);
+    batch.append_found(found, list, lengths, n_lengths);
+    if (cliques.sizes.empty()) return batch.commit();
+    std::vector<rigid::Given> molecules =
+        sort_rigid(static_cast<std::int64_t>(cliques.sizes.size()), cliques.sizes.data(), cliques.atoms.data(), 0,
+                   cliques.places.data(), static_cast<std::int64_t>(its_lengths.size()), pairs.data(),
+                   its_lengths.data());
+    for (rigid::Given &given : molecules) {
+        given.by_lengths = true;
+        for (std::int64_t &bond : given.bond_numbers) bond = n_bonds_ + cliques.bonds[at(bond - n_bonds_)];
+    }
+    commit_rigid(molecules, 0, &batch);
+}
+
+void Chains::commit_rigid(const std::vector<rigid::Given> &molecules, std::int64_t n_bonds, Batch *also) {
     std::unique_ptr<rigid::Bodies> made;
     if (!bodies_) made = std::make_unique<rigid::Bodies>();
     rigid::Bodies &bodies = bodies_ ? *bodies_ : *made;
     const rigid::Bodies::Mark before = bodies.mark();
+    const std::int64_t room = memory_left(*this) + (bodies_ ? bodies.bytes() : 0);
     try {
         for (const rigid::Given &given : molecules) {
             try {
@@ -157,8 +204,10 @@ void Chains::commit_rigid(const std::vector<rigid::Given> &molecules, std::int64
                 refuse(*this, given, refusal);
             }
         }
+        if (bodies.bytes() > room) throw too_much_memory(*this, "these molecules with bodies", bodies.bytes() - room);
         check_width(box, bodies.longest(), nullptr);
         check_width(box_of_reference(), bodies.longest(), nullptr);
+        if (also) also->commit();
     } catch (...) {
         bodies.roll_back(before);
         throw;

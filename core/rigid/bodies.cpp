@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/rigid/blocks.hpp"
 #include "core/rigid/system.hpp"
 
 namespace holonomic::rigid {
@@ -42,6 +43,7 @@ std::vector<double> signature_of(const Given &given) {
     count(given.atoms.size());
     count(given.bonds.size());
     words.push_back(given.n_movable);
+    words.push_back(given.by_lengths);
     for (const std::int32_t size : given.sizes) words.push_back(size);
     words.insert(words.end(), given.place.begin(), given.place.end());
     words.insert(words.end(), given.masses.begin(), given.masses.end());
@@ -92,6 +94,7 @@ std::int32_t Bodies::find_shape(const Given &given) {
     shape.n_movable = given.n_movable;
     shape.mass = given.masses;
     shape.bonds = given.bonds;
+    shape.by_lengths = given.by_lengths;
     for (std::size_t b = 0; b < given.sizes.size(); ++b) {
         try {
             const std::int32_t body = find_body(given.sizes[b], given.masses.data() + shape.n_held,
@@ -110,6 +113,7 @@ std::int32_t Bodies::find_shape(const Given &given) {
     }
     const std::int32_t number = static_cast<std::int32_t>(shapes_.size());
     scratch_bytes_ = std::max(scratch_bytes_, System::bytes(shape));
+    if (shape.is_lone_body) block_bytes_ = std::max(block_bytes_, bytes_of_block(shape));
     longest_ = std::max(longest_, shape.longest);
     shapes_.push_back(std::move(shape));
     shape_of_hash_.emplace(hash, number);
@@ -119,7 +123,11 @@ std::int32_t Bodies::find_shape(const Given &given) {
 void Bodies::add(const Given &given) {
     const std::int32_t number = find_shape(given);
     const Shape &its = shapes_[at(number)];
-    molecules_.push_back({number, static_cast<std::int64_t>(atoms_.size()), static_cast<std::int64_t>(bonds_.size())});
+    const bool consecutive = std::adjacent_find(given.atoms.begin(), given.atoms.end(), [](std::int64_t a, std::int64_t b) {
+                                 return b != a + 1;
+                             }) == given.atoms.end();
+    molecules_.push_back({number, consecutive, static_cast<std::int64_t>(atoms_.size()),
+                          static_cast<std::int64_t>(bonds_.size())});
     atoms_.insert(atoms_.end(), given.atoms.begin(), given.atoms.end());
     bonds_.insert(bonds_.end(), given.bond_numbers.begin(), given.bond_numbers.end());
     for (std::int32_t a = 0; a < its.n_held; ++a)
@@ -137,6 +145,7 @@ Given Bodies::given(std::int64_t molecule) const {
     given.bonds = its.bonds;
     given.bond_numbers.assign(numbers, numbers + its.bonds.size());
     given.n_movable = its.n_movable;
+    given.by_lengths = its.by_lengths;
     given.masses = its.mass;
     for (const Part &part : its.parts) {
         const Body &kind = body(part);
@@ -148,7 +157,7 @@ Given Bodies::given(std::int64_t molecule) const {
 
 Bodies::Mark Bodies::mark() const {
     return {molecules_.size(), kinds_.size(),  shapes_.size(), atoms_.size(),  bonds_.size(),
-            fixed_.size(),     active_.size(), longest_,       scratch_bytes_, work_};
+            fixed_.size(),     active_.size(), longest_,       scratch_bytes_, block_bytes_,  work_};
 }
 
 void Bodies::roll_back(const Mark &before) {
@@ -168,6 +177,7 @@ void Bodies::roll_back(const Mark &before) {
     active_.resize(before.active);
     longest_ = before.longest;
     scratch_bytes_ = before.scratch_bytes;
+    block_bytes_ = before.block_bytes;
     work_ = before.work;
 }
 
@@ -205,10 +215,7 @@ std::int64_t Bodies::bytes() const {
                                   (atoms_.capacity() + bonds_.capacity() + fixed_.capacity()) * sizeof(std::int64_t)) +
         static_cast<std::int64_t>(32 * sites_.size());
     for (const Shape &its : shapes_) sum += its.bytes();
-    for (const Body &kind : kinds_)
-        sum +=
-            static_cast<std::int64_t>((kind.masses.capacity() + kind.place.capacity()) * sizeof(double) +
-                                      (kind.y.capacity() + kind.share.capacity()) * sizeof(DoublePair) + sizeof kind);
+    for (const Body &kind : kinds_) sum += kind.bytes();
     return sum;
 }
 

@@ -21,6 +21,7 @@ struct Given {
     std::int32_t n_movable = 0;
     std::vector<Bond> bonds;
     std::vector<std::int64_t> bond_numbers;  // in the arrays per bond
+    bool by_lengths = false;                 // bonds within bodies are what holds these, and have multipliers
 };
 
 // What makes given bodies impossible: a body's fault or that of their bonds.
@@ -56,7 +57,9 @@ public:
     // [n_molecules] or null: all
     void set_active(const unsigned char *active);
     double longest() const { return longest_; }  // of what is taken as a nearest image
-    std::int64_t scratch_bytes() const { return scratch_bytes_; }
+    bool is_consecutive(std::int64_t molecule) const { return molecules_[static_cast<std::size_t>(molecule)].consecutive; }
+    std::int64_t scratch_bytes() const { return scratch_bytes_; }  // of a System, a multiple of 64
+    std::int64_t block_bytes() const { return block_bytes_; }      // of the kernels for bodies alone, behind it
     std::int64_t work() const { return work_; }  // rows of all molecules
     // That active ones take from the freedoms of the atoms that have mass.
     std::int64_t constraints(int dimensions) const;
@@ -68,7 +71,7 @@ public:
     struct Mark {
         std::size_t molecules, kinds, shapes, atoms, bonds, fixed, active;
         double longest;
-        std::int64_t scratch_bytes, work;
+        std::int64_t scratch_bytes, block_bytes, work;
     };
     Mark mark() const;
     void roll_back(const Mark &before);
@@ -78,6 +81,7 @@ public:
 private:
     struct Molecule {
         std::int32_t shape;
+        bool consecutive;  // its atoms stand one behind the other
         std::int64_t first_atom, first_bond;
     };
     std::int32_t find_shape(const Given &given);
@@ -91,7 +95,7 @@ private:
     std::unordered_set<std::int64_t> sites_;
     std::vector<unsigned char> active_;
     double longest_ = 0;
-    std::int64_t scratch_bytes_ = 0, work_ = 0;
+    std::int64_t scratch_bytes_ = 0, block_bytes_ = 0, work_ = 0;
 };
 
 }  // namespace holonomic::rigid

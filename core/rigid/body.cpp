@@ -71,6 +71,23 @@ Axes axes_of(DoublePair s[3][3]) {
     return found;
 }
 
+// Places and what their rounding leaves off, then shares.
+void set_weights(Body &body) {
+    const std::int64_t K = 1 + body.rank, n = body.n_atoms * K;
+    body.weights.resize(at(4 * n));
+    double *const weights = body.weights.data();
+    for (std::int64_t a = 0; a < body.n_atoms; ++a)
+        for (std::int64_t k = 0; k < K; ++k) {
+            const DoublePair place = k == 0 ? as_pair(1) : body.y[at(a * body.rank + k - 1)],
+                             share = body.share[at(a * K + k)];
+            double *const to = weights + a * K + k;
+            to[0] = rounded(place);
+            to[n] = rounded(place - as_pair(rounded(place)));
+            to[2 * n] = rounded(share);
+            to[3 * n] = rounded(share - as_pair(rounded(share)));
+        }
+}
+
 void check_input(std::int32_t n, const double *masses, const double *place) {
     int massive = 0;
     for (std::int32_t a = 0; a < n; ++a) {
@@ -154,13 +171,15 @@ Body make_body(std::int32_t n, const double *masses, const double *place) {
         }
     }
     double farthest = 0;
-    for (const DoublePair &y : body.y) {
-        body.y_rounded.push_back(rounded(y));
-        farthest = std::max(farthest, std::fabs(y.hi));
-    }
-    for (const DoublePair &share : body.share) body.share_rounded.push_back(rounded(share));
+    for (const DoublePair &y : body.y) farthest = std::max(farthest, std::fabs(y.hi));
     body.is_thick = body.length[body.rank - 1] > 1e-3 * body.length[0] && farthest < 100;
+    if (body.is_thick) set_weights(body);
     return body;
+}
+
+std::int64_t Body::bytes() const {
+    return static_cast<std::int64_t>((masses.capacity() + place.capacity() + weights.capacity()) * sizeof(double) +
+                                     (y.capacity() + share.capacity()) * sizeof(DoublePair) + sizeof *this);
 }
 
 const char *fault_in_words(BodyFault::Cause cause) {

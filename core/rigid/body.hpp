@@ -27,12 +27,14 @@ struct Body {
     double length[3];                              // L_p, descending
     DoublePair square[3];                          // L_p^2
     double extent;                                 // the largest distance of an atom from the centre
-    std::vector<double> masses;                    // [n_atoms], 0: a massless site
-    std::vector<double> place;                     // [n_atoms][3] the reference coordinates as they were given
-    std::vector<double> y_rounded, share_rounded;  // of y and share
+    std::vector<double> masses;     // [n_atoms], 0: a massless site
+    std::vector<double> place;      // [n_atoms][3] the reference coordinates as they were given
     bool is_thick;                  // plain doubles do: neither thin nor with atoms far out for their mass
     std::vector<DoublePair> y;      // [n_atoms][rank]
     std::vector<DoublePair> share;  // [n_atoms][1 + rank]: m/M, m y_p / M
+    std::vector<double> weights;    // [4][n_atoms][1 + rank] of a thick one: what BodyKind has of places and shares
+
+    std::int64_t bytes() const;
 };
 
 // What makes a body impossible; `atom` within it, -1 if it is none in particular.

@@ -1,10 +1,11 @@
 // Accelerations: forces, and the multipliers of given right-hand sides.
 #include <cmath>
 
-#include "core/rigid/alone.hpp"
 #include "core/rigid/rates.hpp"
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
+#include "core/rigid/within.hpp"
+#include "core/run/dispatch.hpp"
 
 namespace holonomic::rigid {
 
@@ -34,13 +35,22 @@ void write_force(const Outputs &out, std::int64_t atom, const PairVector &force,
 void write(const System &system, const Place &place, const PairVector *z, const AtomArray &f, const Outputs &out,
            bool virial, Tally &tally) {
     const Shape &s = system.shape();
+    if (s.by_lengths && (out.lambda || out.tension)) {
+        double *force = force_within(system);
+        for (std::int32_t i = 0; i < s.n_held; ++i) {
+            double x[3] = {0, 0, 0};
+            if (f.x) read_atom(f, place.atoms[i], x);
+            const PairVector applied = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
+            const Vector3<double> whole = rounded(s.mass[at(i)] * system.at_atom(z, i) - applied);
+            *force++ = whole.x, *force++ = whole.y, *force++ = whole.z;
+        }
+        share_within(system, system.now);
+    }
     for (std::size_t k = 0; k < s.bonds.size(); ++k) {
-        const std::int32_t row = s.bonds[k].row;
-        const double t = row < 0 ? 0 : rounded(system.t[row]);
+        const double t = multiplier_of(system, k);
         if (out.lambda) out.lambda[place.bonds[k]] = t / 2;
         if (!out.tension) continue;
-        const Vector3<double> d =
-            row < 0 ? Vector3<double>{0, 0, 0} : rounded(system.bond_vector(system.now, static_cast<std::int32_t>(k)));
+        const Vector3<double> d = vector_of(system, system.now, k);
         out.tension[place.bonds[k]] = t * std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
     }
     if (virial) system.add_virial(system.now, system.t, 1, tally.virial);
@@ -71,18 +81,27 @@ struct ForcesWork final : Work {
     const BoxRate *rate;
     Outputs out;
     bool virial, in_order;
+    ForcesCall call;
 
     ForcesWork(const Chains &chains, const AtomArray &r_, const AtomArray &v_, const AtomArray &f_, const Outputs &out_,
                bool virial_)
         : r(r_), v(v_), f(f_), box(chains.box), rate(chains.box_rate()), out(out_), virial(virial_),
-          in_order(out_.g.x && !chains.bodies()->fixed_atoms().empty()) {}
+          in_order(out_.g.x && !chains.bodies()->fixed_atoms().empty()), call{r_, v_, f_, out_.g, nullptr, nullptr,
+                                                                              out_.add, virial_, {}} {
+        put_box(box, call.box);
+    }
     bool is_in_order() const override { return in_order; }
+    bool takes_blocks(bool bonds) const override { return !rate && !(bonds && (out.lambda || out.tension)); }
+    unsigned bodies(const BodyUnit &unit, double *scratch, BodyResult *results) const override {
+        return kernels().bodies.forces(call, unit, scratch, results);
+    }
+    bool has_results() const override { return virial; }
+    void done(const BodyResult &result, std::int64_t, Tally &tally) const override {
+        for (int i = 0; i < 6; ++i) tally.virial[i] += result.virial[i];
+    }
 
     Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
         const Shape &s = system.shape();
-        if (s.is_lone_body && !rate &&
-            forces_alone(system.lone(place), r, box, v, f, out.g, out.add, virial ? tally.virial : nullptr))
-            return Outcome::good;
         system.read(r, box, place, system.now);
         system.differentiate(system.now);
         const bool moves = v.x || rate;

@@ -2,9 +2,10 @@
 #include <cmath>
 #include <limits>
 
-#include "core/rigid/alone.hpp"
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
+#include "core/rigid/within.hpp"
+#include "core/run/dispatch.hpp"
 
 namespace holonomic::rigid {
 
@@ -26,12 +27,32 @@ struct PositionsWork final : Work {
     double dt, *lambda, tolerance;
     int most_iterations;
     bool virial, report, check;
+    PositionsCall call;
 
     PositionsWork(const Chains &chains, const AtomArray &r_ref_, const AtomArray &r_, const AtomArray &v_, double dt_,
                   double *lambda_, bool virial_, bool report_)
         : r_ref(r_ref_), r(r_), v(v_), box_ref(chains.box_of_reference()), box(chains.box), dt(dt_), lambda(lambda_),
           tolerance(chains.tolerance), most_iterations(chains.max_iterations), virial(virial_), report(report_),
-          check(chains.checks() != Checks::never) {}
+          check(chains.checks() != Checks::never) {
+        call.r_ref = r_ref;
+        call.r = r;
+        call.v = v;
+        call.dt = dt;
+        call.virial = virial;
+        call.report = report;
+        call.max_iterations = most_iterations;
+        put_box(box, call.box);
+        put_box(box_ref, call.box_ref);
+    }
+    bool takes_blocks(bool bonds) const override { return tolerance == 0 && !(bonds && lambda); }
+    unsigned bodies(const BodyUnit &unit, double *scratch, BodyResult *results) const override {
+        return kernels().bodies.positions(call, unit, scratch, results);
+    }
+    bool has_results() const override { return virial || report; }
+    void done(const BodyResult &result, std::int64_t number, Tally &tally) const override {
+        for (int i = 0; i < 6 && virial; ++i) tally.virial[i] += result.virial[i];
+        note(number, result.iterations, true, result.error, -1, tally);
+    }
 
     // Whether everything is where it should be, to the rounding of the coordinates. system.t: residuals of rows.
     bool is_done(const System &system) const {
@@ -67,32 +88,24 @@ struct PositionsWork final : Work {
         return false;
     }
 
-    void note(const Place &place, int iterations, bool corrected, double error, std::int32_t bond, Tally &tally) const {
+    void note(std::int64_t number, int iterations, bool corrected, double error, std::int32_t bond, Tally &tally) const {
         if (!report) return;
         tally.iterations = std::max<std::int64_t>(tally.iterations, iterations);
         tally.n_corrected += corrected;
-        if (!is_worse(tally, error, place.number)) return;
+        if (!is_worse(tally, error, number)) return;
         tally.worst = error;
-        tally.worst_chain = place.number;
+        tally.worst_chain = number;
         tally.worst_bond = bond;
     }
 
     void write_lambda(const System &system, const Place &place, double factor) const {
         const Shape &s = system.shape();
         for (std::size_t k = 0; lambda && k < s.bonds.size(); ++k)
-            lambda[place.bonds[k]] = s.bonds[k].row < 0 ? 0 : factor * rounded(system.t[s.bonds[k].row]);
+            lambda[place.bonds[k]] = factor * multiplier_of(system, k);
     }
 
     Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
         const Shape &s = system.shape();
-        int taken;
-        double left;
-        if (s.is_lone_body && tolerance == 0 &&
-            positions_alone(system.lone(place), r_ref, box_ref, r, box, v, dt, virial ? tally.virial : nullptr, &taken,
-                            &left)) {
-            note(place, taken, true, left, -1, tally);
-            return Outcome::good;
-        }
         system.read(r_ref, box_ref, place, system.reference);
         system.read(r, box, place, system.now);
         std::int32_t worst_bond;
@@ -101,8 +114,9 @@ struct PositionsWork final : Work {
         if (check && is_stretched(system)) return Outcome::stretched;
         if (is_done(system)) {
             std::fill(system.t, system.t + s.n_rows, as_pair(0));
+            if (s.by_lengths) std::fill(system.within, system.within + s.bonds.size(), 0.0);
             write_lambda(system, place, 1);
-            note(place, 0, false, before, worst_bond, tally);
+            note(place.number, 0, false, before, worst_bond, tally);
             return Outcome::good;
         }
         system.differentiate(system.reference);
@@ -115,11 +129,24 @@ struct PositionsWork final : Work {
         for (std::int32_t i = 0; i < s.n_movable; ++i)
             sum += size_of(system.at_atom(system.now.q, i)) + size_of(system.now.x[i]) + size_of(system.reference.x[i]);
         if (!std::isfinite(sum)) return Outcome::not_finite;
+        if (s.by_lengths && lambda) share(system);
         write_atoms(system, place);
         write_lambda(system, place, 0.5 / (dt * dt));
         if (virial) system.add_virial(system.reference, system.t, 1 / (dt * dt), tally.virial);
-        note(place, iterations, true, error, -1, tally);
+        note(place.number, iterations, true, error, -1, tally);
         return outcome;
+    }
+
+    // The moves, times the masses.
+    void share(const System &system) const {
+        const Shape &s = system.shape();
+        double *force = force_within(system);
+        for (std::int32_t i = 0; i < s.n_held; ++i) {
+            const PairVector moved = system.at_atom(system.now.q, i) - system.now.x[i];
+            const Vector3<double> push = rounded(s.mass[at(i)] * moved);
+            *force++ = push.x, *force++ = push.y, *force++ = push.z;
+        }
+        share_within(system, system.reference);
     }
 
     // Sites have no momentum of their own: their velocities are those of the body at their places.

@@ -4,6 +4,7 @@
 
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
+#include "core/rigid/within.hpp"
 
 namespace holonomic::rigid {
 
@@ -27,10 +28,8 @@ struct ReactionsWork final : Work {
         const Shape &s = system.shape();
         system.read(r, box, place, system.now);
         double size = 0;
-        for (const Bond &bond : s.bonds) {
-            if (bond.row < 0) continue;
-            const std::int32_t k = static_cast<std::int32_t>(&bond - s.bonds.data());
-            const Vector3<double> d = rounded(system.bond_vector(system.now, k));
+        for (std::size_t k = 0; k < s.bonds.size(); ++k) {
+            const Vector3<double> d = vector_of(system, system.now, k);
             const double square = d.x * d.x + d.y * d.y + d.z * d.z, t = 2 * lambda[place.bonds[k]];
             size += std::fabs(t) * (square + 4 * std::sqrt(square)) + square;
         }
@@ -38,14 +37,9 @@ struct ReactionsWork final : Work {
         double *const force = system.raw;  // positions have been read
         std::fill(force, force + 3 * std::ptrdiff_t{s.n_atoms}, 0.0);
         for (const Bond &bond : s.bonds) {
-            const std::int32_t k = static_cast<std::int32_t>(&bond - s.bonds.data());
+            const std::size_t k = static_cast<std::size_t>(&bond - s.bonds.data());
             const std::int64_t number = place.bonds[k];
-            if (bond.row < 0) {
-                if (out.tension) out.tension[number] = 0;
-                if (out.bond_virial) std::fill(out.bond_virial + 6 * number, out.bond_virial + 6 * number + 6, 0.0);
-                continue;
-            }
-            const Vector3<double> v = rounded(system.bond_vector(system.now, k));
+            const Vector3<double> v = vector_of(system, system.now, k);
             const double d[3] = {v.x, v.y, v.z}, t = 2 * lambda[number];
             if (out.tension) out.tension[number] = t * std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
             double w[6], *next = w;

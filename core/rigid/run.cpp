@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <new>
 
+#include "core/rigid/blocks.hpp"
+#include "core/run/dispatch.hpp"
 #include "core/run/outcomes.hpp"
 #include "core/run/thread_memory.hpp"
 
@@ -29,33 +31,104 @@ void add(Found &total, const Found &part) {
 std::int32_t noted(Outcome why) { return bad_outcome - static_cast<std::int32_t>(why); }
 Outcome why(std::int32_t noted) { return static_cast<Outcome>(bad_outcome - noted); }
 
-Found run_block(const Chains &chains, const Work &work, std::int64_t first, char *memory, OutcomeOf *outcomes) {
-    const Bodies &bodies = *chains.bodies();
-    Found found{empty_tally(), Outcome::good};
-    const std::int64_t end = std::min(first + block, bodies.n_molecules());
-    for (std::int64_t m = first; m < end; ++m) {
-        if (!bodies.is_active(m)) continue;
-        const System system(bodies.shape(m), bodies.kinds(), memory);
-        const Place place{bodies.atoms(m), bodies.bonds(m), chains.n_chains() + m};
-        Tally own = empty_tally();
-        const Outcome outcome = work.molecule(system, place, outcomes ? own : found.tally);
-        if (outcomes) {
-            holonomic::add(found.tally, own);
-            outcomes[place.number] = {outcome == Outcome::good ? 0 : noted(outcome),
-                                      static_cast<std::int32_t>(own.iterations)};
+class Block {
+public:
+    Block(const Chains &chains, const Work &work, char *memory, OutcomeOf *outcomes)
+        : chains_(chains), bodies_(*chains.bodies()), work_(work), memory_(memory), outcomes_(outcomes),
+          widest_(work.takes_blocks(false) ? kernels().lanes : 1) {}
+
+    Found run(std::int64_t first) {
+        const std::int64_t end = std::min(first + block, bodies_.n_molecules());
+        for (std::int64_t m = first; m < end; ++m) {
+            if (!bodies_.is_active(m)) continue;
+            const Shape &shape = bodies_.shape(m);
+            if (!shape.is_lone_body || !work_.takes_blocks(!shape.bonds.empty())) {
+                molecule(m);
+                continue;
+            }
+            std::int64_t alike[most_lanes];
+            int n = 0;
+            std::int64_t next = m;
+            for (; next < end && n < widest_ && bodies_.shape_number(next) == bodies_.shape_number(m); ++next)
+                if (bodies_.is_active(next)) alike[n++] = next;
+            side_by_side(alike, n);
+            m = next - 1;
         }
-        if (outcome == Outcome::good) continue;
-        if (found.tally.n_bad == 0) found.first_outcome = outcome;
-        note_bad(place.number, found.tally);
+        return found_;
     }
-    return found;
-}
+
+private:
+    Place place(std::int64_t m) const { return {bodies_.atoms(m), bodies_.bonds(m), chains_.n_chains() + m}; }
+
+    void molecule(std::int64_t m) {
+        const System system(bodies_.shape(m), bodies_.kinds(), memory_);
+        const Outcome outcome = counted(m, [&](Tally &tally) { return work_.molecule(system, place(m), tally); });
+        if (outcome == Outcome::good) return;
+        if (found_.tally.n_bad == 0) found_.first_outcome = outcome;
+        note_bad(chains_.n_chains() + m, found_.tally);
+    }
+
+    // Does a molecule, and notes its outcome if that is asked for.
+    template <class Do>
+    Outcome counted(std::int64_t m, const Do &of) {
+        const auto most = found_.tally.iterations;
+        found_.tally.iterations = 0;
+        const Outcome outcome = of(found_.tally);
+        if (outcomes_)
+            outcomes_[chains_.n_chains() + m] = {outcome == Outcome::good ? 0 : noted(outcome),
+                                                 static_cast<std::int32_t>(found_.tally.iterations)};
+        found_.tally.iterations = std::max(found_.tally.iterations, most);
+        return outcome;
+    }
+
+    void side_by_side(const std::int64_t *alike, int n) {
+        if (shape_ != bodies_.shape_number(alike[0])) {
+            shape_ = bodies_.shape_number(alike[0]);
+            const Shape &shape = bodies_.shape(alike[0]);
+            kind_ = kind_of(bodies_.body(shape.parts[0]), shape);
+        }
+        BodyUnit unit;
+        unit.kind = &kind_;
+        unit.count = n;
+        unit.consecutive = true;
+        for (int l = 0; l < n; ++l) {
+            unit.atoms[l] = bodies_.atoms(alike[l]);
+            unit.consecutive = unit.consecutive && bodies_.is_consecutive(alike[l]);
+        }
+        for (int l = n; l < widest_; ++l) unit.atoms[l] = unit.atoms[0];
+        BodyResult results[most_lanes];
+        const unsigned done =
+            work_.bodies(unit, reinterpret_cast<double *>(memory_ + bodies_.scratch_bytes()), results);
+        if (done == (1u << n) - 1 && !work_.has_results() && !outcomes_) return;
+        for (int l = 0; l < n; ++l) {
+            if (!(done >> l & 1)) {
+                molecule(alike[l]);
+                continue;
+            }
+            counted(alike[l], [&](Tally &tally) {
+                work_.done(results[l], chains_.n_chains() + alike[l], tally);
+                return Outcome::good;
+            });
+        }
+    }
+
+    const Chains &chains_;
+    const Bodies &bodies_;
+    const Work &work_;
+    char *const memory_;
+    OutcomeOf *const outcomes_;
+    const int widest_;
+    Found found_{empty_tally(), Outcome::good};
+    BodyKind kind_;
+    std::int32_t shape_ = -1;
+};
 
 }  // namespace
 
 Found run(const Chains &chains, const Work &work) {
     const Bodies &bodies = *chains.bodies();
-    const std::int64_t bytes = bodies.scratch_bytes(), n_blocks = (bodies.n_molecules() + block - 1) / block;
+    const std::int64_t bytes = bodies.scratch_bytes() + bodies.block_bytes(),
+                       n_blocks = (bodies.n_molecules() + block - 1) / block;
     char *const own = static_cast<char *>(thread_memory(Keep::rigid, bytes));
     Found *const parts =
         static_cast<Found *>(thread_memory(Keep::piece_tallies, n_blocks * static_cast<std::int64_t>(sizeof(Found))));
@@ -64,7 +137,7 @@ Found run(const Chains &chains, const Work &work) {
     const int n_threads = static_cast<int>(std::min(std::min<std::int64_t>(chains.n_threads, n_blocks),
                                                     std::max<std::int64_t>(bodies.work() / rows_per_thread, 1)));
     if (n_threads <= 1 || work.is_in_order()) {
-        for (std::int64_t j = 0; j < n_blocks; ++j) parts[j] = run_block(chains, work, j * block, own, outcomes);
+        for (std::int64_t j = 0; j < n_blocks; ++j) parts[j] = Block(chains, work, own, outcomes).run(j * block);
     } else {
 #ifdef _OPENMP
         std::atomic<std::int64_t> next{0};
@@ -73,10 +146,10 @@ Found run(const Chains &chains, const Work &work) {
         {
             char *const memory = static_cast<char *>(thread_memory(Keep::rigid, bytes));
             for (std::int64_t j; memory && (j = next.fetch_add(1)) < n_blocks;)
-                parts[j] = run_block(chains, work, j * block, memory, outcomes);
+                parts[j] = Block(chains, work, memory, outcomes).run(j * block);
         }
 #else
-        for (std::int64_t j = 0; j < n_blocks; ++j) parts[j] = run_block(chains, work, j * block, own, outcomes);
+        for (std::int64_t j = 0; j < n_blocks; ++j) parts[j] = Block(chains, work, own, outcomes).run(j * block);
 #endif
     }
     Found total{empty_tally(), Outcome::good};

@@ -53,7 +53,8 @@ struct Shape {
     std::vector<double> mass;           // [n_atoms], 0: a site; of fixed atoms 0 too
     std::vector<Bond> bonds;
     std::vector<Step> steps;    // the way through the molecule, from its first atom
-    bool is_lone_body = false;  // one that plain doubles do for, without bonds
+    bool by_lengths = false;    // bonds within bodies have multipliers (within.hpp)
+    bool is_lone_body = false;  // one that plain doubles do for, without bonds but within it
     double longest = 0;         // of what is taken as a nearest image
     // rows in the order of elimination
     std::vector<std::int32_t> entry_start;  // [n_rows + 1]

@@ -55,7 +55,7 @@ struct Layout {
     DoublePair *t, *c, *residual, *wide_x;
     Factor<double> plain;
     Factor<DoublePair> wide;
-    double *x, *raw, *gradient[2];
+    double *x, *raw, *within, *gradient[2];
     std::int64_t bytes;
 };
 
@@ -86,7 +86,8 @@ Layout lay_out(const Shape &s, char *memory) {
     m.raw = pieces.take<double>(3 * std::int64_t{s.n_atoms});
     m.gradient[0] = pieces.take<double>(3 * entries);
     m.gradient[1] = pieces.take<double>(3 * entries);
-    m.bytes = pieces.used(memory);
+    m.within = pieces.take<double>(s.by_lengths ? 3 * (bonds + 2 * std::int64_t{s.n_held}) : 0);
+    m.bytes = (pieces.used(memory) + 63) / 64 * 64;
     return m;
 }
 
@@ -106,6 +107,7 @@ System::System(const Shape &shape, const Body *bodies, char *memory) : s_(shape)
     t = m.t;
     c = m.c;
     raw = m.raw;
+    within = m.within;
     plain_ = m.plain;
     wide_ = m.wide;
     x_ = m.x;

@@ -32,8 +32,6 @@ struct Conformation {
     PairVector *gradient;  // [entries]
 };
 
-struct Lone;
-
 class System {
 public:
     static std::int64_t bytes(const Shape &shape);
@@ -65,13 +63,13 @@ public:
     void add_virial(const Conformation &at, const DoublePair *t, double factor, double *virial) const;
 
     const Shape &shape() const { return s_; }
-    Lone lone(const Place &place) const;  // of a molecule that is a body alone
     const Body &body(const Part &part) const { return bodies_[part.body]; }
 
     Conformation now, reference;
     PairVector *a, *b;  // [n_nodes] each
     DoublePair *t, *c;  // [n_rows] each
     double *raw;        // [n_atoms][3]
+    double *within;     // of molecules by lengths: [n_bonds][3] and [n_held][3] twice
 
 private:
     template <class T>

@@ -1,9 +1,10 @@
 #include <cmath>
 
-#include "core/rigid/alone.hpp"
 #include "core/rigid/rates.hpp"
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
+#include "core/rigid/within.hpp"
+#include "core/run/dispatch.hpp"
 
 namespace holonomic::rigid {
 
@@ -17,14 +18,23 @@ struct VelocitiesWork final : Work {
     const BoxRate *rate;
     double *lambda;
     bool virial;
+    VelocitiesCall call;
 
     VelocitiesWork(const Chains &chains, const AtomArray &r_, const AtomArray &v_, double *lambda_, bool virial_)
-        : r(r_), v(v_), box(chains.box), rate(chains.box_rate()), lambda(lambda_), virial(virial_) {}
+        : r(r_), v(v_), box(chains.box), rate(chains.box_rate()), lambda(lambda_), virial(virial_), call{r_, v_, nullptr, virial_, nullptr, {}} {
+        put_box(box, call.box);
+    }
+    bool takes_blocks(bool bonds) const override { return !rate && !(bonds && lambda); }
+    unsigned bodies(const BodyUnit &unit, double *scratch, BodyResult *results) const override {
+        return kernels().bodies.velocities(call, unit, scratch, results);
+    }
+    bool has_results() const override { return virial; }
+    void done(const BodyResult &result, std::int64_t, Tally &tally) const override {
+        for (int i = 0; i < 6; ++i) tally.virial[i] += result.virial[i];
+    }
 
     Outcome molecule(const System &system, const Place &place, Tally &tally) const override {
         const Shape &s = system.shape();
-        if (s.is_lone_body && !rate && velocities_alone(system.lone(place), r, box, v, virial ? tally.virial : nullptr))
-            return Outcome::good;
         system.read(r, box, place, system.now);
         system.differentiate(system.now);
         if (rate)
@@ -42,16 +52,31 @@ struct VelocitiesWork final : Work {
             sum += std::fabs(of_atom.x) + std::fabs(of_atom.y) + std::fabs(of_atom.z) + x.x + x.y + x.z;
         }
         if (!std::isfinite(sum)) return Outcome::not_finite;
+        if (s.by_lengths && lambda) share(system, place, z);
         for (std::int32_t i = 0; i < s.n_movable; ++i) {
             const Vector3<double> of_atom = rounded(system.at_atom(z, i));
             const double x[3] = {of_atom.x, of_atom.y, of_atom.z};
             write_atom(v, place.atoms[i], x);
         }
         for (std::size_t k = 0; lambda && k < s.bonds.size(); ++k)
-            lambda[place.bonds[k]] =
-                s.bonds[k].row < 0 ? 0 : rounded(system.t[s.bonds[at(static_cast<std::int64_t>(k))].row]) / 2;
+            lambda[place.bonds[k]] = multiplier_of(system, k) / 2;
         if (virial) system.add_virial(system.now, system.t, 1, tally.virial);
         return outcome;
+    }
+
+    // The change of momenta.
+    void share(const System &system, const Place &place, const PairVector *z) const {
+        const Shape &s = system.shape();
+        double *force = force_within(system);
+        for (std::int32_t i = 0; i < s.n_held; ++i) {
+            double x[3];
+            read_atom(v, place.atoms[i], x);
+            const PairVector before = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
+            const Vector3<double> impulse =
+                rounded(s.mass[at(i)] * (system.at_atom(z, i) - before));
+            *force++ = impulse.x, *force++ = impulse.y, *force++ = impulse.z;
+        }
+        share_within(system, system.now);
     }
 };
 

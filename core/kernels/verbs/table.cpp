@@ -40,7 +40,9 @@ const Kernels kernels = {
     {molecules_scratch_bytes, forest_scratch_bytes, molecules_forces, molecules_velocities, molecules_positions,
      molecules_metric, molecules_solve},
     {tridiagonal_solve, tridiagonal_pivots},
+    {bodies_scratch_bytes, bodies_forces, bodies_velocities, bodies_positions},
 #else
+    {},
     {},
     {},
     {},

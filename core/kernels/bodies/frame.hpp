@@ -1,0 +1,308 @@
+// Rigid bodies of one kind side by side: reading and writing their atoms, and the equations of their axes.
+//
+// Vectors are numbered k = 0 .. R: that of the centre, and those of the axes u_p (core/rigid/body.hpp). With U the
+// 3 x R matrix of the u_p, S = U^T U, which is all but diagonal, and a symmetric Lambda:
+//
+//     forces       U'' = W/M - U Lambda,       S Lambda + Lambda S = U^T W/M + (..)^T + 2 U'^T U'
+//     velocities   U'  = U'_in - U Lambda,     S Lambda + Lambda S = U^T U'_in + (..)^T
+//     positions    U   = U_in - U_ref Lambda,  U^T U = L^2
+#ifndef HOLONOMIC_KERNELS_BODIES_FRAME_HPP
+#define HOLONOMIC_KERNELS_BODIES_FRAME_HPP
+
+#include "core/kernels/arithmetic/image.hpp"
+#include "core/kernels/atom.hpp"
+#include "core/kernels/bodies/kind.hpp"
+#include "core/kernels/call.hpp"
+
+namespace holonomic::HOL_ISA {
+
+constexpr double epsilon_of_doubles = 2.220446049250313e-16;
+
+// A vector per atom, from the caller's memory to lanes [n_atoms][3].
+HOL_NOINLINE void read_bodies(const AtomArray &array, const BodyUnit &unit, vec *to) {
+    const long n = 3L * unit.kind->n_atoms;
+    if (array.packed && unit.consecutive && n >= W) {
+        const double *from[W];
+        for (int l = 0; l < W; ++l) from[l] = reinterpret_cast<const double *>(array.x) + 3 * unit.atoms[l][0];
+        const auto turn = [&](long k) HOL_FORCED {
+            vec rows[W];
+            HOL_UNROLL
+            for (int l = 0; l < W; ++l) rows[l] = load(from[l] + k);
+            transpose(rows);
+            HOL_UNROLL
+            for (int l = 0; l < W; ++l) to[k + l] = rows[l];
+        };
+        for (long k = 0; k + W <= n; k += W) turn(k);
+        if (n % W) turn(n - W);
+        return;
+    }
+    for (int l = 0; l < W; ++l)
+        for (long a = 0; a < unit.kind->n_atoms; ++a) {
+            double x[3];
+            read_atom(array, unit.atoms[l][a], x);
+            for (int c = 0; c < 3; ++c) to[3 * a + c][l] = x[c];
+        }
+}
+
+HOL_NOINLINE void write_bodies(const AtomArray &array, const BodyUnit &unit, vec *from, unsigned lanes) {
+    const long n = 3L * unit.kind->n_atoms;
+    if (array.packed && unit.consecutive && n >= W && lanes == all_lanes) {
+        double *to[W];
+        for (int l = 0; l < W; ++l) to[l] = reinterpret_cast<double *>(array.x) + 3 * unit.atoms[l][0];
+        const auto turn = [&](long k) HOL_FORCED {
+            vec rows[W];
+            HOL_UNROLL
+            for (int l = 0; l < W; ++l) rows[l] = from[k + l];
+            transpose(rows);
+            HOL_UNROLL
+            for (int l = 0; l < W; ++l) store(to[l] + k, rows[l]);
+        };
+        for (long k = 0; k + W <= n; k += W) turn(k);
+        if (n % W) turn(n - W);
+        return;
+    }
+    for (int l = 0; l < W; ++l)
+        for (long a = 0; a < unit.kind->n_atoms && (lanes >> l & 1); ++a) {
+            const double x[3] = {from[3 * a][l], from[3 * a + 1][l], from[3 * a + 2][l]};
+            write_atom(array, unit.atoms[l][a], x);
+        }
+}
+
+// Coordinates from the first atom's, images taken.
+static inline void unfold(const BodyKind &kind, const Box &box, const vec *raw, vec *x) {
+    if (box.shape == Box::none) {
+        const vec first[3] = {raw[0], raw[1], raw[2]};
+        for (long a = 0; a < kind.n_atoms; ++a) {
+            HOL_UNROLL_FEW
+            for (int c = 0; c < 3; ++c) x[3 * a + c] = raw[3 * a + c] - first[c];
+        }
+        return;
+    }
+    HOL_UNROLL_FEW
+    for (int c = 0; c < 3; ++c) x[c] = raw[c] - raw[c];
+    for (long k = 0; k + 1 < kind.n_atoms; ++k) {
+        const long to = 3L * kind.steps[2 * k], from = 3L * kind.steps[2 * k + 1];
+        Vector3<vec> d = {raw[to] - raw[from], raw[to + 1] - raw[from + 1], raw[to + 2] - raw[from + 2]}, unused = {};
+        if (box.shape == Box::triclinic)
+            d = triclinic_image(box, d);
+        else
+            wrap<false>(box, d, unused);
+        x[to] = x[from] + d.x;
+        x[to + 1] = x[from + 1] + d.y;
+        x[to + 2] = x[from + 2] + d.z;
+    }
+}
+
+// A vector for the centre and R for the axes: of positions, velocities or forces.
+template <int R>
+struct Frame {
+    vec of[1 + R][3];
+
+    HOL_FORCED vec *operator[](int k) { return of[k]; }
+    HOL_FORCED const vec *operator[](int k) const { return of[k]; }
+
+    // Adds weights [1 + R] of an atom times its vector.
+    template <int first = 0>
+    HOL_FORCED void add(const double *weights, const vec *x) {
+        HOL_UNROLL_FEW
+        for (int k = first; k <= R; ++k) {
+            HOL_UNROLL_FEW
+            for (int c = 0; c < 3; ++c) of[k][c] = mul_add(x[c], splat(weights[k]), of[k][c]);
+        }
+    }
+    // The vectors at an atom that has these weights, component by component.
+    HOL_FORCED vec at(const double *weights, int c) const {
+        vec sum = of[0][c];
+        HOL_UNROLL_FEW
+        for (int p = 1; p <= R; ++p) sum = mul_add(of[p][c], splat(weights[p]), sum);
+        return sum;
+    }
+    // The same for a frame of what changes: a rounding of the weights, the same in every step, would turn the body.
+    HOL_FORCED vec at(const double *weights, const double *low, int c) const {
+        vec sum = of[0][c];
+        HOL_UNROLL_FEW
+        for (int p = 1; p <= R; ++p)
+            sum = mul_add(of[p][c], splat(weights[p]), mul_add(of[p][c], splat(low[p]), sum));
+        return sum;
+    }
+    HOL_FORCED mask is_finite() const {
+        vec sum = {};
+        HOL_UNROLL_FEW
+        for (int k = 0; k <= R; ++k) {
+            HOL_UNROLL_FEW
+            for (int c = 0; c < 3; ++c) sum = sum + abs(of[k][c]);
+        }
+        return finite(sum);
+    }
+};
+
+HOL_INLINE vec dot(const vec *a, const vec *b) {
+    return mul_add(a[2], b[2], mul_add(a[1], b[1], a[0] * b[0]));
+}
+
+template <int R>
+HOL_INLINE Frame<R> frame_of(const BodyKind &kind, const vec *x) {
+    Frame<R> sum{};
+    const double *share = kind.share;
+    for (long a = 0; a < kind.n_atoms; ++a, share += 1 + R) sum.add(share, x + 3 * a);
+    return sum;
+}
+
+// The axes alone, of coordinates that stand in space; in lanes that are not finite they aren't either.
+template <int R>
+HOL_INLINE Frame<R> axes_of(const BodyKind &kind, const Box &box, vec *raw, vec *x) {
+    Frame<R> sum{};
+    const double *share = kind.share;
+    if (box.shape == Box::none) {
+        const vec first[3] = {raw[0], raw[1], raw[2]};
+        for (long a = 0; a < kind.n_atoms; ++a, share += 1 + R) {
+            const vec at[3] = {raw[3 * a] - first[0], raw[3 * a + 1] - first[1], raw[3 * a + 2] - first[2]};
+            sum.template add<1>(share, at);
+        }
+        return sum;
+    }
+    unfold(kind, box, raw, x);
+    for (long a = 0; a < kind.n_atoms; ++a, share += 1 + R) sum.template add<1>(share, x + 3 * a);
+    return sum;
+}
+
+// Velocities of the atoms that have mass; what sites have is not looked at. low: with what rounding left off the shares.
+template <int R, bool low>
+HOL_INLINE Frame<R> rates_of(const BodyKind &kind, const vec *v) {
+    Frame<R> sum{};
+    const double *share = kind.share, *rest = kind.share_low;
+    for (long a = 0; a < kind.n_atoms; ++a, share += 1 + R, rest += 1 + R) {
+        if (kind.masses[a] == 0) continue;
+        if (low) sum.add(rest, v + 3 * a);
+        sum.add(share, v + 3 * a);
+    }
+    return sum;
+}
+
+// A symmetric matrix, its lower half a copy of the upper one.
+template <int R>
+struct Symmetric {
+    vec of[R][R];
+};
+
+template <int R>
+HOL_INLINE Symmetric<R> products(const Frame<R> &u) {
+    Symmetric<R> s;
+    HOL_UNROLL_FEW
+    for (int p = 0; p < R; ++p) {
+        HOL_UNROLL_FEW
+        for (int q = p; q < R; ++q) s.of[p][q] = s.of[q][p] = dot(u[1 + p], u[1 + q]);
+    }
+    return s;
+}
+
+// u.v + v.u
+template <int R>
+HOL_INLINE Symmetric<R> both_products(const Frame<R> &u, const Frame<R> &v) {
+    Symmetric<R> s;
+    HOL_UNROLL_FEW
+    for (int p = 0; p < R; ++p) {
+        HOL_UNROLL_FEW
+        for (int q = p; q < R; ++q) s.of[p][q] = s.of[q][p] = dot(u[1 + p], v[1 + q]) + dot(u[1 + q], v[1 + p]);
+    }
+    return s;
+}
+
+// By how much s is off L^2 at most, relative to the axes.
+template <int R>
+HOL_INLINE vec largest_error(const BodyKind &kind, const Symmetric<R> &s) {
+    vec worst = {};
+    HOL_UNROLL_FEW
+    for (int p = 0; p < R; ++p) {
+        HOL_UNROLL_FEW
+        for (int q = p; q < R; ++q) {
+            const vec off = p == q ? s.of[p][p] - kind.square[p] : s.of[p][q];
+            worst = max(worst, abs(off) * kind.per_size[p][q]);
+        }
+    }
+    return worst;
+}
+
+// X Lambda + Lambda X^T = b, X being all but L^2 on a diagonal: first by that diagonal.
+template <int R>
+HOL_INLINE Symmetric<R> first_solution(const BodyKind &kind, const Symmetric<R> &b) {
+    Symmetric<R> lambda;
+    HOL_UNROLL_FEW
+    for (int p = 0; p < R; ++p) {
+        HOL_UNROLL_FEW
+        for (int q = p; q < R; ++q) lambda.of[p][q] = lambda.of[q][p] = b.of[p][q] * kind.per_sum[p][q];
+    }
+    return lambda;
+}
+
+// Then by corrections, of lanes that are busy.
+template <int R>
+HOL_INLINE void correct(const BodyKind &kind, const vec (*x)[R], const Symmetric<R> &b, mask busy,
+                        Symmetric<R> &lambda) {
+    vec change[R][R];
+    HOL_UNROLL_FEW
+    for (int p = 0; p < R; ++p) {
+        HOL_UNROLL_FEW
+        for (int q = p; q < R; ++q) {
+            vec rest = b.of[p][q];
+            HOL_UNROLL_FEW
+            for (int s = 0; s < R; ++s) {
+                rest = mul_add(-x[p][s], lambda.of[s][q], rest);
+                rest = mul_add(-lambda.of[p][s], x[q][s], rest);
+            }
+            change[p][q] = keep(busy, rest * kind.per_sum[p][q]);
+        }
+    }
+    HOL_UNROLL_FEW
+    for (int p = 0; p < R; ++p) {
+        HOL_UNROLL_FEW
+        for (int q = p; q < R; ++q) lambda.of[p][q] = lambda.of[q][p] = lambda.of[p][q] + change[p][q];
+    }
+}
+
+// The same with X = S to the last digit; each correction makes the error smaller by a factor that is known beforehand.
+// `good` is left to lanes for which that comes to an end.
+template <int R>
+HOL_INLINE Symmetric<R> solve(const BodyKind &kind, const Symmetric<R> &s, const Symmetric<R> &b, mask &good) {
+    Symmetric<R> lambda = first_solution(kind, b);
+    const vec rate = 2.0 * R * largest_error(kind, s);
+    vec left = rate;
+    mask busy = good;
+    for (int pass = 0; pass < 24 && any(busy); ++pass) {
+        correct(kind, s.of, b, busy, lambda);
+        left = left * rate;
+        busy = busy & ~less(left, splat(0.01 * epsilon_of_doubles));
+    }
+    good = good & ~busy;
+    return lambda;
+}
+
+// The axes of `u` less the sum of Lambda_pq of `v`.
+template <int R>
+HOL_INLINE void take_away(Frame<R> &u, const Frame<R> &v, const Symmetric<R> &lambda) {
+    HOL_UNROLL_FEW
+    for (int p = 0; p < R; ++p) {
+        HOL_UNROLL_FEW
+        for (int q = 0; q < R; ++q) {
+            HOL_UNROLL_FEW
+            for (int c = 0; c < 3; ++c) u[1 + p][c] = mul_add(-lambda.of[p][q], v[1 + q][c], u[1 + p][c]);
+        }
+    }
+}
+
+// - factor Lambda_pq u_p (x) u_q
+template <int R>
+HOL_INLINE void write_virial(const Frame<R> &u, const Symmetric<R> &lambda, double factor, BodyResult *results) {
+    Frame<R> t{};
+    take_away(t, u, lambda);
+    int i = 0;
+    for (int a = 0; a < 3; ++a)
+        for (int b = a; b < 3; ++b, ++i) {
+            vec sum = {};
+            for (int p = 1; p <= R; ++p) sum = mul_add(u[p][a], t[p][b], sum);
+            for (int l = 0; l < W; ++l) results[l].virial[i] = factor * sum[l];
+        }
+}
+
+}  // namespace holonomic::HOL_ISA
+#endif

@@ -1,0 +1,18 @@
+// Bodies without bonds, which the kernels work on side by side (core/kernels/bodies).
+#ifndef HOLONOMIC_RIGID_BLOCKS_HPP
+#define HOLONOMIC_RIGID_BLOCKS_HPP
+
+#include "core/kernels/bodies/kind.hpp"
+#include "core/kernels/call.hpp"
+#include "core/rigid/shape.hpp"
+
+namespace holonomic::rigid {
+
+// As the kernels see a thick body, that of a shape; both stay where they are as long as it is used.
+BodyKind kind_of(const Body &body, const Shape &shape);
+
+// Scratch of the kernels for a shape that is a body alone.
+std::int64_t bytes_of_block(const Shape &shape);
+
+}  // namespace holonomic::rigid
+#endif

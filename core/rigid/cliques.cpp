@@ -1,0 +1,256 @@
+#include "core/rigid/cliques.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <unordered_map>
+
+namespace holonomic::rigid {
+
+namespace {
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+// What the rounding of lengths leaves of a height above a line or plane, squared, relative to the largest distance; and
+// what lengths of a body may be off.
+constexpr double rounding = 32 * std::numeric_limits<double>::epsilon(), same_length = 1e-6;
+
+// Cholesky's factors of the inner products from atom 0, the largest remaining height first.
+class Heights {
+public:
+    Heights(std::int64_t n, const double *squares) : n_(n), squares_(squares), x_(3 * at(n), 0), height_(at(n)) {
+        for (std::int64_t i = 0; i < n; ++i) height_[at(i)] = squares[i];
+        for (std::int64_t e = 0; e < n * n; ++e) largest_ = std::max(largest_, squares[e]);
+    }
+    bool is_done() const { return dimension_ == 3 || highest() <= rounding * largest_; }
+    void go_on() {
+        const std::int64_t p = std::max_element(height_.begin(), height_.end()) - height_.begin();
+        const long double root = std::sqrt(height_[at(p)]);
+        for (std::int64_t i = 0; i < n_; ++i) {
+            long double product = (static_cast<long double>(squares_[i]) + squares_[p] - squares_[i * n_ + p]) / 2;
+            for (int c = 0; c < dimension_; ++c) product -= x_[at(3 * i + c)] * x_[at(3 * p + c)];
+            x_[at(3 * i + dimension_)] = i == 0 ? 0 : product / root;
+        }
+        for (std::int64_t i = 0; i < n_; ++i)
+            height_[at(i)] -= x_[at(3 * i + dimension_)] * x_[at(3 * i + dimension_)];
+        height_[at(p)] = 0;
+        ++dimension_;
+    }
+    int dimension() const { return dimension_; }
+    const std::vector<long double> &places() const { return x_; }
+
+private:
+    double highest() const { return static_cast<double>(*std::max_element(height_.begin(), height_.end())); }
+
+    const std::int64_t n_;
+    const double *const squares_;
+    std::vector<long double> x_, height_;
+    double largest_ = 0;
+    int dimension_ = 0;
+};
+
+class Search {
+public:
+    Search(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths)
+        : list_(list), lengths_(lengths), n_lengths_(n_lengths) {
+        for (std::int64_t k = 0; k < list.n_bonds; ++k) {
+            const std::int64_t i = list.pairs[2 * k], j = list.pairs[2 * k + 1];
+            if (masses.fixed(i - list.base) || masses.fixed(j - list.base) || i == j) continue;
+            bonds_of_[i].push_back({j, k});
+            bonds_of_[j].push_back({i, k});
+        }
+        for (auto &bonds : bonds_of_) std::sort(bonds.second.begin(), bonds.second.end());
+    }
+
+    Cliques find() {
+        for (const bool five : {true, false})
+            for (std::int64_t k = 0; k < list_.n_bonds; ++k) look_around(k, five);
+        if (!found_.sizes.empty()) collect_bonds();
+        return std::move(found_);
+    }
+
+private:
+    struct Partner {
+        std::int64_t atom, bond;
+        bool operator<(const Partner &other) const {
+            return atom != other.atom ? atom < other.atom : bond < other.bond;
+        }
+    };
+
+    bool is_free(std::int64_t atom) const { return bonds_of_.count(atom) && !body_of_.count(atom); }
+
+    std::int64_t bond_between(std::int64_t i, std::int64_t j) const {
+        const std::vector<Partner> &partners = bonds_of_.at(i);
+        const auto found = std::lower_bound(partners.begin(), partners.end(), Partner{j, 0});
+        return found != partners.end() && found->atom == j ? found->bond : -1;
+    }
+
+    std::vector<double> squares(const std::vector<std::int64_t> &atoms) const {
+        std::vector<double> square(atoms.size() * atoms.size(), 0);
+        for (std::size_t i = 0; i < atoms.size(); ++i)
+            for (std::size_t j = 0; j < atoms.size(); ++j)
+                if (i != j) {
+                    const double length = lengths_[bond_between(atoms[i], atoms[j]) % n_lengths_];
+                    square[i * atoms.size() + j] = length * length;
+                }
+        return square;
+    }
+
+    // Atoms, one after the other, that are bonded to all there are.
+    void grow(std::vector<std::int64_t> &clique, const std::vector<std::int64_t> &candidates) const {
+        for (const std::int64_t atom : candidates) {
+            bool all = true;
+            for (const std::int64_t other : clique) all = all && other != atom && bond_between(atom, other) >= 0;
+            if (all) clique.push_back(atom);
+        }
+    }
+
+    bool is_flat(const std::vector<std::int64_t> &atoms) const {
+        std::vector<double> places;
+        return places_of(static_cast<std::int64_t>(atoms.size()), squares(atoms).data(), places) <
+               static_cast<int>(atoms.size()) - 1;
+    }
+
+    void look_around(std::int64_t bond, bool five) {
+        const std::int64_t i = list_.pairs[2 * bond], j = list_.pairs[2 * bond + 1];
+        if (i == j || !is_free(i) || !is_free(j)) return;
+        std::vector<std::int64_t> both;
+        for (const Partner &partner : bonds_of_.at(i))
+            if (partner.atom != j && is_free(partner.atom) && bond_between(partner.atom, j) >= 0 &&
+                (both.empty() || both.back() != partner.atom))
+                both.push_back(partner.atom);
+        if (five) {
+            if (both.size() < 3) return;
+            std::vector<std::int64_t> clique{i, j};
+            grow(clique, both);
+            if (clique.size() >= 5) take(clique);
+            return;
+        }
+        for (std::size_t a = 0; a < both.size(); ++a) {
+            std::vector<std::int64_t> clique{i, j, both[a]};
+            bool flat = is_flat(clique);
+            for (std::size_t b = 0; !flat && b < a; ++b) {
+                if (bond_between(both[a], both[b]) < 0) continue;
+                clique = {i, j, both[b], both[a]};
+                flat = is_flat(clique);
+            }
+            if (!flat) continue;
+            grow(clique, both);
+            return take(clique);
+        }
+    }
+
+    void take(std::vector<std::int64_t> clique) {
+        std::sort(clique.begin(), clique.end());
+        const std::vector<double> square = squares(clique);
+        std::vector<double> places;
+        const std::int64_t n = static_cast<std::int64_t>(clique.size());
+        places_of(n, square.data(), places);
+        check_lengths_of(clique, places);
+        for (const std::int64_t atom : clique) body_of_[atom] = found_.sizes.size();
+        found_.sizes.push_back(n);
+        found_.atoms.insert(found_.atoms.end(), clique.begin(), clique.end());
+        found_.places.insert(found_.places.end(), places.begin(), places.end());
+    }
+
+    // A length that all others contradict is off most.
+    void check_lengths_of(const std::vector<std::int64_t> &clique, const std::vector<double> &places) const {
+        double worst = same_length, distance = 0;
+        std::int64_t bad = -1;
+        for (std::size_t i = 0; i < clique.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j) {
+                const double *const a = &places[3 * i], *const b = &places[3 * j];
+                const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+                const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+                const std::int64_t bond = bond_between(clique[i], clique[j]);
+                const double wanted = lengths_[bond % n_lengths_], error = std::fabs(length - wanted) / wanted;
+                if (error <= worst) continue;
+                worst = error;
+                distance = length;
+                bad = bond;
+            }
+        if (bad < 0) return;
+        char words[256];
+        std::snprintf(words, sizeof words,
+                      "has the length %.10g, which does not fit the others of its %zu atoms, which are all bonded to each "
+                      "other: by these it would be %.10g (hol_chains_add_rigid takes coordinates)",
+                      lengths_[bad % n_lengths_], clique.size(), distance);
+        throw bond_error(list_, Status::value, bad, words);
+    }
+
+    // All bonds that hang together with a body, but not through fixed atoms.
+    void collect_bonds() {
+        std::unordered_map<std::int64_t, bool> reached;
+        std::vector<std::int64_t> stack(found_.atoms);
+        for (const std::int64_t atom : stack) reached[atom] = true;
+        while (!stack.empty()) {
+            const std::int64_t atom = stack.back();
+            stack.pop_back();
+            for (const Partner &partner : bonds_of_.at(atom))
+                if (reached.emplace(partner.atom, true).second) stack.push_back(partner.atom);
+        }
+        for (std::int64_t k = 0; k < list_.n_bonds; ++k)
+            if (reached.count(list_.pairs[2 * k]) || reached.count(list_.pairs[2 * k + 1])) found_.bonds.push_back(k);
+    }
+
+    const BondList &list_;
+    const double *const lengths_;
+    const std::int64_t n_lengths_;
+    std::unordered_map<std::int64_t, std::vector<Partner>> bonds_of_;  // of atoms that can move
+    std::unordered_map<std::int64_t, std::size_t> body_of_;
+    Cliques found_;
+};
+
+}  // namespace
+
+int places_of(std::int64_t n, const double *squares, std::vector<double> &places) {
+    Heights heights(n, squares);
+    while (!heights.is_done()) heights.go_on();
+    places.resize(3 * at(n));
+    for (std::size_t i = 0; i < places.size(); ++i) places[i] = static_cast<double>(heights.places()[i]);
+    return heights.dimension();
+}
+
+bool has_flat_clique(const holonomic::Shape &shape, const double *w, const double *lengths) {
+    if (shape.form == Form::chain || shape.form == Form::tree || (shape.form == Form::ring && shape.n_bonds > 3))
+        return false;
+    std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> higher(at(shape.n_atoms));  // atoms and bonds
+    for (std::int32_t k = 0; k < shape.n_bonds; ++k) {
+        const std::int32_t i = shape.pairs[at(2 * k)], j = shape.pairs[at(2 * k + 1)];
+        if (w[i] > 0 && w[j] > 0) higher[at(i)].emplace_back(j, k);
+    }
+    for (auto &list : higher) std::sort(list.begin(), list.end());
+    const auto square_between = [&](std::int32_t i, std::int32_t j) {
+        const auto &list = higher[at(i)];
+        const auto found = std::lower_bound(list.begin(), list.end(), std::make_pair(j, std::int32_t{0}));
+        if (found == list.end() || found->first != j) return -1.0;
+        return lengths[found->second] * lengths[found->second];
+    };
+    std::vector<double> unused;
+    for (std::int32_t i = 0; i < shape.n_atoms; ++i) {
+        const auto &list = higher[at(i)];
+        for (std::size_t a = 0; a < list.size(); ++a)
+            for (std::size_t b = a + 1; b < list.size(); ++b) {
+                const std::int32_t j = list[a].first, k = list[b].first;
+                const double ij = square_between(i, j), ik = square_between(i, k), jk = square_between(j, k);
+                if (jk < 0) continue;
+                const double three[9] = {0, ij, ik, ij, 0, jk, ik, jk, 0};
+                if (places_of(3, three, unused) < 2) return true;
+                for (std::size_t c = b + 1; c < list.size(); ++c) {
+                    const std::int32_t l = list[c].first;
+                    const double il = square_between(i, l), jl = square_between(j, l), kl = square_between(k, l);
+                    if (jl < 0 || kl < 0) continue;
+                    const double four[16] = {0, ij, ik, il, ij, 0, jk, jl, ik, jk, 0, kl, il, jl, kl, 0};
+                    if (places_of(4, four, unused) < 3) return true;
+                }
+            }
+    }
+    return false;
+}
+
+Cliques find_cliques(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths) {
+    return Search(masses, list, lengths, n_lengths).find();
+}
+
+}  // namespace holonomic::rigid

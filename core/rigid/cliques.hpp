@@ -1,0 +1,31 @@
+// Lists of distances that depend on each other: three atoms on a line, four in a plane, five and more, each with all of
+// the others, are rigid bodies. Their lengths say what they look like.
+#ifndef HOLONOMIC_RIGID_CLIQUES_HPP
+#define HOLONOMIC_RIGID_CLIQUES_HPP
+
+#include <cstdint>
+#include <vector>
+
+#include "core/molecules/find.hpp"
+
+namespace holonomic::rigid {
+
+// Places of n atoms by their squared distances [n][n], in the least dimension, up to three, in which they are these
+// distances to a rounding; in three else. Returns the dimension.
+int places_of(std::int64_t n, const double *squares, std::vector<double> &places);
+
+// Whether three or four atoms that can move, each bonded to all others, are on a line or in a plane, by their lengths.
+bool has_flat_clique(const holonomic::Shape &shape, const double *w, const double *lengths);
+
+struct Cliques {
+    std::vector<std::int64_t> sizes, atoms;  // of the bodies; atoms counted as the list counts them
+    std::vector<double> places;              // [..][3]
+    std::vector<std::int64_t> bonds;         // of the list, in molecules that have one of these bodies, ascending
+};
+
+// Bond k of the list has the length lengths[k % n_lengths]. Throws Error, naming a bond, where lengths of five atoms or
+// more are those of no places in space.
+Cliques find_cliques(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths);
+
+}  // namespace holonomic::rigid
+#endif
