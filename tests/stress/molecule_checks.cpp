@@ -11,6 +11,8 @@ namespace
 {
 
 constexpr long double eps = DBL_EPSILON;
+// Rings whose bonds depend on each other to the rounding of coordinates, of which a sine is squared, are refused.
+constexpr long double ring_limit = 1e-24L;
 constexpr long double graph_limit = 1e-20L;      // graphs with a pivot below it are promised nothing
 constexpr long double inverse_limit = 1e-16L;    // nor their inverse below this
 constexpr long double inverse_of_tree = 1e-50L;  // nor that of trees
@@ -247,7 +249,8 @@ molecule_verdict check_alone(const hostile_molecule &m, const molecule_reference
     facts.condition = exact.metric.condition;
     const placement a = place({&m}, 0);
     const bool graph = a.status == HOL_OK && has_graph(a), doubtful = is_straight_triangle(m);
-    facts.promised = facts.regular && !doubtful && (!graph || least_pivot > graph_limit);
+    facts.promised = facts.regular && !doubtful && (!graph || least_pivot > graph_limit) &&
+                     (m.shape != RINGS || least_pivot > ring_limit);
     if (a.status != HOL_OK) {
         out.note(M_REFUSED, a.status != HOL_ERR_DEGENERATE || facts.regular);
         return out;

@@ -20,7 +20,8 @@ namespace stress
 struct molecule_facts {
     bool regular = false;
     long double condition = 0, least_pivot = 0;
-    /** Whether bounds are promised: trees, rings and triangles always, graphs as long as no pivot of Z~ is below 1e-20.
+    /** Whether bounds are promised: trees and triangles always, rings as long as no pivot of Z~ is below 1e-24, graphs
+     * 1e-20.
      */
     bool promised = false;
 };
