@@ -78,8 +78,8 @@ BodyName name_of_body(const Chains &chains, const rigid::Given &given, std::int6
     if (refusal.unsolvable.cause == Unsolvable::length_in_body) {
         const rigid::Bond &bond = given.bonds[at(refusal.unsolvable.bond)];
         fail(make_error(Status::value,
-                        "the bond between atoms %s and %s lies within a body, whose atoms are at another distance than "
-                        "its length, %g",
+                        "the bond between atoms %s and %s has the length %g but lies within a body, whose atoms are at "
+                        "another distance",
                         name(bond.i).text, name(bond.j).text, bond.length),
              chains.base, given.bond_numbers[at(refusal.unsolvable.bond)], given.atoms[at(bond.i)]);
     }

@@ -14,9 +14,15 @@ namespace {
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
-// What the rounding of lengths leaves of a height above a line or plane, squared, relative to the largest distance; and
-// what lengths of a body may be off.
-constexpr double rounding = 32 * std::numeric_limits<double>::epsilon(), same_length = 1e-6;
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+// What lengths of a body may be off; and where they decide whether it is one.
+constexpr double same_length = 1e-6, same_to_rounding = 16 * epsilon;
+
+double distance_between(const double *a, const double *b) {
+    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    return std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+}
 
 // Cholesky's factors of the inner products from atom 0, the largest remaining height first.
 class Heights {
@@ -25,7 +31,7 @@ public:
         for (std::int64_t i = 0; i < n; ++i) height_[at(i)] = squares[i];
         for (std::int64_t e = 0; e < n * n; ++e) largest_ = std::max(largest_, squares[e]);
     }
-    bool is_done() const { return dimension_ == 3 || highest() <= rounding * largest_; }
+    bool is_done(double rounding) const { return dimension_ == 3 || highest() <= rounding * largest_; }
     void go_on() {
         const std::int64_t p = std::max_element(height_.begin(), height_.end()) - height_.begin();
         const long double root = std::sqrt(height_[at(p)]);
@@ -119,9 +125,7 @@ private:
     }
 
     bool is_flat(const std::vector<std::int64_t> &atoms) const {
-        std::vector<double> places;
-        return places_of(static_cast<std::int64_t>(atoms.size()), squares(atoms).data(), places) <
-               static_cast<int>(atoms.size()) - 1;
+        return are_flat(static_cast<std::int64_t>(atoms.size()), squares(atoms).data());
     }
 
     void look_around(std::int64_t bond, bool five) {
@@ -156,7 +160,7 @@ private:
     void take(std::vector<std::int64_t> clique) {
         std::sort(clique.begin(), clique.end());
         std::vector<double> places;
-        places_of(static_cast<std::int64_t>(clique.size()), squares(clique).data(), places);
+        places_of(static_cast<std::int64_t>(clique.size()), squares(clique).data(), 32 * epsilon, places);
         take(clique, places);
     }
 
@@ -181,9 +185,7 @@ private:
         std::int64_t bad = -1;
         for (std::size_t i = 0; i < clique.size(); ++i)
             for (std::size_t j = 0; j < i; ++j) {
-                const double *const a = &places[3 * i], *const b = &places[3 * j];
-                const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-                const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+                const double length = distance_between(&places[3 * i], &places[3 * j]);
                 const std::int64_t bond = bond_between(clique[i], clique[j]);
                 if (bond < 0) continue;
                 const double wanted = lengths_[bond % n_lengths_], error = std::fabs(length - wanted) / wanted;
@@ -198,7 +200,7 @@ private:
                       "has the length %.10g, which does not fit the others between its %zu atoms, a rigid body: by these it "
                       "would be %.10g (hol_chains_add_rigid takes coordinates)",
                       lengths_[bad % n_lengths_], clique.size(), distance);
-        throw bond_error(list_, Status::value, bad, words);
+        throw bond_error(list_, Status::degenerate, bad, words);
     }
 
     // All bonds that hang together with a body, but not through fixed atoms.
@@ -226,12 +228,25 @@ private:
 
 }  // namespace
 
-int places_of(std::int64_t n, const double *squares, std::vector<double> &places) {
+int places_of(std::int64_t n, const double *squares, double rounding, std::vector<double> &places) {
     Heights heights(n, squares);
-    while (!heights.is_done()) heights.go_on();
+    while (!heights.is_done(rounding)) heights.go_on();
     places.resize(3 * at(n));
     for (std::size_t i = 0; i < places.size(); ++i) places[i] = static_cast<double>(heights.places()[i]);
     return heights.dimension();
+}
+
+bool are_flat(std::int64_t n, const double *squares) {
+    std::vector<double> places;
+    if (places_of(n, squares, 2 * epsilon * static_cast<double>(n - 2), places) >= n - 1) return false;
+    for (std::int64_t i = 0; i < n; ++i)
+        for (std::int64_t j = 0; j < i; ++j) {
+            const double wanted = std::sqrt(squares[i * n + j]);
+            if (!(std::fabs(distance_between(&places[at(3 * i)], &places[at(3 * j)]) - wanted) <=
+                  same_to_rounding * wanted))
+                return false;
+        }
+    return true;
 }
 
 Cliques find_cliques(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths) {

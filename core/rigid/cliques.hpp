@@ -11,9 +11,12 @@
 
 namespace holonomic::rigid {
 
-// Places of n atoms by their squared distances [n][n], in the least dimension, up to three, in which they are these
-// distances to a rounding; in three else. Returns the dimension.
-int places_of(std::int64_t n, const double *squares, std::vector<double> &places);
+// Places of n atoms by their squared distances [n][n], in the least dimension, up to three, above which no atom is
+// higher than rounding makes it: in squares, relative to the largest. Returns the dimension.
+int places_of(std::int64_t n, const double *squares, double rounding, std::vector<double> &places);
+
+// Whether three atoms are on a line, or four in a plane, to the rounding of their lengths.
+bool are_flat(std::int64_t n, const double *squares);
 
 // Whether three or four atoms that can move, each bonded to all others, are on a line or in a plane, by their lengths,
 // or a ring is held in a plane.

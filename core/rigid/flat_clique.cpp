@@ -46,20 +46,19 @@ private:
 bool is_lowest_of_flat(const Partners &partners, std::int32_t i) {
     const auto &list = partners.of(i);
     const auto square = [&](std::int32_t a, std::int32_t b) { return partners.square(a, b); };
-    std::vector<double> unused;
     for (std::size_t a = 0; a < list.size(); ++a)
         for (std::size_t b = a + 1; b < list.size(); ++b) {
             const std::int32_t j = list[a].first, k = list[b].first;
             const double ij = square(i, j), ik = square(i, k), jk = square(j, k);
             if (j < i || jk < 0) continue;
             const double three[9] = {0, ij, ik, ij, 0, jk, ik, jk, 0};
-            if (places_of(3, three, unused) < 2) return true;
+            if (are_flat(3, three)) return true;
             for (std::size_t c = b + 1; c < list.size(); ++c) {
                 const std::int32_t l = list[c].first;
                 const double il = square(i, l), jl = square(j, l), kl = square(k, l);
                 if (jl < 0 || kl < 0) continue;
                 const double four[16] = {0, ij, ik, il, ij, 0, jk, jl, ik, jk, 0, kl, il, jl, kl, 0};
-                if (places_of(4, four, unused) < 3) return true;
+                if (are_flat(4, four)) return true;
             }
         }
     return false;
