@@ -40,8 +40,7 @@ public:
             for (int c = 0; c < dimension_; ++c) product -= x_[at(3 * i + c)] * x_[at(3 * p + c)];
             x_[at(3 * i + dimension_)] = i == 0 ? 0 : product / root;
         }
-        for (std::int64_t i = 0; i < n_; ++i)
-            height_[at(i)] -= x_[at(3 * i + dimension_)] * x_[at(3 * i + dimension_)];
+        for (std::int64_t i = 0; i < n_; ++i) height_[at(i)] -= x_[at(3 * i + dimension_)] * x_[at(3 * i + dimension_)];
         height_[at(p)] = 0;
         ++dimension_;
     }
@@ -196,10 +195,11 @@ private:
             }
         if (bad < 0) return;
         char words[256];
-        std::snprintf(words, sizeof words,
-                      "has the length %.10g, which does not fit the others between its %zu atoms, a rigid body: by these it "
-                      "would be %.10g (hol_chains_add_rigid takes coordinates)",
-                      lengths_[bad % n_lengths_], clique.size(), distance);
+        std::snprintf(
+            words, sizeof words,
+            "has the length %.10g, which does not fit the others between its %zu atoms, a rigid body: by these it "
+            "would be %.10g (hol_chains_add_rigid takes coordinates)",
+            lengths_[bad % n_lengths_], clique.size(), distance);
         throw bond_error(list_, Status::degenerate, bad, words);
     }
 

@@ -41,9 +41,7 @@ private:
     static constexpr double circle = 6.283185307179586;
     static constexpr std::size_t most = 16;
 
-    double tolerance() const {
-        return 16 * std::numeric_limits<double>::epsilon() * static_cast<double>(ring_.size());
-    }
+    double tolerance() const { return 16 * std::numeric_limits<double>::epsilon() * static_cast<double>(ring_.size()); }
 
     // By how much a way from i over j to k turns at j; NaN if it is not held.
     double turn(Atom i, Atom j, Atom k) const {

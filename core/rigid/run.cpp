@@ -105,7 +105,8 @@ private:
 
 Found run(const Chains &chains, const Work &work) {
     const Bodies &bodies = *chains.bodies();
-    const std::int64_t bytes = bodies.scratch_bytes() + bodies.block_bytes(), n_blocks = (bodies.n_molecules() + block - 1) / block;
+    const std::int64_t bytes = bodies.scratch_bytes() + bodies.block_bytes(),
+                       n_blocks = (bodies.n_molecules() + block - 1) / block;
     char *const own = static_cast<char *>(thread_memory(Keep::rigid, bytes));
     Found *const parts =
         static_cast<Found *>(thread_memory(Keep::piece_tallies, n_blocks * static_cast<std::int64_t>(sizeof(Found))));

@@ -1,4 +1,5 @@
-/** Distances that depend on each other: three atoms on a line, four in a plane, five and more, rings held in a plane. */
+/** Distances that depend on each other: three atoms on a line, four in a plane, five and more, rings held in a plane.
+ */
 #include "check.h"
 #include "random.h"
 
@@ -152,8 +153,7 @@ static void multipliers_of_ten_distances_have_the_least_norm(void **state)
         for (int j = 0; j < i; ++j) add_bond(&p, i, j);
     double lambda[10], along = 0;
     compute(&p, chains_of(&p), lambda);
-    for (int k = 0; k < 10; ++k)
-        along += lambda[k] * coefficient[p.pairs[2 * k]] * coefficient[p.pairs[2 * k + 1]];
+    for (int k = 0; k < 10; ++k) along += lambda[k] * coefficient[p.pairs[2 * k]] * coefficient[p.pairs[2 * k + 1]];
     CHECK_AT_MOST(fabs(along), 1e-13);
 }
 
@@ -200,7 +200,7 @@ static void bodies_and_others_come_in_one_list(void **state)
     const double mass[9] = {16, 12, 16, 15, 16, 1, 1, 0, 14}, line = 2.32;
     const int64_t pairs[16] = {4, 5, 0, 2, 5, 6, 0, 1, 2, 3, 1, 2, 6, 4, 7, 8};
     const double length[8] = {1, line, 1.6, line / 2, 1.5, line / 2, 1, 2};
-    const double r[27] = {-line / 2, 0, 0, 0, 0, 0,    line / 2, 0, 0, line / 2, 1.5, 0, 5, 0,
+    const double r[27] = {-line / 2, 0, 0, 0, 0, 0,     line / 2, 0, 0, line / 2, 1.5, 0, 5, 0,
                           0,         6, 0, 0, 5, -0.28, 0.96,     9, 9, 9,        9,   9, 11};
     double f[27], g[27], lambda[8], v[27] = {0};
     hol_chains *chains;
