@@ -164,15 +164,23 @@ HOL_API int hol_chains_add_block(hol_chains *chains, int64_t n_chains, int64_t n
  * @param[in]     pairs    [n_bonds][2], the two atoms of each bond (Fortran: (2, n_bonds))
  * @param[in]     lengths  [n_bonds], as in hol_chains_add. Copied.
  *
- * New molecules are numbered by their lowest atoms that can move. Arrays per bond have these bonds in the order of the
- * list, after those of earlier calls. All bonds of a molecule have to be given in one call, but a fixed atom may occur
- * in any number of bonds and calls.
+ * Distances that depend on each other are held as rigid bodies, as if hol_chains_add_rigid had been called, where their
+ * lengths say so: atoms that are all bonded to each other, three on a line, four in a plane (to the rounding of the
+ * lengths), five and more (to 1e-6 of them); rings of six atoms and more whose angles, held by distances of next
+ * neighbours, keep them in a plane. Forces and motions are those of the body. Multipliers of such bonds are, of those
+ * whose pulls come nearest to the body's forces, the ones of least norm; only forces across a line or plane have none.
+ * Right-hand sides of hol_solve are not looked at for them.
+ *
+ * New molecules are numbered by their lowest atoms that can move, those with bodies behind all others. Arrays per bond
+ * have these bonds in the order of the list, after those of earlier calls. All bonds of a molecule have to be given in
+ * one call, but a fixed atom may occur in any number of bonds and calls.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (n_bonds, a length, a bond of an atom with itself, a molecule of more
  *         than 2^31 - 1 bonds; lengths of a triangle or ring that can't close: the message names the atoms);
  *         HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM (an atom that can move is in a molecule of an earlier call; the message
- *         names it); HOL_ERR_DEGENERATE (a bond given twice, or more bonds within a part of a molecule than it has
- *         freedoms, as all distances between five atoms: the message names a bond. Bonds that depend on each other
- *         through the positions alone are found by the calls that meet them); HOL_ERR_MEMORY (also: more than
+ *         names it); HOL_ERR_DEGENERATE (a bond given twice, more bonds within a part of a molecule than it has
+ *         freedoms, or lengths of five atoms and more that fit no places in space: the message names a bond. Bonds
+ *         that depend on each other through the positions alone are found by the calls that meet them);
+ *         HOL_ERR_MEMORY (also: more than
  *         hol_chains_set_memory_limit allows; the message names the molecule).
  *         On an error nothing is added. Not thread-safe on one handle. O(n_bonds). Since 0.2.
  */

@@ -192,8 +192,8 @@ struct BodyResult {
     int iterations;
 };
 
-// Each returns bit by bit which bodies it has done; nothing of the others has been written. `scratch` has bytes(n_atoms),
-// aligned to 64.
+// Each returns bit by bit which bodies it has done; nothing of the others has been written. `scratch` has
+// bytes(n_atoms), aligned to 64.
 struct BodyKernels {
     int64_t (*scratch_bytes)(int64_t n_atoms);
     unsigned (*forces)(const ForcesCall &, const BodyUnit &, double *scratch, BodyResult *);

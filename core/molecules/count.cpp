@@ -9,7 +9,8 @@ namespace {
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 constexpr const char *too_many =
-    "is one too many: the atoms that it and the bonds around it join have fewer freedoms than bonds";
+    "is one too many: the atoms that it and the bonds around it join have fewer freedoms than bonds; "
+    "hol_chains_add_rigid holds such a part by coordinates";
 
 // The molecule as a graph in which a fixed atom is one atom, however many bonds it ends.
 class Graph {

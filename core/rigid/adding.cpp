@@ -78,8 +78,8 @@ BodyName name_of_body(const Chains &chains, const rigid::Given &given, std::int6
     if (refusal.unsolvable.cause == Unsolvable::length_in_body) {
         const rigid::Bond &bond = given.bonds[at(refusal.unsolvable.bond)];
         fail(make_error(Status::value,
-                        "the bond between atoms %s and %s lies within a body, whose atoms are at another distance than "
-                        "its length, %g",
+                        "the bond between atoms %s and %s has the length %g but lies within a body, whose atoms are at "
+                        "another distance",
                         name(bond.i).text, name(bond.j).text, bond.length),
              chains.base, given.bond_numbers[at(refusal.unsolvable.bond)], given.atoms[at(bond.i)]);
     }
@@ -179,10 +179,9 @@ void Chains::add_with_bodies(const BondList &list, const double *lengths, std::i
     Batch batch(*this);
     batch.append_found(found, list, lengths, n_lengths);
     if (cliques.sizes.empty()) return batch.commit();
-    std::vector<rigid::Given> molecules =
-        sort_rigid(static_cast<std::int64_t>(cliques.sizes.size()), cliques.sizes.data(), cliques.atoms.data(), 0,
-                   cliques.places.data(), static_cast<std::int64_t>(its_lengths.size()), pairs.data(),
-                   its_lengths.data());
+    std::vector<rigid::Given> molecules = sort_rigid(
+        static_cast<std::int64_t>(cliques.sizes.size()), cliques.sizes.data(), cliques.atoms.data(), 0,
+        cliques.places.data(), static_cast<std::int64_t>(its_lengths.size()), pairs.data(), its_lengths.data());
     for (rigid::Given &given : molecules) {
         given.by_lengths = true;
         for (std::int64_t &bond : given.bond_numbers) bond = n_bonds_ + cliques.bonds[at(bond - n_bonds_)];

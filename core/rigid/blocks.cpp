@@ -6,7 +6,8 @@
 
 namespace holonomic::rigid {
 
-static_assert(std::is_standard_layout_v<Step> && sizeof(Step) == 2 * sizeof(std::int32_t), "BodyKind has them in pairs");
+static_assert(std::is_standard_layout_v<Step> && sizeof(Step) == 2 * sizeof(std::int32_t),
+              "BodyKind has them in pairs");
 
 BodyKind kind_of(const Body &body, const Shape &shape) {
     const std::ptrdiff_t n = std::ptrdiff_t{body.n_atoms} * (1 + body.rank);

@@ -123,11 +123,11 @@ std::int32_t Bodies::find_shape(const Given &given) {
 void Bodies::add(const Given &given) {
     const std::int32_t number = find_shape(given);
     const Shape &its = shapes_[at(number)];
-    const bool consecutive = std::adjacent_find(given.atoms.begin(), given.atoms.end(), [](std::int64_t a, std::int64_t b) {
-                                 return b != a + 1;
-                             }) == given.atoms.end();
-    molecules_.push_back({number, consecutive, static_cast<std::int64_t>(atoms_.size()),
-                          static_cast<std::int64_t>(bonds_.size())});
+    const bool consecutive =
+        std::adjacent_find(given.atoms.begin(), given.atoms.end(),
+                           [](std::int64_t a, std::int64_t b) { return b != a + 1; }) == given.atoms.end();
+    molecules_.push_back(
+        {number, consecutive, static_cast<std::int64_t>(atoms_.size()), static_cast<std::int64_t>(bonds_.size())});
     atoms_.insert(atoms_.end(), given.atoms.begin(), given.atoms.end());
     bonds_.insert(bonds_.end(), given.bond_numbers.begin(), given.bond_numbers.end());
     for (std::int32_t a = 0; a < its.n_held; ++a)
@@ -156,8 +156,8 @@ Given Bodies::given(std::int64_t molecule) const {
 }
 
 Bodies::Mark Bodies::mark() const {
-    return {molecules_.size(), kinds_.size(),  shapes_.size(), atoms_.size(),  bonds_.size(),
-            fixed_.size(),     active_.size(), longest_,       scratch_bytes_, block_bytes_,  work_};
+    return {molecules_.size(), kinds_.size(), shapes_.size(), atoms_.size(), bonds_.size(), fixed_.size(),
+            active_.size(),    longest_,      scratch_bytes_, block_bytes_,  work_};
 }
 
 void Bodies::roll_back(const Mark &before) {

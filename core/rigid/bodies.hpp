@@ -57,10 +57,12 @@ public:
     // [n_molecules] or null: all
     void set_active(const unsigned char *active);
     double longest() const { return longest_; }  // of what is taken as a nearest image
-    bool is_consecutive(std::int64_t molecule) const { return molecules_[static_cast<std::size_t>(molecule)].consecutive; }
+    bool is_consecutive(std::int64_t molecule) const {
+        return molecules_[static_cast<std::size_t>(molecule)].consecutive;
+    }
     std::int64_t scratch_bytes() const { return scratch_bytes_; }  // of a System, a multiple of 64
     std::int64_t block_bytes() const { return block_bytes_; }      // of the kernels for bodies alone, behind it
-    std::int64_t work() const { return work_; }  // rows of all molecules
+    std::int64_t work() const { return work_; }                    // rows of all molecules
     // That active ones take from the freedoms of the atoms that have mass.
     std::int64_t constraints(int dimensions) const;
     const std::vector<std::int64_t> &fixed_atoms() const { return fixed_; }

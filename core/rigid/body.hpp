@@ -24,9 +24,9 @@ struct Body {
     std::int32_t rank;       // 1: on a line, 2: in a plane, 3
     std::int32_t n_massive;  // atoms that are no sites
     double mass, inverse_mass;
-    double length[3];                              // L_p, descending
-    DoublePair square[3];                          // L_p^2
-    double extent;                                 // the largest distance of an atom from the centre
+    double length[3];               // L_p, descending
+    DoublePair square[3];           // L_p^2
+    double extent;                  // the largest distance of an atom from the centre
     std::vector<double> masses;     // [n_atoms], 0: a massless site
     std::vector<double> place;      // [n_atoms][3] the reference coordinates as they were given
     bool is_thick;                  // plain doubles do: neither thin nor with atoms far out for their mass

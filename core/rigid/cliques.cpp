@@ -1,5 +1,7 @@
 #include "core/rigid/cliques.hpp"
 
+#include "core/rigid/flat_ring.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,9 +14,15 @@ namespace {
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
-// What the rounding of lengths leaves of a height above a line or plane, squared, relative to the largest distance; and
-// what lengths of a body may be off.
-constexpr double rounding = 32 * std::numeric_limits<double>::epsilon(), same_length = 1e-6;
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+// What lengths of a body may be off; and where they decide whether it is one.
+constexpr double same_length = 1e-6, same_to_rounding = 16 * epsilon;
+
+double distance_between(const double *a, const double *b) {
+    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    return std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+}
 
 // Cholesky's factors of the inner products from atom 0, the largest remaining height first.
 class Heights {
@@ -23,7 +31,7 @@ public:
         for (std::int64_t i = 0; i < n; ++i) height_[at(i)] = squares[i];
         for (std::int64_t e = 0; e < n * n; ++e) largest_ = std::max(largest_, squares[e]);
     }
-    bool is_done() const { return dimension_ == 3 || highest() <= rounding * largest_; }
+    bool is_done(double rounding) const { return dimension_ == 3 || highest() <= rounding * largest_; }
     void go_on() {
         const std::int64_t p = std::max_element(height_.begin(), height_.end()) - height_.begin();
         const long double root = std::sqrt(height_[at(p)]);
@@ -32,8 +40,7 @@ public:
             for (int c = 0; c < dimension_; ++c) product -= x_[at(3 * i + c)] * x_[at(3 * p + c)];
             x_[at(3 * i + dimension_)] = i == 0 ? 0 : product / root;
         }
-        for (std::int64_t i = 0; i < n_; ++i)
-            height_[at(i)] -= x_[at(3 * i + dimension_)] * x_[at(3 * i + dimension_)];
+        for (std::int64_t i = 0; i < n_; ++i) height_[at(i)] -= x_[at(3 * i + dimension_)] * x_[at(3 * i + dimension_)];
         height_[at(p)] = 0;
         ++dimension_;
     }
@@ -52,6 +59,17 @@ private:
 
 class Search {
 public:
+    using Atom = std::int64_t;  // what FlatRing asks for
+    template <class Each>
+    void for_partners(Atom atom, const Each &each) const {
+        for (const Partner &partner : bonds_of_.at(atom))
+            if (is_free(partner.atom)) each(partner.atom);
+    }
+    double square(Atom i, Atom j) const {
+        const std::int64_t bond = bond_between(i, j);
+        return bond < 0 ? -1 : lengths_[bond % n_lengths_] * lengths_[bond % n_lengths_];
+    }
+
     Search(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths)
         : list_(list), lengths_(lengths), n_lengths_(n_lengths) {
         for (std::int64_t k = 0; k < list.n_bonds; ++k) {
@@ -66,6 +84,8 @@ public:
     Cliques find() {
         for (const bool five : {true, false})
             for (std::int64_t k = 0; k < list_.n_bonds; ++k) look_around(k, five);
+        std::int64_t steps = steps_for_rings(list_.n_bonds);
+        for (std::int64_t k = 0; k < list_.n_bonds; ++k) look_for_ring(k, steps);
         if (!found_.sizes.empty()) collect_bonds();
         return std::move(found_);
     }
@@ -87,14 +107,11 @@ private:
     }
 
     std::vector<double> squares(const std::vector<std::int64_t> &atoms) const {
-        std::vector<double> square(atoms.size() * atoms.size(), 0);
+        std::vector<double> all(atoms.size() * atoms.size(), 0);
         for (std::size_t i = 0; i < atoms.size(); ++i)
             for (std::size_t j = 0; j < atoms.size(); ++j)
-                if (i != j) {
-                    const double length = lengths_[bond_between(atoms[i], atoms[j]) % n_lengths_];
-                    square[i * atoms.size() + j] = length * length;
-                }
-        return square;
+                if (i != j) all[i * atoms.size() + j] = square(atoms[i], atoms[j]);
+        return all;
     }
 
     // Atoms, one after the other, that are bonded to all there are.
@@ -107,9 +124,7 @@ private:
     }
 
     bool is_flat(const std::vector<std::int64_t> &atoms) const {
-        std::vector<double> places;
-        return places_of(static_cast<std::int64_t>(atoms.size()), squares(atoms).data(), places) <
-               static_cast<int>(atoms.size()) - 1;
+        return are_flat(static_cast<std::int64_t>(atoms.size()), squares(atoms).data());
     }
 
     void look_around(std::int64_t bond, bool five) {
@@ -143,13 +158,22 @@ private:
 
     void take(std::vector<std::int64_t> clique) {
         std::sort(clique.begin(), clique.end());
-        const std::vector<double> square = squares(clique);
         std::vector<double> places;
-        const std::int64_t n = static_cast<std::int64_t>(clique.size());
-        places_of(n, square.data(), places);
+        places_of(static_cast<std::int64_t>(clique.size()), squares(clique).data(), 32 * epsilon, places);
+        take(clique, places);
+    }
+
+    void look_for_ring(std::int64_t bond, std::int64_t &steps) {
+        const std::int64_t i = list_.pairs[2 * bond], j = list_.pairs[2 * bond + 1];
+        if (i == j || !is_free(i) || !is_free(j)) return;
+        FlatRing<Search> flat(*this, std::min(i, j), std::max(i, j), steps);
+        if (flat.find()) take(flat.ring(), flat.places());
+    }
+
+    void take(const std::vector<std::int64_t> &clique, const std::vector<double> &places) {
         check_lengths_of(clique, places);
         for (const std::int64_t atom : clique) body_of_[atom] = found_.sizes.size();
-        found_.sizes.push_back(n);
+        found_.sizes.push_back(static_cast<std::int64_t>(clique.size()));
         found_.atoms.insert(found_.atoms.end(), clique.begin(), clique.end());
         found_.places.insert(found_.places.end(), places.begin(), places.end());
     }
@@ -160,10 +184,9 @@ private:
         std::int64_t bad = -1;
         for (std::size_t i = 0; i < clique.size(); ++i)
             for (std::size_t j = 0; j < i; ++j) {
-                const double *const a = &places[3 * i], *const b = &places[3 * j];
-                const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-                const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+                const double length = distance_between(&places[3 * i], &places[3 * j]);
                 const std::int64_t bond = bond_between(clique[i], clique[j]);
+                if (bond < 0) continue;
                 const double wanted = lengths_[bond % n_lengths_], error = std::fabs(length - wanted) / wanted;
                 if (error <= worst) continue;
                 worst = error;
@@ -172,11 +195,12 @@ private:
             }
         if (bad < 0) return;
         char words[256];
-        std::snprintf(words, sizeof words,
-                      "has the length %.10g, which does not fit the others of its %zu atoms, which are all bonded to each "
-                      "other: by these it would be %.10g (hol_chains_add_rigid takes coordinates)",
-                      lengths_[bad % n_lengths_], clique.size(), distance);
-        throw bond_error(list_, Status::value, bad, words);
+        std::snprintf(
+            words, sizeof words,
+            "has the length %.10g, which does not fit the others between its %zu atoms, a rigid body: by these it "
+            "would be %.10g (hol_chains_add_rigid takes coordinates)",
+            lengths_[bad % n_lengths_], clique.size(), distance);
+        throw bond_error(list_, Status::degenerate, bad, words);
     }
 
     // All bonds that hang together with a body, but not through fixed atoms.
@@ -204,49 +228,25 @@ private:
 
 }  // namespace
 
-int places_of(std::int64_t n, const double *squares, std::vector<double> &places) {
+int places_of(std::int64_t n, const double *squares, double rounding, std::vector<double> &places) {
     Heights heights(n, squares);
-    while (!heights.is_done()) heights.go_on();
+    while (!heights.is_done(rounding)) heights.go_on();
     places.resize(3 * at(n));
     for (std::size_t i = 0; i < places.size(); ++i) places[i] = static_cast<double>(heights.places()[i]);
     return heights.dimension();
 }
 
-bool has_flat_clique(const holonomic::Shape &shape, const double *w, const double *lengths) {
-    if (shape.form == Form::chain || shape.form == Form::tree || (shape.form == Form::ring && shape.n_bonds > 3))
-        return false;
-    std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> higher(at(shape.n_atoms));  // atoms and bonds
-    for (std::int32_t k = 0; k < shape.n_bonds; ++k) {
-        const std::int32_t i = shape.pairs[at(2 * k)], j = shape.pairs[at(2 * k + 1)];
-        if (w[i] > 0 && w[j] > 0) higher[at(i)].emplace_back(j, k);
-    }
-    for (auto &list : higher) std::sort(list.begin(), list.end());
-    const auto square_between = [&](std::int32_t i, std::int32_t j) {
-        const auto &list = higher[at(i)];
-        const auto found = std::lower_bound(list.begin(), list.end(), std::make_pair(j, std::int32_t{0}));
-        if (found == list.end() || found->first != j) return -1.0;
-        return lengths[found->second] * lengths[found->second];
-    };
-    std::vector<double> unused;
-    for (std::int32_t i = 0; i < shape.n_atoms; ++i) {
-        const auto &list = higher[at(i)];
-        for (std::size_t a = 0; a < list.size(); ++a)
-            for (std::size_t b = a + 1; b < list.size(); ++b) {
-                const std::int32_t j = list[a].first, k = list[b].first;
-                const double ij = square_between(i, j), ik = square_between(i, k), jk = square_between(j, k);
-                if (jk < 0) continue;
-                const double three[9] = {0, ij, ik, ij, 0, jk, ik, jk, 0};
-                if (places_of(3, three, unused) < 2) return true;
-                for (std::size_t c = b + 1; c < list.size(); ++c) {
-                    const std::int32_t l = list[c].first;
-                    const double il = square_between(i, l), jl = square_between(j, l), kl = square_between(k, l);
-                    if (jl < 0 || kl < 0) continue;
-                    const double four[16] = {0, ij, ik, il, ij, 0, jk, jl, ik, jk, 0, kl, il, jl, kl, 0};
-                    if (places_of(4, four, unused) < 3) return true;
-                }
-            }
-    }
-    return false;
+bool are_flat(std::int64_t n, const double *squares) {
+    std::vector<double> places;
+    if (places_of(n, squares, 2 * epsilon * static_cast<double>(n - 2), places) >= n - 1) return false;
+    for (std::int64_t i = 0; i < n; ++i)
+        for (std::int64_t j = 0; j < i; ++j) {
+            const double wanted = std::sqrt(squares[i * n + j]);
+            if (!(std::fabs(distance_between(&places[at(3 * i)], &places[at(3 * j)]) - wanted) <=
+                  same_to_rounding * wanted))
+                return false;
+        }
+    return true;
 }
 
 Cliques find_cliques(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths) {

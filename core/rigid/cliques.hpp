@@ -1,5 +1,6 @@
 // Lists of distances that depend on each other: three atoms on a line, four in a plane, five and more, each with all of
-// the others, are rigid bodies. Their lengths say what they look like.
+// the others, and rings that are held in a plane (flat_ring.hpp), are rigid bodies. Their lengths say what they look
+// like, but for the mirror image, which a body follows anyway.
 #ifndef HOLONOMIC_RIGID_CLIQUES_HPP
 #define HOLONOMIC_RIGID_CLIQUES_HPP
 
@@ -10,11 +11,15 @@
 
 namespace holonomic::rigid {
 
-// Places of n atoms by their squared distances [n][n], in the least dimension, up to three, in which they are these
-// distances to a rounding; in three else. Returns the dimension.
-int places_of(std::int64_t n, const double *squares, std::vector<double> &places);
+// Places of n atoms by their squared distances [n][n], in the least dimension, up to three, above which no atom is
+// higher than rounding makes it: in squares, relative to the largest. Returns the dimension.
+int places_of(std::int64_t n, const double *squares, double rounding, std::vector<double> &places);
 
-// Whether three or four atoms that can move, each bonded to all others, are on a line or in a plane, by their lengths.
+// Whether three atoms are on a line, or four in a plane, to the rounding of their lengths.
+bool are_flat(std::int64_t n, const double *squares);
+
+// Whether three or four atoms that can move, each bonded to all others, are on a line or in a plane, by their lengths,
+// or a ring is held in a plane.
 bool has_flat_clique(const holonomic::Shape &shape, const double *w, const double *lengths);
 
 struct Cliques {

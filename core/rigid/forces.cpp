@@ -86,7 +86,8 @@ struct ForcesWork final : Work {
     ForcesWork(const Chains &chains, const AtomArray &r_, const AtomArray &v_, const AtomArray &f_, const Outputs &out_,
                bool virial_)
         : r(r_), v(v_), f(f_), box(chains.box), rate(chains.box_rate()), out(out_), virial(virial_),
-          in_order(out_.g.x && !chains.bodies()->fixed_atoms().empty()), call{r_, v_, f_, out_.g, nullptr, nullptr,
+          in_order(out_.g.x && !chains.bodies()->fixed_atoms().empty()), call{r_,       v_,      f_,
+                                                                              out_.g,   nullptr, nullptr,
                                                                               out_.add, virial_, {}} {
         put_box(box, call.box);
     }

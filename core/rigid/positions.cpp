@@ -88,7 +88,8 @@ struct PositionsWork final : Work {
         return false;
     }
 
-    void note(std::int64_t number, int iterations, bool corrected, double error, std::int32_t bond, Tally &tally) const {
+    void note(std::int64_t number, int iterations, bool corrected, double error, std::int32_t bond,
+              Tally &tally) const {
         if (!report) return;
         tally.iterations = std::max<std::int64_t>(tally.iterations, iterations);
         tally.n_corrected += corrected;

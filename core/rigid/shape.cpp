@@ -227,10 +227,10 @@ private:
 
 void complete(Shape &shape, const std::vector<Body> &bodies, const std::vector<double> &w_of_atom) {
     Completion(shape, bodies).run(w_of_atom);
-    shape.is_lone_body = shape.parts.size() == 1 && shape.n_atoms == shape.n_held &&
-                         std::all_of(shape.bonds.begin(), shape.bonds.end(),
-                                     [](const Bond &bond) { return bond.row < 0; }) &&
-                         bodies[static_cast<std::size_t>(shape.parts[0].body)].is_thick;
+    shape.is_lone_body =
+        shape.parts.size() == 1 && shape.n_atoms == shape.n_held &&
+        std::all_of(shape.bonds.begin(), shape.bonds.end(), [](const Bond &bond) { return bond.row < 0; }) &&
+        bodies[static_cast<std::size_t>(shape.parts[0].body)].is_thick;
     // A rigid whole has three or six motions left unless a fixed atom holds it: more equations than freedoms depend.
     std::int64_t freedoms = 3 * (shape.n_movable - shape.n_held), rows = 0;
     for (const Part &part : shape.parts) {

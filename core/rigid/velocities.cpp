@@ -21,7 +21,8 @@ struct VelocitiesWork final : Work {
     VelocitiesCall call;
 
     VelocitiesWork(const Chains &chains, const AtomArray &r_, const AtomArray &v_, double *lambda_, bool virial_)
-        : r(r_), v(v_), box(chains.box), rate(chains.box_rate()), lambda(lambda_), virial(virial_), call{r_, v_, nullptr, virial_, nullptr, {}} {
+        : r(r_), v(v_), box(chains.box), rate(chains.box_rate()), lambda(lambda_),
+          virial(virial_), call{r_, v_, nullptr, virial_, nullptr, {}} {
         put_box(box, call.box);
     }
     bool takes_blocks(bool bonds) const override { return !rate && !(bonds && lambda); }
@@ -72,8 +73,7 @@ struct VelocitiesWork final : Work {
             double x[3];
             read_atom(v, place.atoms[i], x);
             const PairVector before = {as_pair(x[0]), as_pair(x[1]), as_pair(x[2])};
-            const Vector3<double> impulse =
-                rounded(s.mass[at(i)] * (system.at_atom(z, i) - before));
+            const Vector3<double> impulse = rounded(s.mass[at(i)] * (system.at_atom(z, i) - before));
             *force++ = impulse.x, *force++ = impulse.y, *force++ = impulse.z;
         }
         share_within(system, system.now);

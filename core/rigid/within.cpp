@@ -21,8 +21,8 @@ class Sharing {
 public:
     Sharing(const System &system, const Conformation &where)
         : system_(system), s_(system.shape()), where_(where), n_bonds_(s_.bonds.size()), t_(system.within),
-          force_(force_within(system)), along_(force_ + 3 * std::ptrdiff_t{s_.n_held}),
-          slope_(along_ + 3 * std::ptrdiff_t{s_.n_held}), direction_(slope_ + n_bonds_) {}
+          force_(force_within(system)), along_(force_ + 3 * std::ptrdiff_t{s_.n_held}), slope_(t_ + n_bonds_),
+          direction_(slope_ + n_bonds_) {}
 
     void run() {
         std::fill(t_, t_ + n_bonds_, 0.0);

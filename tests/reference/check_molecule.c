@@ -171,6 +171,46 @@ static long double check_refused(const molecule_file *c, const hol_chains *chain
     return untouched && kept ? 0 : HUGE_VALL;
 }
 
+/** Distances that depend on each other, taken as a rigid body: its forces are no forces from outside, and the
+ * accelerations and velocities keep every distance, up to the rounding of what they are sums of. */
+static long double check_body(const molecule_file *c, const hol_chains *chains, outputs *o)
+{
+    const size_t size = sizeof(double) * 3 * (size_t)c->n_atoms;
+    const long double enough = 1e3L * DBL_EPSILON;
+    long double sum[6] = {0}, scale = 0, worst = 0;
+    memcpy(o->v, c->v, size);
+    int status = hol_project_velocities(chains, c->r, o->v, o->mu, NULL);
+    if (status != HOL_OK) return print_failure(c->name, "velocities of a body", status);
+    status = hol_forces(chains, c->r, o->v, c->f, o->lambda, NULL, o->g, HOL_WRITE, o->virial);
+    if (status != HOL_OK) return print_failure(c->name, "forces of a body", status);
+    for (int64_t i = 0; i < c->n_atoms; ++i)
+        for (int x = 0; x < 3; ++x) {
+            const int y = (x + 1) % 3, z = (x + 2) % 3;
+            const double *const r = c->r + 3 * i, *const g = o->g + 3 * i;
+            sum[x] += g[x];
+            sum[3 + x] += (long double)r[y] * g[z] - (long double)r[z] * g[y];
+            scale += fabsl(g[x]) * (1 + fabsl(r[y]) + fabsl(r[z]));
+        }
+    for (int x = 0; x < 6; ++x) worst = fmaxl(worst, fabsl(sum[x]) / (enough * scale));
+    for (int64_t k = 0; k < c->n_bonds; ++k) {
+        const int64_t i = c->pairs[2 * k], j = c->pairs[2 * k + 1];
+        long double second = 0, first = 0, size_second = 0, size_first = 0;
+        for (int x = 0; x < 3; ++x) {
+            const long double d = (long double)c->r[3 * j + x] - c->r[3 * i + x],
+                              u = (long double)o->v[3 * j + x] - o->v[3 * i + x],
+                              a = c->w[j] * ((long double)c->f[3 * j + x] + o->g[3 * j + x]),
+                              b = c->w[i] * ((long double)c->f[3 * i + x] + o->g[3 * i + x]);
+            second += d * (a - b) + u * u;
+            first += d * u;
+            size_second += fabsl(d) * (fabsl(a) + fabsl(b)) + u * u;
+            size_first += fabsl(d) * (fabsl(o->v[3 * j + x]) + fabsl(o->v[3 * i + x]));
+        }
+        worst = fmaxl(worst, fmaxl(fabsl(second) / (enough * size_second), fabsl(first) / (enough * size_first)));
+    }
+    printf("%-36s a rigid body    %9.3Lg of 1  %s\n", c->name, worst, worst <= 1 ? "ok" : "TOO LARGE");
+    return worst;
+}
+
 /** A handle with the molecule, or NULL with the status of what failed. */
 static hol_chains *make_chains(const molecule_file *c, int *status)
 {
@@ -200,7 +240,9 @@ long double check_molecule_case(const molecule_file *c)
     if (!chains) return print_failure(c->name, "the library takes no such molecule", status);
     long double ratio = HUGE_VALL;
     if (make_outputs(c, &o) == 0) {
-        if (c->degenerate) {
+        if (c->degenerate && hol_chains_n_of_shape(chains, HOL_SHAPE_RIGID) > 0) {
+            ratio = check_body(c, chains, &o);
+        } else if (c->degenerate) {
             ratio = check_refused(c, chains, &o);
         } else {
             ratio = check_forces(c, chains, &o);

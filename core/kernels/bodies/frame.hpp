@@ -121,8 +121,7 @@ struct Frame {
     HOL_FORCED vec at(const double *weights, const double *low, int c) const {
         vec sum = of[0][c];
         HOL_UNROLL_FEW
-        for (int p = 1; p <= R; ++p)
-            sum = mul_add(of[p][c], splat(weights[p]), mul_add(of[p][c], splat(low[p]), sum));
+        for (int p = 1; p <= R; ++p) sum = mul_add(of[p][c], splat(weights[p]), mul_add(of[p][c], splat(low[p]), sum));
         return sum;
     }
     HOL_FORCED mask is_finite() const {
@@ -136,9 +135,7 @@ struct Frame {
     }
 };
 
-HOL_INLINE vec dot(const vec *a, const vec *b) {
-    return mul_add(a[2], b[2], mul_add(a[1], b[1], a[0] * b[0]));
-}
+HOL_INLINE vec dot(const vec *a, const vec *b) { return mul_add(a[2], b[2], mul_add(a[1], b[1], a[0] * b[0])); }
 
 template <int R>
 HOL_INLINE Frame<R> frame_of(const BodyKind &kind, const vec *x) {
@@ -166,7 +163,8 @@ HOL_INLINE Frame<R> axes_of(const BodyKind &kind, const Box &box, vec *raw, vec 
     return sum;
 }
 
-// Velocities of the atoms that have mass; what sites have is not looked at. low: with what rounding left off the shares.
+// Velocities of the atoms that have mass; what sites have is not looked at. low: with what rounding left off the
+// shares.
 template <int R, bool low>
 HOL_INLINE Frame<R> rates_of(const BodyKind &kind, const vec *v) {
     Frame<R> sum{};

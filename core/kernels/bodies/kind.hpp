@@ -13,9 +13,9 @@ struct BodyKind {
     double per_size[3][3], per_sum[3][3];  // 1/(L_p L_q), 1/(L_p^2 + L_q^2)
     const double *masses;                  // [n_atoms], 0: a massless site
     bool has_sites;
-    const double *place, *place_low;       // [n_atoms][1 + rank]: 1, y_p; and what rounding left off
-    const double *share, *share_low;       // [n_atoms][1 + rank]: m/M, m y_p / M
-    const int32_t *steps;                  // [n_atoms - 1][2]: an atom and one before it, where there is a box
+    const double *place, *place_low;  // [n_atoms][1 + rank]: 1, y_p; and what rounding left off
+    const double *share, *share_low;  // [n_atoms][1 + rank]: m/M, m y_p / M
+    const int32_t *steps;             // [n_atoms - 1][2]: an atom and one before it, where there is a box
 };
 
 }  // namespace holonomic

@@ -1,5 +1,5 @@
-// Rigid bodies that stand alone, side by side, in plain arithmetic. What does not come out in a lane is left to core, as
-// it was.
+// Rigid bodies that stand alone, side by side, in plain arithmetic. What does not come out in a lane is left to core,
+// as it was.
 #include "core/kernels/bodies/frame.hpp"
 #include "core/kernels/isa/choose.hpp"
 #include "core/kernels/verbs/verbs.hpp"

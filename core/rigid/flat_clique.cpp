@@ -1,0 +1,84 @@
+// Whether lengths of a shape depend on each other: asked once for each kind of molecule.
+#include <algorithm>
+#include <utility>
+
+#include "core/rigid/cliques.hpp"
+#include "core/rigid/flat_ring.hpp"
+
+namespace holonomic::rigid {
+
+namespace {
+
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+// Bonds of a molecule between atoms that can move.
+class Partners {
+public:
+    using Atom = std::int32_t;
+    Partners(const holonomic::Shape &shape, const double *w, const double *lengths)
+        : lengths_(lengths), of_(at(shape.n_atoms)) {
+        for (std::int32_t k = 0; k < shape.n_bonds; ++k) {
+            const std::int32_t i = shape.pairs[at(2 * k)], j = shape.pairs[at(2 * k + 1)];
+            if (!(w[i] > 0 && w[j] > 0)) continue;
+            of_[at(i)].emplace_back(j, k);
+            of_[at(j)].emplace_back(i, k);
+        }
+        for (auto &list : of_) std::sort(list.begin(), list.end());
+    }
+    template <class Each>
+    void for_partners(Atom atom, const Each &each) const {
+        for (const auto &partner : of_[at(atom)]) each(partner.first);
+    }
+    double square(Atom i, Atom j) const {
+        const auto &list = of_[at(i)];
+        const auto found = std::lower_bound(list.begin(), list.end(), std::make_pair(j, std::int32_t{0}));
+        if (found == list.end() || found->first != j) return -1;
+        return lengths_[found->second] * lengths_[found->second];
+    }
+    const std::vector<std::pair<std::int32_t, std::int32_t>> &of(Atom atom) const { return of_[at(atom)]; }
+
+private:
+    const double *const lengths_;
+    std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> of_;  // atoms and bonds
+};
+
+// Three or four atoms, of which i is the lowest.
+bool is_lowest_of_flat(const Partners &partners, std::int32_t i) {
+    const auto &list = partners.of(i);
+    const auto square = [&](std::int32_t a, std::int32_t b) { return partners.square(a, b); };
+    for (std::size_t a = 0; a < list.size(); ++a)
+        for (std::size_t b = a + 1; b < list.size(); ++b) {
+            const std::int32_t j = list[a].first, k = list[b].first;
+            const double ij = square(i, j), ik = square(i, k), jk = square(j, k);
+            if (j < i || jk < 0) continue;
+            const double three[9] = {0, ij, ik, ij, 0, jk, ik, jk, 0};
+            if (are_flat(3, three)) return true;
+            for (std::size_t c = b + 1; c < list.size(); ++c) {
+                const std::int32_t l = list[c].first;
+                const double il = square(i, l), jl = square(j, l), kl = square(k, l);
+                if (jl < 0 || kl < 0) continue;
+                const double four[16] = {0, ij, ik, il, ij, 0, jk, jl, ik, jk, 0, kl, il, jl, kl, 0};
+                if (are_flat(4, four)) return true;
+            }
+        }
+    return false;
+}
+
+}  // namespace
+
+bool has_flat_clique(const holonomic::Shape &shape, const double *w, const double *lengths) {
+    if (shape.form == Form::chain || shape.form == Form::tree || (shape.form == Form::ring && shape.n_bonds > 3))
+        return false;
+    const Partners partners(shape, w, lengths);
+    std::int64_t steps = steps_for_rings(shape.n_bonds);
+    for (std::int32_t i = 0; i < shape.n_atoms; ++i) {
+        if (is_lowest_of_flat(partners, i)) return true;
+        for (const auto &partner : partners.of(i))
+            if (i < partner.first && partners.of(i).size() > 3 &&
+                FlatRing<Partners>(partners, i, partner.first, steps).find())
+                return true;
+    }
+    return false;
+}
+
+}  // namespace holonomic::rigid

@@ -1,0 +1,86 @@
+// Rings of six atoms and more that lengths hold in a plane, benzene's among them: the distances between neighbours and
+// between next neighbours are held, so that all angles are, and what these turn makes one full circle. A closed polygon
+// that leaves its plane, or is not convex, turns more (Fenchel 1929, doi:10.1007/BF01454836).
+#ifndef HOLONOMIC_RIGID_FLAT_RING_HPP
+#define HOLONOMIC_RIGID_FLAT_RING_HPP
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace holonomic::rigid {
+
+// Graph: for_partners(atom, each) calls each(partner); square(i, j) is their squared distance, -1 where none is held.
+template <class Graph>
+class FlatRing {
+public:
+    using Atom = typename Graph::Atom;
+
+    // From its lowest atom on. steps: how many may still be looked at.
+    FlatRing(const Graph &graph, Atom first, Atom second, std::int64_t &steps)
+        : graph_(graph), ring_{first, second}, steps_(steps) {}
+
+    // Then ring() goes around, and places() has [..][3] of it.
+    bool find() { return extend(0); }
+    const std::vector<Atom> &ring() const { return ring_; }
+    std::vector<double> places() const {
+        std::vector<double> x(3 * ring_.size(), 0.0);
+        double angle = 0;
+        for (std::size_t i = 1; i < ring_.size(); ++i) {
+            const double length = std::sqrt(graph_.square(ring_[i - 1], ring_[i]));
+            x[3 * i] = x[3 * i - 3] + length * std::cos(angle);
+            x[3 * i + 1] = x[3 * i - 2] + length * std::sin(angle);
+            if (i + 1 < ring_.size()) angle += turn(ring_[i - 1], ring_[i], ring_[i + 1]);
+        }
+        return x;
+    }
+
+private:
+    static constexpr double circle = 6.283185307179586;
+    static constexpr std::size_t most = 16;
+
+    double tolerance() const { return 16 * std::numeric_limits<double>::epsilon() * static_cast<double>(ring_.size()); }
+
+    // By how much a way from i over j to k turns at j; NaN if it is not held.
+    double turn(Atom i, Atom j, Atom k) const {
+        const double a = graph_.square(i, j), b = graph_.square(j, k), c = graph_.square(i, k);
+        if (!(a > 0 && b > 0 && c > 0)) return std::numeric_limits<double>::quiet_NaN();
+        return std::acos(std::max(-1.0, std::min(1.0, (c - a - b) / (2 * std::sqrt(a * b)))));
+    }
+
+    bool closes(double turned) const {
+        const std::size_t n = ring_.size();
+        if (n < 6) return false;
+        const double whole =
+            turned + turn(ring_[n - 2], ring_[n - 1], ring_[0]) + turn(ring_[n - 1], ring_[0], ring_[1]);
+        return std::fabs(whole - circle) <= tolerance();
+    }
+
+    bool extend(double turned) {
+        if (closes(turned)) return true;
+        if (ring_.size() == most || --steps_ < 0) return false;
+        bool found = false;
+        const Atom last = ring_.back(), before = ring_[ring_.size() - 2];
+        graph_.for_partners(last, [&](Atom atom) {
+            if (found || atom < ring_[0] || std::find(ring_.begin(), ring_.end(), atom) != ring_.end()) return;
+            const double next = turned + turn(before, last, atom);
+            if (!(next <= circle + tolerance())) return;
+            ring_.push_back(atom);
+            found = extend(next);
+            if (!found) ring_.pop_back();
+        });
+        return found;
+    }
+
+    const Graph &graph_;
+    std::vector<Atom> ring_;
+    std::int64_t &steps_;
+};
+
+// For all rings of a molecule, or of a list.
+inline std::int64_t steps_for_rings(std::int64_t n_bonds) { return 4096 + 16 * n_bonds; }
+
+}  // namespace holonomic::rigid
+#endif

@@ -1,0 +1,242 @@
+/** Distances that depend on each other: three atoms on a line, four in a plane, five and more, rings held in a plane.
+ */
+#include "check.h"
+#include "random.h"
+
+enum { MOST = 16 };
+
+typedef struct part {
+    int n, n_bonds;
+    double place[3 * MOST], mass[MOST], length[MOST * MOST];
+    int64_t pairs[MOST * MOST];
+} part;
+
+static void add_bond(part *p, int i, int j)
+{
+    double square = 0;
+    for (int x = 0; x < 3; ++x) square += pow(p->place[3 * i + x] - p->place[3 * j + x], 2);
+    p->pairs[2 * p->n_bonds] = i;
+    p->pairs[2 * p->n_bonds + 1] = j;
+    p->length[p->n_bonds++] = sqrt(square);
+}
+
+/** n atoms anywhere on a line, in a plane or in space, with all their distances. */
+static part make_clique(int n, int dimension, uint64_t seed)
+{
+    part p = {.n = n};
+    random_stream s = random_seed(seed);
+    for (int i = 0; i < n; ++i) {
+        p.mass[i] = 1 + i % 3;
+        for (int x = 0; x < dimension; ++x) p.place[3 * i + x] = random_normal(&s);
+    }
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < i; ++j) add_bond(&p, i, j);
+    return p;
+}
+
+/** A ring of unequal sides on a circle or an ellipse, bonded to the next and to the one behind that. */
+static part make_ring(int n)
+{
+    part p = {.n = n};
+    for (int i = 0; i < n; ++i) {
+        const double angle = 2 * acos(-1.0) / n * (i + 0.2 * sin(3.0 * i));
+        p.mass[i] = 12 + i;
+        p.place[3 * i] = 1.4 * cos(angle);
+        p.place[3 * i + 1] = 1.2 * sin(angle);
+    }
+    for (int step = 1; step < 3; ++step)
+        for (int i = 0; i < n; ++i) add_bond(&p, i, (i + step) % n);
+    return p;
+}
+
+static void make_state(const part *p, double *r, double *v, double *f)
+{
+    const double c = cos(0.4), s = sin(0.4);
+    random_stream dice = random_seed(17);
+    for (int i = 0; i < p->n; ++i) {
+        const double *x = p->place + 3 * i, y[3] = {c * x[0] - s * x[1], s * x[0] + c * x[1], x[2]};
+        r[3 * i] = y[0] + 0.3, r[3 * i + 1] = c * y[1] - s * y[2], r[3 * i + 2] = s * y[1] + c * y[2];
+        if (p->n % 2) r[3 * i] = -r[3 * i]; /* lengths do not know the mirror image */
+        for (int k = 0; k < 3; ++k) v[3 * i + k] = random_normal(&dice), f[3 * i + k] = random_normal(&dice);
+    }
+}
+
+typedef struct results {
+    double g[3 * MOST], v[3 * MOST], r[3 * MOST], virial[9], lambda[MOST * MOST];
+} results;
+
+static results compute(const part *p, hol_chains *chains, double *lambda)
+{
+    results o;
+    double r[3 * MOST], v[3 * MOST], f[3 * MOST];
+    make_state(p, r, v, f);
+    CHECK(hol_forces(chains, r, v, f, lambda, NULL, o.g, HOL_WRITE, o.virial));
+    memcpy(o.v, v, sizeof v);
+    CHECK(hol_project_velocities(chains, r, o.v, NULL, NULL));
+    for (int i = 0; i < 3 * p->n; ++i) o.r[i] = r[i] + 0.02 * v[i];
+    CHECK(hol_project_positions(chains, r, o.r, NULL, 0.02, NULL, 0, NULL, NULL));
+    hol_chains_destroy(chains);
+    return o;
+}
+
+static hol_chains *chains_of(const part *p)
+{
+    hol_chains *chains;
+    CHECK(hol_chains_create(p->n, p->mass, &chains));
+    CHECK(hol_chains_add_bonds(chains, p->n_bonds, p->pairs, p->length));
+    return chains;
+}
+
+/** The same as the body by its coordinates; multipliers that pull as it does where they can, the least of these. */
+static void check_part(const part *p, int dimension)
+{
+    hol_chains *chains = chains_of(p), *body;
+    const int64_t n = p->n;
+    int64_t list[MOST];
+    double lambda[MOST * MOST], r[3 * MOST], v[3 * MOST], f[3 * MOST];
+    assert_int_equal(hol_chains_n_of_shape(chains, HOL_SHAPE_RIGID), 1);
+    assert_int_equal(hol_chains_n_bonds(chains), p->n_bonds);
+    assert_int_equal(hol_chains_degrees_of_freedom(chains, 3), dimension == 1 ? 5 : 6);
+    for (int64_t i = 0; i < n; ++i) list[i] = i;
+    CHECK(hol_chains_create(n, p->mass, &body));
+    CHECK(hol_chains_add_rigid(body, 1, &n, list, p->place, 0, NULL, NULL));
+    results by_lengths = compute(p, chains, lambda), by_places = compute(p, body, NULL);
+    make_state(p, r, v, f);
+    for (int i = 0; i < 3 * p->n; ++i) {
+        CHECK_AT_MOST(fabs(by_lengths.g[i] - by_places.g[i]), 1e-12);
+        CHECK_AT_MOST(fabs(by_lengths.v[i] - by_places.v[i]), 1e-13);
+        CHECK_AT_MOST(fabs(by_lengths.r[i] - by_places.r[i]), 1e-13);
+    }
+    /* What is left of the forces lies across all bonds: in a body of three dimensions nothing is. */
+    for (int k = 0; k < p->n_bonds; ++k)
+        for (int x = 0; x < 3; ++x) {
+            const int64_t i = p->pairs[2 * k], j = p->pairs[2 * k + 1];
+            const double pull = 2 * lambda[k] * (r[3 * j + x] - r[3 * i + x]);
+            by_lengths.g[3 * i + x] -= pull;
+            by_lengths.g[3 * j + x] += pull;
+        }
+    for (int k = 0; k < p->n_bonds; ++k) {
+        double along = 0;
+        for (int x = 0; x < 3; ++x) {
+            const int64_t i = p->pairs[2 * k], j = p->pairs[2 * k + 1];
+            along += (r[3 * j + x] - r[3 * i + x]) * (by_lengths.g[3 * j + x] - by_lengths.g[3 * i + x]);
+        }
+        CHECK_AT_MOST(fabs(along), 1e-11);
+    }
+    for (int i = 0; dimension == 3 && i < 3 * p->n; ++i) CHECK_AT_MOST(fabs(by_lengths.g[i]), 1e-12);
+}
+
+static void dependent_distances_are_bodies(void **state)
+{
+    (void)state;
+    for (int dimension = 1; dimension < 4; ++dimension)
+        for (int n = dimension + 2; n < 9; ++n) {
+            const part p = make_clique(n, dimension, (uint64_t)(10 * n + dimension));
+            check_part(&p, dimension);
+        }
+    for (int n = 6; n < 11; ++n) {
+        const part p = make_ring(n);
+        check_part(&p, 2);
+    }
+}
+
+/** Ten multipliers for nine equations: none along the stress that five points in space can have. */
+static void multipliers_of_ten_distances_have_the_least_norm(void **state)
+{
+    (void)state;
+    const double coefficient[5] = {-4, 1, 1, 1, 1}; /* of methane's atoms: sum c = 0, sum c x = 0 */
+    part p = {.n = 5};
+    for (int i = 1; i < 5; ++i)
+        for (int x = 0; x < 3; ++x) p.place[3 * i + x] = i == 1 || i == x + 2 ? 0.63 : -0.63;
+    for (int i = 0; i < 5; ++i) p.mass[i] = i == 0 ? 12 : 1;
+    for (int i = 0; i < 5; ++i)
+        for (int j = 0; j < i; ++j) add_bond(&p, i, j);
+    double lambda[10], along = 0;
+    compute(&p, chains_of(&p), lambda);
+    for (int k = 0; k < 10; ++k) along += lambda[k] * coefficient[p.pairs[2 * k]] * coefficient[p.pairs[2 * k + 1]];
+    CHECK_AT_MOST(fabs(along), 1e-13);
+}
+
+static void bent_and_puckered_ones_stay_as_they_are(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 3; ++which) {
+        part p = which == 0 ? make_clique(3, 1, 5) : which == 1 ? make_clique(4, 2, 5) : make_ring(6);
+        p.place[3 * 2 + 2] += 1e-5;
+        p.n_bonds = 0;
+        for (int i = 0; which < 2 && i < p.n; ++i)
+            for (int j = 0; j < i; ++j) add_bond(&p, i, j);
+        for (int k = 0; which == 2 && k < 12; ++k) add_bond(&p, k % 6, (k % 6 + 1 + k / 6) % 6);
+        hol_chains *chains = chains_of(&p);
+        assert_int_equal(hol_chains_n_of_shape(chains, HOL_SHAPE_RIGID), 0);
+        hol_chains_destroy(chains);
+    }
+}
+
+static void lengths_that_disagree_are_named_and_nothing_is_added(void **state)
+{
+    (void)state;
+    part p = make_clique(6, 3, 9);
+    hol_chains *chains;
+    int64_t bond = -1;
+    p.length[4] *= 1.01;
+    CHECK(hol_chains_create(6, p.mass, &chains));
+    CHECK_FAILS(HOL_ERR_DEGENERATE, hol_chains_add_bonds(chains, p.n_bonds, p.pairs, p.length));
+    assert_message_names("hol_chains_add_rigid");
+    hol_error_location(NULL, &bond, NULL, NULL);
+    assert_in_range(bond, 0, p.n_bonds - 1);
+    assert_int_equal(hol_chains_n_bonds(chains), 0);
+    assert_int_equal(hol_chains_n_chains(chains), 0);
+    p.length[4] /= 1.01;
+    CHECK(hol_chains_add_bonds(chains, p.n_bonds, p.pairs, p.length));
+    CHECK_FAILS(HOL_ERR_SHARED_ATOM, hol_chains_add_bonds(chains, p.n_bonds, p.pairs, p.length));
+    hol_chains_destroy(chains);
+}
+
+/** In one list with waters and tails: each bond keeps its place in the arrays. */
+static void bodies_and_others_come_in_one_list(void **state)
+{
+    (void)state;
+    const double mass[9] = {16, 12, 16, 15, 16, 1, 1, 0, 14}, line = 2.32;
+    const int64_t pairs[16] = {4, 5, 0, 2, 5, 6, 0, 1, 2, 3, 1, 2, 6, 4, 7, 8};
+    const double length[8] = {1, line, 1.6, line / 2, 1.5, line / 2, 1, 2};
+    const double r[27] = {-line / 2, 0, 0, 0, 0, 0,     line / 2, 0, 0, line / 2, 1.5, 0, 5, 0,
+                          0,         6, 0, 0, 5, -0.28, 0.96,     9, 9, 9,        9,   9, 11};
+    double f[27], g[27], lambda[8], v[27] = {0};
+    hol_chains *chains;
+    int64_t numbers[8];
+    random_stream s = random_seed(2);
+    for (int i = 0; i < 27; ++i) f[i] = random_normal(&s);
+    CHECK(hol_chains_create(9, mass, &chains));
+    CHECK(hol_chains_add_bonds(chains, 8, pairs, length));
+    assert_int_equal(hol_chains_n_chains(chains), 3);
+    assert_int_equal(hol_chains_n_of_shape(chains, HOL_SHAPE_RIGID), 1);
+    CHECK(hol_chains_molecules_of_bonds(chains, numbers));
+    const int64_t expected[8] = {0, 2, 0, 2, 2, 2, 0, 1};
+    for (int k = 0; k < 8; ++k) assert_int_equal(numbers[k], expected[k]);
+    CHECK(hol_chains_set_checks(chains, HOL_NEVER));
+    CHECK(hol_forces(chains, r, v, f, lambda, NULL, g, HOL_WRITE, NULL));
+    for (int k = 0; k < 8; ++k) { /* accelerations keep each distance */
+        double rate = 0;
+        for (int x = 0; x < 3; ++x) {
+            const int64_t i = pairs[2 * k], j = pairs[2 * k + 1];
+            const double a = mass[j] > 0 ? (f[3 * j + x] + g[3 * j + x]) / mass[j] : 0,
+                         b = mass[i] > 0 ? (f[3 * i + x] + g[3 * i + x]) / mass[i] : 0;
+            rate += (r[3 * j + x] - r[3 * i + x]) * (a - b);
+        }
+        CHECK_AT_MOST(fabs(rate), 1e-13);
+    }
+    hol_chains_destroy(chains);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(dependent_distances_are_bodies),
+        cmocka_unit_test(multipliers_of_ten_distances_have_the_least_norm),
+        cmocka_unit_test(bent_and_puckered_ones_stay_as_they_are),
+        cmocka_unit_test(lengths_that_disagree_are_named_and_nothing_is_added),
+        cmocka_unit_test(bodies_and_others_come_in_one_list),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
