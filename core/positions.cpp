@@ -36,6 +36,7 @@ struct PositionsWork final : Work {
         k.molecules.positions(calls[where], unit, scratch, tally);
     }
     bool shares_lists() const override { return true; }
+    bool walks_forests() const override { return true; }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_positions.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return store_bytes(k.long_positions, n); }
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {

@@ -55,7 +55,7 @@ struct hostile_molecule {
 };
 
 /** From this number on graphs are strips of triangles: all, and half of them in the numbers of scripts/soak. */
-/// From first_bush on, trees have atoms of many bonds.
+/// From first_bush on, trees have atoms of many bonds, and graphs are rings with such.
 constexpr std::uint64_t first_strip = 10000000, first_bush = 20000000, first_of_soaks = UINT64_C(1) << 32;
 
 /** The molecule with this number; the same on every machine. Every fourth number is of each class. */

@@ -131,11 +131,12 @@ void draw_strip(hostile_molecule &m, molecule_dice &d)
  * half of the time. */
 void draw_graph(hostile_molecule &m, molecule_dice &d)
 {
-    if (m.seed >= first_strip && (m.seed < first_of_soaks || m.seed / 64 % 2 == 0)) return draw_strip(m, d);
+    const bool bushy = m.seed >= first_bush && m.seed < first_of_soaks;
+    if (m.seed >= first_strip && !bushy && (m.seed < first_of_soaks || m.seed / 64 % 2 == 0)) return draw_strip(m, d);
     static const molecule_kind kinds[] = {MOLECULE_BENZENE, MOLECULE_PUCKERED_BENZENE, MOLECULE_TRIANGLES,
                                           MOLECULE_ZIGZAG,  MOLECULE_TRIANGLES_179,    MOLECULE_FUSED_RINGS,
                                           MOLECULE_CUBE,    MOLECULE_LARIAT,           MOLECULE_PEPTIDE};
-    const std::int64_t kind = d.whole(0, 9);
+    const std::int64_t kind = bushy ? 9 : d.whole(0, 9);
     if (kind < 9) {
         const molecule_kind k = kinds[kind];
         const std::int64_t size =
@@ -148,9 +149,10 @@ void draw_graph(hostile_molecule &m, molecule_dice &d)
         return;
     }
     draw_ring(m, d, d.whole(4, 20));
-    const std::int64_t ring = m.n_atoms(), more = d.whole(1, 20);
+    const std::int64_t ring = m.n_atoms(), more = bushy ? d.whole(8, 40) : d.whole(1, 20);
     for (std::int64_t k = 0; k < more; ++k) {
-        const std::int64_t parent = d.chance(0.5) ? d.whole(0, ring - 1) : d.whole(0, m.n_atoms() - 1);
+        const std::int64_t near = bushy && d.chance(0.8) ? 2 : ring;
+        const std::int64_t parent = d.chance(0.5) ? d.whole(0, near - 1) : d.whole(0, m.n_atoms() - 1);
         const double a = bond_length(m, d);
         point r = where(m, at(parent)), u = d.direction();
         for (std::size_t x = 0; x < 3; ++x) r[x] += a * u[x];

@@ -1,6 +1,8 @@
-// Different trees in the lanes of a vector: constraint forces, multipliers for given right-hand sides, velocities.
+// Different trees in the lanes of a vector: constraint forces, multipliers for given right-hand sides, velocities,
+// positions.
 #include "core/kernels/careful/plan.hpp"
 #include "core/kernels/molecules/doubtful.hpp"
+#include "core/kernels/molecules/forest/forest_positions.hpp"
 #include "core/kernels/molecules/forest/forest_sweeps.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
@@ -12,7 +14,8 @@ int64_t forest_scratch_bytes(const Forest &f) {
     int64_t careful = 0;
     for (int i = 0; i < f.n_trees; ++i)
         careful = f.schedule[i]->careful->scratch_bytes > careful ? f.schedule[i]->careful->scratch_bytes : careful;
-    return ForestLinear::values(f) * static_cast<int64_t>(sizeof(vec)) + 64 + careful;
+    const int64_t linear = ForestLinear::values(f), newton = ForestNewton::values(f);
+    return (linear > newton ? linear : newton) * static_cast<int64_t>(sizeof(vec)) + 64 + careful;
 }
 
 // Starts to fetch the atoms of a forest: trees that are worked on one after the other are not so in memory.
@@ -108,6 +111,17 @@ void forests_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, do
             }
             z.write_velocities(call.v, good);
         }
+        leave_doubtful(call, f, lane, good, memory.next, tally);
+    });
+}
+
+void forests_positions(const PositionsCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
+    const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
+    const AtomArray *const arrays[] = {&call.r_ref, &call.r, &call.v};
+    for_each_forest(unit, arrays, [&](const Forest &f, const MoleculeLane *lane) {
+        Memory<vec> memory = {scratch};
+        ForestNewton newton(f, lane, packed, memory);
+        const unsigned good = ForestPositions{call, newton, tally}.solve();
         leave_doubtful(call, f, lane, good, memory.next, tally);
     });
 }

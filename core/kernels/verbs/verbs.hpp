@@ -34,6 +34,7 @@ int64_t molecules_scratch_bytes(const Schedule &);
 int64_t forest_scratch_bytes(const Forest &);
 void forests_forces(const ForcesCall &, const MoleculeUnit &, double *scratch, Tally &);
 void forests_solve(const SolveCall &, const MoleculeUnit &, double *scratch, Tally &);
+void forests_positions(const PositionsCall &, const MoleculeUnit &, double *scratch, Tally &);
 void forests_velocities(const VelocitiesCall &, const MoleculeUnit &, double *scratch, Tally &);
 void molecules_forces(const ForcesCall &, const MoleculeUnit &, double *scratch, Tally &);
 void molecules_velocities(const VelocitiesCall &, const MoleculeUnit &, double *scratch, Tally &);

@@ -50,13 +50,14 @@ static inline void add_core_atom(const NewtonSystem<V> &x, int32_t c, int64_t re
     if (k == 0) return add_bare_atom(x, c);
     const V w = x.w[slot];
     auto f = NewtonMemory<V, 0>::make(x.working, k);
-    factorize_children(x, slot, k, f);
+    const NewtonAtom<V> atom(x, slot);
+    factorize_children<V>(atom, k, f);
     for (int32_t e = 0; e < n; ++e) {
         const int32_t place = s.n_tree + meet[e] / 2;
         V *const z = x.part_down + e * k, *const h = x.part_up + e * k;
         const NewtonRow<V> &row = x.row[place];
         V &pivot = x.core[meet[e] / 2];
-        pivot = pivot + couple(x, slot, k, place, f, z, h, f.S, f.u);
+        pivot = pivot + couple<V>(atom, k, x.new_D[place], row.b, f, z, h, f.S, f.u);
         for (int32_t a = 0; a < k; ++a) {
             x.reach_up[reach + e * k + a] = f.S[a];
             x.reach_down[reach + e * k + a] = f.u[a];
@@ -132,7 +133,7 @@ static inline void substitute_core(const NewtonSystem<V> &x) {
             V &y = x.row[s.n_tree + s.meet[e] / 2].t;
             y = s.meet[e] % 2 ? y + sum : y - sum;
         }
-        substitute_joint<0, true>(x, slot, k);
+        substitute_newton_joint<0, true, V>(NewtonAtom<V>(x, slot), k);
     }
     for (int32_t p = 0; p < s.n_core; ++p) x.core[p] = x.row[s.n_tree + p].t;
     forward_columns(s, x.core_lower, x.core);

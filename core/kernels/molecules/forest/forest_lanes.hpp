@@ -124,6 +124,66 @@ HOL_INLINE vec masses_of(const MoleculeLane *lane, const uint16_t *atom) {
     return numbers_at(p, 0);
 }
 
+// The trees of a forest, step by step.
+struct ForestTrees {
+    const Forest &f;
+    const MoleculeLane *lane;  // of all lanes; those without a tree repeat the first one
+    const Atoms<vec> at;
+
+    ForestTrees(const Forest &forest, const MoleculeLane *lanes, bool packed)
+        : f(forest), lane(lanes), at(lanes, forest.n_trees, packed) {}
+
+    const uint16_t *atom_of(int32_t step) const { return f.atom + static_cast<int64_t>(step) * W; }
+    const uint16_t *above_of(int32_t step) const { return f.above + static_cast<int64_t>(step) * W; }
+    const uint16_t *lower_of(int32_t place) const { return f.lower + static_cast<int64_t>(place) * W; }
+    // Where the value of a bond stands in the caller's arrays.
+    int64_t bond_of(int i, int32_t place) const {
+        return lane[i].first_bond + f.bond[static_cast<int64_t>(place) * W + i];
+    }
+
+    // Calls body(step, first) for all steps but that of the roots; its values of pairs begin with the first.
+    template <class Body>
+    HOL_FORCED void for_steps_up(const Body &body) const {
+        int64_t first = 0;
+        for (int32_t s = 0; s + 1 < f.n_steps; ++s) {
+            body(s, first);
+            first += values_of_joint(f.step[s].children);
+        }
+    }
+    template <class Body>
+    HOL_FORCED void for_steps_down(const Body &body) const {
+        int64_t first = f.n_pairs;
+        for (int32_t s = f.n_steps - 1; s-- > 0;) {
+            first -= values_of_joint(f.step[s].children);
+            body(s, first);
+        }
+    }
+    // Calls body(place, bits of the lanes of `which` that hold a bond there).
+    template <class Body>
+    HOL_FORCED void for_held(unsigned which, const Body &body) const {
+        for (int32_t p = 0; p < f.n_places; ++p)
+            if (const unsigned held = f.held[p] & which) body(p, held);
+    }
+    // Writes value(place, atom) of the atoms' vectors in the lanes of which & ~but(place).
+    template <class But, class Value>
+    HOL_FORCED void write_atoms(const AtomArray &array, unsigned which, const But &but, const Value &value) const {
+        choose(
+            [&](auto packed) HOL_FORCED {
+                for_held(which, [&](int32_t p, unsigned lanes) HOL_FORCED {
+                    const ForestAtom<packed> atom(at, lower_of(p));
+                    atom.write(array, value(p, atom), lanes & ~but(p));
+                });
+                const ForestAtom<packed> root(at, atom_of(f.n_steps - 1));
+                root.write(array, value(f.n_places, root), which & ~but(f.n_places));
+            },
+            at.layout != elements);
+    }
+    template <class Value>
+    HOL_FORCED void write_atoms(const AtomArray &array, unsigned which, const Value &value) const {
+        write_atoms(array, which, [](int32_t) { return 0u; }, value);
+    }
+};
+
 }  // namespace graph
 }  // namespace HOL_ISA
 }  // namespace holonomic

@@ -13,10 +13,7 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-struct ForestLinear {
-    const Forest &f;
-    const MoleculeLane *lane;  // of all lanes; those without a tree repeat the first one
-    const Atoms<vec> at;
+struct ForestLinear : ForestTrees {
     const Box &box;
     const AtomArray &r;
     Inputs in;
@@ -40,8 +37,8 @@ struct ForestLinear {
 
     ForestLinear(const Forest &forest, const MoleculeLane *lanes, bool packed, const Box &b, const AtomArray &positions,
                  const Inputs &inputs, int right_hand_side, Memory<vec> &memory)
-        : f(forest), lane(lanes), at(lanes, forest.n_trees, packed), box(b), r(positions), in(inputs),
-          terms(right_hand_side), slack(splat(1)) {
+        : ForestTrees(forest, lanes, packed), box(b), r(positions), in(inputs), terms(right_hand_side),
+          slack(splat(1)) {
         const int64_t rows = f.n_places + 2;
         row = reinterpret_cast<BondRow<vec> *>(memory.values(rows * static_cast<int64_t>(sizeof *row / sizeof(vec))));
         pull = memory.vectors(rows);
@@ -54,9 +51,6 @@ struct ForestLinear {
     }
 
     bool has(int wanted) const { return (terms & wanted) != 0; }
-    const uint16_t *atom_of(int32_t step) const { return f.atom + static_cast<int64_t>(step) * W; }
-    const uint16_t *above_of(int32_t step) const { return f.above + static_cast<int64_t>(step) * W; }
-    const uint16_t *lower_of(int32_t place) const { return f.lower + static_cast<int64_t>(place) * W; }
 
     // The place in the schedule of the bond at a place, in one lane.
     int32_t scheduled(int i, int32_t place) const { return f.schedule[i]->slot_of[lower_of(place)[i]]; }
@@ -116,26 +110,8 @@ struct ForestLinear {
         vec b = {};
         for (int i = 0; i < W; ++i)
             if (f.held[place] >> i & 1)
-                b[i] = 0.5 * in.rhs[lane[i].first_bond + f.bond[static_cast<int64_t>(place) * W + i]];
+                b[i] = 0.5 * in.rhs[bond_of(i, place)];
         return b;
-    }
-
-    // Calls body(step, pairs) with the step's multipliers, for all but that of the roots.
-    template <class Body>
-    HOL_FORCED void for_steps_up(const Body &body) const {
-        vec *pairs = pair;
-        for (int32_t s = 0; s + 1 < f.n_steps; ++s) {
-            body(s, pairs);
-            pairs += values_of_joint(f.step[s].children);
-        }
-    }
-    template <class Body>
-    HOL_FORCED void for_steps_down(const Body &body) const {
-        vec *pairs = pair + f.n_pairs;
-        for (int32_t s = f.n_steps - 1; s-- > 0;) {
-            pairs -= values_of_joint(f.step[s].children);
-            body(s, pairs);
-        }
     }
 
     void factorize_and_solve();
@@ -166,26 +142,6 @@ struct ForestLinear {
         }
     }
 
-    // Calls body(place, bits of the lanes of `which` that hold a bond there).
-    template <class Body>
-    HOL_FORCED void for_held(unsigned which, const Body &body) const {
-        for (int32_t p = 0; p < f.n_places; ++p)
-            if (const unsigned held = f.held[p] & which) body(p, held);
-    }
-    // Writes value(place, atom) of the atoms' vectors.
-    template <class Value>
-    HOL_FORCED void write_atoms(const AtomArray &array, unsigned which, const Value &value) const {
-        choose(
-            [&](auto packed) HOL_FORCED {
-                for_held(which, [&](int32_t p, unsigned lanes) HOL_FORCED {
-                    const ForestAtom<packed> atom(at, lower_of(p));
-                    atom.write(array, value(p, atom), lanes);
-                });
-                const ForestAtom<packed> root(at, atom_of(f.n_steps - 1));
-                root.write(array, value(f.n_places, root), which);
-            },
-            at.layout != elements);
-    }
     __attribute__((noinline)) void write_pulls(const AtomArray &g, bool add, unsigned which) const {
         write_atoms(g, which, [&](int32_t place, const auto &atom) HOL_FORCED {
             const vec3 a = pull_at(place);
@@ -200,9 +156,8 @@ struct ForestLinear {
     __attribute__((noinline)) void write_bonds(double factor, double *out, unsigned which) const {
         for_held(which, [&](int32_t p, unsigned lanes) HOL_FORCED {
             const vec a = mul_add(row[p].t, with_length ? sqrt(row[p].q) : splat(factor), vec{});
-            const uint16_t *const bond = f.bond + static_cast<int64_t>(p) * W;
             for (int i = 0; i < W; ++i)
-                if (lanes >> i & 1) out[lane[i].first_bond + bond[i]] = a[i];
+                if (lanes >> i & 1) out[bond_of(i, p)] = a[i];
         });
     }
     __attribute__((noinline)) void add_virial(unsigned which, Tally &tally) const {

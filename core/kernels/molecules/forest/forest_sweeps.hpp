@@ -80,7 +80,7 @@ struct ForestJoint {
                      d[3] = {its.d.x[i], its.d.y[i], its.d.z[i]};
         const double A = (mass[0] + mass[1]) * its.q[i];
         if (x.has(given))
-            return __builtin_fabs(0.5 * x.in.rhs[x.lane[i].first_bond + x.f.bond[static_cast<int64_t>(bond) * W + i]]) /
+            return __builtin_fabs(0.5 * x.in.rhs[x.bond_of(i, bond)]) /
                    A;
         return terms_of(x.in, d, number, mass) / A;
     }
@@ -88,10 +88,10 @@ struct ForestJoint {
 
 inline __attribute__((noinline)) void ForestLinear::factorize_and_solve() {
     vec least = slack;  // in a register
-    for_steps_up([&](int32_t s, vec *pairs) HOL_FORCED {
+    for_steps_up([&](int32_t s, int64_t first) HOL_FORCED {
         const int k = f.step[s].children;
         least = choose_few<3>(k, [=](auto known) HOL_FORCED {
-            const ForestJoint joint(*this, s, pairs);
+            const ForestJoint joint(*this, s, pair + first);
             vec own = least;
             joint.top.d = joint.place.get3(offsetof(BondRow<vec>, d));
             joint.top.q = joint.place.get(offsetof(BondRow<vec>, q));
@@ -107,10 +107,10 @@ inline __attribute__((noinline)) void ForestLinear::factorize_and_solve() {
 }
 
 inline __attribute__((noinline)) void ForestLinear::substitute() {
-    for_steps_up([&](int32_t s, vec *pairs) HOL_FORCED {
+    for_steps_up([&](int32_t s, int64_t first) HOL_FORCED {
         const int k = f.step[s].children;
         choose_few<3>(k, [&](auto known) HOL_FORCED {
-            const ForestJoint joint(*this, s, pairs);
+            const ForestJoint joint(*this, s, pair + first);
             joint.read_t();
             substitute_joint<known, false>(joint, k, working);
             joint.write_t();
@@ -142,7 +142,8 @@ inline __attribute__((noinline)) void ForestLinear::down() {
         if (__builtin_expect(faint != 0, 0)) joint.doubt_faint(k, faint, slack);
     };
     step(f.n_steps - 1, pair, Constant<int, 1>{}, Constant<bool, true>{});
-    for_steps_down([&](int32_t s, vec *pairs) HOL_FORCED {
+    for_steps_down([&](int32_t s, int64_t first) HOL_FORCED {
+        vec *const pairs = pair + first;
         choose_few<3>(f.step[s].children, [&](auto known) HOL_FORCED { step(s, pairs, known, Constant<bool, false>{}); });
     });
 }

@@ -72,6 +72,8 @@ struct FlatPositions {
         Row least = in_row(1e300), most = {};
         for (int64_t k = tile.first; k < tile.end; k += 4) {
             const int32_t *const bond = newton.s.bond_of + k;
+            for (int i = rows_ahead; i < rows_ahead + 4 && k + i < tile.end; ++i)
+                __builtin_prefetch(lane.length + bond[i], 0, 2);
             const Row a = {lane.length[bond[0]], lane.length[bond[1]], lane.length[bond[2]], lane.length[bond[3]]},
                       a2 = a * a;
             least = smaller(a, least);
@@ -109,6 +111,7 @@ struct FlatPositions {
     __attribute__((noinline)) void write_atoms(int32_t first, int32_t end) const {
         const double per_dt = 1 / call.dt;
         for (int32_t i = first; i < end; ++i) {
+            if (i + rows_ahead < end) __builtin_prefetch(&newton.moves[newton.s.place_of[i + rows_ahead]], 0, 2);
             if (schedule.fixed[i]) continue;
             const Row &move = newton.moves[newton.s.place_of[i]];
             write(call.r, at, i, vector_of(read_row_of(call.r, at, i) + move), 1);

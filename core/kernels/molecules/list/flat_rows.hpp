@@ -192,13 +192,17 @@ HOL_INLINE Row read_row_of(const AtomArray &array, const Atoms<double> &at, int3
 // The rows of a tile's atoms.
 HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<double> &at, const FlatList &s, const Tile &tile,
                            const Rows &to) {
-    for (int32_t i = tile.first_site; i < tile.end_site; ++i)
+    for (int32_t i = tile.first_site; i < tile.end_site; ++i) {
+        if (at.layout != elements && i + rows_ahead < tile.end_site)
+            fetch_row(array, 3 * at.number(0, s.atom_of[i + rows_ahead]));
         to[i - tile.first_site] = read_row_of(array, at, s.atom_of[i]);
+    }
 }
 // Their masses, -w_0, w_0, -w_1, .. , 0.
 HOL_INLINE void read_masses(const double *w, const FlatList &s, const Tile &tile, double *mass) {
     double *to = mass + tile.first_mass;
     for (int32_t i = tile.first_site; i < tile.end_site; ++i, to += 2) {
+        if (i + rows_ahead < tile.end_site) __builtin_prefetch(w + s.atom_of[i + rows_ahead], 0, 2);
         const double one = w[s.atom_of[i]];
         to[0] = -one;
         to[1] = one;

@@ -89,7 +89,7 @@ struct JointMemory<V, 0> {
 template <int known, bool top, class V, class Rows>
 HOL_INLINE void up_joint(const Rows &x, int count, Memory<V> memory, V &slack) {
     const int k = known > 0 ? known : count;
-    if (k > most_decomposed) return up_many(x, k, least_part, slack);
+    if (!top && k > most_decomposed) return up_many(x, k, least_part, slack);
     auto f = JointMemory<V, known>::make(memory, k);
     const V w = x.w();
     decompose(x, k, w, f.S, f.r, f.m, slack);
@@ -131,7 +131,7 @@ HOL_INLINE void up_joint(const Rows &x, int count, Memory<V> memory, V &slack) {
 template <int known, bool top, class V, class Rows>
 HOL_INLINE void substitute_joint(const Rows &x, int count, Memory<V> memory) {
     const int k = known > 0 ? known : count;
-    if (k > most_decomposed) return substitute_many<V>(x, k);
+    if (!top && k > most_decomposed) return substitute_many<V>(x, k);
     auto f = JointMemory<V, known>::make(memory, k);
     const V *const m = x.multipliers();
     V y = top ? V{} : x.above().t;

@@ -119,25 +119,42 @@ struct NewtonMemory<V, 0> {
     static constexpr int64_t values(int64_t k) { return k * k + k * (k - 1) + 5 * k; }
 };
 
-// Finds the factors of the children of a slot. Puts them into f and where they are kept.
-template <class V, class Joint>
-HOL_INLINE void factorize_children(const NewtonSystem<V> &x, int32_t slot, int k, Joint &f) {
-    const int32_t *const child = x.s.child + x.s.child_start[slot];
-    const V w = x.w[slot];
+// An atom at the position level: its bonds at their places, those to its children, and the one above.
+// forest/forest_newton.hpp has the same for atoms of W different trees.
+template <class V>
+struct NewtonAtom {
+    const NewtonSystem<V> &x;
+    const int32_t slot, *const child;
+
+    HOL_FORCED NewtonAtom(const NewtonSystem<V> &system, int32_t s)
+        : x(system), slot(s), child(system.s.child + system.s.child_start[s]) {}
+    HOL_FORCED V w() const { return x.w[slot]; }
+    HOL_FORCED NewtonRow<V> &bond(int a) const { return x.row[child[a]]; }
+    HOL_FORCED const Vector3<V> &D(int a) const { return x.new_D[child[a]]; }
+    HOL_FORCED NewtonRow<V> &above() const { return x.row[slot]; }
+    HOL_FORCED const Vector3<V> &D_above() const { return x.new_D[slot]; }
+    HOL_FORCED V *lower() const { return x.lower + x.s.pair_start[slot]; }
+    HOL_FORCED V *upper() const { return x.upper + x.s.pair_start[slot]; }
+    HOL_FORCED Memory<V> working() const { return x.working; }
+};
+
+// Finds the factors of the k children of an atom. Puts them into f and where they are kept.
+template <class V, class Rows, class Joint>
+HOL_INLINE void factorize_children(const Rows &x, int k, Joint &f) {
+    const V w = x.w();
     HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
         HOL_UNROLL_FEW
         for (int b = 0; b < k; ++b) {
-            const V g = w * dot(x.new_D[child[a]], x.row[child[b]].b);
-            f.S[a * k + b] = a == b ? g + x.row[child[a]].E : g;
+            const V g = w * dot(x.D(a), x.bond(b).b);
+            f.S[a * k + b] = a == b ? g + x.bond(a).E : g;
         }
     }
     decompose(k, f.S, f.r, f.lower, f.upper);
-    V *const lower = x.lower + x.s.pair_start[slot], *const upper = x.upper + x.s.pair_start[slot];
+    V *const lower = x.lower(), *const upper = x.upper();
     HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
-        NewtonRow<V> &row = x.row[child[a]];
-        row.r = f.r[a];
+        x.bond(a).r = f.r[a];
         HOL_UNROLL_FEW
         for (int b = 0; b < a; ++b) {
             lower[pair_of(a, b)] = f.lower[pair_of(a, b)];
@@ -146,20 +163,19 @@ HOL_INLINE void factorize_children(const NewtonSystem<V> &x, int32_t slot, int k
     }
 }
 
-// Returns what the children leave of the inverse mass along the bond at `place`. Finds its multipliers for each of
-// them, `up` and `down`.
-template <class V, class Joint>
-HOL_INLINE V couple(const NewtonSystem<V> &x, int32_t slot, int k, int32_t place, Joint &f, V *z, V *h, V *up,
+// Returns what the children leave of the inverse mass along another bond b of the atom, D as moved. Finds its multipliers
+// for each of them, `up` and `down`.
+template <class V, class Rows, class Joint>
+HOL_INLINE V couple(const Rows &x, int k, const Vector3<V> &D, const Vector3<V> &b, Joint &f, V *z, V *h, V *up,
                     V *down) {
-    const int32_t *const child = x.s.child + x.s.child_start[slot];
-    const V w = x.w[slot];
+    const V w = x.w();
     HOL_UNROLL_FEW
-    for (int a = 0; a < k; ++a) f.y[a] = w * dot(x.new_D[child[a]], x.row[place].b);
+    for (int a = 0; a < k; ++a) f.y[a] = w * dot(x.D(a), b);
     solve_joint(k, f.r, f.lower, f.upper, f.y, z, down);
     HOL_UNROLL_FEW
-    for (int a = 0; a < k; ++a) f.y[a] = w * dot(x.new_D[place], x.row[child[a]].b);
+    for (int a = 0; a < k; ++a) f.y[a] = w * dot(D, x.bond(a).b);
     solve_joint(k, f.r, f.upper, f.lower, f.y, h, up);
-    V E = w * dot(x.new_D[place], x.row[place].b);
+    V E = w * dot(D, b);
     HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) E = mul_add(-(h[a] * f.r[a]), z[a], E);
     return E;
@@ -170,97 +186,86 @@ HOL_INLINE V couple(const NewtonSystem<V> &x, int32_t slot, int k, int32_t place
 //     M = 1 + w sum_c b_c D_c^T / E_c,   N = M^-1,   E_e = w D_e^T N b_e,   t_c = (y_c - D_c.a) / E_c,   a = w N sum_c b_c y_c / E_c
 //
 // Keeps w N and the D_c / E_c: bonds turn before there are new factors.
-template <class V>
-HOL_INLINE void factorize_many(const NewtonSystem<V> &x, int32_t slot, int k) {
-    const int32_t *const child = x.s.child + x.s.child_start[slot];
-    const V w = x.w[slot];
+template <class V, class Rows>
+HOL_INLINE void factorize_many(const Rows &x, int k) {
+    const V w = x.w();
     Matrix3<V> M = Matrix3<V>::one();
-    V *const kept = x.lower + x.s.pair_start[slot];
-    Vector3<V> *const D = reinterpret_cast<Vector3<V> *>(kept + 9);
+    Vector3<V> *const D = reinterpret_cast<Vector3<V> *>(x.lower() + 9);
     for (int a = 0; a < k; ++a) {
-        NewtonRow<V> &row = x.row[child[a]];
+        NewtonRow<V> &row = x.bond(a);
         row.r = Width<V>::all(1) / row.E;
-        D[a] = row.r * x.new_D[child[a]];
+        D[a] = row.r * x.D(a);
         M.add(w * row.b, D[a]);
     }
     const Matrix3<V> B = divided_by(M, w);
-    *reinterpret_cast<Matrix3<V> *>(kept) = B;
-    const Vector3<V> D_e = x.new_D[slot], down = B * x.row[slot].b,
-                     up = D_e.x * B.x + (D_e.y * B.y + D_e.z * B.z);
-    x.row[slot].E = dot(D_e, down);
+    *reinterpret_cast<Matrix3<V> *>(x.lower()) = B;
+    const Vector3<V> D_e = x.D_above(), down = B * x.above().b,
+                     up = add_times(add_times(D_e.x * B.x, D_e.y, B.y), D_e.z, B.z);
+    x.above().E = dot(D_e, down);
     for (int a = 0; a < k; ++a) {
-        NewtonRow<V> &row = x.row[child[a]];
+        NewtonRow<V> &row = x.bond(a);
         row.up = row.r * dot(up, row.b);
         row.down = dot(D[a], down);
     }
 }
 
-template <class V>
-HOL_INLINE void substitute_many(const NewtonSystem<V> &x, int32_t slot, int k) {
-    const int32_t *const child = x.s.child + x.s.child_start[slot];
-    const V *const kept = x.lower + x.s.pair_start[slot];
-    const Vector3<V> *const D = reinterpret_cast<const Vector3<V> *>(kept + 9);
+template <class V, class Rows>
+HOL_INLINE void substitute_many_moved(const Rows &x, int k) {
+    const Vector3<V> *const D = reinterpret_cast<const Vector3<V> *>(x.lower() + 9);
     Vector3<V> sum = {};
-    V above = x.row[slot].t;
+    V above = x.above().t;
     for (int a = 0; a < k; ++a) {
-        NewtonRow<V> &row = x.row[child[a]];
+        NewtonRow<V> &row = x.bond(a);
         above = mul_add(row.up, row.t, above);
         row.t = row.t * row.r;
         sum = add_times(sum, row.t, row.b);
     }
-    sum = *reinterpret_cast<const Matrix3<V> *>(kept) * sum;
-    for (int a = 0; a < k; ++a) {
-        NewtonRow<V> &row = x.row[child[a]];
-        row.t = row.t - dot(D[a], sum);
-    }
-    x.row[slot].t = above;
+    sum = *reinterpret_cast<const Matrix3<V> *>(x.lower()) * sum;
+    for (int a = 0; a < k; ++a) x.bond(a).t = x.bond(a).t - dot(D[a], sum);
+    x.above().t = above;
 }
 
-template <int known, bool top, class V>
-HOL_INLINE void factorize_joint(const NewtonSystem<V> &x, int32_t slot, int count) {
+template <int known, bool top, class V, class Rows>
+HOL_INLINE void factorize_joint(const Rows &x, int count) {
     const int k = known > 0 ? known : count;
-    if (k > most_decomposed) return factorize_many(x, slot, k);
-    auto f = NewtonMemory<V, known>::make(x.working, k);
-    factorize_children(x, slot, k, f);
+    if (!top && k > most_decomposed) return factorize_many<V>(x, k);
+    auto f = NewtonMemory<V, known>::make(x.working(), k);
+    factorize_children<V>(x, k, f);
     if (top) return;
     V *const up = f.S, *const down = f.u;  // S is done with
-    x.row[slot].E = couple(x, slot, k, slot, f, f.z, f.h, up, down);
-    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    x.above().E = couple<V>(x, k, x.D_above(), x.above().b, f, f.z, f.h, up, down);
     HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
-        NewtonRow<V> &row = x.row[child[a]];
-        row.up = up[a];
-        row.down = down[a];
+        x.bond(a).up = up[a];
+        x.bond(a).down = down[a];
     }
 }
 
 // Substitutes up: finds u of the children, and y of the bond above.
-template <int known, bool top, class V>
-HOL_INLINE void substitute_joint(const NewtonSystem<V> &x, int32_t slot, int count) {
+template <int known, bool top, class V, class Rows>
+HOL_INLINE void substitute_newton_joint(const Rows &x, int count) {
     const int k = known > 0 ? known : count;
-    if (k > most_decomposed) return substitute_many(x, slot, k);
-    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    if (!top && k > most_decomposed) return substitute_many_moved<V>(x, k);
     if (known == 1) {
-        NewtonRow<V> &row = x.row[child[0]];
+        NewtonRow<V> &row = x.bond(0);
         const V y = row.t;
         row.t = y * row.r;
-        if (!top) x.row[slot].t = mul_add(row.up, y, x.row[slot].t);
+        if (!top) x.above().t = mul_add(row.up, y, x.above().t);
         return;
     }
-    auto f = NewtonMemory<V, known>::make(x.working, k);
-    const V *const lower = x.lower + x.s.pair_start[slot], *const upper = x.upper + x.s.pair_start[slot];
-    V above = top ? V{} : x.row[slot].t;
+    auto f = NewtonMemory<V, known>::make(x.working(), k);
+    V above = top ? V{} : x.above().t;
     HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
-        const NewtonRow<V> &row = x.row[child[a]];
+        const NewtonRow<V> &row = x.bond(a);
         f.y[a] = row.t;
         f.r[a] = row.r;
         if (!top) above = mul_add(row.up, row.t, above);
     }
-    solve_joint(k, f.r, lower, upper, f.y, f.z, f.u);
+    solve_joint(k, f.r, x.lower(), x.upper(), f.y, f.z, f.u);
     HOL_UNROLL_FEW
-    for (int a = 0; a < k; ++a) x.row[child[a]].t = f.u[a];
-    if (!top) x.row[slot].t = above;
+    for (int a = 0; a < k; ++a) x.bond(a).t = f.u[a];
+    if (!top) x.above().t = above;
 }
 
 }  // namespace graph

@@ -1,0 +1,248 @@
+// Newton's method for the positions of W different trees (forest.hpp): a system for iterate.hpp. The arithmetic is that of
+// tree/newton.hpp, so that a tree's digits do not depend on whether it comes with others.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_NEWTON_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_NEWTON_HPP
+
+#include <stddef.h>
+
+#include "core/kernels/molecules/forest/forest_lanes.hpp"
+#include "core/kernels/molecules/tree/newton.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+typedef NewtonRow<vec> ForestRow;
+
+struct ForestNewton : ForestTrees {
+    ForestRow *row;      // [n_places + 2] by place
+    vec3 *new_D, *shift;  // [n_places + 2] of the bond, and of its lower atom; at n_places, of the root
+    vec *w, *lower_w;    // [n_steps], [n_places + 1]
+    vec *lower, *upper;  // [n_pairs]
+    vec *kept;           // factors, while new ones are made for some lanes
+    Memory<vec> working;
+
+    static int64_t joint_values(const Forest &f) {
+        return NewtonMemory<vec, 0>::values(f.most_children < most_decomposed ? f.most_children : most_decomposed);
+    }
+    static int64_t values(const Forest &f) {
+        const int64_t rows = f.n_places + 2, row_values = sizeof(ForestRow) / sizeof(vec);
+        return (row_values + 6 + 1 + 3) * rows + f.n_steps + 4 * static_cast<int64_t>(f.n_pairs) + joint_values(f);
+    }
+
+    ForestNewton(const Forest &forest, const MoleculeLane *lanes, bool packed, Memory<vec> &memory)
+        : ForestTrees(forest, lanes, packed) {
+        const int64_t rows = f.n_places + 2;
+        row = reinterpret_cast<ForestRow *>(memory.values(rows * static_cast<int64_t>(sizeof *row / sizeof(vec))));
+        new_D = memory.vectors(rows);
+        shift = memory.vectors(rows);
+        lower_w = memory.values(rows);
+        w = memory.values(f.n_steps);
+        lower = memory.values(f.n_pairs);
+        upper = memory.values(f.n_pairs);
+        kept = memory.values(3 * rows + 2 * f.n_pairs);
+        working = memory;
+        memory.values(joint_values(f));
+    }
+
+    // Bonds of the reference positions and of the new ones; returns the latter's largest coordinate.
+    template <bool packed>
+    __attribute__((noinline)) vec load_bonds(const PositionsCall &call) {
+        vec largest = {};
+        const auto look_at = [&](const vec3 &r) HOL_FORCED {
+            largest = max(max(abs(r.x), abs(r.y)), max(abs(r.z), largest));
+        };
+        for (int32_t s = 0; s < f.n_steps; ++s) {
+            const ForestAtom<packed> atom(at, atom_of(s));
+            const vec3 ref = atom.read(call.r_ref), r = atom.read(call.r);
+            w[s] = masses_of(lane, atom_of(s));
+            look_at(r);
+            for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
+                const ForestAtom<packed> below(at, lower_of(p));
+                const vec3 r1 = below.read(call.r);
+                vec3 unused = {};
+                look_at(r1);
+                row[p].b = below.read(call.r_ref) - ref;
+                row[p].D = r1 - r;
+                take_image<false>(call.box_ref, row[p].b, unused);
+                take_image<false>(call.box, row[p].D, unused);
+                lower_w[p] = masses_of(lane, lower_of(p));
+                row[p].tau = vec{};
+            }
+        }
+        lower_w[f.n_places] = w[f.n_steps - 1];
+        row[f.n_places] = row[f.n_places + 1] = ForestRow{};
+        new_D[f.n_places] = new_D[f.n_places + 1] = shift[f.n_places + 1] = vec3{};
+        return largest;
+    }
+    // a^2 of all bonds: 0 where there is none.
+    void load_lengths(vec &least, vec &most) {
+        least = splat(1e300);
+        most = vec{};
+        for (int32_t p = 0; p < f.n_places; ++p) {
+            const double *length[W];
+            HOL_UNROLL
+            for (int i = 0; i < W; ++i) length[i] = lane[i].length + f.bond[static_cast<int64_t>(p) * W + i];
+            const vec a = numbers_at(length, 0);
+            const mask there = lanes_of(f.held[p]);
+            least = select(there, min(a, least), least);
+            most = select(there, max(a, most), most);
+            row[p].a2 = select(there, a * a, vec{});
+            row[p].per_a2 = select(there, splat(1) / (a * a), vec{});
+        }
+    }
+
+    // What Newton has, by these names.
+    typedef Newton<vec>::Errors Errors;
+    vec open() {
+        Errors errors = {};
+        for (int32_t p = 0; p < f.n_places; ++p) {
+            new_D[p] = row[p].D;
+            Newton<vec>::measure<true>(row[p], row[p].D, errors);
+        }
+        return errors.largest();
+    }
+    void first_factors() { make_factors(); }
+    void forget(mask which) {
+        for (int32_t p = 0; p < f.n_places; ++p) row[p].tau = select(which, vec{}, row[p].tau);
+    }
+    void factorize(mask which) {
+        Errors unused = {};
+        for (int32_t p = 0; p < f.n_places; ++p) {
+            ForestRow &bond = row[p];
+            const vec stretch = bond.stretch, t = bond.t;
+            Newton<vec>::measure<true>(bond, new_D[p], unused);
+            bond.stretch = select(which, bond.stretch, stretch);
+            bond.t = select(which, bond.t, t);
+        }
+        if (bits(which) == all_lanes) return make_factors();
+        vec *to = kept;
+        const vec *from = kept;
+        for_factors([&](vec &value) HOL_FORCED { *to++ = value; });
+        make_factors();
+        for_factors([&](vec &value) HOL_FORCED { value = select(which, value, *from++); });
+    }
+    template <class Body>
+    HOL_FORCED void for_factors(const Body &body) const {
+        for (int32_t p = 0; p < f.n_places; ++p) {
+            body(row[p].r);
+            body(row[p].up);
+            body(row[p].down);
+        }
+        for (int32_t p = 0; p < f.n_pairs; ++p) {
+            body(lower[p]);
+            body(upper[p]);
+        }
+    }
+
+    void make_factors();
+    void substitute();
+    void solve(mask active);
+
+    // tau b of the bonds above and below an atom, times its inverse mass.
+    __attribute__((noinline)) void displace() {
+        for (int32_t p = 0; p < f.n_places; ++p) shift[p] = vec3{};
+        for (int32_t s = 0; s < f.n_steps; ++s) {
+            vec3 sum = {};
+            for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
+                shift[p] = lower_w[p] * add_times(shift[p], -row[p].tau, row[p].b);
+                sum = add_times(sum, row[p].tau, row[p].b);
+            }
+            AtPlaces<vec3>(shift, above_of(s)).put3(0, sum);
+        }
+        shift[f.n_places] = lower_w[f.n_places] * shift[f.n_places];
+    }
+    __attribute__((noinline)) vec move() {
+        displace();
+        Errors errors = {};
+        for (int32_t s = 0; s < f.n_steps; ++s) {
+            const vec3 above = AtPlaces<vec3>(shift, above_of(s)).get3(0);
+            for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
+                vec3 turned = shift[p] - above;
+                if (f.held[p] != all_lanes) {
+                    const mask there = lanes_of(f.held[p]);
+                    turned = {keep(there, turned.x), keep(there, turned.y), keep(there, turned.z)};
+                }
+                new_D[p] = row[p].D + turned;
+                Newton<vec>::measure<false>(row[p], new_D[p], errors);
+            }
+        }
+        return errors.largest();
+    }
+    // |D.D - a^2| / a^2 of the bonds at a place.
+    vec left_of(int32_t p) const { return abs(excess(new_D[p], row[p].a2)) * row[p].per_a2; }
+};
+
+// The bonds of an atom in each lane, as NewtonAtom has them: those to its children at the places of a step, and a copy of
+// the one above.
+struct ForestNewtonJoint {
+    const ForestNewton &x;
+    const int32_t step;
+    const AtPlaces<ForestRow> place;
+    ForestRow *const child;
+    const vec3 *const child_D;
+    const int64_t first;
+    mutable ForestRow top;
+    vec3 top_D;
+
+    HOL_FORCED ForestNewtonJoint(const ForestNewton &z, int32_t s, int64_t first_pair)
+        : x(z), step(s), place(z.row, z.above_of(s)), child(z.row + z.f.step[s].first),
+          child_D(z.new_D + z.f.step[s].first), first(first_pair) {}
+    HOL_FORCED vec w() const { return x.w[step]; }
+    HOL_FORCED ForestRow &bond(int a) const { return child[a]; }
+    HOL_FORCED const vec3 &D(int a) const { return child_D[a]; }
+    HOL_FORCED ForestRow &above() const { return top; }
+    HOL_FORCED const vec3 &D_above() const { return top_D; }
+    HOL_FORCED vec *lower() const { return x.lower + first; }
+    HOL_FORCED vec *upper() const { return x.upper + first; }
+    HOL_FORCED Memory<vec> working() const { return x.working; }
+    HOL_FORCED void read_t() const { top.t = place.get(offsetof(ForestRow, t)); }
+};
+
+inline __attribute__((noinline)) void ForestNewton::make_factors() {
+    for (int32_t p = 0; p < f.n_places; ++p)
+        row[p].E = select(lanes_of(f.held[p]), lower_w[p] * dot(new_D[p], row[p].b), splat(1));  // of a leaf
+    for_steps_up([&](int32_t s, int64_t first) HOL_FORCED {
+        const int k = f.step[s].children;
+        choose_few<3>(k, [&](auto known) HOL_FORCED {
+            ForestNewtonJoint joint(*this, s, first);
+            joint.top.b = joint.place.get3(offsetof(ForestRow, b));
+            joint.top_D = AtPlaces<vec3>(new_D, above_of(s)).get3(0);
+            factorize_joint<known, false, vec>(joint, k);
+            joint.place.put(offsetof(ForestRow, E), joint.top.E);
+        });
+    });
+    factorize_joint<1, true, vec>(ForestNewtonJoint(*this, f.n_steps - 1, 0), 1);
+}
+
+inline __attribute__((noinline)) void ForestNewton::substitute() {
+    for_steps_up([&](int32_t s, int64_t first) HOL_FORCED {
+        const int k = f.step[s].children;
+        choose_few<3>(k, [&](auto known) HOL_FORCED {
+            const ForestNewtonJoint joint(*this, s, first);
+            joint.read_t();
+            substitute_newton_joint<known, false, vec>(joint, k);
+            joint.place.put(offsetof(ForestRow, t), joint.top.t);
+        });
+    });
+    substitute_newton_joint<1, true, vec>(ForestNewtonJoint(*this, f.n_steps - 1, 0), 1);
+}
+
+// Adds the corrections for what is left, in t of the rows, to tau in the lanes of `active`.
+inline __attribute__((noinline)) void ForestNewton::solve(mask active) {
+    substitute();
+    ForestRow &root = row[f.step[f.n_steps - 1].first];
+    root.tau = root.tau + keep(active, root.t);
+    for_steps_down([&](int32_t s, int64_t) HOL_FORCED {
+        const vec above = AtPlaces<ForestRow>(row, above_of(s)).get(offsetof(ForestRow, t));
+        for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
+            row[p].t = mul_add(row[p].down, above, row[p].t);
+            row[p].tau = row[p].tau + keep(active, row[p].t);
+        }
+    });
+}
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

@@ -1,0 +1,97 @@
+// Position level of a forest: what positions.hpp does with a block of molecules of one shape.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_POSITIONS_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_POSITIONS_HPP
+
+#include "core/kernels/molecules/forest/forest_newton.hpp"
+#include "core/kernels/molecules/iterate.hpp"
+#include "core/kernels/molecules/virial.hpp"
+#include "core/kernels/tally.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+struct ForestPositions {
+    const PositionsCall &call;
+    ForestNewton &x;
+    Tally &tally;
+
+    void load_guess() const {
+        const double factor = 2 * call.dt * call.dt;
+        x.for_held(all_lanes, [&](int32_t p, unsigned lanes) HOL_FORCED {
+            for (int i = 0; i < W; ++i)
+                if (lanes >> i & 1) x.row[p].tau[i] = factor * call.lambda[x.bond_of(i, p)];
+        });
+    }
+    // As PositionsBlock::coarse_moves().
+    mask coarse_moves(const vec &extent, const vec &a_max) const {
+        vec pull = {};
+        for (int32_t s = 0; s < x.f.n_steps; ++s)
+            for (int32_t p = x.f.step[s].first, end = p + x.f.step[s].children; p < end; ++p)
+                pull = max(max(x.w[s], x.lower_w[p]) * abs(x.row[p].tau), pull);
+        return less(0.25 * extent, pull * a_max);
+    }
+    void write_multipliers(unsigned which) const {
+        const double factor = 0.5 / (call.dt * call.dt);
+        x.for_held(which, [&](int32_t p, unsigned lanes) HOL_FORCED {
+            const vec a = mul_add(x.row[p].tau, splat(factor), vec{});
+            for (int i = 0; i < W; ++i)
+                if (lanes >> i & 1) call.lambda[x.bond_of(i, p)] = a[i];
+        });
+    }
+    void add_virial(unsigned which) const {
+        MoleculesVirial<vec> virial;
+        for (int32_t p = 0; p < x.f.n_places; ++p) virial.add(x.row[p].b, x.row[p].tau * x.row[p].b);
+        virial.count(which, 1 / (call.dt * call.dt), tally);
+    }
+    // Moves the atoms that are not fixed, and their velocities.
+    void write_moves(const AtomArray &array, double factor, unsigned which) const {
+        x.write_atoms(
+            array, which, [&](int32_t p) { return bits(less_equal(x.lower_w[p], vec{})); },
+            [&](int32_t p, const auto &atom)
+                HOL_FORCED { return add_times(atom.read(array), splat(factor), x.shift[p]); });
+    }
+    // The worst bond of the trees in `which`: of a tree the one with the smallest number among those.
+    void note_worst(unsigned which, const vec &error) const {
+        int worst = -1;
+        for (int i = 0; i < W; ++i) {
+            if (!(which >> i & 1) || !is_worse(tally, error[i], x.lane[i].molecule)) continue;
+            tally.worst = error[i];
+            tally.worst_chain = x.lane[i].molecule;
+            worst = i;
+        }
+        if (worst < 0) return;
+        int64_t bond = INT64_MAX;
+        x.for_held(1u << worst, [&](int32_t p, unsigned) {
+            const int64_t its = x.bond_of(worst, p);
+            if (its < bond && x.left_of(p)[worst] >= tally.worst) bond = its;
+        });
+        tally.worst_bond = bond < INT64_MAX ? bond - x.lane[worst].first_bond : 0;
+    }
+
+    // Returns the lanes that need no careful arithmetic; nothing of the others has been written.
+    unsigned solve() {
+        vec largest = {}, a_min, a_max;
+        choose([&](auto packed) { largest = x.template load_bonds<packed>(call); }, x.at.layout != elements);
+        x.load_lengths(a_min, a_max);
+        if (call.guess) load_guess();
+        const Limits<vec> limits(call, largest, a_min);
+        const Solved<vec> out = iterate<vec, false, true>(x, limits, call, first_lanes(x.f.n_trees));
+        x.displace();
+        const unsigned moved = bits(out.converged & ~coarse_moves(largest + a_min, a_max)),
+                       good = moved | bits(out.untouched);
+        if (call.report) note_worst(good, out.error);
+        if (call.lambda) write_multipliers(good);
+        if (call.virial) add_virial(moved);
+        if (moved) write_moves(call.r, 1, moved);
+        if (moved && call.v.x) write_moves(call.v, 1 / call.dt, moved);
+        tally.n_corrected += __builtin_popcount(moved);
+        if (moved && out.solves > tally.iterations) tally.iterations = out.solves;
+        return good;
+    }
+};
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif
