@@ -1,6 +1,6 @@
 """Molecular dynamics of two xtbs with all bonds held, at constant energy: as it is, and with holonomic.
 
-    beside.py AS_IT_IS WITH_HOLONOMIC FOLDER [--test] [--picoseconds P]
+    beside.py AS_IT_IS WITH_HOLONOMIC FOLDER [--test] [--picoseconds P] [--molecule NAME]
 
 For each molecule and step: how far bonds get from their lengths, the drift of the energy, its scatter, and when the run ends if it
 does before its time. Temperatures, steps and masses are as xtb's default for dynamics (hydrogens of 4 u) but for the thermostat, which
@@ -42,6 +42,7 @@ def water_cluster(n):
 
 
 MOLECULES = {"hexane": alkane(6), "8 waters": water_cluster(8), "C24H2": polyyne(12)}
+RUNS = [("hexane", ["--gfn", "1"]), ("8 waters", ["--gfn", "1"]), ("C24H2", ["--gfn", "1"]), ("hexane", ["--gfnff"])]
 
 
 def run(program, folder, *arguments):
@@ -119,12 +120,16 @@ def main():
     arguments.add_argument("folder")
     arguments.add_argument("--test", action="store_true")
     arguments.add_argument("--picoseconds", type=float)
+    arguments.add_argument("--molecule", choices=[name for name, _ in RUNS])
     chosen = arguments.parse_args()
+    chosen.programs = [os.path.abspath(program) for program in chosen.programs]
     picoseconds = chosen.picoseconds or (0.1 if chosen.test else 2.0)
     steps = (4,) if chosen.test else (2, 4, 5)
     wrong = 0
     print(f"{'':26s} {'program':>10s} {'worst bond':>11s} {'drift kT/ns/dof':>16s} {'rms, kT':>9s} {'gave up':>8s} {'ms/step':>8s}  ended")
-    for name, method in [(name, ["--gfn", "1"]) for name in MOLECULES] + [("hexane", ["--gfnff"])]:
+    for name, method in RUNS:
+        if chosen.molecule not in (None, name):
+            continue
         folder = os.path.join(chosen.folder, (name + "-".join(method)).replace(" ", "_"))
         prepare(name, chosen.programs[0], folder, method)
         for step in steps:
