@@ -113,7 +113,7 @@ void work_on_molecules(const Work &work, const MoleculeUnit &unit, int where, do
 class Execution {
 public:
     Execution(const Chains &chains, const Plan &plan, const Work &work)
-        : chains_(chains), plan_(plan), work_(work), outcomes_(outcomes_under_way()),
+        : chains_(chains), plan_(plan), work_(work), outcomes_(chains.keeps_outcomes ? outcomes_under_way() : nullptr),
           n_pieces_(static_cast<std::int64_t>(plan.pieces.size())),
           scratch_bytes_(std::max(holonomic::scratch_bytes(plan.longest), plan.scratch_bytes)) {
         n_threads_ = static_cast<int>(

@@ -1,8 +1,9 @@
 """holonomic.ase.Constraint beside ASE's own FixBondLengths: molecules in free flight at 300 K, by ASE's velocity Verlet.
 
-    ase_beside.py [--steps N]
+    ase_beside.py [--steps N] [--ways]
 
-Without forces the energy is conserved to rounding if the constraints are, and a step costs what they cost.
+Without forces the energy is conserved to rounding if the constraints are, and a step costs what they cost. --ways: Langevin, BFGS
+and FIRE, with springs that pull every atom to a place near its own.
 """
 
 import argparse
@@ -12,9 +13,11 @@ import numpy as np
 from ase import Atoms, units
 from ase.calculators.calculator import Calculator
 from ase.constraints import FixBondLengths
+from ase.md.langevin import Langevin
 from ase.md.velocitydistribution import MaxwellBoltzmannDistribution
 from ase.md.verlet import VelocityVerlet
 from ase.neighborlist import natural_cutoffs, neighbor_list
+from ase.optimize import BFGS, FIRE
 
 from holonomic.ase import Constraint
 
@@ -24,6 +27,20 @@ class FreeFlight(Calculator):
 
     def calculate(self, atoms=None, properties=("energy",), system_changes=()):
         self.results = {"energy": 0.0, "forces": np.zeros((len(atoms), 3))}
+
+
+class Springs(Calculator):
+    """To places about 0.2 away from where the atoms are now."""
+
+    implemented_properties = ["energy", "forces"]
+
+    def __init__(self, atoms):
+        super().__init__()
+        self.places = atoms.positions + np.random.default_rng(2).normal(scale=0.2, size=atoms.positions.shape)
+
+    def calculate(self, atoms=None, properties=("energy",), system_changes=()):
+        d = atoms.positions - self.places
+        self.results = {"energy": 2.5 * (d**2).sum(), "forces": -5 * d}
 
 
 def water(n):
@@ -111,10 +128,54 @@ def fly(atoms, pairs, make, femtoseconds, steps):
             f"{abs(atoms.get_kinetic_energy() / energy - 1):8.1e}")
 
 
+def go(atoms, pairs, make, way, steps):
+    """Milliseconds per step, worst error of a length, and the temperature, or the steps to a force below 0.01 eV/A."""
+    atoms = atoms.copy()
+    lengths = np.array([atoms.get_distance(i, j, mic=True) for i, j in pairs])
+    atoms.calc = Springs(atoms)
+    MaxwellBoltzmannDistribution(atoms, temperature_K=300, rng=np.random.default_rng(1))
+    taken = 0
+    clock = time.process_time()
+    try:
+        atoms.set_constraint(make(pairs))
+        if way is Langevin:
+            atoms.set_momenta(atoms.get_momenta())
+            # the random numbers of both are the same
+            motion = Langevin(atoms, 2 * units.fs, temperature_K=300, friction=0.02 / units.fs, rng=np.random.RandomState(3))
+            for taken in range(1, steps + 1):
+                motion.run(1)
+            end = f"{atoms.get_temperature():6.0f} K"
+        else:
+            motion = way(atoms, logfile=None)
+            for _ in motion.irun(fmax=0.01, steps=steps):
+                taken = motion.nsteps
+            left = np.linalg.norm(atoms.get_forces(), axis=1).max()
+            end = f"{taken} steps" if left < 0.01 else f"{left:.2g} eV/A left after {taken}"
+    except (RuntimeError, ArithmeticError) as error:
+        return f"stops at step {taken}: {type(error).__name__}"
+    clock = time.process_time() - clock
+    now = np.array([atoms.get_distance(i, j, mic=True) for i, j in pairs])
+    return f"{1e3 * clock / max(taken, 1):9.3f} ms {abs(now / lengths - 1).max():8.1e} {end}"
+
+
+def ways(steps):
+    print(f"{'':34s}{'FixBondLengths':48s}holonomic.ase.Constraint")
+    print(f"{'':34s}" + 2 * f"{'time per step, lengths, end':48s}")
+    for name, (atoms, pairs) in (("8 waters", water(2)), ("hexadecane", alkane(16)), ("glycine peptide", peptide(10))):
+        pairs = bonds_of(atoms, pairs)
+        for way in Langevin, BFGS, FIRE:
+            cells = [go(atoms, pairs, make, way, steps) for make in (FixBondLengths, Constraint)]
+            print(f"{f'{name} ({len(pairs)}), {way.__name__}':34s}" + "".join(f"{cell:48s}" for cell in cells), flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--steps", type=int, default=50)
-    steps = parser.parse_args().steps
+    parser.add_argument("--ways", action="store_true")
+    chosen = parser.parse_args()
+    steps = chosen.steps
+    if chosen.ways:
+        return ways(steps)
     print(f"{'':44s}{'FixBondLengths':34s}holonomic.ase.Constraint")
     print(f"{'':44s}" + 2 * f"{'time per step, lengths, energy':34s}")
     for name, (atoms, pairs), angles, femtoseconds in (

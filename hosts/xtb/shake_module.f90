@@ -8,7 +8,7 @@ module xtb_shake
    use holonomic, only: hol_chains
    implicit none
    private
-   public :: ncons, init_shake, do_shake, constrain
+   public :: ncons, init_shake, do_shake
 
    integer, protected :: ncons = 0
    integer, allocatable :: bonds(:, :)   ! (2, ncons)

@@ -45,19 +45,29 @@ cp /etc/apt/apt.conf.d/* "$root/etc/apt/apt.conf.d/" 2>/dev/null || :
 [ ! -d /etc/apt/auth.conf.d ] || cp -r /etc/apt/auth.conf.d "$root/etc/apt/"
 mkdir -p "$root/srv/packages"
 cp "$packages"/*.deb "$root/srv/packages"
-mkdir "$root/srv/lammps"
-mv "$root"/srv/packages/holonomic-lammps_*.deb "$root/srv/lammps" 2>/dev/null || :
-echo "installing the packages, compilers and cmake"
+for host in lammps openmm; do
+    mkdir "$root/srv/$host"
+    mv "$root/srv/packages/holonomic-$host"_*.deb "$root/srv/$host" 2>/dev/null || :
+done
+# The programs of README, by the lines of README, print what README says: in Python as soon as its packages are there.
+mkdir -p "$root/srv/try/tests/install"
+cp "$source/README.md" "$root/srv/try"
+cp "$source/tests/install/readme_programs.sh" "$root/srv/try"
+inside mkdir /srv/try/readme
+began=$SECONDS
 inside apt-get update -qq
+inside sh -c 'apt-get install -y -qq --no-install-recommends /srv/packages/libholonomic0_*.deb /srv/packages/python3-holonomic_*.deb' \
+    >"$work/$suite.python.log" 2>&1 || { tail -n 20 "$work/$suite.python.log"; exit 1; }
+inside sh -c "cd /srv/try/readme && ../readme_programs.sh ../README.md python"
+echo "the first result in Python after $((SECONDS - began)) s"
+[ $((SECONDS - began)) -le 300 ] || { echo "that is more than five minutes"; exit 1; }
+echo "installing the packages, compilers and cmake"
 inside sh -c 'apt-get install -y -qq --no-install-recommends gcc g++ gfortran libc6-dev make cmake pkgconf /srv/packages/*.deb' \
     >"$work/$suite.apt.log" 2>&1 || { tail -n 20 "$work/$suite.apt.log"; exit 1; }
 
-# The programs of README, compiled by the lines of README, print what README says.
-mkdir -p "$root/srv/try/tests/install"
-cp "$source/README.md" "$root/srv/try"
 cp -r "$source/tests/install/programs" "$source/tests/install/projects" "$root/srv/try/tests/install"
-cp "$source/tests/install/readme_programs.sh" "$root/srv/try"
-inside sh -c "mkdir /srv/try/readme && cd /srv/try/readme && ../readme_programs.sh ../README.md c fortran python"
+inside sh -c "cd /srv/try/readme && ../readme_programs.sh ../README.md c fortran"
+echo "and in C and Fortran after $((SECONDS - began)) s"
 
 for language in c fortran; do
     program=$([ $language = c ] && echo rotor.c || echo rotor_free.f90)
@@ -69,8 +79,16 @@ for language in c fortran; do
     echo "CMake, $language:"
     inside /srv/try/$language/program
 done
-# The fix for LAMMPS is linked with the LAMMPS of the distribution that it was made on.
-if [ "$suite" = "$(. /etc/os-release && echo "${VERSION_CODENAME:-}")" ] && [ -n "$(ls "$root/srv/lammps")" ]; then
+# The fix for LAMMPS and the plugin for OpenMM are linked with those of the distribution that they were made on.
+same_suite=$([ "$suite" = "$(. /etc/os-release && echo "${VERSION_CODENAME:-}")" ] && echo yes || :)
+if [ -n "$same_suite" ] && [ -n "$(ls "$root/srv/openmm")" ]; then
+    echo "plugin for OpenMM:"
+    inside sh -c 'apt-get install -y -qq --no-install-recommends python3-simtk /srv/openmm/*.deb' >"$work/$suite.openmm.log" 2>&1 ||
+        { tail -n 20 "$work/$suite.openmm.log"; exit 1; }
+    cp "$source/tests/package/trimer_openmm.py" "$root/srv/try"
+    inside python3 -W ignore /srv/try/trimer_openmm.py
+fi
+if [ -n "$same_suite" ] && [ -n "$(ls "$root/srv/lammps")" ]; then
     echo "fix holonomic:"
     inside sh -c 'apt-get install -y -qq --no-install-recommends openmpi-bin /srv/lammps/*.deb' >"$work/$suite.lammps.log" 2>&1 ||
         { tail -n 20 "$work/$suite.lammps.log"; exit 1; }

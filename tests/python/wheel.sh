@@ -15,6 +15,7 @@ wheel=$(ls "$build"/python/*.whl)
 echo "$wheel"
 
 # numpy is the system's, as there is no network; all else of the environment is empty.
+began=$(date +%s)
 "$python" -m venv --system-site-packages "$work/environment"
 "$work/environment/bin/pip" install --quiet --no-index "$wheel"
 cd "$work"
@@ -31,6 +32,7 @@ print(molecules.forces(r, None, numpy.outer([0, 1, 1, 1], [0, 0, -10.0])).tensio
 END
 "$work/environment/bin/python" try.py | tee printed
 [ "$(cat printed)" = "[30. 20. 10.]" ]
+echo "the first result after $(($(date +%s) - began)) s"
 
 # The package alone needs an installed library, and says so.
 "$work/environment/bin/pip" uninstall --quiet --yes holonomic
