@@ -21,7 +21,7 @@ constexpr int32_t arm_step = 8, shortest_arm = 5 * arm_step + 1, longest_arm = 1
 // An atom of a tree with more children is eliminated by a matrix of three rows (tree/many.hpp). How many values are kept
 // of k children: multipliers of their decomposition; or of that matrix, and with k products for positions.
 constexpr int32_t most_decomposed = 7;
-constexpr int32_t values_of_joint(int32_t k) { return k > most_decomposed ? 9 + 3 * k : k * (k - 1) / 2; }
+static constexpr int32_t values_of_joint(int32_t k) { return k > most_decomposed ? 9 + 3 * k : k * (k - 1) / 2; }
 
 struct CarefulPlan;  // core/kernels/careful/plan.hpp
 struct FlatList;     // core/kernels/molecules/list/flat_list.hpp
