@@ -177,7 +177,7 @@ static long double check_body(const molecule_file *c, const hol_chains *chains, 
 {
     const size_t size = sizeof(double) * 3 * (size_t)c->n_atoms;
     const long double enough = 1e3L * DBL_EPSILON;
-    long double sum[6] = {0}, scale = 0, worst = 0;
+    long double sum[6] = {0}, scale = 0, largest = 0;
     memcpy(o->v, c->v, size);
     int status = hol_project_velocities(chains, c->r, o->v, o->mu, NULL);
     if (status != HOL_OK) return print_failure(c->name, "velocities of a body", status);
@@ -191,7 +191,7 @@ static long double check_body(const molecule_file *c, const hol_chains *chains, 
             sum[3 + x] += (long double)r[y] * g[z] - (long double)r[z] * g[y];
             scale += fabsl(g[x]) * (1 + fabsl(r[y]) + fabsl(r[z]));
         }
-    for (int x = 0; x < 6; ++x) worst = fmaxl(worst, fabsl(sum[x]) / (enough * scale));
+    for (int x = 0; x < 6; ++x) largest = fmaxl(largest, fabsl(sum[x]) / (enough * scale));
     for (int64_t k = 0; k < c->n_bonds; ++k) {
         const int64_t i = c->pairs[2 * k], j = c->pairs[2 * k + 1];
         long double second = 0, first = 0, size_second = 0, size_first = 0;
@@ -205,10 +205,10 @@ static long double check_body(const molecule_file *c, const hol_chains *chains, 
             size_second += fabsl(d) * (fabsl(a) + fabsl(b)) + u * u;
             size_first += fabsl(d) * (fabsl(o->v[3 * j + x]) + fabsl(o->v[3 * i + x]));
         }
-        worst = fmaxl(worst, fmaxl(fabsl(second) / (enough * size_second), fabsl(first) / (enough * size_first)));
+        largest = fmaxl(largest, fmaxl(fabsl(second) / (enough * size_second), fabsl(first) / (enough * size_first)));
     }
-    printf("%-36s a rigid body    %9.3Lg of 1  %s\n", c->name, worst, worst <= 1 ? "ok" : "TOO LARGE");
-    return worst;
+    printf("%-36s a rigid body    %9.3Lg of 1  %s\n", c->name, largest, largest <= 1 ? "ok" : "TOO LARGE");
+    return largest;
 }
 
 /** A handle with the molecule, or NULL with the status of what failed. */

@@ -166,8 +166,8 @@ private:
             ends_of(x.s, k, from, to);
             const Vector3<V> terms =
                 absolute(equations.input_of(from, x.w[from])) + absolute(equations.input_of(to, x.w[to]));
-            const V rounding = (4 * epsilon) * (dot(absolute(x.row[k].d), terms) * x.row[k].r);
-            least = min(rounding - abs(x.row[k].t), least);
+            const V rounded = (4 * epsilon) * (dot(absolute(x.row[k].d), terms) * x.row[k].r);
+            least = min(rounded - abs(x.row[k].t), least);
         }
         return less_equal(V{}, least);
     }
