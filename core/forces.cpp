@@ -119,11 +119,8 @@ void forces_of_bonds(const Chains &chains, const AtomArray &r, const AtomArray &
     if (virial) write_virial(tally, virial);
 }
 
-}  // namespace
-
-void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
-            double *tension, const AtomArray &g, bool add, double *virial) {
-    if (!chains.bodies()) return forces_of_bonds(chains, r, v, f, lambda, tension, g, add, virial);
+void forces_of_all(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
+                   double *tension, const AtomArray &g, bool add, double *virial) {
     double sum[9];
     rigid::Parts parts;
     if (g.x && !add) rigid::clear_fixed(chains, g);
@@ -131,6 +128,13 @@ void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const 
     parts.run([&] { rigid::forces(chains, r, v, f, lambda, tension, g, add, virial ? sum : nullptr); });
     parts.finish();
     if (virial) std::copy(sum, sum + 9, virial);
+}
+
+}  // namespace
+
+void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
+            double *tension, const AtomArray &g, bool add, double *virial) {
+    return (chains.bodies() ? forces_of_all : forces_of_bonds)(chains, r, v, f, lambda, tension, g, add, virial);
 }
 
 }  // namespace holonomic

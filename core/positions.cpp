@@ -112,12 +112,9 @@ void check_start_of_all(const Chains &chains, const AtomArray &r_ref, const Atom
     chains.note_fit();
 }
 
-}  // namespace
-
-void project_positions(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v, double dt,
-                       double *lambda, bool guess, double *virial, Report *report, WorstLength *reference_error) {
-    if (!chains.bodies())
-        return project_positions_of_bonds(chains, along, r, v, dt, lambda, guess, virial, report, reference_error);
+void project_positions_of_all(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v,
+                              double dt, double *lambda, bool guess, double *virial, Report *report,
+                              WorstLength *reference_error) {
     if (!along.r_ref)
         throw make_error(Status::value,
                          "rigid bodies have no bond vectors to project along: hol_project_positions takes reference "
@@ -137,6 +134,14 @@ void project_positions(const Chains &chains, const Along &along, const AtomArray
     parts.run([&] { rigid::project_positions(chains, r_ref, r, v, dt, lambda, virial ? sum : nullptr, report); });
     parts.finish();
     if (virial) std::copy(sum, sum + 9, virial);
+}
+
+}  // namespace
+
+void project_positions(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v, double dt,
+                       double *lambda, bool guess, double *virial, Report *report, WorstLength *reference_error) {
+    return (chains.bodies() ? project_positions_of_all : project_positions_of_bonds)(
+        chains, along, r, v, dt, lambda, guess, virial, report, reference_error);
 }
 
 }  // namespace holonomic

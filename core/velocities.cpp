@@ -69,16 +69,20 @@ void project_velocities_of_bonds(const Chains &chains, const AtomArray &r, const
     if (virial) write_virial(tally, virial);
 }
 
-}  // namespace
-
-void project_velocities(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda, double *virial) {
-    if (!chains.bodies()) return project_velocities_of_bonds(chains, r, v, lambda, virial);
+void project_velocities_of_all(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda,
+                               double *virial) {
     double sum[9];
     rigid::Parts parts;
     parts.run([&] { project_velocities_of_bonds(chains, r, v, lambda, virial ? sum : nullptr); });
     parts.run([&] { rigid::project_velocities(chains, r, v, lambda, virial ? sum : nullptr); });
     parts.finish();
     if (virial) std::copy(sum, sum + 9, virial);
+}
+
+}  // namespace
+
+void project_velocities(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda, double *virial) {
+    return (chains.bodies() ? project_velocities_of_all : project_velocities_of_bonds)(chains, r, v, lambda, virial);
 }
 
 }  // namespace holonomic
