@@ -6,6 +6,46 @@
 
 namespace holonomic::HOL_ISA {
 
+#if HOL_FOURS
+// Differences of a vector per atom, of the twelve components of four bonds.
+HOL_INLINE four difference(const double *x) { return load_any<four>(x + 3) - load_any<four>(x); }
+
+// The same as load_chunks(), of one lane. Returns the first bond that is left.
+template <int terms, bool uniform, bool boxed>
+HOL_INLINE long load_in_fours(const Reader &in, const double *r, const double *v, const double *f, long k0, long end,
+                              vec3 *D, vec *B) {
+    for (; k0 + 4 <= end; k0 += 4, D += 4) {
+        four p[3];
+        HOL_UNROLL
+        for (int j = 0; j < 3; ++j) {
+            const long at = 3 * k0 + 4 * j;
+            four e = difference(r + at), dv = {}, df = {}, vv = {};
+            if (boxed)
+                e = mul_add(round(e * load_any<four>(in.box.per_side + j)), load_any<four>(in.box.minus_side + j), e);
+            if (terms & (velocity_squared | rate)) dv = difference(v + at);
+            if (terms & velocity_squared) vv = square(terms, four{} + in.block.mass.element, dv);
+            if (terms & force_difference) {
+                const double *const w = uniform ? nullptr : in.block.w3[0] + at;
+                df = uniform ? difference(f + at)
+                             : load_any<four>(w + 3) * load_any<four>(f + at + 3) -
+                                   load_any<four>(w) * load_any<four>(f + at);
+            }
+            if (terms & products) p[j] = product(terms, e, dv, df, vv);
+            store_any(&D->x.element + 4 * j, e);
+        }
+        if (!(terms & products) && !(in.terms == none_ && B)) continue;
+        four sum = {};
+        if (terms & products) {
+            const Vector3<four> part = as_vectors(p);
+            sum = (part.x + part.y) + part.z;
+        }
+        store_any(&B->element, sum);
+        B += 4;
+    }
+    return k0;
+}
+#endif
+
 // Whole chunks of W bonds. It subtracts numbers as they stand in memory, folds components into an orthorhombic box,
 // multiplies, and transposes only what comes out: vectors that are transposed before that take 4 % more instructions
 // per bond of forces, and all of them are shuffles, of which most processors do one at a time.
@@ -17,6 +57,12 @@ static void load_chunks(const Reader &in, long k0, long end, vec3 *D, vec *B) {
     // All arrays are in place, or all are staged, so a lane has the same distance from the first one in each.
     const double *const first_r = in.r->lane[0], *const first_v = has_v ? in.v->lane[0] : nullptr,
                         *const first_f = has_f ? in.f->lane[0] : nullptr;
+#if HOL_FOURS
+    const long from = k0;
+    k0 = load_in_fours<terms, uniform, boxed>(in, first_r, first_v, first_f, k0, end, D, B);
+    D += k0 - from;
+    if (B) B += k0 - from;
+#endif
     long lane[W];
     for (int i = 0; i < W; ++i) lane[i] = in.r->lane[i] - first_r;
     for (; k0 < end; k0 += W, D += W) {
@@ -93,6 +139,12 @@ template <bool careful, bool weigh = false>
 static void subtract_chunks(const Packed &rows, long k0, long end, vec3 *out, vec3 *low,
                             const double *const *w3 = nullptr) {
     const RowsOfLanes at(rows);
+#if HOL_FOURS
+    for (; !careful && !weigh && k0 + 4 <= end; k0 += 4, out += 4) {
+        HOL_UNROLL
+        for (int j = 0; j < 3; ++j) store_any(&out->x.element + 4 * j, difference(at.first + 3 * k0 + 4 * j));
+    }
+#endif
     for (; k0 < end; k0 += W, out += W) {
         subtract_chunk<careful, weigh>(at, k0, out, low, w3);
         if (careful) low += W;
@@ -144,6 +196,16 @@ HOL_NOINLINE void load_rates(const Reader &in, long from, long end, const vec3 *
     long k = from;
     const long n = end <= block.n_min && block.roomy ? end : (end < block.n_min ? end : block.n_min) - W + 1;
     vec3 *x = velocities + from;
+#if HOL_FOURS
+    const double *const atoms = in.v->lane[0];
+    const long fours = rates_in_fours(0, end - from, D, atoms + 3 * from, B);
+    __builtin_memcpy(x + 1, atoms + 3 * (from + 1), static_cast<unsigned long>(fours) * sizeof(vec3));
+    k += fours;
+    x += fours;
+    D += fours;
+    B += fours;
+    v = *x;
+#endif
     for (; k < n; k += W, x += W, D += W, B += W) {
         const double *p[W];
         for (int i = 0; i < W; ++i) p[i] = in.v->lane[i] + 3 * (k + 1);
