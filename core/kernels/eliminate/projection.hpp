@@ -84,6 +84,7 @@ HOL_INLINE void move_velocities(const Block &block, const Projection &x, vec *u,
 template <bool uniform>
 HOL_INLINE void first_pull(const Block &block, const Projection &x) {
     double *const v = &x.v[0].x.element;
+    x.s.L[block.n] = vec{};  // for Pull
     move_velocities<uniform>(block, x, x.s.t, [&](long e, auto value) HOL_FORCED { store_any(v + e, value); });
     for (long k = rates_in_fours(0, block.n, x.s.D, v, x.left); k < block.n; ++k)
         x.left[k] = rate_of(x.s.D[k], x.v[k], x.v[k + 1]);
