@@ -6,6 +6,7 @@
 #define HOLONOMIC_KERNELS_ELIMINATE_DEFICITS_HPP
 
 #include "core/kernels/arithmetic/exact.hpp"
+#include "core/kernels/eliminate/measure_fours.hpp"
 #include "core/kernels/memory/arena.hpp"
 #include "core/kernels/memory/block.hpp"
 
@@ -37,13 +38,13 @@ HOL_INLINE vec reciprocal_scale(const vec3 &d) {
     return as_vec((mask{} + 2 * exponent_of_one) - (as_mask(largest) & (mask{} + exponent_bits)));
 }
 
-template <bool uniform>
-static inline void measure(const Block &block, const Geometry &x) {
+// Bonds, and the joints between them.
+#if HOL_FOURS
+static inline void measure_joints(const Block &block, const Geometry &x) { measure_in_fours(block.n, x); }
+#else
+static inline void measure_joints(const Block &block, const Geometry &x) {
     vec3 d0 = {}, low0 = {};
     vec r0 = {};
-    x.p[0] = x.p[block.n] = x.cosine[0] = x.cosine[block.n] = vec{};
-    x.complement[0] = x.complement[block.n] = splat(1.0);
-    x.normal[0] = x.normal[block.n] = vec3{};
     for (long k = 0; k < block.n; ++k) {
         const vec s = reciprocal_scale(x.u[k]);
         const vec3 d = s * x.u[k], low = s * x.low[k];
@@ -67,12 +68,21 @@ static inline void measure(const Block &block, const Geometry &x) {
             x.cosine[k] = c;
             x.complement[k] = complement;
             x.normal[k] = normal;
-            x.p[k] = w_at<uniform>(block, k) * abs(c);
         }
         d0 = d;
         low0 = low;
         r0 = r;
     }
+}
+#endif
+
+template <bool uniform>
+static inline void measure(const Block &block, const Geometry &x) {
+    x.p[0] = x.p[block.n] = x.cosine[0] = x.cosine[block.n] = vec{};
+    x.complement[0] = x.complement[block.n] = splat(1.0);
+    x.normal[0] = x.normal[block.n] = vec3{};
+    measure_joints(block, x);
+    for (long k = 1; k < block.n; ++k) x.p[k] = w_at<uniform>(block, k) * abs(x.cosine[k]);
     for (long k = 0; k < block.n; ++k)
         x.delta[k] = w_at<uniform>(block, k) * x.complement[k] + w_at<uniform>(block, k + 1) * x.complement[k + 1];
 }
