@@ -138,6 +138,39 @@ HOL_NOINLINE void measure_in_fours(long n, const Geometry &x) {
     }
 }
 
+// weigh_normal() in deficits.hpp for the joints from k on, with deficits x.f. Returns the first one that is left.
+template <bool uniform, class Geometry>
+HOL_INLINE long weigh_in_fours(long k, long n, const vec *w, const Geometry &x) {
+    const four one = four{} + 1.0, zero = {}, sign = _mm256_set1_pd(-0.0);
+    for (; k + 4 <= n; k += 4) {
+        const four p = load_four(x.p + k), coupled = _mm256_cmp_pd(zero, p, _CMP_LT_OQ);
+        const four e = load_four(x.e + k - 1), f = load_four(x.f + k), divisor = _mm256_blendv_pd(one, p, coupled);
+        const four size = (uniform ? one : load_four(w + k)) / (e + f + (e / divisor) * f);
+        const four h = _mm256_and_pd(coupled, _mm256_or_pd(size, _mm256_and_pd(load_four(x.cosine + k), sign)));
+        double *const normal = &x.normal[k].x.element;
+        store_any(normal, spread<0>(h) * load_any<four>(normal));
+        store_any(normal + 4, spread<1>(h) * load_any<four>(normal + 4));
+        store_any(normal + 8, spread<2>(h) * load_any<four>(normal + 8));
+    }
+    return k;
+}
+
+// The same of turn().
+template <class Geometry>
+HOL_INLINE long turn_in_fours(long k, long n, const Geometry &x, double kT) {
+    const Four zero = {four{}};
+    for (; k + 4 <= n; k += 4) {
+        const double *const normal = &x.normal[k].x.element;
+        double change[12];
+        for (int j = 0; j < 3; ++j)
+            store_any(change + 4 * j, load_any<four>(normal + 4 * j + 3) - load_any<four>(normal + 4 * j));
+        const Vector3<Four> v = cross(read_vectors(&x.u[k].x.element), read_vectors(change));
+        write_vectors(&x.u[k].x.element, {v.x + zero, v.y + zero, v.z + zero});
+        store_any(&x.t[k].element, kT * load_four(x.reciprocal + k));
+    }
+    return k;
+}
+
 }  // namespace holonomic::HOL_ISA
 #endif
 #endif
