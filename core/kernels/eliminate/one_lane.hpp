@@ -38,8 +38,8 @@ HOL_INLINE void pull_down(long n, const vec3 *D, vec *u, const vec *L, const Put
         const four next = _mm256_shuffle_pd(before, _mm256_permute2f128_pd(before, behind, 0x21), 5);
         store_any(x + k - 4, before);
         const auto part = [&](auto j) HOL_FORCED {
-            const four g = spread<j>(next) * load_any<four>(d + 4 * j + 3) -
-                           spread<j>(before) * load_any<four>(d + 4 * j);
+            const four g =
+                spread<j>(next) * load_any<four>(d + 4 * j + 3) - spread<j>(before) * load_any<four>(d + 4 * j);
             put(3 * (k - 3) + 4 * j, g);
         };
         part(Constant<int, 2>{});

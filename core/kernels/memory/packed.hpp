@@ -29,7 +29,9 @@ HOL_INLINE int terms_of(bool velocities, bool forces) {
 
 // A component of velocity_squared.
 template <class V>
-HOL_INLINE V square(int terms, V mass, V dv) { return (terms & unit_mass ? dv : mass * dv) * dv; }
+HOL_INLINE V square(int terms, V mass, V dv) {
+    return (terms & unit_mass ? dv : mass * dv) * dv;
+}
 
 // A component of the right-hand side; vv is that of square().
 template <class V>
