@@ -123,7 +123,6 @@ void forces_of_bonds(const Chains &chains, const AtomArray &r, const AtomArray &
 
 void forces_of_all(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
                    double *tension, const AtomArray &g, bool add, double *virial) {
-    if (!chains.bodies()) return forces_of_bonds(chains, r, v, f, lambda, tension, g, add, virial);
     double sum[9];
     rigid::Parts parts;
     if (g.x && !add) rigid::clear_fixed(chains, g);
@@ -137,7 +136,9 @@ void forces_of_all(const Chains &chains, const AtomArray &r, const AtomArray &v,
 
 void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
             double *tension, const AtomArray &g, bool add, double *virial) {
-    with_outcomes(chains, [&] { forces_of_all(chains, r, v, f, lambda, tension, g, add, virial); });
+    with_outcomes(chains, [&] {
+        (chains.bodies() ? forces_of_all : forces_of_bonds)(chains, r, v, f, lambda, tension, g, add, virial);
+    });
 }
 
 }  // namespace holonomic

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/caller/box.hpp"
 #include "core/molecules/memory_limit.hpp"
 #include "core/run/apart.hpp"
 #include "core/run/diagnose.hpp"
@@ -55,7 +56,15 @@ void metric_of_all(const Chains &chains, const AtomArray &r, double kT, double *
         throw make_error(Status::value,
                          "the metric determinant of molecules with rigid bodies is not implemented: of a body alone it "
                          "is a constant; molecules without bodies need a set of their own");
-    const MetricCall call{r, force, kT, log_det, log_det_z, energy != nullptr, add, chains.box};
+    MetricCall call;
+    call.r = r;
+    call.force = force;
+    call.kT = kT;
+    call.log_det = log_det;
+    call.log_det_z = log_det_z;
+    call.sum = energy != nullptr;
+    call.add = add;
+    put_box(chains.box, call.box);
     for (const std::int32_t shape : chains.plan().shapes) {
         const Schedule &s = *chains.plan().schedules[static_cast<std::size_t>(shape)];
         if (!s.careful) make_careful_of(chains, s);

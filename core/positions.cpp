@@ -119,8 +119,6 @@ void check_start_of_all(const Chains &chains, const AtomArray &r_ref, const Atom
 void project_positions_of_all(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v,
                               double dt, double *lambda, bool guess, double *virial, Report *report,
                               WorstLength *reference_error) {
-    if (!chains.bodies())
-        return project_positions_of_bonds(chains, along, r, v, dt, lambda, guess, virial, report, reference_error);
     if (!along.r_ref)
         throw make_error(Status::value,
                          "rigid bodies have no bond vectors to project along: hol_project_positions takes reference "
@@ -147,7 +145,8 @@ void project_positions_of_all(const Chains &chains, const Along &along, const At
 void project_positions(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v, double dt,
                        double *lambda, bool guess, double *virial, Report *report, WorstLength *reference_error) {
     with_outcomes(chains, [&] {
-        project_positions_of_all(chains, along, r, v, dt, lambda, guess, virial, report, reference_error);
+        (chains.bodies() ? project_positions_of_all : project_positions_of_bonds)(
+            chains, along, r, v, dt, lambda, guess, virial, report, reference_error);
     });
 }
 

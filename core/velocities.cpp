@@ -73,7 +73,6 @@ void project_velocities_of_bonds(const Chains &chains, const AtomArray &r, const
 
 void project_velocities_of_all(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda,
                                double *virial) {
-    if (!chains.bodies()) return project_velocities_of_bonds(chains, r, v, lambda, virial);
     double sum[9];
     rigid::Parts parts;
     parts.run([&] { project_velocities_of_bonds(chains, r, v, lambda, virial ? sum : nullptr); });
@@ -85,7 +84,9 @@ void project_velocities_of_all(const Chains &chains, const AtomArray &r, const A
 }  // namespace
 
 void project_velocities(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda, double *virial) {
-    with_outcomes(chains, [&] { project_velocities_of_all(chains, r, v, lambda, virial); });
+    with_outcomes(chains, [&] {
+        (chains.bodies() ? project_velocities_of_all : project_velocities_of_bonds)(chains, r, v, lambda, virial);
+    });
 }
 
 }  // namespace holonomic

@@ -2,8 +2,6 @@
 #ifndef HOLONOMIC_BOX_HPP
 #define HOLONOMIC_BOX_HPP
 
-#include <cstring>
-
 #include "core/kernels/call.hpp"
 
 namespace holonomic {
@@ -11,16 +9,11 @@ namespace holonomic {
 // h [9]: rows are the box vectors, a row of zeros is not periodic; null: no box. Throws Error.
 Box make_box(const double *h);
 
-// The box of a call. Of one that is not there the sides are zero, and nothing else is read or copied: a box is larger
-// than all that a call on one short chain reads.
+// The box of a call. Of one that is not there nothing but that is read or copied: a box is larger than all that a call
+// on one short chain reads.
 inline void put_box(const Box &box, Box &of_call) {
-    if (box.shape != Box::none) {
-        of_call = box;
-        return;
-    }
-    of_call.shape = Box::none;
-    std::memcpy(of_call.h, box.h, sizeof box.h);
-    std::memcpy(of_call.inverse, box.inverse, sizeof box.inverse);
+    of_call.shape = box.shape;
+    if (box.shape != Box::none) of_call = box;
 }
 
 // The box vector along which opposite faces are nearer than twice this length, and how near; -1 if they are not.

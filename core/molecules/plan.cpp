@@ -50,6 +50,7 @@ public:
         for (const std::int32_t s : plan_->shapes) need(kernels().molecules.scratch_bytes(*plan_->schedules[at(s)]));
         for (std::int64_t i = 0; i < plan_->forests.size(); ++i)
             need(kernels().molecules.forest_bytes(*plan_->forests[i]));
+        need(scratch_bytes(plan_->longest));
         return std::move(plan_);
     }
 

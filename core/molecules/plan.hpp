@@ -38,7 +38,7 @@ struct Plan {
     std::int64_t n_bonds = 0;                   // of active molecules
     std::vector<const Schedule *> schedules;    // of all shapes
     std::vector<std::int32_t> shapes;           // those that occur, but for linear
-    std::int64_t scratch_bytes = 0;             // that the kernels need for these and for forests
+    std::int64_t scratch_bytes = 0;             // that the kernels need for all of them
     std::vector<std::int64_t> stage;            // atoms of the molecules that share fixed atoms, one after another
     std::vector<unsigned char> is_copy;         // of each atom of the stage
     std::vector<Copy> copies;                   // by atom, then by place

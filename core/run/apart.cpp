@@ -54,12 +54,11 @@ void for_values(const std::vector<std::int64_t> &places, std::int64_t width, Eac
 
 }  // namespace
 
-Apart::Apart(const Chains &chains, const Plan &plan, int wide) : chains_(chains), plan_(plan), memory_(nullptr) {
+void Apart::take_memory(int wide) {
     const std::int64_t n_stage = static_cast<std::int64_t>(plan_.stage.size());
-    const std::int64_t n_values = reorders() ? static_cast<std::int64_t>(chains.reordered_bonds().size()) : 0;
+    const std::int64_t n_values = reorders() ? static_cast<std::int64_t>(chains_.reordered_bonds().size()) : 0;
     const std::int64_t bytes =
         most * (rounded_up(n_stage * 24) + rounded_up(n_values * 8)) + rounded_up(n_values * 8 * wide);
-    if (bytes == 0) return;
     memory_ = static_cast<char *>(thread_memory(Keep::apart, bytes));
     if (!memory_) throw std::bad_alloc();
 }
@@ -137,7 +136,7 @@ void Apart::put_back(const Atoms &atoms) const {
     if (atoms.use != Use::moved) sum_copies(atoms);
 }
 
-void Apart::put_back() const {
+void Apart::put_all_back() const {
     const std::vector<std::int64_t> &places = chains_.reordered_bonds();
     for (int i = 0; i < n_values_; ++i) {
         double *const result = values_[i].result;

@@ -15,7 +15,9 @@ public:
     // Takes memory of the calling thread for all arrays that a call may have: four per atom, and four per bond beside
     // one of `wide` values for each. Throws std::bad_alloc.
     explicit Apart(const Chains &chains, int wide = 0) : Apart(chains, chains.plan(), wide) {}
-    Apart(const Chains &chains, const Plan &plan, int wide = 0);
+    Apart(const Chains &chains, const Plan &plan, int wide = 0) : chains_(chains), plan_(plan) {
+        if (reorders() || stages()) take_memory(wide);
+    }
 
     bool reorders() const { return plan_.reordered; }
     bool stages() const { return !plan_.stage.empty(); }
@@ -35,7 +37,9 @@ public:
     AtomArray summed_atoms(const AtomArray &callers, bool add);
 
     // Writes everything to where it belongs.
-    void put_back() const;
+    void put_back() const {
+        if (n_values_ > 0 || n_atoms_ > 0) put_all_back();
+    }
 
 private:
     static constexpr int most = 4;
@@ -49,6 +53,8 @@ private:
         AtomArray callers, copy;
         Use use;
     };
+    void take_memory(int wide);
+    void put_all_back() const;
     Values &copy_of(const double *callers, int width);
     AtomArray stage(const AtomArray &callers, Use use);
     void put_back(const Atoms &atoms) const;
@@ -56,7 +62,7 @@ private:
 
     const Chains &chains_;
     const Plan &plan_;
-    char *memory_;  // what of it is free
+    char *memory_ = nullptr;  // what of it is free
     Values values_[most + 1];
     Atoms atoms_[most];
     int n_values_ = 0, n_atoms_ = 0;

@@ -39,7 +39,7 @@ namespace {
 
 struct Sets {
     const Kernels *best = nullptr, *one_lane = nullptr;  // the latter has chains that fit into lanes alone
-    bool force_one_lane = false;  // for all that it has; the rest takes the set that would run without it
+    const Kernels *for_chains, *for_one_chain;           // that fit into lanes
 
     Sets() {
         const char *const wanted = std::getenv("HOLONOMIC_ISA");
@@ -53,12 +53,13 @@ struct Sets {
     if (runs_here) consider(isa::kernels, wanted, forced, false);
         HOLONOMIC_TEST_SETS(HOLONOMIC_CONSIDER)
 #undef HOLONOMIC_CONSIDER
-        force_one_lane = forced && forced == one_lane;
-        if (forced && !force_one_lane) {
+        if (forced && forced != one_lane) {
             best = forced;
             one_lane = nullptr;
         }
         if (best->lanes < 4) one_lane = nullptr;  // the baseline rounds products: other bits
+        for_one_chain = one_lane ? one_lane : best;
+        for_chains = forced ? for_one_chain : best;  // one lane forced has all that it can
     }
 
     void consider(const Kernels &set, const char *wanted, const Kernels *&forced, bool installed) {
@@ -77,19 +78,13 @@ const Sets &sets() {
 
 const Kernels &kernels() { return *sets().best; }
 
-const char *name_of_kernels() {
-    const Sets &s = sets();
-    return s.force_one_lane && s.one_lane ? s.one_lane->name : s.best->name;
-}
+const char *name_of_kernels() { return sets().for_chains->name; }
 
-const Kernels &kernels_for_one_chain() {
-    const Sets &s = sets();
-    return s.one_lane ? *s.one_lane : *s.best;
-}
+const Kernels &kernels_for_one_chain() { return *sets().for_one_chain; }
 
 const Kernels &kernels(const Unit &unit) {
     const Sets &s = sets();
-    return unit.count == 1 || s.force_one_lane ? kernels_for_one_chain() : *s.best;
+    return unit.count == 1 ? *s.for_one_chain : *s.for_chains;
 }
 
 int64_t scratch_bytes(int64_t n_bonds) {

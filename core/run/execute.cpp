@@ -114,8 +114,7 @@ class Execution {
 public:
     Execution(const Chains &chains, const Plan &plan, const Work &work)
         : chains_(chains), plan_(plan), work_(work), outcomes_(chains.keeps_outcomes ? outcomes_under_way() : nullptr),
-          n_pieces_(static_cast<std::int64_t>(plan.pieces.size())),
-          scratch_bytes_(std::max(holonomic::scratch_bytes(plan.longest), plan.scratch_bytes)) {
+          n_pieces_(static_cast<std::int64_t>(plan.pieces.size())), scratch_bytes_(plan.scratch_bytes) {
         n_threads_ = static_cast<int>(
             std::min<std::int64_t>(chains.n_threads, std::max<std::int64_t>(plan.n_bonds / bonds_per_thread, 1)));
         for (std::int64_t p = 0; plan.longest > longest_lane && p < n_pieces_; ++p) {
@@ -126,7 +125,7 @@ public:
         }
     }
 
-    Tally run() const {
+    __attribute__((noinline)) Tally run() const {
         double *const own_scratch = scratch_of_this_thread(scratch_bytes_);
         const std::int64_t store = std::max(own_store_, shared_store_);
         if (store > 0 && !store_memory(store)) throw std::bad_alloc();
@@ -282,8 +281,18 @@ void write_virial(const Tally &tally, double *virial) {
     for (int i = 0; i < 9; ++i) virial[i] = tally.virial[place[i]];
 }
 
-Tally execute(const Chains &chains, const Plan &plan, const Work &work) { return Execution(chains, plan, work).run(); }
+// All that a call on one chain needs.
+static Tally execute_unit(const Chains &chains, const Plan &plan, const Work &work) {
+    Tally tally = empty_tally();
+    Lane lane;
+    const Plan::Piece &piece = plan.pieces[0];
+    work.unit(chains.unit(plan, piece, &lane), piece.where, scratch_of_this_thread(plan.scratch_bytes), tally);
+    return tally;
+}
 
-Tally execute(const Chains &chains, const Work &work) { return execute(chains, chains.plan(), work); }
+Tally execute(const Chains &chains, const Plan &plan, const Work &work) {
+    const bool one_unit = plan.pieces.size() == 1 && plan.pieces[0].shape == linear && plan.longest <= longest_lane;
+    return one_unit ? execute_unit(chains, plan, work) : Execution(chains, plan, work).run();
+}
 
 }  // namespace holonomic

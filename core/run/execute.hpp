@@ -65,8 +65,8 @@ protected:
 void write_virial(const Tally &tally, double *virial);
 
 // Throws std::bad_alloc before any work is done.
-Tally execute(const Chains &chains, const Work &work);
 Tally execute(const Chains &chains, const Plan &plan, const Work &work);
+inline Tally execute(const Chains &chains, const Work &work) { return execute(chains, chains.plan(), work); }
 
 // A long chain at the levels of forces and velocities: eliminate, join, finish; once more with compensated products
 // where plain ones don't do.

@@ -176,6 +176,56 @@ static void wrong_arguments_are_refused_and_nothing_is_written(void **state)
     assembly_free(&a);
 }
 
+// A call leaves in the memory of its thread what it worked on: here a chain of bonds that are not finite. All
+// calculations of one chain that comes alone, its atoms anywhere, must give what they gave before.
+static void nothing_depends_on_what_a_call_before_has_left_in_memory(void **state)
+{
+    (void)state;
+    static double bad[3 * 257];
+    double *mass = calloc(257, sizeof *mass);
+    for (int e = 0; e < 3 * 257; ++e) bad[e] = NAN;
+    for (int i = 0; i < 257; ++i) mass[i] = 1;
+    hol_chains *spoiler_of_memory;
+    CHECK(hol_chains_create(257, mass, &spoiler_of_memory));
+    double lengths[256];
+    for (int k = 0; k < 256; ++k) lengths[k] = 1;
+    CHECK(hol_chains_add_block(spoiler_of_memory, 1, 256, 0, lengths));
+    for (int64_t n = 1; n <= 60; ++n) {
+        chain one = chain_make(CHAIN_HETEROGENEOUS, n, 5);
+        assembly a = assembly_make(&one, 1, SCATTERED, 72);
+        const size_t bonds = (size_t)n, size = assembly_size(&a);
+        double *v[2], *lambda[2], *g[2], *r[2], *force[2], log_det[2];
+        for (int again = 0; again < 2; ++again) {
+            v[again] = copy_of(a.v, size), r[again] = copy_of(a.r, size);
+            lambda[again] = untouched(3 * bonds), g[again] = untouched(size), force[again] = untouched(size);
+            double moved[3 * 257];
+            for (int call = 0; call < 4; ++call) {
+                memcpy(moved, bad, sizeof moved);
+                if (again)
+                    CHECK_FAILS(HOL_ERR_NOT_FINITE, hol_project_velocities(spoiler_of_memory, bad, moved, NULL, NULL));
+                if (call == 0)
+                    CHECK(hol_forces(a.chains, a.r, a.v, a.f, lambda[again], NULL, g[again], HOL_WRITE, NULL));
+                if (call == 1) CHECK(hol_project_velocities(a.chains, a.r, v[again], lambda[again] + bonds, NULL));
+                if (call == 2)
+                    CHECK(hol_project_positions(a.chains, a.r, r[again], NULL, 0.004, lambda[again] + 2 * bonds, 0,
+                                                NULL, NULL));
+                if (call == 3)
+                    CHECK(hol_metric(a.chains, a.r, 1, log_det + again, NULL, NULL, force[again], HOL_WRITE));
+            }
+        }
+        assert_same_bits(v[0], v[1], size);
+        assert_same_bits(r[0], r[1], size);
+        assert_same_bits(g[0], g[1], size);
+        assert_same_bits(force[0], force[1], size);
+        assert_same_bits(lambda[0], lambda[1], 3 * bonds);
+        assert_same_bits(log_det, log_det + 1, 1);
+        for (int i = 0; i < 2; ++i) free(v[i]), free(r[i]), free(g[i]), free(force[i]), free(lambda[i]);
+        assembly_free(&a);
+    }
+    free(mass);
+    hol_chains_destroy(spoiler_of_memory);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -185,6 +235,7 @@ int main(void)
         cmocka_unit_test(projection_conserves_momentum_and_angular_momentum_and_lowers_kinetic_energy),
         cmocka_unit_test(velocities_do_not_depend_on_the_outputs_asked_for),
         cmocka_unit_test(wrong_arguments_are_refused_and_nothing_is_written),
+        cmocka_unit_test(nothing_depends_on_what_a_call_before_has_left_in_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

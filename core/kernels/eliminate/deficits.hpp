@@ -6,6 +6,7 @@
 #define HOLONOMIC_KERNELS_ELIMINATE_DEFICITS_HPP
 
 #include "core/kernels/arithmetic/exact.hpp"
+#include "core/kernels/eliminate/measure_fours.hpp"
 #include "core/kernels/memory/arena.hpp"
 #include "core/kernels/memory/block.hpp"
 
@@ -18,13 +19,16 @@ struct Geometry {
     vec *cosine, *complement;  // of joint k: c and 1 - |c|
     vec *reciprocal;           // 1 / |d|
     vec *square;               // d.d over `scale` squared
+    vec *f;                    // deficits from behind, where they are kept
     vec *scale;                // a power of two
     vec *p, *delta;            // coupling of bonds k-1 and k; what row k has beyond its neighbours
     vec *e, *t;
     Geometry(long n, Arena &arena)
         : u(vectors(n + W, arena)), low(vectors(n + W, arena)), normal(vectors(n + 1, arena)),
           cosine(arena.vecs(n + 1)), complement(arena.vecs(n + 1)), reciprocal(arena.vecs(n)), square(arena.vecs(n)),
-          scale(arena.vecs(n)), p(arena.vecs(n + 1)), delta(arena.vecs(n)), e(arena.vecs(n)), t(arena.vecs(n + W)) {}
+          scale(arena.vecs(n)), p(arena.vecs(n + 1)), delta(arena.vecs(n)), e(arena.vecs(n)), t(arena.vecs(n + W)) {
+        f = t;  // until t is needed
+    }
     static vec3 *vectors(long n, Arena &arena) { return reinterpret_cast<vec3 *>(arena.vecs(3 * n)); }
 };
 
@@ -37,13 +41,18 @@ HOL_INLINE vec reciprocal_scale(const vec3 &d) {
     return as_vec((mask{} + 2 * exponent_of_one) - (as_mask(largest) & (mask{} + exponent_bits)));
 }
 
+// Bonds, the joints between them, and what couples these.
+#if HOL_FOURS
 template <bool uniform>
-static inline void measure(const Block &block, const Geometry &x) {
+static inline void measure_joints(const Block &block, const Geometry &x) {
+    measure_in_fours(block.n, x);
+    for (long k = 1; k < block.n; ++k) x.p[k] = w_at<uniform>(block, k) * abs(x.cosine[k]);
+}
+#else
+template <bool uniform>
+static inline void measure_joints(const Block &block, const Geometry &x) {
     vec3 d0 = {}, low0 = {};
     vec r0 = {};
-    x.p[0] = x.p[block.n] = x.cosine[0] = x.cosine[block.n] = vec{};
-    x.complement[0] = x.complement[block.n] = splat(1.0);
-    x.normal[0] = x.normal[block.n] = vec3{};
     for (long k = 0; k < block.n; ++k) {
         const vec s = reciprocal_scale(x.u[k]);
         const vec3 d = s * x.u[k], low = s * x.low[k];
@@ -73,6 +82,15 @@ static inline void measure(const Block &block, const Geometry &x) {
         low0 = low;
         r0 = r;
     }
+}
+#endif
+
+template <bool uniform>
+static inline void measure(const Block &block, const Geometry &x) {
+    x.p[0] = x.p[block.n] = x.cosine[0] = x.cosine[block.n] = vec{};
+    x.complement[0] = x.complement[block.n] = splat(1.0);
+    x.normal[0] = x.normal[block.n] = vec3{};
+    measure_joints<uniform>(block, x);
     for (long k = 0; k < block.n; ++k)
         x.delta[k] = w_at<uniform>(block, k) * x.complement[k] + w_at<uniform>(block, k + 1) * x.complement[k + 1];
 }
@@ -140,10 +158,11 @@ HOL_INLINE vec less_passed_on(vec e, vec p, vec P) {
 }
 
 // Goes from left to right, from e of bond 0. Finds e of all bonds, and the logarithms over the bonds first .. end-1 of
-// each lane. Takes lanes with a pivot that is not positive out of `good`.
-template <bool uniform>
-static inline MetricSums eliminate_metric(const Block &block, const Geometry &x, vec e, vec first, vec end,
-                                          const MetricCall &call, mask &good) {
+// each lane; all lanes have the first `whole`, and count them. Takes lanes with a pivot that is not positive out of
+// `good`. beside(k) is called for all bonds, for what waits as long and for something else.
+template <bool uniform, class Beside>
+static inline MetricSums eliminate_metric(const Block &block, const Geometry &x, vec e, vec first, vec end, long whole,
+                                          const MetricCall &call, mask &good, const Beside &beside) {
     const bool logs = call.log_det || call.sum;
     const vec headroom = splat(call.force.x ? call.kT * 0x1p300 : 0.0);  // no force overflows
     LogSum det;
@@ -154,13 +173,20 @@ static inline MetricSums eliminate_metric(const Block &block, const Geometry &x,
         x.e[k] = e;
         good = good & less(vec{}, P) & finite(x.reciprocal[k] + headroom * x.reciprocal[k]);
         if (logs || call.log_det_z) {
-            const mask counted = between(k, first, end);
             const vec inverse = splat(1.0) / M;
-            det.multiply(select(counted, P * inverse, splat(1.0)), keep(counted, removed * inverse));
+            vec factor = P * inverse, less_one = removed * inverse;
+            mask counted = ~none();
+            if (k >= whole) {
+                counted = between(k, first, end);
+                factor = select(counted, factor, splat(1.0));
+                less_one = keep(counted, less_one);
+            }
+            det.multiply(factor, less_one);
             if (call.log_det_z)
                 det_z.multiply(select(counted, 4.0 * (block.unit * M) * x.square[k], splat(1.0)),
                                select(counted, x.scale[k], splat(1.0)));
         }
+        beside(k);
         if (k + 1 == block.n) break;
         removed = x.p[k + 1] * (x.p[k + 1] / P);
         e = x.delta[k + 1] - less_passed_on(e, x.p[k + 1], P);

@@ -4,6 +4,7 @@
 
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/eliminate/chain.hpp"
+#include "core/kernels/eliminate/one_lane.hpp"
 
 namespace holonomic::HOL_ISA {
 
@@ -68,11 +69,29 @@ struct FirstPull {
     }
 };
 
-// From u to the velocities. The recursion gives the multipliers to a few roundings of themselves. A second substitution
-// removes the rates that this leaves, for the velocities as they are rounded. This function prepares it if `twice`,
-// which pays unless the velocities become floats. Returns the lanes in which all is finite.
+#if HOL_FOURS
+// The same of one lane: u becomes t, and put(component, value) gets the velocities.
+template <bool uniform, class Put>
+HOL_INLINE void move_velocities(const Block &block, const Projection &x, vec *u, const Put &put) {
+    const double *const v = &x.v[0].x.element, *const w = uniform ? nullptr : block.w3[0];
+    pull_down(block.n, x.s.D, u, x.s.L, [&](long e, auto g) HOL_FORCED {
+        typedef decltype(g) V;
+        const V before = load_any<V>(v + e);
+        put(e, uniform ? g + before : mul_add(load_any<V>(w + e), g, before));
+    });
+}
+
 template <bool uniform>
-HOL_NOINLINE mask pull_back(const Block &block, const Projection &x, bool twice) {
+HOL_INLINE void first_pull(const Block &block, const Projection &x) {
+    double *const v = &x.v[0].x.element;
+    x.s.L[block.n] = vec{};  // for Pull
+    move_velocities<uniform>(block, x, x.s.t, [&](long e, auto value) HOL_FORCED { store_any(v + e, value); });
+    for (long k = rates_in_fours(0, block.n, x.s.D, v, x.left); k < block.n; ++k)
+        x.left[k] = rate_of(x.s.D[k], x.v[k], x.v[k + 1]);
+}
+#else
+template <bool uniform>
+HOL_INLINE void first_pull(const Block &block, const Projection &x) {
     long k = block.n;
     FirstPull<uniform> pull(block, x, k);
     while (k % 4 != 0) pull.step(--k);
@@ -84,6 +103,16 @@ HOL_NOINLINE mask pull_back(const Block &block, const Projection &x, bool twice)
         pull.step(k);
     }
     pull.finish();
+}
+#endif
+
+// From u to the velocities. The recursion gives the multipliers to a few roundings of themselves. A second substitution
+// removes the rates that this leaves, for the velocities as they are rounded. This function prepares it if `twice`,
+// which pays unless the velocities become floats. Returns the lanes in which all is finite.
+template <bool uniform>
+HOL_NOINLINE mask pull_back(const Block &block, const Projection &x, bool twice) {
+    first_pull<uniform>(block, x);
+    long k;
     for (k = 0; x.strain && k < block.n; ++k) x.left[k] = x.left[k] + stretching(x.strain, x.s.D[k]);
     for (k = twice ? block.n_min : 0; k < block.n; ++k) x.left[k] = twice ? keep(joint(block, k), x.left[k]) : vec{};
     if (twice) substitute(block.n, x.correction());

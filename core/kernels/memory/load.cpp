@@ -2,6 +2,8 @@
 #include "core/kernels/memory/load.hpp"
 
 #include "core/kernels/arithmetic/image.hpp"
+#include "core/kernels/memory/load_fours.hpp"
+#include "core/kernels/memory/padded_rows.hpp"
 #include "core/kernels/memory/prefetch.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -17,6 +19,10 @@ static void load_chunks(const Reader &in, long k0, long end, vec3 *D, vec *B) {
     // All arrays are in place, or all are staged, so a lane has the same distance from the first one in each.
     const double *const first_r = in.r->lane[0], *const first_v = has_v ? in.v->lane[0] : nullptr,
                         *const first_f = has_f ? in.f->lane[0] : nullptr;
+    const long done = load_in_fours<terms, uniform, boxed>(in, first_r, first_v, first_f, k0, end, D, B);
+    k0 += done;
+    D += done;
+    if (B) B += done;
     long lane[W];
     for (int i = 0; i < W; ++i) lane[i] = in.r->lane[i] - first_r;
     for (; k0 < end; k0 += W, D += W) {
@@ -93,6 +99,11 @@ template <bool careful, bool weigh = false>
 static void subtract_chunks(const Packed &rows, long k0, long end, vec3 *out, vec3 *low,
                             const double *const *w3 = nullptr) {
     const RowsOfLanes at(rows);
+    if (!careful && !weigh) {
+        const long done = subtract_in_fours(at.first + 3 * k0, end - k0, out);
+        k0 += done;
+        out += done;
+    }
     for (; k0 < end; k0 += W, out += W) {
         subtract_chunk<careful, weigh>(at, k0, out, low, w3);
         if (careful) low += W;
@@ -144,6 +155,12 @@ HOL_NOINLINE void load_rates(const Reader &in, long from, long end, const vec3 *
     long k = from;
     const long n = end <= block.n_min && block.roomy ? end : (end < block.n_min ? end : block.n_min) - W + 1;
     vec3 *x = velocities + from;
+    const long done = load_rates_in_fours(in.v->lane[0] + 3 * from, end - from, D, B, x + 1);
+    k += done;
+    x += done;
+    D += done;
+    B += done;
+    v = *x;
     for (; k < n; k += W, x += W, D += W, B += W) {
         const double *p[W];
         for (int i = 0; i < W; ++i) p[i] = in.v->lane[i] + 3 * (k + 1);
@@ -203,31 +220,6 @@ HOL_NOINLINE void load_bonds(const Reader &in, long k0, long end, vec3 *D, vec3 
     }
     make_inert(block, k0, n, D, low, B);
 }
-
-// Where lanes end: rows of the chunk from k0 on, padded with zeros, at places that begin at k0.
-struct PaddedRows {
-    double row[W][3 * W + 3];
-    Packed rows;
-    const Packed *take(const Block &block, const Packed &from, long k0) {
-        constexpr long size = 3 * W + 3;
-        for (int i = 0; i < W; ++i) {
-            const long left = 3 * (block.len[i] + 1 - k0);
-            const double *const x = from.lane[i] + 3 * k0;
-            if (left >= size) {
-                for (int j = 0; j < 3; ++j) store(row[i] + W * j, load(x + W * j));
-                for (int j = 0; j < 3; ++j) row[i][3 * W + j] = x[3 * W + j];
-            } else {
-                for (int j = 0; j < 3; ++j) store(row[i] + W * j, vec{});
-                for (int j = 0; j < 3; ++j) row[i][3 * W + j] = 0;
-                for (long e = 0; e < left; e += 3)
-                    for (int c = 0; c < 3; ++c) row[i][e + c] = x[e + c];
-            }
-            rows.lane[i] = reinterpret_cast<double *>(reinterpret_cast<uintptr_t>(row[i]) -
-                                                      static_cast<uintptr_t>(3 * k0) * sizeof(double));
-        }
-        return &rows;
-    }
-};
 
 // A chunk in which lanes end. Those that have ended before it read what another one has there, and if there are no
 // others, no row is copied.

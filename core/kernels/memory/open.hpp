@@ -39,6 +39,18 @@ HOL_INLINE void close(const AtomArray &array, const Block &block, const Lane *la
     if (!in_place(array, block)) close_staged(array, block, lane, which, packed, add);
 }
 
+// What open_block() makes of a chain that comes alone, where a block has one lane.
+HOL_INLINE void open_alone(const Lane &chain, bool large, Block &block) {
+    block.n = block.n_min = block.len[0] = chain.n_bonds;
+    block.lanes = 1;
+    block.roomy = false;
+    block.ahead = large ? 3 * (chain.n_bonds + 1) : 0;
+    block.list_ahead = 0;
+    block.staged = chain.atoms != nullptr;
+    block.first_bond[0] = chain.first_bond;
+    block.chain[0] = chain.chain;
+}
+
 // Calls work(block, lane, call, arena, tally) for the blocks of a unit. Before that, small(call, unit, block, first,
 // tally) does as many chains as it can and returns the first one that it leaves. In a unit that is not regular it
 // gets no block.
@@ -48,6 +60,13 @@ static inline void for_each_block(const Call &call, const Unit &unit, double *sc
     Block block;
     Lane lane[W];
     Arena arena(scratch, int64_t{0});
+    if (W == 1 && unit.count == 1) {  // nothing is copied
+        open_alone(unit.lanes[0], unit.large, block);
+        arena = Arena(scratch, block.n);
+        set_masses(block, unit.lanes, arena);
+        if (small(call, unit, block, 0, tally) == 0) work(block, unit.lanes, call, arena, tally);
+        return;
+    }
     const auto leave_to_small = [&](int64_t &first) {
         const int64_t next = small(call, unit, block, first, tally);
         if (next == first) return false;

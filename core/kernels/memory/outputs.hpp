@@ -10,6 +10,7 @@
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/call.hpp"
 #include "core/kernels/memory/block.hpp"
+#include "core/kernels/memory/fours.hpp"
 
 namespace holonomic::HOL_ISA {
 
@@ -126,6 +127,17 @@ static void store_pulls(const Block &block, const vec *w, const vec3 *d, const v
             store_chunk(k0, value, sink);
         }
     };
+#if HOL_FOURS
+    if (chosen == all_lanes && first + 4 < block.n) {
+        vec value[3];
+        pull(first, w != nullptr, t[first] * d[first], value);
+        store_chunk(first, value, sink);
+        k0 = pulls_in_fours(first + 1, block.n, d, t, [&](long k, auto j, four g) HOL_FORCED {
+            sink.put(0, 3 * k + 4 * j, w ? spread<j>(load_four(w + k)) * g : g);
+        });
+        before = t[k0 - 1] * d[k0 - 1];
+    }
+#endif
     if (chosen == all_lanes) w ? whole_chunks(true) : whole_chunks(false);
     for (; k0 <= block.n; k0 += W) {
         vec value[3 * W] = {};

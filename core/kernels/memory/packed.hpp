@@ -28,10 +28,14 @@ HOL_INLINE int terms_of(bool velocities, bool forces) {
 }
 
 // A component of velocity_squared.
-HOL_INLINE vec square(int terms, vec mass, vec dv) { return (terms & unit_mass ? dv : mass * dv) * dv; }
+template <class V>
+HOL_INLINE V square(int terms, V mass, V dv) {
+    return (terms & unit_mass ? dv : mass * dv) * dv;
+}
 
 // A component of the right-hand side; vv is that of square().
-HOL_INLINE vec product(int terms, vec d, vec dv, vec df, vec vv) {
+template <class V>
+HOL_INLINE V product(int terms, V d, V dv, V df, V vv) {
     if (terms & rate) return dv * d;
     if (!(terms & force_difference)) return vv;
     return terms & velocity_squared ? mul_add(df, d, vv) : df * d;

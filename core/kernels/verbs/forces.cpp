@@ -1,6 +1,7 @@
 // Acceleration level of a block of chains: load and eliminate in one go, up the chains; substitute and store, down.
 #include "core/kernels/eliminate/chain.hpp"
 #include "core/kernels/eliminate/listed.hpp"
+#include "core/kernels/eliminate/one_lane.hpp"
 #include "core/kernels/memory/load.hpp"
 #include "core/kernels/memory/open.hpp"
 #include "core/kernels/memory/outputs.hpp"
@@ -27,6 +28,16 @@ static mask forward_carefully(const Block &block, const Reader &in, const System
 template <Update update>
 HOL_NOINLINE void substitute_and_store(const Block &block, const System &s, const Packed &out, double *value_out,
                                        vec factor) {
+#if HOL_FOURS
+    if (out.lane[0]) {
+        const AtomSink<update> g = {out};
+        pull_down(block.n, s.D, s.t, s.L, [&](long e, auto x) HOL_FORCED { g.put(0, e, x); });
+    } else {
+        backward(0, block.n, s.t, s.L);
+    }
+    if (value_out) store_bonds(block, s.t, factor, ~none(), value_out);
+    return;
+#endif
     const long full = block.n_min / W * W;
     vec t = {};
     vec3 after = {};  // t d of the bond behind

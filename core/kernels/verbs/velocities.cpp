@@ -29,6 +29,9 @@ HOL_NOINLINE void correct_and_store(const Block &block, const Projection &x, mas
     Pull<uniform> pull{block, x, x.left};
     const Packed to = out;  // by value: its pointers stay in registers
     const AtomSink<write_> sink = {to};
+#if HOL_FOURS
+    return move_velocities<uniform>(block, x, x.left, [&](long e, auto value) HOL_FORCED { sink.put(0, e, value); });
+#endif
     const unsigned chosen = bits(which);
     const long full = block.n / W * W, fast = chosen == all_lanes ? block.n_min : 0;
     if (full < block.n) {

@@ -1,0 +1,70 @@
+// Sets of one lane: what needs no order along a chain is done for four of its bonds at a time, as they stand in memory.
+// Each number is made as one lane makes it. Twelve components x y z x y z .. are three vectors of four.
+#ifndef HOLONOMIC_KERNELS_MEMORY_FOURS_HPP
+#define HOLONOMIC_KERNELS_MEMORY_FOURS_HPP
+
+#include "core/kernels/arithmetic/vector3.hpp"
+#include "core/kernels/isa/choose.hpp"
+
+#if HOL_LANES == 1 && defined(__AVX2__) && defined(__FMA__)
+#define HOL_FOURS 1
+
+namespace holonomic::HOL_ISA {
+
+typedef double four __attribute__((vector_size(32)));
+
+HOL_INLINE four load_four(const vec *p) { return load_any<four>(&p->element); }
+HOL_INLINE four mul_add(four a, four b, four c) { return _mm256_fmadd_pd(a, b, c); }
+HOL_INLINE four round(four a) { return _mm256_round_pd(a, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC); }
+
+// The values of four bonds, for vector j of their components.
+template <int j>
+HOL_INLINE four spread(four a) {
+    return _mm256_permute4x64_pd(a, j == 0 ? 0x40 : j == 1 ? 0xa5 : 0xfe);
+}
+
+// Vectors in space from their components.
+HOL_INLINE Vector3<four> as_vectors(const four *p) {
+    const four a = _mm256_blend_pd(p[0], p[1], 12), b = _mm256_permute2f128_pd(p[0], p[2], 0x21),
+               c = _mm256_blend_pd(p[1], p[2], 12);
+    return {_mm256_shuffle_pd(a, b, 10), _mm256_shuffle_pd(a, c, 5), _mm256_shuffle_pd(b, c, 10)};
+}
+
+// Calls body(k, j, pull) for vector j of the pulls t' d' - t d on the atoms k .. k + 3, from atom k0 > 0 on, as long as
+// there are four with a bond behind each. Returns the first atom that is left.
+template <class Body>
+HOL_INLINE long pulls_in_fours(long k0, long n, const vec3 *d, const vec *t, const Body &body) {
+    for (; k0 + 4 <= n; k0 += 4) {
+        const four before = load_four(t + k0 - 1), behind = load_four(t + k0);
+        const double *const x = &d[k0].x.element;
+        const auto part = [&](auto j, four t0, four t1) HOL_FORCED {
+            body(k0, j, t1 * load_any<four>(x + 4 * j) - t0 * load_any<four>(x + 4 * j - 3));
+        };
+        part(Constant<int, 0>{}, spread<0>(before), spread<0>(behind));
+        part(Constant<int, 1>{}, spread<1>(before), spread<1>(behind));
+        part(Constant<int, 2>{}, spread<2>(before), spread<2>(behind));
+    }
+    return k0;
+}
+
+// Rates d . (v' - v) of the bonds from k0 on between the atoms x[k] and x[k + 1]. Returns the first bond that is left.
+HOL_INLINE long rates_in_fours(long k0, long n, const vec3 *d, const double *x, vec *rate) {
+    for (; k0 + 4 <= n; k0 += 4) {
+        const double *const v = x + 3 * k0;
+        four bond[3], change[3];  // dot() would not find mul_add() of such vectors
+        HOL_UNROLL
+        for (int j = 0; j < 3; ++j) {
+            bond[j] = load_any<four>(&d[k0].x.element + 4 * j);
+            change[j] = load_any<four>(v + 4 * j + 3) - load_any<four>(v + 4 * j);
+        }
+        const Vector3<four> a = as_vectors(bond), b = as_vectors(change);
+        store_any(&rate[k0].element, mul_add(a.z, b.z, mul_add(a.y, b.y, a.x * b.x)));
+    }
+    return k0;
+}
+
+}  // namespace holonomic::HOL_ISA
+#else
+#define HOL_FOURS 0
+#endif
+#endif
