@@ -69,7 +69,7 @@ HOL_NOINLINE void write_bodies(const AtomArray &array, const BodyUnit &unit, vec
 }
 
 // Coordinates from the first atom's, images taken.
-static inline void unfold(const BodyKind &kind, const Box &box, const vec *raw, vec *x) {
+HOL_NOINLINE void unfold(const BodyKind &kind, const Box &box, const vec *raw, vec *x) {
     if (box.shape == Box::none) {
         const vec first[3] = {raw[0], raw[1], raw[2]};
         for (long a = 0; a < kind.n_atoms; ++a) {
@@ -149,17 +149,16 @@ HOL_INLINE Frame<R> frame_of(const BodyKind &kind, const vec *x) {
 template <int R>
 HOL_INLINE Frame<R> axes_of(const BodyKind &kind, const Box &box, vec *raw, vec *x) {
     Frame<R> sum{};
-    const double *share = kind.share;
-    if (box.shape == Box::none) {
-        const vec first[3] = {raw[0], raw[1], raw[2]};
-        for (long a = 0; a < kind.n_atoms; ++a, share += 1 + R) {
-            const vec at[3] = {raw[3 * a] - first[0], raw[3 * a + 1] - first[1], raw[3 * a + 2] - first[2]};
-            sum.template add<1>(share, at);
-        }
-        return sum;
+    if (box.shape != Box::none) {
+        unfold(kind, box, raw, x);
+        raw = x;
     }
-    unfold(kind, box, raw, x);
-    for (long a = 0; a < kind.n_atoms; ++a, share += 1 + R) sum.template add<1>(share, x + 3 * a);
+    const double *share = kind.share;
+    const vec first[3] = {raw[0], raw[1], raw[2]};
+    for (long a = 0; a < kind.n_atoms; ++a, share += 1 + R) {
+        const vec at[3] = {raw[3 * a] - first[0], raw[3 * a + 1] - first[1], raw[3 * a + 2] - first[2]};
+        sum.template add<1>(share, at);
+    }
     return sum;
 }
 
@@ -288,9 +287,9 @@ HOL_INLINE void take_away(Frame<R> &u, const Frame<R> &v, const Symmetric<R> &la
     }
 }
 
-// - factor Lambda_pq u_p (x) u_q
+// - factor Lambda_pq u_p (x) u_q. By value: what it is made of stays in registers where no virial is wanted.
 template <int R>
-HOL_INLINE void write_virial(const Frame<R> &u, const Symmetric<R> &lambda, double factor, BodyResult *results) {
+HOL_NOINLINE void write_virial(Frame<R> u, Symmetric<R> lambda, double factor, BodyResult *results) {
     Frame<R> t{};
     take_away(t, u, lambda);
     int i = 0;

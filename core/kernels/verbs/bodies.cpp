@@ -142,7 +142,7 @@ struct Restored {
 
 // Velocities of sites are those of the body at their places.
 template <int R>
-void carry_sites(const BodyKind &kind, vec *v) {
+HOL_NOINLINE void carry_sites(const BodyKind &kind, vec *v) {
     const Frame<R> rate = rates_of<R, false>(kind, v);
     const double *place = kind.place;
     for (long a = 0; a < kind.n_atoms; ++a, place += 1 + R)
