@@ -296,9 +296,10 @@ HOL_API int hol_chains_set_index_base(hol_chains *chains, int base);
  *                 row of zeros: not periodic along that axis, in which no other vector may have a component. NULL: none
  *
  * The image is the right one for bonds shorter than half the smallest distance between opposite faces; molecules may be
- * larger, and their cycles may go round the box (networks, zeolites). May be set again before every call; that takes no
- * time. An orthorhombic box (zeros beside the diagonal) makes calls up to 1.6 times as long, any other 1.1 to 1.9
- * times. Programs whose molecules are whole need none.
+ * larger, and their cycles may go round the box (networks, zeolites). A network that does so has 3 n - 3 freedoms for
+ * its bonds, not 3 n - 6: with more bonds than the latter it is added after the box has been set. May be set again
+ * before every call; that takes no time. An orthorhombic box (zeros beside the diagonal) makes calls up to 1.6 times as
+ * long, any other 1.1 to 1.9 times. Programs whose molecules are whole need none.
  * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_VALUE (not finite, or no cell; since 0.2 narrower than twice the
  *         longest bond). On an error nothing is changed. Not thread-safe on one handle. Since 0.1.
  */

@@ -1,5 +1,6 @@
 #include "core/caller/box.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -79,16 +80,32 @@ Box make_box(const double *h) {
     return next;
 }
 
+namespace {
+
+// The distance of opposite faces is one over the gradient of the fractional coordinate.
+double gradient_along(const Box &box, int i) {
+    const double *const g = box.inverse + i;
+    return std::sqrt(g[0] * g[0] + g[3] * g[3] + g[6] * g[6]);
+}
+
+}  // namespace
+
 int narrow_side(const Box &box, double longest_bond, double *width) {
     if (box.shape == Box::none || longest_bond == 0) return -1;
     for (int i = 0; i < 3; ++i) {
-        // The distance of opposite faces is one over the gradient of the fractional coordinate.
-        const double *const g = box.inverse + i;
-        const double gradient = std::sqrt(g[0] * g[0] + g[3] * g[3] + g[6] * g[6]);
+        const double gradient = gradient_along(box, i);
         *width = 1 / gradient;
         if (gradient * 2 * longest_bond > 1 + 1e-12) return i;
     }
     return -1;
+}
+
+std::int64_t bonds_round(const Box &box, double longest_bond) {
+    if (box.shape == Box::none) return 0;
+    double steepest = 0;
+    for (int i = 0; i < 3; ++i) steepest = std::max(gradient_along(box, i), steepest);
+    const double n = std::floor(1 / (steepest * longest_bond) * (1 - 1e-9)) + 1;
+    return n < 1e18 ? static_cast<std::int64_t>(n) : 0;
 }
 
 BoxRate make_box_rate(const double *L) {

@@ -2,6 +2,9 @@
 #ifndef HOLONOMIC_BOX_HPP
 #define HOLONOMIC_BOX_HPP
 
+#include <cstdint>
+#include <cstring>
+
 #include "core/kernels/call.hpp"
 
 namespace holonomic {
@@ -18,6 +21,9 @@ inline void put_box(const Box &box, Box &of_call) {
 
 // The box vector along which opposite faces are nearer than twice this length, and how near; -1 if they are not.
 int narrow_side(const Box &box, double longest_bond, double *width);
+
+// How many bonds of at most this length a cycle must have at least to go round the box; 0: none does.
+std::int64_t bonds_round(const Box &box, double longest_bond);
 
 // How the box, and what follows it, changes: d(box)/dt = L box.
 struct BoxRate {

@@ -1,4 +1,5 @@
 // Adding molecules to a set.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -102,7 +103,8 @@ void Chains::add_bonds(std::int64_t n_bonds, const std::int64_t *pairs, const do
                          static_cast<long long>(n_bonds), static_cast<long long>(most_bonds));
     check_memory(*this, n_bonds, bytes_of_listed_bond);
     check_lengths(n_bonds, lengths, base);
-    add_listed({n_bonds, pairs, base, &labels_}, lengths, n_bonds);
+    add_listed({n_bonds, pairs, base, &labels_, bonds_round(box, *std::max_element(lengths, lengths + n_bonds))},
+               lengths, n_bonds);
 }
 
 void Chains::add_listed(const BondList &list, const double *lengths, std::int64_t n_lengths) {
@@ -143,7 +145,8 @@ void Chains::add_molecules(std::int64_t count, std::int64_t n_atoms, std::int64_
     std::vector<std::int64_t> all(at(2 * count * n_bonds));
     for (std::int64_t m = 0; m < count; ++m)
         for (std::int64_t e = 0; e < 2 * n_bonds; ++e) all[at(2 * m * n_bonds + e)] = first + m * n_atoms + pairs[e];
-    add_listed({count * n_bonds, all.data(), base, &labels_}, lengths, n_bonds);
+    const std::int64_t round = bonds_round(box, *std::max_element(lengths, lengths + n_bonds));
+    add_listed({count * n_bonds, all.data(), base, &labels_, round}, lengths, n_bonds);
 }
 
 }  // namespace holonomic

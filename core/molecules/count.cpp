@@ -15,7 +15,8 @@ constexpr const char *too_many =
 // The molecule as a graph in which a fixed atom is one atom, however many bonds it ends.
 class Graph {
 public:
-    explicit Graph(const Draft &draft) : draft_(draft), vertex_(draft.atoms.size()) {
+    Graph(const Draft &draft, std::int64_t bonds_round)
+        : draft_(draft), bonds_round_(bonds_round), vertex_(draft.atoms.size()) {
         std::int32_t n = -1;
         for (std::size_t i = 0; i < vertex_.size(); ++i) {
             if (i == 0 || draft.atoms[i] != draft.atoms[i - 1]) ++n;
@@ -71,6 +72,7 @@ public:
 
     // The last bond of five atoms that are all bonded to each other, or -1.
     std::int64_t five_bonded() const {
+        if (may_go_round(5)) return -1;
         for (std::size_t k = 0; k < draft_.bonds.size(); ++k) {
             const std::size_t u = end(2 * k), v = end(2 * k + 1);
             if (gone_[u] || gone_[v] || fixed_[u] || fixed_[v]) continue;
@@ -90,6 +92,8 @@ public:
     }
 
 private:
+    // Whether cycles of so many bonds are long enough for it.
+    bool may_go_round(std::int64_t n) const { return bonds_round_ > 0 && n >= bonds_round_; }
     std::size_t end(std::size_t e) const { return at(vertex_[at(draft_.pairs[e])]); }
     std::size_t other(std::int32_t bond, std::size_t v) const {
         const std::size_t first = end(2 * at(bond));
@@ -131,11 +135,13 @@ private:
         }
         std::sort(fixed.begin(), fixed.end());
         const std::int64_t n_fixed = std::unique(fixed.begin(), fixed.end()) - fixed.begin();
-        const std::int64_t rigid = n_fixed == 0 ? 6 : n_fixed == 1 ? 3 : n_fixed == 2 ? 1 : 0;  // motions as a whole
+        const std::int64_t turns = may_go_round(n + n_fixed) ? 0 : n_fixed <= 1 ? 3 : n_fixed == 2 ? 1 : 0;
+        const std::int64_t rigid = n_fixed == 0 ? 3 + turns : turns;  // motions as a whole
         return (ends + ends_at_fixed) / 2 > 3 * n - rigid ? last : -1;
     }
 
     const Draft &draft_;
+    const std::int64_t bonds_round_;
     std::vector<std::int32_t> vertex_;  // of each place in the draft
     std::vector<unsigned char> fixed_, gone_;
     std::vector<std::int32_t> start_, bond_, degree_;  // the bonds of each vertex
@@ -149,7 +155,7 @@ void check_count(const BondList &list, const Draft &draft) {
     const std::int64_t n_fixed = std::count(draft.fixed.begin(), draft.fixed.end(), 1);
     // Five atoms with ten bonds have six independent cycles; no part with fewer is overfull, unless atoms are fixed.
     if (n_bonds - n_atoms < 5 && n_fixed < 4) return;
-    Graph graph(draft);
+    Graph graph(draft, list.bonds_round);
     if (!graph.strip()) return;
     std::int64_t bond = graph.overfull();
     if (bond < 0) bond = graph.five_bonded();

@@ -18,6 +18,7 @@ struct BondList {
     const std::int64_t *pairs;  // [n_bonds][2], counted from base
     int base;
     const Labels *labels = nullptr;  // of the atoms, for messages
+    std::int64_t bonds_round = 0;    // a cycle of fewer can't go round the periodic box; 0: none can
 };
 
 // Atoms of a molecule are ordered along a linear chain, its lower end first, else they ascend; a fixed atom stands once

@@ -36,7 +36,8 @@ static double image_of(const scene *s, const double *r, int64_t k, double *d)
 }
 
 /** n^3 nodes of a lattice at a distance of 2, joined to their neighbours, but for a part of them, by two bonds each
- * where `twice`; some nodes have an atom beside them. A ring of n where `ring`. */
+ * where `twice` is 1; some nodes have an atom beside them. All but three bonds, and no such atoms, where it is 2. A
+ * ring of n where `ring`. */
 static scene make(int n, int twice, int ring, int skewed, uint64_t seed)
 {
     scene s = {molecule_empty(), NULL, {2. * n, 0, 0, 0, ring ? 9 : 2. * n, 0, 0, 0, ring ? 9 : 2. * n}, 0};
@@ -57,10 +58,10 @@ static scene make(int n, int twice, int ring, int skewed, uint64_t seed)
     for (int64_t i = 0; i < n_nodes; ++i)
         for (int h = 0; h < (ring ? 1 : 3); ++h) {
             int64_t at[3] = {i % n, i / n % rows, i / ((int64_t)n * rows)};
-            if (!ring && random_uniform(&random) < 0.25) continue;
+            if (!ring && (twice == 2 ? i == 0 : random_uniform(&random) < 0.25)) continue;
             at[h] = (at[h] + 1) % n;
             const int64_t j = at[0] + n * (at[1] + rows * at[2]);
-            if (!twice) {
+            if (twice != 1) {
                 molecule_add_bond(&s.m, i, j);
                 continue;
             }
@@ -71,7 +72,7 @@ static scene make(int n, int twice, int ring, int skewed, uint64_t seed)
             molecule_add_bond(&s.m, i, middle);
             molecule_add_bond(&s.m, middle, j);
         }
-    for (int64_t i = 0; i < n_nodes && !ring; i += 5) {
+    for (int64_t i = 0; i < n_nodes && !ring && twice < 2; i += 5) {
         const double u[3] = {0.6, 0.8, 0};
         molecule_grow(&s.m, i, 0.3, 1, u);
     }
@@ -105,9 +106,10 @@ static scene example(int which)
            : which == 1 ? make(9, 1, 1, 1, 2)
            : which == 2 ? make(3, 0, 0, 0, 3)
            : which == 3 ? make(3, 1, 0, 1, 4)
-                        : make(4, 1, 0, 1, 5);
+           : which == 4 ? make(4, 1, 0, 1, 5)
+                        : make(3, 2, 0, 1, 6);
 }
-enum { examples = 5 };
+enum { examples = 6 };
 
 /* Images round: each component of a bond by eps of some cells, in units of a bond of 1. */
 static long double unit_of(const scene *s)
@@ -211,6 +213,26 @@ static void the_metric_is_that_of_the_bond_vectors(void **state)
     }
 }
 
+/** Three bonds for each atom but for one: no more can be independent where nothing can turn, three fewer where it can.
+ */
+static void what_goes_round_the_box_can_not_turn(void **state)
+{
+    (void)state;
+    scene s = make(3, 2, 0, 0, 7);
+    assert_true(s.m.n_bonds == 3 * s.m.n_atoms - 3);
+    assert_true(hol_chains_degrees_of_freedom(s.chains, 3) == 3);
+    double *lengths = copy_of(s.m.length, (size_t)s.m.n_bonds);
+    hol_chains *whole = NULL;
+    CHECK(hol_chains_create(s.m.n_atoms, s.m.mass, &whole));
+    CHECK_FAILS(HOL_ERR_DEGENERATE, hol_chains_add_bonds(whole, s.m.n_bonds, s.m.pairs, lengths));
+    CHECK(hol_chains_set_box(whole, s.box));
+    for (int64_t k = 0; k < s.m.n_bonds; ++k) lengths[k] *= 1e-3; /* then no cycle is long enough */
+    CHECK_FAILS(HOL_ERR_DEGENERATE, hol_chains_add_bonds(whole, s.m.n_bonds, s.m.pairs, lengths));
+    hol_chains_destroy(whole);
+    free(lengths);
+    destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -218,6 +240,7 @@ int main(void)
         cmocka_unit_test(velocities_are_projected),
         cmocka_unit_test(positions_get_their_lengths),
         cmocka_unit_test(the_metric_is_that_of_the_bond_vectors),
+        cmocka_unit_test(what_goes_round_the_box_can_not_turn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

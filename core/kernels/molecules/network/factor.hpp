@@ -45,8 +45,8 @@ struct NetFactor {
 
     // Makes the factors, and takes the right-hand sides y up: of the rest, of each part, then of what is left.
     __attribute__((noinline)) void factorize(const NetPart &part, const Net3 &D, double *y) const {
-        net.for_strands(part, [&](auto width, const NetStrands &g)
-                                  HOL_FORCED { factorize_strands<decltype(width)>(g, D, y); });
+        net.for_strands(
+            part, [&](auto width, const NetStrands &g) HOL_FORCED { factorize_strands<decltype(width)>(g, D, y); });
     }
     void close(const Net3 &D) const {
         unknowns.open(D, b);
@@ -111,9 +111,9 @@ struct NetFactor {
     }
 
 private:
-    // From the first to the last bond, those between being eliminated. What the far side offers to the last one is found
-    // as in trees, without a subtraction. To the first one it is what the first bond's own atom does, times what each
-    // pivot loses when it is eliminated before and not after those between: P' / P.
+    // From the first to the last bond, those between being eliminated. What the far side offers to the last one is
+    // found as in trees, without a subtraction. To the first one it is what the first bond's own atom does, times what
+    // each pivot loses when it is eliminated before and not after those between: P' / P.
     template <class V>
     HOL_FORCED void factorize_strands(const NetStrands &g, const Net3 &D, double *y) const {
         Vector3<V> Dk = D.get<V>(g.place), bk = b.get<V>(g.place);

@@ -62,7 +62,8 @@ struct NetLinear {
     void load() const {
         for_rest_and_parts(
             [&](const NetPart &rest) {
-                net.for_ranges(rest.first_site, rest.end_site, [&](int32_t first, int32_t end) { read_atoms(first, end); });
+                net.for_ranges(rest.first_site, rest.end_site,
+                               [&](int32_t first, int32_t end) { read_atoms(first, end); });
                 find_equations(rest);
                 factor.factorize_rest(d, t);
             },
@@ -163,9 +164,9 @@ struct NetLinear {
         });
         for (int32_t k = part.first_place; part.share == s.n_shares && k < part.end_place; ++k) {
             const int32_t i = s.from[k], j = s.to[k];
-            const double over = excess_of(d.get<double>(k), net.w[i] * G.get<double>(i), net.w[j] * G.get<double>(j),
-                                          mul_add(net.w[i], tension[i], net.w[j] * tension[j]), side[k],
-                                          size_of_side[k], most);
+            const double over =
+                excess_of(d.get<double>(k), net.w[i] * G.get<double>(i), net.w[j] * G.get<double>(j),
+                          mul_add(net.w[i], tension[i], net.w[j] * tension[j]), side[k], size_of_side[k], most);
             if (!(over <= 0) && bad_part == 0 && !holds(k)) bad_part = 1;
         }
     }
@@ -202,7 +203,8 @@ struct NetLinear {
             [&]() {
                 find_residuals(solution);
                 factor.take_up_all(t);
-                if (!solve_for(nullptr, false, nullptr, [](const NetPart &) {})) t[0] = 0 / (t[0] - t[0]);  // not a number, which is no contraction
+                if (!solve_for(nullptr, false, nullptr, [](const NetPart &) {}))
+                    t[0] = 0 / (t[0] - t[0]);  // not a number, which is no contraction
             },
             [&](Flag) {
                 return add_corrections<double>(s.n_bonds, [&](int32_t k) {

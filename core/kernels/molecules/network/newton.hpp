@@ -52,8 +52,8 @@ struct NetNewton {
         }
         return abs(e);
     }
-    // Returns the largest error of a part whose bonds get(V, place, from, to) gives, of values of `of` at their atoms. A
-    // NaN stays.
+    // Returns the largest error of a part whose bonds get(V, place, from, to) gives, of values of `of` at their atoms.
+    // A NaN stays.
     template <bool fresh, class Get>
     HOL_FORCED double measure_part(const NetPart &part, const Net3 &of, const Get &get) const {
         vec most = {}, sum = {};
@@ -73,8 +73,9 @@ struct NetNewton {
         return most_of_rest;
     }
     __attribute__((noinline)) double measure_fresh(const NetPart &part, const Net3 &bonds) const {
-        return measure_part<true>(part, moves, [&](auto width, int32_t k, const auto &, const auto &)
-                                                   HOL_FORCED { return bonds.get<decltype(width)>(k); });
+        return measure_part<true>(part, moves, [&](auto width, int32_t k, const auto &, const auto &) HOL_FORCED {
+            return bonds.get<decltype(width)>(k);
+        });
     }
     static double larger(double error, double than) { return error <= than ? than : error; }
     double worst_of_all() const { return largest_in(worst, s.n_shares + 1); }
@@ -140,8 +141,9 @@ struct NetNewton {
         return failed ? __builtin_nan("") : worst_of_all();
     }
     __attribute__((noinline)) double measure_moved(const NetPart &part) const {
-        return measure_part<false>(part, moves, [&](auto, int32_t k, const auto &from, const auto &to)
-                                                    HOL_FORCED { return moved_bond(k, from, to); });
+        return measure_part<false>(part, moves, [&](auto, int32_t k, const auto &from, const auto &to) HOL_FORCED {
+            return moved_bond(k, from, to);
+        });
     }
     double error_of(int32_t k) const {
         const Vector3<double> zero = {}, from = moves.get<double>(s.from[k]), to = moves.get<double>(s.to[k]);
@@ -159,8 +161,9 @@ struct NetNewton {
     void factorize(Flag) {
         for_all_parts([&](const NetPart &part) {
             if (moved)
-                net.for_bonds(part, moves, [&](auto, int32_t k, const auto &from, const auto &to)
-                                               HOL_FORCED { new_D.set(k, moved_bond(k, from, to)); });
+                net.for_bonds(part, moves, [&](auto, int32_t k, const auto &from, const auto &to) HOL_FORCED {
+                    new_D.set(k, moved_bond(k, from, to));
+                });
             measure_fresh(part, moved ? new_D : D);
             factorize_part(part, moved ? new_D : D);
         });

@@ -1,0 +1,126 @@
+// Networks beside chains in the same program: processor time a bond of the three levels, of adding, and memory.
+#include <holonomic.h>
+#include <time.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+
+#include "networks/scenes.hpp"
+
+using namespace bench;
+
+namespace {
+
+double seconds(clockid_t clock) {
+    timespec t;
+    clock_gettime(clock, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+struct Call {
+    int status;
+    double time;
+};
+Call best_of(int repeats, bool wall, const std::function<void()> &prepare, const std::function<int()> &body) {
+    Call best = {0, 1e30};
+    const double begin = seconds(CLOCK_MONOTONIC);
+    for (int i = 0; i < repeats && (i < 2 || std::getenv("ONLY_FORCES") || seconds(CLOCK_MONOTONIC) - begin < 4); ++i) {
+        prepare();
+        const double start = seconds(wall ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID);
+        best.status = body();
+        best.time = std::fmin(best.time, seconds(wall ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID) - start);
+        if (best.status != HOL_OK) break;
+    }
+    return best;
+}
+void print(const Call &c, double n) {
+    if (c.status == HOL_OK)
+        std::printf(" %8.1f", 1e9 * c.time / n);
+    else
+        std::printf(" %8s(%.3g s)", c.status == HOL_ERR_DEGENERATE ? "deg" : c.status == HOL_ERR_MEMORY ? "mem" : "err",
+                    c.time);
+    std::fflush(stdout);
+}
+
+void measure(const Network &s, int threads, int repeats) {
+    const double n = static_cast<double>(s.n_bonds());
+    hol_chains *chains = nullptr;
+    const double box[9] = {s.side[0], 0, 0, 0, s.side[1], 0, 0, 0, s.side[2]};
+    const Call build = best_of(
+        std::getenv("ONLY_FORCES") ? 1 : repeats, false, [&] { hol_chains_destroy(chains); chains = nullptr; },
+        [&] {
+            int status = hol_chains_create(s.n_atoms(), s.masses.data(), &chains);
+            if (status == HOL_OK && s.side[0] > 0) status = hol_chains_set_box(chains, box);
+            if (status == HOL_OK)
+                status = hol_chains_add_bonds(chains, s.n_bonds(), s.pairs.data(), s.lengths.data());
+            return status;
+        });
+    std::printf("%-52s %8.0f", s.name.c_str(), n);
+    if (build.status != HOL_OK) {
+        std::printf(" not added after %.3g s: %s\n", build.time, hol_error_message());
+        hol_chains_destroy(chains);
+        return;
+    }
+    hol_chains_set_threads(chains, threads);
+    hol_chains_set_checks(chains, HOL_NEVER);
+    std::mt19937_64 random(7);
+    std::normal_distribution<double> normal;
+    std::vector<double> v(s.r.size()), f(s.r.size()), g(s.r.size()), out, drifted, lambda(s.lengths.size());
+    for (double &x : v) x = normal(random);
+    for (double &x : f) x = normal(random);
+    std::vector<double> raw = v;
+    const bool wall = threads > 1;
+    Call c = best_of(repeats, wall, [] {}, [&] {
+        return hol_forces(chains, s.r.data(), raw.data(), f.data(), lambda.data(), nullptr, g.data(), HOL_WRITE, nullptr);
+    });
+    print(c, n);
+    if (c.status != HOL_OK) std::printf(" %s", hol_error_message());
+    if (std::getenv("ONLY_FORCES")) return std::printf("\n"), hol_chains_destroy(chains);
+    c = best_of(repeats, wall, [&] { v = raw; },
+                [&] { return hol_project_velocities(chains, s.r.data(), v.data(), nullptr, nullptr); });
+    print(c, n);
+    for (std::size_t i = 0; i < v.size(); ++i) out.push_back(s.r[i] + 0.005 * v[i]);
+    hol_report report = {};
+    c = best_of(repeats, wall, [&] { drifted = out; }, [&] {
+        return hol_project_positions(chains, s.r.data(), drifted.data(), nullptr, 0.005, nullptr, 0, nullptr, &report);
+    });
+    print(c, n);
+    std::printf(" (%lld)  build %7.1f  bytes %7.1f\n", static_cast<long long>(report.iterations), 1e9 * build.time / n,
+                static_cast<double>(hol_chains_memory(chains)) / n);
+    hol_chains_destroy(chains);
+}
+
+}  // namespace
+
+int main(int argc, char **argv) {
+    const int threads = argc > 1 ? std::atoi(argv[1]) : 1, repeats = argc > 2 ? std::atoi(argv[2]) : 20;
+    const char *const wanted = argc > 3 ? argv[3] : "";
+    const auto one = [&](const char *key, const std::function<Network()> &make) {
+        if (!*wanted || std::strstr((std::string(",") + wanted + ",").c_str(), (std::string(",") + key + ",").c_str()))
+            measure(make(), threads, repeats);
+    };
+    std::printf("%-52s %8s %8s %8s %8s   ns a bond; %s, threads %d\n", "", "bonds", "forces", "veloc.", "posit.",
+                hol_instruction_set(), threads);
+    one("chains", [] { return coils(1000, 100); });
+    one("gel100", [] { return gel(1000, 100); });
+    one("small", [] { return gel(100, 100); });
+    one("smaller", [] { return gel(140, 20); });
+    one("gel30", [] { return gel(3000, 30); });
+    one("gel10", [] { return gel(9000, 10); });
+    one("gel3", [] { return gel(30000, 3); });
+    one("open", [] { return diamond(6, 30, false); });
+    one("diamond", [] { return diamond(6, 30, true); });
+    one("million", [] { return gel(33000, 30); });
+    one("straight", [] { return gel(9000, 10, 0.05); });
+    one("cubic10", [] { return cubic(10); });
+    one("cubic20", [] { return cubic(20); });
+    one("sheet50", [] { return sheet(50, 0.3); });
+    one("flat50", [] { return sheet(50, 0); });
+    one("sheet", [] { return sheet(200, 0.3); });
+    one("flat", [] { return sheet(200, 0); });
+    one("ladders", [] { return ladder(1000, 100); });
+    one("ladder", [] { return ladder(1, 100000); });
+    return 0;
+}

@@ -1,0 +1,150 @@
+/**
+ * Hostile networks against solutions in 448 bits: nearly straight strands, masses over decades, fixed nodes, bonds of
+ * very different lengths, trees, open or with cycles round a skewed box; large enough to be worked on as networks.
+ *
+ *     hostile_networks [first=1] [n=12]
+ *
+ * Every result is right within the oracle's bound or refused; a refused one has a condition that doubles can't bear.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "molecule.h"
+#include "molecule_solution.h"
+#include "random.h"
+
+typedef struct {
+    molecule m;
+    double box[9], side;
+    int periodic;
+    hol_chains *chains;
+    double curl, decades;
+    int fixed, trees, longest;
+} network;
+
+static double pick(random_stream *random, double low, double high)
+{
+    return low + (high - low) * random_uniform(random);
+}
+static void image(const network *s, double *d)
+{
+    for (int c = 0; c < 3 && s->periodic; ++c) d[c] -= s->side * nearbyint(d[c] / s->side);
+}
+static double mass(const network *s, random_stream *random)
+{
+    return pow(10, pick(random, -0.5, 0.5) * s->decades);
+}
+
+static void add_strand(network *s, int64_t from, int64_t to, random_stream *random)
+{
+    double gap[3], at[3], walk[64][3], sum[3] = {0, 0, 0}, reach = 0;
+    for (int c = 0; c < 3; ++c) gap[c] = s->m.r[3 * to + c] - s->m.r[3 * from + c];
+    image(s, gap);
+    for (int c = 0; c < 3; ++c) reach += gap[c] * gap[c];
+    int n = 1 + (int)pick(random, 3, s->longest);
+    while (n < 60 && sqrt(reach) / n > 0.2 * s->side) ++n;
+    const double step = s->curl * sqrt(reach) / n;
+    for (int k = 0; k < n; ++k) {
+        random_direction(random, walk[k]);
+        for (int c = 0; c < 3; ++c) sum[c] += walk[k][c] *= step;
+    }
+    memcpy(at, s->m.r + 3 * from, sizeof at);
+    int64_t last = from;
+    for (int k = 0; k < n; ++k) {
+        for (int c = 0; c < 3; ++c) at[c] += walk[k][c] + (gap[c] - sum[c]) / n;
+        const int64_t next = k + 1 < n ? molecule_add_atom(&s->m, mass(s, random), at) : to;
+        molecule_add_bond(&s->m, last, next);
+        last = next;
+        double u[3];
+        random_direction(random, u);
+        if (k + 1 < n && s->trees && k == 2) molecule_grow(&s->m, next, mass(s, random), 1, u);
+    }
+}
+
+static network make(uint64_t seed)
+{
+    network s = {.m = molecule_empty()};
+    random_stream random = random_seed(seed);
+    for (int i = 0; i < 4; ++i) random_uniform(&random);
+    const int nodes = 34 + (int)pick(&random, 0, 6);
+    s.side = 12;
+    s.periodic = random_uniform(&random) < 0.6;
+    s.curl = random_uniform(&random) < 0.4 ? 1.5 : pow(10, pick(&random, -3, 0));
+    s.decades = random_uniform(&random) < 0.5 ? 0 : pick(&random, 0, 12);
+    s.fixed = random_uniform(&random) < 0.3;
+    s.trees = random_uniform(&random) < 0.3;
+    s.longest = 5 + (int)pick(&random, 0, 3);
+    s.box[0] = s.box[4] = s.box[8] = s.side;
+    int64_t stub[4 * 64];
+    for (int i = 0; i < nodes; ++i) {
+        double r[3];
+        for (int c = 0; c < 3; ++c) r[c] = pick(&random, 0, s.side);
+        molecule_add_atom(&s.m, s.fixed && i % 7 == 3 ? 0 : mass(&s, &random), r);
+        for (int e = 0; e < 4; ++e) stub[4 * i + e] = i;
+    }
+    for (int i = 4 * nodes - 1; i > 0; --i) {
+        const int j = (int)(pick(&random, 0, i + 1));
+        const int64_t kept = stub[i];
+        stub[i] = stub[j], stub[j] = kept;
+    }
+    for (int k = 0; k < 2 * nodes; ++k)
+        if (stub[2 * k] != stub[2 * k + 1]) add_strand(&s, stub[2 * k], stub[2 * k + 1], &random);
+    molecule_finish(&s.m, &random);
+    for (int64_t k = 0; k < s.m.n_bonds; ++k) {
+        double d[3];
+        for (int c = 0; c < 3; ++c) d[c] = s.m.r[3 * s.m.pairs[2 * k + 1] + c] - s.m.r[3 * s.m.pairs[2 * k] + c];
+        image(&s, d);
+        s.m.length[k] = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    }
+    CHECK(hol_chains_create(s.m.n_atoms, s.m.mass, &s.chains));
+    if (s.periodic) CHECK(hol_chains_set_box(s.chains, s.box));
+    CHECK(hol_chains_add_bonds(s.chains, s.m.n_bonds, s.m.pairs, s.m.length));
+    return s;
+}
+
+/* The largest error of multipliers in units of eps times their scale, by the level. */
+static double worst(const double *lambda, const molecule_solution *exact, int64_t n)
+{
+    double most = 0;
+    for (int64_t k = 0; k < n; ++k) {
+        const double e = (double)(fabsl(lambda[k] - exact->lambda[k]) / (exact->lambda_scale[k] * DBL_EPSILON));
+        most = !(e <= most) ? e : most;
+    }
+    return most;
+}
+
+int main(int argc, char **argv)
+{
+    const uint64_t first = argc > 1 ? strtoull(argv[1], NULL, 10) : 1, n = argc > 2 ? strtoull(argv[2], NULL, 10) : 12;
+    int bad = 0;
+    for (uint64_t seed = first; seed < first + n; ++seed) {
+        network s = make(seed);
+        molecule_problem p = molecule_problem_of(&s.m);
+        if (s.periodic) p.box = s.box;
+        double *lambda = calloc((size_t)s.m.n_bonds, sizeof *lambda), error[2] = {-1, -1}, shortest = HUGE_VAL;
+        for (int64_t k = 0; k < s.m.n_bonds; ++k) shortest = fmin(shortest, s.m.length[k]);
+        molecule_solution exact;
+        int status[2];
+        for (int level = 0; level < 2; ++level) {
+            if (level == 0 ? molecule_forces(&p, &exact) : molecule_velocities(&p, &exact)) continue;
+            status[level] = level == 0 ? hol_forces(s.chains, s.m.r, s.m.v, s.m.f, lambda, NULL, NULL, HOL_WRITE, NULL)
+                                       : hol_project_velocities(s.chains, s.m.r, s.m.v, lambda, NULL);
+            if (status[level] == HOL_OK) error[level] = worst(lambda, &exact, s.m.n_bonds);
+            molecule_solution_free(&exact);
+        }
+        /* Images round: a component of a bond by eps of a cell. */
+        const double bound = (double)oracle_bound(s.m.n_bonds) + (s.periodic ? 8 * s.side / shortest : 0);
+        const int wrong = error[0] > bound || error[1] > bound || error[0] != error[0] || error[1] != error[1];
+        bad += wrong;
+        printf("%llu: %lld bonds%s%s%s, curl %.1e, decades %.1f: %.3g %.3g of %.3g%s\n", (unsigned long long)seed,
+               (long long)s.m.n_bonds, s.periodic ? ", periodic" : "", s.fixed ? ", fixed nodes" : "",
+               s.trees ? ", trees" : "", s.curl, s.decades, error[0], error[1], bound, wrong ? "  WRONG" : "");
+        fflush(stdout);
+        free(lambda);
+        hol_chains_destroy(s.chains);
+        molecule_free(&s.m);
+    }
+    return bad > 0;
+}
