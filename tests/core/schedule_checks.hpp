@@ -64,7 +64,9 @@ inline void trees_are_in_post_order(const Schedule &s)
     for (int i = 0; i < s.n_atoms; ++i) {
         const int n = s.child_start[i + 1] - s.child_start[i];
         require(n <= s.max_children, "more children than the most");
-        require(s.pair_start[i + 1] - s.pair_start[i] == (i < s.n_tree ? holonomic::values_of_joint(n) : n * (n - 1) / 2), "places for pairs");
+        require(
+            s.pair_start[i + 1] - s.pair_start[i] == (i < s.n_tree ? holonomic::values_of_joint(n) : n * (n - 1) / 2),
+            "places for pairs");
         for (int c = s.child_start[i]; c < s.child_start[i + 1]; ++c, ++children)
             require(s.parent[s.child[c]] == i, "a child of another atom");
     }

@@ -35,8 +35,8 @@ struct Linear {
         n += bond_values * more_rows(s);
         n += 3 * 3 * static_cast<int64_t>(s.n_atoms);
         if (has_pieces(s))
-            n += faint_values + s.n_pieces * (1 + faint_values + JointMemory<V, 0>::values(s.max_joint)) +
-                 arm_values(s);
+            n +=
+                faint_values + s.n_pieces * (1 + faint_values + JointMemory<V, 0>::values(s.max_joint)) + arm_values(s);
         if (s.type == Schedule::graph) {
             const int64_t part = CoreMatrix<V>::most_parts(s);
             n += s.n_core + columns_ahead + 1 + s.n_entries + reaches(s) + (part > s.max_column ? part : s.max_column) +

@@ -18,8 +18,8 @@ constexpr int32_t slots_of_piece = 16384;  // a megabyte of bonds at work, a sec
 // but one are a multiple of arm_step, so that segments in as many lanes are equally long.
 constexpr int32_t arm_step = 8, shortest_arm = 5 * arm_step + 1, longest_arm = 128 * arm_step + 1;
 
-// An atom of a tree with more children is eliminated by a matrix of three rows (tree/many.hpp). How many values are kept
-// of k children: multipliers of their decomposition; or of that matrix, and with k products for positions.
+// An atom of a tree with more children is eliminated by a matrix of three rows (tree/many.hpp). How many values are
+// kept of k children: multipliers of their decomposition; or of that matrix, and with k products for positions.
 constexpr int32_t most_decomposed = 7;
 static constexpr int32_t values_of_joint(int32_t k) { return k > most_decomposed ? 9 + 3 * k : k * (k - 1) / 2; }
 

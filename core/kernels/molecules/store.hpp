@@ -51,8 +51,7 @@ HOL_INLINE void write_slots(const Molecules<double> &x, const AtomArray &array, 
     if (x.at.layout == rows_in_order && !shared) {
         double *const base = reinterpret_cast<double *>(array.x) + 3 * x.at.first[0];
         for (int32_t slot = end; slot-- > first;) {
-            if (slot >= first + rows_ahead)
-                fetch_row<1>(array, 3 * (x.at.first[0] + x.s.atom_of[slot - rows_ahead]));
+            if (slot >= first + rows_ahead) fetch_row<1>(array, 3 * (x.at.first[0] + x.s.atom_of[slot - rows_ahead]));
             double *const p = base + 3 * static_cast<int64_t>(x.s.atom_of[slot]);
             write_rows(&p, value(slot));
         }

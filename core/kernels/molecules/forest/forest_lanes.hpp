@@ -180,7 +180,8 @@ struct ForestTrees {
     }
     template <class Value>
     HOL_FORCED void write_atoms(const AtomArray &array, unsigned which, const Value &value) const {
-        write_atoms(array, which, [](int32_t) { return 0u; }, value);
+        write_atoms(
+            array, which, [](int32_t) { return 0u; }, value);
     }
 };
 

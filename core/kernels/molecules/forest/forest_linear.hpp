@@ -109,8 +109,7 @@ struct ForestLinear : ForestTrees {
     vec given_value(int32_t place) const {
         vec b = {};
         for (int i = 0; i < W; ++i)
-            if (f.held[place] >> i & 1)
-                b[i] = 0.5 * in.rhs[bond_of(i, place)];
+            if (f.held[place] >> i & 1) b[i] = 0.5 * in.rhs[bond_of(i, place)];
         return b;
     }
 

@@ -1,5 +1,5 @@
-// Newton's method for the positions of W different trees (forest.hpp): a system for iterate.hpp. The arithmetic is that of
-// tree/newton.hpp, so that a tree's digits do not depend on whether it comes with others.
+// Newton's method for the positions of W different trees (forest.hpp): a system for iterate.hpp. The arithmetic is that
+// of tree/newton.hpp, so that a tree's digits do not depend on whether it comes with others.
 #ifndef HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_NEWTON_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_NEWTON_HPP
 
@@ -15,11 +15,11 @@ namespace graph {
 typedef NewtonRow<vec> ForestRow;
 
 struct ForestNewton : ForestTrees {
-    ForestRow *row;      // [n_places + 2] by place
+    ForestRow *row;       // [n_places + 2] by place
     vec3 *new_D, *shift;  // [n_places + 2] of the bond, and of its lower atom; at n_places, of the root
-    vec *w, *lower_w;    // [n_steps], [n_places + 1]
-    vec *lower, *upper;  // [n_pairs]
-    vec *kept;           // factors, while new ones are made for some lanes
+    vec *w, *lower_w;     // [n_steps], [n_places + 1]
+    vec *lower, *upper;   // [n_pairs]
+    vec *kept;            // factors, while new ones are made for some lanes
     Memory<vec> working;
 
     static int64_t joint_values(const Forest &f) {
@@ -49,9 +49,8 @@ struct ForestNewton : ForestTrees {
     template <bool packed>
     __attribute__((noinline)) vec load_bonds(const PositionsCall &call) {
         vec largest = {};
-        const auto look_at = [&](const vec3 &r) HOL_FORCED {
-            largest = max(max(abs(r.x), abs(r.y)), max(abs(r.z), largest));
-        };
+        const auto look_at = [&](const vec3 &r)
+                                 HOL_FORCED { largest = max(max(abs(r.x), abs(r.y)), max(abs(r.z), largest)); };
         for (int32_t s = 0; s < f.n_steps; ++s) {
             const ForestAtom<packed> atom(at, atom_of(s));
             const vec3 ref = atom.read(call.r_ref), r = atom.read(call.r);
@@ -173,8 +172,8 @@ struct ForestNewton : ForestTrees {
     vec left_of(int32_t p) const { return abs(excess(new_D[p], row[p].a2)) * row[p].per_a2; }
 };
 
-// The bonds of an atom in each lane, as NewtonAtom has them: those to its children at the places of a step, and a copy of
-// the one above.
+// The bonds of an atom in each lane, as NewtonAtom has them: those to its children at the places of a step, and a copy
+// of the one above.
 struct ForestNewtonJoint {
     const ForestNewton &x;
     const int32_t step;

@@ -79,9 +79,7 @@ struct ForestJoint {
         const double mass[2] = {x.lane[i].w[atom[0]], x.lane[i].w[atom[1]]},
                      d[3] = {its.d.x[i], its.d.y[i], its.d.z[i]};
         const double A = (mass[0] + mass[1]) * its.q[i];
-        if (x.has(given))
-            return __builtin_fabs(0.5 * x.in.rhs[x.bond_of(i, bond)]) /
-                   A;
+        if (x.has(given)) return __builtin_fabs(0.5 * x.in.rhs[x.bond_of(i, bond)]) / A;
         return terms_of(x.in, d, number, mass) / A;
     }
 };
@@ -144,7 +142,8 @@ inline __attribute__((noinline)) void ForestLinear::down() {
     step(f.n_steps - 1, pair, Constant<int, 1>{}, Constant<bool, true>{});
     for_steps_down([&](int32_t s, int64_t first) HOL_FORCED {
         vec *const pairs = pair + first;
-        choose_few<3>(f.step[s].children, [&](auto known) HOL_FORCED { step(s, pairs, known, Constant<bool, false>{}); });
+        choose_few<3>(f.step[s].children,
+                      [&](auto known) HOL_FORCED { step(s, pairs, known, Constant<bool, false>{}); });
     });
 }
 

@@ -1,11 +1,11 @@
-// An atom with many children. What they and the atom itself offer is one matrix of three rows and columns (theory (53b), (53c)),
-// a sum in which nothing is subtracted, so that k of them cost O(k):
+// An atom with many children. What they and the atom itself offer is one matrix of three rows and columns (theory
+// (53b), (53c)), a sum in which nothing is subtracted, so that k of them cost O(k):
 //
 //     M = 1 + w sum_c d_c d_c^T / E_c,   N = M^-1,   E_e = w d_e^T N d_e,
 //     l_c = w d_c^T N d_e / E_c,   u_c = (y_c - d_c.a) / E_c,   a = w N sum_c d_c y_c / E_c
 //
-// It does where M is well conditioned, and where no child is held by the atom alone: where of each d_c^T (w N / E_c) d_c,
-// which S^-1 subtracts from 1, enough is missing. `slack` is negative where it does not.
+// It does where M is well conditioned, and where no child is held by the atom alone: where of each d_c^T (w N / E_c)
+// d_c, which S^-1 subtracts from 1, enough is missing. `slack` is negative where it does not.
 #ifndef HOLONOMIC_KERNELS_MOLECULES_TREE_MANY_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_TREE_MANY_HPP
 

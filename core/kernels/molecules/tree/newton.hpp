@@ -112,7 +112,8 @@ struct Newton {
             if (k == 0)
                 x.row[slot].E = x.w[slot] * dot(x.new_D[slot], x.row[slot].b);
             else
-                choose_few<3>(k, [&](auto known) HOL_FORCED { factorize_joint<known, false, V>(NewtonAtom<V>(x, slot), k); });
+                choose_few<3>(
+                    k, [&](auto known) HOL_FORCED { factorize_joint<known, false, V>(NewtonAtom<V>(x, slot), k); });
         }
         if (s.n_core_atoms == 0)
             factorize_joint<1, true, V>(NewtonAtom<V>(x, s.n_tree), 1);
@@ -126,8 +127,9 @@ struct Newton {
         for (int32_t slot = 0; slot < s.n_tree; ++slot) {
             const int k = s.child_start[slot + 1] - s.child_start[slot];
             if (k > 0)
-                choose_few<3>(k, [&](auto known)
-                                     HOL_FORCED { substitute_newton_joint<known, false, V>(NewtonAtom<V>(x, slot), k); });
+                choose_few<3>(k, [&](auto known) HOL_FORCED {
+                    substitute_newton_joint<known, false, V>(NewtonAtom<V>(x, slot), k);
+                });
         }
         if (s.n_core_atoms == 0)
             substitute_newton_joint<1, true, V>(NewtonAtom<V>(x, s.n_tree), 1);

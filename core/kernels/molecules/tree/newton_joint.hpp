@@ -163,8 +163,8 @@ HOL_INLINE void factorize_children(const Rows &x, int k, Joint &f) {
     }
 }
 
-// Returns what the children leave of the inverse mass along another bond b of the atom, D as moved. Finds its multipliers
-// for each of them, `up` and `down`.
+// Returns what the children leave of the inverse mass along another bond b of the atom, D as moved. Finds its
+// multipliers for each of them, `up` and `down`.
 template <class V, class Rows, class Joint>
 HOL_INLINE V couple(const Rows &x, int k, const Vector3<V> &D, const Vector3<V> &b, Joint &f, V *z, V *h, V *up,
                     V *down) {
@@ -183,7 +183,8 @@ HOL_INLINE V couple(const Rows &x, int k, const Vector3<V> &D, const Vector3<V> 
 
 // An atom with many children, as in many.hpp:
 //
-//     M = 1 + w sum_c b_c D_c^T / E_c,   N = M^-1,   E_e = w D_e^T N b_e,   t_c = (y_c - D_c.a) / E_c,   a = w N sum_c b_c y_c / E_c
+//     M = 1 + w sum_c b_c D_c^T / E_c,   N = M^-1,   E_e = w D_e^T N b_e,   t_c = (y_c - D_c.a) / E_c,   a = w N sum_c
+//     b_c y_c / E_c
 //
 // Keeps w N and the D_c / E_c: bonds turn before there are new factors.
 template <class V, class Rows>
