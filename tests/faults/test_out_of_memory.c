@@ -186,7 +186,18 @@ static void handles_are_not_made_without_memory(void **state)
     assert_int_equal(blocks_in_use(), in_use);
 }
 
-enum { ADD = 0, ADD_BLOCK, ADD_BONDS, ADD_MOLECULES, ADD_RIGID, SET_LENGTHS, SET_MASSES, SET_ACTIVE, CHANGES };
+enum {
+    ADD = 0,
+    ADD_BLOCK,
+    ADD_BONDS,
+    ADD_MOLECULES,
+    ADD_RIGID,
+    ADD_LINE,
+    SET_LENGTHS,
+    SET_MASSES,
+    SET_ACTIVE,
+    CHANGES
+};
 
 static int change(hol_chains *chains, int which)
 {
@@ -200,6 +211,9 @@ static int change(hol_chains *chains, int which)
     /* a tetrahedron with a tail, and a rod */
     static const int64_t sizes[2] = {4, 2}, held[6] = {20, 21, 22, 23, 30, 31}, tail[4] = {23, 24, 24, 25};
     static const double places[18] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    /* three atoms on a line, which become a body, among others */
+    static const int64_t line[10] = {43, 44, 44, 45, 43, 45, 46, 47, 45, 48};
+    static const double twice[5] = {1, 1, 2, 1, 1};
     double mass[50];
     for (int i = 0; i < 50; ++i) mass[i] = 2 + i % 5;
     switch (which) {
@@ -209,6 +223,8 @@ static int change(hol_chains *chains, int which)
             return hol_chains_add_molecules(chains, 9, 3, 20, 3, triangle, ones);
         case ADD_RIGID:
             return hol_chains_add_rigid(chains, 2, sizes, held, places, 2, tail, ones);
+        case ADD_LINE:
+            return hol_chains_add_bonds(chains, 5, line, twice);
         case SET_LENGTHS:
             return hol_chains_set_lengths(chains, length);
         case SET_MASSES:

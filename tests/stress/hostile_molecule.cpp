@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <map>
+#include <utility>
+#include <vector>
 
 #include "molecule_dice.hpp"
 #include "molecule_solution.h"
@@ -141,6 +144,64 @@ std::string hostile_molecule::words() const
     return all;
 }
 
+/**
+ * Three atoms on a line and four in a plane that are all bonded to each other, to the rounding of their lengths, would
+ * be taken as rigid bodies, and their bonds would not be independent: the longest becomes a little shorter.
+ */
+void keep_apart(hostile_molecule &m)
+{
+    std::map<std::pair<std::int64_t, std::int64_t>, std::size_t> bonds;
+    std::map<std::int64_t, std::vector<std::int64_t>> partners; /* of higher number */
+    for (std::size_t k = 0; k < m.length.size(); ++k) {
+        const auto ends = std::minmax(m.pairs[2 * k], m.pairs[2 * k + 1]);
+        bonds[{ends.first, ends.second}] = k;
+        partners[ends.first].push_back(ends.second);
+    }
+    const auto joined = [&](std::int64_t i, std::int64_t j) { return bonds.count(std::minmax(i, j)) > 0; };
+    const auto height =
+        [&](const std::vector<std::int64_t> &atoms) { /* of the last, over the others' line or plane */
+                                                      long double d[3][3], size = 1;
+                                                      for (std::size_t a = 1; a < atoms.size(); ++a) {
+                                                          long double square = 0;
+                                                          for (std::size_t x = 0; x < 3; ++x) {
+                                                              d[a - 1][x] =
+                                                                  static_cast<long double>(
+                                                                      m.r[3 * static_cast<std::size_t>(atoms[a]) + x]) -
+                                                                  m.r[3 * static_cast<std::size_t>(atoms[0]) + x];
+                                                              square += d[a - 1][x] * d[a - 1][x];
+                                                          }
+                                                          size *= std::sqrt(square);
+                                                      }
+                                                      long double c[3], square = 0, product = 0;
+                                                      for (std::size_t x = 0; x < 3; ++x) {
+                                                          c[x] = d[0][(x + 1) % 3] * d[1][(x + 2) % 3] -
+                                                                 d[0][(x + 2) % 3] * d[1][(x + 1) % 3];
+                                                          square += c[x] * c[x];
+                                                          if (atoms.size() == 4) product += c[x] * d[2][x];
+                                                      }
+                                                      return (atoms.size() == 3 ? std::sqrt(square)
+                                                                                : std::fabs(product)) /
+                                                             size;
+        };
+    const auto shorten = [&](const std::vector<std::int64_t> &atoms) {
+        if (height(atoms) > 1e-6L) return;
+        std::size_t longest = bonds.at(std::minmax(atoms[0], atoms[1]));
+        for (const std::int64_t i : atoms)
+            for (const std::int64_t j : atoms)
+                if (i < j && m.length[bonds.at({i, j})] > m.length[longest]) longest = bonds.at({i, j});
+        m.length[longest] *= 1 - 1e-13;
+    };
+    for (const auto &of : partners)
+        for (std::size_t a = 0; a < of.second.size(); ++a)
+            for (std::size_t b = 0; b < a; ++b) {
+                const std::int64_t j = of.second[a], k = of.second[b];
+                if (!joined(j, k)) continue;
+                shorten({of.first, j, k});
+                for (std::size_t c = 0; c < b; ++c)
+                    if (joined(j, of.second[c]) && joined(k, of.second[c])) shorten({of.first, j, k, of.second[c]});
+            }
+}
+
 bool set_lengths(hostile_molecule &m)
 {
     m.length.assign(m.pairs.size() / 2, 0);
@@ -154,6 +215,7 @@ bool set_lengths(hostile_molecule &m)
         m.length[k] = static_cast<double>(std::sqrt(square));
         if (!(m.length[k] > 0)) return false;
     }
+    keep_apart(m);
     return true;
 }
 
