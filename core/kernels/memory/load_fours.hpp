@@ -1,5 +1,5 @@
-// Bond vectors and right-hand sides of a chain that comes alone, in sets of one lane: four bonds at a time. Each function
-// returns how many bonds it has done; in other sets none.
+// Bond vectors and right-hand sides of a chain that comes alone, in sets of one lane: four bonds at a time. Each
+// function returns how many bonds it has done; in other sets none.
 #ifndef HOLONOMIC_KERNELS_MEMORY_LOAD_FOURS_HPP
 #define HOLONOMIC_KERNELS_MEMORY_LOAD_FOURS_HPP
 
