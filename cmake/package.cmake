@@ -17,7 +17,13 @@ foreach(page recipes integrators molecules rigid metric theory linking fortran f
 endforeach()
 install(FILES docs/reference/tasks.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs/reference COMPONENT development)
 configure_file(docs/reference/holonomic.3.in holonomic.3 @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/holonomic.3 DESTINATION ${CMAKE_INSTALL_MANDIR}/man3 COMPONENT development)
+set(manual ${PROJECT_BINARY_DIR}/holonomic.3)
+find_program(GZIP gzip)
+if(HOLONOMIC_PACKAGE_DEB AND GZIP) # as Debian has its manuals
+    execute_process(COMMAND ${GZIP} -9nc ${manual} OUTPUT_FILE ${manual}.gz)
+    set(manual ${manual}.gz)
+endif()
+install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_MANDIR}/man3 COMPONENT development)
 
 install(EXPORT holonomic-targets NAMESPACE holonomic:: DESTINATION ${cmake_dir} COMPONENT development)
 if(HOLONOMIC_BUILD_FORTRAN)

@@ -30,7 +30,7 @@ Python, holonomic_openmm, and a header for C++.")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 get_target_property(library holonomic::holonomic IMPORTED_LOCATION_RELEASE)
 get_filename_component(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${library} DIRECTORY)
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "libholonomic0 (>= ${holonomic_VERSION})")
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3:any (>= 3.8), libholonomic0 (>= ${holonomic_VERSION})")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libopenmm-plugins, python3-simtk")
 # What Python keeps compiled goes with the package.
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_SOURCE_DIR}/debian/postinst ${CMAKE_CURRENT_SOURCE_DIR}/debian/prerm)
