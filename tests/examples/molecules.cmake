@@ -44,3 +44,13 @@ example_test(gel molecules gel points=1 steps=400 --
     "     2.000" 1 < 4.8
     "largest bond error" 1 < 1e-12
     "largest |d.v|" 1 < 1e-13)
+
+# ----------------------------------------------------------------------------------------------------------- rings
+# Eight rings of six freedoms each, less a bond between each two.
+example_test(rigid_rings molecules rigid_rings 2000 --
+    "8 rings," 1 = 41
+    "degrees of freedom," 1 = 2000
+    "at most" 1 < 1e-5
+    "lengths" 1 < 1e-13
+    "rates" 1 < 1e-12
+    "from end to end" 1 > 10)
