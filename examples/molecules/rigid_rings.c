@@ -1,7 +1,7 @@
 /**
  * A polymer of rigid rings: benzene rings, each one body, joined by bonds from carbon to carbon opposite of it, in
- * motion at constant energy (RATTLE). Rings repel each other; everything else is held. rigid_rings [STEPS] Prints the
- * energy, how far the rings and bonds are off, and the distance from end to end.
+ * motion at constant energy (RATTLE). Rings repel each other; everything else is held. The argument is the number of
+ * steps.
  */
 #include <holonomic.h>
 #include <math.h>
@@ -87,11 +87,14 @@ int main(int argc, char **argv)
     must(hol_violation(chains, r, v, &off));
     double end = 0;
     for (int x = 0; x < 3; ++x) end += pow(r[3 * (ATOMS - CARBONS) + x] - r[3 * 3 + x], 2);
-    printf(
-        "%d rings, %lld degrees of freedom, %d steps: energy %.6f, at most %.1e off; lengths %.1e off, rates %.1e;\n"
-        "from end to end %.2f\n",
-        RINGS, (long long)hol_chains_degrees_of_freedom(chains, 3), n_steps, first, worst, off.length, off.rate,
-        sqrt(end));
+    printf("rings                %d\n", RINGS);
+    printf("degrees of freedom   %lld\n", (long long)hol_chains_degrees_of_freedom(chains, 3));
+    printf("steps                %d\n", n_steps);
+    printf("energy               %.6f\n", first);
+    printf("largest energy error %.1e of it\n", worst);
+    printf("largest length error %.1e\n", off.length);
+    printf("largest |d.v|        %.1e\n", off.rate);
+    printf("end to end           %.2f\n", sqrt(end));
     hol_chains_destroy(chains);
     return !(worst < 1e-3 && off.length < 1e-13 && off.rate < 1e-12);
 }

@@ -44,3 +44,12 @@ example_test(gel molecules gel points=1 steps=400 --
     "     2.000" 1 < 4.8
     "largest bond error" 1 < 1e-12
     "largest |d.v|" 1 < 1e-13)
+
+# ----------------------------------------------------------------------------------------------------------- rings
+# Eight rings of six freedoms each, less a bond between each two.
+example_test(rigid_rings molecules rigid_rings 2000 --
+    "degrees of freedom" 1 = 41
+    "largest energy error" 1 < 1e-5
+    "largest length error" 1 < 1e-13
+    "largest |d.v|" 1 < 1e-12
+    "end to end" 1 > 10)
