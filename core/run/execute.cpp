@@ -291,7 +291,8 @@ static Tally execute_unit(const Chains &chains, const Plan &plan, const Work &wo
 }
 
 Tally execute(const Chains &chains, const Plan &plan, const Work &work) {
-    const bool one_unit = plan.pieces.size() == 1 && plan.pieces[0].shape == linear && plan.longest <= longest_lane;
+    const bool one_unit = plan.pieces.size() == 1 && plan.pieces[0].shape == linear && plan.longest <= longest_lane &&
+                          !chains.keeps_outcomes;
     return one_unit ? execute_unit(chains, plan, work) : Execution(chains, plan, work).run();
 }
 

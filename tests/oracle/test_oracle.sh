@@ -69,7 +69,8 @@ check 1 'lambda .*OUT OF BOUND' "$work/zero"
 
 # The format of molecules of any shape (tests/oracle/molecules/README.md).
 check 0 '^oracle: 23 cases, worst ratio 0\.' "$top/tests/oracle/molecules"
-[ "$(grep -c '^refused.*refused' "$work/out")" -eq 4 ] || complain 'the four degenerate molecules are not refused'
+[ "$(grep -c '^refused.*refused' "$work/out")" -eq 1 ] || complain 'the degenerate molecule is not refused'
+[ "$(grep -c '^refused.*a rigid body' "$work/out")" -eq 3 ] || complain 'three lists of distances are no rigid bodies'
 
 # What is zero by symmetry is judged by the scale beside it, either way.
 cp -r "$top/tests/oracle/molecules" "$work/symmetric"

@@ -81,7 +81,7 @@ void fill_metric(const exact_chain &c, const elimination &z, const sizes &s, con
     std::vector<quad> backward(n);
     for (std::size_t k = n; k-- > 0;)
         backward[k] = k + 1 < n ? z.diagonal[k] - z.beside[k + 1] * z.beside[k + 1] / backward[k + 1] : z.diagonal[k];
-    long_vec h(n + 1, 0), normal(3 * (n + 1), 0), phi(3 * (n + 2), 0), scale(n + 2, 0);
+    long_vec h(n + 1, 0), normal(3 * (n + 1), 0), phi(3 * (n + 2), 0), scale(n + 2, 0), slack(n + 2, 0);
     for (std::size_t k = 0; k < n; ++k) {
         const quad whole = z.pivot[k] + backward[k] - z.diagonal[k];
         if (!(whole > 0)) return;
@@ -96,8 +96,7 @@ void fill_metric(const exact_chain &c, const elimination &z, const sizes &s, con
         for (std::size_t x = 0; x < 3; ++x) normal[3 * k + x] = narrow(area[x]) / s.size[k - 1] / s.size[k];
     }
     const auto weight = [&](std::size_t k) {
-        return std::fabs(h[k]) *
-               (std::hypot(normal[3 * k], normal[3 * k + 1], normal[3 * k + 2]) + rounding_of_products / DBL_EPSILON);
+        return std::fabs(h[k]) * std::hypot(normal[3 * k], normal[3 * k + 1], normal[3 * k + 2]);
     };
     for (std::size_t k = 0; k < n; ++k) {
         long double u[3], v[3];
@@ -110,10 +109,12 @@ void fill_metric(const exact_chain &c, const elimination &z, const sizes &s, con
             phi[3 * (k + 1) + x] = (u[y] * v[q] - u[q] * v[y]) / s.size[k];
         }
         scale[k + 1] = (weight(k) + weight(k + 1)) / s.size[k];
+        slack[k + 1] = rounding_of_products * (std::fabs(h[k]) + std::fabs(h[k + 1])) / s.size[k];
     }
     for (std::size_t i = 0; i <= n; ++i) {
         for (std::size_t x = 0; x < 3; ++x) out.force.push_back(phi[3 * i + x] - phi[3 * i + 3 + x]);
         out.force_scale.push_back(scale[i] + scale[i + 1]);
+        out.force_slack.push_back(slack[i] + slack[i + 1]);
     }
     out.log_det = log_det(z);
     out.regular = true;
@@ -160,6 +161,13 @@ long_vec chain_reference::spread_by_joints(const long_vec &size) const
     sweep(0, 1, [&](std::size_t k) { return ratio_[k]; });
     sweep(n - 1, SIZE_MAX, [&](std::size_t k) { return inverse_[k + 1] * ratio_[k + 1] / inverse_[k]; });
     return out;
+}
+
+long double chain_reference::roundings_between(std::size_t k, std::size_t l) const
+{
+    long double sum = 0;
+    for (std::size_t joint = std::min(k, l) + 1; joint <= std::max(k, l); ++joint) sum += roundings_[joint];
+    return sum;
 }
 
 level_reference chain_reference::level(long_vec lambda, const long_vec &right_side, const long_vec &size) const

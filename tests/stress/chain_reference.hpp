@@ -45,6 +45,9 @@ struct chain_reference {
     /** Elements of |Z^-1| times n_kl, times these sizes. */
     long_vec spread_by_joints(const long_vec &size) const;
 
+    /** n_kl. */
+    long double roundings_between(std::size_t k, std::size_t l) const;
+
     /** Sizes of what projecting velocities (or displacements) of the given sizes pulls each atom with, times w. */
     long_vec pulls_by(const hostile_chain &c, const long_vec &size) const;
 

@@ -76,7 +76,7 @@ void compare_spread(const hostile_chain &c, const chain_reference &x)
         long double sum = 0;
         for (std::int64_t l = 0; l < n; ++l) {
             const long double element = std::fabs(x.metric.entry(k < l ? k : l, k < l ? l : k));
-            sum += static_cast<long double>(k < l ? l - k : k - l) * element / root[at(k)] / root[at(l)] * size[at(l)];
+            sum += x.roundings_between(at(k), at(l)) * element / root[at(k)] / root[at(l)] * size[at(l)];
         }
         compare(far[at(k)], sum, sum);
     }
