@@ -39,7 +39,10 @@ void print(const Call &c, double n) {
     if (c.status == HOL_OK)
         std::printf(" %8.1f", 1e9 * c.time / n);
     else
-        std::printf(" %8s(%.3g s)", c.status == HOL_ERR_DEGENERATE ? "deg" : c.status == HOL_ERR_MEMORY ? "mem" : "err",
+        std::printf(" %8s(%.3g s)",
+                    c.status == HOL_ERR_DEGENERATE ? "deg"
+                    : c.status == HOL_ERR_MEMORY   ? "mem"
+                                                   : "err",
                     c.time);
     std::fflush(stdout);
 }
@@ -49,12 +52,15 @@ void measure(const Network &s, int threads, int repeats) {
     hol_chains *chains = nullptr;
     const double box[9] = {s.side[0], 0, 0, 0, s.side[1], 0, 0, 0, s.side[2]};
     const Call build = best_of(
-        std::getenv("ONLY_FORCES") ? 1 : repeats, false, [&] { hol_chains_destroy(chains); chains = nullptr; },
+        std::getenv("ONLY_FORCES") ? 1 : repeats, false,
+        [&] {
+            hol_chains_destroy(chains);
+            chains = nullptr;
+        },
         [&] {
             int status = hol_chains_create(s.n_atoms(), s.masses.data(), &chains);
             if (status == HOL_OK && s.side[0] > 0) status = hol_chains_set_box(chains, box);
-            if (status == HOL_OK)
-                status = hol_chains_add_bonds(chains, s.n_bonds(), s.pairs.data(), s.lengths.data());
+            if (status == HOL_OK) status = hol_chains_add_bonds(chains, s.n_bonds(), s.pairs.data(), s.lengths.data());
             return status;
         });
     std::printf("%-52s %8.0f", s.name.c_str(), n);
@@ -72,20 +78,27 @@ void measure(const Network &s, int threads, int repeats) {
     for (double &x : f) x = normal(random);
     std::vector<double> raw = v;
     const bool wall = threads > 1;
-    Call c = best_of(repeats, wall, [] {}, [&] {
-        return hol_forces(chains, s.r.data(), raw.data(), f.data(), lambda.data(), nullptr, g.data(), HOL_WRITE, nullptr);
-    });
+    Call c = best_of(
+        repeats, wall, [] {},
+        [&] {
+            return hol_forces(chains, s.r.data(), raw.data(), f.data(), lambda.data(), nullptr, g.data(), HOL_WRITE,
+                              nullptr);
+        });
     print(c, n);
     if (c.status != HOL_OK) std::printf(" %s", hol_error_message());
     if (std::getenv("ONLY_FORCES")) return std::printf("\n"), hol_chains_destroy(chains);
-    c = best_of(repeats, wall, [&] { v = raw; },
-                [&] { return hol_project_velocities(chains, s.r.data(), v.data(), nullptr, nullptr); });
+    c = best_of(
+        repeats, wall, [&] { v = raw; },
+        [&] { return hol_project_velocities(chains, s.r.data(), v.data(), nullptr, nullptr); });
     print(c, n);
     for (std::size_t i = 0; i < v.size(); ++i) out.push_back(s.r[i] + 0.005 * v[i]);
     hol_report report = {};
-    c = best_of(repeats, wall, [&] { drifted = out; }, [&] {
-        return hol_project_positions(chains, s.r.data(), drifted.data(), nullptr, 0.005, nullptr, 0, nullptr, &report);
-    });
+    c = best_of(
+        repeats, wall, [&] { drifted = out; },
+        [&] {
+            return hol_project_positions(chains, s.r.data(), drifted.data(), nullptr, 0.005, nullptr, 0, nullptr,
+                                         &report);
+        });
     print(c, n);
     std::printf(" (%lld)  build %7.1f  bytes %7.1f\n", static_cast<long long>(report.iterations), 1e9 * build.time / n,
                 static_cast<double>(hol_chains_memory(chains)) / n);

@@ -98,8 +98,9 @@ Network gel(std::int64_t strands, std::int64_t bonds, double curl) {
     const int cells = std::max(3, static_cast<int>(side / (1.5 * reach)));
     std::vector<std::vector<std::int64_t>> in_cell(static_cast<std::size_t>(cells * cells * cells));
     const auto cell_of = [&](std::int64_t i, int x) {
-        return std::min(cells - 1, static_cast<int>(all.r[3 * static_cast<std::size_t>(i) + static_cast<std::size_t>(x)] /
-                                                    side * cells));
+        return std::min(
+            cells - 1,
+            static_cast<int>(all.r[3 * static_cast<std::size_t>(i) + static_cast<std::size_t>(x)] / side * cells));
     };
     for (std::int64_t i = 0; i < nodes; ++i)
         in_cell[static_cast<std::size_t>((cell_of(i, 0) * cells + cell_of(i, 1)) * cells + cell_of(i, 2))].push_back(i);
@@ -112,13 +113,15 @@ Network gel(std::int64_t strands, std::int64_t bonds, double curl) {
     for (std::int64_t i = 0; i < nodes; ++i) {
         std::vector<Near> near;
         for (int n = 0; n < 27; ++n) {
-            const int at[3] = {(cell_of(i, 0) + n % 3 + cells - 1) % cells, (cell_of(i, 1) + n / 3 % 3 + cells - 1) % cells,
+            const int at[3] = {(cell_of(i, 0) + n % 3 + cells - 1) % cells,
+                               (cell_of(i, 1) + n / 3 % 3 + cells - 1) % cells,
                                (cell_of(i, 2) + n / 9 + cells - 1) % cells};
             for (const std::int64_t j : in_cell[static_cast<std::size_t>((at[0] * cells + at[1]) * cells + at[2])]) {
                 if (j <= i || free[static_cast<std::size_t>(j)] == 0) continue;
                 Near one = {0, j, {}};
                 for (std::size_t x = 0; x < 3; ++x) {
-                    const double d = all.r[3 * static_cast<std::size_t>(j) + x] - all.r[3 * static_cast<std::size_t>(i) + x];
+                    const double d =
+                        all.r[3 * static_cast<std::size_t>(j) + x] - all.r[3 * static_cast<std::size_t>(i) + x];
                     one.gap[x] = d - side * std::nearbyint(d / side);
                     one.square += one.gap[x] * one.gap[x];
                 }
@@ -198,7 +201,8 @@ Network cubic(int n) {
 
 Network sheet(int n, double height) {
     Network all;
-    all.name = std::string(height > 0 ? "corrugated" : "flat") + " sheet, " + std::to_string(n) + " x " + std::to_string(n);
+    all.name =
+        std::string(height > 0 ? "corrugated" : "flat") + " sheet, " + std::to_string(n) + " x " + std::to_string(n);
     Random random(5);
     for (int i = 0; i < n * n; ++i) {
         const double z = height * (2 * uniform(random) - 1);
