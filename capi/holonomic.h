@@ -13,7 +13,8 @@
  *   atoms together. Neither depends on which atom of a bond comes first.
  * - A molecule is a set of atoms joined by bonds, directly or through each other. Fixed atoms join nothing, so one may
  *   belong to many molecules. Molecules are numbered call after call, those of one call by their lowest atom that can
- *   move, those with rigid bodies behind all others. A chain is a linear molecule; but in names (hol_chains, n_chains, hol_report.chain, length_chain) it means a molecule of any shape.
+ *   move, those with rigid bodies behind all others. A chain is a linear molecule; but in names (hol_chains, n_chains,
+ * hol_report.chain, length_chain) it means a molecule of any shape.
  * - Bonds of a molecule are counted along a linear chain, otherwise by their lower and then by their higher atom:
  *   hol_chains_bonds gives their places in the arrays per bond.
  * - A bond between two fixed atoms is no constraint: it belongs to no molecule, removes no degree of freedom, and its
@@ -826,9 +827,10 @@ HOL_API int hol_residuals_view(const hol_chains *chains, const hol_view *r, cons
 /**
  * Moves positions that lie anywhere onto the constraints: a model built by hand, coordinates of a builder, another
  * force field's lengths. hol_project_positions with r_ref = r does it where bonds are off by a third or less, and with
- * HOL_NEVER above a tenth (hol_chains_set_checks); this does it from bonds several times too long or too short, too. Each step of Newton's method goes along the bonds as they are
- * then, by what w G allows, and only so far that no bond changes by more than a third; near the end steps are whole
- * ones, and the result is right to the rounding of the coordinates.
+ * HOL_NEVER above a tenth (hol_chains_set_checks); this does it from bonds several times too long or too short, too.
+ * Each step of Newton's method goes along the bonds as they are then, by what w G allows, and only so far that no bond
+ * changes by more than a third; near the end steps are whole ones, and the result is right to the rounding of the
+ * coordinates.
  *
  * It is no projection: r ends on the constraints near where it was, not at the point that is nearest. Not for time
  * steps. hol_chains_set_checks does not matter. hol_project_velocities may follow.
