@@ -62,7 +62,7 @@ struct NetNewton {
             typedef decltype(width) V;
             const V error = measure<fresh>(k, get(width, k, from, to));
             if constexpr (Width<V>::lanes == W) {
-                most = max(error, most);
+                most = max(vec(error), most);
                 sum = sum + error;
             } else {
                 most_of_rest = larger(error, most_of_rest);
