@@ -61,12 +61,7 @@ struct NetNewton {
         net.for_bonds(part, of, [&](auto width, int32_t k, const auto &from, const auto &to) HOL_FORCED {
             typedef decltype(width) V;
             const V error = measure<fresh>(k, get(width, k, from, to));
-            if constexpr (Width<V>::lanes == W) {
-                most = max(vec(error), most);
-                sum = sum + error;
-            } else {
-                most_of_rest = larger(error, most_of_rest);
-            }
+            take(error, most, sum, most_of_rest);
         });
         most = most + 0 * sum;
         for (int i = 0; i < W; ++i) most_of_rest = larger(Width<vec>::get(most, i), most_of_rest);
@@ -76,6 +71,13 @@ struct NetNewton {
         return measure_part<true>(part, moves, [&](auto width, int32_t k, const auto &, const auto &) HOL_FORCED {
             return bonds.get<decltype(width)>(k);
         });
+    }
+    HOL_FORCED static void take(const vec &error, vec &most, vec &sum, double &) {
+        most = max(error, most);
+        sum = sum + error;
+    }
+    HOL_FORCED static void take(double error, vec &, vec &, double &most_of_rest) {
+        most_of_rest = larger(error, most_of_rest);
     }
     static double larger(double error, double than) { return error <= than ? than : error; }
     double worst_of_all() const { return largest_in(worst, s.n_shares + 1); }
