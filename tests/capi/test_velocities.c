@@ -221,6 +221,7 @@ static void nothing_depends_on_what_a_call_before_has_left_in_memory(void **stat
         assert_same_bits(log_det, log_det + 1, 1);
         for (int i = 0; i < 2; ++i) free(v[i]), free(r[i]), free(g[i]), free(force[i]), free(lambda[i]);
         assembly_free(&a);
+        chain_free(&one);
     }
     free(mass);
     hol_chains_destroy(spoiler_of_memory);
