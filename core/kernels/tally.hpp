@@ -17,6 +17,20 @@ static inline bool is_worse(const Tally &tally, double error, int64_t molecule) 
     return tally.worst_chain < 0 || error > tally.worst || (error == tally.worst && molecule < tally.worst_chain);
 }
 
+// Whether it is, and then it takes the place.
+static inline bool take_worst(Tally &tally, double error, int64_t molecule) {
+    if (!is_worse(tally, error, molecule)) return false;
+    tally.worst = error;
+    tally.worst_chain = molecule;
+    return true;
+}
+
+// Counts molecules that were moved, and how many solves it took.
+static inline void count_moved(Tally &tally, int n, int64_t solves) {
+    tally.n_corrected += n;
+    if (solves > tally.iterations) tally.iterations = solves;
+}
+
 static inline void add(Tally &total, const Tally &piece) {
     for (int i = 0; i < 6; ++i) total.virial[i] += piece.virial[i];
     if (piece.n_bad > 0 && (total.n_bad == 0 || piece.first_bad < total.first_bad)) total.first_bad = piece.first_bad;
@@ -25,11 +39,8 @@ static inline void add(Tally &total, const Tally &piece) {
     total.log_det_z += piece.log_det_z;
     if (piece.iterations > total.iterations) total.iterations = piece.iterations;
     total.n_corrected += piece.n_corrected;
-    if (piece.worst_chain >= 0 && is_worse(total, piece.worst, piece.worst_chain)) {
-        total.worst = piece.worst;
-        total.worst_chain = piece.worst_chain;
+    if (piece.worst_chain >= 0 && take_worst(total, piece.worst, piece.worst_chain))
         total.worst_bond = piece.worst_bond;
-    }
 }
 
 // Counts a molecule, by its number, as bad.

@@ -91,12 +91,8 @@ struct PositionsWork final : Work {
     void note(std::int64_t number, int iterations, bool corrected, double error, std::int32_t bond,
               Tally &tally) const {
         if (!report) return;
-        tally.iterations = std::max<std::int64_t>(tally.iterations, iterations);
-        tally.n_corrected += corrected;
-        if (!is_worse(tally, error, number)) return;
-        tally.worst = error;
-        tally.worst_chain = number;
-        tally.worst_bond = bond;
+        count_moved(tally, corrected, iterations);
+        if (take_worst(tally, error, number)) tally.worst_bond = bond;
     }
 
     void write_lambda(const System &system, const Place &place, double factor) const {

@@ -116,11 +116,7 @@ static Projected iterate(Projection &p, const PositionsCall &call, bool guess, i
 }
 
 static void note_worst(const Projection &p, Tally &tally) {
-    const int64_t molecule = p.m.lane.molecule;
-    if (!is_worse(tally, p.error, molecule)) return;
-    tally.worst = p.error;
-    tally.worst_chain = molecule;
-    tally.worst_bond = p.worst;
+    if (take_worst(tally, p.error, p.m.lane.molecule)) tally.worst_bond = p.worst;
 }
 
 // Writes new positions and velocities. Returns false, with nothing written, if one would not be finite.

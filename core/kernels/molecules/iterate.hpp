@@ -2,8 +2,8 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_ITERATE_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_ITERATE_HPP
 
-#include "core/kernels/call.hpp"
 #include "core/kernels/molecules/width.hpp"
+#include "core/kernels/tally.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -39,6 +39,27 @@ struct Solved {
     V error;
     int64_t solves;
 };
+
+// Of the lanes in `which`, whose molecules are lane[i], the one with the worst bond, if none before was worse: the
+// tally has taken it; or -1.
+template <class V>
+HOL_INLINE int worst_lane(unsigned which, const V &error, const MoleculeLane *lane, Tally &tally) {
+    int worst = -1;
+    for (int i = 0; i < Width<V>::lanes; ++i)
+        if ((which >> i & 1) && take_worst(tally, Width<V>::get(error, i), lane[i].molecule)) worst = i;
+    return worst;
+}
+
+// The worst bond of a molecule that is solved alone, in the order s.bond_of of System: the one with the smallest
+// number.
+template <class System>
+HOL_NOINLINE void note_worst_of_one(const System &newton, double error, int64_t molecule, Tally &tally) {
+    if (!take_worst(tally, error, molecule)) return;
+    int32_t bond = newton.s.n_bonds;
+    for (int32_t k = 0; k < newton.s.n_bonds; ++k)
+        if (newton.s.bond_of[k] < bond && newton.error_of(k) >= error) bond = newton.s.bond_of[k];
+    tally.worst_bond = bond < newton.s.n_bonds ? bond : 0;
+}
 
 // The factors of an earlier D shrink the error by a constant each time, new ones square it at twice the price: they are
 // worth it where the old ones would take more than four solves in all.

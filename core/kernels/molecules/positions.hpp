@@ -145,15 +145,7 @@ struct PositionsBlock {
 
     // The worst bond of the molecules in `which`: of a molecule the one with the smallest number among those.
     void note_worst(unsigned which, V error) {
-        int worst = -1;
-        for (int i = 0; i < Width<V>::lanes; ++i) {
-            if (!(which >> i & 1)) continue;
-            const double e = Width<V>::get(error, i);
-            if (!is_worse(tally, e, lane[i].molecule)) continue;
-            tally.worst = e;
-            tally.worst_chain = lane[i].molecule;
-            worst = i;
-        }
+        const int worst = worst_lane(which, error, lane, tally);
         if (worst < 0) return;
         int32_t bond = s.n_bonds;
         for (int32_t k = 0; k < s.n_bonds; ++k) {
@@ -180,8 +172,7 @@ struct PositionsBlock {
         if (call.lambda) write_multipliers(good);
         if (call.virial) add_virial(moved);
         if (moved) write_moves(newton, call, at, moved);
-        tally.n_corrected += __builtin_popcount(moved);
-        if (moved && out.solves > tally.iterations) tally.iterations = out.solves;
+        if (moved) count_moved(tally, __builtin_popcount(moved), out.solves);
         return bits(in_use) & ~good;
     }
 };

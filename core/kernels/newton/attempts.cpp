@@ -34,10 +34,7 @@ void note_worst(const Block &block, const Newton &x, const PositionsCall &call, 
     const unsigned chosen = bits(which & block.in_use());
     int worst = -1;
     for (int i = 0; i < block.lanes; ++i) {
-        if (!(chosen >> i & 1) || !is_worse(tally, error[i], block.chain[i])) continue;
-        tally.worst = error[i];
-        tally.worst_chain = block.chain[i];
-        worst = i;
+        if ((chosen >> i & 1) && take_worst(tally, error[i], block.chain[i])) worst = i;
     }
     if (worst < 0) return;
     const vec bond = find_worst(x, block.n, vec{}, block.lengths()).bond;
@@ -95,8 +92,7 @@ static void note_solved(const Block &block, const Newton &x, const PositionsCall
         const vec factor = splat(0.5 / (call.dt * call.dt)) / block.unit;
         store_bonds(block, x.tau, factor, out.converged | out.untouched, call.lambda);
     }
-    tally.n_corrected += __builtin_popcount(bits(out.converged));
-    if (out.solves > tally.iterations) tally.iterations = out.solves;
+    count_moved(tally, __builtin_popcount(bits(out.converged)), out.solves);
 }
 
 Positions::Positions(const Block &b, const Lane *l, const PositionsCall &c, const BondLengths &a, Arena memory,

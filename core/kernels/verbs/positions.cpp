@@ -163,8 +163,7 @@ HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit
             break;
         write_positions<uniform>(arrays, at_a, a.block, x_a, atoms_a);
         write_positions<uniform>(arrays, at_b, b.block, x_b, atoms_b);
-        tally.n_corrected += 2 * W;
-        if (tally.iterations < 1) tally.iterations = 1;
+        count_moved(tally, 2 * W, 1);
     }
     return first;
 }
@@ -197,8 +196,7 @@ HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Uni
             note_worst(reported, copy, call, first_lanes(W), out.error, tally);
         }
         write_positions<uniform>(arrays, place, block, x, atoms);
-        tally.n_corrected += n;
-        if (out.solves > tally.iterations) tally.iterations = out.solves;
+        count_moved(tally, static_cast<int>(n), out.solves);
     }
     return first;
 }

@@ -53,13 +53,7 @@ struct ForestPositions {
     }
     // The worst bond of the trees in `which`: of a tree the one with the smallest number among those.
     void note_worst(unsigned which, const vec &error) const {
-        int worst = -1;
-        for (int i = 0; i < W; ++i) {
-            if (!(which >> i & 1) || !is_worse(tally, error[i], x.lane[i].molecule)) continue;
-            tally.worst = error[i];
-            tally.worst_chain = x.lane[i].molecule;
-            worst = i;
-        }
+        const int worst = worst_lane(which, error, x.lane, tally);
         if (worst < 0) return;
         int64_t bond = INT64_MAX;
         x.for_held(1u << worst, [&](int32_t p, unsigned) {
@@ -85,8 +79,7 @@ struct ForestPositions {
         if (call.virial) add_virial(moved);
         if (moved) write_moves(call.r, 1, moved);
         if (moved && call.v.x) write_moves(call.v, 1 / call.dt, moved);
-        tally.n_corrected += __builtin_popcount(moved);
-        if (moved && out.solves > tally.iterations) tally.iterations = out.solves;
+        if (moved) count_moved(tally, __builtin_popcount(moved), out.solves);
         return good;
     }
 };

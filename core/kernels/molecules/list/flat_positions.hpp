@@ -138,17 +138,6 @@ struct FlatPositions {
         virial.count(1, 1 / (call.dt * call.dt), tally);
     }
 
-    // The worst bond: the one with the smallest number among those.
-    void note_worst(double error) {
-        if (!is_worse(tally, error, lane.molecule)) return;
-        tally.worst = error;
-        tally.worst_chain = lane.molecule;
-        int32_t bond = newton.s.n_bonds;
-        for (int32_t k = 0; k < newton.s.n_bonds; ++k)
-            if (newton.s.bond_of[k] < bond && newton.error_of(k) >= error) bond = newton.s.bond_of[k];
-        tally.worst_bond = bond < newton.s.n_bonds ? bond : 0;
-    }
-
     // Whether it is done; if not, nothing has been written.
     bool solve() {
         load();
@@ -156,14 +145,13 @@ struct FlatPositions {
         const Solved<double> out = iterate<double, false, true>(newton, limits, call, Flag{true});
         const bool moved = out.converged.set && !coarse_moves();
         if (!moved && !out.untouched.set) return false;
-        if (call.report) note_worst(out.error);
+        if (call.report) note_worst_of_one(newton, out.error, lane.molecule, tally);
         if (call.lambda) write_multipliers();
         if (!moved) return true;
         newton.displace();
         if (call.virial) add_virial();
         write_atoms();
-        ++tally.n_corrected;
-        if (out.solves > tally.iterations) tally.iterations = out.solves;
+        count_moved(tally, 1, out.solves);
         return true;
     }
 };

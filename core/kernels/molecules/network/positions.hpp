@@ -92,17 +92,6 @@ struct NetPositions {
             }
         });
     }
-    // The worst bond: the one with the smallest number among those.
-    void note_worst(double error) {
-        const MoleculeLane &lane = newton.net.lane;
-        if (!is_worse(tally, error, lane.molecule)) return;
-        tally.worst = error;
-        tally.worst_chain = lane.molecule;
-        int32_t bond = newton.s.n_bonds;
-        for (int32_t k = 0; k < newton.s.n_bonds; ++k)
-            if (newton.s.bond_of[k] < bond && newton.error_of(k) >= error) bond = newton.s.bond_of[k];
-        tally.worst_bond = bond < newton.s.n_bonds ? bond : 0;
-    }
     void write_results(bool moved) {
         const NetworkPlan &s = newton.s;
         const double per_dt2 = 1 / (call.dt * call.dt);
@@ -128,10 +117,9 @@ struct NetPositions {
         if (out.converged.set) newton.displace();
         const bool moved = out.converged.set && !coarse_moves() && !newton.failed;
         if (!moved && !out.untouched.set) return false;
-        if (call.report) note_worst(out.error);
+        if (call.report) note_worst_of_one(newton, out.error, newton.net.lane.molecule, tally);
         write_results(moved);
-        tally.n_corrected += moved;
-        if (moved && out.solves > tally.iterations) tally.iterations = out.solves;
+        if (moved) count_moved(tally, 1, out.solves);
         return true;
     }
 };

@@ -73,9 +73,7 @@ HOL_NOINLINE void note_worst_bond(const V *size, const Lanes &lanes, V error, un
     for (int i = 0; i < Width<V>::lanes; ++i) {
         if (!(which >> i & 1)) continue;
         const double e = Width<V>::get(error, i);
-        if (!is_worse(tally, e, lanes.molecule(i))) continue;
-        tally.worst = e;
-        tally.worst_chain = lanes.molecule(i);
+        if (!take_worst(tally, e, lanes.molecule(i))) continue;
         tally.worst_bond = 0;
         for (int k = N - 1; k >= 0; --k)
             if (Width<V>::get(size[k], i) >= e) tally.worst_bond = k;

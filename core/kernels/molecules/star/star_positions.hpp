@@ -89,8 +89,7 @@ struct StarPositions {
         if (!moved) return good;
         if (call.virial) add_virial(b, tau, moved);
         atoms.move(call, shift, moved);
-        tally.n_corrected += __builtin_popcount(moved);
-        if (solves > tally.iterations) tally.iterations = solves;
+        count_moved(tally, __builtin_popcount(moved), solves);
         return good;
     }
 

@@ -67,8 +67,7 @@ struct TrianglePositions {
         HOL_UNROLL
         for (int i = 0; i < 3; ++i) shift[i] = x.shift[i];
         move_all<where, 3>(call, at, shift, moved);
-        tally.n_corrected += __builtin_popcount(moved);
-        if (solves > tally.iterations) tally.iterations = solves;
+        count_moved(tally, __builtin_popcount(moved), solves);
     }
 
     // Any lanes, from a guess if there is one: as other molecules are done. Returns those that are.
