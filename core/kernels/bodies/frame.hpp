@@ -9,6 +9,7 @@
 #ifndef HOLONOMIC_KERNELS_BODIES_FRAME_HPP
 #define HOLONOMIC_KERNELS_BODIES_FRAME_HPP
 
+#include "core/kernels/arithmetic/exact.hpp"
 #include "core/kernels/arithmetic/image.hpp"
 #include "core/kernels/atom.hpp"
 #include "core/kernels/bodies/kind.hpp"
@@ -16,10 +17,9 @@
 
 namespace holonomic::HOL_ISA {
 
-constexpr double epsilon_of_doubles = 2.220446049250313e-16;
-
-// A vector per atom, from the caller's memory to lanes [n_atoms][3].
-HOL_NOINLINE void read_bodies(const AtomArray &array, const BodyUnit &unit, vec *to) {
+// A vector per atom, from the caller's memory to lanes.
+HOL_NOINLINE void read_bodies(const AtomArray &array, const BodyUnit &unit, vec3 *x) {
+    vec *const to = &x->x;
     const long n = 3L * unit.kind->n_atoms;
     if (array.packed && unit.consecutive && n >= W) {
         const double *from[W];
@@ -38,13 +38,14 @@ HOL_NOINLINE void read_bodies(const AtomArray &array, const BodyUnit &unit, vec 
     }
     for (int l = 0; l < W; ++l)
         for (long a = 0; a < unit.kind->n_atoms; ++a) {
-            double x[3];
-            read_atom(array, unit.atoms[l][a], x);
-            for (int c = 0; c < 3; ++c) to[3 * a + c][l] = x[c];
+            double one[3];
+            read_atom(array, unit.atoms[l][a], one);
+            for (int c = 0; c < 3; ++c) to[3 * a + c][l] = one[c];
         }
 }
 
-HOL_NOINLINE void write_bodies(const AtomArray &array, const BodyUnit &unit, vec *from, unsigned lanes) {
+HOL_NOINLINE void write_bodies(const AtomArray &array, const BodyUnit &unit, const vec3 *x, unsigned lanes) {
+    const vec *const from = &x->x;
     const long n = 3L * unit.kind->n_atoms;
     if (array.packed && unit.consecutive && n >= W && lanes == all_lanes) {
         double *to[W];
@@ -63,115 +64,98 @@ HOL_NOINLINE void write_bodies(const AtomArray &array, const BodyUnit &unit, vec
     }
     for (int l = 0; l < W; ++l)
         for (long a = 0; a < unit.kind->n_atoms && (lanes >> l & 1); ++a) {
-            const double x[3] = {from[3 * a][l], from[3 * a + 1][l], from[3 * a + 2][l]};
-            write_atom(array, unit.atoms[l][a], x);
+            const double one[3] = {x[a].x[l], x[a].y[l], x[a].z[l]};
+            write_atom(array, unit.atoms[l][a], one);
         }
 }
 
 // Coordinates from the first atom's, images taken.
-HOL_NOINLINE void unfold(const BodyKind &kind, const Box &box, const vec *raw, vec *x) {
+HOL_NOINLINE void unfold(const BodyKind &kind, const Box &box, const vec3 *raw, vec3 *x) {
     if (box.shape == Box::none) {
-        const vec first[3] = {raw[0], raw[1], raw[2]};
-        for (long a = 0; a < kind.n_atoms; ++a) {
-            HOL_UNROLL_FEW
-            for (int c = 0; c < 3; ++c) x[3 * a + c] = raw[3 * a + c] - first[c];
-        }
+        const vec3 first = raw[0];
+        for (long a = 0; a < kind.n_atoms; ++a) x[a] = raw[a] - first;
         return;
     }
-    HOL_UNROLL_FEW
-    for (int c = 0; c < 3; ++c) x[c] = raw[c] - raw[c];
+    x[0] = raw[0] - raw[0];
     for (long k = 0; k + 1 < kind.n_atoms; ++k) {
-        const long to = 3L * kind.steps[2 * k], from = 3L * kind.steps[2 * k + 1];
-        Vector3<vec> d = {raw[to] - raw[from], raw[to + 1] - raw[from + 1], raw[to + 2] - raw[from + 2]}, unused = {};
+        const long to = kind.steps[2 * k], from = kind.steps[2 * k + 1];
+        vec3 d = raw[to] - raw[from], unused = {};
         if (box.shape == Box::triclinic)
             d = triclinic_image(box, d);
         else
             wrap<false>(box, d, unused);
-        x[to] = x[from] + d.x;
-        x[to + 1] = x[from + 1] + d.y;
-        x[to + 2] = x[from + 2] + d.z;
+        x[to] = x[from] + d;
     }
 }
 
 // A vector for the centre and R for the axes: of positions, velocities or forces.
 template <int R>
 struct Frame {
-    vec of[1 + R][3];
+    vec3 of[1 + R];
 
-    HOL_FORCED vec *operator[](int k) { return of[k]; }
-    HOL_FORCED const vec *operator[](int k) const { return of[k]; }
+    HOL_FORCED vec3 &operator[](int k) { return of[k]; }
+    HOL_FORCED const vec3 &operator[](int k) const { return of[k]; }
 
     // Adds weights [1 + R] of an atom times its vector.
     template <int first = 0>
-    HOL_FORCED void add(const double *weights, const vec *x) {
+    HOL_FORCED void add(const double *weights, const vec3 &x) {
         HOL_UNROLL_FEW
-        for (int k = first; k <= R; ++k) {
-            HOL_UNROLL_FEW
-            for (int c = 0; c < 3; ++c) of[k][c] = mul_add(x[c], splat(weights[k]), of[k][c]);
-        }
+        for (int k = first; k <= R; ++k) of[k] = add_times(of[k], splat(weights[k]), x);
     }
-    // The vectors at an atom that has these weights, component by component.
-    HOL_FORCED vec at(const double *weights, int c) const {
-        vec sum = of[0][c];
+    // The vector at an atom that has these weights.
+    HOL_FORCED vec3 at(const double *weights) const {
+        vec3 sum = of[0];
         HOL_UNROLL_FEW
-        for (int p = 1; p <= R; ++p) sum = mul_add(of[p][c], splat(weights[p]), sum);
+        for (int p = 1; p <= R; ++p) sum = add_times(sum, splat(weights[p]), of[p]);
         return sum;
     }
     // The same for a frame of what changes: a rounding of the weights, the same in every step, would turn the body.
-    HOL_FORCED vec at(const double *weights, const double *low, int c) const {
-        vec sum = of[0][c];
+    HOL_FORCED vec3 at(const double *weights, const double *low) const {
+        vec3 sum = of[0];
         HOL_UNROLL_FEW
-        for (int p = 1; p <= R; ++p) sum = mul_add(of[p][c], splat(weights[p]), mul_add(of[p][c], splat(low[p]), sum));
+        for (int p = 1; p <= R; ++p) sum = add_times(add_times(sum, splat(low[p]), of[p]), splat(weights[p]), of[p]);
         return sum;
     }
     HOL_FORCED mask is_finite() const {
         vec sum = {};
         HOL_UNROLL_FEW
-        for (int k = 0; k <= R; ++k) {
-            HOL_UNROLL_FEW
-            for (int c = 0; c < 3; ++c) sum = sum + abs(of[k][c]);
-        }
+        for (int k = 0; k <= R; ++k) sum = sum + abs(of[k].x) + abs(of[k].y) + abs(of[k].z);
         return finite(sum);
     }
 };
 
-HOL_INLINE vec dot(const vec *a, const vec *b) { return mul_add(a[2], b[2], mul_add(a[1], b[1], a[0] * b[0])); }
-
 template <int R>
-HOL_INLINE Frame<R> frame_of(const BodyKind &kind, const vec *x) {
+HOL_INLINE Frame<R> frame_of(const BodyKind &kind, const vec3 *x) {
     Frame<R> sum{};
     const double *share = kind.share;
-    for (long a = 0; a < kind.n_atoms; ++a, share += 1 + R) sum.add(share, x + 3 * a);
+    for (long a = 0; a < kind.n_atoms; ++a, share += 1 + R) sum.add(share, x[a]);
     return sum;
 }
 
 // The axes alone, of coordinates that stand in space; in lanes that are not finite they aren't either.
 template <int R>
-HOL_INLINE Frame<R> axes_of(const BodyKind &kind, const Box &box, vec *raw, vec *x) {
+HOL_INLINE Frame<R> axes_of(const BodyKind &kind, const Box &box, const vec3 *raw, vec3 *x) {
     Frame<R> sum{};
     if (box.shape != Box::none) {
         unfold(kind, box, raw, x);
         raw = x;
     }
     const double *share = kind.share;
-    const vec first[3] = {raw[0], raw[1], raw[2]};
-    for (long a = 0; a < kind.n_atoms; ++a, share += 1 + R) {
-        const vec at[3] = {raw[3 * a] - first[0], raw[3 * a + 1] - first[1], raw[3 * a + 2] - first[2]};
-        sum.template add<1>(share, at);
-    }
+    const vec3 first = raw[0];
+    for (long a = 0; a < kind.n_atoms; ++a, share += 1 + R) sum.template add<1>(share, raw[a] - first);
     return sum;
 }
 
 // Velocities of the atoms that have mass; what sites have is not looked at. low: with what rounding left off the
 // shares.
 template <int R, bool low>
-HOL_INLINE Frame<R> rates_of(const BodyKind &kind, const vec *v) {
+HOL_INLINE Frame<R> rates_of(const BodyKind &kind, const vec3 *v) {
     Frame<R> sum{};
     const double *share = kind.share, *rest = kind.share_low;
     for (long a = 0; a < kind.n_atoms; ++a, share += 1 + R, rest += 1 + R) {
         if (kind.masses[a] == 0) continue;
-        if (low) sum.add(rest, v + 3 * a);
-        sum.add(share, v + 3 * a);
+        if (low) sum.add(rest, v[a]);
+        sum.add(share, v[a]);
     }
     return sum;
 }
@@ -268,7 +252,7 @@ HOL_INLINE Symmetric<R> solve(const BodyKind &kind, const Symmetric<R> &s, const
     for (int pass = 0; pass < 24 && any(busy); ++pass) {
         correct(kind, s.of, b, busy, lambda);
         left = left * rate;
-        busy = busy & ~less(left, splat(0.01 * epsilon_of_doubles));
+        busy = busy & ~less(left, splat(0.01 * epsilon));
     }
     good = good & ~busy;
     return lambda;
@@ -280,10 +264,7 @@ HOL_INLINE void take_away(Frame<R> &u, const Frame<R> &v, const Symmetric<R> &la
     HOL_UNROLL_FEW
     for (int p = 0; p < R; ++p) {
         HOL_UNROLL_FEW
-        for (int q = 0; q < R; ++q) {
-            HOL_UNROLL_FEW
-            for (int c = 0; c < 3; ++c) u[1 + p][c] = mul_add(-lambda.of[p][q], v[1 + q][c], u[1 + p][c]);
-        }
+        for (int q = 0; q < R; ++q) u[1 + p] = add_times(u[1 + p], -lambda.of[p][q], v[1 + q]);
     }
 }
 
@@ -296,7 +277,7 @@ HOL_NOINLINE void write_virial(Frame<R> u, Symmetric<R> lambda, double factor, B
     for (int a = 0; a < 3; ++a)
         for (int b = a; b < 3; ++b, ++i) {
             vec sum = {};
-            for (int p = 1; p <= R; ++p) sum = mul_add(u[p][a], t[p][b], sum);
+            for (int p = 1; p <= R; ++p) sum = mul_add((&u[p].x)[a], (&t[p].x)[b], sum);
             for (int l = 0; l < W; ++l) results[l].virial[i] = factor * sum[l];
         }
 }

@@ -12,22 +12,19 @@ namespace {
 unsigned used_lanes(const BodyUnit &unit, mask good) { return bits(good & first_lanes(unit.count)); }
 
 template <int R>
-unsigned forces_of(const ForcesCall &call, const BodyUnit &unit, vec *scratch, BodyResult *results) {
+unsigned forces_of(const ForcesCall &call, const BodyUnit &unit, vec3 *scratch, BodyResult *results) {
     const BodyKind &kind = *unit.kind;
     const long n = kind.n_atoms;
-    vec *const x = scratch, *const y = scratch + 3 * n;
+    vec3 *const x = scratch, *const y = scratch + n;
     read_bodies(call.r, unit, y);
     const Frame<R> at = axes_of<R>(kind, call.box, y, x);
     Frame<R> z{};
     if (call.f.x) {
         read_bodies(call.f, unit, y);
         const double *place = kind.place;
-        for (long a = 0; a < n; ++a, place += 1 + R) z.add(place, y + 3 * a);
+        for (long a = 0; a < n; ++a, place += 1 + R) z.add(place, y[a]);
         HOL_UNROLL_FEW
-        for (int k = 0; k <= R; ++k) {
-            HOL_UNROLL_FEW
-            for (int c = 0; c < 3; ++c) z[k][c] = kind.inverse_mass * z[k][c];
-        }
+        for (int k = 0; k <= R; ++k) z[k] = splat(kind.inverse_mass) * z[k];
     }
     const Symmetric<R> s = products(at);
     Symmetric<R> b = both_products(at, z);
@@ -49,22 +46,20 @@ unsigned forces_of(const ForcesCall &call, const BodyUnit &unit, vec *scratch, B
     if (call.add) read_bodies(call.g, unit, x);
     const double *place = kind.place;
     for (long a = 0; a < n; ++a, place += 1 + R) {
-        HOL_UNROLL_FEW
-        for (int c = 0; c < 3; ++c) {
-            const vec f = call.f.x ? y[3 * a + c] : vec{};
-            const vec g = mul_sub(splat(kind.masses[a]), z.at(place, c), f);
-            x[3 * a + c] = call.add ? x[3 * a + c] + g : g;
-        }
+        const vec m = splat(kind.masses[a]);
+        const vec3 f = call.f.x ? y[a] : vec3{}, u = z.at(place);
+        const vec3 g = {mul_sub(m, u.x, f.x), mul_sub(m, u.y, f.y), mul_sub(m, u.z, f.z)};
+        x[a] = call.add ? x[a] + g : g;
     }
     write_bodies(call.g, unit, x, lanes);
     return lanes;
 }
 
 template <int R>
-unsigned velocities_of(const VelocitiesCall &call, const BodyUnit &unit, vec *scratch, BodyResult *results) {
+unsigned velocities_of(const VelocitiesCall &call, const BodyUnit &unit, vec3 *scratch, BodyResult *results) {
     const BodyKind &kind = *unit.kind;
     const long n = kind.n_atoms;
-    vec *const x = scratch, *const v = scratch + 3 * n;
+    vec3 *const x = scratch, *const v = scratch + n;
     read_bodies(call.r, unit, v);
     const Frame<R> at = axes_of<R>(kind, call.box, v, x);
     read_bodies(call.v, unit, v);
@@ -80,10 +75,7 @@ unsigned velocities_of(const VelocitiesCall &call, const BodyUnit &unit, vec *sc
     const unsigned lanes = used_lanes(unit, good);
     if (lanes == 0) return lanes;
     const double *place = kind.place, *low = kind.place_low;
-    for (long a = 0; a < n; ++a, place += 1 + R, low += 1 + R) {
-        HOL_UNROLL_FEW
-        for (int c = 0; c < 3; ++c) v[3 * a + c] = rate.at(place, low, c);
-    }
+    for (long a = 0; a < n; ++a, place += 1 + R, low += 1 + R) v[a] = rate.at(place, low);
     write_bodies(call.v, unit, v, lanes);
     return lanes;
 }
@@ -115,9 +107,9 @@ struct Restored {
                 sound = sound & less(splat(0.3 * kind.square[p]), x[p][p]);
             }
             good = good & (sound | ~busy);
-            const vec enough = splat(3 * epsilon_of_doubles);
-            busy = busy & sound & ~less_equal(now, enough) &
-                   ~(less(now, 32 * epsilon_of_doubles - vec{}) & less(0.5 * before, now));
+            const vec enough = splat(3 * epsilon);
+            busy =
+                busy & sound & ~less_equal(now, enough) & ~(less(now, 32 * epsilon - vec{}) & less(0.5 * before, now));
             if (!any(busy)) break;
             Symmetric<R> step = first_solution(kind, e);
             correct(kind, x, e, busy, step);
@@ -133,7 +125,7 @@ struct Restored {
             take_away(u, from, step);
             const unsigned moving = bits(busy);
             for (int l = 0; l < W; ++l) iterations[l] += static_cast<int>(moving >> l & 1);
-            busy = busy & ~less(16 * now * now, epsilon_of_doubles * before);
+            busy = busy & ~less(16 * now * now, epsilon * before);
             before = now;
         }
         good = good & ~busy;
@@ -142,20 +134,20 @@ struct Restored {
 
 // Velocities of sites are those of the body at their places.
 template <int R>
-HOL_NOINLINE void carry_sites(const BodyKind &kind, vec *v) {
+HOL_NOINLINE void carry_sites(const BodyKind &kind, vec3 *v) {
     const Frame<R> rate = rates_of<R, false>(kind, v);
     const double *place = kind.place;
     for (long a = 0; a < kind.n_atoms; ++a, place += 1 + R)
-        for (int c = 0; c < 3 && kind.masses[a] == 0; ++c) v[3 * a + c] = rate.at(place, c);
+        if (kind.masses[a] == 0) v[a] = rate.at(place);
 }
 
 // The trial less the reference, t, has a frame of its own; what is off the frame goes, and the rest is brought back. So
 // the rounding of all moves is relative to t.
 template <int R>
-unsigned positions_of(const PositionsCall &call, const BodyUnit &unit, vec *scratch, BodyResult *results) {
+unsigned positions_of(const PositionsCall &call, const BodyUnit &unit, vec3 *scratch, BodyResult *results) {
     const BodyKind &kind = *unit.kind;
     const long n = kind.n_atoms;
-    vec *const raw = scratch, *const t = scratch + 3 * n, *const v = scratch + 6 * n;
+    vec3 *const raw = scratch, *const t = scratch + n, *const v = scratch + 2 * n;
     read_bodies(call.r_ref, unit, raw);
     unfold(kind, call.box_ref, raw, t);
     const Frame<R> from = frame_of<R>(kind, t);
@@ -164,28 +156,21 @@ unsigned positions_of(const PositionsCall &call, const BodyUnit &unit, vec *scra
     Frame<R> change{}, trial;
     const double *place = kind.place, *share = kind.share, *low = kind.share_low;
     for (long a = 0; a < n; ++a, place += 1 + R, share += 1 + R, low += 1 + R) {
-        HOL_UNROLL_FEW
-        for (int c = 0; c < 3; ++c) t[3 * a + c] = t[3 * a + c] - from.at(place, c);
-        change.add(low, t + 3 * a);
-        change.add(share, t + 3 * a);
+        t[a] = t[a] - from.at(place);
+        change.add(low, t[a]);
+        change.add(share, t[a]);
     }
     HOL_UNROLL_FEW
-    for (int k = 0; k <= R; ++k) {
-        HOL_UNROLL_FEW
-        for (int c = 0; c < 3; ++c) trial[k][c] = from[k][c] + change[k][c];
-    }
+    for (int k = 0; k <= R; ++k) trial[k] = from[k] + change[k];
     Restored<R> restored(kind, from, trial, call.max_iterations < 40 ? call.max_iterations : 40);
     take_away(change, from, restored.total);
     vec largest = {};
     place = kind.place, low = kind.place_low;
     for (long a = 0; a < n; ++a, place += 1 + R, low += 1 + R) {
-        HOL_UNROLL_FEW
-        for (int c = 0; c < 3; ++c) {
-            const vec moved = change.at(place, low, c) - t[3 * a + c];
-            largest = max(largest, abs(moved));
-            t[3 * a + c] = moved;
-            raw[3 * a + c] = raw[3 * a + c] + moved;
-        }
+        const vec3 moved = change.at(place, low) - t[a];
+        largest = max(max(max(largest, abs(moved.x)), abs(moved.y)), abs(moved.z));
+        t[a] = moved;
+        raw[a] = raw[a] + moved;
     }
     // Crude or rigid already: the general solver decides.
     const mask good = restored.good & less(largest, splat(0.5 * kind.extent)) &
@@ -204,7 +189,7 @@ unsigned positions_of(const PositionsCall &call, const BodyUnit &unit, vec *scra
     if (!call.v.x) return lanes;
     read_bodies(call.v, unit, v);
     const double per_dt = 1 / call.dt;
-    for (long i = 0; i < 3 * n; ++i) v[i] = mul_add(t[i], splat(per_dt), v[i]);
+    for (long a = 0; a < n; ++a) v[a] = add_times(v[a], splat(per_dt), t[a]);
     if (kind.has_sites) carry_sites<R>(kind, v);
     write_bodies(call.v, unit, v, lanes);
     return lanes;
@@ -216,19 +201,19 @@ int64_t bodies_scratch_bytes(int64_t n_atoms) { return 9 * n_atoms * static_cast
 
 unsigned bodies_forces(const ForcesCall &call, const BodyUnit &unit, double *scratch, BodyResult *results) {
     return choose_number<1, 3>(unit.kind->rank, [&](auto rank) {
-        return forces_of<rank>(call, unit, reinterpret_cast<vec *>(scratch), results);
+        return forces_of<rank>(call, unit, reinterpret_cast<vec3 *>(scratch), results);
     });
 }
 
 unsigned bodies_velocities(const VelocitiesCall &call, const BodyUnit &unit, double *scratch, BodyResult *results) {
     return choose_number<1, 3>(unit.kind->rank, [&](auto rank) {
-        return velocities_of<rank>(call, unit, reinterpret_cast<vec *>(scratch), results);
+        return velocities_of<rank>(call, unit, reinterpret_cast<vec3 *>(scratch), results);
     });
 }
 
 unsigned bodies_positions(const PositionsCall &call, const BodyUnit &unit, double *scratch, BodyResult *results) {
     return choose_number<1, 3>(unit.kind->rank, [&](auto rank) {
-        return positions_of<rank>(call, unit, reinterpret_cast<vec *>(scratch), results);
+        return positions_of<rank>(call, unit, reinterpret_cast<vec3 *>(scratch), results);
     });
 }
 
