@@ -36,8 +36,7 @@ HOL_NOINLINE void substitute_and_store(const Block &block, const System &s, cons
         backward(0, block.n, s.t, s.L);
     }
     if (value_out) store_bonds(block, s.t, factor, ~none(), value_out);
-    return;
-#endif
+#else
     const long full = block.n_min / W * W;
     vec t = {};
     vec3 after = {};  // t d of the bond behind
@@ -72,6 +71,7 @@ HOL_NOINLINE void substitute_and_store(const Block &block, const System &s, cons
         if (value_out) store_values<false>(block, k0, bond_value, all_lanes, value_out);
     }
     if (out.lane[0]) store_first(after, all_lanes, sink);
+#endif
 }
 
 // Lists of atoms in packed arrays. True if the block is done; on false nothing was written.

@@ -26,12 +26,13 @@ static mask forward_carefully(const Block &block, const Reader &in, const Projec
 // Makes the second substitution and writes the velocities of the lanes in `which` to `out`.
 template <bool uniform>
 HOL_NOINLINE void correct_and_store(const Block &block, const Projection &x, mask which, const Packed &out) {
-    Pull<uniform> pull{block, x, x.left};
     const Packed to = out;  // by value: its pointers stay in registers
     const AtomSink<write_> sink = {to};
 #if HOL_FOURS
-    return move_velocities<uniform>(block, x, x.left, [&](long e, auto value) HOL_FORCED { sink.put(0, e, value); });
-#endif
+    static_cast<void>(which);
+    move_velocities<uniform>(block, x, x.left, [&](long e, auto value) HOL_FORCED { sink.put(0, e, value); });
+#else
+    Pull<uniform> pull{block, x, x.left};
     const unsigned chosen = bits(which);
     const long full = block.n / W * W, fast = chosen == all_lanes ? block.n_min : 0;
     if (full < block.n) {
@@ -54,6 +55,7 @@ HOL_NOINLINE void correct_and_store(const Block &block, const Projection &x, mas
             store_ragged(block, k0 + 1, value, chosen, sink);
     }
     store_first(pull.finish(), chosen, sink);
+#endif
 }
 
 template <bool uniform>
