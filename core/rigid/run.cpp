@@ -60,25 +60,18 @@ public:
 private:
     Place place(std::int64_t m) const { return {bodies_.atoms(m), bodies_.bonds(m), chains_.n_chains() + m}; }
 
+    OutcomeOf *outcome_of(std::int64_t m) const { return outcomes_ ? outcomes_ + chains_.n_chains() + m : nullptr; }
+
     void molecule(std::int64_t m) {
         const System system(bodies_.shape(m), bodies_.kinds(), memory_);
-        const Outcome outcome = counted(m, [&](Tally &tally) { return work_.molecule(system, place(m), tally); });
-        if (outcome == Outcome::good) return;
-        if (found_.tally.n_bad == 0) found_.first_outcome = outcome;
-        note_bad(chains_.n_chains() + m, found_.tally);
-    }
-
-    // Does a molecule, and notes its outcome if that is asked for.
-    template <class Do>
-    Outcome counted(std::int64_t m, const Do &of) {
-        const auto most = found_.tally.iterations;
-        found_.tally.iterations = 0;
-        const Outcome outcome = of(found_.tally);
-        if (outcomes_)
-            outcomes_[chains_.n_chains() + m] = {outcome == Outcome::good ? 0 : noted(outcome),
-                                                 static_cast<std::int32_t>(found_.tally.iterations)};
-        found_.tally.iterations = std::max(found_.tally.iterations, most);
-        return outcome;
+        Outcome outcome = Outcome::good;
+        with_outcome(outcome_of(m), found_.tally, [&](Tally &tally) {
+            outcome = work_.molecule(system, place(m), tally);
+            if (outcome == Outcome::good) return;
+            if (tally.n_bad == 0) found_.first_outcome = outcome;
+            note_bad(chains_.n_chains() + m, tally);
+        });
+        if (outcomes_ && outcome != Outcome::good) outcome_of(m)->status = noted(outcome);
     }
 
     void side_by_side(const std::int64_t *alike, int n) {
@@ -105,10 +98,8 @@ private:
                 molecule(alike[l]);
                 continue;
             }
-            counted(alike[l], [&](Tally &tally) {
-                work_.done(results[l], chains_.n_chains() + alike[l], tally);
-                return Outcome::good;
-            });
+            with_outcome(outcome_of(alike[l]), found_.tally,
+                         [&](Tally &tally) { work_.done(results[l], chains_.n_chains() + alike[l], tally); });
         }
     }
 

@@ -171,7 +171,8 @@ private:
     }
 
     void work_on_long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const {
-        noted(lane.chain, tally, [&](Tally &own) { work_.long_chain(lane, where, team, store, own); });
+        with_outcome(outcome_of(lane.chain), tally,
+                     [&](Tally &own) { work_.long_chain(lane, where, team, store, own); });
     }
 
     // The molecules of a unit one by one, so that each has a tally of its own: the same results, for lanes are
@@ -180,12 +181,12 @@ private:
         for (std::int64_t i = 0; i < unit.count; ++i) {
             const Lane lane = unit.regular ? lane_of(unit, i) : unit.lanes[i];
             const Unit one{&lane, 1, unit.regular, unit.large};
-            noted(lane.chain, tally, [&](Tally &own) { work_.unit(one, where, scratch, own); });
+            with_outcome(outcome_of(lane.chain), tally, [&](Tally &own) { work_.unit(one, where, scratch, own); });
         }
     }
     void work_on_each(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const {
         const auto one = [&](const Schedule *schedule, const MoleculeLane &lane, bool regular) {
-            noted(lane.molecule, tally, [&](Tally &own) {
+            with_outcome(outcome_of(lane.molecule), tally, [&](Tally &own) {
                 work_.unit(MoleculeUnit{schedule, &lane, 1, regular, unit.large, unit.team}, where, scratch, own);
             });
         };
@@ -196,14 +197,7 @@ private:
             one(unit.schedule, lane_of(unit, i), unit.regular);
     }
 
-    template <class One>
-    void noted(std::int64_t molecule, Tally &tally, const One &one) const {
-        if (!outcomes_) return one(tally);
-        Tally own = empty_tally();
-        one(own);
-        note_outcome(outcomes_[molecule], own.n_bad == 0, own.iterations);
-        add(tally, own);
-    }
+    OutcomeOf *outcome_of(std::int64_t molecule) const { return outcomes_ ? outcomes_ + molecule : nullptr; }
 
 #ifdef _OPENMP
     bool is_shared(std::int64_t p) const {

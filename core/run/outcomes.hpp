@@ -3,6 +3,7 @@
 #ifndef HOLONOMIC_OUTCOMES_HPP
 #define HOLONOMIC_OUTCOMES_HPP
 
+#include <algorithm>
 #include <cstdint>
 
 #include "core/error.hpp"
@@ -56,6 +57,18 @@ void with_outcomes(const Chains &chains, const Verb &verb) {
 inline void note_outcome(OutcomeOf &of, bool good, std::int64_t iterations) {
     if (!good) of.status = bad_outcome;
     if (iterations > of.iterations) of.iterations = static_cast<std::int32_t>(iterations);
+}
+
+// Does one molecule, or a part of it: one(tally). Notes what has come of it, unless `of` is null. Sums go on as they do
+// without.
+template <class One>
+void with_outcome(OutcomeOf *of, Tally &tally, const One &one) {
+    if (!of) return one(tally);
+    const std::int64_t n_bad = tally.n_bad, iterations = tally.iterations;
+    tally.iterations = 0;
+    one(tally);
+    note_outcome(*of, tally.n_bad == n_bad, tally.iterations);
+    tally.iterations = std::max<std::int64_t>(tally.iterations, iterations);
 }
 
 // Throws the error of a call that has bad molecules, error_of(tally). Before that each of them gets its status, that of
