@@ -116,13 +116,8 @@ bool all_within(const Chains &chains, const BondVectors &bonds, double least, do
 
 // Half the smallest distance between opposite faces, beyond which the image may be another one.
 double half_width(const Box &box) {
-    double steepest = 0;
-    for (int i = 0; i < 3; ++i) {
-        const double *const g = box.inverse + i;
-        steepest = std::max(steepest, g[0] * g[0] + g[3] * g[3] + g[6] * g[6]);
-    }
-    return box.shape == Box::none || !(steepest > 0) ? std::numeric_limits<double>::infinity()
-                                                     : 0.5 / std::sqrt(steepest);
+    const double gradient = steepest_gradient(box);
+    return gradient > 0 ? 0.5 / gradient : std::numeric_limits<double>::infinity();
 }
 
 // What does not fit, and how all bonds are.

@@ -100,11 +100,16 @@ int narrow_side(const Box &box, double longest_bond, double *width) {
     return -1;
 }
 
-std::int64_t bonds_round(const Box &box, double longest_bond) {
+double steepest_gradient(const Box &box) {
     if (box.shape == Box::none) return 0;
     double steepest = 0;
     for (int i = 0; i < 3; ++i) steepest = std::max(gradient_along(box, i), steepest);
-    const double n = std::floor(1 / (steepest * longest_bond) * (1 - 1e-9)) + 1;
+    return steepest;
+}
+
+std::int64_t bonds_round(const Box &box, double longest_bond) {
+    if (box.shape == Box::none) return 0;
+    const double n = std::floor(1 / (steepest_gradient(box) * longest_bond) * (1 - 1e-9)) + 1;
     return n < 1e18 ? static_cast<std::int64_t>(n) : 0;
 }
 

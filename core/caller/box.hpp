@@ -22,6 +22,9 @@ inline void put_box(const Box &box, Box &of_call) {
 // The box vector along which opposite faces are nearer than twice this length, and how near; -1 if they are not.
 int narrow_side(const Box &box, double longest_bond, double *width);
 
+// One over the smallest distance between opposite faces; 0 without a box.
+double steepest_gradient(const Box &box);
+
 // How many bonds of at most this length a cycle must have at least to go round the box; 0: none does.
 std::int64_t bonds_round(const Box &box, double longest_bond);
 
