@@ -15,8 +15,9 @@ namespace HOL_ISA {
 namespace graph {
 
 struct NetLinear {
-    // Of residuals that are corrected.
-    static constexpr double next_part = 1e-6;
+    // Of residuals that are corrected: of all, and of what rounding hides in each over 16. All together say nothing of
+    // an equation between heavy atoms beside those of light ones.
+    static constexpr double any_part = 1e100, next_part = 1e-6, part_of_rounding = 1. / 256;
 
     const Net net;
     const NetworkPlan &s;
@@ -26,13 +27,14 @@ struct NetLinear {
     const int terms;
     Net3 r, v, f, d, G;               // v: velocities; f: w f; G: pulls, or where right-hand sides are rates v + w G
     double *t, *side, *size_of_side;  // multipliers; right-hand sides, and the sizes of their terms
+    double *enough;                   // what corrections may leave of a residual, over 16 roundings
     double *tension;                  // by site, sum of |t| |d|
     double *worst;                    // [n_shares + 1]
     NetFactor factor;
     Pair3<double> *a;  // by site, in twice the precision
 
     static int64_t values(const NetworkPlan &s) {
-        return Net::values(s) + 12 * in_fours(s.n_atoms) + 6 * in_fours(s.n_bonds) + in_fours(s.n_atoms) +
+        return Net::values(s) + 12 * in_fours(s.n_atoms) + 7 * in_fours(s.n_bonds) + in_fours(s.n_atoms) +
                in_fours(s.n_shares + 1) + NetFactor::values(s) + 6 * in_fours(s.n_atoms);
     }
     NetLinear(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
@@ -41,8 +43,9 @@ struct NetLinear {
           r(Net3::take(memory, s.n_atoms)), v(Net3::take(memory, s.n_atoms)), f(Net3::take(memory, s.n_atoms)),
           d(Net3::take(memory, s.n_bonds)), G(Net3::take(memory, s.n_atoms)), t(memory.values(in_fours(s.n_bonds))),
           side(memory.values(in_fours(s.n_bonds))), size_of_side(memory.values(in_fours(s.n_bonds))),
-          tension(memory.values(in_fours(s.n_atoms))), worst(memory.values(in_fours(s.n_shares + 1))),
-          factor(net, d, true, memory), a(reinterpret_cast<Pair3<double> *>(memory.values(6 * in_fours(s.n_atoms)))) {}
+          enough(memory.values(in_fours(s.n_bonds))), tension(memory.values(in_fours(s.n_atoms))),
+          worst(memory.values(in_fours(s.n_shares + 1))), factor(net, d, true, memory),
+          a(reinterpret_cast<Pair3<double> *>(memory.values(6 * in_fours(s.n_atoms)))) {}
 
     bool has(int wanted) const { return (terms & wanted) != 0; }
 
@@ -112,8 +115,9 @@ struct NetLinear {
 
     // Multipliers for what is in t, as far up as it has been taken; what they do to atoms, if `pulls`; then each(part).
     template <class Each>
-    HOL_FORCED bool solve_for(const double *sizes, bool with_pulls, double *tensions, const Each &each) const {
-        if (factor.unknowns.solve(next_part, sizes) < 0) return false;
+    HOL_FORCED bool solve_for(double part_left, const double *sizes, bool with_pulls, double *tensions,
+                              const Each &each) const {
+        if (factor.unknowns.solve(part_left, sizes) < 0) return false;
         for_rest_and_parts(
             [&](const NetPart &rest) {
                 factor.take_down_rest(t);
@@ -129,7 +133,7 @@ struct NetLinear {
     }
     __attribute__((noinline)) bool solve() const {
         load();
-        return solve_for(size_of_side, true, tension, [&](const NetPart &part) { prove(part); }) &&
+        return solve_for(any_part, size_of_side, true, tension, [&](const NetPart &part) { prove(part); }) &&
                (largest_in(worst, s.n_shares + 1) == 0 || refine());
     }
 
@@ -176,10 +180,14 @@ struct NetLinear {
         const int32_t i = s.from[k], j = s.to[k];
         const Pair3<double> from = acceleration_of(i, t, false), to = acceleration_of(j, t, false), bond = exact(k);
         const double left = residual_of(k, bond, from, to),
-                     terms_of_b = size_of_side[k] + abs(dot_pairs(bond, from).hi) + abs(dot_pairs(bond, to).hi),
-                     hidden = sqrt(dot(d.get<double>(k), d.get<double>(k))) *
-                              mul_add(net.w[i], tension[i], net.w[j] * tension[j]);
-        return abs(left) + epsilon * hidden <= most_left() * terms_of_b;
+                     terms_of_b = size_of_side[k] + abs(dot_pairs(bond, from).hi) + abs(dot_pairs(bond, to).hi);
+        return abs(left) + epsilon * hidden_by_rounding(k) <= most_left() * terms_of_b;
+    }
+    // What a rounding of the multipliers, and of what adds up, does to an equation, in roundings.
+    double hidden_by_rounding(int32_t k) const {
+        const Vector3<double> bond = d.get<double>(k);
+        const int32_t i = s.from[k], j = s.to[k];
+        return sqrt(dot(bond, bond)) * mul_add(net.w[i], tension[i], net.w[j] * tension[j]);
     }
     // What is left of an equation, and what rounding can hide there, beyond what may be left.
     template <class V>
@@ -195,15 +203,17 @@ struct NetLinear {
         double *const solution = side, *const alone = size_of_side;
         for (int32_t k = 0; k < s.n_bonds; ++k) {
             const Vector3<double> bond = d.get<double>(k);
-            alone[k] = side[k] / ((net.w[s.from[k]] + net.w[s.to[k]]) * dot(bond, bond));
+            const int32_t i = s.from[k], j = s.to[k];
+            alone[k] = side[k] / ((net.w[i] + net.w[j]) * dot(bond, bond));
             solution[k] = t[k];
+            enough[k] = part_of_rounding * hidden_by_rounding(k);
         }
         const Flag good = correct_until_right<double>(
             Flag{true},
             [&]() {
                 find_residuals(solution);
                 factor.take_up_all(t);
-                if (!solve_for(nullptr, false, nullptr, [](const NetPart &) {}))
+                if (!solve_for(next_part, enough, false, nullptr, [](const NetPart &) {}))
                     t[0] = 0 / (t[0] - t[0]);  // not a number, which is no contraction
             },
             [&](Flag) {
@@ -271,7 +281,7 @@ struct NetLinear {
             });
         if (!again) return;
         factor.unknowns.add_pushes();
-        solve_for(nullptr, true, nullptr, [&](const NetPart &part) { push_on(part); });
+        solve_for(next_part, nullptr, true, nullptr, [&](const NetPart &part) { push_on(part); });
     }
     void push_on(const NetPart &part) const {
         for (int32_t i = part.first_site; i < part.end_site; ++i)

@@ -100,9 +100,8 @@ struct Unknowns {
         });
     }
 
-    // Solves for y until what is left is `part` of it, both as sums of squares' roots; with `sizes`, of right-hand
-    // sides' terms by place, until every unknown's is a rounding of its own, or of the mean. How many rounds it took,
-    // or -1.
+    // Solves for y until what is left is `part` of it, both as sums of squares' roots, and, with `sizes`, of right-hand
+    // sides' terms by place, every unknown's is a rounding of its own, or of the mean. How many rounds it took, or -1.
     __attribute__((noinline)) int32_t solve(double part, const double *sizes) const {
         Sums all = sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
             for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
@@ -115,7 +114,7 @@ struct Unknowns {
         });
         const double enough = part * part * all.a,
                      enough_of_one = (least_of_mean * rounding_part) * all.a / s.n_unknowns;
-        const auto is_enough = [&] { return sizes ? all.most <= enough_of_one : all.a <= enough; };
+        const auto is_enough = [&] { return all.a <= enough && (!sizes || all.most <= enough_of_one); };
         if (!(all.a > 0)) return all.a == 0 ? 0 : -1;
         double rho = all.a, looked_at = all.a;
         for (int32_t round = 1; round <= most_rounds; ++round) {
