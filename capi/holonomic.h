@@ -13,8 +13,8 @@
  *   atoms together. Neither depends on which atom of a bond comes first.
  * - A molecule is a set of atoms joined by bonds, directly or through each other. Fixed atoms join nothing, so one may
  *   belong to many molecules. Molecules are numbered call after call, those of one call by their lowest atom that can
- *   move, those with rigid bodies behind all others. A chain is a linear molecule; but in names (hol_chains, n_chains,
- * hol_report.chain, length_chain) it means a molecule of any shape.
+ *   move, those with rigid bodies behind all others. A chain is a linear molecule; but in names (hol_chains,
+ *   n_chains, hol_report.chain, length_chain) it means a molecule of any shape.
  * - Bonds of a molecule are counted along a linear chain, otherwise by their lower and then by their higher atom:
  *   hol_chains_bonds gives their places in the arrays per bond.
  * - A bond between two fixed atoms is no constraint: it belongs to no molecule, removes no degree of freedom, and its
@@ -181,8 +181,7 @@ HOL_API int hol_chains_add_block(hol_chains *chains, int64_t n_chains, int64_t n
  *         names it); HOL_ERR_DEGENERATE (a bond given twice, more bonds within a part of a molecule than it has
  *         freedoms, or lengths of five atoms and more that fit no places in space: the message names a bond. Bonds
  *         that depend on each other through the positions alone are found by the calls that meet them);
- *         HOL_ERR_MEMORY (also: more than
- *         hol_chains_set_memory_limit allows; the message names the molecule).
+ *         HOL_ERR_MEMORY (also: more than hol_chains_set_memory_limit allows; the message names the molecule).
  *         On an error nothing is added. Not thread-safe on one handle. O(n_bonds). Since 0.2.
  */
 HOL_API int hol_chains_add_bonds(hol_chains *chains, int64_t n_bonds, const int64_t *pairs, const double *lengths);
@@ -420,8 +419,8 @@ HOL_API int hol_chains_set_outcomes(hol_chains *chains, int keep);
  * @param[out] status      [n_chains] an hol_status each: HOL_OK, or what the call would have returned were it the only
  *                         bad molecule. Or NULL
  * @param[out] iterations  [n_chains] linear solves that the positions of the molecule took, of hol_impose steps; 0
- * where it obeyed the tolerance, and in calls without iterations. Of a bad molecule what it took as far as that is
- * known, or 0. Or NULL
+ *                         where it obeyed the tolerance, and in calls without iterations. Of a bad molecule what it
+ *                         took as far as that is known, or 0. Or NULL
  *
  * An inactive molecule has HOL_OK and 0. Where positions or forces were refused before anything was done
  * (HOL_ERR_LENGTHS in the first step), all molecules that do not fit have that status.
