@@ -170,17 +170,27 @@ class Molecules(unittest.TestCase):
         np.testing.assert_array_equal(positions(context)[12:], held)
         self.assertLess(error(context, pairs, r), 1e-14)
 
-    def test_constraints_that_depend_on_each_other_are_refused(self):
-        r = np.random.default_rng(8).normal(size=(5, 3))
-        pairs = [(i, j) for i in range(5) for j in range(i)]  # ten distances between five particles, which have nine
-        with self.assertRaisesRegex(mm.OpenMMException, "holonomic.*more bonds|holonomic.*depend|holonomic.*freedom"):
-            mm.Context(system_of(r, pairs, [1.0] * 5, True), mm.VerletIntegrator(0.001),
-                       mm.Platform.getPlatformByName("Reference"))
+    def test_constraints_that_depend_on_each_other_are_rigid_bodies(self):
+        rng = np.random.default_rng(8)
+        five = rng.normal(size=(5, 3))  # ten distances between five particles, which have nine freedoms
         line = np.array([(0, 0, 0), (0.1, 0, 0), (0.2, 0, 0.0)])  # three distances on a line
-        integrator = mm.VerletIntegrator(0.001)
-        with self.assertRaisesRegex(mm.OpenMMException, "holonomic"):
-            context = started(system_of(line, [(0, 1), (1, 2), (0, 2)], [1.0] * 3, True), integrator, line, line)
-            integrator.step(1)
+        for r in five, line:
+            pairs = [(i, j) for i in range(len(r)) for j in range(i)]
+            for platform in PLATFORMS:
+                integrator = mm.VerletIntegrator(0.001)
+                context = started(system_of(r, pairs, [1.0] * len(r), True), integrator, r,
+                                  rng.normal(size=r.shape), platform)
+                integrator.step(50)
+                self.assertGreater(np.abs(positions(context) - r).max(), 1e-3)
+                self.assertLess(error(context, pairs, r), 1e-14)
+
+    def test_constraints_that_fit_no_places_are_refused(self):
+        r = np.random.default_rng(8).normal(size=(5, 3))
+        pairs = [(i, j) for i in range(5) for j in range(i)]
+        system = system_of(r, pairs, [1.0] * 5, True)
+        system.setConstraintParameters(3, *pairs[3], 1.1 * float(np.linalg.norm(r[pairs[3][0]] - r[pairs[3][1]])))
+        with self.assertRaisesRegex(mm.OpenMMException, "holonomic.*bond"):
+            mm.Context(system, mm.VerletIntegrator(0.001), mm.Platform.getPlatformByName("Reference"))
 
 
 class Contexts(unittest.TestCase):
