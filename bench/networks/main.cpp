@@ -1,6 +1,5 @@
 // Networks beside chains in the same program: processor time a bond of the three levels, of adding, and memory.
 #include <holonomic.h>
-#include <time.h>
 
 #include <cmath>
 #include <cstdio>
@@ -9,28 +8,24 @@
 #include <functional>
 
 #include "networks/scenes.hpp"
+#include "stopwatch.hpp"
 
 using namespace bench;
 
 namespace {
 
-double seconds(clockid_t clock) {
-    timespec t;
-    clock_gettime(clock, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 struct Call {
     int status;
     double time;
 };
-Call best_of(int repeats, bool wall, const std::function<void()> &prepare, const std::function<int()> &body) {
+Call best_of(int repeats, int threads, const std::function<void()> &prepare, const std::function<int()> &body) {
     Call best = {0, 1e30};
-    const double begin = seconds(CLOCK_MONOTONIC);
-    for (int i = 0; i < repeats && (i < 2 || std::getenv("ONLY_FORCES") || seconds(CLOCK_MONOTONIC) - begin < 4); ++i) {
+    const Stopwatch elapsed(2);
+    for (int i = 0; i < repeats && (i < 2 || elapsed.seconds() < 4); ++i) {
         prepare();
-        const double start = seconds(wall ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID);
+        const Stopwatch watch(threads);
         best.status = body();
-        best.time = std::fmin(best.time, seconds(wall ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID) - start);
+        best.time = std::fmin(best.time, watch.seconds());
         if (best.status != HOL_OK) break;
     }
     return best;
@@ -52,7 +47,7 @@ void measure(const Network &s, int threads, int repeats) {
     hol_chains *chains = nullptr;
     const double box[9] = {s.side[0], 0, 0, 0, s.side[1], 0, 0, 0, s.side[2]};
     const Call build = best_of(
-        std::getenv("ONLY_FORCES") ? 1 : repeats, false,
+        repeats, 1,
         [&] {
             hol_chains_destroy(chains);
             chains = nullptr;
@@ -77,24 +72,22 @@ void measure(const Network &s, int threads, int repeats) {
     for (double &x : v) x = normal(random);
     for (double &x : f) x = normal(random);
     std::vector<double> raw = v;
-    const bool wall = threads > 1;
     Call c = best_of(
-        repeats, wall, [] {},
+        repeats, threads, [] {},
         [&] {
             return hol_forces(chains, s.r.data(), raw.data(), f.data(), lambda.data(), nullptr, g.data(), HOL_WRITE,
                               nullptr);
         });
     print(c, n);
     if (c.status != HOL_OK) std::printf(" %s", hol_error_message());
-    if (std::getenv("ONLY_FORCES")) return std::printf("\n"), hol_chains_destroy(chains);
     c = best_of(
-        repeats, wall, [&] { v = raw; },
+        repeats, threads, [&] { v = raw; },
         [&] { return hol_project_velocities(chains, s.r.data(), v.data(), nullptr, nullptr); });
     print(c, n);
     for (std::size_t i = 0; i < v.size(); ++i) out.push_back(s.r[i] + 0.005 * v[i]);
     hol_report report = {};
     c = best_of(
-        repeats, wall, [&] { drifted = out; },
+        repeats, threads, [&] { drifted = out; },
         [&] {
             return hol_project_positions(chains, s.r.data(), drifted.data(), nullptr, 0.005, nullptr, 0, nullptr,
                                          &report);
