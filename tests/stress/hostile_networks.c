@@ -1,6 +1,6 @@
 /**
  * Hostile networks against solutions in 448 bits: nearly straight strands, masses over decades, fixed nodes, bonds of
- * very different lengths, trees, open or with cycles round a skewed box; large enough to be worked on as networks.
+ * very different lengths, trees, open or with cycles round the box; large enough to be worked on as networks.
  *
  *     hostile_networks [first=1] [n=12]
  *
