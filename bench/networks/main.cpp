@@ -1,4 +1,5 @@
-// Networks beside chains in the same program: processor time a bond of the three levels, of adding, and memory.
+// Networks beside chains in the same program: processor time a bond of the three levels, of adding, and memory; and what
+// others take for the same, if they are asked for and CHOLMOD is there.
 #include <holonomic.h>
 
 #include <cmath>
@@ -6,7 +7,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <functional>
+#include <new>
 
+#ifdef BENCH_HAVE_CHOLMOD
+#include "networks/peers.hpp"
+#endif
 #include "networks/scenes.hpp"
 #include "stopwatch.hpp"
 
@@ -42,7 +47,73 @@ void print(const Call &c, double n) {
     std::fflush(stdout);
 }
 
-void measure(const Network &s, int threads, int repeats) {
+#ifdef BENCH_HAVE_CHOLMOD
+
+/** Largest error over the largest multiplier. */
+double error_of(const std::vector<double> &x, const std::vector<double> &exact) {
+    double worst = 0, most = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        worst = std::fmax(worst, std::fabs(x[k] - exact[k]));
+        most = std::fmax(most, std::fabs(exact[k]));
+    }
+    return worst / most;
+}
+
+/** Rows below the library's: multipliers from positions (of it, the numbers of the factor), their error, positions. */
+void measure_peers(const Network &s, const hol_chains *chains, const std::vector<double> &trial, int repeats) {
+    const double n = static_cast<double>(s.n_bonds());
+    std::mt19937_64 random(11);
+    std::normal_distribution<double> normal;
+    std::vector<double> rhs(s.lengths.size()), x(rhs.size());
+    for (double &y : rhs) y = normal(random);
+    BondMatrix matrix(s);
+    matrix.assemble(s.r);
+    const std::vector<double> exact = matrix.refined(rhs);
+    if (hol_solve(chains, s.r.data(), rhs.data(), x.data(), nullptr, HOL_WRITE, nullptr) == HOL_OK)
+        std::printf("    %-30s error %.1e\n", "holonomic", error_of(x, exact));
+    for (const Peer &peer : peers()) {
+        std::printf("    %-30s", peer.name.c_str());
+        try {
+            const Stopwatch analysis(1);
+            peer.analyse(matrix);
+            const double analysed = analysis.seconds();
+            double numbers = 1e30, all = 1e30, positions = 1e30;
+            int rounds = 0;
+            for (int i = 0; i < repeats && (i == 0 || all < 1); ++i) {
+                const Stopwatch watch(1);
+                matrix.assemble(s.r);
+                const double assembled = watch.seconds();
+                peer.factorize(matrix);
+                numbers = std::fmin(numbers, watch.seconds() - assembled);
+                x = peer.solve(rhs);
+                all = std::fmin(all, watch.seconds());
+            }
+            const long iterations = peer.iterations();
+            for (int i = 0; i < repeats && (i == 0 || positions < 1) && all < 10; ++i) {
+                std::vector<double> r = trial;
+                const Stopwatch watch(1);
+                rounds = project(matrix, peer, r, 1e-12);
+                positions = std::fmin(positions, watch.seconds());
+            }
+            std::printf(" error %.1e  solve %9.1f (numbers %9.1f; %ld)  positions %9.1f (%d)  analysis %9.1f  entries %7.1f\n",
+                        error_of(x, exact), 1e9 * all / n, 1e9 * numbers / n, iterations, 1e9 * positions / n, rounds,
+                        1e9 * analysed / n, peer.entries() / n);
+        } catch (const std::bad_alloc &) {
+            std::printf(" no memory, or no factor\n");
+        }
+        std::fflush(stdout);
+    }
+}
+
+#else
+
+void measure_peers(const Network &, const hol_chains *, const std::vector<double> &, int) {
+    std::printf("    this program was built without CHOLMOD (libsuitesparse-dev)\n");
+}
+
+#endif
+
+void measure(const Network &s, int threads, int repeats, bool beside) {
     const double n = static_cast<double>(s.n_bonds());
     hol_chains *chains = nullptr;
     const double box[9] = {s.side[0], 0, 0, 0, s.side[1], 0, 0, 0, s.side[2]};
@@ -95,6 +166,7 @@ void measure(const Network &s, int threads, int repeats) {
     print(c, n);
     std::printf(" (%lld)  build %7.1f  bytes %7.1f\n", static_cast<long long>(report.iterations), 1e9 * build.time / n,
                 static_cast<double>(hol_chains_memory(chains)) / n);
+    if (beside) measure_peers(s, chains, out, repeats);
     hol_chains_destroy(chains);
 }
 
@@ -103,9 +175,10 @@ void measure(const Network &s, int threads, int repeats) {
 int main(int argc, char **argv) {
     const int threads = argc > 1 ? std::atoi(argv[1]) : 1, repeats = argc > 2 ? std::atoi(argv[2]) : 20;
     const char *const wanted = argc > 3 ? argv[3] : "";
+    const bool beside = argc > 4 && std::strcmp(argv[4], "peers") == 0;
     const auto one = [&](const char *key, const std::function<Network()> &make) {
         if (!*wanted || std::strstr((std::string(",") + wanted + ",").c_str(), (std::string(",") + key + ",").c_str()))
-            measure(make(), threads, repeats);
+            measure(make(), threads, repeats, beside);
     };
     std::printf("%-52s %8s %8s %8s %8s   ns a bond; %s, threads %d\n", "", "bonds", "forces", "veloc.", "posit.",
                 hol_instruction_set(), threads);

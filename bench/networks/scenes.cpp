@@ -54,9 +54,9 @@ void add_strand(Network &n, std::int64_t i, std::int64_t j, const double *gap, s
 
 }  // namespace
 
-void Network::bond(std::int64_t k, double *d) const {
-    const double *i = &r[3 * static_cast<std::size_t>(pairs[2 * static_cast<std::size_t>(k)])],
-                 *j = &r[3 * static_cast<std::size_t>(pairs[2 * static_cast<std::size_t>(k) + 1])];
+void Network::bond(const std::vector<double> &positions, std::int64_t k, double *d) const {
+    const double *i = &positions[3 * static_cast<std::size_t>(pairs[2 * static_cast<std::size_t>(k)])],
+                 *j = &positions[3 * static_cast<std::size_t>(pairs[2 * static_cast<std::size_t>(k) + 1])];
     for (int x = 0; x < 3; ++x) {
         d[x] = j[x] - i[x];
         if (side[x] > 0) d[x] -= side[x] * std::nearbyint(d[x] / side[x]);

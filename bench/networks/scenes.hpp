@@ -21,7 +21,8 @@ struct Network {
     std::int64_t n_atoms() const { return static_cast<std::int64_t>(masses.size()); }
     std::int64_t n_bonds() const { return static_cast<std::int64_t>(lengths.size()); }
     /** Nearest image of a bond, from its first atom to its second. */
-    void bond(std::int64_t k, double *d) const;
+    void bond(std::int64_t k, double *d) const { bond(r, k, d); }
+    void bond(const std::vector<double> &positions, std::int64_t k, double *d) const;
 };
 
 /** Coils of that many bonds. */
