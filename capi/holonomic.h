@@ -419,8 +419,9 @@ HOL_API int hol_chains_set_outcomes(hol_chains *chains, int keep);
  * @param[out] status      [n_chains] an hol_status each: HOL_OK, or what the call would have returned were it the only
  *                         bad molecule. Or NULL
  * @param[out] iterations  [n_chains] linear solves that the positions of the molecule took, of hol_impose steps; 0
- *                         where it obeyed the tolerance, and in calls without iterations. Of a bad molecule what it
- *                         took as far as that is known, or 0. Or NULL
+ *                         where it obeyed the tolerance. Forces, velocities and given right-hand sides: rounds of the
+ *                         iteration by which a network is solved (docs/molecules.md), 0 of all other molecules, which
+ *                         are solved directly. Of a bad molecule what it took as far as that is known, or 0. Or NULL
  *
  * An inactive molecule has HOL_OK and 0. Where positions or forces were refused before anything was done
  * (HOL_ERR_LENGTHS in the first step), all molecules that do not fit have that status.

@@ -139,7 +139,7 @@ Peer conjugate_gradients(const std::string &name) {
     using Solver = Eigen::ConjugateGradient<Sparse, Eigen::Lower, Preconditioner>;
     const auto solver = std::make_shared<Solver>();
     solver->setTolerance(1e-14);
-    solver->setMaxIterations(20000);
+    solver->setMaxIterations(2000);
     return {name,
             [=](const BondMatrix &z) { solver->analyzePattern(z.parts->lower); },
             [=](const BondMatrix &z) { solver->factorize(z.parts->lower); },

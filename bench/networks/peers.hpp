@@ -1,5 +1,6 @@
 /**
- * What others do with a network: the matrix of all bonds by CHOLMOD or by conjugate gradients, its pattern analysed once.
+ * What others do with a network: the matrix of all bonds by CHOLMOD or by conjugate gradients, its pattern analysed
+ * once.
  */
 #ifndef BENCH_NETWORKS_PEERS_HPP
 #define BENCH_NETWORKS_PEERS_HPP
@@ -41,12 +42,12 @@ struct Peer {
     std::function<double()> entries;  ///< of the factor, a bond
 };
 
-/** CHOLMOD's own choice of supernodal or simplicial; conjugate gradients to a residual of 1e-14, with the diagonal and with
- * an incomplete factor. */
+/** CHOLMOD's own choice of supernodal or simplicial; conjugate gradients to a residual of 1e-14, with the diagonal and
+ * with an incomplete factor. */
 std::vector<Peer> peers();
 
-/** Positions by Newton's method with the factor of the reference's matrix, until |D.D - a^2| <= tolerance a^2. Returns the
- * rounds that it took, or -1. */
+/** Positions by Newton's method with the factor of the reference's matrix, until |D.D - a^2| <= tolerance a^2. Returns
+ * the rounds that it took, or -1. */
 int project(BondMatrix &matrix, const Peer &peer, std::vector<double> &r, double tolerance);
 
 }  // namespace bench

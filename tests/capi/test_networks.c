@@ -295,9 +295,32 @@ static void what_a_lattice_leaves_of_its_equations_is_rounding(void **state)
     molecule_free(&m);
 }
 
+/** Rounds of the iteration, of all levels, where outcomes are kept. Nearly straight strands take more. */
+static void rounds_are_told(void **state)
+{
+    (void)state;
+    int rounds[2];
+    for (int straight = 0; straight < 2; ++straight) {
+        scene s = make(sorts[straight ? n_sorts - 1 : 0], 5);
+        int status[1], iterations[1];
+        CHECK(hol_chains_set_outcomes(s.chains, 1));
+        CHECK(hol_forces(s.chains, s.m.r, s.m.v, s.m.f, NULL, NULL, s.m.f, HOL_ADD, NULL));
+        CHECK(hol_outcomes(s.chains, status, iterations));
+        assert_int_equal(status[0], HOL_OK);
+        rounds[straight] = iterations[0];
+        CHECK(hol_project_velocities(s.chains, s.m.r, s.m.v, NULL, NULL));
+        CHECK(hol_outcomes(s.chains, status, iterations));
+        assert_in_range(iterations[0], 1, 2000);
+        destroy(s);
+    }
+    assert_in_range(rounds[0], 1, 40);
+    assert_in_range(rounds[1], rounds[0] + 1, 2000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rounds_are_told),
         cmocka_unit_test(forces_are_those_of_many_digits),
         cmocka_unit_test(velocities_are_those_of_many_digits),
         cmocka_unit_test(positions_get_their_lengths),

@@ -17,6 +17,7 @@ int64_t network_bytes(const NetworkPlan &s) {
 template <class Call>
 static inline bool pull_network(const Call &call, const NetLinear &x, Tally &tally) {
     if (!x.solve()) return false;
+    count_moved(tally, 0, x.rounds);
     if (call.lambda) x.write_bonds(0.5, false, call.lambda);
     if (call.tension) x.write_bonds(1, true, call.tension);
     if (call.virial) x.add_virial(tally);
@@ -47,6 +48,7 @@ bool solve_network(const VelocitiesCall &call, const Schedule &s, const Molecule
     const Inputs in = {&call.v, nullptr, nullptr, true, call.strain};
     const NetLinear x(*s.network, lane, packed, team, call.box, call.r, in, rates, {scratch});
     if (!x.solve()) return false;
+    count_moved(tally, 0, x.rounds);
     if (call.lambda) x.write_bonds(0.5, false, call.lambda);
     if (call.virial) x.add_virial(tally);
     x.add_pulls(!call.v.is_float);

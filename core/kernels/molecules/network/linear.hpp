@@ -31,7 +31,8 @@ struct NetLinear {
     double *tension;                  // by site, sum of |t| |d|
     double *worst;                    // [n_shares + 1]
     NetFactor factor;
-    Pair3<double> *a;  // by site, in twice the precision
+    Pair3<double> *a;            // by site, in twice the precision
+    mutable int64_t rounds = 0;  // that the unknowns have taken so far
 
     static int64_t values(const NetworkPlan &s) {
         return Net::values(s) + 12 * in_fours(s.n_atoms) + 7 * in_fours(s.n_bonds) + in_fours(s.n_atoms) +
@@ -117,7 +118,9 @@ struct NetLinear {
     template <class Each>
     HOL_FORCED bool solve_for(double part_left, const double *sizes, bool with_pulls, double *tensions,
                               const Each &each) const {
-        if (factor.unknowns.solve(part_left, sizes) < 0) return false;
+        const int32_t taken = factor.unknowns.solve(part_left, sizes);
+        if (taken < 0) return false;
+        rounds += taken;
         for_rest_and_parts(
             [&](const NetPart &rest) {
                 factor.take_down_rest(t);
