@@ -1,5 +1,5 @@
-#include "boundary.hpp"
 #include "core/check.hpp"
+#include "boundary.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/violation.hpp"
 #include "view.hpp"
