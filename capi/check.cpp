@@ -1,5 +1,5 @@
+#include "core/check.hpp"
 #include "boundary.hpp"
-#include "core/fit.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/violation.hpp"
 #include "view.hpp"

@@ -5,7 +5,7 @@
 
 #include "core/caller/box.hpp"
 #include "core/caller/view.hpp"
-#include "core/fit.hpp"
+#include "core/check.hpp"
 #include "core/reference.hpp"
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"

@@ -2,7 +2,7 @@
 #ifndef HOLONOMIC_POSITIONS_HPP
 #define HOLONOMIC_POSITIONS_HPP
 
-#include "core/fit.hpp"
+#include "core/check.hpp"
 #include "core/molecules/chains.hpp"
 
 namespace holonomic {

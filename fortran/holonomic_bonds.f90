@@ -25,7 +25,7 @@ module holonomic_bonds
 contains
 
    ! Whether these are bonds with a length each; if not, `problem` says why.
-   logical function fit(bonds, lengths, problem)
+   logical function sizes_agree(bonds, lengths, problem)
       integer(int64), intent(in) :: bonds(:, :)
       real(real64), intent(in) :: lengths(:)
       type(failure), intent(inout) :: problem
@@ -38,7 +38,7 @@ contains
          call problem%set(HOL_ERR_VALUE, decimal(size(lengths, kind=c_int64_t))//" lengths were given for "// &
                           decimal(size(bonds, 2, c_int64_t))//" bonds")
       end if
-      fit = problem%none()
+      sizes_agree = problem%none()
    end function
 
    subroutine add_bonds_64(self, bonds, lengths, stat, errmsg)
@@ -49,7 +49,7 @@ contains
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
       call problem%need_created(self%c_handle())
-      if (fit(bonds, lengths, problem)) &
+      if (sizes_agree(bonds, lengths, problem)) &
          call problem%ask(hol_chains_add_bonds(self%c_handle(), size(bonds, 2, c_int64_t), c_loc(bonds), &
                                                c_loc(lengths)))
       call settle(problem, "add", stat, errmsg)
@@ -91,7 +91,7 @@ contains
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
       call problem%need_created(self%c_handle())
-      if (fit(bonds, lengths, problem)) &
+      if (sizes_agree(bonds, lengths, problem)) &
          call problem%ask(hol_chains_add_molecules(self%c_handle(), n_molecules, n_atoms, first_atom, &
                                                    size(bonds, 2, c_int64_t), c_loc(bonds), c_loc(lengths)))
       call settle(problem, "add_molecules", stat, errmsg)

@@ -25,7 +25,7 @@ module holonomic_rigid
 contains
 
    ! Whether the arrays have sizes that go together; if not, `problem` says why.
-   logical function fit(atoms, places, sizes, bonds, lengths, problem)
+   logical function sizes_agree(atoms, places, sizes, bonds, lengths, problem)
       integer(int64), intent(in) :: atoms(:)
       real(real64), intent(in) :: places(:, :)
       integer(int64), intent(in) :: sizes(:)
@@ -44,7 +44,7 @@ contains
          if (size(bonds, 1) /= 2 .or. size(bonds, 2) /= size(lengths)) &
             call problem%set(HOL_ERR_VALUE, "bonds must be (2, "//decimal(size(lengths, kind=c_int64_t))//")")
       end if
-      fit = problem%none()
+      sizes_agree = problem%none()
    end function
 
    subroutine add_rigid_64(self, atoms, places, sizes, bonds, lengths, stat, errmsg)
@@ -66,7 +66,7 @@ contains
       else
          allocate (bodies, source=[size(atoms, kind=int64)])
       end if
-      if (fit(atoms, places, bodies, bonds, lengths, problem)) then
+      if (sizes_agree(atoms, places, bodies, bonds, lengths, problem)) then
          call take_bonds(bonds, lengths, n_bonds, pairs, of_pairs)
          call problem%ask(hol_chains_add_rigid(self%c_handle(), size(bodies, kind=c_int64_t), c_loc(bodies), c_loc(atoms), &
                                                c_loc(places), n_bonds, pairs, of_pairs))
@@ -95,7 +95,7 @@ contains
       else
          allocate (bodies, source=[size(atoms, kind=int64)])
       end if
-      if (fit(atoms, places, bodies, bonds, lengths, problem)) then
+      if (sizes_agree(atoms, places, bodies, bonds, lengths, problem)) then
          call take_bonds(bonds, lengths, n_bonds, pairs, of_pairs)
          call problem%ask(hol_chains_add_rigid_molecules(self%c_handle(), n_molecules, n_atoms, first_atom, &
                                                          size(bodies, kind=c_int64_t), c_loc(bodies), c_loc(atoms), &

@@ -129,7 +129,7 @@ public:
         if (checks_ != when) fits_.store(false, std::memory_order_relaxed);
         checks_ = when;
     }
-    // Whether positions are to be compared with the lengths before they are used (core/fit.hpp): at the first call
+    // Whether positions are to be compared with the lengths before they are used (core/check.hpp): at the first call
     // after a change of the molecules, their lengths or the box. Thread-safe: several threads may find that it is so.
     bool wants_fit() const {
         return checks_ == Checks::always || (checks_ == Checks::at_start && !fits_.load(std::memory_order_relaxed));

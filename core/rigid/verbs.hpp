@@ -3,7 +3,7 @@
 #ifndef HOLONOMIC_RIGID_VERBS_HPP
 #define HOLONOMIC_RIGID_VERBS_HPP
 
-#include "core/fit.hpp"
+#include "core/check.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/positions.hpp"
 #include "core/reactions.hpp"

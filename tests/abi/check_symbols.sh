@@ -1,5 +1,6 @@
 #!/bin/sh
-# The version script, the header and the shared library agree on which functions there are.
+# The version script, the header, the shared library, the list of this version in docs/abi.md and the symbols that
+# every_function.c calls for it agree on which functions there are.
 #
 #   check_symbols.sh SOURCE LIBRARY        READELF names the program to use
 set -eu
@@ -22,6 +23,11 @@ compare() {
 [ -n "$in_map" ] || { echo "no function found in the version script"; exit 1; }
 compare "the header" "$in_header" "the version script" "$in_map"
 compare "the library" "$in_library" "the version script" "$in_map"
+version=$(sed -n 's/^#define HOL_VERSION_M.*OR \([0-9]*\)$/\1/p' "$source/capi/holonomic.h" | paste -sd .)
+frozen=$source/tests/abi/frozen/holonomic-$version
+compare "the version script" "$in_map" "$frozen.map" "$(sed -n 's/^ *\(hol_[a-z_0-9]*\);.*/\1/p' "$frozen.map" | sort)"
+compare "HOLONOMIC_$version" "$(sed -n "/^HOLONOMIC_$version {/,/^}/s/^ *\(hol_[a-z_0-9]*\);.*/\1/p" "$source/capi/holonomic.map" | sort)" \
+    docs/abi.md "$(sed -n "/^## $version against/,/^## How/s/^    \(hol_[a-z_0-9]*\)$/\1/p" "$source/docs/abi.md" | sort)"
 [ -z "$(printf '%s\n' "$in_map" | uniq -d)" ] || { echo "twice in the version script"; status=1; }
 
 # A name without a version would be a hole in the script.

@@ -195,6 +195,57 @@ static void along(hol_chains *both, const double *r)
     EXPECT(hol_chains_check(both, moved, HOL_BOX) == HOL_ERR_LENGTHS);
 }
 
+/* The same molecules from far off, what is left of each bond, and a status for each molecule. */
+static void crude(hol_chains *both, const double *r)
+{
+    double moved[21], length[6], rate[6], v[21] = {0};
+    int status[2] = {-1, -1}, iterations[2] = {-1, -1}, k;
+    hol_report report;
+    const hol_view positions = view_of(moved), rates = view_of(v);
+    memcpy(moved, r, sizeof moved);
+    moved[3] += 1;
+    v[12] = 3;
+    SUCCEEDS(hol_residuals(both, moved, v, length, rate));
+    NEAR(length[0], 3);
+    NEAR(length[2], 0);
+    NEAR(rate[3], 3);
+    SUCCEEDS(hol_residuals_view(both, &positions, &rates, NULL, rate));
+    NEAR(rate[3], 3);
+    SUCCEEDS(hol_chains_set_memory_limit(both, 1 << 20));
+    SUCCEEDS(hol_chains_set_outcomes(both, 1));
+    SUCCEEDS(hol_impose(both, moved, &report));
+    EXPECT(report.n_corrected == 1 && report.n_failed == 0 && report.iterations > 1);
+    SUCCEEDS(hol_outcomes(both, status, iterations));
+    EXPECT(status[0] == HOL_OK && status[1] == HOL_OK && iterations[0] == report.iterations && iterations[1] == 0);
+    SUCCEEDS(hol_chains_set_outcomes(both, 0));
+    SUCCEEDS(hol_residuals(both, moved, NULL, length, NULL));
+    for (k = 0; k < 6; ++k) NEAR(length[k], 0);
+    moved[3] += 1;
+    SUCCEEDS(hol_impose_view(both, &positions, NULL));
+    SUCCEEDS(hol_residuals_view(both, &positions, NULL, length, NULL));
+    for (k = 0; k < 6; ++k) NEAR(length[k], 0);
+}
+
+/* Two rods of two atoms, and one that hangs at a fixed atom. */
+static void bodies(void)
+{
+    const double masses[7] = {1, 1, 1, 1, 1, 1, INFINITY}, rod[6] = {0, 0, 0, 1, 0, 0}, one = 1;
+    const int64_t two = 2, within[2] = {0, 1}, last[2] = {4, 5}, bond[2] = {6, 4};
+    const double r[21] = {0, 5, 0, 1, 5, 0, 0, 9, 0, 1, 9, 0, 1, 0, 0, 2, 0, 0, 0, 0, 0};
+    const double f[21] = {2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 4, 0, 0, 0, 0, 0};
+    double tension, g[21];
+    hol_chains *rods = NULL;
+    SUCCEEDS(hol_chains_create(7, masses, &rods));
+    SUCCEEDS(hol_chains_add_rigid_molecules(rods, 2, 2, 0, 1, &two, within, rod, 0, NULL, NULL));
+    SUCCEEDS(hol_chains_add_rigid(rods, 1, &two, last, rod, 1, bond, &one));
+    EXPECT(hol_chains_n_of_shape(rods, HOL_SHAPE_RIGID) == 3);
+    SUCCEEDS(hol_forces(rods, r, NULL, f, NULL, &tension, g, HOL_WRITE, NULL));
+    NEAR(g[0], -1);
+    NEAR(g[3], 1);
+    NEAR(tension, 7);
+    hol_chains_destroy(rods);
+}
+
 /* A rigid triangle and three beads on one, all of mass 1, pulled apart. */
 static void molecules(void)
 {
@@ -255,6 +306,7 @@ static void molecules(void)
     SUCCEEDS(hol_chains_check(both, r, HOL_BOX));
     SUCCEEDS(hol_chains_check_view(both, &view, HOL_REFERENCE_BOX));
     along(both, r);
+    crude(both, r);
     hol_chains_destroy(both);
 }
 #endif
@@ -273,6 +325,7 @@ int main(void)
     tridiagonal();
 #if HOL_VERSION_MAJOR > 0 || HOL_VERSION_MINOR >= 2
     molecules();
+    bodies();
 #endif
     hol_chains_destroy(chains);
     if (failures == 0)

@@ -1,40 +1,43 @@
 /**
  * @file holonomic.h
- * Exact Lagrange multipliers and constraint forces of molecules with rigid bonds: chains, branched molecules, rings,
- * rigid water, any graph; for chains, trees and rings in time linear in the number of bonds.
+ * Exact Lagrange multipliers and constraint forces of molecules with rigid bonds: linear chains, branched molecules,
+ * rings, rigid water, any graph.
  *
- * Conventions, valid for every function (docs/theory.md has the derivations):
+ * Conventions of all functions (derivations: docs/theory.md):
  *
- * - Atom i has mass m_i, inverse mass w_i = 1/m_i (0 for an atom that is held fixed), position r_i, velocity v_i and
- *   applied force f_i. Bond k joins two atoms i and j; it has the vector d_k = r_j - r_i, the length a_k and the
- *   constraint sigma_k = d_k.d_k - a_k^2 = 0. In a chain of N bonds and N+1 atoms d_k = r_k - r_{k-1}.
- * - The constraint force is G_i = - sum_k lambda_k grad_i sigma_k, in a chain 2 (lambda_{i+1} d_{i+1} - lambda_i d_i):
- *   lambda_k > 0 pulls the two atoms together, and T_k = 2 lambda_k |d_k| is the tension of the bond, a force. Neither
- *   depends on which of its two atoms a bond names first.
- * - A molecule is a set of atoms joined by bonds, directly or through each other; atoms that are held fixed join
- *   nothing, so a fixed atom may belong to many molecules. Molecules are numbered in the order in which they were
- *   added. Where a function or a message speaks of a chain and its number, a molecule of any shape is meant, unless it
- *   says "linear". Bonds of a molecule are counted along a linear chain, otherwise by their lower and then by their
- *   higher atom: hol_chains_bonds gives their places in the arrays per bond.
- * - Units are the caller's own; any consistent set does (m, length, time; force = mass length / time^2).
- * - An output that is NULL is not computed; an input that may be NULL is zero then and costs nothing.
- * - Arrays per atom are [n_atoms][3] (Fortran: (3, n_atoms)); only the atoms that belong to molecules are read and
- *   written. Arrays per bond are [n_bonds], in the order in which the bonds were given, call after call. Arrays per
- *   chain are [n_chains], one element for each molecule.
+ * - Atom i has mass m_i, inverse mass w_i = 1/m_i (0: held fixed), position r_i, velocity v_i and applied force f_i.
+ *   Bond k joins atoms i and j; it has the vector d_k = r_j - r_i, the length a_k and the constraint
+ *   sigma_k = d_k.d_k - a_k^2 = 0.
+ * - The constraint force is G_i = - sum_k lambda_k grad_i sigma_k, in a linear chain
+ *   2 (lambda_{i+1} d_{i+1} - lambda_i d_i). T_k = 2 lambda_k |d_k| is the tension of the bond, a force; > 0 pulls its
+ *   atoms together. Neither depends on which atom of a bond comes first.
+ * - A molecule is a set of atoms joined by bonds, directly or through each other. Fixed atoms join nothing, so one may
+ *   belong to many molecules. Molecules are numbered call after call, those of one call by their lowest atom that can
+ *   move, those with rigid bodies behind all others. A chain is a linear molecule; but in names (hol_chains,
+ *   n_chains, hol_report.chain, length_chain) it means a molecule of any shape.
+ * - Bonds of a molecule are counted along a linear chain, otherwise by their lower and then by their higher atom:
+ *   hol_chains_bonds gives their places in the arrays per bond.
  * - A bond between two fixed atoms is no constraint: it belongs to no molecule, removes no degree of freedom, and its
  *   multiplier and tension are 0.
- * - Every function that can fail returns an hol_status. hol_error_message() then says in words, for the calling
- *   thread, what was wrong and where, and hol_error_location() gives the place in numbers.
+ * - Units are the caller's own; any consistent set does (mass, length, time; force = mass length / time^2).
+ * - An output that is NULL is not computed; an input that may be NULL is zero then. Neither costs anything.
+ * - Arrays per atom are [n_atoms][3] (Fortran: (3, n_atoms)); only atoms of molecules are read and written. Arrays per
+ *   bond are [n_bonds], in the order in which the bonds were given, call after call. Arrays per molecule are
+ *   [n_chains].
+ * - Every function that can fail returns an hol_status. hol_error_message() then says in words what was wrong and
+ *   where, hol_error_location() in numbers; both are the calling thread's own.
  * - A wrong argument: nothing is written. Bad data in some molecules (HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE,
- *   HOL_ERR_NO_CONVERGENCE): the outputs of these molecules stay as they were, bit for bit, sums over molecules
- *   (virial, energy) are not written, and all other molecules are complete. The status, message and location are those
- *   of the first bad molecule. A fixed atom that several molecules share gets the sum over those that are not bad.
+ *   HOL_ERR_NO_CONVERGENCE, after the first call also HOL_ERR_LENGTHS): their outputs stay as they were, bit for bit;
+ *   all other molecules are complete; sums over molecules (virial, energy) are not written. Status, message and
+ *   location are those of the first bad molecule. A fixed atom of several molecules gets the sum over those that are
+ *   not bad.
+ * - An output may overlap another argument only where its description says so.
  * - The library never prints, exits, aborts or throws, and changes no floating-point environment.
- * - Threads: a handle that no thread changes (create, add, set, destroy) may be used by any number of threads at once.
- *   Results do not depend on hol_chains_set_threads, on the memory layout, on which other molecules there are, nor on
- *   the order in which bonds were given. Scratch memory belongs to the calling thread; after a thread's first call with
- *   molecules of that size nothing is allocated, but for a long chain whose positions need a second attempt (light
- *   atoms, taut between heavy ones).
+ * - Threads: any number of them may use a handle at once that none changes (create, add, set, destroy). Scratch memory
+ *   belongs to the calling thread; after its first call with molecules of that size nothing is allocated, but for a
+ *   long chain whose positions need a second attempt (light atoms, taut between heavy ones).
+ * - Results depend on nothing but the molecule: not on hol_chains_set_threads, the memory layout, the other molecules,
+ *   nor the order in which bonds were given.
  */
 #ifndef HOLONOMIC_H
 #define HOLONOMIC_H
@@ -62,10 +65,10 @@ typedef enum hol_status {
     HOL_OK = 0,
     HOL_ERR_NULL = 1,           /**< a pointer that is needed is NULL */
     HOL_ERR_VALUE = 2,          /**< a size, mass, length or option is out of its range */
-    HOL_ERR_INDEX = 3,          /**< an atom, bond or chain number is out of range */
+    HOL_ERR_INDEX = 3,          /**< the number of an atom, bond or molecule is out of range */
     HOL_ERR_SHARED_ATOM = 4,    /**< an atom that can move belongs to a molecule of an earlier call already */
     HOL_ERR_MEMORY = 5,         /**< out of memory */
-    HOL_ERR_NOT_FINITE = 6,     /**< an infinity or NaN in the data of a chain, or an overflow or underflow */
+    HOL_ERR_NOT_FINITE = 6,     /**< an infinity or NaN in the data of a molecule, or an overflow or underflow */
     HOL_ERR_DEGENERATE = 7,     /**< a bond of length zero, bonds that are not independent of each other */
     HOL_ERR_NO_CONVERGENCE = 8, /**< the bond lengths can't be reached from these positions */
     HOL_ERR_NOT_DEFINITE = 9,   /**< hol_tridiagonal_*: the matrix is not positive definite */
@@ -80,30 +83,28 @@ HOL_API const char *hol_version(void);
 HOL_API const char *hol_status_name(int status);
 
 /**
- * What went wrong in this thread's last call that failed, naming the function and the molecule, bond or atom; ""
- * before the first failure.
- * Valid until the thread's next failing call. Never NULL. Since 0.1.
+ * What went wrong in this thread's last call that failed, with the function and the molecule, bond or atom; "" before
+ * the first failure. Valid until the thread's next failing call. Never NULL. Since 0.1.
  */
 HOL_API const char *hol_error_message(void);
 
 /**
  * Where this thread's last failing call failed. Each pointer may be NULL. Since 0.1.
- * @param[out] chain  number of the first bad molecule, or -1 if it does not apply (likewise below)
- * @param[out] bond   number of the bond within its molecule (hol_chains_bonds); of a bond that was refused when it was
- *                    to be added, its number in the list of that call
- * @param[out] atom   number of the atom in the caller's arrays
- * @param[out] n_bad  how many molecules were bad (0 for a wrong argument)
+ * @param[out] molecule  number of the first bad molecule, or -1 if it does not apply (likewise below)
+ * @param[out] bond      number of the bond within its molecule (hol_chains_bonds); of a bond that could not be added,
+ *                       its number in the list of that call
+ * @param[out] atom      number of the atom in the caller's arrays
+ * @param[out] n_bad     how many molecules were bad (0 for a wrong argument)
  *
  * Numbers are counted as in the handle concerned (hol_chains_set_index_base), from 0 by default.
  */
-HOL_API void hol_error_location(int64_t *chain, int64_t *bond, int64_t *atom, int64_t *n_bad);
+HOL_API void hol_error_location(int64_t *molecule, int64_t *bond, int64_t *atom, int64_t *n_bad);
 
 /**
- * The instruction set that the calculations use on this machine: "baseline", "avx2", "avx512vl" (four lanes with the
- * registers of AVX-512), "avx512" (eight lanes) or "scalar" (one lane, with AVX2's instructions). Never NULL. Chains of
- * up to 256 bonds may run with another of these in calls for which that is faster, a chain that comes alone with
- * "scalar"; their results are the same bits. The environment variable HOLONOMIC_ISA, read at the first use in a
- * process, forces one of these names if the machine has it. Since 0.1.
+ * The instruction set that the calculations use on this machine: "baseline", "avx2" or "avx512vl" (four lanes with the
+ * registers of AVX-512). Never NULL. A chain of up to 256 bonds that comes alone runs with "scalar" (one lane, with
+ * AVX2's instructions) where one of the last two runs: the same bits, in less time. The environment variable
+ * HOLONOMIC_ISA, read at the first use in a process, forces one of these names if the machine has it. Since 0.1.
  */
 HOL_API const char *hol_instruction_set(void);
 
@@ -118,7 +119,7 @@ typedef struct hol_chains hol_chains;
  * @param[in]  masses   [n_atoms], mass; 0 or +infinity: the atom is held fixed. Copied.
  * @param[out] chains   the new handle, to be given to hol_chains_destroy; NULL on an error
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (n_atoms < 0; a mass negative, NaN, or so small that 1/m overflows: the
- *         message names the atom, counted from 0; all masses 0, since 0.2); HOL_ERR_MEMORY. Since 0.1.
+ *         message names the atom, counted from 0; since 0.2 all masses 0); HOL_ERR_MEMORY. Since 0.1.
  */
 HOL_API int hol_chains_create(int64_t n_atoms, const double *masses, hol_chains **chains);
 
@@ -133,11 +134,10 @@ HOL_API void hol_chains_destroy(hol_chains *chains);
  * @param[in]     lengths  [n_bonds], bond lengths, 1e-150 .. 1e150. Used by hol_project_positions and hol_violation;
  *                         the acceleration and velocity levels use the bond vectors as they are. Copied.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (n_bonds, a length; since 0.2 a length of more than half the box that is
- *         set); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM; HOL_ERR_MEMORY.
- *         On an error nothing is added. Not thread-safe on one handle. Since 0.1.
+ *         set); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM; HOL_ERR_MEMORY (also: more than hol_chains_set_memory_limit
+ *         allows). On an error nothing is added. Not thread-safe on one handle. Since 0.1.
  *
- * The chain is one molecule, whatever atoms of it are fixed; only a bond between two fixed atoms divides it into
- * molecules of their own, as it belongs to none.
+ * The chain is one molecule, whatever atoms of it are fixed; only a bond between two fixed atoms divides it in two.
  */
 HOL_API int hol_chains_add(hol_chains *chains, int64_t n_bonds, const int64_t *atoms, const double *lengths);
 
@@ -156,25 +156,32 @@ HOL_API int hol_chains_add_block(hol_chains *chains, int64_t n_chains, int64_t n
 
 /**
  * Adds bonds in any order, either atom first: the library finds the molecules that they form, and which of them are
- * linear chains, trees, rings, triangles or anything else (docs/molecules.md). Molecules of one kind, i.e. of the same
- * masses and lengths at the same relative numbers of atoms, are worked on together, so programs that number the atoms
- * of all molecules of a kind alike get the most of it.
+ * linear chains, trees, rings, triangles or anything else (docs/molecules.md). Molecules of equal masses, lengths and
+ * relative numbers of atoms are worked on together: number the atoms of equal molecules alike, and calls are as fast
+ * as with hol_chains_add_molecules.
  *
  * @param[in,out] chains
  * @param[in]     n_bonds  >= 1
  * @param[in]     pairs    [n_bonds][2], the two atoms of each bond (Fortran: (2, n_bonds))
  * @param[in]     lengths  [n_bonds], as in hol_chains_add. Copied.
  *
- * New molecules are numbered by their lowest atoms that can move. Arrays per bond have these bonds in the order of the
- * list, after those of earlier calls. All bonds of a molecule have to be given in one call, but a fixed
- * atom may occur in any number of bonds and calls: it couples nothing.
+ * Distances that depend on each other are held as rigid bodies, as if hol_chains_add_rigid had been called, where their
+ * lengths say so: atoms that are all bonded to each other, three on a line, four in a plane (to the rounding of the
+ * lengths), five and more (to 1e-6 of them); rings of six atoms and more whose angles, held by distances of next
+ * neighbours, keep them in a plane. Forces and motions are those of the body. Multipliers of such bonds are, of those
+ * whose pulls come nearest to the body's forces, the ones of least norm; only forces across a line or plane have none.
+ * Right-hand sides of hol_solve are not looked at for them.
+ *
+ * New molecules are numbered by their lowest atoms that can move, those with bodies behind all others. Arrays per bond
+ * have these bonds in the order of the list, after those of earlier calls. All bonds of a molecule have to be given in
+ * one call, but a fixed atom may occur in any number of bonds and calls.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (n_bonds, a length, a bond of an atom with itself, a molecule of more
  *         than 2^31 - 1 bonds; lengths of a triangle or ring that can't close: the message names the atoms);
- *         HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM (an atom that can move is in a molecule of an
- *         earlier call; the message names it); HOL_ERR_DEGENERATE (a bond that is given twice, or more bonds within a
- *         part of a molecule than it has freedoms, as all distances between five atoms: the message names a bond; bonds
+ *         HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM (an atom that can move is in a molecule of an earlier call; the message
+ *         names it); HOL_ERR_DEGENERATE (a bond given twice, more bonds within a part of a molecule than it has
+ *         freedoms, or lengths of five atoms and more that fit no places in space: the message names a bond. Bonds
  *         that depend on each other through the positions alone are found by the calls that meet them);
- *         HOL_ERR_MEMORY.
+ *         HOL_ERR_MEMORY (also: more than hol_chains_set_memory_limit allows; the message names the molecule).
  *         On an error nothing is added. Not thread-safe on one handle. O(n_bonds). Since 0.2.
  */
 HOL_API int hol_chains_add_bonds(hol_chains *chains, int64_t n_bonds, const int64_t *pairs, const double *lengths);
@@ -196,22 +203,82 @@ HOL_API int hol_chains_add_molecules(hol_chains *chains, int64_t n_molecules, in
                                      int64_t n_bonds, const int64_t *pairs, const double *lengths);
 
 /**
+ * Adds rigid bodies, and bonds at them: any number of atoms held as one whole (CO2, benzene, a cage, a patchy
+ * particle), with massless sites (TIP4P) among them, alone or in molecules with bonds, such as side chains, rings in a
+ * row, or a body tethered to a fixed atom. docs/rigid.md.
+ *
+ * @param[in,out] chains
+ * @param[in]     n_bodies  >= 1
+ * @param[in]     sizes     [n_bodies], how many atoms each body has, >= 2
+ * @param[in]     atoms     [sum of sizes], the atoms of one body after the other, any numbers of the caller's arrays.
+ * An atom of mass 0 is a massless site here: its place is written with the others' and the force on it goes to them.
+ * (Everywhere else mass 0 means held fixed, as it did. An atom of infinite mass is always held fixed, and can be in no
+ * body.)
+ * @param[in]     places    [sum of sizes][3], reference coordinates of these atoms, each body in any frame of its own.
+ *                          They say what the body looks like; where it is, and which way it points, say the positions
+ *                          given to the verbs. Copied.
+ * @param[in]     n_bonds   >= 0; 0: the bodies are alone
+ * @param[in]     pairs     [n_bonds][2], bonds between an atom of a body and another atom: of another body, of none, or
+ *                          held fixed; and between other atoms of these molecules. May be NULL if n_bonds is 0
+ * @param[in]     lengths   [n_bonds], as in hol_chains_add. May be NULL if n_bonds is 0. Copied.
+ *
+ * Bodies are taken as thin as they are: three atoms on a line to 1e-8 of its length are linear. A site must lie on the
+ * line of a linear body and in the plane of a planar one. A bond within a body is satisfied by it: its multiplier is 0.
+ *
+ * Molecules with bodies are numbered behind all others of the set, in the order of their first bodies; their bonds
+ * stand in the arrays per bond in the order of the list, after those of earlier calls. All bonds of a molecule have to
+ * be given in one call. The verbs treat them as other molecules: multipliers of bonds, constraint forces
+ * G_i = m_i a_i - f_i (of a site -f_i), velocities and positions of all atoms, the virial sum r_i (x) G_i. What holds a
+ * body together has no multipliers of its own. hol_violation, hol_report and hol_error_location name -1 for the bond
+ * where it is the body that is meant. hol_metric, hol_inverse_create, hol_impose and hol_project_positions_along refuse
+ * such sets or molecules.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (sizes; a length; a body without mass, with mass at one point, with a
+ *         fixed atom, or with a site that it cannot carry; a bond within a body of another length; a bond in no
+ * molecule with a body); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM (an atom in two bodies or in a molecule of an earlier
+ * call); HOL_ERR_NOT_FINITE (places); HOL_ERR_DEGENERATE (a bond given twice, more bonds than freedoms);
+ *         HOL_ERR_MEMORY. On an error nothing is added. Not thread-safe on one handle. Since 0.2.
+ */
+HOL_API int hol_chains_add_rigid(hol_chains *chains, int64_t n_bodies, const int64_t *sizes, const int64_t *atoms,
+                                 const double *places, int64_t n_bonds, const int64_t *pairs, const double *lengths);
+
+/**
+ * Adds the same bodies and bonds for n_molecules molecules of n_atoms consecutive atoms each, as
+ * hol_chains_add_molecules does for bonds alone: a box of CO2 or of TIP4P in one call.
+ * @param[in,out] chains
+ * @param[in] n_molecules  >= 1
+ * @param[in] n_atoms      >= 2, atoms from one molecule to the next
+ * @param[in] first_atom   number of the first atom of the first molecule
+ * @param[in] n_bodies     >= 1, bodies of one molecule
+ * @param[in] sizes        [n_bodies]
+ * @param[in] atoms        [sum of sizes], numbers within the molecule, counted from the index base
+ * @param[in] places       [sum of sizes][3], the same for every molecule
+ * @param[in] n_bonds      >= 0, bonds of one molecule
+ * @param[in] pairs        [n_bonds][2], numbers within the molecule; or NULL if n_bonds is 0
+ * @param[in] lengths      [n_bonds]; or NULL if n_bonds is 0
+ * @return as hol_chains_add_rigid. Since 0.2.
+ */
+HOL_API int hol_chains_add_rigid_molecules(hol_chains *chains, int64_t n_molecules, int64_t n_atoms, int64_t first_atom,
+                                           int64_t n_bodies, const int64_t *sizes, const int64_t *atoms,
+                                           const double *places, int64_t n_bonds, const int64_t *pairs,
+                                           const double *lengths);
+
+/**
  * New lengths for all bonds, without building the set again.
  * @param[in,out] chains
  * @param[in] lengths  [n_bonds], 1e-150 .. 1e150. Copied.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (a length, lengths of a triangle or ring that can't close, or one of more
  *         than half the box: the message names the bond); HOL_ERR_MEMORY. On an error nothing is changed. Not
- * thread-safe on one handle. O(n_bonds). Since 0.2.
+ *         thread-safe on one handle. O(n_bonds): 4 to 34 ns per bond. Since 0.2.
  */
 HOL_API int hol_chains_set_lengths(hol_chains *chains, const double *lengths);
 
 /**
  * New masses for all atoms, without building the set again.
  * @param[in,out] chains
- * @param[in] masses  [n_atoms], as in hol_chains_create. What is held fixed divides molecules, so that an atom that is
- *                    in use stays fixed if it was, and movable if it was.
+ * @param[in] masses  [n_atoms], as in hol_chains_create. An atom of a molecule stays fixed if it was, and movable if it
+ *                    was: fixed atoms decide what the molecules are.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (a mass: the message names the atom; all 0); HOL_ERR_MEMORY. On an error
- * nothing is changed. Not thread-safe on one handle. O(n_atoms). Since 0.2.
+ *         nothing is changed. Not thread-safe on one handle. O(n_atoms). Since 0.2.
  */
 HOL_API int hol_chains_set_masses(hol_chains *chains, const double *masses);
 
@@ -225,13 +292,16 @@ HOL_API int hol_chains_set_index_base(hol_chains *chains, int base);
 /**
  * Periodic box: bond vectors are taken as the minimum image. The default is none.
  * @param[in,out] chains
- * @param[in] box  [3][3], row i is box vector i, length; a row of zeros: not periodic along that axis, in which no
- * other vector may have a component. NULL: no box. Three sides stand on the diagonal: {a,0,0, 0,b,0, 0,0,c}.
+ * @param[in] box  [3][3], row i is box vector i, length. Three sides stand on the diagonal: {a,0,0, 0,b,0, 0,0,c}. A
+ *                 row of zeros: not periodic along that axis, in which no other vector may have a component. NULL: none
  *
- * Orthorhombic boxes (off-diagonal elements all zero) cost less than triclinic ones. The image is the right one for
- * bonds shorter than half the smallest distance between opposite faces. May be set again before every call.
+ * The image is the right one for bonds shorter than half the smallest distance between opposite faces; molecules may be
+ * larger, and their cycles may go round the box (networks, zeolites). A network that does so has 3 n - 3 freedoms for
+ * its bonds, not 3 n - 6: with more bonds than the latter it is added after the box has been set. May be set again
+ * before every call; that takes no time. An orthorhombic box (zeros beside the diagonal) makes calls up to 1.6 times as
+ * long, any other 1.1 to 1.9 times. Programs whose molecules are whole need none.
  * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_VALUE (not finite, or no cell; since 0.2 narrower than twice the
- * longest bond). On an error nothing is changed. Since 0.1.
+ *         longest bond). On an error nothing is changed. Not thread-safe on one handle. Since 0.1.
  */
 HOL_API int hol_chains_set_box(hol_chains *chains, const double *box);
 
@@ -240,7 +310,7 @@ HOL_API int hol_chains_set_box(hol_chains *chains, const double *box);
  * deform the cell between the two.
  * @param[in,out] chains
  * @param[in] box  as in hol_chains_set_box; NULL (default): that of hol_chains_set_box, also when it is set later
- * @return as hol_chains_set_box. Since 0.2.
+ * @return as hol_chains_set_box. It costs what that does. Since 0.2.
  */
 HOL_API int hol_chains_set_reference_box(hol_chains *chains, const double *box);
 
@@ -254,7 +324,8 @@ HOL_API int hol_chains_set_reference_box(hol_chains *chains, const double *box);
  * A bond of vector d then has the relative velocity u = v_j - v_i + L d, with images of d as the box has them:
  * hol_project_velocities makes d.u zero, hol_violation measures d.u, and hol_forces has |u|^2 in place of
  * |v_j - v_i|^2, f being all that accelerates the positions (docs/integrators.md). Nothing else depends on it. Take L
- * at the instant of the velocities; it may be set again before every call. A box set in the handle is not needed.
+ * at the instant of the velocities; it may be set again before every call. A box set in the handle is not needed. It
+ * makes velocities up to 1.2 times as long, forces 2 to 5 times.
  * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_VALUE (not finite). On an error nothing is changed. Not thread-safe on
  *         one handle. Since 0.2.
  */
@@ -263,7 +334,7 @@ HOL_API int hol_chains_set_box_rate(hol_chains *chains, const double *L);
 /**
  * Numbers by which the caller knows atoms and molecules, such as the tags of a program that moves atoms between
  * processes. Messages show them beside the library's own numbers, "atom 17 (label 90210)"; a molecule without a label
- * of its own is shown with one of its atoms. They mean nothing to the library, and may be any numbers.
+ * of its own is shown with one of its atoms. They may be any numbers, and cost memory alone.
  * @param[in,out] chains
  * @param[in] atoms      [n_atoms], or NULL: none (default). Copied.
  * @param[in] molecules  [n_chains], or NULL: none (default). Copied. Molecules that are added later have none.
@@ -280,22 +351,24 @@ typedef enum hol_when {
 } hol_when;
 
 /**
- * When hol_project_positions compares positions with the lengths. A unit, an order or a numbering that is mistaken, a
- * molecule cut by a face of the cell, a box forgotten or stale: all of these still have solutions, and Newton's method
- * would find them, atoms moved by half the cell. With HOL_AT_START (default)
+ * When hol_project_positions compares positions with the lengths. A wrong unit, order or numbering, a molecule cut by a
+ * face of the cell, a box forgotten or stale: all of these have solutions, and Newton's method would find them, with
+ * atoms moved by half the cell. With HOL_AT_START (default)
  *
- * - the first call, and the first after new molecules, after hol_chains_set_active, after lengths of more than 1.5
- * times or less than two thirds of those before, and after a box that differs by more than 2 per cent, returns
- * HOL_ERR_LENGTHS, and moves nothing, if a bond of the reference is off by more than a tenth of its length or longer
- * than half the box, or a bond of the positions to be projected is more than 5 times as long as it should be. It costs
- * one pass over the bonds, once.
+ * - the first call returns HOL_ERR_LENGTHS and moves nothing if a bond of the reference is off by more than a tenth of
+ *   its length or longer than half the box, or if a bond of the positions to be projected is more than 5 times as long
+ *   as it should be. So does the first call after new molecules, after hol_chains_set_active, after lengths of more
+ *   than 1.5 times or less than two thirds of those before, and after a box that differs by more than 2 per cent. It
+ *   costs one pass over the bonds, once.
  * - in every later call a molecule with a bond of more than 5 times its length in the positions to be projected is bad
- *   (HOL_ERR_LENGTHS): it is left as it is, all others are complete. That costs nothing that can be measured.
+ *   (HOL_ERR_LENGTHS): it is left as it is, all others are complete. That costs under 2 per cent of the call.
  *
- * The message names the worst bond, its atoms, its length and the length wanted, whether a box is set, and what is
- * likely to be the cause. Programs whose references are crude - coordinates of a file with three decimals are not, a
- * model built by hand may be - set HOL_NEVER, project with r_ref = r until the positions are right, and set
- * HOL_AT_START again (docs/integrators.md).
+ * HOL_ALWAYS makes calls 1.6 to 2 times as long, of every shape.
+ *
+ * The message names the worst bond, its atoms, its length and the length wanted, whether a box is set, and the likely
+ * cause. A crude start (a model built by hand; files with two decimals are no such case) calls hol_impose once
+ * (docs/recipes.md); with rigid bodies it sets HOL_NEVER, calls hol_project_positions with r_ref = r, and sets
+ * HOL_AT_START again.
  *
  * @param[in,out] chains
  * @param[in]     when    an hol_when
@@ -317,16 +390,52 @@ HOL_API int hol_chains_check(const hol_chains *chains, const double *r, int box)
 
 /**
  * Number of threads that a call may use, >= 1. The default is 1. Without OpenMP at build time all calls use one.
- * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Since 0.1.
+ * Threads share pieces of 4000 bonds, whatever the molecules; a call with fewer than 4096 bonds per thread starts
+ * fewer. One long chain is shared, too, one large molecule in part.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.1.
  */
 HOL_API int hol_chains_set_threads(hol_chains *chains, int n_threads);
+
+/**
+ * Whether calls keep a status and a number of iterations for each molecule, for hol_outcomes. By default they don't,
+ * and it costs nothing.
+ *
+ * Kept, molecules go through the kernels one by one, not several side by side: results for molecules are the same, sums
+ * over them (virial, energy) may differ in the last digits, and calls with many small molecules take several times as
+ * long. So it is for the search for what is wrong, or for a call made again after one that failed: a call that fails
+ * leaves bad molecules as they were, and to make it again names them all. 8 bytes per molecule of each thread.
+ * @param[in,out] chains
+ * @param[in]     keep    0 or 1
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.2.
+ */
+HOL_API int hol_chains_set_outcomes(hol_chains *chains, int keep);
+
+/**
+ * What the calling thread's last call of hol_forces, hol_solve, hol_project_velocities, hol_project_positions,
+ * hol_project_positions_along, hol_metric or hol_impose with this handle has done with each molecule: where
+ * hol_error_location names the first bad one, this names all, and why each is bad. Only of calls made while
+ * hol_chains_set_outcomes has it kept.
+ * @param[in]  chains
+ * @param[out] status      [n_chains] an hol_status each: HOL_OK, or what the call would have returned were it the only
+ *                         bad molecule. Or NULL
+ * @param[out] iterations  [n_chains] linear solves that the positions of the molecule took, of hol_impose steps; 0
+ *                         where it obeyed the tolerance, and in calls without iterations. Of a bad molecule what it
+ *                         took as far as that is known, or 0. Or NULL
+ *
+ * An inactive molecule has HOL_OK and 0. Where positions or forces were refused before anything was done
+ * (HOL_ERR_LENGTHS in the first step), all molecules that do not fit have that status.
+ * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_VALUE: the thread has made no such call since, it ended by a wrong
+ *         argument or by HOL_ERR_MEMORY, molecules have been added after it, or this thread has called with another
+ *         handle that keeps outcomes. Thread-safe on one handle. Since 0.2.
+ */
+HOL_API int hol_outcomes(const hol_chains *chains, int *status, int *iterations);
 
 /**
  * Leaves molecules out: the data of an inactive molecule are neither read nor written, and it counts in no sum.
  * @param[in,out] chains
  * @param[in] active  [n_chains], 0 = inactive, anything else = active; copied. NULL: all active (default). Molecules
- *                    added later are active.
- * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_MEMORY. Since 0.1.
+ *                    added later are active. Half of them inactive: 0.5 to 0.8 of the time.
+ * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_MEMORY. Not thread-safe on one handle. Since 0.1.
  */
 HOL_API int hol_chains_set_active(hol_chains *chains, const unsigned char *active);
 
@@ -335,14 +444,18 @@ HOL_API int hol_chains_set_active(hol_chains *chains, const unsigned char *activ
  * @param[in,out] chains
  * @param[in] tolerance  > 0, or 0 for the default: the rounding of the coordinates, i.e. of the largest coordinate of
  *                       the molecule in the element type of the caller's positions.
- * A tolerance below what the coordinates can carry means the default.
- * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Since 0.1.
+ * A tolerance below what the coordinates can carry means the default. A loose one lets the energy drift, and saves
+ * little: 1e-8 takes a fifth of the time off chains, trees and rings, and none off water and atoms with three others,
+ * which are solved to the rounding at once (docs/recipes.md has a table). A molecule that is within the tolerance
+ * already is left where it is.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.1.
  */
 HOL_API int hol_chains_set_tolerance(hol_chains *chains, double tolerance);
 
 /**
- * Bound on the iterations of hol_project_positions for a molecule, 1..1000. The default is 50; a well-posed step needs
- * 2 to 5. @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Since 0.1.
+ * Bound on the iterations of hol_project_positions for a molecule of any shape, 1..1000. The default is 50; a
+ * well-posed step needs 2 to 5. A smaller bound makes no step faster that converges.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.1.
  */
 HOL_API int hol_chains_set_max_iterations(hol_chains *chains, int max_iterations);
 
@@ -357,7 +470,8 @@ typedef enum hol_shape {
     HOL_SHAPE_TREE = 1,     /**< branched, without a cycle */
     HOL_SHAPE_RING = 2,     /**< one cycle of at least four bonds and nothing else */
     HOL_SHAPE_TRIANGLE = 3, /**< three atoms and their three distances */
-    HOL_SHAPE_OTHER = 4     /**< anything else that has a cycle */
+    HOL_SHAPE_OTHER = 4,    /**< anything else that has a cycle */
+    HOL_SHAPE_RIGID = 5     /**< with rigid bodies (hol_chains_add_rigid) */
 } hol_shape;
 
 /** Number of molecules of an hol_shape; 0 if chains is NULL or for any other number. O(n_chains). Since 0.2. */
@@ -381,11 +495,11 @@ HOL_API int hol_chains_molecule(const hol_chains *chains, int64_t molecule, int 
 /**
  * Atoms of one molecule: along a linear chain; ascending otherwise, each once.
  * @param[in] chains
- * @param[in]  chain  number of the molecule
- * @param[out] atoms  [n_atoms of hol_chains_molecule], for a linear chain the number of its bonds + 1
+ * @param[in]  molecule  its number
+ * @param[out] atoms     [n_atoms of hol_chains_molecule], for a linear chain the number of its bonds + 1
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_INDEX. Since 0.1.
  */
-HOL_API int hol_chains_atoms(const hol_chains *chains, int64_t chain, int64_t *atoms);
+HOL_API int hol_chains_atoms(const hol_chains *chains, int64_t molecule, int64_t *atoms);
 
 /**
  * Bonds of one molecule, in the order in which they are counted within it: hol_error_location, hol_report, hol_worst
@@ -406,11 +520,11 @@ HOL_API int hol_chains_bonds(const hol_chains *chains, int64_t molecule, int64_t
 HOL_API int hol_chains_molecules_of_bonds(const hol_chains *chains, int64_t *molecules);
 
 /**
- * Where each molecule's bonds stand in the arrays per bond, if those of each follow one another and molecule follows
- * molecule, as they do if only hol_chains_add and hol_chains_add_block were called and no bond joins two fixed atoms;
- * hol_chains_bonds tells it in any case. The order within a molecule is that of hol_chains_bonds.
+ * Where each molecule's bonds stand in the arrays per bond, if molecule follows molecule there: as after
+ * hol_chains_add and hol_chains_add_block alone, without bonds between fixed atoms. hol_chains_bonds tells it always.
  * @param[in] chains
- * @param[out] offsets  [n_chains+1]: molecule c has the bonds offsets[c] .. offsets[c+1]-1; counted from the index base
+ * @param[out] offsets  [n_chains+1]: molecule m has the bonds offsets[m] .. offsets[m+1]-1; counted from the index
+ *                      base. The order within a molecule is that of hol_chains_bonds
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (the bonds stand in another order; the message names the first molecule
  *         of which that is so; nothing is written). Since 0.1.
  */
@@ -418,7 +532,8 @@ HOL_API int hol_chains_offsets(const hol_chains *chains, int64_t *offsets);
 
 /**
  * Degrees of freedom of all n_atoms atoms: dimensions times the number of atoms that can move, less one for each bond
- * of an active molecule. A conserved total momentum is not subtracted.
+ * of an active molecule; a rigid body has six, a linear one five, three in two dimensions. A conserved total momentum
+ * is not subtracted.
  * @param[in] chains
  * @param[in] dimensions  3, or 2 for views without z
  * @return the number; -1 if chains is NULL or dimensions is neither. Since 0.1.
@@ -428,6 +543,17 @@ HOL_API int64_t hol_chains_degrees_of_freedom(const hol_chains *chains, int dime
 /** Memory that the handle occupies, in bytes; 0 if chains is NULL. Since 0.1. */
 HOL_API int64_t hol_chains_memory(const hol_chains *chains);
 
+/**
+ * Bound on the memory that a set of molecules takes. Of a molecule with many cycles (a lattice, a sheet) the
+ * elimination fills its matrix: adding it counts what that takes before it takes anything, and refuses it with
+ * HOL_ERR_MEMORY and both numbers in the message where that, with what the set has, is more than the bound.
+ * @param[in,out] chains
+ * @param[in]     bytes  > 0, or 0 for the default: a quarter of the machine's memory. It holds for what is added later,
+ *                       and for the scratch that calls need for it.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.2.
+ */
+HOL_API int hol_chains_set_memory_limit(hol_chains *chains, int64_t bytes);
+
 /* --------------------------------------------------------------------------------------------------------- views */
 
 /** Element type of a view. */
@@ -436,7 +562,8 @@ typedef enum hol_element { HOL_DOUBLE = 0, HOL_FLOAT = 1 } hol_element;
 /**
  * Where a vector per atom stands in the caller's memory: component x of atom i is the element at
  * (char *)x + i * stride, likewise y and z. Separate arrays, padded records, single precision, two dimensions.
- * Arithmetic is in double precision whatever the element type. Inputs are only read.
+ * Arithmetic is in double precision whatever the element type. Inputs are only read. Packed doubles cost least: other
+ * layouts make calls 1.2 to 2.2 times as long, of water and groups XH3 up to 5 times.
  */
 typedef struct hol_view {
     void *x, *y, *z;  /**< of atom 0; z == NULL: two dimensions, all z are zero (in every view of a call or in none) */
@@ -458,8 +585,8 @@ typedef enum hol_mode { HOL_WRITE = 0, HOL_ADD = 1 } hol_mode;
  *
  * Finds the multipliers with which each bond obeys sigma'' = 0, that is
  *     d_k . (A_j - A_i) + |v_j - v_i|^2 = 0,   A_i = w_i (f_i + G_i),   bond k from atom i to atom j,
- * by one factorization per molecule: no iteration, no tolerance. With hol_chains_set_box_rate v_j - v_i + L d_k stands
- * in place of v_j - v_i (since 0.2). docs/theory.md (5)-(12); Mazars 2007, Eqs. (6), (24).
+ * by one factorization per molecule, without iteration or tolerance. With hol_chains_set_box_rate v_j - v_i + L d_k
+ * stands in place of v_j - v_i (since 0.2). docs/theory.md (5)-(12); Mazars 2007, Eqs. (6), (24).
  *
  * @param[in]  chains   which atoms are bonded
  * @param[in]  r        positions [n_atoms][3], length
@@ -467,7 +594,7 @@ typedef enum hol_mode { HOL_WRITE = 0, HOL_ADD = 1 } hol_mode;
  * @param[in]  f        applied forces [n_atoms][3], or NULL: none
  * @param[out] lambda   multipliers [n_bonds], force/length, or NULL
  * @param[out] tension  T = 2 lambda |d| [n_bonds], force, > 0 under tension, or NULL
- * @param[out] g        constraint forces [n_atoms][3], force, or NULL. May be f itself.
+ * @param[out] g        constraint forces [n_atoms][3], force, or NULL. May be f itself
  * @param[in]  mode     HOL_WRITE: g = G for the atoms of the molecules; HOL_ADD: g = g + G
  * @param[out] virial   [3][3], energy, or NULL: sum_i r_i (x) G_i = - sum_k 2 lambda_k d_k (x) d_k over active ones
  * @return HOL_OK; HOL_ERR_NULL (chains or r); HOL_ERR_VALUE (mode); HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE;
@@ -530,8 +657,8 @@ typedef enum hol_which_box { HOL_BOX = 0, HOL_REFERENCE_BOX = 1 } hol_which_box;
  * Multipliers of hol_project_velocities leave out what its last correction of rounding changes: G agrees with m dv to
  * the rounding of v.
  * @return HOL_OK; HOL_ERR_NULL (chains, r or lambda); HOL_ERR_VALUE (box, mode); HOL_ERR_NOT_FINITE;
- *         HOL_ERR_DEGENERATE (bonds that do not close their cycle in the box); HOL_ERR_MEMORY. Inactive molecules are
- *         neither read nor written. Thread-safe on one handle. O(n_bonds). Since 0.2.
+ *         HOL_ERR_MEMORY. Inactive molecules are neither read nor written. Thread-safe on one handle. O(n_bonds). Since
+ * 0.2.
  */
 HOL_API int hol_reactions(const hol_chains *chains, const double *r, int box, const double *lambda, double *tension,
                           double *g, int mode, double *bond_virial, double *virial);
@@ -545,7 +672,7 @@ HOL_API int hol_reactions_view(const hol_chains *chains, const hol_view *r, int 
 /**
  * Projects velocities onto the constraints (the second half of RATTLE): after the call d_k . (v_j - v_i) = 0 for
  * every bond, or d_k . (v_j - v_i + L d_k) = 0 with hol_chains_set_box_rate (since 0.2). The change is the one of least
- * kinetic energy, v_i += w_i G_i, with G_i as above (hol_reactions gives it); exact, no iteration.
+ * kinetic energy, v_i += w_i G_i, with G_i as above (hol_reactions gives it), by one factorization.
  * docs/theory.md (13)-(14).
  *
  * @param[in]     chains
@@ -572,8 +699,8 @@ typedef struct hol_report {
     int64_t iterations;  /**< largest number of linear solves that a molecule took */
     int64_t n_corrected; /**< molecules that were moved; the others already obeyed the tolerance */
     int64_t n_failed;    /**< molecules that were left as they were because they did not converge or had bad data */
-    int64_t chain;       /**< molecule and */
-    int64_t bond;        /**< bond (within the molecule) with the largest error; -1 if there is none */
+    int64_t chain;       /**< molecule with the largest error, of whatever shape; -1 if there is none */
+    int64_t bond;        /**< its bond within the molecule */
     double max_error;    /**< largest |d.d - a^2| / a^2 left in a molecule that did not fail, before the positions are
                               rounded to the caller's element type. That of the reference: hol_reference_error */
 } hol_report;
@@ -585,16 +712,17 @@ typedef struct hol_report {
  * Newton's method with the exact Jacobian. docs/theory.md (15)-(19), docs/integrators.md.
  *
  * @param[in]     chains
- * @param[in]     r_ref   positions before the drift [n_atoms][3]; may be r itself. Only their differences within a
- *                        molecule are used: each molecule may stand anywhere, at an origin of its own
+ * @param[in]     r_ref   positions before the drift [n_atoms][3]; may be r itself (in Fortran: docs/fortran.md). Only
+ *                        differences within a molecule are used: each may stand anywhere, at an origin of its own
  * @param[in,out] r       positions after the drift [n_atoms][3]; in: unconstrained, out: constrained
  * @param[in,out] v       velocities [n_atoms][3], or NULL; v_i += dt w_i G_i, the displacement over dt. Only added to:
  *                        what is there is not checked, and a NaN stays one
  * @param[in]     dt      time step, time, > 0 and finite
  * @param[in,out] lambda  multipliers [n_bonds], force/length, or NULL. The constraint force over a leap-frog step; half
  *                        of it for velocity Verlet, whose position update carries dt^2/2.
- * @param[in]     guess   0, or 1: lambda holds a first guess, the multipliers of the last step; saves an iteration, but
- *                        is not used in coils of more than about 1000 bonds
+ * @param[in]     guess   0, or 1: lambda holds a first guess, the multipliers of the last step. It saves a solve in
+ *                        steps that take four or more; in usual ones it costs more than it saves (the call takes 1.2
+ *                        to 3 times as long). Not used in coils of more than about 1000 bonds
  * @param[out]    virial  [3][3], energy, or NULL: sum_i r_ref,i (x) G_i = - sum_k 2 lambda_k b_k (x) b_k
  * @param[out]    report  or NULL; written whenever the arguments are valid, also if molecules fail
  * @return HOL_OK; HOL_ERR_NULL (chains, r_ref or r; lambda with guess = 1); HOL_ERR_VALUE (dt, guess);
@@ -618,7 +746,8 @@ HOL_API int hol_project_positions_view(const hol_chains *chains, const hol_view 
  *
  * @param[in]     chains
  * @param[in]     b        [n_bonds][3] (Fortran: (3, n_bonds)), in the order in which the bonds were given. Not read
- * for bonds between two fixed atoms. The reference box is not used
+ *                         for bonds between two fixed atoms. The reference box is used for cycles that go round it
+ *                         alone
  * @param[in,out] r        this and all others as in hol_project_positions
  * @param[in,out] v        or NULL
  * @param[in]     dt       time step
@@ -629,7 +758,8 @@ HOL_API int hol_project_positions_view(const hol_chains *chains, const hol_view 
  *
  * The vectors are laid one after the other, from an origin at the first atom of each molecule, each rounded once as
  * coordinates there are: results are those of hol_project_positions with such coordinates. In a molecule with cycles, a
- * vector that the others determine is taken from them; it must agree with them to a thousandth of its length.
+ * vector that the others determine is taken from them; it must agree with them to a thousandth of its length, but for
+ * sides of the reference box where a cycle goes round that.
  * @return as hol_project_positions; HOL_ERR_NOT_FINITE (a vector) and HOL_ERR_DEGENERATE (vectors that do not close
  *         their cycle) with nothing changed at all. O(n_bonds) more, by one thread. Since 0.2.
  */
@@ -645,17 +775,17 @@ HOL_API int hol_project_positions_along_view(const hol_chains *chains, const hol
  * The error that a reference itself had, of the last that this thread's calls at the position level have compared with
  * the lengths: those of the first call and after changes; with HOL_ALWAYS all (hol_chains_set_checks); with HOL_NEVER
  * those of calls with a report. It is measured before anything is moved. Each pointer may be NULL.
- * @param[out] error  largest |b.b - a^2| / a^2 over active molecules; 0 before the first such call
- * @param[out] chain  its molecule, -1 if there is none
- * @param[out] bond   its bond within the molecule
+ * @param[out] error     largest |b.b - a^2| / a^2 over active molecules; 0 before the first such call
+ * @param[out] molecule  its number, -1 if there is none
+ * @param[out] bond      its bond within the molecule
  * Since 0.2.
  */
-HOL_API void hol_reference_error(double *error, int64_t *chain, int64_t *bond);
+HOL_API void hol_reference_error(double *error, int64_t *molecule, int64_t *bond);
 
 /** How far positions and velocities are from the constraints. */
 typedef struct hol_worst {
     double length;        /**< largest |d.d - a^2| / a^2 */
-    int64_t length_chain; /**< its molecule, -1 if there is no bond */
+    int64_t length_chain; /**< its molecule, of whatever shape; -1 if there is no bond */
     int64_t length_bond;  /**< its bond within the molecule */
     double rate; /**< largest |d . (v_j - v_i + L d)|, length^2/time; 0 without v (L: hol_chains_set_box_rate) */
     int64_t rate_chain;
@@ -674,6 +804,50 @@ HOL_API int hol_violation(const hol_chains *chains, const double *r, const doubl
 
 /** hol_violation with arrays per atom of any layout. Since 0.1. */
 HOL_API int hol_violation_view(const hol_chains *chains, const hol_view *r, const hol_view *v, hol_worst *worst);
+
+/**
+ * What is left of each constraint.
+ * @param[in] chains
+ * @param[in]  r       positions [n_atoms][3]
+ * @param[in]  v       velocities [n_atoms][3], or NULL
+ * @param[out] length  (d.d - a^2) / a^2 [n_bonds], > 0 where a bond is too long, or NULL
+ * @param[out] rate    d . (v_j - v_i + L d) [n_bonds], length^2/time, 0 without v, or NULL
+ * @return HOL_OK; HOL_ERR_NULL (chains or r); HOL_ERR_NOT_FINITE. Entries of inactive and of bad molecules are not
+ *         written; those of bonds between two fixed atoms are 0. Thread-safe on one handle. O(n_bonds). Since 0.2.
+ */
+HOL_API int hol_residuals(const hol_chains *chains, const double *r, const double *v, double *length, double *rate);
+
+/** hol_residuals with arrays per atom of any layout. Since 0.2. */
+HOL_API int hol_residuals_view(const hol_chains *chains, const hol_view *r, const hol_view *v, double *length,
+                               double *rate);
+
+/* --------------------------------------------------------------------------------------------- crude positions */
+
+/**
+ * Moves positions that lie anywhere onto the constraints: a model built by hand, coordinates of a builder, another
+ * force field's lengths. hol_project_positions with r_ref = r does it where bonds are off by a third or less, and with
+ * HOL_NEVER above a tenth (hol_chains_set_checks); this does it from bonds several times too long or too short, too.
+ * Each step of Newton's method goes along the bonds as they are then, by what w G allows, and only so far that no bond
+ * changes by more than a third; near the end steps are whole ones, and the result is right to the rounding of the
+ * coordinates.
+ *
+ * It is no projection: r ends on the constraints near where it was, not at the point that is nearest. Not for time
+ * steps. hol_chains_set_checks does not matter. hol_project_velocities may follow.
+ *
+ * @param[in]     chains
+ * @param[in,out] r       positions [n_atoms][3], in the box of hol_chains_set_box
+ * @param[out]    report  or NULL: iterations is the number of steps, at most that of hol_chains_set_max_iterations
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (a set with rigid bodies); HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE (atoms
+ *         on each other, bonds that depend on each other in these positions, such as a triangle that has become a line:
+ *         shift an atom, and call again); HOL_ERR_NO_CONVERGENCE; HOL_ERR_MEMORY. Molecules that fail stay as they
+ *         were, all others are done; one that is within the tolerance (hol_chains_set_tolerance) already is not
+ *         touched. Thread-safe on one handle, each thread with positions of its own. Allocates some 60 bytes per atom.
+ *         Since 0.2.
+ */
+HOL_API int hol_impose(const hol_chains *chains, double *r, hol_report *report);
+
+/** hol_impose with positions of any layout. Since 0.2. */
+HOL_API int hol_impose_view(const hol_chains *chains, const hol_view *r, hol_report *report);
 
 /* -------------------------------------------------------------------------- metric determinant and Fixman potential */
 
@@ -727,23 +901,24 @@ typedef enum hol_scaling { HOL_UNIT_DIAGONAL = 0, HOL_PHYSICAL = 1 } hol_scaling
  * O(N^2). All are solved for in twice the precision: right to a few roundings, in trees however ill conditioned Z is,
  * beside cycles as long as no pivot of Z~ is below 1e-17. These functions may then return HOL_ERR_MEMORY.
  *
- * @param[in]  chains   an inactive molecule is allowed
- * @param[in]  chain    number of the molecule, counted from the index base of `chains`, as bonds and atoms are in all
- *                      the functions below
- * @param[in]  r        positions [n_atoms][3]
- * @param[out] inverse  the new handle, to be given to hol_inverse_destroy; NULL on an error
+ * @param[in]  chains    an inactive molecule is allowed
+ * @param[in]  molecule  its number, counted from the index base of `chains`, as bonds and atoms are in all the
+ *                       functions below
+ * @param[in]  r         positions [n_atoms][3]
+ * @param[out] inverse   the new handle, to be given to hol_inverse_destroy; NULL on an error
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_INDEX; HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE; HOL_ERR_MEMORY.
  *         Thread-safe on one `chains`. Since 0.1.
  */
-HOL_API int hol_inverse_create(const hol_chains *chains, int64_t chain, const double *r, hol_inverse **inverse);
+HOL_API int hol_inverse_create(const hol_chains *chains, int64_t molecule, const double *r, hol_inverse **inverse);
 
 /** hol_inverse_create with positions of any layout. Since 0.1. */
-HOL_API int hol_inverse_create_view(const hol_chains *chains, int64_t chain, const hol_view *r, hol_inverse **inverse);
+HOL_API int hol_inverse_create_view(const hol_chains *chains, int64_t molecule, const hol_view *r,
+                                    hol_inverse **inverse);
 
 /** Frees a handle; NULL is allowed and does nothing. Since 0.1. */
 HOL_API void hol_inverse_destroy(hol_inverse *inverse);
 
-/** Number of bonds of the chain, i.e. of rows; 0 if inverse is NULL. Since 0.1. */
+/** Number of bonds of the molecule, i.e. of rows; 0 if inverse is NULL. Since 0.1. */
 HOL_API int64_t hol_inverse_n_bonds(const hol_inverse *inverse);
 
 /**
@@ -752,7 +927,7 @@ HOL_API int64_t hol_inverse_n_bonds(const hol_inverse *inverse);
  * underflows only if the element does.
  * @param[in]  inverse
  * @param[in]  scaling  HOL_UNIT_DIAGONAL or HOL_PHYSICAL
- * @param[in]  i, j     numbers of bonds within the chain
+ * @param[in]  i, j     numbers of bonds within the molecule
  * @param[out] value    (Z~^-1)_ij or (Z^-1)_ij
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (scaling); HOL_ERR_INDEX. Thread-safe, as all functions of a hol_inverse
  *         are. Since 0.1.
@@ -797,21 +972,21 @@ HOL_API int hol_inverse_matrix(const hol_inverse *inverse, int scaling, double *
 HOL_API int hol_inverse_condition(const hol_inverse *inverse, double *condition);
 
 /**
- * How far given multipliers of the chain are from the exact ones, as a guaranteed bound found afterwards: |Z^-1| times
- * the residual K + C - Z lambda, evaluated in twice the precision, with the rounding of the evaluation itself added.
- * O(N) for a linear chain, O(N^2) otherwise. It says how far to trust multipliers from any source, this library or
- * another solver.
+ * How far given multipliers of the molecule are from the exact ones, as a guaranteed bound found afterwards: |Z^-1|
+ * times the residual K + C - Z lambda, evaluated in twice the precision, with the rounding of the evaluation itself
+ * added. O(N) for a linear chain, O(N^2) otherwise. It says how far to trust multipliers from any source, this library
+ * or another solver.
  *
  * @param[in]  inverse  of the conformation to which the multipliers belong
  * @param[in]  v, f     velocities and applied forces as given to hol_forces, [n_atoms][3]; either may be NULL
- * @param[in]  lambda   [N], the chain's part of the multipliers
+ * @param[in]  lambda   [N], the molecule's part of the multipliers
  * @param[out] bound    [N] |lambda_k - exact lambda_k| <= bound_k, or NULL
  * @param[out] relative the largest bound_k over the largest |lambda_k|, or NULL; 0 if all bounds are 0, infinite if
  *                      only the multipliers are
  *
  * The equations are those without hol_chains_set_box_rate. "Exact" is for the given doubles of r, v, f and for the
- * inverse masses as rounded to doubles. What the data's own
- * errors do comes on top: at most a relative error of theirs times hol_inverse_condition.
+ * inverse masses as rounded to doubles. The data's own errors come on top: at most their relative error times
+ * hol_inverse_condition.
  * @return HOL_OK; HOL_ERR_NULL (inverse or lambda); HOL_ERR_NOT_FINITE (v, f or lambda; nothing is written). Since 0.1.
  */
 HOL_API int hol_inverse_error_bound(const hol_inverse *inverse, const double *v, const double *f, const double *lambda,
@@ -829,7 +1004,10 @@ HOL_API int hol_inverse_error_bound_view(const hol_inverse *inverse, const hol_v
  * first two rows (gamma_2 in the paper), gamma[k] rows k and k+1 counted from 0.
  *
  * Accuracy. Results are those of the given doubles to a few roundings (plus one or two for each row between i and j in
- * inverse elements), as all recursions run in twice the precision; this holds up to a condition number of about 1e14.
+ * inverse elements), up to a condition number of about 1e14. Solutions, pivots and determinants are computed in doubles
+ * and corrected by what their rounding has done, which costs as much as a plain elimination. Where the corrections show
+ * that this is not enough (condition numbers above some 1e6), and for inverse elements, the recursions run in twice the
+ * precision and take 10 to 20 times as long.
  * But gamma alone carries only so much: changing each gamma by half a unit in its last place changes the results by up
  * to 1.1e-16 times the condition number, relatively. Chains whose masses and bond vectors are known should go through
  * hol_metric and hol_inverse, which lose nothing. A matrix that its rounding has made singular is reported as such.

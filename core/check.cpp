@@ -1,4 +1,4 @@
-#include "core/fit.hpp"
+#include "core/check.hpp"
 
 #include <algorithm>
 #include <cmath>

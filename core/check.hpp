@@ -1,6 +1,6 @@
-// Whether positions fit to the bonds' lengths: what is mistaken where a program begins shows there.
-#ifndef HOLONOMIC_FIT_HPP
-#define HOLONOMIC_FIT_HPP
+// Positions compared with the lengths of the bonds: what is mistaken where a program begins shows there.
+#ifndef HOLONOMIC_CHECK_HPP
+#define HOLONOMIC_CHECK_HPP
 
 #include "core/molecules/chains.hpp"
 
