@@ -92,6 +92,7 @@ void fill_metric(const exact_chain &c, const elimination &z, const sizes &s, con
         if (k == 0) continue;
         h[k] = s.w[k] * out.step[k] * diagonal /
                (std::sqrt(s.w[k - 1] + s.w[k]) * std::sqrt(s.w[k] + s.w[k + 1]));  // of M^-1, M_kk = w + w'
+        out.log_det_slack += 2 * rounding_of_products * std::fabs(h[k]);           // d ln det M / d cosine = 2 h
         const quad3 area = cross(c.d[k - 1], c.d[k]);
         for (std::size_t x = 0; x < 3; ++x) normal[3 * k + x] = narrow(area[x]) / s.size[k - 1] / s.size[k];
     }

@@ -18,8 +18,10 @@ struct exact_metric {
     bool regular = false; /**< false: Z~ is singular; nothing else is set */
     long double log_det = 0, condition = 0;
     std::vector<long double> force, force_scale; /**< of the Fixman potential over kT, [n+1][3] and [n+1] */
-    /** What the sines of joints, known to the rounding of twice the precision, leave of it; chain_reference alone. */
+    /** What the sines and cosines of joints, known to the rounding of twice the precision, leave of these;
+     * chain_reference alone. */
     std::vector<long double> force_slack;
+    long double log_det_slack = 0;
     std::vector<long double> diagonal, step; /**< (Z~^-1)_kk and (Z~^-1)_{k-1,k} / (Z~^-1)_kk */
 
     /** (Z~^-1)_ij, i <= j counted from 0. */
