@@ -2,6 +2,7 @@
 // what others take for the same, if they are asked for and CHOLMOD is there.
 #include <holonomic.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -45,6 +46,17 @@ void print(const Call &c, double n) {
                                                    : "err",
                     c.time);
     std::fflush(stdout);
+}
+
+/** Rounds that the iteration for a network takes; 0 of what is solved directly. */
+int rounds_of_forces(const Network &s, hol_chains *chains, const std::vector<double> &v, const std::vector<double> &f,
+                     std::vector<double> &g) {
+    std::vector<int> iterations(static_cast<std::size_t>(hol_chains_n_chains(chains)));
+    hol_chains_set_outcomes(chains, 1);
+    hol_forces(chains, s.r.data(), v.data(), f.data(), nullptr, nullptr, g.data(), HOL_WRITE, nullptr);
+    hol_outcomes(chains, nullptr, iterations.data());
+    hol_chains_set_outcomes(chains, 0);
+    return iterations.empty() ? 0 : *std::max_element(iterations.begin(), iterations.end());
 }
 
 #ifdef BENCH_HAVE_CHOLMOD
@@ -153,6 +165,7 @@ void measure(const Network &s, int threads, int repeats, bool beside) {
         });
     print(c, n);
     if (c.status != HOL_OK) std::printf(" %s", hol_error_message());
+    const int rounds = rounds_of_forces(s, chains, raw, f, g);
     c = best_of(
         repeats, threads, [&] { v = raw; },
         [&] { return hol_project_velocities(chains, s.r.data(), v.data(), nullptr, nullptr); });
@@ -166,8 +179,8 @@ void measure(const Network &s, int threads, int repeats, bool beside) {
                                          &report);
         });
     print(c, n);
-    std::printf(" (%lld)  build %7.1f  bytes %7.1f\n", static_cast<long long>(report.iterations), 1e9 * build.time / n,
-                static_cast<double>(hol_chains_memory(chains)) / n);
+    std::printf(" (%lld)  rounds %d  build %7.1f  bytes %7.1f\n", static_cast<long long>(report.iterations), rounds,
+                1e9 * build.time / n, static_cast<double>(hol_chains_memory(chains)) / n);
     if (beside) measure_peers(s, chains, out, repeats);
     hol_chains_destroy(chains);
 }
