@@ -15,6 +15,7 @@ namespace careful {
 struct Graph {
     const Wide3 *D, *B;  // [n_bonds], the same if symmetric
     Wide *up;            // [n_bonds] inverse mass that the far side of a hanging bond offers
+    double *loss;        // [n_bonds] and what it has lost (loss.hpp)
     Wide *pivot;         // [n_bonds] pivot of a hanging bond when S over its siblings has been eliminated
     Wide *L;             // multipliers of the children of atom i, a row for each arm e (without e, if it is a child)
     Wide *y;             // [n_bonds] right-hand sides as a solve passes them on
@@ -27,6 +28,7 @@ HOL_NOINLINE Graph take_graph(const CarefulPlan &plan, const Wide3 *D, const Wid
     x.D = D;
     x.B = B;
     x.up = memory.take<Wide>(plan.n_bonds);
+    x.loss = memory.take<double>(plan.n_bonds);
     x.pivot = memory.take<Wide>(plan.n_bonds);
     x.L = memory.take<Wide>(plan.table_start[plan.n_atoms]);
     x.y = memory.take<Wide>(plan.n_bonds);
@@ -54,12 +56,14 @@ HOL_NOINLINE void add_to_core(const Molecule &m, const Graph &g, const Joint &x,
         for (int f = 0; f < x.n; ++f) {
             if (m.plan.place[arms[f]] < 0) continue;
             const Wide value = offered(x, e, f);
+            const double size = x.loss.largest * abs(value.hi);
             if (e != f) {
-                add_element(g.core, arms[e], arms[f], value);
+                add_element(g.core, arms[e], arms[f], value, size);
                 continue;
             }
             const int32_t at = m.plan.place[arms[e]];
             g.core.diagonal[at] += value;
+            g.core.size_of_diagonal[at] += size;
             g.core.full[at] += x.w * dot(x.D[e], x.B[e]);
             g.core.removed[at] += taken(x, L + e * x.n, e);
         }
@@ -67,7 +71,7 @@ HOL_NOINLINE void add_to_core(const Molecule &m, const Graph &g, const Joint &x,
 }
 
 // Eliminates the children of atom i: all of them for its other arms, and its siblings for each child.
-HOL_NOINLINE bool factorize_atom(const Molecule &m, const Graph &g, Joint &x, int32_t i, int32_t &bad) {
+HOL_NOINLINE bool factorize_joint(const Molecule &m, const Graph &g, Joint &x, int32_t i, int32_t &bad) {
     const CarefulPlan &plan = m.plan;
     const int32_t *const arms = plan.arms + plan.arm_start[i];
     Wide *const L = g.L + plan.table_start[i];
@@ -97,6 +101,18 @@ HOL_NOINLINE bool factorize_atom(const Molecule &m, const Graph &g, Joint &x, in
     }
     add_to_core(m, g, x, i, L);
     return true;
+}
+
+// The same, with what is lost at this atom, and has been on the way to it, counted apart: the core multiplies it.
+HOL_NOINLINE bool factorize_atom(const Molecule &m, const Graph &g, Joint &x, int32_t i, int32_t &bad) {
+    const double so_far = x.loss.largest;
+    x.loss.largest = 1;
+    for (int64_t a = m.plan.arm_start[i]; a < m.plan.arm_start[i + 1]; ++a)
+        if (is_child(m.plan, i, m.plan.arms[a])) x.loss.note(g.loss[m.plan.arms[a]]);
+    const bool good = factorize_joint(m, g, x, i, bad);
+    if (m.plan.parent[i] >= 0) g.loss[m.plan.parent[i]] = x.loss.largest;
+    x.loss.note(so_far);
+    return good;
 }
 
 // Returns false if a bond depends on others, and sets its number.

@@ -23,6 +23,9 @@ struct Loss {
         const double of_sum = abs(sum.hi);
         if (size > largest * of_sum) largest = of_sum > 0 ? size / of_sum : __builtin_inf();
     }
+    void note(double other) {
+        if (other > largest) largest = other;
+    }
     bool too_much() const { return !is_fourfold && !(largest <= largest_loss); }
 };
 
