@@ -20,8 +20,8 @@ struct Core {
     Wide *lower;     // elements of the columns below the diagonal; then over the pivot
     Wide *upper;     // elements of the rows beside it, never over the pivot; equal to lower at first if not mixed
     // What each diagonal element, and each element below and beside it, has been made of: the roundings in it are those
-    // of a number of this size. A pivot hands what it has lost on to all that it is divided into, so that several losses
-    // one after the other multiply.
+    // of a number of this size. A pivot hands what it has lost on to all that it is divided into, so that several
+    // losses one after the other multiply.
     double *size_of_diagonal, *size;
 };
 
