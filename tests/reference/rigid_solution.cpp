@@ -9,7 +9,7 @@ namespace reference
 namespace
 {
 
-using real = wide_float<448>;
+using real = wide_float<320>;
 using vec = vector3<real>;
 
 const real zero_pivot = real(1).scaled(-200);  // least pivots below it are zero
@@ -221,7 +221,8 @@ private:
 /** Multipliers of all rows, nodes' accelerations, velocities or places, and the scale of the multipliers. */
 struct outcome {
     bool there = false;
-    std::vector<real> t, scale;
+    std::vector<real> t;
+    std::vector<long double> scale;
     std::vector<vec> z, z_size;  // of nodes; sizes of what they are made of, without the constraints
 };
 
@@ -238,6 +239,7 @@ public:
             if (part < least_pivot) least_pivot = part;
         }
         regular = least_pivot > zero_pivot;
+        if (regular && scales_) inverse_ = inverse_of(factor_, n_rows());
     }
 
     bool regular = false;
@@ -252,13 +254,16 @@ public:
         outcome o;
         o.z = s_.forces(p_.f, false);
         o.z_size = s_.forces(p_.f, true);
-        const std::vector<vec> u = s_.nodes(p_.v);
-        std::vector<real> c;
-        for (const constraint &k : s_.rows) c.push_back(product(at(k.left, u), at(k.right, u)));
+        const std::vector<vec> u = s_.nodes(p_.v), u_size = s_.node_sizes(p_.v);
+        std::vector<real> c, c_size;
+        for (const constraint &k : s_.rows) {
+            c.push_back(product(at(k.left, u), at(k.right, u)));
+            // bonds between two atoms of none have differences of velocities, which are exact
+            c_size.push_back(k.bond >= 0 ? product_of_sizes(at(k.left, u), at(k.right, u))
+                                         : product(at(k.left, u_size), at(k.right, u_size)));
+        }
         for (std::size_t n = 0; n < u.size(); ++n)
             for (std::size_t x = 0; x < 3; ++x) o.z[n][x] *= s_.w[n], o.z_size[n][x] *= s_.w[n];
-        std::vector<real> c_size;
-        for (const constraint &k : s_.rows) c_size.push_back(product_of_sizes(at(k.left, u), at(k.right, u)));
         solve(c, c_size, o);
         return o;
     }
@@ -286,7 +291,7 @@ public:
             size.push_back(absolute(c[k]));
             for (const auto &[l, x] : a_[k]) size[k] += absolute(x * o.t[l]);
         }
-        o.scale = amplified(factor_, size);
+        o.scale = amplified(inverse_, size);
         return o;
     }
     outcome positions(const std::vector<double> &drifted) const
@@ -308,8 +313,8 @@ public:
         const sparse_factor<real> factor(s_.matrix(s_.differentiate(o.z), g_));
         o.there = factor.regular();
         if (!o.there) return o;
-        o.scale = amplified(factor, size);
-        for (std::size_t k = 0; k < size.size(); ++k) o.scale[k] += absolute(o.t[k]);
+        o.scale = amplified(inverse_of(factor, n_rows()), size);
+        for (std::size_t k = 0; k < size.size(); ++k) o.scale[k] += static_cast<long double>(absolute(o.t[k]));
         return o;
     }
 
@@ -328,16 +333,28 @@ private:
     sparse_matrix<real> a_;
     sparse_factor<real> factor_;
 
-    static std::vector<real> amplified(const sparse_factor<real> &factor, const std::vector<real> &size)
+    using matrix_of_sizes = std::vector<std::vector<long double>>;
+    matrix_of_sizes inverse_;
+
+    /** Elements of |A^-1|, column by column. */
+    static matrix_of_sizes inverse_of(const sparse_factor<real> &factor, std::size_t n)
     {
-        std::vector<real> sum(size.size());
-        for (std::size_t l = 0; l < size.size(); ++l) {
-            if (size[l] == real(0)) continue;
-            std::vector<real> column(size.size());
+        matrix_of_sizes all;
+        for (std::size_t l = 0; l < n; ++l) {
+            std::vector<real> column(n);
             column[l] = real(1);
             column = factor.solve(column);
-            for (std::size_t k = 0; k < size.size(); ++k) sum[k] += absolute(column[k]) * size[l];
+            all.emplace_back();
+            for (const real &x : column) all.back().push_back(static_cast<long double>(absolute(x)));
         }
+        return all;
+    }
+
+    static std::vector<long double> amplified(const matrix_of_sizes &inverse, const std::vector<real> &size)
+    {
+        std::vector<long double> sum(size.size());
+        for (std::size_t l = 0; l < size.size(); ++l)
+            for (std::size_t k = 0; k < size.size(); ++k) sum[k] += inverse[l][k] * static_cast<long double>(size[l]);
         return sum;
     }
 
@@ -358,7 +375,7 @@ private:
         if (!scales_) return;
         for (std::size_t k = 0; k < b.size(); ++k)
             for (const auto &g : g_[k]) size[k] += absolute(product(g.g, o.z[g.node]));
-        o.scale = amplified(factor_, size);
+        o.scale = amplified(inverse_, size);
     }
 
     bool newton(outcome &o) const
@@ -431,7 +448,7 @@ bool put_scales(const solver &of, const outcome &o, const real &unit, bool moved
     real virial(0);
     for (std::size_t k = 0; k < s.rows.size(); ++k) {
         const constraint &row = s.rows[k];
-        const real t = o.scale[k] * absolute(unit);
+        const real t = real(o.scale[k]) * absolute(unit);
         if (row.bond >= 0) to.lambda_scale[static_cast<std::size_t>(row.bond)] = static_cast<long double>(t.scaled(-1));
         for (const auto &g : of.g_[k]) pull[g.node] += t * length(g.g);
         virial += t * length(at(row.left, of.q_)) * length(at(row.right, of.q_));
@@ -469,6 +486,19 @@ bool put_scales(const solver &of, const outcome &o, const real &unit, bool moved
 body_facts facts_of_body(const rigid_problem &p, std::size_t body)
 {
     return rigid_frame<real>(p, p.bodies[body], false).facts;
+}
+
+body_shape shape_of_body(const rigid_problem &p, const std::vector<std::size_t> &atoms)
+{
+    const rigid_frame<real> frame(p, atoms, true);
+    body_shape shape;
+    for (std::size_t d = 0; d < frame.rank; ++d) shape.length.push_back(static_cast<double>(length(frame.vectors[d])));
+    for (std::size_t a = 0; a < atoms.size(); ++a) {
+        shape.share.emplace_back();
+        for (std::size_t d = 0; d < frame.rank; ++d)
+            shape.share[a][d] = static_cast<double>(real(p.mass[atoms[a]]) * frame.y[a][d] / frame.mass);
+    }
+    return shape;
 }
 
 rigid_solution solve_rigid(const rigid_problem &p, const std::vector<double> &rhs, const std::vector<double> &drifted,

@@ -1,6 +1,6 @@
 /**
  * @file rigid_solution.hpp
- * Independent solutions for molecules with rigid bodies, in 448 bits.
+ * Independent solutions for molecules with rigid bodies, in 320 bits.
  *
  * A body is two, three or four points of equal mass in the frame that a Cholesky factor of its second moments gives,
  * held by the distances of these points; its atoms are at fixed combinations of them, so that bonds are distances of
@@ -53,6 +53,13 @@ struct body_facts {
     bool refused = false;   ///< an atom is farther from the line or plane of the masses than that
 };
 body_facts facts_of_body(const rigid_problem &p, std::size_t body);
+
+/** Lengths of the principal axes that a body has, and what an atom's coordinates count in their vectors. */
+struct body_shape {
+    std::vector<double> length;                ///< [rank]
+    std::vector<std::array<double, 3>> share;  ///< [atoms][rank] of the vectors
+};
+body_shape shape_of_body(const rigid_problem &p, const std::vector<std::size_t> &atoms);
 
 struct rigid_solution {
     bool regular = false;  ///< the constraints do not depend on each other; nothing but least_pivot is set otherwise
