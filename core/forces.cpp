@@ -124,8 +124,8 @@ void forces_of_bonds(const Chains &chains, const AtomArray &r, const AtomArray &
 void forces_of_all(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
                    double *tension, const AtomArray &g, bool add, double *virial) {
     double sum[9];
-    rigid::Parts parts;
-    if (g.x && !add) rigid::clear_fixed(chains, g);
+    rigid::Parts parts(chains);
+    if (g.x && !add) parts.clear_fixed(g);
     parts.run([&] { forces_of_bonds(chains, r, v, f, lambda, tension, g, add, virial ? sum : nullptr); });
     parts.run([&] { rigid::forces(chains, r, v, f, lambda, tension, g, add, virial ? sum : nullptr); });
     parts.finish();

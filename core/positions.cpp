@@ -131,7 +131,7 @@ void project_positions_of_all(const Chains &chains, const Along &along, const At
     check_start_of_all(chains, r_ref, r);
     double sum[9];
     WorstLength of_bonds{0, -1, -1};
-    rigid::Parts parts;
+    rigid::Parts parts(chains);
     parts.run([&] {
         project_positions_of_bonds(chains, along, r, v, dt, lambda, guess, virial ? sum : nullptr, report, &of_bonds);
     });

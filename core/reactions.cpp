@@ -228,8 +228,8 @@ void reactions(const Chains &chains, const AtomArray &r, const Box &box, const d
     if (!chains.bodies()) return reactions_of_bonds(chains, r, box, lambda, out, virial);
     double sum[9];
     out.virial = virial != nullptr;
-    rigid::Parts parts;
-    if (out.g.x && !out.add) rigid::clear_fixed(chains, out.g);
+    rigid::Parts parts(chains);
+    if (out.g.x && !out.add) parts.clear_fixed(out.g);
     parts.run([&] { reactions_of_bonds(chains, r, box, lambda, out, virial ? sum : nullptr); });
     parts.run([&] { rigid::reactions(chains, r, box, lambda, out, virial ? sum : nullptr); });
     parts.finish();

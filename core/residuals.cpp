@@ -66,7 +66,7 @@ void residuals_of_bonds(const Chains &chains, const AtomArray &r, const AtomArra
 
 void residuals(const Chains &chains, const AtomArray &r, const AtomArray &v, double *length, double *rate) {
     if (!chains.bodies()) return residuals_of_bonds(chains, r, v, length, rate);
-    rigid::Parts parts;
+    rigid::Parts parts(chains);
     parts.run([&] { residuals_of_bonds(chains, r, v, length, rate); });
     parts.run([&] { rigid::residuals(chains, r, v, length, rate); });
     parts.finish();

@@ -98,8 +98,8 @@ void solve_of_all(const Chains &chains, const AtomArray &r, const double *rhs, d
                   bool add, double *virial) {
     if (!chains.bodies()) return solve_bonds(chains, r, rhs, lambda, g, add, virial);
     double sum[9];
-    rigid::Parts parts;
-    if (g.x && !add) rigid::clear_fixed(chains, g);
+    rigid::Parts parts(chains);
+    if (g.x && !add) parts.clear_fixed(g);
     parts.run([&] { solve_bonds(chains, r, rhs, lambda, g, add, virial ? sum : nullptr); });
     parts.run([&] { rigid::solve(chains, r, rhs, lambda, g, add, virial ? sum : nullptr); });
     parts.finish();

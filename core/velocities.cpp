@@ -74,7 +74,7 @@ void project_velocities_of_bonds(const Chains &chains, const AtomArray &r, const
 void project_velocities_of_all(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda,
                                double *virial) {
     double sum[9];
-    rigid::Parts parts;
+    rigid::Parts parts(chains);
     parts.run([&] { project_velocities_of_bonds(chains, r, v, lambda, virial ? sum : nullptr); });
     parts.run([&] { rigid::project_velocities(chains, r, v, lambda, virial ? sum : nullptr); });
     parts.finish();

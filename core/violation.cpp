@@ -68,7 +68,7 @@ void violation_of_bonds(const Chains &chains, const AtomArray &r, const AtomArra
 void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Worst *worst) {
     if (!chains.bodies()) return violation_of_bonds(chains, r, v, worst);
     Worst found{0, -1, -1, 0, -1, -1};
-    rigid::Parts parts;
+    rigid::Parts parts(chains);
     parts.run([&] { violation_of_bonds(chains, r, v, &found); });
     parts.run([&] { rigid::violation(chains, r, v, &found); });
     parts.finish();

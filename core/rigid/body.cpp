@@ -88,6 +88,31 @@ void set_weights(Body &body) {
         }
 }
 
+// sum m y = 0 and sum m y y^T = M to the last digit of pairs: what the rounding of a thin axis, whose square is 1e-16
+// of the longest, left of it would couple that axis to the others.
+void make_orthonormal(Body &body, const DoublePair &mass) {
+    const std::int32_t rank = body.rank;
+    const auto product = [&](int p, int q) {  // q = -1: the mean
+        DoublePair sum = as_pair(0);
+        for (std::int32_t a = 0; a < body.n_atoms; ++a) {
+            const DoublePair *const y = body.y.data() + a * rank;
+            sum = sum + body.masses[at(a)] * (q < 0 ? y[p] : y[p] * y[q]);
+        }
+        return sum / mass;
+    };
+    for (int p = 0; p < rank; ++p) {
+        for (int q = -1; q < p; ++q) {
+            const DoublePair part = product(p, q);
+            for (std::int32_t a = 0; a < body.n_atoms; ++a) {
+                DoublePair *const y = body.y.data() + a * rank;
+                y[p] = y[p] - (q < 0 ? part : part * y[q]);
+            }
+        }
+        const DoublePair size = square_root(product(p, p));
+        for (std::int32_t a = 0; a < body.n_atoms; ++a) body.y[at(a * rank + p)] = body.y[at(a * rank + p)] / size;
+    }
+}
+
 void check_input(std::int32_t n, const double *masses, const double *place) {
     int massive = 0;
     for (std::int32_t a = 0; a < n; ++a) {
@@ -165,11 +190,13 @@ Body make_body(std::int32_t n, const double *masses, const double *place) {
                     throw BodyFault{masses[a] > 0 ? BodyFault::light : BodyFault::outside, a};
                 continue;
             }
-            const DoublePair y = along / square_root(body.square[p]);
-            body.y[at(a * body.rank + p)] = y;
-            body.share[at(a * (1 + body.rank) + 1 + p)] = (masses[a] * y) / mass;
+            body.y[at(a * body.rank + p)] = along / square_root(body.square[p]);
         }
     }
+    make_orthonormal(body, mass);
+    for (std::int32_t a = 0; a < n; ++a)
+        for (int p = 0; p < body.rank; ++p)
+            body.share[at(a * (1 + body.rank) + 1 + p)] = (masses[a] * body.y[at(a * body.rank + p)]) / mass;
     double farthest = 0;
     for (const DoublePair &y : body.y) farthest = std::max(farthest, std::fabs(y.hi));
     body.is_thick = body.length[body.rank - 1] > 1e-3 * body.length[0] && farthest < 100;

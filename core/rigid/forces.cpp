@@ -163,16 +163,6 @@ void add_virial(const Tally &tally, double *virial) {
 
 }  // namespace
 
-void clear_fixed(const Chains &chains, const AtomArray &g) {
-    const double none[3] = {0, 0, 0};
-    const Bodies &bodies = *chains.bodies();
-    for (std::int64_t m = 0; !bodies.fixed_atoms().empty() && m < bodies.n_molecules(); ++m) {
-        if (!bodies.is_active(m)) continue;
-        const Shape &s = bodies.shape(m);
-        for (std::int32_t i = s.n_movable; i < s.n_atoms; ++i) write_atom(g, bodies.atoms(m)[i], none);
-    }
-}
-
 void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
             double *tension, const AtomArray &g, bool add, double *virial) {
     const Found found = run(chains, ForcesWork(chains, r, v, f, {lambda, tension, g, add}, virial != nullptr));

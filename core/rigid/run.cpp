@@ -116,14 +116,64 @@ private:
 
 }  // namespace
 
+namespace {
+
+struct Memory {
+    std::int64_t bytes, n_blocks;
+    char *scratch;
+    Found *parts;
+};
+
+Memory memory_of(const Chains &chains, std::int64_t least = 0) {
+    const Bodies &bodies = *chains.bodies();
+    Memory m;
+    m.bytes = std::max(bodies.scratch_bytes() + bodies.block_bytes(), least);
+    m.n_blocks = (bodies.n_molecules() + block - 1) / block;
+    m.scratch = static_cast<char *>(thread_memory(Keep::rigid, m.bytes));
+    m.parts =
+        static_cast<Found *>(thread_memory(Keep::piece_tallies, m.n_blocks * static_cast<std::int64_t>(sizeof(Found))));
+    if (!m.scratch || !m.parts) throw std::bad_alloc();
+    return m;
+}
+
+}  // namespace
+
+template <class Each>
+void Parts::for_each_fixed(const Each &each) const {
+    const Bodies &bodies = *chains_.bodies();
+    for (std::int64_t m = 0; !bodies.fixed_atoms().empty() && m < bodies.n_molecules(); ++m) {
+        if (!bodies.is_active(m)) continue;
+        const Shape &s = bodies.shape(m);
+        for (std::int32_t i = s.n_movable; i < s.n_atoms; ++i) each(bodies.atoms(m)[i]);
+    }
+}
+
+Parts::Parts(const Chains &chains) : chains_(chains) {
+    std::int64_t n = 0;
+    for_each_fixed([&](std::int64_t) { ++n; });
+    before_ = reinterpret_cast<double *>(memory_of(chains, 3 * n * static_cast<std::int64_t>(sizeof(double))).scratch);
+}
+
+void Parts::clear_fixed(const AtomArray &g) {
+    const double none[3] = {0, 0, 0};
+    double *next = before_;
+    for_each_fixed([&](std::int64_t atom) { read_atom(g, atom, next), next += 3; });
+    for_each_fixed([&](std::int64_t atom) { write_atom(g, atom, none); });
+    cleared_ = g;
+}
+
+Parts::~Parts() {
+    if (!cleared_.x || ended_) return;
+    const double *next = before_;
+    for_each_fixed([&](std::int64_t atom) { write_atom(cleared_, atom, next), next += 3; });
+}
+
 Found run(const Chains &chains, const Work &work) {
     const Bodies &bodies = *chains.bodies();
-    const std::int64_t bytes = bodies.scratch_bytes() + bodies.block_bytes(),
-                       n_blocks = (bodies.n_molecules() + block - 1) / block;
-    char *const own = static_cast<char *>(thread_memory(Keep::rigid, bytes));
-    Found *const parts =
-        static_cast<Found *>(thread_memory(Keep::piece_tallies, n_blocks * static_cast<std::int64_t>(sizeof(Found))));
-    if (!own || !parts) throw std::bad_alloc();
+    const Memory all = memory_of(chains);
+    const std::int64_t bytes = all.bytes, n_blocks = all.n_blocks;
+    char *const own = all.scratch;
+    Found *const parts = all.parts;
     OutcomeOf *const outcomes = outcomes_under_way();
     const int n_threads = static_cast<int>(std::min(std::min<std::int64_t>(chains.n_threads, n_blocks),
                                                     std::max<std::int64_t>(bodies.work() / rows_per_thread, 1)));

@@ -33,7 +33,8 @@ protected:
     ~Work() = default;
 };
 
-// Throws std::bad_alloc before anything is done. Results do not depend on the number of threads.
+// Throws std::bad_alloc before anything is done, not if Parts has been made. Results do not depend on the number of
+// threads.
 Found run(const Chains &chains, const Work &work);
 
 // The error of the first bad molecule, once all others are complete.
@@ -47,10 +48,20 @@ Error error_of(const Chains &chains, const Found &found, const Named *arrays, in
 Error error_of_values(const Chains &chains, std::int64_t molecule, const double *values, const char *what,
                       const Error &otherwise);
 
-// Runs the parts of a call one after the other, each to its end; then throws the first Error, with all bad molecules
-// counted.
+// Runs the parts of a call, that of molecules without bodies and that with them, each to its end; then throws the first
+// Error, with all bad molecules counted. Where one finds no memory nothing has been written.
 class Parts {
 public:
+    // Gets the memory that the part with bodies will need: throws std::bad_alloc before the other one has written.
+    explicit Parts(const Chains &chains);
+    // Fixed atoms have their forces back unless a part has come to its end.
+    ~Parts();
+    Parts(const Parts &) = delete;
+    Parts &operator=(const Parts &) = delete;
+
+    // g of fixed atoms at molecules with bodies is zero before anything is added to it.
+    void clear_fixed(const AtomArray &g);
+
     template <class Part>
     void run(const Part &part) {
         try {
@@ -63,6 +74,7 @@ public:
                 error_ = error;
             failed_ = true;
         }
+        ended_ = true;
     }
     // Throws if one has failed.
     void finish() const {
@@ -70,7 +82,13 @@ public:
     }
 
 private:
-    bool failed_ = false;
+    template <class Each>
+    void for_each_fixed(const Each &each) const;
+
+    const Chains &chains_;
+    double *before_;  // forces on fixed atoms, in the memory that the part with bodies will write to
+    AtomArray cleared_{};
+    bool failed_ = false, ended_ = false;
     Error error_{};
 };
 

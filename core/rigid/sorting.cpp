@@ -1,7 +1,7 @@
 // Which bodies, atoms and bonds of a call make a molecule.
 #include <algorithm>
 #include <numeric>
-#include <set>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -114,6 +114,7 @@ private:
             group_of_.emplace(atom, joined_.add());
             others_.push_back(atom);
         }
+        std::sort(others_.begin(), others_.end());
         for (std::int64_t k = 0; k < n_bonds_; ++k) {
             const auto i = group_of_.find(end(k, 0)), j = group_of_.find(end(k, 1));
             if (i != group_of_.end() && j != group_of_.end()) joined_.join(i->second, j->second);
@@ -166,36 +167,56 @@ private:
         for (rigid::Given &given : molecules_) given.n_movable = static_cast<std::int32_t>(given.atoms.size());
     }
 
-    void add_bonds(const double *lengths) {
-        std::vector<std::unordered_map<std::int64_t, std::int32_t>> fixed(molecules_.size());
-        std::set<std::pair<std::int64_t, std::int64_t>> seen;
+    // By their lower and then by their higher atom, that one last: nothing depends on how they were given.
+    std::vector<std::int64_t> bonds_in_order() const {
+        struct Listed {
+            std::int64_t low, high, bond;
+        };
+        std::vector<Listed> list;
         for (std::int64_t k = 0; k < n_bonds_; ++k) {
-            const std::int64_t i = end(k, 0), j = end(k, 1);
+            const auto [i, j] = std::minmax({end(k, 0), end(k, 1)});
             const auto name = [&](std::int64_t atom) { return chains_.name_of_atom(atom); };
             if (i == j)
                 fail(make_error(Status::value, "bond %lld joins atom %s with itself", number(k, base_), name(i).text),
                      base_, k, i);
-            if (!seen.emplace(std::min(i, j), std::max(i, j)).second)
-                fail(make_error(Status::degenerate, "bond %lld, of atoms %s and %s, is given twice", number(k, base_),
-                                name(i).text, name(j).text),
-                     base_, k, -1);
+            list.push_back({i, j, k});
+        }
+        std::sort(list.begin(), list.end(), [](const Listed &a, const Listed &b) {
+            return std::tie(a.low, a.high, a.bond) < std::tie(b.low, b.high, b.bond);
+        });
+        std::vector<std::int64_t> order;
+        for (std::size_t k = 0; k < list.size(); ++k) {
+            const Listed &it = list[k];
+            if (k > 0 && it.low == list[k - 1].low && it.high == list[k - 1].high)
+                fail(make_error(Status::degenerate, "bond %lld, of atoms %s and %s, is given twice",
+                                number(it.bond, base_), chains_.name_of_atom(it.low).text,
+                                chains_.name_of_atom(it.high).text),
+                     base_, it.bond, -1);
+            order.push_back(it.bond);
+        }
+        return order;
+    }
+
+    void add_bonds(const double *lengths) {
+        std::vector<std::unordered_map<std::int64_t, std::int32_t>> fixed(molecules_.size());
+        for (const std::int64_t k : bonds_in_order()) {
+            const auto [i, j] = std::minmax({end(k, 0), end(k, 1)});
             const std::int64_t of_first = molecule_of_atom(i);
             const std::size_t m = at(of_first >= 0 ? of_first : molecule_of_atom(j));
             rigid::Given &given = molecules_[m];
-            std::int32_t ends[2];
-            for (int which = 0; which < 2; ++which) {
-                const std::int64_t atom = end(k, which);
+            std::int32_t ends[2], *next = ends;
+            for (const std::int64_t atom : {i, j}) {
                 if (const auto found = local_.find(atom); found != local_.end()) {
-                    ends[which] = found->second;
+                    *next++ = found->second;
                     continue;
                 }
                 const auto known = fixed[m].find(atom);
                 if (known != fixed[m].end()) {
-                    ends[which] = known->second;
+                    *next++ = known->second;
                     continue;
                 }
-                ends[which] = append(given, atom);
-                fixed[m].emplace(atom, ends[which]);
+                fixed[m].emplace(atom, append(given, atom));
+                *next++ = fixed[m].at(atom);
             }
             given.bonds.push_back({ends[0], ends[1], lengths[k], -1});
             given.bond_numbers.push_back(chains_.n_bonds() + k);

@@ -11,9 +11,6 @@
 
 namespace holonomic::rigid {
 
-// g of fixed atoms at these molecules is zero before anything is added to it.
-void clear_fixed(const Chains &chains, const AtomArray &g);
-
 void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
             double *tension, const AtomArray &g, bool add, double *virial);
 void solve(const Chains &chains, const AtomArray &r, const double *rhs, double *lambda, const AtomArray &g, bool add,

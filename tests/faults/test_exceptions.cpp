@@ -20,7 +20,7 @@ constexpr int n_atoms = 4000, n_bonds = 3033;
 
 /** A coil of 3000 bonds and eleven chains of three, some atoms left over, and room for every output. */
 struct scene {
-    hol_chains *chains = nullptr;
+    hol_chains *chains = nullptr, *bodies = nullptr;  // the others: a rod, and what is joined to it
     hol_inverse *inverse = nullptr;
     std::vector<double> mass, length, gamma, r, v, f, moved, out;
 
@@ -36,10 +36,13 @@ struct scene {
                 f[at] = static_cast<double>((5 * i + x) % 13);
                 moved[at] = r[at] + 0.001 * v[at];
             }
+        const std::int64_t rod = 2, rod_atoms[3] = {0, 1, 2};
         if (hol_chains_create(n_atoms, mass.data(), &chains) ||
             hol_chains_add_block(chains, 1, 3000, 0, length.data()) ||
             hol_chains_add_block(chains, 11, 3, 3003, length.data()) ||
-            hol_inverse_create(chains, 1, r.data(), &inverse))
+            hol_inverse_create(chains, 1, r.data(), &inverse) || hol_chains_create(n_atoms, mass.data(), &bodies) ||
+            hol_chains_add_rigid(bodies, 1, &rod, rod_atoms, r.data(), 1, rod_atoms + 1, length.data()) ||
+            hol_chains_add_block(bodies, 1, 50, 10, length.data()))
             std::printf("no scene: %s\n", hol_error_message()), std::exit(1);
         // Whatever a handle prepares for its calculations is thrown away, so that it is prepared in the call under
         // test.
@@ -49,6 +52,7 @@ struct scene {
     {
         hol_inverse_destroy(inverse);
         hol_chains_destroy(chains);
+        hol_chains_destroy(bodies);
     }
     scene(const scene &) = delete;
     scene &operator=(const scene &) = delete;
@@ -87,6 +91,26 @@ int add_several(scene &s)
     return hol_chains_n_chains(s.chains) == before + (status == HOL_OK ? 20 : 0) ? status : -1;
 }
 
+/** A tetrahedron with a tail, and three rods. */
+int add_bodies(scene &s)
+{
+    static const std::int64_t size = 4, atoms[4] = {3980, 3990, 3985, 3999}, tail[2] = {3999, 3991};
+    static const double places[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    const std::int64_t before = hol_chains_n_chains(s.chains);
+    const int status = hol_chains_add_rigid(s.chains, 1, &size, atoms, places, 1, tail, s.length.data());
+    return hol_chains_n_chains(s.chains) == before + (status == HOL_OK ? 1 : 0) ? status : -1;
+}
+
+int add_copies_of_bodies(scene &s)
+{
+    static const std::int64_t size = 2, atoms[2] = {0, 1};
+    static const double places[6] = {0, 0, 0, 1, 0, 0};
+    const std::int64_t before = hol_chains_n_chains(s.chains);
+    const int status =
+        hol_chains_add_rigid_molecules(s.chains, 3, 2, 3900, 1, &size, atoms, places, 0, nullptr, nullptr);
+    return hol_chains_n_chains(s.chains) == before + (status == HOL_OK ? 3 : 0) ? status : -1;
+}
+
 int set_active(scene &s)
 {
     const unsigned char active[12] = {1, 0, 1, 1, 0};
@@ -115,6 +139,12 @@ int forces(scene &s)
 {
     double *const o = s.out.data();
     return hol_forces(s.chains, s.r.data(), s.v.data(), s.f.data(), o, nullptr, o + n_bonds, HOL_WRITE, nullptr);
+}
+
+int forces_with_bodies(scene &s)
+{
+    double *const o = s.out.data();
+    return hol_forces(s.bodies, s.r.data(), s.v.data(), s.f.data(), o, nullptr, o + n_bonds, HOL_WRITE, nullptr);
 }
 
 int velocities(scene &s)
@@ -163,6 +193,9 @@ const operation operations[] = {
     {"hol_chains_create", create_and_destroy},
     {"hol_chains_add", add_one},
     {"hol_chains_add_block", add_several},
+    {"hol_chains_add_rigid", add_bodies},
+    {"hol_chains_add_rigid_molecules", add_copies_of_bodies},
+    {"hol_forces with bodies", forces_with_bodies},
     {"hol_chains_set_box", set_box},
     {"hol_chains_set_active", set_active},
     {"hol_chains_offsets", offsets},

@@ -117,6 +117,52 @@ static assembly molecules(void)
     return a;
 }
 
+/** Bodies alone, of two kinds, one of them with a site; and copies of them with an atom at each, one of which is fixed.
+ */
+static assembly bodies(void)
+{
+    enum { COPIES = 9, ALONE = 3, EACH = 9, CHAIN = 40, ATOMS = COPIES * EACH + CHAIN + 1 };
+    /* a tetrahedron with its centre, and a rod */
+    static const double places[21] = {1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1, 0, 0, 0, 5, 0, 0, 6, 0, 0};
+    static const double tails[6] = {0, 0, 2, 6, 1, 0};
+    static const int64_t sizes[2] = {5, 2}, list[7] = {0, 1, 2, 3, 4, 5, 6}, pairs[4] = {3, 7, 6, 8};
+    static const double lengths[2] = {1.7320508075688772, 1};
+    assembly a = assembly_of_kind(CHAIN_COIL, 1, ATOMS - 1, ATOMS - 1, IN_ORDER, 7);
+    hol_chains_destroy(a.chains);
+    for (int64_t c = 0; c < COPIES; ++c) {
+        const int64_t first = c * EACH;
+        a.mass[first + 4] = a.mass[first + 8] = 0;
+        memcpy(a.r + 3 * first, places, sizeof places);
+        memcpy(a.r + 3 * (first + 7), tails, sizeof tails);
+    }
+    CHECK(hol_chains_create(a.n_atoms, a.mass, &a.chains));
+    CHECK(hol_chains_add_rigid_molecules(a.chains, ALONE, EACH, 0, 2, sizes, list, places, 0, NULL, NULL));
+    CHECK(hol_chains_add_rigid_molecules(a.chains, COPIES - ALONE, EACH, ALONE * EACH, 2, sizes, list, places, 2, pairs,
+                                         lengths));
+    CHECK(hol_chains_add_block(a.chains, 1, CHAIN, COPIES * EACH, a.length));
+    a.n_bonds = hol_chains_n_bonds(a.chains);
+    return a;
+}
+
+/** What takes bodies. */
+static void every_allocation_of_a_calculation_with_bodies_can_fail(void **state)
+{
+    (void)state;
+    static const char *const names[] = {
+        "hol_forces",       "hol_project_velocities", "hol_project_positions",
+        "hol_chains_check", "hol_violation",          "hol_solve",
+        "hol_reactions",    "hol_forces with a rate", "hol_project_velocities with a rate"};
+    assembly a = bodies();
+    long met = 0;
+    for (size_t k = 0; k < sizeof names / sizeof *names; ++k)
+        for (size_t i = 0; i < n_operations; ++i)
+            if (strcmp(names[k], operations[i].name) == 0)
+                met += fail_each(operations + i, &a, 0) + fail_each(operations + i, &a, 1);
+    print_message("bodies: %ld allocations failed in turn\n", met);
+    assert_true(met > 0);
+    assembly_free(&a);
+}
+
 static void every_allocation_of_a_calculation_can_fail(void **state)
 {
     (void)state;
@@ -192,6 +238,7 @@ enum {
     ADD_BONDS,
     ADD_MOLECULES,
     ADD_RIGID,
+    ADD_RIGID_MOLECULES,
     ADD_LINE,
     SET_LENGTHS,
     SET_MASSES,
@@ -211,6 +258,8 @@ static int change(hol_chains *chains, int which)
     /* a tetrahedron with a tail, and a rod */
     static const int64_t sizes[2] = {4, 2}, held[6] = {20, 21, 22, 23, 30, 31}, tail[4] = {23, 24, 24, 25};
     static const double places[18] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    /* the same three times, of atoms one after the other */
+    static const int64_t of_each[6] = {0, 1, 2, 3, 4, 5}, bonds_of_each[4] = {3, 4, 5, 6};
     /* three atoms on a line, which become a body, among others */
     static const int64_t line[10] = {43, 44, 44, 45, 43, 45, 46, 47, 45, 48};
     static const double twice[5] = {1, 1, 2, 1, 1};
@@ -223,6 +272,8 @@ static int change(hol_chains *chains, int which)
             return hol_chains_add_molecules(chains, 9, 3, 20, 3, triangle, ones);
         case ADD_RIGID:
             return hol_chains_add_rigid(chains, 2, sizes, held, places, 2, tail, ones);
+        case ADD_RIGID_MOLECULES:
+            return hol_chains_add_rigid_molecules(chains, 3, 7, 15, 2, sizes, of_each, places, 2, bonds_of_each, ones);
         case ADD_LINE:
             return hol_chains_add_bonds(chains, 5, line, twice);
         case SET_LENGTHS:
@@ -317,6 +368,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_allocation_of_a_calculation_can_fail),
+        cmocka_unit_test(every_allocation_of_a_calculation_with_bodies_can_fail),
         cmocka_unit_test(the_first_calculation_with_a_handle_can_fail),
         cmocka_unit_test(handles_are_not_made_without_memory),
         cmocka_unit_test(a_change_that_finds_no_memory_changes_nothing),

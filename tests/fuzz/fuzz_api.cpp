@@ -19,7 +19,7 @@ void session::run()
     create();
     for (int call = 0; call < 24 && !in.done(); ++call) {
         const int what = in.byte();
-        switch (what < 160 ? what % 16 : what < 250 ? 16 + what % 7 : 23) {
+        switch (what < 160 ? what % 16 : what < 242 ? 16 + what % 7 : what < 250 ? 24 : 23) {
             case 0:
                 create();
                 break;
@@ -81,6 +81,9 @@ void session::run()
             case 23:
                 compare();
                 along();
+                break;
+            case 24:
+                add_rigid();
                 break;
             default:
                 solve();

@@ -87,7 +87,9 @@ void session::ask_about_molecules()
     const int status = hol_chains_molecule(maybe(chains), which, maybe(&shape), &n_of_atoms, &n_of_bonds);
     check_status(status);
     if (status == HOL_OK) {
-        check(n_of_bonds >= 1 && n_of_atoms >= 2 && n_of_atoms <= n_of_bonds + 1, "a molecule of another size");
+        hol_chains_molecule(chains, which, &shape, nullptr, nullptr);
+        check(n_of_atoms >= 2 && (shape == HOL_SHAPE_RIGID || (n_of_bonds >= 1 && n_of_atoms <= n_of_bonds + 1)),
+              "a molecule of another size");
         block atoms(static_cast<std::size_t>(n_of_atoms) * sizeof(std::int64_t)),
             list(static_cast<std::size_t>(n_of_bonds) * sizeof(std::int64_t)),
             molecules(bonds() * sizeof(std::int64_t));

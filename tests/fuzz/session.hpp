@@ -63,6 +63,7 @@ struct session {
     void fill_pairs(block &pairs, std::size_t n_bonds, std::int64_t span);
     void add_bonds();
     void add_molecules();
+    void add_rigid();
     void set_values();
     void ask_about_molecules();
     void solve();

@@ -36,6 +36,19 @@ molecule_verdict check_alone(const hostile_molecule &m, const molecule_reference
 void check_invariances(const std::vector<hostile_molecule> &molecules, std::uint64_t shuffle,
                        std::vector<molecule_verdict> &out);
 
+/** All but blanks times a factor; the first coordinates with the other sign. */
+void scale(numbers &x, double factor);
+void mirror(numbers &x);
+
+/**
+ * A zero may have either sign, which hangs on the sign of what is added to it; and where multipliers die away, numbers
+ * underflow in one unit that do not in another.
+ */
+void without_signs_of_zeros(molecule_results &o);
+
+/** Notes whether both are the same to the bit. */
+void check_same(const molecule_results &one, const molecule_results &other, molecule_quantity q, molecule_verdict &out);
+
 /** What failed keeps its outputs bit for bit; what did not has only finite ones. */
 void check_outputs(const hostile_molecule &m, const molecule_results &part, molecule_verdict &out);
 

@@ -6,9 +6,6 @@
 namespace stress
 {
 
-namespace
-{
-
 void scale(numbers &x, double factor)
 {
     for (double &y : x)
@@ -21,10 +18,6 @@ void mirror(numbers &x)
         if (!is_blank(x[i])) x[i] = 0 - x[i];
 }
 
-/**
- * A zero may have either sign, which hangs on the sign of what is added to it; and where multipliers die away, numbers
- * underflow in one unit that do not in another.
- */
 void without_signs_of_zeros(molecule_results &o)
 {
     constexpr double least = 1e-270;
@@ -46,6 +39,9 @@ void check_same(const molecule_results &one, const molecule_results &other, mole
         out.note(q, !identical(one.*member, other.*member));
     }
 }
+
+namespace
+{
 
 /** Units of mass, length and time that are 2^m, 2^l and 2^t of the old ones. `alone` was made with a step of 1. */
 void check_units(const hostile_molecule &c, molecule_results alone, int m, int l, int t, molecule_verdict &out)

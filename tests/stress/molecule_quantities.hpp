@@ -8,6 +8,8 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <string>
 
 namespace stress
 {
@@ -78,6 +80,20 @@ struct molecule_verdict {
 inline bool is_information(int q)
 {
     return q == M_REFUSED_STEP || q == M_CHAIN_LAMBDA;
+}
+
+/** What exceeds its bound, for people. */
+inline std::string exceeded_words(const molecule_verdict &v)
+{
+    std::string words;
+    char text[64];
+    for (int q = 0; q < M_QUANTITIES; ++q) {
+        const long double x = v.ratio[static_cast<std::size_t>(q)];
+        if (!(x > 1) || is_information(q)) continue;
+        std::snprintf(text, sizeof text, " %s %.3Lg times its bound;", molecule_quantity_name(q), x);
+        words += text;
+    }
+    return words;
 }
 
 }  // namespace stress

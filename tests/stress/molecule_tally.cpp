@@ -8,12 +8,13 @@
 namespace stress
 {
 
-bool molecule_tally::add(const hostile_molecule &m, const molecule_facts &facts, const molecule_verdict &v)
+bool molecule_tally::add(std::size_t its_class, std::int64_t n_bonds, std::uint64_t seed, const molecule_facts &facts,
+                         const molecule_verdict &v)
 {
-    of_class &here = classes[m.shape];
+    of_class &here = classes[its_class];
     bool exceeds = false;
     ++here.molecules;
-    here.bonds += m.n_bonds();
+    here.bonds += n_bonds;
     here.singular += !facts.regular;
     here.not_promised += facts.regular && !facts.promised;
     if (facts.regular) here.largest_condition = std::max(here.largest_condition, facts.condition);
@@ -25,7 +26,7 @@ bool molecule_tally::add(const hostile_molecule &m, const molecule_facts &facts,
         exceeds = exceeds || (v.ratio[q] > 1 && !is_information(static_cast<int>(q)));
         if (v.ratio[q] > of.worst) {
             of.worst = v.ratio[q];
-            of.seed = m.seed;
+            of.seed = seed;
         }
     }
     here.exceeded += exceeds;
@@ -67,7 +68,8 @@ bool molecule_tally::within(long double excess, double share) const
 namespace
 {
 
-void write_markdown(const std::vector<std::string> &sets, const std::vector<molecule_tally> &of_set)
+void write_markdown(const char *(*class_name)(int), const std::vector<std::string> &sets,
+                    const std::vector<molecule_tally> &of_set)
 {
     const markdown_table table(sets);
     for (std::size_t c = 0; c < N_CLASSES && table.out; ++c) {
@@ -86,7 +88,8 @@ void write_markdown(const std::vector<std::string> &sets, const std::vector<mole
 
 }  // namespace
 
-void print(const std::vector<std::string> &sets, const std::vector<molecule_tally> &of_set)
+void print(const char *(*class_name)(int), const std::vector<std::string> &sets,
+           const std::vector<molecule_tally> &of_set)
 {
     for (std::size_t c = 0; c < N_CLASSES; ++c) {
         std::printf("\n%s\n%-15s %10s", class_name(static_cast<int>(c)), "worst err/bound", "checked");
@@ -109,7 +112,7 @@ void print(const std::vector<std::string> &sets, const std::vector<molecule_tall
                         is_information(static_cast<int>(q)) ? "  (for information)" : "");
         }
     }
-    write_markdown(sets, of_set);
+    write_markdown(class_name, sets, of_set);
     std::printf("\n");
     for (std::size_t s = 0; s < sets.size(); ++s)
         for (std::size_t c = 0; c < N_CLASSES; ++c) {

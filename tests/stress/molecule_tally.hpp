@@ -29,14 +29,16 @@ struct molecule_tally {
     std::array<of_class, N_CLASSES> classes{};
 
     /** Whether the molecule exceeds a bound that is promised. */
-    bool add(const hostile_molecule &m, const molecule_facts &facts, const molecule_verdict &v);
+    bool add(std::size_t its_class, std::int64_t n_bonds, std::uint64_t seed, const molecule_facts &facts,
+             const molecule_verdict &v);
     void add(const molecule_tally &other);
     /** Whether no error is above `excess` times its bound and at most `share` of each class exceed one at all. */
     bool within(long double excess, double share) const;
 };
 
 /** A table for each class, with a column for each set; and the largest of each class as Markdown, as for chains. */
-void print(const std::vector<std::string> &sets, const std::vector<molecule_tally> &of_set);
+void print(const char *(*class_name)(int), const std::vector<std::string> &sets,
+           const std::vector<molecule_tally> &of_set);
 
 }  // namespace stress
 

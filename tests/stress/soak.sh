@@ -1,13 +1,16 @@
 #!/bin/sh
-# Hostile chains and molecules from the number of this commit on, half of the time each. At most PERCENT may exceed a bound,
-# by a factor of three.
-#   soak.sh SECONDS SOURCE_DIRECTORY STRESS STRESS_MOLECULES PROCESSES PERCENT
+# Hostile chains, molecules and bodies from the number of this commit on, a third of the time each. At most PERCENT may
+# exceed a bound, by a factor of three.
+#   soak.sh SECONDS SOURCE_DIRECTORY STRESS STRESS_MOLECULES STRESS_BODIES PROCESSES PERCENT
 set -u
 first=$("${0%/*}/first_number.sh" "$2")
-half=$(($1 / 2))
+third=$(($1 / 3))
 echo "numbers from $first on"
-"$3" $half "" "$first" "$5" 2000 "$6"
+"$3" $third "" "$first" "$6" 2000 "$7"
 chains=$?
-"$4" $half "" "$first" "$5" "$6"
+"$4" $third "" "$first" "$6" "$7"
 molecules=$?
-exit $((molecules > chains ? molecules : chains))
+"$5" $third "$first" "$6" "$7"
+bodies=$?
+worst=$((molecules > chains ? molecules : chains))
+exit $((bodies > worst ? bodies : worst))

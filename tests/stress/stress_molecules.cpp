@@ -37,19 +37,6 @@ unsigned long long number(std::uint64_t n)
     return n;
 }
 
-std::string exceeded_words(const molecule_verdict &v)
-{
-    std::string words;
-    char text[64];
-    for (int q = 0; q < M_QUANTITIES; ++q) {
-        const long double x = v.ratio[static_cast<std::size_t>(q)];
-        if (!(x > 1) || is_information(q)) continue;
-        std::snprintf(text, sizeof text, " %s %.3Lg times its bound;", molecule_quantity_name(q), x);
-        words += text;
-    }
-    return words;
-}
-
 /** A file for scripts/oracle, unless there is one. */
 void keep(const std::string &directory, const hostile_molecule &m, const std::string &words, bool regular)
 {
@@ -103,7 +90,7 @@ void check(const group_of_molecules &g, const std::string &directory, molecule_t
         const hostile_molecule &m = g.molecules[k];
         molecule_facts facts;
         verdicts[k].add(check_alone(m, g.exact[k], facts));
-        if (!sum.add(m, facts, verdicts[k])) continue;
+        if (!sum.add(m.shape, m.n_bonds(), m.seed, facts, verdicts[k])) continue;
         const std::string words = exceeded_words(verdicts[k]);
         std::printf(
             "molecule %llu, %lld bonds, condition number %.1Le, least pivot %.1Le:%s repeat with "
@@ -161,7 +148,7 @@ int run(const soak_options &options, const std::string &directory, double percen
     work.repeat = "tests/stress/stress_molecules --group";
     const int lost = soak(options, sets, work);
     const std::vector<molecule_tally> of_set = tallies.of_all_sets();
-    print(sets, of_set);
+    print(class_name, sets, of_set);
     if (lost > 0) std::printf("stress: %d processes ended before their time\n", lost);
     bool within = lost == 0;
     for (const molecule_tally &t : of_set)
