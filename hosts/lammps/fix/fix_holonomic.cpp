@@ -24,6 +24,7 @@ FixHolonomic::FixHolonomic(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, a
     if (atom->molecular != Atom::MOLECULAR)
         error->all(FLERR, "Fix holonomic: the atom style must have bonds (and not take them from molecule templates)"s);
     read_options(narg, arg, selection_.read(narg, arg, 3));
+    if (selection_.empty()) error->all(FLERR, "Illegal fix holonomic command: nothing is selected (b, t, m or rigid)"s);
 
     virial_global_flag = virial_peratom_flag = 1;
     thermo_virial = 1;
@@ -52,12 +53,13 @@ FixHolonomic::FixHolonomic(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, a
     for (int i = 0; i < atom->nlocal; ++i) set_arrays(i);
     plan_ = std::make_unique<Plan>(world);
     find_molecules();
-    if (registry_.n_bonds() == 0) error->all(FLERR, "Fix holonomic: no bond is selected"s);
+    if (registry_.n_molecules() == 0)
+        error->all(FLERR, "Fix holonomic: no bond is selected, and no molecule looks like a template"s);
     if (comm->me == 0)
         utils::logmesg(lmp, "Fix holonomic: " + std::to_string(registry_.n_molecules()) + " molecules, " +
                                 std::to_string(registry_.n_atoms()) + " atoms, " + std::to_string(registry_.n_bonds()) +
-                                " rigid distances (library holonomic " + hol_version() + ", " + hol_instruction_set() +
-                                ")\n");
+                                " rigid distances, " + std::to_string(registry_.n_bodies()) +
+                                " bodies (library holonomic " + hol_version() + ", " + hol_instruction_set() + ")\n");
 }
 
 FixHolonomic::~FixHolonomic() {
@@ -79,6 +81,8 @@ void FixHolonomic::read_options(int narg, char **arg, int first) {
             every = utils::inumeric(FLERR, arg[k + 1], false, lmp);
             if (every < 0)
                 error->all(FLERR, std::string("Fix holonomic: ") + arg[k] + " needs a number of steps, or 0");
+        } else if (strcmp(arg[k], "rigid") == 0) {
+            guarded([&] { selection_.add_template(arg[k + 1]); });
         } else {
             error->all(FLERR, std::string("Illegal fix holonomic command: no keyword ") + arg[k]);
         }
@@ -121,7 +125,8 @@ void FixHolonomic::check_other_fixes() {
 
 void FixHolonomic::find_molecules() {
     guarded([&] {
-        registry_ = Registry(world, selection_.select(groupbit, atoms_));
+        const std::vector<Bond> bonds = selection_.select(groupbit, atoms_);
+        registry_ = Registry(world, bonds, selection_.select_bodies(groupbit), domain->dimension);
         std::vector<Tag> tags(atom->tag, atom->tag + atom->nlocal);
         const std::vector<Membership> members = registry_.memberships(tags);
         for (int i = 0; i < atom->nlocal; ++i) static_cast<Membership &>(atoms_[i]) = members[i];
@@ -153,7 +158,7 @@ void FixHolonomic::set_arrays(int i) {
 int FixHolonomic::pack_exchange(int i, double *buffer) {
     const Belonging &a = atoms_[i];
     const double numbers[6] = {static_cast<double>(a.molecule), static_cast<double>(a.place),
-                               static_cast<double>(a.n_atoms),  static_cast<double>(a.n_bonds),
+                               static_cast<double>(a.n_atoms),  a.taken,
                                static_cast<double>(a.bonds),    static_cast<double>(a.angles)};
     memcpy(buffer, numbers, sizeof numbers);
     return 6;
@@ -164,7 +169,7 @@ int FixHolonomic::unpack_exchange(int i, double *buffer) {
     a.molecule = static_cast<Tag>(buffer[0]);
     a.place = static_cast<int>(buffer[1]);
     a.n_atoms = static_cast<int>(buffer[2]);
-    a.n_bonds = static_cast<int>(buffer[3]);
+    a.taken = buffer[3];
     a.bonds = static_cast<std::uint32_t>(buffer[4]);
     a.angles = static_cast<std::uint32_t>(buffer[5]);
     return 6;

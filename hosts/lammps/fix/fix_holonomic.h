@@ -102,6 +102,7 @@ private:
     bool due(int every) const;
     void tally(int vflag);
     void tally_atoms();
+    void tally_body(const holonomic_lammps::Resident &, double *parts) const;
     void keep_forces();
     void keep_tensions();
     hol_worst errors();

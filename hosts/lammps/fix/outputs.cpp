@@ -15,7 +15,7 @@ using namespace LAMMPS_NS;
 using namespace std::string_literals;
 using namespace holonomic_lammps;
 
-/** The virial of the molecules that live here; each bond's, half and half, at its atoms. */
+/** The virial of the molecules that live here; a bond's, half and half, at its atoms, a body's at each of them. */
 void FixHolonomic::tally(int vflag) {
     v_init(vflag);
     if (vflag_global) {
@@ -30,8 +30,14 @@ void FixHolonomic::tally(int vflag) {
 void FixHolonomic::tally_atoms() {
     std::vector<double> parts(6 * static_cast<std::size_t>(plan_->n_slots()), 0.0);
     const double *tension = tensions_.data();
-    for (const Resident &resident : plan_->residents())
-        for (const auto &pair : plan_->shapes()[resident.shape].pairs) {
+    for (const Resident &resident : plan_->residents()) {
+        const Shape &shape = plan_->shapes()[resident.shape];
+        if (shape.rigid) {
+            tally_body(resident, &parts[6 * resident.first]);
+            tension += shape.pairs.size();
+            continue;
+        }
+        for (const auto &pair : shape.pairs) {
             const int a = resident.first + pair[0], b = resident.first + pair[1];
             double d[3];
             for (int c = 0; c < 3; ++c) d[c] = now_[3 * b + c] - now_[3 * a + c];
@@ -43,6 +49,7 @@ void FixHolonomic::tally_atoms() {
                 parts[6 * b + k] += w[k];
             }
         }
+    }
     const auto add = [&](int i, const double *w) {
         for (int k = 0; k < 6; ++k) vatom[i][k] += w[k];
     };
@@ -50,6 +57,26 @@ void FixHolonomic::tally_atoms() {
         if (plan_->atoms()[slot] >= 0) add(plan_->atoms()[slot], &parts[6 * slot]);
     plan_->exchange.to_owners<6>(
         world, [&](int slot, double *w) { std::copy(&parts[6 * slot], &parts[6 * slot] + 6, w); }, add);
+}
+
+/** Where no distance pulls, there are the forces: (r - c) G, symmetric in sum, as no torque is left. */
+void FixHolonomic::tally_body(const Resident &resident, double *parts) const {
+    const int n = plan_->shapes()[resident.shape].n_atoms;
+    const double *r = &now_[3 * resident.first], *g = &reactions_[3 * resident.first];
+    double mean[3] = {0, 0, 0};
+    for (int k = 0; k < 3 * n; ++k) mean[k % 3] += r[k] / n;
+    for (int k = 0; k < n; ++k) {
+        double d[3];
+        for (int c = 0; c < 3; ++c) d[c] = r[3 * k + c] - mean[c];
+        const double *f = g + 3 * k;
+        const double w[6] = {d[0] * f[0],
+                             d[1] * f[1],
+                             d[2] * f[2],
+                             0.5 * (d[0] * f[1] + d[1] * f[0]),
+                             0.5 * (d[0] * f[2] + d[2] * f[0]),
+                             0.5 * (d[1] * f[2] + d[2] * f[1])};
+        std::copy(w, w + 6, parts + 6 * k);
+    }
 }
 
 bool FixHolonomic::due(int every) const { return every > 0 && update->ntimestep % every == 0; }
@@ -78,14 +105,15 @@ void FixHolonomic::keep_tensions() {
         }
 }
 
-/** Each rigid distance takes half a degree of freedom from either of its atoms. */
+/** A rigid distance takes half a degree of freedom from either of its atoms, a body the same from each. */
 Dof FixHolonomic::dof(int igroup) {
     const int bit = group->bitmask[igroup];
-    bigint ends = 0;
+    double taken = 0;
     for (int i = 0; i < atom->nlocal; ++i)
-        if (atom->mask[i] & bit) ends += atoms_[i].n_bonds;
-    MPI_Allreduce(MPI_IN_PLACE, &ends, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-    return static_cast<Dof>(ends / 2);
+        if (atom->mask[i] & bit) taken += atoms_[i].taken;
+    MPI_Allreduce(MPI_IN_PLACE, &taken, 1, MPI_DOUBLE, MPI_SUM, world);
+    // Thirds of a body's atoms may add up to a little less than a whole number.
+    return static_cast<Dof>(std::floor(taken + 1e-6));
 }
 
 hol_worst FixHolonomic::errors() {

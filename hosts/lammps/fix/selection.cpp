@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "selection.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -40,6 +41,12 @@ struct Ask {
     Tag from, to;
 };
 
+/** An atom of a molecule that may look like a template. */
+struct Part {
+    Tag molecule, tag;
+    int type;
+};
+
 /** An entry of an atom's list of bonds or angles, which holds 32 at most. */
 void check_entries(Error *error, int n) {
     if (n > 32) error->one(FLERR, "Fix holonomic: an atom has more than 32 bonds or angles"s);
@@ -72,9 +79,16 @@ int Selection::read(int narg, char **arg, int first) {
                                   " type " + arg[k]);
         (mode == 'b' ? bond_types_ : mode == 'a' ? angle_types_ : atom_types_).insert(type);
     }
-    if (bond_types_.empty() && atom_types_.empty() && masses_.empty())
-        error->all(FLERR, "Illegal fix holonomic command: no bonds are selected (b, t or m)"s);
     return k;
+}
+
+void Selection::add_template(const char *file) {
+    if (!atom->molecule_flag) error->all(FLERR, "Fix holonomic: rigid needs an atom style with molecule IDs"s);
+    templates_.push_back(read_template(world, file));
+}
+
+bool Selection::empty() const {
+    return bond_types_.empty() && atom_types_.empty() && masses_.empty() && templates_.empty();
 }
 
 /** Whether all bonds of an atom are wanted for its type or mass. */
@@ -178,12 +192,40 @@ void Selection::select_angles(std::vector<Belonging> &atoms, std::vector<Bond> &
             double angle = pi / 2;
             if (force->angle && force->angle->setflag && force->angle->setflag[-type])
                 angle = force->angle->equilibrium_angle(-type);
-            if (pi - angle < straight)
-                error->one(FLERR, "Fix holonomic: angle type " + std::to_string(-type) +
-                                      " is straight: three distances on a line have no multipliers");
+            // What is straight to the digits of an input file is straight to the last bit: the three atoms are a body.
             bonds.push_back({atom->angle_atom1[i][k], atom->angle_atom3[i][k],
-                             std::sqrt(a * a + b * b - 2 * a * b * std::cos(angle))});
+                             pi - angle < straight ? a + b : std::sqrt(a * a + b * b - 2 * a * b * std::cos(angle))});
         }
+}
+
+std::vector<BodyAtom> Selection::select_bodies(int groupbit) {
+    std::vector<BodyAtom> bodies;
+    if (templates_.empty()) return bodies;
+    const int n_ranks = size_of(world);
+    Outgoing<Part> outgoing(n_ranks);
+    for (int i = 0; i < atom->nlocal; ++i)
+        if (atom->molecule[i] > 0 && atom->mask[i] & groupbit)
+            outgoing[bookkeeper(atom->molecule[i], n_ranks)].push_back(
+                {atom->molecule[i], atom->tag[i], atom->type[i]});
+    std::vector<Part> parts = route(world, outgoing).items;
+    std::sort(parts.begin(), parts.end(), [](const Part &p, const Part &q) {
+        return p.molecule != q.molecule ? p.molecule < q.molecule : p.tag < q.tag;
+    });
+    const Part *end = parts.data() + parts.size();
+    for (const Part *first = parts.data(), *last = first; first != end; first = last) {
+        while (last != end && last->molecule == first->molecule) ++last;
+        for (const Template &molecule : templates_) {
+            if (!std::equal(first, last, molecule.types.begin(), molecule.types.end(),
+                            [](const Part &p, int type) { return p.type == type; }))
+                continue;
+            for (std::size_t k = 0; k < molecule.at.size(); ++k) {
+                const auto &at = molecule.at[k];
+                bodies.push_back({first->tag, first[k].tag, {at[0], at[1], at[2]}});
+            }
+            break;
+        }
+    }
+    return bodies;
 }
 
 void Selection::release(std::vector<Belonging> &atoms) {

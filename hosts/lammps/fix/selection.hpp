@@ -10,6 +10,7 @@
 
 #include "../plan/registry.hpp"
 #include "pointers.h"
+#include "template.hpp"
 
 namespace holonomic_lammps {
 
@@ -28,11 +29,21 @@ public:
     /** Reads "b 1 2 a 1 t 3 m 1.0" from arg[first] on; gives the number of the argument behind. */
     int read(int narg, char **arg, int first);
 
+    /** Molecules that look like that of a molecule file are rigid bodies. */
+    void add_template(const char *file);
+
+    /** Whether there is anything to select. */
+    bool empty() const;
+
     /**
      * Selects what is not yet rigid, by this fix or another, makes its types negative, so that no force acts along it,
      * and gives the rigid distances of all atoms here. Collective.
      */
     std::vector<Bond> select(int groupbit, std::vector<Belonging> &atoms);
+
+    /** Atoms of the group's molecules that have the atoms of a template, type by type in the order of IDs. Collective.
+     */
+    std::vector<BodyAtom> select_bodies(int groupbit);
 
     /** Makes the types of an atom's rigid bonds and angles positive again. */
     void release(std::vector<Belonging> &atoms);
@@ -46,6 +57,7 @@ private:
 
     std::set<int> bond_types_, angle_types_, atom_types_;
     std::vector<double> masses_;
+    std::vector<Template> templates_;
 };
 
 }  // namespace holonomic_lammps

@@ -159,9 +159,11 @@ void FixHolonomic::constrain_velocities(bool half_kick, bool with_forces, Give g
 /** Constraint forces of this instant, tensions and virial, in LAMMPS's units, from positions, velocities and forces. */
 void FixHolonomic::exact_forces() {
     std::fill(virial_, virial_ + 9, 0.0);
+    // Those of distances that depend on each other take long.
+    double *tensions = vflag_atom || due(tensions_every_) ? tensions_.data() : nullptr;
     for (Block &block : blocks_) {
         double part[9];
-        block.packed.forces(now_.data(), velocities_.data(), forces_.data(), tensions_.data(), reactions_.data(), part);
+        block.packed.forces(now_.data(), velocities_.data(), forces_.data(), tensions, reactions_.data(), part);
         for (int k = 0; k < 9; ++k) virial_[k] += part[k];
     }
     const double unit = 1 / force->ftm2v;
@@ -185,6 +187,7 @@ void FixHolonomic::setup(int vflag) {
             for (int c = 0; c < 3; ++c) atom->v[i][c] += change[c];
         });
         reruns_ = false;
+        v_init(vflag);
         exact_forces();
         return_to_atoms(reactions_, [&](int i, const double *g) {
             for (int c = 0; c < 3; ++c) atom->f[i][c] += g[c];

@@ -45,6 +45,8 @@ struct Node {
     Tag component;               /**< the lowest tag of all that hang together */
     std::vector<Tag> neighbours; /**< atoms that it is bonded to */
     std::vector<double> lengths; /**< of these bonds */
+    Tag body = 0;                /**< that it belongs to; 0: none */
+    double at[3] = {0, 0, 0};    /**< where in the body */
 };
 
 /**

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "packed.hpp"
 
+#include <cmath>
 #include <stdexcept>
+
+#include "library.hpp"
 
 namespace holonomic_lammps {
 
@@ -34,7 +37,11 @@ Packed::Packed(const Plan &plan, const double *masses, int first, int end, int f
     const std::vector<Resident> &residents = plan.residents();
     end_slot_ = residents[end - 1].first + plan.shapes()[residents[end - 1].shape].n_atoms;
     hol_chains *chains = nullptr;
-    check(hol_chains_create(end_slot_ - first_slot_, masses + first_slot_, &chains), "taking the masses");
+    // To the library an atom without mass in a body is a site; one of infinite mass is held fixed, or refused there.
+    std::vector<double> of_slots(masses + first_slot_, masses + end_slot_);
+    for (double &mass : of_slots)
+        if (mass == 0) mass = HUGE_VAL;
+    check(hol_chains_create(end_slot_ - first_slot_, of_slots.data(), &chains), "taking the masses");
     chains_.reset(chains);
     for (int from = first, to = first; from < end; from = to) {
         while (to < end && residents[to].shape == residents[from].shape) ++to;
@@ -45,22 +52,13 @@ Packed::Packed(const Plan &plan, const double *masses, int first, int end, int f
 /** Molecules of one shape, one behind the other. */
 void Packed::add(const Resident &first, int n_molecules) {
     const Shape &shape = plan_->shapes()[first.shape];
-    const auto n_bonds = static_cast<std::int64_t>(shape.pairs.size());
-    int status;
-    if (shape.linear) {
-        status =
-            hol_chains_add_block(chains_.get(), n_molecules, n_bonds, first.first - first_slot_, shape.lengths.data());
-    } else {
-        std::vector<std::int64_t> pairs;
-        for (const auto &pair : shape.pairs) pairs.insert(pairs.end(), {pair[0], pair[1]});
-        status = hol_chains_add_molecules(chains_.get(), n_molecules, shape.n_atoms, first.first - first_slot_, n_bonds,
-                                          pairs.data(), shape.lengths.data());
-    }
+    const int status = add_molecules(chains_.get(), shape, n_molecules, first.first - first_slot_);
     if (status == HOL_OK) return;
+    const auto n_bonds = static_cast<std::int64_t>(shape.pairs.size());
     std::int64_t bond;
     hol_error_location(nullptr, &bond, nullptr, nullptr);
     std::string where = "molecule of atom " + std::to_string(first.molecule);
-    if (bond >= 0) {
+    if (bond >= 0 && n_bonds > 0) {
         const Tag *tags = &plan_->tags()[first.first + bond / n_bonds * shape.n_atoms];
         const auto &pair = shape.pairs[bond % n_bonds];
         where = pair_of(tags[pair[0]], tags[pair[1]]);
@@ -88,7 +86,8 @@ void Packed::velocities(const double *r, double *v) {
 
 void Packed::forces(const double *r, const double *v, const double *f, double *tension, double *g, double *virial) {
     const int k = 3 * first_slot_;
-    check(hol_forces(chains_.get(), r + k, v + k, f + k, nullptr, tension + first_bond_, g + k, HOL_WRITE, virial),
+    check(hol_forces(chains_.get(), r + k, v + k, f + k, nullptr, tension ? tension + first_bond_ : nullptr, g + k,
+                     HOL_WRITE, virial),
           "constraint forces");
 }
 

@@ -32,7 +32,7 @@ public:
     /** L [3][3] of a box that changes, for velocities, forces and violation: hol_chains_set_box_rate. */
     void set_rate(const double *L);
     void velocities(const double *r, double *v);
-    /** virial: [3][3], of these molecules. */
+    /** virial: [3][3], of these molecules. tension may be NULL. */
     void forces(const double *r, const double *v, const double *f, double *tension, double *g, double *virial);
     hol_worst violation(const double *r, const double *v) const;
 

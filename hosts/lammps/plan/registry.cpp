@@ -2,7 +2,10 @@
 #include "registry.hpp"
 
 #include <algorithm>
+#include <map>
 #include <string>
+
+#include "library.hpp"
 
 namespace holonomic_lammps {
 
@@ -14,11 +17,61 @@ struct Entry {
     Bond bond;
 };
 
+/** An atom of a body on its way to the bookkeeper of its molecule. */
+struct Part {
+    Tag molecule;
+    BodyAtom atom;
+};
+
 /** What the bookkeeper of an atom is told. */
 struct Note {
     Tag tag;
     Membership membership;
 };
+
+/** A shape travels as numbers. */
+void write(const Shape &shape, std::vector<double> &numbers) {
+    const auto add = [&](double x) { numbers.push_back(x); };
+    for (double x : {static_cast<double>(shape.n_atoms), static_cast<double>(shape.linear),
+                     static_cast<double>(shape.rigid), static_cast<double>(shape.taken),
+                     static_cast<double>(shape.pairs.size()), static_cast<double>(shape.bodies.size())})
+        add(x);
+    for (std::size_t b = 0; b < shape.pairs.size(); ++b)
+        for (double x :
+             {static_cast<double>(shape.pairs[b][0]), static_cast<double>(shape.pairs[b][1]), shape.lengths[b]})
+            add(x);
+    for (const Body &body : shape.bodies) {
+        add(static_cast<double>(body.places.size()));
+        for (std::size_t k = 0; k < body.places.size(); ++k) {
+            add(body.places[k]);
+            for (double x : body.at[k]) add(x);
+        }
+    }
+}
+
+/** Takes the numbers of one shape, and steps behind them. */
+Shape read(const double *&number) {
+    const auto integer = [&] { return static_cast<int>(*number++); };
+    Shape shape;
+    shape.n_atoms = integer();
+    shape.linear = integer() != 0;
+    shape.rigid = integer() != 0;
+    shape.taken = integer();
+    const int n_bonds = integer();
+    shape.bodies.resize(integer());
+    for (int b = 0; b < n_bonds; ++b) {
+        const int from = integer(), to = integer();
+        shape.pairs.push_back({from, to});
+        shape.lengths.push_back(*number++);
+    }
+    for (Body &body : shape.bodies)
+        for (int n = integer(); n > 0; --n) {
+            body.places.push_back(integer());
+            body.at.push_back({number[0], number[1], number[2]});
+            number += 3;
+        }
+    return shape;
+}
 
 }  // namespace
 
@@ -34,18 +87,25 @@ void throw_together(MPI_Comm world, const std::string &message) {
     throw ErrorEverywhere(text);
 }
 
-Registry::Registry(MPI_Comm world, const std::vector<Bond> &bonds) : world_(world), n_ranks_(size_of(world)) {
-    std::vector<Node> nodes = collect(bonds);
+Registry::Registry(MPI_Comm world, const std::vector<Bond> &bonds, const std::vector<BodyAtom> &bodies, int dimensions)
+    : world_(world), n_ranks_(size_of(world)) {
+    std::vector<Node> nodes = collect(bonds, bodies);
     find_components(world, nodes);
-    build(nodes);
+    build(nodes, dimensions);
 }
 
-/** Nodes whose books are kept here, with all their bonds, each once. */
-std::vector<Node> Registry::collect(const std::vector<Bond> &bonds) const {
+/** Nodes whose books are kept here, with all their bonds, each once. A body is tied to the atom that it is named by. */
+std::vector<Node> Registry::collect(const std::vector<Bond> &bonds, const std::vector<BodyAtom> &bodies) const {
     Outgoing<Bond> outgoing(n_ranks_);
-    for (const Bond &bond : bonds) {
-        outgoing[bookkeeper(bond.from, n_ranks_)].push_back(bond);
-        outgoing[bookkeeper(bond.to, n_ranks_)].push_back({bond.to, bond.from, bond.length});
+    const auto tell = [&](Tag from, Tag to, double length) {
+        outgoing[bookkeeper(from, n_ranks_)].push_back({from, to, length});
+        outgoing[bookkeeper(to, n_ranks_)].push_back({to, from, length});
+    };
+    for (const Bond &bond : bonds) tell(bond.from, bond.to, bond.length);
+    Outgoing<BodyAtom> of_bodies(n_ranks_);
+    for (const BodyAtom &part : bodies) {
+        of_bodies[bookkeeper(part.atom, n_ranks_)].push_back(part);
+        if (part.atom != part.body) tell(part.body, part.atom, no_distance);
     }
     std::vector<Bond> known = route(world_, outgoing).items;
     std::sort(known.begin(), known.end(), [](const Bond &a, const Bond &b) {
@@ -58,51 +118,80 @@ std::vector<Node> Registry::collect(const std::vector<Bond> &bonds) const {
         const std::string names = std::to_string(bond.from) + " and " + std::to_string(bond.to);
         if (bond.from == bond.to) trouble = "a bond of atom " + std::to_string(bond.from) + " with itself";
         if (k > 0 && known[k - 1].from == bond.from && known[k - 1].to == bond.to) {
-            if (known[k - 1].length != bond.length)
+            if (known[k - 1].length != no_distance && known[k - 1].length != bond.length)
                 trouble = "atoms " + names + " are to be at two distances, " + std::to_string(known[k - 1].length) +
                           " and " + std::to_string(bond.length);
             continue;
         }
-        if (nodes.empty() || nodes.back().tag != bond.from) nodes.push_back({bond.from, bond.from, {}, {}});
+        if (nodes.empty() || nodes.back().tag != bond.from) nodes.push_back({bond.from, bond.from, {}, {}, 0, {}});
         nodes.back().neighbours.push_back(bond.to);
         nodes.back().lengths.push_back(bond.length);
+    }
+    for (const BodyAtom &part : route(world_, of_bodies).items) {
+        const auto node =
+            std::lower_bound(nodes.begin(), nodes.end(), part.atom, [](const Node &n, Tag tag) { return n.tag < tag; });
+        if (node->body != 0) trouble = "atom " + std::to_string(part.atom) + " is in two rigid bodies";
+        node->body = part.body;
+        std::copy(part.at, part.at + 3, node->at);
     }
     throw_together(world_, trouble);
     return nodes;
 }
 
 /** Sends each bond to the bookkeeper of its molecule, who makes the shape and tells the bookkeepers of its atoms. */
-void Registry::build(const std::vector<Node> &nodes) {
+void Registry::build(const std::vector<Node> &nodes, int dimensions) {
     Outgoing<Entry> outgoing(n_ranks_);
-    for (const Node &node : nodes)
+    Outgoing<Part> of_bodies(n_ranks_);
+    for (const Node &node : nodes) {
+        if (node.body != 0)
+            of_bodies[bookkeeper(node.component, n_ranks_)].push_back(
+                {node.component, {node.body, node.tag, {node.at[0], node.at[1], node.at[2]}}});
         for (std::size_t k = 0; k < node.neighbours.size(); ++k)
             if (node.tag < node.neighbours[k])
                 outgoing[bookkeeper(node.component, n_ranks_)].push_back(
                     {node.component, {node.tag, node.neighbours[k], node.lengths[k]}});
+    }
+    std::map<Tag, std::vector<BodyAtom>> bodies;
+    for (const Part &part : route(world_, of_bodies).items) bodies[part.molecule].push_back(part.atom);
     std::vector<Entry> entries = route(world_, outgoing).items;
     std::sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) { return a.molecule < b.molecule; });
     Outgoing<Note> notes(n_ranks_);
+    std::map<Shape, Shape> examined;
+    std::int64_t n_bonds = 0, n_bodies = 0;
     for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
         std::vector<Bond> bonds;
         for (; end < entries.size() && entries[end].molecule == entries[begin].molecule; ++end)
             bonds.push_back(entries[end].bond);
         std::vector<Tag> tags;
         const Tag molecule = entries[begin].molecule;
-        const Shape &shape = molecules_[molecule] = shape_of(bonds, tags);
-        std::vector<int> degree(tags.size(), 0);
+        const auto parts = bodies.find(molecule);
+        Shape found = shape_of(bonds, parts == bodies.end() ? std::vector<BodyAtom>() : parts->second, tags);
+        const auto before = examined.find(found);
+        if (before != examined.end()) {
+            found = before->second;
+        } else {
+            const Shape key = found;
+            examine(found, dimensions);
+            if (found.rigid) examined[key] = found;
+        }
+        const Shape &shape = molecules_[molecule] = found;
+        n_bonds += static_cast<std::int64_t>(shape.pairs.size());
+        n_bodies += static_cast<std::int64_t>(shape.bodies.size());
+        std::vector<double> taken(tags.size(), shape.rigid ? static_cast<double>(shape.taken) / shape.n_atoms : 0);
         for (const auto &pair : shape.pairs)
-            for (int place : pair) ++degree[place];
+            for (int place : pair) taken[place] += shape.rigid ? 0 : 0.5;
         for (int place = 0; place < shape.n_atoms; ++place)
             notes[bookkeeper(tags[place], n_ranks_)].push_back(
-                {tags[place], {molecule, place, shape.n_atoms, degree[place]}});
+                {tags[place], {molecule, place, shape.n_atoms, taken[place]}});
     }
     for (const Note &note : route(world_, notes).items) memberships_[note.tag] = note.membership;
-    std::int64_t sums[3] = {static_cast<std::int64_t>(molecules_.size()), static_cast<std::int64_t>(entries.size()),
-                            static_cast<std::int64_t>(memberships_.size())};
-    MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_INT64_T, MPI_SUM, world_);
+    std::int64_t sums[4] = {static_cast<std::int64_t>(molecules_.size()), n_bonds,
+                            static_cast<std::int64_t>(memberships_.size()), n_bodies};
+    MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_INT64_T, MPI_SUM, world_);
     n_molecules_ = sums[0];
     n_bonds_ = sums[1];
     n_atoms_ = sums[2];
+    n_bodies_ = sums[3];
 }
 
 std::vector<Membership> Registry::memberships(const std::vector<Tag> &tags) const {
@@ -116,33 +205,17 @@ std::vector<Shape> Registry::shapes(const std::vector<Tag> &molecules) const {
     Outgoing<Tag> questions(n_ranks_);
     for (Tag molecule : molecules) questions[bookkeeper(molecule, n_ranks_)].push_back(molecule);
     const Delivery<Tag> asked = route(world_, questions);
-    // A shape travels as numbers: atoms, bonds, linear; two places and a length for each bond.
     Outgoing<double> replies(n_ranks_);
     for (int p = 0; p < n_ranks_; ++p)
-        for (int k = asked.first[p]; k < asked.first[p + 1]; ++k) {
-            const Shape &shape = molecules_.at(asked.items[k]);
-            replies[p].push_back(shape.n_atoms);
-            replies[p].push_back(static_cast<double>(shape.pairs.size()));
-            replies[p].push_back(shape.linear);
-            for (std::size_t b = 0; b < shape.pairs.size(); ++b)
-                replies[p].insert(replies[p].end(), {static_cast<double>(shape.pairs[b][0]),
-                                                     static_cast<double>(shape.pairs[b][1]), shape.lengths[b]});
-        }
+        for (int k = asked.first[p]; k < asked.first[p + 1]; ++k) write(molecules_.at(asked.items[k]), replies[p]);
     const Delivery<double> came = route(world_, replies);
-    std::vector<int> read(came.first.begin(), came.first.end() - 1);
+    std::vector<int> next(came.first.begin(), came.first.end() - 1);
     std::vector<Shape> result;
     for (Tag molecule : molecules) {
-        const double *number = &came.items[read[bookkeeper(molecule, n_ranks_)]];
-        Shape shape;
-        shape.n_atoms = static_cast<int>(number[0]);
-        shape.linear = number[2] != 0;
-        const int n_bonds = static_cast<int>(number[1]);
-        for (int b = 0; b < n_bonds; ++b) {
-            shape.pairs.push_back({static_cast<int>(number[3 + 3 * b]), static_cast<int>(number[4 + 3 * b])});
-            shape.lengths.push_back(number[5 + 3 * b]);
-        }
-        read[bookkeeper(molecule, n_ranks_)] += 3 + 3 * n_bonds;
-        result.push_back(shape);
+        int &from = next[bookkeeper(molecule, n_ranks_)];
+        const double *number = &came.items[from];
+        result.push_back(read(number));
+        from = static_cast<int>(number - came.items.data());
     }
     return result;
 }

@@ -2,7 +2,11 @@
 #include "shape.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <tuple>
+
+#include "lines.hpp"
 
 namespace holonomic_lammps {
 
@@ -10,12 +14,35 @@ namespace {
 
 using Neighbours = std::vector<std::vector<int>>;
 
+/** Joins the atoms of a body by its shortest gaps (Prim 1957): those are what nearest images are taken of. */
+void join(const Body &body, Neighbours &neighbours) {
+    const std::size_t n = body.places.size();
+    std::vector<double> gap(n, HUGE_VAL);
+    std::vector<std::size_t> nearest(n, 0);
+    std::vector<char> joined(n, 0);
+    for (std::size_t done = 1, last = 0; done < n; ++done) {
+        joined[last] = 1;
+        std::size_t next = 0;
+        for (std::size_t k = 0; k < n; ++k) {
+            if (joined[k]) continue;
+            double square = 0;
+            for (int c = 0; c < 3; ++c) square += std::pow(body.at[k][c] - body.at[last][c], 2);
+            if (square < gap[k]) gap[k] = square, nearest[k] = last;
+            if (joined[next] || gap[k] < gap[next]) next = k;
+        }
+        neighbours[body.places[next]].push_back(body.places[nearest[next]]);
+        neighbours[body.places[nearest[next]]].push_back(body.places[next]);
+        last = next;
+    }
+}
+
 Neighbours neighbours_of(const Shape &shape) {
     Neighbours neighbours(shape.n_atoms);
     for (const auto &pair : shape.pairs) {
         neighbours[pair[0]].push_back(pair[1]);
         neighbours[pair[1]].push_back(pair[0]);
     }
+    for (const Body &body : shape.bodies) join(body, neighbours);
     return neighbours;
 }
 
@@ -39,6 +66,22 @@ std::vector<int> along(const Neighbours &neighbours) {
     return order;
 }
 
+/** A body holds what is in it. */
+void drop_pairs_within_bodies(Shape &shape) {
+    std::vector<int> body_of(shape.n_atoms, -1);
+    for (std::size_t b = 0; b < shape.bodies.size(); ++b)
+        for (int place : shape.bodies[b].places) body_of[place] = static_cast<int>(b);
+    std::size_t n_kept = 0;
+    for (std::size_t k = 0; k < shape.pairs.size(); ++k) {
+        const auto pair = shape.pairs[k];
+        if (body_of[pair[0]] >= 0 && body_of[pair[0]] == body_of[pair[1]]) continue;
+        shape.pairs[n_kept] = pair;
+        shape.lengths[n_kept++] = shape.lengths[k];
+    }
+    shape.pairs.resize(n_kept);
+    shape.lengths.resize(n_kept);
+}
+
 void sort_bonds(Shape &shape) {
     std::vector<std::size_t> order(shape.pairs.size());
     for (std::size_t k = 0; k < order.size(); ++k) {
@@ -56,16 +99,20 @@ void sort_bonds(Shape &shape) {
 
 }  // namespace
 
+static bool operator<(const Body &a, const Body &b) { return std::tie(a.places, a.at) < std::tie(b.places, b.at); }
+
 bool Shape::operator<(const Shape &other) const {
-    return std::tie(n_atoms, pairs, lengths) < std::tie(other.n_atoms, other.pairs, other.lengths);
+    return std::tie(n_atoms, pairs, lengths, bodies) <
+           std::tie(other.n_atoms, other.pairs, other.lengths, other.bodies);
 }
 
-Shape shape_of(std::vector<Bond> bonds, std::vector<Tag> &tags) {
+Shape shape_of(const std::vector<Bond> &bonds, const std::vector<BodyAtom> &body_atoms, std::vector<Tag> &tags) {
     tags.clear();
     for (const Bond &bond : bonds) {
         tags.push_back(bond.from);
         tags.push_back(bond.to);
     }
+    for (const BodyAtom &atom : body_atoms) tags.push_back(atom.atom);
     std::sort(tags.begin(), tags.end());
     tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
     const auto place = [&](Tag tag) {
@@ -73,12 +120,23 @@ Shape shape_of(std::vector<Bond> bonds, std::vector<Tag> &tags) {
     };
     Shape shape;
     shape.n_atoms = static_cast<int>(tags.size());
+    std::map<Tag, Body> bodies;
+    for (const BodyAtom &atom : body_atoms) {
+        Body &body = bodies[atom.body];
+        body.places.push_back(place(atom.atom));
+        body.at.push_back({atom.at[0], atom.at[1], atom.at[2]});
+    }
+    for (const auto &entry : bodies) shape.bodies.push_back(entry.second);
     for (const Bond &bond : bonds) {
+        if (bond.length == no_distance) continue;
         shape.pairs.push_back({place(bond.from), place(bond.to)});
         shape.lengths.push_back(bond.length);
     }
+    if (!shape.bodies.empty()) drop_pairs_within_bodies(shape);
+    if (shape.pairs.size() >= static_cast<std::size_t>(shape.n_atoms) && find_lines(shape))
+        drop_pairs_within_bodies(shape);
     const Neighbours neighbours = neighbours_of(shape);
-    shape.linear = is_linear(neighbours, bonds.size());
+    shape.linear = shape.bodies.empty() && is_linear(neighbours, shape.pairs.size());
     if (shape.linear) {
         const std::vector<int> order = along(neighbours);
         std::vector<int> moved(order.size());

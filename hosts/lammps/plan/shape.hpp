@@ -15,19 +15,37 @@ struct Bond {
     double length;
 };
 
-/** What molecules may have in common: which of their places are bonded, at which distances. */
+/** A bond of this length holds no distance: two atoms belong to one body. */
+constexpr double no_distance = 0;
+
+/** An atom of a rigid body, which has a name, and where it is in any frame of the body's own. */
+struct BodyAtom {
+    Tag body, atom;
+    double at[3];
+};
+
+/** Atoms of a molecule that are rigid as one whole. */
+struct Body {
+    std::vector<int> places;
+    std::vector<std::array<double, 3>> at;
+};
+
+/** What molecules may have in common: which of their places are bonded, at which distances, and which are bodies. */
 struct Shape {
     int n_atoms = 0;
     bool linear = false;                   /**< places follow one another along the chain, pairs are (k, k+1) */
-    std::vector<std::array<int, 2>> pairs; /**< places of the two atoms of each bond */
+    std::vector<std::array<int, 2>> pairs; /**< places of the two atoms of each bond; none within a body */
     std::vector<double> lengths;
+    std::vector<Body> bodies;
+    bool rigid = false; /**< the library has bodies in it, these or what dependent distances are */
+    int taken = 0;      /**< degrees of freedom that its constraints take */
 
     bool operator<(const Shape &other) const;
 };
 
 /** The shape of a molecule and the tags at its places: along a linear chain from its end of lower tag, else ascending.
- * Its atoms are those of the bonds. */
-Shape shape_of(std::vector<Bond> bonds, std::vector<Tag> &tags);
+ * Its atoms are those of the bonds. Atoms that distances hold on a line, three or more, are a body, too. */
+Shape shape_of(const std::vector<Bond> &bonds, const std::vector<BodyAtom> &bodies, std::vector<Tag> &tags);
 
 /** A way through a molecule: each atom after the one that it hangs on (place and earlier place), the first left out. */
 std::vector<std::array<int, 2>> walk(const Shape &shape);

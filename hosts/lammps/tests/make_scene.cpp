@@ -4,7 +4,7 @@
 //   make_scene melt N_CHAINS N_BEADS       linear chains that wind through a simple cubic lattice
 //   make_scene sheet N_CHAINS N_BEADS      linear chains that wind through a square lattice, for dimension 2
 //   make_scene line N_BEADS                one straight chain along x
-//   make_scene dimers|trimers|waters|stars N       molecules at lattice points, turned at random
+//   make_scene dimers|trimers|waters|stars|lines|methanes N    molecules at lattice points, turned at random
 //   make_scene bent N ANGLE                three beads with a given angle, in degrees
 //
 // Bonds have the length 1.05 (melt, sheet: the lattice's spacing). Type 1: ends and light atoms; type 2: all others.
@@ -90,7 +90,17 @@ Template template_of(const char *kind, double degrees) {
     }
     if (!strcmp(kind, "waters")) return bent(109.47);
     if (!strcmp(kind, "bent")) return bent(degrees);
+    if (!strcmp(kind, "lines"))
+        return {{{0, 0, 0}, {bond_length, 0, 0}, {2 * bond_length, 0, 0}, {3 * bond_length, 0, 0}},
+                {1, 2, 2, 1},
+                {{1, 2}, {2, 3}, {3, 4}},
+                {{1, 2, 3}, {2, 3, 4}}};
     const double a = bond_length / std::sqrt(3.0);
+    if (!strcmp(kind, "methanes"))
+        return {{{0, 0, 0}, {a, a, a}, {a, -a, -a}, {-a, a, -a}, {-a, -a, a}},
+                {2, 1, 1, 1, 1},
+                {{1, 2}, {1, 3}, {1, 4}, {1, 5}},
+                {{2, 1, 3}, {2, 1, 4}, {2, 1, 5}, {3, 1, 4}, {3, 1, 5}, {4, 1, 5}}};
     return {{{0, 0, 0}, {a, a, a}, {a, -a, -a}, {-a, a, -a}}, {2, 1, 1, 1}, {{1, 2}, {1, 3}, {1, 4}}, {}};
 }
 
@@ -173,8 +183,9 @@ void print(const Scene &scene) {
 
 int main(int argc, char **argv) {
     if (argc < 3) {
-        std::fprintf(
-            stderr, "make_scene melt|sheet N_CHAINS N_BEADS | line N | dimers|trimers|waters|stars N | bent N ANGLE\n");
+        std::fprintf(stderr,
+                     "make_scene melt|sheet N_CHAINS N_BEADS | line N | dimers|trimers|waters|stars|lines|methanes N | "
+                     "bent N ANGLE\n");
         return 2;
     }
     const int n = std::atoi(argv[2]);

@@ -150,6 +150,74 @@ errors() {
     stops "molecule of atom 1 has 2 atoms, of which 1" data data rigid holonomic later "include $INPUTS/delete.lmp"
     stops "bond lengths can't be reached" data data rigid holonomic dt 0.5
     stops "no bond is selected" data data rigid holonomic before "delete_bonds all bond 1 remove"
+    stops "molecule file nothing can't be read" data data rigid holonomic more "rigid nothing"
+    stops "no molecule looks like" data data rigid holonomic select "rigid $INPUTS/co2.mol"
     "$SCENE" bent 8 180 >data
-    stops "straight" data data rigid holonomic more "a 1" angle 180
+    stops "fixed" data data rigid holonomic select "rigid $INPUTS/co2.mol fixed held" before "include $INPUTS/held.lmp"
+}
+
+# fluid OUTPUT MOLECULE VARIABLE VALUE...
+fluid() {
+    local output=$1 molecule=$2 ranks=1
+    shift 2
+    case $output in *_on_*) ranks=${output##*_on_} ;; esac
+    run "$ranks" "$output" "$INPUTS/fluid.lmp" INPUTS "$INPUTS" molecule "$molecule" "$@"
+}
+
+last() { column "$1" "$2" | tail -n 1; }
+
+# Rigid molecules by a template: bodies MOLECULE SPACING. Fix rigid/small has the same trajectory, up to the second order of
+# both integrators; energy and momentum hold, alone and with a barostat; ranks agree.
+bodies() {
+    local select="rigid $INPUTS/$1.mol" scene=(spacing "$2" select "rigid $INPUTS/$1.mol") half
+    for half in 1 2; do
+        fluid holonomic$half "$1" "${scene[@]}" steps $((50 * half)) every $((50 * half)) dt $((2 / half))
+        fluid small$half "$1" "${scene[@]}" steps $((50 * half)) every $((50 * half)) dt $((2 / half)) rigid small
+    done
+    near 1e-9 "$(column TotEng holonomic1 | head -n 1)" "$(column TotEng small1 | head -n 1)" 'energy at the start'
+    awk -v a="$(last PotEng holonomic1)" -v b="$(last PotEng small1)" -v c="$(last PotEng holonomic2)" -v d="$(last PotEng small2)" '
+        BEGIN { q = (a - b) / (c - d); printf "difference to fix rigid/small: %.3g, %.3g in half steps, ratio %.3g\n", a - b, c - d, q
+                exit !(q > 3.5 && q < 4.5) }' || fail 'not the trajectory of fix rigid/small'
+    fluid nve "$1" "${scene[@]}" steps 400 every 20 before "write_data data nocoeff"
+    column TotEng nve | awk 'NR == 1 { e = $1 } { d = $1 - e; if (d < 0) d = -d; if (d > w) w = d }
+        END { printf "largest change of the energy %.3g\n", w; exit !(NR == 21 && w < 0.1) }' || fail energy
+    below 1e-13 'f_rigid[1]' nve
+    below 1e-13 'f_rigid[2]' nve
+    below 1e-9 v_momentum nve
+    fluid nve_on_2 "$1" "${scene[@]}" steps 400 every 20 data data
+    same 1e-9 TotEng nve nve_on_2
+    fluid npt "$1" "${scene[@]}" steps 400 every 20 motion "npt temp 320 320 100 iso 200 200 2000"
+    below 1e-13 'f_rigid[1]' npt
+    below 1e-13 'f_rigid[2]' npt
+    below 1e-8 v_momentum npt
+    column Econserve npt | awk 'NR == 1 { e = $1 } { d = $1 - e; if (d < 0) d = -d; if (d > w) w = d }
+        END { printf "largest change of what the barostat conserves %.3g\n", w; exit !(NR == 21 && w < 0.5) }' || fail npt
+    # Virials of atoms add up to the pressure.
+    fluid parts "$1" select "$select forces 50 tensions 100" "${scene[@]}" steps 100 \
+        before "compute s all stress/atom NULL fix" later "include $INPUTS/sums.lmp"
+    paste <(column v_p parts) <(column Press parts) | awk '{ d = $1 - $2; if (d < 0) d = -d; if (d > w) w = d }
+        END { printf "pressure of atoms and of the box: %.3g\n", w; exit !(NR > 1 && w < 1e-6) }' || fail 'pressure of atoms'
+    below 1e-7 v_net parts
+}
+
+# Atoms on a line (CO2, acetylene) and all distances of five atoms (methane), by bonds and angles.
+cliques() {
+    fluid bonds co2 steps 100
+    fluid template co2 steps 100 select "rigid $INPUTS/co2.mol"
+    same 1e-10 TotEng bonds template
+    same 1e-9 Press bonds template
+    local scene
+    for scene in "lines 180 5" "methanes 109.4712206344907 6"; do
+        set -- $scene
+        "$SCENE" "$1" 125 >data
+        run 2 "$1" "$INPUTS/beads.lmp" data data rigid holonomic more "a 1" angle "$2" dt 0.002 steps 2000 norm no \
+            before "special_bonds lj 0 0 0"
+        below 1e-12 'f_rigid[1]' "$1"
+        below 1e-12 'f_rigid[2]' "$1"
+        column TotEng "$1" | awk 'NR == 1 { e = $1 } { d = $1 - e; if (d < 0) d = -d; if (d > w) w = d }
+            END { printf "largest change of the energy per molecule %.3g\n", w / 125; exit !(NR == 21 && w / 125 < 2e-3) }' || fail energy
+        run 1 start "$INPUTS/beads.lmp" data data rigid holonomic more "a 1" angle "$2" steps 1 every 1 norm no \
+            before "special_bonds lj 0 0 0" later "include $INPUTS/freedom.lmp"
+        near 1e-6 "$(column v_free start | head -n 1)" $((125 * $3 - 3)) 'degrees of freedom'
+    done
 }

@@ -97,7 +97,7 @@ void test_registry() {
             const auto first = std::find(world.molecule_of.begin(), world.molecule_of.end(), molecule);
             CHECK(members[k].molecule == first - world.molecule_of.begin());
             const auto has = [&](const Bond &b) { return b.from == tags[k] || b.to == tags[k]; };
-            CHECK(members[k].n_bonds == std::count_if(world.bonds.begin(), world.bonds.end(), has));
+            CHECK(2 * members[k].taken == std::count_if(world.bonds.begin(), world.bonds.end(), has));
         }
     }
 }
