@@ -99,6 +99,11 @@ void fill_metric(const exact_chain &c, const elimination &z, const sizes &s, con
     const auto weight = [&](std::size_t k) {
         return std::fabs(h[k]) * std::hypot(normal[3 * k], normal[3 * k + 1], normal[3 * k + 2]);
     };
+    const auto loose = [&](std::size_t k) {
+        if (k == 0 || k == n) return 0.0L;
+        const long double cosine = std::fabs(narrow(dot(c.d[k - 1], c.d[k]))) / s.size[k - 1] / s.size[k];
+        return std::fabs(h[k]) * (cosine > 0 ? 1 + 1 / cosine : 1);
+    };
     for (std::size_t k = 0; k < n; ++k) {
         long double u[3], v[3];
         for (std::size_t x = 0; x < 3; ++x) {
@@ -110,7 +115,8 @@ void fill_metric(const exact_chain &c, const elimination &z, const sizes &s, con
             phi[3 * (k + 1) + x] = (u[y] * v[q] - u[q] * v[y]) / s.size[k];
         }
         scale[k + 1] = (weight(k) + weight(k + 1)) / s.size[k];
-        slack[k + 1] = rounding_of_products * (std::fabs(h[k]) + std::fabs(h[k + 1])) / s.size[k];
+        // of the sines, and of the cosines that h has as a factor
+        slack[k + 1] = rounding_of_products * (loose(k) + loose(k + 1)) / s.size[k];
     }
     for (std::size_t i = 0; i <= n; ++i) {
         for (std::size_t x = 0; x < 3; ++x) out.force.push_back(phi[3 * i + x] - phi[3 * i + 3 + x]);
