@@ -89,10 +89,12 @@ void FixHolonomic::read_options(int narg, char **arg, int first) {
     }
 }
 
-int FixHolonomic::setmask() { return PRE_NEIGHBOR | POST_INTEGRATE | POST_FORCE; }
+int FixHolonomic::setmask() {
+    return PRE_NEIGHBOR | POST_INTEGRATE | POST_FORCE | MIN_PRE_NEIGHBOR | MIN_PRE_FORCE | MIN_POST_FORCE;
+}
 
 void FixHolonomic::init() {
-    if (utils::strmatch(update->integrate_style, "^respa"))
+    if (!minimises() && utils::strmatch(update->integrate_style, "^respa"))
         error->all(FLERR,
                    "Fix holonomic can't be used with run_style respa: the multipliers of a step belong to one set of "
                    "forces"s);
@@ -133,12 +135,6 @@ void FixHolonomic::find_molecules() {
         blocks_.clear();
         *plan_ = Plan(world);
     });
-}
-
-void FixHolonomic::min_setup(int) {
-    error->all(FLERR,
-               "Fix holonomic can't be used in a minimisation: unfix it, so that the bond style acts, and define it "
-               "again after"s);
 }
 
 // ------------------------------------------------------------------------------------------------ what goes with atoms

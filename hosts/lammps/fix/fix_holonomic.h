@@ -23,6 +23,9 @@ public:
     void setup_pre_neighbor() override;
     void setup(int) override;
     void min_setup(int) override;
+    void min_pre_neighbor() override;
+    void min_pre_force(int) override;
+    void min_post_force(int) override;
     void pre_neighbor() override;
     void post_integrate() override;
     void post_force(int) override;
@@ -97,6 +100,7 @@ private:
     void exact_forces();
     double mass_of(int atom) const;
     bool reruns() const;
+    bool minimises() const;
 
     // Outputs
     bool due(int every) const;

@@ -26,6 +26,7 @@ bool FixHolonomic::reruns() const { return CommandName::of(input) == "rerun"s; }
 
 double FixHolonomic::mass_of(int i) const {
     if (fixed_bit_ && atom->mask[i] & fixed_bit_) return 0;
+    if (minimises()) return 1;
     return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
 }
 

@@ -216,3 +216,22 @@ void FixHolonomic::post_force(int vflag) {
         tally(vflag);
     });
 }
+
+/** In a minimisation: the force's part along the constraints, as those of a state at rest leave it. */
+void FixHolonomic::min_post_force(int vflag) {
+    guarded([&] {
+        v_init(vflag);
+        // Fire and quickmin move atoms with their velocities, the others leave them as they are.
+        const bool moves =
+            utils::strmatch(update->minimize_style, "^fire") || utils::strmatch(update->minimize_style, "^quickmin");
+        constrain_velocities(false, true, [&](int i, const double *change, double) {
+            for (int c = 0; moves && c < 3; ++c) atom->v[i][c] += change[c];
+        });
+        std::fill(velocities_.begin(), velocities_.end(), 0.0);
+        exact_forces();
+        return_to_atoms(reactions_, [&](int i, const double *g) {
+            for (int c = 0; c < 3; ++c) atom->f[i][c] += g[c];
+        });
+        tally(vflag);
+    });
+}
