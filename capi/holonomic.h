@@ -230,8 +230,8 @@ HOL_API int hol_chains_add_molecules(hol_chains *chains, int64_t n_molecules, in
  * be given in one call. The verbs treat them as other molecules: multipliers of bonds, constraint forces
  * G_i = m_i a_i - f_i (of a site -f_i), velocities and positions of all atoms, the virial sum r_i (x) G_i. What holds a
  * body together has no multipliers of its own. hol_violation, hol_report and hol_error_location name -1 for the bond
- * where it is the body that is meant. hol_metric, hol_inverse_create, hol_impose and hol_project_positions_along refuse
- * such sets or molecules.
+ * where it is the body that is meant. hol_metric, hol_inverse_create and hol_project_positions_along refuse such sets
+ * or molecules.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (sizes; a length; a body without mass, with mass at one point, with a
  *         fixed atom, or with a site that it cannot carry; a bond within a body of another length; a bond in no
  * molecule with a body); HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM (an atom in two bodies or in a molecule of an earlier
@@ -367,8 +367,7 @@ typedef enum hol_when {
  *
  * The message names the worst bond, its atoms, its length and the length wanted, whether a box is set, and the likely
  * cause. A crude start (a model built by hand; files with two decimals are no such case) calls hol_impose once
- * (docs/recipes.md); with rigid bodies it sets HOL_NEVER, calls hol_project_positions with r_ref = r, and sets
- * HOL_AT_START again.
+ * (docs/recipes.md).
  *
  * @param[in,out] chains
  * @param[in]     when    an hol_when
@@ -830,17 +829,19 @@ HOL_API int hol_residuals_view(const hol_chains *chains, const hol_view *r, cons
  * HOL_NEVER above a tenth (hol_chains_set_checks); this does it from bonds several times too long or too short, too.
  * Each step of Newton's method goes along the bonds as they are then, by what w G allows, and only so far that no bond
  * changes by more than a third; near the end steps are whole ones, and the result is right to the rounding of the
- * coordinates.
+ * coordinates. A molecule that does not get there begins again twice, from where 100 and 1000 rounds of SHAKE along the
+ * bonds as they are take it. Molecules with rigid bodies are projected along what they are.
  *
  * It is no projection: r ends on the constraints near where it was, not at the point that is nearest. Not for time
  * steps. hol_chains_set_checks does not matter. hol_project_velocities may follow.
  *
  * @param[in]     chains
  * @param[in,out] r       positions [n_atoms][3], in the box of hol_chains_set_box
- * @param[out]    report  or NULL: iterations is the number of steps, at most that of hol_chains_set_max_iterations
- * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (a set with rigid bodies); HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE (atoms
- *         on each other, bonds that depend on each other in these positions, such as a triangle that has become a line:
- *         shift an atom, and call again); HOL_ERR_NO_CONVERGENCE; HOL_ERR_MEMORY. Molecules that fail stay as they
+ * @param[out]    report  or NULL: iterations is the largest number of steps of a molecule, most often some ten, in
+ *                        each attempt at most 20 times that of hol_chains_set_max_iterations
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE (atoms on each other, bonds that depend on each
+ *         other in these positions, such as a triangle that has become a line: shift an atom, and call again);
+ *         HOL_ERR_NO_CONVERGENCE (lengths that can't be reached); HOL_ERR_MEMORY. Molecules that fail stay as they
  *         were, all others are done; one that is within the tolerance (hol_chains_set_tolerance) already is not
  *         touched. Thread-safe on one handle, each thread with positions of its own. Allocates some 60 bytes per atom.
  *         Since 0.2.

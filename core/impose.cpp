@@ -9,6 +9,8 @@
 #include "core/caller/view.hpp"
 #include "core/error.hpp"
 #include "core/kernels/tally.hpp"
+#include "core/rigid/run.hpp"
+#include "core/rigid/verbs.hpp"
 #include "core/run/diagnose.hpp"
 #include "core/run/outcomes.hpp"
 #include "core/solve.hpp"
@@ -22,6 +24,12 @@ namespace {
 constexpr double most_change = 0.3;
 // Below this error steps are whole ones, which square it, so that one that does not lessen it has met the rounding.
 constexpr double nearly_there = 1e-9;
+// Steps for each iteration that a projection may take: where masses lie decades apart, what is short for the light ones
+// takes the heavy ones nowhere.
+constexpr std::int64_t steps_per_iteration = 20;
+// Steps may end where they go round in circles (cages). What SHAKE does, bond after bond, is slow but takes no notice
+// of that: after so many rounds of it another attempt begins elsewhere.
+constexpr int rounds_before[] = {100, 1000};
 
 enum class State : unsigned char { on_the_way, arrived, lost };
 
@@ -38,25 +46,15 @@ public:
         : chains_(chains), x_(static_cast<std::size_t>(3 * chains.n_atoms())), g_(x_.size()),
           rhs_(static_cast<std::size_t>(chains.n_bonds())), progress_(static_cast<std::size_t>(chains.n_chains())) {
         chains.for_active([&](const Molecule &m) {
-            for (std::int64_t i = 0; i < m.n_atoms; ++i) read_atom(r, m.atom(i), at(x_, m.atom(i)));
+            read(r, m);
             return true;
         });
     }
 
-    // Returns the number of steps.
-    std::int64_t run() {
-        for (std::int64_t step = 0; step < chains_.max_iterations; ++step) {
-            if (!survey()) return step;
-            std::fill(g_.begin(), g_.end(), 0.0);  // stays where a molecule can't be solved
-            solve_equations(chains_, packed_array(x_.data()), rhs_.data(),
-                            {nullptr, nullptr, packed_array(g_.data()), false, false});
-            chains_.for_active([&](const Molecule &m) {
-                if (of(m).state == State::on_the_way) move(m);
-                return true;
-            });
-        }
-        survey();
-        return chains_.max_iterations;
+    void run(const AtomArray &r) {
+        walk();
+        for (const int rounds : rounds_before)
+            if (begin_again(r, rounds)) walk();
     }
 
     const Progress &of(const Molecule &m) const { return progress_[static_cast<std::size_t>(m.number)]; }
@@ -67,6 +65,56 @@ private:
         return &vectors[static_cast<std::size_t>(3 * atom)];
     }
     Progress &of(const Molecule &m) { return progress_[static_cast<std::size_t>(m.number)]; }
+
+    void read(const AtomArray &r, const Molecule &m) {
+        for (std::int64_t i = 0; i < m.n_atoms; ++i) read_atom(r, m.atom(i), at(x_, m.atom(i)));
+    }
+
+    // Molecules that have not arrived begin where so many rounds take them. Whether there are any.
+    bool begin_again(const AtomArray &r, int rounds) {
+        bool any = false;
+        chains_.for_active([&](const Molecule &m) {
+            Progress &p = of(m);
+            if (p.state == State::arrived) return true;
+            any = true;
+            read(r, m);
+            for (int round = 0; round < rounds; ++round) sweep(m);
+            ++p.steps;
+            p.state = State::on_the_way;
+            p.error = std::numeric_limits<double>::infinity();
+            return true;
+        });
+        return any;
+    }
+
+    // Newton's steps of all molecules that are on their way, until none is or they have had enough.
+    void walk() {
+        for (std::int64_t step = 0; survey() && step < steps_per_iteration * chains_.max_iterations; ++step) {
+            std::fill(g_.begin(), g_.end(), 0.0);  // stays where a molecule can't be solved
+            solve_equations(chains_, packed_array(x_.data()), rhs_.data(),
+                            {nullptr, nullptr, packed_array(g_.data()), false, false});
+            chains_.for_active([&](const Molecule &m) {
+                if (of(m).state == State::on_the_way) move(m);
+                return true;
+            });
+        }
+    }
+
+    // Each bond by itself gets its length, along itself. Atoms on each other are left to their other bonds.
+    void sweep(const Molecule &m) {
+        for (std::int64_t k = 0; k < m.n_bonds; ++k) {
+            double d[3];
+            bond(m, k, d);
+            const double dd = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], a = m.length(k);
+            const double w_i = m.w(m.i(k)), w_j = m.w(m.j(k));
+            if (!(dd > 0) || w_i + w_j == 0) continue;
+            const double part = (a / std::sqrt(dd) - 1) / (w_i + w_j);
+            for (int c = 0; c < 3; ++c) {
+                at(x_, m.atom(m.i(k)))[c] -= part * w_i * d[c];
+                at(x_, m.atom(m.j(k)))[c] += part * w_j * d[c];
+            }
+        }
+    }
 
     void bond(const Molecule &m, std::int64_t k, double *d) const {
         bond_vector(chains_.box, position(m.atom(m.i(k))), position(m.atom(m.j(k))), d);
@@ -147,16 +195,14 @@ private:
     std::vector<Progress> progress_;
 };
 
-}  // namespace
-
-namespace {
-
-void finish(const Chains &chains, const AtomArray &r, const Approach &approach, Report found, Report *report) {
+void finish(const Chains &chains, const AtomArray &r, const Approach &approach, Report *report) {
+    Report found{0, 0, 0, -1, -1, 0, true};
     Tally tally = empty_tally();
     OutcomeOf *const outcomes = outcomes_under_way();
     chains.for_active([&](const Molecule &m) {
         const Progress &p = approach.of(m);
         if (outcomes) note_outcome(outcomes[m.number], p.state == State::arrived, p.steps);
+        found.iterations = std::max<std::int64_t>(found.iterations, p.steps);
         if (p.state != State::arrived) {
             note_bad(m.number, tally);
             return true;
@@ -183,13 +229,14 @@ void finish(const Chains &chains, const AtomArray &r, const Approach &approach, 
 }  // namespace
 
 void impose(const Chains &chains, const AtomArray &r, Report *report) {
-    if (chains.bodies())
-        throw make_error(Status::value,
-                         "hol_impose does not move rigid bodies: hol_project_positions with r_ref = r, after "
-                         "hol_chains_set_checks(HOL_NEVER), brings crude positions of such molecules into shape");
     Approach approach(chains, r);
-    const Report found{approach.run(), 0, 0, -1, -1, 0, true};
-    with_outcomes(chains, [&] { finish(chains, r, approach, found, report); });
+    approach.run(r);  // of whose solves no outcomes are noted
+    with_outcomes(chains, [&] {
+        rigid::Parts parts;
+        parts.run([&] { finish(chains, r, approach, report); });
+        if (chains.bodies()) parts.run([&] { rigid::impose(chains, r, report); });
+        parts.finish();
+    });
 }
 
 }  // namespace holonomic

@@ -6,8 +6,8 @@
 
 namespace holonomic {
 
-// A damped Newton's method, each step along the bonds as they are then. Throws Error once everything that is due has
-// been written; molecules that fail stay as they were.
+// A damped Newton's method, each step along the bonds as they are then; molecules with rigid bodies are projected along
+// what they are. Throws Error once everything that is due has been written; molecules that fail stay as they were.
 void impose(const Chains &chains, const AtomArray &r, Report *report);
 
 }  // namespace holonomic

@@ -29,11 +29,11 @@ struct PositionsWork final : Work {
     bool virial, report, check;
     PositionsCall call;
 
-    PositionsWork(const Chains &chains, const AtomArray &r_ref_, const AtomArray &r_, const AtomArray &v_, double dt_,
-                  double *lambda_, bool virial_, bool report_)
-        : r_ref(r_ref_), r(r_), v(v_), box_ref(chains.box_of_reference()), box(chains.box), dt(dt_), lambda(lambda_),
-          tolerance(chains.tolerance), most_iterations(chains.max_iterations), virial(virial_), report(report_),
-          check(chains.checks() != Checks::never) {
+    PositionsWork(const Chains &chains, const AtomArray &r_ref_, const Box &box_ref_, const AtomArray &r_,
+                  const AtomArray &v_, double dt_, double *lambda_, bool virial_, bool report_, bool check_)
+        : r_ref(r_ref_), r(r_), v(v_), box_ref(box_ref_), box(chains.box), dt(dt_), lambda(lambda_),
+          tolerance(chains.tolerance), most_iterations(chains.max_iterations), virial(virial_),
+          report(report_ || chains.keeps_outcomes), check(check_) {
         call.r_ref = r_ref;
         call.r = r;
         call.v = v;
@@ -177,12 +177,9 @@ struct PositionsWork final : Work {
     }
 };
 
-}  // namespace
-
-void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomArray &r, const AtomArray &v, double dt,
-                       double *lambda, double *virial, Report *report) {
-    const Found found = run(chains, PositionsWork(chains, r_ref, r, v, dt, lambda, virial != nullptr,
-                                                  report != nullptr || chains.keeps_outcomes));
+// Goes through all molecules, and adds to the report. Returns the sums.
+Tally run_positions(const Chains &chains, const PositionsWork &work, Report *report) {
+    const Found found = run(chains, work);
     const Tally &tally = found.tally;
     if (report) {
         report->iterations = std::max(report->iterations, tally.iterations);
@@ -196,11 +193,29 @@ void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomA
         }
     }
     if (tally.n_bad > 0) {
-        const Named arrays[] = {{"reference position", &r_ref}, {"position", &r}};
+        const Named arrays[] = {{"reference position", &work.r_ref}, {"position", &work.r}};
         throw error_of(chains, found, arrays, 2);
     }
+    return tally;
+}
+
+}  // namespace
+
+void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomArray &r, const AtomArray &v, double dt,
+                       double *lambda, double *virial, Report *report) {
+    const Tally tally =
+        run_positions(chains,
+                      PositionsWork(chains, r_ref, chains.box_of_reference(), r, v, dt, lambda, virial != nullptr,
+                                    report != nullptr, chains.checks() != Checks::never),
+                      report);
     const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     for (int i = 0; virial && i < 9; ++i) virial[i] += tally.virial[place[i]];
+}
+
+void impose(const Chains &chains, const AtomArray &r, Report *report) {
+    run_positions(chains,
+                  PositionsWork(chains, r, chains.box, r, AtomArray{}, 1, nullptr, false, report != nullptr, false),
+                  report);
 }
 
 }  // namespace holonomic::rigid

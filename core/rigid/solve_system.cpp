@@ -39,9 +39,9 @@ DoublePair wide_of(const DoublePair &x) { return x; }
 template <class T>
 std::int32_t System::assemble(const Factor<T> &f, const Conformation &rows, const Conformation &columns) const {
     constexpr bool plain = std::is_same_v<T, double>;
-    const std::int64_t n_entries = static_cast<std::int64_t>(s_.entries.size());
     const bool same = rows.gradient == columns.gradient;
     if constexpr (plain) {
+        const std::int64_t n_entries = static_cast<std::int64_t>(s_.entries.size());
         round_to(gradient_[0], rows.gradient, n_entries);
         if (!same) round_to(gradient_[1], columns.gradient, n_entries);
     }

@@ -18,6 +18,8 @@ void solve(const Chains &chains, const AtomArray &r, const double *rhs, double *
 void project_velocities(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda, double *virial);
 void project_positions(const Chains &chains, const AtomArray &r_ref, const AtomArray &r, const AtomArray &v, double dt,
                        double *lambda, double *virial, Report *report);
+// Crude positions, in the box, onto the constraints, without checks.
+void impose(const Chains &chains, const AtomArray &r, Report *report);
 
 void reactions(const Chains &chains, const AtomArray &r, const Box &box, const double *lambda, const Reactions &out,
                double *virial);

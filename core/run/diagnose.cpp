@@ -113,7 +113,7 @@ private:
     Words lengths_of(std::int64_t k) const {
         Words words;
         const double a = m_.length(k), before = length_of_bond(m_, k, *reference_, box_);
-        if (trial_)
+        if (trial_ && !in_place())
             std::snprintf(words.text, sizeof words.text,
                           "it should be %.6g long, is %.6g in the reference and %.6g in the positions to be projected; "
                           "%s",
@@ -140,13 +140,19 @@ private:
         return worst;
     }
 
+    // Positions that were to be brought onto the constraints along their own bonds.
+    bool in_place() const { return trial_->x == reference_->x; }
+
     Error out_of_reach() const {
         const std::int64_t k = worst_bond();
-        return finish(make_error(Status::no_convergence,
-                                 "%s: no corrections along the reference bonds bring the bonds back to their lengths; "
-                                 "the step is too large, or a length can't be reached. The worst is %s: %s%s",
-                                 name_, name_of_bond(chains_, m_, k).text, lengths_of(k).text, others_),
-                      k, -1);
+        return finish(
+            make_error(Status::no_convergence, "%s: no corrections along the %s. The worst is %s: %s%s", name_,
+                       in_place() ? "bonds bring them to their lengths, which can't be reached from these "
+                                    "positions, or not at all"
+                                  : "reference bonds bring the bonds back to their lengths; the step is too "
+                                    "large, or a length can't be reached",
+                       name_of_bond(chains_, m_, k).text, lengths_of(k).text, others_),
+            k, -1);
     }
 
     Error of_bond(std::int64_t k, const char *what) const {

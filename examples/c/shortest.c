@@ -3,7 +3,8 @@
 
 int main(void) /* three beads hang from a fixed atom (mass 0): what holds them? */
 {
-    const double mass[4] = {0, 1, 1, 1}, length[3] = {1, 1, 1};
+    const double mass[4] = {0, 1, 1, 1}; /* one per atom */
+    const double length[3] = {1, 1, 1};  /* one per bond */
     const double r[4][3] = {{0, 0, 0}, {0, 0, -1}, {0, 0, -2}, {0, 0, -3}};
     const double f[4][3] = {{0, 0, 0}, {0, 0, -10}, {0, 0, -10}, {0, 0, -10}};
     double tension[3];

@@ -65,7 +65,7 @@ void HolonomicAlgorithm::apply(std::vector<Vec3> &reference, std::vector<Vec3> &
     const int status = hol_project_positions(molecules.get(), packed(reference), packed(positions), nullptr, 1, nullptr,
                                              0, nullptr, nullptr);
     // Context::applyConstraints: where nothing is known but crude positions, there is more that can be done.
-    if (status == HOL_ERR_NO_CONVERGENCE && &reference == &positions)
+    if (status != HOL_OK && &reference == &positions)
         ask(hol_impose(molecules.get(), packed(positions), nullptr));
     else
         ask(status);

@@ -206,8 +206,8 @@ class Molecules(Bonds, Settings):
 
     def impose(self, r: np.ndarray) -> Report:
         """Moves positions r (n_atoms, 3) that lie anywhere onto the constraints, in place: a model built by hand, another
-        force field's lengths. By steps of Newton's method in which no bond changes by more than a third; `project_positions`
-        with r_ref = r does it only where bonds are off by a third or less."""
+        force field's lengths, bodies too. By steps of Newton's method in which no bond changes by more than a third;
+        `project_positions` with r_ref = r does it only where bonds are off by a third or less."""
         report = Report()
         ask(library.hol_impose_view(self._handle, self._view(r, "r", True), byref(report)))
         return report

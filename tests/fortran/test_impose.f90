@@ -44,7 +44,7 @@ program test_impose
    call check(maxval(abs(length)) < 1e-14_real64, "residuals after impose")
    call chains%residuals(r, length=short, stat=stat, errmsg=message)
    call check(stat == HOL_ERR_VALUE .and. index(message, "length has 2") > 0, "a list that is too short is refused")
-   r(:, 2) = r(:, 1)
+   r = spread(r(:, 1), 2, n)
    call chains%impose(r, stat=stat, errmsg=message)
    call check(stat == HOL_ERR_DEGENERATE .and. index(message, "impose: ") == 1, "atoms on each other are refused")
    call chains%destroy()

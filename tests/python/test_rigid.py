@@ -52,13 +52,15 @@ class Bodies(unittest.TestCase):
     def test_crude_positions_of_bodies(self):
         rng = np.random.default_rng(3)
         places = rng.normal(size=(5, 3))
-        molecules = hol.Molecules(np.ones(5))
+        molecules = hol.Molecules(np.ones(8))
         molecules.add_rigid([range(5)], [places])
-        r = places + 0.2 * rng.normal(size=(5, 3))
-        with self.assertRaisesRegex(hol.ArgumentError, "r_ref = r"):
-            molecules.impose(r)
-        molecules.checks = "never"
-        molecules.project_positions(r, r, 1)  # what the message says
+        molecules.add([(5, 6), (6, 7)], 1.0)  # beside molecules without bodies
+        r = np.vstack([places, np.outer(range(3), [1.0, 0, 0])]) + 0.2 * rng.normal(size=(8, 3))
+        crude = r.copy()
+        report = molecules.impose(r)
+        self.assertEqual((report.n_corrected, report.n_failed), (2, 0))
+        self.assertAlmostEqual(np.linalg.norm(r[5] - r[6]), 1, places=13)
+        np.testing.assert_allclose(r[:5].sum(axis=0), crude[:5].sum(axis=0), atol=1e-13)
         pairs = [(i, j) for i in range(5) for j in range(i)]
         for i, j in pairs:
             self.assertAlmostEqual(np.linalg.norm(r[i] - r[j]), np.linalg.norm(places[i] - places[j]), places=13)

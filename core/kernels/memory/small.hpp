@@ -291,7 +291,8 @@ static inline int64_t any_molecules(const Unit &unit, const Block &block, int64_
         return choose_number<1, largest_boxed_molecule>(head.n_bonds, [&](auto n) {
             return uniform ? kernel(Type<ByList<n>>{}, yes, yes) : kernel(Type<ByList<n>>{}, no, yes);
         });
-    return choose_number<1, largest_molecule>(head.n_bonds, [&](auto n) {
+    return choose_number<1, largest_molecule>(head.n_bonds, [&](auto constant) {
+        constexpr int n = decltype(constant)::value;  // gcc 9 does not take it from within the next function
         return choose(
             [&](auto equal) {
                 if constexpr (n <= largest_boxed_molecule)
