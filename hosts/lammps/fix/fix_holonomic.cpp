@@ -36,7 +36,7 @@ FixHolonomic::FixHolonomic(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, a
     size_vector = 6;
     global_freq = 1;
     extscalar = extvector = 0;
-    maxexchange = 6;
+    maxexchange = 7;
     if (forces_every_ > 0) {
         peratom_flag = 1;
         size_peratom_cols = 3;
@@ -132,6 +132,7 @@ void FixHolonomic::find_molecules() {
         std::vector<Tag> tags(atom->tag, atom->tag + atom->nlocal);
         const std::vector<Membership> members = registry_.memberships(tags);
         for (int i = 0; i < atom->nlocal; ++i) static_cast<Membership &>(atoms_[i]) = members[i];
+        n_atoms_ = atom->natoms;
         blocks_.clear();
         *plan_ = Plan(world);
     });
@@ -153,11 +154,11 @@ void FixHolonomic::set_arrays(int i) {
 
 int FixHolonomic::pack_exchange(int i, double *buffer) {
     const Belonging &a = atoms_[i];
-    const double numbers[6] = {static_cast<double>(a.molecule), static_cast<double>(a.place),
-                               static_cast<double>(a.n_atoms),  a.taken,
-                               static_cast<double>(a.bonds),    static_cast<double>(a.angles)};
+    const double numbers[7] = {
+        static_cast<double>(a.molecule), static_cast<double>(a.place),  static_cast<double>(a.n_atoms), a.taken,
+        static_cast<double>(a.bonds),    static_cast<double>(a.angles), static_cast<double>(a.topology)};
     memcpy(buffer, numbers, sizeof numbers);
-    return 6;
+    return 7;
 }
 
 int FixHolonomic::unpack_exchange(int i, double *buffer) {
@@ -168,7 +169,8 @@ int FixHolonomic::unpack_exchange(int i, double *buffer) {
     a.taken = buffer[3];
     a.bonds = static_cast<std::uint32_t>(buffer[4]);
     a.angles = static_cast<std::uint32_t>(buffer[5]);
-    return 6;
+    a.topology = static_cast<std::uint32_t>(buffer[6]);
+    return 7;
 }
 
 /** The box's rate of change, without which velocities under a barostat would not be those of an unbroken run. */

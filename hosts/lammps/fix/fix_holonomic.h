@@ -73,7 +73,8 @@ private:
     void guarded(Function function);  // turns exceptions into errors of LAMMPS
 
     // Plan and positions
-    void replan(bool fresh);
+    bool replan(bool fresh);
+    void settle();
     void take_masses();
     void make_whole();
     void make_blocks();
@@ -119,6 +120,7 @@ private:
     std::vector<holonomic_lammps::Belonging> atoms_;  // by local atom
     holonomic_lammps::Registry registry_;
     std::unique_ptr<holonomic_lammps::Plan> plan_;
+    bigint n_atoms_ = 0;           // of the whole system, when molecules were found
     std::vector<tagint> planned_;  // the atoms here, in their order, when it was made
     std::vector<Block> blocks_;
     std::vector<std::vector<std::array<int, 2>>> walks_;  // by shape, see walk()

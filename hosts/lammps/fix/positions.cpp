@@ -30,11 +30,20 @@ double FixHolonomic::mass_of(int i) const {
     return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
 }
 
+/** Bonds that other fixes have made or atoms that they have taken away since show here: they ask for reneighbouring. */
 void FixHolonomic::pre_neighbor() {
     guarded([&] {
-        replan(false);
+        const bool found_anew = replan(false);
         make_whole();
+        if (found_anew) settle();
     });
+}
+
+/** Puts positions onto the constraints that these molecules have not obeyed so far. */
+void FixHolonomic::settle() {
+    int moved = constrain_positions(true, 1.0);
+    MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_INT, MPI_MAX, world);
+    if (moved) comm->forward_comm();
 }
 
 /** Plans, and puts positions that come from a file onto the constraints before the first forces are computed. */
@@ -42,20 +51,27 @@ void FixHolonomic::setup_pre_neighbor() {
     guarded([&] {
         replan(true);
         make_whole();
-        if (reruns()) return;
-        int moved = constrain_positions(true, 1.0);
-        MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_INT, MPI_MAX, world);
-        if (moved) comm->forward_comm();
+        if (!reruns()) settle();
     });
 }
 
-/** Where every rank still has the same atoms in the same order, the plan holds: on one rank until they are sorted. */
-void FixHolonomic::replan(bool fresh) {
+/**
+ * Where every rank still has the same atoms in the same order, the plan holds: on one rank until they are sorted. Where
+ * bonds or the number of atoms have changed, molecules are found anew; gives whether that is so.
+ */
+bool FixHolonomic::replan(bool fresh) {
+    enum { order = 1, bonds = 2 };
     const tagint *tag = atom->tag;
     int changed = fresh || planned_.size() != static_cast<std::size_t>(atom->nlocal) ||
-                  !std::equal(planned_.begin(), planned_.end(), tag);
-    MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_MAX, world);
-    if (!changed) return;
+                          !std::equal(planned_.begin(), planned_.end(), tag)
+                      ? order
+                      : 0;
+    if (n_atoms_ != atom->natoms || selection_.changed(atoms_)) changed |= bonds;
+    MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_BOR, world);
+    const bool found_anew = (changed & bonds) != 0;
+    if (found_anew) find_molecules();
+    fresh = fresh || found_anew;
+    if (!changed) return false;
     planned_.assign(tag, tag + atom->nlocal);
     const std::vector<Membership> members(atoms_.begin(), atoms_.begin() + atom->nlocal);
     const std::vector<Tag> tags(planned_.begin(), planned_.end());
@@ -66,13 +82,14 @@ void FixHolonomic::replan(bool fresh) {
         for (int slot : owner.indices) away_.push_back({slot, static_cast<int>(away_.size())});
     std::sort(away_.begin(), away_.end(), [](const Away &a, const Away &b) { return a.slot < b.slot; });
     answers_.resize(3 * away_.size());
-    if (!changed) return;
+    if (!changed) return found_anew;
     take_masses();
     walks_.clear();
     for (const Shape &shape : plan_->shapes()) walks_.push_back(walk(shape));
     make_blocks();
     for (std::vector<double> *array : {&now_, &before_, &velocities_, &forces_, &reactions_})
         array->assign(3 * static_cast<std::size_t>(plan_->n_slots()), 0.0);
+    return found_anew;
 }
 
 void FixHolonomic::make_blocks() {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <map>
 
@@ -101,9 +102,34 @@ bool Selection::wants(int i) const {
 }
 
 std::vector<Bond> Selection::select(int groupbit, std::vector<Belonging> &atoms) {
+    // Entries of a list that another command has changed may stand elsewhere now: they are selected anew.
+    for (int i = 0; i < atom->nlocal; ++i)
+        if (atoms[i].topology != topology(i)) release_atom(i, atoms[i]);
     std::vector<Bond> bonds = select_bonds(groupbit, atoms);
     if (!angle_types_.empty()) select_angles(atoms, bonds);
+    for (int i = 0; i < atom->nlocal; ++i) atoms[i].topology = topology(i);
     return bonds;
+}
+
+/** A number for an atom's lists of bonds and angles, 0 for empty ones. */
+std::uint32_t Selection::topology(int i) const {
+    std::uint64_t number = 0;
+    const auto add = [&](std::int64_t x) {
+        number = (number ^ static_cast<std::uint64_t>(x)) * 0x9E3779B97F4A7C15u;
+        number ^= number >> 32;
+    };
+    for (int k = 0; k < atom->num_bond[i]; ++k) add(atom->bond_type[i][k]), add(atom->bond_atom[i][k]);
+    for (int k = 0; atom->num_angle && k < atom->num_angle[i]; ++k) {
+        add(atom->angle_type[i][k]);
+        add(atom->angle_atom1[i][k]), add(atom->angle_atom2[i][k]), add(atom->angle_atom3[i][k]);
+    }
+    return static_cast<std::uint32_t>(number);
+}
+
+bool Selection::changed(const std::vector<Belonging> &atoms) const {
+    for (int i = 0; i < atom->nlocal; ++i)
+        if (atoms[i].topology != topology(i)) return true;
+    return false;
 }
 
 /** Lengths by bond type; 1 where the bond style has none yet. */
@@ -229,12 +255,18 @@ std::vector<BodyAtom> Selection::select_bodies(int groupbit) {
 }
 
 void Selection::release(std::vector<Belonging> &atoms) {
-    for (int i = 0; i < atom->nlocal; ++i) {
-        for (int k = 0; k < atom->num_bond[i]; ++k)
-            if (atoms[i].bonds >> k & 1 && atom->bond_type[i][k] < 0) atom->bond_type[i][k] *= -1;
-        for (int k = 0; atom->num_angle && k < atom->num_angle[i]; ++k)
-            if (atoms[i].angles >> k & 1 && atom->angle_type[i][k] < 0) atom->angle_type[i][k] *= -1;
-    }
+    for (int i = 0; i < atom->nlocal; ++i) release_atom(i, atoms[i]);
+}
+
+/** Where lists have changed, nobody knows which entries were this fix's: then all that are off are on again. */
+void Selection::release_atom(int i, Belonging &belonging) {
+    if ((belonging.bonds | belonging.angles) == 0) return;
+    const bool known = belonging.topology == topology(i);
+    for (int k = 0; k < atom->num_bond[i]; ++k)
+        if (!known || belonging.bonds >> k & 1) atom->bond_type[i][k] = std::abs(atom->bond_type[i][k]);
+    for (int k = 0; atom->num_angle && k < atom->num_angle[i]; ++k)
+        if (!known || belonging.angles >> k & 1) atom->angle_type[i][k] = std::abs(atom->angle_type[i][k]);
+    belonging.bonds = belonging.angles = 0;
 }
 
 }  // namespace holonomic_lammps

@@ -19,6 +19,7 @@ namespace holonomic_lammps {
 struct Belonging : Membership {
     std::uint32_t bonds = 0; /**< bit k: entry k of the atom's list of bonds, whose type is negative for that */
     std::uint32_t angles = 0;
+    std::uint32_t topology = 0; /**< of the lists when they were last looked at: bits mean nothing if it has changed */
 };
 
 /** Which bonds and angles are to be rigid: those of given types, or bonds of atoms of given types or masses. */
@@ -45,6 +46,9 @@ public:
      */
     std::vector<BodyAtom> select_bodies(int groupbit);
 
+    /** Whether the bonds or angles of any atom here are others than when they were last selected. */
+    bool changed(const std::vector<Belonging> &atoms) const;
+
     /** Makes the types of an atom's rigid bonds and angles positive again. */
     void release(std::vector<Belonging> &atoms);
 
@@ -54,6 +58,8 @@ private:
     std::vector<Bond> select_bonds(int groupbit, std::vector<Belonging> &atoms);
     void select_angles(std::vector<Belonging> &atoms, std::vector<Bond> &bonds);
     bool wants(int i) const;
+    std::uint32_t topology(int i) const;
+    void release_atom(int i, Belonging &belonging);
 
     std::set<int> bond_types_, angle_types_, atom_types_;
     std::vector<double> masses_;

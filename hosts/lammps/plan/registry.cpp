@@ -172,7 +172,7 @@ void Registry::build(const std::vector<Node> &nodes, int dimensions) {
         } else {
             const Shape key = found;
             examine(found, dimensions);
-            if (found.rigid) examined[key] = found;
+            examined[key] = found;
         }
         const Shape &shape = molecules_[molecule] = found;
         n_bonds += static_cast<std::int64_t>(shape.pairs.size());

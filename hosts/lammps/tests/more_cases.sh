@@ -240,3 +240,27 @@ peptide() {
     column TotEng out | awk 'NR == 1 { e = $1 } { d = $1 - e; if (d < 0) d = -d; if (d > w) w = d }
         END { printf "largest change of the energy in the run %.3g\n", w; exit !(NR == 6 && w < 5) }' || fail energy
 }
+
+# Bonds that fix bond/create makes are rigid from the step on in which they come; the molecules are those that a new run finds.
+# Breaking flexible bonds moves entries in the lists of rigid ones: all of those stay, and act again after unfix.
+react() {
+    local n
+    "$SCENE" dimers 343 >data
+    for n in 1 2; do
+        run $n create$n "$INPUTS/react.lmp" start "include $INPUTS/grow.lmp" later "include $INPUTS/on.lmp"
+        # Bonds of the fix are those of LAMMPS's, and there are more than before.
+        awk '/^ *Step /{ reading = 1; next } /^Loop/{ reading = 0 } reading { if (made == "" || $9 != $7) { bad = bad || $8 != 343 + $9; made = $9 } }
+            END { printf "%d bonds made\n", made; exit bad || made < 20 }' create$n || fail "not all bonds are rigid"
+        below 1e-12 'f_rigid[1]' create$n
+        below 1e-12 'f_rigid[2]' create$n
+    done
+    same 1e-7 TotEng create1 create2
+    run 1 fresh "$INPUTS/resume.lmp" state grown motion nve special "0 1 1"
+    paste <(column TotEng create1 | tail -n 2) <(column TotEng fresh) | awk '{ d = $1 / $2 - 1; if (d < 0) d = -d; if (d > w) w = d }
+        END { printf "going on and starting anew: %.3g\n", w; exit !(NR == 2 && w < 1e-9) }' || fail "a new run differs"
+
+    "$SCENE" melt 16 16 >data
+    run 2 break "$INPUTS/react.lmp" start "include $INPUTS/cut.lmp" later "include $INPUTS/uncut.lmp" steps 1000 dt 0.001
+    awk '/^broken / { printf "%d bonds of 48 broken, %d rigid, sum of types after unfix %d\n", $2, $3, $4
+        ok = $2 > 5 && $3 == 192 && $4 == 192 + 2 * (48 - $2) && $5 < 1e-12 } END { exit !ok }' break || fail "rigid bonds were lost"
+}
