@@ -26,7 +26,7 @@ void session::add_rigid()
     }
     block atoms(n_held * sizeof(std::int64_t)), places(3 * n_held * sizeof(double));
     std::int64_t *const list = reinterpret_cast<std::int64_t *>(atoms.data());
-    const std::int64_t first = base + in.byte() % 40;
+    const std::int64_t first = base + (copies ? 0 : in.byte() % 40);
     for (std::size_t a = 0; a < n_held; ++a) list[a] = in.often() ? first + static_cast<std::int64_t>(a) : in.whole();
     fill(places, 3 * n_held, in);
     // Straight or flat, exactly or nearly so, or as it comes; or all at one point.
@@ -37,11 +37,15 @@ void session::add_rigid()
         if (form == 2 || form == 3) x[1] *= form == 2 ? 0 : 1e-7, x[2] *= form == 2 ? 0 : 1;
         if (form == 4) std::copy_n(places.doubles(), 3, x);
     }
-    fill_pairs(pairs, n_bonds, n_atoms);
+    fill_pairs(pairs, n_bonds, copies ? static_cast<std::int64_t>(n_held) : n_atoms);
     for (std::size_t k = 0; k < n_bonds; ++k)  // most of them at a body
         if (in.often() && n_held > 0) reinterpret_cast<std::int64_t *>(pairs.data())[2 * k] = list[in.byte() % n_held];
     fill(lengths, n_bonds, in, true);
-    const std::int64_t n_molecules = copies ? in.whole() : 1, n_of_each = in.whole(), from = in.whole();
+    const std::int64_t n_molecules = !copies      ? 1
+                                     : in.often() ? 1 + in.below(6)
+                                                  : in.whole(),
+                       n_of_each = in.often() ? static_cast<std::int64_t>(n_held) + in.below(4) : in.whole(),
+                       from = in.often() ? base + in.below(8) : in.whole();
     const std::int64_t chains_before = hol_chains_n_chains(chains), bonds_before = hol_chains_n_bonds(chains),
                        freedoms_before = hol_chains_degrees_of_freedom(chains, 3);
     hol_chains *const to = maybe(chains);
