@@ -171,7 +171,7 @@ Parts::~Parts() {
 Found run(const Chains &chains, const Work &work) {
     const Bodies &bodies = *chains.bodies();
     const Memory all = memory_of(chains);
-    const std::int64_t bytes = all.bytes, n_blocks = all.n_blocks;
+    const std::int64_t n_blocks = all.n_blocks;
     char *const own = all.scratch;
     Found *const parts = all.parts;
     OutcomeOf *const outcomes = outcomes_under_way();
@@ -185,7 +185,7 @@ Found run(const Chains &chains, const Work &work) {
         // A thread that gets no memory leaves its share to the others; the calling thread has its own.
 #pragma omp parallel num_threads(n_threads)
         {
-            char *const memory = static_cast<char *>(thread_memory(Keep::rigid, bytes));
+            char *const memory = static_cast<char *>(thread_memory(Keep::rigid, all.bytes));
             for (std::int64_t j; memory && (j = next.fetch_add(1)) < n_blocks;)
                 parts[j] = Block(chains, work, memory, outcomes).run(j * block);
         }
