@@ -116,7 +116,13 @@ extern "C" int molecule_solve(const molecule_problem *p, const double *rhs, mole
 extern "C" int molecule_positions(const molecule_problem *p, const double *drifted, const double *drifted_box,
                                   const double *length, double dt, molecule_solution *out)
 {
-    const molecule_step step{drifted, length, dt, drifted_box};
+    return molecule_positions_near(p, drifted, drifted_box, length, dt, nullptr, out);
+}
+
+extern "C" int molecule_positions_near(const molecule_problem *p, const double *drifted, const double *drifted_box,
+                                       const double *length, double dt, const double *lambda, molecule_solution *out)
+{
+    const molecule_step step{drifted, length, dt, drifted_box, lambda};
     const auto s = wide_positions<narrow>(*p, step);
     if (!s.regular) {  // in more bits it would not converge either, but for a few whose matrix has lost all digits
         *out = molecule_solution();

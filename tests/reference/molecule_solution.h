@@ -29,6 +29,10 @@ int molecule_solve(const molecule_problem *p, const double *rhs, molecule_soluti
 int molecule_positions(const molecule_problem *p, const double *drifted, const double *drifted_box,
                        const double *length, double dt, molecule_solution *out);
 
+/** The same, but the solution that Newton's method comes to from these multipliers [n_bonds]: there may be several. */
+int molecule_positions_near(const molecule_problem *p, const double *drifted, const double *drifted_box,
+                            const double *length, double dt, const double *lambda, molecule_solution *out);
+
 void molecule_solution_free(molecule_solution *s);
 
 /** Determinants, Fixman force and the whole inverse. Returns 0, or -1 if Z is singular; least_pivot is then set all the

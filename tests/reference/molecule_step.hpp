@@ -13,7 +13,8 @@ struct molecule_step {
     const double *drifted;  // [n_atoms][3]
     const double *length;   // [n_bonds]
     double dt;
-    const double *drifted_box;  // the box of the drifted positions, or nullptr
+    const double *drifted_box;       // the box of the drifted positions, or nullptr
+    const double *lambda = nullptr;  // [n_bonds] that Newton's method starts from; nullptr: zeros
 };
 
 }  // namespace reference

@@ -26,7 +26,8 @@ struct newton_state {
                                             s.drifted_box));
             square.push_back(REAL(s.length[b.number]) * REAL(s.length[b.number]));
         }
-        tau.resize(m.bonds.size());
+        for (const auto &b : m.bonds)
+            tau.push_back(s.lambda ? REAL(2) * REAL(s.dt) * REAL(s.dt) * REAL(s.lambda[b.number]) : REAL(0));
     }
 
     /** Bonds with the present multipliers. */

@@ -10,6 +10,8 @@ namespace stress
 namespace
 {
 
+constexpr long double most_farther = 4;
+
 constexpr long double eps = DBL_EPSILON;
 // Rings whose bonds depend on each other to the rounding of coordinates, of which a sine is squared, are refused.
 constexpr long double ring_limit = 1e-24L;
@@ -160,6 +162,42 @@ bool is_linear(const placement &a, std::size_t b)
     return a.molecule_of_bond[b] >= 0 && shape == HOL_SHAPE_CHAIN;
 }
 
+void compare_positions(const placement &a, const hostile_molecule &m, const molecule_solution &s,
+                       const molecule_results &alone, molecule_verdict &out)
+{
+    const long double k = k_eps(m), tail = slack(m, s, k);
+    for (std::size_t b = 0; b < m.length.size(); ++b)
+        out.compare(is_linear(a, b) ? M_CHAIN_LAMBDA : M_POSITION_LAMBDA, alone.position_lambda[b], s.lambda[b],
+                    k * s.lambda_scale[b] + (s.lambda_scale[b] > 0 ? tail : 0));
+    for (std::size_t i = 0; i < m.r.size(); ++i)
+        out.compare(M_POSITION, alone.r[i], s.moved[i], k * s.moved_scale[i / 3]);
+}
+
+/** Angles that are nearly straight may bend to either side within a step: then there are two solutions, and which one a
+ * method comes to is a matter of its first steps. Another one counts, if it is not much farther than the reference's.
+ */
+void compare_with_other(const placement &a, const hostile_molecule &m, const molecule_solution &s,
+                        const molecule_results &alone, molecule_verdict &out)
+{
+    const molecule_problem p = m.problem();
+    const std::vector<double> drifted = m.drifted();
+    molecule_solution other;
+    if (molecule_positions_near(&p, drifted.data(), nullptr, m.length.data(), m.dt, alone.position_lambda.data(),
+                                &other) != 0)
+        return;
+    molecule_verdict found;
+    compare_positions(a, m, other, alone, found);
+    long double moves = 0, least = 0;
+    for (std::size_t i = 0; i < drifted.size(); ++i) {
+        moves = std::max(moves, std::fabs(other.moved[i] - drifted[i]));
+        least = std::max(least, std::fabs(s.moved[i] - drifted[i]));
+    }
+    molecule_solution_free(&other);
+    if (found.ratio[M_POSITION] > 1) return;
+    found.note(M_OTHER, moves / (most_farther * least));
+    out = found;
+}
+
 void check_positions(const placement &a, const hostile_molecule &m, const molecule_level &exact,
                      const molecule_results &alone, molecule_verdict &out)
 {
@@ -168,13 +206,10 @@ void check_positions(const placement &a, const hostile_molecule &m, const molecu
     if (alone.positions != HOL_OK) return;
     check_lengths(m, alone.r, out);
     if (!exact.there) return;
-    const molecule_solution &s = exact.s;
-    const long double k = k_eps(m), tail = slack(m, s, k);
-    for (std::size_t b = 0; b < m.length.size(); ++b)
-        out.compare(is_linear(a, b) ? M_CHAIN_LAMBDA : M_POSITION_LAMBDA, alone.position_lambda[b], s.lambda[b],
-                    k * s.lambda_scale[b] + (s.lambda_scale[b] > 0 ? tail : 0));
-    for (std::size_t i = 0; i < m.r.size(); ++i)
-        out.compare(M_POSITION, alone.r[i], s.moved[i], k * s.moved_scale[i / 3]);
+    molecule_verdict here;
+    compare_positions(a, m, exact.s, alone, here);
+    if (here.ratio[M_POSITION] > 1) compare_with_other(a, m, exact.s, alone, here);
+    out.add(here);
 }
 
 bool all_finite(const numbers &x)

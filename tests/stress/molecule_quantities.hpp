@@ -28,6 +28,7 @@ enum molecule_quantity {
     M_POSITION,         ///< corrected positions
     M_POSITION_LAMBDA,  ///< their multipliers
     M_CHAIN_LAMBDA,     ///< those of linear parts, which fixed atoms cut off and chains' kernels solve; for information
+    M_OTHER,            ///< another solution than the reference's: how much farther it is, over most_farther
     M_LENGTH,           ///< bond lengths that are left
     M_REFUSED_STEP,     ///< no convergence where the reference converges; for information
     M_REFUSED,          ///< an error for a molecule that has an answer
@@ -41,9 +42,10 @@ enum molecule_quantity {
 inline const char *molecule_quantity_name(int q)
 {
     static const char *const names[M_QUANTITIES] = {
-        "lambda",       "G",       "virial",   "lambda (solve)", "mu",         "velocities",   "ln det",
-        "ln det Z",     "Fixman",  "inverse",  "positions",      "lambda (r)", "of chains",    "bonds left",
-        "refused step", "refused", "accepted", "outputs",        "same bits",  "units, mirror"};
+        "lambda",    "G",         "virial",       "lambda (solve)", "mu",        "velocities",
+        "ln det",    "ln det Z",  "Fixman",       "inverse",        "positions", "lambda (r)",
+        "of chains", "other one", "bonds left",   "refused step",   "refused",   "accepted",
+        "outputs",   "same bits", "units, mirror"};
     return names[q];
 }
 
