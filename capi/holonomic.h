@@ -211,7 +211,8 @@ HOL_API int hol_chains_add_molecules(hol_chains *chains, int64_t n_molecules, in
  * @param[in]     n_bodies  >= 1
  * @param[in]     sizes     [n_bodies], how many atoms each body has, >= 2
  * @param[in]     atoms     [sum of sizes], the atoms of one body after the other, any numbers of the caller's arrays.
- * An atom of mass 0 is a massless site here: its place is written with the others' and the force on it goes to them.
+ * An atom of mass 0 is a massless site here: its place is written with the others' and the force on it goes to them,
+ * in G of hol_forces: an integrator that kicks and projects kicks by f + G (docs/rigid.md).
  * (Everywhere else mass 0 means held fixed, as it did. An atom of infinite mass is always held fixed, and can be in no
  * body.)
  * @param[in]     places    [sum of sizes][3], reference coordinates of these atoms, each body in any frame of its own.
