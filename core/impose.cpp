@@ -232,9 +232,10 @@ void impose(const Chains &chains, const AtomArray &r, Report *report) {
     Approach approach(chains, r);
     approach.run(r);  // of whose solves no outcomes are noted
     with_outcomes(chains, [&] {
-        rigid::Parts parts;
+        if (!chains.bodies()) return finish(chains, r, approach, report);
+        rigid::Parts parts(chains);
         parts.run([&] { finish(chains, r, approach, report); });
-        if (chains.bodies()) parts.run([&] { rigid::impose(chains, r, report); });
+        parts.run([&] { rigid::impose(chains, r, report); });
         parts.finish();
     });
 }

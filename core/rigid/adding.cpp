@@ -1,6 +1,7 @@
 // Adding molecules with rigid bodies to a set, and building them again with other masses or lengths.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "core/molecules/batch.hpp"
