@@ -133,8 +133,8 @@ Shape shape_of(const std::vector<Bond> &bonds, const std::vector<BodyAtom> &body
         shape.lengths.push_back(bond.length);
     }
     if (!shape.bodies.empty()) drop_pairs_within_bodies(shape);
-    if (shape.pairs.size() >= static_cast<std::size_t>(shape.n_atoms) && find_lines(shape))
-        drop_pairs_within_bodies(shape);
+    const bool may_have_cycles = !shape.bodies.empty() || shape.pairs.size() >= static_cast<std::size_t>(shape.n_atoms);
+    if (may_have_cycles && find_lines(shape)) drop_pairs_within_bodies(shape);
     const Neighbours neighbours = neighbours_of(shape);
     shape.linear = shape.bodies.empty() && is_linear(neighbours, shape.pairs.size());
     if (shape.linear) {

@@ -176,6 +176,36 @@ void test_balance() {
     CHECK(!plan.renew(registry, members.data(), tags.data(), static_cast<int>(tags.size())));
 }
 
+/** Four atoms on a line by their distances, tied to a planar body that is given: one molecule, and no distance within.
+ */
+void test_bodies() {
+    std::vector<Bond> bonds;
+    std::vector<BodyAtom> bodies;
+    if (me == 0) bonds = {{1, 2, 1.0}, {2, 3, 1.25}, {3, 4, 1.5}, {1, 3, 2.25}, {2, 4, 2.75}};
+    if (me == n_ranks - 1) {
+        bonds.push_back({12, 4, 1.0});
+        bonds.push_back({10, 11, 7.0});
+        bodies = {{10, 10, {0, 0, 0}}, {10, 12, {0, 2, 0}}, {10, 11, {1, 0, 0}}};
+    }
+    const Registry registry(MPI_COMM_WORLD, bonds, bodies);
+    CHECK(registry.n_molecules() == 1 && registry.n_atoms() == 7);
+    CHECK(registry.n_bonds() == 1 && registry.n_bodies() == 2);
+    const Shape shape = registry.shapes({1})[0];
+    CHECK(shape.rigid && !shape.linear && shape.taken == 21 - (6 + 5 - 1));
+    CHECK(shape.pairs.size() == 1 && shape.pairs[0][0] == 3 && shape.pairs[0][1] == 6);
+    for (const Body &body : shape.bodies) {
+        const bool line = body.places.size() == 4;
+        CHECK(line ? body.places == std::vector<int>({0, 1, 2, 3}) : body.places.size() == 3);
+        const double expected[4] = {0, 1, 2.25, 3.75};
+        for (int k = 0; line && k < 4; ++k) CHECK(std::fabs(body.at[k][0] - body.at[0][0] - expected[k]) < 1e-15);
+        for (std::size_t k = 0; !line && k < 3; ++k) CHECK(body.at[k][1] == (body.places[k] == 6 ? 2 : 0));
+    }
+    double taken = 0;
+    for (const Membership &member : registry.memberships({1, 2, 3, 4, 10, 11, 12})) taken += member.taken;
+    CHECK(std::fabs(taken - 11) < 1e-13);
+    CHECK(walk(shape).size() == 6);
+}
+
 template <class Function>
 void refuses(const char *words, Function function) {
     std::string said;
@@ -193,6 +223,9 @@ void test_errors() {
     refuses("are to be at two distances", [&] { Registry(MPI_COMM_WORLD, bonds); });
     if (me == 0) bonds = {{5, 5, 1.0}};
     if (me != 0) bonds.clear();
+    std::vector<BodyAtom> twice;
+    if (me == 0) twice = {{1, 1, {0, 0, 0}}, {1, 2, {1, 0, 0}}, {3, 3, {0, 0, 0}}, {3, 2, {1, 0, 0}}};
+    refuses("atom 2 is in two rigid bodies", [&] { Registry(MPI_COMM_WORLD, {}, twice); });
     refuses("atom 5 with itself", [&] { Registry(MPI_COMM_WORLD, bonds); });
     if (me == 0) bonds = {{3, 4, 1.0}, {4, 5, 1.0}};
     const Registry registry(MPI_COMM_WORLD, bonds);
@@ -248,6 +281,7 @@ int main(int argc, char **argv) {
     test_long_chain();
     test_plan();
     test_balance();
+    test_bodies();
     test_errors();
     test_messages();
     if (me == 0) std::printf("%d checks on rank 0 of %d\n", n_checks, n_ranks);
