@@ -2,7 +2,7 @@
 #ifndef HOLONOMIC_CAPI_VIEW_HPP
 #define HOLONOMIC_CAPI_VIEW_HPP
 
-#include "core/caller/view.hpp"
+#include "core/caller/packed_array.hpp"
 #include "holonomic.h"
 
 namespace holonomic {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/caller/box.hpp"
-#include "core/caller/view.hpp"
+#include "core/caller/packed_array.hpp"
 #include "core/run/bond_words.hpp"
 #include "core/run/outcomes.hpp"
 

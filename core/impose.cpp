@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/caller/box.hpp"
-#include "core/caller/view.hpp"
+#include "core/caller/packed_array.hpp"
 #include "core/error.hpp"
 #include "core/kernels/tally.hpp"
 #include "core/rigid/run.hpp"

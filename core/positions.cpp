@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/caller/box.hpp"
-#include "core/caller/view.hpp"
+#include "core/caller/packed_array.hpp"
 #include "core/check.hpp"
 #include "core/reference.hpp"
 #include "core/rigid/run.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/caller/box.hpp"
-#include "core/caller/view.hpp"
+#include "core/caller/packed_array.hpp"
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/run/apart.hpp"

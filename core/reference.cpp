@@ -5,7 +5,7 @@
 #include <new>
 
 #include "core/caller/box.hpp"
-#include "core/caller/view.hpp"
+#include "core/caller/packed_array.hpp"
 #include "core/run/bond_words.hpp"
 #include "core/run/lane.hpp"
 #include "core/run/thread_memory.hpp"

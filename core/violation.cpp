@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/caller/box.hpp"
-#include "core/caller/view.hpp"
+#include "core/caller/packed_array.hpp"
 #include "core/kernels/tally.hpp"
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/caller/view.hpp"
+#include "core/caller/packed_array.hpp"
 
 namespace holonomic {
 

@@ -1,7 +1,7 @@
 // How far given multipliers are from the exact ones: theory (37).
 #include <cmath>
 
-#include "core/caller/view.hpp"
+#include "core/caller/packed_array.hpp"
 #include "core/inverse/chain_inverse.hpp"
 
 namespace holonomic {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/caller/view.hpp"
+#include "core/caller/packed_array.hpp"
 #include "core/inverse/chain_inverse.hpp"
 #include "core/inverse/molecule_inverse.hpp"
 #include "core/run/diagnose.hpp"

@@ -1,7 +1,7 @@
 // How far given multipliers of a molecule are from the exact ones: |A^-1| times what they leave of its equations.
 #include <cmath>
 
-#include "core/caller/view.hpp"
+#include "core/caller/packed_array.hpp"
 #include "core/inverse/molecule_inverse.hpp"
 
 namespace holonomic {

@@ -1,4 +1,4 @@
-# The kernels: the same sources once per instruction set, each into a namespace of its own; run/dispatch.cpp picks a set at
+# The kernels: the same sources once per instruction set, each into a namespace of its own; run/kernel_choice.cpp picks a set at
 # run time. Only these may be compiled for more than the baseline, so that no shared inline function of theirs can end up in
 # another path.
 
@@ -10,7 +10,7 @@ set(chain_kernels
     kernels/memory/outputs.cpp
     kernels/memory/stage.cpp
     kernels/newton/attempts.cpp
-    kernels/newton/criterion.cpp
+    kernels/newton/extent.cpp
     kernels/newton/solve.cpp
     kernels/newton/system.cpp
     kernels/verbs/forces.cpp
@@ -113,7 +113,7 @@ function(holonomic_kernels name lanes)
     set(careful_solvers ${careful_solvers} ${set_CAREFUL} PARENT_SCOPE)
 endfunction()
 
-# The sets, the one to be preferred first; run/dispatch.cpp has the measurements, and where another runs.
+# The sets, the one to be preferred first; run/kernel_choice.cpp has the measurements, and where another runs.
 set(HOLONOMIC_INSTRUCTION_SETS "avx2;avx512vl;scalar" CACHE STRING "Kernels to compile beside those of baseline x86-64")
 set(HOLONOMIC_X86_64 OFF)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND CMAKE_SIZEOF_VOID_P EQUAL 8

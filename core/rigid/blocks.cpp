@@ -2,7 +2,7 @@
 
 #include <type_traits>
 
-#include "core/run/dispatch.hpp"
+#include "core/run/kernel_choice.hpp"
 
 namespace holonomic::rigid {
 

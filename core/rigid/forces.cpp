@@ -5,7 +5,7 @@
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
 #include "core/rigid/within.hpp"
-#include "core/run/dispatch.hpp"
+#include "core/run/kernel_choice.hpp"
 
 namespace holonomic::rigid {
 

@@ -7,7 +7,7 @@
 #include <new>
 
 #include "core/rigid/blocks.hpp"
-#include "core/run/dispatch.hpp"
+#include "core/run/kernel_choice.hpp"
 #include "core/run/outcomes.hpp"
 #include "core/run/thread_memory.hpp"
 

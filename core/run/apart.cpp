@@ -3,7 +3,7 @@
 #include <cstring>
 #include <new>
 
-#include "core/caller/view.hpp"
+#include "core/caller/packed_array.hpp"
 #include "core/run/thread_memory.hpp"
 
 namespace holonomic {

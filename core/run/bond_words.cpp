@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/caller/view.hpp"
+#include "core/caller/packed_array.hpp"
 
 namespace holonomic {
 

@@ -4,9 +4,9 @@
 #include <cstdio>
 
 #include "core/caller/box.hpp"
-#include "core/caller/view.hpp"
+#include "core/caller/packed_array.hpp"
+#include "core/inverse/careful_molecule.hpp"
 #include "core/run/bond_words.hpp"
-#include "core/run/dependent_bond.hpp"
 
 namespace holonomic {
 
@@ -18,6 +18,14 @@ bool bond_vector(const AtomArray &r, const Box &box, const Molecule &m, std::int
     read_atom(r, m.atom(m.j(k)), b);
     bond_vector(box, a, b, d);
     return d[0] != 0 || d[1] != 0 || d[2] != 0;
+}
+
+// Of a molecule that is no linear chain, by the careful solver: the first bond whose pivot vanishes; -1 if none does, -2
+// if the bond vectors are of no use.
+std::int64_t dependent_bond(const Molecule &molecule, const AtomArray &r, const Box &box) {
+    const CarefulMolecule solver(molecule, r, box);
+    if (solver.good()) return -1;
+    return solver.dependent_bond() < 0 ? -2 : solver.dependent_bond();
 }
 
 // First bond of a linear chain whose pivot vanishes; -1 if none does, -2 if the numbers overflow before.

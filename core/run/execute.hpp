@@ -6,7 +6,7 @@
 
 #include "core/kernels/tally.hpp"
 #include "core/molecules/chains.hpp"
-#include "core/run/dispatch.hpp"
+#include "core/run/kernel_choice.hpp"
 
 namespace holonomic {
 

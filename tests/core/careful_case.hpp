@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "../reference/quad.hpp"
-#include "core/caller/view.hpp"
+#include "core/caller/packed_array.hpp"
 #include "core/kernels/call.hpp"
 #include "core/molecules/careful_shape.hpp"
 

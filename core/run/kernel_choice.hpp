@@ -1,6 +1,6 @@
 // Which kernels the calculations use.
-#ifndef HOLONOMIC_DISPATCH_HPP
-#define HOLONOMIC_DISPATCH_HPP
+#ifndef HOLONOMIC_KERNEL_CHOICE_HPP
+#define HOLONOMIC_KERNEL_CHOICE_HPP
 
 #include "core/kernels/call.hpp"
 

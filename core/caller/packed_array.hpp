@@ -1,6 +1,6 @@
 // A vector per atom in the caller's memory.
-#ifndef HOLONOMIC_VIEW_HPP
-#define HOLONOMIC_VIEW_HPP
+#ifndef HOLONOMIC_PACKED_ARRAY_HPP
+#define HOLONOMIC_PACKED_ARRAY_HPP
 
 #include "core/kernels/atom.hpp"
 
