@@ -15,6 +15,9 @@ constexpr long double most_farther = 4;
 constexpr long double eps = DBL_EPSILON;
 // Rings whose bonds depend on each other to the rounding of coordinates, of which a sine is squared, are refused.
 constexpr long double ring_limit = 1e-24L;
+// Trees are refused where a bond's pivot is below 1e-80 once all others are eliminated, which is one over the condition
+// number; the reference's least pivot is that of one order.
+constexpr long double tree_limit = 1e80L;
 constexpr long double graph_limit = 1e-20L;      // graphs with a pivot below it are promised nothing
 constexpr long double inverse_limit = 1e-16L;    // nor their inverse below this
 constexpr long double inverse_of_tree = 1e-50L;  // nor that of trees
@@ -285,7 +288,8 @@ molecule_verdict check_alone(const hostile_molecule &m, const molecule_reference
     const placement a = place({&m}, 0);
     const bool graph = a.status == HOL_OK && has_graph(a), doubtful = is_straight_triangle(m);
     facts.promised = facts.regular && !doubtful && (!graph || least_pivot > graph_limit) &&
-                     (m.shape != RINGS || least_pivot > ring_limit);
+                     (m.shape != RINGS || least_pivot > ring_limit) &&
+                     (m.shape != TREES || facts.condition < tree_limit);
     if (a.status != HOL_OK) {
         out.note(M_REFUSED, a.status != HOL_ERR_DEGENERATE || facts.regular);
         return out;
