@@ -20,8 +20,8 @@ bool bond_vector(const AtomArray &r, const Box &box, const Molecule &m, std::int
     return d[0] != 0 || d[1] != 0 || d[2] != 0;
 }
 
-// Of a molecule that is no linear chain, by the careful solver: the first bond whose pivot vanishes; -1 if none does, -2
-// if the bond vectors are of no use.
+// Of a molecule that is no linear chain, by the careful solver: the first bond whose pivot vanishes; -1 if none does,
+// -2 if the bond vectors are of no use.
 std::int64_t dependent_bond(const Molecule &molecule, const AtomArray &r, const Box &box) {
     const CarefulMolecule solver(molecule, r, box);
     if (solver.good()) return -1;
