@@ -34,8 +34,8 @@
  * - An output may overlap another argument only where its description says so.
  * - The library never prints, exits, aborts or throws, and changes no floating-point environment.
  * - Threads: any number of them may use a handle at once that none changes (create, add, set, destroy). Scratch memory
- *   belongs to the calling thread; after its first call with molecules of that size nothing is allocated, but for a
- *   long chain whose positions need a second attempt (light atoms, taut between heavy ones).
+ *   belongs to the calling thread; after its first call with molecules of that size nothing is allocated, but by
+ *   hol_impose and for a long chain whose positions need a second attempt (light atoms, taut between heavy ones).
  * - Results depend on nothing but the molecule: not on hol_chains_set_threads, the memory layout, the other molecules,
  *   nor the order in which bonds were given.
  */
@@ -564,7 +564,7 @@ typedef enum hol_element { HOL_DOUBLE = 0, HOL_FLOAT = 1 } hol_element;
  * Where a vector per atom stands in the caller's memory: component x of atom i is the element at
  * (char *)x + i * stride, likewise y and z. Separate arrays, padded records, single precision, two dimensions.
  * Arithmetic is in double precision whatever the element type. Inputs are only read. Packed doubles cost least: other
- * layouts make calls 1.2 to 2.2 times as long, of water and groups XH3 up to 5 times.
+ * layouts make calls 1.05 to 2.2 times as long, of water and groups XH3 up to 5 times.
  */
 typedef struct hol_view {
     void *x, *y, *z;  /**< of atom 0; z == NULL: two dimensions, all z are zero (in every view of a call or in none) */

@@ -72,7 +72,8 @@ class Constraint(FixConstraint):
         forces += self.constraint_forces
 
     def get_removed_dof(self, atoms: Any) -> int:
-        """Number of bonds, those between two held atoms left out."""
+        """Degrees of freedom that the constraints take: one a bond, but none between two held atoms; of a rigid body all
+        but its own. Temperatures that ASE gives count them."""
         self._prepare(atoms)
         return 3 * int((self._masses > 0).sum()) - self._molecules.degrees_of_freedom()
 
