@@ -1,7 +1,8 @@
-// Position level of one molecule: Newton's method with a new mixed Jacobian (theory (58)) at each step. It decides as
-// that of chains does (newton/iterate.hpp). Differences of large pulls lose nothing in twice the precision.
+// Position level of one molecule: Newton's method with a new mixed Jacobian (theory (58)) at each step. It decides by
+// the rules that chains have (newton/rules.hpp). Differences of large pulls lose nothing in twice the precision.
 #include "core/kernels/careful/careful.hpp"
 #include "core/kernels/careful/solution.hpp"
+#include "core/kernels/newton/rules.hpp"
 #include "core/kernels/tally.hpp"
 
 namespace holonomic {
@@ -85,13 +86,13 @@ static double carried(const Projection &p, const PositionsCall &call) {
     }
     for (int32_t k = 1; k < p.m.plan.n_bonds; ++k)
         shortest = p.m.lane.length[k] < shortest ? p.m.lane.length[k] : shortest;
-    const double carried = 8 * (call.r.is_float ? 5.97e-8 : 1.11e-16) * (1 + extent / shortest);
+    const double carried = rounding_of_bonds(call) * (1 + extent / shortest);
     return carried > call.tolerance ? carried : call.tolerance;
 }
 
 static Projected iterate(Projection &p, const PositionsCall &call, bool guess, int64_t &solves) {
     const Molecule &m = p.m;
-    const double accepted = carried(p, call), done = call.tolerance > epsilon ? call.tolerance : epsilon;
+    const double accepted = carried(p, call), done = wanted_error(call);
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) p.T[k] = wide(0);
     move(p);
     if (!is_finite(p.error) || p.error > call.worst_trial) return projected_not;
@@ -108,7 +109,7 @@ static Projected iterate(Projection &p, const PositionsCall &call, bool guess, i
     for (solves = 1; solves <= call.max_iterations; ++solves) {
         const double before = p.error, expected = rate * before;
         if (!step(p)) return projected_not;
-        const bool floor = (expected < 0.125 * epsilon && p.error <= 4 * epsilon) || p.error > 0.25 * before;
+        const bool floor = any(at_floor(expected, before, p.error));
         if (p.error <= done || (floor && p.error <= accepted)) return projected;
         rate = p.error;  // new factors square it
     }

@@ -8,6 +8,7 @@
 #define HOLONOMIC_KERNELS_MEMORY_OUTPUTS_HPP
 
 #include "core/kernels/arithmetic/vector3.hpp"
+#include "core/kernels/arithmetic/virial.hpp"
 #include "core/kernels/call.hpp"
 #include "core/kernels/memory/block.hpp"
 #include "core/kernels/memory/fours.hpp"
@@ -151,20 +152,9 @@ static void store_pulls(const Block &block, const vec *w, const vec3 *d, const v
 void store_pulls(const Block &, const vec3 *d, const vec *t, mask which, Update, const Packed &out);
 
 // Of W lanes.
-struct VirialSum {
-    vec xx = {}, xy = {}, xz = {}, yy = {}, yz = {}, zz = {};
-
-    HOL_FORCED void add(const vec3 &d, const vec3 &p) {  // p = t d
-        xx = mul_add(p.x, d.x, xx);
-        xy = mul_add(p.x, d.y, xy);
-        xz = mul_add(p.x, d.z, xz);
-        yy = mul_add(p.y, d.y, yy);
-        yz = mul_add(p.y, d.z, yz);
-        zz = mul_add(p.z, d.z, zz);
-    }
+struct VirialSum : BondTensors<vec> {
     // Counts factor times that of the lanes in `which`.
     void count(mask which, vec factor, Tally &tally) const {
-        const vec sum[6] = {xx, xy, xz, yy, yz, zz};
         for (int c = 0; c < 6; ++c) tally.virial[c] -= sum_lanes(keep(which, factor * sum[c]));
     }
 };

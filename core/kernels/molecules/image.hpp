@@ -3,7 +3,7 @@
 #define HOLONOMIC_KERNELS_MOLECULES_IMAGE_HPP
 
 #include "core/kernels/arithmetic/image.hpp"
-#include "core/kernels/molecules/width.hpp"
+#include "core/kernels/arithmetic/width.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {

@@ -1,18 +1,16 @@
-// Newton's method on a block of molecules: what is done when. The decisions are those of chains.
+// Newton's method on a block of molecules: what is done when, by the rules that chains have (newton/rules.hpp).
 #ifndef HOLONOMIC_KERNELS_MOLECULES_ITERATE_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_ITERATE_HPP
 
-#include "core/kernels/molecules/width.hpp"
+#include "core/kernels/newton/rules.hpp"
 #include "core/kernels/tally.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-constexpr double rounding = 2.220446049250313e-16;
-
-// Errors |D.D - a^2| / a^2 that are accepted: what the coordinates of a molecule carry, whose ends of bonds are rounded
-// to u |r|, and what is so for any coordinates; but no less than the tolerance.
+// Errors |D.D - a^2| / a^2 that are accepted: what the coordinates of a molecule carry, and what is so for any
+// coordinates; but no less than the tolerance.
 template <class V>
 struct Limits {
     V accepted, always_accepted;
@@ -20,15 +18,15 @@ struct Limits {
     Limits(const PositionsCall &call, V largest_coordinate, V a_min) : Limits(call, largest_coordinate / a_min) {}
     // The largest coordinate in units of the shortest bond.
     Limits(const PositionsCall &call, V coordinate) {
-        const double u = call.r.is_float ? 5.97e-8 : 1.11e-16;
-        accepted = max(Width<V>::all(call.tolerance), (8 * u) * (Width<V>::all(1) + coordinate));
-        always_accepted = Width<V>::all(call.tolerance > 8 * u ? call.tolerance : 8 * u);
-        wanted = call.tolerance > rounding ? call.tolerance : rounding;
+        const double rounding = rounding_of_bonds(call);
+        accepted = max(Width<V>::all(call.tolerance), rounding * (Width<V>::all(1) + coordinate));
+        always_accepted = Width<V>::all(call.tolerance > rounding ? call.tolerance : rounding);
+        wanted = wanted_error(call);
     }
     // What is enough where the last solve must have gone far below a rounding: the floor, as in iterate().
     V enough() const {
         const V carried = max(accepted, always_accepted);
-        return max(Width<V>::all(wanted), min(Width<V>::all(4 * rounding), carried));
+        return max(Width<V>::all(wanted), min(Width<V>::all(floor_error), carried));
     }
 };
 
@@ -61,20 +59,6 @@ HOL_NOINLINE void note_worst_of_one(const System &newton, double error, int64_t 
     tally.worst_bond = bond < newton.s.n_bonds ? bond : 0;
 }
 
-// The factors of an earlier D shrink the error by a constant each time, new ones square it at twice the price: they are
-// worth it where the old ones would take more than four solves in all.
-// `by_length`: the rate of the first solve says nothing of those that follow. It leaves the square of the angles by
-// which bonds have turned, the others are slowed down by the angles themselves. New factors are as good after a second
-// solve, unless that would leave too much for a third one with them.
-template <bool by_length, class V>
-HOL_INLINE MaskOf<V> worth_new_factors(V error, V rate, int i) {
-    if (by_length && i == 0) return less(Width<V>::all(1e-5), error);
-    V expected = error * rate;
-    for (int k = i + 2; k < 4; ++k) expected = expected * rate;
-    return less(Width<V>::all((by_length ? 0.4 : 0.1) * rounding), expected) &
-           less(Width<V>::all(i < 2 ? -1.0 : 1e-4), rate);
-}
-
 // New factors square the error. Where they leave much more, bonds are so nearly straight that they can bend either way,
 // and the way that Newton's method takes decides. Such a molecule is left to the careful solver, which takes the
 // straight one, with new factors at each solve. `before`: the error from which a solve with new factors came.
@@ -83,11 +67,6 @@ HOL_INLINE MaskOf<V> lost_its_way(V error, V before) {
     const V part = max(Width<V>::all(0.01), 1e3 * before);
     return less(Width<V>::all(1e-10), error) & less(part * before, error);
 }
-
-// From an error no larger than this, a solve with factors that have just taken the error down to less than `steady` of
-// itself needs no look at what it has done: it leaves less than a rounding, and could not leave more than this.
-constexpr double last_error = 64 * rounding;
-constexpr double steady = 1.0 / 256;
 
 // Newton's method in the lanes of `wanted`, from tau = 0 or, with `guess`, from tau as it is where that is better.
 // System:
@@ -103,7 +82,6 @@ template <class V, bool look_last, bool by_length = false, class System>
 HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const PositionsCall &call, MaskOf<V> wanted) {
     typedef MaskOf<V> Mask;
     const Mask none = Width<V>::none();
-    constexpr double negligible = (by_length ? 0.5 : 0.125) * rounding;
     const V done = Width<V>::all(limits.wanted);
     V error = newton.open();
     Solved<V> out = {wanted & less_equal(error, limits.accepted), none, error, 0};
@@ -125,17 +103,13 @@ HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const Posi
     for (int i = 0; i < call.max_iterations && any(active); ++i) {
         newton.solve(active);
         ++out.solves;
-        const Mask last = active & proven & less(rate * error, Width<V>::all(negligible));
+        const Mask last = active & proven & less(rate * error, Width<V>::all(far_below<by_length>));
         out.converged = out.converged | last;  // whatever the other lanes have to do
         active = active & ~last;
         if (!look_last && !any(active) && !call.report) break;
         const V before = error, expected = rate * before;
         error = newton.move();
-        // At the floor: the solve should have gone far below a rounding, or it gained little, and what is left is no
-        // more than the coordinates carry.
-        const Mask floor =
-            (less(expected, Width<V>::all(negligible)) & less_equal(error, Width<V>::all(4 * rounding))) |
-            less(0.25 * before, error);
+        const Mask floor = at_floor<by_length>(expected, before, error);
         const Mask near = active & (less_equal(error, done) | floor);
         const Mask finished = near & less_equal(error, max(done, max(limits.accepted, limits.always_accepted)));
         out.converged = out.converged | finished;
@@ -143,7 +117,7 @@ HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const Posi
         if (!any(active)) break;
         rate = error / before;
         const Mask renewed = active & worth_new_factors<by_length>(error, rate, i);
-        proven = ~renewed & less(rate, Width<V>::all(steady)) & less_equal(error, Width<V>::all(last_error));
+        proven = ~renewed & next_is_last(error, rate);
         fresh = renewed;
         if (!any(renewed)) continue;
         newton.factorize(renewed);

@@ -2,8 +2,9 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_VIRIAL_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_VIRIAL_HPP
 
+#include "core/kernels/arithmetic/virial.hpp"
+#include "core/kernels/arithmetic/width.hpp"
 #include "core/kernels/call.hpp"
-#include "core/kernels/molecules/width.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -11,22 +12,12 @@ namespace graph {
 
 // The counterpart of memory/outputs.hpp: what a molecule adds does not depend on which of the two widths it has.
 template <class V>
-struct MoleculesVirial {
-    V sum[6] = {};
-
-    inline HOL_FORCED void add(const Vector3<V> &d, const Vector3<V> &p) {  // p = t d
-        sum[0] = mul_add(p.x, d.x, sum[0]);
-        sum[1] = mul_add(p.x, d.y, sum[1]);
-        sum[2] = mul_add(p.x, d.z, sum[2]);
-        sum[3] = mul_add(p.y, d.y, sum[3]);
-        sum[4] = mul_add(p.y, d.z, sum[4]);
-        sum[5] = mul_add(p.z, d.z, sum[5]);
-    }
+struct MoleculesVirial : BondTensors<V> {
     // Counts factor times that of the lanes in `which`, in the order of the lanes.
     void count(unsigned which, double factor, Tally &tally) const {
         for (int c = 0; c < 6; ++c)
             for (int i = 0; i < Width<V>::lanes; ++i)
-                if (which >> i & 1) tally.virial[c] -= factor * Width<V>::get(sum[c], i);
+                if (which >> i & 1) tally.virial[c] -= factor * Width<V>::get(this->sum[c], i);
     }
 };
 

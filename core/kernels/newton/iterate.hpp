@@ -45,7 +45,7 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
             substitute_back<fixed>(block, x, true, false, true, active);
         else
             substitute_back<fixed>(block, x, false, false, true, active);
-        const mask last = active & proven & less(rate * error, splat(0.125 * epsilon));
+        const mask last = active & proven & less(rate * error, splat(far_below<>));
         out.converged = out.converged | last;  // whatever the other lanes have to do
         active = active & ~last;
         if (!any(active)) {
@@ -76,8 +76,8 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
         }
         active = active & finite(error);
         rate = error / before;
-        const mask renewed = careful ? active : active & worth_renewing(error, rate, i);
-        if (!careful) proven = ~renewed & less(rate, splat(steady)) & less_equal(error, splat(last_error));
+        const mask renewed = careful ? active : active & worth_new_factors(error, rate, i);
+        if (!careful) proven = ~renewed & next_is_last(error, rate);
         if (!any(renewed)) continue;
         renew_factors(careful ? careful_factors : renewed_factors, renewed);
         rate = select(renewed, error, rate);

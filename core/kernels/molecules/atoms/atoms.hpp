@@ -4,9 +4,9 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_ATOMS_ATOMS_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_ATOMS_ATOMS_HPP
 
+#include "core/kernels/arithmetic/width.hpp"
 #include "core/kernels/call.hpp"
 #include "core/kernels/memory/atom_rows.hpp"
-#include "core/kernels/molecules/width.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {

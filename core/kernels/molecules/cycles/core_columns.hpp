@@ -4,8 +4,8 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_CYCLES_CORE_COLUMNS_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_CYCLES_CORE_COLUMNS_HPP
 
+#include "core/kernels/arithmetic/width.hpp"
 #include "core/kernels/molecules/schedule.hpp"
-#include "core/kernels/molecules/width.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {

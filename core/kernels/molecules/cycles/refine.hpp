@@ -2,7 +2,7 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_CYCLES_REFINE_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_CYCLES_REFINE_HPP
 
-#include "core/kernels/molecules/width.hpp"
+#include "core/kernels/arithmetic/width.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {

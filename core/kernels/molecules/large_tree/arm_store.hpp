@@ -4,7 +4,7 @@
 
 #include "core/kernels/eliminate/segment.hpp"
 #include "core/kernels/molecules/schedule.hpp"
-#include "core/kernels/molecules/width.hpp"
+#include "core/kernels/molecules/scratch.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {

@@ -4,7 +4,7 @@
 
 #include "core/kernels/molecules/large_tree/arm_store.hpp"
 #include "core/kernels/molecules/schedule.hpp"
-#include "core/kernels/molecules/width.hpp"
+#include "core/kernels/molecules/scratch.hpp"
 #include "core/kernels/tally.hpp"
 
 namespace holonomic {

@@ -22,7 +22,7 @@ struct StarKind : StarMasses<N, V> {
         a_min = Width<V>::all(1e300);
         a_max = V{};
         for (int k = 0; k < N; ++k) {
-            V a = {};
+            V a = Width<V>::all(0);  // not {}: gcc 12 then warns of a value that is not set
             for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(a, i, lane[i < used ? i : 0].length[k]);
             a_min = min(a, a_min);
             a_max = max(a, a_max);

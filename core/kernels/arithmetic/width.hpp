@@ -1,7 +1,7 @@
-// The arithmetic of molecules is written once for W of them in lanes (V = vec) and for a single one (V = double), with
-// the same operations in the same order, so that a molecule's digits do not depend on which of the two it gets.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_WIDTH_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_WIDTH_HPP
+// What is written once for W lanes (V = vec) and for a single number (V = double): the same operations in the same
+// order, so that no digit of a molecule depends on which of the two it gets.
+#ifndef HOLONOMIC_KERNELS_ARITHMETIC_WIDTH_HPP
+#define HOLONOMIC_KERNELS_ARITHMETIC_WIDTH_HPP
 
 #include "core/kernels/arithmetic/exact.hpp"
 #include "core/kernels/isa/lanes.hpp"
@@ -65,21 +65,6 @@ using MaskOf = typename Width<V>::Mask;
 template <class V>
 constexpr unsigned all_of = (1u << Width<V>::lanes) - 1;  // bits() of a mask with all lanes set
 
-namespace graph {
-
-// Working arrays, handed out front to back.
-template <class V>
-struct Memory {
-    double *next;
-    V *values(int64_t n) {
-        V *p = reinterpret_cast<V *>(next);
-        next += n * Width<V>::lanes;
-        return p;
-    }
-    Vector3<V> *vectors(int64_t n) { return reinterpret_cast<Vector3<V> *>(values(3 * n)); }
-};
-
-}  // namespace graph
 }  // namespace HOL_ISA
 }  // namespace holonomic
 #endif
