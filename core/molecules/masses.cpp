@@ -1,6 +1,5 @@
 #include "core/molecules/masses.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -26,24 +25,23 @@ Masses::Masses(std::int64_t n_atoms, const double *masses, int base) : n_atoms_(
             throw error;
         }
         uniform = uniform && masses[i] == masses[0];
-        if (std::isinf(masses[i])) infinite_.push_back(i);
     }
     if (uniform && n_atoms > 0 && masses[0] == 0)
         throw make_error(Status::value,
                          "all %lld masses are 0, so that no atom can move: they have not been set; if that is meant, "
                          "atoms that are held fixed may have the mass +infinity, too",
                          static_cast<long long>(n_atoms));
-    if (uniform && n_atoms > 0) {
-        w_uniform_ = masses[0] == 0 ? 0 : 1 / masses[0];
-        return;
-    }
-    w_.resize(static_cast<std::size_t>(n_atoms));
-    for (std::size_t i = 0; i < w_.size(); ++i) w_[i] = masses[i] == 0 ? 0 : 1 / masses[i];
+    if (uniform && n_atoms > 0)
+        uniform_mass_ = masses[0];
+    else
+        masses_.assign(masses, masses + n_atoms);
 }
 
 std::int64_t Masses::n_movable() const {
-    if (uniform()) return w_uniform_ == 0 ? 0 : n_atoms_;
-    return n_atoms_ - std::count(w_.begin(), w_.end(), 0.0);
+    if (uniform()) return n_atoms_ == 0 || fixed(0) ? 0 : n_atoms_;
+    std::int64_t n = 0;
+    for (std::int64_t i = 0; i < n_atoms_; ++i) n += !fixed(i);
+    return n;
 }
 
 }  // namespace holonomic

@@ -138,7 +138,7 @@ void Chains::add_rigid_molecules(std::int64_t count, std::int64_t n_atoms, std::
                 std::int64_t &atom = given.atoms[i];
                 atom += m * n_atoms;
                 const bool held = i >= at(given.n_movable);
-                alike = alike && masses_.w(atom) == given.w[i] &&
+                alike = alike && masses_.mass(atom) == given.masses[i] &&
                         (held ? !(bodies_ && bodies_->is_site(atom)) : !use_.used(atom) && !masses_.infinite(atom));
             }
         if (!alike) copy = sort_rigid(n_bodies, sizes, atoms, first + m * n_atoms, places, n_bonds, pairs, lengths);
@@ -233,9 +233,7 @@ std::unique_ptr<rigid::Bodies> Chains::rebuild_bodies(const Masses &masses, cons
         rigid::Given given = bodies_->given(m);
         for (std::size_t i = 0; i < given.atoms.size(); ++i) {
             const std::int64_t atom = given.atoms[i];
-            const double w = masses.w(atom);
-            given.w.push_back(w);
-            given.masses[i] = w > 0 ? 1 / w : 0;
+            given.masses[i] = masses.mass(atom);
             if (bodies_->is_site(atom) && masses.infinite(atom))
                 fail(make_error(Status::value, "the mass of atom %s, a massless site of a body, is infinite",
                                 name_of_atom(atom).text),

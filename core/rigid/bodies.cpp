@@ -37,7 +37,7 @@ bool same_words(const double *a, const double *b, std::size_t n) { return std::m
 
 std::vector<double> signature_of(const Given &given) {
     std::vector<double> words;
-    words.reserve(8 + given.sizes.size() + given.place.size() + 2 * given.masses.size() + 3 * given.bonds.size());
+    words.reserve(8 + given.sizes.size() + given.place.size() + given.masses.size() + 3 * given.bonds.size());
     const auto count = [&](std::size_t n) { words.push_back(static_cast<double>(n)); };
     count(given.sizes.size());
     count(given.atoms.size());
@@ -47,7 +47,6 @@ std::vector<double> signature_of(const Given &given) {
     for (const std::int32_t size : given.sizes) words.push_back(size);
     words.insert(words.end(), given.place.begin(), given.place.end());
     words.insert(words.end(), given.masses.begin(), given.masses.end());
-    words.insert(words.end(), given.w.begin(), given.w.end());
     for (const Bond &bond : given.bonds) {
         words.push_back(bond.i);
         words.push_back(bond.j);
@@ -107,7 +106,7 @@ std::int32_t Bodies::find_shape(const Given &given) {
         shape.n_held += given.sizes[b];
     }
     try {
-        complete(shape, kinds_, given.w);
+        complete(shape, kinds_);
     } catch (const Unsolvable &unsolvable) {
         throw Refusal{Refusal::of_bonds, {}, unsolvable, 0};
     }

@@ -17,7 +17,6 @@ struct Given {
     std::vector<std::int64_t> atoms;  // bodies' atoms, others that can move, fixed ones
     std::vector<double> place;        // [atoms of bodies][3]
     std::vector<double> masses;       // [atoms], 0: site; of fixed atoms 0
-    std::vector<double> w;            // [atoms]
     std::int32_t n_movable = 0;
     std::vector<Bond> bonds;
     std::vector<std::int64_t> bond_numbers;  // in the arrays per bond

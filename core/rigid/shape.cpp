@@ -25,8 +25,8 @@ class Completion {
 public:
     Completion(Shape &shape, const std::vector<Body> &bodies) : s_(shape), bodies_(bodies) {}
 
-    void run(const std::vector<double> &w_of_atom) {
-        place_nodes(w_of_atom);
+    void run() {
+        place_nodes();
         make_rows();
         find_way();
         eliminate();
@@ -35,7 +35,7 @@ public:
 private:
     const Body &body_of(const Part &part) const { return bodies_[at(part.body)]; }
 
-    void place_nodes(const std::vector<double> &w_of_atom) {
+    void place_nodes() {
         s_.part_of.assign(at(s_.n_held), -1);
         s_.node_of.assign(at(s_.n_atoms), -1);
         for (std::size_t p = 0; p < s_.parts.size(); ++p) {
@@ -49,7 +49,7 @@ private:
         }
         for (std::int32_t a = s_.n_held; a < s_.n_atoms; ++a) {
             s_.node_of[at(a)] = s_.n_nodes++;
-            s_.w.push_back(w_of_atom[at(a)]);
+            s_.w.push_back(a < s_.n_movable ? 1 / s_.mass[at(a)] : 0);
         }
     }
 
@@ -225,8 +225,8 @@ private:
 
 }  // namespace
 
-void complete(Shape &shape, const std::vector<Body> &bodies, const std::vector<double> &w_of_atom) {
-    Completion(shape, bodies).run(w_of_atom);
+void complete(Shape &shape, const std::vector<Body> &bodies) {
+    Completion(shape, bodies).run();
     shape.is_lone_body =
         shape.parts.size() == 1 && shape.n_atoms == shape.n_held &&
         std::all_of(shape.bonds.begin(), shape.bonds.end(), [](const Bond &bond) { return bond.row < 0; }) &&

@@ -69,12 +69,12 @@ struct Shape {
     std::int64_t bytes() const;
 };
 
-// Fills in all that follows from parts, atoms, bonds, masses and w of atoms. Throws Unsolvable.
+// Fills in all that follows from parts, atoms, bonds and masses. Throws Unsolvable.
 struct Unsolvable {
     enum Cause { length_in_body, unconnected, too_many } cause;
     std::int32_t bond;
 };
-void complete(Shape &shape, const std::vector<Body> &bodies, const std::vector<double> &w_of_atom);
+void complete(Shape &shape, const std::vector<Body> &bodies);
 
 }  // namespace holonomic::rigid
 #endif

@@ -130,10 +130,8 @@ private:
     }
 
     std::int32_t append(rigid::Given &given, std::int64_t atom) const {
-        const double w = masses_.w(atom);
         given.atoms.push_back(atom);
-        given.w.push_back(w);
-        given.masses.push_back(w > 0 ? 1 / w : 0);
+        given.masses.push_back(masses_.mass(atom));
         return static_cast<std::int32_t>(given.atoms.size() - 1);
     }
 

@@ -1,5 +1,7 @@
 #include "rigid_solution.hpp"
 
+#include <algorithm>
+
 #include "rigid_frame.hpp"
 #include "sparse_factor.hpp"
 
@@ -233,17 +235,22 @@ public:
         : p_(p), s_(p, which), scales_(scales), q_(s_.nodes(p.r)), g_(s_.differentiate(q_)), a_(s_.matrix(g_, g_)),
           factor_(a_)
     {
-        least_pivot = factor_.regular() ? real(1) : real(0);
+        real least = factor_.regular() ? real(1) : real(0);
         for (std::size_t k = 0; factor_.regular() && k < a_.size(); ++k) {
             const real part = factor_.pivots()[k] / a_[k].at(k);
-            if (part < least_pivot) least_pivot = part;
+            if (part < least) least = part;
         }
-        regular = least_pivot > zero_pivot;
-        if (regular && scales_) inverse_ = inverse_of(factor_, n_rows());
+        regular = least > zero_pivot;
+        least_pivot = static_cast<long double>(least);
+        if (!regular || !scales_) return;
+        inverse_ = inverse_of(factor_, n_rows());
+        // (A^-1)_kk is one over the pivot of row k where it comes last, which is the least that it can have.
+        for (std::size_t k = 0; k < a_.size(); ++k)
+            least_pivot = std::min(least_pivot, 1 / (static_cast<long double>(a_[k].at(k)) * inverse_[k][k]));
     }
 
     bool regular = false;
-    real least_pivot;
+    long double least_pivot;
     std::size_t n_rows() const
     {
         return s_.rows.size();
@@ -507,7 +514,7 @@ rigid_solution solve_rigid(const rigid_problem &p, const std::vector<double> &rh
     rigid_solution out;
     const solver points(p, kind::points, false), vectors(p, kind::vectors, true);
     out.regular = vectors.regular && points.regular;
-    out.least_pivot = static_cast<long double>(vectors.least_pivot);
+    out.least_pivot = vectors.least_pivot;
     out.n_constraints = points.n_rows();
     if (!out.regular) return out;
     bool same = true;

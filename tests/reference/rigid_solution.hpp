@@ -64,7 +64,9 @@ body_shape shape_of_body(const rigid_problem &p, const std::vector<std::size_t> 
 struct rigid_solution {
     bool regular = false;  ///< the constraints do not depend on each other; nothing but least_pivot is set otherwise
     bool agrees = true;    ///< both sets of constraints have the same solution
-    long double least_pivot = 0;  ///< the least part that elimination leaves of a diagonal element
+    /** The least part of a diagonal element that is left of it once all other rows are eliminated: the square of the
+     * sine between a constraint's gradient and the space of all others, whatever the order. */
+    long double least_pivot = 0;
     std::size_t n_constraints = 0;
     rigid_level forces, solve, velocities, positions;
 };

@@ -14,7 +14,7 @@ namespace
 {
 
 constexpr long double eps = DBL_EPSILON;
-constexpr long double least_promised = 1e-20L;  // pivots below it are promised nothing
+constexpr long double least_promised = 1e-22L;  // pivots below it are promised nothing
 
 using reference::rigid_level;
 using reference::rigid_solution;
