@@ -111,6 +111,32 @@ int hol_subdomain_project_velocities(hol_subdomain *subdomain, double *v, double
 int hol_subdomain_project_positions(hol_subdomain *subdomain, double *r, double *v, double dt, double *lambda,
                                     double *cut_lambda, double *virial, int *iterations);
 
+/**
+ * How far positions and velocities are from the constraints, as hol_violation says: the largest over all bonds of all
+ * processes. Three sums.
+ * @param[in]  r       [n_atoms][3], in the box of hol_subdomain_set_box
+ * @param[in]  v       [n_atoms][3], or NULL
+ * @param[out] length  largest abs(d.d - a^2) / a^2, on every process, or NULL
+ * @param[out] rate    largest abs(d.(v_j - v_i + L d)), 0 without v, on every process, or NULL
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_NOT_FINITE; HOL_ERR_INTERNAL
+ */
+int hol_subdomain_violation(hol_subdomain *subdomain, const double *r, const double *v, double *length, double *rate);
+
+/**
+ * Numbers by which the program knows its atoms; messages show them (hol_chains_set_labels). Not collective.
+ * @param[in] atoms  [n_atoms], or NULL: none. Copied
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_MEMORY
+ */
+int hol_subdomain_set_labels(hol_subdomain *subdomain, const int64_t *atoms);
+
+/**
+ * Vectors of the cut bonds at the positions of hol_subdomain_factorize, from the first atom to the second, images
+ * taken. Not collective.
+ * @param[out] d  [n_cut][3]
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (nothing was factorized)
+ */
+int hol_subdomain_cut_vectors(const hol_subdomain *subdomain, double *d);
+
 /** What the calls since the handle was made have cost this process. */
 typedef struct hol_subdomain_work {
     int64_t n_sums;     /**< calls of sum */

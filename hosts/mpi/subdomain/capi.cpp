@@ -164,6 +164,36 @@ int hol_subdomain_project_positions(hol_subdomain *subdomain, double *r, double 
     });
 }
 
+int hol_subdomain_violation(hol_subdomain *subdomain, const double *r, const double *v, double *length, double *rate) {
+    return guarded([&] {
+        Subdomain &all = begin(subdomain, false, [&] {
+            need(r || subdomain->all.n_atoms() == 0, "r");
+            need_finite(r, subdomain->all.n_atoms(), "position");
+            need_finite(v, subdomain->all.n_atoms(), "velocity");
+        });
+        double worst[2];
+        all.violation(r, v, worst);
+        if (length) *length = worst[0];
+        if (rate) *rate = worst[1];
+    });
+}
+
+int hol_subdomain_set_labels(hol_subdomain *subdomain, const int64_t *atoms) {
+    return guarded([&] {
+        need(subdomain, "subdomain");
+        subdomain->all.set_labels(atoms);
+    });
+}
+
+int hol_subdomain_cut_vectors(const hol_subdomain *subdomain, double *d) {
+    return guarded([&] {
+        need(subdomain && d, "subdomain or d");
+        if (!subdomain->all.factorized()) throw Failure{HOL_ERR_VALUE, "hol_subdomain_factorize comes first"};
+        for (const TwiceVector &vector : subdomain->all.cut_vectors())
+            for (const Twice &x : vector.c) *d++ = x.hi;
+    });
+}
+
 int hol_subdomain_get_work(const hol_subdomain *subdomain, hol_subdomain_work *work) {
     return guarded([&] {
         need(subdomain && work, "subdomain or work");

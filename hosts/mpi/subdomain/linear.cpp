@@ -200,7 +200,7 @@ Found Subdomain::solve(const double *v, const double *f, bool with_forces) {
     processes.alone([&] {
         found.g.assign(r_.size(), 0.0);
         if (!proven) {
-            take_refined(found);
+            react(found);
             if (!with_forces) {
                 found.v.assign(v, v + r_.size());
                 for (std::size_t k = 0; k < r_.size(); ++k) found.v[k] += graph_.w[k / 3] * found.g[k];
@@ -226,6 +226,48 @@ Found Subdomain::solve(const double *v, const double *f, bool with_forces) {
 Found Subdomain::forces(const double *v, const double *f) { return solve(v, f, true); }
 
 Found Subdomain::velocities(const double *v) { return solve(v, nullptr, false); }
+
+void Subdomain::violation(const double *r, const double *v, double *worst) {
+    std::vector<double> shared;
+    share(r, v, shared);
+    hol_worst inside{};
+    processes.alone([&] {
+        if (!chains_) return;
+        check(hol_chains_set_box(chains_.get(), box_.rows()));
+        check(hol_chains_set_box_rate(chains_.get(), has_rate_ ? rate_ : nullptr));
+        check(hol_violation(chains_.get(), r, v, &inside));
+    });
+    worst[0] = inside.length, worst[1] = inside.rate;
+    for (int k = 0; k < n_cut(); ++k) {
+        const double *ends = shared.data() + 12 * static_cast<std::size_t>(k), a = cut_lengths_[k];
+        const TwiceVector d = box_.between(ends, ends + 6);
+        const double *w = &cut_w_[2 * static_cast<std::size_t>(k)];
+        if (w[0] == 0 && w[1] == 0) continue;
+        worst[0] = std::max(worst[0], std::fabs((dot(d, d) - product_of(a, a)).hi) / (a * a));
+        if (v) worst[1] = std::max(worst[1], std::fabs(right_hand_side(d, w, ends + 3, ends + 9, false).b.hi));
+    }
+    for (double *x : {worst, worst + 1}) *x = processes.largest(*x);
+}
+
+/** What the multipliers t_ and t_cut_ do. The virial is without cut bonds. */
+void Subdomain::react(Found &found) const {
+    found.g.assign(r_.size(), 0.0);
+    found.lambda.resize(t_.size());
+    std::fill(found.virial, found.virial + 9, 0.0);
+    for (int k = 0; k < n_bonds(); ++k) {
+        const TwiceVector vector = bond_vector(k);
+        double *from = &found.g[3 * static_cast<std::size_t>(graph_.bonds[k].from)];
+        double *to = &found.g[3 * static_cast<std::size_t>(graph_.bonds[k].to)];
+        const double d[3] = {vector.c[0].hi, vector.c[1].hi, vector.c[2].hi};
+        for (int a = 0; a < 3; ++a) {
+            from[a] += t_[k] * d[a];
+            to[a] -= t_[k] * d[a];
+            for (int b = 0; b < 3; ++b) found.virial[3 * a + b] -= t_[k] * d[a] * d[b];
+        }
+        found.lambda[k] = t_[k] / 2;
+    }
+    pull(found.g, t_cut_, false);
+}
 
 void Subdomain::add_virial(int cut, double *virial) const {
     const TwiceVector &d = cut_d_[cut];

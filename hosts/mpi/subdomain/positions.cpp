@@ -100,14 +100,7 @@ Found Subdomain::positions(std::vector<double> &r, double dt) {
         });
     }
     processes.alone([&] {
-        found.g.assign(r_.size(), 0.0);
-        found.lambda = t_;
-        std::fill(found.virial, found.virial + 9, 0.0);
-        for (double &lambda : found.lambda) lambda /= 2;
-        if (chains_)
-            check(hol_reactions(chains_.get(), r_.data(), HOL_REFERENCE_BOX, found.lambda.data(), nullptr,
-                                found.g.data(), HOL_WRITE, nullptr, found.virial));
-        pull(found.g, t_cut_, false);
+        react(found);
         for (const End &end : ends_)
             if (end.side == 0) add_virial(end.cut, found.virial);
     });

@@ -145,22 +145,4 @@ void Subdomain::refine(const double *v, const double *f, bool with_forces) {
     }
 }
 
-/** Forces and virial of refined multipliers. */
-void Subdomain::take_refined(Found &found) const {
-    const auto add = [&](int atom, double t, const TwiceVector &d) {
-        for (int c = 0; c < 3; ++c) found.g[3 * static_cast<std::size_t>(atom) + c] += t * d.c[c].hi;
-    };
-    found.g.assign(3 * graph_.w.size(), 0.0);
-    std::fill(found.virial, found.virial + 9, 0.0);
-    for (int k = 0; k < n_bonds(); ++k) {
-        const TwiceVector &d = d_[k];
-        add(graph_.bonds[k].from, t_[k], d);
-        add(graph_.bonds[k].to, -t_[k], d);
-        for (int a = 0; a < 3; ++a)
-            for (int b = 0; b < 3; ++b) found.virial[3 * a + b] -= t_[k] * d.c[a].hi * d.c[b].hi;
-        found.lambda[k] = t_[k] / 2;
-    }
-    for (const End &end : ends_) add(end.atom, -end.sign() * t_cut_[end.cut], cut_d_[end.cut]);
-}
-
 }  // namespace holonomic_subdomain

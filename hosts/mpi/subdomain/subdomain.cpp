@@ -127,6 +127,10 @@ void Subdomain::set_rate(const double *L) {
     if (has_rate_) std::copy(L, L + 9, rate_);
 }
 
+void Subdomain::set_labels(const std::int64_t *atoms) {
+    if (chains_) check(hol_chains_set_labels(chains_.get(), atoms, nullptr));
+}
+
 hol_subdomain_work Subdomain::work() const {
     return {processes.n_sums,
             processes.n_numbers,

@@ -39,12 +39,16 @@ public:
 
     void set_box(const double *box);
     void set_rate(const double *L);
+    void set_labels(const std::int64_t *atoms);
     void factorize(const double *r);
     Found forces(const double *v, const double *f);
     Found velocities(const double *v);
     Found positions(std::vector<double> &r, double dt);
+    /** worst: largest relative error of a length, and of a rate. v may be NULL. */
+    void violation(const double *r, const double *v, double *worst);
 
     int n_atoms() const { return graph_.n_atoms(); }
+    const std::vector<TwiceVector> &cut_vectors() const { return cut_d_; }
     bool factorized() const { return factorized_; }
     double inverse_mass(int atom) const { return graph_.w[atom]; }
     hol_subdomain_work work() const;
@@ -86,10 +90,10 @@ private:
     void correct(const std::vector<double> &rho, std::vector<double> &parts, std::vector<double> &dt,
                  std::vector<double> &dt_cut);
     double change_of(const std::vector<double> &dt, const std::vector<double> &dt_cut);
-    void take_refined(Found &found) const;
 
     void project_inside(std::vector<double> &r, double dt);
     double excess(const std::vector<double> &shared, std::vector<double> &sigma) const;
+    void react(Found &found) const;
     void add_virial(int cut, double *virial) const;
 
     int n_cut() const { return static_cast<int>(cut_lengths_.size()); }

@@ -156,6 +156,18 @@ struct Test {
         compare("multipliers of velocities", lambda, mine, cut, false);
         compare_atoms("velocities", whole_v, my_v, 1e-13);
         compare_virials("virial of velocities", virial, my_virial);
+        hol_worst worst;
+        double length, rate;
+        need(hol_violation(chains, scene.r.data(), whole_v.data(), &worst), hol_error_message());
+        need(hol_subdomain_violation(part.subdomain, r.data(), my_v.data(), &length, &rate),
+             hol_subdomain_error_message());
+        const double largest = 16 * eps * *std::max_element(whole_v.begin(), whole_v.end());
+        expect(std::fabs(length - worst.length) <= 1e-15, "largest error of a length", length, worst.length + 1e-15);
+        expect(rate <= worst.rate + largest, "largest rate", rate, worst.rate + largest);
+        need(hol_violation(chains, scene.r.data(), scene.v.data(), &worst), hol_error_message());
+        need(hol_subdomain_violation(part.subdomain, r.data(), v.data(), &length, &rate),
+             hol_subdomain_error_message());
+        expect(std::fabs(rate - worst.rate) <= largest, "largest rate before", rate, worst.rate);
         // Positions
         const double dt = scene.time_step;
         double extent = 1;
