@@ -75,7 +75,8 @@ int hol_subdomain_set_box_rate(hol_subdomain *subdomain, const double *L);
 int hol_subdomain_factorize(hol_subdomain *subdomain, const double *r);
 
 /**
- * hol_forces at the positions of hol_subdomain_factorize. Four sums; two more for each further round of refinement.
+ * hol_forces at the positions of hol_subdomain_factorize. Three sums; two more for each round of refinement
+ * (README.md says when).
  * @param[in]  v, f        [n_atoms][3]; either may be NULL: zero
  * @param[out] lambda      multipliers of this process's bonds [n_bonds], or NULL
  * @param[out] cut_lambda  those of the cut bonds [n_cut], on every process, or NULL
@@ -97,8 +98,8 @@ int hol_subdomain_project_velocities(hol_subdomain *subdomain, double *v, double
                                      double *virial);
 
 /**
- * hol_project_positions with the positions of hol_subdomain_factorize as reference. One sum for each of Newton's steps,
- * and one.
+ * hol_project_positions with the positions of hol_subdomain_factorize as reference. One sum for each step of the
+ * interface, and two.
  * @param[in,out] r           [n_atoms][3], in: after the drift; out: on the constraints, to the rounding
  * @param[in,out] v           [n_atoms][3], or NULL: v_i += dt w_i G_i
  * @param[in]     dt          > 0

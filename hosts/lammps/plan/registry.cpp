@@ -116,12 +116,12 @@ std::vector<Node> Registry::collect(const std::vector<Bond> &bonds, const std::v
     std::vector<Node> nodes;
     for (std::size_t k = 0; k < known.size(); ++k) {
         const Bond &bond = known[k];
-        const std::string names = std::to_string(bond.from) + " and " + std::to_string(bond.to);
         if (bond.from == bond.to) trouble = "a bond of atom " + std::to_string(bond.from) + " with itself";
         if (k > 0 && known[k - 1].from == bond.from && known[k - 1].to == bond.to) {
             if (known[k - 1].length != no_distance && known[k - 1].length != bond.length)
-                trouble = "atoms " + names + " are to be at two distances, " + std::to_string(known[k - 1].length) +
-                          " and " + std::to_string(bond.length);
+                trouble = "atoms " + std::to_string(bond.from) + " and " + std::to_string(bond.to) +
+                          " are to be at two distances, " + std::to_string(known[k - 1].length) + " and " +
+                          std::to_string(bond.length);
             continue;
         }
         if (nodes.empty() || nodes.back().tag != bond.from) nodes.push_back({bond.from, bond.from, {}, {}, 0, {}});

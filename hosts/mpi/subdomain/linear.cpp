@@ -6,7 +6,16 @@
 
 namespace holonomic_subdomain {
 
-/** All processes get what their owners know of the atoms of cut bonds: three numbers of x, three of y. */
+/** All processes get what their owners know of the atoms of cut bonds: three numbers of x. */
+void Subdomain::share(const double *x, std::vector<double> &shared) {
+    shared.assign(6 * cut_lengths_.size(), 0.0);
+    for (const End &end : ends_)
+        std::copy_n(x + 3 * static_cast<std::size_t>(end.atom), 3,
+                    shared.data() + 3 * (2 * static_cast<std::size_t>(end.cut) + end.side));
+    processes.add_up(shared);
+}
+
+/** The same with three numbers of x, then of y; what is NULL is zero. */
 void Subdomain::share(const double *x, const double *y, std::vector<double> &shared) {
     shared.assign(12 * cut_lengths_.size(), 0.0);
     for (const End &end : ends_) {
@@ -46,11 +55,11 @@ void Subdomain::factorize(const double *r) {
     r_.assign(r, r + 3 * static_cast<std::size_t>(n_atoms()));
     reference_box_ = box_;
     std::vector<double> shared;
-    share(r, nullptr, shared);
+    share(r, shared);
     cut_d_.resize(cut_lengths_.size());
     for (int k = 0; k < n_cut(); ++k) {
-        const double *ends = shared.data() + 12 * static_cast<std::size_t>(k);
-        cut_d_[k] = box_.between(ends, ends + 6);
+        const double *ends = shared.data() + 6 * static_cast<std::size_t>(k);
+        cut_d_[k] = box_.between(ends, ends + 3);
     }
     // Elements, and the sums of their terms in absolute values
     std::vector<double> values(2 * static_cast<std::size_t>(n_entries_), 0.0);

@@ -55,7 +55,7 @@ void Subdomain::project_inside(std::vector<double> &r, double dt) {
 double Subdomain::excess(const std::vector<double> &shared, std::vector<double> &sigma) const {
     double worst = 0;
     for (int k = 0; k < n_cut(); ++k) {
-        const double *i = shared.data() + 12 * static_cast<std::size_t>(k), *j = i + 6, a = cut_lengths_[k];
+        const double *i = shared.data() + 6 * static_cast<std::size_t>(k), *j = i + 3, a = cut_lengths_[k];
         const TwiceVector d = box_.between(i, j);
         sigma[k] = cut_w_[2 * k] == 0 && cut_w_[2 * k + 1] == 0 ? 0 : (dot(d, d) - product_of(a, a)).hi;
         double extent = a;
@@ -82,7 +82,7 @@ Found Subdomain::positions(std::vector<double> &r, double dt) {
     Broyden broyden;
     double before = HUGE_VAL;
     for (;; ++found.steps) {
-        share(r.data(), nullptr, shared);
+        share(r.data(), shared);
         const double worst = excess(shared, step);
         // A few roundings of the two atoms' coordinates; some more if no step makes it less.
         if (worst <= 4 || (worst <= 32 && worst >= before / 2)) break;

@@ -71,6 +71,7 @@ private:
     void check_ends(const std::vector<std::int64_t> &ends);
     void make_interface();
 
+    void share(const double *x, std::vector<double> &shared);
     void share(const double *x, const double *y, std::vector<double> &shared);
     TwiceVector bond_vector(int bond) const;
     void find_columns();
