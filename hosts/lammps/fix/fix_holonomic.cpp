@@ -52,14 +52,16 @@ FixHolonomic::FixHolonomic(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, a
     atom->add_callback(on_grow);
     for (int i = 0; i < atom->nlocal; ++i) set_arrays(i);
     plan_ = std::make_unique<Plan>(world);
+    divided_ = std::make_unique<Divided>(world);
     find_molecules();
     if (registry_.n_molecules() == 0)
         error->all(FLERR, "Fix holonomic: no bond is selected, and no molecule looks like a template"s);
     if (comm->me == 0)
         utils::logmesg(lmp, "Fix holonomic: " + std::to_string(registry_.n_molecules()) + " molecules, " +
                                 std::to_string(registry_.n_atoms()) + " atoms, " + std::to_string(registry_.n_bonds()) +
-                                " rigid distances, " + std::to_string(registry_.n_bodies()) +
-                                " bodies (library holonomic " + hol_version() + ", " + hol_instruction_set() + ")\n");
+                                " rigid distances, " + std::to_string(registry_.n_bodies()) + " bodies, " +
+                                std::to_string(registry_.n_divided()) + " molecules divided (library holonomic " +
+                                hol_version() + ", " + hol_instruction_set() + ")\n");
 }
 
 FixHolonomic::~FixHolonomic() {
@@ -81,6 +83,9 @@ void FixHolonomic::read_options(int narg, char **arg, int first) {
             every = utils::inumeric(FLERR, arg[k + 1], false, lmp);
             if (every < 0)
                 error->all(FLERR, std::string("Fix holonomic: ") + arg[k] + " needs a number of steps, or 0");
+        } else if (strcmp(arg[k], "divide") == 0) {
+            divide_ = utils::inumeric(FLERR, arg[k + 1], false, lmp);
+            if (divide_ < 0) error->all(FLERR, "Fix holonomic: divide needs a number of atoms, or 0"s);
         } else if (strcmp(arg[k], "rigid") == 0) {
             guarded([&] { selection_.add_template(arg[k + 1]); });
         } else {
@@ -128,7 +133,7 @@ void FixHolonomic::check_other_fixes() {
 void FixHolonomic::find_molecules() {
     guarded([&] {
         const std::vector<Bond> bonds = selection_.select(groupbit, atoms_);
-        registry_ = Registry(world, bonds, selection_.select_bodies(groupbit), domain->dimension);
+        registry_ = Registry(world, bonds, selection_.select_bodies(groupbit), domain->dimension, size_to_divide());
         std::vector<Tag> tags(atom->tag, atom->tag + atom->nlocal);
         const std::vector<Membership> members = registry_.memberships(tags);
         for (int i = 0; i < atom->nlocal; ++i) static_cast<Membership &>(atoms_[i]) = members[i];

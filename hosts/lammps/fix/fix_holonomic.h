@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "../plan/divided.hpp"
 #include "../plan/packed.hpp"
 #include "release.hpp"
 #include "selection.hpp"
@@ -97,11 +98,23 @@ private:
     void give_changes(const Block &, Give give);
     bool add_streaming(const Block &);
     template <class Add>
-    void return_to_atoms(const std::vector<double> &numbers, Add add);
+    void return_reactions(Add add);
     void exact_forces();
     double mass_of(int atom) const;
     bool reruns() const;
     bool minimises() const;
+
+    // Divided molecules
+    std::int64_t size_to_divide() const;
+    void renew_divided(const std::vector<holonomic_lammps::Membership> &members,
+                       const std::vector<holonomic_lammps::Tag> &tags, bool fresh);
+    void take_divided_positions();
+    bool constrain_divided_positions(bool from_themselves, double time);
+    std::vector<double> divided_changes(double half);
+    void divided_forces();
+    std::vector<holonomic_lammps::Divided::Known> divided_bonds() const;
+    void tally_divided_atoms();
+    hol_worst divided_errors();
 
     // Outputs
     bool due(int every) const;
@@ -113,9 +126,10 @@ private:
     hol_worst errors();
 
     holonomic_lammps::Selection selection_;
-    int forces_every_ = 0;    // steps between constraint forces per atom; 0: none
-    int tensions_every_ = 0;  // steps between tensions per bond
-    int fixed_bit_ = 0;       // group whose atoms are held fixed
+    int forces_every_ = 0;      // steps between constraint forces per atom; 0: none
+    int tensions_every_ = 0;    // steps between tensions per bond
+    std::int64_t divide_ = -1;  // molecules of at least as many atoms are divided; -1: as size_to_divide says
+    int fixed_bit_ = 0;         // group whose atoms are held fixed
 
     std::vector<holonomic_lammps::Belonging> atoms_;  // by local atom
     holonomic_lammps::Registry registry_;
@@ -134,6 +148,9 @@ private:
     std::vector<Away> away_;        // by slot
     std::vector<double> answers_;   // three numbers for each of those, in the order of the messages
     std::vector<double> scratch_;   // of a block
+
+    std::unique_ptr<holonomic_lammps::Divided> divided_;
+    std::vector<double> divided_r_, divided_v_, divided_f_, divided_g_;  // of its atoms
 
     double rate_[6] = {0};       // d(box)/dt box^-1, xx yy zz yz xz xy, with which atoms move beside their velocities
     double step_rate_[6] = {0};  // its mean over the last step

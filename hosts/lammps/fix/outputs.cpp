@@ -22,7 +22,7 @@ void FixHolonomic::tally(int vflag) {
         const int from[6] = {0, 4, 8, 1, 2, 5};
         for (int k = 0; k < 6; ++k) virial[k] += virial_[from[k]];
     }
-    if (vflag_atom) tally_atoms();
+    if (vflag_atom) tally_atoms(), tally_divided_atoms();
     if (due(forces_every_)) keep_forces();
     if (due(tensions_every_)) keep_tensions();
 }
@@ -83,11 +83,14 @@ bool FixHolonomic::due(int every) const { return every > 0 && update->ntimestep 
 
 void FixHolonomic::keep_forces() {
     for (int i = 0; i < atom->nlocal; ++i) std::fill(array_atom[i], array_atom[i] + 3, 0.0);
-    return_to_atoms(reactions_, [&](int i, const double *g) { std::copy(g, g + 3, array_atom[i]); });
+    return_reactions([&](int i, const double *g) { std::copy(g, g + 3, array_atom[i]); });
 }
 
 void FixHolonomic::keep_tensions() {
-    size_local_rows = static_cast<int>(tensions_.size());
+    std::vector<Divided::Known> divided = divided_bonds();
+    divided.erase(std::remove_if(divided.begin(), divided.end(), [](const auto &bond) { return !bond.counts; }),
+                  divided.end());
+    size_local_rows = static_cast<int>(tensions_.size() + divided.size());
     if (size_local_rows > max_rows_) {
         max_rows_ = size_local_rows;
         memory->destroy(array_local);
@@ -103,6 +106,12 @@ void FixHolonomic::keep_tensions() {
                                        tensions_[row], std::sqrt(square)};
             std::copy(numbers, numbers + 4, array_local[row++]);
         }
+    for (const Divided::Known &bond : divided) {
+        const double length = std::sqrt(bond.d[0] * bond.d[0] + bond.d[1] * bond.d[1] + bond.d[2] * bond.d[2]);
+        const double numbers[4] = {static_cast<double>(bond.from), static_cast<double>(bond.to),
+                                   2 * bond.lambda * length / force->ftm2v, length};
+        std::copy(numbers, numbers + 4, array_local[row++]);
+    }
 }
 
 /** A rigid distance takes half a degree of freedom from either of its atoms, a body the same from each. */
@@ -124,6 +133,9 @@ hol_worst FixHolonomic::errors() {
             worst.length = std::max(worst.length, here.length);
             worst.rate = std::max(worst.rate, here.rate);
         }
+        const hol_worst here = divided_errors();
+        worst.length = std::max(worst.length, here.length);
+        worst.rate = std::max(worst.rate, here.rate);
     });
     double both[2] = {worst.length, worst.rate};
     MPI_Allreduce(MPI_IN_PLACE, both, 2, MPI_DOUBLE, MPI_MAX, world);

@@ -77,6 +77,7 @@ bool FixHolonomic::replan(bool fresh) {
     const std::vector<Tag> tags(planned_.begin(), planned_.end());
     changed = plan_->renew(registry_, members.data(), tags.data(), atom->nlocal) || fresh;
     MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_MAX, world);
+    renew_divided(members, tags, fresh);
     away_.clear();
     for (const Peer &owner : plan_->exchange.owners)
         for (int slot : owner.indices) away_.push_back({slot, static_cast<int>(away_.size())});
@@ -252,7 +253,7 @@ bool FixHolonomic::constrain_positions(bool from_themselves, double time) {
     plan_->exchange.to_owners<3>(
         world, [&](int, double *r) { std::copy_n(answer, 3, r), answer += 3; },
         [&](int i, const double *r) { move_atom(i, r, inverse_time); });
-    return n_moved > 0;
+    return constrain_divided_positions(from_themselves, time) || n_moved > 0;
 }
 
 void FixHolonomic::post_integrate() {

@@ -24,14 +24,16 @@ void FixHolonomic::guarded(Function function) {
     }
 }
 
-/** Calls add(atom, numbers) for the three numbers of each slot, on the rank that owns the atom. */
+/** Calls add(atom, force) for the constraint force of each atom, on the rank that owns it. */
 template <class Add>
-void FixHolonomic::return_to_atoms(const std::vector<double> &numbers, Add add) {
+void FixHolonomic::return_reactions(Add add) {
+    const std::vector<double> &numbers = reactions_;
     const int *atoms = plan_->atoms().data();
     for (int slot = 0; slot < plan_->n_slots(); ++slot)
         if (atoms[slot] >= 0) add(atoms[slot], &numbers[3 * slot]);
     plan_->exchange.to_owners<3>(
         world, [&](int slot, double *out) { std::copy(&numbers[3 * slot], &numbers[3 * slot] + 3, out); }, add);
+    for (int k = 0; k < divided_->n_atoms(); ++k) add(divided_->atoms()[k], &divided_g_[3 * k]);
 }
 
 }  // namespace LAMMPS_NS

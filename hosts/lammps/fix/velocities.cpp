@@ -154,6 +154,9 @@ void FixHolonomic::constrain_velocities(bool half_kick, bool with_forces, Give g
     plan_->exchange.to_owners<3>(
         world, [&](int, double *out) { std::copy_n(answer, 3, out), answer += 3; },
         [&](int i, const double *change) { give(i, change, mass_of(i)); });
+    const std::vector<double> changes = divided_changes(half);
+    for (std::size_t k = 0; k < changes.size() / 3; ++k)
+        give(divided_->atoms()[k], &changes[3 * k], mass_of(divided_->atoms()[k]));
 }
 
 /** Constraint forces of this instant, tensions and virial, in LAMMPS's units, from positions, velocities and forces. */
@@ -166,8 +169,10 @@ void FixHolonomic::exact_forces() {
         block.packed.forces(now_.data(), velocities_.data(), forces_.data(), tensions, reactions_.data(), part);
         for (int k = 0; k < 9; ++k) virial_[k] += part[k];
     }
+    divided_forces();
     const double unit = 1 / force->ftm2v;
     for (double &x : reactions_) x *= unit;
+    for (double &x : divided_g_) x *= unit;
     for (double &x : tensions_) x *= unit;
     for (double &x : virial_) x *= unit;
 }
@@ -189,7 +194,7 @@ void FixHolonomic::setup(int vflag) {
         reruns_ = false;
         v_init(vflag);
         exact_forces();
-        return_to_atoms(reactions_, [&](int i, const double *g) {
+        return_reactions([&](int i, const double *g) {
             for (int c = 0; c < 3; ++c) atom->f[i][c] += g[c];
         });
         tally(vflag);
@@ -228,8 +233,9 @@ void FixHolonomic::min_post_force(int vflag) {
             for (int c = 0; moves && c < 3; ++c) atom->v[i][c] += change[c];
         });
         std::fill(velocities_.begin(), velocities_.end(), 0.0);
+        std::fill(divided_v_.begin(), divided_v_.end(), 0.0);
         exact_forces();
-        return_to_atoms(reactions_, [&](int i, const double *g) {
+        return_reactions([&](int i, const double *g) {
             for (int c = 0; c < 3; ++c) atom->f[i][c] += g[c];
         });
         tally(vflag);

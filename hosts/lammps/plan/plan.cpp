@@ -49,7 +49,7 @@ bool Plan::renew(const Registry &registry, const Membership *members, const Tag 
 void Plan::count(const Membership *members, int n_atoms) {
     std::fill(present_.begin(), present_.end(), 0);
     for (int i = 0; i < n_atoms; ++i) {
-        if (members[i].molecule == 0) continue;
+        if (members[i].molecule == 0 || members[i].place == divided) continue;
         const int next = static_cast<int>(molecules_.size());
         const int number = numbers_.find_or_insert(members[i].molecule, next);
         if (number == next) {
@@ -193,7 +193,7 @@ void Plan::fill_slots(const Membership *members, const Tag *tags, int n_atoms) {
     n_away_ = 0;
     std::fill(atoms_.begin(), atoms_.end(), -1);
     for (int i = 0; i < n_atoms; ++i) {
-        if (members[i].molecule == 0) continue;
+        if (members[i].molecule == 0 || members[i].place == divided) continue;
         const int number = numbers_.find(members[i].molecule);
         const int home = home_[number];
         if (home == me) {

@@ -87,11 +87,12 @@ void throw_together(MPI_Comm world, const std::string &message) {
     throw ErrorEverywhere(text);
 }
 
-Registry::Registry(MPI_Comm world, const std::vector<Bond> &bonds, const std::vector<BodyAtom> &bodies, int dimensions)
+Registry::Registry(MPI_Comm world, const std::vector<Bond> &bonds, const std::vector<BodyAtom> &bodies, int dimensions,
+                   std::int64_t divide)
     : world_(world), n_ranks_(size_of(world)) {
     std::vector<Node> nodes = collect(bonds, bodies);
     find_components(world, nodes);
-    build(nodes, dimensions);
+    build(nodes, dimensions, divide);
 }
 
 /** Nodes whose books are kept here, with all their bonds, each once. A body is tied to the atom that it is named by. */
@@ -115,12 +116,12 @@ std::vector<Node> Registry::collect(const std::vector<Bond> &bonds, const std::v
     std::vector<Node> nodes;
     for (std::size_t k = 0; k < known.size(); ++k) {
         const Bond &bond = known[k];
-        const std::string names = std::to_string(bond.from) + " and " + std::to_string(bond.to);
         if (bond.from == bond.to) trouble = "a bond of atom " + std::to_string(bond.from) + " with itself";
         if (k > 0 && known[k - 1].from == bond.from && known[k - 1].to == bond.to) {
             if (known[k - 1].length != no_distance && known[k - 1].length != bond.length)
-                trouble = "atoms " + names + " are to be at two distances, " + std::to_string(known[k - 1].length) +
-                          " and " + std::to_string(bond.length);
+                trouble = "atoms " + std::to_string(bond.from) + " and " + std::to_string(bond.to) +
+                          " are to be at two distances, " + std::to_string(known[k - 1].length) + " and " +
+                          std::to_string(bond.length);
             continue;
         }
         if (nodes.empty() || nodes.back().tag != bond.from) nodes.push_back({bond.from, bond.from, {}, {}, 0, {}});
@@ -139,7 +140,7 @@ std::vector<Node> Registry::collect(const std::vector<Bond> &bonds, const std::v
 }
 
 /** Sends each bond to the bookkeeper of its molecule, who makes the shape and tells the bookkeepers of its atoms. */
-void Registry::build(const std::vector<Node> &nodes, int dimensions) {
+void Registry::build(const std::vector<Node> &nodes, int dimensions, std::int64_t divide) {
     Outgoing<Entry> outgoing(n_ranks_);
     Outgoing<Part> of_bodies(n_ranks_);
     for (const Node &node : nodes) {
@@ -180,18 +181,27 @@ void Registry::build(const std::vector<Node> &nodes, int dimensions) {
         std::vector<double> taken(tags.size(), shape.rigid ? static_cast<double>(shape.taken) / shape.n_atoms : 0);
         for (const auto &pair : shape.pairs)
             for (int place : pair) taken[place] += shape.rigid ? 0 : 0.5;
+        const bool divides = divide > 0 && shape.n_atoms >= divide && !shape.rigid && shape.bodies.empty();
+        n_divided_ += divides;
         for (int place = 0; place < shape.n_atoms; ++place)
             notes[bookkeeper(tags[place], n_ranks_)].push_back(
-                {tags[place], {molecule, place, shape.n_atoms, taken[place]}});
+                {tags[place], {molecule, divides ? divided : place, shape.n_atoms, taken[place]}});
     }
     for (const Note &note : route(world_, notes).items) memberships_[note.tag] = note.membership;
-    std::int64_t sums[4] = {static_cast<std::int64_t>(molecules_.size()), n_bonds,
-                            static_cast<std::int64_t>(memberships_.size()), n_bodies};
-    MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_INT64_T, MPI_SUM, world_);
+    for (const Node &node : nodes) {
+        if (memberships_[node.tag].place != divided) continue;
+        std::vector<Partner> &partners = partners_[node.tag];
+        for (std::size_t k = 0; k < node.neighbours.size(); ++k)
+            partners.push_back({node.neighbours[k], node.lengths[k]});
+    }
+    std::int64_t sums[5] = {static_cast<std::int64_t>(molecules_.size()), n_bonds,
+                            static_cast<std::int64_t>(memberships_.size()), n_bodies, n_divided_};
+    MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_INT64_T, MPI_SUM, world_);
     n_molecules_ = sums[0];
     n_bonds_ = sums[1];
     n_atoms_ = sums[2];
     n_bodies_ = sums[3];
+    n_divided_ = sums[4];
 }
 
 std::vector<Membership> Registry::memberships(const std::vector<Tag> &tags) const {
@@ -199,6 +209,30 @@ std::vector<Membership> Registry::memberships(const std::vector<Tag> &tags) cons
         const auto found = memberships_.find(tag);
         return found == memberships_.end() ? Membership() : found->second;
     });
+}
+
+std::vector<std::vector<Partner>> Registry::partners(const std::vector<Tag> &tags) const {
+    Outgoing<Tag> questions(n_ranks_);
+    for (Tag tag : tags) questions[bookkeeper(tag, n_ranks_)].push_back(tag);
+    const Delivery<Tag> asked = route(world_, questions);
+    Outgoing<Partner> replies(n_ranks_);
+    for (int p = 0; p < n_ranks_; ++p)
+        for (int k = asked.first[p]; k < asked.first[p + 1]; ++k) {
+            // How many there are, then they themselves
+            const std::vector<Partner> &known = partners_.at(asked.items[k]);
+            replies[p].push_back({static_cast<Tag>(known.size()), 0});
+            replies[p].insert(replies[p].end(), known.begin(), known.end());
+        }
+    const Delivery<Partner> came = route(world_, replies);
+    std::vector<int> next(came.first.begin(), came.first.end() - 1);
+    std::vector<std::vector<Partner>> result;
+    for (Tag tag : tags) {
+        int &from = next[bookkeeper(tag, n_ranks_)];
+        const auto first = came.items.begin() + from + 1;
+        result.emplace_back(first, first + static_cast<std::ptrdiff_t>(came.items[from].atom));
+        from += 1 + static_cast<int>(came.items[from].atom);
+    }
+    return result;
 }
 
 std::vector<Shape> Registry::shapes(const std::vector<Tag> &molecules) const {

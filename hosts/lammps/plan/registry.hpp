@@ -13,9 +13,17 @@ namespace holonomic_lammps {
 /** What an atom carries with it from rank to rank. */
 struct Membership {
     Tag molecule = 0; /**< the lowest tag of the molecule; 0: the atom is in none */
-    int place = 0;    /**< of the atom within the molecule */
+    int place = 0;    /**< of the atom within the molecule; divided: no rank has the whole molecule */
     int n_atoms = 0;  /**< of the molecule */
     double taken = 0; /**< degrees of freedom that constraints take from the atom */
+};
+
+constexpr int divided = -1;
+
+/** A bond as one of its atoms knows it. */
+struct Partner {
+    Tag atom;
+    double length;
 };
 
 /** The molecules that the bonds of all ranks form. Each is kept by the bookkeeper of its lowest tag. */
@@ -27,11 +35,12 @@ public:
      * Takes the bonds and rigid bodies that each rank knows; a bond that several ranks or both of its atoms report
      * counts once. Bonds within a body are held by it. Collective.
      * @param dimensions  2 or 3, for the degrees of freedom
+     * @param divide  molecules of at least as many atoms, without rigid parts, are divided among the ranks; 0: none
      * Throws ErrorEverywhere if a bond is given with two lengths or joins an atom with itself, or an atom is in two
      * bodies.
      */
     Registry(MPI_Comm world, const std::vector<Bond> &bonds, const std::vector<BodyAtom> &bodies = {},
-             int dimensions = 3);
+             int dimensions = 3, std::int64_t divide = 0);
 
     /** What to know of atoms, by their tags. Collective. */
     std::vector<Membership> memberships(const std::vector<Tag> &tags) const;
@@ -39,6 +48,10 @@ public:
     /** Shapes of molecules, by their numbers. Collective. */
     std::vector<Shape> shapes(const std::vector<Tag> &molecules) const;
 
+    /** What atoms of divided molecules are bonded to, by their tags. Collective. */
+    std::vector<std::vector<Partner>> partners(const std::vector<Tag> &tags) const;
+
+    std::int64_t n_divided() const { return n_divided_; }     /**< of the molecules, on all ranks */
     std::int64_t n_molecules() const { return n_molecules_; } /**< on all ranks */
     std::int64_t n_bonds() const { return n_bonds_; }         /**< on all ranks */
     std::int64_t n_atoms() const { return n_atoms_; }         /**< on all ranks */
@@ -47,13 +60,14 @@ public:
 
 private:
     std::vector<Node> collect(const std::vector<Bond> &bonds, const std::vector<BodyAtom> &bodies) const;
-    void build(const std::vector<Node> &nodes, int dimensions);
+    void build(const std::vector<Node> &nodes, int dimensions, std::int64_t divide);
 
     MPI_Comm world_ = MPI_COMM_NULL;
     int n_ranks_ = 0;
-    std::int64_t n_molecules_ = 0, n_bonds_ = 0, n_atoms_ = 0, n_bodies_ = 0;
-    std::unordered_map<Tag, Shape> molecules_;         // those whose books are kept here
-    std::unordered_map<Tag, Membership> memberships_;  // likewise, by atom
+    std::int64_t n_molecules_ = 0, n_bonds_ = 0, n_atoms_ = 0, n_bodies_ = 0, n_divided_ = 0;
+    std::unordered_map<Tag, Shape> molecules_;                // those whose books are kept here
+    std::unordered_map<Tag, Membership> memberships_;         // likewise, by atom
+    std::unordered_map<Tag, std::vector<Partner>> partners_;  // likewise, of divided molecules
 };
 
 /** An error that every rank throws, with the same message. */

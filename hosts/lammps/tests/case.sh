@@ -110,6 +110,25 @@ ranks() {
     below 1e-13 'f_rigid[1]' ranks4
 }
 
+# The same, where the molecules are divided on 2 and 4 ranks: divided SCENE [VARIABLE VALUE...]
+divided() {
+    local scene=$1
+    shift
+    # shellcheck disable=SC2086
+    "$SCENE" $scene >data
+    for n in 1 2 4; do
+        run "$n" divided$n "$INPUTS/beads.lmp" data data rigid holonomic more "divide 100" steps 50 every 10 norm no "$@"
+        if [ "$n" -gt 1 ] && grep -q ' 0 molecules divided' divided$n; then fail "not divided on $n ranks"; fi
+    done
+    for column in TotEng Econserve; do
+        same 1e-12 $column divided1 divided2
+        same 1e-12 $column divided1 divided4
+    done
+    same 1e-9 Press divided1 divided4
+    below 1e-13 'f_rigid[1]' divided4
+    below 1e-13 'f_rigid[2]' divided4
+}
+
 # Energy holds.
 nve() {
     "$SCENE" melt 16 32 >data
@@ -146,6 +165,6 @@ bent() {
 name=$1
 shift
 case $name in
-    rattle | ranks | nve | npt | bent) "$name" "$@" ;;
+    rattle | ranks | divided | nve | npt | bent) "$name" "$@" ;;
     *) . "$(dirname "${BASH_SOURCE[0]}")/more_cases.sh" && "$name" "$@" ;;
 esac

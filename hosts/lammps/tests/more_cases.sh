@@ -39,8 +39,8 @@ layouts() {
 outputs() {
     "$SCENE" melt 40 32 >data
     for n in 1 4; do
-        run $n out$n "$INPUTS/beads.lmp" data data rigid holonomic dt 0.003 more "forces 50 tensions 100" \
-            before "compute s all stress/atom NULL fix" later "include $INPUTS/sums.lmp" steps 200
+        run $n out$n "$INPUTS/beads.lmp" data data rigid holonomic dt 0.003 more "forces 50 tensions 100 divide ${1:-0}" \
+            before "compute s all stress/atom NULL fix" later "include $INPUTS/sums.lmp" steps "${2:-200}"
         # The last step of the dump, by atoms.
         awk '/^ITEM: ENTRIES/ { n = 0; next } /^ITEM/ { reading = /ENTRIES/; next } NF == 4 { row[n++] = $0 }
             END { for (k = 0; k < n; ++k) print row[k] }' tensions.dump | sort -n -k 1 >tensions$n
