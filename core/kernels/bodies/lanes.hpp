@@ -10,8 +10,8 @@ template <int R>
 struct BodyLanes {
     const BodyBlock &block;
     const BodyKind &kind;
-    vec3 *const x, *const y;   // [n_atoms] each
-    double *const copy;        // of rows
+    vec3 *const x, *const y;  // [n_atoms] each
+    double *const copy;       // of rows
 
     HOL_FORCED BodyLanes(const BodyBlock &b, double *scratch)
         : block(b), kind(b.kind), x(reinterpret_cast<vec3 *>(scratch)), y(x + kind.n_atoms),

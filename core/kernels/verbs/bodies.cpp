@@ -43,10 +43,11 @@ __attribute__((noinline)) mask project(const BodyKind &kind, const Frame<R> &at,
 }
 
 template <int R>
-__attribute__((noinline)) Turned restored(const BodyKind &kind, const Frame<R> &from, Frame<R> &change, int most) {
+__attribute__((noinline)) Turned restored(const BodyKind &kind, const Frame<R> &from, Frame<R> &change, int most,
+                                          double slack) {
     Turned out;
     take_excess(kind, change);
-    restore(kind, from, change, most, out);
+    restore(kind, from, change, most, slack, out);
     return out;
 }
 
@@ -95,7 +96,8 @@ unsigned positions_of(const PositionsCall &call, const BodyBlock &block, double 
     atoms.template positions<0>(call.r_ref, call.box_ref, from);
     atoms.changes(call.r, call.box, from, change);
     Frame<R> trial = change;
-    const Turned turned = restored(kind, from, change, call.max_iterations < 40 ? call.max_iterations : 40);
+    const Turned turned = restored(kind, from, change, call.max_iterations < 40 ? call.max_iterations : 40,
+                                   call.r_ref.is_float ? 1e-8 : 1e-15);
     const vec squares = atoms.moves(change);
     // Crude or rigid already: the general solver decides.
     const double least = (call.r.is_float ? 1e-5 : 1e-10) * kind.extent, most = 0.5 * kind.extent;
