@@ -178,10 +178,11 @@ struct MoleculeKernels {
 
 struct BodyKind;  // a kind of rigid body that stands alone: core/kernels/bodies/kind.hpp
 
-// A block of such bodies: as many as there are lanes, or fewer. The other lanes' lists are that of the first.
+// Bodies of a kind, most_in_unit at most.
+constexpr int most_in_unit = 64;
 struct BodyUnit {
     const BodyKind *kind;
-    const int64_t *atoms[most_lanes];
+    const int64_t *atoms[most_in_unit];
     int count;
     bool consecutive;  // the atoms of each stand one behind the other
 };
@@ -196,9 +197,9 @@ struct BodyResult {
 // bytes(n_atoms), aligned to 64.
 struct BodyKernels {
     int64_t (*scratch_bytes)(int64_t n_atoms);
-    unsigned (*forces)(const ForcesCall &, const BodyUnit &, double *scratch, BodyResult *);
-    unsigned (*velocities)(const VelocitiesCall &, const BodyUnit &, double *scratch, BodyResult *);
-    unsigned (*positions)(const PositionsCall &, const BodyUnit &, double *scratch, BodyResult *);
+    uint64_t (*forces)(const ForcesCall &, const BodyUnit &, double *scratch, BodyResult *);
+    uint64_t (*velocities)(const VelocitiesCall &, const BodyUnit &, double *scratch, BodyResult *);
+    uint64_t (*positions)(const PositionsCall &, const BodyUnit &, double *scratch, BodyResult *);
 };
 
 // The tridiagonal matrix of n rows with ones on its diagonal and -gamma beside it, by plain products. Both return false

@@ -1,5 +1,6 @@
 #include "core/rigid/blocks.hpp"
 
+#include <algorithm>
 #include <type_traits>
 
 #include "core/run/kernel_choice.hpp"
@@ -18,19 +19,20 @@ BodyKind kind_of(const Body &body, const Shape &shape) {
     kind.mass = body.mass;
     kind.inverse_mass = body.inverse_mass;
     kind.extent = body.extent;
-    for (int p = 0; p < body.rank; ++p) {
-        kind.square[p] = body.square[p].hi;
+    for (int p = 0; p < body.rank; ++p) kind.square[p] = body.square[p].hi;
+    for (int p = 0; p < 3; ++p)
         for (int q = 0; q < body.rank; ++q) {
+            kind.per_sum[p][q] = kind.per_sum[q][p] = 1 / (kind.square[p] + kind.square[q]);
+            if (p >= body.rank) continue;
             kind.per_size[p][q] = 1 / (body.length[p] * body.length[q]);
-            kind.per_sum[p][q] = 1 / (body.square[p].hi + body.square[q].hi);
+            kind.ratio[p][q] = body.length[q] / body.length[p];
         }
-    }
+    for (int q = 0; q < 2 && body.rank == 2; ++q) kind.ratio[2][q] = body.length[q] / (body.length[0] * body.length[1]);
+    std::copy_n(body.excess[0], 16, kind.excess[0]);
     kind.masses = body.masses.data();
     kind.has_sites = body.n_massive < body.n_atoms;
     kind.place = weights;
-    kind.place_low = weights + n;
-    kind.share = weights + 2 * n;
-    kind.share_low = weights + 3 * n;
+    kind.share = weights + n;
     kind.steps = &shape.steps.data()->atom;
     return kind;
 }

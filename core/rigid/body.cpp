@@ -71,20 +71,22 @@ Axes axes_of(DoublePair s[3][3]) {
     return found;
 }
 
-// Places and what their rounding leaves off, then shares.
+// Places and shares as kernels have them, rounded; and what that leaves off their product.
 void set_weights(Body &body) {
-    const std::int64_t K = 1 + body.rank, n = body.n_atoms * K;
-    body.weights.resize(at(4 * n));
-    double *const weights = body.weights.data();
-    for (std::int64_t a = 0; a < body.n_atoms; ++a)
+    const std::int64_t n = body.n_atoms, K = 1 + body.rank;
+    std::vector<double> &weights = body.weights;
+    weights.resize(at(2 * n * K));
+    for (std::int64_t a = 0; a < n; ++a)
         for (std::int64_t k = 0; k < K; ++k) {
-            const DoublePair place = k == 0 ? as_pair(1) : body.y[at(a * body.rank + k - 1)],
-                             share = body.share[at(a * K + k)];
-            double *const to = weights + a * K + k;
-            to[0] = rounded(place);
-            to[n] = rounded(place - as_pair(rounded(place)));
-            to[2 * n] = rounded(share);
-            to[3 * n] = rounded(share - as_pair(rounded(share)));
+            weights[at(a * K + k)] = k == 0 ? 1 : rounded(body.y[at(a * body.rank + k - 1)]);
+            weights[at((n + a) * K + k)] = rounded(body.share[at(a * K + k)]);
+        }
+    for (std::int64_t k = 0; k < K; ++k)
+        for (std::int64_t l = 0; l < K; ++l) {
+            DoublePair sum = as_pair(k == l ? -1 : 0);
+            for (std::int64_t a = 0; a < n; ++a)
+                sum = sum + weights[at((n + a) * K + k)] * as_pair(weights[at(a * K + l)]);
+            body.excess[k][l] = rounded(sum);
         }
 }
 

@@ -32,7 +32,8 @@ struct Body {
     bool is_thick;                  // plain doubles do: neither thin nor with atoms far out for their mass
     std::vector<DoublePair> y;      // [n_atoms][rank]
     std::vector<DoublePair> share;  // [n_atoms][1 + rank]: m/M, m y_p / M
-    std::vector<double> weights;    // [4][n_atoms][1 + rank] of a thick one: what BodyKind has of places and shares
+    std::vector<double> weights;    // [2][n_atoms][1 + rank] of a thick one: places and shares as BodyKind has them
+    double excess[4][4];            // as in BodyKind
 
     std::int64_t bytes() const;
 };

@@ -93,7 +93,7 @@ struct ForcesWork final : Work {
     }
     bool is_in_order() const override { return in_order; }
     bool takes_blocks(bool bonds) const override { return !rate && !(bonds && (out.lambda || out.tension)); }
-    unsigned bodies(const BodyUnit &unit, double *scratch, BodyResult *results) const override {
+    std::uint64_t bodies(const BodyUnit &unit, double *scratch, BodyResult *results) const override {
         return kernels().bodies.forces(call, unit, scratch, results);
     }
     bool has_results() const override { return virial; }

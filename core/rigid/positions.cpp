@@ -45,7 +45,7 @@ struct PositionsWork final : Work {
         put_box(box_ref, call.box_ref);
     }
     bool takes_blocks(bool bonds) const override { return tolerance == 0 && !(bonds && lambda); }
-    unsigned bodies(const BodyUnit &unit, double *scratch, BodyResult *results) const override {
+    std::uint64_t bodies(const BodyUnit &unit, double *scratch, BodyResult *results) const override {
         return kernels().bodies.positions(call, unit, scratch, results);
     }
     bool has_results() const override { return virial || report; }

@@ -34,8 +34,7 @@ Outcome why(std::int32_t noted) { return static_cast<Outcome>(bad_outcome - note
 class Block {
 public:
     Block(const Chains &chains, const Work &work, char *memory, OutcomeOf *outcomes)
-        : chains_(chains), bodies_(*chains.bodies()), work_(work), memory_(memory), outcomes_(outcomes),
-          widest_(work.takes_blocks(false) ? kernels().lanes : 1) {}
+        : chains_(chains), bodies_(*chains.bodies()), work_(work), memory_(memory), outcomes_(outcomes) {}
 
     Found run(std::int64_t first) {
         const std::int64_t end = std::min(first + block, bodies_.n_molecules());
@@ -46,13 +45,7 @@ public:
                 molecule(m);
                 continue;
             }
-            std::int64_t alike[most_lanes];
-            int n = 0;
-            std::int64_t next = m;
-            for (; next < end && n < widest_ && bodies_.shape_number(next) == bodies_.shape_number(m); ++next)
-                if (bodies_.is_active(next)) alike[n++] = next;
-            side_by_side(alike, n);
-            m = next - 1;
+            m = side_by_side(m, end) - 1;
         }
         return found_;
     }
@@ -74,33 +67,39 @@ private:
         if (outcomes_ && outcome != Outcome::good) outcome_of(m)->status = noted(outcome);
     }
 
-    void side_by_side(const std::int64_t *alike, int n) {
-        if (shape_ != bodies_.shape_number(alike[0])) {
-            shape_ = bodies_.shape_number(alike[0]);
-            const Shape &shape = bodies_.shape(alike[0]);
+    // Bodies from number `first` on as long as they are alike; returns the first one that is not.
+    std::int64_t side_by_side(std::int64_t first, std::int64_t end) {
+        static_assert(block <= most_in_unit);
+        const std::int32_t number = bodies_.shape_number(first);
+        if (shape_ != number) {
+            shape_ = number;
+            const Shape &shape = bodies_.shape(first);
             kind_ = kind_of(bodies_.body(shape.parts[0]), shape);
         }
         BodyUnit unit;
         unit.kind = &kind_;
-        unit.count = n;
+        unit.count = 0;
         unit.consecutive = true;
-        for (int l = 0; l < n; ++l) {
-            unit.atoms[l] = bodies_.atoms(alike[l]);
-            unit.consecutive = unit.consecutive && bodies_.is_consecutive(alike[l]);
+        std::int64_t molecules[block], next = first;
+        for (; next < end && bodies_.shape_number(next) == number; ++next) {
+            if (!bodies_.is_active(next)) continue;
+            molecules[unit.count] = next;
+            unit.atoms[unit.count++] = bodies_.atoms(next);
+            unit.consecutive = unit.consecutive && bodies_.is_consecutive(next);
         }
-        for (int l = n; l < widest_; ++l) unit.atoms[l] = unit.atoms[0];
-        BodyResult results[most_lanes];
-        const unsigned done =
+        BodyResult results[block];
+        const std::uint64_t done =
             work_.bodies(unit, reinterpret_cast<double *>(memory_ + bodies_.scratch_bytes()), results);
-        if (done == (1u << n) - 1 && !work_.has_results() && !outcomes_) return;
-        for (int l = 0; l < n; ++l) {
+        if (done == ~std::uint64_t{0} >> (block - unit.count) && !work_.has_results() && !outcomes_) return next;
+        for (int l = 0; l < unit.count; ++l) {
             if (!(done >> l & 1)) {
-                molecule(alike[l]);
+                molecule(molecules[l]);
                 continue;
             }
-            with_outcome(outcome_of(alike[l]), found_.tally,
-                         [&](Tally &tally) { work_.done(results[l], chains_.n_chains() + alike[l], tally); });
+            with_outcome(outcome_of(molecules[l]), found_.tally,
+                         [&](Tally &tally) { work_.done(results[l], chains_.n_chains() + molecules[l], tally); });
         }
+        return next;
     }
 
     const Chains &chains_;
@@ -108,7 +107,6 @@ private:
     const Work &work_;
     char *const memory_;
     OutcomeOf *const outcomes_;
-    const int widest_;
     Found found_{empty_tally(), Outcome::good};
     BodyKind kind_;
     std::int32_t shape_ = -1;

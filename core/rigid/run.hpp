@@ -22,7 +22,7 @@ public:
     // The same for bodies without bonds, side by side: bits of those that are done. The others come one by one.
     // bonds: also those that have some within them, whose values are wanted.
     virtual bool takes_blocks(bool bonds) const { return static_cast<void>(bonds), false; }
-    virtual unsigned bodies(const BodyUnit &, double *, BodyResult *) const { return 0; }
+    virtual std::uint64_t bodies(const BodyUnit &, double *, BodyResult *) const { return 0; }
     // What a body that is done adds to the tally, if anything.
     virtual bool has_results() const { return false; }
     virtual void done(const BodyResult &, std::int64_t number, Tally &) const { static_cast<void>(number); }

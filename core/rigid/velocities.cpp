@@ -26,7 +26,7 @@ struct VelocitiesWork final : Work {
         put_box(box, call.box);
     }
     bool takes_blocks(bool bonds) const override { return !rate && !(bonds && lambda); }
-    unsigned bodies(const BodyUnit &unit, double *scratch, BodyResult *results) const override {
+    std::uint64_t bodies(const BodyUnit &unit, double *scratch, BodyResult *results) const override {
         return kernels().bodies.velocities(call, unit, scratch, results);
     }
     bool has_results() const override { return virial; }

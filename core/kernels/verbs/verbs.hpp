@@ -45,9 +45,9 @@ bool path_positions(const PositionsCall &, const Schedule &, const MoleculeLane 
 void molecules_solve(const SolveCall &, const MoleculeUnit &, double *scratch, Tally &);
 
 int64_t bodies_scratch_bytes(int64_t n_atoms);
-unsigned bodies_forces(const ForcesCall &, const BodyUnit &, double *scratch, BodyResult *);
-unsigned bodies_velocities(const VelocitiesCall &, const BodyUnit &, double *scratch, BodyResult *);
-unsigned bodies_positions(const PositionsCall &, const BodyUnit &, double *scratch, BodyResult *);
+uint64_t bodies_forces(const ForcesCall &, const BodyUnit &, double *scratch, BodyResult *);
+uint64_t bodies_velocities(const VelocitiesCall &, const BodyUnit &, double *scratch, BodyResult *);
+uint64_t bodies_positions(const PositionsCall &, const BodyUnit &, double *scratch, BodyResult *);
 
 bool tridiagonal_solve(int64_t n, const double *gamma, const double *b, double *x, double *scratch);
 bool tridiagonal_pivots(int64_t n, const double *gamma, double *pivots);
