@@ -15,7 +15,7 @@ struct BodyLanes {
 
     HOL_FORCED BodyLanes(const BodyBlock &b, double *scratch)
         : block(b), kind(b.kind), x(reinterpret_cast<vec3 *>(scratch)), y(x + kind.n_atoms),
-          copy(&y[kind.n_atoms].x[0]) {}
+          copy(reinterpret_cast<double *>(y + kind.n_atoms)) {}
 
     // Calls each(a, coordinates from the first atom's).
     template <class Each>

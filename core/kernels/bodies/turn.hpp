@@ -118,7 +118,7 @@ HOL_INLINE void restore(const BodyKind &kind, const Frame<R> &from, Frame<R> &ch
     } else {
         Frame<R> a = from, away;
         away.clear();
-        vec error;
+        vec error = {};
         out.good = make_orthogonal(kind, a, away, error);
         vec3 d[R], axis[3];
         HOL_UNROLL_FEW
