@@ -75,6 +75,13 @@ HOL_INLINE MaskOf<V> worth_new_factors(V error, V rate, int i) {
            less(Width<V>::all(i < 2 ? -1.0 : 1e-4), rate);
 }
 
+// solve() and move(): a system may have an overload that does both at once.
+template <class System, class Mask>
+HOL_INLINE auto solve_and_move(System &newton, Mask active) {
+    newton.solve(active);
+    return newton.move();
+}
+
 // New factors square the error. Where they leave much more, bonds are so nearly straight that they can bend either way,
 // and the way that Newton's method takes decides. Such a molecule is left to the careful solver, which takes the
 // straight one, with new factors at each solve. `before`: the error from which a solve with new factors came.
@@ -123,14 +130,17 @@ HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const Posi
     V rate = error;  // new factors square the error
     Mask proven = none, fresh = active;
     for (int i = 0; i < call.max_iterations && any(active); ++i) {
-        newton.solve(active);
-        ++out.solves;
         const Mask last = active & proven & less(rate * error, Width<V>::all(negligible));
-        out.converged = out.converged | last;  // whatever the other lanes have to do
-        active = active & ~last;
-        if (!look_last && !any(active) && !call.report) break;
         const V before = error, expected = rate * before;
-        error = newton.move();
+        const bool looks = look_last || call.report || any(active & ~last);
+        ++out.solves;
+        out.converged = out.converged | last;  // whatever the other lanes have to do
+        if (!looks) {
+            newton.solve(active);
+            break;
+        }
+        error = solve_and_move(newton, active);
+        active = active & ~last;
         // At the floor: the solve should have gone far below a rounding, or it gained little, and what is left is no
         // more than the coordinates carry.
         const Mask floor =
