@@ -22,8 +22,8 @@ public:
         number_trees();
         if (s_.n_core == 0) {
             s_.type = Schedule::tree;
-        } else if (s_.n_tree == 0 && s_.n_core == s_.n_core_atoms) {
-            s_.type = s_.n_core == 3 ? Schedule::triangle : Schedule::ring;
+        } else if (s_.n_core == s_.n_core_atoms && (s_.n_tree == 0 || is_simple_ring())) {
+            s_.type = s_.n_bonds == 3 ? Schedule::triangle : Schedule::ring;
             number_ring();
         } else {
             s_.type = Schedule::graph;
@@ -105,16 +105,26 @@ private:
             if (upper_bond_[at(i)] < 0) m_.atom_of.push_back(i);
     }
 
-    // Round from atom 0 in the direction of its first bond.
+    // Small, and with few trees at each of its atoms.
+    bool is_simple_ring() const {
+        if (s_.n_bonds > largest_graph_in_lanes) return false;
+        for (std::int32_t i = 0; i < s_.n_atoms; ++i)
+            if (upper_bond_[at(i)] < 0 && bonds_.size(i) > 2 + most_on_ring) return false;
+        return true;
+    }
+    // Round from the core's first atom in the direction of its first bond.
     void number_ring() {
-        m_.atom_of.clear();
-        std::int32_t atom = 0, bond = *bonds_.begin(0);
+        const std::int32_t first = m_.atom_of[at(s_.n_tree)];
+        m_.atom_of.resize(at(s_.n_tree));
+        std::int32_t atom = first, bond = -1;
         do {
+            const std::int32_t *k = bonds_.begin(atom);
+            while (*k == bond || is_child(*k, atom)) ++k;
+            bond = *k;
             m_.atom_of.push_back(atom);
             m_.bond_of.push_back(bond);
             atom = other_end(bond, atom);
-            bond = bonds_.begin(atom)[bonds_.begin(atom)[0] == bond ? 1 : 0];
-        } while (atom != 0);
+        } while (atom != first);
     }
 
     void number_core() {
@@ -176,8 +186,8 @@ private:
         for (std::int32_t p = 0; p < s_.n_core; ++p) {
             const std::int32_t k = m_.bond_of[at(s_.n_tree + p)];
             const std::int32_t i = m_.slot_of[at(m_.atom_i[at(k)])], j = m_.slot_of[at(m_.atom_j[at(k)])];
-            m_.from.push_back(round ? p : i);
-            m_.to.push_back(round ? (p + 1) % s_.n_core : j);
+            m_.from.push_back(round ? s_.n_tree + p : i);
+            m_.to.push_back(round ? s_.n_tree + (p + 1) % s_.n_core : j);
         }
     }
 

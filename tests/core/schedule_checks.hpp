@@ -77,6 +77,8 @@ inline void trees_are_in_post_order(const Schedule &s)
 
 inline void meetings_are_right(const Schedule &s)
 {
+    for (int p = 0; p < s.n_core && s.type == Schedule::ring; ++p)
+        require(s.from[p] == s.n_tree + p && s.to[p] == s.n_tree + (p + 1) % s.n_core, "a ring that does not go round");
     for (int p = 0; p < s.n_core; ++p)
         joins(s, s.n_tree + p, s.from[p], s.to[p], "a bond of the core joins other atoms");
     int n = 0;

@@ -40,8 +40,19 @@ void small_shapes()
     check("triangle", {{0, 1}, {0, 2}, {1, 2}}, 3, Schedule::triangle);
     check("ring of four", ring(4), 4, Schedule::ring);
     check("ring of 50", ring(50), 50, Schedule::ring);
-    const auto lariat = check("lariat", {{0, 1}, {1, 2}, {2, 0}, {2, 3}, {3, 4}, {3, 5}}, 6, Schedule::graph);
+    const auto lariat = check("lariat", {{0, 1}, {1, 2}, {2, 0}, {2, 3}, {3, 4}, {3, 5}}, 6, Schedule::ring);
     require(lariat->n_tree == 3 && lariat->n_core == 3, "the tail is not a tree");
+    Bonds hairy = ring(6);
+    for (int i = 0; i < 6; ++i)
+        for (int k = 0; k < 2; ++k) hairy.push_back({i, 6 + 2 * i + k});
+    check("cyclohexane", hairy, 18, Schedule::ring);
+    hairy.push_back({0, 18});
+    check("a ring with three children at an atom", hairy, 19, Schedule::graph);
+    Bonds lasso = ring(200);
+    for (int i = 200; i <= holonomic::largest_graph_in_lanes; ++i) lasso.push_back({i - 1, i});
+    check("a large lasso", lasso, holonomic::largest_graph_in_lanes + 1, Schedule::graph);
+    lasso.pop_back();
+    check("a smaller lasso", lasso, holonomic::largest_graph_in_lanes, Schedule::ring);
     check("tetrahedron", {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}, 4, Schedule::graph);
     check("two rings and what joins them", {{0, 1}, {1, 2}, {2, 0}, {2, 3}, {3, 4}, {4, 5}, {5, 6}, {6, 4}}, 7,
           Schedule::graph);

@@ -59,6 +59,13 @@ HOL_NOINLINE void note_worst_of_one(const System &newton, double error, int64_t 
     tally.worst_bond = bond < newton.s.n_bonds ? bond : 0;
 }
 
+// solve() and move(): a system may have an overload that does both at once.
+template <class System, class Mask>
+HOL_INLINE auto solve_and_move(System &newton, Mask active) {
+    newton.solve(active);
+    return newton.move();
+}
+
 // New factors square the error. Where they leave much more, bonds are so nearly straight that they can bend either way,
 // and the way that Newton's method takes decides. Such a molecule is left to the careful solver, which takes the
 // straight one, with new factors at each solve. `before`: the error from which a solve with new factors came.
@@ -101,14 +108,17 @@ HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const Posi
     V rate = error;  // new factors square the error
     Mask proven = none, fresh = active;
     for (int i = 0; i < call.max_iterations && any(active); ++i) {
-        newton.solve(active);
-        ++out.solves;
         const Mask last = active & proven & less(rate * error, Width<V>::all(far_below<by_length>));
-        out.converged = out.converged | last;  // whatever the other lanes have to do
-        active = active & ~last;
-        if (!look_last && !any(active) && !call.report) break;
         const V before = error, expected = rate * before;
-        error = newton.move();
+        const bool looks = look_last || call.report || any(active & ~last);
+        ++out.solves;
+        out.converged = out.converged | last;  // whatever the other lanes have to do
+        if (!looks) {
+            newton.solve(active);
+            break;
+        }
+        error = solve_and_move(newton, active);
+        active = active & ~last;
         const Mask floor = at_floor<by_length>(expected, before, error);
         const Mask near = active & (less_equal(error, done) | floor);
         const Mask finished = near & less_equal(error, max(done, max(limits.accepted, limits.always_accepted)));

@@ -6,6 +6,7 @@
 #include "core/kernels/molecules/cycles/refine.hpp"
 #include "core/kernels/molecules/large_tree/tree_runs.hpp"
 #include "core/kernels/molecules/ring/ring.hpp"
+#include "core/kernels/molecules/store.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -15,13 +16,13 @@ template <class V>
 struct Linear {
     Molecules<V> x;
     CoreMatrix<V> core;
-    RingRow<V> *ring;
+    Ring<V> ring;
     Equations<V> equations;
     V *t, *b;           // [n_bonds] of a graph: the solution so far; right-hand sides
     Memory<V> working;  // of a joint of many bonds
     Pieces pieces;
 
-    static constexpr int64_t bond_values = sizeof(BondRow<V>) / sizeof(V), ring_values = sizeof(RingRow<V>) / sizeof(V);
+    static constexpr int64_t bond_values = sizeof(BondRow<V>) / sizeof(V);
 
     static constexpr int64_t faint_values = (sizeof(Faint) + sizeof(double) - 1) / sizeof(double);
 
@@ -31,7 +32,7 @@ struct Linear {
     // Values of V that the arrays take.
     static int64_t values(const Schedule &s) {
         int64_t n = s.n_atoms + bond_values * s.n_bonds + s.n_pairs + JointMemory<V, 0>::values(s.max_joint);
-        if (s.type == Schedule::ring) n += ring_values * s.n_bonds;
+        if (s.type == Schedule::ring) n += Ring<V>::values(s);
         n += bond_values * more_rows(s);
         n += 3 * 3 * static_cast<int64_t>(s.n_atoms);
         if (has_pieces(s))
@@ -49,10 +50,12 @@ struct Linear {
            Memory<V> &memory)
         : x{s, lane, used, Atoms<V>(lane, used, packed), &box, &r, nullptr, nullptr, nullptr, Width<V>::all(1), {}},
           core(), ring(), equations(), t(), b() {
+        x.per_cancelled2 = 1 / most_cancelled2(s.n_bonds);
         x.row = reinterpret_cast<BondRow<V> *>(memory.values(bond_values * (s.n_bonds + more_rows(s))));
         x.w = memory.values(s.n_atoms);
         x.pair = memory.values(s.n_pairs);
-        if (s.type == Schedule::ring) ring = reinterpret_cast<RingRow<V> *>(memory.values(ring_values * s.n_bonds));
+        if (s.type == Schedule::ring)
+            ring = {memory.values(s.n_core), memory.values(2 * static_cast<int64_t>(s.n_tree))};
         equations.r = memory.vectors(s.n_atoms);
         equations.velocity = memory.vectors(s.n_atoms);
         equations.force = memory.vectors(s.n_atoms);
@@ -79,7 +82,6 @@ struct Linear {
         for (int32_t p = 0; p <= x.s.n_pieces; ++p) faint[p] = {};
         pieces = {team, slack, faint, memory.values(x.s.n_pieces * joint), joint};
         x.pieces = &pieces;
-        x.per_cancelled2 = 1 / most_cancelled2(x.s.n_bonds);
     }
 
     // Inverse masses by slot.
@@ -90,46 +92,46 @@ struct Linear {
 
     // From right-hand sides to the solution, both in t of the rows.
     void factorize_and_solve() {
-        switch (x.s.type) {
-            case Schedule::tree:
-                up_trees(x, working);
-                down_trees<true>(x);
-                break;
-            case Schedule::triangle:
-                break;  // triangle_linear.hpp
-            case Schedule::ring:
-                factorize_ring(x, ring);
-                solve_ring(x, ring);
-                break;
-            case Schedule::graph:
-                for (int32_t k = 0; k < x.s.n_bonds; ++k) b[k] = x.row[k].t;
-                up_trees(x, working);
-                factorize_core(x, core, working);
-                solve_core();
+        if (x.s.type == Schedule::graph)
+            for (int32_t k = 0; k < x.s.n_bonds; ++k) b[k] = x.row[k].t;
+        up_trees(x, working);
+        if (x.s.type == Schedule::ring) {
+            choose([&](auto bare) HOL_FORCED { up_and_down_ring<bare>(); }, x.s.n_tree == 0);
+        } else if (x.s.type == Schedule::graph) {
+            factorize_core(x, core, working);
+            substitute_core(x, core, working);
+            down_core(x, core);
+            return down_trees<false>(x);
         }
+        down_trees<true>(x);
     }
 
     void solve_again() {
-        switch (x.s.type) {
-            case Schedule::tree:
-                substitute_trees(x, working);
-                down_trees<false>(x);
-                break;
-            case Schedule::triangle:
-                break;
-            case Schedule::ring:
-                solve_ring(x, ring);
-                break;
-            case Schedule::graph:
-                substitute_trees(x, working);
-                solve_core();
-        }
+        solve_top_again();
+        down_trees<false>(x);
+    }
+    // And v += w G with what it finds.
+    void solve_again_and_move(Vector3<V> *v) {
+        solve_top_again();
+        for (int32_t slot = x.s.n_atoms; slot-- > x.s.n_tree;)
+            v[slot] = add_times(v[slot], x.w[slot], pull_on(x, slot));
+        down_trees_and_move(x, v);
     }
 
-    void solve_core() {
-        substitute_core(x, core, working);
-        down_core(x, core);
-        down_trees<false>(x);
+    // Up, and back to the bonds at the root, or the core and the bonds at its atoms.
+    void solve_top_again() {
+        substitute_trees(x, working);
+        if (x.s.type == Schedule::ring) {
+            choose(
+                [&](auto bare) HOL_FORCED {
+                    substitute_ring<bare>(x, ring);
+                    down_ring<false, bare>(x, ring);
+                },
+                x.s.n_tree == 0);
+        } else if (x.s.type == Schedule::graph) {
+            substitute_core(x, core, working);
+            down_core(x, core);
+        }
     }
 
     // Corrects the solution of a graph against the exact residual until a correction would be less than a rounding,
@@ -152,6 +154,12 @@ struct Linear {
     }
 
 private:
+    template <bool bare>
+    HOL_FORCED void up_and_down_ring() {
+        up_ring<bare>(x, ring);
+        down_ring<true, bare>(x, ring);
+    }
+
     void solve_for_residuals() {
         find_residuals(x, equations, t);
         solve_again();

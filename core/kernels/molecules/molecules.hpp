@@ -3,7 +3,6 @@
 #define HOLONOMIC_KERNELS_MOLECULES_MOLECULES_HPP
 
 #include "core/kernels/arithmetic/vector3.hpp"
-#include "core/kernels/isa/choose.hpp"
 #include "core/kernels/molecules/atoms/atoms.hpp"
 #include "core/kernels/molecules/image.hpp"
 #include "core/kernels/molecules/large_tree/pieces.hpp"
@@ -54,8 +53,8 @@ struct Molecules {
     V *pair;             // [n_pairs] multipliers among the children of an atom
     V slack;             // negative where plain products do not do
     Inputs in;
-    const Pieces *pieces = nullptr;  // where a large one is worked on in these
-    double per_cancelled2 = 1 / (most_cancelled * most_cancelled);
+    const Pieces *pieces = nullptr;                                 // where a large one is worked on in these
+    double per_cancelled2 = 1 / (most_cancelled * most_cancelled);  // 1 / most_cancelled2()
 
     MaskOf<V> in_use() const { return Width<V>::first(used); }
 };
@@ -93,14 +92,14 @@ HOL_INLINE void for_bonds_of(const Schedule &s, int32_t slot, const Body &body) 
     for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) body(s.child[c], Plus{});
     if (slot < s.n_tree) return body(slot, Minus{});
     if (s.n_core_atoms == 0) return;
+    if (s.type == Schedule::ring) {
+        body(slot, Plus{});
+        return body(slot > s.n_tree ? slot - 1 : s.n_bonds - 1, Minus{});
+    }
     const V sign[2] = {Width<V>::all(1), Width<V>::all(-1)};
     const int32_t *const meet = s.meet + s.meet_start[slot - s.n_tree];
     const int n = s.meet_start[slot - s.n_tree + 1] - s.meet_start[slot - s.n_tree];
-    choose_few<4>(n, [&](auto known) HOL_FORCED {
-        const int count = known > 0 ? known : n;
-        HOL_UNROLL_FEW
-        for (int e = 0; e < count; ++e) body(s.n_tree + meet[e] / 2, sign[meet[e] & 1]);
-    });
+    for (int e = 0; e < n; ++e) body(s.n_tree + meet[e] / 2, sign[meet[e] & 1]);
 }
 
 // Finds a bond vector of one lane, with the low word that the difference of the coordinates leaves.

@@ -190,7 +190,7 @@ struct PositionsWork {
             if (solve_flat(call, schedule, *lane, packed, team, {scratch}, tally)) return;
             known = false;  // the list has overwritten the scratch
         }
-        if (schedule.type == Schedule::ring)
+        if (schedule.type == Schedule::ring && schedule.n_tree == 0)
             solve<RingNewton<V>>(lane, used, known, scratch);
         else
             solve<Newton<V>>(lane, used, known, scratch);

@@ -12,6 +12,8 @@ constexpr int32_t largest_in_lanes = 2048;
 // Those with cycles gain nothing by lanes from fewer on: a list (flat_list.hpp) serves one of them as fast as lanes
 // serve each of four, and most are the only one of their kind.
 constexpr int32_t largest_graph_in_lanes = 256;
+// The most children of an atom of a ring with trees: chemical ones have no more. With others it is a graph.
+constexpr int32_t most_on_ring = 2;
 constexpr int32_t slots_of_piece = 16384;  // a megabyte of bonds at work, a second-level cache
 
 // Bonds of an arm: what is done once an arm is little beside what is done for its bonds, and these stay in cache. All
@@ -36,7 +38,13 @@ struct NetworkPlan;  // core/kernels/molecules/network/network_plan.hpp
 // A core is what is left when atoms with one bond are stripped until there are none; a tree has none. All its atoms are
 // movable, because fixed atoms are leaves.
 struct Schedule {
-    enum Type : int32_t { tree, triangle, ring, graph };
+    enum Type : int32_t {
+        tree,
+        triangle,
+        ring,   // one ring, and the trees that hang from it; with trees only up to largest_graph_in_lanes and
+                // most_on_ring
+        graph,  // any other core
+    };
     Type type;
     int32_t n_atoms, n_bonds;
     int32_t n_tree;        // bonds of trees
@@ -63,8 +71,8 @@ struct Schedule {
     int32_t n_pairs;
 
     // The core: bond p, at place n_tree + p, points from slot from[p] to slot to[p]. In a ring or triangle bond p joins
-    // slots p and p + 1, the last one to slot 0, and all point that way round; elsewhere from the smaller local
-    // atom.
+    // the core's atoms p and p + 1, the last one to atom 0, and all point that way round; elsewhere from the smaller
+    // local atom.
     const int32_t *from, *to;   // [n_core]
     const int32_t *meet_start;  // [n_core_atoms + 1] bonds that meet at core atom c, slot n_tree + c
     const int32_t *meet;        // [2 n_core] 2 p + 1 where bond p points to the atom, 2 p where it points away

@@ -33,9 +33,10 @@ HOL_INLINE bool has_arms(const Linear<double> &z) { return z.pieces.arms.store !
 unsigned load_and_solve(Linear<vec> &, int terms, bool masses_known);
 unsigned load_and_solve(Linear<double> &, int terms, bool masses_known);
 
-// For the right-hand sides in t of the rows, with the same matrix.
-void solve_again(Linear<vec> &);
+// For the right-hand sides in t of the rows, with the same matrix; of small molecules with v += w G behind it.
 void solve_again(Linear<double> &);
+void solve_again_and_move(Linear<vec> &, vec3 *v);
+void solve_again_and_move(Linear<double> &, Vector3<double> *v);
 
 // A large molecule in its pieces. `look`: tests what is found.
 void solve_in_pieces(Linear<double> &, int terms, bool look = true);

@@ -88,7 +88,7 @@ struct RingPulls {
 template <class V>
 HOL_INLINE void write_pulls(const Molecules<V> &x, const AtomArray &g, bool add, unsigned which) {
     const Written<V> how = {which, nullptr, x.lane, add};
-    if (x.s.type == Schedule::ring)
+    if (x.s.type == Schedule::ring && x.s.n_tree == 0)
         write_vectors(g, x.at, x.s.slot_of, x.s.n_atoms, RingPulls<V>{x}, how);
     else
         write_vectors(g, x.at, x.s.slot_of, x.s.n_atoms, Pulls<V>{x}, how);

@@ -11,33 +11,49 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
+// d . (v_j - v_i) into t of the row of a bond from slot i to slot j.
 template <class V>
-HOL_NOINLINE void add_pulls_to(const Molecules<V> &x, Vector3<V> *v) {
-    if (x.s.type == Schedule::ring) {
-        Vector3<V> last = x.row[x.s.n_bonds - 1].t * x.row[x.s.n_bonds - 1].d;
-        for (int32_t k = 0; k < x.s.n_bonds; ++k) {
-            const Vector3<V> next = x.row[k].t * x.row[k].d;
-            v[k] = add_times(v[k], x.w[k], next - last);
-            last = next;
-        }
-        return;
-    }
-    for_ranges(x.s, x.pieces, x.s.n_atoms, [&](int32_t first, int32_t end) {
-        for (int32_t slot = end; slot-- > first;) v[slot] = add_times(v[slot], x.w[slot], pull_on(x, slot));
-    });
+HOL_INLINE void find_rate(const Molecules<V> &x, const Vector3<V> *v, int32_t place, int32_t from, int32_t to) {
+    BondRow<V> &row = x.row[place];
+    row.t = dot(row.d, v[to] - v[from]);
+    if (x.in.strain) row.t = row.t + stretching(x.in.strain, row.d);
 }
 
-// d . (v_j - v_i) into t of the rows.
+// v += w G, and the rates that this leaves in place of the multipliers, if `then_rates`. From the root or the core down
+// that is one pass: the atom above a bond has moved already, and no other needs the bond's multiplier any more.
 template <class V>
-HOL_NOINLINE void find_rates(const Molecules<V> &x, const Vector3<V> *v) {
+HOL_NOINLINE void add_pulls_to(const Molecules<V> &x, Vector3<V> *v, bool then_rates) {
+    const Schedule &s = x.s;
+    for (int32_t slot = s.n_atoms; slot-- > s.n_tree;) v[slot] = add_times(v[slot], x.w[slot], pull_on(x, slot));
+    for (int32_t p = 0; p < s.n_core && then_rates; ++p) find_rate(x, v, s.n_tree + p, s.from[p], s.to[p]);
+    for (int32_t slot = s.n_tree; slot-- > 0;) {
+        v[slot] = add_times(v[slot], x.w[slot], pull_on(x, slot));
+        if (then_rates) find_rate(x, v, slot, s.parent[slot], slot);
+    }
+}
+
+// Adds the pulls, and if `twice` those of what they leave.
+template <class V>
+static inline void project(Linear<V> &z, Vector3<V> *v, bool twice) {
+    add_pulls_to(z.x, v, twice);
+    if (twice) solve_again_and_move(z, v);
+}
+// A large molecule in its pieces.
+HOL_NOINLINE void project(Linear<double> &z, Vector3<double> *v, bool twice) {
+    const Molecules<double> &x = z.x;
+    if (!x.pieces) return project<double>(z, v, twice);
+    const auto add_pulls = [&] {
+        for_ranges(x.s, x.pieces, x.s.n_atoms, [&](int32_t first, int32_t end) {
+            for (int32_t slot = end; slot-- > first;) v[slot] = add_times(v[slot], x.w[slot], pull_on(x, slot));
+        });
+    };
+    add_pulls();
+    if (!twice) return;
     for_ranges(x.s, x.pieces, x.s.n_bonds, [&](int32_t first, int32_t end) {
-        for (int32_t k = first; k < end; ++k) {
-            int32_t from, to;
-            ends_of(x.s, k, from, to);
-            x.row[k].t = dot(x.row[k].d, v[to] - v[from]);
-            if (x.in.strain) x.row[k].t = x.row[k].t + stretching(x.in.strain, x.row[k].d);
-        }
+        for (int32_t k = first; k < end; ++k) find_rate(x, v, k, x.s.parent[k], k);
     });
+    solve_again(z);
+    add_pulls();
 }
 
 template <class V>
@@ -67,12 +83,7 @@ static inline unsigned solve_block(const VelocitiesCall &call, Linear<V> &z, boo
     if (call.lambda) write_bonds<false>(z.x, 0.5, call.lambda, good);
     if (call.virial) add_pulls_to_virial(z.x, good, tally);
     Vector3<V> *const v = z.equations.start;
-    add_pulls_to(z.x, v);
-    if (!call.v.is_float) {
-        find_rates(z.x, v);
-        solve_again(z);
-        add_pulls_to(z.x, v);
-    }
+    project(z, v, !call.v.is_float);
     write_velocities(call, z.x, v, good);
     return bits(z.x.in_use()) & ~good;
 }

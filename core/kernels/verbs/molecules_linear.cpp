@@ -36,8 +36,9 @@ unsigned load_and_solve(Linear<double> &z, int terms, bool masses_known) {
     return good_lanes(z);
 }
 
-void solve_again(Linear<vec> &z) { z.solve_again(); }
 void solve_again(Linear<double> &z) { z.solve_again(); }
+void solve_again_and_move(Linear<vec> &z, vec3 *v) { z.solve_again_and_move(v); }
+void solve_again_and_move(Linear<double> &z, Vector3<double> *v) { z.solve_again_and_move(v); }
 
 void solve_in_pieces(Linear<double> &z, int terms, bool look) { solve_all_pieces(z, terms, look); }
 

@@ -1,84 +1,228 @@
-// A ring without side atoms (theory (57)): on unit bonds every row of the matrix is diagonally dominant, whatever the
-// signs, and Gaussian elimination that carries what the diagonal has beyond its neighbours, v, subtracts nothing that
-// matters (Q. Ye, Math. Comp. 77, 2195 (2008)). Each row is coupled to the next one (n) and, by fill, to the last (z).
+// The equations of a molecule with one ring, once the trees that hang from it are eliminated. The bonds of the ring are
+// a chain of all but the last one, and that one: LDL^T, each row coupled to the next one and, by fill, to the last. It
+// subtracts. Errors stay at a few roundings while every pivot keeps a sixteenth of its diagonal element, as in trees
+// (tree/joint.hpp): E of theory (9) is then right to a few roundings, and what an error of it does to the next one is
+// no more than it is itself. `slack` is negative where a pivot does not.
+//
+// Bond p of the ring, at place n_tree + p, points from slot n_tree + p to the next one: the bond *behind* this atom, as
+// p - 1 is the one *before* it.
 #ifndef HOLONOMIC_KERNELS_MOLECULES_RING_RING_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_RING_RING_HPP
 
-#include "core/kernels/molecules/molecules.hpp"
+#include "core/kernels/molecules/tree/joint.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
 template <class V>
-struct RingRow {
-    V o;       // the coupling to the bond before, at the atom between them: - w c
-    V left;    // w (1 - |c|) of that atom
-    V per_d;   // 1 / |d|
-    V l_last;  // what the last row gets of this one; l of the bond's row is what the next one gets
+struct Ring {
+    V *to_last;  // [n_core] what the last row gets of y of each, and each of the last one's t
+    V *reach;  // for every atom of the ring: the same of its children with the bond before it, then with the one behind
+    static int64_t values(const Schedule &s) { return s.n_core + 2 * static_cast<int64_t>(s.n_tree); }
 };
 
-// Plain products do while every v keeps this part of the diagonal: it is a sum of 1 - |c|, of which each is right to
-// 2 / sin roundings where it comes from a cross product, eleven where it is a 64th. Of random rings of fifty bonds with
-// equal masses one in a thousand has a smaller one.
-constexpr double least_deficit = 1.0 / 64;
-
+// What an atom gives to the diagonal elements of the bonds before and behind it, and between them.
 template <class V>
-static inline void factorize_ring(Molecules<V> &x, RingRow<V> *ring) {
-    const int32_t N = x.s.n_bonds;
-    BondRow<V> *const row = x.row;
-    const V one = Width<V>::all(1), half = Width<V>::all(0.5);
-    for (int32_t k = 0; k < N; ++k) ring[k].per_d = one / sqrt(row[k].q);
-    for (int32_t k = 0; k < N; ++k) {
-        const int32_t before = k > 0 ? k - 1 : N - 1;
-        const V per = ring[before].per_d * ring[k].per_d, c = product_of(x, before, k) * per, size = abs(c);
-        const Vector3<V> normal = cross(row[before].d, row[k].d);
-        const V sine2 = dot(normal, normal) * (per * per);
-        ring[k].o = -(x.w[k] * c);
-        ring[k].left = x.w[k] * select(less(size, half), one - size, sine2 / (one + size));
+struct RingJoint {
+    V before, behind, between, slack;
+};
+
+HOL_INLINE int32_t children_of(const Schedule &s, int32_t slot) {
+    return s.child_start[slot + 1] - s.child_start[slot];
+}
+// Calls body(before, slot, k) for the atoms of the ring: the place of the bond before it, its slot, which is the place
+// of the one behind, and its number of children; bare: none has any.
+template <bool bare, class Body>
+HOL_INLINE void for_ring(const Schedule &s, const Body &body) {
+    int32_t before = s.n_bonds - 1;
+    for (int32_t slot = bare ? 0 : s.n_tree; slot < s.n_atoms; ++slot) {
+        body(before, slot, bare ? 0 : children_of(s, slot));
+        before = slot;
     }
-    for (int32_t k = 0; k < N; ++k) row[k].E = ring[k].left + ring[k + 1 < N ? k + 1 : 0].left;  // v
-    V z = ring[0].o;
-    for (int32_t k = 0; k + 2 < N; ++k) {
-        const V n = ring[k + 1].o, old = k + 3 == N ? ring[N - 1].o : V{}, v = row[k].E;
-        const V r = one / (v + (abs(n) + abs(z))), fill = -(n * z) * r;
-        x.slack = min(mul_add(Width<V>::all(-least_deficit), x.w[k] + x.w[k + 1], v), x.slack);
-        row[k].r = r;
-        row[k].l = -(n * r);
-        ring[k].l_last = -(z * r);
-        const V twice = keep(less(old * fill, V{}), 2.0 * min(abs(old), abs(fill)));
-        row[k + 1].E = row[k + 1].E + mul_add(abs(n) * v, r, twice);
-        row[N - 1].E = row[N - 1].E + mul_add(abs(z) * v, r, twice);
-        z = old + fill;
-    }
-    BondRow<V> &next = row[N - 2], &last = row[N - 1];
-    x.slack = min(mul_add(Width<V>::all(-least_deficit), x.w[N - 2] + x.w[N - 1], next.E), x.slack);
-    next.r = one / (next.E + abs(z));
-    next.l = V{};
-    ring[N - 2].l_last = -(z * next.r);
-    const V left = mul_add(abs(z) * next.E, next.r, last.E);
-    x.slack = min(mul_add(Width<V>::all(-least_deficit), x.w[N - 1] + x.w[0], left), x.slack);
-    last.r = one / left;
 }
 
-// From right-hand sides to the solution, both in t of the rows.
+// Eliminates the children of an atom of the ring, as up_joint() does, for two bonds in place of one.
+template <int known, class V>
+HOL_INLINE RingJoint<V> up_ring_joint(const Molecules<V> &x, int32_t before, int32_t slot, V *reach, V slack) {
+    constexpr int k = known;
+    const AtomRows<V> rows(x, slot);
+    JointMemory<V, known> f = {};
+    V z_to[known];
+    const V w = rows.w();
+    decompose(rows, k, w, f.S, f.r, f.m, slack);
+    V *const m = rows.multipliers();
+    BondRow<V> &to = x.row[before], &from = x.row[slot];
+    const V whole_to = w * to.q, whole_from = w * from.q;
+    V between = w * dot(to.d, from.d), left_to = whole_to, left_from = whole_from, y_to = to.t, y_from = from.t;
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) f.y[a] = w * dot(rows.bond(a).d, to.d);
+    solve_joint(k, f.r, f.m, f.y, z_to, f.l);
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) {
+        left_to = mul_add(-(z_to[a] * f.r[a]), z_to[a], left_to);
+        y_to = mul_add(f.l[a], rows.bond(a).t, y_to);
+        reach[a] = f.l[a];
+        f.y[a] = w * dot(rows.bond(a).d, from.d);
+    }
+    solve_joint(k, f.r, f.m, f.y, f.z, f.l);
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) {
+        const V zr = f.z[a] * f.r[a];
+        left_from = mul_add(-zr, f.z[a], left_from);
+        between = mul_add(-zr, z_to[a], between);
+        y_from = mul_add(-f.l[a], rows.bond(a).t, y_from);
+        reach[k + a] = -f.l[a];
+        f.y[a] = rows.bond(a).t;
+        rows.bond(a).r = f.r[a];
+        rows.bond(a).E = f.y[a] * f.r[a];  // what siblings.hpp compares with
+        HOL_UNROLL_FEW
+        for (int b = 0; b < a; ++b) m[pair_of(a, b)] = f.m[pair_of(a, b)];
+    }
+    solve_joint(k, f.r, f.m, f.y, f.z, f.l);
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) rows.bond(a).t = f.l[a];
+    to.t = y_to;
+    from.t = y_from;
+    const V part = Width<V>::all(-least_part);
+    slack = min(min(mul_add(part, whole_to, left_to), mul_add(part, whole_from, left_from)), slack);
+    return {left_to, left_from, -between, slack};
+}
+
+// From right-hand sides to u of the ring and of the children of its atoms, all in t of the rows.
+template <bool bare, class V>
+static inline void up_ring(Molecules<V> &x, const Ring<V> &ring) {
+    V *reach = ring.reach, *to_last = ring.to_last;
+    V fill = {}, coupling = {}, carried = {}, diagonal = {}, last = {}, fill_of_last = {}, y_of_last = {};
+    V slack = x.slack;
+    const V part = Width<V>::all(-least_part), one = Width<V>::all(1);
+    const int32_t first = bare ? 0 : x.s.n_tree, end = x.s.n_bonds - 1;
+    for_ring<bare>(x.s, [&](int32_t before, int32_t slot, int k) HOL_FORCED {
+        RingJoint<V> joint;
+        BondRow<V> &row = x.row[before];
+        if (k == 0) {
+            const V w = x.w[slot];
+            joint = {w * row.q, w * x.row[slot].q, -(w * dot(row.d, x.row[slot].d)), slack};
+        } else {
+            joint = choose_number<1, most_on_ring>(
+                k, [=](auto known) HOL_FORCED { return up_ring_joint<known>(x, before, slot, reach, slack); });
+            reach += 2 * k;
+            slack = joint.slack;
+        }
+        if (slot == first) {
+            last = joint.before;
+            coupling = joint.between;
+            diagonal = joint.behind;
+            return;
+        }
+        const V whole = diagonal + joint.before, P = whole + fill, r = one / P, y = row.t + carried;
+        slack = min(mul_add(part, whole, P), slack);
+        row.r = r;
+        row.t = row.E = y * r;
+        if (slot == end) {
+            coupling = coupling + joint.between;
+            joint.between = V{};
+            last = last + joint.behind;
+        }
+        row.l = -(joint.between * r);
+        const V l = *to_last++ = -(coupling * r);
+        fill_of_last = mul_add(l, coupling, fill_of_last);
+        y_of_last = mul_add(l, y, y_of_last);
+        carried = row.l * y;
+        fill = row.l * joint.between;
+        coupling = l * joint.between;
+        diagonal = joint.behind;
+    });
+    BondRow<V> &row = x.row[end];
+    const V P = last + fill_of_last;
+    x.slack = min(mul_add(part, last, P), slack);
+    row.r = one / P;
+    row.t = row.E = (row.t + y_of_last) * row.r;
+}
+
+// The same for another right-hand side.
+template <bool bare, class V>
+static inline void substitute_ring(const Molecules<V> &x, const Ring<V> &ring) {
+    const V *reach = ring.reach, *to_last = ring.to_last;
+    V carried = {}, y_of_last = {};
+    const int32_t first = bare ? 0 : x.s.n_tree;
+    for_ring<bare>(x.s, [&](int32_t before, int32_t slot, int k) HOL_FORCED {
+        if (k > 0) {
+            const AtomRows<V> rows(x, slot);
+            V y_to = x.row[before].t, y_from = x.row[slot].t;
+            for (int a = 0; a < k; ++a) {
+                y_to = mul_add(reach[a], rows.bond(a).t, y_to);
+                y_from = mul_add(reach[k + a], rows.bond(a).t, y_from);
+            }
+            reach += 2 * k;
+            x.row[before].t = y_to;
+            x.row[slot].t = y_from;
+            choose_number<1, most_on_ring>(
+                k, [&](auto known) HOL_FORCED { substitute_joint<known, true>(rows, k, Memory<V>()); });
+        }
+        if (slot == first) return;
+        BondRow<V> &row = x.row[before];
+        const V y = row.t + carried;
+        y_of_last = mul_add(*to_last++, y, y_of_last);
+        carried = row.l * y;
+        row.t = y * row.r;
+    });
+    BondRow<V> &row = x.row[x.s.n_bonds - 1];
+    row.t = (row.t + y_of_last) * row.r;
+}
+
+// A bond's own size and its error per |d|, in squares: tree/siblings.hpp.
 template <class V>
-static inline void solve_ring(const Molecules<V> &x, const RingRow<V> *ring) {
-    const int32_t N = x.s.n_bonds;
-    BondRow<V> *const row = x.row;
-    V y = row[0].t * ring[0].per_d, y_last = row[N - 1].t * ring[N - 1].per_d;
-    for (int32_t k = 0; k + 1 < N; ++k) {
-        row[k].t = y * row[k].r;
-        y_last = mul_add(ring[k].l_last, y, y_last);
-        y = mul_add(row[k].l, y, row[k + 1].t * ring[k + 1].per_d);
-    }
-    const V t_last = y_last * row[N - 1].r;
-    V t = t_last;
-    row[N - 1].t = t_last * ring[N - 1].per_d;
-    for (int32_t k = N - 2; k >= 0; --k) {
-        t = mul_add(row[k].l, t, mul_add(ring[k].l_last, t_last, row[k].t));
-        row[k].t = t * ring[k].per_d;
-    }
+struct RingBond {
+    V own, error, pull;
+    HOL_FORCED explicit RingBond(const BondRow<V> &row)
+        : own(mul_add(row.t, row.t, row.E * row.E)), error(row.q * (row.r * row.r)), pull(row.q * own) {}
+};
+
+// Looks at the k children of an atom of the ring and the two bonds of the ring. What u and t differ by, E of the rows
+// and t, came from around the ring: both count as pulls.
+template <int k, class V>
+HOL_INLINE void look_at_ring_atom(Molecules<V> &x, int32_t before, int32_t slot, const RingBond<V> &to,
+                                  const RingBond<V> &from) {
+    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    V T2 = to.pull + from.pull;
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) T2 = mul_add(x.row[child[a]].q, x.row[child[a]].t * x.row[child[a]].t, T2);
+    const V w = x.w[slot], shared = (w * w) * (x.per_cancelled2 * T2);
+    V least = min(mul_add(-shared, to.error, to.own), mul_add(-shared, from.error, from.own));
+    HOL_UNROLL_FEW
+    for (int a = 0; a < k; ++a) least = min(left_of(x.row[child[a]], shared), least);
+    const MaskOf<V> faint = less(least, V{});
+    if (__builtin_expect(!any(faint), 1)) return;
+    for (int a = -2; a < k; ++a)
+        doubt_faint_bond(x, a == -2 ? before : a < 0 ? slot : child[a], shared, bits(faint), x.slack);
+}
+
+// From u to t of the ring and of its atoms' children. `look`: tests the result, as down_joint() does.
+template <bool look, bool bare, class V>
+static inline void down_ring(Molecules<V> &x, const Ring<V> &ring) {
+    const Schedule &s = x.s;
+    BondRow<V> *const row = x.row + s.n_tree;
+    const V last = row[s.n_core - 1].t;
+    V t = last;
+    for (int32_t p = s.n_core - 2; p >= 0; --p)
+        row[p].t = t = mul_add(row[p].l, t, mul_add(ring.to_last[p], last, row[p].t));
+    if (bare && !look) return;
+    const V *reach = ring.reach;
+    RingBond<V> to(row[s.n_core - 1]);
+    for_ring<bare>(s, [&](int32_t before, int32_t slot, int k) HOL_FORCED {
+        const V to_t = x.row[before].t, from_t = x.row[slot].t;
+        for (int a = 0; a < k; ++a) {
+            BondRow<V> &child = x.row[s.child[s.child_start[slot] + a]];
+            child.t = mul_add(reach[a], to_t, mul_add(reach[k + a], from_t, child.t));
+        }
+        reach += 2 * k;
+        if (!look) return;
+        const RingBond<V> from(x.row[slot]);
+        choose_number<0, bare ? 0 : most_on_ring>(
+            k, [&](auto known) HOL_FORCED { look_at_ring_atom<known>(x, before, slot, to, from); });
+        to = from;
+    });
 }
 
 }  // namespace graph

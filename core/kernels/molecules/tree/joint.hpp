@@ -213,6 +213,22 @@ static inline void down_trees(Molecules<V> &x) {
     x.slack = slack;
 }
 
+// down_trees<false>(), and v += w G of their atoms in the same pass.
+template <class V>
+static inline void down_trees_and_move(const Molecules<V> &x, Vector3<V> *v) {
+    const Schedule &s = x.s;
+    for (int32_t slot = s.n_tree; slot-- > 0;) {
+        const BondRow<V> &above = x.row[slot];
+        Vector3<V> pull = {};
+        for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) {
+            BondRow<V> &row = x.row[s.child[c]];
+            row.t = mul_add(row.l, above.t, row.t);
+            pull = add_times(pull, row.t, row.d);
+        }
+        v[slot] = add_times(v[slot], x.w[slot], add_times(pull, -above.t, above.d));
+    }
+}
+
 }  // namespace graph
 }  // namespace HOL_ISA
 }  // namespace holonomic

@@ -6,6 +6,7 @@
 
 #include "core/kernels/molecules/atoms/vectors.hpp"
 #include "core/kernels/molecules/cycles/newton_core.hpp"
+#include "core/kernels/molecules/ring/ring_trees_newton.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -117,6 +118,8 @@ struct Newton {
         }
         if (s.n_core_atoms == 0)
             factorize_joint<1, true, V>(NewtonAtom<V>(x, s.n_tree), 1);
+        else if (s.type == Schedule::ring)
+            factorize_ring(x);
         else
             factorize_core(x);
     }
@@ -133,20 +136,24 @@ struct Newton {
         }
         if (s.n_core_atoms == 0)
             substitute_newton_joint<1, true, V>(NewtonAtom<V>(x, s.n_tree), 1);
+        else if (s.type == Schedule::ring)
+            substitute_ring(x);
         else
             substitute_core(x);
     }
 
-    // Solves for what is left, in t of the rows, and adds the corrections to tau in the lanes of `active`.
-    __attribute__((noinline)) void solve(MaskOf<V> active) {
-        const Schedule &s = x.s;
+    // Solves for what is left, in t of the rows, adds the corrections to tau in the lanes of `active`, and displaces
+    // atoms.
+    void solve(MaskOf<V> active) {
         substitute();
-        if (s.n_core_atoms > 0) down_core(x, active);
-        for (int32_t k = s.n_tree - 1; k >= 0; --k) {
-            NewtonRow<V> &row = x.row[k];
-            if (s.parent[k] < s.n_tree) row.t = mul_add(row.down, x.row[s.parent[k]].t, row.t);
-            row.tau = row.tau + keep(active, row.t);
-        }
+        solve_top(active);
+        move_down<true, false>(active);
+    }
+    void solve_top(MaskOf<V> active) const {
+        if (x.s.type == Schedule::ring)
+            down_ring(x, active);
+        else if (x.s.n_core_atoms > 0)
+            down_core(x, active);
     }
 
     // Returns the displacement of an atom by tau.
@@ -158,23 +165,56 @@ struct Newton {
         return x.w[slot] * pull;
     }
 
-    // Of all atoms.
-    HOL_FORCED Slots<V> displace() const {
-        for (int32_t slot = x.s.n_atoms - 1; slot >= 0; --slot) x.move[slot] = displacement(slot);
-        return Slots<V>(x.move);
-    }
+    // Of all atoms: solve() and move() leave them here.
+    HOL_FORCED Slots<V> displace() const { return Slots<V>(x.move); }
 
     // Moves atoms and bonds by tau. Returns the largest error.
-    __attribute__((noinline)) V move() {
+    V move() { return move_down<false, true>(Width<V>::none()); }
+    // Behind solve(), in one: each bond is measured once both its atoms have moved, and its multiplier's correction is
+    // not needed any more.
+    V solve_and_move(MaskOf<V> active) {
+        substitute();
+        solve_top(active);
+        return move_down<true, true>(active);
+    }
+
+    // Displaces atoms, from the root or the core down. corrected: by the corrections in t, too, which come first;
+    // measured: moves bonds.
+    template <bool corrected, bool measured>
+    __attribute__((noinline)) V move_down(MaskOf<V> active) {
         const Schedule &s = x.s;
-        displace();
         Errors errors = {};
-        const auto bond = [&](int32_t k, int32_t from, int32_t to) HOL_FORCED {
-            x.new_D[k] = x.row[k].D + (x.move[to] - x.move[from]);
-            measure<false>(x.row[k], x.new_D[k], errors);
+        const Slots<V> moves(x.move), new_D(x.new_D);
+        const auto measure_bond = [&](int32_t k, int32_t from, const Vector3<V> &to_moves) HOL_FORCED {
+            if (!measured) return;
+            const Vector3<V> D = x.row[k].D + (to_moves - x.move[from]);
+            new_D.put(k, D);
+            measure<false>(x.row[k], D, errors);
         };
-        for (int32_t k = 0; k < s.n_tree; ++k) bond(k, s.parent[k], k);
-        for (int32_t k = s.n_tree; k < s.n_bonds; ++k) bond(k, s.from[k - s.n_tree], s.to[k - s.n_tree]);
+        for (int32_t slot = s.n_atoms - 1; slot >= s.n_tree; --slot) {
+            if (corrected)
+                for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) {
+                    NewtonRow<V> &row = x.row[s.child[c]];
+                    row.tau = row.tau + keep(active, row.t);
+                }
+            moves.put(slot, displacement(slot));
+        }
+        for (int32_t p = 0; p < s.n_core; ++p) measure_bond(s.n_tree + p, s.from[p], x.move[s.to[p]]);
+        for (int32_t slot = s.n_tree - 1; slot >= 0; --slot) {
+            const NewtonRow<V> &above = x.row[slot];
+            Vector3<V> pull = {};
+            for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) {
+                NewtonRow<V> &row = x.row[s.child[c]];
+                if (corrected) {
+                    row.t = mul_add(row.down, above.t, row.t);
+                    row.tau = row.tau + keep(active, row.t);
+                }
+                pull = add_times(pull, row.tau, row.b);
+            }
+            pull = x.w[slot] * add_times(pull, -above.tau, above.b);
+            moves.put(slot, pull);
+            measure_bond(slot, s.parent[slot], pull);
+        }
         return errors.largest();
     }
 
@@ -197,6 +237,11 @@ struct Newton {
     }
     void first_factors() { make_factors(); }
 };
+
+template <class V, class Mask>
+HOL_INLINE auto solve_and_move(Newton<V> &newton, Mask active) {
+    return newton.solve_and_move(active);
+}
 
 }  // namespace graph
 }  // namespace HOL_ISA

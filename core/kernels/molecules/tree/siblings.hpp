@@ -101,23 +101,25 @@ double terms_of(const Molecules<V> &x, int32_t place, int lane) {
     return terms_of(x.in, d, number, w);
 }
 
-// Looks again at the bonds of an atom in the lanes of `which`. Slack becomes negative where one is faint all the same.
+// Looks again at a bond in the lanes of `which`. Slack becomes negative where it is faint all the same.
+template <class V>
+HOL_NOINLINE void doubt_faint_bond(const Molecules<V> &x, int32_t place, const V &shared, unsigned which, V &slack) {
+    const V left = left_of(x.row[place], shared);
+    int32_t from, to;
+    ends_of(x.s, place, from, to);
+    const V A = (x.w[from] + x.w[to]) * x.row[place].q;
+    for (unsigned rest = which & bits(less(left, V{})); rest; rest &= rest - 1) {
+        const int i = __builtin_ctz(rest);
+        const double own = terms_of(x, place, i) / Width<V>::get(A, i);
+        if (!(Width<V>::get(left, i) + own * own >= 0)) Width<V>::set(slack, i, -1);
+    }
+}
+// The same for all bonds of an atom of a tree.
 template <class V>
 HOL_NOINLINE void doubt_faint_bonds(const Molecules<V> &x, int32_t slot, int k, unsigned which, V &slack) {
     const int32_t *const child = x.s.child + x.s.child_start[slot];
     const V shared = shared_error<V>(AtomRows<V>(x, slot), k);
-    for (int a = -1; a < k; ++a) {
-        const int32_t place = a < 0 ? slot : child[a];
-        const V left = left_of(x.row[place], shared);
-        int32_t from, to;
-        ends_of(x.s, place, from, to);
-        const V A = (x.w[from] + x.w[to]) * x.row[place].q;
-        for (unsigned rest = which & bits(less(left, V{})); rest; rest &= rest - 1) {
-            const int i = __builtin_ctz(rest);
-            const double own = terms_of(x, place, i) / Width<V>::get(A, i);
-            if (!(Width<V>::get(left, i) + own * own >= 0)) Width<V>::set(slack, i, -1);
-        }
-    }
+    for (int a = -1; a < k; ++a) doubt_faint_bond(x, a < 0 ? slot : child[a], shared, which, slack);
 }
 
 }  // namespace graph
