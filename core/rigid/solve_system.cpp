@@ -11,7 +11,8 @@ namespace {
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
-// Pivots below this part of the diagonal are too inaccurate as doubles; below the other one, rows depend.
+// Pivots below this part of the diagonal are too inaccurate as doubles; below the other one, rows depend, as they do
+// where less than that is left of one once all others are gone.
 constexpr double least_plain = 1e-9, least_wide = 1e-24;
 // Corrections end here: beyond what a double holds, so that small multipliers beside large ones are right, too.
 constexpr double small_correction = 1e-19;
@@ -32,6 +33,32 @@ void put(double &to, const DoublePair &x) { to = rounded(x); }
 void put(DoublePair &to, const DoublePair &x) { to = x; }
 DoublePair wide_of(double x) { return as_pair(x); }
 DoublePair wide_of(const DoublePair &x) { return x; }
+
+// The first row of a symmetric matrix of which not more than `least` of its diagonal element is left where it comes
+// last; -1: none. No order leaves less; a pivot alone tells nothing of what those before it have lost. One over what is
+// left is the diagonal of the inverse Z, which is found from its end, within the pattern of the factors, as
+// Z = D^-1 L^-1 + (1 - L^T) Z. diagonal [n_rows] and below [as l] are overwritten by it.
+std::int32_t dependent_row(const Shape &s, const Factor<DoublePair> &f, double least, DoublePair *diagonal,
+                           DoublePair *below) {
+    const std::int32_t *const start = s.column_start.data(), *const row = s.row.data();
+    for (std::int32_t k = s.n_rows - 1; k >= 0; --k) {
+        const std::int32_t begin = start[k], end = start[k + 1];
+        std::fill(below + begin, below + end, DoublePair{});
+        diagonal[k] = as_pair(1) / f.diagonal[k];
+        for (std::int32_t a = begin; a < end; ++a) {
+            below[a] = below[a] - f.l[a] * diagonal[row[a]];
+            std::int32_t place = start[row[a]];
+            for (std::int32_t b = a + 1; b < end; ++b) {
+                while (row[place] < row[b]) ++place;
+                below[a] = below[a] - f.l[b] * below[place];
+                below[b] = below[b] - f.l[a] * below[place];
+            }
+            diagonal[k] = diagonal[k] - f.l[a] * below[a];
+        }
+        if (!(diagonal[k].hi * f.before[k] * least < 1)) return k;
+    }
+    return -1;
+}
 
 }  // namespace
 
@@ -64,7 +91,10 @@ std::int32_t System::assemble(const Factor<T> &f, const Conformation &rows, cons
         add_to(f.u[p.place], upper);
         add_to(f.l[p.place], same ? upper : w * product(p.b, p.a));
     }
-    return f.eliminate(s_, plain ? least_plain : least_wide);
+    const std::int32_t bad = f.eliminate(s_, plain ? least_plain : least_wide);
+    if constexpr (!plain)
+        if (bad < 0 && same) return dependent_row(s_, f, least_wide, residual_, inverse_);
+    return bad;
 }
 
 // Sizes of corrections are compared in the units of each row: |x| sqrt of its diagonal.

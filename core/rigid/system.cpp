@@ -52,7 +52,7 @@ private:
 struct Layout {
     Conformation now, reference;
     PairVector *a, *b, *start;
-    DoublePair *t, *c, *residual, *wide_x;
+    DoublePair *t, *c, *residual, *wide_x, *inverse;
     Factor<double> plain;
     Factor<DoublePair> wide;
     double *x, *raw, *within, *gradient[2];
@@ -78,6 +78,7 @@ Layout lay_out(const Shape &s, char *memory) {
     m.c = pieces.take<DoublePair>(rows);
     m.residual = pieces.take<DoublePair>(rows);
     m.wide_x = pieces.take<DoublePair>(rows);
+    m.inverse = pieces.take<DoublePair>(fill);
     m.wide = {pieces.take<DoublePair>(rows), pieces.take<DoublePair>(fill), pieces.take<DoublePair>(fill), nullptr};
     m.plain = {pieces.take<double>(rows), pieces.take<double>(fill), pieces.take<double>(fill),
                pieces.take<double>(rows)};
@@ -113,6 +114,7 @@ System::System(const Shape &shape, const Body *bodies, char *memory) : s_(shape)
     x_ = m.x;
     wide_x_ = m.wide_x;
     residual_ = m.residual;
+    inverse_ = m.inverse;
     start_ = m.start;
     gradient_[0] = m.gradient[0];
     gradient_[1] = m.gradient[1];

@@ -86,7 +86,7 @@ private:
     Factor<double> plain_;
     Factor<DoublePair> wide_;
     double *x_;
-    DoublePair *wide_x_, *residual_;
+    DoublePair *wide_x_, *residual_, *inverse_;
     PairVector *start_;
     double *gradient_[2];  // [entries][3] as doubles
 };

@@ -55,21 +55,33 @@ int hol_subdomain_create(int rank, int n_ranks, hol_sum sum, void *context, int6
                          int64_t n_bonds, const int64_t *pairs, const double *lengths, int64_t n_cut,
                          const int64_t *ends, const double *cut_lengths, hol_subdomain **subdomain);
 
-/** Frees a handle; NULL does nothing. Not collective. */
+/**
+ * Frees a handle. Not collective.
+ * @param[in] subdomain  the handle; NULL does nothing
+ */
 void hol_subdomain_destroy(hol_subdomain *subdomain);
 
 /**
- * Periodic box of the positions that come next, and the rate L at which it changes, as hol_chains_set_box and
- * hol_chains_set_box_rate. NULL: none. Not collective; the same on every process.
+ * Periodic box of the positions that come next, as hol_chains_set_box. Not collective; the same on every process.
+ * @param[in] subdomain  the handle
+ * @param[in] box        as in hol_chains_set_box, or NULL: none. Copied
  * @return HOL_OK; HOL_ERR_NULL (subdomain); HOL_ERR_VALUE
  */
 int hol_subdomain_set_box(hol_subdomain *subdomain, const double *box);
+
+/**
+ * Rate at which that box changes, as hol_chains_set_box_rate. Not collective; the same on every process.
+ * @param[in] subdomain  the handle
+ * @param[in] L          as in hol_chains_set_box_rate, or NULL: none. Copied
+ * @return HOL_OK; HOL_ERR_NULL (subdomain); HOL_ERR_VALUE
+ */
 int hol_subdomain_set_box_rate(hol_subdomain *subdomain, const double *L);
 
 /**
  * Eliminates what is inside, and factorizes the interface's equations at these positions; the functions below speak of
  * them until this is called again. Two sums.
- * @param[in] r  [n_atoms][3]. Copied. Bonds are taken as minimum images if there is a box
+ * @param[in] subdomain  the handle
+ * @param[in] r          [n_atoms][3]. Copied. Bonds are taken as minimum images if there is a box
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE; HOL_ERR_MEMORY; HOL_ERR_INTERNAL
  */
 int hol_subdomain_factorize(hol_subdomain *subdomain, const double *r);
@@ -77,6 +89,7 @@ int hol_subdomain_factorize(hol_subdomain *subdomain, const double *r);
 /**
  * hol_forces at the positions of hol_subdomain_factorize. Three sums; two more for each round of refinement
  * (README.md says when).
+ * @param[in]  subdomain   the handle
  * @param[in]  v, f        [n_atoms][3]; either may be NULL: zero
  * @param[out] lambda      multipliers of this process's bonds [n_bonds], or NULL
  * @param[out] cut_lambda  those of the cut bonds [n_cut], on every process, or NULL
@@ -92,7 +105,12 @@ int hol_subdomain_forces(hol_subdomain *subdomain, const double *v, const double
 
 /**
  * hol_project_velocities at the positions of hol_subdomain_factorize. Sums as hol_subdomain_forces.
- * @param[in,out] v  [n_atoms][3]; all others as there, lambda in the units of hol_project_velocities
+ * @param[in]     subdomain   the handle
+ * @param[in,out] v           [n_atoms][3]
+ * @param[out]    lambda      [n_bonds] in the units of hol_project_velocities, or NULL
+ * @param[out]    cut_lambda  [n_cut], or NULL
+ * @param[out]    virial      [3][3], this process's part, or NULL
+ * @return as hol_subdomain_forces
  */
 int hol_subdomain_project_velocities(hol_subdomain *subdomain, double *v, double *lambda, double *cut_lambda,
                                      double *virial);
@@ -100,6 +118,7 @@ int hol_subdomain_project_velocities(hol_subdomain *subdomain, double *v, double
 /**
  * hol_project_positions with the positions of hol_subdomain_factorize as reference. One sum for each step of the
  * interface, and two.
+ * @param[in]     subdomain   the handle
  * @param[in,out] r           [n_atoms][3], in: after the drift; out: on the constraints, to the rounding
  * @param[in,out] v           [n_atoms][3], or NULL: v_i += dt w_i G_i
  * @param[in]     dt          > 0
@@ -115,6 +134,7 @@ int hol_subdomain_project_positions(hol_subdomain *subdomain, double *r, double 
 /**
  * How far positions and velocities are from the constraints, as hol_violation says: the largest over all bonds of all
  * processes. Three sums.
+ * @param[in]  subdomain  the handle
  * @param[in]  r       [n_atoms][3], in the box of hol_subdomain_set_box
  * @param[in]  v       [n_atoms][3], or NULL
  * @param[out] length  largest abs(d.d - a^2) / a^2, on every process, or NULL
@@ -125,7 +145,8 @@ int hol_subdomain_violation(hol_subdomain *subdomain, const double *r, const dou
 
 /**
  * Numbers by which the program knows its atoms; messages show them (hol_chains_set_labels). Not collective.
- * @param[in] atoms  [n_atoms], or NULL: none. Copied
+ * @param[in] subdomain  the handle
+ * @param[in] atoms      [n_atoms], or NULL: none. Copied
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_MEMORY
  */
 int hol_subdomain_set_labels(hol_subdomain *subdomain, const int64_t *atoms);
@@ -133,7 +154,8 @@ int hol_subdomain_set_labels(hol_subdomain *subdomain, const int64_t *atoms);
 /**
  * Vectors of the cut bonds at the positions of hol_subdomain_factorize, from the first atom to the second, images
  * taken. Not collective.
- * @param[out] d  [n_cut][3]
+ * @param[in]  subdomain  the handle
+ * @param[out] d          [n_cut][3]
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (nothing was factorized)
  */
 int hol_subdomain_cut_vectors(const hol_subdomain *subdomain, double *d);
@@ -149,7 +171,12 @@ typedef struct hol_subdomain_work {
     double last_change; /**< what the last round has changed, relative to the multipliers; on all processes */
 } hol_subdomain_work;
 
-/** @return HOL_OK; HOL_ERR_NULL. Not collective. */
+/**
+ * Not collective.
+ * @param[in]  subdomain  the handle
+ * @param[out] work       what its calls have cost
+ * @return HOL_OK; HOL_ERR_NULL
+ */
 int hol_subdomain_get_work(const hol_subdomain *subdomain, hol_subdomain_work *work);
 
 /** What went wrong in this thread's last call above that failed; "" before. Never NULL. */
