@@ -122,7 +122,14 @@ HOL_INLINE int64_t next_block(const Unit &unit, int64_t first, int64_t end) {
     return n;
 }
 
-// The first attempt at a block. False if that is not enough for one of its lanes.
+// How many of the first n lanes have been moved.
+HOL_INLINE int n_moved(const Outcome &out, int64_t n) {
+    return __builtin_popcount(bits(out.converged & first_lanes(n)));
+}
+
+// The first attempt at a block. False if that is not enough for one of its lanes. Those of one or two bonds that are
+// right as they came have no multipliers, and stay where they are: so does a dimer that turns freely under velocity
+// Verlet, in which each step undoes what the one before it did to the length.
 template <bool uniform, int N>
 HOL_INLINE bool solve_molecules(const Block &block, Newton &x, const PositionsCall &call, Carried &carried,
                                 Outcome &out) {
@@ -134,7 +141,8 @@ HOL_INLINE bool solve_molecules(const Block &block, Newton &x, const PositionsCa
         out = solve_two_bonds<all, all>(x, carried, lanes);
     else
         out = iterate<all, all, N>(block, x, call, carried, lanes, false, false);
-    return !any(~out.converged) && !any(coarse_moves<all, N>(block, x, carried, lanes, coarse_part));
+    const mask done = N <= 2 ? out.converged | out.untouched : out.converged;
+    return !any(~done) && !any(coarse_moves<all, N>(block, x, carried, out.converged, coarse_part));
 }
 
 // Single bonds, two blocks at a time: while one waits for its root and its quotient, the other is worked on. Ends
@@ -156,14 +164,15 @@ HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit
         load_positions<boxed>(arrays, at_a, x_a, atoms_a, carried_a);
         load_positions<boxed>(arrays, at_b, x_b, atoms_b, carried_b);
         constexpr Same all = same_if(uniform);
-        const mask done = solve_single_bonds<all>(x_a, carried_a, first_lanes(W)).converged &
-                          solve_single_bonds<all>(x_b, carried_b, first_lanes(W)).converged;
-        if (any(~done | coarse_moves<all, 1>(a.block, x_a, carried_a, done, coarse_part) |
-                coarse_moves<all, 1>(b.block, x_b, carried_b, done, coarse_part)))
+        const Outcome out_a = solve_single_bonds<all>(x_a, carried_a, first_lanes(W)),
+                      out_b = solve_single_bonds<all>(x_b, carried_b, first_lanes(W));
+        if (any(~(out_a.converged | out_a.untouched) | ~(out_b.converged | out_b.untouched) |
+                coarse_moves<all, 1>(a.block, x_a, carried_a, out_a.converged, coarse_part) |
+                coarse_moves<all, 1>(b.block, x_b, carried_b, out_b.converged, coarse_part)))
             break;
         write_positions<uniform>(arrays, at_a, a.block, x_a, atoms_a);
         write_positions<uniform>(arrays, at_b, b.block, x_b, atoms_b);
-        count_moved(tally, 2 * W, 1);
+        count_moved(tally, n_moved(out_a, W) + n_moved(out_b, W), 1);
     }
     return first;
 }
@@ -196,7 +205,7 @@ HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Uni
             note_worst(reported, copy, call, first_lanes(W), out.error, tally);
         }
         write_positions<uniform>(arrays, place, block, x, atoms);
-        count_moved(tally, static_cast<int>(n), out.solves);
+        count_moved(tally, n_moved(out, n), out.solves);
     }
     return first;
 }

@@ -130,19 +130,6 @@ void FixHolonomic::check_other_fixes() {
         error->all(FLERR, "Fix holonomic: atoms of its molecules belong to a rigid body of another fix"s);
 }
 
-void FixHolonomic::find_molecules() {
-    guarded([&] {
-        const std::vector<Bond> bonds = selection_.select(groupbit, atoms_);
-        registry_ = Registry(world, bonds, selection_.select_bodies(groupbit), domain->dimension, size_to_divide());
-        std::vector<Tag> tags(atom->tag, atom->tag + atom->nlocal);
-        const std::vector<Membership> members = registry_.memberships(tags);
-        for (int i = 0; i < atom->nlocal; ++i) static_cast<Membership &>(atoms_[i]) = members[i];
-        n_atoms_ = atom->natoms;
-        blocks_.clear();
-        *plan_ = Plan(world);
-    });
-}
-
 // ------------------------------------------------------------------------------------------------ what goes with atoms
 
 void FixHolonomic::grow_arrays(int n) {

@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "../plan/blocks.hpp"
 #include "../plan/divided.hpp"
-#include "../plan/packed.hpp"
 #include "release.hpp"
 #include "selection.hpp"
 
@@ -70,6 +70,9 @@ private:
     void read_options(int narg, char **arg, int first);
     void check_other_fixes();
     void find_molecules();
+    bool renew_molecules(const std::vector<int> &changed);
+    holonomic_lammps::Registry register_molecules(const std::vector<int> &which);
+    void take_memberships(const std::vector<int> &which);
     template <class Function>
     void guarded(Function function);  // turns exceptions into errors of LAMMPS
 
@@ -137,7 +140,6 @@ private:
     bigint n_atoms_ = 0;           // of the whole system, when molecules were found
     std::vector<tagint> planned_;  // the atoms here, in their order, when it was made
     std::vector<Block> blocks_;
-    std::vector<std::vector<std::array<int, 2>>> walks_;  // by shape, see walk()
 
     // By slot, three numbers each; molecules are whole.
     std::vector<double> before_, now_, velocities_, forces_, reactions_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Who owns what, and the positions: from the atoms of all ranks to whole molecules and back.
+// The positions: from the atoms of all ranks to whole molecules and back.
 #include <algorithm>
 #include <cmath>
 
@@ -14,13 +14,6 @@
 using namespace LAMMPS_NS;
 using namespace std::string_literals;
 using namespace holonomic_lammps;
-
-namespace {
-
-/** Arrays of a block stay in the cache between taking them, solving, and giving them back. */
-constexpr int atoms_of_block = 2048;
-
-}  // namespace
 
 bool FixHolonomic::reruns() const { return CommandName::of(input) == "rerun"s; }
 
@@ -55,73 +48,6 @@ void FixHolonomic::setup_pre_neighbor() {
     });
 }
 
-/**
- * Where every rank still has the same atoms in the same order, the plan holds: on one rank until they are sorted. Where
- * bonds or the number of atoms have changed, molecules are found anew; gives whether that is so.
- */
-bool FixHolonomic::replan(bool fresh) {
-    enum { order = 1, bonds = 2 };
-    const tagint *tag = atom->tag;
-    int changed = fresh || planned_.size() != static_cast<std::size_t>(atom->nlocal) ||
-                          !std::equal(planned_.begin(), planned_.end(), tag)
-                      ? order
-                      : 0;
-    if (n_atoms_ != atom->natoms || selection_.changed(atoms_)) changed |= bonds;
-    MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_BOR, world);
-    const bool found_anew = (changed & bonds) != 0;
-    if (found_anew) find_molecules();
-    fresh = fresh || found_anew;
-    if (!changed) return false;
-    planned_.assign(tag, tag + atom->nlocal);
-    const std::vector<Membership> members(atoms_.begin(), atoms_.begin() + atom->nlocal);
-    const std::vector<Tag> tags(planned_.begin(), planned_.end());
-    changed = plan_->renew(registry_, members.data(), tags.data(), atom->nlocal) || fresh;
-    MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_MAX, world);
-    renew_divided(members, tags, fresh);
-    away_.clear();
-    for (const Peer &owner : plan_->exchange.owners)
-        for (int slot : owner.indices) away_.push_back({slot, static_cast<int>(away_.size())});
-    std::sort(away_.begin(), away_.end(), [](const Away &a, const Away &b) { return a.slot < b.slot; });
-    answers_.resize(3 * away_.size());
-    if (!changed) return found_anew;
-    take_masses();
-    walks_.clear();
-    for (const Shape &shape : plan_->shapes()) walks_.push_back(walk(shape));
-    make_blocks();
-    for (std::vector<double> *array : {&now_, &before_, &velocities_, &forces_, &reactions_})
-        array->assign(3 * static_cast<std::size_t>(plan_->n_slots()), 0.0);
-    return found_anew;
-}
-
-void FixHolonomic::make_blocks() {
-    const std::vector<Resident> &residents = plan_->residents();
-    const int n_residents = static_cast<int>(residents.size());
-    blocks_.clear();
-    int n_bonds = 0;
-    for (int first = 0, end = 0; first < n_residents; first = end) {
-        const int first_bond = n_bonds;
-        int n_atoms = 0;
-        while (end < n_residents && (n_atoms == 0 || n_atoms < atoms_of_block)) {
-            const Shape &shape = plan_->shapes()[residents[end++].shape];
-            n_atoms += shape.n_atoms;
-            n_bonds += static_cast<int>(shape.pairs.size());
-        }
-        blocks_.push_back({Packed(*plan_, masses_.data(), first, end, first_bond), 0, 0, 0, 0});
-    }
-    tensions_.assign(n_bonds, 0.0);
-}
-
-void FixHolonomic::take_masses() {
-    masses_.resize(plan_->n_slots());
-    for (int slot = 0; slot < plan_->n_slots(); ++slot)
-        if (plan_->atoms()[slot] >= 0) masses_[slot] = mass_of(plan_->atoms()[slot]);
-    plan_->exchange.to_homes<1>(
-        world, [&](int i, double *mass) { *mass = mass_of(i); },
-        [&](int slot, const double *mass) { masses_[slot] = *mass; });
-    inverse_masses_.resize(masses_.size());
-    for (std::size_t k = 0; k < masses_.size(); ++k) inverse_masses_[k] = masses_[k] > 0 ? 1 / masses_[k] : 0;
-}
-
 /** Which image of each atom makes its molecule whole, seen from the atom at place 0; bonds are shorter than half a box.
  */
 void FixHolonomic::make_whole() {
@@ -131,7 +57,7 @@ void FixHolonomic::make_whole() {
         block.first_shifted = static_cast<int>(shifted_.size());
         for (int m = block.packed.first_resident(); m < block.packed.end_resident(); ++m) {
             const Resident &resident = plan_->residents()[m];
-            for (const auto &step : walks_[resident.shape]) {
+            for (const auto &step : plan_->walk_of(resident.shape)) {
                 double *to = &now_[3 * (resident.first + step[0])];
                 const double *from = &now_[3 * (resident.first + step[1])];
                 const double d[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};

@@ -101,13 +101,13 @@ bool Selection::wants(int i) const {
     return false;
 }
 
-std::vector<Bond> Selection::select(int groupbit, std::vector<Belonging> &atoms) {
+std::vector<Bond> Selection::select(int groupbit, std::vector<Belonging> &atoms, const std::vector<int> &which) {
     // Entries of a list that another command has changed may stand elsewhere now: they are selected anew.
-    for (int i = 0; i < atom->nlocal; ++i)
+    for (int i : which)
         if (atoms[i].topology != topology(i)) release_atom(i, atoms[i]);
-    std::vector<Bond> bonds = select_bonds(groupbit, atoms);
-    if (!angle_types_.empty()) select_angles(atoms, bonds);
-    for (int i = 0; i < atom->nlocal; ++i) atoms[i].topology = topology(i);
+    std::vector<Bond> bonds = select_bonds(groupbit, atoms, which);
+    if (!angle_types_.empty()) select_angles(atoms, which, bonds);
+    for (int i : which) atoms[i].topology = topology(i);
     return bonds;
 }
 
@@ -123,13 +123,15 @@ std::uint32_t Selection::topology(int i) const {
         add(atom->angle_type[i][k]);
         add(atom->angle_atom1[i][k]), add(atom->angle_atom2[i][k]), add(atom->angle_atom3[i][k]);
     }
-    return static_cast<std::uint32_t>(number);
+    const auto result = static_cast<std::uint32_t>(number);
+    return result == Belonging::never_seen ? 0 : result;
 }
 
-bool Selection::changed(const std::vector<Belonging> &atoms) const {
+std::vector<int> Selection::changed(const std::vector<Belonging> &atoms) const {
+    std::vector<int> which;
     for (int i = 0; i < atom->nlocal; ++i)
-        if (atoms[i].topology != topology(i)) return true;
-    return false;
+        if (atoms[i].topology != topology(i)) which.push_back(i);
+    return which;
 }
 
 /** Lengths by bond type; 1 where the bond style has none yet. */
@@ -141,10 +143,10 @@ std::vector<double> Selection::lengths_of_types() {
     return lengths;
 }
 
-std::vector<Bond> Selection::select_bonds(int groupbit, std::vector<Belonging> &atoms) {
+std::vector<Bond> Selection::select_bonds(int groupbit, std::vector<Belonging> &atoms, const std::vector<int> &which) {
     const int n_ranks = size_of(world);
     Outgoing<Flags> notes(n_ranks);
-    for (int i = 0; i < atom->nlocal; ++i) {
+    for (int i : which) {
         const int flags = there | (atom->mask[i] & groupbit ? in_group : 0) | (wants(i) ? wanted : 0);
         notes[bookkeeper(atom->tag[i], n_ranks)].push_back({atom->tag[i], flags});
     }
@@ -152,7 +154,7 @@ std::vector<Bond> Selection::select_bonds(int groupbit, std::vector<Belonging> &
     for (const Flags &flags : route(world, notes).items) known[flags.tag] = flags.flags;
 
     std::vector<Ask> questions;
-    for (int i = 0; i < atom->nlocal; ++i) {
+    for (int i : which) {
         check_entries(error, atom->num_bond[i]);
         for (int k = 0; k < atom->num_bond[i]; ++k) questions.push_back({atom->tag[i], atom->bond_atom[i][k]});
     }
@@ -166,7 +168,7 @@ std::vector<Bond> Selection::select_bonds(int groupbit, std::vector<Belonging> &
     const std::vector<double> lengths = lengths_of_types();
     std::vector<Bond> bonds;
     std::size_t next = 0;
-    for (int i = 0; i < atom->nlocal; ++i)
+    for (int i : which)
         for (int k = 0; k < atom->num_bond[i]; ++k) {
             const int flags = other[next++];
             int &type = atom->bond_type[i][k];
@@ -182,7 +184,7 @@ std::vector<Bond> Selection::select_bonds(int groupbit, std::vector<Belonging> &
 }
 
 /** Angles of the types wanted whose two bonds are rigid: the distance of their ends by the law of cosines. */
-void Selection::select_angles(std::vector<Belonging> &atoms, std::vector<Bond> &bonds) {
+void Selection::select_angles(std::vector<Belonging> &atoms, const std::vector<int> &which, std::vector<Bond> &bonds) {
     const int n_ranks = size_of(world);
     Outgoing<Bond> notes(n_ranks);
     for (const Bond &bond : bonds) notes[bookkeeper(std::min(bond.from, bond.to), n_ranks)].push_back(bond);
@@ -190,7 +192,7 @@ void Selection::select_angles(std::vector<Belonging> &atoms, std::vector<Bond> &
     for (const Bond &bond : route(world, notes).items) known[pair_of(bond.from, bond.to)] = bond.length;
 
     std::vector<Ask> questions;
-    for (int i = 0; i < atom->nlocal; ++i) {
+    for (int i : which) {
         check_entries(error, atom->num_angle[i]);
         for (int k = 0; k < atom->num_angle[i]; ++k) {
             questions.push_back({atom->angle_atom1[i][k], atom->angle_atom2[i][k]});
@@ -205,7 +207,7 @@ void Selection::select_angles(std::vector<Belonging> &atoms, std::vector<Bond> &
         });
 
     std::size_t next = 0;
-    for (int i = 0; i < atom->nlocal; ++i)
+    for (int i : which)
         for (int k = 0; k < atom->num_angle[i]; ++k) {
             const double a = sides[next], b = sides[next + 1];
             next += 2;
@@ -224,12 +226,12 @@ void Selection::select_angles(std::vector<Belonging> &atoms, std::vector<Bond> &
         }
 }
 
-std::vector<BodyAtom> Selection::select_bodies(int groupbit) {
+std::vector<BodyAtom> Selection::select_bodies(int groupbit, const std::vector<int> &which) {
     std::vector<BodyAtom> bodies;
     if (templates_.empty()) return bodies;
     const int n_ranks = size_of(world);
     Outgoing<Part> outgoing(n_ranks);
-    for (int i = 0; i < atom->nlocal; ++i)
+    for (int i : which)
         if (atom->molecule[i] > 0 && atom->mask[i] & groupbit)
             outgoing[bookkeeper(atom->molecule[i], n_ranks)].push_back(
                 {atom->molecule[i], atom->tag[i], atom->type[i]});

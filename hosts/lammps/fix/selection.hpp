@@ -19,7 +19,9 @@ namespace holonomic_lammps {
 struct Belonging : Membership {
     std::uint32_t bonds = 0; /**< bit k: entry k of the atom's list of bonds, whose type is negative for that */
     std::uint32_t angles = 0;
-    std::uint32_t topology = 0; /**< of the lists when they were last looked at: bits mean nothing if it has changed */
+    /** Of the lists when they were last looked at: bits mean nothing if it has changed. At first that of no lists. */
+    std::uint32_t topology = never_seen;
+    static constexpr std::uint32_t never_seen = 0xFFFFFFFFu;
 };
 
 /** Which bonds and angles are to be rigid: those of given types, or bonds of atoms of given types or masses. */
@@ -37,17 +39,18 @@ public:
     bool empty() const;
 
     /**
-     * Selects what is not yet rigid, by this fix or another, makes its types negative, so that no force acts along it,
-     * and gives the rigid distances of all atoms here. Collective.
+     * Of some atoms here selects what is not yet rigid, by this fix or another, makes its types negative, so that no
+     * force acts along it, and gives their rigid distances. What is new must have both ends among them, on whatever
+     * rank. Collective.
      */
-    std::vector<Bond> select(int groupbit, std::vector<Belonging> &atoms);
+    std::vector<Bond> select(int groupbit, std::vector<Belonging> &atoms, const std::vector<int> &which);
 
-    /** Atoms of the group's molecules that have the atoms of a template, type by type in the order of IDs. Collective.
-     */
-    std::vector<BodyAtom> select_bodies(int groupbit);
+    /** Of some atoms those of the group's molecules that have the atoms of a template, type by type in the order of
+     * IDs. Collective. */
+    std::vector<BodyAtom> select_bodies(int groupbit, const std::vector<int> &which);
 
-    /** Whether the bonds or angles of any atom here are others than when they were last selected. */
-    bool changed(const std::vector<Belonging> &atoms) const;
+    /** Atoms here whose bonds or angles are others than when they were last selected, and atoms that are new. */
+    std::vector<int> changed(const std::vector<Belonging> &atoms) const;
 
     /** Makes the types of an atom's rigid bonds and angles positive again. */
     void release(std::vector<Belonging> &atoms);
@@ -55,8 +58,8 @@ public:
 private:
     struct Ends;
     std::vector<double> lengths_of_types();
-    std::vector<Bond> select_bonds(int groupbit, std::vector<Belonging> &atoms);
-    void select_angles(std::vector<Belonging> &atoms, std::vector<Bond> &bonds);
+    std::vector<Bond> select_bonds(int groupbit, std::vector<Belonging> &atoms, const std::vector<int> &which);
+    void select_angles(std::vector<Belonging> &atoms, const std::vector<int> &which, std::vector<Bond> &bonds);
     bool wants(int i) const;
     std::uint32_t topology(int i) const;
     void release_atom(int i, Belonging &belonging);

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "route.hpp"
@@ -34,6 +35,12 @@ std::vector<Answer> ask_bookkeepers(MPI_Comm world, const std::vector<Question> 
         result.push_back(answers[p][read[p]++]);
     }
     return result;
+}
+
+/** What all ranks name, on each of them; collective. */
+inline std::unordered_set<Tag> everywhere(MPI_Comm world, const std::vector<Tag> &tags) {
+    const std::vector<Tag> all = route(world, Outgoing<Tag>(size_of(world), tags)).items;
+    return {all.begin(), all.end()};
 }
 
 /** Of a question that is a tag. */

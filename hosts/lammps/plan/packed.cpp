@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "packed.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -32,13 +33,15 @@ std::string pair_of(Tag a, Tag b) { return "atoms " + std::to_string(a) + " and 
 }  // namespace
 
 Packed::Packed(const Plan &plan, const double *masses, int first, int end, int first_bond)
-    : plan_(&plan), first_resident_(first), end_resident_(end), first_slot_(plan.residents()[first].first),
-      end_slot_(first_slot_), first_bond_(first_bond), chains_(nullptr, hol_chains_destroy) {
+    : plan_(&plan), numbering_(plan.numbering()),
+      residents_(plan.residents().begin() + first, plan.residents().begin() + end),
+      chains_(nullptr, hol_chains_destroy) {
     const std::vector<Resident> &residents = plan.residents();
-    end_slot_ = residents[end - 1].first + plan.shapes()[residents[end - 1].shape].n_atoms;
+    move_to(first, first_bond);
+    masses_.assign(masses + first_slot_, masses + end_slot_);
     hol_chains *chains = nullptr;
     // To the library an atom without mass in a body is a site; one of infinite mass is held fixed, or refused there.
-    std::vector<double> of_slots(masses + first_slot_, masses + end_slot_);
+    std::vector<double> of_slots = masses_;
     for (double &mass : of_slots)
         if (mass == 0) mass = HUGE_VAL;
     check(hol_chains_create(end_slot_ - first_slot_, of_slots.data(), &chains), "taking the masses");
@@ -47,6 +50,24 @@ Packed::Packed(const Plan &plan, const double *masses, int first, int end, int f
         while (to < end && residents[to].shape == residents[from].shape) ++to;
         add(residents[from], to - from);
     }
+}
+
+bool Packed::holds(int first, const double *masses) const {
+    const std::vector<Resident> &all = plan_->residents();
+    return numbering_ == plan_->numbering() && residents_.size() <= all.size() - first &&
+           std::equal(
+               residents_.begin(), residents_.end(), all.begin() + first,
+               [](const Resident &a, const Resident &b) { return a.molecule == b.molecule && a.shape == b.shape; }) &&
+           std::equal(masses_.begin(), masses_.end(), masses + all[first].first);
+}
+
+void Packed::move_to(int first, int first_bond) {
+    first_resident_ = first;
+    end_resident_ = first + static_cast<int>(residents_.size());
+    const Resident &last = plan_->residents()[end_resident_ - 1];
+    first_slot_ = plan_->residents()[first].first;
+    end_slot_ = last.first + plan_->shapes()[last.shape].n_atoms;
+    first_bond_ = first_bond;
 }
 
 /** Molecules of one shape, one behind the other. */

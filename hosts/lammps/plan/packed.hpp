@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "plan.hpp"
 
@@ -22,6 +23,12 @@ public:
     /** Residents first .. end - 1, at least one. @param masses  [n_slots]; 0: held fixed. first_bond: of all bonds */
     Packed(const Plan &plan, const double *masses, int first, int end, int first_bond);
 
+    /** Whether the plan's residents from `first` on are these molecules, with these masses [n_slots]. */
+    bool holds(int first, const double *masses) const;
+    /** They stand from this resident on now, and their bonds from this one. */
+    void move_to(int first, int first_bond);
+
+    Tag name() const { return residents_[0].molecule; } /**< the first of the molecules */
     int first_resident() const { return first_resident_; }
     int end_resident() const { return end_resident_; }
     int first_slot() const { return first_slot_; }
@@ -45,7 +52,10 @@ private:
     std::string place() const;
 
     const Plan *plan_;
+    int numbering_;  // of the plan's shapes
     int first_resident_, end_resident_, first_slot_, end_slot_, first_bond_;
+    std::vector<Resident> residents_;
+    std::vector<double> masses_;
     std::unique_ptr<hol_chains, void (*)(hol_chains *)> chains_;
 };
 

@@ -45,6 +45,11 @@ bool Plan::renew(const Registry &registry, const Membership *members, const Tag 
     return changed;
 }
 
+void Plan::forget(const std::unordered_set<Tag> &molecules) {
+    for (Tag molecule : molecules)
+        if (shape_of_.erase(molecule)) stale_ = true;
+}
+
 /** How many atoms of which molecule are here. Those of the last plan keep their numbers. */
 void Plan::count(const Membership *members, int n_atoms) {
     std::fill(present_.begin(), present_.end(), 0);
@@ -55,8 +60,9 @@ void Plan::count(const Membership *members, int n_atoms) {
         if (number == next) {
             molecules_.push_back(members[i].molecule);
             present_.push_back(0);
-            wanted_.push_back(members[i].n_atoms);
+            wanted_.push_back(0);
         }
+        wanted_[number] = members[i].n_atoms;
         ++present_[number];
     }
     home_.assign(molecules_.size(), -1);
@@ -129,14 +135,16 @@ int Plan::choose(const Part *begin, const Part *end) {
 bool Plan::settle(const Registry &registry) {
     const int me = rank_of(world_);
     std::vector<Tag> here;
-    bool same = true;
+    bool same = !stale_;
     for (std::size_t k = 0; k < molecules_.size(); ++k) {
         if (home_[k] == me) here.push_back(molecules_[k]);
         same = same && (home_[k] == me) == (k < residents_.size());
     }
     if (same) here.clear();
+    if (!same) forget_shapes();
     find_shapes(registry, here);
     if (same) return false;
+    stale_ = false;
     std::vector<Resident> residents;
     for (Tag molecule : here) residents.push_back({molecule, shape_of_.at(molecule), 0});
     std::sort(residents.begin(), residents.end(), [](const Resident &a, const Resident &b) {
@@ -181,9 +189,22 @@ void Plan::find_shapes(const Registry &registry, const std::vector<Tag> &molecul
     const std::vector<Shape> found = registry.shapes(unknown);
     for (std::size_t k = 0; k < unknown.size(); ++k) {
         const auto entry = shape_numbers_.emplace(found[k], static_cast<int>(shapes_.size()));
-        if (entry.second) shapes_.push_back(found[k]);
+        if (entry.second) {
+            shapes_.push_back(found[k]);
+            walks_.push_back(walk(found[k]));
+            n_listed_ += found[k].n_atoms + found[k].pairs.size();
+        }
         shape_of_[unknown[k]] = entry.first->second;
     }
+}
+
+/** Where bonds change, shapes come that are never seen again: all are learnt anew before they take more than atoms do.
+ */
+void Plan::forget_shapes() {
+    if (n_listed_ < 1000 + 8 * tags_.size()) return;
+    shapes_.clear(), walks_.clear(), shape_numbers_.clear(), shape_of_.clear();
+    n_listed_ = 0;
+    ++numbering_;
 }
 
 void Plan::fill_slots(const Membership *members, const Tag *tags, int n_atoms) {

@@ -33,8 +33,13 @@ public:
      */
     bool renew(const Registry &registry, const Membership *members, const Tag *tags, int n_atoms);
 
+    /** Molecules that are no more, or may have other bonds now. */
+    void forget(const std::unordered_set<Tag> &molecules);
+
     const std::vector<Resident> &residents() const { return residents_; }
     const std::vector<Shape> &shapes() const { return shapes_; }
+    const Walk &walk_of(int shape) const { return walks_[shape]; }
+    int numbering() const { return numbering_; }             /**< changes when shapes get other numbers */
     const std::vector<int> &atoms() const { return atoms_; } /**< by slot; -1: another rank's */
     const std::vector<Tag> &tags() const { return tags_; }   /**< by slot */
     int n_slots() const { return static_cast<int>(atoms_.size()); }
@@ -50,6 +55,7 @@ private:
     int choose(const Part *begin, const Part *end);
     bool settle(const Registry &registry);
     void find_shapes(const Registry &registry, const std::vector<Tag> &molecules);
+    void forget_shapes();
     void fill_slots(const Membership *members, const Tag *tags, int n_atoms);
 
     MPI_Comm world_;
@@ -62,6 +68,10 @@ private:
     std::vector<Tag> tags_;
     int n_away_ = 0;
     std::vector<Shape> shapes_;
+    std::vector<Walk> walks_;   // by shape
+    std::size_t n_listed_ = 0;  // bonds and atoms of the shapes
+    int numbering_ = 0;
+    bool stale_ = false;  // of a molecule that has lived here the shape was forgotten
     std::map<Shape, int> shape_numbers_;
     std::unordered_map<Tag, int> shape_of_;   // of molecules that have lived here
     std::unordered_map<Tag, int> last_home_;  // of divided molecules whose books are kept here

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "library.hpp"
+#include "table.hpp"
 
 namespace holonomic_lammps {
 
@@ -21,6 +22,12 @@ struct Entry {
 struct Part {
     Tag molecule;
     BodyAtom atom;
+};
+
+/** How many atoms of a molecule a rank has. */
+struct Present {
+    Tag molecule;
+    int n_atoms;
 };
 
 /** What the bookkeeper of an atom is told. */
@@ -89,10 +96,32 @@ void throw_together(MPI_Comm world, const std::string &message) {
 
 Registry::Registry(MPI_Comm world, const std::vector<Bond> &bonds, const std::vector<BodyAtom> &bodies, int dimensions,
                    std::int64_t divide)
-    : world_(world), n_ranks_(size_of(world)) {
+    : world_(world), n_ranks_(size_of(world)), divide_(divide) {
     std::vector<Node> nodes = collect(bonds, bodies);
     find_components(world, nodes);
-    build(nodes, dimensions, divide);
+    build(nodes, dimensions);
+    add_up();
+}
+
+bool Registry::divides(const Shape &shape) const {
+    return divide_ > 0 && shape.n_atoms >= divide_ && !shape.rigid && shape.bodies.empty();
+}
+
+/** What there is on all ranks. */
+void Registry::add_up() {
+    std::int64_t sums[5] = {static_cast<std::int64_t>(molecules_.size()),
+                            static_cast<std::int64_t>(memberships_.size()), 0, 0, 0};
+    for (const auto &entry : molecules_) {
+        sums[2] += static_cast<std::int64_t>(entry.second.pairs.size());
+        sums[3] += static_cast<std::int64_t>(entry.second.bodies.size());
+        sums[4] += divides(entry.second);
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_INT64_T, MPI_SUM, world_);
+    n_molecules_ = sums[0];
+    n_atoms_ = sums[1];
+    n_bonds_ = sums[2];
+    n_bodies_ = sums[3];
+    n_divided_ = sums[4];
 }
 
 /** Nodes whose books are kept here, with all their bonds, each once. A body is tied to the atom that it is named by. */
@@ -140,7 +169,7 @@ std::vector<Node> Registry::collect(const std::vector<Bond> &bonds, const std::v
 }
 
 /** Sends each bond to the bookkeeper of its molecule, who makes the shape and tells the bookkeepers of its atoms. */
-void Registry::build(const std::vector<Node> &nodes, int dimensions, std::int64_t divide) {
+void Registry::build(const std::vector<Node> &nodes, int dimensions) {
     Outgoing<Entry> outgoing(n_ranks_);
     Outgoing<Part> of_bodies(n_ranks_);
     for (const Node &node : nodes) {
@@ -158,7 +187,6 @@ void Registry::build(const std::vector<Node> &nodes, int dimensions, std::int64_
     std::sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) { return a.molecule < b.molecule; });
     Outgoing<Note> notes(n_ranks_);
     std::map<Shape, Shape> examined;
-    std::int64_t n_bonds = 0, n_bodies = 0;
     for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
         std::vector<Bond> bonds;
         for (; end < entries.size() && entries[end].molecule == entries[begin].molecule; ++end)
@@ -176,16 +204,13 @@ void Registry::build(const std::vector<Node> &nodes, int dimensions, std::int64_
             examined[key] = found;
         }
         const Shape &shape = molecules_[molecule] = found;
-        n_bonds += static_cast<std::int64_t>(shape.pairs.size());
-        n_bodies += static_cast<std::int64_t>(shape.bodies.size());
         std::vector<double> taken(tags.size(), shape.rigid ? static_cast<double>(shape.taken) / shape.n_atoms : 0);
         for (const auto &pair : shape.pairs)
             for (int place : pair) taken[place] += shape.rigid ? 0 : 0.5;
-        const bool divides = divide > 0 && shape.n_atoms >= divide && !shape.rigid && shape.bodies.empty();
-        n_divided_ += divides;
+        const bool in_parts = divides(shape);
         for (int place = 0; place < shape.n_atoms; ++place)
             notes[bookkeeper(tags[place], n_ranks_)].push_back(
-                {tags[place], {molecule, divides ? divided : place, shape.n_atoms, taken[place]}});
+                {tags[place], {molecule, in_parts ? divided : place, shape.n_atoms, taken[place]}});
     }
     for (const Note &note : route(world_, notes).items) memberships_[note.tag] = note.membership;
     for (const Node &node : nodes) {
@@ -194,14 +219,43 @@ void Registry::build(const std::vector<Node> &nodes, int dimensions, std::int64_
         for (std::size_t k = 0; k < node.neighbours.size(); ++k)
             partners.push_back({node.neighbours[k], node.lengths[k]});
     }
-    std::int64_t sums[5] = {static_cast<std::int64_t>(molecules_.size()), n_bonds,
-                            static_cast<std::int64_t>(memberships_.size()), n_bodies, n_divided_};
-    MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_INT64_T, MPI_SUM, world_);
-    n_molecules_ = sums[0];
-    n_bonds_ = sums[1];
-    n_atoms_ = sums[2];
-    n_bodies_ = sums[3];
-    n_divided_ = sums[4];
+}
+
+std::vector<Tag> Registry::incomplete(const std::vector<Membership> &members) const {
+    Table numbers;
+    std::vector<Present> here;
+    for (const Membership &member : members) {
+        if (member.molecule == 0) continue;
+        const int next = static_cast<int>(here.size()), number = numbers.find_or_insert(member.molecule, next);
+        if (number == next) here.push_back({member.molecule, 0});
+        ++here[number].n_atoms;
+    }
+    Outgoing<Present> outgoing(n_ranks_);
+    for (const Present &part : here) outgoing[bookkeeper(part.molecule, n_ranks_)].push_back(part);
+    std::unordered_map<Tag, int> present;
+    for (const Present &part : route(world_, outgoing).items) present[part.molecule] += part.n_atoms;
+    std::vector<Tag> result;
+    for (const auto &entry : molecules_)
+        if (present[entry.first] != entry.second.n_atoms) result.push_back(entry.first);
+    return result;
+}
+
+bool Registry::replace(const std::unordered_set<Tag> &gone, Registry come) {
+    const std::int64_t n_divided = n_divided_;
+    for (Tag molecule : gone) molecules_.erase(molecule);
+    for (auto entry = memberships_.begin(); entry != memberships_.end();) {
+        if (gone.count(entry->second.molecule) == 0) {
+            ++entry;
+            continue;
+        }
+        partners_.erase(entry->first);
+        entry = memberships_.erase(entry);
+    }
+    molecules_.merge(come.molecules_);
+    memberships_.merge(come.memberships_);
+    partners_.merge(come.partners_);
+    add_up();
+    return come.n_divided_ > 0 || n_divided_ < n_divided;
 }
 
 std::vector<Membership> Registry::memberships(const std::vector<Tag> &tags) const {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "shape.hpp"
 
@@ -42,6 +43,16 @@ public:
     Registry(MPI_Comm world, const std::vector<Bond> &bonds, const std::vector<BodyAtom> &bodies = {},
              int dimensions = 3, std::int64_t divide = 0);
 
+    /** Of the molecules whose books are kept here, those of which atoms are missing. Collective.
+     * @param members  of all atoms that there are, each on one rank */
+    std::vector<Tag> incomplete(const std::vector<Membership> &members) const;
+
+    /**
+     * Takes other molecules in the place of some; the names of those, the same on all ranks. Collective.
+     * @return whether divided molecules are among them
+     */
+    bool replace(const std::unordered_set<Tag> &gone, Registry come);
+
     /** What to know of atoms, by their tags. Collective. */
     std::vector<Membership> memberships(const std::vector<Tag> &tags) const;
 
@@ -60,10 +71,13 @@ public:
 
 private:
     std::vector<Node> collect(const std::vector<Bond> &bonds, const std::vector<BodyAtom> &bodies) const;
-    void build(const std::vector<Node> &nodes, int dimensions, std::int64_t divide);
+    void build(const std::vector<Node> &nodes, int dimensions);
+    void add_up();
+    bool divides(const Shape &shape) const;
 
     MPI_Comm world_ = MPI_COMM_NULL;
     int n_ranks_ = 0;
+    std::int64_t divide_ = 0;
     std::int64_t n_molecules_ = 0, n_bonds_ = 0, n_atoms_ = 0, n_bodies_ = 0, n_divided_ = 0;
     std::unordered_map<Tag, Shape> molecules_;                // those whose books are kept here
     std::unordered_map<Tag, Membership> memberships_;         // likewise, by atom

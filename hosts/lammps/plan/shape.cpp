@@ -151,7 +151,7 @@ Shape shape_of(const std::vector<Bond> &bonds, const std::vector<BodyAtom> &body
     return shape;
 }
 
-std::vector<std::array<int, 2>> walk(const Shape &shape) {
+Walk walk(const Shape &shape) {
     const Neighbours neighbours = neighbours_of(shape);
     std::vector<char> seen(shape.n_atoms, 0);
     std::vector<int> reached{0};

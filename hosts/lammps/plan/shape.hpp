@@ -48,7 +48,8 @@ struct Shape {
 Shape shape_of(const std::vector<Bond> &bonds, const std::vector<BodyAtom> &bodies, std::vector<Tag> &tags);
 
 /** A way through a molecule: each atom after the one that it hangs on (place and earlier place), the first left out. */
-std::vector<std::array<int, 2>> walk(const Shape &shape);
+using Walk = std::vector<std::array<int, 2>>;
+Walk walk(const Shape &shape);
 
 }  // namespace holonomic_lammps
 
