@@ -70,7 +70,7 @@ private:
     void read_options(int narg, char **arg, int first);
     void check_other_fixes();
     void find_molecules();
-    bool renew_molecules(const std::vector<int> &changed);
+    bool renew_molecules(const std::vector<int> &changed, bool other_atoms);
     holonomic_lammps::Registry register_molecules(const std::vector<int> &which);
     void take_memberships(const std::vector<int> &which);
     template <class Function>

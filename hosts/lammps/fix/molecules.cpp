@@ -41,7 +41,7 @@ void FixHolonomic::find_molecules() {
  * Those with atoms whose bonds have changed, or which are bonded to such atoms now, and those that have lost atoms: the
  * others stay as they are. Gives whether molecules that are divided among the ranks may be others.
  */
-bool FixHolonomic::renew_molecules(const std::vector<int> &changed) {
+bool FixHolonomic::renew_molecules(const std::vector<int> &changed, bool other_atoms) {
     std::vector<Tag> names;
     for (int i : changed) {
         names.push_back(atom->tag[i]);
@@ -55,8 +55,8 @@ bool FixHolonomic::renew_molecules(const std::vector<int> &changed) {
         return true;
     }
     const std::unordered_set<Tag> touched = everywhere(world, names);
-    const std::vector<Membership> members(atoms_.begin(), atoms_.begin() + atom->nlocal);
-    std::vector<Tag> molecules = registry_.incomplete(members);
+    std::vector<Tag> molecules;
+    if (other_atoms) molecules = registry_.incomplete({atoms_.begin(), atoms_.begin() + atom->nlocal});
     for (int i = 0; i < atom->nlocal; ++i)
         if (atoms_[i].molecule && touched.count(atom->tag[i])) molecules.push_back(atoms_[i].molecule);
     const std::unordered_set<Tag> gone = everywhere(world, molecules);
@@ -74,18 +74,21 @@ bool FixHolonomic::renew_molecules(const std::vector<int> &changed) {
  * bonds or atoms have come or gone, their molecules are found anew; gives whether that is so.
  */
 bool FixHolonomic::replan(bool fresh) {
-    enum { order = 1, bonds = 2 };
+    enum { order = 1, bonds = 2, atoms = 4 };
     const tagint *tag = atom->tag;
     int changed = fresh || planned_.size() != static_cast<std::size_t>(atom->nlocal) ||
                           !std::equal(planned_.begin(), planned_.end(), tag)
                       ? order
                       : 0;
     const std::vector<int> others = selection_.changed(atoms_);
-    if (n_atoms_ != atom->natoms || !others.empty()) changed |= bonds;
+    if (!others.empty()) changed |= bonds;
+    // As many may have come as have gone.
+    const auto is_new = [this](int i) { return atoms_[i].topology == Belonging::never_seen; };
+    if (n_atoms_ != atom->natoms || std::any_of(others.begin(), others.end(), is_new)) changed |= atoms;
     MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_BOR, world);
     if (!changed) return false;
-    const bool found_anew = (changed & bonds) != 0;
-    const bool divided_anew = found_anew && renew_molecules(others);
+    const bool found_anew = (changed & ~order) != 0;
+    const bool divided_anew = found_anew && renew_molecules(others, (changed & atoms) != 0);
     planned_.assign(tag, tag + atom->nlocal);
     const std::vector<Membership> members(atoms_.begin(), atoms_.begin() + atom->nlocal);
     const std::vector<Tag> tags(planned_.begin(), planned_.end());

@@ -44,6 +44,7 @@ public:
     hol_worst violation(const double *r, const double *v) const;
 
     std::int64_t n_bonds() const { return hol_chains_n_bonds(chains_.get()); }
+    const hol_chains *handle() const { return chains_.get(); }
     std::int64_t memory() const { return hol_chains_memory(chains_.get()); }
 
 private:

@@ -36,50 +36,6 @@ struct Note {
     Membership membership;
 };
 
-/** A shape travels as numbers. */
-void write(const Shape &shape, std::vector<double> &numbers) {
-    const auto add = [&](double x) { numbers.push_back(x); };
-    for (double x : {static_cast<double>(shape.n_atoms), static_cast<double>(shape.linear),
-                     static_cast<double>(shape.rigid), static_cast<double>(shape.taken),
-                     static_cast<double>(shape.pairs.size()), static_cast<double>(shape.bodies.size())})
-        add(x);
-    for (std::size_t b = 0; b < shape.pairs.size(); ++b)
-        for (double x :
-             {static_cast<double>(shape.pairs[b][0]), static_cast<double>(shape.pairs[b][1]), shape.lengths[b]})
-            add(x);
-    for (const Body &body : shape.bodies) {
-        add(static_cast<double>(body.places.size()));
-        for (std::size_t k = 0; k < body.places.size(); ++k) {
-            add(body.places[k]);
-            for (double x : body.at[k]) add(x);
-        }
-    }
-}
-
-/** Takes the numbers of one shape, and steps behind them. */
-Shape read(const double *&number) {
-    const auto integer = [&] { return static_cast<int>(*number++); };
-    Shape shape;
-    shape.n_atoms = integer();
-    shape.linear = integer() != 0;
-    shape.rigid = integer() != 0;
-    shape.taken = integer();
-    const int n_bonds = integer();
-    shape.bodies.resize(integer());
-    for (int b = 0; b < n_bonds; ++b) {
-        const int from = integer(), to = integer();
-        shape.pairs.push_back({from, to});
-        shape.lengths.push_back(*number++);
-    }
-    for (Body &body : shape.bodies)
-        for (int n = integer(); n > 0; --n) {
-            body.places.push_back(integer());
-            body.at.push_back({number[0], number[1], number[2]});
-            number += 3;
-        }
-    return shape;
-}
-
 }  // namespace
 
 void throw_together(MPI_Comm world, const std::string &message) {

@@ -47,6 +47,11 @@ struct Shape {
  * Its atoms are those of the bonds. Atoms that distances hold on a line, three or more, are a body, too. */
 Shape shape_of(const std::vector<Bond> &bonds, const std::vector<BodyAtom> &bodies, std::vector<Tag> &tags);
 
+/** A shape travels as numbers. */
+void write(const Shape &shape, std::vector<double> &numbers);
+/** Takes the numbers of one shape, and steps behind them. */
+Shape read(const double *&number);
+
 /** A way through a molecule: each atom after the one that it hangs on (place and earlier place), the first left out. */
 using Walk = std::vector<std::array<int, 2>>;
 Walk walk(const Shape &shape);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Unit tests of the plan, without LAMMPS: to be run with any number of ranks. Every rank knows the whole scene and
-// looks at what the plan says of its part.
+// Unit tests of the plan, without LAMMPS: to be run with any number of ranks.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,75 +10,9 @@
 
 #include "plan/packed.hpp"
 #include "plan/route.hpp"
-
-using namespace holonomic_lammps;
+#include "scene_of_plan.hpp"
 
 namespace {
-
-int me, n_ranks, n_checks;
-
-void check(bool right, const char *what, int line) {
-    ++n_checks;
-    if (right) return;
-    std::fprintf(stderr, "rank %d, line %d: %s\n", me, line, what);
-    MPI_Abort(MPI_COMM_WORLD, 1);
-}
-#define CHECK(x) check((x), #x, __LINE__)
-
-std::uint64_t state = 88172645463325252u;
-int random_below(int n) {
-    state ^= state << 13, state ^= state >> 7, state ^= state << 17;
-    return static_cast<int>(state % static_cast<std::uint64_t>(n));
-}
-
-/** Chains, trees and rings, with tags in no order. */
-struct World {
-    int n_atoms = 0;
-    std::vector<Bond> bonds;
-    std::vector<int> molecule_of;  // by tag
-    std::vector<int> owner;        // by tag
-
-    explicit World(int n_molecules) : molecule_of(1), owner(1) {
-        std::vector<Tag> tags(n_molecules * 20);
-        std::iota(tags.begin(), tags.end(), 1);
-        for (std::size_t k = tags.size(); k > 1; --k) std::swap(tags[k - 1], tags[random_below(static_cast<int>(k))]);
-        molecule_of.assign(tags.size() + 1, -1);
-        owner.assign(tags.size() + 1, 0);
-        for (int m = 0; m < n_molecules; ++m) {
-            const int n = 2 + random_below(18), form = m % 3;
-            const Tag *t = &tags[20 * m];
-            for (int k = 1; k < n; ++k) {
-                const int to = form == 1 ? random_below(k) : k - 1;
-                bonds.push_back({t[k], t[to], 1.0 + 0.125 * (k % 3)});
-            }
-            if (form == 2 && n > 3) bonds.push_back({t[0], t[n - 1], 1.5});
-            for (int k = 0; k < n; ++k) molecule_of[t[k]] = m;
-            n_atoms += n;
-        }
-        deal();
-    }
-
-    void deal() {
-        for (int &rank : owner) rank = random_below(n_ranks);
-    }
-
-    std::vector<Tag> mine() const {
-        std::vector<Tag> tags;
-        for (std::size_t tag = 1; tag < owner.size(); ++tag)
-            if (owner[tag] == me) tags.push_back(static_cast<Tag>(tag));
-        return tags;
-    }
-};
-
-/** Each bond is told by the owners of its atoms: by both, or by the first. */
-Registry registry_of(const World &world, bool both) {
-    std::vector<Bond> told;
-    for (const Bond &bond : world.bonds) {
-        if (world.owner[bond.from] == me) told.push_back(bond);
-        if (both && world.owner[bond.to] == me) told.push_back({bond.to, bond.from, bond.length});
-    }
-    return Registry(MPI_COMM_WORLD, told);
-}
 
 void test_registry() {
     const World world(60);
@@ -280,6 +213,7 @@ int main(int argc, char **argv) {
     test_registry();
     test_long_chain();
     test_plan();
+    test_changes();
     test_balance();
     test_bodies();
     test_errors();
