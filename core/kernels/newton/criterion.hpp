@@ -36,8 +36,9 @@ public:
     vec always_accepted() const { return splat(tolerance_ > rounding_ ? tolerance_ : rounding_); }
 
     // Lanes in which the bonds may be accepted as they came; `error` is their |D.D - a^2| in units of `a2`. Without
-    // images no atom is farther from the first one of its chain than all bonds are long. If this bound already excludes
-    // all lanes, the largest coordinate is not found. The bound is too large by much more than its roundings.
+    // images no atom is farther from the first one of its chain than all bonds are long. If this bound, or the first
+    // atom alone, already decides of all lanes, the largest coordinate is not found. The bound is too large by much
+    // more than its roundings.
     mask within(vec error, vec a2) {
         if (!boxed_ && !known_) {
             vec first = {};
@@ -48,7 +49,10 @@ public:
             }
             const vec per_a = x_.per_a_min, a = mul_add(error * x_.a_max, per_a * per_a, x_.a_max);
             const vec most = mul_add(mul_add(a, splat(static_cast<double>(block_.n)), first), per_a, splat(1.0));
-            if (!any(~less(a2 * max(splat(2 * tolerance_), (2 * rounding_) * most), error))) return none();
+            const mask excluded = less(a2 * max(splat(2 * tolerance_), (2 * rounding_) * most), error);
+            if (!any(~excluded)) return none();
+            const mask accepted = less_equal(error, a2 * max(splat(tolerance_), rounding_ * (1.0 + first / x_.a_min)));
+            if (!any(~(excluded | accepted))) return accepted;
         }
         return less_equal(error, a2 * accepted());
     }

@@ -149,7 +149,8 @@ private:
     std::vector<Shifted> shifted_;  // by slot
     std::vector<Away> away_;        // by slot
     std::vector<double> answers_;   // three numbers for each of those, in the order of the messages
-    std::vector<double> scratch_;   // of a block
+    std::vector<double> whole_;     // of a block, shifted_'s positions
+    std::vector<double> given_;     // of a block, its velocities as the atoms have them
 
     std::unique_ptr<holonomic_lammps::Divided> divided_;
     std::vector<double> divided_r_, divided_v_, divided_f_, divided_g_;  // of its atoms

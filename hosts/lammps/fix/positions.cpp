@@ -142,9 +142,9 @@ inline void FixHolonomic::move_atom(int i, const double *r, double inverse_time)
 /** A block's positions go back to its own atoms, and into the answers to other ranks. */
 void FixHolonomic::return_positions(const Block &block, double inverse_time) {
     const int first = block.packed.first_slot(), end = block.packed.end_slot();
-    scratch_.resize(3 * static_cast<std::size_t>(block.end_shifted - block.first_shifted));
+    whole_.resize(3 * static_cast<std::size_t>(block.end_shifted - block.first_shifted));
     for (int k = block.first_shifted; k < block.end_shifted; ++k)
-        std::copy_n(&now_[3 * shifted_[k].slot], 3, &scratch_[3 * (k - block.first_shifted)]);
+        std::copy_n(&now_[3 * shifted_[k].slot], 3, &whole_[3 * (k - block.first_shifted)]);
     add_images(block, -1);
     const int *atoms = plan_->atoms().data();
     for (int slot = first; slot < end; ++slot)
@@ -153,7 +153,7 @@ void FixHolonomic::return_positions(const Block &block, double inverse_time) {
         std::copy_n(&now_[3 * away_[k].slot], 3, &answers_[3 * away_[k].order]);
     // Whole again, to the bit
     for (int k = block.first_shifted; k < block.end_shifted; ++k)
-        std::copy_n(&scratch_[3 * (k - block.first_shifted)], 3, &now_[3 * shifted_[k].slot]);
+        std::copy_n(&whole_[3 * (k - block.first_shifted)], 3, &now_[3 * shifted_[k].slot]);
 }
 
 /**

@@ -77,12 +77,13 @@ void FixHolonomic::receive_velocities(double half, bool with_forces) {
         });
 }
 
-/** The same for a block's own atoms; then the motion of images for all. A copy goes into scratch_. */
+/** The same for a block's own atoms; then the motion of images for all. A copy goes into given_. */
 void FixHolonomic::collect_velocities(const Block &block, double half) {
     const int first = block.packed.first_slot();
-    scratch_.resize(3 * static_cast<std::size_t>(block.packed.end_slot() - first));
+    const std::size_t size = 3 * static_cast<std::size_t>(block.packed.end_slot() - first);
+    if (given_.size() < size) given_.resize(size);
     if (atom->nlocal > 0) {
-        double *given = scratch_.data();
+        double *given = given_.data();
         const double *v = atom->v[0], *f = atom->f[0];
         const int *atoms = plan_->atoms().data();
         double *velocities = velocities_.data();
@@ -98,7 +99,7 @@ void FixHolonomic::collect_velocities(const Block &block, double half) {
     }
     const bool moved = add_streaming(block);
     if (block.first_away == block.end_away && !moved) return;
-    std::copy_n(&velocities_[3 * first], scratch_.size(), scratch_.data());
+    std::copy_n(&velocities_[3 * first], size, given_.data());
 }
 
 /** Images move with their box where fix deform remaps velocities. Gives whether it does. */
@@ -116,12 +117,12 @@ bool FixHolonomic::add_streaming(const Block &block) {
     return domain->deform_vremap != 0;
 }
 
-/** What a block's velocities have become more than scratch_: to its own atoms, and into the answers to other ranks. */
+/** What a block's velocities have become more than given_: to its own atoms, and into the answers to other ranks. */
 template <class Give>
 void FixHolonomic::give_changes(const Block &block, Give give) {
     const int first = block.packed.first_slot(), end = block.packed.end_slot();
     const int *atoms = plan_->atoms().data();
-    const double *given = scratch_.data(), *masses = masses_.data(), *velocities = velocities_.data();
+    const double *given = given_.data(), *masses = masses_.data(), *velocities = velocities_.data();
     for (int slot = first; slot < end; ++slot) {
         if (atoms[slot] < 0) continue;
         const double *v = velocities + 3 * slot, *u = given + 3 * (slot - first);
