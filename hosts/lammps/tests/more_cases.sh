@@ -255,6 +255,10 @@ react() {
         below 1e-12 'f_rigid[2]' create$n
     done
     same 1e-7 TotEng create1 create2
+    # Only the molecules that change are found anew on the way; each run begins with all of them.
+    run 1 create_long "$INPUTS/react.lmp" start "include $INPUTS/grow.lmp" steps 1000
+    run 1 create_anew "$INPUTS/react.lmp" start "include $INPUTS/grow.lmp" steps "1000 every 100 NULL"
+    near 1e-7 "$(last TotEng create_anew)" "$(last TotEng create_long)" 'energy, all found anew every hundred steps'
     run 1 fresh "$INPUTS/resume.lmp" state grown motion nve special "0 1 1"
     paste <(column TotEng create1 | tail -n 2) <(column TotEng fresh) | awk '{ d = $1 / $2 - 1; if (d < 0) d = -d; if (d > w) w = d }
         END { printf "going on and starting anew: %.3g\n", w; exit !(NR == 2 && w < 1e-9) }' || fail "a new run differs"
@@ -269,6 +273,27 @@ react() {
     run 2 break "$INPUTS/react.lmp" start "include $INPUTS/cut.lmp" later "include $INPUTS/uncut.lmp" steps 1000 dt 0.001
     awk '/^broken / { printf "%d bonds of 48 broken, %d rigid, sum of types after unfix %d\n", $2, $3, $4
         ok = $2 > 5 && $3 == 192 && $4 == 192 + 2 * (48 - $2) && $5 < 1e-12 } END { exit !ok }' break || fail "rigid bonds were lost"
+}
+
+# Fix bond/react, which changes types besides, and by which LAMMPS joins dimers to chains of four. What it chooses depends on
+# the number of ranks.
+bond_react() {
+    local n
+    "$SCENE" dimers 343 >data
+    for n in 1 2 4; do
+        lammps $n join$n "$INPUTS/react.lmp" INPUTS "$INPUTS" start "include $INPUTS/join.lmp" steps 1000
+        if grep -q "fix style 'bond/react'" join$n; then
+            echo "this LAMMPS has no fix bond/react"
+            exit 77
+        fi
+        grep -q '^Loop time' join$n || fail "LAMMPS stopped"
+        awk '/^ *Step /{ reading = 1; next } /^Loop/{ reading = 0 } reading && $1 ~ /^[0-9]+$/ { ++n; bad = bad || $7 != 343 - $9 || $8 != 343 + $9; made = $9 }
+            END { printf "%d bonds made\n", made; exit bad || n != 11 || made < 50 }' join$n || fail "molecules or bonds are missing"
+        below 1e-12 'f_rigid[1]' join$n
+        below 1e-12 'f_rigid[2]' join$n
+    done
+    run 1 join_anew "$INPUTS/react.lmp" INPUTS "$INPUTS" start "include $INPUTS/join.lmp" steps "400 every 100 NULL"
+    near 1e-7 "$(last TotEng join_anew)" "$(column TotEng join1 | sed -n 5p)" 'energy, all found anew every hundred steps'
 }
 
 # Velocities of a molecule across the boundary are on the constraints as those of one inside are; what fix rattle makes of the
