@@ -269,6 +269,16 @@ react() {
     below 1e-12 'f_rigid[1]' come
     below 1e-12 'f_rigid[2]' come
 
+    # The same by commands between runs, on any number of ranks.
+    for n in 1 2; do
+        run $n swap$n "$INPUTS/react.lmp" INPUTS "$INPUTS" start "fix rigid all holonomic b 1" steps 200 later "include $INPUTS/swap.lmp"
+        awk '/^swapped /{ printf "%d dimers, %d with one that came\n", $2, $3; ok = $2 < 343 && $2 > 300 && $3 == $2 + 1 } END { exit !ok }' swap$n ||
+            fail "not all molecules are there"
+        below 1e-12 'f_rigid[1]' swap$n
+        below 1e-12 'f_rigid[2]' swap$n
+    done
+    same 1e-10 TotEng swap1 swap2
+
     "$SCENE" melt 16 16 >data
     run 2 break "$INPUTS/react.lmp" start "include $INPUTS/cut.lmp" later "include $INPUTS/uncut.lmp" steps 1000 dt 0.001
     awk '/^broken / { printf "%d bonds of 48 broken, %d rigid, sum of types after unfix %d\n", $2, $3, $4
