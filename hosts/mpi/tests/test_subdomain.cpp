@@ -112,8 +112,11 @@ struct Test {
         double times[3], own[4];
         // Forces
         hol_subdomain_work before = part.work();
-        const auto told = [&](const char *what) {
+        // Tells what was done, and that no more sums were asked for than these, and two for each round of refinement.
+        const auto told = [&](const char *what, int n_sums) {
             const hol_subdomain_work after = part.work();
+            const std::int64_t sums = after.n_sums - before.n_sums - 2 * (after.n_refined - before.n_refined);
+            expect(sums <= n_times * n_sums, "sums over processes", static_cast<double>(sums), n_times * n_sums);
             if (rank == 0)
                 std::printf("%-12s %lld sums, %lld numbers, %lld passes, %lld rounds (%.1e)\n", what,
                             static_cast<long long>(after.n_sums - before.n_sums) / n_times,
@@ -129,13 +132,13 @@ struct Test {
         });
         own[0] = time_of(
             n_times, [&] { need(hol_subdomain_factorize(part.subdomain, r.data()), hol_subdomain_error_message()); });
-        told("factorize");
+        told("factorize", 2);
         own[1] = time_of(n_times, [&] {
             need(hol_subdomain_forces(part.subdomain, v.data(), f.data(), mine.data(), cut.data(), my_g.data(),
                                       HOL_WRITE, my_virial),
                  hol_subdomain_error_message());
         });
-        told("forces");
+        told("forces", 3);
         compare("multipliers of forces", lambda, mine, cut, true);
         compare_atoms("constraint forces", g, my_g, 1e-12);
         compare_virials("virial", virial, my_virial);
@@ -152,7 +155,7 @@ struct Test {
             need(hol_subdomain_project_velocities(part.subdomain, my_v.data(), mine.data(), cut.data(), my_virial),
                  hol_subdomain_error_message());
         });
-        told("velocities");
+        told("velocities", 3);
         compare("multipliers of velocities", lambda, mine, cut, false);
         compare_atoms("velocities", whole_v, my_v, 1e-13);
         compare_virials("virial of velocities", virial, my_virial);
@@ -189,13 +192,14 @@ struct Test {
         });
         std::vector<double> my_r, my_drift;
         int iterations = 0;
+        before = part.work();
         own[3] = time_of(n_times, [&] {
             my_r = part.of_atoms(moved), my_drift = my_v;
             need(hol_subdomain_project_positions(part.subdomain, my_r.data(), my_drift.data(), dt, mine.data(),
                                                  cut.data(), my_virial, &iterations),
                  hol_subdomain_error_message());
         });
-        told("positions");
+        told("positions", 2 + iterations);
         compare_atoms("positions", whole_r, my_r, 1e-13);
         compare_atoms("velocities after the drift", drift, my_drift, rounding);
         compare_virials("virial of positions", virial, my_virial, rounding / dt);
