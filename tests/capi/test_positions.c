@@ -111,6 +111,34 @@ static void every_chain_of_a_mixed_set_ends_on_its_lengths(void **state)
     }
 }
 
+/** Beside others that move they have no multiplier, and keep every bit. */
+static void short_chains_that_are_right_stay_as_they_came(void **state)
+{
+    (void)state;
+    enum { n_chains = 101, n_right = 34 };
+    for (int64_t n = 1; n <= 3; ++n)
+        for (int reports = 0; reports < 2; ++reports) {
+            assembly a = assembly_of_kind(CHAIN_COIL, n_chains, n, n, IN_ORDER, 83);
+            const size_t size = assembly_size(&a), of_chain = 3 * (size_t)(n + 1);
+            double *q = drift(&a, 0.004, 0), *v = copy_of(a.v, size), *lambda = untouched((size_t)a.n_bonds);
+            for (size_t c = 0; c < n_chains; c += 3) memcpy(q + c * of_chain, a.r + c * of_chain, of_chain * sizeof *q);
+            hol_report report;
+            CHECK(hol_project_positions(a.chains, a.r, q, v, 0.004, lambda, 0, NULL, reports ? &report : NULL));
+            if (reports) assert_int_equal(report.n_corrected, n_chains - n_right);
+            for (size_t c = 0; c < n_chains; ++c) {
+                const int right = c % 3 == 0;
+                assert_true(right == !memcmp(v + c * of_chain, a.v + c * of_chain, of_chain * sizeof *v));
+                if (right) assert_same_bits(q + c * of_chain, a.r + c * of_chain, of_chain);
+                for (size_t k = 0; k < (size_t)n; ++k) assert_true(right == (lambda[c * (size_t)n + k] == 0));
+            }
+            hol_worst worst;
+            CHECK(hol_violation(a.chains, q, NULL, &worst));
+            CHECK_AT_MOST(worst.length, rounding_of_a_bond(extent_of(q, size), 0.7L));
+            free(q), free(v), free(lambda);
+            assembly_free(&a);
+        }
+}
+
 static void check_velocities(int is_long)
 {
     const double dt = 0.004;
@@ -249,6 +277,7 @@ int main(void)
         cmocka_unit_test(positions_agree_with_newton_in_113_bits),
         cmocka_unit_test(long_chains_agree_with_newton_in_113_bits),
         cmocka_unit_test(every_chain_of_a_mixed_set_ends_on_its_lengths),
+        cmocka_unit_test(short_chains_that_are_right_stay_as_they_came),
         cmocka_unit_test(velocities_take_the_displacement_over_the_time_step),
         cmocka_unit_test(corrections_conserve_momentum_and_angular_momentum),
         cmocka_unit_test(virial_is_the_sum_over_the_reference_bonds),
