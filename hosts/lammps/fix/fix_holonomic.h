@@ -86,7 +86,6 @@ private:
     bool constrain_positions(bool from_themselves, double time);
     void collect_positions(const Block &);
     void return_positions(const Block &, double inverse_time);
-    void move_atom(int atom, const double *r, double inverse_time);
     void add_images(const Block &, int sign);
     Vector image_vector(const Shifts &) const;
     Shifts nearest_image(const double *d) const;

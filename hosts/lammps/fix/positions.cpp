@@ -128,9 +128,7 @@ void FixHolonomic::collect_positions(const Block &block) {
 }
 
 /** An atom's new position; its velocity gets the displacement over the time. */
-inline void FixHolonomic::move_atom(int i, const double *r, double inverse_time) {
-    double *x = atom->x[0] + 3 * static_cast<std::ptrdiff_t>(i);
-    double *v = atom->v[0] + 3 * static_cast<std::ptrdiff_t>(i);
+static inline void move_atom(double *x, double *v, const double *r, double inverse_time) {
     // All read before anything is written: the compiler need not think of overlaps, and takes two at a time.
     const double r0 = r[0], r1 = r[1], r2 = r[2];
     const double v0 = v[0] + inverse_time * (r0 - x[0]), v1 = v[1] + inverse_time * (r1 - x[1]),
@@ -147,8 +145,13 @@ void FixHolonomic::return_positions(const Block &block, double inverse_time) {
         std::copy_n(&now_[3 * shifted_[k].slot], 3, &whole_[3 * (k - block.first_shifted)]);
     add_images(block, -1);
     const int *atoms = plan_->atoms().data();
-    for (int slot = first; slot < end; ++slot)
-        if (atoms[slot] >= 0) move_atom(atoms[slot], &now_[3 * slot], inverse_time);
+    double *x = atom->nlocal > 0 ? atom->x[0] : nullptr, *v = atom->nlocal > 0 ? atom->v[0] : nullptr;
+    const double *now = now_.data();
+    for (int slot = first; slot < end; ++slot) {
+        if (atoms[slot] < 0) continue;
+        const std::ptrdiff_t i = 3 * static_cast<std::ptrdiff_t>(atoms[slot]);
+        move_atom(x + i, v + i, now + 3 * slot, inverse_time);
+    }
     for (int k = block.first_away; k < block.end_away; ++k)
         std::copy_n(&now_[3 * away_[k].slot], 3, &answers_[3 * away_[k].order]);
     // Whole again, to the bit
@@ -178,7 +181,7 @@ bool FixHolonomic::constrain_positions(bool from_themselves, double time) {
     const double *answer = answers_.data();
     plan_->exchange.to_owners<3>(
         world, [&](int, double *r) { std::copy_n(answer, 3, r), answer += 3; },
-        [&](int i, const double *r) { move_atom(i, r, inverse_time); });
+        [&](int i, const double *r) { move_atom(atom->x[i], atom->v[i], r, inverse_time); });
     return constrain_divided_positions(from_themselves, time) || n_moved > 0;
 }
 
