@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <numeric>
 #include <vector>
 
-#include "plan/registry.hpp"
+#include "plan/plan.hpp"
 
 using namespace holonomic_lammps;
 
@@ -78,6 +79,25 @@ inline std::vector<Bond> told(const World &world, bool both) {
 }
 
 inline Registry registry_of(const World &world, bool both) { return Registry(MPI_COMM_WORLD, told(world, both)); }
+
+/** Bonds of the residents' shapes, with their lengths, are the world's. */
+inline void check_bonds(const World &world, const Plan &plan) {
+    std::map<std::pair<Tag, Tag>, double> known;
+    for (const Bond &bond : world.bonds) known[std::minmax(bond.from, bond.to)] = bond.length;
+    int n_bonds = 0;
+    for (const Resident &resident : plan.residents()) {
+        const Shape &shape = plan.shapes()[resident.shape];
+        for (std::size_t k = 0; k < shape.pairs.size(); ++k) {
+            const Tag a = plan.tags()[resident.first + shape.pairs[k][0]],
+                      b = plan.tags()[resident.first + shape.pairs[k][1]];
+            const auto bond = known.find(std::minmax(a, b));
+            CHECK(bond != known.end() && bond->second == shape.lengths[k]);
+            ++n_bonds;
+        }
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &n_bonds, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+    CHECK(n_bonds == static_cast<int>(world.bonds.size()));
+}
 
 void test_changes();
 

@@ -65,6 +65,7 @@ void test_changes() {
         }
         plan.forget(gone);
         plan.renew(registry, members.data(), tags.data(), static_cast<int>(tags.size()));
+        check_bonds(world, plan);
         std::set<const hol_chains *> before;
         for (const Packed &block : blocks) before.insert(block.handle());
         const std::vector<double> masses(plan.n_slots(), 1.0);

@@ -75,18 +75,7 @@ void test_plan() {
             [&](int i, const double *x) { back[i] = *x; });
         for (std::size_t k = 0; k < tags.size(); ++k)
             if (members[k].molecule) CHECK(back[k] == static_cast<double>(tags[k]));
-        // Bonds of the shapes, with their lengths, are the world's.
-        std::set<std::pair<Tag, Tag>> known;
-        for (const Bond &bond : world.bonds) known.insert(std::minmax(bond.from, bond.to));
-        int n_bonds = 0;
-        for (const Resident &resident : plan.residents())
-            for (const auto &pair : plan.shapes()[resident.shape].pairs) {
-                const Tag a = plan.tags()[resident.first + pair[0]], b = plan.tags()[resident.first + pair[1]];
-                CHECK(known.count(std::minmax(a, b)) == 1);
-                ++n_bonds;
-            }
-        MPI_Allreduce(MPI_IN_PLACE, &n_bonds, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
-        CHECK(n_bonds == static_cast<int>(world.bonds.size()));
+        check_bonds(world, plan);
     }
 }
 
