@@ -1,7 +1,7 @@
-// Metric determinant and Fixman force of molecules that are no chains: of trees in lanes, of others one by one by the
-// careful solver.
-#include "core/kernels/molecules/blocks.hpp"
-#include "core/kernels/molecules/tree/metric.hpp"
+// Metric determinant and Fixman force of molecules that are no chains: of trees and bare rings in
+// lanes, of others one by one by the careful solver.
+#include "core/kernels/molecules/metric/ring_metric.hpp"
+#include "core/kernels/molecules/metric/tree_metric.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -16,36 +16,43 @@ void careful_metric(const MetricCall &call, const Schedule &schedule, const Mole
     HOL_CAREFUL::careful::metric(call, plan, lane, scratch, tally);
 }
 
-struct TreeMetricWork {
+// Shape: TreeMetric or RingMetric.
+template <template <class> class Shape>
+struct MetricWork {
     const MetricCall &call;
     const Schedule &schedule;
     Tally &tally;
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool, double *scratch) const {
-        unsigned rest;
-        {
-            TreeMetric<V> x(call, schedule, lane, used, {scratch});
-            const unsigned all = bits(Width<V>::first(used)), good = bits(x.solve()) & all;
-            x.write(good, tally);
-            rest = all & ~good;
-        }
-        for (; rest; rest &= rest - 1) careful_metric(call, schedule, lane[__builtin_ctz(rest)], scratch, tally);
+        Shape<V> x(call, schedule, lane, used, {scratch});
+        const unsigned all = bits(Width<V>::first(used)), good = bits(x.solve()) & all;
+        x.write(good, tally);
+        // Its memory is free now.
+        for (unsigned rest = all & ~good; rest; rest &= rest - 1)
+            careful_metric(call, schedule, lane[__builtin_ctz(rest)], scratch, tally);
     }
 };
 
+bool is_tree(const Schedule &s) { return s.type == Schedule::tree && s.max_children <= most_decomposed; }
+bool is_bare_ring(const Schedule &s) { return s.type == Schedule::ring && s.n_tree == 0; }
+
 }  // namespace
 
-int64_t tree_metric_bytes(const Schedule &s) {
-    if (s.type != Schedule::tree) return 0;
-    return s.n_bonds <= largest_in_lanes ? TreeMetric<vec>::values(s) * static_cast<int64_t>(sizeof(vec))
-                                         : TreeMetric<double>::values(s) * static_cast<int64_t>(sizeof(double));
+int64_t metric_bytes(const Schedule &s) {
+    if (!is_tree(s) && !is_bare_ring(s)) return 0;
+    return s.n_bonds <= largest_in_lanes ? Metric<vec>::values(s) * static_cast<int64_t>(sizeof(vec))
+                                         : Metric<double>::values(s) * static_cast<int64_t>(sizeof(double));
 }
 
 void molecules_metric(const MetricCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const Schedule &schedule = *unit.schedule;
-    if (schedule.type == Schedule::tree && schedule.max_children <= most_decomposed) {
-        const TreeMetricWork work = {call, schedule, tally};
+    if (is_tree(schedule)) {
+        const MetricWork<TreeMetric> work = {call, schedule, tally};
+        return for_each_block(unit, scratch, work);
+    }
+    if (is_bare_ring(schedule)) {
+        const MetricWork<RingMetric> work = {call, schedule, tally};
         return for_each_block(unit, scratch, work);
     }
     for (int64_t i = 0; i < unit.count; ++i) careful_metric(call, schedule, molecule_of(unit, i), scratch, tally);

@@ -32,7 +32,7 @@ int64_t molecules_scratch_bytes(const Schedule &s) {
     const int64_t block = s.n_bonds <= largest_in_lanes ? block_bytes<vec>(s) : block_bytes<double>(s),
                   flat = s.flat ? flat_bytes(*s.flat) : 0, paths = s.paths ? path_positions_bytes(s) : 0,
                   most = block > flat ? block : flat,
-                  linear = (most > paths ? most : paths) + 64 + s.careful->scratch_bytes, metric = tree_metric_bytes(s);
+                  linear = (most > paths ? most : paths) + 64 + s.careful->scratch_bytes, metric = metric_bytes(s);
     return linear > metric ? linear : metric;
 }
 

@@ -1,152 +1,60 @@
-// Metric determinant and Fixman force of trees in plain doubles (theory (52), (60)-(62)). Bond vectors point away from
-// the root. Products of two of them are found from unrounded coordinates, as those of chains: neither the determinant
-// nor its force has a scale that would forgive their rounding.
+// Metric determinant and Fixman force of trees (theory (52), (60)). Bond vectors point away from the root.
 //
-// Up: S = L P L^T of the bonds below each atom. A pivot is P = A - F, where F is a sum of squares, so that ln(P / A)
-// keeps its digits where F is small. Down: with H of the bond above, e,
+// Up: S = L P L^T of the bonds below each atom. Down: with H of the bond above, e,
 //
 //     H_ce = l_c H_ee,   H_cc' = (S^-1)_cc' + l_c l_c' H_ee
-//
-// What doubt costs is asked of the molecule: `least` is negative where plain arithmetic may not do.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_TREE_METRIC_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_TREE_METRIC_HPP
+#ifndef HOLONOMIC_KERNELS_MOLECULES_METRIC_TREE_METRIC_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_METRIC_TREE_METRIC_HPP
 
-#include "core/kernels/arithmetic/log_sum.hpp"
-#include "core/kernels/molecules/load.hpp"
+#include "core/kernels/molecules/metric/metric.hpp"
+#include "core/kernels/molecules/tree/joint.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// The force on a bond may be wrong by so many times its scale, in roundings, if all of what uncertain() counts adds up.
-// It never does: random trees with masses over ten decades stay below a quarter of that. 32 count as right.
-constexpr double most_uncertain = 64;
-
 constexpr int pairs_to(int k) { return k * (k + 1) / 2; }  // with those of one and the same
 
-// Of a bond at its place.
 template <class V>
-struct MetricRow {
-    Vector3<V> d, low;  // low: what rounding leaves off d
-    V q;                // d.d
-    V E, F;             // what the bonds below leave of w q, and what they take
-    V rounded;          // what rounding may take of E, in roundings
-    V r, l, H;          // 1 / P; what it gets of the bond above; its element of A^-1
-    Vector3<V> normal;  // sum of w H_kl d_k x d_l, then phi
-    V scale, error;     // of that, in absolute values; what it may be wrong by, in roundings
-};
+struct TreeMetric : Metric<V> {
+    typedef Metric<V> Base;
+    using Base::Base, Base::s, Base::row, Base::w, Base::pair, Base::r, Base::least, Base::logs, Base::product,
+        Base::normal, Base::couple;
 
-template <class V>
-struct TreeMetric {
-    const Schedule &s;
-    const MetricCall &call;
-    const MoleculeLane *const lane;
-    const int used;
-    const Atoms<V> at;
-    MetricRow<V> *const row;  // [n_bonds]
-    V *const w, *const pair;  // [n_atoms] by slot; [n_pairs] multipliers among the children of an atom
-    Vector3<V> *const r;      // [n_atoms] by slot
-    V least = Width<V>::all(1);
-    LogSum<V> det;
-    LogSumWide<V> diagonal;  // of Z_kk
-
-    static constexpr int64_t row_values = sizeof(MetricRow<V>) / sizeof(V);
-    static int64_t values(const Schedule &s) {
-        return row_values * s.n_bonds + 4 * static_cast<int64_t>(s.n_atoms) + s.n_pairs;
-    }
-    TreeMetric(const MetricCall &c, const Schedule &schedule, const MoleculeLane *of, int n, Memory<V> memory)
-        : s(schedule), call(c), lane(of), used(n), at(of, n, c.r.packed && (!c.force.x || c.force.packed)),
-          row(reinterpret_cast<MetricRow<V> *>(memory.values(row_values * s.n_bonds))), w(memory.values(s.n_atoms)),
-          pair(memory.values(s.n_pairs)), r(memory.vectors(s.n_atoms)) {}
-
-    // Returns the lanes that plain arithmetic answers for. phi, times kT, is in `normal` if there is a force.
+    // Returns the lanes that plain arithmetic answers for.
     MaskOf<V> solve() {
-        load();
-        const bool logs = call.log_det || call.sum || call.log_det_z;
+        this->read_atoms();
+        for (int32_t slot = 0; slot < s.n_tree; ++slot) this->make(row[slot], s.parent[slot], slot);
         for (int32_t slot = 0; slot < s.n_atoms; ++slot) {
             const int k = children(slot);
             if (slot == s.n_tree)
-                up<1, true>(slot, k, logs);
+                up<1, true>(slot, k);
             else if (k > 0)
-                choose_few<1>(k, [&](auto known) HOL_FORCED { up<known, false>(slot, k, logs); });
+                choose_few<1>(k, [&](auto known) HOL_FORCED { up<known, false>(slot, k); });
         }
         V sum = {};
-        if (call.force.x) {
-            for (int32_t slot = s.n_atoms; slot-- > 0;) {
-                const int k = children(slot);
-                if (slot == s.n_tree)
-                    down<1, true>(slot, k);
-                else if (k > 0)
-                    choose_few<1>(k, [&](auto known) HOL_FORCED { down<known, false>(slot, k); });
-                if (slot < s.n_tree) sum = sum + turn(row[slot]);
+        for (int32_t slot = s.n_atoms; this->call.force.x && slot-- > 0;) {
+            const int k = children(slot);
+            if (slot == s.n_tree)
+                down<1, true>(slot, k);
+            else if (k > 0)
+                choose_few<1>(k, [&](auto known) HOL_FORCED { down<known, false>(slot, k); });
+            r[slot] = Vector3<V>{};
+            if (slot < s.n_tree) {
+                sum = sum + this->turn(row[slot]);
+                r[slot] = row[slot].normal;
+                r[s.parent[slot]] = r[s.parent[slot]] - row[slot].normal;
             }
         }
-        if (logs) det.flush();
-        if (call.log_det_z) diagonal.total();
-        return finite(sum + (det.sum + diagonal.sum)) & less_equal(V{}, least);
-    }
-
-    // Of the lanes in `which`.
-    void write(unsigned which, Tally &tally) const {
-        for (int i = 0; i < used; ++i) {
-            if (!(which >> i & 1)) continue;
-            const double value = Width<V>::get(det.sum, i);
-            if (call.log_det) call.log_det[lane[i].molecule] = value;
-            if (call.log_det_z) call.log_det_z[lane[i].molecule] = value + Width<V>::get(diagonal.sum, i);
-            tally.log_det += value;
-        }
-        if (call.force.x && which)
-            write_vectors(call.force, at, s.slot_of, s.n_atoms, Force{*this},
-                          Written<V>{which, nullptr, lane, call.add});
+        return this->finish(sum);
     }
 
 private:
     int children(int32_t slot) const { return s.child_start[slot + 1] - s.child_start[slot]; }
     const int32_t *children_of(int32_t slot) const { return s.child + s.child_start[slot]; }
 
-    struct Force {
-        const TreeMetric &x;
-        HOL_FORCED Vector3<V> operator[](int32_t slot) const {
-            Vector3<V> f = {};
-            if (slot < x.s.n_tree) f = x.row[slot].normal;
-            for (int32_t c = x.s.child_start[slot]; c < x.s.child_start[slot + 1]; ++c)
-                f = f - x.row[x.s.child[c]].normal;
-            return f;
-        }
-    };
-
-    static inline V product(const MetricRow<V> &a, const MetricRow<V> &b) {
-        return dot_compensated(a.d, a.low, b.d, b.low);
-    }
-
-    // Far from where squares and their products over- or underflow.
-    void load() {
-        for (int32_t i = 0; i < s.n_atoms; ++i)
-            for (int l = 0; l < Width<V>::lanes; ++l) Width<V>::set(w[i], l, lane[l].w[s.atom_of[i]]);
-        read_vectors(call.r, at, s.slot_of, s.n_atoms, Slots<V>(r));
-        const V small = Width<V>::all(0x1p-300), large = Width<V>::all(0x1p300);
-        for (int32_t slot = 0; slot < s.n_tree; ++slot) {
-            MetricRow<V> &x = row[slot];
-            const int32_t parent = s.parent[slot];
-            unrounded_bond(call.box, r[parent], r[slot], x.d, x.low);
-            x.q = dot(x.d, x.d);
-            x.E = w[slot] * x.q;
-            x.F = V{};
-            x.rounded = x.E;
-            const V A = x.E + w[parent] * x.q;
-            least = min(min(min(x.q, A) - small, large - max(x.q, A)), least);
-        }
-    }
-
-    // Counts P = A - F of a bond.
-    HOL_FORCED void count(const MetricRow<V> &x, V weight, V P, V F) {
-        const V A = weight * x.q, per_A = Width<V>::all(1) / A;
-        det.multiply(P * per_A, F * per_A);
-        if (call.log_det_z) diagonal.multiply(Width<V>::all(4) * A, Width<V>::all(1));
-    }
-
     template <int known, bool top>
-    HOL_FORCED void up(int32_t slot, int count_of, bool logs) {
+    HOL_FORCED void up(int32_t slot, int count_of) {
         constexpr int most = known > 0 ? known : most_decomposed;
         const int k = known > 0 ? known : count_of;
         const int32_t *const child = children_of(slot);
@@ -164,7 +72,7 @@ private:
             const V P = S[pair_of(j + 1, j)];
             if (j > 0) least = min(mul_add(Width<V>::all(-least_part), mul_add(w0, x.q, x.E), P), least);
             x.r = Width<V>::all(1) / P;
-            if (logs) count(x, w0 + w[child[j]], P, F[j]);
+            if (logs) this->count(x, w0 + w[child[j]], P, F[j]);
             for (int a = j + 1; a < k; ++a) {
                 const V part = S[pair_of(a + 1, j)] * x.r;
                 m[pair_of(a, j)] = part;
@@ -300,27 +208,6 @@ private:
                 for (int j = 0; j < k; ++j) sum = mul_add(B[a][j], of_inverse(j, b), sum);
                 off[pair_of(a + 1, b)] = sum;
             }
-    }
-
-    HOL_NOINLINE Vector3<V> normal(const MetricRow<V> &a, const MetricRow<V> &b) {
-        return cross_compensated(a.d, a.low, b.d, b.low);
-    }
-    // h n, n = d_a x d_b, is added to the normal of a, and taken from that of b. off: what h may be wrong by.
-    HOL_STATIC void couple(MetricRow<V> &a, MetricRow<V> &b, const Vector3<V> &n, V h, V off) {
-        const V size = sqrt(dot(n, n)), scale = abs(h) * size, error = off * size;
-        a.normal = add_times(a.normal, h, n);
-        b.normal = add_times(b.normal, -h, n);
-        a.scale = a.scale + scale;
-        b.scale = b.scale + scale;
-        a.error = a.error + error;
-        b.error = b.error + error;
-    }
-
-    // kT phi = kT d x normal / q. Returns something that is finite if it is.
-    HOL_FORCED V turn(MetricRow<V> &x) {
-        least = min(mul_add(Width<V>::all(-1 / most_uncertain), x.error, x.scale), least);
-        x.normal = (Width<V>::all(call.kT) / x.q) * cross(x.d, x.normal);
-        return abs(x.normal.x) + abs(x.normal.y) + abs(x.normal.z);
     }
 };
 
