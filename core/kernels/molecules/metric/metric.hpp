@@ -12,9 +12,12 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// The force on a bond may be wrong by so many times its scale, in roundings, if all of what uncertain() counts adds up.
-// It never does: random trees with masses over ten decades stay below a quarter of that. 32 count as right.
-constexpr double most_uncertain = 64;
+// The part of what it is subtracted from that a pivot and E must keep: its inverse is that many roundings off H.
+constexpr double least_kept = 1.0 / 12;
+
+// The force on a bond may be wrong by so many times its scale, in roundings, if all that it may be wrong by adds up.
+// That many count as right.
+HOL_INLINE double most_uncertain(int32_t n_bonds) { return 2 * (16 + __builtin_sqrt(n_bonds)); }
 
 // Of a bond at its place.
 template <class V>
@@ -26,6 +29,7 @@ struct MetricRow {
     V r, l, H;          // 1 / P; multiplier: what it gets of the next bond; its element of A^-1
     Vector3<V> normal;  // sum of w H_kl d_k x d_l, then phi
     V scale, error;     // of that, in absolute values; what it may be wrong by, in roundings
+    V off;              // the same of H
 };
 
 template <class V>
@@ -39,6 +43,7 @@ struct Metric {
     V *const w, *const pair;  // [n_atoms] by slot; [n_pairs] multipliers among the children of an atom
     Vector3<V> *const r;      // [n_atoms] by slot: positions, then forces
     const bool logs;
+    const double per_uncertain;
     V least = Width<V>::all(1);  // negative where plain arithmetic may not do
     LogSum<V> det;
     LogSumWide<V> diagonal;  // of Z_kk
@@ -50,7 +55,8 @@ struct Metric {
     Metric(const MetricCall &c, const Schedule &schedule, const MoleculeLane *of, int n, Memory<V> memory)
         : s(schedule), call(c), lane(of), used(n), at(of, n, c.r.packed && (!c.force.x || c.force.packed)),
           row(reinterpret_cast<MetricRow<V> *>(memory.values(row_values * s.n_bonds))), w(memory.values(s.n_atoms)),
-          pair(memory.values(s.n_pairs)), r(memory.vectors(s.n_atoms)), logs(c.log_det || c.sum || c.log_det_z) {}
+          pair(memory.values(s.n_pairs)), r(memory.vectors(s.n_atoms)), logs(c.log_det || c.sum || c.log_det_z),
+          per_uncertain(1 / most_uncertain(schedule.n_bonds)) {}
 
     void read_atoms() {
         for (int32_t i = 0; i < s.n_atoms; ++i)
@@ -100,7 +106,7 @@ struct Metric {
     // kT phi = kT d x normal / q: the force on the second atom, and minus that on the first one. Returns something that
     // is finite if it is.
     HOL_FORCED V turn(MetricRow<V> &x) {
-        least = min(mul_add(Width<V>::all(-1 / most_uncertain), x.error, x.scale), least);
+        least = min(mul_add(Width<V>::all(-per_uncertain), x.error, x.scale), least);
         x.normal = (Width<V>::all(call.kT) / x.q) * cross(x.d, x.normal);
         return abs(x.normal.x) + abs(x.normal.y) + abs(x.normal.z);
     }

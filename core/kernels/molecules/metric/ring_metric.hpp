@@ -54,6 +54,7 @@ private:
                 z = z * x.l;
             } else {  // (z - w g)^2 / P, of which the chain has w g
                 const V both = z - w1 * g;
+                x.off = (abs(z) + abs(w1 * g)) * x.r;
                 to_last(k) = -(both * x.r);
                 taken = mul_add(z * x.r, both - w1 * g, taken);
             }
@@ -66,7 +67,7 @@ private:
         const int32_t last = s.n_bonds - 1;
         MetricRow<V> &x = row[last];
         const V whole = mul_add(w[0], x.q, x.E), P = whole - taken;
-        least = min(mul_add(Width<V>::all(-least_part), max(whole, abs(taken)), P), least);
+        least = min(mul_add(Width<V>::all(-least_kept), max(whole, abs(taken)), P), least);
         x.r = Width<V>::all(1) / P;
         x.rounded = max(whole, abs(taken)) * x.r;
         V F = {};
@@ -74,24 +75,32 @@ private:
         if (this->logs) this->count(x, w[last] + w[0], P, F);
     }
 
-    // Rows of the inverse from the last one back: with the last bond, with the next, and their own.
+    // Rows of the inverse from the last one back: elements with the last bond, with the next, and their own. off: what
+    // these may be wrong by, in roundings.
     void down() {
         const int32_t last = s.n_bonds - 1;
-        const V corner = row[last].r, of_corner = row[last].rounded * corner;
-        V own = corner, beside = corner, off_beside = of_corner;
+        const V corner = row[last].r, off_corner = row[last].rounded * corner;
+        V own = corner, off_own = off_corner, beside = corner, off_beside = off_corner;
+        this->clear(row[last]);
         for (int32_t k = last; k-- > 0;) {
             MetricRow<V> &x = row[k], &y = row[k + 1];
             const V l = x.l, l1 = to_last(k), size = abs(l), size1 = abs(l1);
-            const bool closing = k + 1 == last;
-            const V h_last = closing ? l1 * corner : mul_add(l, beside, l1 * corner),
-                    h = closing ? h_last : mul_add(l, own, l1 * beside),
-                    off_last = mul_add(size, off_beside + abs(beside), size1 * of_corner),
-                    off = closing ? off_last : mul_add(size, own, size1 * (off_beside + abs(beside)));
+            V h = l1 * corner, off = size1 * (off_corner + corner), h_last = h, off_last = off;
+            if (k + 1 == last) {  // it couples to the next bond as the last one alone
+                off_last = off = mul_add(x.off, corner, size1 * off_corner);
+                own = mul_add(l1, h, x.r);
+                off_own = mul_add(size1, off, x.r);
+            } else {
+                h_last = mul_add(l, beside, h);
+                off_last = mul_add(size, off_beside + abs(beside), off);
+                h = mul_add(l, own, l1 * beside);
+                off = mul_add(size, off_own + own, size1 * (off_beside + abs(beside)));
+                own = mul_add(l, h, mul_add(l1, h_last, x.r));
+                off_own = mul_add(size, off, mul_add(size1, off_last, x.r));
+            }
             const Vector3<V> n = x.normal;
-            if (closing) this->clear(y);
             this->clear(x);
             couple(x, y, n, -(w[k + 1] * h), w[k + 1] * off);
-            own = closing ? mul_add(l1, h_last, x.r) : mul_add(l, h, mul_add(l1, h_last, x.r));
             beside = h_last;
             off_beside = off_last;
         }

@@ -70,7 +70,7 @@ private:
         for (int j = 0; j < k; ++j) {
             MetricRow<V> &x = row[child[j]];
             const V P = S[pair_of(j + 1, j)];
-            if (j > 0) least = min(mul_add(Width<V>::all(-least_part), mul_add(w0, x.q, x.E), P), least);
+            if (j > 0) least = min(mul_add(Width<V>::all(-least_kept), mul_add(w0, x.q, x.E), P), least);
             x.r = Width<V>::all(1) / P;
             if (logs) this->count(x, w0 + w[child[j]], P, F[j]);
             for (int a = j + 1; a < k; ++a) {
@@ -102,12 +102,13 @@ private:
             MetricRow<V> &x = row[child[0]];
             x.normal = normal(x, e);
             e.E = (w0 * x.r) * mul_add(e.q, x.E, w0 * dot(x.normal, x.normal));
-            e.rounded = e.E;
+            e.rounded = mul_add(x.l * x.l, x.rounded, e.E);
             return;
         }
         e.E = whole - taken;
         e.rounded = whole;
-        least = min(mul_add(Width<V>::all(-least_part), whole, e.E), least);
+        for (int a = 0; a < k; ++a) e.rounded = mul_add(l[a] * l[a], row[child[a]].rounded, e.rounded);
+        least = min(mul_add(Width<V>::all(-least_kept), whole, e.E), least);
     }
 
     // H of the bonds below an atom, and what they and the one above pull at each other.
@@ -120,8 +121,10 @@ private:
         V H[pairs_to(most)], off[pairs_to(most)] = {}, beside[most], off_beside[most] = {};  // and of H_ce
         inverse<most>(k, child, pair + s.pair_start[slot], H);
         if (known == 1) {
-            const MetricRow<V> &x = row[child[0]];
-            off_beside[0] = above * (abs(x.l) * (x.rounded * x.r));
+            MetricRow<V> &x = row[child[0]];
+            const V off_r = x.r * x.rounded, of_above = top ? V{} : mul_add(above, off_r, row[slot].off);
+            off_beside[0] = abs(x.l) * of_above;
+            x.off = mul_add(x.l * x.l, of_above + above * off_r, x.r * off_r);
         } else {
             uncertain<most>(slot, k, H, off, off_beside);
         }
@@ -180,7 +183,7 @@ private:
     template <int most>
     __attribute__((noinline)) void uncertain(int32_t slot, int k, const V *inverse, V *off, V *off_beside) const {
         const int32_t *const child = children_of(slot);
-        const V *const m = pair + s.pair_start[slot], above = slot < s.n_tree ? row[slot].H : V{};
+        const V *const m = pair + s.pair_start[slot], above = row[slot].H, off_above = row[slot].off;
         const auto of_inverse = [&](int a, int b)
                                     HOL_FORCED { return abs(inverse[a > b ? pair_of(a + 1, b) : pair_of(b + 1, a)]); };
         V T[most][most], B[most][most], of_l[most];  // |S^-1| T, and B |l|
@@ -200,13 +203,17 @@ private:
                 B[a][b] = sum;
                 of_l[a] = mul_add(sum, abs(row[child[b]].l), of_l[a]);
             }
-            off_beside[a] = above * of_l[a];
+            off_beside[a] = mul_add(above, of_l[a], off_above * abs(row[child[a]].l));
         }
         for (int a = 0; a < k; ++a)
-            for (int b = 0; b < a; ++b) {
-                V sum = above * mul_add(of_l[a], abs(row[child[b]].l), of_l[b] * abs(row[child[a]].l));
+            for (int b = 0; b <= a; ++b) {
+                const V la = abs(row[child[a]].l), lb = abs(row[child[b]].l);
+                V sum = mul_add(off_above * la, lb, above * mul_add(of_l[a], lb, of_l[b] * la));
                 for (int j = 0; j < k; ++j) sum = mul_add(B[a][j], of_inverse(j, b), sum);
-                off[pair_of(a + 1, b)] = sum;
+                if (a == b)
+                    row[child[a]].off = sum;
+                else
+                    off[pair_of(a + 1, b)] = sum;
             }
     }
 };
