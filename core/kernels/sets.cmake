@@ -53,7 +53,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 
 option(HOLONOMIC_BASELINE "The kernels that every x86-64 processor runs; OFF for trying changes with one other set (scripts/try)" ON)
-option(HOLONOMIC_TEST_SETS "With the tests, kernels of other numbers of lanes in a library for tests alone" ON)
+option(HOLONOMIC_TEST_SETS "With the tests, kernels of a number of lanes that no set has, in a library for tests alone" OFF)
 set(HOLONOMIC_TEST_LANES "8" CACHE STRING "Their lanes; one, two and four are installed")
 
 # Objects of kernels in the namespace of that name.

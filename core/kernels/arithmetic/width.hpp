@@ -29,6 +29,10 @@ HOL_INLINE double min(double a, double b) { return a < b ? a : b; }
 HOL_INLINE double sqrt(double a) { return __builtin_sqrt(a); }
 HOL_INLINE double mul_sub(double a, double b, double c) { return mul_add(a, b, -c); }
 
+// Bits of the exponent of a double.
+constexpr long long exponent_bits = 0x7ff0000000000000LL;
+constexpr long long exponent_of_one = 0x3ff0000000000000LL;
+
 template <class V>
 struct Width;
 
@@ -46,6 +50,10 @@ struct Width<vec> {
     }
     HOL_STATIC double get(const vec &a, int i) { return a[i]; }
     HOL_STATIC void set(vec &a, int i, double x) { a[i] = x; }
+    typedef mask Integers;
+    HOL_STATIC mask integers(const vec &a) { return as_mask(a); }
+    HOL_STATIC vec of_integers(const mask &m) { return as_vec(m); }
+    HOL_STATIC long long integer(const mask &m, int i) { return m[i]; }
 };
 
 template <>
@@ -58,6 +66,18 @@ struct Width<double> {
     HOL_STATIC Flag of_bits(unsigned b) { return {(b & 1) != 0}; }
     HOL_STATIC double get(double a, int) { return a; }
     HOL_STATIC void set(double &a, int, double x) { a = x; }
+    typedef long long Integers;
+    HOL_STATIC long long integers(double a) {
+        long long m;
+        __builtin_memcpy(&m, &a, sizeof m);
+        return m;
+    }
+    HOL_STATIC double of_integers(long long m) {
+        double a;
+        __builtin_memcpy(&a, &m, sizeof a);
+        return a;
+    }
+    HOL_STATIC long long integer(long long m, int) { return m; }
 };
 
 template <class V>

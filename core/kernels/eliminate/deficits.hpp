@@ -5,7 +5,7 @@
 #ifndef HOLONOMIC_KERNELS_ELIMINATE_DEFICITS_HPP
 #define HOLONOMIC_KERNELS_ELIMINATE_DEFICITS_HPP
 
-#include "core/kernels/arithmetic/exact.hpp"
+#include "core/kernels/arithmetic/log_sum.hpp"
 #include "core/kernels/eliminate/measure_fours.hpp"
 #include "core/kernels/memory/arena.hpp"
 #include "core/kernels/memory/block.hpp"
@@ -31,9 +31,6 @@ struct Geometry {
     }
     static vec3 *vectors(long n, Arena &arena) { return reinterpret_cast<vec3 *>(arena.vecs(3 * n)); }
 };
-
-constexpr long long exponent_bits = 0x7ff0000000000000LL;
-constexpr long long exponent_of_one = 0x3ff0000000000000LL;
 
 // The reciprocal of the power of two just below the largest component.
 HOL_INLINE vec reciprocal_scale(const vec3 &d) {
@@ -95,51 +92,6 @@ static inline void measure(const Block &block, const Geometry &x) {
         x.delta[k] = w_at<uniform>(block, k) * x.complement[k] + w_at<uniform>(block, k + 1) * x.complement[k + 1];
 }
 
-// Sum of the logarithms of factors 1 - x. It takes one logarithm for every few factors.
-struct LogSum {
-    static constexpr int group = 8;
-    vec sum, product, removed;  // removed = 1 - product, without cancellation
-    int n;
-    LogSum() : sum{}, product(splat(1.0)), removed{}, n(0) {}
-    inline HOL_FORCED void multiply(vec factor, vec x) {  // factor = 1 - x
-        removed = mul_add(removed, factor, x);
-        product = product * factor;
-        if (++n == group) flush();
-    }
-    __attribute__((noinline)) void flush() {
-        for (int i = 0; i < W; ++i)
-            sum[i] += product[i] < 0.5 ? __builtin_log(product[i]) : __builtin_log1p(-removed[i]);
-        product = splat(1.0);
-        removed = vec{};
-        n = 0;
-    }
-};
-
-// The same for factors of any size. It adds up mantissas and exponents apart.
-struct LogSumWide {
-    vec sum, mantissas;
-    mask exponents;
-    int n;
-    LogSumWide() : sum{}, mantissas(splat(1.0)), exponents{}, n(0) {}
-    inline HOL_FORCED void multiply(vec factor,
-                                    vec scale) {  // factor / scale^2, scale a power of two
-        const mask f = as_mask(factor), one = mask{} + exponent_of_one;
-        exponents = exponents + (((f & (mask{} + exponent_bits)) - one) >> 52) - 2 * ((as_mask(scale) - one) >> 52);
-        mantissas = mantissas * as_vec((f & (mask{} + 0xfffffffffffffLL)) | one);
-        if (++n == 16) flush();
-    }
-    __attribute__((noinline)) void flush() {
-        for (int i = 0; i < W; ++i) sum[i] += __builtin_log(mantissas[i]);
-        mantissas = splat(1.0);
-        n = 0;
-    }
-    vec total() {
-        flush();
-        for (int i = 0; i < W; ++i) sum[i] += static_cast<double>(exponents[i]) * 0.69314718055994530942;
-        return sum;
-    }
-};
-
 HOL_INLINE mask between(long k, vec first, vec end) {
     const vec v = splat(static_cast<double>(k));
     return less_equal(first, v) & less(v, end);
@@ -165,8 +117,8 @@ static inline MetricSums eliminate_metric(const Block &block, const Geometry &x,
                                           const MetricCall &call, mask &good, const Beside &beside) {
     const bool logs = call.log_det || call.sum;
     const vec headroom = splat(call.force.x ? call.kT * 0x1p300 : 0.0);  // no force overflows
-    LogSum det;
-    LogSumWide det_z;
+    LogSum<vec> det;
+    LogSumWide<vec> det_z;
     vec removed = {};  // p l
     for (long k = 0; k < block.n; ++k) {
         const vec P = e + x.p[k + 1], M = w_at<uniform>(block, k) + w_at<uniform>(block, k + 1);

@@ -1,22 +1,61 @@
-// Metric determinant and Fixman force of molecules that are no chains, one by one.
-#include "core/kernels/careful/careful.hpp"
-#include "core/kernels/molecules/schedule.hpp"
+// Metric determinant and Fixman force of molecules that are no chains: of trees and bare rings in
+// lanes, of others one by one by the careful solver.
+#include "core/kernels/molecules/metric/ring_metric.hpp"
+#include "core/kernels/molecules/metric/tree_metric.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
 
+using namespace graph;
+
+namespace {
+
+void careful_metric(const MetricCall &call, const Schedule &schedule, const MoleculeLane &lane, double *scratch,
+                    Tally &tally) {
+    const CarefulPlan &plan = *(schedule.careful ? schedule.careful : schedule.late_careful);
+    HOL_CAREFUL::careful::metric(call, plan, lane, scratch, tally);
+}
+
+// Shape: TreeMetric or RingMetric.
+template <template <class> class Shape>
+struct MetricWork {
+    const MetricCall &call;
+    const Schedule &schedule;
+    Tally &tally;
+
+    template <class V>
+    void block(const MoleculeLane *lane, int used, bool, double *scratch) const {
+        Shape<V> x(call, schedule, lane, used, {scratch});
+        const unsigned all = bits(Width<V>::first(used)), good = bits(x.solve()) & all;
+        x.write(good, tally);
+        // Its memory is free now.
+        for (unsigned rest = all & ~good; rest; rest &= rest - 1)
+            careful_metric(call, schedule, lane[__builtin_ctz(rest)], scratch, tally);
+    }
+};
+
+bool is_tree(const Schedule &s) { return s.type == Schedule::tree && s.max_children <= most_decomposed; }
+bool is_bare_ring(const Schedule &s) { return s.type == Schedule::ring && s.n_tree == 0; }
+
+}  // namespace
+
+int64_t metric_bytes(const Schedule &s) {
+    if (!is_tree(s) && !is_bare_ring(s)) return 0;
+    return s.n_bonds <= largest_in_lanes ? Metric<vec>::values(s) * static_cast<int64_t>(sizeof(vec))
+                                         : Metric<double>::values(s) * static_cast<int64_t>(sizeof(double));
+}
+
 void molecules_metric(const MetricCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const Schedule &schedule = *unit.schedule;
-    for (int64_t i = 0; i < unit.count; ++i) {
-        MoleculeLane lane = unit.lanes[unit.regular ? 0 : i];
-        if (unit.regular) {
-            lane.first_atom += i * schedule.n_atoms;
-            if (lane.atoms) lane.atoms += i * schedule.n_atoms;
-            lane.molecule += i;
-        }
-        const CarefulPlan &plan = *(schedule.careful ? schedule.careful : schedule.late_careful);
-        HOL_CAREFUL::careful::metric(call, plan, lane, scratch, tally);
+    if (is_tree(schedule)) {
+        const MetricWork<TreeMetric> work = {call, schedule, tally};
+        return for_each_block(unit, scratch, work);
     }
+    if (is_bare_ring(schedule)) {
+        const MetricWork<RingMetric> work = {call, schedule, tally};
+        return for_each_block(unit, scratch, work);
+    }
+    for (int64_t i = 0; i < unit.count; ++i) careful_metric(call, schedule, molecule_of(unit, i), scratch, tally);
 }
 
 }  // namespace holonomic::HOL_ISA

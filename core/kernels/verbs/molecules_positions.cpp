@@ -11,7 +11,7 @@ namespace holonomic::HOL_ISA {
 
 using namespace graph;
 
-// What a block takes at the greediest level, and the careful solver behind it.
+// What a block takes at the greediest level, and the careful solver behind it. That of a metric comes in its place.
 template <class V>
 static int64_t block_bytes(const Schedule &s) {
     const int64_t linear = Linear<V>::values(s), newton = Newton<V>::values(s);
@@ -31,8 +31,9 @@ int64_t molecules_scratch_bytes(const Schedule &s) {
     }
     const int64_t block = s.n_bonds <= largest_in_lanes ? block_bytes<vec>(s) : block_bytes<double>(s),
                   flat = s.flat ? flat_bytes(*s.flat) : 0, paths = s.paths ? path_positions_bytes(s) : 0,
-                  most = block > flat ? block : flat;
-    return (most > paths ? most : paths) + 64 + s.careful->scratch_bytes;
+                  most = block > flat ? block : flat,
+                  linear = (most > paths ? most : paths) + 64 + s.careful->scratch_bytes, metric = metric_bytes(s);
+    return linear > metric ? linear : metric;
 }
 
 // Along paths, where there are some and they will do.

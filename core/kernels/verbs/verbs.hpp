@@ -28,6 +28,7 @@ bool long_positions(const PositionsCall &, const Lane &, const LongTeam &, doubl
 void metric(const MetricCall &, const Unit &, double *scratch, Tally &);
 int64_t long_metric_bytes(int64_t n_bonds);
 bool long_metric(const MetricCall &, const Lane &, const LongTeam &, double *store, Tally &);
+int64_t metric_bytes(const Schedule &);
 void molecules_metric(const MetricCall &, const MoleculeUnit &, double *scratch, Tally &);
 
 int64_t molecules_scratch_bytes(const Schedule &);
