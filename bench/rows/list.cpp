@@ -202,6 +202,8 @@ void add_options(List &list) {
     });
     list.one("metric, butane", of(400, [] { return bench::formula_kind("C(H)(H)(H)C(H)(H)C(H)(H)C(H)(H)H"); }), false,
              true, metric);
+    list.one("metric, comb, 20 + 20", of(150, [] { return bench::comb_kind(20, 1); }), false, true, metric);
+    list.one("metric, ring of 50", of(120, [] { return bench::ring_kind(50); }), false, true, metric);
     list.one("solve, 32 bonds", coil(32), false, true, [](const Call &c) {
         Arrays &a = c.arrays;
         return c.library.hol_solve(c.chains, a.r.packed(), a.f.packed(), a.more.data(), a.g.packed(), HOL_WRITE,
