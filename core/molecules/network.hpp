@@ -7,6 +7,7 @@
 
 #include "core/kernels/molecules/network/network_plan.hpp"
 #include "core/kernels/molecules/schedule.hpp"
+#include "core/molecules/fronts.hpp"
 #include "core/molecules/lists.hpp"
 
 namespace holonomic {
@@ -16,6 +17,7 @@ struct NetworkArrays {
     Numbers bundle_start, node_start, atom_of, bond_of, from, to, strand_node, strand_unknown, own_start, place_of,
         node_of, partner, foreign_start, foreign, other_node, child_start, child;
     std::vector<double> sign;
+    FrontArrays fronts;
     NetworkPlan plan{};
 };
 
@@ -25,7 +27,8 @@ constexpr std::int32_t many_strands = 64, long_strand = 4;
 constexpr std::int64_t most_bytes_of_list = 20000;
 
 // Of a molecule whose trees have been numbered, with all bonds between atoms of the core behind them.
-void make_network(const Schedule &s, NetworkArrays &arrays);
+// Its unknowns can be eliminated directly if that takes no more than most_bytes.
+void make_network(const Schedule &s, std::int64_t most_bytes, NetworkArrays &arrays);
 
 std::size_t bytes_of(const NetworkArrays &arrays);
 

@@ -309,7 +309,7 @@ std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bon
     maker.make();
     point_into(*s, m);
     if (!maker.is_network()) return s;
-    make_network(*s, m.network);
+    make_network(*s, most_bytes, m.network);
     s->network = &m.network.plan;
     return s;
 }

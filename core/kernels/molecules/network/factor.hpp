@@ -27,12 +27,13 @@ struct NetFactor {
     Vector3<double> *push;          // [n_tree] of those: from their y
     Unknowns unknowns;
 
-    static int64_t values(const NetworkPlan &s) {
-        return 5 * in_fours(s.n_bonds) + in_fours(12 * static_cast<int64_t>(s.n_tree)) + Unknowns::values(s);
+    static int64_t values(const NetworkPlan &s, bool symmetric) {
+        return 5 * in_fours(s.n_bonds) + in_fours(12 * static_cast<int64_t>(s.n_tree)) +
+               Unknowns::values(s, symmetric);
     }
     // D != b: a matrix that is not symmetric.
     NetFactor(const Net &of, const Net3 &bonds, bool symmetric, Memory<double> &memory)
-        : net(of), s(of.s), b(bonds), unknowns(of, memory) {
+        : net(of), s(of.s), b(bonds), unknowns(of, symmetric, memory) {
         const int64_t n = in_fours(s.n_bonds);
         to_last = memory.values(n);
         from_last = symmetric ? to_last : memory.values(n);

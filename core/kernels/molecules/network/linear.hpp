@@ -36,7 +36,7 @@ struct NetLinear {
 
     static int64_t values(const NetworkPlan &s) {
         return Net::values(s) + 12 * in_fours(s.n_atoms) + 7 * in_fours(s.n_bonds) + in_fours(s.n_atoms) +
-               in_fours(s.n_shares + 1) + NetFactor::values(s) + 6 * in_fours(s.n_atoms);
+               in_fours(s.n_shares + 1) + NetFactor::values(s, true) + 6 * in_fours(s.n_atoms);
     }
     NetLinear(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
               const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> memory)

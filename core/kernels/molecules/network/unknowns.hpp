@@ -5,6 +5,7 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_UNKNOWNS_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_NETWORK_UNKNOWNS_HPP
 
+#include "core/kernels/molecules/network/fronts.hpp"
 #include "core/kernels/molecules/network/strands.hpp"
 #include "core/kernels/molecules/network/tensor.hpp"
 
@@ -28,15 +29,19 @@ struct Unknowns {
     NetNode *node;
     double *sum;                                       // [n_node_shares][3]
     double *r, *shadow, *p, *p_node, *v, *s_node, *t;  // s takes the place of r
+    Fronts fronts;
+    mutable bool direct = false, tried = false;  // fronts are used; or have been tried
+    mutable double spent = 0;                    // rounds without them
 
     static constexpr int64_t node_values = static_cast<int64_t>(sizeof(NetNode) / sizeof(double));
 
-    static int64_t values(const NetworkPlan &s) {
-        return in_fours(node_values * static_cast<int64_t>(s.n_nodes)) + in_fours(3 * static_cast<int64_t>(s.n_tree)) +
+    static int64_t values(const NetworkPlan &s, bool symmetric) {
+        return Fronts::values(s.fronts, symmetric) + in_fours(node_values * static_cast<int64_t>(s.n_nodes)) + in_fours(3 * static_cast<int64_t>(s.n_tree)) +
                in_fours(3 * static_cast<int64_t>(s.n_node_shares)) +
                2 * in_fours(3 * static_cast<int64_t>(s.n_unknowns)) + 13 * in_fours(s.n_unknowns);
     }
-    Unknowns(const Net &of, Memory<double> &memory) : net(of), s(of.s) {
+    Unknowns(const Net &of, bool symmetric, Memory<double> &memory)
+        : net(of), s(of.s), fronts(of.s.fronts, symmetric, memory) {
         const int64_t n = in_fours(s.n_unknowns);
         node = reinterpret_cast<NetNode *>(memory.values(in_fours(node_values * static_cast<int64_t>(s.n_nodes))));
         tree_bond = reinterpret_cast<Vector3<double> *>(memory.values(in_fours(3 * static_cast<int64_t>(s.n_tree))));
@@ -71,6 +76,8 @@ struct Unknowns {
         });
     }
     void factorize() const {
+        direct = tried = false;
+        spent = 0;
         net.for_nodes([&](int32_t first, int32_t end, int32_t) {
             for (int32_t n = first; n < end; ++n) {
                 Tensor a = node[n].per_mass;
@@ -81,6 +88,7 @@ struct Unknowns {
                 node[n].with_ends = inverse_of(a);
             }
         });
+        if (s.fronts.rounds <= few_rounds) use_fronts();
     }
     // Of a node with its trees, by these values of the ends.
     Vector3<double> acceleration_of(int32_t n, const double *of) const {
@@ -106,18 +114,20 @@ struct Unknowns {
         Sums all = sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
             for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
                 x[u] = 0;
-                r[u] = shadow[u] = p[u] = y[u];
+                r[u] = y[u];
                 one.a = mul_add(y[u], y[u], one.a);
                 size[u] = sizes ? rounding_part * (sizes[s.place_of[u]] * sizes[s.place_of[u]]) : 0;
             }
-            precondition(first, end, p, p_node);
         });
-        const double enough = part * part * all.a,
-                     enough_of_one = (least_of_mean * rounding_part) * all.a / s.n_unknowns;
-        const auto is_enough = [&] { return all.a <= enough && (!sizes || all.most <= enough_of_one); };
         if (!(all.a > 0)) return all.a == 0 ? 0 : -1;
-        double rho = all.a, looked_at = all.a;
+        const Goal goal = {part * part * all.a, (least_of_mean * rounding_part) * all.a / s.n_unknowns, sizes != nullptr};
+        const double whole = all.a;
+        double rho = 0, looked_at = all.a;
         for (int32_t round = 1; round <= most_rounds; ++round) {
+            if (round == 1 || (is_slow(round - 1, whole, all.a, goal) && use_fronts())) {
+                begin();
+                rho = looked_at = all.a;
+            }
             all = multiply(p, p_node, v, [&](int32_t u, Sums &one) { one.a = mul_add(shadow[u], v[u], one.a); });
             const double alpha = rho / all.a;
             all = sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
@@ -126,10 +136,12 @@ struct Unknowns {
                     r[u] = mul_add(-alpha, v[u], r[u]);
                     note_left(u, one);
                 }
-                precondition(first, end, r, s_node);
+                if (!direct) precondition(first, end, r, s_node);
             });
+            spent += direct ? 0 : 1;
             if (!(all.a < 1e300)) return -1;
-            if (is_enough()) return round;
+            if (goal.is_reached(all)) return round;
+            if (direct) precondition_all(r, s_node);
             all = multiply(r, s_node, t, [&](int32_t u, Sums &one) {
                 one.a = mul_add(t[u], r[u], one.a);
                 one.b = mul_add(t[u], t[u], one.b);
@@ -143,8 +155,8 @@ struct Unknowns {
                     one.b = mul_add(shadow[u], r[u], one.b);
                 }
             });
-            if (all.a < 1e300 && is_enough()) return round;
-            if (round % look_after == 0) {
+            if (all.a < 1e300 && goal.is_reached(all)) return round;
+            if (round % (direct ? few_rounds : look_after) == 0) {
                 if (!(all.a < least_progress * looked_at)) return -1;
                 looked_at = all.a;
             }
@@ -154,8 +166,9 @@ struct Unknowns {
             net.for_nodes([&](int32_t first, int32_t end, int32_t) {
                 for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u)
                     p[u] = mul_add(beta, mul_add(-omega, v[u], p[u]), r[u]);
-                precondition(first, end, p, p_node);
+                if (!direct) precondition(first, end, p, p_node);
             });
+            if (direct) precondition_all(p, p_node);
         }
         return -1;
     }
@@ -164,10 +177,81 @@ private:
     // So many rounds have to take squares down to less than this part.
     static constexpr int32_t most_rounds = 2000, look_after = 64;
     static constexpr double least_progress = 0.1;
-    static constexpr double rounding_part = 16 * epsilon * 16 * epsilon, least_of_mean = 1. / 256;  // of squares
+    static constexpr double rounding_part = 16 * epsilon * 16 * epsilon, least_of_mean = 1. / 256,  // of squares
+                            least_share = 16 * epsilon;
+    static constexpr int32_t few_rounds = 8;
     struct Sums {
         double a, b, most;
     };
+    // Squares of what may be left: of all together, and of one beyond its rounding.
+    struct Goal {
+        double of_all, of_one;
+        bool by_one;
+        bool is_reached(const Sums &left) const { return left.a <= of_all && (!by_one || left.most <= of_one); }
+    };
+    void begin() const {
+        net.for_nodes([&](int32_t first, int32_t end, int32_t) {
+            for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) shadow[u] = p[u] = r[u];
+            if (!direct) precondition(first, end, p, p_node);
+        });
+        if (direct) precondition_all(p, p_node);
+    }
+
+    // Whether rounds have taken as long as fronts do, or will: as many orders as each has gained so far. `taken` of them
+    // took squares down from `whole` to `left`.
+    bool is_slow(int32_t taken, double whole, double left, const Goal &goal) const {
+        if (direct || tried) return false;
+        if (spent >= s.fronts.rounds) return true;
+        const int gained = order_of(whole) - order_of(left),
+                  wanted = goal.by_one ? 2 * 46 : order_of(whole) - order_of(goal.of_all);
+        return taken > 1 && (wanted - gained) * static_cast<double>(taken) > (gained > 0 ? gained : 0) * s.fronts.rounds;
+    }
+    // Of a square: binary exponent.
+    HOL_STATIC int order_of(double a) {
+        uint64_t bits_of_a;
+        __builtin_memcpy(&bits_of_a, &a, sizeof a);
+        return static_cast<int>(bits_of_a >> 52 & 2047);
+    }
+    __attribute__((noinline)) bool use_fronts() const {
+        if (tried || s.fronts.n_fronts == 0) return false;
+        tried = true;
+        return direct = fronts.factorize(
+                   least_share, [&](const FrontPlan::Front &f, const Dense &a) { add_terms(f, a); },
+                   [&](int32_t u) { return E[u] + dot(D[u], node[s.node_of[u]].mass * b[u]); });
+    }
+    // Calls each(unknown, row, sign) for all whose bonds meet at a node.
+    template <class Each>
+    HOL_FORCED void for_unknowns_at(int32_t n, const Each &each) const {
+        for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u) each(u, s.fronts.own_row[u], s.sign[u]);
+        for (int32_t f = s.foreign_start[n]; f < s.foreign_start[n + 1]; ++f)
+            each(s.foreign[f], s.fronts.foreign_row[f], -1.0);
+    }
+    // What the nodes of a leaf, and the strands whose last ends are there, add to its matrix.
+    __attribute__((noinline)) void add_terms(const FrontPlan::Front &front, const Dense &a) const {
+        const auto add = [&](int32_t row, int32_t column, double value) HOL_FORCED {
+            if (row >= column || !a.symmetric()) Fronts::element(front, a, row, column) += value;
+        };
+        for (int32_t i = front.first_node; i < front.end_node; ++i) {
+            const int32_t n = s.fronts.node[i];
+            for_unknowns_at(n, [&](int32_t by, int32_t column, double sign) HOL_FORCED {
+                const Vector3<double> push = node[n].mass * (sign * b[by]);
+                for_unknowns_at(n, [&](int32_t on, int32_t row, double sign_of_row)
+                                       HOL_FORCED { add(row, column, sign_of_row * dot(D[on], push)); });
+            });
+            for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u) {
+                const int32_t row = s.fronts.own_row[u], other = s.fronts.partner_row[u];
+                if (s.other_node[u] < 0) add(row, row, E[u]);
+                if (other < 0) continue;
+                add(row, other, coupling[u]);
+                add(other, row, coupling[s.partner[u]]);
+            }
+        }
+    }
+    void precondition_all(const double *of, double *to) const {
+        for (int32_t u = 0; u < s.n_unknowns; ++u) to[u] = of[u];
+        fronts.solve(to);
+    }
+
     void note_left(int32_t u, Sums &of) const {
         const double square = r[u] * r[u];
         of.a += square;
@@ -208,10 +292,22 @@ private:
         }
     }
     // What strands couple, and what bonds do at the nodes where they are foreign, added to `own`, which is M times
-    // `of`.
+    // `of`; with fronts, all terms of the matrix.
     template <class Body>
     HOL_FORCED Sums multiply(const double *own, const double *of, double *to, const Body &body) const {
-        if (s.has_foreign) accelerate_nodes(of);
+        if (s.has_foreign || direct) accelerate_nodes(of);
+        if (direct)
+            return sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
+                for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
+                    double value = s.sign[u] * dot(D[u], node[s.node_of[u]].all);
+                    if (s.other_node[u] >= 0)
+                        value -= dot(D[u], node[s.other_node[u]].all);
+                    else
+                        value = mul_add(E[u], of[u], mul_add(coupling[u], of[s.partner[u]], value));
+                    to[u] = value;
+                    body(u, one);
+                }
+            });
         return sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
             for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
                 double value = mul_add(coupling[u], of[s.partner[u]], own[u]);
