@@ -11,7 +11,7 @@ namespace holonomic {
 namespace {
 
 // A part of so many unknowns is not halved: its matrix is dense enough.
-constexpr std::int32_t most_of_leaf = 24;
+constexpr std::int32_t most_of_leaf = 64;
 
 std::int32_t size_of(const Numbers &list) { return static_cast<std::int32_t>(list.size()); }
 

@@ -88,7 +88,7 @@ struct Unknowns {
                 node[n].with_ends = inverse_of(a);
             }
         });
-        if (s.fronts.rounds <= 2) use_fronts();
+        if (s.fronts.rounds <= 30) use_fronts();
     }
     // Of a node with its trees, by these values of the ends.
     Vector3<double> acceleration_of(int32_t n, const double *of) const {
