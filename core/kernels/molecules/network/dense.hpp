@@ -25,13 +25,13 @@ struct Dense {
     bool symmetric() const { return lower == upper; }
 
     // per_pivot has whole diagonal elements. False if a pivot is not more than this part of its own.
-    __attribute__((noinline)) bool eliminate(double least_pivot) const {
+    __attribute__((noinline)) bool eliminate(double least_left) const {
         double *const other = factor + static_cast<int64_t>(panel) * height;
         bool good = true;
         for (int32_t first = 0; first < own; first += panel) {
             const int32_t end = own - first < panel ? own : first + panel;
             for (int32_t c = first; c < end; c += step) {
-                good = divide_step(c, least_pivot) && good;
+                good = divide_step(c, least_left) && good;
                 list_factors(upper, c, first, factor);
                 if (!symmetric()) list_factors(lower, c, first, other);
                 subtract(lower, height, lower, c, c + step, end, factor + c - first);
@@ -92,14 +92,14 @@ private:
     }
 
     // Columns c to c + step of L, rows of U.
-    bool divide_step(int32_t c, double least_pivot) const {
+    bool divide_step(int32_t c, double least_left) const {
         double *const l = &at(lower, 0, c), *const u = &at(upper, 0, c);
         bool good = true;
         double pivot[step], per[step];
         for (int32_t p = 0; p < step; ++p) {
             double *const lp = l + p * height + c, *const up = u + p * height + c;
             const double d = lp[p], whole = per_pivot[c + p];
-            good = good && d > least_pivot * whole;
+            good = good && d > least_left * whole;
             pivot[p] = d;
             per[p] = per_pivot[c + p] = 1 / d;
             for (int32_t q = p + 1; q < step; ++q) {

@@ -26,6 +26,7 @@ struct FrontPlan {
     const int32_t *foreign_row;      // of the places in NetworkPlan::foreign, likewise
     const int32_t *partner_row;      // [n_unknowns] in the leaf of the unknown's node, where that couples the two; or -1
     double rounds;                   // of the iteration that take as long as the fronts
+    bool at_once;                    // whether it would take more
 };
 
 }  // namespace holonomic

@@ -63,7 +63,7 @@ struct Fronts {
     }
     // Calls add(front, its matrix) for leaves, which adds their terms; diagonal(unknown): the whole element.
     template <class Add, class Diagonal>
-    bool factorize(double least_pivot, const Add &add, const Diagonal &diagonal) const {
+    bool factorize(double least_left, const Add &add, const Diagonal &diagonal) const {
         double *top = waiting;
         int64_t entry = 0, pivot = 0;
         for (int32_t f = 0; f < s.n_fronts; ++f) {
@@ -81,7 +81,7 @@ struct Fronts {
             }
             if (front.half[0] < 0) add(front, a);
             for (int i = 1; i >= 0 && front.half[i] >= 0; --i) top = take_half(s.front[front.half[i]], front, a, top);
-            if (!a.eliminate(least_pivot)) return false;
+            if (!a.eliminate(least_left)) return false;
             for (int64_t i = 0; i < rest * rest; ++i) top[i] = a.left[i];
             top += rest * rest;
             entry += n;

@@ -31,12 +31,12 @@ struct NetLinear {
     double *tension;                  // by site, sum of |t| |d|
     double *worst;                    // [n_shares + 1]
     NetFactor factor;
-    Pair3<double> *a;            // by site, in twice the precision
+    Pair3<double> *a;            // of nodes and atoms of trees, in twice the precision
     mutable int64_t rounds = 0;  // that the unknowns have taken so far
 
     static int64_t values(const NetworkPlan &s) {
         return Net::values(s) + 12 * in_fours(s.n_atoms) + 7 * in_fours(s.n_bonds) + in_fours(s.n_atoms) +
-               in_fours(s.n_shares + 1) + NetFactor::values(s, true) + 6 * in_fours(s.n_atoms);
+               in_fours(s.n_shares + 1) + NetFactor::values(s, true) + 6 * in_fours(s.n_nodes + s.n_tree);
     }
     NetLinear(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
               const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> memory)
@@ -46,7 +46,7 @@ struct NetLinear {
           side(memory.values(in_fours(s.n_bonds))), size_of_side(memory.values(in_fours(s.n_bonds))),
           enough(memory.values(in_fours(s.n_bonds))), tension(memory.values(in_fours(s.n_atoms))),
           worst(memory.values(in_fours(s.n_shares + 1))), factor(net, d, true, memory),
-          a(reinterpret_cast<Pair3<double> *>(memory.values(6 * in_fours(s.n_atoms)))) {}
+          a(reinterpret_cast<Pair3<double> *>(memory.values(6 * in_fours(s.n_nodes + s.n_tree)))) {}
 
     bool has(int wanted) const { return (terms & wanted) != 0; }
 
@@ -258,13 +258,94 @@ struct NetLinear {
         if (in.strain) sum = add_pairs(sum, {stretching(in.strain, d.get<double>(k)), 0.0});
         return sum.hi + sum.lo;
     }
+    // What the multipliers of `solution` leave, into t.
     __attribute__((noinline)) void find_residuals(const double *solution) const {
-        net.for_ranges(0, s.n_atoms, [&](int32_t first, int32_t end) {
-            for (int32_t i = first; i < end; ++i) a[i] = acceleration_of(i, solution, true);
+        net.for_ranges(s.first_node, s.n_atoms, [&](int32_t first, int32_t end) {
+            for (int32_t i = first; i < end; ++i) a[i - s.first_node] = acceleration_of(i, solution, true);
         });
-        net.for_ranges(0, s.n_bonds, [&](int32_t first, int32_t end) {
-            for (int32_t k = first; k < end; ++k) t[k] = residual_of(k, unrounded(k), a[s.from[k]], a[s.to[k]]);
+        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k)
+            t[k] = residual_of(k, unrounded(k), a[s.from[k] - s.first_node], a[s.to[k] - s.first_node]);
+        net.for_parts([&](const NetPart &part) { find_residuals(part, solution); });
+    }
+    __attribute__((noinline)) void find_residuals(const NetPart &part, const double *solution) const {
+        net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
+            typedef decltype(width) V;
+            const auto site_of = [&](int32_t k) { return g.site + k * g.step; };
+            const auto behind = [&](int32_t k, const Net3 &of) HOL_FORCED {  // at the atom behind bond k
+                return k + 1 < g.length ? of.get<V>(site_of(k)) : net.at_node<V>(g, 1, of);
+            };
+            const auto bond_to = [&](const Vector3<V> &from, const Vector3<V> &to) HOL_FORCED {
+                Vector3<V> hi, lo;
+                unrounded_bond(box, from, to, hi, lo);
+                return pairs_of(hi, lo);
+            };
+            const Vector3<V> zero = {};
+            Vector3<V> at_atom = behind(0, r), speed = has(squares) ? net.at_node<V>(g, 0, v) : zero;
+            Pair3<V> from = at_node<V>(g, 0), bond = bond_to(net.at_node<V>(g, 0, r), at_atom);
+            for (int32_t k = 0; k < g.length; ++k) {
+                const int32_t place = g.place + k * g.step;
+                Pair3<V> to, next = bond;
+                if (k + 1 < g.length) {
+                    const Vector3<V> beyond = behind(k + 1, r);
+                    next = bond_to(at_atom, beyond);
+                    at_atom = beyond;
+                    to = pairs_of(has(pulls) ? force_at<V>(site_of(k)) : zero, zero);
+                    to = add_pairs(to, scale_pairs(load_any<V>(solution + place + g.step), next));
+                    to = subtract_pairs(to, scale_pairs(load_any<V>(solution + place), bond));
+                    to = scale_pairs(load_any<V>(net.w + site_of(k)), to);
+                    if (has(rates)) to = add_pairs(to, pairs_of(v.get<V>(site_of(k)), zero));
+                } else {
+                    to = at_node<V>(g, 1);
+                }
+                Pair<V> sum = dot_pairs(bond, subtract_pairs(to, from));
+                if (has(squares)) {
+                    const Vector3<V> faster = behind(k, v);
+                    const Pair3<V> change = difference_of(speed, faster);
+                    sum = add_pairs(sum, dot_pairs(change, change));
+                    speed = faster;
+                }
+                if (in.rhs || in.strain) sum = add_pairs(sum, Pair<V>{given_to<V>(place), V{}});
+                store_any(t + place, sum.hi + sum.lo);
+                from = to;
+                bond = next;
+            }
         });
+    }
+    // Of the nodes at the ends of strands, in twice the precision.
+    template <class V>
+    HOL_FORCED Pair3<V> at_node(const NetStrands &g, int end) const {
+        Pair3<V> all = {};
+        for (int i = 0; i < Width<V>::lanes; ++i) {
+            const Pair3<double> &one = a[s.strand_node[2 * (g.strand + i) + end]];
+            const auto put = [&](Pair<V> &to, const Pair<double> &of) HOL_FORCED {
+                Width<V>::set(to.hi, i, of.hi);
+                Width<V>::set(to.lo, i, of.lo);
+            };
+            put(all.x, one.x);
+            put(all.y, one.y);
+            put(all.z, one.z);
+        }
+        return all;
+    }
+    template <class V>
+    HOL_FORCED Vector3<V> force_at(int32_t site) const {
+        Vector3<V> all = {};
+        for (int i = 0; i < Width<V>::lanes; ++i) {
+            const Vector3<double> one = read(*in.f, net.at, s.atom_of[site + i]);
+            Width<V>::set(all.x, i, one.x);
+            Width<V>::set(all.y, i, one.y);
+            Width<V>::set(all.z, i, one.z);
+        }
+        return all;
+    }
+    template <class V>
+    HOL_FORCED V given_to(int32_t place) const {
+        V all = {};
+        for (int i = 0; i < Width<V>::lanes; ++i)
+            Width<V>::set(all, i,
+                          in.rhs ? 0.5 * in.rhs[net.lane.first_bond + s.bond_of[place + i]]
+                                 : stretching(in.strain, d.get<double>(place + i)));
+        return all;
     }
 
     // Velocities v + w G; with `again` once more projected: what their rounding leaves.

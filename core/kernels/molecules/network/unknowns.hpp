@@ -31,7 +31,6 @@ struct Unknowns {
     double *r, *shadow, *p, *p_node, *v, *s_node, *t;  // s takes the place of r
     Fronts fronts;
     mutable bool direct = false, tried = false;  // fronts are used; or have been tried
-    mutable double spent = 0;                    // rounds without them
 
     static constexpr int64_t node_values = static_cast<int64_t>(sizeof(NetNode) / sizeof(double));
 
@@ -77,7 +76,6 @@ struct Unknowns {
     }
     void factorize() const {
         direct = tried = false;
-        spent = 0;
         net.for_nodes([&](int32_t first, int32_t end, int32_t) {
             for (int32_t n = first; n < end; ++n) {
                 Tensor a = node[n].per_mass;
@@ -88,7 +86,7 @@ struct Unknowns {
                 node[n].with_ends = inverse_of(a);
             }
         });
-        if (s.fronts.rounds <= 30) use_fronts();
+        if (s.fronts.at_once) use_fronts();
     }
     // Of a node with its trees, by these values of the ends.
     Vector3<double> acceleration_of(int32_t n, const double *of) const {
@@ -138,7 +136,6 @@ struct Unknowns {
                 }
                 if (!direct) precondition(first, end, r, s_node);
             });
-            spent += direct ? 0 : 1;
             if (!(all.a < 1e300)) return -1;
             if (goal.is_reached(all)) return round;
             if (direct) precondition_all(r, s_node);
@@ -197,14 +194,14 @@ private:
         if (direct) precondition_all(p, p_node);
     }
 
-    // Whether rounds have taken as long as fronts do, or will: as many orders as each has gained so far. `taken` of them
-    // took squares down from `whole` to `left`.
+    // Whether it takes more rounds than fronts do, and a good part of these yet, if each gains as many orders as the ones
+    // so far: `taken` of them took squares down from `whole` to `left`.
     bool is_slow(int32_t taken, double whole, double left, const Goal &goal) const {
         if (direct || tried) return false;
-        if (spent >= s.fronts.rounds) return true;
         const int gained = order_of(whole) - order_of(left),
                   wanted = goal.by_one ? 2 * 46 : order_of(whole) - order_of(goal.of_all);
-        return taken > 1 && (wanted - gained) * static_cast<double>(taken) > (gained > 0 ? gained : 0) * s.fronts.rounds;
+        const double can_take = s.fronts.rounds * (gained > 0 ? gained : 0);
+        return taken > 1 && taken * wanted > can_take && 4 * taken * (wanted - gained) > can_take;
     }
     // Of a square: binary exponent.
     HOL_STATIC int order_of(double a) {
