@@ -4,7 +4,6 @@
 #include "core/molecules/bisection.hpp"
 
 #include <algorithm>
-#include <queue>
 #include <utility>
 
 namespace holonomic {
@@ -13,7 +12,7 @@ namespace {
 
 using Sides = std::vector<unsigned char>;
 constexpr std::int32_t coarsest = 40;  // vertices
-constexpr int most_passes = 4, most_in_vain = 40, seeds = 6;
+constexpr int most_passes = 2, most_in_vain = 40, seeds = 3;
 
 std::int64_t whole(const Graph &g) {
     std::int64_t sum = 0;
@@ -83,18 +82,59 @@ Graph coarser(const Graph &g, const Numbers &to, std::int32_t n) {
     return c;
 }
 
+// The vertices of one side by what their move gains, the last that was entered first.
+class Gains {
+public:
+    Gains(std::int32_t n, std::int32_t most) : most_(most), top_(0), first_(at(2 * most + 1), -1), next_(at(n)), before_(at(n)) {}
+    void enter(std::int32_t i, std::int32_t gain) {
+        const std::int32_t g = gain + most_, head = first_[at(g)];
+        next_[at(i)] = head;
+        before_[at(i)] = ~g;
+        if (head >= 0) before_[at(head)] = i;
+        first_[at(g)] = i;
+        top_ = std::max(top_, g);
+    }
+    void leave(std::int32_t i) {
+        const std::int32_t b = before_[at(i)], n = next_[at(i)];
+        (b < 0 ? first_[at(~b)] : next_[at(b)]) = n;
+        if (n >= 0) before_[at(n)] = b;
+    }
+    // The one that gains most, or -1.
+    std::int32_t best() {
+        while (top_ > 0 && first_[at(top_)] < 0) --top_;
+        return first_[at(top_)];
+    }
+    void clear() { std::fill(first_.begin(), first_.end(), -1); }
+
+private:
+    const std::int32_t most_;
+    std::int32_t top_;
+    Numbers first_, next_, before_;
+};
+
 // Moves vertices from side to side.
 class Refinement {
 public:
-    Refinement(const Graph &g, Sides &side) : g_(g), side_(side), gain_(at(g.size())), locked_(at(g.size())) {
+    Refinement(const Graph &g, Sides &side)
+        : g_(g), side_(side), degree_(at(g.size())), gain_(at(g.size())), state_(at(g.size())) {
         const std::int64_t all = whole(g);
+        std::int32_t most_gain = 0;
         most_ = all * 11 / 20;
         for (std::int32_t i = 0; i < g.size(); ++i) {
             weight_[side[at(i)]] += g.weight[at(i)];
             most_ = std::max(most_, (all + g.weight[at(i)]) / 2);
-            for_edges(g, i, [&](std::int32_t j, std::int32_t w) { cut_ += side[at(i)] != side[at(j)] ? w : 0; });
+            std::int32_t away = 0, degree = 0;
+            for_edges(g, i, [&](std::int32_t j, std::int32_t w) {
+                degree += w;
+                away += side[at(i)] != side[at(j)] ? w : 0;
+            });
+            degree_[at(i)] = degree;
+            gain_[at(i)] = 2 * away - degree;
+            most_gain = std::max(most_gain, degree);
+            cut_ += away;
         }
         cut_ /= 2;
+        for (int s = 0; s < 2; ++s) gains_.emplace_back(g.size(), most_gain);
     }
     void refine() {
         for (int pass = 0; pass < most_passes && improve(); ++pass)
@@ -106,23 +146,13 @@ public:
     }
 
 private:
-    struct Entry {
-        std::int32_t gain, vertex;
-        bool operator<(const Entry &b) const { return gain != b.gain ? gain < b.gain : vertex > b.vertex; }
-    };
+    enum State : unsigned char { outside, entered, moved };
 
-    void enter(std::int32_t i) { best_[side_[at(i)]].push({gain_[at(i)], i}); }
-    // The vertex of a side that gains most, or -1.
-    std::int32_t top(int side) {
-        auto &queue = best_[side];
-        while (!queue.empty()) {
-            const Entry e = queue.top();
-            if (!locked_[at(e.vertex)] && side_[at(e.vertex)] == side && gain_[at(e.vertex)] == e.gain) return e.vertex;
-            queue.pop();
-        }
-        return -1;
+    void enter(std::int32_t i) {
+        gains_[side_[at(i)]].enter(i, gain_[at(i)]);
+        state_[at(i)] = entered;
     }
-    void move(std::int32_t i) {
+    void move(std::int32_t i, bool enters) {
         unsigned char &side = side_[at(i)];
         weight_[side] -= g_.weight[at(i)];
         side ^= 1;
@@ -130,49 +160,43 @@ private:
         cut_ -= gain_[at(i)];
         gain_[at(i)] = -gain_[at(i)];
         for_edges(g_, i, [&](std::int32_t j, std::int32_t w) {
+            if (enters && state_[at(j)] == entered) gains_[side_[at(j)]].leave(j);
             gain_[at(j)] += side_[at(j)] == side ? -2 * w : 2 * w;
+            if (enters && state_[at(j)] != moved) enter(j);
         });
     }
+    // The side from which a vertex is best moved, or -1.
+    int next_side() {
+        const std::int32_t best[2] = {gains_[0].best(), gains_[1].best()};
+        bool fits[2];
+        for (int s = 0; s < 2; ++s)
+            fits[s] = best[s] >= 0 && (weight_[1 - s] + g_.weight[at(best[s])] <= most_ || weight_[1 - s] < weight_[s]);
+        if (!fits[0] || !fits[1]) return fits[0] ? 0 : fits[1] ? 1 : -1;
+        const std::int32_t a = gain_[at(best[0])], b = gain_[at(best[1])];
+        return a > b || (a == b && weight_[0] > weight_[1]) ? 0 : 1;
+    }
     bool improve() {
-        for (int s = 0; s < 2; ++s) best_[s] = {};
-        std::fill(locked_.begin(), locked_.end(), 0);
-        for (std::int32_t i = 0; i < g_.size(); ++i) {
-            std::int32_t gain = 0, outside = 0;
-            for_edges(g_, i, [&](std::int32_t j, std::int32_t w) {
-                const bool away = side_[at(i)] != side_[at(j)];
-                gain += away ? w : -w;
-                outside += away;
-            });
-            gain_[at(i)] = gain;
-            if (outside > 0 || badness().first > 0) enter(i);
-        }
+        for (Gains &gains : gains_) gains.clear();
+        std::fill(state_.begin(), state_.end(), outside);
         const auto before = badness();
+        for (std::int32_t i = 0; i < g_.size(); ++i)
+            if (gain_[at(i)] > -degree_[at(i)] || before.first > 0) enter(i);
         auto least = before;
-        moved_.clear();
         std::size_t kept = 0;
-        while (moved_.size() < kept + most_in_vain) {
-            const std::int32_t a = top(0), b = top(1);
-            const auto fits = [&](std::int32_t i, int to) {
-                return i >= 0 && (weight_[to] + g_.weight[at(i)] <= most_ || weight_[to] < weight_[1 - to]);
-            };
-            const bool a_fits = fits(a, 1), b_fits = fits(b, 0);
-            if (!a_fits && !b_fits) break;
-            const bool takes_a =
-                a_fits && (!b_fits || gain_[at(a)] > gain_[at(b)] || (gain_[at(a)] == gain_[at(b)] && weight_[0] > weight_[1]));
-            const std::int32_t i = takes_a ? a : b;
-            locked_[at(i)] = 1;
-            move(i);
+        moved_.clear();
+        for (int side; moved_.size() < kept + most_in_vain && (side = next_side()) >= 0;) {
+            const std::int32_t i = gains_[at(side)].best();
+            gains_[at(side)].leave(i);
+            state_[at(i)] = moved;
+            move(i, true);
             moved_.push_back(i);
-            for_edges(g_, i, [&](std::int32_t j, std::int32_t) {
-                if (!locked_[at(j)]) enter(j);
-            });
             if (badness() < least) {
                 least = badness();
                 kept = moved_.size();
             }
         }
         while (moved_.size() > kept) {
-            move(moved_.back());
+            move(moved_.back(), false);
             moved_.pop_back();
         }
         return least < before;
@@ -180,9 +204,9 @@ private:
 
     const Graph &g_;
     Sides &side_;
-    Numbers gain_, moved_;
-    std::vector<unsigned char> locked_;
-    std::priority_queue<Entry> best_[2];
+    Numbers degree_, gain_, moved_;  // degree_: with weights
+    std::vector<unsigned char> state_;
+    std::vector<Gains> gains_;
     std::int64_t weight_[2] = {0, 0}, cut_ = 0, most_ = 0;
 };
 
