@@ -314,8 +314,9 @@ std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bon
     return s;
 }
 
-// Small networks have it for what does not converge.
+// Small networks have it for what does not converge, if it fills no more bytes a bond of the core.
 constexpr std::int32_t largest_with_careful = 8192;
+constexpr std::int64_t most_bytes_of_careful = 20000;
 void make_careful_too(Schedule &s, Schedule::Memory &m, const std::int32_t *pairs, std::int64_t most_bytes) {
     try {
         m.careful = std::make_unique<const CarefulShape>(s.n_atoms, s.n_bonds, pairs, most_bytes);
@@ -334,7 +335,7 @@ std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t
     if (s->network) {
         if (n_bonds <= largest_with_careful)
             make_careful_too(*s, m, pairs,
-                             std::min(most_bytes, most_bytes_of_list * static_cast<std::int64_t>(s->n_core)));
+                             std::min(most_bytes, most_bytes_of_careful * static_cast<std::int64_t>(s->n_core)));
         return s;
     }
     if (n_bonds > largest_in_lanes && s->type == Schedule::tree) add_runs(*s, m);

@@ -14,8 +14,8 @@ namespace HOL_ISA {
 namespace graph {
 
 struct NetNode {
-    Tensor per_mass, mass;         // with the trees that hang from it; of the atom alone, and its inverse
-    Tensor with_ends;              // inverse of per_mass and what its own ends offer
+    Tensor mass;                   // inverse, with the trees that hang from it
+    Tensor with_ends;              // with what its own ends offer, too
     Vector3<double> push;          // from the trees' right-hand sides
     Vector3<double> foreign, all;  // accelerations by foreign ends, and by all, of a vector that is multiplied
 };
@@ -78,12 +78,11 @@ struct Unknowns {
         direct = tried = false;
         net.for_nodes([&](int32_t first, int32_t end, int32_t) {
             for (int32_t n = first; n < end; ++n) {
-                Tensor a = node[n].per_mass;
+                node[n].with_ends = node[n].mass;
                 for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u) {
                     per_E[u] = 1 / E[u];
-                    add_product(a, per_E[u], b[u], D[u]);
+                    load(node[n].with_ends, E[u], b[u], D[u]);
                 }
-                node[n].with_ends = inverse_of(a);
             }
         });
         if (s.fronts.at_once) use_fronts();
