@@ -58,8 +58,8 @@ struct Unknowns {
             b[u] = ref.get<double>(s.place_of[u]);
             const int32_t other = s.other_node[u];
             if (other < 0) return;
-            const double offer = dot(D[u], node[other].mass * b[u]);
-            E[u] = offer;
+            // Taken off again by multiply(), so that it needs not be exact; what is held fixed offers nothing.
+            E[u] = max(dot(D[u], node[other].mass * b[u]), least_of_own * dot(D[u], node[s.node_of[u]].mass * b[u]));
             coupling[u] = 0;
         });
         add_pushes();
@@ -174,7 +174,7 @@ private:
     static constexpr int32_t most_rounds = 2000, look_after = 64;
     static constexpr double least_progress = 0.1;
     static constexpr double rounding_part = 16 * epsilon * 16 * epsilon, least_of_mean = 1. / 256,  // of squares
-                            least_share = 16 * epsilon;
+                            least_share = 16 * epsilon, least_of_own = 1e-5;
     static constexpr int32_t few_rounds = 8;
     struct Sums {
         double a, b, most;
