@@ -78,7 +78,7 @@ static void destroy(scene s)
     molecule_free(&s.m);
 }
 
-static const sort sorts[] = {{7, 0, 0, 0, 0, 0}, {7, 0, 0, 5, 0, 1}, {7, 0, 0, 2, 1, 1}, {18, 1, 0.3, 3, 0, 0}};
+static const sort sorts[] = {{6, 0, 0, 0, 0, 0}, {6, 0, 0, 5, 0, 1}, {6, 0, 0, 2, 1, 1}, {15, 1, 0.3, 3, 0, 0}};
 enum { n_sorts = sizeof sorts / sizeof *sorts };
 static const sort sheet = {60, 1, 0.3, 0, 0, 0};
 
