@@ -97,7 +97,8 @@ std::vector<double> BondMatrix::refined(const std::vector<double> &rhs) {
     for (std::size_t k = 0; k < n; ++k)
         for (std::size_t c = 0; c < 3; ++c) {
             const std::int64_t *const pair = &p.network.pairs[2 * k];
-            const long double whole = static_cast<long double>(p.at_r[3 * at(pair[1]) + c]) - p.at_r[3 * at(pair[0]) + c],
+            const long double whole =
+                                  static_cast<long double>(p.at_r[3 * at(pair[1]) + c]) - p.at_r[3 * at(pair[0]) + c],
                               side = p.network.side[c];
             d[3 * k + c] = side > 0 ? whole - side * std::nearbyint(whole / side) : whole;
         }

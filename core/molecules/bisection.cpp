@@ -1,6 +1,6 @@
 // By levels: pairs of vertices that share heavy edges are merged until few are left, these are divided, and when pairs
-// are taken apart again vertices change sides as long as that cuts fewer edges (B. Hendrickson, R. Leland, Supercomputing
-// '95; C. Fiduccia, R. Mattheyses, DAC '82).
+// are taken apart again vertices change sides as long as that cuts fewer edges (B. Hendrickson, R. Leland,
+// Supercomputing '95; C. Fiduccia, R. Mattheyses, DAC '82).
 #include "core/molecules/bisection.hpp"
 
 #include <algorithm>
@@ -26,8 +26,8 @@ void for_edges(const Graph &g, std::int32_t i, const Each &each) {
     for (std::int32_t e = g.start[at(i)]; e < g.start[at(i) + 1]; ++e) each(g.edge[at(e)].to, g.edge[at(e)].weight);
 }
 
-// Which vertex of a coarser graph each one becomes. They choose in a scattered order, so that no pattern of their numbers
-// tells in the shapes of what is merged.
+// Which vertex of a coarser graph each one becomes. They choose in a scattered order, so that no pattern of their
+// numbers tells in the shapes of what is merged.
 Numbers merged(const Graph &g, std::int32_t &n_coarse) {
     const std::int32_t n = g.size();
     const std::int64_t most = std::max<std::int64_t>(2, 3 * whole(g) / (2 * coarsest));
@@ -35,7 +35,8 @@ Numbers merged(const Graph &g, std::int32_t &n_coarse) {
     std::uint32_t random = 1;
     for (std::int32_t i = 0; i < n; ++i) {
         random = random * 1664525u + 1013904223u;
-        const std::int32_t j = static_cast<std::int32_t>((std::uint64_t{random} * static_cast<std::uint32_t>(i + 1)) >> 32);
+        const std::int32_t j =
+            static_cast<std::int32_t>((std::uint64_t{random} * static_cast<std::uint32_t>(i + 1)) >> 32);
         order[at(i)] = order[at(j)];
         order[at(j)] = i;
     }
@@ -45,7 +46,8 @@ Numbers merged(const Graph &g, std::int32_t &n_coarse) {
         std::int32_t best = i, best_weight = 0;
         for_edges(g, i, [&](std::int32_t j, std::int32_t w) {
             if (mate[at(j)] >= 0 || j == i || g.weight[at(i)] + g.weight[at(j)] > most) return;
-            if (w > best_weight || (w == best_weight && g.weight[at(j)] < g.weight[at(best)])) best = j, best_weight = w;
+            if (w > best_weight || (w == best_weight && g.weight[at(j)] < g.weight[at(best)]))
+                best = j, best_weight = w;
         });
         mate[at(i)] = best;
         mate[at(best)] = i;
@@ -85,7 +87,8 @@ Graph coarser(const Graph &g, const Numbers &to, std::int32_t n) {
 // The vertices of one side by what their move gains, the last that was entered first.
 class Gains {
 public:
-    Gains(std::int32_t n, std::int32_t most) : most_(most), top_(0), first_(at(2 * most + 1), -1), next_(at(n)), before_(at(n)) {}
+    Gains(std::int32_t n, std::int32_t most)
+        : most_(most), top_(0), first_(at(2 * most + 1), -1), next_(at(n)), before_(at(n)) {}
     void enter(std::int32_t i, std::int32_t gain) {
         const std::int32_t g = gain + most_, head = first_[at(g)];
         next_[at(i)] = head;

@@ -46,8 +46,8 @@ public:
 private:
     // Nodes and the strands between them; vertices weigh as their bonds and strands in common count.
     Graph graph_of_all() const {
-        const Lists strands = invert(s_.n_nodes, s_.n_strands,
-                                     [&](std::int32_t i, int end) { return s_.strand_node[2 * i + end]; });
+        const Lists strands =
+            invert(s_.n_nodes, s_.n_strands, [&](std::int32_t i, int end) { return s_.strand_node[2 * i + end]; });
         Graph g;
         g.start.assign(1, 0);
         for (std::int32_t n = 0; n < s_.n_nodes; ++n) {
@@ -118,8 +118,9 @@ private:
         for (std::int32_t u = 0; u < s_.n_unknowns; ++u) {
             const std::int32_t own = part_of_[at(s_.node_of[u])];
             const bool is_first = s_.sign[u] > 0;
-            const std::int32_t other =
-                s_.other_node[u] >= 0 ? s_.other_node[u] : is_first ? s_.node_of[s_.partner[u]] : s_.node_of[u];
+            const std::int32_t other = s_.other_node[u] >= 0 ? s_.other_node[u]
+                                       : is_first            ? s_.node_of[s_.partner[u]]
+                                                             : s_.node_of[u];
             front_of_[at(u)] = common(own, part_of_[at(other)]);
             ++a_.front[at(front_of_[at(u)])].n_own;
         }
@@ -197,8 +198,8 @@ private:
         }
         for (std::int32_t &turn : a_.row) turn = unknown_[at(turn)];
     }
-    // What they take: memory, and time beside that of the iteration. Measured on Zen 4; strands of that many coiled bonds
-    // need some sixty rounds divided by it.
+    // What they take: memory, and time beside that of the iteration. Measured on Zen 4; strands of that many coiled
+    // bonds need some sixty rounds divided by it.
     bool count(std::int64_t most_bytes, FrontPlan &p) const {
         double entries = 0, operations = 0, waiting = 0, waits = 0;
         const auto square = [](const FrontPlan::Front &f) {
@@ -220,10 +221,10 @@ private:
 
     const NetworkPlan &s_;
     FrontArrays &a_;
-    Numbers part_of_;        // the leaf of a node
-    Numbers in_part_;        // of a graph's vertices
-    Numbers parent_;         // of a front, or -1
-    Numbers front_of_;       // of an unknown
+    Numbers part_of_;                     // the leaf of a node
+    Numbers in_part_;                     // of a graph's vertices
+    Numbers parent_;                      // of a front, or -1
+    Numbers front_of_;                    // of an unknown
     Numbers first_own_, turn_, unknown_;  // turn_: of an unknown, when it is eliminated
 };
 

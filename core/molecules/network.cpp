@@ -226,7 +226,8 @@ void make_network(const Schedule &s, std::int64_t most_bytes, NetworkArrays &arr
 }
 
 std::size_t bytes_of(const NetworkArrays &a) {
-    std::size_t bytes = bytes_of(a.fronts) + a.bundle.capacity() * sizeof(a.bundle[0]) + a.sign.capacity() * sizeof(double);
+    std::size_t bytes =
+        bytes_of(a.fronts) + a.bundle.capacity() * sizeof(a.bundle[0]) + a.sign.capacity() * sizeof(double);
     for (const Numbers *list : {&a.bundle_start, &a.node_start, &a.atom_of, &a.bond_of, &a.from, &a.to, &a.strand_node,
                                 &a.strand_unknown, &a.own_start, &a.place_of, &a.node_of, &a.partner, &a.foreign_start,
                                 &a.foreign, &a.other_node, &a.child_start, &a.child})

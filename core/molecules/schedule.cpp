@@ -142,7 +142,8 @@ private:
             core_number[at(k)] = static_cast<std::int32_t>(core.size());
             core.push_back(k);
         }
-        if (networks_ == none || s_.n_bonds <= largest_graph_in_lanes) return order_core(core, core_number, most_bytes_);
+        if (networks_ == none || s_.n_bonds <= largest_graph_in_lanes)
+            return order_core(core, core_number, most_bytes_);
         is_network_ = networks_ == this_one || has_long_strands(core);
         try {
             const std::int64_t most = most_bytes_of_list * static_cast<std::int64_t>(core.size());

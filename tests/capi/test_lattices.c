@@ -11,11 +11,11 @@
 #include "random.h"
 
 typedef struct {
-    int n, flat;     /**< atoms in a row; a sheet with diagonals, of that height, or a cube */
+    int n, flat; /**< atoms in a row; a sheet with diagonals, of that height, or a cube */
     double height;
-    double masses;   /**< decades */
-    int fixed;       /**< every eleventh atom is held fixed */
-    int periodic;    /**< all bonds of the cube but a fifth, and those that go round the box */
+    double masses; /**< decades */
+    int fixed;     /**< every eleventh atom is held fixed */
+    int periodic;  /**< all bonds of the cube but a fifth, and those that go round the box */
 } sort;
 
 typedef struct {
@@ -106,8 +106,7 @@ static void all_levels_are_those_of_many_digits(void **state)
         CHECK(hol_project_velocities(s.chains, s.m.r, v, lambda, NULL));
         for (int64_t k = 0; k < s.m.n_bonds; ++k)
             CHECK_AT_MOST(fabsl(lambda[k] - exact.lambda[k]), unit * exact.lambda_scale[k]);
-        for (size_t i = 0; i < size; ++i)
-            CHECK_AT_MOST(fabsl(v[i] - exact.moved[i]), unit * exact.moved_scale[i / 3]);
+        for (size_t i = 0; i < size; ++i) CHECK_AT_MOST(fabsl(v[i] - exact.moved[i]), unit * exact.moved_scale[i / 3]);
         molecule_solution_free(&exact);
         free(lambda), free(v);
         destroy(s);
@@ -193,8 +192,7 @@ static void fronts_count_in_the_memory_limit(void **state)
     scene s = make(sheet, 3);
     CHECK(hol_chains_set_memory_limit(s.chains, 1000 * s.m.n_bonds));
     CHECK(hol_chains_add_bonds(s.chains, s.m.n_bonds, s.m.pairs, s.m.length));
-    CHECK_FAILS(HOL_ERR_DEGENERATE,
-                hol_forces(s.chains, s.m.r, s.m.v, s.m.f, NULL, NULL, s.m.f, HOL_ADD, NULL));
+    CHECK_FAILS(HOL_ERR_DEGENERATE, hol_forces(s.chains, s.m.r, s.m.v, s.m.f, NULL, NULL, s.m.f, HOL_ADD, NULL));
     destroy(s);
 }
 

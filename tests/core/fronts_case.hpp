@@ -11,22 +11,20 @@ namespace fronts_case
 {
 
 // An element of the matrix in the leaf of a node.
-struct Term
-{
+struct Term {
     std::int32_t row, column;
     double value;
 };
-struct Terms
-{
+struct Terms {
     std::vector<std::vector<Term>> of_node;
     std::vector<double> diagonal;
 };
 
-#define FRONTS_OF(set)                                                                                       \
-    namespace set                                                                                            \
-    {                                                                                                        \
-    bool solve(const holonomic::NetworkPlan &, bool symmetric, const Terms &, double least_part,            \
-               std::vector<double> &x);                                                                      \
+#define FRONTS_OF(set)                                                                           \
+    namespace set                                                                                \
+    {                                                                                            \
+    bool solve(const holonomic::NetworkPlan &, bool symmetric, const Terms &, double least_part, \
+               std::vector<double> &x);                                                          \
     }
 FRONTS_OF(fronts2)
 FRONTS_OF(fronts4)

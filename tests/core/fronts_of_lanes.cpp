@@ -21,8 +21,7 @@ bool solve(const holonomic::NetworkPlan &s, bool symmetric, const Terms &terms, 
     if (memory.next - owned.data() != Fronts::values(plan, symmetric)) return false;
     const bool good = fronts.factorize(
         least_part,
-        [&](const holonomic::FrontPlan::Front &front, const Dense &a)
-        {
+        [&](const holonomic::FrontPlan::Front &front, const Dense &a) {
             for (std::int32_t i = front.first_node; i < front.end_node; ++i)
                 for (const Term &t : terms.of_node[static_cast<std::size_t>(plan.node[i])])
                     if (t.row >= t.column || !symmetric) Fronts::element(front, a, t.row, t.column) += t.value;

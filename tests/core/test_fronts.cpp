@@ -24,14 +24,12 @@ void require(bool what, const char *name, const char *words)
     std::exit(1);
 }
 
-struct Bonds
-{
+struct Bonds {
     std::int32_t n_atoms = 0;
     std::vector<std::int32_t> pairs;
     void add_strand(std::int32_t i, std::int32_t j, int bonds)
     {
-        for (; bonds > 1; --bonds)
-        {
+        for (; bonds > 1; --bonds) {
             pairs.insert(pairs.end(), {i, n_atoms});
             i = n_atoms++;
         }
@@ -43,8 +41,7 @@ Bonds lattice(int n, int longest, std::mt19937 &random)
 {
     Bonds b;
     b.n_atoms = n * n * n;
-    for (int i = 0; i < n * n * n; ++i)
-    {
+    for (int i = 0; i < n * n * n; ++i) {
         const int place[3] = {i % n, i / n % n, i / (n * n)}, step[3] = {1, n, n * n};
         for (int x = 0; x < 3; ++x)
             if (place[x] + 1 < n && random() % 5 > 0)
@@ -58,8 +55,7 @@ Bonds tangle(int nodes, int strands, std::mt19937 &random)
 {
     Bonds b;
     b.n_atoms = nodes;
-    for (int k = 0; k < strands; ++k)
-    {
+    for (int k = 0; k < strands; ++k) {
         const std::int32_t i = static_cast<std::int32_t>(random() % static_cast<unsigned>(nodes)),
                            j = static_cast<std::int32_t>(random() % static_cast<unsigned>(nodes));
         b.add_strand(i, j, i == j ? 3 : 2 + static_cast<int>(random() % 3));
@@ -68,8 +64,7 @@ Bonds tangle(int nodes, int strands, std::mt19937 &random)
 }
 
 // A matrix with the terms of a network: dense blocks of the ends at each node, the two ends of a strand.
-struct Matrix
-{
+struct Matrix {
     std::size_t n;
     std::vector<long double> element;
     Terms terms;
@@ -80,16 +75,13 @@ struct Matrix
         std::uniform_real_distribution<double> any(-1, 1);
         const holonomic::FrontPlan &f = s.fronts;
         terms.of_node.resize(static_cast<std::size_t>(s.n_nodes));
-        for (std::int32_t node = 0; node < s.n_nodes; ++node)
-        {
-            struct End
-            {
+        for (std::int32_t node = 0; node < s.n_nodes; ++node) {
+            struct End {
                 std::int32_t unknown, row;
                 double left[3], right[3];
             };
             std::vector<End> ends;
-            const auto enter = [&](std::int32_t u, std::int32_t row)
-            {
+            const auto enter = [&](std::int32_t u, std::int32_t row) {
                 End e = {u, row, {any(random), any(random), any(random)}, {}};
                 for (int x = 0; x < 3; ++x) e.right[x] = symmetric ? e.left[x] : e.left[x] + 0.1 * any(random);
                 ends.push_back(e);
@@ -101,8 +93,7 @@ struct Matrix
                 for (const End &b : ends)
                     add(node, a.unknown, b.unknown, a.row, b.row,
                         a.left[0] * b.right[0] + a.left[1] * b.right[1] + a.left[2] * b.right[2]);
-            for (std::int32_t u = s.own_start[node]; u < s.own_start[node + 1]; ++u)
-            {
+            for (std::int32_t u = s.own_start[node]; u < s.own_start[node + 1]; ++u) {
                 add(node, u, u, f.own_row[u], f.own_row[u], least);
                 if (f.partner_row[u] < 0) continue;
                 const std::int32_t p = s.partner[u];
@@ -122,23 +113,20 @@ struct Matrix
     std::vector<long double> solved(const std::vector<double> &rhs) const
     {
         std::vector<long double> a = element, x(rhs.begin(), rhs.end());
-        for (std::size_t k = 0; k < n; ++k)
-        {
+        for (std::size_t k = 0; k < n; ++k) {
             std::size_t p = k;
             for (std::size_t i = k + 1; i < n; ++i)
                 if (std::fabs(a[i * n + k]) > std::fabs(a[p * n + k])) p = i;
             for (std::size_t j = 0; j < n && p != k; ++j) std::swap(a[k * n + j], a[p * n + j]);
             std::swap(x[k], x[p]);
-            for (std::size_t i = k + 1; i < n; ++i)
-            {
+            for (std::size_t i = k + 1; i < n; ++i) {
                 const long double f = a[i * n + k] / a[k * n + k];
                 if (f == 0) continue;
                 for (std::size_t j = k; j < n; ++j) a[i * n + j] -= f * a[k * n + j];
                 x[i] -= f * x[k];
             }
         }
-        for (std::size_t k = n; k-- > 0;)
-        {
+        for (std::size_t k = n; k-- > 0;) {
             for (std::size_t j = k + 1; j < n; ++j) x[k] -= a[k * n + j] * x[j];
             x[k] /= a[k * n + k];
         }
@@ -159,8 +147,7 @@ void they_solve_what_a_dense_elimination_does(const char *name, const Bonds &b, 
     require(schedule->network, name, "is no network");
     const holonomic::NetworkPlan &s = *schedule->network;
     require(s.fronts.n_fronts > 3, name, "has no fronts");
-    for (const bool symmetric : {true, false})
-    {
+    for (const bool symmetric : {true, false}) {
         const Matrix matrix(s, symmetric, 0.2, random);
         std::vector<double> rhs(matrix.n);
         for (double &y : rhs) y = std::uniform_real_distribution<double>(-1, 1)(random);
@@ -168,9 +155,8 @@ void they_solve_what_a_dense_elimination_does(const char *name, const Bonds &b, 
         long double most = 0;
         for (const long double x : exact) most = std::max(most, std::fabs(x));
         typedef bool (*Solve)(const holonomic::NetworkPlan &, bool, const Terms &, double, std::vector<double> &);
-        for (const Solve solve : {Solve(fronts2::solve), Solve(fronts4::solve), Solve(fronts8::solve),
-                                  Solve(fronts16::solve)})
-        {
+        for (const Solve solve :
+             {Solve(fronts2::solve), Solve(fronts4::solve), Solve(fronts8::solve), Solve(fronts16::solve)}) {
             std::vector<double> x = rhs;
             require(solve(s, symmetric, matrix.terms, 1e-14, x), name, "has a pivot that is none");
             long double worst = 0;
@@ -186,12 +172,10 @@ void they_solve_what_a_dense_elimination_does(const char *name, const Bonds &b, 
 // Each edge is cut once in a square: n or few more.
 void halves_of_a_square_share_few_edges()
 {
-    for (const std::int32_t n : {8, 40, 100})
-    {
+    for (const std::int32_t n : {8, 40, 100}) {
         holonomic::Graph g;
         g.start.assign(1, 0);
-        for (std::int32_t i = 0; i < n * n; ++i)
-        {
+        for (std::int32_t i = 0; i < n * n; ++i) {
             if (i % n > 0) g.edge.push_back({i - 1, 1});
             if (i % n + 1 < n) g.edge.push_back({i + 1, 1});
             if (i >= n) g.edge.push_back({i - n, 1});
@@ -201,8 +185,7 @@ void halves_of_a_square_share_few_edges()
         }
         const std::vector<unsigned char> side = holonomic::bisect(g);
         std::int32_t cut = 0, first = 0;
-        for (std::int32_t i = 0; i < n * n; ++i)
-        {
+        for (std::int32_t i = 0; i < n * n; ++i) {
             first += side[at(i)] == 0;
             for (std::int32_t e = g.start[at(i)]; e < g.start[at(i) + 1]; ++e)
                 cut += side[at(i)] < side[at(g.edge[at(e)].to)];

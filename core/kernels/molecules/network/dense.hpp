@@ -9,9 +9,9 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// Columns of L and rows of U, `height` numbers each, stand one behind the other; of a symmetric matrix they are the same
-// array. What is left has `height - own` numbers in each column; below the diagonal is enough if it is symmetric. Own
-// unknowns and all others are filled up to a multiple of `unit` by ones on the diagonal, and by zeros.
+// Columns of L and rows of U, `height` numbers each, stand one behind the other; of a symmetric matrix they are the
+// same array. What is left has `height - own` numbers in each column; below the diagonal is enough if it is symmetric.
+// Own unknowns and all others are filled up to a multiple of `unit` by ones on the diagonal, and by zeros.
 struct Dense {
     static constexpr int32_t step = 4, unit = W > step ? W : step;  // columns that are worked on at once
     static constexpr int32_t panel = 16;                            // columns whose products are added at once
@@ -52,8 +52,7 @@ struct Dense {
             for_rows(c + step, [&](auto width, int32_t i) HOL_FORCED {
                 typedef decltype(width) V;
                 V sum = load_any<V>(z + i);
-                for (int p = 0; p < step; ++p)
-                    sum = mul_add(load_any<V>(l + p * height + i), Width<V>::all(y[p]), sum);
+                for (int p = 0; p < step; ++p) sum = mul_add(load_any<V>(l + p * height + i), Width<V>::all(y[p]), sum);
                 store_any(z + i, sum);
             });
         }
@@ -66,7 +65,8 @@ struct Dense {
             vec sums[step] = {};
             for_rows(c + step, [&](auto width, int32_t i) HOL_FORCED {
                 typedef decltype(width) V;
-                for (int p = 0; p < step; ++p) add(load_any<V>(u + p * height + i), load_any<V>(z + i), sums[p], sum[p]);
+                for (int p = 0; p < step; ++p)
+                    add(load_any<V>(u + p * height + i), load_any<V>(z + i), sums[p], sum[p]);
             });
             for (int32_t p = step; p-- > 0;) {
                 double &of = z[c + p];
@@ -149,28 +149,27 @@ private:
                              const double *factors) const {
         for (int32_t j = begin; j < end; j += step)
             subtract_rows(from + static_cast<int64_t>(j) * stride, stride, l + static_cast<int64_t>(c) * height,
-                                j / W * W, height, factors + j * panel, step);
+                          j / W * W, height, factors + j * panel, step);
     }
     // The products of a whole panel from all that follows.
     void subtract_panel(int32_t first, int32_t end, const double *factors, const double *other) const {
-        const double *const l = lower + static_cast<int64_t>(first) * height,
-                            *const u = upper + static_cast<int64_t>(first) * height;
+        const double *const l = lower + static_cast<int64_t>(first) * height, *const u =
+                                                                                  upper +
+                                                                                  static_cast<int64_t>(first) * height;
         const int32_t n = end - first, rest = height - own;
         for (int32_t row = end / W * W; row < height; row += rows_in_cache) {
             const int32_t last = height - row < rows_in_cache ? height : row + rows_in_cache;
             for (int32_t j = end; j < height; j += step) {
                 const bool is_own = j < own;
-                const int32_t diagonal = j / W * W,
-                              begin = (is_own || symmetric()) && diagonal > row ? diagonal : row;
+                const int32_t diagonal = j / W * W, begin = (is_own || symmetric()) && diagonal > row ? diagonal : row;
                 if (begin >= last) continue;
                 if (is_own) {
                     subtract_rows(&at(lower, 0, j), height, l, begin, last, factors + j * panel, n);
-                    if (!symmetric())
-                        subtract_rows(&at(upper, 0, j), height, u, begin, last, other + j * panel, n);
+                    if (!symmetric()) subtract_rows(&at(upper, 0, j), height, u, begin, last, other + j * panel, n);
                 } else {
                     const int32_t top = begin > own ? begin : own;
                     subtract_rows(left + static_cast<int64_t>(j - own) * rest - own, rest, l, top, last,
-                                         factors + j * panel, n);
+                                  factors + j * panel, n);
                 }
             }
         }
@@ -187,9 +186,8 @@ private:
                                   int32_t n) const {
         vec sum[vectors][step];
         HOL_UNROLL
-        for (int v = 0; v < vectors; ++v)
-            HOL_UNROLL
-            for (int j = 0; j < step; ++j) sum[v][j] = load(from + static_cast<int64_t>(j) * stride + v * W);
+        for (int v = 0; v < vectors; ++v) HOL_UNROLL
+        for (int j = 0; j < step; ++j) sum[v][j] = load(from + static_cast<int64_t>(j) * stride + v * W);
         for (int32_t p = 0; p < n; ++p) {
             const double *const column = l + static_cast<int64_t>(p) * height;
             vec a[vectors];
@@ -203,9 +201,8 @@ private:
             }
         }
         HOL_UNROLL
-        for (int v = 0; v < vectors; ++v)
-            HOL_UNROLL
-            for (int j = 0; j < step; ++j) store(from + static_cast<int64_t>(j) * stride + v * W, sum[v][j]);
+        for (int v = 0; v < vectors; ++v) HOL_UNROLL
+        for (int j = 0; j < step; ++j) store(from + static_cast<int64_t>(j) * stride + v * W, sum[v][j]);
     }
 };
 

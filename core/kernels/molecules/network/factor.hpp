@@ -28,8 +28,7 @@ struct NetFactor {
     Unknowns unknowns;
 
     static int64_t values(const NetworkPlan &s, bool symmetric) {
-        return 5 * in_fours(s.n_bonds) + in_fours(12 * static_cast<int64_t>(s.n_tree)) +
-               Unknowns::values(s, symmetric);
+        return 5 * in_fours(s.n_bonds) + in_fours(12 * static_cast<int64_t>(s.n_tree)) + Unknowns::values(s, symmetric);
     }
     // D != b: a matrix that is not symmetric.
     NetFactor(const Net &of, const Net3 &bonds, bool symmetric, Memory<double> &memory)

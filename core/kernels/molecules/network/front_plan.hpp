@@ -17,16 +17,16 @@ struct FrontPlan {
         int32_t first_node, end_node;  // in node; none of what is halved
         int32_t half[2];               // fronts, or -1
     };
-    int32_t n_fronts;  // 0: there are none
-    const Front *front;              // the halves before the whole
-    const int32_t *row;              // unknowns
-    const int32_t *to_parent;        // their rows in the front of which this one is a half
-    const int32_t *node;             // of leaves
-    const int32_t *own_row;          // [n_unknowns] the row of an unknown in the leaf of its node
-    const int32_t *foreign_row;      // of the places in NetworkPlan::foreign, likewise
-    const int32_t *partner_row;      // [n_unknowns] in the leaf of the unknown's node, where that couples the two; or -1
-    double rounds;                   // of the iteration that take as long as the fronts
-    bool at_once;                    // whether it would take more
+    int32_t n_fronts;            // 0: there are none
+    const Front *front;          // the halves before the whole
+    const int32_t *row;          // unknowns
+    const int32_t *to_parent;    // their rows in the front of which this one is a half
+    const int32_t *node;         // of leaves
+    const int32_t *own_row;      // [n_unknowns] the row of an unknown in the leaf of its node
+    const int32_t *foreign_row;  // of the places in NetworkPlan::foreign, likewise
+    const int32_t *partner_row;  // [n_unknowns] in the leaf of the unknown's node, where that couples the two; or -1
+    double rounds;               // of the iteration that take as long as the fronts
+    bool at_once;                // whether it would take more
 };
 
 }  // namespace holonomic

@@ -35,8 +35,8 @@ struct Unknowns {
     static constexpr int64_t node_values = static_cast<int64_t>(sizeof(NetNode) / sizeof(double));
 
     static int64_t values(const NetworkPlan &s, bool symmetric) {
-        return Fronts::values(s.fronts, symmetric) + in_fours(node_values * static_cast<int64_t>(s.n_nodes)) + in_fours(3 * static_cast<int64_t>(s.n_tree)) +
-               in_fours(3 * static_cast<int64_t>(s.n_node_shares)) +
+        return Fronts::values(s.fronts, symmetric) + in_fours(node_values * static_cast<int64_t>(s.n_nodes)) +
+               in_fours(3 * static_cast<int64_t>(s.n_tree)) + in_fours(3 * static_cast<int64_t>(s.n_node_shares)) +
                2 * in_fours(3 * static_cast<int64_t>(s.n_unknowns)) + 13 * in_fours(s.n_unknowns);
     }
     Unknowns(const Net &of, bool symmetric, Memory<double> &memory)
@@ -117,7 +117,8 @@ struct Unknowns {
             }
         });
         if (!(all.a > 0)) return all.a == 0 ? 0 : -1;
-        const Goal goal = {part * part * all.a, (least_of_mean * rounding_part) * all.a / s.n_unknowns, sizes != nullptr};
+        const Goal goal = {part * part * all.a, (least_of_mean * rounding_part) * all.a / s.n_unknowns,
+                           sizes != nullptr};
         const double whole = all.a;
         double rho = 0, looked_at = all.a;
         for (int32_t round = 1; round <= most_rounds; ++round) {
@@ -174,7 +175,7 @@ private:
     static constexpr int32_t most_rounds = 2000, look_after = 64;
     static constexpr double least_progress = 0.1;
     static constexpr double rounding_part = 16 * epsilon * 16 * epsilon, least_of_mean = 1. / 256,  // of squares
-                            least_share = 16 * epsilon, least_of_own = 1e-5;
+        least_share = 16 * epsilon, least_of_own = 1e-5;
     static constexpr int32_t few_rounds = 8;
     struct Sums {
         double a, b, most;
@@ -193,8 +194,8 @@ private:
         if (direct) precondition_all(p, p_node);
     }
 
-    // Whether it takes more rounds than fronts do, and a good part of these yet, if each gains as many orders as the ones
-    // so far: `taken` of them took squares down from `whole` to `left`.
+    // Whether it takes more rounds than fronts do, and a good part of these yet, if each gains as many orders as the
+    // ones so far: `taken` of them took squares down from `whole` to `left`.
     bool is_slow(int32_t taken, double whole, double left, const Goal &goal) const {
         if (direct || tried) return false;
         const int gained = order_of(whole) - order_of(left),
