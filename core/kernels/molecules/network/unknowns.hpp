@@ -169,14 +169,17 @@ private:
     // The product of the matrix with `of`, and sums over the unknowns. own: M times `of`, without fronts.
     template <class Body>
     HOL_FORCED Sums multiply(const double *own, const double *of, double *to, const Body &body) const {
-        const bool whole = direct;
-        if (s.has_foreign || whole) accelerate_nodes(of);
-        return sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
-            for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
-                to[u] = whole ? product(u, of) : own[u] + product_beside_nodes(u, of);
-                body(u, one);
-            }
-        });
+        if (s.has_foreign || direct) accelerate_nodes(of);
+        const auto sums = [&](const auto &value) HOL_FORCED {
+            return sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
+                for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
+                    to[u] = value(u);
+                    body(u, one);
+                }
+            });
+        };
+        return direct ? sums([&](int32_t u) HOL_FORCED { return product(u, of); })
+                      : sums([&](int32_t u) HOL_FORCED { return own[u] + product_beside_nodes(u, of); });
     }
 };
 
