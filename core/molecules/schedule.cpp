@@ -326,7 +326,7 @@ std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bon
 
 // Small networks have it for what does not converge, if it fills no more bytes a bond of the core.
 constexpr std::int32_t largest_with_careful = 8192;
-constexpr std::int64_t most_bytes_of_careful = 20000;
+constexpr std::int64_t most_bytes_of_careful = 4000;
 void make_careful_too(Schedule &s, Schedule::Memory &m, const std::int32_t *pairs, std::int64_t most_bytes) {
     try {
         m.careful = std::make_unique<const CarefulShape>(s.n_atoms, s.n_bonds, pairs, most_bytes);
