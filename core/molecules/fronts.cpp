@@ -44,7 +44,7 @@ public:
     }
 
 private:
-    // Nodes and the strands between them; vertices weigh as their bonds and strands in common count.
+    // Nodes and the strands between them, each of weight 1.
     Graph graph_of_all() const {
         const Lists strands =
             invert(s_.n_nodes, s_.n_strands, [&](std::int32_t i, int end) { return s_.strand_node[2 * i + end]; });
@@ -130,7 +130,6 @@ private:
             next.push_back(first);
             first += f.n_own;
         }
-        first_own_ = next;
         turn_.resize(at(s_.n_unknowns));
         unknown_.resize(at(s_.n_unknowns));
         for (std::int32_t u = 0; u < s_.n_unknowns; ++u) {
@@ -221,11 +220,11 @@ private:
 
     const NetworkPlan &s_;
     FrontArrays &a_;
-    Numbers part_of_;                     // the leaf of a node
-    Numbers in_part_;                     // of a graph's vertices
-    Numbers parent_;                      // of a front, or -1
-    Numbers front_of_;                    // of an unknown
-    Numbers first_own_, turn_, unknown_;  // turn_: of an unknown, when it is eliminated
+    Numbers part_of_;         // the leaf of a node
+    Numbers in_part_;         // of a graph's vertices
+    Numbers parent_;          // of a front, or -1
+    Numbers front_of_;        // of an unknown
+    Numbers turn_, unknown_;  // of an unknown, when it is eliminated; and the other way round
 };
 
 }  // namespace
