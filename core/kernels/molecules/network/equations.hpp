@@ -78,10 +78,14 @@ struct NetEquations {
     }
 
     Pair3<double> exact(int32_t k) const { return pairs_of(d.get<double>(k), Vector3<double>{}); }
-    Pair3<double> unrounded(int32_t k) const {
-        Vector3<double> bond, low;
-        unrounded_bond(box, r.get<double>(s.from[k]), r.get<double>(s.to[k]), bond, low);
+    template <class V>
+    __attribute__((noinline)) Pair3<V> unrounded_between(const Vector3<V> &from, const Vector3<V> &to) const {
+        Vector3<V> bond, low;
+        unrounded_bond(box, from, to, bond, low);
         return pairs_of(bond, low);
+    }
+    Pair3<double> unrounded(int32_t k) const {
+        return unrounded_between(r.get<double>(s.from[k]), r.get<double>(s.to[k]));
     }
     // In twice the precision: of an atom with these multipliers; and what is left of a bond's equation.
     Pair3<double> acceleration_of(int32_t site, const double *solution, bool low) const {
@@ -119,20 +123,15 @@ struct NetEquations {
             const auto behind = [&](int32_t k, const Net3 &of) HOL_FORCED {  // at the atom behind bond k
                 return k + 1 < g.length ? of.get<V>(site_of(k)) : net.at_node<V>(g, 1, of);
             };
-            const auto bond_to = [&](const Vector3<V> &from, const Vector3<V> &to) HOL_FORCED {
-                Vector3<V> hi, lo;
-                unrounded_bond(box, from, to, hi, lo);
-                return pairs_of(hi, lo);
-            };
             const Vector3<V> zero = {};
             Vector3<V> at_atom = behind(0, r), speed = has(squares) ? net.at_node<V>(g, 0, v) : zero;
-            Pair3<V> from = at_node<V>(g, 0), bond = bond_to(net.at_node<V>(g, 0, r), at_atom);
+            Pair3<V> from = at_node<V>(g, 0), bond = unrounded_between(net.at_node<V>(g, 0, r), at_atom);
             for (int32_t k = 0; k < g.length; ++k) {
                 const int32_t place = g.place + k * g.step;
                 Pair3<V> to, next = bond;
                 if (k + 1 < g.length) {
                     const Vector3<V> beyond = behind(k + 1, r);
-                    next = bond_to(at_atom, beyond);
+                    next = unrounded_between(at_atom, beyond);
                     at_atom = beyond;
                     to = pairs_of(has(pulls) ? force_at<V>(site_of(k)) : zero, zero);
                     to = add_pairs(to, scale_pairs(load_any<V>(solution + place + g.step), next));
@@ -173,7 +172,7 @@ struct NetEquations {
         return all;
     }
     template <class V>
-    HOL_FORCED Vector3<V> force_at(int32_t site) const {
+    __attribute__((noinline)) Vector3<V> force_at(int32_t site) const {
         Vector3<V> all = {};
         for (int i = 0; i < Width<V>::lanes; ++i) {
             const Vector3<double> one = read(*in.f, net.at, s.atom_of[site + i]);
@@ -184,7 +183,7 @@ struct NetEquations {
         return all;
     }
     template <class V>
-    HOL_FORCED V given_to(int32_t place) const {
+    __attribute__((noinline)) V given_to(int32_t place) const {
         V all = {};
         for (int i = 0; i < Width<V>::lanes; ++i)
             Width<V>::set(all, i,
