@@ -170,12 +170,12 @@ void measure(const Network &s, int threads, int repeats, bool beside) {
         repeats, threads, [&] { v = raw; },
         [&] { return hol_project_velocities(chains, s.r.data(), v.data(), nullptr, nullptr); });
     print(c, n);
-    for (std::size_t i = 0; i < v.size(); ++i) out.push_back(s.r[i] + 0.005 * v[i]);
+    for (std::size_t i = 0; i < v.size(); ++i) out.push_back(s.r[i] + s.step * v[i]);
     hol_report report = {};
     c = best_of(
         repeats, threads, [&] { drifted = out; },
         [&] {
-            return hol_project_positions(chains, s.r.data(), drifted.data(), nullptr, 0.005, nullptr, 0, nullptr,
+            return hol_project_positions(chains, s.r.data(), drifted.data(), nullptr, s.step, nullptr, 0, nullptr,
                                          &report);
         });
     print(c, n);

@@ -40,7 +40,7 @@ struct BondMatrix::Parts {
     const Network &network;
     Sparse lower;
     std::vector<Term> terms;
-    std::vector<double> d;  // [n_bonds][3]
+    std::vector<double> at_r, d;  // positions; [n_bonds][3]
     Cholmod direct;
     bool analysed = false;
 
@@ -77,6 +77,7 @@ const Network &BondMatrix::network() const { return parts->network; }
 
 void BondMatrix::assemble(const std::vector<double> &r) {
     const Network &n = parts->network;
+    parts->at_r = r;
     for (std::int64_t k = 0; k < n.n_bonds(); ++k) n.bond(r, k, &parts->d[3 * at(k)]);
     double *const value = parts->lower.valuePtr();
     std::fill(value, value + parts->lower.nonZeros(), 0.0);
@@ -92,14 +93,21 @@ std::vector<double> BondMatrix::refined(const std::vector<double> &rhs) {
     p.analysed = true;
     p.direct.factorize(p.lower);
     const std::size_t n = rhs.size();
-    std::vector<long double> x(n), left(n);
+    std::vector<long double> x(n), left(n), d(3 * n);  // d: as the coordinates are, unrounded
+    for (std::size_t k = 0; k < n; ++k)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const std::int64_t *const pair = &p.network.pairs[2 * k];
+            const long double whole =
+                                  static_cast<long double>(p.at_r[3 * at(pair[1]) + c]) - p.at_r[3 * at(pair[0]) + c],
+                              side = p.network.side[c];
+            d[3 * k + c] = side > 0 ? whole - side * std::nearbyint(whole / side) : whole;
+        }
     for (int round = 0; round < 6; ++round) {
         for (std::size_t k = 0; k < n; ++k) left[k] = rhs[k];
-        // From the bonds themselves, so that no rounding of the elements counts.
+        // From the coordinates themselves, so that no rounding of bonds and elements counts.
         for (const Parts::Term &t : p.terms) {
-            const double *const k = &p.d[3 * at(t.k)], *const l = &p.d[3 * at(t.l)];
-            long double product = 0;
-            for (int c = 0; c < 3; ++c) product += static_cast<long double>(k[c]) * l[c];
+            const long double *const k = &d[3 * at(t.k)], *const l = &d[3 * at(t.l)];
+            const long double product = k[0] * l[0] + k[1] * l[1] + k[2] * l[2];
             left[at(t.k)] -= t.factor * product * x[at(t.l)];
             if (t.k != t.l) left[at(t.l)] -= t.factor * product * x[at(t.k)];
         }

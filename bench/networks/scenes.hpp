@@ -17,6 +17,7 @@ struct Network {
     std::vector<std::int64_t> pairs;
     double side[3] = {0, 0, 0};  ///< of the periodic box, or zeros
     bool one_by_one = false;     ///< chains, given as such
+    double step = 0.005;         ///< of the drift that positions come back from
 
     std::int64_t n_atoms() const { return static_cast<std::int64_t>(masses.size()); }
     std::int64_t n_bonds() const { return static_cast<std::int64_t>(lengths.size()); }

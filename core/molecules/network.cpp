@@ -220,10 +220,14 @@ private:
 
 }  // namespace
 
-void make_network(const Schedule &s, NetworkArrays &arrays) { NetworkMaker(s, arrays).make(); }
+void make_network(const Schedule &s, std::int64_t most_bytes, NetworkArrays &arrays) {
+    NetworkMaker(s, arrays).make();
+    arrays.plan.fronts = make_fronts(arrays.plan, most_bytes, arrays.fronts);
+}
 
 std::size_t bytes_of(const NetworkArrays &a) {
-    std::size_t bytes = a.bundle.capacity() * sizeof(a.bundle[0]) + a.sign.capacity() * sizeof(double);
+    std::size_t bytes =
+        bytes_of(a.fronts) + a.bundle.capacity() * sizeof(a.bundle[0]) + a.sign.capacity() * sizeof(double);
     for (const Numbers *list : {&a.bundle_start, &a.node_start, &a.atom_of, &a.bond_of, &a.from, &a.to, &a.strand_node,
                                 &a.strand_unknown, &a.own_start, &a.place_of, &a.node_of, &a.partner, &a.foreign_start,
                                 &a.foreign, &a.other_node, &a.child_start, &a.child})

@@ -7,6 +7,7 @@
 
 #include "core/kernels/molecules/network/network_plan.hpp"
 #include "core/kernels/molecules/schedule.hpp"
+#include "core/molecules/fronts.hpp"
 #include "core/molecules/lists.hpp"
 
 namespace holonomic {
@@ -16,16 +17,18 @@ struct NetworkArrays {
     Numbers bundle_start, node_start, atom_of, bond_of, from, to, strand_node, strand_unknown, own_start, place_of,
         node_of, partner, foreign_start, foreign, other_node, child_start, child;
     std::vector<double> sign;
+    FrontArrays fronts;
     NetworkPlan plan{};
 };
 
 // A large molecule of so many strands of long_strand bonds in the mean is worked on as a network: its unknowns are few,
 // and soon found. So is one whose elimination would take more than most_bytes for each bond of its core.
 constexpr std::int32_t many_strands = 64, long_strand = 4;
-constexpr std::int64_t most_bytes_of_list = 20000;
+constexpr std::int64_t most_bytes_of_list = 2000;
 
 // Of a molecule whose trees have been numbered, with all bonds between atoms of the core behind them.
-void make_network(const Schedule &s, NetworkArrays &arrays);
+// Its unknowns can be eliminated directly if that takes no more than most_bytes.
+void make_network(const Schedule &s, std::int64_t most_bytes, NetworkArrays &arrays);
 
 std::size_t bytes_of(const NetworkArrays &arrays);
 

@@ -13,8 +13,9 @@ namespace {
 
 class Maker {
 public:
-    // `networks`: a large graph may become one.
-    Maker(Schedule &s, Schedule::Memory &m, std::int64_t most_bytes, bool networks)
+    // Whether a large graph may become a network, or has to.
+    enum Networks { none, some, this_one };
+    Maker(Schedule &s, Schedule::Memory &m, std::int64_t most_bytes, Networks networks)
         : s_(s), m_(m), most_bytes_(most_bytes), networks_(networks), bonds_(bonds_of_atoms()) {}
 
     void make() {
@@ -37,8 +38,14 @@ public:
         list_updates();
     }
     bool is_network() const { return is_network_; }
+    // What is held fixed accelerates nothing, and no tree can be eliminated from there: of a network it is a node.
+    static bool has_fixed(const Schedule::Memory &m) {
+        return std::find(m.fixed.begin(), m.fixed.end(), 1) != m.fixed.end();
+    }
 
 private:
+    bool stays(std::int32_t atom) const { return networks_ == this_one && m_.fixed[at(atom)]; }
+
     Lists bonds_of_atoms() const {
         return invert(s_.n_atoms, s_.n_bonds,
                       [&](std::int32_t k, int end) { return (end ? m_.atom_j : m_.atom_i)[at(k)]; });
@@ -59,7 +66,7 @@ private:
             if (is_tree && degree[at(i)] == 1) root = i;
         }
         for (std::int32_t i = 0; i < s_.n_atoms; ++i)
-            if (degree[at(i)] == 1 && i != root) leaves.push_back(i);
+            if (degree[at(i)] == 1 && i != root && !stays(i)) leaves.push_back(i);
         s_.n_tree = 0;
         while (!leaves.empty()) {
             const std::int32_t i = leaves.back();
@@ -68,7 +75,7 @@ private:
                 const std::int32_t j = other_end(*k, i);
                 if (upper_bond_[at(j)] == *k) continue;  // a child's
                 upper_bond_[at(i)] = *k;
-                if (--degree[at(j)] == 1 && j != root) leaves.push_back(j);
+                if (--degree[at(j)] == 1 && j != root && !stays(j)) leaves.push_back(j);
             }
             ++s_.n_tree;
         }
@@ -135,8 +142,9 @@ private:
             core_number[at(k)] = static_cast<std::int32_t>(core.size());
             core.push_back(k);
         }
-        if (!networks_ || s_.n_bonds <= largest_graph_in_lanes) return order_core(core, core_number, most_bytes_);
-        is_network_ = has_long_strands(core);
+        if (networks_ == none || s_.n_bonds <= largest_graph_in_lanes)
+            return order_core(core, core_number, most_bytes_);
+        is_network_ = networks_ == this_one || has_long_strands(core);
         try {
             const std::int64_t most = most_bytes_of_list * static_cast<std::int64_t>(core.size());
             if (!is_network_) return order_core(core, core_number, std::min(most_bytes_, most));
@@ -273,7 +281,7 @@ private:
     Schedule &s_;
     Schedule::Memory &m_;
     const std::int64_t most_bytes_;
-    const bool networks_;
+    const Networks networks_;
     bool is_network_ = false;
     const Lists bonds_;
     Numbers upper_bond_;  // of the atoms of trees, by local atom; -1: a root, or of the core
@@ -295,7 +303,7 @@ void add_runs(Schedule &s, Schedule::Memory &m) {
 }
 
 std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
-                                        const bool *fixed, std::int64_t most_bytes, bool networks) {
+                                        const bool *fixed, std::int64_t most_bytes, Maker::Networks networks) {
     std::unique_ptr<Schedule> s(new Schedule());
     Schedule::Memory &m = *(s->memory = new Schedule::Memory());
     s->n_atoms = n_atoms;
@@ -307,15 +315,18 @@ std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bon
     for (std::int32_t i = 0; i < n_atoms; ++i) m.fixed.push_back(fixed && fixed[i]);
     Maker maker(*s, m, most_bytes, networks);
     maker.make();
+    if (maker.is_network() && networks == Maker::some && Maker::has_fixed(m))
+        return bare_schedule(n_atoms, n_bonds, pairs, fixed, most_bytes, Maker::this_one);
     point_into(*s, m);
     if (!maker.is_network()) return s;
-    make_network(*s, m.network);
+    make_network(*s, most_bytes, m.network);
     s->network = &m.network.plan;
     return s;
 }
 
-// Small networks have it for what does not converge.
+// Small networks have it for what does not converge, if it fills no more bytes a bond of the core.
 constexpr std::int32_t largest_with_careful = 8192;
+constexpr std::int64_t most_bytes_of_careful = 4000;
 void make_careful_too(Schedule &s, Schedule::Memory &m, const std::int32_t *pairs, std::int64_t most_bytes) {
     try {
         m.careful = std::make_unique<const CarefulShape>(s.n_atoms, s.n_bonds, pairs, most_bytes);
@@ -329,12 +340,12 @@ void make_careful_too(Schedule &s, Schedule::Memory &m, const std::int32_t *pair
 
 std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
                                               const bool *fixed, std::int64_t most_bytes) {
-    std::unique_ptr<Schedule> s = bare_schedule(n_atoms, n_bonds, pairs, fixed, most_bytes, true);
+    std::unique_ptr<Schedule> s = bare_schedule(n_atoms, n_bonds, pairs, fixed, most_bytes, Maker::some);
     Schedule::Memory &m = *s->memory;
     if (s->network) {
         if (n_bonds <= largest_with_careful)
             make_careful_too(*s, m, pairs,
-                             std::min(most_bytes, most_bytes_of_list * static_cast<std::int64_t>(s->n_core)));
+                             std::min(most_bytes, most_bytes_of_careful * static_cast<std::int64_t>(s->n_core)));
         return s;
     }
     if (n_bonds > largest_in_lanes && s->type == Schedule::tree) add_runs(*s, m);
@@ -350,7 +361,7 @@ std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t
 
 std::unique_ptr<const Schedule> make_bare_schedule(std::int32_t n_atoms, std::int32_t n_bonds,
                                                    const std::int32_t *pairs, const bool *fixed) {
-    return bare_schedule(n_atoms, n_bonds, pairs, fixed, no_limit, false);
+    return bare_schedule(n_atoms, n_bonds, pairs, fixed, no_limit, Maker::none);
 }
 
 void make_careful(const Schedule &s, std::int64_t most_bytes) {

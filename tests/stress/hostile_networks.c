@@ -1,6 +1,7 @@
 /**
  * Hostile networks against solutions in 448 bits: nearly straight strands, masses over decades, fixed nodes, bonds of
- * very different lengths, trees, open or with cycles round the box; large enough to be worked on as networks.
+ * very different lengths, trees, open or with cycles round the box; large enough to be worked on as networks. From
+ * number 1000 on lattices of single bonds, some of them strands, with planes that are nearly flat.
  *
  *     hostile_networks [first=1] [n=12]
  *
@@ -63,11 +64,60 @@ static void add_strand(network *s, int64_t from, int64_t to, random_stream *rand
     }
 }
 
+static void finish(network *s, random_stream *random)
+{
+    molecule_finish(&s->m, random);
+    for (int64_t k = 0; k < s->m.n_bonds; ++k) {
+        double d[3];
+        for (int c = 0; c < 3; ++c) d[c] = s->m.r[3 * s->m.pairs[2 * k + 1] + c] - s->m.r[3 * s->m.pairs[2 * k] + c];
+        image(s, d);
+        s->m.length[k] = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    }
+    CHECK(hol_chains_create(s->m.n_atoms, s->m.mass, &s->chains));
+    if (s->periodic) CHECK(hol_chains_set_box(s->chains, s->box));
+    CHECK(hol_chains_add_bonds(s->chains, s->m.n_bonds, s->m.pairs, s->m.length));
+}
+
+/* n^3 atoms at a distance of 1, in a box of a cell more where it is periodic; `curl` is their disorder. */
+static network make_lattice(random_stream random)
+{
+    network s = {.m = molecule_empty()};
+    const int n = 6;
+    s.periodic = random_uniform(&random) < 0.5;
+    s.side = n;
+    s.curl = random_uniform(&random) < 0.4 ? 0.3 : pow(10, pick(&random, -4, -0.5));
+    s.decades = random_uniform(&random) < 0.5 ? 0 : pick(&random, 0, 8);
+    s.fixed = random_uniform(&random) < 0.3;
+    s.longest = 4;
+    s.box[0] = s.box[4] = s.box[8] = s.side;
+    const double left_out = pick(&random, 0.2, 0.35), split = random_uniform(&random) < 0.3 ? 0.1 : 0;
+    for (int i = 0; i < n * n * n; ++i) {
+        double r[3] = {i % n, i / n % n, i / (n * n)};
+        for (int c = 0; c < 3; ++c) r[c] += s.curl * pick(&random, -1, 1);
+        molecule_add_atom(&s.m, s.fixed && i % 11 == 3 ? 0 : mass(&s, &random), r);
+    }
+    for (int i = 0; i < n * n * n; ++i) {
+        const int at[3] = {i % n, i / n % n, i / (n * n)}, step[3] = {1, n, n * n};
+        for (int x = 0; x < 3; ++x) {
+            if (at[x] + 1 == n && !s.periodic) continue;
+            const int j = at[x] + 1 < n ? i + step[x] : i - (n - 1) * step[x];
+            if (random_uniform(&random) < left_out || (s.m.mass[i] == 0 && s.m.mass[j] == 0)) continue;
+            if (random_uniform(&random) < split)
+                add_strand(&s, i, j, &random);
+            else
+                molecule_add_bond(&s.m, i, j);
+        }
+    }
+    finish(&s, &random);
+    return s;
+}
+
 static network make(uint64_t seed)
 {
     network s = {.m = molecule_empty()};
     random_stream random = random_seed(seed);
     for (int i = 0; i < 4; ++i) random_uniform(&random);
+    if (seed >= 1000) return make_lattice(random);
     const int nodes = 34 + (int)pick(&random, 0, 6);
     s.side = 12;
     s.periodic = random_uniform(&random) < 0.6;
@@ -91,16 +141,7 @@ static network make(uint64_t seed)
     }
     for (int k = 0; k < 2 * nodes; ++k)
         if (stub[2 * k] != stub[2 * k + 1]) add_strand(&s, stub[2 * k], stub[2 * k + 1], &random);
-    molecule_finish(&s.m, &random);
-    for (int64_t k = 0; k < s.m.n_bonds; ++k) {
-        double d[3];
-        for (int c = 0; c < 3; ++c) d[c] = s.m.r[3 * s.m.pairs[2 * k + 1] + c] - s.m.r[3 * s.m.pairs[2 * k] + c];
-        image(&s, d);
-        s.m.length[k] = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    }
-    CHECK(hol_chains_create(s.m.n_atoms, s.m.mass, &s.chains));
-    if (s.periodic) CHECK(hol_chains_set_box(s.chains, s.box));
-    CHECK(hol_chains_add_bonds(s.chains, s.m.n_bonds, s.m.pairs, s.m.length));
+    finish(&s, &random);
     return s;
 }
 

@@ -10,10 +10,10 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// A bond or a side that offers less than this part of an inverse mass is taken to offer so much: the factors need not
-// be exact, as what they leave is corrected.
-constexpr double least_offer = 1e-10;
-HOL_INLINE double offer_of(double E, double whole) { return max(E, least_offer * whole); }
+// What offers less than this part of an inverse mass is taken to offer so much: the end of a strand; a bond of a tree
+// below an atom with several, whose multiplier is a difference that is divided by it. The factors need not be exact, as
+// what they leave is corrected.
+constexpr double least_offer = 1e-10, least_offer_of_child = 1e-5;
 
 struct NetFactor {
     const Net &net;
@@ -27,12 +27,12 @@ struct NetFactor {
     Vector3<double> *push;          // [n_tree] of those: from their y
     Unknowns unknowns;
 
-    static int64_t values(const NetworkPlan &s) {
-        return 5 * in_fours(s.n_bonds) + in_fours(12 * static_cast<int64_t>(s.n_tree)) + Unknowns::values(s);
+    static int64_t values(const NetworkPlan &s, bool symmetric) {
+        return 5 * in_fours(s.n_bonds) + in_fours(12 * static_cast<int64_t>(s.n_tree)) + Unknowns::values(s, symmetric);
     }
     // D != b: a matrix that is not symmetric.
     NetFactor(const Net &of, const Net3 &bonds, bool symmetric, Memory<double> &memory)
-        : net(of), s(of.s), b(bonds), unknowns(of, memory) {
+        : net(of), s(of.s), b(bonds), unknowns(of, symmetric, memory) {
         const int64_t n = in_fours(s.n_bonds);
         to_last = memory.values(n);
         from_last = symmetric ? to_last : memory.values(n);
@@ -178,9 +178,7 @@ private:
                 to_last[c] = part * dot(Dc, be);
                 to_first[e] = part * mul_add(q, E, w * dot(cross(Dc, De), cross(bc, be)));
             } else {
-                Tensor sum = diagonal_tensor(1 / w);
-                add_children(s.n_nodes + i, w, D, sum);
-                joint[i] = inverse_of(sum);
+                joint[i] = mass_with_children(s.n_nodes + i, w, D);
                 to_first[e] = dot(De, joint[i] * be);
             }
             keep_new_bond(i, De);
@@ -190,22 +188,22 @@ private:
     void factorize_nodes(const Net3 &D) const {
         for (int32_t n = 0; n < s.n_nodes; ++n) {
             const double w = net.w[s.first_node + n];
-            Tensor sum = diagonal_tensor(1 / w);
-            add_children(n, w, D, sum);
-            unknowns.node[n].per_mass = sum;
-            unknowns.node[n].mass = n_children(n) > 0 ? inverse_of(sum) : diagonal_tensor(w);
+            unknowns.node[n].mass = mass_with_children(n, w, D);
         }
     }
     // D of the bonds of trees, for other right-hand sides.
     void keep_new_bond(int32_t i, const Vector3<double> &D) const { unknowns.tree_bond[i] = D; }
 
-    void add_children(int32_t number, double w, const Net3 &D, Tensor &sum) const {
+    Tensor mass_with_children(int32_t number, double w, const Net3 &D) const {
+        Tensor mass = diagonal_tensor(w);
         for (int32_t j = s.child_start[number]; j < s.child_start[number + 1]; ++j) {
             const int32_t c = s.first_tree_place + s.child[j];
             const Vector3<double> Dc = D.get<double>(c), bc = b.get<double>(c);
-            per_pivot[c] = 1 / offer_of(to_first[c], w * dot(Dc, bc));
-            add_product(sum, per_pivot[c], bc, Dc);
+            const double E = max(to_first[c], least_offer_of_child * (w * dot(Dc, bc)));
+            per_pivot[c] = 1 / E;
+            load(mass, E, bc, Dc);
         }
+        return mass;
     }
     // sum b y / E over children.
     Vector3<double> push_of(int32_t number, const double *y) const {

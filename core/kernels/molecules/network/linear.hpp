@@ -6,7 +6,7 @@
 
 #include "core/kernels/molecules/cycles/proof.hpp"
 #include "core/kernels/molecules/cycles/refine.hpp"
-#include "core/kernels/molecules/load.hpp"
+#include "core/kernels/molecules/network/equations.hpp"
 #include "core/kernels/molecules/network/factor.hpp"
 #include "core/kernels/molecules/virial.hpp"
 
@@ -14,41 +14,26 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-struct NetLinear {
+struct NetLinear : NetEquations {
     // Of residuals that are corrected: of all, and of what rounding hides in each over 16. All together say nothing of
     // an equation between heavy atoms beside those of light ones.
     static constexpr double any_part = 1e100, next_part = 1e-6, part_of_rounding = 1. / 256;
 
-    const Net net;
-    const NetworkPlan &s;
-    const Box &box;
-    const AtomArray &coordinates;
-    const Inputs &in;
-    const int terms;
-    Net3 r, v, f, d, G;               // v: velocities; f: w f; G: pulls, or where right-hand sides are rates v + w G
-    double *t, *side, *size_of_side;  // multipliers; right-hand sides, and the sizes of their terms
-    double *enough;                   // what corrections may leave of a residual, over 16 roundings
-    double *tension;                  // by site, sum of |t| |d|
-    double *worst;                    // [n_shares + 1]
+    double *enough;   // what corrections may leave of a residual, over 16 roundings
+    double *tension;  // by site, sum of |t| |d|
+    double *worst;    // [n_shares + 1]
     NetFactor factor;
-    Pair3<double> *a;            // by site, in twice the precision
     mutable int64_t rounds = 0;  // that the unknowns have taken so far
 
     static int64_t values(const NetworkPlan &s) {
-        return Net::values(s) + 12 * in_fours(s.n_atoms) + 7 * in_fours(s.n_bonds) + in_fours(s.n_atoms) +
-               in_fours(s.n_shares + 1) + NetFactor::values(s) + 6 * in_fours(s.n_atoms);
+        return NetEquations::values(s) + in_fours(s.n_bonds) + in_fours(s.n_atoms) + in_fours(s.n_shares + 1) +
+               NetFactor::values(s, true);
     }
     NetLinear(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
               const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> memory)
-        : net(plan, l, packed, team, memory), s(plan), box(b), coordinates(positions), in(inputs), terms(sides),
-          r(Net3::take(memory, s.n_atoms)), v(Net3::take(memory, s.n_atoms)), f(Net3::take(memory, s.n_atoms)),
-          d(Net3::take(memory, s.n_bonds)), G(Net3::take(memory, s.n_atoms)), t(memory.values(in_fours(s.n_bonds))),
-          side(memory.values(in_fours(s.n_bonds))), size_of_side(memory.values(in_fours(s.n_bonds))),
+        : NetEquations(plan, l, packed, team, b, positions, inputs, sides, memory),
           enough(memory.values(in_fours(s.n_bonds))), tension(memory.values(in_fours(s.n_atoms))),
-          worst(memory.values(in_fours(s.n_shares + 1))), factor(net, d, true, memory),
-          a(reinterpret_cast<Pair3<double> *>(memory.values(6 * in_fours(s.n_atoms)))) {}
-
-    bool has(int wanted) const { return (terms & wanted) != 0; }
+          worst(memory.values(in_fours(s.n_shares + 1))), factor(net, d, true, memory) {}
 
     // Calls rest(part), then each(part) for the others: the nodes' values, which these need, first. One part after the
     // other goes through all that it needs, in cache.
@@ -56,12 +41,6 @@ struct NetLinear {
     HOL_FORCED void for_rest_and_parts(const Rest &rest, const Each &each) const {
         rest(net.rest());
         net.for_parts(each);
-    }
-    void read_atoms(int32_t first, int32_t end) const {
-        net.read_masses(first, end);
-        net.read_sites(first, end, coordinates, r, false);
-        if (has(squares | rates)) net.read_sites(first, end, *in.v, v, false);
-        if (has(pulls)) net.read_sites(first, end, *in.f, f, true);
     }
     void load() const {
         for_rest_and_parts(
@@ -78,42 +57,6 @@ struct NetLinear {
             });
         factor.close(d);
     }
-    void find_equations(const NetPart &part) const {
-        net.find_bonds(part, box, r, d);
-        find_sides(part);
-    }
-    // Right-hand sides, and the sum of their terms' sizes.
-    __attribute__((noinline)) void find_sides(const NetPart &part) const {
-        if (!has(pulls | squares | rates))
-            for (int32_t k = part.first_place; k < part.end_place; ++k) side[k] = size_of_side[k] = 0;
-        if (has(pulls)) add_products(part, f, false);
-        if (has(rates)) add_products(part, v, false);
-        if (has(squares)) add_products(part, v, true);
-        for (int32_t k = part.first_place; (in.rhs || in.strain) && k < part.end_place; ++k) {
-            const double value =
-                in.rhs ? 0.5 * in.rhs[net.lane.first_bond + s.bond_of[k]] : stretching(in.strain, d.get<double>(k));
-            side[k] += value;
-            size_of_side[k] += abs(value);
-        }
-        for (int32_t k = part.first_place; k < part.end_place; ++k) t[k] = side[k];
-    }
-    // d.(x_j - x_i), the first of the terms where there are two, or |x_j - x_i|^2.
-    void add_products(const NetPart &part, const Net3 &x, bool square) const {
-        const bool more = square && has(pulls);
-        net.for_bonds(part, x, [&](auto width, int32_t k, const auto &from, const auto &to) HOL_FORCED {
-            typedef decltype(width) V;
-            const Vector3<V> change = to - from, bond = d.get<V>(k);
-            V value = square ? dot(change, change) : dot(bond, change),
-              size = square ? value : dot(absolute(bond), absolute(from) + absolute(to));
-            if (more) {
-                value = value + load_any<V>(side + k);
-                size = size + load_any<V>(size_of_side + k);
-            }
-            store_any(side + k, value);
-            store_any(size_of_side + k, size);
-        });
-    }
-
     // Multipliers for what is in t, as far up as it has been taken; what they do to atoms, if `pulls`; then each(part).
     template <class Each>
     HOL_FORCED bool solve_for(double part_left, const double *sizes, bool with_pulls, double *tensions,
@@ -232,41 +175,6 @@ struct NetLinear {
                            [&](const NetPart &part) { net.find_pulls(part, t, d, G, nullptr); });
         return true;
     }
-    Pair3<double> exact(int32_t k) const { return pairs_of(d.get<double>(k), Vector3<double>{}); }
-    Pair3<double> unrounded(int32_t k) const {
-        Vector3<double> bond, low;
-        unrounded_bond(box, r.get<double>(s.from[k]), r.get<double>(s.to[k]), bond, low);
-        return pairs_of(bond, low);
-    }
-    // In twice the precision: of an atom with these multipliers; and what is left of a bond's equation.
-    Pair3<double> acceleration_of(int32_t site, const double *solution, bool low) const {
-        const Vector3<double> zero = {};
-        Pair3<double> sum = pairs_of(has(pulls) ? read(*in.f, net.at, s.atom_of[site]) : zero, zero);
-        net.for_bonds_of(site, [&](int32_t k, double sign) {
-            sum = add_pairs(sum, scale_pairs(sign * solution[k], low ? unrounded(k) : exact(k)));
-        });
-        sum = scale_pairs(net.w[site], sum);
-        return has(rates) ? add_pairs(sum, pairs_of(v.get<double>(site), zero)) : sum;
-    }
-    double residual_of(int32_t k, const Pair3<double> &bond, const Pair3<double> &from, const Pair3<double> &to) const {
-        Pair<double> sum = dot_pairs(bond, subtract_pairs(to, from));
-        if (has(squares)) {
-            const Pair3<double> dv = difference_of(v.get<double>(s.from[k]), v.get<double>(s.to[k]));
-            sum = add_pairs(sum, dot_pairs(dv, dv));
-        }
-        if (in.rhs) sum = add_pairs(sum, {0.5 * in.rhs[net.lane.first_bond + s.bond_of[k]], 0.0});
-        if (in.strain) sum = add_pairs(sum, {stretching(in.strain, d.get<double>(k)), 0.0});
-        return sum.hi + sum.lo;
-    }
-    __attribute__((noinline)) void find_residuals(const double *solution) const {
-        net.for_ranges(0, s.n_atoms, [&](int32_t first, int32_t end) {
-            for (int32_t i = first; i < end; ++i) a[i] = acceleration_of(i, solution, true);
-        });
-        net.for_ranges(0, s.n_bonds, [&](int32_t first, int32_t end) {
-            for (int32_t k = first; k < end; ++k) t[k] = residual_of(k, unrounded(k), a[s.from[k]], a[s.to[k]]);
-        });
-    }
-
     // Velocities v + w G; with `again` once more projected: what their rounding leaves.
     __attribute__((noinline)) void add_pulls(bool again) const {
         for_rest_and_parts(

@@ -5,6 +5,8 @@
 
 #include <stdint.h>
 
+#include "core/kernels/molecules/network/front_plan.hpp"
+
 namespace holonomic {
 
 // A *node* is an atom of the core with trees, or with other than two bonds of the core; a *strand* the bonds between
@@ -45,6 +47,8 @@ struct NetworkPlan {
     const int32_t *other_node;      // [n_unknowns] where it is foreign, or -1
     const int32_t *child_start;     // [n_nodes + n_tree + 1] bonds of trees below a node, then below a tree's atom
     const int32_t *child;           // places, counted from the first of a tree
+
+    FrontPlan fronts;
 };
 
 }  // namespace holonomic

@@ -24,7 +24,7 @@ struct NetNewton {
 
     static int64_t values(const NetworkPlan &s) {
         return Net::values(s) + 6 * in_fours(s.n_atoms) + 16 * in_fours(s.n_bonds) + in_fours(s.n_shares + 1) +
-               NetFactor::values(s);
+               NetFactor::values(s, false);
     }
     NetNewton(const NetworkPlan &plan, const MoleculeLane &lane, bool packed, const LongTeam *team,
               Memory<double> memory)

@@ -18,17 +18,16 @@ HOL_INLINE Vector3<double> operator*(const Tensor &a, const Vector3<double> &b) 
     return {dot(a.row[0], b), dot(a.row[1], b), dot(a.row[2], b)};
 }
 
-// a += f b (x) c
-HOL_INLINE void add_product(Tensor &a, double f, const Vector3<double> &b, const Vector3<double> &c) {
-    a.row[0] = add_times(a.row[0], f * b.x, c);
-    a.row[1] = add_times(a.row[1], f * b.y, c);
-    a.row[2] = add_times(a.row[2], f * b.z, c);
-}
-
-HOL_INLINE Tensor inverse_of(const Tensor &a) {
-    const Vector3<double> x = cross(a.row[1], a.row[2]), y = cross(a.row[2], a.row[0]), z = cross(a.row[0], a.row[1]);
-    const double f = 1 / dot(a.row[0], x);
-    return {{{f * x.x, f * y.x, f * z.x}, {f * x.y, f * y.y, f * z.y}, {f * x.z, f * y.z, f * z.z}}};
+// The inverse mass of an atom that also accelerates others, by bonds b, new ones D, which offer E: the inverse of
+// mass^-1 + b (x) D / E. One rank after the other is as good where E is next to nothing, and where the atom is held
+// fixed.
+HOL_INLINE void load(Tensor &mass, double E, const Vector3<double> &b, const Vector3<double> &D) {
+    const Vector3<double> pushed = mass * b;
+    const double f = -1 / (E + dot(D, pushed));
+    const Vector3<double> by = add_times(add_times(D.x * mass.row[0], D.y, mass.row[1]), D.z, mass.row[2]);
+    mass.row[0] = add_times(mass.row[0], f * pushed.x, by);
+    mass.row[1] = add_times(mass.row[1], f * pushed.y, by);
+    mass.row[2] = add_times(mass.row[2], f * pushed.z, by);
 }
 
 }  // namespace graph

@@ -5,119 +5,54 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_UNKNOWNS_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_NETWORK_UNKNOWNS_HPP
 
-#include "core/kernels/molecules/network/strands.hpp"
-#include "core/kernels/molecules/network/tensor.hpp"
+#include "core/kernels/molecules/network/ends.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-struct NetNode {
-    Tensor per_mass, mass;         // with the trees that hang from it; of the atom alone, and its inverse
-    Tensor with_ends;              // inverse of per_mass and what its own ends offer
-    Vector3<double> push;          // from the trees' right-hand sides
-    Vector3<double> foreign, all;  // accelerations by foreign ends, and by all, of a vector that is multiplied
-};
-
-struct Unknowns {
-    const Net &net;
-    const NetworkPlan &s;
-    double *E, *per_E, *coupling;  // what the far side of an end offers; to the partner's value
-    double *y, *x, *size;          // right-hand sides, solution, squares of the sizes of right-hand sides' terms
-    Vector3<double> *D, *b, *tree_bond;
-    NetNode *node;
+struct Unknowns : Ends {
+    double *x, *size;                                  // solution, squares of the sizes of right-hand sides' terms
     double *sum;                                       // [n_node_shares][3]
     double *r, *shadow, *p, *p_node, *v, *s_node, *t;  // s takes the place of r
+    mutable bool direct = false, tried = false;        // fronts are used; or have been tried
 
-    static constexpr int64_t node_values = static_cast<int64_t>(sizeof(NetNode) / sizeof(double));
-
-    static int64_t values(const NetworkPlan &s) {
-        return in_fours(node_values * static_cast<int64_t>(s.n_nodes)) + in_fours(3 * static_cast<int64_t>(s.n_tree)) +
-               in_fours(3 * static_cast<int64_t>(s.n_node_shares)) +
-               2 * in_fours(3 * static_cast<int64_t>(s.n_unknowns)) + 13 * in_fours(s.n_unknowns);
+    static int64_t values(const NetworkPlan &s, bool symmetric) {
+        return Ends::values(s, symmetric) + in_fours(3 * static_cast<int64_t>(s.n_node_shares)) +
+               9 * in_fours(s.n_unknowns);
     }
-    Unknowns(const Net &of, Memory<double> &memory) : net(of), s(of.s) {
-        const int64_t n = in_fours(s.n_unknowns);
-        node = reinterpret_cast<NetNode *>(memory.values(in_fours(node_values * static_cast<int64_t>(s.n_nodes))));
-        tree_bond = reinterpret_cast<Vector3<double> *>(memory.values(in_fours(3 * static_cast<int64_t>(s.n_tree))));
+    Unknowns(const Net &of, bool symmetric, Memory<double> &memory) : Ends(of, symmetric, memory) {
         sum = memory.values(in_fours(3 * static_cast<int64_t>(s.n_node_shares)));
-        D = reinterpret_cast<Vector3<double> *>(memory.values(in_fours(3 * static_cast<int64_t>(s.n_unknowns))));
-        b = reinterpret_cast<Vector3<double> *>(memory.values(in_fours(3 * static_cast<int64_t>(s.n_unknowns))));
-        double **const arrays[] = {&E, &per_E, &coupling, &y, &x, &size, &r, &shadow, &p, &p_node, &v, &s_node, &t};
-        for (double **array : arrays) *array = memory.values(n);
+        double **const arrays[] = {&x, &size, &r, &shadow, &p, &p_node, &v, &s_node, &t};
+        for (double **array : arrays) *array = memory.values(in_fours(s.n_unknowns));
     }
 
-    // Bonds of the ends, and what trees at the nodes give to right-hand sides.
-    void open(const Net3 &new_D, const Net3 &ref) const {
-        for_each([&](int32_t u) {
-            D[u] = new_D.get<double>(s.place_of[u]);
-            b[u] = ref.get<double>(s.place_of[u]);
-            const int32_t other = s.other_node[u];
-            if (other < 0) return;
-            const double offer = dot(D[u], node[other].mass * b[u]);
-            E[u] = offer;
-            coupling[u] = 0;
-        });
-        add_pushes();
-    }
-    void add_pushes() const {
-        if (s.n_tree == 0) return;
-        for_each([&](int32_t u) {
-            const NetNode &own = node[s.node_of[u]];
-            y[u] -= s.sign[u] * dot(D[u], own.mass * own.push);
-            if (s.other_node[u] < 0) return;
-            const NetNode &other = node[s.other_node[u]];
-            y[u] += dot(D[u], other.mass * other.push);
-        });
-    }
     void factorize() const {
-        net.for_nodes([&](int32_t first, int32_t end, int32_t) {
-            for (int32_t n = first; n < end; ++n) {
-                Tensor a = node[n].per_mass;
-                for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u) {
-                    per_E[u] = 1 / E[u];
-                    add_product(a, per_E[u], b[u], D[u]);
-                }
-                node[n].with_ends = inverse_of(a);
-            }
-        });
+        direct = tried = false;
+        factorize_nodes();
+        if (s.fronts.at_once) use_fronts();
     }
-    // Of a node with its trees, by these values of the ends.
-    Vector3<double> acceleration_of(int32_t n, const double *of) const {
-        Vector3<double> sum_of = node[n].push;
-        for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u)
-            sum_of = add_times(sum_of, s.sign[u] * of[u], b[u]);
-        for (int32_t f = s.foreign_start[n]; f < s.foreign_start[n + 1]; ++f)
-            sum_of = add_times(sum_of, -of[s.foreign[f]], b[s.foreign[f]]);
-        return node[n].mass * sum_of;
-    }
-
-    // Calls body(u) for all unknowns, node by node.
-    template <class Body>
-    HOL_FORCED void for_each(const Body &body) const {
-        net.for_nodes([&](int32_t first, int32_t end, int32_t) {
-            for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) body(u);
-        });
-    }
-
     // Solves for y until what is left is `part` of it, both as sums of squares' roots, and, with `sizes`, of right-hand
     // sides' terms by place, every unknown's is a rounding of its own, or of the mean. How many rounds it took, or -1.
     __attribute__((noinline)) int32_t solve(double part, const double *sizes) const {
         Sums all = sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
             for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
                 x[u] = 0;
-                r[u] = shadow[u] = p[u] = y[u];
+                r[u] = y[u];
                 one.a = mul_add(y[u], y[u], one.a);
                 size[u] = sizes ? rounding_part * (sizes[s.place_of[u]] * sizes[s.place_of[u]]) : 0;
             }
-            precondition(first, end, p, p_node);
         });
-        const double enough = part * part * all.a,
-                     enough_of_one = (least_of_mean * rounding_part) * all.a / s.n_unknowns;
-        const auto is_enough = [&] { return all.a <= enough && (!sizes || all.most <= enough_of_one); };
         if (!(all.a > 0)) return all.a == 0 ? 0 : -1;
-        double rho = all.a, looked_at = all.a;
+        const Goal goal = {part * part * all.a, (least_of_mean * rounding_part) * all.a / s.n_unknowns,
+                           sizes != nullptr};
+        const double whole = all.a;
+        double rho = 0, looked_at = all.a;
         for (int32_t round = 1; round <= most_rounds; ++round) {
+            if (round == 1 || (is_slow(round - 1, whole, all.a, goal) && use_fronts())) {
+                begin();
+                rho = looked_at = all.a;
+            }
             all = multiply(p, p_node, v, [&](int32_t u, Sums &one) { one.a = mul_add(shadow[u], v[u], one.a); });
             const double alpha = rho / all.a;
             all = sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
@@ -126,10 +61,11 @@ struct Unknowns {
                     r[u] = mul_add(-alpha, v[u], r[u]);
                     note_left(u, one);
                 }
-                precondition(first, end, r, s_node);
+                if (!direct) solve_nodes(first, end, r, s_node);
             });
             if (!(all.a < 1e300)) return -1;
-            if (is_enough()) return round;
+            if (goal.is_reached(all)) return round;
+            if (direct) solve_fronts(r, s_node);
             all = multiply(r, s_node, t, [&](int32_t u, Sums &one) {
                 one.a = mul_add(t[u], r[u], one.a);
                 one.b = mul_add(t[u], t[u], one.b);
@@ -143,8 +79,8 @@ struct Unknowns {
                     one.b = mul_add(shadow[u], r[u], one.b);
                 }
             });
-            if (all.a < 1e300 && is_enough()) return round;
-            if (round % look_after == 0) {
+            if (all.a < 1e300 && goal.is_reached(all)) return round;
+            if (round % (direct ? few_rounds : look_after) == 0) {
                 if (!(all.a < least_progress * looked_at)) return -1;
                 looked_at = all.a;
             }
@@ -154,8 +90,9 @@ struct Unknowns {
             net.for_nodes([&](int32_t first, int32_t end, int32_t) {
                 for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u)
                     p[u] = mul_add(beta, mul_add(-omega, v[u], p[u]), r[u]);
-                precondition(first, end, p, p_node);
+                if (!direct) solve_nodes(first, end, p, p_node);
             });
+            if (direct) solve_fronts(p, p_node);
         }
         return -1;
     }
@@ -165,9 +102,44 @@ private:
     static constexpr int32_t most_rounds = 2000, look_after = 64;
     static constexpr double least_progress = 0.1;
     static constexpr double rounding_part = 16 * epsilon * 16 * epsilon, least_of_mean = 1. / 256;  // of squares
+    static constexpr int32_t few_rounds = 8;
     struct Sums {
         double a, b, most;
     };
+    // Squares of what may be left: of all together, and of one beyond its rounding.
+    struct Goal {
+        double of_all, of_one;
+        bool by_one;
+        bool is_reached(const Sums &left) const { return left.a <= of_all && (!by_one || left.most <= of_one); }
+    };
+    void begin() const {
+        net.for_nodes([&](int32_t first, int32_t end, int32_t) {
+            for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) shadow[u] = p[u] = r[u];
+            if (!direct) solve_nodes(first, end, p, p_node);
+        });
+        if (direct) solve_fronts(p, p_node);
+    }
+
+    // Whether it takes more rounds than fronts do, and a good part of these yet, if each gains as many orders as the
+    // ones so far: `taken` of them took squares down from `whole` to `left`.
+    bool is_slow(int32_t taken, double whole, double left, const Goal &goal) const {
+        if (direct || tried) return false;
+        const int gained = order_of(whole) - order_of(left),
+                  wanted = goal.by_one ? 2 * 46 : order_of(whole) - order_of(goal.of_all);
+        const double can_take = s.fronts.rounds * (gained > 0 ? gained : 0);
+        return taken > 1 && taken * wanted > can_take && 4 * taken * (wanted - gained) > can_take;
+    }
+    // Of a square: binary exponent.
+    HOL_STATIC int order_of(double a) {
+        uint64_t bits_of_a;
+        __builtin_memcpy(&bits_of_a, &a, sizeof a);
+        return static_cast<int>(bits_of_a >> 52 & 2047);
+    }
+    bool use_fronts() const {
+        if (tried || s.fronts.n_fronts == 0) return false;
+        tried = true;
+        return direct = factorize_fronts();
+    }
     void note_left(int32_t u, Sums &of) const {
         const double square = r[u] * r[u];
         of.a += square;
@@ -194,48 +166,20 @@ private:
         return all;
     }
 
-    // M^-1: the ends of each node by themselves.
-    __attribute__((noinline)) void precondition(int32_t first, int32_t end, const double *of, double *to) const {
-        for (int32_t n = first; n < end; ++n) {
-            Vector3<double> pull = {};
-            for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u) {
-                to[u] = of[u] * per_E[u];
-                pull = add_times(pull, s.sign[u] * to[u], b[u]);
-            }
-            const Vector3<double> a = node[n].with_ends * pull;
-            for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u)
-                to[u] = mul_add(-s.sign[u] * per_E[u], dot(D[u], a), to[u]);
-        }
-    }
-    // What strands couple, and what bonds do at the nodes where they are foreign, added to `own`, which is M times
-    // `of`.
+    // The product of the matrix with `of`, and sums over the unknowns. own: M times `of`, without fronts.
     template <class Body>
     HOL_FORCED Sums multiply(const double *own, const double *of, double *to, const Body &body) const {
-        if (s.has_foreign) accelerate_nodes(of);
-        return sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
-            for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
-                double value = mul_add(coupling[u], of[s.partner[u]], own[u]);
-                if (s.has_foreign) {
-                    value = mul_add(s.sign[u], dot(D[u], node[s.node_of[u]].foreign), value);
-                    if (s.other_node[u] >= 0) value -= dot(D[u], node[s.other_node[u]].all) + E[u] * of[u];
+        if (s.has_foreign || direct) accelerate_nodes(of);
+        const auto sums = [&](const auto &value) HOL_FORCED {
+            return sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
+                for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
+                    to[u] = value(u);
+                    body(u, one);
                 }
-                to[u] = value;
-                body(u, one);
-            }
-        });
-    }
-    __attribute__((noinline)) void accelerate_nodes(const double *of) const {
-        net.for_nodes([&](int32_t first, int32_t end, int32_t) {
-            for (int32_t n = first; n < end; ++n) {
-                Vector3<double> by_own = {}, by_foreign = {};
-                for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u)
-                    by_own = add_times(by_own, s.sign[u] * of[u], b[u]);
-                for (int32_t f = s.foreign_start[n]; f < s.foreign_start[n + 1]; ++f)
-                    by_foreign = add_times(by_foreign, -of[s.foreign[f]], b[s.foreign[f]]);
-                node[n].foreign = node[n].mass * by_foreign;
-                node[n].all = node[n].foreign + node[n].mass * by_own;
-            }
-        });
+            });
+        };
+        return direct ? sums([&](int32_t u) HOL_FORCED { return product(u, of); })
+                      : sums([&](int32_t u) HOL_FORCED { return own[u] + product_beside_nodes(u, of); });
     }
 };
 

@@ -1,0 +1,199 @@
+// The linear equations of a network: their bonds, their right-hand sides, and what multipliers leave of them in twice
+// the precision.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_EQUATIONS_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_EQUATIONS_HPP
+
+#include "core/kernels/molecules/cycles/residual.hpp"
+#include "core/kernels/molecules/load.hpp"
+#include "core/kernels/molecules/network/strands.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+struct NetEquations {
+    const Net net;
+    const NetworkPlan &s;
+    const Box &box;
+    const AtomArray &coordinates;
+    const Inputs &in;
+    const int terms;
+    Net3 r, v, f, d, G;               // v: velocities; f: w f; G: pulls, or where right-hand sides are rates v + w G
+    double *t, *side, *size_of_side;  // multipliers; right-hand sides, and the sizes of their terms
+    Pair3<double> *a;                 // of nodes and atoms of trees, in twice the precision
+
+    static int64_t values(const NetworkPlan &s) {
+        return Net::values(s) + 12 * in_fours(s.n_atoms) + 6 * in_fours(s.n_bonds) + 6 * in_fours(s.n_nodes + s.n_tree);
+    }
+    NetEquations(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
+                 const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> &memory)
+        : net(plan, l, packed, team, memory), s(plan), box(b), coordinates(positions), in(inputs), terms(sides),
+          r(Net3::take(memory, s.n_atoms)), v(Net3::take(memory, s.n_atoms)), f(Net3::take(memory, s.n_atoms)),
+          d(Net3::take(memory, s.n_bonds)), G(Net3::take(memory, s.n_atoms)), t(memory.values(in_fours(s.n_bonds))),
+          side(memory.values(in_fours(s.n_bonds))), size_of_side(memory.values(in_fours(s.n_bonds))),
+          a(reinterpret_cast<Pair3<double> *>(memory.values(6 * in_fours(s.n_nodes + s.n_tree)))) {}
+
+    bool has(int wanted) const { return (terms & wanted) != 0; }
+
+    void read_atoms(int32_t first, int32_t end) const {
+        net.read_masses(first, end);
+        net.read_sites(first, end, coordinates, r, false);
+        if (has(squares | rates)) net.read_sites(first, end, *in.v, v, false);
+        if (has(pulls)) net.read_sites(first, end, *in.f, f, true);
+    }
+    void find_equations(const NetPart &part) const {
+        net.find_bonds(part, box, r, d);
+        find_sides(part);
+    }
+    // Right-hand sides, and the sum of their terms' sizes.
+    __attribute__((noinline)) void find_sides(const NetPart &part) const {
+        if (!has(pulls | squares | rates))
+            for (int32_t k = part.first_place; k < part.end_place; ++k) side[k] = size_of_side[k] = 0;
+        if (has(pulls)) add_products(part, f, false);
+        if (has(rates)) add_products(part, v, false);
+        if (has(squares)) add_products(part, v, true);
+        for (int32_t k = part.first_place; (in.rhs || in.strain) && k < part.end_place; ++k) {
+            const double value =
+                in.rhs ? 0.5 * in.rhs[net.lane.first_bond + s.bond_of[k]] : stretching(in.strain, d.get<double>(k));
+            side[k] += value;
+            size_of_side[k] += abs(value);
+        }
+        for (int32_t k = part.first_place; k < part.end_place; ++k) t[k] = side[k];
+    }
+    // d.(x_j - x_i), the first of the terms where there are two, or |x_j - x_i|^2.
+    void add_products(const NetPart &part, const Net3 &x, bool square) const {
+        const bool more = square && has(pulls);
+        net.for_bonds(part, x, [&](auto width, int32_t k, const auto &from, const auto &to) HOL_FORCED {
+            typedef decltype(width) V;
+            const Vector3<V> change = to - from, bond = d.get<V>(k);
+            V value = square ? dot(change, change) : dot(bond, change),
+              size = square ? value : dot(absolute(bond), absolute(from) + absolute(to));
+            if (more) {
+                value = value + load_any<V>(side + k);
+                size = size + load_any<V>(size_of_side + k);
+            }
+            store_any(side + k, value);
+            store_any(size_of_side + k, size);
+        });
+    }
+
+    Pair3<double> exact(int32_t k) const { return pairs_of(d.get<double>(k), Vector3<double>{}); }
+    template <class V>
+    __attribute__((noinline)) Pair3<V> unrounded_between(const Vector3<V> &from, const Vector3<V> &to) const {
+        Vector3<V> bond, low;
+        unrounded_bond(box, from, to, bond, low);
+        return pairs_of(bond, low);
+    }
+    Pair3<double> unrounded(int32_t k) const {
+        return unrounded_between(r.get<double>(s.from[k]), r.get<double>(s.to[k]));
+    }
+    // In twice the precision: of an atom with these multipliers; and what is left of a bond's equation.
+    Pair3<double> acceleration_of(int32_t site, const double *solution, bool low) const {
+        const Vector3<double> zero = {};
+        Pair3<double> sum = pairs_of(has(pulls) ? read(*in.f, net.at, s.atom_of[site]) : zero, zero);
+        net.for_bonds_of(site, [&](int32_t k, double sign) {
+            sum = add_pairs(sum, scale_pairs(sign * solution[k], low ? unrounded(k) : exact(k)));
+        });
+        sum = scale_pairs(net.w[site], sum);
+        return has(rates) ? add_pairs(sum, pairs_of(v.get<double>(site), zero)) : sum;
+    }
+    double residual_of(int32_t k, const Pair3<double> &bond, const Pair3<double> &from, const Pair3<double> &to) const {
+        Pair<double> sum = dot_pairs(bond, subtract_pairs(to, from));
+        if (has(squares)) {
+            const Pair3<double> dv = difference_of(v.get<double>(s.from[k]), v.get<double>(s.to[k]));
+            sum = add_pairs(sum, dot_pairs(dv, dv));
+        }
+        if (in.rhs) sum = add_pairs(sum, {0.5 * in.rhs[net.lane.first_bond + s.bond_of[k]], 0.0});
+        if (in.strain) sum = add_pairs(sum, {stretching(in.strain, d.get<double>(k)), 0.0});
+        return sum.hi + sum.lo;
+    }
+    // What the multipliers of `solution` leave, into t.
+    __attribute__((noinline)) void find_residuals(const double *solution) const {
+        net.for_ranges(s.first_node, s.n_atoms, [&](int32_t first, int32_t end) {
+            for (int32_t i = first; i < end; ++i) a[i - s.first_node] = acceleration_of(i, solution, true);
+        });
+        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k)
+            t[k] = residual_of(k, unrounded(k), a[s.from[k] - s.first_node], a[s.to[k] - s.first_node]);
+        net.for_parts([&](const NetPart &part) { find_residuals(part, solution); });
+    }
+    __attribute__((noinline)) void find_residuals(const NetPart &part, const double *solution) const {
+        net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
+            typedef decltype(width) V;
+            const auto site_of = [&](int32_t k) { return g.site + k * g.step; };
+            const auto behind = [&](int32_t k, const Net3 &of) HOL_FORCED {  // at the atom behind bond k
+                return k + 1 < g.length ? of.get<V>(site_of(k)) : net.at_node<V>(g, 1, of);
+            };
+            const Vector3<V> zero = {};
+            Vector3<V> at_atom = behind(0, r), speed = has(squares) ? net.at_node<V>(g, 0, v) : zero;
+            Pair3<V> from = at_node<V>(g, 0), bond = unrounded_between(net.at_node<V>(g, 0, r), at_atom);
+            for (int32_t k = 0; k < g.length; ++k) {
+                const int32_t place = g.place + k * g.step;
+                Pair3<V> to, next = bond;
+                if (k + 1 < g.length) {
+                    const Vector3<V> beyond = behind(k + 1, r);
+                    next = unrounded_between(at_atom, beyond);
+                    at_atom = beyond;
+                    to = pairs_of(has(pulls) ? force_at<V>(site_of(k)) : zero, zero);
+                    to = add_pairs(to, scale_pairs(load_any<V>(solution + place + g.step), next));
+                    to = subtract_pairs(to, scale_pairs(load_any<V>(solution + place), bond));
+                    to = scale_pairs(load_any<V>(net.w + site_of(k)), to);
+                    if (has(rates)) to = add_pairs(to, pairs_of(v.get<V>(site_of(k)), zero));
+                } else {
+                    to = at_node<V>(g, 1);
+                }
+                Pair<V> sum = dot_pairs(bond, subtract_pairs(to, from));
+                if (has(squares)) {
+                    const Vector3<V> faster = behind(k, v);
+                    const Pair3<V> change = difference_of(speed, faster);
+                    sum = add_pairs(sum, dot_pairs(change, change));
+                    speed = faster;
+                }
+                if (in.rhs || in.strain) sum = add_pairs(sum, Pair<V>{given_to<V>(place), V{}});
+                store_any(t + place, sum.hi + sum.lo);
+                from = to;
+                bond = next;
+            }
+        });
+    }
+    // Of the nodes at the ends of strands, in twice the precision.
+    template <class V>
+    HOL_FORCED Pair3<V> at_node(const NetStrands &g, int end) const {
+        Pair3<V> all = {};
+        for (int i = 0; i < Width<V>::lanes; ++i) {
+            const Pair3<double> &one = a[s.strand_node[2 * (g.strand + i) + end]];
+            const auto put = [&](Pair<V> &to, const Pair<double> &of) HOL_FORCED {
+                Width<V>::set(to.hi, i, of.hi);
+                Width<V>::set(to.lo, i, of.lo);
+            };
+            put(all.x, one.x);
+            put(all.y, one.y);
+            put(all.z, one.z);
+        }
+        return all;
+    }
+    template <class V>
+    __attribute__((noinline)) Vector3<V> force_at(int32_t site) const {
+        Vector3<V> all = {};
+        for (int i = 0; i < Width<V>::lanes; ++i) {
+            const Vector3<double> one = read(*in.f, net.at, s.atom_of[site + i]);
+            Width<V>::set(all.x, i, one.x);
+            Width<V>::set(all.y, i, one.y);
+            Width<V>::set(all.z, i, one.z);
+        }
+        return all;
+    }
+    template <class V>
+    __attribute__((noinline)) V given_to(int32_t place) const {
+        V all = {};
+        for (int i = 0; i < Width<V>::lanes; ++i)
+            Width<V>::set(all, i,
+                          in.rhs ? 0.5 * in.rhs[net.lane.first_bond + s.bond_of[place + i]]
+                                 : stretching(in.strain, d.get<double>(place + i)));
+        return all;
+    }
+};
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif

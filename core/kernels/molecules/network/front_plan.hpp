@@ -1,0 +1,33 @@
+// How the unknowns of a network are eliminated directly. Plain data; core/molecules/fronts.hpp makes it.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_FRONT_PLAN_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_FRONT_PLAN_HPP
+
+#include <stdint.h>
+
+namespace holonomic {
+
+// The nodes are halved again and again, where few strands go from one half to the other. A *front* belongs to a part: a
+// dense matrix of the unknowns that it eliminates, its *own* ones, and of those that then are coupled, of strands that
+// leave the part. A *leaf*, which is not halved any more, has the terms of its nodes; any other one has what its two
+// halves leave. Its own unknowns are, of each strand between the halves, the one at the strand's first node.
+struct FrontPlan {
+    struct Front {
+        int32_t n_own, n_rows;         // the own ones first, then all others, in the order of elimination
+        int32_t first_row;             // in row, to_parent
+        int32_t first_node, end_node;  // in node; none of what is halved
+        int32_t half[2];               // fronts, or -1
+    };
+    int32_t n_fronts;            // 0: there are none
+    const Front *front;          // the halves before the whole
+    const int32_t *row;          // unknowns
+    const int32_t *to_parent;    // their rows in the front of which this one is a half
+    const int32_t *node;         // of leaves
+    const int32_t *own_row;      // [n_unknowns] the row of an unknown in the leaf of its node
+    const int32_t *foreign_row;  // of the places in NetworkPlan::foreign, likewise
+    const int32_t *partner_row;  // [n_unknowns] in the leaf of the unknown's node, where that couples the two; or -1
+    double rounds;               // of the iteration that take as long as the fronts
+    bool at_once;                // whether it would take more
+};
+
+}  // namespace holonomic
+#endif

@@ -1,0 +1,243 @@
+#include "core/molecules/fronts.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include "core/molecules/bisection.hpp"
+
+namespace holonomic {
+
+namespace {
+
+// A part of so many unknowns is not halved: its matrix is dense enough.
+constexpr std::int32_t most_of_leaf = 40;
+
+std::int32_t size_of(const Numbers &list) { return static_cast<std::int32_t>(list.size()); }
+
+class FrontMaker {
+public:
+    FrontMaker(const NetworkPlan &s, FrontArrays &a)
+        : s_(s), a_(a), part_of_(at(s.n_nodes), 0), in_part_(at(s.n_nodes), -1), front_of_(at(s.n_unknowns), -1) {}
+
+    FrontPlan make(std::int64_t most_bytes) {
+        Numbers nodes(at(s_.n_nodes));
+        for (std::int32_t i = 0; i < s_.n_nodes; ++i) nodes[at(i)] = i;
+        divide(graph_of_all(), nodes);
+        number();
+        list_rows();
+        FrontPlan p = {};
+        if (!count(most_bytes, p)) {
+            a_ = {};
+            return {};
+        }
+        list_elements();
+        p.n_fronts = static_cast<std::int32_t>(a_.front.size());
+        p.front = a_.front.data();
+        p.row = a_.row.data();
+        p.to_parent = a_.to_parent.data();
+        p.node = a_.node.data();
+        p.own_row = a_.own_row.data();
+        p.foreign_row = a_.foreign_row.data();
+        p.partner_row = a_.partner_row.data();
+        return p;
+    }
+
+private:
+    // Nodes and the strands between them, each of weight 1.
+    Graph graph_of_all() const {
+        const Lists strands =
+            invert(s_.n_nodes, s_.n_strands, [&](std::int32_t i, int end) { return s_.strand_node[2 * i + end]; });
+        Graph g;
+        g.start.assign(1, 0);
+        for (std::int32_t n = 0; n < s_.n_nodes; ++n) {
+            for (const std::int32_t *i = strands.begin(n); i != strands.end(n); ++i) {
+                const std::int32_t other = s_.strand_node[2 * *i] + s_.strand_node[2 * *i + 1] - n;
+                if (other != n) g.edge.push_back({other, 1});
+            }
+            g.start.push_back(static_cast<std::int32_t>(g.edge.size()));
+            g.weight.push_back(1);
+        }
+        return g;
+    }
+    std::int32_t unknowns_at(std::int32_t n) const {
+        return s_.own_start[n + 1] - s_.own_start[n] + s_.foreign_start[n + 1] - s_.foreign_start[n];
+    }
+
+    // Fronts of these nodes, whose edges `g` has; returns the last one. Nodes of the part: `nodes` as g numbers them.
+    std::int32_t divide(const Graph &g, const Numbers &nodes) {
+        std::int32_t unknowns = 0;
+        for (const std::int32_t n : nodes) unknowns += unknowns_at(n);
+        FrontPlan::Front front = {0, 0, 0, size_of(a_.node), size_of(a_.node), {-1, -1}};
+        std::vector<unsigned char> side;
+        if (nodes.size() > 1 && unknowns > most_of_leaf) side = bisect(g);
+        if (std::adjacent_find(side.begin(), side.end(), std::not_equal_to<>()) != side.end()) {
+            for (unsigned char half = 0; half < 2; ++half) {
+                Graph part;
+                Numbers members;
+                part_of(g, side, half, nodes, part, members);
+                front.half[half] = divide(part, members);
+            }
+        } else {
+            a_.node.insert(a_.node.end(), nodes.begin(), nodes.end());
+            front.end_node = size_of(a_.node);
+        }
+        a_.front.push_back(front);
+        const std::int32_t self = static_cast<std::int32_t>(a_.front.size()) - 1;
+        parent_.push_back(-1);
+        for (const std::int32_t f : front.half)
+            if (f >= 0) parent_[at(f)] = self;
+        for (std::int32_t i = front.first_node; i < front.end_node; ++i) part_of_[at(a_.node[at(i)])] = self;
+        return self;
+    }
+    void part_of(const Graph &g, const std::vector<unsigned char> &side, unsigned char half, const Numbers &nodes,
+                 Graph &part, Numbers &members) {
+        for (std::int32_t i = 0; i < g.size(); ++i)
+            if (side[at(i)] == half) {
+                in_part_[at(i)] = size_of(members);
+                members.push_back(nodes[at(i)]);
+                part.weight.push_back(g.weight[at(i)]);
+            }
+        part.start.assign(1, 0);
+        for (std::int32_t i = 0; i < g.size(); ++i) {
+            if (side[at(i)] != half) continue;
+            for (std::int32_t e = g.start[at(i)]; e < g.start[at(i) + 1]; ++e)
+                if (side[at(g.edge[at(e)].to)] == half)
+                    part.edge.push_back({in_part_[at(g.edge[at(e)].to)], g.edge[at(e)].weight});
+            part.start.push_back(static_cast<std::int32_t>(part.edge.size()));
+        }
+    }
+
+    // The front that has both: fronts of halves have lower numbers than those of the whole.
+    std::int32_t common(std::int32_t a, std::int32_t b) const {
+        while (a != b) (a < b ? a : b) = parent_[at(a < b ? a : b)];
+        return a;
+    }
+    // Where each unknown is eliminated, and when.
+    void number() {
+        for (std::int32_t u = 0; u < s_.n_unknowns; ++u) {
+            const std::int32_t own = part_of_[at(s_.node_of[u])];
+            const bool is_first = s_.sign[u] > 0;
+            const std::int32_t other = s_.other_node[u] >= 0 ? s_.other_node[u]
+                                       : is_first            ? s_.node_of[s_.partner[u]]
+                                                             : s_.node_of[u];
+            front_of_[at(u)] = common(own, part_of_[at(other)]);
+            ++a_.front[at(front_of_[at(u)])].n_own;
+        }
+        std::int32_t first = 0;
+        Numbers next;
+        for (const FrontPlan::Front &f : a_.front) {
+            next.push_back(first);
+            first += f.n_own;
+        }
+        turn_.resize(at(s_.n_unknowns));
+        unknown_.resize(at(s_.n_unknowns));
+        for (std::int32_t u = 0; u < s_.n_unknowns; ++u) {
+            turn_[at(u)] = next[at(front_of_[at(u)])]++;
+            unknown_[at(turn_[at(u)])] = u;
+        }
+    }
+
+    // Calls each(unknown) for those that a leaf's terms hold; some more than once.
+    template <class Each>
+    void for_unknowns(const FrontPlan::Front &f, const Each &each) const {
+        for (std::int32_t i = f.first_node; i < f.end_node; ++i) {
+            const std::int32_t n = a_.node[at(i)];
+            for (std::int32_t u = s_.own_start[n]; u < s_.own_start[n + 1]; ++u) {
+                each(u);
+                if (s_.sign[u] < 0) each(s_.partner[u]);
+            }
+            for (std::int32_t k = s_.foreign_start[n]; k < s_.foreign_start[n + 1]; ++k) each(s_.foreign[k]);
+        }
+    }
+    void list_rows() {
+        const std::int32_t n_fronts = static_cast<std::int32_t>(a_.front.size());
+        std::vector<Numbers> left(a_.front.size());  // turns that the halves of a front leave, then its own rows
+        Numbers turns;
+        for (std::int32_t f = 0; f < n_fronts; ++f) {
+            FrontPlan::Front &front = a_.front[at(f)];
+            turns = std::move(left[at(f)]);
+            if (front.half[0] < 0) for_unknowns(front, [&](std::int32_t u) { turns.push_back(turn_[at(u)]); });
+            std::sort(turns.begin(), turns.end());
+            turns.erase(std::unique(turns.begin(), turns.end()), turns.end());
+            front.first_row = size_of(a_.row);
+            front.n_rows = size_of(turns);
+            a_.row.insert(a_.row.end(), turns.begin(), turns.end());
+            if (parent_[at(f)] < 0) continue;
+            Numbers &to = left[at(parent_[at(f)])];
+            to.insert(to.end(), turns.begin() + front.n_own, turns.end());
+        }
+        a_.to_parent.assign(a_.row.size(), -1);
+        for (std::int32_t f = 0; f < n_fronts; ++f) {
+            if (parent_[at(f)] < 0) continue;
+            const FrontPlan::Front &front = a_.front[at(f)], &whole = a_.front[at(parent_[at(f)])];
+            std::int32_t k = whole.first_row;
+            for (std::int32_t i = front.first_row + front.n_own; i < front.first_row + front.n_rows; ++i) {
+                while (a_.row[at(k)] != a_.row[at(i)]) ++k;
+                a_.to_parent[at(i)] = k - whole.first_row;
+            }
+        }
+    }
+    std::int32_t row_of(std::int32_t f, std::int32_t u) const {
+        const auto begin = a_.row.begin() + a_.front[at(f)].first_row;
+        return static_cast<std::int32_t>(std::lower_bound(begin, begin + a_.front[at(f)].n_rows, turn_[at(u)]) - begin);
+    }
+    void list_elements() {
+        a_.own_row.resize(at(s_.n_unknowns));
+        a_.partner_row.assign(at(s_.n_unknowns), -1);
+        a_.foreign_row.resize(at(s_.foreign_start[s_.n_nodes]));
+        for (std::int32_t n = 0; n < s_.n_nodes; ++n) {
+            const std::int32_t f = part_of_[at(n)];
+            for (std::int32_t u = s_.own_start[n]; u < s_.own_start[n + 1]; ++u) {
+                a_.own_row[at(u)] = row_of(f, u);
+                if (s_.sign[u] < 0) a_.partner_row[at(u)] = row_of(f, s_.partner[u]);
+            }
+            for (std::int32_t k = s_.foreign_start[n]; k < s_.foreign_start[n + 1]; ++k)
+                a_.foreign_row[at(k)] = row_of(f, s_.foreign[k]);
+        }
+        for (std::int32_t &turn : a_.row) turn = unknown_[at(turn)];
+    }
+    // What they take: memory, and time beside that of the iteration. Measured on Zen 4; strands of that many coiled
+    // bonds need some sixty rounds divided by it.
+    bool count(std::int64_t most_bytes, FrontPlan &p) const {
+        double entries = 0, operations = 0, waiting = 0, waits = 0;
+        const auto square = [](const FrontPlan::Front &f) {
+            return static_cast<double>(f.n_rows - f.n_own + 4) * (f.n_rows - f.n_own + 4);
+        };
+        for (const FrontPlan::Front &f : a_.front) {
+            entries += (f.n_own + 4.0) * (f.n_rows + 8.0);
+            for (double k = 0; k < f.n_own; ++k) operations += 0.5 * (f.n_rows - k) * (f.n_rows - k);
+            waiting = std::max(waiting, waits += square(f));
+            for (const std::int32_t half : f.half)
+                if (half >= 0) waits -= square(a_.front[at(half)]);
+        }
+        const double rows = static_cast<double>(a_.row.size()), bonds = s_.n_bonds - s_.n_tree,
+                     of_round = (s_.has_foreign ? 30.0 : 15.0) * s_.n_unknowns;  // ns
+        p.rounds = (0.05 * operations + 1.5 * entries + 30 * rows) / of_round;
+        p.at_once = p.rounds * bonds < 60.0 * s_.n_strands;
+        return sizeof(double) * (2 * entries + waiting) <= static_cast<double>(most_bytes);
+    }
+
+    const NetworkPlan &s_;
+    FrontArrays &a_;
+    Numbers part_of_;         // the leaf of a node
+    Numbers in_part_;         // of a graph's vertices
+    Numbers parent_;          // of a front, or -1
+    Numbers front_of_;        // of an unknown
+    Numbers turn_, unknown_;  // of an unknown, when it is eliminated; and the other way round
+};
+
+}  // namespace
+
+FrontPlan make_fronts(const NetworkPlan &s, std::int64_t most_bytes, FrontArrays &arrays) {
+    return FrontMaker(s, arrays).make(most_bytes);
+}
+
+std::size_t bytes_of(const FrontArrays &a) {
+    std::size_t bytes = a.front.capacity() * sizeof(a.front[0]);
+    for (const Numbers *list : {&a.row, &a.to_parent, &a.node, &a.own_row, &a.foreign_row, &a.partner_row})
+        bytes += list->capacity() * sizeof(std::int32_t);
+    return bytes;
+}
+
+}  // namespace holonomic

@@ -1,0 +1,25 @@
+// The order in which the unknowns of a network are eliminated directly.
+#ifndef HOLONOMIC_FRONTS_HPP
+#define HOLONOMIC_FRONTS_HPP
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/kernels/molecules/network/network_plan.hpp"
+#include "core/molecules/lists.hpp"
+
+namespace holonomic {
+
+struct FrontArrays {
+    std::vector<FrontPlan::Front> front;
+    Numbers row, to_parent, node, own_row, foreign_row, partner_row;
+};
+
+// Of a network whose plan has all but the fronts; none where they would take more than most_bytes.
+FrontPlan make_fronts(const NetworkPlan &s, std::int64_t most_bytes, FrontArrays &arrays);
+
+std::size_t bytes_of(const FrontArrays &arrays);
+
+}  // namespace holonomic
+#endif
