@@ -70,7 +70,8 @@ private:
         std::int32_t next = static_cast<std::int32_t>(runs_.slot.size());
         for (std::size_t r = 0; r < count.size(); ++r) {
             if (count[r] == 0) continue;
-            runs_.run.push_back({next, count[r], static_cast<std::int32_t>(r) % sorts + 1});
+            const std::int32_t i = static_cast<std::int32_t>(r);
+            runs_.run.push_back({next, count[r], i % sorts + 1, i / sorts});
             next += count[r];
             count[r] = next - count[r];  // from now on where the next one goes
         }

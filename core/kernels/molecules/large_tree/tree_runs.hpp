@@ -15,7 +15,7 @@ HOL_NOINLINE void up_one(const Molecules<double> &x, int32_t slot, Faint &faint,
     const AtomRows<double> rows(x, slot);
     const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
     if (__builtin_expect(faint.holds(slot), 0)) {
-        if (k > 3 || !up_doubtful_joint(x, slot, k)) slack = -1;
+        if (k > 3 || !up_doubtful_joint(rows, k)) slack = -1;
         return faint.note_careful(slot);
     }
     if (k > 3) return up_joint<0, false>(rows, k, memory, slack);
@@ -32,7 +32,7 @@ HOL_NOINLINE void up_one(const Molecules<double> &x, int32_t slot, Faint &faint,
         row.E = before[2 * a];
         row.t = before[2 * a + 1];
     }
-    if (!up_doubtful_joint(x, slot, k)) slack = -1;
+    if (!up_doubtful_joint(rows, k)) slack = -1;
     faint.note_careful(slot);
 }
 

@@ -18,8 +18,8 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// The bonds of an atom, each at its place: those to its children, and the one above. large_tree/atom_lanes.hpp has the
-// same for W atoms of one molecule, forest/forest_joint.hpp for atoms of W different trees.
+// The bonds of an atom, each at its place: those to its children, and the one above. forest/forest_sweeps.hpp has
+// the same for atoms in lanes.
 template <class V>
 struct AtomRows {
     const Molecules<V> &x;
@@ -34,6 +34,10 @@ struct AtomRows {
         return k == 1 ? product_of(x, child[0], slot) : dot(bond(a).d, above().d);
     }
     HOL_FORCED V *multipliers() const { return x.pair + x.s.pair_start[slot]; }
+    // Bond a of a single molecule with its low word; behind the children the one above.
+    void exact(int a, Vector3<double> &d, Vector3<double> &low) const {
+        exact_bond(x, 0, a < x.s.child_start[slot + 1] - x.s.child_start[slot] ? child[a] : slot, d, low);
+    }
 };
 
 // Returns the square of that part of the error which all bonds at an atom share.
