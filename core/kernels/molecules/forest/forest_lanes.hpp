@@ -72,8 +72,13 @@ struct ForestAtom {
 
     // atom[] has a local number for each lane.
     HOL_FORCED ForestAtom(const Atoms<vec> &at, const int32_t *atom) {
+        if (at.layout == rows_in_order) {
+            HOL_UNROLL
+            for (int i = 0; i < W; ++i) number[i] = (packed ? 3 : 1) * (at.first[i] + atom[i]);
+            return;
+        }
         HOL_UNROLL
-        for (int i = 0; i < W; ++i) number[i] = packed ? 3 * at.number(i, atom[i]) : at.number(i, atom[i]);
+        for (int i = 0; i < W; ++i) number[i] = (packed ? 3 : 1) * at.number(i, atom[i]);
     }
     HOL_FORCED void rows_of(const AtomArray &array, double **p) const {
         HOL_UNROLL
@@ -151,12 +156,9 @@ struct ForestTrees {
     HOL_FORCED void fetch(int32_t place, const Arrays &...arrays) const {
         constexpr int32_t ahead = rows_ahead / W;
         if (!packed || f.n_pieces < pieces_of_cache || place + ahead >= f.n_places) return;
-        const int32_t *const atom = lower_of(place + ahead);
+        const ForestAtom<true> atom(at, lower_of(place + ahead));
         HOL_UNROLL
-        for (int i = 0; i < W; ++i) {
-            const int64_t row = 3 * at.number(i, atom[i]);
-            (fetch_row(arrays, row), ...);
-        }
+        for (int i = 0; i < W; ++i) (fetch_row(arrays, atom.number[i]), ...);
     }
     // Where the value of a bond stands in the caller's arrays.
     int64_t bond_of(int i, int32_t place) const {

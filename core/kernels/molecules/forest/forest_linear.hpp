@@ -76,9 +76,10 @@ struct ForestLinear : ForestTrees {
             const vec w0 = masses_of(lane, atom_of(s));
             w[s] = w0;
             for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
-                fetch<packed>(p, positions);
-                if (squared || rated) fetch<packed>(p, velocities);
-                if (pulled) fetch<packed>(p, forces);
+                if (pulled && (squared || rated))
+                    fetch<packed>(p, positions, velocities, forces);
+                else
+                    fetch<packed>(p, positions, pulled ? forces : velocities);
                 const ForestAtom<packed> lower(at, lower_of(p));
                 vec3 d = lower.read(positions) - r0, unused = {};
                 take_image<false>(box, d, unused);
@@ -99,7 +100,7 @@ struct ForestLinear : ForestTrees {
                 to.E = select(lanes_of(f.held[p]), w1 * to.q, splat(1));  // of a leaf, or of no bond
                 to.t = b;
                 lower_w[p] = w1;
-                pull[p] = vec3{};
+                pull[p].x = pull[p].y = pull[p].z = vec{};  // gcc makes a slow loop of vec3{}
             }
             if (rated && s == f.n_steps - 1) velocity[f.n_places] = v0;
         }

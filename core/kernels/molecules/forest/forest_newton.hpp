@@ -147,17 +147,17 @@ struct ForestNewton : ForestTrees {
     void make_factors(const Range &, Memory<vec> memory);
     void substitute(const Range &, Memory<vec> memory);
     void down(const Range &, mask active);
+    template <bool corrected>
+    void down_and_displace(const Range &);
     void solve(mask active) {
         substitute(all(), working);
         down(all(), active);
     }
 
     // tau b of the bonds above and below an atom, times its inverse mass.
-    void begin_shifts(const Range &range) {
-        for (int32_t p = range.place; p < range.end_place + (range.root ? 1 : 0); ++p) shift[p] = vec3{};
-    }
-    __attribute__((noinline)) void add_shifts(const Range &range) {
-        for (int32_t s = range.step; s < range.end_step; ++s) {
+    __attribute__((noinline)) void displace() {
+        for (int32_t p = 0; p <= f.n_places; ++p) shift[p].x = shift[p].y = shift[p].z = vec{};
+        for (int32_t s = 0; s < f.n_steps; ++s) {
             vec3 sum = {};
             for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
                 shift[p] = lower_w[p] * add_times(shift[p], -row[p].tau, row[p].b);
@@ -165,11 +165,7 @@ struct ForestNewton : ForestTrees {
             }
             AtPlaces<vec3>(shift, above_of(s)).put3(0, sum);
         }
-        if (range.root) shift[f.n_places] = lower_w[f.n_places] * shift[f.n_places];
-    }
-    void displace() {
-        begin_shifts(all());
-        add_shifts(all());
+        shift[f.n_places] = lower_w[f.n_places] * shift[f.n_places];
     }
     vec move() {
         displace();
@@ -266,6 +262,34 @@ inline __attribute__((noinline)) void ForestNewton::down(const Range &range, mas
             row[p].t = mul_add(row[p].down, above, row[p].t);
             row[p].tau = row[p].tau + keep(active, row[p].t);
         }
+    }
+}
+
+// Of one large tree, in one pass with displace(): each atom gets what the bond above it gives when its parent is dealt
+// with, and what those below it give at its own step. corrected: by the corrections in t, which are added to tau.
+template <bool corrected>
+inline __attribute__((noinline)) void ForestNewton::down_and_displace(const Range &range) {
+    if (range.root) {
+        ForestRow &root = row[f.step[f.n_steps - 1].first];
+        if (corrected) root.tau = root.tau + root.t;
+        shift[f.n_places] = vec3{};
+    }
+    for (int32_t s = range.end_step; s-- > range.step;) {
+        const vec above = AtPlaces<ForestRow>(row, above_of(s)).get(offsetof(ForestRow, t));
+        const bool inner = corrected && s < range.inner_end();
+        vec3 sum = {};
+        for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
+            ForestRow &bond = row[p];
+            if (inner) {
+                bond.t = mul_add(bond.down, above, bond.t);
+                bond.tau = bond.tau + bond.t;
+            }
+            const vec3 pull = bond.tau * bond.b;
+            shift[p] = -lower_w[p] * pull;
+            sum = sum + pull;
+        }
+        const AtPlaces<vec3> own(shift, above_of(s));
+        own.put3(0, add_times(own.get3(0), w[s], sum));
     }
 }
 

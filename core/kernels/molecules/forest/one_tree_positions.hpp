@@ -28,7 +28,7 @@ struct OneTreeNewton {
     const LongTeam *team;
     Found *found;        // [n_pieces + 1]
     double opening = 0;  // the largest error of the bonds as they came
-    bool eliminated = false, displaced = false;
+    bool eliminated = false, displaced = false, moved = false;
 
     static int64_t bytes(const Forest &f) {
         return (f.n_pieces > 0 ? f.n_pieces + 1 : 0) * static_cast<int64_t>(sizeof(Found));
@@ -105,28 +105,23 @@ struct OneTreeNewton {
         if (!eliminated)
             up([](int32_t) {}, [&](int32_t p) { x.substitute(x.piece(p), memory(p)); });
         eliminated = false;
-        const mask every = vec{} == vec{};
-        displace([&](int32_t p) { x.down(x.piece(p), every); });
+        displace<true>();
     }
-    // down(p) first.
-    template <class Down>
-    void displace(const Down &down) {
-        up(
-            [&](int32_t p) {
-                down(p);
-                x.begin_shifts(x.piece(p));
-            },
-            [&](int32_t p) { x.add_shifts(x.piece(p)); });
+    template <bool corrected>
+    void displace() {
+        x.down_and_displace<corrected>(x.piece(top()));
+        share_out(team, top(), [&](int32_t p) { x.down_and_displace<corrected>(x.piece(p)); });
         displaced = true;
     }
-    void displace() {
-        if (!displaced) displace([](int32_t) {});
-    }
+    // The first time new factors will mostly follow.
     double move() {
-        displace();
+        if (!displaced) displace<false>();
         up([&](int32_t p) { found[p].error = largest_of(x.move_bonds(x.piece(p))); },
-           [&](int32_t p) { x.substitute(x.piece(p), memory(p)); });
-        eliminated = true;
+           [&](int32_t p) {
+               if (moved) x.substitute(x.piece(p), memory(p));
+           });
+        eliminated = moved;
+        moved = true;
         return largest_error();
     }
 };
@@ -154,7 +149,7 @@ struct OneTreePositions {
         const bool moved = out.converged.set && !(0.25 * (largest + a_min) < largest_of(lanes.largest_pull(x.all())) * a_max);
         if (!moved && !out.untouched.set) return false;
         if (call.report && take_worst(tally, out.error, molecule)) tally.worst_bond = lanes.worst_bond(all_lanes);
-        if (moved) newton.displace();
+        if (moved && !newton.displaced) newton.displace<false>();
         newton.up([](int32_t) {}, [&](int32_t p) { write(x.piece(p), moved); });
         if (!moved) return true;
         if (call.virial) add_virial();
