@@ -98,17 +98,6 @@ Choice choose(const std::vector<Tree> &trees) {
 
 }  // namespace
 
-// Counted for lanes that are as many as most have, whatever those of the kernels are.
-bool fills_lanes(const Schedule &s) {
-    constexpr std::int64_t lanes = 8;
-    std::int64_t places = 0, in_arms = 0;
-    for (std::int32_t r = 0; s.n_pieces > 0 && r < s.runs.piece_start[s.n_pieces + 1]; ++r)
-        places += (s.runs.run[r].count + lanes - 1) / lanes * lanes * s.runs.run[r].children;
-    for (std::int32_t a = 0; a < s.n_arms; ++a) in_arms += s.arm[a].n_bonds;
-    return s.type == Schedule::tree && s.n_pieces > 0 && 3 * places <= 5 * std::int64_t{s.n_bonds} &&
-           2 * in_arms <= s.n_bonds;
-}
-
 TreeProfile::TreeProfile(const Schedule &s) : n_bonds(s.n_bonds) {
     for (std::int32_t slot = 0; slot < s.n_tree; ++slot) {
         const std::int32_t k = children_of(s, slot);

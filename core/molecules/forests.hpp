@@ -39,9 +39,6 @@ private:
     std::vector<const Schedule *> schedule_;
 };
 
-// Whether the atoms of a large tree fill lanes: not where most stand one behind the other.
-bool fills_lanes(const Schedule &);
-
 // Trees with nearly the same profile leave few places empty: how many atoms have four children and more, three, two.
 struct TreeProfile {
     std::int32_t n_bonds = 0, many = 0, three = 0, two = 0;

@@ -7,6 +7,7 @@
 
 #include "core/kernels/molecules/schedule.hpp"
 #include "core/molecules/chains.hpp"
+#include "core/molecules/schedule_runs.hpp"
 #include "core/run/kernel_choice.hpp"
 
 namespace holonomic {

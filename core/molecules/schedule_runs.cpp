@@ -95,4 +95,15 @@ private:
 ScheduleRuns runs_of(const Schedule &s, const std::vector<Schedule::Arm> &arms) { return RunMaker(s, arms).make(); }
 ScheduleRuns runs_of(const Schedule &s) { return runs_of(s, {}); }
 
+// Counted for lanes that are as many as most have, whatever those of the kernels are.
+bool fills_lanes(const Schedule &s) {
+    constexpr std::int64_t lanes = 8;
+    std::int64_t places = 0, in_arms = 0;
+    for (std::int32_t r = 0; s.n_pieces > 0 && r < s.runs.piece_start[s.n_pieces + 1]; ++r)
+        places += (s.runs.run[r].count + lanes - 1) / lanes * lanes * s.runs.run[r].children;
+    for (std::int32_t a = 0; a < s.n_arms; ++a) in_arms += s.arm[a].n_bonds;
+    return s.type == Schedule::tree && s.n_pieces > 0 && places <= 3 * std::int64_t{s.n_bonds} &&
+           2 * in_arms <= s.n_bonds;
+}
+
 }  // namespace holonomic

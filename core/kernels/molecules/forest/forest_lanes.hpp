@@ -137,7 +137,7 @@ HOL_INLINE vec masses_of(const MoleculeLane *lane, const int32_t *atom) {
 }
 
 // Trees of fewer pieces stand in a cache.
-constexpr int32_t pieces_of_cache = 4;
+constexpr int32_t pieces_of_cache = 16;
 
 // The trees of a forest, step by step.
 struct ForestTrees {
@@ -152,13 +152,16 @@ struct ForestTrees {
     const int32_t *above_of(int32_t step) const { return f.above + static_cast<int64_t>(step) * W; }
     const int32_t *lower_of(int32_t place) const { return f.lower + static_cast<int64_t>(place) * W; }
     // Starts to fetch what lower atoms further on are read from, of one large tree; small ones stand together.
-    template <bool packed, class... Arrays>
+    template <bool packed, bool masses, class... Arrays>
     HOL_FORCED void fetch(int32_t place, const Arrays &...arrays) const {
         constexpr int32_t ahead = rows_ahead / W;
         if (!packed || f.n_pieces < pieces_of_cache || place + ahead >= f.n_places) return;
         const ForestAtom<true> atom(at, lower_of(place + ahead));
         HOL_UNROLL
-        for (int i = 0; i < W; ++i) (fetch_row(arrays, atom.number[i]), ...);
+        for (int i = 0; i < W; ++i) {
+            if (masses) __builtin_prefetch(lane[0].w + lower_of(place + ahead)[i], 0, 2);
+            (fetch_row(arrays, atom.number[i]), ...);
+        }
     }
     // Where the value of a bond stands in the caller's arrays.
     int64_t bond_of(int i, int32_t place) const {
@@ -192,7 +195,7 @@ struct ForestTrees {
         choose(
             [&](auto packed) HOL_FORCED {
                 for_held(range, which, [&](int32_t p, unsigned lanes) HOL_FORCED {
-                    fetch<packed>(p, array);
+                    fetch<packed, false>(p, array);
                     const ForestAtom<packed> atom(at, lower_of(p));
                     atom.write(array, value(p, atom), lanes & ~but(p));
                 });

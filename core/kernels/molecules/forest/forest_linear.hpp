@@ -77,9 +77,9 @@ struct ForestLinear : ForestTrees {
             w[s] = w0;
             for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
                 if (pulled && (squared || rated))
-                    fetch<packed>(p, positions, velocities, forces);
+                    fetch<packed, true>(p, positions, velocities, forces);
                 else
-                    fetch<packed>(p, positions, pulled ? forces : velocities);
+                    fetch<packed, true>(p, positions, pulled ? forces : velocities);
                 const ForestAtom<packed> lower(at, lower_of(p));
                 vec3 d = lower.read(positions) - r0, unused = {};
                 take_image<false>(box, d, unused);
@@ -167,6 +167,8 @@ struct ForestLinear : ForestTrees {
     template <bool with_length>
     __attribute__((noinline)) void write_bonds(const Range &range, double factor, double *out, unsigned which) const {
         for_held(range, which, [&](int32_t p, unsigned lanes) HOL_FORCED {
+            if (f.n_pieces >= pieces_of_cache && p + rows_ahead / W < f.n_places)
+                for (int i = 0; i < W; ++i) __builtin_prefetch(out + bond_of(i, p + rows_ahead / W), 1, 2);
             const vec a = mul_add(row[p].t, with_length ? sqrt(row[p].q) : splat(factor), vec{});
             for (int i = 0; i < W; ++i)
                 if (lanes >> i & 1) out[bond_of(i, p)] = a[i];

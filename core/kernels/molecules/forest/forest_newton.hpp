@@ -62,7 +62,7 @@ struct ForestNewton : ForestTrees {
             w[s] = masses_of(lane, atom_of(s));
             look_at(r);
             for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
-                fetch<packed>(p, call.r_ref, call.r);
+                fetch<packed, true>(p, call.r_ref, call.r);
                 const ForestAtom<packed> below(at, lower_of(p));
                 const vec3 r1 = below.read(call.r);
                 vec3 unused = {};
