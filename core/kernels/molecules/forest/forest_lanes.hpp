@@ -151,16 +151,18 @@ struct ForestTrees {
     const int32_t *atom_of(int32_t step) const { return f.atom + static_cast<int64_t>(step) * W; }
     const int32_t *above_of(int32_t step) const { return f.above + static_cast<int64_t>(step) * W; }
     const int32_t *lower_of(int32_t place) const { return f.lower + static_cast<int64_t>(place) * W; }
-    // Starts to fetch what lower atoms further on are read from, of one large tree; small ones stand together.
+    // Starts to fetch what atoms some numbers further on are read from, numbers[i ..] of n times as many as there are
+    // lanes, where they don't stand in a cache.
     template <bool packed, bool masses, class... Arrays>
-    HOL_FORCED void fetch(int32_t place, const Arrays &...arrays) const {
+    HOL_FORCED void fetch(const int32_t *numbers, int32_t i, int32_t n, const Arrays &...arrays) const {
         constexpr int32_t ahead = rows_ahead / W;
-        if (!packed || f.n_pieces < pieces_of_cache || place + ahead >= f.n_places) return;
-        const ForestAtom<true> atom(at, lower_of(place + ahead));
+        if (!packed || f.n_pieces < pieces_of_cache || i + ahead >= n) return;
+        const int32_t *const number = numbers + static_cast<int64_t>(i + ahead) * W;
+        const ForestAtom<true> atom(at, number);
         HOL_UNROLL
-        for (int i = 0; i < W; ++i) {
-            if (masses) __builtin_prefetch(lane[0].w + lower_of(place + ahead)[i], 0, 2);
-            (fetch_row(arrays, atom.number[i]), ...);
+        for (int l = 0; l < W; ++l) {
+            if (masses) __builtin_prefetch(lane[0].w + number[l], 0, 2);
+            (fetch_row(arrays, atom.number[l]), ...);
         }
     }
     // Where the value of a bond stands in the caller's arrays.
@@ -195,7 +197,7 @@ struct ForestTrees {
         choose(
             [&](auto packed) HOL_FORCED {
                 for_held(range, which, [&](int32_t p, unsigned lanes) HOL_FORCED {
-                    fetch<packed, false>(p, array);
+                    fetch<packed, false>(f.lower, p, f.n_places, array);
                     const ForestAtom<packed> atom(at, lower_of(p));
                     atom.write(array, value(p, atom), lanes & ~but(p));
                 });

@@ -69,17 +69,21 @@ struct ForestLinear : ForestTrees {
         // Copies, which no store changes.
         const AtomArray none = {}, positions = r, velocities = squared || rated ? *in.v : none,
                         forces = pulled ? *in.f : none;
+        const auto fetch_all = [&](const int32_t *numbers, int32_t i, int32_t n) HOL_FORCED {
+            if (pulled && (squared || rated))
+                fetch<packed, true>(numbers, i, n, positions, velocities, forces);
+            else
+                fetch<packed, true>(numbers, i, n, positions, pulled ? forces : velocities);
+        };
         for (int32_t s = range.step; s < range.end_step; ++s) {
+            fetch_all(f.atom, s, f.n_steps);
             const ForestAtom<packed> atom(at, atom_of(s));
             const vec3 r0 = atom.read(positions), v0 = squared || rated ? atom.read(velocities) : vec3{},
                        f0 = pulled ? atom.read(forces) : vec3{};
             const vec w0 = masses_of(lane, atom_of(s));
             w[s] = w0;
             for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
-                if (pulled && (squared || rated))
-                    fetch<packed, true>(p, positions, velocities, forces);
-                else
-                    fetch<packed, true>(p, positions, pulled ? forces : velocities);
+                fetch_all(f.lower, p, f.n_places);
                 const ForestAtom<packed> lower(at, lower_of(p));
                 vec3 d = lower.read(positions) - r0, unused = {};
                 take_image<false>(box, d, unused);

@@ -57,12 +57,13 @@ struct ForestNewton : ForestTrees {
         const auto look_at = [&](const vec3 &r)
                                  HOL_FORCED { largest = max(max(abs(r.x), abs(r.y)), max(abs(r.z), largest)); };
         for (int32_t s = range.step; s < range.end_step; ++s) {
+            fetch<packed, true>(f.atom, s, f.n_steps, call.r_ref, call.r);
             const ForestAtom<packed> atom(at, atom_of(s));
             const vec3 ref = atom.read(call.r_ref), r = atom.read(call.r);
             w[s] = masses_of(lane, atom_of(s));
             look_at(r);
             for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
-                fetch<packed, true>(p, call.r_ref, call.r);
+                fetch<packed, true>(f.lower, p, f.n_places, call.r_ref, call.r);
                 const ForestAtom<packed> below(at, lower_of(p));
                 const vec3 r1 = below.read(call.r);
                 vec3 unused = {};
