@@ -107,8 +107,8 @@ struct Schedule {
     Runs runs;
     int32_t n_pieces;
 
-    // Of a large graph, or of a tree whose atoms don't fill lanes, unless the list would be long: all its bonds along one
-    // list; else nullptr.
+    // Of a large graph, or of a tree whose atoms don't fill lanes, unless the list would be long: all its bonds along
+    // one list; else nullptr.
     const FlatList *flat;
     // Of a large molecule of few knots and long paths; else nullptr.
     const PathPlan *paths;

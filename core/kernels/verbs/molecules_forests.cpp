@@ -15,7 +15,8 @@ int64_t forest_scratch_bytes(const Forest &f) {
     for (int i = 0; i < f.n_trees; ++i)
         careful = f.schedule[i]->careful->scratch_bytes > careful ? f.schedule[i]->careful->scratch_bytes : careful;
     const int64_t linear = ForestLinear::values(f), newton = f.schedule[0]->flat ? 0 : ForestNewton::values(f);
-    return (linear > newton ? linear : newton) * static_cast<int64_t>(sizeof(vec)) + OneTree::bytes(f) + OneTreeNewton::bytes(f) + 64 + careful;
+    return (linear > newton ? linear : newton) * static_cast<int64_t>(sizeof(vec)) + OneTree::bytes(f) +
+           OneTreeNewton::bytes(f) + 64 + careful;
 }
 
 // Starts to fetch the atoms of a forest: trees that are worked on one after the other are not so in memory.
@@ -116,9 +117,7 @@ void forests_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, do
         if (f.n_pieces > 0) {
             const OneTree tree(z, unit.team, memory);
             good = tree.solve() && !(twice && tree.any_torn()) ? 1 : 0;
-            const auto write = [&](const ForestTrees::Range &range) {
-                z.write_velocities(range, call.v, all_lanes);
-            };
+            const auto write = [&](const ForestTrees::Range &range) { z.write_velocities(range, call.v, all_lanes); };
             if (good) {
                 if (call.lambda)
                     tree.for_ranges([&](const ForestTrees::Range &range) {

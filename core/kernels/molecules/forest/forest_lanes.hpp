@@ -203,8 +203,7 @@ struct ForestTrees {
                 });
                 if (!range.root) return;
                 const ForestAtom<packed> root(at, atom_of(f.n_steps - 1));
-                root.write(array, value(f.n_places, root),
-                           which & bits(first_lanes(f.n_trees)) & ~but(f.n_places));
+                root.write(array, value(f.n_places, root), which & bits(first_lanes(f.n_trees)) & ~but(f.n_places));
             },
             at.layout != elements);
     }

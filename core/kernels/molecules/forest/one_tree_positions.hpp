@@ -102,8 +102,7 @@ struct OneTreeNewton {
         displaced = false;
     }
     void solve(Flag) {
-        if (!eliminated)
-            up([](int32_t) {}, [&](int32_t p) { x.substitute(x.piece(p), memory(p)); });
+        if (!eliminated) up([](int32_t) {}, [&](int32_t p) { x.substitute(x.piece(p), memory(p)); });
         eliminated = false;
         displace<true>();
     }
@@ -146,7 +145,8 @@ struct OneTreePositions {
         }
         const Limits<double> limits(call, largest, a_min);
         const Solved<double> out = iterate<double, false, true>(newton, limits, call, Flag{true});
-        const bool moved = out.converged.set && !(0.25 * (largest + a_min) < largest_of(lanes.largest_pull(x.all())) * a_max);
+        const bool moved =
+            out.converged.set && !(0.25 * (largest + a_min) < largest_of(lanes.largest_pull(x.all())) * a_max);
         if (!moved && !out.untouched.set) return false;
         if (call.report && take_worst(tally, out.error, molecule)) tally.worst_bond = lanes.worst_bond(all_lanes);
         if (moved && !newton.displaced) newton.displace<false>();

@@ -69,8 +69,8 @@ struct DoubtfulJoint {
     Wide pivot(int a, double E) const { return wide(E / unit[a] / unit[a] / mass_unit) + offered(joint, a, a); }
 };
 
-// Does what up_joint() does. Rows: as AtomRows, with exact(a, d, low) beside bond(a), and for a = k. Returns false, with nothing written, if the
-// bonds depend on each other.
+// Does what up_joint() does. Rows: as AtomRows, with exact(a, d, low) beside bond(a), and for a = k. Returns false,
+// with nothing written, if the bonds depend on each other.
 template <class Rows>
 HOL_NOINLINE bool up_doubtful_joint(const Rows &x, int k) {
     DoubtfulJoint f;
