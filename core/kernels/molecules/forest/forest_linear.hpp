@@ -131,13 +131,13 @@ struct ForestLinear : ForestTrees {
     void down(const Range &, const Doubt &);
     unsigned solve();
     void solve_again();
-    bool finite_in(const Range &range) const {
+    __attribute__((noinline)) bool finite_in(const Range &range) const {
         vec sum = {};
         for (int32_t p = range.place; p < range.end_place; ++p) sum = sum + abs(row[p].t);
         return bits(finite(sum)) == all_lanes;
     }
 
-    void add_pulls_to_velocities(const Range &range) {
+    __attribute__((noinline)) void add_pulls_to_velocities(const Range &range) {
         for (int32_t p = range.place; p < range.end_place + (range.root ? 1 : 0); ++p) {
             const vec mass = p < f.n_places ? lower_w[p] : w[f.n_steps - 1];
             velocity[p] = add_times(velocity[p], mass, pull_at(p));
@@ -148,7 +148,7 @@ struct ForestLinear : ForestTrees {
         return place < f.n_places ? add_times(pull[place], -row[place].t, row[place].d) : pull[place];
     }
     // d . (v_j - v_i) into t of the rows.
-    void find_rates(const Range &range) {
+    __attribute__((noinline)) void find_rates(const Range &range) {
         for (int32_t s = range.step; s < range.end_step; ++s) {
             const vec3 v0 = AtPlaces<vec3>(velocity, above_of(s)).get3(0);
             for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {

@@ -80,7 +80,7 @@ struct ForestNewton : ForestTrees {
         return largest;
     }
     // a^2 of all bonds: 0 where there is none.
-    void load_lengths(const Range &range, vec &least, vec &most) {
+    __attribute__((noinline)) void load_lengths(const Range &range, vec &least, vec &most) {
         least = splat(1e300);
         most = vec{};
         for (int32_t p = range.place; p < range.end_place; ++p) {
@@ -98,7 +98,7 @@ struct ForestNewton : ForestTrees {
 
     // What Newton has, by these names.
     typedef Newton<vec>::Errors Errors;
-    vec open(const Range &range) {
+    __attribute__((noinline)) vec open(const Range &range) {
         Errors errors = {};
         for (int32_t p = range.place; p < range.end_place; ++p) {
             new_D[p] = row[p].D;
@@ -219,7 +219,7 @@ struct ForestNewtonJoint {
     HOL_FORCED void read_t() const { top.t = place.get(offsetof(ForestRow, t)); }
 };
 
-inline void ForestNewton::begin_factors(const Range &range) {
+inline __attribute__((noinline)) void ForestNewton::begin_factors(const Range &range) {
     for (int32_t p = range.place; p < range.end_place; ++p)
         row[p].E = select(lanes_of(f.held[p]), lower_w[p] * dot(new_D[p], row[p].b), splat(1));  // of a leaf
 }

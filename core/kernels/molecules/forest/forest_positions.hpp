@@ -18,7 +18,7 @@ struct ForestPositions {
 
     typedef ForestTrees::Range Range;
 
-    void load_guess(const Range &range) const {
+    __attribute__((noinline)) void load_guess(const Range &range) const {
         const double factor = 2 * call.dt * call.dt;
         x.for_held(range, all_lanes, [&](int32_t p, unsigned lanes) HOL_FORCED {
             for (int i = 0; i < W; ++i)
@@ -29,14 +29,14 @@ struct ForestPositions {
     mask coarse_moves(const vec &extent, const vec &a_max) const {
         return less(0.25 * extent, largest_pull(x.all()) * a_max);
     }
-    vec largest_pull(const Range &range) const {
+    __attribute__((noinline)) vec largest_pull(const Range &range) const {
         vec pull = {};
         for (int32_t s = range.step; s < range.end_step; ++s)
             for (int32_t p = x.f.step[s].first, end = p + x.f.step[s].children; p < end; ++p)
                 pull = max(max(x.w[s], x.lower_w[p]) * abs(x.row[p].tau), pull);
         return pull;
     }
-    void write_multipliers(const Range &range, unsigned which) const {
+    __attribute__((noinline)) void write_multipliers(const Range &range, unsigned which) const {
         const double factor = 0.5 / (call.dt * call.dt);
         x.for_held(range, which, [&](int32_t p, unsigned lanes) HOL_FORCED {
             const vec a = mul_add(x.row[p].tau, splat(factor), vec{});
@@ -50,7 +50,8 @@ struct ForestPositions {
         virial.count(which, 1 / (call.dt * call.dt), tally);
     }
     // Moves the atoms that are not fixed, and their velocities.
-    void write_moves(const Range &range, const AtomArray &array, double factor, unsigned which) const {
+    __attribute__((noinline)) void write_moves(const Range &range, const AtomArray &array, double factor,
+                                               unsigned which) const {
         x.write_atoms(
             range, array, which, [&](int32_t p) { return bits(less_equal(x.lower_w[p], vec{})); },
             [&](int32_t p, const auto &atom)
@@ -61,7 +62,7 @@ struct ForestPositions {
         const int worst = worst_lane(which, error, x.lane, tally);
         if (worst >= 0) tally.worst_bond = worst_bond(1u << worst);
     }
-    int64_t worst_bond(unsigned which) const {
+    __attribute__((noinline)) int64_t worst_bond(unsigned which) const {
         int64_t bond = INT64_MAX;
         x.for_held(x.all(), which, [&](int32_t p, unsigned lanes) {
             const vec left = x.left_of(p);

@@ -38,6 +38,13 @@ struct ForestJoint {
         if (__builtin_expect(any(small), 0)) return products_anew(bits(small) & single(k), g);
         return g;
     }
+    // Of the atom in a lane.
+    int children(int i) const {
+        const Forest::Step &its = x.f.step[step];
+        int k = 0;
+        while (k < its.children && (x.f.held[its.first + k] >> i & 1)) ++k;
+        return k;
+    }
     // The element of bond a of k in a lane; bond k is the one above.
     int32_t element(int a, int i, int k) const {
         return a == k ? x.above_of(step)[i] : (x.f.step[step].first + a) * W + i;

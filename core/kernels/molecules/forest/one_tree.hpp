@@ -106,11 +106,7 @@ struct OneTree {
         }
         virial.count(1, 1, tally);
     }
-    BondRow<double> bond_at(int32_t element) const {
-        BondRow<double> bond;
-        ForestLane::get(z.row[element / W], element % W, bond);
-        return bond;
-    }
+    BondRow<double> bond_at(int32_t element) const { return one_of(z.row[element / W], element % W); }
 
     void project(bool twice) const {
         z.add_pulls_to_velocities(z.piece(top()));
@@ -159,7 +155,7 @@ struct OneTree {
         const BondRow<double> above = bond_at(z.above_of(joint.step)[i]);
         Vector3<double> pull = -above.t * above.d;
         double sizes = abs(above.t) * sqrt(above.q);
-        for (int a = 0; a < ForestLane::children(joint, i); ++a) {
+        for (int a = 0; a < joint.children(i); ++a) {
             const BondRow<double> bond = bond_at(joint.element(a, i, z.f.step[joint.step].children));
             pull = add_times(pull, bond.t, bond.d);
             sizes += abs(bond.t) * sqrt(bond.q);

@@ -4,57 +4,16 @@
 #define HOLONOMIC_KERNELS_MOLECULES_FOREST_TREE_DOUBT_HPP
 
 #include "core/kernels/molecules/forest/forest_sweeps.hpp"
-#include "core/kernels/molecules/large_tree/doubtful_joint.hpp"
+#include "core/kernels/molecules/large_tree/doubtful_atom.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// The atom of a step in one lane, in copies of its bonds: what AtomRows is of a molecule.
-struct ForestLane {
-    const ForestJoint &joint;
-    const int i, k;  // its lane, its children
-    mutable BondRow<double> copy[DoubtfulJoint::most];
-    mutable double pairs[DoubtfulJoint::most];
-
-    ForestLane(const ForestJoint &j, int lane) : joint(j), i(lane), k(children(j, lane)) {}
-    static int children(const ForestJoint &joint, int lane) {
-        const Forest::Step &step = joint.x.f.step[joint.step];
-        int k = 0;
-        while (k < step.children && (joint.x.f.held[step.first + k] >> lane & 1)) ++k;
-        return k;
-    }
-    static void get(const BondRow<vec> &row, int i, BondRow<double> &to) {
-        to = {{row.d.x[i], row.d.y[i], row.d.z[i]}, row.q[i], row.E[i], row.t[i], row.l[i], row.r[i]};
-    }
-    // Takes the bonds as they were before, E and t apart.
-    void open(const vec *E, const vec *t) {
-        for (int a = 0; a < k; ++a) {
-            get(joint.child[a], i, copy[a]);
-            copy[a].E = E[a][i];
-            copy[a].t = t[a][i];
-        }
-        get(joint.top, i, copy[k]);
-        copy[k].t = t[joint.x.f.step[joint.step].children][i];
-    }
-    void close() const {
-        for (int a = 0; a < k; ++a) {
-            BondRow<vec> &row = joint.child[a];
-            row.E[i] = copy[a].E;
-            row.t[i] = copy[a].t;
-            row.l[i] = copy[a].l;
-            row.r[i] = copy[a].r;
-        }
-        for (int p = 0; p < k * (k - 1) / 2; ++p) joint.pairs[p][i] = pairs[p];
-        joint.top.E[i] = copy[k].E;
-        joint.top.t[i] = copy[k].t;
-    }
-    double w() const { return joint.w()[i]; }
-    BondRow<double> &bond(int a) const { return copy[a]; }
-    BondRow<double> &above() const { return copy[k]; }
-    double *multipliers() const { return pairs; }
-    void exact(int a, Vector3<double> &d, Vector3<double> &low) const { joint.exact(joint.element(a, i, k), d, low); }
-};
+// Of a bond in one lane.
+inline BondRow<double> one_of(const BondRow<vec> &row, int i) {
+    return {{row.d.x[i], row.d.y[i], row.d.z[i]}, row.q[i], row.E[i], row.t[i], row.l[i], row.r[i]};
+}
 
 // Of a piece, or of the top. An atom's number in `faint` is that of its step times that of lanes, plus its lane.
 struct TreeDoubt {
@@ -92,14 +51,31 @@ struct TreeDoubt {
         return lanes;
     }
 
+    // E, t: of the children as they were, then t of the bond above.
     __attribute__((noinline)) void repair(const ForestJoint &joint, const vec *E, const vec *t, unsigned lost) const {
-        const unsigned lanes = (lost | held_lanes(joint.step)) & joint.x.f.held[joint.x.f.step[joint.step].first];
+        const Forest::Step &step = joint.x.f.step[joint.step];
+        const unsigned lanes = (lost | held_lanes(joint.step)) & joint.x.f.held[step.first];
         for (unsigned left = lanes; left; left &= left - 1) {
-            ForestLane one(joint, __builtin_ctz(left));
-            one.open(E, t);
-            if (!up_doubtful_joint(one, one.k)) *slack = -1;
-            one.close();
-            faint->note_careful(joint.step * W + one.i);
+            const int i = __builtin_ctz(left);
+            DoubtfulAtom atom = {};
+            const int k = atom.k = joint.children(i);
+            atom.w = joint.w()[i];
+            for (int a = 0; a <= k; ++a) {
+                atom.bond[a] = one_of(a < k ? joint.child[a] : joint.top, i);
+                if (a < k) atom.bond[a].E = E[a][i];
+                atom.bond[a].t = t[a < k ? a : step.children][i];
+                joint.exact(joint.element(a, i, k), atom.d[a], atom.low[a]);
+            }
+            if (!up_doubtful(atom)) *slack = -1;
+            for (int a = 0; a <= k; ++a) {
+                BondRow<vec> &row = a < k ? joint.child[a] : joint.top;
+                row.E[i] = atom.bond[a].E;
+                row.t[i] = atom.bond[a].t;
+                row.l[i] = atom.bond[a].l;
+                row.r[i] = atom.bond[a].r;
+            }
+            for (int p = 0; p < k * (k - 1) / 2; ++p) joint.pairs[p][i] = atom.pair[p];
+            faint->note_careful(joint.step * W + i);
         }
     }
 
@@ -115,7 +91,7 @@ struct TreeDoubt {
                 continue;
             }
             if (!faint->holds(joint.step * W + i)) *slack = -1;
-            for (int a = 0; a < ForestLane::children(joint, i); ++a) {
+            for (int a = 0; a < joint.children(i); ++a) {
                 const BondRow<vec> &row = joint.child[a];
                 const double t = row.t[i], down = row.l[i] * joint.top.t[i],
                              size = abs(t) + joint.terms_of_bond(joint.element(a, i, k));

@@ -3,19 +3,35 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_TREE_RUNS_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_TREE_RUNS_HPP
 
-#include "core/kernels/molecules/large_tree/doubtful_joint.hpp"
+#include "core/kernels/molecules/large_tree/doubtful_atom.hpp"
 #include "core/kernels/molecules/molecules.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
+// In twice the precision. False: that doesn't do either.
+HOL_NOINLINE bool up_carefully(const Molecules<double> &x, int32_t slot, int k) {
+    const AtomRows<double> rows(x, slot);
+    DoubtfulAtom atom = {};
+    atom.k = k;
+    atom.w = rows.w();
+    for (int a = 0; a <= k; ++a) {
+        atom.bond[a] = a < k ? rows.bond(a) : rows.above();
+        exact_bond(x, 0, a < k ? rows.child[a] : slot, atom.d[a], atom.low[a]);
+    }
+    if (!up_doubtful(atom)) return false;
+    for (int a = 0; a <= k; ++a) (a < k ? rows.bond(a) : rows.above()) = atom.bond[a];
+    for (int p = 0; p < k * (k - 1) / 2; ++p) rows.multipliers()[p] = atom.pair[p];
+    return true;
+}
+
 // Goes up at one atom, with careful arithmetic where plain arithmetic does not do.
 HOL_NOINLINE void up_one(const Molecules<double> &x, int32_t slot, Faint &faint, Memory<double> memory, double &slack) {
     const AtomRows<double> rows(x, slot);
     const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
     if (__builtin_expect(faint.holds(slot), 0)) {
-        if (k > 3 || !up_doubtful_joint(rows, k)) slack = -1;
+        if (k > 3 || !up_carefully(x, slot, k)) slack = -1;
         return faint.note_careful(slot);
     }
     if (k > 3) return up_joint<0, false>(rows, k, memory, slack);
@@ -32,7 +48,7 @@ HOL_NOINLINE void up_one(const Molecules<double> &x, int32_t slot, Faint &faint,
         row.E = before[2 * a];
         row.t = before[2 * a + 1];
     }
-    if (!up_doubtful_joint(rows, k)) slack = -1;
+    if (!up_carefully(x, slot, k)) slack = -1;
     faint.note_careful(slot);
 }
 

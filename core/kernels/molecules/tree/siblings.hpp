@@ -34,10 +34,6 @@ struct AtomRows {
         return k == 1 ? product_of(x, child[0], slot) : dot(bond(a).d, above().d);
     }
     HOL_FORCED V *multipliers() const { return x.pair + x.s.pair_start[slot]; }
-    // Bond a of a single molecule with its low word; behind the children the one above.
-    void exact(int a, Vector3<double> &d, Vector3<double> &low) const {
-        exact_bond(x, 0, a < x.s.child_start[slot + 1] - x.s.child_start[slot] ? child[a] : slot, d, low);
-    }
 };
 
 // Returns the square of that part of the error which all bonds at an atom share.
