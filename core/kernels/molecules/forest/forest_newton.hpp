@@ -157,7 +157,7 @@ struct ForestNewton : ForestTrees {
 
     // tau b of the bonds above and below an atom, times its inverse mass.
     __attribute__((noinline)) void displace() {
-        for (int32_t p = 0; p <= f.n_places; ++p) shift[p].x = shift[p].y = shift[p].z = vec{};
+        for (int32_t p = 0; p <= f.n_places; ++p) shift[p] = vec3{};
         for (int32_t s = 0; s < f.n_steps; ++s) {
             vec3 sum = {};
             for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
