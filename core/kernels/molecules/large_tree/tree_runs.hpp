@@ -4,7 +4,7 @@
 #define HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_TREE_RUNS_HPP
 
 #include "core/kernels/molecules/large_tree/doubtful_atom.hpp"
-#include "core/kernels/molecules/molecules.hpp"
+#include "core/kernels/molecules/tree/joint.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
