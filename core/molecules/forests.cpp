@@ -19,7 +19,7 @@ int class_of(std::int32_t children) { return children > most_decomposed ? 4 : st
 // One tree: which of its atoms are ready, as all their children have been dealt with.
 class Tree {
 public:
-    explicit Tree(const Schedule &s) : s_(s), left_(at(s.n_atoms)), depth_(at(s.n_atoms)), place_(at(s.n_atoms)) {
+    explicit Tree(const Schedule &s) : s_(s), left_(at(s.n_atoms)), depth_(at(s.n_atoms)) {
         for (std::int32_t slot = s.n_tree; slot-- > 0;) {
             depth_[at(slot)] = depth_[at(s.parent[slot])] + 1;
             if (children_of(s, slot) > 0) {
@@ -51,9 +51,6 @@ public:
         if (--left_[at(parent)] == 0 && parent < s_.n_tree) push(parent);
     }
 
-    const Schedule &schedule() const { return s_; }
-    std::uint16_t &place(std::int32_t slot) { return place_[at(slot)]; }
-
 private:
     struct Ready {
         std::int32_t children, depth, slot;
@@ -69,7 +66,6 @@ private:
 
     const Schedule &s_;
     std::vector<std::int32_t> left_, depth_;
-    std::vector<std::uint16_t> place_;
     std::vector<Ready> ready_[n_classes];  // heaps
     std::int32_t n_left_ = 0;
 };
@@ -109,73 +105,156 @@ TreeProfile::TreeProfile(const Schedule &s) : n_bonds(s.n_bonds) {
     }
 }
 
+// A forest in the making: its steps, and which atom of which tree is in which lane.
+class Forests::Maker {
+public:
+    Maker(int lanes, const Schedule *const *tree, int n_trees) : lanes_(lanes), tree_(tree), n_trees_(n_trees) {
+        f_.n_trees = n_trees;
+        for (int l = 0; l < n_trees; ++l) {
+            f_.most_atoms = std::max<std::int64_t>(f_.most_atoms, tree[l]->n_atoms);
+            element_.emplace_back(at(tree[l]->n_atoms));
+        }
+    }
+
+    const Schedule &tree(std::size_t lane) const { return *tree_[n_trees_ == 1 ? 0 : lane]; }
+
+    // slot: of each lane, or -1.
+    void add_step(const std::int32_t *slot, std::int32_t children) {
+        steps_.push_back({f_.n_places, children, f_.n_pairs});
+        piece_.push_back(f_.n_pieces);
+        for (std::size_t l = 0; l < at(lanes_); ++l) {
+            slots_.push_back(slot[l]);
+            if (slot[l] < 0) continue;
+            const Schedule &s = tree(l);
+            for (std::int32_t a = 0; a < children_of(s, slot[l]); ++a)
+                element_of(l, s.child[s.child_start[slot[l]] + a]) =
+                    (f_.n_places + a) * lanes_ + static_cast<std::int32_t>(l);
+        }
+        f_.n_places += children;
+        f_.n_pairs += values_of_joint(children);
+        f_.most_children = std::max(f_.most_children, children);
+    }
+    void add_roots() {
+        std::int32_t roots[most_lanes];
+        for (int l = 0; l < most_lanes; ++l) roots[l] = l < n_trees_ ? tree_[l]->n_tree : -1;
+        add_step(roots, 1);
+    }
+    std::int32_t n_steps() const { return static_cast<std::int32_t>(steps_.size()); }
+
+    // Appends it to those that there are.
+    void append_to(Forests &all) {
+        f_.n_steps = n_steps();
+        const std::size_t lanes = at(lanes_), first = all.numbers_.size(), n_steps = steps_.size() * lanes,
+                          n_places = at(f_.n_places) * lanes;
+        all.offset_.push_back(
+            {all.step_.size(), first, all.held_.size(), all.schedule_.size(), all.piece_start_.size()});
+        all.forest_.push_back(f_);
+        all.step_.insert(all.step_.end(), steps_.begin(), steps_.end());
+        const std::size_t n_elements = f_.n_pieces > 0 ? element_[0].size() : 0;
+        all.numbers_.resize(first + 2 * n_steps + 2 * n_places + n_elements);
+        std::copy(element_[0].begin(), element_[0].begin() + static_cast<std::ptrdiff_t>(n_elements),
+                  all.numbers_.end() - static_cast<std::ptrdiff_t>(n_elements));
+        all.held_.resize(all.held_.size() + at(f_.n_places));
+        all.schedule_.insert(all.schedule_.end(), tree_, tree_ + n_trees_);
+        std::int32_t *const atom = &all.numbers_[first], *const above = atom + n_steps, *const lower = above + n_steps,
+                            *const bond = lower + n_places;
+        std::uint16_t *const held = &all.held_[all.offset_.back().held];
+        for (std::size_t i = 0; i < n_steps; ++i) {
+            const std::size_t l = i % lanes;
+            const std::int32_t slot = slots_[i], lane = static_cast<std::int32_t>(l);
+            above[i] = (f_.n_places + 1 + piece_[i / lanes]) * lanes_ + lane;
+            if (slot < 0) continue;
+            const Schedule &s = tree(l);
+            atom[i] = s.atom_of[slot];
+            above[i] = slot == s.n_tree ? f_.n_places * lanes_ + lane : element_of(l, slot);
+        }
+        for (std::size_t i = 0; i < n_steps; ++i) {
+            const std::size_t l = i % lanes;
+            const Forest::Step &step = steps_[i / lanes];
+            for (std::int32_t a = 0; a < step.children; ++a) {
+                const std::size_t p = at(step.first + a), place = p * lanes + l;
+                const std::int32_t slot = slots_[i];
+                lower[place] = atom[i];
+                if (slot < 0 || a >= children_of(tree(l), slot)) continue;
+                const Schedule &s = tree(l);
+                const std::int32_t child = s.child[s.child_start[slot] + a];
+                lower[place] = s.atom_of[child];
+                bond[place] = s.bond_of[child];
+                held[p] = static_cast<std::uint16_t>(held[p] | 1u << l);
+            }
+        }
+    }
+    Forest &forest() { return f_; }
+
+private:
+    std::int32_t &element_of(std::size_t lane, std::int32_t slot) {
+        return element_[n_trees_ == 1 ? 0 : lane][at(slot)];
+    }
+
+    const int lanes_;
+    const Schedule *const *const tree_;
+    const int n_trees_;
+    Forest f_{};
+    std::vector<std::vector<std::int32_t>> element_;  // by tree and slot
+    std::vector<Forest::Step> steps_;
+    std::vector<std::int32_t> slots_;  // [steps][lanes], or -1
+    std::vector<std::int32_t> piece_;  // [steps]
+};
+
 void Forests::add(int lanes, const Schedule *const *tree, int n_trees) {
     lanes_ = lanes;
     std::vector<Tree> trees;
-    Forest f{};
-    for (int l = 0; l < n_trees; ++l) {
-        trees.emplace_back(*tree[l]);
-        f.most_atoms = std::max<std::int64_t>(f.most_atoms, tree[l]->n_atoms);
-    }
-    std::vector<Forest::Step> steps;
-    std::vector<std::int32_t> slots;  // [steps][lanes], or -1
-    const auto add_step = [&](const std::int32_t *slot, std::int32_t children) {
-        steps.push_back({f.n_places, children});
-        for (int l = 0; l < lanes; ++l) {
-            slots.push_back(l < n_trees ? slot[l] : -1);
-            if (slots.back() < 0) continue;
-            const Schedule &s = *tree[l];
-            for (std::int32_t a = 0; a < children_of(s, slot[l]); ++a)
-                trees[at(l)].place(s.child[s.child_start[slot[l]] + a]) = static_cast<std::uint16_t>(f.n_places + a);
-        }
-        f.n_places += children;
-        f.n_pairs += values_of_joint(children);
-        f.most_children = std::max(f.most_children, children);
-    };
+    for (int l = 0; l < n_trees; ++l) trees.emplace_back(*tree[l]);
+    Maker maker(lanes, tree, n_trees);
     while (!std::all_of(trees.begin(), trees.end(), [](const Tree &t) { return t.done(); })) {
-        const Choice choice = choose(trees);
-        add_step(choice.slot, choice.children);
+        Choice choice = choose(trees);
+        std::fill(choice.slot + n_trees, choice.slot + most_lanes, -1);
+        maker.add_step(choice.slot, choice.children);
         for (int l = 0; l < n_trees; ++l)
             if (choice.slot[l] >= 0) trees[at(l)].take(choice.slot[l]);
     }
-    std::int32_t roots[most_lanes];
-    for (int l = 0; l < n_trees; ++l) roots[l] = tree[l]->n_tree;
-    add_step(roots, 1);
-    f.n_trees = n_trees;
-    f.n_steps = static_cast<std::int32_t>(steps.size());
+    maker.add_roots();
+    maker.append_to(*this);
+}
 
-    const std::size_t first = numbers_.size(), n_steps = at(f.n_steps) * at(lanes),
-                      n_places = at(f.n_places) * at(lanes);
-    offset_.push_back({step_.size(), first, held_.size(), schedule_.size()});
-    forest_.push_back(f);
-    step_.insert(step_.end(), steps.begin(), steps.end());
-    numbers_.resize(first + 2 * n_steps + 2 * n_places);
-    held_.resize(held_.size() + at(f.n_places));
-    schedule_.insert(schedule_.end(), tree, tree + n_trees);
-    std::uint16_t *const atom = &numbers_[first], *const above = atom + n_steps, *const lower = above + n_steps,
-                         *const bond = lower + n_places, *const held = &held_[offset_.back().held];
-    for (std::size_t i = 0; i < n_steps; ++i) {
-        const std::size_t l = i % at(lanes);
-        const std::int32_t slot = slots[i];
-        above[i] = static_cast<std::uint16_t>(f.n_places + 1);
-        if (slot < 0) continue;
-        const Schedule &s = *tree[l];
-        atom[i] = static_cast<std::uint16_t>(s.atom_of[slot]);
-        above[i] = slot == s.n_tree ? static_cast<std::uint16_t>(f.n_places) : trees[l].place(slot);
+// Atoms that do not depend on each other share steps: those of a level, of similar numbers of children.
+void Forests::add_large(int lanes, const Schedule *tree) {
+    lanes_ = lanes;
+    const Schedule &s = *tree;
+    Maker maker(lanes, &tree, 1);
+    std::vector<std::int32_t> ready;
+    const auto add_level = [&] {
+        std::stable_sort(ready.begin(), ready.end(), [&](std::int32_t a, std::int32_t b) {
+            return std::make_pair(class_of(children_of(s, a)) > 2, children_of(s, b)) <
+                   std::make_pair(class_of(children_of(s, b)) > 2, children_of(s, a));
+        });
+        std::int32_t slot[most_lanes];
+        for (std::size_t i = 0; i < ready.size();) {
+            const std::int32_t most = children_of(s, ready[i]);
+            const auto fits = [&](std::int32_t other) {
+                const int c = class_of(children_of(s, other));
+                return c == class_of(most) || (c < 3 && class_of(most) < 3);
+            };
+            std::fill(slot, slot + most_lanes, -1);
+            for (int l = 0; l < lanes && i < ready.size() && fits(ready[i]); ++l) slot[l] = ready[i++];
+            maker.add_step(slot, most);
+        }
+        ready.clear();
+    };
+    const std::size_t first_piece = piece_start_.size();
+    for (std::int32_t p = 0; p <= s.n_pieces; ++p) {
+        maker.forest().n_pieces = p;
+        piece_start_.push_back(maker.n_steps());
+        for (std::int32_t r = s.runs.piece_start[p]; r < s.runs.piece_start[p + 1]; ++r) {
+            const Schedule::Run &run = s.runs.run[r];
+            ready.insert(ready.end(), s.runs.slot + run.first, s.runs.slot + run.first + run.count);
+            if (r + 1 == s.runs.piece_start[p + 1] || s.runs.run[r + 1].level != run.level) add_level();
+        }
     }
-    for (std::size_t i = 0; i < at(f.n_steps); ++i)
-        for (std::int32_t a = 0; a < steps[i].children; ++a)
-            for (std::size_t l = 0; l < at(lanes); ++l) {
-                const std::size_t step = i * at(lanes) + l, p = at(steps[i].first + a), place = p * at(lanes) + l;
-                const std::int32_t slot = slots[step];
-                lower[place] = atom[step];
-                if (slot < 0 || a >= children_of(*tree[l], slot)) continue;
-                const Schedule &s = *tree[l];
-                const std::int32_t child = s.child[s.child_start[slot] + a];
-                lower[place] = static_cast<std::uint16_t>(s.atom_of[child]);
-                bond[place] = static_cast<std::uint16_t>(s.bond_of[child]);
-                held[p] = static_cast<std::uint16_t>(held[p] | 1u << l);
-            }
+    maker.add_roots();
+    piece_start_.push_back(maker.n_steps());
+    maker.append_to(*this);
+    offset_.back().piece = first_piece;
 }
 
 void Forests::finish() {
@@ -190,15 +269,18 @@ void Forests::finish() {
         f.above = f.atom + n_steps;
         f.lower = f.above + n_steps;
         f.bond = f.lower + n_places;
+        f.element = f.bond + n_places;
         f.held = &held_[offset_[i].held];
         f.schedule = &schedule_[offset_[i].schedule];
+        f.piece_start = f.n_pieces > 0 ? &piece_start_[offset_[i].piece] : nullptr;
     }
     offset_ = {};
 }
 
 std::size_t Forests::bytes() const {
     return forest_.capacity() * sizeof(Forest) + step_.capacity() * sizeof(Forest::Step) +
-           (numbers_.capacity() + held_.capacity()) * sizeof(std::uint16_t) + schedule_.capacity() * sizeof(Schedule *);
+           (numbers_.capacity() + piece_start_.capacity()) * sizeof(std::int32_t) +
+           held_.capacity() * sizeof(std::uint16_t) + schedule_.capacity() * sizeof(Schedule *);
 }
 
 }  // namespace holonomic

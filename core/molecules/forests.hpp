@@ -15,6 +15,8 @@ class Forests {
 public:
     // Appends one of these trees, as many as there are lanes at most. Throws std::bad_alloc.
     void add(int lanes, const Schedule *const *tree, int n_trees);
+    // Or one large tree, all lanes of which are atoms of it.
+    void add_large(int lanes, const Schedule *tree);
     // To be called once, when all have been added.
     void finish();
 
@@ -23,14 +25,17 @@ public:
     std::size_t bytes() const;
 
 private:
+    class Maker;
     struct Offsets {
-        std::size_t step, numbers, held, schedule;
+        std::size_t step, numbers, held, schedule, piece;
     };
     int lanes_ = 0;
     std::vector<Forest> forest_;
     std::vector<Offsets> offset_;
     std::vector<Forest::Step> step_;
-    std::vector<std::uint16_t> numbers_, held_;  // the numbers per step and place of one forest after the other
+    std::vector<std::int32_t> numbers_;  // the numbers per step and place of one forest after the other
+    std::vector<std::uint16_t> held_;
+    std::vector<std::int32_t> piece_start_;
     std::vector<const Schedule *> schedule_;
 };
 

@@ -7,6 +7,7 @@
 
 #include "core/kernels/molecules/schedule.hpp"
 #include "core/molecules/chains.hpp"
+#include "core/molecules/schedule_runs.hpp"
 #include "core/run/kernel_choice.hpp"
 
 namespace holonomic {
@@ -165,6 +166,7 @@ private:
         while (whole && run.end - begin >= block) {
             const std::int64_t count = std::min(per_piece, (run.end - begin) / block * block);
             plan_->pieces.push_back({run.group, begin, count, stage(begin), run.part, run.shape, run.where});
+            if (alone && run.shape != linear) plant_alone(plan_->pieces.back());
             begin += count;
         }
         for (; begin < run.end; ++begin)
@@ -258,9 +260,20 @@ private:
         piece.n_forests = plan_->forests.size() - piece.first_forest;
     }
 
+    // A large tree whose atoms fill the lanes is a forest by itself, the same for all molecules of a shape.
+    void plant_alone(Plan::Piece &piece) {
+        const Schedule &s = *plan_->schedules[at(piece.shape)];
+        if (!fills_lanes(s)) return;
+        const auto found = alone_.emplace(piece.shape, plan_->forests.size());
+        if (found.second) plan_->forests.add_large(kernels().lanes, &s);
+        piece.first_forest = found.first->second;
+        piece.n_forests = 1;
+    }
+
     const Chains &chains_;
     const std::vector<Group> &groups_;
     const std::int32_t n_shapes_;
+    std::unordered_map<std::int32_t, std::int64_t> alone_;  // forests of large trees, by shape
     std::vector<Loose> loose_;
     std::unique_ptr<Plan> plan_ = std::make_unique<Plan>();
 };

@@ -324,6 +324,9 @@ std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bon
     return s;
 }
 
+// Positions of larger trees go along a list in any case: it streams from memory what a forest fetches.
+constexpr std::int32_t largest_positions_in_forest = 65536;
+
 // Small networks have it for what does not converge, if it fills no more bytes a bond of the core.
 constexpr std::int32_t largest_with_careful = 8192;
 constexpr std::int64_t most_bytes_of_careful = 4000;
@@ -349,11 +352,12 @@ std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t
         return s;
     }
     if (n_bonds > largest_in_lanes && s->type == Schedule::tree) add_runs(*s, m);
-    if (takes_flat_list(*s)) {
+    const bool in_lanes = fills_lanes(*s) && n_bonds <= largest_positions_in_forest;
+    if (!in_lanes && takes_flat_list(*s)) {
         make_flat_list(*s, m.flat);
         s->flat = &m.flat.list;
     }
-    if (n_bonds > largest_in_lanes && make_path_plan(*s, m.paths)) s->paths = &m.paths.plan;
+    if (!in_lanes && n_bonds > largest_in_lanes && make_path_plan(*s, m.paths)) s->paths = &m.paths.plan;
     m.careful = std::make_unique<const CarefulShape>(n_atoms, n_bonds, pairs);
     s->careful = &m.careful->plan();
     return s;

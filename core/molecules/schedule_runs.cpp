@@ -70,7 +70,8 @@ private:
         std::int32_t next = static_cast<std::int32_t>(runs_.slot.size());
         for (std::size_t r = 0; r < count.size(); ++r) {
             if (count[r] == 0) continue;
-            runs_.run.push_back({next, count[r], static_cast<std::int32_t>(r) % sorts + 1});
+            const std::int32_t i = static_cast<std::int32_t>(r);
+            runs_.run.push_back({next, count[r], i % sorts + 1, i / sorts});
             next += count[r];
             count[r] = next - count[r];  // from now on where the next one goes
         }
@@ -93,5 +94,16 @@ private:
 
 ScheduleRuns runs_of(const Schedule &s, const std::vector<Schedule::Arm> &arms) { return RunMaker(s, arms).make(); }
 ScheduleRuns runs_of(const Schedule &s) { return runs_of(s, {}); }
+
+// Counted for lanes that are as many as most have, whatever those of the kernels are.
+bool fills_lanes(const Schedule &s) {
+    constexpr std::int64_t lanes = 8;
+    std::int64_t places = 0, in_arms = 0;
+    for (std::int32_t r = 0; s.n_pieces > 0 && r < s.runs.piece_start[s.n_pieces + 1]; ++r)
+        places += (s.runs.run[r].count + lanes - 1) / lanes * lanes * s.runs.run[r].children;
+    for (std::int32_t a = 0; a < s.n_arms; ++a) in_arms += s.arm[a].n_bonds;
+    return s.type == Schedule::tree && s.n_pieces > 0 && places <= 3 * std::int64_t{s.n_bonds} &&
+           2 * in_arms <= s.n_bonds;
+}
 
 }  // namespace holonomic

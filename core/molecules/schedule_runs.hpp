@@ -20,5 +20,9 @@ ScheduleRuns runs_of(const Schedule &s);
 // The same where these arms stand for their inner atoms.
 ScheduleRuns runs_of(const Schedule &s, const std::vector<Schedule::Arm> &arms);
 
+// Whether the atoms of a large tree fill lanes: not where most stand one behind the other. Then it is a forest by
+// itself (forests.hpp).
+bool fills_lanes(const Schedule &s);
+
 }  // namespace holonomic
 #endif

@@ -75,18 +75,11 @@ Unit Chains::unit(const Plan &plan, const Plan::Piece &p, Lane *lane) const {
 MoleculeUnit Chains::unit(const Plan &plan, const Plan::Piece &p, MoleculeLane *lane) const {
     const bool large = plan.n_bonds > bonds_in_cache;
     const Schedule *const schedule = plan.schedules[at(p.shape)];
-    if (p.group >= 0) {
-        *lane = molecule_lane_of(plan, groups_.all()[at(p.group)], p.first, p.stage, p.part);
-        return {schedule, lane, p.count, true, large};
-    }
-    return {schedule,
-            &plan.loose_molecules[at(p.first)],
-            p.count,
-            false,
-            large,
-            nullptr,
-            p.n_forests > 0 ? plan.forests[p.first_forest] : nullptr,
-            p.n_forests};
+    const Forest *const forests = p.n_forests > 0 ? plan.forests[p.first_forest] : nullptr;
+    if (p.group < 0)
+        return {schedule, &plan.loose_molecules[at(p.first)], p.count, false, large, nullptr, forests, p.n_forests};
+    *lane = molecule_lane_of(plan, groups_.all()[at(p.group)], p.first, p.stage, p.part);
+    return {schedule, lane, p.count, true, large, nullptr, forests, p.n_forests};
 }
 
 }  // namespace holonomic

@@ -190,6 +190,9 @@ private:
                 work_.unit(MoleculeUnit{schedule, &lane, 1, regular, unit.large, unit.team}, where, scratch, own);
             });
         };
+        if (unit.forests && unit.count == 1)
+            return with_outcome(outcome_of(unit.lanes->molecule), tally,
+                                [&](Tally &own) { work_on_molecules(work_, unit, where, scratch, own); });
         const MoleculeLane *lane = unit.lanes;
         for (std::int64_t i = 0; i < unit.n_forests; ++i)
             for (int l = 0; l < unit.forests[i].n_trees; ++l) one(unit.forests[i].schedule[l], *lane++, true);

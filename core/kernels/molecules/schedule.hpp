@@ -14,7 +14,7 @@ constexpr int32_t largest_in_lanes = 2048;
 constexpr int32_t largest_graph_in_lanes = 256;
 // The most children of an atom of a ring with trees: chemical ones have no more. With others it is a graph.
 constexpr int32_t most_on_ring = 2;
-constexpr int32_t slots_of_piece = 16384;  // a megabyte of bonds at work, a second-level cache
+constexpr int32_t slots_of_piece = 2048;  // so many bonds at work fill a second-level cache
 
 // Bonds of an arm: what is done once an arm is little beside what is done for its bonds, and these stay in cache. All
 // but one are a multiple of arm_step, so that segments in as many lanes are equally long.
@@ -97,6 +97,7 @@ struct Schedule {
     // the others in those of piece n_pieces, the top, which comes last. No pieces: the molecule is small.
     struct Run {
         int32_t first, count, children;  // slots slot[first] ..
+        int32_t level;                   // how many atoms of the piece or the top must come before
     };
     struct Runs {
         const Run *run;
@@ -106,7 +107,8 @@ struct Schedule {
     Runs runs;
     int32_t n_pieces;
 
-    // Of a large graph or tree, unless the list would be long: all its bonds along one list; else nullptr.
+    // Of a large graph, or of a tree whose atoms don't fill lanes, unless the list would be long: all its bonds along
+    // one list; else nullptr.
     const FlatList *flat;
     // Of a large molecule of few knots and long paths; else nullptr.
     const PathPlan *paths;

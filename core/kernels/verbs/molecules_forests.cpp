@@ -2,8 +2,8 @@
 // positions.
 #include "core/kernels/careful/plan.hpp"
 #include "core/kernels/molecules/doubtful.hpp"
-#include "core/kernels/molecules/forest/forest_positions.hpp"
-#include "core/kernels/molecules/forest/forest_sweeps.hpp"
+#include "core/kernels/molecules/forest/one_tree.hpp"
+#include "core/kernels/molecules/forest/one_tree_positions.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -14,8 +14,9 @@ int64_t forest_scratch_bytes(const Forest &f) {
     int64_t careful = 0;
     for (int i = 0; i < f.n_trees; ++i)
         careful = f.schedule[i]->careful->scratch_bytes > careful ? f.schedule[i]->careful->scratch_bytes : careful;
-    const int64_t linear = ForestLinear::values(f), newton = ForestNewton::values(f);
-    return (linear > newton ? linear : newton) * static_cast<int64_t>(sizeof(vec)) + 64 + careful;
+    const int64_t linear = ForestLinear::values(f), newton = f.schedule[0]->flat ? 0 : ForestNewton::values(f);
+    return (linear > newton ? linear : newton) * static_cast<int64_t>(sizeof(vec)) + OneTree::bytes(f) +
+           OneTreeNewton::bytes(f) + 64 + careful;
 }
 
 // Starts to fetch the atoms of a forest: trees that are worked on one after the other are not so in memory.
@@ -56,11 +57,30 @@ static inline void leave_doubtful(const Call &call, const Forest &f, const Molec
 }
 
 template <class Call>
-static inline void write_forest(const ForestLinear &z, const Call &call, unsigned good, Tally &tally) {
-    if (call.lambda) z.write_bonds<false>(0.5, call.lambda, good);
-    if (call.tension) z.write_bonds<true>(1, call.tension, good);
-    if (call.virial) z.add_virial(good, tally);
-    if (call.g.x) z.write_pulls(call.g, call.add, good);
+static inline void write_forest(const ForestLinear &z, const ForestTrees::Range &range, const Call &call,
+                                unsigned good) {
+    if (call.lambda) z.write_bonds<false>(range, 0.5, call.lambda, good);
+    if (call.tension) z.write_bonds<true>(range, 1, call.tension, good);
+    if (call.g.x) z.write_pulls(range, call.g, call.add, good);
+}
+
+// Forests, or one large tree, of forces or for given right-hand sides.
+template <class Call>
+static inline void solve_forest(const Call &call, const MoleculeUnit &unit, const Forest &f, const MoleculeLane *lane,
+                                ForestLinear &z, Memory<vec> &memory, Tally &tally) {
+    unsigned good;
+    if (f.n_pieces > 0) {
+        const OneTree tree(z, unit.team, memory);
+        good = tree.solve() ? 1 : 0;
+        if (good) tree.for_ranges([&](const ForestTrees::Range &range) { write_forest(z, range, call, all_lanes); });
+        if (good && call.virial) tree.add_virial(tally);
+    } else {
+        z.load(z.all());
+        good = z.solve();
+        write_forest(z, z.all(), call, good);
+        if (call.virial) z.add_virial(good, tally);
+    }
+    leave_doubtful(call, f, lane, good, memory.next, tally);
 }
 
 void forests_forces(const ForcesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
@@ -71,10 +91,7 @@ void forests_forces(const ForcesCall &call, const MoleculeUnit &unit, double *sc
         Memory<vec> memory = {scratch};
         ForestLinear z(f, lane, packed, call.box, call.r, {&call.v, &call.f, nullptr, false},
                        (call.v.x ? squares : 0) | (call.f.x ? pulls : 0), memory);
-        z.load();
-        const unsigned good = z.solve();
-        write_forest(z, call, good, tally);
-        leave_doubtful(call, f, lane, good, memory.next, tally);
+        solve_forest(call, unit, f, lane, z, memory, tally);
     });
 }
 
@@ -84,10 +101,7 @@ void forests_solve(const SolveCall &call, const MoleculeUnit &unit, double *scra
     for_each_forest(unit, arrays, [&](const Forest &f, const MoleculeLane *lane) {
         Memory<vec> memory = {scratch};
         ForestLinear z(f, lane, packed, call.box, call.r, {nullptr, nullptr, call.rhs, false}, given, memory);
-        z.load();
-        const unsigned good = z.solve();
-        write_forest(z, call, good, tally);
-        leave_doubtful(call, f, lane, good, memory.next, tally);
+        solve_forest(call, unit, f, lane, z, memory, tally);
     });
 }
 
@@ -98,18 +112,35 @@ void forests_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, do
         Memory<vec> memory = {scratch};
         ForestLinear z(f, lane, call.r.packed && call.v.packed, call.box, call.r,
                        {&call.v, nullptr, nullptr, true, call.strain}, rates, memory);
-        z.load();
-        const unsigned good = z.solve();
-        if (good) {
-            if (call.lambda) z.write_bonds<false>(0.5, call.lambda, good);
-            if (call.virial) z.add_virial(good, tally);
-            z.add_pulls_to_velocities();
-            if (!call.v.is_float) {
-                z.find_rates();
-                z.solve_again();
-                z.add_pulls_to_velocities();
+        const bool twice = !call.v.is_float;
+        unsigned good;
+        if (f.n_pieces > 0) {
+            const OneTree tree(z, unit.team, memory);
+            good = tree.solve() && !(twice && tree.any_torn()) ? 1 : 0;
+            const auto write = [&](const ForestTrees::Range &range) { z.write_velocities(range, call.v, all_lanes); };
+            if (good) {
+                if (call.lambda)
+                    tree.for_ranges([&](const ForestTrees::Range &range) {
+                        z.write_bonds<false>(range, 0.5, call.lambda, all_lanes);
+                    });
+                if (call.virial) tree.add_virial(tally);
+                tree.project(twice);
+                tree.for_ranges(write);
             }
-            z.write_velocities(call.v, good);
+        } else {
+            z.load(z.all());
+            good = z.solve();
+            if (good) {
+                if (call.lambda) z.write_bonds<false>(z.all(), 0.5, call.lambda, good);
+                if (call.virial) z.add_virial(good, tally);
+                z.add_pulls_to_velocities(z.all());
+                if (twice) {
+                    z.find_rates(z.all());
+                    z.solve_again();
+                    z.add_pulls_to_velocities(z.all());
+                }
+                z.write_velocities(z.all(), call.v, good);
+            }
         }
         leave_doubtful(call, f, lane, good, memory.next, tally);
     });
@@ -121,7 +152,15 @@ void forests_positions(const PositionsCall &call, const MoleculeUnit &unit, doub
     for_each_forest(unit, arrays, [&](const Forest &f, const MoleculeLane *lane) {
         Memory<vec> memory = {scratch};
         ForestNewton newton(f, lane, packed, memory);
-        const unsigned good = ForestPositions{call, newton, tally}.solve();
+        const ForestPositions lanes{call, newton, tally};
+        unsigned good;
+        if (f.n_pieces > 0) {
+            OneTreeNewton one{newton, unit.team, reinterpret_cast<OneTreeNewton::Found *>(memory.next)};
+            memory.next += OneTreeNewton::bytes(f) / static_cast<int64_t>(sizeof(double));
+            good = OneTreePositions{one, lanes, tally}.solve(lane->molecule) ? 1 : 0;
+        } else {
+            good = lanes.solve();
+        }
         leave_doubtful(call, f, lane, good, memory.next, tally);
     });
 }

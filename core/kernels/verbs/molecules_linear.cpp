@@ -1,4 +1,5 @@
 // The linear equations of molecules that are no chains (molecules/solve.hpp), for the verbs that have some.
+#include "core/kernels/molecules/large_tree/doubtful_joint.hpp"
 #include "core/kernels/molecules/large_tree/large_linear.hpp"
 #include "core/kernels/molecules/list/flat_refine.hpp"
 #include "core/kernels/molecules/solve.hpp"

@@ -46,7 +46,7 @@ struct LargePositionsWork : PositionsWork {
 };
 
 void molecules_positions(const PositionsCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
-    if (unit.forests) return forests_positions(call, unit, scratch, tally);
+    if (unit.forests && !unit.schedule->flat) return forests_positions(call, unit, scratch, tally);
     const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
     if (unit.schedule->network) return solve_networks(call, unit, packed, scratch, tally);
     if (unit.schedule->type == Schedule::triangle)

@@ -1,5 +1,6 @@
-// Trees of any shapes side by side, one in each lane, as flat arrays that a kernel runs through. Plain data, the same
-// for every instruction set of as many lanes; core/molecules/forests.hpp makes it.
+// Trees of any shapes side by side, one in each lane, or atoms of one large tree in all of them, as flat arrays that a
+// kernel runs through. Plain data, the same for every instruction set of as many lanes; core/molecules/forests.hpp
+// makes it.
 #ifndef HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_HPP
 
@@ -15,10 +16,15 @@ namespace holonomic {
 // as it is. An atom of at most three children may share a step with others of at most three, one of up to
 // most_decomposed with others of as many, and so on. The last step has the roots.
 //
-// Numbers per step or place are [..][lanes].
+// Of one large tree a step has atoms that do not depend on each other, each with the bonds to its children in a lane of
+// its own; the bond above may be in any lane. Its steps are cut into the pieces of the schedule, and then come those of
+// the top.
+//
+// Numbers per step or place are [..][lanes]. An *element* is a place's number times that of lanes, plus the lane.
 struct Forest {
     struct Step {
         int32_t first, children;  // its places; the most that an atom of it has
+        int32_t pairs;            // sum of values_of_joint() over the steps before
     };
     int32_t n_trees;  // in the first lanes; the others are empty
     int32_t n_steps, n_places;
@@ -26,11 +32,16 @@ struct Forest {
     int32_t most_children;  // of a step
     int64_t most_atoms;     // of a tree
     const Step *step;
-    const uint16_t *atom;   // per step: its atom; 0 in lanes that have none
-    const uint16_t *above;  // per step: the place of the bond above; of a root n_places, without an atom n_places + 1
-    const uint16_t *lower;  // per place: the child; of an empty place the step's atom
-    const uint16_t *bond;   // per place, or 0
-    const uint16_t *held;   // [n_places] bits: the lanes that have a bond here
+    const int32_t *atom;   // per step: its atom; 0 in lanes that have none
+    const int32_t *above;  // per step: the element of the bond above; of a root in place n_places, without an atom in
+                           // the place behind, of which each piece has its own
+    const int32_t *lower;  // per place: the child; of an empty place the step's atom
+    const int32_t *bond;   // per place, or 0
+    const uint16_t *held;  // [n_places] bits: the lanes that have a bond here
+    int32_t n_pieces;      // of one large tree, else 0
+    const int32_t *piece_start;  // [n_pieces + 2] steps of each piece, then of the top with the root
+    const int32_t *element;      // by slot: of the bond above
+    int32_t n_rows() const { return n_places + 2 + n_pieces; }
     const Schedule *const *schedule;  // [n_trees]
 };
 

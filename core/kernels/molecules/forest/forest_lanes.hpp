@@ -21,13 +21,20 @@ HOL_INLINE vec numbers_at(const double *const *p, int64_t offset) {
 #endif
 }
 
-// Working values of type Row = n vectors, at a place of its own in each lane.
+// Where an element (forest.hpp) of working values of type Row = n vectors begins.
+template <class Row>
+HOL_INLINE double *element_of(Row *first, int32_t element) {
+    constexpr int64_t n = sizeof(Row) / sizeof(vec);
+    return reinterpret_cast<double *>(first) + (element + (n - 1) * (element & ~(W - 1)));
+}
+
+// Working values at an element of its own in each lane.
 template <class Row>
 struct AtPlaces {
     double *p[W];
-    HOL_FORCED AtPlaces(Row *first, const uint16_t *place) {
+    HOL_FORCED AtPlaces(Row *first, const int32_t *element) {
         HOL_UNROLL
-        for (int i = 0; i < W; ++i) p[i] = reinterpret_cast<double *>(first + place[i]) + i;
+        for (int i = 0; i < W; ++i) p[i] = element_of(first, element[i]);
     }
     // The vector that begins with byte `offset` of the row.
     HOL_FORCED vec get(size_t offset) const { return numbers_at(p, static_cast<int64_t>(offset / sizeof(double))); }
@@ -64,9 +71,14 @@ struct ForestAtom {
     int64_t number[W];
 
     // atom[] has a local number for each lane.
-    HOL_FORCED ForestAtom(const Atoms<vec> &at, const uint16_t *atom) {
+    HOL_FORCED ForestAtom(const Atoms<vec> &at, const int32_t *atom) {
+        if (at.layout == rows_in_order) {
+            HOL_UNROLL
+            for (int i = 0; i < W; ++i) number[i] = (packed ? 3 : 1) * (at.first[i] + atom[i]);
+            return;
+        }
         HOL_UNROLL
-        for (int i = 0; i < W; ++i) number[i] = packed ? 3 * at.number(i, atom[i]) : at.number(i, atom[i]);
+        for (int i = 0; i < W; ++i) number[i] = (packed ? 3 : 1) * at.number(i, atom[i]);
     }
     HOL_FORCED void rows_of(const AtomArray &array, double **p) const {
         HOL_UNROLL
@@ -117,12 +129,15 @@ private:
 };
 
 // Inverse masses of an atom of each lane, in the trees' tables.
-HOL_INLINE vec masses_of(const MoleculeLane *lane, const uint16_t *atom) {
+HOL_INLINE vec masses_of(const MoleculeLane *lane, const int32_t *atom) {
     const double *p[W];
     HOL_UNROLL
     for (int i = 0; i < W; ++i) p[i] = lane[i].w + atom[i];
     return numbers_at(p, 0);
 }
+
+// Trees of fewer pieces stand in a cache.
+constexpr int32_t pieces_of_cache = 16;
 
 // The trees of a forest, step by step.
 struct ForestTrees {
@@ -133,55 +148,69 @@ struct ForestTrees {
     ForestTrees(const Forest &forest, const MoleculeLane *lanes, bool packed)
         : f(forest), lane(lanes), at(lanes, forest.n_trees, packed) {}
 
-    const uint16_t *atom_of(int32_t step) const { return f.atom + static_cast<int64_t>(step) * W; }
-    const uint16_t *above_of(int32_t step) const { return f.above + static_cast<int64_t>(step) * W; }
-    const uint16_t *lower_of(int32_t place) const { return f.lower + static_cast<int64_t>(place) * W; }
+    const int32_t *atom_of(int32_t step) const { return f.atom + static_cast<int64_t>(step) * W; }
+    const int32_t *above_of(int32_t step) const { return f.above + static_cast<int64_t>(step) * W; }
+    const int32_t *lower_of(int32_t place) const { return f.lower + static_cast<int64_t>(place) * W; }
+    // Starts to fetch what atoms some numbers further on are read from, numbers[i ..] of n times as many as there are
+    // lanes, where they don't stand in a cache.
+    template <bool packed, bool masses, class... Arrays>
+    HOL_FORCED void fetch(const int32_t *numbers, int32_t i, int32_t n, const Arrays &...arrays) const {
+        constexpr int32_t ahead = rows_ahead / W;
+        if (!packed || f.n_pieces < pieces_of_cache || i + ahead >= n) return;
+        const int32_t *const number = numbers + static_cast<int64_t>(i + ahead) * W;
+        const ForestAtom<true> atom(at, number);
+        HOL_UNROLL
+        for (int l = 0; l < W; ++l) {
+            if (masses) __builtin_prefetch(lane[0].w + number[l], 0, 2);
+            (fetch_row(arrays, atom.number[l]), ...);
+        }
+    }
     // Where the value of a bond stands in the caller's arrays.
     int64_t bond_of(int i, int32_t place) const {
         return lane[i].first_bond + f.bond[static_cast<int64_t>(place) * W + i];
     }
 
-    // Calls body(step, first) for all steps but that of the roots; its values of pairs begin with the first.
-    template <class Body>
-    HOL_FORCED void for_steps_up(const Body &body) const {
-        int64_t first = 0;
-        for (int32_t s = 0; s + 1 < f.n_steps; ++s) {
-            body(s, first);
-            first += values_of_joint(f.step[s].children);
-        }
+    // Steps, and their places; `root`: the last of them is that of the roots.
+    struct Range {
+        int32_t step, end_step, place, end_place;
+        bool root;
+        int32_t inner_end() const { return root ? end_step - 1 : end_step; }
+    };
+    Range all() const { return {0, f.n_steps, 0, f.n_places, true}; }
+    int32_t place_of(int32_t step) const { return step < f.n_steps ? f.step[step].first : f.n_places; }
+    // Of one large tree; piece n_pieces is the top.
+    Range piece(int32_t p) const {
+        const int32_t step = f.piece_start[p], end = f.piece_start[p + 1];
+        return {step, end, place_of(step), place_of(end), p == f.n_pieces};
     }
-    template <class Body>
-    HOL_FORCED void for_steps_down(const Body &body) const {
-        int64_t first = f.n_pairs;
-        for (int32_t s = f.n_steps - 1; s-- > 0;) {
-            first -= values_of_joint(f.step[s].children);
-            body(s, first);
-        }
-    }
+
     // Calls body(place, bits of the lanes of `which` that hold a bond there).
     template <class Body>
-    HOL_FORCED void for_held(unsigned which, const Body &body) const {
-        for (int32_t p = 0; p < f.n_places; ++p)
+    HOL_FORCED void for_held(const Range &range, unsigned which, const Body &body) const {
+        for (int32_t p = range.place; p < range.end_place; ++p)
             if (const unsigned held = f.held[p] & which) body(p, held);
     }
     // Writes value(place, atom) of the atoms' vectors in the lanes of which & ~but(place).
     template <class But, class Value>
-    HOL_FORCED void write_atoms(const AtomArray &array, unsigned which, const But &but, const Value &value) const {
+    HOL_FORCED void write_atoms(const Range &range, const AtomArray &array, unsigned which, const But &but,
+                                const Value &value) const {
         choose(
             [&](auto packed) HOL_FORCED {
-                for_held(which, [&](int32_t p, unsigned lanes) HOL_FORCED {
+                for_held(range, which, [&](int32_t p, unsigned lanes) HOL_FORCED {
+                    fetch<packed, false>(f.lower, p, f.n_places, array);
                     const ForestAtom<packed> atom(at, lower_of(p));
                     atom.write(array, value(p, atom), lanes & ~but(p));
                 });
+                if (!range.root) return;
                 const ForestAtom<packed> root(at, atom_of(f.n_steps - 1));
-                root.write(array, value(f.n_places, root), which & ~but(f.n_places));
+                root.write(array, value(f.n_places, root), which & bits(first_lanes(f.n_trees)) & ~but(f.n_places));
             },
             at.layout != elements);
     }
     template <class Value>
-    HOL_FORCED void write_atoms(const AtomArray &array, unsigned which, const Value &value) const {
+    HOL_FORCED void write_atoms(const Range &range, const AtomArray &array, unsigned which, const Value &value) const {
         write_atoms(
-            array, which, [](int32_t) { return 0u; }, value);
+            range, array, which, [](int32_t) { return 0u; }, value);
     }
 };
 

@@ -18,8 +18,8 @@ struct ForestLinear : ForestTrees {
     const AtomArray &r;
     Inputs in;
     const int terms;      // of right-hand sides: RightHandSide
-    BondRow<vec> *row;    // [n_places + 2] by place
-    vec3 *pull;           // [n_places + 2] of the lower atom by its children; at n_places, of the root
+    BondRow<vec> *row;    // [n_rows] by place
+    vec3 *pull;           // [n_rows] of the lower atom by its children; at n_places, of the root
     vec3 *velocity;       // likewise, for rates
     vec *w, *lower_w;     // [n_steps], [n_places]
     vec *pair;            // [n_pairs] multipliers among the children of an atom
@@ -31,15 +31,15 @@ struct ForestLinear : ForestTrees {
         return JointMemory<vec, 0>::values(f.most_children < most_decomposed ? f.most_children : most_decomposed);
     }
     static int64_t values(const Forest &f) {
-        const int64_t rows = f.n_places + 2, row_values = sizeof(BondRow<vec>) / sizeof(vec);
-        return (row_values + 6 + 1) * rows + f.n_steps + f.n_pairs + joint_values(f);
+        const int64_t rows = f.n_rows(), row_values = sizeof(BondRow<vec>) / sizeof(vec);
+        return (row_values + 6 + 1) * rows + f.n_steps + f.n_pairs + (1 + f.n_pieces) * joint_values(f);
     }
 
     ForestLinear(const Forest &forest, const MoleculeLane *lanes, bool packed, const Box &b, const AtomArray &positions,
                  const Inputs &inputs, int right_hand_side, Memory<vec> &memory)
         : ForestTrees(forest, lanes, packed), box(b), r(positions), in(inputs), terms(right_hand_side),
           slack(splat(1)) {
-        const int64_t rows = f.n_places + 2;
+        const int64_t rows = f.n_rows();
         row = reinterpret_cast<BondRow<vec> *>(memory.values(rows * static_cast<int64_t>(sizeof *row / sizeof(vec))));
         pull = memory.vectors(rows);
         velocity = memory.vectors(rows);
@@ -47,43 +47,56 @@ struct ForestLinear : ForestTrees {
         w = memory.values(f.n_steps);
         pair = memory.values(f.n_pairs);
         working = memory;
-        memory.values(joint_values(f));
+        memory.values((1 + f.n_pieces) * joint_values(f));
+        for (int64_t p = f.n_places; p < rows; ++p) {
+            row[p] = BondRow<vec>{};
+            pull[p] = velocity[p] = vec3{};
+        }
     }
 
     bool has(int wanted) const { return (terms & wanted) != 0; }
 
-    // The place in the schedule of the bond at a place, in one lane.
-    int32_t scheduled(int i, int32_t place) const { return f.schedule[i]->slot_of[lower_of(place)[i]]; }
-    // The local atoms that it joins.
-    void ends(int i, int32_t place, int32_t *atom) const {
-        const Schedule &s = *f.schedule[i];
-        atom[0] = s.atom_of[s.parent[scheduled(i, place)]];
-        atom[1] = lower_of(place)[i];
+    // The local atoms that the bond of an element joins.
+    void ends(int32_t element, int32_t *atom) const {
+        const Schedule &s = *f.schedule[f.n_pieces > 0 ? 0 : element % W];
+        atom[1] = lower_of(element / W)[element % W];
+        atom[0] = s.atom_of[s.parent[s.slot_of[atom[1]]]];
     }
 
     // What load.hpp does.
     template <bool packed, bool squared, bool pulled, bool rated>
-    __attribute__((noinline)) void load_terms() {
-        for (int32_t s = 0; s < f.n_steps; ++s) {
+    __attribute__((noinline)) void load_terms(const Range &range) {
+        // Copies, which no store changes.
+        const AtomArray none = {}, positions = r, velocities = squared || rated ? *in.v : none,
+                        forces = pulled ? *in.f : none;
+        const auto fetch_all = [&](const int32_t *numbers, int32_t i, int32_t n) HOL_FORCED {
+            if (pulled && (squared || rated))
+                fetch<packed, true>(numbers, i, n, positions, velocities, forces);
+            else
+                fetch<packed, true>(numbers, i, n, positions, pulled ? forces : velocities);
+        };
+        for (int32_t s = range.step; s < range.end_step; ++s) {
+            fetch_all(f.atom, s, f.n_steps);
             const ForestAtom<packed> atom(at, atom_of(s));
-            const vec3 r0 = atom.read(r), v0 = squared || rated ? atom.read(*in.v) : vec3{},
-                       f0 = pulled ? atom.read(*in.f) : vec3{};
+            const vec3 r0 = atom.read(positions), v0 = squared || rated ? atom.read(velocities) : vec3{},
+                       f0 = pulled ? atom.read(forces) : vec3{};
             const vec w0 = masses_of(lane, atom_of(s));
             w[s] = w0;
             for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
+                fetch_all(f.lower, p, f.n_places);
                 const ForestAtom<packed> lower(at, lower_of(p));
-                vec3 d = lower.read(r) - r0, unused = {};
+                vec3 d = lower.read(positions) - r0, unused = {};
                 take_image<false>(box, d, unused);
                 const vec w1 = masses_of(lane, lower_of(p));
                 vec b = {};
                 if (squared || rated) {
-                    const vec3 v = lower.read(*in.v), dv = v - v0;
+                    const vec3 v = lower.read(velocities), dv = v - v0;
                     if (squared) b = dot(dv, dv);
                     if (rated) b = dot(d, dv);
                     if (rated) velocity[p] = v;
                 }
                 if (rated && in.strain) b = b + stretching(in.strain, d);
-                if (pulled) b = Loader<vec>::with_pull(d, w0, f0, w1, lower.read(*in.f), b);
+                if (pulled) b = Loader<vec>::with_pull(d, w0, f0, w1, lower.read(forces), b);
                 if (has(given)) b = given_value(p);
                 BondRow<vec> &to = row[p];
                 to.d = d;
@@ -91,17 +104,15 @@ struct ForestLinear : ForestTrees {
                 to.E = select(lanes_of(f.held[p]), w1 * to.q, splat(1));  // of a leaf, or of no bond
                 to.t = b;
                 lower_w[p] = w1;
-                pull[p] = vec3{};
+                pull[p].x = pull[p].y = pull[p].z = vec{};  // gcc makes a slow loop of vec3{}
             }
-            if (rated) velocity[f.n_places] = v0;  // of the root at last
+            if (rated && s == f.n_steps - 1) velocity[f.n_places] = v0;
         }
-        row[f.n_places] = row[f.n_places + 1] = BondRow<vec>{};
-        velocity[f.n_places + 1] = vec3{};
     }
-    void load() {
+    void load(const Range &range) {
         choose(
             [&](auto packed, auto squared, auto pulled, auto rated) {
-                if constexpr (!(rated && (squared || pulled))) load_terms<packed, squared, pulled, rated>();
+                if constexpr (!(rated && (squared || pulled))) load_terms<packed, squared, pulled, rated>(range);
             },
             at.layout != elements, has(squares), has(pulls), has(rates));
     }
@@ -113,15 +124,21 @@ struct ForestLinear : ForestTrees {
         return b;
     }
 
-    void factorize_and_solve();
-    void substitute();
-    template <bool look>
-    void down();
+    template <class Doubt>
+    vec up(const Range &, Memory<vec> memory, vec least, const Doubt &);
+    void substitute(const Range &, Memory<vec> memory);
+    template <bool look, class Doubt>
+    void down(const Range &, const Doubt &);
     unsigned solve();
     void solve_again();
+    __attribute__((noinline)) bool finite_in(const Range &range) const {
+        vec sum = {};
+        for (int32_t p = range.place; p < range.end_place; ++p) sum = sum + abs(row[p].t);
+        return bits(finite(sum)) == all_lanes;
+    }
 
-    void add_pulls_to_velocities() {
-        for (int32_t p = 0; p <= f.n_places; ++p) {
+    __attribute__((noinline)) void add_pulls_to_velocities(const Range &range) {
+        for (int32_t p = range.place; p < range.end_place + (range.root ? 1 : 0); ++p) {
             const vec mass = p < f.n_places ? lower_w[p] : w[f.n_steps - 1];
             velocity[p] = add_times(velocity[p], mass, pull_at(p));
         }
@@ -131,8 +148,8 @@ struct ForestLinear : ForestTrees {
         return place < f.n_places ? add_times(pull[place], -row[place].t, row[place].d) : pull[place];
     }
     // d . (v_j - v_i) into t of the rows.
-    void find_rates() {
-        for (int32_t s = 0; s < f.n_steps; ++s) {
+    __attribute__((noinline)) void find_rates(const Range &range) {
+        for (int32_t s = range.step; s < range.end_step; ++s) {
             const vec3 v0 = AtPlaces<vec3>(velocity, above_of(s)).get3(0);
             for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
                 row[p].t = dot(row[p].d, velocity[p] - v0);
@@ -141,19 +158,21 @@ struct ForestLinear : ForestTrees {
         }
     }
 
-    __attribute__((noinline)) void write_pulls(const AtomArray &g, bool add, unsigned which) const {
-        write_atoms(g, which, [&](int32_t place, const auto &atom) HOL_FORCED {
+    __attribute__((noinline)) void write_pulls(const Range &range, const AtomArray &g, bool add, unsigned which) const {
+        write_atoms(range, g, which, [&](int32_t place, const auto &atom) HOL_FORCED {
             const vec3 a = pull_at(place);
             return add ? add_times(atom.read(g), splat(1), a) : a;
         });
     }
-    __attribute__((noinline)) void write_velocities(const AtomArray &v, unsigned which) const {
-        write_atoms(v, which, [&](int32_t place, const auto &) HOL_FORCED { return velocity[place]; });
+    __attribute__((noinline)) void write_velocities(const Range &range, const AtomArray &v, unsigned which) const {
+        write_atoms(range, v, which, [&](int32_t place, const auto &) HOL_FORCED { return velocity[place]; });
     }
     // Writes factor t of the bonds, zeros as +0. with_length: |d| is the factor.
     template <bool with_length>
-    __attribute__((noinline)) void write_bonds(double factor, double *out, unsigned which) const {
-        for_held(which, [&](int32_t p, unsigned lanes) HOL_FORCED {
+    __attribute__((noinline)) void write_bonds(const Range &range, double factor, double *out, unsigned which) const {
+        for_held(range, which, [&](int32_t p, unsigned lanes) HOL_FORCED {
+            if (f.n_pieces >= pieces_of_cache && p + rows_ahead / W < f.n_places)
+                for (int i = 0; i < W; ++i) __builtin_prefetch(out + bond_of(i, p + rows_ahead / W), 1, 2);
             const vec a = mul_add(row[p].t, with_length ? sqrt(row[p].q) : splat(factor), vec{});
             for (int i = 0; i < W; ++i)
                 if (lanes >> i & 1) out[bond_of(i, p)] = a[i];

@@ -15,8 +15,8 @@ namespace graph {
 typedef NewtonRow<vec> ForestRow;
 
 struct ForestNewton : ForestTrees {
-    ForestRow *row;       // [n_places + 2] by place
-    vec3 *new_D, *shift;  // [n_places + 2] of the bond, and of its lower atom; at n_places, of the root
+    ForestRow *row;       // [n_rows] by place
+    vec3 *new_D, *shift;  // [n_rows] of the bond, and of its lower atom; at n_places, of the root
     vec *w, *lower_w;     // [n_steps], [n_places + 1]
     vec *lower, *upper;   // [n_pairs]
     vec *kept;            // factors, while new ones are made for some lanes
@@ -26,13 +26,14 @@ struct ForestNewton : ForestTrees {
         return NewtonMemory<vec, 0>::values(f.most_children < most_decomposed ? f.most_children : most_decomposed);
     }
     static int64_t values(const Forest &f) {
-        const int64_t rows = f.n_places + 2, row_values = sizeof(ForestRow) / sizeof(vec);
-        return (row_values + 6 + 1 + 3) * rows + f.n_steps + 4 * static_cast<int64_t>(f.n_pairs) + joint_values(f);
+        const int64_t rows = f.n_rows(), row_values = sizeof(ForestRow) / sizeof(vec);
+        return (row_values + 6 + 1 + 3) * rows + f.n_steps + 4 * static_cast<int64_t>(f.n_pairs) +
+               (1 + f.n_pieces) * joint_values(f);
     }
 
     ForestNewton(const Forest &forest, const MoleculeLane *lanes, bool packed, Memory<vec> &memory)
         : ForestTrees(forest, lanes, packed) {
-        const int64_t rows = f.n_places + 2;
+        const int64_t rows = f.n_rows();
         row = reinterpret_cast<ForestRow *>(memory.values(rows * static_cast<int64_t>(sizeof *row / sizeof(vec))));
         new_D = memory.vectors(rows);
         shift = memory.vectors(rows);
@@ -42,21 +43,27 @@ struct ForestNewton : ForestTrees {
         upper = memory.values(f.n_pairs);
         kept = memory.values(3 * rows + 2 * f.n_pairs);
         working = memory;
-        memory.values(joint_values(f));
+        memory.values((1 + f.n_pieces) * joint_values(f));
+        for (int64_t p = f.n_places; p < rows; ++p) {
+            row[p] = ForestRow{};
+            new_D[p] = shift[p] = vec3{};
+        }
     }
 
     // Bonds of the reference positions and of the new ones; returns the latter's largest coordinate.
     template <bool packed>
-    __attribute__((noinline)) vec load_bonds(const PositionsCall &call) {
+    __attribute__((noinline)) vec load_bonds(const Range &range, const PositionsCall &call) {
         vec largest = {};
         const auto look_at = [&](const vec3 &r)
                                  HOL_FORCED { largest = max(max(abs(r.x), abs(r.y)), max(abs(r.z), largest)); };
-        for (int32_t s = 0; s < f.n_steps; ++s) {
+        for (int32_t s = range.step; s < range.end_step; ++s) {
+            fetch<packed, true>(f.atom, s, f.n_steps, call.r_ref, call.r);
             const ForestAtom<packed> atom(at, atom_of(s));
             const vec3 ref = atom.read(call.r_ref), r = atom.read(call.r);
             w[s] = masses_of(lane, atom_of(s));
             look_at(r);
             for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
+                fetch<packed, true>(f.lower, p, f.n_places, call.r_ref, call.r);
                 const ForestAtom<packed> below(at, lower_of(p));
                 const vec3 r1 = below.read(call.r);
                 vec3 unused = {};
@@ -69,16 +76,14 @@ struct ForestNewton : ForestTrees {
                 row[p].tau = vec{};
             }
         }
-        lower_w[f.n_places] = w[f.n_steps - 1];
-        row[f.n_places] = row[f.n_places + 1] = ForestRow{};
-        new_D[f.n_places] = new_D[f.n_places + 1] = shift[f.n_places + 1] = vec3{};
+        if (range.root) lower_w[f.n_places] = w[f.n_steps - 1];
         return largest;
     }
     // a^2 of all bonds: 0 where there is none.
-    void load_lengths(vec &least, vec &most) {
+    __attribute__((noinline)) void load_lengths(const Range &range, vec &least, vec &most) {
         least = splat(1e300);
         most = vec{};
-        for (int32_t p = 0; p < f.n_places; ++p) {
+        for (int32_t p = range.place; p < range.end_place; ++p) {
             const double *length[W];
             HOL_UNROLL
             for (int i = 0; i < W; ++i) length[i] = lane[i].length + f.bond[static_cast<int64_t>(p) * W + i];
@@ -93,15 +98,20 @@ struct ForestNewton : ForestTrees {
 
     // What Newton has, by these names.
     typedef Newton<vec>::Errors Errors;
-    vec open() {
+    __attribute__((noinline)) vec open(const Range &range) {
         Errors errors = {};
-        for (int32_t p = 0; p < f.n_places; ++p) {
+        for (int32_t p = range.place; p < range.end_place; ++p) {
             new_D[p] = row[p].D;
             Newton<vec>::measure<true>(row[p], row[p].D, errors);
         }
         return errors.largest();
     }
-    void first_factors() { make_factors(); }
+    vec open() { return open(all()); }
+    void first_factors() { make_all_factors(); }
+    void make_all_factors() {
+        begin_factors(all());
+        make_factors(all(), working);
+    }
     void forget(mask which) {
         for (int32_t p = 0; p < f.n_places; ++p) row[p].tau = select(which, vec{}, row[p].tau);
     }
@@ -114,11 +124,11 @@ struct ForestNewton : ForestTrees {
             bond.stretch = select(which, bond.stretch, stretch);
             bond.t = select(which, bond.t, t);
         }
-        if (bits(which) == all_lanes) return make_factors();
+        if (bits(which) == all_lanes) return make_all_factors();
         vec *to = kept;
         const vec *from = kept;
         for_factors([&](vec &value) HOL_FORCED { *to++ = value; });
-        make_factors();
+        make_all_factors();
         for_factors([&](vec &value) HOL_FORCED { value = select(which, value, *from++); });
     }
     template <class Body>
@@ -134,13 +144,20 @@ struct ForestNewton : ForestTrees {
         }
     }
 
-    void make_factors();
-    void substitute();
-    void solve(mask active);
+    void begin_factors(const Range &);
+    void make_factors(const Range &, Memory<vec> memory);
+    void substitute(const Range &, Memory<vec> memory);
+    void down(const Range &, mask active);
+    template <bool corrected>
+    void down_and_displace(const Range &);
+    void solve(mask active) {
+        substitute(all(), working);
+        down(all(), active);
+    }
 
     // tau b of the bonds above and below an atom, times its inverse mass.
     __attribute__((noinline)) void displace() {
-        for (int32_t p = 0; p < f.n_places; ++p) shift[p] = vec3{};
+        for (int32_t p = 0; p <= f.n_places; ++p) shift[p] = vec3{};
         for (int32_t s = 0; s < f.n_steps; ++s) {
             vec3 sum = {};
             for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
@@ -151,10 +168,13 @@ struct ForestNewton : ForestTrees {
         }
         shift[f.n_places] = lower_w[f.n_places] * shift[f.n_places];
     }
-    __attribute__((noinline)) vec move() {
+    vec move() {
         displace();
+        return move_bonds(all());
+    }
+    __attribute__((noinline)) vec move_bonds(const Range &range) {
         Errors errors = {};
-        for (int32_t s = 0; s < f.n_steps; ++s) {
+        for (int32_t s = range.step; s < range.end_step; ++s) {
             const vec3 above = AtPlaces<vec3>(shift, above_of(s)).get3(0);
             for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
                 vec3 turned = shift[p] - above;
@@ -181,12 +201,13 @@ struct ForestNewtonJoint {
     ForestRow *const child;
     const vec3 *const child_D;
     const int64_t first;
+    const Memory<vec> memory;
     mutable ForestRow top;
     vec3 top_D;
 
-    HOL_FORCED ForestNewtonJoint(const ForestNewton &z, int32_t s, int64_t first_pair)
+    HOL_FORCED ForestNewtonJoint(const ForestNewton &z, int32_t s, Memory<vec> m)
         : x(z), step(s), place(z.row, z.above_of(s)), child(z.row + z.f.step[s].first),
-          child_D(z.new_D + z.f.step[s].first), first(first_pair) {}
+          child_D(z.new_D + z.f.step[s].first), first(z.f.step[s].pairs), memory(m) {}
     HOL_FORCED vec w() const { return x.w[step]; }
     HOL_FORCED ForestRow &bond(int a) const { return child[a]; }
     HOL_FORCED const vec3 &D(int a) const { return child_D[a]; }
@@ -194,51 +215,83 @@ struct ForestNewtonJoint {
     HOL_FORCED const vec3 &D_above() const { return top_D; }
     HOL_FORCED vec *lower() const { return x.lower + first; }
     HOL_FORCED vec *upper() const { return x.upper + first; }
-    HOL_FORCED Memory<vec> working() const { return x.working; }
+    HOL_FORCED Memory<vec> working() const { return memory; }
     HOL_FORCED void read_t() const { top.t = place.get(offsetof(ForestRow, t)); }
 };
 
-inline __attribute__((noinline)) void ForestNewton::make_factors() {
-    for (int32_t p = 0; p < f.n_places; ++p)
+inline __attribute__((noinline)) void ForestNewton::begin_factors(const Range &range) {
+    for (int32_t p = range.place; p < range.end_place; ++p)
         row[p].E = select(lanes_of(f.held[p]), lower_w[p] * dot(new_D[p], row[p].b), splat(1));  // of a leaf
-    for_steps_up([&](int32_t s, int64_t first) HOL_FORCED {
+}
+
+inline __attribute__((noinline)) void ForestNewton::make_factors(const Range &range, Memory<vec> memory) {
+    for (int32_t s = range.step; s < range.inner_end(); ++s) {
         const int k = f.step[s].children;
         choose_few<3>(k, [&](auto known) HOL_FORCED {
-            ForestNewtonJoint joint(*this, s, first);
+            ForestNewtonJoint joint(*this, s, memory);
             joint.top.b = joint.place.get3(offsetof(ForestRow, b));
             joint.top_D = AtPlaces<vec3>(new_D, above_of(s)).get3(0);
             factorize_joint<known, false, vec>(joint, k);
             joint.place.put(offsetof(ForestRow, E), joint.top.E);
         });
-    });
-    factorize_joint<1, true, vec>(ForestNewtonJoint(*this, f.n_steps - 1, 0), 1);
+    }
+    if (range.root) factorize_joint<1, true, vec>(ForestNewtonJoint(*this, f.n_steps - 1, memory), 1);
 }
 
-inline __attribute__((noinline)) void ForestNewton::substitute() {
-    for_steps_up([&](int32_t s, int64_t first) HOL_FORCED {
+inline __attribute__((noinline)) void ForestNewton::substitute(const Range &range, Memory<vec> memory) {
+    for (int32_t s = range.step; s < range.inner_end(); ++s) {
         const int k = f.step[s].children;
         choose_few<3>(k, [&](auto known) HOL_FORCED {
-            const ForestNewtonJoint joint(*this, s, first);
+            const ForestNewtonJoint joint(*this, s, memory);
             joint.read_t();
             substitute_newton_joint<known, false, vec>(joint, k);
             joint.place.put(offsetof(ForestRow, t), joint.top.t);
         });
-    });
-    substitute_newton_joint<1, true, vec>(ForestNewtonJoint(*this, f.n_steps - 1, 0), 1);
+    }
+    if (range.root) substitute_newton_joint<1, true, vec>(ForestNewtonJoint(*this, f.n_steps - 1, memory), 1);
 }
 
 // Adds the corrections for what is left, in t of the rows, to tau in the lanes of `active`.
-inline __attribute__((noinline)) void ForestNewton::solve(mask active) {
-    substitute();
-    ForestRow &root = row[f.step[f.n_steps - 1].first];
-    root.tau = root.tau + keep(active, root.t);
-    for_steps_down([&](int32_t s, int64_t) HOL_FORCED {
+inline __attribute__((noinline)) void ForestNewton::down(const Range &range, mask active) {
+    if (range.root) {
+        ForestRow &root = row[f.step[f.n_steps - 1].first];
+        root.tau = root.tau + keep(active, root.t);
+    }
+    for (int32_t s = range.inner_end(); s-- > range.step;) {
         const vec above = AtPlaces<ForestRow>(row, above_of(s)).get(offsetof(ForestRow, t));
         for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
             row[p].t = mul_add(row[p].down, above, row[p].t);
             row[p].tau = row[p].tau + keep(active, row[p].t);
         }
-    });
+    }
+}
+
+// Of one large tree, in one pass with displace(): each atom gets what the bond above it gives when its parent is dealt
+// with, and what those below it give at its own step. corrected: by the corrections in t, which are added to tau.
+template <bool corrected>
+inline __attribute__((noinline)) void ForestNewton::down_and_displace(const Range &range) {
+    if (range.root) {
+        ForestRow &root = row[f.step[f.n_steps - 1].first];
+        if (corrected) root.tau = root.tau + root.t;
+        shift[f.n_places] = vec3{};
+    }
+    for (int32_t s = range.end_step; s-- > range.step;) {
+        const vec above = AtPlaces<ForestRow>(row, above_of(s)).get(offsetof(ForestRow, t));
+        const bool inner = corrected && s < range.inner_end();
+        vec3 sum = {};
+        for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
+            ForestRow &bond = row[p];
+            if (inner) {
+                bond.t = mul_add(bond.down, above, bond.t);
+                bond.tau = bond.tau + bond.t;
+            }
+            const vec3 pull = bond.tau * bond.b;
+            shift[p] = -lower_w[p] * pull;
+            sum = sum + pull;
+        }
+        const AtPlaces<vec3> own(shift, above_of(s));
+        own.put3(0, add_times(own.get3(0), w[s], sum));
+    }
 }
 
 }  // namespace graph

@@ -16,24 +16,29 @@ struct ForestPositions {
     ForestNewton &x;
     Tally &tally;
 
-    void load_guess() const {
+    typedef ForestTrees::Range Range;
+
+    __attribute__((noinline)) void load_guess(const Range &range) const {
         const double factor = 2 * call.dt * call.dt;
-        x.for_held(all_lanes, [&](int32_t p, unsigned lanes) HOL_FORCED {
+        x.for_held(range, all_lanes, [&](int32_t p, unsigned lanes) HOL_FORCED {
             for (int i = 0; i < W; ++i)
                 if (lanes >> i & 1) x.row[p].tau[i] = factor * call.lambda[x.bond_of(i, p)];
         });
     }
     // As PositionsBlock::coarse_moves().
     mask coarse_moves(const vec &extent, const vec &a_max) const {
+        return less(0.25 * extent, largest_pull(x.all()) * a_max);
+    }
+    __attribute__((noinline)) vec largest_pull(const Range &range) const {
         vec pull = {};
-        for (int32_t s = 0; s < x.f.n_steps; ++s)
+        for (int32_t s = range.step; s < range.end_step; ++s)
             for (int32_t p = x.f.step[s].first, end = p + x.f.step[s].children; p < end; ++p)
                 pull = max(max(x.w[s], x.lower_w[p]) * abs(x.row[p].tau), pull);
-        return less(0.25 * extent, pull * a_max);
+        return pull;
     }
-    void write_multipliers(unsigned which) const {
+    __attribute__((noinline)) void write_multipliers(const Range &range, unsigned which) const {
         const double factor = 0.5 / (call.dt * call.dt);
-        x.for_held(which, [&](int32_t p, unsigned lanes) HOL_FORCED {
+        x.for_held(range, which, [&](int32_t p, unsigned lanes) HOL_FORCED {
             const vec a = mul_add(x.row[p].tau, splat(factor), vec{});
             for (int i = 0; i < W; ++i)
                 if (lanes >> i & 1) call.lambda[x.bond_of(i, p)] = a[i];
@@ -45,40 +50,46 @@ struct ForestPositions {
         virial.count(which, 1 / (call.dt * call.dt), tally);
     }
     // Moves the atoms that are not fixed, and their velocities.
-    void write_moves(const AtomArray &array, double factor, unsigned which) const {
+    __attribute__((noinline)) void write_moves(const Range &range, const AtomArray &array, double factor,
+                                               unsigned which) const {
         x.write_atoms(
-            array, which, [&](int32_t p) { return bits(less_equal(x.lower_w[p], vec{})); },
+            range, array, which, [&](int32_t p) { return bits(less_equal(x.lower_w[p], vec{})); },
             [&](int32_t p, const auto &atom)
                 HOL_FORCED { return add_times(atom.read(array), splat(factor), x.shift[p]); });
     }
     // The worst bond of the trees in `which`: of a tree the one with the smallest number among those.
     void note_worst(unsigned which, const vec &error) const {
         const int worst = worst_lane(which, error, x.lane, tally);
-        if (worst < 0) return;
+        if (worst >= 0) tally.worst_bond = worst_bond(1u << worst);
+    }
+    __attribute__((noinline)) int64_t worst_bond(unsigned which) const {
         int64_t bond = INT64_MAX;
-        x.for_held(1u << worst, [&](int32_t p, unsigned) {
-            const int64_t its = x.bond_of(worst, p);
-            if (its < bond && x.left_of(p)[worst] >= tally.worst) bond = its;
+        x.for_held(x.all(), which, [&](int32_t p, unsigned lanes) {
+            const vec left = x.left_of(p);
+            for (int i = 0; i < W; ++i) {
+                const int64_t its = x.f.bond[static_cast<int64_t>(p) * W + i];
+                if ((lanes >> i & 1) && its < bond && left[i] >= tally.worst) bond = its;
+            }
         });
-        tally.worst_bond = bond < INT64_MAX ? bond - x.lane[worst].first_bond : 0;
+        return bond < INT64_MAX ? bond : 0;
     }
 
     // Returns the lanes that need no careful arithmetic; nothing of the others has been written.
-    unsigned solve() {
+    unsigned solve() const {
         vec largest = {}, a_min, a_max;
-        choose([&](auto packed) { largest = x.template load_bonds<packed>(call); }, x.at.layout != elements);
-        x.load_lengths(a_min, a_max);
-        if (call.guess) load_guess();
+        choose([&](auto packed) { largest = x.template load_bonds<packed>(x.all(), call); }, x.at.layout != elements);
+        x.load_lengths(x.all(), a_min, a_max);
+        if (call.guess) load_guess(x.all());
         const Limits<vec> limits(call, largest, a_min);
         const Solved<vec> out = iterate<vec, false, true>(x, limits, call, first_lanes(x.f.n_trees));
         x.displace();
         const unsigned moved = bits(out.converged & ~coarse_moves(largest + a_min, a_max)),
                        good = moved | bits(out.untouched);
         if (call.report) note_worst(good, out.error);
-        if (call.lambda) write_multipliers(good);
+        if (call.lambda) write_multipliers(x.all(), good);
         if (call.virial) add_virial(moved);
-        if (moved) write_moves(call.r, 1, moved);
-        if (moved && call.v.x) write_moves(call.v, 1 / call.dt, moved);
+        if (moved) write_moves(x.all(), call.r, 1, moved);
+        if (moved && call.v.x) write_moves(x.all(), call.v, 1 / call.dt, moved);
         if (moved) count_moved(tally, __builtin_popcount(moved), out.solves);
         return good;
     }

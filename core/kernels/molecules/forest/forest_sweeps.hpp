@@ -18,8 +18,9 @@ struct ForestJoint {
     vec *const pairs;
     mutable BondRow<vec> top;
 
-    HOL_FORCED ForestJoint(const ForestLinear &z, int32_t s, vec *m)
-        : x(z), step(s), place(z.row, z.above_of(s)), child(z.row + z.f.step[s].first), pairs(m) {}
+    HOL_FORCED ForestJoint(const ForestLinear &z, int32_t s)
+        : x(z), step(s), place(z.row, z.above_of(s)), child(z.row + z.f.step[s].first),
+          pairs(z.pair + z.f.step[s].pairs) {}
     HOL_FORCED vec w() const { return x.w[step]; }
     HOL_FORCED BondRow<vec> &bond(int a) const { return child[a]; }
     HOL_FORCED BondRow<vec> &above() const { return top; }
@@ -37,19 +38,31 @@ struct ForestJoint {
         if (__builtin_expect(any(small), 0)) return products_anew(bits(small) & single(k), g);
         return g;
     }
+    // Of the atom in a lane.
+    int children(int i) const {
+        const Forest::Step &its = x.f.step[step];
+        int k = 0;
+        while (k < its.children && (x.f.held[its.first + k] >> i & 1)) ++k;
+        return k;
+    }
+    // The element of bond a of k in a lane; bond k is the one above.
+    int32_t element(int a, int i, int k) const {
+        return a == k ? x.above_of(step)[i] : (x.f.step[step].first + a) * W + i;
+    }
+    // The bond of an element, with the low word that the difference of the coordinates leaves.
+    void exact(int32_t element, Vector3<double> &d, Vector3<double> &low) const {
+        int32_t atom[2];
+        double end[2][3];
+        x.ends(element, atom);
+        for (int e = 0; e < 2; ++e) read_row(x.r, x.at.number(element % W, atom[e]), end[e]);
+        unrounded_bond(x.box, end[0], end[1], d, low);
+    }
     __attribute__((noinline)) vec products_anew(unsigned which, vec g) const {
-        const auto exact = [&](int i, int32_t bond, Vector3<double> &d, Vector3<double> &low) {
-            int32_t atom[2];
-            double end[2][3];
-            x.ends(i, bond, atom);
-            for (int e = 0; e < 2; ++e) read_row(x.r, x.at.number(i, atom[e]), end[e]);
-            unrounded_bond(x.box, end[0], end[1], d, low);
-        };
         for (; which; which &= which - 1) {
             const int i = __builtin_ctz(which);
             Vector3<double> d[2], low[2];
-            exact(i, x.f.step[step].first, d[0], low[0]);
-            exact(i, x.above_of(step)[i], d[1], low[1]);
+            exact(element(0, i, 1), d[0], low[0]);
+            exact(element(1, i, 1), d[1], low[1]);
             g[i] = dot_compensated(d[0], low[0], d[1], low[1]);
         }
         return g;
@@ -64,65 +77,84 @@ struct ForestJoint {
             const vec left = left_of(a < 0 ? top : child[a], shared);
             for (unsigned rest = which & bits(less(left, vec{})); rest; rest &= rest - 1) {
                 const int i = __builtin_ctz(rest);
-                const int32_t bond = a < 0 ? x.above_of(step)[i] : x.f.step[step].first + a;
-                const double own = terms_of_bond(bond, i);
+                const double own = terms_of_bond(element(a < 0 ? k : a, i, k));
                 if (!(left[i] + own * own >= 0)) slack[i] = -1;
             }
         }
     }
     // Of its right-hand side in absolute values, in units of its diagonal element.
-    double terms_of_bond(int32_t bond, int i) const {
-        const BondRow<vec> &its = x.row[bond];
+    double terms_of_bond(int32_t element) const {
+        const int i = element % W;
+        const BondRow<vec> &its = x.row[element / W];
         int32_t atom[2];
-        x.ends(i, bond, atom);
+        x.ends(element, atom);
         const int64_t number[2] = {x.at.number(i, atom[0]), x.at.number(i, atom[1])};
         const double mass[2] = {x.lane[i].w[atom[0]], x.lane[i].w[atom[1]]},
                      d[3] = {its.d.x[i], its.d.y[i], its.d.z[i]};
         const double A = (mass[0] + mass[1]) * its.q[i];
-        if (x.has(given)) return __builtin_fabs(0.5 * x.in.rhs[x.bond_of(i, bond)]) / A;
+        if (x.has(given)) return __builtin_fabs(0.5 * x.in.rhs[x.bond_of(i, element / W)]) / A;
         return terms_of(x.in, d, number, mass) / A;
     }
 };
 
-inline __attribute__((noinline)) void ForestLinear::factorize_and_solve() {
-    vec least = slack;  // in a register
-    for_steps_up([&](int32_t s, int64_t first) HOL_FORCED {
+// A tree of which nothing but the joints' tests is kept: where they fail, it is in doubt.
+struct ForestDoubt {
+    template <int k>
+    struct Values {
+        HOL_FORCED void keep(const ForestJoint &) {}
+    };
+    HOL_FORCED vec begin(vec least) const { return least; }
+    template <class Before>
+    HOL_FORCED vec end(const ForestJoint &, const Before &, vec own, vec) const {
+        return own;
+    }
+    void note_faint(const ForestJoint &joint, int k, unsigned which) const { joint.doubt_faint(k, which, slack); }
+    vec &slack;
+};
+
+template <class Doubt>
+inline __attribute__((noinline)) vec ForestLinear::up(const Range &range, Memory<vec> memory, vec least,
+                                                      const Doubt &doubt) {
+    for (int32_t s = range.step; s < range.inner_end(); ++s) {
         const int k = f.step[s].children;
         least = choose_few<3>(k, [=](auto known) HOL_FORCED {
-            const ForestJoint joint(*this, s, pair + first);
-            vec own = least;
+            const ForestJoint joint(*this, s);
             joint.top.d = joint.place.get3(offsetof(BondRow<vec>, d));
             joint.top.q = joint.place.get(offsetof(BondRow<vec>, q));
             joint.read_t();
-            up_joint<known, false>(joint, k, working, own);
+            typename Doubt::template Values<known> before;
+            before.keep(joint);
+            vec own = doubt.begin(least);
+            up_joint<known, false>(joint, k, memory, own);
+            own = doubt.end(joint, before, own, least);
             joint.write_t();
             joint.place.put(offsetof(BondRow<vec>, E), joint.top.E);
             return own;
         });
-    });
-    slack = least;
-    up_joint<1, true>(ForestJoint(*this, f.n_steps - 1, pair), 1, working, slack);
+    }
+    if (range.root) up_joint<1, true>(ForestJoint(*this, f.n_steps - 1), 1, memory, least);
+    return least;
 }
 
-inline __attribute__((noinline)) void ForestLinear::substitute() {
-    for_steps_up([&](int32_t s, int64_t first) HOL_FORCED {
+inline __attribute__((noinline)) void ForestLinear::substitute(const Range &range, Memory<vec> memory) {
+    for (int32_t s = range.step; s < range.inner_end(); ++s) {
         const int k = f.step[s].children;
         choose_few<3>(k, [&](auto known) HOL_FORCED {
-            const ForestJoint joint(*this, s, pair + first);
+            const ForestJoint joint(*this, s);
             joint.read_t();
-            substitute_joint<known, false>(joint, k, working);
+            substitute_joint<known, false>(joint, k, memory);
             joint.write_t();
         });
-    });
-    substitute_joint<1, true>(ForestJoint(*this, f.n_steps - 1, pair), 1, working);
+    }
+    if (range.root) substitute_joint<1, true>(ForestJoint(*this, f.n_steps - 1), 1, memory);
 }
 
 // u of the children becomes t, and the sum of t d what they pull. `look`: tests the result.
-template <bool look>
-inline __attribute__((noinline)) void ForestLinear::down() {
-    const auto step = [&](int32_t s, vec *pairs, auto known, auto top) HOL_FORCED {
+template <bool look, class Doubt>
+inline __attribute__((noinline)) void ForestLinear::down(const Range &range, const Doubt &doubt) {
+    const auto step = [&](int32_t s, auto known, auto top) HOL_FORCED {
         const int k = known > 0 ? known : f.step[s].children;
-        const ForestJoint joint(*this, s, pairs);
+        const ForestJoint joint(*this, s);
         if (!top) joint.read_t();
         vec3 sum = {};
         HOL_UNROLL_FEW
@@ -137,27 +169,25 @@ inline __attribute__((noinline)) void ForestLinear::down() {
         joint.top.E = joint.place.get(offsetof(BondRow<vec>, E));
         joint.top.r = joint.place.get(offsetof(BondRow<vec>, r));
         const unsigned faint = bits(faint_bonds<vec>(joint, k)) & f.held[f.step[s].first + 1];
-        if (__builtin_expect(faint != 0, 0)) joint.doubt_faint(k, faint, slack);
+        if (__builtin_expect(faint != 0, 0)) doubt.note_faint(joint, k, faint);
     };
-    step(f.n_steps - 1, pair, Constant<int, 1>{}, Constant<bool, true>{});
-    for_steps_down([&](int32_t s, int64_t first) HOL_FORCED {
-        vec *const pairs = pair + first;
-        choose_few<3>(f.step[s].children,
-                      [&](auto known) HOL_FORCED { step(s, pairs, known, Constant<bool, false>{}); });
-    });
+    if (range.root) step(f.n_steps - 1, Constant<int, 1>{}, Constant<bool, true>{});
+    for (int32_t s = range.inner_end(); s-- > range.step;)
+        choose_few<3>(f.step[s].children, [&](auto known) HOL_FORCED { step(s, known, Constant<bool, false>{}); });
 }
 
 // From what load() has left to the solution, in t of the rows. Returns the lanes that plain arithmetic answers for.
 inline unsigned ForestLinear::solve() {
-    factorize_and_solve();
-    down<true>();
+    const ForestDoubt doubt{slack};
+    slack = up(all(), working, slack, doubt);
+    down<true>(all(), doubt);
     vec sum = {};
     for (int32_t p = 0; p < f.n_places; ++p) sum = sum + abs(row[p].t);
     return bits(first_lanes(f.n_trees) & ~less(slack, vec{}) & finite(sum));
 }
 inline void ForestLinear::solve_again() {
-    substitute();
-    down<false>();
+    substitute(all(), working);
+    down<false>(all(), ForestDoubt{slack});
 }
 
 }  // namespace graph

@@ -5,6 +5,7 @@
 #define HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_DOUBTFUL_JOINT_HPP
 
 #include "core/kernels/careful/joint.hpp"
+#include "core/kernels/molecules/large_tree/doubtful_atom.hpp"
 #include "core/kernels/molecules/tree/joint.hpp"
 
 namespace holonomic {
@@ -14,7 +15,7 @@ namespace graph {
 // An atom with at most three children, which are arms 0 .. k - 1; the bond above is arm k. Vectors are divided by a
 // power of two each, masses by one, so that no product overflows.
 struct DoubtfulJoint {
-    static constexpr int most = 4;
+    static constexpr int most = DoubtfulAtom::most;
     Wide3 D[most], X[most * most];
     Wide rho[most];
     bool rigid[most];
@@ -29,12 +30,12 @@ struct DoubtfulJoint {
         return __builtin_ldexp(1.0, e - 1);
     }
 
-    bool open(const Molecules<double> &x, int32_t slot, int k) {
-        const int32_t *const child = x.s.child + x.s.child_start[slot];
-        mass_unit = power_of(x.w[slot]);
+    bool open(const DoubtfulAtom &x) {
+        const int k = x.k;
+        mass_unit = power_of(x.w);
         joint = {};
         joint.n = k + 1;
-        joint.w = x.w[slot] / mass_unit;
+        joint.w = x.w / mass_unit;
         joint.D = joint.B = D;
         joint.rho = rho;
         joint.rigid = rigid;
@@ -43,16 +44,14 @@ struct DoubtfulJoint {
         joint.sD = joint.sB = size;
         joint.sXD = joint.sXB = size_X;
         for (int a = 0; a <= k; ++a) {
-            const int32_t place = a < k ? child[a] : slot;
-            Vector3<double> d, lo;
-            exact_bond(x, 0, place, d, lo);
-            unit[a] = power_of(__builtin_sqrt(x.row[place].q));
+            const Vector3<double> &d = x.d[a], &lo = x.low[a];
+            unit[a] = power_of(__builtin_sqrt(x.bond[a].q));
             if (!(unit[a] > 0x1p-480 && unit[a] < 0x1p480)) return false;
             const double r = 1 / unit[a];
             D[a] = {{r * d.x, r * lo.x}, {r * d.y, r * lo.y}, {r * d.z, r * lo.z}};
         }
         prepare(joint);
-        for (int a = 0; a < k; ++a) set_arm(joint, a, wide(x.row[child[a]].E / unit[a] / unit[a] / mass_unit));
+        for (int a = 0; a < k; ++a) set_arm(joint, a, wide(x.bond[a].E / unit[a] / unit[a] / mass_unit));
         return true;
     }
 
@@ -70,18 +69,16 @@ struct DoubtfulJoint {
     Wide pivot(int a, double E) const { return wide(E / unit[a] / unit[a] / mass_unit) + offered(joint, a, a); }
 };
 
-// Does what up_joint() does, and keeps pivots and multipliers if `keep`. Returns false, with nothing written, if the
-// bonds depend on each other.
-HOL_NOINLINE bool up_doubtful_joint(const Molecules<double> &x, int32_t slot, int k) {
-    const int32_t *const child = x.s.child + x.s.child_start[slot];
+bool up_doubtful(DoubtfulAtom &x) {
+    const int k = x.k;
     DoubtfulJoint f;
-    if (!f.open(x, slot, k)) return false;
+    if (!f.open(x)) return false;
     double r[3], m[3] = {}, u[3], y[3], l[3];
     Wide L[DoubtfulJoint::most];
     for (int j = 0; j < k; ++j) {
-        y[j] = x.row[child[j]].t;
+        y[j] = x.bond[j].t;
         if (!f.eliminate(j, -1)) return false;
-        const Wide P = f.pivot(j, x.row[child[j]].E);
+        const Wide P = f.pivot(j, x.bond[j].E);
         r[j] = 1 / rounded(P) / f.unit[j] / f.unit[j] / f.mass_unit;
         for (int a = j + 1; a < k; ++a)
             m[pair_of(a, j)] = rounded(offered(f.joint, a, j) / P) * (f.unit[a] / f.unit[j]);
@@ -92,27 +89,27 @@ HOL_NOINLINE bool up_doubtful_joint(const Molecules<double> &x, int32_t slot, in
         Wide sum = wide(y[a]);
         for (int b = 0; b < k; ++b)
             if (b != a) sum -= L[b] * wide(y[b] * (f.unit[a] / f.unit[b]));
-        u[a] = rounded(sum / f.pivot(a, x.row[child[a]].E)) / f.unit[a] / f.unit[a] / f.mass_unit;
+        u[a] = rounded(sum / f.pivot(a, x.bond[a].E)) / f.unit[a] / f.unit[a] / f.mass_unit;
     }
     if (!f.eliminate(k, -1)) return false;
     const Wide left = offered(f.joint, k, k);
     if (!f.gives_way(left)) return false;
     careful::multipliers(f.joint, k, L);
-    Wide above = wide(x.row[slot].t);
+    Wide above = wide(x.bond[k].t);
     for (int a = 0; a < k; ++a) {
         above += L[a] * wide(y[a] * (f.unit[k] / f.unit[a]));
         l[a] = rounded(L[a]) * (f.unit[k] / f.unit[a]);
     }
-    x.row[slot].E = rounded(left) * f.unit[k] * f.unit[k] * f.mass_unit;
-    x.row[slot].t = rounded(above);
+    x.bond[k].E = rounded(left) * f.unit[k] * f.unit[k] * f.mass_unit;
+    x.bond[k].t = rounded(above);
     for (int a = 0; a < k; ++a) {
-        BondRow<double> &row = x.row[child[a]];
+        BondRow<double> &row = x.bond[a];
         row.E = y[a] * r[a];
         row.t = u[a];
         row.l = l[a];
         row.r = r[a];
     }
-    for (int i = 0; i < k * (k - 1) / 2; ++i) x.pair[x.s.pair_start[slot] + i] = m[i];
+    for (int i = 0; i < k * (k - 1) / 2; ++i) x.pair[i] = m[i];
     return true;
 }
 

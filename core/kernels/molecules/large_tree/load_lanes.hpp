@@ -3,7 +3,6 @@
 #ifndef HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_LOAD_LANES_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_LOAD_LANES_HPP
 
-#include "core/kernels/molecules/large_tree/bond_lanes.hpp"
 #include "core/kernels/molecules/load.hpp"
 
 namespace holonomic {
@@ -48,13 +47,29 @@ HOL_INLINE void put_vectors(Vector3<double> *to, const int32_t *slot, const vec3
     for (int i = 0; i < W; ++i) p[i] = &to[slot[i]].x;
     write_rows(p, a);
 }
-HOL_INLINE vec3 get_vectors(const Vector3<double> *from, const int32_t *slot) {
-    const double *p[W];
+// Four doubles to each of W places.
+HOL_INLINE void write_four(double *const *p, const vec *e) {
+#if HOL_LANES == 4 && defined(__AVX2__)
+    vec m[4] = {e[0], e[1], e[2], e[3]};
+    transpose(m);
     HOL_UNROLL
-    for (int i = 0; i < W; ++i) p[i] = &from[slot[i]].x;
-    vec3 a;
-    read_rows(p, a);
-    return a;
+    for (int i = 0; i < 4; ++i) _mm256_storeu_pd(p[i], m[i]);
+#else
+    for (int i = 0; i < W; ++i)
+        for (int c = 0; c < 4; ++c) p[i][c] = e[c][i];
+#endif
+}
+
+// The bonds of W slots.
+HOL_INLINE void put_rows(BondRow<double> *to, const int32_t *slot, const BondRow<vec> &row) {
+    static_assert(sizeof(BondRow<double>) == 8 * sizeof(double), "");
+    HOL_UNROLL
+    for (int half = 0; half < 2; ++half) {
+        double *p[W];
+        HOL_UNROLL
+        for (int i = 0; i < W; ++i) p[i] = half == 0 ? &to[slot[i]].d.x : &to[slot[i]].E;
+        write_four(p, half == 0 ? &row.d.x : &row.E);
+    }
 }
 
 // Inverse masses of W slots, as the caller has them.
@@ -99,8 +114,7 @@ HOL_INLINE void load_lanes(Linear<double> &z, int terms, const int32_t *slot, bo
         for (int i = 0; i < W; ++i) row.t[i] = Loader<double>{z, terms}.given_value(slot[i]);
     row.q = dot(row.d, row.d);
     row.E = w * row.q;  // of a leaf
-    scatter_vectors(x.row, slot, row);
-    scatter_values(x.row, slot, row);
+    put_rows(x.row, slot, row);
 }
 
 // Starts to fetch the rows of an atom, of all arrays that are read.

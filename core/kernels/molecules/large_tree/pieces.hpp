@@ -32,11 +32,6 @@ struct Faint {
             if (slot[i] == s) return true;
         return false;
     }
-    bool holds_any(const int32_t *s) const {
-        bool any = false;
-        for (int i = 0; again && n > 0 && i < W; ++i) any = any || holds(s[i]);
-        return any;
-    }
     bool note(int32_t s) {
         for (int i = 0; i < n; ++i)
             if (slot[i] == s) return true;

@@ -1,21 +1,37 @@
-// The sweeps of joint.hpp over the trees of one large molecule, with the same digits. W atoms that do not depend on
-// each other (Schedule::Run) are worked on at a time.
+// The sweeps of joint.hpp over one large tree whose atoms do not fill lanes, with the same digits: piece by piece, arms
+// as chains. Others go as a forest (forest/one_tree.hpp).
 #ifndef HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_TREE_RUNS_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_TREE_RUNS_HPP
 
-#include "core/kernels/molecules/large_tree/atom_lanes.hpp"
-#include "core/kernels/molecules/large_tree/doubtful_joint.hpp"
+#include "core/kernels/molecules/large_tree/doubtful_atom.hpp"
+#include "core/kernels/molecules/tree/joint.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
+
+// In twice the precision. False: that doesn't do either.
+HOL_NOINLINE bool up_carefully(const Molecules<double> &x, int32_t slot, int k) {
+    const AtomRows<double> rows(x, slot);
+    DoubtfulAtom atom = {};
+    atom.k = k;
+    atom.w = rows.w();
+    for (int a = 0; a <= k; ++a) {
+        atom.bond[a] = a < k ? rows.bond(a) : rows.above();
+        exact_bond(x, 0, a < k ? rows.child[a] : slot, atom.d[a], atom.low[a]);
+    }
+    if (!up_doubtful(atom)) return false;
+    for (int a = 0; a <= k; ++a) (a < k ? rows.bond(a) : rows.above()) = atom.bond[a];
+    for (int p = 0; p < k * (k - 1) / 2; ++p) rows.multipliers()[p] = atom.pair[p];
+    return true;
+}
 
 // Goes up at one atom, with careful arithmetic where plain arithmetic does not do.
 HOL_NOINLINE void up_one(const Molecules<double> &x, int32_t slot, Faint &faint, Memory<double> memory, double &slack) {
     const AtomRows<double> rows(x, slot);
     const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
     if (__builtin_expect(faint.holds(slot), 0)) {
-        if (k > 3 || !up_doubtful_joint(x, slot, k)) slack = -1;
+        if (k > 3 || !up_carefully(x, slot, k)) slack = -1;
         return faint.note_careful(slot);
     }
     if (k > 3) return up_joint<0, false>(rows, k, memory, slack);
@@ -32,36 +48,8 @@ HOL_NOINLINE void up_one(const Molecules<double> &x, int32_t slot, Faint &faint,
         row.E = before[2 * a];
         row.t = before[2 * a + 1];
     }
-    if (!up_doubtful_joint(x, slot, k)) slack = -1;
+    if (!up_carefully(x, slot, k)) slack = -1;
     faint.note_careful(slot);
-}
-
-template <int k>
-HOL_INLINE void up_lanes(const Molecules<double> &x, const int32_t *slot, Faint &faint, Memory<double> memory,
-                         double &slack) {
-    AtomLanes<k, vec> rows(x, slot);
-    rows.read_bonds();
-    vec own = Width<vec>::all(1);
-    up_joint<k, false>(rows, k, Memory<vec>{nullptr}, own);
-    if (__builtin_expect(any(less(own, vec{})) || faint.holds_any(slot), 0)) {
-        for (int i = 0; i < W; ++i)
-            if (i == 0 || slot[i] != slot[i - 1]) up_one(x, slot[i], faint, memory, slack);
-        return;
-    }
-    rows.write_values();
-    scatter_values(x.row, slot, rows.top);
-    rows.write_pairs();
-}
-
-template <int k>
-HOL_INLINE void substitute_lanes(const Molecules<double> &x, const int32_t *slot) {
-    AtomLanes<k, vec> rows(x, slot);
-    rows.read_values();
-    gather_values(x.row, slot, rows.top);
-    rows.read_pairs();
-    substitute_joint<k, false>(rows, k, Memory<vec>{nullptr});
-    rows.write_values();
-    scatter_values(x.row, slot, rows.top);
 }
 
 // Deals with an atom with faint bonds. The first time it notes the atom, to be eliminated carefully the next time. Then
@@ -96,46 +84,6 @@ HOL_INLINE void down_atom(const Molecules<double> &x, int32_t slot, Faint &faint
     }
 }
 
-template <int k>
-HOL_INLINE void down_lanes(const Molecules<double> &x, const int32_t *slot, Faint &faint, double &slack, bool look) {
-    AtomLanes<k, vec> rows(x, slot);
-    rows.read_values();
-    gather_values(x.row, slot, rows.top);
-    HOL_UNROLL
-    for (int a = 0; a < k; ++a) {
-        BondRow<vec> &row = rows.bonds[a];
-        row.t = mul_add(row.l, rows.top.t, row.t);
-    }
-    rows.write_values();
-    if (!look || k == 1) return;
-    HOL_UNROLL
-    for (int a = 0; a < k; ++a) gather_vectors(x.row, rows.child[a], rows.bonds[a]);
-    gather_vectors(x.row, slot, rows.top);
-    rows.mass = gather_numbers<vec>(x.w, slot);
-    for (unsigned left = bits(faint_bonds<vec>(rows, k)); __builtin_expect(left != 0, 0); left &= left - 1)
-        note_faint(x, slot[__builtin_ctz(left)], k, faint, slack);
-}
-
-// Calls lanes(k, slots) for W atoms of a run at a time, the last ones more than once: k, the number of their children,
-// is a constant. Calls one(slot) for atoms alone.
-template <class Lanes, class One>
-HOL_INLINE void for_run(const Schedule::Runs &runs, const Schedule::Run &run, const Lanes &lanes, const One &one) {
-    const int32_t *const slot = runs.slot + run.first;
-    if (run.children > 3 || run.count == 1) {
-        for (int32_t i = 0; i < run.count; ++i) one(slot[i]);
-        return;
-    }
-    choose_number<1, 3>(run.children, [&](auto k) HOL_FORCED {
-        int32_t i = 0;
-        for (; i + W <= run.count; i += W) lanes(k, slot + i);
-        if (i == run.count) return;
-        if (i + 1 == run.count) return one(slot[i]);
-        int32_t last[W];
-        for (int j = 0; j < W; ++j) last[j] = slot[i + j < run.count ? i + j : run.count - 1];
-        lanes(k, last);
-    });
-}
-
 // What is done at an arm, work(context, arm, faint, slack). By its address, so that pieces are compiled once for all.
 struct ArmWork {
     const void *context = nullptr;
@@ -162,36 +110,28 @@ static inline double up_piece(const Molecules<double> &x, int32_t piece, Memory<
     Faint &faint = x.pieces->faint[piece];
     faint.n_careful = 0;
     double slack = 1;
-    const auto one = [&](int32_t slot) { up_one(x, slot, faint, memory, slack); };
     for (int32_t r = s.piece_start[piece]; r < s.piece_start[piece + 1]; ++r) {
         const Schedule::Run &run = s.run[r];
         if (do_arms(s, run, arm, faint, slack)) continue;
-        for_run(
-            s, run, [&](auto k, const int32_t *slot) { up_lanes<k>(x, slot, faint, memory, slack); }, one);
+        for (int32_t i = run.first; i < run.first + run.count; ++i) up_one(x, s.slot[i], faint, memory, slack);
     }
     return slack;
 }
 
 static inline void substitute_piece(const Molecules<double> &x, int32_t piece, Memory<double> memory) {
     const Schedule::Runs &s = x.pieces->runs(x.s);
-    const auto one = [&](int32_t slot) { substitute_one(x, slot, memory); };
-    for (int32_t r = s.piece_start[piece]; r < s.piece_start[piece + 1]; ++r) {
-        const Schedule::Run &run = s.run[r];
-        for_run(
-            s, run, [&](auto k, const int32_t *slot) { substitute_lanes<k>(x, slot); }, one);
-    }
+    for (int32_t r = s.piece_start[piece]; r < s.piece_start[piece + 1]; ++r)
+        for (int32_t i = 0; i < s.run[r].count; ++i) substitute_one(x, s.slot[s.run[r].first + i], memory);
 }
 
 static inline double down_piece(const Molecules<double> &x, int32_t piece, const ArmWork &arm, bool look) {
     const Schedule::Runs &s = x.pieces->runs(x.s);
     Faint &faint = x.pieces->faint[piece];
     double slack = 1;
-    const auto one = [&](int32_t slot) { down_atom(x, slot, faint, slack, look); };
     for (int32_t r = s.piece_start[piece + 1]; r-- > s.piece_start[piece];) {
         const Schedule::Run &run = s.run[r];
         if (do_arms(s, run, arm, faint, slack)) continue;
-        for_run(
-            s, run, [&](auto k, const int32_t *slot) { down_lanes<k>(x, slot, faint, slack, look); }, one);
+        for (int32_t i = run.first; i < run.first + run.count; ++i) down_atom(x, s.slot[i], faint, slack, look);
     }
     return slack;
 }

@@ -18,8 +18,8 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// The bonds of an atom, each at its place: those to its children, and the one above. large_tree/atom_lanes.hpp has the
-// same for W atoms of one molecule, forest/forest_joint.hpp for atoms of W different trees.
+// The bonds of an atom, each at its place: those to its children, and the one above. forest/forest_sweeps.hpp has
+// the same for atoms in lanes.
 template <class V>
 struct AtomRows {
     const Molecules<V> &x;
