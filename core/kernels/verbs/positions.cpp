@@ -76,10 +76,10 @@ HOL_INLINE void load_positions(const SmallCall &call, const Place &place, const 
     carried.know_largest(largest);
 }
 
-// Moves the atoms of a block, and writes its multipliers.
+// Moves the atoms of a block, but in lanes that are `untouched`, and writes its multipliers.
 template <bool uniform, class Place>
 HOL_INLINE void write_positions(const SmallCall &call, const Place &place, const Block &block, const Newton &x,
-                                const vec *atoms) {
+                                const vec *atoms, mask untouched) {
     constexpr int N = Place::bonds;
     double *const r = call.r, *const v = call.v;
     vec move[vectors_of<N>] = {}, moved[vectors_of<N>];
@@ -92,6 +92,9 @@ HOL_INLINE void write_positions(const SmallCall &call, const Place &place, const
         move[3 * k + 2] = m.z;
         before = after;
     }
+    // Not by zeros, which would take the sign from a number that is -0.
+    if (N <= 2 && any(untouched))
+        for (int e = 0; e < 3 * (N + 1); ++e) move[e] = select(untouched, splat(-0.0), move[e]);
     if constexpr (Place::in_row) {
         typedef typename Place::Lanes Lanes;
         if (v)
@@ -170,8 +173,8 @@ HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit
                 coarse_moves<all, 1>(a.block, x_a, carried_a, out_a.converged, coarse_part) |
                 coarse_moves<all, 1>(b.block, x_b, carried_b, out_b.converged, coarse_part)))
             break;
-        write_positions<uniform>(arrays, at_a, a.block, x_a, atoms_a);
-        write_positions<uniform>(arrays, at_b, b.block, x_b, atoms_b);
+        write_positions<uniform>(arrays, at_a, a.block, x_a, atoms_a, out_a.untouched);
+        write_positions<uniform>(arrays, at_b, b.block, x_b, atoms_b, out_b.untouched);
         count_moved(tally, n_moved(out_a, W) + n_moved(out_b, W), 1);
     }
     return first;
@@ -204,7 +207,7 @@ HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Uni
             const Newton copy = x;
             note_worst(reported, copy, call, first_lanes(W), out.error, tally);
         }
-        write_positions<uniform>(arrays, place, block, x, atoms);
+        write_positions<uniform>(arrays, place, block, x, atoms, out.untouched);
         count_moved(tally, n_moved(out, n), out.solves);
     }
     return first;
