@@ -93,8 +93,10 @@ HOL_INLINE void write_positions(const SmallCall &call, const Place &place, const
         before = after;
     }
     // Not by zeros, which would take the sign from a number that is -0.
-    if (N <= 2 && any(untouched))
+    if (N <= 2 && any(untouched)) {
+        HOL_UNROLL
         for (int e = 0; e < 3 * (N + 1); ++e) move[e] = select(untouched, splat(-0.0), move[e]);
+    }
     if constexpr (Place::in_row) {
         typedef typename Place::Lanes Lanes;
         if (v)
