@@ -129,7 +129,7 @@ HOL_INLINE int64_t next_block(const Unit &unit, int64_t first, int64_t end) {
 
 // How many of the first n lanes have been moved.
 HOL_INLINE int n_moved(const Outcome &out, int64_t n) {
-    return __builtin_popcount(bits(out.converged & first_lanes(n)));
+    return __builtin_popcount(bits(out.converged & first_lanes(static_cast<int>(n))));
 }
 
 // The first attempt at a block. False if that is not enough for one of its lanes. Those of one or two bonds that are
