@@ -81,7 +81,10 @@ private:
                     S[pair_of(a + 1, b)] = mul_add(-part, S[pair_of(b + 1, j)], S[pair_of(a + 1, b)]);
             }
         }
-        if (top) return;
+        if (top) {  // nothing is above
+            row[child[0]].l = V{};
+            return;
+        }
         MetricRow<V> &e = row[slot];
         V taken = {};
         for (int a = 0; a < k; ++a) {
