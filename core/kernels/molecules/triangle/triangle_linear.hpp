@@ -43,17 +43,46 @@ HOL_INLINE void triangle_sides(const TriangleCall &call, const Atoms<V> &at, con
     if (call.rhs) read_triangle_bonds(at, call.rhs, 0.5, y);
 }
 
+// An element of the inverse between two bonds is a difference: of two terms, of which so much may cancel that what
+// their roundings leave stays below those that count as right.
+constexpr double most_cancelled_there = 6;
+
+// Returns the lanes in which that is so of each multiplier: where elements have cancelled, others may be larger, or the
+// side that an element multiplies small. terms[k]: those of the element of bonds k and k + 1, in absolute values.
+template <class V>
+HOL_NOINLINE MaskOf<V> bearable(const TriangleInverse<V> &m, const V *terms, const V *y) {
+    V least = {};
+    for (int k = 0; k < 3; ++k) {
+        const int l = (k + 1) % 3, o = (k + 2) % 3;
+        const V size =
+                    mul_add(m.adj[k][k], abs(y[k]), mul_add(abs(m.adj[k][l]), abs(y[l]), abs(m.adj[k][o]) * abs(y[o]))),
+                error = mul_add(terms[k], abs(y[l]), terms[o] * abs(y[o]));
+        least = min(mul_add(Width<V>::all(most_cancelled_there), size, -error), least);
+    }
+    return less_equal(V{}, least);
+}
+
 // Returns the lanes that are done.
 template <Inlined where, class V>
 HOL_INLINE unsigned solve_triangles(const TriangleCall &call, int used, const Atoms<V> &at, const TriangleMasses<V> &m,
                                     Tally &tally) {
     Vector3<V> r[3];
-    V t[3];
+    V t[3], y[3], terms[3], left = Width<V>::all(1);
     read_all<where, 3>(call.r, at, r);
     const Triangle<V> x = triangle_of(call.box, r);
-    triangle_sides<where>(call, at, m, x.d, t);
-    TriangleInverse<V>::solve(invert_triangle(m, x), t, t);
-    const unsigned good = bits(Width<V>::first(used) & x.closed & finite(t[0] + (t[1] + t[2])));
+    triangle_sides<where>(call, at, m, x.d, y);
+    const TriangleInverse<V> inverse = invert_triangle(m, x);
+    TriangleInverse<V>::solve(inverse, y, t);
+    MaskOf<V> right = x.closed & finite(t[0] + (t[1] + t[2]));
+    HOL_UNROLL
+    for (int k = 0; k < 3; ++k) {
+        const int l = (k + 1) % 3;
+        const V apart = m.s[l] * x.X, element = inverse.adj[k][l];
+        terms[k] = abs(element + apart) + apart;
+        left = min(mul_add(Width<V>::all(most_cancelled_there), abs(element), -terms[k]), left);
+    }
+    if (__builtin_expect(any(less(left, V{})), 0)) right = right & bearable(inverse, terms, y);
+    const unsigned good = bits(Width<V>::first(used) & right);
     if (!good) return good;
     if (call.lambda) write_triangle_bonds<where>(at, t, Width<V>::all(0.5), call.lambda, good);
     if (call.tension) {
