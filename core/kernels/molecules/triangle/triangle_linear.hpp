@@ -47,16 +47,26 @@ HOL_INLINE void triangle_sides(const TriangleCall &call, const Atoms<V> &at, con
 // their roundings leave stays below those that count as right.
 constexpr double most_cancelled_there = 6;
 
-// Returns the lanes in which that is so of each multiplier: where elements have cancelled, others may be larger, or the
-// side that an element multiplies small. terms[k]: those of the element of bonds k and k + 1, in absolute values.
+// The terms of the elements of bonds k and k + 1, in absolute values.
 template <class V>
-HOL_NOINLINE MaskOf<V> bearable(const TriangleInverse<V> &m, const V *terms, const V *y) {
+HOL_INLINE V terms_of(const TriangleMasses<V> &m, const TriangleInverse<V> &inverse, V X, int k) {
+    const V apart = m.s[(k + 1) % 3] * X;
+    return abs(inverse.adj[k][(k + 1) % 3] + apart) + apart;
+}
+
+// Returns the lanes in which that is so of each multiplier: where elements have cancelled, others may be larger, or the
+// side that an element multiplies small. By value: what they are made of stays in registers where this is not asked.
+template <class V>
+HOL_NOINLINE MaskOf<V> bearable(const TriangleMasses<V> &m, const TriangleInverse<V> inverse, V X,
+                                const Vector3<V> sides) {
+    const V terms[3] = {terms_of(m, inverse, X, 0), terms_of(m, inverse, X, 1), terms_of(m, inverse, X, 2)},
+            y[3] = {abs(sides.x), abs(sides.y), abs(sides.z)};
     V least = {};
     for (int k = 0; k < 3; ++k) {
         const int l = (k + 1) % 3, o = (k + 2) % 3;
-        const V size =
-                    mul_add(m.adj[k][k], abs(y[k]), mul_add(abs(m.adj[k][l]), abs(y[l]), abs(m.adj[k][o]) * abs(y[o]))),
-                error = mul_add(terms[k], abs(y[l]), terms[o] * abs(y[o]));
+        const V size = mul_add(inverse.adj[k][k], y[k],
+                               mul_add(abs(inverse.adj[k][l]), y[l], abs(inverse.adj[k][o]) * y[o])),
+                error = mul_add(terms[k], y[l], terms[o] * y[o]);
         least = min(mul_add(Width<V>::all(most_cancelled_there), size, -error), least);
     }
     return less_equal(V{}, least);
@@ -67,7 +77,7 @@ template <Inlined where, class V>
 HOL_INLINE unsigned solve_triangles(const TriangleCall &call, int used, const Atoms<V> &at, const TriangleMasses<V> &m,
                                     Tally &tally) {
     Vector3<V> r[3];
-    V t[3], y[3], terms[3], left = Width<V>::all(1);
+    V t[3], y[3], left = Width<V>::all(1);
     read_all<where, 3>(call.r, at, r);
     const Triangle<V> x = triangle_of(call.box, r);
     triangle_sides<where>(call, at, m, x.d, y);
@@ -75,13 +85,12 @@ HOL_INLINE unsigned solve_triangles(const TriangleCall &call, int used, const At
     TriangleInverse<V>::solve(inverse, y, t);
     MaskOf<V> right = x.closed & finite(t[0] + (t[1] + t[2]));
     HOL_UNROLL
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 3; ++k) {  // terms a + p and p are at most 6 |a| in all if p <= 5/2 |a|
         const int l = (k + 1) % 3;
-        const V apart = m.s[l] * x.X, element = inverse.adj[k][l];
-        terms[k] = abs(element + apart) + apart;
-        left = min(mul_add(Width<V>::all(most_cancelled_there), abs(element), -terms[k]), left);
+        left = min(mul_add(Width<V>::all(-0.4), m.s[l] * x.X, abs(inverse.adj[k][l])), left);
     }
-    if (__builtin_expect(any(less(left, V{})), 0)) right = right & bearable(inverse, terms, y);
+    if (__builtin_expect(any(less(left, V{})), 0))
+        right = right & bearable<V>(m, inverse, x.X, Vector3<V>{y[0], y[1], y[2]});
     const unsigned good = bits(Width<V>::first(used) & right);
     if (!good) return good;
     if (call.lambda) write_triangle_bonds<where>(at, t, Width<V>::all(0.5), call.lambda, good);
