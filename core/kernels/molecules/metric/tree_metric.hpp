@@ -86,17 +86,14 @@ private:
             return;
         }
         MetricRow<V> &e = row[slot];
-        V taken = {};
+        V per_pivot[most], y[most], taken = {};
         for (int a = 0; a < k; ++a) {
-            const MetricRow<V> &x = row[child[a]];
-            V sum = w0 * product(x, e);
-            for (int j = 0; j < a; ++j) sum = mul_add(-m[pair_of(a, j)], z[j], sum);
-            z[a] = sum;
-            l[a] = sum * x.r;
-            taken = mul_add(l[a], sum, taken);
+            per_pivot[a] = row[child[a]].r;
+            y[a] = w0 * product(row[child[a]], e);
         }
-        for (int a = k - 1; a >= 0; --a) {
-            for (int j = a + 1; j < k; ++j) l[a] = mul_add(-m[pair_of(j, a)], l[j], l[a]);
+        solve_joint(k, per_pivot, m, y, z, l);
+        for (int a = 0; a < k; ++a) {
+            taken = mul_add(z[a] * per_pivot[a], z[a], taken);
             row[child[a]].l = l[a];
         }
         const V whole = w0 * e.q;
