@@ -5,9 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "check.h"
-#include "molecule.h"
-#include "molecule_solution.h"
+#include "network_scene.h"
 #include "random.h"
 
 typedef struct {
@@ -18,28 +16,10 @@ typedef struct {
     int periodic;  /**< all bonds of the cube but a fifth, and those that go round the box */
 } sort;
 
-typedef struct {
-    molecule m;
-    hol_chains *chains;
-    double box[9], side;
-} scene;
-
-static double nearest(const scene *s, const double *r, int64_t i, int64_t j, double *d)
+static network_scene make(sort of, uint64_t seed)
 {
-    double square = 0;
-    for (int c = 0; c < 3; ++c) {
-        d[c] = r[3 * j + c] - r[3 * i + c];
-        if (s->side > 0) d[c] -= s->side * nearbyint(d[c] / s->side);
-        square += d[c] * d[c];
-    }
-    return square;
-}
-
-static scene make(sort of, uint64_t seed)
-{
-    scene s = {molecule_empty(), NULL, {0}, of.periodic ? of.n : 0};
+    network_scene s = network_scene_empty(of.periodic ? of.n : 0);
     random_stream random = random_seed(seed);
-    s.box[0] = s.box[4] = s.box[8] = s.side;
     const int64_t n = of.n, atoms = of.flat ? n * n : n * n * n;
     for (int64_t i = 0; i < atoms; ++i) {
         double r[3] = {(double)(i % n), (double)(i / n % n), of.flat ? 0 : (double)(i / (n * n))};
@@ -59,25 +39,15 @@ static scene make(sort of, uint64_t seed)
         if (of.flat && at[0] + 1 < n && at[1] + 1 < n) molecule_add_bond(&s.m, i, i + n + 1);
     }
     molecule_finish(&s.m, &random);
-    double d[3];
-    for (int64_t k = 0; k < s.m.n_bonds; ++k)
-        s.m.length[k] = sqrt(nearest(&s, s.m.r, s.m.pairs[2 * k], s.m.pairs[2 * k + 1], d));
-    CHECK(hol_chains_create(s.m.n_atoms, s.m.mass, &s.chains));
-    if (of.periodic) CHECK(hol_chains_set_box(s.chains, s.box));
+    network_begin(&s);
     return s;
 }
-static scene added(sort of, uint64_t seed)
+static network_scene added(sort of, uint64_t seed)
 {
-    scene s = make(of, seed);
-    CHECK(hol_chains_add_bonds(s.chains, s.m.n_bonds, s.m.pairs, s.m.length));
+    network_scene s = make(of, seed);
+    network_add(&s);
     return s;
 }
-static void destroy(scene s)
-{
-    hol_chains_destroy(s.chains);
-    molecule_free(&s.m);
-}
-
 static const sort sorts[] = {{6, 0, 0, 0, 0, 0}, {6, 0, 0, 5, 0, 1}, {6, 0, 0, 2, 1, 1}, {15, 1, 0.3, 3, 0, 0}};
 enum { n_sorts = sizeof sorts / sizeof *sorts };
 static const sort sheet = {60, 1, 0.3, 0, 0, 0};
@@ -86,12 +56,9 @@ static void all_levels_are_those_of_many_digits(void **state)
 {
     (void)state;
     for (int which = 0; which < (quick_run() ? 1 : n_sorts); ++which) {
-        scene s = added(sorts[which], 1 + (uint64_t)which);
-        molecule_problem p = molecule_problem_of(&s.m);
-        if (s.side > 0) p.box = s.box;
-        const long double unit = (oracle_bound(s.m.n_bonds) + 64) * DBL_EPSILON;
-        const size_t size = 3 * (size_t)s.m.n_atoms;
-        double *lambda = untouched((size_t)s.m.n_bonds), *v = copy_of(s.m.v, size);
+        network_scene s = added(sorts[which], 1 + (uint64_t)which);
+        const molecule_problem p = network_problem(&s);
+        double *lambda = untouched((size_t)s.m.n_bonds);
         molecule_solution exact;
         assert_int_equal(molecule_forces(&p, &exact), 0);
         CHECK(hol_chains_set_outcomes(s.chains, 1));
@@ -100,28 +67,12 @@ static void all_levels_are_those_of_many_digits(void **state)
         CHECK(hol_outcomes(s.chains, status, rounds));
         assert_in_range(rounds[0], 1, 8); /* it is worked on as a network, and iterates little */
         for (int64_t k = 0; k < s.m.n_bonds; ++k)
-            CHECK_AT_MOST(fabsl(lambda[k] - exact.lambda[k]), unit * exact.lambda_scale[k]);
+            CHECK_AT_MOST(fabsl(lambda[k] - exact.lambda[k]), network_unit(&s) * exact.lambda_scale[k]);
         molecule_solution_free(&exact);
-        assert_int_equal(molecule_velocities(&p, &exact), 0);
-        CHECK(hol_project_velocities(s.chains, s.m.r, v, lambda, NULL));
-        for (int64_t k = 0; k < s.m.n_bonds; ++k)
-            CHECK_AT_MOST(fabsl(lambda[k] - exact.lambda[k]), unit * exact.lambda_scale[k]);
-        for (size_t i = 0; i < size; ++i) CHECK_AT_MOST(fabsl(v[i] - exact.moved[i]), unit * exact.moved_scale[i / 3]);
-        molecule_solution_free(&exact);
-        free(lambda), free(v);
-        destroy(s);
+        check_network_velocities(&s);
+        free(lambda);
+        network_free(s);
     }
-}
-
-/** |d.d - a^2| / a^2 of the worst bond. */
-static double worst_length(const scene *s, const double *r)
-{
-    double worst = 0, d[3];
-    for (int64_t k = 0; k < s->m.n_bonds; ++k) {
-        const double a2 = s->m.length[k] * s->m.length[k];
-        worst = fmax(worst, fabs(nearest(s, r, s->m.pairs[2 * k], s->m.pairs[2 * k + 1], d) - a2) / a2);
-    }
-    return worst;
 }
 
 static void positions_get_their_lengths(void **state)
@@ -129,16 +80,16 @@ static void positions_get_their_lengths(void **state)
     (void)state;
     for (int which = 0; which < (quick_run() ? 1 : n_sorts + 1); ++which) {
         const sort of = which < n_sorts ? sorts[which] : sheet;
-        scene s = added(of, 1 + (uint64_t)which);
+        network_scene s = added(of, 1 + (uint64_t)which);
         CHECK(hol_project_velocities(s.chains, s.m.r, s.m.v, NULL, NULL));
         const double dt = of.masses > 0 ? 1e-5 : of.flat ? 1e-3 : 0.01;
         double *r = molecule_drifted(&s.m, dt);
         hol_report report;
         CHECK(hol_project_positions(s.chains, s.m.r, r, NULL, dt, NULL, 0, NULL, &report));
         assert_true(report.n_corrected == 1 && report.iterations < 8);
-        CHECK_AT_MOST(worst_length(&s, r), 16 * DBL_EPSILON * (1 + 2. * of.n));
+        CHECK_AT_MOST(network_worst_length(&s, r), 16 * DBL_EPSILON * (1 + 2. * of.n));
         free(r);
-        destroy(s);
+        network_free(s);
     }
 }
 
@@ -148,7 +99,7 @@ static void a_corrugated_sheet_is_solved_to_rounding(void **state)
     (void)state;
     sort of = sheet;
     if (quick_run()) of.n = 30;
-    scene s = added(of, 3);
+    network_scene s = added(of, 3);
     double *lambda = untouched((size_t)s.m.n_bonds), *g = untouched(3 * (size_t)s.m.n_atoms);
     CHECK(hol_forces(s.chains, s.m.r, s.m.v, s.m.f, lambda, NULL, g, HOL_WRITE, NULL));
     double *tension = calloc((size_t)s.m.n_atoms, sizeof *tension);
@@ -165,7 +116,7 @@ static void a_corrugated_sheet_is_solved_to_rounding(void **state)
         CHECK_AT_MOST(fabsl(sum), 4 * DBL_EPSILON * size);
     }
     free(lambda), free(g), free(tension);
-    destroy(s);
+    network_free(s);
 }
 
 static void a_flat_sheet_is_refused_as_dependent(void **state)
@@ -174,7 +125,7 @@ static void a_flat_sheet_is_refused_as_dependent(void **state)
     sort of = sheet;
     of.height = 0;
     if (quick_run()) of.n = 30;
-    scene s = added(of, 4);
+    network_scene s = added(of, 4);
     const size_t size = 3 * (size_t)s.m.n_atoms;
     double *g = untouched(size), *before = copy_of(g, size), *v = copy_of(s.m.v, size);
     CHECK_FAILS(HOL_ERR_DEGENERATE, hol_forces(s.chains, s.m.r, s.m.v, s.m.f, NULL, NULL, g, HOL_WRITE, NULL));
@@ -182,25 +133,25 @@ static void a_flat_sheet_is_refused_as_dependent(void **state)
     CHECK_FAILS(HOL_ERR_DEGENERATE, hol_project_velocities(s.chains, s.m.r, v, NULL, NULL));
     assert_same_bits(v, s.m.v, size);
     free(g), free(before), free(v);
-    destroy(s);
+    network_free(s);
 }
 
 /** Fronts that would take more than the limit are not made; then nothing solves a large sheet. */
 static void fronts_count_in_the_memory_limit(void **state)
 {
     (void)state;
-    scene s = make(sheet, 3);
+    network_scene s = make(sheet, 3);
     CHECK(hol_chains_set_memory_limit(s.chains, 1000 * s.m.n_bonds));
-    CHECK(hol_chains_add_bonds(s.chains, s.m.n_bonds, s.m.pairs, s.m.length));
+    network_add(&s);
     CHECK_FAILS(HOL_ERR_DEGENERATE, hol_forces(s.chains, s.m.r, s.m.v, s.m.f, NULL, NULL, s.m.f, HOL_ADD, NULL));
-    destroy(s);
+    network_free(s);
 }
 
 static void threads_change_no_bit(void **state)
 {
     (void)state;
     const sort of = {quick_run() ? 9 : 14, 0, 0, 0, 0, 1};
-    scene s = added(of, 6);
+    network_scene s = added(of, 6);
     const size_t size = 3 * (size_t)s.m.n_atoms;
     double *g[2], *v[2], *r[2];
     for (int i = 0; i < 2; ++i) {
@@ -214,7 +165,7 @@ static void threads_change_no_bit(void **state)
     assert_same_bits(v[0], v[1], size);
     assert_same_bits(r[0], r[1], size);
     for (int i = 0; i < 2; ++i) free(g[i]), free(v[i]), free(r[i]);
-    destroy(s);
+    network_free(s);
 }
 
 int main(void)

@@ -6,9 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "check.h"
-#include "molecule.h"
-#include "molecule_solution.h"
+#include "network_scene.h"
 #include "random.h"
 
 typedef struct {
@@ -18,30 +16,14 @@ typedef struct {
     double curl;                      /**< 1: coils; little: nearly straight strands */
 } sort;
 
-typedef struct {
-    molecule m;
-    hol_chains *chains;
-    double box[9], side;
-} scene;
-
-static double nearest(const scene *s, const double *r, int64_t i, int64_t j, double *d)
-{
-    double square = 0;
-    for (int c = 0; c < 3; ++c) {
-        d[c] = r[3 * j + c] - r[3 * i + c];
-        d[c] -= s->side * nearbyint(d[c] / s->side);
-        square += d[c] * d[c];
-    }
-    return square;
-}
 static double mass_of(const sort *of, random_stream *random)
 {
     return pow(10, of->masses * (random_uniform(random) - 0.5));
 }
-static void add_strand(scene *s, const sort *of, int64_t from, int64_t to, random_stream *random)
+static void add_strand(network_scene *s, const sort *of, int64_t from, int64_t to, random_stream *random)
 {
     double gap[3], step[3], sum[3] = {0, 0, 0}, r[3];
-    const double distance = sqrt(nearest(s, s->m.r, from, to, gap));
+    const double distance = sqrt(network_nearest(s, s->m.r, from, to, gap));
     int64_t n = of->shortest + (int64_t)((double)(of->longest - of->shortest + 1) * random_uniform(random));
     if ((double)n * 0.3 * s->side < distance) n = 1 + (int64_t)(distance / (0.3 * s->side));
     double *walk = malloc(3 * (size_t)n * sizeof *walk);
@@ -65,11 +47,10 @@ static void add_strand(scene *s, const sort *of, int64_t from, int64_t to, rando
     free(walk);
 }
 
-static scene make(sort of, uint64_t seed)
+static network_scene make(sort of, uint64_t seed)
 {
-    scene s = {molecule_empty(), NULL, {0}, cbrt((double)of.nodes) * 2.5};
+    network_scene s = network_scene_empty(cbrt((double)of.nodes) * 2.5);
     random_stream random = random_seed(seed);
-    s.box[0] = s.box[4] = s.box[8] = s.side;
     int64_t *stub = malloc(4 * (size_t)of.nodes * sizeof *stub);
     for (int64_t i = 0; i < of.nodes; ++i) {
         double r[3];
@@ -90,45 +71,23 @@ static scene make(sort of, uint64_t seed)
             molecule_grow(&s.m, i, mass_of(&of, &random), 1, u);
         }
     molecule_finish(&s.m, &random);
-    double d[3];
-    for (int64_t k = 0; k < s.m.n_bonds; ++k)
-        s.m.length[k] = sqrt(nearest(&s, s.m.r, s.m.pairs[2 * k], s.m.pairs[2 * k + 1], d));
-    CHECK(hol_chains_create(s.m.n_atoms, s.m.mass, &s.chains));
-    CHECK(hol_chains_set_box(s.chains, s.box));
-    CHECK(hol_chains_add_bonds(s.chains, s.m.n_bonds, s.m.pairs, s.m.length));
+    network_begin(&s);
+    network_add(&s);
     free(stub);
     return s;
 }
-static void destroy(scene s)
-{
-    hol_chains_destroy(s.chains);
-    molecule_free(&s.m);
-}
-
 static const sort sorts[] = {
     {36, 5, 5, 0, 0, 0, 1}, {36, 4, 6, 0, 0, 0, 1},    {34, 5, 7, 0, 1, 0, 1},
     {48, 4, 5, 4, 1, 1, 1}, {46, 4, 5, 0, 0, 1, 0.02},
 };
 enum { n_sorts = sizeof sorts / sizeof *sorts };
 
-/* Images round: each component of a bond by eps of a cell, in units of a bond of 1. */
-static long double unit_of(const scene *s)
-{
-    return (oracle_bound(s->m.n_bonds) + 64) * DBL_EPSILON;
-}
-static molecule_problem problem_of(const scene *s)
-{
-    molecule_problem p = molecule_problem_of(&s->m);
-    p.box = s->box;
-    return p;
-}
-
 static void forces_are_those_of_many_digits(void **state)
 {
     (void)state;
     for (int which = 0; which < (quick_run() ? 1 : n_sorts); ++which) {
-        scene s = make(sorts[which], 1 + (uint64_t)which);
-        const molecule_problem p = problem_of(&s);
+        network_scene s = make(sorts[which], 1 + (uint64_t)which);
+        const molecule_problem p = network_problem(&s);
         molecule_solution exact;
         double *lambda = untouched((size_t)s.m.n_bonds), *g = untouched(3 * (size_t)s.m.n_atoms), virial[9];
         double *tension = untouched((size_t)s.m.n_bonds), *again = untouched((size_t)s.m.n_bonds);
@@ -136,22 +95,23 @@ static void forces_are_those_of_many_digits(void **state)
         assert_int_equal(molecule_forces(&p, &exact), 0);
         CHECK(hol_forces(s.chains, s.m.r, s.m.v, s.m.f, lambda, tension, g, HOL_WRITE, virial));
         for (int64_t k = 0; k < s.m.n_bonds; ++k) {
-            CHECK_AT_MOST(fabsl(lambda[k] - exact.lambda[k]), unit_of(&s) * exact.lambda_scale[k]);
+            CHECK_AT_MOST(fabsl(lambda[k] - exact.lambda[k]), network_unit(&s) * exact.lambda_scale[k]);
             CHECK_AT_MOST(fabsl(tension[k] - exact.tension[k]),
-                          unit_of(&s) * 2 * s.m.length[k] * exact.lambda_scale[k]);
+                          network_unit(&s) * 2 * s.m.length[k] * exact.lambda_scale[k]);
         }
         for (int64_t i = 0; i < 3 * s.m.n_atoms; ++i)
-            CHECK_AT_MOST(fabsl(g[i] - exact.g[i]), unit_of(&s) * exact.g_scale[i / 3]);
-        for (int a = 0; a < 9; ++a) CHECK_AT_MOST(fabsl(virial[a] - exact.virial[a]), unit_of(&s) * exact.virial_scale);
+            CHECK_AT_MOST(fabsl(g[i] - exact.g[i]), network_unit(&s) * exact.g_scale[i / 3]);
+        for (int a = 0; a < 9; ++a)
+            CHECK_AT_MOST(fabsl(virial[a] - exact.virial[a]), network_unit(&s) * exact.virial_scale);
         molecule_solution_free(&exact);
         for (int64_t k = 0; k < s.m.n_bonds; ++k) rhs[k] = k % 50 == 7 ? 1 : 0;
         assert_int_equal(molecule_solve(&p, rhs, &exact), 0);
         CHECK(hol_solve(s.chains, s.m.r, rhs, again, NULL, HOL_WRITE, NULL));
         for (int64_t k = 0; k < s.m.n_bonds; ++k)
-            CHECK_AT_MOST(fabsl(again[k] - exact.lambda[k]), unit_of(&s) * exact.lambda_scale[k]);
+            CHECK_AT_MOST(fabsl(again[k] - exact.lambda[k]), network_unit(&s) * exact.lambda_scale[k]);
         molecule_solution_free(&exact);
         free(lambda), free(g), free(tension), free(again), free(rhs);
-        destroy(s);
+        network_free(s);
     }
 }
 
@@ -159,64 +119,42 @@ static void velocities_are_those_of_many_digits(void **state)
 {
     (void)state;
     for (int which = 0; which < (quick_run() ? 1 : n_sorts); ++which) {
-        scene s = make(sorts[which], 1 + (uint64_t)which);
-        const molecule_problem p = problem_of(&s);
-        molecule_solution exact;
-        const size_t size = 3 * (size_t)s.m.n_atoms;
-        double *lambda = untouched((size_t)s.m.n_bonds), *v = copy_of(s.m.v, size);
-        assert_int_equal(molecule_velocities(&p, &exact), 0);
-        CHECK(hol_project_velocities(s.chains, s.m.r, v, lambda, NULL));
-        for (int64_t k = 0; k < s.m.n_bonds; ++k)
-            CHECK_AT_MOST(fabsl(lambda[k] - exact.lambda[k]), unit_of(&s) * exact.lambda_scale[k]);
-        for (size_t i = 0; i < size; ++i)
-            CHECK_AT_MOST(fabsl(v[i] - exact.moved[i]), unit_of(&s) * exact.moved_scale[i / 3]);
-        molecule_solution_free(&exact);
-        free(lambda), free(v);
-        destroy(s);
+        network_scene s = make(sorts[which], 1 + (uint64_t)which);
+        check_network_velocities(&s);
+        network_free(s);
     }
-}
-
-/** |d.d - a^2| / a^2 of the worst bond, from nearest images. */
-static double worst_length(const scene *s, const double *r)
-{
-    double worst = 0, d[3];
-    for (int64_t k = 0; k < s->m.n_bonds; ++k) {
-        const double a2 = s->m.length[k] * s->m.length[k];
-        worst = fmax(worst, fabs(nearest(s, r, s->m.pairs[2 * k], s->m.pairs[2 * k + 1], d) - a2) / a2);
-    }
-    return worst;
 }
 
 static void positions_get_their_lengths(void **state)
 {
     (void)state;
     for (int which = 0; which < (quick_run() ? 1 : n_sorts); ++which) {
-        scene s = make(sorts[which], 1 + (uint64_t)which);
+        network_scene s = make(sorts[which], 1 + (uint64_t)which);
         const size_t size = 3 * (size_t)s.m.n_atoms;
         CHECK(hol_project_velocities(s.chains, s.m.r, s.m.v, NULL, NULL));
         const double dt = sorts[which].masses > 0 || sorts[which].curl < 1 ? 1e-5 : 0.01;
         double *start = molecule_drifted(&s.m, dt), *r = copy_of(start, size), *v = copy_of(s.m.v, size);
         double *lambda = untouched((size_t)s.m.n_bonds), shortest = HUGE_VAL;
         molecule_solution exact;
-        const molecule_problem p = problem_of(&s);
+        const molecule_problem p = network_problem(&s);
         hol_report report;
         assert_int_equal(molecule_positions(&p, start, s.box, s.m.length, dt, &exact), 0);
         CHECK(hol_project_positions(s.chains, s.m.r, r, v, dt, lambda, 0, NULL, &report));
         assert_true(report.n_corrected > 0 && report.iterations < 12);
         for (size_t i = 0; i < size; ++i)
-            CHECK_AT_MOST(fabsl(r[i] - exact.moved[i]), unit_of(&s) * exact.moved_scale[i / 3]);
+            CHECK_AT_MOST(fabsl(r[i] - exact.moved[i]), network_unit(&s) * exact.moved_scale[i / 3]);
         for (int64_t k = 0; k < s.m.n_bonds; ++k) shortest = fmin(shortest, s.m.length[k]);
-        CHECK_AT_MOST(worst_length(&s, r), 16 * DBL_EPSILON * (1 + 2 * s.side / shortest));
+        CHECK_AT_MOST(network_worst_length(&s, r), 16 * DBL_EPSILON * (1 + 2 * s.side / shortest));
         for (size_t i = 0; i < size; ++i)
             CHECK_AT_MOST(fabs(s.m.v[i] + (r[i] - start[i]) / dt - v[i]),
                           8 * DBL_EPSILON * (fabs(v[i]) + fabs(s.m.v[i]) + (fabs(r[i]) + fabs(start[i])) / dt));
         /* Once more, with these as a guess: nothing but roundings can have changed. */
         double *other = copy_of(start, size);
         CHECK(hol_project_positions(s.chains, s.m.r, other, NULL, dt, lambda, 1, NULL, NULL));
-        CHECK_AT_MOST(worst_length(&s, other), 16 * DBL_EPSILON * (1 + 2 * s.side / shortest));
+        CHECK_AT_MOST(network_worst_length(&s, other), 16 * DBL_EPSILON * (1 + 2 * s.side / shortest));
         molecule_solution_free(&exact);
         free(start), free(r), free(v), free(lambda), free(other);
-        destroy(s);
+        network_free(s);
     }
 }
 
@@ -224,7 +162,7 @@ static void threads_and_layouts_change_no_bit(void **state)
 {
     (void)state;
     const sort of = {700, 4, 12, 0, 1, 0, 1};
-    scene s = make(of, 3);
+    network_scene s = make(of, 3);
     const size_t size = 3 * (size_t)s.m.n_atoms, n = (size_t)s.m.n_bonds;
     double *g = untouched(size), *lambda = untouched(n), *v = copy_of(s.m.v, size), *r = molecule_drifted(&s.m, 0.005);
     double *h = untouched(size), *mu = untouched(n), *w = copy_of(s.m.v, size), *q = copy_of(r, size);
@@ -245,7 +183,7 @@ static void threads_and_layouts_change_no_bit(void **state)
     CHECK(hol_project_positions_view(s.chains, &ref, &now, NULL, 0.005, NULL, 0, NULL, NULL));
     for (size_t i = 0; i < size; ++i) assert_same_bits(components + i % 3 * (size / 3) + i / 3, r + i, 1);
     free(g), free(lambda), free(v), free(r), free(h), free(mu), free(w), free(q), free(components);
-    destroy(s);
+    network_free(s);
 }
 
 /** A cubic lattice without a fifth of its bonds, whose elimination would fill gigabytes. */
@@ -301,7 +239,7 @@ static void rounds_are_told(void **state)
     (void)state;
     int rounds[2];
     for (int straight = 0; straight < 2; ++straight) {
-        scene s = make(sorts[straight ? n_sorts - 1 : 0], 5);
+        network_scene s = make(sorts[straight ? n_sorts - 1 : 0], 5);
         int status[1], iterations[1];
         CHECK(hol_chains_set_outcomes(s.chains, 1));
         CHECK(hol_forces(s.chains, s.m.r, s.m.v, s.m.f, NULL, NULL, s.m.f, HOL_ADD, NULL));
@@ -311,7 +249,7 @@ static void rounds_are_told(void **state)
         CHECK(hol_project_velocities(s.chains, s.m.r, s.m.v, NULL, NULL));
         CHECK(hol_outcomes(s.chains, status, iterations));
         assert_in_range(iterations[0], 1, 2000);
-        destroy(s);
+        network_free(s);
     }
     assert_in_range(rounds[0], 1, 40);
     assert_in_range(rounds[1], rounds[0] + 1, 2000);
