@@ -18,6 +18,11 @@
 #endif
 #endif
 
+// 1: size counts more than speed. Such a set has no kernels of their own for what the general ones can do.
+#ifndef HOL_SMALL
+#define HOL_SMALL 0
+#endif
+
 // The careful solver of this set is in the namespace of another (careful/careful.hpp).
 #ifndef HOL_CAREFUL
 #define HOL_CAREFUL HOL_ISA

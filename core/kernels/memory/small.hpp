@@ -278,6 +278,7 @@ struct BlockMasses {
 template <class Kernel>
 static inline int64_t any_molecules(const Unit &unit, const Block &block, int64_t first, bool boxed, bool one_length,
                                     const Kernel &kernel) {
+    if constexpr (small_set) return first;
     constexpr Constant<bool, true> yes{};
     constexpr Constant<bool, false> no{};
     const Lane &head = unit.lanes[unit.regular ? 0 : first];

@@ -108,7 +108,9 @@ struct TriangleWork {
         return molecules.first;
     }
     int64_t run(const MoleculeUnit &unit, double *scratch) {
-        if constexpr (twins && Verb::in_steps)
+        if constexpr (small_set)
+            return 0;
+        else if constexpr (twins && Verb::in_steps)
             return run<Twin>(unit, 0, scratch);  // few are left
         else
             return run<vec>(unit, 0, scratch);
