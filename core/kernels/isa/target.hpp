@@ -28,6 +28,11 @@
 #define HOL_CAREFUL HOL_ISA
 #endif
 
+// So are its networks, where more registers bring them nothing (molecules/network/network.hpp).
+#ifndef HOL_NETWORKS
+#define HOL_NETWORKS HOL_ISA
+#endif
+
 #if defined(__FMA__) || defined(__aarch64__)
 #define HOL_HAS_FMA 1
 #else
