@@ -58,6 +58,12 @@
 #define HOL_STATIC static inline HOL_FORCED  // for members that need no object
 // For rare cases, which would only make the common one longer.
 #define HOL_NOINLINE static __attribute__((noinline, unused))
+// For what is long and stands in many places.
+#if HOL_SMALL
+#define HOL_INLINE_UNLESS_SMALL HOL_NOINLINE
+#else
+#define HOL_INLINE_UNLESS_SMALL HOL_INLINE
+#endif
 
 // All that takes or returns a vector wider than a register is inlined, so that how such a one is passed does not
 // matter.
