@@ -50,6 +50,15 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
         kernels/newton/system.cpp
         kernels/verbs/positions.cpp
         PROPERTIES COMPILE_OPTIONS -fno-tree-loop-vectorize)
+    # Nor do copies of loops and of paths.
+    set_source_files_properties(
+        kernels/verbs/molecules_forces.cpp
+        kernels/verbs/molecules_linear.cpp
+        kernels/verbs/molecules_metric.cpp
+        kernels/verbs/molecules_network.cpp
+        kernels/verbs/molecules_positions.cpp
+        kernels/verbs/molecules_velocities.cpp
+        PROPERTIES COMPILE_OPTIONS "-fno-split-loops;-fno-split-paths")
 endif()
 
 option(HOLONOMIC_BASELINE "The kernels that every x86-64 processor runs; OFF for trying changes with one other set (scripts/try)" ON)
@@ -68,10 +77,11 @@ function(holonomic_kernel_objects name lanes)
     target_link_libraries(${target} PRIVATE holonomic_flags holonomic_warnings)
 endfunction()
 
-# holonomic_kernels(NAME LANES CAREFUL set [TESTS_ONLY] [CHAINS_ONLY] [FLAGS flag...] [NEEDS feature...])
+# holonomic_kernels(NAME LANES CAREFUL set [NETWORKS set] [TESTS_ONLY] [CHAINS_ONLY] [FLAGS flag...] [NEEDS feature...])
 #   NAME         of the namespace, of the object library holonomic_kernels_NAME, and for HOLONOMIC_ISA
 #   LANES        doubles worked on at once
 #   CAREFUL      the careful solver that it uses, see below
+#   NETWORKS     another set, whose networks it uses where that one is compiled
 #   TESTS_ONLY   in no library but the one of tests/lanes; runs only if HOLONOMIC_ISA names it
 #   CHAINS_ONLY  runs for chains that fit into lanes, beside another set
 #   FLAGS        of the compiler
@@ -83,7 +93,7 @@ set(test_kernel_sets)
 set(set_names)
 set(careful_solvers)
 function(holonomic_kernels name lanes)
-    cmake_parse_arguments(PARSE_ARGV 2 set "TESTS_ONLY;CHAINS_ONLY" "CAREFUL" "FLAGS;NEEDS")
+    cmake_parse_arguments(PARSE_ARGV 2 set "TESTS_ONLY;CHAINS_ONLY" "CAREFUL;NETWORKS" "FLAGS;NEEDS")
     if((set_TESTS_ONLY AND NOT (HOLONOMIC_BUILD_TESTS AND HOLONOMIC_TEST_SETS)) OR
        (NOT set_TESTS_ONLY AND NOT name IN_LIST HOLONOMIC_INSTRUCTION_SETS AND NOT (name STREQUAL "baseline" AND HOLONOMIC_BASELINE)))
         return()
@@ -94,6 +104,10 @@ function(holonomic_kernels name lanes)
     if(set_CHAINS_ONLY)
         set(sources ${chain_kernels})
         list(APPEND defines HOL_CHAINS_ONLY)
+    endif()
+    if(set_NETWORKS IN_LIST HOLONOMIC_INSTRUCTION_SETS)
+        list(REMOVE_ITEM sources kernels/verbs/molecules_network.cpp)
+        list(APPEND defines HOL_NETWORKS=${set_NETWORKS})
     endif()
     if(set_TESTS_ONLY)
         list(APPEND defines HOL_TESTS_ONLY)
@@ -122,7 +136,7 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND CMAKE_SIZEOF_VOID
 endif()
 set(avx2 -mavx2 -mfma)
 if(HOLONOMIC_X86_64)
-    holonomic_kernels(avx512vl 4 CAREFUL twofold_fma NEEDS avx512f avx512dq avx512vl fma
+    holonomic_kernels(avx512vl 4 CAREFUL twofold_fma NETWORKS avx2 NEEDS avx512f avx512dq avx512vl fma
         FLAGS -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=256)
     holonomic_kernels(avx2 4 CAREFUL twofold_fma FLAGS ${avx2} NEEDS avx2 fma)
     # Numbers of lanes that other processors have or may have, on any that has AVX2.
@@ -134,7 +148,7 @@ endif()
 # For x86-64 processors of before 2013, where size counts, and for all others, where it is the only set.
 set(small)
 if(HOLONOMIC_X86_64)
-    set(small -Os)
+    set(small -Os -DHOL_SMALL=1)
 endif()
 holonomic_kernels(baseline 2 CAREFUL twofold FLAGS ${small})
 if(HOLONOMIC_X86_64)
@@ -146,13 +160,13 @@ set(HOLONOMIC_KERNEL_SET_NAMES ${set_names} CACHE INTERNAL "")
 
 # The careful solver, in twice the precision for sets that fuse products and sums and for those that don't; and what it
 # leaves to four times the precision, for all.
-holonomic_kernel_objects(fourfold 2 SOURCES ${careful_kernels} DEFINES HOL_FOURFOLD)
+holonomic_kernel_objects(fourfold 2 SOURCES ${careful_kernels} DEFINES HOL_FOURFOLD FLAGS $<$<CONFIG:Release>:-Os>)
 list(APPEND kernel_objects $<TARGET_OBJECTS:holonomic_kernels_fourfold>)
 if("twofold" IN_LIST careful_solvers OR HOLONOMIC_BUILD_TESTS)
     holonomic_kernel_objects(twofold 2 SOURCES ${careful_kernels} FLAGS ${small})
     list(APPEND kernel_objects $<TARGET_OBJECTS:holonomic_kernels_twofold>)
 endif()
 if("twofold_fma" IN_LIST careful_solvers)
-    holonomic_kernel_objects(twofold_fma 2 SOURCES ${careful_kernels} FLAGS ${avx2})
+    holonomic_kernel_objects(twofold_fma 2 SOURCES ${careful_kernels} FLAGS ${avx2} $<$<CONFIG:Release>:-O2>)
     list(APPEND kernel_objects $<TARGET_OBJECTS:holonomic_kernels_twofold_fma>)
 endif()

@@ -34,18 +34,27 @@ HOL_INLINE Pair<V> fast_two_sum(V a, V b) {
     return {s, b - (s - a)};
 }
 
+// What the rounded product p = a * b has lost.
+#if HOL_HAS_FMA
+template <class V>
+HOL_INLINE V lost_of_product(V a, V b, V p) {
+    return mul_add(a, b, -p);
+}
+#else
+template <class V>
+HOL_INLINE_UNLESS_SMALL V lost_of_product(V a, V b, V p) {
+    const double split = 134217729.0;  // 2^27 + 1
+    const V ca = split * a, ah = ca - (ca - a), al = a - ah;
+    const V cb = split * b, bh = cb - (cb - b), bl = b - bh;
+    return ((ah * bh - p) + ah * bl + al * bh) + al * bl;
+}
+#endif
+
 // a * b = hi + lo, exactly, barring overflow and underflow.
 template <class V>
 HOL_INLINE Pair<V> two_product(V a, V b) {
     const V p = a * b;
-#if HOL_HAS_FMA
-    return {p, mul_add(a, b, -p)};
-#else
-    const double split = 134217729.0;  // 2^27 + 1
-    const V ca = split * a, ah = ca - (ca - a), al = a - ah;
-    const V cb = split * b, bh = cb - (cb - b), bl = b - bh;
-    return {p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
-#endif
+    return {p, lost_of_product(a, b, p)};
 }
 
 // (a + a_lo) . (b + b_lo) as if in twice the precision, rounded once.

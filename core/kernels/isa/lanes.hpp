@@ -87,6 +87,7 @@ HOL_INLINE vec sqrt(vec a) { return {__builtin_sqrt(a.element)}; }
 namespace holonomic::HOL_ISA {
 
 constexpr int W = HOL_LANES;
+constexpr bool small_set = HOL_SMALL;
 
 // mask: all bits of a lane set, or none.
 #if HOL_LANES > 1

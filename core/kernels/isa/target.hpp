@@ -18,9 +18,19 @@
 #endif
 #endif
 
+// 1: size counts more than speed. Such a set has no kernels of their own for what the general ones can do.
+#ifndef HOL_SMALL
+#define HOL_SMALL 0
+#endif
+
 // The careful solver of this set is in the namespace of another (careful/careful.hpp).
 #ifndef HOL_CAREFUL
 #define HOL_CAREFUL HOL_ISA
+#endif
+
+// So are its networks, where more registers bring them nothing (molecules/network/network.hpp).
+#ifndef HOL_NETWORKS
+#define HOL_NETWORKS HOL_ISA
 #endif
 
 #if defined(__FMA__) || defined(__aarch64__)
@@ -48,6 +58,12 @@
 #define HOL_STATIC static inline HOL_FORCED  // for members that need no object
 // For rare cases, which would only make the common one longer.
 #define HOL_NOINLINE static __attribute__((noinline, unused))
+// For what is long and stands in many places.
+#if HOL_SMALL
+#define HOL_INLINE_UNLESS_SMALL HOL_NOINLINE
+#else
+#define HOL_INLINE_UNLESS_SMALL HOL_INLINE
+#endif
 
 // All that takes or returns a vector wider than a register is inlined, so that how such a one is passed does not
 // matter.

@@ -273,30 +273,37 @@ struct BlockMasses {
 
 // Calls kernel(place, uniform, boxed) for the molecules from `first` on, where place.type is one of memory/small.hpp.
 // The kernel returns the first molecule that is not done. `uniform`: not of loose lanes, with equal masses, and
-// `one_length`. `boxed`: there is a box, or, of molecules that are not in a row, there may be one. Units that are not
-// regular need no block: molecules with as many bonds as the first one are done.
+// `one_length`. `boxed`: there is a box, or, of molecules that are not in a row or come alone, there may be one. Units
+// that are not regular need no block: molecules with as many bonds as the first one are done.
 template <class Kernel>
 static inline int64_t any_molecules(const Unit &unit, const Block &block, int64_t first, bool boxed, bool one_length,
                                     const Kernel &kernel) {
+    if constexpr (small_set) return first;
     constexpr Constant<bool, true> yes{};
     constexpr Constant<bool, false> no{};
     const Lane &head = unit.lanes[unit.regular ? 0 : first];
     const bool in_row = unit.regular && !head.atoms;
     if (head.n_bonds > (boxed || !in_row ? largest_boxed_molecule : largest_molecule)) return first;
-    const bool uniform = unit.regular && block.uniform_w && one_length;  // only a regular unit has a block
-    if (!unit.regular)
-        return choose_number<1, largest_boxed_molecule>(head.n_bonds,
-                                                        [&](auto n) { return kernel(Type<ByLanes<n>>{}, no, yes); });
+    if (!unit.regular) {
+        if constexpr (W == 1)  // a chain that comes alone is regular
+            return first;
+        else
+            return choose_number<1, largest_boxed_molecule>(
+                head.n_bonds, [&](auto n) { return kernel(Type<ByLanes<n>>{}, no, yes); });
+    }
+    const bool uniform = block.uniform_w && one_length;
     if (!in_row)
         return choose_number<1, largest_boxed_molecule>(head.n_bonds, [&](auto n) {
-            return uniform ? kernel(Type<ByList<n>>{}, yes, yes) : kernel(Type<ByList<n>>{}, no, yes);
+            if constexpr (W > 1)
+                if (uniform) return kernel(Type<ByList<n>>{}, yes, yes);
+            return kernel(Type<ByList<n>>{}, no, yes);
         });
     return choose_number<1, largest_molecule>(head.n_bonds, [&](auto constant) {
         constexpr int n = decltype(constant)::value;  // gcc 9 does not take it from within the next function
         return choose(
             [&](auto equal) {
                 if constexpr (n <= largest_boxed_molecule)
-                    if (boxed) return kernel(Type<InRow<n>>{}, equal, yes);
+                    if (boxed || W == 1) return kernel(Type<InRow<n>>{}, equal, yes);
                 return kernel(Type<InRow<n>>{}, equal, no);
             },
             uniform);

@@ -8,6 +8,12 @@ namespace holonomic::HOL_ISA {
 
 using namespace graph;
 
+// Of forces, or for given right-hand sides. Out of line, so that it is compiled once.
+HOL_NOINLINE void solve_triangles(const TriangleLinearVerb &verb, const MoleculeUnit &unit, bool packed,
+                                  double *scratch) {
+    for_each_triangle(verb, unit, packed, scratch);
+}
+
 void molecules_forces(const ForcesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     if (unit.forests) return forests_forces(call, unit, scratch, tally);
     const bool packed =
@@ -16,7 +22,7 @@ void molecules_forces(const ForcesCall &call, const MoleculeUnit &unit, double *
     if (unit.schedule->type == Schedule::triangle) {
         const TriangleCall triangles = {call.r,      call.v,       call.f,   nullptr,     call.g,
                                         call.lambda, call.tension, call.add, call.virial, call.box};
-        for_each_triangle(TriangleLinearVerb{triangles, tally}, call, unit, packed, scratch, tally);
+        solve_triangles(TriangleLinearVerb(triangles, &call, nullptr, tally), unit, packed, scratch);
         return;
     }
     const LinearWork<ForcesCall> work = {call, *unit.schedule, packed, tally, unit.team};
@@ -31,7 +37,7 @@ void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *sc
         const AtomArray none = {};
         const TriangleCall triangles = {call.r,      none,         none,     call.rhs,    call.g,
                                         call.lambda, call.tension, call.add, call.virial, call.box};
-        for_each_triangle(TriangleLinearVerb{triangles, tally}, call, unit, packed, scratch, tally);
+        solve_triangles(TriangleLinearVerb(triangles, nullptr, &call, tally), unit, packed, scratch);
         return;
     }
     const LinearWork<SolveCall> work = {call, *unit.schedule, packed, tally, unit.team};

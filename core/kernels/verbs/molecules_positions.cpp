@@ -26,7 +26,7 @@ static int64_t flat_bytes(const FlatList &s) {
 int64_t molecules_scratch_bytes(const Schedule &s) {
     if (s.network) {
         const CarefulPlan *const plan = s.careful ? s.careful : s.late_careful;
-        const int64_t careful = plan ? plan->scratch_bytes + 64 : 0, own = network_bytes(*s.network);
+        const int64_t careful = plan ? plan->scratch_bytes + 64 : 0, own = HOL_NETWORKS::network_bytes(*s.network);
         return own > careful ? own : careful;
     }
     const int64_t block = s.n_bonds <= largest_in_lanes ? block_bytes<vec>(s) : block_bytes<double>(s),
@@ -50,7 +50,7 @@ void molecules_positions(const PositionsCall &call, const MoleculeUnit &unit, do
     const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
     if (unit.schedule->network) return solve_networks(call, unit, packed, scratch, tally);
     if (unit.schedule->type == Schedule::triangle)
-        return for_each_triangle(TrianglePositionsVerb{call, tally}, call, unit, packed, scratch, tally);
+        return for_each_triangle(TrianglePositionsVerb{call, tally}, unit, packed, scratch);
     LargePositionsWork work = {{call, *unit.schedule, packed, tally, unit.team}};
     const StarPositionsVerb stars = {call, tally};
     if (call.guess || !(do_stars<3>(stars, work, unit, scratch) || do_stars<4>(stars, work, unit, scratch)))

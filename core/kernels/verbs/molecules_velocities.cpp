@@ -13,7 +13,7 @@ void molecules_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, 
     const bool packed = call.r.packed && call.v.packed;
     if (unit.schedule->network) return solve_networks(call, unit, packed, scratch, tally);
     if (unit.schedule->type == Schedule::triangle)
-        return for_each_triangle(TriangleVelocitiesVerb{call, tally}, call, unit, packed, scratch, tally);
+        return for_each_triangle(TriangleVelocitiesVerb(call, tally), unit, packed, scratch);
     const LinearWork<VelocitiesCall> work = {call, *unit.schedule, packed, tally, unit.team};
     if (!do_stars<3>(StarVelocitiesVerb{call, tally}, work, unit, scratch)) for_each_block(unit, scratch, work);
 }

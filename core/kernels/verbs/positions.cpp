@@ -69,7 +69,7 @@ HOL_INLINE void load_positions(const SmallCall &call, const Place &place, const 
     place.fetch_next(call.v);
     load_bonds<boxed, false>(call.box_ref, place, call.r_ref, atoms, x.b);
     load_bonds<boxed, boxed || !Place::in_row>(call.box, place, call.r, atoms, x.D);
-    if (!boxed) return;
+    if (!boxed || (W == 1 && Place::in_row && call.box.shape == Box::none)) return;
     vec largest = {};  // in a box the lengths of bonds say nothing of coordinates
     HOL_UNROLL
     for (int e = 0; e < 3 * (N + 1); ++e) largest = max(largest, abs(atoms[e]));

@@ -260,8 +260,10 @@ HOL_INLINE void write_three(double *out, const Atoms<V> &at, const Vector3<V> &v
 // packed arrays.
 template <class V, class Body>
 HOL_INLINE auto where_atoms_are(const Atoms<V> &at, const Body &body) {
-    if (at.layout == rows_in_order) return body(Constant<Inlined, in_order>{});
-    if (at.lanes > 1 && at.layout == rows_listed) return body(Constant<Inlined, listed>{});
+    if constexpr (!small_set) {
+        if (at.layout == rows_in_order) return body(Constant<Inlined, in_order>{});
+        if (at.lanes > 1 && at.layout == rows_listed) return body(Constant<Inlined, listed>{});
+    }
     return body(Constant<Inlined, anywhere>{});
 }
 

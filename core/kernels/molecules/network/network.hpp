@@ -8,7 +8,7 @@
 #include "core/kernels/molecules/doubtful.hpp"
 #include "core/kernels/tally.hpp"
 
-namespace holonomic::HOL_ISA {
+namespace holonomic::HOL_NETWORKS {
 
 int64_t network_bytes(const NetworkPlan &);
 bool solve_network(const ForcesCall &, const Schedule &, const MoleculeLane &, bool packed, const LongTeam *,
@@ -20,13 +20,17 @@ bool solve_network(const VelocitiesCall &, const Schedule &, const MoleculeLane 
 bool solve_network(const PositionsCall &, const Schedule &, const MoleculeLane &, bool packed, const LongTeam *,
                    double *scratch, Tally &);
 
+}  // namespace holonomic::HOL_NETWORKS
+
+namespace holonomic::HOL_ISA {
+
 // All networks of a unit.
 template <class Call>
 static inline void solve_networks(const Call &call, const MoleculeUnit &unit, bool packed, double *scratch,
                                   Tally &tally) {
     for (int64_t i = 0; i < unit.count; ++i) {
         const MoleculeLane lane = graph::molecule_of(unit, i);
-        if (solve_network(call, *unit.schedule, lane, packed, unit.team, scratch, tally)) continue;
+        if (HOL_NETWORKS::solve_network(call, *unit.schedule, lane, packed, unit.team, scratch, tally)) continue;
         if (unit.schedule->careful)
             graph::solve_doubtful(call, *unit.schedule, &lane, 1, scratch, tally);
         else

@@ -9,7 +9,7 @@ namespace holonomic {
 namespace HOL_ISA {
 
 // True if twins pay: the bits of their masks fit, and there is more than one lane.
-constexpr bool twins = W > 1 && W <= 8;
+constexpr bool twins = W > 1 && W <= 8 && !small_set;
 
 #if HOL_LANES == 4 && defined(__AVX512F__) && defined(__AVX512DQ__)
 // In one register of AVX-512, of which there are as many as of half the size.

@@ -159,6 +159,7 @@ static inline int64_t do_twins(const MoleculeUnit &unit, double *scratch, Work &
 // Does a unit of stars of N bonds, if it is one.
 template <int N, class Verb, class General>
 static inline bool do_stars(const Verb &verb, const General &general, const MoleculeUnit &unit, double *scratch) {
+    if constexpr (small_set) return false;  // they are trees, too
     const int centre = centre_of_star<N>(*unit.schedule);
     if (centre < 0) return false;
     StarWork<N, Verb, General> work(verb, general, centre);

@@ -36,20 +36,17 @@ struct TriangleKind {
     }
 };
 
-template <class Verb, class Call>
+template <class Verb>
 struct TriangleWork {
     const Verb &verb;
-    const Call &call;
     const Schedule &schedule;
     const bool packed;
-    Tally &tally;
     TriangleKind<vec> known;
     TriangleKind<double> known_one;
     TriangleKind<vec> &kind_for(vec *) { return known; }
     TriangleKind<double> &kind_for(double *) { return known_one; }
 
-    TriangleWork(const Verb &v, const Call &c, const Schedule &s, bool is_packed, Tally &t)
-        : verb(v), call(c), schedule(s), packed(is_packed), tally(t) {}
+    TriangleWork(const Verb &v, const Schedule &s, bool is_packed) : verb(v), schedule(s), packed(is_packed) {}
 
     // Molecules for which closed forms won't do: the verb's other way, if it has one, and then careful arithmetic.
     template <class Lanes>
@@ -61,7 +58,7 @@ struct TriangleWork {
             TriangleKind<vec> kind;
             kind.set(lane, used, Verb::with_lengths);
             const unsigned all = (1u << used) - 1, left = all & ~work.again(lane, used, kind);
-            if (left) solve_doubtful(work.call, work.schedule, lane, left, scratch, work.tally);
+            if (left) work.verb.solve_carefully(work.schedule, lane, left, scratch);
         }
     }
     unsigned again(const MoleculeLane *lane, int used, const TriangleKind<vec> &kind) const {
@@ -108,17 +105,18 @@ struct TriangleWork {
         return molecules.first;
     }
     int64_t run(const MoleculeUnit &unit, double *scratch) {
-        if constexpr (twins && Verb::in_steps)
+        if constexpr (small_set)
+            return 0;
+        else if constexpr (twins && Verb::in_steps)
             return run<Twin>(unit, 0, scratch);  // few are left
         else
             return run<vec>(unit, 0, scratch);
     }
 };
 
-template <class Verb, class Call>
-static inline void for_each_triangle(const Verb &verb, const Call &call, const MoleculeUnit &unit, bool packed,
-                                     double *scratch, Tally &tally) {
-    TriangleWork<Verb, Call> work(verb, call, *unit.schedule, packed, tally);
+template <class Verb>
+static inline void for_each_triangle(const Verb &verb, const MoleculeUnit &unit, bool packed, double *scratch) {
+    TriangleWork<Verb> work(verb, *unit.schedule, packed);
     const bool in_a_row = unit.regular && packed && !unit.lanes[0].atoms;
     const int64_t done = in_a_row && !verb.other_way() ? work.run(unit, scratch) : 0;
     if (done == unit.count) return;
@@ -129,7 +127,7 @@ static inline void for_each_triangle(const Verb &verb, const Call &call, const M
 }
 
 // What is done with a block of triangles. again(): for lanes that solve() does not answer for, and for all if
-// other_way(). Both return the lanes that are done.
+// other_way(). Both return the lanes that are done. solve_carefully(): for those that are left.
 struct OneWay {
     static constexpr bool with_lengths = false, in_steps = false;
     HOL_FORCED bool other_way() const { return false; }
@@ -138,10 +136,18 @@ struct OneWay {
     }
 };
 
+// Of forces, or for given right-hand sides: one of the two is not nullptr.
 struct TriangleLinearVerb : OneWay {
     const TriangleCall &call;
+    const ForcesCall *forces;
+    const SolveCall *given;
     Tally &tally;
-    TriangleLinearVerb(const TriangleCall &c, Tally &t) : call(c), tally(t) {}
+    TriangleLinearVerb(const TriangleCall &c, const ForcesCall *f, const SolveCall *s, Tally &t)
+        : call(c), forces(f), given(s), tally(t) {}
+    void solve_carefully(const Schedule &schedule, const MoleculeLane *lane, unsigned rest, double *scratch) const {
+        forces ? solve_doubtful(*forces, schedule, lane, rest, scratch, tally)
+               : solve_doubtful(*given, schedule, lane, rest, scratch, tally);
+    }
     template <Inlined where, class V, class Lanes>
     inline HOL_FORCED unsigned solve(const Lanes &, int used, const Atoms<V> &at, const TriangleKind<V> &kind) const {
         return solve_triangles<where>(call, used, at, kind.masses, tally);
@@ -152,6 +158,9 @@ struct TriangleVelocitiesVerb : OneWay {
     const VelocitiesCall &call;
     Tally &tally;
     TriangleVelocitiesVerb(const VelocitiesCall &c, Tally &t) : call(c), tally(t) {}
+    void solve_carefully(const Schedule &schedule, const MoleculeLane *lane, unsigned rest, double *scratch) const {
+        solve_doubtful(call, schedule, lane, rest, scratch, tally);
+    }
     template <Inlined where, class V, class Lanes>
     inline HOL_FORCED unsigned solve(const Lanes &, int used, const Atoms<V> &at, const TriangleKind<V> &kind) const {
         return project_triangles<where>(call, used, at, kind.masses, tally);
@@ -162,6 +171,9 @@ struct TrianglePositionsVerb {
     static constexpr bool with_lengths = true, in_steps = true;
     const PositionsCall &call;
     Tally &tally;
+    void solve_carefully(const Schedule &schedule, const MoleculeLane *lane, unsigned rest, double *scratch) const {
+        solve_doubtful(call, schedule, lane, rest, scratch, tally);
+    }
     template <Inlined where, class V, class Lanes>
     inline HOL_FORCED unsigned solve(const Lanes &lanes, int used, const Atoms<V> &at,
                                      const TriangleKind<V> &kind) const {
