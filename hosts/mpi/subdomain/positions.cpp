@@ -47,8 +47,16 @@ void Subdomain::project_inside(std::vector<double> &r, double dt) {
     if (!chains_) return;
     std::vector<double> lambda(lengths_.size(), 0.0);
     check(hol_project_positions(chains_.get(), r_.data(), r.data(), nullptr, dt, lambda.data(), 0, nullptr, nullptr));
-    for (std::size_t k = 0; k < t_.size(); ++k) t_[k] += 2 * lambda[k];
-    ++n_solves_;
+    for (std::size_t k = 0; k < lambda.size(); ++k) t_[k] += 2 * lambda[k];
+    ++n_passes_;
+}
+
+/** What multipliers of cut bonds do to their atoms. */
+void Subdomain::pull(std::vector<double> &r, const std::vector<double> &multipliers) const {
+    for (const End &end : ends_)
+        for (int c = 0; c < 3; ++c)
+            r[3 * static_cast<std::size_t>(end.atom) + c] -=
+                graph_.w[end.atom] * end.sign() * multipliers[end.cut] * cut_d_[end.cut].hi[c];
 }
 
 /** sigma = D.D - a^2 of each cut bond; gives the largest, in units of what the rounding of coordinates does to it. */
@@ -57,7 +65,7 @@ double Subdomain::excess(const std::vector<double> &shared, std::vector<double> 
     for (int k = 0; k < n_cut(); ++k) {
         const double *i = shared.data() + 6 * static_cast<std::size_t>(k), *j = i + 3, a = cut_lengths_[k];
         const TwiceVector d = box_.between(i, j);
-        sigma[k] = cut_w_[2 * k] == 0 && cut_w_[2 * k + 1] == 0 ? 0 : (dot(d, d) - product_of(a, a)).hi;
+        sigma[k] = cut_is_fixed(k) ? 0 : (dot(d, d) - product_of(a, a)).hi;
         double extent = a;
         for (int c = 0; c < 3; ++c) extent = std::max({extent, std::fabs(i[c]), std::fabs(j[c])});
         const double unit = std::numeric_limits<double>::epsilon() * a * extent;
@@ -69,8 +77,8 @@ double Subdomain::excess(const std::vector<double> &shared, std::vector<double> 
 
 Found Subdomain::positions(std::vector<double> &r, double dt) {
     std::vector<double> shared, step(cut_lengths_.size());
-    std::fill(t_.begin(), t_.end(), 0.0);
-    std::fill(t_cut_.begin(), t_cut_.end(), 0.0);
+    t_.assign(graph_.n_rows, 0.0);
+    t_cut_.assign(cut_lengths_.size(), 0.0);
     processes.alone([&] {
         if (chains_) {
             check(hol_chains_set_reference_box(chains_.get(), reference_box_.rows()));
@@ -82,7 +90,8 @@ Found Subdomain::positions(std::vector<double> &r, double dt) {
     Broyden broyden;
     double before = HUGE_VAL;
     for (;; ++found.steps) {
-        share(r.data(), shared);
+        shared = of_ends({r.data()});
+        processes.add_up(shared);
         const double worst = excess(shared, step);
         // A few roundings of the two atoms' coordinates; some more if no step makes it less.
         if (worst <= 4 || (worst <= 32 && worst >= before / 2)) break;
@@ -90,23 +99,22 @@ Found Subdomain::positions(std::vector<double> &r, double dt) {
             throw Failure{HOL_ERR_NO_CONVERGENCE, "the lengths of cut bonds can't be reached from these positions"};
         before = worst;
         for (double &x : step) x /= 2 * dt * dt;
-        factors_.solve(step.data());
+        step.resize(n_interface_, 0.0);
+        interface_.solve(step.data());
+        step.resize(cut_lengths_.size());
         step = broyden.next(step);
         processes.alone([&] {
             std::vector<double> scaled = step;
             for (std::size_t k = 0; k < step.size(); ++k) t_cut_[k] += step[k], scaled[k] *= dt * dt;
-            pull(r, scaled, true);
+            pull(r, scaled);
             project_inside(r, dt);
         });
     }
     processes.alone([&] {
+        for (const End &end : ends_) t_[end.row] = t_cut_[end.cut];
         react(found);
-        for (const End &end : ends_)
-            if (end.side == 0) add_virial(end.cut, found.virial);
     });
     processes.largest(0);  // whether all are through
-    found.cut_lambda = t_cut_;
-    for (double &lambda : found.cut_lambda) lambda /= 2;
     return found;
 }
 

@@ -112,17 +112,17 @@ struct Test {
         double times[3], own[4];
         // Forces
         hol_subdomain_work before = part.work();
-        // Tells what was done, and that no more sums were asked for than these, and two for each round of refinement.
+        // Tells what was done, and that no more sums were asked for than these.
         const auto told = [&](const char *what, int n_sums) {
             const hol_subdomain_work after = part.work();
-            const std::int64_t sums = after.n_sums - before.n_sums - 2 * (after.n_refined - before.n_refined);
+            const std::int64_t sums = after.n_sums - before.n_sums;
             expect(sums <= n_times * n_sums, "sums over processes", static_cast<double>(sums), n_times * n_sums);
             if (rank == 0)
-                std::printf("%-12s %lld sums, %lld numbers, %lld passes, %lld rounds (%.1e)\n", what,
+                std::printf("%-12s %lld sums, %lld numbers, %lld passes, %lld solutions (%.1e)\n", what,
                             static_cast<long long>(after.n_sums - before.n_sums) / n_times,
                             static_cast<long long>(after.n_numbers - before.n_numbers) / n_times,
-                            static_cast<long long>(after.n_solves - before.n_solves) / n_times,
-                            static_cast<long long>(after.n_refined - before.n_refined) / n_times, after.last_change);
+                            static_cast<long long>(after.n_passes - before.n_passes) / n_times,
+                            static_cast<long long>(after.n_solves - before.n_solves) / n_times, after.last_change);
             before = after;
         };
         times[0] = time_of(n_times, [&] {
@@ -206,8 +206,8 @@ struct Test {
         expect_lengths(my_r, extent);
         if (rank == 0) {
             const double per_bond = 1e9 / static_cast<double>(n);
-            std::printf("cut bonds %zu, columns %lld, entries %lld, steps %d\n", part.cut.size(),
-                        static_cast<long long>(part.work().n_columns), static_cast<long long>(part.work().n_entries),
+            std::printf("cut bonds %zu, rows %lld, entries %lld, steps %d\n", part.cut.size(),
+                        static_cast<long long>(part.work().n_rows), static_cast<long long>(part.work().n_entries),
                         iterations);
             std::printf(
                 "ns a bond, whole: forces %.1f velocities %.1f positions %.1f; divided: factorize %.1f forces %.1f "
