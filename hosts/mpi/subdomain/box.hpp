@@ -33,12 +33,13 @@ public:
 
     /** From a to b, to the image nearest to a. It is the right one if the vector is shorter than half the box. */
     HOL_SUBDOMAIN_INLINE TwiceVector between(const double *a, const double *b) const {
-        TwiceVector d = vector_at(b) - vector_at(a);
-        for (int i = 0; periodic_ && i < 3; ++i) {
+        TwiceVector d = difference(b, a);
+        if (!periodic_) return d;
+        for (int i = 0; i < 3; ++i) {
             if (open_[i]) continue;
             const double n =
                 std::round(d.hi[0] * inverse_[i] + d.hi[1] * inverse_[3 + i] + d.hi[2] * inverse_[6 + i]);
-            if (n != 0) d = d + -n * vector_at(h_ + 3 * i);
+            if (n != 0) d = d + multiple(-n, h_ + 3 * i);
         }
         return d;
     }

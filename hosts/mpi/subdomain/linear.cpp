@@ -31,14 +31,15 @@ HOL_SUBDOMAIN_CLONES void Subdomain::find_vectors() {
 
 /** What this process's atoms make of A: its diagonal, then pairs as Graph::for_pairs gives them. */
 HOL_SUBDOMAIN_CLONES void Subdomain::matrix_inside(std::vector<double> &values) const {
-    values.assign(graph_.n_rows, 0.0);
+    values.assign(inside_.n_values(), 0.0);
     for (int atom = 0; atom < n_atoms(); ++atom)
         for (const Graph::At *at = graph_.begin(atom); at != graph_.end(atom); ++at)
             values[at->row] += graph_.w[atom] * plain_dot(d_[at->row], d_[at->row]);
     for (int k = 0; k < n_bonds(); ++k)
         if (is_fixed(k)) values[k] = 1;  // no constraint: its right-hand side is 0
+    double *pair = values.data() + graph_.n_rows;
     graph_.for_pairs([&](int atom, const Graph::At &a, const Graph::At &b) {
-        values.push_back(graph_.w[atom] * a.sign * b.sign * plain_dot(d_[a.row], d_[b.row]));
+        *pair++ = graph_.w[atom] * a.sign * b.sign * plain_dot(d_[a.row], d_[b.row]);
     });
 }
 
@@ -71,12 +72,11 @@ void Subdomain::factorize(const double *r) {
 /** v_j - v_i, and what the box's rate adds. */
 HOL_SUBDOMAIN_INLINE TwiceVector Subdomain::rate_of(const TwiceVector &d, const double *i, const double *j) const {
     TwiceVector u;
-    if (i && j) u = vector_at(j) - vector_at(i);
+    if (i && j) u = difference(j, i);
     for (int x = 0; has_rate_ && x < 3; ++x) {
         const double column[3] = {rate_[x], rate_[3 + x], rate_[6 + x]};
-        TwiceVector part = d.hi[x] * vector_at(column);
-        part.lo += d.lo[x] * vector_at(column).hi;
-        u = u + part;
+        u = u + multiple(d.hi[x], column);
+        u.lo += multiple(d.lo[x], column).hi;
     }
     return u;
 }
@@ -85,7 +85,7 @@ HOL_SUBDOMAIN_INLINE TwiceVector Subdomain::rate_of(const TwiceVector &d, const 
 HOL_SUBDOMAIN_CLONES void Subdomain::right_hand_sides(const double *v, const double *f, bool with_forces, double *x) {
     b_.assign(lengths_.size(), {});
     for (int i = 0; with_forces && f && i < n_atoms(); ++i)
-        accelerations_[i] = graph_.w[i] * vector_at(f + 3 * static_cast<std::size_t>(i));
+        accelerations_[i] = multiple(graph_.w[i], f + 3 * static_cast<std::size_t>(i));
     for (int k = 0; k < n_bonds(); ++k) {
         const std::size_t i = graph_.bonds[k].from, j = graph_.bonds[k].to;
         if (is_fixed(k)) continue;
@@ -102,7 +102,7 @@ void Subdomain::cut_right_hand_sides(const double *shared, bool with_forces) {
     for (int k = 0; k < n_cut(); ++k, shared += 12) {
         if (cut_is_fixed(k)) continue;
         const TwiceVector u = rate_of(cut_d_[k], shared, shared + 6);
-        const TwiceVector a = cut_w_[2 * k + 1] * vector_at(shared + 9) - cut_w_[2 * k] * vector_at(shared + 3);
+        const TwiceVector a = multiple(cut_w_[2 * k + 1], shared + 9) - multiple(cut_w_[2 * k], shared + 3);
         b_cut_[k] = with_forces ? dot(cut_d_[k], a) + dot(u, u) : dot(cut_d_[k], u);
     }
 }
@@ -113,8 +113,7 @@ HOL_SUBDOMAIN_CLONES void Subdomain::residuals(double *rho, double *parts) {
         TwiceVector sum;
         for (const Graph::At *at = graph_.begin(i); at != graph_.end(i); ++at)
             sum = sum + (-at->sign * t_[at->row]) * d_[at->row];
-        TwiceVector a = graph_.w[i] * TwiceVector{sum.hi, sum.lo};
-        accelerations_[i] = a;
+        accelerations_[i] = graph_.w[i] * sum;
     }
     for (int k = 0; k < n_bonds(); ++k)
         rho[k] = is_fixed(k) ? 0
@@ -129,20 +128,20 @@ HOL_SUBDOMAIN_CLONES void Subdomain::residuals(double *rho, double *parts) {
     }
 }
 
-/** Eliminates what is inside from x, and gives what that makes of the interface's right-hand side. */
-void Subdomain::gather(double *x, double *sums) {
-    inside_.forward(x);
-    for (int k = 0; k < inside_.n_rest(); ++k) sums[row_of_rest_[k]] = x[inside_.rest_row(k)];
+/** Eliminates what is inside, and gives what that makes of the interface's right-hand side. */
+void Subdomain::gather(const std::vector<double> &x, double *sums) {
+    inside_.forward(x.data());
+    for (int k = 0; k < inside_.n_rest(); ++k) sums[row_of_rest_[k]] = inside_.rest(k);
     ++n_solves_;
 }
 
-void Subdomain::scatter(const double *sums, double *x) {
-    for (int k = 0; k < inside_.n_rest(); ++k) x[inside_.rest_row(k)] = sums[row_of_rest_[k]];
-    inside_.backward(x);
+void Subdomain::scatter(const double *sums, std::vector<double> &x) {
+    for (int k = 0; k < inside_.n_rest(); ++k) inside_.rest(k) = sums[row_of_rest_[k]];
+    inside_.backward(x.data());
 }
 
 /** The largest change of a multiplier, relative to itself and those beside it, and to what its own pull amounts to. */
-double Subdomain::change_of(const std::vector<double> &dt) {
+HOL_SUBDOMAIN_CLONES double Subdomain::change_of(const std::vector<double> &dt) {
     at_atoms_.assign(graph_.w.size(), 0.0);
     for (int i = 0; i < n_atoms(); ++i)
         for (const Graph::At *at = graph_.begin(i); at != graph_.end(i); ++at)
@@ -171,7 +170,7 @@ Found Subdomain::solve(const double *v, const double *f, bool with_forces) {
     shared.resize(12 * n + n_interface_, 0.0);
     processes.alone([&] {
         right_hand_sides(v, f, with_forces, t_.data());
-        gather(t_.data(), shared.data() + 12 * n);
+        gather(t_, shared.data() + 12 * n);
     });
     processes.add_up(shared);
     cut_right_hand_sides(shared.data(), with_forces);
@@ -180,11 +179,12 @@ Found Subdomain::solve(const double *v, const double *f, bool with_forces) {
     interface_.solve(solution);
     t_cut_.assign(solution, solution + n);
 
-    std::vector<double> dt(graph_.n_rows, 0.0), parts(4 * n + n_interface_, 0.0);
+    dt_.assign(graph_.n_rows, 0.0);
+    std::vector<double> parts(4 * n + n_interface_, 0.0);
     processes.alone([&] {
-        scatter(solution, t_.data());
-        residuals(dt.data(), parts.data());
-        gather(dt.data(), parts.data() + 4 * n);
+        scatter(solution, t_);
+        residuals(dt_.data(), parts.data());
+        gather(dt_, parts.data() + 4 * n);
     });
     processes.add_up(parts);
     double *correction = parts.data() + 4 * n;
@@ -198,13 +198,14 @@ Found Subdomain::solve(const double *v, const double *f, bool with_forces) {
     Found found;
     double change = 0;
     processes.alone([&] {
-        scatter(correction, dt.data());
-        change = change_of(dt);
-        for (std::size_t k = 0; k < t_.size(); ++k) t_[k] += dt[k];
+        scatter(correction, dt_);
+        change = change_of(dt_);
+        for (std::size_t k = 0; k < t_.size(); ++k) t_[k] += dt_[k];
         react(found);
         if (with_forces) return;
         found.v.assign(v, v + r_.size());
-        for (std::size_t k = 0; k < r_.size(); ++k) found.v[k] += graph_.w[k / 3] * found.g[k];
+        for (int i = 0; i < n_atoms(); ++i)
+            for (int c = 3 * i; c < 3 * i + 3; ++c) found.v[c] += graph_.w[i] * found.g[c];
     });
     // The correction has measured the error of the first solution; its own is as much smaller again.
     last_change_ = processes.largest(change);
@@ -240,24 +241,23 @@ void Subdomain::violation(const double *r, const double *v, double *worst) {
 }
 
 /** What the multipliers t_ do. A cut bond's virial is its first atom's. */
-void Subdomain::react(Found &found) const {
+HOL_SUBDOMAIN_CLONES void Subdomain::react(Found &found) const {
     found.g.assign(r_.size(), 0.0);
     for (int i = 0; i < n_atoms(); ++i) {
-        TwiceVector g;
-        for (const Graph::At *at = graph_.begin(i); at != graph_.end(i); ++at) {
-            const double t = at->sign * t_[at->row];
-            g.hi -= Four{t, t, t, t} * d_[at->row].hi;
-        }
-        for (int c = 0; c < 3; ++c) found.g[3 * static_cast<std::size_t>(i) + c] = g.hi[c];
+        Four g = {0, 0, 0, 0};
+        for (const Graph::At *at = graph_.begin(i); at != graph_.end(i); ++at)
+            g -= at->sign * t_[at->row] * d_[at->row].hi;
+        for (int c = 0; c < 3; ++c) found.g[3 * i + c] = g[c];
     }
-    std::fill(found.virial, found.virial + 9, 0.0);
+    Four virial[3] = {};
     const auto add = [&](int row) {
-        for (int a = 0; a < 3; ++a)
-            for (int b = 0; b < 3; ++b) found.virial[3 * a + b] -= t_[row] * d_[row].hi[a] * d_[row].hi[b];
+        const Four &d = d_[row].hi, force = t_[row] * d;
+        for (int a = 0; a < 3; ++a) virial[a] -= force[a] * d;
     };
     for (int k = 0; k < n_bonds(); ++k) add(k);
     for (const End &end : ends_)
         if (end.side == 0) add(end.row);
+    for (int k = 0; k < 9; ++k) found.virial[k] = virial[k / 3][k % 3];
     found.lambda.assign(t_.begin(), t_.begin() + n_bonds());
     found.cut_lambda = t_cut_;
     for (std::vector<double> *lambdas : {&found.lambda, &found.cut_lambda})

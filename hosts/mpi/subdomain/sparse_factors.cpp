@@ -114,6 +114,7 @@ void SparseFactors::find_pattern(const std::vector<std::array<int, 2>> &pairs) {
     pivots_.resize(n_);
     inverse_.resize(n_);
     dense_.resize(n_);
+    solution_.resize(n_);
 }
 
 bool SparseFactors::factorize(const double *values) {
@@ -140,23 +141,23 @@ bool SparseFactors::factorize(const double *values) {
     return true;
 }
 
-void SparseFactors::forward(double *x) {
-    std::vector<double> &y = dense_;
-    for (int row = 0; row < n_; ++row) y[place_[row]] = x[row];
-    for (int k = 0; k < n_eliminated_; ++k)
-        for (std::size_t at = first_[k]; at < first_[k + 1]; ++at) y[columns_[at]] -= values_[at] * y[k];
-    for (int k = 0; k < n_; ++k) x[row_at_[k]] = y[k];
+void SparseFactors::forward(const double *x) {
+    double *y = solution_.data();
+    for (int k = 0; k < n_; ++k) y[k] = x[row_at_[k]];
+    for (int k = 0; k < n_eliminated_; ++k) {
+        const double minus = -y[k];
+        for (std::size_t at = first_[k]; at < first_[k + 1]; ++at) y[columns_[at]] += values_[at] * minus;
+    }
 }
 
 void SparseFactors::backward(double *x) {
-    std::vector<double> &y = dense_;
-    for (int row = 0; row < n_; ++row) y[place_[row]] = x[row];
+    double *y = solution_.data();
     for (int k = n_eliminated_ - 1; k >= 0; --k) {
         double sum = y[k] * inverse_[k];
         for (std::size_t at = first_[k]; at < first_[k + 1]; ++at) sum -= values_[at] * y[columns_[at]];
         y[k] = sum;
     }
-    for (int row = 0; row < n_; ++row) x[row] = y[place_[row]];
+    for (int k = 0; k < n_; ++k) x[row_at_[k]] = y[k];
 }
 
 }  // namespace holonomic_subdomain

@@ -29,10 +29,13 @@ public:
      */
     bool factorize(const double *values);
 
-    /** x, [n]: right-hand side, then solution; with a rest between the two: forward(), the rest's own solution,
-     * backward(). */
+    /** x, [n]: right-hand side, then solution. */
     void solve(double *x) { forward(x), backward(x); }
-    void forward(double *x);
+
+    /** The same in two: x is the right-hand side; the rest's is given by rest(), where its solution is put; x is the
+     * solution. */
+    void forward(const double *x);
+    double &rest(int k) { return solution_[n_eliminated_ + k]; }
     void backward(double *x);
 
     int n_rest() const { return n_ - n_eliminated_; }
@@ -61,7 +64,7 @@ private:
     std::vector<int> lower_rows_;
     std::vector<std::size_t> lower_at_;
     std::vector<std::array<int, 2>> rest_pairs_;
-    std::vector<double> dense_;
+    std::vector<double> dense_, solution_;
     std::vector<std::size_t> position_;  // of a pair's value in values_
 };
 

@@ -71,8 +71,8 @@ private:
     void right_hand_sides(const double *v, const double *f, bool with_forces, double *x);
     void cut_right_hand_sides(const double *shared, bool with_forces);
     void residuals(double *rho, double *parts);
-    void gather(double *x, double *sums);
-    void scatter(const double *sums, double *x);
+    void gather(const std::vector<double> &x, double *sums);
+    void scatter(const double *sums, std::vector<double> &x);
     double change_of(const std::vector<double> &dt);
     Found solve(const double *v, const double *f, bool with_forces);
 
@@ -105,7 +105,7 @@ private:
     std::vector<TwiceVector> cut_d_;
     std::vector<TwiceVector> d_;  // of the process's equations
 
-    std::vector<double> t_;      // multipliers of the process's equations
+    std::vector<double> t_, dt_; // multipliers of the process's equations, and their correction
     std::vector<double> t_cut_;  // of all cut bonds
     std::vector<Twice> b_, b_cut_;  // right-hand sides of bonds inside, of all cut ones
     std::vector<TwiceVector> accelerations_;

@@ -6,7 +6,7 @@
 
 // Products in twice the precision take one instruction more where the processor fuses them, and a call elsewhere.
 #if defined(__x86_64__) && defined(__gnu_linux__)
-#define HOL_SUBDOMAIN_CLONES __attribute__((target_clones("arch=haswell", "default")))
+#define HOL_SUBDOMAIN_CLONES __attribute__((target_clones("fma", "default")))
 #else
 #define HOL_SUBDOMAIN_CLONES
 #endif
@@ -37,17 +37,17 @@ HOL_SUBDOMAIN_INLINE Twice operator+(Twice a, Twice b) {
 HOL_SUBDOMAIN_INLINE Twice operator-(Twice a) { return {-a.hi, -a.lo}; }
 HOL_SUBDOMAIN_INLINE Twice operator-(Twice a, Twice b) { return a + -b; }
 
-/** Four numbers that are worked on together; vectors leave the last one zero. */
-typedef double Four __attribute__((vector_size(32)));
+/** Four numbers that are worked on together; vectors leave the last one zero. They lie where doubles may. */
+typedef double Four __attribute__((vector_size(32), aligned(8)));
 
 /** Three components in twice the precision. */
 struct TwiceVector {
     Four hi = {0, 0, 0, 0}, lo = {0, 0, 0, 0};
 };
 
-HOL_SUBDOMAIN_INLINE TwiceVector vector_at(const double *x) { return {Four{x[0], x[1], x[2], 0}, Four{0, 0, 0, 0}}; }
+HOL_SUBDOMAIN_INLINE void load(Four &vector, const double *x) { vector = Four{x[0], x[1], x[2], 0}; }
 
-/** r = a b, and what the rounding of that loses. */
+/** Component by component, and what the rounding loses. */
 HOL_SUBDOMAIN_INLINE TwiceVector products_of(const Four &a, const Four &b) {
     TwiceVector p;
     p.hi = a * b;
@@ -55,7 +55,21 @@ HOL_SUBDOMAIN_INLINE TwiceVector products_of(const Four &a, const Four &b) {
     return p;
 }
 
-/** The lower parts only grow: sums of a few are as good as if each were rounded. */
+/** y - x of three numbers each. */
+HOL_SUBDOMAIN_INLINE TwiceVector difference(const double *y, const double *x) {
+    Four a, b;
+    load(a, y), load(b, x);
+    const Four s = a - b, t = s - a;
+    return {s, (a - (s - t)) - (b + t)};
+}
+/** x times three numbers. */
+HOL_SUBDOMAIN_INLINE TwiceVector multiple(double x, const double *y) {
+    Four a;
+    load(a, y);
+    return products_of(Four{x, x, x, x}, a);
+}
+
+/** The lower parts are not rounded into the upper ones, which sums of a few can do without. */
 HOL_SUBDOMAIN_INLINE TwiceVector operator+(const TwiceVector &a, const TwiceVector &b) {
     const Four s = a.hi + b.hi, t = s - a.hi;
     return {s, ((a.hi - (s - t)) + (b.hi - t)) + (a.lo + b.lo)};
