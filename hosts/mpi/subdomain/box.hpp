@@ -37,8 +37,7 @@ public:
         if (!periodic_) return d;
         for (int i = 0; i < 3; ++i) {
             if (open_[i]) continue;
-            const double n =
-                std::round(d.hi[0] * inverse_[i] + d.hi[1] * inverse_[3 + i] + d.hi[2] * inverse_[6 + i]);
+            const double n = std::round(d.hi[0] * inverse_[i] + d.hi[1] * inverse_[3 + i] + d.hi[2] * inverse_[6 + i]);
             if (n != 0) d = d + multiple(-n, h_ + 3 * i);
         }
         return d;

@@ -51,7 +51,8 @@ void Subdomain::factorize(const double *r) {
     processes.add_up(shared);
     cut_d_.resize(cut_lengths_.size());
     for (int k = 0; k < n_cut(); ++k)
-        cut_d_[k] = box_.between(&shared[6 * static_cast<std::size_t>(k)], &shared[6 * static_cast<std::size_t>(k) + 3]);
+        cut_d_[k] =
+            box_.between(&shared[6 * static_cast<std::size_t>(k)], &shared[6 * static_cast<std::size_t>(k) + 3]);
     std::vector<double> all(interface_.n_values(), 0.0), values;
     processes.alone([&] {
         find_vectors();
@@ -107,7 +108,8 @@ void Subdomain::cut_right_hand_sides(const double *shared, bool with_forces) {
     }
 }
 
-/** rho = b - A t, from the accelerations that the multipliers give each atom; parts: d.a of cut bonds at either atom. */
+/** rho = b - A t, from the accelerations that the multipliers give each atom; parts: d.a of cut bonds at either atom.
+ */
 HOL_SUBDOMAIN_CLONES void Subdomain::residuals(double *rho, double *parts) {
     for (int i = 0; i < n_atoms(); ++i) {
         TwiceVector sum;
@@ -116,10 +118,10 @@ HOL_SUBDOMAIN_CLONES void Subdomain::residuals(double *rho, double *parts) {
         accelerations_[i] = graph_.w[i] * sum;
     }
     for (int k = 0; k < n_bonds(); ++k)
-        rho[k] = is_fixed(k) ? 0
-                             : (b_[k] + dot(d_[k], accelerations_[graph_.bonds[k].to] -
-                                                       accelerations_[graph_.bonds[k].from]))
-                                   .hi;
+        rho[k] =
+            is_fixed(k)
+                ? 0
+                : (b_[k] + dot(d_[k], accelerations_[graph_.bonds[k].to] - accelerations_[graph_.bonds[k].from])).hi;
     for (const End &end : ends_) {
         const Twice part = dot(d_[end.row], accelerations_[end.atom]);
         double *to = parts + 4 * static_cast<std::size_t>(end.cut) + 2 * end.side;
@@ -154,8 +156,8 @@ HOL_SUBDOMAIN_CLONES double Subdomain::change_of(const std::vector<double> &dt) 
     };
     for (int k = 0; k < n_bonds(); ++k) {
         const Graph::Bond &bond = graph_.bonds[k];
-        take(dt[k], std::max(at_atoms_[bond.from], at_atoms_[bond.to]), b_[k].hi, graph_.w[bond.from] + graph_.w[bond.to],
-             d_[k]);
+        take(dt[k], std::max(at_atoms_[bond.from], at_atoms_[bond.to]), b_[k].hi,
+             graph_.w[bond.from] + graph_.w[bond.to], d_[k]);
     }
     for (const End &end : ends_)
         take(dt[end.row], at_atoms_[end.atom], b_cut_[end.cut].hi, cut_w_[2 * end.cut] + cut_w_[2 * end.cut + 1],
@@ -210,8 +212,9 @@ Found Subdomain::solve(const double *v, const double *f, bool with_forces) {
     // The correction has measured the error of the first solution; its own is as much smaller again.
     last_change_ = processes.largest(change);
     if (!(last_change_ * last_change_ <= std::numeric_limits<double>::epsilon()))
-        throw Failure{HOL_ERR_DEGENERATE, "multipliers of a divided molecule do not come to the rounding: its bonds "
-                                          "nearly depend on each other"};
+        throw Failure{HOL_ERR_DEGENERATE,
+                      "multipliers of a divided molecule do not come to the rounding: its bonds "
+                      "nearly depend on each other"};
     return found;
 }
 

@@ -56,7 +56,9 @@ void SparseFactors::order(const std::vector<std::array<int, 2>> &pairs, int n_la
     place_.assign(n_, -1);
     std::vector<int> mark(n_, -1);
     std::vector<std::vector<int>> rows;
-    const auto degree = [&](int row) { return place_[row] < 0 ? neighbours[row].size() : static_cast<std::size_t>(-1); };
+    const auto degree = [&](int row) {
+        return place_[row] < 0 ? neighbours[row].size() : static_cast<std::size_t>(-1);
+    };
     for (int row; (row = queue.take(degree)) >= 0;) {
         place_[row] = static_cast<int>(row_at_.size());
         row_at_.push_back(row);

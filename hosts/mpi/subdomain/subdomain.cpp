@@ -47,7 +47,8 @@ void Subdomain::make_inside(const Given &given) {
             throw Failure{HOL_ERR_INDEX, "cut bond " + std::to_string(k / 2) + " has an atom that is not there"};
         if (given.ends[k] < 0) continue;
         if (ends_.empty() || ends_.back().cut != k / 2) ++n_rows;
-        ends_.push_back({static_cast<int>(k / 2), static_cast<int>(k % 2), static_cast<int>(given.ends[k]), n_rows - 1});
+        ends_.push_back(
+            {static_cast<int>(k / 2), static_cast<int>(k % 2), static_cast<int>(given.ends[k]), n_rows - 1});
     }
     graph_ = Graph(std::move(w), std::move(bonds), ends_);
     if (n_bonds == 0) return;
@@ -121,8 +122,7 @@ void Subdomain::make_interface() {
     for (std::size_t p = 0; p < n_pairs; ++p)
         pairs[p] = {static_cast<int>(numbers[2 * p]), static_cast<int>(numbers[2 * p + 1])};
     interface_ = SparseFactors(static_cast<int>(n_interface_), pairs);
-    for (std::size_t p = 0; p < inside_.rest_pairs().size(); ++p)
-        pair_of_rest_.push_back(n_interface_ + first + p);
+    for (std::size_t p = 0; p < inside_.rest_pairs().size(); ++p) pair_of_rest_.push_back(n_interface_ + first + p);
 }
 
 void Subdomain::set_box(const double *rows) {

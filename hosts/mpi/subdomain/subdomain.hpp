@@ -83,17 +83,19 @@ private:
 
     int n_cut() const { return static_cast<int>(cut_lengths_.size()); }
     int n_bonds() const { return graph_.n_bonds(); }
-    bool is_fixed(int bond) const { return graph_.w[graph_.bonds[bond].from] == 0 && graph_.w[graph_.bonds[bond].to] == 0; }
+    bool is_fixed(int bond) const {
+        return graph_.w[graph_.bonds[bond].from] == 0 && graph_.w[graph_.bonds[bond].to] == 0;
+    }
     bool cut_is_fixed(int cut) const { return cut_w_[2 * cut] == 0 && cut_w_[2 * cut + 1] == 0; }
 
     Graph graph_;
     std::vector<double> lengths_, cut_lengths_;
     std::unique_ptr<hol_chains, void (*)(hol_chains *)> chains_;
     std::vector<End> ends_;
-    std::vector<double> cut_w_;           // [n_cut][2], on every process
-    SparseFactors inside_, interface_;    // of the interface: cut bonds, then each process's rows that it has left
-    std::size_t n_interface_ = 0;         // its rows
-    std::vector<int> row_of_rest_;        // of the interface's, for each that is left inside
+    std::vector<double> cut_w_;         // [n_cut][2], on every process
+    SparseFactors inside_, interface_;  // of the interface: cut bonds, then each process's rows that it has left
+    std::size_t n_interface_ = 0;       // its rows
+    std::vector<int> row_of_rest_;      // of the interface's, for each that is left inside
     std::vector<std::size_t> pair_of_rest_;
 
     Box box_, reference_box_;
@@ -105,8 +107,8 @@ private:
     std::vector<TwiceVector> cut_d_;
     std::vector<TwiceVector> d_;  // of the process's equations
 
-    std::vector<double> t_, dt_; // multipliers of the process's equations, and their correction
-    std::vector<double> t_cut_;  // of all cut bonds
+    std::vector<double> t_, dt_;    // multipliers of the process's equations, and their correction
+    std::vector<double> t_cut_;     // of all cut bonds
     std::vector<Twice> b_, b_cut_;  // right-hand sides of bonds inside, of all cut ones
     std::vector<TwiceVector> accelerations_;
     std::vector<double> at_atoms_;
