@@ -164,8 +164,7 @@ int hol_subdomain_cut_vectors(const hol_subdomain *subdomain, double *d);
 typedef struct hol_subdomain_work {
     int64_t n_sums;     /**< calls of sum */
     int64_t n_numbers;  /**< numbers that were handed to it */
-    int64_t n_passes;   /**< passes of the library over all bonds of this process, for positions */
-    int64_t n_solves;   /**< solutions with the factors of all bonds, for forces and velocities */
+    int64_t n_solves;   /**< solutions with the factors of all bonds of this process */
     int64_t n_rows;     /**< equations of the interface: cut bonds, and those inside where many parts meet */
     int64_t n_entries;  /**< numbers of the interface's factors */
     double last_change; /**< what the last correction has changed, relative to the multipliers; on all processes */

@@ -20,53 +20,78 @@ std::vector<double> Subdomain::of_ends(std::initializer_list<const double *> arr
     return numbers;
 }
 
-HOL_SUBDOMAIN_CLONES void Subdomain::find_vectors() {
+HOL_SUBDOMAIN_CLONES void Subdomain::find_vectors(const double *r) {
     d_.resize(graph_.n_rows);
     accelerations_.resize(graph_.w.size());
     for (int k = 0; k < n_bonds(); ++k)
-        d_[k] = box_.between(&r_[3 * static_cast<std::size_t>(graph_.bonds[k].from)],
-                             &r_[3 * static_cast<std::size_t>(graph_.bonds[k].to)]);
+        d_[k] = box_.between(r + 3 * static_cast<std::size_t>(graph_.bonds[k].from),
+                             r + 3 * static_cast<std::size_t>(graph_.bonds[k].to));
     for (const End &end : ends_) d_[end.row] = cut_d_[end.cut];
 }
 
-/** What this process's atoms make of A: its diagonal, then pairs as Graph::for_pairs gives them. */
-HOL_SUBDOMAIN_CLONES void Subdomain::matrix_inside(std::vector<double> &values) const {
-    values.assign(inside_.n_values(), 0.0);
+/**
+ * What this process's atoms make of a matrix: its diagonal, pairs as Graph::for_pairs gives them, and their transposed.
+ * Rows have the vectors of `now`, columns those of the reference: A where both are the same.
+ */
+HOL_SUBDOMAIN_CLONES void Subdomain::matrix_inside(const std::vector<TwiceVector> &now, std::vector<double> &values,
+                                                   std::vector<double> *lower) const {
+    values.assign(reference_.inside.n_values(), 0.0);
     for (int atom = 0; atom < n_atoms(); ++atom)
         for (const Graph::At *at = graph_.begin(atom); at != graph_.end(atom); ++at)
-            values[at->row] += graph_.w[atom] * plain_dot(d_[at->row], d_[at->row]);
+            values[at->row] += graph_.w[atom] * plain_dot(now[at->row], d_[at->row]);
     for (int k = 0; k < n_bonds(); ++k)
         if (is_fixed(k)) values[k] = 1;  // no constraint: its right-hand side is 0
     double *pair = values.data() + graph_.n_rows;
     graph_.for_pairs([&](int atom, const Graph::At &a, const Graph::At &b) {
-        *pair++ = graph_.w[atom] * a.sign * b.sign * plain_dot(d_[a.row], d_[b.row]);
+        *pair++ = graph_.w[atom] * a.sign * b.sign * plain_dot(now[a.row], d_[b.row]);
     });
+    if (!lower) return;
+    lower->resize(values.size() - graph_.n_rows);
+    pair = lower->data();
+    graph_.for_pairs([&](int atom, const Graph::At &a, const Graph::At &b) {
+        *pair++ = graph_.w[atom] * a.sign * b.sign * plain_dot(now[b.row], d_[a.row]);
+    });
+}
+
+/** Factors of such a matrix, in one sum. x, or NULL: a right-hand side; gives what it makes of the interface's. */
+std::vector<double> Subdomain::factorize(Factors &factors, const std::vector<TwiceVector> &now,
+                                         const std::vector<double> *x) {
+    const bool symmetric = &now == &d_;
+    const std::size_t n_values = factors.interface.n_values(), n_lower = symmetric ? 0 : n_values - n_interface_;
+    const Failure failure = symmetric
+                                ? Failure{HOL_ERR_DEGENERATE, "bonds of a divided molecule depend on each other"}
+                                : Failure{HOL_ERR_NO_CONVERGENCE,
+                                          "bond lengths of a divided molecule can't be reached from these positions"};
+    std::vector<double> all(n_values + n_lower + (x ? n_interface_ : 0), 0.0);
+    processes.alone([&] {
+        std::vector<double> values, lower;
+        matrix_inside(now, values, symmetric ? nullptr : &lower);
+        const int bad = factors.inside.factorize(values.data(), symmetric ? nullptr : lower.data());
+        if (bad >= 0) throw Failure{failure.status, failure.message + ": " + name_of(bad)};
+        for (int k = 0; k < factors.inside.n_rest(); ++k) all[row_of_rest_[k]] += factors.inside.rest_diagonal(k);
+        for (std::size_t p = 0; p < pair_of_rest_.size(); ++p) {
+            all[pair_of_rest_[p]] += factors.inside.rest_element(p);
+            if (!symmetric) all[n_values + pair_of_rest_[p] - n_interface_] += factors.inside.rest_lower(p);
+        }
+        if (x) gather(factors, *x, all.data() + n_values + n_lower);
+    });
+    processes.add_up(all);
+    for (int k = 0; k < n_cut(); ++k)
+        if (cut_is_fixed(k)) all[k] = 1;
+    if (factors.interface.factorize(all.data(), symmetric ? nullptr : all.data() + n_values) >= 0) throw failure;
+    return {all.begin() + static_cast<std::ptrdiff_t>(n_values + n_lower), all.end()};
 }
 
 void Subdomain::factorize(const double *r) {
     factorized_ = false;
-    r_.assign(r, r + 3 * static_cast<std::size_t>(n_atoms()));
-    reference_box_ = box_;
     std::vector<double> shared = of_ends({r});
     processes.add_up(shared);
     cut_d_.resize(cut_lengths_.size());
     for (int k = 0; k < n_cut(); ++k)
         cut_d_[k] =
             box_.between(&shared[6 * static_cast<std::size_t>(k)], &shared[6 * static_cast<std::size_t>(k) + 3]);
-    std::vector<double> all(interface_.n_values(), 0.0), values;
-    processes.alone([&] {
-        find_vectors();
-        matrix_inside(values);
-        if (!inside_.factorize(values.data()))
-            throw Failure{HOL_ERR_DEGENERATE, "bonds of a divided molecule depend on each other"};
-        for (int k = 0; k < inside_.n_rest(); ++k) all[row_of_rest_[k]] += inside_.rest_diagonal(k);
-        for (std::size_t p = 0; p < pair_of_rest_.size(); ++p) all[pair_of_rest_[p]] += inside_.rest_element(p);
-    });
-    processes.add_up(all);
-    for (int k = 0; k < n_cut(); ++k)
-        if (cut_is_fixed(k)) all[k] = 1;
-    if (!interface_.factorize(all.data()))
-        throw Failure{HOL_ERR_DEGENERATE, "bonds of a divided molecule depend on each other"};
+    processes.alone([&] { find_vectors(r); });
+    factorize(reference_, d_, nullptr);
     factorized_ = true;
 }
 
@@ -131,15 +156,15 @@ HOL_SUBDOMAIN_CLONES void Subdomain::residuals(double *rho, double *parts) {
 }
 
 /** Eliminates what is inside, and gives what that makes of the interface's right-hand side. */
-void Subdomain::gather(const std::vector<double> &x, double *sums) {
-    inside_.forward(x.data());
-    for (int k = 0; k < inside_.n_rest(); ++k) sums[row_of_rest_[k]] = inside_.rest(k);
+void Subdomain::gather(Factors &factors, const std::vector<double> &x, double *sums) {
+    factors.inside.forward(x.data());
+    for (int k = 0; k < factors.inside.n_rest(); ++k) sums[row_of_rest_[k]] = factors.inside.rest(k);
     ++n_solves_;
 }
 
-void Subdomain::scatter(const double *sums, std::vector<double> &x) {
-    for (int k = 0; k < inside_.n_rest(); ++k) inside_.rest(k) = sums[row_of_rest_[k]];
-    inside_.backward(x.data());
+void Subdomain::scatter(Factors &factors, const double *sums, std::vector<double> &x) {
+    for (int k = 0; k < factors.inside.n_rest(); ++k) factors.inside.rest(k) = sums[row_of_rest_[k]];
+    factors.inside.backward(x.data());
 }
 
 /** The largest change of a multiplier, relative to itself and those beside it, and to what its own pull amounts to. */
@@ -172,21 +197,21 @@ Found Subdomain::solve(const double *v, const double *f, bool with_forces) {
     shared.resize(12 * n + n_interface_, 0.0);
     processes.alone([&] {
         right_hand_sides(v, f, with_forces, t_.data());
-        gather(t_, shared.data() + 12 * n);
+        gather(reference_, t_, shared.data() + 12 * n);
     });
     processes.add_up(shared);
     cut_right_hand_sides(shared.data(), with_forces);
     double *solution = shared.data() + 12 * n;
     for (std::size_t k = 0; k < n; ++k) solution[k] += b_cut_[k].hi;
-    interface_.solve(solution);
+    reference_.interface.solve(solution);
     t_cut_.assign(solution, solution + n);
 
     dt_.assign(graph_.n_rows, 0.0);
     std::vector<double> parts(4 * n + n_interface_, 0.0);
     processes.alone([&] {
-        scatter(solution, t_);
+        scatter(reference_, solution, t_);
         residuals(dt_.data(), parts.data());
-        gather(dt_, parts.data() + 4 * n);
+        gather(reference_, dt_, parts.data() + 4 * n);
     });
     processes.add_up(parts);
     double *correction = parts.data() + 4 * n;
@@ -194,18 +219,18 @@ Found Subdomain::solve(const double *v, const double *f, bool with_forces) {
         const double *p = parts.data() + 4 * k;
         correction[k] += (b_cut_[k] + Twice{p[0], p[1]} + Twice{p[2], p[3]}).hi;
     }
-    interface_.solve(correction);
+    reference_.interface.solve(correction);
     for (std::size_t k = 0; k < n; ++k) t_cut_[k] += correction[k];
 
     Found found;
     double change = 0;
     processes.alone([&] {
-        scatter(correction, dt_);
+        scatter(reference_, correction, dt_);
         change = change_of(dt_);
         for (std::size_t k = 0; k < t_.size(); ++k) t_[k] += dt_[k];
         react(found);
         if (with_forces) return;
-        found.v.assign(v, v + r_.size());
+        found.v.assign(v, v + 3 * graph_.w.size());
         for (int i = 0; i < n_atoms(); ++i)
             for (int c = 3 * i; c < 3 * i + 3; ++c) found.v[c] += graph_.w[i] * found.g[c];
     });
@@ -225,27 +250,27 @@ Found Subdomain::velocities(const double *v) { return solve(v, nullptr, false); 
 void Subdomain::violation(const double *r, const double *v, double *worst) {
     std::vector<double> shared = of_ends({r, v});
     processes.add_up(shared);
-    hol_worst inside{};
-    processes.alone([&] {
-        if (!chains_) return;
-        check(hol_chains_set_box(chains_.get(), box_.rows()));
-        check(hol_chains_set_box_rate(chains_.get(), has_rate_ ? rate_ : nullptr));
-        check(hol_violation(chains_.get(), r, v, &inside));
-    });
-    worst[0] = inside.length, worst[1] = inside.rate;
-    for (int k = 0; k < n_cut(); ++k) {
-        const double *ends = shared.data() + 12 * static_cast<std::size_t>(k), a = cut_lengths_[k];
-        const TwiceVector d = box_.between(ends, ends + 6);
-        if (cut_is_fixed(k)) continue;
+    worst[0] = worst[1] = 0;
+    const auto take = [&](const double *i, const double *j, const double *vi, const double *vj, double a) {
+        const TwiceVector d = box_.between(i, j);
         worst[0] = std::max(worst[0], std::fabs((dot(d, d) - product_of(a, a)).hi) / (a * a));
-        if (v) worst[1] = std::max(worst[1], std::fabs(dot(d, rate_of(d, ends + 3, ends + 9)).hi));
+        if (v) worst[1] = std::max(worst[1], std::fabs(dot(d, rate_of(d, vi, vj)).hi));
+    };
+    for (int k = 0; k < n_bonds(); ++k) {
+        const std::size_t i = 3 * static_cast<std::size_t>(graph_.bonds[k].from),
+                          j = 3 * static_cast<std::size_t>(graph_.bonds[k].to);
+        if (!is_fixed(k)) take(r + i, r + j, v ? v + i : nullptr, v ? v + j : nullptr, lengths_[k]);
+    }
+    for (int k = 0; k < n_cut(); ++k) {
+        const double *ends = shared.data() + 12 * static_cast<std::size_t>(k);
+        if (!cut_is_fixed(k)) take(ends, ends + 6, ends + 3, ends + 9, cut_lengths_[k]);
     }
     for (double *x : {worst, worst + 1}) *x = processes.largest(*x);
 }
 
 /** What the multipliers t_ do. A cut bond's virial is its first atom's. */
 HOL_SUBDOMAIN_CLONES void Subdomain::react(Found &found) const {
-    found.g.assign(r_.size(), 0.0);
+    found.g.assign(3 * graph_.w.size(), 0.0);
     for (int i = 0; i < n_atoms(); ++i) {
         Four g = {0, 0, 0, 0};
         for (const Graph::At *at = graph_.begin(i); at != graph_.end(i); ++at)

@@ -110,6 +110,7 @@ void SparseFactors::find_pattern(const std::vector<std::array<int, 2>> &pairs) {
         const int row = std::min(place_[pair[0]], place_[pair[1]]), column = std::max(place_[pair[0]], place_[pair[1]]);
         const auto begin = columns_.begin() + static_cast<std::ptrdiff_t>(first_[row]);
         const auto end = columns_.begin() + static_cast<std::ptrdiff_t>(first_[row + 1]);
+        swapped_.push_back(row != place_[pair[0]]);
         position_.push_back(static_cast<std::size_t>(std::lower_bound(begin, end, column) - columns_.begin()));
     }
     values_.resize(columns_.size());
@@ -119,36 +120,51 @@ void SparseFactors::find_pattern(const std::vector<std::array<int, 2>> &pairs) {
     solution_.resize(n_);
 }
 
-bool SparseFactors::factorize(const double *values) {
+int SparseFactors::factorize(const double *values, const double *lower) {
+    symmetric_ = !lower;
     std::fill(values_.begin(), values_.end(), 0.0);
-    for (std::size_t p = 0; p < position_.size(); ++p) values_[position_[p]] += values[n_ + p];
+    lower_.assign(symmetric_ ? 0 : values_.size(), 0.0);
+    dense_lower_.resize(symmetric_ ? 0 : n_);
+    for (std::size_t p = 0; p < position_.size(); ++p) {
+        values_[position_[p]] += symmetric_ || !swapped_[p] ? values[n_ + p] : lower[p];
+        if (!symmetric_) lower_[position_[p]] += swapped_[p] ? values[n_ + p] : lower[p];
+    }
     for (int row = 0; row < n_; ++row) pivots_[place_[row]] = values[row];
     for (int i = 0; i < n_; ++i) {
+        const double least = 1e-15 * pivots_[i];
         for (std::size_t at = first_[i]; at < first_[i + 1]; ++at) dense_[columns_[at]] = values_[at];
+        for (std::size_t at = first_[i]; !symmetric_ && at < first_[i + 1]; ++at) dense_lower_[columns_[at]] = lower_[at];
         for (std::size_t p = lower_first_[i]; p < lower_first_[i + 1]; ++p) {
-            // Row k of the upper factor, from column i on
+            // Row k of the upper factor, and column k of the lower one, from i on
             const int k = lower_rows_[p];
-            const double factor = values_[lower_at_[p]] * pivots_[k];
-            pivots_[i] -= factor * values_[lower_at_[p]];
-            for (std::size_t at = lower_at_[p] + 1; at < first_[k + 1]; ++at)
-                dense_[columns_[at]] -= factor * values_[at];
+            const std::size_t here = lower_at_[p];
+            const double factor = (symmetric_ ? values_ : lower_)[here] * pivots_[k];
+            pivots_[i] -= factor * values_[here];
+            for (std::size_t at = here + 1; at < first_[k + 1]; ++at) dense_[columns_[at]] -= factor * values_[at];
+            if (symmetric_) continue;
+            const double factor_of_column = values_[here] * pivots_[k];
+            for (std::size_t at = here + 1; at < first_[k + 1]; ++at)
+                dense_lower_[columns_[at]] -= factor_of_column * lower_[at];
         }
         double inverse = 1;
         if (i < n_eliminated_) {
-            if (!(pivots_[i] > 0)) return false;
+            if (!(pivots_[i] > least)) return row_at_[i];
             inverse_[i] = inverse = 1 / pivots_[i];
         }
         for (std::size_t at = first_[i]; at < first_[i + 1]; ++at) values_[at] = dense_[columns_[at]] * inverse;
+        for (std::size_t at = first_[i]; !symmetric_ && at < first_[i + 1]; ++at)
+            lower_[at] = dense_lower_[columns_[at]] * inverse;
     }
-    return true;
+    return -1;
 }
 
 void SparseFactors::forward(const double *x) {
     double *y = solution_.data();
+    const double *lower = (symmetric_ ? values_ : lower_).data();
     for (int k = 0; k < n_; ++k) y[k] = x[row_at_[k]];
     for (int k = 0; k < n_eliminated_; ++k) {
         const double minus = -y[k];
-        for (std::size_t at = first_[k]; at < first_[k + 1]; ++at) y[columns_[at]] += values_[at] * minus;
+        for (std::size_t at = first_[k]; at < first_[k + 1]; ++at) y[columns_[at]] += lower[at] * minus;
     }
 }
 

@@ -9,7 +9,7 @@
 namespace holonomic_subdomain {
 
 /**
- * Cholesky's elimination, without roots, of a sparse symmetric matrix whose pattern stays. Some rows may be left, the
+ * Elimination without exchange of rows, of a sparse matrix with a symmetric pattern that stays. Some rows may be left, the
  * rest: what elimination makes of their elements and right-hand sides belongs to equations of their own.
  */
 class SparseFactors {
@@ -25,9 +25,10 @@ public:
 
     /**
      * @param values  the n elements of the diagonal, then those of the pairs, as these were given
-     * @return whether every pivot is positive
+     * @param lower   elements of the pairs' transposed, or NULL: the matrix is symmetric
+     * @return -1, or a row whose pivot is not positive, or lost in rounding
      */
-    bool factorize(const double *values);
+    int factorize(const double *values, const double *lower = nullptr);
 
     /** x, [n]: right-hand side, then solution. */
     void solve(double *x) { forward(x), backward(x); }
@@ -44,6 +45,7 @@ public:
     const std::vector<std::array<int, 2>> &rest_pairs() const { return rest_pairs_; }
     double rest_diagonal(int k) const { return pivots_[n_eliminated_ + k]; }
     double rest_element(std::size_t pair) const { return values_[first_[n_eliminated_] + pair]; }
+    double rest_lower(std::size_t pair) const { return lower_[first_[n_eliminated_] + pair]; }
 
     /** Numbers that factorize() takes; elements of the factor. */
     std::size_t n_values() const { return n_ + position_.size(); }
@@ -55,17 +57,19 @@ private:
 
     int n_ = 0, n_eliminated_ = 0;
     std::vector<int> place_, row_at_;  // of a row in the order of elimination; the row that is there
-    // Row k of the upper factor, ones on the diagonal left out: columns and values.
+    // Row k of the upper factor, ones on the diagonal left out: columns and values; column k of the lower one likewise.
     std::vector<std::size_t> first_ = {0};
     std::vector<int> columns_;
-    std::vector<double> values_, pivots_, inverse_;
+    std::vector<double> values_, lower_, pivots_, inverse_;
+    bool symmetric_ = true;  // lower_ is values_
     // Row i of the lower factor: the rows of the upper one that have column i, and where.
     std::vector<std::size_t> lower_first_;
     std::vector<int> lower_rows_;
     std::vector<std::size_t> lower_at_;
     std::vector<std::array<int, 2>> rest_pairs_;
-    std::vector<double> dense_, solution_;
+    std::vector<double> dense_, dense_lower_, solution_;
     std::vector<std::size_t> position_;  // of a pair's value in values_
+    std::vector<char> swapped_;          // whether it is the transposed that stands there
 };
 
 }  // namespace holonomic_subdomain

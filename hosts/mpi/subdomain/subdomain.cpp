@@ -10,13 +10,11 @@ namespace {
 /** A bond inside that is coupled to more, when its turn comes, is left to the interface. */
 constexpr int most_coupled = 16;
 
+bool is_length(double length) { return length >= 1e-150 && length <= 1e150; }
+
 }  // namespace
 
-void check(int status) {
-    if (status != HOL_OK) throw Failure{status, hol_error_message()};
-}
-
-Subdomain::Subdomain(const Processes &p, Given given) : processes(p), chains_(nullptr, hol_chains_destroy) {
+Subdomain::Subdomain(const Processes &p, Given given) : processes(p) {
     lengths_ = std::move(given.lengths);
     cut_lengths_ = std::move(given.cut_lengths);
     processes.alone([&] { make_inside(given); });
@@ -39,6 +37,8 @@ void Subdomain::make_inside(const Given &given) {
         const std::int64_t a = given.pairs[2 * k], b = given.pairs[2 * k + 1];
         if (a < 0 || b < 0 || a >= n_atoms || b >= n_atoms)
             throw Failure{HOL_ERR_INDEX, "bond " + std::to_string(k) + " has an atom that is not there"};
+        if (a == b) throw Failure{HOL_ERR_INDEX, "bond " + std::to_string(k) + " joins an atom to itself"};
+        if (!is_length(lengths_[k])) throw Failure{HOL_ERR_VALUE, "length of bond " + std::to_string(k)};
         bonds[k] = {static_cast<int>(a), static_cast<int>(b)};
     }
     auto n_rows = static_cast<int>(n_bonds);
@@ -51,14 +51,6 @@ void Subdomain::make_inside(const Given &given) {
             {static_cast<int>(k / 2), static_cast<int>(k % 2), static_cast<int>(given.ends[k]), n_rows - 1});
     }
     graph_ = Graph(std::move(w), std::move(bonds), ends_);
-    if (n_bonds == 0) return;
-    hol_chains *chains = nullptr;
-    check(hol_chains_create(n_atoms, given.masses.data(), &chains));
-    chains_.reset(chains);
-    check(hol_chains_add_bonds(chains, n_bonds, given.pairs.data(), lengths_.data()));
-    if (hol_chains_n_of_shape(chains, HOL_SHAPE_RIGID) > 0)
-        throw Failure{HOL_ERR_DEGENERATE,
-                      "distances that depend on each other: rigid parts can't be in a divided molecule"};
 }
 
 /** Every atom of a cut bond belongs to one process; all get to know its mass. */
@@ -79,7 +71,7 @@ void Subdomain::check_ends(const std::vector<std::int64_t> &ends) {
                                              " processes"};
     }
     for (double length : cut_lengths_)
-        if (!(length >= 1e-150 && length <= 1e150)) throw Failure{HOL_ERR_VALUE, "length of a cut bond"};
+        if (!is_length(length)) throw Failure{HOL_ERR_VALUE, "length of a cut bond"};
 }
 
 /**
@@ -92,12 +84,13 @@ void Subdomain::make_interface() {
     processes.alone([&] {
         std::vector<std::array<int, 2>> pairs;
         graph_.for_pairs([&](int, const Graph::At &a, const Graph::At &b) { pairs.push_back({a.row, b.row}); });
-        inside_ = SparseFactors(graph_.n_rows, pairs, graph_.n_rows - n_bonds(), most_coupled);
-        const int n_left = inside_.n_rest() - (graph_.n_rows - n_bonds());
+        reference_.inside = SparseFactors(graph_.n_rows, pairs, graph_.n_rows - n_bonds(), most_coupled);
+        const int n_left = reference_.inside.n_rest() - (graph_.n_rows - n_bonds());
         counts[2 * processes.rank()] = n_left;
-        counts[2 * processes.rank() + 1] = static_cast<double>(inside_.rest_pairs().size());
+        counts[2 * processes.rank() + 1] = static_cast<double>(reference_.inside.rest_pairs().size());
     });
     processes.add_up(counts);
+    const SparseFactors &inside = reference_.inside;
     n_interface_ = cut_lengths_.size();
     std::size_t first = 0, n_pairs = 0, first_left = 0;
     for (int p = 0; p < processes.n_ranks(); ++p) {
@@ -109,24 +102,24 @@ void Subdomain::make_interface() {
     processes.alone([&] {
         std::vector<int> row(graph_.n_rows, -1);
         for (const End &end : ends_) row[end.row] = end.cut;
-        for (int k = 0; k < inside_.n_rest(); ++k) {
-            int &its = row[inside_.rest_row(k)];
+        for (int k = 0; k < inside.n_rest(); ++k) {
+            int &its = row[inside.rest_row(k)];
             if (its < 0) its = static_cast<int>(first_left++);
             row_of_rest_.push_back(its);
         }
-        for (std::size_t p = 0; p < inside_.rest_pairs().size(); ++p)
-            for (int side = 0; side < 2; ++side) numbers[2 * (first + p) + side] = row[inside_.rest_pairs()[p][side]];
+        for (std::size_t p = 0; p < inside.rest_pairs().size(); ++p)
+            for (int side = 0; side < 2; ++side) numbers[2 * (first + p) + side] = row[inside.rest_pairs()[p][side]];
     });
     processes.add_up(numbers);
     std::vector<std::array<int, 2>> pairs(n_pairs);
     for (std::size_t p = 0; p < n_pairs; ++p)
         pairs[p] = {static_cast<int>(numbers[2 * p]), static_cast<int>(numbers[2 * p + 1])};
-    interface_ = SparseFactors(static_cast<int>(n_interface_), pairs);
-    for (std::size_t p = 0; p < inside_.rest_pairs().size(); ++p) pair_of_rest_.push_back(n_interface_ + first + p);
+    reference_.interface = SparseFactors(static_cast<int>(n_interface_), pairs);
+    anew_ = reference_;
+    for (std::size_t p = 0; p < inside.rest_pairs().size(); ++p) pair_of_rest_.push_back(n_interface_ + first + p);
 }
 
 void Subdomain::set_box(const double *rows) {
-    if (chains_) check(hol_chains_set_box(chains_.get(), rows));
     box_ = Box(rows);
 }
 
@@ -136,16 +129,25 @@ void Subdomain::set_rate(const double *L) {
 }
 
 void Subdomain::set_labels(const std::int64_t *atoms) {
-    if (chains_) check(hol_chains_set_labels(chains_.get(), atoms, nullptr));
+    labels_.clear();
+    if (atoms) labels_.assign(atoms, atoms + n_atoms());
+}
+
+/** A bond by the atoms that it joins, where they are here. */
+std::string Subdomain::name_of(int row) const {
+    const auto label = [&](int atom) { return std::to_string(labels_.empty() ? atom : labels_[atom]); };
+    if (row < n_bonds()) return "bond of atoms " + label(graph_.bonds[row].from) + " and " + label(graph_.bonds[row].to);
+    for (const End &end : ends_)
+        if (end.row == row) return "cut bond at atom " + label(end.atom);
+    return "bond of another process";
 }
 
 hol_subdomain_work Subdomain::work() const {
     return {processes.n_sums,
             processes.n_numbers,
-            n_passes_,
             n_solves_,
             static_cast<std::int64_t>(n_interface_),
-            static_cast<std::int64_t>(n_interface_ + interface_.n_entries()),
+            static_cast<std::int64_t>(n_interface_ + reference_.interface.n_entries()),
             last_change_};
 }
 

@@ -2,7 +2,7 @@
 #define HOLONOMIC_SUBDOMAIN_SUBDOMAIN_HPP
 
 #include <initializer_list>
-#include <memory>
+#include <string>
 
 #include "box.hpp"
 #include "graph.hpp"
@@ -59,27 +59,35 @@ public:
     Processes processes;
 
 private:
+    /** Of the bonds inside, and of the interface: cut bonds, then what each process has left of those inside. */
+    struct Factors {
+        SparseFactors inside, interface;
+    };
+
     void make_inside(const Given &given);
     void check_ends(const std::vector<std::int64_t> &ends);
     void make_interface();
 
     std::vector<double> of_ends(std::initializer_list<const double *> arrays) const;
-    void find_vectors();
-    void matrix_inside(std::vector<double> &values) const;
+    void find_vectors(const double *r);
+    void matrix_inside(const std::vector<TwiceVector> &now, std::vector<double> &values,
+                       std::vector<double> *lower) const;
+    std::vector<double> factorize(Factors &factors, const std::vector<TwiceVector> &now, const std::vector<double> *x);
 
     TwiceVector rate_of(const TwiceVector &d, const double *i, const double *j) const;
     void right_hand_sides(const double *v, const double *f, bool with_forces, double *x);
     void cut_right_hand_sides(const double *shared, bool with_forces);
     void residuals(double *rho, double *parts);
-    void gather(const std::vector<double> &x, double *sums);
-    void scatter(const double *sums, std::vector<double> &x);
+    void gather(Factors &factors, const std::vector<double> &x, double *sums);
+    void scatter(Factors &factors, const double *sums, std::vector<double> &x);
     double change_of(const std::vector<double> &dt);
     Found solve(const double *v, const double *f, bool with_forces);
 
-    void project_inside(std::vector<double> &r, double dt);
-    void pull(std::vector<double> &r, const std::vector<double> &multipliers) const;
-    double excess(const std::vector<double> &shared, std::vector<double> &sigma) const;
+    double excess(const double *r, double *sigma);
+    double cut_excess(const double *ends, std::vector<double> &sigma);
+    void move(std::vector<double> &r, const std::vector<double> &multipliers, double factor) const;
     void react(Found &found) const;
+    std::string name_of(int row) const;
 
     int n_cut() const { return static_cast<int>(cut_lengths_.size()); }
     int n_bonds() const { return graph_.n_bonds(); }
@@ -90,22 +98,21 @@ private:
 
     Graph graph_;
     std::vector<double> lengths_, cut_lengths_;
-    std::unique_ptr<hol_chains, void (*)(hol_chains *)> chains_;
+    std::vector<std::int64_t> labels_;
     std::vector<End> ends_;
     std::vector<double> cut_w_;         // [n_cut][2], on every process
-    SparseFactors inside_, interface_;  // of the interface: cut bonds, then each process's rows that it has left
+    Factors reference_, anew_;       // at the positions of factorize(); at those on the way to the next
     std::size_t n_interface_ = 0;       // its rows
     std::vector<int> row_of_rest_;      // of the interface's, for each that is left inside
     std::vector<std::size_t> pair_of_rest_;
 
-    Box box_, reference_box_;
+    Box box_;
     double rate_[9] = {0};
     bool has_rate_ = false;
 
     bool factorized_ = false;
-    std::vector<double> r_;
     std::vector<TwiceVector> cut_d_;
-    std::vector<TwiceVector> d_;  // of the process's equations
+    std::vector<TwiceVector> d_, now_;  // of the process's equations: of the reference, on the way to the next positions
 
     std::vector<double> t_, dt_;    // multipliers of the process's equations, and their correction
     std::vector<double> t_cut_;     // of all cut bonds
@@ -113,12 +120,9 @@ private:
     std::vector<TwiceVector> accelerations_;
     std::vector<double> at_atoms_;
 
-    std::int64_t n_passes_ = 0, n_solves_ = 0;
+    std::int64_t n_solves_ = 0;
     double last_change_ = 0;
 };
-
-/** Throws what a call of the library returns unless it is HOL_OK. */
-void check(int status);
 
 }  // namespace holonomic_subdomain
 

@@ -118,10 +118,9 @@ struct Test {
             const std::int64_t sums = after.n_sums - before.n_sums;
             expect(sums == n_times * n_sums, "sums over processes", static_cast<double>(sums), n_times * n_sums);
             if (rank == 0)
-                std::printf("%-12s %lld sums, %lld numbers, %lld passes, %lld solutions (%.1e)\n", what,
+                std::printf("%-12s %lld sums, %lld numbers, %lld solutions (%.1e)\n", what,
                             static_cast<long long>(after.n_sums - before.n_sums) / n_times,
                             static_cast<long long>(after.n_numbers - before.n_numbers) / n_times,
-                            static_cast<long long>(after.n_passes - before.n_passes) / n_times,
                             static_cast<long long>(after.n_solves - before.n_solves) / n_times, after.last_change);
             before = after;
         };
