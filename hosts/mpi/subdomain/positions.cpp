@@ -9,21 +9,17 @@ namespace holonomic_subdomain {
 namespace {
 
 constexpr int most_steps = 50;
-/** New factors cost as much as three or four steps with those that are there. */
-constexpr double slow = 0.03;
+/** New factors cost as much as three or four steps with those that are there, and save as many. */
+constexpr double slow = 0.01;
 /** Roundings of the coordinates that are no matter for new factors any more. */
 constexpr double close = 1e4;
 
-/** D.D - a^2 in units of what the rounding of the two atoms' coordinates does to it. */
-HOL_SUBDOMAIN_INLINE double in_roundings(double sigma, double a, const double *i, const double *j) {
+/** The larger of worst and D.D - a^2 in units of what the rounding of the two atoms' coordinates does to it. */
+HOL_SUBDOMAIN_INLINE double larger(double worst, double sigma, double a, const double *i, const double *j) {
     double extent = a;
     for (int c = 0; c < 3; ++c) extent = std::max(extent, std::max(std::fabs(i[c]), std::fabs(j[c])));
-    return std::fabs(sigma) / (std::numeric_limits<double>::epsilon() * a * extent);
-}
-
-/** Keeps a NaN. */
-HOL_SUBDOMAIN_INLINE void take_larger(double &worst, double x) {
-    if (!(x <= worst)) worst = x;
+    const double unit = std::numeric_limits<double>::epsilon() * a * extent;
+    return std::fabs(sigma) <= worst * unit ? worst : std::fabs(sigma) / unit;  // a NaN is taken
 }
 
 }  // namespace
@@ -36,7 +32,7 @@ HOL_SUBDOMAIN_CLONES double Subdomain::excess(const double *r, double *sigma) {
                      *j = r + 3 * static_cast<std::size_t>(graph_.bonds[k].to), a = lengths_[k];
         now_[k] = box_.between(i, j);
         sigma[k] = is_fixed(k) ? 0 : (dot(now_[k], now_[k]) - product_of(a, a)).hi;
-        take_larger(worst, in_roundings(sigma[k], a, i, j));
+        worst = larger(worst, sigma[k], a, i, j);
     }
     return worst;
 }
@@ -49,7 +45,7 @@ double Subdomain::cut_excess(const double *ends, std::vector<double> &sigma) {
         const double a = cut_lengths_[k];
         vectors[k] = box_.between(ends, ends + 3);
         sigma[k] = cut_is_fixed(k) ? 0 : (dot(vectors[k], vectors[k]) - product_of(a, a)).hi;
-        take_larger(worst, in_roundings(sigma[k], a, ends, ends + 3));
+        worst = larger(worst, sigma[k], a, ends, ends + 3);
     }
     for (const End &end : ends_) now_[end.row] = vectors[end.cut];
     return worst;
@@ -83,12 +79,13 @@ Found Subdomain::positions(std::vector<double> &r, double dt) {
         processes.alone([&] {
             dt_.assign(graph_.n_rows, 0.0);
             shared[6 * n + n_interface_ + processes.rank()] = excess(r.data(), dt_.data());
-            for (double &x : dt_) x /= 2 * square;
+            for (double &x : dt_) x *= 0.5 / square;
             gather(*factors, dt_, shared.data() + 6 * n);
         });
         processes.add_up(shared);
         double worst = cut_excess(shared.data(), cut_sigma);
-        for (std::size_t k = 6 * n + n_interface_; k < shared.size(); ++k) take_larger(worst, shared[k]);
+        for (std::size_t k = 6 * n + n_interface_; k < shared.size(); ++k)
+            if (!(shared[k] <= worst)) worst = shared[k];
         // A few roundings of the two atoms' coordinates; some more if no step makes it less.
         if (worst <= 4 || (worst <= 32 && worst >= before / 2)) break;
         if (found.steps == most_steps || !std::isfinite(worst))

@@ -133,7 +133,8 @@ int SparseFactors::factorize(const double *values, const double *lower) {
     for (int i = 0; i < n_; ++i) {
         const double least = 1e-15 * pivots_[i];
         for (std::size_t at = first_[i]; at < first_[i + 1]; ++at) dense_[columns_[at]] = values_[at];
-        for (std::size_t at = first_[i]; !symmetric_ && at < first_[i + 1]; ++at) dense_lower_[columns_[at]] = lower_[at];
+        for (std::size_t at = first_[i]; !symmetric_ && at < first_[i + 1]; ++at)
+            dense_lower_[columns_[at]] = lower_[at];
         for (std::size_t p = lower_first_[i]; p < lower_first_[i + 1]; ++p) {
             // Row k of the upper factor, and column k of the lower one, from i on
             const int k = lower_rows_[p];

@@ -9,8 +9,8 @@
 namespace holonomic_subdomain {
 
 /**
- * Elimination without exchange of rows, of a sparse matrix with a symmetric pattern that stays. Some rows may be left, the
- * rest: what elimination makes of their elements and right-hand sides belongs to equations of their own.
+ * Elimination without exchange of rows, of a sparse matrix with a symmetric pattern that stays. Some rows may be left,
+ * the rest: what elimination makes of their elements and right-hand sides belongs to equations of their own.
  */
 class SparseFactors {
 public:

@@ -119,9 +119,7 @@ void Subdomain::make_interface() {
     for (std::size_t p = 0; p < inside.rest_pairs().size(); ++p) pair_of_rest_.push_back(n_interface_ + first + p);
 }
 
-void Subdomain::set_box(const double *rows) {
-    box_ = Box(rows);
-}
+void Subdomain::set_box(const double *rows) { box_ = Box(rows); }
 
 void Subdomain::set_rate(const double *L) {
     has_rate_ = L && std::any_of(L, L + 9, [](double x) { return x != 0; });
@@ -136,7 +134,8 @@ void Subdomain::set_labels(const std::int64_t *atoms) {
 /** A bond by the atoms that it joins, where they are here. */
 std::string Subdomain::name_of(int row) const {
     const auto label = [&](int atom) { return std::to_string(labels_.empty() ? atom : labels_[atom]); };
-    if (row < n_bonds()) return "bond of atoms " + label(graph_.bonds[row].from) + " and " + label(graph_.bonds[row].to);
+    if (row < n_bonds())
+        return "bond of atoms " + label(graph_.bonds[row].from) + " and " + label(graph_.bonds[row].to);
     for (const End &end : ends_)
         if (end.row == row) return "cut bond at atom " + label(end.atom);
     return "bond of another process";

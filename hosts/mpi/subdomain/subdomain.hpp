@@ -100,10 +100,10 @@ private:
     std::vector<double> lengths_, cut_lengths_;
     std::vector<std::int64_t> labels_;
     std::vector<End> ends_;
-    std::vector<double> cut_w_;         // [n_cut][2], on every process
-    Factors reference_, anew_;       // at the positions of factorize(); at those on the way to the next
-    std::size_t n_interface_ = 0;       // its rows
-    std::vector<int> row_of_rest_;      // of the interface's, for each that is left inside
+    std::vector<double> cut_w_;     // [n_cut][2], on every process
+    Factors reference_, anew_;      // at the positions of factorize(); at those on the way to the next
+    std::size_t n_interface_ = 0;   // its rows
+    std::vector<int> row_of_rest_;  // of the interface's, for each that is left inside
     std::vector<std::size_t> pair_of_rest_;
 
     Box box_;
@@ -112,7 +112,8 @@ private:
 
     bool factorized_ = false;
     std::vector<TwiceVector> cut_d_;
-    std::vector<TwiceVector> d_, now_;  // of the process's equations: of the reference, on the way to the next positions
+    std::vector<TwiceVector> d_,
+        now_;  // of the process's equations: of the reference, on the way to the next positions
 
     std::vector<double> t_, dt_;    // multipliers of the process's equations, and their correction
     std::vector<double> t_cut_;     // of all cut bonds

@@ -113,10 +113,11 @@ struct Test {
         // Forces
         hol_subdomain_work before = part.work();
         // Tells what was done, and that it took as many sums as it has to, whatever the molecule is.
-        const auto told = [&](const char *what, int n_sums) {
+        const auto told = [&](const char *what, int n_sums, int n_more = 0) {
             const hol_subdomain_work after = part.work();
             const std::int64_t sums = after.n_sums - before.n_sums;
-            expect(sums == n_times * n_sums, "sums over processes", static_cast<double>(sums), n_times * n_sums);
+            expect(sums >= n_times * n_sums && sums <= n_times * (n_sums + n_more), "sums over processes",
+                   static_cast<double>(sums), n_times * n_sums);
             if (rank == 0)
                 std::printf("%-12s %lld sums, %lld numbers, %lld solutions (%.1e)\n", what,
                             static_cast<long long>(after.n_sums - before.n_sums) / n_times,
@@ -198,7 +199,7 @@ struct Test {
                                                  cut.data(), my_virial, &iterations),
                  hol_subdomain_error_message());
         });
-        told("positions", 2 + iterations);
+        told("positions", 2 + iterations, iterations);  // two for a step with new factors
         compare_atoms("positions", whole_r, my_r, 1e-13);
         compare_atoms("velocities after the drift", drift, my_drift, rounding);
         compare_virials("virial of positions", virial, my_virial, rounding / dt);
