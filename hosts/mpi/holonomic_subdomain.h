@@ -81,8 +81,8 @@ int hol_subdomain_set_box_rate(hol_subdomain *subdomain, const double *L);
  * them until this is called again. Two sums.
  * @param[in] subdomain  the handle
  * @param[in] r          [n_atoms][3]. Copied. Bonds are taken as minimum images if there is a box
- * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE (bonds that depend on each other); HOL_ERR_MEMORY;
- *         HOL_ERR_INTERNAL
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE (bonds that depend on each other);
+ * HOL_ERR_MEMORY; HOL_ERR_INTERNAL
  */
 int hol_subdomain_factorize(hol_subdomain *subdomain, const double *r);
 
