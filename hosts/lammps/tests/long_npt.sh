@@ -15,8 +15,9 @@ long_npt() {
     [ "$1" != co2 ] || fluid springs co2 "${scene[@]}" dt 0.5 steps $((4 * steps)) every 1000 rigid none "${with[@]}" before "fix motion all npt $bath"
     for fix in holonomic small springs; do
         [ -f $fix ] || continue
-        column Econserve $fix | awk -v fix=$fix '{ e[NR] = $1; s += $1 } END { for (k = 1; k <= NR; ++k) q += (e[k] - s / NR)^2
-            printf "%-9s conserved: end less start %.3g, scatter %.3g;", fix, e[NR] - e[1], sqrt(q / NR) }'
+        column Econserve $fix | awk -v fix=$fix '{ e[NR] = $1; s += $1; c += $1 * NR } END { m = s / NR; t = (NR + 1) / 2
+            slope = (c - NR * m * t) / (NR * (NR * NR - 1) / 12); for (k = 1; k <= NR; ++k) q += (e[k] - m - slope * (k - t))^2
+            printf "%-9s conserved: end less start %.3g, scatter about a line %.3g;", fix, e[NR] - e[1], sqrt(q / NR) }'
         printf ' means of temperature %.2f, pressure %.2f, volume %.1f\n' "$(mean Temp $fix)" "$(mean Press $fix)" "$(mean Volume $fix)"
     done
     below 1e-13 'f_rigid[1]' holonomic
