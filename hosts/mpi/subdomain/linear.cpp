@@ -190,6 +190,36 @@ HOL_SUBDOMAIN_CLONES double Subdomain::change_of(const std::vector<double> &dt) 
     return worst;
 }
 
+/** Forces and virial of the multipliers t_. A cut bond's virial is its first atom's. */
+HOL_SUBDOMAIN_CLONES void Subdomain::pull(Found &found) const {
+    found.g.assign(3 * graph_.w.size(), 0.0);
+    for (int i = 0; i < n_atoms(); ++i) {
+        Four g = {0, 0, 0, 0};
+        for (const Graph::At *at = graph_.begin(i); at != graph_.end(i); ++at)
+            g -= at->sign * t_[at->row] * d_[at->row].hi;
+        for (int c = 0; c < 3; ++c) found.g[3 * i + c] = g[c];
+    }
+    Four virial[3] = {};
+    const auto add = [&](int row) {
+        const Four &d = d_[row].hi, force = t_[row] * d;
+        for (int a = 0; a < 3; ++a) virial[a] -= force[a] * d;
+    };
+    for (int k = 0; k < n_bonds(); ++k) add(k);
+    for (const End &end : ends_)
+        if (end.side == 0) add(end.row);
+    for (int k = 0; k < 9; ++k) found.virial[k] = virial[k / 3][k % 3];
+}
+
+/** What the multipliers do. Not compiled for several processors itself: other files can't call such with all compilers.
+ */
+void Subdomain::react(Found &found) const {
+    pull(found);
+    found.lambda.assign(t_.begin(), t_.begin() + n_bonds());
+    found.cut_lambda = t_cut_;
+    for (std::vector<double> *lambdas : {&found.lambda, &found.cut_lambda})
+        for (double &lambda : *lambdas) lambda /= 2;
+}
+
 Found Subdomain::solve(const double *v, const double *f, bool with_forces) {
     const std::size_t n = cut_lengths_.size();
     t_.assign(graph_.n_rows, 0.0);
@@ -266,30 +296,6 @@ void Subdomain::violation(const double *r, const double *v, double *worst) {
         if (!cut_is_fixed(k)) take(ends, ends + 6, ends + 3, ends + 9, cut_lengths_[k]);
     }
     for (double *x : {worst, worst + 1}) *x = processes.largest(*x);
-}
-
-/** What the multipliers t_ do. A cut bond's virial is its first atom's. */
-HOL_SUBDOMAIN_CLONES void Subdomain::react(Found &found) const {
-    found.g.assign(3 * graph_.w.size(), 0.0);
-    for (int i = 0; i < n_atoms(); ++i) {
-        Four g = {0, 0, 0, 0};
-        for (const Graph::At *at = graph_.begin(i); at != graph_.end(i); ++at)
-            g -= at->sign * t_[at->row] * d_[at->row].hi;
-        for (int c = 0; c < 3; ++c) found.g[3 * i + c] = g[c];
-    }
-    Four virial[3] = {};
-    const auto add = [&](int row) {
-        const Four &d = d_[row].hi, force = t_[row] * d;
-        for (int a = 0; a < 3; ++a) virial[a] -= force[a] * d;
-    };
-    for (int k = 0; k < n_bonds(); ++k) add(k);
-    for (const End &end : ends_)
-        if (end.side == 0) add(end.row);
-    for (int k = 0; k < 9; ++k) found.virial[k] = virial[k / 3][k % 3];
-    found.lambda.assign(t_.begin(), t_.begin() + n_bonds());
-    found.cut_lambda = t_cut_;
-    for (std::vector<double> *lambdas : {&found.lambda, &found.cut_lambda})
-        for (double &lambda : *lambdas) lambda /= 2;
 }
 
 }  // namespace holonomic_subdomain

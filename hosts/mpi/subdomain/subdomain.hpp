@@ -86,6 +86,7 @@ private:
     double excess(const double *r, double *sigma);
     double cut_excess(const double *ends, std::vector<double> &sigma);
     void move(std::vector<double> &r, const std::vector<double> &multipliers, double factor) const;
+    void pull(Found &found) const;
     void react(Found &found) const;
     std::string name_of(int row) const;
 

@@ -45,8 +45,6 @@ struct TwiceVector {
     Four hi = {0, 0, 0, 0}, lo = {0, 0, 0, 0};
 };
 
-HOL_SUBDOMAIN_INLINE void load(Four &vector, const double *x) { vector = Four{x[0], x[1], x[2], 0}; }
-
 /** Component by component, and what the rounding loses. */
 HOL_SUBDOMAIN_INLINE TwiceVector products_of(const Four &a, const Four &b) {
     TwiceVector p;
@@ -57,16 +55,14 @@ HOL_SUBDOMAIN_INLINE TwiceVector products_of(const Four &a, const Four &b) {
 
 /** y - x of three numbers each. */
 HOL_SUBDOMAIN_INLINE TwiceVector difference(const double *y, const double *x) {
-    Four a, b;
-    load(a, y), load(b, x);
+    const Four a = {y[0], y[1], y[2], 0}, b = {x[0], x[1], x[2], 0};
     const Four s = a - b, t = s - a;
     return {s, (a - (s - t)) - (b + t)};
 }
 /** x times three numbers. */
 HOL_SUBDOMAIN_INLINE TwiceVector multiple(double x, const double *y) {
-    Four a;
-    load(a, y);
-    return products_of(Four{x, x, x, x}, a);
+    const Four all = {x, x, x, x}, a = {y[0], y[1], y[2], 0};
+    return products_of(all, a);
 }
 
 /** The lower parts are not rounded into the upper ones, which sums of a few can do without. */
