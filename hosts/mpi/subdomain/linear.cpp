@@ -201,7 +201,7 @@ HOL_SUBDOMAIN_CLONES void Subdomain::pull(Found &found) const {
     }
     Four virial[3] = {};
     const auto add = [&](int row) {
-        const Four &d = d_[row].hi, force = t_[row] * d;
+        const Four d = d_[row].hi, force = t_[row] * d;
         for (int a = 0; a < 3; ++a) virial[a] -= force[a] * d;
     };
     for (int k = 0; k < n_bonds(); ++k) add(k);

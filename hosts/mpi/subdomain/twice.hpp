@@ -45,7 +45,9 @@ struct TwiceVector {
     Four hi = {0, 0, 0, 0}, lo = {0, 0, 0, 0};
 };
 
-/** Component by component, and what the rounding loses. */
+/** Component by component, and what the rounding loses. Takes copies: of a member clang forgets that it may lie
+ * anywhere.
+ */
 HOL_SUBDOMAIN_INLINE TwiceVector products_of(const Four &a, const Four &b) {
     TwiceVector p;
     p.hi = a * b;
@@ -74,14 +76,15 @@ HOL_SUBDOMAIN_INLINE TwiceVector operator-(const TwiceVector &a, const TwiceVect
     return a + TwiceVector{-b.hi, -b.lo};
 }
 HOL_SUBDOMAIN_INLINE TwiceVector operator*(double x, const TwiceVector &a) {
-    const Four all = {x, x, x, x};
-    TwiceVector p = products_of(all, a.hi);
+    const Four all = {x, x, x, x}, hi = a.hi;
+    TwiceVector p = products_of(all, hi);
     p.lo += all * a.lo;
     return p;
 }
 HOL_SUBDOMAIN_INLINE Twice dot(const TwiceVector &a, const TwiceVector &b) {
-    TwiceVector p = products_of(a.hi, b.hi);
-    p.lo += a.hi * b.lo + a.lo * b.hi;
+    const Four x = a.hi, y = b.hi;
+    TwiceVector p = products_of(x, y);
+    p.lo += x * b.lo + a.lo * y;
     const Twice s = sum_of(p.hi[0], p.hi[1]), all = sum_of(s.hi, p.hi[2]);
     const double lo = (s.lo + all.lo) + (p.lo[0] + p.lo[1] + p.lo[2]), hi = all.hi + lo;
     return {hi, lo - (hi - all.hi)};
