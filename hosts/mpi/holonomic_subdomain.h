@@ -4,9 +4,10 @@
  * atoms, and the processes share the bonds that are cut, the interface. The results are those that the library
  * holonomic finds for the whole molecule on one process.
  *
- * Each process eliminates the bonds inside its subdomain. What is left are as many equations as bonds are cut, of which
- * every process adds up its part (the Schur complement of the interface), and which every process solves alike. A
- * residual of all bonds in twice the precision then proves the multipliers, or corrects them, or refuses them.
+ * Each process eliminates the bonds inside its subdomain, but for those where many parts between cut bonds meet. What
+ * is left, those and the cut bonds, are the interface's equations, of which every process adds up its part (the Schur
+ * complement), and which every process solves alike. A residual of all bonds in twice the precision then corrects the
+ * multipliers, and proves or refuses them. How many sums over processes that takes does not depend on the molecule.
  *
  * Conventions (atoms, masses, bonds, signs, units, fixed atoms, box) are those of holonomic.h. All functions are
  * collective: every process calls them, in the same order. If one process fails, all return an error and nothing is
@@ -46,10 +47,8 @@ typedef struct hol_subdomain hol_subdomain;
  *                            cut bond is named by one process, and by one alone. Copied
  * @param[in]  cut_lengths    [n_cut], on every process. Copied
  * @param[out] subdomain      the new handle, to be given to hol_subdomain_destroy; NULL on an error
- * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (a size, length or mass); HOL_ERR_INDEX (an atom that is not there; an
- * end that no process names, or two); HOL_ERR_DEGENERATE (bonds that depend on each other, rigid parts);
- *         HOL_ERR_MEMORY; HOL_ERR_INTERNAL. O(n_bonds), but for many cut ends of one connected part (more than
- *         16): some 20 times that.
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (a size, length or mass); HOL_ERR_INDEX (an atom that is not there, a
+ *         bond of an atom with itself; an end that no process names, or two); HOL_ERR_MEMORY; HOL_ERR_INTERNAL
  */
 int hol_subdomain_create(int rank, int n_ranks, hol_sum sum, void *context, int64_t n_atoms, const double *masses,
                          int64_t n_bonds, const int64_t *pairs, const double *lengths, int64_t n_cut,
@@ -82,13 +81,13 @@ int hol_subdomain_set_box_rate(hol_subdomain *subdomain, const double *L);
  * them until this is called again. Two sums.
  * @param[in] subdomain  the handle
  * @param[in] r          [n_atoms][3]. Copied. Bonds are taken as minimum images if there is a box
- * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE; HOL_ERR_MEMORY; HOL_ERR_INTERNAL
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE (bonds that depend on each other);
+ * HOL_ERR_MEMORY; HOL_ERR_INTERNAL
  */
 int hol_subdomain_factorize(hol_subdomain *subdomain, const double *r);
 
 /**
- * hol_forces at the positions of hol_subdomain_factorize. Three sums; two more for each round of refinement
- * (README.md says when).
+ * hol_forces at the positions of hol_subdomain_factorize. Three sums.
  * @param[in]  subdomain   the handle
  * @param[in]  v, f        [n_atoms][3]; either may be NULL: zero
  * @param[out] lambda      multipliers of this process's bonds [n_bonds], or NULL
@@ -97,8 +96,8 @@ int hol_subdomain_factorize(hol_subdomain *subdomain, const double *r);
  * @param[in]  mode        HOL_WRITE: g = G for every atom; HOL_ADD: g = g + G
  * @param[out] virial      [3][3], this process's part: the sum over processes is the virial; or NULL
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (mode; nothing was factorized); HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE
- *         (refinement does not reach the rounding: bonds nearly depend on each other, or many cut ends of one part
- *         that is straight); HOL_ERR_MEMORY; HOL_ERR_INTERNAL
+ *         (one correction does not reach the rounding: bonds nearly depend on each other); HOL_ERR_MEMORY;
+ *         HOL_ERR_INTERNAL
  */
 int hol_subdomain_forces(hol_subdomain *subdomain, const double *v, const double *f, double *lambda, double *cut_lambda,
                          double *g, int mode, double *virial);
@@ -116,8 +115,8 @@ int hol_subdomain_project_velocities(hol_subdomain *subdomain, double *v, double
                                      double *virial);
 
 /**
- * hol_project_positions with the positions of hol_subdomain_factorize as reference. One sum for each step of the
- * interface, and two.
+ * hol_project_positions with the positions of hol_subdomain_factorize as reference. One sum for each of Newton's
+ * steps, one more where it makes new factors, and two.
  * @param[in]     subdomain   the handle
  * @param[in,out] r           [n_atoms][3], in: after the drift; out: on the constraints, to the rounding
  * @param[in,out] v           [n_atoms][3], or NULL: v_i += dt w_i G_i
@@ -125,8 +124,8 @@ int hol_subdomain_project_velocities(hol_subdomain *subdomain, double *v, double
  * @param[out]    lambda      [n_bonds], or NULL
  * @param[out]    cut_lambda  [n_cut], or NULL
  * @param[out]    virial      [3][3], this process's part, or NULL
- * @param[out]    iterations  how many steps of the interface it took, or NULL
- * @return as hol_subdomain_forces; HOL_ERR_LENGTHS and HOL_ERR_NO_CONVERGENCE as hol_project_positions
+ * @param[out]    iterations  how many steps it took, or NULL
+ * @return as hol_subdomain_forces, without HOL_ERR_DEGENERATE; HOL_ERR_NO_CONVERGENCE as hol_project_positions
  */
 int hol_subdomain_project_positions(hol_subdomain *subdomain, double *r, double *v, double dt, double *lambda,
                                     double *cut_lambda, double *virial, int *iterations);
@@ -164,11 +163,10 @@ int hol_subdomain_cut_vectors(const hol_subdomain *subdomain, double *d);
 typedef struct hol_subdomain_work {
     int64_t n_sums;     /**< calls of sum */
     int64_t n_numbers;  /**< numbers that were handed to it */
-    int64_t n_solves;   /**< passes of the library over all bonds of this process */
-    int64_t n_columns;  /**< right-hand sides that each hol_subdomain_factorize solves, passes among those */
+    int64_t n_solves;   /**< solutions with the factors of all bonds of this process */
+    int64_t n_rows;     /**< equations of the interface: cut bonds, and those inside where many parts meet */
     int64_t n_entries;  /**< numbers of the interface's factors */
-    int64_t n_refined;  /**< rounds of refinement */
-    double last_change; /**< what the last round has changed, relative to the multipliers; on all processes */
+    double last_change; /**< what the last correction has changed, relative to the multipliers; on all processes */
 } hol_subdomain_work;
 
 /**

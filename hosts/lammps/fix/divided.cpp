@@ -16,7 +16,7 @@ using namespace LAMMPS_NS;
 using namespace holonomic_lammps;
 
 /** From how many atoms on a molecule is divided. Its home would have more to do than all the rest of a step takes; on
- * few ranks that is so of no molecule, since what is divided takes some ten times as long a bond. */
+ * few ranks that is so of no molecule, since what is divided takes two to eleven times as long a bond. */
 std::int64_t FixHolonomic::size_to_divide() const {
     constexpr std::int64_t large = 20000;
     constexpr int many_ranks = 16;

@@ -164,5 +164,6 @@ name=$1
 shift
 case $name in
     rattle | ranks | divided | nve | npt | bent) "$name" "$@" ;;
+    long_npt) . "$(dirname "${BASH_SOURCE[0]}")/more_cases.sh" && . "$(dirname "${BASH_SOURCE[0]}")/long_npt.sh" && "$name" "$@" ;;
     *) . "$(dirname "${BASH_SOURCE[0]}")/more_cases.sh" && "$name" "$@" ;;
 esac

@@ -32,15 +32,13 @@ public:
     const double *rows() const { return periodic_ ? h_ : nullptr; }
 
     /** From a to b, to the image nearest to a. It is the right one if the vector is shorter than half the box. */
-    TwiceVector between(const double *a, const double *b) const {
+    HOL_SUBDOMAIN_INLINE TwiceVector between(const double *a, const double *b) const {
         TwiceVector d = difference(b, a);
         if (!periodic_) return d;
         for (int i = 0; i < 3; ++i) {
             if (open_[i]) continue;
-            const double n =
-                std::round(d.c[0].hi * inverse_[i] + d.c[1].hi * inverse_[3 + i] + d.c[2].hi * inverse_[6 + i]);
-            if (n == 0) continue;
-            for (int c = 0; c < 3; ++c) d.c[c] = d.c[c] + product_of(-n, h_[3 * i + c]);
+            const double n = std::round(d.hi[0] * inverse_[i] + d.hi[1] * inverse_[3 + i] + d.hi[2] * inverse_[6 + i]);
+            if (n != 0) d = d + multiple(-n, h_ + 3 * i);
         }
         return d;
     }

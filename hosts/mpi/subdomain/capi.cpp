@@ -190,7 +190,7 @@ int hol_subdomain_cut_vectors(const hol_subdomain *subdomain, double *d) {
         need(subdomain && d, "subdomain or d");
         if (!subdomain->all.factorized()) throw Failure{HOL_ERR_VALUE, "hol_subdomain_factorize comes first"};
         for (const TwiceVector &vector : subdomain->all.cut_vectors())
-            for (const Twice &x : vector.c) *d++ = x.hi;
+            for (int c = 0; c < 3; ++c) *d++ = vector.hi[c];
     });
 }
 

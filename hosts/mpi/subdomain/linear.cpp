@@ -1,4 +1,4 @@
-// Forces and velocities: the interface's equations between two calls of the library.
+// Forces and velocities: two solutions, of which the second corrects the first.
 #include <cmath>
 #include <limits>
 
@@ -6,229 +6,270 @@
 
 namespace holonomic_subdomain {
 
-/** All processes get what their owners know of the atoms of cut bonds: three numbers of x. */
-void Subdomain::share(const double *x, std::vector<double> &shared) {
-    shared.assign(6 * cut_lengths_.size(), 0.0);
-    for (const End &end : ends_)
-        std::copy_n(x + 3 * static_cast<std::size_t>(end.atom), 3,
-                    shared.data() + 3 * (2 * static_cast<std::size_t>(end.cut) + end.side));
-    processes.add_up(shared);
-}
-
-/** The same with three numbers of x, then of y; what is NULL is zero. */
-void Subdomain::share(const double *x, const double *y, std::vector<double> &shared) {
-    shared.assign(12 * cut_lengths_.size(), 0.0);
+/** What this process knows of the atoms of cut bonds: three numbers of each array, zeros where it is NULL. */
+std::vector<double> Subdomain::of_ends(std::initializer_list<const double *> arrays) const {
+    const std::size_t each = 3 * arrays.size();
+    std::vector<double> numbers(2 * each * cut_lengths_.size(), 0.0);
     for (const End &end : ends_) {
-        double *to = shared.data() + 6 * (2 * static_cast<std::size_t>(end.cut) + end.side);
-        if (x) std::copy_n(x + 3 * static_cast<std::size_t>(end.atom), 3, to);
-        if (y) std::copy_n(y + 3 * static_cast<std::size_t>(end.atom), 3, to + 3);
+        double *to = numbers.data() + each * (2 * static_cast<std::size_t>(end.cut) + end.side);
+        for (const double *x : arrays) {
+            if (x) std::copy_n(x + 3 * static_cast<std::size_t>(end.atom), 3, to);
+            to += 3;
+        }
     }
-    processes.add_up(shared);
+    return numbers;
 }
 
-TwiceVector Subdomain::bond_vector(int bond) const {
-    return reference_box_.between(&r_[3 * static_cast<std::size_t>(graph_.bonds[bond].from)],
-                                  &r_[3 * static_cast<std::size_t>(graph_.bonds[bond].to)]);
+HOL_SUBDOMAIN_CLONES void Subdomain::find_vectors(const double *r) {
+    d_.resize(graph_.n_rows);
+    accelerations_.resize(graph_.w.size());
+    for (int k = 0; k < n_bonds(); ++k)
+        d_[k] = box_.between(r + 3 * static_cast<std::size_t>(graph_.bonds[k].from),
+                             r + 3 * static_cast<std::size_t>(graph_.bonds[k].to));
+    for (const End &end : ends_) d_[end.row] = cut_d_[end.cut];
 }
 
-/** An end's part of A_CI t. */
-Subdomain::Pull Subdomain::pull_at(const End &end, const std::vector<double> &t) const {
-    Pull pull{0, 0};
-    const double factor = end.sign() * graph_.w[end.atom];
-    for (const Graph::At *at = graph_.begin(end.atom); at != graph_.end(end.atom); ++at) {
-        const double term = factor * at->sign * t[at->bond] * dot(cut_d_[end.cut], bond_vector(at->bond)).hi;
-        pull.sum += term, pull.size += std::fabs(term);
-    }
-    return pull;
+/**
+ * What this process's atoms make of a matrix: its diagonal, pairs as Graph::for_pairs gives them, and their transposed.
+ * Rows have the vectors of `now`, columns those of the reference: A where both are the same.
+ */
+HOL_SUBDOMAIN_CLONES void Subdomain::matrix_inside(const std::vector<TwiceVector> &now, std::vector<double> &values,
+                                                   std::vector<double> *lower) const {
+    values.assign(reference_.inside.n_values(), 0.0);
+    for (int atom = 0; atom < n_atoms(); ++atom)
+        for (const Graph::At *at = graph_.begin(atom); at != graph_.end(atom); ++at)
+            values[at->row] += graph_.w[atom] * plain_dot(now[at->row], d_[at->row]);
+    for (int k = 0; k < n_bonds(); ++k)
+        if (is_fixed(k)) values[k] = 1;  // no constraint: its right-hand side is 0
+    double *pair = values.data() + graph_.n_rows;
+    graph_.for_pairs([&](int atom, const Graph::At &a, const Graph::At &b) {
+        *pair++ = graph_.w[atom] * a.sign * b.sign * plain_dot(now[a.row], d_[b.row]);
+    });
+    if (!lower) return;
+    lower->resize(values.size() - graph_.n_rows);
+    pair = lower->data();
+    graph_.for_pairs([&](int atom, const Graph::At &a, const Graph::At &b) {
+        *pair++ = graph_.w[atom] * a.sign * b.sign * plain_dot(now[b.row], d_[a.row]);
+    });
 }
 
-/** What multipliers of cut bonds do: x += G on their atoms, or w G. */
-void Subdomain::pull(std::vector<double> &x, const std::vector<double> &t_cut, bool with_masses) const {
-    for (const End &end : ends_)
-        for (int c = 0; c < 3; ++c)
-            x[3 * static_cast<std::size_t>(end.atom) + c] -=
-                (with_masses ? graph_.w[end.atom] : 1.0) * end.sign() * t_cut[end.cut] * cut_d_[end.cut].c[c].hi;
+/** Factors of such a matrix, in one sum. x, or NULL: a right-hand side; gives what it makes of the interface's. */
+std::vector<double> Subdomain::factorize(Factors &factors, const std::vector<TwiceVector> &now,
+                                         const std::vector<double> *x) {
+    const bool symmetric = &now == &d_;
+    const std::size_t n_values = factors.interface.n_values(), n_lower = symmetric ? 0 : n_values - n_interface_;
+    const Failure failure = symmetric
+                                ? Failure{HOL_ERR_DEGENERATE, "bonds of a divided molecule depend on each other"}
+                                : Failure{HOL_ERR_NO_CONVERGENCE,
+                                          "bond lengths of a divided molecule can't be reached from these positions"};
+    std::vector<double> all(n_values + n_lower + (x ? n_interface_ : 0), 0.0);
+    processes.alone([&] {
+        std::vector<double> values, lower;
+        matrix_inside(now, values, symmetric ? nullptr : &lower);
+        const int bad = factors.inside.factorize(values.data(), symmetric ? nullptr : lower.data());
+        if (bad >= 0) throw Failure{failure.status, failure.message + ": " + name_of(bad)};
+        for (int k = 0; k < factors.inside.n_rest(); ++k) all[row_of_rest_[k]] += factors.inside.rest_diagonal(k);
+        for (std::size_t p = 0; p < pair_of_rest_.size(); ++p) {
+            all[pair_of_rest_[p]] += factors.inside.rest_element(p);
+            if (!symmetric) all[n_values + pair_of_rest_[p] - n_interface_] += factors.inside.rest_lower(p);
+        }
+        if (x) gather(factors, *x, all.data() + n_values + n_lower);
+    });
+    processes.add_up(all);
+    for (int k = 0; k < n_cut(); ++k)
+        if (cut_is_fixed(k)) all[k] = 1;
+    if (factors.interface.factorize(all.data(), symmetric ? nullptr : all.data() + n_values) >= 0) throw failure;
+    return {all.begin() + static_cast<std::ptrdiff_t>(n_values + n_lower), all.end()};
 }
 
 void Subdomain::factorize(const double *r) {
     factorized_ = false;
-    r_.assign(r, r + 3 * static_cast<std::size_t>(n_atoms()));
-    reference_box_ = box_;
-    std::vector<double> shared;
-    share(r, shared);
+    std::vector<double> shared = of_ends({r});
+    processes.add_up(shared);
     cut_d_.resize(cut_lengths_.size());
-    for (int k = 0; k < n_cut(); ++k) {
-        const double *ends = shared.data() + 6 * static_cast<std::size_t>(k);
-        cut_d_[k] = box_.between(ends, ends + 3);
-    }
-    // Elements, and the sums of their terms in absolute values
-    std::vector<double> values(2 * static_cast<std::size_t>(n_entries_), 0.0);
-    processes.alone([&] {
-        find_columns();
-        for (int q = 0; q < reach_.n_colours; ++q)
-            for (int c = reach_.first_coupling[q]; c < reach_.first_coupling[q + 1]; ++c) {
-                if (entry_[c] < 0) continue;
-                const End &from = ends_[reach_.couplings[c].from], &to = ends_[reach_.couplings[c].to];
-                double sum = 0, size = 0;
-                const auto add = [&](double term) { sum += term, size += std::fabs(term); };
-                if (from.atom == to.atom) add(from.sign() * dot(cut_d_[to.cut], cut_d_[from.cut]).hi);
-                for (const Graph::At *at = graph_.begin(to.atom); at != graph_.end(to.atom); ++at)
-                    if (reach_.puller[q][at->bond] == reach_.couplings[c].from)
-                        add(-at->sign * columns_[q][at->bond] * dot(cut_d_[to.cut], bond_vector(at->bond)).hi);
-                values[entry_[c]] += to.sign() * graph_.w[to.atom] * sum;
-                values[n_entries_ + entry_[c]] += graph_.w[to.atom] * size;
-            }
-    });
-    processes.add_up(values);
     for (int k = 0; k < n_cut(); ++k)
-        if (cut_w_[2 * k] == 0 && cut_w_[2 * k + 1] == 0) values[k] = 1;  // no constraint: its right-hand side is 0
-    if (!factors_.factorize(values.data()))
-        throw Failure{HOL_ERR_DEGENERATE, "bonds of a divided molecule depend on each other"};
-    diagonal_.assign(values.begin(), values.begin() + n_cut());
-    size_.assign(values.begin() + n_entries_, values.end());
-    for (int e = n_cut(); e < n_entries_; ++e) values[e] = -std::fabs(values[e]);
-    bounded_ = exact_ && comparison_.factorize(values.data());
+        cut_d_[k] =
+            box_.between(&shared[6 * static_cast<std::size_t>(k)], &shared[6 * static_cast<std::size_t>(k) + 3]);
+    processes.alone([&] { find_vectors(r); });
+    factorize(reference_, d_, nullptr);
     factorized_ = true;
 }
 
-/** What the interface pulls inside: A_II^-1 A_IC, ends of one colour together. */
-void Subdomain::find_columns() {
-    columns_.resize(reach_.n_colours);
-    if (!chains_) return;
-    check(hol_chains_set_reference_box(chains_.get(), nullptr));
-    check(hol_chains_set_box(chains_.get(), box_.rows()));
-    check(hol_chains_set_box_rate(chains_.get(), nullptr));
-    std::vector<double> f(r_.size(), 0.0);
-    for (int q = 0; q < reach_.n_colours; ++q) {
-        std::vector<double> &column = columns_[q];
-        column.resize(lengths_.size());
-        for (int e : reach_.of_colour[q])
-            for (int c = 0; c < 3; ++c)
-                f[3 * static_cast<std::size_t>(ends_[e].atom) + c] += ends_[e].sign() * cut_d_[ends_[e].cut].c[c].hi;
-        check(hol_forces(chains_.get(), r_.data(), nullptr, f.data(), column.data(), nullptr, nullptr, HOL_WRITE,
-                         nullptr));
-        ++n_solves_;
-        for (double &t : column) t *= 2;
-        for (int e : reach_.of_colour[q]) std::fill_n(&f[3 * static_cast<std::size_t>(ends_[e].atom)], 3, 0.0);
+/** v_j - v_i, and what the box's rate adds. */
+HOL_SUBDOMAIN_INLINE TwiceVector Subdomain::rate_of(const TwiceVector &d, const double *i, const double *j) const {
+    TwiceVector u;
+    if (i && j) u = difference(j, i);
+    for (int x = 0; has_rate_ && x < 3; ++x) {
+        const double column[3] = {rate_[x], rate_[3 + x], rate_[6 + x]};
+        u = u + multiple(d.hi[x], column);
+        u.lo += multiple(d.lo[x], column).hi;
+    }
+    return u;
+}
+
+/** The acceleration level asks for d.a + u.u = 0, the velocity level for d.u = 0. */
+HOL_SUBDOMAIN_CLONES void Subdomain::right_hand_sides(const double *v, const double *f, bool with_forces, double *x) {
+    b_.assign(lengths_.size(), {});
+    for (int i = 0; with_forces && f && i < n_atoms(); ++i)
+        accelerations_[i] = multiple(graph_.w[i], f + 3 * static_cast<std::size_t>(i));
+    for (int k = 0; k < n_bonds(); ++k) {
+        const std::size_t i = graph_.bonds[k].from, j = graph_.bonds[k].to;
+        if (is_fixed(k)) continue;
+        const TwiceVector u = rate_of(d_[k], v ? v + 3 * i : nullptr, v ? v + 3 * j : nullptr);
+        b_[k] = with_forces ? dot(u, u) : dot(d_[k], u);
+        if (with_forces && f) b_[k] = b_[k] + dot(d_[k], accelerations_[j] - accelerations_[i]);
+        x[k] = b_[k].hi;
     }
 }
 
-/** Of the acceleration level, or of the velocity level without f; i, j: velocity and force of either atom. */
-Subdomain::RightHandSide Subdomain::right_hand_side(const TwiceVector &d, const double *w, const double *i,
-                                                    const double *j, bool with_forces) const {
-    if (w[0] == 0 && w[1] == 0) return {{}, 0};
-    TwiceVector u = difference(j, i), a{};
-    if (has_rate_)
-        for (int c = 0; c < 3; ++c)
-            for (int x = 0; x < 3; ++x) u.c[c] = u.c[c] + Twice{rate_[3 * c + x], 0} * d.c[x];
-    double size = 0;
-    if (!with_forces) {
-        for (int c = 0; c < 3; ++c) size += std::fabs(d.c[c].hi) * (std::fabs(i[c]) + std::fabs(j[c]));
-        return {dot(d, u), size};
-    }
-    for (int c = 0; c < 3; ++c) {
-        a.c[c] = product_of(w[1], j[3 + c]) - product_of(w[0], i[3 + c]);
-        size += std::fabs(d.c[c].hi) * (w[0] * std::fabs(i[3 + c]) + w[1] * std::fabs(j[3 + c]));
-    }
-    const Twice square = dot(u, u);
-    return {dot(d, a) + square, size + square.hi};
-}
-
-void Subdomain::cut_right_hand_sides(const double *v, const double *f, bool with_forces) {
-    std::vector<double> shared;
-    share(v, f, shared);
-    b_cut_.resize(cut_lengths_.size());
-    for (int k = 0; k < n_cut(); ++k) {
-        const double *ends = shared.data() + 12 * static_cast<std::size_t>(k);
-        b_cut_[k] = right_hand_side(cut_d_[k], &cut_w_[2 * static_cast<std::size_t>(k)], ends, ends + 6, with_forces);
+/** The same of cut bonds, from velocities and forces of either atom. */
+void Subdomain::cut_right_hand_sides(const double *shared, bool with_forces) {
+    b_cut_.assign(cut_lengths_.size(), {});
+    for (int k = 0; k < n_cut(); ++k, shared += 12) {
+        if (cut_is_fixed(k)) continue;
+        const TwiceVector u = rate_of(cut_d_[k], shared, shared + 6);
+        const TwiceVector a = multiple(cut_w_[2 * k + 1], shared + 9) - multiple(cut_w_[2 * k], shared + 3);
+        b_cut_[k] = with_forces ? dot(cut_d_[k], a) + dot(u, u) : dot(cut_d_[k], u);
     }
 }
 
-/** t_cut_ from what t_ is without it; gives whether its rounding is no more than what the library promises. */
-bool Subdomain::solve_interface() {
-    const std::size_t n = cut_lengths_.size();
-    std::vector<double> pulls(4 * n, 0.0);
-    processes.alone([&] {
-        for (const End &end : ends_) {
-            const Pull pull = pull_at(end, t_);
-            pulls[4 * static_cast<std::size_t>(end.cut) + 2 * end.side] = pull.sum;
-            pulls[4 * static_cast<std::size_t>(end.cut) + 2 * end.side + 1] = pull.size;
-        }
-    });
-    processes.add_up(pulls);
-    for (std::size_t k = 0; k < n; ++k) t_cut_[k] = (b_cut_[k].b.hi - pulls[4 * k]) - pulls[4 * k + 2];
-    factors_.solve(t_cut_.data());
-    if (!bounded_) return false;
-    // One rounding of each term that enters, through the inverse's bound, against the promise's scale: of that, the
-    // parts of the bond itself and of either end.
-    std::vector<double> error(n);
-    for (std::size_t k = 0; k < n; ++k)
-        error[k] = b_cut_[k].size + pulls[4 * k + 1] + pulls[4 * k + 3] + size_[k] * std::fabs(t_cut_[k]);
-    const auto &pairs = factors_.pairs();
-    for (std::size_t p = 0; p < pairs.size(); ++p) {
-        error[pairs[p][0]] += size_[n + p] * std::fabs(t_cut_[pairs[p][1]]);
-        error[pairs[p][1]] += size_[n + p] * std::fabs(t_cut_[pairs[p][0]]);
+/** rho = b - A t, from the accelerations that the multipliers give each atom; parts: d.a of cut bonds at either atom.
+ */
+HOL_SUBDOMAIN_CLONES void Subdomain::residuals(double *rho, double *parts) {
+    for (int i = 0; i < n_atoms(); ++i) {
+        TwiceVector sum;
+        for (const Graph::At *at = graph_.begin(i); at != graph_.end(i); ++at)
+            sum = sum + (-at->sign * t_[at->row]) * d_[at->row];
+        accelerations_[i] = graph_.w[i] * sum;
     }
-    comparison_.solve(error.data());
-    constexpr double roundings = 16;
-    for (std::size_t k = 0; k < n; ++k) {
-        const double scale = b_cut_[k].size + std::fabs(pulls[4 * k]) + std::fabs(pulls[4 * k + 2]);
-        if (!(error[k] <= roundings * (std::fabs(t_cut_[k]) + scale / diagonal_[k]))) return false;
+    for (int k = 0; k < n_bonds(); ++k)
+        rho[k] =
+            is_fixed(k)
+                ? 0
+                : (b_[k] + dot(d_[k], accelerations_[graph_.bonds[k].to] - accelerations_[graph_.bonds[k].from])).hi;
+    for (const End &end : ends_) {
+        const Twice part = dot(d_[end.row], accelerations_[end.atom]);
+        double *to = parts + 4 * static_cast<std::size_t>(end.cut) + 2 * end.side;
+        to[0] = end.sign() * part.hi, to[1] = end.sign() * part.lo;
+        rho[end.row] = 0;
     }
-    return true;
 }
 
-/** Multipliers and forces inside, or velocities and impulses, as the library finds them. */
-void Subdomain::solve_inside(const double *v, const double *f, Found &found, bool with_forces, bool multipliers_alone) {
-    found.lambda.resize(lengths_.size());
-    std::fill(found.virial, found.virial + 9, 0.0);
-    if (!chains_) return;
+/** Eliminates what is inside, and gives what that makes of the interface's right-hand side. */
+void Subdomain::gather(Factors &factors, const std::vector<double> &x, double *sums) {
+    factors.inside.forward(x.data());
+    for (int k = 0; k < factors.inside.n_rest(); ++k) sums[row_of_rest_[k]] = factors.inside.rest(k);
     ++n_solves_;
-    check(hol_chains_set_box_rate(chains_.get(), has_rate_ ? rate_ : nullptr));
-    double *virial = multipliers_alone ? nullptr : found.virial;
-    if (with_forces) {
-        check(hol_forces(chains_.get(), r_.data(), v, f, found.lambda.data(), nullptr,
-                         multipliers_alone ? nullptr : found.g.data(), HOL_ADD, virial));
-    } else {
-        found.v.assign(v, v + r_.size());
-        if (!multipliers_alone) pull(found.v, t_cut_, true);
-        check(hol_project_velocities(chains_.get(), r_.data(), found.v.data(), found.lambda.data(), virial));
+}
+
+void Subdomain::scatter(Factors &factors, const double *sums, std::vector<double> &x) {
+    for (int k = 0; k < factors.inside.n_rest(); ++k) factors.inside.rest(k) = sums[row_of_rest_[k]];
+    factors.inside.backward(x.data());
+}
+
+/** The largest change of a multiplier, relative to itself and those beside it, and to what its own pull amounts to. */
+HOL_SUBDOMAIN_CLONES double Subdomain::change_of(const std::vector<double> &dt) {
+    at_atoms_.assign(graph_.w.size(), 0.0);
+    for (int i = 0; i < n_atoms(); ++i)
+        for (const Graph::At *at = graph_.begin(i); at != graph_.end(i); ++at)
+            at_atoms_[i] = std::max(at_atoms_[i], std::fabs(t_[at->row]));
+    double worst = 0;
+    const auto take = [&](double change, double around, double b, double w, const TwiceVector &d) {
+        const double diagonal = w * plain_dot(d, d);
+        const double scaled = std::fabs(change) * diagonal, scale = around * diagonal + std::fabs(b);
+        if (!(scaled <= worst * scale)) worst = scaled / scale;  // a NaN is taken, and stays
+    };
+    for (int k = 0; k < n_bonds(); ++k) {
+        const Graph::Bond &bond = graph_.bonds[k];
+        take(dt[k], std::max(at_atoms_[bond.from], at_atoms_[bond.to]), b_[k].hi,
+             graph_.w[bond.from] + graph_.w[bond.to], d_[k]);
     }
+    for (const End &end : ends_)
+        take(dt[end.row], at_atoms_[end.atom], b_cut_[end.cut].hi, cut_w_[2 * end.cut] + cut_w_[2 * end.cut + 1],
+             d_[end.row]);
+    return worst;
+}
+
+/** Forces and virial of the multipliers t_. A cut bond's virial is its first atom's. */
+HOL_SUBDOMAIN_CLONES void Subdomain::pull(Found &found) const {
+    found.g.assign(3 * graph_.w.size(), 0.0);
+    for (int i = 0; i < n_atoms(); ++i) {
+        Four g = {0, 0, 0, 0};
+        for (const Graph::At *at = graph_.begin(i); at != graph_.end(i); ++at)
+            g -= at->sign * t_[at->row] * d_[at->row].hi;
+        for (int c = 0; c < 3; ++c) found.g[3 * i + c] = g[c];
+    }
+    Four virial[3] = {};
+    const auto add = [&](int row) {
+        const Four d = d_[row].hi, force = t_[row] * d;
+        for (int a = 0; a < 3; ++a) virial[a] -= force[a] * d;
+    };
+    for (int k = 0; k < n_bonds(); ++k) add(k);
+    for (const End &end : ends_)
+        if (end.side == 0) add(end.row);
+    for (int k = 0; k < 9; ++k) found.virial[k] = virial[k / 3][k % 3];
+}
+
+/** What the multipliers do. Not compiled for several processors itself: other files can't call such with all compilers.
+ */
+void Subdomain::react(Found &found) const {
+    pull(found);
+    found.lambda.assign(t_.begin(), t_.begin() + n_bonds());
+    found.cut_lambda = t_cut_;
+    for (std::vector<double> *lambdas : {&found.lambda, &found.cut_lambda})
+        for (double &lambda : *lambdas) lambda /= 2;
 }
 
 Found Subdomain::solve(const double *v, const double *f, bool with_forces) {
+    const std::size_t n = cut_lengths_.size();
+    t_.assign(graph_.n_rows, 0.0);
+    std::vector<double> shared = of_ends({v, f});
+    shared.resize(12 * n + n_interface_, 0.0);
+    processes.alone([&] {
+        right_hand_sides(v, f, with_forces, t_.data());
+        gather(reference_, t_, shared.data() + 12 * n);
+    });
+    processes.add_up(shared);
+    cut_right_hand_sides(shared.data(), with_forces);
+    double *solution = shared.data() + 12 * n;
+    for (std::size_t k = 0; k < n; ++k) solution[k] += b_cut_[k].hi;
+    reference_.interface.solve(solution);
+    t_cut_.assign(solution, solution + n);
+
+    dt_.assign(graph_.n_rows, 0.0);
+    std::vector<double> parts(4 * n + n_interface_, 0.0);
+    processes.alone([&] {
+        scatter(reference_, solution, t_);
+        residuals(dt_.data(), parts.data());
+        gather(reference_, dt_, parts.data() + 4 * n);
+    });
+    processes.add_up(parts);
+    double *correction = parts.data() + 4 * n;
+    for (std::size_t k = 0; k < n; ++k) {
+        const double *p = parts.data() + 4 * k;
+        correction[k] += (b_cut_[k] + Twice{p[0], p[1]} + Twice{p[2], p[3]}).hi;
+    }
+    reference_.interface.solve(correction);
+    for (std::size_t k = 0; k < n; ++k) t_cut_[k] += correction[k];
+
     Found found;
-    cut_right_hand_sides(v, f, with_forces);
+    double change = 0;
     processes.alone([&] {
-        solve_inside(v, f, found, with_forces, true);
-        t_ = found.lambda;
-        for (double &t : t_) t *= 2;
+        scatter(reference_, correction, dt_);
+        change = change_of(dt_);
+        for (std::size_t k = 0; k < t_.size(); ++k) t_[k] += dt_[k];
+        react(found);
+        if (with_forces) return;
+        found.v.assign(v, v + 3 * graph_.w.size());
+        for (int i = 0; i < n_atoms(); ++i)
+            for (int c = 3 * i; c < 3 * i + 3; ++c) found.v[c] += graph_.w[i] * found.g[c];
     });
-    const bool proven = solve_interface();
-    if (!proven) refine(v, f, with_forces);
-    processes.alone([&] {
-        found.g.assign(r_.size(), 0.0);
-        if (!proven) {
-            react(found);
-            if (!with_forces) {
-                found.v.assign(v, v + r_.size());
-                for (std::size_t k = 0; k < r_.size(); ++k) found.v[k] += graph_.w[k / 3] * found.g[k];
-            }
-        } else if (with_forces) {
-            pull(found.g, t_cut_, false);
-            std::vector<double> all = found.g;
-            for (std::size_t k = 0; f && k < all.size(); ++k) all[k] += f[k];
-            solve_inside(v, all.data(), found, true, false);
-        } else {
-            if (!chains_) found.v.assign(v, v + r_.size()), pull(found.v, t_cut_, true);
-            solve_inside(v, nullptr, found, false, false);
-        }
-        for (const End &end : ends_)
-            if (end.side == 0) add_virial(end.cut, found.virial);
-    });
-    processes.largest(0);  // whether all are through
-    found.cut_lambda = t_cut_;
-    for (double &lambda : found.cut_lambda) lambda /= 2;
+    // The correction has measured the error of the first solution; its own is as much smaller again.
+    last_change_ = processes.largest(change);
+    if (!(last_change_ * last_change_ <= std::numeric_limits<double>::epsilon()))
+        throw Failure{HOL_ERR_DEGENERATE,
+                      "multipliers of a divided molecule do not come to the rounding: its bonds "
+                      "nearly depend on each other"};
     return found;
 }
 
@@ -237,51 +278,24 @@ Found Subdomain::forces(const double *v, const double *f) { return solve(v, f, t
 Found Subdomain::velocities(const double *v) { return solve(v, nullptr, false); }
 
 void Subdomain::violation(const double *r, const double *v, double *worst) {
-    std::vector<double> shared;
-    share(r, v, shared);
-    hol_worst inside{};
-    processes.alone([&] {
-        if (!chains_) return;
-        check(hol_chains_set_box(chains_.get(), box_.rows()));
-        check(hol_chains_set_box_rate(chains_.get(), has_rate_ ? rate_ : nullptr));
-        check(hol_violation(chains_.get(), r, v, &inside));
-    });
-    worst[0] = inside.length, worst[1] = inside.rate;
-    for (int k = 0; k < n_cut(); ++k) {
-        const double *ends = shared.data() + 12 * static_cast<std::size_t>(k), a = cut_lengths_[k];
-        const TwiceVector d = box_.between(ends, ends + 6);
-        const double *w = &cut_w_[2 * static_cast<std::size_t>(k)];
-        if (w[0] == 0 && w[1] == 0) continue;
+    std::vector<double> shared = of_ends({r, v});
+    processes.add_up(shared);
+    worst[0] = worst[1] = 0;
+    const auto take = [&](const double *i, const double *j, const double *vi, const double *vj, double a) {
+        const TwiceVector d = box_.between(i, j);
         worst[0] = std::max(worst[0], std::fabs((dot(d, d) - product_of(a, a)).hi) / (a * a));
-        if (v) worst[1] = std::max(worst[1], std::fabs(right_hand_side(d, w, ends + 3, ends + 9, false).b.hi));
+        if (v) worst[1] = std::max(worst[1], std::fabs(dot(d, rate_of(d, vi, vj)).hi));
+    };
+    for (int k = 0; k < n_bonds(); ++k) {
+        const std::size_t i = 3 * static_cast<std::size_t>(graph_.bonds[k].from),
+                          j = 3 * static_cast<std::size_t>(graph_.bonds[k].to);
+        if (!is_fixed(k)) take(r + i, r + j, v ? v + i : nullptr, v ? v + j : nullptr, lengths_[k]);
+    }
+    for (int k = 0; k < n_cut(); ++k) {
+        const double *ends = shared.data() + 12 * static_cast<std::size_t>(k);
+        if (!cut_is_fixed(k)) take(ends, ends + 6, ends + 3, ends + 9, cut_lengths_[k]);
     }
     for (double *x : {worst, worst + 1}) *x = processes.largest(*x);
-}
-
-/** What the multipliers t_ and t_cut_ do. The virial is without cut bonds. */
-void Subdomain::react(Found &found) const {
-    found.g.assign(r_.size(), 0.0);
-    found.lambda.resize(t_.size());
-    std::fill(found.virial, found.virial + 9, 0.0);
-    for (int k = 0; k < n_bonds(); ++k) {
-        const TwiceVector vector = bond_vector(k);
-        double *from = &found.g[3 * static_cast<std::size_t>(graph_.bonds[k].from)];
-        double *to = &found.g[3 * static_cast<std::size_t>(graph_.bonds[k].to)];
-        const double d[3] = {vector.c[0].hi, vector.c[1].hi, vector.c[2].hi};
-        for (int a = 0; a < 3; ++a) {
-            from[a] += t_[k] * d[a];
-            to[a] -= t_[k] * d[a];
-            for (int b = 0; b < 3; ++b) found.virial[3 * a + b] -= t_[k] * d[a] * d[b];
-        }
-        found.lambda[k] = t_[k] / 2;
-    }
-    pull(found.g, t_cut_, false);
-}
-
-void Subdomain::add_virial(int cut, double *virial) const {
-    const TwiceVector &d = cut_d_[cut];
-    for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b) virial[3 * a + b] -= t_cut_[cut] * d.c[a].hi * d.c[b].hi;
 }
 
 }  // namespace holonomic_subdomain

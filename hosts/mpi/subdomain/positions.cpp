@@ -1,7 +1,6 @@
-// Positions: the interface's multipliers by Broyden's method, everything inside by the library's own.
+// Positions: Newton's method with the factors of the reference, and with new ones where these converge slowly.
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "subdomain.hpp"
 
@@ -10,103 +9,106 @@ namespace holonomic_subdomain {
 namespace {
 
 constexpr int most_steps = 50;
+/** New factors cost as much as three or four steps with those that are there, and save as many. */
+constexpr double slow = 0.01;
+/** Roundings of the coordinates that are no matter for new factors any more. */
+constexpr double close = 1e4;
 
-/** Broyden's method in steps: the next one from what the matrix at the start makes of the residual (Kelley 1995, 7.3).
- */
-class Broyden {
-public:
-    /** z: -H_0 F; gives the step. */
-    std::vector<double> next(std::vector<double> z) {
-        for (std::size_t j = 0; j + 1 < steps_.size(); ++j) add(z, dot(steps_[j], z) / squares_[j], steps_[j + 1]);
-        if (!steps_.empty()) {
-            const double factor = 1 - dot(steps_.back(), z) / squares_.back();
-            if (factor != 0)
-                for (double &x : z) x /= factor;
-        }
-        const double square = dot(z, z);
-        if (square > 0) steps_.push_back(z), squares_.push_back(square);
-        return z;
-    }
-
-private:
-    static double dot(const std::vector<double> &a, const std::vector<double> &b) {
-        return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-    }
-    static void add(std::vector<double> &z, double factor, const std::vector<double> &s) {
-        for (std::size_t k = 0; k < z.size(); ++k) z[k] += factor * s[k];
-    }
-
-    std::vector<std::vector<double>> steps_;
-    std::vector<double> squares_;
-};
+/** The larger of worst and D.D - a^2 in units of what the rounding of the two atoms' coordinates does to it. */
+HOL_SUBDOMAIN_INLINE double larger(double worst, double sigma, double a, const double *i, const double *j) {
+    double extent = a;
+    for (int c = 0; c < 3; ++c) extent = std::max(extent, std::max(std::fabs(i[c]), std::fabs(j[c])));
+    const double unit = std::numeric_limits<double>::epsilon() * a * extent;
+    return std::fabs(sigma) <= worst * unit ? worst : std::fabs(sigma) / unit;  // a NaN is taken
+}
 
 }  // namespace
 
-/** The bonds inside onto their lengths, along those of the reference. */
-void Subdomain::project_inside(std::vector<double> &r, double dt) {
-    if (!chains_) return;
-    std::vector<double> lambda(lengths_.size(), 0.0);
-    check(hol_project_positions(chains_.get(), r_.data(), r.data(), nullptr, dt, lambda.data(), 0, nullptr, nullptr));
-    for (std::size_t k = 0; k < t_.size(); ++k) t_[k] += 2 * lambda[k];
-    ++n_solves_;
-}
-
-/** sigma = D.D - a^2 of each cut bond; gives the largest, in units of what the rounding of coordinates does to it. */
-double Subdomain::excess(const std::vector<double> &shared, std::vector<double> &sigma) const {
+/** sigma = D.D - a^2 of each bond inside, and bond vectors; gives the largest, in roundings of the coordinates. */
+HOL_SUBDOMAIN_CLONES double Subdomain::excess(const double *r, double *sigma) {
     double worst = 0;
-    for (int k = 0; k < n_cut(); ++k) {
-        const double *i = shared.data() + 6 * static_cast<std::size_t>(k), *j = i + 3, a = cut_lengths_[k];
-        const TwiceVector d = box_.between(i, j);
-        sigma[k] = cut_w_[2 * k] == 0 && cut_w_[2 * k + 1] == 0 ? 0 : (dot(d, d) - product_of(a, a)).hi;
-        double extent = a;
-        for (int c = 0; c < 3; ++c) extent = std::max({extent, std::fabs(i[c]), std::fabs(j[c])});
-        const double unit = std::numeric_limits<double>::epsilon() * a * extent;
-        worst = std::max(worst, std::fabs(sigma[k]) / unit);
-        if (!std::isfinite(sigma[k])) return HUGE_VAL;
+    for (int k = 0; k < n_bonds(); ++k) {
+        const double *i = r + 3 * static_cast<std::size_t>(graph_.bonds[k].from),
+                     *j = r + 3 * static_cast<std::size_t>(graph_.bonds[k].to), a = lengths_[k];
+        now_[k] = box_.between(i, j);
+        sigma[k] = is_fixed(k) ? 0 : (dot(now_[k], now_[k]) - product_of(a, a)).hi;
+        worst = larger(worst, sigma[k], a, i, j);
     }
     return worst;
 }
 
+/** The same of cut bonds. */
+double Subdomain::cut_excess(const double *ends, std::vector<double> &sigma) {
+    double worst = 0;
+    std::vector<TwiceVector> vectors(cut_lengths_.size());
+    for (int k = 0; k < n_cut(); ++k, ends += 6) {
+        const double a = cut_lengths_[k];
+        vectors[k] = box_.between(ends, ends + 3);
+        sigma[k] = cut_is_fixed(k) ? 0 : (dot(vectors[k], vectors[k]) - product_of(a, a)).hi;
+        worst = larger(worst, sigma[k], a, ends, ends + 3);
+    }
+    for (const End &end : ends_) now_[end.row] = vectors[end.cut];
+    return worst;
+}
+
+/** What multipliers do to the atoms, along the bonds of the reference. */
+HOL_SUBDOMAIN_CLONES void Subdomain::move(std::vector<double> &r, const std::vector<double> &multipliers,
+                                          double factor) const {
+    for (int i = 0; i < n_atoms(); ++i) {
+        Four sum = {0, 0, 0, 0};
+        for (const Graph::At *at = graph_.begin(i); at != graph_.end(i); ++at)
+            sum += at->sign * multipliers[at->row] * d_[at->row].hi;
+        sum *= graph_.w[i] * factor;
+        for (int c = 0; c < 3; ++c) r[3 * static_cast<std::size_t>(i) + c] -= sum[c];
+    }
+}
+
 Found Subdomain::positions(std::vector<double> &r, double dt) {
-    std::vector<double> shared, step(cut_lengths_.size());
-    std::fill(t_.begin(), t_.end(), 0.0);
-    std::fill(t_cut_.begin(), t_cut_.end(), 0.0);
-    processes.alone([&] {
-        if (chains_) {
-            check(hol_chains_set_reference_box(chains_.get(), reference_box_.rows()));
-            check(hol_chains_set_box(chains_.get(), box_.rows()));
-        }
-        project_inside(r, dt);
-    });
+    const std::size_t n = cut_lengths_.size();
+    const double square = dt * dt;
+    t_.assign(graph_.n_rows, 0.0);
+    t_cut_.assign(n, 0.0);
+    now_.resize(graph_.n_rows);
+    std::vector<double> cut_sigma(n);
+    Factors *factors = &reference_;
     Found found;
-    Broyden broyden;
     double before = HUGE_VAL;
     for (;; ++found.steps) {
-        share(r.data(), shared);
-        const double worst = excess(shared, step);
+        std::vector<double> shared = of_ends({r.data()});
+        shared.resize(6 * n + n_interface_ + processes.n_ranks(), 0.0);
+        processes.alone([&] {
+            dt_.assign(graph_.n_rows, 0.0);
+            shared[6 * n + n_interface_ + processes.rank()] = excess(r.data(), dt_.data());
+            for (double &x : dt_) x *= 0.5 / square;
+            gather(*factors, dt_, shared.data() + 6 * n);
+        });
+        processes.add_up(shared);
+        double worst = cut_excess(shared.data(), cut_sigma);
+        for (std::size_t k = 6 * n + n_interface_; k < shared.size(); ++k)
+            if (!(shared[k] <= worst)) worst = shared[k];
         // A few roundings of the two atoms' coordinates; some more if no step makes it less.
         if (worst <= 4 || (worst <= 32 && worst >= before / 2)) break;
         if (found.steps == most_steps || !std::isfinite(worst))
-            throw Failure{HOL_ERR_NO_CONVERGENCE, "the lengths of cut bonds can't be reached from these positions"};
+            throw Failure{HOL_ERR_NO_CONVERGENCE,
+                          "bond lengths of a divided molecule can't be reached from these positions"};
+        std::vector<double> solution(shared.begin() + static_cast<std::ptrdiff_t>(6 * n),
+                                     shared.begin() + static_cast<std::ptrdiff_t>(6 * n + n_interface_));
+        if (worst > slow * before && worst > close) {
+            factors = &anew_;
+            solution = factorize(anew_, now_, &dt_);
+        }
         before = worst;
-        for (double &x : step) x /= 2 * dt * dt;
-        factors_.solve(step.data());
-        step = broyden.next(step);
+        for (std::size_t k = 0; k < n; ++k) solution[k] += cut_sigma[k] / (2 * square);
+        factors->interface.solve(solution.data());
+        for (std::size_t k = 0; k < n; ++k) t_cut_[k] += solution[k];
         processes.alone([&] {
-            std::vector<double> scaled = step;
-            for (std::size_t k = 0; k < step.size(); ++k) t_cut_[k] += step[k], scaled[k] *= dt * dt;
-            pull(r, scaled, true);
-            project_inside(r, dt);
+            scatter(*factors, solution.data(), dt_);
+            move(r, dt_, square);
+            for (std::size_t k = 0; k < t_.size(); ++k) t_[k] += dt_[k];
         });
     }
-    processes.alone([&] {
-        react(found);
-        for (const End &end : ends_)
-            if (end.side == 0) add_virial(end.cut, found.virial);
-    });
+    processes.alone([&] { react(found); });
     processes.largest(0);  // whether all are through
-    found.cut_lambda = t_cut_;
-    for (double &lambda : found.cut_lambda) lambda /= 2;
     return found;
 }
 

@@ -1,7 +1,8 @@
 #ifndef HOLONOMIC_SUBDOMAIN_SUBDOMAIN_HPP
 #define HOLONOMIC_SUBDOMAIN_SUBDOMAIN_HPP
 
-#include <memory>
+#include <initializer_list>
+#include <string>
 
 #include "box.hpp"
 #include "graph.hpp"
@@ -26,12 +27,14 @@ struct Found {
 };
 
 /**
- * The equations A t = b of docs/theory.md, t = 2 lambda, of bonds that several processes hold. I: bonds inside of the
- * processes' subdomains, C: cut ones. Each process has its rows of I; all have those of C.
+ * The equations A t = b of docs/theory.md, t = 2 lambda, of bonds that several processes hold. Each process eliminates
+ * the bonds inside of its subdomain (I), but for some where many cut bonds meet; what is left is the interface's (C),
+ * which all processes add up and solve alike.
  *
  *     S = A_CC - A_CI A_II^-1 A_IC,   S t_C = b_C - A_CI A_II^-1 b_I,   A_II t_I = b_I - A_IC t_C
  *
- * The first and the last are solved by the library, with pulls of cut bonds as forces on their atoms.
+ * A residual of all bonds in twice the precision then corrects t once, and what the correction changes tells what error
+ * is left: two solutions and three sums over processes, whatever the molecule is.
  */
 class Subdomain {
 public:
@@ -56,89 +59,72 @@ public:
     Processes processes;
 
 private:
-    /** The right-hand side of a cut bond, and the sum of its terms in absolute values. */
-    struct RightHandSide {
-        Twice b;
-        double size;
-    };
-
-    /** A_CI t of one end, and the sum of its terms in absolute values. */
-    struct Pull {
-        double sum, size;
+    /** Of the bonds inside, and of the interface: cut bonds, then what each process has left of those inside. */
+    struct Factors {
+        SparseFactors inside, interface;
     };
 
     void make_inside(const Given &given);
     void check_ends(const std::vector<std::int64_t> &ends);
     void make_interface();
 
-    void share(const double *x, std::vector<double> &shared);
-    void share(const double *x, const double *y, std::vector<double> &shared);
-    TwiceVector bond_vector(int bond) const;
-    void find_columns();
-    void pull(std::vector<double> &x, const std::vector<double> &t_cut, bool with_masses) const;
+    std::vector<double> of_ends(std::initializer_list<const double *> arrays) const;
+    void find_vectors(const double *r);
+    void matrix_inside(const std::vector<TwiceVector> &now, std::vector<double> &values,
+                       std::vector<double> *lower) const;
+    std::vector<double> factorize(Factors &factors, const std::vector<TwiceVector> &now, const std::vector<double> *x);
 
-    RightHandSide right_hand_side(const TwiceVector &d, const double *w, const double *i, const double *j,
-                                  bool with_forces) const;
-    void cut_right_hand_sides(const double *v, const double *f, bool with_forces);
-    Pull pull_at(const End &end, const std::vector<double> &t) const;
-    bool solve_interface();
-    void solve_inside(const double *v, const double *f, Found &found, bool with_forces, bool multipliers_alone);
+    TwiceVector rate_of(const TwiceVector &d, const double *i, const double *j) const;
+    void right_hand_sides(const double *v, const double *f, bool with_forces, double *x);
+    void cut_right_hand_sides(const double *shared, bool with_forces);
+    void residuals(double *rho, double *parts);
+    void gather(Factors &factors, const std::vector<double> &x, double *sums);
+    void scatter(Factors &factors, const double *sums, std::vector<double> &x);
+    double change_of(const std::vector<double> &dt);
     Found solve(const double *v, const double *f, bool with_forces);
 
-    void refine(const double *v, const double *f, bool with_forces);
-    void inner_right_hand_sides(const double *v, const double *f, bool with_forces);
-    void residuals(std::vector<double> &rho, std::vector<double> &parts);
-    void correct(const std::vector<double> &rho, std::vector<double> &parts, std::vector<double> &dt,
-                 std::vector<double> &dt_cut);
-    double change_of(const std::vector<double> &dt, const std::vector<double> &dt_cut);
-
-    void project_inside(std::vector<double> &r, double dt);
-    double excess(const std::vector<double> &shared, std::vector<double> &sigma) const;
+    double excess(const double *r, double *sigma);
+    double cut_excess(const double *ends, std::vector<double> &sigma);
+    void move(std::vector<double> &r, const std::vector<double> &multipliers, double factor) const;
+    void pull(Found &found) const;
     void react(Found &found) const;
-    void add_virial(int cut, double *virial) const;
+    std::string name_of(int row) const;
 
     int n_cut() const { return static_cast<int>(cut_lengths_.size()); }
     int n_bonds() const { return graph_.n_bonds(); }
+    bool is_fixed(int bond) const {
+        return graph_.w[graph_.bonds[bond].from] == 0 && graph_.w[graph_.bonds[bond].to] == 0;
+    }
+    bool cut_is_fixed(int cut) const { return cut_w_[2 * cut] == 0 && cut_w_[2 * cut + 1] == 0; }
 
     Graph graph_;
     std::vector<double> lengths_, cut_lengths_;
-    std::unique_ptr<hol_chains, void (*)(hol_chains *)> chains_;
+    std::vector<std::int64_t> labels_;
     std::vector<End> ends_;
-    std::vector<double> cut_w_;  // [n_cut][2], on every process
-    Reach reach_;
-    bool exact_ = true;       // no part on any process has more ends than are treated exactly
-    std::vector<int> entry_;  // of the interface's matrix, by coupling; -1: it is the transpose of another
-    int n_entries_ = 0;
-    SparseFactors factors_;
-    SparseFactors
-        comparison_;        // of the matrix with its diagonal, and the rest negative: its inverse bounds the other's
-    bool bounded_ = false;  // whether it does
+    std::vector<double> cut_w_;     // [n_cut][2], on every process
+    Factors reference_, anew_;      // at the positions of factorize(); at those on the way to the next
+    std::size_t n_interface_ = 0;   // its rows
+    std::vector<int> row_of_rest_;  // of the interface's, for each that is left inside
+    std::vector<std::size_t> pair_of_rest_;
 
-    Box box_, reference_box_;
+    Box box_;
     double rate_[9] = {0};
     bool has_rate_ = false;
 
     bool factorized_ = false;
-    std::vector<double> r_;
     std::vector<TwiceVector> cut_d_;
-    std::vector<double> size_;                  // of the terms of the interface's elements
-    std::vector<double> diagonal_;              // of the interface's matrix
-    std::vector<std::vector<double>> columns_;  // A_II^-1 A_IC, by colour
+    std::vector<TwiceVector> d_,
+        now_;  // of the process's equations: of the reference, on the way to the next positions
 
-    std::vector<double> t_, t_cut_;
-    std::vector<RightHandSide> b_cut_;
-
-    // Of refinement alone
-    std::vector<TwiceVector> d_, accelerations_;
-    std::vector<Twice> b_;
+    std::vector<double> t_, dt_;    // multipliers of the process's equations, and their correction
+    std::vector<double> t_cut_;     // of all cut bonds
+    std::vector<Twice> b_, b_cut_;  // right-hand sides of bonds inside, of all cut ones
+    std::vector<TwiceVector> accelerations_;
     std::vector<double> at_atoms_;
 
-    std::int64_t n_solves_ = 0, n_refined_ = 0;
+    std::int64_t n_solves_ = 0;
     double last_change_ = 0;
 };
-
-/** Throws what a call of the library returns unless it is HOL_OK. */
-void check(int status);
 
 }  // namespace holonomic_subdomain
 

@@ -90,8 +90,9 @@ void add_protein(Builder &b, int n_bonds) {
     }
 }
 
-/** Knots of a cubic lattice, strands of 100 bonds between neighbours, a fifth of them missing. */
-void add_gel(Builder &b, int n_bonds) {
+/** Knots of a cubic lattice, strands of 100 bonds between neighbours, a fifth of them missing. loose: how much each
+ * bond is away from the straight line. */
+void add_gel(Builder &b, int n_bonds, double loose) {
     constexpr int n_strand = 100;
     const int side = std::max(2, static_cast<int>(std::cbrt(n_bonds / n_strand / 2.4) + 1));
     const double step = 25;
@@ -109,7 +110,7 @@ void add_gel(Builder &b, int n_bonds) {
             for (int k = 1; k < n_strand; ++k) {
                 const Point from = b.at(last), d = b.direction();
                 Point to;
-                for (int x = 0; x < 3; ++x) to[x] = from[x] + 0.9 * d[x] + (end[x] - from[x]) / (n_strand - k + 1);
+                for (int x = 0; x < 3; ++x) to[x] = from[x] + loose * d[x] + (end[x] - from[x]) / (n_strand - k + 1);
                 const int atom = b.atom(1, to);
                 b.bond(last, atom);
                 last = atom;
@@ -135,7 +136,20 @@ Scene make_scene(const std::string &kind, int n_bonds, int n_pieces, const std::
     if (kind == "protein") {
         add_protein(b, n_bonds);
     } else if (kind == "gel") {
-        add_gel(b, n_bonds);
+        add_gel(b, n_bonds, 0.9);
+    } else if (kind == "taut") {
+        add_gel(b, n_bonds, 0.02);
+        b.scene.stiff = true;
+        b.scene.time_step = 1e-4;
+    } else if (kind == "flat") {
+        // A chain with a triangle whose height is 10^-n_bonds
+        const double height = std::pow(10, -n_bonds);
+        const int corner = b.strand(b.atom(1, {0, 0, 0}), 10, 1, 0.3, {1, 0, 0});
+        const Point at = b.at(corner);
+        const int middle = b.atom(1, {at[0] + 1, at[1] + height, at[2]}), end = b.atom(1, {at[0] + 2, at[1], at[2]});
+        b.bond(corner, middle), b.bond(middle, end), b.bond(corner, end);
+        b.strand(end, 10, 1, 0.3, {1, 0, 0});
+        b.scene.stiff = true;
     } else if (kind == "chain" || kind == "rod" || kind == "light") {
         b.strand(b.atom(1, {0, 0, 0}), n_bonds, 1, kind == "rod" ? 0.999 : 0.3, {1, 0, 0});
         if (kind == "light")  // masses over eight decades, and a fixed atom

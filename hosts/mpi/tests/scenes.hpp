@@ -47,7 +47,8 @@ private:
     std::uniform_real_distribution<double> uniform_;
 };
 
-/** kind: chain, rod, protein, gel or light, of about n_bonds bonds; layout: blocks, slabs, or slabs in a box. */
+/** kind: chain, rod, protein, gel, taut or light, of about n_bonds bonds, or flat; layout: blocks, slabs, or slabs in a
+ * box. */
 Scene make_scene(const std::string &kind, int n_bonds, int n_pieces, const std::string &layout);
 
 #endif
