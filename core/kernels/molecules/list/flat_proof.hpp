@@ -10,7 +10,7 @@
 #define HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_PROOF_HPP
 
 #include "core/kernels/molecules/cycles/proof.hpp"
-#include "core/kernels/molecules/list/flat_linear.hpp"
+#include "core/kernels/molecules/list/flat_residual.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
@@ -20,10 +20,12 @@ struct FlatProof {
     const FlatLinear &x;
     const FlatList &s;
     const Inputs &in;
-    explicit FlatProof(const FlatLinear &linear) : x(linear), s(linear.s), in(linear.in) {}
+    FlatResidual residual;
+    explicit FlatProof(const FlatLinear &linear) : x(linear), s(linear.s), in(linear.in), residual(linear) {}
 
-    // Whether a column's bond needs no correction by all terms of its equation, in absolute values, and those of R.
-    __attribute__((noinline)) bool is_proven(const Tile &tile, int32_t k) const {
+    // Whether a column's bond needs no correction by all terms of its equation, in absolute values, and those of R; or by
+    // what is left of the equation.
+    __attribute__((noinline)) bool is_proven(const Tile &tile, int32_t k) {
         const int32_t row = tile.first_row + (k - tile.first);
         const int32_t end[2] = {s.from[row] / 4, s.to[row] / 4};
         double sum = 0, velocity[2][3] = {}, tensions = 0;
@@ -48,10 +50,11 @@ struct FlatProof {
             for (int b = a; b < 3; ++b, ++e) sum += abs(in.strain[e] * x.d[row][a] * x.d[row][b]);
         for (int c = 0; c < 3 && !in.rates; ++c)
             sum += (velocity[1][c] - velocity[0][c]) * (velocity[1][c] - velocity[0][c]);
-        return x.back[k] + x.size[k] * tensions <= most_backward(s.n_bonds) * sum;
+        const double most = most_backward(s.n_bonds) * sum;
+        return x.back[k] + x.size[k] * tensions <= most || abs(residual.of(tile, k)) <= epsilon * most;
     }
     // Of a tile, but for the bonds of which not all is known yet. A part of the terms does for most.
-    __attribute__((noinline)) bool is_proven(const Tile &tile) const {
+    __attribute__((noinline)) bool is_proven(const Tile &tile) {
         const double most = most_backward(s.n_bonds);
         const Rows of = x.a_of(tile);
         int32_t next = tile.first_outer;
@@ -82,7 +85,7 @@ struct FlatProof {
         return true;
     }
     // The others, in the end.
-    __attribute__((noinline)) bool is_proven() const {
+    __attribute__((noinline)) bool is_proven() {
         for (int32_t i = 0; i < s.n_tiles; ++i) add_sides(s, s.tile[i], x.back);
         for (int32_t i = 0; i < s.n_tiles; ++i)
             for (int32_t k = s.tile[i].first_outer; k < s.tile[i].end_outer; ++k)
@@ -91,7 +94,7 @@ struct FlatProof {
     }
 
     // Reads the molecule and solves; false where that is in doubt.
-    bool solve() const {
+    bool solve() {
         clear_sides(s, x.t);
         clear_sides(s, x.E);
         clear_sides(s, x.back);
