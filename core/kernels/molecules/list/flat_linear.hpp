@@ -27,19 +27,21 @@ struct FlatLinear {
     double *lower, *size;       // |d|
     double *diagonal, *back;    // of A; R
     int32_t *bonds_at;          // of one tile: flat_residual.hpp
-    Rows d_low, a_low;          // what refinement adds to bonds and accelerations, of a list of one tile
+    Rows d_low, a_low;          // what refinement adds to the bonds of one tile, and to the accelerations of all
 
     static int64_t values(const FlatList &s) {
         return mass_values(s) + 4 * (2 * static_cast<int64_t>(s.n_sites) + static_cast<int64_t>(s.n_rows)) +
                8 * static_cast<int64_t>(s.most_sites) + 2 * in_fours(s.n_bonds) + 4 * in_fours(s.n_columns) +
                in_fours(s.n_entries) + bonds_at_values(s) + refinement_values(s);
     }
+    static int64_t most_columns(const FlatList &s) {
+        return in_fours(s.n_tiles > 1 ? FlatList::columns_of_tile : s.n_bonds);
+    }
     static int64_t bonds_at_values(const FlatList &s) {
-        const int64_t columns = s.n_tiles > 1 ? FlatList::columns_of_tile : s.n_bonds;
-        return in_fours((s.most_sites + 3 + 2 * columns) / 2);
+        return in_fours((s.most_sites + 3 + 2 * most_columns(s)) / 2);
     }
     static int64_t refinement_values(const FlatList &s) {
-        return s.n_tiles > 1 ? 0 : 4 * (static_cast<int64_t>(s.n_rows) + s.n_sites);
+        return 4 * (most_columns(s) + s.n_sites);
     }
     FlatLinear(const FlatList &list, const MoleculeLane &l, bool packed, const Box &b, const AtomArray &positions,
                const Inputs &inputs, int sides, Memory<double> memory)
@@ -59,8 +61,7 @@ struct FlatLinear {
         a = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
         mass = memory.values(mass_values(s));
         bonds_at = reinterpret_cast<int32_t *>(memory.values(bonds_at_values(s)));
-        if (s.n_tiles > 1) return;
-        d_low = {memory.values(4 * static_cast<int64_t>(s.n_rows))};
+        d_low = {memory.values(4 * most_columns(s))};
         a_low = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
     }
     HOL_FORCED Row &four(double *values, int64_t k) const { return *reinterpret_cast<Row *>(values + k); }
