@@ -37,12 +37,8 @@ struct FlatLinear {
     static int64_t most_columns(const FlatList &s) {
         return in_fours(s.n_tiles > 1 ? FlatList::columns_of_tile : s.n_bonds);
     }
-    static int64_t bonds_at_values(const FlatList &s) {
-        return in_fours((s.most_sites + 3 + 2 * most_columns(s)) / 2);
-    }
-    static int64_t refinement_values(const FlatList &s) {
-        return 4 * (most_columns(s) + s.n_sites);
-    }
+    static int64_t bonds_at_values(const FlatList &s) { return in_fours((s.most_sites + 3 + 2 * most_columns(s)) / 2); }
+    static int64_t refinement_values(const FlatList &s) { return 4 * (most_columns(s) + s.n_sites); }
     FlatLinear(const FlatList &list, const MoleculeLane &l, bool packed, const Box &b, const AtomArray &positions,
                const Inputs &inputs, int sides, Memory<double> memory)
         : s(list), lane(l), at(&l, 1, packed), box(b), coordinates(positions), in(inputs), terms(sides) {

@@ -62,8 +62,8 @@ struct FlatRefine {
         for (int64_t k = 0; k < rows; ++k) {
             const int64_t row = tile.first_row + k;
             Vector3<double> d = {}, low = {};
-            unrounded_bond(x.box, vector_of(x.r.at_four_times(s.from[row])), vector_of(x.r.at_four_times(s.to[row])),
-                           d, low);
+            unrounded_bond(x.box, vector_of(x.r.at_four_times(s.from[row])), vector_of(x.r.at_four_times(s.to[row])), d,
+                           low);
             x.d[row] = row_of(d);
             x.d_low[k] = row_of(low);
         }
@@ -99,8 +99,7 @@ struct FlatRefine {
         }
         for (int32_t i = tile.first_visit; i < tile.end_visit; ++i) {
             const int32_t own_site = 4 * s.visit[i].own, guest = 4 * s.visit[i].guest;
-            set(x.pull, x.a_low, own_site,
-                add_pairs(get(x.pull, x.a_low, own_site), get(x.pull, x.a_low, guest)));
+            set(x.pull, x.a_low, own_site, add_pairs(get(x.pull, x.a_low, own_site), get(x.pull, x.a_low, guest)));
         }
         const double *const w = x.mass + tile.first_mass;
         for (int32_t i = 0; i < own; ++i) {

@@ -1,6 +1,6 @@
-// What the multipliers of one large molecule leave of the equation of a single bond, in twice the precision. The bound of
-// flat_proof.hpp is for the worst case: of a million bonds some miss it by little, whose equations are solved all the
-// same.
+// What the multipliers of one large molecule leave of the equation of a single bond, in twice the precision. The bound
+// of flat_proof.hpp is for the worst case: of a million bonds some miss it by little, whose equations are solved all
+// the same.
 #ifndef HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_RESIDUAL_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_RESIDUAL_HPP
 
