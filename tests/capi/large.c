@@ -132,6 +132,28 @@ molecule large_rings(int64_t n_atoms)
     return m;
 }
 
+molecule large_ladder(int64_t n_rungs)
+{
+    molecule m = molecule_empty();
+    random_stream s = random_seed(6);
+    double at[3] = {0};
+    for (int64_t i = 0; i < n_rungs; ++i) {
+        const double turn = 0.5 * (double)i;
+        const double rung[3] = {cos(turn) + 0.3 * random_uniform(&s), sin(turn) + 0.3 * random_uniform(&s),
+                                0.3 * random_uniform(&s)};
+        double end[3];
+        for (int c = 0; c < 3; ++c) end[c] = at[c] + rung[c];
+        molecule_add_atom(&m, some_mass(&s), at);
+        molecule_add_atom(&m, some_mass(&s), end);
+        molecule_add_bond(&m, 2 * i, 2 * i + 1);
+        for (int rail = 0; rail < 2 && i > 0; ++rail) molecule_add_bond(&m, 2 * i - 2 + rail, 2 * i + rail);
+        for (int c = 0; c < 2; ++c) at[c] += 0.6 * (random_uniform(&s) - 0.5);
+        at[2] += 0.8;
+    }
+    molecule_finish(&m, &s);
+    return m;
+}
+
 void large_turn_bonds(molecule *m)
 {
     for (int64_t k = 0, last = m->n_bonds - 1; k < last; ++k, --last) {

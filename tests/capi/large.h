@@ -27,6 +27,9 @@ molecule large_segments(int64_t n_atoms, int64_t segment, int64_t ring, uint64_t
 /** A chain that closes rings of six, with atoms on its sides. */
 molecule large_rings(int64_t n_atoms);
 
+/** Two rails and rungs between them, as bent as may be: multipliers of single bonds cancel. */
+molecule large_ladder(int64_t n_rungs);
+
 /** Puts the bonds backwards, and turns them round. */
 void large_turn_bonds(molecule *m);
 

@@ -203,6 +203,84 @@ static void every_size_about_the_limit_agrees_with_a_dense_solution(void **state
     }
 }
 
+/** What multipliers leave of d.(a_j - a_i) + c, in units of the terms that it is made of, and of their rounding: a = w
+ * (f + G), c = |v_j - v_i|^2; or a = v + w G and no c; or c given. All of it in long double. */
+static void leave_roundings_of_equations(const molecule *m, const double *lambda, const double *v, const double *f,
+                                         int rates, const double *given)
+{
+    long double *a = calloc(3 * (size_t)m->n_atoms, sizeof *a), largest = 0;
+    double *tension = calloc((size_t)m->n_atoms, sizeof *tension);
+    for (int64_t i = 0; f && i < 3 * m->n_atoms; ++i) a[i] = f[i];
+    for (int64_t k = 0; k < m->n_bonds; ++k)
+        for (int e = 0; e < 2; ++e) {
+            const int64_t i = m->pairs[2 * k + e], j = m->pairs[2 * k + 1 - e];
+            tension[i] += 2 * fabs(lambda[k]) * m->length[k];
+            for (int c = 0; c < 3; ++c)
+                a[3 * i + c] += 2.0L * lambda[k] * ((long double)m->r[3 * j + c] - m->r[3 * i + c]);
+        }
+    for (int64_t i = 0; i < 3 * m->n_atoms; ++i) a[i] = a[i] / m->mass[i / 3] + (rates ? v[i] : 0);
+    for (int64_t k = 0; k < m->n_bonds; ++k) {
+        const int64_t i = m->pairs[2 * k], j = m->pairs[2 * k + 1];
+        long double left = given ? 0.5L * given[k] : 0, terms = fabsl(left);
+        long double of_ends[2] = {0};
+        for (int c = 0; c < 3; ++c) {
+            const long double d = (long double)m->r[3 * j + c] - m->r[3 * i + c];
+            left += d * (a[3 * j + c] - a[3 * i + c]);
+            for (int e = 0; e < 2; ++e) {
+                const int64_t atom = 3 * (e ? j : i) + c;
+                of_ends[e] += d * a[atom];
+                if (f) terms += fabsl(d * f[atom]) / m->mass[atom / 3];
+                if (rates) terms += fabsl(d * v[atom]);
+            }
+            if (v && !rates) left += powl((long double)v[3 * j + c] - v[3 * i + c], 2);
+            if (v && !rates) terms += powl((long double)v[3 * j + c] - v[3 * i + c], 2);
+        }
+        terms += fabsl(of_ends[0]) + fabsl(of_ends[1]);
+        const long double rounded = m->length[k] * (tension[i] / m->mass[i] + tension[j] / m->mass[j]);
+        largest = fmaxl(largest, fabsl(left) / (oracle_bound(m->n_bonds) * terms + 0.6L * rounded));
+    }
+    CHECK_AT_MOST(largest, DBL_EPSILON);
+    free(a), free(tension);
+}
+/** Of several tiles; the bounds of one bond in a hundred fail there, and those of some forces' by more than a little.
+ */
+static void ladders_of_several_tiles_leave_roundings_of_their_equations(void **state)
+{
+    (void)state;
+    molecule m = large_ladder(quick_run() ? 6000 : 20000);
+    hol_chains *chains = large_chains(&m);
+    const size_t n = (size_t)m.n_bonds, size = 3 * (size_t)m.n_atoms;
+    double *lambda = untouched(n), *v = copy_of(m.v, size), *g = untouched(size);
+    CHECK(hol_forces(chains, m.r, m.v, m.f, lambda, NULL, g, HOL_WRITE, NULL));
+    leave_roundings_of_equations(&m, lambda, m.v, m.f, 0, NULL);
+    for (size_t k = 0; k < n; ++k)
+        for (int e = 0; e < 2; ++e) {
+            const int64_t i = m.pairs[2 * k + (size_t)e], j = m.pairs[2 * k + (size_t)(1 - e)];
+            for (int c = 0; c < 3; ++c) g[3 * i + c] -= 2 * lambda[k] * (m.r[3 * j + c] - m.r[3 * i + c]);
+        }
+    double left = 0, most = 0;
+    for (size_t i = 0; i < size; ++i) left = fmax(left, fabs(g[i]));
+    for (size_t k = 0; k < n; ++k) most = fmax(most, fabs(lambda[k]));
+    CHECK_AT_MOST(left, 64 * DBL_EPSILON * most);
+    CHECK(hol_solve(chains, m.r, m.f, lambda, NULL, HOL_WRITE, NULL));
+    leave_roundings_of_equations(&m, lambda, NULL, NULL, 0, m.f);
+    CHECK(hol_project_velocities(chains, m.r, v, lambda, NULL));
+    leave_roundings_of_equations(&m, lambda, m.v, NULL, 1, NULL);
+    for (size_t k = 0; k < n; ++k) {
+        const int64_t i = m.pairs[2 * k], j = m.pairs[2 * k + 1];
+        double rate = 0, sizes = 0;
+        for (int c = 0; c < 3; ++c) {
+            const double d = m.r[3 * j + c] - m.r[3 * i + c];
+            rate += d * (v[3 * j + c] - v[3 * i + c]);
+            sizes += fabs(d) * (fabs(v[3 * j + c]) + fabs(v[3 * i + c]));
+        }
+        CHECK_AT_MOST(fabs(rate), 8 * DBL_EPSILON * sizes);
+    }
+    free(lambda), free(v), free(g);
+    hol_chains_destroy(chains);
+    molecule_free(&m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -211,6 +289,7 @@ int main(void)
         cmocka_unit_test(order_threads_and_layout_change_no_bit_of_positions),
         cmocka_unit_test(pulled_at_one_atom_each_of_two_molecules_gets_its_own_digits),
         cmocka_unit_test(every_size_about_the_limit_agrees_with_a_dense_solution),
+        cmocka_unit_test(ladders_of_several_tiles_leave_roundings_of_their_equations),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

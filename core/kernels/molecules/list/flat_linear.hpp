@@ -26,16 +26,19 @@ struct FlatLinear {
     double *t, *E, *per_pivot;  // right-hand sides, then multipliers; pivots
     double *lower, *size;       // |d|
     double *diagonal, *back;    // of A; R
-    Rows d_low, a_low;          // what refinement adds to bonds and accelerations, of a list of one tile
+    int32_t *bonds_at;          // of one tile: flat_residual.hpp
+    Rows d_low, a_low;          // what refinement adds to the bonds of one tile, and to the accelerations of all
 
     static int64_t values(const FlatList &s) {
         return mass_values(s) + 4 * (2 * static_cast<int64_t>(s.n_sites) + static_cast<int64_t>(s.n_rows)) +
                8 * static_cast<int64_t>(s.most_sites) + 2 * in_fours(s.n_bonds) + 4 * in_fours(s.n_columns) +
-               in_fours(s.n_entries) + refinement_values(s);
+               in_fours(s.n_entries) + bonds_at_values(s) + refinement_values(s);
     }
-    static int64_t refinement_values(const FlatList &s) {
-        return s.n_tiles > 1 ? 0 : 4 * (static_cast<int64_t>(s.n_rows) + s.n_sites);
+    static int64_t most_columns(const FlatList &s) {
+        return in_fours(s.n_tiles > 1 ? FlatList::columns_of_tile : s.n_bonds);
     }
+    static int64_t bonds_at_values(const FlatList &s) { return in_fours((s.most_sites + 3 + 2 * most_columns(s)) / 2); }
+    static int64_t refinement_values(const FlatList &s) { return 4 * (most_columns(s) + s.n_sites); }
     FlatLinear(const FlatList &list, const MoleculeLane &l, bool packed, const Box &b, const AtomArray &positions,
                const Inputs &inputs, int sides, Memory<double> memory)
         : s(list), lane(l), at(&l, 1, packed), box(b), coordinates(positions), in(inputs), terms(sides) {
@@ -53,8 +56,8 @@ struct FlatLinear {
         diagonal = memory.values(bonds);
         a = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
         mass = memory.values(mass_values(s));
-        if (s.n_tiles > 1) return;
-        d_low = {memory.values(4 * static_cast<int64_t>(s.n_rows))};
+        bonds_at = reinterpret_cast<int32_t *>(memory.values(bonds_at_values(s)));
+        d_low = {memory.values(4 * most_columns(s))};
         a_low = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
     }
     HOL_FORCED Row &four(double *values, int64_t k) const { return *reinterpret_cast<Row *>(values + k); }

@@ -1,5 +1,5 @@
 // Corrects the multipliers of one large molecule against the exact residual, as linear.hpp does those of molecules in
-// lanes, with the factors along its list, if that has one tile. Residuals are those of residual.hpp, x y z at once.
+// lanes, with the factors along its list. Residuals are those of residual.hpp, x y z at once.
 #ifndef HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_REFINE_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_REFINE_HPP
 
@@ -31,13 +31,12 @@ HOL_INLINE Pair<Row> product_of(const Pair<Row> &a, const Pair<Row> &b) {
 struct FlatRefine {
     const FlatLinear &x;
     const FlatList &s;
-    const Tile &tile;
     const int terms;
     double *const solution;  // in the memory of what the proof needed
     double *const side;
 
     explicit FlatRefine(const FlatLinear &linear)
-        : x(linear), s(linear.s), tile(s.tile[0]), terms(linear.terms), solution(x.back), side(x.diagonal) {}
+        : x(linear), s(linear.s), terms(linear.terms), solution(x.back), side(x.diagonal) {}
 
     // As in core_matrix.hpp.
     bool has_good_pivots() const {
@@ -46,57 +45,90 @@ struct FlatRefine {
         return true;
     }
 
-    // Inputs once more, right-hand sides, and bonds with their low words.
-    __attribute__((noinline)) void start() const {
-        x.load_inputs(tile, x.a);
+    template <class Body>
+    HOL_FORCED void for_tiles_up(const Body &body) const {
+        for (int32_t i = 0; i < s.n_tiles; ++i) body(s.tile[i]);
+    }
+    template <class Body>
+    HOL_FORCED void for_tiles_down(const Body &body) const {
+        for (int32_t i = s.n_tiles; i-- > 0;) body(s.tile[i]);
+    }
+
+    // A tile's coordinates and velocities, and its bonds with their low words: of one tile these stay.
+    __attribute__((noinline)) void open(const Tile &tile) const {
+        read_atoms(x.coordinates, x.at, s, tile, x.r);
         if (terms & squares) read_atoms(*x.in.v, x.at, s, tile, x.v);
-        for (int64_t k = 0; k < s.n_bonds; k += 4) x.four(side, k) = x.sides_of(tile, k, terms);
-        x.add_given(tile, side);
-        for (int32_t k = 0; k < s.n_rows; ++k) {
+        const int64_t rows = in_fours(tile.end - tile.first);
+        for (int64_t k = 0; k < rows; ++k) {
+            const int64_t row = tile.first_row + k;
             Vector3<double> d = {}, low = {};
-            unrounded_bond(x.box, vector_of(x.r.at_four_times(s.from[k])), vector_of(x.r.at_four_times(s.to[k])), d,
+            unrounded_bond(x.box, vector_of(x.r.at_four_times(s.from[row])), vector_of(x.r.at_four_times(s.to[row])), d,
                            low);
-            x.d[k] = row_of(d);
+            x.d[row] = row_of(d);
             x.d_low[k] = row_of(low);
         }
+    }
+    void open_again(const Tile &tile) const {
+        if (s.n_tiles > 1) open(tile);
+    }
+
+    // Inputs once more, and right-hand sides.
+    __attribute__((noinline)) void start() const {
+        for_tiles_up([&](const Tile &tile) {
+            open(tile);
+            x.load_inputs(tile, x.a_of(tile));
+            for (int64_t k = tile.first; k < tile.end; k += 4) x.four(side, k) = x.sides_of(tile, k, terms);
+            x.add_given(tile, side);
+        });
         for (int32_t k = 0; k < s.n_bonds; ++k) solution[k] = x.t[k];
     }
 
-    // Accelerations, or velocities: high words in pull.
-    __attribute__((noinline)) void pull_atoms() const {
-        if (terms & pulls)
-            read_atoms(*x.in.f, x.at, s, tile, x.pull);
-        else
-            for (int64_t i = 0; i < s.n_sites; ++i) x.pull[i] = Row{};
-        for (int64_t i = 0; i < s.n_sites; ++i) x.a_low[i] = Row{};
-        for (int32_t k = 0; k < s.n_bonds; ++k) {
-            const Pair<Row> bond = {x.d[k], x.d_low[k]}, p = product_of(in_row(solution[k]), bond);
-            set(s.from[k], add_pairs(acceleration(s.from[k]), p));
-            set(s.to[k], subtract_pairs(acceleration(s.to[k]), p));
+    // Accelerations, or velocities, of a tile's own atoms; later tiles have been here. High words in pull.
+    __attribute__((noinline)) void pull_atoms(const Tile &tile) const {
+        const Rows a = rows_from(x.pull, tile.first_site), low = rows_from(x.a_low, tile.first_site);
+        const int32_t own = tile.own_end - tile.first_site, n = tile.end_site - tile.first_site;
+        if (terms & pulls) read_atoms(*x.in.f, x.at, s, tile, a);
+        for (int32_t i = terms & pulls ? own : 0; i < n; ++i) a[i] = Row{};
+        for (int32_t i = 0; i < n; ++i) low[i] = Row{};
+        const int32_t *const from = s.from + tile.first_row, *const to = s.to + tile.first_row;
+        for (int32_t k = 0; k < tile.end - tile.first; ++k) {
+            const Pair<Row> bond = {x.d[tile.first_row + k], x.d_low[k]},
+                            p = product_of(in_row(solution[tile.first + k]), bond);
+            set(a, low, from[k], add_pairs(get(a, low, from[k]), p));
+            set(a, low, to[k], subtract_pairs(get(a, low, to[k]), p));
         }
-        for (int32_t i = 0; i < s.n_sites; ++i) {
-            Pair<Row> a = product_of(in_row(x.mass[2 * i + 1]), acceleration(4 * i));
-            if (terms & rates) a = add_pairs(a, Pair<Row>{x.a[i], Row{}});
-            set(4 * i, a);
+        for (int32_t i = tile.first_visit; i < tile.end_visit; ++i) {
+            const int32_t own_site = 4 * s.visit[i].own, guest = 4 * s.visit[i].guest;
+            set(x.pull, x.a_low, own_site, add_pairs(get(x.pull, x.a_low, own_site), get(x.pull, x.a_low, guest)));
+        }
+        const double *const w = x.mass + tile.first_mass;
+        for (int32_t i = 0; i < own; ++i) {
+            Pair<Row> sum = product_of(in_row(w[2 * i + 1]), get(a, low, 4 * i));
+            if (terms & rates) sum = add_pairs(sum, Pair<Row>{x.a_of(tile)[i], Row{}});
+            set(a, low, 4 * i, sum);
         }
     }
-    HOL_FORCED Pair<Row> acceleration(int32_t four_times) const {
-        return {x.pull.at_four_times(four_times), x.a_low.at_four_times(four_times)};
+    HOL_FORCED static Pair<Row> get(const Rows &hi, const Rows &low, int32_t four_times) {
+        return {hi.at_four_times(four_times), low.at_four_times(four_times)};
     }
-    HOL_FORCED void set(int32_t four_times, const Pair<Row> &a) const {
-        x.pull.at_four_times(four_times) = a.hi;
-        x.a_low.at_four_times(four_times) = a.lo;
+    HOL_FORCED static void set(const Rows &hi, const Rows &low, int32_t four_times, const Pair<Row> &a) {
+        hi.at_four_times(four_times) = a.hi;
+        low.at_four_times(four_times) = a.lo;
     }
 
-    // Into t.
-    __attribute__((noinline)) void find_residuals() const {
-        for (int64_t k = 0; k < s.n_bonds; k += 4) {
+    // Of a tile, into t.
+    __attribute__((noinline)) void find_residuals(const Tile &tile) const {
+        copy_guests(s, tile, x.pull);
+        copy_guests(s, tile, x.a_low);
+        const Rows a = rows_from(x.pull, tile.first_site), low = rows_from(x.a_low, tile.first_site);
+        for (int64_t k = tile.first; k < tile.end; k += 4) {
+            const int64_t row = tile.first_row + (k - tile.first);
             Pair<Row> product[4] = {}, square[4] = {};
             HOL_UNROLL
             for (int i = 0; i < 4; ++i) {
-                const int32_t from = s.from[k + i], to = s.to[k + i];
-                const Pair<Row> bond = {x.d[k + i], x.d_low[k + i]};
-                product[i] = product_of(bond, subtract_pairs(acceleration(to), acceleration(from)));
+                const int32_t from = s.from[row + i], to = s.to[row + i];
+                const Pair<Row> bond = {x.d[row + i], x.d_low[k - tile.first + i]};
+                product[i] = product_of(bond, subtract_pairs(get(a, low, to), get(a, low, from)));
                 if (!(terms & squares)) continue;
                 const Pair<Row> dv = two_difference<Row>(x.v.at_four_times(to), x.v.at_four_times(from));
                 square[i] = product_of(dv, dv);
@@ -105,7 +137,7 @@ struct FlatRefine {
             if (terms & squares) sum = add_pairs(sum, sums(square));
             if ((terms & (given | rates)) && (x.in.rhs || x.in.strain)) {
                 Row c = {};
-                for (int i = 0; i < 4 && k + i < s.n_bonds; ++i) c[i] = x.given_to(tile, static_cast<int32_t>(k + i));
+                for (int i = 0; i < 4 && k + i < tile.end; ++i) c[i] = x.given_to(tile, static_cast<int32_t>(k + i));
                 sum = add_pairs(sum, Pair<Row>{c, Row{}});
             }
             x.four(x.t, k) = sum.hi + sum.lo;
@@ -117,10 +149,19 @@ struct FlatRefine {
     }
 
     void solve() const {
-        pull_atoms();
-        find_residuals();
-        solve_up(s, tile, x.lower, x.t);
-        solve_down(s, tile, x.lower, x.per_pivot, x.t, [](int32_t, double) HOL_FORCED {});
+        clear_sides(s, x.t);
+        for_tiles_down([&](const Tile &tile) {
+            open_again(tile);
+            pull_atoms(tile);
+        });
+        for_tiles_up([&](const Tile &tile) {
+            open_again(tile);
+            find_residuals(tile);
+            solve_up(s, tile, x.lower, x.t);
+        });
+        for_tiles_down([&](const Tile &tile) {
+            solve_down(s, tile, x.lower, x.per_pivot, x.t, [](int32_t, double) HOL_FORCED {});
+        });
     }
     double correct() const {
         return add_corrections<double>(s.n_bonds, [&](int32_t k) HOL_FORCED {
@@ -129,24 +170,33 @@ struct FlatRefine {
     }
     // Whether corrections are no more than what rounding does to right-hand sides.
     bool is_rounding() const {
-        for (int32_t k = 0; k < s.n_bonds; ++k) {
-            const Row terms_of_ends = absolute(x.a.at_four_times(s.from[k])) + absolute(x.a.at_four_times(s.to[k])),
-                      all = absolute(x.d[k]) * terms_of_ends;
-            if (!(abs(x.t[k]) <= 4 * epsilon * ((all[0] + all[1]) + all[2]) * x.per_pivot[k])) return false;
+        for (int32_t i = 0; i < s.n_tiles; ++i) {
+            const Tile &tile = s.tile[i];
+            if (s.n_tiles > 1 && !(terms & rates)) x.load_inputs(tile, x.a);
+            const Rows a = x.a_of(tile);
+            for (int32_t k = tile.first; k < tile.end; ++k) {
+                const int32_t row = tile.first_row + (k - tile.first);
+                const Row terms_of_ends = absolute(a.at_four_times(s.from[row])) + absolute(a.at_four_times(s.to[row])),
+                          all = absolute(x.d[row]) * terms_of_ends;
+                if (!(abs(x.t[k]) <= 4 * epsilon * ((all[0] + all[1]) + all[2]) * x.per_pivot[k])) return false;
+            }
         }
         return true;
     }
 
     bool refine() const {
-        if (s.n_tiles > 1 || !has_good_pivots()) return false;
+        if (!has_good_pivots()) return false;
         start();
         const Flag good = correct_until_right<double>(
             Flag{true}, [&]() HOL_FORCED { solve(); }, [&](Flag) HOL_FORCED { return correct(); },
             [&]() HOL_FORCED { return Flag{is_rounding()}; });
         if (!good.set) return false;
         for (int32_t k = 0; k < s.n_bonds; ++k) x.t[k] = solution[k];
-        x.find_pulls(tile);
-        x.add_pulls(tile);
+        for_tiles_down([&](const Tile &tile) {
+            x.find_pulls(tile);
+            if (!(terms & rates) && s.n_tiles > 1) x.load_inputs(tile, x.a);
+            x.add_pulls(tile);
+        });
         return true;
     }
 };

@@ -1,0 +1,110 @@
+// What the multipliers of one large molecule leave of the equation of a single bond, in twice the precision. The bound
+// of flat_proof.hpp is for the worst case: of a million bonds some miss it by little, whose equations are solved all
+// the same.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_RESIDUAL_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_RESIDUAL_HPP
+
+#include "core/kernels/molecules/cycles/residual.hpp"
+#include "core/kernels/molecules/list/flat_linear.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+class FlatResidual {
+public:
+    explicit FlatResidual(const FlatLinear &linear) : x(linear), s(linear.s) {}
+
+    // Of column k of a tile, once the multipliers of all bonds of its two atoms are known.
+    __attribute__((noinline)) double of(const Tile &tile, int32_t k) {
+        const int32_t row = tile.first_row + (k - tile.first),
+                      site[2] = {tile.first_site + s.from[row] / 4, tile.first_site + s.to[row] / 4};
+        Pair3<double> a[2];
+        Vector3<double> v[2] = {};
+        for (int e = 0; e < 2; ++e) {
+            const int64_t number = x.at.number(0, s.atom_of[site[e]]);
+            Vector3<double> f = {};
+            if (x.in.v && x.in.v->x) read_row(*x.in.v, number, &v[e].x);
+            if (x.in.f && x.in.f->x) read_row(*x.in.f, number, &f.x);
+            a[e] = pulls_at(tile, site[e], pairs_of(f, Vector3<double>{}));
+            a[e] = scale_pairs(x.lane.w[s.atom_of[site[e]]], a[e]);
+            if (x.in.rates) a[e] = add_pairs(a[e], pairs_of(v[e], Vector3<double>{}));
+        }
+        Pair<double> sum = dot_pairs(bond(site[0], site[1]), subtract_pairs(a[1], a[0]));
+        if (x.terms & squares) {
+            const Pair3<double> dv = difference_of(v[0], v[1]);
+            sum = add_pairs(sum, dot_pairs(dv, dv));
+        }
+        if (x.in.rhs || x.in.strain) sum = add_pairs(sum, Pair<double>{x.given_to(tile, k), 0});
+        return sum.hi + sum.lo;
+    }
+
+private:
+    const FlatLinear &x;
+    const FlatList &s;
+    const Tile *listed = nullptr;  // whose bonds are listed by atoms, in x.bonds_at
+
+    Pair3<double> bond(int32_t from, int32_t to) const {
+        Vector3<double> r[2] = {}, d = {}, low = {};
+        read_row(x.coordinates, x.at.number(0, s.atom_of[from]), &r[0].x);
+        read_row(x.coordinates, x.at.number(0, s.atom_of[to]), &r[1].x);
+        unrounded_bond(x.box, r[0], r[1], d, low);
+        return pairs_of(d, low);
+    }
+    // What the bond of a column pulls its first atom by, or its second one.
+    Pair3<double> pull(const Tile &tile, int32_t k, bool second) const {
+        const int32_t row = tile.first_row + (k - tile.first);
+        const Pair3<double> d = bond(tile.first_site + s.from[row] / 4, tile.first_site + s.to[row] / 4);
+        return scale_pairs(second ? -x.t[k] : x.t[k], d);
+    }
+
+    // The bonds of a tile by its atoms: where each atom's begin, then twice their columns, and one more at the second
+    // atom.
+    void list(const Tile &tile) {
+        if (listed == &tile) return;
+        listed = &tile;
+        const int32_t n = tile.end_site - tile.first_site;
+        int32_t *const start = x.bonds_at, *const item = start + n + 2;
+        for (int32_t i = 0; i < n + 2; ++i) start[i] = 0;
+        const auto for_ends = [&](const auto &body) {
+            for (int32_t k = tile.first; k < tile.end; ++k) {
+                const int32_t row = tile.first_row + (k - tile.first);
+                body(s.from[row] / 4, 2 * k);
+                body(s.to[row] / 4, 2 * k + 1);
+            }
+        };
+        for_ends([&](int32_t site, int32_t) { ++start[site + 2]; });
+        for (int32_t i = 2; i < n + 2; ++i) start[i] += start[i - 1];
+        for_ends([&](int32_t site, int32_t end) { item[start[site + 1]++] = end; });
+    }
+    // Adds the pulls of a tile's bonds on one of its sites.
+    Pair3<double> add(const Tile &tile, int32_t site, Pair3<double> sum) {
+        list(tile);
+        const int32_t *const item = x.bonds_at + (tile.end_site - tile.first_site) + 2;
+        const int32_t i = site - tile.first_site;
+        for (int32_t e = x.bonds_at[i]; e < x.bonds_at[i + 1]; ++e)
+            sum = add_pairs(sum, pull(tile, item[e] / 2, (item[e] & 1) != 0));
+        return sum;
+    }
+    // Of all bonds of an atom, in whatever tiles these are.
+    Pair3<double> pulls_at(const Tile &tile, int32_t site, Pair3<double> sum) {
+        sum = add(tile, site, sum);
+        const int32_t home = s.home[site];
+        const Tile &own = *tile_of_site(home);
+        if (home != site) sum = add(own, home, sum);
+        for (int32_t i = own.first_visit; i < own.end_visit; ++i)
+            if (s.visit[i].own == home && s.visit[i].guest != site)
+                sum = add(*tile_of_site(s.visit[i].guest), s.visit[i].guest, sum);
+        return sum;
+    }
+    const Tile *tile_of_site(int32_t site) const {
+        const Tile *tile = s.tile;
+        while (site >= tile->end_site) ++tile;
+        return tile;
+    }
+};
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif
