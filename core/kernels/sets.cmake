@@ -50,6 +50,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
         kernels/newton/system.cpp
         kernels/verbs/positions.cpp
         PROPERTIES COMPILE_OPTIONS -fno-tree-loop-vectorize)
+    # Here it makes addresses in vectors, and what comes next waits for these to be in memory.
+    set_source_files_properties(kernels/verbs/bodies.cpp PROPERTIES COMPILE_OPTIONS -fno-tree-vectorize)
 endif()
 
 option(HOLONOMIC_BASELINE "The kernels that every x86-64 processor runs; OFF for trying changes with one other set (scripts/try)" ON)

@@ -29,6 +29,10 @@ BodyKind kind_of(const Body &body, const Shape &shape) {
     }
     for (int p = 0; p < 3; ++p)
         for (int q = 0; q < 3; ++q) kind.part[p][q] = p == q ? 0.5 : kind.square[p] / (kind.square[p] + kind.square[q]);
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        kind.skew[i] = kind.part[j][k] - kind.part[k][j];
+    }
     std::copy_n(body.excess[0], 16, kind.excess[0]);
     kind.masses = body.masses.data();
     kind.place = weights;

@@ -9,8 +9,7 @@
 
 namespace holonomic::HOL_ISA {
 
-// Where the rows x y z of each lane begin. Not pointers: the compiler would make them all at once in a vector, whose
-// elements it has just stored one by one, and wait for these.
+// Where the rows x y z of each lane begin.
 struct Rows {
     double *base;
     const int64_t *first;  // [W]
@@ -84,41 +83,23 @@ HOL_INLINE void rows_at(double *const *rows, long k, double **to) {
     for (int l = 0; l < W; ++l) to[l] = rows[l] + k;
 }
 
-HOL_INLINE vec3 first_of(const Rows &rows) {
-    double *p[W];
-    rows_at(rows, 0, p);
-    vec3 x;
-    graph::read_elements<3>(p, &x);
-    return x;
-}
-
-// Calls each(a, vector) for n atoms of all lanes, which are read two by two.
-template <class Each>
-HOL_INLINE void for_each_of_rows(const Rows &rows, long n, const Each &each) {
+// The vectors of n atoms, which are read two by two.
+HOL_NOINLINE void read_vectors(const Rows rows, long n, vec3 *x) {
     double *r[W], *p[W];
     rows_at(rows, 0, r);
     long a = 0;
     for (; a + 2 <= n; a += 2) {
+        vec3 two[2];
         rows_at(r, 3 * a, p);
-#if HOL_LANES == 4 && defined(__AVX2__)
-        // What belongs to the second atom alone is read behind the first one: all would not fit into registers.
-        vec e[6];
-        graph::read_elements<4>(p, e);
-        each(a, vec3{e[0], e[1], e[2]});
-        graph::read_pair(p, 4, e[4], e[5]);
-        each(a + 1, vec3{e[3], e[4], e[5]});
-#else
-        vec3 x[2];
-        graph::read_elements<6>(p, x);
-        each(a, x[0]);
-        each(a + 1, x[1]);
-#endif
+        graph::read_elements<6>(p, two);
+        put(x[a], two[0]);
+        put(x[a + 1], two[1]);
     }
     if (a == n) return;
-    vec3 x;
+    vec3 one;
     rows_at(r, 3 * a, p);
-    graph::read_elements<3>(p, &x);
-    each(a, x);
+    graph::read_elements<3>(p, &one);
+    put(x[a], one);
 }
 
 // Hands get(a) for n atoms to put, as put(Constant, k, vectors) of two or of one, which go to element k.
@@ -162,8 +143,7 @@ HOL_INLINE void add_rows(const Rows &to_r, const Rows &to_v, long n, double fact
 }
 
 // Coordinates from the first atom's, images taken from neighbour to neighbour.
-HOL_NOINLINE void unfold(const BodyKind &kind, const Box &box, const Rows &rows, vec3 *raw, vec3 *x) {
-    for_each_of_rows(rows, kind.n_atoms, [&](long a, const vec3 &r) HOL_FORCED { put(raw[a], r); });
+HOL_NOINLINE void unfold(const BodyKind &kind, const Box &box, const vec3 *raw, vec3 *x) {
     put(x[0], raw[0] - raw[0]);
     for (long k = 0; k + 1 < kind.n_atoms; ++k) {
         const long to = kind.steps[2 * k], from = kind.steps[2 * k + 1];

@@ -52,10 +52,15 @@ struct Frame {
     HOL_FORCED const vec3 &operator[](int k) const { return of[k]; }
 
     // Adds weights [1 + R] of an atom times its vector.
-    template <int first = 0>
     HOL_FORCED void add(const double *weights, const vec3 &x) {
         HOL_UNROLL_FEW
-        for (int k = first; k <= R; ++k) put(of[k], add_times(of[k], splat(weights[k]), x));
+        for (int k = 0; k <= R; ++k) put(of[k], add_times(of[k], splat(weights[k]), x));
+    }
+    // Takes them away.
+    template <int first>
+    HOL_FORCED void take(const double *weights, const vec3 &x) {
+        HOL_UNROLL_FEW
+        for (int k = first; k <= R; ++k) put(of[k], less_times(of[k], splat(weights[k]), x));
     }
     // The vector at an atom that has these places.
     HOL_FORCED vec3 at(const double *place) const {

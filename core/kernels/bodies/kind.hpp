@@ -14,6 +14,7 @@ struct BodyKind {
     double mass, extent;
     double square[3];      // L_p^2
     double part[3][3];     // L_p^2 / (L_p^2 + L_q^2); the normal of a plane, p = 2, has the length 0
+    double skew[3];        // part[j][k] - part[k][j], i, j, k in cyclic order
     double per_moment[4];  // 1/M, 1/(M L_p^2)
     double excess[4][4];   // sum of share place, as they are rounded, less 1
     const double *masses;  // [n_atoms], 0: a massless site

@@ -6,67 +6,45 @@
 
 namespace holonomic::HOL_ISA {
 
-// Where the atoms of all lanes are read: rows of an array, or vectors.
-struct FromRows {
-    Rows rows;
-    HOL_FORCED vec3 first() const { return first_of(rows); }
-    template <class Each>
-    HOL_FORCED void for_each(long n, const Each &each) const {
-        for_each_of_rows(rows, n, each);
-    }
-};
-struct FromVectors {
-    const vec3 *x;
-    HOL_FORCED vec3 first() const { return x[0]; }
-    template <class Each>
-    HOL_FORCED void for_each(long n, const Each &each) const {
-        for (long a = 0; a < n; ++a) each(a, x[a]);
-    }
-};
-
-// The axes of the vectors from the first atom's.
-template <int R, class From>
-HOL_NOINLINE void sum_axes(const From from, const double *share, long n, Frame<R> &to) {
+// The axes of vectors, taken from the first one.
+template <int R>
+HOL_NOINLINE void sum_axes(const vec3 *x, const double *share, long n, Frame<R> &to) {
     Frame<R> sum;
     sum.clear();
-    const vec3 origin = from.first();
-    from.for_each(n, [&](long a, const vec3 &x)
-                         HOL_FORCED { sum.template add<1>(share + a * (1 + R), x - origin); });
+    const vec ox = x[0].x, oy = x[0].y, oz = x[0].z;
+    for (long a = 0; a < n; ++a) sum.template take<1>(share + a * (1 + R), {ox - x[a].x, oy - x[a].y, oz - x[a].z});
     to = sum;
 }
 
-// The sum of the vectors by weights; `kept`, if it is there, gets them.
-template <int R, bool keeps>
-HOL_NOINLINE void sum_all(const FromRows from, const double *weights, long n, Frame<R> &to, vec3 *kept) {
+// The sums of vectors by weights, times a factor each.
+template <int R>
+HOL_NOINLINE void sum_all(const vec3 *x, const double *weights, long n, const double *factor, Frame<R> &to) {
     Frame<R> sum;
     sum.clear();
-    from.for_each(n, [&](long a, const vec3 &x) HOL_FORCED {
-        if (keeps) put(kept[a], x);
-        sum.add(weights + a * (1 + R), x);
-    });
-    to = sum;
+    for (long a = 0; a < n; ++a) sum.add(weights + a * (1 + R), x[a]);
+    HOL_UNROLL_FEW
+    for (int k = 0; k <= R; ++k) put(to[k], splat(factor[k]) * sum[k]);
 }
 
-// What vectors, from the first atom's, are off those of the axes, and the frame of that. Returns the largest square.
-template <int R, class From>
-HOL_NOINLINE vec sum_changes(const From from, const BodyKind &kind, const Frame<R> &axes, vec3 *off, Frame<R> &to) {
-    Frame<R> sum, base;
-    sum.clear();
-    put(base[0], vec3{} - from.first());
+// What vectors, taken from the first one, are off those of the axes, in their place. Returns the largest square.
+template <int R>
+HOL_NOINLINE vec take_axes(const BodyKind &kind, const Frame<R> &__restrict axes, vec3 *x) {
+    Frame<R> base;
+    base[0].x = -x[0].x;
+    base[0].y = -x[0].y;
+    base[0].z = -x[0].z;
     HOL_UNROLL_FEW
     for (int p = 1; p <= R; ++p) put(base[p], axes[p]);
-    const vec3 origin = base.at(kind.place);
+    const double *place = kind.place;
+    const vec3 origin = base.at(place);
     vec largest = {};
-    from.for_each(kind.n_atoms, [&](long a, const vec3 &r) HOL_FORCED {
-        const double *const place = kind.place + a * (1 + R);
-        vec3 t = r + origin;
+    for (long a = 0; a < kind.n_atoms; ++a, place += 1 + R) {
+        vec3 t = x[a] + origin;
         HOL_UNROLL_FEW
-        for (int p = 1; p <= R; ++p) t = less_times(t, splat(place[p]), axes[p]);
-        put(off[a], t);
+        for (int p = 1; p <= R; ++p) t = less_times(t, splat(place[p]), base[p]);
+        put(x[a], t);
         largest = max(largest, dot(t, t));
-        sum.add(kind.share + a * (1 + R), t);
-    });
-    to = sum;
+    }
     return largest;
 }
 
@@ -100,6 +78,8 @@ HOL_NOINLINE void add_moves(const BodyKind &kind, const Frame<R> &__restrict cha
     add_rows(r, v, kind.n_atoms, per_dt, [&](long a) HOL_FORCED { return t.at(place + a * (1 + R)) - off[a]; });
 }
 
+constexpr double ones[4] = {1, 1, 1, 1};
+
 // Of a block, in doubles.
 HOL_INLINE int64_t scratch_of_block(int64_t n_atoms) { return 9 * n_atoms * W; }
 
@@ -107,31 +87,35 @@ template <int R>
 struct BodyLanes : BodyBlock {
     vec3 *const x, *const y;  // [n_atoms] each
     double *const copy;       // of rows
+    vec3 *off;
     int64_t first_of_copy[W];
 
     BodyLanes(const BodyKind &k, double *scratch)
         : BodyBlock(k), x(reinterpret_cast<vec3 *>(scratch)), y(x + k.n_atoms),
           copy(reinterpret_cast<double *>(y + k.n_atoms)) {}
 
-    // Calls with(From): the atoms as they stand, or images that are unfolded.
-    template <class With>
-    HOL_FORCED auto with_places(const AtomArray &array, const Box &box, const With &with) {
-        const Rows rows = rows_of(array);
-        if (__builtin_expect(box.shape == Box::none, 1)) return with(FromRows{rows});
-        unfold(kind, box, rows, x, y);
-        return with(FromVectors{y});
+    // Coordinates, or where there is a box those of images from the first atom's.
+    HOL_FORCED vec3 *places(const AtomArray &array, const Box &box) {
+        read_vectors(rows_of(array), kind.n_atoms, x);
+        if (__builtin_expect(box.shape == Box::none, 1)) return x;
+        unfold(kind, box, x, y);
+        return y;
     }
     HOL_FORCED void positions(const AtomArray &array, const Box &box, Frame<R> &to) {
-        with_places(array, box,
-                    [&](auto from) HOL_FORCED { sum_axes<R>(from, kind.share, kind.n_atoms, to); });
+        sum_axes<R>(places(array, box), kind.share, kind.n_atoms, to);
     }
 
     // Velocities of the atoms that have mass; what sites have is not looked at.
+    HOL_FORCED void read_rates(const AtomArray &array) {
+        read_vectors(rows_of(array, kind.has_sites_between), kind.n_heavy, x);
+    }
     HOL_FORCED void axes_of_rates(const AtomArray &array, Frame<R> &to) {
-        sum_axes<R>(FromRows{rows_of(array, kind.has_sites_between)}, kind.share, kind.n_heavy, to);
+        read_rates(array);
+        sum_axes<R>(x, kind.share, kind.n_heavy, to);
     }
     HOL_FORCED void rates(const AtomArray &array, Frame<R> &to) {
-        sum_all<R, false>(FromRows{rows_of(array, kind.has_sites_between)}, kind.share, kind.n_heavy, to, nullptr);
+        read_rates(array);
+        sum_all<R>(x, kind.share, kind.n_heavy, ones, to);
     }
     // Over masses; they are kept in y.
     HOL_FORCED void forces(const AtomArray &array, Frame<R> &to) {
@@ -140,9 +124,8 @@ struct BodyLanes : BodyBlock {
             for (long a = 0; a < kind.n_atoms; ++a) y[a].x = y[a].y = y[a].z = vec{};
             return;
         }
-        sum_all<R, true>(FromRows{rows_of(array)}, kind.place, kind.n_atoms, to, y);
-        HOL_UNROLL_FEW
-        for (int k = 0; k <= R; ++k) put(to[k], splat(kind.per_moment[k]) * to[k]);
+        read_vectors(rows_of(array), kind.n_atoms, y);
+        sum_all<R>(y, kind.place, kind.n_atoms, kind.per_moment, to);
     }
 
     HOL_FORCED void write_forces(const ForcesCall &call, const Frame<R> &z, unsigned lanes) {
@@ -163,21 +146,21 @@ struct BodyLanes : BodyBlock {
         write_some(array, x, lanes);
     }
 
-    // What positions are off those of the axes, in x; whether none is far.
+    // What positions are off those of the axes; whether none is far. That stays in `off`.
     HOL_FORCED mask changes(const AtomArray &array, const Box &box, const Frame<R> &axes, Frame<R> &to) {
-        vec largest;
-        with_places(array, box,
-                    [&](auto from) HOL_FORCED { largest = sum_changes<R>(from, kind, axes, x, to); });
+        off = places(array, box);
+        const vec largest = take_axes<R>(kind, axes, off);
+        sum_all<R>(off, kind.share, kind.n_atoms, ones, to);
         return less(largest, splat(4 * kind.extent * kind.extent));
     }
     // Moves atoms to where their changes are those of a frame, and velocities by these moves over dt.
     HOL_FORCED void write_moves(const PositionsCall &call, const Frame<R> &change, unsigned lanes) {
         const double per_dt = 1 / call.dt;
         if (takes_rows(call.r, lanes) && (!call.v.x || takes_rows(call.v, lanes)))
-            return add_moves(kind, change, x, rows(call.r), rows(call.v), per_dt);
-        for (long a = 0; a < kind.n_atoms; ++a) put(x[a], change.at(kind.place + a * (1 + R)) - x[a]);
-        add_some(call.r, 1, x, lanes);
-        if (call.v.x) add_some(call.v, per_dt, x, lanes);
+            return add_moves(kind, change, off, rows(call.r), rows(call.v), per_dt);
+        for (long a = 0; a < kind.n_atoms; ++a) put(off[a], change.at(kind.place + a * (1 + R)) - off[a]);
+        add_some(call.r, 1, off, lanes);
+        if (call.v.x) add_some(call.v, per_dt, off, lanes);
     }
     void write_site_velocities(const AtomArray &array, const Frame<R> &rate, unsigned lanes) const {
         for (long a = 0; a < kind.n_atoms; ++a) {

@@ -25,34 +25,32 @@ struct Turned {
     vec rounds;
 };
 
-// Makes axes orthonormal: to the rounding, if they all but were so. away: what that takes from them; off: the square of
-// how far they were from it.
+// Takes from axes by how much they are not orthonormal, to first order, and adds it to `away`. Returns the square of
+// what that was.
 template <int R>
-HOL_INLINE mask make_orthonormal(const BodyKind &kind, Frame<R> &a, Frame<R> &away, vec &off) {
-    mask bad = ~none();
-    away.clear();
-    for (int pass = 0; pass < 4; ++pass) {
-        const Symmetric<R> e = errors_of(a);
-        const vec square = square_of(e);
-        if (pass == 0) off = square;
-        Half<R> b;
-        Frame<R> change;
-        change.clear();
+HOL_INLINE vec take_errors(const BodyKind &kind, mask lanes, Frame<R> &a, Frame<R> &away) {
+    const Symmetric<R> e = errors_of(a);
+    Half<R> b;
+    HOL_UNROLL_FEW
+    for (int p = 0; p < R; ++p) {
         HOL_UNROLL_FEW
-        for (int p = 0; p < R; ++p) {
-            HOL_UNROLL_FEW
-            for (int q = p; q < R; ++q) b.of[p][q] = keep(bad, (p == q ? 0.5 : 1.0) * e.of[p][q]);
-        }
-        bad = bad & ~less(square, splat(1e-18));
-        take_away(kind, a, b, change);
-        HOL_UNROLL_FEW
-        for (int p = 1; p <= R; ++p) {
-            put(a[p], a[p] + change[p]);
-            put(away[p], away[p] - change[p]);
-        }
-        if (__builtin_expect(!any(bad), 1)) break;
+        for (int q = p; q < R; ++q) b.of[p][q] = keep(lanes, p == q ? 0.5 * e.of[p][q] : e.of[p][q]);
     }
-    return ~bad;
+    Frame<R> change;
+    change.clear();
+    take_away(kind, a, b, change);
+    HOL_UNROLL_FEW
+    for (int p = 1; p <= R; ++p) {
+        put(a[p], a[p] + change[p]);
+        put(away[p], away[p] - change[p]);
+    }
+    return square_of(e);
+}
+template <int R>
+HOL_NOINLINE mask take_more_errors(const BodyKind &kind, mask bad, Frame<R> &a, Frame<R> &away) {
+    for (int pass = 0; pass < 3 && any(bad); ++pass)
+        bad = bad & ~less(take_errors(kind, bad, a, away), splat(1e-18));
+    return bad;
 }
 
 // Gibbs' vector: Newton's method with the matrix of the first guess, which is right to the third order.
@@ -125,9 +123,18 @@ HOL_INLINE void restore(const BodyKind &kind, const Frame<R> &from, Frame<R> &ch
         put(change[1], less_times(t, lambda, u));
         out.rounds = splat(1);
     } else {
+        // Axes that are orthonormal to the rounding, and what that takes from them.
         Frame<R> a = from, away;
-        vec off;
-        out.good = make_orthonormal(kind, a, away, off);
+        away.clear();
+        const vec off = take_errors(kind, ~none(), a, away);
+        mask bad = ~less(off, splat(1e-18));
+        if (__builtin_expect(any(bad), 0)) {
+            Frame<R> copy = a, copy_away = away;
+            bad = take_more_errors(kind, bad, copy, copy_away);
+            a = copy;
+            away = copy_away;
+        }
+        out.good = ~bad;
         vec3 d[R], axis[3];
         HOL_UNROLL_FEW
         for (int p = 0; p < R; ++p) {
@@ -144,10 +151,11 @@ HOL_INLINE void restore(const BodyKind &kind, const Frame<R> &from, Frame<R> &ch
         HOL_UNROLL_FEW
         for (int i = 0; i < 3; ++i) {
             const int j = (i + 1) % 3, k = (i + 2) % 3;
-            turn[i] = vec{};
-            if (j < R) turn[i] = splat(0.5 * kind.part[j][k]) * x[k][j < R ? j : 0];
-            if (k < R) turn[i] = mul_add(splat(-0.5 * kind.part[k][j]), x[j][k < R ? k : 0], turn[i]);
-            b[i] = splat(kind.part[j][k] - kind.part[k][j]);
+            vec both = {};
+            if (j < R) both = splat(kind.part[j][k]) * x[k][j < R ? j : 0];
+            if (k < R) both = sub_mul(splat(kind.part[k][j]), x[j][k < R ? k : 0], both);
+            turn[i] = 0.5 * both;
+            b[i] = splat(kind.skew[i]);
         }
         solve_turn(turn, b, most, out, g);
         const vec square = mul_add(g[2], g[2], mul_add(g[1], g[1], g[0] * g[0])), s = 2.0 / (1.0 + square);

@@ -149,16 +149,16 @@ uint64_t for_each_block(const Call &call, const BodyUnit &unit, double *scratch,
     Verb one(call, kind, scratch), other(call, kind, scratch + scratch_of_block(kind.n_atoms));
     Verb *now = &one, *next = &other;
     uint64_t done = 0;
-    now->set(unit, 0);
-    now->read();
-    for (int first = 0; first < unit.count; first += W) {
-        const unsigned lanes = bits(now->solve(results + first)) & ((1u << now->count) - 1);
-        if (first + W < unit.count) {
-            next->set(unit, first + W);
+    for (int body = -W; body < unit.count; body += W) {
+        const unsigned lanes = body < 0 ? 0 : bits(now->solve(results + body)) & ((1u << now->count) - 1);
+        if (body + W < unit.count) {
+            next->set(unit, body + W);
             next->read();
         }
-        if (lanes) now->write(lanes);
-        done |= static_cast<uint64_t>(lanes) << first;
+        if (lanes) {
+            now->write(lanes);
+            done |= static_cast<uint64_t>(lanes) << body;
+        }
         Verb *const last = now;
         now = next;
         next = last;
