@@ -83,23 +83,45 @@ HOL_INLINE void rows_at(double *const *rows, long k, double **to) {
     for (int l = 0; l < W; ++l) to[l] = rows[l] + k;
 }
 
-// The vectors of n atoms, which are read two by two.
-HOL_NOINLINE void read_vectors(const Rows rows, long n, vec3 *x) {
+// Calls each(a, vector) for n atoms, which are read two by two.
+template <class Each>
+HOL_INLINE void for_each_of_rows(const Rows &rows, long n, const Each &each) {
     double *r[W], *p[W];
     rows_at(rows, 0, r);
     long a = 0;
     for (; a + 2 <= n; a += 2) {
-        vec3 two[2];
         rows_at(r, 3 * a, p);
+#if HOL_LANES == 4 && defined(__AVX2__)
+        // What belongs to the second atom alone is read behind the first one: all would not fit into registers.
+        vec e[6];
+        graph::read_elements<4>(p, e);
+        each(a, vec3{e[0], e[1], e[2]});
+        graph::read_pair(p, 4, e[4], e[5]);
+        each(a + 1, vec3{e[3], e[4], e[5]});
+#else
+        vec3 two[2];
         graph::read_elements<6>(p, two);
-        put(x[a], two[0]);
-        put(x[a + 1], two[1]);
+        each(a, two[0]);
+        each(a + 1, two[1]);
+#endif
     }
     if (a == n) return;
     vec3 one;
     rows_at(r, 3 * a, p);
     graph::read_elements<3>(p, &one);
-    put(x[a], one);
+    each(a, one);
+}
+
+HOL_INLINE vec3 first_of(const Rows &rows) {
+    double *r[W];
+    rows_at(rows, 0, r);
+    vec3 x;
+    graph::read_elements<3>(r, &x);
+    return x;
+}
+
+HOL_NOINLINE void read_vectors(const Rows rows, long n, vec3 *x) {
+    for_each_of_rows(rows, n, [&](long a, const vec3 &r) HOL_FORCED { put(x[a], r); });
 }
 
 // Hands get(a) for n atoms to put, as put(Constant, k, vectors) of two or of one, which go to element k.

@@ -6,13 +6,20 @@
 
 namespace holonomic::HOL_ISA {
 
-// The axes of vectors, taken from the first one.
-template <int R>
-HOL_NOINLINE void sum_axes(const vec3 *x, const double *share, long n, Frame<R> &to) {
+// The axes of vectors, taken from the first one. From: rows, or vectors.
+HOL_INLINE vec3 first_of(const vec3 *x) { return {x[0].x, x[0].y, x[0].z}; }
+template <class Each>
+HOL_INLINE void for_each_of_rows(const vec3 *x, long n, const Each &each) {
+    for (long a = 0; a < n; ++a) each(a, x[a]);
+}
+template <int R, class From>
+HOL_NOINLINE void sum_axes(const From from, const double *share, long n, Frame<R> &to) {
     Frame<R> sum;
     sum.clear();
-    const vec ox = x[0].x, oy = x[0].y, oz = x[0].z;
-    for (long a = 0; a < n; ++a) sum.template take<1>(share + a * (1 + R), {ox - x[a].x, oy - x[a].y, oz - x[a].z});
+    const vec3 origin = first_of(from);
+    for_each_of_rows(from, n, [&](long a, const vec3 &x) HOL_FORCED {
+        sum.template take<1>(share + a * (1 + R), origin - x);
+    });
     to = sum;
 }
 
@@ -102,19 +109,18 @@ struct BodyLanes : BodyBlock {
         return y;
     }
     HOL_FORCED void positions(const AtomArray &array, const Box &box, Frame<R> &to) {
-        sum_axes<R>(places(array, box), kind.share, kind.n_atoms, to);
+        if (__builtin_expect(box.shape == Box::none, 1))
+            sum_axes<R>(rows_of(array), kind.share, kind.n_atoms, to);
+        else
+            sum_axes<R>(static_cast<const vec3 *>(places(array, box)), kind.share, kind.n_atoms, to);
     }
 
     // Velocities of the atoms that have mass; what sites have is not looked at.
-    HOL_FORCED void read_rates(const AtomArray &array) {
-        read_vectors(rows_of(array, kind.has_sites_between), kind.n_heavy, x);
-    }
     HOL_FORCED void axes_of_rates(const AtomArray &array, Frame<R> &to) {
-        read_rates(array);
-        sum_axes<R>(x, kind.share, kind.n_heavy, to);
+        sum_axes<R>(rows_of(array, kind.has_sites_between), kind.share, kind.n_heavy, to);
     }
     HOL_FORCED void rates(const AtomArray &array, Frame<R> &to) {
-        read_rates(array);
+        read_vectors(rows_of(array, kind.has_sites_between), kind.n_heavy, x);
         sum_all<R>(x, kind.share, kind.n_heavy, ones, to);
     }
     // Over masses; they are kept in y.

@@ -11,6 +11,16 @@ namespace HOL_ISA {
 namespace graph {
 
 #if HOL_LANES >= 4 && defined(__AVX2__)
+// Two elements of four lanes, from element k of their rows.
+HOL_INLINE void read_pair(const double *const *p, long k, quad &first, quad &second) {
+    quad of[2];
+    HOL_UNROLL
+    for (int i = 0; i < 2; ++i)
+        of[i] = _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(p[i] + k)), _mm_loadu_pd(p[i + 2] + k), 1);
+    first = _mm256_unpacklo_pd(of[0], of[1]);
+    second = _mm256_unpackhi_pd(of[0], of[1]);
+}
+
 // Element e of four lanes; what is left of the last row of four is read and written two by two, then alone.
 template <int n>
 HOL_INLINE void read_elements(const double *const *p, quad *e) {
@@ -21,15 +31,7 @@ HOL_INLINE void read_elements(const double *const *p, quad *e) {
         for (int i = 0; i < 4; ++i) e[j + i] = _mm256_loadu_pd(p[i] + j);
         transpose(e + j);
     }
-    if (fours < twos) {
-        quad of[2];
-        HOL_UNROLL
-        for (int i = 0; i < 2; ++i)
-            of[i] = _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(p[i] + fours)),
-                                         _mm_loadu_pd(p[i + 2] + fours), 1);
-        e[fours] = _mm256_unpacklo_pd(of[0], of[1]);
-        e[twos - 1] = _mm256_unpackhi_pd(of[0], of[1]);
-    }
+    if (fours < twos) read_pair(p, fours, e[fours], e[twos - 1]);
     if (twos < n) e[n - 1] = quad{p[0][n - 1], p[1][n - 1], p[2][n - 1], p[3][n - 1]};
 }
 
