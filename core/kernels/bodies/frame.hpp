@@ -90,12 +90,18 @@ struct Frame {
 // What the rounding of shares and places leaves off in a frame of what changes: it would turn the body, in every step
 // the same way.
 template <int R>
-HOL_INLINE void take_excess(const BodyKind &kind, const Frame<R> &from, Frame<R> &to) {
+HOL_INLINE void take_excess(const BodyKind &kind, const Frame<R> &from, Frame<R> &__restrict to) {
     HOL_UNROLL_FEW
     for (int k = 0; k <= R; ++k) {
-        put(to[k], less_times(from[k], splat(kind.excess[k][0]), from[0]));
+        vec x = from[k].x, y = from[k].y, z = from[k].z;
         HOL_UNROLL_FEW
-        for (int l = 1; l <= R; ++l) put(to[k], less_times(to[k], splat(kind.excess[k][l]), from[l]));
+        for (int l = 0; l <= R; ++l) {
+            const vec more = splat(kind.excess[k][l]);
+            x = sub_mul(more, from[l].x, x);
+            y = sub_mul(more, from[l].y, y);
+            z = sub_mul(more, from[l].z, z);
+        }
+        put(to[k], {x, y, z});
     }
 }
 
@@ -121,9 +127,9 @@ HOL_INLINE Symmetric<R> errors_of(const Frame<R> &a) {
     Symmetric<R> e;
     HOL_UNROLL_FEW
     for (int p = 0; p < R; ++p) {
-        e.of[p][p] = excess(a[1 + p], splat(1));
         HOL_UNROLL_FEW
-        for (int q = p + 1; q < R; ++q) e.of[p][q] = dot(a[1 + p], a[1 + q]);
+        for (int q = p; q < R; ++q)
+            e.of[p][q] = p == q ? excess(a[1 + p], splat(1)) : dot(a[1 + p], a[1 + q]);
     }
     return e;
 }
@@ -131,14 +137,16 @@ HOL_INLINE Symmetric<R> errors_of(const Frame<R> &a) {
 // The square of its norm.
 template <int R>
 HOL_INLINE vec square_of(const Symmetric<R> &e) {
-    vec sum = e.of[0][0] * e.of[0][0];
+    vec diagonal = {}, beside = {};
     HOL_UNROLL_FEW
     for (int p = 0; p < R; ++p) {
-        if (p > 0) sum = mul_add(e.of[p][p], e.of[p][p], sum);
         HOL_UNROLL_FEW
-        for (int q = p + 1; q < R; ++q) sum = mul_add(e.of[p][q] + e.of[p][q], e.of[p][q], sum);
+        for (int q = p; q < R; ++q) {
+            vec &sum = p == q ? diagonal : beside;
+            sum = mul_add(e.of[p][q], e.of[p][q], sum);
+        }
     }
-    return sum;
+    return mul_add(splat(2), beside, diagonal);
 }
 
 template <int R>
@@ -154,9 +162,11 @@ template <int R>
 HOL_INLINE void twice_products(const Frame<R> &rate, Half<R> &to) {
     HOL_UNROLL_FEW
     for (int p = 0; p < R; ++p) {
-        to.of[p][p] = dot(rate[1 + p], rate[1 + p]);
         HOL_UNROLL_FEW
-        for (int q = p + 1; q < R; ++q) to.of[p][q] = 2.0 * dot(rate[1 + p], rate[1 + q]);
+        for (int q = p; q < R; ++q) {
+            const vec product = dot(rate[1 + p], rate[1 + q]);
+            to.of[p][q] = p == q ? product : product + product;
+        }
     }
 }
 
@@ -168,10 +178,11 @@ HOL_INLINE Half<R> both_products(const Frame<R> &a, const Frame<R> &z, const Hal
     Half<R> b;
     HOL_UNROLL_FEW
     for (int p = 0; p < R; ++p) {
-        b.of[p][p] = add_product(a[1 + p], z[1 + p], more.of[p][p]);
         HOL_UNROLL_FEW
-        for (int q = p + 1; q < R; ++q)
-            b.of[p][q] = add_product(a[1 + p], z[1 + q], more.of[p][q]) + dot(a[1 + q], z[1 + p]);
+        for (int q = p; q < R; ++q) {
+            b.of[p][q] = add_product(a[1 + p], z[1 + q], more.of[p][q]);
+            if (p != q) b.of[p][q] = b.of[p][q] + dot(a[1 + q], z[1 + p]);
+        }
     }
     return b;
 }

@@ -171,13 +171,16 @@ struct BodyLanes : BodyBlock {
     void write_site_velocities(const AtomArray &array, const Frame<R> &rate, unsigned lanes) const {
         for (long a = 0; a < kind.n_atoms; ++a) {
             if (kind.masses[a] != 0) continue;
-            const vec3 u = rate.at(kind.place + a * (1 + R));
-            double of[3][W];
-            store(of[0], u.x);
-            store(of[1], u.y);
-            store(of[2], u.z);
+            vec3 u = rate.at(kind.place + a * (1 + R));
+            if (takes_rows(array, lanes)) {
+                double *r[W], *to[W];
+                rows_at(rows(array), 0, r);
+                rows_at(r, 3 * a, to);
+                graph::write_elements<3>(to, &u);
+                continue;
+            }
             for (int l = 0; l < W; ++l) {
-                const double one[3] = {of[0][l], of[1][l], of[2][l]};
+                const double one[3] = {u.x[l], u.y[l], u.z[l]};
                 if (lanes >> l & 1) write_atom(array, atoms[l][a], one);
             }
         }
