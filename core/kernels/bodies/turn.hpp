@@ -20,7 +20,14 @@
 
 namespace holonomic::HOL_ISA {
 
-struct Turned {
+// What is known of a turn: prepare(), solve_turn() and finish() in this order. Each is a chain of operations that wait
+// for each other; those of two blocks go side by side.
+template <int R>
+struct Turn {
+    Frame<R> axes, away;  // of the reference, orthonormal; what that took from them
+    vec3 normal;          // of a plane
+    vec x[3][R], off;     // off: the square of how far the reference was from it
+    vec a[3], g[3];
     mask good;
     vec rounds;
 };
@@ -54,14 +61,20 @@ HOL_NOINLINE mask take_more_errors(const BodyKind &kind, mask bad, Frame<R> &a, 
 }
 
 // Gibbs' vector: Newton's method with the matrix of the first guess, which is right to the third order.
-HOL_INLINE void solve_turn(const vec *a, const vec *b, int most, Turned &out, vec *g) {
+HOL_NOINLINE mask solve_turn(const BodyKind &kind, const vec *of, int most, mask good, vec *to, vec &rounds_to) {
+    vec a[3], b[3], g[3], rounds = {};
+    HOL_UNROLL_FEW
+    for (int i = 0; i < 3; ++i) {
+        a[i] = of[i];
+        b[i] = splat(kind.skew[i]);
+    }
     const auto square_of = [](const vec *x) HOL_FORCED { return mul_add(x[2], x[2], mul_add(x[1], x[1], x[0] * x[0])); };
     // a_i (1 + x.x) - b_i x_j x_k
     const vec one = splat(1);
     const auto next = [&](const vec *x, vec *y) HOL_FORCED {
         const vec w = mul_add(x[2], x[2], mul_add(x[1], x[1], mul_add(x[0], x[0], one)));
         HOL_UNROLL_FEW
-        for (int i = 0; i < 3; ++i) y[i] = mul_add(a[i], w, -(b[i] * x[(i + 1) % 3]) * x[(i + 2) % 3]);
+        for (int i = 0; i < 3; ++i) y[i] = sub_mul(b[i] * x[(i + 1) % 3], x[(i + 2) % 3], a[i] * w);
     };
     vec start[3], m[3][3], inverse[3][3];
     next(a, start);
@@ -70,9 +83,9 @@ HOL_INLINE void solve_turn(const vec *a, const vec *b, int most, Turned &out, ve
     for (int i = 0; i < 3; ++i) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         const vec twice = a[i] + a[i];
-        m[i][i] = mul_add(-twice, g[i], one);
-        m[i][j] = mul_add(b[i], g[k], -(twice * g[j]));
-        m[i][k] = mul_add(b[i], g[j], -(twice * g[k]));
+        m[i][i] = sub_mul(twice, g[i], one);
+        m[i][j] = mul_sub(b[i], g[k], twice * g[j]);
+        m[i][k] = mul_sub(b[i], g[j], twice * g[k]);
     }
     HOL_UNROLL_FEW
     for (int i = 0; i < 3; ++i) {
@@ -84,8 +97,8 @@ HOL_INLINE void solve_turn(const vec *a, const vec *b, int most, Turned &out, ve
     }
     const vec per = 1.0 / mul_add(m[0][2], inverse[2][0], mul_add(m[0][1], inverse[1][0], m[0][0] * inverse[0][0]));
     vec square = square_of(g), first = {};
-    out.good = out.good & less(square, splat(0.1));
-    mask busy = out.good;
+    good = good & less(square, splat(0.1));
+    mask busy = good;
     for (int round = 0; round < most && any(busy); ++round) {
         vec rest[3], step[3];
         next(g, rest);
@@ -97,86 +110,98 @@ HOL_INLINE void solve_turn(const vec *a, const vec *b, int most, Turned &out, ve
             g[i] = g[i] + keep(busy, step[i]);
         }
         square = square_of(g);
-        out.rounds = out.rounds + keep(busy, one);
+        rounds = rounds + keep(busy, one);
         // By the first step the matrix is off, at most 2.5 times: that part of a later one is left.
         const vec size = square_of(step);
         if (round == 0) first = size;
         busy = busy & ~less_equal((7.0 * first) * size, (0.01 * epsilon * epsilon) * square);
     }
-    out.good = out.good & ~busy & less(square, splat(0.1));
+    HOL_UNROLL_FEW
+    for (int i = 0; i < 3; ++i) to[i] = g[i];
+    rounds_to = rounds;
+    return good & ~busy & less(square, splat(0.1));
 }
 
-// change: of the axes since the reference `from`; becomes that to A. C acts along axes that have been made orthonormal;
-// where that makes a difference of more than `slack` the body is not done.
+// change: of the axes since the reference `from`.
 template <int R>
-HOL_INLINE void restore(const BodyKind &kind, const Frame<R> &from, Frame<R> &change, int most, double slack,
-                        Turned &out) {
-    out.rounds = vec{};
-    if constexpr (R == 1) {
-        // |A + t - c A|^2 = 1
-        const vec3 u = from[1], t = change[1];
-        const vec e = excess(u, splat(1)), aa = 1.0 + e, bb = dot(u, u + t);
-        const vec c = e + dot(t, (u + u) + t);
-        const vec root = mul_add(-aa, c, bb * bb);
-        const vec lambda = c / (bb + sqrt(root));
-        out.good = less(splat(0.3), bb) & less(0.25 * bb * bb, root) & less(abs(e), splat(0.01));
-        put(change[1], less_times(t, lambda, u));
-        out.rounds = splat(1);
-    } else {
-        // Axes that are orthonormal to the rounding, and what that takes from them.
-        Frame<R> a = from, away;
-        away.clear();
-        const vec off = take_errors(kind, ~none(), a, away);
-        mask bad = ~less(off, splat(1e-18));
-        if (__builtin_expect(any(bad), 0)) {
-            Frame<R> copy = a, copy_away = away;
-            bad = take_more_errors(kind, bad, copy, copy_away);
-            a = copy;
-            away = copy_away;
-        }
-        out.good = ~bad;
-        vec3 d[R], axis[3];
-        HOL_UNROLL_FEW
-        for (int p = 0; p < R; ++p) {
-            put(d[p], change[1 + p] + away[1 + p]);
-            put(axis[p], a[1 + p]);
-        }
-        if (R == 2) put(axis[2], cross(axis[0], axis[1]));
-        vec x[3][R], turn[3], b[3], g[3];
-        HOL_UNROLL_FEW
-        for (int p = 0; p < 3; ++p) {
-            HOL_UNROLL_FEW
-            for (int q = 0; q < R; ++q) x[p][q] = dot(axis[p], d[q]);
-        }
-        HOL_UNROLL_FEW
-        for (int i = 0; i < 3; ++i) {
-            const int j = (i + 1) % 3, k = (i + 2) % 3;
-            vec both = {};
-            if (j < R) both = splat(kind.part[j][k]) * x[k][j < R ? j : 0];
-            if (k < R) both = sub_mul(splat(kind.part[k][j]), x[j][k < R ? k : 0], both);
-            turn[i] = 0.5 * both;
-            b[i] = splat(kind.skew[i]);
-        }
-        solve_turn(turn, b, most, out, g);
-        const vec square = mul_add(g[2], g[2], mul_add(g[1], g[1], g[0] * g[0])), s = 2.0 / (1.0 + square);
-        vec largest = {};  // the square of C's norm
-        HOL_UNROLL_FEW
-        for (int q = 0; q < R; ++q) {
-            const int r = (q + 1) % 3, t = (q + 2) % 3;
-            const vec sq = s * g[q], sr = s * g[r], st = s * g[t];
-            const vec of[3] = {mul_add(-sr, g[r], -(st * g[t])), mul_add(sq, g[r], st), mul_add(sq, g[t], -sr)};
-            const int row[3] = {q, r, t};
-            vec3 sum = vec3{} - away[1 + q];
-            HOL_UNROLL_FEW
-            for (int k = 0; k < 3; ++k) {
-                const vec c = x[row[k]][q] - of[k];
-                largest = mul_add(c, c, largest);
-                sum = add_times(sum, of[k], axis[row[k]]);
-            }
-            put(change[1 + q], sum);
-        }
-        out.good = out.good & less_equal(off * largest, splat(slack * slack));
+HOL_NOINLINE void prepare(const BodyKind &kind, const Frame<R> &__restrict from, const Frame<R> &__restrict change,
+                          Turn<R> &__restrict to) {
+    Frame<R> a = from, away;
+    away.clear();
+    to.off = take_errors(kind, ~none(), a, away);
+    mask bad = ~less(to.off, splat(1e-18));
+    if (__builtin_expect(any(bad), 0)) {
+        Frame<R> copy = a, copy_away = away;
+        bad = take_more_errors(kind, bad, copy, copy_away);
+        a = copy;
+        away = copy_away;
     }
+    to.good = ~bad;
+    to.axes = a;
+    to.away = away;
+    vec3 axis[3];
+    HOL_UNROLL_FEW
+    for (int p = 0; p < R; ++p) put(axis[p], a[1 + p]);
+    if (R == 2) {
+        put(axis[2], cross(axis[0], axis[1]));
+        put(to.normal, axis[2]);
+    }
+    vec x[3][R];
+    HOL_UNROLL_FEW
+    for (int q = 0; q < R; ++q) {
+        const vec3 d = change[1 + q] + away[1 + q];
+        HOL_UNROLL_FEW
+        for (int p = 0; p < 3; ++p) to.x[p][q] = x[p][q] = dot(axis[p], d);
+    }
+    HOL_UNROLL_FEW
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        vec both = {};
+        if (j < R) both = splat(kind.part[j][k]) * x[k][j < R ? j : 0];
+        if (k < R) both = sub_mul(splat(kind.part[k][j]), x[j][k < R ? k : 0], both);
+        to.a[i] = 0.5 * both;
+    }
+}
+
+// change: becomes that to A. C acts along axes that have been made orthonormal; where that makes a difference of more
+// than `slack` the body is not done.
+template <int R>
+HOL_NOINLINE mask finish(const Turn<R> &__restrict t, double slack, Frame<R> &__restrict change) {
+    vec g[3];
+    vec3 axis[3];
+    HOL_UNROLL_FEW
+    for (int p = 0; p < 3; ++p) {
+        g[p] = t.g[p];
+        put(axis[p], p < R ? t.axes[1 + (p < R ? p : 0)] : t.normal);
+    }
+    const vec square = mul_add(g[2], g[2], mul_add(g[1], g[1], g[0] * g[0])), s = 2.0 / (1.0 + square);
+    vec largest = {};  // the square of C's norm
+    HOL_UNROLL_FEW
+    for (int q = 0; q < R; ++q) {
+        const int row[3] = {q, (q + 1) % 3, (q + 2) % 3};
+        const vec sq = s * g[q], sr = s * g[row[1]];
+        const vec of[3] = {-mul_add(sr, g[row[1]], s * g[row[2]] * g[row[2]]), mul_add(sq, g[row[1]], s * g[row[2]]),
+                           mul_sub(sq, g[row[2]], sr)};
+        vec3 sum = vec3{} - t.away[1 + q];
+        HOL_UNROLL_FEW
+        for (int k = 0; k < 3; ++k) {
+            const vec c = t.x[row[k]][q] - of[k];
+            largest = mul_add(c, c, largest);
+            sum = add_times(sum, of[k], axis[row[k]]);
+        }
+        put(change[1 + q], sum);
+    }
+    return t.good & less_equal(t.off * largest, splat(slack * slack));
+}
+
+// The same for a line: |A + t - c A|^2 = 1.
+HOL_NOINLINE mask restore_line(const Frame<1> &from, Frame<1> &change) {
+    const vec3 u = {from[1].x, from[1].y, from[1].z}, t = {change[1].x, change[1].y, change[1].z};
+    const vec e = excess(u, splat(1)), aa = 1.0 + e, bb = dot(u, u + t);
+    const vec c = e + dot(t, (u + u) + t);
+    const vec root = sub_mul(aa, c, bb * bb);
+    put(change[1], less_times(t, c / (bb + sqrt(root)), u));
+    return less(splat(0.3), bb) & less(0.25 * bb * bb, root) & less(abs(e), splat(0.01));
 }
 
 }  // namespace holonomic::HOL_ISA

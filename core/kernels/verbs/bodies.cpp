@@ -32,16 +32,8 @@ HOL_INLINE vec square_of_moves(const BodyKind &kind, const Frame<R> &trial, cons
     return sum;
 }
 
-template <int R>
-__attribute__((noinline)) Turned restored(const BodyKind &kind, const Frame<R> &from, const Frame<R> &trial,
-                                          Frame<R> &change, int most, double slack) {
-    Turned out;
-    take_excess(kind, trial, change);
-    restore(kind, from, change, most, slack, out);
-    return out;
-}
-
-// What a verb does with a block: read(), solve(), which returns the lanes that are good, and write() for these.
+// What a verb does with a block: read(), prepare() and solve(), which returns the lanes that are good, and write() for
+// these.
 template <int R>
 struct ForcesOf : BodyLanes<R> {
     using BodyLanes<R>::kind;
@@ -59,6 +51,7 @@ struct ForcesOf : BodyLanes<R> {
         this->axes_of_rates(call.v, rate);
         twice_products(rate, of_rates);
     }
+    HOL_FORCED void prepare() {}
     HOL_FORCED mask solve(BodyResult *results) {
         return project_with_virial(kind, at, of_rates, z, call.virial, this->count, results);
     }
@@ -81,6 +74,7 @@ struct VelocitiesOf : BodyLanes<R> {
         this->rates(call.v, rounded);
         take_excess(kind, rounded, rate);
     }
+    HOL_FORCED void prepare() {}
     HOL_FORCED mask solve(BodyResult *results) {
         Half<R> none;
         none.clear();
@@ -96,6 +90,7 @@ struct PositionsOf : BodyLanes<R> {
     using BodyLanes<R>::kind;
     const PositionsCall &call;
     Frame<R> from, trial, change;
+    Turn<R> turn;
     mask near;
 
     PositionsOf(const PositionsCall &c, const BodyKind &k, double *scratch) : BodyLanes<R>(k, scratch), call(c) {}
@@ -103,15 +98,27 @@ struct PositionsOf : BodyLanes<R> {
     HOL_FORCED void read() {
         this->positions(call.r_ref, call.box_ref, from);
         near = this->changes(call.r, call.box, from, trial);
+        take_excess(kind, trial, change);
+        if (R > 1) holonomic::HOL_ISA::prepare(kind, from, change, turn);
+    }
+    HOL_FORCED void prepare() {
+        if (R == 1) return;
+        const int most = call.max_iterations < 40 ? call.max_iterations : 40;
+        turn.good = solve_turn(kind, turn.a, most, turn.good, turn.g, turn.rounds);
     }
     HOL_FORCED mask solve(BodyResult *results) {
-        const Turned turned = restored(kind, from, trial, change, call.max_iterations < 40 ? call.max_iterations : 40,
-                                       call.r_ref.is_float ? 1e-8 : 2e-15);
+        mask good;
+        if constexpr (R == 1) {
+            good = restore_line(from, change);
+            turn.rounds = splat(1);
+        } else {
+            good = finish(turn, call.r_ref.is_float ? 1e-8 : 2e-15, change);
+        }
         // Crude or rigid already: the general solver decides.
         const double least = (call.r.is_float ? 1e-5 : 1e-10) * kind.extent;
-        const mask good = turned.good & near & less(splat(least * least), square_of_moves(kind, trial, change)) &
+        good = good & near & less(splat(least * least), square_of_moves(kind, trial, change)) &
                           finite(change.nothing());
-        if (__builtin_expect(call.virial || call.report, 0)) report(turned, results);
+        if (__builtin_expect(call.virial || call.report, 0)) report(results);
         return good;
     }
     HOL_FORCED void write(unsigned lanes) {
@@ -120,7 +127,7 @@ struct PositionsOf : BodyLanes<R> {
     }
 
 private:
-    __attribute__((noinline)) void report(const Turned &turned, BodyResult *results) {
+    __attribute__((noinline)) void report(BodyResult *results) {
         Frame<R> moved, end;
         for (int k = 0; k <= R; ++k) {
             put(moved[k], change[k] - trial[k]);
@@ -130,7 +137,7 @@ private:
         const vec error = largest_of(errors_of(end));
         for (int l = 0; l < this->count; ++l) {
             results[l].error = error[l];
-            results[l].iterations = static_cast<int>(turned.rounds[l]);
+            results[l].iterations = static_cast<int>(turn.rounds[l]);
         }
     }
     // Velocities of sites are those of the body at their places, once the others have theirs.
@@ -141,27 +148,27 @@ private:
     }
 };
 
-// Calls stages of a verb for all blocks of a unit: bits of the bodies that are done. While one is solved for, which is
-// one long chain of sums and products, the next one is read.
+// Calls the stages of a verb for all blocks of a unit: bits of the bodies that are done. Two blocks at a time: what is
+// solved for is one long chain of sums and products, in which there is time for another one.
 template <class Verb, class Call>
 uint64_t for_each_block(const Call &call, const BodyUnit &unit, double *scratch, BodyResult *results) {
     const BodyKind &kind = *unit.kind;
-    Verb one(call, kind, scratch), other(call, kind, scratch + scratch_of_block(kind.n_atoms));
-    Verb *now = &one, *next = &other;
+    Verb of[2] = {{call, kind, scratch}, {call, kind, scratch + scratch_of_block(kind.n_atoms)}};
     uint64_t done = 0;
-    for (int body = -W; body < unit.count; body += W) {
-        const unsigned lanes = body < 0 ? 0 : bits(now->solve(results + body)) & ((1u << now->count) - 1);
-        if (body + W < unit.count) {
-            next->set(unit, body + W);
-            next->read();
+    for (int body = 0; body < unit.count; body += 2 * W) {
+        const int n = body + W < unit.count ? 2 : 1;
+        unsigned lanes[2];
+        for (int i = 0; i < n; ++i) {
+            of[i].set(unit, body + i * W);
+            of[i].read();
         }
-        if (lanes) {
-            now->write(lanes);
-            done |= static_cast<uint64_t>(lanes) << body;
+        for (int i = 0; i < n; ++i) of[i].prepare();
+        for (int i = 0; i < n; ++i)
+            lanes[i] = bits(of[i].solve(results + body + i * W)) & ((1u << of[i].count) - 1);
+        for (int i = 0; i < n; ++i) {
+            if (lanes[i]) of[i].write(lanes[i]);
+            done |= static_cast<uint64_t>(lanes[i]) << (body + i * W);
         }
-        Verb *const last = now;
-        now = next;
-        next = last;
     }
     return done;
 }
