@@ -51,7 +51,8 @@ struct ForcesOf : BodyLanes<R> {
         this->axes_of_rates(call.v, rate);
         twice_products(rate, of_rates);
     }
-    HOL_FORCED void prepare() {}
+    HOL_FORCED void compare() {}
+    HOL_FORCED void find_turn() {}
     HOL_FORCED mask solve(BodyResult *results) {
         return project_with_virial(kind, at, of_rates, z, call.virial, this->count, results);
     }
@@ -74,7 +75,8 @@ struct VelocitiesOf : BodyLanes<R> {
         this->rates(call.v, rounded);
         take_excess(kind, rounded, rate);
     }
-    HOL_FORCED void prepare() {}
+    HOL_FORCED void compare() {}
+    HOL_FORCED void find_turn() {}
     HOL_FORCED mask solve(BodyResult *results) {
         Half<R> none;
         none.clear();
@@ -97,11 +99,13 @@ struct PositionsOf : BodyLanes<R> {
 
     HOL_FORCED void read() {
         this->positions(call.r_ref, call.box_ref, from);
+    }
+    HOL_FORCED void compare() {
         near = this->changes(call.r, call.box, from, trial);
         take_excess(kind, trial, change);
-        if (R > 1) holonomic::HOL_ISA::prepare(kind, from, change, turn);
+        if (R > 1) prepare(kind, from, change, turn);
     }
-    HOL_FORCED void prepare() {
+    HOL_FORCED void find_turn() {
         if (R == 1) return;
         const int most = call.max_iterations < 40 ? call.max_iterations : 40;
         turn.good = solve_turn(kind, turn.a, most, turn.good, turn.g, turn.rounds);
@@ -162,7 +166,8 @@ uint64_t for_each_block(const Call &call, const BodyUnit &unit, double *scratch,
             of[i].set(unit, body + i * W);
             of[i].read();
         }
-        for (int i = 0; i < n; ++i) of[i].prepare();
+        for (int i = 0; i < n; ++i) of[i].compare();
+        for (int i = 0; i < n; ++i) of[i].find_turn();
         for (int i = 0; i < n; ++i)
             lanes[i] = bits(of[i].solve(results + body + i * W)) & ((1u << of[i].count) - 1);
         for (int i = 0; i < n; ++i) {
