@@ -82,11 +82,12 @@ private:
         std::int64_t molecules[block], next = first;
         int count = 0;
         bool consecutive = true;
+        const bool all_active = bodies_.all_active();
         for (; next < end && bodies_.shape_number(next) == number; ++next) {
-            if (!bodies_.is_active(next)) continue;
+            if (!all_active && !bodies_.is_active(next)) continue;
             molecules[count] = next;
             unit.atoms[count++] = bodies_.atoms(next);
-            consecutive = consecutive && bodies_.is_consecutive(next);
+            consecutive &= bodies_.is_consecutive(next);
         }
         unit.count = count;
         unit.consecutive = consecutive;

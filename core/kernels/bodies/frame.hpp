@@ -128,8 +128,7 @@ HOL_INLINE Symmetric<R> errors_of(const Frame<R> &a) {
     HOL_UNROLL_FEW
     for (int p = 0; p < R; ++p) {
         HOL_UNROLL_FEW
-        for (int q = p; q < R; ++q)
-            e.of[p][q] = p == q ? excess(a[1 + p], splat(1)) : dot(a[1 + p], a[1 + q]);
+        for (int q = p; q < R; ++q) e.of[p][q] = p == q ? excess(a[1 + p], splat(1)) : dot(a[1 + p], a[1 + q]);
     }
     return e;
 }
@@ -195,8 +194,7 @@ HOL_INLINE void take_away(const BodyKind &kind, const Frame<R> &a, const Half<R>
         vec3 x = less_times(z[1 + q], b.of[q][q], a[1 + q]);
         HOL_UNROLL_FEW
         for (int p = 0; p < R; ++p)
-            if (p != q)
-                x = less_times(x, splat(kind.part[p][q]) * b.of[p < q ? p : q][p < q ? q : p], a[1 + p]);
+            if (p != q) x = less_times(x, splat(kind.part[p][q]) * b.of[p < q ? p : q][p < q ? q : p], a[1 + p]);
         put(z[1 + q], x);
     }
 }
@@ -246,8 +244,7 @@ HOL_NOINLINE void write_virial(const BodyKind &kind, const Frame<R> &a, const Fr
     for (int x = 0; x < 3; ++x)
         for (int y = x; y < 3; ++y, ++i) {
             vec sum = {};
-            for (int p = 1; p <= R; ++p)
-                sum = mul_add((&a[p].x)[x] * splat(kind.square[p - 1]), (&t[p].x)[y], sum);
+            for (int p = 1; p <= R; ++p) sum = mul_add((&a[p].x)[x] * splat(kind.square[p - 1]), (&t[p].x)[y], sum);
             for (int l = 0; l < count; ++l) results[l].virial[i] = (factor * kind.mass) * sum[l];
         }
 }

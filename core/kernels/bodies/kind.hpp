@@ -9,7 +9,7 @@ namespace holonomic {
 // the body over their lengths L_p. x_p = y_p L_p are an atom's coordinates along them.
 struct BodyKind {
     int32_t n_atoms, rank;
-    int32_t n_heavy;  // atoms up to the last one that has mass
+    int32_t n_heavy;                    // atoms up to the last one that has mass
     bool has_sites, has_sites_between;  // massless ones, and before that one
     double mass, extent;
     double square[3];      // L_p^2

@@ -17,9 +17,8 @@ HOL_NOINLINE void sum_axes(const From from, const double *share, long n, Frame<R
     Frame<R> sum;
     sum.clear();
     const vec3 origin = first_of(from);
-    for_each_of_rows(from, n, [&](long a, const vec3 &x) HOL_FORCED {
-        sum.template take<1>(share + a * (1 + R), origin - x);
-    });
+    for_each_of_rows(from, n,
+                     [&](long a, const vec3 &x) HOL_FORCED { sum.template take<1>(share + a * (1 + R), origin - x); });
     to = sum;
 }
 
@@ -70,8 +69,7 @@ HOL_INLINE vec3 force_at(const Frame<R> &z, const double *place, const double *m
     return {mul_sub(m, u.x, f[a].x), mul_sub(m, u.y, f[a].y), mul_sub(m, u.z, f[a].z)};
 }
 template <int R>
-HOL_NOINLINE void write_forces_at(const BodyKind &kind, const Frame<R> &__restrict z, const vec3 *f,
-                                  const Rows to) {
+HOL_NOINLINE void write_forces_at(const BodyKind &kind, const Frame<R> &__restrict z, const vec3 *f, const Rows to) {
     const Frame<R> u = z;
     const double *const place = kind.place, *const masses = kind.masses;
     write_rows(to, kind.n_atoms, [&](long a) HOL_FORCED { return force_at(u, place, masses, f, a); });
@@ -139,8 +137,7 @@ struct BodyLanes : BodyBlock {
         if (__builtin_expect(in_rows && !call.add, 1)) return write_forces_at(kind, z, y, rows(call.g));
         for (long a = 0; a < kind.n_atoms; ++a) put(y[a], force_at(z, kind.place, kind.masses, y, a));
         if (in_rows)
-            add_rows(rows(call.g), {nullptr, first}, kind.n_atoms, 1, [&](long a)
-                                                                                      HOL_FORCED { return y[a]; });
+            add_rows(rows(call.g), {nullptr, first}, kind.n_atoms, 1, [&](long a) HOL_FORCED { return y[a]; });
         else if (call.add)
             add_some(call.g, 1, y, lanes);
         else

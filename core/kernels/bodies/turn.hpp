@@ -55,8 +55,7 @@ HOL_INLINE vec take_errors(const BodyKind &kind, mask lanes, Frame<R> &a, Frame<
 }
 template <int R>
 HOL_NOINLINE mask take_more_errors(const BodyKind &kind, mask bad, Frame<R> &a, Frame<R> &away) {
-    for (int pass = 0; pass < 3 && any(bad); ++pass)
-        bad = bad & ~less(take_errors(kind, bad, a, away), splat(1e-18));
+    for (int pass = 0; pass < 3 && any(bad); ++pass) bad = bad & ~less(take_errors(kind, bad, a, away), splat(1e-18));
     return bad;
 }
 
@@ -68,7 +67,8 @@ HOL_NOINLINE mask solve_turn(const BodyKind &kind, const vec *of, int most, mask
         a[i] = of[i];
         b[i] = splat(kind.skew[i]);
     }
-    const auto square_of = [](const vec *x) HOL_FORCED { return mul_add(x[2], x[2], mul_add(x[1], x[1], x[0] * x[0])); };
+    const auto square_of = [](const vec *x)
+                               HOL_FORCED { return mul_add(x[2], x[2], mul_add(x[1], x[1], x[0] * x[0])); };
     // a_i (1 + x.x) - b_i x_j x_k
     const vec one = splat(1);
     const auto next = [&](const vec *x, vec *y) HOL_FORCED {

@@ -97,9 +97,7 @@ struct PositionsOf : BodyLanes<R> {
 
     PositionsOf(const PositionsCall &c, const BodyKind &k, double *scratch) : BodyLanes<R>(k, scratch), call(c) {}
 
-    HOL_FORCED void read() {
-        this->positions(call.r_ref, call.box_ref, from);
-    }
+    HOL_FORCED void read() { this->positions(call.r_ref, call.box_ref, from); }
     HOL_FORCED void compare() {
         near = this->changes(call.r, call.box, from, trial);
         take_excess(kind, trial, change);
@@ -120,8 +118,8 @@ struct PositionsOf : BodyLanes<R> {
         }
         // Crude or rigid already: the general solver decides.
         const double least = (call.r.is_float ? 1e-5 : 1e-10) * kind.extent;
-        good = good & near & less(splat(least * least), square_of_moves(kind, trial, change)) &
-                          finite(change.nothing());
+        good =
+            good & near & less(splat(least * least), square_of_moves(kind, trial, change)) & finite(change.nothing());
         if (__builtin_expect(call.virial || call.report, 0)) report(results);
         return good;
     }
@@ -168,8 +166,7 @@ uint64_t for_each_block(const Call &call, const BodyUnit &unit, double *scratch,
         }
         for (int i = 0; i < n; ++i) of[i].compare();
         for (int i = 0; i < n; ++i) of[i].find_turn();
-        for (int i = 0; i < n; ++i)
-            lanes[i] = bits(of[i].solve(results + body + i * W)) & ((1u << of[i].count) - 1);
+        for (int i = 0; i < n; ++i) lanes[i] = bits(of[i].solve(results + body + i * W)) & ((1u << of[i].count) - 1);
         for (int i = 0; i < n; ++i) {
             if (lanes[i]) of[i].write(lanes[i]);
             done |= static_cast<uint64_t>(lanes[i]) << (body + i * W);
@@ -185,21 +182,18 @@ int64_t bodies_scratch_bytes(int64_t n_atoms) {
 }
 
 uint64_t bodies_forces(const ForcesCall &call, const BodyUnit &unit, double *scratch, BodyResult *results) {
-    return choose_number<1, 3>(unit.kind->rank, [&](auto rank) {
-        return for_each_block<ForcesOf<rank>>(call, unit, scratch, results);
-    });
+    return choose_number<1, 3>(unit.kind->rank,
+                               [&](auto rank) { return for_each_block<ForcesOf<rank>>(call, unit, scratch, results); });
 }
 
 uint64_t bodies_velocities(const VelocitiesCall &call, const BodyUnit &unit, double *scratch, BodyResult *results) {
-    return choose_number<1, 3>(unit.kind->rank, [&](auto rank) {
-        return for_each_block<VelocitiesOf<rank>>(call, unit, scratch, results);
-    });
+    return choose_number<1, 3>(
+        unit.kind->rank, [&](auto rank) { return for_each_block<VelocitiesOf<rank>>(call, unit, scratch, results); });
 }
 
 uint64_t bodies_positions(const PositionsCall &call, const BodyUnit &unit, double *scratch, BodyResult *results) {
-    return choose_number<1, 3>(unit.kind->rank, [&](auto rank) {
-        return for_each_block<PositionsOf<rank>>(call, unit, scratch, results);
-    });
+    return choose_number<1, 3>(
+        unit.kind->rank, [&](auto rank) { return for_each_block<PositionsOf<rank>>(call, unit, scratch, results); });
 }
 
 }  // namespace holonomic::HOL_ISA
