@@ -154,7 +154,7 @@ template <class Get>
 HOL_INLINE void add_rows(const Rows &to_r, const Rows &to_v, long n, double factor, const Get &get) {
     double *r[W], *v[W];
     rows_at(to_r, 0, r);
-    rows_at(to_v, 0, v);
+    rows_at(to_v.base ? to_v : to_r, 0, v);
     for_each_to_rows(n, get, [&](auto elements, long k, vec3 *x) HOL_FORCED {
         double *p[W], *u[W];
         rows_at(r, k, p);

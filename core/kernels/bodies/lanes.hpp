@@ -99,6 +99,10 @@ struct BodyLanes : BodyBlock {
         : BodyBlock(k), x(reinterpret_cast<vec3 *>(scratch)), y(x + k.n_atoms),
           copy(reinterpret_cast<double *>(y + k.n_atoms)) {}
 
+    // Stages that not every verb has (verbs/bodies.cpp).
+    HOL_FORCED void compare() {}
+    HOL_FORCED void find_turn() {}
+
     // Coordinates, or where there is a box those of images from the first atom's.
     HOL_FORCED vec3 *places(const AtomArray &array, const Box &box) {
         read_vectors(rows_of(array), kind.n_atoms, x);

@@ -32,8 +32,8 @@ HOL_INLINE vec square_of_moves(const BodyKind &kind, const Frame<R> &trial, cons
     return sum;
 }
 
-// What a verb does with a block: read(), prepare() and solve(), which returns the lanes that are good, and write() for
-// these.
+// What a verb does with a block: read(), compare() and find_turn() if it is positions, solve(), which returns the lanes
+// that are good, and write() for these.
 template <int R>
 struct ForcesOf : BodyLanes<R> {
     using BodyLanes<R>::kind;
@@ -51,8 +51,6 @@ struct ForcesOf : BodyLanes<R> {
         this->axes_of_rates(call.v, rate);
         twice_products(rate, of_rates);
     }
-    HOL_FORCED void compare() {}
-    HOL_FORCED void find_turn() {}
     HOL_FORCED mask solve(BodyResult *results) {
         return project_with_virial(kind, at, of_rates, z, call.virial, this->count, results);
     }
@@ -75,8 +73,6 @@ struct VelocitiesOf : BodyLanes<R> {
         this->rates(call.v, rounded);
         take_excess(kind, rounded, rate);
     }
-    HOL_FORCED void compare() {}
-    HOL_FORCED void find_turn() {}
     HOL_FORCED mask solve(BodyResult *results) {
         Half<R> none;
         none.clear();
