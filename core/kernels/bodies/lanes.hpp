@@ -22,12 +22,16 @@ HOL_NOINLINE void sum_axes(const From from, const double *share, long n, Frame<R
     to = sum;
 }
 
-// The sums of vectors by weights, times a factor each.
-template <int R>
-HOL_NOINLINE void sum_all(const vec3 *x, const double *weights, long n, const double *factor, Frame<R> &to) {
+// The sums of vectors by weights, times a factor each. keeps: in `kept`, too.
+template <int R, bool keeps, class From>
+HOL_NOINLINE void sum_all(const From from, const double *weights, long n, const double *factor, Frame<R> &to,
+                          vec3 *kept = nullptr) {
     Frame<R> sum;
     sum.clear();
-    for (long a = 0; a < n; ++a) sum.add(weights + a * (1 + R), x[a]);
+    for_each_of_rows(from, n, [&](long a, const vec3 &x) HOL_FORCED {
+        if (keeps) put(kept[a], x);
+        sum.add(weights + a * (1 + R), x);
+    });
     HOL_UNROLL_FEW
     for (int k = 0; k <= R; ++k) put(to[k], splat(factor[k]) * sum[k]);
 }
@@ -122,8 +126,7 @@ struct BodyLanes : BodyBlock {
         sum_axes<R>(rows_of(array, kind.has_sites_between), kind.share, kind.n_heavy, to);
     }
     HOL_FORCED void rates(const AtomArray &array, Frame<R> &to) {
-        read_vectors(rows_of(array, kind.has_sites_between), kind.n_heavy, x);
-        sum_all<R>(x, kind.share, kind.n_heavy, ones, to);
+        sum_all<R, false>(rows_of(array, kind.has_sites_between), kind.share, kind.n_heavy, ones, to);
     }
     // Over masses; they are kept in y.
     HOL_FORCED void forces(const AtomArray &array, Frame<R> &to) {
@@ -132,8 +135,7 @@ struct BodyLanes : BodyBlock {
             for (long a = 0; a < kind.n_atoms; ++a) y[a].x = y[a].y = y[a].z = vec{};
             return;
         }
-        read_vectors(rows_of(array), kind.n_atoms, y);
-        sum_all<R>(y, kind.place, kind.n_atoms, kind.per_moment, to);
+        sum_all<R, true>(rows_of(array), kind.place, kind.n_atoms, kind.per_moment, to, y);
     }
 
     HOL_FORCED void write_forces(const ForcesCall &call, const Frame<R> &z, unsigned lanes) {
@@ -157,7 +159,7 @@ struct BodyLanes : BodyBlock {
     HOL_FORCED mask changes(const AtomArray &array, const Box &box, const Frame<R> &axes, Frame<R> &to) {
         off = places(array, box);
         const vec largest = take_axes<R>(kind, axes, off);
-        sum_all<R>(off, kind.share, kind.n_atoms, ones, to);
+        sum_all<R, false>(static_cast<const vec3 *>(off), kind.share, kind.n_atoms, ones, to);
         return less(largest, splat(4 * kind.extent * kind.extent));
     }
     // Moves atoms to where their changes are those of a frame, and velocities by these moves over dt.
