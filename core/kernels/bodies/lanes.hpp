@@ -36,25 +36,23 @@ HOL_NOINLINE void sum_all(const From from, const double *weights, long n, const 
     for (int k = 0; k <= R; ++k) put(to[k], splat(factor[k]) * sum[k]);
 }
 
-// What vectors, taken from the first one, are off those of the axes, in their place. Returns the largest square.
-template <int R>
-HOL_NOINLINE vec take_axes(const BodyKind &kind, const Frame<R> &__restrict axes, vec3 *x) {
+// What vectors, taken from the first one, are off those of the axes. Returns the largest square.
+template <int R, class From>
+HOL_NOINLINE vec take_axes(const From from, const BodyKind &kind, const Frame<R> &__restrict axes, vec3 *off) {
     Frame<R> base;
-    base[0].x = -x[0].x;
-    base[0].y = -x[0].y;
-    base[0].z = -x[0].z;
+    put(base[0], vec3{} - first_of(from));
     HOL_UNROLL_FEW
     for (int p = 1; p <= R; ++p) put(base[p], axes[p]);
-    const double *place = kind.place;
+    const double *const place = kind.place;
     const vec3 origin = base.at(place);
     vec largest = {};
-    for (long a = 0; a < kind.n_atoms; ++a, place += 1 + R) {
-        vec3 t = x[a] + origin;
+    for_each_of_rows(from, kind.n_atoms, [&](long a, const vec3 &x) HOL_FORCED {
+        vec3 t = x + origin;
         HOL_UNROLL_FEW
-        for (int p = 1; p <= R; ++p) t = less_times(t, splat(place[p]), base[p]);
-        put(x[a], t);
+        for (int p = 1; p <= R; ++p) t = less_times(t, splat(place[a * (1 + R) + p]), base[p]);
+        put(off[a], t);
         largest = max(largest, dot(t, t));
-    }
+    });
     return largest;
 }
 
@@ -96,7 +94,6 @@ template <int R>
 struct BodyLanes : BodyBlock {
     vec3 *const x, *const y;  // [n_atoms] each
     double *const copy;       // of rows
-    vec3 *off;
     int64_t first_of_copy[W];
 
     BodyLanes(const BodyKind &k, double *scratch)
@@ -107,18 +104,17 @@ struct BodyLanes : BodyBlock {
     HOL_FORCED void compare() {}
     HOL_FORCED void find_turn() {}
 
-    // Coordinates, or where there is a box those of images from the first atom's.
-    HOL_FORCED vec3 *places(const AtomArray &array, const Box &box) {
-        read_vectors(rows_of(array), kind.n_atoms, x);
-        if (__builtin_expect(box.shape == Box::none, 1)) return x;
+    // Calls with(From) for the coordinates, or where there is a box for those of images from the first atom's.
+    template <class With>
+    HOL_FORCED void with_places(const AtomArray &array, const Box &box, const With &with) {
+        const Rows rows = rows_of(array);
+        if (__builtin_expect(box.shape == Box::none, 1)) return with(rows);
+        read_vectors(rows, kind.n_atoms, x);
         unfold(kind, box, x, y);
-        return y;
+        with(static_cast<const vec3 *>(y));
     }
     HOL_FORCED void positions(const AtomArray &array, const Box &box, Frame<R> &to) {
-        if (__builtin_expect(box.shape == Box::none, 1))
-            sum_axes<R>(rows_of(array), kind.share, kind.n_atoms, to);
-        else
-            sum_axes<R>(static_cast<const vec3 *>(places(array, box)), kind.share, kind.n_atoms, to);
+        with_places(array, box, [&](auto from) HOL_FORCED { sum_axes<R>(from, kind.share, kind.n_atoms, to); });
     }
 
     // Velocities of the atoms that have mass; what sites have is not looked at.
@@ -155,21 +151,21 @@ struct BodyLanes : BodyBlock {
         write_some(array, x, lanes);
     }
 
-    // What positions are off those of the axes; whether none is far. That stays in `off`.
+    // What positions are off those of the axes, in x; whether none is far.
     HOL_FORCED mask changes(const AtomArray &array, const Box &box, const Frame<R> &axes, Frame<R> &to) {
-        off = places(array, box);
-        const vec largest = take_axes<R>(kind, axes, off);
-        sum_all<R, false>(static_cast<const vec3 *>(off), kind.share, kind.n_atoms, ones, to);
+        vec largest;
+        with_places(array, box, [&](auto from) HOL_FORCED { largest = take_axes<R>(from, kind, axes, x); });
+        sum_all<R, false>(static_cast<const vec3 *>(x), kind.share, kind.n_atoms, ones, to);
         return less(largest, splat(4 * kind.extent * kind.extent));
     }
     // Moves atoms to where their changes are those of a frame, and velocities by these moves over dt.
     HOL_FORCED void write_moves(const PositionsCall &call, const Frame<R> &change, unsigned lanes) {
         const double per_dt = 1 / call.dt;
         if (takes_rows(call.r, lanes) && (!call.v.x || takes_rows(call.v, lanes)))
-            return add_moves(kind, change, off, rows(call.r), rows(call.v), per_dt);
-        for (long a = 0; a < kind.n_atoms; ++a) put(off[a], change.at(kind.place + a * (1 + R)) - off[a]);
-        add_some(call.r, 1, off, lanes);
-        if (call.v.x) add_some(call.v, per_dt, off, lanes);
+            return add_moves(kind, change, x, rows(call.r), rows(call.v), per_dt);
+        for (long a = 0; a < kind.n_atoms; ++a) put(x[a], change.at(kind.place + a * (1 + R)) - x[a]);
+        add_some(call.r, 1, x, lanes);
+        if (call.v.x) add_some(call.v, per_dt, x, lanes);
     }
     void write_site_velocities(const AtomArray &array, const Frame<R> &rate, unsigned lanes) const {
         for (long a = 0; a < kind.n_atoms; ++a) {
