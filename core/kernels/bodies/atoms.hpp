@@ -83,12 +83,11 @@ HOL_INLINE void rows_at(double *const *rows, long k, double **to) {
     for (int l = 0; l < W; ++l) to[l] = rows[l] + k;
 }
 
-// Calls each(a, vector) for n atoms, which are read two by two.
+// Calls each(a, vector) for the atoms a .. n - 1, which are read two by two.
 template <class Each>
-HOL_INLINE void for_each_of_rows(const Rows &rows, long n, const Each &each) {
+HOL_INLINE void for_each_of_rows(const Rows &rows, long a, long n, const Each &each) {
     double *r[W], *p[W];
     rows_at(rows, 0, r);
-    long a = 0;
     for (; a + 2 <= n; a += 2) {
         rows_at(r, 3 * a, p);
 #if HOL_LANES == 4 && defined(__AVX2__)
@@ -121,7 +120,7 @@ HOL_INLINE vec3 first_of(const Rows &rows) {
 }
 
 HOL_NOINLINE void read_vectors(const Rows rows, long n, vec3 *x) {
-    for_each_of_rows(rows, n, [&](long a, const vec3 &r) HOL_FORCED { put(x[a], r); });
+    for_each_of_rows(rows, 0, n, [&](long a, const vec3 &r) HOL_FORCED { put(x[a], r); });
 }
 
 // Hands get(a) for n atoms to put, as put(Constant, k, vectors) of two or of one, which go to element k.

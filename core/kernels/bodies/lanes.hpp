@@ -9,15 +9,15 @@ namespace holonomic::HOL_ISA {
 // The axes of vectors, taken from the first one. From: rows, or vectors.
 HOL_INLINE vec3 first_of(const vec3 *x) { return {x[0].x, x[0].y, x[0].z}; }
 template <class Each>
-HOL_INLINE void for_each_of_rows(const vec3 *x, long n, const Each &each) {
-    for (long a = 0; a < n; ++a) each(a, x[a]);
+HOL_INLINE void for_each_of_rows(const vec3 *x, long a, long n, const Each &each) {
+    for (; a < n; ++a) each(a, x[a]);
 }
 template <int R, class From>
 HOL_NOINLINE void sum_axes(const From from, const double *share, long n, Frame<R> &to) {
     Frame<R> sum;
     sum.clear();
     const vec3 origin = first_of(from);
-    for_each_of_rows(from, n,
+    for_each_of_rows(from, 1, n,
                      [&](long a, const vec3 &x) HOL_FORCED { sum.template take<1>(share + a * (1 + R), origin - x); });
     to = sum;
 }
@@ -28,7 +28,7 @@ HOL_NOINLINE void sum_all(const From from, const double *weights, long n, const 
                           vec3 *kept = nullptr) {
     Frame<R> sum;
     sum.clear();
-    for_each_of_rows(from, n, [&](long a, const vec3 &x) HOL_FORCED {
+    for_each_of_rows(from, 0, n, [&](long a, const vec3 &x) HOL_FORCED {
         if (keeps) put(kept[a], x);
         sum.add(weights + a * (1 + R), x);
     });
@@ -46,7 +46,7 @@ HOL_NOINLINE vec take_axes(const From from, const BodyKind &kind, const Frame<R>
     const double *const place = kind.place;
     const vec3 origin = base.at(place);
     vec largest = {};
-    for_each_of_rows(from, kind.n_atoms, [&](long a, const vec3 &x) HOL_FORCED {
+    for_each_of_rows(from, 0, kind.n_atoms, [&](long a, const vec3 &x) HOL_FORCED {
         vec3 t = x + origin;
         HOL_UNROLL_FEW
         for (int p = 1; p <= R; ++p) t = less_times(t, splat(place[a * (1 + R) + p]), base[p]);
