@@ -117,10 +117,8 @@ struct BodyLanes : BodyBlock {
         with_places(array, box, [&](auto from) HOL_FORCED { sum_axes<R>(from, kind.share, kind.n_atoms, to); });
     }
 
-    // Velocities of the atoms that have mass; what sites have is not looked at.
-    HOL_FORCED void axes_of_rates(const AtomArray &array, Frame<R> &to) {
-        sum_axes<R>(rows_of(array, kind.has_sites_between), kind.share, kind.n_heavy, to);
-    }
+    // Velocities of the atoms that have mass; what sites have is not looked at. Not from the first one's: it may be
+    // that of a light atom which is far faster than all others.
     HOL_FORCED void rates(const AtomArray &array, Frame<R> &to) {
         sum_all<R, false>(rows_of(array, kind.has_sites_between), kind.share, kind.n_heavy, ones, to);
     }

@@ -48,7 +48,7 @@ struct ForcesOf : BodyLanes<R> {
         this->forces(call.f, z);
         if (!call.v.x) return of_rates.clear();
         Frame<R> rate;
-        this->axes_of_rates(call.v, rate);
+        this->rates(call.v, rate);
         twice_products(rate, of_rates);
     }
     HOL_FORCED mask solve(BodyResult *results) {
