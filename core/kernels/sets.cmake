@@ -59,6 +59,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
         kernels/verbs/molecules_positions.cpp
         kernels/verbs/molecules_velocities.cpp
         PROPERTIES COMPILE_OPTIONS "-fno-split-loops;-fno-split-paths")
+    # Here it makes addresses in vectors, and what comes next waits for these to be in memory.
+    set_source_files_properties(kernels/verbs/bodies.cpp PROPERTIES COMPILE_OPTIONS -fno-tree-vectorize)
 endif()
 
 option(HOLONOMIC_BASELINE "The kernels that every x86-64 processor runs; OFF for trying changes with one other set (scripts/try)" ON)

@@ -16,21 +16,25 @@ BodyKind kind_of(const Body &body, const Shape &shape) {
     BodyKind kind{};
     kind.n_atoms = body.n_atoms;
     kind.rank = body.rank;
+    kind.n_heavy = body.n_atoms;
+    while (body.masses[static_cast<std::size_t>(kind.n_heavy - 1)] == 0) --kind.n_heavy;
+    kind.has_sites = body.n_massive < body.n_atoms;
+    kind.has_sites_between = body.n_massive < kind.n_heavy;
     kind.mass = body.mass;
-    kind.inverse_mass = body.inverse_mass;
     kind.extent = body.extent;
-    for (int p = 0; p < body.rank; ++p) kind.square[p] = body.square[p].hi;
+    kind.per_moment[0] = body.inverse_mass;
+    for (int p = 0; p < body.rank; ++p) {
+        kind.square[p] = body.square[p].hi;
+        kind.per_moment[1 + p] = body.inverse_mass / kind.square[p];
+    }
     for (int p = 0; p < 3; ++p)
-        for (int q = 0; q < body.rank; ++q) {
-            kind.per_sum[p][q] = kind.per_sum[q][p] = 1 / (kind.square[p] + kind.square[q]);
-            if (p >= body.rank) continue;
-            kind.per_size[p][q] = 1 / (body.length[p] * body.length[q]);
-            kind.ratio[p][q] = body.length[q] / body.length[p];
-        }
-    for (int q = 0; q < 2 && body.rank == 2; ++q) kind.ratio[2][q] = body.length[q] / (body.length[0] * body.length[1]);
+        for (int q = 0; q < 3; ++q) kind.part[p][q] = p == q ? 0.5 : kind.square[p] / (kind.square[p] + kind.square[q]);
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        kind.skew[i] = kind.part[j][k] - kind.part[k][j];
+    }
     std::copy_n(body.excess[0], 16, kind.excess[0]);
     kind.masses = body.masses.data();
-    kind.has_sites = body.n_massive < body.n_atoms;
     kind.place = weights;
     kind.share = weights + n;
     kind.steps = &shape.steps.data()->atom;

@@ -49,8 +49,9 @@ public:
     }
     const Body *kinds() const { return kinds_.data(); }
     const Body &body(const Part &part) const { return kinds_[static_cast<std::size_t>(part.body)]; }
+    bool all_active() const { return active_.empty(); }
     bool is_active(std::int64_t molecule) const {
-        return active_.empty() || active_[static_cast<std::size_t>(molecule)] != 0;
+        return all_active() || active_[static_cast<std::size_t>(molecule)] != 0;
     }
     bool is_site(std::int64_t atom) const { return sites_.count(atom) > 0; }
     // [n_molecules] or null: all

@@ -71,15 +71,17 @@ Axes axes_of(DoublePair s[3][3]) {
     return found;
 }
 
-// Places and shares as kernels have them, rounded; and what that leaves off their product.
+// Places and shares as kernels have them, for axes of length 1, rounded; and what that leaves off their product.
 void set_weights(Body &body) {
     const std::int64_t n = body.n_atoms, K = 1 + body.rank;
     std::vector<double> &weights = body.weights;
     weights.resize(at(2 * n * K));
+    DoublePair length[4] = {as_pair(1)};
+    for (int p = 0; p < body.rank; ++p) length[1 + p] = square_root(body.square[p]);
     for (std::int64_t a = 0; a < n; ++a)
         for (std::int64_t k = 0; k < K; ++k) {
-            weights[at(a * K + k)] = k == 0 ? 1 : rounded(body.y[at(a * body.rank + k - 1)]);
-            weights[at((n + a) * K + k)] = rounded(body.share[at(a * K + k)]);
+            weights[at(a * K + k)] = k == 0 ? 1 : rounded(body.y[at(a * body.rank + k - 1)] * length[k]);
+            weights[at((n + a) * K + k)] = rounded(body.share[at(a * K + k)] / length[k]);
         }
     for (std::int64_t k = 0; k < K; ++k)
         for (std::int64_t l = 0; l < K; ++l) {
@@ -201,7 +203,10 @@ Body make_body(std::int32_t n, const double *masses, const double *place) {
             body.share[at(a * (1 + body.rank) + 1 + p)] = (masses[a] * body.y[at(a * body.rank + p)]) / mass;
     double farthest = 0;
     for (const DoublePair &y : body.y) farthest = std::max(farthest, std::fabs(y.hi));
-    body.is_thick = body.length[body.rank - 1] > 1e-3 * body.length[0] && farthest < 100;
+    // Of a size, too, whose moments of inertia are far from what a double holds.
+    const double least_moment = body.mass * (body.length[body.rank - 1] * body.length[body.rank - 1]);
+    body.is_thick = body.length[body.rank - 1] > 1e-3 * body.length[0] && farthest < 100 && least_moment > 1e-200 &&
+                    least_moment < 1e200;
     if (body.is_thick) set_weights(body);
     return body;
 }

@@ -37,6 +37,7 @@ public:
         : chains_(chains), bodies_(*chains.bodies()), work_(work), memory_(memory), outcomes_(outcomes) {}
 
     Found run(std::int64_t first) {
+        found_ = {empty_tally(), Outcome::good};
         const std::int64_t end = std::min(first + block, bodies_.n_molecules());
         for (std::int64_t m = first; m < end; ++m) {
             if (!bodies_.is_active(m)) continue;
@@ -78,15 +79,18 @@ private:
         }
         BodyUnit unit;
         unit.kind = &kind_;
-        unit.count = 0;
-        unit.consecutive = true;
         std::int64_t molecules[block], next = first;
+        int count = 0;
+        bool consecutive = true;
+        const bool all_active = bodies_.all_active();
         for (; next < end && bodies_.shape_number(next) == number; ++next) {
-            if (!bodies_.is_active(next)) continue;
-            molecules[unit.count] = next;
-            unit.atoms[unit.count++] = bodies_.atoms(next);
-            unit.consecutive = unit.consecutive && bodies_.is_consecutive(next);
+            if (!all_active && !bodies_.is_active(next)) continue;
+            molecules[count] = next;
+            unit.atoms[count++] = bodies_.atoms(next);
+            consecutive &= bodies_.is_consecutive(next);
         }
+        unit.count = count;
+        unit.consecutive = consecutive;
         BodyResult results[block];
         const std::uint64_t done =
             work_.bodies(unit, reinterpret_cast<double *>(memory_ + bodies_.scratch_bytes()), results);
@@ -107,7 +111,7 @@ private:
     const Work &work_;
     char *const memory_;
     OutcomeOf *const outcomes_;
-    Found found_{empty_tally(), Outcome::good};
+    Found found_;
     BodyKind kind_;
     std::int32_t shape_ = -1;
 };
@@ -175,8 +179,12 @@ Found run(const Chains &chains, const Work &work) {
     OutcomeOf *const outcomes = outcomes_under_way();
     const int n_threads = static_cast<int>(std::min(std::min<std::int64_t>(chains.n_threads, n_blocks),
                                                     std::max<std::int64_t>(bodies.work() / rows_per_thread, 1)));
+    const auto run_all = [&] {
+        Block one(chains, work, own, outcomes);
+        for (std::int64_t j = 0; j < n_blocks; ++j) parts[j] = one.run(j * block);
+    };
     if (n_threads <= 1 || work.is_in_order()) {
-        for (std::int64_t j = 0; j < n_blocks; ++j) parts[j] = Block(chains, work, own, outcomes).run(j * block);
+        run_all();
     } else {
 #ifdef _OPENMP
         std::atomic<std::int64_t> next{0};
@@ -184,11 +192,11 @@ Found run(const Chains &chains, const Work &work) {
 #pragma omp parallel num_threads(n_threads)
         {
             char *const memory = static_cast<char *>(thread_memory(Keep::rigid, all.bytes));
-            for (std::int64_t j; memory && (j = next.fetch_add(1)) < n_blocks;)
-                parts[j] = Block(chains, work, memory, outcomes).run(j * block);
+            Block one(chains, work, memory, outcomes);
+            for (std::int64_t j; memory && (j = next.fetch_add(1)) < n_blocks;) parts[j] = one.run(j * block);
         }
 #else
-        for (std::int64_t j = 0; j < n_blocks; ++j) parts[j] = Block(chains, work, own, outcomes).run(j * block);
+        run_all();
 #endif
     }
     Found total{empty_tally(), Outcome::good};

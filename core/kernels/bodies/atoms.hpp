@@ -5,25 +5,50 @@
 #include "core/kernels/arithmetic/image.hpp"
 #include "core/kernels/atom.hpp"
 #include "core/kernels/bodies/frame.hpp"
+#include "core/kernels/molecules/atoms/consecutive.hpp"
 
 namespace holonomic::HOL_ISA {
+
+// Where the rows x y z of each lane begin.
+struct Rows {
+    double *base;
+    const int64_t *first;  // [W]
+};
 
 struct BodyBlock {
     const BodyKind &kind;
     const int64_t *atoms[W];  // lanes without a body repeat the first one
+    int64_t first[W];         // 3 atoms[l][0]
     int count;
     bool consecutive;  // the atoms of each stand one behind the other
 
-    HOL_FORCED bool in_a_row(const AtomArray &array) const { return array.packed && consecutive; }
-    HOL_FORCED double *row(const AtomArray &array, int lane) const {
-        return reinterpret_cast<double *>(array.x) + 3 * atoms[lane][0];
-    }
-
-    // The rows [3 n_atoms] of all lanes in an array; of other layouts a copy.
-    HOL_FORCED void rows(const AtomArray &array, double *copy, const double **to) const {
-        if (__builtin_expect(!in_a_row(array), 0)) return copy_rows(array, copy, to);
+    explicit BodyBlock(const BodyKind &k) : kind(k) {}
+    // The bodies of a unit from this one on.
+    HOL_FORCED void set(const BodyUnit &unit, int body) {
+        count = unit.count - body < W ? unit.count - body : W;
+        consecutive = unit.consecutive;
         HOL_UNROLL
-        for (int l = 0; l < W; ++l) to[l] = row(array, l);
+        for (int l = 0; l < W; ++l) {
+            atoms[l] = unit.atoms[body + (l < count ? l : 0)];
+            first[l] = 3 * atoms[l][0];
+        }
+    }
+    HOL_FORCED bool in_a_row(const AtomArray &array) const { return array.packed && consecutive; }
+    HOL_FORCED Rows rows(const AtomArray &array) const { return {reinterpret_cast<double *>(array.x), first}; }
+
+    // Copies the rows [3 n_atoms] of all lanes. without_sites: zeros in their place.
+    __attribute__((noinline)) Rows copy_rows(const AtomArray &array, double *copy, int64_t *first_of_copy,
+                                             bool without_sites) const {
+        double *to = copy;
+        for (int l = 0; l < W; ++l) {
+            first_of_copy[l] = to - copy;
+            for (long a = 0; a < kind.n_atoms; ++a, to += 3)
+                if (without_sites && kind.masses[a] == 0)
+                    to[0] = to[1] = to[2] = 0;
+                else
+                    read_atom(array, atoms[l][a], to);
+        }
+        return {copy, first_of_copy};
     }
 
     // Writes x [n_atoms] of some lanes in any layout.
@@ -47,98 +72,99 @@ struct BodyBlock {
                 write_atom(array, atoms[l][a], one);
             }
     }
-
-private:
-    __attribute__((noinline)) void copy_rows(const AtomArray &array, double *copy, const double **to) const {
-        for (int l = 0; l < W; ++l) {
-            to[l] = copy;
-            for (long a = 0; a < kind.n_atoms; ++a, copy += 3) read_atom(array, atoms[l][a], copy);
-        }
-    }
 };
 
-// Atom a of all lanes. Four numbers of each are read at once, the first of which is the one before.
-HOL_INLINE vec3 atom_of_rows(const double *const *rows, long a) {
-#if HOL_LANES == 4 && defined(__AVX2__)
-    vec m[4];
-    if (__builtin_expect(a > 0, 1)) {
-        HOL_UNROLL
-        for (int l = 0; l < 4; ++l) m[l] = load(rows[l] + 3 * a - 1);
-    } else {
-        HOL_UNROLL
-        for (int l = 0; l < 4; ++l) m[l] = _mm256_permute4x64_pd(load(rows[l]), 0x90);
-    }
-    transpose(m);
-    return {m[1], m[2], m[3]};
-#else
-    vec3 x;
-    for (int l = 0; l < W; ++l) {
-        x.x[l] = rows[l][3 * a];
-        x.y[l] = rows[l][3 * a + 1];
-        x.z[l] = rows[l][3 * a + 2];
-    }
-    return x;
-#endif
-}
-
-// Writes get(a) for all atoms, in rows of an array.
-template <class Get>
-HOL_INLINE void write_rows(const BodyKind &kind, double *const *rows, const Get &get) {
-#if HOL_LANES == 4 && defined(__AVX2__)
-    // A fourth number goes behind each atom, where the next one is written afterwards; before the last atom.
-    const long last = kind.n_atoms - 1;
-    vec before = {};
-    for (long a = 0; a < last; ++a) {
-        const vec3 x = get(a);
-        before = x.z;
-        vec m[4] = {x.x, x.y, x.z, x.z};
-        transpose(m);
-        HOL_UNROLL
-        for (int l = 0; l < 4; ++l) store(rows[l] + 3 * a, m[l]);
-    }
-    const vec3 x = get(last);
-    vec m[4] = {before, x.x, x.y, x.z};
-    transpose(m);
+HOL_INLINE void rows_at(const Rows &rows, long k, double **to) {
     HOL_UNROLL
-    for (int l = 0; l < 4; ++l) store(rows[l] + 3 * last - 1, m[l]);
-#else
-    for (long a = 0; a < kind.n_atoms; ++a) {
-        const vec3 x = get(a);
-        for (int l = 0; l < W; ++l) {
-            rows[l][3 * a] = x.x[l];
-            rows[l][3 * a + 1] = x.y[l];
-            rows[l][3 * a + 2] = x.z[l];
-        }
-    }
-#endif
+    for (int l = 0; l < W; ++l) to[l] = rows.base + rows.first[l] + k;
+}
+HOL_INLINE void rows_at(double *const *rows, long k, double **to) {
+    HOL_UNROLL
+    for (int l = 0; l < W; ++l) to[l] = rows[l] + k;
 }
 
-// Adds moves [n_atoms] to r, and factor times them to v, which may be null.
-HOL_INLINE void add_rows(const BodyKind &kind, double *const *r, double *const *v, double factor, const vec3 *moves) {
-    const vec *const from = &moves->x;
-    const long n = 3L * kind.n_atoms;
-    long k = 0;
-    for (; k + W <= n; k += W) {
-        vec m[W];
-        HOL_UNROLL
-        for (int l = 0; l < W; ++l) m[l] = from[k + l];
-        transpose(m);
-        HOL_UNROLL
-        for (int l = 0; l < W; ++l) store(r[l] + k, load(r[l] + k) + m[l]);
-        if (!v) continue;
-        HOL_UNROLL
-        for (int l = 0; l < W; ++l) store(v[l] + k, mul_add(splat(factor), m[l], load(v[l] + k)));
+// Calls each(a, vector) for the atoms a .. n - 1, which are read two by two.
+template <class Each>
+HOL_INLINE void for_each_of_rows(const Rows &rows, long a, long n, const Each &each) {
+    double *r[W], *p[W];
+    rows_at(rows, 0, r);
+    for (; a + 2 <= n; a += 2) {
+        rows_at(r, 3 * a, p);
+#if HOL_LANES == 4 && defined(__AVX2__)
+        // What belongs to the second atom alone is read behind the first one: all would not fit into registers.
+        vec e[6];
+        graph::read_elements<4>(p, e);
+        each(a, vec3{e[0], e[1], e[2]});
+        graph::read_pair(p, 4, e[4], e[5]);
+        each(a + 1, vec3{e[3], e[4], e[5]});
+#else
+        vec3 two[2];
+        graph::read_elements<6>(p, two);
+        each(a, two[0]);
+        each(a + 1, two[1]);
+#endif
     }
-    for (; k < n; ++k)
-        for (int l = 0; l < W; ++l) {
-            r[l][k] += from[k][l];
-            if (v) v[l][k] = mul_add(factor, from[k][l], v[l][k]);
-        }
+    if (a == n) return;
+    vec3 one;
+    rows_at(r, 3 * a, p);
+    graph::read_elements<3>(p, &one);
+    each(a, one);
+}
+
+HOL_INLINE vec3 first_of(const Rows &rows) {
+    double *r[W];
+    rows_at(rows, 0, r);
+    vec3 x;
+    graph::read_elements<3>(r, &x);
+    return x;
+}
+
+HOL_NOINLINE void read_vectors(const Rows rows, long n, vec3 *x) {
+    for_each_of_rows(rows, 0, n, [&](long a, const vec3 &r) HOL_FORCED { put(x[a], r); });
+}
+
+// Hands get(a) for n atoms to put, as put(Constant, k, vectors) of two or of one, which go to element k.
+template <class Get, class Put>
+HOL_INLINE void for_each_to_rows(long n, const Get &get, const Put &put) {
+    long a = 0;
+    for (; a + 2 <= n; a += 2) {
+        vec3 x[2] = {get(a), get(a + 1)};
+        put(Constant<int, 6>{}, 3 * a, x);
+    }
+    if (a == n) return;
+    vec3 x = get(a);
+    put(Constant<int, 3>{}, 3 * a, &x);
+}
+
+// Writes get(a) for n atoms.
+template <class Get>
+HOL_INLINE void write_rows(const Rows &rows, long n, const Get &get) {
+    double *r[W];
+    rows_at(rows, 0, r);
+    for_each_to_rows(n, get, [&](auto elements, long k, vec3 *x) HOL_FORCED {
+        double *p[W];
+        rows_at(r, k, p);
+        graph::write_elements<elements>(p, x);
+    });
+}
+
+// Adds get(a) to r, and factor times it to v, whose base may be null.
+template <class Get>
+HOL_INLINE void add_rows(const Rows &to_r, const Rows &to_v, long n, double factor, const Get &get) {
+    double *r[W], *v[W];
+    rows_at(to_r, 0, r);
+    rows_at(to_v.base ? to_v : to_r, 0, v);
+    for_each_to_rows(n, get, [&](auto elements, long k, vec3 *x) HOL_FORCED {
+        double *p[W], *u[W];
+        rows_at(r, k, p);
+        if (!to_v.base) return graph::add_elements<elements>(p, nullptr, 0, x);
+        rows_at(v, k, u);
+        graph::add_elements<elements>(p, u, factor, x);
+    });
 }
 
 // Coordinates from the first atom's, images taken from neighbour to neighbour.
-HOL_NOINLINE void unfold(const BodyKind &kind, const Box &box, const double *const *rows, vec3 *raw, vec3 *x) {
-    for (long a = 0; a < kind.n_atoms; ++a) put(raw[a], atom_of_rows(rows, a));
+HOL_NOINLINE void unfold(const BodyKind &kind, const Box &box, const vec3 *raw, vec3 *x) {
     put(x[0], raw[0] - raw[0]);
     for (long k = 0; k + 1 < kind.n_atoms; ++k) {
         const long to = kind.steps[2 * k], from = kind.steps[2 * k + 1];

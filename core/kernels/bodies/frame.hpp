@@ -1,12 +1,14 @@
 // Equations of the axes of rigid bodies of one kind, W of them side by side.
 //
-// Vectors are numbered k = 0 .. R: that of the centre, and those of the axes u_p (core/rigid/body.hpp). With U the
-// 3 x R matrix of the u_p, S = U^T U, which is all but diagonal, and a symmetric Lambda:
+// Vectors are numbered k = 0 .. R: that of the centre, and those of the axes a_p = u_p / L_p (core/rigid/body.hpp),
+// which are orthonormal but for what rounding leaves. With A the 3 x R matrix of the a_p, and Z what forces over masses
+// give it,
 //
-//     forces       U'' = W/M - U Lambda,       S Lambda + Lambda S = U^T W/M + (..)^T + 2 U'^T U'
-//     velocities   U'  = U'_in - U Lambda,     S Lambda + Lambda S = U^T U'_in + (..)^T
+//     forces       A'' = Z - A C,       C + C^T = A^T Z + (..)^T + 2 A'^T A'
+//     velocities   A'  = A'_in - A C,   C + C^T = A^T A'_in + (..)^T
 //
-// positions: turn.hpp.
+// where C_pq / C_qp = L_p^2 / L_q^2, as no angular momentum may come of it. A^T A = 1 + E leaves a part E of what C
+// should take away, which is taken away next. Positions: turn.hpp.
 #ifndef HOLONOMIC_KERNELS_BODIES_FRAME_HPP
 #define HOLONOMIC_KERNELS_BODIES_FRAME_HPP
 
@@ -22,6 +24,11 @@ HOL_INLINE void put(vec3 &to, const vec3 &from) {
     to.x = from.x;
     to.y = from.y;
     to.z = from.z;
+}
+
+// c - s a
+HOL_INLINE vec3 less_times(const vec3 &c, vec s, const vec3 &a) {
+    return {sub_mul(s, a.x, c.x), sub_mul(s, a.y, c.y), sub_mul(s, a.z, c.z)};
 }
 
 // A vector for the centre and R for the axes: of positions, velocities or forces.
@@ -45,17 +52,22 @@ struct Frame {
     HOL_FORCED const vec3 &operator[](int k) const { return of[k]; }
 
     // Adds weights [1 + R] of an atom times its vector.
-    template <int first = 0>
     HOL_FORCED void add(const double *weights, const vec3 &x) {
         HOL_UNROLL_FEW
-        for (int k = first; k <= R; ++k) put(of[k], add_times(of[k], splat(weights[k]), x));
+        for (int k = 0; k <= R; ++k) put(of[k], add_times(of[k], splat(weights[k]), x));
     }
-    // The vector at an atom that has these weights.
-    HOL_FORCED vec3 at(const double *weights) const {
+    // Takes them away.
+    template <int first>
+    HOL_FORCED void take(const double *weights, const vec3 &x) {
+        HOL_UNROLL_FEW
+        for (int k = first; k <= R; ++k) put(of[k], less_times(of[k], splat(weights[k]), x));
+    }
+    // The vector at an atom that has these places.
+    HOL_FORCED vec3 at(const double *place) const {
         vec x = of[0].x, y = of[0].y, z = of[0].z;
         HOL_UNROLL_FEW
         for (int p = 1; p <= R; ++p) {
-            const vec w = splat(weights[p]);
+            const vec w = splat(place[p]);
             x = mul_add(w, of[p].x, x);
             y = mul_add(w, of[p].y, y);
             z = mul_add(w, of[p].z, z);
@@ -64,189 +76,177 @@ struct Frame {
     }
     // Zero if all is finite, else not a number.
     HOL_FORCED vec nothing() const {
-        vec sum = {};
+        vec x = {}, y = {}, z = {};
         HOL_UNROLL_FEW
-        for (int k = 0; k <= R; ++k)
-            sum = mul_add(of[k].z, vec{}, mul_add(of[k].y, vec{}, mul_add(of[k].x, vec{}, sum)));
-        return sum;
+        for (int k = 0; k <= R; ++k) {
+            x = mul_add(of[k].x, vec{}, x);
+            y = mul_add(of[k].y, vec{}, y);
+            z = mul_add(of[k].z, vec{}, z);
+        }
+        return x + (y + z);
     }
 };
 
 // What the rounding of shares and places leaves off in a frame of what changes: it would turn the body, in every step
 // the same way.
 template <int R>
-HOL_INLINE void take_excess(const BodyKind &kind, Frame<R> &change) {
-    Frame<R> more;
-    more.clear();
+HOL_INLINE void take_excess(const BodyKind &kind, const Frame<R> &from, Frame<R> &__restrict to) {
     HOL_UNROLL_FEW
     for (int k = 0; k <= R; ++k) {
+        vec x = from[k].x, y = from[k].y, z = from[k].z;
         HOL_UNROLL_FEW
-        for (int l = 0; l <= R; ++l) more[k] = add_times(more[k], splat(kind.excess[k][l]), change[l]);
+        for (int l = 0; l <= R; ++l) {
+            const vec more = splat(kind.excess[k][l]);
+            x = sub_mul(more, from[l].x, x);
+            y = sub_mul(more, from[l].y, y);
+            z = sub_mul(more, from[l].z, z);
+        }
+        put(to[k], {x, y, z});
     }
-    HOL_UNROLL_FEW
-    for (int k = 0; k <= R; ++k) change[k] = change[k] - more[k];
 }
 
-// A symmetric matrix, its lower half a copy of the upper one.
+// The upper half of a symmetric matrix; in `Half` half its diagonal.
 template <int R>
 struct Symmetric {
     vec of[R][R];
 };
-
 template <int R>
-HOL_INLINE Symmetric<R> products(const Frame<R> &u) {
-    Symmetric<R> s;
+struct Half : Symmetric<R> {
+    HOL_FORCED void clear() {
+        HOL_UNROLL_FEW
+        for (int p = 0; p < R; ++p) {
+            HOL_UNROLL_FEW
+            for (int q = p; q < R; ++q) this->of[p][q] = vec{};
+        }
+    }
+};
+
+// A^T A - 1
+template <int R>
+HOL_INLINE Symmetric<R> errors_of(const Frame<R> &a) {
+    Symmetric<R> e;
     HOL_UNROLL_FEW
     for (int p = 0; p < R; ++p) {
         HOL_UNROLL_FEW
-        for (int q = p; q < R; ++q) s.of[p][q] = s.of[q][p] = dot(u[1 + p], u[1 + q]);
+        for (int q = p; q < R; ++q) e.of[p][q] = p == q ? excess(a[1 + p], splat(1)) : dot(a[1 + p], a[1 + q]);
     }
-    return s;
-}
-
-// u.v + v.u
-template <int R>
-HOL_INLINE Symmetric<R> both_products(const Frame<R> &u, const Frame<R> &v) {
-    Symmetric<R> s;
-    HOL_UNROLL_FEW
-    for (int p = 0; p < R; ++p) {
-        HOL_UNROLL_FEW
-        for (int q = p; q < R; ++q) s.of[p][q] = s.of[q][p] = dot(u[1 + p], v[1 + q]) + dot(u[1 + q], v[1 + p]);
-    }
-    return s;
-}
-
-// By how much the axes' products are off L^2.
-template <int R>
-HOL_INLINE Symmetric<R> errors_of(const BodyKind &kind, const Frame<R> &u) {
-    Symmetric<R> e = products(u);
-    HOL_UNROLL_FEW
-    for (int p = 0; p < R; ++p) e.of[p][p] = e.of[p][p] - splat(kind.square[p]);
     return e;
 }
 
-// At most, relative to the axes.
+// The square of its norm.
 template <int R>
-HOL_INLINE vec largest_error(const BodyKind &kind, const Symmetric<R> &e) {
-    vec worst = {};
-    HOL_UNROLL_FEW
-    for (int p = 0; p < R; ++p) {
-        HOL_UNROLL_FEW
-        for (int q = p; q < R; ++q) worst = max(worst, abs(e.of[p][q]) * splat(kind.per_size[p][q]));
-    }
-    return worst;
-}
-
-// X of L^2 X + X L^2 = b.
-template <int R>
-HOL_INLINE Symmetric<R> by_the_diagonal(const BodyKind &kind, const Symmetric<R> &b) {
-    Symmetric<R> x;
-    HOL_UNROLL_FEW
-    for (int p = 0; p < R; ++p) {
-        HOL_UNROLL_FEW
-        for (int q = p; q < R; ++q) x.of[p][q] = x.of[q][p] = b.of[p][q] * splat(kind.per_sum[p][q]);
-    }
-    return x;
-}
-
-// What e is short of being solved: b' of the next correction by the diagonal, if this was the last one.
-template <int R>
-HOL_INLINE Symmetric<R> rest_after(const Symmetric<R> &e, const Symmetric<R> &last) {
-    Symmetric<R> b;
+HOL_INLINE vec square_of(const Symmetric<R> &e) {
+    vec diagonal = {}, beside = {};
     HOL_UNROLL_FEW
     for (int p = 0; p < R; ++p) {
         HOL_UNROLL_FEW
         for (int q = p; q < R; ++q) {
-            vec sum = e.of[p][0] * last.of[0][q];
-            HOL_UNROLL_FEW
-            for (int s = 1; s < R; ++s) sum = mul_add(e.of[p][s], last.of[s][q], sum);
-            HOL_UNROLL_FEW
-            for (int s = 0; s < R; ++s) sum = mul_add(last.of[p][s], e.of[s][q], sum);
-            b.of[p][q] = b.of[q][p] = sum;
+            vec &sum = p == q ? diagonal : beside;
+            sum = mul_add(e.of[p][q], e.of[p][q], sum);
+        }
+    }
+    return mul_add(splat(2), beside, diagonal);
+}
+
+template <int R>
+HOL_INLINE vec largest_of(const Symmetric<R> &e) {
+    vec worst = {};
+    for (int p = 0; p < R; ++p)
+        for (int q = p; q < R; ++q) worst = max(worst, abs(e.of[p][q]));
+    return worst;
+}
+
+// 2 A'^T A'
+template <int R>
+HOL_INLINE void twice_products(const Frame<R> &rate, Half<R> &to) {
+    HOL_UNROLL_FEW
+    for (int p = 0; p < R; ++p) {
+        HOL_UNROLL_FEW
+        for (int q = p; q < R; ++q) {
+            const vec product = dot(rate[1 + p], rate[1 + q]);
+            to.of[p][q] = p == q ? product : product + product;
+        }
+    }
+}
+
+// A^T Z + (..)^T + more
+template <int R>
+HOL_INLINE Half<R> both_products(const Frame<R> &a, const Frame<R> &z, const Half<R> &more) {
+    const auto add_product = [](const vec3 &u, const vec3 &v, vec sum)
+                                 HOL_FORCED { return mul_add(u.z, v.z, mul_add(u.y, v.y, mul_add(u.x, v.x, sum))); };
+    Half<R> b;
+    HOL_UNROLL_FEW
+    for (int p = 0; p < R; ++p) {
+        HOL_UNROLL_FEW
+        for (int q = p; q < R; ++q) {
+            b.of[p][q] = add_product(a[1 + p], z[1 + q], more.of[p][q]);
+            if (p != q) b.of[p][q] = b.of[p][q] + dot(a[1 + q], z[1 + p]);
         }
     }
     return b;
 }
 
+// Z - A C, C + C^T = b
 template <int R>
-HOL_INLINE void add(Symmetric<R> &a, const Symmetric<R> &b) {
+HOL_INLINE void take_away(const BodyKind &kind, const Frame<R> &a, const Half<R> &b, Frame<R> &z) {
     HOL_UNROLL_FEW
-    for (int p = 0; p < R; ++p) {
+    for (int q = 0; q < R; ++q) {
+        vec3 x = less_times(z[1 + q], b.of[q][q], a[1 + q]);
         HOL_UNROLL_FEW
-        for (int q = p; q < R; ++q) a.of[p][q] = a.of[q][p] = a.of[p][q] + b.of[p][q];
-    }
-}
-
-// Further corrections, where the first two are not enough. `good` is left to lanes for which that comes to an end.
-template <int R>
-HOL_NOINLINE void correct_more(const BodyKind &kind, const Symmetric<R> &e, Symmetric<R> change, vec rate, mask &good,
-                               Symmetric<R> &sum) {
-    vec left = rate * rate;
-    mask busy = good & ~less(left, splat(0.01 * epsilon));
-    double sign = -1;
-    for (int pass = 0; pass < 24 && any(busy); ++pass) {
-        change = by_the_diagonal(kind, rest_after(e, change));
         for (int p = 0; p < R; ++p)
-            for (int q = 0; q < R; ++q) sum.of[p][q] = sum.of[p][q] - sign * keep(busy, change.of[p][q]);
-        sign = -sign;
-        left = left * rate;
-        busy = busy & ~less(left, splat(0.01 * epsilon));
+            if (p != q) x = less_times(x, splat(kind.part[p][q]) * b.of[p < q ? p : q][p < q ? q : p], a[1 + p]);
+        put(z[1 + q], x);
     }
-    good = good & ~busy;
 }
 
-// Lambda of S Lambda + Lambda S = b, S = L^2 + e: to the last digit. Each correction makes the error smaller by a
-// factor that is known beforehand.
 template <int R>
-HOL_INLINE Symmetric<R> solve(const BodyKind &kind, const Symmetric<R> &e, const Symmetric<R> &b, mask &good) {
-    Symmetric<R> lambda = by_the_diagonal(kind, b);
-    const Symmetric<R> change = by_the_diagonal(kind, rest_after(e, lambda));
-    HOL_UNROLL_FEW
-    for (int p = 0; p < R; ++p) {
-        HOL_UNROLL_FEW
-        for (int q = p; q < R; ++q) lambda.of[p][q] = lambda.of[q][p] = lambda.of[p][q] - change.of[p][q];
-    }
-    const vec rate = 2.0 * R * largest_error(kind, e);
-    const mask slow = ~less(rate, splat(1e-9));
-    if (__builtin_expect(any(slow & good), 0)) {
-        Symmetric<R> sum = lambda;
-        correct_more(kind, e, change, rate, good, sum);
-        lambda = sum;
-    }
-    return lambda;
+HOL_NOINLINE void take_more(const BodyKind &kind, const Frame<R> &a, const Half<R> &b, Frame<R> &z) {
+    take_away(kind, a, b, z);
 }
 
-// The axes of `u` less the sum of Lambda_pq of `v`.
+// z: becomes what obeys the equations. taken: less what that takes, where it is wanted. The lanes for which it comes to
+// an end.
 template <int R>
-HOL_INLINE void take_away(Frame<R> &u, const Frame<R> &v, const Symmetric<R> &lambda) {
-    HOL_UNROLL_FEW
-    for (int p = 0; p < R; ++p) {
-        HOL_UNROLL_FEW
-        for (int q = 0; q < R; ++q) {
-            u[1 + p].x = mul_add(-v[1 + q].x, lambda.of[p][q], u[1 + p].x);
-            u[1 + p].y = mul_add(-v[1 + q].y, lambda.of[p][q], u[1 + p].y);
-            u[1 + p].z = mul_add(-v[1 + q].z, lambda.of[p][q], u[1 + p].z);
+HOL_NOINLINE mask project(const BodyKind &kind, const Frame<R> &__restrict a, const Half<R> &__restrict more,
+                          Frame<R> &__restrict to, Frame<R> *taken) {
+    Frame<R> z = to;
+    const auto take = [&](mask lanes, bool all) HOL_FORCED {
+        Half<R> b = both_products(a, z, more);
+        for (int p = 0; p < R && !all; ++p)
+            for (int q = p; q < R; ++q) b.of[p][q] = keep(lanes, b.of[p][q]);
+        if (__builtin_expect(taken != nullptr, 0)) {
+            const Half<R> copy = b;
+            take_more(kind, a, copy, *taken);
+        }
+        take_away(kind, a, b, z);
+    };
+    // What is left is less by this factor, at least, each time.
+    const vec square = 4.0 * square_of(errors_of(a));
+    for (int pass = 0; pass < 2; ++pass) take(none(), true);
+    mask busy = ~less(square, splat(1e-18));
+    if (__builtin_expect(any(busy), 0)) {
+        vec left = square * square;
+        for (int pass = 0; pass < 24 && any(busy); ++pass) {
+            take(busy, false);
+            left = left * square;
+            busy = busy & ~less(left, splat(1e-4 * epsilon * epsilon));
         }
     }
+    to = z;
+    return ~busy & finite(z.nothing());
 }
 
-// factor u_p (x) t_p, t: what is added to the axes. By value: what they are made of stays in registers where no virial
-// is wanted.
+// M L_p^2 a_p (x) t_p, t: what is added to the axes.
 template <int R>
-HOL_NOINLINE void write_virial(Frame<R> u, Frame<R> t, double factor, int count, BodyResult *results) {
+HOL_NOINLINE void write_virial(const BodyKind &kind, const Frame<R> &a, const Frame<R> &t, double factor, int count,
+                               BodyResult *results) {
     int i = 0;
-    for (int a = 0; a < 3; ++a)
-        for (int b = a; b < 3; ++b, ++i) {
+    for (int x = 0; x < 3; ++x)
+        for (int y = x; y < 3; ++y, ++i) {
             vec sum = {};
-            for (int p = 1; p <= R; ++p) sum = mul_add((&u[p].x)[a], (&t[p].x)[b], sum);
-            for (int l = 0; l < count; ++l) results[l].virial[i] = factor * sum[l];
+            for (int p = 1; p <= R; ++p) sum = mul_add((&a[p].x)[x] * splat(kind.square[p - 1]), (&t[p].x)[y], sum);
+            for (int l = 0; l < count; ++l) results[l].virial[i] = (factor * kind.mass) * sum[l];
         }
-}
-template <int R>
-HOL_NOINLINE void write_virial(Frame<R> u, Symmetric<R> lambda, double factor, int count, BodyResult *results) {
-    Frame<R> t{};
-    take_away(t, u, lambda);
-    write_virial(u, t, factor, count, results);
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -5,18 +5,21 @@
 
 namespace holonomic {
 
-// A kind of rigid body that stands alone (core/rigid/body.hpp), as a kernel sees it.
+// A kind of rigid body that stands alone (core/rigid/body.hpp), as a kernel sees it: with axes of length 1, those of
+// the body over their lengths L_p. x_p = y_p L_p are an atom's coordinates along them.
 struct BodyKind {
     int32_t n_atoms, rank;
-    double mass, inverse_mass, extent;
-    double square[3];                      // L_p^2
-    double per_size[3][3], per_sum[3][3];  // 1/(L_p L_q), 1/(L_p^2 + L_q^2)
-    double ratio[3][3];                    // L_q/L_p; for the normal of a plane, p = 2, L_q/(L_0 L_1)
-    double excess[4][4];                   // sum of share place, as they are rounded, less 1
-    const double *masses;                  // [n_atoms], 0: a massless site
-    bool has_sites;
-    const double *place;   // [n_atoms][1 + rank]: 1, y_p
-    const double *share;   // [n_atoms][1 + rank]: m/M, m y_p / M
+    int32_t n_heavy;                    // atoms up to the last one that has mass
+    bool has_sites, has_sites_between;  // massless ones, and before that one
+    double mass, extent;
+    double square[3];      // L_p^2
+    double part[3][3];     // L_p^2 / (L_p^2 + L_q^2); the normal of a plane, p = 2, has the length 0
+    double skew[3];        // part[j][k] - part[k][j], i, j, k in cyclic order
+    double per_moment[4];  // 1/M, 1/(M L_p^2)
+    double excess[4][4];   // sum of share place, as they are rounded, less 1
+    const double *masses;  // [n_atoms], 0: a massless site
+    const double *place;   // [n_atoms][1 + rank]: 1, x_p
+    const double *share;   // [n_atoms][1 + rank]: m/M, m x_p / (M L_p^2)
     const int32_t *steps;  // [n_atoms - 1][2]: an atom and one before it, where there is a box
 };
 

@@ -6,169 +6,191 @@
 
 namespace holonomic::HOL_ISA {
 
+// The axes of vectors, taken from the first one. From: rows, or vectors.
+HOL_INLINE vec3 first_of(const vec3 *x) { return {x[0].x, x[0].y, x[0].z}; }
+template <class Each>
+HOL_INLINE void for_each_of_rows(const vec3 *x, long a, long n, const Each &each) {
+    for (; a < n; ++a) each(a, x[a]);
+}
+template <int R, class From>
+HOL_NOINLINE void sum_axes(const From from, const double *share, long n, Frame<R> &to) {
+    Frame<R> sum;
+    sum.clear();
+    const vec3 origin = first_of(from);
+    for_each_of_rows(from, 1, n,
+                     [&](long a, const vec3 &x) HOL_FORCED { sum.template take<1>(share + a * (1 + R), origin - x); });
+    to = sum;
+}
+
+// The sums of vectors by weights, times a factor each. keeps: in `kept`, too.
+template <int R, bool keeps, class From>
+HOL_NOINLINE void sum_all(const From from, const double *weights, long n, const double *factor, Frame<R> &to,
+                          vec3 *kept = nullptr) {
+    Frame<R> sum;
+    sum.clear();
+    for_each_of_rows(from, 0, n, [&](long a, const vec3 &x) HOL_FORCED {
+        if (keeps) put(kept[a], x);
+        sum.add(weights + a * (1 + R), x);
+    });
+    HOL_UNROLL_FEW
+    for (int k = 0; k <= R; ++k) put(to[k], splat(factor[k]) * sum[k]);
+}
+
+// What vectors, taken from the first one, are off those of the axes. Returns the largest square.
+template <int R, class From>
+HOL_NOINLINE vec take_axes(const From from, const BodyKind &kind, const Frame<R> &__restrict axes, vec3 *off) {
+    Frame<R> base;
+    put(base[0], vec3{} - first_of(from));
+    HOL_UNROLL_FEW
+    for (int p = 1; p <= R; ++p) put(base[p], axes[p]);
+    const double *const place = kind.place;
+    const vec3 origin = base.at(place);
+    vec largest = {};
+    for_each_of_rows(from, 0, kind.n_atoms, [&](long a, const vec3 &x) HOL_FORCED {
+        vec3 t = x + origin;
+        HOL_UNROLL_FEW
+        for (int p = 1; p <= R; ++p) t = less_times(t, splat(place[a * (1 + R) + p]), base[p]);
+        put(off[a], t);
+        largest = max(largest, dot(t, t));
+    });
+    return largest;
+}
+
 template <int R>
-struct BodyLanes {
-    const BodyBlock &block;
-    const BodyKind &kind;
+HOL_NOINLINE void write_at(const BodyKind &kind, const Frame<R> &__restrict frame, const Rows to) {
+    const Frame<R> f = frame;
+    const double *const place = kind.place;
+    write_rows(to, kind.n_atoms, [&](long a) HOL_FORCED { return f.at(place + a * (1 + R)); });
+}
+
+// m times the acceleration, less the force.
+template <int R>
+HOL_INLINE vec3 force_at(const Frame<R> &z, const double *place, const double *masses, const vec3 *f, long a) {
+    const vec3 u = z.at(place + a * (1 + R));
+    const vec m = splat(masses[a]);
+    return {mul_sub(m, u.x, f[a].x), mul_sub(m, u.y, f[a].y), mul_sub(m, u.z, f[a].z)};
+}
+template <int R>
+HOL_NOINLINE void write_forces_at(const BodyKind &kind, const Frame<R> &__restrict z, const vec3 *f, const Rows to) {
+    const Frame<R> u = z;
+    const double *const place = kind.place, *const masses = kind.masses;
+    write_rows(to, kind.n_atoms, [&](long a) HOL_FORCED { return force_at(u, place, masses, f, a); });
+}
+
+template <int R>
+HOL_NOINLINE void add_moves(const BodyKind &kind, const Frame<R> &__restrict change, const vec3 *off, const Rows r,
+                            const Rows v, double per_dt) {
+    const Frame<R> t = change;
+    const double *const place = kind.place;
+    add_rows(r, v, kind.n_atoms, per_dt, [&](long a) HOL_FORCED { return t.at(place + a * (1 + R)) - off[a]; });
+}
+
+constexpr double ones[4] = {1, 1, 1, 1};
+
+// Of a block, in doubles.
+HOL_INLINE int64_t scratch_of_block(int64_t n_atoms) { return 9 * n_atoms * W; }
+
+template <int R>
+struct BodyLanes : BodyBlock {
     vec3 *const x, *const y;  // [n_atoms] each
     double *const copy;       // of rows
+    int64_t first_of_copy[W];
 
-    HOL_FORCED BodyLanes(const BodyBlock &b, double *scratch)
-        : block(b), kind(b.kind), x(reinterpret_cast<vec3 *>(scratch)), y(x + kind.n_atoms),
-          copy(reinterpret_cast<double *>(y + kind.n_atoms)) {}
+    BodyLanes(const BodyKind &k, double *scratch)
+        : BodyBlock(k), x(reinterpret_cast<vec3 *>(scratch)), y(x + k.n_atoms),
+          copy(reinterpret_cast<double *>(y + k.n_atoms)) {}
 
-    // Calls each(a, coordinates from the first atom's).
-    template <class Each>
-    HOL_FORCED void for_each_place(const AtomArray &array, const Box &box, const Each &each) {
-        const double *rows[W];
-        block.rows(array, copy, rows);
-        if (__builtin_expect(box.shape != Box::none, 0)) {
-            unfold(kind, box, rows, x, y);
-            for (long a = 0; a < kind.n_atoms; ++a) each(a, y[a]);
+    // Stages that not every verb has (verbs/bodies.cpp).
+    HOL_FORCED void compare() {}
+    HOL_FORCED void find_turn() {}
+
+    // Calls with(From) for the coordinates, or where there is a box for those of images from the first atom's.
+    template <class With>
+    HOL_FORCED void with_places(const AtomArray &array, const Box &box, const With &with) {
+        const Rows rows = rows_of(array);
+        if (__builtin_expect(box.shape == Box::none, 1)) return with(rows);
+        read_vectors(rows, kind.n_atoms, x);
+        unfold(kind, box, x, y);
+        with(static_cast<const vec3 *>(y));
+    }
+    HOL_FORCED void positions(const AtomArray &array, const Box &box, Frame<R> &to) {
+        with_places(array, box, [&](auto from) HOL_FORCED { sum_axes<R>(from, kind.share, kind.n_atoms, to); });
+    }
+
+    // Velocities of the atoms that have mass; what sites have is not looked at. Not from the first one's: it may be
+    // that of a light atom which is far faster than all others.
+    HOL_FORCED void rates(const AtomArray &array, Frame<R> &to) {
+        sum_all<R, false>(rows_of(array, kind.has_sites_between), kind.share, kind.n_heavy, ones, to);
+    }
+    // Over masses; they are kept in y.
+    HOL_FORCED void forces(const AtomArray &array, Frame<R> &to) {
+        if (!array.x) {
+            to.clear();
+            for (long a = 0; a < kind.n_atoms; ++a) y[a].x = y[a].y = y[a].z = vec{};
             return;
         }
-        const vec3 origin = atom_of_rows(rows, 0);
-        const vec ox = origin.x, oy = origin.y, oz = origin.z;
-        for (long a = 0, n = kind.n_atoms; a < n; ++a) {
-            const vec3 r = atom_of_rows(rows, a);
-            each(a, vec3{r.x - ox, r.y - oy, r.z - oz});
-        }
+        sum_all<R, true>(rows_of(array), kind.place, kind.n_atoms, kind.per_moment, to, y);
     }
 
-    template <int first>
-    HOL_FORCED void positions(const AtomArray &array, const Box &box, Frame<R> &to) {
-        Frame<R> sum;
-        sum.clear();
-        const double *share = kind.share;
-        for_each_place(array, box, [&](long, const vec3 &r) HOL_FORCED {
-            sum.template add<first>(share, r);
-            share += 1 + R;
-        });
-        to = sum;
-    }
-
-    // Velocities of the atoms that have mass; what sites have is not looked at. first: 1 leaves out the centre's.
-    template <int first>
-    HOL_FORCED void rates(const AtomArray &array, Frame<R> &to) {
-        Frame<R> sum;
-        sum.clear();
-        const double *rows[W];
-        block.rows(array, copy, rows);
-        const double *share = kind.share;
-        const double *const masses = kind.has_sites ? kind.masses : nullptr;
-        for (long a = 0; a < kind.n_atoms; ++a, share += 1 + R)
-            if (!masses || masses[a] != 0) sum.template add<first>(share, atom_of_rows(rows, a));
-        to = sum;
-    }
-    // Of the masses.
-    HOL_FORCED void forces(const AtomArray &array, Frame<R> &to) {
-        Frame<R> sum;
-        sum.clear();
-        const double *rows[W];
-        block.rows(array, copy, rows);
-        const double *place = kind.place;
-        vec3 *kept = y;
-        for (long a = 0, n = kind.n_atoms; a < n; ++a, place += 1 + R) {
-            const vec3 f = atom_of_rows(rows, a);
-            put(*kept++, f);
-            sum.add(place, f);
-        }
-        HOL_UNROLL_FEW
-        for (int k = 0; k <= R; ++k) put(to[k], splat(kind.inverse_mass) * sum[k]);
-    }
-
-    // m times the acceleration, less the force that was read last.
-    HOL_FORCED void write_forces(const ForcesCall &call, const Frame<R> z, unsigned lanes) {
-        if (!call.f.x)
-            for (long a = 0; a < kind.n_atoms; ++a) y[a].x = y[a].y = y[a].z = vec{};
-        const auto force = [&](long a) HOL_FORCED {
-            const vec m = splat(kind.masses[a]);
-            const vec3 u = z.at(kind.place + a * (1 + R));
-            return vec3{mul_sub(m, u.x, y[a].x), mul_sub(m, u.y, y[a].y), mul_sub(m, u.z, y[a].z)};
-        };
-        double *to[W];
-        if (rows_to_write(call.g, lanes, to) && !call.add) return write_rows(kind, to, force);
-        for (long a = 0; a < kind.n_atoms; ++a) put(y[a], force(a));
-        if (!call.add)
-            block.write_some(call.g, y, lanes);
+    HOL_FORCED void write_forces(const ForcesCall &call, const Frame<R> &z, unsigned lanes) {
+        const bool in_rows = takes_rows(call.g, lanes);
+        if (__builtin_expect(in_rows && !call.add, 1)) return write_forces_at(kind, z, y, rows(call.g));
+        for (long a = 0; a < kind.n_atoms; ++a) put(y[a], force_at(z, kind.place, kind.masses, y, a));
+        if (in_rows)
+            add_rows(rows(call.g), {nullptr, first}, kind.n_atoms, 1, [&](long a) HOL_FORCED { return y[a]; });
+        else if (call.add)
+            add_some(call.g, 1, y, lanes);
         else
-            add(call.g, 1, lanes, y);
+            write_some(call.g, y, lanes);
     }
-    HOL_FORCED void write_velocities(const AtomArray &array, const Frame<R> rate, unsigned lanes) {
-        const auto velocity = [&](long a) HOL_FORCED { return rate.at(kind.place + a * (1 + R)); };
-        double *to[W];
-        if (rows_to_write(array, lanes, to)) return write_rows(kind, to, velocity);
-        for (long a = 0; a < kind.n_atoms; ++a) put(x[a], velocity(a));
-        block.write_some(array, x, lanes);
+    HOL_FORCED void write_velocities(const AtomArray &array, const Frame<R> &rate, unsigned lanes) {
+        if (takes_rows(array, lanes)) return write_at(kind, rate, rows(array));
+        for (long a = 0; a < kind.n_atoms; ++a) put(x[a], rate.at(kind.place + a * (1 + R)));
+        write_some(array, x, lanes);
     }
 
-    // What positions, from the first atom's, are off `from`, and the frame of that.
-    HOL_FORCED void changes(const AtomArray &array, const Box &box, const Frame<R> from, Frame<R> &to) {
-        Frame<R> sum;
-        sum.clear();
-        const double *place = kind.place, *share = kind.share;
-        vec3 *t = x;
-        for_each_place(array, box, [&](long, const vec3 &r) HOL_FORCED {
-            const vec3 off = r - from.at(place);
-            put(*t++, off);
-            sum.add(share, off);
-            place += 1 + R;
-            share += 1 + R;
-        });
-        to = sum;
+    // What positions are off those of the axes, in x; whether none is far.
+    HOL_FORCED mask changes(const AtomArray &array, const Box &box, const Frame<R> &axes, Frame<R> &to) {
+        vec largest;
+        with_places(array, box, [&](auto from) HOL_FORCED { largest = take_axes<R>(from, kind, axes, x); });
+        sum_all<R, false>(static_cast<const vec3 *>(x), kind.share, kind.n_atoms, ones, to);
+        return less(largest, splat(4 * kind.extent * kind.extent));
     }
-    // Moves by which these changes become those of a frame; returns the sum of their squares.
-    HOL_FORCED vec moves(const Frame<R> change) {
-        vec sum[3] = {vec{}, vec{}, vec{}};
-        for (long a = 0; a < kind.n_atoms; ++a) {
-            const vec3 m = change.at(kind.place + a * (1 + R)) - x[a];
-            sum[0] = mul_add(m.x, m.x, sum[0]);
-            sum[1] = mul_add(m.y, m.y, sum[1]);
-            sum[2] = mul_add(m.z, m.z, sum[2]);
-            put(x[a], m);
-        }
-        return sum[0] + sum[1] + sum[2];
-    }
-    // Adds the moves to positions, and per_dt times them to velocities.
-    HOL_FORCED void write_moves(const PositionsCall &call, unsigned lanes) {
+    // Moves atoms to where their changes are those of a frame, and velocities by these moves over dt.
+    HOL_FORCED void write_moves(const PositionsCall &call, const Frame<R> &change, unsigned lanes) {
         const double per_dt = 1 / call.dt;
-        double *r[W], *v[W];
-        if (rows_to_write(call.r, lanes, r) && (!call.v.x || rows_to_write(call.v, lanes, v))) {
-            add_rows(kind, r, call.v.x ? v : nullptr, per_dt, x);
-        } else {
-            block.add_some(call.r, 1, x, lanes);
-            if (call.v.x) block.add_some(call.v, per_dt, x, lanes);
-        }
+        if (takes_rows(call.r, lanes) && (!call.v.x || takes_rows(call.v, lanes)))
+            return add_moves(kind, change, x, rows(call.r), rows(call.v), per_dt);
+        for (long a = 0; a < kind.n_atoms; ++a) put(x[a], change.at(kind.place + a * (1 + R)) - x[a]);
+        add_some(call.r, 1, x, lanes);
+        if (call.v.x) add_some(call.v, per_dt, x, lanes);
     }
-    // Velocities of sites are those of the body at their places.
-    HOL_FORCED void write_sites(const AtomArray &array, const Frame<R> rate, unsigned lanes) const {
+    void write_site_velocities(const AtomArray &array, const Frame<R> &rate, unsigned lanes) const {
         for (long a = 0; a < kind.n_atoms; ++a) {
             if (kind.masses[a] != 0) continue;
-            const vec3 u = rate.at(kind.place + a * (1 + R));
-            double of[3][W];
-            store(of[0], u.x);
-            store(of[1], u.y);
-            store(of[2], u.z);
+            vec3 u = rate.at(kind.place + a * (1 + R));
+            if (takes_rows(array, lanes)) {
+                double *r[W], *to[W];
+                rows_at(rows(array), 0, r);
+                rows_at(r, 3 * a, to);
+                graph::write_elements<3>(to, &u);
+                continue;
+            }
             for (int l = 0; l < W; ++l) {
-                const double one[3] = {of[0][l], of[1][l], of[2][l]};
-                if (lanes >> l & 1) write_atom(array, block.atoms[l][a], one);
+                const double one[3] = {u.x[l], u.y[l], u.z[l]};
+                if (lanes >> l & 1) write_atom(array, atoms[l][a], one);
             }
         }
     }
 
 private:
-    HOL_FORCED bool rows_to_write(const AtomArray &array, unsigned lanes, double **to) const {
-        if (!block.in_a_row(array) || lanes != all_lanes) return false;
-        HOL_UNROLL
-        for (int l = 0; l < W; ++l) to[l] = block.row(array, l);
-        return true;
+    HOL_FORCED Rows rows_of(const AtomArray &array, bool without_sites = false) {
+        if (__builtin_expect(without_sites || !in_a_row(array), 0))
+            return copy_rows(array, copy, first_of_copy, without_sites);
+        return rows(array);
     }
-    HOL_FORCED void add(const AtomArray &array, double factor, unsigned lanes, const vec3 *moves) const {
-        double *to[W];
-        if (rows_to_write(array, lanes, to))
-            add_rows(kind, to, nullptr, factor, moves);
-        else
-            block.add_some(array, factor, moves, lanes);
+    HOL_FORCED bool takes_rows(const AtomArray &array, unsigned lanes) const {
+        return in_a_row(array) && lanes == all_lanes;
     }
 };
 

@@ -1,18 +1,18 @@
-// Positions of rigid bodies: U = U_in - A Lambda, U^T U = L^2, with the axes A of the reference.
+// Positions of rigid bodies: A = A_in - A_ref C, A^T A = 1, with the axes A_ref of the reference.
 //
-// Lambda is symmetric, so that the same angular momentum has gone from A to U_in as goes from A to U (the discrete
-// equation of Moser and Veselov). U is A turned. In the frame of A, with the matrix of the turn 1 + D and
-// K = L^-1 (A^T (U_in - A)) L:
+// C_pq / C_qp = L_p^2 / L_q^2 (frame.hpp), so that the same angular momentum has gone from A_ref to A_in as goes from
+// A_ref to A (the discrete equation of Moser and Veselov). A is A_ref turned. In the frame of A_ref, with the matrix of
+// the turn 1 + D and X = A_ref^T (A_in - A_ref):
 //
-//     D L^2 - L^2 D^T = K - K^T,    D = 2 (g^ + g^ g^) / (1 + g.g),    g^ x = g cross x
+//     D L^2 - L^2 D^T = X L^2 - L^2 X^T,    D = 2 (g^ + g^ g^) / (1 + g.g),    g^ x = g cross x
 //
 // Three equations for Gibbs' vector g, along the axis, the tangent of half the angle:
 //
-//     g_i + b_i g_j g_k = a_i (1 + g.g),  a_i = (K_kj - K_jk) / (2 (L_j^2 + L_k^2)),  b_i = (L_j^2 - L_k^2) / (L_j^2 +
-//     L_k^2)
+//     g_i + b_i g_j g_k = a_i (1 + g.g),  a_i = (X_kj L_j^2 - X_jk L_k^2) / (2 (L_j^2 + L_k^2)),
+//     b_i = (L_j^2 - L_k^2) / (L_j^2 + L_k^2)
 //
-// with i, j, k in cyclic order. A plane's third axis is its normal, of length 0. U - A comes out relative to itself:
-// what is rounded in A does not enter the velocities.
+// with i, j, k in cyclic order. A plane's third axis is its normal, of length 0. A - A_ref comes out relative to
+// itself: what is rounded in A_ref does not enter the velocities.
 #ifndef HOLONOMIC_KERNELS_BODIES_TURN_HPP
 #define HOLONOMIC_KERNELS_BODIES_TURN_HPP
 
@@ -20,146 +20,188 @@
 
 namespace holonomic::HOL_ISA {
 
-struct Turned {
+// What is known of a turn: prepare(), solve_turn() and finish() in this order. Each is a chain of operations that wait
+// for each other; those of two blocks go side by side.
+template <int R>
+struct Turn {
+    Frame<R> axes, away;  // of the reference, orthonormal; what that took from them
+    vec3 normal;          // of a plane
+    vec x[3][R], off;     // off: the square of how far the reference was from it
+    vec a[3], g[3];
     mask good;
-    int rounds[W];
+    vec rounds;
 };
 
-// Makes axes orthogonal and as long as L: to the rounding, if they all but were so. away: what that takes from them;
-// off: how far they were from it.
+// Takes from axes by how much they are not orthonormal, to first order, and adds it to `away`. Returns the square of
+// what that was.
 template <int R>
-HOL_INLINE mask make_orthogonal(const BodyKind &kind, Frame<R> &a, Frame<R> &away, vec &off) {
-    mask bad = ~none();
-    for (int pass = 0; pass < 4; ++pass) {
-        const Symmetric<R> e = errors_of(kind, a);
-        Symmetric<R> lambda = by_the_diagonal(kind, e);
-        for (int p = 0; p < R && pass > 0; ++p)
-            for (int q = 0; q < R; ++q) lambda.of[p][q] = keep(bad, lambda.of[p][q]);
-        const vec error = largest_error(kind, e);
-        if (pass == 0) off = error;
-        bad = bad & ~less(error, splat(1e-9));
-        Frame<R> change;
-        change.clear();
-        HOL_UNROLL_FEW
-        for (int p = 0; p < R; ++p) {
-            HOL_UNROLL_FEW
-            for (int q = 0; q < R; ++q) change[1 + p] = add_times(change[1 + p], lambda.of[p][q], a[1 + q]);
-        }
-        HOL_UNROLL_FEW
-        for (int p = 1; p <= R; ++p) {
-            a[p] = a[p] - change[p];
-            put(away[p], away[p] + change[p]);
-        }
-        if (__builtin_expect(!any(bad), 1)) break;
-    }
-    return ~bad;
-}
-
-// Gibbs' vector.
-HOL_INLINE void solve_turn(const vec *a, const vec *b, int most, Turned &out, vec *g) {
+HOL_INLINE vec take_errors(const BodyKind &kind, mask lanes, Frame<R> &a, Frame<R> &away) {
+    const Symmetric<R> e = errors_of(a);
+    Half<R> b;
     HOL_UNROLL_FEW
-    for (int i = 0; i < 3; ++i) g[i] = a[i];
-    mask busy = out.good;
-    vec square = mul_add(g[2], g[2], mul_add(g[1], g[1], g[0] * g[0]));
-    out.good = out.good & less(square, splat(0.1));
-    busy = out.good;
-    for (int round = 0; round < most && any(busy); ++round) {
-        vec rho[3], step[3];
-        const vec w = square + 1.0;
+    for (int p = 0; p < R; ++p) {
         HOL_UNROLL_FEW
-        for (int i = 0; i < 3; ++i) {
-            const int j = (i + 1) % 3, k = (i + 2) % 3;
-            rho[i] = mul_add(a[i], w, mul_add(-b[i] * g[j], g[k], -g[i]));
-            step[i] = rho[i];
-        }
-        // (1 - N)^-1 = 1 + N + N^2, N of the order of g.
-        HOL_UNROLL_FEW
-        for (int pass = 0; pass < 2; ++pass) {
-            const vec along = 2.0 * mul_add(g[2], step[2], mul_add(g[1], step[1], g[0] * step[0]));
-            vec next[3];
-            HOL_UNROLL_FEW
-            for (int i = 0; i < 3; ++i) {
-                const int j = (i + 1) % 3, k = (i + 2) % 3;
-                next[i] = mul_add(a[i], along, mul_add(-b[i], mul_add(g[j], step[k], g[k] * step[j]), rho[i]));
-            }
-            HOL_UNROLL_FEW
-            for (int i = 0; i < 3; ++i) step[i] = next[i];
-        }
-        const vec size = max(max(abs(rho[0]), abs(rho[1])), abs(rho[2]));
-        HOL_UNROLL_FEW
-        for (int i = 0; i < 3; ++i) g[i] = g[i] + keep(busy, step[i]);
-        const vec before = square;
-        square = mul_add(g[2], g[2], mul_add(g[1], g[1], g[0] * g[0]));
-        const unsigned moving = bits(busy);
-        for (int l = 0; l < W; ++l) out.rounds[l] += static_cast<int>(moving >> l & 1);
-        // N^3 of the step is left, and its square, beside a rounding of g.
-        const vec left = size * max(8.0 * before * sqrt(before), 4.0 * size);
-        busy = busy & ~less_equal(left * left, (0.01 * epsilon * epsilon) * square);
+        for (int q = p; q < R; ++q) b.of[p][q] = keep(lanes, p == q ? 0.5 * e.of[p][q] : e.of[p][q]);
     }
-    out.good = out.good & ~busy & less(square, splat(0.1));
+    Frame<R> change;
+    change.clear();
+    take_away(kind, a, b, change);
+    HOL_UNROLL_FEW
+    for (int p = 1; p <= R; ++p) {
+        put(a[p], a[p] + change[p]);
+        put(away[p], away[p] - change[p]);
+    }
+    return square_of(e);
+}
+template <int R>
+HOL_NOINLINE mask take_more_errors(const BodyKind &kind, mask bad, Frame<R> &a, Frame<R> &away) {
+    for (int pass = 0; pass < 3 && any(bad); ++pass) bad = bad & ~less(take_errors(kind, bad, a, away), splat(1e-18));
+    return bad;
 }
 
-// change: of the axes since the reference `from`; becomes that to U. Lambda acts along axes that have been made
-// orthogonal; where that makes a difference of more than `slack`, relative to L, the body is not done.
-template <int R>
-HOL_INLINE void restore(const BodyKind &kind, const Frame<R> &from, Frame<R> &change, int most, double slack,
-                        Turned &out) {
-    for (int l = 0; l < W; ++l) out.rounds[l] = 0;
-    if constexpr (R == 1) {
-        // |A + t - lambda A|^2 = L^2
-        const vec3 u = from[1], t = change[1];
-        const vec aa = dot(u, u), bb = dot(u, u + t), square = splat(kind.square[0]);
-        const vec c = (aa - square) + dot(t, (u + u) + t);
-        const vec root = bb * bb - aa * c;
-        const vec lambda = c / (bb + sqrt(root));
-        out.good = less(0.3 * square, bb) & less(0.25 * bb * bb, root) & less(abs(aa - square), 0.01 * square);
-        change[1] = add_times(t, -lambda, u);
-        for (int l = 0; l < W; ++l) out.rounds[l] = 1;
-    } else {
-        Frame<R> a = from, away;
-        away.clear();
-        vec error = {};
-        out.good = make_orthogonal(kind, a, away, error);
-        vec3 d[R], axis[3];
+// Gibbs' vector: Newton's method with the matrix of the first guess, which is right to the third order.
+HOL_NOINLINE mask solve_turn(const BodyKind &kind, const vec *of, int most, mask good, vec *to, vec &rounds_to) {
+    vec a[3], b[3], g[3], rounds = {};
+    HOL_UNROLL_FEW
+    for (int i = 0; i < 3; ++i) {
+        a[i] = of[i];
+        b[i] = splat(kind.skew[i]);
+    }
+    const auto square_of = [](const vec *x)
+                               HOL_FORCED { return mul_add(x[2], x[2], mul_add(x[1], x[1], x[0] * x[0])); };
+    // a_i (1 + x.x) - b_i x_j x_k
+    const vec one = splat(1);
+    const auto next = [&](const vec *x, vec *y) HOL_FORCED {
+        const vec w = mul_add(x[2], x[2], mul_add(x[1], x[1], mul_add(x[0], x[0], one)));
         HOL_UNROLL_FEW
-        for (int p = 0; p < R; ++p) {
-            d[p] = change[1 + p] + away[1 + p];
-            axis[p] = a[1 + p];
+        for (int i = 0; i < 3; ++i) y[i] = sub_mul(b[i] * x[(i + 1) % 3], x[(i + 2) % 3], a[i] * w);
+    };
+    vec start[3], m[3][3], inverse[3][3];
+    next(a, start);
+    next(start, g);
+    HOL_UNROLL_FEW
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        const vec twice = a[i] + a[i];
+        m[i][i] = sub_mul(twice, g[i], one);
+        m[i][j] = mul_sub(b[i], g[k], twice * g[j]);
+        m[i][k] = mul_sub(b[i], g[j], twice * g[k]);
+    }
+    HOL_UNROLL_FEW
+    for (int i = 0; i < 3; ++i) {
+        HOL_UNROLL_FEW
+        for (int j = 0; j < 3; ++j) {
+            const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+            inverse[j][i] = mul_sub(m[i1][j1], m[i2][j2], m[i1][j2] * m[i2][j1]);
         }
-        if (R == 2) axis[2] = cross(axis[0], axis[1]);
-        vec turn[3], b[3], g[3], x[3][3];  // x: A^T (U_in - A)
+    }
+    const vec per = 1.0 / mul_add(m[0][2], inverse[2][0], mul_add(m[0][1], inverse[1][0], m[0][0] * inverse[0][0]));
+    vec square = square_of(g), first = {};
+    good = good & less(square, splat(0.1));
+    mask busy = good;
+    for (int round = 0; round < most && any(busy); ++round) {
+        vec rest[3], step[3];
+        next(g, rest);
+        HOL_UNROLL_FEW
+        for (int i = 0; i < 3; ++i) rest[i] = rest[i] - g[i];
         HOL_UNROLL_FEW
         for (int i = 0; i < 3; ++i) {
-            const int j = (i + 1) % 3, k = (i + 2) % 3;
-            vec off = {};
-            if (j < R) {
-                x[k][j] = dot(axis[k], d[j < R ? j : 0]);
-                off = splat(kind.ratio[k][j]) * x[k][j];
-            }
-            if (k < R) {
-                x[j][k] = dot(axis[j], d[k < R ? k : 0]);
-                off = mul_add(splat(-kind.ratio[j][k]), x[j][k], off);
-            }
-            turn[i] = off * splat(0.5 * kind.per_sum[j][k]);
-            b[i] = splat((kind.square[j] - kind.square[k]) * kind.per_sum[j][k]);
+            step[i] = per * mul_add(inverse[i][2], rest[2], mul_add(inverse[i][1], rest[1], inverse[i][0] * rest[0]));
+            g[i] = g[i] + keep(busy, step[i]);
         }
-        solve_turn(turn, b, most, out, g);
-        const vec square = mul_add(g[2], g[2], mul_add(g[1], g[1], g[0] * g[0])), s = 2.0 / (1.0 + square);
-        vec largest = {};  // of Lambda, relative to L
-        HOL_UNROLL_FEW
-        for (int q = 0; q < R; ++q) {
-            const int r = (q + 1) % 3, t = (q + 2) % 3;
-            const vec sq = s * g[q];
-            const vec diagonal = sq * g[q] - s * square, beside = mul_add(sq, g[r], s * g[t]);
-            largest = max(largest, abs(mul_add(dot(axis[q], d[q]), splat(kind.per_size[q][q]), -diagonal)));
-            if (r < R) largest = max(largest, abs(mul_add(x[r][q], splat(kind.per_size[r][q]), -beside)));
-            // D_qq, D_rq, D_tq
-            const vec m[3] = {diagonal, splat(kind.ratio[r][q]) * beside,
-                              splat(kind.ratio[t][q]) * mul_add(sq, g[t], -(s * g[r]))};
-            change[1 + q] = add_times(add_times(m[2] * axis[t] - away[1 + q], m[1], axis[r]), m[0], axis[q]);
-        }
-        out.good = out.good & less_equal(error * largest, splat(slack));
+        square = square_of(g);
+        rounds = rounds + keep(busy, one);
+        // By the first step the matrix is off, at most 2.5 times: that part of a later one is left.
+        const vec size = square_of(step);
+        if (round == 0) first = size;
+        busy = busy & ~less_equal((7.0 * first) * size, (0.01 * epsilon * epsilon) * square);
     }
+    HOL_UNROLL_FEW
+    for (int i = 0; i < 3; ++i) to[i] = g[i];
+    rounds_to = rounds;
+    return good & ~busy & less(square, splat(0.1));
+}
+
+// change: of the axes since the reference `from`.
+template <int R>
+HOL_NOINLINE void prepare(const BodyKind &kind, const Frame<R> &__restrict from, const Frame<R> &__restrict change,
+                          Turn<R> &__restrict to) {
+    Frame<R> a = from, away;
+    away.clear();
+    to.off = take_errors(kind, ~none(), a, away);
+    mask bad = ~less(to.off, splat(1e-18));
+    if (__builtin_expect(any(bad), 0)) {
+        Frame<R> copy = a, copy_away = away;
+        bad = take_more_errors(kind, bad, copy, copy_away);
+        a = copy;
+        away = copy_away;
+    }
+    to.good = ~bad;
+    to.axes = a;
+    to.away = away;
+    vec3 axis[3];
+    HOL_UNROLL_FEW
+    for (int p = 0; p < R; ++p) put(axis[p], a[1 + p]);
+    if (R == 2) {
+        put(axis[2], cross(axis[0], axis[1]));
+        put(to.normal, axis[2]);
+    }
+    vec x[3][R];
+    HOL_UNROLL_FEW
+    for (int q = 0; q < R; ++q) {
+        const vec3 d = change[1 + q] + away[1 + q];
+        HOL_UNROLL_FEW
+        for (int p = 0; p < 3; ++p) to.x[p][q] = x[p][q] = dot(axis[p], d);
+    }
+    HOL_UNROLL_FEW
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        vec both = {};
+        if (j < R) both = splat(kind.part[j][k]) * x[k][j < R ? j : 0];
+        if (k < R) both = sub_mul(splat(kind.part[k][j]), x[j][k < R ? k : 0], both);
+        to.a[i] = 0.5 * both;
+    }
+}
+
+// change: becomes that to A. C acts along axes that have been made orthonormal; where that makes a difference of more
+// than `slack` the body is not done.
+template <int R>
+HOL_NOINLINE mask finish(const Turn<R> &__restrict t, double slack, Frame<R> &__restrict change) {
+    vec g[3];
+    vec3 axis[3];
+    HOL_UNROLL_FEW
+    for (int p = 0; p < 3; ++p) {
+        g[p] = t.g[p];
+        put(axis[p], p < R ? t.axes[1 + (p < R ? p : 0)] : t.normal);
+    }
+    const vec square = mul_add(g[2], g[2], mul_add(g[1], g[1], g[0] * g[0])), s = 2.0 / (1.0 + square);
+    vec largest = {};  // the square of C's norm
+    HOL_UNROLL_FEW
+    for (int q = 0; q < R; ++q) {
+        const int row[3] = {q, (q + 1) % 3, (q + 2) % 3};
+        const vec sq = s * g[q], sr = s * g[row[1]];
+        const vec of[3] = {-mul_add(sr, g[row[1]], s * g[row[2]] * g[row[2]]), mul_add(sq, g[row[1]], s * g[row[2]]),
+                           mul_sub(sq, g[row[2]], sr)};
+        vec3 sum = vec3{} - t.away[1 + q];
+        HOL_UNROLL_FEW
+        for (int k = 0; k < 3; ++k) {
+            const vec c = t.x[row[k]][q] - of[k];
+            largest = mul_add(c, c, largest);
+            sum = add_times(sum, of[k], axis[row[k]]);
+        }
+        put(change[1 + q], sum);
+    }
+    return t.good & less_equal(t.off * largest, splat(slack * slack));
+}
+
+// The same for a line: |A + t - c A|^2 = 1.
+HOL_NOINLINE mask restore_line(const Frame<1> &from, Frame<1> &change) {
+    const vec3 u = {from[1].x, from[1].y, from[1].z}, t = {change[1].x, change[1].y, change[1].z};
+    const vec e = excess(u, splat(1)), aa = 1.0 + e, bb = dot(u, u + t);
+    const vec c = e + dot(t, (u + u) + t);
+    const vec root = sub_mul(aa, c, bb * bb);
+    put(change[1], less_times(t, c / (bb + sqrt(root)), u));
+    return less(splat(0.3), bb) & less(0.25 * bb * bb, root) & less(abs(e), splat(0.01));
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -178,6 +178,7 @@ HOL_INLINE void transpose(vec *m) {
 #if HOL_LANES == 4 && defined(__AVX2__) && defined(__FMA__)
 HOL_INLINE vec mul_add(vec a, vec b, vec c) { return _mm256_fmadd_pd(a, b, c); }
 HOL_INLINE vec mul_sub(vec a, vec b, vec c) { return _mm256_fmsub_pd(a, b, c); }
+HOL_INLINE vec sub_mul(vec a, vec b, vec c) { return _mm256_fnmadd_pd(a, b, c); }
 HOL_INLINE vec max(vec a, vec b) { return _mm256_max_pd(a, b); }
 HOL_INLINE vec min(vec a, vec b) { return _mm256_min_pd(a, b); }
 HOL_INLINE vec sqrt(vec a) { return _mm256_sqrt_pd(a); }
@@ -207,6 +208,7 @@ HOL_INLINE vec mul_add(vec a, vec b, vec c) {
 #endif
 }
 HOL_INLINE vec mul_sub(vec a, vec b, vec c) { return mul_add(a, b, -c); }
+HOL_INLINE vec sub_mul(vec a, vec b, vec c) { return mul_add(-a, b, c); }  // c - a b
 #if HOL_LANES > 1
 HOL_INLINE vec max(vec a, vec b) { return select(less(b, a), a, b); }
 HOL_INLINE vec min(vec a, vec b) { return select(less(a, b), a, b); }

@@ -9,165 +9,187 @@ namespace holonomic::HOL_ISA {
 
 namespace {
 
-// The equations, once for all ways to read and write atoms. z: forces over masses; becomes accelerations.
 template <int R>
-__attribute__((noinline)) mask accelerate(const BodyKind &kind, const Frame<R> &at, const Frame<R> *rate, Frame<R> &z,
-                                          Symmetric<R> *of_virial) {
-    Symmetric<R> b = both_products(at, z);
-    if (rate) {
-        const Symmetric<R> square = products(*rate);
-        HOL_UNROLL_FEW
-        for (int p = 0; p < R; ++p) {
-            HOL_UNROLL_FEW
-            for (int q = p; q < R; ++q) b.of[p][q] = b.of[q][p] = mul_add(square.of[p][q], splat(2), b.of[p][q]);
-        }
+HOL_INLINE mask project_with_virial(const BodyKind &kind, const Frame<R> &at, const Half<R> &more, Frame<R> &z,
+                                    bool virial, int count, BodyResult *results) {
+    if (__builtin_expect(!virial, 1)) return project(kind, at, more, z, static_cast<Frame<R> *>(nullptr));
+    Frame<R> taken;
+    taken.clear();
+    const mask good = project(kind, at, more, z, &taken);
+    write_virial(kind, at, taken, 1, count, results);
+    return good;
+}
+
+// By how much atoms are moved, beside the masses.
+template <int R>
+HOL_INLINE vec square_of_moves(const BodyKind &kind, const Frame<R> &trial, const Frame<R> &change) {
+    vec sum = {};
+    HOL_UNROLL_FEW
+    for (int p = 1; p <= R; ++p) {
+        const vec3 m = change[p] - trial[p];
+        sum = mul_add(splat(kind.square[p - 1]), dot(m, m), sum);
     }
-    mask good = ~none();
-    const Symmetric<R> lambda = solve(kind, errors_of(kind, at), b, good);
-    if (of_virial) *of_virial = lambda;
-    take_away(z, at, lambda);
-    return good & finite(z.nothing());
+    return sum;
 }
 
+// What a verb does with a block: read(), compare() and find_turn() if it is positions, solve(), which returns the lanes
+// that are good, and write() for these.
 template <int R>
-__attribute__((noinline)) mask project(const BodyKind &kind, const Frame<R> &at, Frame<R> &rate,
-                                       Symmetric<R> *of_virial) {
-    mask good = ~none();
-    take_excess(kind, rate);
-    const Symmetric<R> lambda = solve(kind, errors_of(kind, at), both_products(at, rate), good);
-    if (of_virial) *of_virial = lambda;
-    take_away(rate, at, lambda);
-    // What rounding leaves of the rates goes with a second projection.
-    take_away(rate, at, by_the_diagonal(kind, both_products(at, rate)));
-    return good & finite(rate.nothing());
-}
+struct ForcesOf : BodyLanes<R> {
+    using BodyLanes<R>::kind;
+    const ForcesCall &call;
+    Frame<R> at, z;
+    Half<R> of_rates;
+
+    ForcesOf(const ForcesCall &c, const BodyKind &k, double *scratch) : BodyLanes<R>(k, scratch), call(c) {}
+
+    HOL_FORCED void read() {
+        this->positions(call.r, call.box, at);
+        this->forces(call.f, z);
+        if (!call.v.x) return of_rates.clear();
+        Frame<R> rate;
+        this->rates(call.v, rate);
+        twice_products(rate, of_rates);
+    }
+    HOL_FORCED mask solve(BodyResult *results) {
+        return project_with_virial(kind, at, of_rates, z, call.virial, this->count, results);
+    }
+    HOL_FORCED void write(unsigned lanes) {
+        if (call.g.x) this->write_forces(call, z, lanes);
+    }
+};
 
 template <int R>
-__attribute__((noinline)) Turned restored(const BodyKind &kind, const Frame<R> &from, Frame<R> &change, int most,
-                                          double slack) {
-    Turned out;
-    take_excess(kind, change);
-    restore(kind, from, change, most, slack, out);
-    return out;
-}
-
-// Lanes that there are bodies for.
-unsigned used_lanes(const BodyBlock &block, mask good) { return bits(good) & ((1u << block.count) - 1); }
-
-template <int R>
-unsigned forces_of(const ForcesCall &call, const BodyBlock &block, double *scratch, BodyResult *results) {
-    BodyLanes<R> atoms(block, scratch);
-    const BodyKind &kind = block.kind;
-    Frame<R> at, z, rate;
-    atoms.template positions<1>(call.r, call.box, at);
-    if (call.f.x)
-        atoms.forces(call.f, z);
-    else
-        z.clear();
-    if (call.v.x) atoms.template rates<1>(call.v, rate);
-    Symmetric<R> lambda;
-    const mask good = accelerate(kind, at, call.v.x ? &rate : nullptr, z, call.virial ? &lambda : nullptr);
-    const unsigned lanes = used_lanes(block, good);
-    if (call.virial) write_virial(at, lambda, kind.mass, block.count, results);
-    if (call.g.x && lanes) atoms.write_forces(call, z, lanes);
-    return lanes;
-}
-
-template <int R>
-unsigned velocities_of(const VelocitiesCall &call, const BodyBlock &block, double *scratch, BodyResult *results) {
-    BodyLanes<R> atoms(block, scratch);
+struct VelocitiesOf : BodyLanes<R> {
+    using BodyLanes<R>::kind;
+    const VelocitiesCall &call;
     Frame<R> at, rate;
-    atoms.template positions<1>(call.r, call.box, at);
-    atoms.template rates<0>(call.v, rate);
-    Symmetric<R> lambda;
-    const unsigned lanes = used_lanes(block, project(block.kind, at, rate, call.virial ? &lambda : nullptr));
-    if (call.virial) write_virial(at, lambda, block.kind.mass, block.count, results);
-    if (lanes) atoms.write_velocities(call.v, rate, lanes);
-    return lanes;
-}
+
+    VelocitiesOf(const VelocitiesCall &c, const BodyKind &k, double *scratch) : BodyLanes<R>(k, scratch), call(c) {}
+
+    HOL_FORCED void read() {
+        Frame<R> rounded;
+        this->positions(call.r, call.box, at);
+        this->rates(call.v, rounded);
+        take_excess(kind, rounded, rate);
+    }
+    HOL_FORCED mask solve(BodyResult *results) {
+        Half<R> none;
+        none.clear();
+        return project_with_virial(kind, at, none, rate, call.virial, this->count, results);
+    }
+    HOL_FORCED void write(unsigned lanes) { this->write_velocities(call.v, rate, lanes); }
+};
 
 // The trial less the reference, t, has a frame of its own; what is off the frame goes, and the rest is brought back. So
 // the rounding of all moves is relative to t.
 template <int R>
-unsigned positions_of(const PositionsCall &call, const BodyBlock &block, double *scratch, BodyResult *results) {
-    BodyLanes<R> atoms(block, scratch);
-    const BodyKind &kind = block.kind;
-    Frame<R> from, change;
-    atoms.template positions<0>(call.r_ref, call.box_ref, from);
-    atoms.changes(call.r, call.box, from, change);
-    Frame<R> trial = change;
-    const Turned turned = restored(kind, from, change, call.max_iterations < 40 ? call.max_iterations : 40,
-                                   call.r_ref.is_float ? 1e-8 : 1e-15);
-    const vec squares = atoms.moves(change);
-    // Crude or rigid already: the general solver decides.
-    const double least = (call.r.is_float ? 1e-5 : 1e-10) * kind.extent, most = 0.5 * kind.extent;
-    const mask good = turned.good & less(squares, splat(most * most)) & less(splat(least * least), squares) &
-                      finite(change.nothing());
-    const unsigned lanes = used_lanes(block, good);
-    if (lanes == 0) return lanes;
-    const bool carries_sites = call.v.x && kind.has_sites;
-    Frame<R> rate;
-    if (carries_sites) {
-        atoms.template rates<0>(call.v, rate);
-        for (int k = 0; k <= R; ++k) put(rate[k], add_times(rate[k], splat(1 / call.dt), change[k] - trial[k]));
+struct PositionsOf : BodyLanes<R> {
+    using BodyLanes<R>::kind;
+    const PositionsCall &call;
+    Frame<R> from, trial, change;
+    Turn<R> turn;
+    mask near;
+
+    PositionsOf(const PositionsCall &c, const BodyKind &k, double *scratch) : BodyLanes<R>(k, scratch), call(c) {}
+
+    HOL_FORCED void read() { this->positions(call.r_ref, call.box_ref, from); }
+    HOL_FORCED void compare() {
+        near = this->changes(call.r, call.box, from, trial);
+        take_excess(kind, trial, change);
+        if (R > 1) prepare(kind, from, change, turn);
     }
-    if (call.virial) {
-        for (int k = 0; k <= R; ++k) put(trial[k], change[k] - trial[k]);
-        write_virial(from, trial, kind.mass / (call.dt * call.dt), block.count, results);
+    HOL_FORCED void find_turn() {
+        if (R == 1) return;
+        const int most = call.max_iterations < 40 ? call.max_iterations : 40;
+        turn.good = solve_turn(kind, turn.a, most, turn.good, turn.g, turn.rounds);
     }
-    if (call.report) {
-        for (int k = 0; k <= R; ++k) put(change[k], from[k] + change[k]);
-        const vec error = largest_error(kind, errors_of(kind, change));
-        for (int l = 0; l < block.count; ++l) {
+    HOL_FORCED mask solve(BodyResult *results) {
+        mask good;
+        if constexpr (R == 1) {
+            good = restore_line(from, change);
+            turn.rounds = splat(1);
+        } else {
+            good = finish(turn, call.r_ref.is_float ? 1e-8 : 2e-15, change);
+        }
+        // Crude or rigid already: the general solver decides.
+        const double least = (call.r.is_float ? 1e-5 : 1e-10) * kind.extent;
+        good =
+            good & near & less(splat(least * least), square_of_moves(kind, trial, change)) & finite(change.nothing());
+        if (__builtin_expect(call.virial || call.report, 0)) report(results);
+        return good;
+    }
+    HOL_FORCED void write(unsigned lanes) {
+        this->write_moves(call, change, lanes);
+        if (call.v.x && kind.has_sites) write_sites(lanes);
+    }
+
+private:
+    __attribute__((noinline)) void report(BodyResult *results) {
+        Frame<R> moved, end;
+        for (int k = 0; k <= R; ++k) {
+            put(moved[k], change[k] - trial[k]);
+            put(end[k], from[k] + change[k]);
+        }
+        if (call.virial) write_virial(kind, from, moved, 1 / (call.dt * call.dt), this->count, results);
+        const vec error = largest_of(errors_of(end));
+        for (int l = 0; l < this->count; ++l) {
             results[l].error = error[l];
-            results[l].iterations = turned.rounds[l];
+            results[l].iterations = static_cast<int>(turn.rounds[l]);
         }
     }
-    atoms.write_moves(call, lanes);
-    if (carries_sites) atoms.write_sites(call.v, rate, lanes);
-    return lanes;
-}
+    // Velocities of sites are those of the body at their places, once the others have theirs.
+    __attribute__((noinline)) void write_sites(unsigned lanes) {
+        Frame<R> rate;
+        this->rates(call.v, rate);
+        this->write_site_velocities(call.v, rate, lanes);
+    }
+};
 
-// Calls body(block, results) for all blocks of a unit: bits of the bodies that are done.
-template <class Body>
-HOL_INLINE uint64_t for_each_block(const BodyUnit &unit, BodyResult *results, const Body &body) {
+// Calls the stages of a verb for all blocks of a unit: bits of the bodies that are done. Two blocks at a time: what is
+// solved for is one long chain of sums and products, in which there is time for another one.
+template <class Verb, class Call>
+uint64_t for_each_block(const Call &call, const BodyUnit &unit, double *scratch, BodyResult *results) {
+    const BodyKind &kind = *unit.kind;
+    Verb of[2] = {{call, kind, scratch}, {call, kind, scratch + scratch_of_block(kind.n_atoms)}};
     uint64_t done = 0;
-    for (int first = 0; first < unit.count; first += W) {
-        const int left = unit.count - first;
-        BodyBlock block = {*unit.kind, {}, left < W ? left : W, unit.consecutive};
-        HOL_UNROLL
-        for (int l = 0; l < W; ++l) block.atoms[l] = unit.atoms[first + (l < block.count ? l : 0)];
-        done |= static_cast<uint64_t>(body(block, results + first)) << first;
+    for (int body = 0; body < unit.count; body += 2 * W) {
+        const int n = body + W < unit.count ? 2 : 1;
+        unsigned lanes[2];
+        for (int i = 0; i < n; ++i) {
+            of[i].set(unit, body + i * W);
+            of[i].read();
+        }
+        for (int i = 0; i < n; ++i) of[i].compare();
+        for (int i = 0; i < n; ++i) of[i].find_turn();
+        for (int i = 0; i < n; ++i) lanes[i] = bits(of[i].solve(results + body + i * W)) & ((1u << of[i].count) - 1);
+        for (int i = 0; i < n; ++i) {
+            if (lanes[i]) of[i].write(lanes[i]);
+            done |= static_cast<uint64_t>(lanes[i]) << (body + i * W);
+        }
     }
     return done;
 }
 
 }  // namespace
 
-int64_t bodies_scratch_bytes(int64_t n_atoms) { return 9 * n_atoms * static_cast<int64_t>(sizeof(vec)); }
+int64_t bodies_scratch_bytes(int64_t n_atoms) {
+    return 2 * scratch_of_block(n_atoms) * static_cast<int64_t>(sizeof(double));
+}
 
 uint64_t bodies_forces(const ForcesCall &call, const BodyUnit &unit, double *scratch, BodyResult *results) {
-    return choose_number<1, 3>(unit.kind->rank, [&](auto rank) {
-        return for_each_block(unit, results, [&](const BodyBlock &block, BodyResult *to) {
-            return forces_of<rank>(call, block, scratch, to);
-        });
-    });
+    return choose_number<1, 3>(unit.kind->rank,
+                               [&](auto rank) { return for_each_block<ForcesOf<rank>>(call, unit, scratch, results); });
 }
 
 uint64_t bodies_velocities(const VelocitiesCall &call, const BodyUnit &unit, double *scratch, BodyResult *results) {
-    return choose_number<1, 3>(unit.kind->rank, [&](auto rank) {
-        return for_each_block(unit, results, [&](const BodyBlock &block, BodyResult *to) {
-            return velocities_of<rank>(call, block, scratch, to);
-        });
-    });
+    return choose_number<1, 3>(
+        unit.kind->rank, [&](auto rank) { return for_each_block<VelocitiesOf<rank>>(call, unit, scratch, results); });
 }
 
 uint64_t bodies_positions(const PositionsCall &call, const BodyUnit &unit, double *scratch, BodyResult *results) {
-    return choose_number<1, 3>(unit.kind->rank, [&](auto rank) {
-        return for_each_block(unit, results, [&](const BodyBlock &block, BodyResult *to) {
-            return positions_of<rank>(call, block, scratch, to);
-        });
-    });
+    return choose_number<1, 3>(
+        unit.kind->rank, [&](auto rank) { return for_each_block<PositionsOf<rank>>(call, unit, scratch, results); });
 }
 
 }  // namespace holonomic::HOL_ISA
