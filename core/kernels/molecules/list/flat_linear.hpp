@@ -77,6 +77,11 @@ struct FlatLinear {
         }
     }
 
+    // Where the memory of one tile has had others since.
+    HOL_FORCED void load_inputs_again(const Tile &tile) const {
+        if (!(terms & rates) && s.n_tiles > 1) load_inputs(tile, a);
+    }
+
     __attribute__((noinline)) void load(const Tile &tile) const {
         read_masses(lane.w, s, tile, mass);
         read_atoms(coordinates, at, s, tile, r);

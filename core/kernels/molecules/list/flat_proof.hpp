@@ -135,7 +135,7 @@ struct FlatProof {
             x.substitute_back(s.tile[i]);
             if (!good) continue;
             x.find_pulls(s.tile[i]);
-            if (!(x.terms & rates) && s.n_tiles > 1) x.load_inputs(s.tile[i], x.a);
+            x.load_inputs_again(s.tile[i]);
             x.add_pulls(s.tile[i]);
             good = is_proven(s.tile[i]);
         }

@@ -172,7 +172,7 @@ struct FlatRefine {
     bool is_rounding() const {
         for (int32_t i = 0; i < s.n_tiles; ++i) {
             const Tile &tile = s.tile[i];
-            if (s.n_tiles > 1 && !(terms & rates)) x.load_inputs(tile, x.a);
+            x.load_inputs_again(tile);
             const Rows a = x.a_of(tile);
             for (int32_t k = tile.first; k < tile.end; ++k) {
                 const int32_t row = tile.first_row + (k - tile.first);
@@ -194,8 +194,7 @@ struct FlatRefine {
         for (int32_t k = 0; k < s.n_bonds; ++k) x.t[k] = solution[k];
         for_tiles_down([&](const Tile &tile) {
             x.find_pulls(tile);
-            if (!(terms & rates) && s.n_tiles > 1) x.load_inputs(tile, x.a);
-            x.add_pulls(tile);
+            if (terms & rates) x.add_pulls(tile);  // nobody asks for accelerations any more
         });
         return true;
     }
