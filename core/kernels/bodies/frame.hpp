@@ -87,22 +87,23 @@ struct Frame {
     }
 };
 
-// What the rounding of shares and places leaves off in a frame of what changes: it would turn the body, in every step
-// the same way.
+// What shares are too large by, in a frame of what changes: what their rounding leaves off would turn the body in every
+// step the same way. All of it in one number, which is rounded but once.
 template <int R>
 HOL_INLINE void take_excess(const BodyKind &kind, const Frame<R> &from, Frame<R> &__restrict to) {
     HOL_UNROLL_FEW
     for (int k = 0; k <= R; ++k) {
-        vec x = from[k].x, y = from[k].y, z = from[k].z;
+        vec3 more = splat(kind.excess[k][0]) * from[0];
         HOL_UNROLL_FEW
-        for (int l = 0; l <= R; ++l) {
-            const vec more = splat(kind.excess[k][l]);
-            x = sub_mul(more, from[l].x, x);
-            y = sub_mul(more, from[l].y, y);
-            z = sub_mul(more, from[l].z, z);
-        }
-        put(to[k], {x, y, z});
+        for (int l = 1; l <= R; ++l) more = add_times(more, splat(kind.excess[k][l]), from[l]);
+        put(to[k], from[k] - more);
     }
+}
+// The same but for rounding, where no step builds on the one before.
+template <int R>
+HOL_INLINE void take_scale(const BodyKind &kind, const Frame<R> &from, Frame<R> &to) {
+    HOL_UNROLL_FEW
+    for (int k = 0; k <= R; ++k) put(to[k], less_times(from[k], splat(kind.excess[k][k]), from[k]));
 }
 
 // The upper half of a symmetric matrix; in `Half` half its diagonal.

@@ -13,27 +13,26 @@ HOL_INLINE void for_each_of_rows(const vec3 *x, long a, long n, const Each &each
     for (; a < n; ++a) each(a, x[a]);
 }
 template <int R, class From>
-HOL_NOINLINE void sum_axes(const From from, const double *share, long n, Frame<R> &to) {
+HOL_NOINLINE void sum_axes(const From from, const BodyKind &kind, Frame<R> &to) {
+    const double *const share = kind.share;
     Frame<R> sum;
     sum.clear();
     const vec3 origin = first_of(from);
-    for_each_of_rows(from, 1, n,
+    for_each_of_rows(from, 1, kind.n_atoms,
                      [&](long a, const vec3 &x) HOL_FORCED { sum.template take<1>(share + a * (1 + R), origin - x); });
-    to = sum;
+    take_scale(kind, sum, to);
 }
 
-// The sums of vectors by weights, times a factor each. keeps: in `kept`, too.
+// The sums of vectors by weights. keeps: in `kept`, too.
 template <int R, bool keeps, class From>
-HOL_NOINLINE void sum_all(const From from, const double *weights, long n, const double *factor, Frame<R> &to,
-                          vec3 *kept = nullptr) {
+HOL_NOINLINE void sum_all(const From from, const double *weights, long n, Frame<R> &to, vec3 *kept = nullptr) {
     Frame<R> sum;
     sum.clear();
     for_each_of_rows(from, 0, n, [&](long a, const vec3 &x) HOL_FORCED {
         if (keeps) put(kept[a], x);
         sum.add(weights + a * (1 + R), x);
     });
-    HOL_UNROLL_FEW
-    for (int k = 0; k <= R; ++k) put(to[k], splat(factor[k]) * sum[k]);
+    to = sum;
 }
 
 // What vectors, taken from the first one, are off those of the axes. Returns the largest square.
@@ -85,8 +84,6 @@ HOL_NOINLINE void add_moves(const BodyKind &kind, const Frame<R> &__restrict cha
     add_rows(r, v, kind.n_atoms, per_dt, [&](long a) HOL_FORCED { return t.at(place + a * (1 + R)) - off[a]; });
 }
 
-constexpr double ones[4] = {1, 1, 1, 1};
-
 // Of a block, in doubles.
 HOL_INLINE int64_t scratch_of_block(int64_t n_atoms) { return 9 * n_atoms * W; }
 
@@ -114,13 +111,13 @@ struct BodyLanes : BodyBlock {
         with(static_cast<const vec3 *>(y));
     }
     HOL_FORCED void positions(const AtomArray &array, const Box &box, Frame<R> &to) {
-        with_places(array, box, [&](auto from) HOL_FORCED { sum_axes<R>(from, kind.share, kind.n_atoms, to); });
+        with_places(array, box, [&](auto from) HOL_FORCED { sum_axes<R>(from, kind, to); });
     }
 
     // Velocities of the atoms that have mass; what sites have is not looked at. Not from the first one's: it may be
-    // that of a light atom which is far faster than all others.
+    // that of a light atom which is far faster than all others. With the excess of shares.
     HOL_FORCED void rates(const AtomArray &array, Frame<R> &to) {
-        sum_all<R, false>(rows_of(array, kind.has_sites_between), kind.share, kind.n_heavy, ones, to);
+        sum_all<R, false>(rows_of(array, kind.has_sites_between), kind.share, kind.n_heavy, to);
     }
     // Over masses; they are kept in y.
     HOL_FORCED void forces(const AtomArray &array, Frame<R> &to) {
@@ -129,7 +126,9 @@ struct BodyLanes : BodyBlock {
             for (long a = 0; a < kind.n_atoms; ++a) y[a].x = y[a].y = y[a].z = vec{};
             return;
         }
-        sum_all<R, true>(rows_of(array), kind.place, kind.n_atoms, kind.per_moment, to, y);
+        sum_all<R, true>(rows_of(array), kind.place, kind.n_atoms, to, y);
+        HOL_UNROLL_FEW
+        for (int k = 0; k <= R; ++k) put(to[k], splat(kind.per_moment[k]) * to[k]);
     }
 
     HOL_FORCED void write_forces(const ForcesCall &call, const Frame<R> &z, unsigned lanes) {
@@ -149,11 +148,11 @@ struct BodyLanes : BodyBlock {
         write_some(array, x, lanes);
     }
 
-    // What positions are off those of the axes, in x; whether none is far.
+    // What positions are off those of the axes, in x; whether none is far. Sums with the excess of shares.
     HOL_FORCED mask changes(const AtomArray &array, const Box &box, const Frame<R> &axes, Frame<R> &to) {
         vec largest;
         with_places(array, box, [&](auto from) HOL_FORCED { largest = take_axes<R>(from, kind, axes, x); });
-        sum_all<R, false>(static_cast<const vec3 *>(x), kind.share, kind.n_atoms, ones, to);
+        sum_all<R, false>(static_cast<const vec3 *>(x), kind.share, kind.n_atoms, to);
         return less(largest, splat(4 * kind.extent * kind.extent));
     }
     // Moves atoms to where their changes are those of a frame, and velocities by these moves over dt.

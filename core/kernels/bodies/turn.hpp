@@ -111,10 +111,11 @@ HOL_NOINLINE mask solve_turn(const BodyKind &kind, const vec *of, int most, mask
         }
         square = square_of(g);
         rounds = rounds + keep(busy, one);
-        // By the first step the matrix is off, at most 2.5 times: that part of a later one is left.
+        // By the first step the matrix is off, at most 2.5 times: that part of a later one is left. It comes into a turn
+        // as the square of g.
         const vec size = square_of(step);
         if (round == 0) first = size;
-        busy = busy & ~less_equal((7.0 * first) * size, (0.01 * epsilon * epsilon) * square);
+        busy = busy & ~less_equal((7.0 * first) * size, splat(0.01 * epsilon * epsilon));
     }
     HOL_UNROLL_FEW
     for (int i = 0; i < 3; ++i) to[i] = g[i];
@@ -156,17 +157,20 @@ HOL_NOINLINE void prepare(const BodyKind &kind, const Frame<R> &__restrict from,
     HOL_UNROLL_FEW
     for (int i = 0; i < 3; ++i) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
-        vec both = {};
-        if (j < R) both = splat(kind.part[j][k]) * x[k][j < R ? j : 0];
-        if (k < R) both = sub_mul(splat(kind.part[k][j]), x[j][k < R ? k : 0], both);
-        to.a[i] = 0.5 * both;
+        if (R == 2 && i < 2) {  // the normal weighs nothing
+            to.a[i] = i == 0 ? 0.5 * x[2][1] : -0.5 * x[2][0];
+            continue;
+        }
+        // What is rounded in b_i meets a small number.
+        const vec plus = x[k][j < R ? j : 0], minus = x[j][k < R ? k : 0];
+        to.a[i] = 0.25 * mul_add(splat(kind.skew[i]), plus + minus, plus - minus);
     }
 }
 
 // change: becomes that to A. C acts along axes that have been made orthonormal; where that makes a difference of more
 // than `slack` the body is not done.
 template <int R>
-HOL_NOINLINE mask finish(const Turn<R> &__restrict t, double slack, Frame<R> &__restrict change) {
+HOL_NOINLINE mask finish(const BodyKind &kind, const Turn<R> &__restrict t, double slack, Frame<R> &__restrict change) {
     vec g[3];
     vec3 axis[3];
     HOL_UNROLL_FEW
@@ -174,14 +178,19 @@ HOL_NOINLINE mask finish(const Turn<R> &__restrict t, double slack, Frame<R> &__
         g[p] = t.g[p];
         put(axis[p], p < R ? t.axes[1 + (p < R ? p : 0)] : t.normal);
     }
-    const vec square = mul_add(g[2], g[2], mul_add(g[1], g[1], g[0] * g[0])), s = 2.0 / (1.0 + square);
+    // 2 g / (1 + g.g), as 2 (a_i - b_i g_j g_k / (1 + g.g)): what is rounded in g would be the same in each step of a
+    // body that turns evenly.
+    const vec square = mul_add(g[2], g[2], mul_add(g[1], g[1], g[0] * g[0])), two = 2.0 / (1.0 + square);
+    vec s[3];
+    HOL_UNROLL_FEW
+    for (int p = 0; p < 3; ++p)
+        s[p] = sub_mul(splat(kind.skew[p]) * two * g[(p + 1) % 3], g[(p + 2) % 3], t.a[p] + t.a[p]);
     vec largest = {};  // the square of C's norm
     HOL_UNROLL_FEW
     for (int q = 0; q < R; ++q) {
         const int row[3] = {q, (q + 1) % 3, (q + 2) % 3};
-        const vec sq = s * g[q], sr = s * g[row[1]];
-        const vec of[3] = {-mul_add(sr, g[row[1]], s * g[row[2]] * g[row[2]]), mul_add(sq, g[row[1]], s * g[row[2]]),
-                           mul_sub(sq, g[row[2]], sr)};
+        const vec of[3] = {-mul_add(s[row[1]], g[row[1]], s[row[2]] * g[row[2]]),
+                           mul_add(s[q], g[row[1]], s[row[2]]), mul_sub(s[q], g[row[2]], s[row[1]])};
         vec3 sum = vec3{} - t.away[1 + q];
         HOL_UNROLL_FEW
         for (int k = 0; k < 3; ++k) {

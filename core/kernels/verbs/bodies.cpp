@@ -49,6 +49,7 @@ struct ForcesOf : BodyLanes<R> {
         if (!call.v.x) return of_rates.clear();
         Frame<R> rate;
         this->rates(call.v, rate);
+        take_scale(kind, rate, rate);
         twice_products(rate, of_rates);
     }
     HOL_FORCED mask solve(BodyResult *results) {
@@ -68,10 +69,10 @@ struct VelocitiesOf : BodyLanes<R> {
     VelocitiesOf(const VelocitiesCall &c, const BodyKind &k, double *scratch) : BodyLanes<R>(k, scratch), call(c) {}
 
     HOL_FORCED void read() {
-        Frame<R> rounded;
+        Frame<R> sums;
         this->positions(call.r, call.box, at);
-        this->rates(call.v, rounded);
-        take_excess(kind, rounded, rate);
+        this->rates(call.v, sums);
+        take_excess(kind, sums, rate);
     }
     HOL_FORCED mask solve(BodyResult *results) {
         Half<R> none;
@@ -95,8 +96,10 @@ struct PositionsOf : BodyLanes<R> {
 
     HOL_FORCED void read() { this->positions(call.r_ref, call.box_ref, from); }
     HOL_FORCED void compare() {
-        near = this->changes(call.r, call.box, from, trial);
-        take_excess(kind, trial, change);
+        Frame<R> sums;
+        near = this->changes(call.r, call.box, from, sums);
+        take_excess(kind, sums, trial);
+        change = trial;
         if (R > 1) prepare(kind, from, change, turn);
     }
     HOL_FORCED void find_turn() {
@@ -110,7 +113,7 @@ struct PositionsOf : BodyLanes<R> {
             good = restore_line(from, change);
             turn.rounds = splat(1);
         } else {
-            good = finish(turn, call.r_ref.is_float ? 1e-8 : 2e-15, change);
+            good = finish(kind, turn, call.r_ref.is_float ? 1e-8 : 2e-15, change);
         }
         // Crude or rigid already: the general solver decides.
         const double least = (call.r.is_float ? 1e-5 : 1e-10) * kind.extent;
@@ -140,8 +143,9 @@ private:
     }
     // Velocities of sites are those of the body at their places, once the others have theirs.
     __attribute__((noinline)) void write_sites(unsigned lanes) {
-        Frame<R> rate;
-        this->rates(call.v, rate);
+        Frame<R> sums, rate;
+        this->rates(call.v, sums);
+        take_excess(kind, sums, rate);
         this->write_site_velocities(call.v, rate, lanes);
     }
 };
