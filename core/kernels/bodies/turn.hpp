@@ -59,9 +59,10 @@ HOL_NOINLINE mask take_more_errors(const BodyKind &kind, mask bad, Frame<R> &a, 
     return bad;
 }
 
-// Gibbs' vector: Newton's method with the matrix of the first guess, which is right to the third order.
+// Gibbs' vector: Newton's method with the matrix of a guess of the third order. Two rounds do for turns of up to some
+// 15 degrees, so that nothing waits for a test.
 HOL_NOINLINE mask solve_turn(const BodyKind &kind, const vec *of, int most, mask good, vec *to, vec &rounds_to) {
-    vec a[3], b[3], g[3], rounds = {};
+    vec a[3], b[3], g[3];
     HOL_UNROLL_FEW
     for (int i = 0; i < 3; ++i) {
         a[i] = of[i];
@@ -76,16 +77,18 @@ HOL_NOINLINE mask solve_turn(const BodyKind &kind, const vec *of, int most, mask
         HOL_UNROLL_FEW
         for (int i = 0; i < 3; ++i) y[i] = sub_mul(b[i] * x[(i + 1) % 3], x[(i + 2) % 3], a[i] * w);
     };
-    vec start[3], m[3][3], inverse[3][3];
+    vec start[3], guess[3], step[3], m[3][3], inverse[3][3];
     next(a, start);
-    next(start, g);
+    next(start, guess);
+    next(guess, g);
     HOL_UNROLL_FEW
     for (int i = 0; i < 3; ++i) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         const vec twice = a[i] + a[i];
-        m[i][i] = sub_mul(twice, g[i], one);
-        m[i][j] = mul_sub(b[i], g[k], twice * g[j]);
-        m[i][k] = mul_sub(b[i], g[j], twice * g[k]);
+        m[i][i] = sub_mul(twice, guess[i], one);
+        m[i][j] = mul_sub(b[i], guess[k], twice * guess[j]);
+        m[i][k] = mul_sub(b[i], guess[j], twice * guess[k]);
+        step[i] = g[i] - guess[i];
     }
     HOL_UNROLL_FEW
     for (int i = 0; i < 3; ++i) {
@@ -96,31 +99,37 @@ HOL_NOINLINE mask solve_turn(const BodyKind &kind, const vec *of, int most, mask
         }
     }
     const vec per = 1.0 / mul_add(m[0][2], inverse[2][0], mul_add(m[0][1], inverse[1][0], m[0][0] * inverse[0][0]));
-    vec square = square_of(g), first = {};
-    good = good & less(square, splat(0.1));
-    mask busy = good;
-    for (int round = 0; round < most && any(busy); ++round) {
-        vec rest[3], step[3];
+    const vec first = square_of(step);
+    const auto improve = [&](mask lanes) HOL_FORCED {
+        vec rest[3];
         next(g, rest);
         HOL_UNROLL_FEW
         for (int i = 0; i < 3; ++i) rest[i] = rest[i] - g[i];
         HOL_UNROLL_FEW
         for (int i = 0; i < 3; ++i) {
             step[i] = per * mul_add(inverse[i][2], rest[2], mul_add(inverse[i][1], rest[1], inverse[i][0] * rest[0]));
-            g[i] = g[i] + keep(busy, step[i]);
+            g[i] = g[i] + keep(lanes, step[i]);
         }
-        square = square_of(g);
+    };
+    // By the first step the matrix is off, at most 2.5 times: that part of a later one is left. It comes into a turn as
+    // the square of g.
+    const auto is_rough = [&]() HOL_FORCED {
+        return ~less_equal((7.0 * first) * square_of(step), splat(0.01 * epsilon * epsilon));
+    };
+    int round = 2;
+    improve(~none());
+    improve(~none());
+    vec rounds = splat(2);
+    mask busy = good & is_rough();
+    for (; __builtin_expect(any(busy), 0) && round < most; ++round) {
+        improve(busy);
         rounds = rounds + keep(busy, one);
-        // By the first step the matrix is off, at most 2.5 times: that part of a later one is left. It comes into a turn
-        // as the square of g.
-        const vec size = square_of(step);
-        if (round == 0) first = size;
-        busy = busy & ~less_equal((7.0 * first) * size, splat(0.01 * epsilon * epsilon));
+        busy = busy & is_rough();
     }
     HOL_UNROLL_FEW
     for (int i = 0; i < 3; ++i) to[i] = g[i];
     rounds_to = rounds;
-    return good & ~busy & less(square, splat(0.1));
+    return round > most ? none() : good & ~busy & less(square_of(g), splat(0.1));
 }
 
 // change: of the axes since the reference `from`.
