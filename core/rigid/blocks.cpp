@@ -34,6 +34,7 @@ BodyKind kind_of(const Body &body, const Shape &shape) {
         kind.skew[i] = kind.part[j][k] - kind.part[k][j];
     }
     std::copy_n(body.excess[0], 16, kind.excess[0]);
+    kind.scale = 1 - kind.excess[0][0];
     kind.masses = body.masses.data();
     kind.place = weights;
     kind.share = weights + n;

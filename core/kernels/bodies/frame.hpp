@@ -99,12 +99,6 @@ HOL_INLINE void take_excess(const BodyKind &kind, const Frame<R> &from, Frame<R>
         put(to[k], from[k] - more);
     }
 }
-// The same but for rounding, where no step builds on the one before.
-template <int R>
-HOL_INLINE void take_scale(const BodyKind &kind, const Frame<R> &from, Frame<R> &to) {
-    HOL_UNROLL_FEW
-    for (int k = 0; k <= R; ++k) put(to[k], less_times(from[k], splat(kind.excess[k][k]), from[k]));
-}
 
 // The upper half of a symmetric matrix; in `Half` half its diagonal.
 template <int R>
@@ -157,15 +151,16 @@ HOL_INLINE vec largest_of(const Symmetric<R> &e) {
     return worst;
 }
 
-// 2 A'^T A'
+// 2 A'^T A'; rate: with the excess of shares.
 template <int R>
-HOL_INLINE void twice_products(const Frame<R> &rate, Half<R> &to) {
+HOL_INLINE void twice_products(const BodyKind &kind, const Frame<R> &rate, Half<R> &to) {
+    const vec once = splat(kind.scale * kind.scale), twice = once + once;
     HOL_UNROLL_FEW
     for (int p = 0; p < R; ++p) {
         HOL_UNROLL_FEW
         for (int q = p; q < R; ++q) {
             const vec product = dot(rate[1 + p], rate[1 + q]);
-            to.of[p][q] = p == q ? product : product + product;
+            to.of[p][q] = (p == q ? once : twice) * product;
         }
     }
 }

@@ -20,7 +20,8 @@ HOL_NOINLINE void sum_axes(const From from, const BodyKind &kind, Frame<R> &to) 
     const vec3 origin = first_of(from);
     for_each_of_rows(from, 1, kind.n_atoms,
                      [&](long a, const vec3 &x) HOL_FORCED { sum.template take<1>(share + a * (1 + R), origin - x); });
-    take_scale(kind, sum, to);
+    HOL_UNROLL_FEW
+    for (int p = 1; p <= R; ++p) put(to[p], splat(kind.scale) * sum[p]);
 }
 
 // The sums of vectors by weights. keeps: in `kept`, too.

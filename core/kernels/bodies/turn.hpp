@@ -59,10 +59,9 @@ HOL_NOINLINE mask take_more_errors(const BodyKind &kind, mask bad, Frame<R> &a, 
     return bad;
 }
 
-// Gibbs' vector: Newton's method with the matrix of a guess of the third order. Two rounds do for turns of up to some
-// 15 degrees, so that nothing waits for a test.
+// Gibbs' vector: Newton's method with the matrix of the first guess, which is right to the third order.
 HOL_NOINLINE mask solve_turn(const BodyKind &kind, const vec *of, int most, mask good, vec *to, vec &rounds_to) {
-    vec a[3], b[3], g[3];
+    vec a[3], b[3], g[3], rounds = {};
     HOL_UNROLL_FEW
     for (int i = 0; i < 3; ++i) {
         a[i] = of[i];
@@ -73,22 +72,20 @@ HOL_NOINLINE mask solve_turn(const BodyKind &kind, const vec *of, int most, mask
     // a_i (1 + x.x) - b_i x_j x_k
     const vec one = splat(1);
     const auto next = [&](const vec *x, vec *y) HOL_FORCED {
-        const vec w = mul_add(x[2], x[2], mul_add(x[1], x[1], mul_add(x[0], x[0], one)));
+        const vec w = mul_add(x[0], x[0], one) + mul_add(x[1], x[1], x[2] * x[2]);
         HOL_UNROLL_FEW
-        for (int i = 0; i < 3; ++i) y[i] = sub_mul(b[i] * x[(i + 1) % 3], x[(i + 2) % 3], a[i] * w);
+        for (int i = 0; i < 3; ++i) y[i] = mul_sub(a[i], w, b[i] * x[(i + 1) % 3] * x[(i + 2) % 3]);
     };
-    vec start[3], guess[3], step[3], m[3][3], inverse[3][3];
+    vec start[3], m[3][3], inverse[3][3];
     next(a, start);
-    next(start, guess);
-    next(guess, g);
+    next(start, g);
     HOL_UNROLL_FEW
     for (int i = 0; i < 3; ++i) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         const vec twice = a[i] + a[i];
-        m[i][i] = sub_mul(twice, guess[i], one);
-        m[i][j] = mul_sub(b[i], guess[k], twice * guess[j]);
-        m[i][k] = mul_sub(b[i], guess[j], twice * guess[k]);
-        step[i] = g[i] - guess[i];
+        m[i][i] = sub_mul(twice, g[i], one);
+        m[i][j] = mul_sub(b[i], g[k], twice * g[j]);
+        m[i][k] = mul_sub(b[i], g[j], twice * g[k]);
     }
     HOL_UNROLL_FEW
     for (int i = 0; i < 3; ++i) {
@@ -99,40 +96,34 @@ HOL_NOINLINE mask solve_turn(const BodyKind &kind, const vec *of, int most, mask
         }
     }
     const vec per = 1.0 / mul_add(m[0][2], inverse[2][0], mul_add(m[0][1], inverse[1][0], m[0][0] * inverse[0][0]));
-    const vec first = square_of(step);
-    const auto improve = [&](mask lanes) HOL_FORCED {
-        vec rest[3];
+    vec square = square_of(g), first = {};
+    good = good & less(square, splat(0.1));
+    mask busy = good;
+    for (int round = 0; round < most && any(busy); ++round) {
+        vec rest[3], step[3];
         next(g, rest);
         HOL_UNROLL_FEW
         for (int i = 0; i < 3; ++i) rest[i] = rest[i] - g[i];
         HOL_UNROLL_FEW
         for (int i = 0; i < 3; ++i) {
             step[i] = per * mul_add(inverse[i][2], rest[2], mul_add(inverse[i][1], rest[1], inverse[i][0] * rest[0]));
-            g[i] = g[i] + keep(lanes, step[i]);
+            g[i] = g[i] + keep(busy, step[i]);
         }
-    };
-    // By the first step the matrix is off, at most 2.5 times: that part of a later one is left. It comes into a turn as
-    // the square of g.
-    const auto is_rough = [&]() HOL_FORCED {
-        return ~less_equal((7.0 * first) * square_of(step), splat(0.01 * epsilon * epsilon));
-    };
-    int round = 2;
-    improve(~none());
-    improve(~none());
-    vec rounds = splat(2);
-    mask busy = good & is_rough();
-    for (; __builtin_expect(any(busy), 0) && round < most; ++round) {
-        improve(busy);
+        square = square_of(g);
         rounds = rounds + keep(busy, one);
-        busy = busy & is_rough();
+        // By the first step the matrix is off, at most 2.5 times: that part of a later one is left. It comes into a turn
+        // as the square of g.
+        const vec size = square_of(step);
+        if (round == 0) first = size;
+        busy = busy & ~less_equal((7.0 * first) * size, splat(0.01 * epsilon * epsilon));
     }
     HOL_UNROLL_FEW
     for (int i = 0; i < 3; ++i) to[i] = g[i];
     rounds_to = rounds;
-    return round > most ? none() : good & ~busy & less(square_of(g), splat(0.1));
+    return good & ~busy & less(square, splat(0.1));
 }
 
-// change: of the axes since the reference `from`.
+// change: that of the trial since the reference `from`.
 template <int R>
 HOL_NOINLINE void prepare(const BodyKind &kind, const Frame<R> &__restrict from, const Frame<R> &__restrict change,
                           Turn<R> &__restrict to) {

@@ -49,8 +49,7 @@ struct ForcesOf : BodyLanes<R> {
         if (!call.v.x) return of_rates.clear();
         Frame<R> rate;
         this->rates(call.v, rate);
-        take_scale(kind, rate, rate);
-        twice_products(rate, of_rates);
+        twice_products(kind, rate, of_rates);
     }
     HOL_FORCED mask solve(BodyResult *results) {
         return project_with_virial(kind, at, of_rates, z, call.virial, this->count, results);
@@ -88,7 +87,7 @@ template <int R>
 struct PositionsOf : BodyLanes<R> {
     using BodyLanes<R>::kind;
     const PositionsCall &call;
-    Frame<R> from, trial, change;
+    Frame<R> from, trial, change, rate;
     Turn<R> turn;
     mask near;
 
@@ -98,9 +97,9 @@ struct PositionsOf : BodyLanes<R> {
     HOL_FORCED void compare() {
         Frame<R> sums;
         near = this->changes(call.r, call.box, from, sums);
+        if (has_sites_to_write()) this->rates(call.v, rate);
         take_excess(kind, sums, trial);
-        change = trial;
-        if (R > 1) prepare(kind, from, change, turn);
+        if (R > 1) prepare(kind, from, trial, turn);
     }
     HOL_FORCED void find_turn() {
         if (R == 1) return;
@@ -109,7 +108,9 @@ struct PositionsOf : BodyLanes<R> {
     }
     HOL_FORCED mask solve(BodyResult *results) {
         mask good;
+        put(change[0], trial[0]);
         if constexpr (R == 1) {
+            put(change[1], trial[1]);
             good = restore_line(from, change);
             turn.rounds = splat(1);
         } else {
@@ -124,7 +125,7 @@ struct PositionsOf : BodyLanes<R> {
     }
     HOL_FORCED void write(unsigned lanes) {
         this->write_moves(call, change, lanes);
-        if (call.v.x && kind.has_sites) write_sites(lanes);
+        if (has_sites_to_write()) write_sites(lanes);
     }
 
 private:
@@ -141,12 +142,15 @@ private:
             results[l].iterations = static_cast<int>(turn.rounds[l]);
         }
     }
-    // Velocities of sites are those of the body at their places, once the others have theirs.
+    bool has_sites_to_write() const { return call.v.x && kind.has_sites; }
+    // Velocities of sites are those of the body at their places: the rate before, and what the moves make of it.
     __attribute__((noinline)) void write_sites(unsigned lanes) {
-        Frame<R> sums, rate;
-        this->rates(call.v, sums);
-        take_excess(kind, sums, rate);
-        this->write_site_velocities(call.v, rate, lanes);
+        Frame<R> now;
+        take_excess(kind, rate, now);
+        const vec per_dt = splat(1 / call.dt);
+        HOL_UNROLL_FEW
+        for (int k = 0; k <= R; ++k) put(now[k], add_times(now[k], per_dt, change[k] - trial[k]));
+        this->write_site_velocities(call.v, now, lanes);
     }
 };
 
