@@ -95,8 +95,8 @@ void set_weights(Body &body) {
     // 1 less its inverse, as what stands beside its diagonal is as small as a rounding.
     for (std::int64_t k = 0; k < K; ++k)
         for (std::int64_t l = 0; l < K; ++l)
-            body.excess[k][l] = rounded((k == l ? product[k][k] - as_pair(1) : product[k][l] / product[l][l]) /
-                                        product[k][k]);
+            body.excess[k][l] =
+                rounded((k == l ? product[k][k] - as_pair(1) : product[k][l] / product[l][l]) / product[k][k]);
 }
 
 // sum m y = 0 and sum m y y^T = M to the last digit of pairs: what the rounding of a thin axis, whose square is 1e-16

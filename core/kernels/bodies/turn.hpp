@@ -111,8 +111,8 @@ HOL_NOINLINE mask solve_turn(const BodyKind &kind, const vec *of, int most, mask
         }
         square = square_of(g);
         rounds = rounds + keep(busy, one);
-        // By the first step the matrix is off, at most 2.5 times: that part of a later one is left. It comes into a turn
-        // as the square of g.
+        // By the first step the matrix is off, at most 2.5 times: that part of a later one is left. It comes into a
+        // turn as the square of g.
         const vec size = square_of(step);
         if (round == 0) first = size;
         busy = busy & ~less_equal((7.0 * first) * size, splat(0.01 * epsilon * epsilon));
@@ -189,8 +189,8 @@ HOL_NOINLINE mask finish(const BodyKind &kind, const Turn<R> &__restrict t, doub
     HOL_UNROLL_FEW
     for (int q = 0; q < R; ++q) {
         const int row[3] = {q, (q + 1) % 3, (q + 2) % 3};
-        const vec of[3] = {-mul_add(s[row[1]], g[row[1]], s[row[2]] * g[row[2]]),
-                           mul_add(s[q], g[row[1]], s[row[2]]), mul_sub(s[q], g[row[2]], s[row[1]])};
+        const vec of[3] = {-mul_add(s[row[1]], g[row[1]], s[row[2]] * g[row[2]]), mul_add(s[q], g[row[1]], s[row[2]]),
+                           mul_sub(s[q], g[row[2]], s[row[1]])};
         vec3 sum = vec3{} - t.away[1 + q];
         HOL_UNROLL_FEW
         for (int k = 0; k < 3; ++k) {

@@ -160,9 +160,11 @@ template <class Verb, class Call>
 uint64_t for_each_block(const Call &call, const BodyUnit &unit, double *scratch, BodyResult *results) {
     const BodyKind &kind = *unit.kind;
     Verb of[2] = {{call, kind, scratch}, {call, kind, scratch + scratch_of_block(kind.n_atoms)}};
+    // What large ones are made of would not stay in the first cache until it is written.
+    const int most = kind.n_atoms > 24 ? 1 : 2;
     uint64_t done = 0;
-    for (int body = 0; body < unit.count; body += 2 * W) {
-        const int n = body + W < unit.count ? 2 : 1;
+    for (int body = 0; body < unit.count; body += most * W) {
+        const int n = body + W < unit.count ? most : 1;
         unsigned lanes[2];
         for (int i = 0; i < n; ++i) {
             of[i].set(unit, body + i * W);
