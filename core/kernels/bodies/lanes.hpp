@@ -24,16 +24,18 @@ HOL_NOINLINE void sum_axes(const From from, const BodyKind &kind, Frame<R> &to) 
     for (int p = 1; p <= R; ++p) put(to[p], splat(kind.scale) * sum[p]);
 }
 
-// The sums of vectors by weights. keeps: in `kept`, too.
-template <int R, bool keeps, class From>
-HOL_NOINLINE void sum_all(const From from, const double *weights, long n, Frame<R> &to, vec3 *kept = nullptr) {
+// The sums of vectors by weights. forces: times a factor each, and vectors are kept.
+template <int R, bool forces, class From>
+HOL_NOINLINE void sum_all(const From from, const double *weights, long n, Frame<R> &to, const double *factor = nullptr,
+                          vec3 *kept = nullptr) {
     Frame<R> sum;
     sum.clear();
     for_each_of_rows(from, 0, n, [&](long a, const vec3 &x) HOL_FORCED {
-        if (keeps) put(kept[a], x);
+        if (forces) put(kept[a], x);
         sum.add(weights + a * (1 + R), x);
     });
-    to = sum;
+    HOL_UNROLL_FEW
+    for (int k = 0; k <= R; ++k) put(to[k], forces ? splat(factor[k]) * sum[k] : sum[k]);
 }
 
 // What vectors, taken from the first one, are off those of the axes. Returns the largest square.
@@ -127,9 +129,7 @@ struct BodyLanes : BodyBlock {
             for (long a = 0; a < kind.n_atoms; ++a) y[a].x = y[a].y = y[a].z = vec{};
             return;
         }
-        sum_all<R, true>(rows_of(array), kind.place, kind.n_atoms, to, y);
-        HOL_UNROLL_FEW
-        for (int k = 0; k <= R; ++k) put(to[k], splat(kind.per_moment[k]) * to[k]);
+        sum_all<R, true>(rows_of(array), kind.place, kind.n_atoms, to, kind.per_moment, y);
     }
 
     HOL_FORCED void write_forces(const ForcesCall &call, const Frame<R> &z, unsigned lanes) {
