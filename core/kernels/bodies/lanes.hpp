@@ -24,18 +24,21 @@ HOL_NOINLINE void sum_axes(const From from, const BodyKind &kind, Frame<R> &to) 
     for (int p = 1; p <= R; ++p) put(to[p], splat(kind.scale) * sum[p]);
 }
 
-// The sums of vectors by weights. forces: times a factor each, and vectors are kept.
-template <int R, bool forces, class From>
-HOL_NOINLINE void sum_all(const From from, const double *weights, long n, Frame<R> &to, const double *factor = nullptr,
+// The sums of vectors by weights. Of forces they are taken per moment, and vectors are kept; of rates and moves the
+// excess of shares is taken, but for what is rounded anyway: of rough rates it is not.
+enum Sums { of_forces, of_rates, of_rough_rates };
+template <int R, Sums what, class From>
+HOL_NOINLINE void sum_all(const From from, const BodyKind &kind, const double *weights, long n, Frame<R> &to,
                           vec3 *kept = nullptr) {
     Frame<R> sum;
     sum.clear();
     for_each_of_rows(from, 0, n, [&](long a, const vec3 &x) HOL_FORCED {
-        if (forces) put(kept[a], x);
+        if (what == of_forces) put(kept[a], x);
         sum.add(weights + a * (1 + R), x);
     });
+    if (what == of_rates) return take_excess(kind, sum, to);
     HOL_UNROLL_FEW
-    for (int k = 0; k <= R; ++k) put(to[k], forces ? splat(factor[k]) * sum[k] : sum[k]);
+    for (int k = 0; k <= R; ++k) put(to[k], what == of_forces ? splat(kind.per_moment[k]) * sum[k] : sum[k]);
 }
 
 // What vectors, taken from the first one, are off those of the axes. Returns the largest square.
@@ -118,9 +121,10 @@ struct BodyLanes : BodyBlock {
     }
 
     // Velocities of the atoms that have mass; what sites have is not looked at. Not from the first one's: it may be
-    // that of a light atom which is far faster than all others. With the excess of shares.
+    // that of a light atom which is far faster than all others.
+    template <Sums what = of_rates>
     HOL_FORCED void rates(const AtomArray &array, Frame<R> &to) {
-        sum_all<R, false>(rows_of(array, kind.has_sites_between), kind.share, kind.n_heavy, to);
+        sum_all<R, what>(rows_of(array, kind.has_sites_between), kind, kind.share, kind.n_heavy, to);
     }
     // Over masses; they are kept in y.
     HOL_FORCED void forces(const AtomArray &array, Frame<R> &to) {
@@ -129,7 +133,7 @@ struct BodyLanes : BodyBlock {
             for (long a = 0; a < kind.n_atoms; ++a) y[a].x = y[a].y = y[a].z = vec{};
             return;
         }
-        sum_all<R, true>(rows_of(array), kind.place, kind.n_atoms, to, kind.per_moment, y);
+        sum_all<R, of_forces>(rows_of(array), kind, kind.place, kind.n_atoms, to, y);
     }
 
     HOL_FORCED void write_forces(const ForcesCall &call, const Frame<R> &z, unsigned lanes) {
@@ -149,11 +153,11 @@ struct BodyLanes : BodyBlock {
         write_some(array, x, lanes);
     }
 
-    // What positions are off those of the axes, in x; whether none is far. Sums with the excess of shares.
+    // What positions are off those of the axes, in x; whether none is far.
     HOL_FORCED mask changes(const AtomArray &array, const Box &box, const Frame<R> &axes, Frame<R> &to) {
         vec largest;
         with_places(array, box, [&](auto from) HOL_FORCED { largest = take_axes<R>(from, kind, axes, x); });
-        sum_all<R, false>(static_cast<const vec3 *>(x), kind.share, kind.n_atoms, to);
+        sum_all<R, of_rates>(static_cast<const vec3 *>(x), kind, kind.share, kind.n_atoms, to);
         return less(largest, splat(4 * kind.extent * kind.extent));
     }
     // Moves atoms to where their changes are those of a frame, and velocities by these moves over dt.

@@ -48,7 +48,7 @@ struct ForcesOf : BodyLanes<R> {
         this->forces(call.f, z);
         if (!call.v.x) return of_rates.clear();
         Frame<R> rate;
-        this->rates(call.v, rate);
+        this->template rates<of_rough_rates>(call.v, rate);
         twice_products(kind, rate, of_rates);
     }
     HOL_FORCED mask solve(BodyResult *results) {
@@ -68,10 +68,8 @@ struct VelocitiesOf : BodyLanes<R> {
     VelocitiesOf(const VelocitiesCall &c, const BodyKind &k, double *scratch) : BodyLanes<R>(k, scratch), call(c) {}
 
     HOL_FORCED void read() {
-        Frame<R> sums;
         this->positions(call.r, call.box, at);
-        this->rates(call.v, sums);
-        take_excess(kind, sums, rate);
+        this->rates(call.v, rate);
     }
     HOL_FORCED mask solve(BodyResult *results) {
         Half<R> none;
@@ -95,10 +93,8 @@ struct PositionsOf : BodyLanes<R> {
 
     HOL_FORCED void read() { this->positions(call.r_ref, call.box_ref, from); }
     HOL_FORCED void compare() {
-        Frame<R> sums;
-        near = this->changes(call.r, call.box, from, sums);
+        near = this->changes(call.r, call.box, from, trial);
         if (has_sites_to_write()) this->rates(call.v, rate);
-        take_excess(kind, sums, trial);
         if (R > 1) prepare(kind, from, trial, turn);
     }
     HOL_FORCED void find_turn() {
@@ -145,12 +141,10 @@ private:
     bool has_sites_to_write() const { return call.v.x && kind.has_sites; }
     // Velocities of sites are those of the body at their places: the rate before, and what the moves make of it.
     __attribute__((noinline)) void write_sites(unsigned lanes) {
-        Frame<R> now;
-        take_excess(kind, rate, now);
         const vec per_dt = splat(1 / call.dt);
         HOL_UNROLL_FEW
-        for (int k = 0; k <= R; ++k) put(now[k], add_times(now[k], per_dt, change[k] - trial[k]));
-        this->write_site_velocities(call.v, now, lanes);
+        for (int k = 0; k <= R; ++k) put(rate[k], add_times(rate[k], per_dt, change[k] - trial[k]));
+        this->write_site_velocities(call.v, rate, lanes);
     }
 };
 
