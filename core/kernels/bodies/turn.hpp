@@ -123,6 +123,24 @@ HOL_NOINLINE mask solve_turn(const BodyKind &kind, const vec *of, int most, mask
     return good & ~busy & less(square, splat(0.1));
 }
 
+// The same for a plane, whose normal has the length 0: b_0 = 1, b_1 = -1, and with complex numbers
+//
+//     (g_0 + i g_1) (1 - i g_2) = (a_0 + i a_1) (1 + g.g)
+//
+// So 1 + g.g = w (1 + g_2^2) with w = 1 + (a_0^2 + a_1^2) w^2, g_0 + i g_1 = w (a_0 + i a_1) (1 + i g_2), and the third
+// equation is a quadratic one for g_2.
+HOL_NOINLINE mask turn_plane(const BodyKind &kind, const vec *a, mask good, vec *g) {
+    const vec one = splat(1), a0 = a[0], a1 = a[1];
+    const vec w = 2.0 / (one + sqrt(sub_mul(splat(4), mul_add(a0, a0, a1 * a1), one))), bw = kind.skew[2] * (w * w);
+    const vec p = w * a[2], q = bw * (a0 * a1);
+    const vec half = 0.5 * mul_add(bw, (a0 - a1) * (a0 + a1), one);  // g_2^2 (p + q) - 2 half g_2 + p - q = 0
+    const vec g2 = (p - q) / (half + sqrt(sub_mul(p + q, p - q, half * half)));
+    g[0] = w * sub_mul(a1, g2, a0);
+    g[1] = w * mul_add(a0, g2, a1);
+    g[2] = g2;
+    return good & less(mul_add(g2, g2, mul_add(g[1], g[1], g[0] * g[0])), splat(0.1));
+}
+
 // change: that of the trial since the reference `from`.
 template <int R>
 HOL_NOINLINE void prepare(const BodyKind &kind, const Frame<R> &__restrict from, const Frame<R> &__restrict change,

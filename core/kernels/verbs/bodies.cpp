@@ -99,6 +99,11 @@ struct PositionsOf : BodyLanes<R> {
     }
     HOL_FORCED void find_turn() {
         if (R == 1) return;
+        if (R == 2) {
+            turn.good = turn_plane(kind, turn.a, turn.good, turn.g);
+            turn.rounds = splat(1);
+            return;
+        }
         const int most = call.max_iterations < 40 ? call.max_iterations : 40;
         turn.good = solve_turn(kind, turn.a, most, turn.good, turn.g, turn.rounds);
     }
