@@ -1,6 +1,7 @@
 #include "core/rigid/blocks.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 
 #include "core/run/kernel_choice.hpp"
@@ -33,6 +34,7 @@ BodyKind kind_of(const Body &body, const Shape &shape) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         kind.skew[i] = kind.part[j][k] - kind.part[k][j];
     }
+    kind.is_spherical = std::all_of(kind.skew, kind.skew + 3, [](double b) { return std::fabs(b) <= 1e-15; });
     std::copy_n(body.excess[0], 16, kind.excess[0]);
     kind.scale = 1 - kind.excess[0][0];
     kind.masses = body.masses.data();

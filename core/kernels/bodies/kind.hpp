@@ -15,6 +15,7 @@ struct BodyKind {
     double square[3];      // L_p^2
     double part[3][3];     // L_p^2 / (L_p^2 + L_q^2); the normal of a plane, p = 2, has the length 0
     double skew[3];        // part[j][k] - part[k][j], i, j, k in cyclic order
+    bool is_spherical;     // three axes of one length
     double per_moment[4];  // 1/M, 1/(M L_p^2)
     double scale;          // by which shares are too large, inverse
     double excess[4][4];   // 1 less the inverse of P_kl = sum of share_k place_l, as they are rounded

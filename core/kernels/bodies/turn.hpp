@@ -123,6 +123,15 @@ HOL_NOINLINE mask solve_turn(const BodyKind &kind, const vec *of, int most, mask
     return good & ~busy & less(square, splat(0.1));
 }
 
+// The same for three equal axes: b = 0 but for rounding.
+HOL_NOINLINE mask turn_sphere(const vec *a, mask good, vec *g) {
+    const vec aa = mul_add(a[2], a[2], mul_add(a[1], a[1], a[0] * a[0])), one = splat(1);
+    const vec w = 2.0 / (one + sqrt(sub_mul(splat(4), aa, one)));
+    HOL_UNROLL_FEW
+    for (int i = 0; i < 3; ++i) g[i] = w * a[i];
+    return good & less(w * w * aa, splat(0.1));
+}
+
 // The same for a plane, whose normal has the length 0: b_0 = 1, b_1 = -1, and with complex numbers
 //
 //     (g_0 + i g_1) (1 - i g_2) = (a_0 + i a_1) (1 + g.g)

@@ -98,10 +98,14 @@ struct PositionsOf : BodyLanes<R> {
         if (R > 1) prepare(kind, from, trial, turn);
     }
     HOL_FORCED void find_turn() {
+        turn.rounds = splat(1);
         if (R == 1) return;
         if (R == 2) {
             turn.good = turn_plane(kind, turn.a, turn.good, turn.g);
-            turn.rounds = splat(1);
+            return;
+        }
+        if (kind.is_spherical) {
+            turn.good = turn_sphere(turn.a, turn.good, turn.g);
             return;
         }
         const int most = call.max_iterations < 40 ? call.max_iterations : 40;
@@ -113,7 +117,6 @@ struct PositionsOf : BodyLanes<R> {
         if constexpr (R == 1) {
             put(change[1], trial[1]);
             good = restore_line(from, change);
-            turn.rounds = splat(1);
         } else {
             good = finish(kind, turn, call.r_ref.is_float ? 1e-8 : 2e-15, change);
         }
