@@ -135,7 +135,7 @@ struct PositionsOf : BodyLanes<R> {
 private:
     __attribute__((noinline)) void report(BodyResult *results) {
         Frame<R> moved, end;
-        for (int k = 0; k <= R; ++k) {
+        for (int k = 1; k <= R; ++k) {
             put(moved[k], change[k] - trial[k]);
             put(end[k], from[k] + change[k]);
         }
