@@ -65,10 +65,20 @@ struct NoBox {
     explicit NoBox(const Box *) {}
     void image(double *) const {}
 };
+// Half the smallest distance between opposite faces, beyond which the image may be another one.
+double half_width(const Box &box) {
+    const double gradient = steepest_gradient(box);
+    return gradient > 0 ? 0.5 / gradient : std::numeric_limits<double>::infinity();
+}
+
+// Most bonds are shorter than that, and their own images.
 struct InBox {
     const Box &box;
-    explicit InBox(const Box *b) : box(*b) {}
-    void image(double *d) const { minimum_image(box, d); }
+    const double near;  // a square
+    explicit InBox(const Box *b) : box(*b), near((1 - 1e-9) * half_width(*b) * half_width(*b)) {}
+    void image(double *d) const {
+        if (!(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < near)) minimum_image(box, d);
+    }
 };
 
 // Calls each(molecule, k, d.d, a) for all bonds of active molecules as long as it returns true: once per run, and in
@@ -112,12 +122,6 @@ bool all_within(const Chains &chains, const BondVectors &bonds, double least, do
         const double a2 = a * a;
         return !((dd < low * a2) | (dd > high * a2) | (dd > end));
     });
-}
-
-// Half the smallest distance between opposite faces, beyond which the image may be another one.
-double half_width(const Box &box) {
-    const double gradient = steepest_gradient(box);
-    return gradient > 0 ? 0.5 / gradient : std::numeric_limits<double>::infinity();
 }
 
 // What does not fit, and how all bonds are.

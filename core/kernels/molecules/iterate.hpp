@@ -49,13 +49,16 @@ HOL_INLINE int worst_lane(unsigned which, const V &error, const MoleculeLane *la
 }
 
 // The worst bond of a molecule that is solved alone, in the order s.bond_of of System: the one with the smallest
-// number.
-template <class System>
-HOL_NOINLINE void note_worst_of_one(const System &newton, double error, int64_t molecule, Tally &tally) {
+// number. for_places(each) calls each(first, end) for places where it may stand.
+template <class System, class Places>
+HOL_INLINE void note_worst_of_one(const System &newton, double error, int64_t molecule, const Places &for_places,
+                                  Tally &tally) {
     if (!take_worst(tally, error, molecule)) return;
     int32_t bond = newton.s.n_bonds;
-    for (int32_t k = 0; k < newton.s.n_bonds; ++k)
-        if (newton.s.bond_of[k] < bond && newton.error_of(k) >= error) bond = newton.s.bond_of[k];
+    for_places([&](int32_t first, int32_t end) {
+        for (int32_t k = first; k < end; ++k)
+            if (newton.s.bond_of[k] < bond && newton.error_of(k) >= error) bond = newton.s.bond_of[k];
+    });
     tally.worst_bond = bond < newton.s.n_bonds ? bond : 0;
 }
 

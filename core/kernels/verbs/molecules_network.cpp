@@ -13,6 +13,12 @@ int64_t network_bytes(const NetworkPlan &s) {
     return static_cast<int64_t>(sizeof(double)) * (linear > newton ? linear : newton);
 }
 
+// At the atoms that this molecule may write.
+static inline void write_sites_of(const NetLinear &x, const Net3 &values, const AtomArray &to, bool add) {
+    x.net.write_sites(to, x.net.lane.shared, add, [&](auto width, int32_t site)
+                                                      HOL_FORCED { return values.get<decltype(width)>(site); });
+}
+
 // Call: of forces or of given right-hand sides.
 template <class Call>
 static inline bool pull_network(const Call &call, const NetLinear &x, Tally &tally) {
@@ -21,12 +27,7 @@ static inline bool pull_network(const Call &call, const NetLinear &x, Tally &tal
     if (call.lambda) x.write_bonds(0.5, false, call.lambda);
     if (call.tension) x.write_bonds(1, true, call.tension);
     if (call.virial) x.add_virial(tally);
-    if (!call.g.x) return true;
-    x.for_written([&](int32_t atom, int32_t site) {
-        Vector3<double> pull = x.G.get<double>(site);
-        if (call.add) pull = read(call.g, x.net.at, atom) + pull;
-        write(call.g, x.net.at, atom, pull, 1);
-    });
+    if (call.g.x) write_sites_of(x, x.G, call.g, call.add);
     return true;
 }
 
@@ -52,7 +53,7 @@ bool solve_network(const VelocitiesCall &call, const Schedule &s, const Molecule
     if (call.lambda) x.write_bonds(0.5, false, call.lambda);
     if (call.virial) x.add_virial(tally);
     x.add_pulls(!call.v.is_float);
-    x.for_written([&](int32_t atom, int32_t site) { write(call.v, x.net.at, atom, x.v.get<double>(site), 1); });
+    write_sites_of(x, x.v, call.v, false);
     return true;
 }
 

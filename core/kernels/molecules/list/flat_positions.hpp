@@ -145,7 +145,9 @@ struct FlatPositions {
         const Solved<double> out = iterate<double, false, true>(newton, limits, call, Flag{true});
         const bool moved = out.converged.set && !coarse_moves();
         if (!moved && !out.untouched.set) return false;
-        if (call.report) note_worst_of_one(newton, out.error, lane.molecule, tally);
+        if (call.report)
+            note_worst_of_one(
+                newton, out.error, lane.molecule, [&](const auto &each) { each(0, newton.s.n_bonds); }, tally);
         if (call.lambda) write_multipliers();
         if (!moved) return true;
         newton.displace();

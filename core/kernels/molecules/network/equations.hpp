@@ -36,10 +36,11 @@ struct NetEquations {
     bool has(int wanted) const { return (terms & wanted) != 0; }
 
     void read_atoms(int32_t first, int32_t end) const {
-        net.read_masses(first, end);
-        net.read_sites(first, end, coordinates, r, false);
-        if (has(squares | rates)) net.read_sites(first, end, *in.v, v, false);
-        if (has(pulls)) net.read_sites(first, end, *in.f, f, true);
+        NetReading all[3] = {{&coordinates, r, false}};
+        int n = 1;
+        if (has(squares | rates)) all[n++] = {in.v, v, false};
+        if (has(pulls)) all[n++] = {in.f, f, true};
+        net.read_sites(first, end, all, n);
     }
     void find_equations(const NetPart &part) const {
         net.find_bonds(part, box, r, d);

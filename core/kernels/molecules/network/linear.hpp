@@ -215,14 +215,6 @@ struct NetLinear : NetEquations {
         }
         virial.count(1, 1, tally);
     }
-    // Calls write(atom, site) for the atoms that this molecule may write.
-    template <class Write>
-    void for_written(const Write &write) const {
-        net.for_ranges(0, s.n_atoms, [&](int32_t first, int32_t end) {
-            for (int32_t i = first; i < end; ++i)
-                if (!net.lane.shared || !net.lane.shared[s.atom_of[i]]) write(s.atom_of[i], i);
-        });
-    }
 };
 
 }  // namespace graph

@@ -88,6 +88,15 @@ struct NetNewton {
         net.for_parts(body);
     }
 
+    // Calls each(first place, end) for the parts whose largest error is that of all.
+    template <class Each>
+    void for_worst_parts(double error, const Each &each) const {
+        for (int32_t i = 0; i <= s.n_shares; ++i) {
+            const NetPart part = i < s.n_shares ? net.part(i) : net.rest();
+            if (worst[i] >= error) each(part.first_place, part.end_place);
+        }
+    }
+
     double open() const { return opening; }
     void forget(Flag which) {
         if (!which.set) return;

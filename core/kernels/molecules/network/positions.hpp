@@ -22,10 +22,8 @@ struct NetPositions {
 
     // Reference positions stand in `moves` until bonds are made of them.
     void read_atoms(int32_t first, int32_t end) const {
-        const Net &net = newton.net;
-        net.read_masses(first, end);
-        net.read_sites(first, end, call.r_ref, newton.moves, false);
-        net.read_sites(first, end, call.r, newton.r, false);
+        const NetReading all[] = {{&call.r_ref, newton.moves, false}, {&call.r, newton.r, false}};
+        newton.net.read_sites(first, end, all, 2);
     }
     void read_part(const NetPart &part) const {
         const Net &net = newton.net;
@@ -80,16 +78,15 @@ struct NetPositions {
     }
 
     void write_atoms() const {
-        const double per_dt = 1 / call.dt;
         const Net &net = newton.net;
-        net.for_ranges(0, newton.s.n_atoms, [&](int32_t first, int32_t end) {
-            for (int32_t i = first; i < end; ++i) {
-                const int32_t atom = newton.s.atom_of[i];
-                if (fixed[atom]) continue;
-                const Vector3<double> move = newton.moves.get<double>(i);
-                write(call.r, net.at, atom, newton.r.get<double>(i) + move, 1);
-                if (call.v.x) write(call.v, net.at, atom, add_times(read(call.v, net.at, atom), per_dt, move), 1);
-            }
+        net.write_sites(call.r, fixed, false, [&](auto width, int32_t i) HOL_FORCED {
+            typedef decltype(width) V;
+            return newton.r.get<V>(i) + newton.moves.get<V>(i);
+        });
+        if (!call.v.x) return;
+        net.write_sites(call.v, fixed, true, [&](auto width, int32_t i) HOL_FORCED {
+            typedef decltype(width) V;
+            return Width<V>::all(1 / call.dt) * newton.moves.get<V>(i);
         });
     }
     void write_results(bool moved) {
@@ -117,7 +114,10 @@ struct NetPositions {
         if (out.converged.set) newton.displace();
         const bool moved = out.converged.set && !coarse_moves() && !newton.failed;
         if (!moved && !out.untouched.set) return false;
-        if (call.report) note_worst_of_one(newton, out.error, newton.net.lane.molecule, tally);
+        if (call.report)
+            note_worst_of_one(
+                newton, out.error, newton.net.lane.molecule,
+                [&](const auto &each) { newton.for_worst_parts(out.error, each); }, tally);
         write_results(moved);
         if (moved) count_moved(tally, 1, out.solves);
         return true;
