@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/molecules/bisection.hpp"
+#include "core/molecules/network.hpp"
 
 namespace holonomic {
 
@@ -61,7 +62,7 @@ private:
         return g;
     }
     std::int32_t unknowns_at(std::int32_t n) const {
-        return s_.own_start[n + 1] - s_.own_start[n] + s_.foreign_start[n + 1] - s_.foreign_start[n];
+        return s_.nodes[s_.nodes_of[n]].n_own + s_.foreign_start[n + 1] - s_.foreign_start[n];
     }
 
     // Fronts of these nodes, whose edges `g` has; returns the last one. Nodes of the part: `nodes` as g numbers them.
@@ -143,10 +144,10 @@ private:
     void for_unknowns(const FrontPlan::Front &f, const Each &each) const {
         for (std::int32_t i = f.first_node; i < f.end_node; ++i) {
             const std::int32_t n = a_.node[at(i)];
-            for (std::int32_t u = s_.own_start[n]; u < s_.own_start[n + 1]; ++u) {
+            for_own(s_, n, [&](std::int32_t u) {
                 each(u);
                 if (s_.sign[u] < 0) each(s_.partner[u]);
-            }
+            });
             for (std::int32_t k = s_.foreign_start[n]; k < s_.foreign_start[n + 1]; ++k) each(s_.foreign[k]);
         }
     }
@@ -188,10 +189,10 @@ private:
         a_.foreign_row.resize(at(s_.foreign_start[s_.n_nodes]));
         for (std::int32_t n = 0; n < s_.n_nodes; ++n) {
             const std::int32_t f = part_of_[at(n)];
-            for (std::int32_t u = s_.own_start[n]; u < s_.own_start[n + 1]; ++u) {
+            for_own(s_, n, [&](std::int32_t u) {
                 a_.own_row[at(u)] = row_of(f, u);
                 if (s_.sign[u] < 0) a_.partner_row[at(u)] = row_of(f, s_.partner[u]);
-            }
+            });
             for (std::int32_t k = s_.foreign_start[n]; k < s_.foreign_start[n + 1]; ++k)
                 a_.foreign_row[at(k)] = row_of(f, s_.foreign[k]);
         }

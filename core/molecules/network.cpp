@@ -1,6 +1,7 @@
 #include "core/molecules/network.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace holonomic {
@@ -24,6 +25,7 @@ public:
         find_nodes();
         find_strands();
         sort_strands();
+        sort_nodes();
         lay_out_strands();
         lay_out_rest();
         list_unknowns();
@@ -72,6 +74,34 @@ private:
     void sort_strands() {
         std::stable_sort(strand_.begin(), strand_.end(),
                          [](const Strand &x, const Strand &y) { return x.n_bonds > y.n_bonds; });
+    }
+
+    // The nodes of a share by how many own unknowns they have.
+    void sort_nodes() {
+        Numbers n_own(slot_of_node_.size(), 0), slots(slot_of_node_);
+        for (const Strand &strand : strand_)
+            for (int e = 0; e < (strand.n_bonds == 1 ? 1 : 2); ++e) ++n_own[at(strand.node[e])];
+        Numbers order(slots.size()), number(slots.size());
+        std::iota(order.begin(), order.end(), 0);
+        for (std::int32_t first = 0, n = size_of(slots); first < n; first += nodes_of_share) {
+            const std::int32_t end = std::min(n, first + nodes_of_share);
+            std::stable_sort(order.begin() + first, order.begin() + end,
+                             [&](std::int32_t x, std::int32_t y) { return n_own[at(x)] > n_own[at(y)]; });
+            a_.nodes_start.push_back(static_cast<std::int32_t>(a_.nodes.size()));
+            for (std::int32_t i = first; i < end; ++i) {
+                const std::int32_t own = n_own[at(order[at(i)])];
+                if (i == first || a_.nodes.back().n_own != own) a_.nodes.push_back({0, own, i, 0});
+                ++a_.nodes.back().count;
+                a_.nodes_of.push_back(static_cast<std::int32_t>(a_.nodes.size()) - 1);
+            }
+        }
+        a_.nodes_start.push_back(static_cast<std::int32_t>(a_.nodes.size()));
+        for (std::size_t i = 0; i < slots.size(); ++i) {
+            slot_of_node_[i] = slots[at(order[i])];
+            number[at(order[i])] = node_[at(slot_of_node_[i])] = static_cast<std::int32_t>(i);
+        }
+        for (Strand &strand : strand_)
+            for (std::int32_t &node : strand.node) node = number[at(node)];
     }
 
     void lay_out_strands() {
@@ -125,27 +155,27 @@ private:
     // Unknowns by their nodes.
     void list_unknowns() {
         const std::int32_t n = static_cast<std::int32_t>(strand_.size()), nodes = size_of(slot_of_node_);
-        a_.own_start.assign(at(nodes) + 1, 0);
-        a_.foreign_start.assign(at(nodes) + 1, 0);
-        const auto for_ends = [&](const auto &each) {
-            for (std::int32_t i = 0; i < n; ++i)
-                for (int e = 0; e < 2; ++e) each(i, e, strand_[at(i)].node[e], strand_[at(i)].n_bonds == 1 && e == 1);
-        };
-        for_ends([&](std::int32_t, int, std::int32_t node, bool foreign) {
-            ++(foreign ? a_.foreign_start : a_.own_start)[at(node) + 1];
-        });
-        for (std::size_t i = 0; i < at(nodes); ++i) {
-            a_.own_start[i + 1] += a_.own_start[i];
-            a_.foreign_start[i + 1] += a_.foreign_start[i];
+        std::int32_t n_unknowns = 0;
+        for (std::size_t i = 0, share = 0; i < a_.nodes.size(); ++i) {
+            if (static_cast<std::int32_t>(i) == a_.nodes_start[share]) {
+                a_.unknown_start.push_back(n_unknowns);
+                ++share;
+            }
+            a_.nodes[i].first_unknown = n_unknowns;
+            n_unknowns += a_.nodes[i].count * a_.nodes[i].n_own;
         }
-        const std::int32_t n_unknowns = a_.own_start.back();
+        a_.unknown_start.push_back(n_unknowns);
+        a_.foreign_start.assign(at(nodes) + 1, 0);
+        for (const Strand &strand : strand_)
+            if (strand.n_bonds == 1) ++a_.foreign_start[at(strand.node[1]) + 1];
+        for (std::size_t i = 0; i < at(nodes); ++i) a_.foreign_start[i + 1] += a_.foreign_start[i];
         for (Numbers *list : {&a_.place_of, &a_.node_of, &a_.partner}) list->resize(at(n_unknowns));
         a_.sign.resize(at(n_unknowns));
         a_.other_node.assign(at(n_unknowns), -1);
         a_.foreign.resize(at(a_.foreign_start.back()));
         a_.strand_node.resize(2 * at(n));
         a_.strand_unknown.resize(2 * at(n));
-        Numbers next_own(a_.own_start), next_foreign(a_.foreign_start);
+        Numbers own(at(nodes), 0), next_foreign(a_.foreign_start);
         for (const NetworkPlan::Bundle &b : a_.bundle)
             for (std::int32_t i = b.first_strand; i < b.first_strand + b.width; ++i)
                 for (int e = 0; e < 2; ++e) {
@@ -158,7 +188,8 @@ private:
                         a_.foreign[at(next_foreign[at(node)]++)] = u;
                         continue;
                     }
-                    u = next_own[at(node)]++;
+                    const NetworkPlan::Nodes &like = a_.nodes[at(a_.nodes_of[at(node)])];
+                    u = like.first_unknown + own[at(node)]++ * like.count + node - like.first_node;
                     a_.node_of[at(u)] = node;
                     a_.sign[at(u)] = e == 0 ? 1 : -1;
                     a_.place_of[at(u)] = b.first_place + i - b.first_strand + (e == 0 ? 0 : b.length - 1) * b.width;
@@ -166,8 +197,6 @@ private:
         for (std::int32_t i = 0; i < n; ++i)
             for (int e = 0; e < 2; ++e)
                 a_.partner[at(a_.strand_unknown[2 * at(i) + at(e)])] = a_.strand_unknown[2 * at(i) + at(1 - e)];
-        for (std::int32_t i = 0; i < nodes; i += nodes_of_share) a_.node_start.push_back(i);
-        a_.node_start.push_back(nodes);
     }
     void list_children() {
         const auto list = [&](std::int32_t slot) {
@@ -191,15 +220,17 @@ private:
         p.bundle = a_.bundle.data();
         p.bundle_start = a_.bundle_start.data();
         p.n_shares = size_of(a_.bundle_start) - 1;
-        p.node_start = a_.node_start.data();
-        p.n_node_shares = size_of(a_.node_start) - 1;
+        p.nodes = a_.nodes.data();
+        p.nodes_start = a_.nodes_start.data();
+        p.unknown_start = a_.unknown_start.data();
+        p.n_node_shares = size_of(a_.nodes_start) - 1;
         p.atom_of = a_.atom_of.data();
         p.bond_of = a_.bond_of.data();
         p.from = a_.from.data();
         p.to = a_.to.data();
         p.strand_node = a_.strand_node.data();
         p.strand_unknown = a_.strand_unknown.data();
-        p.own_start = a_.own_start.data();
+        p.nodes_of = a_.nodes_of.data();
         p.place_of = a_.place_of.data();
         p.node_of = a_.node_of.data();
         p.partner = a_.partner.data();
@@ -227,9 +258,10 @@ void make_network(const Schedule &s, std::int64_t most_bytes, NetworkArrays &arr
 
 std::size_t bytes_of(const NetworkArrays &a) {
     std::size_t bytes =
-        bytes_of(a.fronts) + a.bundle.capacity() * sizeof(a.bundle[0]) + a.sign.capacity() * sizeof(double);
-    for (const Numbers *list : {&a.bundle_start, &a.node_start, &a.atom_of, &a.bond_of, &a.from, &a.to, &a.strand_node,
-                                &a.strand_unknown, &a.own_start, &a.place_of, &a.node_of, &a.partner, &a.foreign_start,
+        bytes_of(a.fronts) + a.bundle.capacity() * sizeof(a.bundle[0]) + a.nodes.capacity() * sizeof(a.nodes[0]) +
+        a.sign.capacity() * sizeof(double);
+    for (const Numbers *list : {&a.bundle_start, &a.nodes_start, &a.unknown_start, &a.nodes_of, &a.atom_of, &a.bond_of, &a.from, &a.to, &a.strand_node,
+                                &a.strand_unknown, &a.place_of, &a.node_of, &a.partner, &a.foreign_start,
                                 &a.foreign, &a.other_node, &a.child_start, &a.child})
         bytes += list->capacity() * sizeof(std::int32_t);
     return bytes;

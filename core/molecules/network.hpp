@@ -12,9 +12,17 @@
 
 namespace holonomic {
 
+// Calls each(unknown) for the own ones of a node.
+template <class Each>
+void for_own(const NetworkPlan &s, std::int32_t node, const Each &each) {
+    const NetworkPlan::Nodes &n = s.nodes[s.nodes_of[node]];
+    for (std::int32_t i = 0; i < n.n_own; ++i) each(n.first_unknown + i * n.count + node - n.first_node);
+}
+
 struct NetworkArrays {
     std::vector<NetworkPlan::Bundle> bundle;
-    Numbers bundle_start, node_start, atom_of, bond_of, from, to, strand_node, strand_unknown, own_start, place_of,
+    std::vector<NetworkPlan::Nodes> nodes;
+    Numbers bundle_start, nodes_start, unknown_start, nodes_of, atom_of, bond_of, from, to, strand_node, strand_unknown, place_of,
         node_of, partner, foreign_start, foreign, other_node, child_start, child;
     std::vector<double> sign;
     FrontArrays fronts;

@@ -86,21 +86,21 @@ struct Matrix {
                 for (int x = 0; x < 3; ++x) e.right[x] = symmetric ? e.left[x] : e.left[x] + 0.1 * any(random);
                 ends.push_back(e);
             };
-            for (std::int32_t u = s.own_start[node]; u < s.own_start[node + 1]; ++u) enter(u, f.own_row[u]);
+            holonomic::for_own(s, node, [&](std::int32_t u) { enter(u, f.own_row[u]); });
             for (std::int32_t k = s.foreign_start[node]; k < s.foreign_start[node + 1]; ++k)
                 enter(s.foreign[k], f.foreign_row[k]);
             for (const End &a : ends)
                 for (const End &b : ends)
                     add(node, a.unknown, b.unknown, a.row, b.row,
                         a.left[0] * b.right[0] + a.left[1] * b.right[1] + a.left[2] * b.right[2]);
-            for (std::int32_t u = s.own_start[node]; u < s.own_start[node + 1]; ++u) {
+            holonomic::for_own(s, node, [&](std::int32_t u) {
                 add(node, u, u, f.own_row[u], f.own_row[u], least);
-                if (f.partner_row[u] < 0) continue;
+                if (f.partner_row[u] < 0) return;
                 const std::int32_t p = s.partner[u];
                 const double there = 0.5 * least * any(random), back = symmetric ? there : 0.5 * least * any(random);
                 add(node, u, p, f.own_row[u], f.partner_row[u], there);
                 add(node, p, u, f.partner_row[u], f.own_row[u], back);
-            }
+            });
         }
         for (std::size_t u = 0; u < n; ++u) terms.diagonal[u] = static_cast<double>(element[u * n + u]);
     }

@@ -11,11 +11,22 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-struct NetNode {
-    Tensor mass;                   // inverse, with the trees that hang from it
-    Tensor with_ends;              // with what its own ends offer, too
-    Vector3<double> push;          // from the trees' right-hand sides
-    Vector3<double> foreign, all;  // accelerations by foreign ends, and by all, of a vector that is multiplied
+// Tensors of all nodes.
+struct NetTensor {
+    Net3 row[3];
+    template <class V>
+    HOL_FORCED Tensor<V> get(int64_t i) const {
+        return {{row[0].get<V>(i), row[1].get<V>(i), row[2].get<V>(i)}};
+    }
+    template <class V>
+    HOL_FORCED void set(int64_t i, const Tensor<V> &a) const {
+        for (int c = 0; c < 3; ++c) row[c].set(i, a.row[c]);
+    }
+    static NetTensor take(Memory<double> &memory, int64_t n) {
+        NetTensor a;
+        for (Net3 &row : a.row) row = Net3::take(memory, n);
+        return a;
+    }
 };
 
 struct Ends {
@@ -23,125 +34,171 @@ struct Ends {
     const NetworkPlan &s;
     double *E, *per_E, *coupling;  // what the far side of an end offers; to the partner's value
     double *y;                     // right-hand sides
-    Vector3<double> *D, *b, *tree_bond;
-    NetNode *node;
+    Net3 D, b;                     // as they point away from their own nodes
+    Vector3<double> *tree_bond;
+    NetTensor mass, with_ends;  // of nodes: inverse, with the trees that hang there; with what own ends offer, too
+    Net3 push;                  // from the trees' right-hand sides
+    Net3 foreign_a, all_a;      // accelerations by foreign ends, and by all, of a vector that is multiplied
     Fronts fronts;
 
-    static constexpr int64_t node_values = static_cast<int64_t>(sizeof(NetNode) / sizeof(double));
-
     static int64_t values(const NetworkPlan &s, bool symmetric) {
-        return Fronts::values(s.fronts, symmetric) + in_fours(node_values * static_cast<int64_t>(s.n_nodes)) +
-               in_fours(3 * static_cast<int64_t>(s.n_tree)) + 2 * in_fours(3 * static_cast<int64_t>(s.n_unknowns)) +
-               4 * in_fours(s.n_unknowns);
+        return Fronts::values(s.fronts, symmetric) + 27 * in_fours(s.n_nodes) +
+               in_fours(3 * static_cast<int64_t>(s.n_tree)) + 10 * in_fours(s.n_unknowns);
     }
     Ends(const Net &of, bool symmetric, Memory<double> &memory)
-        : net(of), s(of.s), fronts(of.s.fronts, symmetric, memory) {
-        node = reinterpret_cast<NetNode *>(memory.values(in_fours(node_values * static_cast<int64_t>(s.n_nodes))));
+        : net(of), s(of.s), D(Net3::take(memory, s.n_unknowns)), b(symmetric ? D : Net3::take(memory, s.n_unknowns)),
+          mass(NetTensor::take(memory, s.n_nodes)), with_ends(NetTensor::take(memory, s.n_nodes)),
+          push(Net3::take(memory, s.n_nodes)), foreign_a(Net3::take(memory, s.n_nodes)),
+          all_a(Net3::take(memory, s.n_nodes)), fronts(of.s.fronts, symmetric, memory) {
         tree_bond = reinterpret_cast<Vector3<double> *>(memory.values(in_fours(3 * static_cast<int64_t>(s.n_tree))));
-        D = reinterpret_cast<Vector3<double> *>(memory.values(in_fours(3 * static_cast<int64_t>(s.n_unknowns))));
-        b = reinterpret_cast<Vector3<double> *>(memory.values(in_fours(3 * static_cast<int64_t>(s.n_unknowns))));
         double **const arrays[] = {&E, &per_E, &coupling, &y};
         for (double **array : arrays) *array = memory.values(in_fours(s.n_unknowns));
     }
 
-    // Calls body(u) for all unknowns, node by node.
+    // Bonds at an end of strands.
+    template <class V>
+    HOL_FORCED void set_bonds(const NetStrands &g, int end, const Vector3<V> &new_bond, const Vector3<V> &bond) const {
+        const V sign = Width<V>::all(end == 0 ? 1 : -1);
+        net.to_end(g, end, sign * new_bond, D);
+        if (b.x != D.x) net.to_end(g, end, sign * bond, b);
+    }
+    // Calls body(unknown, the node where it is foreign) for those of a share.
     template <class Body>
-    HOL_FORCED void for_each(const Body &body) const {
-        net.for_nodes([&](int32_t first, int32_t end, int32_t) {
-            for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) body(u);
-        });
+    HOL_FORCED void for_foreign(int32_t share, const Body &body) const {
+        if (!s.has_foreign) return;
+        for (int32_t u = s.unknown_start[share]; u < s.unknown_start[share + 1]; ++u)
+            if (s.other_node[u] >= 0) body(u, s.other_node[u]);
     }
 
-    // Bonds of the ends, and what trees at the nodes give to right-hand sides.
-    void open(const Net3 &new_D, const Net3 &ref) const {
-        for_each([&](int32_t u) {
-            D[u] = new_D.get<double>(s.place_of[u]);
-            b[u] = ref.get<double>(s.place_of[u]);
-            const int32_t other = s.other_node[u];
-            if (other < 0) return;
-            // Taken off again in products, so that it needs not be exact; what is held fixed offers nothing.
-            E[u] = max(dot(D[u], node[other].mass * b[u]), least_of_own * dot(D[u], node[s.node_of[u]].mass * b[u]));
-            coupling[u] = 0;
+    void factorize_nodes() const {
+        net.for_node_shares([&](int32_t share) {
+            for_foreign(share, [&](int32_t u, int32_t other) {
+                // Taken off again in products, so that it needs not be exact; what is held fixed offers nothing.
+                const Vector3<double> bond = b.get<double>(u), new_bond = D.get<double>(u);
+                E[u] = max(dot(new_bond, mass.get<double>(other) * bond),
+                           least_of_own * dot(new_bond, mass.get<double>(s.node_of[u]) * bond));
+                coupling[u] = 0;
+            });
+            net.for_nodes(share, [&](auto width, const NetNodes &g) HOL_FORCED {
+                typedef decltype(width) V;
+                Tensor<V> left = mass.get<V>(g.node);
+                for (int32_t i = 0, u = g.unknown; i < g.n_own; ++i, u += g.step) {
+                    const V offer = load_any<V>(E + u);
+                    store_any(per_E + u, Width<V>::all(1) / offer);
+                    load(left, offer, b.get<V>(u), D.get<V>(u));
+                }
+                with_ends.set(g.node, left);
+            });
         });
-        add_pushes();
     }
+    // What trees at the nodes give to right-hand sides.
     void add_pushes() const {
         if (s.n_tree == 0) return;
-        for_each([&](int32_t u) {
-            const NetNode &own = node[s.node_of[u]];
-            y[u] -= s.sign[u] * dot(D[u], own.mass * own.push);
-            if (s.other_node[u] < 0) return;
-            const NetNode &other = node[s.other_node[u]];
-            y[u] += dot(D[u], other.mass * other.push);
-        });
-    }
-    void factorize_nodes() const {
-        net.for_nodes([&](int32_t first, int32_t end, int32_t) {
-            for (int32_t n = first; n < end; ++n) {
-                node[n].with_ends = node[n].mass;
-                for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u) {
-                    per_E[u] = 1 / E[u];
-                    load(node[n].with_ends, E[u], b[u], D[u]);
-                }
-            }
+        net.for_node_shares([&](int32_t share) {
+            net.for_nodes(share, [&](auto width, const NetNodes &g) HOL_FORCED {
+                typedef decltype(width) V;
+                const Vector3<V> a = mass.get<V>(g.node) * push.get<V>(g.node);
+                for (int32_t i = 0, u = g.unknown; i < g.n_own; ++i, u += g.step)
+                    store_any(y + u, load_any<V>(y + u) - dot(D.get<V>(u), a));
+            });
+            for_foreign(share, [&](int32_t u, int32_t other) {
+                y[u] += dot(D.get<double>(u), mass.get<double>(other) * push.get<double>(other));
+            });
         });
     }
     // Of a node with its trees, by these values of the ends.
     Vector3<double> acceleration_of(int32_t n, const double *of) const {
-        Vector3<double> sum_of = node[n].push;
-        for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u)
-            sum_of = add_times(sum_of, s.sign[u] * of[u], b[u]);
+        Vector3<double> sum_of = push.get<double>(n);
+        net.for_own(n, [&](int32_t u) { sum_of = add_times(sum_of, of[u], b.get<double>(u)); });
+        return mass.get<double>(n) * (sum_of + by_foreign(n, of));
+    }
+    Vector3<double> by_foreign(int32_t n, const double *of) const {
+        Vector3<double> sum_of = {};
         for (int32_t f = s.foreign_start[n]; f < s.foreign_start[n + 1]; ++f)
-            sum_of = add_times(sum_of, -of[s.foreign[f]], b[s.foreign[f]]);
-        return node[n].mass * sum_of;
+            sum_of = add_times(sum_of, -of[s.foreign[f]], b.get<double>(s.foreign[f]));
+        return sum_of;
     }
 
     // M^-1: the ends of each node by themselves.
-    __attribute__((noinline)) void solve_nodes(int32_t first, int32_t end, const double *of, double *to) const {
-        for (int32_t n = first; n < end; ++n) {
-            Vector3<double> pull = {};
-            for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u) {
-                to[u] = of[u] * per_E[u];
-                pull = add_times(pull, s.sign[u] * to[u], b[u]);
-            }
-            const Vector3<double> a = node[n].with_ends * pull;
-            for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u)
-                to[u] = mul_add(-s.sign[u] * per_E[u], dot(D[u], a), to[u]);
-        }
+    __attribute__((noinline)) void solve_nodes(int32_t share, const double *of, double *to) const {
+        net.for_nodes(share, [&](auto width, const NetNodes &g) HOL_FORCED {
+            typedef decltype(width) V;
+            Vector3<V> pull = {};
+            for (int32_t i = 0, u = g.unknown; i < g.n_own; ++i, u += g.step)
+                pull = add_times(pull, load_any<V>(of + u) * load_any<V>(per_E + u), b.get<V>(u));
+            const Vector3<V> a = with_ends.get<V>(g.node) * pull;
+            for (int32_t i = 0, u = g.unknown; i < g.n_own; ++i, u += g.step)
+                store_any(to + u, (load_any<V>(of + u) - dot(D.get<V>(u), a)) * load_any<V>(per_E + u));
+        });
     }
     // Of a vector, by its own ends at a node and by foreign ones: what product() needs of it.
     __attribute__((noinline)) void accelerate_nodes(const double *of) const {
-        net.for_nodes([&](int32_t first, int32_t end, int32_t) {
-            for (int32_t n = first; n < end; ++n) {
-                Vector3<double> by_own = {}, by_foreign = {};
-                for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u)
-                    by_own = add_times(by_own, s.sign[u] * of[u], b[u]);
-                for (int32_t f = s.foreign_start[n]; f < s.foreign_start[n + 1]; ++f)
-                    by_foreign = add_times(by_foreign, -of[s.foreign[f]], b[s.foreign[f]]);
-                node[n].foreign = node[n].mass * by_foreign;
-                node[n].all = node[n].foreign + node[n].mass * by_own;
-            }
+        net.for_node_shares([&](int32_t share) {
+            net.for_nodes(share, [&](auto width, const NetNodes &g) HOL_FORCED {
+                typedef decltype(width) V;
+                Vector3<V> by_own = {};
+                for (int32_t i = 0, u = g.unknown; i < g.n_own; ++i, u += g.step)
+                    by_own = add_times(by_own, load_any<V>(of + u), b.get<V>(u));
+                Vector3<V> a = mass.get<V>(g.node) * by_own;
+                for (int32_t i = 0; i < Width<V>::lanes && s.has_foreign; ++i) {
+                    const int32_t n = g.node + i;
+                    foreign_a.set(n, mass.get<double>(n) * by_foreign(n, of));
+                }
+                if (s.has_foreign) a = a + foreign_a.get<V>(g.node);
+                all_a.set(g.node, a);
+            });
         });
     }
-    // What M leaves out of the product with `of`: what strands couple, and what bonds do where they are foreign.
-    HOL_FORCED double product_beside_nodes(int32_t u, const double *of) const {
-        double value = coupling[u] * of[s.partner[u]];
-        if (!s.has_foreign) return value;
-        value = mul_add(s.sign[u], dot(D[u], node[s.node_of[u]].foreign), value);
-        return s.other_node[u] < 0 ? value : value - mul_add(E[u], of[u], dot(D[u], node[s.other_node[u]].all));
+    // The product of the matrix with `of`, after accelerate_nodes(); or, with `own`, which is that of M with it, after
+    // that too if there are foreign ends: M leaves out what strands couple, and what bonds do where they are foreign.
+    __attribute__((noinline)) void multiply(int32_t share, const double *own, const double *of, double *to) const {
+        const auto couple = [&](auto width, int32_t u, const auto &value) HOL_FORCED {
+            typedef decltype(width) V;
+            store_any(to + u, mul_add(load_any<V>(coupling + u), gather<V>(of, s.partner + u), value));
+        };
+        if (own && !s.has_foreign)
+            return net.for_unknowns(share, [&](auto width, int32_t u) HOL_FORCED {
+                couple(width, u, load_any<decltype(width)>(own + u));
+            });
+        net.for_nodes(share, [&](auto width, const NetNodes &g) HOL_FORCED {
+            typedef decltype(width) V;
+            const Vector3<V> a = (own ? foreign_a : all_a).get<V>(g.node);
+            for (int32_t i = 0, u = g.unknown; i < g.n_own; ++i, u += g.step)
+                couple(width, u, (own ? load_any<V>(own + u) : load_any<V>(E + u) * load_any<V>(of + u)) +
+                                     dot(D.get<V>(u), a));
+        });
+        for_foreign(share, [&](int32_t u, int32_t other) {
+            const Vector3<double> bond = D.get<double>(u), beyond = all_a.get<double>(other);
+            if (own)
+                to[u] -= mul_add(E[u], of[u], dot(bond, beyond));
+            else
+                to[u] = dot(bond, all_a.get<double>(s.node_of[u]) - beyond);
+        });
     }
-    // All of the product.
-    HOL_FORCED double product(int32_t u, const double *of) const {
-        const double value = s.sign[u] * dot(D[u], node[s.node_of[u]].all);
-        if (s.other_node[u] >= 0) return value - dot(D[u], node[s.other_node[u]].all);
-        return mul_add(E[u], of[u], mul_add(coupling[u], of[s.partner[u]], value));
+
+    // What multipliers t do to the nodes of a share, but for their trees and for foreign ends.
+    __attribute__((noinline)) void find_pulls(int32_t share, const double *t, const Net3 &G, double *tension) const {
+        net.for_nodes(share, [&](auto width, const NetNodes &g) HOL_FORCED {
+            typedef decltype(width) V;
+            Vector3<V> sum = {};
+            V size = {};
+            for (int32_t i = 0, u = g.unknown; i < g.n_own; ++i, u += g.step) {
+                const Vector3<V> pull = gather<V>(t, s.place_of + u) * b.get<V>(u);
+                sum = sum + pull;
+                if (tension) size = size + sqrt(dot(pull, pull));
+            }
+            G.set(s.first_node + g.node, sum);
+            if (tension) store_any(tension + s.first_node + g.node, size);
+        });
     }
 
     // False where a pivot is next to nothing.
     __attribute__((noinline)) bool factorize_fronts() const {
         return fronts.factorize(
             least_share, [&](const FrontPlan::Front &f, const Dense &a) { add_terms(f, a); },
-            [&](int32_t u) { return E[u] + dot(D[u], node[s.node_of[u]].mass * b[u]); });
+            [&](int32_t u) {
+                return E[u] + dot(D.get<double>(u), mass.get<double>(s.node_of[u]) * b.get<double>(u));
+            });
     }
     void solve_fronts(const double *of, double *to) const {
         for (int32_t u = 0; u < s.n_unknowns; ++u) to[u] = of[u];
@@ -154,7 +211,7 @@ private:
     // Calls each(unknown, row, sign) for all whose bonds meet at a node.
     template <class Each>
     HOL_FORCED void for_unknowns_at(int32_t n, const Each &each) const {
-        for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u) each(u, s.fronts.own_row[u], s.sign[u]);
+        net.for_own(n, [&](int32_t u) HOL_FORCED { each(u, s.fronts.own_row[u], 1.0); });
         for (int32_t f = s.foreign_start[n]; f < s.foreign_start[n + 1]; ++f)
             each(s.foreign[f], s.fronts.foreign_row[f], -1.0);
     }
@@ -165,18 +222,20 @@ private:
         };
         for (int32_t i = front.first_node; i < front.end_node; ++i) {
             const int32_t n = s.fronts.node[i];
+            const Tensor<double> inverse = mass.get<double>(n);
             for_unknowns_at(n, [&](int32_t by, int32_t column, double sign) HOL_FORCED {
-                const Vector3<double> push = node[n].mass * (sign * b[by]);
-                for_unknowns_at(n, [&](int32_t on, int32_t row, double sign_of_row)
-                                       HOL_FORCED { add(row, column, sign_of_row * dot(D[on], push)); });
+                const Vector3<double> push_of = inverse * (sign * b.get<double>(by));
+                for_unknowns_at(n, [&](int32_t on, int32_t row, double sign_of_row) HOL_FORCED {
+                    add(row, column, sign_of_row * dot(D.get<double>(on), push_of));
+                });
             });
-            for (int32_t u = s.own_start[n]; u < s.own_start[n + 1]; ++u) {
+            net.for_own(n, [&](int32_t u) HOL_FORCED {
                 const int32_t row = s.fronts.own_row[u], other = s.fronts.partner_row[u];
                 if (s.other_node[u] < 0) add(row, row, E[u]);
-                if (other < 0) continue;
+                if (other < 0) return;
                 add(row, other, coupling[u]);
                 add(other, row, coupling[s.partner[u]]);
-            }
+            });
         }
     }
 };

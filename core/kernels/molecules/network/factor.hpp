@@ -23,7 +23,7 @@ struct NetFactor {
         *from_last;  // multipliers of a strand's next bond: what it gives to this one's t, and gets of its y
     double *to_first, *from_first;  // the same of the first bond
     double *per_pivot;              // 1 / P; of trees: of a bond below an atom with several E, else 1 / P
-    Tensor *joint;                  // [n_tree] of atoms with several children: the inverse mass that they leave
+    Tensor<double> *joint;                  // [n_tree] of atoms with several children: the inverse mass that they leave
     Vector3<double> *push;          // [n_tree] of those: from their y
     Unknowns unknowns;
 
@@ -39,7 +39,7 @@ struct NetFactor {
         to_first = memory.values(n);
         from_first = symmetric ? to_first : memory.values(n);
         per_pivot = memory.values(n);
-        joint = reinterpret_cast<Tensor *>(memory.values(in_fours(12 * static_cast<int64_t>(s.n_tree))));
+        joint = reinterpret_cast<Tensor<double> *>(memory.values(in_fours(12 * static_cast<int64_t>(s.n_tree))));
         push = reinterpret_cast<Vector3<double> *>(joint + s.n_tree);
     }
 
@@ -48,8 +48,8 @@ struct NetFactor {
         net.for_strands(
             part, [&](auto width, const NetStrands &g) HOL_FORCED { factorize_strands<decltype(width)>(g, D, y); });
     }
-    void close(const Net3 &D) const {
-        unknowns.open(D, b);
+    void close() const {
+        unknowns.add_pushes();
         unknowns.factorize();
     }
     // Other right-hand sides.
@@ -81,7 +81,7 @@ struct NetFactor {
     }
     // From the unknowns, down to all bonds: y becomes t. The rest: ends of strands, and trees.
     __attribute__((noinline)) void take_down_rest(double *y) const {
-        unknowns.for_each([&](int32_t u) { y[s.place_of[u]] = unknowns.x[u]; });
+        for (int32_t u = 0; u < s.n_unknowns; ++u) y[s.place_of[u]] = unknowns.x[u];
         for (int32_t n = 0; n < s.n_nodes && s.n_tree > 0; ++n) {
             if (s.child_start[n] == s.child_start[n + 1]) continue;
             solve_children(n, unknowns.acceleration_of(n, unknowns.x), y);
@@ -103,6 +103,35 @@ struct NetFactor {
         });
     }
 
+    // What multipliers do to nodes and atoms of trees: G, and where `tension` is wanted the sum of |t| |d|. Of strands t
+    // at their ends is enough.
+    void find_pulls_of_rest(const double *t, const Net3 &G, double *tension) const {
+        net.for_node_shares([&](int32_t share) {
+            unknowns.find_pulls(share, t, G, tension);
+            if (!s.has_foreign && s.n_tree == 0) return;
+            const int32_t last = s.nodes_start[share + 1] - 1;
+            add_pulls(s.nodes[s.nodes_start[share]].first_node, s.nodes[last].first_node + s.nodes[last].count, t, G,
+                      tension);
+        });
+        for (int32_t n = s.n_nodes; n < s.n_nodes + s.n_tree; ++n) {
+            G.set(s.first_node + n, Vector3<double>{});
+            if (tension) tension[s.first_node + n] = 0;
+        }
+        add_pulls(s.n_nodes, s.n_nodes + s.n_tree, t, G, tension);
+    }
+    // By bonds that are no own ends of a node.
+    __attribute__((noinline)) void add_pulls(int32_t first, int32_t end, const double *t, const Net3 &G,
+                                             double *tension) const {
+        for (int32_t n = first; n < end; ++n) {
+            const int32_t site = s.first_node + n;
+            net.for_other_bonds(n, [&](int32_t place, double sign) HOL_FORCED {
+                const Vector3<double> pull = t[place] * b.get<double>(place);
+                G.set(site, add_times(G.get<double>(site), sign, pull));
+                if (tension) tension[site] += sqrt(dot(pull, pull));
+            });
+        }
+    }
+
     // E of the bonds above trees' atoms stand in to_first until they are used, and 1 / P or E in per_pivot.
     void factorize_rest(const Net3 &D, double *y) const {
         factorize_trees(D, y);
@@ -118,6 +147,7 @@ private:
     HOL_FORCED void factorize_strands(const NetStrands &g, const Net3 &D, double *y) const {
         Vector3<V> Dk = D.get<V>(g.place), bk = b.get<V>(g.place);
         V first = load_any<V>(y + g.place);
+        unknowns.set_bonds(g, 0, Dk, bk);
         if (g.length == 1) return net.to_end(g, 0, first, unknowns.y);
         V w = load_any<V>(net.w + g.site);
         const Vector3<V> D0 = Dk, b0 = bk;
@@ -151,6 +181,7 @@ private:
             bk = bn;
             q = next;
         }
+        unknowns.set_bonds(g, 1, Dk, bk);
         net.to_end(g, 0, max(E0, Width<V>::all(least_offer) * whole), unknowns.E);
         net.to_end(g, 1, max(E, Width<V>::all(least_offer) * (w * q)), unknowns.E);
         net.to_end(g, 0, row, unknowns.coupling);
@@ -188,14 +219,14 @@ private:
     void factorize_nodes(const Net3 &D) const {
         for (int32_t n = 0; n < s.n_nodes; ++n) {
             const double w = net.w[s.first_node + n];
-            unknowns.node[n].mass = mass_with_children(n, w, D);
+            unknowns.mass.set(n, mass_with_children(n, w, D));
         }
     }
     // D of the bonds of trees, for other right-hand sides.
     void keep_new_bond(int32_t i, const Vector3<double> &D) const { unknowns.tree_bond[i] = D; }
 
-    Tensor mass_with_children(int32_t number, double w, const Net3 &D) const {
-        Tensor mass = diagonal_tensor(w);
+    Tensor<double> mass_with_children(int32_t number, double w, const Net3 &D) const {
+        Tensor<double> mass = diagonal_tensor(w);
         for (int32_t j = s.child_start[number]; j < s.child_start[number + 1]; ++j) {
             const int32_t c = s.first_tree_place + s.child[j];
             const Vector3<double> Dc = D.get<double>(c), bc = b.get<double>(c);
@@ -225,7 +256,7 @@ private:
         }
     }
     void take_up_nodes(const double *y) const {  // what their trees give
-        for (int32_t n = 0; n < s.n_nodes; ++n) unknowns.node[n].push = push_of(n, y);
+        for (int32_t n = 0; n < s.n_nodes; ++n) unknowns.push.set(n, push_of(n, y));
     }
     // t of the children of an atom that is accelerated so much.
     void solve_children(int32_t number, const Vector3<double> &a, double *t) const {

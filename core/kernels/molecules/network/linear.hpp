@@ -55,7 +55,7 @@ struct NetLinear : NetEquations {
                 find_equations(part);
                 factor.factorize(part, d, t);
             });
-        factor.close(d);
+        factor.close();
     }
     // Multipliers for what is in t, as far up as it has been taken; what they do to atoms, if `pulls`; then each(part).
     template <class Each>
@@ -67,7 +67,7 @@ struct NetLinear : NetEquations {
         for_rest_and_parts(
             [&](const NetPart &rest) {
                 factor.take_down_rest(t);
-                if (with_pulls) net.find_pulls_of_rest(t, d, G, tensions);
+                if (with_pulls) factor.find_pulls_of_rest(t, G, tensions);
                 each(rest);
             },
             [&](const NetPart &part) {
@@ -171,7 +171,7 @@ struct NetLinear : NetEquations {
             [&]() { return Flag{false}; });
         if (!good.set) return false;
         for (int32_t k = 0; k < s.n_bonds; ++k) t[k] = solution[k];
-        for_rest_and_parts([&](const NetPart &) { net.find_pulls_of_rest(t, d, G, nullptr); },
+        for_rest_and_parts([&](const NetPart &) { factor.find_pulls_of_rest(t, G, nullptr); },
                            [&](const NetPart &part) { net.find_pulls(part, t, d, G, nullptr); });
         return true;
     }

@@ -12,6 +12,7 @@ namespace holonomic {
 // A *node* is an atom of the core with trees, or with other than two bonds of the core; a *strand* the bonds between
 // two nodes. The first and the last bond of a strand are its *ends*, and the *unknowns* of what is left when strands
 // and trees have been eliminated; a strand of one bond is one, of its first node, and *foreign* at its second one.
+// Nodes of a share with as many own unknowns stand together: unknown i of the j-th of them is first_unknown + i count + j.
 //
 // Up to most_in_bundle strands of one length are a *bundle*: bond k of strand j stands at place first_place + k width +
 // j, the atom between bonds k - 1 and k at site first_site + (k - 1) width + j. Places of trees follow, each after
@@ -29,7 +30,13 @@ struct NetworkPlan {
     const Bundle *bundle;
     const int32_t *bundle_start;  // [n_shares + 1] those that a thread works on at a time
     int32_t n_shares;
-    const int32_t *node_start;  // [n_node_shares + 1] likewise nodes, in order
+
+    struct Nodes {
+        int32_t count, n_own, first_node, first_unknown;
+    };
+    const Nodes *nodes;
+    const int32_t *nodes_start;    // [n_node_shares + 1] those that a thread works on at a time
+    const int32_t *unknown_start;  // [n_node_shares + 1] and their unknowns
     int32_t n_node_shares;
 
     const int32_t *atom_of;         // [n_atoms] local atom of a site
@@ -37,7 +44,7 @@ struct NetworkPlan {
     const int32_t *from, *to;       // [n_bonds] sites; of a tree's bond `to` is the atom away from the core
     const int32_t *strand_node;     // [2 n_strands] nodes of the first and the last end
     const int32_t *strand_unknown;  // [2 n_strands] and their unknowns
-    const int32_t *own_start;       // [n_nodes + 1] unknowns of a node
+    const int32_t *nodes_of;        // [n_nodes] in `nodes`
     const int32_t *place_of;        // [n_unknowns]
     const int32_t *node_of;         // [n_unknowns]
     const int32_t *partner;         // [n_unknowns] the other end of its strand, or itself if the strand is one bond

@@ -109,7 +109,7 @@ struct NetNewton {
         if (found && rest) {
             factor.take_down_rest(t);
             for (int32_t k = part.first_place; k < part.end_place; ++k) tau[k] += t[k];
-            factor.unknowns.for_each([&](int32_t u) { tau[s.place_of[u]] += t[s.place_of[u]]; });
+            for (int32_t u = 0; u < s.n_unknowns; ++u) tau[s.place_of[u]] += t[s.place_of[u]];
         } else if (found) {
             factor.take_down(part, t);
             net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
@@ -121,7 +121,7 @@ struct NetNewton {
             });
         }
         if (rest)
-            net.find_pulls_of_rest(tau, b, moves, nullptr);
+            factor.find_pulls_of_rest(tau, moves, nullptr);
         else
             net.find_pulls(part, tau, b, moves, nullptr);
         for (int32_t i = part.first_site; i < part.end_site; ++i) moves.set(i, net.w[i] * moves.get<double>(i));
@@ -168,7 +168,7 @@ struct NetNewton {
             factor.factorize(part, bonds, t);
     }
     // Without a guess, each part's factors have been made when it was read.
-    void first_factors() { factor.close(D); }
+    void first_factors() { factor.close(); }
     void factorize(Flag) {
         for_all_parts([&](const NetPart &part) {
             if (moved)
@@ -178,7 +178,7 @@ struct NetNewton {
             measure_fresh(part, moved ? new_D : D);
             factorize_part(part, moved ? new_D : D);
         });
-        factor.close(moved ? new_D : D);
+        factor.close();
     }
     __attribute__((noinline)) void solve(Flag) {
         failed = failed || factor.unknowns.solve(part_left, nullptr) < 0;

@@ -39,6 +39,19 @@ struct NetStrands {
     int32_t length, place, site, strand, step;
 };
 
+// Nodes with as many own unknowns, one per lane: unknown i at unknown + i step.
+struct NetNodes {
+    int32_t node, n_own, unknown, step;
+};
+
+// Numbers at places that a list has.
+template <class V>
+HOL_INLINE V gather(const double *values, const int32_t *place) {
+    V a = {};
+    for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(a, i, values[place[i]]);
+    return a;
+}
+
 // What a thread works on at a time, so little that it stays in cache: some bundles, with the places of their bonds and
 // the sites between the ends; or, after these parts, the *rest*: all sites of nodes and of trees, and trees' bonds.
 struct NetPart {
@@ -79,12 +92,36 @@ struct Net {
     HOL_FORCED void for_parts(const Body &body) const {
         share_out(team, s.n_shares, [&](int32_t share) { body(part(share)); });
     }
-    // Calls body(first, end, share) for ranges of nodes. A thread is not worth waiting for where these are few.
+    // Calls body(share) for all shares of nodes. A thread is not worth waiting for where these are few.
     template <class Body>
-    HOL_FORCED void for_nodes(const Body &body) const {
+    HOL_FORCED void for_node_shares(const Body &body) const {
         constexpr int32_t many_unknowns = 65536;
-        share_out(s.n_unknowns < many_unknowns ? nullptr : team, s.n_node_shares,
-                  [&](int32_t share) { body(s.node_start[share], s.node_start[share + 1], share); });
+        share_out(s.n_unknowns < many_unknowns ? nullptr : team, s.n_node_shares, body);
+    }
+    // Calls body(value of the width, nodes) for those of a share.
+    template <class Body>
+    HOL_FORCED void for_nodes(int32_t share, const Body &body) const {
+        for (int32_t i = s.nodes_start[share]; i < s.nodes_start[share + 1]; ++i) {
+            const NetworkPlan::Nodes &n = s.nodes[i];
+            int32_t j = 0;
+            const auto nodes = [&] { return NetNodes{n.first_node + j, n.n_own, n.first_unknown + j, n.count}; };
+            for (; j + W <= n.count; j += W) body(vec{}, nodes());
+            for (; j < n.count; ++j) body(double{}, nodes());
+        }
+    }
+    // Calls body(value of the width, unknown) for those of a share.
+    template <class Body>
+    HOL_FORCED void for_unknowns(int32_t share, const Body &body) const {
+        const int32_t end = s.unknown_start[share + 1];
+        int32_t u = s.unknown_start[share];
+        for (; u + W <= end; u += W) body(vec{}, u);
+        for (; u < end; ++u) body(double{}, u);
+    }
+    // Calls each(unknown) for those of a node.
+    template <class Each>
+    HOL_FORCED void for_own(int32_t node, const Each &each) const {
+        const NetworkPlan::Nodes &n = s.nodes[s.nodes_of[node]];
+        for (int32_t i = 0; i < n.n_own; ++i) each(n.first_unknown + i * n.count + node - n.first_node);
     }
     // Calls body(first, end) for ranges of these numbers.
     template <class Body>
@@ -133,6 +170,12 @@ struct Net {
     HOL_FORCED void to_end(const NetStrands &g, int end, const V &a, double *value) const {
         for (int i = 0; i < Width<V>::lanes; ++i)
             value[s.strand_unknown[2 * (g.strand + i) + end]] = Width<V>::get(a, i);
+    }
+    template <class V>
+    HOL_FORCED void to_end(const NetStrands &g, int end, const Vector3<V> &a, const Net3 &value) const {
+        to_end(g, end, a.x, value.x);
+        to_end(g, end, a.y, value.y);
+        to_end(g, end, a.z, value.z);
     }
 
     // Reads masses, and n arrays per atom, one after the other of so many atoms that what is fetched ahead follows few
@@ -244,24 +287,26 @@ struct Net {
         });
     }
 
-    // Calls each(place, sign) for the bonds of a node or, after the nodes, of a tree's atom; sign: 1 where they begin
-    // there, else -1.
+    // Calls each(place, sign) for the bonds of a node or, after the nodes, of a tree's atom, but for the own ends of a
+    // node; sign: 1 where they begin there, else -1.
     template <class Each>
-    HOL_FORCED void for_bonds_of_joint(int32_t number, const Each &each) const {
-        if (number < s.n_nodes) {
-            for (int32_t u = s.own_start[number]; u < s.own_start[number + 1]; ++u) each(s.place_of[u], s.sign[u]);
+    HOL_FORCED void for_other_bonds(int32_t number, const Each &each) const {
+        if (number < s.n_nodes)
             for (int32_t f = s.foreign_start[number]; f < s.foreign_start[number + 1]; ++f)
                 each(s.place_of[s.foreign[f]], -1.0);
-        } else {
+        else
             each(s.first_tree_place + number - s.n_nodes, -1.0);
-        }
         for (int32_t c = s.child_start[number]; c < s.child_start[number + 1]; ++c)
             each(s.first_tree_place + s.child[c], 1.0);
     }
-    // Likewise for any site.
+    // Of any site, all of them.
     template <class Each>
     HOL_FORCED void for_bonds_of(int32_t site, const Each &each) const {
-        if (site >= s.first_node) return for_bonds_of_joint(site - s.first_node, each);
+        if (site >= s.first_node) {
+            const int32_t number = site - s.first_node;
+            if (number < s.n_nodes) for_own(number, [&](int32_t u) { each(s.place_of[u], s.sign[u]); });
+            return for_other_bonds(number, each);
+        }
         int32_t bundle = 0, end = s.bundle_start[s.n_shares];
         while (end - bundle > 1) {
             const int32_t middle = bundle + (end - bundle) / 2;
@@ -294,25 +339,6 @@ struct Net {
                 before = pull;
             }
         });
-    }
-    // To nodes and atoms of trees. Of strands t at their ends is enough.
-    void find_pulls_of_rest(const double *t, const Net3 &d, const Net3 &G, double *tension) const {
-        for_nodes([&](int32_t first, int32_t end, int32_t) { find_pulls_of_joints(first, end, t, d, G, tension); });
-        find_pulls_of_joints(s.n_nodes, s.n_nodes + s.n_tree, t, d, G, tension);
-    }
-    __attribute__((noinline)) void find_pulls_of_joints(int32_t first, int32_t end, const double *t, const Net3 &d,
-                                                        const Net3 &G, double *tension) const {
-        for (int32_t n = first; n < end; ++n) {
-            Vector3<double> sum = {};
-            double size = 0;
-            for_bonds_of_joint(n, [&](int32_t place, double sign) HOL_FORCED {
-                const Vector3<double> pull = t[place] * d.get<double>(place);
-                sum = add_times(sum, sign, pull);
-                if (tension) size += sqrt(dot(pull, pull));
-            });
-            G.set(s.first_node + n, sum);
-            if (tension) tension[s.first_node + n] = size;
-        }
     }
 };
 

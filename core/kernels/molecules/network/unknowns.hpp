@@ -35,13 +35,16 @@ struct Unknowns : Ends {
     // Solves for y until what is left is `part` of it, both as sums of squares' roots, and, with `sizes`, of right-hand
     // sides' terms by place, every unknown's is a rounding of its own, or of the mean. How many rounds it took, or -1.
     __attribute__((noinline)) int32_t solve(double part, const double *sizes) const {
-        Sums all = sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
-            for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
-                x[u] = 0;
-                r[u] = y[u];
-                one.a = mul_add(y[u], y[u], one.a);
-                size[u] = sizes ? rounding_part * (sizes[s.place_of[u]] * sizes[s.place_of[u]]) : 0;
-            }
+        Sums<double> all = sums_of_shares([&](int32_t share, Parts &parts) {
+            net.for_unknowns(share, [&](auto width, int32_t u) HOL_FORCED {
+                typedef decltype(width) V;
+                const V whole = load_any<V>(y + u), of_terms = sizes ? gather<V>(sizes, s.place_of + u) : V{};
+                store_any(x + u, V{});
+                store_any(r + u, whole);
+                store_any(size + u, Width<V>::all(rounding_part) * (of_terms * of_terms));
+                V &sum_of = parts.of(width).a;
+                sum_of = mul_add(whole, whole, sum_of);
+            });
         });
         if (!(all.a > 0)) return all.a == 0 ? 0 : -1;
         const Goal goal = {part * part * all.a, (least_of_mean * rounding_part) * all.a / s.n_unknowns,
@@ -53,31 +56,30 @@ struct Unknowns : Ends {
                 begin();
                 rho = looked_at = all.a;
             }
-            all = multiply(p, p_node, v, [&](int32_t u, Sums &one) { one.a = mul_add(shadow[u], v[u], one.a); });
+            all = multiply(p, p_node, v, [&](auto width, int32_t u, const auto &product, auto &sums) HOL_FORCED {
+                sums.a = mul_add(load_any<decltype(width)>(shadow + u), product, sums.a);
+            });
             const double alpha = rho / all.a;
-            all = sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
-                for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
-                    x[u] = mul_add(alpha, p_node[u], x[u]);
-                    r[u] = mul_add(-alpha, v[u], r[u]);
-                    note_left(u, one);
-                }
-                if (!direct) solve_nodes(first, end, r, s_node);
+            all = sums_of_shares([&](int32_t share, Parts &parts) {
+                net.for_unknowns(share, [&](auto width, int32_t u) HOL_FORCED {
+                    step(width, u, alpha, p_node, v, parts);
+                });
+                if (!direct) solve_nodes(share, r, s_node);
             });
             if (!(all.a < 1e300)) return -1;
             if (goal.is_reached(all)) return round;
             if (direct) solve_fronts(r, s_node);
-            all = multiply(r, s_node, t, [&](int32_t u, Sums &one) {
-                one.a = mul_add(t[u], r[u], one.a);
-                one.b = mul_add(t[u], t[u], one.b);
+            all = multiply(r, s_node, t, [&](auto width, int32_t u, const auto &product, auto &sums) HOL_FORCED {
+                sums.a = mul_add(product, load_any<decltype(width)>(r + u), sums.a);
+                sums.b = mul_add(product, product, sums.b);
             });
             const double omega = all.a / all.b;
-            all = sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
-                for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
-                    x[u] = mul_add(omega, s_node[u], x[u]);
-                    r[u] = mul_add(-omega, t[u], r[u]);
-                    note_left(u, one);
-                    one.b = mul_add(shadow[u], r[u], one.b);
-                }
+            all = sums_of_shares([&](int32_t share, Parts &parts) {
+                net.for_unknowns(share, [&](auto width, int32_t u) HOL_FORCED {
+                    const auto left = step(width, u, omega, s_node, t, parts);
+                    auto &sums = parts.of(width);
+                    sums.b = mul_add(load_any<decltype(width)>(shadow + u), left, sums.b);
+                });
             });
             if (all.a < 1e300 && goal.is_reached(all)) return round;
             if (round % (direct ? few_rounds : look_after) == 0) {
@@ -87,10 +89,13 @@ struct Unknowns : Ends {
             const double beta = all.b / rho * (alpha / omega);
             if (!(abs(beta) < 1e300)) return -1;
             rho = all.b;
-            net.for_nodes([&](int32_t first, int32_t end, int32_t) {
-                for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u)
-                    p[u] = mul_add(beta, mul_add(-omega, v[u], p[u]), r[u]);
-                if (!direct) solve_nodes(first, end, p, p_node);
+            net.for_node_shares([&](int32_t share) {
+                net.for_unknowns(share, [&](auto width, int32_t u) HOL_FORCED {
+                    typedef decltype(width) V;
+                    const V before = mul_add(Width<V>::all(-omega), load_any<V>(v + u), load_any<V>(p + u));
+                    store_any(p + u, mul_add(Width<V>::all(beta), before, load_any<V>(r + u)));
+                });
+                if (!direct) solve_nodes(share, p, p_node);
             });
             if (direct) solve_fronts(p, p_node);
         }
@@ -103,19 +108,27 @@ private:
     static constexpr double least_progress = 0.1;
     static constexpr double rounding_part = 16 * epsilon * 16 * epsilon, least_of_mean = 1. / 256;  // of squares
     static constexpr int32_t few_rounds = 8;
+    template <class V>
     struct Sums {
-        double a, b, most;
+        V a, b, most;
+    };
+    // Of a share, in lanes and of what is left of it.
+    struct Parts {
+        Sums<vec> lanes;
+        Sums<double> rest;
+        HOL_FORCED Sums<vec> &of(const vec &) { return lanes; }
+        HOL_FORCED Sums<double> &of(double) { return rest; }
     };
     // Squares of what may be left: of all together, and of one beyond its rounding.
     struct Goal {
         double of_all, of_one;
         bool by_one;
-        bool is_reached(const Sums &left) const { return left.a <= of_all && (!by_one || left.most <= of_one); }
+        bool is_reached(const Sums<double> &left) const { return left.a <= of_all && (!by_one || left.most <= of_one); }
     };
     void begin() const {
-        net.for_nodes([&](int32_t first, int32_t end, int32_t) {
-            for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) shadow[u] = p[u] = r[u];
-            if (!direct) solve_nodes(first, end, p, p_node);
+        net.for_node_shares([&](int32_t share) {
+            for (int32_t u = s.unknown_start[share]; u < s.unknown_start[share + 1]; ++u) shadow[u] = p[u] = r[u];
+            if (!direct) solve_nodes(share, p, p_node);
         });
         if (direct) solve_fronts(p, p_node);
     }
@@ -140,24 +153,36 @@ private:
         tried = true;
         return direct = factorize_fronts();
     }
-    void note_left(int32_t u, Sums &of) const {
-        const double square = r[u] * r[u];
-        of.a += square;
-        of.most = max(square - size[u], of.most);
+    // A step along a direction, whose product with the matrix it has: into the solution, and what is left, which it
+    // returns.
+    template <class V>
+    HOL_FORCED V step(const V &, int32_t u, double so_far, const double *along, const double *product,
+                      Parts &parts) const {
+        const V far = Width<V>::all(so_far);
+        const V left = mul_add(Width<V>::all(-so_far), load_any<V>(product + u), load_any<V>(r + u));
+        store_any(x + u, mul_add(far, load_any<V>(along + u), load_any<V>(x + u)));
+        store_any(r + u, left);
+        Sums<V> &sums = parts.of(V{});
+        const V square = left * left;
+        sums.a = sums.a + square;
+        sums.most = max(square - load_any<V>(size + u), sums.most);
+        return left;
     }
 
-    // Sums that body(first, end, sums) adds up over each share, then over these in order: the same for any number of
+    // Sums that body(share, parts) adds up over each share, then over these in order: the same for any number of
     // threads.
     template <class Body>
-    HOL_FORCED Sums sums_of_nodes(const Body &body) const {
-        net.for_nodes([&](int32_t first, int32_t end, int32_t share) {
-            Sums one = {0, 0, 0};
-            body(first, end, one);
-            sum[3 * share] = one.a;
-            sum[3 * share + 1] = one.b;
-            sum[3 * share + 2] = one.most;
+    HOL_FORCED Sums<double> sums_of_shares(const Body &body) const {
+        net.for_node_shares([&](int32_t share) {
+            Parts parts = {};
+            body(share, parts);
+            double most = parts.rest.most;
+            for (int i = 0; i < W; ++i) most = max(Width<vec>::get(parts.lanes.most, i), most);
+            sum[3 * share] = sum_lanes(parts.lanes.a) + parts.rest.a;
+            sum[3 * share + 1] = sum_lanes(parts.lanes.b) + parts.rest.b;
+            sum[3 * share + 2] = most;
         });
-        Sums all = {0, 0, 0};
+        Sums<double> all = {0, 0, 0};
         for (int32_t i = 0; i < s.n_node_shares; ++i) {
             all.a += sum[3 * i];
             all.b += sum[3 * i + 1];
@@ -168,18 +193,14 @@ private:
 
     // The product of the matrix with `of`, and sums over the unknowns. own: M times `of`, without fronts.
     template <class Body>
-    HOL_FORCED Sums multiply(const double *own, const double *of, double *to, const Body &body) const {
+    HOL_FORCED Sums<double> multiply(const double *own, const double *of, double *to, const Body &body) const {
         if (s.has_foreign || direct) accelerate_nodes(of);
-        const auto sums = [&](const auto &value) HOL_FORCED {
-            return sums_of_nodes([&](int32_t first, int32_t end, Sums &one) {
-                for (int32_t u = s.own_start[first]; u < s.own_start[end]; ++u) {
-                    to[u] = value(u);
-                    body(u, one);
-                }
+        return sums_of_shares([&](int32_t share, Parts &parts) {
+            Ends::multiply(share, direct ? nullptr : own, of, to);
+            net.for_unknowns(share, [&](auto width, int32_t u) HOL_FORCED {
+                body(width, u, load_any<decltype(width)>(to + u), parts.of(width));
             });
-        };
-        return direct ? sums([&](int32_t u) HOL_FORCED { return product(u, of); })
-                      : sums([&](int32_t u) HOL_FORCED { return own[u] + product_beside_nodes(u, of); });
+        });
     }
 };
 
