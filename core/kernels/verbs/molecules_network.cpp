@@ -9,14 +9,8 @@ namespace holonomic::HOL_ISA {
 using namespace graph;
 
 int64_t network_bytes(const NetworkPlan &s) {
-    const int64_t linear = NetLinear::values(s), newton = NetNewton::values(s);
+    const int64_t linear = NetLinear::values(s), newton = NetPositions::values(s);
     return static_cast<int64_t>(sizeof(double)) * (linear > newton ? linear : newton);
-}
-
-// At the atoms that this molecule may write.
-static inline void write_sites_of(const NetLinear &x, const Net3 &values, const AtomArray &to, bool add) {
-    x.net.write_sites(to, x.net.lane.shared, add, [&](auto width, int32_t site)
-                                                      HOL_FORCED { return values.get<decltype(width)>(site); });
 }
 
 // Call: of forces or of given right-hand sides.
@@ -27,7 +21,7 @@ static inline bool pull_network(const Call &call, const NetLinear &x, Tally &tal
     if (call.lambda) x.write_bonds(0.5, false, call.lambda);
     if (call.tension) x.write_bonds(1, true, call.tension);
     if (call.virial) x.add_virial(tally);
-    if (call.g.x) write_sites_of(x, x.G, call.g, call.add);
+    if (call.g.x) x.write_pulls(call.g, call.add);
     return true;
 }
 
@@ -53,7 +47,7 @@ bool solve_network(const VelocitiesCall &call, const Schedule &s, const Molecule
     if (call.lambda) x.write_bonds(0.5, false, call.lambda);
     if (call.virial) x.add_virial(tally);
     x.add_pulls(!call.v.is_float);
-    write_sites_of(x, x.v, call.v, false);
+    x.write_velocities(call.v);
     return true;
 }
 

@@ -18,41 +18,48 @@ struct NetEquations {
     const AtomArray &coordinates;
     const Inputs &in;
     const int terms;
-    Net3 r, v, f, d, G;               // v: velocities; f: w f; G: pulls, or where right-hand sides are rates v + w G
+    Net3 r, f, G;                     // of the rest: positions, w f, pulls
+    Net3 v, d;                        // velocities: of the rest, too, if they are not `rates`; bonds
     double *t, *side, *size_of_side;  // multipliers; right-hand sides, and the sizes of their terms
     Pair3<double> *a;                 // of nodes and atoms of trees, in twice the precision
 
     static int64_t values(const NetworkPlan &s) {
-        return Net::values(s) + 12 * in_fours(s.n_atoms) + 6 * in_fours(s.n_bonds) + 6 * in_fours(s.n_nodes + s.n_tree);
+        return Net::values(s) + 15 * in_fours(n_rest(s)) + 3 * in_fours(s.n_atoms) + 6 * in_fours(s.n_bonds);
     }
     NetEquations(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
                  const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> &memory)
         : net(plan, l, packed, team, memory), s(plan), box(b), coordinates(positions), in(inputs), terms(sides),
-          r(Net3::take(memory, s.n_atoms)), v(Net3::take(memory, s.n_atoms)), f(Net3::take(memory, s.n_atoms)),
-          d(Net3::take(memory, s.n_bonds)), G(Net3::take(memory, s.n_atoms)), t(memory.values(in_fours(s.n_bonds))),
+          r(Net3::take(memory, n_rest(s), s.first_node)), f(Net3::take(memory, n_rest(s), s.first_node)),
+          G(Net3::take(memory, n_rest(s), s.first_node)), v(Net3::take(memory, s.n_atoms)),
+          d(Net3::take(memory, s.n_bonds)), t(memory.values(in_fours(s.n_bonds))),
           side(memory.values(in_fours(s.n_bonds))), size_of_side(memory.values(in_fours(s.n_bonds))),
-          a(reinterpret_cast<Pair3<double> *>(memory.values(6 * in_fours(s.n_nodes + s.n_tree)))) {}
+          a(reinterpret_cast<Pair3<double> *>(memory.values(6 * in_fours(n_rest(s))))) {}
 
     bool has(int wanted) const { return (terms & wanted) != 0; }
 
-    void read_atoms(int32_t first, int32_t end) const {
-        NetReading all[3] = {{&coordinates, r, false}};
+    static int32_t n_rest(const NetworkPlan &s) { return s.n_nodes + s.n_tree; }
+    Net3 r_of(const NetPart &part) const { return net.is_rest(part) ? r : part.of_sites(0); }
+    Net3 v_of(const NetPart &part) const { return net.is_rest(part) || has(rates) ? v : part.of_sites(1); }
+    Net3 f_of(const NetPart &part) const { return net.is_rest(part) ? f : part.of_sites(2); }
+
+    void read_atoms(const NetPart &part, int32_t first, int32_t end) const {
+        NetReading all[3] = {{&coordinates, r_of(part), false}};
         int n = 1;
-        if (has(squares | rates)) all[n++] = {in.v, v, false};
-        if (has(pulls)) all[n++] = {in.f, f, true};
+        if (has(squares | rates)) all[n++] = {in.v, v_of(part), false};
+        if (has(pulls)) all[n++] = {in.f, f_of(part), true};
         net.read_sites(first, end, all, n);
     }
     void find_equations(const NetPart &part) const {
-        net.find_bonds(part, box, r, d);
+        net.find_bonds(part, box, r, r_of(part), d);
         find_sides(part);
     }
     // Right-hand sides, and the sum of their terms' sizes.
     __attribute__((noinline)) void find_sides(const NetPart &part) const {
         if (!has(pulls | squares | rates))
             for (int32_t k = part.first_place; k < part.end_place; ++k) side[k] = size_of_side[k] = 0;
-        if (has(pulls)) add_products(part, f, false);
-        if (has(rates)) add_products(part, v, false);
-        if (has(squares)) add_products(part, v, true);
+        if (has(pulls)) add_products(part, f, f_of(part), false);
+        if (has(rates)) add_products(part, v, v_of(part), false);
+        if (has(squares)) add_products(part, v, v_of(part), true);
         for (int32_t k = part.first_place; (in.rhs || in.strain) && k < part.end_place; ++k) {
             const double value =
                 in.rhs ? 0.5 * in.rhs[net.lane.first_bond + s.bond_of[k]] : stretching(in.strain, d.get<double>(k));
@@ -62,9 +69,9 @@ struct NetEquations {
         for (int32_t k = part.first_place; k < part.end_place; ++k) t[k] = side[k];
     }
     // d.(x_j - x_i), the first of the terms where there are two, or |x_j - x_i|^2.
-    void add_products(const NetPart &part, const Net3 &x, bool square) const {
+    void add_products(const NetPart &part, const Net3 &of_rest, const Net3 &of_part, bool square) const {
         const bool more = square && has(pulls);
-        net.for_bonds(part, x, [&](auto width, int32_t k, const auto &from, const auto &to) HOL_FORCED {
+        net.for_bonds(part, of_rest, of_part, [&](auto width, int32_t k, const auto &from, const auto &to) HOL_FORCED {
             typedef decltype(width) V;
             const Vector3<V> change = to - from, bond = d.get<V>(k);
             V value = square ? dot(change, change) : dot(bond, change),
@@ -86,7 +93,8 @@ struct NetEquations {
         return pairs_of(bond, low);
     }
     Pair3<double> unrounded(int32_t k) const {
-        return unrounded_between(r.get<double>(s.from[k]), r.get<double>(s.to[k]));
+        return unrounded_between(read(coordinates, net.at, s.atom_of[s.from[k]]),
+                                 read(coordinates, net.at, s.atom_of[s.to[k]]));
     }
     // In twice the precision: of an atom with these multipliers; and what is left of a bond's equation.
     Pair3<double> acceleration_of(int32_t site, const double *solution, bool low) const {
@@ -101,7 +109,8 @@ struct NetEquations {
     double residual_of(int32_t k, const Pair3<double> &bond, const Pair3<double> &from, const Pair3<double> &to) const {
         Pair<double> sum = dot_pairs(bond, subtract_pairs(to, from));
         if (has(squares)) {
-            const Pair3<double> dv = difference_of(v.get<double>(s.from[k]), v.get<double>(s.to[k]));
+            const Pair3<double> dv =
+                difference_of(read(*in.v, net.at, s.atom_of[s.from[k]]), read(*in.v, net.at, s.atom_of[s.to[k]]));
             sum = add_pairs(sum, dot_pairs(dv, dv));
         }
         if (in.rhs) sum = add_pairs(sum, {0.5 * in.rhs[net.lane.first_bond + s.bond_of[k]], 0.0});
@@ -118,20 +127,22 @@ struct NetEquations {
         net.for_parts([&](const NetPart &part) { find_residuals(part, solution); });
     }
     __attribute__((noinline)) void find_residuals(const NetPart &part, const double *solution) const {
+        const NetReading all[] = {{&coordinates, r_of(part), false}, {in.v, v_of(part), false}};
+        net.read_sites(part.first_site, part.end_site, all, has(squares) ? 2 : 1);
         net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
             const auto site_of = [&](int32_t k) { return g.site + k * g.step; };
-            const auto behind = [&](int32_t k, const Net3 &of) HOL_FORCED {  // at the atom behind bond k
-                return k + 1 < g.length ? of.get<V>(site_of(k)) : net.at_node<V>(g, 1, of);
+            const auto behind = [&](int32_t k, const Net3 &of, const Net3 &of_part) HOL_FORCED {  // the atom behind bond k
+                return k + 1 < g.length ? of_part.get<V>(site_of(k)) : net.at_node<V>(g, 1, of);
             };
             const Vector3<V> zero = {};
-            Vector3<V> at_atom = behind(0, r), speed = has(squares) ? net.at_node<V>(g, 0, v) : zero;
+            Vector3<V> at_atom = behind(0, r, r_of(part)), speed = has(squares) ? net.at_node<V>(g, 0, v) : zero;
             Pair3<V> from = at_node<V>(g, 0), bond = unrounded_between(net.at_node<V>(g, 0, r), at_atom);
             for (int32_t k = 0; k < g.length; ++k) {
                 const int32_t place = g.place + k * g.step;
                 Pair3<V> to, next = bond;
                 if (k + 1 < g.length) {
-                    const Vector3<V> beyond = behind(k + 1, r);
+                    const Vector3<V> beyond = behind(k + 1, r, r_of(part));
                     next = unrounded_between(at_atom, beyond);
                     at_atom = beyond;
                     to = pairs_of(has(pulls) ? force_at<V>(site_of(k)) : zero, zero);
@@ -144,7 +155,7 @@ struct NetEquations {
                 }
                 Pair<V> sum = dot_pairs(bond, subtract_pairs(to, from));
                 if (has(squares)) {
-                    const Vector3<V> faster = behind(k, v);
+                    const Vector3<V> faster = behind(k, v, v_of(part));
                     const Pair3<V> change = difference_of(speed, faster);
                     sum = add_pairs(sum, dot_pairs(change, change));
                     speed = faster;

@@ -20,19 +20,19 @@ struct NetLinear : NetEquations {
     static constexpr double any_part = 1e100, next_part = 1e-6, part_of_rounding = 1. / 256;
 
     double *enough;   // what corrections may leave of a residual, over 16 roundings
-    double *tension;  // by site, sum of |t| |d|
+    double *tension;  // of the rest, by site, sum of |t| |d|
     double *worst;    // [n_shares + 1]
     NetFactor factor;
     mutable int64_t rounds = 0;  // that the unknowns have taken so far
 
     static int64_t values(const NetworkPlan &s) {
-        return NetEquations::values(s) + in_fours(s.n_bonds) + in_fours(s.n_atoms) + in_fours(s.n_shares + 1) +
+        return NetEquations::values(s) + in_fours(s.n_bonds) + in_fours(n_rest(s)) + in_fours(s.n_shares + 1) +
                NetFactor::values(s, true);
     }
     NetLinear(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
               const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> memory)
         : NetEquations(plan, l, packed, team, b, positions, inputs, sides, memory),
-          enough(memory.values(in_fours(s.n_bonds))), tension(memory.values(in_fours(s.n_atoms))),
+          enough(memory.values(in_fours(s.n_bonds))), tension(memory.values(in_fours(n_rest(s))) - s.first_node),
           worst(memory.values(in_fours(s.n_shares + 1))), factor(net, d, true, memory) {}
 
     // Calls rest(part), then each(part) for the others: the nodes' values, which these need, first. One part after the
@@ -42,16 +42,26 @@ struct NetLinear : NetEquations {
         rest(net.rest());
         net.for_parts(each);
     }
+    // Of a part's sites, once its positions and forces are not needed any more.
+    Net3 G_of(const NetPart &part) const { return net.is_rest(part) ? G : part.of_sites(0); }
+    double *tension_of(const NetPart &part) const { return net.is_rest(part) ? tension : part.of_sites(1).x; }
+    void find_pulls(const NetPart &part, bool with_tensions) const {
+        if (net.is_rest(part))
+            factor.find_pulls_of_rest(t, G, with_tensions ? tension : nullptr);
+        else
+            net.find_pulls(part, t, d, G_of(part), with_tensions ? tension_of(part) : nullptr);
+    }
+
     void load() const {
         for_rest_and_parts(
             [&](const NetPart &rest) {
                 net.for_ranges(rest.first_site, rest.end_site,
-                               [&](int32_t first, int32_t end) { read_atoms(first, end); });
+                               [&](int32_t first, int32_t end) { read_atoms(rest, first, end); });
                 find_equations(rest);
                 factor.factorize_rest(d, t);
             },
             [&](const NetPart &part) {
-                read_atoms(part.first_site, part.end_site);
+                read_atoms(part, part.first_site, part.end_site);
                 find_equations(part);
                 factor.factorize(part, d, t);
             });
@@ -59,7 +69,7 @@ struct NetLinear : NetEquations {
     }
     // Multipliers for what is in t, as far up as it has been taken; what they do to atoms, if `pulls`; then each(part).
     template <class Each>
-    HOL_FORCED bool solve_for(double part_left, const double *sizes, bool with_pulls, double *tensions,
+    HOL_FORCED bool solve_for(double part_left, const double *sizes, bool with_pulls, bool with_tensions,
                               const Each &each) const {
         const int32_t taken = factor.unknowns.solve(part_left, sizes);
         if (taken < 0) return false;
@@ -67,19 +77,19 @@ struct NetLinear : NetEquations {
         for_rest_and_parts(
             [&](const NetPart &rest) {
                 factor.take_down_rest(t);
-                if (with_pulls) factor.find_pulls_of_rest(t, G, tensions);
+                if (with_pulls) find_pulls(rest, with_tensions);
                 each(rest);
             },
             [&](const NetPart &part) {
                 factor.take_down(part, t);
-                if (with_pulls) net.find_pulls(part, t, d, G, tensions);
+                if (with_pulls) find_pulls(part, with_tensions);
                 each(part);
             });
         return true;
     }
     __attribute__((noinline)) bool solve() const {
         load();
-        return solve_for(any_part, size_of_side, true, tension, [&](const NetPart &part) { prove(part); }) &&
+        return solve_for(any_part, size_of_side, true, true, [&](const NetPart &part) { prove(part); }) &&
                (largest_in(worst, s.n_shares + 1) == 0 || refine());
     }
 
@@ -91,6 +101,8 @@ struct NetLinear : NetEquations {
         const double most = most_left();
         double &bad_part = worst[part.share];
         bad_part = 0;
+        const Net3 G_here = G_of(part);
+        const double *const tension_here = tension_of(part);
         net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
             V w = net.at_node<V>(g, 0, net.w), T = net.at_node<V>(g, 0, tension);
@@ -99,14 +111,16 @@ struct NetLinear : NetEquations {
                 const bool last = k + 1 == g.length;
                 const int32_t place = g.place + k * g.step, site = g.site + k * g.step;
                 const V wn = last ? net.at_node<V>(g, 1, net.w) : load_any<V>(net.w + site);
-                const V Tn = last ? net.at_node<V>(g, 1, tension) : load_any<V>(tension + site);
-                const Vector3<V> next = last ? net.at_node<V>(g, 1, G) : G.get<V>(site), bond = d.get<V>(place);
-                const V over = excess_of(bond, w * pull, wn * next, mul_add(w, T, wn * Tn), load_any<V>(side + place),
+                const V Tn = last ? net.at_node<V>(g, 1, tension) : load_any<V>(tension_here + site);
+                const Vector3<V> next = last ? net.at_node<V>(g, 1, G) : G_here.get<V>(site), bond = d.get<V>(place);
+                const V tensions = mul_add(w, T, wn * Tn);
+                const V over = excess_of(bond, w * pull, wn * next, tensions, load_any<V>(side + place),
                                          load_any<V>(size_of_side + place), most);
                 const MaskOf<V> bad = ~less_equal(over, V{});
                 if (__builtin_expect(any(bad), 0))
                     for (int i = 0; i < Width<V>::lanes; ++i)
-                        if ((bits(bad) >> i & 1) && bad_part == 0 && !holds(place + i)) bad_part = 1;
+                        if ((bits(bad) >> i & 1) && bad_part == 0 && !holds(place + i, Width<V>::get(tensions, i)))
+                            bad_part = 1;
                 w = wn;
                 T = Tn;
                 pull = next;
@@ -114,52 +128,59 @@ struct NetLinear : NetEquations {
         });
         for (int32_t k = part.first_place; part.share == s.n_shares && k < part.end_place; ++k) {
             const int32_t i = s.from[k], j = s.to[k];
-            const double over =
-                excess_of(d.get<double>(k), net.w[i] * G.get<double>(i), net.w[j] * G.get<double>(j),
-                          mul_add(net.w[i], tension[i], net.w[j] * tension[j]), side[k], size_of_side[k], most);
-            if (!(over <= 0) && bad_part == 0 && !holds(k)) bad_part = 1;
+            const double tensions = mul_add(net.w[i], tension[i], net.w[j] * tension[j]),
+                         over = excess_of(d.get<double>(k), net.w[i] * G.get<double>(i), net.w[j] * G.get<double>(j),
+                                          tensions, side[k], size_of_side[k], most);
+            if (!(over <= 0) && bad_part == 0 && !holds(k, tensions)) bad_part = 1;
         }
     }
     // Of one bond, in twice the precision, with all terms of its equation: the accelerations of its two atoms too. Only
     // the rounding of bonds is left; that of images, which is no more than their own, counts in no test of bonds.
-    __attribute__((noinline)) bool holds(int32_t k) const {
+    __attribute__((noinline)) bool holds(int32_t k, double tensions) const {
         const int32_t i = s.from[k], j = s.to[k];
         const Pair3<double> from = acceleration_of(i, t, false), to = acceleration_of(j, t, false), bond = exact(k);
         const double left = residual_of(k, bond, from, to),
                      terms_of_b = size_of_side[k] + abs(dot_pairs(bond, from).hi) + abs(dot_pairs(bond, to).hi);
-        return abs(left) + epsilon * hidden_by_rounding(k) <= most_left() * terms_of_b;
+        return abs(left) + epsilon * hidden_by_rounding(d.get<double>(k), tensions) <= most_left() * terms_of_b;
     }
-    // What a rounding of the multipliers, and of what adds up, does to an equation, in roundings.
-    double hidden_by_rounding(int32_t k) const {
-        const Vector3<double> bond = d.get<double>(k);
-        const int32_t i = s.from[k], j = s.to[k];
-        return sqrt(dot(bond, bond)) * mul_add(net.w[i], tension[i], net.w[j] * tension[j]);
+    // What a rounding of the multipliers, and of what adds up, does to an equation, in roundings. tensions: of its two
+    // atoms, times their inverse masses.
+    template <class V>
+    HOL_STATIC V hidden_by_rounding(const Vector3<V> &bond, const V &tensions) {
+        return sqrt(dot(bond, bond)) * tensions;
     }
     // What is left of an equation, and what rounding can hide there, beyond what may be left.
     template <class V>
     HOL_STATIC V excess_of(const Vector3<V> &bond, const Vector3<V> &from, const Vector3<V> &to, const V &tensions,
                            const V &b, const V &terms_of_b, double most) {
-        const V left = abs(b + dot(bond, to - from)) + (4 * epsilon) * (sqrt(dot(bond, bond)) * tensions);
+        const V left = abs(b + dot(bond, to - from)) + (4 * epsilon) * hidden_by_rounding(bond, tensions);
         return left - most * terms_of_b;
     }
 
     // Solves for what is left in twice the precision; the multipliers so far are kept in `side`, whose terms are not
     // needed any more.
+    __attribute__((noinline)) void keep_solution(const NetPart &part) const {
+        find_pulls(part, true);
+        const Net3 of_rest = {net.w, tension, net.w}, of_part = {net.w, tension_of(part), net.w};
+        net.for_bonds(part, of_rest, of_part, [&](auto width, int32_t k, const auto &from, const auto &to) HOL_FORCED {
+            typedef decltype(width) V;
+            const Vector3<V> bond = d.get<V>(k);
+            const V tensions = mul_add(from.x, from.y, to.x * to.y);
+            store_any(size_of_side + k, load_any<V>(side + k) / ((from.x + to.x) * dot(bond, bond)));
+            store_any(side + k, load_any<V>(t + k));
+            store_any(enough + k, Width<V>::all(part_of_rounding) * hidden_by_rounding(bond, tensions));
+        });
+    }
     __attribute__((noinline)) bool refine() const {
         double *const solution = side, *const alone = size_of_side;
-        for (int32_t k = 0; k < s.n_bonds; ++k) {
-            const Vector3<double> bond = d.get<double>(k);
-            const int32_t i = s.from[k], j = s.to[k];
-            alone[k] = side[k] / ((net.w[i] + net.w[j]) * dot(bond, bond));
-            solution[k] = t[k];
-            enough[k] = part_of_rounding * hidden_by_rounding(k);
-        }
+        for_rest_and_parts([&](const NetPart &rest) { keep_solution(rest); },
+                           [&](const NetPart &part) { keep_solution(part); });
         const Flag good = correct_until_right<double>(
             Flag{true},
             [&]() {
                 find_residuals(solution);
                 factor.take_up_all(t);
-                if (!solve_for(next_part, enough, false, nullptr, [](const NetPart &) {}))
+                if (!solve_for(next_part, enough, false, false, [](const NetPart &) {}))
                     t[0] = 0 / (t[0] - t[0]);  // not a number, which is no contraction
             },
             [&](Flag) {
@@ -171,8 +192,7 @@ struct NetLinear : NetEquations {
             [&]() { return Flag{false}; });
         if (!good.set) return false;
         for (int32_t k = 0; k < s.n_bonds; ++k) t[k] = solution[k];
-        for_rest_and_parts([&](const NetPart &) { factor.find_pulls_of_rest(t, G, nullptr); },
-                           [&](const NetPart &part) { net.find_pulls(part, t, d, G, nullptr); });
+        find_pulls(net.rest(), false);
         return true;
     }
     // Velocities v + w G; with `again` once more projected: what their rounding leaves.
@@ -185,6 +205,7 @@ struct NetLinear : NetEquations {
                 factor.take_up_rest(t);
             },
             [&](const NetPart &part) {
+                find_pulls(part, false);
                 push_on(part);
                 if (!again) return;
                 find_sides(part);
@@ -192,11 +213,12 @@ struct NetLinear : NetEquations {
             });
         if (!again) return;
         factor.unknowns.add_pushes();
-        solve_for(next_part, nullptr, true, nullptr, [&](const NetPart &part) { push_on(part); });
+        solve_for(next_part, nullptr, true, false, [&](const NetPart &part) { push_on(part); });
     }
     void push_on(const NetPart &part) const {
+        const Net3 pull = G_of(part);
         for (int32_t i = part.first_site; i < part.end_site; ++i)
-            v.set(i, add_times(v.get<double>(i), net.w[i], G.get<double>(i)));
+            v.set(i, add_times(v.get<double>(i), net.w[i], pull.get<double>(i)));
     }
 
     void write_bonds(double scale, bool sizes, double *out) const {
@@ -206,6 +228,23 @@ struct NetLinear : NetEquations {
                 out[net.lane.first_bond + s.bond_of[k]] = mul_add(t[k], sizes ? sqrt(dot(bond, bond)) : scale, 0.0);
             }
         });
+    }
+    // To the atoms that this molecule may write.
+    void write_pulls(const AtomArray &to, bool add) const {
+        const auto write_part = [&](const NetPart &part) {
+            if (!net.is_rest(part)) find_pulls(part, false);
+            const Net3 pull = G_of(part);
+            net.write_sites(part, to, net.lane.shared, add, [&](auto width, int32_t site)
+                                                                HOL_FORCED { return pull.get<decltype(width)>(site); });
+        };
+        for_rest_and_parts(write_part, write_part);
+    }
+    void write_velocities(const AtomArray &to) const {
+        const auto write_part = [&](const NetPart &part) {
+            net.write_sites(part, to, net.lane.shared, false, [&](auto width, int32_t site)
+                                                                  HOL_FORCED { return v.get<decltype(width)>(site); });
+        };
+        for_rest_and_parts(write_part, write_part);
     }
     void add_virial(Tally &tally) const {
         MoleculesVirial<double> virial;

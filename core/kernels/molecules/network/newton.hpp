@@ -14,23 +14,26 @@ struct NetNewton {
 
     const Net net;
     const NetworkPlan &s;
-    Net3 r, moves, b, D, new_D;
+    Net3 r, moves;  // of the rest
+    Net3 b, D;
     double *tau, *t, *a2, *per_a2, *stretch;
     double *worst;  // [n_shares + 1] of parts
+    mutable Net3 moves_of_worst{};
     NetFactor factor;
     double opening = 0;
-    // found: the unknowns have been, and all else has yet to follow; displaced: `moves` are those of tau.
-    bool found = false, displaced = false, moved = false, failed = false;
+    // found: the unknowns have been, and all else has yet to follow.
+    bool found = false, moved = false, failed = false;
 
+    static int32_t n_rest(const NetworkPlan &s) { return s.n_nodes + s.n_tree; }
     static int64_t values(const NetworkPlan &s) {
-        return Net::values(s) + 6 * in_fours(s.n_atoms) + 16 * in_fours(s.n_bonds) + in_fours(s.n_shares + 1) +
+        return Net::values(s) + 6 * in_fours(n_rest(s)) + 11 * in_fours(s.n_bonds) + in_fours(s.n_shares + 1) +
                NetFactor::values(s, false);
     }
     NetNewton(const NetworkPlan &plan, const MoleculeLane &lane, bool packed, const LongTeam *team,
               Memory<double> memory)
-        : net(plan, lane, packed, team, memory), s(plan), r(Net3::take(memory, s.n_atoms)),
-          moves(Net3::take(memory, s.n_atoms)), b(Net3::take(memory, s.n_bonds)), D(Net3::take(memory, s.n_bonds)),
-          new_D(Net3::take(memory, s.n_bonds)), tau(memory.values(in_fours(s.n_bonds))),
+        : net(plan, lane, packed, team, memory), s(plan), r(Net3::take(memory, n_rest(s), s.first_node)),
+          moves(Net3::take(memory, n_rest(s), s.first_node)), b(Net3::take(memory, s.n_bonds)), D(Net3::take(memory, s.n_bonds)),
+          tau(memory.values(in_fours(s.n_bonds))),
           t(memory.values(in_fours(s.n_bonds))), a2(memory.values(in_fours(s.n_bonds))),
           per_a2(memory.values(in_fours(s.n_bonds))), stretch(memory.values(in_fours(s.n_bonds))),
           worst(memory.values(in_fours(s.n_shares + 1))), factor(net, b, false, memory) {}
@@ -52,24 +55,21 @@ struct NetNewton {
         }
         return abs(e);
     }
-    // Returns the largest error of a part whose bonds get(V, place, from, to) gives, of values of `of` at their atoms.
-    // A NaN stays.
-    template <bool fresh, class Get>
-    HOL_FORCED double measure_part(const NetPart &part, const Net3 &of, const Get &get) const {
+    // Of a part, the largest error that each(note) tells by note(error). A NaN stays.
+    template <class Each>
+    HOL_FORCED static double largest_error(const Each &each) {
         vec most = {}, sum = {};
         double most_of_rest = 0;
-        net.for_bonds(part, of, [&](auto width, int32_t k, const auto &from, const auto &to) HOL_FORCED {
-            typedef decltype(width) V;
-            const V error = measure<fresh>(k, get(width, k, from, to));
-            take(error, most, sum, most_of_rest);
-        });
+        each([&](const auto &error) HOL_FORCED { take(error, most, sum, most_of_rest); });
         most = most + 0 * sum;
         for (int i = 0; i < W; ++i) most_of_rest = larger(Width<vec>::get(most, i), most_of_rest);
         return most_of_rest;
     }
     __attribute__((noinline)) double measure_fresh(const NetPart &part, const Net3 &bonds) const {
-        return measure_part<true>(part, moves, [&](auto width, int32_t k, const auto &, const auto &) HOL_FORCED {
-            return bonds.get<decltype(width)>(k);
+        return largest_error([&](const auto &note) HOL_FORCED {
+            net.for_places(part, [&](auto width, int32_t k) HOL_FORCED {
+                note(measure<true>(k, bonds.get<decltype(width)>(k)));
+            });
         });
     }
     HOL_FORCED static void take(const vec &error, vec &most, vec &sum, double &) {
@@ -88,12 +88,15 @@ struct NetNewton {
         net.for_parts(body);
     }
 
-    // Calls each(first place, end) for the parts whose largest error is that of all.
+    // Calls each(first place, end) for the parts whose largest error is that of all; then error_of() knows their moves.
     template <class Each>
     void for_worst_parts(double error, const Each &each) const {
         for (int32_t i = 0; i <= s.n_shares; ++i) {
-            const NetPart part = i < s.n_shares ? net.part(i) : net.rest();
-            if (worst[i] >= error) each(part.first_place, part.end_place);
+            if (!(worst[i] >= error)) continue;
+            const NetPart part = i < s.n_shares ? net.part(i, net.buffer) : net.rest();
+            if (moved) find_moves(part);
+            moves_of_worst = moves_of(part);
+            each(part.first_place, part.end_place);
         }
     }
 
@@ -101,35 +104,38 @@ struct NetNewton {
     void forget(Flag which) {
         if (!which.set) return;
         for (int32_t k = 0; k < s.n_bonds; ++k) tau[k] = 0;
-        displaced = false;
     }
-    // What tau does to the sites of a part; before that, if the unknowns have just been found, all bonds' corrections.
-    void displace(const NetPart &part) const {
-        const bool rest = part.share == s.n_shares;
-        if (found && rest) {
+    Net3 moves_of(const NetPart &part) const { return net.is_rest(part) ? moves : part.of_sites(0); }
+    // If the unknowns have just been found, all bonds' corrections.
+    void correct(const NetPart &part) const {
+        if (!found) return;
+        if (net.is_rest(part)) {
             factor.take_down_rest(t);
             for (int32_t k = part.first_place; k < part.end_place; ++k) tau[k] += t[k];
             for (int32_t u = 0; u < s.n_unknowns; ++u) tau[s.place_of[u]] += t[s.place_of[u]];
-        } else if (found) {
-            factor.take_down(part, t);
-            net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
-                typedef decltype(width) V;
-                for (int32_t k = 1; k + 1 < g.length; ++k) {
-                    const int32_t place = g.place + k * g.step;
-                    store_any(tau + place, load_any<V>(tau + place) + load_any<V>(t + place));
-                }
-            });
+            return;
         }
-        if (rest)
-            factor.find_pulls_of_rest(tau, moves, nullptr);
-        else
-            net.find_pulls(part, tau, b, moves, nullptr);
-        for (int32_t i = part.first_site; i < part.end_site; ++i) moves.set(i, net.w[i] * moves.get<double>(i));
+        factor.take_down(part, t);
+        net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
+            typedef decltype(width) V;
+            for (int32_t k = 1; k + 1 < g.length; ++k) {
+                const int32_t place = g.place + k * g.step;
+                store_any(tau + place, load_any<V>(tau + place) + load_any<V>(t + place));
+            }
+        });
     }
-    __attribute__((noinline)) void displace() {
-        if (!displaced) for_all_parts([&](const NetPart &part) { displace(part); });
-        displaced = true;
+    void correct() {
+        for_all_parts([&](const NetPart &part) { correct(part); });
         found = false;
+    }
+    // What tau does to the sites of a part.
+    __attribute__((noinline)) void find_moves(const NetPart &part) const {
+        const Net3 to = moves_of(part);
+        if (net.is_rest(part))
+            factor.find_pulls_of_rest(tau, to, nullptr);
+        else
+            net.find_pulls(part, tau, b, to, nullptr);
+        for (int32_t i = part.first_site; i < part.end_site; ++i) to.set(i, net.w[i] * to.get<double>(i));
     }
     // As tau moves a bond.
     template <class V>
@@ -139,26 +145,35 @@ struct NetNewton {
     // What is left is taken up at once, while it is in cache.
     __attribute__((noinline)) double move() {
         for_all_parts([&](const NetPart &part) {
-            if (!displaced) displace(part);
+            correct(part);
+            find_moves(part);
             worst[part.share] = measure_moved(part);
-            if (part.share == s.n_shares)
+            if (net.is_rest(part))
                 factor.take_up_rest(t);
             else
                 factor.take_up(part, t);
         });
         factor.unknowns.add_pushes();
-        displaced = moved = true;
+        moved = true;
         found = false;
         return failed ? __builtin_nan("") : worst_of_all();
     }
     __attribute__((noinline)) double measure_moved(const NetPart &part) const {
-        return measure_part<false>(part, moves, [&](auto, int32_t k, const auto &from, const auto &to) HOL_FORCED {
-            return moved_bond(k, from, to);
+        return largest_error([&](const auto &note) HOL_FORCED {
+            for_moved_bonds(part, [&](auto, int32_t k, const auto &bond) HOL_FORCED { note(measure<false>(k, bond)); });
         });
     }
+    template <class Body>
+    HOL_FORCED void for_moved_bonds(const NetPart &part, const Body &body) const {
+        net.for_bonds(part, moves, moves_of(part),
+                      [&](auto width, int32_t k, const auto &from, const auto &to)
+                          HOL_FORCED { body(width, k, moved_bond(k, from, to)); });
+    }
     double error_of(int32_t k) const {
-        const Vector3<double> zero = {}, from = moves.get<double>(s.from[k]), to = moves.get<double>(s.to[k]);
-        return abs(excess(moved_bond(k, moved ? from : zero, moved ? to : zero), a2[k])) * per_a2[k];
+        const auto move_at = [&](int32_t site) {
+            return moved ? (site < s.first_node ? moves_of_worst : moves).get<double>(site) : Vector3<double>{};
+        };
+        return abs(excess(moved_bond(k, move_at(s.from[k]), move_at(s.to[k])), a2[k])) * per_a2[k];
     }
 
     void factorize_part(const NetPart &part, const Net3 &bonds) const {
@@ -171,19 +186,19 @@ struct NetNewton {
     void first_factors() { factor.close(); }
     void factorize(Flag) {
         for_all_parts([&](const NetPart &part) {
-            if (moved)
-                net.for_bonds(part, moves, [&](auto, int32_t k, const auto &from, const auto &to) HOL_FORCED {
-                    new_D.set(k, moved_bond(k, from, to));
-                });
-            measure_fresh(part, moved ? new_D : D);
-            factorize_part(part, moved ? new_D : D);
+            const Net3 bonds = moved ? part.of_places(1) : D;
+            if (moved) {
+                find_moves(part);
+                for_moved_bonds(part, [&](auto, int32_t k, const auto &bond) HOL_FORCED { bonds.set(k, bond); });
+            }
+            measure_fresh(part, bonds);
+            factorize_part(part, bonds);
         });
         factor.close();
     }
     __attribute__((noinline)) void solve(Flag) {
         failed = failed || factor.unknowns.solve(part_left, nullptr) < 0;
         found = true;
-        displaced = false;
     }
 };
 

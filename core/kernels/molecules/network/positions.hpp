@@ -15,20 +15,31 @@ struct NetPositions {
     NetNewton newton;
     Tally &tally;
     double a_min = 1e300, a_max = 0, largest_coordinate = 0;
+    double *largest;  // [n_shares + 1] coordinates of parts
+
+    static int64_t values(const NetworkPlan &s) { return NetNewton::values(s) + in_fours(s.n_shares + 1); }
 
     NetPositions(const PositionsCall &c, const NetworkPlan &plan, const unsigned char *held, const MoleculeLane &lane,
                  bool packed, const LongTeam *team, Memory<double> memory, Tally &sum)
-        : call(c), fixed(held), newton(plan, lane, packed, team, memory), tally(sum) {}
+        : call(c), fixed(held), newton(plan, lane, packed, team, memory), tally(sum),
+          largest(memory.next + NetNewton::values(plan)) {}
 
-    // Reference positions stand in `moves` until bonds are made of them.
-    void read_atoms(int32_t first, int32_t end) const {
-        const NetReading all[] = {{&call.r_ref, newton.moves, false}, {&call.r, newton.r, false}};
+    Net3 r_of(const NetPart &part) const { return newton.net.is_rest(part) ? newton.r : part.of_sites(1); }
+    // Reference positions stand where moves will, until bonds are made of them.
+    void read_atoms(const NetPart &part, int32_t first, int32_t end) const {
+        const NetReading all[] = {{&call.r_ref, newton.moves_of(part), false}, {&call.r, r_of(part), false}};
         newton.net.read_sites(first, end, all, 2);
     }
     void read_part(const NetPart &part) const {
         const Net &net = newton.net;
-        net.find_bonds(part, call.box_ref, newton.moves, newton.b);
-        net.find_bonds(part, call.box, newton.r, newton.D);
+        const Net3 r = r_of(part);
+        net.find_bonds(part, call.box_ref, newton.moves, newton.moves_of(part), newton.b);
+        net.find_bonds(part, call.box, newton.r, r, newton.D);
+        largest[part.share] = 0;
+        const double *const components[] = {r.x, r.y, r.z};
+        for (const double *x : components)
+            largest[part.share] = max(largest_of(x + part.first_site, part.end_site - part.first_site),
+                                      largest[part.share]);
         for (int32_t k = part.first_place; k < part.end_place; ++k) {
             const double a = net.lane.length[newton.s.bond_of[k]];
             newton.a2[k] = a * a;
@@ -43,15 +54,15 @@ struct NetPositions {
         const Net &net = newton.net;
         const NetworkPlan &s = newton.s;
         const NetPart rest = net.rest();
-        net.for_ranges(rest.first_site, rest.end_site, [&](int32_t first, int32_t end) { read_atoms(first, end); });
+        net.for_ranges(rest.first_site, rest.end_site,
+                       [&](int32_t first, int32_t end) { read_atoms(rest, first, end); });
         read_part(rest);
         net.for_parts([&](const NetPart &part) {
-            read_atoms(part.first_site, part.end_site);
+            read_atoms(part, part.first_site, part.end_site);
             read_part(part);
         });
         newton.opening = newton.worst_of_all();
-        const double *const components[] = {newton.r.x, newton.r.y, newton.r.z};
-        for (const double *x : components) largest_coordinate = max(largest_of(x, s.n_atoms), largest_coordinate);
+        largest_coordinate = largest_of(largest, s.n_shares + 1);
         a_max = sqrt(largest_of(newton.a2, s.n_bonds));
         a_min = 1 / sqrt(largest_of(newton.per_a2, s.n_bonds));
     }
@@ -78,15 +89,17 @@ struct NetPositions {
     }
 
     void write_atoms() const {
-        const Net &net = newton.net;
-        net.write_sites(call.r, fixed, false, [&](auto width, int32_t i) HOL_FORCED {
-            typedef decltype(width) V;
-            return newton.r.get<V>(i) + newton.moves.get<V>(i);
-        });
-        if (!call.v.x) return;
-        net.write_sites(call.v, fixed, true, [&](auto width, int32_t i) HOL_FORCED {
-            typedef decltype(width) V;
-            return Width<V>::all(1 / call.dt) * newton.moves.get<V>(i);
+        const double per_dt = 1 / call.dt;
+        newton.for_all_parts([&](const NetPart &part) {
+            newton.find_moves(part);
+            const Net3 moves = newton.moves_of(part);
+            newton.net.write_sites(part, call.r, fixed, true, [&](auto width, int32_t i)
+                                                                  HOL_FORCED { return moves.get<decltype(width)>(i); });
+            if (!call.v.x) return;
+            newton.net.write_sites(part, call.v, fixed, true, [&](auto width, int32_t i) HOL_FORCED {
+                typedef decltype(width) V;
+                return Width<V>::all(per_dt) * moves.get<V>(i);
+            });
         });
     }
     void write_results(bool moved) {
@@ -111,7 +124,7 @@ struct NetPositions {
         load();
         const Limits<double> limits(call, largest_coordinate, a_min);
         const Solved<double> out = iterate<double, false, true>(newton, limits, call, Flag{true});
-        if (out.converged.set) newton.displace();
+        if (out.converged.set) newton.correct();
         const bool moved = out.converged.set && !coarse_moves() && !newton.failed;
         if (!moved && !out.untouched.set) return false;
         if (call.report)

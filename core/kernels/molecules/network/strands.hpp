@@ -25,11 +25,12 @@ struct Net3 {
         store_any(y + i, a.y);
         store_any(z + i, a.z);
     }
-    static Net3 take(Memory<double> &memory, int64_t n) {
+    // The first of n has this number.
+    static Net3 take(Memory<double> &memory, int64_t n, int64_t first = 0) {
         Net3 a;
-        a.x = memory.values(in_fours(n));
-        a.y = memory.values(in_fours(n));
-        a.z = memory.values(in_fours(n));
+        a.x = memory.values(in_fours(n)) - first;
+        a.y = memory.values(in_fours(n)) - first;
+        a.z = memory.values(in_fours(n)) - first;
         return a;
     }
 };
@@ -56,6 +57,19 @@ HOL_INLINE V gather(const double *values, const int32_t *place) {
 // the sites between the ends; or, after these parts, the *rest*: all sites of nodes and of trees, and trees' bonds.
 struct NetPart {
     int32_t share, first_bundle, end_bundle, first_site, end_site, first_place, end_place;
+    double *buffer;  // of the thread, for what no other part needs: three vectors of each place
+
+    static constexpr int three_vectors = 9;
+    Net3 of_sites(int i) const { return vector(i, first_site); }
+    Net3 of_places(int i) const { return vector(i, first_place); }
+
+private:
+    // The i-th; there are no more sites than places between the ends.
+    Net3 vector(int i, int32_t first) const {
+        const int64_t n = end_place - first_place;
+        Memory<double> memory = {buffer + 3 * i * in_fours(n)};
+        return Net3::take(memory, n, first);
+    }
 };
 
 // An array per atom that is read by sites; times inverse masses if `weighed`.
@@ -70,27 +84,53 @@ struct Net {
     const MoleculeLane &lane;
     const Atoms<double> at;
     const LongTeam *team;
-    double *w;  // by site
+    double *buffer;  // of this thread; those of the others stand at the beginning of their working arrays, too
+    double *w;       // by site
 
-    static int64_t values(const NetworkPlan &s) { return in_fours(s.n_atoms); }
+    static int64_t values(const NetworkPlan &s) { return values_of_buffer(s) + in_fours(s.n_atoms); }
+    // memory: all of a thread's.
     Net(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *threads, Memory<double> &memory)
-        : s(plan), lane(l), at(&l, 1, packed), team(threads), w(memory.values(values(plan))) {}
+        : s(plan), lane(l), at(&l, 1, packed), team(threads), buffer(memory.values(values_of_buffer(plan))),
+          w(memory.values(in_fours(plan.n_atoms))) {}
 
-    NetPart part(int32_t share) const {
+    static int64_t values_of_buffer(const NetworkPlan &s) {
+        int32_t most = s.n_bonds - s.first_tree_place;
+        for (int32_t i = 0, before = 0; i < s.n_shares; ++i) {
+            const int32_t end = i + 1 < s.n_shares ? s.bundle[s.bundle_start[i + 1]].first_place : s.first_tree_place;
+            most = end - before > most ? end - before : most;
+            before = end;
+        }
+        return NetPart::three_vectors * in_fours(most);
+    }
+
+    NetPart part(int32_t share, double *of_thread) const {
         const int32_t end = s.bundle_start[share + 1];
         const NetworkPlan::Bundle &b = s.bundle[s.bundle_start[share]];
-        NetPart p = {share, s.bundle_start[share], end, b.first_site, s.first_node, b.first_place, s.first_tree_place};
+        NetPart p = {share,        s.bundle_start[share], end,      b.first_site,
+                     s.first_node, b.first_place, s.first_tree_place, of_thread};
         if (share + 1 == s.n_shares) return p;
         p.end_site = s.bundle[end].first_site;
         p.end_place = s.bundle[end].first_place;
         return p;
     }
-    NetPart rest() const { return {s.n_shares, 0, 0, s.first_node, s.n_atoms, s.first_tree_place, s.n_bonds}; }
+    NetPart rest() const { return {s.n_shares, 0, 0, s.first_node, s.n_atoms, s.first_tree_place, s.n_bonds, buffer}; }
+    bool is_rest(const NetPart &part) const { return part.share == s.n_shares; }
 
     // Calls body(part) for all but the rest, on the threads that there are.
     template <class Body>
     HOL_FORCED void for_parts(const Body &body) const {
-        share_out(team, s.n_shares, [&](int32_t share) { body(part(share)); });
+        if (!team) {
+            for (int32_t i = 0; i < s.n_shares; ++i) body(part(i, buffer));
+            return;
+        }
+        const auto on_thread = [&](int32_t share, double *scratch) { body(part(share, scratch)); };
+        Tally unused = empty_tally();
+        team->run(
+            team->threads, s.n_shares, unused,
+            [](const void *context, int64_t i, double *scratch, Tally &) {
+                (*static_cast<decltype(&on_thread)>(context))(static_cast<int32_t>(i), scratch);
+            },
+            &on_thread);
     }
     // Calls body(share) for all shares of nodes. A thread is not worth waiting for where these are few.
     template <class Body>
@@ -222,35 +262,34 @@ struct Net {
             all.to.set(i, all.weighed ? w[i] * a : a);
         }
     }
-    // Writes value(width, site) to an array per atom, or adds it, but for atoms that are `left` as they are.
+    // Writes value(width, site) of a part to an array per atom, or adds it, but for atoms that are `left` as they are.
     template <class Value>
-    HOL_FORCED void write_sites(const AtomArray &to, const unsigned char *left, bool add, const Value &value) const {
-        for_ranges(0, s.n_atoms, [&](int32_t first, int32_t end) {
-            int32_t i = first;
+    HOL_FORCED void write_sites(const NetPart &part, const AtomArray &to, const unsigned char *left, bool add,
+                                const Value &value) const {
+        int32_t i = part.first_site;
 #if HOL_LANES > 1
-            for (; i + W <= end && at.layout != elements; i += W) {
-                double *p[W];
-                bool some_left = false;
-                for (int j = 0; j < W; ++j) {
-                    const int32_t atom = s.atom_of[i + j];
-                    some_left |= left && left[atom];
-                    p[j] = reinterpret_cast<double *>(to.x) + 3 * at.number(0, atom);
-                }
-                if (some_left) {
-                    for (int j = 0; j < W; ++j) write_site(i + j, to, left, add, value);
-                    continue;
-                }
-                vec3 a = value(vec{}, i);
-                if (add) {
-                    vec3 before;
-                    read_rows(p, before);
-                    a = before + a;
-                }
-                write_rows(p, a);
+        for (; i + W <= part.end_site && at.layout != elements; i += W) {
+            double *p[W];
+            bool some_left = false;
+            for (int j = 0; j < W; ++j) {
+                const int32_t atom = s.atom_of[i + j];
+                some_left |= left && left[atom];
+                p[j] = reinterpret_cast<double *>(to.x) + 3 * at.number(0, atom);
             }
+            if (some_left) {
+                for (int j = 0; j < W; ++j) write_site(i + j, to, left, add, value);
+                continue;
+            }
+            vec3 a = value(vec{}, i);
+            if (add) {
+                vec3 before;
+                read_rows(p, before);
+                a = before + a;
+            }
+            write_rows(p, a);
+        }
 #endif
-            for (; i < end; ++i) write_site(i, to, left, add, value);
-        });
+        for (; i < part.end_site; ++i) write_site(i, to, left, add, value);
     }
     template <class Value>
     HOL_FORCED void write_site(int32_t i, const AtomArray &to, const unsigned char *left, bool add,
@@ -261,25 +300,35 @@ struct Net {
         write(to, at, atom, add ? read(to, at, atom) + a : a, 1);
     }
 
-    // Calls body(V, place, from, to) for the bonds of a part: the values of `of` at the two atoms of each.
+    // Calls body(V, place) for the bonds of a part.
     template <class Body>
-    HOL_FORCED void for_bonds(const NetPart &part, const Net3 &of, const Body &body) const {
+    HOL_FORCED void for_places(const NetPart &part, const Body &body) const {
+        int32_t k = part.first_place;
+        for (; k + W <= part.end_place; k += W) body(vec{}, k);
+        for (; k < part.end_place; ++k) body(double{}, k);
+    }
+    // Calls body(V, place, from, to) for them: the values at the two atoms of each, of the rest or of the
+    // part's own sites.
+    template <class Body>
+    HOL_FORCED void for_bonds(const NetPart &part, const Net3 &of_rest, const Net3 &of_sites, const Body &body) const {
         for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
-            Vector3<V> before = at_node<V>(g, 0, of);
+            Vector3<V> before = at_node<V>(g, 0, of_rest);
             for (int32_t k = 0; k < g.length; ++k) {
-                const Vector3<V> next = k + 1 < g.length ? of.get<V>(g.site + k * g.step) : at_node<V>(g, 1, of);
+                const bool last = k + 1 == g.length;
+                const Vector3<V> next = last ? at_node<V>(g, 1, of_rest) : of_sites.get<V>(g.site + k * g.step);
                 body(width, g.place + k * g.step, before, next);
                 before = next;
             }
         });
-        if (part.share < s.n_shares) return;
+        if (!is_rest(part)) return;
         for (int32_t k = part.first_place; k < part.end_place; ++k)
-            body(double{}, k, of.get<double>(s.from[k]), of.get<double>(s.to[k]));
+            body(double{}, k, of_rest.get<double>(s.from[k]), of_rest.get<double>(s.to[k]));
     }
 
-    __attribute__((noinline)) void find_bonds(const NetPart &part, const Box &box, const Net3 &r, const Net3 &d) const {
-        for_bonds(part, r, [&](auto width, int32_t place, const auto &from, const auto &to) HOL_FORCED {
+    __attribute__((noinline)) void find_bonds(const NetPart &part, const Box &box, const Net3 &r, const Net3 &r_of_part,
+                                              const Net3 &d) const {
+        for_bonds(part, r, r_of_part, [&](auto width, int32_t place, const auto &from, const auto &to) HOL_FORCED {
             typedef decltype(width) V;
             Vector3<V> bond = to - from, unused = {};
             take_image<false>(box, bond, unused);
