@@ -49,7 +49,7 @@ struct NetLinear : NetEquations {
         if (net.is_rest(part))
             factor.find_pulls_of_rest(t, G, with_tensions ? tension : nullptr);
         else
-            net.find_pulls(part, t, d, G_of(part), with_tensions ? tension_of(part) : nullptr);
+            net.find_pulls(part, t, d, G_of(part), false, with_tensions ? tension_of(part) : nullptr);
     }
 
     void load() const {
@@ -217,8 +217,10 @@ struct NetLinear : NetEquations {
     }
     void push_on(const NetPart &part) const {
         const Net3 pull = G_of(part);
-        for (int32_t i = part.first_site; i < part.end_site; ++i)
-            v.set(i, add_times(v.get<double>(i), net.w[i], pull.get<double>(i)));
+        net.for_all(part.first_site, part.end_site, [&](auto width, int32_t i) HOL_FORCED {
+            typedef decltype(width) V;
+            v.set(i, add_times(v.get<V>(i), load_any<V>(net.w + i), pull.get<V>(i)));
+        });
     }
 
     void write_bonds(double scale, bool sizes, double *out) const {

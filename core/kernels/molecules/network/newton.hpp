@@ -67,7 +67,7 @@ struct NetNewton {
     }
     __attribute__((noinline)) double measure_fresh(const NetPart &part, const Net3 &bonds) const {
         return largest_error([&](const auto &note) HOL_FORCED {
-            net.for_places(part, [&](auto width, int32_t k) HOL_FORCED {
+            net.for_all(part.first_place, part.end_place, [&](auto width, int32_t k) HOL_FORCED {
                 note(measure<true>(k, bonds.get<decltype(width)>(k)));
             });
         });
@@ -131,10 +131,8 @@ struct NetNewton {
     // What tau does to the sites of a part.
     __attribute__((noinline)) void find_moves(const NetPart &part) const {
         const Net3 to = moves_of(part);
-        if (net.is_rest(part))
-            factor.find_pulls_of_rest(tau, to, nullptr);
-        else
-            net.find_pulls(part, tau, b, to, nullptr);
+        if (!net.is_rest(part)) return net.find_pulls(part, tau, b, to, true, nullptr);
+        factor.find_pulls_of_rest(tau, to, nullptr);
         for (int32_t i = part.first_site; i < part.end_site; ++i) to.set(i, net.w[i] * to.get<double>(i));
     }
     // As tau moves a bond.

@@ -152,10 +152,7 @@ struct Net {
     // Calls body(value of the width, unknown) for those of a share.
     template <class Body>
     HOL_FORCED void for_unknowns(int32_t share, const Body &body) const {
-        const int32_t end = s.unknown_start[share + 1];
-        int32_t u = s.unknown_start[share];
-        for (; u + W <= end; u += W) body(vec{}, u);
-        for (; u < end; ++u) body(double{}, u);
+        for_all(s.unknown_start[share], s.unknown_start[share + 1], body);
     }
     // Calls each(unknown) for those of a node.
     template <class Each>
@@ -300,12 +297,12 @@ struct Net {
         write(to, at, atom, add ? read(to, at, atom) + a : a, 1);
     }
 
-    // Calls body(V, place) for the bonds of a part.
+    // Calls body(V, i) for all from `first` on.
     template <class Body>
-    HOL_FORCED void for_places(const NetPart &part, const Body &body) const {
-        int32_t k = part.first_place;
-        for (; k + W <= part.end_place; k += W) body(vec{}, k);
-        for (; k < part.end_place; ++k) body(double{}, k);
+    HOL_FORCED static void for_all(int32_t first, int32_t end, const Body &body) {
+        int32_t i = first;
+        for (; i + W <= end; i += W) body(vec{}, i);
+        for (; i < end; ++i) body(double{}, i);
     }
     // Calls body(V, place, from, to) for them: the values at the two atoms of each, of the rest or of the
     // part's own sites.
@@ -366,10 +363,10 @@ struct Net {
         each(b.first_place + site - b.first_site + b.width, 1.0);
     }
 
-    // What multipliers t of bonds d do to the atoms between the nodes: G, and where `tension` is wanted the sum of
-    // |t| |d|.
+    // What multipliers t of bonds d do to the atoms between the nodes: G, times inverse masses if `weighed`, and where
+    // `tension` is wanted the sum of |t| |d|.
     __attribute__((noinline)) void find_pulls(const NetPart &part, const double *t, const Net3 &d, const Net3 &G,
-                                              double *tension) const {
+                                              bool weighed, double *tension) const {
         for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
             const Vector3<V> first = d.get<V>(g.place);
@@ -378,8 +375,8 @@ struct Net {
             if (tension) size = sqrt(dot(before, before));
             for (int32_t k = 1; k < g.length; ++k) {
                 const int32_t place = g.place + k * g.step, site = g.site + (k - 1) * g.step;
-                const Vector3<V> pull = load_any<V>(t + place) * d.get<V>(place);
-                G.set(site, pull - before);
+                const Vector3<V> pull = load_any<V>(t + place) * d.get<V>(place), sum = pull - before;
+                G.set(site, weighed ? load_any<V>(w + site) * sum : sum);
                 if (tension) {
                     const V next = sqrt(dot(pull, pull));
                     store_any(tension + site, size + next);
