@@ -10,7 +10,9 @@ namespace HOL_ISA {
 namespace graph {
 
 struct NetNewton {
-    static constexpr double part_left = 1e-4;  // of right-hand sides that a solve leaves
+    // Of right-hand sides that a solve leaves: little beside what Newton's method does, which is some twentieth of the
+    // largest error.
+    static constexpr double least_left = 1e-4, most_left = 0.01, left_of_error = 0.02;
 
     const Net net;
     const NetworkPlan &s;
@@ -195,7 +197,8 @@ struct NetNewton {
         factor.close();
     }
     __attribute__((noinline)) void solve(Flag) {
-        failed = failed || factor.unknowns.solve(part_left, nullptr) < 0;
+        const double left = max(min(left_of_error * worst_of_all(), most_left), least_left);
+        failed = failed || factor.unknowns.solve(left, nullptr) < 0;
         found = true;
     }
 };
