@@ -18,6 +18,7 @@ CarefulShape::CarefulShape(std::int32_t n_atoms, std::int32_t n_bonds, const std
                            std::int64_t most_bytes) {
     plan_.n_atoms = n_atoms;
     plan_.n_bonds = n_bonds;
+    for (List *const list : {&atom_i_, &atom_j_}) list->reserve(at(n_bonds));
     for (std::int32_t k = 0; k < n_bonds; ++k) {
         atom_i_.push_back(pairs[2 * k]);
         atom_j_.push_back(pairs[2 * k + 1]);
@@ -91,6 +92,7 @@ void CarefulShape::strip() {
             if (--left[at(other)] == 1) gone.push_back(other);
         }
     }
+    hanging_.reserve(gone.size());
     for (const std::int32_t atom : gone)
         if (parent_[at(atom)] >= 0) hanging_.push_back(atom);
 }

@@ -188,6 +188,7 @@ private:
         m_.place_of.resize(at(s_.n_bonds));
         for (std::int32_t i = 0; i < s_.n_atoms; ++i) m_.slot_of[at(m_.atom_of[at(i)])] = i;
         for (std::int32_t k = 0; k < s_.n_bonds; ++k) m_.place_of[at(m_.bond_of[at(k)])] = k;
+        m_.parent.reserve(at(s_.n_tree));
         for (std::int32_t k = 0; k < s_.n_tree; ++k)
             m_.parent.push_back(m_.slot_of[at(other_end(m_.bond_of[at(k)], m_.atom_of[at(k)]))]);
         const bool round = s_.type == Schedule::ring || s_.type == Schedule::triangle;
@@ -287,7 +288,7 @@ private:
     Numbers upper_bond_;  // of the atoms of trees, by local atom; -1: a root, or of the core
 };
 
-void add_runs(Schedule &s, Schedule::Memory &m) {
+void add_runs(Schedule &s, Schedule::Memory::Large &m) {
     m.runs = runs_of(s);
     s.runs = m.runs.runs();
     s.n_pieces = static_cast<std::int32_t>(m.runs.piece_start.size()) - 2;
@@ -308,19 +309,22 @@ std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bon
     Schedule::Memory &m = *(s->memory = new Schedule::Memory());
     s->n_atoms = n_atoms;
     s->n_bonds = n_bonds;
+    for (Numbers *const list : {&m.atom_i, &m.atom_j, &m.bond_of}) list->reserve(at(n_bonds));
     for (std::int32_t k = 0; k < n_bonds; ++k) {
         m.atom_i.push_back(pairs[2 * k]);
         m.atom_j.push_back(pairs[2 * k + 1]);
     }
-    for (std::int32_t i = 0; i < n_atoms; ++i) m.fixed.push_back(fixed && fixed[i]);
+    m.atom_of.reserve(at(n_atoms));
+    m.fixed.assign(at(n_atoms), 0);
+    for (std::int32_t i = 0; fixed && i < n_atoms; ++i) m.fixed[at(i)] = fixed[i];
     Maker maker(*s, m, most_bytes, networks);
     maker.make();
     if (maker.is_network() && networks == Maker::some && Maker::has_fixed(m))
         return bare_schedule(n_atoms, n_bonds, pairs, fixed, most_bytes, Maker::this_one);
     point_into(*s, m);
     if (!maker.is_network()) return s;
-    make_network(*s, most_bytes, m.network);
-    s->network = &m.network.plan;
+    make_network(*s, most_bytes, m.of_large().network);
+    s->network = &m.large->network.plan;
     return s;
 }
 
@@ -351,13 +355,14 @@ std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t
                              std::min(most_bytes, most_bytes_of_careful * static_cast<std::int64_t>(s->n_core)));
         return s;
     }
-    if (n_bonds > largest_in_lanes && s->type == Schedule::tree) add_runs(*s, m);
+    if (n_bonds > largest_in_lanes && s->type == Schedule::tree) add_runs(*s, m.of_large());
     const bool in_lanes = fills_lanes(*s) && n_bonds <= largest_positions_in_forest;
     if (!in_lanes && takes_flat_list(*s)) {
-        make_flat_list(*s, m.flat);
-        s->flat = &m.flat.list;
+        make_flat_list(*s, m.of_large().flat);
+        s->flat = &m.large->flat.list;
     }
-    if (!in_lanes && n_bonds > largest_in_lanes && make_path_plan(*s, m.paths)) s->paths = &m.paths.plan;
+    if (!in_lanes && n_bonds > largest_in_lanes && make_path_plan(*s, m.of_large().paths))
+        s->paths = &m.large->paths.plan;
     m.careful = std::make_unique<const CarefulShape>(n_atoms, n_bonds, pairs);
     s->careful = &m.careful->plan();
     return s;

@@ -52,6 +52,11 @@ std::size_t bytes(const PathArrays &p) {
     return sum;
 }
 
+std::size_t bytes(const Schedule::Memory::Large &l) {
+    return sizeof l + bytes(l.arms.arm, l.arms.stretch, l.arms.stretch_start, l.arms.share_start) + bytes(l.runs) +
+           bytes(l.arms.runs) + bytes(l.flat) + bytes(l.paths) + bytes_of(l.network);
+}
+
 }  // namespace
 
 std::size_t bytes_of(const Schedule &s) {
@@ -59,10 +64,8 @@ std::size_t bytes_of(const Schedule &s) {
     return sizeof s + sizeof m +
            bytes(m.atom_i, m.atom_j, m.atom_of, m.slot_of, m.bond_of, m.place_of, m.parent, m.child_start, m.child,
                  m.pair_start, m.from, m.to, m.meet_start, m.meet, m.meet_pair, m.meet_pair_start, m.column_start,
-                 m.row, m.update, m.update_start, m.fixed, m.arms.arm, m.arms.stretch, m.arms.stretch_start,
-                 m.arms.share_start) +
-           bytes(m.runs) + bytes(m.arms.runs) + bytes(m.flat) + bytes(m.paths) + bytes_of(m.network) +
-           (m.careful ? static_cast<std::size_t>(m.careful->memory()) : 0);
+                 m.row, m.update, m.update_start, m.fixed) +
+           (m.large ? bytes(*m.large) : 0) + (m.careful ? static_cast<std::size_t>(m.careful->memory()) : 0);
 }
 
 }  // namespace holonomic

@@ -21,12 +21,21 @@ struct Schedule::Memory {
         meet_start, meet, meet_pair, meet_pair_start, column_start, row, update;
     std::vector<std::int64_t> update_start;
     std::vector<std::uint8_t> fixed;
-    ScheduleRuns runs;
-    FlatArrays flat;
-    ScheduleArms arms;
-    PathArrays paths;
-    NetworkArrays network;
     std::unique_ptr<const CarefulShape> careful;
+
+    // What small molecules, which may be many, have no need of.
+    struct Large {
+        ScheduleRuns runs;
+        FlatArrays flat;
+        ScheduleArms arms;
+        PathArrays paths;
+        NetworkArrays network;
+    };
+    std::unique_ptr<Large> large;
+    Large &of_large() {
+        if (!large) large = std::make_unique<Large>();
+        return *large;
+    }
 };
 
 // Lets a schedule point to its arrays, all but those of large molecules.
