@@ -111,6 +111,8 @@ void CarefulShape::find_ring() {
 }
 
 void CarefulShape::order_core(std::int64_t most_bytes) {
+    column_start_.assign(1, 0);
+    if (plan_.n_bonds == plan_.n_atoms - 1) return;  // a tree has no core
     List number(at(plan_.n_bonds), -1), bonds;
     for (std::int32_t k = 0; k < plan_.n_bonds; ++k)
         if (place_[at(k)] >= 0) {
