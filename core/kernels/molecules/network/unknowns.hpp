@@ -51,7 +51,7 @@ struct Unknowns : Ends {
                            sizes != nullptr};
         const double rhs = all.a;
         const int32_t simple = s.has_foreign || direct ? 0 : iterate_simply(goal, all);
-        if (goal.is_reached(all)) return simple;
+        if (simple > 0 && goal.is_reached(all)) return simple;
         const double whole = all.a;
         double rho = 0, looked_at = all.a;
         for (int32_t round = simple + 1; round <= most_rounds; ++round) {
