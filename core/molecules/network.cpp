@@ -257,12 +257,11 @@ void make_network(const Schedule &s, std::int64_t most_bytes, NetworkArrays &arr
 }
 
 std::size_t bytes_of(const NetworkArrays &a) {
-    std::size_t bytes =
-        bytes_of(a.fronts) + a.bundle.capacity() * sizeof(a.bundle[0]) + a.nodes.capacity() * sizeof(a.nodes[0]) +
-        a.sign.capacity() * sizeof(double);
-    for (const Numbers *list : {&a.bundle_start, &a.nodes_start, &a.unknown_start, &a.nodes_of, &a.atom_of, &a.bond_of, &a.from, &a.to, &a.strand_node,
-                                &a.strand_unknown, &a.place_of, &a.node_of, &a.partner, &a.foreign_start,
-                                &a.foreign, &a.other_node, &a.child_start, &a.child})
+    std::size_t bytes = bytes_of(a.fronts) + a.bundle.capacity() * sizeof(a.bundle[0]) +
+                        a.nodes.capacity() * sizeof(a.nodes[0]) + a.sign.capacity() * sizeof(double);
+    for (const Numbers *list : {&a.bundle_start, &a.nodes_start, &a.unknown_start, &a.nodes_of, &a.atom_of, &a.bond_of,
+                                &a.from, &a.to, &a.strand_node, &a.strand_unknown, &a.place_of, &a.node_of, &a.partner,
+                                &a.foreign_start, &a.foreign, &a.other_node, &a.child_start, &a.child})
         bytes += list->capacity() * sizeof(std::int32_t);
     return bytes;
 }

@@ -157,15 +157,14 @@ struct Ends {
             store_any(to + u, mul_add(load_any<V>(coupling + u), gather<V>(of, s.partner + u), value));
         };
         if (own && !s.has_foreign)
-            return net.for_unknowns(share, [&](auto width, int32_t u) HOL_FORCED {
-                couple(width, u, load_any<decltype(width)>(own + u));
-            });
+            return net.for_unknowns(
+                share, [&](auto width, int32_t u) HOL_FORCED { couple(width, u, load_any<decltype(width)>(own + u)); });
         net.for_nodes(share, [&](auto width, const NetNodes &g) HOL_FORCED {
             typedef decltype(width) V;
             const Vector3<V> a = (own ? foreign_a : all_a).get<V>(g.node);
             for (int32_t i = 0, u = g.unknown; i < g.n_own; ++i, u += g.step)
-                couple(width, u, (own ? load_any<V>(own + u) : load_any<V>(E + u) * load_any<V>(of + u)) +
-                                     dot(D.get<V>(u), a));
+                couple(width, u,
+                       (own ? load_any<V>(own + u) : load_any<V>(E + u) * load_any<V>(of + u)) + dot(D.get<V>(u), a));
         });
         for_foreign(share, [&](int32_t u, int32_t other) {
             const Vector3<double> bond = D.get<double>(u), beyond = all_a.get<double>(other);
@@ -196,9 +195,7 @@ struct Ends {
     __attribute__((noinline)) bool factorize_fronts() const {
         return fronts.factorize(
             least_share, [&](const FrontPlan::Front &f, const Dense &a) { add_terms(f, a); },
-            [&](int32_t u) {
-                return E[u] + dot(D.get<double>(u), mass.get<double>(s.node_of[u]) * b.get<double>(u));
-            });
+            [&](int32_t u) { return E[u] + dot(D.get<double>(u), mass.get<double>(s.node_of[u]) * b.get<double>(u)); });
     }
     void solve_fronts(const double *of, double *to) const {
         for (int32_t u = 0; u < s.n_unknowns; ++u) to[u] = of[u];
@@ -225,9 +222,8 @@ private:
             const Tensor<double> inverse = mass.get<double>(n);
             for_unknowns_at(n, [&](int32_t by, int32_t column, double sign) HOL_FORCED {
                 const Vector3<double> push_of = inverse * (sign * b.get<double>(by));
-                for_unknowns_at(n, [&](int32_t on, int32_t row, double sign_of_row) HOL_FORCED {
-                    add(row, column, sign_of_row * dot(D.get<double>(on), push_of));
-                });
+                for_unknowns_at(n, [&](int32_t on, int32_t row, double sign_of_row)
+                                       HOL_FORCED { add(row, column, sign_of_row * dot(D.get<double>(on), push_of)); });
             });
             net.for_own(n, [&](int32_t u) HOL_FORCED {
                 const int32_t row = s.fronts.own_row[u], other = s.fronts.partner_row[u];

@@ -132,9 +132,10 @@ struct NetEquations {
         net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
             const auto site_of = [&](int32_t k) { return g.site + k * g.step; };
-            const auto behind = [&](int32_t k, const Net3 &of, const Net3 &of_part) HOL_FORCED {  // the atom behind bond k
-                return k + 1 < g.length ? of_part.get<V>(site_of(k)) : net.at_node<V>(g, 1, of);
-            };
+            const auto behind = [&](int32_t k, const Net3 &of, const Net3 &of_part)
+                                    HOL_FORCED {  // the atom behind bond k
+                                        return k + 1 < g.length ? of_part.get<V>(site_of(k)) : net.at_node<V>(g, 1, of);
+                                    };
             const Vector3<V> zero = {};
             Vector3<V> at_atom = behind(0, r, r_of(part)), speed = has(squares) ? net.at_node<V>(g, 0, v) : zero;
             Pair3<V> from = at_node<V>(g, 0), bond = unrounded_between(net.at_node<V>(g, 0, r), at_atom);

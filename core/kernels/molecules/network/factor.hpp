@@ -23,7 +23,7 @@ struct NetFactor {
         *from_last;  // multipliers of a strand's next bond: what it gives to this one's t, and gets of its y
     double *to_first, *from_first;  // the same of the first bond
     double *per_pivot;              // 1 / P; of trees: of a bond below an atom with several E, else 1 / P
-    Tensor<double> *joint;                  // [n_tree] of atoms with several children: the inverse mass that they leave
+    Tensor<double> *joint;          // [n_tree] of atoms with several children: the inverse mass that they leave
     Vector3<double> *push;          // [n_tree] of those: from their y
     Unknowns unknowns;
 
@@ -105,8 +105,8 @@ struct NetFactor {
         });
     }
 
-    // What multipliers do to nodes and atoms of trees: G, and where `tension` is wanted the sum of |t| |d|. Of strands t
-    // at their ends is enough.
+    // What multipliers do to nodes and atoms of trees: G, and where `tension` is wanted the sum of |t| |d|. Of strands
+    // t at their ends is enough.
     void find_pulls_of_rest(const double *t, const Net3 &G, double *tension) const {
         net.for_node_shares([&](int32_t share) {
             unknowns.find_pulls(share, t, G, tension);
@@ -158,7 +158,8 @@ private:
         bk = ref.get<V>(g.place + g.step);
         const V whole = w * dot(D0, b0), one = Width<V>::all(1);
         V E0 = whole, row = -(w * dot(D0, bk)), column = symmetric ? row : -(w * dot(Dk, b0)), q = dot(Dk, bk),
-          E = w * q, beyond = w * dot(cross(D0, Dk), cross(b0, bk)) / dot(D0, b0), yk = load_any<V>(y + g.place + g.step);
+          E = w * q, beyond = w * dot(cross(D0, Dk), cross(b0, bk)) / dot(D0, b0),
+          yk = load_any<V>(y + g.place + g.step);
         for (int32_t k = 1; k + 1 < g.length; ++k) {
             const int32_t place = g.place + k * g.step;
             w = load_any<V>(net.w + g.site + k * g.step);

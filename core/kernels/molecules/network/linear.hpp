@@ -236,15 +236,15 @@ struct NetLinear : NetEquations {
         const auto write_part = [&](const NetPart &part) {
             if (!net.is_rest(part)) find_pulls(part, false);
             const Net3 pull = G_of(part);
-            net.write_sites(part, to, net.lane.shared, add, [&](auto width, int32_t site)
-                                                                HOL_FORCED { return pull.get<decltype(width)>(site); });
+            net.write_sites(part, to, net.lane.shared, add,
+                            [&](auto width, int32_t site) HOL_FORCED { return pull.get<decltype(width)>(site); });
         };
         for_rest_and_parts(write_part, write_part);
     }
     void write_velocities(const AtomArray &to) const {
         const auto write_part = [&](const NetPart &part) {
-            net.write_sites(part, to, net.lane.shared, false, [&](auto width, int32_t site)
-                                                                  HOL_FORCED { return v.get<decltype(width)>(site); });
+            net.write_sites(part, to, net.lane.shared, false,
+                            [&](auto width, int32_t site) HOL_FORCED { return v.get<decltype(width)>(site); });
         };
         for_rest_and_parts(write_part, write_part);
     }

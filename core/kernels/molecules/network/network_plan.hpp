@@ -12,7 +12,8 @@ namespace holonomic {
 // A *node* is an atom of the core with trees, or with other than two bonds of the core; a *strand* the bonds between
 // two nodes. The first and the last bond of a strand are its *ends*, and the *unknowns* of what is left when strands
 // and trees have been eliminated; a strand of one bond is one, of its first node, and *foreign* at its second one.
-// Nodes of a share with as many own unknowns stand together: unknown i of the j-th of them is first_unknown + i count + j.
+// Nodes of a share with as many own unknowns stand together: unknown i of the j-th of them is first_unknown + i count +
+// j.
 //
 // Up to most_in_bundle strands of one length are a *bundle*: bond k of strand j stands at place first_place + k width +
 // j, the atom between bonds k - 1 and k at site first_site + (k - 1) width + j. Places of trees follow, each after

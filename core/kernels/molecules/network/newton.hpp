@@ -34,8 +34,8 @@ struct NetNewton {
     NetNewton(const NetworkPlan &plan, const MoleculeLane &lane, bool packed, const LongTeam *team,
               Memory<double> memory)
         : net(plan, lane, packed, team, memory), s(plan), r(Net3::take(memory, n_rest(s), s.first_node)),
-          moves(Net3::take(memory, n_rest(s), s.first_node)), b(Net3::take(memory, s.n_bonds)), D(Net3::take(memory, s.n_bonds)),
-          tau(memory.values(in_fours(s.n_bonds))),
+          moves(Net3::take(memory, n_rest(s), s.first_node)), b(Net3::take(memory, s.n_bonds)),
+          D(Net3::take(memory, s.n_bonds)), tau(memory.values(in_fours(s.n_bonds))),
           t(memory.values(in_fours(s.n_bonds))), a2(memory.values(in_fours(s.n_bonds))),
           per_a2(memory.values(in_fours(s.n_bonds))), stretch(memory.values(in_fours(s.n_bonds))),
           worst(memory.values(in_fours(s.n_shares + 1))), factor(net, b, false, memory) {}

@@ -38,8 +38,8 @@ struct NetPositions {
         largest[part.share] = 0;
         const double *const components[] = {r.x, r.y, r.z};
         for (const double *x : components)
-            largest[part.share] = max(largest_of(x + part.first_site, part.end_site - part.first_site),
-                                      largest[part.share]);
+            largest[part.share] =
+                max(largest_of(x + part.first_site, part.end_site - part.first_site), largest[part.share]);
         for (int32_t k = part.first_place; k < part.end_place; ++k) {
             const double a = net.lane.length[newton.s.bond_of[k]];
             newton.a2[k] = a * a;
@@ -93,8 +93,8 @@ struct NetPositions {
         newton.for_all_parts([&](const NetPart &part) {
             newton.find_moves(part);
             const Net3 moves = newton.moves_of(part);
-            newton.net.write_sites(part, call.r, fixed, true, [&](auto width, int32_t i)
-                                                                  HOL_FORCED { return moves.get<decltype(width)>(i); });
+            newton.net.write_sites(part, call.r, fixed, true,
+                                   [&](auto width, int32_t i) HOL_FORCED { return moves.get<decltype(width)>(i); });
             if (!call.v.x) return;
             newton.net.write_sites(part, call.v, fixed, true, [&](auto width, int32_t i) HOL_FORCED {
                 typedef decltype(width) V;

@@ -106,8 +106,8 @@ struct Net {
     NetPart part(int32_t share, double *of_thread) const {
         const int32_t end = s.bundle_start[share + 1];
         const NetworkPlan::Bundle &b = s.bundle[s.bundle_start[share]];
-        NetPart p = {share,        s.bundle_start[share], end,      b.first_site,
-                     s.first_node, b.first_place, s.first_tree_place, of_thread};
+        NetPart p = {share,         s.bundle_start[share], end,      b.first_site, s.first_node,
+                     b.first_place, s.first_tree_place,    of_thread};
         if (share + 1 == s.n_shares) return p;
         p.end_site = s.bundle[end].first_site;
         p.end_place = s.bundle[end].first_place;

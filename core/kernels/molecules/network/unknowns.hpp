@@ -1,7 +1,8 @@
 // What is left of a network's equations: the ends of strands, coupled at the nodes and from end to end. Stabilised
 // bi-conjugate gradients (H. van der Vorst, SIAM J. Sci. Stat. Comput. 13, 631 (1992)), with the ends of each node
 // solved exactly as the preconditioner M: what strands couple dies out along them, so that it takes few rounds. Where
-// these would be few in any case, corrections by M alone do. With p' = M^-1 p the product with the matrix is p + (matrix - M) p'.
+// these would be few in any case, corrections by M alone do. With p' = M^-1 p the product with the matrix is p +
+// (matrix - M) p'.
 #ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_UNKNOWNS_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_NETWORK_UNKNOWNS_HPP
 
@@ -64,9 +65,8 @@ struct Unknowns : Ends {
             });
             const double alpha = rho / all.a;
             all = sums_of_shares([&](int32_t share, Parts &parts) {
-                net.for_unknowns(share, [&](auto width, int32_t u) HOL_FORCED {
-                    step(width, u, alpha, p_node, v, parts);
-                });
+                net.for_unknowns(share,
+                                 [&](auto width, int32_t u) HOL_FORCED { step(width, u, alpha, p_node, v, parts); });
                 if (!direct) solve_nodes(share, r, s_node);
             });
             if (!(all.a < 1e300)) return -1;
