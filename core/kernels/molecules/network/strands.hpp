@@ -1,97 +1,25 @@
-// The strands of a network in lanes, and what is read and found for all its atoms and bonds.
+// The strands and nodes of a network in lanes, and what is found for all its atoms and bonds.
 #ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_STRANDS_HPP
 #define HOLONOMIC_KERNELS_MOLECULES_NETWORK_STRANDS_HPP
 
-#include "core/kernels/molecules/atoms/atoms.hpp"
 #include "core/kernels/molecules/image.hpp"
 #include "core/kernels/molecules/large_tree/pieces.hpp"
-#include "core/kernels/molecules/list/flat_list.hpp"
-#include "core/kernels/molecules/network/network_plan.hpp"
+#include "core/kernels/molecules/network/sites.hpp"
 
 namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// Vectors x y z of all sites or of all places.
-struct Net3 {
-    double *x, *y, *z;
-    template <class V>
-    HOL_FORCED Vector3<V> get(int64_t i) const {
-        return {load_any<V>(x + i), load_any<V>(y + i), load_any<V>(z + i)};
-    }
-    template <class V>
-    HOL_FORCED void set(int64_t i, const Vector3<V> &a) const {
-        store_any(x + i, a.x);
-        store_any(y + i, a.y);
-        store_any(z + i, a.z);
-    }
-    // The first of n has this number.
-    static Net3 take(Memory<double> &memory, int64_t n, int64_t first = 0) {
-        Net3 a;
-        a.x = memory.values(in_fours(n)) - first;
-        a.y = memory.values(in_fours(n)) - first;
-        a.z = memory.values(in_fours(n)) - first;
-        return a;
-    }
-};
-
-// Equally long strands of a bundle, one per lane: bond k at place + k step, the atom behind it at site + k step.
-struct NetStrands {
-    int32_t length, place, site, strand, step;
-};
-
-// Nodes with as many own unknowns, one per lane: unknown i at unknown + i step.
-struct NetNodes {
-    int32_t node, n_own, unknown, step;
-};
-
-// Numbers at places that a list has.
-template <class V>
-HOL_INLINE V gather(const double *values, const int32_t *place) {
-    V a = {};
-    for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(a, i, values[place[i]]);
-    return a;
-}
-
-// What a thread works on at a time, so little that it stays in cache: some bundles, with the places of their bonds and
-// the sites between the ends; or, after these parts, the *rest*: all sites of nodes and of trees, and trees' bonds.
-struct NetPart {
-    int32_t share, first_bundle, end_bundle, first_site, end_site, first_place, end_place;
-    double *buffer;  // of the thread, for what no other part needs: three vectors of each place
-
-    static constexpr int three_vectors = 9;
-    Net3 of_sites(int i) const { return vector(i, first_site); }
-    Net3 of_places(int i) const { return vector(i, first_place); }
-
-private:
-    // The i-th; there are no more sites than places between the ends.
-    Net3 vector(int i, int32_t first) const {
-        const int64_t n = end_place - first_place;
-        Memory<double> memory = {buffer + 3 * i * in_fours(n)};
-        return Net3::take(memory, n, first);
-    }
-};
-
-// An array per atom that is read by sites; times inverse masses if `weighed`.
-struct NetReading {
-    const AtomArray *from;
-    Net3 to;
-    bool weighed;
-};
-
-struct Net {
-    const NetworkPlan &s;
-    const MoleculeLane &lane;
-    const Atoms<double> at;
+struct Net : NetSites {
     const LongTeam *team;
     double *buffer;  // of this thread; those of the others stand at the beginning of their working arrays, too
-    double *w;       // by site
 
     static int64_t values(const NetworkPlan &s) { return values_of_buffer(s) + in_fours(s.n_atoms); }
     // memory: all of a thread's.
     Net(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *threads, Memory<double> &memory)
-        : s(plan), lane(l), at(&l, 1, packed), team(threads), buffer(memory.values(values_of_buffer(plan))),
-          w(memory.values(in_fours(plan.n_atoms))) {}
+        : NetSites(plan, l, packed), team(threads), buffer(memory.values(values_of_buffer(plan))) {
+        w = memory.values(in_fours(plan.n_atoms));
+    }
 
     static int64_t values_of_buffer(const NetworkPlan &s) {
         int32_t most = s.n_bonds - s.first_tree_place;
@@ -195,14 +123,7 @@ struct Net {
     HOL_FORCED Vector3<V> at_node(const NetStrands &g, int end, const Net3 &value) const {
         return {at_node<V>(g, end, value.x), at_node<V>(g, end, value.y), at_node<V>(g, end, value.z)};
     }
-    // And of their unknowns.
-    template <class V>
-    HOL_FORCED V of_end(const NetStrands &g, int end, const double *value) const {
-        V a = {};
-        for (int i = 0; i < Width<V>::lanes; ++i)
-            Width<V>::set(a, i, value[s.strand_unknown[2 * (g.strand + i) + end]]);
-        return a;
-    }
+    // To their unknowns.
     template <class V>
     HOL_FORCED void to_end(const NetStrands &g, int end, const V &a, double *value) const {
         for (int i = 0; i < Width<V>::lanes; ++i)
@@ -215,88 +136,6 @@ struct Net {
         to_end(g, end, a.z, value.z);
     }
 
-    // Reads masses, and n arrays per atom, one after the other of so many atoms that what is fetched ahead follows few
-    // strands.
-    __attribute__((noinline)) void read_sites(int32_t first, int32_t end, const NetReading *all, int n) const {
-        constexpr int32_t step = 2048;
-        int64_t row[step + rows_ahead];
-        for (int32_t i = first; i < end; i += step) {
-            const int32_t behind = end - i < step ? end : i + step;
-            find_rows(i, behind, row);
-            for (int a = 0; a < n; ++a) read_some(i, behind, all[a], row);
-        }
-    }
-    // Where atoms stand in packed arrays.
-    HOL_FORCED void find_rows(int32_t first, int32_t end, int64_t *row) const {
-        const int32_t *const atom = s.atom_of + first, m = end - first;
-        const int64_t *const list = at.list[0], first_atom = at.first[0];
-        const double *const masses = lane.w;
-        double *const of_sites = w + first;
-        for (int32_t i = 0; i < m; ++i) of_sites[i] = masses[atom[i]];
-        if (list)
-            for (int32_t i = 0; i < m; ++i) row[i] = 3 * list[atom[i]];
-        else
-            for (int32_t i = 0; i < m; ++i) row[i] = 3 * (first_atom + atom[i]);
-        for (int32_t i = 0; i < rows_ahead; ++i) row[m + i] = row[0];
-    }
-    HOL_FORCED void read_some(int32_t first, int32_t end, const NetReading &all, const int64_t *row) const {
-        int32_t i = first;
-#if HOL_LANES > 1
-        const double *const x = reinterpret_cast<const double *>(all.from->x);
-        for (; i + W <= end && at.layout != elements; i += W) {
-            const double *p[W];
-            for (int j = 0; j < W; ++j) {
-                p[j] = x + row[i - first + j];
-                __builtin_prefetch(x + row[i - first + j + rows_ahead]);
-            }
-            vec3 a;
-            read_rows(p, a);
-            all.to.set(i, all.weighed ? holonomic::HOL_ISA::load(w + i) * a : a);
-        }
-#endif
-        for (; i < end; ++i) {
-            const Vector3<double> a = read(*all.from, at, s.atom_of[i]);
-            all.to.set(i, all.weighed ? w[i] * a : a);
-        }
-    }
-    // Writes value(width, site) of a part to an array per atom, or adds it, but for atoms that are `left` as they are.
-    template <class Value>
-    HOL_FORCED void write_sites(const NetPart &part, const AtomArray &to, const unsigned char *left, bool add,
-                                const Value &value) const {
-        int32_t i = part.first_site;
-#if HOL_LANES > 1
-        for (; i + W <= part.end_site && at.layout != elements; i += W) {
-            double *p[W];
-            bool some_left = false;
-            for (int j = 0; j < W; ++j) {
-                const int32_t atom = s.atom_of[i + j];
-                some_left |= left && left[atom];
-                p[j] = reinterpret_cast<double *>(to.x) + 3 * at.number(0, atom);
-            }
-            if (some_left) {
-                for (int j = 0; j < W; ++j) write_site(i + j, to, left, add, value);
-                continue;
-            }
-            vec3 a = value(vec{}, i);
-            if (add) {
-                vec3 before;
-                read_rows(p, before);
-                a = before + a;
-            }
-            write_rows(p, a);
-        }
-#endif
-        for (; i < part.end_site; ++i) write_site(i, to, left, add, value);
-    }
-    template <class Value>
-    HOL_FORCED void write_site(int32_t i, const AtomArray &to, const unsigned char *left, bool add,
-                               const Value &value) const {
-        const int32_t atom = s.atom_of[i];
-        if (left && left[atom]) return;
-        const Vector3<double> a = value(double{}, i);
-        write(to, at, atom, add ? read(to, at, atom) + a : a, 1);
-    }
-
     // Calls body(V, i) for all from `first` on.
     template <class Body>
     HOL_FORCED static void for_all(int32_t first, int32_t end, const Body &body) {
@@ -304,8 +143,8 @@ struct Net {
         for (; i + W <= end; i += W) body(vec{}, i);
         for (; i < end; ++i) body(double{}, i);
     }
-    // Calls body(V, place, from, to) for them: the values at the two atoms of each, of the rest or of the
-    // part's own sites.
+    // Calls body(V, place, from, to) for the bonds of a part: the values at the two atoms of each, of the rest or of
+    // the part's own sites.
     template <class Body>
     HOL_FORCED void for_bonds(const NetPart &part, const Net3 &of_rest, const Net3 &of_sites, const Body &body) const {
         for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {

@@ -1,0 +1,77 @@
+// What loops over a network go through: strands and nodes in lanes, parts of a thread, and vectors of their sites and
+// places.
+#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_PARTS_HPP
+#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_PARTS_HPP
+
+#include "core/kernels/arithmetic/width.hpp"
+#include "core/kernels/molecules/list/flat_list.hpp"
+#include "core/kernels/molecules/scratch.hpp"
+
+namespace holonomic {
+namespace HOL_ISA {
+namespace graph {
+
+// Vectors x y z of all sites or of all places.
+struct Net3 {
+    double *x, *y, *z;
+    template <class V>
+    HOL_FORCED Vector3<V> get(int64_t i) const {
+        return {load_any<V>(x + i), load_any<V>(y + i), load_any<V>(z + i)};
+    }
+    template <class V>
+    HOL_FORCED void set(int64_t i, const Vector3<V> &a) const {
+        store_any(x + i, a.x);
+        store_any(y + i, a.y);
+        store_any(z + i, a.z);
+    }
+    // The first of n has this number.
+    static Net3 take(Memory<double> &memory, int64_t n, int64_t first = 0) {
+        Net3 a;
+        a.x = memory.values(in_fours(n)) - first;
+        a.y = memory.values(in_fours(n)) - first;
+        a.z = memory.values(in_fours(n)) - first;
+        return a;
+    }
+};
+
+// Equally long strands of a bundle, one per lane: bond k at place + k step, the atom behind it at site + k step.
+struct NetStrands {
+    int32_t length, place, site, strand, step;
+};
+
+// Nodes with as many own unknowns, one per lane: unknown i at unknown + i step.
+struct NetNodes {
+    int32_t node, n_own, unknown, step;
+};
+
+// Numbers at places that a list has.
+template <class V>
+HOL_INLINE V gather(const double *values, const int32_t *place) {
+    V a = {};
+    for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(a, i, values[place[i]]);
+    return a;
+}
+
+// What a thread works on at a time, so little that it stays in cache: some bundles, with the places of their bonds and
+// the sites between the ends; or, after these parts, the *rest*: all sites of nodes and of trees, and trees' bonds.
+struct NetPart {
+    int32_t share, first_bundle, end_bundle, first_site, end_site, first_place, end_place;
+    double *buffer;  // of the thread, for what no other part needs: three vectors of each place
+
+    static constexpr int three_vectors = 9;
+    Net3 of_sites(int i) const { return vector(i, first_site); }
+    Net3 of_places(int i) const { return vector(i, first_place); }
+
+private:
+    // The i-th; there are no more sites than places between the ends.
+    Net3 vector(int i, int32_t first) const {
+        const int64_t n = end_place - first_place;
+        Memory<double> memory = {buffer + 3 * i * in_fours(n)};
+        return Net3::take(memory, n, first);
+    }
+};
+
+}  // namespace graph
+}  // namespace HOL_ISA
+}  // namespace holonomic
+#endif
