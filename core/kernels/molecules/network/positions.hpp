@@ -15,9 +15,9 @@ struct NetPositions {
     NetNewton newton;
     Tally &tally;
     double a_min = 1e300, a_max = 0, largest_coordinate = 0;
-    double *largest;  // [n_shares + 1] coordinates of parts
+    double *largest;  // [n_shares + 1] of parts: coordinates, then squares of lengths, then their inverses
 
-    static int64_t values(const NetworkPlan &s) { return NetNewton::values(s) + in_fours(s.n_shares + 1); }
+    static int64_t values(const NetworkPlan &s) { return NetNewton::values(s) + 3 * in_fours(s.n_shares + 1); }
 
     NetPositions(const PositionsCall &c, const NetworkPlan &plan, const unsigned char *held, const MoleculeLane &lane,
                  bool packed, const LongTeam *team, Memory<double> memory, Tally &sum)
@@ -35,11 +35,6 @@ struct NetPositions {
         const Net3 r = r_of(part);
         net.find_bonds(part, call.box_ref, newton.moves, newton.moves_of(part), newton.b);
         net.find_bonds(part, call.box, newton.r, r, newton.D);
-        largest[part.share] = 0;
-        const double *const components[] = {r.x, r.y, r.z};
-        for (const double *x : components)
-            largest[part.share] =
-                max(largest_of(x + part.first_site, part.end_site - part.first_site), largest[part.share]);
         for (int32_t k = part.first_place; k < part.end_place; ++k) {
             const double a = net.lane.length[newton.s.bond_of[k]];
             newton.a2[k] = a * a;
@@ -47,6 +42,14 @@ struct NetPositions {
             newton.tau[k] =
                 call.guess ? 2 * call.dt * call.dt * call.lambda[net.lane.first_bond + newton.s.bond_of[k]] : 0;
         }
+        const double *const components[] = {r.x, r.y, r.z};
+        double coordinate = 0;
+        for (const double *x : components)
+            coordinate = max(largest_of(x + part.first_site, part.end_site - part.first_site), coordinate);
+        const int32_t n = newton.s.n_shares + 1, n_places = part.end_place - part.first_place;
+        largest[part.share] = coordinate;
+        largest[n + part.share] = largest_of(newton.a2 + part.first_place, n_places);
+        largest[2 * n + part.share] = largest_of(newton.per_a2 + part.first_place, n_places);
         newton.worst[part.share] = newton.measure_fresh(part, newton.D);
         if (!call.guess) newton.factorize_part(part, newton.D);
     }
@@ -62,9 +65,10 @@ struct NetPositions {
             read_part(part);
         });
         newton.opening = newton.worst_of_all();
-        largest_coordinate = largest_of(largest, s.n_shares + 1);
-        a_max = sqrt(largest_of(newton.a2, s.n_bonds));
-        a_min = 1 / sqrt(largest_of(newton.per_a2, s.n_bonds));
+        const int32_t n = s.n_shares + 1;
+        largest_coordinate = largest_of(largest, n);
+        a_max = sqrt(largest_of(largest + n, n));
+        a_min = 1 / sqrt(largest_of(largest + 2 * n, n));
     }
     static double largest_of(const double *x, int32_t n) {
         vec most = {};
@@ -105,8 +109,10 @@ struct NetPositions {
     void write_results(bool moved) {
         const NetworkPlan &s = newton.s;
         const double per_dt2 = 1 / (call.dt * call.dt);
-        for (int32_t k = 0; k < s.n_bonds && call.lambda; ++k)
-            call.lambda[newton.net.lane.first_bond + s.bond_of[k]] = mul_add(newton.tau[k], 0.5 * per_dt2, 0.0);
+        newton.net.for_ranges(0, call.lambda ? s.n_bonds : 0, [&](int32_t first, int32_t end) {
+            for (int32_t k = first; k < end; ++k)
+                call.lambda[newton.net.lane.first_bond + s.bond_of[k]] = mul_add(newton.tau[k], 0.5 * per_dt2, 0.0);
+        });
         if (!moved) return;
         if (call.virial) {
             MoleculesVirial<double> virial;
