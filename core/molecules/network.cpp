@@ -1,7 +1,6 @@
 #include "core/molecules/network.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace holonomic {
@@ -81,18 +80,23 @@ private:
         Numbers n_own(slot_of_node_.size(), 0), slots(slot_of_node_);
         for (const Strand &strand : strand_)
             for (int e = 0; e < (strand.n_bonds == 1 ? 1 : 2); ++e) ++n_own[at(strand.node[e])];
-        Numbers order(slots.size()), number(slots.size());
-        std::iota(order.begin(), order.end(), 0);
+        Numbers order, number(slots.size());
         for (std::int32_t first = 0, n = size_of(slots); first < n; first += nodes_of_share) {
             const std::int32_t end = std::min(n, first + nodes_of_share);
-            std::stable_sort(order.begin() + first, order.begin() + end,
-                             [&](std::int32_t x, std::int32_t y) { return n_own[at(x)] > n_own[at(y)]; });
             a_.nodes_start.push_back(static_cast<std::int32_t>(a_.nodes.size()));
-            for (std::int32_t i = first; i < end; ++i) {
-                const std::int32_t own = n_own[at(order[at(i)])];
-                if (i == first || a_.nodes.back().n_own != own) a_.nodes.push_back({0, own, i, 0});
-                ++a_.nodes.back().count;
-                a_.nodes_of.push_back(static_cast<std::int32_t>(a_.nodes.size()) - 1);
+            for (std::int32_t own = *std::max_element(&n_own[at(first)], n_own.data() + end), fewer; own >= 0;
+                 own = fewer) {
+                NetworkPlan::Nodes alike = {0, own, size_of(order), 0};
+                fewer = -1;
+                for (std::int32_t i = first; i < end; ++i) {
+                    const std::int32_t n_own_of_it = n_own[at(i)];
+                    if (n_own_of_it < own) fewer = std::max(fewer, n_own_of_it);
+                    if (n_own_of_it != own) continue;
+                    order.push_back(i);
+                    ++alike.count;
+                    a_.nodes_of.push_back(static_cast<std::int32_t>(a_.nodes.size()));
+                }
+                a_.nodes.push_back(alike);
             }
         }
         a_.nodes_start.push_back(static_cast<std::int32_t>(a_.nodes.size()));

@@ -45,10 +45,8 @@ struct NetFactor {
 
     // Makes the factors, and takes the right-hand sides y up: of the rest, of each part, then of what is left.
     __attribute__((noinline)) void factorize(const NetPart &part, const Net3 &D, double *y) const {
-        const bool symmetric = from_last == to_last;
-        net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
-            symmetric ? factorize_strands<true>(width, g, D, y) : factorize_strands<false>(width, g, D, y);
-        });
+        net.for_strands(
+            part, [&](auto width, const NetStrands &g) HOL_FORCED { factorize_strands<decltype(width)>(g, D, y); });
     }
     void close() const {
         unknowns.add_pushes();
@@ -145,29 +143,26 @@ private:
     // From the first to the last bond, those between being eliminated. What the far side offers to the last one is
     // found as in trees, without a subtraction. To the first one it is what the first bond's own atom does, times what
     // each pivot loses when it is eliminated before and not after those between: P' / P.
-    template <bool symmetric, class V>
-    HOL_FORCED void factorize_strands(const V &, const NetStrands &g, const Net3 &D, double *y) const {
-        const Net3 &ref = symmetric ? D : b;
-        Vector3<V> Dk = D.get<V>(g.place), bk = ref.get<V>(g.place);
+    template <class V>
+    HOL_FORCED void factorize_strands(const NetStrands &g, const Net3 &D, double *y) const {
+        Vector3<V> Dk = D.get<V>(g.place), bk = b.get<V>(g.place);
         V first = load_any<V>(y + g.place);
         unknowns.set_bonds(g, 0, Dk, bk);
         if (g.length == 1) return net.to_end(g, 0, first, unknowns.y);
         V w = load_any<V>(net.w + g.site);
         const Vector3<V> D0 = Dk, b0 = bk;
         Dk = D.get<V>(g.place + g.step);
-        bk = ref.get<V>(g.place + g.step);
+        bk = b.get<V>(g.place + g.step);
         const V whole = w * dot(D0, b0), one = Width<V>::all(1);
-        V E0 = whole, row = -(w * dot(D0, bk)), column = symmetric ? row : -(w * dot(Dk, b0)), q = dot(Dk, bk),
-          E = w * q, beyond = w * dot(cross(D0, Dk), cross(b0, bk)) / dot(D0, b0),
-          yk = load_any<V>(y + g.place + g.step);
+        V E0 = whole, row = -(w * dot(D0, bk)), column = -(w * dot(Dk, b0)), q = dot(Dk, bk), E = w * q,
+          beyond = w * dot(cross(D0, Dk), cross(b0, bk)) / dot(D0, b0), yk = load_any<V>(y + g.place + g.step);
         for (int32_t k = 1; k + 1 < g.length; ++k) {
             const int32_t place = g.place + k * g.step;
             w = load_any<V>(net.w + g.site + k * g.step);
-            const Vector3<V> Dn = D.get<V>(place + g.step), bn = ref.get<V>(place + g.step);
+            const Vector3<V> Dn = D.get<V>(place + g.step), bn = b.get<V>(place + g.step);
             const V P_beyond = mul_add(w, q, beyond);
             const V per = one / mul_add(w, q, E), next = dot(Dn, bn), part = w * per;
-            const V up = part * dot(Dn, bk), down = symmetric ? up : part * dot(Dk, bn), from = row * per,
-                    to = symmetric ? from : column * per;
+            const V up = part * dot(Dn, bk), down = part * dot(Dk, bn), from = row * per, to = column * per;
             const V X = w * dot(cross(Dk, Dn), cross(bk, bn));
             E0 = E0 * (P_beyond * per);
             beyond = w * mul_add(next, beyond, X) / P_beyond;
@@ -176,13 +171,11 @@ private:
             store_any(per_pivot + place, per);
             store_any(to_last + place, down);
             store_any(to_first + place, to);
-            if (!symmetric) {
-                store_any(from_last + place, up);
-                store_any(from_first + place, from);
-            }
+            store_any(from_last + place, up);
+            store_any(from_first + place, from);
             yk = mul_add(up, yk, load_any<V>(y + place + g.step));
             row = row * down;
-            column = symmetric ? row : column * up;
+            column = column * up;
             E = part * mul_add(next, E, X);
             Dk = Dn;
             bk = bn;
