@@ -137,10 +137,16 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND CMAKE_SIZEOF_VOID
     set(HOLONOMIC_X86_64 ON)
 endif()
 set(avx2 -mavx2 -mfma)
+# gcc copies several vectors of four in halves or in pairs, unless it is told not to, and what then reads one waits for these to
+# be in memory.
+set(whole)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 12)
+    set(whole -mmove-max=256 -mstore-max=256)
+endif()
 if(HOLONOMIC_X86_64)
     holonomic_kernels(avx512vl 4 CAREFUL twofold_fma NETWORKS avx2 NEEDS avx512f avx512dq avx512vl fma
-        FLAGS -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=256)
-    holonomic_kernels(avx2 4 CAREFUL twofold_fma FLAGS ${avx2} NEEDS avx2 fma)
+        FLAGS -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=256 ${whole})
+    holonomic_kernels(avx2 4 CAREFUL twofold_fma FLAGS ${avx2} ${whole} NEEDS avx2 fma)
     # Numbers of lanes that other processors have or may have, on any that has AVX2.
     foreach(lanes IN LISTS HOLONOMIC_TEST_LANES)
         holonomic_kernels(lanes${lanes} ${lanes} TESTS_ONLY CAREFUL twofold_fma FLAGS ${avx2} -O1 -Wno-psabi
