@@ -113,11 +113,12 @@ struct Newton {
             if (k == 0)
                 x.row[slot].E = x.w[slot] * dot(x.new_D[slot], x.row[slot].b);
             else
-                choose_few<3>(
-                    k, [&](auto known) HOL_FORCED { factorize_joint<known, false, V>(NewtonAtom<V>(x, slot), k); });
+                choose_few<3>(k, [&](auto known) HOL_FORCED {
+                    factorize_joint<known, false, V>(NewtonAtom<V, known>(x, slot), k);
+                });
         }
         if (s.n_core_atoms == 0)
-            factorize_joint<1, true, V>(NewtonAtom<V>(x, s.n_tree), 1);
+            factorize_joint<1, true, V>(NewtonAtom<V, 1>(x, s.n_tree), 1);
         else if (s.type == Schedule::ring)
             factorize_ring(x);
         else
@@ -131,11 +132,11 @@ struct Newton {
             const int k = s.child_start[slot + 1] - s.child_start[slot];
             if (k > 0)
                 choose_few<3>(k, [&](auto known) HOL_FORCED {
-                    substitute_newton_joint<known, false, V>(NewtonAtom<V>(x, slot), k);
+                    substitute_newton_joint<known, false, V>(NewtonAtom<V, known>(x, slot), k);
                 });
         }
         if (s.n_core_atoms == 0)
-            substitute_newton_joint<1, true, V>(NewtonAtom<V>(x, s.n_tree), 1);
+            substitute_newton_joint<1, true, V>(NewtonAtom<V, 1>(x, s.n_tree), 1);
         else if (s.type == Schedule::ring)
             substitute_ring(x);
         else
@@ -203,14 +204,16 @@ struct Newton {
         for (int32_t slot = s.n_tree - 1; slot >= 0; --slot) {
             const NewtonRow<V> &above = x.row[slot];
             Vector3<V> pull = {};
-            for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) {
-                NewtonRow<V> &row = x.row[s.child[c]];
+            const auto pulled_by = [&](NewtonRow<V> &row) HOL_FORCED {
                 if (corrected) {
                     row.t = mul_add(row.down, above.t, row.t);
                     row.tau = row.tau + keep(active, row.t);
                 }
                 pull = add_times(pull, row.tau, row.b);
-            }
+            };
+            const int32_t first = s.child_start[slot], last = s.child_start[slot + 1] - 1;
+            for (int32_t c = first; c < last; ++c) pulled_by(x.row[s.child[c]]);
+            if (first <= last) pulled_by(x.row[slot - 1]);
             pull = x.w[slot] * add_times(pull, -above.tau, above.b);
             moves.put(slot, pull);
             measure_bond(slot, s.parent[slot], pull);

@@ -119,9 +119,10 @@ struct NewtonMemory<V, 0> {
     static constexpr int64_t values(int64_t k) { return k * k + k * (k - 1) + 5 * k; }
 };
 
-// An atom at the position level: its bonds at their places, those to its children, and the one above.
+// An atom at the position level: its bonds at their places, those to its children, and the one above. known: how many
+// children an atom of a tree has, where the compiler knows it; the last one's slot is then the one before its own.
 // forest/forest_newton.hpp has the same for atoms of W different trees.
-template <class V>
+template <class V, int known = 0>
 struct NewtonAtom {
     const NewtonSystem<V> &x;
     const int32_t slot, *const child;
@@ -129,8 +130,9 @@ struct NewtonAtom {
     HOL_FORCED NewtonAtom(const NewtonSystem<V> &system, int32_t s)
         : x(system), slot(s), child(system.s.child + system.s.child_start[s]) {}
     HOL_FORCED V w() const { return x.w[slot]; }
-    HOL_FORCED NewtonRow<V> &bond(int a) const { return x.row[child[a]]; }
-    HOL_FORCED const Vector3<V> &D(int a) const { return x.new_D[child[a]]; }
+    HOL_FORCED int32_t place(int a) const { return known > 0 && a == known - 1 ? slot - 1 : child[a]; }
+    HOL_FORCED NewtonRow<V> &bond(int a) const { return x.row[place(a)]; }
+    HOL_FORCED const Vector3<V> &D(int a) const { return x.new_D[place(a)]; }
     HOL_FORCED NewtonRow<V> &above() const { return x.row[slot]; }
     HOL_FORCED const Vector3<V> &D_above() const { return x.new_D[slot]; }
     HOL_FORCED V *lower() const { return x.lower + x.s.pair_start[slot]; }
