@@ -78,7 +78,7 @@ HOL_INLINE MaskOf<V> lost_its_way(V error, V before) {
     return less(Width<V>::all(1e-10), error) & less(part * before, error);
 }
 
-// Newton's method in the lanes of `wanted`, from tau = 0 or, with `guess`, from tau as it is where that is better.
+// Newton's method in the lanes of `wanted`, from tau as it is: 0 or, with `guess`, that, unless 0 is better.
 // System:
 //   V open()                       largest error of the bonds as they came
 //   void first_factors()           with these
@@ -104,9 +104,8 @@ HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const Posi
         out.converged = active & less_equal(error, done);
         active = active & ~out.converged;
         if (any(active)) newton.factorize(~none);
-    } else {
-        newton.forget(~none);
-        if (any(active)) newton.first_factors();
+    } else if (any(active)) {
+        newton.first_factors();
     }
     V rate = error;  // new factors square the error
     Mask proven = none, fresh = active;

@@ -21,47 +21,56 @@ HOL_INLINE void make_bond(NewtonRow<V> &row, const PositionsCall &call, const Ve
     Vector3<V> unused = {};
     row.b = b;
     row.D = D;
+    row.tau = V{};
     take_image<false>(call.box_ref, row.b, unused);
     take_image<false>(call.box, row.D, unused);
 }
-
-// Reads the reference positions and the new ones, by slot; returns the latter's largest coordinate.
 template <class V>
-HOL_NOINLINE V read_positions(const Schedule &s, const PositionsCall &call, const Atoms<V> &at, const Slots<V> ref,
-                              const Slots<V> now) {
+HOL_INLINE V largest_of(const V &largest, const Vector3<V> &r) {
+    return max(max(abs(r.x), abs(r.y)), max(abs(r.z), largest));
+}
+
+// Reads the reference positions and the new ones, by slot.
+template <class V>
+HOL_INLINE void read_positions(const Schedule &s, const PositionsCall &call, const Atoms<V> &at, const Slots<V> ref,
+                               const Slots<V> now) {
     read_vectors(call.r_ref, at, s.slot_of, s.n_atoms, ref);
     read_vectors(call.r, at, s.slot_of, s.n_atoms, now);
-    V largest = {};
-    for (int32_t i = 0; i < s.n_atoms; ++i) {
-        const Vector3<V> r = now[i];
-        largest = max(max(abs(r.x), abs(r.y)), max(abs(r.z), largest));
-    }
-    return largest;
 }
 
 // Bonds of the reference positions and of the new ones; returns the largest coordinate of the latter.
 template <class V>
 HOL_NOINLINE V load_bonds(Newton<V> &newton, const PositionsCall &call, const Atoms<V> &at) {
     const Schedule &s = newton.x.s;
-    NewtonRow<V> *const row = newton.x.row;
-    Vector3<V> *const r_ref = newton.x.move, *const r = newton.x.r;
-    const V largest = read_positions(s, call, at, Slots<V>(r_ref), Slots<V>(r));
-    for (int32_t k = 0; k < s.n_tree; ++k)
-        make_bond(row[k], call, r_ref[k] - r_ref[s.parent[k]], r[k] - r[s.parent[k]]);
-    for (int32_t k = s.n_tree; k < s.n_bonds; ++k) {
-        const int32_t from = s.from[k - s.n_tree], to = s.to[k - s.n_tree];
-        make_bond(row[k], call, r_ref[to] - r_ref[from], r[to] - r[from]);
+    const Vector3<V> *const r_ref = newton.x.move, *const r = newton.x.r;
+    read_positions(s, call, at, Slots<V>(newton.x.move), Slots<V>(newton.x.r));
+    V largest = {};
+    typename Newton<V>::Errors errors = {};
+    const auto load = [&](int32_t k, int32_t from, int32_t to) HOL_FORCED {
+        make_bond(newton.x.row[k], call, r_ref[to] - r_ref[from], r[to] - r[from]);
+        newton.measure_first(k, newton.x.row[k].D, errors);
+    };
+    for (int32_t k = 0; k < s.n_tree; ++k) {
+        load(k, s.parent[k], k);
+        largest = largest_of(largest, r[k]);
     }
+    for (int32_t p = 0; p < s.n_core; ++p) load(s.n_tree + p, s.from[p], s.to[p]);
+    for (int32_t slot = s.n_tree; slot < s.n_atoms; ++slot) largest = largest_of(largest, r[slot]);
+    newton.opening = errors.largest();
     return largest;
 }
 // The atoms of a ring are read into the rows of the bonds behind them.
 template <class V>
 HOL_NOINLINE V load_bonds(RingNewton<V> &newton, const PositionsCall &call, const Atoms<V> &at) {
     NewtonRow<V> *const row = newton.x.row;
-    const V largest = read_positions(newton.x.s, call, at, Slots<V>(row, &row->b.x), Slots<V>(row, &row->D.x));
+    read_positions(newton.x.s, call, at, Slots<V>(row, &row->b.x), Slots<V>(row, &row->D.x));
     const Vector3<V> first_ref = row[0].b, first = row[0].D;
     const int32_t n = newton.x.s.n_bonds;
-    for (int32_t k = 0; k + 1 < n; ++k) make_bond(row[k], call, row[k + 1].b - row[k].b, row[k + 1].D - row[k].D);
+    V largest = largest_of(V{}, first);
+    for (int32_t k = 0; k + 1 < n; ++k) {
+        largest = largest_of(largest, row[k + 1].D);
+        make_bond(row[k], call, row[k + 1].b - row[k].b, row[k + 1].D - row[k].D);
+    }
     make_bond(row[n - 1], call, first_ref - row[n - 1].b, first - row[n - 1].D);
     return largest;
 }
@@ -71,8 +80,8 @@ template <class System, class V>
 HOL_NOINLINE void write_moves(const System &newton, const PositionsCall &call, const Atoms<V> &at, unsigned which) {
     const Schedule &s = newton.x.s;
     const Slots<V> moves = newton.displace();
-    bool any_fixed = false;
-    for (int32_t i = 0; i < s.n_atoms; ++i) any_fixed = any_fixed || s.fixed[i];
+    unsigned char any_fixed = 0;
+    for (int32_t i = 0; i < s.n_atoms; ++i) any_fixed |= s.fixed[i];
     const unsigned char *const fixed = any_fixed ? s.fixed : nullptr;
     write_vectors(call.r, at, s.slot_of, s.n_atoms, moves, Written<V>{which, fixed, nullptr, true});
     if (call.v.x)

@@ -19,6 +19,7 @@ struct Newton {
     NewtonSystem<V> x;
     V *kept;     // factors, while new ones are made for some lanes
     V *lengths;  // least and largest
+    V opening;   // the largest error of the bonds as they came
 
     static constexpr int64_t row_values = static_cast<int64_t>(sizeof(NewtonRow<V>) / sizeof(V));
     static int64_t values(const Schedule &s) {
@@ -29,7 +30,7 @@ struct Newton {
     }
 
     Newton(const Schedule &s, Memory<V> &memory)
-        : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, kept(), lengths(memory.values(2)) {
+        : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, kept(), lengths(memory.values(2)), opening() {
         const int64_t part = CoreMatrix<V>::most_parts(s);
         x.w = memory.values(s.n_atoms);
         x.row = reinterpret_cast<NewtonRow<V> *>(memory.values(row_values * s.n_bonds));
@@ -229,15 +230,12 @@ struct Newton {
     // Returns the relative error of one bond, as it was measured last.
     V left_of(int32_t k) const { return abs(excess(x.new_D[k], x.row[k].a2)) * x.row[k].per_a2; }
 
-    // Takes D as it stands: the first factors are for these bonds. Returns the largest error.
-    V open() {
-        Errors errors = {};
-        for (int32_t k = 0; k < x.s.n_bonds; ++k) {
-            x.new_D[k] = x.row[k].D;
-            measure<true>(x.row[k], x.row[k].D, errors);
-        }
-        return errors.largest();
+    // A bond as it comes: the first factors are for these.
+    HOL_FORCED void measure_first(int32_t k, const Vector3<V> &D, Errors &errors) const {
+        Slots<V>(x.new_D).put(k, D);
+        measure<true>(x.row[k], D, errors);
     }
+    V open() const { return opening; }
     void first_factors() { make_factors(); }
 };
 
