@@ -86,11 +86,10 @@ HOL_INLINE V operator*(Minus, const V &x) {
     return -x;
 }
 
-// Calls body(place, sign) for the bonds of the atom at a slot. The sign is positive if the bond points away from it.
+// Calls body(place, sign) for the bonds of the core at the atom of a slot, from n_tree on. The sign is positive if the
+// bond points away from it.
 template <class V, class Body>
-HOL_INLINE void for_bonds_of(const Schedule &s, int32_t slot, const Body &body) {
-    for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) body(s.child[c], Plus{});
-    if (slot < s.n_tree) return body(slot, Minus{});
+HOL_INLINE void for_core_bonds_of(const Schedule &s, int32_t slot, const Body &body) {
     if (s.n_core_atoms == 0) return;
     if (s.type == Schedule::ring) {
         body(slot, Plus{});
@@ -100,6 +99,13 @@ HOL_INLINE void for_bonds_of(const Schedule &s, int32_t slot, const Body &body) 
     const int32_t *const meet = s.meet + s.meet_start[slot - s.n_tree];
     const int n = s.meet_start[slot - s.n_tree + 1] - s.meet_start[slot - s.n_tree];
     for (int e = 0; e < n; ++e) body(s.n_tree + meet[e] / 2, sign[meet[e] & 1]);
+}
+// The same for all bonds of an atom.
+template <class V, class Body>
+HOL_INLINE void for_bonds_of(const Schedule &s, int32_t slot, const Body &body) {
+    for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) body(s.child[c], Plus{});
+    if (slot < s.n_tree) return body(slot, Minus{});
+    for_core_bonds_of<V>(s, slot, body);
 }
 
 // Finds a bond vector of one lane, with the low word that the difference of the coordinates leaves.

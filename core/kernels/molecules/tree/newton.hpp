@@ -31,7 +31,7 @@ struct Newton {
 
     Newton(const Schedule &s, Memory<V> &memory)
         : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, kept(), lengths(memory.values(2)), opening() {
-        const int64_t part = CoreMatrix<V>::most_parts(s);
+        const int64_t part = CoreMatrix<V>::most_parts(s), n_reaches = reaches(s);
         x.w = memory.values(s.n_atoms);
         x.row = reinterpret_cast<NewtonRow<V> *>(memory.values(row_values * s.n_bonds));
         x.lower = memory.values(s.n_pairs);
@@ -42,12 +42,12 @@ struct Newton {
         x.core = memory.values(s.n_core + columns_ahead + 1);
         x.core_lower = memory.values(s.n_entries);
         x.core_upper = memory.values(s.n_entries);
-        x.reach_up = memory.values(reaches(s));
-        x.reach_down = memory.values(reaches(s));
+        x.reach_up = memory.values(n_reaches);
+        x.reach_down = memory.values(n_reaches);
         x.part_up = memory.values(part);
         x.part_down = memory.values(part);
         kept = memory.values(3 * static_cast<int64_t>(s.n_bonds) +
-                             2 * (s.n_pairs + static_cast<int64_t>(s.n_entries) + reaches(s)));
+                             2 * (s.n_pairs + static_cast<int64_t>(s.n_entries) + n_reaches));
         x.working = memory;
         memory.values(NewtonMemory<V, 0>::values(s.max_joint));
     }
@@ -193,28 +193,29 @@ struct Newton {
             new_D.put(k, D);
             measure<false>(x.row[k], D, errors);
         };
+        const auto pull_by = [&](NewtonRow<V> &row, Vector3<V> &pull) HOL_FORCED {
+            if (corrected) row.tau = row.tau + keep(active, row.t);
+            pull = add_times(pull, row.tau, row.b);
+        };
         for (int32_t slot = s.n_atoms - 1; slot >= s.n_tree; --slot) {
-            if (corrected)
-                for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) {
-                    NewtonRow<V> &row = x.row[s.child[c]];
-                    row.tau = row.tau + keep(active, row.t);
-                }
-            moves.put(slot, displacement(slot));
+            Vector3<V> pull = {};
+            for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) pull_by(x.row[s.child[c]], pull);
+            for_core_bonds_of<V>(s, slot, [&](int32_t place, auto sign) HOL_FORCED {
+                pull = add_times(pull, sign * x.row[place].tau, x.row[place].b);
+            });
+            moves.put(slot, x.w[slot] * pull);
         }
         for (int32_t p = 0; p < s.n_core; ++p) measure_bond(s.n_tree + p, s.from[p], x.move[s.to[p]]);
         for (int32_t slot = s.n_tree - 1; slot >= 0; --slot) {
             const NewtonRow<V> &above = x.row[slot];
             Vector3<V> pull = {};
-            const auto pulled_by = [&](NewtonRow<V> &row) HOL_FORCED {
-                if (corrected) {
-                    row.t = mul_add(row.down, above.t, row.t);
-                    row.tau = row.tau + keep(active, row.t);
-                }
-                pull = add_times(pull, row.tau, row.b);
+            const auto pull_down = [&](NewtonRow<V> &row) HOL_FORCED {
+                if (corrected) row.t = mul_add(row.down, above.t, row.t);
+                pull_by(row, pull);
             };
             const int32_t first = s.child_start[slot], last = s.child_start[slot + 1] - 1;
-            for (int32_t c = first; c < last; ++c) pulled_by(x.row[s.child[c]]);
-            if (first <= last) pulled_by(x.row[slot - 1]);
+            for (int32_t c = first; c < last; ++c) pull_down(x.row[s.child[c]]);
+            if (first <= last) pull_down(x.row[slot - 1]);
             pull = x.w[slot] * add_times(pull, -above.tau, above.b);
             moves.put(slot, pull);
             measure_bond(slot, s.parent[slot], pull);
