@@ -100,11 +100,22 @@ HOL_INLINE void for_core_bonds_of(const Schedule &s, int32_t slot, const Body &b
     const int n = s.meet_start[slot - s.n_tree + 1] - s.meet_start[slot - s.n_tree];
     for (int e = 0; e < n; ++e) body(s.n_tree + meet[e] / 2, sign[meet[e] & 1]);
 }
-// The same for all bonds of an atom.
+// Calls body(slot) for the children of an atom of a tree that is not its root: the last one's slot is the one before its
+// own.
+template <class Body>
+HOL_INLINE void for_children(const Schedule &s, int32_t slot, const Body &body) {
+    const int32_t first = s.child_start[slot], last = s.child_start[slot + 1] - 1;
+    for (int32_t c = first; c < last; ++c) body(s.child[c]);
+    if (first <= last) body(slot - 1);
+}
+// for_core_bonds_of(), for all bonds of an atom.
 template <class V, class Body>
 HOL_INLINE void for_bonds_of(const Schedule &s, int32_t slot, const Body &body) {
+    if (slot < s.n_tree) {
+        for_children(s, slot, [&](int32_t child) HOL_FORCED { body(child, Plus{}); });
+        return body(slot, Minus{});
+    }
     for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) body(s.child[c], Plus{});
-    if (slot < s.n_tree) return body(slot, Minus{});
     for_core_bonds_of<V>(s, slot, body);
 }
 

@@ -158,44 +158,46 @@ static inline void up_trees(Molecules<V> &x, Memory<V> memory) {
     const Schedule &s = x.s;
     for (int32_t slot = 0; slot < s.n_tree; ++slot) {
         const int k = s.child_start[slot + 1] - s.child_start[slot];
-        const AtomRows<V> rows(x, slot);
         if (k == 0) continue;
+        const Molecules<V> *const molecules = &x;
         slack = choose_few<3>(k, [=](auto known) HOL_FORCED {  // captures by value, so that slack stays in a register
             V least = slack;
-            up_joint<known, false>(rows, k, memory, least);
+            up_joint<known, false>(AtomRows<V, known>(*molecules, slot), k, memory, least);
             return least;
         });
     }
-    if (s.type == Schedule::tree) up_joint<1, true>(AtomRows<V>(x, s.n_tree), 1, memory, slack);
+    if (s.type == Schedule::tree) up_joint<1, true>(AtomRows<V, 1>(x, s.n_tree), 1, memory, slack);
     x.slack = slack;
 }
 
 template <class V>
 static inline void substitute_one(const Molecules<V> &x, int32_t slot, Memory<V> memory) {
-    const AtomRows<V> rows(x, slot);
     const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
-    if (k > 0) choose_few<3>(k, [&](auto known) HOL_FORCED { substitute_joint<known, false>(rows, k, memory); });
+    if (k > 0)
+        choose_few<3>(k, [&](auto known) HOL_FORCED {
+            substitute_joint<known, false>(AtomRows<V, known>(x, slot), k, memory);
+        });
 }
 
 template <class V>
 static inline void substitute_trees(const Molecules<V> &x, Memory<V> memory) {
     for (int32_t slot = 0; slot < x.s.n_tree; ++slot) substitute_one(x, slot, memory);
-    if (x.s.type == Schedule::tree) substitute_joint<1, true>(AtomRows<V>(x, x.s.n_tree), 1, memory);
+    if (x.s.type == Schedule::tree) substitute_joint<1, true>(AtomRows<V, 1>(x, x.s.n_tree), 1, memory);
 }
 
 // Goes down at one atom: u of its children becomes t, from t of the bond above. `look`: tests the result.
 template <bool look, int known, class V>
 HOL_INLINE void down_joint(const Molecules<V> &x, int32_t slot, int count, V &slack) {
     const int k = known > 0 ? known : count;
-    const int32_t *const child = x.s.child + x.s.child_start[slot];
+    const AtomRows<V, known> rows(x, slot);
     const V above = x.row[slot].t;
     HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
-        BondRow<V> &row = x.row[child[a]];
+        BondRow<V> &row = rows.bond(a);
         row.t = mul_add(row.l, above, row.t);
     }
     if (!look || known == 1) return;
-    const MaskOf<V> faint = faint_bonds<V>(AtomRows<V>(x, slot), k);
+    const MaskOf<V> faint = faint_bonds<V>(rows, k);
     if (__builtin_expect(any(faint), 0)) doubt_faint_bonds(x, slot, k, bits(faint), slack);
 }
 
@@ -220,11 +222,11 @@ static inline void down_trees_and_move(const Molecules<V> &x, Vector3<V> *v) {
     for (int32_t slot = s.n_tree; slot-- > 0;) {
         const BondRow<V> &above = x.row[slot];
         Vector3<V> pull = {};
-        for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) {
-            BondRow<V> &row = x.row[s.child[c]];
+        for_children(s, slot, [&](int32_t child) HOL_FORCED {
+            BondRow<V> &row = x.row[child];
             row.t = mul_add(row.l, above.t, row.t);
             pull = add_times(pull, row.t, row.d);
-        }
+        });
         v[slot] = add_times(v[slot], x.w[slot], add_times(pull, -above.t, above.d));
     }
 }

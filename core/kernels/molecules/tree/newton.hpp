@@ -209,13 +209,11 @@ struct Newton {
         for (int32_t slot = s.n_tree - 1; slot >= 0; --slot) {
             const NewtonRow<V> &above = x.row[slot];
             Vector3<V> pull = {};
-            const auto pull_down = [&](NewtonRow<V> &row) HOL_FORCED {
+            for_children(s, slot, [&](int32_t child) HOL_FORCED {
+                NewtonRow<V> &row = x.row[child];
                 if (corrected) row.t = mul_add(row.down, above.t, row.t);
                 pull_by(row, pull);
-            };
-            const int32_t first = s.child_start[slot], last = s.child_start[slot + 1] - 1;
-            for (int32_t c = first; c < last; ++c) pull_down(x.row[s.child[c]]);
-            if (first <= last) pull_down(x.row[slot - 1]);
+            });
             pull = x.w[slot] * add_times(pull, -above.tau, above.b);
             moves.put(slot, pull);
             measure_bond(slot, s.parent[slot], pull);

@@ -120,7 +120,7 @@ struct NewtonMemory<V, 0> {
 };
 
 // An atom at the position level: its bonds at their places, those to its children, and the one above. known: how many
-// children an atom of a tree has, where the compiler knows it; the last one's slot is then the one before its own.
+// children it has, where the compiler knows it, and the atom is no root of several trees: see for_children().
 // forest/forest_newton.hpp has the same for atoms of W different trees.
 template <class V, int known = 0>
 struct NewtonAtom {

@@ -18,20 +18,21 @@ namespace holonomic {
 namespace HOL_ISA {
 namespace graph {
 
-// The bonds of an atom, each at its place: those to its children, and the one above. forest/forest_sweeps.hpp has
-// the same for atoms in lanes.
-template <class V>
+// The bonds of an atom, each at its place: those to its children, and the one above. known: as in NewtonAtom.
+// forest/forest_sweeps.hpp has the same for atoms in lanes.
+template <class V, int known = 0>
 struct AtomRows {
     const Molecules<V> &x;
     const int32_t slot, *const child;
 
     AtomRows(const Molecules<V> &m, int32_t s) : x(m), slot(s), child(m.s.child + m.s.child_start[s]) {}
     HOL_FORCED V w() const { return x.w[slot]; }
-    HOL_FORCED BondRow<V> &bond(int a) const { return x.row[child[a]]; }
+    HOL_FORCED int32_t place(int a) const { return known > 0 && a == known - 1 ? slot - 1 : child[a]; }
+    HOL_FORCED BondRow<V> &bond(int a) const { return x.row[place(a)]; }
     HOL_FORCED BondRow<V> &above() const { return x.row[slot]; }
     // Of a child with the bond above; of a single one by the rule of product_of().
     HOL_FORCED V product(int a, int k) const {
-        return k == 1 ? product_of(x, child[0], slot) : dot(bond(a).d, above().d);
+        return k == 1 ? product_of(x, place(0), slot) : dot(bond(a).d, above().d);
     }
     HOL_FORCED V *multipliers() const { return x.pair + x.s.pair_start[slot]; }
 };
