@@ -79,7 +79,7 @@ function(holonomic_kernel_objects name lanes)
     target_link_libraries(${target} PRIVATE holonomic_flags holonomic_warnings)
 endfunction()
 
-# holonomic_kernels(NAME LANES CAREFUL set [NETWORKS set] [TESTS_ONLY] [CHAINS_ONLY] [FLAGS flag...] [NEEDS feature...])
+# holonomic_kernels(NAME LANES CAREFUL set [NETWORKS set] [TESTS_ONLY] [CHAINS_ONLY] [FLAGS flag...] [TUNING flag...] [NEEDS feature...])
 #   NAME         of the namespace, of the object library holonomic_kernels_NAME, and for HOLONOMIC_ISA
 #   LANES        doubles worked on at once
 #   CAREFUL      the careful solver that it uses, see below
@@ -87,6 +87,7 @@ endfunction()
 #   TESTS_ONLY   in no library but the one of tests/lanes; runs only if HOLONOMIC_ISA names it
 #   CHAINS_ONLY  runs for chains that fit into lanes, beside another set
 #   FLAGS        of the compiler
+#   TUNING       more of them, that are its own
 #   NEEDS        of the processor, as __builtin_cpu_supports() names it
 set(kernel_objects)
 set(test_kernel_objects)
@@ -95,7 +96,7 @@ set(test_kernel_sets)
 set(set_names)
 set(careful_solvers)
 function(holonomic_kernels name lanes)
-    cmake_parse_arguments(PARSE_ARGV 2 set "TESTS_ONLY;CHAINS_ONLY" "CAREFUL;NETWORKS" "FLAGS;NEEDS")
+    cmake_parse_arguments(PARSE_ARGV 2 set "TESTS_ONLY;CHAINS_ONLY" "CAREFUL;NETWORKS" "FLAGS;TUNING;NEEDS")
     if((set_TESTS_ONLY AND NOT (HOLONOMIC_BUILD_TESTS AND HOLONOMIC_TEST_SETS)) OR
        (NOT set_TESTS_ONLY AND NOT name IN_LIST HOLONOMIC_INSTRUCTION_SETS AND NOT (name STREQUAL "baseline" AND HOLONOMIC_BASELINE)))
         return()
@@ -115,7 +116,7 @@ function(holonomic_kernels name lanes)
         list(APPEND defines HOL_TESTS_ONLY)
         set(kind test_)
     endif()
-    holonomic_kernel_objects(${name} ${lanes} SOURCES ${sources} DEFINES ${defines} FLAGS ${set_FLAGS})
+    holonomic_kernel_objects(${name} ${lanes} SOURCES ${sources} DEFINES ${defines} FLAGS ${set_FLAGS} ${set_TUNING})
     # What the tests of headers compile with.
     list(TRANSFORM defines PREPEND -D)
     set(HOLONOMIC_COMPILES_${name} -DHOL_ISA=${name} -DHOL_LANES=${lanes} ${defines} ${set_FLAGS} CACHE INTERNAL "")
@@ -145,8 +146,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_G
 endif()
 if(HOLONOMIC_X86_64)
     holonomic_kernels(avx512vl 4 CAREFUL twofold_fma NETWORKS avx2 NEEDS avx512f avx512dq avx512vl fma
-        FLAGS -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=256 ${whole})
-    holonomic_kernels(avx2 4 CAREFUL twofold_fma FLAGS ${avx2} ${whole} NEEDS avx2 fma)
+        FLAGS -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=256 TUNING ${whole})
+    holonomic_kernels(avx2 4 CAREFUL twofold_fma FLAGS ${avx2} TUNING ${whole} NEEDS avx2 fma)
     # Numbers of lanes that other processors have or may have, on any that has AVX2.
     foreach(lanes IN LISTS HOLONOMIC_TEST_LANES)
         holonomic_kernels(lanes${lanes} ${lanes} TESTS_ONLY CAREFUL twofold_fma FLAGS ${avx2} -O1 -Wno-psabi

@@ -118,7 +118,7 @@ private:
         const int k = known > 0 ? known : count_of;
         const int32_t *const child = children_of(slot);
         const V w0 = w[slot], above = top ? V{} : row[slot].H;
-        V H[pairs_to(most)], off[pairs_to(most)] = {}, beside[most], off_beside[most] = {};  // and of H_ce
+        V H[pairs_to(most)], off[pairs_to(most)], beside[most], off_beside[most];  // and of H_ce
         inverse<most>(k, child, pair + s.pair_start[slot], H);
         if (known == 1) {
             MetricRow<V> &x = row[child[0]];
