@@ -111,11 +111,8 @@ HOL_INLINE void for_children(const Schedule &s, int32_t slot, const Body &body) 
 // for_core_bonds_of(), for all bonds of an atom.
 template <class V, class Body>
 HOL_INLINE void for_bonds_of(const Schedule &s, int32_t slot, const Body &body) {
-    if (slot < s.n_tree) {
-        for_children(s, slot, [&](int32_t child) HOL_FORCED { body(child, Plus{}); });
-        return body(slot, Minus{});
-    }
     for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) body(s.child[c], Plus{});
+    if (slot < s.n_tree) return body(slot, Minus{});
     for_core_bonds_of<V>(s, slot, body);
 }
 
