@@ -73,7 +73,8 @@ void project_positions_of_bonds(const Chains &chains, const Along &along, const 
     std::optional<Reference> made;
     if (!along.r_ref) made.emplace(chains, *along.bonds);
     const Reference *const reference = made ? &*made : nullptr;
-    const Box none{}, &box_ref = !reference || reference->winds() ? chains.box_of_reference() : none;
+    static const Box none{};
+    const Box &box_ref = !reference || reference->winds() ? chains.box_of_reference() : none;
     PositionsCall call;
     call.r_ref = reference ? reference->atoms() : *along.r_ref;
     call.r = r;
