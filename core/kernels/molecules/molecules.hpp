@@ -100,8 +100,8 @@ HOL_INLINE void for_core_bonds_of(const Schedule &s, int32_t slot, const Body &b
     const int n = s.meet_start[slot - s.n_tree + 1] - s.meet_start[slot - s.n_tree];
     for (int e = 0; e < n; ++e) body(s.n_tree + meet[e] / 2, sign[meet[e] & 1]);
 }
-// Calls body(slot) for the children of an atom of a tree that is not its root: the last one's slot is the one before its
-// own.
+// Calls body(slot) for the children of an atom of a tree that is not its root: the last one's slot is the one before
+// its own.
 template <class Body>
 HOL_INLINE void for_children(const Schedule &s, int32_t slot, const Body &body) {
     const int32_t first = s.child_start[slot], last = s.child_start[slot + 1] - 1;

@@ -37,8 +37,8 @@ HOL_INLINE MaskOf<V> at_floor(V expected, V before, V error) {
 // They are worth it if the old ones would take more than four solves in all. i: solves so far, less one.
 // `by_length`: the right-hand side is |D_0| (|D| - a) where the factors are those of D_0. Then the rate of the first
 // solve says nothing of those that follow. It leaves the square of the angles by which bonds have turned, the others
-// are slowed down by the angles themselves. Later, new factors take one solve for what is below 1e-8 and two for what is
-// above, and a price of one to three: they are worth it if the old ones would take two more than that.
+// are slowed down by the angles themselves. Later, new factors take one solve for what is below 1e-8 and two for what
+// is above, and a price of one to three: they are worth it if the old ones would take two more than that.
 template <bool by_length = false, class V>
 HOL_INLINE MaskOf<V> worth_new_factors(V error, V rate, int64_t i) {
     if (by_length && i == 0) return less(Width<V>::all(1e-5), error);

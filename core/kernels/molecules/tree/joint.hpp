@@ -174,9 +174,8 @@ template <class V>
 static inline void substitute_one(const Molecules<V> &x, int32_t slot, Memory<V> memory) {
     const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
     if (k > 0)
-        choose_few<3>(k, [&](auto known) HOL_FORCED {
-            substitute_joint<known, false>(AtomRows<V, known>(x, slot), k, memory);
-        });
+        choose_few<3>(
+            k, [&](auto known) HOL_FORCED { substitute_joint<known, false>(AtomRows<V, known>(x, slot), k, memory); });
 }
 
 template <class V>

@@ -30,7 +30,8 @@ struct Newton {
     }
 
     Newton(const Schedule &s, Memory<V> &memory)
-        : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, kept(), lengths(memory.values(2)), opening() {
+        : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, kept(), lengths(memory.values(2)),
+          opening() {
         const int64_t part = CoreMatrix<V>::most_parts(s), n_reaches = reaches(s);
         x.w = memory.values(s.n_atoms);
         x.row = reinterpret_cast<NewtonRow<V> *>(memory.values(row_values * s.n_bonds));
