@@ -69,6 +69,8 @@ inline void trees_are_in_post_order(const Schedule &s)
             "places for pairs");
         for (int c = s.child_start[i]; c < s.child_start[i + 1]; ++c, ++children)
             require(s.parent[s.child[c]] == i, "a child of another atom");
+        if (n > 0 && (i < s.n_tree || s.type == Schedule::tree))
+            require(s.child[s.child_start[i + 1] - 1] == i - 1, "the last child's slot is not the one before");
     }
     require(children == s.n_tree, "children are missing");
     if (s.type == Schedule::tree)

@@ -31,7 +31,7 @@ struct PathPlan;     // core/kernels/molecules/paths/paths.hpp
 struct NetworkPlan;  // core/kernels/molecules/network/network_plan.hpp
 
 // Atoms and bonds are renumbered. The *slot* of an atom: first the atoms of the trees, each after its children
-// (post-order), then the root of a tree, or the atoms of the core. The *place* of a bond: a bond of a tree has the slot
+// (post-order, so that its last child has the slot before its own), then the root of a tree, or the atoms of the core. The *place* of a bond: a bond of a tree has the slot
 // of its lower atom, the one away from the root; the bonds of the core follow in the order of their elimination. So
 // slot s < n_tree has its bond to its parent at place s, and there are no bonds but n_tree + n_core.
 //
