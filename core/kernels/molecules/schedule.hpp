@@ -31,9 +31,10 @@ struct PathPlan;     // core/kernels/molecules/paths/paths.hpp
 struct NetworkPlan;  // core/kernels/molecules/network/network_plan.hpp
 
 // Atoms and bonds are renumbered. The *slot* of an atom: first the atoms of the trees, each after its children
-// (post-order, so that its last child has the slot before its own), then the root of a tree, or the atoms of the core. The *place* of a bond: a bond of a tree has the slot
-// of its lower atom, the one away from the root; the bonds of the core follow in the order of their elimination. So
-// slot s < n_tree has its bond to its parent at place s, and there are no bonds but n_tree + n_core.
+// (post-order, so that its last child has the slot before its own), then the root of a tree, or the atoms of the core.
+// The *place* of a bond: a bond of a tree has the slot of its lower atom, the one away from the root; the bonds of the
+// core follow in the order of their elimination. So slot s < n_tree has its bond to its parent at place s, and there
+// are no bonds but n_tree + n_core.
 //
 // A core is what is left when atoms with one bond are stripped until there are none; a tree has none. All its atoms are
 // movable, because fixed atoms are leaves.
