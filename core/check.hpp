@@ -1,6 +1,5 @@
 // Positions compared with the lengths of the bonds: what is mistaken where a program begins shows there.
-#ifndef HOLONOMIC_CHECK_HPP
-#define HOLONOMIC_CHECK_HPP
+#pragma once
 
 #include "core/molecules/chains.hpp"
 
@@ -34,4 +33,3 @@ struct WorstLength {
 WorstLength worst_length(const Chains &chains, const BondVectors &bonds);
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // Numbers of twice the precision, hi + lo, outside the kernels: for what is evaluated once and must not lose digits.
-#ifndef HOLONOMIC_DOUBLE_PAIR_HPP
-#define HOLONOMIC_DOUBLE_PAIR_HPP
+#pragma once
 
 #define HOL_ISA plain
 #define HOL_LANES 2
@@ -44,4 +43,3 @@ inline double dot_exact(const Vector3<double> &a, const Vector3<double> &a_lo, c
 }
 
 }  // namespace holonomic
-#endif

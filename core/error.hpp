@@ -1,6 +1,5 @@
 // How the core reports a failure to the C layer.
-#ifndef HOLONOMIC_ERROR_HPP
-#define HOLONOMIC_ERROR_HPP
+#pragma once
 
 #include <cstdint>
 
@@ -19,4 +18,3 @@ struct Error {
 [[gnu::format(printf, 2, 3)]] Error make_error(Status status, const char *format, ...);
 
 }  // namespace holonomic
-#endif

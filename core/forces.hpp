@@ -1,6 +1,5 @@
 // Acceleration level: multipliers and constraint forces of all chains.
-#ifndef HOLONOMIC_FORCES_HPP
-#define HOLONOMIC_FORCES_HPP
+#pragma once
 
 #include "core/molecules/chains.hpp"
 
@@ -11,4 +10,3 @@ void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const 
             double *tension, const AtomArray &g, bool add, double *virial);
 
 }  // namespace holonomic
-#endif

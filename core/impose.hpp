@@ -1,6 +1,5 @@
 // Positions that lie anywhere are moved onto the constraints.
-#ifndef HOLONOMIC_IMPOSE_HPP
-#define HOLONOMIC_IMPOSE_HPP
+#pragma once
 
 #include "core/positions.hpp"
 
@@ -11,4 +10,3 @@ namespace holonomic {
 void impose(const Chains &chains, const AtomArray &r, Report *report);
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // Metric determinants, Fixman potential and its force.
-#ifndef HOLONOMIC_METRIC_HPP
-#define HOLONOMIC_METRIC_HPP
+#pragma once
 
 #include "core/molecules/chains.hpp"
 
@@ -11,4 +10,3 @@ void metric(const Chains &chains, const AtomArray &r, double kT, double *log_det
             const AtomArray &force, bool add);
 
 }  // namespace holonomic
-#endif

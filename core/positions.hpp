@@ -1,6 +1,5 @@
 // Position level: Newton's method back onto the constraints.
-#ifndef HOLONOMIC_POSITIONS_HPP
-#define HOLONOMIC_POSITIONS_HPP
+#pragma once
 
 #include "core/check.hpp"
 #include "core/molecules/chains.hpp"
@@ -26,4 +25,3 @@ void project_positions(const Chains &chains, const Along &along, const AtomArray
                        double *lambda, bool guess, double *virial, Report *report, WorstLength *reference_error);
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // What given multipliers do: forces on the atoms, tensions and virials of the bonds.
-#ifndef HOLONOMIC_REACTIONS_HPP
-#define HOLONOMIC_REACTIONS_HPP
+#pragma once
 
 #include "core/molecules/chains.hpp"
 
@@ -24,4 +23,3 @@ void reactions(const Chains &chains, const AtomArray &r, const Box &box, const d
                double *virial);
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // Reference positions made of bond vectors, for programs that keep these instead.
-#ifndef HOLONOMIC_REFERENCE_HPP
-#define HOLONOMIC_REFERENCE_HPP
+#pragma once
 
 #include "core/molecules/chains.hpp"
 
@@ -32,4 +31,3 @@ private:
 };
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // What is left of each constraint.
-#ifndef HOLONOMIC_RESIDUALS_HPP
-#define HOLONOMIC_RESIDUALS_HPP
+#pragma once
 
 #include "core/molecules/chains.hpp"
 
@@ -11,4 +10,3 @@ namespace holonomic {
 void residuals(const Chains &chains, const AtomArray &r, const AtomArray &v, double *length, double *rate);
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // Multipliers of given right-hand sides.
-#ifndef HOLONOMIC_SOLVE_HPP
-#define HOLONOMIC_SOLVE_HPP
+#pragma once
 
 #include "core/molecules/chains.hpp"
 
@@ -21,4 +20,3 @@ struct Solution {
 Tally solve_equations(const Chains &chains, const AtomArray &r, const double *rhs, const Solution &out);
 
 }  // namespace holonomic
-#endif

@@ -1,7 +1,6 @@
 // What a call can end with. The values are those of hol_status in the public header, which capi/status.cpp asserts:
 // core includes nothing of capi.
-#ifndef HOLONOMIC_STATUS_HPP
-#define HOLONOMIC_STATUS_HPP
+#pragma once
 
 namespace holonomic {
 
@@ -21,4 +20,3 @@ enum class Status {
 };
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // Velocity level: the exact projection onto the constraints.
-#ifndef HOLONOMIC_VELOCITIES_HPP
-#define HOLONOMIC_VELOCITIES_HPP
+#pragma once
 
 #include "core/molecules/chains.hpp"
 
@@ -10,4 +9,3 @@ namespace holonomic {
 void project_velocities(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda, double *virial);
 
 }  // namespace holonomic
-#endif

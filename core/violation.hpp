@@ -1,6 +1,5 @@
 // How far positions and velocities are from the constraints.
-#ifndef HOLONOMIC_VIOLATION_HPP
-#define HOLONOMIC_VIOLATION_HPP
+#pragma once
 
 #include "core/molecules/chains.hpp"
 
@@ -17,4 +16,3 @@ struct Worst {
 void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Worst *worst);
 
 }  // namespace holonomic
-#endif

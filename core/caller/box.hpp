@@ -1,6 +1,5 @@
 // The periodic box and its inverse.
-#ifndef HOLONOMIC_BOX_HPP
-#define HOLONOMIC_BOX_HPP
+#pragma once
 
 #include <cstdint>
 #include <cstring>
@@ -52,4 +51,3 @@ inline void bond_vector(const Box &box, const double *from, const double *to, do
 }
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // A vector per atom in the caller's memory.
-#ifndef HOLONOMIC_PACKED_ARRAY_HPP
-#define HOLONOMIC_PACKED_ARRAY_HPP
+#pragma once
 
 #include "core/kernels/atom.hpp"
 
@@ -21,4 +20,3 @@ inline void unify_layout(AtomArray *const *arrays, int n) {
 }
 
 }  // namespace holonomic
-#endif

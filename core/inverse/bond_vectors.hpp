@@ -1,6 +1,5 @@
 // Bond vectors of one chain with nothing rounded off, and the cosine and sine between two of them.
-#ifndef HOLONOMIC_BOND_VECTORS_HPP
-#define HOLONOMIC_BOND_VECTORS_HPP
+#pragma once
 
 #include <vector>
 
@@ -28,4 +27,3 @@ struct Joint {
 Joint joint_between(const ScaledBond &a, const ScaledBond &b);
 
 }  // namespace holonomic
-#endif

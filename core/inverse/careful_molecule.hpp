@@ -1,7 +1,6 @@
 // One molecule that is no linear chain, copied and with its equations A t = b eliminated by the careful solver
 // (core/kernels/careful), in the baseline's instructions: for what is not in the hot path.
-#ifndef HOLONOMIC_CAREFUL_MOLECULE_HPP
-#define HOLONOMIC_CAREFUL_MOLECULE_HPP
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -36,4 +35,3 @@ private:
 };
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // The inverse of a linear chain, in time and memory proportional to its number of bonds.
-#ifndef HOLONOMIC_CHAIN_INVERSE_HPP
-#define HOLONOMIC_CHAIN_INVERSE_HPP
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -47,4 +46,3 @@ private:
 };
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // The inverse of the matrix Z of one molecule in one conformation: elements on demand, condition number, error bounds.
-#ifndef HOLONOMIC_INVERSE_HPP
-#define HOLONOMIC_INVERSE_HPP
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -42,4 +41,3 @@ private:
 };
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // The inverse of a molecule that is no linear chain: rows by solving for them.
-#ifndef HOLONOMIC_MOLECULE_INVERSE_HPP
-#define HOLONOMIC_MOLECULE_INVERSE_HPP
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -42,4 +41,3 @@ private:
 };
 
 }  // namespace holonomic
-#endif

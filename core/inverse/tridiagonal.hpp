@@ -1,6 +1,5 @@
 // The symmetric tridiagonal matrix with ones on its diagonal and -gamma beside it, known by gamma alone.
-#ifndef HOLONOMIC_TRIDIAGONAL_HPP
-#define HOLONOMIC_TRIDIAGONAL_HPP
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -38,4 +37,3 @@ private:
 };
 
 }  // namespace holonomic
-#endif

@@ -1,7 +1,6 @@
 // One atom in the caller's memory, for what is not done in lanes. Internal linkage: the kernels of every instruction
 // set have it, too.
-#ifndef HOLONOMIC_KERNELS_ATOM_HPP
-#define HOLONOMIC_KERNELS_ATOM_HPP
+#pragma once
 
 #include "core/kernels/call.hpp"
 
@@ -49,4 +48,3 @@ static inline void write_atom(const AtomArray &array, int64_t atom, const double
 }
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // What the core hands to a kernel: plain data, the same for every instruction set.
-#ifndef HOLONOMIC_KERNELS_CALL_HPP
-#define HOLONOMIC_KERNELS_CALL_HPP
+#pragma once
 
 #include <stdint.h>
 
@@ -231,4 +230,3 @@ struct Kernels {
 };
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // Sums of a call. Internal linkage: the kernels of every instruction set have them, too.
-#ifndef HOLONOMIC_KERNELS_TALLY_HPP
-#define HOLONOMIC_KERNELS_TALLY_HPP
+#pragma once
 
 #include "core/kernels/call.hpp"
 
@@ -49,4 +48,3 @@ static inline void note_bad(int64_t molecule, Tally &tally) {
 }
 
 }  // namespace holonomic
-#endif

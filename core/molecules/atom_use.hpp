@@ -1,6 +1,5 @@
 // Which atoms belong to molecules already.
-#ifndef HOLONOMIC_ATOM_USE_HPP
-#define HOLONOMIC_ATOM_USE_HPP
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -42,4 +41,3 @@ private:
 };
 
 }  // namespace holonomic
-#endif

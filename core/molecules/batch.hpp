@@ -1,6 +1,5 @@
 // What one call adds to a set of molecules: all of it, or on an error nothing.
-#ifndef HOLONOMIC_BATCH_HPP
-#define HOLONOMIC_BATCH_HPP
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -54,4 +53,3 @@ private:
 };
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // Cuts a graph into two halves with few edges between them.
-#ifndef HOLONOMIC_BISECTION_HPP
-#define HOLONOMIC_BISECTION_HPP
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -23,4 +22,3 @@ struct Graph {
 std::vector<unsigned char> bisect(const Graph &graph);
 
 }  // namespace holonomic
-#endif

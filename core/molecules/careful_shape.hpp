@@ -1,6 +1,5 @@
 // What the careful solver needs to know of a shape, made once.
-#ifndef HOLONOMIC_CAREFUL_SHAPE_HPP
-#define HOLONOMIC_CAREFUL_SHAPE_HPP
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -36,4 +35,3 @@ private:
 };
 
 }  // namespace holonomic
-#endif

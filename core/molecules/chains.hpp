@@ -1,6 +1,5 @@
 // Which atoms are joined by rigid bonds: what a handle of the C interface holds.
-#ifndef HOLONOMIC_CHAINS_HPP
-#define HOLONOMIC_CHAINS_HPP
+#pragma once
 
 #include <atomic>
 #include <cstdint>
@@ -200,4 +199,3 @@ private:
 };
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // Lengths with which the cycles of a molecule can't close, whatever the positions.
-#ifndef HOLONOMIC_CLOSABLE_HPP
-#define HOLONOMIC_CLOSABLE_HPP
+#pragma once
 
 #include <cstdint>
 
@@ -25,4 +24,3 @@ bool find_unclosable(const Shape &shape, const double *length, Unclosable *found
 Error unclosable_error(const Unclosable &found, const Name *atoms, std::int64_t bond, int base);
 
 }  // namespace holonomic
-#endif

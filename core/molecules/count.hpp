@@ -1,6 +1,5 @@
 // Finds by counting that the bonds of a molecule can't be independent of each other.
-#ifndef HOLONOMIC_COUNT_HPP
-#define HOLONOMIC_COUNT_HPP
+#pragma once
 
 #include "core/molecules/recognise.hpp"
 
@@ -13,4 +12,3 @@ namespace holonomic {
 void check_count(const BondList &list, const Draft &draft);
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // The order of elimination of a sparse symmetric matrix, and where its factor is filled.
-#ifndef HOLONOMIC_ELIMINATION_ORDER_HPP
-#define HOLONOMIC_ELIMINATION_ORDER_HPP
+#pragma once
 
 #include <cstdint>
 #include <limits>
@@ -37,4 +36,3 @@ struct Fill {
 Fill fill_of(const std::vector<std::vector<std::int32_t>> &neighbours);
 
 }  // namespace holonomic
-#endif

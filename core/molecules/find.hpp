@@ -1,6 +1,5 @@
 // Finds the molecules that a list of bonds forms.
-#ifndef HOLONOMIC_FIND_HPP
-#define HOLONOMIC_FIND_HPP
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -47,4 +46,3 @@ FoundMolecules find_molecules(const Masses &masses, std::int64_t n_atoms, const 
 Error bond_error(const BondList &list, Status status, std::int64_t bond, const char *what);
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // Makes the list along which one large molecule is eliminated.
-#ifndef HOLONOMIC_FLAT_LIST_HPP
-#define HOLONOMIC_FLAT_LIST_HPP
+#pragma once
 
 #include <vector>
 
@@ -28,4 +27,3 @@ bool takes_flat_list(const Schedule &s);
 void make_flat_list(const Schedule &s, FlatArrays &arrays);
 
 }  // namespace holonomic
-#endif

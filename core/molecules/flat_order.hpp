@@ -1,6 +1,5 @@
 // The order in which the bonds of one large molecule are eliminated.
-#ifndef HOLONOMIC_FLAT_ORDER_HPP
-#define HOLONOMIC_FLAT_ORDER_HPP
+#pragma once
 
 #include "core/kernels/molecules/schedule.hpp"
 #include "core/molecules/elimination_order.hpp"
@@ -18,4 +17,3 @@ Numbers bonds_from_the_leaves(const Schedule &s);
 Numbers in_rounds(const Fill &fill);
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // Trees whose shapes differ, put side by side so that they share the lanes of a vector (kernels/molecules/forest/).
-#ifndef HOLONOMIC_FORESTS_HPP
-#define HOLONOMIC_FORESTS_HPP
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -50,4 +49,3 @@ struct TreeProfile {
 };
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // The order in which the unknowns of a network are eliminated directly.
-#ifndef HOLONOMIC_FRONTS_HPP
-#define HOLONOMIC_FRONTS_HPP
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -22,4 +21,3 @@ FrontPlan make_fronts(const NetworkPlan &s, std::int64_t most_bytes, FrontArrays
 std::size_t bytes_of(const FrontArrays &arrays);
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // The molecules of a set, in groups of one kind, and where their atoms and bonds stand.
-#ifndef HOLONOMIC_GROUP_HPP
-#define HOLONOMIC_GROUP_HPP
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -62,4 +61,3 @@ private:
 };
 
 }  // namespace holonomic
-#endif

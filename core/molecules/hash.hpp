@@ -1,6 +1,5 @@
 // Mixing of numbers into a hash.
-#ifndef HOLONOMIC_HASH_HPP
-#define HOLONOMIC_HASH_HPP
+#pragma once
 
 #include <cstdint>
 #include <cstring>
@@ -19,4 +18,3 @@ inline std::uint64_t mix(std::uint64_t hash, double value) {
 }
 
 }  // namespace holonomic
-#endif

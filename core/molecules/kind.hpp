@@ -1,6 +1,5 @@
 // Sorts of molecules: the same bonds, masses and lengths. Molecules of one kind share its tables.
-#ifndef HOLONOMIC_KIND_HPP
-#define HOLONOMIC_KIND_HPP
+#pragma once
 
 #include <cstdint>
 #include <unordered_map>
@@ -55,4 +54,3 @@ private:
 };
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // Numbers by which the caller knows atoms and molecules: messages show them beside the library's own.
-#ifndef HOLONOMIC_LABELS_HPP
-#define HOLONOMIC_LABELS_HPP
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -29,4 +28,3 @@ private:
 };
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // Lists of numbers, one per row, in one array.
-#ifndef HOLONOMIC_LISTS_HPP
-#define HOLONOMIC_LISTS_HPP
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -34,4 +33,3 @@ Lists invert(std::int32_t n_rows, std::int32_t n_pairs, const Each &each) {
 }
 
 }  // namespace holonomic
-#endif

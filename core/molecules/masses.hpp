@@ -1,6 +1,5 @@
 // The caller's masses, to their last digit: bodies need them as they are, and 1 / (1 / m) may be another number.
-#ifndef HOLONOMIC_MASSES_HPP
-#define HOLONOMIC_MASSES_HPP
+#pragma once
 
 #include <cmath>
 #include <cstdint>
@@ -34,4 +33,3 @@ private:
 };
 
 }  // namespace holonomic
-#endif

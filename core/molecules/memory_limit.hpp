@@ -1,6 +1,5 @@
 // How much memory a set of molecules may take: what would take more is refused before it is begun.
-#ifndef HOLONOMIC_MEMORY_LIMIT_HPP
-#define HOLONOMIC_MEMORY_LIMIT_HPP
+#pragma once
 
 #include <cstdint>
 
@@ -28,4 +27,3 @@ void check_memory(const Chains &chains, std::int64_t n_bonds, std::int64_t bytes
 Error too_much_memory(const Chains &chains, const char *what, std::int64_t bytes);
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // One molecule of a set, of whatever shape.
-#ifndef HOLONOMIC_MOLECULE_HPP
-#define HOLONOMIC_MOLECULE_HPP
+#pragma once
 
 #include <cstdint>
 
@@ -33,4 +32,3 @@ struct Molecule {
 };
 
 }  // namespace holonomic
-#endif

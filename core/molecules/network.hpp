@@ -1,6 +1,5 @@
 // Divides one large molecule into strands and nodes.
-#ifndef HOLONOMIC_NETWORK_HPP
-#define HOLONOMIC_NETWORK_HPP
+#pragma once
 
 #include <cstddef>
 #include <vector>
@@ -41,4 +40,3 @@ void make_network(const Schedule &s, std::int64_t most_bytes, NetworkArrays &arr
 std::size_t bytes_of(const NetworkArrays &arrays);
 
 }  // namespace holonomic
-#endif

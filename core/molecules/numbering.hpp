@@ -1,6 +1,5 @@
 // Short numbers for the atoms that occur in a list of bonds.
-#ifndef HOLONOMIC_NUMBERING_HPP
-#define HOLONOMIC_NUMBERING_HPP
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -31,4 +30,3 @@ private:
 };
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // The paths and knots of a large molecule (core/kernels/molecules/paths/paths.hpp).
-#ifndef HOLONOMIC_PATH_PLAN_HPP
-#define HOLONOMIC_PATH_PLAN_HPP
+#pragma once
 
 #include <memory>
 #include <vector>
@@ -26,4 +25,3 @@ struct PathArrays {
 bool make_path_plan(const Schedule &s, PathArrays &arrays);
 
 }  // namespace holonomic
-#endif

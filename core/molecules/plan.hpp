@@ -1,6 +1,5 @@
 // How a call goes through the molecules: pieces of work of a few thousand bonds, the same for any number of threads.
-#ifndef HOLONOMIC_PLAN_HPP
-#define HOLONOMIC_PLAN_HPP
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -63,4 +62,3 @@ struct Plan {
 constexpr std::int64_t loose_piece = 64, loose_piece_bonds = 512;
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // Brings the bonds of one molecule into their order, and says what they look like.
-#ifndef HOLONOMIC_RECOGNISE_HPP
-#define HOLONOMIC_RECOGNISE_HPP
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -40,4 +39,3 @@ private:
 };
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // Makes the order of elimination of a molecule that is not a chain, once per shape.
-#ifndef HOLONOMIC_SCHEDULE_HPP
-#define HOLONOMIC_SCHEDULE_HPP
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -29,4 +28,3 @@ void make_careful(const Schedule &s, std::int64_t most_bytes);
 std::size_t bytes_of(const Schedule &s);
 
 }  // namespace holonomic
-#endif

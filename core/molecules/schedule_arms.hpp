@@ -1,6 +1,5 @@
 // The arms of a large molecule's trees (core/kernels/molecules/schedule.hpp).
-#ifndef HOLONOMIC_SCHEDULE_ARMS_HPP
-#define HOLONOMIC_SCHEDULE_ARMS_HPP
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -21,4 +20,3 @@ struct ScheduleArms {
 ScheduleArms arms_of(const Schedule &s);
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // Where the arrays of a schedule are.
-#ifndef HOLONOMIC_SCHEDULE_MEMORY_HPP
-#define HOLONOMIC_SCHEDULE_MEMORY_HPP
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -42,4 +41,3 @@ struct Schedule::Memory {
 void point_into(Schedule &s, const Schedule::Memory &m);
 
 }  // namespace holonomic
-#endif

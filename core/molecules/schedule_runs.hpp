@@ -1,6 +1,5 @@
 // Which atoms of a large molecule's trees can be worked on at once (core/kernels/molecules/schedule.hpp).
-#ifndef HOLONOMIC_SCHEDULE_RUNS_HPP
-#define HOLONOMIC_SCHEDULE_RUNS_HPP
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -25,4 +24,3 @@ ScheduleRuns runs_of(const Schedule &s, const std::vector<Schedule::Arm> &arms);
 bool fills_lanes(const Schedule &s);
 
 }  // namespace holonomic
-#endif

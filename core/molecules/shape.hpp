@@ -1,6 +1,5 @@
 // What the bonds of molecules look like: topologies that are no linear chains, each with its order of elimination.
-#ifndef HOLONOMIC_SHAPE_HPP
-#define HOLONOMIC_SHAPE_HPP
+#pragma once
 
 #include <cstdint>
 #include <memory>
@@ -41,4 +40,3 @@ private:
 };
 
 }  // namespace holonomic
-#endif

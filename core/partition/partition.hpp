@@ -1,6 +1,5 @@
 // Means of powers of the metric determinant over the conformations of the freely jointed chain.
-#ifndef HOLONOMIC_PARTITION_HPP
-#define HOLONOMIC_PARTITION_HPP
+#pragma once
 
 #include <cstdint>
 
@@ -18,4 +17,3 @@ struct PartitionAsked {
 Partition partition_function(std::int64_t n_bonds, const double *masses, const PartitionAsked &asked);
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // The transfer operator in the pivots Omega of a chain whose bond directions are independent and uniform.
-#ifndef HOLONOMIC_PARTITION_OPERATOR_HPP
-#define HOLONOMIC_PARTITION_OPERATOR_HPP
+#pragma once
 
 #include <cstddef>
 
@@ -15,4 +14,3 @@ struct PivotMeans {
 PivotMeans pivot_means(const long double *masses, std::size_t n_bonds);
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // Functions of phi on [phi_least, pi/2], as polynomials on panels that halve towards phi = 0.
-#ifndef HOLONOMIC_PARTITION_PANELS_HPP
-#define HOLONOMIC_PARTITION_PANELS_HPP
+#pragma once
 
 #include <cstddef>
 #include <vector>
@@ -47,4 +46,3 @@ private:
 };
 
 }  // namespace holonomic
-#endif

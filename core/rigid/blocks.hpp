@@ -1,6 +1,5 @@
 // Bodies without bonds, which the kernels work on side by side (core/kernels/bodies).
-#ifndef HOLONOMIC_RIGID_BLOCKS_HPP
-#define HOLONOMIC_RIGID_BLOCKS_HPP
+#pragma once
 
 #include "core/kernels/bodies/kind.hpp"
 #include "core/kernels/call.hpp"
@@ -15,4 +14,3 @@ BodyKind kind_of(const Body &body, const Shape &shape);
 std::int64_t bytes_of_block(const Shape &shape);
 
 }  // namespace holonomic::rigid
-#endif

@@ -1,6 +1,5 @@
 // The molecules of a set that have rigid bodies. Their numbers follow those of all other molecules of the set.
-#ifndef HOLONOMIC_RIGID_BODIES_HPP
-#define HOLONOMIC_RIGID_BODIES_HPP
+#pragma once
 
 #include <cstdint>
 #include <unordered_map>
@@ -101,4 +100,3 @@ private:
 };
 
 }  // namespace holonomic::rigid
-#endif

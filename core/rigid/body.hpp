@@ -9,8 +9,7 @@
 // because sum m y = 0 and sum m y y^T = M 1: as far as masses go, c and the u_p are points of mass M each, and what
 // keeps the body rigid is rank (rank+1)/2 products of them, whatever the number of its atoms. A massless site is
 // carried along: its force goes to c and the u_p like the others'.
-#ifndef HOLONOMIC_RIGID_BODY_HPP
-#define HOLONOMIC_RIGID_BODY_HPP
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -58,4 +57,3 @@ struct Step {
 std::vector<Step> nearest_steps(const Body &body, std::int32_t first);
 
 }  // namespace holonomic::rigid
-#endif

@@ -1,8 +1,7 @@
 // Lists of distances that depend on each other: three atoms on a line, four in a plane, five and more, each with all of
 // the others, and rings that are held in a plane (flat_ring.hpp), are rigid bodies. Their lengths say what they look
 // like, but for the mirror image, which a body follows anyway.
-#ifndef HOLONOMIC_RIGID_CLIQUES_HPP
-#define HOLONOMIC_RIGID_CLIQUES_HPP
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -33,4 +32,3 @@ struct Cliques {
 Cliques find_cliques(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths);
 
 }  // namespace holonomic::rigid
-#endif

@@ -1,7 +1,6 @@
 // The factors of a sparse matrix whose pattern is symmetric, without pivoting: of the equations of a molecule, which
 // are definite, or nearly so at the level of positions.
-#ifndef HOLONOMIC_RIGID_FACTOR_HPP
-#define HOLONOMIC_RIGID_FACTOR_HPP
+#pragma once
 
 #include <cmath>
 #include <cstdint>
@@ -55,4 +54,3 @@ struct Factor {
 };
 
 }  // namespace holonomic::rigid
-#endif

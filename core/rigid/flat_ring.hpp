@@ -1,8 +1,7 @@
 // Rings of six atoms and more that lengths hold in a plane, benzene's among them: the distances between neighbours and
 // between next neighbours are held, so that all angles are, and what these turn makes one full circle. A closed polygon
 // that leaves its plane, or is not convex, turns more (Fenchel 1929, doi:10.1007/BF01454836).
-#ifndef HOLONOMIC_RIGID_FLAT_RING_HPP
-#define HOLONOMIC_RIGID_FLAT_RING_HPP
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -83,4 +82,3 @@ private:
 inline std::int64_t steps_for_rings(std::int64_t n_bonds) { return 4096 + 16 * n_bonds; }
 
 }  // namespace holonomic::rigid
-#endif

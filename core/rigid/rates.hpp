@@ -1,6 +1,5 @@
 // How fast the rows of a molecule change: what velocities do, and a box that changes.
-#ifndef HOLONOMIC_RIGID_RATES_HPP
-#define HOLONOMIC_RIGID_RATES_HPP
+#pragma once
 
 #include "core/rigid/system.hpp"
 
@@ -47,4 +46,3 @@ void for_rates(const System &system, const PairVector *v, const BoxRate *rate, c
 }
 
 }  // namespace holonomic::rigid
-#endif

@@ -1,6 +1,5 @@
 // Goes through the molecules with rigid bodies, on as many threads as the work is worth.
-#ifndef HOLONOMIC_RIGID_RUN_HPP
-#define HOLONOMIC_RIGID_RUN_HPP
+#pragma once
 
 #include "core/kernels/tally.hpp"
 #include "core/molecules/chains.hpp"
@@ -93,4 +92,3 @@ private:
 };
 
 }  // namespace holonomic::rigid
-#endif

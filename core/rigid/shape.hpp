@@ -4,8 +4,7 @@
 // Coordinates are *nodes*: of a body its centre and its vectors u_p (body.hpp), of another atom its position. Equations
 // are *rows*: of a bond d.d = a^2, of a body u_p.u_q = L_p^2 [p = q]. Every row is an inner product of differences of
 // nodes, so that its gradient has one vector per node, an *entry*.
-#ifndef HOLONOMIC_RIGID_SHAPE_HPP
-#define HOLONOMIC_RIGID_SHAPE_HPP
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -77,4 +76,3 @@ struct Unsolvable {
 void complete(Shape &shape, const std::vector<Body> &bodies);
 
 }  // namespace holonomic::rigid
-#endif

@@ -4,8 +4,7 @@
 // All is kept in twice the precision. The factors are plain doubles; residuals, which are sums over the nodes, are not,
 // so that a few corrections give what twice the precision would. Where the factors lose too much they are made in twice
 // the precision, too.
-#ifndef HOLONOMIC_RIGID_SYSTEM_HPP
-#define HOLONOMIC_RIGID_SYSTEM_HPP
+#pragma once
 
 #include <cstdint>
 
@@ -92,4 +91,3 @@ private:
 };
 
 }  // namespace holonomic::rigid
-#endif

@@ -1,7 +1,6 @@
 // The verbs for molecules with rigid bodies. Each throws Error once everything that is due has been written; sums are
 // added to the caller's, which already hold those of the other molecules.
-#ifndef HOLONOMIC_RIGID_VERBS_HPP
-#define HOLONOMIC_RIGID_VERBS_HPP
+#pragma once
 
 #include "core/check.hpp"
 #include "core/molecules/chains.hpp"
@@ -33,4 +32,3 @@ void residuals(const Chains &chains, const AtomArray &r, const AtomArray &v, dou
 void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Worst *worst);
 
 }  // namespace holonomic::rigid
-#endif

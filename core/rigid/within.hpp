@@ -1,7 +1,6 @@
 // Multipliers of bonds within bodies that are held by their lengths: of those that do what the body does to its atoms,
 // or come nearest to it (nothing holds a line but forces across it), the ones of least norm.
-#ifndef HOLONOMIC_RIGID_WITHIN_HPP
-#define HOLONOMIC_RIGID_WITHIN_HPP
+#pragma once
 
 #include "core/rigid/system.hpp"
 
@@ -30,4 +29,3 @@ inline double multiplier_of(const System &system, std::size_t bond) {
 }
 
 }  // namespace holonomic::rigid
-#endif

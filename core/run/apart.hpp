@@ -1,8 +1,7 @@
 // Copies of the caller's arrays for those molecules that can't be worked on in place: values per bond in the order of
 // the molecules, where the caller has them in another; atoms of molecules that share fixed atoms, each molecule with
 // its own copy of the shared ones, so that no two kernels write to the same place.
-#ifndef HOLONOMIC_APART_HPP
-#define HOLONOMIC_APART_HPP
+#pragma once
 
 #include <cstdint>
 
@@ -98,4 +97,3 @@ inline void clear_unconstrained(const Chains &chains, double *values, int width 
 }
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // Bonds and their lengths in words, for messages.
-#ifndef HOLONOMIC_BOND_WORDS_HPP
-#define HOLONOMIC_BOND_WORDS_HPP
+#pragma once
 
 #include <cstdint>
 
@@ -22,4 +21,3 @@ double length_of_bond(const Molecule &molecule, std::int64_t bond, const AtomArr
 const char *box_in_words(const Box &box);
 
 }  // namespace holonomic
-#endif

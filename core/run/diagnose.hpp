@@ -1,7 +1,6 @@
 // What is wrong with a molecule that a kernel could not solve. Slow and rarely called: it reads the molecule again, so
 // that the kernels need not keep account of causes.
-#ifndef HOLONOMIC_DIAGNOSE_HPP
-#define HOLONOMIC_DIAGNOSE_HPP
+#pragma once
 
 #include "core/error.hpp"
 #include "core/molecules/chains.hpp"
@@ -22,4 +21,3 @@ Error diagnose(const Chains &chains, const Tally &tally, const Box &box, const N
 void check_values(const Chains &chains, const Tally &tally, const double *values, const char *what);
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // Runs a kernel over all chains, on as many threads as the work is worth.
-#ifndef HOLONOMIC_EXECUTE_HPP
-#define HOLONOMIC_EXECUTE_HPP
+#pragma once
 
 #include <algorithm>
 
@@ -103,4 +102,3 @@ std::int64_t store_bytes(const InWindows<Call> &windows, std::int64_t n_bonds) {
 }
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // Which kernels the calculations use.
-#ifndef HOLONOMIC_KERNEL_CHOICE_HPP
-#define HOLONOMIC_KERNEL_CHOICE_HPP
+#pragma once
 
 #include "core/kernels/call.hpp"
 
@@ -22,4 +21,3 @@ const char *name_of_kernels();
 int64_t scratch_bytes(int64_t n_bonds);
 
 }  // namespace holonomic
-#endif

@@ -1,6 +1,5 @@
 // The lanes of a piece of work one by one, for work that is not done in lanes.
-#ifndef HOLONOMIC_LANE_HPP
-#define HOLONOMIC_LANE_HPP
+#pragma once
 
 #include <cstdint>
 
@@ -33,4 +32,3 @@ inline MoleculeLane lane_of(const MoleculeUnit &unit, std::int64_t i) {
 }
 
 }  // namespace holonomic
-#endif

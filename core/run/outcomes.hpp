@@ -1,7 +1,6 @@
 // What a call has done with each molecule, for callers who ask for it (hol_chains_set_outcomes). It stands in memory of
 // the calling thread, so that any number of threads may use a handle at once.
-#ifndef HOLONOMIC_OUTCOMES_HPP
-#define HOLONOMIC_OUTCOMES_HPP
+#pragma once
 
 #include <algorithm>
 #include <cstdint>
@@ -91,4 +90,3 @@ template <class ErrorOf>
 }
 
 }  // namespace holonomic
-#endif

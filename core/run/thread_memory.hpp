@@ -1,6 +1,5 @@
 // Memory that a thread keeps from call to call, until it ends.
-#ifndef HOLONOMIC_THREAD_MEMORY_HPP
-#define HOLONOMIC_THREAD_MEMORY_HPP
+#pragma once
 
 #include <cstdint>
 
@@ -25,4 +24,3 @@ enum class Keep {
 void *thread_memory(Keep what, std::int64_t bytes) noexcept;
 
 }  // namespace holonomic
-#endif

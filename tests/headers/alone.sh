@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Whether every header below FOLDER compiles by itself, and has a guard.
+# Whether every header below FOLDER compiles by itself, and is read once however often it is included.
 #
 #   alone.sh SOURCES FOLDER COMPILER FLAG...
 set -u
@@ -15,7 +15,7 @@ if [ "$folder" = core/kernels ]; then
     $compile -x c++-header "$temporary/vectors.h" -o "$temporary/vectors.h.gch" && compile+=" -include $temporary/vectors.h"
 fi
 export compile
-alone() { # included twice, which only a guard survives
+alone() { # included twice, which only one that is read once survives
     printf '#include "%s"\n#include "%s"\n' "$1" "$1" | $compile -fsyntax-only -x c++ - || { echo "not alone: $1"; exit 1; }
 }
 export -f alone

@@ -1,8 +1,7 @@
 // Arithmetic on unevaluated sums hi + lo of two doubles, for what cancels: dot products of nearly orthogonal and cross
 // products of nearly parallel vectors. Valid for V = double and V = vec. Error-free transformations after Dekker (1971)
 // and Knuth; see Ogita, Rump and Oishi, SIAM J. Sci. Comput. 26, 1955 (2005).
-#ifndef HOLONOMIC_KERNELS_ARITHMETIC_EXACT_HPP
-#define HOLONOMIC_KERNELS_ARITHMETIC_EXACT_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/vector3.hpp"
 
@@ -90,4 +89,3 @@ HOL_INLINE double sum_compensated(const Three &hi, const Three &lo) {
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,6 +1,5 @@
 // The shortest image of a bond in a periodic box.
-#ifndef HOLONOMIC_KERNELS_ARITHMETIC_IMAGE_HPP
-#define HOLONOMIC_KERNELS_ARITHMETIC_IMAGE_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/exact.hpp"
 #include "core/kernels/call.hpp"
@@ -90,4 +89,3 @@ HOL_INLINE Pair<vec> unrounded_bond(const Box &box, vec from, vec to) {
 #endif
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,6 +1,5 @@
 // Sums of logarithms of many factors, of W lanes or of one: one logarithm for every few factors.
-#ifndef HOLONOMIC_KERNELS_ARITHMETIC_LOG_SUM_HPP
-#define HOLONOMIC_KERNELS_ARITHMETIC_LOG_SUM_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/width.hpp"
 
@@ -61,4 +60,3 @@ struct LogSumWide {
 };
 
 }  // namespace holonomic::HOL_ISA
-#endif

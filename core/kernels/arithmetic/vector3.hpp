@@ -1,6 +1,5 @@
 // Vectors in space, of doubles or of lanes.
-#ifndef HOLONOMIC_KERNELS_ARITHMETIC_VECTOR3_HPP
-#define HOLONOMIC_KERNELS_ARITHMETIC_VECTOR3_HPP
+#pragma once
 
 #include "core/kernels/isa/lanes.hpp"
 
@@ -54,4 +53,3 @@ HOL_INLINE V stretching(const double *s, const Vector3<V> &d) {
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

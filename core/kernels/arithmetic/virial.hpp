@@ -1,6 +1,5 @@
 // The sum of t d (x) d over bonds, of which a virial is made: six of its nine components.
-#ifndef HOLONOMIC_KERNELS_ARITHMETIC_VIRIAL_HPP
-#define HOLONOMIC_KERNELS_ARITHMETIC_VIRIAL_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/exact.hpp"
 
@@ -22,4 +21,3 @@ struct BondTensors {
 };
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,13 +1,11 @@
 // What is written once for W lanes (V = vec) and for a single number (V = double): the same operations in the same
 // order, so that no digit of a molecule depends on which of the two it gets.
-#ifndef HOLONOMIC_KERNELS_ARITHMETIC_WIDTH_HPP
-#define HOLONOMIC_KERNELS_ARITHMETIC_WIDTH_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/exact.hpp"
 #include "core/kernels/isa/lanes.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // The mask of a single lane.
 struct Flag {
@@ -85,6 +83,4 @@ using MaskOf = typename Width<V>::Mask;
 template <class V>
 constexpr unsigned all_of = (1u << Width<V>::lanes) - 1;  // bits() of a mask with all lanes set
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA

@@ -1,6 +1,5 @@
 // The atoms of W rigid bodies of a kind, each body in a lane of its own: reading and writing them, atom by atom.
-#ifndef HOLONOMIC_KERNELS_BODIES_ATOMS_HPP
-#define HOLONOMIC_KERNELS_BODIES_ATOMS_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/image.hpp"
 #include "core/kernels/atom.hpp"
@@ -178,4 +177,3 @@ HOL_NOINLINE void unfold(const BodyKind &kind, const Box &box, const vec3 *raw, 
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

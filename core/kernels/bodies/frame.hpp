@@ -9,8 +9,7 @@
 //
 // where C_pq / C_qp = L_p^2 / L_q^2, as no angular momentum may come of it. A^T A = 1 + E leaves a part E of what C
 // should take away, which is taken away next. Positions: turn.hpp.
-#ifndef HOLONOMIC_KERNELS_BODIES_FRAME_HPP
-#define HOLONOMIC_KERNELS_BODIES_FRAME_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/exact.hpp"
 #include "core/kernels/bodies/kind.hpp"
@@ -246,4 +245,3 @@ HOL_NOINLINE void write_virial(const BodyKind &kind, const Frame<R> &a, const Fr
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,5 +1,4 @@
-#ifndef HOLONOMIC_KERNELS_BODIES_KIND_HPP
-#define HOLONOMIC_KERNELS_BODIES_KIND_HPP
+#pragma once
 
 #include <stdint.h>
 
@@ -26,4 +25,3 @@ struct BodyKind {
 };
 
 }  // namespace holonomic
-#endif

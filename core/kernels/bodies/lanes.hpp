@@ -1,6 +1,5 @@
 // Sums over the atoms of W rigid bodies, and what comes back to the atoms.
-#ifndef HOLONOMIC_KERNELS_BODIES_LANES_HPP
-#define HOLONOMIC_KERNELS_BODIES_LANES_HPP
+#pragma once
 
 #include "core/kernels/bodies/atoms.hpp"
 
@@ -199,4 +198,3 @@ private:
 };
 
 }  // namespace holonomic::HOL_ISA
-#endif

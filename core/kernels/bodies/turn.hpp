@@ -13,8 +13,7 @@
 //
 // with i, j, k in cyclic order. A plane's third axis is its normal, of length 0. A - A_ref comes out relative to
 // itself: what is rounded in A_ref does not enter the velocities.
-#ifndef HOLONOMIC_KERNELS_BODIES_TURN_HPP
-#define HOLONOMIC_KERNELS_BODIES_TURN_HPP
+#pragma once
 
 #include "core/kernels/bodies/frame.hpp"
 
@@ -241,4 +240,3 @@ HOL_NOINLINE mask restore_line(const Frame<1> &from, Frame<1> &change) {
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

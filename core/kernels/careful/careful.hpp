@@ -5,8 +5,7 @@
 // Each function reads the molecule's atoms in any layout and box, solves, writes the outputs of the call and adds to
 // the tally. It notes a bad molecule in the tally and writes nothing of it. `scratch` has plan.scratch_bytes, aligned
 // to 64. G of atoms that the lane marks as shared is not written, nor are r and v of fixed atoms.
-#ifndef HOLONOMIC_KERNELS_CAREFUL_CAREFUL_HPP
-#define HOLONOMIC_KERNELS_CAREFUL_CAREFUL_HPP
+#pragma once
 
 #include "core/kernels/call.hpp"
 #include "core/kernels/careful/plan.hpp"
@@ -29,6 +28,4 @@
 HOL_DECLARE_CAREFUL(HOL_CAREFUL)
 #ifndef HOL_FOURFOLD
 HOL_DECLARE_CAREFUL(fourfold)
-#endif
-
 #endif

@@ -1,16 +1,13 @@
 // A linear chain for the careful solver, which needs a plan as of any tree. Chains have no schedule where a plan could
 // stand, and few need one: it is made on the spot.
-#ifndef HOLONOMIC_KERNELS_CAREFUL_CHAIN_HPP
-#define HOLONOMIC_KERNELS_CAREFUL_CHAIN_HPP
+#pragma once
 
 #include "core/kernels/careful/careful.hpp"
 #include "core/kernels/careful/molecule.hpp"
 #include "core/kernels/careful/scratch.hpp"
 #include "core/kernels/tally.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace careful {
+namespace holonomic::HOL_ISA::careful {
 
 // Bond k joins atoms k and k + 1. The last atom is the root.
 struct ChainPlan {
@@ -67,7 +64,4 @@ HOL_NOINLINE bool chain_positions(const PositionsCall &call, const Lane &chain, 
     return true;
 }
 
-}  // namespace careful
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::careful

@@ -1,14 +1,11 @@
 // The core of a molecule is what remains when its hanging trees are stripped. Its matrix is eliminated bond by bond in
 // the order of the plan. It is not symmetric with D on the left and B on the right (theory (58)).
-#ifndef HOLONOMIC_KERNELS_CAREFUL_CORE_HPP
-#define HOLONOMIC_KERNELS_CAREFUL_CORE_HPP
+#pragma once
 
 #include "core/kernels/careful/loss.hpp"
 #include "core/kernels/careful/molecule.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace careful {
+namespace holonomic::HOL_ISA::careful {
 
 // Rows and columns are places in the order of elimination.
 struct Core {
@@ -125,7 +122,4 @@ HOL_NOINLINE void solve(const Core &x, Wide *y) {
     }
 }
 
-}  // namespace careful
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::careful

@@ -2,13 +2,11 @@
 // answer for. They are rare, so this is short rather than fast: all terms of a sum or product are added up, with the
 // rounding of each addition kept, as often as there are words (SumK of Ogita, Rump and Oishi, SIAM J. Sci. Comput. 26,
 // 1955 (2005)).
-#ifndef HOLONOMIC_KERNELS_CAREFUL_FOUR_HPP
-#define HOLONOMIC_KERNELS_CAREFUL_FOUR_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/exact.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // Each word is at most half a unit in the last place of the one before, and zeros come last.
 struct Four {
@@ -93,6 +91,4 @@ HOL_NOINLINE Four square_root(const Four &a) {  // a > 0
     return s;
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA

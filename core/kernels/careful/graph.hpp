@@ -1,15 +1,12 @@
 // Solves any molecule: hanging trees by theory (52)-(54), the core by its factors, and (55) between them. The matrix is
 // symmetric, or has D on the left and B on the right for Newton's method.
-#ifndef HOLONOMIC_KERNELS_CAREFUL_GRAPH_HPP
-#define HOLONOMIC_KERNELS_CAREFUL_GRAPH_HPP
+#pragma once
 
 #include "core/kernels/careful/core.hpp"
 #include "core/kernels/careful/joint.hpp"
 #include "core/kernels/careful/trees.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace careful {
+namespace holonomic::HOL_ISA::careful {
 
 // Eliminates the children of every atom, the arms that lead away from the core.
 struct Graph {
@@ -172,7 +169,4 @@ HOL_NOINLINE void solve(const Molecule &m, const Graph &g, const Wide *b, Wide *
     });
 }
 
-}  // namespace careful
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::careful

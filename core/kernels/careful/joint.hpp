@@ -5,14 +5,11 @@
 // each result is a sum over sets T of at most three of these arms. Its terms are products of Gram determinants, and
 // nothing is subtracted (Cauchy and Binet). All sums are relative to the product of the E; so an arm of E = 0 must be
 // in every set.
-#ifndef HOLONOMIC_KERNELS_CAREFUL_JOINT_HPP
-#define HOLONOMIC_KERNELS_CAREFUL_JOINT_HPP
+#pragma once
 
 #include "core/kernels/careful/loss.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace careful {
+namespace holonomic::HOL_ISA::careful {
 
 // An atom of more bonds is done by its inertia alone, the sum of rho D B^T: O(n) instead of O(n^3) terms per arm. That
 // has digits enough while it is no larger than `mild`; beyond, only atoms of still more bonds make do with it.
@@ -284,7 +281,4 @@ HOL_NOINLINE Wide taken(const Joint &x, const Wide *l, int f) {
     return x.w * sum;
 }
 
-}  // namespace careful
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::careful

@@ -2,9 +2,7 @@
 #include "core/kernels/careful/careful.hpp"
 #include "core/kernels/careful/solution.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace careful {
+namespace holonomic::HOL_ISA::careful {
 
 // Finds d.(w_j f_j - w_i f_i) + |v_j - v_i|^2 of each bond, both terms in the solver's units.
 static void force_terms(const Molecule &m, const ForcesCall &call, Wide *b) {
@@ -95,6 +93,4 @@ void velocities(const VelocitiesCall &call, const CarefulPlan &plan, const Molec
     if (call.virial) add_virial(m, m.d, x.t, 1, tally);
 }
 
-}  // namespace careful
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA::careful

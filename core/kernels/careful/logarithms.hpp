@@ -1,14 +1,11 @@
 // ln det Z~ is the sum of the logarithms of pivots over their diagonal elements (theory (61)). If elimination has taken
 // less than half of a diagonal element, log1p of that part keeps the digits of a small logarithm. The part is what the
 // pivot leaves of the element where that has digits enough: what multipliers take may be a small difference of theirs.
-#ifndef HOLONOMIC_KERNELS_CAREFUL_LOGARITHMS_HPP
-#define HOLONOMIC_KERNELS_CAREFUL_LOGARITHMS_HPP
+#pragma once
 
 #include "core/kernels/careful/system.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace careful {
+namespace holonomic::HOL_ISA::careful {
 
 HOL_NOINLINE double log_of_ratio(const Wide &removed, const Wide &pivot, const Wide &full) {
     const Wide rest = full - pivot;
@@ -100,7 +97,4 @@ HOL_NOINLINE Wide log_of_diagonal(const Molecule &m) {
     return sum;
 }
 
-}  // namespace careful
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::careful

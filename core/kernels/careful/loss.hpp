@@ -2,14 +2,11 @@
 // is. Multipliers of a joint and pivots of a core are not: their terms cancel. `largest` is the largest ratio, over all
 // sums of a molecule, of the sizes of the terms to their sum (theory (54a)); a size includes what a term has itself
 // been made of.
-#ifndef HOLONOMIC_KERNELS_CAREFUL_LOSS_HPP
-#define HOLONOMIC_KERNELS_CAREFUL_LOSS_HPP
+#pragma once
 
 #include "core/kernels/careful/wide.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace careful {
+namespace holonomic::HOL_ISA::careful {
 
 // Twice the precision leaves less than a few roundings of a double while no ratio is larger.
 constexpr double largest_loss = 0x1p46;
@@ -46,7 +43,4 @@ HOL_INLINE double size_of_volume(const Wide3 &v, const Wide3 &a, const Wide3 &b)
     return dot(sizes_of(v), sizes_of_cross(a, b));
 }
 
-}  // namespace careful
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::careful

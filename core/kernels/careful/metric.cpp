@@ -4,9 +4,7 @@
 #include "core/kernels/careful/neighbours.hpp"
 #include "core/kernels/careful/solution.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace careful {
+namespace holonomic::HOL_ISA::careful {
 
 // Returns w_i times the sum of H_kl d_k x d_l over the other bonds l of atom i, for its arm a. All d point away from
 // it.
@@ -63,6 +61,4 @@ void metric(const MetricCall &call, const CarefulPlan &plan, const MoleculeLane 
     tally.log_det += rounded(det);
 }
 
-}  // namespace careful
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA::careful

@@ -1,14 +1,11 @@
 // A molecule as the careful solver sees it: unrounded bond vectors, in units in which no product can overflow.
-#ifndef HOLONOMIC_KERNELS_CAREFUL_MOLECULE_HPP
-#define HOLONOMIC_KERNELS_CAREFUL_MOLECULE_HPP
+#pragma once
 
 #include "core/kernels/atom.hpp"
 #include "core/kernels/careful/plan.hpp"
 #include "core/kernels/careful/wide.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace careful {
+namespace holonomic::HOL_ISA::careful {
 
 // Hands out scratch memory from front to back.
 struct Memory {
@@ -112,7 +109,4 @@ HOL_NOINLINE bool load(Molecule &m, const AtomArray &r, const Box &box) {
     return true;
 }
 
-}  // namespace careful
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::careful

@@ -1,12 +1,9 @@
 // Finds the elements of A^-1 of bonds that share an atom. The Fixman force needs them (theory (60)).
-#ifndef HOLONOMIC_KERNELS_CAREFUL_NEIGHBOURS_HPP
-#define HOLONOMIC_KERNELS_CAREFUL_NEIGHBOURS_HPP
+#pragma once
 
 #include "core/kernels/careful/system.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace careful {
+namespace holonomic::HOL_ISA::careful {
 
 // Of arms a and b of atom i at [table_start[i] + a n + b].
 struct Neighbours {
@@ -141,7 +138,4 @@ HOL_NOINLINE void find_neighbours(const CarefulPlan &plan, const System &system,
     find_neighbours(plan, system.graph, x);
 }
 
-}  // namespace careful
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::careful

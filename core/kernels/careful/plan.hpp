@@ -1,6 +1,5 @@
 // How the careful solver goes through a molecule: plain arrays, made once per shape (core/molecules/careful_shape.hpp).
-#ifndef HOLONOMIC_KERNELS_CAREFUL_PLAN_HPP
-#define HOLONOMIC_KERNELS_CAREFUL_PLAN_HPP
+#pragma once
 
 #include <stdint.h>
 
@@ -30,4 +29,3 @@ struct CarefulPlan {
 constexpr int32_t most_fourfold = 65536;
 
 }  // namespace holonomic
-#endif

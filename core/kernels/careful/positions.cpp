@@ -5,9 +5,7 @@
 #include "core/kernels/newton/rules.hpp"
 #include "core/kernels/tally.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace careful {
+namespace holonomic::HOL_ISA::careful {
 
 // In the caller's units tau is T / (unit mass_unit). Atoms are displaced by w times the sum of T b.
 struct Projection {
@@ -162,6 +160,4 @@ void positions(const PositionsCall &call, const CarefulPlan &plan, const Molecul
     if (solves > tally.iterations) tally.iterations = solves;
 }
 
-}  // namespace careful
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA::careful

@@ -1,14 +1,11 @@
 // A ring without side atoms; triangles are rings, too (theory (57)). Elimination on unit bonds carries the
 // off-diagonals and the deficits of diagonal dominance. It subtracts nothing that matters, whatever the signs are (Q.
 // Ye, Math. Comp. 77, 2195 (2008)). Rows are the bonds round the ring; joint k lies between rows k - 1 and k.
-#ifndef HOLONOMIC_KERNELS_CAREFUL_RING_HPP
-#define HOLONOMIC_KERNELS_CAREFUL_RING_HPP
+#pragma once
 
 #include "core/kernels/careful/molecule.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace careful {
+namespace holonomic::HOL_ISA::careful {
 
 struct Ring {
     int32_t n;
@@ -124,7 +121,4 @@ HOL_NOINLINE void solve(const Molecule &m, const Ring &x, const Wide *b, Wide *t
     for (int32_t k = 0; k < x.n; ++k) t[m.plan.ring[k]] = x.y[k] / x.length[k];
 }
 
-}  // namespace careful
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::careful

@@ -1,6 +1,5 @@
 // The most memory that the careful solver takes: the sum of what its parts take of `Memory`, whatever the verb.
-#ifndef HOLONOMIC_KERNELS_CAREFUL_SCRATCH_HPP
-#define HOLONOMIC_KERNELS_CAREFUL_SCRATCH_HPP
+#pragma once
 
 #include "core/kernels/careful/plan.hpp"
 
@@ -22,4 +21,3 @@ inline int64_t careful_scratch_bytes(const CarefulPlan &plan) {
 }
 
 }  // namespace holonomic
-#endif

@@ -1,13 +1,10 @@
 // Loads a molecule, solves it, and writes its outputs at every level.
-#ifndef HOLONOMIC_KERNELS_CAREFUL_SOLUTION_HPP
-#define HOLONOMIC_KERNELS_CAREFUL_SOLUTION_HPP
+#pragma once
 
 #include "core/kernels/careful/system.hpp"
 #include "core/kernels/tally.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace careful {
+namespace holonomic::HOL_ISA::careful {
 
 // Turns t into the caller's units. Returns false if one is no number. With d = unit d' and w = mass_unit w', both sides
 // of an equation are divided by mass_unit / unit.
@@ -96,7 +93,4 @@ struct Solution {
     }
 };
 
-}  // namespace careful
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::careful

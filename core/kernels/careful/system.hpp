@@ -1,14 +1,11 @@
 // Solves the equations A t = b of one molecule as its shape allows: as a tree, a bare ring, or anything else.
-#ifndef HOLONOMIC_KERNELS_CAREFUL_SYSTEM_HPP
-#define HOLONOMIC_KERNELS_CAREFUL_SYSTEM_HPP
+#pragma once
 
 #include "core/kernels/careful/graph.hpp"
 #include "core/kernels/careful/ring.hpp"
 #include "core/kernels/careful/trees.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace careful {
+namespace holonomic::HOL_ISA::careful {
 
 HOL_INLINE bool is_tree(const CarefulPlan &plan) { return plan.n_core == 0; }
 HOL_INLINE bool is_ring(const CarefulPlan &plan) { return plan.ring != nullptr; }
@@ -83,7 +80,4 @@ HOL_NOINLINE void solve(const Molecule &m, const System &x, const Wide *b, Wide 
     if (!small) x.joint.loss.note(1, wide(0));
 }
 
-}  // namespace careful
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::careful

@@ -1,15 +1,12 @@
 // Trees in the two-sided form (theory (52), (54), (59)). Over every bond each end sends the other a message: what all
 // bonds behind it leave of the inverse mass and of the right-hand sides. Nothing large cancels, whatever the masses
 // are.
-#ifndef HOLONOMIC_KERNELS_CAREFUL_TREES_HPP
-#define HOLONOMIC_KERNELS_CAREFUL_TREES_HPP
+#pragma once
 
 #include "core/kernels/careful/joint.hpp"
 #include "core/kernels/careful/molecule.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace careful {
+namespace holonomic::HOL_ISA::careful {
 
 HOL_NOINLINE Joint take_joint(int32_t most, bool mixed, Memory &memory) {
     const int64_t n = most, pairs = n > most_arms ? 0 : n * n;
@@ -171,7 +168,4 @@ HOL_NOINLINE void solve(const Molecule &m, const Tree &tree, const Wide *b, Wide
         t[k] = (b[k] + tree.y_up[k] + tree.y_down[k]) / (tree.up[k] + tree.down[k]);
 }
 
-}  // namespace careful
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::careful

@@ -1,15 +1,13 @@
 // Numbers of twice the precision, hi + lo, for what is solved once and must not lose digits; or of four times the
 // precision in the set of kernels `fourfold`, which does what twice is not enough for (careful.hpp).
-#ifndef HOLONOMIC_KERNELS_CAREFUL_WIDE_HPP
-#define HOLONOMIC_KERNELS_CAREFUL_WIDE_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/exact.hpp"
 #ifdef HOL_FOURFOLD
 #include "core/kernels/careful/four.hpp"
 #endif
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 #ifdef HOL_FOURFOLD
 
@@ -84,6 +82,4 @@ HOL_NOINLINE Wide3 cross(const Wide3 &a, const Wide3 &b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA

@@ -6,8 +6,7 @@
 // Here bond k = 0 .. n-1 lies between atoms k and k+1; joint k is the one between bonds k-1 and k, at atom k, and L[k]
 // its multiplier. Inverse masses are in the lane's unit; with equal ones, t is unit * 2 lambda for a right-hand side as
 // it is, and 2 lambda for one that has been divided by the unit.
-#ifndef HOLONOMIC_KERNELS_ELIMINATE_CHAIN_HPP
-#define HOLONOMIC_KERNELS_ELIMINATE_CHAIN_HPP
+#pragma once
 
 #include "core/kernels/eliminate/remainder.hpp"
 #include "core/kernels/memory/arena.hpp"
@@ -201,4 +200,3 @@ HOL_INLINE void substitute(long n, const System &s) {
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

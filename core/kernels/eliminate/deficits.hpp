@@ -2,8 +2,7 @@
 // deficits e and f, which the bonds on either side leave of a row, instead of the diagonal. So it subtracts nothing.
 // Products are always compensated, because determinants and the inverse have no componentwise scale that would forgive
 // their rounding.
-#ifndef HOLONOMIC_KERNELS_ELIMINATE_DEFICITS_HPP
-#define HOLONOMIC_KERNELS_ELIMINATE_DEFICITS_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/log_sum.hpp"
 #include "core/kernels/eliminate/measure_fours.hpp"
@@ -177,4 +176,3 @@ HOL_INLINE void turn(const Geometry &x, long k, double kT) {
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,6 +1,5 @@
 // Products of the bonds of a joint, for segments.
-#ifndef HOLONOMIC_KERNELS_ELIMINATE_JOINT_HPP
-#define HOLONOMIC_KERNELS_ELIMINATE_JOINT_HPP
+#pragma once
 
 #include "core/kernels/eliminate/remainder.hpp"
 
@@ -46,4 +45,3 @@ HOL_INLINE void plain_joints(const Source &source, long k, const vec3 *d, Joint 
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,7 +1,6 @@
 // Down the chains of a block that have lists of atoms. What needs more than plain arithmetic goes the general
 // way, which copies such chains into staging buffers.
-#ifndef HOLONOMIC_KERNELS_ELIMINATE_LISTED_HPP
-#define HOLONOMIC_KERNELS_ELIMINATE_LISTED_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/image.hpp"
 #include "core/kernels/eliminate/chain.hpp"
@@ -43,4 +42,3 @@ HOL_NOINLINE void substitute_and_scatter(const Block &block, const System &s, co
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,7 +1,6 @@
 // Bonds and joints of a chain that comes alone, as measure() in deficits.hpp finds them, in sets of one lane: four at a
 // time, for none waits for another. Each number is made as one lane makes it.
-#ifndef HOLONOMIC_KERNELS_ELIMINATE_MEASURE_FOURS_HPP
-#define HOLONOMIC_KERNELS_ELIMINATE_MEASURE_FOURS_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/exact.hpp"
 #include "core/kernels/memory/fours.hpp"
@@ -173,5 +172,4 @@ HOL_INLINE long turn_in_fours(long k, long n, const Geometry &x, double kT) {
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif
 #endif

@@ -1,7 +1,6 @@
 // The sweep down a chain that comes alone, in sets of one lane. Each multiplier waits for the one behind it; meanwhile
 // four atoms at a time get their pulls (memory/fours.hpp).
-#ifndef HOLONOMIC_KERNELS_ELIMINATE_ONE_LANE_HPP
-#define HOLONOMIC_KERNELS_ELIMINATE_ONE_LANE_HPP
+#pragma once
 
 #include "core/kernels/memory/fours.hpp"
 
@@ -52,5 +51,4 @@ HOL_INLINE void pull_down(long n, const vec3 *D, vec *u, const vec *L, const Put
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif
 #endif

@@ -1,6 +1,5 @@
 // Projection of velocities: the sweep down, and a second solve for the rates that rounding leaves.
-#ifndef HOLONOMIC_KERNELS_ELIMINATE_PROJECTION_HPP
-#define HOLONOMIC_KERNELS_ELIMINATE_PROJECTION_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/eliminate/chain.hpp"
@@ -124,4 +123,3 @@ static inline mask pull_back(const Block &block, const Projection &x, bool twice
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,6 +1,5 @@
 // The remainder E: its recursion, how far it may be trusted, and products of nearly orthogonal bonds.
-#ifndef HOLONOMIC_KERNELS_ELIMINATE_REMAINDER_HPP
-#define HOLONOMIC_KERNELS_ELIMINATE_REMAINDER_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/image.hpp"
 #include "core/kernels/arithmetic/vector3.hpp"
@@ -126,4 +125,3 @@ HOL_NOINLINE mask extreme_pivots(const Block &block, const vec3 *D) {
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -11,8 +11,7 @@
 //     backwards t_s = y^ / P^ + (f / P^) t_s',  inside t_k = u_k + (f / P)_k t_s + l_{k+1} t_{k+1}.
 //
 // (E, 1) and (a, c) are two solutions of one linear recursion, so that the fractions of the ordinary sweep do for both.
-#ifndef HOLONOMIC_KERNELS_ELIMINATE_SEGMENT_HPP
-#define HOLONOMIC_KERNELS_ELIMINATE_SEGMENT_HPP
+#pragma once
 
 #include "core/kernels/eliminate/joint.hpp"
 #include "core/kernels/memory/cut.hpp"
@@ -272,4 +271,3 @@ void finish_block(bool weighted, const Box &, const AtomArray &r, const AtomArra
                   const SegmentOutputs &, const Cut &, const Lane &, int64_t j, double *store, const Arena &, Tally &);
 
 }  // namespace holonomic::HOL_ISA
-#endif

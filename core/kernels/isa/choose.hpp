@@ -1,8 +1,7 @@
 // From conditions to template arguments: choose(body, a, b) calls body(A, B), where A and B are constants of the
 // compiler with the values of a and b, so that body may write kernel<A, B>(..). choose_number<1, 5>(n, body) does the
 // same for n = 1 .. 5. choose_few<4>(n, body) does it for n = 1 .. 4, and for any other number gives 0.
-#ifndef HOLONOMIC_KERNELS_ISA_CHOOSE_HPP
-#define HOLONOMIC_KERNELS_ISA_CHOOSE_HPP
+#pragma once
 
 #include <stdint.h>
 
@@ -51,4 +50,3 @@ struct Type {
 };
 
 }  // namespace holonomic::HOL_ISA
-#endif

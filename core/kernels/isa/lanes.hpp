@@ -1,8 +1,7 @@
 // Lanes: W doubles that are worked on at once, with one chain, or one piece of a chain, in each. First what the
 // compiler can do with a vector of them whatever the instruction set is, then transposition, then what each set has of
 // its own.
-#ifndef HOLONOMIC_KERNELS_ISA_LANES_HPP
-#define HOLONOMIC_KERNELS_ISA_LANES_HPP
+#pragma once
 
 #include "core/kernels/isa/target.hpp"
 
@@ -259,4 +258,3 @@ HOL_INLINE double sum_lanes(vec a) {  // in the order of the lanes
 constexpr unsigned all_lanes = (1u << W) - 1;  // bits() of a mask with all lanes set
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -4,8 +4,7 @@
 //
 // All code of a set is in its namespace, so that no function compiled for a newer processor can be linked into code
 // that runs on an older one. So no standard headers with templates in the kernels.
-#ifndef HOLONOMIC_KERNELS_ISA_TARGET_HPP
-#define HOLONOMIC_KERNELS_ISA_TARGET_HPP
+#pragma once
 
 #ifndef HOL_ISA
 #define HOL_ISA baseline
@@ -83,6 +82,4 @@
 #else
 #define HOL_UNROLL _Pragma("GCC unroll 16")
 #define HOL_UNROLL_FEW _Pragma("GCC unroll 4")
-#endif
-
 #endif

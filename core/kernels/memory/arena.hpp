@@ -1,6 +1,5 @@
 // Scratch memory of a thread.
-#ifndef HOLONOMIC_KERNELS_MEMORY_ARENA_HPP
-#define HOLONOMIC_KERNELS_MEMORY_ARENA_HPP
+#pragma once
 
 #include <stdint.h>
 
@@ -39,4 +38,3 @@ private:
 };
 
 }  // namespace holonomic::HOL_ISA
-#endif

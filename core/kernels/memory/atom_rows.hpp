@@ -1,6 +1,5 @@
 // Reads and writes one atom of each lane, a row x y z. Nothing behind z is touched.
-#ifndef HOLONOMIC_KERNELS_MEMORY_ATOM_ROWS_HPP
-#define HOLONOMIC_KERNELS_MEMORY_ATOM_ROWS_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/memory/block.hpp"
@@ -111,4 +110,3 @@ HOL_INLINE bool listed(const Block &block, const Lane *lane) {
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,8 +1,7 @@
 // A block: up to W chains, or W segments of one chain, one per lane. It is read from the caller's memory into
 // interleaved arrays in cache, and written back. Packed coordinates are read in place and transposed, W x W elements at
 // a time. Any other layout is first copied into packed staging buffers.
-#ifndef HOLONOMIC_KERNELS_MEMORY_BLOCK_HPP
-#define HOLONOMIC_KERNELS_MEMORY_BLOCK_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/call.hpp"
@@ -148,4 +147,3 @@ HOL_NOINLINE void load_ragged_atoms(const Block &block, const Packed &p, long k0
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

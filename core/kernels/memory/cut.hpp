@@ -1,6 +1,5 @@
 // How a long chain is cut into segments, W of them at a time, and where they stand in the caller's arrays.
-#ifndef HOLONOMIC_KERNELS_MEMORY_CUT_HPP
-#define HOLONOMIC_KERNELS_MEMORY_CUT_HPP
+#pragma once
 
 #include <stdint.h>
 
@@ -212,4 +211,3 @@ static void for_each_window(const LongTeam &team, int64_t n, Tally &total, const
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,7 +1,6 @@
 // Sets of one lane: what needs no order along a chain is done for four of its bonds at a time, as they stand in memory.
 // Each number is made as one lane makes it. Twelve components x y z x y z .. are three vectors of four.
-#ifndef HOLONOMIC_KERNELS_MEMORY_FOURS_HPP
-#define HOLONOMIC_KERNELS_MEMORY_FOURS_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/isa/choose.hpp"
@@ -66,5 +65,4 @@ HOL_INLINE long rates_in_fours(long k0, long n, const vec3 *d, const double *x, 
 }  // namespace holonomic::HOL_ISA
 #else
 #define HOL_FOURS 0
-#endif
 #endif

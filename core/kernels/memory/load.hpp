@@ -1,7 +1,6 @@
 // Reads a block into scratch: bond vectors and right-hand sides of some bonds of all lanes at a time. All eliminations
 // begin with this, so that none of them depends on boxes, layouts, or on what right-hand sides are made of.
-#ifndef HOLONOMIC_KERNELS_MEMORY_LOAD_HPP
-#define HOLONOMIC_KERNELS_MEMORY_LOAD_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/exact.hpp"
 #include "core/kernels/memory/atom_rows.hpp"
@@ -95,4 +94,3 @@ void load_listed(const Reader &, long from, long end, vec3 *D, vec *B, vec3 *vel
 void load_bond_vectors(const Block &, const Box &, const Packed &r, vec3 *D);
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,7 +1,6 @@
 // Bond vectors and right-hand sides of a chain that comes alone, in sets of one lane: four bonds at a time. Each
 // function returns how many bonds it has done; in other sets none.
-#ifndef HOLONOMIC_KERNELS_MEMORY_LOAD_FOURS_HPP
-#define HOLONOMIC_KERNELS_MEMORY_LOAD_FOURS_HPP
+#pragma once
 
 #include "core/kernels/memory/fours.hpp"
 #include "core/kernels/memory/load.hpp"
@@ -75,4 +74,3 @@ HOL_INLINE long load_rates_in_fours(const double *, long, const vec3 *, vec *, v
 #endif
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,6 +1,5 @@
 // Blocks of a unit: what is in their lanes, and where; their inverse masses.
-#ifndef HOLONOMIC_KERNELS_MEMORY_OPEN_HPP
-#define HOLONOMIC_KERNELS_MEMORY_OPEN_HPP
+#pragma once
 
 #include "core/kernels/memory/arena.hpp"
 #include "core/kernels/memory/block.hpp"
@@ -92,4 +91,3 @@ static inline int64_t no_molecules(const Call &, const Unit &, Block &, int64_t 
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -4,8 +4,7 @@
 // two, or a single one. Chunks are transposed here, and cut where lanes end. Sinks hold what they need by value: for
 // all that the compiler knows, a store to the caller's arrays changes what is behind a reference, which took 4 more
 // instructions a bond of positions.
-#ifndef HOLONOMIC_KERNELS_MEMORY_OUTPUTS_HPP
-#define HOLONOMIC_KERNELS_MEMORY_OUTPUTS_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/arithmetic/virial.hpp"
@@ -162,4 +161,3 @@ struct VirialSum : BondTensors<vec> {
 void add_virial(long n, const vec3 *d, const vec *t, mask which, vec factor, Tally &);
 
 }  // namespace holonomic::HOL_ISA
-#endif

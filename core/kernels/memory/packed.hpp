@@ -1,7 +1,6 @@
 // Right-hand sides: what they are made of. Each product stands here once, for components as they stand in memory or for
 // vectors in lanes.
-#ifndef HOLONOMIC_KERNELS_MEMORY_PACKED_HPP
-#define HOLONOMIC_KERNELS_MEMORY_PACKED_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/vector3.hpp"
 
@@ -54,4 +53,3 @@ HOL_INLINE vec right_hand_side(int terms, vec mass, const vec3 &d, const vec3 &d
 HOL_INLINE vec rate_of(const vec3 &d, const vec3 &v0, const vec3 &v1) { return dot(d, v1 - v0); }
 
 }  // namespace holonomic::HOL_ISA
-#endif

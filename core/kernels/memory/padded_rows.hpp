@@ -1,6 +1,5 @@
 // Copies of rows where lanes end, for what reads whole chunks.
-#ifndef HOLONOMIC_KERNELS_MEMORY_PADDED_ROWS_HPP
-#define HOLONOMIC_KERNELS_MEMORY_PADDED_ROWS_HPP
+#pragma once
 
 #include "core/kernels/memory/block.hpp"
 
@@ -32,4 +31,3 @@ struct PaddedRows {
 };
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,6 +1,5 @@
 // Past and ahead of the cache: fetching what the next block will read, and stores of what will not be read soon.
-#ifndef HOLONOMIC_KERNELS_MEMORY_PREFETCH_HPP
-#define HOLONOMIC_KERNELS_MEMORY_PREFETCH_HPP
+#pragma once
 
 #include <stdint.h>
 
@@ -37,4 +36,3 @@ HOL_INLINE void settle_stores() {
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

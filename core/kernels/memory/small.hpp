@@ -3,8 +3,7 @@
 // read and written, their masses, and which kernel gets them. The kernels are those of verbs/*.cpp that end in
 // _of_molecules. They leave to the general path what needs more than plain arithmetic, and the last molecules of a
 // unit, behind which nothing may be read.
-#ifndef HOLONOMIC_KERNELS_MEMORY_SMALL_HPP
-#define HOLONOMIC_KERNELS_MEMORY_SMALL_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/image.hpp"
 #include "core/kernels/isa/choose.hpp"
@@ -311,4 +310,3 @@ static inline int64_t any_molecules(const Unit &unit, const Block &block, int64_
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,6 +1,5 @@
 // Copies of atoms that are not packed: into scratch, and back.
-#ifndef HOLONOMIC_KERNELS_MEMORY_STAGE_HPP
-#define HOLONOMIC_KERNELS_MEMORY_STAGE_HPP
+#pragma once
 
 #include <stdint.h>
 
@@ -35,4 +34,3 @@ HOL_INLINE void repeat_first(Packed &packed, int lanes) {
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,15 +1,12 @@
 // A unit of molecules, a block after the other: W in lanes while there are two or more left and they are not too large
 // for a cache, else one by one.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_BLOCKS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_BLOCKS_HPP
+#pragma once
 
 #include "core/kernels/molecules/doubtful.hpp"
 #include "core/kernels/molecules/list/flat_verbs.hpp"
 #include "core/kernels/molecules/solve.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 HOL_INLINE MoleculeLane molecule_of(const MoleculeUnit &unit, int64_t i) {
     if (!unit.regular) return unit.lanes[i];
@@ -99,7 +96,4 @@ struct LinearWork {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

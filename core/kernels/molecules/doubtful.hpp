@@ -1,13 +1,10 @@
 // Molecules for which plain arithmetic in lanes can't answer, one by one by the careful solver.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_DOUBTFUL_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_DOUBTFUL_HPP
+#pragma once
 
 #include "core/kernels/careful/careful.hpp"
 #include "core/kernels/molecules/schedule.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 inline void careful_one(const ForcesCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch,
                         Tally &tally) {
@@ -34,7 +31,4 @@ HOL_NOINLINE void solve_doubtful(const Call &call, const Schedule &schedule, con
     for (; rest; rest &= rest - 1) careful_one(call, *schedule.careful, lane[__builtin_ctz(rest)], aligned, tally);
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

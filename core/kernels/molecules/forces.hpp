@@ -1,6 +1,5 @@
 // Constraint forces of molecules, and multipliers for given right-hand sides.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_FORCES_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_FORCES_HPP
+#pragma once
 
 #include "core/kernels/molecules/blocks.hpp"
 #include "core/kernels/molecules/doubtful.hpp"
@@ -9,9 +8,7 @@
 #include "core/kernels/molecules/store.hpp"
 #include "core/kernels/molecules/triangle/triangle_blocks.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 template <class V>
 static inline void write_outputs(Linear<V> &z, const Outputs &out, unsigned which, Tally &tally) {
@@ -50,7 +47,4 @@ static inline unsigned solve_block(const Call &call, Linear<V> &z, bool masses_k
     return bits(z.x.in_use()) & ~good;
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,13 +1,10 @@
 // The image of one bond.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_IMAGE_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_IMAGE_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/image.hpp"
 #include "core/kernels/arithmetic/width.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Minimum image of a bond vector; `lo` gets what the rounding of d leaves off.
 template <bool careful, class V>
@@ -33,7 +30,4 @@ HOL_INLINE void take_images(const Box &box, Vector3<V> *d) {
     for (int k = 0; k < n; ++k) d[k] = image[k];
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,13 +1,10 @@
 // Newton's method on a block of molecules: what is done when, by the rules that chains have (newton/rules.hpp).
-#ifndef HOLONOMIC_KERNELS_MOLECULES_ITERATE_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_ITERATE_HPP
+#pragma once
 
 #include "core/kernels/newton/rules.hpp"
 #include "core/kernels/tally.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Errors |D.D - a^2| / a^2 that are accepted: what the coordinates of a molecule carry, and what is so for any
 // coordinates; but no less than the tolerance.
@@ -139,7 +136,4 @@ HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const Posi
     return out;
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

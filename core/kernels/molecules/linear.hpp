@@ -1,6 +1,5 @@
 // Solves the linear equations of a block of molecules, whatever their shape.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LINEAR_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LINEAR_HPP
+#pragma once
 
 #include "core/kernels/molecules/cycles/proof.hpp"
 #include "core/kernels/molecules/cycles/refine.hpp"
@@ -8,9 +7,7 @@
 #include "core/kernels/molecules/ring/ring.hpp"
 #include "core/kernels/molecules/store.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 template <class V>
 struct Linear {
@@ -189,7 +186,4 @@ private:
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

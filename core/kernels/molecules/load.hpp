@@ -1,14 +1,11 @@
 // Reads a block of molecules: each atom once, then bond vectors and right-hand sides at their places.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LOAD_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LOAD_HPP
+#pragma once
 
 #include "core/kernels/memory/packed.hpp"
 #include "core/kernels/molecules/atoms/vectors.hpp"
 #include "core/kernels/molecules/linear.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Terms (memory/packed.hpp) of the right-hand side b of a bond from atom i to atom j, as they are called here:
 // squares: |v_j - v_i|^2;  pulls: d.(w_j f_j - w_i f_i);  rates: d.(v_j - v_i);  given: half of the bond's given value.
@@ -135,7 +132,4 @@ struct Loader {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

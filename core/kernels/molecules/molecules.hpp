@@ -1,6 +1,5 @@
 // A block of molecules of one shape: what is known of their atoms and bonds while they are solved.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_MOLECULES_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_MOLECULES_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/molecules/atoms/atoms.hpp"
@@ -8,9 +7,7 @@
 #include "core/kernels/molecules/large_tree/pieces.hpp"
 #include "core/kernels/molecules/schedule.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // A bond at its place (schedule.hpp).
 template <class V>
@@ -158,7 +155,4 @@ HOL_INLINE V product_of(const Molecules<V> &x, int32_t a, int32_t b) {
     return g;
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,6 +1,5 @@
 // Position level of molecules: load, iterate, move the atoms, store.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_POSITIONS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_POSITIONS_HPP
+#pragma once
 
 #include "core/kernels/molecules/blocks.hpp"
 #include "core/kernels/molecules/doubtful.hpp"
@@ -12,9 +11,7 @@
 #include "core/kernels/molecules/triangle/triangle_blocks.hpp"
 #include "core/kernels/tally.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 template <class V>
 HOL_INLINE void make_bond(NewtonRow<V> &row, const PositionsCall &call, const Vector3<V> &b, const Vector3<V> &D) {
@@ -221,7 +218,4 @@ struct PositionsWork {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,7 +1,6 @@
 // The order in which the bonds of a molecule that is no chain are eliminated, as flat arrays that a kernel runs
 // through. Plain data, the same for every instruction set; core/molecules/schedule.hpp makes it.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_SCHEDULE_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_SCHEDULE_HPP
+#pragma once
 
 #include <stdint.h>
 
@@ -158,4 +157,3 @@ struct Schedule {
 };
 
 }  // namespace holonomic
-#endif

@@ -1,15 +1,12 @@
 // Working arrays of the kernels of molecules.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_SCRATCH_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_SCRATCH_HPP
+#pragma once
 
 #include <stdint.h>
 
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/arithmetic/width.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Working arrays, handed out front to back.
 template <class V>
@@ -23,7 +20,4 @@ struct Memory {
     Vector3<V> *vectors(int64_t n) { return reinterpret_cast<Vector3<V> *>(values(3 * n)); }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,15 +1,12 @@
 // The linear equations of molecules, read and solved: one function each for W molecules in lanes and for a single one,
 // compiled once for all verbs (verbs/molecules_linear.cpp).
-#ifndef HOLONOMIC_KERNELS_MOLECULES_SOLVE_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_SOLVE_HPP
+#pragma once
 
 #include "core/kernels/molecules/linear.hpp"
 #include "core/kernels/molecules/list/flat_linear.hpp"
 #include "core/kernels/molecules/store.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Molecules in lanes are small.
 template <class V>
@@ -52,7 +49,4 @@ HOL_INLINE bool has_torn_atoms(const Molecules<vec> &) { return false; }
 // Writes the outputs of arms. weighted: v += w G, with v in place of G.
 void write_arms(const Molecules<double> &, bool weighted, const Outputs &, Tally &);
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,14 +1,11 @@
 // Writes what comes of the multipliers of a block of molecules: values per bond, pulls on atoms, the virial.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_STORE_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_STORE_HPP
+#pragma once
 
 #include "core/kernels/molecules/atoms/vectors.hpp"
 #include "core/kernels/molecules/molecules.hpp"
 #include "core/kernels/molecules/virial.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Returns G of the atom at a slot: t d of the bonds that point away from it, less t d of those that point to it.
 template <class V>
@@ -163,7 +160,4 @@ HOL_INLINE MaskOf<V> finite_solution(const Molecules<V> &x) {
     return finite(sum);
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

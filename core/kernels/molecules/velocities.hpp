@@ -1,15 +1,12 @@
 // Velocity level of molecules: the same equations with d . (v_j - v_i) on the right, v_i += w_i G_i. A second solve,
 // for the rates of the velocities as they are rounded after the first, leaves d . (v_j - v_i) at their rounding.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_VELOCITIES_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_VELOCITIES_HPP
+#pragma once
 
 #include "core/kernels/molecules/blocks.hpp"
 #include "core/kernels/molecules/large_tree/arms_velocities.hpp"
 #include "core/kernels/molecules/store.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // d . (v_j - v_i) into t of the row of a bond from slot i to slot j.
 template <class V>
@@ -88,7 +85,4 @@ static inline unsigned solve_block(const VelocitiesCall &call, Linear<V> &z, boo
     return bits(z.x.in_use()) & ~good;
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

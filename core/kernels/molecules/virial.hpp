@@ -1,14 +1,11 @@
 // The virial of a block of molecules, - sum t d (x) d over their bonds.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_VIRIAL_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_VIRIAL_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/virial.hpp"
 #include "core/kernels/arithmetic/width.hpp"
 #include "core/kernels/call.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // The counterpart of memory/outputs.hpp: what a molecule adds does not depend on which of the two widths it has.
 template <class V>
@@ -30,7 +27,4 @@ HOL_NOINLINE void add_bonds_virial(const Vector3<V> *d, const V *t, double facto
     virial.count(which, factor, tally);
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

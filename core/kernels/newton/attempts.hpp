@@ -1,7 +1,6 @@
 // What Newton's method takes from the caller, a guess, and what it writes: moves of atoms, multipliers, the worst bond,
 // the virial; and the attempts at the positions of a block of chains. Compiled once, in attempts.cpp.
-#ifndef HOLONOMIC_KERNELS_NEWTON_ATTEMPTS_HPP
-#define HOLONOMIC_KERNELS_NEWTON_ATTEMPTS_HPP
+#pragma once
 
 #include "core/kernels/memory/open.hpp"
 #include "core/kernels/memory/outputs.hpp"
@@ -73,4 +72,3 @@ private:
 bool listed_positions(const Block &, const Lane *, const PositionsCall &, const BondLengths &, Arena, Tally &);
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,6 +1,5 @@
 // What the coordinates of chains carry, by which Newton's method is done in a lane (rules.hpp).
-#ifndef HOLONOMIC_KERNELS_NEWTON_CRITERION_HPP
-#define HOLONOMIC_KERNELS_NEWTON_CRITERION_HPP
+#pragma once
 
 #include "core/kernels/newton/rules.hpp"
 #include "core/kernels/newton/system.hpp"
@@ -74,4 +73,3 @@ struct Outcome {
 };
 
 }  // namespace holonomic::HOL_ISA
-#endif

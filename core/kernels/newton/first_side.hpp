@@ -1,6 +1,5 @@
 // The right-hand side of the first of few solves for positions.
-#ifndef HOLONOMIC_KERNELS_NEWTON_FIRST_SIDE_HPP
-#define HOLONOMIC_KERNELS_NEWTON_FIRST_SIDE_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/vector3.hpp"
 
@@ -15,4 +14,3 @@ HOL_INLINE V first_side(V sigma, V per_a2) {
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

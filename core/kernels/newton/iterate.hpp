@@ -1,6 +1,5 @@
 // Newton's method for the positions of a block of chains: which sweep (sweeps.hpp) is made when.
-#ifndef HOLONOMIC_KERNELS_NEWTON_ITERATE_HPP
-#define HOLONOMIC_KERNELS_NEWTON_ITERATE_HPP
+#pragma once
 
 #include "core/kernels/newton/criterion.hpp"
 #include "core/kernels/newton/short.hpp"
@@ -97,4 +96,3 @@ Outcome solve_positions(const Block &, Newton &, const PositionsCall &, Carried 
                         bool careful = false);
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,8 +1,7 @@
 // When Newton's method for positions is done, and when it takes new factors: what holds for chains in lanes (V = vec),
 // for molecules (vec and double) and for the careful solver (double). Errors are |D.D - a^2| / a^2, the largest of a
 // lane.
-#ifndef HOLONOMIC_KERNELS_NEWTON_RULES_HPP
-#define HOLONOMIC_KERNELS_NEWTON_RULES_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/width.hpp"
 #include "core/kernels/call.hpp"
@@ -63,4 +62,3 @@ HOL_INLINE MaskOf<V> next_is_last(V error, V rate) {
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,7 +1,6 @@
 // Chains at the position level that are solved in parts which know nothing of each other: what is asked of a part, and
 // whether two of them fit together where they meet.
-#ifndef HOLONOMIC_KERNELS_NEWTON_SEAMS_HPP
-#define HOLONOMIC_KERNELS_NEWTON_SEAMS_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/image.hpp"
 #include "core/kernels/memory/stage.hpp"
@@ -81,4 +80,3 @@ struct SharedLargest {
 };
 
 }  // namespace holonomic::HOL_ISA
-#endif

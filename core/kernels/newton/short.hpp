@@ -1,6 +1,5 @@
 // Chains of one bond in closed form, and of two bonds by products alone.
-#ifndef HOLONOMIC_KERNELS_NEWTON_SHORT_HPP
-#define HOLONOMIC_KERNELS_NEWTON_SHORT_HPP
+#pragma once
 
 #include "core/kernels/newton/criterion.hpp"
 #include "core/kernels/newton/first_side.hpp"
@@ -152,4 +151,3 @@ HOL_INLINE Outcome solve_two_bonds(Newton &x, Carried &carried, mask wanted) {
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,6 +1,5 @@
 // The sweeps of Newton's method up and down the chains of a block.
-#ifndef HOLONOMIC_KERNELS_NEWTON_SWEEPS_HPP
-#define HOLONOMIC_KERNELS_NEWTON_SWEEPS_HPP
+#pragma once
 
 #include "core/kernels/eliminate/remainder.hpp"
 #include "core/kernels/memory/prefetch.hpp"
@@ -207,4 +206,3 @@ vec correct_bonds(const Block &, const Newton &);
 void substitute_back_in(const Block &, const Newton &, bool first, bool separate, mask which);
 
 }  // namespace holonomic::HOL_ISA
-#endif

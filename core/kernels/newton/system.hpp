@@ -5,8 +5,7 @@
 // The bonds are moved from D, in scratch, by all corrections so far. A step is one sweep up the chain and one down. The
 // sweep up moves the bonds, finds D.D - a^2 and substitutes forward. The coordinates are rounded once, at the end.
 // Lanes that are done take no more corrections while the others go on.
-#ifndef HOLONOMIC_KERNELS_NEWTON_SYSTEM_HPP
-#define HOLONOMIC_KERNELS_NEWTON_SYSTEM_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/memory/arena.hpp"
@@ -71,4 +70,3 @@ HOL_INLINE vec3 times_w(const Newton &x, long k, const vec3 &a) {
 HOL_INLINE mask live(const Newton &x, long k) { return less(splat(static_cast<double>(k)), x.lengths); }
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -4,9 +4,7 @@
 #include "core/kernels/molecules/list/flat_refine.hpp"
 #include "core/kernels/molecules/solve.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Lanes that plain arithmetic answers for, once the equations are solved.
 template <class V>
@@ -51,6 +49,4 @@ void write_arms(const Molecules<double> &x, bool weighted, const Outputs &out, T
     write_all_arms(x, weighted, out, tally);
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,7 +1,6 @@
 // The entries of the table of kernels: what the verbs of one instruction set define, and what core/kernels/call.hpp
 // says of them.
-#ifndef HOLONOMIC_KERNELS_VERBS_VERBS_HPP
-#define HOLONOMIC_KERNELS_VERBS_VERBS_HPP
+#pragma once
 
 #include "core/kernels/call.hpp"
 #include "core/kernels/isa/target.hpp"
@@ -54,4 +53,3 @@ bool tridiagonal_solve(int64_t n, const double *gamma, const double *b, double *
 bool tridiagonal_pivots(int64_t n, const double *gamma, double *pivots);
 
 }  // namespace holonomic::HOL_ISA
-#endif

@@ -1,16 +1,13 @@
 // Reads and writes the atoms of a block of molecules in the caller's arrays, one atom of every lane at a time: whole
 // rows x y z of packed arrays, or single elements in any other layout. The layout is looked up as the program runs, so
 // that what reads and writes is compiled once.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_ATOMS_ATOMS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_ATOMS_ATOMS_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/width.hpp"
 #include "core/kernels/call.hpp"
 #include "core/kernels/memory/atom_rows.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Of all arrays of a call. rows_in_order: a molecule's atoms stand one behind the other; rows_listed: where lists say.
 enum Layout { rows_in_order, rows_listed, elements };
@@ -143,7 +140,4 @@ HOL_INLINE void write(const AtomArray &array, const Atoms<V> &at, int64_t k, con
     write_anywhere(array, at, k, copy, which);
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

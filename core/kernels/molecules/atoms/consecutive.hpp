@@ -1,14 +1,11 @@
 // Molecules of a number of atoms that the compiler knows, whose rows x y z stand one behind the other: 3 n doubles of
 // each lane, four at a time.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_ATOMS_CONSECUTIVE_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_ATOMS_CONSECUTIVE_HPP
+#pragma once
 
 #include "core/kernels/isa/choose.hpp"
 #include "core/kernels/molecules/atoms/atoms.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 #if HOL_LANES >= 4 && defined(__AVX2__)
 // Two elements of four lanes, from element k of their rows.
@@ -292,7 +289,4 @@ HOL_INLINE auto where_atoms_are(const Atoms<V> &at, const Body &body) {
     return body(Constant<Inlined, anywhere>{});
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

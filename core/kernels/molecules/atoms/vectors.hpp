@@ -2,15 +2,12 @@
 // compiled once, with a loop for each layout, and what is done with the vectors knows nothing of where they came from.
 // Atoms are taken in the order of the caller's arrays; where their rows follow each other, four are twelve doubles of
 // each lane.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_ATOMS_VECTORS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_ATOMS_VECTORS_HPP
+#pragma once
 
 #include "core/kernels/molecules/atoms/consecutive.hpp"
 #include "core/kernels/molecules/schedule.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Where the vector of slot s stands: in a working array, or as three members, one behind the other, of a row per slot.
 template <class V>
@@ -154,7 +151,4 @@ HOL_NOINLINE void write_vectors(const AtomArray &array, const Atoms<V> &at, cons
     });
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,15 +1,12 @@
 // The two halves of a substitution through the columns of a core. If a column's rows are the next ones, as in a strip
 // of triangles, their numbers stay in registers, four ahead. Through memory, each column would wait for the stores of
 // the one before.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_CYCLES_CORE_COLUMNS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_CYCLES_CORE_COLUMNS_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/width.hpp"
 #include "core/kernels/molecules/schedule.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 constexpr int32_t columns_ahead = 4;  // memory behind the numbers of all columns
 
@@ -78,7 +75,4 @@ HOL_INLINE void back_columns(const Schedule &s, const V *entry, V *y, const PerP
     }
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

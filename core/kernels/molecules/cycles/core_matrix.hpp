@@ -1,14 +1,11 @@
 // The core of a molecule with cycles. Hanging trees leave a tensor of each atom's inverse mass, which is never formed
 // (theory (55)). The core's bonds are eliminated by LDL^T in the order of the schedule.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_CYCLES_CORE_MATRIX_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_CYCLES_CORE_MATRIX_HPP
+#pragma once
 
 #include "core/kernels/molecules/cycles/core_columns.hpp"
 #include "core/kernels/molecules/tree/joint.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 template <class V>
 struct CoreMatrix {
@@ -161,7 +158,4 @@ static inline void down_core(const Molecules<V> &x, const CoreMatrix<V> &core) {
     }
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

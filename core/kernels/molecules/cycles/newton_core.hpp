@@ -1,14 +1,11 @@
 // The core at the position level. Its LU has the order and the pattern of the symmetric elimination.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_CYCLES_NEWTON_CORE_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_CYCLES_NEWTON_CORE_HPP
+#pragma once
 
 #include "core/kernels/molecules/cycles/core_columns.hpp"
 #include "core/kernels/molecules/cycles/core_matrix.hpp"
 #include "core/kernels/molecules/tree/newton_joint.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Bonds that meet at an atom stand in the order of their places, so that the later one of a pair is its row below the
 // diagonal.
@@ -163,7 +160,4 @@ static inline void down_core(const NewtonSystem<V> &x, MaskOf<V> active) {
     }
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -2,15 +2,12 @@
 // what they leave of the equations (theory (55a)). The part of trees needs no factors: an atom with k children adds at
 // most 1 + k times w |d| |d'| to |L| P |L^T| for two of its bonds, because no eliminated child makes their products
 // larger.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_CYCLES_PROOF_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_CYCLES_PROOF_HPP
+#pragma once
 
 #include "core/kernels/molecules/cycles/core_matrix.hpp"
 #include "core/kernels/molecules/cycles/residual.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // The bound must be no more than this times an equation's terms, both in roundings. This is a part of the 16 + sqrt(n)
 // roundings of the scale that count as right (tests/oracle/molecules/README.md), and no more than in trees
@@ -110,7 +107,4 @@ HOL_NOINLINE MaskOf<V> proven_lanes(const Molecules<V> &x, const CoreMatrix<V> &
     return less_equal(V{}, least);
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

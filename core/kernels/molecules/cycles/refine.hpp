@@ -1,12 +1,9 @@
 // Iterative refinement of multipliers against exact residuals: which corrections are good, and when to stop.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_CYCLES_REFINE_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_CYCLES_REFINE_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/width.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // A correction of a multiplier, |b_k| / P_k or the same with a sign, |d|^2, and the multiplier.
 template <class V>
@@ -60,7 +57,4 @@ HOL_INLINE MaskOf<V> correct_until_right(MaskOf<V> active, const Solve &solve, c
     return good;
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

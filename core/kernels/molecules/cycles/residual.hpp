@@ -1,14 +1,11 @@
 // Finds what a solution leaves of the equations of a whole molecule, in twice the precision: the accelerations
 // a = w (f + G) and then, per bond, d.(a_j - a_i) + c, which vanishes at the exact solution. Refinement against it
 // mends what LDL^T of a core loses.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_CYCLES_RESIDUAL_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_CYCLES_RESIDUAL_HPP
+#pragma once
 
 #include "core/kernels/molecules/molecules.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Adds up low words as they come. High words stay right to a rounding, and a sum of few terms needs no more.
 template <class V>
@@ -132,7 +129,4 @@ HOL_NOINLINE void find_residuals(const Molecules<V> &x, const Equations<V> &e, c
     }
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,8 +1,7 @@
 // Trees of any shapes side by side, one in each lane, or atoms of one large tree in all of them, as flat arrays that a
 // kernel runs through. Plain data, the same for every instruction set of as many lanes; core/molecules/forests.hpp
 // makes it.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_HPP
+#pragma once
 
 #include <stdint.h>
 
@@ -46,4 +45,3 @@ struct Forest {
 };
 
 }  // namespace holonomic
-#endif

@@ -1,14 +1,11 @@
 // What each lane of a forest reads and writes by numbers of its own: atoms of the caller's arrays, and places of
 // working arrays.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_LANES_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_LANES_HPP
+#pragma once
 
 #include "core/kernels/molecules/forest/forest.hpp"
 #include "core/kernels/molecules/molecules.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // One double of each lane.
 HOL_INLINE vec numbers_at(const double *const *p, int64_t offset) {
@@ -214,7 +211,4 @@ struct ForestTrees {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,7 +1,6 @@
 // The linear equations of W different trees (forest.hpp). The arithmetic is that of tree/joint.hpp, so that a tree's
 // digits do not depend on whether it comes with others of its shape, with others, or alone.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_LINEAR_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_LINEAR_HPP
+#pragma once
 
 #include <stddef.h>
 
@@ -9,9 +8,7 @@
 #include "core/kernels/molecules/load.hpp"
 #include "core/kernels/molecules/virial.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 struct ForestLinear : ForestTrees {
     const Box &box;
@@ -185,7 +182,4 @@ struct ForestLinear : ForestTrees {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

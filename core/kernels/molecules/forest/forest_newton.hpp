@@ -1,16 +1,13 @@
 // Newton's method for the positions of W different trees (forest.hpp): a system for iterate.hpp. The arithmetic is that
 // of tree/newton.hpp, so that a tree's digits do not depend on whether it comes with others.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_NEWTON_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_NEWTON_HPP
+#pragma once
 
 #include <stddef.h>
 
 #include "core/kernels/molecules/forest/forest_lanes.hpp"
 #include "core/kernels/molecules/tree/newton.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 typedef NewtonRow<vec> ForestRow;
 
@@ -294,7 +291,4 @@ inline __attribute__((noinline)) void ForestNewton::down_and_displace(const Rang
     }
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,15 +1,12 @@
 // Position level of a forest: what positions.hpp does with a block of molecules of one shape.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_POSITIONS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_POSITIONS_HPP
+#pragma once
 
 #include "core/kernels/molecules/forest/forest_newton.hpp"
 #include "core/kernels/molecules/iterate.hpp"
 #include "core/kernels/molecules/virial.hpp"
 #include "core/kernels/tally.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 struct ForestPositions {
     const PositionsCall &call;
@@ -95,7 +92,4 @@ struct ForestPositions {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,13 +1,10 @@
 // Goes up and down W different trees: the sweeps of tree/joint.hpp, step by step.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_SWEEPS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_FOREST_FOREST_SWEEPS_HPP
+#pragma once
 
 #include "core/kernels/molecules/forest/forest_linear.hpp"
 #include "core/kernels/molecules/tree/joint.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // The bonds of an atom in each lane: those to its children at the places of a step, and a copy of the one above.
 struct ForestJoint {
@@ -190,7 +187,4 @@ inline void ForestLinear::solve_again() {
     down<false>(all(), ForestDoubt{slack});
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,13 +1,10 @@
 // The linear equations of one large tree, piece by piece (forest.hpp): what is done with a piece is done while it is in
 // a cache, and by any thread.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_FOREST_ONE_TREE_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_FOREST_ONE_TREE_HPP
+#pragma once
 
 #include "core/kernels/molecules/forest/tree_doubt.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 struct OneTree {
     typedef ForestTrees::Range Range;
@@ -166,7 +163,4 @@ struct OneTree {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,13 +1,10 @@
 // Position level of one large tree, piece by piece (forest.hpp): a system of one number for iterate.hpp. What goes up
 // is done behind what makes it, while the piece is in a cache; so it is done once too often when a solve was the last.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_FOREST_ONE_TREE_POSITIONS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_FOREST_ONE_TREE_POSITIONS_HPP
+#pragma once
 
 #include "core/kernels/molecules/forest/forest_positions.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 HOL_INLINE double largest_of(const vec &a) {
     double most = a[0], sum = 0;
@@ -177,7 +174,4 @@ struct OneTreePositions {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,14 +1,11 @@
 // Atoms of one large tree at which plain products lose too much, or whose bonds are faint (tree/siblings.hpp). Nothing
 // else of it needs to be done again: such an atom is eliminated in twice the precision.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_FOREST_TREE_DOUBT_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_FOREST_TREE_DOUBT_HPP
+#pragma once
 
 #include "core/kernels/molecules/forest/forest_sweeps.hpp"
 #include "core/kernels/molecules/large_tree/doubtful_atom.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Of a bond in one lane.
 inline BondRow<double> one_of(const BondRow<vec> &row, int i) {
@@ -101,7 +98,4 @@ struct TreeDoubt {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

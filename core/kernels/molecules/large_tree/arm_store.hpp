@@ -1,14 +1,11 @@
 // Where the arms of a large molecule (schedule.hpp) are kept while it is solved: each as a chain inside of it.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_ARM_STORE_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_ARM_STORE_HPP
+#pragma once
 
 #include "core/kernels/eliminate/segment.hpp"
 #include "core/kernels/molecules/schedule.hpp"
 #include "core/kernels/molecules/scratch.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 struct Arms {
     double *store;         // of all arms, one behind the other; nullptr: there are none
@@ -67,7 +64,4 @@ HOL_INLINE Arms take_arms(const Schedule &s, const double *scratch, Memory<doubl
     return arms;
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -2,16 +2,13 @@
 // eliminated at once, without knowing anything else (eliminate/segment.hpp). What a segment leaves to the separators at
 // its two ends is the matrix [c, -f; -f, E] with a = E c - f^2, and T and y on the right: so the joining of
 // verbs/segments.cpp, which subtracts nothing, can go from either end to the other, whichever is the upper one.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_ARMS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_ARMS_HPP
+#pragma once
 
 #include "core/kernels/eliminate/segment.hpp"
 #include "core/kernels/molecules/large_tree/load_lanes.hpp"
 #include "core/kernels/molecules/store.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 HOL_INLINE Lane chain_of(const Schedule::Arm &arm, const MoleculeLane &molecule) {
     Lane lane = {};
@@ -182,7 +179,4 @@ HOL_NOINLINE void write_all_arms(const Molecules<double> &x, bool weighted, cons
     });
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,14 +1,11 @@
 // Velocity level of a large molecule with arms. It is solved, and its velocities are moved, twice from the beginning,
 // as in a long chain. The matrix is the same both times. The second time the rates are those that the rounded
 // velocities leave.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_ARMS_VELOCITIES_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_ARMS_VELOCITIES_HPP
+#pragma once
 
 #include "core/kernels/molecules/forces.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Returns false, with nothing written, if plain arithmetic can't answer.
 HOL_NOINLINE bool project_with_arms(Linear<double> &z, const VelocitiesCall &call, Tally &tally) {
@@ -32,7 +29,4 @@ HOL_NOINLINE bool project_with_arms(Linear<double> &z, const VelocitiesCall &cal
     return true;
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,13 +1,10 @@
 // An atom of a large tree, with at most three children, at which plain products have lost too much: copies of its
 // bonds.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_DOUBTFUL_ATOM_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_DOUBTFUL_ATOM_HPP
+#pragma once
 
 #include "core/kernels/molecules/molecules.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 struct DoubtfulAtom {
     static constexpr int most = 4;
@@ -22,7 +19,4 @@ struct DoubtfulAtom {
 // changed, if its bonds depend on each other.
 bool up_doubtful(DoubtfulAtom &);
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

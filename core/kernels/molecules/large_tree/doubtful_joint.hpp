@@ -1,16 +1,13 @@
 // Eliminates an atom of a tree at which plain products have lost too much, in twice the precision, by sums in which
 // nothing is subtracted (theory (54)). What comes up to it is right, so what it hands up is right, too. Nothing else of
 // a large molecule needs to be done again.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_DOUBTFUL_JOINT_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_DOUBTFUL_JOINT_HPP
+#pragma once
 
 #include "core/kernels/careful/joint.hpp"
 #include "core/kernels/molecules/large_tree/doubtful_atom.hpp"
 #include "core/kernels/molecules/tree/joint.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // An atom with at most three children, which are arms 0 .. k - 1; the bond above is arm k. Vectors are divided by a
 // power of two each, masses by one, so that no product overflows.
@@ -113,7 +110,4 @@ bool up_doubtful(DoubtfulAtom &x) {
     return true;
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

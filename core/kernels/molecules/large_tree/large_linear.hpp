@@ -1,13 +1,10 @@
 // Linear equations of one molecule that is large, in its pieces (schedule.hpp): each is read and eliminated by itself,
 // W atoms at a time and by any thread, then the top. The digits are those of linear.hpp.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_LARGE_LINEAR_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_LARGE_LINEAR_HPP
+#pragma once
 
 #include "core/kernels/molecules/large_tree/arms.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Reads what the pieces hold, and eliminates it; up_arm does so at an arm.
 HOL_INLINE void load_and_eliminate(Linear<double> &z, int terms, const ArmWork &up_arm) {
@@ -55,7 +52,4 @@ static inline void solve_all_pieces(Linear<double> &z, int terms, bool look) {
     solve(ArmWork(up), ArmWork(down));
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

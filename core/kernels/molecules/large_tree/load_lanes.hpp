@@ -1,13 +1,10 @@
 // Reads the trees of one large molecule, W atoms of it and their parents at a time: what load.hpp does, with the same
 // digits. Parents are read again from the caller's arrays, so that no atom waits for another.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_LOAD_LANES_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_LOAD_LANES_HPP
+#pragma once
 
 #include "core/kernels/molecules/load.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Atoms of one molecule, one in each lane.
 template <bool packed>
@@ -143,7 +140,4 @@ HOL_INLINE void load_slots(Linear<double> &z, int terms, int32_t first, int32_t 
     choose([&](auto packed) { load_slots_of<packed>(z, terms, first, end, keep_all); }, z.x.at.layout != elements);
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

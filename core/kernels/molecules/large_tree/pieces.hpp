@@ -1,15 +1,12 @@
 // The pieces of one large molecule (schedule.hpp), shared among threads.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_PIECES_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_PIECES_HPP
+#pragma once
 
 #include "core/kernels/molecules/large_tree/arm_store.hpp"
 #include "core/kernels/molecules/schedule.hpp"
 #include "core/kernels/molecules/scratch.hpp"
 #include "core/kernels/tally.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Joints of more bonds would take too much memory in each piece.
 constexpr int32_t most_children_in_pieces = 64;
@@ -115,7 +112,4 @@ HOL_INLINE void for_places_in_order(const Schedule &s, const Pieces *pieces, con
     for_stretches(s, nullptr, [&](const Schedule::Stretch &x) { body(x.first_place, x.end_place); });
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

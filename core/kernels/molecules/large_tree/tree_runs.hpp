@@ -1,14 +1,11 @@
 // The sweeps of joint.hpp over one large tree whose atoms do not fill lanes, with the same digits: piece by piece, arms
 // as chains. Others go as a forest (forest/one_tree.hpp).
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_TREE_RUNS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LARGE_TREE_TREE_RUNS_HPP
+#pragma once
 
 #include "core/kernels/molecules/large_tree/doubtful_atom.hpp"
 #include "core/kernels/molecules/tree/joint.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // In twice the precision. False: that doesn't do either.
 HOL_NOINLINE bool up_carefully(const Molecules<double> &x, int32_t slot, int k) {
@@ -204,7 +201,4 @@ static inline void down_trees(Molecules<double> &x) {
     down_pieces(x, ArmWork(), look);
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

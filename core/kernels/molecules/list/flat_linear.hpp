@@ -1,15 +1,12 @@
 // Linear equations of one large molecule with cycles: A t = b as it stands, L D L^T along a list (flat_list.hpp).
 // Whether that will do without refinement, flat_proof.hpp says.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_LINEAR_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_LINEAR_HPP
+#pragma once
 
 #include "core/kernels/molecules/list/flat_rows.hpp"
 #include "core/kernels/molecules/load.hpp"
 #include "core/kernels/molecules/virial.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 struct FlatLinear {
     const FlatList &s;
@@ -250,7 +247,4 @@ struct FlatLinear {
     bool writable(int32_t atom) const { return !lane.shared || !lane.shared[atom]; }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,7 +1,6 @@
 // The elimination of one large molecule: all its bonds, those of trees too, along one list, as flat arrays.
 // Plain data, the same for every instruction set; core/molecules/flat_list.hpp makes it.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_LIST_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_LIST_HPP
+#pragma once
 
 #include <stdint.h>
 
@@ -81,4 +80,3 @@ constexpr int32_t largest_in_list = INT32_MAX / 16;
 constexpr int64_t in_fours(int64_t n) { return (n + 3) / 4 * 4; }
 
 }  // namespace holonomic
-#endif

@@ -3,15 +3,12 @@
 // one. What can be done while a tile is in a cache is done together: on the way up bonds, what is left of them and
 // factors, on the way down corrections and displacements. Where there are threads, they share the tiles in all that
 // needs no order; the triangular solves are left to one. The digits are the same.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_NEWTON_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_NEWTON_HPP
+#pragma once
 
 #include "core/kernels/molecules/large_tree/pieces.hpp"
 #include "core/kernels/molecules/list/flat_rows.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // The largest error of bonds.
 struct FlatErrors {
@@ -277,7 +274,4 @@ struct FlatNewton {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

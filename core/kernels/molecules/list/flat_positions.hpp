@@ -1,6 +1,5 @@
 // Position level of one large molecule: positions.hpp along a list.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_POSITIONS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_POSITIONS_HPP
+#pragma once
 
 #include "core/kernels/molecules/iterate.hpp"
 #include "core/kernels/molecules/list/flat_newton.hpp"
@@ -8,9 +7,7 @@
 #include "core/kernels/molecules/virial.hpp"
 #include "core/kernels/tally.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 struct FlatPositions {
     const PositionsCall &call;
@@ -163,7 +160,4 @@ static inline bool solve_flat(const PositionsCall &call, const Schedule &s, cons
     return FlatPositions(call, s, lane, packed, team, memory, tally).solve();
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -6,15 +6,12 @@
 // (elimination and substitutions; the products d.d' and w). Where R is no more than the terms that an equation is made
 // of, all errors are of the size of its scale |A^-1| S. Elsewhere, or where a pivot is small,
 // flat_refine.hpp corrects, or linear.hpp.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_PROOF_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_PROOF_HPP
+#pragma once
 
 #include "core/kernels/molecules/cycles/proof.hpp"
 #include "core/kernels/molecules/list/flat_residual.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // What is left of an equation is most often less than a third of the roundings of R.
 constexpr double often_less = 3;
@@ -143,7 +140,4 @@ struct FlatProof {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

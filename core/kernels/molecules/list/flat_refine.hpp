@@ -1,14 +1,11 @@
 // Corrects the multipliers of one large molecule against the exact residual, as linear.hpp does those of molecules in
 // lanes, with the factors along its list. Residuals are those of residual.hpp, x y z at once.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_REFINE_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_REFINE_HPP
+#pragma once
 
 #include "core/kernels/molecules/cycles/refine.hpp"
 #include "core/kernels/molecules/list/flat_proof.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Products in twice the precision of exact.hpp and residual.hpp, whose templates know no rows where these are no lanes.
 HOL_INLINE Pair<Row> product_of(const Row &a, const Row &b) {
@@ -200,7 +197,4 @@ struct FlatRefine {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

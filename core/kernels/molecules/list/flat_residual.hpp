@@ -1,15 +1,12 @@
 // What the multipliers of one large molecule leave of the equation of a single bond, in twice the precision. The bound
 // of flat_proof.hpp is for the worst case: of a million bonds some miss it by little, whose equations are solved all
 // the same.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_RESIDUAL_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_RESIDUAL_HPP
+#pragma once
 
 #include "core/kernels/molecules/cycles/residual.hpp"
 #include "core/kernels/molecules/list/flat_linear.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 class FlatResidual {
 public:
@@ -104,7 +101,4 @@ private:
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

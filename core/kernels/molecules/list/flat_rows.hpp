@@ -1,16 +1,13 @@
 // Vectors in space of one molecule as rows of four doubles, x y z and one more, whatever the lanes are: x, y and z are
 // done at once, and four rows are turned into lanes of four where a number of each is wanted.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_ROWS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_ROWS_HPP
+#pragma once
 
 #include "core/kernels/isa/choose.hpp"
 #include "core/kernels/molecules/atoms/atoms.hpp"
 #include "core/kernels/molecules/image.hpp"
 #include "core/kernels/molecules/list/flat_list.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 typedef double Row __attribute__((vector_size(32)));
 typedef long long RowBits __attribute__((vector_size(32)));
@@ -223,7 +220,4 @@ HOL_INLINE void find_bonds(const FlatList &s, const Tile &tile, const Box &box, 
     }
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,15 +1,12 @@
 // Forces, given right-hand sides and velocities of one large molecule with cycles, along a list. False where a
 // refinement is in doubt: then nothing has been written.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_VERBS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_LIST_FLAT_VERBS_HPP
+#pragma once
 
 #include "core/kernels/molecules/list/flat_linear.hpp"
 #include "core/kernels/molecules/schedule.hpp"
 #include "core/kernels/molecules/solve.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Call: of forces or of given right-hand sides.
 template <class Call>
@@ -53,7 +50,4 @@ static inline bool solve_flat(const VelocitiesCall &call, const Schedule &s, con
     return true;
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

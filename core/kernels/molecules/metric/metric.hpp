@@ -2,15 +2,12 @@
 // share. Products of two bonds are found from unrounded coordinates, as those of chains: neither the determinant nor
 // its force has a scale that would forgive their rounding. A pivot is P = A - F, where F is a sum of squares, so that
 // ln(P / A) keeps its digits where F is small.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_METRIC_METRIC_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_METRIC_METRIC_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/log_sum.hpp"
 #include "core/kernels/molecules/blocks.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // The part of what it is subtracted from that a pivot and E must keep: its inverse is that many roundings off H.
 constexpr double least_kept = 1.0 / 12;
@@ -133,7 +130,4 @@ struct Metric {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,15 +1,12 @@
 // Metric determinant and Fixman force of a ring without side atoms: a chain that its last bond closes (theory (57a)).
 // Bond k leads from atom k to atom k + 1. What bonds before leave of bond k is found without a subtraction, as in a
 // chain; what they leave of the last one, by fill, is subtracted from it.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_METRIC_RING_METRIC_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_METRIC_RING_METRIC_HPP
+#pragma once
 
 #include "core/kernels/molecules/metric/metric.hpp"
 #include "core/kernels/molecules/tree/joint.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 template <class V>
 struct RingMetric : Metric<V> {
@@ -108,7 +105,4 @@ private:
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -3,15 +3,12 @@
 // Up: S = L P L^T of the bonds below each atom. Down: with H of the bond above, e,
 //
 //     H_ce = l_c H_ee,   H_cc' = (S^-1)_cc' + l_c l_c' H_ee
-#ifndef HOLONOMIC_KERNELS_MOLECULES_METRIC_TREE_METRIC_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_METRIC_TREE_METRIC_HPP
+#pragma once
 
 #include "core/kernels/molecules/metric/metric.hpp"
 #include "core/kernels/molecules/tree/joint.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 constexpr int pairs_to(int k) { return k * (k + 1) / 2; }  // with those of one and the same
 
@@ -218,7 +215,4 @@ private:
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

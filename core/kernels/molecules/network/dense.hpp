@@ -1,13 +1,10 @@
 // A dense matrix of which the first unknowns are eliminated: A = L D U, with ones on the diagonals of L and U, and what
 // is left of the others. No pivot is sought.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_DENSE_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_DENSE_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/width.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Columns of L and rows of U, `height` numbers each, stand one behind the other; of a symmetric matrix they are the
 // same array. What is left has `height - own` numbers in each column; below the diagonal is enough if it is symmetric.
@@ -206,7 +203,4 @@ private:
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,15 +1,12 @@
 // The equations of a network's unknowns: the ends of strands, coupled at the nodes and from end to end. Their matrix is
 // M, which has the ends of each node by themselves, and what strands couple.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_ENDS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_ENDS_HPP
+#pragma once
 
 #include "core/kernels/molecules/network/fronts.hpp"
 #include "core/kernels/molecules/network/strands.hpp"
 #include "core/kernels/molecules/network/tensor.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Tensors of all nodes.
 struct NetTensor {
@@ -236,7 +233,4 @@ private:
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,15 +1,12 @@
 // The linear equations of a network: their bonds, their right-hand sides, and what multipliers leave of them in twice
 // the precision.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_EQUATIONS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_EQUATIONS_HPP
+#pragma once
 
 #include "core/kernels/molecules/cycles/residual.hpp"
 #include "core/kernels/molecules/load.hpp"
 #include "core/kernels/molecules/network/strands.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 struct NetEquations {
     const Net net;
@@ -206,7 +203,4 @@ struct NetEquations {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,14 +1,11 @@
 // The equations of a network: strands and trees are eliminated, from what is left between the nodes its unknowns are
 // found by iteration (unknowns.hpp). The matrix is w D . b, of new bonds D and reference bonds b; at the levels of
 // forces and velocities these are the same.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_FACTOR_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_FACTOR_HPP
+#pragma once
 
 #include "core/kernels/molecules/network/unknowns.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // What offers less than this part of an inverse mass is taken to offer so much: the end of a strand; a bond of a tree
 // below an atom with several, whose multiplier is a difference that is divided by it. The factors need not be exact, as
@@ -276,7 +273,4 @@ private:
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,6 +1,5 @@
 // How the unknowns of a network are eliminated directly. Plain data; core/molecules/fronts.hpp makes it.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_FRONT_PLAN_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_FRONT_PLAN_HPP
+#pragma once
 
 #include <stdint.h>
 
@@ -30,4 +29,3 @@ struct FrontPlan {
 };
 
 }  // namespace holonomic
-#endif

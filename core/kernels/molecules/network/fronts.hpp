@@ -1,16 +1,13 @@
 // The unknowns of a network eliminated directly, front by front (front_plan.hpp): L D U of their matrix (I. Duff, J.
 // Reid, ACM Trans. Math. Softw. 9, 302 (1983)). It is a preconditioner: what rounding does to it, residuals show.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_FRONTS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_FRONTS_HPP
+#pragma once
 
 #include "core/kernels/molecules/list/flat_list.hpp"
 #include "core/kernels/molecules/network/dense.hpp"
 #include "core/kernels/molecules/network/network_plan.hpp"
 #include "core/kernels/molecules/scratch.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 struct Fronts {
     const FrontPlan &s;
@@ -158,7 +155,4 @@ private:
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

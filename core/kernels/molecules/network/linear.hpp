@@ -1,8 +1,7 @@
 // Linear equations of a network: solved by factors and iteration, then looked at. What multipliers leave of each
 // equation, with what rounding can hide there, is compared with the terms that it is made of; where it is too much the
 // residual is found in twice the precision and solved for, until that changes nothing.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_LINEAR_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_LINEAR_HPP
+#pragma once
 
 #include "core/kernels/molecules/cycles/proof.hpp"
 #include "core/kernels/molecules/cycles/refine.hpp"
@@ -10,9 +9,7 @@
 #include "core/kernels/molecules/network/factor.hpp"
 #include "core/kernels/molecules/virial.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 struct NetLinear : NetEquations {
     // Of residuals that are corrected: of all, and of what rounding hides in each over 16. All together say nothing of
@@ -258,7 +255,4 @@ struct NetLinear : NetEquations {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,7 +1,6 @@
 // One large molecule as a network of strands and nodes: the three levels. False where that has not converged: then
 // nothing has been written.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_NETWORK_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_NETWORK_HPP
+#pragma once
 
 #include "core/kernels/call.hpp"
 #include "core/kernels/molecules/blocks.hpp"
@@ -39,4 +38,3 @@ static inline void solve_networks(const Call &call, const MoleculeUnit &unit, bo
 }
 
 }  // namespace holonomic::HOL_ISA
-#endif

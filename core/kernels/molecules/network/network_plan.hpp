@@ -1,7 +1,6 @@
 // One large molecule of strands that meet at nodes: a gel, a lattice. Plain data, the same for every instruction set;
 // core/molecules/network.hpp makes it.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_NETWORK_PLAN_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_NETWORK_PLAN_HPP
+#pragma once
 
 #include <stdint.h>
 
@@ -60,4 +59,3 @@ struct NetworkPlan {
 };
 
 }  // namespace holonomic
-#endif

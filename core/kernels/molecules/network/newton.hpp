@@ -1,13 +1,10 @@
 // Newton's method for the positions of a network, as flat_newton.hpp has it for molecules along a list.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_NEWTON_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_NEWTON_HPP
+#pragma once
 
 #include "core/kernels/molecules/iterate.hpp"
 #include "core/kernels/molecules/network/factor.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 struct NetNewton {
     // Of right-hand sides that a solve leaves: little beside what Newton's method does, which is some twentieth of the
@@ -203,7 +200,4 @@ struct NetNewton {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

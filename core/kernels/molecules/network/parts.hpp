@@ -1,15 +1,12 @@
 // What loops over a network go through: strands and nodes in lanes, parts of a thread, and vectors of their sites and
 // places.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_PARTS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_PARTS_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/width.hpp"
 #include "core/kernels/molecules/list/flat_list.hpp"
 #include "core/kernels/molecules/scratch.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Vectors x y z of all sites or of all places.
 struct Net3 {
@@ -71,7 +68,4 @@ private:
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,13 +1,10 @@
 // Position level of a network.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_POSITIONS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_POSITIONS_HPP
+#pragma once
 
 #include "core/kernels/molecules/network/newton.hpp"
 #include "core/kernels/molecules/virial.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 struct NetPositions {
     const PositionsCall &call;
@@ -143,7 +140,4 @@ struct NetPositions {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

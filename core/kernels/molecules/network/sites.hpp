@@ -1,14 +1,11 @@
 // The caller's arrays per atom, read and written by the sites of a network.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_SITES_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_SITES_HPP
+#pragma once
 
 #include "core/kernels/molecules/atoms/atoms.hpp"
 #include "core/kernels/molecules/network/network_plan.hpp"
 #include "core/kernels/molecules/network/parts.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // An array per atom that is read by sites; times inverse masses if `weighed`.
 struct NetReading {
@@ -108,7 +105,4 @@ struct NetSites {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

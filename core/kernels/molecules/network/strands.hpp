@@ -1,14 +1,11 @@
 // The strands and nodes of a network in lanes, and what is found for all its atoms and bonds.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_STRANDS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_STRANDS_HPP
+#pragma once
 
 #include "core/kernels/molecules/image.hpp"
 #include "core/kernels/molecules/large_tree/pieces.hpp"
 #include "core/kernels/molecules/network/sites.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 struct Net : NetSites {
     const LongTeam *team;
@@ -236,7 +233,4 @@ HOL_INLINE double largest_in(const double *values, int32_t n) {
     return most + 0 * sum;
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

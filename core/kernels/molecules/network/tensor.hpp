@@ -1,13 +1,10 @@
 // Matrices of three rows and columns: what trees and strands leave of an atom's inverse mass.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_TENSOR_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_TENSOR_HPP
+#pragma once
 
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/arithmetic/width.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 template <class V>
 struct Tensor {
@@ -34,7 +31,4 @@ HOL_INLINE void load(Tensor<V> &mass, const V &E, const Vector3<V> &b, const Vec
     mass.row[2] = add_times(mass.row[2], f * pushed.z, by);
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -3,14 +3,11 @@
 // solved exactly as the preconditioner M: what strands couple dies out along them, so that it takes few rounds. Where
 // these would be few in any case, corrections by M alone do. With p' = M^-1 p the product with the matrix is p +
 // (matrix - M) p'.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_NETWORK_UNKNOWNS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_NETWORK_UNKNOWNS_HPP
+#pragma once
 
 #include "core/kernels/molecules/network/ends.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 struct Unknowns : Ends {
     double *x, *size;                                  // solution, squares of the sizes of right-hand sides' terms
@@ -235,7 +232,4 @@ private:
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

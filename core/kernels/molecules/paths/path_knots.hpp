@@ -1,14 +1,11 @@
 // Knots of a large molecule (paths.hpp) at the position level: W of a kind at a time as small molecules, whose legs
 // reach so far that what is beyond them is not felt at the knot.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_PATHS_PATH_KNOTS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_PATHS_PATH_KNOTS_HPP
+#pragma once
 
 #include "core/kernels/molecules/paths/path_work.hpp"
 #include "core/kernels/molecules/positions.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // W knots of a kind; the last ones of it may be fewer.
 struct Knots {
@@ -166,7 +163,4 @@ static inline void move_knots(const PathsWork &x, const uint8_t *fixed) {
     }
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

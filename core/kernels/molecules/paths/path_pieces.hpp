@@ -1,16 +1,13 @@
 // Pieces of paths (paths.hpp) at the position level, W at a time as chains: those of different paths, too. Where a path
 // ends, the knot has found the multipliers beyond, and the piece starts from atoms that are displaced by them. Where it
 // is cut, pieces have margins, as windows of a long chain have (memory/cut.hpp).
-#ifndef HOLONOMIC_KERNELS_MOLECULES_PATHS_PATH_PIECES_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_PATHS_PATH_PIECES_HPP
+#pragma once
 
 #include "core/kernels/memory/load.hpp"
 #include "core/kernels/molecules/paths/path_work.hpp"
 #include "core/kernels/newton/attempts.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 static_assert(PathPlan::bonds_of_piece + 2 * longest_margin <= longest_piece, "scratch is made for these");
 
@@ -227,7 +224,4 @@ static inline void finish_pieces(const PathsWork &x, int64_t j, bool moved, doub
     if (x.call.virial) add_virial(x, p, newton, part);
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

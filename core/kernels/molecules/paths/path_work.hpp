@@ -1,6 +1,5 @@
 // A large molecule along its paths (paths.hpp) at the position level: what its parts share.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_PATHS_PATH_WORK_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_PATHS_PATH_WORK_HPP
+#pragma once
 
 #include "core/kernels/memory/arena.hpp"
 #include "core/kernels/memory/cut.hpp"
@@ -8,9 +7,7 @@
 #include "core/kernels/molecules/schedule.hpp"
 #include "core/kernels/newton/seams.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 struct PathsWork {
     const PositionsCall &call, &strict;
@@ -84,7 +81,4 @@ HOL_INLINE void solve_parts(PathsWork &x, int64_t n, Tally &total, const Solve &
     });
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

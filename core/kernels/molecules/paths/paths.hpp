@@ -1,7 +1,6 @@
 // A large molecule of linear parts at the position level: paths, which are worked on as chains are, and the knots at
 // which they end. Plain data, the same for every instruction set; core/molecules/path_plan.hpp makes it.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_PATHS_PATHS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_PATHS_PATHS_HPP
+#pragma once
 
 #include <stdint.h>
 
@@ -55,4 +54,3 @@ struct PathPlan {
 };
 
 }  // namespace holonomic
-#endif

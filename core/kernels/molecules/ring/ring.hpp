@@ -6,14 +6,11 @@
 //
 // Bond p of the ring, at place n_tree + p, points from slot n_tree + p to the next one: the bond *behind* this atom, as
 // p - 1 is the one *before* it.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_RING_RING_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_RING_RING_HPP
+#pragma once
 
 #include "core/kernels/molecules/tree/joint.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 template <class V>
 struct Ring {
@@ -225,7 +222,4 @@ static inline void down_ring(Molecules<V> &x, const Ring<V> &ring) {
     });
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

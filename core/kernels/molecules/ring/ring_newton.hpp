@@ -3,15 +3,12 @@
 //     l_k = - J_nk / P_k of its y,   takes c_k = - J_kn / P_k of the last one's correction,   and J_nn loses l_k P_k
 //     c_k
 // where J_nk and J_kn are what the rows before have left: J_n,k+1 = J_nk up_k, J_k+1,n = down_k J_kn.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_RING_RING_NEWTON_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_RING_RING_NEWTON_HPP
+#pragma once
 
 #include "core/kernels/molecules/atoms/vectors.hpp"
 #include "core/kernels/molecules/tree/newton_joint.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Puts a value into `to` in the lanes of `which`, or in all.
 template <bool all, class V>
@@ -217,7 +214,4 @@ struct RingNewton {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,14 +1,11 @@
 // The ring of a molecule with trees at the position level: LU in the order of ring.hpp. Row k of the matrix has D_k,
 // column l has b_l (theory (58)).
-#ifndef HOLONOMIC_KERNELS_MOLECULES_RING_RING_TREES_NEWTON_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_RING_RING_TREES_NEWTON_HPP
+#pragma once
 
 #include "core/kernels/molecules/ring/ring.hpp"
 #include "core/kernels/molecules/tree/newton_joint.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // What an atom gives to the diagonal elements of the bonds before and behind it, and to the elements between them: in
 // the row of the one behind, and in its column.
@@ -133,7 +130,4 @@ static inline void down_ring(const NewtonSystem<V> &x, MaskOf<V> active) {
     });
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -2,17 +2,14 @@
 //     2 M tau = sigma + q(tau),   sigma = D.D - a^2,   q_k = |P_k|^2,   P what tau does to the bonds;
 // q is a quadratic form of products of the reference bonds b, and small. So nothing cancels, and the error that a step
 // leaves is known to many more digits than the bonds have.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_SMALL_MULTIPLIERS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_SMALL_MULTIPLIERS_HPP
+#pragma once
 
 #include "core/kernels/molecules/atoms/consecutive.hpp"
 #include "core/kernels/molecules/iterate.hpp"
 #include "core/kernels/newton/first_side.hpp"
 #include "core/kernels/tally.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Largest error that the second solve may leave in the squared lengths. The third leaves about its power 3/2, which
 // must be far below a rounding.
@@ -80,7 +77,4 @@ HOL_NOINLINE void note_worst_bond(const V *size, const Lanes &lanes, V error, un
     }
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

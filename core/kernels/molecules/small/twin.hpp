@@ -1,12 +1,10 @@
 // Two blocks of W molecules side by side, as if there were 2 W lanes. While one waits for a quotient, or for the end of
 // a chain of products, the processor works on the other.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_SMALL_TWIN_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_SMALL_TWIN_HPP
+#pragma once
 
 #include "core/kernels/molecules/atoms/consecutive.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
+namespace holonomic::HOL_ISA {
 
 // True if twins pay: the bits of their masks fit, and there is more than one lane.
 constexpr bool twins = W > 1 && W <= 8 && !small_set;
@@ -191,6 +189,4 @@ HOL_INLINE void add_elements(double *const *r, double *const *v, double factor, 
     graph::add_elements<n>(r + W, v ? v + W : nullptr, factor, b);
 }
 
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA

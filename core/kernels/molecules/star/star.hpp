@@ -1,17 +1,14 @@
 // Positions of stars: a centre with bonds to N other atoms, as in CH3, NH3, CH4. Bond k points from the centre to atom
 // k of the others. They ascend, so it is also bond k of the molecule. For multipliers.hpp, bond k becomes D_k + P_k,
 //     P_k = - w_k tau_k b_k - w_c sum of tau_l b_l.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_STAR_STAR_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_STAR_STAR_HPP
+#pragma once
 
 #include "core/kernels/molecules/image.hpp"
 #include "core/kernels/molecules/small/multipliers.hpp"
 #include "core/kernels/molecules/star/star_atoms.hpp"
 #include "core/kernels/molecules/tree/newton_joint.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Masses and lengths.
 template <int N, class V>
@@ -141,7 +138,4 @@ struct StarModel {
     HOL_STATIC void solve(const SmallInverse<N, V> &f, const V *y, V *tau) { SmallInverse<N, V>::solve(f, y, tau); }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

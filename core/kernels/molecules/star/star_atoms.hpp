@@ -1,15 +1,12 @@
 // The atoms of stars in the caller's arrays, and units of stars.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_STAR_STAR_ATOMS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_STAR_STAR_ATOMS_HPP
+#pragma once
 
 #include "core/kernels/molecules/atoms/consecutive.hpp"
 #include "core/kernels/molecules/blocks.hpp"
 #include "core/kernels/molecules/schedule.hpp"
 #include "core/kernels/molecules/small/twin.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Returns the centre of a star of N bonds without fixed atoms, or -1 if the shape is none.
 template <int N>
@@ -173,7 +170,4 @@ static inline bool do_stars(const Verb &verb, const General &general, const Mole
     return true;
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,15 +1,12 @@
 // Forces and velocities of stars of three bonds, CH3 and NH3, in registers: the equations of joint.hpp with the centre
 // as the root and S^-1 in closed form. Lanes for which that is not good enough go the general way.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_STAR_STAR_LINEAR_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_STAR_STAR_LINEAR_HPP
+#pragma once
 
 #include "core/kernels/molecules/star/star_atoms.hpp"
 #include "core/kernels/molecules/store.hpp"
 #include "core/kernels/molecules/tree/joint.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Bond vectors from the centre, and S = diag(w_k q_k) + w_0 D^T D with its inverse adj / det.
 template <class V>
@@ -201,7 +198,4 @@ struct StarVelocitiesVerb {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

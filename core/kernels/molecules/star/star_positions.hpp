@@ -1,14 +1,11 @@
 // Positions of stars, a block in registers. Lanes that need more go the general way.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_STAR_STAR_POSITIONS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_STAR_STAR_POSITIONS_HPP
+#pragma once
 
 #include "core/kernels/molecules/schedule.hpp"
 #include "core/kernels/molecules/star/star.hpp"
 #include "core/kernels/molecules/store.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 template <Inlined where, int N, class V>
 struct StarPositions {
@@ -127,7 +124,4 @@ struct StarPositionsVerb {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -5,14 +5,11 @@
 //
 // S = L P L^T is decomposed as it stands, which subtracts. Errors stay at a few roundings while every pivot and every E
 // keep a sixteenth of what they are subtracted from. `slack` is negative where they don't.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_TREE_JOINT_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_TREE_JOINT_HPP
+#pragma once
 
 #include "core/kernels/molecules/tree/siblings.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // The part of a diagonal element that its pivot must keep.
 constexpr double least_part = 1.0 / 16;
@@ -230,7 +227,4 @@ static inline void down_trees_and_move(const Molecules<V> &x, Vector3<V> *v) {
     }
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

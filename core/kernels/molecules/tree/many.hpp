@@ -6,14 +6,11 @@
 //
 // It does where M is well conditioned, and where no child is held by the atom alone: where of each d_c^T (w N / E_c)
 // d_c, which S^-1 subtracts from 1, enough is missing. `slack` is negative where it does not.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_TREE_MANY_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_TREE_MANY_HPP
+#pragma once
 
 #include "core/kernels/molecules/molecules.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // tr M tr N is 9 where M is a multiple of 1.
 constexpr double most_uneven = 128, even = 9;
@@ -112,7 +109,4 @@ HOL_INLINE void substitute_many(const Rows &x, int k) {
     x.above().t = y;
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,16 +1,13 @@
 // Newton's method for the positions of a block of molecules (theory (15)-(17), (58)). The corrections move_i of the
 // atoms must bring every D.D to a^2. move_i is w_i times the sum of tau b over the bonds that point away from atom i,
 // less the same sum over those that point to it.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_TREE_NEWTON_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_TREE_NEWTON_HPP
+#pragma once
 
 #include "core/kernels/molecules/atoms/vectors.hpp"
 #include "core/kernels/molecules/cycles/newton_core.hpp"
 #include "core/kernels/molecules/ring/ring_trees_newton.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 template <class V>
 struct Newton {
@@ -244,7 +241,4 @@ HOL_INLINE auto solve_and_move(Newton<V> &newton, Mask active) {
     return newton.solve_and_move(active);
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

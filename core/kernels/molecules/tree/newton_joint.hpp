@@ -5,15 +5,12 @@
 //     b_e)_c t_e
 //
 // Newton's residuals are exact whatever the factors are, so nothing here needs a test of doubt.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_TREE_NEWTON_JOINT_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_TREE_NEWTON_JOINT_HPP
+#pragma once
 
 #include "core/kernels/molecules/tree/joint.hpp"
 #include "core/kernels/molecules/tree/many.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 template <class V>
 struct NewtonRow {
@@ -271,7 +268,4 @@ HOL_INLINE void substitute_newton_joint(const Rows &x, int count) {
     if (!top) x.above().t = above;
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -9,14 +9,11 @@
 //   - |y_c| r_c, as c and the bonds below it are pulled by y_c, and r_c <= (A^-1)_cc;
 //   - S_c / A_cc, where S_c are the terms of its right-hand side in absolute values.
 // A bond is `faint` if none of these is large enough. The first two are always looked at, the third if they don't do.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_TREE_SIBLINGS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_TREE_SIBLINGS_HPP
+#pragma once
 
 #include "core/kernels/molecules/tree/many.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // The bonds of an atom, each at its place: those to its children, and the one above. known: as in NewtonAtom.
 // forest/forest_sweeps.hpp has the same for atoms in lanes.
@@ -123,7 +120,4 @@ HOL_NOINLINE void doubt_faint_bonds(const Molecules<V> &x, int32_t slot, int k, 
     for (int a = -1; a < k; ++a) doubt_faint_bond(x, a < 0 ? slot : child[a], shared, which, slack);
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,17 +1,14 @@
 // Three atoms with all three distances, rigid water: closed forms (theory (56), (58)), in registers. Bond p points from
 // atom p to atom p + 1 (mod 3), so that d_0 + d_1 + d_2 = 0. In the theory's letters a = d_1, b = d_2, c = d_0, each
 // opposite to the atom of its name.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_TRIANGLE_TRIANGLE_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_TRIANGLE_TRIANGLE_HPP
+#pragma once
 
 #include "core/kernels/molecules/atoms/consecutive.hpp"
 #include "core/kernels/molecules/image.hpp"
 #include "core/kernels/molecules/schedule.hpp"
 #include "core/kernels/molecules/virial.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // Its one numbering: atoms 0, 1, 2, and the bonds (0,1), (1,2), (2,0), which within the molecule have the numbers 0,
 // 2, 1.
@@ -153,7 +150,4 @@ HOL_INLINE void read_triangle_bonds(const Atoms<V> &at, const double *in, double
         for (int i = 0; i < at.lanes; ++i) Width<V>::set(value[k], i, factor * in[at.bond[i] + bond_number(k)]);
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,6 +1,5 @@
 // Goes through units of triangles, block by block, at each level.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_TRIANGLE_TRIANGLE_BLOCKS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_TRIANGLE_TRIANGLE_BLOCKS_HPP
+#pragma once
 
 #include "core/kernels/molecules/blocks.hpp"
 #include "core/kernels/molecules/doubtful.hpp"
@@ -8,9 +7,7 @@
 #include "core/kernels/molecules/triangle/triangle_linear.hpp"
 #include "core/kernels/molecules/triangle/triangle_positions.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // The molecules of a block: given, or those of a unit from number `first` on.
 struct TrianglesGiven {
@@ -187,7 +184,4 @@ struct TrianglePositionsVerb {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,13 +1,10 @@
 // Forces, given right-hand sides and velocities of triangles.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_TRIANGLE_TRIANGLE_LINEAR_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_TRIANGLE_TRIANGLE_LINEAR_HPP
+#pragma once
 
 #include "core/kernels/molecules/store.hpp"
 #include "core/kernels/molecules/triangle/triangle.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // What a linear solve reads and writes; absent arrays have x == nullptr.
 struct TriangleCall {
@@ -152,7 +149,4 @@ HOL_INLINE unsigned project_triangles(const VelocitiesCall &call, int used, cons
     return good;
 }
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,14 +1,11 @@
 // The model of triangles that multipliers.hpp solves. Bond k becomes D_k + P_k, where
 //     P_k = - (w_k + w_{k+1}) tau_k b_k + w_{k+1} tau_{k+1} b_{k+1} + w_k tau_{k-1} b_{k-1}.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_TRIANGLE_TRIANGLE_MODEL_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_TRIANGLE_TRIANGLE_MODEL_HPP
+#pragma once
 
 #include "core/kernels/molecules/small/multipliers.hpp"
 #include "core/kernels/molecules/triangle/triangle_newton.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 template <class V>
 struct TriangleModel {
@@ -80,7 +77,4 @@ struct TriangleModel {
     HOL_STATIC void solve(const TriangleInverse<V> &f, const V *y, V *tau) { TriangleInverse<V>::solve(f, y, tau); }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

@@ -1,14 +1,11 @@
 // The lengths of triangles, and their equations at the position level as iterate() takes them, with the closed form of
 // the matrix's inverse.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_TRIANGLE_TRIANGLE_NEWTON_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_TRIANGLE_TRIANGLE_NEWTON_HPP
+#pragma once
 
 #include "core/kernels/molecules/iterate.hpp"
 #include "core/kernels/molecules/triangle/triangle.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 template <class V>
 struct TriangleLengths {
@@ -99,7 +96,4 @@ struct TriangleNewton {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph

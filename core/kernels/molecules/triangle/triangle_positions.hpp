@@ -1,12 +1,9 @@
 // Positions of triangles.
-#ifndef HOLONOMIC_KERNELS_MOLECULES_TRIANGLE_TRIANGLE_POSITIONS_HPP
-#define HOLONOMIC_KERNELS_MOLECULES_TRIANGLE_TRIANGLE_POSITIONS_HPP
+#pragma once
 
 #include "core/kernels/molecules/triangle/triangle_model.hpp"
 
-namespace holonomic {
-namespace HOL_ISA {
-namespace graph {
+namespace holonomic::HOL_ISA::graph {
 
 // A block at the position level: what is read, and how it is written.
 template <Inlined where, class V, class Lanes>
@@ -116,7 +113,4 @@ struct TrianglePositions {
     }
 };
 
-}  // namespace graph
-}  // namespace HOL_ISA
-}  // namespace holonomic
-#endif
+}  // namespace holonomic::HOL_ISA::graph
