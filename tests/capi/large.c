@@ -177,3 +177,70 @@ hol_chains *large_chains(const molecule *m)
     assert_int_equal(hol_chains_n_of_shape(chains, shape), 1);
     return chains;
 }
+
+/** What a call had to leave alone. */
+typedef struct kept {
+    const molecule *m;
+    const hol_chains *chains;
+    double *bonds, *atoms;
+} kept;
+
+static void assert_kept(const kept *x, const double *was)
+{
+    const size_t size = 3 * (size_t)x->m->n_atoms;
+    assert_untouched(x->bonds, (size_t)x->m->n_bonds);
+    was ? assert_same_bits(x->atoms, was, size) : assert_untouched(x->atoms, size);
+}
+
+static void forces_fail(const kept *x, int status)
+{
+    const molecule *m = x->m;
+    CHECK_FAILS(status, hol_forces(x->chains, m->r, m->v, m->f, x->bonds, NULL, x->atoms, HOL_WRITE, NULL));
+    assert_kept(x, NULL);
+}
+
+static void velocities_fail(const kept *x, int status)
+{
+    const size_t bytes = 3 * (size_t)x->m->n_atoms * sizeof *x->atoms;
+    double *const blank = copy_of(x->atoms, bytes / sizeof *x->atoms);
+    memcpy(x->atoms, x->m->v, bytes);
+    CHECK_FAILS(status, hol_project_velocities(x->chains, x->m->r, x->atoms, x->bonds, NULL));
+    assert_kept(x, x->m->v);
+    memcpy(x->atoms, blank, bytes);
+    free(blank);
+}
+
+void check_bad_data_change_nothing(const molecule *m, const hol_chains *chains, size_t places)
+{
+    const size_t n = (size_t)m->n_bonds, size = 3 * (size_t)m->n_atoms;
+    const kept x = {m, chains, untouched(n), untouched(size)};
+    for (size_t i = 0; i < places; ++i) {
+        const size_t at = i == 0 ? size / 2 : i == 1 ? 1 : size - 2;
+        const double f = m->f[at], v = m->v[at], r = m->r[at], bad = i == 1 ? INFINITY : NAN;
+        m->f[at] = bad;
+        forces_fail(&x, HOL_ERR_NOT_FINITE);
+        m->f[at] = f;
+        m->v[at] = bad;
+        forces_fail(&x, HOL_ERR_NOT_FINITE);
+        velocities_fail(&x, HOL_ERR_NOT_FINITE);
+        m->v[at] = v;
+        double *const rhs = copy_of(m->length, n), *const moved = copy_of(m->r, size);
+        rhs[at % n] = bad;
+        CHECK_FAILS(HOL_ERR_NOT_FINITE, hol_solve(x.chains, m->r, rhs, x.bonds, x.atoms, HOL_WRITE, NULL));
+        assert_kept(&x, NULL);
+        moved[at] = bad;
+        double *const was = copy_of(moved, size);
+        CHECK_FAILS(HOL_ERR_NOT_FINITE, hol_project_positions(x.chains, m->r, moved, NULL, 0.1, x.bonds, 0, NULL, NULL));
+        assert_same_bits(moved, was, size);
+        assert_kept(&x, NULL);
+        m->r[at] = bad;
+        forces_fail(&x, HOL_ERR_NOT_FINITE);
+        velocities_fail(&x, HOL_ERR_NOT_FINITE);
+        m->r[at] = r;
+        free(rhs), free(moved), free(was);
+    }
+    const int64_t *const ends = m->pairs + m->n_bonds / 2 * 2;
+    memcpy(m->r + 3 * ends[1], m->r + 3 * ends[0], 3 * sizeof *m->r);
+    forces_fail(&x, HOL_ERR_DEGENERATE);
+    free(x.bonds), free(x.atoms);
+}

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "large.h"
 #include "network_scene.h"
 #include "random.h"
 
@@ -186,6 +187,17 @@ static void threads_and_layouts_change_no_bit(void **state)
     network_free(s);
 }
 
+static void bad_data_leave_everything_untouched(void **state)
+{
+    (void)state;
+    const sort gel = {100, 4, 12, 0, 1, 0, 1}, straight = {70, 8, 8, 0, 0, 0, 0.01};
+    for (int which = 0; which < 2; ++which) {
+        network_scene s = make(which == 0 ? gel : straight, 3);
+        check_bad_data_change_nothing(&s.m, s.chains, quick_run() ? 1 : 2);
+        network_free(s);
+    }
+}
+
 /** A cubic lattice without a fifth of its bonds, whose elimination would fill gigabytes. */
 static void what_a_lattice_leaves_of_its_equations_is_rounding(void **state)
 {
@@ -263,6 +275,7 @@ int main(void)
         cmocka_unit_test(velocities_are_those_of_many_digits),
         cmocka_unit_test(positions_get_their_lengths),
         cmocka_unit_test(threads_and_layouts_change_no_bit),
+        cmocka_unit_test(bad_data_leave_everything_untouched),
         cmocka_unit_test(what_a_lattice_leaves_of_its_equations_is_rounding),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

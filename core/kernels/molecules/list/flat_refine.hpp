@@ -188,7 +188,12 @@ struct FlatRefine {
             Flag{true}, [&]() HOL_FORCED { solve(); }, [&](Flag) HOL_FORCED { return correct(); },
             [&]() HOL_FORCED { return Flag{is_rounding()}; });
         if (!good.set) return false;
-        for (int32_t k = 0; k < s.n_bonds; ++k) x.t[k] = solution[k];
+        double sum = 0;
+        for (int32_t k = 0; k < s.n_bonds; ++k) {
+            x.t[k] = solution[k];
+            sum += abs(solution[k]);
+        }
+        if (!(sum - sum == 0)) return false;  // corrections that are no numbers are not seen
         for_tiles_down([&](const Tile &tile) {
             x.find_pulls(tile);
             if (terms & rates) x.add_pulls(tile);  // nobody asks for accelerations any more

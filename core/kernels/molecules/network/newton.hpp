@@ -78,7 +78,7 @@ struct NetNewton {
     HOL_FORCED static void take(double error, vec &, vec &, double &most_of_rest) {
         most_of_rest = larger(error, most_of_rest);
     }
-    static double larger(double error, double than) { return error <= than ? than : error; }
+    static double larger(double error, double than) { return than < error || error != error ? error : than; }
     double worst_of_all() const { return largest_in(worst, s.n_shares + 1); }
     // Calls body(part), first for the rest.
     template <class Body>
