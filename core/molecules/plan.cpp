@@ -263,7 +263,7 @@ private:
     // A large tree whose atoms fill the lanes is a forest by itself, the same for all molecules of a shape.
     void plant_alone(Plan::Piece &piece) {
         const Schedule &s = *plan_->schedules[at(piece.shape)];
-        if (!fills_lanes(s)) return;
+        if (s.n_pieces == 0) return;
         const auto found = alone_.emplace(piece.shape, plan_->forests.size());
         if (found.second) plan_->forests.add_large(kernels().lanes, &s);
         piece.first_forest = found.first->second;

@@ -33,7 +33,7 @@ public:
         invert_numbers();
         list_children();
         list_meetings();
-        if (is_network_) return;
+        if (is_network_ || (networks_ != none && s_.type == Schedule::graph && takes_flat_list(s_))) return;
         list_fill();
         list_updates();
     }
@@ -288,17 +288,22 @@ private:
     Numbers upper_bond_;  // of the atoms of trees, by local atom; -1: a root, or of the core
 };
 
-void add_runs(Schedule &s, Schedule::Memory::Large &m) {
-    m.runs = runs_of(s);
-    s.runs = m.runs.runs();
-    s.n_pieces = static_cast<std::int32_t>(m.runs.piece_start.size()) - 2;
+// Of a large tree, its arms, or what can be worked on at once.
+void add_large_tree(Schedule &s, Schedule::Memory::Large &m) {
     m.arms = arms_of(s);
     s.n_arms = static_cast<std::int32_t>(m.arms.arm.size());
-    if (s.n_arms == 0) return;
+    if (s.n_arms == 0) {
+        m.runs = runs_of(s);
+        if (!fill_lanes(m.runs, s.n_bonds)) {
+            m.runs = {};
+            return;
+        }
+        s.runs = m.runs.runs();
+        s.n_pieces = static_cast<std::int32_t>(m.runs.piece_start.size()) - 2;
+        return;
+    }
     s.arm = m.arms.arm.data();
-    s.runs_of_arms = m.arms.runs.runs();
     s.stretch = m.arms.stretch.data();
-    s.stretch_start = m.arms.stretch_start.data();
     s.share_start = m.arms.share_start.data();
     s.n_shares = static_cast<std::int32_t>(m.arms.share_start.size()) - 1;
 }
@@ -317,6 +322,7 @@ std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bon
     m.atom_of.reserve(at(n_atoms));
     m.fixed.assign(at(n_atoms), 0);
     for (std::int32_t i = 0; fixed && i < n_atoms; ++i) m.fixed[at(i)] = fixed[i];
+    point_into(*s, m);
     Maker maker(*s, m, most_bytes, networks);
     maker.make();
     if (maker.is_network() && networks == Maker::some && Maker::has_fixed(m))
@@ -355,8 +361,8 @@ std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t
                              std::min(most_bytes, most_bytes_of_careful * static_cast<std::int64_t>(s->n_core)));
         return s;
     }
-    if (n_bonds > largest_in_lanes && s->type == Schedule::tree) add_runs(*s, m.of_large());
-    const bool in_lanes = fills_lanes(*s) && n_bonds <= largest_positions_in_forest;
+    if (n_bonds > largest_in_lanes && s->type == Schedule::tree) add_large_tree(*s, m.of_large());
+    const bool in_lanes = s->n_pieces > 0 && n_bonds <= largest_positions_in_forest;
     if (!in_lanes && takes_flat_list(*s)) {
         make_flat_list(*s, m.of_large().flat);
         s->flat = &m.large->flat.list;

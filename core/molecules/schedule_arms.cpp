@@ -1,6 +1,9 @@
 #include "core/molecules/schedule_arms.hpp"
 
 #include <algorithm>
+#include <numeric>
+
+#include "core/molecules/lists.hpp"
 
 namespace holonomic {
 
@@ -12,11 +15,10 @@ public:
 
     ScheduleArms make() {
         find_arms();
-        if (x_.arm.empty()) return std::move(x_);
+        if (2 * bonds_in_arms() < s_.n_bonds) return {};
         list_stretches();
         sort();
         divide();
-        x_.runs = runs_of(s_, x_.arm);
         return std::move(x_);
     }
 
@@ -48,35 +50,39 @@ private:
         }
     }
 
+    std::int32_t bonds_in_arms() const {
+        std::int32_t n = 0;
+        for (const Schedule::Arm &arm : x_.arm) n += arm.n_bonds;
+        return n;
+    }
+
     // The last bond of the chain that an arm is stays outside its segments: it ends at the highest atom, if the arm
     // ascends, or at the lowest one.
     void list_stretches() {
-        const std::int32_t n_pieces = (s_.n_tree + slots_of_piece - 1) / slots_of_piece;
-        x_.stretch_start.assign(1, 0);
-        std::size_t a = 0;  // the next arm
-        for (std::int32_t p = 0, slot = 0; p < n_pieces; ++p) {
-            const std::int32_t end = std::min((p + 1) * slots_of_piece, s_.n_tree);
-            while (slot < end) {
-                const bool to_arm = a < x_.arm.size() && x_.arm[a].bottom < end;
-                const bool ascends = to_arm && x_.arm[a].ascending;
-                const bool behind_arm = a > 0 && x_.arm[a - 1].top() + 1 == slot && x_.arm[a - 1].ascending;
-                const std::int32_t stop = to_arm ? x_.arm[a].bottom + 1 : end;
-                x_.stretch.push_back({slot, stop, behind_arm ? slot - 1 : slot, ascends ? stop - 1 : stop});
-                slot = to_arm ? x_.arm[a++].top() + 1 : end;
-            }
-            // The root has no slot among these.
-            if (p + 1 == n_pieces && x_.arm.back().top() + 1 == end && x_.arm.back().ascending)
-                x_.stretch.push_back({end, end, end - 1, end});
-            x_.stretch_start.push_back(static_cast<std::int32_t>(x_.stretch.size()));
+        std::int32_t slot = 0, place = 0;
+        for (std::size_t a = 0; a < x_.arm.size(); ++a) {
+            const Schedule::Arm &arm = x_.arm[a];
+            const std::int32_t stop = arm.bottom + 1;
+            x_.stretch.push_back({slot, stop, place, arm.ascending ? stop - 1 : stop, static_cast<std::int32_t>(a)});
+            slot = arm.top() + 1;
+            place = arm.ascending ? slot - 1 : slot;
         }
+        x_.stretch.push_back({slot, s_.n_tree, place, s_.n_tree, -1});
     }
 
     // In the order of their atoms.
     void sort() {
-        std::sort(x_.arm.begin(), x_.arm.end(),
-                  [](const Schedule::Arm &a, const Schedule::Arm &b) { return a.first_atom < b.first_atom; });
-        for (std::size_t a = 1; a < x_.arm.size(); ++a)
-            x_.arm[a].inner_before = x_.arm[a - 1].inner_before + x_.arm[a - 1].n_bonds - 1;
+        Numbers order(x_.arm.size());
+        std::iota(order.begin(), order.end(), 0);
+        std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+            return x_.arm[at(a)].first_atom < x_.arm[at(b)].first_atom;
+        });
+        const std::vector<Schedule::Arm> by_slot = x_.arm;
+        for (std::size_t a = 0; a < order.size(); ++a) {
+            x_.arm[a] = by_slot[at(order[a])];
+            x_.stretch[at(order[a])].arm = static_cast<std::int32_t>(a);
+            if (a > 0) x_.arm[a].inner_before = x_.arm[a - 1].inner_before + x_.arm[a - 1].n_bonds - 1;
+        }
     }
 
     // Into shares of about the longest arm.

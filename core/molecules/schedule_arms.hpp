@@ -5,18 +5,16 @@
 #include <vector>
 
 #include "core/kernels/molecules/schedule.hpp"
-#include "core/molecules/schedule_runs.hpp"
 
 namespace holonomic {
 
 struct ScheduleArms {
     std::vector<Schedule::Arm> arm;
     std::vector<Schedule::Stretch> stretch;
-    std::vector<std::int32_t> stretch_start, share_start;
-    ScheduleRuns runs;
+    std::vector<std::int32_t> share_start;
 };
 
-// From the parents, the children and the numbers of a schedule. Takes O(n).
+// From the parents, the children and the numbers of a schedule; none, if they have less than half of the bonds. Takes O(n).
 ScheduleArms arms_of(const Schedule &s);
 
 }  // namespace holonomic

@@ -53,8 +53,8 @@ std::size_t bytes(const PathArrays &p) {
 }
 
 std::size_t bytes(const Schedule::Memory::Large &l) {
-    return sizeof l + bytes(l.arms.arm, l.arms.stretch, l.arms.stretch_start, l.arms.share_start) + bytes(l.runs) +
-           bytes(l.arms.runs) + bytes(l.flat) + bytes(l.paths) + bytes_of(l.network);
+    return sizeof l + bytes(l.arms.arm, l.arms.stretch, l.arms.share_start) + bytes(l.runs) + bytes(l.flat) +
+           bytes(l.paths) + bytes_of(l.network);
 }
 
 }  // namespace

@@ -8,20 +8,14 @@ namespace holonomic {
 
 namespace {
 
-constexpr std::int32_t most_children = 4, sorts = Schedule::arms_in_run;
+constexpr std::int32_t most_children = 4;
 
 class RunMaker {
 public:
-    RunMaker(const Schedule &s, const std::vector<Schedule::Arm> &arms)
-        : s_(s), n_pieces_((s.n_tree + slots_of_piece - 1) / slots_of_piece), arms_(arms), sort_(at(s.n_tree)),
-          arm_(arms.empty() ? 0 : at(s.n_tree)) {
+    explicit RunMaker(const Schedule &s)
+        : s_(s), n_pieces_((s.n_tree + slots_of_piece - 1) / slots_of_piece), sort_(at(s.n_tree)) {
         for (std::int32_t slot = 0; slot < s.n_tree; ++slot)
             sort_[at(slot)] = static_cast<unsigned char>(std::min(children(slot), most_children));
-        for (std::size_t a = 0; a < arms.size(); ++a) {
-            for (std::int32_t slot = arms[a].bottom + 1; slot < arms[a].top(); ++slot) sort_[at(slot)] = 0;
-            sort_[at(arms[a].top())] = Schedule::arms_in_run;
-            arm_[at(arms[a].top())] = static_cast<std::int32_t>(a);
-        }
     }
 
     ScheduleRuns make() {
@@ -35,18 +29,15 @@ public:
 
 private:
     std::int32_t children(std::int32_t slot) const { return s_.child_start[slot + 1] - s_.child_start[slot]; }
-    bool is_arm(std::int32_t slot) const { return sort_[at(slot)] == Schedule::arms_in_run; }
 
-    // Of atoms with children, and of arms, which have the slot of their highest inner atom: how many others of the same
-    // piece, or of the top, must come before.
+    // Of atoms with children: how many others of the same piece, or of the top, must come before.
     void find_levels() {
         level_.assign(at(s_.n_tree), 0);
         top_.assign(at(s_.n_tree), 0);
         for (std::int32_t slot = 0; slot < s_.n_tree; ++slot) {
             if (sort_[at(slot)] == 0) continue;
-            const bool arm = is_arm(slot);
-            const std::int32_t *const child = arm ? &arms_[at(arm_[at(slot)])].bottom : s_.child + s_.child_start[slot];
-            const std::int32_t n = arm ? 1 : children(slot);
+            const std::int32_t *const child = s_.child + s_.child_start[slot];
+            const std::int32_t n = children(slot);
             for (std::int32_t c = 0; c < n; ++c)
                 if (top_[at(child[c])] || child[c] / slots_of_piece != slot / slots_of_piece) top_[at(slot)] = 1;
             for (std::int32_t c = 0; c < n; ++c)
@@ -55,10 +46,10 @@ private:
         }
     }
 
-    // The atoms with children among these slots, and the arms, by level and number of children.
+    // The atoms with children among these slots, by level and number of children.
     void add_runs(std::int32_t begin, std::int32_t end, bool top) {
         std::vector<std::int32_t> count;
-        const auto row = [&](std::int32_t slot) { return at(sorts * level_[at(slot)] + sort_[at(slot)] - 1); };
+        const auto row = [&](std::int32_t slot) { return at(most_children * level_[at(slot)] + sort_[at(slot)] - 1); };
         const auto for_each = [&](const auto &body) {
             for (std::int32_t slot = begin; slot < end; ++slot)
                 if (sort_[at(slot)] > 0 && (top_[at(slot)] != 0) == top) body(slot);
@@ -71,20 +62,18 @@ private:
         for (std::size_t r = 0; r < count.size(); ++r) {
             if (count[r] == 0) continue;
             const std::int32_t i = static_cast<std::int32_t>(r);
-            runs_.run.push_back({next, count[r], i % sorts + 1, i / sorts});
+            runs_.run.push_back({next, count[r], i % most_children + 1, i / most_children});
             next += count[r];
             count[r] = next - count[r];  // from now on where the next one goes
         }
         runs_.slot.resize(at(next));
-        for_each([&](std::int32_t slot) { runs_.slot[at(count[row(slot)]++)] = is_arm(slot) ? arm_[at(slot)] : slot; });
+        for_each([&](std::int32_t slot) { runs_.slot[at(count[row(slot)]++)] = slot; });
         runs_.piece_start.push_back(static_cast<std::int32_t>(runs_.run.size()));
     }
 
     const Schedule &s_;
     const std::int32_t n_pieces_;
-    const std::vector<Schedule::Arm> &arms_;
-    std::vector<unsigned char> sort_;  // 0: a leaf, or an arm's inner atom
-    Numbers arm_;                      // where there are some
+    std::vector<unsigned char> sort_;  // number of children, at most most_children
     std::vector<std::int32_t> level_;
     std::vector<unsigned char> top_;
     ScheduleRuns runs_;
@@ -92,18 +81,14 @@ private:
 
 }  // namespace
 
-ScheduleRuns runs_of(const Schedule &s, const std::vector<Schedule::Arm> &arms) { return RunMaker(s, arms).make(); }
-ScheduleRuns runs_of(const Schedule &s) { return runs_of(s, {}); }
+ScheduleRuns runs_of(const Schedule &s) { return RunMaker(s).make(); }
 
 // Counted for lanes that are as many as most have, whatever those of the kernels are.
-bool fills_lanes(const Schedule &s) {
+bool fill_lanes(const ScheduleRuns &runs, std::int32_t n_bonds) {
     constexpr std::int64_t lanes = 8;
-    std::int64_t places = 0, in_arms = 0;
-    for (std::int32_t r = 0; s.n_pieces > 0 && r < s.runs.piece_start[s.n_pieces + 1]; ++r)
-        places += (s.runs.run[r].count + lanes - 1) / lanes * lanes * s.runs.run[r].children;
-    for (std::int32_t a = 0; a < s.n_arms; ++a) in_arms += s.arm[a].n_bonds;
-    return s.type == Schedule::tree && s.n_pieces > 0 && places <= 3 * std::int64_t{s.n_bonds} &&
-           2 * in_arms <= s.n_bonds;
+    std::int64_t places = 0;
+    for (const Schedule::Run &run : runs.run) places += (run.count + lanes - 1) / lanes * lanes * run.children;
+    return places <= 3 * std::int64_t{n_bonds};
 }
 
 }  // namespace holonomic

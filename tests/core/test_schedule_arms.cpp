@@ -16,7 +16,7 @@ void arms_and_stretches_hold_everything(const Schedule &s)
     const auto count = [](std::vector<int> &of, int first, int end) {
         for (int i = first; i < end; ++i) ++of[static_cast<std::size_t>(i)];
     };
-    for (int i = 0; i < s.stretch_start[s.n_pieces]; ++i) {
+    for (int i = 0; i <= s.n_arms; ++i) {
         count(slots, s.stretch[i].first, s.stretch[i].end);
         count(places, s.stretch[i].first_place, s.stretch[i].end_place);
     }

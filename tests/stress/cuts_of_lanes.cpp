@@ -29,7 +29,7 @@ cuts of_chain(std::int64_t n_bonds)
             of_windows.rows(0) < shortest_piece ? std::vector<std::int64_t>() : starts(of_windows)};
 }
 
-// As cut_of() in core/kernels/molecules/large_tree/arm_store.hpp says. The last bond is a separator.
+// As cut_of() in core/kernels/molecules/armed_tree/arm_store.hpp says. The last bond is a separator.
 std::vector<std::int64_t> of_arm(std::int64_t n_bonds)
 {
     const Cut cut(n_bonds - 1, segment_bonds, true);

@@ -2,6 +2,7 @@
 // for a cache, else one by one.
 #pragma once
 
+#include "core/kernels/molecules/armed_tree/armed_tree.hpp"
 #include "core/kernels/molecules/doubtful.hpp"
 #include "core/kernels/molecules/list/flat_verbs.hpp"
 #include "core/kernels/molecules/solve.hpp"
@@ -83,14 +84,13 @@ struct LinearWork {
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
-        if (schedule.flat && schedule.type == Schedule::graph && used == 1) {
+        if (schedule.n_arms > 0 && solve_armed(call, schedule, *lane, packed, team, scratch, tally)) return;
+        if (schedule.flat && used == 1) {
             if (solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
             masses_known = false;
         }
         Memory<V> memory = {scratch};
         Linear<V> z(schedule, lane, used, packed, call.box, call.r, memory);
-        open_pieces(z, team, memory);
-        open_arms(call, z, scratch, memory);
         const unsigned rest = solve_block(call, z, masses_known, tally);
         if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, z.x.lane, rest, memory.next, tally);
     }

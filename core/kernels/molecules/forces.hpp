@@ -18,11 +18,6 @@ static inline void write_outputs(Linear<V> &z, const Outputs &out, unsigned whic
     if (out.virial) add_pulls_to_virial(x, which, tally);
     if (out.g->x) write_pulls(x, *out.g, out.add, which);
 }
-static inline void write_outputs(Linear<double> &z, const Outputs &out, unsigned which, Tally &tally) {
-    write_outputs<double>(z, out, which, tally);
-    if (which && z.x.pieces && z.x.pieces->arms.store) write_arms(z.x, false, out, tally);
-}
-
 // The right-hand sides of a call into z, and their terms.
 template <class V>
 static inline int open_sides(const ForcesCall &call, Linear<V> &z) {

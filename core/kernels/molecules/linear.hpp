@@ -3,7 +3,6 @@
 
 #include "core/kernels/molecules/cycles/proof.hpp"
 #include "core/kernels/molecules/cycles/refine.hpp"
-#include "core/kernels/molecules/large_tree/tree_runs.hpp"
 #include "core/kernels/molecules/ring/ring.hpp"
 #include "core/kernels/molecules/store.hpp"
 
@@ -17,11 +16,8 @@ struct Linear {
     Equations<V> equations;
     V *t, *b;           // [n_bonds] of a graph: the solution so far; right-hand sides
     Memory<V> working;  // of a joint of many bonds
-    Pieces pieces;
 
     static constexpr int64_t bond_values = sizeof(BondRow<V>) / sizeof(V);
-
-    static constexpr int64_t faint_values = (sizeof(Faint) + sizeof(double) - 1) / sizeof(double);
 
     // Rows beside those of bonds: of a tree the root's, see load.hpp.
     static int64_t more_rows(const Schedule &s) { return s.type == Schedule::tree ? 1 : 0; }
@@ -32,9 +28,6 @@ struct Linear {
         if (s.type == Schedule::ring) n += Ring<V>::values(s);
         n += bond_values * more_rows(s);
         n += 3 * 3 * static_cast<int64_t>(s.n_atoms);
-        if (has_pieces(s))
-            n +=
-                faint_values + s.n_pieces * (1 + faint_values + JointMemory<V, 0>::values(s.max_joint)) + arm_values(s);
         if (s.type == Schedule::graph) {
             const int64_t part = CoreMatrix<V>::most_parts(s);
             n += s.n_core + columns_ahead + 1 + s.n_entries + reaches(s) + (part > s.max_column ? part : s.max_column) +
@@ -69,16 +62,6 @@ struct Linear {
         }
         working = memory;
         memory.values(JointMemory<V, 0>::values(s.max_joint));
-    }
-
-    // For one large molecule.
-    void take_pieces(const LongTeam *team, Memory<double> &memory) {
-        const int64_t joint = JointMemory<double, 0>::values(x.s.max_joint);
-        double *const slack = memory.values(x.s.n_pieces);
-        Faint *const faint = reinterpret_cast<Faint *>(memory.values(faint_values * (x.s.n_pieces + 1)));
-        for (int32_t p = 0; p <= x.s.n_pieces; ++p) faint[p] = {};
-        pieces = {team, slack, faint, memory.values(x.s.n_pieces * joint), joint};
-        x.pieces = &pieces;
     }
 
     // Inverse masses by slot.

@@ -119,17 +119,6 @@ struct Loader {
         for (int32_t p = 0; p < s.n_core; ++p) make_row(sides, s.n_tree + p, s.from[p], s.to[p]);
     }
 
-    // Reads the atoms that trees hang from, and makes the bonds between them.
-    void load_core() const {
-        const Molecules<V> &x = z.x;
-        for (int32_t slot = x.s.n_atoms - 1; slot >= x.s.n_tree; --slot) {
-            const int32_t atom = x.s.atom_of[slot];
-            z.equations.r[slot] = read(*x.r, x.at, atom);
-            if (has(squares | rates)) z.equations.velocity[slot] = read(*x.in.v, x.at, atom);
-            if (has(pulls)) z.equations.force[slot] = read(*x.in.f, x.at, atom);
-        }
-        for (int32_t p = 0; p < x.s.n_core; ++p) make_row(terms, x.s.n_tree + p, x.s.from[p], x.s.to[p]);
-    }
 };
 
 }  // namespace holonomic::HOL_ISA::graph

@@ -4,7 +4,6 @@
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/molecules/atoms/atoms.hpp"
 #include "core/kernels/molecules/image.hpp"
-#include "core/kernels/molecules/large_tree/pieces.hpp"
 #include "core/kernels/molecules/schedule.hpp"
 
 namespace holonomic::HOL_ISA::graph {
@@ -50,7 +49,6 @@ struct Molecules {
     V *pair;             // [n_pairs] multipliers among the children of an atom
     V slack;             // negative where plain products do not do
     Inputs in;
-    const Pieces *pieces = nullptr;                                 // where a large one is worked on in these
     double per_cancelled2 = 1 / (most_cancelled * most_cancelled);  // 1 / most_cancelled2()
 
     MaskOf<V> in_use() const { return Width<V>::first(used); }

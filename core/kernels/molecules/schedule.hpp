@@ -91,10 +91,10 @@ struct Schedule {
     int32_t n_entries;
     int32_t max_column;
 
-    // Atoms of a large tree with children, so that W of one molecule can be worked on at once: within a run none
-    // depends on another, and all have the same number of children, 4 standing for more. Slots [p slots_of_piece, (p +
+    // Atoms of a large tree with children, where most can be worked on W at a time: within a run none depends on another,
+    // and all have the same number of children, 4 standing for more. Slots [p slots_of_piece, (p +
     // 1) slots_of_piece) are piece p; atoms whose children, and theirs, are all in the same piece stand in its runs,
-    // the others in those of piece n_pieces, the top, which comes last. No pieces: the molecule is small.
+    // the others in those of piece n_pieces, the top, which comes last. No pieces: the tree is small, or its atoms don't fill lanes.
     struct Run {
         int32_t first, count, children;  // slots slot[first] ..
         int32_t level;                   // how many atoms of the piece or the top must come before
@@ -107,7 +107,7 @@ struct Schedule {
     Runs runs;
     int32_t n_pieces;
 
-    // Of a large graph, or of a tree whose atoms don't fill lanes, unless the list would be long: all its bonds along
+    // Of a large graph, or of a tree without pieces, unless the list would be long: all its bonds along
     // one list; else nullptr.
     const FlatList *flat;
     // Of a large molecule of few knots and long paths; else nullptr.
@@ -117,7 +117,7 @@ struct Schedule {
     // core's elimination, and there is no list and no path, and `careful` only if it is not too large.
     const NetworkPlan *network;
 
-    // An arm: a path between two atoms of a large tree, whose inner atoms have one child each. Its atoms and its bonds
+    // An arm: a path between two atoms of a large tree of which most is such paths, whose inner atoms have one child each. Its atoms and its bonds
     // have consecutive numbers, so that it can be worked on as a chain is, without looking at the other arms. Its slots
     // and places are consecutive in any case.
     struct Arm {
@@ -129,20 +129,16 @@ struct Schedule {
         int32_t top() const { return bottom + n_bonds - 1; }  // the place of its highest bond
     };
     // What is between arms: atoms that are no arm's inner ones, and bonds that are not in an arm's segments - those of
-    // the chain that the arm is without its last bond. Each lies in one piece.
+    // the chain that the arm is without its last bond.
     struct Stretch {
         int32_t first, end;              // slots
         int32_t first_place, end_place;  // and places
+        int32_t arm;                     // that goes on behind these slots; the last stretch has none
     };
-    // The arms in runs of their own stand for their inner atoms: arms_in_run in place of the number of children, and
-    // the numbers of arms in place of slots.
-    static constexpr int32_t arms_in_run = 5;
     const Arm *arm;
-    int32_t n_arms;                // 0: none is worth it
-    Runs runs_of_arms;             // of all arms, and of what is between them
-    const Stretch *stretch;        // of all pieces
-    const int32_t *stretch_start;  // [n_pieces + 1]
-    const int32_t *share_start;    // [n_shares + 1] arms that one thread works on at a time
+    int32_t n_arms;              // 0: they are not worth it
+    const Stretch *stretch;      // [n_arms + 1] in the order of their slots
+    const int32_t *share_start;  // [n_shares + 1] arms that one thread works on at a time
     int32_t n_shares;
 
     const CarefulPlan *careful;                         // the same molecule for the careful solver; not of a knot

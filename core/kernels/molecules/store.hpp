@@ -60,12 +60,6 @@ HOL_INLINE void write_slots(const Molecules<double> &x, const AtomArray &array, 
     }
 }
 
-// v += w G of the atoms in these slots.
-HOL_INLINE void move_velocities(const Molecules<double> &x, const AtomArray &v, int32_t first, int32_t end) {
-    write_slots(x, v, first, end,
-                [&](int32_t slot) { return add_times(read(v, x.at, x.s.atom_of[slot]), x.w[slot], pull_on(x, slot)); });
-}
-
 // G of the atom in a slot, [slot]: of any molecule, and of a ring, whose bond k stands between slots k and k + 1.
 template <class V>
 struct Pulls {
@@ -81,26 +75,15 @@ struct RingPulls {
     }
 };
 
-// Writes or adds G of all atoms but those of arms, in the lanes of `which`.
+// Writes or adds G of all atoms, in the lanes of `which`.
 template <class V>
-HOL_INLINE void write_pulls(const Molecules<V> &x, const AtomArray &g, bool add, unsigned which) {
+HOL_NOINLINE void write_pulls(const Molecules<V> &x, const AtomArray &g, bool add, unsigned which) {
     const Written<V> how = {which, nullptr, x.lane, add};
     if (x.s.type == Schedule::ring && x.s.n_tree == 0)
         write_vectors(g, x.at, x.s.slot_of, x.s.n_atoms, RingPulls<V>{x}, how);
     else
         write_vectors(g, x.at, x.s.slot_of, x.s.n_atoms, Pulls<V>{x}, how);
 }
-HOL_NOINLINE void write_pulls(const Molecules<double> &x, const AtomArray &g, bool add, unsigned which) {
-    if (!x.pieces) return write_pulls<double>(x, g, add, which);
-    for_slots(x.s, x.pieces, [&](int32_t first, int32_t end) {
-        if (which)
-            write_slots(x, g, first, end, [&](int32_t slot) {
-                const Vector3<double> pull = pull_on(x, slot);
-                return add ? read(g, x.at, x.s.atom_of[slot]) + pull : pull;
-            });
-    });
-}
-
 // Writes value(place) of the bonds at these places to out[bond] of the lanes in `which`. To look whether four bonds
 // follow each other takes more instructions than it saves, in rings, too.
 template <class V, class Value>
@@ -133,30 +116,25 @@ HOL_INLINE void write_bonds(const Molecules<V> &x, double factor, double *out, u
         return mul_add(row.t, with_length ? sqrt(row.q) : f, V{});
     });
 }
-// Writes those of all bonds but those of arms.
+// Writes those of all bonds.
 template <bool with_length, class V>
 HOL_NOINLINE void write_bonds(const Molecules<V> &x, double factor, double *out, unsigned which) {
-    for_places(x.s, x.pieces,
-               [&](int32_t first, int32_t end) { write_bonds<with_length>(x, factor, out, which, first, end); });
+    write_bonds<with_length>(x, factor, out, which, 0, x.s.n_bonds);
 }
 
-// Counts the virial of all bonds but those of arms, in the lanes of `which`.
+// Counts the virial of all bonds, in the lanes of `which`.
 template <class V>
 HOL_NOINLINE void add_pulls_to_virial(const Molecules<V> &x, unsigned which, Tally &tally) {
     MoleculesVirial<V> virial;
-    for_places_in_order(x.s, x.pieces, [&](int32_t first, int32_t end) {
-        for (int32_t k = first; k < end; ++k) virial.add(x.row[k].d, x.row[k].t * x.row[k].d);
-    });
+    for (int32_t k = 0; k < x.s.n_bonds; ++k) virial.add(x.row[k].d, x.row[k].t * x.row[k].d);
     virial.count(which, 1, tally);
 }
 
-// Returns the lanes in which all multipliers are finite. Those of arms are not looked at.
+// Returns the lanes in which all multipliers are finite.
 template <class V>
 HOL_INLINE MaskOf<V> finite_solution(const Molecules<V> &x) {
     V sum = {};
-    for_places_in_order(x.s, x.pieces, [&](int32_t first, int32_t end) {
-        for (int32_t k = first; k < end; ++k) sum = sum + abs(x.row[k].t);
-    });
+    for (int32_t k = 0; k < x.s.n_bonds; ++k) sum = sum + abs(x.row[k].t);
     return finite(sum);
 }
 

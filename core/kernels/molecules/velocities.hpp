@@ -3,8 +3,8 @@
 #pragma once
 
 #include "core/kernels/molecules/blocks.hpp"
-#include "core/kernels/molecules/large_tree/arms_velocities.hpp"
 #include "core/kernels/molecules/store.hpp"
+#include "core/kernels/molecules/triangle/triangle_blocks.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -35,47 +35,17 @@ static inline void project(Linear<V> &z, Vector3<V> *v, bool twice) {
     add_pulls_to(z.x, v, twice);
     if (twice) solve_again_and_move(z, v);
 }
-// A large molecule in its pieces.
-HOL_NOINLINE void project(Linear<double> &z, Vector3<double> *v, bool twice) {
-    const Molecules<double> &x = z.x;
-    if (!x.pieces) return project<double>(z, v, twice);
-    const auto add_pulls = [&] {
-        for_ranges(x.s, x.pieces, x.s.n_atoms, [&](int32_t first, int32_t end) {
-            for (int32_t slot = end; slot-- > first;) v[slot] = add_times(v[slot], x.w[slot], pull_on(x, slot));
-        });
-    };
-    add_pulls();
-    if (!twice) return;
-    for_ranges(x.s, x.pieces, x.s.n_bonds, [&](int32_t first, int32_t end) {
-        for (int32_t k = first; k < end; ++k) find_rate(x, v, k, x.s.parent[k], k);
-    });
-    solve_again(z);
-    add_pulls();
-}
-
 template <class V>
 static inline void write_velocities(const VelocitiesCall &call, const Molecules<V> &x, Vector3<V> *v, unsigned which) {
     write_vectors(call.v, x.at, x.s.slot_of, x.s.n_atoms, Slots<V>(v), Written<V>{which, nullptr, x.lane});
 }
-static inline void write_velocities(const VelocitiesCall &call, const Molecules<double> &x, Vector3<double> *v,
-                                    unsigned which) {
-    if (!x.pieces) return write_velocities<double>(call, x, v, which);
-    for_slots(x.s, x.pieces, [&](int32_t first, int32_t end) {
-        write_slots(x, call.v, first, end, [&](int32_t slot) { return v[slot]; });
-    });
-}
-
-HOL_INLINE bool project_with_arms(Linear<vec> &, const VelocitiesCall &, Tally &) { return false; }  // has none
-
 // Solves a block and writes.
 template <class V>
 static inline unsigned solve_block(const VelocitiesCall &call, Linear<V> &z, bool masses_known, Tally &tally) {
     z.equations.force = nullptr;
     z.equations.given = nullptr;
-    if (has_arms(z)) return project_with_arms(z, call, tally) ? 0 : 1;
     z.x.in = {&call.v, nullptr, nullptr, true, call.strain};
-    const unsigned solved = load_and_solve(z, rates, masses_known);
-    const unsigned good = solved && !call.v.is_float && has_torn_atoms(z.x) ? 0 : solved;
+    const unsigned good = load_and_solve(z, rates, masses_known);
     if (!good) return bits(z.x.in_use());
     if (call.lambda) write_bonds<false>(z.x, 0.5, call.lambda, good);
     if (call.virial) add_pulls_to_virial(z.x, good, tally);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/kernels/molecules/forest/tree_doubt.hpp"
+#include "core/kernels/molecules/share_out.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -123,10 +124,7 @@ struct OneTree {
         z.add_pulls_to_velocities(z.piece(top()));
     }
 
-    // Light atoms between heavy ones in line are pulled from both sides with much more than what moves them. Then the
-    // rounding of multipliers moves them by more than their velocity's, and when that is projected away, their
-    // neighbours, too. All such atoms have been eliminated carefully. Returns whether any is torn so.
-    static constexpr double torn_part = 0x1p10;
+    // Returns whether any atom is torn by the solution.
     bool any_torn() const {
         for (int32_t p = 0; p <= top(); ++p) {
             const Faint &faint = piece[p].faint;
@@ -148,18 +146,10 @@ struct OneTree {
         const int i = number % W;
         double v[3];
         read_row(*z.in.v, z.at.number(i, z.atom_of(joint.step)[i]), v);
-        const double w = joint.w()[i];
-        const BondRow<double> above = bond_at(z.above_of(joint.step)[i]);
-        Vector3<double> pull = -above.t * above.d;
-        double sizes = abs(above.t) * sqrt(above.q);
-        for (int a = 0; a < joint.children(i); ++a) {
-            const BondRow<double> bond = bond_at(joint.element(a, i, z.f.step[joint.step].children));
-            pull = add_times(pull, bond.t, bond.d);
-            sizes += abs(bond.t) * sqrt(bond.q);
-        }
-        const Vector3<double> before = {v[0], v[1], v[2]}, after = add_times(before, w, pull);
-        const auto size_of = [](const Vector3<double> &a) { return abs(a.x) + abs(a.y) + abs(a.z); };
-        return !(w * sizes <= torn_part * (size_of(before) + size_of(after)));
+        Torn torn(bond_at(z.above_of(joint.step)[i]));
+        for (int a = 0; a < joint.children(i); ++a)
+            torn.add_child(bond_at(joint.element(a, i, z.f.step[joint.step].children)));
+        return torn.is(joint.w()[i], v);
     }
 };
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/kernels/molecules/forest/forest_sweeps.hpp"
-#include "core/kernels/molecules/large_tree/doubtful_atom.hpp"
+#include "core/kernels/molecules/tree/doubtful_atom.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

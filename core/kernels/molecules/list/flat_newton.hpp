@@ -5,8 +5,8 @@
 // needs no order; the triangular solves are left to one. The digits are the same.
 #pragma once
 
-#include "core/kernels/molecules/large_tree/pieces.hpp"
 #include "core/kernels/molecules/list/flat_rows.hpp"
+#include "core/kernels/molecules/share_out.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/kernels/molecules/image.hpp"
-#include "core/kernels/molecules/large_tree/pieces.hpp"
 #include "core/kernels/molecules/network/sites.hpp"
+#include "core/kernels/molecules/share_out.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

@@ -7,6 +7,7 @@
 // keep a sixteenth of what they are subtracted from. `slack` is negative where they don't.
 #pragma once
 
+#include "core/kernels/molecules/scratch.hpp"
 #include "core/kernels/molecules/tree/siblings.hpp"
 
 namespace holonomic::HOL_ISA::graph {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/kernels/careful/joint.hpp"
-#include "core/kernels/molecules/large_tree/doubtful_atom.hpp"
+#include "core/kernels/molecules/tree/doubtful_atom.hpp"
 #include "core/kernels/molecules/tree/joint.hpp"
 
 namespace holonomic::HOL_ISA::graph {

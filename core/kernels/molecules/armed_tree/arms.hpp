@@ -5,8 +5,7 @@
 #pragma once
 
 #include "core/kernels/eliminate/segment.hpp"
-#include "core/kernels/molecules/large_tree/load_lanes.hpp"
-#include "core/kernels/molecules/store.hpp"
+#include "core/kernels/molecules/armed_tree/atoms.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -21,15 +20,15 @@ HOL_INLINE Lane chain_of(const Schedule::Arm &arm, const MoleculeLane &molecule)
     return lane;
 }
 
-HOL_INLINE Summary *summaries_of(const Molecules<double> &x, int32_t a) {
-    return reinterpret_cast<Summary *>(store_of(x.s, x.pieces->arms, a));
+HOL_INLINE Summary *summaries_of(const ArmedTree &z, int32_t a) {
+    return reinterpret_cast<Summary *>(store_of(z.x.s, z.arms, a));
 }
 
 // Calls body(a, arena, tally) for all arms, from the last one on if `backwards`, on the threads that there are.
 template <class Body>
-HOL_INLINE void for_arms(const Molecules<double> &x, bool backwards, Tally &tally, const Body &body) {
-    const Schedule &s = x.s;
-    const Arms &arms = x.pieces->arms;
+HOL_INLINE void for_arms(const ArmedTree &z, bool backwards, Tally &tally, const Body &body) {
+    const Schedule &s = z.x.s;
+    const Arms &arms = z.arms;
     const auto share = [&](int64_t j, double *scratch, Tally &part) {
         const int32_t i = static_cast<int32_t>(backwards ? s.n_shares - 1 - j : j);
         const Arena arena(scratch == arms.scratch ? arms.work : scratch, longest_piece);
@@ -37,7 +36,7 @@ HOL_INLINE void for_arms(const Molecules<double> &x, bool backwards, Tally &tall
             body(backwards ? s.share_start[i] + s.share_start[i + 1] - 1 - a : a, arena, part);
     };
     typedef decltype(share) Share;
-    if (const LongTeam *const team = x.pieces->team) {
+    if (const LongTeam *const team = z.team) {
         team->run(
             team->threads, s.n_shares, tally,
             [](const void *context, int64_t j, double *scratch, Tally &part) {
@@ -54,30 +53,32 @@ HOL_INLINE void for_arms(const Molecules<double> &x, bool backwards, Tally &tall
 }
 
 // Eliminates the inner bonds of all arms. The terms have the numbers of Terms in memory/packed.hpp.
-static inline void eliminate_arms(const Molecules<double> &x, int terms) {
+static inline void eliminate_arms(const ArmedTree &z) {
+    const Molecules<double> &x = z.x;
     Tally unused = empty_tally();
     const AtomArray none = {}, &f = x.in.f ? *x.in.f : none;
-    for_arms(x, false, unused, [&](int32_t a, const Arena &arena, Tally &) {
+    for_arms(z, false, unused, [&](int32_t a, const Arena &arena, Tally &) {
         const Schedule::Arm &arm = x.s.arm[a];
-        const Cut cut = cut_in_order(x.s, x.pieces->arms, a);
+        const Cut cut = cut_in_order(x.s, z.arms, a);
         const Lane lane = chain_of(arm, x.lane[0]);
-        Summary *const all = summaries_of(x, a);
+        Summary *const all = summaries_of(z, a);
         x.w[arm.bottom + 1] = x.lane[0].w[x.s.atom_of[arm.bottom + 1]];  // for siblings.hpp at the lowest atom
         bool alone = cut.n_bonds % W != 0;
         for (int64_t j = 0; !alone && j < cut.blocks; ++j) {
-            eliminate_block(terms, *x.box, cut, lane, j, *x.r, *x.in.v, f, false, reinterpret_cast<double *>(all),
+            eliminate_block(z.terms, *x.box, cut, lane, j, *x.r, *x.in.v, f, false, reinterpret_cast<double *>(all),
                             arena, x.in.strain);
             alone = any(all[j].doubt);
         }
-        x.pieces->arms.alone[a] = alone;
+        z.arms.alone[a] = alone;
     });
 }
 
 // Goes up an arm: takes E and the right-hand side y, which its lowest bond gets from below, through the segments to the
 // highest bond. Returns false, with nothing changed, if a joint is in doubt.
-static inline bool up_segments(const Molecules<double> &x, int32_t a) {
+static inline bool up_segments(const ArmedTree &z, int32_t a) {
+    const Molecules<double> &x = z.x;
     const Schedule::Arm &arm = x.s.arm[a];
-    Summary *const all = summaries_of(x, a);
+    Summary *const all = summaries_of(z, a);
     BondRow<double> &low = x.row[arm.bottom], &high = x.row[arm.top()];
     const int64_t n = cut_of(arm).blocks * W;
     double E = low.E, y = low.t, r = 0, u = 0;
@@ -106,25 +107,25 @@ static inline bool up_segments(const Molecules<double> &x, int32_t a) {
     return true;
 }
 
-HOL_NOINLINE void up_arm(Linear<double> &z, int terms, int32_t a, Faint &faint, Memory<double> memory, double &slack) {
-    const Molecules<double> &x = z.x;
-    const Schedule::Arm &arm = x.s.arm[a];
-    unsigned char &alone = x.pieces->arms.alone[a];
-    load_slots(z, terms, arm.top(), arm.top() + 1, false);
-    if (!alone && up_segments(x, a)) return;
+HOL_NOINLINE void up_arm(ArmedTree &z, int32_t a) {
+    const Schedule::Arm &arm = z.x.s.arm[a];
+    unsigned char &alone = z.arms.alone[a];
+    load_slot(z, arm.top());
+    if (!alone && up_segments(z, a)) return;
     alone = 1;
-    load_slots(z, terms, arm.bottom + 1, arm.top(), false);
-    for (int32_t slot = arm.bottom + 1; slot <= arm.top(); ++slot) up_one(x, slot, faint, memory, slack);
+    for (int32_t slot = arm.bottom + 1; slot < arm.top(); ++slot) load_slot(z, slot);
+    for (int32_t slot = arm.bottom + 1; slot <= arm.top(); ++slot) up_one(z, slot);
 }
 
 // Goes down an arm and finds the multipliers of its separators.
-HOL_NOINLINE void down_arm(const Molecules<double> &x, int32_t a, Faint &faint, double &slack, bool look) {
+HOL_NOINLINE void down_arm(ArmedTree &z, int32_t a, bool look) {
+    const Molecules<double> &x = z.x;
     const Schedule::Arm &arm = x.s.arm[a];
-    if (x.pieces->arms.alone[a]) {
-        for (int32_t slot = arm.top(); slot > arm.bottom; --slot) down_atom(x, slot, faint, slack, look);
+    if (z.arms.alone[a]) {
+        for (int32_t slot = arm.top(); slot > arm.bottom; --slot) down_atom(z, slot, look);
         return;
     }
-    Summary *const all = summaries_of(x, a);
+    Summary *const all = summaries_of(z, a);
     const int64_t blocks = cut_of(arm).blocks, n = blocks * W;
     double t = x.row[arm.top()].t;
     if (arm.ascending) all[blocks].t[0] = t;
@@ -140,39 +141,43 @@ HOL_NOINLINE void down_arm(const Molecules<double> &x, int32_t a, Faint &faint, 
     }
     if (!arm.ascending) all[blocks].t[0] = t;
     x.row[arm.bottom].t = t;
-    if (!good) slack = -1;
+    if (!good) z.x.slack = -1;
 }
 
-// Writes the outputs of an arm that was worked on atom by atom.
-HOL_NOINLINE void write_alone(const Molecules<double> &x, bool weighted, const Schedule::Arm &arm, const Outputs &out,
-                              Tally &tally) {
-    const int32_t first = arm.ascending ? arm.bottom : arm.bottom + 1, end = first + arm.n_bonds - 1;
+// Of atoms between slots, and of bonds between places.
+HOL_NOINLINE void write_range(const Molecules<double> &x, bool weighted, const Schedule::Stretch &range,
+                              const Outputs &out, MoleculesVirial<double> &virial) {
+    const int32_t first = range.first_place, end = range.end_place;
     if (out.lambda) write_bonds<false>(x, 0.5, out.lambda, 1, first, end);
     if (out.tension) write_bonds<true>(x, 1, out.tension, 1, first, end);
-    if (out.g->x) {
-        if (weighted)
-            move_velocities(x, *out.g, arm.bottom + 1, arm.top() + 1);
-        else
-            write_slots(x, *out.g, arm.bottom + 1, arm.top() + 1, [&](int32_t slot) {
-                const Vector3<double> pull = pull_on(x, slot);
-                return out.add ? read(*out.g, x.at, x.s.atom_of[slot]) + pull : pull;
-            });
-    }
-    if (!out.virial) return;
+    for (int32_t k = first; k < end && out.virial; ++k) virial.add(x.row[k].d, x.row[k].t * x.row[k].d);
+    if (!out.g->x) return;
+    write_slots(x, *out.g, range.first, range.end, [&](int32_t slot) {
+        const Vector3<double> pull = pull_on(x, slot);
+        if (weighted) return add_times(read(*out.g, x.at, x.s.atom_of[slot]), x.w[slot], pull);
+        return out.add ? read(*out.g, x.at, x.s.atom_of[slot]) + pull : pull;
+    });
+}
+
+// The outputs of an arm that was worked on atom by atom.
+HOL_NOINLINE void write_alone(const Molecules<double> &x, bool weighted, const Schedule::Arm &arm, const Outputs &out,
+                              Tally &tally) {
+    const int32_t first = arm.ascending ? arm.bottom : arm.bottom + 1;
     MoleculesVirial<double> virial;
-    for (int32_t k = first; k < end; ++k) virial.add(x.row[k].d, x.row[k].t * x.row[k].d);
-    virial.count(1, 1, tally);
+    write_range(x, weighted, {arm.bottom + 1, arm.top() + 1, first, first + arm.n_bonds - 1, -1}, out, virial);
+    if (out.virial) virial.count(1, 1, tally);
 }
 
 // Writes the outputs of the arms. weighted: v += w G, with v in place of G.
-HOL_NOINLINE void write_all_arms(const Molecules<double> &x, bool weighted, const Outputs &out, Tally &tally) {
+HOL_NOINLINE void write_arms(const ArmedTree &z, bool weighted, const Outputs &out, Tally &tally) {
+    const Molecules<double> &x = z.x;
     const SegmentOutputs outputs = {{}, false, out.lambda, out.tension, splat(0.5), 1.0, out.virial};
-    for_arms(x, true, tally, [&](int32_t a, const Arena &arena, Tally &part) {
+    for_arms(z, true, tally, [&](int32_t a, const Arena &arena, Tally &part) {
         const Schedule::Arm &arm = x.s.arm[a];
-        if (x.pieces->arms.alone[a]) return write_alone(x, weighted, arm, out, part);
-        const Cut cut = cut_in_order(x.s, x.pieces->arms, a);
+        if (z.arms.alone[a]) return write_alone(x, weighted, arm, out, part);
+        const Cut cut = cut_in_order(x.s, z.arms, a);
         const Lane lane = chain_of(arm, x.lane[0]);
-        double *const store = store_of(x.s, x.pieces->arms, a);
+        double *const store = store_of(x.s, z.arms, a);
         for (int64_t j = cut.blocks; j-- > 0;)
             finish_block(weighted, *x.box, *x.r, *out.g, weighted || out.add, outputs, cut, lane, j, store, arena,
                          part);

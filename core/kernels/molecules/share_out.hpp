@@ -1,0 +1,24 @@
+// Parts of one large molecule, shared among threads.
+#pragma once
+
+#include "core/kernels/tally.hpp"
+
+namespace holonomic::HOL_ISA::graph {
+
+// Calls body(i) for i = 0 .. n - 1, on the threads that there are.
+template <class Body>
+HOL_INLINE void share_out(const LongTeam *team, int32_t n, const Body &body) {
+    if (!team) {
+        for (int32_t i = 0; i < n; ++i) body(i);
+        return;
+    }
+    Tally unused = empty_tally();
+    team->run(
+        team->threads, n, unused,
+        [](const void *context, int64_t i, double *, Tally &) {
+            (*static_cast<const Body *>(context))(static_cast<int32_t>(i));
+        },
+        &body);
+}
+
+}  // namespace holonomic::HOL_ISA::graph
