@@ -85,9 +85,10 @@ struct LinearWork {
     template <class V>
     void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
         if (schedule.n_arms > 0 && solve_armed(call, schedule, *lane, packed, team, scratch, tally)) return;
-        if (schedule.flat && used == 1) {
-            if (solve_flat(call, schedule, *lane, packed, {scratch}, tally)) return;
-            masses_known = false;
+        if (schedule.flat) {
+            if (!solve_flat(call, schedule, *lane, packed, {scratch}, tally))
+                solve_doubtful(call, schedule, lane, 1, scratch, tally);
+            return;
         }
         Memory<V> memory = {scratch};
         Linear<V> z(schedule, lane, used, packed, call.box, call.r, memory);

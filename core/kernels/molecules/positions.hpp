@@ -192,9 +192,10 @@ struct PositionsWork {
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool known, double *scratch) const {
-        if (schedule.flat && used == 1) {
-            if (solve_flat(call, schedule, *lane, packed, team, {scratch}, tally)) return;
-            known = false;  // the list has overwritten the scratch
+        if (schedule.flat) {
+            if (!solve_flat(call, schedule, *lane, packed, team, {scratch}, tally))
+                solve_doubtful(call, schedule, lane, 1, scratch, tally);
+            return;
         }
         if (schedule.type == Schedule::ring && schedule.n_tree == 0)
             solve<RingNewton<V>>(lane, used, known, scratch);

@@ -83,7 +83,8 @@ struct Schedule {
     // A symmetric elimination of the core's matrix, column after column. Off-diagonal entries e of column p are
     // column_start[p] .. column_start[p + 1], with rows row[e] > p, ascending. Column p takes from the entry
     // (row[a], row[b]), a > b, its product a b / pivot: entry update[update_start[p] + (a (a-1) / 2 + b)], a and b
-    // counted from the column's start; and from the diagonal elements of all row[a].
+    // counted from the column's start; and from the diagonal elements of all row[a]. Of a graph that has a list there
+    // is none.
     const int32_t *column_start;  // [n_core + 1]
     const int32_t *row;           // [n_entries]
     const int64_t *update_start;  // [n_core + 1]
@@ -91,10 +92,11 @@ struct Schedule {
     int32_t n_entries;
     int32_t max_column;
 
-    // Atoms of a large tree with children, where most can be worked on W at a time: within a run none depends on another,
-    // and all have the same number of children, 4 standing for more. Slots [p slots_of_piece, (p +
-    // 1) slots_of_piece) are piece p; atoms whose children, and theirs, are all in the same piece stand in its runs,
-    // the others in those of piece n_pieces, the top, which comes last. No pieces: the tree is small, or its atoms don't fill lanes.
+    // Atoms of a large tree with children, where most can be worked on W at a time: within a run none depends on
+    // another, and all have the same number of children, 4 standing for more. Slots [p slots_of_piece, (p + 1)
+    // slots_of_piece) are piece p; atoms whose children, and theirs, are all in the same piece stand in its runs, the
+    // others in those of piece n_pieces, the top, which comes last. No pieces: the tree is small, or its atoms don't
+    // fill lanes.
     struct Run {
         int32_t first, count, children;  // slots slot[first] ..
         int32_t level;                   // how many atoms of the piece or the top must come before
@@ -117,9 +119,9 @@ struct Schedule {
     // core's elimination, and there is no list and no path, and `careful` only if it is not too large.
     const NetworkPlan *network;
 
-    // An arm: a path between two atoms of a large tree of which most is such paths, whose inner atoms have one child each. Its atoms and its bonds
-    // have consecutive numbers, so that it can be worked on as a chain is, without looking at the other arms. Its slots
-    // and places are consecutive in any case.
+    // An arm: a path between two atoms of a large tree of which most is such paths, whose inner atoms have one child
+    // each. Its atoms and its bonds have consecutive numbers, so that it can be worked on as a chain is, without
+    // looking at the other arms. Its slots and places are consecutive in any case.
     struct Arm {
         int32_t bottom;  // slot of its lowest atom: the places of its bonds are bottom, bottom + 1 .., upwards
         int32_t n_bonds;

@@ -29,10 +29,12 @@ int64_t molecules_scratch_bytes(const Schedule &s) {
         const int64_t careful = plan ? plan->scratch_bytes + 64 : 0, own = HOL_NETWORKS::network_bytes(*s.network);
         return own > careful ? own : careful;
     }
-    const int64_t block = s.n_bonds <= largest_in_lanes ? block_bytes<vec>(s) : block_bytes<double>(s),
-                  flat = s.flat ? flat_bytes(*s.flat) : 0, paths = s.paths ? path_positions_bytes(s) : 0,
+    const int64_t most = s.flat                          ? flat_bytes(*s.flat)
+                         : s.n_bonds <= largest_in_lanes ? block_bytes<vec>(s)
+                                                         : block_bytes<double>(s),
+                  paths = s.paths ? path_positions_bytes(s) : 0,
                   armed = ArmedTree::values(s) * static_cast<int64_t>(sizeof(double)),
-                  most = block > flat ? block : flat, more = armed > paths ? armed : paths,
+                  more = armed > paths ? armed : paths,
                   linear = (most > more ? most : more) + 64 + s.careful->scratch_bytes, metric = metric_bytes(s);
     return linear > metric ? linear : metric;
 }
