@@ -113,6 +113,24 @@ molecule large_segments(int64_t n_atoms, int64_t segment, int64_t ring, uint64_t
     return m;
 }
 
+molecule large_comb(int64_t n_atoms)
+{
+    molecule m = molecule_empty();
+    random_stream s = random_seed(7);
+    int64_t last = 0;
+    molecule_add_atom(&m, some_mass(&s), (const double[]){0, 0, 0});
+    while (m.n_atoms < n_atoms) {
+        const int64_t sides = m.n_atoms % 4, from = last;
+        for (int64_t k = 0; k <= sides; ++k) {
+            double u[3];
+            random_direction(&s, u);
+            last = molecule_grow(&m, from, some_mass(&s), 1, u);
+        }
+    }
+    molecule_finish(&m, &s);
+    return m;
+}
+
 /** Every fourth atom hangs at the one before it; the others follow each other, and every 12 of them close a ring. */
 molecule large_rings(int64_t n_atoms)
 {

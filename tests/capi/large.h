@@ -25,6 +25,9 @@ molecule large_mixed_arms(int64_t n);
  * four, if `ring` is not 0. */
 molecule large_segments(int64_t n_atoms, int64_t segment, int64_t ring, uint64_t seed);
 
+/** A chain with up to three atoms at each of its own: few of them can be worked on at once. */
+molecule large_comb(int64_t n_atoms);
+
 /** A chain that closes rings of six, with atoms on its sides. */
 molecule large_rings(int64_t n_atoms);
 

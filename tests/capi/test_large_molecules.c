@@ -45,13 +45,14 @@ static molecule example(int which)
     const int64_t n = size_of_test();
     return which == 0   ? large_segments(n, 1, 0, 1)
            : which == 1 ? large_segments(n, 300, 0, 2)
-                        : large_segments(n, 12, 40, 3);
+           : which == 2 ? large_segments(n, 12, 40, 3)
+                        : large_comb(n);
 }
 
 static void number_of_threads_changes_no_bit(void **state)
 {
     (void)state;
-    for (int which = 0; which < 3; ++which) {
+    for (int which = 0; which < 4; ++which) {
         molecule m = example(which);
         hol_chains *chains = large_chains(&m);
         results one = compute(&m, chains);
@@ -74,7 +75,7 @@ static void number_of_threads_changes_no_bit(void **state)
 static void order_of_bonds_changes_no_bit(void **state)
 {
     (void)state;
-    for (int which = 0; which < 3; ++which) {
+    for (int which = 0; which < 4; ++which) {
         molecule m = example(which);
         hol_chains *chains = large_chains(&m);
         results plain = compute(&m, chains);
@@ -112,7 +113,7 @@ static hol_view view_of(double *p)
 static void layout_changes_no_bit(void **state)
 {
     (void)state;
-    for (int which = 0; which < 3; ++which) {
+    for (int which = 0; which < 4; ++which) {
         molecule m = example(which);
         hol_chains *chains = large_chains(&m);
         results plain = compute(&m, chains);
@@ -139,7 +140,7 @@ static void layout_changes_no_bit(void **state)
 static void multipliers_are_right_to_a_few_roundings(void **state)
 {
     (void)state;
-    for (int which = 0; which < 3; ++which) {
+    for (int which = 0; which < 4; ++which) {
         molecule m = example(which);
         hol_chains *chains = large_chains(&m);
         results x = compute(&m, chains);
@@ -175,10 +176,9 @@ static void multipliers_are_right_to_a_few_roundings(void **state)
     }
 }
 
-/** A tree with an atom of 1e-6 between two of 1e12 nearly in line, and two more atoms in line behind it. */
-static molecule with_a_light_atom_between_heavy_ones(void)
+/** With an atom of 1e-6 between two of 1e12 nearly in line, and two more atoms in line behind it. */
+static molecule with_a_light_atom_between_heavy_ones(molecule m)
 {
-    molecule m = large_segments(3000, 1, 0, 1);
     random_stream s = random_seed(5);
     const double mass[] = {1e12, 1e-6, 1e12, 1e-3, 1e3}, side[] = {0, 0, 1e-5, -1e-5, 3e-6};
     const int64_t from[] = {0, 1, 2, 2, 4};
@@ -195,10 +195,8 @@ static molecule with_a_light_atom_between_heavy_ones(void)
  * Multipliers as doubles move a light atom between heavy ones by more than the rounding of its velocity. That must not
  * move its neighbours: they get what their multipliers give them, to a few roundings.
  */
-static void light_atoms_between_heavy_ones_do_not_move_their_neighbours(void **state)
+static void leave_their_neighbours(molecule m)
 {
-    (void)state;
-    molecule m = with_a_light_atom_between_heavy_ones();
     hol_chains *chains = large_chains(&m);
     const size_t n = (size_t)m.n_bonds, size = 3 * (size_t)m.n_atoms;
     double *v = copy_of(m.v, size), *mu = untouched(n);
@@ -222,6 +220,14 @@ static void light_atoms_between_heavy_ones_do_not_move_their_neighbours(void **s
     molecule_free(&m);
 }
 
+static void light_atoms_between_heavy_ones_do_not_move_their_neighbours(void **state)
+{
+    (void)state;
+    const molecule trees[] = {large_segments(3000, 1, 0, 1), large_segments(3000, 300, 0, 2), large_comb(3000),
+                              large_rings(3000)};
+    for (int i = 0; i < 4; ++i) leave_their_neighbours(with_a_light_atom_between_heavy_ones(trees[i]));
+}
+
 /** Positions and the metric, which compute() leaves out. */
 typedef struct more_results {
     double *r, *v, *lambda, *force, log_det, energy;
@@ -241,7 +247,7 @@ static more_results compute_more(const molecule *m, const hol_chains *chains)
 static void masses_and_lengths_given_later_are_as_those_of_a_new_set(void **state)
 {
     (void)state;
-    for (int which = 0; which < 3; ++which) {
+    for (int which = 0; which < 4; ++which) {
         molecule m = example(which), other = example(which);
         const size_t n = (size_t)m.n_bonds, size = 3 * (size_t)m.n_atoms;
         for (size_t i = 0; i < size / 3; ++i) other.mass[i] = 1 + (double)(i % 7);
@@ -285,6 +291,7 @@ static void bad_data_leave_everything_untouched(void **state)
     bad_data_leave_all_of_it_untouched(large_segments(2500, 300, 0, 2), 2, 1);
     bad_data_leave_all_of_it_untouched(large_ladder(200), 1, 1);
     if (quick_run()) return;
+    bad_data_leave_all_of_it_untouched(large_comb(2500), 1, 3);
     for (int threads = 1; threads < 3; ++threads) {
         const size_t places = threads == 1 ? 3 : 1;
         bad_data_leave_all_of_it_untouched(large_segments(2500, 1, 0, 1), threads, places);
