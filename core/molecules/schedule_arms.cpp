@@ -74,9 +74,8 @@ private:
     void sort() {
         Numbers order(x_.arm.size());
         std::iota(order.begin(), order.end(), 0);
-        std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-            return x_.arm[at(a)].first_atom < x_.arm[at(b)].first_atom;
-        });
+        std::sort(order.begin(), order.end(),
+                  [&](std::int32_t a, std::int32_t b) { return x_.arm[at(a)].first_atom < x_.arm[at(b)].first_atom; });
         const std::vector<Schedule::Arm> by_slot = x_.arm;
         for (std::size_t a = 0; a < order.size(); ++a) {
             x_.arm[a] = by_slot[at(order[a])];

@@ -248,7 +248,8 @@ void check_bad_data_change_nothing(const molecule *m, const hol_chains *chains, 
         assert_kept(&x, NULL);
         moved[at] = bad;
         double *const was = copy_of(moved, size);
-        CHECK_FAILS(HOL_ERR_NOT_FINITE, hol_project_positions(x.chains, m->r, moved, NULL, 0.1, x.bonds, 0, NULL, NULL));
+        CHECK_FAILS(HOL_ERR_NOT_FINITE,
+                    hol_project_positions(x.chains, m->r, moved, NULL, 0.1, x.bonds, 0, NULL, NULL));
         assert_same_bits(moved, was, size);
         assert_kept(&x, NULL);
         m->r[at] = bad;

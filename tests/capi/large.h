@@ -40,8 +40,8 @@ void large_turn_bonds(molecule *m);
 /** Chains that hold it, as a tree or as a molecule with cycles. */
 hol_chains *large_chains(const molecule *m);
 
-/** Numbers that are none, at so many places, one at a time: each verb names the reason, and writes nothing. In the end a
- * bond has no length. */
+/** Numbers that are none, at so many places, one at a time: each verb names the reason, and writes nothing. In the end
+ * a bond has no length. */
 void check_bad_data_change_nothing(const molecule *m, const hol_chains *chains, size_t places);
 
 #endif

@@ -85,7 +85,7 @@ inline void meetings_are_right(const Schedule &s)
         joins(s, s.n_tree + p, s.from[p], s.to[p], "a bond of the core joins other atoms");
     int n = 0;
     for (int c = 0; c < s.n_core_atoms; ++c) {
-        const int *pair = s.flat ? nullptr : s.meet_pair + s.meet_pair_start[c]; // a list has an order of its own
+        const int *pair = s.flat ? nullptr : s.meet_pair + s.meet_pair_start[c];  // a list has an order of its own
         for (int a = s.meet_start[c]; a < s.meet_start[c + 1]; ++a, ++n) {
             const int p = s.meet[a] / 2, slot = s.n_tree + c;
             require((s.meet[a] % 2 ? s.to : s.from)[p] == slot, "a bond that does not meet the atom");

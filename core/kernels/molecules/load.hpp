@@ -118,7 +118,6 @@ struct Loader {
         }
         for (int32_t p = 0; p < s.n_core; ++p) make_row(sides, s.n_tree + p, s.from[p], s.to[p]);
     }
-
 };
 
 }  // namespace holonomic::HOL_ISA::graph

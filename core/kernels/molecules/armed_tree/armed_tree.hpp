@@ -1,5 +1,6 @@
-// The linear equations of one large tree that is mostly arms (schedule.hpp): these are worked on as chains, by any thread,
-// what is between them atom by atom, with the digits of tree/joint.hpp. sweeps.hpp has the functions, compiled once.
+// The linear equations of one large tree that is mostly arms (schedule.hpp): these are worked on as chains, by any
+// thread, what is between them atom by atom, with the digits of tree/joint.hpp. sweeps.hpp has the functions, compiled
+// once.
 #pragma once
 
 #include "core/kernels/molecules/armed_tree/arm_store.hpp"
@@ -39,7 +40,8 @@ struct ArmedTree {
         arms = take_arms(s, scratch, memory);
     }
 
-    // Reads the tree and solves. Returns whether plain arithmetic answers for it; unless `look`, whether results are finite.
+    // Reads the tree and solves. Returns whether plain arithmetic answers for it; unless `look`, whether results are
+    // finite.
     bool solve(bool look);
     // Whether an atom is torn by the solution (tree/doubtful_atom.hpp).
     bool any_torn() const;
@@ -56,11 +58,12 @@ static inline bool solve_armed(const ForcesCall &call, const Schedule &s, const 
     return true;
 }
 
-// Solved, and moved, twice from the beginning, as a long chain is. The matrix is the same both times. The second time the
-// rates are those that the rounded velocities leave.
+// Solved, and moved, twice from the beginning, as a long chain is. The matrix is the same both times. The second time
+// the rates are those that the rounded velocities leave.
 static inline bool solve_armed(const VelocitiesCall &call, const Schedule &s, const MoleculeLane &lane, bool packed,
                                const LongTeam *team, double *scratch, Tally &tally) {
-    ArmedTree z(s, lane, packed, call.box, call.r, {&call.v, nullptr, nullptr, true, call.strain}, rates, team, scratch);
+    ArmedTree z(s, lane, packed, call.box, call.r, {&call.v, nullptr, nullptr, true, call.strain}, rates, team,
+                scratch);
     const bool twice = !call.v.is_float;
     if (!z.solve(true) || (twice && z.any_torn())) return false;
     z.write({&call.v, call.lambda, nullptr, true, call.virial}, true, tally);
