@@ -1,6 +1,7 @@
 // Parts of one large molecule, shared among threads.
 #pragma once
 
+#include "core/kernels/isa/target.hpp"
 #include "core/kernels/tally.hpp"
 
 namespace holonomic::HOL_ISA::graph {

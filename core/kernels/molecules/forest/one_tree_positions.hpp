@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/kernels/molecules/forest/forest_positions.hpp"
+#include "core/kernels/molecules/share_out.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "core/kernels/molecules/list/flat_rows.hpp"
+#include "core/kernels/molecules/scratch.hpp"
 #include "core/kernels/molecules/share_out.hpp"
 
 namespace holonomic::HOL_ISA::graph {

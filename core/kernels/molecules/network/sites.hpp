@@ -46,7 +46,8 @@ struct NetSites {
             for (int32_t i = 0; i < m; ++i) row[i] = 3 * (first_atom + atom[i]);
         for (int32_t i = 0; i < rows_ahead; ++i) row[m + i] = row[0];
     }
-    HOL_FORCED void read_some(int32_t first, int32_t end, const NetReading &all, const int64_t *row) const {
+    HOL_FORCED void read_some(int32_t first, int32_t end, const NetReading &all,
+                              [[maybe_unused]] const int64_t *row) const {
         int32_t i = first;
 #if HOL_LANES > 1
         const double *const x = reinterpret_cast<const double *>(all.from->x);
