@@ -20,33 +20,33 @@ const std::vector<Verb> &verbs() {
         {"forces", false,
          [](const Call &c) {
              Arrays &a = c.arrays;
-             return c.library.hol_forces(c.chains, a.r.packed(), a.v.packed(), a.f.packed(), a.lambda.data(), nullptr,
-                                         a.g.packed(), HOL_WRITE, nullptr);
+             return c.calls.hol_forces(c.chains, a.r.packed(), a.v.packed(), a.f.packed(), a.lambda.data(), nullptr,
+                                       a.g.packed(), HOL_WRITE, nullptr);
          },
          [](const Call &c) {
              Arrays &a = c.arrays;
-             return c.library.hol_forces_view(c.chains, a.r.view(), a.v.view(), a.f.view(), a.lambda.data(), nullptr,
-                                              a.g.view(), HOL_WRITE, nullptr);
+             return c.calls.hol_forces_view(c.chains, a.r.view(), a.v.view(), a.f.view(), a.lambda.data(), nullptr,
+                                            a.g.view(), HOL_WRITE, nullptr);
          }},
         {"velocities", false,
          [](const Call &c) {
              Arrays &a = c.arrays;
-             return c.library.hol_project_velocities(c.chains, a.r.packed(), a.v.packed(), a.lambda.data(), nullptr);
+             return c.calls.hol_project_velocities(c.chains, a.r.packed(), a.v.packed(), a.lambda.data(), nullptr);
          },
          [](const Call &c) {
              Arrays &a = c.arrays;
-             return c.library.hol_project_velocities_view(c.chains, a.r.view(), a.v.view(), a.lambda.data(), nullptr);
+             return c.calls.hol_project_velocities_view(c.chains, a.r.view(), a.v.view(), a.lambda.data(), nullptr);
          }},
         {"positions", true,
          [](const Call &c) {
              Arrays &a = c.arrays;
-             return c.library.hol_project_positions(c.chains, a.reference.packed(), a.r.packed(), a.v.packed(),
-                                                    c.scene.dt, a.lambda.data(), 0, nullptr, nullptr);
+             return c.calls.hol_project_positions(c.chains, a.reference.packed(), a.r.packed(), a.v.packed(),
+                                                  c.scene.dt, a.lambda.data(), 0, nullptr, nullptr);
          },
          [](const Call &c) {
              Arrays &a = c.arrays;
-             return c.library.hol_project_positions_view(c.chains, a.reference.view(), a.r.view(), a.v.view(),
-                                                         c.scene.dt, a.lambda.data(), 0, nullptr, nullptr);
+             return c.calls.hol_project_positions_view(c.chains, a.reference.view(), a.r.view(), a.v.view(), c.scene.dt,
+                                                       a.lambda.data(), 0, nullptr, nullptr);
          }},
     };
     return list;
@@ -162,43 +162,42 @@ void add_options(List &list) {
     list.one("forces, 32 bonds, tension and virial", coil(32), false, false, [](const Call &c) {
         Arrays &a = c.arrays;
         double virial[9];
-        return c.library.hol_forces(c.chains, a.r.packed(), a.v.packed(), a.f.packed(), a.lambda.data(), a.more.data(),
-                                    a.g.packed(), HOL_ADD, virial);
+        return c.calls.hol_forces(c.chains, a.r.packed(), a.v.packed(), a.f.packed(), a.lambda.data(), a.more.data(),
+                                  a.g.packed(), HOL_ADD, virial);
     });
     list.one("forces, 32 bonds, no v, no lambda", coil(32), false, true, [](const Call &c) {
         Arrays &a = c.arrays;
-        return c.library.hol_forces(c.chains, a.r.packed(), nullptr, a.f.packed(), nullptr, nullptr, a.g.packed(),
-                                    HOL_WRITE, nullptr);
+        return c.calls.hol_forces(c.chains, a.r.packed(), nullptr, a.f.packed(), nullptr, nullptr, a.g.packed(),
+                                  HOL_WRITE, nullptr);
     });
     list.one("velocities, 32 bonds, virial", coil(32), false, false, [](const Call &c) {
         Arrays &a = c.arrays;
         double virial[9];
-        return c.library.hol_project_velocities(c.chains, a.r.packed(), a.v.packed(), a.lambda.data(), virial);
+        return c.calls.hol_project_velocities(c.chains, a.r.packed(), a.v.packed(), a.lambda.data(), virial);
     });
     list.one("positions, 32 bonds, virial and report", coil(32), true, false, [](const Call &c) {
         Arrays &a = c.arrays;
         double virial[9];
         hol_report report;
-        return c.library.hol_project_positions(c.chains, a.reference.packed(), a.r.packed(), a.v.packed(), c.scene.dt,
-                                               a.lambda.data(), 0, virial, &report);
+        return c.calls.hol_project_positions(c.chains, a.reference.packed(), a.r.packed(), a.v.packed(), c.scene.dt,
+                                             a.lambda.data(), 0, virial, &report);
     });
     list.one("positions, 32 bonds, no v, no lambda", coil(32), true, true, [](const Call &c) {
         Arrays &a = c.arrays;
-        return c.library.hol_project_positions(c.chains, a.reference.packed(), a.r.packed(), nullptr, c.scene.dt,
-                                               nullptr, 0, nullptr, nullptr);
+        return c.calls.hol_project_positions(c.chains, a.reference.packed(), a.r.packed(), nullptr, c.scene.dt, nullptr,
+                                             0, nullptr, nullptr);
     });
     const auto metric = [](const Call &c) {
         Arrays &a = c.arrays;
         double energy;
-        return c.library.hol_metric(c.chains, a.r.packed(), 1, a.more.data(), nullptr, &energy, a.g.packed(),
-                                    HOL_WRITE);
+        return c.calls.hol_metric(c.chains, a.r.packed(), 1, a.more.data(), nullptr, &energy, a.g.packed(), HOL_WRITE);
     };
     for (std::int64_t n : {2, 3, 10, 32, 100, 1000}) list.one("metric, " + of_bonds(n), coil(n), false, true, metric);
     list.one("metric, 32 bonds, orthorhombic", coil(32), false, true, metric, Order::consecutive, Boxed::orthorhombic);
     list.one("metric, 32 bonds, any order", coil(32), false, true, metric, Order::any);
     list.one("metric, 32 bonds, determinant alone", coil(32), false, true, [](const Call &c) {
-        return c.library.hol_metric(c.chains, c.arrays.r.packed(), 1, c.arrays.more.data(), nullptr, nullptr, nullptr,
-                                    HOL_WRITE);
+        return c.calls.hol_metric(c.chains, c.arrays.r.packed(), 1, c.arrays.more.data(), nullptr, nullptr, nullptr,
+                                  HOL_WRITE);
     });
     list.one("metric, butane", of(400, [] { return bench::formula_kind("C(H)(H)(H)C(H)(H)C(H)(H)C(H)(H)H"); }), false,
              true, metric);
@@ -206,17 +205,16 @@ void add_options(List &list) {
     list.one("metric, ring of 50", of(120, [] { return bench::ring_kind(50); }), false, true, metric);
     list.one("solve, 32 bonds", coil(32), false, true, [](const Call &c) {
         Arrays &a = c.arrays;
-        return c.library.hol_solve(c.chains, a.r.packed(), a.f.packed(), a.more.data(), a.g.packed(), HOL_WRITE,
-                                   nullptr);
+        return c.calls.hol_solve(c.chains, a.r.packed(), a.f.packed(), a.more.data(), a.g.packed(), HOL_WRITE, nullptr);
     });
     list.one("reactions, 32 bonds", coil(32), false, true, [](const Call &c) {
         Arrays &a = c.arrays;
-        return c.library.hol_reactions(c.chains, a.r.packed(), HOL_BOX, a.lambda.data(), nullptr, a.g.packed(),
-                                       HOL_WRITE, nullptr, nullptr);
+        return c.calls.hol_reactions(c.chains, a.r.packed(), HOL_BOX, a.lambda.data(), nullptr, a.g.packed(), HOL_WRITE,
+                                     nullptr, nullptr);
     });
     list.one("violation, 32 bonds", coil(32), false, true, [](const Call &c) {
         hol_worst worst;
-        return c.library.hol_violation(c.chains, c.arrays.r.packed(), c.arrays.v.packed(), &worst);
+        return c.calls.hol_violation(c.chains, c.arrays.r.packed(), c.arrays.v.packed(), &worst);
     });
 }
 

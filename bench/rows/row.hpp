@@ -38,7 +38,7 @@ struct Arrays {
 };
 
 struct Call {
-    const Library &library;
+    const Library &calls;
     const Scene &scene;
     hol_chains *chains;
     Arrays &arrays;
