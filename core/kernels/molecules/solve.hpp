@@ -13,8 +13,7 @@ namespace holonomic::HOL_ISA::graph {
 unsigned load_and_solve(Linear<vec> &, int terms, bool masses_known);
 unsigned load_and_solve(Linear<double> &, int terms, bool masses_known);
 
-// For the right-hand sides in t of the rows, with the same matrix; of small molecules with v += w G behind it.
-void solve_again(Linear<double> &);
+// For the right-hand sides in t of the rows, with the same matrix, and v += w G behind it.
 void solve_again_and_move(Linear<vec> &, vec3 *v);
 void solve_again_and_move(Linear<double> &, Vector3<double> *v);
 

@@ -29,16 +29,6 @@ HOL_NOINLINE void add_pulls_to(const Molecules<V> &x, Vector3<V> *v, bool then_r
     }
 }
 
-// Adds the pulls, and if `twice` those of what they leave.
-template <class V>
-static inline void project(Linear<V> &z, Vector3<V> *v, bool twice) {
-    add_pulls_to(z.x, v, twice);
-    if (twice) solve_again_and_move(z, v);
-}
-template <class V>
-static inline void write_velocities(const VelocitiesCall &call, const Molecules<V> &x, Vector3<V> *v, unsigned which) {
-    write_vectors(call.v, x.at, x.s.slot_of, x.s.n_atoms, Slots<V>(v), Written<V>{which, nullptr, x.lane});
-}
 // Solves a block and writes.
 template <class V>
 static inline unsigned solve_block(const VelocitiesCall &call, Linear<V> &z, bool masses_known, Tally &tally) {
@@ -50,8 +40,10 @@ static inline unsigned solve_block(const VelocitiesCall &call, Linear<V> &z, boo
     if (call.lambda) write_bonds<false>(z.x, 0.5, call.lambda, good);
     if (call.virial) add_pulls_to_virial(z.x, good, tally);
     Vector3<V> *const v = z.equations.start;
-    project(z, v, !call.v.is_float);
-    write_velocities(call, z.x, v, good);
+    const bool twice = !call.v.is_float;
+    add_pulls_to(z.x, v, twice);
+    if (twice) solve_again_and_move(z, v);
+    write_vectors(call.v, z.x.at, z.x.s.slot_of, z.x.s.n_atoms, Slots<V>(v), Written<V>{good, nullptr, z.x.lane});
     return bits(z.x.in_use()) & ~good;
 }
 

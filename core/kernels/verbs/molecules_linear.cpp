@@ -32,7 +32,6 @@ unsigned load_and_solve(Linear<double> &z, int terms, bool masses_known) {
     return load_and_solve_lanes(z, terms, masses_known);
 }
 
-void solve_again(Linear<double> &z) { z.solve_again(); }
 void solve_again_and_move(Linear<vec> &z, vec3 *v) { z.solve_again_and_move(v); }
 void solve_again_and_move(Linear<double> &z, Vector3<double> *v) { z.solve_again_and_move(v); }
 
