@@ -33,6 +33,11 @@ HOL_INLINE Vector3<V> operator*(V s, const Vector3<V> &a) {
     return {s * a.x, s * a.y, s * a.z};
 }
 // c + s a and c - s a
+// s a - t b
+template <class V>
+HOL_INLINE Vector3<V> difference(V s, const Vector3<V> &a, V t, const Vector3<V> &b) {
+    return {mul_add(s, a.x, -(t * b.x)), mul_add(s, a.y, -(t * b.y)), mul_add(s, a.z, -(t * b.z))};
+}
 template <class V>
 HOL_INLINE Vector3<V> add_times(const Vector3<V> &c, V s, const Vector3<V> &a) {
     return {mul_add(s, a.x, c.x), mul_add(s, a.y, c.y), mul_add(s, a.z, c.z)};

@@ -1,6 +1,7 @@
 // From conditions to template arguments: choose(body, a, b) calls body(A, B), where A and B are constants of the
 // compiler with the values of a and b, so that body may write kernel<A, B>(..). choose_number<1, 5>(n, body) does the
-// same for n = 1 .. 5. choose_few<4>(n, body) does it for n = 1 .. 4, and for any other number gives 0.
+// same for n = 1 .. 5. choose_few<4>(n, body) does it for n = 1 .. 4, and for any other number gives 0;
+// choose_mostly<4>(n, body) out of line, so that it takes no registers of a loop: where a body captures by value.
 #pragma once
 
 #include <stdint.h>
@@ -40,6 +41,20 @@ HOL_INLINE auto choose_few(int n, const Body &body) {
         return choose_few<most, first + 1>(n, body);
     } else {
         return body(Constant<int, 0>{});
+    }
+}
+
+template <class Body>
+HOL_NOINLINE auto for_any_number(Body body) {
+    return body(Constant<int, 0>{});
+}
+template <int most, int first = 1, class Body>
+HOL_INLINE auto choose_mostly(int n, const Body &body) {
+    if constexpr (first <= most) {
+        if (n == first) return body(Constant<int, first>{});
+        return choose_mostly<most, first + 1>(n, body);
+    } else {
+        return for_any_number(body);
     }
 }
 

@@ -16,7 +16,9 @@ static inline void write_outputs(Linear<V> &z, const Outputs &out, unsigned whic
     if (out.lambda) write_bonds<false>(x, 0.5, out.lambda, which);
     if (out.tension) write_bonds<true>(x, 1, out.tension, which);
     if (out.virial) add_pulls_to_virial(x, which, tally);
-    if (out.g->x) write_pulls(x, *out.g, out.add, which);
+    if (out.g->x)
+        write_vectors(*out.g, x.at, x.s.slot_of, x.s.n_atoms, Slots<V>(z.pulls()),
+                      Written<V>{which, nullptr, x.lane, out.add});
 }
 // The right-hand sides of a call into z, and their terms.
 template <class V>

@@ -64,12 +64,6 @@ struct Linear {
         memory.values(JointMemory<V, 0>::values(s.max_joint));
     }
 
-    // Inverse masses by slot.
-    void set_masses() {
-        for (int32_t i = 0; i < x.s.n_atoms; ++i)
-            for (int l = 0; l < Width<V>::lanes; ++l) Width<V>::set(x.w[i], l, x.lane[l].w[x.s.atom_of[i]]);
-    }
-
     // From right-hand sides to the solution, both in t of the rows.
     void factorize_and_solve() {
         if (x.s.type == Schedule::graph)
@@ -81,26 +75,43 @@ struct Linear {
             factorize_core(x, core, working);
             substitute_core(x, core, working);
             down_core(x, core);
-            return down_trees<false>(x);
+            return down_trees<false, false, V>(x, nullptr);
         }
-        down_trees<true>(x);
+        down_and_pull<true>();
     }
 
+    // For other right-hand sides in t of the rows.
     void solve_again() {
-        solve_top_again();
-        down_trees<false>(x);
+        solve_again(nullptr);
+        down_trees<false, false, V>(x, nullptr);
     }
-    // And v += w G with what it finds.
-    void solve_again_and_move(Vector3<V> *v) {
-        solve_top_again();
-        for (int32_t slot = x.s.n_atoms; slot-- > x.s.n_tree;)
-            v[slot] = add_times(v[slot], x.w[slot], pull_on(x, slot));
-        down_trees_and_move(x, v);
+    // For the rates of velocities v.
+    void solve_for_rates(const Vector3<V> *v) {
+        solve_again(v);
+        down_and_pull<false>();
     }
 
-    // Up, and back to the bonds at the root, or the core and the bonds at its atoms.
-    void solve_top_again() {
-        substitute_trees(x, working);
+    // G of all atoms by slot, once all is solved.
+    Vector3<V> *pulls() const { return equations.r; }
+    // Goes down the trees; the bonds at the root or the core are solved for already.
+    template <bool look>
+    void down_and_pull() {
+        pull_top(x, pulls());
+        down_trees<look, true>(x, pulls());
+    }
+
+    // Up, and back to the bonds at the root, or the core and the bonds at its atoms. With v, rates are found on the
+    // way.
+    __attribute__((noinline)) void solve_again(const Vector3<V> *v) {
+        const Molecules<V> &y = x;
+        const auto find_rate = [&](int32_t place, int32_t from, int32_t to) HOL_FORCED {
+            if (!v) return;
+            BondRow<V> &row = y.row[place];
+            row.t = dot(row.d, v[to] - v[from]);
+            if (y.in.strain) row.t = row.t + stretching(y.in.strain, row.d);
+        };
+        for (int32_t p = 0; p < x.s.n_core; ++p) find_rate(x.s.n_tree + p, x.s.from[p], x.s.to[p]);
+        substitute_trees(x, working, [&](int32_t slot) HOL_FORCED { find_rate(slot, y.s.parent[slot], slot); });
         if (x.s.type == Schedule::ring) {
             choose(
                 [&](auto bare) HOL_FORCED {

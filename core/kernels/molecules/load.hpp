@@ -24,8 +24,7 @@ struct Loader {
 
     // b + d.(w f - w0 f0)
     HOL_STATIC V with_pull(const Vector3<V> &d, V w0, const Vector3<V> &f0, V w, const Vector3<V> &f, V b) {
-        const Vector3<V> df = {mul_add(w, f.x, -(w0 * f0.x)), mul_add(w, f.y, -(w0 * f0.y)),
-                               mul_add(w, f.z, -(w0 * f0.z))};
+        const Vector3<V> df = difference(w, f, w0, f0);
         return mul_add(d.z, df.z, mul_add(d.y, df.y, mul_add(d.x, df.x, b)));
     }
 

@@ -54,6 +54,21 @@ struct Molecules {
     MaskOf<V> in_use() const { return Width<V>::first(used); }
 };
 
+// A vector component by component: as a structure gcc copies it as memory (docs/development/trials.md).
+template <class V>
+HOL_INLINE void put(Vector3<V> &to, const Vector3<V> &a) {
+    to.x = a.x;
+    to.y = a.y;
+    to.z = a.z;
+}
+
+// Inverse masses by slot.
+template <class V>
+HOL_INLINE void masses_by_slot(const Schedule &s, const MoleculeLane *lane, V *w) {
+    for (int32_t slot = 0; slot < s.n_atoms; ++slot)
+        for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(w[slot], i, lane[i].w[s.atom_of[slot]]);
+}
+
 // Reads one atom, in double; a component that the array does not have is 0.
 HOL_INLINE void read_row(const AtomArray &array, int64_t number, double *x) {
     const char *const p[3] = {array.x, array.y, array.z};

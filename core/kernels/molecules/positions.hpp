@@ -39,8 +39,8 @@ HOL_INLINE void read_positions(const Schedule &s, const PositionsCall &call, con
 template <class V>
 HOL_NOINLINE V load_bonds(Newton<V> &newton, const PositionsCall &call, const Atoms<V> &at) {
     const Schedule &s = newton.x.s;
-    const Vector3<V> *const r_ref = newton.x.move, *const r = newton.x.r;
-    read_positions(s, call, at, Slots<V>(newton.x.move), Slots<V>(newton.x.r));
+    const Vector3<V> *const r_ref = newton.x.r_ref, *const r = newton.x.r;
+    read_positions(s, call, at, Slots<V>(newton.x.r_ref), Slots<V>(newton.x.r));
     V largest = {};
     typename Newton<V>::Errors errors = {};
     const auto load = [&](int32_t k, int32_t from, int32_t to) HOL_FORCED {
@@ -74,15 +74,12 @@ HOL_NOINLINE V load_bonds(RingNewton<V> &newton, const PositionsCall &call, cons
 
 // Moves the atoms of the lanes in `which`, and their velocities, but fixed ones.
 template <class System, class V>
-HOL_NOINLINE void write_moves(const System &newton, const PositionsCall &call, const Atoms<V> &at, unsigned which) {
+HOL_INLINE void write_moves(const System &newton, const PositionsCall &call, const Atoms<V> &at, unsigned which) {
     const Schedule &s = newton.x.s;
-    const Slots<V> moves = newton.displace();
     unsigned char any_fixed = 0;
     for (int32_t i = 0; i < s.n_atoms; ++i) any_fixed |= s.fixed[i];
     const unsigned char *const fixed = any_fixed ? s.fixed : nullptr;
-    write_vectors(call.r, at, s.slot_of, s.n_atoms, moves, Written<V>{which, fixed, nullptr, true});
-    if (call.v.x)
-        write_vectors(call.v, at, s.slot_of, s.n_atoms, moves, Written<V>{which, fixed, nullptr, true, 1 / call.dt});
+    move_vectors(call, at, s.slot_of, s.n_atoms, newton.displacements(), Written<V>{which, fixed, nullptr});
 }
 
 // A block of molecules at the position level. System: Newton or RingNewton.
@@ -209,9 +206,7 @@ struct PositionsWork {
         Memory<V> memory = {scratch};
         const Atoms<V> at(lane, used, packed);
         System newton(schedule, memory);
-        for (int32_t slot = 0; slot < schedule.n_atoms && !known; ++slot)
-            for (int i = 0; i < Width<V>::lanes; ++i)
-                Width<V>::set(newton.x.w[slot], i, lane[i].w[schedule.atom_of[slot]]);
+        if (!known) newton.set_masses(lane);
         PositionsBlock<System> block = {call, schedule, lane, at, newton, tally, V{}, V{}, V{}};
         block.set_lengths(known);
         const unsigned rest = block.solve(Width<V>::first(used));

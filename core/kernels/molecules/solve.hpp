@@ -9,13 +9,13 @@
 namespace holonomic::HOL_ISA::graph {
 
 // Reads the molecules and solves, with right-hand sides of these terms (load.hpp). Returns the lanes that plain
-// arithmetic answers for. `masses_known`: they are those of the block before.
+// arithmetic answers for. `masses_known`: they are those of the block before. G of all atoms is in z.pulls().
 unsigned load_and_solve(Linear<vec> &, int terms, bool masses_known);
 unsigned load_and_solve(Linear<double> &, int terms, bool masses_known);
 
-// For the right-hand sides in t of the rows, with the same matrix, and v += w G behind it.
-void solve_again_and_move(Linear<vec> &, vec3 *v);
-void solve_again_and_move(Linear<double> &, Vector3<double> *v);
+// For the rates of velocities v, with the same matrix; G of all atoms is then in z.pulls().
+void solve_for_rates(Linear<vec> &, const vec3 *v);
+void solve_for_rates(Linear<double> &, const Vector3<double> *v);
 
 // Reads a large molecule and solves along its list; false where that is in doubt.
 bool solve_and_refine(const FlatLinear &);

@@ -60,30 +60,39 @@ HOL_INLINE void write_slots(const Molecules<double> &x, const AtomArray &array, 
     }
 }
 
-// G of the atom in a slot, [slot]: of any molecule, and of a ring, whose bond k stands between slots k and k + 1.
+// Puts G of all atoms to pull[slot].
 template <class V>
-struct Pulls {
-    const Molecules<V> &x;
-    HOL_FORCED Vector3<V> operator[](int32_t slot) const { return pull_on(x, slot); }
-};
-template <class V>
-struct RingPulls {
-    const Molecules<V> &x;
-    HOL_FORCED Vector3<V> operator[](int32_t slot) const {
-        const BondRow<V> &behind = x.row[slot], &before = x.row[slot > 0 ? slot - 1 : x.s.n_bonds - 1];
-        return behind.t * behind.d - before.t * before.d;
-    }
-};
-
-// Writes or adds G of all atoms, in the lanes of `which`.
-template <class V>
-HOL_NOINLINE void write_pulls(const Molecules<V> &x, const AtomArray &g, bool add, unsigned which) {
-    const Written<V> how = {which, nullptr, x.lane, add};
-    if (x.s.type == Schedule::ring && x.s.n_tree == 0)
-        write_vectors(g, x.at, x.s.slot_of, x.s.n_atoms, RingPulls<V>{x}, how);
-    else
-        write_vectors(g, x.at, x.s.slot_of, x.s.n_atoms, Pulls<V>{x}, how);
+HOL_NOINLINE void find_pulls(const Molecules<V> &x, Vector3<V> *pull) {
+    for (int32_t slot = 0; slot < x.s.n_atoms; ++slot) put(pull[slot], pull_on(x, slot));
 }
+// That of the root or the core alone; of their children what the bond above pulls.
+template <class V>
+HOL_INLINE void pull_top(const Molecules<V> &x, Vector3<V> *pull) {
+    const Schedule &s = x.s;
+    if (s.type == Schedule::ring) {
+        const auto of_bond = [&](int32_t place) HOL_FORCED { return x.row[place].t * x.row[place].d; };
+        Vector3<V> before = of_bond(s.n_bonds - 1);
+        for (int32_t slot = s.n_tree; slot < s.n_atoms; ++slot) {
+            const Vector3<V> behind = of_bond(slot);
+            put(pull[slot], Vector3<V>{} + (behind - before));  // zeros as +0
+            put(before, behind);
+        }
+    } else {
+        for (int32_t slot = s.n_tree; slot < s.n_atoms; ++slot) {
+            put(pull[slot], Vector3<V>{});
+            for_core_bonds_of<V>(s, slot, [&](int32_t place, auto sign) HOL_FORCED {
+                put(pull[slot], add_times(pull[slot], sign * x.row[place].t, x.row[place].d));
+            });
+        }
+    }
+    for (int32_t c = s.child_start[s.n_tree]; c < s.n_tree; ++c) {
+        const int32_t child = s.child[c], parent = s.parent[child];
+        const BondRow<V> &row = x.row[child];
+        put(pull[child], add_times(Vector3<V>{}, -row.t, row.d));
+        put(pull[parent], add_times(pull[parent], row.t, row.d));
+    }
+}
+
 // Writes value(place) of the bonds at these places to out[bond] of the lanes in `which`. To look whether four bonds
 // follow each other takes more instructions than it saves, in rings, too.
 template <class V, class Value>

@@ -14,13 +14,16 @@ static inline unsigned good_lanes(Linear<V> &z) {
         z.equations.velocity = nullptr;
     }
     MaskOf<V> good = z.x.in_use() & ~less(z.x.slack, V{});
-    if (z.x.s.type == Schedule::graph) good = good & z.refine();
+    if (z.x.s.type == Schedule::graph) {
+        good = good & z.refine();
+        find_pulls(z.x, z.pulls());
+    }
     return bits(good & finite_solution(z.x));
 }
 
 template <class V>
 static inline unsigned load_and_solve_lanes(Linear<V> &z, int terms, bool masses_known) {
-    if (!masses_known) z.set_masses();
+    if (!masses_known) masses_by_slot(z.x.s, z.x.lane, z.x.w);
     Loader<V>{z, terms}.load();
     z.factorize_and_solve();
     return good_lanes(z);
@@ -32,8 +35,8 @@ unsigned load_and_solve(Linear<double> &z, int terms, bool masses_known) {
     return load_and_solve_lanes(z, terms, masses_known);
 }
 
-void solve_again_and_move(Linear<vec> &z, vec3 *v) { z.solve_again_and_move(v); }
-void solve_again_and_move(Linear<double> &z, Vector3<double> *v) { z.solve_again_and_move(v); }
+void solve_for_rates(Linear<vec> &z, const vec3 *v) { z.solve_for_rates(v); }
+void solve_for_rates(Linear<double> &z, const Vector3<double> *v) { z.solve_for_rates(v); }
 
 bool solve_and_refine(const FlatLinear &x) { return FlatProof(x).solve() || FlatRefine(x).refine(); }
 

@@ -103,10 +103,10 @@ HOL_INLINE void down_atom(ArmedTree &z, int32_t slot, bool look) {
     const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
     double own = 1;
     if (look && k > 1) {
-        down_one<true>(x, slot, own);
+        down_one<double>(x, slot, true, false, nullptr, own);
         if (__builtin_expect(own < 0, 0)) note_faint(z, slot, k);
     } else {
-        down_one<false>(x, slot, own);
+        down_one<double>(x, slot, false, false, nullptr, own);
     }
 }
 

@@ -100,8 +100,7 @@ struct Written {
     unsigned which;              // lanes
     const unsigned char *fixed;  // [n] atoms that are left out, or nullptr
     const MoleculeLane *lane;    // whose atoms may belong to others, too, and are left out then; or nullptr
-    bool add = false;            // to what is there,
-    double factor = 1;           // so many times
+    bool add = false;            // to what is there
 
     unsigned lanes_of(int32_t atom) const {
         unsigned left = fixed && fixed[atom] ? 0 : which;
@@ -120,13 +119,12 @@ struct Written {
 template <class V, class From>
 HOL_NOINLINE void write_vectors(const AtomArray &array, const Atoms<V> &at, const int32_t *slot_of, int32_t n,
                                 const From from, const Written<V> what) {
-    const V factor = Width<V>::all(what.factor);
     if (!what.all() || at.layout == elements) {
         for (int32_t k = 0; k < n; ++k) {
             const unsigned which = what.lanes_of(k);
             if (!which) continue;
             const Vector3<V> a = from[slot_of[k]];
-            write(array, at, k, what.add ? add_times(read(array, at, k), factor, a) : a, which);
+            write(array, at, k, what.add ? read(array, at, k) + a : a, which);
         }
         return;
     }
@@ -137,7 +135,7 @@ HOL_NOINLINE void write_vectors(const AtomArray &array, const Atoms<V> &at, cons
             HOL_UNROLL
             for (int j = 0; j < atoms_at_once; ++j) a[j] = from[slot_of[k + j]];
             if (what.add)
-                add_elements<3 * atoms_at_once>(nullptr, p, what.factor, a);
+                add_elements<3 * atoms_at_once>(p, nullptr, 0, a);
             else
                 write_elements<3 * atoms_at_once>(p, a);
         });
@@ -145,9 +143,57 @@ HOL_NOINLINE void write_vectors(const AtomArray &array, const Atoms<V> &at, cons
         Vector3<V> a = from[slot_of[k]], before;
         if (what.add) {
             read_rows(p, before);
-            a = add_times(before, factor, a);
+            a = before + a;
         }
         write_rows(p, a);
+    });
+}
+
+// The displacement of the atom in a slot: w times what pulls it, zeros as +0.
+template <class V>
+struct Displacements {
+    Slots<V> pull;
+    const V *w;
+    HOL_FORCED Vector3<V> operator[](int64_t slot) const { return add_times(Vector3<V>{}, w[slot], pull[slot]); }
+};
+// Moves n atoms, and their velocities with them.
+template <class V>
+HOL_NOINLINE void move_vectors(const PositionsCall &call, const Atoms<V> &at, const int32_t *slot_of, int32_t n,
+                               const Displacements<V> moves, const Written<V> what) {
+    const double per_dt = 1 / call.dt;
+    const V factor = Width<V>::all(per_dt);
+    if (!what.all() || at.layout == elements) {
+        for (int32_t k = 0; k < n; ++k) {
+            const unsigned which = what.lanes_of(k);
+            if (!which) continue;
+            const Vector3<V> a = moves[slot_of[k]];
+            write(call.r, at, k, read(call.r, at, k) + a, which);
+            if (call.v.x) write(call.v, at, k, add_times(read(call.v, at, k), factor, a), which);
+        }
+        return;
+    }
+    int32_t first = 0;
+    if (at.layout == rows_in_order)
+        first = for_groups(call.r, at, n, [&](int32_t k, double **r) HOL_FORCED {
+            double *v[Width<V>::lanes];
+            Vector3<V> a[atoms_at_once];
+            HOL_UNROLL
+            for (int j = 0; j < atoms_at_once; ++j) a[j] = moves[slot_of[k + j]];
+            if (!call.v.x) return add_elements<3 * atoms_at_once>(r, nullptr, 0, a);
+            rows_from(call.v, at, k, v);
+            add_elements<3 * atoms_at_once>(r, v, per_dt, a);
+        });
+    for_rows(call.r, at, first, n, [&](int32_t k, double **p) HOL_FORCED {
+        const Vector3<V> a = moves[slot_of[k]];
+        Vector3<V> before;
+        read_rows(p, before);
+        write_rows(p, before + a);
+    });
+    if (!call.v.x) return;
+    for_rows(call.v, at, first, n, [&](int32_t k, double **p) HOL_FORCED {
+        Vector3<V> before;
+        read_rows(p, before);
+        write_rows(p, add_times(before, factor, moves[slot_of[k]]));
     });
 }
 

@@ -16,7 +16,7 @@ struct ForestLinear : ForestTrees {
     Inputs in;
     const int terms;      // of right-hand sides: RightHandSide
     BondRow<vec> *row;    // [n_rows] by place
-    vec3 *pull;           // [n_rows] of the lower atom by its children; at n_places, of the root
+    vec3 *pull;           // [n_rows] G of the lower atom; at n_places, of the root
     vec3 *velocity;       // likewise, for rates
     vec *w, *lower_w;     // [n_steps], [n_places]
     vec *pair;            // [n_pairs] multipliers among the children of an atom
@@ -101,7 +101,6 @@ struct ForestLinear : ForestTrees {
                 to.E = select(lanes_of(f.held[p]), w1 * to.q, splat(1));  // of a leaf, or of no bond
                 to.t = b;
                 lower_w[p] = w1;
-                pull[p].x = pull[p].y = pull[p].z = vec{};  // gcc makes a slow loop of vec3{}
             }
             if (rated && s == f.n_steps - 1) velocity[f.n_places] = v0;
         }
@@ -137,12 +136,8 @@ struct ForestLinear : ForestTrees {
     __attribute__((noinline)) void add_pulls_to_velocities(const Range &range) {
         for (int32_t p = range.place; p < range.end_place + (range.root ? 1 : 0); ++p) {
             const vec mass = p < f.n_places ? lower_w[p] : w[f.n_steps - 1];
-            velocity[p] = add_times(velocity[p], mass, pull_at(p));
+            velocity[p] = add_times(velocity[p], mass, pull[p]);
         }
-    }
-    // G of the lower atom of a place, or of the root.
-    HOL_FORCED vec3 pull_at(int32_t place) const {
-        return place < f.n_places ? add_times(pull[place], -row[place].t, row[place].d) : pull[place];
     }
     // d . (v_j - v_i) into t of the rows.
     __attribute__((noinline)) void find_rates(const Range &range) {
@@ -157,8 +152,7 @@ struct ForestLinear : ForestTrees {
 
     __attribute__((noinline)) void write_pulls(const Range &range, const AtomArray &g, bool add, unsigned which) const {
         write_atoms(range, g, which, [&](int32_t place, const auto &atom) HOL_FORCED {
-            const vec3 a = pull_at(place);
-            return add ? add_times(atom.read(g), splat(1), a) : a;
+            return add ? add_times(atom.read(g), splat(1), pull[place]) : pull[place];
         });
     }
     __attribute__((noinline)) void write_velocities(const Range &range, const AtomArray &v, unsigned which) const {

@@ -12,12 +12,13 @@ namespace holonomic::HOL_ISA::graph {
 typedef NewtonRow<vec> ForestRow;
 
 struct ForestNewton : ForestTrees {
-    ForestRow *row;       // [n_rows] by place
-    vec3 *new_D, *shift;  // [n_rows] of the bond, and of its lower atom; at n_places, of the root
-    vec *w, *lower_w;     // [n_steps], [n_places + 1]
-    vec *lower, *upper;   // [n_pairs]
-    vec *kept;            // factors, while new ones are made for some lanes
+    ForestRow *row;      // [n_rows] by place
+    vec3 *new_D, *pull;  // [n_rows] of the bond, and on its lower atom; at n_places, on the root
+    vec *w, *lower_w;    // [n_steps], [n_places + 1]
+    vec *lower, *upper;  // [n_pairs]
+    vec *kept;           // factors, while new ones are made for some lanes
     Memory<vec> working;
+    bool pulled = false;  // atoms know their pulls by tau
 
     static int64_t joint_values(const Forest &f) {
         return NewtonMemory<vec, 0>::values(f.most_children < most_decomposed ? f.most_children : most_decomposed);
@@ -33,7 +34,7 @@ struct ForestNewton : ForestTrees {
         const int64_t rows = f.n_rows();
         row = reinterpret_cast<ForestRow *>(memory.values(rows * static_cast<int64_t>(sizeof *row / sizeof(vec))));
         new_D = memory.vectors(rows);
-        shift = memory.vectors(rows);
+        pull = memory.vectors(rows);
         lower_w = memory.values(rows);
         w = memory.values(f.n_steps);
         lower = memory.values(f.n_pairs);
@@ -43,7 +44,7 @@ struct ForestNewton : ForestTrees {
         memory.values((1 + f.n_pieces) * joint_values(f));
         for (int64_t p = f.n_places; p < rows; ++p) {
             row[p] = ForestRow{};
-            new_D[p] = shift[p] = vec3{};
+            new_D[p] = pull[p] = vec3{};
         }
     }
 
@@ -111,6 +112,7 @@ struct ForestNewton : ForestTrees {
     }
     void forget(mask which) {
         for (int32_t p = 0; p < f.n_places; ++p) row[p].tau = select(which, vec{}, row[p].tau);
+        pulled = false;
     }
     void factorize(mask which) {
         Errors unused = {};
@@ -144,37 +146,26 @@ struct ForestNewton : ForestTrees {
     void begin_factors(const Range &);
     void make_factors(const Range &, Memory<vec> memory);
     void substitute(const Range &, Memory<vec> memory);
-    void down(const Range &, mask active);
     template <bool corrected>
-    void down_and_displace(const Range &);
+    __attribute__((noinline)) void go_down(const Range &, mask active);
     void solve(mask active) {
         substitute(all(), working);
-        down(all(), active);
-    }
-
-    // tau b of the bonds above and below an atom, times its inverse mass.
-    __attribute__((noinline)) void displace() {
-        for (int32_t p = 0; p <= f.n_places; ++p) shift[p] = vec3{};
-        for (int32_t s = 0; s < f.n_steps; ++s) {
-            vec3 sum = {};
-            for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
-                shift[p] = lower_w[p] * add_times(shift[p], -row[p].tau, row[p].b);
-                sum = add_times(sum, row[p].tau, row[p].b);
-            }
-            AtPlaces<vec3>(shift, above_of(s)).put3(0, sum);
-        }
-        shift[f.n_places] = lower_w[f.n_places] * shift[f.n_places];
+        go_down<true>(all(), active);
+        pulled = true;
     }
     vec move() {
-        displace();
+        if (!pulled) go_down<false>(all(), mask{});
+        pulled = true;
         return move_bonds(all());
     }
+    // The displacement of the lower atom of a place, or of the root.
+    HOL_FORCED vec3 displacement(int32_t place) const { return add_times(vec3{}, lower_w[place], pull[place]); }
     __attribute__((noinline)) vec move_bonds(const Range &range) {
         Errors errors = {};
         for (int32_t s = range.step; s < range.end_step; ++s) {
-            const vec3 above = AtPlaces<vec3>(shift, above_of(s)).get3(0);
+            const vec3 above = AtPlaces<vec3>(pull, above_of(s)).get3(0);
             for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
-                vec3 turned = shift[p] - above;
+                vec3 turned = difference(lower_w[p], pull[p], w[s], above);
                 if (f.held[p] != all_lanes) {
                     const mask there = lanes_of(f.held[p]);
                     turned = {keep(there, turned.x), keep(there, turned.y), keep(there, turned.z)};
@@ -218,7 +209,7 @@ struct ForestNewtonJoint {
 
 inline __attribute__((noinline)) void ForestNewton::begin_factors(const Range &range) {
     for (int32_t p = range.place; p < range.end_place; ++p)
-        row[p].E = select(lanes_of(f.held[p]), lower_w[p] * dot(new_D[p], row[p].b), splat(1));  // of a leaf
+        row[p].r = select(lanes_of(f.held[p]), lower_w[p] * dot(new_D[p], row[p].b), splat(1));  // of a leaf
 }
 
 inline __attribute__((noinline)) void ForestNewton::make_factors(const Range &range, Memory<vec> memory) {
@@ -229,7 +220,7 @@ inline __attribute__((noinline)) void ForestNewton::make_factors(const Range &ra
             joint.top.b = joint.place.get3(offsetof(ForestRow, b));
             joint.top_D = AtPlaces<vec3>(new_D, above_of(s)).get3(0);
             factorize_joint<known, false, vec>(joint, k);
-            joint.place.put(offsetof(ForestRow, E), joint.top.E);
+            joint.place.put(offsetof(ForestRow, r), joint.top.r);
         });
     }
     if (range.root) factorize_joint<1, true, vec>(ForestNewtonJoint(*this, f.n_steps - 1, memory), 1);
@@ -248,46 +239,27 @@ inline __attribute__((noinline)) void ForestNewton::substitute(const Range &rang
     if (range.root) substitute_newton_joint<1, true, vec>(ForestNewtonJoint(*this, f.n_steps - 1, memory), 1);
 }
 
-// Adds the corrections for what is left, in t of the rows, to tau in the lanes of `active`.
-inline __attribute__((noinline)) void ForestNewton::down(const Range &range, mask active) {
-    if (range.root) {
-        ForestRow &root = row[f.step[f.n_steps - 1].first];
-        root.tau = root.tau + keep(active, root.t);
-    }
-    for (int32_t s = range.inner_end(); s-- > range.step;) {
-        const vec above = AtPlaces<ForestRow>(row, above_of(s)).get(offsetof(ForestRow, t));
-        for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
-            row[p].t = mul_add(row[p].down, above, row[p].t);
-            row[p].tau = row[p].tau + keep(active, row[p].t);
-        }
-    }
-}
-
-// Of one large tree, in one pass with displace(): each atom gets what the bond above it gives when its parent is dealt
-// with, and what those below it give at its own step. corrected: by the corrections in t, which are added to tau.
+// As Newton::go_down(). An atom gets its pull of the bond above when its parent is dealt with, those of the bonds below
+// at its own step.
 template <bool corrected>
-inline __attribute__((noinline)) void ForestNewton::down_and_displace(const Range &range) {
-    if (range.root) {
-        ForestRow &root = row[f.step[f.n_steps - 1].first];
-        if (corrected) root.tau = root.tau + root.t;
-        shift[f.n_places] = vec3{};
-    }
+void ForestNewton::go_down(const Range &range, mask active) {
+    if (range.root) pull[f.n_places].x = pull[f.n_places].y = pull[f.n_places].z = vec{};
     for (int32_t s = range.end_step; s-- > range.step;) {
-        const vec above = AtPlaces<ForestRow>(row, above_of(s)).get(offsetof(ForestRow, t));
-        const bool inner = corrected && s < range.inner_end();
-        vec3 sum = {};
-        for (int32_t p = f.step[s].first, end = p + f.step[s].children; p < end; ++p) {
+        const vec t_above = AtPlaces<ForestRow>(row, above_of(s)).get(offsetof(ForestRow, t));
+        const bool inner = s < range.inner_end();
+        const AtPlaces<vec3> own(pull, above_of(s));
+        vec3 sum = own.get3(0);
+        const int32_t first = f.step[s].first;
+        for (int32_t p = first + f.step[s].children; p-- > first;) {
             ForestRow &bond = row[p];
-            if (inner) {
-                bond.t = mul_add(bond.down, above, bond.t);
-                bond.tau = bond.tau + bond.t;
+            if (corrected) {
+                if (inner) bond.t = mul_add(bond.down, t_above, bond.t);
+                bond.tau = bond.tau + keep(active, bond.t);
             }
-            const vec3 pull = bond.tau * bond.b;
-            shift[p] = -lower_w[p] * pull;
-            sum = sum + pull;
+            pull[p] = -bond.tau * bond.b;
+            sum = add_times(sum, bond.tau, bond.b);
         }
-        const AtPlaces<vec3> own(shift, above_of(s));
-        own.put3(0, add_times(own.get3(0), w[s], sum));
+        own.put3(0, sum);
     }
 }
 

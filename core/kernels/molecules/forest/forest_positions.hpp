@@ -52,7 +52,7 @@ struct ForestPositions {
         x.write_atoms(
             range, array, which, [&](int32_t p) { return bits(less_equal(x.lower_w[p], vec{})); },
             [&](int32_t p, const auto &atom)
-                HOL_FORCED { return add_times(atom.read(array), splat(factor), x.shift[p]); });
+                HOL_FORCED { return add_times(atom.read(array), splat(factor), x.displacement(p)); });
     }
     // The worst bond of the trees in `which`: of a tree the one with the smallest number among those.
     void note_worst(unsigned which, const vec &error) const {
@@ -79,7 +79,6 @@ struct ForestPositions {
         if (call.guess) load_guess(x.all());
         const Limits<vec> limits(call, largest, a_min);
         const Solved<vec> out = iterate<vec, false, true>(x, limits, call, first_lanes(x.f.n_trees));
-        x.displace();
         const unsigned moved = bits(out.converged & ~coarse_moves(largest + a_min, a_max)),
                        good = moved | bits(out.untouched);
         if (call.report) note_worst(good, out.error);

@@ -146,21 +146,23 @@ inline __attribute__((noinline)) void ForestLinear::substitute(const Range &rang
     if (range.root) substitute_joint<1, true>(ForestJoint(*this, f.n_steps - 1), 1, memory);
 }
 
-// u of the children becomes t, and the sum of t d what they pull. `look`: tests the result.
+// u of the children becomes t, and atoms get their pulls, as in down_joint(). `look`: tests the result.
 template <bool look, class Doubt>
 inline __attribute__((noinline)) void ForestLinear::down(const Range &range, const Doubt &doubt) {
     const auto step = [&](int32_t s, auto known, auto top) HOL_FORCED {
         const int k = known > 0 ? known : f.step[s].children;
         const ForestJoint joint(*this, s);
         if (!top) joint.read_t();
-        vec3 sum = {};
+        const AtPlaces<vec3> own(pull, above_of(s));
+        vec3 sum = top ? vec3{} : own.get3(0);
         HOL_UNROLL_FEW
-        for (int a = 0; a < k; ++a) {
+        for (int a = k - 1; a >= 0; --a) {
             BondRow<vec> &bond = joint.child[a];
             if (!top) bond.t = mul_add(bond.l, joint.top.t, bond.t);
+            put(pull[f.step[s].first + a], add_times(vec3{}, -bond.t, bond.d));
             sum = add_times(sum, bond.t, bond.d);
         }
-        AtPlaces<vec3>(pull, above_of(s)).put3(0, sum);
+        own.put3(0, sum);
         if (!look || known == 1) return;
         joint.top.q = joint.place.get(offsetof(BondRow<vec>, q));
         joint.top.E = joint.place.get(offsetof(BondRow<vec>, E));

@@ -106,8 +106,9 @@ struct OneTreeNewton {
     }
     template <bool corrected>
     void displace() {
-        x.down_and_displace<corrected>(x.piece(top()));
-        share_out(team, top(), [&](int32_t p) { x.down_and_displace<corrected>(x.piece(p)); });
+        const mask every = first_lanes(W);
+        x.go_down<corrected>(x.piece(top()), every);
+        share_out(team, top(), [&](int32_t p) { x.go_down<corrected>(x.piece(p), every); });
         displaced = true;
     }
     // The first time new factors will mostly follow.

@@ -56,8 +56,7 @@ struct Metric {
           per_uncertain(1 / most_uncertain(schedule.n_bonds)) {}
 
     void read_atoms() {
-        for (int32_t i = 0; i < s.n_atoms; ++i)
-            for (int l = 0; l < Width<V>::lanes; ++l) Width<V>::set(w[i], l, lane[l].w[s.atom_of[i]]);
+        masses_by_slot(s, lane, w);
         read_vectors(call.r, at, s.slot_of, s.n_atoms, Slots<V>(r));
     }
     // Between two slots; E is that of the second atom alone. Far from where squares and their products over- or

@@ -116,7 +116,7 @@ static inline void keep_knots(const PathsWork &x, const Knots &knots, const Newt
     for_bonds_of_knots(x.plan, knots, s, reach, PathPlan::bonds_of_end,
                        [&](int32_t i, int32_t bond, int32_t place) { x.tau[bond] = newton.x.row[place].tau[i]; });
     for (int32_t k = 0; k < knots.kind.n_atoms; ++k) {
-        const vec3 move = newton.displacement(s.slot_of[k]);
+        const vec3 move = newton.displacements()[s.slot_of[k]];
         for (int32_t i = 0; i < knots.used; ++i) x.move[knots.atom(i) + k] = {move.x[i], move.y[i], move.z[i]};
     }
 }
@@ -133,8 +133,7 @@ static inline WindowResult solve_knots(const PathsWork &x, const Knots &knots, d
     Memory<vec> memory = {scratch + (W * lane_values(s) + most_lanes - 1) / most_lanes * most_lanes};
     const Atoms<vec> at(lane, knots.used, x.packed);
     Newton<vec> newton(s, memory);
-    for (int32_t slot = 0; slot < s.n_atoms; ++slot)
-        for (int i = 0; i < W; ++i) newton.x.w[slot][i] = lane[i].w[s.atom_of[slot]];
+    newton.set_masses(lane);
     const mask all = first_lanes(knots.used);
     PositionsBlock<Newton<vec>> block = {x.strict, s, lane, at, newton, part, vec{}, vec{}, vec{}};
     block.set_lengths(false);

@@ -144,19 +144,20 @@ static inline void substitute_ring(const Molecules<V> &x, const Ring<V> &ring) {
     V carried = {}, y_of_last = {};
     const int32_t first = bare ? 0 : x.s.n_tree;
     for_ring<bare>(x.s, [&](int32_t before, int32_t slot, int k) HOL_FORCED {
-        if (k > 0) {
-            const AtomRows<V> rows(x, slot);
-            V y_to = x.row[before].t, y_from = x.row[slot].t;
-            for (int a = 0; a < k; ++a) {
-                y_to = mul_add(reach[a], rows.bond(a).t, y_to);
-                y_from = mul_add(reach[k + a], rows.bond(a).t, y_from);
+        choose_number<0, bare ? 0 : most_on_ring>(k, [&](auto known) HOL_FORCED {
+            if constexpr (known > 0) {
+                const AtomRows<V> rows(x, slot);
+                V y_to = x.row[before].t, y_from = x.row[slot].t;
+                for (int a = 0; a < known; ++a) {
+                    y_to = mul_add(reach[a], rows.bond(a).t, y_to);
+                    y_from = mul_add(reach[known + a], rows.bond(a).t, y_from);
+                }
+                reach += 2 * known;
+                x.row[before].t = y_to;
+                x.row[slot].t = y_from;
+                substitute_joint<known, true>(rows, known, Memory<V>());
             }
-            reach += 2 * k;
-            x.row[before].t = y_to;
-            x.row[slot].t = y_from;
-            choose_number<1, most_on_ring>(
-                k, [&](auto known) HOL_FORCED { substitute_joint<known, true>(rows, k, Memory<V>()); });
-        }
+        });
         if (slot == first) return;
         BondRow<V> &row = x.row[before];
         const V y = row.t + carried;
@@ -199,27 +200,29 @@ HOL_INLINE void look_at_ring_atom(Molecules<V> &x, int32_t before, int32_t slot,
 template <bool look, bool bare, class V>
 static inline void down_ring(Molecules<V> &x, const Ring<V> &ring) {
     const Schedule &s = x.s;
-    BondRow<V> *const row = x.row + s.n_tree;
-    const V last = row[s.n_core - 1].t;
-    V t = last;
-    for (int32_t p = s.n_core - 2; p >= 0; --p)
-        row[p].t = t = mul_add(row[p].l, t, mul_add(ring.to_last[p], last, row[p].t));
-    if (bare && !look) return;
-    const V *reach = ring.reach;
-    RingBond<V> to(row[s.n_core - 1]);
-    for_ring<bare>(s, [&](int32_t before, int32_t slot, int k) HOL_FORCED {
-        const V to_t = x.row[before].t, from_t = x.row[slot].t;
-        for (int a = 0; a < k; ++a) {
-            BondRow<V> &child = x.row[s.child[s.child_start[slot] + a]];
-            child.t = mul_add(reach[a], to_t, mul_add(reach[k + a], from_t, child.t));
-        }
-        reach += 2 * k;
-        if (!look) return;
-        const RingBond<V> from(x.row[slot]);
-        choose_number<0, bare ? 0 : most_on_ring>(
-            k, [&](auto known) HOL_FORCED { look_at_ring_atom<known>(x, before, slot, to, from); });
-        to = from;
-    });
+    const V *reach = ring.reach + 2 * static_cast<int64_t>(s.n_tree - s.child_start[s.n_tree]);
+    const V last = x.row[s.n_bonds - 1].t, *to_last = ring.to_last + s.n_core - 1;
+    V behind = last;
+    RingBond<V> from(x.row[s.n_bonds - 1]);
+    for (int32_t slot = s.n_bonds - 1; slot >= s.n_tree; --slot) {
+        const bool first = slot == s.n_tree;
+        const int32_t place = first ? s.n_bonds - 1 : slot - 1;
+        BondRow<V> &row = x.row[place];
+        V before = last;
+        if (!first) row.t = before = mul_add(row.l, behind, mul_add(*--to_last, last, row.t));
+        const RingBond<V> to(row);
+        const int k = bare ? 0 : children_of(s, slot);
+        reach -= 2 * k;
+        choose_number<0, bare ? 0 : most_on_ring>(k, [&](auto known) HOL_FORCED {
+            for (int a = 0; a < known; ++a) {
+                BondRow<V> &child = x.row[s.child[s.child_start[slot] + a]];
+                child.t = mul_add(reach[a], before, mul_add(reach[known + a], behind, child.t));
+            }
+            if (look) look_at_ring_atom<known>(x, place, slot, to, from);
+        });
+        from = to;
+        behind = before;
+    }
 }
 
 }  // namespace holonomic::HOL_ISA::graph

@@ -19,16 +19,15 @@ HOL_INLINE void put_where(MaskOf<V> which, V &to, V value) {
 template <class V>
 struct RingNewton {
     typedef V Value;
-    static constexpr bool by_length = false;
+    static constexpr bool by_length = true;
     // What is shared with the last bond.
     struct Closure {
         V l, c;
     };
     struct System {
         const Schedule &s;
-        V *w;  // [N]
-        NewtonRow<V>
-            *row;  // t: u = y / P; up: of y, what the row before gives; down: of the correction behind; r: 1 / 2 P
+        V *w;               // [N]
+        NewtonRow<V> *row;  // t: u = y / P; up: of y, what the row before gives; down: of the correction behind
     };
     System x;
     Closure *closure;  // [N - 1]
@@ -42,6 +41,8 @@ struct RingNewton {
         closure = reinterpret_cast<Closure *>(memory.values(2 * static_cast<int64_t>(s.n_bonds)));
     }
 
+    void set_masses(const MoleculeLane *lane) { masses_by_slot(x.s, lane, x.w); }
+
     // The displacement of an atom between the bonds that pull it with tau b.
     HOL_FORCED Vector3<V> pull_of(int32_t bond) const { return x.row[bond].tau * x.row[bond].b; }
     HOL_FORCED Vector3<V> displacement(int32_t atom) const {
@@ -49,15 +50,15 @@ struct RingNewton {
     }
 
     // Of all atoms; the bonds as they came are done with.
-    Slots<V> displace() const {
+    Displacements<V> displacements() const {
         NewtonRow<V> *const row = x.row;
         Vector3<V> before = pull_of(x.s.n_bonds - 1);
         for (int32_t k = 0; k < x.s.n_atoms; ++k) {
             const Vector3<V> next = pull_of(k);
-            row[k].D = x.w[k] * (next - before);
-            before = next;
+            put(row[k].D, next - before);
+            put(before, next);
         }
-        return Slots<V>(row, &row->D.x);
+        return {Slots<V>(row, &row->D.x), x.w};
     }
 
     // The bond vectors as tau moves them, one after the other, the last one first.
@@ -78,11 +79,21 @@ struct RingNewton {
         }
     };
 
-    // D.D - a^2 of a bond, and its largest size, relative to a^2.
-    HOL_FORCED static V length_error(const NewtonRow<V> &row, const Vector3<V> &D, V &worst) {
-        const V sigma = excess(D, row.a2);
-        worst = max(abs(sigma) * row.per_a2, worst);
-        return sigma;
+    // What is left of a bond's length, for D as given; its largest error relative to a^2. first: for the factors that
+    // are made of it, in the lanes of `which`.
+    template <bool first, bool all>
+    HOL_FORCED static V length_left(NewtonRow<V> &row, const Vector3<V> &D, V &worst, MaskOf<V> which) {
+        const V sigma = excess(D, row.a2), e = sigma * row.per_a2;
+        worst = max(abs(e), worst);
+        if (!first) return row.left(sigma, e);
+        if (all) return row.first_left(sigma, e);
+        const V left = row.left(sigma, e), stretch = row.stretch, anew = row.first_left(sigma, e);
+        row.stretch = select(which, row.stretch, stretch);
+        return select(which, anew, left);
+    }
+    template <bool first, bool all>
+    HOL_FORCED static V length_left(NewtonRow<V> &row, const Vector3<V> &D, V &worst) {
+        return length_left<first, all>(row, D, worst, Width<V>::none());
     }
     // max() may lose a NaN, y of the last bond keeps it.
     HOL_FORCED static V largest(V worst, V y) { return mul_add(y, V{}, worst); }
@@ -90,10 +101,8 @@ struct RingNewton {
     // The relative error of one bond, as the sweeps find it.
     V left_of(int32_t k) const {
         const int32_t n = x.s.n_bonds - 1;
-        V worst = {};
         const Vector3<V> right = displacement(k < n ? k + 1 : 0);
-        length_error(x.row[k], x.row[k].D + (right - displacement(k)), worst);
-        return worst;
+        return abs(excess(x.row[k].D + (right - displacement(k)), x.row[k].a2)) * x.row[k].per_a2;
     }
 
     // E as a fraction A / F, as in eliminate/remainder.hpp.
@@ -109,7 +118,7 @@ struct RingNewton {
         Mover mover;
         const Vector3<V> D_n = moved ? mover.last(*this) : row[n].D;
         Vector3<V> d = moved ? mover.bond(*this, 0) : row[0].D;
-        V worst = {}, y = {}, down = {}, q = dot(d, row[0].b), y_n = length_error(row[n], D_n, worst);
+        V worst = {}, y = {}, down = {}, q = dot(d, row[0].b), y_n = length_left<true, all>(row[n], D_n, worst, which);
         V to_last = x.w[0] * dot(D_n, row[0].b), from_last = x.w[0] * dot(d, row[n].b);
         V P_n = (x.w[n] + x.w[0]) * dot(D_n, row[n].b);
         Fraction e = {x.w[0] * q, Width<V>::all(1)};
@@ -118,17 +127,17 @@ struct RingNewton {
             const V w = x.w[k + 1];
             const Vector3<V> d1 = k + 1 == n ? D_n : moved ? mover.bond(*this, k + 1) : row[k + 1].D;
             const V q1 = dot(d1, row[k + 1].b), lower = dot(d1, here.b), upper = dot(row[k + 1].b, d);
-            const V F1 = mul_add(w * q, e.F, e.A), rF = Width<V>::all(1) / F1, rP = e.F * rF, half = 0.5 * rP;
-            const V sigma = length_error(here, d, worst);
+            const V F1 = mul_add(w * q, e.F, e.A), rF = Width<V>::all(1) / F1, rP = e.F * rF;
+            const V left = length_left<true, all>(here, d, worst, which);
             if (k + 1 == n) {
                 to_last = mul_add(w, lower, to_last);
                 from_last = mul_add(w, upper, from_last);
             }
             const V l = to_last * rP, c = from_last * rP;
             P_n = mul_add(-l, from_last, P_n);
-            put_where<all>(which, here.r, half);
+            put_where<all>(which, here.r, rP);
             put_where<all>(which, here.up, down);
-            y = mul_add(here.up, y, sigma);
+            y = mul_add(here.up, y, left);
             here.t = y * here.r;
             const V wP = w * rP, up = wP * upper;
             down = wP * lower;
@@ -144,7 +153,7 @@ struct RingNewton {
             q = q1;
             d = d1;
         }
-        put_where<all>(which, row[n].r, Width<V>::all(0.5) / P_n);
+        put_where<all>(which, row[n].r, Width<V>::all(1) / P_n);
         row[n].t = y_n * row[n].r;
         return largest(worst, y_n);
     }
@@ -165,10 +174,10 @@ struct RingNewton {
         NewtonRow<V> *const row = x.row;
         const int32_t n = x.s.n_bonds - 1;
         Mover mover;
-        V worst = {}, y = {}, y_n = length_error(row[n], mover.last(*this), worst);
+        V worst = {}, y = {}, y_n = length_left<false, true>(row[n], mover.last(*this), worst);
 #pragma GCC unroll 2
         for (int32_t k = 0; k < n; ++k) {
-            y = mul_add(row[k].up, y, length_error(row[k], mover.bond(*this, k), worst));
+            y = mul_add(row[k].up, y, length_left<false, true>(row[k], mover.bond(*this, k), worst));
             y_n = mul_add(closure[k].l, y, y_n);
             row[k].t = y * row[k].r;
         }

@@ -85,19 +85,20 @@ static inline void substitute_ring(const NewtonSystem<V> &x) {
     const V *reach = x.reach_up, *to_last = x.core_lower;
     V carried = {}, y_of_last = {};
     for_ring<false>(x.s, [&](int32_t before, int32_t slot, int k) HOL_FORCED {
-        if (k > 0) {
-            const NewtonAtom<V> atom(x, slot);
-            V y_to = x.row[before].t, y_from = x.row[slot].t;
-            for (int a = 0; a < k; ++a) {
-                y_to = mul_add(reach[a], atom.bond(a).t, y_to);
-                y_from = mul_add(reach[k + a], atom.bond(a).t, y_from);
+        choose_number<0, most_on_ring>(k, [&](auto known) HOL_FORCED {
+            if constexpr (known > 0) {
+                const NewtonAtom<V> atom(x, slot);
+                V y_to = x.row[before].t, y_from = x.row[slot].t;
+                for (int a = 0; a < known; ++a) {
+                    y_to = mul_add(reach[a], atom.bond(a).t, y_to);
+                    y_from = mul_add(reach[known + a], atom.bond(a).t, y_from);
+                }
+                reach += 2 * known;
+                x.row[before].t = y_to;
+                x.row[slot].t = y_from;
+                substitute_newton_joint<known, true, V>(atom, known);
             }
-            reach += 2 * k;
-            x.row[before].t = y_to;
-            x.row[slot].t = y_from;
-            choose_number<1, most_on_ring>(
-                k, [&](auto known) HOL_FORCED { substitute_newton_joint<known, true, V>(atom, k); });
-        }
+        });
         if (slot == x.s.n_tree) return;
         NewtonRow<V> &row = x.row[before];
         const V y = row.t + carried;
@@ -114,20 +115,27 @@ static inline void substitute_ring(const NewtonSystem<V> &x) {
 template <class V>
 static inline void down_ring(const NewtonSystem<V> &x, MaskOf<V> active) {
     const Schedule &s = x.s;
-    NewtonRow<V> *const row = x.row + s.n_tree;
-    const V last = row[s.n_core - 1].t;
-    V t = last;
-    for (int32_t p = s.n_core - 1; p >= 0; --p) {
-        if (p < s.n_core - 1) row[p].t = t = mul_add(row[p].down, t, mul_add(x.core_upper[p], last, row[p].t));
-        row[p].tau = row[p].tau + keep(active, t);
+    const V *reach = x.reach_down + 2 * static_cast<int64_t>(s.n_tree - s.child_start[s.n_tree]);
+    const V last = x.row[s.n_bonds - 1].t, *to_last = x.core_upper + s.n_core - 1;
+    V behind = last;
+    for (int32_t slot = s.n_bonds - 1; slot >= s.n_tree; --slot) {
+        NewtonRow<V> &row = x.row[slot];
+        row.tau = row.tau + keep(active, behind);
+        V before = last;
+        if (slot > s.n_tree) {
+            NewtonRow<V> &next = x.row[slot - 1];
+            next.t = before = mul_add(next.down, behind, mul_add(*--to_last, last, next.t));
+        }
+        const int k = children_of(s, slot);
+        reach -= 2 * k;
+        choose_number<0, most_on_ring>(k, [&](auto known) HOL_FORCED {
+            for (int a = 0; a < known; ++a) {
+                NewtonRow<V> &child = x.row[s.child[s.child_start[slot] + a]];
+                child.t = mul_add(reach[a], before, mul_add(reach[known + a], behind, child.t));
+            }
+        });
+        behind = before;
     }
-    const V *reach = x.reach_down;
-    for_ring<false>(s, [&](int32_t before, int32_t slot, int k) HOL_FORCED {
-        const NewtonAtom<V> atom(x, slot);
-        const V to = x.row[before].t, from = x.row[slot].t;
-        for (int a = 0; a < k; ++a) atom.bond(a).t = mul_add(reach[a], to, mul_add(reach[k + a], from, atom.bond(a).t));
-        reach += 2 * k;
-    });
 }
 
 }  // namespace holonomic::HOL_ISA::graph

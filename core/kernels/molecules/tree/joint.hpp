@@ -158,74 +158,75 @@ static inline void up_trees(Molecules<V> &x, Memory<V> memory) {
         const int k = s.child_start[slot + 1] - s.child_start[slot];
         if (k == 0) continue;
         const Molecules<V> *const molecules = &x;
-        slack = choose_few<3>(k, [=](auto known) HOL_FORCED {  // captures by value, so that slack stays in a register
-            V least = slack;
-            up_joint<known, false>(AtomRows<V, known>(*molecules, slot), k, memory, least);
-            return least;
-        });
+        slack =
+            choose_mostly<3>(k, [=](auto known) HOL_FORCED {  // captures by value, so that slack stays in a register
+                V least = slack;
+                up_joint<known, false>(AtomRows<V, known>(*molecules, slot), k, memory, least);
+                return least;
+            });
     }
     if (s.type == Schedule::tree) up_joint<1, true>(AtomRows<V, 1>(x, s.n_tree), 1, memory, slack);
     x.slack = slack;
 }
 
-template <class V>
-static inline void substitute_one(const Molecules<V> &x, int32_t slot, Memory<V> memory) {
-    const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
-    if (k > 0)
-        choose_few<3>(
-            k, [&](auto known) HOL_FORCED { substitute_joint<known, false>(AtomRows<V, known>(x, slot), k, memory); });
-}
-
-template <class V>
-static inline void substitute_trees(const Molecules<V> &x, Memory<V> memory) {
-    for (int32_t slot = 0; slot < x.s.n_tree; ++slot) substitute_one(x, slot, memory);
+// Calls before(slot) at each atom, which may make the right-hand side of the bond above it.
+template <class V, class Before>
+HOL_INLINE void substitute_trees(const Molecules<V> &x, Memory<V> memory, const Before &before) {
+    const Molecules<V> *const molecules = &x;
+    for (int32_t slot = 0; slot < x.s.n_tree; ++slot) {
+        before(slot);
+        const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
+        if (k > 0)
+            choose_mostly<3>(k, [=](auto known) HOL_FORCED {
+                substitute_joint<known, false>(AtomRows<V, known>(*molecules, slot), k, memory);
+            });
+    }
     if (x.s.type == Schedule::tree) substitute_joint<1, true>(AtomRows<V, 1>(x, x.s.n_tree), 1, memory);
 }
 
-// Goes down at one atom: u of its children becomes t, from t of the bond above. `look`: tests the result.
-template <bool look, int known, class V>
-HOL_INLINE void down_joint(const Molecules<V> &x, int32_t slot, int count, V &slack) {
+// Goes down at one atom: u of its children becomes t, from t of the bond above. `look`: tests the result. pulled: adds
+// to pull[slot], which has t d of the bond above, what the children pull, and begins theirs.
+template <int known, class V>
+HOL_INLINE void down_joint(const Molecules<V> &x, int32_t slot, int count, bool look, bool pulled, Vector3<V> *pull,
+                           V &slack) {
     const int k = known > 0 ? known : count;
     const AtomRows<V, known> rows(x, slot);
     const V above = x.row[slot].t;
+    Vector3<V> sum = {};
+    if (pulled) sum = pull[slot];
     HOL_UNROLL_FEW
-    for (int a = 0; a < k; ++a) {
+    for (int a = k - 1; a >= 0; --a) {
         BondRow<V> &row = rows.bond(a);
-        row.t = mul_add(row.l, above, row.t);
+        const V t = row.t = mul_add(row.l, above, row.t);
+        if (!pulled) continue;
+        put(pull[rows.place(a)], add_times(Vector3<V>{}, -t, row.d));  // zeros as +0
+        put(sum, add_times(sum, t, row.d));
     }
-    if (!look || known == 1) return;
+    if (pulled) put(pull[slot], sum);
+    if (!look || k == 1) return;
     const MaskOf<V> faint = faint_bonds<V>(rows, k);
     if (__builtin_expect(any(faint), 0)) doubt_faint_bonds(x, slot, k, bits(faint), slack);
 }
-
-template <bool look, class V>
-static inline void down_one(const Molecules<V> &x, int32_t slot, V &slack) {
+template <class V>
+HOL_NOINLINE void down_many_joint(const Molecules<V> &x, int32_t slot, int k, bool look, bool pulled, Vector3<V> *pull,
+                                  V &slack) {
+    down_joint<0>(x, slot, k, look, pulled, pull, slack);
+}
+template <class V>
+HOL_INLINE void down_one(const Molecules<V> &x, int32_t slot, bool look, bool pulled, Vector3<V> *pull, V &slack) {
     const int k = x.s.child_start[slot + 1] - x.s.child_start[slot];
-    if (k > 0) choose_few<3>(k, [&](auto known) HOL_FORCED { down_joint<look, known>(x, slot, k, slack); });
+    if (k > 3) return down_many_joint(x, slot, k, look, pulled, pull, slack);
+    if (k == 1) down_joint<1>(x, slot, k, look, pulled, pull, slack);
+    if (k == 2) down_joint<2>(x, slot, k, look, pulled, pull, slack);
+    if (k == 3) down_joint<3>(x, slot, k, look, pulled, pull, slack);
 }
 
 // Goes down the trees.
-template <bool look, class V>
-static inline void down_trees(Molecules<V> &x) {
+template <bool look, bool pulled, class V>
+static inline void down_trees(Molecules<V> &x, Vector3<V> *pull) {
     V slack = x.slack;
-    for (int32_t slot = x.s.n_tree - 1; slot >= 0; --slot) down_one<look>(x, slot, slack);
+    for (int32_t slot = x.s.n_tree - 1; slot >= 0; --slot) down_one(x, slot, look, pulled, pull, slack);
     x.slack = slack;
-}
-
-// down_trees<false>(), and v += w G of their atoms in the same pass.
-template <class V>
-static inline void down_trees_and_move(const Molecules<V> &x, Vector3<V> *v) {
-    const Schedule &s = x.s;
-    for (int32_t slot = s.n_tree; slot-- > 0;) {
-        const BondRow<V> &above = x.row[slot];
-        Vector3<V> pull = {};
-        for_children(s, slot, [&](int32_t child) HOL_FORCED {
-            BondRow<V> &row = x.row[child];
-            row.t = mul_add(row.l, above.t, row.t);
-            pull = add_times(pull, row.t, row.d);
-        });
-        v[slot] = add_times(v[slot], x.w[slot], add_times(pull, -above.t, above.d));
-    }
 }
 
 }  // namespace holonomic::HOL_ISA::graph

@@ -14,27 +14,29 @@ struct Newton {
     typedef V Value;
     static constexpr bool by_length = true;
     NewtonSystem<V> x;
-    V *kept;     // factors, while new ones are made for some lanes
-    V *lengths;  // least and largest
-    V opening;   // the largest error of the bonds as they came
+    V *kept;              // factors, while new ones are made for some lanes
+    V *lengths;           // least and largest
+    V opening;            // the largest error of the bonds as they came
+    bool pulled = false;  // atoms know their pulls by tau
 
     static constexpr int64_t row_values = static_cast<int64_t>(sizeof(NewtonRow<V>) / sizeof(V));
     static int64_t values(const Schedule &s) {
         const int64_t part = CoreMatrix<V>::most_parts(s), n_atoms = s.n_atoms, n_bonds = s.n_bonds;
-        return 7 * n_atoms + 2 + columns_ahead + 1 + (row_values + 7) * n_bonds + 4 * static_cast<int64_t>(s.n_pairs) +
+        return 11 * n_atoms + 2 + columns_ahead + 1 + (row_values + 7) * n_bonds + 4 * static_cast<int64_t>(s.n_pairs) +
                4 * static_cast<int64_t>(s.n_entries) + 4 * reaches(s) + 2 * part +
                NewtonMemory<V, 0>::values(s.max_joint);
     }
 
     Newton(const Schedule &s, Memory<V> &memory)
-        : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, kept(), lengths(memory.values(2)),
+        : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, kept(), lengths(memory.values(2)),
           opening() {
         const int64_t part = CoreMatrix<V>::most_parts(s), n_reaches = reaches(s);
         x.w = memory.values(s.n_atoms);
         x.row = reinterpret_cast<NewtonRow<V> *>(memory.values(row_values * s.n_bonds));
         x.lower = memory.values(s.n_pairs);
         x.upper = memory.values(s.n_pairs);
-        x.move = memory.vectors(s.n_atoms);
+        x.atom = reinterpret_cast<PulledAtom<V> *>(memory.values(4 * static_cast<int64_t>(s.n_atoms)));
+        x.r_ref = memory.vectors(s.n_atoms);
         x.r = memory.vectors(s.n_atoms);
         x.new_D = memory.vectors(s.n_bonds);
         x.core = memory.values(s.n_core + columns_ahead + 1);
@@ -48,6 +50,13 @@ struct Newton {
                              2 * (s.n_pairs + static_cast<int64_t>(s.n_entries) + n_reaches));
         x.working = memory;
         memory.values(NewtonMemory<V, 0>::values(s.max_joint));
+    }
+
+    // And all else that stays from block to block.
+    void set_masses(const MoleculeLane *lane) {
+        masses_by_slot(x.s, lane, x.w);
+        for (int32_t slot = 0; slot < x.s.n_atoms; ++slot) x.atom[slot].w = x.w[slot];
+        for (int32_t k = 0; k < x.s.n_bonds; ++k) x.row[k].down = V{};  // at the root and the core it is never made
     }
 
     // The largest |D.D - a^2| / a^2 of the bonds measured so far. max() may lose a NaN, the sum keeps it.
@@ -64,22 +73,36 @@ struct Newton {
         row.t = first ? row.first_left(sigma, e) : row.left(sigma, e);
     }
 
-    // Makes factors for the bonds in new_D, in the lanes of `which`.
+    // A bond vector between two atoms, as tau moves it.
+    HOL_FORCED static Vector3<V> moved(const NewtonRow<V> &row, const PulledAtom<V> &from, const PulledAtom<V> &to) {
+        return row.D + difference(to.w, to.pull, from.w, from.pull);
+    }
+    HOL_FORCED Vector3<V> moved(int32_t place) const {
+        int32_t from, to;
+        ends_of(x.s, place, from, to);
+        return pulled ? moved(x.row[place], x.atom[from], x.atom[to]) : x.row[place].D;
+    }
+
+    // Makes factors for the bonds as they have been moved, in the lanes of `which`.
     void factorize(MaskOf<V> which) {
-        Errors unused = {};
         for (int32_t k = 0; k < x.s.n_bonds; ++k) {
             NewtonRow<V> &row = x.row[k];
-            const V stretch = row.stretch, t = row.t;
-            measure<true>(row, x.new_D[k], unused);
+            const Vector3<V> D = moved(k);
+            Slots<V>(x.new_D).put(k, D);
+            const V stretch = row.stretch, sigma = excess(D, row.a2), e = sigma * row.per_a2, left = row.left(sigma, e);
+            row.t = select(which, row.first_left(sigma, e), left);
             row.stretch = select(which, row.stretch, stretch);
-            row.t = select(which, row.t, t);
         }
-        if (bits(which) == all_of<V>) return make_factors();
-        V *to = kept;
-        const V *from = kept;
-        for_factors([&](V &value) HOL_FORCED { *to++ = value; });
-        make_factors();
-        for_factors([&](V &value) HOL_FORCED { value = select(which, value, *from++); });
+        if (bits(which) == all_of<V>) {
+            make_factors();
+        } else {
+            V *to = kept;
+            const V *from = kept;
+            for_factors([&](V &value) HOL_FORCED { *to++ = value; });
+            make_factors();
+            for_factors([&](V &value) HOL_FORCED { value = select(which, value, *from++); });
+        }
+        go_up<false>();
     }
 
     // Calls body(value) for all values that factors are made of.
@@ -110,9 +133,9 @@ struct Newton {
         for (int32_t slot = 0; slot < s.n_tree; ++slot) {
             const int k = s.child_start[slot + 1] - s.child_start[slot];
             if (k == 0)
-                x.row[slot].E = x.w[slot] * dot(x.new_D[slot], x.row[slot].b);
+                x.row[slot].r = x.w[slot] * dot(x.new_D[slot], x.row[slot].b);
             else
-                choose_few<3>(k, [&](auto known) HOL_FORCED {
+                choose_mostly<3>(k, [=](auto known) HOL_FORCED {
                     factorize_joint<known, false, V>(NewtonAtom<V, known>(x, slot), k);
                 });
         }
@@ -124,15 +147,29 @@ struct Newton {
             factorize_core(x);
     }
 
-    // Substitutes up: t of the rows, what is left of the lengths, becomes u.
-    __attribute__((noinline)) void substitute() {
+    // At one atom of k children.
+    HOL_FORCED void substitute(int32_t slot, int k) const {
+        if (k > 0)
+            choose_mostly<3>(k, [=](auto known) HOL_FORCED {
+                substitute_newton_joint<known, false, V>(NewtonAtom<V, known>(x, slot), k);
+            });
+    }
+    // Goes up the trees and the core: what is left of the lengths becomes u, in t of the rows. measured: it is found on
+    // the way, for bonds as tau moves them; returns the largest error.
+    template <bool measured>
+    __attribute__((noinline)) V go_up() {
         const Schedule &s = x.s;
-        for (int32_t slot = 0; slot < s.n_tree; ++slot) {
-            const int k = s.child_start[slot + 1] - s.child_start[slot];
-            if (k > 0)
-                choose_few<3>(k, [&](auto known) HOL_FORCED {
-                    substitute_newton_joint<known, false, V>(NewtonAtom<V, known>(x, slot), k);
-                });
+        Errors errors = {};
+        const PulledAtom<V> *const atom = x.atom, *own = atom;
+        NewtonRow<V> *row = x.row;
+        for (int32_t p = 0; measured && p < s.n_core; ++p) {
+            NewtonRow<V> &bond = row[s.n_tree + p];
+            measure<false>(bond, moved(bond, atom[s.from[p]], atom[s.to[p]]), errors);
+        }
+        const int32_t *const parent = s.parent, *const child_start = s.child_start;
+        for (int32_t slot = 0; slot < s.n_tree; ++slot, ++row, ++own) {
+            if (measured) measure<false>(*row, moved(*row, atom[parent[slot]], *own), errors);
+            substitute(slot, child_start[slot + 1] - child_start[slot]);
         }
         if (s.n_core_atoms == 0)
             substitute_newton_joint<1, true, V>(NewtonAtom<V, 1>(x, s.n_tree), 1);
@@ -140,92 +177,71 @@ struct Newton {
             substitute_ring(x);
         else
             substitute_core(x);
+        return errors.largest();
     }
 
-    // Solves for what is left, in t of the rows, adds the corrections to tau in the lanes of `active`, and displaces
-    // atoms.
+    // Adds the corrections that follow from u to tau in the lanes of `active`. Then atoms know their pulls.
     void solve(MaskOf<V> active) {
-        substitute();
-        solve_top(active);
-        move_down<true, false>(active);
-    }
-    void solve_top(MaskOf<V> active) const {
         if (x.s.type == Schedule::ring)
             down_ring(x, active);
         else if (x.s.n_core_atoms > 0)
             down_core(x, active);
+        go_down<true>(active);
+    }
+    // The bonds as tau moves them, and their largest error.
+    V move() {
+        if (!pulled) go_down<false>(Width<V>::none());
+        return go_up<true>();
     }
 
-    // Returns the displacement of an atom by tau.
-    HOL_FORCED Vector3<V> displacement(int32_t slot) const {
-        Vector3<V> pull = {};
-        for_bonds_of<V>(x.s, slot, [&](int32_t place, auto sign) HOL_FORCED {
-            pull = add_times(pull, sign * x.row[place].tau, x.row[place].b);
-        });
-        return x.w[slot] * pull;
-    }
-
-    // Of all atoms: solve() and move() leave them here.
-    HOL_FORCED Slots<V> displace() const { return Slots<V>(x.move); }
-
-    // Moves atoms and bonds by tau. Returns the largest error.
-    V move() { return move_down<false, true>(Width<V>::none()); }
-    // Behind solve(), in one: each bond is measured once both its atoms have moved, and its multiplier's correction is
-    // not needed any more.
-    V solve_and_move(MaskOf<V> active) {
-        substitute();
-        solve_top(active);
-        return move_down<true, true>(active);
-    }
-
-    // Displaces atoms, from the root or the core down. corrected: by the corrections in t, too, which come first;
-    // measured: moves bonds.
-    template <bool corrected, bool measured>
-    __attribute__((noinline)) V move_down(MaskOf<V> active) {
+    // Goes down, bond by bond: corrected: through the trees, with the corrections in t, which are added to tau.
+    template <bool corrected>
+    __attribute__((noinline)) void go_down(MaskOf<V> active) {
         const Schedule &s = x.s;
-        Errors errors = {};
-        const Slots<V> moves(x.move), new_D(x.new_D);
-        const auto measure_bond = [&](int32_t k, int32_t from, const Vector3<V> &to_moves) HOL_FORCED {
-            if (!measured) return;
-            const Vector3<V> D = x.row[k].D + (to_moves - x.move[from]);
-            new_D.put(k, D);
-            measure<false>(x.row[k], D, errors);
-        };
-        const auto pull_by = [&](NewtonRow<V> &row, Vector3<V> &pull) HOL_FORCED {
-            if (corrected) row.tau = row.tau + keep(active, row.t);
-            pull = add_times(pull, row.tau, row.b);
-        };
-        for (int32_t slot = s.n_atoms - 1; slot >= s.n_tree; --slot) {
-            Vector3<V> pull = {};
-            for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) pull_by(x.row[s.child[c]], pull);
-            for_core_bonds_of<V>(s, slot, [&](int32_t place, auto sign) HOL_FORCED {
-                pull = add_times(pull, sign * x.row[place].tau, x.row[place].b);
-            });
-            moves.put(slot, x.w[slot] * pull);
+        if (s.type == Schedule::ring) {
+            const auto of_bond = [&](int32_t place) HOL_FORCED { return x.row[place].tau * x.row[place].b; };
+            Vector3<V> before = of_bond(s.n_bonds - 1);
+            for (int32_t slot = s.n_tree; slot < s.n_atoms; ++slot) {
+                const Vector3<V> behind = of_bond(slot);
+                put(x.atom[slot].pull, behind - before);
+                put(before, behind);
+            }
+        } else {
+            for (int32_t slot = s.n_tree; slot < s.n_atoms; ++slot) put(x.atom[slot].pull, Vector3<V>{});
+            for (int32_t p = 0; p < s.n_core; ++p) {
+                const NewtonRow<V> &row = x.row[s.n_tree + p];
+                PulledAtom<V> &from = x.atom[s.from[p]], &to = x.atom[s.to[p]];
+                put(from.pull, add_times(from.pull, row.tau, row.b));
+                put(to.pull, add_times(to.pull, -row.tau, row.b));
+            }
         }
-        for (int32_t p = 0; p < s.n_core; ++p) measure_bond(s.n_tree + p, s.from[p], x.move[s.to[p]]);
-        for (int32_t slot = s.n_tree - 1; slot >= 0; --slot) {
-            const NewtonRow<V> &above = x.row[slot];
-            Vector3<V> pull = {};
-            for_children(s, slot, [&](int32_t child) HOL_FORCED {
-                NewtonRow<V> &row = x.row[child];
-                if (corrected) row.t = mul_add(row.down, above.t, row.t);
-                pull_by(row, pull);
-            });
-            pull = x.w[slot] * add_times(pull, -above.tau, above.b);
-            moves.put(slot, pull);
-            measure_bond(slot, s.parent[slot], pull);
+        V t = {};
+        for (int32_t slot = s.n_tree; slot-- > 0;) {
+            const int32_t parent = s.parent[slot];
+            NewtonRow<V> &row = x.row[slot];
+            PulledAtom<V> &own = x.atom[slot], &above = x.atom[parent];
+            V tau = row.tau;
+            if (corrected) {
+                if (parent != slot + 1) t = x.row[parent].t;  // else at hand; through memory the next would wait for it
+                row.t = t = mul_add(row.down, t, row.t);
+                row.tau = tau = tau + keep(active, t);
+            }
+            put(own.pull, -tau * row.b);
+            put(above.pull, add_times(above.pull, tau, row.b));
         }
-        return errors.largest();
+        pulled = true;
     }
+
+    Displacements<V> displacements() const { return {Slots<V>(x.atom, &x.atom->pull.x), x.w}; }
 
     // Sets tau = 0 in the lanes of `which`.
     void forget(MaskOf<V> which) {
         for (int32_t k = 0; k < x.s.n_bonds; ++k) x.row[k].tau = select(which, V{}, x.row[k].tau);
+        pulled = false;
     }
 
     // Returns the relative error of one bond, as it was measured last.
-    V left_of(int32_t k) const { return abs(excess(x.new_D[k], x.row[k].a2)) * x.row[k].per_a2; }
+    V left_of(int32_t k) const { return abs(excess(moved(k), x.row[k].a2)) * x.row[k].per_a2; }
 
     // A bond as it comes: the first factors are for these.
     HOL_FORCED void measure_first(int32_t k, const Vector3<V> &D, Errors &errors) const {
@@ -233,12 +249,10 @@ struct Newton {
         measure<true>(x.row[k], D, errors);
     }
     V open() const { return opening; }
-    void first_factors() { make_factors(); }
+    void first_factors() {
+        make_factors();
+        go_up<false>();
+    }
 };
-
-template <class V, class Mask>
-HOL_INLINE auto solve_and_move(Newton<V> &newton, Mask active) {
-    return newton.solve_and_move(active);
-}
 
 }  // namespace holonomic::HOL_ISA::graph

@@ -14,14 +14,16 @@ namespace holonomic::HOL_ISA::graph {
 
 template <class V>
 struct NewtonRow {
-    Vector3<V> D, b;
-    V tau;       // the multiplier so far, 2 dt^2 lambda
-    V t;         // what is left of the length, and y; then u
-    V up, down;  // what the bond above gets of y, and this one of its correction
-    V r;         // 1 / pivot
-    V E;         // as in BondRow
+    // What the way down touches comes first.
+    Vector3<V> b;
+    V tau;   // the multiplier so far, 2 dt^2 lambda
+    V t;     // what is left of the length, and y; then u, then the correction
+    V down;  // of the correction of the bond above, what this one gets
+    V up;    // of y, what the bond above gets
+    V r;     // 1 / pivot; while factors are made first E, as in BondRow
     V a2, per_a2;
     V stretch;  // |D_0| / 2 a of the bond that the factors were made of
+    Vector3<V> D;
 
     // What is left of the length, e = D.D / a^2 - 1. Not (D.D - a^2) / 2: a change of |D|, which is D/|D| . dD, is
     // nearly what it was when the factors were made, as bonds are stretched more than they turn; that of D.D grows with
@@ -40,13 +42,19 @@ struct NewtonRow {
 };
 
 template <class V>
+struct PulledAtom {
+    Vector3<V> pull;  // the sum of tau b over the bonds that point away from it, less that over those that point to it
+    V w;              // as in NewtonSystem
+};
+
+template <class V>
 struct NewtonSystem {
     const Schedule &s;
     V *w;  // [n_atoms] by slot
     NewtonRow<V> *row;
     V *lower, *upper;            // [n_pairs] each
-    Vector3<V> *move;            // [n_atoms] displacements
-    Vector3<V> *r;               // [n_atoms] coordinates, until the bonds are made
+    PulledAtom<V> *atom;         // [n_atoms] by slot
+    Vector3<V> *r_ref, *r;       // [n_atoms] coordinates, until the bonds are made
     Vector3<V> *new_D;           // [n_bonds] bonds as moved, for new factors
     V *core_lower, *core_upper;  // [n_entries] each
     V *core;                     // [n_core] pivots while they are found, then y and the corrections
@@ -146,7 +154,7 @@ HOL_INLINE void factorize_children(const Rows &x, int k, Joint &f) {
         HOL_UNROLL_FEW
         for (int b = 0; b < k; ++b) {
             const V g = w * dot(x.D(a), x.bond(b).b);
-            f.S[a * k + b] = a == b ? g + x.bond(a).E : g;
+            f.S[a * k + b] = a == b ? g + x.bond(a).r : g;
         }
     }
     decompose(k, f.S, f.r, f.lower, f.upper);
@@ -193,7 +201,7 @@ HOL_INLINE void factorize_many(const Rows &x, int k) {
     Vector3<V> *const D = reinterpret_cast<Vector3<V> *>(x.lower() + 9);
     for (int a = 0; a < k; ++a) {
         NewtonRow<V> &row = x.bond(a);
-        row.r = Width<V>::all(1) / row.E;
+        row.r = Width<V>::all(1) / row.r;
         D[a] = row.r * x.D(a);
         M.add(w * row.b, D[a]);
     }
@@ -201,7 +209,7 @@ HOL_INLINE void factorize_many(const Rows &x, int k) {
     *reinterpret_cast<Matrix3<V> *>(x.lower()) = B;
     const Vector3<V> D_e = x.D_above(), down = B * x.above().b,
                      up = add_times(add_times(D_e.x * B.x, D_e.y, B.y), D_e.z, B.z);
-    x.above().E = dot(D_e, down);
+    x.above().r = dot(D_e, down);
     for (int a = 0; a < k; ++a) {
         NewtonRow<V> &row = x.bond(a);
         row.up = row.r * dot(up, row.b);
@@ -233,7 +241,7 @@ HOL_INLINE void factorize_joint(const Rows &x, int count) {
     factorize_children<V>(x, k, f);
     if (top) return;
     V *const up = f.S, *const down = f.u;  // S is done with
-    x.above().E = couple<V>(x, k, x.D_above(), x.above().b, f, f.z, f.h, up, down);
+    x.above().r = couple<V>(x, k, x.D_above(), x.above().b, f, f.z, f.h, up, down);
     HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
         x.bond(a).up = up[a];
