@@ -6,6 +6,7 @@
 
 using holonomic::adds;
 using holonomic::AtomArray;
+using holonomic::ForcesCall;
 using holonomic::guarded;
 using holonomic::need;
 using holonomic::packed_array;
@@ -16,8 +17,15 @@ int hol_forces(const hol_chains *chains, const double *r, const double *v, const
     return guarded(__func__, [&] {
         need(chains, "chains");
         need(r, "r");
-        holonomic::forces(chains->chains, packed_array(r), packed_array(v), packed_array(f), lambda, tension,
-                          packed_array(g), adds(mode), virial);
+        ForcesCall call;
+        call.r = packed_array(r);
+        call.v = packed_array(v);
+        call.f = packed_array(f);
+        call.g = packed_array(g);
+        call.lambda = lambda;
+        call.tension = tension;
+        call.add = adds(mode);
+        holonomic::forces(chains->chains, call, virial);
     });
 }
 
@@ -26,10 +34,16 @@ int hol_forces_view(const hol_chains *chains, const hol_view *r, const hol_view 
     return guarded(__func__, [&] {
         need(chains, "chains");
         need(r, "r");
-        const AtomArray ar = viewed_array(r, "r"), av = viewed_array(v, "v"), af = viewed_array(f, "f"),
-                        ag = viewed_array(g, "g");
-        const AtomArray *const all[] = {&ar, &av, &af, &ag};
+        ForcesCall call;
+        call.r = viewed_array(r, "r");
+        call.v = viewed_array(v, "v");
+        call.f = viewed_array(f, "f");
+        call.g = viewed_array(g, "g");
+        const AtomArray *const all[] = {&call.r, &call.v, &call.f, &call.g};
         holonomic::check_dimensions(all, 4);
-        holonomic::forces(chains->chains, ar, av, af, lambda, tension, ag, adds(mode), virial);
+        call.lambda = lambda;
+        call.tension = tension;
+        call.add = adds(mode);
+        holonomic::forces(chains->chains, call, virial);
     });
 }

@@ -10,16 +10,20 @@ using holonomic::guarded;
 using holonomic::make_error;
 using holonomic::need;
 using holonomic::packed_array;
+using holonomic::PositionsCall;
 using holonomic::Status;
 using holonomic::viewed_array;
 
 namespace {
 
-void check(double dt, const double *lambda, int guess) {
+void set(PositionsCall &call, double dt, double *lambda, int guess) {
     if (!(dt > 0) || !std::isfinite(dt) || !(dt * dt > 0) || !std::isfinite(1 / (dt * dt)))
         throw make_error(Status::value, "dt is %g; it must be positive and finite, and so must dt^2 and 1/dt^2", dt);
     if (guess != 0 && guess != 1) throw make_error(Status::value, "guess is %d; it must be 0 or 1", guess);
     if (guess) need(lambda, "lambda, which holds the guess,");
+    call.dt = dt;
+    call.lambda = lambda;
+    call.guess = guess == 1;
 }
 
 // Of the last reference that this thread's calls have compared with the lengths.
@@ -42,6 +46,12 @@ private:
     holonomic::Report found_{};
 };
 
+void project(const hol_chains *chains, PositionsCall &call, const AtomArray *bonds, double *virial,
+             hol_report *report) {
+    ReportTo found(report);
+    holonomic::project_positions(chains->chains, call, bonds, virial, found.get(), &reference_error);
+}
+
 }  // namespace
 
 int hol_project_positions(const hol_chains *chains, const double *r_ref, double *r, double *v, double dt,
@@ -50,11 +60,12 @@ int hol_project_positions(const hol_chains *chains, const double *r_ref, double 
         need(chains, "chains");
         need(r_ref, "r_ref");
         need(r, "r");
-        check(dt, lambda, guess);
-        const AtomArray a0 = packed_array(r_ref);
-        ReportTo found(report);
-        holonomic::project_positions(chains->chains, {&a0, nullptr}, packed_array(r), packed_array(v), dt, lambda,
-                                     guess == 1, virial, found.get(), &reference_error);
+        PositionsCall call;
+        set(call, dt, lambda, guess);
+        call.r_ref = packed_array(r_ref);
+        call.r = packed_array(r);
+        call.v = packed_array(v);
+        project(chains, call, nullptr, virial, report);
     });
 }
 
@@ -64,13 +75,14 @@ int hol_project_positions_view(const hol_chains *chains, const hol_view *r_ref, 
         need(chains, "chains");
         need(r_ref, "r_ref");
         need(r, "r");
-        check(dt, lambda, guess);
-        const AtomArray a0 = viewed_array(r_ref, "r_ref"), a1 = viewed_array(r, "r"), av = viewed_array(v, "v");
-        const AtomArray *const all[] = {&a0, &a1, &av};
+        PositionsCall call;
+        set(call, dt, lambda, guess);
+        call.r_ref = viewed_array(r_ref, "r_ref");
+        call.r = viewed_array(r, "r");
+        call.v = viewed_array(v, "v");
+        const AtomArray *const all[] = {&call.r_ref, &call.r, &call.v};
         holonomic::check_dimensions(all, 3);
-        ReportTo found(report);
-        holonomic::project_positions(chains->chains, {&a0, nullptr}, a1, av, dt, lambda, guess == 1, virial,
-                                     found.get(), &reference_error);
+        project(chains, call, nullptr, virial, report);
     });
 }
 
@@ -80,11 +92,12 @@ int hol_project_positions_along(const hol_chains *chains, const double *b, doubl
         need(chains, "chains");
         if (chains->chains.n_bonds() != 0) need(b, "b");
         need(r, "r");
-        check(dt, lambda, guess);
+        PositionsCall call;
+        set(call, dt, lambda, guess);
+        call.r = packed_array(r);
+        call.v = packed_array(v);
         const AtomArray bonds = packed_array(b);
-        ReportTo found(report);
-        holonomic::project_positions(chains->chains, {nullptr, &bonds}, packed_array(r), packed_array(v), dt, lambda,
-                                     guess == 1, virial, found.get(), &reference_error);
+        project(chains, call, &bonds, virial, report);
     });
 }
 
@@ -94,13 +107,14 @@ int hol_project_positions_along_view(const hol_chains *chains, const hol_view *b
         need(chains, "chains");
         need(b, "b");
         need(r, "r");
-        check(dt, lambda, guess);
-        const AtomArray bonds = viewed_array(b, "b"), a1 = viewed_array(r, "r"), av = viewed_array(v, "v");
-        const AtomArray *const all[] = {&bonds, &a1, &av};
+        PositionsCall call;
+        set(call, dt, lambda, guess);
+        const AtomArray bonds = viewed_array(b, "b");
+        call.r = viewed_array(r, "r");
+        call.v = viewed_array(v, "v");
+        const AtomArray *const all[] = {&bonds, &call.r, &call.v};
         holonomic::check_dimensions(all, 3);
-        ReportTo found(report);
-        holonomic::project_positions(chains->chains, {nullptr, &bonds}, a1, av, dt, lambda, guess == 1, virial,
-                                     found.get(), &reference_error);
+        project(chains, call, &bonds, virial, report);
     });
 }
 

@@ -6,14 +6,18 @@
 using holonomic::AtomArray;
 using holonomic::guarded;
 using holonomic::need;
+using holonomic::VelocitiesCall;
 
 int hol_project_velocities(const hol_chains *chains, const double *r, double *v, double *lambda, double *virial) {
     return guarded(__func__, [&] {
         need(chains, "chains");
         need(r, "r");
         need(v, "v");
-        holonomic::project_velocities(chains->chains, holonomic::packed_array(r), holonomic::packed_array(v), lambda,
-                                      virial);
+        VelocitiesCall call;
+        call.r = holonomic::packed_array(r);
+        call.v = holonomic::packed_array(v);
+        call.lambda = lambda;
+        holonomic::project_velocities(chains->chains, call, virial);
     });
 }
 
@@ -23,9 +27,12 @@ int hol_project_velocities_view(const hol_chains *chains, const hol_view *r, con
         need(chains, "chains");
         need(r, "r");
         need(v, "v");
-        const AtomArray ar = holonomic::viewed_array(r, "r"), av = holonomic::viewed_array(v, "v");
-        const AtomArray *const all[] = {&ar, &av};
+        VelocitiesCall call;
+        call.r = holonomic::viewed_array(r, "r");
+        call.v = holonomic::viewed_array(v, "v");
+        const AtomArray *const all[] = {&call.r, &call.v};
         holonomic::check_dimensions(all, 2);
-        holonomic::project_velocities(chains->chains, ar, av, lambda, virial);
+        call.lambda = lambda;
+        holonomic::project_velocities(chains->chains, call, virial);
     });
 }

@@ -99,45 +99,39 @@ Tally forces_at_rest(const Chains &chains, ForcesCall &call) {
     return tally;
 }
 
-void forces_of_bonds(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
-                     double *tension, const AtomArray &g, bool add, double *virial) {
-    ForcesCall call;
-    call.r = r;
-    call.v = v;
-    call.f = f;
-    call.g = g;
-    call.lambda = lambda;
-    call.tension = tension;
-    call.add = add;
+void forces_of_bonds(const Chains &chains, ForcesCall &call, double *virial) {
     call.virial = virial != nullptr;
     put_box(chains.box, call.box);
     const BoxRate *const rate = chains.box_rate();
     const Tally tally = rate ? forces_in_motion(chains, rate->L, call) : forces_at_rest(chains, call);
     if (tally.n_bad > 0) {
-        const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}, {"force", &f}};
+        const NamedArray arrays[] = {{"position", &call.r}, {"velocity", &call.v}, {"force", &call.f}};
         throw_error(chains, tally,
                     [&](const Tally &bad) { return diagnose(chains, bad, chains.box, arrays, 3, Status::not_finite); });
     }
     if (virial) write_virial(tally, virial);
 }
 
-void forces_of_all(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
-                   double *tension, const AtomArray &g, bool add, double *virial) {
+void forces_of_all(const Chains &chains, const ForcesCall &call, double *virial) {
     double sum[9];
     rigid::Parts parts(chains);
-    if (g.x && !add) parts.clear_fixed(g);
-    parts.run([&] { forces_of_bonds(chains, r, v, f, lambda, tension, g, add, virial ? sum : nullptr); });
-    parts.run([&] { rigid::forces(chains, r, v, f, lambda, tension, g, add, virial ? sum : nullptr); });
+    if (call.g.x && !call.add) parts.clear_fixed(call.g);
+    ForcesCall of_bonds = call;
+    parts.run([&] { forces_of_bonds(chains, of_bonds, virial ? sum : nullptr); });
+    parts.run([&] {
+        rigid::forces(chains, call.r, call.v, call.f, call.lambda, call.tension, call.g, call.add,
+                      virial ? sum : nullptr);
+    });
     parts.finish();
     if (virial) std::copy(sum, sum + 9, virial);
 }
 
 }  // namespace
 
-void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
-            double *tension, const AtomArray &g, bool add, double *virial) {
+void forces(const Chains &chains, ForcesCall &call, double *virial) {
     with_outcomes(chains, [&] {
-        (chains.bodies() ? forces_of_all : forces_of_bonds)(chains, r, v, f, lambda, tension, g, add, virial);
+        if (chains.bodies()) return forces_of_all(chains, call, virial);
+        forces_of_bonds(chains, call, virial);
     });
 }
 

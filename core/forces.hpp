@@ -5,8 +5,9 @@
 
 namespace holonomic {
 
-// virial [9] or nullptr. Throws Error once everything that is due has been written.
-void forces(const Chains &chains, const AtomArray &r, const AtomArray &v, const AtomArray &f, double *lambda,
-            double *tension, const AtomArray &g, bool add, double *virial);
+// `call`: with arrays, outputs and whether to add, the rest is filled in. It is made where the call comes from: a copy
+// of arrays that have just been described waits for that. virial [9] or nullptr. Throws Error once everything that is
+// due has been written.
+void forces(const Chains &chains, ForcesCall &call, double *virial);
 
 }  // namespace holonomic

@@ -63,25 +63,19 @@ Report report_of(const Chains &chains, const Tally &tally) {
             true};
 }
 
-void project_positions_of_bonds(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v,
-                                double dt, double *lambda, bool guess, double *virial, Report *report,
-                                WorstLength *reference_error) {
-    const BondVectors given{along.r_ref, along.bonds, along.r_ref ? &chains.box_of_reference() : nullptr};
-    if (chains.wants_fit() || (report && chains.checks() == Checks::never))
+void project_positions_of_bonds(const Chains &chains, PositionsCall &call, const AtomArray *bonds, double *virial,
+                                Report *report, WorstLength *reference_error) {
+    if (chains.wants_fit() || (report && chains.checks() == Checks::never)) {
+        const BondVectors given{bonds ? nullptr : &call.r_ref, bonds, bonds ? nullptr : &chains.box_of_reference()};
         *reference_error = worst_length(chains, given);
-    check_start(chains, given, r);
+        check_start(chains, given, call.r);
+    }
     std::optional<Reference> made;
-    if (!along.r_ref) made.emplace(chains, *along.bonds);
+    if (bonds) made.emplace(chains, *bonds);
     const Reference *const reference = made ? &*made : nullptr;
     static const Box none{};
     const Box &box_ref = !reference || reference->winds() ? chains.box_of_reference() : none;
-    PositionsCall call;
-    call.r_ref = reference ? reference->atoms() : *along.r_ref;
-    call.r = r;
-    call.v = v;
-    call.lambda = lambda;
-    call.dt = dt;
-    call.guess = guess;
+    if (reference) call.r_ref = reference->atoms();
     call.virial = virial != nullptr;
     call.report = report != nullptr;
     call.tolerance = chains.tolerance;
@@ -92,13 +86,13 @@ void project_positions_of_bonds(const Chains &chains, const Along &along, const 
     Apart apart(chains);
     const Tally tally = execute(chains, PositionsWork(call, apart, reference));
     apart.put_back();
-    clear_unconstrained(chains, lambda);
+    clear_unconstrained(chains, call.lambda);
     if (report) *report = report_of(chains, tally);
     if (tally.n_bad > 0) {
-        const NamedArray arrays[] = {{"reference position", &call.r_ref}, {"position", &r}, {"velocity", &v}};
+        const NamedArray arrays[] = {{"reference position", &call.r_ref}, {"position", &call.r}, {"velocity", &call.v}};
         throw_error(chains, tally, [&](const Tally &bad) {
             Error error;
-            if (chains.checks() != Checks::never && is_stretched(chains, bad.first_bad, r, bad.n_bad, &error))
+            if (chains.checks() != Checks::never && is_stretched(chains, bad.first_bad, call.r, bad.n_bad, &error))
                 return error;
             if (reference) reference->show(bad.first_bad);
             return diagnose(chains, bad, box_ref, arrays, 3, Status::no_convergence);
@@ -117,37 +111,39 @@ void check_start_of_all(const Chains &chains, const AtomArray &r_ref, const Atom
     chains.note_fit();
 }
 
-void project_positions_of_all(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v,
-                              double dt, double *lambda, bool guess, double *virial, Report *report,
-                              WorstLength *reference_error) {
-    if (!along.r_ref)
+void project_positions_of_all(const Chains &chains, const PositionsCall &call, const AtomArray *bonds, double *virial,
+                              Report *report, WorstLength *reference_error) {
+    if (bonds)
         throw make_error(Status::value,
                          "rigid bodies have no bond vectors to project along: hol_project_positions takes reference "
                          "positions");
-    const AtomArray &r_ref = *along.r_ref;
+    const AtomArray &r_ref = call.r_ref;
     if (chains.wants_fit() || (report && chains.checks() == Checks::never)) {
         *reference_error = worst_length(chains, {&r_ref, nullptr, &chains.box_of_reference()});
         rigid::worst_length(chains, r_ref, chains.box_of_reference(), reference_error);
     }
-    check_start_of_all(chains, r_ref, r);
+    check_start_of_all(chains, r_ref, call.r);
     double sum[9];
-    WorstLength of_bonds{0, -1, -1};
+    WorstLength of_bonds_error{0, -1, -1};
     rigid::Parts parts(chains);
+    PositionsCall of_bonds = call;
     parts.run([&] {
-        project_positions_of_bonds(chains, along, r, v, dt, lambda, guess, virial ? sum : nullptr, report, &of_bonds);
+        project_positions_of_bonds(chains, of_bonds, nullptr, virial ? sum : nullptr, report, &of_bonds_error);
     });
-    parts.run([&] { rigid::project_positions(chains, r_ref, r, v, dt, lambda, virial ? sum : nullptr, report); });
+    parts.run([&] {
+        rigid::project_positions(chains, r_ref, call.r, call.v, call.dt, call.lambda, virial ? sum : nullptr, report);
+    });
     parts.finish();
     if (virial) std::copy(sum, sum + 9, virial);
 }
 
 }  // namespace
 
-void project_positions(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v, double dt,
-                       double *lambda, bool guess, double *virial, Report *report, WorstLength *reference_error) {
+void project_positions(const Chains &chains, PositionsCall &call, const AtomArray *bonds, double *virial,
+                       Report *report, WorstLength *reference_error) {
     with_outcomes(chains, [&] {
-        (chains.bodies() ? project_positions_of_all : project_positions_of_bonds)(
-            chains, along, r, v, dt, lambda, guess, virial, report, reference_error);
+        if (chains.bodies()) return project_positions_of_all(chains, call, bonds, virial, report, reference_error);
+        project_positions_of_bonds(chains, call, bonds, virial, report, reference_error);
     });
 }
 

@@ -13,15 +13,11 @@ struct Report {
     bool made;  // false: the call failed before it did anything
 };
 
-// What the positions are projected along.
-struct Along {
-    const AtomArray *r_ref;  // [n_atoms], or null:
-    const AtomArray *bonds;  // [n_bonds] vectors
-};
-
-// virial [9], report: or nullptr. The error that the reference has is written where it is compared with the lengths,
-// and with a report where nothing is compared. Throws Error once everything that is due has been written.
-void project_positions(const Chains &chains, const Along &along, const AtomArray &r, const AtomArray &v, double dt,
-                       double *lambda, bool guess, double *virial, Report *report, WorstLength *reference_error);
+// `call`: with arrays, lambda, dt and guess, the rest is filled in (core/forces.hpp). `bonds`: vectors [n_bonds] to
+// project along in place of those of call.r_ref, or nullptr. virial [9], report: or nullptr. The error that the
+// reference has is written where it is compared with the lengths, and with a report where nothing is compared. Throws
+// Error once everything that is due has been written.
+void project_positions(const Chains &chains, PositionsCall &call, const AtomArray *bonds, double *virial,
+                       Report *report, WorstLength *reference_error);
 
 }  // namespace holonomic

@@ -48,12 +48,7 @@ struct VelocitiesWork final : Work {
     }
 };
 
-void project_velocities_of_bonds(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda,
-                                 double *virial) {
-    VelocitiesCall call;
-    call.r = r;
-    call.v = v;
-    call.lambda = lambda;
+void project_velocities_of_bonds(const Chains &chains, VelocitiesCall &call, double *virial) {
     call.virial = virial != nullptr;
     call.strain = chains.box_rate() ? chains.box_rate()->strain : nullptr;
     put_box(chains.box, call.box);
@@ -62,30 +57,31 @@ void project_velocities_of_bonds(const Chains &chains, const AtomArray &r, const
     Apart apart(chains);
     const Tally tally = execute(chains, VelocitiesWork(call, apart));
     apart.put_back();
-    clear_unconstrained(chains, lambda);
+    clear_unconstrained(chains, call.lambda);
     if (tally.n_bad > 0) {
-        const NamedArray arrays[] = {{"position", &r}, {"velocity", &v}};
+        const NamedArray arrays[] = {{"position", &call.r}, {"velocity", &call.v}};
         throw_error(chains, tally,
                     [&](const Tally &bad) { return diagnose(chains, bad, chains.box, arrays, 2, Status::not_finite); });
     }
     if (virial) write_virial(tally, virial);
 }
 
-void project_velocities_of_all(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda,
-                               double *virial) {
+void project_velocities_of_all(const Chains &chains, const VelocitiesCall &call, double *virial) {
     double sum[9];
     rigid::Parts parts(chains);
-    parts.run([&] { project_velocities_of_bonds(chains, r, v, lambda, virial ? sum : nullptr); });
-    parts.run([&] { rigid::project_velocities(chains, r, v, lambda, virial ? sum : nullptr); });
+    VelocitiesCall of_bonds = call;
+    parts.run([&] { project_velocities_of_bonds(chains, of_bonds, virial ? sum : nullptr); });
+    parts.run([&] { rigid::project_velocities(chains, call.r, call.v, call.lambda, virial ? sum : nullptr); });
     parts.finish();
     if (virial) std::copy(sum, sum + 9, virial);
 }
 
 }  // namespace
 
-void project_velocities(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda, double *virial) {
+void project_velocities(const Chains &chains, VelocitiesCall &call, double *virial) {
     with_outcomes(chains, [&] {
-        (chains.bodies() ? project_velocities_of_all : project_velocities_of_bonds)(chains, r, v, lambda, virial);
+        if (chains.bodies()) return project_velocities_of_all(chains, call, virial);
+        project_velocities_of_bonds(chains, call, virial);
     });
 }
 

@@ -5,7 +5,8 @@
 
 namespace holonomic {
 
-// virial [9] or nullptr. Throws Error once everything that is due has been written.
-void project_velocities(const Chains &chains, const AtomArray &r, const AtomArray &v, double *lambda, double *virial);
+// `call`: with arrays and outputs, the rest is filled in (core/forces.hpp). virial [9] or nullptr. Throws Error once
+// everything that is due has been written.
+void project_velocities(const Chains &chains, VelocitiesCall &call, double *virial);
 
 }  // namespace holonomic
