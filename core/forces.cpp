@@ -80,7 +80,7 @@ void right_hand_sides(const Chains &chains, const double *L, const AtomArray &r,
 }
 
 // With a box that changes, by the equations for given right-hand sides: such forces are asked for now and then.
-Tally forces_in_motion(const Chains &chains, const double *L, const ForcesCall &call) {
+[[gnu::noinline]] Tally forces_in_motion(const Chains &chains, const double *L, const ForcesCall &call) {
     const std::int64_t bytes = chains.n_bonds() * static_cast<std::int64_t>(sizeof(double));
     double *const rhs = static_cast<double *>(thread_memory(Keep::right_hand_sides, bytes));
     if (!rhs && bytes > 0) throw std::bad_alloc();
@@ -88,7 +88,7 @@ Tally forces_in_motion(const Chains &chains, const double *L, const ForcesCall &
     return solve_equations(chains, call.r, rhs, {call.lambda, call.tension, call.g, call.add, call.virial});
 }
 
-Tally forces_at_rest(const Chains &chains, ForcesCall &call) {
+__attribute__((always_inline)) inline Tally forces_at_rest(const Chains &chains, ForcesCall &call) {
     AtomArray *const inputs[] = {&call.r, &call.v, &call.f};
     unify_layout(inputs, 3);
     Apart apart(chains);
@@ -99,16 +99,18 @@ Tally forces_at_rest(const Chains &chains, ForcesCall &call) {
     return tally;
 }
 
+[[noreturn, gnu::noinline]] void throw_error_of(const Chains &chains, const Tally &tally, const ForcesCall &call) {
+    const NamedArray arrays[] = {{"position", &call.r}, {"velocity", &call.v}, {"force", &call.f}};
+    throw_error(chains, tally,
+                [&](const Tally &bad) { return diagnose(chains, bad, chains.box, arrays, 3, Status::not_finite); });
+}
+
 void forces_of_bonds(const Chains &chains, ForcesCall &call, double *virial) {
     call.virial = virial != nullptr;
     put_box(chains.box, call.box);
     const BoxRate *const rate = chains.box_rate();
     const Tally tally = rate ? forces_in_motion(chains, rate->L, call) : forces_at_rest(chains, call);
-    if (tally.n_bad > 0) {
-        const NamedArray arrays[] = {{"position", &call.r}, {"velocity", &call.v}, {"force", &call.f}};
-        throw_error(chains, tally,
-                    [&](const Tally &bad) { return diagnose(chains, bad, chains.box, arrays, 3, Status::not_finite); });
-    }
+    if (tally.n_bad > 0) throw_error_of(chains, tally, call);
     if (virial) write_virial(tally, virial);
 }
 

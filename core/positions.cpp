@@ -63,6 +63,18 @@ Report report_of(const Chains &chains, const Tally &tally) {
             true};
 }
 
+[[noreturn, gnu::noinline]] void throw_error_of(const Chains &chains, const Tally &tally, const PositionsCall &call,
+                                                const Reference *reference, const Box &box_ref) {
+    const NamedArray arrays[] = {{"reference position", &call.r_ref}, {"position", &call.r}, {"velocity", &call.v}};
+    throw_error(chains, tally, [&](const Tally &bad) {
+        Error error;
+        if (chains.checks() != Checks::never && is_stretched(chains, bad.first_bad, call.r, bad.n_bad, &error))
+            return error;
+        if (reference) reference->show(bad.first_bad);
+        return diagnose(chains, bad, box_ref, arrays, 3, Status::no_convergence);
+    });
+}
+
 void project_positions_of_bonds(const Chains &chains, PositionsCall &call, const AtomArray *bonds, double *virial,
                                 Report *report, WorstLength *reference_error) {
     if (chains.wants_fit() || (report && chains.checks() == Checks::never)) {
@@ -88,16 +100,7 @@ void project_positions_of_bonds(const Chains &chains, PositionsCall &call, const
     apart.put_back();
     clear_unconstrained(chains, call.lambda);
     if (report) *report = report_of(chains, tally);
-    if (tally.n_bad > 0) {
-        const NamedArray arrays[] = {{"reference position", &call.r_ref}, {"position", &call.r}, {"velocity", &call.v}};
-        throw_error(chains, tally, [&](const Tally &bad) {
-            Error error;
-            if (chains.checks() != Checks::never && is_stretched(chains, bad.first_bad, call.r, bad.n_bad, &error))
-                return error;
-            if (reference) reference->show(bad.first_bad);
-            return diagnose(chains, bad, box_ref, arrays, 3, Status::no_convergence);
-        });
-    }
+    if (tally.n_bad > 0) throw_error_of(chains, tally, call, reference, box_ref);
     if (virial) write_virial(tally, virial);
 }
 

@@ -52,6 +52,9 @@ public:
         for (std::int64_t i = 0; i < plan_->forests.size(); ++i)
             need(kernels().molecules.forest_bytes(*plan_->forests[i]));
         need(scratch_bytes(plan_->longest));
+        const std::vector<Plan::Piece> &pieces = plan_->pieces;
+        if (pieces.size() == 1 && pieces[0].shape == linear && plan_->longest <= longest_lane)
+            plan_->only = chains_.unit(*plan_, pieces[0], &plan_->first_of_only);
         return std::move(plan_);
     }
 

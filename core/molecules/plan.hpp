@@ -30,6 +30,9 @@ struct Plan {
         std::int64_t atom, place;
     };
     std::vector<Piece> pieces;
+    // The only piece, if these are chains that fit into lanes: a call on one short chain makes nothing else of its plan.
+    Unit only{};
+    Lane first_of_only;
     std::vector<Lane> loose_chains;  // molecules that fill no block where they stand, in the order in which they are
     std::vector<MoleculeLane> loose_molecules;  // worked on; the second ones are no linear chains
     Forests forests;                            // of loose trees of different shapes

@@ -24,12 +24,6 @@ constexpr std::int64_t bonds_per_thread = 4096;
 double *scratch_memory(std::int64_t bytes) { return static_cast<double *>(thread_memory(Keep::scratch, bytes)); }
 double *store_memory(std::int64_t bytes) { return static_cast<double *>(thread_memory(Keep::store, bytes)); }
 
-double *scratch_of_this_thread(std::int64_t bytes) {
-    double *const scratch = scratch_memory(bytes);
-    if (!scratch) throw std::bad_alloc();
-    return scratch;
-}
-
 #ifdef _OPENMP
 Tally *tallies(Keep what, std::int64_t n) {
     void *const memory = thread_memory(what, n * static_cast<std::int64_t>(sizeof(Tally)));
@@ -278,19 +272,12 @@ void write_virial(const Tally &tally, double *virial) {
     for (int i = 0; i < 9; ++i) virial[i] = tally.virial[place[i]];
 }
 
-// All that a call on one chain needs.
-static Tally execute_unit(const Chains &chains, const Plan &plan, const Work &work) {
-    Tally tally = empty_tally();
-    Lane lane;
-    const Plan::Piece &piece = plan.pieces[0];
-    work.unit(chains.unit(plan, piece, &lane), piece.where, scratch_of_this_thread(plan.scratch_bytes), tally);
-    return tally;
+double *scratch_of_this_thread(std::int64_t bytes) {
+    double *const scratch = scratch_memory(bytes);
+    if (!scratch) throw std::bad_alloc();
+    return scratch;
 }
 
-Tally execute(const Chains &chains, const Plan &plan, const Work &work) {
-    const bool one_unit = plan.pieces.size() == 1 && plan.pieces[0].shape == linear && plan.longest <= longest_lane &&
-                          !chains.keeps_outcomes;
-    return one_unit ? execute_unit(chains, plan, work) : Execution(chains, plan, work).run();
-}
+Tally execute(const Chains &chains, const Plan &plan, const Work &work) { return Execution(chains, plan, work).run(); }
 
 }  // namespace holonomic

@@ -63,9 +63,21 @@ protected:
 // The six sums of a tally as a symmetric [3][3].
 void write_virial(const Tally &tally, double *virial);
 
+// Throws std::bad_alloc.
+double *scratch_of_this_thread(std::int64_t bytes);
+
 // Throws std::bad_alloc before any work is done.
 Tally execute(const Chains &chains, const Plan &plan, const Work &work);
-inline Tally execute(const Chains &chains, const Work &work) { return execute(chains, chains.plan(), work); }
+
+// The same by the plan of the molecules as they are.
+template <class AnyWork>
+inline Tally execute(const Chains &chains, const AnyWork &work) {
+    const Plan &plan = chains.plan();
+    if (plan.only.count == 0 || chains.keeps_outcomes) return execute(chains, plan, static_cast<const Work &>(work));
+    Tally tally = empty_tally();
+    work.unit(plan.only, plan.pieces[0].where, scratch_of_this_thread(plan.scratch_bytes), tally);
+    return tally;
+}
 
 // A long chain at the levels of forces and velocities: eliminate, join, finish; once more with compensated products
 // where plain ones don't do.

@@ -39,18 +39,17 @@ namespace {
 
 struct Sets {
     const Kernels *best = nullptr, *one_lane = nullptr;  // the latter has chains that fit into lanes alone
-    const Kernels *for_chains, *for_one_chain;           // that fit into lanes
+    const Kernels *forced = nullptr;
+    const char *const wanted = std::getenv("HOLONOMIC_ISA");
 
     Sets() {
-        const char *const wanted = std::getenv("HOLONOMIC_ISA");
-        const Kernels *forced = nullptr;
         __builtin_cpu_init();
 #define HOLONOMIC_CONSIDER(isa, runs_here) \
-    if (runs_here) consider(isa::kernels, wanted, forced, true);
+    if (runs_here) consider(isa::kernels, true);
         HOLONOMIC_KERNEL_SETS(HOLONOMIC_CONSIDER)
 #undef HOLONOMIC_CONSIDER
 #define HOLONOMIC_CONSIDER(isa, runs_here) \
-    if (runs_here) consider(isa::kernels, wanted, forced, false);
+    if (runs_here) consider(isa::kernels, false);
         HOLONOMIC_TEST_SETS(HOLONOMIC_CONSIDER)
 #undef HOLONOMIC_CONSIDER
         if (forced && forced != one_lane) {
@@ -58,37 +57,27 @@ struct Sets {
             one_lane = nullptr;
         }
         if (best->lanes < 4) one_lane = nullptr;  // the baseline rounds products: other bits
-        for_one_chain = one_lane ? one_lane : best;
-        for_chains = forced ? for_one_chain : best;  // one lane forced has all that it can
     }
 
-    void consider(const Kernels &set, const char *wanted, const Kernels *&forced, bool installed) {
+    void consider(const Kernels &set, bool installed) {
         if (wanted && std::strcmp(wanted, set.name) == 0) forced = &set;
         if (installed && !best && set.long_forces.blocks) best = &set;
         if (installed && std::strcmp(set.name, "scalar") == 0) one_lane = &set;
     }
 };
 
-const Sets &sets() {
-    static const Sets found;
-    return found;
-}
-
 }  // namespace
 
-const Kernels &kernels() { return *sets().best; }
-
-const char *name_of_kernels() { return sets().for_chains->name; }
-
-const Kernels &kernels_for_one_chain() { return *sets().for_one_chain; }
-
-const Kernels &kernels(const Unit &unit) {
-    const Sets &s = sets();
-    return unit.count == 1 ? *s.for_one_chain : *s.for_chains;
+KernelChoice choose_kernels() {
+    const Sets sets;
+    const Kernels &one_chain = sets.one_lane ? *sets.one_lane : *sets.best;
+    return {*sets.best, sets.forced ? one_chain : *sets.best, one_chain};  // one lane forced has all that it can
 }
 
+const char *name_of_kernels() { return kernel_choice().chains.name; }
+
 int64_t scratch_bytes(int64_t n_bonds) {
-    const Kernels &widest = *sets().best;
+    const Kernels &widest = kernels();
     return n_bonds > longest_lane ? widest.piece_bytes : widest.scratch_bytes(n_bonds);
 }
 

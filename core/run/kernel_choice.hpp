@@ -5,14 +5,26 @@
 
 namespace holonomic {
 
+struct KernelChoice {
+    const Kernels &any;                 // for all but
+    const Kernels &chains, &one_chain;  // chains that fit into lanes
+};
+KernelChoice choose_kernels();
+inline const KernelChoice &kernel_choice() {
+    static const KernelChoice found = choose_kernels();
+    return found;
+}
+
 // The kernels of long chains and of molecules that are no chains, whatever the call: how these are cut, and so their
 // digits, depends on the number of lanes. HOLONOMIC_ISA forces a set. Thread-safe.
-const Kernels &kernels();
+inline const Kernels &kernels() { return kernel_choice().any; }
 
 // The kernels of chains that fit into lanes: those, or a set that gives the same bits and is faster for such a unit, a
 // chain that comes alone among them.
-const Kernels &kernels(const Unit &unit);
-const Kernels &kernels_for_one_chain();
+inline const Kernels &kernels_for_one_chain() { return kernel_choice().one_chain; }
+inline const Kernels &kernels(const Unit &unit) {
+    return unit.count == 1 ? kernel_choice().one_chain : kernel_choice().chains;
+}
 
 // The set that HOLONOMIC_ISA has chosen, or that of kernels().
 const char *name_of_kernels();
