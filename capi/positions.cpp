@@ -16,8 +16,8 @@ using holonomic::viewed_array;
 
 namespace {
 
-void set(PositionsCall &call, double dt, double *lambda, int guess) {
-    if (!(dt > 0) || !std::isfinite(dt) || !(dt * dt > 0) || !std::isfinite(1 / (dt * dt)))
+inline void set(PositionsCall &call, double dt, double *lambda, int guess) {
+    if (!(dt > 0) || !std::isfinite(dt) || !(dt * dt > 0x1p-1024))  // else 1 / dt^2 is not finite
         throw make_error(Status::value, "dt is %g; it must be positive and finite, and so must dt^2 and 1/dt^2", dt);
     if (guess != 0 && guess != 1) throw make_error(Status::value, "guess is %d; it must be 0 or 1", guess);
     if (guess) need(lambda, "lambda, which holds the guess,");
@@ -46,7 +46,7 @@ private:
     holonomic::Report found_{};
 };
 
-void project(const hol_chains *chains, PositionsCall &call, const AtomArray *bonds, double *virial,
+inline void project(const hol_chains *chains, PositionsCall &call, const AtomArray *bonds, double *virial,
              hol_report *report) {
     ReportTo found(report);
     holonomic::project_positions(chains->chains, call, bonds, virial, found.get(), &reference_error);

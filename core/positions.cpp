@@ -1,7 +1,6 @@
 #include "core/positions.hpp"
 
 #include <algorithm>
-#include <optional>
 
 #include "core/caller/box.hpp"
 #include "core/caller/packed_array.hpp"
@@ -75,16 +74,9 @@ Report report_of(const Chains &chains, const Tally &tally) {
     });
 }
 
-void project_positions_of_bonds(const Chains &chains, PositionsCall &call, const AtomArray *bonds, double *virial,
-                                Report *report, WorstLength *reference_error) {
-    if (chains.wants_fit() || (report && chains.checks() == Checks::never)) {
-        const BondVectors given{bonds ? nullptr : &call.r_ref, bonds, bonds ? nullptr : &chains.box_of_reference()};
-        *reference_error = worst_length(chains, given);
-        check_start(chains, given, call.r);
-    }
-    std::optional<Reference> made;
-    if (bonds) made.emplace(chains, *bonds);
-    const Reference *const reference = made ? &*made : nullptr;
+// `reference`: what stands in for reference positions, or nullptr.
+void project_from(const Chains &chains, PositionsCall &call, const Reference *reference, double *virial,
+                  Report *report) {
     static const Box none{};
     const Box &box_ref = !reference || reference->winds() ? chains.box_of_reference() : none;
     if (reference) call.r_ref = reference->atoms();
@@ -102,6 +94,18 @@ void project_positions_of_bonds(const Chains &chains, PositionsCall &call, const
     if (report) *report = report_of(chains, tally);
     if (tally.n_bad > 0) throw_error_of(chains, tally, call, reference, box_ref);
     if (virial) write_virial(tally, virial);
+}
+
+void project_positions_of_bonds(const Chains &chains, PositionsCall &call, const AtomArray *bonds, double *virial,
+                                Report *report, WorstLength *reference_error) {
+    if (chains.wants_fit() || (report && chains.checks() == Checks::never)) {
+        const BondVectors given{bonds ? nullptr : &call.r_ref, bonds, bonds ? nullptr : &chains.box_of_reference()};
+        *reference_error = worst_length(chains, given);
+        check_start(chains, given, call.r);
+    }
+    if (!bonds) return project_from(chains, call, nullptr, virial, report);
+    const Reference reference(chains, *bonds);
+    project_from(chains, call, &reference, virial, report);
 }
 
 // All molecules are looked at before any is moved.

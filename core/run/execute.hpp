@@ -73,9 +73,11 @@ Tally execute(const Chains &chains, const Plan &plan, const Work &work);
 template <class AnyWork>
 inline Tally execute(const Chains &chains, const AnyWork &work) {
     const Plan &plan = chains.plan();
-    if (plan.only.count == 0 || chains.keeps_outcomes) return execute(chains, plan, static_cast<const Work &>(work));
     Tally tally = empty_tally();
-    work.unit(plan.only, plan.pieces[0].where, scratch_of_this_thread(plan.scratch_bytes), tally);
+    if (plan.only.count == 0 || chains.keeps_outcomes)
+        tally = execute(chains, plan, static_cast<const Work &>(work));
+    else
+        work.unit(plan.only, plan.pieces[0].where, scratch_of_this_thread(plan.scratch_bytes), tally);
     return tally;
 }
 

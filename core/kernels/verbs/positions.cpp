@@ -21,9 +21,13 @@ struct SmallNewton {
     vec w[N + 1], lengths[2 * N];
 
     SmallNewton(const Unit &unit, const Block &given, Newton &x) : masses(given), block(masses.block) {
-        Lane lane[W];
-        for (int i = 0; i < W; ++i) lane[i] = unit.lanes[0];
-        if (!Place::loose) set(lane, x);
+        if constexpr (!Place::loose && W == 1) {
+            set(unit.lanes, x);
+        } else if constexpr (!Place::loose) {
+            Lane lane[W];
+            for (int i = 0; i < W; ++i) lane[i] = unit.lanes[0];
+            set(lane, x);
+        }
     }
     HOL_FORCED void take(const Place &place, Newton &x) {
         if constexpr (Place::loose)
