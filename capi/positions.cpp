@@ -47,7 +47,7 @@ private:
 };
 
 inline void project(const hol_chains *chains, PositionsCall &call, const AtomArray *bonds, double *virial,
-             hol_report *report) {
+                    hol_report *report) {
     ReportTo found(report);
     holonomic::project_positions(chains->chains, call, bonds, virial, found.get(), &reference_error);
 }

@@ -30,7 +30,8 @@ struct Plan {
         std::int64_t atom, place;
     };
     std::vector<Piece> pieces;
-    // The only piece, if these are chains that fit into lanes: a call on one short chain makes nothing else of its plan.
+    // The only piece, if these are chains that fit into lanes: a call on one short chain makes nothing else of its
+    // plan.
     Unit only{};
     Lane first_of_only;
     std::vector<Lane> loose_chains;  // molecules that fill no block where they stand, in the order in which they are

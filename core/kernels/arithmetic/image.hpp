@@ -67,23 +67,29 @@ HOL_INLINE void unrounded_bond(const Box &box, const double *from, const double 
     unrounded_bond(box, Vector3<double>{from[0], from[1], from[2]}, Vector3<double>{to[0], to[1], to[2]}, d, lo);
 }
 
-#if HOL_LANES == 4
-// From the coordinates of the three atoms: x, y and z at once.
-HOL_INLINE Pair<vec> unrounded_bond(const Box &box, vec from, vec to) {
-    Pair<vec> d = two_difference<vec>(to, from);
+#if HOL_LANES == 4 || HOL_FOURS
+// From the coordinates of the two atoms: x, y and z at once.
+#if HOL_FOURS
+typedef four components;
+#else
+typedef vec components;
+#endif
+HOL_INLINE Pair<components> unrounded_bond(const Box &box, components from, components to) {
+    Pair<components> d = two_difference<components>(to, from);
     if (box.shape == Box::none) return d;
     const double *const h = box.h, *const in = box.inverse;
-    const auto fold = [&](vec n, vec side) HOL_FORCED {
-        const Pair<vec> p = two_product<vec>(n, side), s = two_difference<vec>(d.hi, p.hi);
-        d = fast_two_sum<vec>(s.hi, s.lo - p.lo + d.lo);
+    const auto fold = [&](components n, components side) HOL_FORCED {
+        const Pair<components> p = two_product<components>(n, side), s = two_difference<components>(d.hi, p.hi);
+        d = fast_two_sum<components>(s.hi, s.lo - p.lo + d.lo);
     };
     if (box.shape == Box::orthorhombic) {
-        fold(round(d.hi * vec{in[0], in[4], in[8], 0}), vec{h[0], h[4], h[8], 0});
+        fold(round(d.hi * components{in[0], in[4], in[8], 0}), components{h[0], h[4], h[8], 0});
         return d;
     }
-    const vec n = round(d.hi[0] * vec{in[0], in[1], in[2], 0} + d.hi[1] * vec{in[3], in[4], in[5], 0} +
-                        d.hi[2] * vec{in[6], in[7], in[8], 0});
-    for (int i = 0; i < 3; ++i) fold(splat(n[i]), vec{h[3 * i], h[3 * i + 1], h[3 * i + 2], 0});
+    const components n =
+        round(d.hi[0] * components{in[0], in[1], in[2], 0} + d.hi[1] * components{in[3], in[4], in[5], 0} +
+              d.hi[2] * components{in[6], in[7], in[8], 0});
+    for (int i = 0; i < 3; ++i) fold(n[i] - components{}, components{h[3 * i], h[3 * i + 1], h[3 * i + 2], 0});
     return d;
 }
 #endif

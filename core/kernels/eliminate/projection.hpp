@@ -80,13 +80,27 @@ HOL_INLINE void move_velocities(const Block &block, const Projection &x, vec *u,
     });
 }
 
+// The first one, and the substitution of the rates that it leaves, which waits for each bond as long as the rates of
+// the next ones take.
 template <bool uniform>
-HOL_INLINE void first_pull(const Block &block, const Projection &x) {
+HOL_INLINE void pull_and_substitute(const Block &block, const Projection &x, bool twice) {
     double *const v = &x.v[0].x.element;
     x.s.L[block.n] = vec{};  // for Pull
     move_velocities<uniform>(block, x, x.s.t, [&](long e, auto value) HOL_FORCED { store_any(v + e, value); });
-    for (long k = rates_in_fours(0, block.n, x.s.D, v, x.left); k < block.n; ++k)
-        x.left[k] = rate_of(x.s.D[k], x.v[k], x.v[k + 1]);
+    const long n = block.n;
+    double y = 0;
+    const auto substitute = [&](long k, double rate) HOL_FORCED {
+        if (__builtin_expect(x.strain != nullptr, 0)) rate += stretching(x.strain, x.s.D[k]).element;
+        y = k == 0 ? rate : mul_add(x.s.L[k].element, y, rate);
+        x.left[k].element = twice ? y * x.s.pivots[k].element : 0.0;
+    };
+    long k = 0;
+    for (; k + 4 <= n; k += 4) {
+        const four rate = rates_of_four(k, x.s.D, v);
+        HOL_UNROLL
+        for (int i = 0; i < 4; ++i) substitute(k + i, rate[i]);
+    }
+    for (; k < n; ++k) substitute(k, rate_of(x.s.D[k], x.v[k], x.v[k + 1]).element);
 }
 #else
 template <bool uniform>
@@ -110,11 +124,15 @@ HOL_INLINE void first_pull(const Block &block, const Projection &x) {
 // which pays unless the velocities become floats. Returns the lanes in which all is finite.
 template <bool uniform>
 HOL_NOINLINE mask pull_back(const Block &block, const Projection &x, bool twice) {
+#if HOL_FOURS
+    pull_and_substitute<uniform>(block, x, twice);
+#else
     first_pull<uniform>(block, x);
     long k;
     for (k = 0; x.strain && k < block.n; ++k) x.left[k] = x.left[k] + stretching(x.strain, x.s.D[k]);
     for (k = twice ? block.n_min : 0; k < block.n; ++k) x.left[k] = twice ? keep(joint(block, k), x.left[k]) : vec{};
     if (twice) substitute(block.n, x.correction());
+#endif
     return x.finite(block.n);
 }
 

@@ -22,7 +22,7 @@ HOL_INLINE mask nearly_orthogonal(vec g, vec X, double cosine = small_cosine) {
 }
 
 // g of joint k in one lane, with compensated products of unrounded differences.
-#if HOL_LANES != 4
+#if HOL_LANES != 4 && !HOL_FOURS
 HOL_NOINLINE double exact_dot(const Source &source, int lane, long k) {
     Vector3<double> d[2], low[2];
     for (int b = 0; b < 2; ++b)
@@ -37,9 +37,14 @@ HOL_NOINLINE double exact_dot(const Source &source, int lane, long k) {
 }
 
 #else
-HOL_INLINE double exact_dot(const Box &box, const double *p0, const double *p1, const double *p2) {
-    const vec r0 = {p0[0], p0[1], p0[2], 0}, r1 = {p1[0], p1[1], p1[2], 0}, r2 = {p2[0], p2[1], p2[2], 0};
-    const Pair<vec> a = unrounded_bond(box, r0, r1), b = unrounded_bond(box, r1, r2), hi = two_product<vec>(a.hi, b.hi);
+HOL_INLINE double exact_dot(const Source &source, int lane, long k) {
+    const auto at = [&](long atom) HOL_FORCED {
+        const double *const p = source.atom(lane, atom);
+        return components{p[0], p[1], p[2], 0};
+    };
+    const components r0 = at(k - 1), r1 = at(k), r2 = at(k + 1);
+    const Pair<components> a = unrounded_bond(*source.box, r0, r1), b = unrounded_bond(*source.box, r1, r2),
+                           hi = two_product<components>(a.hi, b.hi);
     return sum_compensated(hi.hi, mul_add(a.hi, b.lo, mul_add(a.lo, b.hi, hi.lo)));
 }
 #endif
@@ -49,11 +54,7 @@ HOL_NOINLINE vec exact_dots(const Source &source, long k, mask which, vec g) {
     for (unsigned left = bits(which); left; left &= left - 1) {
         const int i = __builtin_ctz(left);
         if (source.len && k >= source.len[i]) continue;
-#if HOL_LANES == 4
-        g[i] = exact_dot(*source.box, source.atom(i, k - 1), source.atom(i, k), source.atom(i, k + 1));
-#else
         g[i] = exact_dot(source, i, k);
-#endif
     }
     return g;
 }

@@ -5,16 +5,10 @@
 #include "core/kernels/arithmetic/vector3.hpp"
 #include "core/kernels/isa/choose.hpp"
 
-#if HOL_LANES == 1 && defined(__AVX2__) && defined(__FMA__)
-#define HOL_FOURS 1
-
+#if HOL_FOURS
 namespace holonomic::HOL_ISA {
 
-typedef double four __attribute__((vector_size(32)));
-
 HOL_INLINE four load_four(const vec *p) { return load_any<four>(&p->element); }
-HOL_INLINE four mul_add(four a, four b, four c) { return _mm256_fmadd_pd(a, b, c); }
-HOL_INLINE four round(four a) { return _mm256_round_pd(a, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC); }
 
 // The values of four bonds, for vector j of their components.
 template <int j>
@@ -46,23 +40,17 @@ HOL_INLINE long pulls_in_fours(long k0, long n, const vec3 *d, const vec *t, con
     return k0;
 }
 
-// Rates d . (v' - v) of the bonds from k0 on between the atoms x[k] and x[k + 1]. Returns the first bond that is left.
-HOL_INLINE long rates_in_fours(long k0, long n, const vec3 *d, const double *x, vec *rate) {
-    for (; k0 + 4 <= n; k0 += 4) {
-        const double *const v = x + 3 * k0;
-        four bond[3], change[3];  // dot() would not find mul_add() of such vectors
-        HOL_UNROLL
-        for (int j = 0; j < 3; ++j) {
-            bond[j] = load_any<four>(&d[k0].x.element + 4 * j);
-            change[j] = load_any<four>(v + 4 * j + 3) - load_any<four>(v + 4 * j);
-        }
-        const Vector3<four> a = as_vectors(bond), b = as_vectors(change);
-        store_any(&rate[k0].element, mul_add(a.z, b.z, mul_add(a.y, b.y, a.x * b.x)));
+// Rates d . (v' - v) of the bonds k .. k + 3 between the atoms x[k] and x[k + 1].
+HOL_INLINE four rates_of_four(long k, const vec3 *d, const double *x) {
+    const double *const v = x + 3 * k;
+    four bond[3], change[3];
+    HOL_UNROLL
+    for (int j = 0; j < 3; ++j) {
+        bond[j] = load_any<four>(&d[k].x.element + 4 * j);
+        change[j] = load_any<four>(v + 4 * j + 3) - load_any<four>(v + 4 * j);
     }
-    return k0;
+    return dot(as_vectors(bond), as_vectors(change));
 }
 
 }  // namespace holonomic::HOL_ISA
-#else
-#define HOL_FOURS 0
 #endif

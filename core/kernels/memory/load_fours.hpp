@@ -59,7 +59,8 @@ HOL_INLINE long subtract_in_fours(const double *x, long n, vec3 *out) {
 
 // Rates of n bonds, and the velocities of the atoms behind them.
 HOL_INLINE long load_rates_in_fours(const double *v, long n, const vec3 *D, vec *B, vec3 *behind) {
-    const long done = rates_in_fours(0, n, D, v, B);
+    const long done = n / 4 * 4;
+    for (long k = 0; k < done; k += 4) store_any(&B[k].element, rates_of_four(k, D, v));
     __builtin_memcpy(behind, v + 3, static_cast<unsigned long>(done) * sizeof(vec3));
     return done;
 }
