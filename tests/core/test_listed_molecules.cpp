@@ -35,8 +35,15 @@ void copies_are_solved(const char *name, const bonds &list, int count)
     holonomic::Chains chains(n, mass.data());
     chains.add_bonds(n_bonds, pairs.data(), length.data());
     require(chains.n_chains() == count, name, "not as many molecules as there are");
-    holonomic::forces(chains, packed_array(r.data()), packed_array(v.data()), packed_array(f.data()), lambda.data(),
-                      nullptr, packed_array(g.data()), false, nullptr);
+    holonomic::ForcesCall call;
+    call.r = packed_array(r.data());
+    call.v = packed_array(v.data());
+    call.f = packed_array(f.data());
+    call.g = packed_array(g.data());
+    call.lambda = lambda.data();
+    call.tension = nullptr;
+    call.add = false;
+    holonomic::forces(chains, call, nullptr);
     for (std::size_t k = 0; k < pairs.size() / 2; ++k) {
         double rest = 0, size = 0;
         for (std::size_t c = 0; c < 3; ++c) {
