@@ -8,6 +8,34 @@
 
 namespace holonomic::HOL_ISA::graph {
 
+template <class V>
+HOL_INLINE void set_lane(Vector3<V> &a, int i, const Vector3<double> &one) {
+    Width<V>::set(a.x, i, one.x);
+    Width<V>::set(a.y, i, one.y);
+    Width<V>::set(a.z, i, one.z);
+}
+template <class V>
+HOL_INLINE void set_lane(Pair<V> &a, int i, const Pair<double> &one) {
+    Width<V>::set(a.hi, i, one.hi);
+    Width<V>::set(a.lo, i, one.lo);
+}
+template <class V>
+HOL_INLINE Pair<double> lane_of(const Pair<V> &a, int i) {
+    return {Width<V>::get(a.hi, i), Width<V>::get(a.lo, i)};
+}
+// Of a list of which every `step`-th is taken.
+template <class V>
+HOL_INLINE Pair3<V> gather_pairs(const Pair3<double> *values, const int32_t *place, int step) {
+    Pair3<V> all = {};
+    for (int i = 0; i < Width<V>::lanes; ++i) {
+        const Pair3<double> &one = values[place[step * i]];
+        set_lane(all.x, i, one.x);
+        set_lane(all.y, i, one.y);
+        set_lane(all.z, i, one.z);
+    }
+    return all;
+}
+
 struct NetEquations {
     const Net net;
     const NetworkPlan &s;
@@ -116,16 +144,69 @@ struct NetEquations {
     }
     // What the multipliers of `solution` leave, into t.
     __attribute__((noinline)) void find_residuals(const double *solution) const {
-        net.for_ranges(s.first_node, s.n_atoms, [&](int32_t first, int32_t end) {
-            for (int32_t i = first; i < end; ++i) a[i - s.first_node] = acceleration_of(i, solution, true);
+        find_accelerations(solution);
+        net.for_all(s.first_tree_place, s.n_bonds, [&](auto width, int32_t k) HOL_FORCED {
+            typedef decltype(width) V;
+            const int32_t *const from = s.from + k, *const to = s.to + k;
+            const Pair3<double> *const of_site = a - s.first_node;
+            Pair<V> sum = dot_pairs(unrounded_between(gather<V>(r, from), gather<V>(r, to)),
+                                    subtract_pairs(gather_pairs<V>(of_site, to, 1), gather_pairs<V>(of_site, from, 1)));
+            if (has(squares)) {
+                const Pair3<V> change = difference_of(gather<V>(v, from), gather<V>(v, to));
+                sum = add_pairs(sum, dot_pairs(change, change));
+            }
+            if (in.rhs || in.strain) sum = add_pairs(sum, Pair<V>{given_to<V>(k), V{}});
+            store_any(t + k, sum.hi + sum.lo);
         });
-        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k)
-            t[k] = residual_of(k, unrounded(k), a[s.from[k] - s.first_node], a[s.to[k] - s.first_node]);
         net.for_parts([&](const NetPart &part) { find_residuals(part, solution); });
     }
+    // Of nodes and atoms of trees, in twice the precision.
+    __attribute__((noinline)) void find_accelerations(const double *solution) const {
+        const Vector3<double> zero = {};
+        Pair3<double> *const of_site = a - s.first_node;
+        net.for_ranges(s.first_node, s.n_atoms, [&](int32_t first, int32_t end) {
+            for (int32_t i = first; i < end; ++i)
+                of_site[i] = pairs_of(has(pulls) ? read(*in.f, net.at, s.atom_of[i]) : zero, zero);
+        });
+        net.for_all(0, s.n_unknowns, [&](auto width, int32_t u) HOL_FORCED {
+            add_pulls(width, solution, [&](int i) { return s.place_of[u + i]; });
+        });
+        net.for_all(s.first_tree_place, s.n_bonds, [&](auto width, int32_t k) HOL_FORCED {
+            add_pulls(width, solution, [&](int i) { return k + i; });
+        });
+        net.for_ranges(s.first_node, s.n_atoms, [&](int32_t first, int32_t end) {
+            for (int32_t i = first; i < end; ++i) {
+                of_site[i] = scale_pairs(net.w[i], of_site[i]);
+                if (has(rates)) of_site[i] = add_pairs(of_site[i], pairs_of(v.get<double>(i), zero));
+            }
+        });
+    }
+    // By the bonds at place(lane).
+    template <class V, class Place>
+    HOL_FORCED void add_pulls(const V &, const double *solution, const Place &place) const {
+        Vector3<V> from = {}, to = {};
+        V multiplier = {};
+        for (int i = 0; i < Width<V>::lanes; ++i) {
+            const int32_t k = place(i);
+            Width<V>::set(multiplier, i, solution[k]);
+            set_lane(from, i, read(coordinates, net.at, s.atom_of[s.from[k]]));
+            set_lane(to, i, read(coordinates, net.at, s.atom_of[s.to[k]]));
+        }
+        const Pair3<V> pull = scale_pairs(multiplier, unrounded_between(from, to));
+        Pair3<double> *const of_site = a - s.first_node;
+        for (int i = 0; i < Width<V>::lanes; ++i) {
+            const int32_t k = place(i), begin = s.from[k], end = s.to[k];
+            const Pair3<double> one = {lane_of(pull.x, i), lane_of(pull.y, i), lane_of(pull.z, i)};
+            if (begin >= s.first_node) of_site[begin] = add_pairs(of_site[begin], one);
+            if (end >= s.first_node) of_site[end] = subtract_pairs(of_site[end], one);
+        }
+    }
     __attribute__((noinline)) void find_residuals(const NetPart &part, const double *solution) const {
-        const NetReading all[] = {{&coordinates, r_of(part), false}, {in.v, v_of(part), false}};
-        net.read_sites(part.first_site, part.end_site, all, has(squares) ? 2 : 1);
+        NetReading all[3] = {{&coordinates, r_of(part), false}};
+        int n = 1;
+        if (has(squares)) all[n++] = {in.v, v_of(part), false};
+        if (has(pulls)) all[n++] = {in.f, f_of(part), false};
+        net.read_sites(part.first_site, part.end_site, all, n);
         net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
             const auto site_of = [&](int32_t k) { return g.site + k * g.step; };
@@ -143,7 +224,7 @@ struct NetEquations {
                     const Vector3<V> beyond = behind(k + 1, r, r_of(part));
                     next = unrounded_between(at_atom, beyond);
                     at_atom = beyond;
-                    to = pairs_of(has(pulls) ? force_at<V>(site_of(k)) : zero, zero);
+                    to = pairs_of(has(pulls) ? f_of(part).get<V>(site_of(k)) : zero, zero);
                     to = add_pairs(to, scale_pairs(load_any<V>(solution + place + g.step), next));
                     to = subtract_pairs(to, scale_pairs(load_any<V>(solution + place), bond));
                     to = scale_pairs(load_any<V>(net.w + site_of(k)), to);
@@ -165,32 +246,10 @@ struct NetEquations {
             }
         });
     }
-    // Of the nodes at the ends of strands, in twice the precision.
+    // Of the nodes at the ends of strands.
     template <class V>
     HOL_FORCED Pair3<V> at_node(const NetStrands &g, int end) const {
-        Pair3<V> all = {};
-        for (int i = 0; i < Width<V>::lanes; ++i) {
-            const Pair3<double> &one = a[s.strand_node[2 * (g.strand + i) + end]];
-            const auto put = [&](Pair<V> &to, const Pair<double> &of) HOL_FORCED {
-                Width<V>::set(to.hi, i, of.hi);
-                Width<V>::set(to.lo, i, of.lo);
-            };
-            put(all.x, one.x);
-            put(all.y, one.y);
-            put(all.z, one.z);
-        }
-        return all;
-    }
-    template <class V>
-    __attribute__((noinline)) Vector3<V> force_at(int32_t site) const {
-        Vector3<V> all = {};
-        for (int i = 0; i < Width<V>::lanes; ++i) {
-            const Vector3<double> one = read(*in.f, net.at, s.atom_of[site + i]);
-            Width<V>::set(all.x, i, one.x);
-            Width<V>::set(all.y, i, one.y);
-            Width<V>::set(all.z, i, one.z);
-        }
-        return all;
+        return gather_pairs<V>(a, s.strand_node + 2 * g.strand + end, 2);
     }
     template <class V>
     __attribute__((noinline)) V given_to(int32_t place) const {

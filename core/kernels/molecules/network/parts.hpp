@@ -49,6 +49,11 @@ HOL_INLINE V gather(const double *values, const int32_t *place) {
     return a;
 }
 
+template <class V>
+HOL_INLINE Vector3<V> gather(const Net3 &values, const int32_t *place) {
+    return {gather<V>(values.x, place), gather<V>(values.y, place), gather<V>(values.z, place)};
+}
+
 // What a thread works on at a time, so little that it stays in cache: some bundles, with the places of their bonds and
 // the sites between the ends; or, after these parts, the *rest*: all sites of nodes and of trees, and trees' bonds.
 struct NetPart {

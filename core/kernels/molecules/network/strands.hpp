@@ -10,6 +10,7 @@ namespace holonomic::HOL_ISA::graph {
 struct Net : NetSites {
     const LongTeam *team;
     double *buffer;  // of this thread; those of the others stand at the beginning of their working arrays, too
+    mutable bool backwards = false;
 
     static int64_t values(const NetworkPlan &s) { return values_of_buffer(s) + in_fours(s.n_atoms); }
     // memory: all of a thread's.
@@ -41,11 +42,14 @@ struct Net : NetSites {
     NetPart rest() const { return {s.n_shares, 0, 0, s.first_node, s.n_atoms, s.first_tree_place, s.n_bonds, buffer}; }
     bool is_rest(const NetPart &part) const { return part.share == s.n_shares; }
 
-    // Calls body(part) for all but the rest, on the threads that there are.
+    // Calls body(part) for all but the rest, on the threads that there are. One thread begins where it ended the last
+    // time, with what is in its cache; of several each has its own parts, and a cache that holds more of them.
     template <class Body>
     HOL_FORCED void for_parts(const Body &body) const {
         if (!team) {
-            for (int32_t i = 0; i < s.n_shares; ++i) body(part(i, buffer));
+            const bool from_last = backwards;
+            backwards = !from_last;
+            for (int32_t i = 0; i < s.n_shares; ++i) body(part(from_last ? s.n_shares - 1 - i : i, buffer));
             return;
         }
         const auto on_thread = [&](int32_t share, double *scratch) { body(part(share, scratch)); };
