@@ -142,15 +142,22 @@ struct NetEquations {
         if (in.strain) sum = add_pairs(sum, {stretching(in.strain, d.get<double>(k)), 0.0});
         return sum.hi + sum.lo;
     }
-    // What the multipliers of `solution` leave, into t.
-    __attribute__((noinline)) void find_residuals(const double *solution) const {
+    // What the multipliers of `solution` leave, into t; before a bond's own is written keep(width, place, bond, mass,
+    // tensions): the sums over its atoms of inverse masses, and of these times |t| |d| of all their bonds, `tension` in
+    // the rest.
+    template <class Keep>
+    __attribute__((noinline)) void find_residuals(const double *solution, const double *tension,
+                                                  const Keep &keep) const {
         find_accelerations(solution);
         net.for_all(s.first_tree_place, s.n_bonds, [&](auto width, int32_t k) HOL_FORCED {
             typedef decltype(width) V;
             const int32_t *const from = s.from + k, *const to = s.to + k;
             const Pair3<double> *const of_site = a - s.first_node;
-            Pair<V> sum = dot_pairs(unrounded_between(gather<V>(r, from), gather<V>(r, to)),
-                                    subtract_pairs(gather_pairs<V>(of_site, to, 1), gather_pairs<V>(of_site, from, 1)));
+            const Pair3<V> bond = unrounded_between(gather<V>(r, from), gather<V>(r, to));
+            const V w = gather<V>(net.w, from), wn = gather<V>(net.w, to);
+            keep(width, k, bond, w + wn, mul_add(w, gather<V>(tension, from), wn * gather<V>(tension, to)));
+            Pair<V> sum =
+                dot_pairs(bond, subtract_pairs(gather_pairs<V>(of_site, to, 1), gather_pairs<V>(of_site, from, 1)));
             if (has(squares)) {
                 const Pair3<V> change = difference_of(gather<V>(v, from), gather<V>(v, to));
                 sum = add_pairs(sum, dot_pairs(change, change));
@@ -158,7 +165,7 @@ struct NetEquations {
             if (in.rhs || in.strain) sum = add_pairs(sum, Pair<V>{given_to<V>(k), V{}});
             store_any(t + k, sum.hi + sum.lo);
         });
-        net.for_parts([&](const NetPart &part) { find_residuals(part, solution); });
+        net.for_parts([&](const NetPart &part) { find_residuals(part, solution, tension, keep); });
     }
     // Of nodes and atoms of trees, in twice the precision.
     __attribute__((noinline)) void find_accelerations(const double *solution) const {
@@ -201,7 +208,9 @@ struct NetEquations {
             if (end >= s.first_node) of_site[end] = subtract_pairs(of_site[end], one);
         }
     }
-    __attribute__((noinline)) void find_residuals(const NetPart &part, const double *solution) const {
+    template <class Keep>
+    __attribute__((noinline)) void find_residuals(const NetPart &part, const double *solution, const double *tension,
+                                                  const Keep &keep) const {
         NetReading all[3] = {{&coordinates, r_of(part), false}};
         int n = 1;
         if (has(squares)) all[n++] = {in.v, v_of(part), false};
@@ -216,22 +225,33 @@ struct NetEquations {
                                     };
             const Vector3<V> zero = {};
             Vector3<V> at_atom = behind(0, r, r_of(part)), speed = has(squares) ? net.at_node<V>(g, 0, v) : zero;
-            Pair3<V> from = at_node<V>(g, 0), bond = unrounded_between(net.at_node<V>(g, 0, r), at_atom);
+            Pair3<V> from = at_node<V>(g, 0), bond = unrounded_between(net.at_node<V>(g, 0, r), at_atom),
+                     pull = scale_pairs(load_any<V>(solution + g.place), bond);
+            V w = net.at_node<V>(g, 0, net.w), T = net.at_node<V>(g, 0, tension), own = size_of(pull);
             for (int32_t k = 0; k < g.length; ++k) {
                 const int32_t place = g.place + k * g.step;
                 Pair3<V> to, next = bond;
+                V wn, Tn;
                 if (k + 1 < g.length) {
                     const Vector3<V> beyond = behind(k + 1, r, r_of(part));
                     next = unrounded_between(at_atom, beyond);
                     at_atom = beyond;
-                    to = pairs_of(has(pulls) ? f_of(part).get<V>(site_of(k)) : zero, zero);
-                    to = add_pairs(to, scale_pairs(load_any<V>(solution + place + g.step), next));
-                    to = subtract_pairs(to, scale_pairs(load_any<V>(solution + place), bond));
-                    to = scale_pairs(load_any<V>(net.w + site_of(k)), to);
+                    to = subtract_pairs(pairs_of(has(pulls) ? f_of(part).get<V>(site_of(k)) : zero, zero), pull);
+                    pull = scale_pairs(load_any<V>(solution + place + g.step), next);
+                    wn = load_any<V>(net.w + site_of(k));
+                    to = scale_pairs(wn, add_pairs(to, pull));
                     if (has(rates)) to = add_pairs(to, pairs_of(v.get<V>(site_of(k)), zero));
+                    const V one = size_of(pull);
+                    Tn = own + one;
+                    own = one;
                 } else {
                     to = at_node<V>(g, 1);
+                    wn = net.at_node<V>(g, 1, net.w);
+                    Tn = net.at_node<V>(g, 1, tension);
                 }
+                keep(width, place, bond, w + wn, mul_add(w, T, wn * Tn));
+                w = wn;
+                T = Tn;
                 Pair<V> sum = dot_pairs(bond, subtract_pairs(to, from));
                 if (has(squares)) {
                     const Vector3<V> faster = behind(k, v, v_of(part));
@@ -245,6 +265,10 @@ struct NetEquations {
                 bond = next;
             }
         });
+    }
+    template <class V>
+    HOL_STATIC V size_of(const Pair3<V> &a) {
+        return sqrt(mul_add(a.x.hi, a.x.hi, mul_add(a.y.hi, a.y.hi, a.z.hi * a.z.hi)));
     }
     // Of the nodes at the ends of strands.
     template <class V>

@@ -18,19 +18,18 @@ struct NetLinear : NetEquations {
 
     double *enough;   // what corrections may leave of a residual, over 16 roundings
     double *tension;  // of the rest, by site, sum of |t| |d|
-    double *worst;    // [n_shares + 1]
     NetFactor factor;
-    mutable int64_t rounds = 0;  // that the unknowns have taken so far
+    mutable int64_t rounds = 0;     // that the unknowns have taken so far
+    mutable bool unproven = false;  // of some part; then what others leave is not looked for
 
     static int64_t values(const NetworkPlan &s) {
-        return NetEquations::values(s) + in_fours(s.n_bonds) + in_fours(n_rest(s)) + in_fours(s.n_shares + 1) +
-               NetFactor::values(s, true);
+        return NetEquations::values(s) + in_fours(s.n_bonds) + in_fours(n_rest(s)) + NetFactor::values(s, true);
     }
     NetLinear(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
               const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> memory)
         : NetEquations(plan, l, packed, team, b, positions, inputs, sides, memory),
           enough(memory.values(in_fours(s.n_bonds))), tension(memory.values(in_fours(n_rest(s))) - s.first_node),
-          worst(memory.values(in_fours(s.n_shares + 1))), factor(net, d, true, memory) {}
+          factor(net, d, true, memory) {}
 
     // Calls rest(part), then each(part) for the others: the nodes' values, which these need, first. One part after the
     // other goes through all that it needs, in cache.
@@ -87,17 +86,17 @@ struct NetLinear : NetEquations {
     __attribute__((noinline)) bool solve() const {
         load();
         return solve_for(any_part, size_of_side, true, true, [&](const NetPart &part) { prove(part); }) &&
-               (largest_in(worst, s.n_shares + 1) == 0 || refine());
+               (!unproven || refine());
     }
 
     // What may be left of equations, of their terms: half of what counts as right (proof.hpp).
     double most_left() const { return 0.5 * epsilon * (16 + __builtin_sqrt(static_cast<double>(s.n_bonds))); }
-    // Whether an equation is left with more than rounding: 1 in `worst`. The terms of right-hand sides alone, and a
+    // Whether an equation is left with more than rounding. The terms of right-hand sides alone, and a
     // bound on what rounding hides, do for most.
     __attribute__((noinline)) void prove(const NetPart &part) const {
         const double most = most_left();
-        double &bad_part = worst[part.share];
-        bad_part = 0;
+        if (__atomic_load_n(&unproven, __ATOMIC_RELAXED)) return;
+        bool good = true;
         const Net3 G_here = G_of(part);
         const double *const tension_here = tension_of(part);
         net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
@@ -116,8 +115,7 @@ struct NetLinear : NetEquations {
                 const MaskOf<V> bad = ~less_equal(over, V{});
                 if (__builtin_expect(any(bad), 0))
                     for (int i = 0; i < Width<V>::lanes; ++i)
-                        if ((bits(bad) >> i & 1) && bad_part == 0 && !holds(place + i, Width<V>::get(tensions, i)))
-                            bad_part = 1;
+                        if ((bits(bad) >> i & 1) && good) good = holds(place + i, Width<V>::get(tensions, i));
                 w = wn;
                 T = Tn;
                 pull = next;
@@ -128,8 +126,9 @@ struct NetLinear : NetEquations {
             const double tensions = mul_add(net.w[i], tension[i], net.w[j] * tension[j]),
                          over = excess_of(d.get<double>(k), net.w[i] * G.get<double>(i), net.w[j] * G.get<double>(j),
                                           tensions, side[k], size_of_side[k], most);
-            if (!(over <= 0) && bad_part == 0 && !holds(k, tensions)) bad_part = 1;
+            if (!(over <= 0) && good) good = holds(k, tensions);
         }
+        if (!good) __atomic_store_n(&unproven, true, __ATOMIC_RELAXED);
     }
     // Of one bond, in twice the precision, with all terms of its equation: the accelerations of its two atoms too. Only
     // the rounding of bonds is left; that of images, which is no more than their own, counts in no test of bonds.
@@ -156,26 +155,23 @@ struct NetLinear : NetEquations {
 
     // Solves for what is left in twice the precision; the multipliers so far are kept in `side`, whose terms are not
     // needed any more.
-    __attribute__((noinline)) void keep_solution(const NetPart &part) const {
-        find_pulls(part, true);
-        const Net3 of_rest = {net.w, tension, net.w}, of_part = {net.w, tension_of(part), net.w};
-        net.for_bonds(part, of_rest, of_part, [&](auto width, int32_t k, const auto &from, const auto &to) HOL_FORCED {
-            typedef decltype(width) V;
-            const Vector3<V> bond = d.get<V>(k);
-            const V tensions = mul_add(from.x, from.y, to.x * to.y);
-            store_any(size_of_side + k, load_any<V>(side + k) / ((from.x + to.x) * dot(bond, bond)));
-            store_any(side + k, load_any<V>(t + k));
-            store_any(enough + k, Width<V>::all(part_of_rounding) * hidden_by_rounding(bond, tensions));
-        });
-    }
     __attribute__((noinline)) bool refine() const {
         double *const solution = side, *const alone = size_of_side;
-        for_rest_and_parts([&](const NetPart &rest) { keep_solution(rest); },
-                           [&](const NetPart &part) { keep_solution(part); });
+        bool begun = false;
+        const auto keep = [&](auto width, int32_t k, const auto &bond, const auto &mass,
+                              const auto &tensions) HOL_FORCED {
+            typedef decltype(width) V;
+            if (begun) return;
+            const Vector3<V> d_k = {bond.x.hi, bond.y.hi, bond.z.hi};
+            store_any(alone + k, load_any<V>(side + k) / (mass * dot(d_k, d_k)));
+            store_any(solution + k, load_any<V>(t + k));
+            store_any(enough + k, Width<V>::all(part_of_rounding) * hidden_by_rounding(d_k, tensions));
+        };
         const Flag good = correct_until_right<double>(
             Flag{true},
             [&]() {
-                find_residuals(solution);
+                find_residuals(begun ? solution : t, tension, keep);
+                begun = true;
                 factor.take_up_all(t);
                 if (!solve_for(next_part, enough, false, false, [](const NetPart &) {}))
                     t[0] = 0 / (t[0] - t[0]);  // not a number, which is no contraction
