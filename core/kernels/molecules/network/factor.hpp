@@ -71,11 +71,6 @@ struct NetFactor {
             if (g.length > 1) net.to_end(g, 1, last, unknowns.y);
         });
     }
-    void take_up_all(double *y) const {
-        take_up_rest(y);
-        net.for_parts([&](const NetPart &part) { take_up(part, y); });
-        unknowns.add_pushes();
-    }
     // From the unknowns, down to all bonds: y becomes t. The rest: ends of strands, and trees.
     __attribute__((noinline)) void take_down_rest(double *y) const {
         for (int32_t u = 0; u < s.n_unknowns; ++u) y[s.place_of[u]] = unknowns.x[u];

@@ -5,8 +5,7 @@
 
 #include "core/kernels/molecules/cycles/proof.hpp"
 #include "core/kernels/molecules/cycles/refine.hpp"
-#include "core/kernels/molecules/network/equations.hpp"
-#include "core/kernels/molecules/network/factor.hpp"
+#include "core/kernels/molecules/network/residuals.hpp"
 #include "core/kernels/molecules/virial.hpp"
 
 namespace holonomic::HOL_ISA::graph {
@@ -170,9 +169,8 @@ struct NetLinear : NetEquations {
         const Flag good = correct_until_right<double>(
             Flag{true},
             [&]() {
-                find_residuals(begun ? solution : t, tension, keep);
+                NetResiduals{*this, factor, begun ? solution : t}.find(tension, keep);
                 begun = true;
-                factor.take_up_all(t);
                 if (!solve_for(next_part, enough, false, false, [](const NetPart &) {}))
                     t[0] = 0 / (t[0] - t[0]);  // not a number, which is no contraction
             },
