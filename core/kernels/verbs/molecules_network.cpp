@@ -18,10 +18,13 @@ template <class Call>
 static inline bool pull_network(const Call &call, const NetLinear &x, Tally &tally) {
     if (!x.solve()) return false;
     count_moved(tally, 0, x.rounds);
-    if (call.lambda) x.write_bonds(0.5, false, call.lambda);
-    if (call.tension) x.write_bonds(1, true, call.tension);
     if (call.virial) x.add_virial(tally);
-    if (call.g.x) x.write_pulls(call.g, call.add);
+    const auto write = [&](const NetPart &part) {
+        if (call.lambda) x.write_bonds(part, 0.5, false, call.lambda);
+        if (call.tension) x.write_bonds(part, 1, true, call.tension);
+        if (call.g.x) x.write_pulls(part, call.g, call.add);
+    };
+    x.for_rest_and_parts(write, write);
     return true;
 }
 
@@ -44,10 +47,10 @@ bool solve_network(const VelocitiesCall &call, const Schedule &s, const Molecule
     const NetLinear x(*s.network, lane, packed, team, call.box, call.r, in, rates, {scratch});
     if (!x.solve()) return false;
     count_moved(tally, 0, x.rounds);
-    if (call.lambda) x.write_bonds(0.5, false, call.lambda);
+    const auto write_bonds = [&](const NetPart &part) { x.write_bonds(part, 0.5, false, call.lambda); };
+    if (call.lambda) x.for_rest_and_parts(write_bonds, write_bonds);
     if (call.virial) x.add_virial(tally);
-    x.add_pulls(!call.v.is_float);
-    x.write_velocities(call.v);
+    x.write_velocities(call.v, !call.v.is_float);
     return true;
 }
 

@@ -58,14 +58,15 @@ struct NetLinear : NetEquations {
             [&](const NetPart &part) {
                 read_atoms(part, part.first_site, part.end_site);
                 find_equations(part);
-                factor.factorize(part, d, t);
+                factor.factorize(part, d, side);
             });
         factor.close();
     }
-    // Multipliers for what is in t, as far up as it has been taken; what they do to atoms, if `pulls`; then each(part).
+    // Multipliers for `right`, which has been taken up, of the rest in t; what they do to atoms, if `pulls`; then
+    // each(part).
     template <class Each>
-    HOL_FORCED bool solve_for(double part_left, const double *sizes, bool with_pulls, bool with_tensions,
-                              const Each &each) const {
+    HOL_FORCED bool solve_for(const double *right, double part_left, const double *sizes, bool with_pulls,
+                              bool with_tensions, const Each &each) const {
         const int32_t taken = factor.unknowns.solve(part_left, sizes);
         if (taken < 0) return false;
         rounds += taken;
@@ -76,7 +77,7 @@ struct NetLinear : NetEquations {
                 each(rest);
             },
             [&](const NetPart &part) {
-                factor.take_down(part, t);
+                factor.take_down(part, right, t);
                 if (with_pulls) find_pulls(part, with_tensions);
                 each(part);
             });
@@ -84,7 +85,7 @@ struct NetLinear : NetEquations {
     }
     __attribute__((noinline)) bool solve() const {
         load();
-        return solve_for(any_part, size_of_side, true, true, [&](const NetPart &part) { prove(part); }) &&
+        return solve_for(side, any_part, size_of_side, true, true, [&](const NetPart &part) { prove(part); }) &&
                (!unproven || refine());
     }
 
@@ -171,7 +172,7 @@ struct NetLinear : NetEquations {
             [&]() {
                 NetResiduals{*this, factor, begun ? solution : t}.find(tension, keep);
                 begun = true;
-                if (!solve_for(next_part, enough, false, false, [](const NetPart &) {}))
+                if (!solve_for(t, next_part, enough, false, false, [](const NetPart &) {}))
                     t[0] = 0 / (t[0] - t[0]);  // not a number, which is no contraction
             },
             [&](Flag) {
@@ -187,57 +188,61 @@ struct NetLinear : NetEquations {
         return true;
     }
     // Velocities v + w G; with `again` once more projected: what their rounding leaves.
-    __attribute__((noinline)) void add_pulls(bool again) const {
+    __attribute__((noinline)) void write_velocities(const AtomArray &to, bool again) const {
+        const auto write = [&](const NetPart &part) {
+            const Net3 pull = G_of(part);
+            write_sites(part, to, false,
+                        [&](auto width, int32_t i) HOL_FORCED { return pushed<decltype(width)>(pull, i); });
+        };
+        if (!again)
+            return for_rest_and_parts(write, [&](const NetPart &part) {
+                find_pulls(part, false);
+                write(part);
+            });
         for_rest_and_parts(
             [&](const NetPart &rest) {
                 push_on(rest);
-                if (!again) return;
                 find_sides(rest);
                 factor.take_up_rest(t);
             },
             [&](const NetPart &part) {
                 find_pulls(part, false);
                 push_on(part);
-                if (!again) return;
                 find_sides(part);
-                factor.take_up(part, t);
+                factor.take_up(part, side);
             });
-        if (!again) return;
         factor.unknowns.add_pushes();
-        solve_for(next_part, nullptr, true, false, [&](const NetPart &part) { push_on(part); });
+        if (solve_for(side, next_part, nullptr, true, false, write)) return;
+        const auto write_once_projected = [&](const NetPart &part) {
+            write_sites(part, to, false, [&](auto width, int32_t i) HOL_FORCED { return v.get<decltype(width)>(i); });
+        };
+        for_rest_and_parts(write_once_projected, write_once_projected);
     }
     void push_on(const NetPart &part) const {
         const Net3 pull = G_of(part);
-        net.for_all(part.first_site, part.end_site, [&](auto width, int32_t i) HOL_FORCED {
-            typedef decltype(width) V;
-            v.set(i, add_times(v.get<V>(i), load_any<V>(net.w + i), pull.get<V>(i)));
-        });
+        net.for_all(part.first_site, part.end_site,
+                    [&](auto width, int32_t i) HOL_FORCED { v.set(i, pushed<decltype(width)>(pull, i)); });
+    }
+    template <class V>
+    HOL_FORCED Vector3<V> pushed(const Net3 &pull, int32_t i) const {
+        return add_times(v.get<V>(i), load_any<V>(net.w + i), pull.get<V>(i));
     }
 
-    void write_bonds(double scale, bool sizes, double *out) const {
-        net.for_ranges(0, s.n_bonds, [&](int32_t first, int32_t end) {
-            for (int32_t k = first; k < end; ++k) {
-                const Vector3<double> bond = d.get<double>(k);
-                out[net.lane.first_bond + s.bond_of[k]] = mul_add(t[k], sizes ? sqrt(dot(bond, bond)) : scale, 0.0);
-            }
-        });
+    void write_bonds(const NetPart &part, double scale, bool sizes, double *out) const {
+        for (int32_t k = part.first_place; k < part.end_place; ++k) {
+            const Vector3<double> bond = d.get<double>(k);
+            out[net.lane.first_bond + s.bond_of[k]] = mul_add(t[k], sizes ? sqrt(dot(bond, bond)) : scale, 0.0);
+        }
     }
     // To the atoms that this molecule may write.
-    void write_pulls(const AtomArray &to, bool add) const {
-        const auto write_part = [&](const NetPart &part) {
-            if (!net.is_rest(part)) find_pulls(part, false);
-            const Net3 pull = G_of(part);
-            net.write_sites(part, to, net.lane.shared, add,
-                            [&](auto width, int32_t site) HOL_FORCED { return pull.get<decltype(width)>(site); });
-        };
-        for_rest_and_parts(write_part, write_part);
+    template <class Value>
+    HOL_FORCED void write_sites(const NetPart &part, const AtomArray &to, bool add, const Value &value) const {
+        net.write_sites(part, to, net.lane.shared, add, value);
     }
-    void write_velocities(const AtomArray &to) const {
-        const auto write_part = [&](const NetPart &part) {
-            net.write_sites(part, to, net.lane.shared, false,
-                            [&](auto width, int32_t site) HOL_FORCED { return v.get<decltype(width)>(site); });
-        };
-        for_rest_and_parts(write_part, write_part);
+    void write_pulls(const NetPart &part, const AtomArray &to, bool add) const {
+        if (!net.is_rest(part)) find_pulls(part, false);
+        const Net3 pull = G_of(part);
+        write_sites(part, to, add, [&](auto width, int32_t i) HOL_FORCED { return pull.get<decltype(width)>(i); });
     }
     void add_virial(Tally &tally) const {
         MoleculesVirial<double> virial;
