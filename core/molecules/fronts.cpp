@@ -27,6 +27,7 @@ public:
         divide(graph_of_all(), nodes);
         number();
         list_rows();
+        cut_branches();
         FrontPlan p = {};
         if (!count(most_bytes, p)) {
             a_ = {};
@@ -34,7 +35,9 @@ public:
         }
         list_elements();
         p.n_fronts = static_cast<std::int32_t>(a_.front.size());
+        p.n_branches = static_cast<std::int32_t>(a_.branch.size());
         p.front = a_.front.data();
+        p.branch = a_.branch.data();
         p.row = a_.row.data();
         p.to_parent = a_.to_parent.data();
         p.node = a_.node.data();
@@ -69,7 +72,7 @@ private:
     std::int32_t divide(const Graph &g, const Numbers &nodes) {
         std::int32_t unknowns = 0;
         for (const std::int32_t n : nodes) unknowns += unknowns_at(n);
-        FrontPlan::Front front = {0, 0, 0, size_of(a_.node), size_of(a_.node), {-1, -1}};
+        FrontPlan::Front front = {0, 0, 0, size_of(a_.node), size_of(a_.node), {-1, -1}, -1};
         std::vector<unsigned char> side;
         if (nodes.size() > 1 && unknowns > most_of_leaf) side = bisect(g);
         if (std::adjacent_find(side.begin(), side.end(), std::not_equal_to<>()) != side.end()) {
@@ -198,25 +201,71 @@ private:
         }
         for (std::int32_t &turn : a_.row) turn = unknown_[at(turn)];
     }
-    // What they take: memory, and time beside that of the iteration. Measured on Zen 4; strands of that many coiled
-    // bonds need some sixty rounds divided by it.
-    bool count(std::int64_t most_bytes, FrontPlan &p) const {
-        double entries = 0, operations = 0, waiting = 0, waits = 0;
-        const auto square = [](const FrontPlan::Front &f) {
-            return static_cast<double>(f.n_rows - f.n_own + 4) * (f.n_rows - f.n_own + 4);
-        };
-        for (const FrontPlan::Front &f : a_.front) {
-            entries += (f.n_own + 4.0) * (f.n_rows + 8.0);
-            for (double k = 0; k < f.n_own; ++k) operations += 0.5 * (f.n_rows - k) * (f.n_rows - k);
-            waiting = std::max(waiting, waits += square(f));
-            for (const std::int32_t half : f.half)
-                if (half >= 0) waits -= square(a_.front[at(half)]);
+    // ns, measured on Zen 4; and numbers, in vectors of four.
+    static double time_of(const FrontPlan::Front &f) {
+        double operations = 0;
+        for (double k = 0; k < f.n_own; ++k) operations += 0.5 * (f.n_rows - k) * (f.n_rows - k);
+        return 0.05 * operations + 1.5 * entries_of(f) + 30 * f.n_rows;
+    }
+    static double entries_of(const FrontPlan::Front &f) { return (f.n_own + 4.0) * (f.n_rows + 8.0); }
+    static double left_by(const FrontPlan::Front &f) { return (f.n_rows - f.n_own + 4.0) * (f.n_rows - f.n_own + 4.0); }
+    // Branches that take no more than a sixteenth of all, so that any few threads have as much to do.
+    void cut_branches() {
+        const std::size_t n = a_.front.size();
+        std::vector<double> time(n);
+        Numbers first(n);  // of what a front is made of
+        for (std::size_t f = 0; f < n; ++f) {
+            time[f] = time_of(a_.front[f]);
+            first[f] = static_cast<std::int32_t>(f);
+            for (const std::int32_t half : a_.front[f].half) {
+                if (half < 0) continue;
+                time[f] += time[at(half)];
+                first[f] = std::min(first[f], first[at(half)]);
+            }
         }
-        const double rows = static_cast<double>(a_.row.size()), bonds = s_.n_bonds - s_.n_tree,
+        constexpr double worth_threads = 1e5;
+        const double most = time.back() < worth_threads ? time.back() : time.back() / 16;
+        for (std::size_t f = 0; f < n; ++f) {
+            const std::int32_t parent = parent_[f];
+            const auto is_small = [&](std::size_t i) { return time[i] <= most || a_.front[i].half[0] < 0; };
+            if (!is_small(f) || (parent >= 0 && is_small(at(parent)))) continue;
+            const FrontPlan::Branch branch = {first[f], static_cast<std::int32_t>(f) + 1};
+            for (std::int32_t i = branch.first; i < branch.end; ++i)
+                a_.front[at(i)].branch = static_cast<std::int32_t>(a_.branch.size());
+            a_.branch.push_back(branch);
+        }
+    }
+    // Of the fronts among these that are of one branch, or of the trunk.
+    double most_waiting(const FrontPlan::Branch &among, std::int32_t branch) const {
+        double waits = 0, most = 0;
+        for (std::int32_t f = among.first; f < among.end; ++f) {
+            const FrontPlan::Front &front = a_.front[at(f)];
+            if (front.branch != branch) continue;
+            most = std::max(most, waits += left_by(front));
+            for (const std::int32_t half : front.half)
+                if (half >= 0 && a_.front[at(half)].branch == branch) waits -= left_by(a_.front[at(half)]);
+        }
+        return most;
+    }
+    // What they take: memory, and time beside that of the iteration; strands of that many coiled bonds need some sixty
+    // rounds divided by it.
+    bool count(std::int64_t most_bytes, FrontPlan &p) const {
+        double entries = 0, time = 0;
+        for (const FrontPlan::Front &f : a_.front) {
+            entries += entries_of(f);
+            time += time_of(f);
+        }
+        const std::int32_t n_fronts = static_cast<std::int32_t>(a_.front.size());
+        double waiting = most_waiting({0, n_fronts}, -1), stack = 0;
+        for (std::size_t b = 0; b < a_.branch.size(); ++b) {
+            stack = std::max(stack, most_waiting(a_.branch[b], static_cast<std::int32_t>(b)));
+            waiting += left_by(a_.front[at(a_.branch[b].end - 1)]);
+        }
+        const double bonds = s_.n_bonds - s_.n_tree,
                      of_round = (s_.has_foreign ? 30.0 : 15.0) * s_.n_unknowns;  // ns
-        p.rounds = (0.05 * operations + 1.5 * entries + 30 * rows) / of_round;
+        p.rounds = time / of_round;
         p.at_once = p.rounds * bonds < 60.0 * s_.n_strands;
-        return sizeof(double) * (2 * entries + waiting) <= static_cast<double>(most_bytes);
+        return sizeof(double) * (2 * entries + waiting + stack) <= static_cast<double>(most_bytes);
     }
 
     const NetworkPlan &s_;
@@ -235,7 +284,7 @@ FrontPlan make_fronts(const NetworkPlan &s, std::int64_t most_bytes, FrontArrays
 }
 
 std::size_t bytes_of(const FrontArrays &a) {
-    std::size_t bytes = a.front.capacity() * sizeof(a.front[0]);
+    std::size_t bytes = a.front.capacity() * sizeof(a.front[0]) + a.branch.capacity() * sizeof(a.branch[0]);
     for (const Numbers *list : {&a.row, &a.to_parent, &a.node, &a.own_row, &a.foreign_row, &a.partner_row})
         bytes += list->capacity() * sizeof(std::int32_t);
     return bytes;

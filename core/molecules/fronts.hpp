@@ -12,6 +12,7 @@ namespace holonomic {
 
 struct FrontArrays {
     std::vector<FrontPlan::Front> front;
+    std::vector<FrontPlan::Branch> branch;
     Numbers row, to_parent, node, own_row, foreign_row, partner_row;
 };
 

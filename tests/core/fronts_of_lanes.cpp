@@ -15,9 +15,10 @@ bool solve(const holonomic::NetworkPlan &s, bool symmetric, const Terms &terms, 
            std::vector<double> &x)
 {
     const holonomic::FrontPlan &plan = s.fronts;
-    std::vector<double> owned(static_cast<std::size_t>(Fronts::values(plan, symmetric)) + 8, 0x1p1000);
+    std::vector<double> owned(static_cast<std::size_t>(Fronts::values(plan, symmetric)) + 8, 0x1p1000),
+        buffer(static_cast<std::size_t>(Fronts::values_of_buffer(plan)) + 8, 0x1p1000);
     Memory<double> memory = {owned.data()};
-    const Fronts fronts(plan, symmetric, memory);
+    const Fronts fronts(plan, symmetric, nullptr, buffer.data(), memory);
     if (memory.next - owned.data() != Fronts::values(plan, symmetric)) return false;
     const bool good = fronts.factorize(
         least_part,

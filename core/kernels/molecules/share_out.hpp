@@ -22,4 +22,20 @@ HOL_INLINE void share_out(const LongTeam *team, int32_t n, const Body &body) {
         &body);
 }
 
+// The same of body(i, memory of the thread); `own`: of this one.
+template <class Body>
+HOL_INLINE void share_out(const LongTeam *team, double *own, int32_t n, const Body &body) {
+    if (!team) {
+        for (int32_t i = 0; i < n; ++i) body(i, own);
+        return;
+    }
+    Tally unused = empty_tally();
+    team->run(
+        team->threads, n, unused,
+        [](const void *context, int64_t i, double *scratch, Tally &) {
+            (*static_cast<const Body *>(context))(static_cast<int32_t>(i), scratch);
+        },
+        &body);
+}
+
 }  // namespace holonomic::HOL_ISA::graph

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/kernels/arithmetic/width.hpp"
+#include "core/kernels/molecules/share_out.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -12,11 +13,12 @@ namespace holonomic::HOL_ISA::graph {
 struct Dense {
     static constexpr int32_t step = 4, unit = W > step ? W : step;  // columns that are worked on at once
     static constexpr int32_t panel = 16;                            // columns whose products are added at once
-    static constexpr int32_t rows_in_cache = 96;
+    static constexpr int32_t rows_in_cache = 96, many_blocks = 3;   // that threads are worth waiting for
     int32_t own, height;
     double *lower, *upper, *left;
     double *per_pivot;  // [own]
     double *factor;     // [panel height] - D U of a panel, or - D L, row by row
+    const LongTeam *team;
 
     static constexpr int32_t filled(int32_t n) { return (n + unit - 1) / unit * unit; }
     bool symmetric() const { return lower == upper; }
@@ -29,13 +31,15 @@ struct Dense {
             const int32_t end = own - first < panel ? own : first + panel;
             for (int32_t c = first; c < end; c += step) {
                 good = divide_step(c, least_left) && good;
-                list_factors(upper, c, first, factor);
-                if (!symmetric()) list_factors(lower, c, first, other);
+                const int64_t next = (c + step) * panel + c - first;
+                list_factors(upper, c, c + step, own, factor + next);
+                if (!symmetric()) list_factors(lower, c, c + step, own, other + next);
                 subtract(lower, height, lower, c, c + step, end, factor + c - first);
                 if (!symmetric()) subtract(upper, height, upper, c, c + step, end, other + c - first);
             }
             subtract_panel(first, end, factor, other);
         }
+        subtract_own();
         return good;
     }
 
@@ -132,13 +136,13 @@ private:
             }
         });
     }
-    // - D times these columns of `of`, row by row, to the panel that begins with column `first`.
-    void list_factors(const double *of, int32_t c, int32_t first, double *to) const {
+    // - D times these columns of `of`, from a row on, row by row, to the columns of a panel.
+    void list_factors(const double *of, int32_t c, int32_t begin, int32_t end, double *to) const {
         const double *const u = of + static_cast<int64_t>(c) * height;
         double minus[step];
         for (int p = 0; p < step; ++p) minus[p] = -1 / per_pivot[c + p];
-        for (int32_t i = c + step; i < height; ++i)
-            for (int p = 0; p < step; ++p) to[i * panel + c - first + p] = minus[p] * u[p * height + i];
+        for (int32_t i = begin; i < end; ++i, to += panel)
+            for (int p = 0; p < step; ++p) to[p] = minus[p] * u[p * height + i];
     }
 
     // From columns `begin` to `end` of `from`, in their rows from the diagonal on, the products of the step at c.
@@ -148,29 +152,41 @@ private:
             subtract_rows(from + static_cast<int64_t>(j) * stride, stride, l + static_cast<int64_t>(c) * height,
                           j / W * W, height, factors + j * panel, step);
     }
-    // The products of a whole panel from all that follows.
+    // The products of a whole panel from the own columns that follow.
     void subtract_panel(int32_t first, int32_t end, const double *factors, const double *other) const {
-        const double *const l = lower + static_cast<int64_t>(first) * height, *const u =
-                                                                                  upper +
-                                                                                  static_cast<int64_t>(first) * height;
-        const int32_t n = end - first, rest = height - own;
+        const int64_t panel_begins = static_cast<int64_t>(first) * height;
         for (int32_t row = end / W * W; row < height; row += rows_in_cache) {
             const int32_t last = height - row < rows_in_cache ? height : row + rows_in_cache;
-            for (int32_t j = end; j < height; j += step) {
-                const bool is_own = j < own;
-                const int32_t diagonal = j / W * W, begin = (is_own || symmetric()) && diagonal > row ? diagonal : row;
-                if (begin >= last) continue;
-                if (is_own) {
-                    subtract_rows(&at(lower, 0, j), height, l, begin, last, factors + j * panel, n);
-                    if (!symmetric()) subtract_rows(&at(upper, 0, j), height, u, begin, last, other + j * panel, n);
-                } else {
-                    const int32_t top = begin > own ? begin : own;
-                    subtract_rows(left + static_cast<int64_t>(j - own) * rest - own, rest, l, top, last,
-                                  factors + j * panel, n);
-                }
+            for (int32_t j = end; j < own && j / W * W < last; j += step) {
+                const int32_t begin = j / W * W > row ? j / W * W : row;
+                subtract_rows(&at(lower, 0, j), height, lower + panel_begins, begin, last, factors + j * panel,
+                              end - first);
+                if (!symmetric())
+                    subtract_rows(&at(upper, 0, j), height, upper + panel_begins, begin, last, other + j * panel,
+                                  end - first);
             }
         }
     }
+    // The products of all own columns from what is left, so many columns at a time.
+    void subtract_own() const {
+        const int32_t rest = height - own, n_blocks = (rest + panel - 1) / panel;
+        share_out(n_blocks < many_blocks ? nullptr : team, factor, n_blocks, [&](int32_t block, double *factors) {
+            const int32_t begin = own + block * panel, end = height - begin < panel ? height : begin + panel;
+            for (int32_t c = 0; c < own; c += step)
+                list_factors(upper, c, begin, end, factors + c / panel * panel * panel + c % panel);
+            for (int32_t row = symmetric() ? begin / W * W : own; row < height; row += rows_in_cache) {
+                const int32_t last = height - row < rows_in_cache ? height : row + rows_in_cache;
+                for (int32_t first = 0; first < own; first += panel)
+                    for (int32_t j = begin; j < end; j += step)
+                        subtract_rows(left + static_cast<int64_t>(j - own) * rest - own, rest,
+                                      lower + static_cast<int64_t>(first) * height,
+                                      symmetric() && j / W * W > row ? j / W * W : row, last,
+                                      factors + first * panel + (j - begin) * panel,
+                                      own - first < panel ? own - first : panel);
+            }
+        });
+    }
+
     // Of one step's columns, n terms.
     __attribute__((noinline)) void subtract_rows(double *from, int32_t stride, const double *l, int32_t begin,
                                                  int32_t end, const double *factors, int32_t n) const {

@@ -46,7 +46,7 @@ struct Ends {
         : net(of), s(of.s), D(Net3::take(memory, s.n_unknowns)), b(symmetric ? D : Net3::take(memory, s.n_unknowns)),
           mass(NetTensor::take(memory, s.n_nodes)), with_ends(NetTensor::take(memory, s.n_nodes)),
           push(Net3::take(memory, s.n_nodes)), foreign_a(Net3::take(memory, s.n_nodes)),
-          all_a(Net3::take(memory, s.n_nodes)), fronts(of.s.fronts, symmetric, memory) {
+          all_a(Net3::take(memory, s.n_nodes)), fronts(of.s.fronts, symmetric, of.team, of.buffer, memory) {
         tree_bond = reinterpret_cast<Vector3<double> *>(memory.values(in_fours(3 * static_cast<int64_t>(s.n_tree))));
         double **const arrays[] = {&E, &per_E, &coupling, &y};
         for (double **array : arrays) *array = memory.values(in_fours(s.n_unknowns));

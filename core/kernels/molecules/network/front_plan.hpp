@@ -15,9 +15,17 @@ struct FrontPlan {
         int32_t first_row;             // in row, to_parent
         int32_t first_node, end_node;  // in node; none of what is halved
         int32_t half[2];               // fronts, or -1
+        int32_t branch;                // -1: of the trunk
     };
-    int32_t n_fronts;            // 0: there are none
-    const Front *front;          // the halves before the whole
+    // A front with all that it is made of, for one thread. What has several branches below it is the *trunk*, whose
+    // fronts come one after the other.
+    struct Branch {
+        int32_t first, end;  // in front
+    };
+    int32_t n_fronts;  // 0: there are none
+    int32_t n_branches;
+    const Front *front;  // the halves before the whole
+    const Branch *branch;
     const int32_t *row;          // unknowns
     const int32_t *to_parent;    // their rows in the front of which this one is a half
     const int32_t *node;         // of leaves

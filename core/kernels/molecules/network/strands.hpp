@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/kernels/molecules/image.hpp"
+#include "core/kernels/molecules/network/fronts.hpp"
 #include "core/kernels/molecules/network/sites.hpp"
 #include "core/kernels/molecules/share_out.hpp"
 
@@ -26,7 +27,8 @@ struct Net : NetSites {
             most = end - before > most ? end - before : most;
             before = end;
         }
-        return NetPart::three_vectors * in_fours(most);
+        const int64_t of_part = NetPart::three_vectors * in_fours(most), of_fronts = Fronts::values_of_buffer(s.fronts);
+        return of_part > of_fronts ? of_part : of_fronts;
     }
 
     NetPart part(int32_t share, double *of_thread) const {
@@ -46,20 +48,10 @@ struct Net : NetSites {
     // time, with what is in its cache; of several each has its own parts, and a cache that holds more of them.
     template <class Body>
     HOL_FORCED void for_parts(const Body &body) const {
-        if (!team) {
-            const bool from_last = backwards;
-            backwards = !from_last;
-            for (int32_t i = 0; i < s.n_shares; ++i) body(part(from_last ? s.n_shares - 1 - i : i, buffer));
-            return;
-        }
-        const auto on_thread = [&](int32_t share, double *scratch) { body(part(share, scratch)); };
-        Tally unused = empty_tally();
-        team->run(
-            team->threads, s.n_shares, unused,
-            [](const void *context, int64_t i, double *scratch, Tally &) {
-                (*static_cast<decltype(&on_thread)>(context))(static_cast<int32_t>(i), scratch);
-            },
-            &on_thread);
+        const bool from_last = backwards && !team;
+        backwards = !backwards;
+        share_out(team, buffer, s.n_shares,
+                  [&](int32_t i, double *of_thread) { body(part(from_last ? s.n_shares - 1 - i : i, of_thread)); });
     }
     // Calls body(share) for all shares of nodes. A thread is not worth waiting for where these are few.
     template <class Body>
