@@ -13,7 +13,7 @@ namespace holonomic::HOL_ISA::graph {
 struct Dense {
     static constexpr int32_t step = 4, unit = W > step ? W : step;  // columns that are worked on at once
     static constexpr int32_t panel = 16;                            // columns whose products are added at once
-    static constexpr int32_t rows_in_cache = 96, many_blocks = 3;   // that threads are worth waiting for
+    static constexpr int32_t rows_in_cache = 96, many_blocks = 6;   // that threads are worth waiting for
     int32_t own, height;
     double *lower, *upper, *left;
     double *per_pivot;  // [own]
@@ -169,11 +169,11 @@ private:
     }
     // The products of all own columns from what is left, so many columns at a time.
     void subtract_own() const {
-        const int32_t rest = height - own, n_blocks = (rest + panel - 1) / panel;
+        const int32_t rest = height - own, columns = 2 * panel, n_blocks = (rest + columns - 1) / columns;
         share_out(n_blocks < many_blocks ? nullptr : team, factor, n_blocks, [&](int32_t block, double *factors) {
-            const int32_t begin = own + block * panel, end = height - begin < panel ? height : begin + panel;
+            const int32_t begin = own + block * columns, end = height - begin < columns ? height : begin + columns;
             for (int32_t c = 0; c < own; c += step)
-                list_factors(upper, c, begin, end, factors + c / panel * panel * panel + c % panel);
+                list_factors(upper, c, begin, end, factors + c / panel * panel * columns + c % panel);
             for (int32_t row = symmetric() ? begin / W * W : own; row < height; row += rows_in_cache) {
                 const int32_t last = height - row < rows_in_cache ? height : row + rows_in_cache;
                 for (int32_t first = 0; first < own; first += panel)
@@ -181,7 +181,7 @@ private:
                         subtract_rows(left + static_cast<int64_t>(j - own) * rest - own, rest,
                                       lower + static_cast<int64_t>(first) * height,
                                       symmetric() && j / W * W > row ? j / W * W : row, last,
-                                      factors + first * panel + (j - begin) * panel,
+                                      factors + first * columns + (j - begin) * panel,
                                       own - first < panel ? own - first : panel);
             }
         });
