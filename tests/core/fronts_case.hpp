@@ -20,11 +20,11 @@ struct Terms {
     std::vector<double> diagonal;
 };
 
-#define FRONTS_OF(set)                                                                           \
-    namespace set                                                                                \
-    {                                                                                            \
-    bool solve(const holonomic::NetworkPlan &, bool symmetric, const Terms &, double least_part, \
-               std::vector<double> &x);                                                          \
+#define FRONTS_OF(set)                                                                                          \
+    namespace set                                                                                               \
+    {                                                                                                           \
+    bool solve(const holonomic::NetworkPlan &, bool symmetric, const Terms &, double least_part, int n_threads, \
+               std::vector<double> &x);                                                                         \
     }
 FRONTS_OF(fronts2)
 FRONTS_OF(fronts4)

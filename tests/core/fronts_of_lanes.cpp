@@ -1,6 +1,9 @@
 // Compiled once per number of lanes, with HOL_LANES and HOL_ISA as a set of kernels is.
 #include "fronts_case.hpp"
 
+#include <atomic>
+#include <thread>
+
 #include "core/kernels/molecules/network/fronts.hpp"
 
 namespace fronts_case
@@ -11,14 +14,33 @@ namespace HOL_ISA
 using namespace holonomic::HOL_ISA;
 using namespace holonomic::HOL_ISA::graph;
 
-bool solve(const holonomic::NetworkPlan &s, bool symmetric, const Terms &terms, double least_part,
+// Threads of our own, each with its memory: what is shared out goes to any of them.
+struct Threads {
+    std::vector<std::vector<double>> memory;
+    static void run(const void *self, std::int64_t n, holonomic::Tally &,
+                    void (*body)(const void *, std::int64_t, double *, holonomic::Tally &), const void *context)
+    {
+        std::atomic<std::int64_t> next{0};
+        std::vector<std::thread> all;
+        for (const std::vector<double> &own : static_cast<const Threads *>(self)->memory)
+            all.emplace_back([&next, n, body, context, buffer = const_cast<double *>(own.data())] {
+                holonomic::Tally unused = holonomic::empty_tally();
+                for (std::int64_t i; (i = next++) < n;) body(context, i, buffer, unused);
+            });
+        for (std::thread &one : all) one.join();
+    }
+};
+
+bool solve(const holonomic::NetworkPlan &s, bool symmetric, const Terms &terms, double least_part, int n_threads,
            std::vector<double> &x)
 {
     const holonomic::FrontPlan &plan = s.fronts;
     std::vector<double> owned(static_cast<std::size_t>(Fronts::values(plan, symmetric)) + 8, 0x1p1000),
-        buffer(static_cast<std::size_t>(Fronts::values_of_buffer(plan)) + 8, 0x1p1000);
+        buffer(static_cast<std::size_t>(Fronts::values_of_buffer(plan)), 0x1p1000);
+    const Threads threads = {std::vector<std::vector<double>>(static_cast<std::size_t>(n_threads), buffer)};
+    const holonomic::LongTeam team = {&threads, Threads::run};
     Memory<double> memory = {owned.data()};
-    const Fronts fronts(plan, symmetric, nullptr, buffer.data(), memory);
+    const Fronts fronts(plan, symmetric, n_threads > 0 ? &team : nullptr, buffer.data(), memory);
     if (memory.next - owned.data() != Fronts::values(plan, symmetric)) return false;
     const bool good = fronts.factorize(
         least_part,

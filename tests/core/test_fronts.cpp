@@ -141,6 +141,9 @@ std::unique_ptr<const holonomic::Schedule> network_of(const Bonds &b)
                                     fixed.get(), holonomic::no_limit);
 }
 
+typedef bool (*Solve)(const holonomic::NetworkPlan &, bool, const Terms &, double, int, std::vector<double> &);
+const Solve solves[] = {fronts2::solve, fronts4::solve, fronts8::solve, fronts16::solve};
+
 void they_solve_what_a_dense_elimination_does(const char *name, const Bonds &b, std::mt19937 &random)
 {
     const auto schedule = network_of(b);
@@ -154,17 +157,41 @@ void they_solve_what_a_dense_elimination_does(const char *name, const Bonds &b, 
         const std::vector<long double> exact = matrix.solved(rhs);
         long double most = 0;
         for (const long double x : exact) most = std::max(most, std::fabs(x));
-        typedef bool (*Solve)(const holonomic::NetworkPlan &, bool, const Terms &, double, std::vector<double> &);
-        for (const Solve solve :
-             {Solve(fronts2::solve), Solve(fronts4::solve), Solve(fronts8::solve), Solve(fronts16::solve)}) {
+        for (const Solve solve : solves) {
             std::vector<double> x = rhs;
-            require(solve(s, symmetric, matrix.terms, 1e-14, x), name, "has a pivot that is none");
+            require(solve(s, symmetric, matrix.terms, 1e-14, 0, x), name, "has a pivot that is none");
             long double worst = 0;
             for (std::size_t u = 0; u < matrix.n; ++u) worst = std::max(worst, std::fabs(x[u] - exact[u]));
             // The condition of these matrices is below a thousand.
             require(worst <= 4096 * 2.2e-16L * most, name, "differs from a dense elimination");
             x = rhs;
-            require(!solve(s, symmetric, matrix.terms, 0.999, x), name, "has pivots that nothing was taken from");
+            require(!solve(s, symmetric, matrix.terms, 0.999, 0, x), name, "has pivots that nothing was taken from");
+        }
+    }
+}
+
+// So many that the trunk is shared among them, too.
+void threads_change_no_digit()
+{
+    std::mt19937 random(3);
+    const auto schedule = network_of(tangle(600, 1320, random));
+    const holonomic::NetworkPlan &s = *schedule->network;
+    bool is_large = false;
+    for (std::int32_t f = 0; f < s.fronts.n_fronts; ++f) {
+        const holonomic::FrontPlan::Front &front = s.fronts.front[f];
+        is_large = is_large || (front.branch < 0 && front.n_rows - front.n_own >= 192);
+    }
+    require(s.fronts.n_branches > 1 && is_large, "a large tangle", "has nothing to share");
+    for (const bool symmetric : {true, false}) {
+        const Matrix matrix(s, symmetric, 0.2, random);
+        std::vector<double> rhs(matrix.n, 1);
+        for (const Solve solve : solves) {
+            std::vector<double> x = rhs, y = rhs;
+            require(solve(s, symmetric, matrix.terms, 1e-14, 0, x) && solve(s, symmetric, matrix.terms, 1e-14, 3, y),
+                    "a large tangle", "has a pivot that is none");
+            require(x == y, "a large tangle", "depends on threads");
+            require(!solve(s, symmetric, matrix.terms, 0.999, 3, x), "a large tangle",
+                    "has pivots that nothing was taken from");
         }
     }
 }
@@ -215,6 +242,7 @@ int main()
     they_solve_what_a_dense_elimination_does("a lattice", lattice(8, 1, random), random);
     they_solve_what_a_dense_elimination_does("a lattice with strands", lattice(5, 9, random), random);
     they_solve_what_a_dense_elimination_does("a tangle", tangle(120, 260, random), random);
+    threads_change_no_digit();
     they_take_no_more_memory_than_they_may();
     return 0;
 }
