@@ -50,7 +50,7 @@ struct NetEquations {
         net.find_bonds(part, box, r, r_of(part), d);
         find_sides(part);
     }
-    // Right-hand sides, and the sum of their terms' sizes; in t, too, those of the rest.
+    // Right-hand sides, and the sum of their terms' sizes.
     __attribute__((noinline)) void find_sides(const NetPart &part) const {
         if (!has(pulls | squares | rates))
             for (int32_t k = part.first_place; k < part.end_place; ++k) side[k] = size_of_side[k] = 0;
@@ -63,7 +63,7 @@ struct NetEquations {
             side[k] += value;
             size_of_side[k] += abs(value);
         }
-        for (int32_t k = part.first_place; net.is_rest(part) && k < part.end_place; ++k) t[k] = side[k];
+        for (int32_t k = part.first_place; k < part.end_place; ++k) t[k] = side[k];
     }
     // d.(x_j - x_i), the first of the terms where there are two, or |x_j - x_i|^2.
     void add_products(const NetPart &part, const Net3 &of_rest, const Net3 &of_part, bool square) const {

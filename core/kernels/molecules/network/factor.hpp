@@ -54,8 +54,6 @@ struct NetFactor {
         for (int32_t i = 0; i < s.n_tree; ++i) take_up_tree(i, y);
         take_up_nodes(y);
     }
-    // y stays as it is where the matrix is symmetric: those multipliers are found once, and less is kept until then.
-    bool stores_y() const { return from_last != to_last; }
     __attribute__((noinline)) void take_up(const NetPart &part, double *y) const {
         net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
@@ -64,7 +62,7 @@ struct NetFactor {
                 const int32_t place = g.place + k * g.step;
                 last = mul_add(share, before, load_any<V>(y + place));
                 if (k + 1 == g.length) break;
-                if (stores_y()) store_any(y + place, last);
+                store_any(y + place, last);
                 first = first - load_any<V>(from_first + place) * last;
                 share = load_any<V>(from_last + place);
                 before = last;
@@ -82,17 +80,9 @@ struct NetFactor {
         }
         for (int32_t i = s.n_tree; i-- > 0;) take_down_tree(i, y);
     }
-    // right: y as it was taken up.
-    __attribute__((noinline)) void take_down(const NetPart &part, const double *right, double *y) const {
+    __attribute__((noinline)) void take_down(const NetPart &part, double *y) const {
         net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
-            V before = {}, share = {};
-            for (int32_t k = 1; k + 1 < g.length && !stores_y(); ++k) {
-                const int32_t place = g.place + k * g.step;
-                before = mul_add(share, before, load_any<V>(right + place));
-                share = load_any<V>(from_last + place);
-                store_any(y + place, before);
-            }
             const V first = load_any<V>(y + g.place);
             V next = load_any<V>(y + g.place + (g.length - 1) * g.step);
             for (int32_t k = g.length - 2; k > 0; --k) {
@@ -169,7 +159,7 @@ private:
             E0 = E0 * (P_beyond * per);
             beyond = w * mul_add(next, beyond, X) / P_beyond;
             first = first - from * yk;
-            if (stores_y()) store_any(y + place, yk);
+            store_any(y + place, yk);
             store_any(per_pivot + place, per);
             store_any(to_last + place, down);
             store_any(to_first + place, to);

@@ -37,14 +37,13 @@ struct Fronts {
     Fronts(const FrontPlan &plan, bool symmetric, const LongTeam *threads, double *of_thread, Memory<double> &memory)
         : s(plan), team(threads), buffer(of_thread) {
         if (s.n_fronts == 0) return;
-        const Sizes n = sizes(s);
+        place = reinterpret_cast<Place *>(memory.values(in_fours(4 * static_cast<int64_t>(s.n_fronts))));
+        const Sizes n = lay_out(s, [&](int32_t f, const Place &p) { place[f] = p; });
         lower = memory.values(in_fours(n.entries));
         upper = symmetric ? lower : memory.values(in_fours(n.entries));
         per_pivot = memory.values(in_fours(n.pivots));
         waiting = memory.values(in_fours(n.waiting));
         given = memory.values(in_fours(n_rows(s)));
-        place = reinterpret_cast<Place *>(memory.values(in_fours(4 * static_cast<int64_t>(s.n_fronts))));
-        lay_out(s, [&](int32_t f, const Place &p) { place[f] = p; });
         before_stack = for_one(n);
     }
 

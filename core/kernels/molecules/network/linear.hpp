@@ -58,15 +58,14 @@ struct NetLinear : NetEquations {
             [&](const NetPart &part) {
                 read_atoms(part, part.first_site, part.end_site);
                 find_equations(part);
-                factor.factorize(part, d, side);
+                factor.factorize(part, d, t);
             });
         factor.close();
     }
-    // Multipliers for `right`, which has been taken up, of the rest in t; what they do to atoms, if `pulls`; then
-    // each(part).
+    // Multipliers for what is in t, as far up as it has been taken; what they do to atoms, if `pulls`; then each(part).
     template <class Each>
-    HOL_FORCED bool solve_for(const double *right, double part_left, const double *sizes, bool with_pulls,
-                              bool with_tensions, const Each &each) const {
+    HOL_FORCED bool solve_for(double part_left, const double *sizes, bool with_pulls, bool with_tensions,
+                              const Each &each) const {
         const int32_t taken = factor.unknowns.solve(part_left, sizes);
         if (taken < 0) return false;
         rounds += taken;
@@ -77,7 +76,7 @@ struct NetLinear : NetEquations {
                 each(rest);
             },
             [&](const NetPart &part) {
-                factor.take_down(part, right, t);
+                factor.take_down(part, t);
                 if (with_pulls) find_pulls(part, with_tensions);
                 each(part);
             });
@@ -85,7 +84,7 @@ struct NetLinear : NetEquations {
     }
     __attribute__((noinline)) bool solve() const {
         load();
-        return solve_for(side, any_part, size_of_side, true, true, [&](const NetPart &part) { prove(part); }) &&
+        return solve_for(any_part, size_of_side, true, true, [&](const NetPart &part) { prove(part); }) &&
                (!unproven || refine());
     }
 
@@ -172,7 +171,7 @@ struct NetLinear : NetEquations {
             [&]() {
                 NetResiduals{*this, factor, begun ? solution : t}.find(tension, keep);
                 begun = true;
-                if (!solve_for(t, next_part, enough, false, false, [](const NetPart &) {}))
+                if (!solve_for(next_part, enough, false, false, [](const NetPart &) {}))
                     t[0] = 0 / (t[0] - t[0]);  // not a number, which is no contraction
             },
             [&](Flag) {
@@ -209,10 +208,10 @@ struct NetLinear : NetEquations {
                 find_pulls(part, false);
                 push_on(part);
                 find_sides(part);
-                factor.take_up(part, side);
+                factor.take_up(part, t);
             });
         factor.unknowns.add_pushes();
-        if (solve_for(side, next_part, nullptr, true, false, write)) return;
+        if (solve_for(next_part, nullptr, true, false, write)) return;
         const auto write_once_projected = [&](const NetPart &part) {
             write_sites(part, to, false, [&](auto width, int32_t i) HOL_FORCED { return v.get<decltype(width)>(i); });
         };

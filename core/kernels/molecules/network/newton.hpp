@@ -114,7 +114,7 @@ struct NetNewton {
             for (int32_t u = 0; u < s.n_unknowns; ++u) tau[s.place_of[u]] += t[s.place_of[u]];
             return;
         }
-        factor.take_down(part, t, t);
+        factor.take_down(part, t);
         net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
             for (int32_t k = 1; k + 1 < g.length; ++k) {
