@@ -120,7 +120,7 @@ private:
     }
     // What a front is worked on with: the panels of Dense, and its right-hand side.
     static int64_t for_one(const Sizes &n) { return (2 * Dense::panel + 2) * in_fours(n.tallest); }
-    static Sizes sizes(const FrontPlan &s) {
+    __attribute__((noinline)) static Sizes sizes(const FrontPlan &s) {
         return lay_out(s, [](int32_t, const Place &) {});
     }
     static bool is_last_of_branch(const FrontPlan &s, int32_t f) {
