@@ -89,13 +89,13 @@ bool go_through(const Chains &chains, const BondVectors &bonds, const Each &each
     const Images images(bonds.box);
     const bool of_atoms = bonds.r != nullptr;
     return chains.for_active([&](const Molecule &m) {
-        const std::int32_t *const pairs = m.shape ? m.shape->pairs.data() : nullptr;
+        const Schedule *const shape = m.shape ? m.shape->schedule.get() : nullptr;
         const std::int64_t *const list = m.atom_list, first = m.first_atom, n_bonds = m.n_bonds;
         const double *const lengths = m.length_table, uniform = m.length_uniform;
         for (std::int64_t k = 0; k < n_bonds; ++k) {
             double d[3];
             if (of_atoms) {
-                const std::int64_t i = pairs ? pairs[2 * k] : k, j = pairs ? pairs[2 * k + 1] : k + 1;
+                const std::int64_t i = shape ? shape->atom_i[k] : k, j = shape ? shape->atom_j[k] : k + 1;
                 vectors.difference(list ? list[i] : first + i, list ? list[j] : first + j, d);
                 images.image(d);
             } else {

@@ -67,7 +67,7 @@ void metric_of_all(const Chains &chains, const AtomArray &r, double kT, double *
     put_box(chains.box, call.box);
     for (const std::int32_t shape : chains.plan().shapes) {
         const Schedule &s = *chains.plan().schedules[static_cast<std::size_t>(shape)];
-        if (!s.careful) make_careful_of(chains, s);
+        if (!s.careful_order()) make_careful_of(chains, s);
     }
     Apart apart(chains);
     const Tally tally = execute(chains, MetricWork(call, apart));

@@ -4,11 +4,12 @@
 #include <cmath>
 
 #include "core/double_pair.hpp"
-#include "core/molecules/careful_shape.hpp"
 #include "core/molecules/memory_limit.hpp"
 
 #define HOL_ISA plain
 #define HOL_LANES 2
+#include "core/kernels/careful/plan_of.hpp"
+#include "core/kernels/careful/scratch.hpp"
 #include "core/kernels/careful/system.hpp"
 #undef HOL_ISA
 #undef HOL_LANES
@@ -35,21 +36,23 @@ private:
 }  // namespace
 
 struct CarefulMolecule::State {
-    CarefulShape shape;
+    std::unique_ptr<const Schedule> schedule;
     std::vector<std::int64_t> atoms;
     std::vector<double> w, length;
     MoleculeLane lane;
     Owned owned;
     plain::careful::Memory memory;
+    CarefulPlan plan;
     plain::careful::Molecule molecule;
     plain::careful::System system;
     std::vector<double> root;
     bool good = false;
 
     explicit State(const holonomic::Molecule &m)
-        : shape(m.shape->n_atoms, m.shape->n_bonds, m.shape->pairs.data(), default_memory_limit()),
-          atoms(at(m.n_atoms)), w(at(m.n_atoms)), lane{}, owned(shape.plan().scratch_bytes), memory(owned.begin()),
-          molecule(shape.plan(), lane, memory), system(plain::careful::take_system(molecule, memory)) {
+        : schedule(make_careful_schedule(*m.shape->schedule, default_memory_limit())), atoms(at(m.n_atoms)),
+          w(at(m.n_atoms)), lane{}, owned(careful_scratch_bytes(*schedule)), memory(owned.begin()),
+          plan(plain::careful::plan_of(*schedule, memory)), molecule(plan, lane, memory),
+          system(plain::careful::take_system(molecule, memory)) {
         for (std::int64_t i = 0; i < m.n_atoms; ++i) {
             atoms[at(i)] = m.atom(i);
             w[at(i)] = m.w(i);

@@ -117,8 +117,7 @@ void Batch::check_closable(const Shape &shape, const std::int64_t *atoms, const 
     Unclosable found;
     if (!find_unclosable(shape, lengths, &found)) return;
     const auto name = [&](std::int32_t i) { return chains_.name_of_atom(atoms[i < 0 ? 0 : i]); };
-    const std::int32_t *const pair = &shape.pairs[2 * at(found.bond)];
-    const Name names[3] = {name(pair[0]), name(pair[1]), name(found.corner)};
+    const Name names[3] = {name(shape.i(found.bond)), name(shape.j(found.bond)), name(found.corner)};
     throw unclosable_error(found, names, bonds[found.bond], chains_.base);
 }
 

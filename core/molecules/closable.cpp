@@ -32,9 +32,9 @@ bool find_unclosable(const Shape &shape, const double *length, Unclosable *found
     if (shape.form == Form::ring) return find_in_ring(shape, length, found);
     // Bonds of each atom to higher ones. The pairs ascend, so that these follow each other.
     std::vector<std::int32_t> start(at(shape.n_atoms) + 1, 0), marked(at(shape.n_atoms), -1);
-    for (std::int32_t k = 0; k < shape.n_bonds; ++k) ++start[at(shape.pairs[at(2 * k)]) + 1];
+    for (std::int32_t k = 0; k < shape.n_bonds; ++k) ++start[at(shape.i(k)) + 1];
     for (std::int32_t i = 0; i < shape.n_atoms; ++i) start[at(i) + 1] += start[at(i)];
-    const auto end_of = [&](std::int32_t bond) { return shape.pairs[at(2 * bond + 1)]; };
+    const auto end_of = [&](std::int32_t bond) { return shape.j(bond); };
     for (std::int32_t i = 0; i < shape.n_atoms; ++i) {
         const std::int32_t first = start[at(i)], end = start[at(i) + 1];
         if (end - first < 2) continue;

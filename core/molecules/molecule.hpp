@@ -24,8 +24,8 @@ struct Molecule {
     std::int64_t atom(std::int64_t i) const { return atom_list ? atom_list[i] : first_atom + i; }
     double w(std::int64_t i) const { return w_table ? w_table[i] : w_uniform; }
     // The two atoms of bond k, d = r_j - r_i.
-    std::int64_t i(std::int64_t k) const { return shape ? shape->pairs[static_cast<std::size_t>(2 * k)] : k; }
-    std::int64_t j(std::int64_t k) const { return shape ? shape->pairs[static_cast<std::size_t>(2 * k + 1)] : k + 1; }
+    std::int64_t i(std::int64_t k) const { return shape ? shape->i(k) : k; }
+    std::int64_t j(std::int64_t k) const { return shape ? shape->j(k) : k + 1; }
     double length(std::int64_t k) const { return length_table ? length_table[k] : length_uniform; }
     // Its place in the caller's arrays per bond.
     std::int64_t bond(std::int64_t k) const { return bond_list ? bond_list[k] : first_bond + k; }

@@ -182,7 +182,7 @@ private:
             }
         const std::unique_ptr<bool[]> fixed(new bool[at(n_atoms)]());
         for (std::int32_t i = 0; i < atoms; ++i) fixed[at(i)] = fixed_atoms[i] != 0;
-        return make_bare_schedule(n_atoms, bonds + legs * reach, pairs.data(), fixed.get());
+        return make_knot_schedule(n_atoms, bonds + legs * reach, pairs.data(), fixed.get());
     }
 
     const Schedule &s_;

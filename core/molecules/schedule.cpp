@@ -13,10 +13,10 @@ namespace {
 
 class Maker {
 public:
-    // Whether a large graph may become a network, or has to.
-    enum Networks { none, some, this_one };
-    Maker(Schedule &s, Schedule::Memory &m, std::int64_t most_bytes, Networks networks)
-        : s_(s), m_(m), most_bytes_(most_bytes), networks_(networks), bonds_(bonds_of_atoms()) {}
+    // What it is made for: a knot of paths, any molecule, a large graph that has to be a network, the careful solver.
+    enum For { knot, molecule, network, careful };
+    Maker(Schedule &s, ScheduleArrays &m, std::int64_t most_bytes, For what)
+        : s_(s), m_(m), most_bytes_(most_bytes), for_(what), bonds_(bonds_of_atoms()) {}
 
     void make() {
         strip();
@@ -33,18 +33,19 @@ public:
         invert_numbers();
         list_children();
         list_meetings();
-        if (is_network_ || (networks_ != none && s_.type == Schedule::graph && takes_flat_list(s_))) return;
+        if (is_network_) return;
         list_fill();
-        list_updates();
+        const bool listed = for_ == molecule && s_.type == Schedule::graph && takes_flat_list(s_);
+        if (!listed && for_ != careful) list_updates();
     }
     bool is_network() const { return is_network_; }
     // What is held fixed accelerates nothing, and no tree can be eliminated from there: of a network it is a node.
-    static bool has_fixed(const Schedule::Memory &m) {
+    static bool has_fixed(const ScheduleArrays &m) {
         return std::find(m.fixed.begin(), m.fixed.end(), 1) != m.fixed.end();
     }
 
 private:
-    bool stays(std::int32_t atom) const { return networks_ == this_one && m_.fixed[at(atom)]; }
+    bool stays(std::int32_t atom) const { return for_ == network && m_.fixed[at(atom)]; }
 
     Lists bonds_of_atoms() const {
         return invert(s_.n_atoms, s_.n_bonds,
@@ -142,9 +143,9 @@ private:
             core_number[at(k)] = static_cast<std::int32_t>(core.size());
             core.push_back(k);
         }
-        if (networks_ == none || s_.n_bonds <= largest_graph_in_lanes)
+        if (for_ == knot || for_ == careful || s_.n_bonds <= largest_graph_in_lanes)
             return order_core(core, core_number, most_bytes_);
-        is_network_ = networks_ == this_one || has_long_strands(core);
+        is_network_ = for_ == network || has_long_strands(core);
         try {
             const std::int64_t most = most_bytes_of_list * static_cast<std::int64_t>(core.size());
             if (!is_network_) return order_core(core, core_number, std::min(most_bytes_, most));
@@ -185,9 +186,9 @@ private:
 
     void invert_numbers() {
         m_.slot_of.resize(at(s_.n_atoms));
-        m_.place_of.resize(at(s_.n_bonds));
         for (std::int32_t i = 0; i < s_.n_atoms; ++i) m_.slot_of[at(m_.atom_of[at(i)])] = i;
-        for (std::int32_t k = 0; k < s_.n_bonds; ++k) m_.place_of[at(m_.bond_of[at(k)])] = k;
+        if (for_ == knot) m_.place_of.resize(at(s_.n_bonds));
+        for (std::int32_t k = 0; for_ == knot && k < s_.n_bonds; ++k) m_.place_of[at(m_.bond_of[at(k)])] = k;
         m_.parent.reserve(at(s_.n_tree));
         for (std::int32_t k = 0; k < s_.n_tree; ++k)
             m_.parent.push_back(m_.slot_of[at(other_end(m_.bond_of[at(k)], m_.atom_of[at(k)]))]);
@@ -280,9 +281,9 @@ private:
     }
 
     Schedule &s_;
-    Schedule::Memory &m_;
+    ScheduleArrays &m_;
     const std::int64_t most_bytes_;
-    const Networks networks_;
+    const For for_;
     bool is_network_ = false;
     const Lists bonds_;
     Numbers upper_bond_;  // of the atoms of trees, by local atom; -1: a root, or of the core
@@ -309,11 +310,11 @@ void add_large_tree(Schedule &s, Schedule::Memory::Large &m) {
 }
 
 std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
-                                        const bool *fixed, std::int64_t most_bytes, Maker::Networks networks) {
+                                        const bool *fixed, std::int64_t most_bytes, Maker::For what) {
     std::unique_ptr<Schedule> s(new Schedule());
-    Schedule::Memory &m = *(s->memory = new Schedule::Memory());
     s->n_atoms = n_atoms;
     s->n_bonds = n_bonds;
+    ScheduleArrays m;
     for (Numbers *const list : {&m.atom_i, &m.atom_j, &m.bond_of}) list->reserve(at(n_bonds));
     for (std::int32_t k = 0; k < n_bonds; ++k) {
         m.atom_i.push_back(pairs[2 * k]);
@@ -323,14 +324,15 @@ std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bon
     m.fixed.assign(at(n_atoms), 0);
     for (std::int32_t i = 0; fixed && i < n_atoms; ++i) m.fixed[at(i)] = fixed[i];
     point_into(*s, m);
-    Maker maker(*s, m, most_bytes, networks);
+    Maker maker(*s, m, most_bytes, what);
     maker.make();
-    if (maker.is_network() && networks == Maker::some && Maker::has_fixed(m))
-        return bare_schedule(n_atoms, n_bonds, pairs, fixed, most_bytes, Maker::this_one);
-    point_into(*s, m);
+    if (maker.is_network() && what == Maker::molecule && Maker::has_fixed(m))
+        return bare_schedule(n_atoms, n_bonds, pairs, fixed, most_bytes, Maker::network);
+    s->memory = new Schedule::Memory();
+    pack(*s, m);
     if (!maker.is_network()) return s;
-    make_network(*s, most_bytes, m.of_large().network);
-    s->network = &m.large->network.plan;
+    make_network(*s, most_bytes, s->memory->of_large().network);
+    s->network = &s->memory->large->network.plan;
     return s;
 }
 
@@ -340,12 +342,12 @@ constexpr std::int32_t largest_positions_in_forest = 65536;
 // Small networks have it for what does not converge, if it fills no more bytes a bond of the core.
 constexpr std::int32_t largest_with_careful = 8192;
 constexpr std::int64_t most_bytes_of_careful = 4000;
-void make_careful_too(Schedule &s, Schedule::Memory &m, const std::int32_t *pairs, std::int64_t most_bytes) {
+void make_careful_too(Schedule &s, std::int64_t most_bytes) {
     try {
-        m.careful = std::make_unique<const CarefulShape>(s.n_atoms, s.n_bonds, pairs, most_bytes);
-        s.careful = &m.careful->plan();
+        s.memory->careful = make_careful_schedule(s, most_bytes);
+        s.careful = s.memory->careful.get();
     } catch (const TooMuchMemory &) {
-        m.careful = nullptr;  // then there is none
+        s.careful = nullptr;  // then there is none
     }
 }
 
@@ -353,12 +355,11 @@ void make_careful_too(Schedule &s, Schedule::Memory &m, const std::int32_t *pair
 
 std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
                                               const bool *fixed, std::int64_t most_bytes) {
-    std::unique_ptr<Schedule> s = bare_schedule(n_atoms, n_bonds, pairs, fixed, most_bytes, Maker::some);
+    std::unique_ptr<Schedule> s = bare_schedule(n_atoms, n_bonds, pairs, fixed, most_bytes, Maker::molecule);
     Schedule::Memory &m = *s->memory;
     if (s->network) {
         if (n_bonds <= largest_with_careful)
-            make_careful_too(*s, m, pairs,
-                             std::min(most_bytes, most_bytes_of_careful * static_cast<std::int64_t>(s->n_core)));
+            make_careful_too(*s, std::min(most_bytes, most_bytes_of_careful * static_cast<std::int64_t>(s->n_core)));
         return s;
     }
     if (n_bonds > largest_in_lanes && s->type == Schedule::tree) add_large_tree(*s, m.of_large());
@@ -369,25 +370,26 @@ std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t
     }
     if (!in_lanes && n_bonds > largest_in_lanes && make_path_plan(*s, m.of_large().paths))
         s->paths = &m.large->paths.plan;
-    m.careful = std::make_unique<const CarefulShape>(n_atoms, n_bonds, pairs);
-    s->careful = &m.careful->plan();
     return s;
 }
 
-std::unique_ptr<const Schedule> make_bare_schedule(std::int32_t n_atoms, std::int32_t n_bonds,
+std::unique_ptr<const Schedule> make_knot_schedule(std::int32_t n_atoms, std::int32_t n_bonds,
                                                    const std::int32_t *pairs, const bool *fixed) {
-    return bare_schedule(n_atoms, n_bonds, pairs, fixed, no_limit, Maker::none);
+    return bare_schedule(n_atoms, n_bonds, pairs, fixed, no_limit, Maker::knot);
+}
+
+std::unique_ptr<const Schedule> make_careful_schedule(const Schedule &s, std::int64_t most_bytes) {
+    Numbers pairs;
+    for (std::int32_t k = 0; k < s.n_bonds; ++k) pairs.insert(pairs.end(), {s.atom_i[k], s.atom_j[k]});
+    return bare_schedule(s.n_atoms, s.n_bonds, pairs.data(), nullptr, most_bytes, Maker::careful);
 }
 
 void make_careful(const Schedule &s, std::int64_t most_bytes) {
     static std::mutex mutex;
     const std::lock_guard<std::mutex> lock(mutex);
-    if (s.careful || s.late_careful) return;
-    Schedule::Memory &m = *s.memory;
-    std::vector<std::int32_t> pairs;
-    for (std::int32_t k = 0; k < s.n_bonds; ++k) pairs.insert(pairs.end(), {s.atom_i[k], s.atom_j[k]});
-    m.careful = std::make_unique<const CarefulShape>(s.n_atoms, s.n_bonds, pairs.data(), most_bytes);
-    s.late_careful = &m.careful->plan();
+    if (s.careful_order()) return;
+    s.memory->careful = make_careful_schedule(s, most_bytes);
+    s.late_careful = s.memory->careful.get();
 }
 
 }  // namespace holonomic

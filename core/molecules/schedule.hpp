@@ -17,11 +17,14 @@ namespace holonomic {
 std::unique_ptr<const Schedule> make_schedule(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
                                               const bool *fixed, std::int64_t most_bytes = no_limit);
 
-// The same without what large molecules and careful solvers need.
-std::unique_ptr<const Schedule> make_bare_schedule(std::int32_t n_atoms, std::int32_t n_bonds,
+// Of a knot of paths: with places of its bonds, and without what large molecules need.
+std::unique_ptr<const Schedule> make_knot_schedule(std::int32_t n_atoms, std::int32_t n_bonds,
                                                    const std::int32_t *pairs, const bool *fixed);
 
-// Makes what the careful solver needs of a network, once, for metrics. Throws TooMuchMemory. Thread-safe.
+// Of the same molecule, for the careful solver alone: also where it is a network, if it fills no more than most_bytes.
+std::unique_ptr<const Schedule> make_careful_schedule(const Schedule &s, std::int64_t most_bytes = no_limit);
+
+// Makes the order of a network that the careful solver needs, once, for metrics. Throws TooMuchMemory. Thread-safe.
 void make_careful(const Schedule &s, std::int64_t most_bytes);
 
 // Memory that it occupies, in bytes.

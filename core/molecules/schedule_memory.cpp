@@ -1,33 +1,59 @@
 #include "core/molecules/schedule_memory.hpp"
 
+#include <cstring>
+#include <type_traits>
+
 #include "core/molecules/schedule.hpp"
 
 namespace holonomic {
 
 Schedule::~Schedule() { delete memory; }
 
-void point_into(Schedule &s, const Schedule::Memory &m) {
-    s.atom_i = m.atom_i.data();
-    s.atom_j = m.atom_j.data();
-    s.fixed = m.fixed.data();
-    s.atom_of = m.atom_of.data();
-    s.slot_of = m.slot_of.data();
-    s.bond_of = m.bond_of.data();
-    s.place_of = m.place_of.data();
-    s.parent = m.parent.data();
-    s.child_start = m.child_start.data();
-    s.child = m.child.data();
-    s.pair_start = m.pair_start.data();
-    s.from = m.from.data();
-    s.to = m.to.data();
-    s.meet_start = m.meet_start.data();
-    s.meet = m.meet.data();
-    s.meet_pair = m.meet_pair.data();
-    s.meet_pair_start = m.meet_pair_start.data();
-    s.column_start = m.column_start.data();
-    s.row = m.row.data();
-    s.update_start = m.update_start.data();
-    s.update = m.update.data();
+namespace {
+
+// Calls each(pointer, list) for the arrays, those of large elements first.
+template <class Arrays, class Each>
+void for_arrays(Schedule &s, Arrays &a, const Each &each) {
+    each(s.update_start, a.update_start);
+    each(s.atom_i, a.atom_i);
+    each(s.atom_j, a.atom_j);
+    each(s.atom_of, a.atom_of);
+    each(s.slot_of, a.slot_of);
+    each(s.bond_of, a.bond_of);
+    each(s.place_of, a.place_of);
+    each(s.parent, a.parent);
+    each(s.child_start, a.child_start);
+    each(s.child, a.child);
+    each(s.pair_start, a.pair_start);
+    each(s.from, a.from);
+    each(s.to, a.to);
+    each(s.meet_start, a.meet_start);
+    each(s.meet, a.meet);
+    each(s.meet_pair, a.meet_pair);
+    each(s.meet_pair_start, a.meet_pair_start);
+    each(s.column_start, a.column_start);
+    each(s.row, a.row);
+    each(s.update, a.update);
+    each(s.fixed, a.fixed);
+}
+
+}  // namespace
+
+void point_into(Schedule &s, const ScheduleArrays &arrays) {
+    for_arrays(s, arrays, [](auto &pointer, const auto &list) { pointer = list.data(); });
+}
+
+void pack(Schedule &s, ScheduleArrays &arrays) {
+    std::size_t bytes = 0;
+    for_arrays(s, arrays, [&](auto &, const auto &list) { bytes += list.size() * sizeof list[0]; });
+    s.memory->block.resize((bytes + 7) / 8);
+    char *next = reinterpret_cast<char *>(s.memory->block.data());
+    for_arrays(s, arrays, [&](auto &pointer, auto &list) {
+        pointer = reinterpret_cast<std::remove_reference_t<decltype(pointer)>>(next);
+        if (!list.empty()) std::memcpy(next, list.data(), list.size() * sizeof list[0]);
+        next += list.size() * sizeof list[0];
+        list = {};
+    });
 }
 
 namespace {
@@ -61,11 +87,8 @@ std::size_t bytes(const Schedule::Memory::Large &l) {
 
 std::size_t bytes_of(const Schedule &s) {
     const Schedule::Memory &m = *s.memory;
-    return sizeof s + sizeof m +
-           bytes(m.atom_i, m.atom_j, m.atom_of, m.slot_of, m.bond_of, m.place_of, m.parent, m.child_start, m.child,
-                 m.pair_start, m.from, m.to, m.meet_start, m.meet, m.meet_pair, m.meet_pair_start, m.column_start,
-                 m.row, m.update, m.update_start, m.fixed) +
-           (m.large ? bytes(*m.large) : 0) + (m.careful ? static_cast<std::size_t>(m.careful->memory()) : 0);
+    return sizeof s + sizeof m + bytes(m.block) + (m.large ? bytes(*m.large) : 0) +
+           (m.careful ? bytes_of(*m.careful) : 0);
 }
 
 }  // namespace holonomic

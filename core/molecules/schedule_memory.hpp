@@ -5,7 +5,6 @@
 #include <memory>
 #include <vector>
 
-#include "core/molecules/careful_shape.hpp"
 #include "core/molecules/flat_list.hpp"
 #include "core/molecules/lists.hpp"
 #include "core/molecules/network.hpp"
@@ -15,12 +14,17 @@
 
 namespace holonomic {
 
-struct Schedule::Memory {
+// While they are made.
+struct ScheduleArrays {
     Numbers atom_i, atom_j, atom_of, slot_of, bond_of, place_of, parent, child_start, child, pair_start, from, to,
         meet_start, meet, meet_pair, meet_pair_start, column_start, row, update;
     std::vector<std::int64_t> update_start;
     std::vector<std::uint8_t> fixed;
-    std::unique_ptr<const CarefulShape> careful;
+};
+
+struct Schedule::Memory {
+    std::vector<std::int64_t> block;  // all of these, one behind the other
+    std::unique_ptr<const Schedule> careful;
 
     // What small molecules, which may be many, have no need of.
     struct Large {
@@ -38,6 +42,8 @@ struct Schedule::Memory {
 };
 
 // Lets a schedule point to its arrays, all but those of large molecules.
-void point_into(Schedule &s, const Schedule::Memory &m);
+void point_into(Schedule &s, const ScheduleArrays &arrays);
+// Moves them into the block of its memory.
+void pack(Schedule &s, ScheduleArrays &arrays);
 
 }  // namespace holonomic

@@ -12,16 +12,17 @@ namespace {
 
 bool is(const Shape &shape, std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
         const unsigned char *fixed) {
-    return shape.n_atoms == n_atoms && shape.n_bonds == n_bonds &&
-           std::equal(shape.pairs.begin(), shape.pairs.end(), pairs) &&
-           std::equal(shape.fixed.begin(), shape.fixed.end(), fixed);
+    if (shape.n_atoms != n_atoms || shape.n_bonds != n_bonds) return false;
+    bool same = std::equal(fixed, fixed + n_atoms, shape.schedule->fixed);
+    for (std::int32_t k = 0; same && k < n_bonds; ++k)
+        same = pairs[2 * k] == shape.i(k) && pairs[2 * k + 1] == shape.j(k);
+    return same;
 }
 
-std::vector<std::int32_t> spanning_walk(std::int32_t n_atoms, const std::vector<std::int32_t> &pairs) {
-    const std::int32_t n_bonds = static_cast<std::int32_t>(pairs.size() / 2);
+std::vector<std::int32_t> spanning_walk(std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs) {
     const auto at = [](std::int32_t i) { return static_cast<std::size_t>(i); };
-    std::vector<std::int32_t> start(at(n_atoms) + 1, 0), arms(pairs.size()), walk, stack{0};
-    for (const std::int32_t i : pairs) ++start[at(i) + 1];
+    std::vector<std::int32_t> start(at(n_atoms) + 1, 0), arms(2 * at(n_bonds)), walk, stack{0};
+    for (std::size_t e = 0; e < 2 * at(n_bonds); ++e) ++start[at(pairs[e]) + 1];
     for (std::int32_t i = 0; i < n_atoms; ++i) start[at(i) + 1] += start[at(i)];
     std::vector<std::int32_t> next(start.begin(), start.end() - 1);
     for (std::int32_t k = 0; k < n_bonds; ++k) {
@@ -59,8 +60,7 @@ std::int32_t Shapes::find(Form form, std::int32_t n_atoms, std::int32_t n_bonds,
         if (is((*this)[it->second], n_atoms, n_bonds, pairs, fixed)) return it->second;
 
     if (n_bonds > most_bytes / bytes_of_shape_bond) throw TooMuchMemory(n_bonds * bytes_of_shape_bond);
-    Shape shape{form, n_atoms, n_bonds, {pairs, pairs + 2 * std::int64_t{n_bonds}}, {fixed, fixed + n_atoms}, {}, {}};
-    shape.walk = spanning_walk(n_atoms, shape.pairs);
+    Shape shape{form, n_atoms, n_bonds, spanning_walk(n_atoms, n_bonds, pairs), {}};
     const std::unique_ptr<bool[]> flags(new bool[static_cast<std::size_t>(n_atoms)]);
     std::transform(fixed, fixed + n_atoms, flags.get(), [](unsigned char f) { return f != 0; });
     shape.schedule = make_schedule(n_atoms, n_bonds, pairs, flags.get(), most_bytes);
@@ -78,8 +78,7 @@ std::size_t Shapes::bytes() const {
     std::size_t bytes =
         shapes_.capacity() * sizeof(Shape) + by_hash_.size() * 40 + by_hash_.bucket_count() * sizeof(void *);
     for (const Shape &shape : shapes_)
-        bytes += shape.pairs.capacity() * sizeof(std::int32_t) + shape.fixed.capacity() +
-                 shape.walk.capacity() * sizeof(std::int32_t) + bytes_of(*shape.schedule);
+        bytes += shape.walk.capacity() * sizeof(std::int32_t) + bytes_of(*shape.schedule);
     return bytes;
 }
 

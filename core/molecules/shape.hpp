@@ -16,11 +16,12 @@ enum class Form { chain = 0, tree = 1, ring = 2, triangle = 3, other = 4 };
 struct Shape {
     Form form;
     std::int32_t n_atoms, n_bonds;
-    std::vector<std::int32_t> pairs;   // [n_bonds][2] local atoms, the lower one first
-    std::vector<unsigned char> fixed;  // [n_atoms]
-    std::vector<std::int32_t> walk;    // bonds to every atom but the first, each from one that is reached: k, or ~k if
-                                       // it is gone along from its higher atom
+    std::vector<std::int32_t> walk;  // bonds to every atom but the first, each from one that is reached: k, or ~k if it
+                                     // is gone along from its higher atom
     std::unique_ptr<const Schedule> schedule;
+    // Of a bond, local atoms, the lower one first.
+    std::int32_t i(std::int64_t bond) const { return schedule->atom_i[bond]; }
+    std::int32_t j(std::int64_t bond) const { return schedule->atom_j[bond]; }
 };
 
 class Shapes {

@@ -18,7 +18,7 @@ public:
     Partners(const holonomic::Shape &shape, const double *w, const double *lengths)
         : lengths_(lengths), of_(at(shape.n_atoms)) {
         for (std::int32_t k = 0; k < shape.n_bonds; ++k) {
-            const std::int32_t i = shape.pairs[at(2 * k)], j = shape.pairs[at(2 * k + 1)];
+            const std::int32_t i = shape.i(k), j = shape.j(k);
             if (!(w[i] > 0 && w[j] > 0)) continue;
             of_[at(i)].emplace_back(j, k);
             of_[at(j)].emplace_back(i, k);

@@ -73,7 +73,7 @@ public:
             double d[3];
             if (!bond_vector(r, box_, m_, k, d)) return of_bond(k, "has length zero");
         }
-        if (m_.shape && !m_.shape->schedule->careful) {
+        if (m_.shape && m_.shape->schedule->network && !m_.shape->schedule->careful) {
             if (otherwise == Status::no_convergence) return out_of_reach();
             return finish(make_error(Status::degenerate,
                                      "%s: the iteration for its multipliers does not converge: its bonds depend on "

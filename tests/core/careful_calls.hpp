@@ -9,6 +9,7 @@
 #define HOL_ISA twofold
 #endif
 #include "careful_case.hpp"
+#include "careful_plan.hpp"
 #include "core/kernels/careful/careful.hpp"
 
 namespace careful_case
@@ -18,13 +19,13 @@ namespace solver = holonomic::twofold::careful;
 
 struct calls {
     molecule m;
-    holonomic::CarefulShape s;
-    std::vector<double> memory, lambda, g;
+    planned s;
+    std::vector<double> lambda, g;
     holonomic::MoleculeLane lane;
     holonomic::Tally tally = empty_tally();
 
     explicit calls(const molecule &given)
-        : m(given), s(m.n_atoms, m.n_bonds, m.pairs.data()), lambda(m.n_bonds, 77.0),
+        : m(given), s(m), lambda(m.n_bonds, 77.0),
           g(3 * m.n_atoms, 78.0), lane{0, nullptr, nullptr, m.w.data(), m.length.data(), 0, 0}
     {
     }
@@ -44,9 +45,8 @@ struct calls {
     void run(const Call &call, void (*verb)(const Call &, const holonomic::CarefulPlan &,
                                             const holonomic::MoleculeLane &, double *, holonomic::Tally &))
     {
-        double *const scratch = scratch_for(s.plan(), memory);
-        verb(call, s.plan(), lane, scratch, tally);
-        require(!overrun(s.plan(), scratch), m.name, "scratch memory is overrun");
+        verb(call, s.plan, lane, s.scratch, tally);
+        require(!s.overrun(), m.name, "scratch memory is overrun");
     }
 };
 

@@ -19,7 +19,6 @@
 #include "../reference/quad.hpp"
 #include "core/caller/packed_array.hpp"
 #include "core/kernels/call.hpp"
-#include "core/molecules/careful_shape.hpp"
 
 namespace careful_case
 {
@@ -75,18 +74,6 @@ struct molecule {
         return difference(r, k);
     }
 };
-
-inline double *scratch_for(const holonomic::CarefulPlan &plan, std::vector<double> &memory)
-{
-    // One canary behind what the plan asks for.
-    memory.assign(static_cast<std::size_t>(plan.scratch_bytes) / 8 + 16, 12345.0);
-    return memory.data() + (8 - reinterpret_cast<std::uintptr_t>(memory.data()) / 8 % 8) % 8;
-}
-
-inline bool overrun(const holonomic::CarefulPlan &plan, const double *scratch)
-{
-    return scratch[plan.scratch_bytes / 8] != 12345.0;
-}
 
 inline holonomic::Tally empty_tally()
 {

@@ -43,8 +43,9 @@ inline void numbers_are_permutations(const Schedule &s)
 {
     for (int i = 0; i < s.n_atoms; ++i)
         require(s.slot_of[s.atom_of[i]] == i && s.atom_of[s.slot_of[i]] == i, "slots are no permutation");
-    for (int k = 0; k < s.n_bonds; ++k)
-        require(s.place_of[s.bond_of[k]] == k && s.bond_of[s.place_of[k]] == k, "places are no permutation");
+    std::vector<int> placed(static_cast<std::size_t>(s.n_bonds));
+    for (int p = 0; p < s.n_bonds; ++p)
+        require(placed[static_cast<std::size_t>(s.bond_of[p])]++ == 0, "places are no permutation");
     require(s.n_tree + s.n_core == s.n_bonds, "bonds are missing");
 }
 

@@ -10,7 +10,6 @@
 
 using namespace careful_case;
 using holonomic::AtomArray;
-using holonomic::CarefulShape;
 using holonomic::packed_array;
 
 namespace

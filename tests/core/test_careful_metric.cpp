@@ -3,6 +3,7 @@
 #include "core/kernels/careful/careful.hpp"
 
 #include "careful_case.hpp"
+#include "careful_plan.hpp"
 #include "careful_shapes.hpp"
 
 using namespace careful_case;
@@ -45,9 +46,7 @@ struct results {
 
 results metric_of(molecule &m)
 {
-    const holonomic::CarefulShape shape(m.n_atoms, m.n_bonds, m.pairs.data());
-    std::vector<double> memory;
-    double *const scratch = scratch_for(shape.plan(), memory);
+    const planned shape(m);
     const holonomic::MoleculeLane lane{0, nullptr, nullptr, m.w.data(), m.length.data(), 0, 0};
     results found;
     found.force.assign(3 * m.n_atoms, 78.0);
@@ -57,8 +56,8 @@ results metric_of(molecule &m)
     call.kT = 2;
     call.log_det = &found.log_det;
     call.log_det_z = &found.log_det_z;
-    holonomic::twofold::careful::metric(call, shape.plan(), lane, scratch, found.tally);
-    require(!overrun(shape.plan(), scratch), m.name, "scratch memory is overrun");
+    holonomic::twofold::careful::metric(call, shape.plan, lane, shape.scratch, found.tally);
+    require(!shape.overrun(), m.name, "scratch memory is overrun");
     return found;
 }
 

@@ -3,8 +3,8 @@
 // once for numbers of four times the precision, does the molecule again.
 //
 // Each function reads the molecule's atoms in any layout and box, solves, writes the outputs of the call and adds to
-// the tally. It notes a bad molecule in the tally and writes nothing of it. `scratch` has plan.scratch_bytes, aligned
-// to 64. G of atoms that the lane marks as shared is not written, nor are r and v of fixed atoms.
+// the tally. It notes a bad molecule in the tally and writes nothing of it. `scratch` has careful_scratch_bytes() less
+// the plan's, aligned to 64. G of atoms that the lane marks as shared is not written, nor are r and v of fixed atoms.
 #pragma once
 
 #include "core/kernels/call.hpp"

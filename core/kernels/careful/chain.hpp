@@ -1,5 +1,4 @@
-// A linear chain for the careful solver, which needs a plan as of any tree. Chains have no schedule where a plan could
-// stand, and few need one: it is made on the spot.
+// A linear chain for the careful solver, which needs a plan as of any tree. Few need one: it is made on the spot.
 #pragma once
 
 #include "core/kernels/careful/careful.hpp"
@@ -40,7 +39,7 @@ struct ChainPlan {
             length[k] = chain.length ? chain.length[k] : chain.length_uniform;
         }
         plan = {n + 1, n,       atom_i, atom_j,  arm_start, arms,         table_start, n > 1 ? 2 : 1, parent,
-                n,     hanging, 0,      nullptr, place,     column_start, nullptr,     nullptr,       0};
+                n,     hanging, 0,      nullptr, place,     column_start, nullptr,     nullptr};
         lane = {chain.first_atom, chain.atoms, nullptr, w, length, chain.first_bond, chain.chain};
     }
 };

@@ -1,4 +1,4 @@
-// How the careful solver goes through a molecule: plain arrays, made once per shape (core/molecules/careful_shape.hpp).
+// How the careful solver goes through a molecule: plain arrays.
 #pragma once
 
 #include <stdint.h>
@@ -22,7 +22,6 @@ struct CarefulPlan {
     const int32_t *column_start;      // [n_core+1] columns of the factor, below the diagonal
     const int32_t *rows;              // [column_start[n_core]] ascending in each column
     const int32_t *ring;              // [n_bonds] in their order round the ring; nullptr if it is no bare ring
-    int64_t scratch_bytes;            // of any function of the careful solver
 };
 
 // Molecules of more bonds are not done again in four times the precision, which would take a kilobyte per bond.

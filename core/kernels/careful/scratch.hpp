@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/kernels/careful/plan.hpp"
+#include "core/kernels/molecules/schedule.hpp"
 
 namespace holonomic {
 
@@ -15,9 +16,25 @@ inline constexpr int64_t careful_scratch_bytes(int64_t n_atoms, int64_t n_bonds,
            8 * (n_core + fill) + 64 * most_arrays;
 }
 
-inline int64_t careful_scratch_bytes(const CarefulPlan &plan) {
-    return careful_scratch_bytes(plan.n_atoms, plan.n_bonds, plan.most_arms, plan.table_start[plan.n_atoms],
-                                 plan.n_core, plan.column_start[plan.n_core]);
+// What plan_of() takes.
+inline int64_t careful_plan_bytes(const Schedule &s) {
+    return 16 * static_cast<int64_t>(s.n_atoms) + 12 * static_cast<int64_t>(s.n_bonds) + 64 * 6;
+}
+
+// Of a plan and a verb.
+inline int64_t careful_scratch_bytes(const Schedule &s) {
+    int64_t most_arms = 0, table = 0;
+    for (int32_t slot = 0; slot < s.n_atoms; ++slot) {
+        const int32_t c = slot - s.n_tree;
+        const int64_t above = c < 0           ? 1
+                              : s.n_core == 0 ? 0
+                                              : s.meet_start[c + 1] - s.meet_start[c],
+                      arms = s.child_start[slot + 1] - s.child_start[slot] + above;
+        most_arms = arms > most_arms ? arms : most_arms;
+        table += arms * arms;
+    }
+    return careful_plan_bytes(s) +
+           careful_scratch_bytes(s.n_atoms, s.n_bonds, most_arms, table, s.n_core, s.column_start[s.n_core]);
 }
 
 }  // namespace holonomic

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/kernels/careful/careful.hpp"
+#include "core/kernels/careful/plan_of.hpp"
 #include "core/kernels/molecules/schedule.hpp"
 
 namespace holonomic::HOL_ISA::graph {
@@ -28,7 +29,10 @@ template <class Call>
 HOL_NOINLINE void solve_doubtful(const Call &call, const Schedule &schedule, const MoleculeLane *lane, unsigned rest,
                                  double *scratch, Tally &tally) {
     double *const aligned = reinterpret_cast<double *>((reinterpret_cast<uintptr_t>(scratch) + 63) / 64 * 64);
-    for (; rest; rest &= rest - 1) careful_one(call, *schedule.careful, lane[__builtin_ctz(rest)], aligned, tally);
+    careful::Memory memory = {reinterpret_cast<char *>(aligned)};
+    const CarefulPlan plan = careful::plan_of(*schedule.careful_order(), memory);
+    for (; rest; rest &= rest - 1)
+        careful_one(call, plan, lane[__builtin_ctz(rest)], reinterpret_cast<double *>(memory.next), tally);
 }
 
 }  // namespace holonomic::HOL_ISA::graph

@@ -24,7 +24,6 @@ constexpr int32_t arm_step = 8, shortest_arm = 5 * arm_step + 1, longest_arm = 1
 constexpr int32_t most_decomposed = 7;
 static constexpr int32_t values_of_joint(int32_t k) { return k > most_decomposed ? 9 + 3 * k : k * (k - 1) / 2; }
 
-struct CarefulPlan;  // core/kernels/careful/plan.hpp
 struct FlatList;     // core/kernels/molecules/list/flat_list.hpp
 struct PathPlan;     // core/kernels/molecules/paths/paths.hpp
 struct NetworkPlan;  // core/kernels/molecules/network/network_plan.hpp
@@ -61,7 +60,7 @@ struct Schedule {
     const int32_t *atom_of;   // [n_atoms] local atom of a slot
     const int32_t *slot_of;   // [n_atoms] and back
     const int32_t *bond_of;   // [n_bonds] local bond of a place
-    const int32_t *place_of;  // [n_bonds] and back
+    const int32_t *place_of;  // [n_bonds] and back, of knots of paths alone
 
     // Trees: the bond vector at place s points from slot parent[s] to slot s, away from the root or the core.
     const int32_t *parent;       // [n_tree] slot
@@ -83,8 +82,9 @@ struct Schedule {
     // A symmetric elimination of the core's matrix, column after column. Off-diagonal entries e of column p are
     // column_start[p] .. column_start[p + 1], with rows row[e] > p, ascending. Column p takes from the entry
     // (row[a], row[b]), a > b, its product a b / pivot: entry update[update_start[p] + (a (a-1) / 2 + b)], a and b
-    // counted from the column's start; and from the diagonal elements of all row[a]. Of a graph that has a list there
-    // is none.
+    // counted from the column's start; and from the diagonal elements of all row[a]. The list of
+    // updates is empty where nobody goes through it: of a graph that has a list, or that is for the careful solver
+    // alone.
     const int32_t *column_start;  // [n_core + 1]
     const int32_t *row;           // [n_entries]
     const int64_t *update_start;  // [n_core + 1]
@@ -143,8 +143,11 @@ struct Schedule {
     const int32_t *share_start;  // [n_shares + 1] arms that one thread works on at a time
     int32_t n_shares;
 
-    const CarefulPlan *careful;                         // the same molecule for the careful solver; not of a knot
-    mutable const CarefulPlan *late_careful = nullptr;  // of a network, once a metric has been asked for
+    // Of a network: an order of elimination for the careful solver, if it fills little; and one that is made once a
+    // metric has been asked for.
+    const Schedule *careful;
+    mutable const Schedule *late_careful = nullptr;
+    const Schedule *careful_order() const { return !network ? this : careful ? careful : late_careful; }
 
     Schedule() = default;
     Schedule(const Schedule &) = delete;

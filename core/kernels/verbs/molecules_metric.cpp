@@ -1,5 +1,6 @@
 // Metric determinant and Fixman force of molecules that are no chains: of trees and bare rings in
 // lanes, of others one by one by the careful solver.
+#include "core/kernels/careful/plan_of.hpp"
 #include "core/kernels/molecules/metric/ring_metric.hpp"
 #include "core/kernels/molecules/metric/tree_metric.hpp"
 #include "core/kernels/verbs/verbs.hpp"
@@ -12,8 +13,9 @@ namespace {
 
 void careful_metric(const MetricCall &call, const Schedule &schedule, const MoleculeLane &lane, double *scratch,
                     Tally &tally) {
-    const CarefulPlan &plan = *(schedule.careful ? schedule.careful : schedule.late_careful);
-    HOL_CAREFUL::careful::metric(call, plan, lane, scratch, tally);
+    careful::Memory memory = {reinterpret_cast<char *>(scratch)};
+    const CarefulPlan plan = careful::plan_of(*schedule.careful_order(), memory);
+    HOL_CAREFUL::careful::metric(call, plan, lane, reinterpret_cast<double *>(memory.next), tally);
 }
 
 // Shape: TreeMetric or RingMetric.
