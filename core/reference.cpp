@@ -39,7 +39,7 @@ void Reference::lay_out(const Molecule &m, const AtomArray &to, const Place &pla
             for (double &component : d) component = -component;
         if (!std::isfinite(d[0] + d[1] + d[2])) throw of_bond(chains_, m, k, Status::not_finite, "is not finite");
     };
-    write_atom(to, place(0), at);
+    write_atom(to, place(m.shape ? m.shape->start() : 0), at);
     if (!m.shape) {
         for (std::int64_t k = 0; k < m.n_bonds; ++k) {
             vector_of(k);
@@ -48,14 +48,13 @@ void Reference::lay_out(const Molecule &m, const AtomArray &to, const Place &pla
         }
         return;
     }
-    for (const std::int32_t step : m.shape->walk) {
-        const bool back = step < 0;
-        const std::int64_t k = back ? ~step : step, from = back ? m.j(k) : m.i(k), end = back ? m.i(k) : m.j(k);
+    m.shape->walk([&](std::int64_t k, bool back) {
+        const std::int64_t from = back ? m.j(k) : m.i(k), end = back ? m.i(k) : m.j(k);
         vector_of(k);
         read_atom(to, place(from), at);
         for (int c = 0; c < 3; ++c) at[c] = back ? at[c] - d[c] : at[c] + d[c];
         write_atom(to, place(end), at);
-    }
+    });
     if (m.n_bonds < m.n_atoms) return;
     for (std::int64_t k = 0; k < m.n_bonds; ++k) {
         vector_of(k);

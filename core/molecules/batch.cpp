@@ -5,6 +5,7 @@
 
 #include "core/molecules/closable.hpp"
 #include "core/molecules/memory_limit.hpp"
+#include "core/molecules/schedule_memory.hpp"
 #include "core/rigid/bodies.hpp"
 #include "core/rigid/cliques.hpp"
 
@@ -30,8 +31,9 @@ bool alike(const FoundMolecules &found, std::size_t m, std::size_t n) {
 }  // namespace
 
 Batch::Batch(Chains &chains)
-    : chains_(chains), before_(chains.groups_.mark()), kinds_before_(chains.kinds_.mark()),
-      n_unconstrained_(chains.unconstrained_.size()), n_active_(chains.active_.size()) {}
+    : chains_(chains), work_(std::make_unique<ScheduleWork>()), before_(chains.groups_.mark()),
+      kinds_before_(chains.kinds_.mark()), n_unconstrained_(chains.unconstrained_.size()),
+      n_active_(chains.active_.size()) {}
 
 Batch::~Batch() {
     if (committed_) return;
@@ -165,9 +167,9 @@ std::int32_t Batch::shape_of(const FoundMolecules &found, std::size_t m, std::in
     const std::int32_t before = chains_.shapes_.size();
     if (room_ < 0) room_ = memory_left(chains_);
     try {
-        const std::int32_t shape = chains_.shapes_.find(molecule.form, molecule.n_atoms, molecule.n_bonds,
-                                                        &found.pairs[2 * at(molecule.first_bond)],
-                                                        &found.fixed[at(molecule.first_atom)], likely, room_);
+        const std::int32_t shape = chains_.shapes_.find(
+            molecule.form, molecule.n_atoms, molecule.n_bonds, &found.pairs[2 * at(molecule.first_bond)],
+            &found.fixed[at(molecule.first_atom)], likely, room_, work_.get());
         if (shape == before)
             room_ = std::max<std::int64_t>(
                 room_ - static_cast<std::int64_t>(bytes_of(*chains_.shapes_[shape].schedule)), 0);

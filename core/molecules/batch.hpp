@@ -38,6 +38,7 @@ private:
                         const double *lengths) const;
 
     Chains &chains_;
+    const std::unique_ptr<ScheduleWork> work_;
     const Groups::Mark before_;
     const Kinds::Mark kinds_before_;
     const std::size_t n_unconstrained_, n_active_;

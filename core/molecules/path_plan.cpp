@@ -180,9 +180,9 @@ private:
                 pairs.push_back(j == 0 ? from[l] : atoms + l * reach + j - 1);
                 pairs.push_back(atoms + l * reach + j);
             }
-        const std::unique_ptr<bool[]> fixed(new bool[at(n_atoms)]());
+        std::vector<unsigned char> fixed(at(n_atoms), 0);
         for (std::int32_t i = 0; i < atoms; ++i) fixed[at(i)] = fixed_atoms[i] != 0;
-        return make_knot_schedule(n_atoms, bonds + legs * reach, pairs.data(), fixed.get());
+        return make_knot_schedule(n_atoms, bonds + legs * reach, pairs.data(), fixed.data());
     }
 
     const Schedule &s_;

@@ -39,20 +39,31 @@ void for_arrays(Schedule &s, Arrays &a, const Each &each) {
 
 }  // namespace
 
-void point_into(Schedule &s, const ScheduleArrays &arrays) {
-    for_arrays(s, arrays, [](auto &pointer, const auto &list) { pointer = list.data(); });
+void point_into(Schedule &s, const ScheduleWork &work) {
+    for_arrays(s, work, [](auto &pointer, const auto &list) { pointer = list.data(); });
 }
 
-void pack(Schedule &s, ScheduleArrays &arrays) {
+void clear(ScheduleWork &work) {
+    Schedule any;
+    for_arrays(any, work, [](auto &, auto &list) { list.clear(); });
+}
+
+// What a large one was made in is given back at once.
+void pack(Schedule &s, ScheduleWork &work) {
+    if (s.n_bonds > largest_in_lanes) {
+        for (Numbers *const list :
+             {&work.bonds.start, &work.bonds.item, &work.upper_bond, &work.degree, &work.stack, &work.next})
+            *list = {};
+    }
     std::size_t bytes = 0;
-    for_arrays(s, arrays, [&](auto &, const auto &list) { bytes += list.size() * sizeof list[0]; });
+    for_arrays(s, work, [&](auto &, const auto &list) { bytes += list.size() * sizeof list[0]; });
     s.memory->block.resize((bytes + 7) / 8);
     char *next = reinterpret_cast<char *>(s.memory->block.data());
-    for_arrays(s, arrays, [&](auto &pointer, auto &list) {
+    for_arrays(s, work, [&](auto &pointer, auto &list) {
         pointer = reinterpret_cast<std::remove_reference_t<decltype(pointer)>>(next);
         if (!list.empty()) std::memcpy(next, list.data(), list.size() * sizeof list[0]);
         next += list.size() * sizeof list[0];
-        list = {};
+        if (s.n_bonds > largest_in_lanes) list = {};
     });
 }
 

@@ -14,12 +14,15 @@
 
 namespace holonomic {
 
-// While they are made.
-struct ScheduleArrays {
+// What a schedule is made in, one after the other: its arrays, and what these are found with.
+struct ScheduleWork {
     Numbers atom_i, atom_j, atom_of, slot_of, bond_of, place_of, parent, child_start, child, pair_start, from, to,
         meet_start, meet, meet_pair, meet_pair_start, column_start, row, update;
     std::vector<std::int64_t> update_start;
     std::vector<std::uint8_t> fixed;
+
+    Lists bonds;  // of each atom
+    Numbers upper_bond, degree, stack, next;
 };
 
 struct Schedule::Memory {
@@ -42,8 +45,9 @@ struct Schedule::Memory {
 };
 
 // Lets a schedule point to its arrays, all but those of large molecules.
-void point_into(Schedule &s, const ScheduleArrays &arrays);
+void point_into(Schedule &s, const ScheduleWork &work);
 // Moves them into the block of its memory.
-void pack(Schedule &s, ScheduleArrays &arrays);
+void pack(Schedule &s, ScheduleWork &work);
+void clear(ScheduleWork &work);
 
 }  // namespace holonomic

@@ -50,7 +50,8 @@ std::vector<std::int32_t> spanning_walk(std::int32_t n_atoms, std::int32_t n_bon
 }  // namespace
 
 std::int32_t Shapes::find(Form form, std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
-                          const unsigned char *fixed, std::int32_t likely, std::int64_t most_bytes) {
+                          const unsigned char *fixed, std::int32_t likely, std::int64_t most_bytes,
+                          ScheduleWork *work) {
     if (likely >= 0 && is((*this)[likely], n_atoms, n_bonds, pairs, fixed)) return likely;
     std::uint64_t hash = mix(static_cast<std::uint64_t>(n_bonds), static_cast<std::uint64_t>(n_atoms));
     for (std::int64_t k = 0; k < 2 * std::int64_t{n_bonds}; ++k) hash = mix(hash, static_cast<std::uint64_t>(pairs[k]));
@@ -60,10 +61,9 @@ std::int32_t Shapes::find(Form form, std::int32_t n_atoms, std::int32_t n_bonds,
         if (is((*this)[it->second], n_atoms, n_bonds, pairs, fixed)) return it->second;
 
     if (n_bonds > most_bytes / bytes_of_shape_bond) throw TooMuchMemory(n_bonds * bytes_of_shape_bond);
-    Shape shape{form, n_atoms, n_bonds, spanning_walk(n_atoms, n_bonds, pairs), {}};
-    const std::unique_ptr<bool[]> flags(new bool[static_cast<std::size_t>(n_atoms)]);
-    std::transform(fixed, fixed + n_atoms, flags.get(), [](unsigned char f) { return f != 0; });
-    shape.schedule = make_schedule(n_atoms, n_bonds, pairs, flags.get(), most_bytes);
+    Shape shape{form, n_atoms, n_bonds, {}, {}};
+    if (n_bonds >= n_atoms) shape.round_cycles = spanning_walk(n_atoms, n_bonds, pairs);
+    shape.schedule = make_schedule(n_atoms, n_bonds, pairs, fixed, most_bytes, work);
     shapes_.push_back(std::move(shape));
     try {
         by_hash_.emplace(hash, size() - 1);
@@ -78,7 +78,7 @@ std::size_t Shapes::bytes() const {
     std::size_t bytes =
         shapes_.capacity() * sizeof(Shape) + by_hash_.size() * 40 + by_hash_.bucket_count() * sizeof(void *);
     for (const Shape &shape : shapes_)
-        bytes += shape.walk.capacity() * sizeof(std::int32_t) + bytes_of(*shape.schedule);
+        bytes += shape.round_cycles.capacity() * sizeof(std::int32_t) + bytes_of(*shape.schedule);
     return bytes;
 }
 

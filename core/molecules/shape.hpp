@@ -16,12 +16,20 @@ enum class Form { chain = 0, tree = 1, ring = 2, triangle = 3, other = 4 };
 struct Shape {
     Form form;
     std::int32_t n_atoms, n_bonds;
-    std::vector<std::int32_t> walk;  // bonds to every atom but the first, each from one that is reached: k, or ~k if it
-                                     // is gone along from its higher atom
+    std::vector<std::int32_t> round_cycles;  // with cycles, the steps of walk(): k, or ~k if it goes back
     std::unique_ptr<const Schedule> schedule;
     // Of a bond, local atoms, the lower one first.
     std::int32_t i(std::int64_t bond) const { return schedule->atom_i[bond]; }
     std::int32_t j(std::int64_t bond) const { return schedule->atom_j[bond]; }
+    // Calls each(bond, back) for bonds to every atom but start(), each from one that is reached; back: it goes along
+    // from its higher atom.
+    std::int32_t start() const { return schedule->n_core > 0 ? 0 : schedule->atom_of[schedule->n_tree]; }
+    template <class Each>
+    void walk(const Each &each) const {
+        for (std::int32_t slot = schedule->n_core > 0 ? 0 : schedule->n_tree; slot-- > 0;)
+            each(schedule->bond_of[slot], i(schedule->bond_of[slot]) == schedule->atom_of[slot]);
+        for (const std::int32_t step : round_cycles) each(step < 0 ? ~step : step, step < 0);
+    }
 };
 
 class Shapes {
@@ -29,7 +37,8 @@ public:
     // The shape with these bonds and fixed atoms; a new one if there is none yet. Looks at `likely` first. Throws
     // std::bad_alloc, or TooMuchMemory where a new one would take more than most_bytes; then nothing is changed.
     std::int32_t find(Form form, std::int32_t n_atoms, std::int32_t n_bonds, const std::int32_t *pairs,
-                      const unsigned char *fixed, std::int32_t likely, std::int64_t most_bytes = no_limit);
+                      const unsigned char *fixed, std::int32_t likely, std::int64_t most_bytes = no_limit,
+                      ScheduleWork *work = nullptr);
 
     const Shape &operator[](std::int32_t shape) const { return shapes_[static_cast<std::size_t>(shape)]; }
     std::int32_t size() const { return static_cast<std::int32_t>(shapes_.size()); }

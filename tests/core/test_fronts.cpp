@@ -136,9 +136,9 @@ struct Matrix {
 
 std::unique_ptr<const holonomic::Schedule> network_of(const Bonds &b)
 {
-    const std::unique_ptr<bool[]> fixed(new bool[at(b.n_atoms)]());
+    std::vector<unsigned char> fixed(at(b.n_atoms), 0);
     return holonomic::make_schedule(b.n_atoms, static_cast<std::int32_t>(b.pairs.size() / 2), b.pairs.data(),
-                                    fixed.get(), holonomic::no_limit);
+                                    fixed.data(), holonomic::no_limit);
 }
 
 typedef bool (*Solve)(const holonomic::NetworkPlan &, bool, const Terms &, double, int, std::vector<double> &);

@@ -1,0 +1,262 @@
+#include "core/molecules/schedule_maker.hpp"
+
+#include <algorithm>
+
+#include "core/molecules/flat_list.hpp"
+
+namespace holonomic {
+
+void ScheduleMaker::make() {
+    invert(
+        s_.n_atoms, s_.n_bonds, [&](std::int32_t k, int end) { return (end ? m_.atom_j : m_.atom_i)[at(k)]; },
+        m_.bonds);
+    strip();
+    number_trees();
+    if (s_.n_core == 0) {
+        s_.type = Schedule::tree;
+    } else if (s_.n_core == s_.n_core_atoms && (s_.n_tree == 0 || is_simple_ring())) {
+        s_.type = s_.n_bonds == 3 ? Schedule::triangle : Schedule::ring;
+        number_ring();
+    } else {
+        s_.type = Schedule::graph;
+        number_core();
+    }
+    invert_numbers();
+    list_children();
+    m_.column_start.assign(1, 0);
+    if (s_.n_core == 0) return;
+    list_meetings();
+    if (is_network_) return;
+    list_fill();
+    const bool listed = for_ == molecule && s_.type == Schedule::graph && takes_flat_list(s_);
+    if (!listed && for_ != careful) list_updates();
+}
+
+// Takes away atoms with one bond until none is left: upper_bond_ of those. Of a tree the last two atoms would take
+// each other away; the one that is left is the atom with the largest number of those that had one bond.
+void ScheduleMaker::strip() {
+    Numbers &degree = m_.degree, &leaves = m_.stack;
+    degree.resize(at(s_.n_atoms));
+    leaves.clear();
+    upper_bond_.assign(at(s_.n_atoms), -1);
+    const bool is_tree = s_.n_bonds == s_.n_atoms - 1;
+    std::int32_t root = -1;
+    for (std::int32_t i = 0; i < s_.n_atoms; ++i) {
+        degree[at(i)] = bonds_.size(i);
+        if (is_tree && degree[at(i)] == 1) root = i;
+    }
+    for (std::int32_t i = 0; i < s_.n_atoms; ++i)
+        if (degree[at(i)] == 1 && i != root && !stays(i)) leaves.push_back(i);
+    s_.n_tree = 0;
+    while (!leaves.empty()) {
+        const std::int32_t i = leaves.back();
+        leaves.pop_back();
+        for (const std::int32_t *k = bonds_.begin(i); k != bonds_.end(i); ++k) {
+            const std::int32_t j = other_end(*k, i);
+            if (upper_bond_[at(j)] == *k) continue;  // a child's
+            upper_bond_[at(i)] = *k;
+            if (--degree[at(j)] == 1 && j != root && !stays(j)) leaves.push_back(j);
+        }
+        ++s_.n_tree;
+    }
+    s_.n_core = s_.n_bonds - s_.n_tree;
+    s_.n_core_atoms = is_tree ? 0 : s_.n_atoms - s_.n_tree;
+}
+
+// Post-order of the trees below each atom that was not taken away, children in the order of their bonds.
+void ScheduleMaker::number_trees() {
+    Numbers &stack = m_.stack, &next = m_.next;
+    next.assign(bonds_.start.begin(), bonds_.start.end() - 1);
+    for (std::int32_t top = 0; top < s_.n_atoms; ++top) {
+        if (upper_bond_[at(top)] >= 0) continue;
+        stack.assign(1, top);
+        while (!stack.empty()) {
+            const std::int32_t i = stack.back();
+            std::int32_t &k = next[at(i)];
+            while (k < bonds_.start[at(i) + 1] && !is_child(bonds_.item[at(k)], i)) ++k;
+            if (k < bonds_.start[at(i) + 1]) {
+                stack.push_back(other_end(bonds_.item[at(k++)], i));
+                continue;
+            }
+            stack.pop_back();
+            if (i == top) break;
+            m_.atom_of.push_back(i);
+            m_.bond_of.push_back(upper_bond_[at(i)]);
+        }
+    }
+    for (std::int32_t i = 0; i < s_.n_atoms; ++i)
+        if (upper_bond_[at(i)] < 0) m_.atom_of.push_back(i);
+}
+
+// Small, and with few trees at each of its atoms.
+bool ScheduleMaker::is_simple_ring() const {
+    if (s_.n_bonds > largest_graph_in_lanes) return false;
+    for (std::int32_t i = 0; i < s_.n_atoms; ++i)
+        if (upper_bond_[at(i)] < 0 && bonds_.size(i) > 2 + most_on_ring) return false;
+    return true;
+}
+
+// Round from the core's first atom in the direction of its first bond.
+void ScheduleMaker::number_ring() {
+    const std::int32_t first = m_.atom_of[at(s_.n_tree)];
+    m_.atom_of.resize(at(s_.n_tree));
+    std::int32_t atom = first, bond = -1;
+    do {
+        const std::int32_t *k = bonds_.begin(atom);
+        while (*k == bond || is_child(*k, atom)) ++k;
+        bond = *k;
+        m_.atom_of.push_back(atom);
+        m_.bond_of.push_back(bond);
+        atom = other_end(bond, atom);
+    } while (atom != first);
+}
+
+void ScheduleMaker::number_core() {
+    Numbers core, core_number(at(s_.n_bonds), -1);
+    for (std::int32_t k = 0; k < s_.n_bonds; ++k) {
+        const std::int32_t i = m_.atom_i[at(k)], j = m_.atom_j[at(k)];
+        if (upper_bond_[at(i)] == k || upper_bond_[at(j)] == k) continue;
+        core_number[at(k)] = static_cast<std::int32_t>(core.size());
+        core.push_back(k);
+    }
+    if (for_ == knot || for_ == careful || s_.n_bonds <= largest_graph_in_lanes)
+        return order_core(core, core_number, most_bytes_);
+    is_network_ = for_ == network || has_long_strands(core);
+    try {
+        const std::int64_t most = most_bytes_of_list * static_cast<std::int64_t>(core.size());
+        if (!is_network_) return order_core(core, core_number, std::min(most_bytes_, most));
+    } catch (const TooMuchMemory &) {
+        is_network_ = true;
+    }
+    m_.bond_of.insert(m_.bond_of.end(), core.begin(), core.end());
+}
+
+void ScheduleMaker::order_core(const Numbers &core, const Numbers &core_number, std::int64_t most_bytes) {
+    check_atoms(core, most_bytes);
+    std::vector<Numbers> neighbours(core.size());
+    for (std::size_t p = 0; p < core.size(); ++p)
+        for (const std::int32_t i : {m_.atom_i[at(core[p])], m_.atom_j[at(core[p])]})
+            for (const std::int32_t *l = bonds_.begin(i); l != bonds_.end(i); ++l)
+                if (*l != core[p] && core_number[at(*l)] >= 0) neighbours[p].push_back(core_number[at(*l)]);
+    for (const std::int32_t p : minimum_degree(std::move(neighbours), Ties::latest, most_bytes))
+        m_.bond_of.push_back(core[at(p)]);
+}
+
+// Between atoms with other than two bonds of the core, or with trees.
+bool ScheduleMaker::has_long_strands(const Numbers &core) const {
+    Numbers degree(at(s_.n_atoms));
+    for (const std::int32_t k : core)
+        for (const std::int32_t i : {m_.atom_i[at(k)], m_.atom_j[at(k)]}) ++degree[at(i)];
+    std::int64_t ends = 0;
+    for (std::int32_t i = 0; i < s_.n_atoms; ++i)
+        if (degree[at(i)] > 2 || bonds_.size(i) > 2) ends += degree[at(i)];
+    return ends >= 2 * many_strands && 2 * static_cast<std::int64_t>(core.size()) >= long_strand * ends;
+}
+
+// Bonds at one atom are all neighbours of each other: n of them fill at least what n columns do.
+void ScheduleMaker::check_atoms(const Numbers &core, std::int64_t most_bytes) const {
+    Numbers degree(at(s_.n_atoms));
+    std::int64_t bytes = 0;
+    for (const std::int32_t k : core)
+        for (const std::int32_t i : {m_.atom_i[at(k)], m_.atom_j[at(k)]}) bytes += 8 * std::int64_t{++degree[at(i)]};
+    if (bytes > most_bytes) throw TooMuchMemory(bytes);
+}
+
+void ScheduleMaker::invert_numbers() {
+    m_.slot_of.resize(at(s_.n_atoms));
+    for (std::int32_t i = 0; i < s_.n_atoms; ++i) m_.slot_of[at(m_.atom_of[at(i)])] = i;
+    if (for_ == knot) m_.place_of.resize(at(s_.n_bonds));
+    for (std::int32_t k = 0; for_ == knot && k < s_.n_bonds; ++k) m_.place_of[at(m_.bond_of[at(k)])] = k;
+    m_.parent.resize(at(s_.n_tree));
+    for (std::int32_t k = 0; k < s_.n_tree; ++k)
+        m_.parent[at(k)] = m_.slot_of[at(other_end(m_.bond_of[at(k)], m_.atom_of[at(k)]))];
+    const bool round = s_.type == Schedule::ring || s_.type == Schedule::triangle;
+    for (std::int32_t p = 0; p < s_.n_core; ++p) {
+        const std::int32_t k = m_.bond_of[at(s_.n_tree + p)];
+        const std::int32_t i = m_.slot_of[at(m_.atom_i[at(k)])], j = m_.slot_of[at(m_.atom_j[at(k)])];
+        m_.from.push_back(round ? s_.n_tree + p : i);
+        m_.to.push_back(round ? s_.n_tree + (p + 1) % s_.n_core : j);
+    }
+}
+
+void ScheduleMaker::list_children() {
+    m_.child_start.assign(at(s_.n_atoms) + 1, 0);
+    for (const std::int32_t p : m_.parent) ++m_.child_start[at(p)];
+    m_.pair_start.resize(at(s_.n_atoms) + 1);
+    m_.pair_start[0] = 0;
+    s_.max_children = s_.max_joint = 0;
+    for (std::int32_t i = 0, first = 0; i < s_.n_atoms; ++i) {
+        const std::int32_t k = m_.child_start[at(i)];
+        m_.child_start[at(i)] = first += k;
+        const bool decomposed = i >= s_.n_tree || k <= most_decomposed;
+        m_.pair_start[at(i) + 1] = m_.pair_start[at(i)] + (decomposed ? k * (k - 1) / 2 : values_of_joint(k));
+        s_.max_children = std::max(s_.max_children, k);
+        if (decomposed) s_.max_joint = std::max(s_.max_joint, k);
+    }
+    s_.n_pairs = m_.pair_start[at(s_.n_atoms)];
+    m_.child_start[at(s_.n_atoms)] = s_.n_tree;
+    m_.child.resize(at(s_.n_tree));
+    for (std::int32_t k = s_.n_tree; k-- > 0;) m_.child[at(--m_.child_start[at(m_.parent[at(k)])])] = k;
+}
+
+// Which bonds meet at each atom of the core.
+void ScheduleMaker::list_meetings() {
+    Lists meet = invert(s_.n_core_atoms, s_.n_core,
+                        [&](std::int32_t p, int end) { return (end ? m_.to : m_.from)[at(p)] - s_.n_tree; });
+    s_.max_core_bonds = 0;
+    for (std::int32_t c = 0; c < s_.n_core_atoms; ++c) {
+        s_.max_core_bonds = std::max(s_.max_core_bonds, meet.size(c));
+        for (std::int32_t m = meet.start[at(c)]; m < meet.start[at(c) + 1]; ++m) {
+            std::int32_t &p = meet.item[at(m)];
+            p = 2 * p + (m_.to[at(p)] == s_.n_tree + c ? 1 : 0);
+        }
+    }
+    m_.meet_start = std::move(meet.start);
+    m_.meet = std::move(meet.item);
+}
+
+// Calls each(p, q) for all pairs p != q of bonds that meet at atom c of the core.
+template <class Each>
+void ScheduleMaker::for_meetings(std::int32_t c, const Each &each) const {
+    for (std::int32_t a = m_.meet_start[at(c)]; a < m_.meet_start[at(c) + 1]; ++a)
+        for (std::int32_t b = m_.meet_start[at(c)]; b < m_.meet_start[at(c) + 1]; ++b)
+            if (a != b) each(m_.meet[at(a)] / 2, m_.meet[at(b)] / 2, b < a);
+}
+
+// The factor's pattern.
+void ScheduleMaker::list_fill() {
+    std::vector<Numbers> neighbours(at(s_.n_core));
+    for (std::int32_t c = 0; c < s_.n_core_atoms; ++c)
+        for_meetings(c, [&](std::int32_t p, std::int32_t q, bool) { neighbours[at(p)].push_back(q); });
+    Fill fill = fill_of(neighbours);
+    m_.column_start = std::move(fill.column_start);
+    m_.row = std::move(fill.row);
+    s_.n_entries = static_cast<std::int32_t>(m_.row.size());
+    m_.meet_pair_start.assign(1, 0);
+    for (std::int32_t c = 0; c < s_.n_core_atoms; ++c) {
+        for_meetings(c, [&](std::int32_t p, std::int32_t q, bool before) {
+            if (before) m_.meet_pair.push_back(entry(std::max(p, q), std::min(p, q)));
+        });
+        m_.meet_pair_start.push_back(static_cast<std::int32_t>(m_.meet_pair.size()));
+    }
+}
+
+std::int32_t ScheduleMaker::entry(std::int32_t row, std::int32_t column) const {
+    const auto begin = m_.row.begin();
+    return static_cast<std::int32_t>(
+        std::lower_bound(begin + m_.column_start[at(column)], begin + m_.column_start[at(column) + 1], row) - begin);
+}
+
+void ScheduleMaker::list_updates() {
+    s_.max_column = 0;
+    m_.update_start.assign(1, 0);
+    for (std::int32_t p = 0; p < s_.n_core; ++p) {
+        const std::int32_t first = m_.column_start[at(p)], end = m_.column_start[at(p) + 1];
+        s_.max_column = std::max(s_.max_column, end - first);
+        for (std::int32_t a = first; a < end; ++a)
+            for (std::int32_t b = first; b < a; ++b) m_.update.push_back(entry(m_.row[at(a)], m_.row[at(b)]));
+        m_.update_start.push_back(static_cast<std::int64_t>(m_.update.size()));
+    }
+}
+
+}  // namespace holonomic

@@ -1,0 +1,55 @@
+// Finds the order of elimination of a shape, and lists what goes with it (core/kernels/molecules/schedule.hpp).
+#pragma once
+
+#include <cstdint>
+
+#include "core/molecules/elimination_order.hpp"
+#include "core/molecules/lists.hpp"
+#include "core/molecules/schedule_memory.hpp"
+
+namespace holonomic {
+
+class ScheduleMaker {
+public:
+    // What it is made for: a knot of paths, any molecule, a large graph that has to be a network, the careful solver.
+    enum For { knot, molecule, network, careful };
+    // The numbers of atoms and bonds, the bonds and the fixed atoms are there. Throws TooMuchMemory.
+    ScheduleMaker(Schedule &s, ScheduleWork &work, std::int64_t most_bytes, For what)
+        : s_(s), m_(work), most_bytes_(most_bytes), for_(what), bonds_(work.bonds), upper_bond_(work.upper_bond) {}
+    void make();
+    bool is_network() const { return is_network_; }
+
+private:
+    bool stays(std::int32_t atom) const { return for_ == network && m_.fixed[at(atom)]; }
+    std::int32_t other_end(std::int32_t bond, std::int32_t atom) const {
+        return m_.atom_i[at(bond)] == atom ? m_.atom_j[at(bond)] : m_.atom_i[at(bond)];
+    }
+    bool is_child(std::int32_t bond, std::int32_t atom) const { return upper_bond_[at(other_end(bond, atom))] == bond; }
+
+    void strip();
+    void number_trees();
+    bool is_simple_ring() const;
+    void number_ring();
+    void number_core();
+    void order_core(const Numbers &core, const Numbers &core_number, std::int64_t most_bytes);
+    bool has_long_strands(const Numbers &core) const;
+    void check_atoms(const Numbers &core, std::int64_t most_bytes) const;
+    void invert_numbers();
+    void list_children();
+    void list_meetings();
+    template <class Each>
+    void for_meetings(std::int32_t c, const Each &each) const;
+    void list_fill();
+    std::int32_t entry(std::int32_t row, std::int32_t column) const;
+    void list_updates();
+
+    Schedule &s_;
+    ScheduleWork &m_;
+    const std::int64_t most_bytes_;
+    const For for_;
+    bool is_network_ = false;
+    const Lists &bonds_;
+    Numbers &upper_bond_;  // of the atoms of trees, by local atom; -1: a root, or of the core
+};
+
+}  // namespace holonomic
