@@ -232,6 +232,12 @@ void Batch::commit() {
         for (std::size_t i = 0; i < found_->atoms.size(); ++i)
             if (!found_->fixed[i]) chains_.use_.take(found_->atoms[i]);
     for (const std::int64_t atom : fixed_) chains_.use_.take_fixed(atom);
+    // What grows by doubling is nearly half empty; an addition that is most of all pays to tidy up.
+    if (2 * n_bonds_ > chains_.n_bonds_) {
+        chains_.groups_.shrink();
+        chains_.kinds_.shrink();
+        chains_.shapes_.shrink();
+    }
     committed_ = true;
     chains_.changed();
 }

@@ -141,52 +141,54 @@ public:
     }
     std::int32_t n_steps() const { return static_cast<std::int32_t>(steps_.size()); }
 
-    // Appends it to those that there are.
+    // Appends it to those that there are: in 16 bits, if all numbers fit.
     void append_to(Forests &all) {
         f_.n_steps = n_steps();
-        const std::size_t lanes = at(lanes_), first = all.numbers_.size(), n_steps = steps_.size() * lanes,
-                          n_places = at(f_.n_places) * lanes;
         all.offset_.push_back(
-            {all.step_.size(), first, all.held_.size(), all.schedule_.size(), all.piece_start_.size()});
+            {all.numbers_.size(), all.stored_.size(), all.held_.size(), all.schedule_.size(), all.piece_start_.size()});
         all.forest_.push_back(f_);
-        all.step_.insert(all.step_.end(), steps_.begin(), steps_.end());
-        const std::size_t n_elements = f_.n_pieces > 0 ? element_[0].size() : 0;
-        all.numbers_.resize(first + 2 * n_steps + 2 * n_places + n_elements);
-        std::copy(element_[0].begin(), element_[0].begin() + static_cast<std::ptrdiff_t>(n_elements),
-                  all.numbers_.end() - static_cast<std::ptrdiff_t>(n_elements));
-        all.held_.resize(all.held_.size() + at(f_.n_places));
         all.schedule_.insert(all.schedule_.end(), tree_, tree_ + n_trees_);
-        std::int32_t *const atom = &all.numbers_[first], *const above = atom + n_steps, *const lower = above + n_steps,
-                            *const bond = lower + n_places;
-        std::uint16_t *const held = &all.held_[all.offset_.back().held];
-        for (std::size_t i = 0; i < n_steps; ++i) {
-            const std::size_t l = i % lanes;
-            const std::int32_t slot = slots_[i], lane = static_cast<std::int32_t>(l);
-            above[i] = (f_.n_places + 1 + piece_[i / lanes]) * lanes_ + lane;
-            if (slot < 0) continue;
-            const Schedule &s = tree(l);
-            atom[i] = s.atom_of[slot];
-            above[i] = slot == s.n_tree ? f_.n_places * lanes_ + lane : element_of(l, slot);
-        }
-        for (std::size_t i = 0; i < n_steps; ++i) {
-            const std::size_t l = i % lanes;
-            const Forest::Step &step = steps_[i / lanes];
-            for (std::int32_t a = 0; a < step.children; ++a) {
-                const std::size_t p = at(step.first + a), place = p * lanes + l;
-                const std::int32_t slot = slots_[i];
-                lower[place] = atom[i];
-                if (slot < 0 || a >= children_of(tree(l), slot)) continue;
-                const Schedule &s = tree(l);
-                const std::int32_t child = s.child[s.child_start[slot] + a];
-                lower[place] = s.atom_of[child];
-                bond[place] = s.bond_of[child];
-                held[p] = static_cast<std::uint16_t>(held[p] | 1u << l);
-            }
-        }
+        all.held_.resize(all.held_.size() + at(f_.n_places));
+        if (all.is_stored(f_)) return list(all.stored_, &all.held_[all.offset_.back().held]);
+        list(all.numbers_, &all.held_[all.offset_.back().held]);
+        if (f_.n_pieces > 0) all.numbers_.insert(all.numbers_.end(), element_[0].begin(), element_[0].end());
     }
     Forest &forest() { return f_; }
 
 private:
+    // Appends the block of numbers.
+    template <class Number>
+    void list(std::vector<Number> &numbers, std::uint16_t *held) {
+        const std::size_t lanes = at(lanes_), n_steps = steps_.size() * lanes, n_places = at(f_.n_places) * lanes;
+        for (const Forest::Step &step : steps_)
+            for (const std::int32_t number : {step.first, step.children, step.pairs})
+                numbers.push_back(static_cast<Number>(number));
+        const std::size_t first = numbers.size();
+        numbers.resize(first + 2 * (n_steps + n_places));
+        Number *const atom = &numbers[first], *const above = atom + n_steps, *const lower = above + n_steps,
+                      *const bond = lower + n_places;
+        for (std::size_t i = 0; i < n_steps; ++i) {
+            const std::int32_t slot = slots_[i], lane = static_cast<std::int32_t>(i % lanes);
+            const Schedule &s = tree(at(lane));
+            const Forest::Step &step = steps_[i / lanes];
+            std::int32_t element = (f_.n_places + 1 + piece_[i / lanes]) * lanes_ + lane;
+            if (slot >= 0) {
+                atom[i] = static_cast<Number>(s.atom_of[slot]);
+                element = slot == s.n_tree ? f_.n_places * lanes_ + lane : element_of(at(lane), slot);
+            }
+            above[i] = static_cast<Number>(element);
+            const std::int32_t children = slot < 0 ? 0 : children_of(s, slot);
+            for (std::int32_t a = 0; a < step.children; ++a) {
+                const std::size_t p = at(step.first + a), place = p * lanes + at(lane);
+                lower[place] = atom[i];
+                if (a >= children) continue;
+                const std::int32_t child = s.child[s.child_start[slot] + a];
+                lower[place] = static_cast<Number>(s.atom_of[child]);
+                bond[place] = static_cast<Number>(s.bond_of[child]);
+                held[p] = static_cast<std::uint16_t>(held[p] | 1u << lane);
+            }
+        }
+    }
     std::int32_t &element_of(std::size_t lane, std::int32_t slot) {
         return element_[n_trees_ == 1 ? 0 : lane][at(slot)];
     }
@@ -258,29 +260,28 @@ void Forests::add_large(int lanes, const Schedule *tree) {
 }
 
 void Forests::finish() {
-    step_.shrink_to_fit();
     numbers_.shrink_to_fit();
+    stored_.shrink_to_fit();
     held_.shrink_to_fit();
     for (std::size_t i = 0; i < forest_.size(); ++i) {
         Forest &f = forest_[i];
-        const std::size_t n_steps = at(f.n_steps) * at(lanes_), n_places = at(f.n_places) * at(lanes_);
-        f.step = &step_[offset_[i].step];
-        f.atom = &numbers_[offset_[i].numbers];
-        f.above = f.atom + n_steps;
-        f.lower = f.above + n_steps;
-        f.bond = f.lower + n_places;
-        f.element = f.bond + n_places;
-        f.held = &held_[offset_[i].held];
-        f.schedule = &schedule_[offset_[i].schedule];
-        f.piece_start = f.n_pieces > 0 ? &piece_start_[offset_[i].piece] : nullptr;
+        const Offsets &offset = offset_[i];
+        f.held = &held_[offset.held];
+        f.schedule = &schedule_[offset.schedule];
+        if (is_stored(f)) {
+            f.stored = &stored_[offset.stored];
+        } else {
+            f.point_into(&numbers_[offset.numbers], lanes_);
+            f.piece_start = f.n_pieces > 0 ? &piece_start_[offset.piece] : nullptr;
+        }
     }
     offset_ = {};
 }
 
 std::size_t Forests::bytes() const {
-    return forest_.capacity() * sizeof(Forest) + step_.capacity() * sizeof(Forest::Step) +
+    return forest_.capacity() * sizeof(Forest) +
            (numbers_.capacity() + piece_start_.capacity()) * sizeof(std::int32_t) +
-           held_.capacity() * sizeof(std::uint16_t) + schedule_.capacity() * sizeof(Schedule *);
+           (stored_.capacity() + held_.capacity()) * sizeof(std::uint16_t) + schedule_.capacity() * sizeof(Schedule *);
 }
 
 }  // namespace holonomic

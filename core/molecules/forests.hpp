@@ -26,14 +26,17 @@ public:
 private:
     class Maker;
     struct Offsets {
-        std::size_t step, numbers, held, schedule, piece;
+        std::size_t numbers, stored, held, schedule, piece;
     };
+    // Whether all its numbers fit into 16 bits. Of one large tree they are read piece by piece.
+    bool is_stored(const Forest &f) const {
+        return f.n_pieces == 0 && f.n_rows() <= 0x10000 / lanes_ && f.n_pairs < 0x10000;
+    }
     int lanes_ = 0;
     std::vector<Forest> forest_;
     std::vector<Offsets> offset_;
-    std::vector<Forest::Step> step_;
-    std::vector<std::int32_t> numbers_;  // the numbers per step and place of one forest after the other
-    std::vector<std::uint16_t> held_;
+    std::vector<std::int32_t> numbers_;  // of one forest after the other
+    std::vector<std::uint16_t> stored_, held_;
     std::vector<std::int32_t> piece_start_;
     std::vector<const Schedule *> schedule_;
 };

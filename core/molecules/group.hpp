@@ -50,6 +50,11 @@ public:
     }
     // For bonds of reordered groups: where they stand in the caller's arrays.
     const std::vector<std::int64_t> &reordered() const { return bonds_; }
+    void shrink() {
+        groups_.shrink_to_fit();
+        atoms_.shrink_to_fit();
+        bonds_.shrink_to_fit();
+    }
     std::size_t bytes() const {
         return groups_.capacity() * sizeof(Group) + (atoms_.capacity() + bonds_.capacity()) * sizeof(std::int64_t);
     }

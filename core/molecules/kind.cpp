@@ -82,6 +82,12 @@ double Kinds::longest(std::int64_t first, double least) const {
     return longest;
 }
 
+void Kinds::shrink() {
+    kinds_.shrink_to_fit();
+    w_.shrink_to_fit();
+    length_.shrink_to_fit();
+}
+
 std::size_t Kinds::bytes() const {
     return kinds_.capacity() * sizeof(Kind) + (w_.capacity() + length_.capacity()) * sizeof(double) +
            by_hash_.size() * 40 + by_hash_.bucket_count() * sizeof(void *);

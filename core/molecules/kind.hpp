@@ -42,6 +42,7 @@ public:
     }
     // The largest length of the kinds from `first` on, if that is more than `least`.
     double longest(std::int64_t first, double least) const;
+    void shrink();
     std::size_t bytes() const;
 
 private:

@@ -42,6 +42,7 @@ public:
 
     const Shape &operator[](std::int32_t shape) const { return shapes_[static_cast<std::size_t>(shape)]; }
     std::int32_t size() const { return static_cast<std::int32_t>(shapes_.size()); }
+    void shrink() { shapes_.shrink_to_fit(); }
     std::size_t bytes() const;
 
 private:

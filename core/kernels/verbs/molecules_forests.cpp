@@ -4,6 +4,7 @@
 #include "core/kernels/molecules/doubtful.hpp"
 #include "core/kernels/molecules/forest/one_tree.hpp"
 #include "core/kernels/molecules/forest/one_tree_positions.hpp"
+#include "core/kernels/molecules/forest/open_forest.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -18,7 +19,7 @@ int64_t forest_scratch_bytes(const Forest &f) {
     }
     const int64_t linear = ForestLinear::values(f), newton = f.schedule[0]->flat ? 0 : ForestNewton::values(f);
     return (linear > newton ? linear : newton) * static_cast<int64_t>(sizeof(vec)) + OneTree::bytes(f) +
-           OneTreeNewton::bytes(f) + 64 + careful;
+           OneTreeNewton::bytes(f) + 64 + careful + open_bytes(f);
 }
 
 // Starts to fetch the atoms of a forest: trees that are worked on one after the other are not so in memory.
@@ -33,21 +34,23 @@ HOL_NOINLINE void fetch(const Forest &f, const MoleculeLane *lane, const AtomArr
     }
 }
 
-// Calls work(forest, lanes) for all forests of a unit. The arrays are fetched ahead where they are packed.
+// Calls work(forest, lanes, memory) for all forests of a unit. The arrays are fetched ahead where they are packed.
 template <int n, class Work>
-static inline void for_each_forest(const MoleculeUnit &unit, const AtomArray *const (&arrays)[n], const Work &work) {
+static inline void for_each_forest(const MoleculeUnit &unit, const AtomArray *const (&arrays)[n], double *scratch,
+                                   const Work &work) {
     const AtomArray *fetched[n];
     int n_fetched = 0;
     for (int a = 0; a < n; ++a)
         if (unit.large && arrays[a]->x && arrays[a]->packed) fetched[n_fetched++] = arrays[a];
     const MoleculeLane *next = unit.lanes;
     for (int64_t i = 0; i < unit.n_forests; ++i) {
-        const Forest &f = unit.forests[i];
+        double *left = scratch;
+        const Forest f = open_forest(unit.forests[i], left);
         MoleculeLane lane[W];
         for (int l = 0; l < W; ++l) lane[l] = next[l < f.n_trees ? l : 0];
         next += f.n_trees;
         if (i + 1 < unit.n_forests && n_fetched > 0) fetch(unit.forests[i + 1], next, fetched, n_fetched);
-        work(f, lane);
+        work(f, lane, Memory<vec>{left});
     }
 }
 
@@ -89,8 +92,7 @@ void forests_forces(const ForcesCall &call, const MoleculeUnit &unit, double *sc
     const bool packed =
         call.r.packed && (!call.v.x || call.v.packed) && (!call.f.x || call.f.packed) && (!call.g.x || call.g.packed);
     const AtomArray *const arrays[] = {&call.r, &call.v, &call.f, &call.g};
-    for_each_forest(unit, arrays, [&](const Forest &f, const MoleculeLane *lane) {
-        Memory<vec> memory = {scratch};
+    for_each_forest(unit, arrays, scratch, [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory) {
         ForestLinear z(f, lane, packed, call.box, call.r, {&call.v, &call.f, nullptr, false},
                        (call.v.x ? squares : 0) | (call.f.x ? pulls : 0), memory);
         solve_forest(call, unit, f, lane, z, memory, tally);
@@ -100,8 +102,7 @@ void forests_forces(const ForcesCall &call, const MoleculeUnit &unit, double *sc
 void forests_solve(const SolveCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const bool packed = call.r.packed && (!call.g.x || call.g.packed);
     const AtomArray *const arrays[] = {&call.r, &call.g};
-    for_each_forest(unit, arrays, [&](const Forest &f, const MoleculeLane *lane) {
-        Memory<vec> memory = {scratch};
+    for_each_forest(unit, arrays, scratch, [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory) {
         ForestLinear z(f, lane, packed, call.box, call.r, {nullptr, nullptr, call.rhs, false}, given, memory);
         solve_forest(call, unit, f, lane, z, memory, tally);
     });
@@ -110,8 +111,7 @@ void forests_solve(const SolveCall &call, const MoleculeUnit &unit, double *scra
 // Twice, as molecules/velocities.hpp says.
 void forests_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const AtomArray *const arrays[] = {&call.r, &call.v};
-    for_each_forest(unit, arrays, [&](const Forest &f, const MoleculeLane *lane) {
-        Memory<vec> memory = {scratch};
+    for_each_forest(unit, arrays, scratch, [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory) {
         ForestLinear z(f, lane, call.r.packed && call.v.packed, call.box, call.r,
                        {&call.v, nullptr, nullptr, true, call.strain}, rates, memory);
         const bool twice = !call.v.is_float;
@@ -151,8 +151,7 @@ void forests_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, do
 void forests_positions(const PositionsCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
     const AtomArray *const arrays[] = {&call.r_ref, &call.r, &call.v};
-    for_each_forest(unit, arrays, [&](const Forest &f, const MoleculeLane *lane) {
-        Memory<vec> memory = {scratch};
+    for_each_forest(unit, arrays, scratch, [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory) {
         ForestNewton newton(f, lane, packed, memory);
         const ForestPositions lanes{call, newton, tally};
         unsigned good;

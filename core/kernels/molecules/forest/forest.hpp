@@ -42,6 +42,22 @@ struct Forest {
     const int32_t *element;      // by slot: of the bond above
     int32_t n_rows() const { return n_places + 2 + n_pieces; }
     const Schedule *const *schedule;  // [n_trees]
+
+    // Steps and what there is per step and place are one block of numbers: point_into() says in which order. Of
+    // different trees, which are many, it is stored in half the memory, and opened when it is worked on
+    // (open_forest.hpp).
+    const uint16_t *stored;  // or nullptr
+    int64_t n_numbers(int64_t lanes) const {
+        return 3 * n_steps + 2 * lanes * (static_cast<int64_t>(n_steps) + n_places);
+    }
+    void point_into(const int32_t *number, int64_t lanes) {
+        step = reinterpret_cast<const Step *>(number);
+        atom = number + 3 * static_cast<int64_t>(n_steps);
+        above = atom + lanes * n_steps;
+        lower = above + lanes * n_steps;
+        bond = lower + lanes * n_places;
+        element = bond + lanes * n_places;
+    }
 };
 
 }  // namespace holonomic
