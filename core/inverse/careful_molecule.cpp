@@ -9,7 +9,6 @@
 #define HOL_ISA plain
 #define HOL_LANES 2
 #include "core/kernels/careful/plan_of.hpp"
-#include "core/kernels/careful/scratch.hpp"
 #include "core/kernels/careful/system.hpp"
 #undef HOL_ISA
 #undef HOL_LANES
@@ -50,7 +49,7 @@ struct CarefulMolecule::State {
 
     explicit State(const holonomic::Molecule &m)
         : schedule(make_careful_schedule(*m.shape->schedule, default_memory_limit())), atoms(at(m.n_atoms)),
-          w(at(m.n_atoms)), lane{}, owned(careful_scratch_bytes(*schedule)), memory(owned.begin()),
+          w(at(m.n_atoms)), lane{}, owned(schedule->careful_bytes), memory(owned.begin()),
           plan(plain::careful::plan_of(*schedule, memory)), molecule(plan, lane, memory),
           system(plain::careful::take_system(molecule, memory)) {
         for (std::int64_t i = 0; i < m.n_atoms; ++i) {

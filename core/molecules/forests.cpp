@@ -19,7 +19,11 @@ int class_of(std::int32_t children) { return children > most_decomposed ? 4 : st
 // One tree: which of its atoms are ready, as all their children have been dealt with.
 class Tree {
 public:
-    explicit Tree(const Schedule &s) : s_(s), left_(at(s.n_atoms)), depth_(at(s.n_atoms)) {
+    void open(const Schedule &schedule) {
+        s_ = &schedule;
+        const Schedule &s = schedule;
+        left_.assign(at(s.n_atoms), 0);
+        depth_.assign(at(s.n_atoms), 0);
         for (std::int32_t slot = s.n_tree; slot-- > 0;) {
             depth_[at(slot)] = depth_[at(s.parent[slot])] + 1;
             if (children_of(s, slot) > 0) {
@@ -40,15 +44,15 @@ public:
             if (!ready_[i].empty()) return ready_[i].front().slot;
         return -1;
     }
-    std::int32_t children(std::int32_t slot) const { return children_of(s_, slot); }
+    std::int32_t children(std::int32_t slot) const { return children_of(*s_, slot); }
 
     void take(std::int32_t slot) {
         std::vector<Ready> &heap = ready_[class_of(children(slot))];
         std::pop_heap(heap.begin(), heap.end());
         heap.pop_back();
         --n_left_;
-        const std::int32_t parent = s_.parent[slot];
-        if (--left_[at(parent)] == 0 && parent < s_.n_tree) push(parent);
+        const std::int32_t parent = s_->parent[slot];
+        if (--left_[at(parent)] == 0 && parent < s_->n_tree) push(parent);
     }
 
 private:
@@ -64,7 +68,7 @@ private:
         std::push_heap(heap.begin(), heap.end());
     }
 
-    const Schedule &s_;
+    const Schedule *s_ = nullptr;
     std::vector<std::int32_t> left_, depth_;
     std::vector<Ready> ready_[n_classes];  // heaps
     std::int32_t n_left_ = 0;
@@ -78,12 +82,12 @@ struct Choice {
 };
 
 // The class in which the fewest places stay empty; a step by itself costs about as much as a third of a bond.
-Choice choose(const std::vector<Tree> &trees) {
+Choice choose(const Tree *trees, std::size_t n_trees) {
     Choice best;
     for (int c = 0; c < n_classes; ++c) {
         Choice one;
         double bonds = 0;
-        for (std::size_t l = 0; l < trees.size(); ++l) {
+        for (std::size_t l = 0; l < n_trees; ++l) {
             one.slot[l] = trees[l].best(c);
             if (one.slot[l] < 0) continue;
             const std::int32_t k = trees[l].children(one.slot[l]);
@@ -105,14 +109,33 @@ TreeProfile::TreeProfile(const Schedule &s) : n_bonds(s.n_bonds) {
     }
 }
 
-// A forest in the making: its steps, and which atom of which tree is in which lane.
+// A forest in the making, one after the other: its steps, and which atom of which tree is in which lane.
 class Forests::Maker {
 public:
-    Maker(int lanes, const Schedule *const *tree, int n_trees) : lanes_(lanes), tree_(tree), n_trees_(n_trees) {
+    void open(int lanes, const Schedule *const *tree, int n_trees) {
+        lanes_ = lanes;
+        tree_ = tree;
+        n_trees_ = n_trees;
+        f_ = {};
         f_.n_trees = n_trees;
         for (int l = 0; l < n_trees; ++l) {
             f_.most_atoms = std::max<std::int64_t>(f_.most_atoms, tree[l]->n_atoms);
-            element_.emplace_back(at(tree[l]->n_atoms));
+            element_[l].resize(at(tree[l]->n_atoms));
+        }
+        steps_.clear();
+        slots_.clear();
+        piece_.clear();
+    }
+    // Takes the atoms of different trees.
+    void add_steps() {
+        for (int l = 0; l < n_trees_; ++l) trees_[l].open(*tree_[l]);
+        const auto done = [](const Tree &t) { return t.done(); };
+        while (!std::all_of(trees_, trees_ + n_trees_, done)) {
+            Choice choice = choose(trees_, at(n_trees_));
+            std::fill(choice.slot + n_trees_, choice.slot + most_lanes, -1);
+            add_step(choice.slot, choice.children);
+            for (int l = 0; l < n_trees_; ++l)
+                if (choice.slot[l] >= 0) trees_[l].take(choice.slot[l]);
         }
     }
 
@@ -193,37 +216,37 @@ private:
         return element_[n_trees_ == 1 ? 0 : lane][at(slot)];
     }
 
-    const int lanes_;
-    const Schedule *const *const tree_;
-    const int n_trees_;
+    int lanes_ = 0, n_trees_ = 0;
+    const Schedule *const *tree_ = nullptr;
     Forest f_{};
-    std::vector<std::vector<std::int32_t>> element_;  // by tree and slot
+    Tree trees_[most_lanes];
+    std::vector<std::int32_t> element_[most_lanes];  // by slot
     std::vector<Forest::Step> steps_;
     std::vector<std::int32_t> slots_;  // [steps][lanes], or -1
     std::vector<std::int32_t> piece_;  // [steps]
 };
 
-void Forests::add(int lanes, const Schedule *const *tree, int n_trees) {
+Forests::Forests() = default;
+Forests::~Forests() = default;
+
+Forests::Maker &Forests::open(int lanes, const Schedule *const *tree, int n_trees) {
     lanes_ = lanes;
-    std::vector<Tree> trees;
-    for (int l = 0; l < n_trees; ++l) trees.emplace_back(*tree[l]);
-    Maker maker(lanes, tree, n_trees);
-    while (!std::all_of(trees.begin(), trees.end(), [](const Tree &t) { return t.done(); })) {
-        Choice choice = choose(trees);
-        std::fill(choice.slot + n_trees, choice.slot + most_lanes, -1);
-        maker.add_step(choice.slot, choice.children);
-        for (int l = 0; l < n_trees; ++l)
-            if (choice.slot[l] >= 0) trees[at(l)].take(choice.slot[l]);
-    }
+    if (!maker_) maker_ = std::make_unique<Maker>();
+    maker_->open(lanes, tree, n_trees);
+    return *maker_;
+}
+
+void Forests::add(int lanes, const Schedule *const *tree, int n_trees) {
+    Maker &maker = open(lanes, tree, n_trees);
+    maker.add_steps();
     maker.add_roots();
     maker.append_to(*this);
 }
 
 // Atoms that do not depend on each other share steps: those of a level, of similar numbers of children.
 void Forests::add_large(int lanes, const Schedule *tree) {
-    lanes_ = lanes;
     const Schedule &s = *tree;
-    Maker maker(lanes, &tree, 1);
+    Maker &maker = open(lanes, &tree, 1);
     std::vector<std::int32_t> ready;
     const auto add_level = [&] {
         std::stable_sort(ready.begin(), ready.end(), [&](std::int32_t a, std::int32_t b) {
@@ -260,6 +283,7 @@ void Forests::add_large(int lanes, const Schedule *tree) {
 }
 
 void Forests::finish() {
+    maker_ = nullptr;
     numbers_.shrink_to_fit();
     stored_.shrink_to_fit();
     held_.shrink_to_fit();

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <tuple>
 #include <vector>
 
@@ -12,6 +13,8 @@ namespace holonomic {
 
 class Forests {
 public:
+    Forests();
+    ~Forests();
     // Appends one of these trees, as many as there are lanes at most. Throws std::bad_alloc.
     void add(int lanes, const Schedule *const *tree, int n_trees);
     // Or one large tree, all lanes of which are atoms of it.
@@ -25,6 +28,8 @@ public:
 
 private:
     class Maker;
+    Maker &open(int lanes, const Schedule *const *tree, int n_trees);
+    std::unique_ptr<Maker> maker_;  // until it is finished
     struct Offsets {
         std::size_t numbers, stored, held, schedule, piece;
     };

@@ -4,6 +4,7 @@
 #include <mutex>
 #include <vector>
 
+#include "core/kernels/careful/scratch.hpp"
 #include "core/molecules/schedule_maker.hpp"
 
 namespace holonomic {
@@ -53,7 +54,10 @@ std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bon
         return bare_schedule(n_atoms, n_bonds, pairs, fixed, most_bytes, ScheduleMaker::network, work);
     s->memory = new Schedule::Memory();
     pack(*s, work);
-    if (!maker.is_network()) return s;
+    if (!maker.is_network()) {
+        s->careful_bytes = careful_scratch_bytes(*s);
+        return s;
+    }
     make_network(*s, most_bytes, s->memory->of_large().network);
     s->network = &s->memory->large->network.plan;
     return s;

@@ -1,6 +1,5 @@
 // Different trees in the lanes of a vector: constraint forces, multipliers for given right-hand sides, velocities,
 // positions.
-#include "core/kernels/careful/scratch.hpp"
 #include "core/kernels/molecules/doubtful.hpp"
 #include "core/kernels/molecules/forest/one_tree.hpp"
 #include "core/kernels/molecules/forest/one_tree_positions.hpp"
@@ -13,10 +12,8 @@ using namespace graph;
 
 int64_t forest_scratch_bytes(const Forest &f) {
     int64_t careful = 0;
-    for (int i = 0; i < f.n_trees; ++i) {
-        const int64_t one = careful_scratch_bytes(*f.schedule[i]);
-        careful = one > careful ? one : careful;
-    }
+    for (int i = 0; i < f.n_trees; ++i)
+        careful = f.schedule[i]->careful_bytes > careful ? f.schedule[i]->careful_bytes : careful;
     const int64_t linear = ForestLinear::values(f), newton = f.schedule[0]->flat ? 0 : ForestNewton::values(f);
     return (linear > newton ? linear : newton) * static_cast<int64_t>(sizeof(vec)) + OneTree::bytes(f) +
            OneTreeNewton::bytes(f) + 64 + careful + open_bytes(f);

@@ -1,5 +1,4 @@
 // Position level of molecules that are no chains.
-#include "core/kernels/careful/scratch.hpp"
 #include "core/kernels/molecules/linear.hpp"
 #include "core/kernels/molecules/list/flat_linear.hpp"
 #include "core/kernels/molecules/list/flat_proof.hpp"
@@ -27,8 +26,7 @@ static int64_t flat_bytes(const FlatList &s) {
 int64_t molecules_scratch_bytes(const Schedule &s) {
     if (s.network) {
         const Schedule *const order = s.careful_order();
-        const int64_t careful = order ? careful_scratch_bytes(*order) + 64 : 0,
-                      own = HOL_NETWORKS::network_bytes(*s.network);
+        const int64_t careful = order ? order->careful_bytes + 64 : 0, own = HOL_NETWORKS::network_bytes(*s.network);
         return own > careful ? own : careful;
     }
     const int64_t most = s.flat                          ? flat_bytes(*s.flat)
@@ -36,8 +34,8 @@ int64_t molecules_scratch_bytes(const Schedule &s) {
                                                          : block_bytes<double>(s),
                   paths = s.paths ? path_positions_bytes(s) : 0,
                   armed = ArmedTree::values(s) * static_cast<int64_t>(sizeof(double)),
-                  more = armed > paths ? armed : paths,
-                  linear = (most > more ? most : more) + 64 + careful_scratch_bytes(s), metric = metric_bytes(s);
+                  more = armed > paths ? armed : paths, linear = (most > more ? most : more) + 64 + s.careful_bytes,
+                  metric = metric_bytes(s);
     return linear > metric ? linear : metric;
 }
 
