@@ -1,5 +1,6 @@
 #include "core/metric.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -17,13 +18,16 @@ namespace {
 struct MetricWork final : Work {
     const Variants<MetricCall> calls;
     const Kernels &k = kernels();
-    MetricWork(const MetricCall &call, Apart &apart)
+    const std::int64_t careful_bytes;  // of networks
+    MetricWork(const MetricCall &call, Apart &apart, std::int64_t bytes)
         : calls(
               call, apart, [](MetricCall &) {},
               [&](MetricCall &c) {
                   c.r = apart.atoms(call.r);
                   c.force = apart.summed_atoms(call.force, call.add);
-              }) {}
+              }),
+          careful_bytes(bytes) {}
+    std::int64_t scratch_bytes() const override { return careful_bytes; }
     void unit(const Unit &unit, int where, double *scratch, Tally &tally) const override {
         kernels(unit).metric(calls[where], unit, scratch, tally);
     }
@@ -37,10 +41,10 @@ struct MetricWork final : Work {
     }
 };
 
-// The metric of a network needs the factor that its other calls do without.
-void make_careful_of(const Chains &chains, const Schedule &s) {
+// The metric of a network needs the factor that its other calls do without. Returns what that takes of scratch memory.
+std::int64_t make_careful_of(const Chains &chains, const Schedule &s) {
     try {
-        make_careful(s, memory_left(chains));
+        return make_careful(s, memory_left(chains)).careful_bytes;
     } catch (const TooMuchMemory &needed) {
         char what[64];
         std::snprintf(what, sizeof what, "the metric of a network of %d bonds", static_cast<int>(s.n_bonds));
@@ -65,12 +69,13 @@ void metric_of_all(const Chains &chains, const AtomArray &r, double kT, double *
     call.sum = energy != nullptr;
     call.add = add;
     put_box(chains.box, call.box);
+    std::int64_t careful_bytes = 0;
     for (const std::int32_t shape : chains.plan().shapes) {
         const Schedule &s = *chains.plan().schedules[static_cast<std::size_t>(shape)];
-        if (!s.careful_order()) make_careful_of(chains, s);
+        if (s.network && !s.careful) careful_bytes = std::max(careful_bytes, make_careful_of(chains, s));
     }
     Apart apart(chains);
-    const Tally tally = execute(chains, MetricWork(call, apart));
+    const Tally tally = execute(chains, MetricWork(call, apart, careful_bytes));
     apart.put_back();
     if (tally.n_bad > 0) {
         const NamedArray arrays[] = {{"position", &r}};

@@ -115,12 +115,14 @@ std::unique_ptr<const Schedule> make_careful_schedule(const Schedule &s, std::in
     return bare_schedule(s.n_atoms, s.n_bonds, pairs.data(), s.fixed, most_bytes, ScheduleMaker::careful, work);
 }
 
-void make_careful(const Schedule &s, std::int64_t most_bytes) {
+const Schedule &make_careful(const Schedule &s, std::int64_t most_bytes) {
     static std::mutex mutex;
     const std::lock_guard<std::mutex> lock(mutex);
-    if (s.careful_order()) return;
-    s.memory->careful = make_careful_schedule(s, most_bytes);
-    s.late_careful = s.memory->careful.get();
+    if (!s.careful_order()) {
+        s.memory->careful = make_careful_schedule(s, most_bytes);
+        s.late_careful = s.memory->careful.get();
+    }
+    return *s.careful_order();
 }
 
 }  // namespace holonomic

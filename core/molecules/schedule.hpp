@@ -28,7 +28,7 @@ std::unique_ptr<const Schedule> make_knot_schedule(std::int32_t n_atoms, std::in
 std::unique_ptr<const Schedule> make_careful_schedule(const Schedule &s, std::int64_t most_bytes = no_limit);
 
 // Makes the order of a network that the careful solver needs, once, for metrics. Throws TooMuchMemory. Thread-safe.
-void make_careful(const Schedule &s, std::int64_t most_bytes);
+const Schedule &make_careful(const Schedule &s, std::int64_t most_bytes);
 
 // Memory that it occupies, in bytes.
 std::size_t bytes_of(const Schedule &s);

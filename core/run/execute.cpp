@@ -108,7 +108,8 @@ class Execution {
 public:
     Execution(const Chains &chains, const Plan &plan, const Work &work)
         : chains_(chains), plan_(plan), work_(work), outcomes_(chains.keeps_outcomes ? outcomes_under_way() : nullptr),
-          n_pieces_(static_cast<std::int64_t>(plan.pieces.size())), scratch_bytes_(plan.scratch_bytes) {
+          n_pieces_(static_cast<std::int64_t>(plan.pieces.size())),
+          scratch_bytes_(std::max(plan.scratch_bytes, work.scratch_bytes())) {
         n_threads_ = static_cast<int>(
             std::min<std::int64_t>(chains.n_threads, std::max<std::int64_t>(plan.n_bonds / bonds_per_thread, 1)));
         for (std::int64_t p = 0; plan.longest > longest_lane && p < n_pieces_; ++p) {

@@ -50,6 +50,8 @@ public:
     virtual void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const = 0;
     // Whether it has a way of its own for different trees side by side; else each comes as a unit.
     virtual bool walks_forests() const { return false; }
+    // Scratch memory that it needs, if that is more than the plan says.
+    virtual std::int64_t scratch_bytes() const { return 0; }
     // Whether threads share the work on one large molecule that goes along a list, whatever its shape.
     virtual bool shares_lists() const { return false; }
     virtual std::int64_t long_blocks(std::int64_t n_bonds) const = 0;

@@ -145,7 +145,7 @@ struct Schedule {
 
     int64_t careful_bytes;  // scratch memory of the careful solver and its plan; not of networks
     // Of a network: an order of elimination for the careful solver, if it fills little; and one that is made once a
-    // metric has been asked for.
+    // metric has been asked for, which no other call uses.
     const Schedule *careful;
     mutable const Schedule *late_careful = nullptr;
     const Schedule *careful_order() const { return !network ? this : careful ? careful : late_careful; }

@@ -25,8 +25,8 @@ static int64_t flat_bytes(const FlatList &s) {
 
 int64_t molecules_scratch_bytes(const Schedule &s) {
     if (s.network) {
-        const Schedule *const order = s.careful_order();
-        const int64_t careful = order ? order->careful_bytes + 64 : 0, own = HOL_NETWORKS::network_bytes(*s.network);
+        const int64_t careful = s.careful ? s.careful->careful_bytes + 64 : 0,
+                      own = HOL_NETWORKS::network_bytes(*s.network);
         return own > careful ? own : careful;
     }
     const int64_t most = s.flat                          ? flat_bytes(*s.flat)

@@ -30,7 +30,7 @@ static inline void solve_networks(const Call &call, const MoleculeUnit &unit, bo
     for (int64_t i = 0; i < unit.count; ++i) {
         const MoleculeLane lane = graph::molecule_of(unit, i);
         if (HOL_NETWORKS::solve_network(call, *unit.schedule, lane, packed, unit.team, scratch, tally)) continue;
-        if (unit.schedule->careful_order())
+        if (unit.schedule->careful)
             graph::solve_doubtful(call, *unit.schedule, &lane, 1, scratch, tally);
         else
             note_bad(lane.molecule, tally);
