@@ -83,6 +83,29 @@ static const sort sorts[] = {
 };
 enum { n_sorts = sizeof sorts / sizeof *sorts };
 
+/** So large that the order of its elimination is made for the metric alone. The first test: none before has asked for
+ * as much memory. */
+static void metric_force_of_a_large_gel_is_what_its_energy_falls_by(void **state)
+{
+    (void)state;
+    const double h = 1e-5;
+    network_scene s = make((sort){64, 66, 66, 0, 0, 0, 1}, 4);
+    const size_t size = 3 * (size_t)s.m.n_atoms;
+    double *force = untouched(size), energy[2], work = 0, whole = 0;
+    assert_true(s.m.n_bonds > 8192);
+    CHECK(hol_metric(s.chains, s.m.r, 1, NULL, NULL, NULL, force, HOL_WRITE));
+    for (int side = 0; side < 2; ++side) {
+        double *moved = copy_of(s.m.r, size);
+        for (size_t i = 0; i < size; ++i) moved[i] += (side == 0 ? -h : h) * s.m.v[i];
+        CHECK(hol_metric(s.chains, moved, 1, NULL, NULL, &energy[side], NULL, HOL_WRITE));
+        free(moved);
+    }
+    for (size_t i = 0; i < size; ++i) work += force[i] * s.m.v[i], whole += fabs(force[i] * s.m.v[i]);
+    CHECK_AT_MOST(fabs(work + (energy[1] - energy[0]) / (2 * h)), 1e-6 * whole);
+    free(force);
+    network_free(s);
+}
+
 static void forces_are_those_of_many_digits(void **state)
 {
     (void)state;
@@ -270,6 +293,7 @@ static void rounds_are_told(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(metric_force_of_a_large_gel_is_what_its_energy_falls_by),
         cmocka_unit_test(rounds_are_told),
         cmocka_unit_test(forces_are_those_of_many_digits),
         cmocka_unit_test(velocities_are_those_of_many_digits),
