@@ -876,6 +876,9 @@ HOL_API int hol_impose_view(const hol_chains *chains, const hol_view *r, hol_rep
  *
  * Entries of inactive molecules are not written. The force on a fixed atom is reported too: minus what the others get.
  * Total force, total torque and the trace of the virial of the force are zero.
+ * Trees of up to eight bonds at an atom and rings without side atoms cost up to twice what linear chains do. All others
+ * are found in twice the precision, a hundred times as slowly: about a microsecond a bond, and more where many bonds
+ * meet at an atom (20 with ten) or a network fills its factor.
  * @return HOL_OK; HOL_ERR_NULL (chains or r); HOL_ERR_VALUE (kT, mode); HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE;
  *         HOL_ERR_MEMORY. Thread-safe on one handle. Since 0.1.
  */
