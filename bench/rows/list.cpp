@@ -255,6 +255,10 @@ void add_molecules(List &list) {
     list.add("ring of 6", of(1000, [] { return bench::ring_kind(6); }));
     list.add("ring of 50", of(120, [] { return bench::ring_kind(50); }));
     list.add("strip of triangles, 50 atoms", of(60, [] { return bench::triangles_kind(50); }));
+    list.add("naphthalene", of(300, formula("C1C(H)C(H)C(H)C(H)C1C2C(H)C(H)C(H)C(H)C12")));
+    list.add("naphthalene of united atoms", of(500, formula("C1CCCCC1C2CCCC12")));
+    list.add("biphenyl", of(300, formula("C(H)1C(H)C(H)C(H)C(H)C1C1C(H)C(H)C(H)C(H)C1H")));
+    list.add("protein, 200", of(30, [] { return bench::protein_kind(200); }));
     list.add("random tree, 40 bonds", of(150, [] { return bench::random_tree_kind(40); }));
     list.add("random tree, 1e4", of(1, [] { return bench::random_tree_kind(10000); }));
     list.add("arms of 100, 1e4", of(1, [] { return bench::arms_kind(10000, 100); }));

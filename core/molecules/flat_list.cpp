@@ -282,9 +282,11 @@ private:
 
 }  // namespace
 
+// A list has so many updates, or so many for each bond.
+constexpr std::int64_t short_list = 65536, updates_of_bond = 16;
+
 bool takes_flat_list(const Schedule &s) {
-    const std::int32_t largest = s.type == Schedule::graph ? largest_graph_in_lanes : largest_in_lanes;
-    if (s.type == Schedule::ring || s.n_bonds <= largest) return false;
+    if (s.type != Schedule::graph && (s.type != Schedule::tree || s.n_bonds <= largest_in_lanes)) return false;
     Numbers bonds(at(s.n_atoms));
     for (std::int32_t k = 0; k < s.n_bonds; ++k)
         for (const std::int32_t i : {s.atom_i[k], s.atom_j[k]}) ++bonds[at(i)];
@@ -293,7 +295,8 @@ bool takes_flat_list(const Schedule &s) {
         if (n > 3000) return false;  // more than the most of the largest list
         updates += n * (n - 1) / 2 * (n - 2) / 3;
     }
-    return s.n_bonds <= largest_in_list && updates <= 16 * static_cast<std::int64_t>(s.n_bonds);
+    return s.n_bonds <= largest_in_list &&
+           updates <= std::max(short_list, updates_of_bond * static_cast<std::int64_t>(s.n_bonds));
 }
 void make_flat_list(const Schedule &s, FlatArrays &arrays) { FlatMaker(s, arrays).make(); }
 

@@ -1,4 +1,4 @@
-// Makes the list along which one large molecule is eliminated.
+// Makes the list along which a graph, or a large tree, is eliminated.
 #pragma once
 
 #include <vector>
@@ -18,8 +18,8 @@ struct FlatArrays {
     FlatList list;
 };
 
-// Whether a molecule is worked on along a list. It is large, and the list is not much longer than it: an atom of n
-// bonds brings n^3 / 6 updates.
+// Whether a molecule is worked on along a list: a graph or a large tree, of which the list is not much longer than it.
+// An atom of n bonds brings n^3 / 6 updates.
 bool takes_flat_list(const Schedule &s);
 
 // Of a molecule whose bonds have been numbered: trees first, then the core in its order. Throws std::length_error where

@@ -53,7 +53,7 @@ private:
         std::vector<unsigned char> seen(at(s_.n_core), 0);
         for (const std::int32_t start : slot_of_node_)
             for (std::int32_t m = s_.meet_start[start - s_.n_tree]; m < s_.meet_start[start - s_.n_tree + 1]; ++m) {
-                std::int32_t p = s_.meet[m] / 2, slot = start;
+                std::int32_t p = s_.meet[m], slot = start;
                 if (seen[at(p)]) continue;
                 Strand strand = {static_cast<std::int32_t>(walked_.size()), 0, {node_[at(start)], -1}};
                 for (;;) {
@@ -63,7 +63,7 @@ private:
                     ++strand.n_bonds;
                     if (node_[at(slot)] >= 0) break;
                     const std::int32_t *const meet = s_.meet + s_.meet_start[slot - s_.n_tree];
-                    p = meet[0] / 2 == p ? meet[1] / 2 : meet[0] / 2;
+                    p = meet[0] == p ? meet[1] : meet[0];
                 }
                 strand.node[1] = node_[at(slot)];
                 strand_.push_back(strand);

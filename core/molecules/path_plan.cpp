@@ -30,8 +30,7 @@ public:
         find_knots();
         if (!pays()) return false;
         cut_paths();
-        list_kinds();
-        return true;
+        return list_kinds();
     }
 
 private:
@@ -132,7 +131,8 @@ private:
         });
     }
 
-    void list_kinds() {
+    // False if a knot has cycles that only a list could eliminate.
+    bool list_kinds() {
         std::int32_t first = 0;
         for (const auto &kind : of_kind_) {
             const Numbers &form = kind.first;
@@ -149,6 +149,7 @@ private:
             for (int i = 0; i < PathPlan::n_reaches; ++i) {
                 a_.schedule.push_back(schedule_of(form, PathPlan::reach(i)));
                 x.schedule[i] = a_.schedule.back().get();
+                if (x.schedule[i]->type == Schedule::graph) return false;
             }
             a_.kind.push_back(x);
             first += count;
@@ -170,6 +171,7 @@ private:
                    static_cast<std::int32_t>(a_.atom.size()),
                    static_cast<std::int32_t>(a_.bond.size()),
                    first};
+        return true;
     }
     static std::unique_ptr<const Schedule> schedule_of(const Numbers &form, std::int32_t reach) {
         const std::int32_t atoms = form[0], bonds = form[1], legs = form[2], n_atoms = atoms + legs * reach;

@@ -65,7 +65,8 @@ private:
     // share what is large.
     bool works_alone(std::int32_t shape, std::int64_t n_bonds) const {
         if (shape == linear) return n_bonds > longest_lane;
-        return n_bonds > largest_in_lanes || plan_->schedules[at(shape)]->flat || plan_->schedules[at(shape)]->network;
+        const Schedule &s = *plan_->schedules[at(shape)];
+        return !s.is_in_lanes() || s.network;
     }
 
     // Whether a molecule has fixed atoms that stand elsewhere, too.

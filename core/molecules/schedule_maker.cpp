@@ -25,11 +25,10 @@ void ScheduleMaker::make() {
     list_children();
     m_.column_start.assign(1, 0);
     if (s_.n_core == 0) return;
-    list_meetings();
-    if (is_network_) return;
-    list_fill();
-    const bool listed = for_ == molecule && s_.type == Schedule::graph && takes_flat_list(s_);
-    if (!listed && for_ != careful) list_updates();
+    if (is_network_)
+        list_meetings();
+    else
+        list_fill();
 }
 
 // Takes away atoms with one bond until none is left: upper_bond_ of those. Of a tree the last two atoms would take
@@ -119,9 +118,10 @@ void ScheduleMaker::number_core() {
         core_number[at(k)] = static_cast<std::int32_t>(core.size());
         core.push_back(k);
     }
-    if (for_ == knot || for_ == careful || s_.n_bonds <= largest_graph_in_lanes)
+    const bool listed = takes_flat_list(s_);
+    if (for_ == knot || for_ == careful || (listed && s_.n_bonds <= largest_graph_in_lanes))
         return order_core(core, core_number, most_bytes_);
-    is_network_ = for_ == network || has_long_strands(core);
+    is_network_ = for_ == network || !listed || has_long_strands(core);
     try {
         const std::int64_t most = most_bytes_of_list * static_cast<std::int64_t>(core.size());
         if (!is_network_) return order_core(core, core_number, std::min(most_bytes_, most));
@@ -199,64 +199,29 @@ void ScheduleMaker::list_children() {
     for (std::int32_t k = s_.n_tree; k-- > 0;) m_.child[at(--m_.child_start[at(m_.parent[at(k)])])] = k;
 }
 
+Lists ScheduleMaker::bonds_of_core() const {
+    return invert(s_.n_core_atoms, s_.n_core,
+                  [&](std::int32_t p, int end) { return (end ? m_.to : m_.from)[at(p)] - s_.n_tree; });
+}
+
 // Which bonds meet at each atom of the core.
 void ScheduleMaker::list_meetings() {
-    Lists meet = invert(s_.n_core_atoms, s_.n_core,
-                        [&](std::int32_t p, int end) { return (end ? m_.to : m_.from)[at(p)] - s_.n_tree; });
-    s_.max_core_bonds = 0;
-    for (std::int32_t c = 0; c < s_.n_core_atoms; ++c) {
-        s_.max_core_bonds = std::max(s_.max_core_bonds, meet.size(c));
-        for (std::int32_t m = meet.start[at(c)]; m < meet.start[at(c) + 1]; ++m) {
-            std::int32_t &p = meet.item[at(m)];
-            p = 2 * p + (m_.to[at(p)] == s_.n_tree + c ? 1 : 0);
-        }
-    }
+    Lists meet = bonds_of_core();
     m_.meet_start = std::move(meet.start);
     m_.meet = std::move(meet.item);
 }
 
-// Calls each(p, q) for all pairs p != q of bonds that meet at atom c of the core.
-template <class Each>
-void ScheduleMaker::for_meetings(std::int32_t c, const Each &each) const {
-    for (std::int32_t a = m_.meet_start[at(c)]; a < m_.meet_start[at(c) + 1]; ++a)
-        for (std::int32_t b = m_.meet_start[at(c)]; b < m_.meet_start[at(c) + 1]; ++b)
-            if (a != b) each(m_.meet[at(a)] / 2, m_.meet[at(b)] / 2, b < a);
-}
-
 // The factor's pattern.
 void ScheduleMaker::list_fill() {
+    const Lists meet = bonds_of_core();
     std::vector<Numbers> neighbours(at(s_.n_core));
     for (std::int32_t c = 0; c < s_.n_core_atoms; ++c)
-        for_meetings(c, [&](std::int32_t p, std::int32_t q, bool) { neighbours[at(p)].push_back(q); });
+        for (const std::int32_t *p = meet.begin(c); p != meet.end(c); ++p)
+            for (const std::int32_t *q = meet.begin(c); q != meet.end(c); ++q)
+                if (p != q) neighbours[at(*p)].push_back(*q);
     Fill fill = fill_of(neighbours);
     m_.column_start = std::move(fill.column_start);
     m_.row = std::move(fill.row);
-    s_.n_entries = static_cast<std::int32_t>(m_.row.size());
-    m_.meet_pair_start.assign(1, 0);
-    for (std::int32_t c = 0; c < s_.n_core_atoms; ++c) {
-        for_meetings(c, [&](std::int32_t p, std::int32_t q, bool before) {
-            if (before) m_.meet_pair.push_back(entry(std::max(p, q), std::min(p, q)));
-        });
-        m_.meet_pair_start.push_back(static_cast<std::int32_t>(m_.meet_pair.size()));
-    }
-}
-
-std::int32_t ScheduleMaker::entry(std::int32_t row, std::int32_t column) const {
-    const auto begin = m_.row.begin();
-    return static_cast<std::int32_t>(
-        std::lower_bound(begin + m_.column_start[at(column)], begin + m_.column_start[at(column) + 1], row) - begin);
-}
-
-void ScheduleMaker::list_updates() {
-    s_.max_column = 0;
-    m_.update_start.assign(1, 0);
-    for (std::int32_t p = 0; p < s_.n_core; ++p) {
-        const std::int32_t first = m_.column_start[at(p)], end = m_.column_start[at(p) + 1];
-        s_.max_column = std::max(s_.max_column, end - first);
-        for (std::int32_t a = first; a < end; ++a)
-            for (std::int32_t b = first; b < a; ++b) m_.update.push_back(entry(m_.row[at(a)], m_.row[at(b)]));
-        m_.update_start.push_back(static_cast<std::int64_t>(m_.update.size()));
-    }
 }
 
 }  // namespace holonomic

@@ -36,12 +36,9 @@ private:
     void check_atoms(const Numbers &core, std::int64_t most_bytes) const;
     void invert_numbers();
     void list_children();
+    Lists bonds_of_core() const;
     void list_meetings();
-    template <class Each>
-    void for_meetings(std::int32_t c, const Each &each) const;
     void list_fill();
-    std::int32_t entry(std::int32_t row, std::int32_t column) const;
-    void list_updates();
 
     Schedule &s_;
     ScheduleWork &m_;

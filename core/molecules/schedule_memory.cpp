@@ -14,7 +14,6 @@ namespace {
 // Calls each(pointer, list) for the arrays, those of large elements first.
 template <class Arrays, class Each>
 void for_arrays(Schedule &s, Arrays &a, const Each &each) {
-    each(s.update_start, a.update_start);
     each(s.atom_i, a.atom_i);
     each(s.atom_j, a.atom_j);
     each(s.atom_of, a.atom_of);
@@ -29,11 +28,8 @@ void for_arrays(Schedule &s, Arrays &a, const Each &each) {
     each(s.to, a.to);
     each(s.meet_start, a.meet_start);
     each(s.meet, a.meet);
-    each(s.meet_pair, a.meet_pair);
-    each(s.meet_pair_start, a.meet_pair_start);
     each(s.column_start, a.column_start);
     each(s.row, a.row);
-    each(s.update, a.update);
     each(s.fixed, a.fixed);
 }
 

@@ -17,8 +17,7 @@ namespace holonomic {
 // What a schedule is made in, one after the other: its arrays, and what these are found with.
 struct ScheduleWork {
     Numbers atom_i, atom_j, atom_of, slot_of, bond_of, place_of, parent, child_start, child, pair_start, from, to,
-        meet_start, meet, meet_pair, meet_pair_start, column_start, row, update;
-    std::vector<std::int64_t> update_start;
+        meet_start, meet, column_start, row;
     std::vector<std::uint8_t> fixed;
 
     Lists bonds;  // of each atom

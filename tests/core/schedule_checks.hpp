@@ -1,5 +1,5 @@
 // What holds of the order of elimination of any molecule: numbers are permutations, parents come behind their children,
-// and what the lists of the core say solves a system as dense elimination does.
+// and what a list says solves a system as dense elimination does.
 #ifndef HOLONOMIC_TESTS_SCHEDULE_CHECKS_HPP
 #define HOLONOMIC_TESTS_SCHEDULE_CHECKS_HPP
 
@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/kernels/molecules/list/flat_list.hpp"
 #include "core/molecules/schedule.hpp"
 
 namespace schedule_checks
@@ -84,36 +85,46 @@ inline void meetings_are_right(const Schedule &s)
         require(s.from[p] == s.n_tree + p && s.to[p] == s.n_tree + (p + 1) % s.n_core, "a ring that does not go round");
     for (int p = 0; p < s.n_core; ++p)
         joins(s, s.n_tree + p, s.from[p], s.to[p], "a bond of the core joins other atoms");
+    if (!s.network) return;
     int n = 0;
-    for (int c = 0; c < s.n_core_atoms; ++c) {
-        const int *pair = s.flat ? nullptr : s.meet_pair + s.meet_pair_start[c];  // a list has an order of its own
-        for (int a = s.meet_start[c]; a < s.meet_start[c + 1]; ++a, ++n) {
-            const int p = s.meet[a] / 2, slot = s.n_tree + c;
-            require((s.meet[a] % 2 ? s.to : s.from)[p] == slot, "a bond that does not meet the atom");
-            for (int b = s.meet_start[c]; b < a && !s.flat; ++b, ++pair) {
-                const int q = s.meet[b] / 2, row = p > q ? p : q, column = p > q ? q : p;
-                require(*pair >= s.column_start[column] && *pair < s.column_start[column + 1] && s.row[*pair] == row,
-                        "the entry of a pair of bonds");
-            }
-        }
-        require(s.flat || pair == s.meet_pair + s.meet_pair_start[c + 1], "pairs are missing");
-    }
+    for (int c = 0; c < s.n_core_atoms; ++c)
+        for (int a = s.meet_start[c]; a < s.meet_start[c + 1]; ++a, ++n)
+            require(s.from[s.meet[a]] == s.n_tree + c || s.to[s.meet[a]] == s.n_tree + c,
+                    "a bond that does not meet the atom");
     require(n == 2 * s.n_core, "meetings are missing");
 }
 
-// A random positive definite matrix with the pattern of the core, by the lists and densely.
-inline void lists_solve_the_core(const Schedule &s, std::mt19937 &random)
+// A random positive definite matrix in which all bonds at an atom are coupled, by the list and densely.
+inline void list_solves(const holonomic::FlatList &s, std::mt19937 &random)
 {
     std::normal_distribution<double> normal;
-    const std::size_t n = static_cast<std::size_t>(s.n_core);
+    const std::size_t n = static_cast<std::size_t>(s.n_bonds);
+    std::vector<int> start = {0};
+    for (const auto *run = s.run; start.size() <= n; ++run)
+        for (int i = 0; i < run->columns; ++i) start.push_back(start.back() + run->entries);
     std::vector<double> entry(static_cast<std::size_t>(s.n_entries)), diagonal(n), x(n), rhs(n);
     std::vector<std::vector<double>> dense(n, std::vector<double>(n));
-    for (int i = 0; i < s.meet_pair_start[s.n_core_atoms]; ++i)
-        entry[static_cast<std::size_t>(s.meet_pair[i])] = normal(random);
     for (std::size_t p = 0; p < n; ++p)
-        for (int e = s.column_start[p]; e < s.column_start[p + 1]; ++e)
-            dense[static_cast<std::size_t>(s.row[e])][p] = dense[p][static_cast<std::size_t>(s.row[e])] =
-                entry[static_cast<std::size_t>(e)];
+        for (int e = start[p]; e < start[p + 1]; ++e) {
+            const std::size_t row = static_cast<std::size_t>(s.row[e]);
+            require(row > p && row < n, "a row before its column");
+            int shared = 0;
+            for (const int i : {s.from[p], s.to[p]}) shared += i == s.from[row] || i == s.to[row];
+            if (shared > 0) {
+                require(s.row_4[e] == 4 * s.row[e] && s.column_4[e] == 4 * static_cast<int>(p),
+                        "the bonds of an entry");
+                const int atom = s.mass[e] / 2, sign = s.mass[e] % 2;
+                require(4 * atom == s.from[p] || 4 * atom == s.to[p], "the mass of another atom");
+                require(sign == ((4 * atom == s.from[p]) == (4 * atom == s.from[row])), "another sign");
+                entry[static_cast<std::size_t>(e)] = dense[row][p] = dense[p][row] = normal(random);
+            }
+        }
+    for (std::size_t p = 0; p < n; ++p)
+        for (std::size_t q = 0; q < p; ++q) {
+            bool shared = false;
+            for (const int i : {s.from[p], s.to[p]}) shared = shared || i == s.from[q] || i == s.to[q];
+            require(shared == (dense[p][q] != 0), "an entry is missing");
+        }
     for (std::size_t p = 0; p < n; ++p) {
         double sum = 1;
         for (const double a : dense[p]) sum += std::fabs(a);
@@ -122,10 +133,10 @@ inline void lists_solve_the_core(const Schedule &s, std::mt19937 &random)
     }
     for (std::size_t p = 0; p < n; ++p)
         for (std::size_t q = 0; q < n; ++q) rhs[p] += dense[p][q] * x[q];
-    for (std::size_t p = 0; p < n; ++p) {  // LDL^T; entries become multipliers
-        const int first = s.column_start[p], m = s.column_start[p + 1] - first;
+    const int *update = s.update;
+    for (std::size_t p = 0; p < n; ++p) {  // L D L^T; entries become multipliers
+        const int first = start[p], m = start[p + 1] - first;
         double *const column = entry.data() + first;
-        const int *update = s.update + s.update_start[p];
         for (int a = 0; a < m; ++a) {
             const std::size_t row = static_cast<std::size_t>(s.row[first + a]);
             const double l = column[a] / diagonal[p];
@@ -139,9 +150,9 @@ inline void lists_solve_the_core(const Schedule &s, std::mt19937 &random)
     }
     for (std::size_t p = n; p-- > 0;) {
         rhs[p] /= diagonal[p];
-        for (int e = s.column_start[p]; e < s.column_start[p + 1]; ++e)
+        for (int e = start[p]; e < start[p + 1]; ++e)
             rhs[p] -= entry[static_cast<std::size_t>(e)] * rhs[static_cast<std::size_t>(s.row[e])];
-        require(std::fabs(rhs[p] - x[p]) < 1e-11, "the core's lists do not solve it");
+        require(std::fabs(rhs[p] - x[p]) < 1e-11, "the list does not solve it");
     }
 }
 
@@ -154,7 +165,8 @@ inline std::unique_ptr<const Schedule> check(const char *name, const Bonds &bond
     numbers_are_permutations(*s);
     trees_are_in_post_order(*s);
     meetings_are_right(*s);
-    if (s->n_core <= 300 && !s->flat) lists_solve_the_core(*s, random);
+    require((type == Schedule::graph) == (s->flat || s->network) || s->n_bonds > 2048, "a graph has a list");
+    if (s->flat && s->n_bonds <= 300) list_solves(*s->flat, random);
     return s;
 }
 

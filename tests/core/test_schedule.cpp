@@ -62,7 +62,7 @@ void small_shapes()
         if (i + 2 < 40) strip.push_back({i, i + 2});
     }
     const auto s = check("triangle strip", strip, 40, Schedule::graph);
-    require(s->n_entries < 4 * s->n_core, "a strip fills");
+    require(s->flat->n_entries < 4 * s->n_core, "a strip fills");
 }
 
 void random_shapes()
@@ -93,7 +93,7 @@ void large_shapes()
     Bonds strip = ring(300000);
     for (int i = 0; i + 2 < 300000; ++i) strip.push_back({i, i + 2});
     const auto s = check("large strip", strip, 300000, Schedule::graph);
-    require(s->n_entries < 8 * s->n_core, "a large strip fills");
+    require(s->flat->n_entries < 8 * s->n_core, "a large strip fills");
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ static inline void for_each_block(const MoleculeUnit &unit, double *scratch, Wor
     KnownMasses<vec> known;
     KnownMasses<double> known_one;
     bool full = false;  // the block before was, and lanes follow each other
-    const bool small = unit.schedule->n_bonds <= largest_in_lanes && !unit.schedule->flat;
+    const bool small = unit.schedule->is_in_lanes();
     int64_t first = 0;
     while (first < unit.count) {
         const int64_t left = unit.count - first;
@@ -85,12 +85,14 @@ struct LinearWork {
     template <class V>
     void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
         if (schedule.n_arms > 0 && solve_armed(call, schedule, *lane, packed, team, scratch, tally)) return;
+        Memory<V> memory = {scratch};
         if (schedule.flat) {
-            if (!solve_flat(call, schedule, *lane, packed, {scratch}, tally))
-                solve_doubtful(call, schedule, lane, 1, scratch, tally);
+            const bool known = masses_known && schedule.n_arms == 0;
+            const FlatBlock<V> block = {schedule, lane, used, packed, known, memory};
+            if (const unsigned rest = solve_flat(call, block, tally))
+                solve_doubtful(call, schedule, lane, rest, memory.next, tally);
             return;
         }
-        Memory<V> memory = {scratch};
         Linear<V> z(schedule, lane, used, packed, call.box, call.r, memory);
         const unsigned rest = solve_block(call, z, masses_known, tally);
         if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, z.x.lane, rest, memory.next, tally);

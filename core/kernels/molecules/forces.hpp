@@ -23,15 +23,11 @@ static inline void write_outputs(Linear<V> &z, const Outputs &out, unsigned whic
 // The right-hand sides of a call into z, and their terms.
 template <class V>
 static inline int open_sides(const ForcesCall &call, Linear<V> &z) {
-    if (!call.v.x) z.equations.velocity = nullptr;
-    if (!call.f.x) z.equations.force = nullptr;
-    z.equations.given = nullptr;
     z.x.in = {&call.v, &call.f, nullptr, false};
     return (call.v.x ? squares : 0) | (call.f.x ? pulls : 0);
 }
 template <class V>
 static inline int open_sides(const SolveCall &call, Linear<V> &z) {
-    z.equations.velocity = z.equations.force = nullptr;
     z.x.in = {nullptr, nullptr, call.rhs, false};
     return given;
 }

@@ -45,18 +45,19 @@ HOL_INLINE int worst_lane(unsigned which, const V &error, const MoleculeLane *la
     return worst;
 }
 
-// The worst bond of a molecule that is solved alone, in the order s.bond_of of System: the one with the smallest
-// number. for_places(each) calls each(first, end) for places where it may stand.
-template <class System, class Places>
-HOL_INLINE void note_worst_of_one(const System &newton, double error, int64_t molecule, const Places &for_places,
-                                  Tally &tally) {
-    if (!take_worst(tally, error, molecule)) return;
-    int32_t bond = newton.s.n_bonds;
+// The worst bond of the molecules in `which`, in the order s.bond_of: of a molecule the one with the smallest number
+// among those. error_of(k): in all lanes. for_places(each) calls each(first, end) for places where it may stand.
+template <class V, class Order, class ErrorOf, class Places>
+HOL_INLINE void note_worst_bond(const Order &s, unsigned which, const V &error, const MoleculeLane *lane,
+                                const ErrorOf &error_of, const Places &for_places, Tally &tally) {
+    const int worst = worst_lane(which, error, lane, tally);
+    if (worst < 0) return;
+    int32_t bond = s.n_bonds;
     for_places([&](int32_t first, int32_t end) {
         for (int32_t k = first; k < end; ++k)
-            if (newton.s.bond_of[k] < bond && newton.error_of(k) >= error) bond = newton.s.bond_of[k];
+            if (s.bond_of[k] < bond && Width<V>::get(error_of(k), worst) >= tally.worst) bond = s.bond_of[k];
     });
-    tally.worst_bond = bond < newton.s.n_bonds ? bond : 0;
+    tally.worst_bond = bond < s.n_bonds ? bond : 0;
 }
 
 // solve() and move(): a system may have an overload that does both at once.

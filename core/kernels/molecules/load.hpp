@@ -30,20 +30,19 @@ struct Loader {
 
     // Makes d, q and t of the bond between the atoms in two slots. `sides`: the terms.
     HOL_FORCED void make_row(int sides, int32_t place, int32_t from, int32_t to) const {
-        const Equations<V> &e = z.equations;
         BondRow<V> &row = z.x.row[place];
-        Vector3<V> d = e.r[to] - e.r[from], unused = {};
+        Vector3<V> d = z.r[to] - z.r[from], unused = {};
         take_image<false>(*z.x.box, d, unused);
         V b = {};
         if (sides & squares) {
-            const Vector3<V> dv = e.velocity[to] - e.velocity[from];
+            const Vector3<V> dv = z.v[to] - z.v[from];
             b = dot(dv, dv);
         }
         if (sides & rates) {
-            b = dot(d, e.velocity[to] - e.velocity[from]);
+            b = dot(d, z.v[to] - z.v[from]);
             if (z.x.in.strain) b = b + stretching(z.x.in.strain, d);
         }
-        if (sides & pulls) b = with_pull(d, z.x.w[from], e.force[from], z.x.w[to], e.force[to], b);
+        if (sides & pulls) b = with_pull(d, z.x.w[from], z.f[from], z.x.w[to], z.f[to], b);
         if (sides & given) b = given_value(place);
         row.d = d;
         row.q = dot(d, d);
@@ -54,7 +53,6 @@ struct Loader {
         V b = {};
         for (int i = 0; i < Width<V>::lanes; ++i)
             Width<V>::set(b, i, 0.5 * z.x.in.rhs[z.x.lane[i].first_bond + z.x.s.bond_of[place]]);
-        if (z.equations.given) z.equations.given[place] = b;
         return b;
     }
 
@@ -65,14 +63,14 @@ struct Loader {
         BondRow<V> *const row = z.x.row;
         read_atoms(*z.x.r, Slots<V>(row, &row->d.x));
         if (has(squares)) read_atoms(*z.x.in.v, Slots<V>(row, &row->q));
-        if (has(pulls)) read_atoms(*z.x.in.f, Slots<V>(z.equations.r));
+        if (has(pulls)) read_atoms(*z.x.in.f, Slots<V>(z.r));
     }
 
     template <bool has_v, bool has_f>
     __attribute__((noinline)) void make_rows_in_place() const {
         const Schedule &s = z.x.s;
         const V *const mass = z.x.w;
-        const Vector3<V> *const f = z.equations.r;
+        const Vector3<V> *const f = z.r;
         for (int32_t slot = 0; slot < s.n_tree; ++slot) {
             const int32_t parent = s.parent[slot];
             const BondRow<V> &from = z.x.row[parent];
@@ -99,9 +97,9 @@ struct Loader {
             read_atoms_to_rows();
             return choose([&](auto v, auto f) { make_rows_in_place<v, f>(); }, has(squares), has(pulls));
         }
-        read_atoms(*z.x.r, Slots<V>(z.equations.r));
-        if (has(squares | rates)) read_atoms(*z.x.in.v, Slots<V>(z.equations.velocity));
-        if (has(pulls)) read_atoms(*z.x.in.f, Slots<V>(z.equations.force));
+        read_atoms(*z.x.r, Slots<V>(z.r));
+        if (has(squares | rates)) read_atoms(*z.x.in.v, Slots<V>(z.v));
+        if (has(pulls)) read_atoms(*z.x.in.f, Slots<V>(z.f));
         if (terms == rates) return make_rows<rates>();
         if (terms == given) return make_rows<given>();
         choose([&](auto v, auto f) { make_rows<(v ? squares : 0) | (f ? pulls : 0)>(); }, has(squares), has(pulls));

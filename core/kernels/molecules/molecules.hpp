@@ -84,48 +84,6 @@ HOL_INLINE void ends_of(const Schedule &s, int32_t place, int32_t &from, int32_t
     to = place < s.n_tree ? place : s.to[place - s.n_tree];
 }
 
-// Signs that cost no product.
-struct Plus {};
-struct Minus {};
-template <class V>
-HOL_INLINE V operator*(Plus, const V &x) {
-    return x;
-}
-template <class V>
-HOL_INLINE V operator*(Minus, const V &x) {
-    return -x;
-}
-
-// Calls body(place, sign) for the bonds of the core at the atom of a slot, from n_tree on. The sign is positive if the
-// bond points away from it.
-template <class V, class Body>
-HOL_INLINE void for_core_bonds_of(const Schedule &s, int32_t slot, const Body &body) {
-    if (s.n_core_atoms == 0) return;
-    if (s.type == Schedule::ring) {
-        body(slot, Plus{});
-        return body(slot > s.n_tree ? slot - 1 : s.n_bonds - 1, Minus{});
-    }
-    const V sign[2] = {Width<V>::all(1), Width<V>::all(-1)};
-    const int32_t *const meet = s.meet + s.meet_start[slot - s.n_tree];
-    const int n = s.meet_start[slot - s.n_tree + 1] - s.meet_start[slot - s.n_tree];
-    for (int e = 0; e < n; ++e) body(s.n_tree + meet[e] / 2, sign[meet[e] & 1]);
-}
-// Calls body(slot) for the children of an atom of a tree that is not its root: the last one's slot is the one before
-// its own.
-template <class Body>
-HOL_INLINE void for_children(const Schedule &s, int32_t slot, const Body &body) {
-    const int32_t first = s.child_start[slot], last = s.child_start[slot + 1] - 1;
-    for (int32_t c = first; c < last; ++c) body(s.child[c]);
-    if (first <= last) body(slot - 1);
-}
-// for_core_bonds_of(), for all bonds of an atom.
-template <class V, class Body>
-HOL_INLINE void for_bonds_of(const Schedule &s, int32_t slot, const Body &body) {
-    for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) body(s.child[c], Plus{});
-    if (slot < s.n_tree) return body(slot, Minus{});
-    for_core_bonds_of<V>(s, slot, body);
-}
-
 // Finds a bond vector of one lane, with the low word that the difference of the coordinates leaves.
 template <class V>
 HOL_INLINE void exact_bond(const Molecules<V> &x, int lane, int32_t place, Vector3<double> &d, Vector3<double> &lo) {

@@ -133,7 +133,7 @@ struct PositionsBlock {
 
     __attribute__((noinline)) void write_multipliers(unsigned which) const {
         const V factor = Width<V>::all(0.5 / (call.dt * call.dt));
-        write_values<V>(s, lane, call.lambda, which, 0, s.n_bonds,
+        write_values<V>(s.bond_of, lane, call.lambda, which, 0, s.n_bonds,
                         [&](int32_t k) HOL_FORCED { return mul_add(newton.x.row[k].tau, factor, V{}); });
     }
 
@@ -146,16 +146,10 @@ struct PositionsBlock {
         virial.count(which, 1 / (call.dt * call.dt), tally);
     }
 
-    // The worst bond of the molecules in `which`: of a molecule the one with the smallest number among those.
     void note_worst(unsigned which, V error) {
-        const int worst = worst_lane(which, error, lane, tally);
-        if (worst < 0) return;
-        int32_t bond = s.n_bonds;
-        for (int32_t k = 0; k < s.n_bonds; ++k) {
-            const double e = Width<V>::get(newton.left_of(k), worst);
-            if (e >= tally.worst && s.bond_of[k] < bond) bond = s.bond_of[k];
-        }
-        tally.worst_bond = bond < s.n_bonds ? bond : 0;
+        note_worst_bond(
+            s, which, error, lane, [&](int32_t k) { return newton.left_of(k); },
+            [&](const auto &each) { each(0, s.n_bonds); }, tally);
     }
 
     // Finds multipliers, and writes nothing.
@@ -190,8 +184,9 @@ struct PositionsWork {
     template <class V>
     void block(const MoleculeLane *lane, int used, bool known, double *scratch) const {
         if (schedule.flat) {
-            if (!solve_flat(call, schedule, *lane, packed, team, {scratch}, tally))
-                solve_doubtful(call, schedule, lane, 1, scratch, tally);
+            Memory<V> memory = {scratch};
+            FlatPositions<V> list(call, schedule, lane, used, packed, known, team, memory, tally);
+            if (const unsigned rest = list.solve()) solve_doubtful(call, schedule, lane, rest, memory.next, tally);
             return;
         }
         if (schedule.type == Schedule::ring && schedule.n_tree == 0)

@@ -50,8 +50,7 @@ struct Schedule {
     int32_t n_core;        // bonds of the core
     int32_t n_core_atoms;  // 0 for a tree, whose root has slot n_tree
     int32_t max_children;
-    int32_t max_joint;       // children of an atom that are eliminated as one matrix of as many rows
-    int32_t max_core_bonds;  // of an atom of the core
+    int32_t max_joint;  // children of an atom that are eliminated as one matrix of as many rows
 
     // As they were given: bond k joins the local atoms atom_i[k] and atom_j[k].
     const int32_t *atom_i, *atom_j;
@@ -70,27 +69,16 @@ struct Schedule {
     int32_t n_pairs;
 
     // The core: bond p, at place n_tree + p, points from slot from[p] to slot to[p]. In a ring or triangle bond p joins
-    // the core's atoms p and p + 1, the last one to atom 0, and all point that way round; elsewhere from the smaller
-    // local atom.
-    const int32_t *from, *to;   // [n_core]
-    const int32_t *meet_start;  // [n_core_atoms + 1] bonds that meet at core atom c, slot n_tree + c
-    const int32_t *meet;        // [2 n_core] 2 p + 1 where bond p points to the atom, 2 p where it points away
-    const int32_t *
-        meet_pair;  // for every core atom, the off-diagonal entries of pairs a > b of its bonds: (1,0), (2,0), (2,1) ..
-    const int32_t *meet_pair_start;  // [n_core_atoms + 1]
+    // the core's atoms p and p + 1, the last one to atom 0, and all point that way round.
+    const int32_t *from, *to;  // [n_core]
+    // Of a network: the bonds that meet at core atom c, in slot n_tree + c.
+    const int32_t *meet_start;  // [n_core_atoms + 1]
+    const int32_t *meet;        // [2 n_core]
 
-    // A symmetric elimination of the core's matrix, column after column. Off-diagonal entries e of column p are
-    // column_start[p] .. column_start[p + 1], with rows row[e] > p, ascending. Column p takes from the entry
-    // (row[a], row[b]), a > b, its product a b / pivot: entry update[update_start[p] + (a (a-1) / 2 + b)], a and b
-    // counted from the column's start; and from the diagonal elements of all row[a]. The list of
-    // updates is empty where nobody goes through it: of a graph that has a list, or that is for the careful solver
-    // alone.
+    // The factor of the core's matrix, for the careful solver: off-diagonal entries e of column p are column_start[p]
+    // .. column_start[p + 1], with rows row[e] > p, ascending.
     const int32_t *column_start;  // [n_core + 1]
-    const int32_t *row;           // [n_entries]
-    const int64_t *update_start;  // [n_core + 1]
-    const int32_t *update;
-    int32_t n_entries;
-    int32_t max_column;
+    const int32_t *row;
 
     // Atoms of a large tree with children, where most can be worked on W at a time: within a run none depends on
     // another, and all have the same number of children, 4 standing for more. Slots [p slots_of_piece, (p + 1)
@@ -109,9 +97,11 @@ struct Schedule {
     Runs runs;
     int32_t n_pieces;
 
-    // Of a large graph, or of a tree without pieces, unless the list would be long: all its bonds along
-    // one list; else nullptr.
+    // Of a graph, or of a large tree without pieces, unless the list would be long: all its bonds along one list; else
+    // nullptr.
     const FlatList *flat;
+    // Whether such molecules are worked on beside each other.
+    bool is_in_lanes() const { return n_bonds <= (flat ? largest_graph_in_lanes : largest_in_lanes); }
     // Of a large molecule of few knots and long paths; else nullptr.
     const PathPlan *paths;
 

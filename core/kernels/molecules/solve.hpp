@@ -13,11 +13,12 @@ namespace holonomic::HOL_ISA::graph {
 unsigned load_and_solve(Linear<vec> &, int terms, bool masses_known);
 unsigned load_and_solve(Linear<double> &, int terms, bool masses_known);
 
-// For the rates of velocities v, with the same matrix; G of all atoms is then in z.pulls().
-void solve_for_rates(Linear<vec> &, const vec3 *v);
-void solve_for_rates(Linear<double> &, const Vector3<double> *v);
+// For the rates of the velocities z.v, with the same matrix; G of all atoms is then in z.pulls().
+void solve_for_rates(Linear<vec> &);
+void solve_for_rates(Linear<double> &);
 
-// Reads a large molecule and solves along its list; false where that is in doubt.
-bool solve_and_refine(const FlatLinear &);
+// Reads the molecules and solves along their list. Returns the lanes that this answers for.
+unsigned solve_and_refine(const FlatLinear<vec> &);
+unsigned solve_and_refine(const FlatLinear<double> &);
 
 }  // namespace holonomic::HOL_ISA::graph

@@ -7,31 +7,27 @@
 
 namespace holonomic::HOL_ISA::graph {
 
-// Returns G of the atom at a slot: t d of the bonds that point away from it, less t d of those that point to it.
-template <class V>
-HOL_INLINE Vector3<V> pull_on(const Molecules<V> &x, int32_t slot) {
-    Vector3<V> g = {};
-    for_bonds_of<V>(x.s, slot, [&](int32_t place, auto sign) HOL_FORCED {
-        g = add_times(g, sign * x.row[place].t, x.row[place].d);
-    });
-    return g;
-}
-
-#if HOL_LANES >= 4 && defined(__AVX2__)
-// The same for a single molecule: rows begin with d, so x, y and z are done at once.
+// Returns G of the atom of a tree at a slot: t d of the bonds to its children, less t d of that to its parent.
 HOL_INLINE Vector3<double> pull_on(const Molecules<double> &x, int32_t slot) {
-    if (slot >= x.s.n_tree) return pull_on<double>(x, slot);
     const Schedule &s = x.s;
-    quad g = {};
+#if HOL_LANES >= 4 && defined(__AVX2__)
+    quad g = {};  // rows begin with d, so x, y and z are done at once
     for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c) {
         const BondRow<double> &row = x.row[s.child[c]];
         g = _mm256_fmadd_pd(_mm256_set1_pd(row.t), _mm256_loadu_pd(&row.d.x), g);
     }
-    const BondRow<double> &row = x.row[slot];
-    g = _mm256_fnmadd_pd(_mm256_set1_pd(row.t), _mm256_loadu_pd(&row.d.x), g);
+    if (slot < s.n_tree) {
+        const BondRow<double> &row = x.row[slot];
+        g = _mm256_fnmadd_pd(_mm256_set1_pd(row.t), _mm256_loadu_pd(&row.d.x), g);
+    }
     return {g[0], g[1], g[2]};
-}
+#else
+    Vector3<double> g = {};
+    for (int32_t c = s.child_start[slot]; c < s.child_start[slot + 1]; ++c)
+        g = add_times(g, x.row[s.child[c]].t, x.row[s.child[c]].d);
+    return slot < s.n_tree ? add_times(g, -x.row[slot].t, x.row[slot].d) : g;
 #endif
+}
 
 // Where the results of a linear solve go.
 struct Outputs {
@@ -60,12 +56,7 @@ HOL_INLINE void write_slots(const Molecules<double> &x, const AtomArray &array, 
     }
 }
 
-// Puts G of all atoms to pull[slot].
-template <class V>
-HOL_NOINLINE void find_pulls(const Molecules<V> &x, Vector3<V> *pull) {
-    for (int32_t slot = 0; slot < x.s.n_atoms; ++slot) put(pull[slot], pull_on(x, slot));
-}
-// That of the root or the core alone; of their children what the bond above pulls.
+// Puts G of the root's or the ring's atoms to pull[slot]; to that of their children what the bond above pulls.
 template <class V>
 HOL_INLINE void pull_top(const Molecules<V> &x, Vector3<V> *pull) {
     const Schedule &s = x.s;
@@ -78,12 +69,7 @@ HOL_INLINE void pull_top(const Molecules<V> &x, Vector3<V> *pull) {
             put(before, behind);
         }
     } else {
-        for (int32_t slot = s.n_tree; slot < s.n_atoms; ++slot) {
-            put(pull[slot], Vector3<V>{});
-            for_core_bonds_of<V>(s, slot, [&](int32_t place, auto sign) HOL_FORCED {
-                put(pull[slot], add_times(pull[slot], sign * x.row[place].t, x.row[place].d));
-            });
-        }
+        put(pull[s.n_tree], Vector3<V>{});
     }
     for (int32_t c = s.child_start[s.n_tree]; c < s.n_tree; ++c) {
         const int32_t child = s.child[c], parent = s.parent[child];
@@ -96,14 +82,14 @@ HOL_INLINE void pull_top(const Molecules<V> &x, Vector3<V> *pull) {
 // Writes value(place) of the bonds at these places to out[bond] of the lanes in `which`. To look whether four bonds
 // follow each other takes more instructions than it saves, in rings, too.
 template <class V, class Value>
-HOL_INLINE void write_values(const Schedule &s, const MoleculeLane *lane, double *out, unsigned which, int32_t first,
-                             int32_t end, const Value &value) {
+HOL_INLINE void write_values(const int32_t *bond_of, const MoleculeLane *lane, double *out, unsigned which,
+                             int32_t first, int32_t end, const Value &value) {
     double *p[Width<V>::lanes];
     for (int i = 0; i < Width<V>::lanes; ++i) p[i] = out + lane[i].first_bond;
     const bool all = which == (1u << Width<V>::lanes) - 1;
     for (int32_t k = first; k < end; ++k) {
-        if (Width<V>::lanes == 1 && k + rows_ahead < end) __builtin_prefetch(p[0] + s.bond_of[k + rows_ahead], 1, 2);
-        const int32_t bond = s.bond_of[k];
+        if (Width<V>::lanes == 1 && k + rows_ahead < end) __builtin_prefetch(p[0] + bond_of[k + rows_ahead], 1, 2);
+        const int32_t bond = bond_of[k];
         const V one = value(k);
         if (all) {
             HOL_UNROLL
@@ -120,7 +106,7 @@ template <bool with_length, class V>
 HOL_INLINE void write_bonds(const Molecules<V> &x, double factor, double *out, unsigned which, int32_t first,
                             int32_t end) {
     const V f = Width<V>::all(factor);
-    write_values<V>(x.s, x.lane, out, which, first, end, [&](int32_t k) HOL_FORCED {
+    write_values<V>(x.s.bond_of, x.lane, out, which, first, end, [&](int32_t k) HOL_FORCED {
         const BondRow<V> &row = x.row[k];
         return mul_add(row.t, with_length ? sqrt(row.q) : f, V{});
     });

@@ -19,18 +19,15 @@ struct Projected {
 // Solves a block and writes.
 template <class V>
 static inline unsigned solve_block(const VelocitiesCall &call, Linear<V> &z, bool masses_known, Tally &tally) {
-    z.equations.force = nullptr;
-    z.equations.given = nullptr;
     z.x.in = {&call.v, nullptr, nullptr, true, call.strain};
     const unsigned good = load_and_solve(z, rates, masses_known);
     if (!good) return bits(z.x.in_use());
     if (call.lambda) write_bonds<false>(z.x, 0.5, call.lambda, good);
     if (call.virial) add_pulls_to_virial(z.x, good, tally);
-    Vector3<V> *const v = z.equations.start;
-    const Projected<V> projected = {v, z.pulls(), z.x.w};
+    const Projected<V> projected = {z.v, z.pulls(), z.x.w};
     if (!call.v.is_float) {
-        for (int32_t slot = 0; slot < z.x.s.n_atoms; ++slot) put(v[slot], projected[slot]);
-        solve_for_rates(z, v);
+        for (int32_t slot = 0; slot < z.x.s.n_atoms; ++slot) put(z.v[slot], projected[slot]);
+        solve_for_rates(z);
     }
     write_vectors(call.v, z.x.at, z.x.s.slot_of, z.x.s.n_atoms, projected, Written<V>{good, nullptr, z.x.lane});
     return bits(z.x.in_use()) & ~good;

@@ -9,15 +9,7 @@ namespace holonomic::HOL_ISA::graph {
 // Lanes that plain arithmetic answers for, once the equations are solved.
 template <class V>
 static inline unsigned good_lanes(Linear<V> &z) {
-    if (z.x.in.rates) {
-        z.equations.start = z.equations.velocity;
-        z.equations.velocity = nullptr;
-    }
-    MaskOf<V> good = z.x.in_use() & ~less(z.x.slack, V{});
-    if (z.x.s.type == Schedule::graph) {
-        good = good & z.refine();
-        find_pulls(z.x, z.pulls());
-    }
+    const MaskOf<V> good = z.x.in_use() & ~less(z.x.slack, V{});
     return bits(good & finite_solution(z.x));
 }
 
@@ -35,9 +27,15 @@ unsigned load_and_solve(Linear<double> &z, int terms, bool masses_known) {
     return load_and_solve_lanes(z, terms, masses_known);
 }
 
-void solve_for_rates(Linear<vec> &z, const vec3 *v) { z.solve_for_rates(v); }
-void solve_for_rates(Linear<double> &z, const Vector3<double> *v) { z.solve_for_rates(v); }
+void solve_for_rates(Linear<vec> &z) { z.solve_for_rates(); }
+void solve_for_rates(Linear<double> &z) { z.solve_for_rates(); }
 
-bool solve_and_refine(const FlatLinear &x) { return FlatProof(x).solve() || FlatRefine(x).refine(); }
+template <class V>
+static inline unsigned prove_or_refine(const FlatLinear<V> &x) {
+    const unsigned proven = FlatProof<V>(x).solve();
+    return proven == bits(x.in_use()) ? proven : FlatRefine<V>(x).refine(proven);
+}
+unsigned solve_and_refine(const FlatLinear<vec> &x) { return prove_or_refine(x); }
+unsigned solve_and_refine(const FlatLinear<double> &x) { return prove_or_refine(x); }
 
 }  // namespace holonomic::HOL_ISA::graph

@@ -18,9 +18,10 @@ static int64_t block_bytes(const Schedule &s) {
     return static_cast<int64_t>(sizeof(V)) * (linear > newton ? linear : newton);
 }
 
-static int64_t flat_bytes(const FlatList &s) {
-    const int64_t linear = FlatLinear::values(s), newton = FlatNewton::values(s);
-    return static_cast<int64_t>(sizeof(double)) * (linear > newton ? linear : newton);
+template <class V>
+static int64_t list_bytes(const FlatList &s) {
+    const int64_t linear = FlatLinear<V>::values(s), newton = FlatNewton<V>::values(s);
+    return static_cast<int64_t>(sizeof(V)) * (linear > newton ? linear : newton);
 }
 
 int64_t molecules_scratch_bytes(const Schedule &s) {
@@ -29,9 +30,10 @@ int64_t molecules_scratch_bytes(const Schedule &s) {
                       own = HOL_NETWORKS::network_bytes(*s.network);
         return own > careful ? own : careful;
     }
-    const int64_t most = s.flat                          ? flat_bytes(*s.flat)
-                         : s.n_bonds <= largest_in_lanes ? block_bytes<vec>(s)
-                                                         : block_bytes<double>(s),
+    const bool in_lanes = s.is_in_lanes();
+    const int64_t most = s.flat     ? (in_lanes ? list_bytes<vec>(*s.flat) : list_bytes<double>(*s.flat))
+                         : in_lanes ? block_bytes<vec>(s)
+                                    : block_bytes<double>(s),
                   paths = s.paths ? path_positions_bytes(s) : 0,
                   armed = ArmedTree::values(s) * static_cast<int64_t>(sizeof(double)),
                   more = armed > paths ? armed : paths, linear = (most > more ? most : more) + 64 + s.careful_bytes,

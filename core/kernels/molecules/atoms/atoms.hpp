@@ -59,6 +59,16 @@ struct Atoms {
             bond[i] += lanes * n_bonds;
         }
     }
+    // Those from local atom k on.
+    Atoms from(int64_t k) const {
+        Atoms rest = *this;
+        for (int i = 0; i < lanes; ++i)
+            if (list[i])
+                rest.list[i] += k;
+            else
+                rest.first[i] += k;
+        return rest;
+    }
     HOL_FORCED int64_t number(int i, int64_t k) const { return list[i] ? list[i][k] : first[i] + k; }
 };
 

@@ -156,10 +156,10 @@ struct Displacements {
     const V *w;
     HOL_FORCED Vector3<V> operator[](int64_t slot) const { return add_times(Vector3<V>{}, w[slot], pull[slot]); }
 };
-// Moves n atoms, and their velocities with them.
-template <class V>
+// Moves n atoms by moves[slot], and their velocities with them.
+template <class V, class Moves>
 HOL_NOINLINE void move_vectors(const PositionsCall &call, const Atoms<V> &at, const int32_t *slot_of, int32_t n,
-                               const Displacements<V> moves, const Written<V> what) {
+                               const Moves moves, const Written<V> what) {
     const double per_dt = 1 / call.dt;
     const V factor = Width<V>::all(per_dt);
     if (!what.all() || at.layout == elements) {

@@ -1,54 +1,67 @@
-// Newton's method for the positions of one large molecule: the matrix of new bonds D times reference bonds b as it
-// stands, factored along a list (flat_list.hpp). Bonds and moves are found four at a time, the triangular solves one by
-// one. What can be done while a tile is in a cache is done together: on the way up bonds, what is left of them and
-// factors, on the way down corrections and displacements. Where there are threads, they share the tiles in all that
-// needs no order; the triangular solves are left to one. The digits are the same.
+// Newton's method for the positions of molecules along a list (flat_list.hpp): the matrix of new bonds D times
+// reference bonds b as it stands, L D U. Of one molecule (V = double) bonds and moves are found four at a time, the
+// triangular solves one by one; W molecules are in lanes. What can be done while a tile is in a cache is done together:
+// on the way up bonds, what is left of them and factors, on the way down corrections and displacements. Where there are
+// threads, they share the tiles in all that needs no order; the triangular solves are left to one. The digits are the
+// same.
 #pragma once
 
-#include "core/kernels/molecules/list/flat_rows.hpp"
+#include "core/kernels/molecules/list/flat_tiles.hpp"
 #include "core/kernels/molecules/scratch.hpp"
 #include "core/kernels/molecules/share_out.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
 // The largest error of bonds.
+template <class V>
 struct FlatErrors {
-    Row worst, sum;  // max() may lose a NaN, the sum keeps it
+    Columns<V> worst, sum;  // max() may lose a NaN, the sum keeps it
     void add(const FlatErrors &other) {
         worst = larger(other.worst, worst);
         sum = sum + other.sum;
     }
-    double largest() const { return largest_of(worst) + 0 * ((sum[0] + sum[1]) + (sum[2] + sum[3])); }
+    V largest() const { return largest_of<V>(worst) + V{} * sum_of_columns<V>(sum); }
 };
 
 // What is found of a tile: also the largest coordinate, and the shortest and the longest bond.
+template <class V>
 struct FlatFound {
-    FlatErrors errors;
-    Row coordinate, least, most;
+    FlatErrors<V> errors;
+    RowOf<V> coordinate;
+    Columns<V> least, most;
 };
 
 // As Newton (newton.hpp) for iterate().
+template <class V>
 struct FlatNewton {
+    typedef RowOf<V> Row;
+    typedef FlatErrors<V> Errors;
+    static constexpr int step = at_once<V>;
     const FlatList &s;
     const LongTeam *const team;  // or nullptr
-    FlatFound *found;            // [n_tiles]
-    double *mass;                // -w_0, w_0, -w_1, .. , 0 of each tile
-    Rows moves, D, b;            // of all tiles
-    Rows new_D, r;               // of one tile
-    double *tau, *t, *r_pivot;   // t: what is left of a length, then its correction; 1 / pivot
-    double *lower, *upper, *a2, *per_a2;
-    double *stretch;  // |D| / a of the bonds that the factors were made of
-    double opening;   // the error of the bonds as they came
+    FlatFound<V> *found;         // [n_tiles]
+    V *mass;                     // -w_0, w_0, -w_1, .. , 0 of each tile
+    Rows<V> moves, D, b;         // of all tiles
+    Rows<V> new_D, r;            // of one tile
+    V *tau, *t, *r_pivot;        // t: what is left of a length, then its correction; 1 / pivot
+    V *lower, *upper, *a2, *per_a2;
+    V *stretch;       // |D| / a of the bonds that the factors were made of
+    V *kept;          // what other lanes have, while factors are made for some
+    V opening;        // the error of the bonds as they came
     bool displaced;   // `moves` are those of tau
     bool moved;       // the bonds are not D any more
     bool eliminated;  // t has been taken up through the factors
 
-    static int64_t values(const FlatList &s) {
-        return mass_values(s) + 8 * static_cast<int64_t>(s.n_sites) + 12 * static_cast<int64_t>(s.n_rows) +
-               20 * static_cast<int64_t>(s.n_tiles) + 4 * in_fours(s.n_bonds) + 2 * in_fours(s.n_columns) +
-               2 * in_fours(s.n_entries);
+    static constexpr int64_t found_values = sizeof(FlatFound<V>) / sizeof(V);
+    static int64_t kept_values(const FlatList &s) {
+        return Width<V>::lanes == 1 ? 0 : 3 * in_fours(s.n_bonds) + 2 * in_fours(s.n_entries);
     }
-    FlatNewton(const FlatList &list, const LongTeam *threads, Memory<double> &memory)
+    static int64_t values(const FlatList &s) {
+        return kept_values(s) + mass_values(s) + 8 * static_cast<int64_t>(s.n_sites) +
+               12 * static_cast<int64_t>(s.n_rows) + found_values * static_cast<int64_t>(s.n_tiles) +
+               4 * in_fours(s.n_bonds) + 2 * in_fours(s.n_columns) + 2 * in_fours(s.n_entries);
+    }
+    FlatNewton(const FlatList &list, const LongTeam *threads, Memory<V> &memory)
         : s(list), team(list.n_tiles > 1 ? threads : nullptr), opening(), displaced(false), moved(false),
           eliminated(false) {
         const int64_t bonds = in_fours(s.n_bonds), columns = in_fours(s.n_columns), entries = in_fours(s.n_entries);
@@ -57,8 +70,7 @@ struct FlatNewton {
         b = {memory.values(4 * static_cast<int64_t>(s.n_rows))};
         new_D = {memory.values(4 * static_cast<int64_t>(s.n_rows))};
         r = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
-        found = reinterpret_cast<FlatFound *>(memory.values(20 * static_cast<int64_t>(s.n_tiles)));
-        static_assert(sizeof(FlatFound) == 20 * sizeof(double), "");
+        found = reinterpret_cast<FlatFound<V> *>(memory.values(found_values * static_cast<int64_t>(s.n_tiles)));
         lower = memory.values(entries);
         upper = memory.values(entries);
         t = memory.values(columns);
@@ -68,73 +80,81 @@ struct FlatNewton {
         per_a2 = memory.values(bonds);
         stretch = memory.values(bonds);
         mass = memory.values(mass_values(s));
+        kept = memory.values(kept_values(s));
     }
 
-    HOL_FORCED Row &four(double *values, int64_t k) const { return *reinterpret_cast<Row *>(values + k); }
+    HOL_FORCED Columns<V> &some(V *values, int64_t k) const { return *reinterpret_cast<Columns<V> *>(values + k); }
 
-    HOL_FORCED Rows coordinates_of(const Tile &tile) const { return team ? rows_from(r, tile.first_site) : r; }
-    HOL_FORCED Rows new_bonds_of(const Tile &tile) const { return team ? rows_from(new_D, tile.first_row) : new_D; }
-    double largest_error() const {
-        FlatErrors all = {};
+    HOL_FORCED Rows<V> coordinates_of(const Tile &tile) const { return team ? r.from(tile.first_site) : r; }
+    HOL_FORCED Rows<V> new_bonds_of(const Tile &tile) const { return team ? new_D.from(tile.first_row) : new_D; }
+    V largest_error() const {
+        Errors all = {};
         for (int32_t i = 0; i < s.n_tiles; ++i) all.add(found[i].errors);
         return all.largest();
     }
 
-    // D.D - a^2 of bonds k .. k + 3.
-    HOL_FORCED Row excess_of(int64_t k, const Row *d) const {
-        const Lanes3 at = turned(d[0], d[1], d[2], d[3]);
-        return multiply_add(at.z, at.z, multiply_add(at.y, at.y, multiply_add(at.x, at.x, -four(a2, k))));
+    // D.D - a^2 of bonds k ..
+    HOL_FORCED Columns<V> excess_of(int64_t k, const Row (&d)[step]) const {
+        const Turned<V> at = turned(d);
+        return multiply_add(at.z, at.z, multiply_add(at.y, at.y, multiply_add(at.x, at.x, -some(a2, k))));
     }
     // What is left of their lengths. Not of their squares: a change of |D|, which is D/|D| . dD, is nearly what it was
     // when the factors were made, as bonds are stretched more than they turn; that of D.D grows with |D|. So with the
     // factors of D_0, of which row k is D_0 . dD, |D_0| (|D| - a). `fresh`: the factors will be those of this D.
     template <bool fresh>
-    HOL_FORCED void measure(int64_t k, const Row *d, FlatErrors &errors) const {
-        const Row sigma = excess_of(k, d), excess = sigma * four(per_a2, k);
+    HOL_FORCED void measure(int64_t k, const Row (&d)[step], Errors &errors) const {
+        const auto all = [](double value) HOL_FORCED { return all_columns<V>(value); };
+        const Columns<V> sigma = excess_of(k, d), excess = sigma * some(per_a2, k);
         errors.worst = larger(absolute(excess), errors.worst);
         errors.sum = errors.sum + sigma;
         if (fresh) {
-            const Row root = root_of(in_row(1) + excess);
-            four(stretch, k) = root;
-            four(t, k) = sigma * (root / (in_row(1) + root));
+            const Columns<V> root = root_of(all(1) + excess);
+            some(stretch, k) = root;
+            some(t, k) = sigma * (root / (all(1) + root));
         } else {  // 2 (sqrt(1 + e) - 1) / e
-            const Row e = smaller(larger(excess, in_row(-0.5)), in_row(0.5));
-            four(t, k) = (in_row(0.5) * four(stretch, k)) *
-                         (sigma * multiply_add(e, multiply_add(in_row(0.125), e, in_row(-0.25)), in_row(1)));
+            const Columns<V> e = smaller(larger(excess, all(-0.5)), all(0.5));
+            some(t, k) = (all(0.5) * some(stretch, k)) *
+                         (sigma * multiply_add(e, multiply_add(all(0.125), e, all(-0.25)), all(1)));
         }
     }
     // What is left of a tile's bonds d.
     template <bool fresh>
-    FlatErrors measure_tile(const Tile &tile, const Rows &d) const {
-        FlatErrors errors = {};
-        for (int64_t k = tile.first; k < tile.end; k += 4) measure<fresh>(k, &d[k - tile.first], errors);
+    Errors measure_tile(const Tile &tile, const Rows<V> &d) const {
+        Errors errors = {};
+        for (int64_t k = tile.first; k < tile.end; k += step) {
+            Row one[step];
+            HOL_UNROLL
+            for (int i = 0; i < step; ++i) one[i] = d[k - tile.first + i];
+            measure<fresh>(k, one, errors);
+        }
         return errors;
     }
 
-    double open() const { return opening; }
-    void forget(Flag which) {
-        if (!which.set) return;
-        for (int64_t k = 0; k < in_fours(s.n_bonds); ++k) tau[k] = 0;
+    V open() const { return opening; }
+    void forget(MaskOf<V> which) {
+        if (!any(which)) return;
+        for (int64_t k = 0; k < in_fours(s.n_bonds); ++k) tau[k] = select(which, V{}, tau[k]);
         displaced = false;
     }
 
     // Bond `row` of a tile as moved.
     HOL_FORCED Row moved_bond(const Tile &tile, int64_t row) const {
-        const Rows of = rows_from(moves, tile.first_site);
+        const Rows<V> of = moves.from(tile.first_site);
         return D[row] + (of.at_four_times(s.to[row]) - of.at_four_times(s.from[row]));
     }
-    // |D.D - a^2| / a^2 of the bonds as they are.
-    double error_of(int64_t k) const {
+    // |D.D - a^2| / a^2 of a bond as it is.
+    V error_of(int64_t k) const {
         const Tile &tile = s.tile[s.tile_of(static_cast<int32_t>(k))];
-        const int64_t first = k / 4 * 4, row = tile.first_row + first - tile.first;
-        Row d[4];
-        for (int i = 0; i < 4; ++i) d[i] = moved ? moved_bond(tile, row + i) : D[row + i];
-        return absolute(excess_of(first, d))[k - first] * per_a2[k];
+        const int64_t first = k / step * step, row = tile.first_row + first - tile.first;
+        Row d[step];
+        for (int i = 0; i < step; ++i) d[i] = moved ? moved_bond(tile, row + i) : D[row + i];
+        const Columns<V> excess = absolute(excess_of(first, d));
+        return reinterpret_cast<const V *>(&excess)[k - first] * per_a2[k];
     }
 
     // Displacements by the bonds of a tile, and of its atoms by all: times w only in the end.
     HOL_FORCED void pull(const Tile &tile) const {
-        const Rows of = rows_from(moves, tile.first_site), bond = rows_from(b, tile.first_row - tile.first);
+        const Rows<V> of = moves.from(tile.first_site), bond = b.from(tile.first_row - tile.first);
         const int32_t *const from = s.from + (tile.first_row - tile.first), *const to = s.to + (from - s.from);
         for (int64_t i = 0; i < tile.end_site - tile.first_site; ++i) of[i] = Row{};
         for (int64_t k = tile.first; k < tile.end; ++k) {
@@ -145,8 +165,8 @@ struct FlatNewton {
         }
     }
     HOL_FORCED void weigh(const Tile &tile) const {
-        const Rows of = rows_from(moves, tile.first_site);
-        const double *const w = mass + tile.first_mass;
+        const Rows<V> of = moves.from(tile.first_site);
+        const V *const w = mass + tile.first_mass;
         add_visits(s, tile, moves);
         for (int64_t i = 0; i < tile.own_end - tile.first_site; ++i) of[i] = in_row(w[2 * i + 1]) * of[i];
     }
@@ -157,20 +177,21 @@ struct FlatNewton {
         share_out(team, s.n_tiles, [&](int32_t i) { weigh(s.tile[i]); });
     }
     // Bonds as moved, and what is left of them.
-    __attribute__((noinline)) double move() {
+    __attribute__((noinline)) V move() {
         displace();
         share_out(team, s.n_tiles, [&](int32_t i) { found[i].errors = move(s.tile[i]); });
         eliminated = false;
         moved = true;
         return largest_error();
     }
-    HOL_FORCED FlatErrors move(const Tile &tile) const {
-        FlatErrors errors = {};
+    HOL_FORCED Errors move(const Tile &tile) const {
+        Errors errors = {};
         copy_guests(s, tile, moves);
         const int64_t shift = tile.first_row - tile.first;
-        for (int64_t k = tile.first; k < tile.end; k += 4) {
-            const Row d[4] = {moved_bond(tile, k + shift), moved_bond(tile, k + shift + 1),
-                              moved_bond(tile, k + shift + 2), moved_bond(tile, k + shift + 3)};
+        for (int64_t k = tile.first; k < tile.end; k += step) {
+            Row d[step];
+            HOL_UNROLL
+            for (int i = 0; i < step; ++i) d[i] = moved_bond(tile, k + shift + i);
             measure<false>(k, d, errors);
         }
         return errors;
@@ -178,16 +199,39 @@ struct FlatNewton {
 
     // Factors for the bonds as they are; the first solve with them follows.
     void first_factors() {
-        if (!eliminated) factorize({true});
+        if (!eliminated) factorize(~Width<V>::none());
     }
-    void factorize(Flag) {
+    // In the lanes of `which`. The others keep theirs: what is left of all is taken up when they are all in place.
+    void factorize(MaskOf<V> which) {
+        const bool for_some = bits(which) != all_of<V>;
+        V *const left = kept, *const factors = kept + s.n_bonds;
+        for (int32_t k = 0; for_some && k < s.n_bonds; ++k) left[k] = t[k];
+        if (for_some) for_factors([&](V &value, int64_t i) HOL_FORCED { factors[i] = value; });
         make_factors([&](const Tile &tile) HOL_FORCED {
-            const Rows d = moved ? new_bonds_of(tile) : rows_from(D, tile.first_row);
+            const Rows<V> d = moved ? new_bonds_of(tile) : D.from(tile.first_row);
             for (int64_t row = tile.first_row; moved && row < tile.end_row; ++row)
                 d[row - tile.first_row] = moved_bond(tile, row);
             measure_tile<true>(tile, d);
+            for (int32_t k = tile.first; for_some && k < tile.end; ++k) left[k] = select(which, t[k], left[k]);
             assemble(tile, d);
         });
+        if (!for_some) return;
+        for_factors([&](V &value, int64_t i) HOL_FORCED { value = select(which, value, factors[i]); });
+        for (int32_t k = 0; k < s.n_bonds; ++k) t[k] = left[k];
+        eliminated = false;
+    }
+    // Calls body(value, its number) for all values that factors are made of.
+    template <class Body>
+    HOL_FORCED void for_factors(const Body &body) const {
+        const int64_t bonds = s.n_bonds, entries = s.n_entries;
+        for (int64_t k = 0; k < bonds; ++k) {
+            body(stretch[k], k);
+            body(r_pivot[k], bonds + k);
+        }
+        for (int64_t e = 0; e < entries; ++e) {
+            body(lower[e], 2 * bonds + e);
+            body(upper[e], 2 * bonds + entries + e);
+        }
     }
     // start(tile) finds what the factors start from.
     template <class Start>
@@ -208,40 +252,40 @@ struct FlatNewton {
         }
         eliminated = true;
     }
-    __attribute__((noinline)) void assemble(const Tile &tile, const Rows &d) const {
-        const Rows ref = rows_from(b, tile.first_row);
-        const double *const w = mass + tile.first_mass;
+    __attribute__((noinline)) void assemble(const Tile &tile, const Rows<V> &d) const {
+        const Rows<V> ref = b.from(tile.first_row);
+        const V *const w = mass + tile.first_mass;
         const int32_t *const from = s.from + tile.first_row, *const to = s.to + tile.first_row;
-        for (int64_t k = 0; k < tile.end - tile.first; k += 4) {
-            double sum[4];
-            for (int i = 0; i < 4; ++i) sum[i] = w[from[k + i] / 2 + 1] + w[to[k + i] / 2 + 1];
-            const Row q = sums_of(d[k] * ref[k], d[k + 1] * ref[k + 1], d[k + 2] * ref[k + 2], d[k + 3] * ref[k + 3]);
-            four(r_pivot, tile.first + k) = Row{sum[0], sum[1], sum[2], sum[3]} * q;
-        }
-        for (int64_t e = tile.first_entry; e < tile.end_entry; e += 4) {
-            const int32_t *const row = s.row_4 + e, *const column = s.column_4 + e, *const m = s.mass + e;
-            const Row shared = {w[m[0]], w[m[1]], w[m[2]], w[m[3]]};
-            Row p[4], q[4];
+        for (int64_t k = 0; k < tile.end - tile.first; k += step) {
+            Row q[step];
             HOL_UNROLL_FEW
-            for (int i = 0; i < 4; ++i) {
+            for (int i = 0; i < step; ++i) q[i] = d[k + i] * ref[k + i];
+            some(r_pivot, tile.first + k) = masses_at<V>(w, from + k, to + k) * sums_of(q);
+        }
+        for (int64_t e = tile.first_entry; e < tile.end_entry; e += step) {
+            const int32_t *const row = s.row_4 + e, *const column = s.column_4 + e;
+            const Columns<V> shared = gathered(w, s.mass + e);
+            Row p[step], q[step];
+            HOL_UNROLL_FEW
+            for (int i = 0; i < step; ++i) {
                 p[i] = d.at_four_times(row[i]) * ref.at_four_times(column[i]);
                 q[i] = d.at_four_times(column[i]) * ref.at_four_times(row[i]);
             }
-            four(lower, e) = shared * sums_of(p[0], p[1], p[2], p[3]);
-            four(upper, e) = shared * sums_of(q[0], q[1], q[2], q[3]);
+            some(lower, e) = shared * sums_of(p);
+            some(upper, e) = shared * sums_of(q);
         }
     }
 
     __attribute__((noinline)) void eliminate(const Tile &tile) const {
         const int32_t *update = s.update + tile.first_update;
-        double *const pivot = r_pivot;
+        V *const pivot = r_pivot;
         for_columns_up(s, tile, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
             const int32_t *const row = s.row + first;
-            double *const l = lower + first, *const u = upper + first;
-            const double inverse = pivot[k] = 1 / pivot[k], y = t[k];
+            V *const l = lower + first, *const u = upper + first;
+            const V inverse = pivot[k] = Width<V>::all(1) / pivot[k], y = t[k];
             HOL_UNROLL_FEW
             for (int32_t a = 0; a < n; ++a) {
-                const double la = l[a], ua = u[a], ur = ua * inverse;
+                const V la = l[a], ua = u[a], ur = ua * inverse;
                 HOL_UNROLL_FEW
                 for (int32_t c = 0; c < a; ++c, ++update) {  // l and u of c are multiplied already
                     lower[*update] = mul_add(-la, u[c], lower[*update]);
@@ -260,12 +304,13 @@ struct FlatNewton {
         clear_sides(s, t);
         for (int32_t i = 0; i < s.n_tiles; ++i) solve_up(s, s.tile[i], lower, t);
     }
-    __attribute__((noinline)) void solve(Flag) {
+    __attribute__((noinline)) void solve(MaskOf<V> active) {
         if (!eliminated) take_up();
         eliminated = false;
         for (int32_t i = s.n_tiles; i-- > 0;) {
             const Tile &tile = s.tile[i];
-            solve_down(s, tile, upper, r_pivot, t, [&](int32_t k, double x) HOL_FORCED { tau[k] = tau[k] + x; });
+            solve_down(s, tile, upper, r_pivot, t,
+                       [&](int32_t k, const V &x) HOL_FORCED { tau[k] = tau[k] + keep(active, x); });
             if (team) continue;
             pull(tile);
             weigh(tile);

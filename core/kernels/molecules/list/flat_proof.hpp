@@ -5,119 +5,145 @@
 //
 // (elimination and substitutions; the products d.d' and w). Where R is no more than the terms that an equation is made
 // of, all errors are of the size of its scale |A^-1| S. Elsewhere, or where a pivot is small,
-// flat_refine.hpp corrects, or linear.hpp.
+// flat_refine.hpp corrects, or the careful solver.
 #pragma once
 
-#include "core/kernels/molecules/cycles/proof.hpp"
 #include "core/kernels/molecules/list/flat_residual.hpp"
+#include "core/kernels/molecules/proof.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
 // What is left of an equation is most often less than a third of the roundings of R.
 constexpr double often_less = 3;
 
+template <class V>
 struct FlatProof {
-    const FlatLinear &x;
+    typedef RowOf<V> Row;
+    static constexpr int step = at_once<V>, lanes = Width<V>::lanes;
+    const FlatLinear<V> &x;
     const FlatList &s;
     const Inputs &in;
-    FlatResidual residual;
-    // Columns of a tile whose bound fails by little.
-    static constexpr int32_t most_missed = 1024;
-    int32_t missed[most_missed], n_missed = 0;
-    explicit FlatProof(const FlatLinear &linear) : x(linear), s(linear.s), in(linear.in), residual(linear) {}
+    FlatResidual<V> residual;
+    unsigned left;  // lanes in which nothing contradicts
+    // Columns of a tile whose bound fails by little, times lanes; and how many each lane has looked at. Where a
+    // molecule needs a closer look at more, refinement is cheaper.
+    static constexpr int32_t most_looks(int32_t columns) { return columns / 32 + 2; }
+    int32_t missed[lanes == 1 ? most_looks(FlatList::columns_of_tile) : lanes * most_looks(largest_graph_in_lanes)];
+    int32_t n_missed = 0, looks[lanes];
+    explicit FlatProof(const FlatLinear<V> &linear)
+        : x(linear), s(linear.s), in(linear.in), residual(linear), left(bits(linear.in_use())) {}
 
-    // R of a column's bond beside what it may be, by all terms of the equation, in absolute values.
+    // R of a column's bond beside what it may be, by all terms of the equation, in absolute values; of one lane.
     struct Bound {
         double R, most;
         bool holds() const { return R <= most; }
     };
-    __attribute__((noinline)) Bound bound_of(const Tile &tile, int32_t k) const {
+    __attribute__((noinline)) Bound bound_of(const Tile &tile, int32_t k, int lane) const {
         const int32_t row = tile.first_row + (k - tile.first);
         const int32_t end[2] = {s.from[row] / 4, s.to[row] / 4};
+        const Row &bond = x.d[row];
         double sum = 0, velocity[2][3] = {}, tensions = 0;
         for (int e = 0; e < 2; ++e) {
             const int32_t site = tile.first_site + end[e];
-            const int64_t number = x.at.number(0, s.atom_of[site]);
-            const double w = x.mass[tile.first_mass + 2 * end[e] + 1];
+            const int64_t number = x.at.number(lane, s.atom_of[site]);
+            const double w = Width<V>::get(x.mass[tile.first_mass + 2 * end[e] + 1], lane);
             const Row &g = x.pull[s.home[site]];
             double f[3] = {}, product = 0;
             if (in.v && in.v->x) read_row(*in.v, number, velocity[e]);
             if (in.f && in.f->x) read_row(*in.f, number, f);
             for (int c = 0; c < 3; ++c) {
-                sum += w * abs(x.d[row][c] * f[c]);
-                if (in.rates) sum += abs(x.d[row][c] * velocity[e][c]);
-                product += x.d[row][c] * (w * (f[c] + g[c]) + (in.rates ? velocity[e][c] : 0));
+                const double d = component(bond, c, lane);
+                sum += w * abs(d * f[c]);
+                if (in.rates) sum += abs(d * velocity[e][c]);
+                product += d * (w * (f[c] + component(g, c, lane)) + (in.rates ? velocity[e][c] : 0));
             }
             sum += abs(product);
-            tensions += w * g[3];
+            tensions += w * Width<V>::get(more_of(g), lane);
         }
-        if (in.rhs) sum += abs(0.5 * in.rhs[x.lane.first_bond + s.bond_of[k]]);
+        if (in.rhs) sum += abs(0.5 * in.rhs[x.lane[lane].first_bond + s.bond_of[k]]);
         for (int a = 0, e = 0; a < 3 && in.strain; ++a)
-            for (int b = a; b < 3; ++b, ++e) sum += abs(in.strain[e] * x.d[row][a] * x.d[row][b]);
+            for (int b = a; b < 3; ++b, ++e)
+                sum += abs(in.strain[e] * component(bond, a, lane) * component(bond, b, lane));
         for (int c = 0; c < 3 && !in.rates; ++c)
             sum += (velocity[1][c] - velocity[0][c]) * (velocity[1][c] - velocity[0][c]);
-        return {x.back[k] + x.size[k] * tensions, most_backward(s.n_bonds) * sum};
+        return {Width<V>::get(x.back[k], lane) + Width<V>::get(x.size[k], lane) * tensions,
+                most_backward(s.n_bonds) * sum};
     }
-    // Notes a column where it fails by little; false where it does not do.
-    bool note_missed(const Tile &tile, int32_t k) {
-        const Bound bound = bound_of(tile, k);
-        if (bound.holds()) return true;
-        if (!(bound.R <= often_less * bound.most) || n_missed == most_missed) return false;
-        missed[n_missed++] = k;
-        return true;
+    void start_looking() {
+        for (int l = 0; l < lanes; ++l) looks[l] = 0;
+    }
+    // Notes a column where it fails by little in lanes of `which`; where it does not do, the lane is given up.
+    void note_missed(const Tile &tile, int32_t k, unsigned which) {
+        for (; which; which &= which - 1) {
+            const int lane = __builtin_ctz(which);
+            if (looks[lane]++ < most_looks(tile.end - tile.first)) {
+                const Bound bound = bound_of(tile, k, lane);
+                if (bound.holds()) continue;
+                if (bound.R <= often_less * bound.most) {
+                    missed[n_missed++] = k * lanes + lane;
+                    continue;
+                }
+            }
+            left &= ~(1u << lane);
+        }
     }
     // Whether what is left of their equations is little enough.
-    bool has_small_residuals(const Tile &tile) {
+    void look_at_missed(const Tile &tile) {
         for (; n_missed > 0; --n_missed) {
-            const int32_t k = missed[n_missed - 1];
-            if (!(abs(residual.of(tile, k)) <= epsilon * bound_of(tile, k).most)) return false;
+            const int32_t k = missed[n_missed - 1] / lanes;
+            const int lane = missed[n_missed - 1] % lanes;
+            if ((left >> lane & 1) && !(abs(residual.of(tile, k, lane)) <= epsilon * bound_of(tile, k, lane).most))
+                left &= ~(1u << lane);
         }
-        return true;
     }
     // Of a tile, but for the bonds of which not all is known yet. A part of the terms does for most.
-    __attribute__((noinline)) bool is_proven(const Tile &tile) {
-        const double most = most_backward(s.n_bonds);
-        const Rows of = x.a_of(tile);
+    __attribute__((noinline)) void look_at(const Tile &tile) {
+        const Columns<V> most = all_columns<V>(most_backward(s.n_bonds)), least = all_columns<V>(-least_proven_pivot);
+        const Rows<V> of = x.a_of(tile);
         int32_t next = tile.first_outer;
-        for (int32_t k = tile.first; k < tile.end; k += 4) {
+        start_looking();
+        for (int32_t k = tile.first; k < tile.end && left; k += step) {
             const int32_t first_row = tile.first_row + (k - tile.first);
-            Row p[4], q[4], input[4], T = {};
+            Row p[step], q[step], input[step];
+            Columns<V> T = {};
             HOL_UNROLL
-            for (int i = 0; i < 4; ++i) {
+            for (int i = 0; i < step; ++i) {
                 const int32_t from = s.from[first_row + i], to = s.to[first_row + i];
                 const Row &bond = x.d[first_row + i], &head = of.at_four_times(from), &tail = of.at_four_times(to);
                 p[i] = bond * head;
                 q[i] = bond * tail;
                 input[i] = absolute(bond) * (x.v.at_four_times(from) + x.v.at_four_times(to));
-                T[i] = head[3] + tail[3];
+                put<V>(T, i, more_of(head) + more_of(tail));
             }
-            const Row part = absolute(sums_of(p[0], p[1], p[2], p[3])) + absolute(sums_of(q[0], q[1], q[2], q[3])) +
-                             sums_of(input[0], input[1], input[2], input[3]);
-            const Row left = multiply_add(in_row(most), part, -multiply_add(x.four(x.size, k), T, x.four(x.back, k))),
-                      pivot = multiply_add(in_row(-least_proven_pivot), x.four(x.diagonal, k), x.four(x.E, k));
-            for (int i = 0; i < 4 && k + i < tile.end; ++i) {
-                if (!(pivot[i] > 0)) return false;
-                if (__builtin_expect(left[i] >= 0, 1)) continue;
+            const Columns<V> part = absolute(sums_of(p)) + absolute(sums_of(q)) + sums_of(input),
+                             spare = multiply_add(most, part, -multiply_add(x.some(x.size, k), T, x.some(x.back, k))),
+                             pivot = multiply_add(least, x.some(x.diagonal, k), x.some(x.E, k));
+            // What is 0 is looked at once more.
+            if (__builtin_expect(all_positive<V>(pivot) && all_positive<V>(spare), 1)) continue;
+            for (int i = 0; i < step && k + i < tile.end; ++i) {
+                left &= positive<V>(pivot, i);
+                const unsigned doubtful = left & ~not_negative<V>(spare, i);
+                if (!doubtful) continue;
                 while (next < tile.end_outer && s.outer[next] < k + i) ++next;
                 if (next < tile.end_outer && s.outer[next] == k + i) continue;
-                if (!note_missed(tile, k + i)) return false;
+                note_missed(tile, k + i, doubtful);
             }
         }
-        return has_small_residuals(tile);
+        look_at_missed(tile);
     }
-    // The others, in the end.
-    __attribute__((noinline)) bool is_proven() {
+    // At the others, in the end.
+    __attribute__((noinline)) void look_at_outer() {
         for (int32_t i = 0; i < s.n_tiles; ++i) add_sides(s, s.tile[i], x.back);
-        for (int32_t i = 0; i < s.n_tiles; ++i) {
+        for (int32_t i = 0; i < s.n_tiles && left; ++i) {
+            start_looking();
             for (int32_t k = s.tile[i].first_outer; k < s.tile[i].end_outer; ++k)
-                if (!note_missed(s.tile[i], s.outer[k])) return false;
-            if (!has_small_residuals(s.tile[i])) return false;
+                if (!bound_of(s.tile[i], s.outer[k], 0).holds()) note_missed(s.tile[i], s.outer[k], left);
+            look_at_missed(s.tile[i]);
         }
-        return true;
     }
 
-    // Reads the molecule and solves; false where that is in doubt. The multipliers are found all the same.
-    bool solve() {
+    // Reads the molecules and solves. Returns the lanes in which the proof holds; multipliers are found in all.
+    unsigned solve() {
         clear_sides(s, x.t);
         clear_sides(s, x.E);
         clear_sides(s, x.back);
@@ -127,16 +153,16 @@ struct FlatProof {
             x.assemble(s.tile[i]);
             x.eliminate(s.tile[i]);
         }
-        bool good = true;
         for (int32_t i = s.n_tiles; i-- > 0;) {
             x.substitute_back(s.tile[i]);
-            if (!good) continue;
+            if (!left) continue;
             x.find_pulls(s.tile[i]);
             x.load_inputs_again(s.tile[i]);
             x.add_pulls(s.tile[i]);
-            good = is_proven(s.tile[i]);
+            look_at(s.tile[i]);
         }
-        return good && is_proven();
+        if (left) look_at_outer();
+        return left;
     }
 };
 

@@ -1,13 +1,12 @@
-// Corrects the multipliers of one large molecule against the exact residual, as linear.hpp does those of molecules in
-// lanes, with the factors along its list. Residuals are those of residual.hpp, x y z at once.
+// Corrects the multipliers of molecules along a list against the exact residual, with the factors that there are.
 #pragma once
 
-#include "core/kernels/molecules/cycles/refine.hpp"
 #include "core/kernels/molecules/list/flat_proof.hpp"
+#include "core/kernels/molecules/refine.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
-// Products in twice the precision of exact.hpp and residual.hpp, whose templates know no rows where these are no lanes.
+// Products in twice the precision, as in twice.hpp.
 HOL_INLINE Pair<Row> product_of(const Row &a, const Row &b) {
 #if HOL_HAS_FMA
     const Row p = a * b;
@@ -16,30 +15,43 @@ HOL_INLINE Pair<Row> product_of(const Row &a, const Row &b) {
     return two_product<Row>(a, b);
 #endif
 }
-HOL_INLINE Pair<Row> product_of(const Row &s, const Pair<Row> &a) {
-    const Pair<Row> p = product_of(s, a.hi);
+template <class V>
+HOL_INLINE Pair<RowInLanes<V>> product_of(const RowInLanes<V> &a, const RowInLanes<V> &b) {
+    const Pair<V> x = two_product<V>(a.x, b.x), y = two_product<V>(a.y, b.y), z = two_product<V>(a.z, b.z);
+    return {{x.hi, y.hi, z.hi, V{}}, {x.lo, y.lo, z.lo, V{}}};
+}
+template <class R>
+HOL_INLINE Pair<R> product_of(const R &s, const Pair<R> &a) {
+    const Pair<R> p = product_of(s, a.hi);
     return {p.hi, multiply_add(s, a.lo, p.lo)};
 }
-HOL_INLINE Pair<Row> product_of(const Pair<Row> &a, const Pair<Row> &b) {
-    const Pair<Row> p = product_of(a.hi, b.hi);
+template <class R>
+HOL_INLINE Pair<R> product_of(const Pair<R> &a, const Pair<R> &b) {
+    const Pair<R> p = product_of(a.hi, b.hi);
     return {p.hi, multiply_add(a.hi, b.lo, multiply_add(a.lo, b.hi, p.lo))};
 }
 
+// A multiplier that is less of what meets at its bond's atoms is faint: residuals are right to some 2^-104 of that.
+constexpr double faint_part = 1.0 / (1LL << 54);
+
+template <class V>
 struct FlatRefine {
-    const FlatLinear &x;
+    typedef RowOf<V> Row;
+    typedef Pair<Row> Twice;
+    static constexpr int step = at_once<V>;
+    const FlatLinear<V> &x;
     const FlatList &s;
     const int terms;
-    double *const solution;  // in the memory of what the proof needed
-    double *const side;
+    V *const solution;  // in the memory of what the proof needed
+    V *const side;
 
-    explicit FlatRefine(const FlatLinear &linear)
+    explicit FlatRefine(const FlatLinear<V> &linear)
         : x(linear), s(linear.s), terms(linear.terms), solution(x.back), side(x.diagonal) {}
 
-    // As in core_matrix.hpp.
-    bool has_good_pivots() const {
-        for (int32_t k = 0; k < s.n_bonds; ++k)
-            if (!(x.E[k] >= least_pivot * x.diagonal[k])) return false;
-        return true;
+    MaskOf<V> lanes_of_good_pivots() const {
+        MaskOf<V> good = x.in_use();
+        for (int32_t k = 0; k < s.n_bonds; ++k) good = good & less_equal(least_pivot * x.diagonal[k], x.E[k]);
+        return good;
     }
 
     template <class Body>
@@ -58,7 +70,7 @@ struct FlatRefine {
         const int64_t rows = in_fours(tile.end - tile.first);
         for (int64_t k = 0; k < rows; ++k) {
             const int64_t row = tile.first_row + k;
-            Vector3<double> d = {}, low = {};
+            Vector3<V> d = {}, low = {};
             unrounded_bond(x.box, vector_of(x.r.at_four_times(s.from[row])), vector_of(x.r.at_four_times(s.to[row])), d,
                            low);
             x.d[row] = row_of(d);
@@ -74,7 +86,7 @@ struct FlatRefine {
         for_tiles_up([&](const Tile &tile) {
             open(tile);
             x.load_inputs(tile, x.a_of(tile));
-            for (int64_t k = tile.first; k < tile.end; k += 4) x.four(side, k) = x.sides_of(tile, k, terms);
+            for (int64_t k = tile.first; k < tile.end; k += step) x.some(side, k) = x.sides_of(tile, k, terms);
             x.add_given(tile, side);
         });
         for (int32_t k = 0; k < s.n_bonds; ++k) solution[k] = x.t[k];
@@ -82,15 +94,15 @@ struct FlatRefine {
 
     // Accelerations, or velocities, of a tile's own atoms; later tiles have been here. High words in pull.
     __attribute__((noinline)) void pull_atoms(const Tile &tile) const {
-        const Rows a = rows_from(x.pull, tile.first_site), low = rows_from(x.a_low, tile.first_site);
+        const Rows<V> a = x.pull.from(tile.first_site), low = x.a_low.from(tile.first_site);
         const int32_t own = tile.own_end - tile.first_site, n = tile.end_site - tile.first_site;
         if (terms & pulls) read_atoms(*x.in.f, x.at, s, tile, a);
         for (int32_t i = terms & pulls ? own : 0; i < n; ++i) a[i] = Row{};
         for (int32_t i = 0; i < n; ++i) low[i] = Row{};
         const int32_t *const from = s.from + tile.first_row, *const to = s.to + tile.first_row;
         for (int32_t k = 0; k < tile.end - tile.first; ++k) {
-            const Pair<Row> bond = {x.d[tile.first_row + k], x.d_low[k]},
-                            p = product_of(in_row(solution[tile.first + k]), bond);
+            const Twice bond = {x.d[tile.first_row + k], x.d_low[k]},
+                        p = product_of(in_row(solution[tile.first + k]), bond);
             set(a, low, from[k], add_pairs(get(a, low, from[k]), p));
             set(a, low, to[k], subtract_pairs(get(a, low, to[k]), p));
         }
@@ -98,17 +110,17 @@ struct FlatRefine {
             const int32_t own_site = 4 * s.visit[i].own, guest = 4 * s.visit[i].guest;
             set(x.pull, x.a_low, own_site, add_pairs(get(x.pull, x.a_low, own_site), get(x.pull, x.a_low, guest)));
         }
-        const double *const w = x.mass + tile.first_mass;
+        const V *const w = x.mass + tile.first_mass;
         for (int32_t i = 0; i < own; ++i) {
-            Pair<Row> sum = product_of(in_row(w[2 * i + 1]), get(a, low, 4 * i));
-            if (terms & rates) sum = add_pairs(sum, Pair<Row>{x.a_of(tile)[i], Row{}});
+            Twice sum = product_of(in_row(w[2 * i + 1]), get(a, low, 4 * i));
+            if (terms & rates) sum = add_pairs(sum, Twice{x.a_of(tile)[i], Row{}});
             set(a, low, 4 * i, sum);
         }
     }
-    HOL_FORCED static Pair<Row> get(const Rows &hi, const Rows &low, int32_t four_times) {
+    HOL_FORCED static Twice get(const Rows<V> &hi, const Rows<V> &low, int32_t four_times) {
         return {hi.at_four_times(four_times), low.at_four_times(four_times)};
     }
-    HOL_FORCED static void set(const Rows &hi, const Rows &low, int32_t four_times, const Pair<Row> &a) {
+    HOL_FORCED static void set(const Rows<V> &hi, const Rows<V> &low, int32_t four_times, const Twice &a) {
         hi.at_four_times(four_times) = a.hi;
         low.at_four_times(four_times) = a.lo;
     }
@@ -117,32 +129,40 @@ struct FlatRefine {
     __attribute__((noinline)) void find_residuals(const Tile &tile) const {
         copy_guests(s, tile, x.pull);
         copy_guests(s, tile, x.a_low);
-        const Rows a = rows_from(x.pull, tile.first_site), low = rows_from(x.a_low, tile.first_site);
-        for (int64_t k = tile.first; k < tile.end; k += 4) {
+        const Rows<V> a = x.pull.from(tile.first_site), low = x.a_low.from(tile.first_site);
+        for (int64_t k = tile.first; k < tile.end; k += step) {
             const int64_t row = tile.first_row + (k - tile.first);
-            Pair<Row> product[4] = {}, square[4] = {};
+            Twice product[step] = {}, square[step] = {};
             HOL_UNROLL
-            for (int i = 0; i < 4; ++i) {
+            for (int i = 0; i < step; ++i) {
                 const int32_t from = s.from[row + i], to = s.to[row + i];
-                const Pair<Row> bond = {x.d[row + i], x.d_low[k - tile.first + i]};
+                const Twice bond = {x.d[row + i], x.d_low[k - tile.first + i]};
                 product[i] = product_of(bond, subtract_pairs(get(a, low, to), get(a, low, from)));
                 if (!(terms & squares)) continue;
-                const Pair<Row> dv = two_difference<Row>(x.v.at_four_times(to), x.v.at_four_times(from));
+                const Twice dv = two_difference<Row>(x.v.at_four_times(to), x.v.at_four_times(from));
                 square[i] = product_of(dv, dv);
             }
-            Pair<Row> sum = sums(product);
+            Pair<Columns<V>> sum = sums(product);
             if (terms & squares) sum = add_pairs(sum, sums(square));
             if ((terms & (given | rates)) && (x.in.rhs || x.in.strain)) {
-                Row c = {};
-                for (int i = 0; i < 4 && k + i < tile.end; ++i) c[i] = x.given_to(tile, static_cast<int32_t>(k + i));
-                sum = add_pairs(sum, Pair<Row>{c, Row{}});
+                Columns<V> c = {};
+                for (int i = 0; i < step && k + i < tile.end; ++i)
+                    put<V>(c, i, x.given_to(tile, static_cast<int32_t>(k + i)));
+                sum = add_pairs(sum, Pair<Columns<V>>{c, Columns<V>{}});
             }
-            x.four(x.t, k) = sum.hi + sum.lo;
+            x.some(x.t, k) = sum.hi + sum.lo;
         }
     }
-    HOL_FORCED static Pair<Row> sums(const Pair<Row> *p) {
-        const Lanes3 hi = turned(p[0].hi, p[1].hi, p[2].hi, p[3].hi), lo = turned(p[0].lo, p[1].lo, p[2].lo, p[3].lo);
-        return add_pairs(Pair<Row>{hi.x, lo.x}, add_pairs(Pair<Row>{hi.y, lo.y}, Pair<Row>{hi.z, lo.z}));
+    HOL_FORCED static Pair<Columns<V>> sums(const Twice (&p)[step]) {
+        Row hi[step], lo[step];
+        HOL_UNROLL
+        for (int i = 0; i < step; ++i) {
+            hi[i] = p[i].hi;
+            lo[i] = p[i].lo;
+        }
+        const Turned<V> high = turned(hi), low = turned(lo);
+        typedef Pair<Columns<V>> Sum;
+        return add_pairs(Sum{high.x, low.x}, add_pairs(Sum{high.y, low.y}, Sum{high.z, low.z}));
     }
 
     void solve() const {
@@ -157,48 +177,69 @@ struct FlatRefine {
             solve_up(s, tile, x.lower, x.t);
         });
         for_tiles_down([&](const Tile &tile) {
-            solve_down(s, tile, x.lower, x.per_pivot, x.t, [](int32_t, double) HOL_FORCED {});
+            solve_down(s, tile, x.lower, x.per_pivot, x.t, [](int32_t, const V &) HOL_FORCED {});
         });
     }
-    double correct() const {
-        return add_corrections<double>(s.n_bonds, [&](int32_t k) HOL_FORCED {
-            return Correction<double>{x.t[k], side[k] * x.per_pivot[k], x.size[k] * x.size[k], solution[k]};
+    V correct(MaskOf<V> active) const {
+        return add_corrections<V>(s.n_bonds, [&](int32_t k) HOL_FORCED {
+            return Correction<V>{keep(active, x.t[k]), side[k] * x.per_pivot[k], x.size[k] * x.size[k], solution[k]};
         });
     }
-    // Whether corrections are no more than what rounding does to right-hand sides.
-    bool is_rounding() const {
-        for (int32_t i = 0; i < s.n_tiles; ++i) {
+    // The lanes whose corrections are no more than what rounding does to right-hand sides: of velocities that are
+    // projected already, or in free fall.
+    MaskOf<V> lanes_of_rounded_sides() const {
+        MaskOf<V> rounded = x.in_use();
+        for (int32_t i = 0; i < s.n_tiles && any(rounded); ++i) {
             const Tile &tile = s.tile[i];
             x.load_inputs_again(tile);
-            const Rows a = x.a_of(tile);
+            const Rows<V> a = x.a_of(tile);
             for (int32_t k = tile.first; k < tile.end; ++k) {
                 const int32_t row = tile.first_row + (k - tile.first);
-                const Row terms_of_ends = absolute(a.at_four_times(s.from[row])) + absolute(a.at_four_times(s.to[row])),
-                          all = absolute(x.d[row]) * terms_of_ends;
-                if (!(abs(x.t[k]) <= 4 * epsilon * ((all[0] + all[1]) + all[2]) * x.per_pivot[k])) return false;
+                const Row terms_of_ends = absolute(a.at_four_times(s.from[row])) + absolute(a.at_four_times(s.to[row]));
+                const Vector3<V> all = vector_of(absolute(x.d[row]) * terms_of_ends);
+                rounded = rounded & less_equal(abs(x.t[k]), 4 * epsilon * ((all.x + all.y) + all.z) * x.per_pivot[k]);
             }
         }
-        return true;
+        return rounded;
     }
 
-    bool refine() const {
-        if (!has_good_pivots()) return false;
+    // The lanes in which a multiplier is so small beside what pulls the atoms of its bond that it may be the rounding
+    // of the residual.
+    MaskOf<V> lanes_of_faint_bonds() const {
+        V least = Width<V>::all(1);
+        for (int32_t i = 0; i < s.n_tiles; ++i) {
+            const Tile &tile = s.tile[i];
+            const V *const w = x.mass + tile.first_mass;
+            for (int32_t k = tile.first; k < tile.end; ++k) {
+                const int32_t row = tile.first_row + (k - tile.first), from = s.from[row] / 4, to = s.to[row] / 4;
+                const V T = w[2 * from + 1] * more_of(x.pull[s.home[tile.first_site + from]]) +
+                            w[2 * to + 1] * more_of(x.pull[s.home[tile.first_site + to]]);
+                least = min(mul_add(abs(x.t[k]), x.E[k], -(faint_part * (x.size[k] * T))), least);
+            }
+        }
+        return less(least, V{});
+    }
+
+    // Of the lanes that are not `proven`. Returns those that are right, with these.
+    unsigned refine(unsigned proven) const {
+        const MaskOf<V> doubtful = lanes_of_good_pivots() & ~Width<V>::of_bits(proven);
+        if (!any(doubtful)) return proven;
         start();
-        const Flag good = correct_until_right<double>(
-            Flag{true}, [&]() HOL_FORCED { solve(); }, [&](Flag) HOL_FORCED { return correct(); },
-            [&]() HOL_FORCED { return Flag{is_rounding()}; });
-        if (!good.set) return false;
-        double sum = 0;
+        MaskOf<V> good = correct_until_right<V>(
+            doubtful, [&]() HOL_FORCED { solve(); }, [&](MaskOf<V> active) HOL_FORCED { return correct(active); },
+            [&]() HOL_FORCED { return lanes_of_rounded_sides(); });
+        V sum = {};
         for (int32_t k = 0; k < s.n_bonds; ++k) {
             x.t[k] = solution[k];
-            sum += abs(solution[k]);
+            sum = sum + abs(solution[k]);
         }
-        if (!(sum - sum == 0)) return false;  // corrections that are no numbers are not seen
+        good = good & finite(sum);  // corrections that are no numbers are not seen
+        if (!(bits(good) | proven)) return 0;
         for_tiles_down([&](const Tile &tile) {
             x.find_pulls(tile);
             if (terms & rates) x.add_pulls(tile);  // nobody asks for accelerations any more
         });
-        return true;
+        return (bits(good) & ~bits(lanes_of_faint_bonds())) | proven;
     }
 };
 

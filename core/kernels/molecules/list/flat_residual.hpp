@@ -1,30 +1,32 @@
-// What the multipliers of one large molecule leave of the equation of a single bond, in twice the precision. The bound
-// of flat_proof.hpp is for the worst case: of a million bonds some miss it by little, whose equations are solved all
-// the same.
+// What the multipliers leave of the equation of a single bond of one molecule, in twice the precision. The bound of
+// flat_proof.hpp is for the worst case: of a million bonds some miss it by little, whose equations are solved all the
+// same.
 #pragma once
 
-#include "core/kernels/molecules/cycles/residual.hpp"
 #include "core/kernels/molecules/list/flat_linear.hpp"
+#include "core/kernels/molecules/twice.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
+template <class V>
 class FlatResidual {
 public:
-    explicit FlatResidual(const FlatLinear &linear) : x(linear), s(linear.s) {}
+    explicit FlatResidual(const FlatLinear<V> &linear) : x(linear), s(linear.s) {}
 
     // Of column k of a tile, once the multipliers of all bonds of its two atoms are known.
-    __attribute__((noinline)) double of(const Tile &tile, int32_t k) {
+    __attribute__((noinline)) double of(const Tile &tile, int32_t k, int of_lane) {
+        lane = of_lane;
         const int32_t row = tile.first_row + (k - tile.first),
                       site[2] = {tile.first_site + s.from[row] / 4, tile.first_site + s.to[row] / 4};
         Pair3<double> a[2];
         Vector3<double> v[2] = {};
         for (int e = 0; e < 2; ++e) {
-            const int64_t number = x.at.number(0, s.atom_of[site[e]]);
+            const int64_t number = x.at.number(lane, s.atom_of[site[e]]);
             Vector3<double> f = {};
             if (x.in.v && x.in.v->x) read_row(*x.in.v, number, &v[e].x);
             if (x.in.f && x.in.f->x) read_row(*x.in.f, number, &f.x);
             a[e] = pulls_at(tile, site[e], pairs_of(f, Vector3<double>{}));
-            a[e] = scale_pairs(x.lane.w[s.atom_of[site[e]]], a[e]);
+            a[e] = scale_pairs(x.lane[lane].w[s.atom_of[site[e]]], a[e]);
             if (x.in.rates) a[e] = add_pairs(a[e], pairs_of(v[e], Vector3<double>{}));
         }
         Pair<double> sum = dot_pairs(bond(site[0], site[1]), subtract_pairs(a[1], a[0]));
@@ -32,19 +34,20 @@ public:
             const Pair3<double> dv = difference_of(v[0], v[1]);
             sum = add_pairs(sum, dot_pairs(dv, dv));
         }
-        if (x.in.rhs || x.in.strain) sum = add_pairs(sum, Pair<double>{x.given_to(tile, k), 0});
+        if (x.in.rhs || x.in.strain) sum = add_pairs(sum, Pair<double>{Width<V>::get(x.given_to(tile, k), lane), 0});
         return sum.hi + sum.lo;
     }
 
 private:
-    const FlatLinear &x;
+    const FlatLinear<V> &x;
     const FlatList &s;
+    int lane = 0;
     const Tile *listed = nullptr;  // whose bonds are listed by atoms, in x.bonds_at
 
     Pair3<double> bond(int32_t from, int32_t to) const {
         Vector3<double> r[2] = {}, d = {}, low = {};
-        read_row(x.coordinates, x.at.number(0, s.atom_of[from]), &r[0].x);
-        read_row(x.coordinates, x.at.number(0, s.atom_of[to]), &r[1].x);
+        read_row(x.coordinates, x.at.number(lane, s.atom_of[from]), &r[0].x);
+        read_row(x.coordinates, x.at.number(lane, s.atom_of[to]), &r[1].x);
         unrounded_bond(x.box, r[0], r[1], d, low);
         return pairs_of(d, low);
     }
@@ -52,7 +55,8 @@ private:
     Pair3<double> pull(const Tile &tile, int32_t k, bool second) const {
         const int32_t row = tile.first_row + (k - tile.first);
         const Pair3<double> d = bond(tile.first_site + s.from[row] / 4, tile.first_site + s.to[row] / 4);
-        return scale_pairs(second ? -x.t[k] : x.t[k], d);
+        const double t = Width<V>::get(x.t[k], lane);
+        return scale_pairs(second ? -t : t, d);
     }
 
     // The bonds of a tile by its atoms: where each atom's begin, then twice their columns, and one more at the second

@@ -2,9 +2,9 @@
 // the precision.
 #pragma once
 
-#include "core/kernels/molecules/cycles/residual.hpp"
 #include "core/kernels/molecules/load.hpp"
 #include "core/kernels/molecules/network/strands.hpp"
+#include "core/kernels/molecules/twice.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

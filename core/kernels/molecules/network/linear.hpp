@@ -3,9 +3,9 @@
 // residual is found in twice the precision and solved for, until that changes nothing.
 #pragma once
 
-#include "core/kernels/molecules/cycles/proof.hpp"
-#include "core/kernels/molecules/cycles/refine.hpp"
 #include "core/kernels/molecules/network/residuals.hpp"
+#include "core/kernels/molecules/proof.hpp"
+#include "core/kernels/molecules/refine.hpp"
 #include "core/kernels/molecules/virial.hpp"
 
 namespace holonomic::HOL_ISA::graph {

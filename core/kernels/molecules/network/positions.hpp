@@ -131,8 +131,8 @@ struct NetPositions {
         const bool moved = out.converged.set && !coarse_moves() && !newton.failed;
         if (!moved && !out.untouched.set) return false;
         if (call.report)
-            note_worst_of_one(
-                newton, out.error, newton.net.lane.molecule,
+            note_worst_bond(
+                newton.s, 1, out.error, &newton.net.lane, [&](int32_t k) { return newton.error_of(k); },
                 [&](const auto &each) { newton.for_worst_parts(out.error, each); }, tally);
         write_results(moved);
         if (moved) count_moved(tally, 1, out.solves);

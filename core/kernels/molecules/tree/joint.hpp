@@ -222,10 +222,10 @@ HOL_INLINE void down_one(const Molecules<V> &x, int32_t slot, bool look, bool pu
 }
 
 // Goes down the trees.
-template <bool look, bool pulled, class V>
+template <bool look, class V>
 static inline void down_trees(Molecules<V> &x, Vector3<V> *pull) {
     V slack = x.slack;
-    for (int32_t slot = x.s.n_tree - 1; slot >= 0; --slot) down_one(x, slot, look, pulled, pull, slack);
+    for (int32_t slot = x.s.n_tree - 1; slot >= 0; --slot) down_one(x, slot, look, true, pull, slack);
     x.slack = slack;
 }
 

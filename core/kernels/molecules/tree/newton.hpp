@@ -4,7 +4,6 @@
 #pragma once
 
 #include "core/kernels/molecules/atoms/vectors.hpp"
-#include "core/kernels/molecules/cycles/newton_core.hpp"
 #include "core/kernels/molecules/ring/ring_trees_newton.hpp"
 
 namespace holonomic::HOL_ISA::graph {
@@ -20,17 +19,18 @@ struct Newton {
     bool pulled = false;  // atoms know their pulls by tau
 
     static constexpr int64_t row_values = static_cast<int64_t>(sizeof(NewtonRow<V>) / sizeof(V));
+    // Values of factors that a ring has beside those of its bonds.
+    static int64_t of_ring(const Schedule &s) {
+        return s.n_core > 0 ? 2 * static_cast<int64_t>(s.n_core) + 4 * static_cast<int64_t>(s.n_tree) : 0;
+    }
     static int64_t values(const Schedule &s) {
-        const int64_t part = CoreMatrix<V>::most_parts(s), n_atoms = s.n_atoms, n_bonds = s.n_bonds;
-        return 11 * n_atoms + 2 + columns_ahead + 1 + (row_values + 7) * n_bonds + 4 * static_cast<int64_t>(s.n_pairs) +
-               4 * static_cast<int64_t>(s.n_entries) + 4 * reaches(s) + 2 * part +
+        const int64_t n_atoms = s.n_atoms, n_bonds = s.n_bonds;
+        return 11 * n_atoms + 2 + (row_values + 6) * n_bonds + 4 * static_cast<int64_t>(s.n_pairs) + 2 * of_ring(s) +
                NewtonMemory<V, 0>::values(s.max_joint);
     }
 
     Newton(const Schedule &s, Memory<V> &memory)
-        : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, kept(), lengths(memory.values(2)),
-          opening() {
-        const int64_t part = CoreMatrix<V>::most_parts(s), n_reaches = reaches(s);
+        : x{s, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, memory}, kept(), lengths(memory.values(2)), opening() {
         x.w = memory.values(s.n_atoms);
         x.row = reinterpret_cast<NewtonRow<V> *>(memory.values(row_values * s.n_bonds));
         x.lower = memory.values(s.n_pairs);
@@ -39,15 +39,12 @@ struct Newton {
         x.r_ref = memory.vectors(s.n_atoms);
         x.r = memory.vectors(s.n_atoms);
         x.new_D = memory.vectors(s.n_bonds);
-        x.core = memory.values(s.n_core + columns_ahead + 1);
-        x.core_lower = memory.values(s.n_entries);
-        x.core_upper = memory.values(s.n_entries);
-        x.reach_up = memory.values(n_reaches);
-        x.reach_down = memory.values(n_reaches);
-        x.part_up = memory.values(part);
-        x.part_down = memory.values(part);
-        kept = memory.values(3 * static_cast<int64_t>(s.n_bonds) +
-                             2 * (s.n_pairs + static_cast<int64_t>(s.n_entries) + n_reaches));
+        V *const ring = memory.values(of_ring(s));
+        x.core_lower = ring;
+        x.core_upper = ring + s.n_core;
+        x.reach_up = x.core_upper + s.n_core;
+        x.reach_down = x.reach_up + 2 * static_cast<int64_t>(s.n_tree);
+        kept = memory.values(3 * static_cast<int64_t>(s.n_bonds) + 2 * static_cast<int64_t>(s.n_pairs) + of_ring(s));
         x.working = memory;
         memory.values(NewtonMemory<V, 0>::values(s.max_joint));
     }
@@ -118,14 +115,7 @@ struct Newton {
             body(x.lower[p]);
             body(x.upper[p]);
         }
-        for (int32_t e = 0; e < s.n_entries; ++e) {
-            body(x.core_lower[e]);
-            body(x.core_upper[e]);
-        }
-        for (int64_t e = 0; e < reaches(s); ++e) {
-            body(x.reach_up[e]);
-            body(x.reach_down[e]);
-        }
+        for (int64_t i = 0; i < of_ring(s); ++i) body(x.core_lower[i]);
     }
 
     __attribute__((noinline)) void make_factors() const {
@@ -141,10 +131,8 @@ struct Newton {
         }
         if (s.n_core_atoms == 0)
             factorize_joint<1, true, V>(NewtonAtom<V, 1>(x, s.n_tree), 1);
-        else if (s.type == Schedule::ring)
-            factorize_ring(x);
         else
-            factorize_core(x);
+            factorize_ring(x);
     }
 
     // At one atom of k children.
@@ -173,19 +161,14 @@ struct Newton {
         }
         if (s.n_core_atoms == 0)
             substitute_newton_joint<1, true, V>(NewtonAtom<V, 1>(x, s.n_tree), 1);
-        else if (s.type == Schedule::ring)
-            substitute_ring(x);
         else
-            substitute_core(x);
+            substitute_ring(x);
         return errors.largest();
     }
 
     // Adds the corrections that follow from u to tau in the lanes of `active`. Then atoms know their pulls.
     void solve(MaskOf<V> active) {
-        if (x.s.type == Schedule::ring)
-            down_ring(x, active);
-        else if (x.s.n_core_atoms > 0)
-            down_core(x, active);
+        if (x.s.n_core_atoms > 0) down_ring(x, active);
         go_down<true>(active);
     }
     // The bonds as tau moves them, and their largest error.
@@ -207,13 +190,7 @@ struct Newton {
                 put(before, behind);
             }
         } else {
-            for (int32_t slot = s.n_tree; slot < s.n_atoms; ++slot) put(x.atom[slot].pull, Vector3<V>{});
-            for (int32_t p = 0; p < s.n_core; ++p) {
-                const NewtonRow<V> &row = x.row[s.n_tree + p];
-                PulledAtom<V> &from = x.atom[s.from[p]], &to = x.atom[s.to[p]];
-                put(from.pull, add_times(from.pull, row.tau, row.b));
-                put(to.pull, add_times(to.pull, -row.tau, row.b));
-            }
+            put(x.atom[s.n_tree].pull, Vector3<V>{});
         }
         V t = {};
         for (int32_t slot = s.n_tree; slot-- > 0;) {

@@ -56,10 +56,8 @@ struct NewtonSystem {
     PulledAtom<V> *atom;         // [n_atoms] by slot
     Vector3<V> *r_ref, *r;       // [n_atoms] coordinates, until the bonds are made
     Vector3<V> *new_D;           // [n_bonds] bonds as moved, for new factors
-    V *core_lower, *core_upper;  // [n_entries] each
-    V *core;                     // [n_core] pivots while they are found, then y and the corrections
-    V *reach_up, *reach_down;    // as CoreMatrix
-    V *part_up, *part_down;      // working memory of a core atom or column
+    V *core_lower, *core_upper;  // [n_core] each, of a ring: what its last bond gets of each, and each of the last one
+    V *reach_up, *reach_down;    // [2 n_tree] each, of a ring: as Ring
     Memory<V> working;           // of a joint of many bonds
 };
 
@@ -125,7 +123,7 @@ struct NewtonMemory<V, 0> {
 };
 
 // An atom at the position level: its bonds at their places, those to its children, and the one above. known: how many
-// children it has, where the compiler knows it, and the atom is no root of several trees: see for_children().
+// children it has, where the compiler knows it; the last one's slot is the one before its own.
 // forest/forest_newton.hpp has the same for atoms of W different trees.
 template <class V, int known = 0>
 struct NewtonAtom {

@@ -1,0 +1,158 @@
+// What is done along a list, tile by tile (flat_list.hpp): columns one after the other, what tiles give to each other,
+// triangular solves, and what is read of a tile's atoms.
+#pragma once
+
+#include "core/kernels/molecules/list/flat_list.hpp"
+#include "core/kernels/molecules/list/flat_rows.hpp"
+
+namespace holonomic::HOL_ISA::graph {
+
+// Most columns have few entries: up to three are known to the compiler.
+constexpr int32_t known_entries = 3;
+
+typedef FlatList::Tile Tile;
+
+// Calls body(k, first, n) for all columns of a tile, up or down; first is that of their entries, n is a constant where
+// it is small.
+template <class Body>
+HOL_INLINE void for_columns_up(const FlatList &s, const Tile &tile, const Body &body) {
+    int32_t k = tile.first, first = tile.first_entry;
+    for (int32_t r = tile.first_run; r < tile.end_run; ++r) {
+        const int32_t end = k + s.run[r].columns, entries = s.run[r].entries;
+        choose_few<known_entries>(entries, [&](auto known) HOL_FORCED {
+            const int32_t n = known > 0 ? known : entries;
+            for (; k < end; ++k, first += n) body(k, first, n);
+        });
+    }
+}
+template <class Body>
+HOL_INLINE void for_columns_down(const FlatList &s, const Tile &tile, const Body &body) {
+    int32_t k = tile.end, first = tile.end_entry;
+    for (int32_t r = tile.end_run; r-- > tile.first_run;) {
+        const int32_t start = k - s.run[r].columns, entries = s.run[r].entries;
+        choose_few<known_entries>(entries, [&](auto known) HOL_FORCED {
+            const int32_t n = known > 0 ? known : entries;
+            while (k > start) body(--k, first -= n, n);
+        });
+    }
+}
+
+// What tiles have given to columns of later ones: none so far; added to the columns of a tile; as the columns of a tile
+// are now, for the tiles before.
+template <class V>
+HOL_INLINE void clear_sides(const FlatList &s, V *t) {
+    for (int64_t k = in_fours(s.n_bonds); k < s.n_columns; ++k) t[k] = V{};
+}
+template <class V>
+HOL_INLINE void add_sides(const FlatList &s, const Tile &tile, V *t) {
+    for (int32_t i = tile.first_late; i < tile.end_late; ++i)
+        t[s.late[i].number] = t[s.late[i].number] + t[s.late[i].side];
+}
+template <class V>
+HOL_INLINE void give_sides(const FlatList &s, const Tile &tile, V *t) {
+    for (int32_t i = tile.first_late; i < tile.end_late; ++i) t[s.late[i].side] = t[s.late[i].number];
+}
+// The same of entries.
+template <class V>
+HOL_INLINE void clear_entries(const FlatList &s, V *lower) {
+    const Tile &last = s.tile[s.n_tiles - 1];
+    for (int64_t e = in_fours(last.end_entry); e < s.n_entries; ++e) lower[e] = V{};
+}
+template <class V>
+HOL_INLINE void add_entries(const FlatList &s, const Tile &tile, V *lower) {
+    for (int32_t i = tile.first_late_entry; i < tile.end_late_entry; ++i)
+        lower[s.late_entry[i].number] = lower[s.late_entry[i].number] + lower[s.late_entry[i].side];
+}
+
+// Another right-hand side, in t: up along the columns of a factor with a diagonal of ones, and down with the pivots and
+// the factor above the diagonal, which is the same one where the matrix is symmetric.
+template <class V>
+HOL_INLINE void solve_up(const FlatList &s, const Tile &tile, const V *lower, V *t) {
+    add_sides(s, tile, t);
+    for_columns_up(s, tile, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
+        const int32_t *const row = s.row + first;
+        const V *const l = lower + first, y = t[k];
+        HOL_UNROLL_FEW
+        for (int32_t e = 0; e < n; ++e) t[row[e]] = mul_add(-l[e], y, t[row[e]]);
+    });
+}
+template <class V, class Each>
+HOL_INLINE void solve_down(const FlatList &s, const Tile &tile, const V *upper, const V *r, V *t, const Each &each) {
+    for_columns_down(s, tile, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
+        const int32_t *const row = s.row + first;
+        const V *const u = upper + first;
+        V x = t[k] * r[k];
+        HOL_UNROLL_FEW
+        for (int32_t e = n - 1; e >= 0; --e) x = mul_add(-u[e], t[row[e]], x);
+        t[k] = x;
+        each(k, x);
+    });
+    give_sides(s, tile, t);
+}
+
+// Of an atom of a tile, and of a guest the pull on it added to that on its atom.
+template <class V>
+HOL_INLINE void add_visits(const FlatList &s, const Tile &tile, const Rows<V> &pull) {
+    for (int32_t i = tile.first_visit; i < tile.end_visit; ++i)
+        pull[s.visit[i].own] = pull[s.visit[i].own] + pull[s.visit[i].guest];
+}
+// Guests are as their atoms are.
+template <class V>
+HOL_INLINE void copy_guests(const FlatList &s, const Tile &tile, const Rows<V> &x) {
+    for (int32_t site = tile.own_end; site < tile.end_site; ++site) x[site] = x[s.home[site]];
+}
+
+// A local atom's row.
+HOL_INLINE Row read_row_of(const AtomArray &array, const Atoms<double> &at, int32_t i) {
+#if defined(__AVX2__)
+    if (at.layout != elements) {
+        const double *const p = reinterpret_cast<const double *>(array.x) + 3 * at.number(0, i);
+        return _mm256_maskload_pd(p, _mm256_set_epi64x(0, -1, -1, -1));
+    }
+#endif
+    return row_of(read(array, at, i));
+}
+// The rows of a tile's atoms. What is in lanes has one tile.
+HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<double> &at, const FlatList &s, const Tile &tile,
+                           const Rows<double> &to) {
+    for (int32_t i = tile.first_site; i < tile.end_site; ++i) {
+        if (at.layout != elements && i + rows_ahead < tile.end_site)
+            fetch_row(array, 3 * at.number(0, s.atom_of[i + rows_ahead]));
+        to[i - tile.first_site] = read_row_of(array, at, s.atom_of[i]);
+    }
+}
+template <class V>
+HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<V> &at, const FlatList &s, const Tile &,
+                           const Rows<V> &to) {
+    read_vectors(array, at, s.place_of, s.n_atoms, to.slots());
+}
+// Their masses, -w_0, w_0, -w_1, .. , 0.
+template <class V>
+HOL_INLINE void read_masses(const MoleculeLane *lane, const FlatList &s, const Tile &tile, V *mass) {
+    V *to = mass + tile.first_mass;
+    for (int32_t i = tile.first_site; i < tile.end_site; ++i, to += 2) {
+        for (int l = 0; l < Width<V>::lanes; ++l) {
+            if (i + rows_ahead < tile.end_site) __builtin_prefetch(lane[l].w + s.atom_of[i + rows_ahead], 0, 2);
+            Width<V>::set(to[1], l, lane[l].w[s.atom_of[i]]);
+        }
+        to[0] = -to[1];
+    }
+    *to = V{};
+}
+HOL_INLINE int64_t mass_values(const FlatList &s) { return in_fours(2 * static_cast<int64_t>(s.n_sites) + s.n_tiles); }
+
+// A tile's bonds as they come, from the coordinates of their ends: as many as are worked on at a time, the inert ones
+// too.
+template <class V>
+HOL_INLINE void find_bonds(const FlatList &s, const Tile &tile, const Box &box, const Rows<V> &r, const Rows<V> &d) {
+    for (int64_t k = tile.first_row; k < tile.end_row; ++k)
+        d[k] = r.at_four_times(s.to[k]) - r.at_four_times(s.from[k]);
+    if (box.shape == Box::none) return;
+    for (int64_t k = tile.first_row; k < tile.end_row; ++k) {
+        Vector3<V> bond = vector_of(d[k]), unused = {};
+        wrap<false>(box, bond, unused);
+        d[k] = row_of(bond);
+    }
+}
+
+}  // namespace holonomic::HOL_ISA::graph
