@@ -40,11 +40,11 @@ struct Dice {
     // Up to four words, with gaps between some of them.
     Four any()
     {
-        Four sum = four(number());
+        Four sum = as_four(number());
         double size = 1;
         for (int word = static_cast<int>(engine() % 4); word > 0; --word) {
             size *= engine() % 3 == 0 ? 0x1p-70 : 0x1p-53;
-            sum = sum + four(size * number());
+            sum = sum + as_four(size * number());
         }
         return sum;
     }
@@ -64,7 +64,7 @@ void check_operations(Dice &dice)
     const Four square = a * a, root = holonomic::fourfold::square_root(square);
     check("square root", root, a.hi < 0 ? -x : x, x);
     check("zero", a - a, exact(0), exact(1));
-    if (holonomic::fourfold::less(a, b) != (x < y)) check("less", four(1), exact(0), exact(1));
+    if (holonomic::fourfold::less(a, b) != (x < y)) check("less", as_four(1), exact(0), exact(1));
 }
 
 }  // namespace

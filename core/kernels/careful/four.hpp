@@ -39,7 +39,7 @@ HOL_NOINLINE Four sum_of(double *x, int n) {
     return {words[0], words[1], words[2], words[3]};
 }
 
-HOL_INLINE Four four(double a) { return {a, 0, 0, 0}; }
+HOL_INLINE Four as_four(double a) { return {a, 0, 0, 0}; }
 HOL_INLINE double rounded(const Four &a) { return a.hi + a.second; }
 // What its first word leaves of a number.
 HOL_INLINE double beyond_first(const Four &a) { return a.second; }
@@ -86,7 +86,7 @@ HOL_INLINE Four abs(const Four &a) { return a.hi < 0 ? -a : a; }
 HOL_INLINE bool less(const Four &a, const Four &b) { return (a - b).hi < 0; }
 
 HOL_NOINLINE Four square_root(const Four &a) {  // a > 0
-    Four s = four(__builtin_sqrt(a.hi));
+    Four s = as_four(__builtin_sqrt(a.hi));
     for (int step = 0; step < 2; ++step) s = s + 0.5 * ((a - s * s) / s);
     return s;
 }

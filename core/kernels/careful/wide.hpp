@@ -13,7 +13,7 @@ namespace holonomic::HOL_ISA {
 
 constexpr bool is_fourfold = true;
 typedef Four Wide;
-HOL_INLINE Wide wide(double a) { return four(a); }
+HOL_INLINE Wide wide(double a) { return as_four(a); }
 
 #else
 
