@@ -1,4 +1,5 @@
-// The elimination of one large molecule: all its bonds, those of trees too, along one list, as flat arrays.
+// The elimination of a molecule with cycles, or of a large one: all its bonds, those of trees too, along one list, as
+// flat arrays.
 // Plain data, the same for every instruction set; core/molecules/flat_list.hpp makes it.
 #pragma once
 

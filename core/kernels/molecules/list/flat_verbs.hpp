@@ -1,9 +1,8 @@
-// Forces, given right-hand sides, velocities and positions of molecules along a list: one (V = double), or W of one
-// shape in lanes. Each returns the lanes that are in doubt, of which nothing has been written.
+// Forces, given right-hand sides and velocities of molecules along a list: one (V = double), or W of one shape in
+// lanes. Each returns the lanes that are in doubt, of which nothing has been written.
 #pragma once
 
 #include "core/kernels/molecules/list/flat_linear.hpp"
-#include "core/kernels/molecules/list/flat_positions.hpp"
 #include "core/kernels/molecules/solve.hpp"
 
 namespace holonomic::HOL_ISA::graph {
