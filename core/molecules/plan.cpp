@@ -66,7 +66,7 @@ private:
     bool works_alone(std::int32_t shape, std::int64_t n_bonds) const {
         if (shape == linear) return n_bonds > longest_lane;
         const Schedule &s = *plan_->schedules[at(shape)];
-        return !s.is_in_lanes() || s.network;
+        return !is_in_lanes(s) || s.network;
     }
 
     // Whether a molecule has fixed atoms that stand elsewhere, too.

@@ -118,11 +118,11 @@ std::unique_ptr<const Schedule> make_careful_schedule(const Schedule &s, std::in
 const Schedule &make_careful(const Schedule &s, std::int64_t most_bytes) {
     static std::mutex mutex;
     const std::lock_guard<std::mutex> lock(mutex);
-    if (!s.careful_order()) {
+    if (!careful_order(s)) {
         s.memory->careful = make_careful_schedule(s, most_bytes);
         s.late_careful = s.memory->careful.get();
     }
-    return *s.careful_order();
+    return *careful_order(s);
 }
 
 }  // namespace holonomic

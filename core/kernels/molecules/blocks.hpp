@@ -54,7 +54,7 @@ static inline void for_each_block(const MoleculeUnit &unit, double *scratch, Wor
     KnownMasses<vec> known;
     KnownMasses<double> known_one;
     bool full = false;  // the block before was, and lanes follow each other
-    const bool small = unit.schedule->is_in_lanes();
+    const bool small = is_in_lanes(*unit.schedule);
     int64_t first = 0;
     while (first < unit.count) {
         const int64_t left = unit.count - first;

@@ -30,7 +30,7 @@ HOL_NOINLINE void solve_doubtful(const Call &call, const Schedule &schedule, con
                                  double *scratch, Tally &tally) {
     double *const aligned = reinterpret_cast<double *>((reinterpret_cast<uintptr_t>(scratch) + 63) / 64 * 64);
     careful::Memory memory = {reinterpret_cast<char *>(aligned)};
-    const CarefulPlan plan = careful::plan_of(*schedule.careful_order(), memory);
+    const CarefulPlan plan = careful::plan_of(*careful_order(schedule), memory);
     for (; rest; rest &= rest - 1)
         careful_one(call, plan, lane[__builtin_ctz(rest)], reinterpret_cast<double *>(memory.next), tally);
 }

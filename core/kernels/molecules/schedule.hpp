@@ -100,8 +100,6 @@ struct Schedule {
     // Of a graph, or of a large tree without pieces, unless the list would be long: all its bonds along one list; else
     // nullptr.
     const FlatList *flat;
-    // Whether such molecules are worked on beside each other.
-    bool is_in_lanes() const { return n_bonds <= (flat ? largest_graph_in_lanes : largest_in_lanes); }
     // Of a large molecule of few knots and long paths; else nullptr.
     const PathPlan *paths;
 
@@ -138,7 +136,6 @@ struct Schedule {
     // metric has been asked for, which no other call uses.
     const Schedule *careful;
     mutable const Schedule *late_careful = nullptr;
-    const Schedule *careful_order() const { return !network ? this : careful ? careful : late_careful; }
 
     Schedule() = default;
     Schedule(const Schedule &) = delete;
@@ -147,5 +144,15 @@ struct Schedule {
     struct Memory;
     Memory *memory = nullptr;  // where the arrays are
 };
+
+// No members: each set of kernels must have its own.
+// Whether such molecules are worked on beside each other.
+static inline bool is_in_lanes(const Schedule &s) {
+    return s.n_bonds <= (s.flat ? largest_graph_in_lanes : largest_in_lanes);
+}
+// The order of elimination for the careful solver; or nullptr.
+static inline const Schedule *careful_order(const Schedule &s) {
+    return !s.network ? &s : s.careful ? s.careful : s.late_careful;
+}
 
 }  // namespace holonomic

@@ -14,7 +14,7 @@ namespace {
 void careful_metric(const MetricCall &call, const Schedule &schedule, const MoleculeLane &lane, double *scratch,
                     Tally &tally) {
     careful::Memory memory = {reinterpret_cast<char *>(scratch)};
-    const CarefulPlan plan = careful::plan_of(*schedule.careful_order(), memory);
+    const CarefulPlan plan = careful::plan_of(*careful_order(schedule), memory);
     HOL_CAREFUL::careful::metric(call, plan, lane, reinterpret_cast<double *>(memory.next), tally);
 }
 

@@ -30,7 +30,7 @@ int64_t molecules_scratch_bytes(const Schedule &s) {
                       own = HOL_NETWORKS::network_bytes(*s.network);
         return own > careful ? own : careful;
     }
-    const bool in_lanes = s.is_in_lanes();
+    const bool in_lanes = is_in_lanes(s);
     const int64_t most = s.flat     ? (in_lanes ? list_bytes<vec>(*s.flat) : list_bytes<double>(*s.flat))
                          : in_lanes ? block_bytes<vec>(s)
                                     : block_bytes<double>(s),
