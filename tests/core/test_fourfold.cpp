@@ -12,7 +12,7 @@ namespace
 {
 
 using holonomic::fourfold::Four;
-using holonomic::fourfold::four;
+using holonomic::fourfold::as_four;
 using exact = reference::wide_float<640>;
 
 exact value(const Four &a)
