@@ -11,8 +11,8 @@
 namespace
 {
 
-using holonomic::fourfold::Four;
 using holonomic::fourfold::as_four;
+using holonomic::fourfold::Four;
 using exact = reference::wide_float<640>;
 
 exact value(const Four &a)
