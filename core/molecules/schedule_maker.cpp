@@ -25,10 +25,8 @@ void ScheduleMaker::make() {
     list_children();
     m_.column_start.assign(1, 0);
     if (s_.n_core == 0) return;
-    if (is_network_)
-        list_meetings();
-    else
-        list_fill();
+    list_meetings();
+    if (!is_network_) list_fill();
 }
 
 // Takes away atoms with one bond until none is left: upper_bond_ of those. Of a tree the last two atoms would take
@@ -199,26 +197,21 @@ void ScheduleMaker::list_children() {
     for (std::int32_t k = s_.n_tree; k-- > 0;) m_.child[at(--m_.child_start[at(m_.parent[at(k)])])] = k;
 }
 
-Lists ScheduleMaker::bonds_of_core() const {
-    return invert(s_.n_core_atoms, s_.n_core,
-                  [&](std::int32_t p, int end) { return (end ? m_.to : m_.from)[at(p)] - s_.n_tree; });
-}
-
 // Which bonds meet at each atom of the core.
 void ScheduleMaker::list_meetings() {
-    Lists meet = bonds_of_core();
+    Lists meet = invert(s_.n_core_atoms, s_.n_core,
+                        [&](std::int32_t p, int end) { return (end ? m_.to : m_.from)[at(p)] - s_.n_tree; });
     m_.meet_start = std::move(meet.start);
     m_.meet = std::move(meet.item);
 }
 
 // The factor's pattern.
 void ScheduleMaker::list_fill() {
-    const Lists meet = bonds_of_core();
     std::vector<Numbers> neighbours(at(s_.n_core));
     for (std::int32_t c = 0; c < s_.n_core_atoms; ++c)
-        for (const std::int32_t *p = meet.begin(c); p != meet.end(c); ++p)
-            for (const std::int32_t *q = meet.begin(c); q != meet.end(c); ++q)
-                if (p != q) neighbours[at(*p)].push_back(*q);
+        for (std::int32_t a = m_.meet_start[at(c)]; a < m_.meet_start[at(c) + 1]; ++a)
+            for (std::int32_t b = m_.meet_start[at(c)]; b < m_.meet_start[at(c) + 1]; ++b)
+                if (a != b) neighbours[at(m_.meet[at(a)])].push_back(m_.meet[at(b)]);
     Fill fill = fill_of(neighbours);
     m_.column_start = std::move(fill.column_start);
     m_.row = std::move(fill.row);

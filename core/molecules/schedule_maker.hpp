@@ -36,7 +36,6 @@ private:
     void check_atoms(const Numbers &core, std::int64_t most_bytes) const;
     void invert_numbers();
     void list_children();
-    Lists bonds_of_core() const;
     void list_meetings();
     void list_fill();
 

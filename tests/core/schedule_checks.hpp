@@ -85,7 +85,6 @@ inline void meetings_are_right(const Schedule &s)
         require(s.from[p] == s.n_tree + p && s.to[p] == s.n_tree + (p + 1) % s.n_core, "a ring that does not go round");
     for (int p = 0; p < s.n_core; ++p)
         joins(s, s.n_tree + p, s.from[p], s.to[p], "a bond of the core joins other atoms");
-    if (!s.network) return;
     int n = 0;
     for (int c = 0; c < s.n_core_atoms; ++c)
         for (int a = s.meet_start[c]; a < s.meet_start[c + 1]; ++a, ++n)

@@ -71,7 +71,7 @@ struct Schedule {
     // The core: bond p, at place n_tree + p, points from slot from[p] to slot to[p]. In a ring or triangle bond p joins
     // the core's atoms p and p + 1, the last one to atom 0, and all point that way round.
     const int32_t *from, *to;  // [n_core]
-    // Of a network: the bonds that meet at core atom c, in slot n_tree + c.
+    // The bonds that meet at core atom c, in slot n_tree + c.
     const int32_t *meet_start;  // [n_core_atoms + 1]
     const int32_t *meet;        // [2 n_core]
 
