@@ -69,13 +69,17 @@ struct ForestAtom {
 
     // atom[] has a local number for each lane.
     HOL_FORCED ForestAtom(const Atoms<vec> &at, const int32_t *atom) {
+        constexpr int64_t step = packed ? 3 : 1;
         if (at.layout == rows_in_order) {
             HOL_UNROLL
-            for (int i = 0; i < W; ++i) number[i] = (packed ? 3 : 1) * (at.first[i] + atom[i]);
-            return;
+            for (int i = 0; i < W; ++i) number[i] = step * (at.first[i] + atom[i]);
+        } else if (packed) {  // all lanes have lists
+            HOL_UNROLL
+            for (int i = 0; i < W; ++i) number[i] = step * at.list[i][atom[i]];
+        } else {
+            HOL_UNROLL
+            for (int i = 0; i < W; ++i) number[i] = step * at.number(i, atom[i]);
         }
-        HOL_UNROLL
-        for (int i = 0; i < W; ++i) number[i] = (packed ? 3 : 1) * at.number(i, atom[i]);
     }
     HOL_FORCED void rows_of(const AtomArray &array, double **p) const {
         HOL_UNROLL
@@ -167,6 +171,17 @@ struct ForestTrees {
         return lane[i].first_bond + f.bond[static_cast<int64_t>(place) * W + i];
     }
 
+    // Writes the bonds' values at a place, in some lanes.
+    HOL_FORCED void write_values(int32_t place, unsigned lanes, const vec &a, double *out) const {
+        if (__builtin_expect(lanes == all_lanes, 1)) {
+            HOL_UNROLL
+            for (int i = 0; i < W; ++i) out[bond_of(i, place)] = a[i];
+            return;
+        }
+        for (int i = 0; i < W; ++i)
+            if (lanes >> i & 1) out[bond_of(i, place)] = a[i];
+    }
+
     // Steps, and their places; `root`: the last of them is that of the roots.
     struct Range {
         int32_t step, end_step, place, end_place;
@@ -187,27 +202,30 @@ struct ForestTrees {
         for (int32_t p = range.place; p < range.end_place; ++p)
             if (const unsigned held = f.held[p] & which) body(p, held);
     }
-    // Writes value(place, atom) of the atoms' vectors in the lanes of which & ~but(place).
-    template <class But, class Value>
-    HOL_FORCED void write_atoms(const Range &range, const AtomArray &array, unsigned which, const But &but,
-                                const Value &value) const {
+    // Calls write(place, atom, lanes) for the atoms of these arrays in the lanes of which & ~but(place).
+    template <class But, class Write, class... Arrays>
+    HOL_FORCED void for_atoms(const Range &range, unsigned which, const But &but, const Write &write,
+                              const Arrays &...arrays) const {
         choose(
             [&](auto packed) HOL_FORCED {
                 for_held(range, which, [&](int32_t p, unsigned lanes) HOL_FORCED {
-                    fetch<packed, false>(f.lower, p, f.n_places, array);
-                    const ForestAtom<packed> atom(at, lower_of(p));
-                    atom.write(array, value(p, atom), lanes & ~but(p));
+                    fetch<packed, false>(f.lower, p, f.n_places, arrays...);
+                    write(p, ForestAtom<packed>(at, lower_of(p)), lanes & ~but(p));
                 });
                 if (!range.root) return;
-                const ForestAtom<packed> root(at, atom_of(f.n_steps - 1));
-                root.write(array, value(f.n_places, root), which & bits(first_lanes(f.n_trees)) & ~but(f.n_places));
+                write(f.n_places, ForestAtom<packed>(at, atom_of(f.n_steps - 1)),
+                      which & bits(first_lanes(f.n_trees)) & ~but(f.n_places));
             },
             at.layout != elements);
     }
+    // Writes value(place, atom) of the atoms' vectors.
     template <class Value>
     HOL_FORCED void write_atoms(const Range &range, const AtomArray &array, unsigned which, const Value &value) const {
-        write_atoms(
-            range, array, which, [](int32_t) { return 0u; }, value);
+        for_atoms(
+            range, which, [](int32_t) HOL_FORCED { return 0u; },
+            [&](int32_t p, const auto &atom, unsigned lanes)
+                HOL_FORCED { atom.write(array, value(p, atom), lanes); },
+            array);
     }
 };
 

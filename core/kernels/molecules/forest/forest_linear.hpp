@@ -94,7 +94,7 @@ struct ForestLinear : ForestTrees {
                 }
                 if (rated && in.strain) b = b + stretching(in.strain, d);
                 if (pulled) b = Loader<vec>::with_pull(d, w0, f0, w1, lower.read(forces), b);
-                if (has(given)) b = given_value(p);
+                if (!squared && !pulled && !rated && has(given)) b = given_value(p);
                 BondRow<vec> &to = row[p];
                 to.d = d;
                 to.q = dot(d, d);
@@ -164,9 +164,7 @@ struct ForestLinear : ForestTrees {
         for_held(range, which, [&](int32_t p, unsigned lanes) HOL_FORCED {
             if (f.n_pieces >= pieces_of_cache && p + rows_ahead / W < f.n_places)
                 for (int i = 0; i < W; ++i) __builtin_prefetch(out + bond_of(i, p + rows_ahead / W), 1, 2);
-            const vec a = mul_add(row[p].t, with_length ? sqrt(row[p].q) : splat(factor), vec{});
-            for (int i = 0; i < W; ++i)
-                if (lanes >> i & 1) out[bond_of(i, p)] = a[i];
+            write_values(p, lanes, mul_add(row[p].t, with_length ? sqrt(row[p].q) : splat(factor), vec{}), out);
         });
     }
     __attribute__((noinline)) void add_virial(unsigned which, Tally &tally) const {

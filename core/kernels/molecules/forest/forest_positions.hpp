@@ -36,9 +36,7 @@ struct ForestPositions {
     __attribute__((noinline)) void write_multipliers(const Range &range, unsigned which) const {
         const double factor = 0.5 / (call.dt * call.dt);
         x.for_held(range, which, [&](int32_t p, unsigned lanes) HOL_FORCED {
-            const vec a = mul_add(x.row[p].tau, splat(factor), vec{});
-            for (int i = 0; i < W; ++i)
-                if (lanes >> i & 1) call.lambda[x.bond_of(i, p)] = a[i];
+            x.write_values(p, lanes, mul_add(x.row[p].tau, splat(factor), vec{}), call.lambda);
         });
     }
     void add_virial(unsigned which) const {
@@ -47,12 +45,18 @@ struct ForestPositions {
         virial.count(which, 1 / (call.dt * call.dt), tally);
     }
     // Moves the atoms that are not fixed, and their velocities.
-    __attribute__((noinline)) void write_moves(const Range &range, const AtomArray &array, double factor,
-                                               unsigned which) const {
-        x.write_atoms(
-            range, array, which, [&](int32_t p) { return bits(less_equal(x.lower_w[p], vec{})); },
-            [&](int32_t p, const auto &atom)
-                HOL_FORCED { return add_times(atom.read(array), splat(factor), x.displacement(p)); });
+    __attribute__((noinline)) void write_moves(const Range &range, unsigned which) const {
+        const AtomArray &r = call.r, &v = call.v.x ? call.v : call.r;
+        const bool with_v = call.v.x != nullptr;
+        const vec per_dt = splat(1 / call.dt);
+        x.for_atoms(
+            range, which, [&](int32_t p) HOL_FORCED { return bits(less_equal(x.lower_w[p], vec{})); },
+            [&](int32_t p, const auto &atom, unsigned lanes) HOL_FORCED {
+                const vec3 move = x.displacement(p);
+                atom.write(r, add_times(atom.read(r), splat(1), move), lanes);
+                if (with_v) atom.write(v, add_times(atom.read(v), per_dt, move), lanes);
+            },
+            r, v);
     }
     // The worst bond of the trees in `which`: of a tree the one with the smallest number among those.
     void note_worst(unsigned which, const vec &error) const {
@@ -84,8 +88,7 @@ struct ForestPositions {
         if (call.report) note_worst(good, out.error);
         if (call.lambda) write_multipliers(x.all(), good);
         if (call.virial) add_virial(moved);
-        if (moved) write_moves(x.all(), call.r, 1, moved);
-        if (moved && call.v.x) write_moves(x.all(), call.v, 1 / call.dt, moved);
+        if (moved) write_moves(x.all(), moved);
         if (moved) count_moved(tally, __builtin_popcount(moved), out.solves);
         return good;
     }

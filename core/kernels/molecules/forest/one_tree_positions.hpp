@@ -158,9 +158,7 @@ struct OneTreePositions {
     void write(const Range &range, bool moved) const {
         const PositionsCall &call = lanes.call;
         if (call.lambda) lanes.write_multipliers(range, all_lanes);
-        if (!moved) return;
-        lanes.write_moves(range, call.r, 1, all_lanes);
-        if (call.v.x) lanes.write_moves(range, call.v, 1 / call.dt, all_lanes);
+        if (moved) lanes.write_moves(range, all_lanes);
     }
     // In the order of the slots, whatever lanes there are.
     void add_virial() const {

@@ -87,13 +87,68 @@ struct FlatLinear {
         if (!(terms & rates) && s.n_tiles > 1) load_inputs(tile, a);
     }
 
+    // Coordinates, masses and what right-hand sides are made of.
+    HOL_FORCED void load_atoms(const Tile &tile) const {
+        if constexpr (at_once<V> == 4) {
+            V *const w = mass + tile.first_mass;
+            const Rows<V> of = a_of(tile);
+            const auto put = [&](int32_t i, int32_t atom, const Row &x) HOL_FORCED {
+                r[i] = x;
+                const V its = lane->w[atom];
+                w[2 * i] = -its;
+                w[2 * i + 1] = its;
+                return its;
+            };
+            choose(
+                [&](auto packed, auto squared, auto pulled, auto rated) HOL_FORCED {
+                    if constexpr (rated)
+                        for_sites<packed>(
+                            at, s, tile,
+                            [&](int32_t i, int32_t atom, const Row &x, const Row &u) HOL_FORCED {
+                                put(i, atom, x);
+                                of[i] = u;
+                            },
+                            coordinates, *in.v);
+                    else if constexpr (squared && pulled)
+                        for_sites<packed>(
+                            at, s, tile,
+                            [&](int32_t i, int32_t atom, const Row &x, const Row &u, const Row &f) HOL_FORCED {
+                                v[i] = u;
+                                of[i] = in_row(put(i, atom, x)) * f;
+                            },
+                            coordinates, *in.v, *in.f);
+                    else if constexpr (squared || pulled)
+                        for_sites<packed>(
+                            at, s, tile,
+                            [&](int32_t i, int32_t atom, const Row &x, const Row &u) HOL_FORCED {
+                                const V its = put(i, atom, x);
+                                if (squared) v[i] = u;
+                                of[i] = pulled ? in_row(its) * u : Row{};
+                            },
+                            coordinates, squared ? *in.v : *in.f);
+                    else
+                        for_sites<packed>(
+                            at, s, tile,
+                            [&](int32_t i, int32_t atom, const Row &x) HOL_FORCED {
+                                put(i, atom, x);
+                                of[i] = Row{};
+                            },
+                            coordinates);
+                },
+                at.layout != elements, (terms & squares) != 0, (terms & pulls) != 0, (terms & rates) != 0);
+            w[2 * (tile.end_site - tile.first_site)] = V{};
+        } else {
+            if (!masses_known) read_masses(lane, s, tile, mass);
+            read_atoms(coordinates, at, s, tile, r);
+            if (terms & squares) read_atoms(*in.v, at, s, tile, v);
+            load_inputs(tile, a_of(tile));
+        }
+    }
+
     __attribute__((noinline)) void load(const Tile &tile) const {
-        if (!masses_known) read_masses(lane, s, tile, mass);
-        read_atoms(coordinates, at, s, tile, r);
+        load_atoms(tile);
         find_bonds(s, tile, box, r, d);
-        if (terms & squares) read_atoms(*in.v, at, s, tile, v);
         const Rows<V> bonds = d_of(tile);
-        if ((terms & (pulls | rates)) || s.n_tiles == 1) load_inputs(tile, a_of(tile));
         const V *const w = mass + tile.first_mass;
         for (int64_t k = tile.first; k < tile.end; k += step) {
             const int32_t *const from = s.from + tile.first_row + (k - tile.first), *const to = s.to + (from - s.from);

@@ -47,16 +47,36 @@ struct FlatPositions {
     }
     void load(const Tile &tile) const {
         const FlatList &s = newton.s;
-        const Rows<V> r = newton.coordinates_of(tile);
         FlatFound<V> &found = newton.found[&tile - s.tile];
-        if (!known) read_masses(lane, s, tile, newton.mass);
-        read_atoms(call.r_ref, at, s, tile, r);
-        find_bonds(s, tile, call.box_ref, r, newton.b);
-        read_atoms(call.r, at, s, tile, r);
-        find_bonds(s, tile, call.box, r, newton.D);
+        const Rows<V> r = newton.coordinates_of(tile), ref = newton.moves.from(tile.first_site);
         found.coordinate = Row{};
-        for (int32_t k = 0; k < tile.own_end - tile.first_site; ++k)
-            found.coordinate = larger(absolute(r[k]), found.coordinate);
+        if constexpr (step == 4) {
+            V *const w = newton.mass + tile.first_mass;
+            Row largest = {};
+            choose(
+                [&](auto packed) HOL_FORCED {
+                    for_sites<packed>(
+                        at, s, tile,
+                        [&](int32_t i, int32_t atom, const Row &before, const Row &now) HOL_FORCED {
+                            ref[i] = before;
+                            r[i] = now;
+                            largest = larger(absolute(now), largest);
+                            w[2 * i + 1] = lane->w[atom];
+                            w[2 * i] = -w[2 * i + 1];
+                        },
+                        call.r_ref, call.r);
+                },
+                at.layout != elements);
+            w[2 * (tile.end_site - tile.first_site)] = V{};
+            found.coordinate = largest;
+        } else {
+            if (!known) read_masses(lane, s, tile, newton.mass);
+            read_atoms(call.r_ref, at, s, tile, ref);
+            read_atoms(call.r, at, s, tile, r);
+            for (int32_t k = 0; k < s.n_sites; ++k) found.coordinate = larger(absolute(r[k]), found.coordinate);
+        }
+        find_bonds(s, tile, call.box_ref, ref, newton.b);
+        find_bonds(s, tile, call.box, r, newton.D);
         if (!known) load_lengths(tile, found);
         for (int64_t k = tile.first; k < tile.end; k += step) newton.some(newton.tau, k) = Columns<V>{};
         found.errors = newton.template measure_tile<true>(tile, newton.D.from(tile.first_row));

@@ -91,6 +91,13 @@ HOL_INLINE Row root_of(const Row &a) {
     return Row{__builtin_sqrt(a[0]), __builtin_sqrt(a[1]), __builtin_sqrt(a[2]), __builtin_sqrt(a[3])};
 #endif
 }
+HOL_INLINE Row round_row(const Row &a) {
+#if defined(__AVX2__)
+    return _mm256_round_pd(a, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+#else
+    return Row{round(a[0]), round(a[1]), round(a[2]), 0};
+#endif
+}
 
 // The same in lanes. The fourth counts in sums alone.
 template <class V>

@@ -102,24 +102,40 @@ HOL_INLINE void copy_guests(const FlatList &s, const Tile &tile, const Rows<V> &
     for (int32_t site = tile.own_end; site < tile.end_site; ++site) x[site] = x[s.home[site]];
 }
 
-// A local atom's row.
-HOL_INLINE Row read_row_of(const AtomArray &array, const Atoms<double> &at, int32_t i) {
+// An atom's row, by its number.
+template <bool packed>
+HOL_INLINE Row row_at(const AtomArray &array, int64_t number) {
 #if defined(__AVX2__)
-    if (at.layout != elements) {
-        const double *const p = reinterpret_cast<const double *>(array.x) + 3 * at.number(0, i);
-        return _mm256_maskload_pd(p, _mm256_set_epi64x(0, -1, -1, -1));
-    }
+    if (packed)
+        return _mm256_maskload_pd(reinterpret_cast<const double *>(array.x) + 3 * number,
+                                  _mm256_set_epi64x(0, -1, -1, -1));
 #endif
-    return row_of(read(array, at, i));
+    double x[3];
+    read_row(array, number, x);
+    return Row{x[0], x[1], x[2], 0};
+}
+// Calls body(site of the tile, local atom, rows of these arrays) for the sites of a tile of one molecule.
+template <bool packed, class Body, class... Arrays>
+HOL_INLINE void for_sites(const Atoms<double> &at, const FlatList &s, const Tile &tile, const Body &body,
+                          const Arrays &...arrays) {
+    const int64_t *const list = at.list[0], first = at.first[0];
+    const auto number = [&](int32_t i) HOL_FORCED { return list ? list[s.atom_of[i]] : first + s.atom_of[i]; };
+    const int32_t fetched_end = packed && s.n_tiles > 1 ? tile.end_site - rows_ahead : 0;  // else in a cache
+    for (int32_t i = tile.first_site; i < tile.end_site; ++i) {
+        if (i < fetched_end) (fetch_row(arrays, 3 * number(i + rows_ahead)), ...);
+        const int64_t n = number(i);
+        body(i - tile.first_site, s.atom_of[i], row_at<packed>(arrays, n)...);
+    }
 }
 // The rows of a tile's atoms. What is in lanes has one tile.
 HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<double> &at, const FlatList &s, const Tile &tile,
                            const Rows<double> &to) {
-    for (int32_t i = tile.first_site; i < tile.end_site; ++i) {
-        if (at.layout != elements && i + rows_ahead < tile.end_site)
-            fetch_row(array, 3 * at.number(0, s.atom_of[i + rows_ahead]));
-        to[i - tile.first_site] = read_row_of(array, at, s.atom_of[i]);
-    }
+    choose(
+        [&](auto packed) HOL_FORCED {
+            for_sites<packed>(
+                at, s, tile, [&](int32_t i, int32_t, const Row &a) HOL_FORCED { to[i] = a; }, array);
+        },
+        at.layout != elements);
 }
 template <class V>
 HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<V> &at, const FlatList &s, const Tile &,
@@ -141,17 +157,33 @@ HOL_INLINE void read_masses(const MoleculeLane *lane, const FlatList &s, const T
 }
 HOL_INLINE int64_t mass_values(const FlatList &s) { return in_fours(2 * static_cast<int64_t>(s.n_sites) + s.n_tiles); }
 
+// The nearest image of a bond.
+HOL_INLINE void take_image(const Box &box, Row &d) {
+    if (box.shape == Box::orthorhombic) {
+        const Row per_side = {box.per_side[0], box.per_side[1], box.per_side[2], 0},
+                  minus_side = {box.minus_side[0], box.minus_side[1], box.minus_side[2], 0};
+        d = multiply_add(round_row(d * per_side), minus_side, d);
+        return;
+    }
+    Vector3<double> bond = vector_of(d), unused = {};
+    take_image<false>(box, bond, unused);
+    d = row_of(bond);
+}
+template <class V>
+HOL_INLINE void take_image(const Box &box, RowInLanes<V> &d) {
+    Vector3<V> bond = vector_of(d), unused = {};
+    take_image<false>(box, bond, unused);
+    d = row_of(bond);
+}
 // A tile's bonds as they come, from the coordinates of their ends: as many as are worked on at a time, the inert ones
 // too.
 template <class V>
 HOL_INLINE void find_bonds(const FlatList &s, const Tile &tile, const Box &box, const Rows<V> &r, const Rows<V> &d) {
-    for (int64_t k = tile.first_row; k < tile.end_row; ++k)
-        d[k] = r.at_four_times(s.to[k]) - r.at_four_times(s.from[k]);
-    if (box.shape == Box::none) return;
+    const bool in_box = box.shape != Box::none;
     for (int64_t k = tile.first_row; k < tile.end_row; ++k) {
-        Vector3<V> bond = vector_of(d[k]), unused = {};
-        wrap<false>(box, bond, unused);
-        d[k] = row_of(bond);
+        RowOf<V> bond = r.at_four_times(s.to[k]) - r.at_four_times(s.from[k]);
+        if (in_box) take_image(box, bond);
+        d[k] = bond;
     }
 }
 
