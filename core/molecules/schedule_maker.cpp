@@ -29,8 +29,38 @@ void ScheduleMaker::make() {
     if (!is_network_) list_fill();
 }
 
+// The atom with one bond that is nearest to the centre of a tree. From there branches are short, and those that a
+// processor works on at the same time do not wait for each other.
+std::int32_t ScheduleMaker::central_leaf() {
+    Numbers &degree = m_.degree, &queue = m_.stack;
+    queue.clear();
+    for (std::int32_t i = 0; i < s_.n_atoms; ++i)
+        if (degree[at(i)] == 1) queue.push_back(i);
+    const auto go_on = [&](std::size_t next, const auto &body) {
+        for (; next < queue.size(); ++next)
+            for (const std::int32_t *k = bonds_.begin(queue[next]); k != bonds_.end(queue[next]); ++k)
+                body(other_end(*k, queue[next]));
+    };
+    // What is taken away last, from all ends at once, is the centre.
+    go_on(0, [&](std::int32_t j) {
+        if (--degree[at(j)] == 1) queue.push_back(j);
+    });
+    const std::int32_t centre = queue.back();
+    std::int32_t leaf = bonds_.size(centre) == 1 ? centre : -1;
+    queue.assign(1, centre);
+    degree[at(centre)] = INT32_MAX;
+    go_on(0, [&](std::int32_t j) {
+        if (degree[at(j)] == INT32_MAX || leaf >= 0) return;
+        degree[at(j)] = INT32_MAX;
+        queue.push_back(j);
+        if (bonds_.size(j) == 1) leaf = j;
+    });
+    return leaf;
+}
+
 // Takes away atoms with one bond until none is left: upper_bond_ of those. Of a tree the last two atoms would take
-// each other away; the one that is left is the atom with the largest number of those that had one bond.
+// each other away; the one that is left is the atom with the largest number of those that had one bond, or a central
+// one.
 void ScheduleMaker::strip() {
     Numbers &degree = m_.degree, &leaves = m_.stack;
     degree.resize(at(s_.n_atoms));
@@ -41,6 +71,11 @@ void ScheduleMaker::strip() {
     for (std::int32_t i = 0; i < s_.n_atoms; ++i) {
         degree[at(i)] = bonds_.size(i);
         if (is_tree && degree[at(i)] == 1) root = i;
+    }
+    if (is_tree && s_.n_bonds <= largest_in_lanes) {
+        root = central_leaf();
+        for (std::int32_t i = 0; i < s_.n_atoms; ++i) degree[at(i)] = bonds_.size(i);
+        leaves.clear();
     }
     for (std::int32_t i = 0; i < s_.n_atoms; ++i)
         if (degree[at(i)] == 1 && i != root && !stays(i)) leaves.push_back(i);
@@ -60,26 +95,28 @@ void ScheduleMaker::strip() {
     s_.n_core_atoms = is_tree ? 0 : s_.n_atoms - s_.n_tree;
 }
 
-// Post-order of the trees below each atom that was not taken away, children in the order of their bonds.
+// The trees below the atoms that were not taken away, from the last slot to the first. Of molecules that go in lanes level
+// by level, so that what waits for each other is far apart and the children of all atoms follow each other. Of large ones
+// each atom is followed by all that hangs from it, so that a piece of the slots is connected.
 void ScheduleMaker::number_trees() {
-    Numbers &stack = m_.stack, &next = m_.next;
-    next.assign(bonds_.start.begin(), bonds_.start.end() - 1);
-    for (std::int32_t top = 0; top < s_.n_atoms; ++top) {
-        if (upper_bond_[at(top)] >= 0) continue;
-        stack.assign(1, top);
-        while (!stack.empty()) {
-            const std::int32_t i = stack.back();
-            std::int32_t &k = next[at(i)];
-            while (k < bonds_.start[at(i) + 1] && !is_child(bonds_.item[at(k)], i)) ++k;
-            if (k < bonds_.start[at(i) + 1]) {
-                stack.push_back(other_end(bonds_.item[at(k++)], i));
-                continue;
-            }
-            stack.pop_back();
-            if (i == top) break;
-            m_.atom_of.push_back(i);
-            m_.bond_of.push_back(upper_bond_[at(i)]);
-        }
+    Numbers &order = m_.stack, &left = m_.next;
+    const auto add_children = [&](std::int32_t i, Numbers &to) {
+        for (const std::int32_t *k = bonds_.begin(i); k != bonds_.end(i); ++k)
+            if (is_child(*k, i)) to.push_back(other_end(*k, i));
+    };
+    order.clear();
+    left.clear();
+    for (std::int32_t i = 0; i < s_.n_atoms; ++i)
+        if (upper_bond_[at(i)] < 0) add_children(i, s_.n_bonds <= largest_in_lanes ? order : left);
+    for (std::size_t next = 0; next < order.size(); ++next) add_children(order[next], order);
+    while (!left.empty()) {
+        order.push_back(left.back());
+        left.pop_back();
+        add_children(order.back(), left);
+    }
+    for (std::size_t n = order.size(); n-- > 0;) {
+        m_.atom_of.push_back(order[n]);
+        m_.bond_of.push_back(upper_bond_[at(order[n])]);
     }
     for (std::int32_t i = 0; i < s_.n_atoms; ++i)
         if (upper_bond_[at(i)] < 0) m_.atom_of.push_back(i);

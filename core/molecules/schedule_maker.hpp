@@ -26,6 +26,7 @@ private:
     }
     bool is_child(std::int32_t bond, std::int32_t atom) const { return upper_bond_[at(other_end(bond, atom))] == bond; }
 
+    std::int32_t central_leaf();
     void strip();
     void number_trees();
     bool is_simple_ring() const;

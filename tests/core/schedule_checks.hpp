@@ -56,7 +56,7 @@ inline void joins(const Schedule &s, int place, int slot, int other, const char 
     require((i == a && j == b) || (i == b && j == a), what);
 }
 
-inline void trees_are_in_post_order(const Schedule &s)
+inline void trees_are_in_order(const Schedule &s)
 {
     int children = 0;
     for (int k = 0; k < s.n_tree; ++k) {
@@ -71,8 +71,11 @@ inline void trees_are_in_post_order(const Schedule &s)
             "places for pairs");
         for (int c = s.child_start[i]; c < s.child_start[i + 1]; ++c, ++children)
             require(s.parent[s.child[c]] == i, "a child of another atom");
-        if (n > 0 && (i < s.n_tree || s.type == Schedule::tree))
+        if (n == 0 || (i >= s.n_tree && s.type != Schedule::tree)) continue;
+        if (s.n_bonds > holonomic::largest_in_lanes)
             require(s.child[s.child_start[i + 1] - 1] == i - 1, "the last child's slot is not the one before");
+        for (int c = s.child_start[i]; c < s.child_start[i + 1] && s.n_bonds <= holonomic::largest_in_lanes; ++c)
+            require(s.child[c] == c, "children of other atoms between those of an atom");
     }
     require(children == s.n_tree, "children are missing");
     if (s.type == Schedule::tree)
@@ -162,7 +165,7 @@ inline std::unique_ptr<const Schedule> check(const char *name, const Bonds &bond
     auto s = schedule_of(bonds, n_atoms);
     require(s->type == type, "another type");
     numbers_are_permutations(*s);
-    trees_are_in_post_order(*s);
+    trees_are_in_order(*s);
     meetings_are_right(*s);
     require((type == Schedule::graph) == (s->flat || s->network) || s->n_bonds > 2048, "a graph has a list");
     if (s->flat && s->n_bonds <= 300) list_solves(*s->flat, random);

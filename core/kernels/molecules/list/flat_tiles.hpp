@@ -4,6 +4,7 @@
 
 #include "core/kernels/molecules/list/flat_list.hpp"
 #include "core/kernels/molecules/list/flat_rows.hpp"
+#include "core/kernels/molecules/molecules.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 

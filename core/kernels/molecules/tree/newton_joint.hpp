@@ -123,17 +123,17 @@ struct NewtonMemory<V, 0> {
 };
 
 // An atom at the position level: its bonds at their places, those to its children, and the one above. known: how many
-// children it has, where the compiler knows it; the last one's slot is the one before its own.
+// children it has, where the compiler knows it; their slots follow each other then.
 // forest/forest_newton.hpp has the same for atoms of W different trees.
 template <class V, int known = 0>
 struct NewtonAtom {
     const NewtonSystem<V> &x;
-    const int32_t slot, *const child;
+    const int32_t slot, first, *const child;
 
     HOL_FORCED NewtonAtom(const NewtonSystem<V> &system, int32_t s)
-        : x(system), slot(s), child(system.s.child + system.s.child_start[s]) {}
+        : x(system), slot(s), first(system.s.child_start[s]), child(system.s.child + first) {}
     HOL_FORCED V w() const { return x.w[slot]; }
-    HOL_FORCED int32_t place(int a) const { return known > 0 && a == known - 1 ? slot - 1 : child[a]; }
+    HOL_FORCED int32_t place(int a) const { return known > 0 ? first + a : child[a]; }
     HOL_FORCED NewtonRow<V> &bond(int a) const { return x.row[place(a)]; }
     HOL_FORCED const Vector3<V> &D(int a) const { return x.new_D[place(a)]; }
     HOL_FORCED NewtonRow<V> &above() const { return x.row[slot]; }
