@@ -29,60 +29,26 @@ void ScheduleMaker::make() {
     if (!is_network_) list_fill();
 }
 
-// The atom with one bond that is nearest to the centre of a tree. From there branches are short, and those that a
-// processor works on at the same time do not wait for each other.
-std::int32_t ScheduleMaker::central_leaf() {
-    Numbers &degree = m_.degree, &queue = m_.stack;
-    queue.clear();
-    for (std::int32_t i = 0; i < s_.n_atoms; ++i)
-        if (degree[at(i)] == 1) queue.push_back(i);
-    const auto go_on = [&](std::size_t next, const auto &body) {
-        for (; next < queue.size(); ++next)
-            for (const std::int32_t *k = bonds_.begin(queue[next]); k != bonds_.end(queue[next]); ++k)
-                body(other_end(*k, queue[next]));
-    };
-    // What is taken away last, from all ends at once, is the centre.
-    go_on(0, [&](std::int32_t j) {
-        if (--degree[at(j)] == 1) queue.push_back(j);
-    });
-    const std::int32_t centre = queue.back();
-    std::int32_t leaf = bonds_.size(centre) == 1 ? centre : -1;
-    queue.assign(1, centre);
-    degree[at(centre)] = INT32_MAX;
-    go_on(0, [&](std::int32_t j) {
-        if (degree[at(j)] == INT32_MAX || leaf >= 0) return;
-        degree[at(j)] = INT32_MAX;
-        queue.push_back(j);
-        if (bonds_.size(j) == 1) leaf = j;
-    });
-    return leaf;
-}
-
 // Takes away atoms with one bond until none is left: upper_bond_ of those. Of a tree the last two atoms would take
-// each other away; the one that is left is the atom with the largest number of those that had one bond, or a central
-// one.
+// each other away; the one that is left is the atom with the largest number of those that had one bond. Of trees in
+// lanes, from which atoms are taken at all ends at once, it is the centre, and they hang from a leaf near it.
 void ScheduleMaker::strip() {
     Numbers &degree = m_.degree, &leaves = m_.stack;
     degree.resize(at(s_.n_atoms));
     leaves.clear();
     upper_bond_.assign(at(s_.n_atoms), -1);
-    const bool is_tree = s_.n_bonds == s_.n_atoms - 1;
+    const bool is_tree = s_.n_bonds == s_.n_atoms - 1, centred = is_tree && s_.n_bonds <= largest_in_lanes;
     std::int32_t root = -1;
     for (std::int32_t i = 0; i < s_.n_atoms; ++i) {
         degree[at(i)] = bonds_.size(i);
-        if (is_tree && degree[at(i)] == 1) root = i;
-    }
-    if (is_tree && s_.n_bonds <= largest_in_lanes) {
-        root = central_leaf();
-        for (std::int32_t i = 0; i < s_.n_atoms; ++i) degree[at(i)] = bonds_.size(i);
-        leaves.clear();
+        if (is_tree && !centred && degree[at(i)] == 1) root = i;
     }
     for (std::int32_t i = 0; i < s_.n_atoms; ++i)
         if (degree[at(i)] == 1 && i != root && !stays(i)) leaves.push_back(i);
     s_.n_tree = 0;
-    while (!leaves.empty()) {
-        const std::int32_t i = leaves.back();
-        leaves.pop_back();
+    for (std::size_t next = 0; next < leaves.size();) {
+        const std::int32_t i = centred ? leaves[next++] : leaves.back();
+        if (!centred) leaves.pop_back();
         for (const std::int32_t *k = bonds_.begin(i); k != bonds_.end(i); ++k) {
             const std::int32_t j = other_end(*k, i);
             if (upper_bond_[at(j)] == *k) continue;  // a child's
@@ -91,13 +57,31 @@ void ScheduleMaker::strip() {
         }
         ++s_.n_tree;
     }
+    if (centred) {
+        s_.n_tree = s_.n_bonds;
+        hang_from_leaf(leaves.back());
+    }
     s_.n_core = s_.n_bonds - s_.n_tree;
     s_.n_core_atoms = is_tree ? 0 : s_.n_atoms - s_.n_tree;
 }
 
-// The trees below the atoms that were not taken away, from the last slot to the first. Of molecules that go in lanes level
-// by level, so that what waits for each other is far apart and the children of all atoms follow each other. Of large ones
-// each atom is followed by all that hangs from it, so that a piece of the slots is connected.
+// A tree that hangs from its centre: from the nearest leaf.
+void ScheduleMaker::hang_from_leaf(std::int32_t centre) {
+    Numbers &found = m_.stack;
+    found.assign(1, centre);
+    std::int32_t i = centre;
+    for (std::size_t next = 0; bonds_.size(i) > 1; i = found[++next])
+        for (const std::int32_t *k = bonds_.begin(i); k != bonds_.end(i); ++k)
+            if (is_child(*k, i)) found.push_back(other_end(*k, i));
+    for (std::int32_t bond = -1; i >= 0;) {
+        std::swap(bond, upper_bond_[at(i)]);
+        i = bond >= 0 ? other_end(bond, i) : -1;
+    }
+}
+
+// The trees below the atoms that were not taken away, from the last slot to the first. Of molecules that go in lanes
+// level by level, so that what waits for each other is far apart and the children of all atoms follow each other. Of
+// large ones each atom is followed by all that hangs from it, so that a piece of the slots is connected.
 void ScheduleMaker::number_trees() {
     Numbers &order = m_.stack, &left = m_.next;
     const auto add_children = [&](std::int32_t i, Numbers &to) {

@@ -26,8 +26,8 @@ private:
     }
     bool is_child(std::int32_t bond, std::int32_t atom) const { return upper_bond_[at(other_end(bond, atom))] == bond; }
 
-    std::int32_t central_leaf();
     void strip();
+    void hang_from_leaf(std::int32_t centre);
     void number_trees();
     bool is_simple_ring() const;
     void number_ring();

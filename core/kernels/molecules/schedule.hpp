@@ -28,12 +28,12 @@ struct FlatList;     // core/kernels/molecules/list/flat_list.hpp
 struct PathPlan;     // core/kernels/molecules/paths/paths.hpp
 struct NetworkPlan;  // core/kernels/molecules/network/network_plan.hpp
 
-// Atoms and bonds are renumbered. The *slot* of an atom: first the atoms of the trees, each after its children, then the
-// root of a tree, or the atoms of the core. In molecules that may go in lanes the slots of the children of all atoms of
-// trees follow each other: child[i] = i. In larger ones those of all that hangs from an atom do.
-// The *place* of a bond: a bond of a tree has the slot of its lower atom, the one away from the root; the bonds of the
-// core follow in the order of their elimination. So slot s < n_tree has its bond to its parent at place s, and there
-// are no bonds but n_tree + n_core.
+// Atoms and bonds are renumbered. The *slot* of an atom: first the atoms of the trees, each after its children, then
+// the root of a tree, or the atoms of the core. In molecules that may go in lanes the slots of the children of all
+// atoms of trees follow each other: child[i] = i. In larger ones those of all that hangs from an atom do. The *place*
+// of a bond: a bond of a tree has the slot of its lower atom, the one away from the root; the bonds of the core follow
+// in the order of their elimination. So slot s < n_tree has its bond to its parent at place s, and there are no bonds
+// but n_tree + n_core.
 //
 // A core is what is left when atoms with one bond are stripped until there are none; a tree has none. All its atoms are
 // movable, because fixed atoms are leaves.

@@ -223,8 +223,7 @@ struct ForestTrees {
     HOL_FORCED void write_atoms(const Range &range, const AtomArray &array, unsigned which, const Value &value) const {
         for_atoms(
             range, which, [](int32_t) HOL_FORCED { return 0u; },
-            [&](int32_t p, const auto &atom, unsigned lanes)
-                HOL_FORCED { atom.write(array, value(p, atom), lanes); },
+            [&](int32_t p, const auto &atom, unsigned lanes) HOL_FORCED { atom.write(array, value(p, atom), lanes); },
             array);
     }
 };
