@@ -89,53 +89,22 @@ struct FlatLinear {
 
     // Coordinates, masses and what right-hand sides are made of.
     HOL_FORCED void load_atoms(const Tile &tile) const {
-        if constexpr (at_once<V> == 4) {
+        if constexpr (step == 4) {
             V *const w = mass + tile.first_mass;
             const Rows<V> of = a_of(tile);
-            const auto put = [&](int32_t i, int32_t atom, const Row &x) HOL_FORCED {
-                r[i] = x;
-                const V its = lane->w[atom];
-                w[2 * i] = -its;
-                w[2 * i + 1] = its;
-                return its;
-            };
+            const bool rated = terms & rates;
             choose(
-                [&](auto packed, auto squared, auto pulled, auto rated) HOL_FORCED {
-                    if constexpr (rated)
-                        for_sites<packed>(
-                            at, s, tile,
-                            [&](int32_t i, int32_t atom, const Row &x, const Row &u) HOL_FORCED {
-                                put(i, atom, x);
-                                of[i] = u;
-                            },
-                            coordinates, *in.v);
-                    else if constexpr (squared && pulled)
-                        for_sites<packed>(
-                            at, s, tile,
-                            [&](int32_t i, int32_t atom, const Row &x, const Row &u, const Row &f) HOL_FORCED {
-                                v[i] = u;
-                                of[i] = in_row(put(i, atom, x)) * f;
-                            },
-                            coordinates, *in.v, *in.f);
-                    else if constexpr (squared || pulled)
-                        for_sites<packed>(
-                            at, s, tile,
-                            [&](int32_t i, int32_t atom, const Row &x, const Row &u) HOL_FORCED {
-                                const V its = put(i, atom, x);
-                                if (squared) v[i] = u;
-                                of[i] = pulled ? in_row(its) * u : Row{};
-                            },
-                            coordinates, squared ? *in.v : *in.f);
-                    else
-                        for_sites<packed>(
-                            at, s, tile,
-                            [&](int32_t i, int32_t atom, const Row &x) HOL_FORCED {
-                                put(i, atom, x);
-                                of[i] = Row{};
-                            },
-                            coordinates);
+                [&](auto packed, auto with_v, auto with_f) HOL_FORCED {
+                    for_sites<packed, with_v, with_f>(
+                        at, s, tile, coordinates, *in.v, *in.f,
+                        [&](int32_t i, int32_t atom, const Row &x, const Row &u, const Row &f) HOL_FORCED {
+                            r[i] = x;
+                            if (with_v && !rated) v[i] = u;
+                            const V its = read_mass(lane, atom, w + 2 * i);
+                            of[i] = rated ? u : in_row(its) * f;
+                        });
                 },
-                at.layout != elements, (terms & squares) != 0, (terms & pulls) != 0, (terms & rates) != 0);
+                at.layout != elements, (terms & (squares | rates)) != 0, (terms & pulls) != 0);
             w[2 * (tile.end_site - tile.first_site)] = V{};
         } else {
             if (!masses_known) read_masses(lane, s, tile, mass);

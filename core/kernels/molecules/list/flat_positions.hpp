@@ -55,16 +55,14 @@ struct FlatPositions {
             Row largest = {};
             choose(
                 [&](auto packed) HOL_FORCED {
-                    for_sites<packed>(
-                        at, s, tile,
-                        [&](int32_t i, int32_t atom, const Row &before, const Row &now) HOL_FORCED {
+                    for_sites<packed, true, false>(
+                        at, s, tile, call.r_ref, call.r, call.r,
+                        [&](int32_t i, int32_t atom, const Row &before, const Row &now, const Row &) HOL_FORCED {
                             ref[i] = before;
                             r[i] = now;
                             largest = larger(absolute(now), largest);
-                            w[2 * i + 1] = lane->w[atom];
-                            w[2 * i] = -w[2 * i + 1];
-                        },
-                        call.r_ref, call.r);
+                            read_mass(lane, atom, w + 2 * i);
+                        });
                 },
                 at.layout != elements);
             w[2 * (tile.end_site - tile.first_site)] = V{};

@@ -115,17 +115,24 @@ HOL_INLINE Row row_at(const AtomArray &array, int64_t number) {
     read_row(array, number, x);
     return Row{x[0], x[1], x[2], 0};
 }
-// Calls body(site of the tile, local atom, rows of these arrays) for the sites of a tile of one molecule.
-template <bool packed, class Body, class... Arrays>
-HOL_INLINE void for_sites(const Atoms<double> &at, const FlatList &s, const Tile &tile, const Body &body,
-                          const Arrays &...arrays) {
+// Calls body(site of the tile, local atom, rows of these arrays) for the sites of a tile of one molecule; rows that are
+// not read are 0.
+template <bool packed, bool with_second, bool with_third, class Body>
+HOL_INLINE void for_sites(const Atoms<double> &at, const FlatList &s, const Tile &tile, const AtomArray &one,
+                          const AtomArray &second, const AtomArray &third, const Body &body) {
     const int64_t *const list = at.list[0], first = at.first[0];
     const auto number = [&](int32_t i) HOL_FORCED { return list ? list[s.atom_of[i]] : first + s.atom_of[i]; };
     const int32_t fetched_end = packed && s.n_tiles > 1 ? tile.end_site - rows_ahead : 0;  // else in a cache
     for (int32_t i = tile.first_site; i < tile.end_site; ++i) {
-        if (i < fetched_end) (fetch_row(arrays, 3 * number(i + rows_ahead)), ...);
+        if (i < fetched_end) {
+            const int64_t element = 3 * number(i + rows_ahead);
+            fetch_row(one, element);
+            if (with_second) fetch_row(second, element);
+            if (with_third) fetch_row(third, element);
+        }
         const int64_t n = number(i);
-        body(i - tile.first_site, s.atom_of[i], row_at<packed>(arrays, n)...);
+        body(i - tile.first_site, s.atom_of[i], row_at<packed>(one, n), with_second ? row_at<packed>(second, n) : Row{},
+             with_third ? row_at<packed>(third, n) : Row{});
     }
 }
 // The rows of a tile's atoms. What is in lanes has one tile.
@@ -133,8 +140,9 @@ HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<double> &at, cons
                            const Rows<double> &to) {
     choose(
         [&](auto packed) HOL_FORCED {
-            for_sites<packed>(
-                at, s, tile, [&](int32_t i, int32_t, const Row &a) HOL_FORCED { to[i] = a; }, array);
+            for_sites<packed, false, false>(at, s, tile, array, array, array,
+                                            [&](int32_t i, int32_t, const Row &a, const Row &, const Row &)
+                                                HOL_FORCED { to[i] = a; });
         },
         at.layout != elements);
 }
@@ -155,6 +163,11 @@ HOL_INLINE void read_masses(const MoleculeLane *lane, const FlatList &s, const T
         to[0] = -to[1];
     }
     *to = V{};
+}
+// That of one site of one molecule.
+HOL_INLINE double read_mass(const MoleculeLane *lane, int32_t atom, double *to) {
+    to[0] = -lane->w[atom];
+    return to[1] = lane->w[atom];
 }
 HOL_INLINE int64_t mass_values(const FlatList &s) { return in_fours(2 * static_cast<int64_t>(s.n_sites) + s.n_tiles); }
 
