@@ -50,10 +50,11 @@ struct Frame {
     HOL_FORCED vec3 &operator[](int k) { return of[k]; }
     HOL_FORCED const vec3 &operator[](int k) const { return of[k]; }
 
-    // Adds weights [1 + R] of an atom times its vector.
+    // Adds weights [1 + R] of an atom times its vector, from that of `first` on.
+    template <int first>
     HOL_FORCED void add(const double *weights, const vec3 &x) {
         HOL_UNROLL_FEW
-        for (int k = 0; k <= R; ++k) put(of[k], add_times(of[k], splat(weights[k]), x));
+        for (int k = first; k <= R; ++k) put(of[k], add_times(of[k], splat(weights[k]), x));
     }
     // Takes them away.
     template <int first>
@@ -73,14 +74,14 @@ struct Frame {
         }
         return {x, y, z};
     }
-    // Zero if all is finite, else not a number.
-    HOL_FORCED vec nothing() const {
-        vec x = {}, y = {}, z = {};
+    // Not finite if anything is not.
+    HOL_FORCED vec sum() const {
+        vec x = of[0].x, y = of[0].y, z = of[0].z;
         HOL_UNROLL_FEW
-        for (int k = 0; k <= R; ++k) {
-            x = mul_add(of[k].x, vec{}, x);
-            y = mul_add(of[k].y, vec{}, y);
-            z = mul_add(of[k].z, vec{}, z);
+        for (int k = 1; k <= R; ++k) {
+            x = x + of[k].x;
+            y = y + of[k].y;
+            z = z + of[k].z;
         }
         return x + (y + z);
     }
@@ -199,36 +200,62 @@ HOL_NOINLINE void take_more(const BodyKind &kind, const Frame<R> &a, const Half<
     take_away(kind, a, b, z);
 }
 
+// Takes from b what C, C + C^T = b, takes away too much as A^T A = 1 + E, to first order: E C + (..)^T.
+template <int R>
+HOL_INLINE void take_errors(const BodyKind &kind, const Symmetric<R> &e, Half<R> &b) {
+    const Half<R> all = b;
+    const auto c = [&](int p, int q) HOL_FORCED {
+        return p == q ? all.of[p][p] : splat(kind.part[p][q]) * all.of[p < q ? p : q][p < q ? q : p];
+    };
+    const auto error = [&](int p, int q) HOL_FORCED { return e.of[p < q ? p : q][p < q ? q : p]; };
+    HOL_UNROLL_FEW
+    for (int p = 0; p < R; ++p) {
+        HOL_UNROLL_FEW
+        for (int q = p; q < R; ++q) {
+            HOL_UNROLL_FEW
+            for (int k = 0; k < R; ++k) {
+                b.of[p][q] = sub_mul(error(p, k), c(k, q), b.of[p][q]);
+                if (p != q) b.of[p][q] = sub_mul(error(q, k), c(k, p), b.of[p][q]);
+            }
+        }
+    }
+}
+
+// Goes on where A is far from orthonormal. What is left is less by the root of `square`, at least, each time; returns
+// the lanes for which it does not come to an end.
+template <int R>
+HOL_NOINLINE mask project_more(const BodyKind &kind, const Frame<R> &a, const Half<R> &more, mask busy, vec square,
+                               Frame<R> &z, Frame<R> *taken) {
+    vec left = square * square;
+    for (int pass = 0; pass < 24 && any(busy); ++pass) {
+        Half<R> b = both_products(a, z, more);
+        for (int p = 0; p < R; ++p)
+            for (int q = p; q < R; ++q) b.of[p][q] = keep(busy, b.of[p][q]);
+        if (taken) take_away(kind, a, b, *taken);
+        take_away(kind, a, b, z);
+        left = left * square;
+        busy = busy & ~less(left, splat(1e-4 * epsilon * epsilon));
+    }
+    return busy;
+}
+
 // z: becomes what obeys the equations. taken: less what that takes, where it is wanted. The lanes for which it comes to
 // an end.
 template <int R>
 HOL_NOINLINE mask project(const BodyKind &kind, const Frame<R> &__restrict a, const Half<R> &__restrict more,
-                          Frame<R> &__restrict to, Frame<R> *taken) {
-    Frame<R> z = to;
-    const auto take = [&](mask lanes, bool all) HOL_FORCED {
-        Half<R> b = both_products(a, z, more);
-        for (int p = 0; p < R && !all; ++p)
-            for (int q = p; q < R; ++q) b.of[p][q] = keep(lanes, b.of[p][q]);
-        if (__builtin_expect(taken != nullptr, 0)) {
-            const Half<R> copy = b;
-            take_more(kind, a, copy, *taken);
-        }
-        take_away(kind, a, b, z);
-    };
-    // What is left is less by this factor, at least, each time.
-    const vec square = 4.0 * square_of(errors_of(a));
-    for (int pass = 0; pass < 2; ++pass) take(none(), true);
-    mask busy = ~less(square, splat(1e-18));
-    if (__builtin_expect(any(busy), 0)) {
-        vec left = square * square;
-        for (int pass = 0; pass < 24 && any(busy); ++pass) {
-            take(busy, false);
-            left = left * square;
-            busy = busy & ~less(left, splat(1e-4 * epsilon * epsilon));
-        }
+                          Frame<R> &__restrict z, Frame<R> *taken) {
+    const Symmetric<R> e = errors_of(a);
+    Half<R> b = both_products(a, z, more);
+    take_errors(kind, e, b);
+    take_away(kind, a, b, z);
+    if (__builtin_expect(taken != nullptr, 0)) {
+        const Half<R> copy = b;
+        take_more(kind, a, copy, *taken);
     }
-    to = z;
-    return ~busy & finite(z.nothing());
+    const vec square = 4.0 * square_of(e);
+    mask busy = ~less(square, splat(1e-18));
+    if (__builtin_expect(any(busy), 0)) busy = project_more(kind, a, more, busy, square, z, taken);
+    return ~busy & finite(z.sum());
 }
 
 // M L_p^2 a_p (x) t_p, t: what is added to the axes.

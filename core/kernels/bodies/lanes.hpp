@@ -23,8 +23,9 @@ HOL_NOINLINE void sum_axes(const From from, const BodyKind &kind, Frame<R> &to) 
     for (int p = 1; p <= R; ++p) put(to[p], splat(kind.scale) * sum[p]);
 }
 
-// The sums of vectors by weights. Of forces they are taken per moment, and vectors are kept; of rates and moves the
-// excess of shares is taken, but for what is rounded anyway: of rough rates it is not.
+// The sums of vectors by weights. Of forces they are taken per moment, the centre's weights are 1, and vectors are
+// kept; of rates and moves the excess of shares is taken, but for what is rounded anyway: of rough rates, of which the
+// axes alone are wanted, it is not.
 enum Sums { of_forces, of_rates, of_rough_rates };
 template <int R, Sums what, class From>
 HOL_NOINLINE void sum_all(const From from, const BodyKind &kind, const double *weights, long n, Frame<R> &to,
@@ -32,12 +33,16 @@ HOL_NOINLINE void sum_all(const From from, const BodyKind &kind, const double *w
     Frame<R> sum;
     sum.clear();
     for_each_of_rows(from, 0, n, [&](long a, const vec3 &x) HOL_FORCED {
-        if (what == of_forces) put(kept[a], x);
-        sum.add(weights + a * (1 + R), x);
+        if (what == of_forces) {
+            put(kept[a], x);
+            put(sum[0], sum[0] + x);
+        }
+        sum.template add<what == of_rates ? 0 : 1>(weights + a * (1 + R), x);
     });
     if (what == of_rates) return take_excess(kind, sum, to);
     HOL_UNROLL_FEW
-    for (int k = 0; k <= R; ++k) put(to[k], what == of_forces ? splat(kind.per_moment[k]) * sum[k] : sum[k]);
+    for (int k = what == of_forces ? 0 : 1; k <= R; ++k)
+        put(to[k], what == of_forces ? splat(kind.per_moment[k]) * sum[k] : sum[k]);
 }
 
 // What vectors, taken from the first one, are off those of the axes. Returns the largest square.

@@ -122,8 +122,7 @@ struct PositionsOf : BodyLanes<R> {
         }
         // Crude or rigid already: the general solver decides.
         const double least = (call.r.is_float ? 1e-5 : 1e-10) * kind.extent;
-        good =
-            good & near & less(splat(least * least), square_of_moves(kind, trial, change)) & finite(change.nothing());
+        good = good & near & less(splat(least * least), square_of_moves(kind, trial, change)) & finite(change.sum());
         if (__builtin_expect(call.virial || call.report, 0)) report(results);
         return good;
     }
