@@ -177,11 +177,13 @@ struct MoleculeKernels {
 
 struct BodyKind;  // a kind of rigid body that stands alone: core/kernels/bodies/kind.hpp
 
-// Bodies of a kind, most_in_unit at most.
+// Bodies of a kind, most_in_unit at most. Behind the last one the first one stands again, up to a multiple of
+// most_lanes.
 constexpr int most_in_unit = 64;
 struct BodyUnit {
     const BodyKind *kind;
     const int64_t *atoms[most_in_unit];
+    int64_t first[most_in_unit];  // element of its first atom in packed arrays
     int count;
     bool consecutive;  // the atoms of each stand one behind the other
 };

@@ -70,7 +70,7 @@ private:
 
     // Bodies from number `first` on as long as they are alike; returns the first one that is not.
     std::int64_t side_by_side(std::int64_t first, std::int64_t end) {
-        static_assert(block <= most_in_unit);
+        static_assert(block <= most_in_unit && most_in_unit % most_lanes == 0);
         const std::int32_t number = bodies_.shape_number(first);
         if (shape_ != number) {
             shape_ = number;
@@ -86,11 +86,17 @@ private:
         for (; next < end && bodies_.shape_number(next) == number; ++next) {
             if (!all_active && !bodies_.is_active(next)) continue;
             molecules[count] = next;
-            unit.atoms[count++] = bodies_.atoms(next);
+            unit.atoms[count] = bodies_.atoms(next);
+            unit.first[count] = 3 * unit.atoms[count][0];
+            ++count;
             consecutive &= bodies_.is_consecutive(next);
         }
         unit.count = count;
         unit.consecutive = consecutive;
+        for (; count % most_lanes != 0; ++count) {
+            unit.atoms[count] = unit.atoms[0];
+            unit.first[count] = unit.first[0];
+        }
         BodyResult results[block];
         const std::uint64_t done =
             work_.bodies(unit, reinterpret_cast<double *>(memory_ + bodies_.scratch_bytes()), results);

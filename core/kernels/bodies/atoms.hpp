@@ -16,21 +16,18 @@ struct Rows {
 
 struct BodyBlock {
     const BodyKind &kind;
-    const int64_t *atoms[W];  // lanes without a body repeat the first one
-    int64_t first[W];         // 3 atoms[l][0]
-    int count;
-    bool consecutive;  // the atoms of each stand one behind the other
+    const int64_t *const *atoms;  // [W]
+    const int64_t *first;         // [W], as in the unit
+    int count;                    // of lanes with bodies of their own
+    bool consecutive;             // the atoms of each stand one behind the other
 
     explicit BodyBlock(const BodyKind &k) : kind(k) {}
     // The bodies of a unit from this one on.
     HOL_FORCED void set(const BodyUnit &unit, int body) {
+        atoms = unit.atoms + body;
+        first = unit.first + body;
         count = unit.count - body < W ? unit.count - body : W;
         consecutive = unit.consecutive;
-        HOL_UNROLL
-        for (int l = 0; l < W; ++l) {
-            atoms[l] = unit.atoms[body + (l < count ? l : 0)];
-            first[l] = 3 * atoms[l][0];
-        }
     }
     HOL_FORCED bool in_a_row(const AtomArray &array) const { return array.packed && consecutive; }
     HOL_FORCED Rows rows(const AtomArray &array) const { return {reinterpret_cast<double *>(array.x), first}; }
