@@ -151,16 +151,15 @@ HOL_INLINE vec largest_of(const Symmetric<R> &e) {
     return worst;
 }
 
-// 2 A'^T A'; rate: with the excess of shares.
+// 2 A'^T A'
 template <int R>
-HOL_INLINE void twice_products(const BodyKind &kind, const Frame<R> &rate, Half<R> &to) {
-    const vec once = splat(kind.scale * kind.scale), twice = once + once;
+HOL_INLINE void twice_products(const Frame<R> &rate, Half<R> &to) {
     HOL_UNROLL_FEW
     for (int p = 0; p < R; ++p) {
         HOL_UNROLL_FEW
         for (int q = p; q < R; ++q) {
             const vec product = dot(rate[1 + p], rate[1 + q]);
-            to.of[p][q] = (p == q ? once : twice) * product;
+            to.of[p][q] = p == q ? product : product + product;
         }
     }
 }

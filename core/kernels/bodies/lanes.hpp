@@ -24,12 +24,13 @@ HOL_NOINLINE void sum_axes(const From from, const BodyKind &kind, Frame<R> &to) 
 }
 
 // The sums of vectors by weights. Of forces they are taken per moment, the centre's weights are 1, and vectors are
-// kept; of rates and moves the excess of shares is taken, but for what is rounded anyway: of rough rates, of which the
-// axes alone are wanted, it is not.
-enum Sums { of_forces, of_rates, of_rough_rates };
+// kept. Of rates and moves the excess of shares is taken; of rough rates, which no body takes into its next step, but
+// its largest part. of_rough_axes: the centre is not wanted.
+enum Sums { of_forces, of_rates, of_rough_rates, of_rough_axes };
 template <int R, Sums what, class From>
 HOL_NOINLINE void sum_all(const From from, const BodyKind &kind, const double *weights, long n, Frame<R> &to,
                           vec3 *kept = nullptr) {
+    constexpr int first = what == of_rough_axes;
     Frame<R> sum;
     sum.clear();
     for_each_of_rows(from, 0, n, [&](long a, const vec3 &x) HOL_FORCED {
@@ -37,12 +38,11 @@ HOL_NOINLINE void sum_all(const From from, const BodyKind &kind, const double *w
             put(kept[a], x);
             put(sum[0], sum[0] + x);
         }
-        sum.template add<what == of_rates ? 0 : 1>(weights + a * (1 + R), x);
+        sum.template add<what == of_forces ? 1 : first>(weights + a * (1 + R), x);
     });
     if (what == of_rates) return take_excess(kind, sum, to);
     HOL_UNROLL_FEW
-    for (int k = what == of_forces ? 0 : 1; k <= R; ++k)
-        put(to[k], what == of_forces ? splat(kind.per_moment[k]) * sum[k] : sum[k]);
+    for (int k = first; k <= R; ++k) put(to[k], splat(what == of_forces ? kind.per_moment[k] : kind.scale) * sum[k]);
 }
 
 // What vectors, taken from the first one, are off those of the axes. Returns the largest square.

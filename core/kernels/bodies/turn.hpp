@@ -23,9 +23,8 @@ namespace holonomic::HOL_ISA {
 // for each other; those of two blocks go side by side.
 template <int R>
 struct Turn {
-    Frame<R> axes, away;  // of the reference, orthonormal; what that took from them
-    vec3 normal;          // of a plane
-    vec x[3][R], off;     // off: the square of how far the reference was from it
+    vec3 axis[3], away[R];  // of the reference, orthonormal, in a plane with its normal; what that took from them
+    vec x[3][R], off;       // off: the square of how far the reference was from it
     vec a[3], g[3];
     mask good;
     vec rounds;
@@ -164,14 +163,16 @@ HOL_NOINLINE void prepare(const BodyKind &kind, const Frame<R> &__restrict from,
         away = copy_away;
     }
     to.good = ~bad;
-    to.axes = a;
-    to.away = away;
     vec3 axis[3];
     HOL_UNROLL_FEW
-    for (int p = 0; p < R; ++p) put(axis[p], a[1 + p]);
+    for (int p = 0; p < R; ++p) {
+        put(axis[p], a[1 + p]);
+        put(to.axis[p], a[1 + p]);
+        put(to.away[p], away[1 + p]);
+    }
     if (R == 2) {
         put(axis[2], cross(axis[0], axis[1]));
-        put(to.normal, axis[2]);
+        put(to.axis[2], axis[2]);
     }
     vec x[3][R];
     HOL_UNROLL_FEW
@@ -202,7 +203,7 @@ HOL_NOINLINE mask finish(const BodyKind &kind, const Turn<R> &__restrict t, doub
     HOL_UNROLL_FEW
     for (int p = 0; p < 3; ++p) {
         g[p] = t.g[p];
-        put(axis[p], p < R ? t.axes[1 + (p < R ? p : 0)] : t.normal);
+        put(axis[p], t.axis[p]);
     }
     // 2 g / (1 + g.g), as 2 (a_i - b_i g_j g_k / (1 + g.g)): what is rounded in g would be the same in each step of a
     // body that turns evenly.
@@ -217,7 +218,7 @@ HOL_NOINLINE mask finish(const BodyKind &kind, const Turn<R> &__restrict t, doub
         const int row[3] = {q, (q + 1) % 3, (q + 2) % 3};
         const vec of[3] = {-mul_add(s[row[1]], g[row[1]], s[row[2]] * g[row[2]]), mul_add(s[q], g[row[1]], s[row[2]]),
                            mul_sub(s[q], g[row[2]], s[row[1]])};
-        vec3 sum = vec3{} - t.away[1 + q];
+        vec3 sum = vec3{} - t.away[q];
         HOL_UNROLL_FEW
         for (int k = 0; k < 3; ++k) {
             const vec c = t.x[row[k]][q] - of[k];

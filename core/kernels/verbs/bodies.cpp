@@ -48,8 +48,8 @@ struct ForcesOf : BodyLanes<R> {
         this->forces(call.f, z);
         if (!call.v.x) return of_rates.clear();
         Frame<R> rate;
-        this->template rates<of_rough_rates>(call.v, rate);
-        twice_products(kind, rate, of_rates);
+        this->template rates<of_rough_axes>(call.v, rate);
+        twice_products(rate, of_rates);
     }
     HOL_FORCED mask solve(BodyResult *results) {
         return project_with_virial(kind, at, of_rates, z, call.virial, this->count, results);
@@ -94,7 +94,7 @@ struct PositionsOf : BodyLanes<R> {
     HOL_FORCED void read() { this->positions(call.r_ref, call.box_ref, from); }
     HOL_FORCED void compare() {
         near = this->changes(call.r, call.box, from, trial);
-        if (has_sites_to_write()) this->rates(call.v, rate);
+        if (has_sites_to_write()) this->template rates<of_rough_rates>(call.v, rate);
         if (R > 1) prepare(kind, from, trial, turn);
     }
     HOL_FORCED void find_turn() {
