@@ -7,8 +7,8 @@
 //     forces       A'' = Z - A C,       C + C^T = A^T Z + (..)^T + 2 A'^T A'
 //     velocities   A'  = A'_in - A C,   C + C^T = A^T A'_in + (..)^T
 //
-// where C_pq / C_qp = L_p^2 / L_q^2, as no angular momentum may come of it. A^T A = 1 + E leaves a part E of what C
-// should take away, which is taken away next. Positions: turn.hpp.
+// where C_pq / C_qp = L_p^2 / L_q^2, as no angular momentum may come of it. As A^T A = 1 + E, what C takes away is
+// off by E C + (..)^T, which goes into C to first order. Positions: turn.hpp.
 #pragma once
 
 #include "core/kernels/arithmetic/exact.hpp"
@@ -201,7 +201,7 @@ HOL_NOINLINE void take_more(const BodyKind &kind, const Frame<R> &a, const Half<
 
 // Takes from b what C, C + C^T = b, takes away too much as A^T A = 1 + E, to first order: E C + (..)^T.
 template <int R>
-HOL_INLINE void take_errors(const BodyKind &kind, const Symmetric<R> &e, Half<R> &b) {
+HOL_INLINE void correct_for(const Symmetric<R> &e, const BodyKind &kind, Half<R> &b) {
     const Half<R> all = b;
     const auto c = [&](int p, int q) HOL_FORCED {
         return p == q ? all.of[p][p] : splat(kind.part[p][q]) * all.of[p < q ? p : q][p < q ? q : p];
@@ -245,7 +245,7 @@ HOL_NOINLINE mask project(const BodyKind &kind, const Frame<R> &__restrict a, co
                           Frame<R> &__restrict z, Frame<R> *taken) {
     const Symmetric<R> e = errors_of(a);
     Half<R> b = both_products(a, z, more);
-    take_errors(kind, e, b);
+    correct_for(e, kind, b);
     take_away(kind, a, b, z);
     if (__builtin_expect(taken != nullptr, 0)) {
         const Half<R> copy = b;
