@@ -151,6 +151,7 @@ private:
             a_.from[at(p.first_tree_place + slot)] = site_of(s_.parent[slot]);
             a_.to[at(p.first_tree_place + slot)] = p.first_tree + slot;
         }
+        a_.atom_of.insert(a_.atom_of.end(), NetworkPlan::fetched_ahead, a_.atom_of[0]);
     }
     std::int32_t site_of(std::int32_t slot) const {
         return slot < s_.n_tree ? a_.plan.first_tree + slot : a_.plan.first_node + node_[at(slot)];

@@ -19,12 +19,11 @@ static inline bool pull_network(const Call &call, const NetLinear &x, Tally &tal
     if (!x.solve()) return false;
     count_moved(tally, 0, x.rounds);
     if (call.virial) x.add_virial(tally);
-    const auto write = [&](const NetPart &part) {
+    x.net.for_rest_and_parts([&](const NetPart &part) {
         if (call.lambda) x.write_bonds(part, 0.5, false, call.lambda);
         if (call.tension) x.write_bonds(part, 1, true, call.tension);
         if (call.g.x) x.write_pulls(part, call.g, call.add);
-    };
-    x.for_rest_and_parts(write, write);
+    });
     return true;
 }
 
@@ -47,8 +46,8 @@ bool solve_network(const VelocitiesCall &call, const Schedule &s, const Molecule
     const NetLinear x(*s.network, lane, packed, team, call.box, call.r, in, rates, {scratch});
     if (!x.solve()) return false;
     count_moved(tally, 0, x.rounds);
-    const auto write_bonds = [&](const NetPart &part) { x.write_bonds(part, 0.5, false, call.lambda); };
-    if (call.lambda) x.for_rest_and_parts(write_bonds, write_bonds);
+    if (call.lambda)
+        x.net.for_rest_and_parts([&](const NetPart &part) { x.write_bonds(part, 0.5, false, call.lambda); });
     if (call.virial) x.add_virial(tally);
     x.write_velocities(call.v, !call.v.is_float);
     return true;

@@ -8,6 +8,12 @@
 
 namespace holonomic::HOL_ISA::graph {
 
+// What right-hand sides are made of, of an atom: velocity, and force times inverse mass.
+template <class V>
+struct NetTerms {
+    Vector3<V> v, f;
+};
+
 struct NetEquations {
     const Net net;
     const NetworkPlan &s;
@@ -35,51 +41,90 @@ struct NetEquations {
     bool has(int wanted) const { return (terms & wanted) != 0; }
 
     static int32_t n_rest(const NetworkPlan &s) { return s.n_nodes + s.n_tree; }
-    Net3 r_of(const NetPart &part) const { return net.is_rest(part) ? r : part.of_sites(0); }
-    Net3 v_of(const NetPart &part) const { return net.is_rest(part) || has(rates) ? v : part.of_sites(1); }
-    Net3 f_of(const NetPart &part) const { return net.is_rest(part) ? f : part.of_sites(2); }
 
-    void read_atoms(const NetPart &part, int32_t first, int32_t end) const {
-        NetReading all[3] = {{&coordinates, r_of(part), false}};
-        int n = 1;
-        if (has(squares | rates)) all[n++] = {in.v, v_of(part), false};
-        if (has(pulls)) all[n++] = {in.f, f_of(part), true};
-        net.read_sites(first, end, all, n);
+    // Reads what right-hand sides are made of. Velocities that will be projected are kept.
+    template <class V>
+    HOL_FORCED NetTerms<V> read_terms(const NetSites::Reader<V> &read, const V &mass) const {
+        const Vector3<V> none = {}, velocity = has(squares | rates) ? read(*in.v) : none,
+                         push = has(pulls) ? mass * read(*in.f) : none;
+        if (has(rates)) v.set(read.site, velocity);
+        return {velocity, push};
     }
-    void find_equations(const NetPart &part) const {
-        net.find_bonds(part, box, r, r_of(part), d);
-        find_sides(part);
+    template <class V>
+    HOL_FORCED NetTerms<V> terms_at_node(const NetStrands &g, int end) const {
+        const Vector3<V> none = {}, velocity = has(squares | rates) ? net.at_node<V>(g, end, v) : none,
+                         push = has(pulls) ? net.at_node<V>(g, end, f) : none;
+        return {velocity, push};
     }
-    // Right-hand sides, and the sum of their terms' sizes.
-    __attribute__((noinline)) void find_sides(const NetPart &part) const {
-        if (!has(pulls | squares | rates))
-            for (int32_t k = part.first_place; k < part.end_place; ++k) side[k] = size_of_side[k] = 0;
-        if (has(pulls)) add_products(part, f, f_of(part), false);
-        if (has(rates)) add_products(part, v, v_of(part), false);
-        if (has(squares)) add_products(part, v, v_of(part), true);
-        for (int32_t k = part.first_place; (in.rhs || in.strain) && k < part.end_place; ++k) {
-            const double value =
-                in.rhs ? 0.5 * in.rhs[net.lane.first_bond + s.bond_of[k]] : stretching(in.strain, d.get<double>(k));
-            side[k] += value;
-            size_of_side[k] += abs(value);
-        }
-        for (int32_t k = part.first_place; k < part.end_place; ++k) t[k] = side[k];
-    }
-    // d.(x_j - x_i), the first of the terms where there are two, or |x_j - x_i|^2.
-    void add_products(const NetPart &part, const Net3 &of_rest, const Net3 &of_part, bool square) const {
-        const bool more = square && has(pulls);
-        net.for_bonds(part, of_rest, of_part, [&](auto width, int32_t k, const auto &from, const auto &to) HOL_FORCED {
+    // Of the rest.
+    __attribute__((noinline)) void read_atoms(int32_t first, int32_t end) const {
+        net.for_all(first, end, [&](auto width, int32_t i) HOL_FORCED {
             typedef decltype(width) V;
-            const Vector3<V> change = to - from, bond = d.get<V>(k);
-            V value = square ? dot(change, change) : dot(bond, change),
-              size = square ? value : dot(absolute(bond), absolute(from) + absolute(to));
-            if (more) {
-                value = value + load_any<V>(side + k);
-                size = size + load_any<V>(size_of_side + k);
-            }
-            store_any(side + k, value);
-            store_any(size_of_side + k, size);
+            const auto read = net.reader<V>(i);
+            const NetTerms<V> atom = read_terms<V>(read, net.read_masses<V>(i));
+            r.set(i, read(coordinates));
+            v.set(i, atom.v);
+            f.set(i, atom.f);
         });
+    }
+    void find_equations_of_trees() const {
+        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k) {
+            d.set(k, net.bond_between(box, r.get<double>(s.from[k]), r.get<double>(s.to[k])));
+            find_side_of_tree(k);
+        }
+    }
+    void find_side_of_tree(int32_t k) const {
+        const int32_t i = s.from[k], j = s.to[k];
+        find_side<double>(k, d.get<double>(k), {v.get<double>(i), f.get<double>(i)},
+                          {v.get<double>(j), f.get<double>(j)});
+    }
+    // Of strands, as the caller has their atoms.
+    template <class V>
+    HOL_FORCED void find_equations(const NetStrands &g) const {
+        struct Atom {
+            Vector3<V> r;
+            NetTerms<V> terms;
+        };
+        const auto at_node = [&](int end) HOL_FORCED {
+            return Atom{net.at_node<V>(g, end, r), terms_at_node<V>(g, end)};
+        };
+        net.for_bonds(
+            g, [&]() HOL_FORCED { return at_node(0); },
+            [&](int32_t site, int32_t) HOL_FORCED {
+                const auto read = net.reader<V>(site);
+                return Atom{read(coordinates), read_terms<V>(read, net.read_masses<V>(site))};
+            },
+            [&]() HOL_FORCED { return at_node(1); },
+            [&](int32_t place, const Atom &from, const Atom &to) HOL_FORCED {
+                const Vector3<V> bond = net.bond_between(box, from.r, to.r);
+                d.set(place, bond);
+                find_side<V>(place, bond, from.terms, to.terms);
+            });
+    }
+    // A right-hand side d.(x_j - x_i) + |v_j - v_i|^2, and the sum of its terms' sizes.
+    template <class V>
+    HOL_FORCED void find_side(int32_t place, const Vector3<V> &bond, const NetTerms<V> &from,
+                              const NetTerms<V> &to) const {
+        V value = {}, size = {};
+        if (has(pulls | rates)) {
+            const Vector3<V> &x = has(pulls) ? from.f : from.v, &y = has(pulls) ? to.f : to.v;
+            value = dot(bond, y - x);
+            size = dot(absolute(bond), absolute(x) + absolute(y));
+        }
+        if (has(squares)) {
+            const Vector3<V> change = to.v - from.v;
+            const V square = dot(change, change);
+            value = square + value;
+            size = square + size;
+        }
+        if (in.rhs || in.strain) {
+            const V more = given_to<V>(place);
+            value = value + more;
+            size = size + abs(more);
+        }
+        store_any(side + place, value);
+        store_any(size_of_side + place, size);
+        store_any(t + place, value);
     }
 
     Pair3<double> exact(int32_t k) const { return pairs_of(d.get<double>(k), Vector3<double>{}); }

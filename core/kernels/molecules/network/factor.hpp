@@ -40,11 +40,7 @@ struct NetFactor {
         push = reinterpret_cast<Vector3<double> *>(joint + s.n_tree);
     }
 
-    // Makes the factors, and takes the right-hand sides y up: of the rest, of each part, then of what is left.
-    __attribute__((noinline)) void factorize(const NetPart &part, const Net3 &D, double *y) const {
-        net.for_strands(
-            part, [&](auto width, const NetStrands &g) HOL_FORCED { factorize_strands<decltype(width)>(g, D, y); });
-    }
+    // When the factors of the rest and of all strands have been made, and right-hand sides been taken up.
     void close() const {
         unknowns.add_pushes();
         unknowns.factorize();
@@ -54,22 +50,20 @@ struct NetFactor {
         for (int32_t i = 0; i < s.n_tree; ++i) take_up_tree(i, y);
         take_up_nodes(y);
     }
-    __attribute__((noinline)) void take_up(const NetPart &part, double *y) const {
-        net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
-            typedef decltype(width) V;
-            V last = {}, first = load_any<V>(y + g.place), before = {}, share = {};
-            for (int32_t k = 1; k < g.length; ++k) {
-                const int32_t place = g.place + k * g.step;
-                last = mul_add(share, before, load_any<V>(y + place));
-                if (k + 1 == g.length) break;
-                store_any(y + place, last);
-                first = first - load_any<V>(from_first + place) * last;
-                share = load_any<V>(from_last + place);
-                before = last;
-            }
-            net.to_end(g, 0, first, unknowns.y);
-            if (g.length > 1) net.to_end(g, 1, last, unknowns.y);
-        });
+    template <class V>
+    HOL_FORCED void take_up(const NetStrands &g, double *y) const {
+        V last = {}, first = load_any<V>(y + g.place), before = {}, share = {};
+        for (int32_t k = 1; k < g.length; ++k) {
+            const int32_t place = g.place + k * g.step;
+            last = mul_add(share, before, load_any<V>(y + place));
+            if (k + 1 == g.length) break;
+            store_any(y + place, last);
+            first = first - load_any<V>(from_first + place) * last;
+            share = load_any<V>(from_last + place);
+            before = last;
+        }
+        net.to_end(g, 0, first, unknowns.y);
+        if (g.length > 1) net.to_end(g, 1, last, unknowns.y);
     }
     // From the unknowns, down to all bonds: y becomes t. The rest: ends of strands, and trees.
     __attribute__((noinline)) void take_down_rest(double *y) const {
@@ -80,19 +74,17 @@ struct NetFactor {
         }
         for (int32_t i = s.n_tree; i-- > 0;) take_down_tree(i, y);
     }
-    __attribute__((noinline)) void take_down(const NetPart &part, double *y) const {
-        net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
-            typedef decltype(width) V;
-            const V first = load_any<V>(y + g.place);
-            V next = load_any<V>(y + g.place + (g.length - 1) * g.step);
-            for (int32_t k = g.length - 2; k > 0; --k) {
-                const int32_t place = g.place + k * g.step;
-                next = mul_add(
-                    load_any<V>(to_last + place), next,
-                    load_any<V>(y + place) * load_any<V>(per_pivot + place) - load_any<V>(to_first + place) * first);
-                store_any(y + place, next);
-            }
-        });
+    template <class V>
+    HOL_FORCED void take_down(const NetStrands &g, double *y) const {
+        const V first = load_any<V>(y + g.place);
+        V next = load_any<V>(y + g.place + (g.length - 1) * g.step);
+        for (int32_t k = g.length - 2; k > 0; --k) {
+            const int32_t place = g.place + k * g.step;
+            next = mul_add(
+                load_any<V>(to_last + place), next,
+                load_any<V>(y + place) * load_any<V>(per_pivot + place) - load_any<V>(to_first + place) * first);
+            store_any(y + place, next);
+        }
     }
 
     // What multipliers do to nodes and atoms of trees: G, and where `tension` is wanted the sum of |t| |d|. Of strands
@@ -131,12 +123,12 @@ struct NetFactor {
         take_up_nodes(y);
     }
 
-private:
-    // From the first to the last bond, those between being eliminated. What the far side offers to the last one is
+    // Makes the factors of strands, and takes right-hand sides y up: from the first to the last bond, those between
+    // being eliminated. What the far side offers to the last one is
     // found as in trees, without a subtraction. To the first one it is what the first bond's own atom does, times what
     // each pivot loses when it is eliminated before and not after those between: P' / P.
     template <class V>
-    HOL_FORCED void factorize_strands(const NetStrands &g, const Net3 &D, double *y) const {
+    HOL_FORCED void factorize(const NetStrands &g, const Net3 &D, double *y) const {
         Vector3<V> Dk = D.get<V>(g.place), bk = b.get<V>(g.place);
         V first = load_any<V>(y + g.place);
         unknowns.set_bonds(g, 0, Dk, bk);
@@ -182,6 +174,7 @@ private:
         net.to_end(g, 1, yk, unknowns.y);
     }
 
+private:
     int32_t first_child(int32_t joint_number) const { return s.child_start[joint_number]; }
     int32_t n_children(int32_t number) const { return s.child_start[number + 1] - s.child_start[number]; }
 

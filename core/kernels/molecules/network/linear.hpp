@@ -21,6 +21,13 @@ struct NetLinear : NetEquations {
     mutable int64_t rounds = 0;     // that the unknowns have taken so far
     mutable bool unproven = false;  // of some part; then what others leave is not looked for
 
+    // An atom's inverse mass, its bonds' sum of |t| |d|, and what they do to it.
+    template <class V>
+    struct Atom {
+        V w, T;
+        Vector3<V> pull;
+    };
+
     static int64_t values(const NetworkPlan &s) {
         return NetEquations::values(s) + in_fours(s.n_bonds) + in_fours(n_rest(s)) + NetFactor::values(s, true);
     }
@@ -30,104 +37,89 @@ struct NetLinear : NetEquations {
           enough(memory.values(in_fours(s.n_bonds))), tension(memory.values(in_fours(n_rest(s))) - s.first_node),
           factor(net, d, true, memory) {}
 
-    // Calls rest(part), then each(part) for the others: the nodes' values, which these need, first. One part after the
-    // other goes through all that it needs, in cache.
-    template <class Rest, class Each>
-    HOL_FORCED void for_rest_and_parts(const Rest &rest, const Each &each) const {
-        rest(net.rest());
-        net.for_parts(each);
+    // Calls each(width, strands) for all strands, which need what has been found for the rest. One vector of them after
+    // the other goes through all that it needs, in registers and the nearest cache.
+    template <class Each>
+    HOL_FORCED void for_all_strands(const Each &each) const {
+        net.for_parts([&](const NetPart &part) { net.for_strands(part, each); });
     }
-    // Of a part's sites, once its positions and forces are not needed any more.
-    Net3 G_of(const NetPart &part) const { return net.is_rest(part) ? G : part.of_sites(0); }
-    double *tension_of(const NetPart &part) const { return net.is_rest(part) ? tension : part.of_sites(1).x; }
-    void find_pulls(const NetPart &part, bool with_tensions) const {
-        if (net.is_rest(part))
-            factor.find_pulls_of_rest(t, G, with_tensions ? tension : nullptr);
-        else
-            net.find_pulls(part, t, d, G_of(part), false, with_tensions ? tension_of(part) : nullptr);
-    }
-
     void load() const {
-        for_rest_and_parts(
-            [&](const NetPart &rest) {
-                net.for_ranges(rest.first_site, rest.end_site,
-                               [&](int32_t first, int32_t end) { read_atoms(rest, first, end); });
-                find_equations(rest);
-                factor.factorize_rest(d, t);
-            },
-            [&](const NetPart &part) {
-                read_atoms(part, part.first_site, part.end_site);
-                find_equations(part);
-                factor.factorize(part, d, t);
-            });
+        net.for_ranges(s.first_node, s.n_atoms, [&](int32_t first, int32_t end) { read_atoms(first, end); });
+        find_equations_of_trees();
+        factor.factorize_rest(d, t);
+        for_all_strands([&](auto width, const NetStrands &g) HOL_FORCED {
+            find_equations<decltype(width)>(g);
+            factor.factorize<decltype(width)>(g, d, t);
+        });
         factor.close();
     }
-    // Multipliers for what is in t, as far up as it has been taken; what they do to atoms, if `pulls`; then each(part).
-    template <class Each>
-    HOL_FORCED bool solve_for(double part_left, const double *sizes, bool with_pulls, bool with_tensions,
-                              const Each &each) const {
+    // Multipliers of the rest, for what is in t, as far up as it has been taken.
+    bool solve_for(double part_left, const double *sizes) const {
         const int32_t taken = factor.unknowns.solve(part_left, sizes);
         if (taken < 0) return false;
         rounds += taken;
-        for_rest_and_parts(
-            [&](const NetPart &rest) {
-                factor.take_down_rest(t);
-                if (with_pulls) find_pulls(rest, with_tensions);
-                each(rest);
-            },
-            [&](const NetPart &part) {
-                factor.take_down(part, t);
-                if (with_pulls) find_pulls(part, with_tensions);
-                each(part);
-            });
+        factor.take_down_rest(t);
         return true;
     }
     __attribute__((noinline)) bool solve() const {
         load();
-        return solve_for(any_part, size_of_side, true, true, [&](const NetPart &part) { prove(part); }) &&
-               (!unproven || refine());
+        if (!solve_for(any_part, size_of_side)) return false;
+        factor.find_pulls_of_rest(t, G, tension);
+        prove_trees();
+        net.for_parts([&](const NetPart &part) { take_down_and_prove(part); });
+        return !unproven || refine();
     }
 
     // What may be left of equations, of their terms: half of what counts as right (proof.hpp).
     double most_left() const { return 0.5 * epsilon * (16 + __builtin_sqrt(static_cast<double>(s.n_bonds))); }
     // Whether an equation is left with more than rounding. The terms of right-hand sides alone, and a
     // bound on what rounding hides, do for most.
-    __attribute__((noinline)) void prove(const NetPart &part) const {
+    template <class V>
+    HOL_FORCED void prove(int32_t place, const Atom<V> &from, const Atom<V> &to, bool &good) const {
         const double most = most_left();
-        if (__atomic_load_n(&unproven, __ATOMIC_RELAXED)) return;
+        const V tensions = mul_add(from.w, from.T, to.w * to.T);
+        const V over = excess_of(d.get<V>(place), from.w * from.pull, to.w * to.pull, tensions,
+                                 load_any<V>(side + place), load_any<V>(size_of_side + place), most);
+        const MaskOf<V> bad = ~less_equal(over, V{});
+        if (__builtin_expect(!any(bad), 1)) return;
+        for (int i = 0; i < Width<V>::lanes; ++i)
+            if ((bits(bad) >> i & 1) && good) good = holds(place + i, Width<V>::get(tensions, i));
+    }
+    void note(bool good) const {
+        if (!good) __atomic_store_n(&unproven, true, __ATOMIC_RELAXED);
+    }
+    __attribute__((noinline)) void prove_trees() const {
         bool good = true;
-        const Net3 G_here = G_of(part);
-        const double *const tension_here = tension_of(part);
+        const auto atom = [&](int32_t i) { return Atom<double>{net.w[i], tension[i], G.get<double>(i)}; };
+        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k)
+            prove<double>(k, atom(s.from[k]), atom(s.to[k]), good);
+        note(good);
+    }
+    __attribute__((noinline)) void take_down_and_prove(const NetPart &part) const {
+        bool good = !__atomic_load_n(&unproven, __ATOMIC_RELAXED);
         net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
-            V w = net.at_node<V>(g, 0, net.w), T = net.at_node<V>(g, 0, tension);
-            Vector3<V> pull = net.at_node<V>(g, 0, G);
-            for (int32_t k = 0; k < g.length; ++k) {
-                const bool last = k + 1 == g.length;
-                const int32_t place = g.place + k * g.step, site = g.site + k * g.step;
-                const V wn = last ? net.at_node<V>(g, 1, net.w) : load_any<V>(net.w + site);
-                const V Tn = last ? net.at_node<V>(g, 1, tension) : load_any<V>(tension_here + site);
-                const Vector3<V> next = last ? net.at_node<V>(g, 1, G) : G_here.get<V>(site), bond = d.get<V>(place);
-                const V tensions = mul_add(w, T, wn * Tn);
-                const V over = excess_of(bond, w * pull, wn * next, tensions, load_any<V>(side + place),
-                                         load_any<V>(size_of_side + place), most);
-                const MaskOf<V> bad = ~less_equal(over, V{});
-                if (__builtin_expect(any(bad), 0))
-                    for (int i = 0; i < Width<V>::lanes; ++i)
-                        if ((bits(bad) >> i & 1) && good) good = holds(place + i, Width<V>::get(tensions, i));
-                w = wn;
-                T = Tn;
-                pull = next;
-            }
+            factor.take_down<V>(g, t);
+            if (!good) return;
+            const auto at_node = [&](int end) HOL_FORCED {
+                return Atom<V>{net.at_node<V>(g, end, net.w), net.at_node<V>(g, end, tension),
+                               net.at_node<V>(g, end, G)};
+            };
+            StrandPulls<V> along(t, d, g.place);
+            V last = along.tension();
+            net.for_bonds(
+                g, [&]() HOL_FORCED { return at_node(0); },
+                [&](int32_t site, int32_t place) HOL_FORCED {
+                    const Vector3<V> pull = along.before(place);
+                    const V next = along.tension(), T = last + next;
+                    last = next;
+                    return Atom<V>{load_any<V>(net.w + site), T, pull};
+                },
+                [&]() HOL_FORCED { return at_node(1); },
+                [&](int32_t place, const Atom<V> &from, const Atom<V> &to)
+                    HOL_FORCED { prove<V>(place, from, to, good); });
         });
-        for (int32_t k = part.first_place; part.share == s.n_shares && k < part.end_place; ++k) {
-            const int32_t i = s.from[k], j = s.to[k];
-            const double tensions = mul_add(net.w[i], tension[i], net.w[j] * tension[j]),
-                         over = excess_of(d.get<double>(k), net.w[i] * G.get<double>(i), net.w[j] * G.get<double>(j),
-                                          tensions, side[k], size_of_side[k], most);
-            if (!(over <= 0) && good) good = holds(k, tensions);
-        }
-        if (!good) __atomic_store_n(&unproven, true, __ATOMIC_RELAXED);
+        note(good);
     }
     // Of one bond, in twice the precision, with all terms of its equation: the accelerations of its two atoms too. Only
     // the rounding of bonds is left; that of images, which is no more than their own, counts in no test of bonds.
@@ -171,8 +163,9 @@ struct NetLinear : NetEquations {
             [&]() {
                 NetResiduals{*this, factor, begun ? solution : t}.find(tension, keep);
                 begun = true;
-                if (!solve_for(next_part, enough, false, false, [](const NetPart &) {}))
-                    t[0] = 0 / (t[0] - t[0]);  // not a number, which is no contraction
+                if (!solve_for(next_part, enough)) t[0] = 0 / (t[0] - t[0]);  // not a number, which is no contraction
+                for_all_strands([&](auto width, const NetStrands &g)
+                                    HOL_FORCED { factor.take_down<decltype(width)>(g, t); });
             },
             [&](Flag) {
                 return add_corrections<double>(s.n_bonds, [&](int32_t k) {
@@ -183,48 +176,65 @@ struct NetLinear : NetEquations {
             [&]() { return Flag{false}; });
         if (!good.set) return false;
         for (int32_t k = 0; k < s.n_bonds; ++k) t[k] = solution[k];
-        find_pulls(net.rest(), false);
+        factor.find_pulls_of_rest(t, G, nullptr);
         return true;
     }
     // Velocities v + w G; with `again` once more projected: what their rounding leaves.
     __attribute__((noinline)) void write_velocities(const AtomArray &to, bool again) const {
-        const auto write = [&](const NetPart &part) {
-            const Net3 pull = G_of(part);
-            write_sites(part, to, false,
-                        [&](auto width, int32_t i) HOL_FORCED { return pushed<decltype(width)>(pull, i); });
+        const auto pushed = [&](auto width, int32_t site, const auto &pull) HOL_FORCED {
+            typedef decltype(width) V;
+            return add_times(v.get<V>(site), load_any<V>(net.w + site), pull);
         };
-        if (!again)
-            return for_rest_and_parts(write, [&](const NetPart &part) {
-                find_pulls(part, false);
-                write(part);
-            });
-        for_rest_and_parts(
-            [&](const NetPart &rest) {
-                push_on(rest);
-                find_sides(rest);
-                factor.take_up_rest(t);
-            },
-            [&](const NetPart &part) {
-                find_pulls(part, false);
-                push_on(part);
-                find_sides(part);
-                factor.take_up(part, t);
-            });
+        const auto write = [&](auto width, int32_t site, const auto &pull) HOL_FORCED {
+            net.write_at<decltype(width)>(to, site, net.lane.shared, false, pushed(width, site, pull));
+        };
+        if (!again) {
+            for_pulls_of_rest(write);
+            return for_all_strands([&](auto width, const NetStrands &g) HOL_FORCED { for_pulls(width, g, write); });
+        }
+        for_pulls_of_rest([&](auto width, int32_t site, const auto &pull)
+                              HOL_FORCED { v.set(site, pushed(width, site, pull)); });
+        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k) find_side_of_tree(k);
+        factor.take_up_rest(t);
+        for_all_strands([&](auto width, const NetStrands &g) HOL_FORCED {
+            typedef decltype(width) V;
+            StrandPulls<V> along(t, d, g.place);
+            net.for_bonds(
+                g, [&]() HOL_FORCED { return terms_at_node<V>(g, 0); },
+                [&](int32_t site, int32_t place) HOL_FORCED {
+                    const Vector3<V> velocity = pushed(width, site, along.before(place));
+                    v.set(site, velocity);
+                    return NetTerms<V>{velocity, {}};
+                },
+                [&]() HOL_FORCED { return terms_at_node<V>(g, 1); },
+                [&](int32_t place, const NetTerms<V> &from, const NetTerms<V> &to_next)
+                    HOL_FORCED { find_side<V>(place, d.get<V>(place), from, to_next); });
+            factor.take_up<V>(g, t);
+        });
         factor.unknowns.add_pushes();
-        if (solve_for(next_part, nullptr, true, false, write)) return;
-        const auto write_once_projected = [&](const NetPart &part) {
-            write_sites(part, to, false, [&](auto width, int32_t i) HOL_FORCED { return v.get<decltype(width)>(i); });
+        const bool solved = solve_for(next_part, nullptr);
+        if (solved) factor.find_pulls_of_rest(t, G, nullptr);
+        const auto write_best = [&](auto width, int32_t site, const auto &pull) HOL_FORCED {
+            typedef decltype(width) V;
+            net.write_at<V>(to, site, net.lane.shared, false, solved ? pushed(width, site, pull) : v.get<V>(site));
         };
-        for_rest_and_parts(write_once_projected, write_once_projected);
+        for_pulls_of_rest(write_best);
+        for_all_strands([&](auto width, const NetStrands &g) HOL_FORCED {
+            if (solved) factor.take_down<decltype(width)>(g, t);
+            for_pulls(width, g, write_best);
+        });
     }
-    void push_on(const NetPart &part) const {
-        const Net3 pull = G_of(part);
-        net.for_all(part.first_site, part.end_site,
-                    [&](auto width, int32_t i) HOL_FORCED { v.set(i, pushed<decltype(width)>(pull, i)); });
+    // Calls each(width, site, pull): of the rest, of the atoms between the ends of strands.
+    template <class Each>
+    HOL_FORCED void for_pulls_of_rest(const Each &each) const {
+        net.for_all(s.first_node, s.n_atoms, [&](auto width, int32_t site)
+                                                 HOL_FORCED { each(width, site, G.get<decltype(width)>(site)); });
     }
-    template <class V>
-    HOL_FORCED Vector3<V> pushed(const Net3 &pull, int32_t i) const {
-        return add_times(v.get<V>(i), load_any<V>(net.w + i), pull.get<V>(i));
+    template <class V, class Each>
+    HOL_FORCED void for_pulls(const V &width, const NetStrands &g, const Each &each) const {
+        StrandPulls<V> along(t, d, g.place);
+        for (int32_t k = 1; k < g.length; ++k)
+            each(width, g.site + (k - 1) * g.step, along.before(g.place + k * g.step));
     }
 
     void write_bonds(const NetPart &part, double scale, bool sizes, double *out) const {
@@ -233,15 +243,12 @@ struct NetLinear : NetEquations {
             out[net.lane.first_bond + s.bond_of[k]] = mul_add(t[k], sizes ? sqrt(dot(bond, bond)) : scale, 0.0);
         }
     }
-    // To the atoms that this molecule may write.
-    template <class Value>
-    HOL_FORCED void write_sites(const NetPart &part, const AtomArray &to, bool add, const Value &value) const {
-        net.write_sites(part, to, net.lane.shared, add, value);
-    }
-    void write_pulls(const NetPart &part, const AtomArray &to, bool add) const {
-        if (!net.is_rest(part)) find_pulls(part, false);
-        const Net3 pull = G_of(part);
-        write_sites(part, to, add, [&](auto width, int32_t i) HOL_FORCED { return pull.get<decltype(width)>(i); });
+    __attribute__((noinline)) void write_pulls(const NetPart &part, const AtomArray &to, bool add) const {
+        const auto write = [&](auto width, int32_t site, const auto &pull) HOL_FORCED {
+            net.write_at<decltype(width)>(to, site, net.lane.shared, add, pull);
+        };
+        if (net.is_rest(part)) return for_pulls_of_rest(write);
+        net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED { for_pulls(width, g, write); });
     }
     void add_virial(Tally &tally) const {
         MoleculesVirial<double> virial;

@@ -19,6 +19,7 @@ namespace holonomic {
 // those of the bonds below it; sites of the nodes follow, then, as the places are, those of the trees' atoms.
 struct NetworkPlan {
     static constexpr int32_t most_in_bundle = 8;
+    static constexpr int32_t fetched_ahead = 48;  // what stands so many sites ahead
     int32_t n_atoms, n_bonds, n_strands, n_nodes, n_unknowns, n_tree;
     int32_t first_node, first_tree;  // sites
     int32_t first_tree_place;
@@ -39,7 +40,7 @@ struct NetworkPlan {
     const int32_t *unknown_start;  // [n_node_shares + 1] and their unknowns
     int32_t n_node_shares;
 
-    const int32_t *atom_of;         // [n_atoms] local atom of a site
+    const int32_t *atom_of;         // [n_atoms + fetched_ahead] local atom of a site
     const int32_t *bond_of;         // [n_bonds] local bond of a place
     const int32_t *from, *to;       // [n_bonds] sites; of a tree's bond `to` is the atom away from the core
     const int32_t *strand_node;     // [2 n_strands] nodes of the first and the last end

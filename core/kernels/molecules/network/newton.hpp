@@ -64,13 +64,6 @@ struct NetNewton {
         for (int i = 0; i < W; ++i) most_of_rest = larger(Width<vec>::get(most, i), most_of_rest);
         return most_of_rest;
     }
-    __attribute__((noinline)) double measure_fresh(const NetPart &part, const Net3 &bonds) const {
-        return largest_error([&](const auto &note) HOL_FORCED {
-            net.for_all(part.first_place, part.end_place, [&](auto width, int32_t k) HOL_FORCED {
-                note(measure<true>(k, bonds.get<decltype(width)>(k)));
-            });
-        });
-    }
     HOL_FORCED static void take(const vec &error, vec &most, vec &sum, double &) {
         most = max(error, most);
         sum = sum + error;
@@ -80,21 +73,18 @@ struct NetNewton {
     }
     static double larger(double error, double than) { return than < error || error != error ? error : than; }
     double worst_of_all() const { return largest_in(worst, s.n_shares + 1); }
-    // Calls body(part), first for the rest.
-    template <class Body>
-    HOL_FORCED void for_all_parts(const Body &body) const {
-        body(net.rest());
-        net.for_parts(body);
-    }
-
     // Calls each(first place, end) for the parts whose largest error is that of all; then error_of() knows their moves.
     template <class Each>
     void for_worst_parts(double error, const Each &each) const {
         for (int32_t i = 0; i <= s.n_shares; ++i) {
             if (!(worst[i] >= error)) continue;
             const NetPart part = i < s.n_shares ? net.part(i, net.buffer) : net.rest();
-            if (moved) find_moves(part);
-            moves_of_worst = moves_of(part);
+            moves_of_worst = part.of_sites();
+            if (moved && !net.is_rest(part))
+                net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
+                    for_moves(width, g, [&](auto, int32_t site, const auto &move)
+                                            HOL_FORCED { moves_of_worst.set(site, move); });
+                });
             each(part.first_place, part.end_place);
         }
     }
@@ -104,67 +94,89 @@ struct NetNewton {
         if (!which.set) return;
         for (int32_t k = 0; k < s.n_bonds; ++k) tau[k] = 0;
     }
-    Net3 moves_of(const NetPart &part) const { return net.is_rest(part) ? moves : part.of_sites(0); }
-    // If the unknowns have just been found, all bonds' corrections.
-    void correct(const NetPart &part) const {
+    // If the unknowns have just been found, all bonds' corrections: of the rest, of strands.
+    void correct_rest() const {
         if (!found) return;
-        if (net.is_rest(part)) {
-            factor.take_down_rest(t);
-            for (int32_t k = part.first_place; k < part.end_place; ++k) tau[k] += t[k];
-            for (int32_t u = 0; u < s.n_unknowns; ++u) tau[s.place_of[u]] += t[s.place_of[u]];
-            return;
+        factor.take_down_rest(t);
+        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k) tau[k] += t[k];
+        for (int32_t u = 0; u < s.n_unknowns; ++u) tau[s.place_of[u]] += t[s.place_of[u]];
+    }
+    template <class V>
+    HOL_FORCED void correct(const NetStrands &g) const {
+        if (!found) return;
+        factor.take_down<V>(g, t);
+        for (int32_t k = 1; k + 1 < g.length; ++k) {
+            const int32_t place = g.place + k * g.step;
+            store_any(tau + place, load_any<V>(tau + place) + load_any<V>(t + place));
         }
-        factor.take_down(part, t);
-        net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
-            typedef decltype(width) V;
-            for (int32_t k = 1; k + 1 < g.length; ++k) {
-                const int32_t place = g.place + k * g.step;
-                store_any(tau + place, load_any<V>(tau + place) + load_any<V>(t + place));
-            }
-        });
     }
     void correct() {
-        for_all_parts([&](const NetPart &part) { correct(part); });
+        correct_rest();
+        for_all_strands([&](auto width, const NetStrands &g) HOL_FORCED { correct<decltype(width)>(g); });
         found = false;
     }
-    // What tau does to the sites of a part.
-    __attribute__((noinline)) void find_moves(const NetPart &part) const {
-        const Net3 to = moves_of(part);
-        if (!net.is_rest(part)) return net.find_pulls(part, tau, b, to, true, nullptr);
-        factor.find_pulls_of_rest(tau, to, nullptr);
-        for (int32_t i = part.first_site; i < part.end_site; ++i) to.set(i, net.w[i] * to.get<double>(i));
+    template <class Each>
+    HOL_FORCED void for_all_strands(const Each &each) const {
+        net.for_parts([&](const NetPart &part) { net.for_strands(part, each); });
     }
-    // As tau moves a bond.
+    // What tau does to atoms: of the rest, where it is kept; between the ends of strands, for each(width, site, move).
+    __attribute__((noinline)) void find_moves_of_rest() const {
+        factor.find_pulls_of_rest(tau, moves, nullptr);
+        for (int32_t i = s.first_node; i < s.n_atoms; ++i) moves.set(i, net.w[i] * moves.get<double>(i));
+    }
+    template <class V, class Each>
+    HOL_FORCED void for_moves(const V &width, const NetStrands &g, const Each &each) const {
+        StrandPulls<V> along(tau, b, g.place);
+        for (int32_t k = 1; k < g.length; ++k) {
+            const int32_t site = g.site + (k - 1) * g.step;
+            each(width, site, load_any<V>(net.w + site) * along.before(g.place + k * g.step));
+        }
+    }
+    // Calls each(place, bond) for bonds as tau moves them.
+    template <class V, class Each>
+    HOL_FORCED void for_moved_bonds(const NetStrands &g, const Each &each) const {
+        StrandPulls<V> along(tau, b, g.place);
+        net.for_bonds(
+            g, [&]() HOL_FORCED { return net.at_node<V>(g, 0, moves); },
+            [&](int32_t site, int32_t place) HOL_FORCED { return load_any<V>(net.w + site) * along.before(place); },
+            [&]() HOL_FORCED { return net.at_node<V>(g, 1, moves); },
+            [&](int32_t place, const Vector3<V> &from, const Vector3<V> &to)
+                HOL_FORCED { each(place, moved_bond(place, from, to)); });
+    }
+    template <class Each>
+    HOL_FORCED void for_moved_bonds_of_trees(const Each &each) const {
+        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k)
+            each(k, moved_bond(k, moves.get<double>(s.from[k]), moves.get<double>(s.to[k])));
+    }
     template <class V>
     HOL_FORCED Vector3<V> moved_bond(int32_t k, const Vector3<V> &from, const Vector3<V> &to) const {
         return D.get<V>(k) + (to - from);
     }
     // What is left is taken up at once, while it is in cache.
     __attribute__((noinline)) double move() {
-        for_all_parts([&](const NetPart &part) {
-            correct(part);
-            find_moves(part);
-            worst[part.share] = measure_moved(part);
-            if (net.is_rest(part))
-                factor.take_up_rest(t);
-            else
-                factor.take_up(part, t);
+        correct_rest();
+        find_moves_of_rest();
+        worst[s.n_shares] = largest_error([&](const auto &note) HOL_FORCED {
+            for_moved_bonds_of_trees(
+                [&](int32_t k, const auto &bond) HOL_FORCED { note(measure<false>(k, bond)); });
         });
+        factor.take_up_rest(t);
+        net.for_parts([&](const NetPart &part) { worst[part.share] = move_strands(part); });
         factor.unknowns.add_pushes();
         moved = true;
         found = false;
         return failed ? __builtin_nan("") : worst_of_all();
     }
-    __attribute__((noinline)) double measure_moved(const NetPart &part) const {
+    __attribute__((noinline)) double move_strands(const NetPart &part) const {
         return largest_error([&](const auto &note) HOL_FORCED {
-            for_moved_bonds(part, [&](auto, int32_t k, const auto &bond) HOL_FORCED { note(measure<false>(k, bond)); });
+            net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
+                typedef decltype(width) V;
+                correct<V>(g);
+                for_moved_bonds<V>(g, [&](int32_t k, const Vector3<V> &bond)
+                                          HOL_FORCED { note(measure<false>(k, bond)); });
+                factor.take_up<V>(g, t);
+            });
         });
-    }
-    template <class Body>
-    HOL_FORCED void for_moved_bonds(const NetPart &part, const Body &body) const {
-        net.for_bonds(part, moves, moves_of(part),
-                      [&](auto width, int32_t k, const auto &from, const auto &to)
-                          HOL_FORCED { body(width, k, moved_bond(k, from, to)); });
     }
     double error_of(int32_t k) const {
         const auto move_at = [&](int32_t site) {
@@ -173,25 +185,29 @@ struct NetNewton {
         return abs(excess(moved_bond(k, move_at(s.from[k]), move_at(s.to[k])), a2[k])) * per_a2[k];
     }
 
-    void factorize_part(const NetPart &part, const Net3 &bonds) const {
-        if (part.share == s.n_shares)
-            factor.factorize_rest(bonds, t);
-        else
-            factor.factorize(part, bonds, t);
-    }
-    // Without a guess, each part's factors have been made when it was read.
+    // Without a guess, factors have been made when atoms were read.
     void first_factors() { factor.close(); }
-    void factorize(Flag) {
-        for_all_parts([&](const NetPart &part) {
-            const Net3 bonds = moved ? part.of_places(1) : D;
-            if (moved) {
-                find_moves(part);
-                for_moved_bonds(part, [&](auto, int32_t k, const auto &bond) HOL_FORCED { bonds.set(k, bond); });
-            }
-            measure_fresh(part, bonds);
-            factorize_part(part, bonds);
-        });
+    __attribute__((noinline)) void factorize(Flag) {
+        if (moved) find_moves_of_rest();
+        const NetPart rest = net.rest();
+        const Net3 of_trees = moved ? rest.of_places() : D;
+        if (moved) for_moved_bonds_of_trees([&](int32_t k, const auto &bond) HOL_FORCED { of_trees.set(k, bond); });
+        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k) measure<true>(k, of_trees.get<double>(k));
+        factor.factorize_rest(of_trees, t);
+        net.for_parts([&](const NetPart &part) { factorize_strands(part, moved ? part.of_places() : D); });
         factor.close();
+    }
+    __attribute__((noinline)) void factorize_strands(const NetPart &part, const Net3 &bonds) const {
+        net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
+            typedef decltype(width) V;
+            if (moved)
+                for_moved_bonds<V>(g, [&](int32_t k, const Vector3<V> &bond) HOL_FORCED { bonds.set(k, bond); });
+            for (int32_t k = 0; k < g.length; ++k) {
+                const int32_t place = g.place + k * g.step;
+                measure<true>(place, bonds.get<V>(place));
+            }
+            factor.factorize<V>(g, bonds, t);
+        });
     }
     __attribute__((noinline)) void solve(Flag) {
         const double left = max(min(left_of_error * worst_of_all(), most_left), least_left);

@@ -58,18 +58,17 @@ HOL_INLINE Vector3<V> gather(const Net3 &values, const int32_t *place) {
 // the sites between the ends; or, after these parts, the *rest*: all sites of nodes and of trees, and trees' bonds.
 struct NetPart {
     int32_t share, first_bundle, end_bundle, first_site, end_site, first_place, end_place;
-    double *buffer;  // of the thread, for what no other part needs: three vectors of each place
+    double *buffer;  // of the thread: a vector for each place
 
-    static constexpr int three_vectors = 9;
-    Net3 of_sites(int i) const { return vector(i, first_site); }
-    Net3 of_places(int i) const { return vector(i, first_place); }
+    static constexpr int values_of_place = 3;
+    Net3 of_sites() const { return vector(first_site); }
+    Net3 of_places() const { return vector(first_place); }
 
 private:
-    // The i-th; there are no more sites than places between the ends.
-    Net3 vector(int i, int32_t first) const {
-        const int64_t n = end_place - first_place;
-        Memory<double> memory = {buffer + 3 * i * in_fours(n)};
-        return Net3::take(memory, n, first);
+    // There are no more sites than places between the ends.
+    Net3 vector(int32_t first) const {
+        Memory<double> memory = {buffer};
+        return Net3::take(memory, end_place - first_place, first);
     }
 };
 

@@ -21,46 +21,105 @@ struct NetPositions {
         : call(c), fixed(held), newton(plan, lane, packed, team, memory), tally(sum),
           largest(memory.next + NetNewton::values(plan)) {}
 
-    Net3 r_of(const NetPart &part) const { return newton.net.is_rest(part) ? newton.r : part.of_sites(1); }
-    // Reference positions stand where moves will, until bonds are made of them.
-    void read_atoms(const NetPart &part, int32_t first, int32_t end) const {
-        const NetReading all[] = {{&call.r_ref, newton.moves_of(part), false}, {&call.r, r_of(part), false}};
-        newton.net.read_sites(first, end, all, 2);
-    }
-    void read_part(const NetPart &part) const {
-        const Net &net = newton.net;
-        const Net3 r = r_of(part);
-        net.find_bonds(part, call.box_ref, newton.moves, newton.moves_of(part), newton.b);
-        net.find_bonds(part, call.box, newton.r, r, newton.D);
-        for (int32_t k = part.first_place; k < part.end_place; ++k) {
-            const double a = net.lane.length[newton.s.bond_of[k]];
-            newton.a2[k] = a * a;
-            newton.per_a2[k] = 1 / (a * a);
-            newton.tau[k] =
-                call.guess ? 2 * call.dt * call.dt * call.lambda[net.lane.first_bond + newton.s.bond_of[k]] : 0;
+    // The largest of what is read: of coordinates, of squares of lengths, and of their inverses; and bonds' errors.
+    template <class V>
+    struct Most {
+        V coordinate, a2, per_a2;
+    };
+    struct Extremes {
+        Most<vec> lanes{};
+        Most<double> rest{};
+        HOL_FORCED Most<vec> &of(const vec &) { return lanes; }
+        HOL_FORCED Most<double> &of(double) { return rest; }
+        double largest(vec Most<vec>::*of_lanes, double Most<double>::*of_rest) const {
+            double all = rest.*of_rest;
+            for (int j = 0; j < W; ++j) all = max(Width<vec>::get(lanes.*of_lanes, j), all);
+            return all;
         }
-        const double *const components[] = {r.x, r.y, r.z};
-        double coordinate = 0;
-        for (const double *x : components)
-            coordinate = max(largest_of(x + part.first_site, part.end_site - part.first_site), coordinate);
-        const int32_t n = newton.s.n_shares + 1, n_places = part.end_place - part.first_place;
-        largest[part.share] = coordinate;
-        largest[n + part.share] = largest_of(newton.a2 + part.first_place, n_places);
-        largest[2 * n + part.share] = largest_of(newton.per_a2 + part.first_place, n_places);
-        newton.worst[part.share] = newton.measure_fresh(part, newton.D);
-        if (!call.guess) newton.factorize_part(part, newton.D);
+    };
+    void keep(const NetPart &part, const Extremes &e) const {
+        const int32_t n = newton.s.n_shares + 1;
+        largest[part.share] = e.largest(&Most<vec>::coordinate, &Most<double>::coordinate);
+        largest[n + part.share] = e.largest(&Most<vec>::a2, &Most<double>::a2);
+        largest[2 * n + part.share] = e.largest(&Most<vec>::per_a2, &Most<double>::per_a2);
+    }
+    // An atom, before and now.
+    template <class V>
+    struct Atom {
+        Vector3<V> reference, r;
+    };
+    template <class V>
+    HOL_FORCED Atom<V> read_atom(int32_t site, Extremes &extremes) const {
+        const auto read = newton.net.reader<V>(site);
+        newton.net.read_masses<V>(site);
+        const Atom<V> atom = {read(call.r_ref), read(call.r)};
+        const Vector3<V> sizes = absolute(atom.r);
+        V &most = extremes.of(V{}).coordinate;
+        most = max(max(sizes.x, max(sizes.y, sizes.z)), most);
+        return atom;
+    }
+    // What is known of a bond; returns its error.
+    template <class V>
+    HOL_FORCED V read_bond(int32_t place, const Atom<V> &from, const Atom<V> &to, Extremes &extremes) const {
+        const Net &net = newton.net;
+        const int32_t *const bond_of = newton.s.bond_of + place;
+        const Vector3<V> bond = net.bond_between(call.box, from.r, to.r);
+        newton.b.set(place, net.bond_between(call.box_ref, from.reference, to.reference));
+        newton.D.set(place, bond);
+        const V a = gather<V>(net.lane.length, bond_of), a2 = a * a, per_a2 = Width<V>::all(1) / a2;
+        auto &most = extremes.of(V{});
+        most.a2 = max(a2, most.a2);
+        most.per_a2 = max(per_a2, most.per_a2);
+        store_any(newton.a2 + place, a2);
+        store_any(newton.per_a2 + place, per_a2);
+        store_any(newton.tau + place,
+                  call.guess ? Width<V>::all(2 * call.dt * call.dt) * gather<V>(call.lambda + net.lane.first_bond, bond_of)
+                             : V{});
+        return newton.measure<true>(place, bond);
+    }
+    void read_rest() const {
+        const NetworkPlan &s = newton.s;
+        const NetPart rest = newton.net.rest();
+        Extremes extremes;
+        newton.net.for_all(rest.first_site, rest.end_site, [&](auto width, int32_t i) HOL_FORCED {
+            const auto atom = read_atom<decltype(width)>(i, extremes);
+            newton.moves.set(i, atom.reference);
+            newton.r.set(i, atom.r);
+        });
+        newton.worst[rest.share] = newton.largest_error([&](const auto &note) HOL_FORCED {
+            const auto atom = [&](int32_t i) {
+                return Atom<double>{newton.moves.get<double>(i), newton.r.get<double>(i)};
+            };
+            for (int32_t k = rest.first_place; k < rest.end_place; ++k)
+                note(read_bond<double>(k, atom(s.from[k]), atom(s.to[k]), extremes));
+        });
+        keep(rest, extremes);
+        if (!call.guess) newton.factor.factorize_rest(newton.D, newton.t);
+    }
+    __attribute__((noinline)) void read_strands(const NetPart &part) const {
+        const Net &net = newton.net;
+        Extremes extremes;
+        newton.worst[part.share] = newton.largest_error([&](const auto &note) HOL_FORCED {
+            net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
+                typedef decltype(width) V;
+                const auto at_node = [&](int end) HOL_FORCED {
+                    return Atom<V>{net.at_node<V>(g, end, newton.moves), net.at_node<V>(g, end, newton.r)};
+                };
+                net.for_bonds(
+                    g, [&]() HOL_FORCED { return at_node(0); },
+                    [&](int32_t site, int32_t) HOL_FORCED { return read_atom<V>(site, extremes); },
+                    [&]() HOL_FORCED { return at_node(1); },
+                    [&](int32_t place, const Atom<V> &from, const Atom<V> &to)
+                        HOL_FORCED { note(read_bond<V>(place, from, to, extremes)); });
+                if (!call.guess) newton.factor.factorize<V>(g, newton.D, newton.t);
+            });
+        });
+        keep(part, extremes);
     }
     __attribute__((noinline)) void load() {
-        const Net &net = newton.net;
         const NetworkPlan &s = newton.s;
-        const NetPart rest = net.rest();
-        net.for_ranges(rest.first_site, rest.end_site,
-                       [&](int32_t first, int32_t end) { read_atoms(rest, first, end); });
-        read_part(rest);
-        net.for_parts([&](const NetPart &part) {
-            read_atoms(part, part.first_site, part.end_site);
-            read_part(part);
-        });
+        read_rest();
+        newton.net.for_parts([&](const NetPart &part) { read_strands(part); });
         newton.opening = newton.worst_of_all();
         const int32_t n = s.n_shares + 1;
         largest_coordinate = largest_of(largest, n);
@@ -91,17 +150,16 @@ struct NetPositions {
 
     void write_atoms() const {
         const double per_dt = 1 / call.dt;
-        newton.for_all_parts([&](const NetPart &part) {
-            newton.find_moves(part);
-            const Net3 moves = newton.moves_of(part);
-            newton.net.write_sites(part, call.r, fixed, true,
-                                   [&](auto width, int32_t i) HOL_FORCED { return moves.get<decltype(width)>(i); });
-            if (!call.v.x) return;
-            newton.net.write_sites(part, call.v, fixed, true, [&](auto width, int32_t i) HOL_FORCED {
-                typedef decltype(width) V;
-                return Width<V>::all(per_dt) * moves.get<V>(i);
-            });
-        });
+        const auto write = [&](auto width, int32_t i, const auto &move) HOL_FORCED {
+            typedef decltype(width) V;
+            newton.net.write_at<V>(call.r, i, fixed, true, move);
+            if (call.v.x) newton.net.write_at<V>(call.v, i, fixed, true, Width<V>::all(per_dt) * move);
+        };
+        newton.find_moves_of_rest();
+        newton.net.for_all(newton.s.first_node, newton.s.n_atoms, [&](auto width, int32_t i)
+                               HOL_FORCED { write(width, i, newton.moves.get<decltype(width)>(i)); });
+        newton.for_all_strands(
+            [&](auto width, const NetStrands &g) HOL_FORCED { newton.for_moves(width, g, write); });
     }
     void write_results(bool moved) {
         const NetworkPlan &s = newton.s;

@@ -43,10 +43,7 @@ struct NetResiduals {
     // masses, and of these times |t| |d| of all their bonds, which `tension` has of the rest.
     template <class Keep>
     __attribute__((noinline)) void find(const double *tension, const Keep &keep) const {
-        net.for_parts([&](const NetPart &part) {
-            find(part, tension, keep);
-            factor.take_up(part, e.t);
-        });
+        net.for_parts([&](const NetPart &part) { find(part, tension, keep); });
         accelerate_rest();
         net.for_all(s.first_tree_place, s.n_bonds, [&](auto width, int32_t k) HOL_FORCED {
             typedef decltype(width) V;
@@ -103,9 +100,11 @@ private:
     // Nodes and atoms of trees.
     __attribute__((noinline)) void accelerate_rest() const {
         const Vector3<double> zero = {};
-        const NetReading forces = {e.in.f, e.f, false};
         net.for_ranges(s.first_node, s.n_atoms, [&](int32_t first, int32_t end) {
-            if (e.has(pulls)) net.read_sites(first, end, &forces, 1);
+            if (e.has(pulls))
+                net.for_all(first, end, [&](auto width, int32_t i) HOL_FORCED {
+                    e.f.set(i, net.reader<decltype(width)>(i)(*e.in.f));
+                });
             for (int32_t i = first; i < end; ++i) a[i] = pairs_of(e.has(pulls) ? e.f.get<double>(i) : zero, zero);
         });
         net.for_all(0, s.n_unknowns, [&](auto width, int32_t u) HOL_FORCED {
@@ -134,24 +133,17 @@ private:
         e.a[from] = add_pairs(e.a[from], one);
         if (to >= 0) e.a[to] = subtract_pairs(e.a[to], one);
     }
-    // Of a part: of bonds at ends, what is left with their nodes at rest.
+    // Of a part, taken up: of bonds at ends, what is left with their nodes at rest.
     template <class Keep>
     __attribute__((noinline)) void find(const NetPart &part, const double *tension, const Keep &keep) const {
-        const Net3 r = e.r_of(part), v = e.v_of(part), f = e.f_of(part);
-        NetReading all[3] = {{&e.coordinates, r, false}};
-        int n = 1;
-        if (e.has(squares)) all[n++] = {e.in.v, v, false};
-        if (e.has(pulls)) all[n++] = {e.in.f, f, false};
-        net.read_sites(part.first_site, part.end_site, all, n);
         net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
             const auto site_of = [&](int32_t k) { return g.site + k * g.step; };
-            const auto behind = [&](int32_t k, const Net3 &of, const Net3 &of_part)
-                                    HOL_FORCED {  // the atom behind bond k
-                                        return k + 1 < g.length ? of_part.get<V>(site_of(k)) : net.at_node<V>(g, 1, of);
-                                    };
+            const auto behind = [&](int32_t k, const Net3 &of, const AtomArray &from) HOL_FORCED {  // bond k
+                return k + 1 < g.length ? net.reader<V>(site_of(k))(from) : net.at_node<V>(g, 1, of);
+            };
             const Vector3<V> zero = {};
-            Vector3<V> at_atom = behind(0, e.r, r), speed = e.has(squares) ? net.at_node<V>(g, 0, e.v) : zero;
+            Vector3<V> at_atom = behind(0, e.r, e.coordinates), speed = e.has(squares) ? net.at_node<V>(g, 0, e.v) : zero;
             Pair3<V> from = {}, bond = e.unrounded_between(net.at_node<V>(g, 0, e.r), at_atom),
                      pull = scale_pairs(load_any<V>(solution + g.place), bond);
             V w = net.at_node<V>(g, 0, net.w), T = net.at_node<V>(g, 0, tension), own = size_of(pull);
@@ -162,14 +154,14 @@ private:
                 Pair3<V> to = {}, next = bond;
                 V wn, Tn;
                 if (!last) {
-                    const Vector3<V> beyond = behind(k + 1, e.r, r);
+                    const Vector3<V> beyond = behind(k + 1, e.r, e.coordinates);
                     next = e.unrounded_between(at_atom, beyond);
                     at_atom = beyond;
-                    to = subtract_pairs(pairs_of(e.has(pulls) ? f.get<V>(site_of(k)) : zero, zero), pull);
+                    to = subtract_pairs(pairs_of(e.has(pulls) ? net.reader<V>(site_of(k))(*e.in.f) : zero, zero), pull);
                     pull = scale_pairs(load_any<V>(solution + place + g.step), next);
                     wn = load_any<V>(net.w + site_of(k));
                     to = scale_pairs(wn, add_pairs(to, pull));
-                    if (e.has(rates)) to = add_pairs(to, pairs_of(v.get<V>(site_of(k)), zero));
+                    if (e.has(rates)) to = add_pairs(to, pairs_of(e.v.get<V>(site_of(k)), zero));
                     const V one = size_of(pull);
                     Tn = own + one;
                     own = one;
@@ -182,7 +174,7 @@ private:
                 T = Tn;
                 Pair<V> sum = dot_pairs(bond, subtract_pairs(to, from));
                 if (e.has(squares)) {
-                    const Vector3<V> faster = behind(k, e.v, v);
+                    const Vector3<V> faster = behind(k, e.v, *e.in.v);
                     sum = add_pairs(sum, square_of(speed, faster));
                     speed = faster;
                 }
@@ -193,6 +185,7 @@ private:
                 from = to;
                 bond = next;
             }
+            factor.take_up<V>(g, e.t);
         });
     }
     template <class V>

@@ -7,13 +7,6 @@
 
 namespace holonomic::HOL_ISA::graph {
 
-// An array per atom that is read by sites; times inverse masses if `weighed`.
-struct NetReading {
-    const AtomArray *from;
-    Net3 to;
-    bool weighed;
-};
-
 struct NetSites {
     const NetworkPlan &s;
     const MoleculeLane &lane;
@@ -22,87 +15,89 @@ struct NetSites {
 
     NetSites(const NetworkPlan &plan, const MoleculeLane &l, bool packed) : s(plan), lane(l), at(&l, 1, packed) {}
 
-    // Reads masses, and n arrays per atom, one after the other of so many atoms that what is fetched ahead follows few
-    // strands.
-    __attribute__((noinline)) void read_sites(int32_t first, int32_t end, const NetReading *all, int n) const {
-        constexpr int32_t step = 2048;
-        int64_t row[step + rows_ahead];
-        for (int32_t i = first; i < end; i += step) {
-            const int32_t behind = end - i < step ? end : i + step;
-            find_rows(i, behind, row);
-            for (int a = 0; a < n; ++a) read_some(i, behind, all[a], row);
-        }
+    // Where atoms of lanes from this site on stand in packed arrays.
+    template <class V>
+    struct Rows {
+        int64_t element[Width<V>::lanes];
+    };
+    template <class V>
+    HOL_FORCED Rows<V> rows_of(int32_t site) const {
+        const int32_t *const atom = s.atom_of + site;
+        const int64_t *const list = at.list[0], first = at.first[0];
+        Rows<V> rows;
+        HOL_UNROLL
+        for (int i = 0; i < Width<V>::lanes; ++i) rows.element[i] = 3 * (list ? list[atom[i]] : first + atom[i]);
+        return rows;
     }
-    // Where atoms stand in packed arrays.
-    HOL_FORCED void find_rows(int32_t first, int32_t end, int64_t *row) const {
-        const int32_t *const atom = s.atom_of + first, m = end - first;
-        const int64_t *const list = at.list[0], first_atom = at.first[0];
-        const double *const masses = lane.w;
-        double *const of_sites = w + first;
-        for (int32_t i = 0; i < m; ++i) of_sites[i] = masses[atom[i]];
-        if (list)
-            for (int32_t i = 0; i < m; ++i) row[i] = 3 * list[atom[i]];
-        else
-            for (int32_t i = 0; i < m; ++i) row[i] = 3 * (first_atom + atom[i]);
-        for (int32_t i = 0; i < rows_ahead; ++i) row[m + i] = row[0];
-    }
-    HOL_FORCED void read_some(int32_t first, int32_t end, const NetReading &all,
-                              [[maybe_unused]] const int64_t *row) const {
-        int32_t i = first;
-#if HOL_LANES > 1
-        const double *const x = reinterpret_cast<const double *>(all.from->x);
-        for (; i + W <= end && at.layout != elements; i += W) {
-            const double *p[W];
-            for (int j = 0; j < W; ++j) {
-                p[j] = x + row[i - first + j];
-                __builtin_prefetch(x + row[i - first + j + rows_ahead]);
+    // What reads a site's atoms: from several arrays, with what is fetched ahead for those of later sites.
+    template <class V>
+    struct Reader {
+        const NetSites &of;
+        const int32_t site;
+        const Rows<V> here, ahead;
+        HOL_FORCED Vector3<V> operator()(const AtomArray &from) const {
+            if (__builtin_expect(of.at.layout == elements, 0)) return of.read_elements<V>(from, site);
+            const double *const x = reinterpret_cast<const double *>(from.x), *p[Width<V>::lanes];
+            HOL_UNROLL
+            for (int i = 0; i < Width<V>::lanes; ++i) {
+                p[i] = x + here.element[i];
+                __builtin_prefetch(x + ahead.element[i]);
             }
-            vec3 a;
+            Vector3<V> a;
             read_rows(p, a);
-            all.to.set(i, all.weighed ? holonomic::HOL_ISA::load(w + i) * a : a);
+            return a;
         }
-#endif
-        for (; i < end; ++i) {
-            const Vector3<double> a = read(*all.from, at, s.atom_of[i]);
-            all.to.set(i, all.weighed ? w[i] * a : a);
-        }
+    };
+    template <class V>
+    HOL_FORCED Reader<V> reader(int32_t site) const {
+        return {*this, site, rows_of<V>(site), rows_of<V>(site + s.fetched_ahead)};
     }
-    // Writes value(width, site) of a part to an array per atom, or adds it, but for atoms that are `left` as they are.
-    template <class Value>
-    HOL_FORCED void write_sites(const NetPart &part, const AtomArray &to, const unsigned char *left, bool add,
-                                const Value &value) const {
-        int32_t i = part.first_site;
-#if HOL_LANES > 1
-        for (; i + W <= part.end_site && at.layout != elements; i += W) {
-            double *p[W];
-            bool some_left = false;
-            for (int j = 0; j < W; ++j) {
-                const int32_t atom = s.atom_of[i + j];
-                some_left |= left && left[atom];
-                p[j] = reinterpret_cast<double *>(to.x) + 3 * at.number(0, atom);
-            }
-            if (some_left) {
-                for (int j = 0; j < W; ++j) write_site(i + j, to, left, add, value);
-                continue;
-            }
-            vec3 a = value(vec{}, i);
-            if (add) {
-                vec3 before;
-                read_rows(p, before);
-                a = before + a;
-            }
-            write_rows(p, a);
+    template <class V>
+    __attribute__((noinline)) Vector3<V> read_elements(const AtomArray &from, int32_t site) const {
+        Vector3<V> all = {};
+        for (int i = 0; i < Width<V>::lanes; ++i) {
+            const Vector3<double> one = read(from, at, s.atom_of[site + i]);
+            Width<V>::set(all.x, i, one.x);
+            Width<V>::set(all.y, i, one.y);
+            Width<V>::set(all.z, i, one.z);
         }
-#endif
-        for (; i < part.end_site; ++i) write_site(i, to, left, add, value);
+        return all;
     }
-    template <class Value>
-    HOL_FORCED void write_site(int32_t i, const AtomArray &to, const unsigned char *left, bool add,
-                               const Value &value) const {
-        const int32_t atom = s.atom_of[i];
-        if (left && left[atom]) return;
-        const Vector3<double> a = value(double{}, i);
-        write(to, at, atom, add ? read(to, at, atom) + a : a, 1);
+    // Inverse masses, which are kept.
+    template <class V>
+    HOL_FORCED V read_masses(int32_t site) const {
+        const V masses = gather<V>(lane.w, s.atom_of + site);
+        store_any(w + site, masses);
+        return masses;
+    }
+    // Writes a vector for each lane to an array per atom, or adds it, but for atoms that are `left` as they are.
+    template <class V>
+    HOL_FORCED void write_at(const AtomArray &to, int32_t site, const unsigned char *left, bool add,
+                             const Vector3<V> &a) const {
+        bool some_left = at.layout == elements;
+        for (int i = 0; i < Width<V>::lanes && left; ++i) some_left |= left[s.atom_of[site + i]] != 0;
+        if (__builtin_expect(some_left, 0)) {
+            const Vector3<V> copy = a;
+            return write_elements(to, site, left, add, copy);
+        }
+        const Rows<V> rows = rows_of<V>(site);
+        double *p[Width<V>::lanes];
+        HOL_UNROLL
+        for (int i = 0; i < Width<V>::lanes; ++i) p[i] = reinterpret_cast<double *>(to.x) + rows.element[i];
+        if (!add) return write_rows(p, a);
+        Vector3<V> before;
+        read_rows(p, before);
+        write_rows(p, before + a);
+    }
+    template <class V>
+    __attribute__((noinline)) void write_elements(const AtomArray &to, int32_t site, const unsigned char *left, bool add,
+                                     const Vector3<V> &a) const {
+        for (int i = 0; i < Width<V>::lanes; ++i) {
+            const int32_t atom = s.atom_of[site + i];
+            if (left && left[atom]) continue;
+            const Vector3<double> one = {Width<V>::get(a.x, i), Width<V>::get(a.y, i), Width<V>::get(a.z, i)};
+            write(to, at, atom, add ? read(to, at, atom) + one : one, 1);
+        }
     }
 };
 

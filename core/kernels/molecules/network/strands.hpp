@@ -27,7 +27,7 @@ struct Net : NetSites {
             most = end - before > most ? end - before : most;
             before = end;
         }
-        const int64_t of_part = NetPart::three_vectors * in_fours(most), of_fronts = Fronts::values_of_buffer(s.fronts);
+        const int64_t of_part = NetPart::values_of_place * in_fours(most), of_fronts = Fronts::values_of_buffer(s.fronts);
         return of_part > of_fronts ? of_part : of_fronts;
     }
 
@@ -52,6 +52,11 @@ struct Net : NetSites {
         backwards = !backwards;
         share_out(team, buffer, s.n_shares,
                   [&](int32_t i, double *of_thread) { body(part(from_last ? s.n_shares - 1 - i : i, of_thread)); });
+    }
+    template <class Body>
+    HOL_FORCED void for_rest_and_parts(const Body &body) const {
+        body(rest());
+        for_parts(body);
     }
     // Calls body(share) for all shares of nodes. A thread is not worth waiting for where these are few.
     template <class Body>
@@ -90,7 +95,7 @@ struct Net : NetSites {
             body(first, end - first < step ? end : first + step);
         });
     }
-    // Calls body(value of the width, strands).
+    // Calls body(value of the width, strands) for those of a part, which is not the rest.
     template <class Body>
     HOL_FORCED void for_strands(const NetPart &part, const Body &body) const {
         for (int32_t i = part.first_bundle; i < part.end_bundle; ++i) {
@@ -136,33 +141,24 @@ struct Net : NetSites {
         for (; i + W <= end; i += W) body(vec{}, i);
         for (; i < end; ++i) body(double{}, i);
     }
-    // Calls body(V, place, from, to) for the bonds of a part: the values at the two atoms of each, of the rest or of
-    // the part's own sites.
-    template <class Body>
-    HOL_FORCED void for_bonds(const NetPart &part, const Net3 &of_rest, const Net3 &of_sites, const Body &body) const {
-        for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
-            typedef decltype(width) V;
-            Vector3<V> before = at_node<V>(g, 0, of_rest);
-            for (int32_t k = 0; k < g.length; ++k) {
-                const bool last = k + 1 == g.length;
-                const Vector3<V> next = last ? at_node<V>(g, 1, of_rest) : of_sites.get<V>(g.site + k * g.step);
-                body(width, g.place + k * g.step, before, next);
-                before = next;
-            }
-        });
-        if (!is_rest(part)) return;
-        for (int32_t k = part.first_place; k < part.end_place; ++k)
-            body(double{}, k, of_rest.get<double>(s.from[k]), of_rest.get<double>(s.to[k]));
+    // Along strands: calls body(place, from, to) for each bond, with values at its atoms, first() and last() of the
+    // nodes, between(site, place) of the atom before the bond at that place.
+    template <class First, class Between, class Last, class Body>
+    HOL_FORCED static void for_bonds(const NetStrands &g, const First &first, const Between &between, const Last &last,
+                                     const Body &body) {
+        auto from = first();
+        for (int32_t k = 0; k < g.length; ++k) {
+            const int32_t place = g.place + k * g.step;
+            const auto to = k + 1 < g.length ? between(g.site + k * g.step, place + g.step) : last();
+            body(place, from, to);
+            from = to;
+        }
     }
-
-    __attribute__((noinline)) void find_bonds(const NetPart &part, const Box &box, const Net3 &r, const Net3 &r_of_part,
-                                              const Net3 &d) const {
-        for_bonds(part, r, r_of_part, [&](auto width, int32_t place, const auto &from, const auto &to) HOL_FORCED {
-            typedef decltype(width) V;
-            Vector3<V> bond = to - from, unused = {};
-            take_image<false>(box, bond, unused);
-            d.set(place, bond);
-        });
+    template <class V>
+    HOL_FORCED Vector3<V> bond_between(const Box &box, const Vector3<V> &from, const Vector3<V> &to) const {
+        Vector3<V> bond = to - from, unused = {};
+        take_image<false>(box, bond, unused);
+        return bond;
     }
 
     // Calls each(place, sign) for the bonds of a node or, after the nodes, of a tree's atom, but for the own ends of a
@@ -194,30 +190,23 @@ struct Net : NetSites {
         each(b.first_place + site - b.first_site, -1.0);
         each(b.first_place + site - b.first_site + b.width, 1.0);
     }
+};
 
-    // What multipliers t of bonds d do to the atoms between the nodes: G, times inverse masses if `weighed`, and where
-    // `tension` is wanted the sum of |t| |d|.
-    __attribute__((noinline)) void find_pulls(const NetPart &part, const double *t, const Net3 &d, const Net3 &G,
-                                              bool weighed, double *tension) const {
-        for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
-            typedef decltype(width) V;
-            const Vector3<V> first = d.get<V>(g.place);
-            Vector3<V> before = load_any<V>(t + g.place) * first;
-            V size = {};
-            if (tension) size = sqrt(dot(before, before));
-            for (int32_t k = 1; k < g.length; ++k) {
-                const int32_t place = g.place + k * g.step, site = g.site + (k - 1) * g.step;
-                const Vector3<V> pull = load_any<V>(t + place) * d.get<V>(place), sum = pull - before;
-                G.set(site, weighed ? load_any<V>(w + site) * sum : sum);
-                if (tension) {
-                    const V next = sqrt(dot(pull, pull));
-                    store_any(tension + site, size + next);
-                    size = next;
-                }
-                before = pull;
-            }
-        });
+// Along strands, what multipliers t of bonds d do to the atoms between these.
+template <class V>
+struct StrandPulls {
+    const double *const t;
+    const Net3 &d;
+    Vector3<V> of_bond;
+    HOL_FORCED StrandPulls(const double *multipliers, const Net3 &bonds, int32_t place)
+        : t(multipliers), d(bonds), of_bond(load_any<V>(t + place) * d.get<V>(place)) {}
+    // Of the atom before the bond at this place, which is the next one.
+    HOL_FORCED Vector3<V> before(int32_t place) {
+        const Vector3<V> last = of_bond;
+        of_bond = load_any<V>(t + place) * d.get<V>(place);
+        return of_bond - last;
     }
+    HOL_FORCED V tension() const { return sqrt(dot(of_bond, of_bond)); }
 };
 
 HOL_INLINE double largest_in(const double *values, int32_t n) {
