@@ -77,6 +77,7 @@ struct NetLinear : NetEquations {
     template <class V>
     HOL_FORCED void prove(int32_t place, const Atom<V> &from, const Atom<V> &to, bool &good) const {
         const double most = most_left();
+        fetch_ahead(place, side, size_of_side);
         const V tensions = mul_add(from.w, from.T, to.w * to.T);
         const V over = excess_of(d.get<V>(place), from.w * from.pull, to.w * to.pull, tensions,
                                  load_any<V>(side + place), load_any<V>(size_of_side + place), most);

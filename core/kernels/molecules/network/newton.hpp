@@ -40,6 +40,7 @@ struct NetNewton {
     // What is left of bonds' lengths: |D| - a, times |D_0| of the bonds D_0 that the factors are made of.
     template <bool fresh, class V>
     HOL_FORCED V measure(int32_t k, const Vector3<V> &bond) const {
+        fetch_ahead(k, a2, per_a2, stretch, t);
         const V sigma = excess(bond, load_any<V>(a2 + k)), e = sigma * load_any<V>(per_a2 + k);
         const V one = Width<V>::all(1);
         if (fresh) {
@@ -150,6 +151,7 @@ struct NetNewton {
     }
     template <class V>
     HOL_FORCED Vector3<V> moved_bond(int32_t k, const Vector3<V> &from, const Vector3<V> &to) const {
+        fetch_ahead(k, D.x, D.y, D.z);
         return D.get<V>(k) + (to - from);
     }
     // What is left is taken up at once, while it is in cache.

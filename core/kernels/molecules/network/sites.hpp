@@ -80,10 +80,13 @@ struct NetSites {
             const Vector3<V> copy = a;
             return write_elements(to, site, left, add, copy);
         }
-        const Rows<V> rows = rows_of<V>(site);
-        double *p[Width<V>::lanes];
+        const Rows<V> here = rows_of<V>(site), ahead = rows_of<V>(site + s.fetched_ahead);
+        double *const x = reinterpret_cast<double *>(to.x), *p[Width<V>::lanes];
         HOL_UNROLL
-        for (int i = 0; i < Width<V>::lanes; ++i) p[i] = reinterpret_cast<double *>(to.x) + rows.element[i];
+        for (int i = 0; i < Width<V>::lanes; ++i) {
+            p[i] = x + here.element[i];
+            __builtin_prefetch(x + ahead.element[i], 1);
+        }
         if (!add) return write_rows(p, a);
         Vector3<V> before;
         read_rows(p, before);

@@ -203,6 +203,7 @@ struct StrandPulls {
     // Of the atom before the bond at this place, which is the next one.
     HOL_FORCED Vector3<V> before(int32_t place) {
         const Vector3<V> last = of_bond;
+        fetch_ahead(place, t, d.x, d.y, d.z);
         of_bond = load_any<V>(t + place) * d.get<V>(place);
         return of_bond - last;
     }
