@@ -127,6 +127,12 @@ struct NetEquations {
         store_any(size_of_side + place, size);
         store_any(t + place, value);
     }
+    // Of velocities that have been changed since.
+    template <class V>
+    HOL_FORCED void find_rate(int32_t place, const Vector3<V> &from, const Vector3<V> &to) const {
+        const V value = dot(d.get<V>(place), to - from);
+        store_any(t + place, in.strain ? value + given_to<V>(place) : value);
+    }
 
     Pair3<double> exact(int32_t k) const { return pairs_of(d.get<double>(k), Vector3<double>{}); }
     template <class V>

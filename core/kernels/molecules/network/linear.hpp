@@ -184,6 +184,7 @@ struct NetLinear : NetEquations {
     __attribute__((noinline)) void write_velocities(const AtomArray &to, bool again) const {
         const auto pushed = [&](auto width, int32_t site, const auto &pull) HOL_FORCED {
             typedef decltype(width) V;
+            fetch_ahead(site, v.x, v.y, v.z, net.w);
             return add_times(v.get<V>(site), load_any<V>(net.w + site), pull);
         };
         const auto write = [&](auto width, int32_t site, const auto &pull) HOL_FORCED {
@@ -195,21 +196,22 @@ struct NetLinear : NetEquations {
         }
         for_pulls_of_rest([&](auto width, int32_t site, const auto &pull)
                               HOL_FORCED { v.set(site, pushed(width, site, pull)); });
-        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k) find_side_of_tree(k);
+        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k)
+            find_rate(k, v.get<double>(s.from[k]), v.get<double>(s.to[k]));
         factor.take_up_rest(t);
         for_all_strands([&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
             StrandPulls<V> along(t, d, g.place);
             net.for_bonds(
-                g, [&]() HOL_FORCED { return terms_at_node<V>(g, 0); },
+                g, [&]() HOL_FORCED { return net.at_node<V>(g, 0, v); },
                 [&](int32_t site, int32_t place) HOL_FORCED {
                     const Vector3<V> velocity = pushed(width, site, along.before(place));
                     v.set(site, velocity);
-                    return NetTerms<V>{velocity, {}};
+                    return velocity;
                 },
-                [&]() HOL_FORCED { return terms_at_node<V>(g, 1); },
-                [&](int32_t place, const NetTerms<V> &from, const NetTerms<V> &to_next)
-                    HOL_FORCED { find_side<V>(place, d.get<V>(place), from, to_next); });
+                [&]() HOL_FORCED { return net.at_node<V>(g, 1, v); },
+                [&](int32_t place, const Vector3<V> &from, const Vector3<V> &to_next)
+                    HOL_FORCED { find_rate(place, from, to_next); });
             factor.take_up<V>(g, t);
         });
         factor.unknowns.add_pushes();
