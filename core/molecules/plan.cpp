@@ -69,6 +69,12 @@ private:
         return !is_in_lanes(s) || s.network;
     }
 
+    // What solves a network finds bonds by a list, but for the careful solver.
+    bool lists_bonds(std::int32_t shape) const {
+        const Schedule *const s = shape == linear ? nullptr : plan_->schedules[at(shape)];
+        return s && s->network && !s->careful;
+    }
+
     // Whether a molecule has fixed atoms that stand elsewhere, too.
     bool shares(const Group &group, std::int64_t index) const {
         if (!chains_.use_.any_shared()) return false;
@@ -138,6 +144,7 @@ private:
         for (std::int64_t i = begin; apart && i < end; ++i) add_to_stage(groups_[at(g)], i);
         plan_->n_bonds += (end - begin) * k.n_bonds;
         plan_->reordered = plan_->reordered || (where & reordered) != 0;
+        plan_->copied = plan_->copied || ((where & reordered) && !lists_bonds(k.shape));
         Run run{g, begin, end, stage, -1, k.n_bonds, k.shape, where};
         if (k.shape != linear || plan_->part_start.empty()) return add_pieces(run);
         for (run.part = plan_->part_start[at(groups_[at(g)].kind)];

@@ -45,7 +45,8 @@ struct Plan {
     std::vector<std::int64_t> stage;            // atoms of the molecules that share fixed atoms, one after another
     std::vector<unsigned char> is_copy;         // of each atom of the stage
     std::vector<Copy> copies;                   // by atom, then by place
-    bool reordered = false;                     // some molecules' bonds are
+    bool reordered = false;                     // some molecules' bonds are,
+    bool copied = false;                        // and so that no list of them will do
 
     // For calls that work on linear chains as on other molecules: what lies between two fixed atoms is a part.
     struct Part {

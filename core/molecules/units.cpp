@@ -47,6 +47,7 @@ MoleculeLane Chains::molecule_lane_of(const Plan &plan, const Group &group, std:
     lane.length = kinds_.length(kind);
     lane.first_bond = group.first_bond + index * kind.n_bonds;
     lane.molecule = group.first_molecule + index;
+    if (group.reordered && !plan.copied) lane.bonds = groups_.reordered().data() + lane.first_bond;
     if (part < 0) return lane;
     const std::int64_t first = plan.parts[at(part)].first;
     if (!lane.w) lane.w = plan.w[at(group.kind)].data();

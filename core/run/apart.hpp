@@ -12,13 +12,14 @@ namespace holonomic {
 class Apart {
 public:
     // Takes memory of the calling thread for all arrays that a call may have: four per atom, and four per bond beside
-    // one of `wide` values for each. Throws std::bad_alloc.
+    // one of `wide` values for each. Networks have a list of their bonds where nothing is wide. Throws std::bad_alloc.
     explicit Apart(const Chains &chains, int wide = 0) : Apart(chains, chains.plan(), wide) {}
-    Apart(const Chains &chains, const Plan &plan, int wide = 0) : chains_(chains), plan_(plan) {
+    Apart(const Chains &chains, const Plan &plan, int wide = 0)
+        : chains_(chains), plan_(plan), reorders_(wide > 0 ? plan.reordered : plan.copied) {
         if (reorders() || stages()) take_memory(wide);
     }
 
-    bool reorders() const { return plan_.reordered; }
+    bool reorders() const { return reorders_; }
     bool stages() const { return !plan_.stage.empty(); }
 
     // Values per bond, `width` of them, or null: as they are in the caller's array, in the order of the molecules. Put
@@ -61,6 +62,7 @@ private:
 
     const Chains &chains_;
     const Plan &plan_;
+    const bool reorders_;
     char *memory_ = nullptr;  // what of it is free
     Values values_[most + 1];
     Atoms atoms_[most];
@@ -73,19 +75,23 @@ class Variants {
 public:
     // `values` and `atoms` replace a variant's arrays. Variants that no molecule needs are not made.
     template <class Values, class Atoms>
-    Variants(const Call &call, const Apart &apart, Values values, Atoms atoms) : call_(call) {
-        if (!apart.reorders() && !apart.stages()) return;
+    Variants(const Call &call, const Apart &apart, Values values, Atoms atoms)
+        : call_(call), made_of_((apart.reorders() ? reordered : 0) | (apart.stages() ? staged : 0)) {
         for (int where = 1; where < n_wheres; ++where) {
-            if (((where & reordered) && !apart.reorders()) || ((where & staged) && !apart.stages())) continue;
+            if ((where & made_of_) != where) continue;
             made_[where - 1] = call;
             if (where & reordered) values(made_[where - 1]);
             if (where & staged) atoms(made_[where - 1]);
         }
     }
-    const Call &operator[](int where) const { return where == in_place ? call_ : made_[where - 1]; }
+    const Call &operator[](int where) const {
+        where &= made_of_;
+        return where == in_place ? call_ : made_[where - 1];
+    }
 
 private:
     const Call &call_;
+    const int made_of_;
     Call made_[n_wheres - 1];
 };
 

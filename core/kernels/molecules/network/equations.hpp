@@ -162,17 +162,16 @@ struct NetEquations {
                 difference_of(read(*in.v, net.at, s.atom_of[s.from[k]]), read(*in.v, net.at, s.atom_of[s.to[k]]));
             sum = add_pairs(sum, dot_pairs(dv, dv));
         }
-        if (in.rhs) sum = add_pairs(sum, {0.5 * in.rhs[net.lane.first_bond + s.bond_of[k]], 0.0});
+        if (in.rhs) sum = add_pairs(sum, {0.5 * in.rhs[net.number_of_bond(k)], 0.0});
         if (in.strain) sum = add_pairs(sum, {stretching(in.strain, d.get<double>(k)), 0.0});
         return sum.hi + sum.lo;
     }
     template <class V>
     __attribute__((noinline)) V given_to(int32_t place) const {
+        if (in.rhs) return 0.5 * net.of_bonds<V>(in.rhs, place);
         V all = {};
         for (int i = 0; i < Width<V>::lanes; ++i)
-            Width<V>::set(all, i,
-                          in.rhs ? 0.5 * in.rhs[net.lane.first_bond + s.bond_of[place + i]]
-                                 : stretching(in.strain, d.get<double>(place + i)));
+            Width<V>::set(all, i, stretching(in.strain, d.get<double>(place + i)));
         return all;
     }
 };

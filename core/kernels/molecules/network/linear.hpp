@@ -243,7 +243,7 @@ struct NetLinear : NetEquations {
     void write_bonds(const NetPart &part, double scale, bool sizes, double *out) const {
         for (int32_t k = part.first_place; k < part.end_place; ++k) {
             const Vector3<double> bond = d.get<double>(k);
-            out[net.lane.first_bond + s.bond_of[k]] = mul_add(t[k], sizes ? sqrt(dot(bond, bond)) : scale, 0.0);
+            out[net.number_of_bond(k)] = mul_add(t[k], sizes ? sqrt(dot(bond, bond)) : scale, 0.0);
         }
     }
     __attribute__((noinline)) void write_pulls(const NetPart &part, const AtomArray &to, bool add) const {

@@ -73,8 +73,7 @@ struct NetPositions {
         store_any(newton.a2 + place, a2);
         store_any(newton.per_a2 + place, per_a2);
         store_any(newton.tau + place,
-                  call.guess ? Width<V>::all(2 * call.dt * call.dt) * gather<V>(call.lambda + net.lane.first_bond, bond_of)
-                             : V{});
+                  call.guess ? Width<V>::all(2 * call.dt * call.dt) * net.of_bonds<V>(call.lambda, place) : V{});
         return newton.measure<true>(place, bond);
     }
     void read_rest() const {
@@ -166,7 +165,7 @@ struct NetPositions {
         const double per_dt2 = 1 / (call.dt * call.dt);
         newton.net.for_ranges(0, call.lambda ? s.n_bonds : 0, [&](int32_t first, int32_t end) {
             for (int32_t k = first; k < end; ++k)
-                call.lambda[newton.net.lane.first_bond + s.bond_of[k]] = mul_add(newton.tau[k], 0.5 * per_dt2, 0.0);
+                call.lambda[newton.net.number_of_bond(k)] = mul_add(newton.tau[k], 0.5 * per_dt2, 0.0);
         });
         if (!moved) return;
         if (call.virial) {

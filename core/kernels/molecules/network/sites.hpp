@@ -15,6 +15,14 @@ struct NetSites {
 
     NetSites(const NetworkPlan &plan, const MoleculeLane &l, bool packed) : s(plan), lane(l), at(&l, 1, packed) {}
 
+    // Where the bond of a place stands in arrays per bond, and values from there.
+    HOL_FORCED int64_t number_of_bond(int32_t place) const { return lane.number_of_bond(s.bond_of[place]); }
+    template <class V>
+    HOL_FORCED V of_bonds(const double *values, int32_t place) const {
+        V all = {};
+        for (int i = 0; i < Width<V>::lanes; ++i) Width<V>::set(all, i, values[number_of_bond(place + i)]);
+        return all;
+    }
     // Where atoms of lanes from this site on stand in packed arrays.
     template <class V>
     struct Rows {
