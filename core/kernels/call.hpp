@@ -38,12 +38,12 @@ struct Unit {
 
 // One molecule that is no chain, as a kernel sees it. Its atoms and bonds are numbered as in its shape.
 struct MoleculeLane {
-    int64_t first_atom;           // if atoms == nullptr: its atoms are first_atom, first_atom + 1, ...
-    const int64_t *atoms;         // [n_atoms] or nullptr
-    const unsigned char *shared;  // [n_atoms] or nullptr: fixed atoms of other molecules too, whose G is not written
-    const double *w, *length;     // [n_atoms], [n_bonds]
-    int64_t first_bond;           // bond k stands at first_bond + k in arrays per bond
-    int64_t molecule;             // its number
+    int64_t first_atom;              // if atoms == nullptr: its atoms are first_atom, first_atom + 1, ...
+    const int64_t *atoms;            // [n_atoms] or nullptr
+    const unsigned char *shared;     // [n_atoms] or nullptr: fixed atoms of other molecules too, whose G is not written
+    const double *w, *length;        // [n_atoms], [n_bonds]
+    int64_t first_bond;              // bond k stands at first_bond + k in arrays per bond
+    int64_t molecule;                // its number
     const int64_t *bonds = nullptr;  // [n_bonds] where they stand instead: only of networks
     int64_t number_of_bond(int32_t k) const { return bonds ? bonds[k] : first_bond + k; }
 };

@@ -92,8 +92,7 @@ struct NetLinear : NetEquations {
     __attribute__((noinline)) void prove_trees() const {
         bool good = true;
         const auto atom = [&](int32_t i) { return Atom<double>{net.w[i], tension[i], G.get<double>(i)}; };
-        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k)
-            prove<double>(k, atom(s.from[k]), atom(s.to[k]), good);
+        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k) prove<double>(k, atom(s.from[k]), atom(s.to[k]), good);
         note(good);
     }
     __attribute__((noinline)) void take_down_and_prove(const NetPart &part) const {
@@ -230,8 +229,8 @@ struct NetLinear : NetEquations {
     // Calls each(width, site, pull): of the rest, of the atoms between the ends of strands.
     template <class Each>
     HOL_FORCED void for_pulls_of_rest(const Each &each) const {
-        net.for_all(s.first_node, s.n_atoms, [&](auto width, int32_t site)
-                                                 HOL_FORCED { each(width, site, G.get<decltype(width)>(site)); });
+        net.for_all(s.first_node, s.n_atoms,
+                    [&](auto width, int32_t site) HOL_FORCED { each(width, site, G.get<decltype(width)>(site)); });
     }
     template <class V, class Each>
     HOL_FORCED void for_pulls(const V &width, const NetStrands &g, const Each &each) const {
@@ -247,9 +246,8 @@ struct NetLinear : NetEquations {
         }
     }
     __attribute__((noinline)) void write_pulls(const NetPart &part, const AtomArray &to, bool add) const {
-        const auto write = [&](auto width, int32_t site, const auto &pull) HOL_FORCED {
-            net.write_at<decltype(width)>(to, site, net.lane.shared, add, pull);
-        };
+        const auto write = [&](auto width, int32_t site, const auto &pull)
+                               HOL_FORCED { net.write_at<decltype(width)>(to, site, net.lane.shared, add, pull); };
         if (net.is_rest(part)) return for_pulls_of_rest(write);
         net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED { for_pulls(width, g, write); });
     }

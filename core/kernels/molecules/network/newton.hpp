@@ -83,8 +83,8 @@ struct NetNewton {
             moves_of_worst = part.of_sites();
             if (moved && !net.is_rest(part))
                 net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
-                    for_moves(width, g, [&](auto, int32_t site, const auto &move)
-                                            HOL_FORCED { moves_of_worst.set(site, move); });
+                    for_moves(width, g,
+                              [&](auto, int32_t site, const auto &move) HOL_FORCED { moves_of_worst.set(site, move); });
                 });
             each(part.first_place, part.end_place);
         }
@@ -159,8 +159,7 @@ struct NetNewton {
         correct_rest();
         find_moves_of_rest();
         worst[s.n_shares] = largest_error([&](const auto &note) HOL_FORCED {
-            for_moved_bonds_of_trees(
-                [&](int32_t k, const auto &bond) HOL_FORCED { note(measure<false>(k, bond)); });
+            for_moved_bonds_of_trees([&](int32_t k, const auto &bond) HOL_FORCED { note(measure<false>(k, bond)); });
         });
         factor.take_up_rest(t);
         net.for_parts([&](const NetPart &part) { worst[part.share] = move_strands(part); });
@@ -174,8 +173,8 @@ struct NetNewton {
             net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
                 typedef decltype(width) V;
                 correct<V>(g);
-                for_moved_bonds<V>(g, [&](int32_t k, const Vector3<V> &bond)
-                                          HOL_FORCED { note(measure<false>(k, bond)); });
+                for_moved_bonds<V>(
+                    g, [&](int32_t k, const Vector3<V> &bond) HOL_FORCED { note(measure<false>(k, bond)); });
                 factor.take_up<V>(g, t);
             });
         });
@@ -202,8 +201,7 @@ struct NetNewton {
     __attribute__((noinline)) void factorize_strands(const NetPart &part, const Net3 &bonds) const {
         net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
-            if (moved)
-                for_moved_bonds<V>(g, [&](int32_t k, const Vector3<V> &bond) HOL_FORCED { bonds.set(k, bond); });
+            if (moved) for_moved_bonds<V>(g, [&](int32_t k, const Vector3<V> &bond) HOL_FORCED { bonds.set(k, bond); });
             for (int32_t k = 0; k < g.length; ++k) {
                 const int32_t place = g.place + k * g.step;
                 measure<true>(place, bonds.get<V>(place));

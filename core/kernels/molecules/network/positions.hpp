@@ -155,10 +155,10 @@ struct NetPositions {
             if (call.v.x) newton.net.write_at<V>(call.v, i, fixed, true, Width<V>::all(per_dt) * move);
         };
         newton.find_moves_of_rest();
-        newton.net.for_all(newton.s.first_node, newton.s.n_atoms, [&](auto width, int32_t i)
-                               HOL_FORCED { write(width, i, newton.moves.get<decltype(width)>(i)); });
-        newton.for_all_strands(
-            [&](auto width, const NetStrands &g) HOL_FORCED { newton.for_moves(width, g, write); });
+        newton.net.for_all(newton.s.first_node, newton.s.n_atoms, [&](auto width, int32_t i) HOL_FORCED {
+            write(width, i, newton.moves.get<decltype(width)>(i));
+        });
+        newton.for_all_strands([&](auto width, const NetStrands &g) HOL_FORCED { newton.for_moves(width, g, write); });
     }
     void write_results(bool moved) {
         const NetworkPlan &s = newton.s;

@@ -143,7 +143,8 @@ private:
                 return k + 1 < g.length ? net.reader<V>(site_of(k))(from) : net.at_node<V>(g, 1, of);
             };
             const Vector3<V> zero = {};
-            Vector3<V> at_atom = behind(0, e.r, e.coordinates), speed = e.has(squares) ? net.at_node<V>(g, 0, e.v) : zero;
+            Vector3<V> at_atom = behind(0, e.r, e.coordinates),
+                       speed = e.has(squares) ? net.at_node<V>(g, 0, e.v) : zero;
             Pair3<V> from = {}, bond = e.unrounded_between(net.at_node<V>(g, 0, e.r), at_atom),
                      pull = scale_pairs(load_any<V>(solution + g.place), bond);
             V w = net.at_node<V>(g, 0, net.w), T = net.at_node<V>(g, 0, tension), own = size_of(pull);

@@ -101,8 +101,8 @@ struct NetSites {
         write_rows(p, before + a);
     }
     template <class V>
-    __attribute__((noinline)) void write_elements(const AtomArray &to, int32_t site, const unsigned char *left, bool add,
-                                     const Vector3<V> &a) const {
+    __attribute__((noinline)) void write_elements(const AtomArray &to, int32_t site, const unsigned char *left,
+                                                  bool add, const Vector3<V> &a) const {
         for (int i = 0; i < Width<V>::lanes; ++i) {
             const int32_t atom = s.atom_of[site + i];
             if (left && left[atom]) continue;

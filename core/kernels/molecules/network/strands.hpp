@@ -27,7 +27,8 @@ struct Net : NetSites {
             most = end - before > most ? end - before : most;
             before = end;
         }
-        const int64_t of_part = NetPart::values_of_place * in_fours(most), of_fronts = Fronts::values_of_buffer(s.fronts);
+        const int64_t of_part = NetPart::values_of_place * in_fours(most),
+                      of_fronts = Fronts::values_of_buffer(s.fronts);
         return of_part > of_fronts ? of_part : of_fronts;
     }
 
