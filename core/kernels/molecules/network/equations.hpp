@@ -122,7 +122,7 @@ struct NetEquations {
             value = value + more;
             size = size + abs(more);
         }
-        fetch_ahead(place, side, size_of_side, t, d.x, d.y, d.z);
+        net.fetch_ahead(place, side, size_of_side, t, d.x, d.y, d.z);
         store_any(side + place, value);
         store_any(size_of_side + place, size);
         store_any(t + place, value);

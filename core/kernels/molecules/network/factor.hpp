@@ -80,7 +80,7 @@ struct NetFactor {
         V next = load_any<V>(y + g.place + (g.length - 1) * g.step);
         for (int32_t k = g.length - 2; k > 0; --k) {
             const int32_t place = g.place + k * g.step;
-            fetch_ahead(place, y, per_pivot, to_last, to_first);
+            net.fetch_ahead(place, y, per_pivot, to_last, to_first);
             next = mul_add(
                 load_any<V>(to_last + place), next,
                 load_any<V>(y + place) * load_any<V>(per_pivot + place) - load_any<V>(to_first + place) * first);
@@ -129,7 +129,7 @@ struct NetFactor {
     // found as in trees, without a subtraction. To the first one it is what the first bond's own atom does, times what
     // each pivot loses when it is eliminated before and not after those between: P' / P.
     template <class V>
-    HOL_FORCED void factorize(const NetStrands &g, const Net3 &D, double *y) const {
+    __attribute__((noinline)) void factorize(const NetStrands &g, const Net3 &D, double *y) const {
         Vector3<V> Dk = D.get<V>(g.place), bk = b.get<V>(g.place);
         V first = load_any<V>(y + g.place);
         unknowns.set_bonds(g, 0, Dk, bk);
@@ -145,7 +145,7 @@ struct NetFactor {
             const int32_t place = g.place + k * g.step;
             w = load_any<V>(net.w + g.site + k * g.step);
             const Vector3<V> Dn = D.get<V>(place + g.step), bn = b.get<V>(place + g.step);
-            fetch_ahead(place, per_pivot, to_last, to_first);
+            net.fetch_ahead(place, per_pivot, to_last, to_first);
             const V P_beyond = mul_add(w, q, beyond);
             const V per = one / mul_add(w, q, E), next = dot(Dn, bn), part = w * per;
             const V up = part * dot(Dn, bk), down = part * dot(Dk, bn), from = row * per, to = column * per;

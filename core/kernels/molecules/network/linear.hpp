@@ -77,7 +77,7 @@ struct NetLinear : NetEquations {
     template <class V>
     HOL_FORCED void prove(int32_t place, const Atom<V> &from, const Atom<V> &to, bool &good) const {
         const double most = most_left();
-        fetch_ahead(place, side, size_of_side);
+        net.fetch_ahead(place, side, size_of_side);
         const V tensions = mul_add(from.w, from.T, to.w * to.T);
         const V over = excess_of(d.get<V>(place), from.w * from.pull, to.w * to.pull, tensions,
                                  load_any<V>(side + place), load_any<V>(size_of_side + place), most);
@@ -105,7 +105,7 @@ struct NetLinear : NetEquations {
                 return Atom<V>{net.at_node<V>(g, end, net.w), net.at_node<V>(g, end, tension),
                                net.at_node<V>(g, end, G)};
             };
-            StrandPulls<V> along(t, d, g.place);
+            StrandPulls<V> along(net, t, d, g.place);
             V last = along.tension();
             net.for_bonds(
                 g, [&]() HOL_FORCED { return at_node(0); },
@@ -183,7 +183,7 @@ struct NetLinear : NetEquations {
     __attribute__((noinline)) void write_velocities(const AtomArray &to, bool again) const {
         const auto pushed = [&](auto width, int32_t site, const auto &pull) HOL_FORCED {
             typedef decltype(width) V;
-            fetch_ahead(site, v.x, v.y, v.z, net.w);
+            net.fetch_ahead(site, v.x, v.y, v.z, net.w);
             return add_times(v.get<V>(site), load_any<V>(net.w + site), pull);
         };
         const auto write = [&](auto width, int32_t site, const auto &pull) HOL_FORCED {
@@ -200,7 +200,7 @@ struct NetLinear : NetEquations {
         factor.take_up_rest(t);
         for_all_strands([&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
-            StrandPulls<V> along(t, d, g.place);
+            StrandPulls<V> along(net, t, d, g.place);
             net.for_bonds(
                 g, [&]() HOL_FORCED { return net.at_node<V>(g, 0, v); },
                 [&](int32_t site, int32_t place) HOL_FORCED {
@@ -234,7 +234,7 @@ struct NetLinear : NetEquations {
     }
     template <class V, class Each>
     HOL_FORCED void for_pulls(const V &width, const NetStrands &g, const Each &each) const {
-        StrandPulls<V> along(t, d, g.place);
+        StrandPulls<V> along(net, t, d, g.place);
         for (int32_t k = 1; k < g.length; ++k)
             each(width, g.site + (k - 1) * g.step, along.before(g.place + k * g.step));
     }

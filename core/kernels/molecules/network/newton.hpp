@@ -40,7 +40,7 @@ struct NetNewton {
     // What is left of bonds' lengths: |D| - a, times |D_0| of the bonds D_0 that the factors are made of.
     template <bool fresh, class V>
     HOL_FORCED V measure(int32_t k, const Vector3<V> &bond) const {
-        fetch_ahead(k, a2, per_a2, stretch, t);
+        net.fetch_ahead(k, a2, per_a2, stretch, t);
         const V sigma = excess(bond, load_any<V>(a2 + k)), e = sigma * load_any<V>(per_a2 + k);
         const V one = Width<V>::all(1);
         if (fresh) {
@@ -127,7 +127,7 @@ struct NetNewton {
     }
     template <class V, class Each>
     HOL_FORCED void for_moves(const V &width, const NetStrands &g, const Each &each) const {
-        StrandPulls<V> along(tau, b, g.place);
+        StrandPulls<V> along(net, tau, b, g.place);
         for (int32_t k = 1; k < g.length; ++k) {
             const int32_t site = g.site + (k - 1) * g.step;
             each(width, site, load_any<V>(net.w + site) * along.before(g.place + k * g.step));
@@ -136,7 +136,7 @@ struct NetNewton {
     // Calls each(place, bond) for bonds as tau moves them.
     template <class V, class Each>
     HOL_FORCED void for_moved_bonds(const NetStrands &g, const Each &each) const {
-        StrandPulls<V> along(tau, b, g.place);
+        StrandPulls<V> along(net, tau, b, g.place);
         net.for_bonds(
             g, [&]() HOL_FORCED { return net.at_node<V>(g, 0, moves); },
             [&](int32_t site, int32_t place) HOL_FORCED { return load_any<V>(net.w + site) * along.before(place); },
@@ -151,7 +151,7 @@ struct NetNewton {
     }
     template <class V>
     HOL_FORCED Vector3<V> moved_bond(int32_t k, const Vector3<V> &from, const Vector3<V> &to) const {
-        fetch_ahead(k, D.x, D.y, D.z);
+        net.fetch_ahead(k, D.x, D.y, D.z);
         return D.get<V>(k) + (to - from);
     }
     // What is left is taken up at once, while it is in cache.

@@ -41,14 +41,6 @@ struct NetNodes {
     int32_t node, n_own, unknown, step;
 };
 
-// Of arrays that are gone through together there are more than a processor follows by itself: what stands so far ahead
-// in each is fetched, for a bond after some 10 others, in lanes.
-template <class... Arrays>
-HOL_INLINE void fetch_ahead(int32_t place, const Arrays *...array) {
-    constexpr int32_t ahead = 80;
-    (__builtin_prefetch(array + place + ahead), ...);
-}
-
 // Numbers at places that a list has.
 template <class V>
 HOL_INLINE V gather(const double *values, const int32_t *place) {

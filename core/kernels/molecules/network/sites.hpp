@@ -11,10 +11,18 @@ struct NetSites {
     const NetworkPlan &s;
     const MoleculeLane &lane;
     const Atoms<double> at;
-    double *w;  // by site
+    double *w;       // by site
+    const bool far;  // it does not stay in the nearer caches, and is fetched ahead
 
-    NetSites(const NetworkPlan &plan, const MoleculeLane &l, bool packed) : s(plan), lane(l), at(&l, 1, packed) {}
+    NetSites(const NetworkPlan &plan, const MoleculeLane &l, bool packed) : s(plan), lane(l), at(&l, 1, packed), far(plan.n_bonds > 16384) {}
 
+    // Of arrays that are gone through together there are more than a processor follows by itself: what stands so far
+    // ahead in each is that of a bond, or an atom, after some 10 others in lanes.
+    template <class... Arrays>
+    HOL_FORCED void fetch_ahead(int32_t place, const Arrays *...array) const {
+        constexpr int32_t ahead = 80;
+        if (far) (__builtin_prefetch(array + place + ahead), ...);
+    }
     // Where the bond of a place stands in arrays per bond, and values from there.
     HOL_FORCED int64_t number_of_bond(int32_t place) const { return lane.number_of_bond(s.bond_of[place]); }
     template <class V>
@@ -49,7 +57,7 @@ struct NetSites {
             HOL_UNROLL
             for (int i = 0; i < Width<V>::lanes; ++i) {
                 p[i] = x + here.element[i];
-                __builtin_prefetch(x + ahead.element[i]);
+                if (of.far) __builtin_prefetch(x + ahead.element[i]);
             }
             Vector3<V> a;
             read_rows(p, a);
@@ -58,7 +66,7 @@ struct NetSites {
     };
     template <class V>
     HOL_FORCED Reader<V> reader(int32_t site) const {
-        return {*this, site, rows_of<V>(site), rows_of<V>(site + s.fetched_ahead)};
+        return {*this, site, rows_of<V>(site), far ? rows_of<V>(site + s.fetched_ahead) : Rows<V>{}};
     }
     template <class V>
     __attribute__((noinline)) Vector3<V> read_elements(const AtomArray &from, int32_t site) const {
@@ -88,12 +96,12 @@ struct NetSites {
             const Vector3<V> copy = a;
             return write_elements(to, site, left, add, copy);
         }
-        const Rows<V> here = rows_of<V>(site), ahead = rows_of<V>(site + s.fetched_ahead);
+        const Rows<V> here = rows_of<V>(site), ahead = far ? rows_of<V>(site + s.fetched_ahead) : Rows<V>{};
         double *const x = reinterpret_cast<double *>(to.x), *p[Width<V>::lanes];
         HOL_UNROLL
         for (int i = 0; i < Width<V>::lanes; ++i) {
             p[i] = x + here.element[i];
-            __builtin_prefetch(x + ahead.element[i], 1);
+            if (far) __builtin_prefetch(x + ahead.element[i], 1);
         }
         if (!add) return write_rows(p, a);
         Vector3<V> before;

@@ -196,15 +196,16 @@ struct Net : NetSites {
 // Along strands, what multipliers t of bonds d do to the atoms between these.
 template <class V>
 struct StrandPulls {
+    const Net &net;
     const double *const t;
     const Net3 &d;
     Vector3<V> of_bond;
-    HOL_FORCED StrandPulls(const double *multipliers, const Net3 &bonds, int32_t place)
-        : t(multipliers), d(bonds), of_bond(load_any<V>(t + place) * d.get<V>(place)) {}
+    HOL_FORCED StrandPulls(const Net &of, const double *multipliers, const Net3 &bonds, int32_t place)
+        : net(of), t(multipliers), d(bonds), of_bond(load_any<V>(t + place) * d.get<V>(place)) {}
     // Of the atom before the bond at this place, which is the next one.
     HOL_FORCED Vector3<V> before(int32_t place) {
         const Vector3<V> last = of_bond;
-        fetch_ahead(place, t, d.x, d.y, d.z);
+        net.fetch_ahead(place, t, d.x, d.y, d.z);
         of_bond = load_any<V>(t + place) * d.get<V>(place);
         return of_bond - last;
     }
