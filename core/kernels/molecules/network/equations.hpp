@@ -141,17 +141,13 @@ struct NetEquations {
         unrounded_bond(box, from, to, bond, low);
         return pairs_of(bond, low);
     }
-    Pair3<double> unrounded(int32_t k) const {
-        return unrounded_between(read(coordinates, net.at, s.atom_of[s.from[k]]),
-                                 read(coordinates, net.at, s.atom_of[s.to[k]]));
-    }
     // In twice the precision: of an atom with these multipliers; and what is left of a bond's equation.
-    Pair3<double> acceleration_of(int32_t site, const double *solution, bool low) const {
+    Pair3<double> acceleration_of(int32_t site, const double *solution) const {
         const Vector3<double> zero = {};
         Pair3<double> sum = pairs_of(has(pulls) ? read(*in.f, net.at, s.atom_of[site]) : zero, zero);
-        net.for_bonds_of(site, [&](int32_t k, double sign) {
-            sum = add_pairs(sum, scale_pairs(sign * solution[k], low ? unrounded(k) : exact(k)));
-        });
+        net.for_bonds_of(
+            site, [&](int32_t k, double sign)
+                      __attribute__((noinline)) { sum = add_pairs(sum, scale_pairs(sign * solution[k], exact(k))); });
         sum = scale_pairs(net.w[site], sum);
         return has(rates) ? add_pairs(sum, pairs_of(v.get<double>(site), zero)) : sum;
     }

@@ -125,7 +125,7 @@ struct NetLinear : NetEquations {
     // the rounding of bonds is left; that of images, which is no more than their own, counts in no test of bonds.
     __attribute__((noinline)) bool holds(int32_t k, double tensions) const {
         const int32_t i = s.from[k], j = s.to[k];
-        const Pair3<double> from = acceleration_of(i, t, false), to = acceleration_of(j, t, false), bond = exact(k);
+        const Pair3<double> from = acceleration_of(i, t), to = acceleration_of(j, t), bond = exact(k);
         const double left = residual_of(k, bond, from, to),
                      terms_of_b = size_of_side[k] + abs(dot_pairs(bond, from).hi) + abs(dot_pairs(bond, to).hi);
         return abs(left) + epsilon * hidden_by_rounding(d.get<double>(k), tensions) <= most_left() * terms_of_b;
@@ -181,18 +181,24 @@ struct NetLinear : NetEquations {
     }
     // Velocities v + w G; with `again` once more projected: what their rounding leaves.
     __attribute__((noinline)) void write_velocities(const AtomArray &to, bool again) const {
-        const auto pushed = [&](auto width, int32_t site, const auto &pull) HOL_FORCED {
-            typedef decltype(width) V;
-            net.fetch_ahead(site, v.x, v.y, v.z, net.w);
-            return add_times(v.get<V>(site), load_any<V>(net.w + site), pull);
-        };
+        const bool solved = !again || project_again();
         const auto write = [&](auto width, int32_t site, const auto &pull) HOL_FORCED {
-            net.write_at<decltype(width)>(to, site, net.lane.shared, false, pushed(width, site, pull));
+            typedef decltype(width) V;
+            net.write_at<V>(to, site, net.lane.shared, false, solved ? pushed(width, site, pull) : v.get<V>(site));
         };
-        if (!again) {
-            for_pulls_of_rest(write);
-            return for_all_strands([&](auto width, const NetStrands &g) HOL_FORCED { for_pulls(width, g, write); });
-        }
+        for_pulls_of_rest(write);
+        for_all_strands([&](auto width, const NetStrands &g) HOL_FORCED {
+            if (again && solved) factor.take_down<decltype(width)>(g, t);
+            for_pulls(width, g, write);
+        });
+    }
+    template <class V>
+    HOL_FORCED Vector3<V> pushed(const V &, int32_t site, const Vector3<V> &pull) const {
+        net.fetch_ahead(site, v.x, v.y, v.z, net.w);
+        return add_times(v.get<V>(site), load_any<V>(net.w + site), pull);
+    }
+    // Pushes velocities, and finds multipliers of what that leaves: the pulls of the rest, and what is taken down.
+    __attribute__((noinline)) bool project_again() const {
         for_pulls_of_rest([&](auto width, int32_t site, const auto &pull)
                               HOL_FORCED { v.set(site, pushed(width, site, pull)); });
         for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k)
@@ -209,22 +215,14 @@ struct NetLinear : NetEquations {
                     return velocity;
                 },
                 [&]() HOL_FORCED { return net.at_node<V>(g, 1, v); },
-                [&](int32_t place, const Vector3<V> &from, const Vector3<V> &to_next)
-                    HOL_FORCED { find_rate(place, from, to_next); });
+                [&](int32_t place, const Vector3<V> &from, const Vector3<V> &to)
+                    HOL_FORCED { find_rate(place, from, to); });
             factor.take_up<V>(g, t);
         });
         factor.unknowns.add_pushes();
-        const bool solved = solve_for(next_part, nullptr);
-        if (solved) factor.find_pulls_of_rest(t, G, nullptr);
-        const auto write_best = [&](auto width, int32_t site, const auto &pull) HOL_FORCED {
-            typedef decltype(width) V;
-            net.write_at<V>(to, site, net.lane.shared, false, solved ? pushed(width, site, pull) : v.get<V>(site));
-        };
-        for_pulls_of_rest(write_best);
-        for_all_strands([&](auto width, const NetStrands &g) HOL_FORCED {
-            if (solved) factor.take_down<decltype(width)>(g, t);
-            for_pulls(width, g, write_best);
-        });
+        if (!solve_for(next_part, nullptr)) return false;
+        factor.find_pulls_of_rest(t, G, nullptr);
+        return true;
     }
     // Calls each(width, site, pull): of the rest, of the atoms between the ends of strands.
     template <class Each>

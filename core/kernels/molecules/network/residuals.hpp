@@ -103,7 +103,7 @@ private:
         net.for_ranges(s.first_node, s.n_atoms, [&](int32_t first, int32_t end) {
             if (e.has(pulls))
                 net.for_all(first, end, [&](auto width, int32_t i) HOL_FORCED {
-                    e.f.set(i, net.reader<decltype(width)>(i)(*e.in.f));
+                    e.f.set(i, net.read_at<decltype(width)>(*e.in.f, i));
                 });
             for (int32_t i = first; i < end; ++i) a[i] = pairs_of(e.has(pulls) ? e.f.get<double>(i) : zero, zero);
         });
@@ -140,7 +140,7 @@ private:
             typedef decltype(width) V;
             const auto site_of = [&](int32_t k) { return g.site + k * g.step; };
             const auto behind = [&](int32_t k, const Net3 &of, const AtomArray &from) HOL_FORCED {  // bond k
-                return k + 1 < g.length ? net.reader<V>(site_of(k))(from) : net.at_node<V>(g, 1, of);
+                return k + 1 < g.length ? net.read_at<V>(from, site_of(k)) : net.at_node<V>(g, 1, of);
             };
             const Vector3<V> zero = {};
             Vector3<V> at_atom = behind(0, e.r, e.coordinates),
@@ -158,7 +158,8 @@ private:
                     const Vector3<V> beyond = behind(k + 1, e.r, e.coordinates);
                     next = e.unrounded_between(at_atom, beyond);
                     at_atom = beyond;
-                    to = subtract_pairs(pairs_of(e.has(pulls) ? net.reader<V>(site_of(k))(*e.in.f) : zero, zero), pull);
+                    to =
+                        subtract_pairs(pairs_of(e.has(pulls) ? net.read_at<V>(*e.in.f, site_of(k)) : zero, zero), pull);
                     pull = scale_pairs(load_any<V>(solution + place + g.step), next);
                     wn = load_any<V>(net.w + site_of(k));
                     to = scale_pairs(wn, add_pairs(to, pull));

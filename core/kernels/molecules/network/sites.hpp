@@ -14,7 +14,8 @@ struct NetSites {
     double *w;       // by site
     const bool far;  // it does not stay in the nearer caches, and is fetched ahead
 
-    NetSites(const NetworkPlan &plan, const MoleculeLane &l, bool packed) : s(plan), lane(l), at(&l, 1, packed), far(plan.n_bonds > 16384) {}
+    NetSites(const NetworkPlan &plan, const MoleculeLane &l, bool packed)
+        : s(plan), lane(l), at(&l, 1, packed), far(plan.n_bonds > 16384) {}
 
     // Of arrays that are gone through together there are more than a processor follows by itself: what stands so far
     // ahead in each is that of a bond, or an atom, after some 10 others in lanes.
@@ -67,6 +68,11 @@ struct NetSites {
     template <class V>
     HOL_FORCED Reader<V> reader(int32_t site) const {
         return {*this, site, rows_of<V>(site), far ? rows_of<V>(site + s.fetched_ahead) : Rows<V>{}};
+    }
+    // Where speed is no matter.
+    template <class V>
+    __attribute__((noinline)) Vector3<V> read_at(const AtomArray &from, int32_t site) const {
+        return reader<V>(site)(from);
     }
     template <class V>
     __attribute__((noinline)) Vector3<V> read_elements(const AtomArray &from, int32_t site) const {
