@@ -21,27 +21,20 @@ struct NetPositions {
         : call(c), fixed(held), newton(plan, lane, packed, team, memory), tally(sum),
           largest(memory.next + NetNewton::values(plan)) {}
 
-    // The largest of what is read: of coordinates, of squares of lengths, and of their inverses; and bonds' errors.
-    template <class V>
-    struct Most {
-        V coordinate, a2, per_a2;
+    // The largest of what is read in lanes, and of what is left of them.
+    struct Largest {
+        vec lanes{};
+        double rest = 0;
+        HOL_FORCED void take(const vec &a) { lanes = max(a, lanes); }
+        HOL_FORCED void take(double a) { rest = max(a, rest); }
     };
-    struct Extremes {
-        Most<vec> lanes{};
-        Most<double> rest{};
-        HOL_FORCED Most<vec> &of(const vec &) { return lanes; }
-        HOL_FORCED Most<double> &of(double) { return rest; }
-        double largest(vec Most<vec>::*of_lanes, double Most<double>::*of_rest) const {
-            double all = rest.*of_rest;
-            for (int j = 0; j < W; ++j) all = max(Width<vec>::get(lanes.*of_lanes, j), all);
-            return all;
-        }
-    };
-    void keep(const NetPart &part, const Extremes &e) const {
-        const int32_t n = newton.s.n_shares + 1;
-        largest[part.share] = e.largest(&Most<vec>::coordinate, &Most<double>::coordinate);
-        largest[n + part.share] = e.largest(&Most<vec>::a2, &Most<double>::a2);
-        largest[2 * n + part.share] = e.largest(&Most<vec>::per_a2, &Most<double>::per_a2);
+    void keep(const NetPart &part, const Largest &coordinate) const {
+        const int32_t n = newton.s.n_shares + 1, n_places = part.end_place - part.first_place;
+        double most = coordinate.rest;
+        for (int i = 0; i < W; ++i) most = max(Width<vec>::get(coordinate.lanes, i), most);
+        largest[part.share] = most;
+        largest[n + part.share] = largest_of(newton.a2 + part.first_place, n_places);
+        largest[2 * n + part.share] = largest_of(newton.per_a2 + part.first_place, n_places);
     }
     // An atom, before and now.
     template <class V>
@@ -49,55 +42,53 @@ struct NetPositions {
         Vector3<V> reference, r;
     };
     template <class V>
-    HOL_FORCED Atom<V> read_atom(int32_t site, Extremes &extremes) const {
+    HOL_FORCED Atom<V> read_atom(int32_t site) const {
         const auto read = newton.net.reader<V>(site);
         newton.net.read_masses<V>(site);
-        const Atom<V> atom = {read(call.r_ref), read(call.r)};
-        const Vector3<V> sizes = absolute(atom.r);
-        V &most = extremes.of(V{}).coordinate;
-        most = max(max(sizes.x, max(sizes.y, sizes.z)), most);
-        return atom;
+        return {read(call.r_ref), read(call.r)};
     }
     // What is known of a bond; returns its error.
     template <class V>
-    HOL_FORCED V read_bond(int32_t place, const Atom<V> &from, const Atom<V> &to, Extremes &extremes) const {
+    HOL_FORCED V read_bond(int32_t place, const Atom<V> &from, const Atom<V> &to) const {
         const Net &net = newton.net;
-        const int32_t *const bond_of = newton.s.bond_of + place;
         const Vector3<V> bond = net.bond_between(call.box, from.r, to.r);
         newton.b.set(place, net.bond_between(call.box_ref, from.reference, to.reference));
         newton.D.set(place, bond);
-        const V a = gather<V>(net.lane.length, bond_of), a2 = a * a, per_a2 = Width<V>::all(1) / a2;
-        auto &most = extremes.of(V{});
-        most.a2 = max(a2, most.a2);
-        most.per_a2 = max(per_a2, most.per_a2);
+        const V a = gather<V>(net.lane.length, newton.s.bond_of + place), a2 = a * a;
         store_any(newton.a2 + place, a2);
-        store_any(newton.per_a2 + place, per_a2);
+        store_any(newton.per_a2 + place, Width<V>::all(1) / a2);
         store_any(newton.tau + place,
                   call.guess ? Width<V>::all(2 * call.dt * call.dt) * net.of_bonds<V>(call.lambda, place) : V{});
         return newton.measure<true>(place, bond);
     }
+    // Reference positions stand where moves will.
     void read_rest() const {
         const NetworkPlan &s = newton.s;
         const NetPart rest = newton.net.rest();
-        Extremes extremes;
-        newton.net.for_all(rest.first_site, rest.end_site, [&](auto width, int32_t i) HOL_FORCED {
-            const auto atom = read_atom<decltype(width)>(i, extremes);
-            newton.moves.set(i, atom.reference);
-            newton.r.set(i, atom.r);
+        newton.net.for_ranges(rest.first_site, rest.end_site, [&](int32_t first, int32_t end) {
+            newton.net.for_all(first, end, [&](auto width, int32_t i) HOL_FORCED {
+                const auto atom = read_atom<decltype(width)>(i);
+                newton.moves.set(i, atom.reference);
+                newton.r.set(i, atom.r);
+            });
         });
+        Largest coordinate;
+        const double *const components[] = {newton.r.x, newton.r.y, newton.r.z};
+        for (const double *x : components)
+            coordinate.take(largest_of(x + rest.first_site, rest.end_site - rest.first_site));
         newton.worst[rest.share] = newton.largest_error([&](const auto &note) HOL_FORCED {
             const auto atom = [&](int32_t i) {
                 return Atom<double>{newton.moves.get<double>(i), newton.r.get<double>(i)};
             };
             for (int32_t k = rest.first_place; k < rest.end_place; ++k)
-                note(read_bond<double>(k, atom(s.from[k]), atom(s.to[k]), extremes));
+                note(read_bond<double>(k, atom(s.from[k]), atom(s.to[k])));
         });
-        keep(rest, extremes);
+        keep(rest, coordinate);
         if (!call.guess) newton.factor.factorize_rest(newton.D, newton.t);
     }
     __attribute__((noinline)) void read_strands(const NetPart &part) const {
         const Net &net = newton.net;
-        Extremes extremes;
+        Largest coordinate;
         newton.worst[part.share] = newton.largest_error([&](const auto &note) HOL_FORCED {
             net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
                 typedef decltype(width) V;
@@ -106,14 +97,19 @@ struct NetPositions {
                 };
                 net.for_bonds(
                     g, [&]() HOL_FORCED { return at_node(0); },
-                    [&](int32_t site, int32_t) HOL_FORCED { return read_atom<V>(site, extremes); },
+                    [&](int32_t site, int32_t) HOL_FORCED {
+                        const Atom<V> atom = read_atom<V>(site);
+                        const Vector3<V> sizes = absolute(atom.r);
+                        coordinate.take(max(sizes.x, max(sizes.y, sizes.z)));
+                        return atom;
+                    },
                     [&]() HOL_FORCED { return at_node(1); },
                     [&](int32_t place, const Atom<V> &from, const Atom<V> &to)
-                        HOL_FORCED { note(read_bond<V>(place, from, to, extremes)); });
+                        HOL_FORCED { note(read_bond<V>(place, from, to)); });
                 if (!call.guess) newton.factor.factorize<V>(g, newton.D, newton.t);
             });
         });
-        keep(part, extremes);
+        keep(part, coordinate);
     }
     __attribute__((noinline)) void load() {
         const NetworkPlan &s = newton.s;
