@@ -168,16 +168,18 @@ struct NetNewton {
         found = false;
         return failed ? __builtin_nan("") : worst_of_all();
     }
+    // One thing after the other for all strands of a part: those of few bonds would wait for themselves.
     __attribute__((noinline)) double move_strands(const NetPart &part) const {
-        return largest_error([&](const auto &note) HOL_FORCED {
+        net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED { correct<decltype(width)>(g); });
+        const double error = largest_error([&](const auto &note) HOL_FORCED {
             net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
-                typedef decltype(width) V;
-                correct<V>(g);
-                for_moved_bonds<V>(
-                    g, [&](int32_t k, const Vector3<V> &bond) HOL_FORCED { note(measure<false>(k, bond)); });
-                factor.take_up<V>(g, t);
+                for_moved_bonds<decltype(width)>(
+                    g, [&](int32_t k, const auto &bond) HOL_FORCED { note(measure<false>(k, bond)); });
             });
         });
+        net.for_strands(part,
+                        [&](auto width, const NetStrands &g) HOL_FORCED { factor.take_up<decltype(width)>(g, t); });
+        return error;
     }
     double error_of(int32_t k) const {
         const auto move_at = [&](int32_t site) {
