@@ -40,7 +40,11 @@ struct NetFactor {
         push = reinterpret_cast<Vector3<double> *>(joint + s.n_tree);
     }
 
-    // When the factors of the rest and of all strands have been made, and right-hand sides been taken up.
+    // Makes the factors, and takes the right-hand sides y up: of the rest, of each part, then of what is left.
+    __attribute__((noinline)) void factorize(const NetPart &part, const Net3 &D, double *y) const {
+        net.for_strands(
+            part, [&](auto width, const NetStrands &g) HOL_FORCED { factorize_strands<decltype(width)>(g, D, y); });
+    }
     void close() const {
         unknowns.add_pushes();
         unknowns.factorize();
@@ -49,6 +53,9 @@ struct NetFactor {
     void take_up_rest(double *y) const {
         for (int32_t i = 0; i < s.n_tree; ++i) take_up_tree(i, y);
         take_up_nodes(y);
+    }
+    __attribute__((noinline)) void take_up(const NetPart &part, double *y) const {
+        net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED { take_up<decltype(width)>(g, y); });
     }
     template <class V>
     HOL_FORCED void take_up(const NetStrands &g, double *y) const {
@@ -124,12 +131,12 @@ struct NetFactor {
         take_up_nodes(y);
     }
 
-    // Makes the factors of strands, and takes right-hand sides y up: from the first to the last bond, those between
-    // being eliminated. What the far side offers to the last one is
+private:
+    // From the first to the last bond, those between being eliminated. What the far side offers to the last one is
     // found as in trees, without a subtraction. To the first one it is what the first bond's own atom does, times what
     // each pivot loses when it is eliminated before and not after those between: P' / P.
     template <class V>
-    __attribute__((noinline)) void factorize(const NetStrands &g, const Net3 &D, double *y) const {
+    HOL_FORCED void factorize_strands(const NetStrands &g, const Net3 &D, double *y) const {
         Vector3<V> Dk = D.get<V>(g.place), bk = b.get<V>(g.place);
         V first = load_any<V>(y + g.place);
         unknowns.set_bonds(g, 0, Dk, bk);
@@ -176,7 +183,6 @@ struct NetFactor {
         net.to_end(g, 1, yk, unknowns.y);
     }
 
-private:
     int32_t first_child(int32_t joint_number) const { return s.child_start[joint_number]; }
     int32_t n_children(int32_t number) const { return s.child_start[number + 1] - s.child_start[number]; }
 

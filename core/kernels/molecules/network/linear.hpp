@@ -47,9 +47,10 @@ struct NetLinear : NetEquations {
         net.for_ranges(s.first_node, s.n_atoms, [&](int32_t first, int32_t end) { read_atoms(first, end); });
         find_equations_of_trees();
         factor.factorize_rest(d, t);
-        for_all_strands([&](auto width, const NetStrands &g) HOL_FORCED {
-            find_equations<decltype(width)>(g);
-            factor.factorize<decltype(width)>(g, d, t);
+        net.for_parts([&](const NetPart &part) {
+            net.for_strands(part,
+                            [&](auto width, const NetStrands &g) HOL_FORCED { find_equations<decltype(width)>(g); });
+            factor.factorize(part, d, t);
         });
         factor.close();
     }
@@ -197,6 +198,21 @@ struct NetLinear : NetEquations {
         net.fetch_ahead(site, v.x, v.y, v.z, net.w);
         return add_times(v.get<V>(site), load_any<V>(net.w + site), pull);
     }
+    // Velocities of strands, and their right-hand sides.
+    template <class V>
+    HOL_FORCED void push(const NetStrands &g) const {
+        StrandPulls<V> along(net, t, d, g.place);
+        net.for_bonds(
+            g, [&]() HOL_FORCED { return net.at_node<V>(g, 0, v); },
+            [&](int32_t site, int32_t place) HOL_FORCED {
+                const Vector3<V> velocity = pushed(V{}, site, along.before(place));
+                v.set(site, velocity);
+                return velocity;
+            },
+            [&]() HOL_FORCED { return net.at_node<V>(g, 1, v); },
+            [&](int32_t place, const Vector3<V> &from, const Vector3<V> &to)
+                HOL_FORCED { find_rate(place, from, to); });
+    }
     // Pushes velocities, and finds multipliers of what that leaves: the pulls of the rest, and what is taken down.
     __attribute__((noinline)) bool project_again() const {
         for_pulls_of_rest([&](auto width, int32_t site, const auto &pull)
@@ -204,20 +220,9 @@ struct NetLinear : NetEquations {
         for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k)
             find_rate(k, v.get<double>(s.from[k]), v.get<double>(s.to[k]));
         factor.take_up_rest(t);
-        for_all_strands([&](auto width, const NetStrands &g) HOL_FORCED {
-            typedef decltype(width) V;
-            StrandPulls<V> along(net, t, d, g.place);
-            net.for_bonds(
-                g, [&]() HOL_FORCED { return net.at_node<V>(g, 0, v); },
-                [&](int32_t site, int32_t place) HOL_FORCED {
-                    const Vector3<V> velocity = pushed(width, site, along.before(place));
-                    v.set(site, velocity);
-                    return velocity;
-                },
-                [&]() HOL_FORCED { return net.at_node<V>(g, 1, v); },
-                [&](int32_t place, const Vector3<V> &from, const Vector3<V> &to)
-                    HOL_FORCED { find_rate(place, from, to); });
-            factor.take_up<V>(g, t);
+        net.for_parts([&](const NetPart &part) {
+            net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED { push<decltype(width)>(g); });
+            factor.take_up(part, t);
         });
         factor.unknowns.add_pushes();
         if (!solve_for(next_part, nullptr)) return false;

@@ -177,8 +177,7 @@ struct NetNewton {
                     g, [&](int32_t k, const auto &bond) HOL_FORCED { note(measure<false>(k, bond)); });
             });
         });
-        net.for_strands(part,
-                        [&](auto width, const NetStrands &g) HOL_FORCED { factor.take_up<decltype(width)>(g, t); });
+        factor.take_up(part, t);
         return error;
     }
     double error_of(int32_t k) const {
@@ -208,8 +207,8 @@ struct NetNewton {
                 const int32_t place = g.place + k * g.step;
                 measure<true>(place, bonds.get<V>(place));
             }
-            factor.factorize<V>(g, bonds, t);
         });
+        factor.factorize(part, bonds, t);
     }
     __attribute__((noinline)) void solve(Flag) {
         const double left = max(min(left_of_error * worst_of_all(), most_left), least_left);

@@ -106,10 +106,10 @@ struct NetPositions {
                     [&]() HOL_FORCED { return at_node(1); },
                     [&](int32_t place, const Atom<V> &from, const Atom<V> &to)
                         HOL_FORCED { note(read_bond<V>(place, from, to)); });
-                if (!call.guess) newton.factor.factorize<V>(g, newton.D, newton.t);
             });
         });
         keep(part, coordinate);
+        if (!call.guess) newton.factor.factorize(part, newton.D, newton.t);
     }
     __attribute__((noinline)) void load() {
         const NetworkPlan &s = newton.s;

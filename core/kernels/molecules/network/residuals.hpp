@@ -187,8 +187,8 @@ private:
                 from = to;
                 bond = next;
             }
-            factor.take_up<V>(g, e.t);
         });
+        factor.take_up(part, e.t);
     }
     template <class V>
     HOL_FORCED void set_end(const NetStrands &g, int end, int32_t place, const Pair3<V> &bond, const V &t,
