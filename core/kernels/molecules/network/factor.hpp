@@ -81,6 +81,9 @@ struct NetFactor {
         }
         for (int32_t i = s.n_tree; i-- > 0;) take_down_tree(i, y);
     }
+    __attribute__((noinline)) void take_down(const NetPart &part, double *y) const {
+        net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED { take_down<decltype(width)>(g, y); });
+    }
     template <class V>
     HOL_FORCED void take_down(const NetStrands &g, double *y) const {
         const V first = load_any<V>(y + g.place);

@@ -37,12 +37,8 @@ struct NetLinear : NetEquations {
           enough(memory.values(in_fours(s.n_bonds))), tension(memory.values(in_fours(n_rest(s))) - s.first_node),
           factor(net, d, true, memory) {}
 
-    // Calls each(width, strands) for all strands, which need what has been found for the rest. One vector of them after
-    // the other goes through all that it needs, in registers and the nearest cache.
-    template <class Each>
-    HOL_FORCED void for_all_strands(const Each &each) const {
-        net.for_parts([&](const NetPart &part) { net.for_strands(part, each); });
-    }
+    // Strands need what has been found for the rest. One part of them after the other goes through all that it needs,
+    // in cache, one vector of strands in registers.
     void load() const {
         net.for_ranges(s.first_node, s.n_atoms, [&](int32_t first, int32_t end) { read_atoms(first, end); });
         find_equations_of_trees();
@@ -97,11 +93,11 @@ struct NetLinear : NetEquations {
         note(good);
     }
     __attribute__((noinline)) void take_down_and_prove(const NetPart &part) const {
+        factor.take_down(part, t);
         bool good = !__atomic_load_n(&unproven, __ATOMIC_RELAXED);
+        if (!good) return;
         net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
             typedef decltype(width) V;
-            factor.take_down<V>(g, t);
-            if (!good) return;
             const auto at_node = [&](int end) HOL_FORCED {
                 return Atom<V>{net.at_node<V>(g, end, net.w), net.at_node<V>(g, end, tension),
                                net.at_node<V>(g, end, G)};
@@ -165,8 +161,7 @@ struct NetLinear : NetEquations {
                 NetResiduals{*this, factor, begun ? solution : t}.find(tension, keep);
                 begun = true;
                 if (!solve_for(next_part, enough)) t[0] = 0 / (t[0] - t[0]);  // not a number, which is no contraction
-                for_all_strands([&](auto width, const NetStrands &g)
-                                    HOL_FORCED { factor.take_down<decltype(width)>(g, t); });
+                net.for_parts([&](const NetPart &part) { factor.take_down(part, t); });
             },
             [&](Flag) {
                 return add_corrections<double>(s.n_bonds, [&](int32_t k) {
@@ -188,9 +183,9 @@ struct NetLinear : NetEquations {
             net.write_at<V>(to, site, net.lane.shared, false, solved ? pushed(width, site, pull) : v.get<V>(site));
         };
         for_pulls_of_rest(write);
-        for_all_strands([&](auto width, const NetStrands &g) HOL_FORCED {
-            if (again && solved) factor.take_down<decltype(width)>(g, t);
-            for_pulls(width, g, write);
+        net.for_parts([&](const NetPart &part) {
+            if (again && solved) factor.take_down(part, t);
+            net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED { for_pulls(width, g, write); });
         });
     }
     template <class V>
