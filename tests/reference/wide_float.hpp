@@ -55,6 +55,14 @@ public:
         }
     }
 
+    /** Fewer digits, cut off, or zeros behind those that there are. */
+    template <int OTHER>
+    explicit wide_float(const wide_float<OTHER> &x) : exponent_(x.exponent_), sign_(x.sign_)
+    {
+        constexpr std::size_t theirs = OTHER / limb_bits;
+        for (std::size_t k = 1; k <= n && k <= theirs; ++k) digit_[n - k] = x.digit_[theirs - k];
+    }
+
     explicit operator long double() const
     {
         if (sign_ == 0) return 0;
@@ -105,8 +113,9 @@ public:
         if (x.sign_ == 0) return x;
         std::array<limb, 2 * n> product{};
         for (std::size_t i = 0; i < n; ++i) {
+            if (a.digit_[i] == 0) continue;
             limb carry = 0;
-            for (std::size_t j = 0; j < n; ++j) {
+            for (std::size_t j = i + 2 < n ? n - 2 - i : 0; j < n; ++j) {  // what is two limbs below the last is cut off
                 const double_limb p = static_cast<double_limb>(a.digit_[i]) * b.digit_[j] + product[i + j] + carry;
                 product[i + j] = static_cast<limb>(p);
                 carry = static_cast<limb>(p >> limb_bits);
@@ -171,6 +180,9 @@ public:
     }
 
 private:
+    template <int OTHER>
+    friend class wide_float;
+
     static constexpr std::size_t n = BITS / limb_bits;
     static_assert(BITS % 64 == 0, "whole limbs");
 

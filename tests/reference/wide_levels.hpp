@@ -40,19 +40,30 @@ REAL largest_component(const vector3<REAL> &x)
     return largest;
 }
 
+/** What is a scale needs few digits: enough to stay right where a pivot is so small that more bits are taken for all. */
+template <class REAL>
+using scale_float = wide_float<(REAL::bits > 448 ? REAL::bits : 192)>;
+
 /** |A^-1| s. */
 template <class REAL>
-std::vector<REAL> amplified(const sparse_factor<REAL> &factor, const std::vector<REAL> &s)
+std::vector<REAL> amplified(const sparse_factor<REAL> &exact, const std::vector<REAL> &s)
 {
-    std::vector<REAL> sum(s.size());
+    using few = scale_float<REAL>;
+    const sparse_factor<few> factor(exact);
+    const std::vector<few> size(s.begin(), s.end());
+    std::vector<few> sum(s.size());
     for (std::size_t l = 0; l < s.size(); ++l) {
-        if (s[l] == REAL(0)) continue;
-        std::vector<REAL> column(s.size());
-        column[l] = REAL(1);
-        column = factor.solve(column);
-        for (std::size_t k = 0; k < s.size(); ++k) sum[k] += absolute(column[k]) * s[l];
+        std::vector<few> column(s.size());
+        column[l] = few(1);
+        column = factor.solve(column, factor.symmetric() ? l : factor.all);
+        for (std::size_t k = 0; k < s.size(); ++k) {
+            if (column[k] == few(0)) continue;
+            const few x = absolute(column[k]);
+            sum[k] += x * size[l];
+            if (factor.symmetric() && k != l) sum[l] += x * size[k];
+        }
     }
-    return sum;
+    return std::vector<REAL>(sum.begin(), sum.end());
 }
 
 /** Everything that follows from t = 2 lambda and the scale of t. */

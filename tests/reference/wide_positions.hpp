@@ -5,6 +5,8 @@
 #ifndef REFERENCE_WIDE_POSITIONS_HPP
 #define REFERENCE_WIDE_POSITIONS_HPP
 
+#include <optional>
+
 #include "molecule_step.hpp"
 #include "wide_levels.hpp"
 
@@ -49,6 +51,8 @@ int newton(newton_state<REAL> &s)
 {
     const int limit = 60;
     const REAL done = REAL(1).scaled(-REAL::bits * 3 / 4);
+    std::optional<sparse_factor<REAL>> factor;
+    REAL before(0);
     for (int solves = 0; solves <= limit; ++solves) {
         const auto d = s.vectors();
         std::vector<REAL> error(d.size());
@@ -60,9 +64,10 @@ int newton(newton_state<REAL> &s)
         }
         if (worst < done) return solves;
         if (worst > REAL(1e30)) return -1;
-        const sparse_factor<REAL> factor(s.m.matrix(d));
-        if (!factor.regular()) return -1;
-        const auto change = factor.solve(error);
+        if (worst > before.scaled(-20)) factor.emplace(s.m.matrix(d));  // else those before will do
+        if (!factor->regular()) return -1;
+        before = worst;
+        const auto change = factor->solve(error);
         for (std::size_t k = 0; k < d.size(); ++k) s.tau[k] += change[k];
     }
     return -1;
