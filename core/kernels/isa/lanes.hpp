@@ -5,7 +5,7 @@
 
 #include "core/kernels/isa/target.hpp"
 
-#if defined(__x86_64__) || defined(__i386__)
+#if defined(__AVX__)
 #pragma GCC diagnostic push  // some versions of this header use _mm512_undefined_pd() in a way that gcc warns about
 #pragma GCC diagnostic ignored "-Wuninitialized"
 #ifndef __clang__
@@ -13,6 +13,8 @@
 #endif
 #include <immintrin.h>
 #pragma GCC diagnostic pop
+#elif defined(__x86_64__) || defined(__i386__)
+#include <emmintrin.h>  // a tenth of what all of them take to compile
 #elif defined(__aarch64__)
 #include <arm_neon.h>
 #endif
