@@ -3,7 +3,7 @@
  * for all bits of every array per atom, bond and chain. Sums over chains, which depend on what is added first, are left
  * out. Kernels between which the size of a call decides must print the same (same_bits.sh).
  *
- *   digest [LONGEST]        lengths 1 .. LONGEST, default 1400
+ *   digest [LONGEST [SHORTEST]]        default 1400 and 1
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,13 +32,13 @@ static uint64_t digest(const scene *s, const answers *a)
 
 int main(int argc, char **argv)
 {
-    const int64_t longest = argc > 1 ? atoi(argv[1]) : 1400;
+    const int64_t longest = argc > 1 ? atoi(argv[1]) : 1400, shortest = argc > 2 ? atoi(argv[2]) : 1;
     const char *const wanted = getenv("HOLONOMIC_ISA");
     if (wanted && strcmp(wanted, hol_instruction_set()) != 0) return 77;
-    for (int64_t n = 1; n <= longest; n += n < 300 ? 1 : 1 + n / 64)
+    for (int64_t n = shortest; n <= longest; n += n < 300 ? 1 : 1 + n / 64)
         for (int where = 0; where < PLACES; ++where)
             for (int plain = 0; plain < 2; ++plain) {
-                scene s = scene_make(n < 300 ? 21 : 2, n, (place)where, (int)((n + where) % 2));
+                scene s = scene_make(n <= 256 ? 21 : 2, n, (place)where, (int)((n + where) % 2));
                 answers a = plain ? scene_plain_answers(&s) : scene_answers(&s);
                 printf("%lld bonds, %s%s: %016llx\n", (long long)n, place_names[where], plain ? ", plain" : "",
                        (unsigned long long)digest(&s, &a));

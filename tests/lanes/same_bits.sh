@@ -1,19 +1,19 @@
 #!/bin/sh
-# Whether sets of kernels give the same bits, for chains of 1 to LONGEST bonds. Sets that can't run here are named; with
+# Whether sets of kernels give the same bits, for chains of SHORTEST to LONGEST bonds. Sets that can't run here are named; with
 # fewer than two there is nothing to compare (exit status 77).
 #
-#   same_bits.sh FOLDER DIGEST LONGEST SET...        FOLDER: see with_set.sh
+#   same_bits.sh FOLDER DIGEST SHORTEST LONGEST SET...        FOLDER: see with_set.sh
 set -u
-folder_of_sets=$1 digest=$2 longest=$3
-shift 3
+folder_of_sets=$1 digest=$2 shortest=$3 longest=$4
+shift 4
 folder=$(mktemp -d) || exit 1
 trap 'rm -rf "$folder"' EXIT
 first='' compared=0
 for set in "$@"; do
-    HOLONOMIC_ISA=$set "$digest" "$longest" >"$folder/$set"
+    HOLONOMIC_ISA=$set "$digest" "$longest" "$shortest" >"$folder/$set"
     status=$?
     if [ $status -eq 77 ]; then
-        HOLONOMIC_ISA=$set LD_LIBRARY_PATH=$folder_of_sets "$digest" "$longest" >"$folder/$set"
+        HOLONOMIC_ISA=$set LD_LIBRARY_PATH=$folder_of_sets "$digest" "$longest" "$shortest" >"$folder/$set"
         status=$?
     fi
     if [ $status -eq 77 ]; then

@@ -19,6 +19,10 @@ enum { EVERY_LENGTH_TO = 1400, NEAR = 40, LONGEST_OF_A_LANE = 256 };
 /** Limits above EVERY_LENGTH_TO: blocks of 1024 bonds; windows of 256 and of 512 bonds in each of 2 .. 16 lanes. */
 static const int64_t limits[] = {2048, 3072, 4096, 8192, 12288, 16384};
 
+/** The lanes of the set, no fewer than two blocks of the installed ones have; and behind its third block no limit is
+ * new. */
+static int64_t lanes = 8, last_limit = 8192;
+
 /** So many bonds in a call that the library takes the caller's arrays to be out of cache. */
 static const int64_t bonds_out_of_cache = 16600;
 
@@ -60,13 +64,18 @@ static void check(int64_t n_chains, int64_t n_bonds, place where, int unequal, i
     scene_free(&s);
 }
 
-/** Short chains: full blocks of sixteen lanes and three chains more; small molecules need a few behind them. */
+/**
+ * Short chains: full blocks of lanes and three chains more; small molecules need a few behind them. Longer ones are
+ * read, eliminated and written by functions that know neither lengths nor places: with or without sums by turns.
+ */
 static void check_short(int64_t n_bonds)
 {
-    const int64_t n_chains = n_bonds <= 48 ? 35 : 19;
     for (int unequal = 0; unequal < 2; ++unequal)
         for (int where = 0; where < PLACES; ++where)
-            for (int plain = 0; plain < 2; ++plain) check(n_chains, n_bonds, (place)where, unequal, plain);
+            for (int plain = 0; plain < 2; ++plain) {
+                if (n_bonds > 48 && (n_bonds / 16 + where + unequal) % 2 != plain) continue;
+                check(n_bonds <= 48 ? 35 : lanes + 3, n_bonds, (place)where, unequal, plain);
+            }
     check(1, n_bonds, PACKED, (int)(n_bonds % 2), 1);
     if (n_bonds % 16 != 3) return;
     for (int where = PACKED; where <= LISTED; ++where)
@@ -79,12 +88,12 @@ static void check_length(int64_t n_bonds)
         check_short(n_bonds);
         return;
     }
-    const int turn = (int)(n_bonds % 2);
+    const int64_t turn = n_bonds / 32; /* groups are read of as many: all that is left of one comes with either turn */
     for (int where = 0; where < PLACES; ++where)
         for (int unequal = 0; unequal < 2; ++unequal) {
             /* Of the longest, which take their time, each length in one place with either masses. */
-            if (n_bonds > EVERY_LENGTH_TO && n_bonds % PLACES != where) continue;
-            check(where == MIXED ? 2 : 1, n_bonds, (place)where, unequal, (turn + where + unequal) % 2);
+            if (n_bonds > EVERY_LENGTH_TO ? n_bonds % PLACES != where : (turn + where) % 2 != unequal) continue;
+            check(where == MIXED ? 2 : 1, n_bonds, (place)where, unequal, (turn / 2 + where + unequal) % 2 != 0);
         }
 }
 
@@ -92,7 +101,7 @@ static void check_length(int64_t n_bonds)
 static int64_t next_length(int64_t n)
 {
     if (n < EVERY_LENGTH_TO) return n + 1;
-    for (size_t i = 0; i < sizeof limits / sizeof *limits; ++i) {
+    for (size_t i = 0; i < sizeof limits / sizeof *limits && limits[i] <= last_limit; ++i) {
         if (n < limits[i] - NEAR) return limits[i] - NEAR;
         if (n < limits[i] + NEAR) return n + 1;
     }
@@ -106,6 +115,10 @@ int main(int argc, char **argv)
     if (wanted && strcmp(wanted, hol_instruction_set()) != 0) {
         printf("skipped: the kernels '%s' can't run here\n", wanted);
         return 77;
+    }
+    if (strncmp(hol_instruction_set(), "lanes", 5) == 0 && atoi(hol_instruction_set() + 5) > 4) {
+        lanes = atoi(hol_instruction_set() + 5);
+        last_limit = limits[sizeof limits / sizeof *limits - 1];
     }
     int64_t i = 0, n_lengths = 0;
     for (int64_t n = 1; n > 0 && n_failed < 20; n = next_length(n), ++i) {

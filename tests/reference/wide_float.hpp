@@ -115,7 +115,8 @@ public:
         for (std::size_t i = 0; i < n; ++i) {
             if (a.digit_[i] == 0) continue;
             limb carry = 0;
-            for (std::size_t j = i + 2 < n ? n - 2 - i : 0; j < n; ++j) {  // what is two limbs below the last is cut off
+            for (std::size_t j = i + 2 < n ? n - 2 - i : 0; j < n;
+                 ++j) {  // what is two limbs below the last is cut off
                 const double_limb p = static_cast<double_limb>(a.digit_[i]) * b.digit_[j] + product[i + j] + carry;
                 product[i + j] = static_cast<limb>(p);
                 carry = static_cast<limb>(p >> limb_bits);

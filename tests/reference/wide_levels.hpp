@@ -40,7 +40,8 @@ REAL largest_component(const vector3<REAL> &x)
     return largest;
 }
 
-/** What is a scale needs few digits: enough to stay right where a pivot is so small that more bits are taken for all. */
+/** What is a scale needs few digits: enough to stay right where a pivot is so small that more bits are taken for all.
+ */
 template <class REAL>
 using scale_float = wide_float<(REAL::bits > 448 ? REAL::bits : 192)>;
 

@@ -17,7 +17,8 @@ std::size_t at(std::int64_t i)
     return static_cast<std::size_t>(i);
 }
 
-/** Whether steps are counted that have an answer and are refused: for the table alone, as it takes more than all else. */
+/** Whether steps are counted that have an answer and are refused: for the table alone, as it takes more than all else.
+ */
 bool counts_refused_steps()
 {
     static const bool wanted = std::getenv("STRESS_MARKDOWN") != nullptr;
