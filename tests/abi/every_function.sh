@@ -2,17 +2,17 @@
 # A program built against an earlier release runs with today's library. It is compiled with that release's header, and
 # linked to a library that has that release's symbol versions and nothing in it, so that nothing of today's gets in.
 #
-#   every_function.sh SOURCE LIBRARY WORK RELEASE        the header and symbols of RELEASE as frozen in tests/abi/frozen
+#   every_function.sh LIBRARY WORK HEADER MAP PROGRAM        the header and the symbols of the release, and a program in C
 #
 # CC and READELF name programs. Exit status 77: today's library has another SOVERSION.
 set -eu
-source=$1 library=$2 work=$3 release=$4
+library=$1 work=$2 header=$3 map=$4 program=$5
 cc=${CC:-cc}
 rm -rf "$work"
 mkdir -p "$work/include" "$work/stub"
-cp "$source/tests/abi/frozen/holonomic-$release.h" "$work/include/holonomic.h"
-cp "$source/tests/abi/frozen/holonomic-$release.map" "$work/holonomic.map"
-cp "$source/tests/abi/every_function.c" "$work/every_function.c"
+cp "$header" "$work/include/holonomic.h"
+cp "$map" "$work/holonomic.map"
+cp "$program" "$work/every_function.c"
 soversion=0
 [ -e "$(dirname "$library")/libholonomic.so.$soversion" ] ||
     { echo "today's library has another SOVERSION than $soversion: nothing is promised"; exit 77; }

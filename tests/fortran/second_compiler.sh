@@ -32,7 +32,7 @@ compile -c "$tests/oracle_case.f90"
 link() { # link PROGRAM SOURCE... OBJECT...
     program=$1
     shift
-    compile -O1 "$@" -o "$program" "-L$library" -lholonomic "-Wl,-rpath,$library"
+    compile "$@" -o "$program" "-L$library" -lholonomic "-Wl,-rpath,$library"
 }
 
 for test in test_oracle.f90 test_layouts.f90 test_arguments.f90 test_levels.f90 test_molecules.f90 test_graphs.f90 \
