@@ -1,6 +1,7 @@
 #include "seam_reference.hpp"
 
 #include <cmath>
+#include <optional>
 
 #include "random.h"
 
@@ -92,13 +93,9 @@ std::vector<vec> bonds_after(const molecule &m, const std::vector<double> &drift
     return d;
 }
 
-}  // namespace
-
-seam_solution exact_forces(const seam_molecule &x)
+seam_solution forces_of(const seam_molecule &x, const molecule &m, const factor &a)
 {
     const molecule_problem p = x.problem();
-    const molecule m(p);
-    const factor a(m.matrix(m.vectors()));
     quads b, s;
     for (const auto &k : m.bonds) {
         const vec fi = molecule::row(p.f, k.i), fj = molecule::row(p.f, k.j);
@@ -111,11 +108,9 @@ seam_solution exact_forces(const seam_molecule &x)
     return solution_of(m, x.length.size(), t, size_of_errors(a, s), 1);
 }
 
-seam_solution exact_velocities(const seam_molecule &x)
+seam_solution velocities_of(const seam_molecule &x, const molecule &m, const factor &a)
 {
     const molecule_problem p = x.problem();
-    const molecule m(p);
-    const factor a(m.matrix(m.vectors()));
     quads b, s;
     for (const auto &k : m.bonds) {
         const vec vi = molecule::row(p.v, k.i), vj = molecule::row(p.v, k.j);
@@ -129,20 +124,32 @@ seam_solution exact_velocities(const seam_molecule &x)
     return out;
 }
 
+}  // namespace
+
+linear_solutions exact_linear(const seam_molecule &x)
+{
+    const molecule m(x.problem());
+    const factor a(m.matrix(m.vectors()));
+    return {forces_of(x, m, a), velocities_of(x, m, a)};
+}
+
 seam_solution exact_positions(const seam_molecule &x)
 {
     const molecule m(x.problem());
     const quad multiple = quad(x.dt) * quad(x.dt);
     quads t(m.bonds.size(), 0), error(t), s;
+    std::optional<factor> a;
+    quad before = 0;
     for (int turn = 0; turn < 20; ++turn) {
         const std::vector<vec> d = bonds_after(m, x.drifted, t);
         quad worst = 0;
         for (std::size_t k = 0; k < t.size(); ++k) {
-            const quad a = x.length[m.bonds[k].number];
-            error[k] = (product(d[k], d[k]) - a * a) / 2;
-            worst = absolute(error[k]) > worst * a * a ? absolute(error[k]) / (a * a) : worst;
+            const quad square = quad(x.length[m.bonds[k].number]) * x.length[m.bonds[k].number];
+            error[k] = (product(d[k], d[k]) - square) / 2;
+            worst = absolute(error[k]) > worst * square ? absolute(error[k]) / square : worst;
         }
-        const factor a(m.matrix(d));
+        if (worst > 1e-6 * before || worst < 1e-25) a.emplace(m.matrix(d));  // else those before will do
+        before = worst;
         if (worst < 1e-25) {
             for (std::size_t k = 0; k < t.size(); ++k) {
                 const vec &from = m.r[m.bonds[k].i], &to = m.r[m.bonds[k].j];
@@ -150,11 +157,11 @@ seam_solution exact_positions(const seam_molecule &x)
                 s.push_back(length * (length + extent));
             }
             add_products(m, d, t, s);
-            seam_solution out = solution_of(m, x.length.size(), t, size_of_errors(a, s), multiple);
+            seam_solution out = solution_of(m, x.length.size(), t, size_of_errors(*a, s), multiple);
             move(m, x.drifted, multiple, out);
             return out;
         }
-        const quads change = a.solve(error);
+        const quads change = a->solve(error);
         for (std::size_t k = 0; k < t.size(); ++k) t[k] += change[k];
     }
     return {};

@@ -29,8 +29,10 @@ struct seam_solution {
     quads moved, moved_scale;    ///< velocities or positions
 };
 
-seam_solution exact_forces(const seam_molecule &m);
-seam_solution exact_velocities(const seam_molecule &m);
+struct linear_solutions {
+    seam_solution forces, velocities;
+};
+linear_solutions exact_linear(const seam_molecule &m);
 /** By Newton's method; lambda is empty if it does not converge. */
 seam_solution exact_positions(const seam_molecule &m);
 

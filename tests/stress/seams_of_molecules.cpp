@@ -1,6 +1,7 @@
 /**
  * Large molecules with features where they are cut and beside it: all outputs of forces, velocities and positions, by
- * one thread and two, against the elimination of the whole matrix.
+ * one thread and two, against the elimination of the whole matrix; with every set of kernels of molecules that runs
+ * here, or with that which HOLONOMIC_ISA names.
  *
  *   seams_of_molecules [-v] [ROUND]   one round alone; -v: how near its bounds each comes
  */
@@ -16,6 +17,7 @@
 
 #include "random.h"
 #include "seam_reference.hpp"
+#include "soak.hpp"
 
 namespace
 {
@@ -96,7 +98,15 @@ struct outputs {
     }
 };
 
-void check(seam_shape shape, const seam_molecule &m)
+struct exact_solutions {
+    linear_solutions linear;
+    seam_solution positions;
+    explicit exact_solutions(const seam_molecule &m) : linear(exact_linear(m)), positions(exact_positions(m))
+    {
+    }
+};
+
+void check(seam_shape shape, const seam_molecule &m, const exact_solutions &exact)
 {
     hol_chains *chains = nullptr;
     require_ok("creation", hol_chains_create(static_cast<std::int64_t>(m.w.size()), m.mass.data(), &chains));
@@ -107,7 +117,8 @@ void check(seam_shape shape, const seam_molecule &m)
     if (!(outputs(m, chains) == one)) fail("two threads give other bits", 0);
     hol_chains_destroy(chains);
     const double least = shape == TILES ? 1e-40 : 1e-80;
-    const seam_solution f = exact_forces(m), v = exact_velocities(m), r = exact_positions(m);
+    const auto &[f, v] = exact.linear;
+    const seam_solution &r = exact.positions;
     compare("lambda of forces", one.lambda, f.lambda, f.lambda_scale, 1, least);
     compare("G", one.g, f.g, f.g_scale, 3, least);
     compare("lambda of velocities", one.mu, v.lambda, v.lambda_scale, 1, least);
@@ -157,7 +168,9 @@ int main(int argc, char **argv)
 {
     const bool verbose = argc > 1 && std::strcmp(argv[1], "-v") == 0;
     const int only = argc > 1 + verbose ? std::atoi(argv[1 + verbose]) : -1;
-    int round = 0;
+    std::vector<std::string> sets = sets_of_kernels();
+    sets.erase(std::remove(sets.begin(), sets.end(), "scalar"), sets.end());  // it has none of molecules
+    int round = 0, bad = 0;
     for (int shape = 0; shape < N_SEAM_SHAPES; ++shape) {
         const bool large = shape == PIECES || shape == TILES;
         const seam_graph g = make_seam_graph(static_cast<seam_shape>(shape));
@@ -170,11 +183,18 @@ int main(int argc, char **argv)
                 current = "round " + std::to_string(round) + ", " + seam_shape_name(shape) + ", " +
                           seam_kind_name(kind) + (large ? " about" : " " + std::to_string(steps) + " behind") +
                           " the seam";
-                worst = 0;
-                check(static_cast<seam_shape>(shape), make_seam_molecule(g, puts, static_cast<std::uint64_t>(round)));
-                if (verbose) std::printf("%s: %zu features, %.3g of the bounds\n", current.c_str(), puts.size(), worst);
+                const seam_molecule m = make_seam_molecule(g, puts, static_cast<std::uint64_t>(round));
+                const exact_solutions exact(m);
+                for (const std::string &set : sets)
+                    bad += !with_set(set, [&] {
+                        check(static_cast<seam_shape>(shape), m, exact);
+                        if (verbose || failures > 0)
+                            std::printf("%s, %s: %zu features, %.3g of the bounds\n", current.c_str(), set.c_str(),
+                                        puts.size(), worst);
+                        return failures > 0;
+                    });
             }
     }
-    if (failures > 0) std::printf("%d failures\n", failures);
-    return failures > 0;
+    if (bad > 0) std::printf("%d molecules failed\n", bad);
+    return bad > 0;
 }

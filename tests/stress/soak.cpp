@@ -11,7 +11,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <thread>
 
 namespace stress
@@ -64,9 +63,7 @@ void work_on(unsigned worker, const soak_options &options, const std::vector<std
         for (std::uint64_t g = 0; g < groups && first + g * group_size < options.end; ++g)
             work.prepare(first + g * group_size);
         for (std::size_t s = 0; s < sets.size(); ++s) {
-            const bool good = in_child([&] {
-                setenv("HOLONOMIC_ISA", sets[s].c_str(), 1);
-                if (sets[s] != hol_instruction_set()) return 1;
+            const bool good = with_set(sets[s], [&] {
                 work.check(worker, s);
                 return 0;
             });
@@ -84,16 +81,20 @@ void work_on(unsigned worker, const soak_options &options, const std::vector<std
 
 }  // namespace
 
+bool with_set(const std::string &set, const std::function<int()> &body)
+{
+    return in_child([&] {
+        setenv("HOLONOMIC_ISA", set.c_str(), 1);
+        return set == hol_instruction_set() ? body() : 1;
+    });
+}
+
 std::vector<std::string> sets_of_kernels()
 {
     if (const char *const wanted = std::getenv("HOLONOMIC_ISA")) return {wanted};
     std::vector<std::string> sets;
     for (const char *const name : {STRESS_SETS})
-        if (in_child([&] {
-                setenv("HOLONOMIC_ISA", name, 1);
-                return std::strcmp(name, hol_instruction_set()) == 0 ? 0 : 1;
-            }))
-            sets.push_back(name);
+        if (with_set(name, [] { return 0; })) sets.push_back(name);
     return sets;
 }
 

@@ -29,6 +29,10 @@ struct soak_options {
 /** The sets of kernels that the library has and this machine runs, or what HOLONOMIC_ISA names. */
 std::vector<std::string> sets_of_kernels();
 
+/** Runs body in a child that has these kernels; whether it ended with 0. What it allocates and changes is lost but for
+ * shared memory. */
+bool with_set(const std::string &set, const std::function<int()> &body);
+
 /** Memory that all processes share, zero at first; the program ends if there is none. */
 void *shared_memory(std::size_t bytes);
 
@@ -69,8 +73,7 @@ private:
 /**
  * Runs until the time is over or all cases have been checked; each worker begins at least one group.
  *   prepare(first)        adds the cases of the group that begins with this number
- *   check(worker, set)    checks all of them; HOLONOMIC_ISA is set, and what it allocates and changes is lost but for
- *                         shared memory
+ *   check(worker, set)    checks all of them, with_set()
  *   clear()               forgets them
  *   progress()            from time to time
  * Returns how many children ended before their time: by a signal, or without having checked all.
