@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Whether every header below FOLDER compiles by itself, and is read once however often it is included.
 #
-#   alone.sh SOURCES FOLDER COMPILER FLAG...
+#   alone.sh SOURCES FOLDER WHICH COMPILER FLAG...        WHICH: all headers, or those with conditions
 set -u
-sources=$1 folder=$2
-shift 2
+sources=$1 folder=$2 which=$3
+shift 3
 cd "$sources" || exit 1
 temporary=$(mktemp -d) || exit 1
 trap 'rm -rf "$temporary"' EXIT
@@ -23,4 +23,5 @@ headers=$(find "$folder" -name '*.hpp')
 [ -n "$headers" ] || { echo "no headers in $folder"; exit 1; }
 if find core -name '*.inl' | grep .; then echo "no .inl files in core"; exit 1; fi
 [ "$folder" = core/kernels ] || headers=$(printf '%s\n' "$headers" | grep -v '^core/kernels/.*/')
+if [ "$which" = conditions ]; then headers=$(printf '%s\n' "$headers" | xargs grep -lE '^ *# *if'); fi
 printf '%s\n' "$headers" | xargs -P "$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)" -I{} bash -c 'alone {}'
