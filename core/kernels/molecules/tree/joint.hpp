@@ -47,23 +47,27 @@ HOL_INLINE void decompose(const Rows &x, int k, V w, V *S, V *r, V *m, V &slack)
     }
 }
 
-// u = S^-1 y; z keeps y as it is after the forward half.
+// u = S^-1 y; z keeps y as it is after the forward half. Of S = L D U u = S^-1 y with (L, U), u = y S^-1 with (U, L).
 template <class V>
-HOL_INLINE void solve_joint(int k, const V *r, const V *m, const V *y, V *z, V *u) {
+HOL_INLINE void solve_joint(int k, const V *r, const V *first, const V *second, const V *y, V *z, V *u) {
     HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) {
         V sum = y[a];
         HOL_UNROLL_FEW
-        for (int j = 0; j < a; ++j) sum = mul_add(-m[pair_of(a, j)], z[j], sum);
+        for (int j = 0; j < a; ++j) sum = mul_add(-first[pair_of(a, j)], z[j], sum);
         z[a] = sum;
     }
     HOL_UNROLL_FEW
     for (int a = k - 1; a >= 0; --a) {
         V sum = z[a] * r[a];
         HOL_UNROLL_FEW
-        for (int j = a + 1; j < k; ++j) sum = mul_add(-m[pair_of(j, a)], u[j], sum);
+        for (int j = a + 1; j < k; ++j) sum = mul_add(-second[pair_of(j, a)], u[j], sum);
         u[a] = sum;
     }
+}
+template <class V>
+HOL_INLINE void solve_joint(int k, const V *r, const V *m, const V *y, V *z, V *u) {
+    solve_joint(k, r, m, m, y, z, u);
 }
 
 // Working memory of a joint: in registers where k is known to the compiler.

@@ -81,25 +81,6 @@ HOL_INLINE void decompose(int k, V *S, V *r, V *lower, V *upper) {
     }
 }
 
-// u = S^-1 y with (lower, upper), u = y S^-1 with (upper, lower). z keeps y as it is after the first half.
-template <class V>
-HOL_INLINE void solve_joint(int k, const V *r, const V *first, const V *second, const V *y, V *z, V *u) {
-    HOL_UNROLL_FEW
-    for (int a = 0; a < k; ++a) {
-        V sum = y[a];
-        HOL_UNROLL_FEW
-        for (int j = 0; j < a; ++j) sum = mul_add(-first[pair_of(a, j)], z[j], sum);
-        z[a] = sum;
-    }
-    HOL_UNROLL_FEW
-    for (int a = k - 1; a >= 0; --a) {
-        V sum = z[a] * r[a];
-        HOL_UNROLL_FEW
-        for (int j = a + 1; j < k; ++j) sum = mul_add(-second[pair_of(j, a)], u[j], sum);
-        u[a] = sum;
-    }
-}
-
 template <class V, int known>
 struct NewtonMemory {
     V S[known * known], r[known], lower[known * (known - 1) / 2 + 1], upper[known * (known - 1) / 2 + 1], y[known],
