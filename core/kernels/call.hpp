@@ -45,7 +45,6 @@ struct MoleculeLane {
     int64_t first_bond;              // bond k stands at first_bond + k in arrays per bond
     int64_t molecule;                // its number
     const int64_t *bonds = nullptr;  // [n_bonds] where they stand instead: only of networks
-    int64_t number_of_bond(int32_t k) const { return bonds ? bonds[k] : first_bond + k; }
 };
 
 struct Forest;    // different trees side by side: core/molecules/forests.hpp

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/kernels/molecules/network/newton.hpp"
+#include "core/kernels/molecules/twice.hpp"
 #include "core/kernels/molecules/virial.hpp"
 
 namespace holonomic::HOL_ISA::graph {

@@ -25,7 +25,10 @@ struct NetSites {
         if (far) (__builtin_prefetch(array + place + ahead), ...);
     }
     // Where the bond of a place stands in arrays per bond, and values from there.
-    HOL_FORCED int64_t number_of_bond(int32_t place) const { return lane.number_of_bond(s.bond_of[place]); }
+    HOL_FORCED int64_t number_of_bond(int32_t place) const {
+        const int32_t k = s.bond_of[place];
+        return lane.bonds ? lane.bonds[k] : lane.first_bond + k;
+    }
     template <class V>
     HOL_FORCED V of_bonds(const double *values, int32_t place) const {
         V all = {};
