@@ -5,8 +5,6 @@
 #ifndef REFERENCE_WIDE_POSITIONS_HPP
 #define REFERENCE_WIDE_POSITIONS_HPP
 
-#include <optional>
-
 #include "molecule_step.hpp"
 #include "wide_levels.hpp"
 
@@ -51,8 +49,6 @@ int newton(newton_state<REAL> &s)
 {
     const int limit = 60;
     const REAL done = REAL(1).scaled(-REAL::bits * 3 / 4);
-    std::optional<sparse_factor<REAL>> factor;
-    REAL before(0);
     for (int solves = 0; solves <= limit; ++solves) {
         const auto d = s.vectors();
         std::vector<REAL> error(d.size());
@@ -64,10 +60,9 @@ int newton(newton_state<REAL> &s)
         }
         if (worst < done) return solves;
         if (worst > REAL(1e30)) return -1;
-        if (worst > before.scaled(-20)) factor.emplace(s.m.matrix(d));  // else those before will do
-        if (!factor->regular()) return -1;
-        before = worst;
-        const auto change = factor->solve(error);
+        const sparse_factor<REAL> factor(s.m.matrix(d));  // those before lose the way of triangles that are nearly flat
+        if (!factor.regular()) return -1;
+        const auto change = factor.solve(error);
         for (std::size_t k = 0; k < d.size(); ++k) s.tau[k] += change[k];
     }
     return -1;

@@ -96,7 +96,7 @@ struct FlatLinear {
             choose(
                 [&](auto packed, auto with_v, auto with_f) HOL_FORCED {
                     for_sites<packed, with_v, with_f>(
-                        at, s, tile, coordinates, *in.v, *in.f,
+                        at, s, tile, coordinates, in.v ? *in.v : coordinates, in.f ? *in.f : coordinates,
                         [&](int32_t i, int32_t atom, const Row &x, const Row &u, const Row &f) HOL_FORCED {
                             r[i] = x;
                             if (with_v && !rated) v[i] = u;

@@ -187,7 +187,7 @@ struct NetNewton {
         return abs(excess(moved_bond(k, move_at(s.from[k]), move_at(s.to[k])), a2[k])) * per_a2[k];
     }
 
-    // Without a guess, factors have been made when atoms were read.
+    // Factors have been made when atoms were read.
     void first_factors() { factor.close(); }
     __attribute__((noinline)) void factorize(Flag) {
         if (moved) find_moves_of_rest();

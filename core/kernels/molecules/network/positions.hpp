@@ -85,7 +85,7 @@ struct NetPositions {
                 note(read_bond<double>(k, atom(s.from[k]), atom(s.to[k])));
         });
         keep(rest, coordinate);
-        if (!call.guess) newton.factor.factorize_rest(newton.D, newton.t);
+        newton.factor.factorize_rest(newton.D, newton.t);
     }
     __attribute__((noinline)) void read_strands(const NetPart &part) const {
         const Net &net = newton.net;
@@ -110,7 +110,7 @@ struct NetPositions {
             });
         });
         keep(part, coordinate);
-        if (!call.guess) newton.factor.factorize(part, newton.D, newton.t);
+        newton.factor.factorize(part, newton.D, newton.t);  // with a guess, too: moves need what this keeps of the ends
     }
     __attribute__((noinline)) void load() {
         const NetworkPlan &s = newton.s;

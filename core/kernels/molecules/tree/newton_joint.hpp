@@ -104,7 +104,7 @@ struct NewtonMemory<V, 0> {
 };
 
 // An atom at the position level: its bonds at their places, those to its children, and the one above. known: how many
-// children it has, where the compiler knows it; their slots follow each other then.
+// children it has, where the compiler knows it. In lanes their slots follow each other; one molecule may be larger.
 // forest/forest_newton.hpp has the same for atoms of W different trees.
 template <class V, int known = 0>
 struct NewtonAtom {
@@ -114,7 +114,7 @@ struct NewtonAtom {
     HOL_FORCED NewtonAtom(const NewtonSystem<V> &system, int32_t s)
         : x(system), slot(s), first(system.s.child_start[s]), child(system.s.child + first) {}
     HOL_FORCED V w() const { return x.w[slot]; }
-    HOL_FORCED int32_t place(int a) const { return known > 0 ? first + a : child[a]; }
+    HOL_FORCED int32_t place(int a) const { return known > 0 && Width<V>::lanes > 1 ? first + a : child[a]; }
     HOL_FORCED NewtonRow<V> &bond(int a) const { return x.row[place(a)]; }
     HOL_FORCED const Vector3<V> &D(int a) const { return x.new_D[place(a)]; }
     HOL_FORCED NewtonRow<V> &above() const { return x.row[slot]; }

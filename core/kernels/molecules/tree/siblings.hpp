@@ -24,7 +24,7 @@ struct AtomRows {
 
     AtomRows(const Molecules<V> &m, int32_t s) : x(m), slot(s), first(m.s.child_start[s]), child(m.s.child + first) {}
     HOL_FORCED V w() const { return x.w[slot]; }
-    HOL_FORCED int32_t place(int a) const { return known > 0 ? first + a : child[a]; }
+    HOL_FORCED int32_t place(int a) const { return known > 0 && Width<V>::lanes > 1 ? first + a : child[a]; }
     HOL_FORCED BondRow<V> &bond(int a) const { return x.row[place(a)]; }
     HOL_FORCED BondRow<V> &above() const { return x.row[slot]; }
     // Of a child with the bond above; of a single one by the rule of product_of().
