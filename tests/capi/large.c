@@ -131,6 +131,21 @@ molecule large_comb(int64_t n_atoms)
     return m;
 }
 
+molecule large_hub(int64_t n_atoms, int64_t bonds)
+{
+    molecule m = molecule_empty();
+    random_stream s = random_seed(9);
+    molecule_add_atom(&m, some_mass(&s), (const double[]){0, 0, 0});
+    while (m.n_atoms < n_atoms) {
+        const int64_t i = m.n_atoms, behind = i - bonds - 2 < 8 ? i - bonds - 2 : 8;
+        double u[3];
+        random_direction(&s, u);
+        molecule_grow(&m, i <= bonds ? 0 : i - 1 - random_integer(&s, 0, behind < 0 ? 0 : behind), some_mass(&s), 1, u);
+    }
+    molecule_finish(&m, &s);
+    return m;
+}
+
 /** Every fourth atom hangs at the one before it; the others follow each other, and every 12 of them close a ring. */
 molecule large_rings(int64_t n_atoms)
 {

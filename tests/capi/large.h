@@ -28,6 +28,9 @@ molecule large_segments(int64_t n_atoms, int64_t segment, int64_t ring, uint64_t
 /** A chain with up to three atoms at each of its own: few of them can be worked on at once. */
 molecule large_comb(int64_t n_atoms);
 
+/** A tree: the first atom has so many bonds, which begin branches that fork at random. */
+molecule large_hub(int64_t n_atoms, int64_t bonds);
+
 /** A chain that closes rings of six, with atoms on its sides. */
 molecule large_rings(int64_t n_atoms);
 

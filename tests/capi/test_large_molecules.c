@@ -134,6 +134,46 @@ static void layout_changes_no_bit(void **state)
 }
 
 /**
+ * No list takes an atom of so many bonds, and few lanes would be full: such a tree is worked on atom by atom.
+ */
+static void large_trees_with_an_atom_of_many_bonds_are_solved(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 2; ++which) {
+        molecule m = which == 0 ? large_hub(2500, 100) : large_hub(6000, 90);
+        hol_chains *chains = large_chains(&m);
+        const size_t n = (size_t)m.n_bonds, size = 3 * (size_t)m.n_atoms;
+        double *g = untouched(size), *v = copy_of(m.v, size);
+        CHECK(hol_forces(chains, m.r, m.v, m.f, NULL, NULL, g, HOL_WRITE, NULL));
+        CHECK(hol_project_velocities(chains, m.r, v, NULL, NULL));
+        double *r = copy_of(m.r, size);
+        for (size_t i = 0; i < size; ++i) r[i] += 0.002 * v[i];
+        CHECK(hol_project_positions(chains, m.r, r, NULL, 0.002, NULL, 0, NULL, NULL));
+        double largest = 0;
+        for (size_t i = 0; i < size; ++i) largest = fmax(largest, fabs(r[i]));
+        for (size_t k = 0; k < n; ++k) {
+            const int64_t i = 3 * m.pairs[2 * k], j = 3 * m.pairs[2 * k + 1];
+            double sum = 0, terms = 0, rate = 0, speeds = 0, square = 0;
+            for (int c = 0; c < 3; ++c) {
+                const double d = m.r[j + c] - m.r[i + c], dv = m.v[j + c] - m.v[i + c],
+                             a = (m.f[j + c] + g[j + c]) / m.mass[j / 3], b = (m.f[i + c] + g[i + c]) / m.mass[i / 3];
+                sum += d * (a - b) + dv * dv;
+                terms += fabs(d) * (fabs(m.f[j + c] / m.mass[j / 3]) + fabs(a) + fabs(b)) + dv * dv;
+                rate += d * (v[j + c] - v[i + c]);
+                speeds += fabs(d) * (fabs(v[j + c]) + fabs(v[i + c]));
+                square += (r[j + c] - r[i + c]) * (r[j + c] - r[i + c]);
+            }
+            CHECK_AT_MOST(fabs(sum), 1000 * DBL_EPSILON * terms);
+            CHECK_AT_MOST(fabs(rate), 100 * DBL_EPSILON * speeds);
+            CHECK_AT_MOST(fabs(square / (m.length[k] * m.length[k]) - 1), 32 * DBL_EPSILON * (1 + largest));
+        }
+        free(g), free(v), free(r);
+        hol_chains_destroy(chains);
+        molecule_free(&m);
+    }
+}
+
+/**
  * What lambda leaves of d.(a_j - a_i) + |dv|^2, in long double, solved for once more: the error of lambda. It is a few
  * roundings of the largest multiplier at the bond's atoms; trees at random have atoms that plain arithmetic can't do.
  */
@@ -309,6 +349,7 @@ int main(void)
         cmocka_unit_test(order_of_bonds_changes_no_bit),
         cmocka_unit_test(layout_changes_no_bit),
         cmocka_unit_test(multipliers_are_right_to_a_few_roundings),
+        cmocka_unit_test(large_trees_with_an_atom_of_many_bonds_are_solved),
         cmocka_unit_test(light_atoms_between_heavy_ones_do_not_move_their_neighbours),
         cmocka_unit_test(masses_and_lengths_given_later_are_as_those_of_a_new_set),
         cmocka_unit_test(bad_data_leave_everything_untouched),

@@ -172,9 +172,15 @@ static void positions_get_their_lengths(void **state)
         for (size_t i = 0; i < size; ++i)
             CHECK_AT_MOST(fabs(s.m.v[i] + (r[i] - start[i]) / dt - v[i]),
                           8 * DBL_EPSILON * (fabs(v[i]) + fabs(s.m.v[i]) + (fabs(r[i]) + fabs(start[i])) / dt));
-        /* Once more, with these as a guess: nothing but roundings can have changed. */
-        double *other = copy_of(start, size);
-        CHECK(hol_project_positions(s.chains, s.m.r, other, NULL, dt, lambda, 1, NULL, NULL));
+        /* Once more, with these as a guess: nothing but roundings can have changed. Forces have used the memory
+         * meanwhile, and a refused call has left no numbers there. */
+        double *other = copy_of(start, size), *forces = untouched(size), *none = copy_of(start, size);
+        CHECK(hol_forces(s.chains, s.m.r, s.m.v, s.m.f, NULL, NULL, forces, HOL_WRITE, NULL));
+        none[7] = (double)NAN;
+        assert_int_not_equal(hol_project_positions(s.chains, s.m.r, none, NULL, dt, lambda, 1, NULL, NULL), HOL_OK);
+        CHECK(hol_project_positions(s.chains, s.m.r, other, NULL, dt, lambda, 1, NULL, &report));
+        assert_true(report.iterations <= 1);
+        free(forces), free(none);
         CHECK_AT_MOST(network_worst_length(&s, other), 16 * DBL_EPSILON * (1 + 2 * s.side / shortest));
         molecule_solution_free(&exact);
         free(start), free(r), free(v), free(lambda), free(other);

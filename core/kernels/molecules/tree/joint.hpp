@@ -194,8 +194,7 @@ template <int known, class V>
 HOL_INLINE void down_joint(const Molecules<V> &x, int32_t slot, int count, bool look, bool pulled, Vector3<V> *pull,
                            V &slack) {
     const int k = known > 0 ? known : count;
-    const AtomRows<V, Width<V>::lanes == 1 ? 0 : known> rows(x,
-                                                             slot);  // one may be large, and have its children anywhere
+    const AtomRows<V, known> rows(x, slot);
     const V above = x.row[slot].t;
     Vector3<V> sum = {};
     if (pulled) sum = pull[slot];
