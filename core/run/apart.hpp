@@ -12,7 +12,8 @@ namespace holonomic {
 class Apart {
 public:
     // Takes memory of the calling thread for all arrays that a call may have: four per atom, and four per bond beside
-    // one of `wide` values for each. Networks have a list of their bonds where nothing is wide. Throws std::bad_alloc.
+    // one of `wide` values for each. Networks have a list of their bonds instead where nothing is wide and no other
+    // molecule needs copies. Throws std::bad_alloc.
     explicit Apart(const Chains &chains, int wide = 0) : Apart(chains, chains.plan(), wide) {}
     Apart(const Chains &chains, const Plan &plan, int wide = 0)
         : chains_(chains), plan_(plan), reorders_(wide > 0 ? plan.reordered : plan.copied) {

@@ -18,7 +18,7 @@ struct NetSites {
         : s(plan), lane(l), at(&l, 1, packed), far(plan.n_bonds > 16384) {}
 
     // Of arrays that are gone through together there are more than a processor follows by itself: what stands so far
-    // ahead in each is that of a bond, or an atom, after some 10 others in lanes.
+    // ahead in each is that of a bond, or an atom, after some 10 others in lanes, where a loop goes upwards.
     template <class... Arrays>
     HOL_FORCED void fetch_ahead(int32_t place, const Arrays *...array) const {
         constexpr int32_t ahead = 80;
