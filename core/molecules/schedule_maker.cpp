@@ -14,7 +14,7 @@ void ScheduleMaker::make() {
     number_trees();
     if (s_.n_core == 0) {
         s_.type = Schedule::tree;
-    } else if (s_.n_core == s_.n_core_atoms && (s_.n_tree == 0 || is_simple_ring())) {
+    } else if (for_ != network && s_.n_core == s_.n_core_atoms && (s_.n_tree == 0 || is_simple_ring())) {
         s_.type = s_.n_bonds == 3 ? Schedule::triangle : Schedule::ring;
         number_ring();
     } else {

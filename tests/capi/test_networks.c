@@ -149,6 +149,33 @@ static void velocities_are_those_of_many_digits(void **state)
     }
 }
 
+/** Nothing hangs loose from its cycle, and there is no other one. */
+static void a_ring_with_tethers_to_fixed_atoms_is_a_network(void **state)
+{
+    (void)state;
+    network_scene s = network_scene_empty(0);
+    random_stream random = random_seed(5);
+    const int64_t n = quick_run() ? 256 : 400;
+    for (int64_t i = 0; i < n; ++i) {
+        const double angle = 2 * acos(-1.0) * (double)i / (double)n, radius = (double)n / 6;
+        molecule_add_atom(&s.m, 1 + random_uniform(&random),
+                          (const double[]){radius * cos(angle), radius * sin(angle), 0.5 * sin(1.7 * (double)i)});
+    }
+    for (int64_t i = 0; i < n; ++i) molecule_add_bond(&s.m, i, (i + 1) % n);
+    for (int64_t i = 0; i < n; i += 4) {
+        double u[3], r[3];
+        random_direction(&random, u);
+        for (int c = 0; c < 3; ++c) r[c] = s.m.r[3 * i + c] + u[c];
+        molecule_add_atom(&s.m, 0, r);
+        molecule_add_bond(&s.m, i, s.m.n_atoms - 1);
+    }
+    molecule_finish(&s.m, &random);
+    network_begin(&s);
+    network_add(&s);
+    check_network_velocities(&s);
+    network_free(s);
+}
+
 static void positions_get_their_lengths(void **state)
 {
     (void)state;
@@ -303,6 +330,7 @@ int main(void)
         cmocka_unit_test(rounds_are_told),
         cmocka_unit_test(forces_are_those_of_many_digits),
         cmocka_unit_test(velocities_are_those_of_many_digits),
+        cmocka_unit_test(a_ring_with_tethers_to_fixed_atoms_is_a_network),
         cmocka_unit_test(positions_get_their_lengths),
         cmocka_unit_test(threads_and_layouts_change_no_bit),
         cmocka_unit_test(bad_data_leave_everything_untouched),

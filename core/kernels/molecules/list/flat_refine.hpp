@@ -220,6 +220,20 @@ struct FlatRefine {
         return less(least, V{});
     }
 
+    // To the lanes that were not refined, the bonds that they would have had without the others.
+    void restore_bonds(MaskOf<V> which) const {
+        if constexpr (Width<V>::lanes > 1) {
+            if (x.box.shape == Box::none || !any(which)) return;
+            const Tile &tile = s.tile[0];
+            for (int64_t row = tile.first_row; row < tile.end_row; ++row) {
+                Row &bond = x.d[row], fast = x.r.at_four_times(s.to[row]) - x.r.at_four_times(s.from[row]);
+                take_image(x.box, fast);
+                bond = {select(which, fast.x, bond.x), select(which, fast.y, bond.y), select(which, fast.z, bond.z),
+                        bond.more};
+            }
+        }
+    }
+
     // Of the lanes that are not `proven`. Returns those that are right, with these.
     unsigned refine(unsigned proven) const {
         const MaskOf<V> doubtful = lanes_of_good_pivots() & ~Width<V>::of_bits(proven);
@@ -235,6 +249,7 @@ struct FlatRefine {
         }
         good = good & finite(sum);  // corrections that are no numbers are not seen
         if (!(bits(good) | proven)) return 0;
+        restore_bonds(Width<V>::of_bits(proven));
         for_tiles_down([&](const Tile &tile) {
             x.find_pulls(tile);
             if (terms & rates) x.add_pulls(tile);  // nobody asks for accelerations any more
