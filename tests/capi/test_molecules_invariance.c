@@ -163,12 +163,14 @@ static mixture interleaved(const molecule *parts, int64_t n)
     return m;
 }
 
-/** Frees the mixture of these molecules. */
-static void assert_bits_of_each_alone(const molecule *parts, int64_t n, mixture *all)
+/** Frees the mixture of these molecules. In a box, if it is not NULL. */
+static void assert_bits_of_each_alone_in(const double *box, const molecule *parts, int64_t n, mixture *all)
 {
+    if (box) CHECK(hol_chains_set_box(all->chains, box));
     everything together = compute(all);
     for (int64_t p = 0; p < n; ++p) {
         mixture one = mixture_make(parts + p, 1, ONE_AFTER_THE_OTHER, 0);
+        if (box) CHECK(hol_chains_set_box(one.chains, box));
         everything alone = compute(&one);
         for (int a = 0; a < ARRAYS; ++a) {
             const int64_t before = a < 4 ? all->first_bond[p] : 3 * all->first_atom[p];
@@ -179,6 +181,42 @@ static void assert_bits_of_each_alone(const molecule *parts, int64_t n, mixture 
     }
     release(&together);
     mixture_free(all);
+}
+
+static void assert_bits_of_each_alone(const molecule *parts, int64_t n, mixture *all)
+{
+    assert_bits_of_each_alone_in(NULL, parts, n, all);
+}
+
+/** Some of those that share lanes are refined, with images of more digits, and some are not. */
+static void graphs_in_a_box_have_the_bits_of_each_alone(void **state)
+{
+    (void)state;
+    enum { N = 19 };
+    static const double box[9] = {40, 0, 0, 0, 50, 0, 0, 0, 45};
+    static const struct {
+        molecule_kind kind;
+        int64_t size;
+    } kinds[] = {
+        {MOLECULE_FUSED_RINGS, 4}, {MOLECULE_TRIANGLES, 9}, {MOLECULE_CUBE, 1}, {MOLECULE_PUCKERED_BENZENE, 1}};
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k) {
+        molecule parts[N];
+        for (int p = 0; p < N; ++p) {
+            random_stream stream = random_seed((uint64_t)p + 1);
+            parts[p] = molecule_make(kinds[k].kind, kinds[k].size, 1);
+            molecule_finish(parts + p, &stream);
+            memcpy(parts[p].length, parts[0].length, (size_t)parts[0].n_bonds * sizeof(double));
+            for (int64_t i = 0; i < parts[p].n_atoms; ++i)
+                for (int x = 0; x < 3; ++x) {
+                    parts[p].r[3 * i + x] += box[4 * x] * (double)random_integer(&stream, -2, 2);
+                    parts[p].v[3 * i + x] *= p % 3 == 0 ? 0 : 1;
+                    parts[p].f[3 * i + x] *= p % 4 == 1 ? 1e-9 * (double)(i + 1) : 1;
+                }
+        }
+        mixture in_order = mixture_make(parts, N, ONE_AFTER_THE_OTHER, 0);
+        assert_bits_of_each_alone_in(box, parts, N, &in_order);
+        for (int p = 0; p < N; ++p) molecule_free(parts + p);
+    }
 }
 
 /** A regular unit of molecules, with lists and without; positions without a report. */
@@ -308,6 +346,7 @@ int main(void)
         cmocka_unit_test(number_of_threads_changes_no_bit),
         cmocka_unit_test(one_call_for_copies_gives_the_bits_of_the_list),
         cmocka_unit_test(equal_molecules_have_the_bits_of_each_alone),
+        cmocka_unit_test(graphs_in_a_box_have_the_bits_of_each_alone),
         cmocka_unit_test(different_trees_have_the_bits_of_each_alone),
         cmocka_unit_test(layouts_of_doubles_change_no_bit),
         cmocka_unit_test(floats_and_two_dimensions_give_the_solution_of_the_rounded_numbers),

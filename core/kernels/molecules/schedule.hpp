@@ -36,7 +36,7 @@ struct NetworkPlan;  // core/kernels/molecules/network/network_plan.hpp
 // but n_tree + n_core.
 //
 // A core is what is left when atoms with one bond are stripped until there are none; a tree has none. All its atoms are
-// movable, because fixed atoms are leaves.
+// movable, because fixed atoms are leaves; only a network keeps these, too.
 struct Schedule {
     enum Type : int32_t {
         tree,

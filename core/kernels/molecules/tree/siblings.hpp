@@ -15,7 +15,8 @@
 
 namespace holonomic::HOL_ISA::graph {
 
-// The bonds of an atom, each at its place: those to its children, and the one above. known: as in NewtonAtom.
+// The bonds of an atom, each at its place: those to its children, and the one above. known: as in NewtonAtom, not for
+// atoms of a core.
 // forest/forest_sweeps.hpp has the same for atoms in lanes.
 template <class V, int known = 0>
 struct AtomRows {
