@@ -46,9 +46,8 @@ void ScheduleMaker::strip() {
     for (std::int32_t i = 0; i < s_.n_atoms; ++i)
         if (degree[at(i)] == 1 && i != root && !stays(i)) leaves.push_back(i);
     s_.n_tree = 0;
-    for (std::size_t next = 0; next < leaves.size();) {
-        const std::int32_t i = centred ? leaves[next++] : leaves.back();
-        if (!centred) leaves.pop_back();
+    for (std::size_t next = 0; next < leaves.size(); ++next) {
+        const std::int32_t i = leaves[next];
         for (const std::int32_t *k = bonds_.begin(i); k != bonds_.end(i); ++k) {
             const std::int32_t j = other_end(*k, i);
             if (upper_bond_[at(j)] == *k) continue;  // a child's

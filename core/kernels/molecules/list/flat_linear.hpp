@@ -90,24 +90,22 @@ struct FlatLinear {
     // Coordinates, masses and what right-hand sides are made of.
     HOL_FORCED void load_atoms(const Tile &tile) const {
         if constexpr (step == 4) {
-            V *const w = mass + tile.first_mass;
             const Rows<V> of = a_of(tile);
             const bool rated = terms & rates;
             choose(
                 [&](auto packed, auto with_v, auto with_f) HOL_FORCED {
-                    for_sites<packed, with_v, with_f>(
-                        at, s, tile, coordinates, in.v ? *in.v : coordinates, in.f ? *in.f : coordinates,
-                        [&](int32_t i, int32_t atom, const Row &x, const Row &u, const Row &f) HOL_FORCED {
-                            r[i] = x;
-                            if (with_v && !rated) v[i] = u;
-                            const V its = read_mass(lane, atom, w + 2 * i);
-                            of[i] = rated ? u : in_row(its) * f;
-                        });
+                    for_sites<packed, with_v, with_f>(at, s, tile, *lane, mass + tile.first_mass, coordinates,
+                                                      in.v ? *in.v : coordinates, in.f ? *in.f : coordinates,
+                                                      [&](int32_t i, double w, const Row &x, const Row &u, const Row &f)
+                                                          HOL_FORCED {
+                                                              r[i] = x;
+                                                              if (with_v && !rated) v[i] = u;
+                                                              of[i] = rated ? u : in_row(w) * f;
+                                                          });
                 },
                 at.layout != elements, (terms & (squares | rates)) != 0, (terms & pulls) != 0);
-            w[2 * (tile.end_site - tile.first_site)] = V{};
         } else {
-            if (!masses_known) read_masses(lane, s, tile, mass);
+            if (!masses_known) read_masses(lane, s, mass);
             read_atoms(coordinates, at, s, tile, r);
             if (terms & squares) read_atoms(*in.v, at, s, tile, v);
             load_inputs(tile, a_of(tile));

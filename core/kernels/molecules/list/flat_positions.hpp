@@ -51,24 +51,21 @@ struct FlatPositions {
         const Rows<V> r = newton.coordinates_of(tile), ref = newton.moves.from(tile.first_site);
         found.coordinate = Row{};
         if constexpr (step == 4) {
-            V *const w = newton.mass + tile.first_mass;
             Row largest = {};
             choose(
                 [&](auto packed) HOL_FORCED {
                     for_sites<packed, true, false>(
-                        at, s, tile, call.r_ref, call.r, call.r,
-                        [&](int32_t i, int32_t atom, const Row &before, const Row &now, const Row &) HOL_FORCED {
+                        at, s, tile, *lane, newton.mass + tile.first_mass, call.r_ref, call.r, call.r,
+                        [&](int32_t i, double, const Row &before, const Row &now, const Row &) HOL_FORCED {
                             ref[i] = before;
                             r[i] = now;
                             largest = larger(absolute(now), largest);
-                            read_mass(lane, atom, w + 2 * i);
                         });
                 },
                 at.layout != elements);
-            w[2 * (tile.end_site - tile.first_site)] = V{};
             found.coordinate = largest;
         } else {
-            if (!known) read_masses(lane, s, tile, newton.mass);
+            if (!known) read_masses(lane, s, newton.mass);
             read_atoms(call.r_ref, at, s, tile, ref);
             read_atoms(call.r, at, s, tile, r);
             for (int32_t k = 0; k < s.n_sites; ++k) found.coordinate = larger(absolute(r[k]), found.coordinate);

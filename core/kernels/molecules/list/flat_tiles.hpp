@@ -115,11 +115,12 @@ HOL_INLINE Row row_at(const AtomArray &array, int64_t number) {
     read_row(array, number, x);
     return Row{x[0], x[1], x[2], 0};
 }
-// Calls body(site of the tile, local atom, rows of these arrays) for the sites of a tile of one molecule; rows that are
-// not read are 0.
+// Calls body(site of the tile, inverse mass, rows of these arrays) for the sites of a tile of one molecule; rows that
+// are not read are 0. mass: gets -w_0, w_0, -w_1, .. , 0, or nullptr: none are read.
 template <bool packed, bool with_second, bool with_third, class Body>
-HOL_INLINE void for_sites(const Atoms<double> &at, const FlatList &s, const Tile &tile, const AtomArray &one,
-                          const AtomArray &second, const AtomArray &third, const Body &body) {
+HOL_INLINE void for_sites(const Atoms<double> &at, const FlatList &s, const Tile &tile, const MoleculeLane &lane,
+                          double *mass, const AtomArray &one, const AtomArray &second, const AtomArray &third,
+                          const Body &body) {
     const int64_t *const list = at.list[0], first = at.first[0];
     const auto number = [&](int32_t i) HOL_FORCED { return list ? list[s.atom_of[i]] : first + s.atom_of[i]; };
     const int32_t fetched_end = packed && s.n_tiles > 1 ? tile.end_site - rows_ahead : 0;  // else in a cache
@@ -129,19 +130,27 @@ HOL_INLINE void for_sites(const Atoms<double> &at, const FlatList &s, const Tile
             fetch_row(one, element);
             if (with_second) fetch_row(second, element);
             if (with_third) fetch_row(third, element);
+            if (mass) __builtin_prefetch(lane.w + s.atom_of[i + rows_ahead], 0, 2);
         }
+        const int32_t site = i - tile.first_site;
         const int64_t n = number(i);
-        body(i - tile.first_site, s.atom_of[i], row_at<packed>(one, n), with_second ? row_at<packed>(second, n) : Row{},
+        const double w = mass ? lane.w[s.atom_of[i]] : 0;
+        if (mass) {
+            mass[2 * site] = -w;
+            mass[2 * site + 1] = w;
+        }
+        body(site, w, row_at<packed>(one, n), with_second ? row_at<packed>(second, n) : Row{},
              with_third ? row_at<packed>(third, n) : Row{});
     }
+    if (mass) mass[2 * (tile.end_site - tile.first_site)] = 0;
 }
 // The rows of a tile's atoms. What is in lanes has one tile.
 HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<double> &at, const FlatList &s, const Tile &tile,
                            const Rows<double> &to) {
     choose(
         [&](auto packed) HOL_FORCED {
-            for_sites<packed, false, false>(at, s, tile, array, array, array,
-                                            [&](int32_t i, int32_t, const Row &a, const Row &, const Row &)
+            for_sites<packed, false, false>(at, s, tile, {}, nullptr, array, array, array,
+                                            [&](int32_t i, double, const Row &a, const Row &, const Row &)
                                                 HOL_FORCED { to[i] = a; });
         },
         at.layout != elements);
@@ -151,23 +160,14 @@ HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<V> &at, const Fla
                            const Rows<V> &to) {
     read_vectors(array, at, s.place_of, s.n_atoms, to.slots());
 }
-// Their masses, -w_0, w_0, -w_1, .. , 0.
+// Masses of molecules in lanes, as those of one.
 template <class V>
-HOL_INLINE void read_masses(const MoleculeLane *lane, const FlatList &s, const Tile &tile, V *mass) {
-    V *to = mass + tile.first_mass;
-    for (int32_t i = tile.first_site; i < tile.end_site; ++i, to += 2) {
-        for (int l = 0; l < Width<V>::lanes; ++l) {
-            if (i + rows_ahead < tile.end_site) __builtin_prefetch(lane[l].w + s.atom_of[i + rows_ahead], 0, 2);
-            Width<V>::set(to[1], l, lane[l].w[s.atom_of[i]]);
-        }
-        to[0] = -to[1];
+HOL_INLINE void read_masses(const MoleculeLane *lane, const FlatList &s, V *mass) {
+    for (int32_t i = 0; i < s.n_sites; ++i) {
+        for (int l = 0; l < Width<V>::lanes; ++l) Width<V>::set(mass[2 * i + 1], l, lane[l].w[s.atom_of[i]]);
+        mass[2 * i] = -mass[2 * i + 1];
     }
-    *to = V{};
-}
-// That of one site of one molecule.
-HOL_INLINE double read_mass(const MoleculeLane *lane, int32_t atom, double *to) {
-    to[0] = -lane->w[atom];
-    return to[1] = lane->w[atom];
+    mass[2 * s.n_sites] = V{};
 }
 HOL_INLINE int64_t mass_values(const FlatList &s) { return in_fours(2 * static_cast<int64_t>(s.n_sites) + s.n_tiles); }
 

@@ -69,14 +69,11 @@ struct NetEquations {
     }
     void find_equations_of_trees() const {
         for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k) {
-            d.set(k, net.bond_between(box, r.get<double>(s.from[k]), r.get<double>(s.to[k])));
-            find_side_of_tree(k);
+            const int32_t i = s.from[k], j = s.to[k];
+            const Vector3<double> bond = net.bond_between(box, r.get<double>(i), r.get<double>(j));
+            d.set(k, bond);
+            find_side<double>(k, bond, {v.get<double>(i), f.get<double>(i)}, {v.get<double>(j), f.get<double>(j)});
         }
-    }
-    void find_side_of_tree(int32_t k) const {
-        const int32_t i = s.from[k], j = s.to[k];
-        find_side<double>(k, d.get<double>(k), {v.get<double>(i), f.get<double>(i)},
-                          {v.get<double>(j), f.get<double>(j)});
     }
     // Of strands, as the caller has their atoms.
     template <class V>

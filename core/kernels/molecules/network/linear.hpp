@@ -232,9 +232,9 @@ struct NetLinear : NetEquations {
     }
     template <class V, class Each>
     HOL_FORCED void for_pulls(const V &width, const NetStrands &g, const Each &each) const {
-        StrandPulls<V> along(net, t, d, g.place);
-        for (int32_t k = 1; k < g.length; ++k)
-            each(width, g.site + (k - 1) * g.step, along.before(g.place + k * g.step));
+        StrandPulls<V>(net, t, d, g.place).for_sites(g, [&](int32_t site, const Vector3<V> &pull) HOL_FORCED {
+            each(width, site, pull);
+        });
     }
 
     void write_bonds(const NetPart &part, double scale, bool sizes, double *out) const {

@@ -127,11 +127,9 @@ struct NetNewton {
     }
     template <class V, class Each>
     HOL_FORCED void for_moves(const V &width, const NetStrands &g, const Each &each) const {
-        StrandPulls<V> along(net, tau, b, g.place);
-        for (int32_t k = 1; k < g.length; ++k) {
-            const int32_t site = g.site + (k - 1) * g.step;
-            each(width, site, load_any<V>(net.w + site) * along.before(g.place + k * g.step));
-        }
+        StrandPulls<V>(net, tau, b, g.place).for_sites(g, [&](int32_t site, const Vector3<V> &pull) HOL_FORCED {
+            each(width, site, load_any<V>(net.w + site) * pull);
+        });
     }
     // Calls each(place, bond) for bonds as tau moves them.
     template <class V, class Each>

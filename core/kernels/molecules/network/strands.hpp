@@ -210,6 +210,11 @@ struct StrandPulls {
         return of_bond - last;
     }
     HOL_FORCED V tension() const { return sqrt(dot(of_bond, of_bond)); }
+    // Calls each(site, pull) for all of these atoms.
+    template <class Each>
+    HOL_FORCED void for_sites(const NetStrands &g, const Each &each) {
+        for (int32_t k = 1; k < g.length; ++k) each(g.site + (k - 1) * g.step, before(g.place + k * g.step));
+    }
 };
 
 HOL_INLINE double largest_in(const double *values, int32_t n) {
