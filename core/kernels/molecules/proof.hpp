@@ -13,7 +13,8 @@ HOL_INLINE double most_backward(int32_t n_bonds) {
     return part < most_cancelled ? part : most_cancelled;
 }
 // A pivot below this part of its diagonal element may come of bonds that depend on each other, and be nothing but
-// rounding. Corrections don't show that where the right-hand sides depend on each other, too: rates, and forces at rest.
+// rounding. Corrections don't show that where the right-hand sides depend on each other, too: rates, and forces at
+// rest.
 constexpr double least_pivot = 1e-6;
 
 }  // namespace holonomic::HOL_ISA::graph
