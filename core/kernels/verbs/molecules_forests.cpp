@@ -4,6 +4,7 @@
 #include "core/kernels/molecules/forest/one_tree.hpp"
 #include "core/kernels/molecules/forest/one_tree_positions.hpp"
 #include "core/kernels/molecules/forest/open_forest.hpp"
+#include "core/kernels/molecules/next.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -19,51 +20,9 @@ int64_t forest_scratch_bytes(const Forest &f) {
            OneTreeNewton::bytes(f) + 64 + careful + open_bytes(f);
 }
 
-// What the next forest is read from and written to: trees that are worked on one after the other are not so in memory.
-// It is fetched array by array between the stages of this one, as a processor has only some twenty lines under way.
-class NextForest {
-public:
-    // Arrays that are not packed, or not there, are left out.
-    template <int n>
-    NextForest(const Forest *forest, const MoleculeLane *lanes, const AtomArray *const (&arrays)[n])
-        : next(forest), lane(lanes) {
-        static_assert(n <= most, "");
-        for (int a = 0; a < n && next; ++a)
-            if (arrays[a]->x && arrays[a]->packed) list[left++] = arrays[a];
-    }
-    // Starts to fetch one array more, with the first one the masses. gcc 12 leaves out calls of functions that do
-    // nothing but fetch.
-    __attribute__((noinline)) void fetch() {
-        __asm__ volatile("");
-        if (left == 0) return;
-        const AtomArray &array = *list[--left];
-        for (int l = 0; l < next->n_trees; ++l) {
-            if (!masses_fetched) lines(lane[l].w, 8 * next->most_atoms);
-            if (!lane[l].atoms) lines(array.x + 24 * lane[l].first_atom, 24 * next->most_atoms);
-        }
-        masses_fetched = true;
-    }
-    void fetch_the_rest() {
-        while (left > 0) fetch();
-    }
-
-private:
-    static constexpr int most = 4;
-    const Forest *next;
-    const MoleculeLane *lane;
-    const AtomArray *list[most];
-    int left = 0;
-    bool masses_fetched = false;
-
-    HOL_STATIC void lines(const void *first, int64_t bytes) {
-        for (int64_t i = 0; i < bytes; i += 64) __builtin_prefetch(static_cast<const char *>(first) + i, 0, 2);
-    }
-};
-
-// Calls work(forest, lanes, memory, the next forest) for all forests of a unit.
-template <int n, class Work>
-static inline void for_each_forest(const MoleculeUnit &unit, const AtomArray *const (&arrays)[n], double *scratch,
-                                   const Work &work) {
+// Calls work(forest, lanes, memory) for all forests of a unit.
+template <class Work>
+static inline void for_each_forest(const MoleculeUnit &unit, double *scratch, NextMolecules &ahead, const Work &work) {
     const MoleculeLane *next = unit.lanes;
     for (int64_t i = 0; i < unit.n_forests; ++i) {
         double *left = scratch;
@@ -71,9 +30,10 @@ static inline void for_each_forest(const MoleculeUnit &unit, const AtomArray *co
         MoleculeLane lane[W];
         for (int l = 0; l < W; ++l) lane[l] = next[l < f.n_trees ? l : 0];
         next += f.n_trees;
-        NextForest ahead(unit.large && i + 1 < unit.n_forests ? &unit.forests[i + 1] : nullptr, next, arrays);
+        if (unit.large && i + 1 < unit.n_forests)
+            ahead.are(next, unit.forests[i + 1].n_trees, unit.forests[i + 1].most_atoms);
         ahead.fetch();
-        work(f, lane, Memory<vec>{left}, ahead);
+        work(f, lane, Memory<vec>{left});
         ahead.fetch_the_rest();
     }
 }
@@ -96,7 +56,7 @@ static inline void write_forest(const ForestLinear &z, const ForestTrees::Range 
 // Forests, or one large tree, of forces or for given right-hand sides.
 template <class Call>
 static inline void solve_forest(const Call &call, const MoleculeUnit &unit, const Forest &f, const MoleculeLane *lane,
-                                ForestLinear &z, Memory<vec> &memory, NextForest &ahead, Tally &tally) {
+                                ForestLinear &z, Memory<vec> &memory, NextMolecules &ahead, Tally &tally) {
     unsigned good;
     if (f.n_pieces > 0) {
         const OneTree tree(z, unit.team, memory);
@@ -117,86 +77,80 @@ static inline void solve_forest(const Call &call, const MoleculeUnit &unit, cons
 void forests_forces(const ForcesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const bool packed =
         call.r.packed && (!call.v.x || call.v.packed) && (!call.f.x || call.f.packed) && (!call.g.x || call.g.packed);
-    const AtomArray *const arrays[] = {&call.g, &call.f, &call.v, &call.r};
-    for_each_forest(unit, arrays, scratch,
-                    [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory, NextForest &ahead) {
-                        ForestLinear z(f, lane, packed, call.box, call.r, {&call.v, &call.f, nullptr, false},
-                                       (call.v.x ? squares : 0) | (call.f.x ? pulls : 0), memory);
-                        solve_forest(call, unit, f, lane, z, memory, ahead, tally);
-                    });
+    NextMolecules ahead({&call.r, &call.v, &call.f, &call.g}, call.lambda);
+    for_each_forest(unit, scratch, ahead, [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory) {
+        ForestLinear z(f, lane, packed, call.box, call.r, {&call.v, &call.f, nullptr, false},
+                       (call.v.x ? squares : 0) | (call.f.x ? pulls : 0), memory);
+        solve_forest(call, unit, f, lane, z, memory, ahead, tally);
+    });
 }
 
 void forests_solve(const SolveCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const bool packed = call.r.packed && (!call.g.x || call.g.packed);
-    const AtomArray *const arrays[] = {&call.g, &call.r};
-    for_each_forest(
-        unit, arrays, scratch, [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory, NextForest &ahead) {
-            ForestLinear z(f, lane, packed, call.box, call.r, {nullptr, nullptr, call.rhs, false}, given, memory);
-            solve_forest(call, unit, f, lane, z, memory, ahead, tally);
-        });
+    NextMolecules ahead({&call.r, &call.g}, call.lambda);
+    for_each_forest(unit, scratch, ahead, [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory) {
+        ForestLinear z(f, lane, packed, call.box, call.r, {nullptr, nullptr, call.rhs, false}, given, memory);
+        solve_forest(call, unit, f, lane, z, memory, ahead, tally);
+    });
 }
 
 // Twice, as molecules/velocities.hpp says.
 void forests_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
-    const AtomArray *const arrays[] = {&call.v, &call.r};
-    for_each_forest(unit, arrays, scratch,
-                    [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory, NextForest &ahead) {
-                        ForestLinear z(f, lane, call.r.packed && call.v.packed, call.box, call.r,
-                                       {&call.v, nullptr, nullptr, true, call.strain}, rates, memory);
-                        const bool twice = !call.v.is_float;
-                        unsigned good;
-                        if (f.n_pieces > 0) {
-                            const OneTree tree(z, unit.team, memory);
-                            good = tree.solve() && !(twice && tree.any_torn()) ? 1 : 0;
-                            const auto write = [&](const ForestTrees::Range &range) {
-                                z.write_velocities(range, call.v, all_lanes);
-                            };
-                            if (good) {
-                                if (call.lambda)
-                                    tree.for_ranges([&](const ForestTrees::Range &range) {
-                                        z.write_bonds<false>(range, 0.5, call.lambda, all_lanes);
-                                    });
-                                if (call.virial) tree.add_virial(tally);
-                                tree.project(twice);
-                                tree.for_ranges(write);
-                            }
-                        } else {
-                            z.load(z.all());
-                            good = z.solve();
-                            ahead.fetch();
-                            if (good) {
-                                if (call.lambda) z.write_bonds<false>(z.all(), 0.5, call.lambda, good);
-                                if (call.virial) z.add_virial(good, tally);
-                                z.add_pulls_to_velocities(z.all());
-                                if (twice) {
-                                    z.find_rates(z.all());
-                                    z.solve_again();
-                                    z.add_pulls_to_velocities(z.all());
-                                }
-                                z.write_velocities(z.all(), call.v, good);
-                            }
-                        }
-                        leave_doubtful(call, f, lane, good, memory.next, tally);
+    NextMolecules ahead({&call.r, &call.v}, call.lambda);
+    for_each_forest(unit, scratch, ahead, [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory) {
+        ForestLinear z(f, lane, call.r.packed && call.v.packed, call.box, call.r,
+                       {&call.v, nullptr, nullptr, true, call.strain}, rates, memory);
+        const bool twice = !call.v.is_float;
+        unsigned good;
+        if (f.n_pieces > 0) {
+            const OneTree tree(z, unit.team, memory);
+            good = tree.solve() && !(twice && tree.any_torn()) ? 1 : 0;
+            const auto write = [&](const ForestTrees::Range &range) { z.write_velocities(range, call.v, all_lanes); };
+            if (good) {
+                if (call.lambda)
+                    tree.for_ranges([&](const ForestTrees::Range &range) {
+                        z.write_bonds<false>(range, 0.5, call.lambda, all_lanes);
                     });
+                if (call.virial) tree.add_virial(tally);
+                tree.project(twice);
+                tree.for_ranges(write);
+            }
+        } else {
+            z.load(z.all());
+            good = z.solve();
+            ahead.fetch();
+            if (good) {
+                if (call.lambda) z.write_bonds<false>(z.all(), 0.5, call.lambda, good);
+                if (call.virial) z.add_virial(good, tally);
+                z.add_pulls_to_velocities(z.all());
+                if (twice) {
+                    z.find_rates(z.all());
+                    z.solve_again();
+                    z.add_pulls_to_velocities(z.all());
+                }
+                z.write_velocities(z.all(), call.v, good);
+            }
+        }
+        leave_doubtful(call, f, lane, good, memory.next, tally);
+    });
 }
 
 void forests_positions(const PositionsCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
-    const AtomArray *const arrays[] = {&call.v, &call.r, &call.r_ref};
-    for_each_forest(unit, arrays, scratch,
-                    [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory, NextForest &ahead) {
-                        ForestNewton newton(f, lane, packed, memory);
-                        const ForestPositions lanes{call, newton, tally};
-                        unsigned good;
-                        if (f.n_pieces > 0) {
-                            OneTreeNewton one{newton, unit.team, reinterpret_cast<OneTreeNewton::Found *>(memory.next)};
-                            memory.next += OneTreeNewton::bytes(f) / static_cast<int64_t>(sizeof(double));
-                            good = OneTreePositions{one, lanes, tally}.solve(lane->molecule) ? 1 : 0;
-                        } else {
-                            good = lanes.solve([&] { ahead.fetch(); });
-                        }
-                        leave_doubtful(call, f, lane, good, memory.next, tally);
-                    });
+    NextMolecules ahead({&call.r_ref, &call.r, &call.v}, call.lambda);
+    for_each_forest(unit, scratch, ahead, [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory) {
+        ForestNewton newton(f, lane, packed, memory);
+        const ForestPositions lanes{call, newton, tally};
+        unsigned good;
+        if (f.n_pieces > 0) {
+            OneTreeNewton one{newton, unit.team, reinterpret_cast<OneTreeNewton::Found *>(memory.next)};
+            memory.next += OneTreeNewton::bytes(f) / static_cast<int64_t>(sizeof(double));
+            good = OneTreePositions{one, lanes, tally}.solve(lane->molecule) ? 1 : 0;
+        } else {
+            good = lanes.solve([&] { ahead.fetch(); });
+        }
+        leave_doubtful(call, f, lane, good, memory.next, tally);
+    });
 }
 
 }  // namespace holonomic::HOL_ISA
