@@ -187,6 +187,7 @@ struct BodyUnit {
     int64_t first[most_in_unit];  // element of its first atom in packed arrays
     int count;
     bool consecutive;  // the atoms of each stand one behind the other
+    bool large;        // they do, and the caller's arrays are unlikely to be in cache
 };
 
 // What a body adds to the result of a call.

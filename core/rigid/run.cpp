@@ -21,6 +21,8 @@ namespace {
 
 // Molecules whose sums are added together, whatever the number of threads; and rows that a thread is worth.
 constexpr std::int64_t block = 64, rows_per_thread = 512;
+// Positions, velocities, forces and results of so many atoms fill a second-level cache.
+constexpr std::int64_t atoms_in_cache = 16384;
 
 void add(Found &total, const Found &part) {
     if (part.tally.n_bad > 0 && total.tally.n_bad == 0) total.first_outcome = part.first_outcome;
@@ -93,6 +95,7 @@ private:
         }
         unit.count = count;
         unit.consecutive = consecutive;
+        unit.large = consecutive && chains_.n_atoms() > atoms_in_cache;
         for (; count % most_lanes != 0; ++count) {
             unit.atoms[count] = unit.atoms[0];
             unit.first[count] = unit.first[0];

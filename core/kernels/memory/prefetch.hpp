@@ -3,6 +3,7 @@
 
 #include <stdint.h>
 
+#include "core/kernels/call.hpp"
 #include "core/kernels/isa/lanes.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -18,6 +19,51 @@ HOL_INLINE void fetch_ahead(const double *first_lane, long k0, long ahead) {
     for (int line = 0; line < (3 * W * atoms + 7) / 8; ++line)
         __builtin_prefetch(reinterpret_cast<const void *>(address + static_cast<uintptr_t>(line) * 64), 0, 2);
 }
+
+// What the next few molecules are read from and written to, fetched array by array between the stages of those that are
+// worked on. In a large call that is what a block waits for longest: the rows of a few molecules in three or four
+// arrays are too short for a processor to notice that they are gone through, and some twenty lines are under way at
+// once.
+class NextRows {
+public:
+    NextRows() = default;
+    // The arrays of a call, in the order in which they are needed. Those that are not packed, or not there, are left
+    // out.
+    template <int n>
+    explicit NextRows(const AtomArray *const (&arrays)[n]) {
+        static_assert(n <= most, "");
+        for (const AtomArray *array : arrays)
+            if (array->x && array->packed) base[count++] = reinterpret_cast<const char *>(array->x);
+    }
+    // The next molecules have at most so many atoms each, and stand where add() says.
+    void begin(int64_t n_atoms) {
+        most_atoms = n_atoms;
+        fetched = n_molecules = 0;
+    }
+    void add(int64_t first_atom) { first[n_molecules++] = row * first_atom; }
+
+    // Starts to fetch one array more. gcc 12 leaves out calls of functions that do nothing but fetch.
+    __attribute__((noinline)) void fetch() {
+        __asm__ volatile("");
+        if (fetched >= count) return;
+        const char *const x = base[fetched++];
+        for (int i = 0; i < n_molecules; ++i) lines(x + first[i], row * most_atoms);
+    }
+    void fetch_the_rest() {
+        while (fetched < count) fetch();
+    }
+
+protected:
+    static constexpr int most = 4;
+    static constexpr int64_t row = 3 * sizeof(double), line = 64;
+    const char *base[most] = {};
+    int64_t first[2 * W], most_atoms = 0;
+    int count = 0, fetched = most, n_molecules = 0;
+
+    HOL_STATIC void lines(const void *from, int64_t bytes) {
+        for (int64_t i = 0; i < bytes; i += line) __builtin_prefetch(static_cast<const char *>(from) + i, 0, 2);
+    }
+};
 
 // settle_stores() must follow before another thread may read it.
 HOL_INLINE void store_past_cache(vec *p, vec a) {

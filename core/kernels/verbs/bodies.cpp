@@ -3,6 +3,7 @@
 #include "core/kernels/bodies/lanes.hpp"
 #include "core/kernels/bodies/turn.hpp"
 #include "core/kernels/isa/choose.hpp"
+#include "core/kernels/memory/prefetch.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -158,26 +159,37 @@ private:
 // Calls the stages of a verb for all blocks of a unit: bits of the bodies that are done. Two blocks at a time: what is
 // solved for is one long chain of sums and products, in which there is time for another one.
 template <class Verb, class Call>
-uint64_t for_each_block(const Call &call, const BodyUnit &unit, double *scratch, BodyResult *results) {
+uint64_t for_each_block(const Call &call, const BodyUnit &unit, NextRows ahead, double *scratch, BodyResult *results) {
     const BodyKind &kind = *unit.kind;
     Verb of[2] = {{call, kind, scratch}, {call, kind, scratch + scratch_of_block(kind.n_atoms)}};
     // What large ones are made of would not stay in the first cache until it is written.
     const int most = kind.n_atoms > 24 ? 1 : 2;
+    // Smaller ones a processor fetches by itself.
+    const bool fetches = unit.large && kind.n_atoms >= 12;
     uint64_t done = 0;
     for (int body = 0; body < unit.count; body += most * W) {
         const int n = body + W < unit.count ? most : 1;
         unsigned lanes[2];
+        if (fetches) {
+            ahead.begin(kind.n_atoms);
+            const int next = body + most * W, end = next + most * W < unit.count ? next + most * W : unit.count;
+            for (int i = next; i < end; ++i) ahead.add(unit.first[i] / 3);
+            ahead.fetch();
+        }
         for (int i = 0; i < n; ++i) {
             of[i].set(unit, body + i * W);
             of[i].read();
         }
         for (int i = 0; i < n; ++i) of[i].compare();
+        ahead.fetch();
         for (int i = 0; i < n; ++i) of[i].find_turn();
         for (int i = 0; i < n; ++i) lanes[i] = bits(of[i].solve(results + body + i * W)) & ((1u << of[i].count) - 1);
+        ahead.fetch();
         for (int i = 0; i < n; ++i) {
             if (lanes[i]) of[i].write(lanes[i]);
             done |= static_cast<uint64_t>(lanes[i]) << (body + i * W);
         }
+        ahead.fetch_the_rest();
     }
     return done;
 }
@@ -189,18 +201,23 @@ int64_t bodies_scratch_bytes(int64_t n_atoms) {
 }
 
 uint64_t bodies_forces(const ForcesCall &call, const BodyUnit &unit, double *scratch, BodyResult *results) {
-    return choose_number<1, 3>(unit.kind->rank,
-                               [&](auto rank) { return for_each_block<ForcesOf<rank>>(call, unit, scratch, results); });
+    return choose_number<1, 3>(unit.kind->rank, [&](auto rank) {
+        return for_each_block<ForcesOf<rank>>(call, unit, NextRows({&call.r, &call.f, &call.v, &call.g}), scratch,
+                                              results);
+    });
 }
 
 uint64_t bodies_velocities(const VelocitiesCall &call, const BodyUnit &unit, double *scratch, BodyResult *results) {
-    return choose_number<1, 3>(
-        unit.kind->rank, [&](auto rank) { return for_each_block<VelocitiesOf<rank>>(call, unit, scratch, results); });
+    return choose_number<1, 3>(unit.kind->rank, [&](auto rank) {
+        return for_each_block<VelocitiesOf<rank>>(call, unit, NextRows({&call.r, &call.v}), scratch, results);
+    });
 }
 
 uint64_t bodies_positions(const PositionsCall &call, const BodyUnit &unit, double *scratch, BodyResult *results) {
-    return choose_number<1, 3>(
-        unit.kind->rank, [&](auto rank) { return for_each_block<PositionsOf<rank>>(call, unit, scratch, results); });
+    return choose_number<1, 3>(unit.kind->rank, [&](auto rank) {
+        return for_each_block<PositionsOf<rank>>(call, unit, NextRows({&call.r_ref, &call.r, &call.v}), scratch,
+                                                 results);
+    });
 }
 
 }  // namespace holonomic::HOL_ISA
