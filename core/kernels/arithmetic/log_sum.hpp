@@ -16,16 +16,19 @@ struct LogSum {
         product = product * factor;
         if (++n == group) flush();
     }
-    __attribute__((noinline)) void flush() {
-        for (int i = 0; i < Width<V>::lanes; ++i) {
-            const double p = Width<V>::get(product, i);
-            Width<V>::set(
-                sum, i,
-                Width<V>::get(sum, i) + (p < 0.5 ? __builtin_log(p) : __builtin_log1p(-Width<V>::get(removed, i))));
-        }
+    void flush() {
+        add(product, removed);
         product = Width<V>::all(1);
         removed = V{};
         n = 0;
+    }
+    // The logarithm of p = 1 - x.
+    __attribute__((noinline)) void add(V p, V x) {
+        for (int i = 0; i < Width<V>::lanes; ++i) {
+            const double one = Width<V>::get(p, i);
+            Width<V>::set(sum, i,
+                          Width<V>::get(sum, i) + (one < 0.5 ? __builtin_log(one) : __builtin_log1p(-Width<V>::get(x, i))));
+        }
     }
 };
 

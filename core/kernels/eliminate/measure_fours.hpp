@@ -144,8 +144,10 @@ HOL_INLINE long weigh_in_fours(long k, long n, const vec *w, const Geometry &x) 
     const four one = four{} + 1.0, zero = {}, sign = _mm256_set1_pd(-0.0);
     for (; k + 4 <= n; k += 4) {
         const four p = load_four(x.p + k), coupled = _mm256_cmp_pd(zero, p, _CMP_LT_OQ);
-        const four e = load_four(x.e + k - 1), f = load_four(x.f + k), divisor = _mm256_blendv_pd(one, p, coupled);
-        const four size = (uniform ? one : load_four(w + k)) / (e + f + (e / divisor) * f);
+        const four A = load_four(x.e + k - 1), C = load_four(x.f + k), G = load_four(x.per_f + k);
+        const four pF = p * load_four(x.per_e + k - 1), pG = p * G;
+        const four whole = mul_add(pG, A, mul_add(pF, C, A * C));
+        const four size = (uniform ? one : load_four(w + k)) * (pF * G) / _mm256_blendv_pd(one, whole, coupled);
         const four h = _mm256_and_pd(coupled, _mm256_or_pd(size, _mm256_and_pd(load_four(x.cosine + k), sign)));
         double *const normal = &x.normal[k].x.element;
         store_any(normal, spread<0>(h) * load_any<four>(normal));
