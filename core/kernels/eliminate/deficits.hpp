@@ -51,7 +51,7 @@ static inline void measure_joints(const Block &block, const Geometry &x) {
     for (long k = 0; k < block.n; ++k) {
         const vec s = reciprocal_scale(max(max(abs(x.u[k].x), abs(x.u[k].y)), abs(x.u[k].z)));
         const vec3 d = s * x.u[k], low = s * x.low[k];
-        const vec q = dot_compensated(d, low, d, low), r = splat(1.0) / sqrt(q);
+        const vec q = square_of(d, low), r = splat(1.0) / sqrt(q);
         x.u[k] = r * d;
         x.square[k] = q;
         x.scale[k] = s;

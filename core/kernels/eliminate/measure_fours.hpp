@@ -68,7 +68,7 @@ HOL_INLINE void measure_bonds(MeasuredBonds &x, long i, const double *from, cons
         _mm256_and_si256(_mm256_castpd_si256(largest.v), _mm256_set1_epi64x(0x7ff0000000000000LL));
     const Four s = {_mm256_castsi256_pd(_mm256_sub_epi64(_mm256_set1_epi64x(2 * 0x3ff0000000000000LL), exponents))};
     const Vector3<Four> d = s * raw, low = s * read_vectors(from_low);
-    const Four q = dot_compensated(d, low, d, low), r = Four{four{} + 1.0} / Four{_mm256_sqrt_pd(q.v)};
+    const Four q = square_of(d, low), r = Four{four{} + 1.0} / Four{_mm256_sqrt_pd(q.v)};
     x.put(x.d, i, d);
     x.put(x.low, i, low);
     store_any(x.r + i, r);
