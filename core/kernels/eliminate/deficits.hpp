@@ -23,12 +23,13 @@ struct Geometry {
     vec *e, *t;                // e: numerators of the deficits from the left; their denominators:
     vec *per_e;                // in the place of `low`
     vec *f, *per_f;            // of those from behind, where they are kept, until t is needed
-    Geometry(long n, Arena &arena)
-        : u(vectors(n + W, arena)), low(vectors(n + W, arena)), normal(vectors(n + 1, arena)),
-          cosine(arena.vecs(n + 1)), complement(arena.vecs(n + 1)), reciprocal(arena.vecs(n)), square(arena.vecs(n)),
-          scale(arena.vecs(n)), p(arena.vecs(n + 1)), delta(arena.vecs(n + 1)), e(arena.vecs(n)), t(arena.vecs(n + W)),
-          per_e(&low->x), f(t), per_f(per_e + n) {}
-    static vec3 *vectors(long n, Arena &arena) { return reinterpret_cast<vec3 *>(arena.vecs(3 * n)); }
+    Geometry(long n, Arena &arena)  // with room for a whole group behind the last bond
+        : u(vectors(n, arena)), low(vectors(n, arena)), normal(vectors(n, arena)), cosine(values(n, arena)),
+          complement(values(n, arena)), reciprocal(values(n, arena)), square(values(n, arena)), scale(values(n, arena)),
+          p(values(n, arena)), delta(values(n, arena)), e(values(n, arena)), t(values(n, arena)), per_e(&low->x), f(t),
+          per_f(per_e + n) {}
+    static vec *values(long n, Arena &arena) { return arena.vecs(n + group); }
+    static vec3 *vectors(long n, Arena &arena) { return reinterpret_cast<vec3 *>(arena.vecs(3 * (n + group))); }
 };
 
 // The reciprocal of the power of two just below a > 0.
@@ -82,11 +83,11 @@ static inline void measure_joints(const Block &block, const Geometry &x) {
 
 template <bool uniform>
 static inline void measure(const Block &block, const Geometry &x) {
+    measure_joints<uniform>(block, x);
     x.p[0] = x.p[block.n] = x.cosine[0] = x.cosine[block.n] = vec{};
     x.complement[0] = x.complement[block.n] = splat(1.0);
     x.normal[0] = x.normal[block.n] = vec3{};
     x.delta[block.n] = vec{};
-    measure_joints<uniform>(block, x);
     for (long k = 0; k < block.n; ++k)
         x.delta[k] = w_at<uniform>(block, k) * x.complement[k] + w_at<uniform>(block, k + 1) * x.complement[k + 1];
 }
