@@ -118,8 +118,9 @@ struct Deficit {
         F = mul_add(passed, F, uniform ? A : m * A);
         A = mul_add(delta, F, passed * A);
     }
+    // Not by a power of two alone: along a rod A and F hardly change, and neither would what each joint rounds off.
     HOL_FORCED vec rescale() {
-        const vec s = reciprocal_scale(F);
+        const vec s = 0.6180339887498949 * reciprocal_scale(F);
         A = s * A;
         F = s * F;
         return s;
