@@ -71,8 +71,8 @@ HOL_INLINE V square_of(const Vector3<V> &a, const Vector3<V> &a_lo) {
     return dot(a, a) + (half + half);
 }
 
-// As dot_compensated() (a + al) (b + bl) - (c + cl) (d + dl). With fused products after Kahan (Jeannerod, Louvet and Muller, Math.
-// Comp. 82, 2245 (2013)).
+// As dot_compensated() (a + al) (b + bl) - (c + cl) (d + dl). With fused products after Kahan (Jeannerod, Louvet and
+// Muller, Math. Comp. 82, 2245 (2013)).
 template <class V>
 HOL_INLINE V minor_compensated(V a, V al, V b, V bl, V c, V cl, V d, V dl) {
 #if HOL_HAS_FMA

@@ -5,8 +5,9 @@
 
 namespace holonomic::HOL_ISA {
 
-// ln p of p = 1 - x, x >= 0, of which both are right to their last digits; NaN if p is below 2^-1000 or no number. The method is that
-// of fdlibm (Sun Microsystems 1993): p = 2^k m, ln m from a polynomial in s = f / (2 + f), f = m - 1, |f| < 0.42.
+// ln p of p = 1 - x, x >= 0, of which both are right to their last digits; NaN if p is below 2^-1000 or no number. The
+// method is that of fdlibm (Sun Microsystems 1993): p = 2^k m, ln m from a polynomial in s = f / (2 + f), f = m - 1,
+// |f| < 0.42.
 template <class V>
 HOL_INLINE V logarithm(V p, V x) {
     typedef typename Width<V>::Integers Integers;

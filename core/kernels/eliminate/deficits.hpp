@@ -1,7 +1,7 @@
 // Metric determinant and Fixman force of a block of chains, theory (24)-(31): elimination on unit bonds. It carries the
 // deficits e and f, which the bonds on either side leave of a row, instead of the diagonal. So it subtracts nothing.
-// Deficits are fractions, so that no bond waits for a quotient. Products are always compensated, because determinants and
-// the inverse have no componentwise scale that would forgive their rounding.
+// Deficits are fractions, so that no bond waits for a quotient. Products are always compensated, because determinants
+// and the inverse have no componentwise scale that would forgive their rounding.
 #pragma once
 
 #include "core/kernels/arithmetic/log_sum.hpp"
@@ -13,16 +13,16 @@ namespace holonomic::HOL_ISA {
 
 // Per bond k of a block; joint k lies between bonds k-1 and k.
 struct Geometry {
-    vec3 *u, *low;             // bond vector, then unit vector, then Fixman's phi; low words of the bond vector
-    vec3 *normal;              // u_{k-1} x u_k, then h_k times it
-    vec *cosine, *complement;  // of joint k: c and 1 - |c|
-    vec *reciprocal;           // 1 / |d|
-    vec *square;               // d.d over `scale` squared
-    vec *scale;                // a power of two
-    vec *p, *delta;            // coupling of bonds k-1 and k; what row k has beyond its neighbours
-    vec *e, *t;                // e: numerators of the deficits from the left; their denominators:
-    vec *per_e;                // in the place of `low`
-    vec *f, *per_f;            // of those from behind, where they are kept, until t is needed
+    vec3 *u, *low;                  // bond vector, then unit vector, then Fixman's phi; low words of the bond vector
+    vec3 *normal;                   // u_{k-1} x u_k, then h_k times it
+    vec *cosine, *complement;       // of joint k: c and 1 - |c|
+    vec *reciprocal;                // 1 / |d|
+    vec *square;                    // d.d over `scale` squared
+    vec *scale;                     // a power of two
+    vec *p, *delta;                 // coupling of bonds k-1 and k; what row k has beyond its neighbours
+    vec *e, *t;                     // e: numerators of the deficits from the left; their denominators:
+    vec *per_e;                     // in the place of `low`
+    vec *f, *per_f;                 // of those from behind, where they are kept, until t is needed
     Geometry(long n, Arena &arena)  // with room for a whole group behind the last bond
         : u(vectors(n, arena)), low(vectors(n, arena)), normal(vectors(n, arena)), cosine(values(n, arena)),
           complement(values(n, arena)), reciprocal(values(n, arena)), square(values(n, arena)), scale(values(n, arena)),
@@ -103,8 +103,8 @@ struct MetricSums {
 
 // The deficit that is left of a row, e = A / F. With coupling p to the next row, whose own is delta,
 //     F' = m (p F + A) = m P F,   A' = delta F' + m p A
-// for any power of two m: theory (26), (27) without a quotient. Where a chain has equal masses m is 1, else it keeps F' in
-// the range of F: a rounded number would add up along a rod, in which e is small and the same at each joint.
+// for any power of two m: theory (26), (27) without a quotient. Where a chain has equal masses m is 1, else it keeps F'
+// in the range of F: a rounded number would add up along a rod, in which e is small and the same at each joint.
 template <bool uniform>
 struct Deficit {
     vec A, F = splat(1.0);
@@ -136,9 +136,9 @@ struct Removal {
     vec removed = {}, diagonals = splat(1.0);      // times their product
 };
 
-// Goes from left to right. Finds e of all bonds if `keep`, and the logarithms over the bonds first .. end-1 of each lane;
-// all lanes have the first `whole`, and count them. Takes lanes with a pivot that is not positive out of `good`. beside(k)
-// is called for all bonds, for what waits as long and for something else.
+// Goes from left to right. Finds e of all bonds if `keep`, and the logarithms over the bonds first .. end-1 of each
+// lane; all lanes have the first `whole`, and count them. Takes lanes with a pivot that is not positive out of `good`.
+// beside(k) is called for all bonds, for what waits as long and for something else.
 template <bool uniform, bool keep_deficits, class Beside>
 static inline MetricSums eliminate_metric(const Block &block, const Geometry &x, vec first, vec end, long whole,
                                           const MetricCall &call, mask &good, const Beside &beside) {
@@ -157,16 +157,14 @@ static inline MetricSums eliminate_metric(const Block &block, const Geometry &x,
         size = size + x.reciprocal[k];
         left.pass(m, passed, x.delta[k + 1]);
         if (logs) {
-            Removal next = {part.before, left.F,
-                            mul_add(x.p[k] * m * passed_before, F_before, part.removed * (M * m)),
+            Removal next = {part.before, left.F, mul_add(x.p[k] * m * passed_before, F_before, part.removed * (M * m)),
                             part.diagonals * (M * m)};
             mask counted = ~none();
             if (k >= whole) {
                 const mask early = less(splat(static_cast<double>(k)), first);
                 counted = between(k, first, end);
                 next = {select(early, left.F, part.before), select(counted | early, left.F, part.behind),
-                        select(counted, next.removed, part.removed),
-                        select(counted, next.diagonals, part.diagonals)};
+                        select(counted, next.removed, part.removed), select(counted, next.diagonals, part.diagonals)};
             }
             part = next;
             if (call.log_det_z)

@@ -58,8 +58,8 @@ HOL_INLINE void write_vectors(double *p, const Vector3<Four> &v) {
     store_any(p + 8, four(_mm256_permute2f128_pd(b, c, 0x31)));
 }
 
-// Four bonds u [12], which become unit vectors, and low words; what is found goes to `square`, `scale`, `reciprocal` [4].
-// i: their place in the stage.
+// Four bonds u [12], which become unit vectors, and low words; what is found goes to `square`, `scale`, `reciprocal`
+// [4]. i: their place in the stage.
 HOL_INLINE void measure_bonds(MeasuredBonds &x, long i, double *u, const double *u_low, double *square, double *scale,
                               double *reciprocal) {
     const Vector3<Four> raw = read_vectors(u);
@@ -91,8 +91,8 @@ HOL_INLINE void measure_joints(const MeasuredBonds &x, long i, double *cosine, d
     write_vectors(normal, n);
 }
 
-// All bonds and joints of n: from bond vectors in x.u and their low words. Beside the last ones, and before the first, stand
-// bonds that are there for this alone.
+// All bonds and joints of n: from bond vectors in x.u and their low words. Beside the last ones, and before the first,
+// stand bonds that are there for this alone.
 template <class Geometry>
 HOL_NOINLINE void measure_in_fours(long n, const Geometry &x) {
     MeasuredBonds bonds;
