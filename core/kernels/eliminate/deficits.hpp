@@ -136,6 +136,18 @@ struct Removal {
     vec removed = {}, diagonals = splat(1.0);      // times their product
 };
 
+// What ln det Z has beside ln det Z~.
+HOL_NOINLINE vec log_of_diagonals(const Block &block, const Geometry &x, vec first, vec end) {
+    LogSumWide<vec> sum;
+    for (long k = 0; k < block.n; ++k) {
+        const mask counted = between(k, first, end);
+        const vec M = block.uniform_w ? splat(2.0) : block.w[k] + block.w[k + 1];
+        sum.multiply(select(counted, 4.0 * (block.unit * M) * x.square[k], splat(1.0)),
+                     select(counted, x.scale[k], splat(1.0)));
+    }
+    return sum.total();
+}
+
 // Goes from left to right. Finds e of all bonds if `keep`, and the logarithms over the bonds first .. end-1 of each
 // lane; all lanes have the first `whole`, and count them. Takes lanes with a pivot that is not positive out of `good`.
 // beside(k) is called for all bonds, for what waits as long and for something else.
@@ -144,7 +156,6 @@ static inline MetricSums eliminate_metric(const Block &block, const Geometry &x,
                                           const MetricCall &call, mask &good, const Beside &beside) {
     const bool logs = call.log_det || call.sum || call.log_det_z;
     LogSum<vec> det;
-    LogSumWide<vec> det_z;
     Deficit<uniform> left = {x.delta[0]};
     Removal part;
     vec F_before = {}, passed_before = {}, size = {};
@@ -156,21 +167,14 @@ static inline MetricSums eliminate_metric(const Block &block, const Geometry &x,
         }
         size = size + x.reciprocal[k];
         left.pass(m, passed, x.delta[k + 1]);
-        if (logs) {
-            Removal next = {part.before, left.F, mul_add(x.p[k] * m * passed_before, F_before, part.removed * (M * m)),
-                            part.diagonals * (M * m)};
-            mask counted = ~none();
-            if (k >= whole) {
-                const mask early = less(splat(static_cast<double>(k)), first);
-                counted = between(k, first, end);
-                next = {select(early, left.F, part.before), select(counted | early, left.F, part.behind),
-                        select(counted, next.removed, part.removed), select(counted, next.diagonals, part.diagonals)};
-            }
-            part = next;
-            if (call.log_det_z)
-                det_z.multiply(select(counted, 4.0 * (block.unit * M) * x.square[k], splat(1.0)),
-                               select(counted, x.scale[k], splat(1.0)));
+        Removal next = {part.before, left.F, mul_add(x.p[k] * m * passed_before, F_before, part.removed * (M * m)),
+                        part.diagonals * (M * m)};
+        if (k >= whole) {
+            const mask early = less(splat(static_cast<double>(k)), first), counted = between(k, first, end);
+            next = {select(early, left.F, part.before), select(counted | early, left.F, part.behind),
+                    select(counted, next.removed, part.removed), select(counted, next.diagonals, part.diagonals)};
         }
+        part = next;
         F_before = F;
         passed_before = passed;
         beside(k);
@@ -186,9 +190,7 @@ static inline MetricSums eliminate_metric(const Block &block, const Geometry &x,
     // A pivot that is 0 makes F zero from there on.
     const vec headroom = splat(call.force.x ? call.kT * 0x1p300 : 0.0);  // no force overflows
     good = good & less(vec{}, left.F) & finite(size + headroom * size);
-    MetricSums sums = {det.sum, vec{}};
-    if (call.log_det_z) sums.log_det_z = det.sum + det_z.total();
-    return sums;
+    return {det.sum, call.log_det_z ? det.sum + log_of_diagonals(block, x, first, end) : vec{}};
 }
 
 // From the joint's two sides: h_k = w_k (M^-1)_{k-1,k}, and h_k n_k in place of n_k. `right` belongs to bond k.
