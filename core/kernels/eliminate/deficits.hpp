@@ -211,11 +211,11 @@ template <bool uniform>
 HOL_INLINE void pass_back(const Block &block, const Geometry &x, long k, Deficit<uniform> &right) {
     const vec m = right.scale_of(right.diagonal(block, k));
     right.pass(m, x.p[k] * m, x.delta[k - 1]);
-    if (k >= block.n_min) {  // the last bond of a lane
+    if (k % rescaled == 0) right.rescale();
+    if (k >= block.n_min) {  // the last bond of a lane, which begins unscaled
         const mask inside = joint(block, k);
         right = {select(inside, right.A, x.delta[k - 1]), select(inside, right.F, splat(1.0))};
     }
-    if (k % rescaled == 0) right.rescale();
 }
 
 // Writes phi of bond k as t times a vector: the force on atom k is the pull t_k phi_k - t_{k-1} phi_{k-1}. Zeros are
