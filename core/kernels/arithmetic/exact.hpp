@@ -64,13 +64,27 @@ HOL_INLINE V dot_compensated(const Vector3<V> &a, const Vector3<V> &a_lo, const 
     return t.hi + ((t.lo + s.lo) + ((x.lo + y.lo) + z.lo) + (dot(a, b_lo) + dot(a_lo, b)));
 }
 
-// The same of (a + al) (b + bl) - (c + cl) (d + dl).
+// |a + a_lo|^2, in which nothing cancels: to a few roundings.
+template <class V>
+HOL_INLINE V square_of(const Vector3<V> &a, const Vector3<V> &a_lo) {
+    const V half = dot(a, a_lo);
+    return dot(a, a) + (half + half);
+}
+
+// As dot_compensated() (a + al) (b + bl) - (c + cl) (d + dl). With fused products after Kahan (Jeannerod, Louvet and
+// Muller, Math. Comp. 82, 2245 (2013)).
 template <class V>
 HOL_INLINE V minor_compensated(V a, V al, V b, V bl, V c, V cl, V d, V dl) {
+#if HOL_HAS_FMA
+    const V p = c * d, lost = mul_add(-c, d, p);
+    const V low = mul_add(a, bl, mul_add(al, b, mul_add(-c, dl, mul_add(-cl, d, lost))));
+    return mul_add(a, b, -p) + low;
+#else
     const Pair<V> p = two_product(a, b), q = two_product(c, d);
     const Pair<V> s = two_difference(p.hi, q.hi);
     const V low = mul_add(a, bl, al * b) - mul_add(c, dl, cl * d);
     return s.hi + (s.lo + (p.lo - q.lo) + low);
+#endif
 }
 
 template <class V>

@@ -5,6 +5,33 @@
 
 namespace holonomic::HOL_ISA {
 
+// ln p of p = 1 - x, x >= 0, of which both are right to their last digits; NaN if p is below 2^-1000 or no number. The
+// method is that of fdlibm (Sun Microsystems 1993): p = 2^k m, ln m from a polynomial in s = f / (2 + f), f = m - 1,
+// |f| < 0.42.
+template <class V>
+HOL_INLINE V logarithm(V p, V x) {
+    typedef typename Width<V>::Integers Integers;
+    constexpr double root = 0x1.6a09e667f3bcdp-1;  // of 1/2
+    constexpr long long above_root = exponent_of_one - 0x3fe6a09e667f3bcdLL;
+    const auto small = less(p, Width<V>::all(0.5));
+    const V one = Width<V>::all(1), q = select(small, p, one - x);
+    const Integers power = (Width<V>::integers(q) + above_root) & (Integers{} + exponent_bits);
+    const V m = q * Width<V>::of_integers((Integers{} + 2 * exponent_of_one) - power);
+    const V k = Width<V>::of_integers((power >> 52) + (0x4338000000000000LL - 1023)) - Width<V>::all(0x1.8p52);
+    const V f = select(less(q, Width<V>::all(root)), select(small, m - one, one - (x + x)), -x);  // exact
+    const V s = f / (one + one + f), z = s * s, w = z * z;
+    const auto horner = [&](double a, double b, double c) HOL_FORCED {
+        return mul_add(w, mul_add(w, Width<V>::all(a), Width<V>::all(b)), Width<V>::all(c));
+    };
+    const V odd = horner(0x1.39a09d078c69fp-3, 0x1.c71c51d8e78afp-3, 0x1.999999997fa04p-2),
+            even = mul_add(w, horner(0x1.2f112df3e5244p-3, 0x1.7466496cb03dep-3, 0x1.2492494229359p-2),
+                           Width<V>::all(0x1.5555555555593p-1)),
+            half = 0.5 * f * f, rest = mul_add(z, even, w * odd);
+    const V low = mul_add(s, half + rest, k * Width<V>::all(0x1.a39ef35793c76p-33));
+    const V sum = mul_add(k, Width<V>::all(0x1.62e42feep-1), f - (half - low));
+    return select(less(Width<V>::all(0x1p-1000), p), sum, Width<V>::all(__builtin_nan("")));
+}
+
 // Of factors 1 - x, each at least 2^-100. Neither a sum near 0 nor a large one loses digits.
 template <class V>
 struct LogSum {
@@ -16,17 +43,13 @@ struct LogSum {
         product = product * factor;
         if (++n == group) flush();
     }
-    __attribute__((noinline)) void flush() {
-        for (int i = 0; i < Width<V>::lanes; ++i) {
-            const double p = Width<V>::get(product, i);
-            Width<V>::set(
-                sum, i,
-                Width<V>::get(sum, i) + (p < 0.5 ? __builtin_log(p) : __builtin_log1p(-Width<V>::get(removed, i))));
-        }
+    void flush() {
+        add(product, removed);
         product = Width<V>::all(1);
         removed = V{};
         n = 0;
     }
+    __attribute__((noinline)) void add(V p, V x) { sum = sum + logarithm(p, x); }
 };
 
 // Of positive factors of any size: mantissas and exponents are added up apart.

@@ -1,7 +1,7 @@
 // Metric determinant and Fixman force of a block of chains, theory (24)-(31): elimination on unit bonds. It carries the
 // deficits e and f, which the bonds on either side leave of a row, instead of the diagonal. So it subtracts nothing.
-// Products are always compensated, because determinants and the inverse have no componentwise scale that would forgive
-// their rounding.
+// Deficits are fractions, so that no bond waits for a quotient. Products are always compensated, because determinants
+// and the inverse have no componentwise scale that would forgive their rounding.
 #pragma once
 
 #include "core/kernels/arithmetic/log_sum.hpp"
@@ -13,28 +13,28 @@ namespace holonomic::HOL_ISA {
 
 // Per bond k of a block; joint k lies between bonds k-1 and k.
 struct Geometry {
-    vec3 *u, *low;             // bond vector, then unit vector, then Fixman's phi; low words of the bond vector
-    vec3 *normal;              // u_{k-1} x u_k, then h_k times it
-    vec *cosine, *complement;  // of joint k: c and 1 - |c|
-    vec *reciprocal;           // 1 / |d|
-    vec *square;               // d.d over `scale` squared
-    vec *f;                    // deficits from behind, where they are kept
-    vec *scale;                // a power of two
-    vec *p, *delta;            // coupling of bonds k-1 and k; what row k has beyond its neighbours
-    vec *e, *t;
-    Geometry(long n, Arena &arena)
-        : u(vectors(n + W, arena)), low(vectors(n + W, arena)), normal(vectors(n + 1, arena)),
-          cosine(arena.vecs(n + 1)), complement(arena.vecs(n + 1)), reciprocal(arena.vecs(n)), square(arena.vecs(n)),
-          scale(arena.vecs(n)), p(arena.vecs(n + 1)), delta(arena.vecs(n)), e(arena.vecs(n)), t(arena.vecs(n + W)) {
-        f = t;  // until t is needed
-    }
-    static vec3 *vectors(long n, Arena &arena) { return reinterpret_cast<vec3 *>(arena.vecs(3 * n)); }
+    vec3 *u, *low;                  // bond vector, then unit vector, then Fixman's phi; low words of the bond vector
+    vec3 *normal;                   // u_{k-1} x u_k, then h_k times it
+    vec *cosine, *complement;       // of joint k: c and 1 - |c|
+    vec *reciprocal;                // 1 / |d|
+    vec *square;                    // d.d over `scale` squared
+    vec *scale;                     // a power of two
+    vec *p, *delta;                 // coupling of bonds k-1 and k; what row k has beyond its neighbours
+    vec *e, *t;                     // e: numerators of the deficits from the left; their denominators:
+    vec *per_e;                     // in the place of `low`
+    vec *f, *per_f;                 // of those from behind, where they are kept, until t is needed
+    Geometry(long n, Arena &arena)  // with room for a whole group behind the last bond
+        : u(vectors(n, arena)), low(vectors(n, arena)), normal(vectors(n, arena)), cosine(values(n, arena)),
+          complement(values(n, arena)), reciprocal(values(n, arena)), square(values(n, arena)), scale(values(n, arena)),
+          p(values(n, arena)), delta(values(n, arena)), e(values(n, arena)), t(values(n, arena)), per_e(&low->x), f(t),
+          per_f(per_e + n) {}
+    static vec *values(long n, Arena &arena) { return arena.vecs(n + group); }
+    static vec3 *vectors(long n, Arena &arena) { return reinterpret_cast<vec3 *>(arena.vecs(3 * (n + group))); }
 };
 
-// The reciprocal of the power of two just below the largest component.
-HOL_INLINE vec reciprocal_scale(const vec3 &d) {
-    const vec largest = max(max(abs(d.x), abs(d.y)), abs(d.z));
-    return as_vec((mask{} + 2 * exponent_of_one) - (as_mask(largest) & (mask{} + exponent_bits)));
+// The reciprocal of the power of two just below a > 0.
+HOL_INLINE vec reciprocal_scale(vec a) {
+    return as_vec((mask{} + 2 * exponent_of_one) - (as_mask(a) & (mask{} + exponent_bits)));
 }
 
 // Bonds, the joints between them, and what couples these.
@@ -50,9 +50,9 @@ static inline void measure_joints(const Block &block, const Geometry &x) {
     vec3 d0 = {}, low0 = {};
     vec r0 = {};
     for (long k = 0; k < block.n; ++k) {
-        const vec s = reciprocal_scale(x.u[k]);
+        const vec s = reciprocal_scale(max(max(abs(x.u[k].x), abs(x.u[k].y)), abs(x.u[k].z)));
         const vec3 d = s * x.u[k], low = s * x.low[k];
-        const vec q = dot_compensated(d, low, d, low), r = splat(1.0) / sqrt(q);
+        const vec q = square_of(d, low), r = splat(1.0) / sqrt(q);
         x.u[k] = r * d;
         x.square[k] = q;
         x.scale[k] = s;
@@ -83,10 +83,11 @@ static inline void measure_joints(const Block &block, const Geometry &x) {
 
 template <bool uniform>
 static inline void measure(const Block &block, const Geometry &x) {
+    measure_joints<uniform>(block, x);
     x.p[0] = x.p[block.n] = x.cosine[0] = x.cosine[block.n] = vec{};
     x.complement[0] = x.complement[block.n] = splat(1.0);
     x.normal[0] = x.normal[block.n] = vec3{};
-    measure_joints<uniform>(block, x);
+    x.delta[block.n] = vec{};
     for (long k = 0; k < block.n; ++k)
         x.delta[k] = w_at<uniform>(block, k) * x.complement[k] + w_at<uniform>(block, k + 1) * x.complement[k + 1];
 }
@@ -100,70 +101,121 @@ struct MetricSums {
     vec log_det, log_det_z;
 };
 
-// Less what a coupling p passes on of a deficit e: - p e / P, P = e + p. Along a rod e is the same at each joint, so
-// that the factor p / P would be rounded the same way each time, which adds up as the number of joints. What the
-// smaller one of both loses is never more than half of it.
-HOL_INLINE vec less_passed_on(vec e, vec p, vec P) {
-    const vec s = min(e, p);
-    return mul_sub(s, s / P, s);
-}
-
-// Goes from left to right, from e of bond 0. Finds e of all bonds, and the logarithms over the bonds first .. end-1 of
-// each lane; all lanes have the first `whole`, and count them. Takes lanes with a pivot that is not positive out of
-// `good`. beside(k) is called for all bonds, for what waits as long and for something else.
-template <bool uniform, class Beside>
-static inline MetricSums eliminate_metric(const Block &block, const Geometry &x, vec e, vec first, vec end, long whole,
-                                          const MetricCall &call, mask &good, const Beside &beside) {
-    const bool logs = call.log_det || call.sum;
-    const vec headroom = splat(call.force.x ? call.kT * 0x1p300 : 0.0);  // no force overflows
-    LogSum<vec> det;
-    LogSumWide<vec> det_z;
-    vec removed = {};  // p l
-    for (long k = 0; k < block.n; ++k) {
-        const vec P = e + x.p[k + 1], M = w_at<uniform>(block, k) + w_at<uniform>(block, k + 1);
-        x.e[k] = e;
-        good = good & less(vec{}, P) & finite(x.reciprocal[k] + headroom * x.reciprocal[k]);
-        if (logs || call.log_det_z) {
-            const vec inverse = splat(1.0) / M;
-            vec factor = P * inverse, less_one = removed * inverse;
-            mask counted = ~none();
-            if (k >= whole) {
-                counted = between(k, first, end);
-                factor = select(counted, factor, splat(1.0));
-                less_one = keep(counted, less_one);
-            }
-            det.multiply(factor, less_one);
-            if (call.log_det_z)
-                det_z.multiply(select(counted, 4.0 * (block.unit * M) * x.square[k], splat(1.0)),
-                               select(counted, x.scale[k], splat(1.0)));
-        }
-        beside(k);
-        if (k + 1 == block.n) break;
-        removed = x.p[k + 1] * (x.p[k + 1] / P);
-        e = x.delta[k + 1] - less_passed_on(e, x.p[k + 1], P);
-    }
-    det.flush();
-    MetricSums sums = {det.sum, vec{}};
-    if (call.log_det_z) sums.log_det_z = det.sum + det_z.total();
-    return sums;
-}
-
-// From the joint's two sides: h_k = w_k (M^-1)_{k-1,k}, and h_k n_k in place of n_k. f belongs to bond k.
+// The deficit that is left of a row, e = A / F. With coupling p to the next row, whose own is delta,
+//     F' = m (p F + A) = m P F,   A' = delta F' + m p A
+// for any power of two m: theory (26), (27) without a quotient. Where a chain has equal masses m is 1, else it keeps F'
+// in the range of F: a rounded number would add up along a rod, in which e is small and the same at each joint.
 template <bool uniform>
-HOL_INLINE void weigh_normal(const Block &block, const Geometry &x, long k, vec f) {
-    const mask coupled = less(vec{}, x.p[k]);
-    const vec e = x.e[k - 1], p = select(coupled, x.p[k], splat(1.0));  // the caller may trap divisions by zero
-    const vec size = w_at<uniform>(block, k) / (e + f + (e / p) * f);
+struct Deficit {
+    vec A, F = splat(1.0);
+
+    HOL_FORCED static vec diagonal(const Block &block, long k) {
+        return w_at<uniform>(block, k) + w_at<uniform>(block, k + 1);
+    }
+    HOL_FORCED static vec scale_of(vec diagonal) { return uniform ? splat(1.0) : reciprocal_scale(diagonal); }
+    // passed: m p.
+    HOL_FORCED void pass(vec m, vec passed, vec delta) {
+        F = mul_add(passed, F, uniform ? A : m * A);
+        A = mul_add(delta, F, passed * A);
+    }
+    // Not by a power of two alone: along a rod A and F hardly change, and neither would what each joint rounds off.
+    HOL_FORCED vec rescale() {
+        const vec s = 0.6180339887498949 * reciprocal_scale(F);
+        A = s * A;
+        F = s * F;
+        return s;
+    }
+};
+constexpr long rescaled = LogSum<vec>::group;  // so often
+
+// The logarithm of a product of factors P / M = 1 - p^2 / (P_before M), theory (28), from F: a group of factors is the
+// quotient of F behind and before it, and what it removes from 1 is a sum of the same terms,
+//     1 - f_{k+1} = (1 - f_k) + p_k^2 / (M_{k-1} M_k) f_{k-1},   f = F over the product of m M.
+struct Removal {
+    vec before = splat(1.0), behind = splat(1.0);  // F
+    vec removed = {}, diagonals = splat(1.0);      // times their product
+};
+
+// What ln det Z has beside ln det Z~.
+HOL_NOINLINE vec log_of_diagonals(const Block &block, const Geometry &x, vec first, vec end) {
+    LogSumWide<vec> sum;
+    for (long k = 0; k < block.n; ++k) {
+        const mask counted = between(k, first, end);
+        const vec M = block.uniform_w ? splat(2.0) : block.w[k] + block.w[k + 1];
+        sum.multiply(select(counted, 4.0 * (block.unit * M) * x.square[k], splat(1.0)),
+                     select(counted, x.scale[k], splat(1.0)));
+    }
+    return sum.total();
+}
+
+// Goes from left to right. Finds e of all bonds if `keep`, and the logarithms over the bonds first .. end-1 of each
+// lane; all lanes have the first `whole`, and count them. Takes lanes with a pivot that is not positive out of `good`.
+// beside(k) is called for all bonds, for what waits as long and for something else.
+template <bool uniform, bool keep_deficits, class Beside>
+static inline MetricSums eliminate_metric(const Block &block, const Geometry &x, vec first, vec end, long whole,
+                                          const MetricCall &call, mask &good, const Beside &beside) {
+    const bool logs = call.log_det || call.sum || call.log_det_z;
+    LogSum<vec> det;
+    Deficit<uniform> left = {x.delta[0]};
+    Removal part;
+    vec F_before = {}, passed_before = {}, size = {};
+    for (long k = 0; k < block.n; ++k) {
+        const vec M = left.diagonal(block, k), m = left.scale_of(M), passed = x.p[k + 1] * m, F = left.F;
+        if (keep_deficits) {
+            x.e[k] = left.A;
+            x.per_e[k] = F;
+        }
+        size = size + x.reciprocal[k];
+        left.pass(m, passed, x.delta[k + 1]);
+        Removal next = {part.before, left.F, mul_add(x.p[k] * m * passed_before, F_before, part.removed * (M * m)),
+                        part.diagonals * (M * m)};
+        if (k >= whole) {
+            const mask early = less(splat(static_cast<double>(k)), first), counted = between(k, first, end);
+            next = {select(early, left.F, part.before), select(counted | early, left.F, part.behind),
+                    select(counted, next.removed, part.removed), select(counted, next.diagonals, part.diagonals)};
+        }
+        part = next;
+        F_before = F;
+        passed_before = passed;
+        beside(k);
+        if (k % rescaled == rescaled - 1 || k + 1 == block.n) {
+            if (logs) {
+                const vec per = splat(1.0) / (part.before * part.diagonals);
+                det.add(part.behind * per, part.removed * per);
+            }
+            F_before = left.rescale() * F_before;
+            part = {left.F, left.F};
+        }
+    }
+    // A pivot that is 0 makes F zero from there on.
+    const vec headroom = splat(call.force.x ? call.kT * 0x1p300 : 0.0);  // no force overflows
+    good = good & less(vec{}, left.F) & finite(size + headroom * size);
+    return {det.sum, call.log_det_z ? det.sum + log_of_diagonals(block, x, first, end) : vec{}};
+}
+
+// From the joint's two sides: h_k = w_k (M^-1)_{k-1,k}, and h_k n_k in place of n_k. `right` belongs to bond k.
+template <bool uniform>
+HOL_INLINE void weigh_normal(const Block &block, const Geometry &x, long k, const Deficit<uniform> &right) {
+    const vec p = x.p[k], pF = p * x.per_e[k - 1], pG = p * right.F, A = x.e[k - 1];
+    const mask coupled = less(vec{}, p);
+    const vec whole = mul_add(pG, A, mul_add(pF, right.A, A * right.A));
+    // The caller may trap divisions by zero.
+    const vec size = w_at<uniform>(block, k) * (pF * right.F) / select(coupled, whole, splat(1.0));
     const mask sign = mask{} + (-0x7fffffffffffffffLL - 1);
     const vec h = as_vec(as_mask(size) | (as_mask(x.cosine[k]) & sign));
     x.normal[k] = keep(coupled, h) * x.normal[k];
 }
 
-// What the bonds to the right of joint k leave of row k-1.
-HOL_INLINE vec next_deficit(const Geometry &x, long k, vec f) {
-    const mask coupled = less(vec{}, x.p[k]);
-    const vec p = select(coupled, x.p[k], splat(1.0));
-    return x.delta[k - 1] - less_passed_on(f, x.p[k], f + p);  // P = 0 would be a division by it
+// From bond k to bond k - 1, from behind.
+template <bool uniform>
+HOL_INLINE void pass_back(const Block &block, const Geometry &x, long k, Deficit<uniform> &right) {
+    const vec m = right.scale_of(right.diagonal(block, k));
+    right.pass(m, x.p[k] * m, x.delta[k - 1]);
+    if (k % rescaled == 0) right.rescale();
+    if (k >= block.n_min) {  // the last bond of a lane, which begins unscaled
+        const mask inside = joint(block, k);
+        right = {select(inside, right.A, x.delta[k - 1]), select(inside, right.F, splat(1.0))};
+    }
 }
 
 // Writes phi of bond k as t times a vector: the force on atom k is the pull t_k phi_k - t_{k-1} phi_{k-1}. Zeros are

@@ -58,17 +58,17 @@ HOL_INLINE void write_vectors(double *p, const Vector3<Four> &v) {
     store_any(p + 8, four(_mm256_permute2f128_pd(b, c, 0x31)));
 }
 
-// Four bonds from `from` [12], and low words; what is found goes to the same places of `u` [12], `square`, `scale`,
-// `reciprocal` [4]. i: their place in the stage.
-HOL_INLINE void measure_bonds(MeasuredBonds &x, long i, const double *from, const double *from_low, double *u,
-                              double *square, double *scale, double *reciprocal) {
-    const Vector3<Four> raw = read_vectors(from);
+// Four bonds u [12], which become unit vectors, and low words; what is found goes to `square`, `scale`, `reciprocal`
+// [4]. i: their place in the stage.
+HOL_INLINE void measure_bonds(MeasuredBonds &x, long i, double *u, const double *u_low, double *square, double *scale,
+                              double *reciprocal) {
+    const Vector3<Four> raw = read_vectors(u);
     const Four largest = max(max(abs(raw.x), abs(raw.y)), abs(raw.z));
     const __m256i exponents =
         _mm256_and_si256(_mm256_castpd_si256(largest.v), _mm256_set1_epi64x(0x7ff0000000000000LL));
     const Four s = {_mm256_castsi256_pd(_mm256_sub_epi64(_mm256_set1_epi64x(2 * 0x3ff0000000000000LL), exponents))};
-    const Vector3<Four> d = s * raw, low = s * read_vectors(from_low);
-    const Four q = dot_compensated(d, low, d, low), r = Four{four{} + 1.0} / Four{_mm256_sqrt_pd(q.v)};
+    const Vector3<Four> d = s * raw, low = s * read_vectors(u_low);
+    const Four q = square_of(d, low), r = Four{four{} + 1.0} / Four{_mm256_sqrt_pd(q.v)};
     x.put(x.d, i, d);
     x.put(x.low, i, low);
     store_any(x.r + i, r);
@@ -91,48 +91,30 @@ HOL_INLINE void measure_joints(const MeasuredBonds &x, long i, double *cosine, d
     write_vectors(normal, n);
 }
 
-// All bonds and joints of n: from bond vectors in x.u and their low words. The last ones of a stage that are fewer than
-// four are measured apart, beside bonds that are there for this alone.
+// All bonds and joints of n: from bond vectors in x.u and their low words. Beside the last ones, and before the first,
+// stand bonds that are there for this alone.
 template <class Geometry>
 HOL_NOINLINE void measure_in_fours(long n, const Geometry &x) {
     MeasuredBonds bonds;
+    for (long k = n; k % 4 != 0; ++k) {
+        x.u[k] = vec3{{1}, {1}, {1}};
+        x.low[k] = vec3{};
+    }
+    for (int c = 0; c < 3; ++c) {
+        bonds.d[c][0] = 1;
+        bonds.low[c][0] = 0;
+    }
+    bonds.r[0] = 1;
     for (long first = 0; first < n; first += MeasuredBonds::most) {
         const long count = first + MeasuredBonds::most < n ? MeasuredBonds::most : n - first;
         for (long i = 0; i < count; i += 4) {
-            const long k = first + i, m = count - i < 4 ? count - i : 4;
-            if (m == 4) {
-                measure_bonds(bonds, i + 1, &x.u[k].x.element, &x.low[k].x.element, &x.u[k].x.element,
-                              &x.square[k].element, &x.scale[k].element, &x.reciprocal[k].element);
-                continue;
-            }
-            double d[12] = {1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0}, low[12] = {}, value[3][4];
-            for (long e = 0; e < 3 * m; ++e) d[e] = (&x.u[k].x.element)[e], low[e] = (&x.low[k].x.element)[e];
-            measure_bonds(bonds, i + 1, d, low, d, value[0], value[1], value[2]);
-            for (long e = 0; e < 3 * m; ++e) (&x.u[k].x.element)[e] = d[e];
-            for (long b = 0; b < m; ++b) {
-                x.square[k + b].element = value[0][b];
-                x.scale[k + b].element = value[1][b];
-                x.reciprocal[k + b].element = value[2][b];
-            }
+            const long k = first + i;
+            measure_bonds(bonds, i + 1, &x.u[k].x.element, &x.low[k].x.element, &x.square[k].element,
+                          &x.scale[k].element, &x.reciprocal[k].element);
         }
-        // Joint k is before bond k.
-        for (long i = first == 0 ? 1 : 0; i < count; i += 4) {
-            const long k = first + i, m = count - i < 4 ? count - i : 4;
-            double c[4], complement[4], normal[12];
-            if (m == 4) {
-                measure_joints(bonds, i + 1, &x.cosine[k].element, &x.complement[k].element, &x.normal[k].x.element);
-                continue;
-            }
-            for (long b = i + 1 + m; b < i + 5; ++b) {  // any bond
-                for (int e = 0; e < 3; ++e) bonds.d[e][b] = bonds.low[e][b] = 1;
-                bonds.r[b] = 1;
-            }
-            measure_joints(bonds, i + 1, c, complement, normal);
-            for (long b = 0; b < m; ++b) {
-                x.cosine[k + b].element = c[b];
-                x.complement[k + b].element = complement[b];
-            }
-            for (long e = 0; e < 3 * m; ++e) (&x.normal[k].x.element)[e] = normal[e];
+        for (long i = 0; i < count; i += 4) {
+            const long k = first + i;
+            measure_joints(bonds, i + 1, &x.cosine[k].element, &x.complement[k].element, &x.normal[k].x.element);
         }
         bonds.move_last(count);
     }
@@ -144,8 +126,10 @@ HOL_INLINE long weigh_in_fours(long k, long n, const vec *w, const Geometry &x) 
     const four one = four{} + 1.0, zero = {}, sign = _mm256_set1_pd(-0.0);
     for (; k + 4 <= n; k += 4) {
         const four p = load_four(x.p + k), coupled = _mm256_cmp_pd(zero, p, _CMP_LT_OQ);
-        const four e = load_four(x.e + k - 1), f = load_four(x.f + k), divisor = _mm256_blendv_pd(one, p, coupled);
-        const four size = (uniform ? one : load_four(w + k)) / (e + f + (e / divisor) * f);
+        const four A = load_four(x.e + k - 1), C = load_four(x.f + k), G = load_four(x.per_f + k);
+        const four pF = p * load_four(x.per_e + k - 1), pG = p * G;
+        const four whole = mul_add(pG, A, mul_add(pF, C, A * C));
+        const four size = (uniform ? one : load_four(w + k)) * (pF * G) / _mm256_blendv_pd(one, whole, coupled);
         const four h = _mm256_and_pd(coupled, _mm256_or_pd(size, _mm256_and_pd(load_four(x.cosine + k), sign)));
         double *const normal = &x.normal[k].x.element;
         store_any(normal, spread<0>(h) * load_any<four>(normal));

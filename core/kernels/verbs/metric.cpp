@@ -22,30 +22,32 @@ HOL_NOINLINE MetricSums solve_metric(const Block &block, const MetricCall &call,
     Reader(block, call.box, none_, r, r, r, true).load(0, block.n, x.u, x.low, nullptr);
     measure<uniform>(block, x);
     const long n = block.n, whole = window ? 0 : block.n_min;
-    vec f = x.delta[n - 1];
+    Deficit<uniform> right = {x.delta[n - 1]};
 #if HOL_FOURS
     // Deficits from the other end meanwhile.
     const auto from_behind = [&](long i) HOL_FORCED {
         const long k = n - 1 - i;
-        x.f[k] = f;
-        if (k > 0) f = next_deficit(x, k, f);
+        x.f[k] = right.A;
+        x.per_f[k] = right.F;
+        if (k > 0) pass_back(block, x, k, right);
     };
 #else
     const auto from_behind = [](long) HOL_FORCED {};
 #endif
     const MetricSums sums =
-        call.force.x ? eliminate_metric<uniform>(block, x, x.delta[0], first, end, whole, call, good, from_behind)
-                     : eliminate_metric<uniform>(block, x, x.delta[0], first, end, whole, call, good, [](long) {});
+        call.force.x ? eliminate_metric<uniform, true>(block, x, first, end, whole, call, good, from_behind)
+                     : eliminate_metric<uniform, false>(block, x, first, end, whole, call, good, [](long) {});
     good = good & finite(sums.log_det) & finite(sums.log_det_z);
     if (!call.force.x || !any(good)) return sums;
 #if HOL_FOURS
-    for (long k = weigh_in_fours<uniform>(1, n, block.w, x); k < n; ++k) weigh_normal<uniform>(block, x, k, x.f[k]);
+    for (long k = weigh_in_fours<uniform>(1, n, block.w, x); k < n; ++k)
+        weigh_normal<uniform>(block, x, k, {x.f[k], x.per_f[k]});
     for (long k = turn_in_fours(0, n, x, call.kT); k < n; ++k) turn(x, k, call.kT);
 #else
     for (long k = n - 1; k > 0; --k) {
-        weigh_normal<uniform>(block, x, k, f);
+        weigh_normal(block, x, k, right);
         turn(x, k, call.kT);
-        f = next_deficit(x, k, f);
+        pass_back(block, x, k, right);
     }
     turn(x, 0, call.kT);
 #endif
