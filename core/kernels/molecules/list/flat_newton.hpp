@@ -1,9 +1,7 @@
 // Newton's method for the positions of molecules along a list (flat_list.hpp): the matrix of new bonds D times
 // reference bonds b as it stands, L D U. Of one molecule (V = double) bonds and moves are found four at a time, the
 // triangular solves one by one; W molecules are in lanes. What can be done while a tile is in a cache is done together:
-// on the way up bonds, what is left of them and factors, on the way down corrections and displacements. Where there are
-// threads, they share the tiles in all that needs no order; the triangular solves are left to one. The digits are the
-// same.
+// on the way up bonds, what is left of them and factors, on the way down corrections and displacements.
 #pragma once
 
 #include "core/kernels/molecules/list/flat_tiles.hpp"
@@ -42,7 +40,7 @@ struct FlatNewton {
     FlatFound<V> *found;         // [n_tiles]
     V *mass;                     // -w_0, w_0, -w_1, .. , 0 of each tile
     Rows<V> moves, D, b;         // of all tiles
-    Rows<V> new_D, r;            // of one tile
+    double *const own;           // memory of this thread, for rows of one tile: coordinates, then bonds as moved
     V *tau, *t, *r_pivot;        // t: what is left of a length, then its correction; 1 / pivot
     V *lower, *upper, *a2, *per_a2;
     V *stretch;       // |D| / a of the bonds that the factors were made of
@@ -57,19 +55,19 @@ struct FlatNewton {
         return Width<V>::lanes == 1 ? 0 : 3 * in_fours(s.n_bonds) + 2 * in_fours(s.n_entries);
     }
     static int64_t values(const FlatList &s) {
-        return kept_values(s) + mass_values(s) + 8 * static_cast<int64_t>(s.n_sites) +
-               12 * static_cast<int64_t>(s.n_rows) + found_values * static_cast<int64_t>(s.n_tiles) +
+        return kept_values(s) + mass_values(s) + 4 * static_cast<int64_t>(s.n_sites) + 4 * most_rows(s) +
+               8 * static_cast<int64_t>(s.n_rows) + found_values * static_cast<int64_t>(s.n_tiles) +
                4 * in_fours(s.n_bonds) + 2 * in_fours(s.n_columns) + 2 * in_fours(s.n_entries);
     }
+    static int64_t most_rows(const FlatList &s) { return s.most_rows > s.most_sites ? s.most_rows : s.most_sites; }
     FlatNewton(const FlatList &list, const LongTeam *threads, Memory<V> &memory)
-        : s(list), team(list.n_tiles > 1 ? threads : nullptr), opening(), displaced(false), moved(false),
-          eliminated(false) {
+        : s(list), team(list.n_branches > 0 ? threads : nullptr), own(memory.next), opening(), displaced(false),
+          moved(false), eliminated(false) {
+        memory.values(4 * most_rows(s));
         const int64_t bonds = in_fours(s.n_bonds), columns = in_fours(s.n_columns), entries = in_fours(s.n_entries);
         moves = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
         D = {memory.values(4 * static_cast<int64_t>(s.n_rows))};
         b = {memory.values(4 * static_cast<int64_t>(s.n_rows))};
-        new_D = {memory.values(4 * static_cast<int64_t>(s.n_rows))};
-        r = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
         found = reinterpret_cast<FlatFound<V> *>(memory.values(found_values * static_cast<int64_t>(s.n_tiles)));
         lower = memory.values(entries);
         upper = memory.values(entries);
@@ -85,8 +83,20 @@ struct FlatNewton {
 
     HOL_FORCED Columns<V> &some(V *values, int64_t k) const { return *reinterpret_cast<Columns<V> *>(values + k); }
 
-    HOL_FORCED Rows<V> coordinates_of(const Tile &tile) const { return team ? r.from(tile.first_site) : r; }
-    HOL_FORCED Rows<V> new_bonds_of(const Tile &tile) const { return team ? new_D.from(tile.first_row) : new_D; }
+    // Calls body(tile, rows of this thread) for all tiles, up or down the branches.
+    template <class Body>
+    HOL_FORCED void up(const Body &body) const {
+        branches_up(s, team, own, [&](const Branch &branch, double *of_thread) __attribute__((noinline)) {
+            const Rows<V> rows = {reinterpret_cast<V *>(of_thread)};
+            for_tiles_up(s, branch, [&](const Tile &tile) HOL_FORCED { body(tile, rows); });
+        });
+    }
+    template <class Body>
+    HOL_FORCED void down(const Body &body) const {
+        branches_down(s, team, own, [&](const Branch &branch, double *) __attribute__((noinline)) {
+            for_tiles_down(s, branch, [&](const Tile &tile) HOL_FORCED { body(tile); });
+        });
+    }
     V largest_error() const {
         Errors all = {};
         for (int32_t i = 0; i < s.n_tiles; ++i) all.add(found[i].errors);
@@ -142,9 +152,8 @@ struct FlatNewton {
         const Rows<V> of = moves.from(tile.first_site);
         return D[row] + (of.at_four_times(s.to[row]) - of.at_four_times(s.from[row]));
     }
-    // |D.D - a^2| / a^2 of a bond as it is.
-    V error_of(int64_t k) const {
-        const Tile &tile = s.tile[s.tile_of(static_cast<int32_t>(k))];
+    // |D.D - a^2| / a^2 of a tile's bond as it is.
+    V error_of(const Tile &tile, int64_t k) const {
         const int64_t first = k / step * step, row = tile.first_row + first - tile.first;
         Row d[step];
         for (int i = 0; i < step; ++i) d[i] = moved ? moved_bond(tile, row + i) : D[row + i];
@@ -173,13 +182,15 @@ struct FlatNewton {
     __attribute__((noinline)) void displace() {
         if (displaced) return;
         displaced = true;
-        share_out(team, s.n_tiles, [&](int32_t i) { pull(s.tile[i]); });
-        share_out(team, s.n_tiles, [&](int32_t i) { weigh(s.tile[i]); });
+        down([&](const Tile &tile) {
+            pull(tile);
+            weigh(tile);
+        });
     }
     // Bonds as moved, and what is left of them.
     __attribute__((noinline)) V move() {
         displace();
-        share_out(team, s.n_tiles, [&](int32_t i) { found[i].errors = move(s.tile[i]); });
+        for_tiles(s, team, [&](const Tile &tile) { found[&tile - s.tile].errors = move(tile); });
         eliminated = false;
         moved = true;
         return largest_error();
@@ -207,8 +218,8 @@ struct FlatNewton {
         V *const left = kept, *const factors = kept + s.n_bonds;
         for (int32_t k = 0; for_some && k < s.n_bonds; ++k) left[k] = t[k];
         if (for_some) for_factors([&](V &value, int64_t i) HOL_FORCED { factors[i] = value; });
-        make_factors([&](const Tile &tile) HOL_FORCED {
-            const Rows<V> d = moved ? new_bonds_of(tile) : D.from(tile.first_row);
+        make_factors([&](const Tile &tile, const Rows<V> &rows) HOL_FORCED {
+            const Rows<V> d = moved ? rows : D.from(tile.first_row);
             for (int64_t row = tile.first_row; moved && row < tile.end_row; ++row)
                 d[row - tile.first_row] = moved_bond(tile, row);
             measure_tile<true>(tile, d);
@@ -233,23 +244,21 @@ struct FlatNewton {
             body(upper[e], 2 * bonds + entries + e);
         }
     }
-    // start(tile) finds what the factors start from.
+    // start(tile, rows of the thread) finds what the factors start from.
     template <class Start>
     __attribute__((noinline)) void make_factors(const Start &start) {
         clear_sides(s, t);
         clear_sides(s, r_pivot);
         clear_entries(s, lower);
         clear_entries(s, upper);
-        if (team) share_out(team, s.n_tiles, [&](int32_t i) { start(s.tile[i]); });
-        for (int32_t i = 0; i < s.n_tiles; ++i) {
-            const Tile &tile = s.tile[i];
-            if (!team) start(tile);
+        up([&](const Tile &tile, const Rows<V> &rows) HOL_FORCED {
+            start(tile, rows);
             add_sides(s, tile, t);
             add_sides(s, tile, r_pivot);
             add_entries(s, tile, lower);
             add_entries(s, tile, upper);
             eliminate(tile);
-        }
+        });
         eliminated = true;
     }
     __attribute__((noinline)) void assemble(const Tile &tile, const Rows<V> &d) const {
@@ -302,21 +311,18 @@ struct FlatNewton {
     // Corrections for what is left, in t, added to tau, and what they displace.
     void take_up() const {
         clear_sides(s, t);
-        for (int32_t i = 0; i < s.n_tiles; ++i) solve_up(s, s.tile[i], lower, t);
+        up([&](const Tile &tile, const Rows<V> &) HOL_FORCED { solve_up(s, tile, lower, t); });
     }
     __attribute__((noinline)) void solve(MaskOf<V> active) {
         if (!eliminated) take_up();
         eliminated = false;
-        for (int32_t i = s.n_tiles; i-- > 0;) {
-            const Tile &tile = s.tile[i];
+        down([&](const Tile &tile) HOL_FORCED {
             solve_down(s, tile, upper, r_pivot, t,
                        [&](int32_t k, const V &x) HOL_FORCED { tau[k] = tau[k] + keep(active, x); });
-            if (team) continue;
             pull(tile);
             weigh(tile);
-        }
-        displaced = !team;
-        displace();
+        });
+        displaced = true;
     }
 };
 

@@ -32,10 +32,10 @@ struct FlatPositions {
     __attribute__((noinline)) void load() {
         const FlatList &s = newton.s;
         if (call.guess)
-            share_out(newton.team, s.n_tiles, [&](int32_t i) { load(s.tile[i]); });
+            newton.up([&](const Tile &tile, const Rows<V> &r) { load(tile, r); });
         else
-            newton.make_factors([&](const Tile &tile) {
-                load(tile);
+            newton.make_factors([&](const Tile &tile, const Rows<V> &r) HOL_FORCED {
+                load(tile, r);
                 newton.assemble(tile, newton.D.from(tile.first_row));
             });
         newton.opening = newton.largest_error();
@@ -45,10 +45,10 @@ struct FlatPositions {
             for (int i = 0; i < Width<V>::lanes; ++i)
                 Width<V>::set(newton.tau[k], i, factor * call.lambda[lane[i].first_bond + s.bond_of[k]]);
     }
-    void load(const Tile &tile) const {
+    __attribute__((noinline)) void load(const Tile &tile, const Rows<V> &r) const {
         const FlatList &s = newton.s;
         FlatFound<V> &found = newton.found[&tile - s.tile];
-        const Rows<V> r = newton.coordinates_of(tile), ref = newton.moves.from(tile.first_site);
+        const Rows<V> ref = newton.moves.from(tile.first_site);
         found.coordinate = Row{};
         if constexpr (step == 4) {
             Row largest = {};
@@ -128,10 +128,7 @@ struct FlatPositions {
     }
 
     void write_atoms(unsigned which) const {
-        constexpr int32_t part = FlatList::columns_of_tile;
-        const int32_t n = newton.s.n_atoms;
-        share_out(newton.team, (n + part - 1) / part,
-                  [&](int32_t i) { write_atoms(which, i * part, i * part + part < n ? i * part + part : n); });
+        for_atoms(newton.s, newton.team, [&](int32_t first, int32_t end) { write_atoms(which, first, end); });
     }
     __attribute__((noinline)) void write_atoms(unsigned which, int32_t first, int32_t end) const {
         bool any_fixed = false;
@@ -143,20 +140,22 @@ struct FlatPositions {
 
     void write_multipliers(unsigned which) const {
         const V factor = Width<V>::all(0.5 / (call.dt * call.dt));
-        write_values<V>(newton.s.bond_of, lane, call.lambda, which, 0, newton.s.n_bonds,
-                        [&](int32_t k) HOL_FORCED { return mul_add(newton.tau[k], factor, V{}); });
+        for_tiles(newton.s, newton.team, [&](const Tile &tile) HOL_FORCED {
+            write_values<V>(newton.s.bond_of, lane, call.lambda, which, tile.first, tile.end,
+                            [&](int32_t k) HOL_FORCED { return mul_add(newton.tau[k], factor, V{}); });
+        });
     }
 
     void add_virial(unsigned which) const {
-        MoleculesVirial<V> virial;
-        for (int32_t i = 0; i < newton.s.n_tiles; ++i) {
+        share_out(newton.team, newton.s.n_tiles, tally, [&](int32_t i, Tally &part) HOL_FORCED {
+            MoleculesVirial<V> virial;
             const Tile &tile = newton.s.tile[i];
             for (int32_t k = tile.first; k < tile.end; ++k) {
                 const Vector3<V> b = vector_of(newton.b[tile.first_row + (k - tile.first)]);
                 virial.add(b, newton.tau[k] * b);
             }
-        }
-        virial.count(which, 1 / (call.dt * call.dt), tally);
+            virial.count(which, 1 / (call.dt * call.dt), part);
+        });
     }
 
     // Returns the lanes that are in doubt; nothing of them has been written.
@@ -166,10 +165,14 @@ struct FlatPositions {
         const Limits<V> limits(call, largest_coordinate, a_min);
         const Solved<V> out = iterate<V, false, true>(newton, limits, call, in_use);
         const unsigned moved = bits(out.converged & ~coarse_moves()), good = moved | bits(out.untouched);
+        const Tile *tile = newton.s.tile;
         if (call.report)
             note_worst_bond(
-                newton.s, good, out.error, lane, [&](int32_t k) { return newton.error_of(k); },
-                [&](const auto &each) { each(0, newton.s.n_bonds); }, tally);
+                newton.s, good, out.error, lane, [&](int32_t k) { return newton.error_of(*tile, k); },
+                [&](const auto &each) {
+                    for (; tile < newton.s.tile + newton.s.n_tiles; ++tile) each(tile->first, tile->end);
+                },
+                tally);
         if (call.lambda) write_multipliers(good);
         if (moved) {
             newton.displace();

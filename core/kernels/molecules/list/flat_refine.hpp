@@ -54,13 +54,20 @@ struct FlatRefine {
         return good;
     }
 
+    // Calls body(this in a thread, tile) for all tiles, as FlatLinear does.
     template <class Body>
-    HOL_FORCED void for_tiles_up(const Body &body) const {
-        for (int32_t i = 0; i < s.n_tiles; ++i) body(s.tile[i]);
+    HOL_FORCED void up(const Body &body) const {
+        x.up([&](const FlatLinear<V> &in_thread, const Branch &branch) HOL_FORCED {
+            const FlatRefine own(in_thread);
+            for_tiles_up(s, branch, [&](const Tile &tile) HOL_FORCED { body(own, tile); });
+        });
     }
     template <class Body>
-    HOL_FORCED void for_tiles_down(const Body &body) const {
-        for (int32_t i = s.n_tiles; i-- > 0;) body(s.tile[i]);
+    HOL_FORCED void down(const Body &body) const {
+        x.down([&](const FlatLinear<V> &in_thread, const Branch &branch) HOL_FORCED {
+            const FlatRefine own(in_thread);
+            for_tiles_down(s, branch, [&](const Tile &tile) HOL_FORCED { body(own, tile); });
+        });
     }
 
     // A tile's coordinates and velocities, and its bonds with their low words: of one tile these stay.
@@ -81,15 +88,16 @@ struct FlatRefine {
         if (s.n_tiles > 1) open(tile);
     }
 
-    // Inputs once more, and right-hand sides.
-    __attribute__((noinline)) void start() const {
-        for_tiles_up([&](const Tile &tile) {
-            open(tile);
-            x.load_inputs(tile, x.a_of(tile));
-            for (int64_t k = tile.first; k < tile.end; k += step) x.some(side, k) = x.sides_of(tile, k, terms);
-            x.add_given(tile, side);
-        });
-        for (int32_t k = 0; k < s.n_bonds; ++k) solution[k] = x.t[k];
+    // Inputs once more, and right-hand sides; the multipliers as they are.
+    void start() const {
+        up([](const FlatRefine &own, const Tile &tile) HOL_FORCED { own.start(tile); });
+    }
+    __attribute__((noinline)) void start(const Tile &tile) const {
+        open(tile);
+        x.load_inputs(tile, x.a_of(tile));
+        for (int64_t k = tile.first; k < tile.end; k += step) x.some(side, k) = x.sides_of(tile, k, terms);
+        x.add_given(tile, side);
+        for (int32_t k = tile.first; k < tile.end; ++k) solution[k] = x.t[k];
     }
 
     // Accelerations, or velocities, of a tile's own atoms; later tiles have been here. High words in pull.
@@ -167,17 +175,17 @@ struct FlatRefine {
 
     void solve() const {
         clear_sides(s, x.t);
-        for_tiles_down([&](const Tile &tile) {
-            open_again(tile);
-            pull_atoms(tile);
+        down([](const FlatRefine &own, const Tile &tile) HOL_FORCED {
+            own.open_again(tile);
+            own.pull_atoms(tile);
         });
-        for_tiles_up([&](const Tile &tile) {
-            open_again(tile);
-            find_residuals(tile);
-            solve_up(s, tile, x.lower, x.t);
+        up([](const FlatRefine &own, const Tile &tile) HOL_FORCED {
+            own.open_again(tile);
+            own.find_residuals(tile);
+            solve_up(own.s, tile, own.x.lower, own.x.t);
         });
-        for_tiles_down([&](const Tile &tile) {
-            solve_down(s, tile, x.lower, x.per_pivot, x.t, [](int32_t, const V &) HOL_FORCED {});
+        down([](const FlatRefine &own, const Tile &tile) HOL_FORCED {
+            solve_down(own.s, tile, own.x.lower, own.x.per_pivot, own.x.t, [](int32_t, const V &) HOL_FORCED {});
         });
     }
     V correct(MaskOf<V> active) const {
@@ -250,9 +258,9 @@ struct FlatRefine {
         good = good & finite(sum);  // corrections that are no numbers are not seen
         if (!(bits(good) | proven)) return 0;
         restore_bonds(Width<V>::of_bits(proven));
-        for_tiles_down([&](const Tile &tile) {
-            x.find_pulls(tile);
-            if (terms & rates) x.add_pulls(tile);  // nobody asks for accelerations any more
+        down([](const FlatRefine &own, const Tile &tile) HOL_FORCED {
+            own.x.find_pulls(tile);
+            if (own.terms & rates) own.x.add_pulls(tile);  // nobody asks for accelerations any more
         });
         return (bits(good) & ~bits(lanes_of_faint_bonds())) | proven;
     }

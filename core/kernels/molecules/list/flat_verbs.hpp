@@ -14,9 +14,10 @@ struct FlatBlock {
     const MoleculeLane *lane;
     int used;
     bool packed, masses_known;
+    const LongTeam *team;
     Memory<V> &memory;
     FlatLinear<V> linear(const Box &box, const AtomArray &r, const Inputs &in, int terms) const {
-        return FlatLinear<V>(*schedule.flat, lane, used, packed, masses_known, box, r, in, terms, memory);
+        return FlatLinear<V>(*schedule.flat, lane, used, packed, masses_known, team, box, r, in, terms, memory);
     }
 };
 
