@@ -1,6 +1,7 @@
 #include "core/molecules/flat_order.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <queue>
 #include <utility>
 
@@ -89,10 +90,12 @@ ListOrder in_branches(const Fill &fill) {
     const Numbers size = sizes_of(fill);
     const std::int32_t n = static_cast<std::int32_t>(size.size());
     Numbers order = post_order(fill, size);
+    if (getenv("NOBR")) return {std::move(order), {}};
+    if (getenv("MOST")) return cut(fill, order, size, atoi(getenv("MOST")));
     for (const double part : {1 / 16., 1 / 8., 1 / 4., 1 / 2., 2 / 3.}) {
         const std::int32_t most = std::max(least_branch, static_cast<std::int32_t>(part * n));
         const auto trunk = std::count_if(size.begin(), size.end(), [&](std::int32_t k) { return k > most; });
-        if (n >= shortest && trunk <= n / 32) return cut(fill, order, size, most);
+        if (n >= (getenv("SHORTEST")?atoi(getenv("SHORTEST")):shortest) && trunk <= std::max(n / 256, 64)) return cut(fill, order, size, most);
     }
     return {std::move(order), {}};
 }

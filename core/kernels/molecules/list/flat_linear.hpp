@@ -221,7 +221,7 @@ struct FlatLinear {
                 HOL_UNROLL_FEW
                 for (int32_t j = 0; j < i; ++j, ++update)  // l of j is multiplied already
                     lower[*update] = mul_add(-li, l[j], lower[*update]);
-                E[row[i]] = mul_add(-li, lr, E[row[i]]);
+                E[row[i]] = mul_add(-(li * li), inverse, E[row[i]]);
                 t[row[i]] = mul_add(-lr, y, t[row[i]]);
                 l[i] = lr;
             }
@@ -235,7 +235,7 @@ struct FlatLinear {
             const V *const l = lower + first;
             V x = t[k] * per_pivot[k], sum = {};
             HOL_UNROLL_FEW
-            for (int32_t e = 0; e < n; ++e) {
+            for (int32_t e = n - 1; e >= 0; --e) {  // the first row is known last
                 const V part = l[e] * t[row[e]];
                 x = x - part;
                 sum = sum + abs(part);
@@ -306,8 +306,10 @@ struct FlatLinear {
     }
     template <class Value>
     HOL_FORCED void write_each(double *out, unsigned which, const Value &value) const {
-        for_tiles(s, team, [&](const Tile &tile) HOL_FORCED {
-            write_values<V>(s.bond_of, lane, out, which, tile.first, tile.end, value);
+        up([&](const FlatLinear &, const Branch &branch) HOL_FORCED {
+            for_tiles_up(s, branch, [&](const Tile &tile) HOL_FORCED {
+                write_values<V>(s.bond_of, lane, out, which, tile.first, tile.end, value);
+            });
         });
     }
     void write_atoms(const AtomArray &to, const Rows<V> &from, bool add, unsigned which) const {

@@ -21,12 +21,13 @@ struct FlatErrors {
     V largest() const { return largest_of<V>(worst) + V{} * sum_of_columns<V>(sum); }
 };
 
-// What is found of a tile: also the largest coordinate, and the shortest and the longest bond.
+// What is found of a tile: also the largest coordinate, the shortest and the longest bond, and the largest pull.
 template <class V>
 struct FlatFound {
     FlatErrors<V> errors;
     RowOf<V> coordinate;
     Columns<V> least, most;
+    V pull;
 };
 
 // As Newton (newton.hpp) for iterate().
@@ -190,7 +191,7 @@ struct FlatNewton {
     // Bonds as moved, and what is left of them.
     __attribute__((noinline)) V move() {
         displace();
-        for_tiles(s, team, [&](const Tile &tile) { found[&tile - s.tile].errors = move(tile); });
+        up([&](const Tile &tile, const Rows<V> &) HOL_FORCED { found[&tile - s.tile].errors = move(tile); });
         eliminated = false;
         moved = true;
         return largest_error();

@@ -30,9 +30,11 @@ struct FlatPositions {
 
     // Reads all tiles, and makes the factors that a solve without a guess begins with.
     __attribute__((noinline)) void load() {
-        const FlatList &s = newton.s;
         if (call.guess)
-            newton.up([&](const Tile &tile, const Rows<V> &r) { load(tile, r); });
+            newton.up([&](const Tile &tile, const Rows<V> &r) HOL_FORCED {
+                load(tile, r);
+                load_guess(tile);
+            });
         else
             newton.make_factors([&](const Tile &tile, const Rows<V> &r) HOL_FORCED {
                 load(tile, r);
@@ -40,10 +42,12 @@ struct FlatPositions {
             });
         newton.opening = newton.largest_error();
         find_extent();
+    }
+    void load_guess(const Tile &tile) const {
         const double factor = 2 * call.dt * call.dt;
-        for (int32_t k = 0; k < s.n_bonds && call.guess; ++k)
+        for (int32_t k = tile.first; k < tile.end; ++k)
             for (int i = 0; i < Width<V>::lanes; ++i)
-                Width<V>::set(newton.tau[k], i, factor * call.lambda[lane[i].first_bond + s.bond_of[k]]);
+                Width<V>::set(newton.tau[k], i, factor * call.lambda[lane[i].first_bond + newton.s.bond_of[k]]);
     }
     __attribute__((noinline)) void load(const Tile &tile, const Rows<V> &r) const {
         const FlatList &s = newton.s;
@@ -73,7 +77,7 @@ struct FlatPositions {
         find_bonds(s, tile, call.box_ref, ref, newton.b);
         find_bonds(s, tile, call.box, r, newton.D);
         if (!known) load_lengths(tile, found);
-        for (int64_t k = tile.first; k < tile.end; k += step) newton.some(newton.tau, k) = Columns<V>{};
+        for (int64_t k = tile.first; k < tile.end; k += step) newton.some(newton.tau, k) = Columns<V>{};  // inert, too
         found.errors = newton.template measure_tile<true>(tile, newton.D.from(tile.first_row));
     }
     void find_extent() {
@@ -116,14 +120,16 @@ struct FlatPositions {
     // the coordinates'.
     MaskOf<V> coarse_moves() const {
         const FlatList &s = newton.s;
-        V pull = {};
-        for (int32_t i = 0; i < s.n_tiles; ++i) {
-            const Tile &tile = s.tile[i];
+        newton.up([&](const Tile &tile, const Rows<V> &) HOL_FORCED {
             const V *const w = newton.mass + tile.first_mass;
             const int32_t *const from = s.from + (tile.first_row - tile.first), *const to = s.to + (from - s.from);
+            V pull = {};
             for (int32_t k = tile.first; k < tile.end; ++k)
                 pull = max(max(w[from[k] / 2 + 1], w[to[k] / 2 + 1]) * abs(newton.tau[k]), pull);
-        }
+            newton.found[&tile - s.tile].pull = pull;
+        });
+        V pull = {};
+        for (int32_t i = 0; i < s.n_tiles; ++i) pull = max(newton.found[i].pull, pull);
         return less(0.25 * (largest_coordinate + a_min), pull * a_max);
     }
 
@@ -140,7 +146,7 @@ struct FlatPositions {
 
     void write_multipliers(unsigned which) const {
         const V factor = Width<V>::all(0.5 / (call.dt * call.dt));
-        for_tiles(newton.s, newton.team, [&](const Tile &tile) HOL_FORCED {
+        newton.up([&](const Tile &tile, const Rows<V> &) HOL_FORCED {
             write_values<V>(newton.s.bond_of, lane, call.lambda, which, tile.first, tile.end,
                             [&](int32_t k) HOL_FORCED { return mul_add(newton.tau[k], factor, V{}); });
         });

@@ -27,7 +27,7 @@ HOL_INLINE void branches_down(const FlatList &s, const LongTeam *team, double *o
     body(s.branch[s.n_branches], own);
     share_out(team, own, s.n_branches, [&](int32_t b, double *of_thread) HOL_FORCED { body(s.branch[b], of_thread); });
 }
-// Calls body(tile) for those of a branch, or of all on the threads that there are, and body(first, end) for atoms.
+// Calls body(tile) for those of a branch; body(first, end) for atoms, on the threads that there are.
 template <class Body>
 HOL_INLINE void for_tiles_up(const FlatList &s, const Branch &branch, const Body &body) {
     for (int32_t i = branch.first; i < branch.end; ++i) body(s.tile[i]);
@@ -35,10 +35,6 @@ HOL_INLINE void for_tiles_up(const FlatList &s, const Branch &branch, const Body
 template <class Body>
 HOL_INLINE void for_tiles_down(const FlatList &s, const Branch &branch, const Body &body) {
     for (int32_t i = branch.end; i-- > branch.first;) body(s.tile[i]);
-}
-template <class Body>
-HOL_INLINE void for_tiles(const FlatList &s, const LongTeam *team, const Body &body) {
-    share_out(team, s.n_tiles, [&](int32_t i) { body(s.tile[i]); });
 }
 template <class Body>
 HOL_INLINE void for_atoms(const FlatList &s, const LongTeam *team, const Body &body) {
