@@ -153,13 +153,11 @@ struct FlatNewton {
         const Rows<V> of = moves.from(tile.first_site);
         return D[row] + (of.at_four_times(s.to[row]) - of.at_four_times(s.from[row]));
     }
-    // |D.D - a^2| / a^2 of a tile's bond as it is.
+    // |D.D - a^2| / a^2 of a tile's bond as it is, in the digits of measure().
     V error_of(const Tile &tile, int64_t k) const {
-        const int64_t first = k / step * step, row = tile.first_row + first - tile.first;
-        Row d[step];
-        for (int i = 0; i < step; ++i) d[i] = moved ? moved_bond(tile, row + i) : D[row + i];
-        const Columns<V> excess = absolute(excess_of(first, d));
-        return reinterpret_cast<const V *>(&excess)[k - first] * per_a2[k];
+        const int64_t row = tile.first_row + k - tile.first;
+        const Vector3<V> d = vector_of(moved ? moved_bond(tile, row) : D[row]);
+        return abs(mul_add(d.z, d.z, mul_add(d.y, d.y, mul_add(d.x, d.x, -a2[k]))) * per_a2[k]);
     }
 
     // Displacements by the bonds of a tile, and of its atoms by all: times w only in the end.

@@ -176,7 +176,8 @@ struct FlatPositions {
             note_worst_bond(
                 newton.s, good, out.error, lane, [&](int32_t k) { return newton.error_of(*tile, k); },
                 [&](const auto &each) {
-                    for (; tile < newton.s.tile + newton.s.n_tiles; ++tile) each(tile->first, tile->end);
+                    for (int32_t i = 0; i < newton.s.n_tiles; ++i, ++tile)
+                        if (any(~less(newton.found[i].errors.largest(), out.error))) each(tile->first, tile->end);
                 },
                 tally);
         if (call.lambda) write_multipliers(good);

@@ -38,7 +38,7 @@ HOL_INLINE void for_tiles_down(const FlatList &s, const Branch &branch, const Bo
 }
 template <class Body>
 HOL_INLINE void for_atoms(const FlatList &s, const LongTeam *team, const Body &body) {
-    constexpr int32_t part = 4096;
+    constexpr int32_t part = 1024;
     share_out(team, (s.n_atoms + part - 1) / part,
               [&](int32_t i) { body(i * part, i * part + part < s.n_atoms ? i * part + part : s.n_atoms); });
 }
