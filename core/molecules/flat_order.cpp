@@ -1,7 +1,6 @@
 #include "core/molecules/flat_order.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <queue>
 #include <utility>
 
@@ -84,18 +83,17 @@ ListOrder cut(const Fill &fill, const Numbers &order, const Numbers &size, std::
     return cut;
 }
 
-// As many branches as there can be while the trunk is little, by the molecule alone; none of a small molecule.
+// As many branches as there can be while the trunk is little, by the molecule alone; none of one that is too small for
+// two threads. In a trunk one column waits for the next: of a protein it takes tens of ns for each.
 ListOrder in_branches(const Fill &fill) {
-    constexpr std::int32_t shortest = 8192, least_branch = 2048;
+    constexpr std::int32_t shortest = 8192, shortest_branch = 2048;
     const Numbers size = sizes_of(fill);
-    const std::int32_t n = static_cast<std::int32_t>(size.size());
     Numbers order = post_order(fill, size);
-    if (getenv("NOBR")) return {std::move(order), {}};
-    if (getenv("MOST")) return cut(fill, order, size, atoi(getenv("MOST")));
+    const std::int32_t n = static_cast<std::int32_t>(size.size()), longest_trunk = std::max(n / 256, 64);
     for (const double part : {1 / 16., 1 / 8., 1 / 4., 1 / 2., 2 / 3.}) {
-        const std::int32_t most = std::max(least_branch, static_cast<std::int32_t>(part * n));
+        const std::int32_t most = std::max(shortest_branch, static_cast<std::int32_t>(part * n));
         const auto trunk = std::count_if(size.begin(), size.end(), [&](std::int32_t k) { return k > most; });
-        if (n >= (getenv("SHORTEST")?atoi(getenv("SHORTEST")):shortest) && trunk <= std::max(n / 256, 64)) return cut(fill, order, size, most);
+        if (n >= shortest && trunk <= longest_trunk) return cut(fill, order, size, most);
     }
     return {std::move(order), {}};
 }
