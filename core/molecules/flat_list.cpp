@@ -47,7 +47,7 @@ private:
     Lists bonds_of_atoms() const {
         return invert(s_.n_atoms, s_.n_bonds, [&](std::int32_t p, int end) { return end_of(p, end); });
     }
-    // The atoms of column p.
+    // An atom of column p.
     std::int32_t end_of(std::int32_t p, int end) const {
         const std::int32_t k = a_.bond_of[at(p)];
         return (end ? s_.atom_j : s_.atom_i)[k];
@@ -57,10 +57,8 @@ private:
         Rows list(at(s_.n_bonds));
         for (std::int32_t i = 0; i < s_.n_atoms; ++i)
             for (const std::int32_t *p = bonds.begin(i); p != bonds.end(i); ++p)
-                for (const std::int32_t *q = bonds.begin(i); q != p; ++q) {
-                    list[at(*p)].push_back(*q);
-                    list[at(*q)].push_back(*p);
-                }
+                for (const std::int32_t *q = bonds.begin(i); q != p; ++q)
+                    list[at(*p)].push_back(*q), list[at(*q)].push_back(*p);
         return list;
     }
     // Where an entry is.
@@ -201,9 +199,7 @@ private:
             }
         }
         t.end_run = size_of(a_.run);
-        pad(a_.row, 0);
-        pad(a_.row_4, 0);
-        pad(a_.column_4, 0);
+        for (Numbers *list : {&a_.row, &a_.row_4, &a_.column_4}) pad(*list, 0);
         pad(a_.mass, none);
         for (const std::int32_t q : extra) row_of_[at(q)] = -1;
     }
@@ -227,36 +223,32 @@ private:
             for (std::int32_t i = first; i < end; ++i)
                 for (std::int32_t j = first; j < i; ++j) {
                     const std::int32_t e = entry(row_[at(i)], row_[at(j)]);
-                    a_.update.push_back(row_[at(j)] < t.end
-                                            ? e
-                                            : side_of(e, first_side, a_.list.n_entries, side_of_, a_.late_entry));
+                    a_.update.push_back(
+                        row_[at(j)] < t.end ? e : side_of(e, first_side, a_.list.n_entries, side_of_, a_.late_entry));
                 }
         }
     }
-    // Of a tile, in the order of the tiles.
-    static void take_late(const std::vector<FlatList::Late> &late, std::int32_t end_number, std::int32_t before,
-                          std::int32_t &first, std::int32_t &end) {
-        first = end = before;
-        while (end < size_of(late) && late[at(end)].number < end_number) ++end;
-    }
+    // Late columns and entries of all tiles, in their order, and columns of which not all is known in their tile.
     void list_sides() {
-        for (std::vector<FlatList::Late> *late : {&a_.late, &a_.late_entry})
-            std::stable_sort(
-                late->begin(), late->end(),
-                [](const FlatList::Late &a, const FlatList::Late &b) { return a.number < b.number; });
-        std::int32_t late = 0, late_entry = 0;
+        const auto before = [](const FlatList::Late &a, const FlatList::Late &b) { return a.number < b.number; };
+        std::stable_sort(a_.late.begin(), a_.late.end(), before);
+        std::stable_sort(a_.late_entry.begin(), a_.late_entry.end(), before);
+        std::int32_t late = 0, entry = 0;
         for (Tile &t : a_.tile) {
-            take_late(a_.late, t.end, late, t.first_late, t.end_late);
-            take_late(a_.late_entry, t.end_entry, late_entry, t.first_late_entry, t.end_late_entry);
+            t.first_late = late;
+            t.first_late_entry = entry;
             t.first_outer = size_of(a_.outer);
             for (std::int32_t p = t.first; p < t.end; ++p) {
-                bool outer = late < t.end_late && a_.late[at(late)].number == p;
-                while (late < t.end_late && a_.late[at(late)].number == p) ++late;
+                const std::int32_t first = late;
+                while (late < size_of(a_.late) && a_.late[at(late)].number == p) ++late;
+                bool outer = late > first;
                 for (int end = 0; end < 2; ++end) outer = outer || a_.place_of[at(end_of(p, end))] < t.first_site;
                 if (outer) a_.outer.push_back(p);
             }
+            while (entry < size_of(a_.late_entry) && a_.late_entry[at(entry)].number < t.end_entry) ++entry;
+            t.end_late = late;
+            t.end_late_entry = entry;
             t.end_outer = size_of(a_.outer);
-            late_entry = t.end_late_entry;
         }
     }
 
@@ -303,22 +295,6 @@ private:
 
 }  // namespace
 
-// A list has so many updates, or so many for each bond.
-constexpr std::int64_t short_list = 65536, updates_of_bond = 16;
-
-bool takes_flat_list(const Schedule &s) {
-    if (s.type != Schedule::graph && (s.type != Schedule::tree || s.n_bonds <= largest_in_lanes)) return false;
-    Numbers bonds(at(s.n_atoms));
-    for (std::int32_t k = 0; k < s.n_bonds; ++k)
-        for (const std::int32_t i : {s.atom_i[k], s.atom_j[k]}) ++bonds[at(i)];
-    std::int64_t updates = 0;
-    for (const std::int64_t n : bonds) {
-        if (n > 3000) return false;  // more than the most of the largest list
-        updates += n * (n - 1) / 2 * (n - 2) / 3;
-    }
-    return s.n_bonds <= largest_in_list &&
-           updates <= std::max(short_list, updates_of_bond * static_cast<std::int64_t>(s.n_bonds));
-}
 void make_flat_list(const Schedule &s, FlatArrays &arrays) { FlatMaker(s, arrays).make(); }
 
 }  // namespace holonomic

@@ -103,8 +103,8 @@ ListOrder in_branches(const Fill &fill) {
 class Rounds {
 public:
     Rounds(const Fill &fill, const Numbers &order)
-        : fill_(fill), order_(order), depth_(order_.size()), waits_for_(order_.size()),
-          place_(order_.size()), done_(order_.size()) {
+        : fill_(fill), order_(order), depth_(order_.size()), waits_for_(order_.size()), place_(order_.size()),
+          done_(order_.size()) {
         for (std::size_t p = order_.size(); p-- > 0;) {
             place_[at(order_[p])] = static_cast<std::int32_t>(p);
             const std::int32_t k = order_[p], parent = parent_of(fill, k);

@@ -31,8 +31,18 @@ static outputs outputs_of(const molecule *m, hol_chains *chains, int threads)
 {
     const size_t n = (size_t)m->n_bonds, size = 3 * (size_t)m->n_atoms;
     double *const all = untouched(5 * n + 5 * size + 36), *const atoms = all + 5 * n;
-    const outputs o = {5 * n + 5 * size + 36, all, all + n, all + 2 * n, all + 3 * n, all + 4 * n, atoms, atoms + size,
-                       atoms + 2 * size, atoms + 3 * size, atoms + 4 * size, atoms + 5 * size};
+    const outputs o = {5 * n + 5 * size + 36,
+                       all,
+                       all + n,
+                       all + 2 * n,
+                       all + 3 * n,
+                       all + 4 * n,
+                       atoms,
+                       atoms + size,
+                       atoms + 2 * size,
+                       atoms + 3 * size,
+                       atoms + 4 * size,
+                       atoms + 5 * size};
     double *start = molecule_drifted(m, dt);
     CHECK(hol_chains_set_threads(chains, threads));
     CHECK(hol_forces(chains, m->r, m->v, m->f, o.forces, o.tension, o.g, HOL_WRITE, o.virial));

@@ -158,8 +158,8 @@ inline void list_solves(const holonomic::FlatList &s, std::mt19937 &random)
     }
 }
 
-// Branches of a list: what the columns of one give goes to columns of the same tile, to sides that one tile alone has, and
-// from there to later tiles of the same branch or to the trunk.
+// Branches of a list: what the columns of one give goes to columns of the same tile, to sides that one tile alone has,
+// and from there to later tiles of the same branch or to the trunk.
 inline void branches_need_nothing_of_others(const holonomic::FlatList &s, int least, double largest)
 {
     require(s.n_branches >= least, "too few branches");

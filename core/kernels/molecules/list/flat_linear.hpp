@@ -5,7 +5,6 @@
 
 #include "core/kernels/molecules/list/flat_tiles.hpp"
 #include "core/kernels/molecules/load.hpp"
-#include "core/kernels/molecules/virial.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -20,15 +19,15 @@ struct FlatLinear {
     const Box &box;
     const AtomArray &coordinates;
     const Inputs &in;
-    const int terms;          // of right-hand sides
-    const bool masses_known;  // those of the molecules before, in the same memory
+    const int terms;             // of right-hand sides
+    const bool masses_known;     // those of the molecules before, in the same memory
     const LongTeam *const team;  // or nullptr
     const bool whole_a;
-    double *const own;  // memory of this thread, for one tile
-    V *mass;                  // -w_0, w_0, -w_1, .. , 0 of each tile
-    Rows<V> pull, d;          // of all tiles: G, and the sum of |t| |d| of an atom's bonds; bonds
-    Rows<V> a;     // w f, then w (f + G); or where right-hand sides are rates v + w G. Of one tile, or of all
-    Rows<V> r, v;  // of one tile: coordinates, velocities; |a| as it was
+    double *const own;     // memory of this thread, for one tile
+    V *mass;               // -w_0, w_0, -w_1, .. , 0 of each tile
+    Rows<V> pull, d;       // of all tiles: G, and the sum of |t| |d| of an atom's bonds; bonds
+    Rows<V> a;             // w f, then w (f + G); or where right-hand sides are rates v + w G. Of one tile, or of all
+    Rows<V> r, v;          // of one tile: coordinates, velocities; |a| as it was
     V *t, *E, *per_pivot;  // right-hand sides, then multipliers; pivots
     V *lower, *size;       // |d|
     V *diagonal, *back;    // of A; R
@@ -94,7 +93,7 @@ struct FlatLinear {
     }
     template <class Body>
     HOL_FORCED auto in_thread(const Body &body) const {
-        return [this, &body](const Branch &branch, double *of_thread) __attribute__((noinline)) {
+        return [ this, &body ](const Branch &branch, double *of_thread) __attribute__((noinline)) {
             if (of_thread == own) return body(*this, branch);
             body(FlatLinear(*this, of_thread), branch);
         };
@@ -294,39 +293,6 @@ struct FlatLinear {
     }
     HOL_FORCED void find_rates(const Tile &tile) const {
         for (int64_t k = tile.first; k < tile.end; k += step) some(t, k) = sides_of(tile, k, rates);
-    }
-
-    // The lanes in `which`.
-    void write_bonds(double factor, double *out, unsigned which) const {
-        const V f = Width<V>::all(factor);
-        write_each(out, which, [&](int32_t k) HOL_FORCED { return mul_add(f, t[k], V{}); });
-    }
-    void write_tensions(double *out, unsigned which) const {
-        write_each(out, which, [&](int32_t k) HOL_FORCED { return mul_add(t[k], size[k], V{}); });
-    }
-    template <class Value>
-    HOL_FORCED void write_each(double *out, unsigned which, const Value &value) const {
-        up([&](const FlatLinear &, const Branch &branch) HOL_FORCED {
-            for_tiles_up(s, branch, [&](const Tile &tile) HOL_FORCED {
-                write_values<V>(s.bond_of, lane, out, which, tile.first, tile.end, value);
-            });
-        });
-    }
-    void write_atoms(const AtomArray &to, const Rows<V> &from, bool add, unsigned which) const {
-        for_atoms(s, team, [&](int32_t first, int32_t end) HOL_FORCED {
-            write_vectors(to, at.from(first), s.place_of + first, end - first, from.slots(),
-                          Written<V>{which, nullptr, lane, add, first});
-        });
-    }
-    void add_virial(unsigned which, Tally &tally) const {
-        share_out(team, s.n_tiles, tally, [&](int32_t i, Tally &part) HOL_FORCED {
-            MoleculesVirial<V> virial;
-            for (int32_t k = s.tile[i].first; k < s.tile[i].end; ++k) {
-                const Vector3<V> bond = vector_of(d_of(s.tile[i])[k - s.tile[i].first]);
-                virial.add(bond, t[k] * bond);
-            }
-            virial.count(which, 1, part);
-        });
     }
 };
 
