@@ -33,11 +33,13 @@ struct FlatLinear {
     V *diagonal, *back;    // of A; R
     int32_t *bonds_at;     // of one tile: flat_residual.hpp
     Rows<V> d_low, a_low;  // what refinement adds to the bonds of one tile, and to the accelerations of all
+    V *found;              // [n_tiles] flat_refine.hpp
     unsigned *left;        // [n_branches + 1] flat_proof.hpp
 
     static int64_t values(const FlatList &s) {
         return tile_values(s) + mass_values(s) + 4 * (3 * static_cast<int64_t>(s.n_sites) + s.n_rows) +
-               2 * in_fours(s.n_bonds) + 4 * in_fours(s.n_columns) + in_fours(s.n_entries) + left_values(s);
+               2 * in_fours(s.n_bonds) + 4 * in_fours(s.n_columns) + in_fours(s.n_entries) + in_fours(s.n_tiles) +
+               left_values(s);
     }
     static int64_t tile_values(const FlatList &s) {
         return 4 * (3 * static_cast<int64_t>(s.most_sites) + most_columns(s)) + bonds_at_values(s);
@@ -67,6 +69,7 @@ struct FlatLinear {
         a = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
         mass = memory.values(mass_values(s));
         a_low = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
+        found = memory.values(in_fours(s.n_tiles));
         left = reinterpret_cast<unsigned *>(memory.values(left_values(s)));
         take(own);
     }
