@@ -144,6 +144,7 @@ private:
         for (std::int32_t site = t.first_site; site < t.end_site; ++site) number_[at(a_.atom_of[at(site)])] = -1;
         a_.list.most_sites = std::max(a_.list.most_sites, t.end_site - t.first_site);
         a_.list.most_rows = std::max(a_.list.most_rows, t.end_row - t.first_row);
+        a_.list.most_columns = std::max(a_.list.most_columns, t.end - t.first);
     }
     std::int32_t add_site(const Tile &t, std::int32_t atom) {
         const std::int32_t site = size_of(a_.atom_of);
@@ -168,7 +169,7 @@ private:
         }
     }
 
-    // Where a tile, whose first side is `first`, gives to a column or an entry of a later one.
+    // Where a tile with these sides from `first` on gives to a column or an entry of a later one.
     static std::int32_t side_of(std::int32_t number, std::int32_t first, std::int32_t &n, Numbers &sides,
                                 std::vector<FlatList::Late> &late) {
         std::int32_t &side = sides[at(number)];

@@ -22,10 +22,10 @@ struct FlatLinear {
     const int terms;             // of right-hand sides
     const bool masses_known;     // those of the molecules before, in the same memory
     const LongTeam *const team;  // or nullptr
-    const bool whole_a;
-    double *const own;     // memory of this thread, for one tile
-    V *mass;               // -w_0, w_0, -w_1, .. , 0 of each tile
-    Rows<V> pull, d;       // of all tiles: G, and the sum of |t| |d| of an atom's bonds; bonds
+    const bool whole_a;          // a is of all tiles
+    double *const own;           // memory of this thread, for one tile
+    V *mass;                     // -w_0, w_0, -w_1, .. , 0 of each tile
+    Rows<V> pull, d;             // of all tiles: G, and the sum of |t| |d| of an atom's bonds; bonds
     Rows<V> a;             // w f, then w (f + G); or where right-hand sides are rates v + w G. Of one tile, or of all
     Rows<V> r, v;          // of one tile: coordinates, velocities; |a| as it was
     V *t, *E, *per_pivot;  // right-hand sides, then multipliers; pivots
@@ -45,9 +45,7 @@ struct FlatLinear {
         return 4 * (3 * static_cast<int64_t>(s.most_sites) + most_columns(s)) + bonds_at_values(s);
     }
     static int64_t left_values(const FlatList &s) { return in_fours(s.n_branches / 2 + 1); }
-    static int64_t most_columns(const FlatList &s) {
-        return in_fours(s.n_tiles > 1 ? FlatList::columns_of_tile : s.n_bonds);
-    }
+    static int64_t most_columns(const FlatList &s) { return in_fours(s.most_columns); }
     static int64_t bonds_at_values(const FlatList &s) { return in_fours((s.most_sites + 3 + 2 * most_columns(s)) / 2); }
     FlatLinear(const FlatList &list, const MoleculeLane *l, int in_use, bool packed, bool known,
                const LongTeam *threads, const Box &b, const AtomArray &positions, const Inputs &inputs, int sides,

@@ -18,12 +18,11 @@ namespace holonomic {
 // inert ones to multiples of four.
 struct FlatList {
     int32_t n_atoms, n_bonds;
-    int32_t n_sites;     // atoms of all tiles, guests too
-    int32_t n_rows;      // bonds of all tiles, extra ones too
-    int32_t n_columns;   // bonds, then sides
-    int32_t n_entries;   // then sides
-    int32_t most_sites;  // of a tile
-    int32_t most_rows;
+    int32_t n_sites;                              // atoms of all tiles, guests too
+    int32_t n_rows;                               // bonds of all tiles, extra ones too
+    int32_t n_columns;                            // bonds, then sides
+    int32_t n_entries;                            // then sides
+    int32_t most_sites, most_rows, most_columns;  // of a tile
 
     static constexpr int32_t columns_of_tile = 16384;
     struct Tile {
