@@ -34,7 +34,7 @@ struct PositionsWork final : Work {
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
         k.molecules.positions(calls[where], unit, scratch, tally);
     }
-    bool shares_lists() const override { return true; }
+    bool shares_paths() const override { return true; }
     bool walks_forests() const override { return true; }
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_positions.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return store_bytes(k.long_positions, n); }

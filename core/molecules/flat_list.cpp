@@ -27,18 +27,19 @@ public:
     void make() {
         const Numbers order = bonds_from_the_leaves(s_);
         a_.bond_of = order;
-        const Numbers rounds = in_rounds(fill_of(neighbours()));
-        for (std::int32_t p = 0; p < s_.n_bonds; ++p) a_.bond_of[at(p)] = order[at(rounds[at(p)])];
+        const ListOrder made = order_of_list(fill_of(neighbours()));
+        for (std::int32_t p = 0; p < s_.n_bonds; ++p) a_.bond_of[at(p)] = order[at(made.column[at(p)])];
         Fill fill = fill_of(neighbours());
         start_ = std::move(fill.column_start);
         row_ = std::move(fill.row);
         bonds_ = bonds_of_atoms();
-        open_tiles();
+        open_branches(made.branch_end);
         for (Tile &t : a_.tile) list_bonds(t);
         list_homes();
         for (Tile &t : a_.tile) list_entries(t);
+        side_of_.assign(at(a_.list.n_entries), -1);
         for (Tile &t : a_.tile) list_updates(t);
-        for (Tile &t : a_.tile) list_sides(t);
+        list_sides();
         close();
     }
 
@@ -46,7 +47,7 @@ private:
     Lists bonds_of_atoms() const {
         return invert(s_.n_atoms, s_.n_bonds, [&](std::int32_t p, int end) { return end_of(p, end); });
     }
-    // The atoms of column p.
+    // An atom of column p.
     std::int32_t end_of(std::int32_t p, int end) const {
         const std::int32_t k = a_.bond_of[at(p)];
         return (end ? s_.atom_j : s_.atom_i)[k];
@@ -56,40 +57,46 @@ private:
         Rows list(at(s_.n_bonds));
         for (std::int32_t i = 0; i < s_.n_atoms; ++i)
             for (const std::int32_t *p = bonds.begin(i); p != bonds.end(i); ++p)
-                for (const std::int32_t *q = bonds.begin(i); q != p; ++q) {
-                    list[at(*p)].push_back(*q);
-                    list[at(*q)].push_back(*p);
-                }
+                for (const std::int32_t *q = bonds.begin(i); q != p; ++q)
+                    list[at(*p)].push_back(*q), list[at(*q)].push_back(*p);
         return list;
     }
-    std::int32_t tile_of(std::int32_t p) const { return p / FlatList::columns_of_tile; }
     // Where an entry is.
     std::int32_t entry(std::int32_t row, std::int32_t column) const {
         const auto begin = row_.begin();
         const std::int32_t e = static_cast<std::int32_t>(
             std::lower_bound(begin + start_[at(column)], begin + start_[at(column) + 1], row) - begin);
-        const Tile &t = a_.tile[at(tile_of(column))];
+        const Tile &t = a_.tile[at(tile_of_[at(column)])];
         return t.first_entry + e - start_[at(t.first)];
     }
 
-    void open_tiles() {
-        constexpr std::int32_t columns = FlatList::columns_of_tile;
-        std::int64_t entries = 0;
-        for (std::int32_t first = 0; first < s_.n_bonds; first += columns) {
-            Tile t = {};
-            t.first = first;
-            t.end = std::min(s_.n_bonds, first + columns);
-            t.first_entry = static_cast<std::int32_t>(entries);
-            t.end_entry = t.first_entry + start_[at(t.end)] - start_[at(t.first)];
-            entries = in_fours(t.end_entry);
-            a_.tile.push_back(t);
-        }
-        a_.list.n_entries = static_cast<std::int32_t>(entries);
+    // Branches and the trunk behind them, and their tiles.
+    void open_branches(const Numbers &branch_end) {
+        std::int32_t first = 0;
+        for (const std::int32_t end : branch_end) first = open_tiles(first, end);
+        open_tiles(first, s_.n_bonds);
         a_.list.n_columns = static_cast<std::int32_t>(in_fours(s_.n_bonds));
         a_.place_of.assign(at(s_.n_atoms), -1);
         number_.assign(at(s_.n_atoms), -1);
         side_of_.assign(at(s_.n_bonds), -1);
         row_of_.assign(at(s_.n_bonds), -1);
+    }
+
+    std::int32_t open_tiles(std::int32_t first, std::int32_t end) {
+        const std::int32_t n = (end - first + FlatList::columns_of_tile - 1) / FlatList::columns_of_tile,
+                           begin = size_of(a_.tile);
+        for (std::int32_t i = 0; i < n; ++i) {
+            Tile t = {};
+            t.first = first;
+            t.end = first = i + 1 < n ? first + static_cast<std::int32_t>(in_fours((end - first) / (n - i))) : end;
+            t.first_entry = a_.list.n_entries;
+            t.end_entry = t.first_entry + start_[at(t.end)] - start_[at(t.first)];
+            a_.list.n_entries = static_cast<std::int32_t>(in_fours(t.end_entry));
+            tile_of_.insert(tile_of_.end(), at(t.end - t.first), size_of(a_.tile));
+            a_.tile.push_back(t);
+        }
+        a_.branch.push_back({begin, size_of(a_.tile)});
+        return end;
     }
 
     // The atoms and bonds of a tile: its own in the order of memory, then guests.
@@ -121,7 +128,7 @@ private:
         std::sort(guests.begin(), guests.begin() + static_cast<std::ptrdiff_t>(visiting));
         t.first_site = size_of(a_.atom_of);
         t.own_end = t.first_site + size_of(own);
-        t.first_mass = 2 * t.first_site + tile_of(t.first);
+        t.first_mass = 2 * t.first_site + tile_of_[at(t.first)];
         for (const std::int32_t i : own) a_.place_of[at(i)] = add_site(t, i);
         for (const std::int32_t i : guests) add_site(t, i);
         t.end_site = size_of(a_.atom_of);
@@ -136,6 +143,8 @@ private:
         extra_.emplace_back(extra, bonds.end());
         for (std::int32_t site = t.first_site; site < t.end_site; ++site) number_[at(a_.atom_of[at(site)])] = -1;
         a_.list.most_sites = std::max(a_.list.most_sites, t.end_site - t.first_site);
+        a_.list.most_rows = std::max(a_.list.most_rows, t.end_row - t.first_row);
+        a_.list.most_columns = std::max(a_.list.most_columns, t.end - t.first);
     }
     std::int32_t add_site(const Tile &t, std::int32_t atom) {
         const std::int32_t site = size_of(a_.atom_of);
@@ -160,19 +169,21 @@ private:
         }
     }
 
-    // The side of a column that a tile before reaches.
-    std::int32_t side_of(std::int32_t column) {
-        std::int32_t &side = side_of_[at(column)];
-        if (side < 0) side = a_.list.n_columns++;
+    // Where a tile with these sides from `first` on gives to a column or an entry of a later one.
+    static std::int32_t side_of(std::int32_t number, std::int32_t first, std::int32_t &n, Numbers &sides,
+                                std::vector<FlatList::Late> &late) {
+        std::int32_t &side = sides[at(number)];
+        if (side < first) late.push_back({number, side = n++});
         return side;
     }
 
     void list_entries(Tile &t) {
-        const std::vector<std::int32_t> &extra = extra_[at(tile_of(t.first))];
+        const std::vector<std::int32_t> &extra = extra_[at(tile_of_[at(t.first)])];
         const std::int32_t own_rows = static_cast<std::int32_t>(in_fours(t.end - t.first)),
                            none = 2 * (t.end_site - t.first_site);
         for (std::size_t b = 0; b < extra.size(); ++b) row_of_[at(extra[b])] = own_rows + static_cast<std::int32_t>(b);
         const auto row_of = [&](std::int32_t p) { return p < t.end ? p - t.first : row_of_[at(p)]; };
+        const std::int32_t first_side = a_.list.n_columns;
         t.first_run = size_of(a_.run);
         for (std::int32_t p = t.first; p < t.end; ++p) {
             const std::int32_t n = start_[at(p) + 1] - start_[at(p)];
@@ -180,7 +191,7 @@ private:
             ++a_.run.back().columns;
             for (std::int32_t e = start_[at(p)]; e < start_[at(p) + 1]; ++e) {
                 const std::int32_t q = row_[at(e)], shared = shared_atom(p, q);
-                a_.row.push_back(q < t.end ? q : side_of(q));
+                a_.row.push_back(q < t.end ? q : side_of(q, first_side, a_.list.n_columns, side_of_, a_.late));
                 a_.row_4.push_back(shared < 0 ? 0 : 4 * row_of(q));
                 a_.column_4.push_back(4 * (p - t.first));
                 a_.mass.push_back(shared < 0 ? none
@@ -189,9 +200,7 @@ private:
             }
         }
         t.end_run = size_of(a_.run);
-        pad(a_.row, 0);
-        pad(a_.row_4, 0);
-        pad(a_.column_4, 0);
+        for (Numbers *list : {&a_.row, &a_.row_4, &a_.column_4}) pad(*list, 0);
         pad(a_.mass, none);
         for (const std::int32_t q : extra) row_of_[at(q)] = -1;
     }
@@ -208,39 +217,40 @@ private:
     }
 
     void list_updates(Tile &t) {
+        const std::int32_t first_side = a_.list.n_entries;
         t.first_update = static_cast<std::int64_t>(a_.update.size());
         for (std::int32_t p = t.first; p < t.end; ++p) {
             const std::int32_t first = start_[at(p)], end = start_[at(p) + 1];
             for (std::int32_t i = first; i < end; ++i)
                 for (std::int32_t j = first; j < i; ++j) {
                     const std::int32_t e = entry(row_[at(i)], row_[at(j)]);
-                    a_.update.push_back(row_[at(j)] < t.end ? e : side_of_entry(e));
+                    a_.update.push_back(
+                        row_[at(j)] < t.end ? e : side_of(e, first_side, a_.list.n_entries, side_of_, a_.late_entry));
                 }
         }
     }
-    std::int32_t side_of_entry(std::int32_t e) {
-        if (entry_side_.empty()) entry_side_.assign(at(a_.list.n_entries), -1);
-        std::int32_t &side = entry_side_[at(e)];
-        if (side < 0) side = a_.list.n_entries++;
-        return side;
-    }
-
-    void list_sides(Tile &t) {
-        t.first_late = size_of(a_.late);
-        t.first_outer = size_of(a_.outer);
-        for (std::int32_t p = t.first; p < t.end; ++p) {
-            const std::int32_t side = side_of_[at(p)];
-            if (side >= 0) a_.late.push_back({p, side});
-            bool outer = side >= 0;
-            for (int end = 0; end < 2; ++end) outer = outer || a_.place_of[at(end_of(p, end))] < t.first_site;
-            if (outer) a_.outer.push_back(p);
+    // Late columns and entries of all tiles, in their order, and columns of which not all is known in their tile.
+    void list_sides() {
+        const auto before = [](const FlatList::Late &a, const FlatList::Late &b) { return a.number < b.number; };
+        std::stable_sort(a_.late.begin(), a_.late.end(), before);
+        std::stable_sort(a_.late_entry.begin(), a_.late_entry.end(), before);
+        std::int32_t late = 0, entry = 0;
+        for (Tile &t : a_.tile) {
+            t.first_late = late;
+            t.first_late_entry = entry;
+            t.first_outer = size_of(a_.outer);
+            for (std::int32_t p = t.first; p < t.end; ++p) {
+                const std::int32_t first = late;
+                while (late < size_of(a_.late) && a_.late[at(late)].number == p) ++late;
+                bool outer = late > first;
+                for (int end = 0; end < 2; ++end) outer = outer || a_.place_of[at(end_of(p, end))] < t.first_site;
+                if (outer) a_.outer.push_back(p);
+            }
+            while (entry < size_of(a_.late_entry) && a_.late_entry[at(entry)].number < t.end_entry) ++entry;
+            t.end_late = late;
+            t.end_late_entry = entry;
+            t.end_outer = size_of(a_.outer);
         }
-        t.end_late = size_of(a_.late);
-        t.end_outer = size_of(a_.outer);
-        t.first_late_entry = size_of(a_.late_entry);
-        for (std::int32_t e = t.first_entry; e < t.end_entry && !entry_side_.empty(); ++e)
-            if (entry_side_[at(e)] >= 0) a_.late_entry.push_back({e, entry_side_[at(e)]});
-        t.end_late_entry = size_of(a_.late_entry);
     }
 
     void close() {
@@ -250,8 +260,10 @@ private:
         l.n_sites = size_of(a_.atom_of);
         l.n_rows = size_of(a_.from);
         l.n_tiles = size_of(a_.tile);
+        l.n_branches = size_of(a_.branch) - 1;
         pad(a_.bond_of, 0);
         l.tile = a_.tile.data();
+        l.branch = a_.branch.data();
         l.atom_of = a_.atom_of.data();
         l.home = a_.home.data();
         l.place_of = a_.place_of.data();
@@ -277,27 +289,13 @@ private:
     Rows extra_;           // columns that are a tile's extra bonds
     Numbers number_;       // of an atom in the tile that is listed
     Numbers visiting_;     // by tile, its atoms that its own bonds have
-    Numbers side_of_, row_of_, entry_side_;
+    Numbers tile_of_;      // of a column
+    Numbers side_of_;      // the last one of a column, then of an entry
+    Numbers row_of_;       // of a column among a tile's extra bonds
 };
 
 }  // namespace
 
-// A list has so many updates, or so many for each bond.
-constexpr std::int64_t short_list = 65536, updates_of_bond = 16;
-
-bool takes_flat_list(const Schedule &s) {
-    if (s.type != Schedule::graph && (s.type != Schedule::tree || s.n_bonds <= largest_in_lanes)) return false;
-    Numbers bonds(at(s.n_atoms));
-    for (std::int32_t k = 0; k < s.n_bonds; ++k)
-        for (const std::int32_t i : {s.atom_i[k], s.atom_j[k]}) ++bonds[at(i)];
-    std::int64_t updates = 0;
-    for (const std::int64_t n : bonds) {
-        if (n > 3000) return false;  // more than the most of the largest list
-        updates += n * (n - 1) / 2 * (n - 2) / 3;
-    }
-    return s.n_bonds <= largest_in_list &&
-           updates <= std::max(short_list, updates_of_bond * static_cast<std::int64_t>(s.n_bonds));
-}
 void make_flat_list(const Schedule &s, FlatArrays &arrays) { FlatMaker(s, arrays).make(); }
 
 }  // namespace holonomic

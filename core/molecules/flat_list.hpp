@@ -12,6 +12,7 @@ namespace holonomic {
 struct FlatArrays {
     Numbers atom_of, home, place_of, bond_of, from, to, row, row_4, column_4, mass, update, outer;
     std::vector<FlatList::Tile> tile;
+    std::vector<FlatList::Branch> branch;
     std::vector<FlatList::Run> run;
     std::vector<FlatList::Late> late, late_entry;
     std::vector<FlatList::Visit> visit;

@@ -18,18 +18,23 @@ std::int32_t parent_of(const Fill &fill, std::int32_t k) {
     return entries_of(fill, k) > 0 ? fill.row[at(fill.column_start[at(k)])] : -1;
 }
 
+// Of each column with all below it.
+Numbers sizes_of(const Fill &fill) {
+    Numbers size(fill.column_start.size() - 1, 1);
+    for (std::int32_t k = 0; at(k) < size.size(); ++k)
+        if (const std::int32_t parent = parent_of(fill, k); parent >= 0) size[at(parent)] += size[at(k)];
+    return size;
+}
+
 // A post-order of the tree in which the parent of a column is its first row. Of what hangs below a column the largest
 // part comes first, so that the rest stands next to it.
-Numbers post_order(const Fill &fill) {
-    const std::int32_t n = static_cast<std::int32_t>(fill.column_start.size()) - 1;
+Numbers post_order(const Fill &fill, const Numbers &size) {
+    const std::int32_t n = static_cast<std::int32_t>(size.size());
     const auto parent = [&](std::int32_t k) { return parent_of(fill, k); };
-    Numbers size(at(n), 1), order, stack;
+    Numbers order, stack;
     Rows children(at(n));
-    for (std::int32_t k = 0; k < n; ++k) {
-        if (parent(k) < 0) continue;
-        size[at(parent(k))] += size[at(k)];
-        children[at(parent(k))].push_back(k);
-    }
+    for (std::int32_t k = 0; k < n; ++k)
+        if (parent(k) >= 0) children[at(parent(k))].push_back(k);
     for (Numbers &list : children)  // the last one is visited first
         std::stable_sort(list.begin(), list.end(),
                          [&](std::int32_t a, std::int32_t b) { return size[at(a)] < size[at(b)]; });
@@ -51,14 +56,57 @@ Numbers post_order(const Fill &fill) {
     return order;
 }
 
+// Branches of at most `most` columns: of the tree what hangs from larger parts, which are the trunk. Parts that follow
+// each other share a branch. Of a branch that is no multiple of four the last columns go to the trunk.
+ListOrder cut(const Fill &fill, const Numbers &order, const Numbers &size, std::int32_t most) {
+    ListOrder cut;
+    Numbers trunk;
+    std::int32_t first = 0;
+    const auto end_branch = [&](std::int32_t end) {
+        const auto begin = cut.column.begin() + end - (end - first) % 4;
+        trunk.insert(trunk.begin(), begin, cut.column.begin() + end);
+        cut.column.erase(begin, cut.column.begin() + end);
+        first = end - (end - first) % 4;
+        cut.branch_end.push_back(first);
+    };
+    for (const std::int32_t k : order) {
+        if (size[at(k)] > most) {
+            trunk.push_back(k);
+            continue;
+        }
+        cut.column.push_back(k);
+        const std::int32_t parent = parent_of(fill, k), n = static_cast<std::int32_t>(cut.column.size());
+        if ((parent < 0 || size[at(parent)] > most) && n - first > most) end_branch(n - size[at(k)]);
+    }
+    end_branch(static_cast<std::int32_t>(cut.column.size()));
+    cut.column.insert(cut.column.end(), trunk.begin(), trunk.end());
+    return cut;
+}
+
+// As many branches as there can be while the trunk is little, by the molecule alone; none of one that is too small for
+// two threads. In a trunk one column waits for the next: of a protein it takes tens of ns for each.
+ListOrder in_branches(const Fill &fill) {
+    constexpr std::int32_t shortest = 8192, shortest_branch = 2048;
+    const Numbers size = sizes_of(fill);
+    Numbers order = post_order(fill, size);
+    const std::int32_t n = static_cast<std::int32_t>(size.size()), longest_trunk = std::max(n / 256, 64);
+    for (const double part : {1 / 16., 1 / 8., 1 / 4., 1 / 2., 2 / 3.}) {
+        const std::int32_t most = std::max(shortest_branch, static_cast<std::int32_t>(part * n));
+        const auto trunk = std::count_if(size.begin(), size.end(), [&](std::int32_t k) { return k > most; });
+        if (n >= shortest && trunk <= longest_trunk) return cut(fill, order, size, most);
+    }
+    return {std::move(order), {}};
+}
+
 // That order in rounds of columns that do not wait for each other, so that a processor can work on them at once: those
-// farthest from the root among the next ones. Within a round by the number of entries.
+// farthest from the root among the next ones. Within a round by the number of entries. Each branch by itself.
 class Rounds {
 public:
-    Rounds(const Fill &fill, Numbers order)
-        : fill_(fill), order_(std::move(order)), depth_(order_.size()), waits_for_(order_.size()),
-          place_(order_.size()), done_(order_.size()) {
+    Rounds(const Fill &fill, const Numbers &order)
+        : fill_(fill), order_(order), depth_(order_.size()), waits_for_(order_.size()), place_(order_.size()),
+          done_(order_.size()) {
         for (std::size_t p = order_.size(); p-- > 0;) {
+            place_[at(order_[p])] = static_cast<std::int32_t>(p);
             const std::int32_t k = order_[p], parent = parent_of(fill, k);
             if (parent < 0) continue;
             depth_[at(k)] = depth_[at(parent)] + 1;
@@ -66,11 +114,11 @@ public:
         }
     }
 
-    Numbers make() {
-        Numbers made, round;
-        for (std::size_t p = 0; p < order_.size(); ++p) place_[at(order_[p])] = static_cast<std::int32_t>(p);
-        while (made.size() < order_.size()) {
-            advance();
+    // Of the columns up to `end`, after those before.
+    void make(std::size_t end, Numbers &made) {
+        Numbers round;
+        while (made.size() < end) {
+            advance(end);
             round.clear();
             while (!ready_.empty() && round.size() < most_in_round) {
                 const std::size_t place = static_cast<std::size_t>(-ready_.top().second);
@@ -84,16 +132,15 @@ public:
             made.insert(made.end(), round.begin(), round.end());
             for (const std::int32_t k : round) release(parent_of(fill_, k));
         }
-        return made;
     }
 
 private:
     static constexpr std::size_t most_in_round = 32, columns_ahead = 8192;
 
     // To the first column that is not done, and as far ahead of it as may be looked.
-    void advance() {
+    void advance(std::size_t end) {
         while (done_[first_]) ++first_;
-        for (; seen_ < std::min(order_.size(), first_ + columns_ahead); ++seen_)
+        for (; seen_ < std::min(end, first_ + columns_ahead); ++seen_)
             if (waits_for_[at(order_[seen_])] == 0) push(seen_);
     }
     void push(std::size_t place) { ready_.emplace(depth_[at(order_[place])], -static_cast<std::int64_t>(place)); }
@@ -102,7 +149,7 @@ private:
     }
 
     const Fill &fill_;
-    const Numbers order_;
+    const Numbers &order_;
     Numbers depth_, waits_for_, place_;  // by column
     std::vector<unsigned char> done_;    // by place in order_
     std::size_t first_ = 0, seen_ = 0;
@@ -142,6 +189,13 @@ Numbers bonds_from_the_leaves(const Schedule &s) {
     return order;
 }
 
-Numbers in_rounds(const Fill &fill) { return Rounds(fill, post_order(fill)).make(); }
+ListOrder order_of_list(const Fill &fill) {
+    const ListOrder order = in_branches(fill);
+    ListOrder made = {{}, order.branch_end};
+    Rounds rounds(fill, order.column);
+    for (const std::int32_t end : order.branch_end) rounds.make(at(end), made.column);
+    rounds.make(order.column.size(), made.column);
+    return made;
+}
 
 }  // namespace holonomic

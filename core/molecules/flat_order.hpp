@@ -13,7 +13,11 @@ Numbers bonds_from_the_leaves(const Schedule &s);
 
 // The columns of a factor in another order with the same fill: what depends on each other stands near each other, a
 // post-order of the elimination's tree, but in rounds of columns that do not wait for each other, so that a processor
-// works on them at once. Within a round columns of as many entries follow each other.
-Numbers in_rounds(const Fill &fill);
+// works on them at once. Within a round columns of as many entries follow each other. Large molecules have branches:
+// no column of one depends on another, and what depends on several is the trunk, behind the last.
+struct ListOrder {
+    Numbers column, branch_end;
+};
+ListOrder order_of_list(const Fill &fill);
 
 }  // namespace holonomic

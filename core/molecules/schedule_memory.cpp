@@ -76,7 +76,7 @@ std::size_t bytes(const Lists &...lists) {
 std::size_t bytes(const ScheduleRuns &r) { return bytes(r.run, r.slot, r.piece_start); }
 std::size_t bytes(const FlatArrays &f) {
     return bytes(f.atom_of, f.home, f.place_of, f.bond_of, f.from, f.to, f.row, f.row_4, f.column_4, f.mass, f.update,
-                 f.outer, f.tile, f.run, f.late, f.late_entry, f.visit);
+                 f.outer, f.tile, f.branch, f.run, f.late, f.late_entry, f.visit);
 }
 
 std::size_t bytes(const PathArrays &p) {

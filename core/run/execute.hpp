@@ -52,8 +52,8 @@ public:
     virtual bool walks_forests() const { return false; }
     // Scratch memory that it needs, if that is more than the plan says.
     virtual std::int64_t scratch_bytes() const { return 0; }
-    // Whether threads share the work on one large molecule that goes along a list, whatever its shape.
-    virtual bool shares_lists() const { return false; }
+    // Whether threads share the work on one large molecule that has paths.
+    virtual bool shares_paths() const { return false; }
     virtual std::int64_t long_blocks(std::int64_t n_bonds) const = 0;
     virtual std::int64_t long_bytes(std::int64_t n_bonds) const = 0;
     virtual void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const = 0;

@@ -158,6 +158,45 @@ inline void list_solves(const holonomic::FlatList &s, std::mt19937 &random)
     }
 }
 
+// Branches of a list: what the columns of one give goes to columns of the same tile, to sides that one tile alone has,
+// and from there to later tiles of the same branch or to the trunk.
+inline void branches_need_nothing_of_others(const holonomic::FlatList &s, int least, double largest)
+{
+    require(s.n_branches >= least, "too few branches");
+    std::vector<int> branch_of, tile_of_side(static_cast<std::size_t>(s.n_columns), -1);
+    for (int b = 0; b <= s.n_branches; ++b) {
+        require(s.branch[b].first == static_cast<int>(branch_of.size()), "tiles of two branches, or of none");
+        branch_of.resize(static_cast<std::size_t>(s.branch[b].end), b);
+    }
+    require(static_cast<int>(branch_of.size()) == s.n_tiles, "tiles behind the trunk");
+    std::vector<int> columns(static_cast<std::size_t>(s.n_branches) + 1);
+    for (int t = 0; t < s.n_tiles; ++t) {
+        const auto &tile = s.tile[t];
+        require(tile.first % 4 == 0, "a tile shares four columns with the one before");
+        columns[static_cast<std::size_t>(branch_of[static_cast<std::size_t>(t)])] += tile.end - tile.first;
+        for (int e = tile.first_entry; e < tile.end_entry; ++e) {
+            if (s.row[e] < s.n_bonds) {
+                require(s.row[e] >= tile.first && s.row[e] < tile.end, "a row in another tile");
+                continue;
+            }
+            int &owner = tile_of_side[static_cast<std::size_t>(s.row[e])];
+            require(owner < 0 || owner == t, "two tiles have one side");
+            owner = t;
+        }
+        for (int i = tile.first_late; i < tile.end_late; ++i) {
+            const int from = tile_of_side[static_cast<std::size_t>(s.late[i].side)],
+                      giver = branch_of[static_cast<std::size_t>(from)];
+            require(s.late[i].number >= tile.first && s.late[i].number < tile.end, "a late column of another tile");
+            require(from < t && (giver == branch_of[static_cast<std::size_t>(t)] ||
+                                 branch_of[static_cast<std::size_t>(t)] == s.n_branches),
+                    "a branch gives to another");
+        }
+    }
+    for (int b = 0; b < s.n_branches; ++b)
+        require(columns[static_cast<std::size_t>(b)] <= largest * s.n_bonds, "a branch is too large");
+    require(columns.back() < s.n_bonds / 64, "the trunk is too long");
+}
+
 inline std::unique_ptr<const Schedule> check(const char *name, const Bonds &bonds, int n_atoms, Schedule::Type type)
 {
     static std::mt19937 random(1);

@@ -96,6 +96,29 @@ void large_shapes()
     require(s->flat->n_entries < 8 * s->n_core, "a large strip fills");
 }
 
+// Two halves of what is long, more of what forks, and none of what is small.
+void branches()
+{
+    const auto strip_of = [](int n) {
+        Bonds strip;
+        for (int i = 0; i + 1 < n; ++i)
+            for (int k = i + 1; k < i + 3 && k < n; ++k) strip.push_back({i, k});
+        return schedule_of(strip, n);
+    };
+    branches_need_nothing_of_others(*strip_of(30000)->flat, 2, 0.51);
+    branches_need_nothing_of_others(*strip_of(5001)->flat, 2, 0.51);
+    require(strip_of(2000)->flat->n_branches == 0, "a small strip has branches");
+    std::mt19937 random(5);
+    const int n = 100000;
+    Bonds bonds = random_tree(n, 4, random);
+    branches_need_nothing_of_others(*schedule_of(bonds, n)->flat, 10, 0.07);
+    for (int i = 0; i + 40 < n; i += 40) bonds.push_back({i, i + 39});
+    std::sort(bonds.begin(), bonds.end());
+    bonds.erase(std::unique(bonds.begin(), bonds.end()), bonds.end());
+    const auto graph = schedule_of(bonds, n);
+    if (graph->flat) branches_need_nothing_of_others(*graph->flat, 2, 0.67);
+}
+
 }  // namespace
 
 int main()
@@ -103,5 +126,6 @@ int main()
     small_shapes();
     random_shapes();
     large_shapes();
+    branches();
     return 0;
 }

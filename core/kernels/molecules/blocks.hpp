@@ -97,7 +97,7 @@ struct LinearWork {
         Memory<V> memory = {scratch};
         if (schedule.flat) {
             const bool known = masses_known && schedule.n_arms == 0;
-            const FlatBlock<V> block = {schedule, lane, used, packed, known, memory};
+            const FlatBlock<V> block = {schedule, lane, used, packed, known, team, memory};
             if (const unsigned rest = solve_flat(call, block, tally))
                 solve_doubtful(call, schedule, lane, rest, memory.next, tally);
             return;

@@ -12,18 +12,24 @@ struct Correction {
     V &t;
 };
 
-// Adds the corrections of n bonds. Returns the square of the largest one, relative to its multiplier's size. That is
-// the largest of |t_k|, |b_k| / P_k - which is no more than the multiplier's scale, as P_k is at least 1 / (A^-1)_kk -
-// and a millionth of the molecule's largest tension.
+// The square of the largest tension of bonds first .. end.
 template <class V, class Bond>
-HOL_INLINE V add_corrections(int32_t n, const Bond &bond) {
-    V largest = {}, part = {};
-    for (int32_t k = 0; k < n; ++k) {
+HOL_INLINE V largest_tension2(int32_t first, int32_t end, const Bond &bond) {
+    V largest = {};
+    for (int32_t k = first; k < end; ++k) {
         const Correction<V> c = bond(k);
         largest = max((c.t * c.t) * c.q, largest);
     }
-    const V least = mul_add(Width<V>::all(1e-12), largest, Width<V>::all(1e-290));
-    for (int32_t k = 0; k < n; ++k) {
+    return largest;
+}
+// Adds the corrections of these bonds. Returns the square of the largest one, relative to its multiplier's size. That
+// is the largest of |t_k|, |b_k| / P_k - which is no more than the multiplier's scale, as P_k is at least 1 /
+// (A^-1)_kk - and a millionth of the molecule's largest tension.
+template <class V, class Bond>
+HOL_INLINE V add_corrections(int32_t first, int32_t end, const V &tension2, const Bond &bond) {
+    const V least = mul_add(Width<V>::all(1e-12), tension2, Width<V>::all(1e-290));
+    V part = {};
+    for (int32_t k = first; k < end; ++k) {
         const Correction<V> c = bond(k);
         c.t = c.t + c.change;
         const V size = mul_add(c.t, c.t, c.alone * c.alone);

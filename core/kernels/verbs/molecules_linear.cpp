@@ -32,7 +32,7 @@ void solve_for_rates(Linear<double> &z) { z.solve_for_rates(); }
 
 template <class V>
 static inline unsigned prove_or_refine(const FlatLinear<V> &x) {
-    const unsigned proven = FlatProof<V>(x).solve();
+    const unsigned proven = FlatProof<V>::solve(x);
     return proven == bits(x.in_use()) ? proven : FlatRefine<V>(x).refine(proven);
 }
 unsigned solve_and_refine(const FlatLinear<vec> &x) { return prove_or_refine(x); }

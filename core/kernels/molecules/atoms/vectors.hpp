@@ -101,11 +101,12 @@ struct Written {
     const unsigned char *fixed;  // [n] atoms that are left out, or nullptr
     const MoleculeLane *lane;    // whose atoms may belong to others, too, and are left out then; or nullptr
     bool add = false;            // to what is there
+    int32_t first = 0;           // of the lanes' atoms
 
     unsigned lanes_of(int32_t atom) const {
         unsigned left = fixed && fixed[atom] ? 0 : which;
         for (int i = 0; lane && i < Width<V>::lanes; ++i)
-            if (lane[i].shared && lane[i].shared[atom]) left &= ~(1u << i);
+            if (lane[i].shared && lane[i].shared[first + atom]) left &= ~(1u << i);
         return left;
     }
     bool all() const {

@@ -5,7 +5,6 @@
 
 #include "core/kernels/molecules/list/flat_tiles.hpp"
 #include "core/kernels/molecules/load.hpp"
-#include "core/kernels/molecules/virial.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -20,37 +19,44 @@ struct FlatLinear {
     const Box &box;
     const AtomArray &coordinates;
     const Inputs &in;
-    const int terms;          // of right-hand sides
-    const bool masses_known;  // those of the molecules before, in the same memory
-    V *mass;                  // -w_0, w_0, -w_1, .. , 0 of each tile
-    Rows<V> pull, d;          // of all tiles: G, and the sum of |t| |d| of an atom's bonds; bonds
-    Rows<V> a;     // w f, then w (f + G), of one tile; or where right-hand sides are rates v + w G, of all tiles
-    Rows<V> r, v;  // of one tile: coordinates, velocities; |a| as it was
+    const int terms;             // of right-hand sides
+    const bool masses_known;     // those of the molecules before, in the same memory
+    const LongTeam *const team;  // or nullptr
+    const bool whole_a;          // a is of all tiles
+    double *const own;           // memory of this thread, for one tile
+    V *mass;                     // -w_0, w_0, -w_1, .. , 0 of each tile
+    Rows<V> pull, d;             // of all tiles: G, and the sum of |t| |d| of an atom's bonds; bonds
+    Rows<V> a;             // w f, then w (f + G); or where right-hand sides are rates v + w G. Of one tile, or of all
+    Rows<V> r, v;          // of one tile: coordinates, velocities; |a| as it was
     V *t, *E, *per_pivot;  // right-hand sides, then multipliers; pivots
     V *lower, *size;       // |d|
     V *diagonal, *back;    // of A; R
     int32_t *bonds_at;     // of one tile: flat_residual.hpp
     Rows<V> d_low, a_low;  // what refinement adds to the bonds of one tile, and to the accelerations of all
+    V *found;              // [n_tiles] flat_refine.hpp
+    unsigned *left;        // [n_branches + 1] flat_proof.hpp
 
     static int64_t values(const FlatList &s) {
-        return mass_values(s) + 4 * (2 * static_cast<int64_t>(s.n_sites) + static_cast<int64_t>(s.n_rows)) +
-               8 * static_cast<int64_t>(s.most_sites) + 2 * in_fours(s.n_bonds) + 4 * in_fours(s.n_columns) +
-               in_fours(s.n_entries) + bonds_at_values(s) + refinement_values(s);
+        return tile_values(s) + mass_values(s) + 4 * (3 * static_cast<int64_t>(s.n_sites) + s.n_rows) +
+               2 * in_fours(s.n_bonds) + 4 * in_fours(s.n_columns) + in_fours(s.n_entries) + in_fours(s.n_tiles) +
+               left_values(s);
     }
-    static int64_t most_columns(const FlatList &s) {
-        return in_fours(s.n_tiles > 1 ? FlatList::columns_of_tile : s.n_bonds);
+    static int64_t tile_values(const FlatList &s) {
+        return 4 * (3 * static_cast<int64_t>(s.most_sites) + most_columns(s)) + bonds_at_values(s);
     }
+    static int64_t left_values(const FlatList &s) { return in_fours(s.n_branches / 2 + 1); }
+    static int64_t most_columns(const FlatList &s) { return in_fours(s.most_columns); }
     static int64_t bonds_at_values(const FlatList &s) { return in_fours((s.most_sites + 3 + 2 * most_columns(s)) / 2); }
-    static int64_t refinement_values(const FlatList &s) { return 4 * (most_columns(s) + s.n_sites); }
-    FlatLinear(const FlatList &list, const MoleculeLane *l, int in_use, bool packed, bool known, const Box &b,
-               const AtomArray &positions, const Inputs &inputs, int sides, Memory<V> &memory)
+    FlatLinear(const FlatList &list, const MoleculeLane *l, int in_use, bool packed, bool known,
+               const LongTeam *threads, const Box &b, const AtomArray &positions, const Inputs &inputs, int sides,
+               Memory<V> &memory)
         : s(list), lane(l), used(in_use), at(l, in_use, packed), box(b), coordinates(positions), in(inputs),
-          terms(sides), masses_known(known) {
+          terms(sides), masses_known(known), team(s.n_branches > 0 ? threads : nullptr),
+          whole_a(in.rates || !is_from_memory(s)), own(memory.next) {
+        memory.values(tile_values(s));
         const int64_t bonds = in_fours(s.n_bonds), columns = in_fours(s.n_columns);
         pull = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
         d = {memory.values(4 * static_cast<int64_t>(s.n_rows))};
-        r = {memory.values(4 * static_cast<int64_t>(s.most_sites))};
-        v = {memory.values(4 * static_cast<int64_t>(s.most_sites))};
         lower = memory.values(in_fours(s.n_entries));
         t = memory.values(columns);
         E = memory.values(columns);
@@ -60,13 +66,42 @@ struct FlatLinear {
         diagonal = memory.values(bonds);
         a = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
         mass = memory.values(mass_values(s));
+        a_low = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
+        found = memory.values(in_fours(s.n_tiles));
+        left = reinterpret_cast<unsigned *>(memory.values(left_values(s)));
+        take(own);
+    }
+    // The same in another thread.
+    FlatLinear(const FlatLinear &other, double *of_thread) : FlatLinear(other) { take(of_thread); }
+    FlatLinear(const FlatLinear &) = default;
+    void take(double *of_thread) {
+        Memory<V> memory = {of_thread};
+        r = {memory.values(4 * static_cast<int64_t>(s.most_sites))};
+        v = {memory.values(4 * static_cast<int64_t>(s.most_sites))};
+        const Rows<V> of_tile = {memory.values(4 * static_cast<int64_t>(s.most_sites))};
+        if (!whole_a) a = of_tile;
         bonds_at = reinterpret_cast<int32_t *>(memory.values(bonds_at_values(s)));
         d_low = {memory.values(4 * most_columns(s))};
-        a_low = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
+    }
+    // Calls body(this in a thread, branch) for all branches and the trunk.
+    template <class Body>
+    HOL_FORCED void up(const Body &body) const {
+        branches_up(s, team, own, in_thread(body));
+    }
+    template <class Body>
+    HOL_FORCED void down(const Body &body) const {
+        branches_down(s, team, own, in_thread(body));
+    }
+    template <class Body>
+    HOL_FORCED auto in_thread(const Body &body) const {
+        return [ this, &body ](const Branch &branch, double *of_thread) __attribute__((noinline)) {
+            if (of_thread == own) return body(*this, branch);
+            body(FlatLinear(*this, of_thread), branch);
+        };
     }
     MaskOf<V> in_use() const { return Width<V>::first(used); }
     HOL_FORCED Columns<V> &some(V *values, int64_t k) const { return *reinterpret_cast<Columns<V> *>(values + k); }
-    HOL_FORCED Rows<V> a_of(const Tile &tile) const { return in.rates ? a.from(tile.first_site) : a; }
+    HOL_FORCED Rows<V> a_of(const Tile &tile) const { return whole_a ? a.from(tile.first_site) : a; }
     HOL_FORCED Rows<V> d_of(const Tile &tile) const { return d.from(tile.first_row); }
 
     // w f, or v where right-hand sides are rates.
@@ -84,7 +119,7 @@ struct FlatLinear {
 
     // Where the memory of one tile has had others since.
     HOL_FORCED void load_inputs_again(const Tile &tile) const {
-        if (!(terms & rates) && s.n_tiles > 1) load_inputs(tile, a);
+        if (!whole_a) load_inputs(tile, a);
     }
 
     // Coordinates, masses and what right-hand sides are made of.
@@ -186,7 +221,7 @@ struct FlatLinear {
                 HOL_UNROLL_FEW
                 for (int32_t j = 0; j < i; ++j, ++update)  // l of j is multiplied already
                     lower[*update] = mul_add(-li, l[j], lower[*update]);
-                E[row[i]] = mul_add(-li, lr, E[row[i]]);
+                E[row[i]] = mul_add(-(li * li), inverse, E[row[i]]);
                 t[row[i]] = mul_add(-lr, y, t[row[i]]);
                 l[i] = lr;
             }
@@ -200,7 +235,7 @@ struct FlatLinear {
             const V *const l = lower + first;
             V x = t[k] * per_pivot[k], sum = {};
             HOL_UNROLL_FEW
-            for (int32_t e = 0; e < n; ++e) {
+            for (int32_t e = n - 1; e >= 0; --e) {  // the first row is known last
                 const V part = l[e] * t[row[e]];
                 x = x - part;
                 sum = sum + abs(part);
@@ -241,43 +276,24 @@ struct FlatLinear {
     // Once more for velocities, for the rates of the bonds as they are, d.(v_j - v_i).
     void solve_again() const {
         clear_sides(s, t);
-        for (int32_t i = 0; i < s.n_tiles; ++i) {
-            copy_guests(s, s.tile[i], a);
-            find_rates(s.tile[i]);
-            add_given(s.tile[i], t);
-            solve_up(s, s.tile[i], lower, t);
-        }
-        for (int32_t i = s.n_tiles; i-- > 0;) {
-            solve_down(s, s.tile[i], lower, per_pivot, t, [](int32_t, const V &) HOL_FORCED {});
-            find_pulls(s.tile[i]);
-            add_pulls(s.tile[i]);
-        }
+        up([](const FlatLinear &x, const Branch &branch) HOL_FORCED {
+            for_tiles_up(x.s, branch, [&](const Tile &tile) HOL_FORCED {
+                copy_guests(x.s, tile, x.a);
+                x.find_rates(tile);
+                x.add_given(tile, x.t);
+                solve_up(x.s, tile, x.lower, x.t);
+            });
+        });
+        down([](const FlatLinear &x, const Branch &branch) HOL_FORCED {
+            for_tiles_down(x.s, branch, [&](const Tile &tile) HOL_FORCED {
+                solve_down(x.s, tile, x.lower, x.per_pivot, x.t, [](int32_t, const V &) HOL_FORCED {});
+                x.find_pulls(tile);
+                x.add_pulls(tile);
+            });
+        });
     }
     HOL_FORCED void find_rates(const Tile &tile) const {
         for (int64_t k = tile.first; k < tile.end; k += step) some(t, k) = sides_of(tile, k, rates);
-    }
-
-    // The lanes in `which`.
-    void write_bonds(double factor, double *out, unsigned which) const {
-        const V f = Width<V>::all(factor);
-        write_values<V>(s.bond_of, lane, out, which, 0, s.n_bonds,
-                        [&](int32_t k) HOL_FORCED { return mul_add(f, t[k], V{}); });
-    }
-    void write_tensions(double *out, unsigned which) const {
-        write_values<V>(s.bond_of, lane, out, which, 0, s.n_bonds,
-                        [&](int32_t k) HOL_FORCED { return mul_add(t[k], size[k], V{}); });
-    }
-    void write_atoms(const AtomArray &to, const Rows<V> &from, bool add, unsigned which) const {
-        write_vectors(to, at, s.place_of, s.n_atoms, from.slots(), Written<V>{which, nullptr, lane, add});
-    }
-    void add_virial(unsigned which, Tally &tally) const {
-        MoleculesVirial<V> virial;
-        for (int32_t i = 0; i < s.n_tiles; ++i)
-            for (int32_t k = s.tile[i].first; k < s.tile[i].end; ++k) {
-                const Vector3<V> bond = vector_of(d_of(s.tile[i])[k - s.tile[i].first]);
-                virial.add(bond, t[k] * bond);
-            }
-        virial.count(which, 1, tally);
     }
 };
 

@@ -13,16 +13,16 @@ namespace holonomic {
 // knows nothing of the others while it is worked on:
 // - its atoms are its own, those that no tile before it has, and guests, which are copies of others' atoms;
 // - its bonds are its own, and extra ones, which are copies of later bonds at the atoms of these;
-// - what it gives to columns and entries of later tiles it gives to *sides*, from which they fetch it.
+// - what it gives to columns and entries of later tiles it gives to *sides* of its own, from which they fetch it.
 // Numbers of atoms, bonds and masses count from the tile's first one. Arrays over bonds and entries are padded with
 // inert ones to multiples of four.
 struct FlatList {
     int32_t n_atoms, n_bonds;
-    int32_t n_sites;     // atoms of all tiles, guests too
-    int32_t n_rows;      // bonds of all tiles, extra ones too
-    int32_t n_columns;   // bonds, then sides
-    int32_t n_entries;   // then sides
-    int32_t most_sites;  // of a tile
+    int32_t n_sites;                              // atoms of all tiles, guests too
+    int32_t n_rows;                               // bonds of all tiles, extra ones too
+    int32_t n_columns;                            // bonds, then sides
+    int32_t n_entries;                            // then sides
+    int32_t most_sites, most_rows, most_columns;  // of a tile
 
     static constexpr int32_t columns_of_tile = 16384;
     struct Tile {
@@ -40,7 +40,13 @@ struct FlatList {
     };
     const Tile *tile;
     int32_t n_tiles;
-    int32_t tile_of(int32_t column) const { return column / columns_of_tile; }
+    // Tiles of a large molecule that need nothing of other branches, for one thread. What needs several is the *trunk*,
+    // the last tiles, which stand behind the branches as one more.
+    struct Branch {
+        int32_t first, end;
+    };
+    const Branch *branch;  // [n_branches + 1]
+    int32_t n_branches;    // 0: all is the trunk
 
     const int32_t *atom_of;   // [n_sites] local atom
     const int32_t *home;      // [n_sites] where it is its tile's own

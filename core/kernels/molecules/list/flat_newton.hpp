@@ -1,200 +1,40 @@
 // Newton's method for the positions of molecules along a list (flat_list.hpp): the matrix of new bonds D times
-// reference bonds b as it stands, L D U. Of one molecule (V = double) bonds and moves are found four at a time, the
-// triangular solves one by one; W molecules are in lanes. What can be done while a tile is in a cache is done together:
-// on the way up bonds, what is left of them and factors, on the way down corrections and displacements. Where there are
-// threads, they share the tiles in all that needs no order; the triangular solves are left to one. The digits are the
-// same.
+// reference bonds b as it stands, L D U. What can be done while a tile is in a cache is done together: on the way up
+// bonds, what is left of them and factors, on the way down corrections and displacements.
 #pragma once
 
-#include "core/kernels/molecules/list/flat_tiles.hpp"
-#include "core/kernels/molecules/scratch.hpp"
-#include "core/kernels/molecules/share_out.hpp"
+#include "core/kernels/molecules/list/flat_moves.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
-// The largest error of bonds.
-template <class V>
-struct FlatErrors {
-    Columns<V> worst, sum;  // max() may lose a NaN, the sum keeps it
-    void add(const FlatErrors &other) {
-        worst = larger(other.worst, worst);
-        sum = sum + other.sum;
-    }
-    V largest() const { return largest_of<V>(worst) + V{} * sum_of_columns<V>(sum); }
-};
-
-// What is found of a tile: also the largest coordinate, and the shortest and the longest bond.
-template <class V>
-struct FlatFound {
-    FlatErrors<V> errors;
-    RowOf<V> coordinate;
-    Columns<V> least, most;
-};
-
 // As Newton (newton.hpp) for iterate().
 template <class V>
-struct FlatNewton {
-    typedef RowOf<V> Row;
-    typedef FlatErrors<V> Errors;
-    static constexpr int step = at_once<V>;
-    const FlatList &s;
-    const LongTeam *const team;  // or nullptr
-    FlatFound<V> *found;         // [n_tiles]
-    V *mass;                     // -w_0, w_0, -w_1, .. , 0 of each tile
-    Rows<V> moves, D, b;         // of all tiles
-    Rows<V> new_D, r;            // of one tile
-    V *tau, *t, *r_pivot;        // t: what is left of a length, then its correction; 1 / pivot
-    V *lower, *upper, *a2, *per_a2;
-    V *stretch;       // |D| / a of the bonds that the factors were made of
+struct FlatNewton : FlatMoves<V> {
+    typedef FlatMoves<V> Moves;
+    using Moves::s, Moves::t, Moves::tau, Moves::D, Moves::b, Moves::mass, Moves::moved, Moves::some, Moves::step;
+    using typename Moves::Row;
+    V *r_pivot;  // 1 / pivot
+    V *lower, *upper;
     V *kept;          // what other lanes have, while factors are made for some
-    V opening;        // the error of the bonds as they came
-    bool displaced;   // `moves` are those of tau
-    bool moved;       // the bonds are not D any more
     bool eliminated;  // t has been taken up through the factors
 
-    static constexpr int64_t found_values = sizeof(FlatFound<V>) / sizeof(V);
     static int64_t kept_values(const FlatList &s) {
         return Width<V>::lanes == 1 ? 0 : 3 * in_fours(s.n_bonds) + 2 * in_fours(s.n_entries);
     }
     static int64_t values(const FlatList &s) {
-        return kept_values(s) + mass_values(s) + 8 * static_cast<int64_t>(s.n_sites) +
-               12 * static_cast<int64_t>(s.n_rows) + found_values * static_cast<int64_t>(s.n_tiles) +
-               4 * in_fours(s.n_bonds) + 2 * in_fours(s.n_columns) + 2 * in_fours(s.n_entries);
+        return Moves::values(s) + kept_values(s) + in_fours(s.n_columns) + 2 * in_fours(s.n_entries);
     }
     FlatNewton(const FlatList &list, const LongTeam *threads, Memory<V> &memory)
-        : s(list), team(list.n_tiles > 1 ? threads : nullptr), opening(), displaced(false), moved(false),
-          eliminated(false) {
-        const int64_t bonds = in_fours(s.n_bonds), columns = in_fours(s.n_columns), entries = in_fours(s.n_entries);
-        moves = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
-        D = {memory.values(4 * static_cast<int64_t>(s.n_rows))};
-        b = {memory.values(4 * static_cast<int64_t>(s.n_rows))};
-        new_D = {memory.values(4 * static_cast<int64_t>(s.n_rows))};
-        r = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
-        found = reinterpret_cast<FlatFound<V> *>(memory.values(found_values * static_cast<int64_t>(s.n_tiles)));
-        lower = memory.values(entries);
-        upper = memory.values(entries);
-        t = memory.values(columns);
-        r_pivot = memory.values(columns);
-        tau = memory.values(bonds);
-        a2 = memory.values(bonds);
-        per_a2 = memory.values(bonds);
-        stretch = memory.values(bonds);
-        mass = memory.values(mass_values(s));
+        : Moves(list, threads, memory), eliminated(false) {
+        lower = memory.values(in_fours(s.n_entries));
+        upper = memory.values(in_fours(s.n_entries));
+        r_pivot = memory.values(in_fours(s.n_columns));
         kept = memory.values(kept_values(s));
     }
 
-    HOL_FORCED Columns<V> &some(V *values, int64_t k) const { return *reinterpret_cast<Columns<V> *>(values + k); }
-
-    HOL_FORCED Rows<V> coordinates_of(const Tile &tile) const { return team ? r.from(tile.first_site) : r; }
-    HOL_FORCED Rows<V> new_bonds_of(const Tile &tile) const { return team ? new_D.from(tile.first_row) : new_D; }
-    V largest_error() const {
-        Errors all = {};
-        for (int32_t i = 0; i < s.n_tiles; ++i) all.add(found[i].errors);
-        return all.largest();
-    }
-
-    // D.D - a^2 of bonds k ..
-    HOL_FORCED Columns<V> excess_of(int64_t k, const Row (&d)[step]) const {
-        const Turned<V> at = turned(d);
-        return multiply_add(at.z, at.z, multiply_add(at.y, at.y, multiply_add(at.x, at.x, -some(a2, k))));
-    }
-    // What is left of their lengths. Not of their squares: a change of |D|, which is D/|D| . dD, is nearly what it was
-    // when the factors were made, as bonds are stretched more than they turn; that of D.D grows with |D|. So with the
-    // factors of D_0, of which row k is D_0 . dD, |D_0| (|D| - a). `fresh`: the factors will be those of this D.
-    template <bool fresh>
-    HOL_FORCED void measure(int64_t k, const Row (&d)[step], Errors &errors) const {
-        const auto all = [](double value) HOL_FORCED { return all_columns<V>(value); };
-        const Columns<V> sigma = excess_of(k, d), excess = sigma * some(per_a2, k);
-        errors.worst = larger(absolute(excess), errors.worst);
-        errors.sum = errors.sum + sigma;
-        if (fresh) {
-            const Columns<V> root = root_of(all(1) + excess);
-            some(stretch, k) = root;
-            some(t, k) = sigma * (root / (all(1) + root));
-        } else {  // 2 (sqrt(1 + e) - 1) / e
-            const Columns<V> e = smaller(larger(excess, all(-0.5)), all(0.5));
-            some(t, k) = (all(0.5) * some(stretch, k)) *
-                         (sigma * multiply_add(e, multiply_add(all(0.125), e, all(-0.25)), all(1)));
-        }
-    }
-    // What is left of a tile's bonds d.
-    template <bool fresh>
-    Errors measure_tile(const Tile &tile, const Rows<V> &d) const {
-        Errors errors = {};
-        for (int64_t k = tile.first; k < tile.end; k += step) {
-            Row one[step];
-            HOL_UNROLL
-            for (int i = 0; i < step; ++i) one[i] = d[k - tile.first + i];
-            measure<fresh>(k, one, errors);
-        }
-        return errors;
-    }
-
-    V open() const { return opening; }
-    void forget(MaskOf<V> which) {
-        if (!any(which)) return;
-        for (int64_t k = 0; k < in_fours(s.n_bonds); ++k) tau[k] = select(which, V{}, tau[k]);
-        displaced = false;
-    }
-
-    // Bond `row` of a tile as moved.
-    HOL_FORCED Row moved_bond(const Tile &tile, int64_t row) const {
-        const Rows<V> of = moves.from(tile.first_site);
-        return D[row] + (of.at_four_times(s.to[row]) - of.at_four_times(s.from[row]));
-    }
-    // |D.D - a^2| / a^2 of a bond as it is.
-    V error_of(int64_t k) const {
-        const Tile &tile = s.tile[s.tile_of(static_cast<int32_t>(k))];
-        const int64_t first = k / step * step, row = tile.first_row + first - tile.first;
-        Row d[step];
-        for (int i = 0; i < step; ++i) d[i] = moved ? moved_bond(tile, row + i) : D[row + i];
-        const Columns<V> excess = absolute(excess_of(first, d));
-        return reinterpret_cast<const V *>(&excess)[k - first] * per_a2[k];
-    }
-
-    // Displacements by the bonds of a tile, and of its atoms by all: times w only in the end.
-    HOL_FORCED void pull(const Tile &tile) const {
-        const Rows<V> of = moves.from(tile.first_site), bond = b.from(tile.first_row - tile.first);
-        const int32_t *const from = s.from + (tile.first_row - tile.first), *const to = s.to + (from - s.from);
-        for (int64_t i = 0; i < tile.end_site - tile.first_site; ++i) of[i] = Row{};
-        for (int64_t k = tile.first; k < tile.end; ++k) {
-            const Row one = in_row(tau[k]) * bond[k];
-            Row &head = of.at_four_times(from[k]), &tail = of.at_four_times(to[k]);
-            head = head + one;
-            tail = tail - one;
-        }
-    }
-    HOL_FORCED void weigh(const Tile &tile) const {
-        const Rows<V> of = moves.from(tile.first_site);
-        const V *const w = mass + tile.first_mass;
-        add_visits(s, tile, moves);
-        for (int64_t i = 0; i < tile.own_end - tile.first_site; ++i) of[i] = in_row(w[2 * i + 1]) * of[i];
-    }
-    __attribute__((noinline)) void displace() {
-        if (displaced) return;
-        displaced = true;
-        share_out(team, s.n_tiles, [&](int32_t i) { pull(s.tile[i]); });
-        share_out(team, s.n_tiles, [&](int32_t i) { weigh(s.tile[i]); });
-    }
-    // Bonds as moved, and what is left of them.
-    __attribute__((noinline)) V move() {
-        displace();
-        share_out(team, s.n_tiles, [&](int32_t i) { found[i].errors = move(s.tile[i]); });
+    V move() {
         eliminated = false;
-        moved = true;
-        return largest_error();
-    }
-    HOL_FORCED Errors move(const Tile &tile) const {
-        Errors errors = {};
-        copy_guests(s, tile, moves);
-        const int64_t shift = tile.first_row - tile.first;
-        for (int64_t k = tile.first; k < tile.end; k += step) {
-            Row d[step];
-            HOL_UNROLL
-            for (int i = 0; i < step; ++i) d[i] = moved_bond(tile, k + shift + i);
-            measure<false>(k, d, errors);
-        }
-        return errors;
+        return Moves::move();
     }
 
     // Factors for the bonds as they are; the first solve with them follows.
@@ -207,11 +47,11 @@ struct FlatNewton {
         V *const left = kept, *const factors = kept + s.n_bonds;
         for (int32_t k = 0; for_some && k < s.n_bonds; ++k) left[k] = t[k];
         if (for_some) for_factors([&](V &value, int64_t i) HOL_FORCED { factors[i] = value; });
-        make_factors([&](const Tile &tile) HOL_FORCED {
-            const Rows<V> d = moved ? new_bonds_of(tile) : D.from(tile.first_row);
+        make_factors([&](const Tile &tile, const Rows<V> &rows) HOL_FORCED {
+            const Rows<V> d = moved ? rows : D.from(tile.first_row);
             for (int64_t row = tile.first_row; moved && row < tile.end_row; ++row)
-                d[row - tile.first_row] = moved_bond(tile, row);
-            measure_tile<true>(tile, d);
+                d[row - tile.first_row] = this->moved_bond(tile, row);
+            this->template measure_tile<true>(tile, d);
             for (int32_t k = tile.first; for_some && k < tile.end; ++k) left[k] = select(which, t[k], left[k]);
             assemble(tile, d);
         });
@@ -225,7 +65,7 @@ struct FlatNewton {
     HOL_FORCED void for_factors(const Body &body) const {
         const int64_t bonds = s.n_bonds, entries = s.n_entries;
         for (int64_t k = 0; k < bonds; ++k) {
-            body(stretch[k], k);
+            body(this->stretch[k], k);
             body(r_pivot[k], bonds + k);
         }
         for (int64_t e = 0; e < entries; ++e) {
@@ -233,23 +73,21 @@ struct FlatNewton {
             body(upper[e], 2 * bonds + entries + e);
         }
     }
-    // start(tile) finds what the factors start from.
+    // start(tile, rows of the thread) finds what the factors start from.
     template <class Start>
     __attribute__((noinline)) void make_factors(const Start &start) {
         clear_sides(s, t);
         clear_sides(s, r_pivot);
         clear_entries(s, lower);
         clear_entries(s, upper);
-        if (team) share_out(team, s.n_tiles, [&](int32_t i) { start(s.tile[i]); });
-        for (int32_t i = 0; i < s.n_tiles; ++i) {
-            const Tile &tile = s.tile[i];
-            if (!team) start(tile);
+        this->up([&](const Tile &tile, const Rows<V> &rows) HOL_FORCED {
+            start(tile, rows);
             add_sides(s, tile, t);
             add_sides(s, tile, r_pivot);
             add_entries(s, tile, lower);
             add_entries(s, tile, upper);
             eliminate(tile);
-        }
+        });
         eliminated = true;
     }
     __attribute__((noinline)) void assemble(const Tile &tile, const Rows<V> &d) const {
@@ -302,21 +140,18 @@ struct FlatNewton {
     // Corrections for what is left, in t, added to tau, and what they displace.
     void take_up() const {
         clear_sides(s, t);
-        for (int32_t i = 0; i < s.n_tiles; ++i) solve_up(s, s.tile[i], lower, t);
+        this->up([&](const Tile &tile, const Rows<V> &) HOL_FORCED { solve_up(s, tile, lower, t); });
     }
     __attribute__((noinline)) void solve(MaskOf<V> active) {
         if (!eliminated) take_up();
         eliminated = false;
-        for (int32_t i = s.n_tiles; i-- > 0;) {
-            const Tile &tile = s.tile[i];
+        this->down([&](const Tile &tile) HOL_FORCED {
             solve_down(s, tile, upper, r_pivot, t,
                        [&](int32_t k, const V &x) HOL_FORCED { tau[k] = tau[k] + keep(active, x); });
-            if (team) continue;
-            pull(tile);
-            weigh(tile);
-        }
-        displaced = !team;
-        displace();
+            this->pull(tile);
+            this->weigh(tile);
+        });
+        this->displaced = true;
     }
 };
 

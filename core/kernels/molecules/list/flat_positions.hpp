@@ -30,25 +30,29 @@ struct FlatPositions {
 
     // Reads all tiles, and makes the factors that a solve without a guess begins with.
     __attribute__((noinline)) void load() {
-        const FlatList &s = newton.s;
         if (call.guess)
-            share_out(newton.team, s.n_tiles, [&](int32_t i) { load(s.tile[i]); });
+            newton.up([&](const Tile &tile, const Rows<V> &r) HOL_FORCED {
+                load(tile, r);
+                load_guess(tile);
+            });
         else
-            newton.make_factors([&](const Tile &tile) {
-                load(tile);
+            newton.make_factors([&](const Tile &tile, const Rows<V> &r) HOL_FORCED {
+                load(tile, r);
                 newton.assemble(tile, newton.D.from(tile.first_row));
             });
         newton.opening = newton.largest_error();
         find_extent();
-        const double factor = 2 * call.dt * call.dt;
-        for (int32_t k = 0; k < s.n_bonds && call.guess; ++k)
-            for (int i = 0; i < Width<V>::lanes; ++i)
-                Width<V>::set(newton.tau[k], i, factor * call.lambda[lane[i].first_bond + s.bond_of[k]]);
     }
-    void load(const Tile &tile) const {
+    void load_guess(const Tile &tile) const {
+        const double factor = 2 * call.dt * call.dt;
+        for (int32_t k = tile.first; k < tile.end; ++k)
+            for (int i = 0; i < Width<V>::lanes; ++i)
+                Width<V>::set(newton.tau[k], i, factor * call.lambda[lane[i].first_bond + newton.s.bond_of[k]]);
+    }
+    __attribute__((noinline)) void load(const Tile &tile, const Rows<V> &r) const {
         const FlatList &s = newton.s;
         FlatFound<V> &found = newton.found[&tile - s.tile];
-        const Rows<V> r = newton.coordinates_of(tile), ref = newton.moves.from(tile.first_site);
+        const Rows<V> ref = newton.moves.from(tile.first_site);
         found.coordinate = Row{};
         if constexpr (step == 4) {
             Row largest = {};
@@ -73,7 +77,7 @@ struct FlatPositions {
         find_bonds(s, tile, call.box_ref, ref, newton.b);
         find_bonds(s, tile, call.box, r, newton.D);
         if (!known) load_lengths(tile, found);
-        for (int64_t k = tile.first; k < tile.end; k += step) newton.some(newton.tau, k) = Columns<V>{};
+        for (int64_t k = tile.first; k < tile.end; k += step) newton.some(newton.tau, k) = Columns<V>{};  // inert, too
         found.errors = newton.template measure_tile<true>(tile, newton.D.from(tile.first_row));
     }
     void find_extent() {
@@ -116,22 +120,21 @@ struct FlatPositions {
     // the coordinates'.
     MaskOf<V> coarse_moves() const {
         const FlatList &s = newton.s;
-        V pull = {};
-        for (int32_t i = 0; i < s.n_tiles; ++i) {
-            const Tile &tile = s.tile[i];
+        newton.up([&](const Tile &tile, const Rows<V> &) HOL_FORCED {
             const V *const w = newton.mass + tile.first_mass;
             const int32_t *const from = s.from + (tile.first_row - tile.first), *const to = s.to + (from - s.from);
+            V pull = {};
             for (int32_t k = tile.first; k < tile.end; ++k)
                 pull = max(max(w[from[k] / 2 + 1], w[to[k] / 2 + 1]) * abs(newton.tau[k]), pull);
-        }
+            newton.found[&tile - s.tile].pull = pull;
+        });
+        V pull = {};
+        for (int32_t i = 0; i < s.n_tiles; ++i) pull = max(newton.found[i].pull, pull);
         return less(0.25 * (largest_coordinate + a_min), pull * a_max);
     }
 
     void write_atoms(unsigned which) const {
-        constexpr int32_t part = FlatList::columns_of_tile;
-        const int32_t n = newton.s.n_atoms;
-        share_out(newton.team, (n + part - 1) / part,
-                  [&](int32_t i) { write_atoms(which, i * part, i * part + part < n ? i * part + part : n); });
+        for_atoms(newton.s, newton.team, [&](int32_t first, int32_t end) { write_atoms(which, first, end); });
     }
     __attribute__((noinline)) void write_atoms(unsigned which, int32_t first, int32_t end) const {
         bool any_fixed = false;
@@ -143,20 +146,22 @@ struct FlatPositions {
 
     void write_multipliers(unsigned which) const {
         const V factor = Width<V>::all(0.5 / (call.dt * call.dt));
-        write_values<V>(newton.s.bond_of, lane, call.lambda, which, 0, newton.s.n_bonds,
-                        [&](int32_t k) HOL_FORCED { return mul_add(newton.tau[k], factor, V{}); });
+        newton.up([&](const Tile &tile, const Rows<V> &) HOL_FORCED {
+            write_values<V>(newton.s.bond_of, lane, call.lambda, which, tile.first, tile.end,
+                            [&](int32_t k) HOL_FORCED { return mul_add(newton.tau[k], factor, V{}); });
+        });
     }
 
     void add_virial(unsigned which) const {
-        MoleculesVirial<V> virial;
-        for (int32_t i = 0; i < newton.s.n_tiles; ++i) {
+        share_out(newton.team, newton.s.n_tiles, tally, [&](int32_t i, Tally &part) HOL_FORCED {
+            MoleculesVirial<V> virial;
             const Tile &tile = newton.s.tile[i];
             for (int32_t k = tile.first; k < tile.end; ++k) {
                 const Vector3<V> b = vector_of(newton.b[tile.first_row + (k - tile.first)]);
                 virial.add(b, newton.tau[k] * b);
             }
-        }
-        virial.count(which, 1 / (call.dt * call.dt), tally);
+            virial.count(which, 1 / (call.dt * call.dt), part);
+        });
     }
 
     // Returns the lanes that are in doubt; nothing of them has been written.
@@ -166,10 +171,15 @@ struct FlatPositions {
         const Limits<V> limits(call, largest_coordinate, a_min);
         const Solved<V> out = iterate<V, false, true>(newton, limits, call, in_use);
         const unsigned moved = bits(out.converged & ~coarse_moves()), good = moved | bits(out.untouched);
+        const Tile *tile = newton.s.tile;
         if (call.report)
             note_worst_bond(
-                newton.s, good, out.error, lane, [&](int32_t k) { return newton.error_of(k); },
-                [&](const auto &each) { each(0, newton.s.n_bonds); }, tally);
+                newton.s, good, out.error, lane, [&](int32_t k) { return newton.error_of(*tile, k); },
+                [&](const auto &each) {
+                    for (int32_t i = 0; i < newton.s.n_tiles; ++i, ++tile)
+                        if (any(~less(newton.found[i].errors.largest(), out.error))) each(tile->first, tile->end);
+                },
+                tally);
         if (call.lambda) write_multipliers(good);
         if (moved) {
             newton.displace();

@@ -30,8 +30,8 @@ struct FlatProof {
     static constexpr int32_t most_looks(int32_t columns) { return columns / 32 + 2; }
     int32_t missed[lanes == 1 ? most_looks(FlatList::columns_of_tile) : lanes * most_looks(largest_graph_in_lanes)];
     int32_t n_missed = 0, looks[lanes];
-    explicit FlatProof(const FlatLinear<V> &linear)
-        : x(linear), s(linear.s), in(linear.in), residual(linear), left(bits(linear.in_use())) {}
+    FlatProof(const FlatLinear<V> &linear, unsigned not_contradicted)
+        : x(linear), s(linear.s), in(linear.in), residual(linear), left(not_contradicted) {}
 
     // R of a column's bond beside what it may be, by all terms of the equation, in absolute values; of one lane.
     struct Bound {
@@ -132,36 +132,54 @@ struct FlatProof {
         look_at_missed(tile);
     }
     // At the others, in the end.
-    __attribute__((noinline)) void look_at_outer() {
-        for (int32_t i = 0; i < s.n_tiles; ++i) add_sides(s, s.tile[i], x.back);
-        for (int32_t i = 0; i < s.n_tiles && left; ++i) {
-            start_looking();
-            for (int32_t k = s.tile[i].first_outer; k < s.tile[i].end_outer; ++k)
-                if (!bound_of(s.tile[i], s.outer[k], 0).holds()) note_missed(s.tile[i], s.outer[k], left);
-            look_at_missed(s.tile[i]);
-        }
+    __attribute__((noinline)) void look_at_outer(const Tile &tile) {
+        add_sides(s, tile, x.back);
+        start_looking();
+        for (int32_t k = tile.first_outer; k < tile.end_outer && left; ++k)
+            if (!bound_of(tile, s.outer[k], 0).holds()) note_missed(tile, s.outer[k], left);
+        look_at_missed(tile);
     }
 
     // Reads the molecules and solves. Returns the lanes in which the proof holds; multipliers are found in all.
-    unsigned solve() {
-        clear_sides(s, x.t);
-        clear_sides(s, x.E);
-        clear_sides(s, x.back);
-        clear_entries(s, x.lower);
-        for (int32_t i = 0; i < s.n_tiles; ++i) {
-            x.load(s.tile[i]);
-            x.assemble(s.tile[i]);
-            x.eliminate(s.tile[i]);
-        }
-        for (int32_t i = s.n_tiles; i-- > 0;) {
-            x.substitute_back(s.tile[i]);
-            if (!left) continue;
-            x.find_pulls(s.tile[i]);
-            x.load_inputs_again(s.tile[i]);
-            x.add_pulls(s.tile[i]);
-            look_at(s.tile[i]);
-        }
-        if (left) look_at_outer();
+    static unsigned solve(const FlatLinear<V> &all) {
+        clear_sides(all.s, all.t);
+        clear_sides(all.s, all.E);
+        clear_sides(all.s, all.back);
+        clear_entries(all.s, all.lower);
+        all.up([](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
+            for_tiles_up(x.s, branch, [&](const Tile &tile) HOL_FORCED {
+                x.load(tile);
+                x.assemble(tile);
+                x.eliminate(tile);
+            });
+        });
+        // Where it fails in the trunk branches need not look; what they do is the same in any case.
+        unsigned *const trunk = all.left + all.s.n_branches;
+        *trunk = bits(all.in_use());
+        all.down([&](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
+            FlatProof proof(x, *trunk);
+            for_tiles_down(x.s, branch, [&](const Tile &tile) HOL_FORCED {
+                x.substitute_back(tile);
+                if (!proof.left) return;
+                x.find_pulls(tile);
+                x.load_inputs_again(tile);
+                x.add_pulls(tile);
+                proof.look_at(tile);
+            });
+            all.left[&branch - x.s.branch] = proof.left;
+        });
+        unsigned left = left_of_all(all);
+        if (!left) return 0;
+        all.up([&](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
+            FlatProof proof(x, left);
+            for_tiles_up(x.s, branch, [&](const Tile &tile) HOL_FORCED { proof.look_at_outer(tile); });
+            all.left[&branch - x.s.branch] = proof.left;
+        });
+        return left & left_of_all(all);
+    }
+    static unsigned left_of_all(const FlatLinear<V> &all) {
+        unsigned left = all.left[0];
+        for (int32_t b = 1; b <= all.s.n_branches; ++b) left &= all.left[b];
         return left;
     }
 };

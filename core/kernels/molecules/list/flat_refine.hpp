@@ -48,19 +48,35 @@ struct FlatRefine {
     explicit FlatRefine(const FlatLinear<V> &linear)
         : x(linear), s(linear.s), terms(linear.terms), solution(x.back), side(x.diagonal) {}
 
-    MaskOf<V> lanes_of_good_pivots() const {
-        MaskOf<V> good = x.in_use();
-        for (int32_t k = 0; k < s.n_bonds; ++k) good = good & less_equal(least_pivot * x.diagonal[k], x.E[k]);
-        return good;
+    // Calls body(this in a thread, tile) for all tiles, as FlatLinear does.
+    template <class Body>
+    HOL_FORCED void up(const Body &body) const {
+        x.up([&](const FlatLinear<V> &in_thread, const Branch &branch) HOL_FORCED {
+            const FlatRefine own(in_thread);
+            for_tiles_up(s, branch, [&](const Tile &tile) HOL_FORCED { body(own, tile); });
+        });
+    }
+    template <class Body>
+    HOL_FORCED void down(const Body &body) const {
+        x.down([&](const FlatLinear<V> &in_thread, const Branch &branch) HOL_FORCED {
+            const FlatRefine own(in_thread);
+            for_tiles_down(s, branch, [&](const Tile &tile) HOL_FORCED { body(own, tile); });
+        });
     }
 
-    template <class Body>
-    HOL_FORCED void for_tiles_up(const Body &body) const {
-        for (int32_t i = 0; i < s.n_tiles; ++i) body(s.tile[i]);
+    // The largest of value(this in a thread, tile) of all tiles; the lanes in which all of right(..) are.
+    template <class Value>
+    HOL_FORCED V largest(const Value &value) const {
+        up([&](const FlatRefine &own, const Tile &tile) HOL_FORCED { x.found[&tile - s.tile] = value(own, tile); });
+        V most = x.found[0];
+        for (int32_t i = 1; i < s.n_tiles; ++i) most = max(x.found[i], most);
+        return most;
     }
-    template <class Body>
-    HOL_FORCED void for_tiles_down(const Body &body) const {
-        for (int32_t i = s.n_tiles; i-- > 0;) body(s.tile[i]);
+    template <class Right>
+    HOL_FORCED MaskOf<V> lanes_where(const Right &right) const {
+        const V wrong = largest([&](const FlatRefine &own, const Tile &tile)
+                                    HOL_FORCED { return select(right(own, tile), V{}, Width<V>::all(1)); });
+        return x.in_use() & ~less(V{}, wrong);
     }
 
     // A tile's coordinates and velocities, and its bonds with their low words: of one tile these stay.
@@ -81,15 +97,16 @@ struct FlatRefine {
         if (s.n_tiles > 1) open(tile);
     }
 
-    // Inputs once more, and right-hand sides.
-    __attribute__((noinline)) void start() const {
-        for_tiles_up([&](const Tile &tile) {
-            open(tile);
-            x.load_inputs(tile, x.a_of(tile));
-            for (int64_t k = tile.first; k < tile.end; k += step) x.some(side, k) = x.sides_of(tile, k, terms);
-            x.add_given(tile, side);
-        });
-        for (int32_t k = 0; k < s.n_bonds; ++k) solution[k] = x.t[k];
+    // Inputs once more, and right-hand sides; the multipliers as they are.
+    void start() const {
+        up([](const FlatRefine &own, const Tile &tile) HOL_FORCED { own.start(tile); });
+    }
+    __attribute__((noinline)) void start(const Tile &tile) const {
+        open(tile);
+        x.load_inputs(tile, x.a_of(tile));
+        for (int64_t k = tile.first; k < tile.end; k += step) x.some(side, k) = x.sides_of(tile, k, terms);
+        x.add_given(tile, side);
+        for (int32_t k = tile.first; k < tile.end; ++k) solution[k] = x.t[k];
     }
 
     // Accelerations, or velocities, of a tile's own atoms; later tiles have been here. High words in pull.
@@ -167,57 +184,70 @@ struct FlatRefine {
 
     void solve() const {
         clear_sides(s, x.t);
-        for_tiles_down([&](const Tile &tile) {
-            open_again(tile);
-            pull_atoms(tile);
+        down([](const FlatRefine &own, const Tile &tile) HOL_FORCED {
+            own.open_again(tile);
+            own.pull_atoms(tile);
         });
-        for_tiles_up([&](const Tile &tile) {
-            open_again(tile);
-            find_residuals(tile);
-            solve_up(s, tile, x.lower, x.t);
+        up([](const FlatRefine &own, const Tile &tile) HOL_FORCED {
+            own.open_again(tile);
+            own.find_residuals(tile);
+            solve_up(own.s, tile, own.x.lower, own.x.t);
         });
-        for_tiles_down([&](const Tile &tile) {
-            solve_down(s, tile, x.lower, x.per_pivot, x.t, [](int32_t, const V &) HOL_FORCED {});
+        down([](const FlatRefine &own, const Tile &tile) HOL_FORCED {
+            solve_down(own.s, tile, own.x.lower, own.x.per_pivot, own.x.t, [](int32_t, const V &) HOL_FORCED {});
         });
     }
     V correct(MaskOf<V> active) const {
-        return add_corrections<V>(s.n_bonds, [&](int32_t k) HOL_FORCED {
+        const auto bond = [&](int32_t k) HOL_FORCED {
             return Correction<V>{keep(active, x.t[k]), side[k] * x.per_pivot[k], x.size[k] * x.size[k], solution[k]};
-        });
+        };
+        const V tension2 = largest([&](const FlatRefine &, const Tile &tile)
+                                       HOL_FORCED { return largest_tension2<V>(tile.first, tile.end, bond); });
+        return largest([&](const FlatRefine &, const Tile &tile)
+                           HOL_FORCED { return add_corrections<V>(tile.first, tile.end, tension2, bond); });
     }
-    // The lanes whose corrections are no more than what rounding does to right-hand sides: of velocities that are
-    // projected already, or in free fall.
-    MaskOf<V> lanes_of_rounded_sides() const {
+
+    // The lanes in which pivots of a tile are not too small.
+    MaskOf<V> good_pivots(const Tile &tile) const {
+        MaskOf<V> good = x.in_use();
+        for (int32_t k = tile.first; k < tile.end; ++k) good = good & less_equal(least_pivot * x.diagonal[k], x.E[k]);
+        return good;
+    }
+    // In which corrections are no more than what rounding does to right-hand sides: of velocities that are projected
+    // already, or in free fall.
+    MaskOf<V> rounded_sides(const Tile &tile) const {
         MaskOf<V> rounded = x.in_use();
-        for (int32_t i = 0; i < s.n_tiles && any(rounded); ++i) {
-            const Tile &tile = s.tile[i];
-            x.load_inputs_again(tile);
-            const Rows<V> a = x.a_of(tile);
-            for (int32_t k = tile.first; k < tile.end; ++k) {
-                const int32_t row = tile.first_row + (k - tile.first);
-                const Row terms_of_ends = absolute(a.at_four_times(s.from[row])) + absolute(a.at_four_times(s.to[row]));
-                const Vector3<V> all = vector_of(absolute(x.d[row]) * terms_of_ends);
-                rounded = rounded & less_equal(abs(x.t[k]), 4 * epsilon * ((all.x + all.y) + all.z) * x.per_pivot[k]);
-            }
+        x.load_inputs_again(tile);
+        const Rows<V> a = x.a_of(tile);
+        for (int32_t k = tile.first; k < tile.end; ++k) {
+            const int32_t row = tile.first_row + (k - tile.first);
+            const Row terms_of_ends = absolute(a.at_four_times(s.from[row])) + absolute(a.at_four_times(s.to[row]));
+            const Vector3<V> all = vector_of(absolute(x.d[row]) * terms_of_ends);
+            rounded = rounded & less_equal(abs(x.t[k]), 4 * epsilon * ((all.x + all.y) + all.z) * x.per_pivot[k]);
         }
         return rounded;
     }
-
-    // The lanes in which a multiplier is so small beside what pulls the atoms of its bond that it may be the rounding
-    // of the residual.
-    MaskOf<V> lanes_of_faint_bonds() const {
-        V least = Width<V>::all(1);
-        for (int32_t i = 0; i < s.n_tiles; ++i) {
-            const Tile &tile = s.tile[i];
-            const V *const w = x.mass + tile.first_mass;
-            for (int32_t k = tile.first; k < tile.end; ++k) {
-                const int32_t row = tile.first_row + (k - tile.first), from = s.from[row] / 4, to = s.to[row] / 4;
-                const V T = w[2 * from + 1] * more_of(x.pull[s.home[tile.first_site + from]]) +
-                            w[2 * to + 1] * more_of(x.pull[s.home[tile.first_site + to]]);
-                least = min(mul_add(abs(x.t[k]), x.E[k], -(faint_part * (x.size[k] * T))), least);
-            }
+    // In which corrections that are no numbers, which are not seen, have left none among the multipliers.
+    MaskOf<V> take_solution(const Tile &tile) const {
+        V sum = {};
+        for (int32_t k = tile.first; k < tile.end; ++k) {
+            x.t[k] = solution[k];
+            sum = sum + abs(solution[k]);
         }
-        return less(least, V{});
+        return finite(sum);
+    }
+    // In which no multiplier is so small beside what pulls the atoms of its bond that it may be the rounding of the
+    // residual.
+    MaskOf<V> no_faint_bonds(const Tile &tile) const {
+        const V *const w = x.mass + tile.first_mass;
+        V least = Width<V>::all(1);
+        for (int32_t k = tile.first; k < tile.end; ++k) {
+            const int32_t row = tile.first_row + (k - tile.first), from = s.from[row] / 4, to = s.to[row] / 4;
+            const V T = w[2 * from + 1] * more_of(x.pull[s.home[tile.first_site + from]]) +
+                        w[2 * to + 1] * more_of(x.pull[s.home[tile.first_site + to]]);
+            least = min(mul_add(abs(x.t[k]), x.E[k], -(faint_part * (x.size[k] * T))), least);
+        }
+        return ~less(least, V{});
     }
 
     // To the lanes that were not refined, the bonds that they would have had without the others.
@@ -236,25 +266,24 @@ struct FlatRefine {
 
     // Of the lanes that are not `proven`. Returns those that are right, with these.
     unsigned refine(unsigned proven) const {
-        const MaskOf<V> doubtful = lanes_of_good_pivots() & ~Width<V>::of_bits(proven);
+        const auto pivots = [](const FlatRefine &own, const Tile &tile) HOL_FORCED { return own.good_pivots(tile); };
+        const auto rounded = [](const FlatRefine &own, const Tile &tile) HOL_FORCED { return own.rounded_sides(tile); };
+        const auto taken = [](const FlatRefine &own, const Tile &tile) HOL_FORCED { return own.take_solution(tile); };
+        const auto faint = [](const FlatRefine &own, const Tile &tile) HOL_FORCED { return own.no_faint_bonds(tile); };
+        const MaskOf<V> doubtful = lanes_where(pivots) & ~Width<V>::of_bits(proven);
         if (!any(doubtful)) return proven;
         start();
         MaskOf<V> good = correct_until_right<V>(
             doubtful, [&]() HOL_FORCED { solve(); }, [&](MaskOf<V> active) HOL_FORCED { return correct(active); },
-            [&]() HOL_FORCED { return lanes_of_rounded_sides(); });
-        V sum = {};
-        for (int32_t k = 0; k < s.n_bonds; ++k) {
-            x.t[k] = solution[k];
-            sum = sum + abs(solution[k]);
-        }
-        good = good & finite(sum);  // corrections that are no numbers are not seen
+            [&]() HOL_FORCED { return lanes_where(rounded); });
+        good = good & lanes_where(taken);
         if (!(bits(good) | proven)) return 0;
         restore_bonds(Width<V>::of_bits(proven));
-        for_tiles_down([&](const Tile &tile) {
-            x.find_pulls(tile);
-            if (terms & rates) x.add_pulls(tile);  // nobody asks for accelerations any more
+        down([](const FlatRefine &own, const Tile &tile) HOL_FORCED {
+            own.x.find_pulls(tile);
+            if (own.terms & rates) own.x.add_pulls(tile);  // nobody asks for accelerations any more
         });
-        return (bits(good) & ~bits(lanes_of_faint_bonds())) | proven;
+        return bits(good & lanes_where(faint)) | proven;
     }
 };
 

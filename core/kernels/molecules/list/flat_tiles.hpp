@@ -5,6 +5,7 @@
 #include "core/kernels/molecules/list/flat_list.hpp"
 #include "core/kernels/molecules/list/flat_rows.hpp"
 #include "core/kernels/molecules/molecules.hpp"
+#include "core/kernels/molecules/share_out.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -12,6 +13,37 @@ namespace holonomic::HOL_ISA::graph {
 constexpr int32_t known_entries = 3;
 
 typedef FlatList::Tile Tile;
+typedef FlatList::Branch Branch;
+
+// Calls body(branch, memory of the thread) for all branches and the trunk, on the threads that there are; those above
+// last, or first. `own`: memory of this thread.
+template <class Body>
+HOL_INLINE void branches_up(const FlatList &s, const LongTeam *team, double *own, const Body &body) {
+    share_out(team, own, s.n_branches, [&](int32_t b, double *of_thread) HOL_FORCED { body(s.branch[b], of_thread); });
+    body(s.branch[s.n_branches], own);
+}
+template <class Body>
+HOL_INLINE void branches_down(const FlatList &s, const LongTeam *team, double *own, const Body &body) {
+    body(s.branch[s.n_branches], own);
+    share_out(team, own, s.n_branches, [&](int32_t b, double *of_thread) HOL_FORCED { body(s.branch[b], of_thread); });
+}
+// Calls body(tile) for those of a branch; body(first, end) for atoms, on the threads that there are.
+template <class Body>
+HOL_INLINE void for_tiles_up(const FlatList &s, const Branch &branch, const Body &body) {
+    for (int32_t i = branch.first; i < branch.end; ++i) body(s.tile[i]);
+}
+template <class Body>
+HOL_INLINE void for_tiles_down(const FlatList &s, const Branch &branch, const Body &body) {
+    for (int32_t i = branch.end; i-- > branch.first;) body(s.tile[i]);
+}
+template <class Body>
+HOL_INLINE void for_atoms(const FlatList &s, const LongTeam *team, const Body &body) {
+    constexpr int32_t part = 1024;
+    share_out(team, (s.n_atoms + part - 1) / part,
+              [&](int32_t i) { body(i * part, i * part + part < s.n_atoms ? i * part + part : s.n_atoms); });
+}
+// What is read of a molecule may be in no cache.
+HOL_INLINE bool is_from_memory(const FlatList &s) { return s.n_bonds > FlatList::columns_of_tile; }
 
 // Calls body(k, first, n) for all columns of a tile, up or down; first is that of their entries, n is a constant where
 // it is small.
@@ -123,7 +155,7 @@ HOL_INLINE void for_sites(const Atoms<double> &at, const FlatList &s, const Tile
                           const Body &body) {
     const int64_t *const list = at.list[0], first = at.first[0];
     const auto number = [&](int32_t i) HOL_FORCED { return list ? list[s.atom_of[i]] : first + s.atom_of[i]; };
-    const int32_t fetched_end = packed && s.n_tiles > 1 ? tile.end_site - rows_ahead : 0;  // else in a cache
+    const int32_t fetched_end = packed && is_from_memory(s) ? tile.end_site - rows_ahead : 0;  // else in a cache
     for (int32_t i = tile.first_site; i < tile.end_site; ++i) {
         if (i < fetched_end) {
             const int64_t element = 3 * number(i + rows_ahead);

@@ -4,6 +4,7 @@
 
 #include "core/kernels/molecules/list/flat_linear.hpp"
 #include "core/kernels/molecules/solve.hpp"
+#include "core/kernels/molecules/virial.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -14,20 +15,59 @@ struct FlatBlock {
     const MoleculeLane *lane;
     int used;
     bool packed, masses_known;
+    const LongTeam *team;
     Memory<V> &memory;
     FlatLinear<V> linear(const Box &box, const AtomArray &r, const Inputs &in, int terms) const {
-        return FlatLinear<V>(*schedule.flat, lane, used, packed, masses_known, box, r, in, terms, memory);
+        return FlatLinear<V>(*schedule.flat, lane, used, packed, masses_known, team, box, r, in, terms, memory);
     }
 };
+
+// Write value(column) of the bonds, and rows of the atoms, in the lanes of `which`.
+template <class V, class Value>
+HOL_INLINE void write_bonds(const FlatLinear<V> &x, double *out, unsigned which, const Value &value) {
+    x.up([&](const FlatLinear<V> &, const Branch &branch) HOL_FORCED {
+        for_tiles_up(x.s, branch, [&](const Tile &tile) HOL_FORCED {
+            write_values<V>(x.s.bond_of, x.lane, out, which, tile.first, tile.end, value);
+        });
+    });
+}
+template <class V>
+static inline void write_multipliers(const FlatLinear<V> &x, double *out, unsigned which) {
+    write_bonds(x, out, which, [&](int32_t k) HOL_FORCED { return mul_add(Width<V>::all(0.5), x.t[k], V{}); });
+}
+template <class V>
+static inline void write_tensions(const FlatLinear<V> &x, double *out, unsigned which) {
+    write_bonds(x, out, which, [&](int32_t k) HOL_FORCED { return mul_add(x.t[k], x.size[k], V{}); });
+}
+template <class V>
+static inline void write_atoms(const FlatLinear<V> &x, const AtomArray &to, const Rows<V> &from, bool add,
+                               unsigned which) {
+    for_atoms(x.s, x.team, [&](int32_t first, int32_t end) HOL_FORCED {
+        write_vectors(to, x.at.from(first), x.s.place_of + first, end - first, from.slots(),
+                      Written<V>{which, nullptr, x.lane, add, first});
+    });
+}
+template <class V>
+static inline void add_virial(const FlatLinear<V> &x, unsigned which, Tally &tally) {
+    share_out(x.team, x.s.n_tiles, tally, [&](int32_t i, Tally &part) HOL_FORCED {
+        const Tile &tile = x.s.tile[i];
+        MoleculesVirial<V> virial;
+        for (int32_t k = tile.first; k < tile.end; ++k) {
+            const Vector3<V> bond = vector_of(x.d_of(tile)[k - tile.first]);
+            virial.add(bond, x.t[k] * bond);
+        }
+        virial.count(which, 1, part);
+    });
+}
 
 // Call: of forces or of given right-hand sides.
 template <class V, class Call>
 static inline unsigned pull_flat(const Call &call, const FlatLinear<V> &x, Tally &tally) {
     const unsigned good = solve_and_refine(x);
-    if (good && call.lambda) x.write_bonds(0.5, call.lambda, good);
-    if (good && call.tension) x.write_tensions(call.tension, good);
-    if (good && call.virial) x.add_virial(good, tally);
-    if (good && call.g.x) x.write_atoms(call.g, x.pull, call.add, good);
+    if (good && call.lambda) write_multipliers(x, call.lambda, good);
+    if (good && call.tension) write_tensions(x, call.tension, good);
+    if (good && call.virial) add_virial(x, good, tally);
+    if (good && call.g.x) write_atoms(x, call.g, x.pull, call.add, good);
     return bits(x.in_use()) & ~good;
 }
 
@@ -50,10 +90,10 @@ static inline unsigned solve_flat(const VelocitiesCall &call, const FlatBlock<V>
     const FlatLinear<V> x = block.linear(call.box, call.r, in, rates);
     const unsigned good = solve_and_refine(x);
     if (!good) return bits(x.in_use());
-    if (call.lambda) x.write_bonds(0.5, call.lambda, good);
-    if (call.virial) x.add_virial(good, tally);
+    if (call.lambda) write_multipliers(x, call.lambda, good);
+    if (call.virial) add_virial(x, good, tally);
     if (!call.v.is_float) x.solve_again();
-    x.write_atoms(call.v, x.a, false, good);
+    write_atoms(x, call.v, x.a, false, good);
     return bits(x.in_use()) & ~good;
 }
 

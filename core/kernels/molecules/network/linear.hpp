@@ -164,10 +164,11 @@ struct NetLinear : NetEquations {
                 net.for_parts([&](const NetPart &part) { factor.take_down(part, t); });
             },
             [&](Flag) {
-                return add_corrections<double>(s.n_bonds, [&](int32_t k) {
-                    const Vector3<double> bond = d.get<double>(k);
-                    return Correction<double>{t[k], alone[k], dot(bond, bond), solution[k]};
-                });
+                const auto bond = [&](int32_t k) {
+                    const Vector3<double> one = d.get<double>(k);
+                    return Correction<double>{t[k], alone[k], dot(one, one), solution[k]};
+                };
+                return add_corrections(0, s.n_bonds, largest_tension2<double>(0, s.n_bonds, bond), bond);
             },
             [&]() { return Flag{false}; });
         if (!good.set) return false;

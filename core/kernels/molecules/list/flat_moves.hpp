@@ -1,0 +1,197 @@
+// The bonds of molecules along a list at the position level (flat_list.hpp), what is left of their lengths, and what
+// multipliers displace their atoms by. Of one molecule (V = double) bonds are found four at a time; W are in lanes.
+#pragma once
+
+#include "core/kernels/molecules/list/flat_tiles.hpp"
+#include "core/kernels/molecules/scratch.hpp"
+
+namespace holonomic::HOL_ISA::graph {
+
+// The largest error of bonds.
+template <class V>
+struct FlatErrors {
+    Columns<V> worst, sum;  // max() may lose a NaN, the sum keeps it
+    void add(const FlatErrors &other) {
+        worst = larger(other.worst, worst);
+        sum = sum + other.sum;
+    }
+    V largest() const { return largest_of<V>(worst) + V{} * sum_of_columns<V>(sum); }
+};
+
+// What is found of a tile: also the largest coordinate, the shortest and the longest bond, and the largest pull.
+template <class V>
+struct FlatFound {
+    FlatErrors<V> errors;
+    RowOf<V> coordinate;
+    Columns<V> least, most;
+    V pull;
+};
+
+template <class V>
+struct FlatMoves {
+    typedef RowOf<V> Row;
+    typedef FlatErrors<V> Errors;
+    static constexpr int step = at_once<V>;
+    const FlatList &s;
+    const LongTeam *const team;  // or nullptr
+    double *const own;           // memory of this thread, for rows of one tile: coordinates, then bonds as moved
+    FlatFound<V> *found;         // [n_tiles]
+    V *mass;                     // -w_0, w_0, -w_1, .. , 0 of each tile
+    Rows<V> moves, D, b;         // of all tiles
+    V *tau, *t;                  // t: what is left of a length, then its correction
+    V *a2, *per_a2;
+    V *stretch;      // |D| / a of the bonds that the factors were made of
+    V opening;       // the error of the bonds as they came
+    bool displaced;  // `moves` are those of tau
+    bool moved;      // the bonds are not D any more
+
+    static constexpr int64_t found_values = sizeof(FlatFound<V>) / sizeof(V);
+    static int64_t rows_of_tile(const FlatList &s) { return s.most_rows > s.most_sites ? s.most_rows : s.most_sites; }
+    static int64_t values(const FlatList &s) {
+        return mass_values(s) + 4 * (rows_of_tile(s) + s.n_sites) + 8 * static_cast<int64_t>(s.n_rows) +
+               found_values * static_cast<int64_t>(s.n_tiles) + 4 * in_fours(s.n_bonds) + in_fours(s.n_columns);
+    }
+    FlatMoves(const FlatList &list, const LongTeam *threads, Memory<V> &memory)
+        : s(list), team(list.n_branches > 0 ? threads : nullptr), own(memory.next), opening(), displaced(false),
+          moved(false) {
+        memory.values(4 * rows_of_tile(s));
+        moves = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
+        D = {memory.values(4 * static_cast<int64_t>(s.n_rows))};
+        b = {memory.values(4 * static_cast<int64_t>(s.n_rows))};
+        found = reinterpret_cast<FlatFound<V> *>(memory.values(found_values * static_cast<int64_t>(s.n_tiles)));
+        t = memory.values(in_fours(s.n_columns));
+        tau = memory.values(in_fours(s.n_bonds));
+        a2 = memory.values(in_fours(s.n_bonds));
+        per_a2 = memory.values(in_fours(s.n_bonds));
+        stretch = memory.values(in_fours(s.n_bonds));
+        mass = memory.values(mass_values(s));
+    }
+
+    HOL_FORCED Columns<V> &some(V *values, int64_t k) const { return *reinterpret_cast<Columns<V> *>(values + k); }
+
+    // Calls body(tile, rows of this thread) for all tiles, up or down the branches.
+    template <class Body>
+    HOL_FORCED void up(const Body &body) const {
+        branches_up(
+            s, team, own, [&](const Branch &branch, double *of_thread) __attribute__((noinline)) {
+                const Rows<V> rows = {reinterpret_cast<V *>(of_thread)};
+                for_tiles_up(s, branch, [&](const Tile &tile) HOL_FORCED { body(tile, rows); });
+            });
+    }
+    template <class Body>
+    HOL_FORCED void down(const Body &body) const {
+        branches_down(
+            s, team, own, [&](const Branch &branch, double *) __attribute__((noinline)) {
+                for_tiles_down(s, branch, [&](const Tile &tile) HOL_FORCED { body(tile); });
+            });
+    }
+    V largest_error() const {
+        Errors all = {};
+        for (int32_t i = 0; i < s.n_tiles; ++i) all.add(found[i].errors);
+        return all.largest();
+    }
+
+    // D.D - a^2 of bonds k ..
+    HOL_FORCED Columns<V> excess_of(int64_t k, const Row (&d)[step]) const {
+        const Turned<V> at = turned(d);
+        return multiply_add(at.z, at.z, multiply_add(at.y, at.y, multiply_add(at.x, at.x, -some(a2, k))));
+    }
+    // What is left of their lengths. Not of their squares: a change of |D|, which is D/|D| . dD, is nearly what it was
+    // when the factors were made, as bonds are stretched more than they turn; that of D.D grows with |D|. So with the
+    // factors of D_0, of which row k is D_0 . dD, |D_0| (|D| - a). `fresh`: the factors will be those of this D.
+    template <bool fresh>
+    HOL_FORCED void measure(int64_t k, const Row (&d)[step], Errors &errors) const {
+        const auto all = [](double value) HOL_FORCED { return all_columns<V>(value); };
+        const Columns<V> sigma = excess_of(k, d), excess = sigma * some(per_a2, k);
+        errors.worst = larger(absolute(excess), errors.worst);
+        errors.sum = errors.sum + sigma;
+        if (fresh) {
+            const Columns<V> root = root_of(all(1) + excess);
+            some(stretch, k) = root;
+            some(t, k) = sigma * (root / (all(1) + root));
+        } else {  // 2 (sqrt(1 + e) - 1) / e
+            const Columns<V> e = smaller(larger(excess, all(-0.5)), all(0.5));
+            some(t, k) = (all(0.5) * some(stretch, k)) *
+                         (sigma * multiply_add(e, multiply_add(all(0.125), e, all(-0.25)), all(1)));
+        }
+    }
+    // What is left of a tile's bonds d.
+    template <bool fresh>
+    Errors measure_tile(const Tile &tile, const Rows<V> &d) const {
+        Errors errors = {};
+        for (int64_t k = tile.first; k < tile.end; k += step) {
+            Row one[step];
+            HOL_UNROLL
+            for (int i = 0; i < step; ++i) one[i] = d[k - tile.first + i];
+            measure<fresh>(k, one, errors);
+        }
+        return errors;
+    }
+
+    V open() const { return opening; }
+    void forget(MaskOf<V> which) {
+        if (!any(which)) return;
+        for (int64_t k = 0; k < in_fours(s.n_bonds); ++k) tau[k] = select(which, V{}, tau[k]);
+        displaced = false;
+    }
+
+    // Bond `row` of a tile as moved.
+    HOL_FORCED Row moved_bond(const Tile &tile, int64_t row) const {
+        const Rows<V> of = moves.from(tile.first_site);
+        return D[row] + (of.at_four_times(s.to[row]) - of.at_four_times(s.from[row]));
+    }
+    // |D.D - a^2| / a^2 of a tile's bond as it is, in the digits of measure().
+    V error_of(const Tile &tile, int64_t k) const {
+        const int64_t row = tile.first_row + k - tile.first;
+        const Vector3<V> d = vector_of(moved ? moved_bond(tile, row) : D[row]);
+        return abs(mul_add(d.z, d.z, mul_add(d.y, d.y, mul_add(d.x, d.x, -a2[k]))) * per_a2[k]);
+    }
+
+    // Displacements by the bonds of a tile, and of its atoms by all: times w only in the end.
+    HOL_FORCED void pull(const Tile &tile) const {
+        const Rows<V> of = moves.from(tile.first_site), bond = b.from(tile.first_row - tile.first);
+        const int32_t *const from = s.from + (tile.first_row - tile.first), *const to = s.to + (from - s.from);
+        for (int64_t i = 0; i < tile.end_site - tile.first_site; ++i) of[i] = Row{};
+        for (int64_t k = tile.first; k < tile.end; ++k) {
+            const Row one = in_row(tau[k]) * bond[k];
+            Row &head = of.at_four_times(from[k]), &tail = of.at_four_times(to[k]);
+            head = head + one;
+            tail = tail - one;
+        }
+    }
+    HOL_FORCED void weigh(const Tile &tile) const {
+        const Rows<V> of = moves.from(tile.first_site);
+        const V *const w = mass + tile.first_mass;
+        add_visits(s, tile, moves);
+        for (int64_t i = 0; i < tile.own_end - tile.first_site; ++i) of[i] = in_row(w[2 * i + 1]) * of[i];
+    }
+    __attribute__((noinline)) void displace() {
+        if (displaced) return;
+        displaced = true;
+        down([&](const Tile &tile) {
+            pull(tile);
+            weigh(tile);
+        });
+    }
+    // Bonds as moved, and what is left of them.
+    __attribute__((noinline)) V move() {
+        displace();
+        up([&](const Tile &tile, const Rows<V> &) HOL_FORCED { found[&tile - s.tile].errors = move(tile); });
+        moved = true;
+        return largest_error();
+    }
+    HOL_FORCED Errors move(const Tile &tile) const {
+        Errors errors = {};
+        copy_guests(s, tile, moves);
+        const int64_t shift = tile.first_row - tile.first;
+        for (int64_t k = tile.first; k < tile.end; k += step) {
+            Row d[step];
+            HOL_UNROLL
+            for (int i = 0; i < step; ++i) d[i] = moved_bond(tile, k + shift + i);
+            measure<false>(k, d, errors);
+        }
+        return errors;
+    }
+};
+
+}  // namespace holonomic::HOL_ISA::graph
