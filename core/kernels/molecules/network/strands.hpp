@@ -209,7 +209,6 @@ struct StrandPulls {
         of_bond = load_any<V>(t + place) * d.get<V>(place);
         return of_bond - last;
     }
-    HOL_FORCED V tension() const { return sqrt(dot(of_bond, of_bond)); }
     // Calls each(site, pull) for all of these atoms.
     template <class Each>
     HOL_FORCED void for_sites(const NetStrands &g, const Each &each) {
