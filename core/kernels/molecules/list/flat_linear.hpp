@@ -237,6 +237,16 @@ struct FlatLinear {
             of[i] = multiply_add(in_row(w[2 * i + 1]), g[i], of[i]);
         }
     }
+    // For multipliers that have been changed since.
+    void find_pulls_again() const {
+        for (int32_t i = s.n_tiles; i-- > 0;) {
+            const Tile &tile = s.tile[i];
+            find_pulls(tile);
+            if (!(terms & rates)) continue;  // nobody asks for accelerations any more
+            load_inputs(tile, a_of(tile));
+            add_pulls(tile);
+        }
+    }
 
     // Once more for velocities, for the rates of the bonds as they are, d.(v_j - v_i).
     void solve_again() const {

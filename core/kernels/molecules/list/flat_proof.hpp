@@ -4,7 +4,8 @@
 //     R = |L| D |L^T| |t| + sum over both ends i of w_i |d| sum over the bonds of i of |t| |d|
 //
 // (elimination and substitutions; the products d.d' and w). Where R is no more than the terms that an equation is made
-// of, all errors are of the size of its scale |A^-1| S. Elsewhere, or where a pivot is small,
+// of, all errors are of the size of its scale |A^-1| S. Where it is more at a few bonds, their equations are looked at
+// in twice the precision, and what is left of these alone is solved for. Elsewhere, or where a pivot is small,
 // flat_refine.hpp corrects, or the careful solver.
 #pragma once
 
@@ -13,8 +14,9 @@
 
 namespace holonomic::HOL_ISA::graph {
 
-// What is left of an equation is most often less than a third of the roundings of R.
-constexpr double often_less = 3;
+// What is left of an equation is most often less than a third of the roundings of R, and where it is not it can be
+// solved for. Where R is beyond this, refinement is needed most often.
+constexpr double most_beyond = 30;
 
 template <class V>
 struct FlatProof {
@@ -30,8 +32,19 @@ struct FlatProof {
     static constexpr int32_t most_looks(int32_t columns) { return columns / 32 + 2; }
     int32_t missed[lanes == 1 ? most_looks(FlatList::columns_of_tile) : lanes * most_looks(largest_graph_in_lanes)];
     int32_t n_missed = 0, looks[lanes];
+    // Equations that are left with more than they may, in the memory of refinement.
+    struct Doubt {
+        double left;
+        int32_t column, lane;
+    };
+    Doubt *const doubt;
+    const int64_t most_doubts;
+    int64_t n_doubts = 0;
+    V furthest;  // the largest R over what it may be
     explicit FlatProof(const FlatLinear<V> &linear)
-        : x(linear), s(linear.s), in(linear.in), residual(linear), left(bits(linear.in_use())) {}
+        : x(linear), s(linear.s), in(linear.in), residual(linear), left(bits(linear.in_use())),
+          doubt(reinterpret_cast<Doubt *>(x.a_low.start)),
+          most_doubts(static_cast<int64_t>(4 * sizeof(V) / sizeof(Doubt)) * s.n_sites), furthest(Width<V>::all(1)) {}
 
     // R of a column's bond beside what it may be, by all terms of the equation, in absolute values; of one lane.
     struct Bound {
@@ -79,7 +92,8 @@ struct FlatProof {
             if (looks[lane]++ < most_looks(tile.end - tile.first)) {
                 const Bound bound = bound_of(tile, k, lane);
                 if (bound.holds()) continue;
-                if (bound.R <= often_less * bound.most) {
+                if (bound.R <= most_beyond * bound.most) {
+                    Width<V>::set(furthest, lane, max(bound.R / bound.most, Width<V>::get(furthest, lane)));
                     missed[n_missed++] = k * lanes + lane;
                     continue;
                 }
@@ -87,14 +101,36 @@ struct FlatProof {
             left &= ~(1u << lane);
         }
     }
-    // Whether what is left of their equations is little enough.
+    // Keeps those of which more is left than may be.
     void look_at_missed(const Tile &tile) {
         for (; n_missed > 0; --n_missed) {
             const int32_t k = missed[n_missed - 1] / lanes;
             const int lane = missed[n_missed - 1] % lanes;
-            if ((left >> lane & 1) && !(abs(residual.of(tile, k, lane)) <= epsilon * bound_of(tile, k, lane).most))
+            if (!(left >> lane & 1)) continue;
+            const double of_bond = residual.of(tile, k, lane);
+            if (abs(of_bond) <= epsilon * bound_of(tile, k, lane).most) continue;
+            if (abs(of_bond) < 1e300 && n_doubts < most_doubts)
+                doubt[n_doubts++] = {of_bond, k, lane};
+            else
                 left &= ~(1u << lane);
         }
+    }
+    // Solves for what is left of equations in doubt alone. The bound is the same with the changes in place of
+    // multipliers, so it is no more than the part of R that each change is of its multiplier: theory (55b).
+    __attribute__((noinline)) void correct() {
+        V *const change = x.back;
+        for (int64_t k = 0; k < in_fours(s.n_columns); ++k) change[k] = V{};
+        for (int64_t i = 0; i < n_doubts; ++i)
+            if (left >> doubt[i].lane & 1) Width<V>::set(change[doubt[i].column], doubt[i].lane, doubt[i].left);
+        for (int32_t i = 0; i < s.n_tiles; ++i) solve_up(s, s.tile[i], x.lower, change);
+        MaskOf<V> small = Width<V>::of_bits(left);
+        for (int32_t i = s.n_tiles; i-- > 0;)
+            solve_down(s, s.tile[i], x.lower, x.per_pivot, change, [&](int32_t k, const V &of_bond) HOL_FORCED {
+                small = small & less_equal(8 * furthest * abs(of_bond), abs(x.t[k]));
+            });
+        for (int32_t k = 0; k < s.n_bonds; ++k) x.t[k] = x.t[k] + keep(small, change[k]);
+        x.find_pulls_again();
+        left = bits(small);
     }
     // Of a tile, but for the bonds of which not all is known yet. A part of the terms does for most.
     __attribute__((noinline)) void look_at(const Tile &tile) {
@@ -162,6 +198,7 @@ struct FlatProof {
             look_at(s.tile[i]);
         }
         if (left) look_at_outer();
+        if (left && n_doubts > 0) correct();
         return left;
     }
 };

@@ -250,10 +250,7 @@ struct FlatRefine {
         good = good & finite(sum);  // corrections that are no numbers are not seen
         if (!(bits(good) | proven)) return 0;
         restore_bonds(Width<V>::of_bits(proven));
-        for_tiles_down([&](const Tile &tile) {
-            x.find_pulls(tile);
-            if (terms & rates) x.add_pulls(tile);  // nobody asks for accelerations any more
-        });
+        x.find_pulls_again();
         return (bits(good) & ~bits(lanes_of_faint_bonds())) | proven;
     }
 };
