@@ -1,10 +1,10 @@
-// The paths and knots of a large molecule (core/kernels/molecules/paths/paths.hpp).
+// The paths and knots of a large molecule (core/kernels/molecules/paths/path_plan.hpp).
 #pragma once
 
 #include <memory>
 #include <vector>
 
-#include "core/kernels/molecules/paths/paths.hpp"
+#include "core/kernels/molecules/paths/path_plan.hpp"
 #include "core/kernels/molecules/schedule.hpp"
 #include "core/molecules/lists.hpp"
 

@@ -19,7 +19,7 @@ bool are_flat(std::int64_t n, const double *squares);
 
 // Whether three or four atoms that can move, each bonded to all others, are on a line or in a plane, by their lengths,
 // or a ring is held in a plane.
-bool has_flat_clique(const holonomic::Shape &shape, const double *w, const double *lengths);
+bool has_dependent_lengths(const holonomic::Shape &shape, const double *w, const double *lengths);
 
 struct Cliques {
     std::vector<std::int64_t> sizes, atoms;  // of the bodies; atoms counted as the list counts them

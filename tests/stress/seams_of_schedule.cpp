@@ -3,7 +3,7 @@
 #include <cstdlib>
 
 #include "core/kernels/molecules/list/flat_list.hpp"
-#include "core/kernels/molecules/paths/paths.hpp"
+#include "core/kernels/molecules/paths/path_plan.hpp"
 #include "core/molecules/schedule.hpp"
 #include "cuts.hpp"
 #include "seam_molecule.hpp"

@@ -1,6 +1,6 @@
 // The careful solver does one molecule of any shape by itself, in twice the precision. It is right whatever the
-// conditioning is: it notes what cancels (loss.hpp), and where that is too much, `fourfold`, the same code compiled
-// once for numbers of four times the precision, does the molecule again.
+// conditioning is: it notes what cancels (digits_lost.hpp), and where that is too much, `fourfold`, the same code
+// compiled once for numbers of four times the precision, does the molecule again.
 //
 // Each function reads the molecule's atoms in any layout and box, solves, writes the outputs of the call and adds to
 // the tally. It notes a bad molecule in the tally and writes nothing of it. `scratch` has careful_scratch_bytes() less

@@ -2,7 +2,7 @@
 // the order of the plan. It is not symmetric with D on the left and B on the right (theory (58)).
 #pragma once
 
-#include "core/kernels/careful/loss.hpp"
+#include "core/kernels/careful/digits_lost.hpp"
 #include "core/kernels/careful/molecule.hpp"
 
 namespace holonomic::HOL_ISA::careful {

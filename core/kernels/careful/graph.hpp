@@ -12,7 +12,7 @@ namespace holonomic::HOL_ISA::careful {
 struct Graph {
     const Wide3 *D, *B;  // [n_bonds], the same if symmetric
     Wide *up;            // [n_bonds] inverse mass that the far side of a hanging bond offers
-    double *loss;        // [n_bonds] and what it has lost (loss.hpp)
+    double *loss;        // [n_bonds] and what it has lost (digits_lost.hpp)
     Wide *pivot;         // [n_bonds] pivot of a hanging bond when S over its siblings has been eliminated
     Wide *L;             // multipliers of the children of atom i, a row for each arm e (without e, if it is a child)
     Wide *y;             // [n_bonds] right-hand sides as a solve passes them on

@@ -7,7 +7,7 @@
 // in every set.
 #pragma once
 
-#include "core/kernels/careful/loss.hpp"
+#include "core/kernels/careful/digits_lost.hpp"
 
 namespace holonomic::HOL_ISA::careful {
 

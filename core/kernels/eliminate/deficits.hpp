@@ -5,7 +5,7 @@
 #pragma once
 
 #include "core/kernels/arithmetic/log_sum.hpp"
-#include "core/kernels/eliminate/measure_fours.hpp"
+#include "core/kernels/eliminate/measure_one_lane.hpp"
 #include "core/kernels/memory/arena.hpp"
 #include "core/kernels/memory/block.hpp"
 

@@ -2,7 +2,7 @@
 #include "core/kernels/memory/load.hpp"
 
 #include "core/kernels/arithmetic/image.hpp"
-#include "core/kernels/memory/load_fours.hpp"
+#include "core/kernels/memory/load_one_lane.hpp"
 #include "core/kernels/memory/padded_rows.hpp"
 #include "core/kernels/memory/prefetch.hpp"
 

@@ -5,6 +5,7 @@
 #include "core/kernels/molecules/armed_tree/armed_tree.hpp"
 #include "core/kernels/molecules/doubtful.hpp"
 #include "core/kernels/molecules/list/flat_verbs.hpp"
+#include "core/kernels/molecules/next.hpp"
 #include "core/kernels/molecules/solve.hpp"
 
 namespace holonomic::HOL_ISA::graph {
@@ -49,8 +50,8 @@ HOL_INLINE void advance(const MoleculeUnit &unit, MoleculeLane *lane) {
 
 // Calls work.template block<V>(lane, used, masses are known, scratch) for all blocks.
 template <class Work>
-static inline void for_each_block(const MoleculeUnit &unit, double *scratch, Work &work) {
-    MoleculeLane lane[W];  // those without a molecule repeat the first one
+static inline void for_each_block(const MoleculeUnit &unit, double *scratch, NextMolecules &ahead, Work &work) {
+    MoleculeLane lane[W], next[W];  // those without a molecule repeat the first one
     KnownMasses<vec> known;
     KnownMasses<double> known_one;
     bool full = false;  // the block before was, and lanes follow each other
@@ -63,10 +64,17 @@ static inline void for_each_block(const MoleculeUnit &unit, double *scratch, Wor
             advance(unit, lane);
         else
             for (int i = 0; i < W; ++i) lane[i] = molecule_of(unit, first + (i < used ? i : 0));
+        if (small && unit.large && left > W) {
+            const int n = left - W < W ? static_cast<int>(left - W) : W;
+            for (int i = 0; i < n; ++i) next[i] = molecule_of(unit, first + W + i);
+            ahead.are(next, n, unit.schedule->n_atoms);
+        }
+        ahead.fetch();
         if (used > 1)
             work.template block<vec>(lane, used, (full && used == W) || known.same(lane, used), scratch);
         else
             work.template block<double>(lane, 1, known_one.same(lane, 1), scratch);
+        ahead.fetch_the_rest();
         full = unit.regular && used == W;
         first += used;
     }
@@ -81,6 +89,7 @@ struct LinearWork {
     const bool packed;
     Tally &tally;
     const LongTeam *team;
+    NextMolecules &ahead;
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool masses_known, double *scratch) const {
@@ -94,7 +103,7 @@ struct LinearWork {
             return;
         }
         Linear<V> z(schedule, lane, used, packed, call.box, call.r, memory);
-        const unsigned rest = solve_block(call, z, masses_known, tally);
+        const unsigned rest = solve_block(call, z, masses_known, ahead, tally);
         if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, z.x.lane, rest, memory.next, tally);
     }
 };

@@ -34,9 +34,12 @@ static inline int open_sides(const SolveCall &call, Linear<V> &z) {
 
 // Solves a block and writes: Call is ForcesCall or SolveCall.
 template <class Call, class V>
-static inline unsigned solve_block(const Call &call, Linear<V> &z, bool masses_known, Tally &tally) {
+static inline unsigned solve_block(const Call &call, Linear<V> &z, bool masses_known, NextMolecules &ahead,
+                                   Tally &tally) {
     const unsigned good = load_and_solve(z, open_sides(call, z), masses_known);
+    ahead.fetch();
     write_outputs(z, {&call.g, call.lambda, call.tension, call.add, call.virial}, good, tally);
+    ahead.fetch();
     return bits(z.x.in_use()) & ~good;
 }
 

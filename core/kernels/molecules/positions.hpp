@@ -161,8 +161,9 @@ struct PositionsBlock {
     }
 
     // Returns the lanes that need careful arithmetic; nothing of them has been written.
-    unsigned solve(MaskOf<V> in_use) {
+    unsigned solve(MaskOf<V> in_use, NextMolecules &ahead) {
         const Solved<V> out = find(in_use);
+        ahead.fetch();
         const MaskOf<V> coarse = out.converged & coarse_moves();
         const unsigned moved = bits(out.converged & ~coarse), good = moved | bits(out.untouched);
         if (call.report) note_worst(good, out.error);
@@ -180,6 +181,7 @@ struct PositionsWork {
     const bool packed;
     Tally &tally;
     const LongTeam *team;
+    NextMolecules &ahead;
 
     template <class V>
     void block(const MoleculeLane *lane, int used, bool known, double *scratch) const {
@@ -204,7 +206,7 @@ struct PositionsWork {
         if (!known) newton.set_masses(lane);
         PositionsBlock<System> block = {call, schedule, lane, at, newton, tally, V{}, V{}, V{}};
         block.set_lengths(known);
-        const unsigned rest = block.solve(Width<V>::first(used));
+        const unsigned rest = block.solve(Width<V>::first(used), ahead);
         if (__builtin_expect(rest != 0, 0)) solve_doubtful(call, schedule, lane, rest, memory.next, tally);
     }
 };

@@ -25,7 +25,7 @@ constexpr int32_t most_decomposed = 7;
 static constexpr int32_t values_of_joint(int32_t k) { return k > most_decomposed ? 9 + 3 * k : k * (k - 1) / 2; }
 
 struct FlatList;     // core/kernels/molecules/list/flat_list.hpp
-struct PathPlan;     // core/kernels/molecules/paths/paths.hpp
+struct PathPlan;     // core/kernels/molecules/paths/path_plan.hpp
 struct NetworkPlan;  // core/kernels/molecules/network/network_plan.hpp
 
 // Atoms and bonds are renumbered. The *slot* of an atom: first the atoms of the trees, each after its children, then

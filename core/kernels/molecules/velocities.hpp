@@ -18,9 +18,11 @@ struct Projected {
 
 // Solves a block and writes.
 template <class V>
-static inline unsigned solve_block(const VelocitiesCall &call, Linear<V> &z, bool masses_known, Tally &tally) {
+static inline unsigned solve_block(const VelocitiesCall &call, Linear<V> &z, bool masses_known, NextMolecules &ahead,
+                                   Tally &tally) {
     z.x.in = {&call.v, nullptr, nullptr, true, call.strain};
     const unsigned good = load_and_solve(z, rates, masses_known);
+    ahead.fetch();
     if (!good) return bits(z.x.in_use());
     if (call.lambda) write_bonds<false>(z.x, 0.5, call.lambda, good);
     if (call.virial) add_pulls_to_virial(z.x, good, tally);

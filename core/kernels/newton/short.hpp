@@ -45,8 +45,8 @@ HOL_INLINE Outcome solve_single_bonds(const Newton &x, Carried &carried, mask wa
     return out;
 }
 
-// Two bonds: Newton's method for the multipliers alone, as molecules/small/multipliers.hpp has it for triangles and
-// stars. The lengths are right where
+// Two bonds: Newton's method for the multipliers alone, as molecules/small/newton_of_multipliers.hpp has it for
+// triangles and stars. The lengths are right where
 //     2 M tau = sigma + q(tau),   sigma_k = D_k.D_k - a_k^2,   q_k = |P_k|^2,
 //     P_0 = - (w_0 + w_1) tau_0 b_0 + w_1 tau_1 b_1,   P_1 = - (w_1 + w_2) tau_1 b_1 + w_1 tau_0 b_0:
 // nothing but products of bond vectors is needed to get there.

@@ -25,8 +25,9 @@ void molecules_forces(const ForcesCall &call, const MoleculeUnit &unit, double *
         solve_triangles(TriangleLinearVerb(triangles, &call, nullptr, tally), unit, packed, scratch);
         return;
     }
-    const LinearWork<ForcesCall> work = {call, *unit.schedule, packed, tally, unit.team};
-    if (!do_stars<3>(StarForcesVerb{call, tally}, work, unit, scratch)) for_each_block(unit, scratch, work);
+    NextMolecules ahead({&call.r, &call.v, &call.f, &call.g}, call.lambda);
+    const LinearWork<ForcesCall> work = {call, *unit.schedule, packed, tally, unit.team, ahead};
+    if (!do_stars<3>(StarForcesVerb{call, tally}, work, unit, scratch)) for_each_block(unit, scratch, ahead, work);
 }
 
 void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
@@ -40,8 +41,9 @@ void molecules_solve(const SolveCall &call, const MoleculeUnit &unit, double *sc
         solve_triangles(TriangleLinearVerb(triangles, nullptr, &call, tally), unit, packed, scratch);
         return;
     }
-    const LinearWork<SolveCall> work = {call, *unit.schedule, packed, tally, unit.team};
-    for_each_block(unit, scratch, work);
+    NextMolecules ahead({&call.r, &call.g}, call.lambda);
+    const LinearWork<SolveCall> work = {call, *unit.schedule, packed, tally, unit.team, ahead};
+    for_each_block(unit, scratch, ahead, work);
 }
 
 }  // namespace holonomic::HOL_ISA

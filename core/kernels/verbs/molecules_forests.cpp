@@ -4,6 +4,7 @@
 #include "core/kernels/molecules/forest/one_tree.hpp"
 #include "core/kernels/molecules/forest/one_tree_positions.hpp"
 #include "core/kernels/molecules/forest/open_forest.hpp"
+#include "core/kernels/molecules/next.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -19,26 +20,9 @@ int64_t forest_scratch_bytes(const Forest &f) {
            OneTreeNewton::bytes(f) + 64 + careful + open_bytes(f);
 }
 
-// Starts to fetch the atoms of a forest: trees that are worked on one after the other are not so in memory.
-HOL_NOINLINE void fetch(const Forest &f, const MoleculeLane *lane, const AtomArray *const *arrays, int n_arrays) {
-    const auto lines = [](const void *first, int64_t bytes) {
-        for (int64_t i = 0; i < bytes; i += 64) __builtin_prefetch(static_cast<const char *>(first) + i, 0, 2);
-    };
-    for (int l = 0; l < f.n_trees; ++l) {
-        lines(lane[l].w, 8 * f.most_atoms);
-        for (int a = 0; a < n_arrays && !lane[l].atoms; ++a)
-            lines(arrays[a]->x + 24 * lane[l].first_atom, 24 * f.most_atoms);
-    }
-}
-
-// Calls work(forest, lanes, memory) for all forests of a unit. The arrays are fetched ahead where they are packed.
-template <int n, class Work>
-static inline void for_each_forest(const MoleculeUnit &unit, const AtomArray *const (&arrays)[n], double *scratch,
-                                   const Work &work) {
-    const AtomArray *fetched[n];
-    int n_fetched = 0;
-    for (int a = 0; a < n; ++a)
-        if (unit.large && arrays[a]->x && arrays[a]->packed) fetched[n_fetched++] = arrays[a];
+// Calls work(forest, lanes, memory) for all forests of a unit.
+template <class Work>
+static inline void for_each_forest(const MoleculeUnit &unit, double *scratch, NextMolecules &ahead, const Work &work) {
     const MoleculeLane *next = unit.lanes;
     for (int64_t i = 0; i < unit.n_forests; ++i) {
         double *left = scratch;
@@ -46,8 +30,11 @@ static inline void for_each_forest(const MoleculeUnit &unit, const AtomArray *co
         MoleculeLane lane[W];
         for (int l = 0; l < W; ++l) lane[l] = next[l < f.n_trees ? l : 0];
         next += f.n_trees;
-        if (i + 1 < unit.n_forests && n_fetched > 0) fetch(unit.forests[i + 1], next, fetched, n_fetched);
+        if (unit.large && i + 1 < unit.n_forests)
+            ahead.are(next, unit.forests[i + 1].n_trees, unit.forests[i + 1].most_atoms);
+        ahead.fetch();
         work(f, lane, Memory<vec>{left});
+        ahead.fetch_the_rest();
     }
 }
 
@@ -69,7 +56,7 @@ static inline void write_forest(const ForestLinear &z, const ForestTrees::Range 
 // Forests, or one large tree, of forces or for given right-hand sides.
 template <class Call>
 static inline void solve_forest(const Call &call, const MoleculeUnit &unit, const Forest &f, const MoleculeLane *lane,
-                                ForestLinear &z, Memory<vec> &memory, Tally &tally) {
+                                ForestLinear &z, Memory<vec> &memory, NextMolecules &ahead, Tally &tally) {
     unsigned good;
     if (f.n_pieces > 0) {
         const OneTree tree(z, unit.team, memory);
@@ -78,7 +65,9 @@ static inline void solve_forest(const Call &call, const MoleculeUnit &unit, cons
         if (good && call.virial) tree.add_virial(tally);
     } else {
         z.load(z.all());
+        ahead.fetch();
         good = z.solve();
+        ahead.fetch();
         write_forest(z, z.all(), call, good);
         if (call.virial) z.add_virial(good, tally);
     }
@@ -88,27 +77,27 @@ static inline void solve_forest(const Call &call, const MoleculeUnit &unit, cons
 void forests_forces(const ForcesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const bool packed =
         call.r.packed && (!call.v.x || call.v.packed) && (!call.f.x || call.f.packed) && (!call.g.x || call.g.packed);
-    const AtomArray *const arrays[] = {&call.r, &call.v, &call.f, &call.g};
-    for_each_forest(unit, arrays, scratch, [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory) {
+    NextMolecules ahead({&call.r, &call.v, &call.f, &call.g}, call.lambda);
+    for_each_forest(unit, scratch, ahead, [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory) {
         ForestLinear z(f, lane, packed, call.box, call.r, {&call.v, &call.f, nullptr, false},
                        (call.v.x ? squares : 0) | (call.f.x ? pulls : 0), memory);
-        solve_forest(call, unit, f, lane, z, memory, tally);
+        solve_forest(call, unit, f, lane, z, memory, ahead, tally);
     });
 }
 
 void forests_solve(const SolveCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const bool packed = call.r.packed && (!call.g.x || call.g.packed);
-    const AtomArray *const arrays[] = {&call.r, &call.g};
-    for_each_forest(unit, arrays, scratch, [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory) {
+    NextMolecules ahead({&call.r, &call.g}, call.lambda);
+    for_each_forest(unit, scratch, ahead, [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory) {
         ForestLinear z(f, lane, packed, call.box, call.r, {nullptr, nullptr, call.rhs, false}, given, memory);
-        solve_forest(call, unit, f, lane, z, memory, tally);
+        solve_forest(call, unit, f, lane, z, memory, ahead, tally);
     });
 }
 
 // Twice, as molecules/velocities.hpp says.
 void forests_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
-    const AtomArray *const arrays[] = {&call.r, &call.v};
-    for_each_forest(unit, arrays, scratch, [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory) {
+    NextMolecules ahead({&call.r, &call.v}, call.lambda);
+    for_each_forest(unit, scratch, ahead, [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory) {
         ForestLinear z(f, lane, call.r.packed && call.v.packed, call.box, call.r,
                        {&call.v, nullptr, nullptr, true, call.strain}, rates, memory);
         const bool twice = !call.v.is_float;
@@ -129,6 +118,7 @@ void forests_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, do
         } else {
             z.load(z.all());
             good = z.solve();
+            ahead.fetch();
             if (good) {
                 if (call.lambda) z.write_bonds<false>(z.all(), 0.5, call.lambda, good);
                 if (call.virial) z.add_virial(good, tally);
@@ -147,8 +137,8 @@ void forests_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, do
 
 void forests_positions(const PositionsCall &call, const MoleculeUnit &unit, double *scratch, Tally &tally) {
     const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
-    const AtomArray *const arrays[] = {&call.r_ref, &call.r, &call.v};
-    for_each_forest(unit, arrays, scratch, [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory) {
+    NextMolecules ahead({&call.r_ref, &call.r, &call.v}, call.lambda);
+    for_each_forest(unit, scratch, ahead, [&](const Forest &f, const MoleculeLane *lane, Memory<vec> memory) {
         ForestNewton newton(f, lane, packed, memory);
         const ForestPositions lanes{call, newton, tally};
         unsigned good;
@@ -157,7 +147,7 @@ void forests_positions(const PositionsCall &call, const MoleculeUnit &unit, doub
             memory.next += OneTreeNewton::bytes(f) / static_cast<int64_t>(sizeof(double));
             good = OneTreePositions{one, lanes, tally}.solve(lane->molecule) ? 1 : 0;
         } else {
-            good = lanes.solve();
+            good = lanes.solve([&] { ahead.fetch(); });
         }
         leave_doubtful(call, f, lane, good, memory.next, tally);
     });

@@ -56,10 +56,11 @@ void molecules_positions(const PositionsCall &call, const MoleculeUnit &unit, do
     if (unit.schedule->network) return solve_networks(call, unit, packed, scratch, tally);
     if (unit.schedule->type == Schedule::triangle)
         return for_each_triangle(TrianglePositionsVerb{call, tally}, unit, packed, scratch);
-    LargePositionsWork work = {{call, *unit.schedule, packed, tally, unit.team}};
+    NextMolecules ahead({&call.r_ref, &call.r, &call.v}, call.lambda);
+    LargePositionsWork work = {{call, *unit.schedule, packed, tally, unit.team, ahead}};
     const StarPositionsVerb stars = {call, tally};
     if (call.guess || !(do_stars<3>(stars, work, unit, scratch) || do_stars<4>(stars, work, unit, scratch)))
-        for_each_block(unit, scratch, work);
+        for_each_block(unit, scratch, ahead, work);
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -14,8 +14,9 @@ void molecules_velocities(const VelocitiesCall &call, const MoleculeUnit &unit, 
     if (unit.schedule->network) return solve_networks(call, unit, packed, scratch, tally);
     if (unit.schedule->type == Schedule::triangle)
         return for_each_triangle(TriangleVelocitiesVerb(call, tally), unit, packed, scratch);
-    const LinearWork<VelocitiesCall> work = {call, *unit.schedule, packed, tally, unit.team};
-    if (!do_stars<3>(StarVelocitiesVerb{call, tally}, work, unit, scratch)) for_each_block(unit, scratch, work);
+    NextMolecules ahead({&call.r, &call.v}, call.lambda);
+    const LinearWork<VelocitiesCall> work = {call, *unit.schedule, packed, tally, unit.team, ahead};
+    if (!do_stars<3>(StarVelocitiesVerb{call, tally}, work, unit, scratch)) for_each_block(unit, scratch, ahead, work);
 }
 
 }  // namespace holonomic::HOL_ISA

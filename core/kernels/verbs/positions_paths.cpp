@@ -1,5 +1,5 @@
-// Position level of one large molecule along its paths (molecules/paths/paths.hpp): knots, then pieces of paths, then
-// whether what they have found fits where they meet, and only then anything is written. As in a long chain
+// Position level of one large molecule along its paths (molecules/paths/path_plan.hpp): knots, then pieces of paths,
+// then whether what they have found fits where they meet, and only then anything is written. As in a long chain
 // (positions_long.cpp) the result does not rest on how far a bond is felt: all lengths have been tested by then.
 #include "core/kernels/molecules/paths/path_knots.hpp"
 #include "core/kernels/molecules/paths/path_pieces.hpp"

@@ -53,11 +53,17 @@ struct ForestLinear : ForestTrees {
 
     bool has(int wanted) const { return (terms & wanted) != 0; }
 
-    // The local atoms that the bond of an element joins.
+    // The local atoms that the bond of an element joins. They are looked for in the forest's own lists: the schedules
+    // of different trees are seldom in a cache.
     void ends(int32_t element, int32_t *atom) const {
-        const Schedule &s = *f.schedule[f.n_pieces > 0 ? 0 : element % W];
-        atom[1] = lower_of(element / W)[element % W];
-        atom[0] = s.atom_of[s.parent[s.slot_of[atom[1]]]];
+        const int32_t place = element / W;
+        int32_t step = 0;
+        for (int32_t end = f.n_steps; end - step > 1;) {
+            const int32_t middle = step + (end - step) / 2;
+            (f.step[middle].first <= place ? step : end) = middle;
+        }
+        atom[1] = lower_of(place)[element % W];
+        atom[0] = atom_of(step)[element % W];
     }
 
     // What load.hpp does.

@@ -75,14 +75,18 @@ struct ForestPositions {
         return bond < INT64_MAX ? bond : 0;
     }
 
-    // Returns the lanes that need no careful arithmetic; nothing of the others has been written.
-    unsigned solve() const {
+    // Returns the lanes that need no careful arithmetic; nothing of the others has been written. between() is called
+    // between the stages.
+    template <class Between>
+    unsigned solve(const Between &between) const {
         vec largest = {}, a_min, a_max;
         choose([&](auto packed) { largest = x.template load_bonds<packed>(x.all(), call); }, x.at.layout != elements);
+        between();
         x.load_lengths(x.all(), a_min, a_max);
         if (call.guess) load_guess(x.all());
         const Limits<vec> limits(call, largest, a_min);
         const Solved<vec> out = iterate<vec, false, true>(x, limits, call, first_lanes(x.f.n_trees));
+        between();
         const unsigned moved = bits(out.converged & ~coarse_moves(largest + a_min, a_max)),
                        good = moved | bits(out.untouched);
         if (call.report) note_worst(good, out.error);

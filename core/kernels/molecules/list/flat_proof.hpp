@@ -134,7 +134,7 @@ struct FlatProof {
     }
     // Of a tile, but for the bonds of which not all is known yet. A part of the terms does for most.
     __attribute__((noinline)) void look_at(const Tile &tile) {
-        const Columns<V> most = all_columns<V>(most_backward(s.n_bonds)), least = all_columns<V>(-least_proven_pivot);
+        const Columns<V> most = all_columns<V>(most_backward(s.n_bonds)), least = all_columns<V>(-least_pivot);
         const Rows<V> of = x.a_of(tile);
         int32_t next = tile.first_outer;
         start_looking();

@@ -1,4 +1,4 @@
-// Knots of a large molecule (paths.hpp) at the position level: W of a kind at a time as small molecules, whose legs
+// Knots of a large molecule (path_plan.hpp) at the position level: W of a kind at a time as small molecules, whose legs
 // reach so far that what is beyond them is not felt at the knot.
 #pragma once
 

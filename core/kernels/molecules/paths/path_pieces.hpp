@@ -1,6 +1,6 @@
-// Pieces of paths (paths.hpp) at the position level, W at a time as chains: those of different paths, too. Where a path
-// ends, the knot has found the multipliers beyond, and the piece starts from atoms that are displaced by them. Where it
-// is cut, pieces have margins, as windows of a long chain have (memory/cut.hpp).
+// Pieces of paths (path_plan.hpp) at the position level, W at a time as chains: those of different paths, too. Where a
+// path ends, the knot has found the multipliers beyond, and the piece starts from atoms that are displaced by them.
+// Where it is cut, pieces have margins, as windows of a long chain have (memory/cut.hpp).
 #pragma once
 
 #include "core/kernels/memory/load.hpp"

@@ -1,9 +1,9 @@
-// A large molecule along its paths (paths.hpp) at the position level: what its parts share.
+// A large molecule along its paths (path_plan.hpp) at the position level: what its parts share.
 #pragma once
 
 #include "core/kernels/memory/arena.hpp"
 #include "core/kernels/memory/cut.hpp"
-#include "core/kernels/molecules/paths/paths.hpp"
+#include "core/kernels/molecules/paths/path_plan.hpp"
 #include "core/kernels/molecules/schedule.hpp"
 #include "core/kernels/newton/seams.hpp"
 

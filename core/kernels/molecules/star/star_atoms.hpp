@@ -166,7 +166,7 @@ static inline bool do_stars(const Verb &verb, const General &general, const Mole
     const MoleculeLane next = molecule_of(unit, done);
     for_each_block(MoleculeUnit{unit.schedule, unit.regular ? &next : unit.lanes + done, unit.count - done,
                                 unit.regular, unit.large},
-                   scratch, work);
+                   scratch, general.ahead, work);
     return true;
 }
 

@@ -118,9 +118,10 @@ static inline void for_each_triangle(const Verb &verb, const MoleculeUnit &unit,
     const int64_t done = in_a_row && !verb.other_way() ? work.run(unit, scratch) : 0;
     if (done == unit.count) return;
     const MoleculeLane next = molecule_of(unit, done);
+    NextMolecules ahead;
     for_each_block(
         MoleculeUnit{unit.schedule, done > 0 ? &next : unit.lanes, unit.count - done, unit.regular, unit.large},
-        scratch, work);
+        scratch, ahead, work);
 }
 
 // What is done with a block of triangles. again(): for lanes that solve() does not answer for, and for all if

@@ -66,7 +66,7 @@ bool is_lowest_of_flat(const Partners &partners, std::int32_t i) {
 
 }  // namespace
 
-bool has_flat_clique(const holonomic::Shape &shape, const double *w, const double *lengths) {
+bool has_dependent_lengths(const holonomic::Shape &shape, const double *w, const double *lengths) {
     if (shape.form == Form::chain || shape.form == Form::tree || (shape.form == Form::ring && shape.n_bonds > 3))
         return false;
     const Partners partners(shape, w, lengths);
