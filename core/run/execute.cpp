@@ -63,15 +63,16 @@ void share(int n_threads, std::int64_t scratch_bytes, std::int64_t store_bytes, 
 }
 
 // A single molecule whose pieces are shared among the threads: a large one, or one of few, so that not every thread has
-// molecules of its own.
+// molecules of its own, or that is more than a thread's part of all bonds.
 bool is_shared_molecule(const Plan &plan, std::int64_t p, int n_threads, bool paths) {
     const Plan::Piece &piece = plan.pieces[static_cast<std::size_t>(p)];
     if (piece.shape == linear || piece.count != 1) return false;
     const Schedule &s = *plan.schedules[static_cast<std::size_t>(piece.shape)];
     const std::int64_t n = s.n_pieces, n_molecules = static_cast<std::int64_t>(plan.pieces.size());
-    if (n_molecules < n_threads && s.network) return true;
-    if (n_molecules < n_threads && ((paths && s.paths) || (s.flat && s.flat->n_branches > 0))) return true;
-    if (n_molecules < n_threads && s.n_arms > 0 && s.n_shares > 1) return true;
+    const bool large = n_molecules < n_threads || static_cast<std::int64_t>(s.n_bonds) * n_threads > plan.n_bonds;
+    if (large && s.network) return true;
+    if (large && ((paths && s.paths) || (s.flat && s.flat->n_branches > 0))) return true;
+    if (large && s.n_arms > 0 && s.n_shares > 1) return true;
     return n > 1 && (n >= 8 * n_threads || n_molecules < 4 * n_threads);
 }
 #endif

@@ -55,6 +55,14 @@ HOL_INLINE Pair3<V> scale_pairs(const V &s, const Pair3<V> &a) {
     return {scale_pair(s, a.x), scale_pair(s, a.y), scale_pair(s, a.z)};
 }
 template <class V>
+HOL_INLINE Pair3<V> product_pairs(const V &s, const Vector3<V> &a) {
+    return {two_product<V>(s, a.x), two_product<V>(s, a.y), two_product<V>(s, a.z)};
+}
+template <class V>
+HOL_INLINE Vector3<V> rounded(const Pair3<V> &a) {
+    return {a.x.hi + a.x.lo, a.y.hi + a.y.lo, a.z.hi + a.z.lo};
+}
+template <class V>
 HOL_INLINE Pair<V> dot_pairs(const Pair3<V> &a, const Pair3<V> &b) {
     return add_pairs(multiply_pairs(a.x, b.x), add_pairs(multiply_pairs(a.y, b.y), multiply_pairs(a.z, b.z)));
 }

@@ -272,6 +272,17 @@ struct FlatLinear {
             of[i] = multiply_add(in_row(w[2 * i + 1]), g[i], of[i]);
         }
     }
+    // For multipliers that have been changed since.
+    void find_pulls_again() const {
+        down([](const FlatLinear &x, const Branch &branch) HOL_FORCED {
+            for_tiles_down(x.s, branch, [&](const Tile &tile) HOL_FORCED {
+                x.find_pulls(tile);
+                if (!(x.terms & rates)) return;  // nobody asks for accelerations any more
+                x.load_inputs(tile, x.a_of(tile));
+                x.add_pulls(tile);
+            });
+        });
+    }
 
     // Once more for velocities, for the rates of the bonds as they are, d.(v_j - v_i).
     void solve_again() const {

@@ -4,7 +4,8 @@
 //     R = |L| D |L^T| |t| + sum over both ends i of w_i |d| sum over the bonds of i of |t| |d|
 //
 // (elimination and substitutions; the products d.d' and w). Where R is no more than the terms that an equation is made
-// of, all errors are of the size of its scale |A^-1| S. Elsewhere, or where a pivot is small,
+// of, all errors are of the size of its scale |A^-1| S. Where it is more at a few bonds, their equations are looked at
+// in twice the precision, and what is left of these alone is solved for. Elsewhere, or where a pivot is small,
 // flat_refine.hpp corrects, or the careful solver.
 #pragma once
 
@@ -13,8 +14,9 @@
 
 namespace holonomic::HOL_ISA::graph {
 
-// What is left of an equation is most often less than a third of the roundings of R.
-constexpr double often_less = 3;
+// What is left of an equation is most often less than a third of the roundings of R, and where it is not it can be
+// solved for. Where R is beyond this, refinement is needed most often.
+constexpr double most_beyond = 30;
 
 template <class V>
 struct FlatProof {
@@ -30,6 +32,14 @@ struct FlatProof {
     static constexpr int32_t most_looks(int32_t columns) { return columns / 32 + 2; }
     int32_t missed[lanes == 1 ? most_looks(FlatList::columns_of_tile) : lanes * most_looks(largest_graph_in_lanes)];
     int32_t n_missed = 0, looks[lanes];
+    // Equations that are left with more than they may: of each tile a list in the memory of refinement, which ends
+    // where there is no column. Beside it, in `found`, the largest R over what it may be.
+    struct Doubt {
+        double left;
+        int32_t column, lane;
+    };
+    Doubt *doubt = nullptr;  // the end of the list
+    int64_t most_doubts = 0;
     FlatProof(const FlatLinear<V> &linear, unsigned not_contradicted)
         : x(linear), s(linear.s), in(linear.in), residual(linear), left(not_contradicted) {}
 
@@ -69,8 +79,14 @@ struct FlatProof {
         return {Width<V>::get(x.back[k], lane) + Width<V>::get(x.size[k], lane) * tensions,
                 most_backward(s.n_bonds) * sum};
     }
-    void start_looking() {
+    static Doubt *doubts_of(const FlatLinear<V> &x, const Tile &tile) {
+        return reinterpret_cast<Doubt *>(x.a_low.from(tile.first_site).start);
+    }
+    V &furthest_of(const Tile &tile) const { return x.found[&tile - s.tile]; }
+    void start_looking(const Tile &tile) {
         for (int l = 0; l < lanes; ++l) looks[l] = 0;
+        doubt = doubts_of(x, tile);
+        most_doubts = static_cast<int64_t>(4 * sizeof(V) / sizeof(Doubt)) * (tile.end_site - tile.first_site) - 1;
     }
     // Notes a column where it fails by little in lanes of `which`; where it does not do, the lane is given up.
     void note_missed(const Tile &tile, int32_t k, unsigned which) {
@@ -79,7 +95,9 @@ struct FlatProof {
             if (looks[lane]++ < most_looks(tile.end - tile.first)) {
                 const Bound bound = bound_of(tile, k, lane);
                 if (bound.holds()) continue;
-                if (bound.R <= often_less * bound.most) {
+                if (bound.R <= most_beyond * bound.most) {
+                    V &furthest = furthest_of(tile);
+                    Width<V>::set(furthest, lane, max(bound.R / bound.most, Width<V>::get(furthest, lane)));
                     missed[n_missed++] = k * lanes + lane;
                     continue;
                 }
@@ -87,21 +105,65 @@ struct FlatProof {
             left &= ~(1u << lane);
         }
     }
-    // Whether what is left of their equations is little enough.
+    // Keeps those of which more is left than may be.
     void look_at_missed(const Tile &tile) {
         for (; n_missed > 0; --n_missed) {
             const int32_t k = missed[n_missed - 1] / lanes;
             const int lane = missed[n_missed - 1] % lanes;
-            if ((left >> lane & 1) && !(abs(residual.of(tile, k, lane)) <= epsilon * bound_of(tile, k, lane).most))
+            if (!(left >> lane & 1)) continue;
+            const double of_bond = residual.of(tile, k, lane);
+            if (abs(of_bond) <= epsilon * bound_of(tile, k, lane).most) continue;
+            if (abs(of_bond) < 1e300 && most_doubts-- > 0) {
+                *doubt++ = {of_bond, k, lane};
+                doubt->column = -1;
+            } else {
                 left &= ~(1u << lane);
+            }
         }
+    }
+    // Solves for what is left of equations in doubt alone. The bound is the same with the changes in place of
+    // multipliers, so it is no more than the part of R that each change is of its multiplier: theory (55b).
+    // Returns the lanes of `left` in which it is small enough.
+    static unsigned correct(const FlatLinear<V> &all, unsigned left) {
+        V furthest = Width<V>::all(1);
+        bool any_doubts = false;
+        for (int32_t i = 0; i < all.s.n_tiles; ++i) {
+            any_doubts = any_doubts || doubts_of(all, all.s.tile[i])->column >= 0;
+            furthest = max(all.found[i], furthest);
+        }
+        if (!any_doubts) return left;
+        V *const change = all.back;
+        clear_sides(all.s, change);
+        all.up([&](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
+            for_tiles_up(x.s, branch, [&](const Tile &tile) HOL_FORCED {
+                for (int32_t k = tile.first; k < tile.end; ++k) change[k] = V{};
+                for (const Doubt *of = doubts_of(x, tile); of->column >= 0; ++of)
+                    if (left >> of->lane & 1) Width<V>::set(change[of->column], of->lane, of->left);
+                solve_up(x.s, tile, x.lower, change);
+            });
+        });
+        all.down([&](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
+            MaskOf<V> small = Width<V>::of_bits(left);
+            for_tiles_down(x.s, branch, [&](const Tile &tile) HOL_FORCED {
+                solve_down(x.s, tile, x.lower, x.per_pivot, change, [&](int32_t k, const V &of_bond) HOL_FORCED {
+                    small = small & less_equal(8 * furthest * abs(of_bond), abs(x.t[k]));
+                });
+            });
+            all.left[&branch - x.s.branch] = bits(small);
+        });
+        const unsigned good = left_of_all(all);
+        for (int32_t k = 0; k < all.s.n_bonds; ++k) all.t[k] = all.t[k] + keep(Width<V>::of_bits(good), change[k]);
+        all.find_pulls_again();
+        return good;
     }
     // Of a tile, but for the bonds of which not all is known yet. A part of the terms does for most.
     __attribute__((noinline)) void look_at(const Tile &tile) {
         const Columns<V> most = all_columns<V>(most_backward(s.n_bonds)), least = all_columns<V>(-least_pivot);
         const Rows<V> of = x.a_of(tile);
         int32_t next = tile.first_outer;
-        start_looking();
+        start_looking(tile);
+        doubt->column = -1;
+        furthest_of(tile) = Width<V>::all(1);
         for (int32_t k = tile.first; k < tile.end && left; k += step) {
             const int32_t first_row = tile.first_row + (k - tile.first);
             Row p[step], q[step], input[step];
@@ -134,7 +196,8 @@ struct FlatProof {
     // At the others, in the end.
     __attribute__((noinline)) void look_at_outer(const Tile &tile) {
         add_sides(s, tile, x.back);
-        start_looking();
+        start_looking(tile);
+        for (; doubt->column >= 0; ++doubt) --most_doubts;
         for (int32_t k = tile.first_outer; k < tile.end_outer && left; ++k)
             if (!bound_of(tile, s.outer[k], 0).holds()) note_missed(tile, s.outer[k], left);
         look_at_missed(tile);
@@ -175,7 +238,8 @@ struct FlatProof {
             for_tiles_up(x.s, branch, [&](const Tile &tile) HOL_FORCED { proof.look_at_outer(tile); });
             all.left[&branch - x.s.branch] = proof.left;
         });
-        return left & left_of_all(all);
+        left &= left_of_all(all);
+        return left ? correct(all, left) : 0;
     }
     static unsigned left_of_all(const FlatLinear<V> &all) {
         unsigned left = all.left[0];

@@ -279,10 +279,7 @@ struct FlatRefine {
         good = good & lanes_where(taken);
         if (!(bits(good) | proven)) return 0;
         restore_bonds(Width<V>::of_bits(proven));
-        down([](const FlatRefine &own, const Tile &tile) HOL_FORCED {
-            own.x.find_pulls(tile);
-            if (own.terms & rates) own.x.add_pulls(tile);  // nobody asks for accelerations any more
-        });
+        x.find_pulls_again();
         return bits(good & lanes_where(faint)) | proven;
     }
 };

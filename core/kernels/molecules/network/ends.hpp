@@ -5,6 +5,7 @@
 #include "core/kernels/molecules/network/fronts.hpp"
 #include "core/kernels/molecules/network/strands.hpp"
 #include "core/kernels/molecules/network/tensor.hpp"
+#include "core/kernels/molecules/twice.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -172,19 +173,25 @@ struct Ends {
         });
     }
 
-    // What multipliers t do to the nodes of a share, but for their trees and for foreign ends.
-    __attribute__((noinline)) void find_pulls(int32_t share, const double *t, const Net3 &G, double *tension) const {
+    // What multipliers t do to the nodes of a share, but for their trees and for foreign ends. Where `tension` is
+    // wanted, too, in twice the precision.
+    __attribute__((noinline)) void find_pulls(int32_t share, const double *t, const Net3 &G, double *tension,
+                                              const Net3 &low) const {
         net.for_nodes(share, [&](auto width, const NetNodes &g) HOL_FORCED {
             typedef decltype(width) V;
-            Vector3<V> sum = {};
+            const int32_t site = s.first_node + g.node;
+            Pair3<V> sum = {};
             V size = {};
             for (int32_t i = 0, u = g.unknown; i < g.n_own; ++i, u += g.step) {
-                const Vector3<V> pull = gather<V>(t, s.place_of + u) * b.get<V>(u);
-                sum = sum + pull;
-                if (tension) size = size + sqrt(dot(pull, pull));
+                const Pair3<V> pull = product_pairs(gather<V>(t, s.place_of + u), b.get<V>(u));
+                sum = add_pairs(sum, pull);
+                size = size + sqrt(mul_add(pull.x.hi, pull.x.hi, mul_add(pull.y.hi, pull.y.hi, pull.z.hi * pull.z.hi)));
             }
-            G.set(s.first_node + g.node, sum);
-            if (tension) store_any(tension + s.first_node + g.node, size);
+            const Vector3<V> all = rounded(sum);
+            G.set(site, all);
+            if (!tension) return;
+            store_any(tension + site, size);
+            low.set(site, rounded(subtract_pairs(sum, pairs_of(all, Vector3<V>{}))));
         });
     }
 

@@ -131,12 +131,22 @@ struct NetEquations {
         store_any(t + place, in.strain ? value + given_to<V>(place) : value);
     }
 
-    Pair3<double> exact(int32_t k) const { return pairs_of(d.get<double>(k), Vector3<double>{}); }
     template <class V>
     __attribute__((noinline)) Pair3<V> unrounded_between(const Vector3<V> &from, const Vector3<V> &to) const {
         Vector3<V> bond, low;
         unrounded_bond(box, from, to, bond, low);
         return pairs_of(bond, low);
+    }
+    Vector3<double> position_of(int32_t site) const {
+        return site < s.first_node ? read(coordinates, net.at, s.atom_of[site]) : r.get<double>(site);
+    }
+    Pair3<double> exact(int32_t k) const { return unrounded_between(position_of(s.from[k]), position_of(s.to[k])); }
+    // An atom's acceleration, or velocity, before bonds do something to it.
+    Vector3<double> input_of(int32_t site) const {
+        const Vector3<double> zero = {};
+        return has(pulls)   ? net.w[site] * read(*in.f, net.at, s.atom_of[site])
+               : has(rates) ? v.get<double>(site)
+                            : zero;
     }
     // In twice the precision: of an atom with these multipliers; and what is left of a bond's equation.
     Pair3<double> acceleration_of(int32_t site, const double *solution) const {

@@ -98,32 +98,36 @@ struct NetFactor {
         }
     }
 
-    // What multipliers do to nodes and atoms of trees: G, and where `tension` is wanted the sum of |t| |d|. Of strands
-    // t at their ends is enough.
-    void find_pulls_of_rest(const double *t, const Net3 &G, double *tension) const {
+    // What multipliers do to nodes and atoms of trees: G, and where `tension` is wanted the sum of |t| |d|; G is right
+    // to a rounding of itself then, with room for low words. Of strands t at their ends is enough.
+    void find_pulls_of_rest(const double *t, const Net3 &G, double *tension = nullptr, const Net3 &low = {}) const {
         net.for_node_shares([&](int32_t share) {
-            unknowns.find_pulls(share, t, G, tension);
+            unknowns.find_pulls(share, t, G, tension, low);
             if (!s.has_foreign && s.n_tree == 0) return;
             const int32_t last = s.nodes_start[share + 1] - 1;
             add_pulls(s.nodes[s.nodes_start[share]].first_node, s.nodes[last].first_node + s.nodes[last].count, t, G,
-                      tension);
+                      tension, low);
         });
-        for (int32_t n = s.n_nodes; n < s.n_nodes + s.n_tree; ++n) {
-            G.set(s.first_node + n, Vector3<double>{});
-            if (tension) tension[s.first_node + n] = 0;
+        for (int32_t i = s.first_tree; i < s.n_atoms; ++i) {
+            G.set(i, Vector3<double>{});
+            if (tension) tension[i] = 0;
+            if (tension) low.set(i, Vector3<double>{});
         }
-        add_pulls(s.n_nodes, s.n_nodes + s.n_tree, t, G, tension);
+        add_pulls(s.n_nodes, s.n_nodes + s.n_tree, t, G, tension, low);
     }
     // By bonds that are no own ends of a node.
     __attribute__((noinline)) void add_pulls(int32_t first, int32_t end, const double *t, const Net3 &G,
-                                             double *tension) const {
+                                             double *tension, const Net3 &low) const {
         for (int32_t n = first; n < end; ++n) {
             const int32_t site = s.first_node + n;
+            const Vector3<double> zero = {};
+            Pair3<double> sum = pairs_of(G.get<double>(site), tension ? low.get<double>(site) : zero);
             net.for_other_bonds(n, [&](int32_t place, double sign) HOL_FORCED {
-                const Vector3<double> pull = t[place] * b.get<double>(place);
-                G.set(site, add_times(G.get<double>(site), sign, pull));
-                if (tension) tension[site] += sqrt(dot(pull, pull));
+                const Vector3<double> bond = b.get<double>(place);
+                sum = add_pairs(sum, product_pairs(sign * t[place], bond));
+                if (tension) tension[site] += abs(t[place]) * sqrt(dot(bond, bond));
             });
+            G.set(site, rounded(sum));
         }
     }
 

@@ -1,144 +1,29 @@
-// Linear equations of a network: solved by factors and iteration, then looked at. What multipliers leave of each
-// equation, with what rounding can hide there, is compared with the terms that it is made of; where it is too much the
-// residual is found in twice the precision and solved for, until that changes nothing.
+// Linear equations of a network: solved by factors and iteration, then looked at (proof.hpp). Where that proves too
+// little, all residuals are found in twice the precision and solved for, until that changes nothing.
 #pragma once
 
+#include "core/kernels/molecules/network/proof.hpp"
 #include "core/kernels/molecules/network/residuals.hpp"
-#include "core/kernels/molecules/proof.hpp"
 #include "core/kernels/molecules/refine.hpp"
 #include "core/kernels/molecules/virial.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
-struct NetLinear : NetEquations {
-    // Of residuals that are corrected: of all, and of what rounding hides in each over 16. All together say nothing of
-    // an equation between heavy atoms beside those of light ones.
-    static constexpr double any_part = 1e100, next_part = 1e-6, part_of_rounding = 1. / 256;
+struct NetLinear : NetProof {
+    // What corrections may leave of residuals: of what rounding hides in each, over 16.
+    static constexpr double part_of_rounding = 1. / 256;
 
-    double *enough;   // what corrections may leave of a residual, over 16 roundings
-    double *tension;  // of the rest, by site, sum of |t| |d|
-    NetFactor factor;
-    mutable int64_t rounds = 0;     // that the unknowns have taken so far
-    mutable bool unproven = false;  // of some part; then what others leave is not looked for
-
-    // An atom's inverse mass, its bonds' sum of |t| |d|, and what they do to it.
-    template <class V>
-    struct Atom {
-        V w, T;
-        Vector3<V> pull;
-    };
-
-    static int64_t values(const NetworkPlan &s) {
-        return NetEquations::values(s) + in_fours(s.n_bonds) + in_fours(n_rest(s)) + NetFactor::values(s, true);
-    }
     NetLinear(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
               const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> memory)
-        : NetEquations(plan, l, packed, team, b, positions, inputs, sides, memory),
-          enough(memory.values(in_fours(s.n_bonds))), tension(memory.values(in_fours(n_rest(s))) - s.first_node),
-          factor(net, d, true, memory) {}
+        : NetProof(plan, l, packed, team, b, positions, inputs, sides, memory) {}
 
-    // Strands need what has been found for the rest. One part of them after the other goes through all that it needs,
-    // in cache, one vector of strands in registers.
-    void load() const {
-        net.for_ranges(s.first_node, s.n_atoms, [&](int32_t first, int32_t end) { read_atoms(first, end); });
-        find_equations_of_trees();
-        factor.factorize_rest(d, t);
-        net.for_parts([&](const NetPart &part) {
-            net.for_strands(part,
-                            [&](auto width, const NetStrands &g) HOL_FORCED { find_equations<decltype(width)>(g); });
-            factor.factorize(part, d, t);
-        });
-        factor.close();
-    }
-    // Multipliers of the rest, for what is in t, as far up as it has been taken.
-    bool solve_for(double part_left, const double *sizes) const {
-        const int32_t taken = factor.unknowns.solve(part_left, sizes);
-        if (taken < 0) return false;
-        rounds += taken;
-        factor.take_down_rest(t);
-        return true;
-    }
     __attribute__((noinline)) bool solve() const {
-        load();
-        if (!solve_for(any_part, size_of_side)) return false;
-        factor.find_pulls_of_rest(t, G, tension);
-        prove_trees();
-        net.for_parts([&](const NetPart &part) { take_down_and_prove(part); });
-        return !unproven || refine();
-    }
-
-    // What may be left of equations, of their terms: half of what counts as right (proof.hpp).
-    double most_left() const { return 0.5 * epsilon * (16 + __builtin_sqrt(static_cast<double>(s.n_bonds))); }
-    // Whether an equation is left with more than rounding. The terms of right-hand sides alone, and a
-    // bound on what rounding hides, do for most.
-    template <class V>
-    HOL_FORCED void prove(int32_t place, const Atom<V> &from, const Atom<V> &to, bool &good) const {
-        const double most = most_left();
-        net.fetch_ahead(place, side, size_of_side);
-        const V tensions = mul_add(from.w, from.T, to.w * to.T);
-        const V over = excess_of(d.get<V>(place), from.w * from.pull, to.w * to.pull, tensions,
-                                 load_any<V>(side + place), load_any<V>(size_of_side + place), most);
-        const MaskOf<V> bad = ~less_equal(over, V{});
-        if (__builtin_expect(!any(bad), 1)) return;
-        for (int i = 0; i < Width<V>::lanes; ++i)
-            if ((bits(bad) >> i & 1) && good) good = holds(place + i, Width<V>::get(tensions, i));
-    }
-    void note(bool good) const {
-        if (!good) __atomic_store_n(&unproven, true, __ATOMIC_RELAXED);
-    }
-    __attribute__((noinline)) void prove_trees() const {
-        bool good = true;
-        const auto atom = [&](int32_t i) { return Atom<double>{net.w[i], tension[i], G.get<double>(i)}; };
-        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k) prove<double>(k, atom(s.from[k]), atom(s.to[k]), good);
-        note(good);
-    }
-    __attribute__((noinline)) void take_down_and_prove(const NetPart &part) const {
-        factor.take_down(part, t);
-        bool good = !__atomic_load_n(&unproven, __ATOMIC_RELAXED);
-        if (!good) return;
-        net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
-            typedef decltype(width) V;
-            const auto at_node = [&](int end) HOL_FORCED {
-                return Atom<V>{net.at_node<V>(g, end, net.w), net.at_node<V>(g, end, tension),
-                               net.at_node<V>(g, end, G)};
-            };
-            StrandPulls<V> along(net, t, d, g.place);
-            V last = along.tension();
-            net.for_bonds(
-                g, [&]() HOL_FORCED { return at_node(0); },
-                [&](int32_t site, int32_t place) HOL_FORCED {
-                    const Vector3<V> pull = along.before(place);
-                    const V next = along.tension(), T = last + next;
-                    last = next;
-                    return Atom<V>{load_any<V>(net.w + site), T, pull};
-                },
-                [&]() HOL_FORCED { return at_node(1); },
-                [&](int32_t place, const Atom<V> &from, const Atom<V> &to)
-                    HOL_FORCED { prove<V>(place, from, to, good); });
-        });
-        note(good);
-    }
-    // Of one bond, in twice the precision, with all terms of its equation: the accelerations of its two atoms too. Only
-    // the rounding of bonds is left; that of images, which is no more than their own, counts in no test of bonds.
-    __attribute__((noinline)) bool holds(int32_t k, double tensions) const {
-        const int32_t i = s.from[k], j = s.to[k];
-        const Pair3<double> from = acceleration_of(i, t), to = acceleration_of(j, t), bond = exact(k);
-        const double left = residual_of(k, bond, from, to),
-                     terms_of_b = size_of_side[k] + abs(dot_pairs(bond, from).hi) + abs(dot_pairs(bond, to).hi);
-        return abs(left) + epsilon * hidden_by_rounding(d.get<double>(k), tensions) <= most_left() * terms_of_b;
-    }
-    // What a rounding of the multipliers, and of what adds up, does to an equation, in roundings. tensions: of its two
-    // atoms, times their inverse masses.
-    template <class V>
-    HOL_STATIC V hidden_by_rounding(const Vector3<V> &bond, const V &tensions) {
-        return sqrt(dot(bond, bond)) * tensions;
-    }
-    // What is left of an equation, and what rounding can hide there, beyond what may be left.
-    template <class V>
-    HOL_STATIC V excess_of(const Vector3<V> &bond, const Vector3<V> &from, const Vector3<V> &to, const V &tensions,
-                           const V &b, const V &terms_of_b, double most) {
-        const V left = abs(b + dot(bond, to - from)) + (4 * epsilon) * hidden_by_rounding(bond, tensions);
-        return left - most * terms_of_b;
+        if (!find()) return false;
+        if (!unproven) {
+            if (!doubtful || correct()) return true;
+            if (!find()) return false;  // once more, as correct() has taken its arrays
+        }
+        return refine();
     }
 
     // Solves for what is left in twice the precision; the multipliers so far are kept in `side`, whose terms are not
@@ -160,7 +45,8 @@ struct NetLinear : NetEquations {
             [&]() {
                 NetResiduals{*this, factor, begun ? solution : t}.find(tension, keep);
                 begun = true;
-                if (!solve_for(next_part, enough)) t[0] = 0 / (t[0] - t[0]);  // not a number, which is no contraction
+                if (!solve_for(next_part, enough, t))
+                    t[0] = 0 / (t[0] - t[0]);  // not a number, which is no contraction
                 net.for_parts([&](const NetPart &part) { factor.take_down(part, t); });
             },
             [&](Flag) {
@@ -173,7 +59,7 @@ struct NetLinear : NetEquations {
             [&]() { return Flag{false}; });
         if (!good.set) return false;
         for (int32_t k = 0; k < s.n_bonds; ++k) t[k] = solution[k];
-        factor.find_pulls_of_rest(t, G, nullptr);
+        factor.find_pulls_of_rest(t, G);
         return true;
     }
     // Velocities v + w G; with `again` once more projected: what their rounding leaves.
@@ -221,8 +107,8 @@ struct NetLinear : NetEquations {
             factor.take_up(part, t);
         });
         factor.unknowns.add_pushes();
-        if (!solve_for(next_part, nullptr)) return false;
-        factor.find_pulls_of_rest(t, G, nullptr);
+        if (!solve_for(next_part, nullptr, t)) return false;
+        factor.find_pulls_of_rest(t, G);
         return true;
     }
     // Calls each(width, site, pull): of the rest, of the atoms between the ends of strands.

@@ -72,6 +72,10 @@ struct NetSites {
     HOL_FORCED Reader<V> reader(int32_t site) const {
         return {*this, site, rows_of<V>(site), far ? rows_of<V>(site + s.fetched_ahead) : Rows<V>{}};
     }
+    HOL_FORCED void fetch(const AtomArray &array, int32_t site) const {
+        if (at.layout != elements)
+            __builtin_prefetch(reinterpret_cast<const double *>(array.x) + rows_of<double>(site).element[0]);
+    }
     // Where speed is no matter.
     template <class V>
     __attribute__((noinline)) Vector3<V> read_at(const AtomArray &from, int32_t site) const {

@@ -62,7 +62,7 @@ struct Net : NetSites {
     // Calls body(share) for all shares of nodes. A thread is not worth waiting for where these are few.
     template <class Body>
     HOL_FORCED void for_node_shares(const Body &body) const {
-        constexpr int32_t many_unknowns = 65536;
+        constexpr int32_t many_unknowns = 16384;
         share_out(s.n_unknowns < many_unknowns ? nullptr : team, s.n_node_shares, body);
     }
     // Calls body(value of the width, nodes) for those of a share.
@@ -209,7 +209,6 @@ struct StrandPulls {
         of_bond = load_any<V>(t + place) * d.get<V>(place);
         return of_bond - last;
     }
-    HOL_FORCED V tension() const { return sqrt(dot(of_bond, of_bond)); }
     // Calls each(site, pull) for all of these atoms.
     template <class Each>
     HOL_FORCED void for_sites(const NetStrands &g, const Each &each) {

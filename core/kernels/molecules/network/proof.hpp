@@ -1,0 +1,262 @@
+// Whether multipliers solve the equations of a network. What they leave of each, with what rounding can hide there, is
+// compared with the terms that it is made of. Where that does not do for a few equations these are looked at in twice
+// the precision, and what is left of them alone is solved for, theory (55b).
+#pragma once
+
+#include "core/kernels/molecules/network/equations.hpp"
+#include "core/kernels/molecules/network/factor.hpp"
+#include "core/kernels/molecules/proof.hpp"
+
+namespace holonomic::HOL_ISA::graph {
+
+struct NetProof : NetEquations {
+    // What may be left when all unknowns are taken together, which says nothing of an equation between heavy atoms
+    // beside those of light ones.
+    static constexpr double any_part = 1e100, next_part = 1e-6;
+    static constexpr int32_t places_of_look = 8;  // so many for each equation that is looked at
+
+    double *enough;     // room for equations in doubt, for their corrections, and then for what refinement may leave
+    double *tension;    // of the rest, by site, sum of |t| |d|
+    int32_t *n_doubts;  // [n_shares + 1] of parts
+    NetFactor factor;
+    mutable int64_t rounds = 0;  // that the unknowns have taken so far
+    mutable bool unproven = false,
+                 doubtful = false;  // of some part; after the first, what others leave is not looked for
+
+    // An equation in doubt: what is left of it, at first with what rounding may hide there; of its two atoms, what
+    // bonds do to them, times the bond; the sum of T times inverse masses.
+    struct Doubt {
+        double left, at_from, at_to, tensions;
+        int32_t place;
+    };
+    // Those of a part; lost: where there are more than `most`.
+    struct Doubts {
+        Doubt *const first;
+        const int32_t most;
+        int32_t n;
+        bool lost;
+        void note(const Doubt &one) {
+            lost = lost || n == most;
+            if (!lost) first[n++] = one;
+        }
+    };
+    // An atom's inverse mass, its bonds' sum of |t| |d|, and what they do to it.
+    template <class V>
+    struct Atom {
+        V w, T;
+        Vector3<V> pull;
+    };
+    // Along strands, what multipliers do to the atoms between the bonds, right to a rounding of that; and |t| |d|.
+    template <class V>
+    struct ExactPulls {
+        const NetProof &of;
+        const double *const t;
+        Pair3<V> of_bond;
+        HOL_FORCED ExactPulls(const NetProof &proof, const double *multipliers, int32_t place)
+            : of(proof), t(multipliers), of_bond(product_pairs(load_any<V>(t + place), of.d.get<V>(place))) {}
+        HOL_FORCED Vector3<V> before(int32_t place) {
+            const Pair3<V> last = of_bond;
+            of.net.fetch_ahead(place, t, of.d.x, of.d.y, of.d.z);
+            of_bond = product_pairs(load_any<V>(t + place), of.d.get<V>(place));
+            return {(of_bond.x.hi - last.x.hi) + (of_bond.x.lo - last.x.lo),
+                    (of_bond.y.hi - last.y.hi) + (of_bond.y.lo - last.y.lo),
+                    (of_bond.z.hi - last.z.hi) + (of_bond.z.lo - last.z.lo)};
+        }
+        HOL_FORCED V tension() const {
+            const Vector3<V> p = {of_bond.x.hi, of_bond.y.hi, of_bond.z.hi};
+            return sqrt(dot(p, p));
+        }
+    };
+
+    static int64_t values(const NetworkPlan &s) {
+        return NetEquations::values(s) + in_fours(s.n_bonds) + in_fours(n_rest(s)) + in_fours(s.n_shares / 2 + 1) +
+               NetFactor::values(s, true);
+    }
+    NetProof(const NetworkPlan &plan, const MoleculeLane &l, bool packed, const LongTeam *team, const Box &b,
+             const AtomArray &positions, const Inputs &inputs, int sides, Memory<double> &memory)
+        : NetEquations(plan, l, packed, team, b, positions, inputs, sides, memory),
+          enough(memory.values(in_fours(s.n_bonds))), tension(memory.values(in_fours(n_rest(s))) - s.first_node),
+          n_doubts(reinterpret_cast<int32_t *>(memory.values(in_fours(s.n_shares / 2 + 1)))),
+          factor(net, d, true, memory) {}
+
+    // Strands need what has been found for the rest. One part of them after the other goes through all that it needs,
+    // in cache, one vector of strands in registers.
+    void load() const {
+        net.for_ranges(s.first_node, s.n_atoms, [&](int32_t first, int32_t end) { read_atoms(first, end); });
+        find_equations_of_trees();
+        factor.factorize_rest(d, t);
+        net.for_parts([&](const NetPart &part) {
+            net.for_strands(part,
+                            [&](auto width, const NetStrands &g) HOL_FORCED { find_equations<decltype(width)>(g); });
+            factor.factorize(part, d, t);
+        });
+        factor.close();
+    }
+    // Multipliers of the rest, for what is in y, as far up as it has been taken.
+    bool solve_for(double part_left, const double *sizes, double *y) const {
+        const int32_t taken = factor.unknowns.solve(part_left, sizes);
+        if (taken < 0) return false;
+        rounds += taken;
+        factor.take_down_rest(y);
+        return true;
+    }
+    // All multipliers, and whether they are proven.
+    __attribute__((noinline)) bool find() const {
+        load();
+        if (!solve_for(any_part, size_of_side, t)) return false;
+        prove_all(t, most_left(), true, [](const NetPart &) {});
+        return true;
+    }
+
+    // What may be left of equations, of their terms: half of what counts as right (proof.hpp).
+    double most_left() const { return 0.5 * epsilon * (16 + __builtin_sqrt(static_cast<double>(s.n_bonds))); }
+    // What a rounding of the multipliers, or of the bonds, does to an equation, in roundings. tensions: of its two
+    // atoms, times their inverse masses.
+    template <class V>
+    HOL_STATIC V hidden_by_rounding(const Vector3<V> &bond, const V &tensions) {
+        return sqrt(dot(bond, bond)) * tensions;
+    }
+
+    // Takes `multipliers` down, and looks at what they leave of `side`; after(part) follows. look: at what is not
+    // proven, in twice the precision.
+    template <class After>
+    HOL_FORCED void prove_all(double *multipliers, double most, bool look, const After &after) const {
+        const auto note = [&](const NetPart &part, const Doubts &doubts) {
+            n_doubts[part.share] = doubts.n;
+            if (doubts.n > 0) __atomic_store_n(&doubtful, true, __ATOMIC_RELAXED);
+            if (doubts.lost) __atomic_store_n(&unproven, true, __ATOMIC_RELAXED);
+        };
+        factor.find_pulls_of_rest(multipliers, G, tension, low());
+        const NetPart rest = net.rest();
+        Doubts doubts = doubts_of(rest, look);
+        prove_trees(most, doubts);
+        look_at(doubts);
+        note(rest, doubts);
+        after(rest);
+        net.for_parts([&](const NetPart &part) {
+            factor.take_down(part, multipliers);
+            Doubts own = doubts_of(part, look);
+            if (!__atomic_load_n(&unproven, __ATOMIC_RELAXED)) {
+                prove(part, multipliers, most, own);
+                look_at(own);
+            }
+            note(part, own);
+            after(part);
+        });
+    }
+    // Solves for what is left of equations in doubt alone. False if that is not proven to leave the others as they are.
+    __attribute__((noinline)) bool correct() const {
+        double *const change = enough;
+        const auto begin = [&](const NetPart &part) {
+            for (int32_t k = part.first_place; k < part.end_place; ++k) side[k] = 0;
+            const Doubt *const doubt = doubts_of(part, false).first;
+            for (int32_t i = 0; i < n_doubts[part.share]; ++i) side[doubt[i].place] = doubt[i].left;
+            for (int32_t k = part.first_place; k < part.end_place; ++k) change[k] = side[k];
+        };
+        begin(net.rest());
+        factor.take_up_rest(change);
+        net.for_parts([&](const NetPart &part) {
+            begin(part);
+            factor.take_up(part, change);
+        });
+        factor.unknowns.add_pushes();
+        if (!solve_for(next_part, size_of_side, change)) return false;
+        prove_all(change, 0.5 * most_left(), false, [&](const NetPart &part) {
+            for (int32_t k = part.first_place; k < part.end_place; ++k) t[k] += change[k];
+        });
+        factor.find_pulls_of_rest(t, G);
+        return !unproven;
+    }
+
+private:
+    Net3 low() const {  // in the place of accelerations
+        Memory<double> memory = {reinterpret_cast<double *>(a)};
+        return Net3::take(memory, n_rest(s), s.first_node);
+    }
+    Doubts doubts_of(const NetPart &part, bool look) const {
+        return {reinterpret_cast<Doubt *>(enough + part.first_place),
+                look ? (part.end_place - part.first_place) / places_of_look : 0, 0, false};
+    }
+    // Of one equation, or of W: terms are S and what the atoms' accelerations are multiplied by; of these, what the
+    // bonds do is no more than S greater.
+    template <class V>
+    HOL_FORCED void prove(int32_t place, const Atom<V> &from, const Atom<V> &to, double most, Doubts &doubts) const {
+        net.fetch_ahead(place, side, size_of_side);
+        const Vector3<V> bond = d.get<V>(place), x = from.w * from.pull, y = to.w * to.pull;
+        const V at_x = dot(bond, x), at_y = dot(bond, y), tensions = mul_add(from.w, from.T, to.w * to.T),
+                size = max(load_any<V>(size_of_side + place), abs(at_x) + abs(at_y)),
+                rounding =
+                    0.5 * hidden_by_rounding(bond, tensions) + 4.0 * dot(absolute(bond), absolute(x) + absolute(y)),
+                left = mul_add(Width<V>::all(epsilon), rounding, abs(load_any<V>(side + place) + (at_y - at_x)));
+        const MaskOf<V> bad = ~less_equal(left, most * size);
+        if (__builtin_expect(!any(bad), 1)) return;
+        const auto of_lane = [](const V &all, int i) HOL_FORCED { return Width<V>::get(all, i); };
+        for (int i = 0; i < Width<V>::lanes; ++i) {
+            if (!(bits(bad) >> i & 1)) continue;
+            __builtin_prefetch(s.from + place + i);
+            __builtin_prefetch(s.to + place + i);
+            doubts.note({of_lane(left, i), of_lane(at_x, i), of_lane(at_y, i), of_lane(tensions, i), place + i});
+        }
+    }
+    __attribute__((noinline)) void prove_trees(double most, Doubts &doubts) const {
+        const auto atom = [&](int32_t i) { return Atom<double>{net.w[i], tension[i], G.get<double>(i)}; };
+        for (int32_t k = s.first_tree_place; k < s.n_bonds; ++k)
+            prove<double>(k, atom(s.from[k]), atom(s.to[k]), most, doubts);
+    }
+    __attribute__((noinline)) void prove(const NetPart &part, const double *multipliers, double most,
+                                         Doubts &doubts) const {
+        net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED {
+            typedef decltype(width) V;
+            const auto at_node = [&](int end) HOL_FORCED {
+                return Atom<V>{net.at_node<V>(g, end, net.w), net.at_node<V>(g, end, tension),
+                               net.at_node<V>(g, end, G)};
+            };
+            ExactPulls<V> along(*this, multipliers, g.place);
+            V last = along.tension();
+            net.for_bonds(
+                g, [&]() HOL_FORCED { return at_node(0); },
+                [&](int32_t site, int32_t place) HOL_FORCED {
+                    const Vector3<V> pull = along.before(place);
+                    const V next = along.tension(), T = last + next;
+                    last = next;
+                    return Atom<V>{load_any<V>(net.w + site), T, pull};
+                },
+                [&]() HOL_FORCED { return at_node(1); },
+                [&](int32_t place, const Atom<V> &from, const Atom<V> &to)
+                    HOL_FORCED { prove<V>(place, from, to, most, doubts); });
+        });
+    }
+    // Keeps those that are left with too much. What they need is all over memory, so it is fetched for all of them
+    // first.
+    __attribute__((noinline)) void look_at(Doubts &doubts) const {
+        const int32_t n = doubts.lost ? 0 : doubts.n;
+        doubts.n = 0;
+        const auto for_ends = [&](const auto &each) {
+            for (int32_t i = 0; i < n; ++i) each(s.from[doubts.first[i].place]), each(s.to[doubts.first[i].place]);
+        };
+        for_ends([&](int32_t site) { __builtin_prefetch(s.atom_of + site); });
+        for_ends([&](int32_t site) {
+            net.fetch(coordinates, site);
+            if (has(pulls)) net.fetch(*in.f, site);
+            if (has(squares)) net.fetch(*in.v, site);
+        });
+        for (int32_t i = 0; i < n && !doubts.lost; ++i) look_at(doubts.first[i], doubts);
+    }
+    // With all terms of the equation, the accelerations of its two atoms too; then in twice the precision, from
+    // unrounded bonds.
+    void look_at(const Doubt &doubt, Doubts &doubts) const {
+        const int32_t k = doubt.place, i = s.from[k], j = s.to[k];
+        const Vector3<double> rounded_bond = d.get<double>(k);
+        const double terms_of_all = size_of_side[k] + abs(doubt.at_from + dot(rounded_bond, input_of(i))) +
+                                    abs(doubt.at_to + dot(rounded_bond, input_of(j))),
+                     may_be_left = most_left() * terms_of_all,
+                     rounding = 16 * (epsilon * epsilon) * hidden_by_rounding(rounded_bond, doubt.tensions);
+        if (doubt.left <= may_be_left) return;
+        const double left = residual_of(k, exact(k), acceleration_of(i, t), acceleration_of(j, t));
+        if (abs(left) + rounding <= may_be_left) return;
+        doubts.lost = !(abs(left) < 1e300 && rounding <= may_be_left);
+        doubts.note({left, 0, 0, 0, k});
+    }
+};
+
+}  // namespace holonomic::HOL_ISA::graph
