@@ -283,29 +283,6 @@ struct FlatLinear {
             });
         });
     }
-
-    // Once more for velocities, for the rates of the bonds as they are, d.(v_j - v_i).
-    void solve_again() const {
-        clear_sides(s, t);
-        up([](const FlatLinear &x, const Branch &branch) HOL_FORCED {
-            for_tiles_up(x.s, branch, [&](const Tile &tile) HOL_FORCED {
-                copy_guests(x.s, tile, x.a);
-                x.find_rates(tile);
-                x.add_given(tile, x.t);
-                solve_up(x.s, tile, x.lower, x.t);
-            });
-        });
-        down([](const FlatLinear &x, const Branch &branch) HOL_FORCED {
-            for_tiles_down(x.s, branch, [&](const Tile &tile) HOL_FORCED {
-                solve_down(x.s, tile, x.lower, x.per_pivot, x.t, [](int32_t, const V &) HOL_FORCED {});
-                x.find_pulls(tile);
-                x.add_pulls(tile);
-            });
-        });
-    }
-    HOL_FORCED void find_rates(const Tile &tile) const {
-        for (int64_t k = tile.first; k < tile.end; k += step) some(t, k) = sides_of(tile, k, rates);
-    }
 };
 
 }  // namespace holonomic::HOL_ISA::graph
