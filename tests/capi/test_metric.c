@@ -70,6 +70,88 @@ static void rods_of_equal_joints_lose_no_digits(void **state)
     }
 }
 
+/** ln det of a chain along x that bends little, in sums of terms of one sign, theory (24) to (28), in long double. */
+static long double log_det_of_rod(const chain *c)
+{
+    long double e = 0, log_det = 0;
+    for (int64_t k = 0; k <= c->n_bonds; ++k) {
+        const long double w = c->mass[k] == 0 ? 0 : 1 / (long double)c->mass[k];
+        long double cosine = 0, complement = 1; /* of the joint at this atom */
+        if (k > 0 && k < c->n_bonds) {
+            long double d[2][3], q[2] = {0, 0};
+            for (int i = 0; i < 2; ++i)
+                for (int x = 0; x < 3; ++x) {
+                    d[i][x] = (long double)c->r[3 * (k + i) + x] - c->r[3 * (k + i - 1) + x];
+                    q[i] += d[i][x] * d[i][x];
+                }
+            const long double u = d[0][1] * d[1][2] - d[0][2] * d[1][1], v = d[0][2] * d[1][0] - d[0][0] * d[1][2],
+                              z = d[0][0] * d[1][1] - d[0][1] * d[1][0];
+            cosine = (d[0][0] * d[1][0] + d[0][1] * d[1][1] + d[0][2] * d[1][2]) / sqrtl(q[0] * q[1]);
+            complement = (u * u + v * v + z * z) / (q[0] * q[1]) / (1 + cosine);
+        }
+        /* the bond before this atom: e so far, and what the atom adds */
+        if (k > 0) {
+            const long double before = c->mass[k - 1] == 0 ? 0 : 1 / (long double)c->mass[k - 1];
+            const long double row = e + w * complement, P = row + w * cosine;
+            log_det += logl(P / (before + w));
+            e = w * cosine > 0 ? w * cosine * (row / P) : 0;
+        }
+        e += w * complement;
+    }
+    return log_det;
+}
+
+/** Factors of the determinant whose products leave the range of doubles, and products of two inverse masses that do. */
+static void masses_may_be_as_unequal_as_they_like(void **state)
+{
+    (void)state;
+    const struct {
+        double heavy, bend;
+    } rod[] = {{1e20, 1e-20}, {1e40, 1e-25}, {1e45, 1e-30}, {1e70, 1e-40}};
+    enum { N = 24 };
+    for (int i = 0; i < 8; ++i) {
+        chain c = chain_make(CHAIN_STRAIGHT, N, 1), back = chain_make(CHAIN_STRAIGHT, N, 1);
+        for (int k = 0; k <= N; ++k) {
+            c.mass[k] = k % 2 ? 1 : rod[i / 2].heavy;
+            c.r[3 * k] = k;
+            c.r[3 * k + 1] = rod[i / 2].bend * (double)(k * k % 7);
+            c.r[3 * k + 2] = rod[i / 2].bend * (double)(5 * k % 11 - 4);
+        }
+        if (i % 2) c.mass[0] = c.mass[N] = 0;
+        for (int k = 0; k <= N; ++k) {
+            back.mass[k] = c.mass[N - k];
+            for (int x = 0; x < 3; ++x) back.r[3 * k + x] = c.r[3 * (N - k) + x];
+        }
+        double log_det, *force = untouched(3 * (N + 1)), *from_behind = untouched(3 * (N + 1)), largest = 0;
+        hol_chains *chains = handle(&c), *other = handle(&back);
+        CHECK(hol_metric(chains, c.r, 2, &log_det, NULL, NULL, force, HOL_WRITE));
+        CHECK(hol_metric(other, back.r, 2, NULL, NULL, NULL, from_behind, HOL_WRITE));
+        CHECK_AT_MOST(fabsl(log_det - log_det_of_rod(&c)), oracle_bound(N) * DBL_EPSILON * fabs(log_det));
+        for (int k = 0; k < 3 * (N + 1); ++k) largest = fmax(largest, fabs(force[k]));
+        assert_true(largest > 0 && largest < 1e300);
+        for (int k = 0; k <= N; ++k)
+            for (int x = 0; x < 3; ++x)
+                CHECK_AT_MOST(fabs(force[3 * k + x] - from_behind[3 * (N - k) + x]),
+                              oracle_bound(N) * DBL_EPSILON * largest);
+        hol_chains_destroy(chains);
+        hol_chains_destroy(other);
+        free(force);
+        free(from_behind);
+        chain_free(&c);
+        chain_free(&back);
+    }
+    const double size[] = {1e-160, 1e160, 1e-290, 1e290};
+    for (int i = 0; i < 4; ++i) {
+        chain c = chain_make(CHAIN_COIL, N, 2);
+        for (int k = 0; k <= N; ++k) c.mass[k] = size[i] * (1 + 0.7 * k);
+        compare_chain(&c);
+        for (int k = 0; k <= N; ++k) c.mass[k] = 1;
+        c.mass[7] = size[i];
+        compare_chain(&c);
+        chain_free(&c);
+    }
+}
+
 static void metric_agrees_with_113_bits_for_every_kind_of_chain(void **state)
 {
     (void)state;
@@ -250,6 +332,7 @@ int main(void)
         cmocka_unit_test(a_bond_between_two_fixed_atoms_is_in_no_determinant),
         cmocka_unit_test(metric_agrees_with_113_bits_for_every_kind_of_chain),
         cmocka_unit_test(rods_of_equal_joints_lose_no_digits),
+        cmocka_unit_test(masses_may_be_as_unequal_as_they_like),
         cmocka_unit_test(metric_of_long_chains_agrees_with_113_bits),
         cmocka_unit_test(force_is_minus_the_gradient),
         cmocka_unit_test(total_force_torque_and_virial_trace_vanish),

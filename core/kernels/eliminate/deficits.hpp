@@ -103,20 +103,20 @@ struct MetricSums {
 
 // The deficit that is left of a row, e = A / F. With coupling p to the next row, whose own is delta,
 //     F' = m (p F + A) = m P F,   A' = delta F' + m p A
-// for any power of two m: theory (26), (27) without a quotient. Where a chain has equal masses m is 1, else it keeps F'
-// in the range of F: a rounded number would add up along a rod, in which e is small and the same at each joint.
+// for any power of two m: theory (26), (27) without a quotient. Where a chain has equal masses m is 1, else F' is in
+// [1, 2), however unequal the masses are. A rounded number would add up along a rod, in which e is small and the same
+// at each joint.
 template <bool uniform>
 struct Deficit {
     vec A, F = splat(1.0);
 
-    HOL_FORCED static vec diagonal(const Block &block, long k) {
-        return w_at<uniform>(block, k) + w_at<uniform>(block, k + 1);
-    }
-    HOL_FORCED static vec scale_of(vec diagonal) { return uniform ? splat(1.0) : reciprocal_scale(diagonal); }
-    // passed: m p.
-    HOL_FORCED void pass(vec m, vec passed, vec delta) {
-        F = mul_add(passed, F, uniform ? A : m * A);
-        A = mul_add(delta, F, passed * A);
+    // Returns m. If the pivot is 0, F is so from there on.
+    HOL_FORCED vec pass(vec p, vec delta) {
+        F = mul_add(p, F, A);
+        const vec m = uniform ? splat(1.0) : reciprocal_scale(F);
+        if (!uniform) F = m * F;
+        A = mul_add(delta, F, (uniform ? p : m * p) * A);
+        return m;
     }
     // Not by a power of two alone: along a rod A and F hardly change, and neither would what each joint rounds off.
     HOL_FORCED vec rescale() {
@@ -160,13 +160,13 @@ static inline MetricSums eliminate_metric(const Block &block, const Geometry &x,
     Removal part;
     vec F_before = {}, passed_before = {}, size = {};
     for (long k = 0; k < block.n; ++k) {
-        const vec M = left.diagonal(block, k), m = left.scale_of(M), passed = x.p[k + 1] * m, F = left.F;
+        const vec M = w_at<uniform>(block, k) + w_at<uniform>(block, k + 1), F = left.F;
         if (keep_deficits) {
             x.e[k] = left.A;
             x.per_e[k] = F;
         }
         size = size + x.reciprocal[k];
-        left.pass(m, passed, x.delta[k + 1]);
+        const vec m = left.pass(x.p[k + 1], x.delta[k + 1]);
         Removal next = {part.before, left.F, mul_add(x.p[k] * m * passed_before, F_before, part.removed * (M * m)),
                         part.diagonals * (M * m)};
         if (k >= whole) {
@@ -176,7 +176,7 @@ static inline MetricSums eliminate_metric(const Block &block, const Geometry &x,
         }
         part = next;
         F_before = F;
-        passed_before = passed;
+        passed_before = x.p[k + 1] * m;
         beside(k);
         if (k % rescaled == rescaled - 1 || k + 1 == block.n) {
             if (logs) {
@@ -187,7 +187,6 @@ static inline MetricSums eliminate_metric(const Block &block, const Geometry &x,
             part = {left.F, left.F};
         }
     }
-    // A pivot that is 0 makes F zero from there on.
     const vec headroom = splat(call.force.x ? call.kT * 0x1p300 : 0.0);  // no force overflows
     good = good & less(vec{}, left.F) & finite(size + headroom * size);
     return {det.sum, call.log_det_z ? det.sum + log_of_diagonals(block, x, first, end) : vec{}};
@@ -196,11 +195,18 @@ static inline MetricSums eliminate_metric(const Block &block, const Geometry &x,
 // From the joint's two sides: h_k = w_k (M^-1)_{k-1,k}, and h_k n_k in place of n_k. `right` belongs to bond k.
 template <bool uniform>
 HOL_INLINE void weigh_normal(const Block &block, const Geometry &x, long k, const Deficit<uniform> &right) {
-    const vec p = x.p[k], pF = p * x.per_e[k - 1], pG = p * right.F, A = x.e[k - 1];
+    vec p = x.p[k], A = x.e[k - 1], B = right.A, w = w_at<uniform>(block, k);
     const mask coupled = less(vec{}, p);
-    const vec whole = mul_add(pG, A, mul_add(pF, right.A, A * right.A));
+    if (!uniform) {  // their products stay in range
+        const vec s = reciprocal_scale(max(max(A, B), w));
+        p = s * p;
+        A = s * A;
+        B = s * B;
+        w = s * w;
+    }
+    const vec pF = p * x.per_e[k - 1], pG = p * right.F, whole = mul_add(pG, A, mul_add(pF, B, A * B));
     // The caller may trap divisions by zero.
-    const vec size = w_at<uniform>(block, k) * (pF * right.F) / select(coupled, whole, splat(1.0));
+    const vec size = w * (pF * right.F) / select(coupled, whole, splat(1.0));
     const mask sign = mask{} + (-0x7fffffffffffffffLL - 1);
     const vec h = as_vec(as_mask(size) | (as_mask(x.cosine[k]) & sign));
     x.normal[k] = keep(coupled, h) * x.normal[k];
@@ -209,13 +215,12 @@ HOL_INLINE void weigh_normal(const Block &block, const Geometry &x, long k, cons
 // From bond k to bond k - 1, from behind.
 template <bool uniform>
 HOL_INLINE void pass_back(const Block &block, const Geometry &x, long k, Deficit<uniform> &right) {
-    const vec m = right.scale_of(right.diagonal(block, k));
-    right.pass(m, x.p[k] * m, x.delta[k - 1]);
+    right.pass(x.p[k], x.delta[k - 1]);
     if (k % rescaled == 0) right.rescale();
-    if (k >= block.n_min) {  // the last bond of a lane, which begins unscaled
-        const mask inside = joint(block, k);
-        right = {select(inside, right.A, x.delta[k - 1]), select(inside, right.F, splat(1.0))};
-    }
+    // The last bond of a lane begins unscaled. Not where k >= n_min alone: gcc 12 at -O3 left it out there with
+    // AVX-512's masks.
+    const mask inside = joint(block, k);
+    right = {select(inside, right.A, x.delta[k - 1]), select(inside, right.F, splat(1.0))};
 }
 
 // Writes phi of bond k as t times a vector: the force on atom k is the pull t_k phi_k - t_{k-1} phi_{k-1}. Zeros are

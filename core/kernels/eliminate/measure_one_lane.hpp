@@ -58,15 +58,18 @@ HOL_INLINE void write_vectors(double *p, const Vector3<Four> &v) {
     store_any(p + 8, four(_mm256_permute2f128_pd(b, c, 0x31)));
 }
 
+// As of lanes, in deficits.hpp.
+HOL_INLINE Four reciprocal_scale(Four a) {
+    const __m256i exponents = _mm256_and_si256(_mm256_castpd_si256(a.v), _mm256_set1_epi64x(0x7ff0000000000000LL));
+    return {_mm256_castsi256_pd(_mm256_sub_epi64(_mm256_set1_epi64x(2 * 0x3ff0000000000000LL), exponents))};
+}
+
 // Four bonds u [12], which become unit vectors, and low words; what is found goes to `square`, `scale`, `reciprocal`
 // [4]. i: their place in the stage.
 HOL_INLINE void measure_bonds(MeasuredBonds &x, long i, double *u, const double *u_low, double *square, double *scale,
                               double *reciprocal) {
     const Vector3<Four> raw = read_vectors(u);
-    const Four largest = max(max(abs(raw.x), abs(raw.y)), abs(raw.z));
-    const __m256i exponents =
-        _mm256_and_si256(_mm256_castpd_si256(largest.v), _mm256_set1_epi64x(0x7ff0000000000000LL));
-    const Four s = {_mm256_castsi256_pd(_mm256_sub_epi64(_mm256_set1_epi64x(2 * 0x3ff0000000000000LL), exponents))};
+    const Four s = reciprocal_scale(max(max(abs(raw.x), abs(raw.y)), abs(raw.z)));
     const Vector3<Four> d = s * raw, low = s * read_vectors(u_low);
     const Four q = square_of(d, low), r = Four{four{} + 1.0} / Four{_mm256_sqrt_pd(q.v)};
     x.put(x.d, i, d);
@@ -125,11 +128,19 @@ template <bool uniform, class Geometry>
 HOL_INLINE long weigh_in_fours(long k, long n, const vec *w, const Geometry &x) {
     const four one = four{} + 1.0, zero = {}, sign = _mm256_set1_pd(-0.0);
     for (; k + 4 <= n; k += 4) {
-        const four p = load_four(x.p + k), coupled = _mm256_cmp_pd(zero, p, _CMP_LT_OQ);
-        const four A = load_four(x.e + k - 1), C = load_four(x.f + k), G = load_four(x.per_f + k);
-        const four pF = p * load_four(x.per_e + k - 1), pG = p * G;
-        const four whole = mul_add(pG, A, mul_add(pF, C, A * C));
-        const four size = (uniform ? one : load_four(w + k)) * (pF * G) / _mm256_blendv_pd(one, whole, coupled);
+        four p = load_four(x.p + k), A = load_four(x.e + k - 1), B = load_four(x.f + k), of_atom = one;
+        const four coupled = _mm256_cmp_pd(zero, p, _CMP_LT_OQ);
+        if (!uniform) {
+            of_atom = load_four(w + k);
+            const four s = reciprocal_scale(max(max(Four{A}, Four{B}), Four{of_atom})).v;
+            p = s * p;
+            A = s * A;
+            B = s * B;
+            of_atom = s * of_atom;
+        }
+        const four G = load_four(x.per_f + k), pF = p * load_four(x.per_e + k - 1), pG = p * G;
+        const four whole = mul_add(pG, A, mul_add(pF, B, A * B));
+        const four size = of_atom * (pF * G) / _mm256_blendv_pd(one, whole, coupled);
         const four h = _mm256_and_pd(coupled, _mm256_or_pd(size, _mm256_and_pd(load_four(x.cosine + k), sign)));
         double *const normal = &x.normal[k].x.element;
         store_any(normal, spread<0>(h) * load_any<four>(normal));

@@ -12,9 +12,9 @@ HOL_INLINE double most_backward(int32_t n_bonds) {
     const double part = 0.5 * (16 + __builtin_sqrt(static_cast<double>(n_bonds)));
     return part < most_cancelled ? part : most_cancelled;
 }
-// A pivot below this part of its diagonal element may come of bonds that depend on each other, and be nothing but
-// rounding. Corrections don't show that where the right-hand sides depend on each other, too: rates, and forces at
-// rest.
-constexpr double least_pivot = 1e-6;
+// A pivot below this part of its diagonal element may come of bonds that depend on each other.
+constexpr double least_proven_pivot = 1e-6;
+// Below this it may be nothing but rounding; corrections don't show that if the right-hand side does not.
+constexpr double least_pivot = 1e-10;
 
 }  // namespace holonomic::HOL_ISA::graph

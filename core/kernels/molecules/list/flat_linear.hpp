@@ -83,20 +83,27 @@ struct FlatLinear {
         bonds_at = reinterpret_cast<int32_t *>(memory.values(bonds_at_values(s)));
         d_low = {memory.values(4 * most_columns(s))};
     }
-    // Calls body(this in a thread, branch) for all branches and the trunk.
+    // Calls body(this in a thread, branch) for all branches and the trunk. Molecules in lanes have no branches.
     template <class Body>
     HOL_FORCED void up(const Body &body) const {
-        branches_up(s, team, own, in_thread(body));
+        if constexpr (Width<V>::lanes > 1)
+            body(*this, s.branch[0]);
+        else
+            branches_up(s, team, own, in_thread(body));
     }
     template <class Body>
     HOL_FORCED void down(const Body &body) const {
-        branches_down(s, team, own, in_thread(body));
+        if constexpr (Width<V>::lanes > 1)
+            body(*this, s.branch[0]);
+        else
+            branches_down(s, team, own, in_thread(body));
     }
     template <class Body>
     HOL_FORCED auto in_thread(const Body &body) const {
-        return [ this, &body ](const Branch &branch, double *of_thread) __attribute__((noinline)) {
-            if (of_thread == own) return body(*this, branch);
-            body(FlatLinear(*this, of_thread), branch);
+        return [this, &body](const Branch &branch, double *of_thread) HOL_FORCED {
+            const auto once = [&](const FlatLinear &x) __attribute__((noinline)) { body(x, branch); };
+            if (of_thread == own) return once(*this);
+            once(FlatLinear(*this, of_thread));
         };
     }
     MaskOf<V> in_use() const { return Width<V>::first(used); }

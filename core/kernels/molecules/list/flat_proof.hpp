@@ -134,22 +134,22 @@ struct FlatProof {
         if (!any_doubts) return left;
         V *const change = all.back;
         clear_sides(all.s, change);
-        all.up([&](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
-            for_tiles_up(x.s, branch, [&](const Tile &tile) HOL_FORCED {
+        all.up([&](const FlatLinear<V> &own, const Branch &branch) HOL_FORCED {
+            for_tiles_up(own.s, branch, [&](const Tile &tile) HOL_FORCED {
                 for (int32_t k = tile.first; k < tile.end; ++k) change[k] = V{};
-                for (const Doubt *of = doubts_of(x, tile); of->column >= 0; ++of)
+                for (const Doubt *of = doubts_of(own, tile); of->column >= 0; ++of)
                     if (left >> of->lane & 1) Width<V>::set(change[of->column], of->lane, of->left);
-                solve_up(x.s, tile, x.lower, change);
+                solve_up(own.s, tile, own.lower, change);
             });
         });
-        all.down([&](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
+        all.down([&](const FlatLinear<V> &own, const Branch &branch) HOL_FORCED {
             MaskOf<V> small = Width<V>::of_bits(left);
-            for_tiles_down(x.s, branch, [&](const Tile &tile) HOL_FORCED {
-                solve_down(x.s, tile, x.lower, x.per_pivot, change, [&](int32_t k, const V &of_bond) HOL_FORCED {
-                    small = small & less_equal(8 * furthest * abs(of_bond), abs(x.t[k]));
+            for_tiles_down(own.s, branch, [&](const Tile &tile) HOL_FORCED {
+                solve_down(own.s, tile, own.lower, own.per_pivot, change, [&](int32_t k, const V &of_bond) HOL_FORCED {
+                    small = small & less_equal(8 * furthest * abs(of_bond), abs(own.t[k]));
                 });
             });
-            all.left[&branch - x.s.branch] = bits(small);
+            all.left[&branch - own.s.branch] = bits(small);
         });
         const unsigned good = left_of_all(all);
         for (int32_t k = 0; k < all.s.n_bonds; ++k) all.t[k] = all.t[k] + keep(Width<V>::of_bits(good), change[k]);
@@ -158,7 +158,7 @@ struct FlatProof {
     }
     // Of a tile, but for the bonds of which not all is known yet. A part of the terms does for most.
     __attribute__((noinline)) void look_at(const Tile &tile) {
-        const Columns<V> most = all_columns<V>(most_backward(s.n_bonds)), least = all_columns<V>(-least_pivot);
+        const Columns<V> most = all_columns<V>(most_backward(s.n_bonds)), least = all_columns<V>(-least_proven_pivot);
         const Rows<V> of = x.a_of(tile);
         int32_t next = tile.first_outer;
         start_looking(tile);
@@ -209,34 +209,34 @@ struct FlatProof {
         clear_sides(all.s, all.E);
         clear_sides(all.s, all.back);
         clear_entries(all.s, all.lower);
-        all.up([](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
-            for_tiles_up(x.s, branch, [&](const Tile &tile) HOL_FORCED {
-                x.load(tile);
-                x.assemble(tile);
-                x.eliminate(tile);
+        all.up([](const FlatLinear<V> &own, const Branch &branch) HOL_FORCED {
+            for_tiles_up(own.s, branch, [&](const Tile &tile) HOL_FORCED {
+                own.load(tile);
+                own.assemble(tile);
+                own.eliminate(tile);
             });
         });
         // Where it fails in the trunk branches need not look; what they do is the same in any case.
         unsigned *const trunk = all.left + all.s.n_branches;
         *trunk = bits(all.in_use());
-        all.down([&](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
-            FlatProof proof(x, *trunk);
-            for_tiles_down(x.s, branch, [&](const Tile &tile) HOL_FORCED {
-                x.substitute_back(tile);
+        all.down([&](const FlatLinear<V> &own, const Branch &branch) HOL_FORCED {
+            FlatProof proof(own, *trunk);
+            for_tiles_down(own.s, branch, [&](const Tile &tile) HOL_FORCED {
+                own.substitute_back(tile);
                 if (!proof.left) return;
-                x.find_pulls(tile);
-                x.load_inputs_again(tile);
-                x.add_pulls(tile);
+                own.find_pulls(tile);
+                own.load_inputs_again(tile);
+                own.add_pulls(tile);
                 proof.look_at(tile);
             });
-            all.left[&branch - x.s.branch] = proof.left;
+            all.left[&branch - own.s.branch] = proof.left;
         });
         unsigned left = left_of_all(all);
         if (!left) return 0;
-        all.up([&](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
-            FlatProof proof(x, left);
-            for_tiles_up(x.s, branch, [&](const Tile &tile) HOL_FORCED { proof.look_at_outer(tile); });
-            all.left[&branch - x.s.branch] = proof.left;
+        all.up([&](const FlatLinear<V> &own, const Branch &branch) HOL_FORCED {
+            FlatProof proof(own, left);
+            for_tiles_up(own.s, branch, [&](const Tile &tile) HOL_FORCED { proof.look_at_outer(tile); });
+            all.left[&branch - own.s.branch] = proof.left;
         });
         left &= left_of_all(all);
         return left ? correct(all, left) : 0;

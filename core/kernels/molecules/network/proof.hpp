@@ -161,8 +161,14 @@ struct NetProof : NetEquations {
         });
         factor.unknowns.add_pushes();
         if (!solve_for(next_part, size_of_side, change)) return false;
+        // A change that is a part of its multiplier leaves the terms of the equations what they are.
         prove_all(change, 0.5 * most_left(), false, [&](const NetPart &part) {
-            for (int32_t k = part.first_place; k < part.end_place; ++k) t[k] += change[k];
+            bool small = true;
+            for (int32_t k = part.first_place; k < part.end_place; ++k) {
+                small = small && 8 * abs(change[k]) <= abs(t[k]);
+                t[k] += change[k];
+            }
+            if (!small) __atomic_store_n(&unproven, true, __ATOMIC_RELAXED);
         });
         factor.find_pulls_of_rest(t, G);
         return !unproven;
