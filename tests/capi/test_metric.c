@@ -141,7 +141,8 @@ static void masses_may_be_as_unequal_as_they_like(void **state)
         chain_free(&back);
     }
     const double size[] = {1e-160, 1e160, 1e-290, 1e290};
-    for (int i = 0; i < 4; ++i) {
+    /* the reference needs the range of long double, which valgrind has not */
+    for (int i = 0; i < (quick_run() ? 0 : 4); ++i) {
         chain c = chain_make(CHAIN_COIL, N, 2);
         for (int k = 0; k <= N; ++k) c.mass[k] = size[i] * (1 + 0.7 * k);
         compare_chain(&c);
