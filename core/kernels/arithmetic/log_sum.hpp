@@ -13,8 +13,8 @@ HOL_INLINE V logarithm(V p, V x) {
     typedef typename Width<V>::Integers Integers;
     constexpr double root = 0x1.6a09e667f3bcdp-1;  // of 1/2
     constexpr long long above_root = exponent_of_one - 0x3fe6a09e667f3bcdLL;
-    const auto small = less(p, Width<V>::all(0.5));
-    const V one = Width<V>::all(1), q = select(small, p, one - x);
+    const auto known = less(Width<V>::all(0x1p-1000), p), small = known & less(p, Width<V>::all(0.5));
+    const V one = Width<V>::all(1), q = select(known, select(small, p, one - x), one);
     const Integers power = (Width<V>::integers(q) + above_root) & (Integers{} + exponent_bits);
     const V m = q * Width<V>::of_integers((Integers{} + 2 * exponent_of_one) - power);
     const V k = Width<V>::of_integers((power >> 52) + (0x4338000000000000LL - 1023)) - Width<V>::all(0x1.8p52);
@@ -29,7 +29,7 @@ HOL_INLINE V logarithm(V p, V x) {
             half = 0.5 * f * f, rest = mul_add(z, even, w * odd);
     const V low = mul_add(s, half + rest, k * Width<V>::all(0x1.a39ef35793c76p-33));
     const V sum = mul_add(k, Width<V>::all(0x1.62e42feep-1), f - (half - low));
-    return select(less(Width<V>::all(0x1p-1000), p), sum, Width<V>::all(__builtin_nan("")));
+    return select(known, sum, Width<V>::all(__builtin_nan("")));
 }
 
 // Of factors 1 - x, each at least 2^-100. Neither a sum near 0 nor a large one loses digits.
