@@ -24,40 +24,57 @@ HOL_INLINE void fetch_ahead(const double *first_lane, long k0, long ahead) {
 // worked on. In a large call that is what a block waits for longest: the rows of a few molecules in three or four
 // arrays are too short for a processor to notice that they are gone through, and some twenty lines are under way at
 // once.
-class NextRows {
+class NextMolecules {
 public:
-    NextRows() = default;
-    // The arrays of a call, in the order in which they are needed. Those that are not packed, or not there, are left
-    // out.
+    NextMolecules() = default;
+    // The arrays of a call, in the order in which they are needed, and its multipliers, which are last. Arrays that are
+    // not packed, or not there, are left out.
     template <int n>
-    explicit NextRows(const AtomArray *const (&arrays)[n]) {
+    explicit NextMolecules(const AtomArray *const (&arrays)[n], const double *lambda = nullptr) : multipliers(lambda) {
         static_assert(n <= most, "");
         for (const AtomArray *array : arrays)
             if (array->x && array->packed) base[count++] = reinterpret_cast<const char *>(array->x);
     }
-    // The next molecules have at most so many atoms each, and stand where add() says.
+    // The next molecules have at most so many atoms each, and are those of add().
     void begin(int64_t n_atoms) {
         most_atoms = n_atoms;
         fetched = n_molecules = 0;
     }
-    void add(int64_t first_atom) { first[n_molecules++] = row * first_atom; }
+    void add(int64_t first_atom) { molecule[n_molecules++] = {nullptr, first_atom, 0}; }
+    // With its masses and multipliers. Those whose atoms a list has are anywhere, and left out.
+    void add(const MoleculeLane &one) {
+        if (!one.atoms) molecule[n_molecules++] = {one.w, one.first_atom, one.first_bond};
+    }
 
-    // Starts to fetch one array more. gcc 12 leaves out calls of functions that do nothing but fetch.
+    // Starts to fetch one array more, with the first one the masses. gcc 12 leaves out calls of functions that do
+    // nothing but fetch.
     __attribute__((noinline)) void fetch() {
         __asm__ volatile("");
         if (fetched >= count) return;
         const char *const x = base[fetched++];
-        for (int i = 0; i < n_molecules; ++i) lines(x + first[i], row * most_atoms);
+        const double *known = nullptr;
+        for (int i = 0; i < n_molecules; ++i) {
+            const Next &m = molecule[i];
+            if (fetched == 1 && m.w != known) lines(known = m.w, 8 * most_atoms);
+            lines(x + row * m.first_atom, row * most_atoms);
+            if (fetched == count && multipliers) lines(multipliers + m.first_bond, 8 * most_atoms);
+        }
     }
     void fetch_the_rest() {
         while (fetched < count) fetch();
     }
 
-protected:
+private:
+    struct Next {
+        const double *w;  // or nullptr
+        int64_t first_atom, first_bond;
+    };
     static constexpr int most = 4;
     static constexpr int64_t row = 3 * sizeof(double), line = 64;
     const char *base[most] = {};
-    int64_t first[2 * W], most_atoms = 0;
+    const double *multipliers = nullptr;
+    Next molecule[2 * W];
+    int64_t most_atoms = 0;
     int count = 0, fetched = most, n_molecules = 0;
 
     HOL_STATIC void lines(const void *from, int64_t bytes) {

@@ -2,10 +2,10 @@
 // for a cache, else one by one.
 #pragma once
 
+#include "core/kernels/memory/prefetch.hpp"
 #include "core/kernels/molecules/armed_tree/armed_tree.hpp"
 #include "core/kernels/molecules/doubtful.hpp"
 #include "core/kernels/molecules/list/flat_verbs.hpp"
-#include "core/kernels/molecules/next.hpp"
 #include "core/kernels/molecules/solve.hpp"
 
 namespace holonomic::HOL_ISA::graph {
@@ -51,7 +51,7 @@ HOL_INLINE void advance(const MoleculeUnit &unit, MoleculeLane *lane) {
 // Calls work.template block<V>(lane, used, masses are known, scratch) for all blocks.
 template <class Work>
 static inline void for_each_block(const MoleculeUnit &unit, double *scratch, NextMolecules &ahead, Work &work) {
-    MoleculeLane lane[W], next[W];  // those without a molecule repeat the first one
+    MoleculeLane lane[W];  // those without a molecule repeat the first one
     KnownMasses<vec> known;
     KnownMasses<double> known_one;
     bool full = false;  // the block before was, and lanes follow each other
@@ -65,9 +65,8 @@ static inline void for_each_block(const MoleculeUnit &unit, double *scratch, Nex
         else
             for (int i = 0; i < W; ++i) lane[i] = molecule_of(unit, first + (i < used ? i : 0));
         if (small && unit.large && left > W) {
-            const int n = left - W < W ? static_cast<int>(left - W) : W;
-            for (int i = 0; i < n; ++i) next[i] = molecule_of(unit, first + W + i);
-            ahead.are(next, n, unit.schedule->n_atoms);
+            ahead.begin(unit.schedule->n_atoms);
+            for (int64_t i = W; i < left && i < 2 * W; ++i) ahead.add(molecule_of(unit, first + i));
         }
         ahead.fetch();
         if (used > 1)

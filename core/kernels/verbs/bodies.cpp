@@ -159,7 +159,8 @@ private:
 // Calls the stages of a verb for all blocks of a unit: bits of the bodies that are done. Two blocks at a time: what is
 // solved for is one long chain of sums and products, in which there is time for another one.
 template <class Verb, class Call>
-uint64_t for_each_block(const Call &call, const BodyUnit &unit, NextRows ahead, double *scratch, BodyResult *results) {
+uint64_t for_each_block(const Call &call, const BodyUnit &unit, NextMolecules ahead, double *scratch,
+                        BodyResult *results) {
     const BodyKind &kind = *unit.kind;
     Verb of[2] = {{call, kind, scratch}, {call, kind, scratch + scratch_of_block(kind.n_atoms)}};
     // What large ones are made of would not stay in the first cache until it is written.
@@ -202,20 +203,20 @@ int64_t bodies_scratch_bytes(int64_t n_atoms) {
 
 uint64_t bodies_forces(const ForcesCall &call, const BodyUnit &unit, double *scratch, BodyResult *results) {
     return choose_number<1, 3>(unit.kind->rank, [&](auto rank) {
-        return for_each_block<ForcesOf<rank>>(call, unit, NextRows({&call.r, &call.f, &call.v, &call.g}), scratch,
+        return for_each_block<ForcesOf<rank>>(call, unit, NextMolecules({&call.r, &call.f, &call.v, &call.g}), scratch,
                                               results);
     });
 }
 
 uint64_t bodies_velocities(const VelocitiesCall &call, const BodyUnit &unit, double *scratch, BodyResult *results) {
     return choose_number<1, 3>(unit.kind->rank, [&](auto rank) {
-        return for_each_block<VelocitiesOf<rank>>(call, unit, NextRows({&call.r, &call.v}), scratch, results);
+        return for_each_block<VelocitiesOf<rank>>(call, unit, NextMolecules({&call.r, &call.v}), scratch, results);
     });
 }
 
 uint64_t bodies_positions(const PositionsCall &call, const BodyUnit &unit, double *scratch, BodyResult *results) {
     return choose_number<1, 3>(unit.kind->rank, [&](auto rank) {
-        return for_each_block<PositionsOf<rank>>(call, unit, NextRows({&call.r_ref, &call.r, &call.v}), scratch,
+        return for_each_block<PositionsOf<rank>>(call, unit, NextMolecules({&call.r_ref, &call.r, &call.v}), scratch,
                                                  results);
     });
 }

@@ -1,10 +1,10 @@
 // Different trees in the lanes of a vector: constraint forces, multipliers for given right-hand sides, velocities,
 // positions.
+#include "core/kernels/memory/prefetch.hpp"
 #include "core/kernels/molecules/doubtful.hpp"
 #include "core/kernels/molecules/forest/one_tree.hpp"
 #include "core/kernels/molecules/forest/one_tree_positions.hpp"
 #include "core/kernels/molecules/forest/open_forest.hpp"
-#include "core/kernels/molecules/next.hpp"
 #include "core/kernels/verbs/verbs.hpp"
 
 namespace holonomic::HOL_ISA {
@@ -30,8 +30,10 @@ static inline void for_each_forest(const MoleculeUnit &unit, double *scratch, Ne
         MoleculeLane lane[W];
         for (int l = 0; l < W; ++l) lane[l] = next[l < f.n_trees ? l : 0];
         next += f.n_trees;
-        if (unit.large && i + 1 < unit.n_forests)
-            ahead.are(next, unit.forests[i + 1].n_trees, unit.forests[i + 1].most_atoms);
+        if (unit.large && i + 1 < unit.n_forests) {
+            ahead.begin(unit.forests[i + 1].most_atoms);
+            for (int l = 0; l < unit.forests[i + 1].n_trees; ++l) ahead.add(next[l]);
+        }
         ahead.fetch();
         work(f, lane, Memory<vec>{left});
         ahead.fetch_the_rest();
