@@ -1,0 +1,169 @@
+#include "residues.h"
+
+#include "check.h"
+#include "equations.h"
+#include "residue_growth.h"
+
+const residue_recipe residue_recipes[] = {
+    {.name = "random sequence", .n_kinds = 12},
+    {.name = "homopolymer, a ring in each", .first_kind = 2, .n_kinds = 1},
+    {.name = "homopolymer of three atoms", .first_kind = 10, .n_kinds = 1},
+    {.name = "homopolymer, rings through the backbone", .first_kind = 8, .n_kinds = 1, .caps = 1},
+    {.name = "rings through the backbone beside others", .first_kind = 2, .n_kinds = 4},
+    {.name = "bridges", .n_kinds = 9, .bridges = 6, .caps = 1},
+    {.name = "closed, with bridges", .n_kinds = 12, .bridges = 3, .closed = 1},
+    {.name = "comb", .n_kinds = 12, .order = RESIDUES_AS_COMB},
+    {.name = "star", .n_kinds = 8, .order = RESIDUES_AS_STAR, .bridges = 2},
+    {.name = "tree of residues", .n_kinds = 11, .order = RESIDUES_AS_TREE},
+    {.name = "each of its own kind", .n_kinds = 0, .caps = 1},
+    {.name = "fixed ends", .n_kinds = 8, .fixed = 5},
+    {.name = "fixed atoms in the backbone", .n_kinds = 8, .fixed = 2, .fixed_backbone = 3},
+    {.name = "shuffled bonds", .n_kinds = 12, .bridges = 2, .shuffled = 1},
+    {.name = "scattered atoms", .n_kinds = 12, .bridges = 2, .scattered = 1, .shuffled = 1},
+    {.name = "orthorhombic box", .n_kinds = 12, .box = ORTHORHOMBIC_BOX},
+    {.name = "comb in a triclinic box", .n_kinds = 12, .order = RESIDUES_AS_COMB, .box = TRICLINIC_BOX},
+    {.name = "far from the origin", .n_kinds = 12, .offset = 1e5},
+    {.name = "unequal masses of each kind", .n_kinds = 12, .decades = 3, .caps = 1},
+    {.name = "unequal masses of each atom, bridges", .n_kinds = 12, .decades = -3, .bridges = 3},
+    {.name = "nearly straight backbone", .n_kinds = 8, .bend = 1e-3, .offset = 10},
+    {.name = "straight and unequal", .n_kinds = 12, .bend = 1e-5, .decades = 2},
+};
+const int n_residue_recipes = sizeof residue_recipes / sizeof *residue_recipes, hostile_residues = 18;
+
+/** Atom i becomes number[i]. */
+static void renumber(residues *s, const int64_t *number)
+{
+    molecule *m = &s->m;
+    double *mass = copy_of(m->mass, (size_t)m->n_atoms), *r = copy_of(m->r, 3 * (size_t)m->n_atoms);
+    int64_t *residue = malloc((size_t)m->n_atoms * sizeof *residue);
+    memcpy(residue, s->residue, (size_t)m->n_atoms * sizeof *residue);
+    for (int64_t i = 0; i < m->n_atoms; ++i) {
+        m->mass[number[i]] = mass[i];
+        s->residue[number[i]] = residue[i];
+        memcpy(m->r + 3 * number[i], r + 3 * i, 3 * sizeof *r);
+    }
+    for (int64_t e = 0; e < 2 * m->n_bonds; ++e) m->pairs[e] = number[m->pairs[e]];
+    free(mass), free(r), free(residue);
+}
+
+static int64_t *random_order(int64_t n, random_stream *random)
+{
+    int64_t *order = malloc((size_t)n * sizeof *order);
+    for (int64_t i = 0; i < n; ++i) order[i] = i;
+    for (int64_t i = n - 1; i > 0; --i) {
+        const int64_t j = random_integer(random, 0, i), kept = order[i];
+        order[i] = order[j], order[j] = kept;
+    }
+    return order;
+}
+
+void residues_shuffle(molecule *m, uint64_t seed, int64_t *place)
+{
+    random_stream random = random_seed(seed);
+    int64_t *order = random_order(m->n_bonds, &random), *pairs = malloc(2 * (size_t)m->n_bonds * sizeof *pairs);
+    double *length = copy_of(m->length, (size_t)m->n_bonds);
+    memcpy(pairs, m->pairs, 2 * (size_t)m->n_bonds * sizeof *pairs);
+    for (int64_t k = 0; k < m->n_bonds; ++k) {
+        const int64_t turn = random_integer(&random, 0, 1);
+        m->pairs[2 * k] = pairs[2 * order[k] + turn];
+        m->pairs[2 * k + 1] = pairs[2 * order[k] + 1 - turn];
+        m->length[k] = length[order[k]];
+        if (place) place[k] = order[k];
+    }
+    free(order), free(pairs), free(length);
+}
+
+/** Far enough for the longest bond, and each atom in the cell. */
+static void wrap(residues *s)
+{
+    const molecule *m = &s->m;
+    double longest = 0;
+    for (int64_t k = 0; k < m->n_bonds; ++k) longest = fmax(longest, m->length[k]);
+    const double side = fmax(9, 3 * longest), skewed = s->recipe->box == TRICLINIC_BOX;
+    const double box[9] = {side, 0, 0, skewed * 0.3 * side, 1.1 * side, 0, -0.2 * skewed * side, 0.4 * skewed * side,
+                           0.9 * side};
+    memcpy(s->box, box, sizeof box);
+    for (int64_t i = 0; i < m->n_atoms; ++i)
+        for (int h = 2; h >= 0; --h) {
+            const double cells = floor(m->r[3 * i + h] / box[4 * h]);
+            for (int c = 0; c <= h; ++c) m->r[3 * i + c] -= cells * box[3 * h + c];
+        }
+}
+
+const double *residues_box(const residues *s)
+{
+    return s->recipe->box == NO_BOX ? NULL : s->box;
+}
+
+/** Lengths of the bonds as they stand, each an image. */
+static void measure(residues *s)
+{
+    for (int64_t k = 0; k < s->m.n_bonds; ++k) {
+        long double d[3], square = 0;
+        bond_in_box(s->m.r, s->m.pairs + 2 * k, residues_box(s), d);
+        for (int c = 0; c < 3; ++c) square += d[c] * d[c];
+        s->m.length[k] = (double)sqrtl(square);
+    }
+}
+
+residues residues_make(const residue_recipe *recipe, int64_t n_bonds, uint64_t seed)
+{
+    random_stream random = random_seed(seed);
+    residues s;
+    memset(&s, 0, sizeof s);
+    s.recipe = recipe;
+    s.m = residues_grow(recipe, n_bonds, &random, &s.residue);
+    for (int64_t i = 0; i < 3 * s.m.n_atoms; ++i) s.m.r[i] += recipe->offset * (double)(i % 3 + 1);
+    if (recipe->scattered) {
+        int64_t *number = random_order(s.m.n_atoms, &random);
+        renumber(&s, number);
+        free(number);
+    }
+    for (int64_t i = 0; i < s.m.n_atoms; ++i) s.m.inverse_mass[i] = s.m.mass[i] > 0 ? 1 / s.m.mass[i] : 0;
+    molecule_finish(&s.m, &random);
+    if (recipe->box != NO_BOX) wrap(&s);
+    measure(&s);
+    if (recipe->shuffled) residues_shuffle(&s.m, seed + 1, NULL);
+    s.chains = residues_chains(&s);
+    s.n_molecules = hol_chains_n_chains(s.chains);
+    assert_true(recipe->fixed_backbone ? s.n_molecules > 1 : s.n_molecules == 1);
+    return s;
+}
+
+hol_chains *residues_chains(const residues *s)
+{
+    hol_chains *chains = NULL;
+    CHECK(hol_chains_create(s->m.n_atoms, s->m.mass, &chains));
+    CHECK(hol_chains_set_box(chains, residues_box(s)));
+    CHECK(hol_chains_add_bonds(chains, s->m.n_bonds, s->m.pairs, s->m.length));
+    return chains;
+}
+
+void residues_free(residues *s)
+{
+    hol_chains_destroy(s->chains);
+    molecule_free(&s->m);
+    free(s->residue);
+}
+
+int residues_link(const residues *s, int64_t bond)
+{
+    return s->residue[s->m.pairs[2 * bond]] != s->residue[s->m.pairs[2 * bond + 1]];
+}
+
+void residues_project(residues *s)
+{
+    CHECK(hol_project_velocities(s->chains, s->m.r, s->m.v, NULL, NULL));
+}
+
+double residues_step(const residues *s, double part)
+{
+    double dt = HUGE_VAL;
+    for (int64_t k = 0; k < s->m.n_bonds; ++k) {
+        double square = 0;
+        for (int c = 0; c < 3; ++c)
+            square += pow(s->m.v[3 * s->m.pairs[2 * k + 1] + c] - s->m.v[3 * s->m.pairs[2 * k] + c], 2);
+        if (square > 0) dt = fmin(dt, part * s->m.length[k] / sqrt(square));
+    }
+    return dt;
+}

@@ -1,0 +1,76 @@
+/**
+ * @file residues.h
+ * Large molecules of repeating units: residues of several kinds, each of consecutive atoms, with bonds from one to the
+ * next (links) and between far ones (bridges).
+ */
+#ifndef TESTS_RESIDUES_H
+#define TESTS_RESIDUES_H
+
+#include <holonomic.h>
+#include <stdint.h>
+
+#include "molecule.h"
+
+/** What each residue hangs at. */
+typedef enum residue_order {
+    RESIDUES_IN_LINE = 0,
+    RESIDUES_AS_COMB, /**< every fourth residue goes on with the line, three hang at its side */
+    RESIDUES_AS_STAR, /**< arms of ten at the first one */
+    RESIDUES_AS_TREE  /**< at any earlier one */
+} residue_order;
+
+typedef enum residue_box { NO_BOX = 0, ORTHORHOMBIC_BOX, TRICLINIC_BOX } residue_box;
+
+typedef struct residue_recipe {
+    const char *name;
+    int first_kind, n_kinds; /**< of residue_texts; 0: each residue is of a kind of its own */
+    residue_order order;
+    int bridges;        /**< bonds between far residues */
+    int closed;         /**< one more from the last residue to the first */
+    int caps;           /**< ends are kinds of their own */
+    int fixed;          /**< atoms at ends that are held fixed, in as many residues */
+    int fixed_backbone; /**< atoms of the backbone: they divide the molecule */
+    double decades;     /**< masses go up and down by so many, the same in residues of a kind; < 0: in each atom */
+    double bend;        /**< angles along the backbone; 0: those of a tetrahedron */
+    double offset;      /**< how far from the origin it is */
+    residue_box box;    /**< atoms are wrapped into it */
+    int shuffled;       /**< bonds in any order, either atom first */
+    int scattered;      /**< atoms numbered at random */
+} residue_recipe;
+
+/** All of them are molecules that physics has an answer for; those from hostile_residues on are ill conditioned. */
+extern const residue_recipe residue_recipes[];
+extern const int n_residue_recipes, hostile_residues;
+
+typedef struct residues {
+    molecule m;
+    const residue_recipe *recipe;
+    int64_t *residue; /**< [n_atoms] number of the residue of each atom */
+    double box[9];
+    hol_chains *chains;
+    int64_t n_molecules; /**< 1, unless fixed atoms divide it */
+} residues;
+
+/** Of at least so many bonds. */
+residues residues_make(const residue_recipe *recipe, int64_t n_bonds, uint64_t seed);
+void residues_free(residues *s);
+
+/** Its box, or NULL. */
+const double *residues_box(const residues *s);
+
+/** A handle of its own with the bonds as they are now, in the box. */
+hol_chains *residues_chains(const residues *s);
+
+/** Bonds in another order, either atom first; `place` [n_bonds] gets where each was. */
+void residues_shuffle(molecule *m, uint64_t seed, int64_t *place);
+
+/** Whether a bond joins two residues. */
+int residues_link(const residues *s, int64_t bond);
+
+/** Velocities that obey the constraints. */
+void residues_project(residues *s);
+
+/** A step in which no bond's ends move by more than a part of its length. */
+double residues_step(const residues *s, double part);
+
+#endif
