@@ -20,6 +20,7 @@ void leave_roundings_of_equations(const molecule *m, const double *lambda, const
 void leave_roundings_in_box(const molecule *m, const double *box, const double *lambda, const double *v,
                             const double *f, int rates, const double *given)
 {
+    const long double underflow = DBL_MIN / DBL_EPSILON;
     const long double bound = oracle_bound(m->n_bonds) + (box ? 4 * fmaxl(box[0], box[4]) : 0);
     long double *a = calloc(3 * (size_t)m->n_atoms, sizeof *a), largest = 0;
     double *tension = calloc((size_t)m->n_atoms, sizeof *tension);
@@ -55,7 +56,7 @@ void leave_roundings_in_box(const molecule *m, const double *box, const double *
         }
         terms += fabsl(of_ends[0]) + fabsl(of_ends[1]);
         const long double rounded = m->length[k] * (tension[i] * wi + tension[j] * wj);
-        largest = fmaxl(largest, fabsl(left) / (bound * terms + 0.6L * rounded));
+        largest = fmaxl(largest, fabsl(left) / (bound * terms + 0.6L * rounded + underflow));
     }
     CHECK_AT_MOST(largest, DBL_EPSILON);
     free(a), free(tension);
