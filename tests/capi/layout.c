@@ -1,7 +1,6 @@
 #include "layout.h"
 
-#include <stdlib.h>
-#include <string.h>
+#include "check.h"
 
 const layout layouts[] = {
     {"records of three", HOL_DOUBLE, 3, {0, 1, 2}, 0},
@@ -94,4 +93,17 @@ void laid_out_free(laid_out *a)
 {
     free(a->memory);
     memset(a, 0, sizeof *a);
+}
+
+void assert_laid_out(const laid_out *got, const double *expected, const char *what)
+{
+    double *numbers = copy_of(expected, 3 * (size_t)got->n_atoms);
+    collect(got, numbers);
+    for (int64_t i = 0; i < 3 * got->n_atoms; ++i) {
+        const double number = got->view.element == HOL_FLOAT ? (float)expected[i] : expected[i];
+        if (memcmp(numbers + i, &number, sizeof number) != 0 && !(isnan(number) && isnan(numbers[i])))
+            fail_msg("%s: number %lld is %.17g instead of %.17g", what, (long long)i, numbers[i], number);
+    }
+    free(numbers);
+    assert_true(gaps_untouched(got));
 }

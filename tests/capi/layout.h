@@ -37,6 +37,9 @@ void collect(const laid_out *a, double *numbers);
 /** 1 if everything between the elements still holds the pattern. */
 int gaps_untouched(const laid_out *a);
 
+/** Fails unless it holds these numbers [n_atoms][3], as doubles or rounded to floats, and nothing between them. */
+void assert_laid_out(const laid_out *got, const double *expected, const char *what);
+
 void laid_out_free(laid_out *a);
 
 #endif

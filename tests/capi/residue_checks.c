@@ -31,7 +31,9 @@ void check_pulls(const residues *s, const double *lambda, const double *g, const
     for (int64_t i = 0; g && i < 3 * s->m.n_atoms; ++i)
         CHECK_AT_MOST(fabsl(g[i] - p.g[i]), (4 + images) * DBL_EPSILON * p.size[i / 3] + DBL_MIN);
     for (int64_t k = 0; tension && k < s->m.n_bonds; ++k) {
-        const long double exact = 2 * lambda[k] * s->m.length[k];
+        long double d[3];
+        bond_in_box(s->m.r, s->m.pairs + 2 * k, residues_box(s), d);
+        const long double exact = 2 * lambda[k] * sqrtl(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
         CHECK_AT_MOST(fabsl(tension[k] - exact), (4 + images) * DBL_EPSILON * fabsl(exact) + DBL_MIN);
     }
     for (int n = 0; virial && n < 9; ++n) {

@@ -95,14 +95,16 @@ const double *residues_box(const residues *s)
     return s->recipe->box == NO_BOX ? NULL : s->box;
 }
 
-/** Lengths of the bonds as they stand, each an image. */
+/** Lengths of the bonds as they stand, each an image, to nine digits, so that bonds of a kind have the same; where atoms
+ * have masses of their own, to all of theirs. */
 static void measure(residues *s)
 {
     for (int64_t k = 0; k < s->m.n_bonds; ++k) {
         long double d[3], square = 0;
         bond_in_box(s->m.r, s->m.pairs + 2 * k, residues_box(s), d);
         for (int c = 0; c < 3; ++c) square += d[c] * d[c];
-        s->m.length[k] = (double)sqrtl(square);
+        const double length = (double)sqrtl(square);
+        s->m.length[k] = s->recipe->decades < 0 ? length : round(length * 1e9) / 1e9;
     }
 }
 

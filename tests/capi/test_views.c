@@ -16,19 +16,6 @@ static void round_to_float(assembly *a)
     }
 }
 
-static void assert_numbers(const laid_out *got, const double *expected, const char *what)
-{
-    double *numbers = copy_of(expected, 3 * (size_t)got->n_atoms);
-    collect(got, numbers);
-    for (int64_t i = 0; i < 3 * got->n_atoms; ++i) {
-        const double number = got->view.element == HOL_FLOAT ? (float)expected[i] : expected[i];
-        if (memcmp(numbers + i, &number, sizeof number) != 0 && !(isnan(number) && isnan(numbers[i])))
-            fail_msg("%s: number %lld is %.17g instead of %.17g", what, (long long)i, numbers[i], number);
-    }
-    free(numbers);
-    assert_true(gaps_untouched(got));
-}
-
 static void forces_through(const assembly *a, const layout *how, const layout *other, int mode)
 {
     const size_t n = (size_t)a->n_bonds, size = assembly_size(a);
@@ -42,8 +29,8 @@ static void forces_through(const assembly *a, const layout *how, const layout *o
     assert_same_bits(lambda, view_lambda, n);
     assert_same_bits(tension, view_tension, n);
     assert_same_bits(virial, view_virial, 9);
-    assert_numbers(&out, g, other->name);
-    assert_numbers(&r, a->r, how->name);
+    assert_laid_out(&out, g, other->name);
+    assert_laid_out(&r, a->r, how->name);
     laid_out_free(&r), laid_out_free(&v), laid_out_free(&f), laid_out_free(&out);
     free(lambda), free(tension), free(g), free(view_lambda), free(view_tension);
 }
@@ -82,7 +69,7 @@ static void velocities_are_the_same_through_every_layout(void **state)
             CHECK(hol_project_velocities_view(a.chains, &r.view, &u.view, view_lambda, view_virial));
             assert_same_bits(lambda, view_lambda, n);
             assert_same_bits(virial, view_virial, 9);
-            assert_numbers(&u, v, layouts[i].name);
+            assert_laid_out(&u, v, layouts[i].name);
             laid_out_free(&r), laid_out_free(&u);
             free(view_lambda);
         }
@@ -112,8 +99,8 @@ static void positions_are_the_same_through_every_layout_of_doubles(void **state)
                                              view_virial, &view_report));
             assert_same_bits(lambda, view_lambda, n);
             assert_same_bits(virial, view_virial, 9);
-            assert_numbers(&p, q, layouts[i].name);
-            assert_numbers(&u, v, layouts[i].name);
+            assert_laid_out(&p, q, layouts[i].name);
+            assert_laid_out(&u, v, layouts[i].name);
             assert_memory_equal(&report, &view_report, sizeof report);
             laid_out_free(&r), laid_out_free(&p), laid_out_free(&u);
             free(view_lambda);
@@ -185,19 +172,19 @@ static void two_dimensions_give_the_bits_of_three_with_zero_z(void **state)
             hol_forces_view(a.chains, &fr.view, &fv.view, &ff.view, flat_lambda, NULL, &ff.view, HOL_ADD, flat_virial));
         assert_same_bits(lambda, flat_lambda, n);
         for (int k = 0; k < 9; ++k) assert_true(virial[k] == flat_virial[k]);
-        assert_numbers(&ff, g, layouts[i].name);
+        assert_laid_out(&ff, g, layouts[i].name);
         CHECK(hol_project_positions(same_length, a.r, q, u, short_step, lambda, 0, virial, NULL));
         CHECK(hol_project_positions_view(same_length, &fr.view, &fp.view, &fv.view, short_step, flat_lambda, 0,
                                          flat_virial, NULL));
         assert_same_bits(lambda, flat_lambda, n);
-        assert_numbers(&fp, q, layouts[i].name);
-        assert_numbers(&fv, u, layouts[i].name);
+        assert_laid_out(&fp, q, layouts[i].name);
+        assert_laid_out(&fv, u, layouts[i].name);
         laid_out_free(&fv);
         fv = lay_out(&layouts[i], a.n_atoms, a.v, 2);
         CHECK(hol_project_velocities(a.chains, a.r, v, lambda, virial));
         CHECK(hol_project_velocities_view(a.chains, &fr.view, &fv.view, flat_lambda, flat_virial));
         assert_same_bits(lambda, flat_lambda, n);
-        assert_numbers(&fv, v, layouts[i].name);
+        assert_laid_out(&fv, v, layouts[i].name);
         hol_worst worst, flat_worst;
         CHECK(hol_violation(a.chains, a.r, v, &worst));
         CHECK(hol_violation_view(a.chains, &fr.view, &fv.view, &flat_worst));
