@@ -18,7 +18,8 @@ void pulls_free(pulls *p);
 /** G, tension and virial are those of the multipliers, but for their rounding; each may be NULL. */
 void check_pulls(const residues *s, const double *lambda, const double *g, const double *tension, const double *virial);
 
-/** A few roundings of the scales of a solution in many digits; more in a box, where images round by eps of its sides. */
+/** A few roundings of the scales of a solution in many digits; more in a box, where images round by eps of its sides.
+ */
 long double residue_unit(const residues *s);
 
 /** Multipliers, and velocities or positions or NULL, are those of a solution in many digits, which is freed. */

@@ -31,8 +31,7 @@ void assert_same_results(const residue_results *some, const residue_results *all
 /** x, y and z in another order, and the signs of some changed. */
 static void turn(const double *r, int64_t n, int64_t copy, double *to)
 {
-    for (int64_t i = 0; i < 3 * n; ++i)
-        to[i - i % 3 + (i + copy) % 3] = (copy >> i % 3) & 1 ? -r[i] : r[i];
+    for (int64_t i = 0; i < 3 * n; ++i) to[i - i % 3 + (i + copy) % 3] = (copy >> i % 3) & 1 ? -r[i] : r[i];
 }
 
 molecule residue_copies(const molecule *m, int64_t copies)

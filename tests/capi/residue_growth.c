@@ -111,8 +111,7 @@ static void add_residue(growth *g, const char *text, int64_t at, const residue_k
         g->bonds[i] = g->beside[i] = 0;
         if (p >= 0) join(g, p, i);
     }
-    for (int ring = 0; ring < k.n_rings; ++ring)
-        join(g, first + k.closing[ring][0], first + k.closing[ring][1]);
+    for (int ring = 0; ring < k.n_rings; ++ring) join(g, first + k.closing[ring][0], first + k.closing[ring][1]);
     g->exit[g->n_residues++] = first + k.exit;
     g->first[g->n_residues] = g->m.n_atoms;
 }
@@ -194,7 +193,8 @@ molecule residues_grow(const residue_recipe *recipe, int64_t n_bonds, random_str
     const char **texts = calloc((size_t)n_bonds + 2, sizeof *texts);
     for (int last = 0; !last;) {
         last = g.m.n_bonds >= n_bonds - 10;
-        const int64_t at = next_place(&g), kind = recipe->n_kinds > 0 ? random_integer(random, 0, recipe->n_kinds - 1) : 0;
+        const int64_t at = next_place(&g),
+                      kind = recipe->n_kinds > 0 ? random_integer(random, 0, recipe->n_kinds - 1) : 0;
         const char *text = recipe->n_kinds > 0 ? residue_texts[recipe->first_kind + kind] : own;
         if (recipe->n_kinds == 0) write_own_kind(g.n_residues, own);
         if (recipe->caps && last) text = "NHCHHH";

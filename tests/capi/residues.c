@@ -80,8 +80,8 @@ static void wrap(residues *s)
     double longest = 0;
     for (int64_t k = 0; k < m->n_bonds; ++k) longest = fmax(longest, m->length[k]);
     const double side = fmax(9, 3 * longest), skewed = s->recipe->box == TRICLINIC_BOX;
-    const double box[9] = {side, 0, 0, skewed * 0.3 * side, 1.1 * side, 0, -0.2 * skewed * side, 0.4 * skewed * side,
-                           0.9 * side};
+    const double box[9] = {
+        side, 0, 0, skewed * 0.3 * side, 1.1 * side, 0, -0.2 * skewed * side, 0.4 * skewed * side, 0.9 * side};
     memcpy(s->box, box, sizeof box);
     for (int64_t i = 0; i < m->n_atoms; ++i)
         for (int h = 2; h >= 0; --h) {
@@ -95,8 +95,8 @@ const double *residues_box(const residues *s)
     return s->recipe->box == NO_BOX ? NULL : s->box;
 }
 
-/** Lengths of the bonds as they stand, each an image, to nine digits, so that bonds of a kind have the same; where atoms
- * have masses of their own, to all of theirs. */
+/** Lengths of the bonds as they stand, each an image, to nine digits, so that bonds of a kind have the same; where
+ * atoms have masses of their own, to all of theirs. */
 static void measure(residues *s)
 {
     for (int64_t k = 0; k < s->m.n_bonds; ++k) {

@@ -135,8 +135,7 @@ static void turn_bonds(residues *s)
     residue_results plain = residue_compute(s->chains, &same, dt), shuffled = residue_compute(chains, &other, dt);
     for (int a = 0; a < ATOM_RESULTS; ++a) assert_same_bits(shuffled.atom[a], plain.atom[a], plain.size);
     for (int b = 0; b < BOND_RESULTS; ++b)
-        for (int64_t k = 0; k < other.n_bonds; ++k)
-            assert_same_bits(shuffled.bond[b] + k, plain.bond[b] + place[k], 1);
+        for (int64_t k = 0; k < other.n_bonds; ++k) assert_same_bits(shuffled.bond[b] + k, plain.bond[b] + place[k], 1);
     assert_same_bits(shuffled.virial, plain.virial, 9);
     residue_results_free(&plain), residue_results_free(&shuffled);
     hol_chains_destroy(chains);
@@ -155,8 +154,7 @@ static void lay_out_arrays(residues *s)
     molecule *m = &s->m;
     const size_t n = (size_t)m->n_bonds, size = 3 * (size_t)m->n_atoms;
     double *lambda = untouched(n), *tension = untouched(n), virial[9];
-    for (size_t i = 0; i < size; ++i)
-        m->r[i] = (float)m->r[i], m->v[i] = (float)m->v[i], m->f[i] = (float)m->f[i];
+    for (size_t i = 0; i < size; ++i) m->r[i] = (float)m->r[i], m->v[i] = (float)m->v[i], m->f[i] = (float)m->f[i];
     residue_results x = residue_compute(s->chains, m, dt);
     double *start = molecule_drifted(m, dt);
     for (int k = 0; k < n_layouts; ++k) {
@@ -182,8 +180,7 @@ static void lay_out_arrays(residues *s)
             double *end = copy_of(start, size), extent = 1;
             collect(&moved, end);
             for (size_t i = 0; i < size; ++i) extent = fmax(extent, fabs(end[i]));
-            for (size_t b = 0; b < n; ++b)
-                CHECK_AT_MOST(length_error(s, end, (int64_t)b), 8 * FLT_EPSILON * extent);
+            for (size_t b = 0; b < n; ++b) CHECK_AT_MOST(length_error(s, end, (int64_t)b), 8 * FLT_EPSILON * extent);
             free(end);
         }
         laid_out_free(&r), laid_out_free(&v), laid_out_free(&f), laid_out_free(&g), laid_out_free(&moved);

@@ -105,8 +105,7 @@ static void agree(residues *s)
     assert_int_equal(molecule_positions(&p, x.start, residues_box(s), s->m.length, x.dt, &exact), 0);
     for (int64_t i = 0; i < 3 * s->m.n_atoms; ++i) {
         const long double after = s->m.v[i] + (exact.moved[i] - x.start[i]) / x.dt;
-        CHECK_AT_MOST(fabsl(x.v[i] - after),
-                      residue_unit(s) * (fabs(s->m.v[i]) + exact.moved_scale[i / 3] / x.dt));
+        CHECK_AT_MOST(fabsl(x.v[i] - after), residue_unit(s) * (fabs(s->m.v[i]) + exact.moved_scale[i / 3] / x.dt));
     }
     for (int c = 0; c < 9; ++c)
         CHECK_AT_MOST(fabsl(x.virial[c] - exact.virial[c]), residue_unit(s) * exact.virial_scale);
@@ -119,7 +118,8 @@ static void positions_agree_with_newton_in_many_digits(void **state)
     for_each_residues(DENSE, 1, agree);
 }
 
-/** Velocities that do not obey the constraints, a quarter of a bond; then the multipliers of another step as a guess. */
+/** Velocities that do not obey the constraints, a quarter of a bond; then the multipliers of another step as a guess.
+ */
 static void take_a_large_step(residues *s)
 {
     step x = make_step(s, 0.25, 0);

@@ -98,7 +98,8 @@ static void stay_at_rest(residues *s)
     for (size_t k = 0; k < n; ++k) assert_true(lambda[k] == 0);
     for (int c = 0; c < 9; ++c) assert_true(virial[c] == 0);
     if (s->recipe->fixed == 0) {
-        const double drift[3] = {3, -1, 0.5}; /* of all atoms together: no bond changes, but for rounding of light ones */
+        const double drift[3] = {3, -1,
+                                 0.5}; /* of all atoms together: no bond changes, but for rounding of light ones */
         for (size_t i = 0; i < size; ++i) v[i] = drift[i % 3];
         CHECK(hol_project_velocities(s->chains, s->m.r, v, NULL, NULL));
         for (size_t i = 0; i < size; ++i) CHECK_AT_MOST(fabs(v[i] - drift[i % 3]), 1e-13);
@@ -134,8 +135,10 @@ static void follow_the_box(residues *s)
         rate_times(L, d, Ld);
         for (int c = 0; c < 3; ++c) {
             const long double u = (long double)m->v[3 * j + c] - m->v[3 * i + c] + Ld[c];
-            sum += 2 * d[c] * ((long double)m->inverse_mass[j] * m->f[3 * j + c] -
-                               (long double)m->inverse_mass[i] * m->f[3 * i + c]) + 2 * u * u;
+            sum += 2 * d[c] *
+                       ((long double)m->inverse_mass[j] * m->f[3 * j + c] -
+                        (long double)m->inverse_mass[i] * m->f[3 * i + c]) +
+                   2 * u * u;
         }
         rhs[k] = (double)sum;
         largest = fmax(largest, fabs(lambda[k]));
