@@ -83,10 +83,20 @@ double length_rounding(const residues *s)
 
 void for_each_residues(int64_t n_bonds, int hostile, void (*check)(residues *s))
 {
-    const int end = hostile ? n_residue_recipes : hostile_residues;
+    const int end = hostile ? RESIDUE_RECIPES : HOSTILE_RESIDUES;
     for (int i = 0; i < end; i += quick_run() ? 5 : 1) {
         print_message("%s\n", residue_recipes[i].name);
         residues s = residues_make(&residue_recipes[i], quick_run() && n_bonds > 500 ? 500 : n_bonds, (uint64_t)i + 1);
+        check(&s);
+        residues_free(&s);
+    }
+}
+
+void for_some_residues(const int *recipes, int64_t n_bonds, void (*check)(residues *s))
+{
+    for (int i = 0; recipes[i] >= 0 && !(quick_run() && i >= 2); ++i) {
+        print_message("%s\n", residue_recipes[recipes[i]].name);
+        residues s = residues_make(&residue_recipes[recipes[i]], n_bonds, 77 + (uint64_t)i);
         check(&s);
         residues_free(&s);
     }

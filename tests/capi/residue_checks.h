@@ -36,4 +36,7 @@ double length_rounding(const residues *s);
 /** Calls the function with each recipe, of so many bonds; the molecule's name is printed. With fewer in a quick run. */
 void for_each_residues(int64_t n_bonds, int hostile, void (*check)(residues *s));
 
+/** With some recipes, numbers that end with -1; two of them in a quick run. */
+void for_some_residues(const int *recipes, int64_t n_bonds, void (*check)(residues *s));
+
 #endif

@@ -112,6 +112,8 @@ static void add_residue(growth *g, const char *text, int64_t at, const residue_k
         if (p >= 0) join(g, p, i);
     }
     for (int ring = 0; ring < k.n_rings; ++ring) join(g, first + k.closing[ring][0], first + k.closing[ring][1]);
+    const int isotopes = g->recipe->isotopes;
+    if (isotopes && random_integer(g->random, 1, isotopes) == 1) g->m.mass[first] *= 2;
     g->exit[g->n_residues++] = first + k.exit;
     g->first[g->n_residues] = g->m.n_atoms;
 }

@@ -4,31 +4,67 @@
 #include "equations.h"
 #include "residue_growth.h"
 
-const residue_recipe residue_recipes[] = {
-    {.name = "random sequence", .n_kinds = 12},
-    {.name = "homopolymer, a ring in each", .first_kind = 2, .n_kinds = 1},
-    {.name = "homopolymer of three atoms", .first_kind = 10, .n_kinds = 1},
-    {.name = "homopolymer, rings through the backbone", .first_kind = 8, .n_kinds = 1, .caps = 1},
-    {.name = "rings through the backbone beside others", .first_kind = 2, .n_kinds = 4},
-    {.name = "bridges", .n_kinds = 9, .bridges = 6, .caps = 1},
-    {.name = "closed, with bridges", .n_kinds = 12, .bridges = 3, .closed = 1},
-    {.name = "comb", .n_kinds = 12, .order = RESIDUES_AS_COMB},
-    {.name = "star", .n_kinds = 8, .order = RESIDUES_AS_STAR, .bridges = 2},
-    {.name = "tree of residues", .n_kinds = 11, .order = RESIDUES_AS_TREE},
-    {.name = "each of its own kind", .n_kinds = 0, .caps = 1},
-    {.name = "fixed ends", .n_kinds = 8, .fixed = 5},
-    {.name = "fixed atoms in the backbone", .n_kinds = 8, .fixed = 2, .fixed_backbone = 3},
-    {.name = "shuffled bonds", .n_kinds = 12, .bridges = 2, .shuffled = 1},
-    {.name = "scattered atoms", .n_kinds = 12, .bridges = 2, .scattered = 1, .shuffled = 1},
-    {.name = "orthorhombic box", .n_kinds = 12, .box = ORTHORHOMBIC_BOX},
-    {.name = "comb in a triclinic box", .n_kinds = 12, .order = RESIDUES_AS_COMB, .box = TRICLINIC_BOX},
-    {.name = "far from the origin", .n_kinds = 12, .offset = 1e5},
-    {.name = "unequal masses of each kind", .n_kinds = 12, .decades = 3, .caps = 1},
-    {.name = "unequal masses of each atom, bridges", .n_kinds = 12, .decades = -3, .bridges = 3},
-    {.name = "nearly straight backbone", .n_kinds = 8, .bend = 1e-3, .offset = 10},
-    {.name = "straight and unequal", .n_kinds = 12, .bend = 1e-5, .decades = 2},
+const residue_recipe residue_recipes[RESIDUE_RECIPES] = {
+    [RANDOM_SEQUENCE] = {.name = "random sequence", .n_kinds = 12},
+    [RINGED_HOMOPOLYMER] = {.name = "homopolymer, a ring in each", .first_kind = 2, .n_kinds = 1},
+    [SHORT_HOMOPOLYMER] = {.name = "homopolymer of three atoms", .first_kind = 10, .n_kinds = 1},
+    [SUGARS] = {.name = "homopolymer, rings through the backbone", .first_kind = 8, .n_kinds = 1, .caps = 1},
+    [PROLINES] = {.name = "rings through the backbone beside others", .first_kind = 2, .n_kinds = 4},
+    [BRIDGES] = {.name = "bridges", .n_kinds = 9, .bridges = 6, .caps = 1},
+    [CLOSED] = {.name = "closed, with bridges", .n_kinds = 12, .bridges = 3, .closed = 1},
+    [COMB] = {.name = "comb", .n_kinds = 12, .order = RESIDUES_AS_COMB},
+    [STAR] = {.name = "star", .n_kinds = 8, .order = RESIDUES_AS_STAR, .bridges = 2},
+    [TREE] = {.name = "tree of residues", .n_kinds = 11, .order = RESIDUES_AS_TREE},
+    [OWN_KINDS] = {.name = "each of its own kind", .n_kinds = 0, .caps = 1},
+    [FIXED_ENDS] = {.name = "fixed ends", .n_kinds = 8, .fixed = 5},
+    [FIXED_BACKBONE] = {.name = "fixed atoms in the backbone", .n_kinds = 8, .fixed = 2, .fixed_backbone = 3},
+    [SHUFFLED] = {.name = "shuffled bonds", .n_kinds = 12, .bridges = 2, .shuffled = 1},
+    [SCATTERED_ATOMS] =
+        {.name = "scattered atoms", .n_kinds = 12, .bridges = 2, .numbers = NUMBERS_ANYHOW, .shuffled = 1},
+    [BACKWARDS] = {.name = "numbered backwards", .n_kinds = 12, .bridges = 2, .numbers = NUMBERS_BACK},
+    [ANY_ORDER] = {.name = "residues in any order", .n_kinds = 9, .numbers = NUMBERS_OF_RESIDUES, .shuffled = 1},
+    [ISOTOPES] = {.name = "tree of homopolymers, isotopes",
+                  .first_kind = 2,
+                  .n_kinds = 1,
+                  .order = RESIDUES_AS_TREE,
+                  .isotopes = 3},
+    [IN_BOX] = {.name = "orthorhombic box", .n_kinds = 12, .box = ORTHORHOMBIC_BOX},
+    [IN_TRICLINIC_BOX] = {.name = "comb in a triclinic box",
+                          .n_kinds = 12,
+                          .order = RESIDUES_AS_COMB,
+                          .box = TRICLINIC_BOX},
+    [FAR_AWAY] = {.name = "far from the origin", .n_kinds = 12, .offset = 1e5},
+    [UNEQUAL_KINDS] = {.name = "unequal masses of each kind", .n_kinds = 12, .decades = 3, .caps = 1},
+    [UNEQUAL_ATOMS] = {.name = "unequal masses of each atom, bridges", .n_kinds = 12, .decades = -3, .bridges = 3},
+    [STRAIGHT] = {.name = "nearly straight backbone", .n_kinds = 8, .bend = 1e-3, .offset = 10},
+    [STRAIGHT_UNEQUAL] = {.name = "straight and unequal", .n_kinds = 12, .bend = 1e-5, .decades = 2},
 };
-const int n_residue_recipes = sizeof residue_recipes / sizeof *residue_recipes, hostile_residues = 18;
+
+static int64_t *random_order(int64_t n, random_stream *random)
+{
+    int64_t *order = malloc((size_t)n * sizeof *order);
+    for (int64_t i = 0; i < n; ++i) order[i] = i;
+    for (int64_t i = n - 1; i > 0; --i) {
+        const int64_t j = random_integer(random, 0, i), kept = order[i];
+        order[i] = order[j], order[j] = kept;
+    }
+    return order;
+}
+
+/** The new number of each atom. */
+static int64_t *make_numbers(const residues *s, random_stream *random)
+{
+    const int64_t n = s->m.n_atoms, whole = s->recipe->numbers == NUMBERS_OF_RESIDUES;
+    if (s->recipe->numbers == NUMBERS_ANYHOW) return random_order(n, random);
+    int64_t *number = malloc((size_t)n * sizeof *number), *order = random_order(s->residue[n - 1] + 1, random);
+    int64_t next = 0;
+    for (int64_t i = 0; i < n; ++i) number[i] = n - 1 - i;
+    for (int64_t k = 0; whole && k <= s->residue[n - 1]; ++k)
+        for (int64_t i = 0; i < n; ++i)
+            if (s->residue[i] == order[k]) number[i] = next++;
+    free(order);
+    return number;
+}
 
 /** Atom i becomes number[i]. */
 static void renumber(residues *s, const int64_t *number)
@@ -44,17 +80,6 @@ static void renumber(residues *s, const int64_t *number)
     }
     for (int64_t e = 0; e < 2 * m->n_bonds; ++e) m->pairs[e] = number[m->pairs[e]];
     free(mass), free(r), free(residue);
-}
-
-static int64_t *random_order(int64_t n, random_stream *random)
-{
-    int64_t *order = malloc((size_t)n * sizeof *order);
-    for (int64_t i = 0; i < n; ++i) order[i] = i;
-    for (int64_t i = n - 1; i > 0; --i) {
-        const int64_t j = random_integer(random, 0, i), kept = order[i];
-        order[i] = order[j], order[j] = kept;
-    }
-    return order;
 }
 
 void residues_shuffle(molecule *m, uint64_t seed, int64_t *place)
@@ -116,8 +141,8 @@ residues residues_make(const residue_recipe *recipe, int64_t n_bonds, uint64_t s
     s.recipe = recipe;
     s.m = residues_grow(recipe, n_bonds, &random, &s.residue);
     for (int64_t i = 0; i < 3 * s.m.n_atoms; ++i) s.m.r[i] += recipe->offset * (double)(i % 3 + 1);
-    if (recipe->scattered) {
-        int64_t *number = random_order(s.m.n_atoms, &random);
+    if (recipe->numbers != NUMBERS_ALONG) {
+        int64_t *number = make_numbers(&s, &random);
         renumber(&s, number);
         free(number);
     }

@@ -19,6 +19,14 @@ typedef enum residue_order {
     RESIDUES_AS_TREE  /**< at any earlier one */
 } residue_order;
 
+/** How atoms are numbered. */
+typedef enum residue_numbers {
+    NUMBERS_ALONG = 0,   /**< residue after residue, each after the one that it hangs at */
+    NUMBERS_BACK,        /**< the last atom of the last residue first */
+    NUMBERS_OF_RESIDUES, /**< residues in any order, each whole */
+    NUMBERS_ANYHOW
+} residue_numbers;
+
 typedef enum residue_box { NO_BOX = 0, ORTHORHOMBIC_BOX, TRICLINIC_BOX } residue_box;
 
 typedef struct residue_recipe {
@@ -35,12 +43,40 @@ typedef struct residue_recipe {
     double offset;      /**< how far from the origin it is */
     residue_box box;    /**< atoms are wrapped into it */
     int shuffled;       /**< bonds in any order, either atom first */
-    int scattered;      /**< atoms numbered at random */
+    residue_numbers numbers;
+    int isotopes; /**< in one of so many residues the first atom has another mass than in others of the kind */
 } residue_recipe;
 
-/** All of them are molecules that physics has an answer for; those from hostile_residues on are ill conditioned. */
-extern const residue_recipe residue_recipes[];
-extern const int n_residue_recipes, hostile_residues;
+enum {
+    RANDOM_SEQUENCE,
+    RINGED_HOMOPOLYMER,
+    SHORT_HOMOPOLYMER,
+    SUGARS,
+    PROLINES,
+    BRIDGES,
+    CLOSED,
+    COMB,
+    STAR,
+    TREE,
+    OWN_KINDS,
+    FIXED_ENDS,
+    FIXED_BACKBONE,
+    SHUFFLED,
+    SCATTERED_ATOMS,
+    BACKWARDS,
+    ANY_ORDER,
+    ISOTOPES,
+    IN_BOX,
+    IN_TRICLINIC_BOX,
+    FAR_AWAY,
+    HOSTILE_RESIDUES, /* from here on ill conditioned */
+    UNEQUAL_KINDS = HOSTILE_RESIDUES,
+    UNEQUAL_ATOMS,
+    STRAIGHT,
+    STRAIGHT_UNEQUAL,
+    RESIDUE_RECIPES
+};
+extern const residue_recipe residue_recipes[RESIDUE_RECIPES];
 
 typedef struct residues {
     molecule m;

@@ -218,29 +218,24 @@ static void name_what_can_not_be(residues *s)
     free_flock(&x);
 }
 
-/** Molecules of some recipes. To say what is wrong with one takes as long as thousands of calls. */
-static void for_some(const int *recipes, void (*check)(residues *s))
+/** To say what is wrong with a molecule takes as long as thousands of calls. */
+static int64_t size_of_test(void)
 {
-    for (int i = 0; recipes[i] >= 0 && i < (quick_run() ? 2 : 20); ++i) {
-        print_message("%s\n", residue_recipes[recipes[i]].name);
-        residues s = residues_make(&residue_recipes[recipes[i]], quick_run() ? 300 : 500, 40 + (uint64_t)i);
-        check(&s);
-        residues_free(&s);
-    }
+    return quick_run() ? 300 : 500;
 }
 
 static void what_is_not_finite_is_named_and_changes_nothing_else(void **state)
 {
     (void)state;
-    static const int recipes[] = {0, 11, 3, 5, 9, 18, -1};
-    for_some(recipes, name_what_is_not_finite);
+    static const int recipes[] = {RANDOM_SEQUENCE, FIXED_ENDS, SUGARS, BRIDGES, TREE, UNEQUAL_KINDS, -1};
+    for_some_residues(recipes, size_of_test(), name_what_is_not_finite);
 }
 
 static void what_can_not_be_is_named_and_changes_nothing_else(void **state)
 {
     (void)state;
-    static const int recipes[] = {0, 11, 8, -1};
-    for_some(recipes, name_what_can_not_be);
+    static const int recipes[] = {RANDOM_SEQUENCE, FIXED_ENDS, STAR, -1};
+    for_some_residues(recipes, size_of_test(), name_what_can_not_be);
 }
 
 static void leave_everything(residues *s)
@@ -250,8 +245,8 @@ static void leave_everything(residues *s)
 static void bad_data_of_one_alone_leave_everything_untouched(void **state)
 {
     (void)state;
-    static const int recipes[] = {0, 3, 6, 7, 10, 15, 19, -1};
-    for_some(recipes, leave_everything);
+    static const int recipes[] = {RANDOM_SEQUENCE, SUGARS, CLOSED, COMB, OWN_KINDS, IN_BOX, UNEQUAL_ATOMS, -1};
+    for_some_residues(recipes, size_of_test(), leave_everything);
 }
 
 int main(void)

@@ -1,5 +1,5 @@
-/** What results of large molecules of repeating units do not depend on, to the last bit: threads, other molecules, the
- * order of bonds, the layout of arrays, what was set before. */
+/** What results of large molecules of repeating units do not depend on, to the last bit: threads, the order of bonds,
+ * the layout of arrays, what was set before. */
 #include "layout.h"
 #include "residue_checks.h"
 #include "residue_flock.h"
@@ -11,30 +11,10 @@ static int64_t size_of_test(void)
     return quick_run() ? 400 : 1400;
 }
 
-/** Calls the function with molecules of some recipes. */
-static void for_some(const int *recipes, int64_t n_bonds, void (*check)(residues *s))
-{
-    for (int i = 0; recipes[i] >= 0 && i < (quick_run() ? 2 : 20); ++i) {
-        print_message("%s\n", residue_recipes[recipes[i]].name);
-        residues s = residues_make(&residue_recipes[recipes[i]], n_bonds, 77 + (uint64_t)i);
-        check(&s);
-        residues_free(&s);
-    }
-}
-
-static hol_chains *chains_of(const molecule *m, const double *box)
-{
-    hol_chains *chains = NULL;
-    CHECK(hol_chains_create(m->n_atoms, m->mass, &chains));
-    CHECK(hol_chains_set_box(chains, box));
-    CHECK(hol_chains_add_bonds(chains, m->n_bonds, m->pairs, m->length));
-    return chains;
-}
-
 static void share_threads(residues *s)
 {
     molecule all = residue_copies(&s->m, 7);
-    hol_chains *chains = chains_of(&all, NULL);
+    hol_chains *chains = residue_chains(&all, NULL);
     residue_results one = residue_compute(chains, &all, dt);
     for (int threads = 2; threads < 4; ++threads) {
         CHECK(hol_chains_set_threads(chains, threads));
@@ -50,79 +30,8 @@ static void share_threads(residues *s)
 static void number_of_threads_changes_no_bit(void **state)
 {
     (void)state;
-    static const int recipes[] = {0, 5, 2, 9, 18, -1};
-    for_some(recipes, size_of_test(), share_threads);
-}
-
-/** In one call for all copies, and as a list of bonds. */
-static void stand_together(residues *s)
-{
-    enum { COPIES = 5 };
-    const molecule *m = &s->m;
-    molecule all = residue_copies(m, COPIES);
-    hol_chains *together[2] = {NULL, chains_of(&all, NULL)};
-    CHECK(hol_chains_create(all.n_atoms, all.mass, &together[0]));
-    CHECK(hol_chains_add_molecules(together[0], COPIES, m->n_atoms, 0, m->n_bonds, m->pairs, m->length));
-    residue_results x[2];
-    for (int i = 0; i < 2; ++i) x[i] = residue_compute(together[i], &all, dt);
-    assert_same_results(&x[0], &x[1], 0, 0);
-    for (int64_t c = 0; c < COPIES; ++c) {
-        molecule one = residue_copy(&all, m, c);
-        residue_results alone = residue_compute(s->chains, &one, dt);
-        assert_same_results(&alone, &x[0], c * m->n_bonds, c * m->n_atoms);
-        residue_results_free(&alone);
-        molecule_free(&one);
-    }
-    for (int i = 0; i < 2; ++i) residue_results_free(&x[i]), hol_chains_destroy(together[i]);
-    molecule_free(&all);
-}
-static void each_of_several_copies_has_the_bits_of_one_alone(void **state)
-{
-    (void)state;
-    static const int recipes[] = {0, 3, 1, 2, 5, 6, 7, 9, 10, 11, 18, 19, -1};
-    for_some(recipes, size_of_test(), stand_together);
-}
-
-/** Appends a molecule to another one's arrays. */
-static void append(molecule *all, const molecule *m)
-{
-    const int64_t atoms = all->n_atoms, bonds = all->n_bonds;
-    for (int64_t i = 0; i < m->n_atoms; ++i) {
-        molecule_add_atom(all, m->mass[i], m->r + 3 * i);
-        memcpy(all->v + 3 * (atoms + i), m->v + 3 * i, 3 * sizeof *m->v);
-        memcpy(all->f + 3 * (atoms + i), m->f + 3 * i, 3 * sizeof *m->f);
-    }
-    for (int64_t k = 0; k < m->n_bonds; ++k) {
-        molecule_add_bond(all, m->pairs[2 * k] + atoms, m->pairs[2 * k + 1] + atoms);
-        all->length[bonds + k] = m->length[k];
-    }
-}
-
-/** Different molecules of residues, with water between them. */
-static void neighbours_change_no_bit(void **state)
-{
-    (void)state;
-    enum { PARTS = 8 };
-    molecule all = molecule_empty(), water = molecule_make(MOLECULE_WATER, 3, 1);
-    residues part[PARTS];
-    int64_t bond[PARTS], atom[PARTS];
-    for (int p = 0; p < PARTS; ++p) {
-        part[p] = residues_make(&residue_recipes[p], size_of_test() / 2, (uint64_t)p);
-        bond[p] = all.n_bonds, atom[p] = all.n_atoms;
-        append(&all, &part[p].m);
-        append(&all, &water);
-    }
-    hol_chains *chains = chains_of(&all, NULL);
-    residue_results together = residue_compute(chains, &all, dt);
-    for (int p = 0; p < PARTS; ++p) {
-        residue_results alone = residue_compute(part[p].chains, &part[p].m, dt);
-        assert_same_results(&alone, &together, bond[p], atom[p]);
-        residue_results_free(&alone);
-        residues_free(&part[p]);
-    }
-    residue_results_free(&together);
-    hol_chains_destroy(chains);
-    molecule_free(&all), molecule_free(&water);
+    static const int recipes[] = {RANDOM_SEQUENCE, BRIDGES, SHORT_HOMOPOLYMER, TREE, UNEQUAL_KINDS, -1};
+    for_some_residues(recipes, size_of_test(), share_threads);
 }
 
 static void turn_bonds(residues *s)
@@ -130,7 +39,7 @@ static void turn_bonds(residues *s)
     molecule other = molecule_copy(&s->m);
     int64_t *place = malloc((size_t)other.n_bonds * sizeof *place);
     residues_shuffle(&other, 5, place);
-    hol_chains *chains = chains_of(&other, residues_box(s));
+    hol_chains *chains = residue_chains(&other, residues_box(s));
     molecule same = molecule_copy(&s->m); /* right-hand sides of residue_compute are lengths */
     residue_results plain = residue_compute(s->chains, &same, dt), shuffled = residue_compute(chains, &other, dt);
     for (int a = 0; a < ATOM_RESULTS; ++a) assert_same_bits(shuffled.atom[a], plain.atom[a], plain.size);
@@ -145,8 +54,11 @@ static void turn_bonds(residues *s)
 static void order_and_direction_of_bonds_change_no_bit(void **state)
 {
     (void)state;
-    static const int recipes[] = {0, 6, 2, 3, 4, 7, 8, 9, 10, 11, 12, 15, 16, 19, -1};
-    for_some(recipes, size_of_test(), turn_bonds);
+    static const int recipes[] = {
+        RANDOM_SEQUENCE, CLOSED,     SHORT_HOMOPOLYMER, SUGARS, PROLINES,         COMB,          STAR,      TREE,
+        OWN_KINDS,       FIXED_ENDS, FIXED_BACKBONE,    IN_BOX, IN_TRICLINIC_BOX, UNEQUAL_ATOMS, BACKWARDS, ANY_ORDER,
+        ISOTOPES,        -1};
+    for_some_residues(recipes, size_of_test(), turn_bonds);
 }
 
 static void lay_out_arrays(residues *s)
@@ -191,8 +103,8 @@ static void lay_out_arrays(residues *s)
 static void layout_changes_no_bit(void **state)
 {
     (void)state;
-    static const int recipes[] = {0, 5, 2, 9, 11, -1};
-    for_some(recipes, size_of_test() / 2, lay_out_arrays);
+    static const int recipes[] = {RANDOM_SEQUENCE, BRIDGES, SHORT_HOMOPOLYMER, TREE, FIXED_ENDS, -1};
+    for_some_residues(recipes, size_of_test() / 2, lay_out_arrays);
 }
 
 static void change(residues *s)
@@ -200,7 +112,7 @@ static void change(residues *s)
     molecule other = molecule_copy(&s->m);
     for (int64_t i = 0; i < other.n_atoms; ++i) other.mass[i] *= 1 + (double)(i % 7);
     for (int64_t k = 0; k < other.n_bonds; ++k) other.length[k] *= 1 + 1e-3 * (double)(k % 3);
-    hol_chains *changed = chains_of(&other, residues_box(s));
+    hol_chains *changed = residue_chains(&other, residues_box(s));
     residue_results before = residue_compute(changed, &other, dt), expected = residue_compute(s->chains, &s->m, dt);
     CHECK(hol_chains_set_masses(changed, s->m.mass));
     CHECK(hol_chains_set_lengths(changed, s->m.length));
@@ -214,16 +126,14 @@ static void change(residues *s)
 static void masses_and_lengths_given_later_are_as_those_of_a_new_set(void **state)
 {
     (void)state;
-    static const int recipes[] = {0, 5, 2, 9, 15, -1};
-    for_some(recipes, size_of_test(), change);
+    static const int recipes[] = {RANDOM_SEQUENCE, BRIDGES, SHORT_HOMOPOLYMER, TREE, IN_BOX, -1};
+    for_some_residues(recipes, size_of_test(), change);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(number_of_threads_changes_no_bit),
-        cmocka_unit_test(each_of_several_copies_has_the_bits_of_one_alone),
-        cmocka_unit_test(neighbours_change_no_bit),
         cmocka_unit_test(order_and_direction_of_bonds_change_no_bit),
         cmocka_unit_test(layout_changes_no_bit),
         cmocka_unit_test(masses_and_lengths_given_later_are_as_those_of_a_new_set),

@@ -218,7 +218,7 @@ static void tell_worst(residues *s)
     int64_t bond[2], *order = malloc(n * sizeof *order);
     double *residual = untouched(n);
     const residue_recipe *of = s->recipe;
-    if (of->order == RESIDUES_IN_LINE && !of->bridges && !of->closed && !of->scattered && !of->fixed) {
+    if (of->order == RESIDUES_IN_LINE && !of->bridges && !of->closed && of->numbers != NUMBERS_ANYHOW && !of->fixed) {
         choose(s, &bond[0], &bond[1]);
         CHECK(hol_chains_bonds(s->chains, 0, order));
         for (int within = 0; within < 2; ++within) {
