@@ -84,7 +84,8 @@ static void take_steps(residues *s)
     CHECK(hol_project_positions(s->chains, s->m.r, again, NULL, x.dt, lambda, 1, NULL, &report));
     assert_true(report.iterations <= x.report.iterations);
     keep_lengths(s, again);
-    for (size_t i = 0; i < size; ++i) CHECK_AT_MOST(fabs(again[i] - x.r[i]), 64 * length_rounding(s));
+    const double rounding = length_rounding(s);
+    for (size_t i = 0; i < size; ++i) CHECK_AT_MOST(fabs(again[i] - x.r[i]), 64 * rounding);
     /* What obeys the constraints is left alone. */
     CHECK(hol_project_positions(s->chains, s->m.r, again, NULL, x.dt, lambda, 0, NULL, &report));
     assert_true(report.n_corrected == 0 || s->recipe->decades != 0);
@@ -149,7 +150,8 @@ static void go_along(residues *s)
     }
     CHECK(hol_project_positions_along(s->chains, b, r, NULL, x.dt, NULL, 0, NULL, NULL));
     keep_lengths(s, r);
-    for (int64_t i = 0; i < 3 * s->m.n_atoms; ++i) CHECK_AT_MOST(fabs(r[i] - x.r[i]), 64 * length_rounding(s));
+    const double rounding = length_rounding(s);
+    for (int64_t i = 0; i < 3 * s->m.n_atoms; ++i) CHECK_AT_MOST(fabs(r[i] - x.r[i]), 64 * rounding);
     free(b), free(r);
     free_step(&x);
 }
@@ -233,8 +235,9 @@ static void tell_worst(residues *s)
             CHECK_AT_MOST(fabs(worst.length - error), 1e-8); /* lengths have nine digits */
             assert_int_equal(order[worst.length_bond], bond[within]);
             CHECK(hol_residuals(s->chains, r, NULL, residual, NULL));
+            const double rounding = length_rounding(s);
             for (size_t k = 0; k < n; ++k)
-                CHECK_AT_MOST(fabs(fabs(residual[k]) - length_error(s, r, (int64_t)k)), 4 * length_rounding(s));
+                CHECK_AT_MOST(fabs(fabs(residual[k]) - length_error(s, r, (int64_t)k)), 4 * rounding);
             CHECK(hol_chains_set_tolerance(s->chains, 0.5)); /* near enough as they are */
             CHECK(hol_project_positions(s->chains, m->r, r, NULL, 1, NULL, 0, NULL, &report));
             assert_same_bits(r, was, size);

@@ -34,8 +34,9 @@ static void stand_together(residues *s)
 static void each_of_several_copies_has_the_bits_of_one_alone(void **state)
 {
     (void)state;
-    static const int recipes[] = {RANDOM_SEQUENCE, SUGARS, RINGED_HOMOPOLYMER, SHORT_HOMOPOLYMER, BRIDGES, CLOSED, COMB, TREE, OWN_KINDS, FIXED_ENDS, UNEQUAL_KINDS, UNEQUAL_ATOMS,
-                                  BACKWARDS, ANY_ORDER, ISOTOPES, -1};
+    static const int recipes[] = {
+        RANDOM_SEQUENCE, SUGARS,     RINGED_HOMOPOLYMER, SHORT_HOMOPOLYMER, BRIDGES,   CLOSED,    COMB,     TREE,
+        OWN_KINDS,       FIXED_ENDS, UNEQUAL_KINDS,      UNEQUAL_ATOMS,     BACKWARDS, ANY_ORDER, ISOTOPES, -1};
     for_some_residues(recipes, size_of_test(), stand_together);
 }
 
