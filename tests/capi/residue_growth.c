@@ -129,25 +129,17 @@ static int64_t free_atom(growth *g, int64_t residue, int most)
     return -1;
 }
 
-/** The atom that the next residue hangs at. */
+/** The atom that the next residue hangs at: one beside, or where there is none the end of the residue before. */
 static int64_t next_place(growth *g)
 {
     const int64_t k = g->n_residues;
+    int64_t beside = -1;
     if (k == 0) return -1;
-    switch (g->recipe->order) {
-        case RESIDUES_AS_COMB:
-            if (k % 4 == 0) return g->exit[k - 4];
-            return k % 4 == 1 ? free_atom(g, k - 1, 5) : g->exit[k - 1];
-        case RESIDUES_AS_STAR:
-            return k % 10 == 1 ? free_atom(g, 0, 12) : g->exit[k - 1];
-        case RESIDUES_AS_TREE:
-            for (;;) {
-                const int64_t i = free_atom(g, random_integer(g->random, 0, k - 1), 5);
-                if (i >= 0) return i;
-            }
-        default:
-            return g->exit[k - 1];
-    }
+    if (g->recipe->order == RESIDUES_AS_COMB && k % 4 == 0) return g->exit[k - 4];
+    if (g->recipe->order == RESIDUES_AS_COMB && k % 4 == 1) beside = free_atom(g, k - 1, 5);
+    if (g->recipe->order == RESIDUES_AS_STAR && k % 10 == 1) beside = free_atom(g, 0, 12);
+    if (g->recipe->order == RESIDUES_AS_TREE) beside = free_atom(g, random_integer(g->random, 0, k - 1), 5);
+    return beside >= 0 ? beside : g->exit[k - 1];
 }
 
 /** A kind that no other residue is of: a side chain with as many atoms as its number says. */
@@ -160,6 +152,14 @@ static void write_own_kind(int64_t number, char *text)
     for (int64_t n = number / 49 % 3; n >= 0; --n) strcat(text, "C(O)");
 }
 
+static int bonded(const molecule *m, int64_t i, int64_t j)
+{
+    for (int64_t k = 0; k < m->n_bonds; ++k)
+        if ((m->pairs[2 * k] == i && m->pairs[2 * k + 1] == j) || (m->pairs[2 * k] == j && m->pairs[2 * k + 1] == i))
+            return 1;
+    return 0;
+}
+
 static void add_bridges(growth *g)
 {
     const int64_t n = g->n_residues;
@@ -167,9 +167,9 @@ static void add_bridges(growth *g)
         const int64_t one = random_integer(g->random, 0, n - 1), other = random_integer(g->random, 0, n - 1);
         if (llabs(one - other) < 3) continue;
         const int64_t i = free_atom(g, one, 5), j = free_atom(g, other, 5);
-        if (i >= 0 && j >= 0) join(g, i, j), ++b;
+        if (i >= 0 && j >= 0 && !bonded(&g->m, i, j)) join(g, i, j), ++b;
     }
-    if (g->recipe->closed) join(g, g->exit[n - 1], g->first[0]);
+    if (g->recipe->closed && !bonded(&g->m, g->exit[n - 1], g->first[0])) join(g, g->exit[n - 1], g->first[0]);
 }
 
 /** The last end atom of some residues, and atoms where others end. */

@@ -2,8 +2,8 @@
 #include "equations.h"
 #include "residue_checks.h"
 
-/** Atoms brought beside those that they hang at: bonds of a molecule that has grown lead from an earlier atom to a later
- * one, those that close a ring aside. */
+/** Atoms brought beside those that they hang at: bonds of a molecule that has grown lead from an earlier atom to a
+ * later one, those that close a ring aside. */
 static double *whole(const residues *s)
 {
     double *r = copy_of(s->m.r, 3 * (size_t)s->m.n_atoms);
