@@ -64,7 +64,7 @@ static void leave_roundings(residues *s)
 static void forces_of_large_ones_leave_roundings_of_their_equations(void **state)
 {
     (void)state;
-    for_each_residues(LARGE, 0, leave_roundings);
+    for_each_residues(LARGE, 1, leave_roundings);
 }
 
 /** Any of the outputs by itself has the bits that it has beside the others. */
@@ -158,7 +158,7 @@ static void given_right_hand_sides_are_solved(void **state)
 {
     (void)state;
     for_each_residues(DENSE, 1, solve_small);
-    for_each_residues(LARGE, 0, solve_large);
+    for_each_residues(LARGE, 1, solve_large);
 }
 
 int main(void)

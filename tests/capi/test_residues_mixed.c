@@ -138,7 +138,7 @@ static void stir_one(residues *s)
 static void what_stirs_one_residue_alone_is_felt_rightly_by_all(void **state)
 {
     (void)state;
-    for_each_residues(1200, 0, stir_one);
+    for_each_residues(1200, 1, stir_one);
 }
 
 /** Off by a tenth in any direction. */
@@ -157,7 +157,7 @@ static void impose(residues *s)
 static void crude_positions_are_put_on_the_constraints(void **state)
 {
     (void)state;
-    for_each_residues(1200, 0, impose);
+    for_each_residues(1200, 1, impose);
 }
 
 /** A molecule in a plane, of all three components and of two. */

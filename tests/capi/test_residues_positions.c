@@ -95,7 +95,7 @@ static void take_steps(residues *s)
 static void bonds_get_their_lengths_by_the_forces_that_lambda_says(void **state)
 {
     (void)state;
-    for_each_residues(LARGE, 0, take_steps);
+    for_each_residues(LARGE, 1, take_steps);
 }
 
 static void agree(residues *s)
@@ -180,7 +180,7 @@ static void end_within_a_tolerance(residues *s)
 static void a_tolerance_is_kept_and_the_worst_bond_told(void **state)
 {
     (void)state;
-    for_each_residues(LARGE, 0, end_within_a_tolerance);
+    for_each_residues(LARGE, 1, end_within_a_tolerance);
 }
 
 /** Pulls all atoms behind a link outwards, of those of a line, and an end atom of another residue. */

@@ -63,7 +63,7 @@ static void project(residues *s)
 static void velocities_of_large_ones_obey_the_constraints(void **state)
 {
     (void)state;
-    for_each_residues(LARGE, 0, project);
+    for_each_residues(LARGE, 1, project);
 }
 
 static void agree(residues *s)
