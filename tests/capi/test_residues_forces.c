@@ -93,7 +93,7 @@ static void give_each_output_alone(residues *s)
 static void each_output_is_the_same_alone_and_forces_are_added(void **state)
 {
     (void)state;
-    for_each_residues(LARGE / 2, 0, give_each_output_alone);
+    for_each_residues(LARGE / 2, 1, give_each_output_alone);
 }
 
 /** Multipliers of free fall are what rounding of the forces leaves; at rest without forces they are zero. */
@@ -117,7 +117,7 @@ static void feel_nothing(residues *s)
 static void in_free_fall_and_at_rest_nothing_is_felt(void **state)
 {
     (void)state;
-    for_each_residues(LARGE / 2, 0, feel_nothing);
+    for_each_residues(LARGE / 2, 1, feel_nothing);
 }
 
 /** Right-hand sides everywhere, at links alone, and at one bond within a residue. */

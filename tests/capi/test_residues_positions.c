@@ -135,7 +135,7 @@ static void take_a_large_step(residues *s)
 static void large_steps_and_poor_guesses_end_on_the_constraints(void **state)
 {
     (void)state;
-    for_each_residues(LARGE / 2, 0, take_a_large_step);
+    for_each_residues(LARGE / 2, 1, take_a_large_step);
 }
 
 /** Vectors in place of reference positions. */
@@ -158,7 +158,7 @@ static void go_along(residues *s)
 static void bond_vectors_do_as_well_as_reference_positions(void **state)
 {
     (void)state;
-    for_each_residues(LARGE / 2, 0, go_along);
+    for_each_residues(LARGE / 2, 1, go_along);
 }
 
 static void end_within_a_tolerance(residues *s)
@@ -257,7 +257,7 @@ static void tell_worst(residues *s)
 static void the_worst_bond_is_told_be_it_a_link_or_not(void **state)
 {
     (void)state;
-    for_each_residues(LARGE / 2, 0, tell_worst);
+    for_each_residues(LARGE / 2, 1, tell_worst);
 }
 
 int main(void)
