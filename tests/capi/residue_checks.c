@@ -1,5 +1,6 @@
 #include "residue_checks.h"
 
+#include "box_rate.h"
 #include "equations.h"
 
 pulls pulls_of(const residues *s, const double *lambda)
@@ -100,4 +101,35 @@ void for_some_residues(const int *recipes, int64_t n_bonds, void (*check)(residu
         check(&s);
         residues_free(&s);
     }
+}
+
+void check_rates(const residues *s, const double *before, const double *v, const double *rate)
+{
+    const molecule *m = &s->m;
+    const long double images = residues_box(s) ? s->box[0] : 0;
+    for (int64_t k = 0; k < m->n_bonds; ++k) {
+        const int64_t i = 3 * m->pairs[2 * k], j = 3 * m->pairs[2 * k + 1];
+        long double d[3], Ld[3] = {0}, left = 0, size = 0;
+        bond_in_box(m->r, m->pairs + 2 * k, residues_box(s), d);
+        if (rate) rate_times(rate, d, Ld);
+        for (int c = 0; c < 3; ++c) {
+            left += d[c] * ((long double)v[j + c] - v[i + c] + Ld[c]);
+            size += fabsl(d[c]) * (fabs(v[j + c]) + fabs(v[i + c]) + fabsl(Ld[c]));
+            if (before) size += fabsl(d[c]) * (fabs(before[j + c]) + fabs(before[i + c]));
+        }
+        CHECK_AT_MOST(fabsl(left), (8 + images) * DBL_EPSILON * size + DBL_MIN);
+    }
+}
+
+void check_moves(const residues *s, const double *before, const double *v, const double *lambda)
+{
+    pulls p = pulls_of(s, lambda);
+    const long double images = residues_box(s) ? s->box[0] : 0;
+    for (int64_t i = 0; i < 3 * s->m.n_atoms; ++i) {
+        const long double w = s->m.inverse_mass[i / 3], moved = before[i] + w * p.g[i];
+        long double size = w * p.size[i / 3];
+        for (int c = 0; c < 3; ++c) size += fabs(before[i - i % 3 + c]) + fabs(v[i - i % 3 + c]);
+        CHECK_AT_MOST(fabsl(v[i] - moved), (16 + images) * DBL_EPSILON * size);
+    }
+    pulls_free(&p);
 }

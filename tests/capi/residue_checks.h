@@ -18,6 +18,13 @@ void pulls_free(pulls *p);
 /** G, tension and virial are those of the multipliers, but for their rounding; each may be NULL. */
 void check_pulls(const residues *s, const double *lambda, const double *g, const double *tension, const double *virial);
 
+/** d.(v_j - v_i + L d) of each bond, L or NULL, is a few roundings of the sizes of its terms, and of those before, or
+ * NULL. */
+void check_rates(const residues *s, const double *before, const double *v, const double *box_rate);
+
+/** v - before = w G of the multipliers; light atoms aside, also where a last correction of rounding was made. */
+void check_moves(const residues *s, const double *before, const double *v, const double *lambda);
+
 /** A few roundings of the scales of a solution in many digits; more in a box, where images round by eps of its sides.
  */
 long double residue_unit(const residues *s);

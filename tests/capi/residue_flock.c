@@ -62,12 +62,3 @@ molecule residue_copy(const molecule *all, const molecule *m, int64_t copy)
     memcpy(one.f, all->f + 3 * copy * m->n_atoms, bytes);
     return one;
 }
-
-hol_chains *residue_chains(const molecule *m, const double *box)
-{
-    hol_chains *chains = NULL;
-    CHECK(hol_chains_create(m->n_atoms, m->mass, &chains));
-    CHECK(hol_chains_set_box(chains, box));
-    CHECK(hol_chains_add_bonds(chains, m->n_bonds, m->pairs, m->length));
-    return chains;
-}

@@ -30,7 +30,4 @@ molecule residue_copies(const molecule *m, int64_t copies);
 /** One of them alone. */
 molecule residue_copy(const molecule *all, const molecule *m, int64_t copy);
 
-/** A handle with all of its bonds in one list; box: or NULL. */
-hol_chains *residue_chains(const molecule *m, const double *box);
-
 #endif

@@ -151,18 +151,18 @@ residues residues_make(const residue_recipe *recipe, int64_t n_bonds, uint64_t s
     if (recipe->box != NO_BOX) wrap(&s);
     measure(&s);
     if (recipe->shuffled) residues_shuffle(&s.m, seed + 1, NULL);
-    s.chains = residues_chains(&s);
+    s.chains = residue_chains(&s.m, residues_box(&s));
     s.n_molecules = hol_chains_n_chains(s.chains);
     assert_true(recipe->fixed_backbone ? s.n_molecules > 1 : s.n_molecules == 1);
     return s;
 }
 
-hol_chains *residues_chains(const residues *s)
+hol_chains *residue_chains(const molecule *m, const double *box)
 {
     hol_chains *chains = NULL;
-    CHECK(hol_chains_create(s->m.n_atoms, s->m.mass, &chains));
-    CHECK(hol_chains_set_box(chains, residues_box(s)));
-    CHECK(hol_chains_add_bonds(chains, s->m.n_bonds, s->m.pairs, s->m.length));
+    CHECK(hol_chains_create(m->n_atoms, m->mass, &chains));
+    CHECK(hol_chains_set_box(chains, box));
+    CHECK(hol_chains_add_bonds(chains, m->n_bonds, m->pairs, m->length));
     return chains;
 }
 

@@ -94,8 +94,8 @@ void residues_free(residues *s);
 /** Its box, or NULL. */
 const double *residues_box(const residues *s);
 
-/** A handle of its own with the bonds as they are now, in the box. */
-hol_chains *residues_chains(const residues *s);
+/** A handle with all of these bonds in one list; box: or NULL. */
+hol_chains *residue_chains(const molecule *m, const double *box);
 
 /** Bonds in another order, either atom first; `place` [n_bonds] gets where each was. */
 void residues_shuffle(molecule *m, uint64_t seed, int64_t *place);

@@ -15,7 +15,7 @@ static int64_t atom_at(const residues *s, place where)
 {
     const molecule *m = &s->m;
     int *bonds = calloc((size_t)m->n_atoms, sizeof *bonds), ring = 0;
-    int64_t link = 0, end = 0, closing = 0;
+    int64_t link = -1, end = -1, closing = -1;
     for (int64_t e = 0; e < 2 * m->n_bonds; ++e) ++bonds[m->pairs[e]];
     for (int64_t k = 0; k < m->n_bonds; ++k) {
         const int64_t i = m->pairs[2 * k], j = m->pairs[2 * k + 1];
@@ -24,11 +24,9 @@ static int64_t atom_at(const residues *s, place where)
         if (j > i + 3 && !residues_link(s, k) && !ring) closing = j, ring = k > m->n_bonds / 4;
     }
     free(bonds);
-    return where == AT_A_LINK   ? link
-           : where == AT_AN_END ? end
-           : where == IN_A_RING ? closing
-           : where == FIRST     ? 0
-                                : m->n_atoms - 1;
+    const int64_t atom[PLACES] = {link, end, closing, 0, m->n_atoms - 1};
+    assert_true(atom[where] >= 0);
+    return atom[where];
 }
 
 /** Three copies in one set, and their results while all is well. */
@@ -43,8 +41,7 @@ static flock make_flock(const residues *s)
 {
     flock x = {residue_copies(&s->m, COPIES), NULL, {{0}, {0}, {0}, 0, 0}, s->m.n_bonds, s->m.n_atoms};
     for (int64_t i = 0; i < 3 * x.all.n_atoms; ++i) x.all.f[i] /= i / 3 / x.n_atoms == BAD ? 1e9 : 1;
-    CHECK(hol_chains_create(x.all.n_atoms, x.all.mass, &x.chains));
-    CHECK(hol_chains_add_bonds(x.chains, x.all.n_bonds, x.all.pairs, x.all.length));
+    x.chains = residue_chains(&x.all, NULL);
     x.good = residue_compute(x.chains, &x.all, dt);
     return x;
 }

@@ -27,6 +27,7 @@ static void check_velocities(const residues *s, const double *v)
     CHECK(hol_project_velocities(s->chains, s->m.r, moved, lambda, virial));
     leave_roundings_in_box(&s->m, residues_box(s), lambda, v, NULL, 1, NULL);
     check_pulls(s, lambda, NULL, NULL, virial);
+    check_rates(s, v, moved, NULL);
     free(lambda), free(moved);
 }
 

@@ -5,39 +5,6 @@
 
 enum { DENSE = 330, LARGE = 2400 };
 
-/** d.(v_j - v_i + L d) of each bond, L or NULL, is a few roundings of the sizes of its terms; where light atoms are
- * between heavy ones, of the velocities there were. */
-static void obey(const residues *s, const double *v, const double *rate)
-{
-    const molecule *m = &s->m;
-    const long double images = residues_box(s) ? s->box[0] : 0;
-    for (int64_t k = 0; k < m->n_bonds; ++k) {
-        const int64_t i = 3 * m->pairs[2 * k], j = 3 * m->pairs[2 * k + 1];
-        long double d[3], Ld[3] = {0}, left = 0, size = 0;
-        bond_in_box(m->r, m->pairs + 2 * k, residues_box(s), d);
-        if (rate) rate_times(rate, d, Ld);
-        for (int c = 0; c < 3; ++c) {
-            left += d[c] * ((long double)v[j + c] - v[i + c] + Ld[c]);
-            size += fabsl(d[c]) * (fabs(v[j + c]) + fabs(v[i + c]) + fabsl(Ld[c]));
-        }
-        CHECK_AT_MOST(fabsl(left), (8 + images) * DBL_EPSILON * size);
-    }
-}
-
-/** v - v_before = w G of the multipliers; light atoms aside, also where a last correction of rounding was made. */
-static void move_as_multipliers_say(const residues *s, const double *v, const double *lambda)
-{
-    pulls p = pulls_of(s, lambda);
-    const long double images = residues_box(s) ? s->box[0] : 0;
-    for (int64_t i = 0; i < 3 * s->m.n_atoms; ++i) {
-        const long double w = s->m.inverse_mass[i / 3], moved = s->m.v[i] + w * p.g[i];
-        long double size = w * p.size[i / 3];
-        for (int c = 0; c < 3; ++c) size += fabs(s->m.v[i - i % 3 + c]) + fabs(v[i - i % 3 + c]);
-        CHECK_AT_MOST(fabsl(v[i] - moved), (16 + images) * DBL_EPSILON * size);
-    }
-    pulls_free(&p);
-}
-
 /** Twice: when velocities are projected already, multipliers are what rounding has left. */
 static void project(residues *s)
 {
@@ -46,8 +13,8 @@ static void project(residues *s)
     for (int turn = 0; turn < 2; ++turn) {
         double *v = copy_of(s->m.v, (size_t)size), *only = copy_of(s->m.v, (size_t)size);
         CHECK(hol_project_velocities(s->chains, s->m.r, v, lambda, virial));
-        obey(s, v, NULL);
-        move_as_multipliers_say(s, v, lambda);
+        check_rates(s, NULL, v, NULL);
+        check_moves(s, s->m.v, v, lambda);
         check_pulls(s, lambda, NULL, NULL, virial);
         leave_roundings_in_box(&s->m, residues_box(s), lambda, s->m.v, NULL, 1, NULL);
         CHECK(hol_project_velocities(s->chains, s->m.r, only, NULL, NULL));
@@ -122,8 +89,8 @@ static void follow_the_box(residues *s)
     double *rhs = calloc(n, sizeof *rhs), *expected = untouched(n);
     CHECK(hol_chains_set_box_rate(s->chains, L));
     CHECK(hol_project_velocities(s->chains, m->r, v, mu, virial));
-    obey(s, v, L);
-    move_as_multipliers_say(s, v, mu);
+    check_rates(s, NULL, v, L);
+    check_moves(s, s->m.v, v, mu);
     check_pulls(s, mu, NULL, NULL, virial);
     CHECK(hol_forces(s->chains, m->r, m->v, m->f, lambda, NULL, g, HOL_WRITE, virial));
     check_pulls(s, lambda, g, NULL, virial);
