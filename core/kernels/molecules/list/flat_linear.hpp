@@ -35,10 +35,12 @@ struct FlatLinear {
     Rows<V> d_low, a_low;  // what refinement adds to the bonds of one tile, and to the accelerations of all
     V *found;              // [n_tiles] flat_refine.hpp
     unsigned *left;        // [n_branches + 1] flat_proof.hpp
+    V *rate;               // of the bonds as they are left: flat_rates.hpp
+    bool with_rates;       // they are wanted
 
     static int64_t values(const FlatList &s) {
         return tile_values(s) + mass_values(s) + 4 * (3 * static_cast<int64_t>(s.n_sites) + s.n_rows) +
-               2 * in_fours(s.n_bonds) + 4 * in_fours(s.n_columns) + in_fours(s.n_entries) + in_fours(s.n_tiles) +
+               2 * in_fours(s.n_bonds) + 5 * in_fours(s.n_columns) + in_fours(s.n_entries) + in_fours(s.n_tiles) +
                left_values(s);
     }
     static int64_t tile_values(const FlatList &s) {
@@ -52,7 +54,7 @@ struct FlatLinear {
                Memory<V> &memory)
         : s(list), lane(l), used(in_use), at(l, in_use, packed), box(b), coordinates(positions), in(inputs),
           terms(sides), masses_known(known), team(s.n_branches > 0 ? threads : nullptr),
-          whole_a(in.rates || !is_from_memory(s)), own(memory.next) {
+          whole_a(in.rates || !is_from_memory(s)), own(memory.next), with_rates(in.rates && !in.v->is_float) {
         memory.values(tile_values(s));
         const int64_t bonds = in_fours(s.n_bonds), columns = in_fours(s.n_columns);
         pull = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
@@ -69,6 +71,7 @@ struct FlatLinear {
         a_low = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
         found = memory.values(in_fours(s.n_tiles));
         left = reinterpret_cast<unsigned *>(memory.values(left_values(s)));
+        rate = memory.values(columns);
         take(own);
     }
     // The same in another thread.
@@ -278,17 +281,6 @@ struct FlatLinear {
             v[i] = absolute(of[i]);
             of[i] = multiply_add(in_row(w[2 * i + 1]), g[i], of[i]);
         }
-    }
-    // For multipliers that have been changed since.
-    void find_pulls_again() const {
-        down([](const FlatLinear &x, const Branch &branch) HOL_FORCED {
-            for_tiles_down(x.s, branch, [&](const Tile &tile) HOL_FORCED {
-                x.find_pulls(tile);
-                if (!(x.terms & rates)) return;  // nobody asks for accelerations any more
-                x.load_inputs(tile, x.a_of(tile));
-                x.add_pulls(tile);
-            });
-        });
     }
 };
 

@@ -9,6 +9,7 @@
 // flat_refine.hpp corrects, or the careful solver.
 #pragma once
 
+#include "core/kernels/molecules/list/flat_rates.hpp"
 #include "core/kernels/molecules/list/flat_residual.hpp"
 #include "core/kernels/molecules/proof.hpp"
 
@@ -153,10 +154,16 @@ struct FlatProof {
         });
         const unsigned good = left_of_all(all);
         for (int32_t k = 0; k < all.s.n_bonds; ++k) all.t[k] = all.t[k] + keep(Width<V>::of_bits(good), change[k]);
-        all.find_pulls_again();
+        find_pulls_again(all);
         return good;
     }
     // Of a tile, but for the bonds of which not all is known yet. A part of the terms does for most.
+    void look_at(const Tile &tile) {
+        x.with_rates ? look_at<true>(tile) : look_at<false>(tile);
+        look_at_missed(tile);
+    }
+    // with_rates: finds what is left of the bonds' rates.
+    template <bool with_rates>
     __attribute__((noinline)) void look_at(const Tile &tile) {
         const Columns<V> most = all_columns<V>(most_backward(s.n_bonds)), least = all_columns<V>(-least_proven_pivot);
         const Rows<V> of = x.a_of(tile);
@@ -166,7 +173,7 @@ struct FlatProof {
         furthest_of(tile) = Width<V>::all(1);
         for (int32_t k = tile.first; k < tile.end && left; k += step) {
             const int32_t first_row = tile.first_row + (k - tile.first);
-            Row p[step], q[step], input[step];
+            Row p[step], q[step], e[step], input[step];
             Columns<V> T = {};
             HOL_UNROLL
             for (int i = 0; i < step; ++i) {
@@ -174,9 +181,11 @@ struct FlatProof {
                 const Row &bond = x.d[first_row + i], &head = of.at_four_times(from), &tail = of.at_four_times(to);
                 p[i] = bond * head;
                 q[i] = bond * tail;
+                if (with_rates) e[i] = bond * (tail - head);
                 input[i] = absolute(bond) * (x.v.at_four_times(from) + x.v.at_four_times(to));
                 put<V>(T, i, more_of(head) + more_of(tail));
             }
+            if (with_rates) x.some(x.rate, k) = sums_of(e);
             const Columns<V> part = absolute(sums_of(p)) + absolute(sums_of(q)) + sums_of(input),
                              spare = multiply_add(most, part, -multiply_add(x.some(x.size, k), T, x.some(x.back, k))),
                              pivot = multiply_add(least, x.some(x.diagonal, k), x.some(x.E, k));
@@ -191,7 +200,6 @@ struct FlatProof {
                 note_missed(tile, k + i, doubtful);
             }
         }
-        look_at_missed(tile);
     }
     // At the others, in the end.
     __attribute__((noinline)) void look_at_outer(const Tile &tile) {

@@ -279,7 +279,7 @@ struct FlatRefine {
         good = good & lanes_where(taken);
         if (!(bits(good) | proven)) return 0;
         restore_bonds(Width<V>::of_bits(proven));
-        x.find_pulls_again();
+        find_pulls_again(x);
         return bits(good & lanes_where(faint)) | proven;
     }
 };

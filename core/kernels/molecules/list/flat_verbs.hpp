@@ -2,7 +2,7 @@
 // lanes. Each returns the lanes that are in doubt, of which nothing has been written.
 #pragma once
 
-#include "core/kernels/molecules/list/flat_linear.hpp"
+#include "core/kernels/molecules/list/flat_rates.hpp"
 #include "core/kernels/molecules/solve.hpp"
 #include "core/kernels/molecules/virial.hpp"
 
@@ -84,27 +84,6 @@ static inline unsigned solve_flat(const SolveCall &call, const FlatBlock<V> &blo
     return pull_flat(call, block.linear(call.box, call.r, in, given), tally);
 }
 
-// Solves once more, for the rates of the bonds as they are, d.(v_j - v_i).
-template <class V>
-static inline void solve_for_rates(const FlatLinear<V> &all) {
-    clear_sides(all.s, all.t);
-    all.up([](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
-        for_tiles_up(x.s, branch, [&](const Tile &tile) HOL_FORCED {
-            copy_guests(x.s, tile, x.a);
-            for (int64_t k = tile.first; k < tile.end; k += x.step) x.some(x.t, k) = x.sides_of(tile, k, rates);
-            x.add_given(tile, x.t);
-            solve_up(x.s, tile, x.lower, x.t);
-        });
-    });
-    all.down([](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
-        for_tiles_down(x.s, branch, [&](const Tile &tile) HOL_FORCED {
-            solve_down(x.s, tile, x.lower, x.per_pivot, x.t, [](int32_t, const V &) HOL_FORCED {});
-            x.find_pulls(tile);
-            x.add_pulls(tile);
-        });
-    });
-}
-
 template <class V>
 static inline unsigned solve_flat(const VelocitiesCall &call, const FlatBlock<V> &block, Tally &tally) {
     const Inputs in = {&call.v, nullptr, nullptr, true, call.strain};
@@ -113,7 +92,7 @@ static inline unsigned solve_flat(const VelocitiesCall &call, const FlatBlock<V>
     if (!good) return bits(x.in_use());
     if (call.lambda) write_multipliers(x, call.lambda, good);
     if (call.virial) add_virial(x, good, tally);
-    if (!call.v.is_float) solve_for_rates(x);
+    if (x.with_rates) take_rates(x, good);
     write_atoms(x, call.v, x.a, false, good);
     return bits(x.in_use()) & ~good;
 }
