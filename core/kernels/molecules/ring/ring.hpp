@@ -2,7 +2,8 @@
 // a chain of all but the last one, and that one: LDL^T, each row coupled to the next one and, by fill, to the last. It
 // subtracts. Errors stay at a few roundings while every pivot keeps a sixteenth of its diagonal element, as in trees
 // (tree/joint.hpp): E of theory (9) is then right to a few roundings, and what an error of it does to the next one is
-// no more than it is itself. `slack` is negative where a pivot does not.
+// no more than it is itself. The roundings of all bonds meet in the last pivot, which must keep a twelfth. `slack` is
+// negative where a pivot does not.
 //
 // Bond p of the ring, at place n_tree + p, points from slot n_tree + p to the next one: the bond *behind* this atom, as
 // p - 1 is the one *before* it.
@@ -11,6 +12,8 @@
 #include "core/kernels/molecules/tree/joint.hpp"
 
 namespace holonomic::HOL_ISA::graph {
+
+constexpr double least_last_part = 1.0 / 12;
 
 template <class V>
 struct Ring {
@@ -132,7 +135,7 @@ static inline void up_ring(Molecules<V> &x, const Ring<V> &ring) {
     });
     BondRow<V> &row = x.row[end];
     const V P = last + fill_of_last;
-    x.slack = min(mul_add(part, last, P), slack);
+    x.slack = min(mul_add(Width<V>::all(-least_last_part), last, P), slack);
     row.r = one / P;
     row.t = row.E = (row.t + y_of_last) * row.r;
 }
