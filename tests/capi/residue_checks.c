@@ -82,6 +82,40 @@ double length_rounding(const residues *s)
     return 8 * DBL_EPSILON * (1 + extent / shortest);
 }
 
+static int is_held(const residues *s, int64_t k)
+{
+    return s->m.mass[s->m.pairs[2 * k]] == 0 && s->m.mass[s->m.pairs[2 * k + 1]] == 0;
+}
+
+int64_t worst_bond(const residues *s, const double *r, double *error)
+{
+    int64_t worst = -1;
+    *error = -1;
+    for (int64_t k = 0; k < s->m.n_bonds; ++k)
+        if (!is_held(s, k) && length_error(s, r, k) > *error) *error = length_error(s, r, k), worst = k;
+    return worst;
+}
+
+void check_lengths(const residues *s, const double *r)
+{
+    const double rounding = length_rounding(s);
+    for (int64_t k = 0; k < s->m.n_bonds; ++k)
+        if (!is_held(s, k)) CHECK_AT_MOST(length_error(s, r, k), rounding);
+}
+
+void check_displacements(const residues *s, const double *start, const double *r, const double *lambda, double dt)
+{
+    pulls p = pulls_of(s, lambda);
+    const double rounded = length_rounding(s) / 2; /* of coordinates, in units of a bond */
+    const long double images = residues_box(s) ? s->box[0] : 0;
+    for (int64_t i = 0; i < 3 * s->m.n_atoms; ++i) {
+        const long double w = s->m.inverse_mass[i / 3], per_mass = dt * dt * w;
+        CHECK_AT_MOST(fabsl(start[i] + per_mass * p.g[i] - r[i]),
+                      rounded + (16 + images) * DBL_EPSILON * per_mass * p.size[i / 3]);
+    }
+    pulls_free(&p);
+}
+
 void for_each_residues(int64_t n_bonds, int hostile, void (*check)(residues *s))
 {
     const int end = hostile ? RESIDUE_RECIPES : HOSTILE_RESIDUES;

@@ -40,6 +40,15 @@ double length_error(const residues *s, const double *r, int64_t bond);
 /** Rounding of coordinates that a bond's length has at the least, of the shortest bond. */
 double length_rounding(const residues *s);
 
+/** The worst bond that is not held at both ends; its error. */
+int64_t worst_bond(const residues *s, const double *r, double *error);
+
+/** All bonds have their lengths, but for the rounding of coordinates. */
+void check_lengths(const residues *s, const double *r);
+
+/** r - start = dt^2 w G of the multipliers, along the bonds there were. */
+void check_displacements(const residues *s, const double *start, const double *r, const double *lambda, double dt);
+
 /** Calls the function with each recipe, of so many bonds; the molecule's name is printed. With fewer in a quick run. */
 void for_each_residues(int64_t n_bonds, int hostile, void (*check)(residues *s));
 

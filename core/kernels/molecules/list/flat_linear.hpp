@@ -26,17 +26,17 @@ struct FlatLinear {
     double *const own;           // memory of this thread, for one tile
     V *mass;                     // -w_0, w_0, -w_1, .. , 0 of each tile
     Rows<V> pull, d;             // of all tiles: G, and the sum of |t| |d| of an atom's bonds; bonds
-    Rows<V> a;             // w f, then w (f + G); or where right-hand sides are rates v + w G. Of one tile, or of all
-    Rows<V> r, v;          // of one tile: coordinates, velocities; |a| as it was
-    V *t, *E, *per_pivot;  // right-hand sides, then multipliers; pivots
-    V *lower, *size;       // |d|
-    V *diagonal, *back;    // of A; R
-    int32_t *bonds_at;     // of one tile: flat_residual.hpp
-    Rows<V> d_low, a_low;  // what refinement adds to the bonds of one tile, and to the accelerations of all
-    V *found;              // [n_tiles] flat_refine.hpp
-    unsigned *left;        // [n_branches + 1] flat_proof.hpp
-    V *rate;               // of the bonds as they are left: flat_rates.hpp
-    bool with_rates;       // they are wanted
+    Rows<V> a;              // w f, then w (f + G); or where right-hand sides are rates v + w G. Of one tile, or of all
+    Rows<V> r, v;           // of one tile: coordinates, velocities; |a| as it was
+    V *t, *E, *per_pivot;   // right-hand sides, then multipliers; pivots
+    V *lower, *size;        // |d|
+    V *diagonal, *back;     // of A; R
+    int32_t *bonds_at;      // of one tile: flat_residual.hpp
+    Rows<V> d_low, a_low;   // what refinement adds to the bonds of one tile, and to the accelerations of all
+    V *found;               // [n_tiles] flat_refine.hpp
+    unsigned *left;         // [n_branches + 1] flat_proof.hpp
+    V *rate;                // of the bonds as they are left: flat_rates.hpp
+    const bool with_rates;  // they are wanted
 
     static int64_t values(const FlatList &s) {
         return tile_values(s) + mass_values(s) + 4 * (3 * static_cast<int64_t>(s.n_sites) + s.n_rows) +

@@ -149,15 +149,7 @@ struct FlatMoves {
 
     // Displacements by the bonds of a tile, and of its atoms by all: times w only in the end.
     HOL_FORCED void pull(const Tile &tile) const {
-        const Rows<V> of = moves.from(tile.first_site), bond = b.from(tile.first_row - tile.first);
-        const int32_t *const from = s.from + (tile.first_row - tile.first), *const to = s.to + (from - s.from);
-        for (int64_t i = 0; i < tile.end_site - tile.first_site; ++i) of[i] = Row{};
-        for (int64_t k = tile.first; k < tile.end; ++k) {
-            const Row one = in_row(tau[k]) * bond[k];
-            Row &head = of.at_four_times(from[k]), &tail = of.at_four_times(to[k]);
-            head = head + one;
-            tail = tail - one;
-        }
+        sum_pulls(s, tile, tau, b.from(tile.first_row), moves.from(tile.first_site));
     }
     HOL_FORCED void weigh(const Tile &tile) const {
         const Rows<V> of = moves.from(tile.first_site);

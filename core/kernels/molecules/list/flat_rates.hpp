@@ -37,18 +37,11 @@ static inline void find_pulls_again(const FlatLinear<V> &all) {
 // Moves the atoms of a tile: by its own bonds, which also find what pulls its guests, and by what later tiles have
 // found. Pulls are added up first, so that velocities are rounded once.
 template <class V>
-__attribute__((noinline)) void move_atoms(const FlatLinear<V> &x, const Tile &tile, MaskOf<V> which) {
-    const Rows<V> a = x.a_of(tile), bond = x.d.from(tile.first_row - tile.first);
+__attribute__((noinline)) void move_atoms(const FlatLinear<V> &x, const Tile &tile) {
+    const Rows<V> a = x.a_of(tile);
     const V *const w = x.mass + tile.first_mass;
-    const int32_t *const from = x.s.from + (tile.first_row - tile.first), *const to = x.s.to + (from - x.s.from);
     const int32_t n_own = tile.own_end - tile.first_site, n = tile.end_site - tile.first_site;
-    for (int32_t i = 0; i < n; ++i) x.v[i] = RowOf<V>{};
-    for (int64_t k = tile.first; k < tile.end; ++k) {
-        const RowOf<V> p = in_row(keep(which, x.rate[k])) * bond[k];
-        RowOf<V> &head = x.v.at_four_times(from[k]), &tail = x.v.at_four_times(to[k]);
-        head = head + p;
-        tail = tail - p;
-    }
+    sum_pulls(x.s, tile, x.rate, x.d_of(tile), x.v);
     for (int32_t i = n_own; i < n; ++i) a[i] = x.v[i];
     for (int32_t i = tile.first_visit; i < tile.end_visit; ++i) {
         const FlatList::Visit &visit = x.s.visit[i];
@@ -57,9 +50,9 @@ __attribute__((noinline)) void move_atoms(const FlatLinear<V> &x, const Tile &ti
     for (int32_t i = 0; i < n_own; ++i) a[i] = multiply_add(in_row(w[2 * i + 1]), x.v[i], a[i]);
 }
 
-// With the factors that there are, in the lanes of `which`.
+// With the factors that there are.
 template <class V>
-static inline void take_rates(const FlatLinear<V> &all, unsigned which) {
+static inline void take_rates(const FlatLinear<V> &all) {
     clear_sides(all.s, all.rate);
     all.up([](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
         for_tiles_up(x.s, branch, [&](const Tile &tile) HOL_FORCED {
@@ -68,10 +61,10 @@ static inline void take_rates(const FlatLinear<V> &all, unsigned which) {
             solve_up(x.s, tile, x.lower, x.rate);
         });
     });
-    all.down([&](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
+    all.down([](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
         for_tiles_down(x.s, branch, [&](const Tile &tile) HOL_FORCED {
             solve_down(x.s, tile, x.lower, x.per_pivot, x.rate, [](int32_t, const V &) HOL_FORCED {});
-            move_atoms(x, tile, Width<V>::of_bits(which));
+            move_atoms(x, tile);
         });
     });
 }

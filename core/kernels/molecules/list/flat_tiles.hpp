@@ -123,6 +123,20 @@ HOL_INLINE void solve_down(const FlatList &s, const Tile &tile, const V *upper, 
     give_sides(s, tile, t);
 }
 
+// What the bonds of a tile, times these multipliers, pull its sites by. Bonds and sites count from its first.
+template <class V>
+HOL_INLINE void sum_pulls(const FlatList &s, const Tile &tile, const V *multiplier, const Rows<V> &bonds,
+                          const Rows<V> &of) {
+    const Rows<V> bond = bonds.from(-tile.first);
+    const int32_t *const from = s.from + (tile.first_row - tile.first), *const to = s.to + (from - s.from);
+    for (int64_t i = 0; i < tile.end_site - tile.first_site; ++i) of[i] = RowOf<V>{};
+    for (int64_t k = tile.first; k < tile.end; ++k) {
+        const RowOf<V> p = in_row(multiplier[k]) * bond[k];
+        RowOf<V> &head = of.at_four_times(from[k]), &tail = of.at_four_times(to[k]);
+        head = head + p;
+        tail = tail - p;
+    }
+}
 // Of an atom of a tile, and of a guest the pull on it added to that on its atom.
 template <class V>
 HOL_INLINE void add_visits(const FlatList &s, const Tile &tile, const Rows<V> &pull) {

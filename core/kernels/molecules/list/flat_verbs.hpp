@@ -92,7 +92,7 @@ static inline unsigned solve_flat(const VelocitiesCall &call, const FlatBlock<V>
     if (!good) return bits(x.in_use());
     if (call.lambda) write_multipliers(x, call.lambda, good);
     if (call.virial) add_virial(x, good, tally);
-    if (x.with_rates) take_rates(x, good);
+    if (x.with_rates) take_rates(x);
     write_atoms(x, call.v, x.a, false, good);
     return bits(x.in_use()) & ~good;
 }
