@@ -128,7 +128,6 @@ private:
         std::sort(guests.begin(), guests.begin() + static_cast<std::ptrdiff_t>(visiting));
         t.first_site = size_of(a_.atom_of);
         t.own_end = t.first_site + size_of(own);
-        t.first_mass = 2 * t.first_site + tile_of_[at(t.first)];
         for (const std::int32_t i : own) a_.place_of[at(i)] = add_site(t, i);
         for (const std::int32_t i : guests) add_site(t, i);
         t.end_site = size_of(a_.atom_of);

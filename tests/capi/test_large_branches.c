@@ -12,7 +12,7 @@ static const double dt = 0.002;
 enum { EXAMPLES = 4 };
 static molecule example(int which)
 {
-    const int64_t n = quick_run() ? 9000 : 30000;
+    const int64_t n = quick_run() ? 9000 : 100000;
     return which == 0   ? large_rings(n)
            : which == 1 ? large_ladder(n / 3)
            : which == 2 ? large_segments(n, 1, 50, 1)

@@ -11,7 +11,7 @@ static const double dt = 0.002;
 
 static int64_t size_of_test(void)
 {
-    return quick_run() ? 2500 : 20000;
+    return quick_run() ? 2500 : 80000;
 }
 
 /** With cycles, a random tree, and a tree of arms. */
@@ -209,7 +209,7 @@ static void every_size_about_the_limit_agrees_with_a_dense_solution(void **state
 static void ladders_of_several_tiles_leave_roundings_of_their_equations(void **state)
 {
     (void)state;
-    molecule m = large_ladder(quick_run() ? 6000 : 20000);
+    molecule m = large_ladder(quick_run() ? 6000 : 40000);
     hol_chains *chains = large_chains(&m);
     const size_t n = (size_t)m.n_bonds, size = 3 * (size_t)m.n_atoms;
     double *lambda = untouched(n), *v = copy_of(m.v, size), *g = untouched(size);

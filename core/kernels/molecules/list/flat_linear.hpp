@@ -22,56 +22,57 @@ struct FlatLinear {
     const int terms;             // of right-hand sides
     const bool masses_known;     // those of the molecules before, in the same memory
     const LongTeam *const team;  // or nullptr
-    const bool whole_a;          // a is of all tiles
     double *const own;           // memory of this thread, for one tile
-    V *mass;                     // -w_0, w_0, -w_1, .. , 0 of each tile
-    Rows<V> pull, d;             // of all tiles: G, and the sum of |t| |d| of an atom's bonds; bonds
-    Rows<V> a;              // w f, then w (f + G); or where right-hand sides are rates v + w G. Of one tile, or of all
-    Rows<V> r, v;           // of one tile: coordinates, velocities; |a| as it was
-    V *t, *E, *per_pivot;   // right-hand sides, then multipliers; pivots
-    V *lower, *size;        // |d|
-    V *diagonal, *back;     // of A; R
-    int32_t *bonds_at;      // of one tile: flat_residual.hpp
-    Rows<V> d_low, a_low;   // what refinement adds to the bonds of one tile, and to the accelerations of all
-    V *found;               // [n_tiles] flat_refine.hpp
-    unsigned *left;         // [n_branches + 1] flat_proof.hpp
-    V *rate;                // of the bonds as they are left: flat_rates.hpp
-    const bool with_rates;  // they are wanted
+    V *w;                        // inverse masses of all sites
+    V *masses;                   // of one tile: -w_0, w_0, -w_1, .. , 0
+    Rows<V> pull, d;             // G, and the sum of |t| |d| of an atom's bonds; bonds
+    Rows<V> a;                   // w f, then w (f + G); or where right-hand sides are rates v + w G
+    Rows<V> r, v;                // of one tile: coordinates, then G; velocities, then |a| as it was
+    V *t, *per_pivot;            // right-hand sides, then multipliers; pivots, then 1 over them
+    V *lower, *size;             // |d|
+    V *diagonal;                 // of one tile, of A
+    V *back, *rate;              // R; in the same memory then rates of the bonds as they are left: flat_rates.hpp
+    V *side;                     // right-hand sides as they came: flat_refine.hpp
+    int32_t *bonds_at;           // of one tile: flat_residual.hpp
+    Rows<V> d_low, a_low;        // what refinement adds to the bonds of one tile, and to the accelerations of all
+    V *found;                    // [n_tiles] flat_refine.hpp
+    unsigned *left, *firm;       // [n_branches + 1] lanes: flat_proof.hpp; in which pivots may do with refinement
+    const bool with_rates;       // they are wanted
 
     static int64_t values(const FlatList &s) {
-        return tile_values(s) + mass_values(s) + 4 * (3 * static_cast<int64_t>(s.n_sites) + s.n_rows) +
-               2 * in_fours(s.n_bonds) + 5 * in_fours(s.n_columns) + in_fours(s.n_entries) + in_fours(s.n_tiles) +
-               left_values(s);
+        return tile_values(s) + in_fours(s.n_sites) + 4 * (3 * static_cast<int64_t>(s.n_sites) + s.n_rows) +
+               2 * in_fours(s.n_bonds) + 3 * in_fours(s.n_columns) + in_fours(s.n_entries) + in_fours(s.n_tiles) +
+               2 * left_values(s);
     }
     static int64_t tile_values(const FlatList &s) {
-        return 4 * (3 * static_cast<int64_t>(s.most_sites) + most_columns(s)) + bonds_at_values(s);
+        return 4 * (2 * static_cast<int64_t>(s.most_sites) + most_columns(s)) + bonds_at_values(s) + most_masses(s) +
+               most_columns(s);
     }
     static int64_t left_values(const FlatList &s) { return in_fours(s.n_branches / 2 + 1); }
     static int64_t most_columns(const FlatList &s) { return in_fours(s.most_columns); }
-    static int64_t bonds_at_values(const FlatList &s) { return in_fours((s.most_sites + 3 + 2 * most_columns(s)) / 2); }
+    static int64_t bonds_at_values(const FlatList &s) { return in_fours(s.most_sites + 2) + 2 * most_columns(s); }
     FlatLinear(const FlatList &list, const MoleculeLane *l, int in_use, bool packed, bool known,
                const LongTeam *threads, const Box &b, const AtomArray &positions, const Inputs &inputs, int sides,
                Memory<V> &memory)
         : s(list), lane(l), used(in_use), at(l, in_use, packed), box(b), coordinates(positions), in(inputs),
-          terms(sides), masses_known(known), team(s.n_branches > 0 ? threads : nullptr),
-          whole_a(in.rates || !is_from_memory(s)), own(memory.next), with_rates(in.rates && !in.v->is_float) {
+          terms(sides), masses_known(known), team(s.n_branches > 0 ? threads : nullptr), own(memory.next),
+          with_rates(in.rates && !in.v->is_float) {
         memory.values(tile_values(s));
         const int64_t bonds = in_fours(s.n_bonds), columns = in_fours(s.n_columns);
         pull = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
         d = {memory.values(4 * static_cast<int64_t>(s.n_rows))};
         lower = memory.values(in_fours(s.n_entries));
         t = memory.values(columns);
-        E = memory.values(columns);
         per_pivot = memory.values(columns);
-        back = memory.values(columns);
+        back = rate = memory.values(columns);
         size = memory.values(bonds);
-        diagonal = memory.values(bonds);
+        side = memory.values(bonds);
         a = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
-        mass = memory.values(mass_values(s));
+        w = memory.values(in_fours(s.n_sites));
         a_low = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
         found = memory.values(in_fours(s.n_tiles));
         left = reinterpret_cast<unsigned *>(memory.values(left_values(s)));
-        rate = memory.values(columns);
+        firm = reinterpret_cast<unsigned *>(memory.values(left_values(s)));
         take(own);
     }
     // The same in another thread.
@@ -81,10 +82,10 @@ struct FlatLinear {
         Memory<V> memory = {of_thread};
         r = {memory.values(4 * static_cast<int64_t>(s.most_sites))};
         v = {memory.values(4 * static_cast<int64_t>(s.most_sites))};
-        const Rows<V> of_tile = {memory.values(4 * static_cast<int64_t>(s.most_sites))};
-        if (!whole_a) a = of_tile;
         bonds_at = reinterpret_cast<int32_t *>(memory.values(bonds_at_values(s)));
         d_low = {memory.values(4 * most_columns(s))};
+        masses = memory.values(most_masses(s));
+        diagonal = memory.values(most_columns(s));
     }
     // Calls body(this in a thread, branch) for all branches and the trunk. Molecules in lanes have no branches.
     template <class Body>
@@ -110,47 +111,49 @@ struct FlatLinear {
         };
     }
     MaskOf<V> in_use() const { return Width<V>::first(used); }
+    // The lanes that are in `left`, or in `firm`, of all branches.
+    unsigned in_all_branches(const unsigned *lanes) const {
+        unsigned all = lanes[0];
+        for (int32_t b = 1; b <= s.n_branches; ++b) all &= lanes[b];
+        return all;
+    }
     HOL_FORCED Columns<V> &some(V *values, int64_t k) const { return *reinterpret_cast<Columns<V> *>(values + k); }
-    HOL_FORCED Rows<V> a_of(const Tile &tile) const { return whole_a ? a.from(tile.first_site) : a; }
+    HOL_FORCED Rows<V> a_of(const Tile &tile) const { return a.from(tile.first_site); }
     HOL_FORCED Rows<V> d_of(const Tile &tile) const { return d.from(tile.first_row); }
 
     // w f, or v where right-hand sides are rates.
     HOL_FORCED void load_inputs(const Tile &tile, const Rows<V> &to) const {
         const int32_t n = tile.end_site - tile.first_site;
-        const V *const w = mass + tile.first_mass;
+        const V *const of_site = w + tile.first_site;
         if (terms & (rates | pulls)) read_atoms(terms & rates ? *in.v : *in.f, at, s, tile, to);
         if (terms & rates)
             for (int32_t i = 0; i < n; ++i) set_more(to[i], V{});
         else if (terms & pulls)
-            for (int32_t i = 0; i < n; ++i) to[i] = in_row(w[2 * i + 1]) * to[i];
+            for (int32_t i = 0; i < n; ++i) to[i] = in_row(of_site[i]) * to[i];
         else
             for (int32_t i = 0; i < n; ++i) to[i] = Row{};
-    }
-
-    // Where the memory of one tile has had others since.
-    HOL_FORCED void load_inputs_again(const Tile &tile) const {
-        if (!whole_a) load_inputs(tile, a);
     }
 
     // Coordinates, masses and what right-hand sides are made of.
     HOL_FORCED void load_atoms(const Tile &tile) const {
         if constexpr (step == 4) {
             const Rows<V> of = a_of(tile);
+            V *const of_site = w + tile.first_site;
             const bool rated = terms & rates;
             choose(
                 [&](auto packed, auto with_v, auto with_f) HOL_FORCED {
-                    for_sites<packed, with_v, with_f>(at, s, tile, *lane, mass + tile.first_mass, coordinates,
+                    for_sites<packed, with_v, with_f>(at, s, tile, *lane, of_site, coordinates,
                                                       in.v ? *in.v : coordinates, in.f ? *in.f : coordinates,
-                                                      [&](int32_t i, double w, const Row &x, const Row &u, const Row &f)
+                                                      [&](int32_t i, const Row &x, const Row &u, const Row &f)
                                                           HOL_FORCED {
                                                               r[i] = x;
                                                               if (with_v && !rated) v[i] = u;
-                                                              of[i] = rated ? u : in_row(w) * f;
+                                                              of[i] = rated ? u : in_row(of_site[i]) * f;
                                                           });
                 },
                 at.layout != elements, (terms & (squares | rates)) != 0, (terms & pulls) != 0);
         } else {
-            if (!masses_known) read_masses(lane, s, mass);
+            if (!masses_known) read_masses(lane, s, w);
             read_atoms(coordinates, at, s, tile, r);
             if (terms & squares) read_atoms(*in.v, at, s, tile, v);
             load_inputs(tile, a_of(tile));
@@ -159,19 +162,21 @@ struct FlatLinear {
 
     __attribute__((noinline)) void load(const Tile &tile) const {
         load_atoms(tile);
-        find_bonds(s, tile, box, r, d);
-        const Rows<V> bonds = d_of(tile);
-        const V *const w = mass + tile.first_mass;
-        for (int64_t k = tile.first; k < tile.end; k += step) {
-            const int32_t *const from = s.from + tile.first_row + (k - tile.first), *const to = s.to + (from - s.from);
+        int64_t row = tile.first_row;
+        for (int64_t k = tile.first; k < tile.end; k += step, row += step) {
             Row q[step];
             HOL_UNROLL_FEW
-            for (int i = 0; i < step; ++i) q[i] = bonds[k - tile.first + i] * bonds[k - tile.first + i];
-            const Columns<V> square = sums_of(q);
+            for (int i = 0; i < step; ++i) {
+                const Row bond = bond_at(s, row + i, box, r);
+                d[row + i] = bond;
+                q[i] = bond * bond;
+            }
+            const Columns<V> square = sums_of(q), of_ends = masses_at<V>(w + tile.first_site, s.from + row, s.to + row);
             some(t, k) = sides_of(tile, k, terms);
-            some(E, k) = some(diagonal, k) = masses_at<V>(w, from, to) * square;
+            some(per_pivot, k) = some(diagonal, k - tile.first) = of_ends * square;
             some(size, k) = root_of(square);
         }
+        for (; row < tile.end_row; ++row) d[row] = bond_at(s, row, box, r);
         if (terms & (given | rates)) add_given(tile, t);
     }
     // What velocities and inputs give to the right-hand sides of columns k ..
@@ -192,8 +197,8 @@ struct FlatLinear {
         return sums_of(e);
     }
     // What the caller gives to them.
-    HOL_FORCED void add_given(const Tile &tile, V *side) const {
-        for (int32_t k = tile.first; k < tile.end && (in.rhs || in.strain); ++k) side[k] = side[k] + given_to(tile, k);
+    HOL_FORCED void add_given(const Tile &tile, V *to) const {
+        for (int32_t k = tile.first; k < tile.end && (in.rhs || in.strain); ++k) to[k] = to[k] + given_to(tile, k);
     }
     V given_to(const Tile &tile, int32_t k) const {
         if (!in.rhs) return stretching(in.strain, vector_of(d_of(tile)[k - tile.first]));
@@ -205,63 +210,21 @@ struct FlatLinear {
     // The entries of A off its diagonal.
     __attribute__((noinline)) void assemble(const Tile &tile) const {
         const Rows<V> bond = d_of(tile);
-        const V *const w = mass + tile.first_mass;
+        sign_masses(tile, w, masses);
         for (int64_t e = tile.first_entry; e < tile.end_entry; e += step) {
             Row p[step];
             HOL_UNROLL_FEW
             for (int i = 0; i < step; ++i)
                 p[i] = bond.at_four_times(s.row_4[e + i]) * bond.at_four_times(s.column_4[e + i]);
-            some(lower, e) = gathered(w, s.mass + e) * sums_of(p);
+            some(lower, e) = gathered(masses, s.mass + e) * sums_of(p);
         }
     }
 
-    // Right-hand sides with it.
-    __attribute__((noinline)) void eliminate(const Tile &tile) const {
-        add_sides(s, tile, t);
-        add_sides(s, tile, E);
-        add_entries(s, tile, lower);
-        const int32_t *update = s.update + tile.first_update;
-        for_columns_up(s, tile, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
-            const int32_t *const row = s.row + first;
-            V *const l = lower + first;
-            const V inverse = per_pivot[k] = Width<V>::all(1) / E[k], y = t[k];
-            HOL_UNROLL_FEW
-            for (int32_t i = 0; i < n; ++i) {
-                const V li = l[i], lr = li * inverse;
-                HOL_UNROLL_FEW
-                for (int32_t j = 0; j < i; ++j, ++update)  // l of j is multiplied already
-                    lower[*update] = mul_add(-li, l[j], lower[*update]);
-                E[row[i]] = mul_add(-(li * li), inverse, E[row[i]]);
-                t[row[i]] = mul_add(-lr, y, t[row[i]]);
-                l[i] = lr;
-            }
-        });
-    }
-
-    // Back, with the part of R that elimination and substitutions have.
-    __attribute__((noinline)) void substitute_back(const Tile &tile) const {
-        for_columns_down(s, tile, [&](int32_t k, int32_t first, int32_t n) HOL_FORCED {
-            const int32_t *const row = s.row + first;
-            const V *const l = lower + first;
-            V x = t[k] * per_pivot[k], sum = {};
-            HOL_UNROLL_FEW
-            for (int32_t e = n - 1; e >= 0; --e) {  // the first row is known last
-                const V part = l[e] * t[row[e]];
-                x = x - part;
-                sum = sum + abs(part);
-            }
-            const V all = E[k] * (abs(x) + sum);
-            back[k] = all;
-            HOL_UNROLL_FEW
-            for (int32_t e = 0; e < n; ++e) back[row[e]] = mul_add(abs(l[e]), all, back[row[e]]);
-            t[k] = x;
-        });
-        give_sides(s, tile, t);
-    }
-
-    // G of a tile's atoms, and beside it the sum of |t| |d|.
+    // G of a tile's atoms, and beside it the sum of |t| |d|. For velocities it is needed no longer than the tile's
+    // memory has it, but for what pulls guests, which is kept in their rows of `a`.
+    HOL_FORCED Rows<V> pull_of(const Tile &tile) const { return terms & rates ? r : pull.from(tile.first_site); }
     __attribute__((noinline)) void find_pulls(const Tile &tile) const {
-        const Rows<V> of = pull.from(tile.first_site), bond = d.from(tile.first_row - tile.first);
+        const Rows<V> of = pull_of(tile), bond = d.from(tile.first_row - tile.first);
         const int32_t *const from = s.from + (tile.first_row - tile.first), *const to = s.to + (from - s.from);
         for (int64_t i = 0; i < tile.end_site - tile.first_site; ++i) of[i] = Row{};
         for (int64_t k = tile.first; k < tile.end; ++k) {
@@ -271,15 +234,32 @@ struct FlatLinear {
             head = head + p;
             tail = tail + opposite(p);
         }
-        add_visits(s, tile, pull);
+        if (terms & rates) {
+            keep_for_owners(tile, of);
+        } else {
+            add_visits(s, tile, pull);
+        }
+    }
+    // Keeps what pulls guests, and adds to what pulls a tile's own atoms that of their guests in later tiles.
+    HOL_FORCED void keep_for_owners(const Tile &tile, const Rows<V> &of) const {
+        const Rows<V> kept = a.from(tile.first_site);
+        for (int32_t i = tile.own_end - tile.first_site; i < tile.end_site - tile.first_site; ++i) kept[i] = of[i];
+        for (int32_t i = tile.first_visit; i < tile.end_visit; ++i) {
+            RowOf<V> &own_atom = of[s.visit[i].own - tile.first_site];
+            own_atom = own_atom + a[s.visit[i].guest];
+        }
+    }
+    // The sum of w |t| |d| of all bonds of the atom of a site, once G is known.
+    HOL_FORCED V tensions_at(int32_t site) const {
+        return terms & rates ? more_of(a[s.home[site]]) : w[site] * more_of(pull[s.home[site]]);
     }
     // What they do to a, of which v keeps what it was made of.
     HOL_FORCED void add_pulls(const Tile &tile) const {
-        const Rows<V> of = a_of(tile), g = pull.from(tile.first_site);
-        const V *const w = mass + tile.first_mass;
+        const Rows<V> of = a_of(tile), g = pull_of(tile);
+        const V *const of_site = w + tile.first_site;
         for (int64_t i = 0; i < tile.own_end - tile.first_site; ++i) {
             v[i] = absolute(of[i]);
-            of[i] = multiply_add(in_row(w[2 * i + 1]), g[i], of[i]);
+            of[i] = multiply_add(in_row(of_site[i]), g[i], of[i]);
         }
     }
 };

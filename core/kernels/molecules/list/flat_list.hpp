@@ -24,7 +24,7 @@ struct FlatList {
     int32_t n_entries;                            // then sides
     int32_t most_sites, most_rows, most_columns;  // of a tile
 
-    static constexpr int32_t columns_of_tile = 16384;
+    static constexpr int32_t columns_of_tile = 32768;
     struct Tile {
         int32_t first_site, own_end, end_site;  // guests from own_end on
         int32_t first_row, end_row;             // extra ones behind as many as there are columns, in fours
@@ -36,7 +36,6 @@ struct FlatList {
         int32_t first_visit, end_visit;
         int32_t first_outer, end_outer;
         int64_t first_update;
-        int32_t first_mass;  // where its masses begin
     };
     const Tile *tile;
     int32_t n_tiles;

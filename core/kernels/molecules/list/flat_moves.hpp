@@ -18,13 +18,14 @@ struct FlatErrors {
     V largest() const { return largest_of<V>(worst) + V{} * sum_of_columns<V>(sum); }
 };
 
-// What is found of a tile: also the largest coordinate, the shortest and the longest bond, and the largest pull.
+// What is found of a tile: also the largest coordinate and inverse mass, the shortest and the longest bond, and the
+// largest pull.
 template <class V>
 struct FlatFound {
     FlatErrors<V> errors;
     RowOf<V> coordinate;
     Columns<V> least, most;
-    V pull;
+    V w, pull;
 };
 
 template <class V>
@@ -34,11 +35,11 @@ struct FlatMoves {
     static constexpr int step = at_once<V>;
     const FlatList &s;
     const LongTeam *const team;  // or nullptr
-    double *const own;           // memory of this thread, for rows of one tile: coordinates, then bonds as moved
-    FlatFound<V> *found;         // [n_tiles]
-    V *mass;                     // -w_0, w_0, -w_1, .. , 0 of each tile
-    Rows<V> moves, D, b;         // of all tiles
-    V *tau, *t;                  // t: what is left of a length, then its correction
+    double *const own;    // memory of this thread, for rows of one tile: coordinates, then bonds as moved; masses
+    FlatFound<V> *found;  // [n_tiles]
+    V *w;                 // inverse masses
+    Rows<V> moves, D, b;  // of all tiles
+    V *tau, *t;           // t: what is left of a length, then its correction
     V *a2, *per_a2;
     V *stretch;      // |D| / a of the bonds that the factors were made of
     V opening;       // the error of the bonds as they came
@@ -47,14 +48,18 @@ struct FlatMoves {
 
     static constexpr int64_t found_values = sizeof(FlatFound<V>) / sizeof(V);
     static int64_t rows_of_tile(const FlatList &s) { return s.most_rows > s.most_sites ? s.most_rows : s.most_sites; }
+    static int64_t tile_values(const FlatList &s) { return 4 * rows_of_tile(s) + most_masses(s); }
+    // Where a thread has the masses of its tile.
+    V *masses_beside(const Rows<V> &rows) const { return rows.start + 4 * rows_of_tile(s); }
     static int64_t values(const FlatList &s) {
-        return mass_values(s) + 4 * (rows_of_tile(s) + s.n_sites) + 8 * static_cast<int64_t>(s.n_rows) +
-               found_values * static_cast<int64_t>(s.n_tiles) + 4 * in_fours(s.n_bonds) + in_fours(s.n_columns);
+        return in_fours(s.n_sites) + tile_values(s) + 4 * static_cast<int64_t>(s.n_sites) +
+               8 * static_cast<int64_t>(s.n_rows) + found_values * static_cast<int64_t>(s.n_tiles) +
+               4 * in_fours(s.n_bonds) + in_fours(s.n_columns);
     }
     FlatMoves(const FlatList &list, const LongTeam *threads, Memory<V> &memory)
         : s(list), team(list.n_branches > 0 ? threads : nullptr), own(memory.next), opening(), displaced(false),
           moved(false) {
-        memory.values(4 * rows_of_tile(s));
+        memory.values(tile_values(s));
         moves = {memory.values(4 * static_cast<int64_t>(s.n_sites))};
         D = {memory.values(4 * static_cast<int64_t>(s.n_rows))};
         b = {memory.values(4 * static_cast<int64_t>(s.n_rows))};
@@ -64,7 +69,7 @@ struct FlatMoves {
         a2 = memory.values(in_fours(s.n_bonds));
         per_a2 = memory.values(in_fours(s.n_bonds));
         stretch = memory.values(in_fours(s.n_bonds));
-        mass = memory.values(mass_values(s));
+        w = memory.values(in_fours(s.n_sites));
     }
 
     HOL_FORCED Columns<V> &some(V *values, int64_t k) const { return *reinterpret_cast<Columns<V> *>(values + k); }
@@ -153,9 +158,9 @@ struct FlatMoves {
     }
     HOL_FORCED void weigh(const Tile &tile) const {
         const Rows<V> of = moves.from(tile.first_site);
-        const V *const w = mass + tile.first_mass;
+        const V *const of_site = w + tile.first_site;
         add_visits(s, tile, moves);
-        for (int64_t i = 0; i < tile.own_end - tile.first_site; ++i) of[i] = in_row(w[2 * i + 1]) * of[i];
+        for (int64_t i = 0; i < tile.own_end - tile.first_site; ++i) of[i] = in_row(of_site[i]) * of[i];
     }
     __attribute__((noinline)) void displace() {
         if (displaced) return;
@@ -167,22 +172,48 @@ struct FlatMoves {
     }
     // Bonds as moved, and what is left of them.
     __attribute__((noinline)) V move() {
-        displace();
-        up([&](const Tile &tile, const Rows<V> &) HOL_FORCED { found[&tile - s.tile].errors = move(tile); });
-        moved = true;
+        if (displaced)
+            up([&](const Tile &tile, const Rows<V> &) HOL_FORCED { measure_inner(tile); });
+        else
+            down([&](const Tile &tile) HOL_FORCED {
+                pull(tile);
+                weigh(tile);
+                measure_inner(tile);
+            });
+        return finish_move();
+    }
+    // Of the bonds of a tile's own atoms, in groups of `step`; the others, once all atoms have been moved.
+    __attribute__((noinline)) void measure_inner(const Tile &tile) const {
+        Errors errors = {};
+        int64_t k = tile.first;
+        for (int32_t i = tile.first_outer; i < tile.end_outer; ++i) {
+            const int64_t group = s.outer[i] / step * step;
+            for (; k < group; k += step) measure_moved(tile, k, errors);
+            if (k == group) k += step;
+        }
+        for (; k < tile.end; k += step) measure_moved(tile, k, errors);
+        found[&tile - s.tile].errors = errors;
+    }
+    V finish_move() {
+        displaced = moved = true;
+        if (s.n_tiles > 1) up([&](const Tile &tile, const Rows<V> &) HOL_FORCED { measure_outer(tile); });
         return largest_error();
     }
-    HOL_FORCED Errors move(const Tile &tile) const {
-        Errors errors = {};
+    void measure_outer(const Tile &tile) const {
         copy_guests(s, tile, moves);
-        const int64_t shift = tile.first_row - tile.first;
-        for (int64_t k = tile.first; k < tile.end; k += step) {
-            Row d[step];
-            HOL_UNROLL
-            for (int i = 0; i < step; ++i) d[i] = moved_bond(tile, k + shift + i);
-            measure<false>(k, d, errors);
+        Errors &errors = found[&tile - s.tile].errors;
+        int64_t next = tile.first;
+        for (int32_t i = tile.first_outer; i < tile.end_outer; ++i) {
+            const int64_t group = s.outer[i] / step * step;
+            if (group >= next) measure_moved(tile, group, errors);
+            next = group + step;
         }
-        return errors;
+    }
+    HOL_FORCED void measure_moved(const Tile &tile, int64_t k, Errors &errors) const {
+        Row d[step];
+        HOL_UNROLL
+        for (int i = 0; i < step; ++i) d[i] = moved_bond(tile, k + (tile.first_row - tile.first) + i);
+        measure<false>(k, d, errors);
     }
 };
 

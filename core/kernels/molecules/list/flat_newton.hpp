@@ -11,7 +11,7 @@ namespace holonomic::HOL_ISA::graph {
 template <class V>
 struct FlatNewton : FlatMoves<V> {
     typedef FlatMoves<V> Moves;
-    using Moves::s, Moves::t, Moves::tau, Moves::D, Moves::b, Moves::mass, Moves::moved, Moves::some, Moves::step;
+    using Moves::s, Moves::t, Moves::tau, Moves::D, Moves::b, Moves::w, Moves::moved, Moves::some, Moves::step;
     using typename Moves::Row;
     V *r_pivot;  // 1 / pivot
     V *lower, *upper;
@@ -53,7 +53,7 @@ struct FlatNewton : FlatMoves<V> {
                 d[row - tile.first_row] = this->moved_bond(tile, row);
             this->template measure_tile<true>(tile, d);
             for (int32_t k = tile.first; for_some && k < tile.end; ++k) left[k] = select(which, t[k], left[k]);
-            assemble(tile, d);
+            assemble(tile, d, rows);
         });
         if (!for_some) return;
         for_factors([&](V &value, int64_t i) HOL_FORCED { value = select(which, value, factors[i]); });
@@ -90,19 +90,20 @@ struct FlatNewton : FlatMoves<V> {
         });
         eliminated = true;
     }
-    __attribute__((noinline)) void assemble(const Tile &tile, const Rows<V> &d) const {
+    __attribute__((noinline)) void assemble(const Tile &tile, const Rows<V> &d, const Rows<V> &rows) const {
         const Rows<V> ref = b.from(tile.first_row);
-        const V *const w = mass + tile.first_mass;
+        V *const masses = this->masses_beside(rows);
+        sign_masses(tile, w, masses);
         const int32_t *const from = s.from + tile.first_row, *const to = s.to + tile.first_row;
         for (int64_t k = 0; k < tile.end - tile.first; k += step) {
             Row q[step];
             HOL_UNROLL_FEW
             for (int i = 0; i < step; ++i) q[i] = d[k + i] * ref[k + i];
-            some(r_pivot, tile.first + k) = masses_at<V>(w, from + k, to + k) * sums_of(q);
+            some(r_pivot, tile.first + k) = masses_at<V>(w + tile.first_site, from + k, to + k) * sums_of(q);
         }
         for (int64_t e = tile.first_entry; e < tile.end_entry; e += step) {
             const int32_t *const row = s.row_4 + e, *const column = s.column_4 + e;
-            const Columns<V> shared = gathered(w, s.mass + e);
+            const Columns<V> shared = gathered(masses, s.mass + e);
             Row p[step], q[step];
             HOL_UNROLL_FEW
             for (int i = 0; i < step; ++i) {
@@ -142,7 +143,16 @@ struct FlatNewton : FlatMoves<V> {
         clear_sides(s, t);
         this->up([&](const Tile &tile, const Rows<V> &) HOL_FORCED { solve_up(s, tile, lower, t); });
     }
-    __attribute__((noinline)) void solve(MaskOf<V> active) {
+    void solve(MaskOf<V> active) {
+        solve_down_and(active, [](const Tile &) HOL_FORCED {});
+    }
+    // And the bonds of a tile as they are moved, while it is in a cache.
+    V solve_and_move(MaskOf<V> active) {
+        solve_down_and(active, [&](const Tile &tile) HOL_FORCED { this->measure_inner(tile); });
+        return this->finish_move();
+    }
+    template <class Then>
+    HOL_FORCED void solve_down_and(MaskOf<V> active, const Then &then) {
         if (!eliminated) take_up();
         eliminated = false;
         this->down([&](const Tile &tile) HOL_FORCED {
@@ -150,9 +160,14 @@ struct FlatNewton : FlatMoves<V> {
                        [&](int32_t k, const V &x) HOL_FORCED { tau[k] = tau[k] + keep(active, x); });
             this->pull(tile);
             this->weigh(tile);
+            then(tile);
         });
         this->displaced = true;
     }
 };
+template <class V, class Mask>
+HOL_INLINE V solve_and_move(FlatNewton<V> &newton, Mask active) {
+    return newton.solve_and_move(active);
+}
 
 }  // namespace holonomic::HOL_ISA::graph

@@ -38,7 +38,7 @@ struct FlatPositions {
         else
             newton.make_factors([&](const Tile &tile, const Rows<V> &r) HOL_FORCED {
                 load(tile, r);
-                newton.assemble(tile, newton.D.from(tile.first_row));
+                newton.assemble(tile, newton.D.from(tile.first_row), r);
             });
         newton.opening = newton.largest_error();
         find_extent();
@@ -56,22 +56,27 @@ struct FlatPositions {
         found.coordinate = Row{};
         if constexpr (step == 4) {
             Row largest = {};
+            double lightest = 0;
+            const double *const w = newton.w + tile.first_site;
             choose(
                 [&](auto packed) HOL_FORCED {
                     for_sites<packed, true, false>(
-                        at, s, tile, *lane, newton.mass + tile.first_mass, call.r_ref, call.r, call.r,
-                        [&](int32_t i, double, const Row &before, const Row &now, const Row &) HOL_FORCED {
+                        at, s, tile, *lane, newton.w + tile.first_site, call.r_ref, call.r, call.r,
+                        [&](int32_t i, const Row &before, const Row &now, const Row &) HOL_FORCED {
                             ref[i] = before;
                             r[i] = now;
                             largest = larger(absolute(now), largest);
+                            lightest = max(w[i], lightest);
                         });
                 },
                 at.layout != elements);
             found.coordinate = largest;
+            found.w = lightest;
         } else {
-            if (!known) read_masses(lane, s, newton.mass);
+            if (!known) read_masses(lane, s, newton.w);
             read_atoms(call.r_ref, at, s, tile, ref);
             read_atoms(call.r, at, s, tile, r);
+            for (int32_t k = 0; k < s.n_sites && !known; ++k) found.w = max(newton.w[k], k > 0 ? found.w : V{});
             for (int32_t k = 0; k < s.n_sites; ++k) found.coordinate = larger(absolute(r[k]), found.coordinate);
         }
         find_bonds(s, tile, call.box_ref, ref, newton.b);
@@ -117,17 +122,30 @@ struct FlatPositions {
     }
 
     // The lanes in which an atom's displacement is the difference of pulls so large that their rounding is more than
-    // the coordinates'.
+    // the coordinates'. The largest multiplier and inverse mass of a tile do for most.
     MaskOf<V> coarse_moves() const {
-        const FlatList &s = newton.s;
-        newton.up([&](const Tile &tile, const Rows<V> &) HOL_FORCED {
-            const V *const w = newton.mass + tile.first_mass;
+        const MaskOf<V> perhaps = coarse_where([&](const Tile &tile) HOL_FORCED {
+            Columns<V> most = {};
+            for (int64_t k = tile.first; k < tile.end; k += step)
+                most = larger(absolute(newton.some(newton.tau, k)), most);
+            return newton.found[&tile - newton.s.tile].w * largest_of<V>(most);
+        });
+        if (!any(perhaps)) return perhaps;
+        return coarse_where([&](const Tile &tile) HOL_FORCED {
+            const FlatList &s = newton.s;
+            const V *const w = newton.w + tile.first_site;
             const int32_t *const from = s.from + (tile.first_row - tile.first), *const to = s.to + (from - s.from);
             V pull = {};
             for (int32_t k = tile.first; k < tile.end; ++k)
-                pull = max(max(w[from[k] / 2 + 1], w[to[k] / 2 + 1]) * abs(newton.tau[k]), pull);
-            newton.found[&tile - s.tile].pull = pull;
+                pull = max(max(at_four_times(w, from[k]), at_four_times(w, to[k])) * abs(newton.tau[k]), pull);
+            return pull;
         });
+    }
+    template <class Pull>
+    MaskOf<V> coarse_where(const Pull &pull_in) const {
+        const FlatList &s = newton.s;
+        newton.up([&](const Tile &tile, const Rows<V> &)
+                      HOL_FORCED { newton.found[&tile - s.tile].pull = pull_in(tile); });
         V pull = {};
         for (int32_t i = 0; i < s.n_tiles; ++i) pull = max(newton.found[i].pull, pull);
         return less(0.25 * (largest_coordinate + a_min), pull * a_max);

@@ -9,6 +9,7 @@
 // flat_refine.hpp corrects, or the careful solver.
 #pragma once
 
+#include "core/kernels/molecules/list/flat_factor.hpp"
 #include "core/kernels/molecules/list/flat_rates.hpp"
 #include "core/kernels/molecules/list/flat_residual.hpp"
 #include "core/kernels/molecules/proof.hpp"
@@ -57,8 +58,8 @@ struct FlatProof {
         for (int e = 0; e < 2; ++e) {
             const int32_t site = tile.first_site + end[e];
             const int64_t number = x.at.number(lane, s.atom_of[site]);
-            const double w = Width<V>::get(x.mass[tile.first_mass + 2 * end[e] + 1], lane);
-            const Row &g = x.pull[s.home[site]];
+            const double w = Width<V>::get(x.w[site], lane);
+            const Row &g = in.rates ? x.a[s.home[site]] : x.pull[s.home[site]];  // v + w G; G
             double f[3] = {}, product = 0;
             if (in.v && in.v->x) read_row(*in.v, number, velocity[e]);
             if (in.f && in.f->x) read_row(*in.f, number, f);
@@ -66,10 +67,10 @@ struct FlatProof {
                 const double d = component(bond, c, lane);
                 sum += w * abs(d * f[c]);
                 if (in.rates) sum += abs(d * velocity[e][c]);
-                product += d * (w * (f[c] + component(g, c, lane)) + (in.rates ? velocity[e][c] : 0));
+                product += d * (in.rates ? component(g, c, lane) : w * (f[c] + component(g, c, lane)));
             }
             sum += abs(product);
-            tensions += w * Width<V>::get(more_of(g), lane);
+            tensions += Width<V>::get(x.tensions_at(site), lane);
         }
         if (in.rhs) sum += abs(0.5 * in.rhs[x.lane[lane].first_bond + s.bond_of[k]]);
         for (int a = 0, e = 0; a < 3 && in.strain; ++a)
@@ -108,6 +109,7 @@ struct FlatProof {
     }
     // Keeps those of which more is left than may be.
     void look_at_missed(const Tile &tile) {
+        if (n_missed > 0) residual.prepare(tile, n_missed, [&](int32_t i) { return missed[i] / lanes; });
         for (; n_missed > 0; --n_missed) {
             const int32_t k = missed[n_missed - 1] / lanes;
             const int lane = missed[n_missed - 1] % lanes;
@@ -152,7 +154,7 @@ struct FlatProof {
             });
             all.left[&branch - own.s.branch] = bits(small);
         });
-        const unsigned good = left_of_all(all);
+        const unsigned good = all.in_all_branches(all.left);
         for (int32_t k = 0; k < all.s.n_bonds; ++k) all.t[k] = all.t[k] + keep(Width<V>::of_bits(good), change[k]);
         find_pulls_again(all);
         return good;
@@ -162,10 +164,17 @@ struct FlatProof {
         x.with_rates ? look_at<true>(tile) : look_at<false>(tile);
         look_at_missed(tile);
     }
-    // with_rates: finds what is left of the bonds' rates.
+    // with_rates: finds what is left of the bonds' rates, in the place of R where that is not needed any more.
     template <bool with_rates>
     __attribute__((noinline)) void look_at(const Tile &tile) {
-        const Columns<V> most = all_columns<V>(most_backward(s.n_bonds)), least = all_columns<V>(-least_proven_pivot);
+        V *const needed = x.diagonal - tile.first_outer;
+        for (int32_t i = tile.first_outer; with_rates && i < tile.end_outer; ++i) needed[i] = x.back[s.outer[i]];
+        look_at_columns<with_rates>(tile);
+        for (int32_t i = tile.first_outer; with_rates && i < tile.end_outer; ++i) x.back[s.outer[i]] = needed[i];
+    }
+    template <bool with_rates>
+    HOL_FORCED void look_at_columns(const Tile &tile) {
+        const Columns<V> most = all_columns<V>(most_backward(s.n_bonds));
         const Rows<V> of = x.a_of(tile);
         int32_t next = tile.first_outer;
         start_looking(tile);
@@ -185,20 +194,18 @@ struct FlatProof {
                 input[i] = absolute(bond) * (x.v.at_four_times(from) + x.v.at_four_times(to));
                 put<V>(T, i, more_of(head) + more_of(tail));
             }
-            if (with_rates) x.some(x.rate, k) = sums_of(e);
             const Columns<V> part = absolute(sums_of(p)) + absolute(sums_of(q)) + sums_of(input),
-                             spare = multiply_add(most, part, -multiply_add(x.some(x.size, k), T, x.some(x.back, k))),
-                             pivot = multiply_add(least, x.some(x.diagonal, k), x.some(x.E, k));
+                             spare = multiply_add(most, part, -multiply_add(x.some(x.size, k), T, x.some(x.back, k)));
             // What is 0 is looked at once more.
-            if (__builtin_expect(all_positive<V>(pivot) && all_positive<V>(spare), 1)) continue;
-            for (int i = 0; i < step && k + i < tile.end; ++i) {
-                left &= positive<V>(pivot, i);
+            const bool all = all_positive<V>(spare);
+            for (int i = 0; __builtin_expect(!all, 0) && i < step && k + i < tile.end; ++i) {
                 const unsigned doubtful = left & ~not_negative<V>(spare, i);
                 if (!doubtful) continue;
                 while (next < tile.end_outer && s.outer[next] < k + i) ++next;
                 if (next < tile.end_outer && s.outer[next] == k + i) continue;
                 note_missed(tile, k + i, doubtful);
             }
+            if (with_rates) x.some(x.rate, k) = sums_of(e);
         }
     }
     // At the others, in the end.
@@ -214,45 +221,46 @@ struct FlatProof {
     // Reads the molecules and solves. Returns the lanes in which the proof holds; multipliers are found in all.
     static unsigned solve(const FlatLinear<V> &all) {
         clear_sides(all.s, all.t);
-        clear_sides(all.s, all.E);
+        clear_sides(all.s, all.per_pivot);
         clear_sides(all.s, all.back);
         clear_entries(all.s, all.lower);
+        for (int64_t k = all.s.n_bonds; k < in_fours(all.s.n_bonds); ++k) all.back[k] = V{};  // inert
         all.up([](const FlatLinear<V> &own, const Branch &branch) HOL_FORCED {
+            unsigned proven = bits(own.in_use()), firm = proven;
             for_tiles_up(own.s, branch, [&](const Tile &tile) HOL_FORCED {
                 own.load(tile);
                 own.assemble(tile);
-                own.eliminate(tile);
+                eliminate(own, tile);
+                const unsigned of_tile = pivots_above(own, tile, least_proven_pivot);
+                proven &= of_tile;
+                if (of_tile != bits(own.in_use())) firm &= pivots_above(own, tile, least_pivot);
             });
+            own.left[&branch - own.s.branch] = proven;
+            own.firm[&branch - own.s.branch] = firm;
         });
         // Where it fails in the trunk branches need not look; what they do is the same in any case.
         unsigned *const trunk = all.left + all.s.n_branches;
-        *trunk = bits(all.in_use());
+        *trunk = all.in_all_branches(all.left);
         all.down([&](const FlatLinear<V> &own, const Branch &branch) HOL_FORCED {
             FlatProof proof(own, *trunk);
             for_tiles_down(own.s, branch, [&](const Tile &tile) HOL_FORCED {
-                own.substitute_back(tile);
+                substitute_back(own, tile);
                 if (!proof.left) return;
                 own.find_pulls(tile);
-                own.load_inputs_again(tile);
                 own.add_pulls(tile);
                 proof.look_at(tile);
             });
             all.left[&branch - own.s.branch] = proof.left;
         });
-        unsigned left = left_of_all(all);
+        unsigned left = all.in_all_branches(all.left);
         if (!left) return 0;
         all.up([&](const FlatLinear<V> &own, const Branch &branch) HOL_FORCED {
             FlatProof proof(own, left);
             for_tiles_up(own.s, branch, [&](const Tile &tile) HOL_FORCED { proof.look_at_outer(tile); });
             all.left[&branch - own.s.branch] = proof.left;
         });
-        left &= left_of_all(all);
+        left &= all.in_all_branches(all.left);
         return left ? correct(all, left) : 0;
-    }
-    static unsigned left_of_all(const FlatLinear<V> &all) {
-        unsigned left = all.left[0];
-        for (int32_t b = 1; b <= all.s.n_branches; ++b) left &= all.left[b];
-        return left;
     }
 };
 

@@ -25,9 +25,9 @@ template <class V>
 static inline void find_pulls_again(const FlatLinear<V> &all) {
     all.down([](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
         for_tiles_down(x.s, branch, [&](const Tile &tile) HOL_FORCED {
-            x.find_pulls(tile);
-            if (!(x.terms & rates)) return;  // nobody asks for accelerations any more
+            if (!(x.terms & rates)) return x.find_pulls(tile);  // nobody asks for accelerations any more
             x.load_inputs(tile, x.a_of(tile));
+            x.find_pulls(tile);
             x.add_pulls(tile);
             if (x.with_rates) find_rates(x, tile);
         });
@@ -35,24 +35,25 @@ static inline void find_pulls_again(const FlatLinear<V> &all) {
 }
 
 // Moves the atoms of a tile: by its own bonds, which also find what pulls its guests, and by what later tiles have
-// found. Pulls are added up first, so that velocities are rounded once.
+// found. Pulls are added up first, so that velocities are rounded once. `to`: where those of one molecule go at once,
+// or nullptr.
 template <class V>
-__attribute__((noinline)) void move_atoms(const FlatLinear<V> &x, const Tile &tile) {
+__attribute__((noinline)) void move_atoms(const FlatLinear<V> &x, const Tile &tile, const AtomArray *to) {
     const Rows<V> a = x.a_of(tile);
-    const V *const w = x.mass + tile.first_mass;
-    const int32_t n_own = tile.own_end - tile.first_site, n = tile.end_site - tile.first_site;
+    const V *const w = x.w + tile.first_site;
+    const int32_t n = tile.own_end - tile.first_site;
     sum_pulls(x.s, tile, x.rate, x.d_of(tile), x.v);
-    for (int32_t i = n_own; i < n; ++i) a[i] = x.v[i];
-    for (int32_t i = tile.first_visit; i < tile.end_visit; ++i) {
-        const FlatList::Visit &visit = x.s.visit[i];
-        x.v[visit.own - tile.first_site] = x.v[visit.own - tile.first_site] + x.a[visit.guest];
-    }
-    for (int32_t i = 0; i < n_own; ++i) a[i] = multiply_add(in_row(w[2 * i + 1]), x.v[i], a[i]);
+    x.keep_for_owners(tile, x.v);
+    const auto moved = [&](int32_t i) HOL_FORCED { return multiply_add(in_row(w[i]), x.v[i], a[i]); };
+    if (to)
+        write_atoms(*to, x.at, x.s, tile, moved);
+    else
+        for (int32_t i = 0; i < n; ++i) a[i] = moved(i);
 }
 
 // With the factors that there are.
 template <class V>
-static inline void take_rates(const FlatLinear<V> &all) {
+static inline void take_rates(const FlatLinear<V> &all, const AtomArray *to) {
     clear_sides(all.s, all.rate);
     all.up([](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
         for_tiles_up(x.s, branch, [&](const Tile &tile) HOL_FORCED {
@@ -61,10 +62,10 @@ static inline void take_rates(const FlatLinear<V> &all) {
             solve_up(x.s, tile, x.lower, x.rate);
         });
     });
-    all.down([](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
+    all.down([&](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
         for_tiles_down(x.s, branch, [&](const Tile &tile) HOL_FORCED {
             solve_down(x.s, tile, x.lower, x.per_pivot, x.rate, [](int32_t, const V &) HOL_FORCED {});
-            move_atoms(x, tile);
+            move_atoms(x, tile, to);
         });
     });
 }

@@ -46,7 +46,7 @@ struct FlatRefine {
     V *const side;
 
     explicit FlatRefine(const FlatLinear<V> &linear)
-        : x(linear), s(linear.s), terms(linear.terms), solution(x.back), side(x.diagonal) {}
+        : x(linear), s(linear.s), terms(linear.terms), solution(x.back), side(x.side) {}
 
     // Calls body(this in a thread, tile) for all tiles, as FlatLinear does.
     template <class Body>
@@ -127,9 +127,9 @@ struct FlatRefine {
             const int32_t own_site = 4 * s.visit[i].own, guest = 4 * s.visit[i].guest;
             set(x.pull, x.a_low, own_site, add_pairs(get(x.pull, x.a_low, own_site), get(x.pull, x.a_low, guest)));
         }
-        const V *const w = x.mass + tile.first_mass;
+        const V *const w = x.w + tile.first_site;
         for (int32_t i = 0; i < own; ++i) {
-            Twice sum = product_of(in_row(w[2 * i + 1]), get(a, low, 4 * i));
+            Twice sum = product_of(in_row(w[i]), get(a, low, 4 * i));
             if (terms & rates) sum = add_pairs(sum, Twice{x.a_of(tile)[i], Row{}});
             set(a, low, 4 * i, sum);
         }
@@ -207,17 +207,10 @@ struct FlatRefine {
                            HOL_FORCED { return add_corrections<V>(tile.first, tile.end, tension2, bond); });
     }
 
-    // The lanes in which pivots of a tile are not too small.
-    MaskOf<V> good_pivots(const Tile &tile) const {
-        MaskOf<V> good = x.in_use();
-        for (int32_t k = tile.first; k < tile.end; ++k) good = good & less_equal(least_pivot * x.diagonal[k], x.E[k]);
-        return good;
-    }
     // In which corrections are no more than what rounding does to right-hand sides: of velocities that are projected
     // already, or in free fall.
     MaskOf<V> rounded_sides(const Tile &tile) const {
         MaskOf<V> rounded = x.in_use();
-        x.load_inputs_again(tile);
         const Rows<V> a = x.a_of(tile);
         for (int32_t k = tile.first; k < tile.end; ++k) {
             const int32_t row = tile.first_row + (k - tile.first);
@@ -239,13 +232,12 @@ struct FlatRefine {
     // In which no multiplier is so small beside what pulls the atoms of its bond that it may be the rounding of the
     // residual.
     MaskOf<V> no_faint_bonds(const Tile &tile) const {
-        const V *const w = x.mass + tile.first_mass;
         V least = Width<V>::all(1);
         for (int32_t k = tile.first; k < tile.end; ++k) {
-            const int32_t row = tile.first_row + (k - tile.first), from = s.from[row] / 4, to = s.to[row] / 4;
-            const V T = w[2 * from + 1] * more_of(x.pull[s.home[tile.first_site + from]]) +
-                        w[2 * to + 1] * more_of(x.pull[s.home[tile.first_site + to]]);
-            least = min(mul_add(abs(x.t[k]), x.E[k], -(faint_part * (x.size[k] * T))), least);
+            const int32_t row = tile.first_row + (k - tile.first);
+            const V T =
+                x.tensions_at(tile.first_site + s.from[row] / 4) + x.tensions_at(tile.first_site + s.to[row] / 4);
+            least = min(abs(x.t[k]) - faint_part * (x.size[k] * T) * x.per_pivot[k], least);
         }
         return ~less(least, V{});
     }
@@ -266,11 +258,10 @@ struct FlatRefine {
 
     // Of the lanes that are not `proven`. Returns those that are right, with these.
     unsigned refine(unsigned proven) const {
-        const auto pivots = [](const FlatRefine &own, const Tile &tile) HOL_FORCED { return own.good_pivots(tile); };
         const auto rounded = [](const FlatRefine &own, const Tile &tile) HOL_FORCED { return own.rounded_sides(tile); };
         const auto taken = [](const FlatRefine &own, const Tile &tile) HOL_FORCED { return own.take_solution(tile); };
         const auto faint = [](const FlatRefine &own, const Tile &tile) HOL_FORCED { return own.no_faint_bonds(tile); };
-        const MaskOf<V> doubtful = lanes_where(pivots) & ~Width<V>::of_bits(proven);
+        const MaskOf<V> doubtful = Width<V>::of_bits(x.in_all_branches(x.firm) & ~proven);
         if (!any(doubtful)) return proven;
         start();
         MaskOf<V> good = correct_until_right<V>(

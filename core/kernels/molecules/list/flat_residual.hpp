@@ -13,6 +13,16 @@ class FlatResidual {
 public:
     explicit FlatResidual(const FlatLinear<V> &linear) : x(linear), s(linear.s) {}
 
+    // Prepares for so many columns of a tile, column(i), as one by one they take longer.
+    template <class Column>
+    void prepare(const Tile &tile, int32_t n, const Column &column) {
+        start_list(tile);
+        for (int32_t i = 0; i < n; ++i) {
+            const int32_t row = tile.first_row + (column(i) - tile.first);
+            wanted()[s.from[row] / 4] = wanted()[s.to[row] / 4] = 1;
+        }
+        list(tile);
+    }
     // Of column k of a tile, once the multipliers of all bonds of its two atoms are known.
     __attribute__((noinline)) double of(const Tile &tile, int32_t k, int of_lane) {
         lane = of_lane;
@@ -42,7 +52,7 @@ private:
     const FlatLinear<V> &x;
     const FlatList &s;
     int lane = 0;
-    const Tile *listed = nullptr;  // whose bonds are listed by atoms, in x.bonds_at
+    const Tile *listed = nullptr;  // bonds of whose wanted atoms are listed, in x.bonds_at
 
     Pair3<double> bond(int32_t from, int32_t to) const {
         Vector3<double> r[2] = {}, d = {}, low = {};
@@ -59,19 +69,30 @@ private:
         return scale_pairs(second ? -t : t, d);
     }
 
-    // The bonds of a tile by its atoms: where each atom's begin, then twice their columns, and one more at the second
-    // atom.
-    void list(const Tile &tile) {
-        if (listed == &tile) return;
+    // Of a tile's atoms: which are wanted. The bonds of these: columns. Then by atoms: where each atom's begin, and
+    // twice their columns, and one more at the second atom.
+    unsigned char *wanted() const { return reinterpret_cast<unsigned char *>(x.bonds_at); }
+    int32_t *columns() const { return x.bonds_at + in_fours(s.most_sites); }
+    int32_t *starts() const { return columns() + in_fours(s.most_columns); }
+    int32_t *items() const { return starts() + in_fours(s.most_sites + 2); }
+    void start_list(const Tile &tile) {
         listed = &tile;
+        __builtin_memset(wanted(), 0, static_cast<size_t>(tile.end_site - tile.first_site));
+    }
+    void list(const Tile &tile) {
+        const int32_t *const from = s.from + (tile.first_row - tile.first), *const to = s.to + (from - s.from);
+        int32_t *const start = starts(), *const item = items(), *const column = columns();
         const int32_t n = tile.end_site - tile.first_site;
-        int32_t *const start = x.bonds_at, *const item = start + n + 2;
+        int32_t found = 0;
+        for (int32_t k = tile.first; k < tile.end; ++k) {
+            column[found] = k;
+            found += wanted()[from[k] / 4] | wanted()[to[k] / 4];
+        }
         for (int32_t i = 0; i < n + 2; ++i) start[i] = 0;
         const auto for_ends = [&](const auto &body) {
-            for (int32_t k = tile.first; k < tile.end; ++k) {
-                const int32_t row = tile.first_row + (k - tile.first);
-                body(s.from[row] / 4, 2 * k);
-                body(s.to[row] / 4, 2 * k + 1);
+            for (int32_t i = 0; i < found; ++i) {
+                body(from[column[i]] / 4, 2 * column[i]);
+                body(to[column[i]] / 4, 2 * column[i] + 1);
             }
         };
         for_ends([&](int32_t site, int32_t) { ++start[site + 2]; });
@@ -80,10 +101,13 @@ private:
     }
     // Adds the pulls of a tile's bonds on one of its sites.
     Pair3<double> add(const Tile &tile, int32_t site, Pair3<double> sum) {
-        list(tile);
-        const int32_t *const item = x.bonds_at + (tile.end_site - tile.first_site) + 2;
-        const int32_t i = site - tile.first_site;
-        for (int32_t e = x.bonds_at[i]; e < x.bonds_at[i + 1]; ++e)
+        const int32_t i = site - tile.first_site, *const item = items();
+        if (listed != &tile || !wanted()[i]) {
+            start_list(tile);
+            wanted()[i] = 1;
+            list(tile);
+        }
+        for (int32_t e = starts()[i]; e < starts()[i + 1]; ++e)
             sum = add_pairs(sum, pull(tile, item[e] / 2, (item[e] & 1) != 0));
         return sum;
     }

@@ -195,15 +195,6 @@ HOL_INLINE Columns<V> gathered(const V *of, const int32_t *k) {
     else
         return of[*k];
 }
-// The sums of the inverse masses of both ends, each twice the number of which is four times the atom's.
-template <class V>
-HOL_INLINE Columns<V> masses_at(const V *w, const int32_t *from, const int32_t *to) {
-    const auto of = [&](int i) HOL_FORCED { return w[from[i] / 2 + 1] + w[to[i] / 2 + 1]; };
-    if constexpr (at_once<V> == 4)
-        return Row{of(0), of(1), of(2), of(3)};
-    else
-        return of(0);
-}
 template <class V>
 HOL_INLINE V largest_of(const Columns<V> &a) {
     if constexpr (at_once<V> == 4)

@@ -43,7 +43,7 @@ HOL_INLINE void for_atoms(const FlatList &s, const LongTeam *team, const Body &b
               [&](int32_t i) { body(i * part, i * part + part < s.n_atoms ? i * part + part : s.n_atoms); });
 }
 // What is read of a molecule may be in no cache.
-HOL_INLINE bool is_from_memory(const FlatList &s) { return s.n_bonds > FlatList::columns_of_tile; }
+HOL_INLINE bool is_from_memory(const FlatList &s) { return s.n_bonds > 2 * FlatList::columns_of_tile; }
 
 // Calls body(k, first, n) for all columns of a tile, up or down; first is that of their entries, n is a constant where
 // it is small.
@@ -161,11 +161,11 @@ HOL_INLINE Row row_at(const AtomArray &array, int64_t number) {
     read_row(array, number, x);
     return Row{x[0], x[1], x[2], 0};
 }
-// Calls body(site of the tile, inverse mass, rows of these arrays) for the sites of a tile of one molecule; rows that
-// are not read are 0. mass: gets -w_0, w_0, -w_1, .. , 0, or nullptr: none are read.
+// Calls body(site of the tile, rows of these arrays) for the sites of a tile of one molecule; rows that are not read
+// are 0. w: gets the inverse masses, or nullptr.
 template <bool packed, bool with_second, bool with_third, class Body>
 HOL_INLINE void for_sites(const Atoms<double> &at, const FlatList &s, const Tile &tile, const MoleculeLane &lane,
-                          double *mass, const AtomArray &one, const AtomArray &second, const AtomArray &third,
+                          double *w, const AtomArray &one, const AtomArray &second, const AtomArray &third,
                           const Body &body) {
     const int64_t *const list = at.list[0], first = at.first[0];
     const auto number = [&](int32_t i) HOL_FORCED { return list ? list[s.atom_of[i]] : first + s.atom_of[i]; };
@@ -176,19 +176,14 @@ HOL_INLINE void for_sites(const Atoms<double> &at, const FlatList &s, const Tile
             fetch_row(one, element);
             if (with_second) fetch_row(second, element);
             if (with_third) fetch_row(third, element);
-            if (mass) __builtin_prefetch(lane.w + s.atom_of[i + rows_ahead], 0, 2);
+            if (w) __builtin_prefetch(lane.w + s.atom_of[i + rows_ahead], 0, 2);
         }
         const int32_t site = i - tile.first_site;
         const int64_t n = number(i);
-        const double w = mass ? lane.w[s.atom_of[i]] : 0;
-        if (mass) {
-            mass[2 * site] = -w;
-            mass[2 * site + 1] = w;
-        }
-        body(site, w, row_at<packed>(one, n), with_second ? row_at<packed>(second, n) : Row{},
+        if (w) w[site] = lane.w[s.atom_of[i]];
+        body(site, row_at<packed>(one, n), with_second ? row_at<packed>(second, n) : Row{},
              with_third ? row_at<packed>(third, n) : Row{});
     }
-    if (mass) mass[2 * (tile.end_site - tile.first_site)] = 0;
 }
 // The rows of a tile's atoms. What is in lanes has one tile.
 HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<double> &at, const FlatList &s, const Tile &tile,
@@ -196,7 +191,7 @@ HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<double> &at, cons
     choose(
         [&](auto packed) HOL_FORCED {
             for_sites<packed, false, false>(at, s, tile, {}, nullptr, array, array, array,
-                                            [&](int32_t i, double, const Row &a, const Row &, const Row &)
+                                            [&](int32_t i, const Row &a, const Row &, const Row &)
                                                 HOL_FORCED { to[i] = a; });
         },
         at.layout != elements);
@@ -206,16 +201,59 @@ HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<V> &at, const Fla
                            const Rows<V> &to) {
     read_vectors(array, at, s.place_of, s.n_atoms, to.slots());
 }
-// Masses of molecules in lanes, as those of one.
-template <class V>
-HOL_INLINE void read_masses(const MoleculeLane *lane, const FlatList &s, V *mass) {
-    for (int32_t i = 0; i < s.n_sites; ++i) {
-        for (int l = 0; l < Width<V>::lanes; ++l) Width<V>::set(mass[2 * i + 1], l, lane[l].w[s.atom_of[i]]);
-        mass[2 * i] = -mass[2 * i + 1];
+// Writes row(site of the tile) of a tile's own atoms. What is in lanes is written in another way.
+template <class Value>
+HOL_INLINE void write_atoms(const AtomArray &array, const Atoms<double> &at, const FlatList &s, const Tile &tile,
+                            const Value &row) {
+    const int64_t *const list = at.list[0], first = at.first[0];
+    const int32_t *const atom_of = s.atom_of + tile.first_site;
+    const int32_t n = tile.own_end - tile.first_site;
+    const auto number = [&](int32_t i) HOL_FORCED { return list ? list[atom_of[i]] : first + atom_of[i]; };
+    if (at.layout == elements) {
+        for (int32_t i = 0; i < n; ++i) write_one(array, number(i), vector_of(row(i)));
+        return;
     }
-    mass[2 * s.n_sites] = V{};
+    const int32_t fetched_end = is_from_memory(s) ? n - rows_ahead : 0;  // else in a cache
+    for (int32_t i = 0; i < n; ++i) {
+        if (i < fetched_end) fetch_row<1>(array, 3 * number(i + rows_ahead));
+        double *const p = reinterpret_cast<double *>(array.x) + 3 * number(i);
+        write_rows(&p, vector_of(row(i)));
+    }
 }
-HOL_INLINE int64_t mass_values(const FlatList &s) { return in_fours(2 * static_cast<int64_t>(s.n_sites) + s.n_tiles); }
+template <class V, class Value>
+HOL_INLINE void write_atoms(const AtomArray &, const Atoms<V> &, const FlatList &, const Tile &, const Value &) {}
+// One of the values of a tile's sites, by four times the site's number.
+template <class V>
+HOL_INLINE const V &at_four_times(const V *values, int32_t k) {
+    return *reinterpret_cast<const V *>(reinterpret_cast<const char *>(values) + sizeof(V) / 4 * k);
+}
+// The sums of the inverse masses of both ends.
+template <class V>
+HOL_INLINE Columns<V> masses_at(const V *w, const int32_t *from, const int32_t *to) {
+    const auto of = [&](int i) HOL_FORCED { return at_four_times(w, from[i]) + at_four_times(w, to[i]); };
+    if constexpr (at_once<V> == 4)
+        return Row{of(0), of(1), of(2), of(3)};
+    else
+        return of(0);
+}
+// Inverse masses of molecules in lanes.
+template <class V>
+HOL_INLINE void read_masses(const MoleculeLane *lane, const FlatList &s, V *w) {
+    for (int32_t i = 0; i < s.n_sites; ++i)
+        for (int l = 0; l < Width<V>::lanes; ++l) Width<V>::set(w[i], l, lane[l].w[s.atom_of[i]]);
+}
+// Those of a tile as entries share them: -w_0, w_0, -w_1, .. , 0.
+template <class V>
+HOL_INLINE void sign_masses(const Tile &tile, const V *w, V *masses) {
+    const V *const of = w + tile.first_site;
+    const int32_t n = tile.end_site - tile.first_site;
+    for (int32_t i = 0; i < n; ++i) {
+        masses[2 * i] = -of[i];
+        masses[2 * i + 1] = of[i];
+    }
+    masses[2 * n] = V{};
+}
+HOL_INLINE int64_t most_masses(const FlatList &s) { return in_fours(2 * static_cast<int64_t>(s.most_sites) + 1); }
 
 // The nearest image of a bond.
 HOL_INLINE void take_image(const Box &box, Row &d) {
@@ -235,16 +273,18 @@ HOL_INLINE void take_image(const Box &box, RowInLanes<V> &d) {
     take_image<false>(box, bond, unused);
     d = row_of(bond);
 }
+// The bond of a row.
+template <class V>
+HOL_INLINE RowOf<V> bond_at(const FlatList &s, int64_t row, const Box &box, const Rows<V> &r) {
+    RowOf<V> bond = r.at_four_times(s.to[row]) - r.at_four_times(s.from[row]);
+    if (box.shape != Box::none) take_image(box, bond);
+    return bond;
+}
 // A tile's bonds as they come, from the coordinates of their ends: as many as are worked on at a time, the inert ones
 // too.
 template <class V>
 HOL_INLINE void find_bonds(const FlatList &s, const Tile &tile, const Box &box, const Rows<V> &r, const Rows<V> &d) {
-    const bool in_box = box.shape != Box::none;
-    for (int64_t k = tile.first_row; k < tile.end_row; ++k) {
-        RowOf<V> bond = r.at_four_times(s.to[k]) - r.at_four_times(s.from[k]);
-        if (in_box) take_image(box, bond);
-        d[k] = bond;
-    }
+    for (int64_t k = tile.first_row; k < tile.end_row; ++k) d[k] = bond_at(s, k, box, r);
 }
 
 }  // namespace holonomic::HOL_ISA::graph
