@@ -7,6 +7,7 @@
 using holonomic::adds;
 using holonomic::AtomArray;
 using holonomic::guarded;
+using holonomic::MetricCall;
 using holonomic::need;
 using holonomic::packed_array;
 using holonomic::viewed_array;
@@ -16,8 +17,14 @@ int hol_metric(const hol_chains *chains, const double *r, double kT, double *log
     return guarded(__func__, [&] {
         need(chains, "chains");
         need(r, "r");
-        holonomic::metric(chains->chains, packed_array(r), kT, log_det, log_det_z, energy, packed_array(force),
-                          adds(mode));
+        MetricCall call;
+        call.r = packed_array(r);
+        call.force = packed_array(force);
+        call.kT = kT;
+        call.log_det = log_det;
+        call.log_det_z = log_det_z;
+        call.add = adds(mode);
+        holonomic::metric(chains->chains, call, energy);
     });
 }
 
@@ -26,9 +33,15 @@ int hol_metric_view(const hol_chains *chains, const hol_view *r, double kT, doub
     return guarded(__func__, [&] {
         need(chains, "chains");
         need(r, "r");
-        const AtomArray ar = viewed_array(r, "r"), af = viewed_array(force, "force");
-        const AtomArray *const all[] = {&ar, &af};
+        MetricCall call;
+        call.r = viewed_array(r, "r");
+        call.force = viewed_array(force, "force");
+        const AtomArray *const all[] = {&call.r, &call.force};
         holonomic::check_dimensions(all, 2);
-        holonomic::metric(chains->chains, ar, kT, log_det, log_det_z, energy, af, adds(mode));
+        call.kT = kT;
+        call.log_det = log_det;
+        call.log_det_z = log_det_z;
+        call.add = adds(mode);
+        holonomic::metric(chains->chains, call, energy);
     });
 }

@@ -52,22 +52,14 @@ std::int64_t make_careful_of(const Chains &chains, const Schedule &s) {
     }
 }
 
-void metric_of_all(const Chains &chains, const AtomArray &r, double kT, double *log_det, double *log_det_z,
-                   double *energy, const AtomArray &force, bool add) {
-    if (!(kT >= 0) || !std::isfinite(kT))
-        throw make_error(Status::value, "kT is %g; it must be finite and not negative", kT);
+void metric_of_all(const Chains &chains, MetricCall &call, double *energy) {
+    if (!(call.kT >= 0) || !std::isfinite(call.kT))
+        throw make_error(Status::value, "kT is %g; it must be finite and not negative", call.kT);
     if (chains.bodies())
         throw make_error(Status::value,
                          "the metric determinant of molecules with rigid bodies is not implemented: of a body alone it "
                          "is a constant; molecules without bodies need a set of their own");
-    MetricCall call;
-    call.r = r;
-    call.force = force;
-    call.kT = kT;
-    call.log_det = log_det;
-    call.log_det_z = log_det_z;
     call.sum = energy != nullptr;
-    call.add = add;
     put_box(chains.box, call.box);
     std::int64_t careful_bytes = 0;
     for (const std::int32_t shape : chains.plan().shapes) {
@@ -78,18 +70,17 @@ void metric_of_all(const Chains &chains, const AtomArray &r, double kT, double *
     const Tally tally = execute(chains, MetricWork(call, apart, careful_bytes));
     apart.put_back();
     if (tally.n_bad > 0) {
-        const NamedArray arrays[] = {{"position", &r}};
+        const NamedArray arrays[] = {{"position", &call.r}};
         throw_error(chains, tally,
                     [&](const Tally &bad) { return diagnose(chains, bad, chains.box, arrays, 1, Status::not_finite); });
     }
-    if (energy) *energy = 0.5 * kT * tally.log_det;
+    if (energy) *energy = 0.5 * call.kT * tally.log_det;
 }
 
 }  // namespace
 
-void metric(const Chains &chains, const AtomArray &r, double kT, double *log_det, double *log_det_z, double *energy,
-            const AtomArray &force, bool add) {
-    with_outcomes(chains, [&] { metric_of_all(chains, r, kT, log_det, log_det_z, energy, force, add); });
+void metric(const Chains &chains, MetricCall &call, double *energy) {
+    with_outcomes(chains, [&] { metric_of_all(chains, call, energy); });
 }
 
 }  // namespace holonomic

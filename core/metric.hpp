@@ -5,8 +5,8 @@
 
 namespace holonomic {
 
-// log_det, log_det_z [n_chains], energy: or nullptr. Throws Error once everything that is due has been written.
-void metric(const Chains &chains, const AtomArray &r, double kT, double *log_det, double *log_det_z, double *energy,
-            const AtomArray &force, bool add);
+// `call`: as of forces(); its kT, log_det and log_det_z [n_chains] or nullptr, too. energy: or nullptr. Throws Error
+// once everything that is due has been written.
+void metric(const Chains &chains, MetricCall &call, double *energy);
 
 }  // namespace holonomic

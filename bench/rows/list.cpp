@@ -195,10 +195,18 @@ void add_options(List &list) {
     for (std::int64_t n : {2, 3, 10, 32, 100, 1000}) list.one("metric, " + of_bonds(n), coil(n), false, true, metric);
     list.one("metric, 32 bonds, orthorhombic", coil(32), false, true, metric, Order::consecutive, Boxed::orthorhombic);
     list.one("metric, 32 bonds, any order", coil(32), false, true, metric, Order::any);
-    list.one("metric, 32 bonds, determinant alone", coil(32), false, true, [](const Call &c) {
+    const auto determinant = [](const Call &c) {
         return c.calls.hol_metric(c.chains, c.arrays.r.packed(), 1, c.arrays.more.data(), nullptr, nullptr, nullptr,
                                   HOL_WRITE);
-    });
+    };
+    list.one("metric, 32 bonds, determinant alone", coil(32), false, true, determinant);
+    for (std::int64_t n : {1, 3, 12, 100}) {
+        const auto recipe = [n] { return chains(1, n); };
+        list.one("metric, alone, " + of_bonds(n), recipe, false, true, metric);
+        list.rows.back().alone = true;
+        list.one("determinant, alone, " + of_bonds(n), recipe, false, true, determinant);
+        list.rows.back().alone = true;
+    }
     list.one("metric, butane", of(400, [] { return bench::formula_kind("C(H)(H)(H)C(H)(H)C(H)(H)C(H)(H)H"); }), false,
              true, metric);
     list.one("metric, comb, 20 + 20", of(150, [] { return bench::comb_kind(20, 1); }), false, true, metric);

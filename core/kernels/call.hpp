@@ -151,7 +151,7 @@ struct InSegments {
     int64_t (*blocks)(int64_t n_bonds);
     int64_t (*bytes)(int64_t n_bonds);  // of the store
     void (*eliminate)(const Call &, const Lane &, int64_t block, bool careful, double *store, double *scratch);
-    JoinResult (*join)(const Lane &, bool careful, double *store);
+    JoinResult (*join)(const Lane &, int64_t blocks, bool careful, double *store);  // the first so many
     void (*finish)(const Call &, const Lane &, int64_t block, double *store, double *scratch, Tally &);
 };
 

@@ -92,10 +92,17 @@ void solve_long_chain(const Phases &phases, const Call &call, const Lane &lane, 
     JoinResult result = join_doubtful;
     for (int attempt = 0; attempt < 2 && result == join_doubtful; ++attempt) {
         const bool careful = attempt == 1;
-        team.for_each(blocks, tally, [&](std::int64_t j, double *scratch, Tally &) {
-            phases.eliminate(call, lane, j, careful, store, scratch);
-        });
-        result = phases.join(lane, careful, store);
+        // A few blocks before all others: a chain that is in doubt there needs no plain products elsewhere.
+        std::int64_t done = 0;
+        for (const std::int64_t end : {std::min<std::int64_t>(blocks, 8), blocks}) {
+            if (end == done) break;
+            team.for_each(end - done, tally, [&](std::int64_t j, double *scratch, Tally &) {
+                phases.eliminate(call, lane, done + j, careful, store, scratch);
+            });
+            done = end;
+            result = phases.join(lane, end, careful, store);
+            if (result != join_good) break;
+        }
     }
     if (result != join_good) return note_bad(lane.chain, tally);
     const auto finish = [&](std::int64_t j, double *scratch, Tally &part) {

@@ -57,8 +57,14 @@ void copies_are_solved(const char *name, const bonds &list, int count)
         }
         require(std::fabs(rest) <= 1e-9 * (1 + size), name, "a bond changes its length");
     }
-    holonomic::metric(chains, packed_array(r.data()), 1, log_det.data(), nullptr, nullptr, packed_array(g.data()),
-                      false);
+    holonomic::MetricCall metric;
+    metric.r = packed_array(r.data());
+    metric.force = packed_array(g.data());
+    metric.kT = 1;
+    metric.log_det = log_det.data();
+    metric.log_det_z = nullptr;
+    metric.add = false;
+    holonomic::metric(chains, metric, nullptr);
     for (int c = 1; c < count; ++c)
         require(log_det[static_cast<std::size_t>(c)] != log_det[0], name, "two molecules have one determinant");
 }

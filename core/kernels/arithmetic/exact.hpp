@@ -23,7 +23,8 @@ HOL_INLINE Pair<V> two_sum(V a, V b) {
 
 template <class V>
 HOL_INLINE Pair<V> two_difference(V a, V b) {
-    return two_sum<V>(a, -b);
+    const V s = a - b, bb = s - a;
+    return {s, (a - (s - bb)) - (b + bb)};
 }
 
 // a + b = hi + lo, exactly, if |a| >= |b|.

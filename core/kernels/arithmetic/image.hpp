@@ -12,9 +12,9 @@ HOL_INLINE void wrap(const Box &box, Vector3<V> &d, Vector3<V> &lo) {
     const double *h = box.h, *in = box.inverse;
     if (!careful && box.shape == Box::orthorhombic) {
         const double *const per_side = box.per_side, *const minus_side = box.minus_side;
-        d.x = mul_add(round(d.x * per_side[0]), minus_side[0] - V{}, d.x);
-        d.y = mul_add(round(d.y * per_side[1]), minus_side[1] - V{}, d.y);
-        d.z = mul_add(round(d.z * per_side[2]), minus_side[2] - V{}, d.z);
+        d.x = mul_add(round(d.x * per_side[0]), V{} + minus_side[0], d.x);
+        d.y = mul_add(round(d.y * per_side[1]), V{} + minus_side[1], d.y);
+        d.z = mul_add(round(d.z * per_side[2]), V{} + minus_side[2], d.z);
         return;
     }
     const V n[3] = {round(d.x * in[0] + d.y * in[3] + d.z * in[6]), round(d.x * in[1] + d.y * in[4] + d.z * in[7]),

@@ -8,57 +8,65 @@
 #include "core/kernels/eliminate/measure_one_lane.hpp"
 #include "core/kernels/memory/arena.hpp"
 #include "core/kernels/memory/block.hpp"
+#include "core/kernels/memory/load.hpp"
 
 namespace holonomic::HOL_ISA {
 
 // Per bond k of a block; joint k lies between bonds k-1 and k.
 struct Geometry {
-    vec3 *u, *low;                  // bond vector, then unit vector, then Fixman's phi; low words of the bond vector
-    vec3 *normal;                   // u_{k-1} x u_k, then h_k times it
-    vec *cosine, *complement;       // of joint k: c and 1 - |c|
-    vec *reciprocal;                // 1 / |d|
-    vec *square;                    // d.d over `scale` squared
-    vec *scale;                     // a power of two
-    vec *p, *delta;                 // coupling of bonds k-1 and k; what row k has beyond its neighbours
-    vec *e, *t;                     // e: numerators of the deficits from the left; their denominators:
-    vec *per_e;                     // in the place of `low`
-    vec *f, *per_f;                 // of those from behind, where they are kept, until t is needed
+    vec3 *u, *low;    // bond vector, then unit vector, then Fixman's phi; low words of the bond vector
+    vec3 *normal;     // u_{k-1} x u_k, then h_k times it
+    vec *cosine;      // of joint k: c
+    vec *reciprocal;  // 1 / |d|
+    vec *square;      // d.d over `scale` squared
+    vec *scale;       // a power of two
+    vec *p, *side;    // coupling of bonds k-1 and k, w |c|; what rows k-1 and k have beyond it, w (1 - |c|)
+    vec *e, *t;       // e: numerators of the deficits from the left, with a place before the first; their denominators:
+    vec *per_e;       // in the place of `low`
+    vec *f, *per_f;   // of those from behind, where they are kept, until t is needed
     Geometry(long n, Arena &arena)  // with room for a whole group behind the last bond
         : u(vectors(n, arena)), low(vectors(n, arena)), normal(vectors(n, arena)), cosine(values(n, arena)),
-          complement(values(n, arena)), reciprocal(values(n, arena)), square(values(n, arena)), scale(values(n, arena)),
-          p(values(n, arena)), delta(values(n, arena)), e(values(n, arena)), t(values(n, arena)), per_e(&low->x), f(t),
+          reciprocal(values(n, arena)), square(values(n, arena)), scale(values(n, arena)), p(values(n, arena)),
+          side(values(n, arena)), e(values(n, arena) + 1), t(values(n, arena)), per_e(&low->x + 1), f(t),
           per_f(per_e + n) {}
+    // What row k has beyond its neighbours.
+    HOL_FORCED vec delta(long k) const { return side[k] + side[k + 1]; }
     static vec *values(long n, Arena &arena) { return arena.vecs(n + group); }
     static vec3 *vectors(long n, Arena &arena) { return reinterpret_cast<vec3 *>(arena.vecs(3 * (n + group))); }
 };
 
 // The reciprocal of the power of two just below a > 0.
 HOL_INLINE vec reciprocal_scale(vec a) {
+#if HOL_FOURS  // not by way of the registers of integers
+    const __m128i exponent = _mm_and_si128(_mm_castpd_si128(_mm_set1_pd(a.element)), _mm_set1_epi64x(exponent_bits));
+    return {_mm_cvtsd_f64(_mm_castsi128_pd(_mm_sub_epi64(_mm_set1_epi64x(2 * exponent_of_one), exponent)))};
+#endif
     return as_vec((mask{} + 2 * exponent_of_one) - (as_mask(a) & (mask{} + exponent_bits)));
 }
 
 // Bonds, the joints between them, and what couples these.
 #if HOL_FOURS
 template <bool uniform>
-static inline void measure_joints(const Block &block, const Geometry &x) {
-    measure_in_fours(block.n, x);
-    for (long k = 1; k < block.n; ++k) x.p[k] = w_at<uniform>(block, k) * abs(x.cosine[k]);
+static inline void measure_joints(const Block &block, const Box &box, const Packed &r, const Geometry &x, bool turns) {
+    turns ? measure_in_fours<uniform, true>(box, r.lane[0], block.w, block.n, x)
+          : measure_in_fours<uniform, false>(box, r.lane[0], block.w, block.n, x);
 }
 #else
 template <bool uniform>
-static inline void measure_joints(const Block &block, const Geometry &x) {
+static inline void measure_joints(const Block &block, const Box &box, const Packed &r, const Geometry &x, bool) {
+    Reader(block, box, none_, r, r, r, true).load(0, block.n, x.u, x.low, nullptr);
     vec3 d0 = {}, low0 = {};
     vec r0 = {};
     for (long k = 0; k < block.n; ++k) {
         const vec s = reciprocal_scale(max(max(abs(x.u[k].x), abs(x.u[k].y)), abs(x.u[k].z)));
         const vec3 d = s * x.u[k], low = s * x.low[k];
-        const vec q = square_of(d, low), r = splat(1.0) / sqrt(q);
-        x.u[k] = r * d;
+        const vec q = square_of(d, low), r1 = splat(1.0) / sqrt(q);
+        x.u[k] = r1 * d;
         x.square[k] = q;
         x.scale[k] = s;
-        x.reciprocal[k] = r * s;
+        x.reciprocal[k] = r1 * s;
         if (k > 0) {
-            const vec f = r0 * r;
+            const vec f = r0 * r1, w = w_at<uniform>(block, k);
             vec c = dot_compensated(d0, low0, d, low) * f;
             vec3 normal = f * cross_compensated(d0, low0, d, low);
             const vec size = abs(c);
@@ -70,26 +78,25 @@ static inline void measure_joints(const Block &block, const Geometry &x) {
                 complement = select(m, complement, splat(1.0));
             }
             x.cosine[k] = c;
-            x.complement[k] = complement;
             x.normal[k] = normal;
-            x.p[k] = w_at<uniform>(block, k) * abs(c);
+            x.p[k] = w * abs(c);
+            x.side[k] = w * complement;
         }
         d0 = d;
         low0 = low;
-        r0 = r;
+        r0 = r1;
     }
 }
 #endif
 
 template <bool uniform>
-static inline void measure(const Block &block, const Geometry &x) {
-    measure_joints<uniform>(block, x);
-    x.p[0] = x.p[block.n] = x.cosine[0] = x.cosine[block.n] = vec{};
-    x.complement[0] = x.complement[block.n] = splat(1.0);
-    x.normal[0] = x.normal[block.n] = vec3{};
-    x.delta[block.n] = vec{};
-    for (long k = 0; k < block.n; ++k)
-        x.delta[k] = w_at<uniform>(block, k) * x.complement[k] + w_at<uniform>(block, k + 1) * x.complement[k + 1];
+static inline void measure(const Block &block, const Box &box, const Packed &r, const Geometry &x, bool turns) {
+    const long n = block.n;
+    measure_joints<uniform>(block, box, r, x, turns);
+    x.p[0] = x.p[n] = x.cosine[0] = x.cosine[n] = x.side[n + 1] = vec{};
+    x.side[0] = w_at<uniform>(block, 0);
+    x.side[n] = w_at<uniform>(block, n);
+    x.normal[0] = x.normal[n] = vec3{};
 }
 
 HOL_INLINE mask between(long k, vec first, vec end) {
@@ -156,36 +163,39 @@ static inline MetricSums eliminate_metric(const Block &block, const Geometry &x,
                                           const MetricCall &call, mask &good, const Beside &beside) {
     const bool logs = call.log_det || call.sum || call.log_det_z;
     LogSum<vec> det;
-    Deficit<uniform> left = {x.delta[0]};
-    Removal part;
-    vec F_before = {}, passed_before = {}, size = {};
-    for (long k = 0; k < block.n; ++k) {
-        const vec M = w_at<uniform>(block, k) + w_at<uniform>(block, k + 1), F = left.F;
-        if (keep_deficits) {
-            x.e[k] = left.A;
-            x.per_e[k] = F;
-        }
-        size = size + x.reciprocal[k];
-        const vec m = left.pass(x.p[k + 1], x.delta[k + 1]);
-        Removal next = {part.before, left.F, mul_add(x.p[k] * m * passed_before, F_before, part.removed * (M * m)),
-                        part.diagonals * (M * m)};
-        if (k >= whole) {
-            const mask early = less(splat(static_cast<double>(k)), first), counted = between(k, first, end);
-            next = {select(early, left.F, part.before), select(counted | early, left.F, part.behind),
-                    select(counted, next.removed, part.removed), select(counted, next.diagonals, part.diagonals)};
-        }
-        part = next;
-        F_before = F;
-        passed_before = x.p[k + 1] * m;
-        beside(k);
-        if (k % rescaled == rescaled - 1 || k + 1 == block.n) {
-            if (logs) {
-                const vec per = splat(1.0) / (part.before * part.diagonals);
-                det.add(part.behind * per, part.removed * per);
+    vec size = {}, F_before = {}, passed_before = {};
+    if (HOL_FOURS) x.e[-1] = x.per_e[-1] = splat(1.0);  // fours are read from there on
+    const vec *const coupling = x.p, *const sides = x.side, *const reciprocal = x.reciprocal;
+    vec *const e = x.e, *const per_e = x.per_e;
+    Deficit<uniform> left = {x.delta(0)};
+    for (long k = 0; k < block.n;) {
+        Removal part = {left.F, left.F};
+        for (const long stop = k + rescaled < block.n ? k + rescaled : block.n; k < stop; ++k) {
+            const vec M = w_at<uniform>(block, k) + w_at<uniform>(block, k + 1), F = left.F;
+            if (keep_deficits) {
+                e[k] = left.A;
+                per_e[k] = F;
             }
-            F_before = left.rescale() * F_before;
-            part = {left.F, left.F};
+            size = size + reciprocal[k];
+            const vec p = coupling[k], next_p = coupling[k + 1];
+            const vec m = left.pass(next_p, sides[k + 1] + sides[k + 2]);
+            Removal next = {part.before, left.F, mul_add(p * m * passed_before, F_before, part.removed * (M * m)),
+                            part.diagonals * (M * m)};
+            if (k >= whole) {
+                const mask early = less(splat(static_cast<double>(k)), first), counted = between(k, first, end);
+                next = {select(early, left.F, part.before), select(counted | early, left.F, part.behind),
+                        select(counted, next.removed, part.removed), select(counted, next.diagonals, part.diagonals)};
+            }
+            part = next;
+            F_before = F;
+            passed_before = next_p * m;
+            beside(k);
         }
+        if (logs) {
+            const vec per = splat(1.0) / (part.before * part.diagonals);
+            det.add(part.behind * per, part.removed * per);
+        }
+        F_before = left.rescale() * F_before;
     }
     const vec headroom = splat(call.force.x ? call.kT * 0x1p300 : 0.0);  // no force overflows
     good = good & less(vec{}, left.F) & finite(size + headroom * size);
@@ -215,12 +225,13 @@ HOL_INLINE void weigh_normal(const Block &block, const Geometry &x, long k, cons
 // From bond k to bond k - 1, from behind.
 template <bool uniform>
 HOL_INLINE void pass_back(const Block &block, const Geometry &x, long k, Deficit<uniform> &right) {
-    right.pass(x.p[k], x.delta[k - 1]);
+    right.pass(x.p[k], x.delta(k - 1));
     if (k % rescaled == 0) right.rescale();
+    if (W == 1) return;
     // The last bond of a lane begins unscaled. Not where k >= n_min alone: gcc 12 at -O3 left it out there with
     // AVX-512's masks.
     const mask inside = joint(block, k);
-    right = {select(inside, right.A, x.delta[k - 1]), select(inside, right.F, splat(1.0))};
+    right = {select(inside, right.A, x.delta(k - 1)), select(inside, right.F, splat(1.0))};
 }
 
 // Writes phi of bond k as t times a vector: the force on atom k is the pull t_k phi_k - t_{k-1} phi_{k-1}. Zeros are
@@ -231,5 +242,25 @@ HOL_INLINE void turn(const Geometry &x, long k, double kT) {
     x.u[k] = {v.x + 0.0, v.y + 0.0, v.z + 0.0};
     x.t[k] = kT * x.reciprocal[k];
 }
+
+#if HOL_FOURS
+// The same of all bonds, weighed before that, from the last one to the first.
+template <bool uniform>
+static inline void turn_back(const Block &block, const Geometry &x, double kT) {
+    const long n = block.n;
+    Vector3<Four> behind = {{four{}}, {four{}}, {four{}}};
+    long k = (n - 1) / 4 * 4;
+    // What has just been stored one by one is read so, too; there is nothing behind the last bond.
+    const auto near = [&](const vec *p, long i) HOL_FORCED {
+        const auto at = [&](long j) HOL_FORCED { return j < n ? p[j].element : 1.0; };
+        return four{p[i].element, at(i + 1), at(i + 2), at(i + 3)};
+    };
+    turn_in_fours<uniform>(block.w, k, kT, x, {near(x.e, k - 1), near(x.per_e, k - 1)},
+                           {near(x.f, k), near(x.per_f, k)}, behind);
+    while ((k -= 4) >= 0)
+        turn_in_fours<uniform>(block.w, k, kT, x, {load_four(x.e + k - 1), load_four(x.per_e + k - 1)},
+                               {load_four(x.f + k), load_four(x.per_f + k)}, behind);
+}
+#endif
 
 }  // namespace holonomic::HOL_ISA

@@ -2,7 +2,7 @@
 // time, for none waits for another. Each number is made as one lane makes it.
 #pragma once
 
-#include "core/kernels/arithmetic/exact.hpp"
+#include "core/kernels/arithmetic/image.hpp"
 #include "core/kernels/memory/fours.hpp"
 
 #if HOL_FOURS
@@ -20,35 +20,35 @@ HOL_INLINE Four operator-(Four a) { return {-a.v}; }
 HOL_INLINE Four mul_add(Four a, Four b, Four c) { return {_mm256_fmadd_pd(a.v, b.v, c.v)}; }
 HOL_INLINE Four abs(Four a) { return {_mm256_andnot_pd(_mm256_set1_pd(-0.0), a.v)}; }
 HOL_INLINE Four max(Four a, Four b) { return {_mm256_max_pd(a.v, b.v)}; }
+HOL_INLINE Four round(Four a) { return {round(a.v)}; }
+HOL_INLINE Four operator*(Four a, double b) { return {a.v * b}; }
+HOL_INLINE Four operator+(Four a, double b) { return {a.v + b}; }
 
-// The bonds of one stage, and before them the last one of the stage before; components apart.
+// The bonds of one stage in units of their scales, and 1 / |d| there; components apart. From place 4 on; before them
+// stands the last one of the stage before.
 struct MeasuredBonds {
     static constexpr long most = 32;
-    double d[3][most + 4], low[3][most + 4], r[most + 4];  // in units of their scales; 1 / |d|
-
-    HOL_FORCED Vector3<Four> vector(const double (*of)[most + 4], long i) const {
-        return {load_any<Four>(of[0] + i), load_any<Four>(of[1] + i), load_any<Four>(of[2] + i)};
-    }
-    HOL_FORCED void put(double (*of)[most + 4], long i, const Vector3<Four> &a) {
-        store_any(of[0] + i, a.x);
-        store_any(of[1] + i, a.y);
-        store_any(of[2] + i, a.z);
-    }
-    HOL_FORCED void move_last(long n) {
-        for (int c = 0; c < 3; ++c) {
-            d[c][0] = d[c][n];
-            low[c][0] = low[c][n];
-        }
-        r[0] = r[n];
-    }
+    double d[3][most + 4], low[3][most + 4], r[most + 4];
 };
+typedef double Row[MeasuredBonds::most + 4];
+HOL_INLINE void put(Row *to, long i, const Vector3<Four> &v) {
+    store_any(to[0] + i, v.x);
+    store_any(to[1] + i, v.y);
+    store_any(to[2] + i, v.z);
+}
+HOL_INLINE Vector3<Four> get(const Row *of, long i) {
+    return {load_any<Four>(of[0] + i), load_any<Four>(of[1] + i), load_any<Four>(of[2] + i)};
+}
 
 // As they stand in memory.
+HOL_INLINE Vector3<Four> as_fours(const four *part) {
+    const Vector3<four> a = as_vectors(part);
+    return {{a.x}, {a.y}, {a.z}};
+}
 HOL_INLINE Vector3<Four> read_vectors(const double *p) {
     four part[3];
     for (int j = 0; j < 3; ++j) part[j] = load_any<four>(p + 4 * j);
-    const Vector3<four> a = as_vectors(part);
-    return {{a.x}, {a.y}, {a.z}};
+    return as_fours(part);
 }
 HOL_INLINE void write_vectors(double *p, const Vector3<Four> &v) {
     const four a = _mm256_shuffle_pd(v.x.v, v.y.v, 0), b = _mm256_shuffle_pd(v.z.v, v.x.v, 10),
@@ -64,106 +64,139 @@ HOL_INLINE Four reciprocal_scale(Four a) {
     return {_mm256_castsi256_pd(_mm256_sub_epi64(_mm256_set1_epi64x(2 * 0x3ff0000000000000LL), exponents))};
 }
 
-// Four bonds u [12], which become unit vectors, and low words; what is found goes to `square`, `scale`, `reciprocal`
-// [4]. i: their place in the stage.
-HOL_INLINE void measure_bonds(MeasuredBonds &x, long i, double *u, const double *u_low, double *square, double *scale,
-                              double *reciprocal) {
-    const Vector3<Four> raw = read_vectors(u);
-    const Four s = reciprocal_scale(max(max(abs(raw.x), abs(raw.y)), abs(raw.z)));
-    const Vector3<Four> d = s * raw, low = s * read_vectors(u_low);
-    const Four q = square_of(d, low), r = Four{four{} + 1.0} / Four{_mm256_sqrt_pd(q.v)};
-    x.put(x.d, i, d);
-    x.put(x.low, i, low);
-    store_any(x.r + i, r);
-    write_vectors(u, r * d);
-    store_any(square, q);
-    store_any(scale, s);
-    store_any(reciprocal, r * s);
+// Out of line: of four bonds.
+HOL_NOINLINE void fold(const Box &box, Vector3<Four> *d, Vector3<Four> *low) { wrap<true>(box, *d, *low); }
+
+// Four bonds from the atom at r on, unrounded. Of the last ones there are `left`, fewer than four; beside them stand
+// bonds that are there for this alone.
+template <bool last>
+HOL_INLINE void read_bonds(const Box &box, const double *r, long left, Vector3<Four> &d, Vector3<Four> &low) {
+    static const long long inside[24] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+    const auto mask_of = [&](long i) HOL_FORCED {
+        return _mm256_loadu_si256(reinterpret_cast<const __m256i *>(inside + 12 + i));
+    };
+    four hi[3], lo[3];
+    HOL_UNROLL
+    for (int j = 0; j < 3; ++j) {
+        const double *const p = r + 4 * j;
+        const auto read = [&](const double *at) HOL_FORCED {
+            return last ? four(_mm256_maskload_pd(at, mask_of(4 * j - 3 * left))) : load_any<four>(at);
+        };
+        const Pair<four> e = two_difference<four>(read(p + 3), read(p));
+        hi[j] = e.hi;
+        lo[j] = e.lo;
+    }
+    d = as_fours(hi);
+    low = as_fours(lo);
+    if (__builtin_expect(box.shape != Box::none, 0)) {
+        Vector3<Four> folded = d, folded_low = low;
+        fold(box, &folded, &folded_low);
+        d = folded;
+        low = folded_low;
+    }
+    if (!last) return;
+    const four one = four{} + 1.0, live = _mm256_castsi256_pd(mask_of(-left));
+    d = {{_mm256_blendv_pd(one, d.x.v, live)},
+         {_mm256_blendv_pd(one, d.y.v, live)},
+         {_mm256_blendv_pd(one, d.z.v, live)}};
 }
 
-// The joints before bonds i .. i + 3 of the stage.
-HOL_INLINE void measure_joints(const MeasuredBonds &x, long i, double *cosine, double *complement, double *normal) {
-    const Four one = {four{} + 1.0}, f = load_any<Four>(x.r + i - 1) * load_any<Four>(x.r + i);
-    const Vector3<Four> d0 = x.vector(x.d, i - 1), low0 = x.vector(x.low, i - 1), d = x.vector(x.d, i),
-                        low = x.vector(x.low, i);
+// Bonds k .. k + 3 of n, to place i of the stage.
+template <bool last, class Geometry>
+HOL_INLINE void measure_bonds(const Box &box, const double *r, long k, long n, const Geometry &x, MeasuredBonds &to,
+                              long i) {
+    Vector3<Four> raw, raw_low;
+    read_bonds<last>(box, r + 3 * k, n - k, raw, raw_low);
+    const Four s = reciprocal_scale(max(max(abs(raw.x), abs(raw.y)), abs(raw.z)));
+    const Vector3<Four> d = s * raw, low = s * raw_low;
+    const Four q = square_of(d, low), one_over = Four{four{} + 1.0} / Four{_mm256_sqrt_pd(q.v)};
+    put(to.d, i, d);
+    put(to.low, i, low);
+    store_any(to.r + i, one_over);  // what needs it comes later: a scheduler is full of what waits for quotients
+    store_any(&x.square[k].element, q);
+    store_any(&x.scale[k].element, s);
+}
+
+// The joints before bonds k .. k + 3, which stand at place i of the stage. turns: for forces, too.
+template <bool uniform, bool turns, class Geometry>
+HOL_INLINE void measure_joints(const MeasuredBonds &of, long i, const vec *w, long k, const Geometry &x) {
+    const Four one = {four{} + 1.0}, r = load_any<Four>(of.r + i), f = load_any<Four>(of.r + i - 1) * r;
+    const Vector3<Four> d0 = get(of.d, i - 1), low0 = get(of.low, i - 1), d = get(of.d, i), low = get(of.low, i);
     const Four c = dot_compensated(d0, low0, d, low) * f;
     const Vector3<Four> n = f * cross_compensated(d0, low0, d, low);
     const Four size = abs(c), near = one - size, far = dot(n, n) / (one + size);
-    store_any(cosine, c);
-    store_any(complement, four(_mm256_blendv_pd(far.v, near.v, _mm256_cmp_pd(size.v, four{} + 0.5, _CMP_LT_OQ))));
-    write_vectors(normal, n);
+    Four side = {_mm256_blendv_pd(far.v, near.v, _mm256_cmp_pd(size.v, four{} + 0.5, _CMP_LT_OQ))}, p = size;
+    if (!uniform) {
+        const Four of_atom = {load_four(w + k)};
+        p = of_atom * p;
+        side = of_atom * side;
+    }
+    store_any(&x.p[k].element, p);
+    store_any(&x.side[k].element, side);
+    store_any(&x.reciprocal[k].element, r.v * load_four(x.scale + k));
+    if (!turns) return;
+    store_any(&x.cosine[k].element, c);
+    write_vectors(&x.u[k].x.element, r * d);
+    write_vectors(&x.normal[k].x.element, n);
 }
 
-// All bonds and joints of n: from bond vectors in x.u and their low words. Beside the last ones, and before the first,
-// stand bonds that are there for this alone.
-template <class Geometry>
-HOL_NOINLINE void measure_in_fours(long n, const Geometry &x) {
+// All bonds and joints of n.
+template <bool uniform, bool turns, class Geometry>
+HOL_NOINLINE void measure_in_fours(const Box &box, const double *r, const vec *w, long n, const Geometry x) {
     MeasuredBonds bonds;
-    for (long k = n; k % 4 != 0; ++k) {
-        x.u[k] = vec3{{1}, {1}, {1}};
-        x.low[k] = vec3{};
+    for (int c = 0; c < 3; ++c) {  // stands before the first one
+        bonds.d[c][3] = 1;
+        bonds.low[c][3] = 0;
     }
-    for (int c = 0; c < 3; ++c) {
-        bonds.d[c][0] = 1;
-        bonds.low[c][0] = 0;
-    }
-    bonds.r[0] = 1;
+    bonds.r[3] = 1;
     for (long first = 0; first < n; first += MeasuredBonds::most) {
         const long count = first + MeasuredBonds::most < n ? MeasuredBonds::most : n - first;
-        for (long i = 0; i < count; i += 4) {
-            const long k = first + i;
-            measure_bonds(bonds, i + 1, &x.u[k].x.element, &x.low[k].x.element, &x.square[k].element,
-                          &x.scale[k].element, &x.reciprocal[k].element);
+        long i = 0;
+        for (; i + 4 <= count; i += 4) measure_bonds<false>(box, r, first + i, n, x, bonds, i + 4);
+        if (i < count) measure_bonds<true>(box, r, first + i, n, x, bonds, i + 4);
+        for (i = 0; i < count; i += 4) measure_joints<uniform, turns>(bonds, i + 4, w, first + i, x);
+        for (int c = 0; c < 3; ++c) {
+            bonds.d[c][3] = bonds.d[c][count + 3];
+            bonds.low[c][3] = bonds.low[c][count + 3];
         }
-        for (long i = 0; i < count; i += 4) {
-            const long k = first + i;
-            measure_joints(bonds, i + 1, &x.cosine[k].element, &x.complement[k].element, &x.normal[k].x.element);
-        }
-        bonds.move_last(count);
+        bonds.r[3] = bonds.r[count + 3];
     }
 }
 
-// weigh_normal() in deficits.hpp for the joints from k on, with deficits x.f. Returns the first one that is left.
+// The deficits of four bonds, or of the joints before them.
+struct DeficitsOfFour {
+    four A, F;
+};
+
+// weigh_normal() and turn() in deficits.hpp of bonds k .. k + 3, and of the joints before them, from the deficits on
+// either side. `behind`: the joint behind them, weighed; then these.
 template <bool uniform, class Geometry>
-HOL_INLINE long weigh_in_fours(long k, long n, const vec *w, const Geometry &x) {
+HOL_INLINE void turn_in_fours(const vec *w, long k, double kT, const Geometry &x, DeficitsOfFour left,
+                              DeficitsOfFour right, Vector3<Four> &behind) {
     const four one = four{} + 1.0, zero = {}, sign = _mm256_set1_pd(-0.0);
-    for (; k + 4 <= n; k += 4) {
-        four p = load_four(x.p + k), A = load_four(x.e + k - 1), B = load_four(x.f + k), of_atom = one;
-        const four coupled = _mm256_cmp_pd(zero, p, _CMP_LT_OQ);
-        if (!uniform) {
-            of_atom = load_four(w + k);
-            const four s = reciprocal_scale(max(max(Four{A}, Four{B}), Four{of_atom})).v;
-            p = s * p;
-            A = s * A;
-            B = s * B;
-            of_atom = s * of_atom;
-        }
-        const four G = load_four(x.per_f + k), pF = p * load_four(x.per_e + k - 1), pG = p * G;
-        const four whole = mul_add(pG, A, mul_add(pF, B, A * B));
-        const four size = of_atom * (pF * G) / _mm256_blendv_pd(one, whole, coupled);
-        const four h = _mm256_and_pd(coupled, _mm256_or_pd(size, _mm256_and_pd(load_four(x.cosine + k), sign)));
-        double *const normal = &x.normal[k].x.element;
-        store_any(normal, spread<0>(h) * load_any<four>(normal));
-        store_any(normal + 4, spread<1>(h) * load_any<four>(normal + 4));
-        store_any(normal + 8, spread<2>(h) * load_any<four>(normal + 8));
+    four p = load_four(x.p + k), A = left.A, B = right.A, of_atom = one;
+    const four coupled = _mm256_cmp_pd(zero, p, _CMP_LT_OQ);
+    if (!uniform) {
+        of_atom = load_four(w + k);
+        const four s = reciprocal_scale(max(max(Four{A}, Four{B}), Four{of_atom})).v;
+        p = s * p;
+        A = s * A;
+        B = s * B;
+        of_atom = s * of_atom;
     }
-    return k;
-}
-
-// The same of turn().
-template <class Geometry>
-HOL_INLINE long turn_in_fours(long k, long n, const Geometry &x, double kT) {
-    const Four zero = {four{}};
-    for (; k + 4 <= n; k += 4) {
-        const double *const normal = &x.normal[k].x.element;
-        double change[12];
-        for (int j = 0; j < 3; ++j)
-            store_any(change + 4 * j, load_any<four>(normal + 4 * j + 3) - load_any<four>(normal + 4 * j));
-        const Vector3<Four> v = cross(read_vectors(&x.u[k].x.element), read_vectors(change));
-        write_vectors(&x.u[k].x.element, {v.x + zero, v.y + zero, v.z + zero});
-        store_any(&x.t[k].element, kT * load_four(x.reciprocal + k));
-    }
-    return k;
+    const four pF = p * left.F, pG = p * right.F;
+    const four whole = mul_add(pG, A, mul_add(pF, B, A * B));
+    const four size = of_atom * (pF * right.F) / _mm256_blendv_pd(one, whole, coupled);
+    const Four h = {_mm256_and_pd(coupled, _mm256_or_pd(size, _mm256_and_pd(load_four(x.cosine + k), sign)))};
+    const Vector3<Four> a = h * read_vectors(&x.normal[k].x.element);
+    const auto next = [](Four here, Four after) HOL_FORCED {
+        return Four{_mm256_shuffle_pd(here.v, _mm256_permute2f128_pd(here.v, after.v, 0x21), 5)};
+    };
+    const Vector3<Four> b = {next(a.x, behind.x), next(a.y, behind.y), next(a.z, behind.z)};
+    const Vector3<Four> v = cross(read_vectors(&x.u[k].x.element), b - a);
+    write_vectors(&x.u[k].x.element, {v.x + Four{zero}, v.y + Four{zero}, v.z + Four{zero}});
+    store_any(&x.t[k].element, kT * load_four(x.reciprocal + k));
+    behind = a;
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -18,14 +18,15 @@ void set_masses(Block &block, const Lane *lane, Arena &arena, bool thrice) {
     block.mass = splat(1.0) / block.unit;
     block.unit_masses = block.uniform_w && !any(~equal(block.mass, splat(1.0)));
     if (block.uniform_w) return;
-    vec *w = arena.vecs(block.n + 1);
+    const long n_atoms = block.n + 1 + (HOL_FOURS ? 3 : 0);  // fours may end behind the chain
+    vec *w = arena.vecs(n_atoms);
     bool same = true;
     for (int i = 1; i < W; ++i)
         same = same && table[i] == table[0] && constant[i] == constant[0] && block.len[i] == block.len[0];
     const auto value = [&](int i, long k) HOL_FORCED {  // inert bonds past the end: any positive mass
         return k > block.len[i] ? 1.0 : (table[i] ? table[i][k] : constant[i]);
     };
-    interleave(table, block.len, 1, block.n + 1, w, value);
+    interleave(table, block.len, 1, n_atoms, w, value);
     block.w = w;
     for (int i = 0; i < W && thrice; ++i) {
         if (i > 0 && same) {

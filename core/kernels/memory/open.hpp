@@ -52,17 +52,17 @@ HOL_INLINE void open_alone(const Lane &chain, bool large, Block &block) {
 
 // Calls work(block, lane, call, arena, tally) for the blocks of a unit. Before that, small(call, unit, block, first,
 // tally) does as many chains as it can and returns the first one that it leaves. In a unit that is not regular it
-// gets no block.
+// gets no block. `thrice`: as of set_masses().
 template <class Call, class Work, class Small>
 static inline void for_each_block(const Call &call, const Unit &unit, double *scratch, Tally &tally, Work work,
-                                  Small small) {
+                                  Small small, bool thrice = true) {
     Block block;
     Lane lane[W];
     Arena arena(scratch, int64_t{0});
     if (W == 1 && unit.count == 1) {  // nothing is copied
         open_alone(unit.lanes[0], unit.large, block);
         arena = Arena(scratch, block.n);
-        set_masses(block, unit.lanes, arena);
+        set_masses(block, unit.lanes, arena, thrice);
         if (small(call, unit, block, 0, tally) == 0) work(block, unit.lanes, call, arena, tally);
         return;
     }
@@ -77,7 +77,7 @@ static inline void for_each_block(const Call &call, const Unit &unit, double *sc
         open_block(unit, first, block, lane);
         if (first == 0 || !unit.regular || block.lanes < W) {
             arena = Arena(scratch, block.n);
-            set_masses(block, lane, arena);
+            set_masses(block, lane, arena, thrice);
         }
         if (unit.regular && block.lanes == W && leave_to_small(first)) continue;
         work(block, lane, call, arena, tally);

@@ -1,7 +1,6 @@
 // Metric determinant and Fixman force of blocks of chains, and of one long chain in windows (memory/cut.hpp).
 #include "core/kernels/eliminate/deficits.hpp"
 #include "core/kernels/memory/cut.hpp"
-#include "core/kernels/memory/load.hpp"
 #include "core/kernels/memory/open.hpp"
 #include "core/kernels/memory/outputs.hpp"
 #include "core/kernels/tally.hpp"
@@ -19,10 +18,9 @@ HOL_NOINLINE MetricSums solve_metric(const Block &block, const MetricCall &call,
         first[i] = static_cast<double>(window->skip[i]);
         end[i] = static_cast<double>(window->skip[i] + window->own.own[i]);
     }
-    Reader(block, call.box, none_, r, r, r, true).load(0, block.n, x.u, x.low, nullptr);
-    measure<uniform>(block, x);
+    measure<uniform>(block, call.box, r, x, call.force.x != nullptr);
     const long n = block.n, whole = window ? 0 : block.n_min;
-    Deficit<uniform> right = {x.delta[n - 1]};
+    Deficit<uniform> right = {x.delta(n - 1)};
 #if HOL_FOURS
     // Deficits from the other end meanwhile.
     const auto from_behind = [&](long i) HOL_FORCED {
@@ -40,9 +38,7 @@ HOL_NOINLINE MetricSums solve_metric(const Block &block, const MetricCall &call,
     good = good & finite(sums.log_det) & finite(sums.log_det_z);
     if (!call.force.x || !any(good)) return sums;
 #if HOL_FOURS
-    for (long k = weigh_in_fours<uniform>(1, n, block.w, x); k < n; ++k)
-        weigh_normal<uniform>(block, x, k, {x.f[k], x.per_f[k]});
-    for (long k = turn_in_fours(0, n, x, call.kT); k < n; ++k) turn(x, k, call.kT);
+    turn_back<uniform>(block, x, call.kT);
 #else
     for (long k = n - 1; k > 0; --k) {
         weigh_normal(block, x, k, right);
@@ -82,7 +78,7 @@ static void metric_block(const Block &block, const Lane *lane, const MetricCall 
 }
 
 void metric(const MetricCall &call, const Unit &unit, double *scratch, Tally &tally) {
-    for_each_block(call, unit, scratch, tally, metric_block, no_molecules<MetricCall>);
+    for_each_block(call, unit, scratch, tally, metric_block, no_molecules<MetricCall>, false);
 }
 
 // Keeps the forces of a window until all windows are known to be good: packed vectors of each lane's atoms, and which

@@ -249,7 +249,7 @@ void positions(const PositionsCall &call, const Unit &unit, double *scratch, Tal
             if (!block.staged || !listed_positions(block, lane, call, lengths, arena, tally))
                 Positions(block, lane, call, lengths, arena, tally).solve();
         },
-        small_positions);
+        small_positions, false);
 }
 
 }  // namespace holonomic::HOL_ISA

@@ -9,6 +9,9 @@
 
 namespace holonomic::HOL_ISA {
 
+// In chains of more bonds than these, what the next block needs is fetched early.
+constexpr int64_t long_in_cache = 65536;
+
 void eliminate_block(int terms, const Box &box, const Cut &cut, const Lane &lane, int64_t j, const AtomArray &r,
                      const AtomArray &v, const AtomArray &f, bool careful, double *store, const Arena &memory,
                      const double *strain) {
@@ -22,18 +25,19 @@ void eliminate_block(int terms, const Box &box, const Cut &cut, const Lane &lane
     const Block own = own_block(s);
     Reader in(own, box, terms == rate ? rate : terms & (velocity_squared | force_difference), pr, pv, pf, careful);
     in.strain = strain;
+    if (cut.n_bonds > long_in_cache && j + 1 < cut.blocks && in_place(r, lane)) in.ahead = 3 * W * cut.rows(j);
     const SeparatorsBehind behind(s, box, pr);
     choose([&](auto uniform, auto exactly) { eliminate<uniform, exactly>(s, in, behind, x); }, s.block.uniform_w,
            careful);
     if (x.past_cache) settle_stores();
 }
 
-// Solves for the separators. `careful` says how the segments were eliminated.
-JoinResult long_join(const Lane &lane, bool careful, double *store) {
+// Solves for the separators of the first blocks. `careful` says how the segments were eliminated.
+JoinResult long_join(const Lane &lane, int64_t blocks, bool careful, double *store) {
     const Cut cut(lane.n_bonds);
     Summary *const all = SegmentStore(store, cut, 0).summary;
     double E = 0, y = 0;
-    for (int64_t j = 0; j < cut.blocks; ++j) {
+    for (int64_t j = 0; j < blocks; ++j) {
         Summary &s = all[j];
         if (j == 0) E = relative_w(lane, 0) * s.q[0];
         if (any(s.doubt)) return careful ? join_bad : join_doubtful;
@@ -47,10 +51,10 @@ JoinResult long_join(const Lane &lane, bool careful, double *store) {
         }
     }
     double t = 0;
-    for (int64_t j = cut.blocks - 1; j >= 0; --j) {
+    for (int64_t j = blocks - 1; j >= 0; --j) {
         Summary &s = all[j];
         for (int i = W - 1; i >= 0; --i) {
-            t = j == cut.blocks - 1 && i == W - 1 ? s.t[i] : s.t[i] + s.up[i] * t;
+            t = j == blocks - 1 && i == W - 1 ? s.t[i] : s.t[i] + s.up[i] * t;
             s.t[i] = t;
             if (!(t - t == 0)) return careful ? join_bad : join_doubtful;
         }
@@ -94,9 +98,6 @@ HOL_INLINE void store_segment_chunk(const Block &own, const SegmentOutputs &out,
 }
 
 // Blocks are substituted in from the last to the first, so that those which were eliminated last are still in cache.
-// What the others need takes twice as long to read unless it is fetched early: so in chains of more bonds than these.
-constexpr int64_t long_in_cache = 65536;
-
 // Distances from a block to the one before it, in vectors per atom and in what is kept of the bonds.
 static inline void find_block_before(const Cut &cut, int64_t j, SegmentBlock &s) {
     static_assert(sizeof(Kept) == 3 * sizeof(vec), "as far apart as vectors of W atoms");
@@ -108,13 +109,12 @@ static inline void find_block_before(const Cut &cut, int64_t j, SegmentBlock &s)
     }
 }
 
-// Fetches what the block before this one needs, when this one is at bond k0.
-template <Update update>
+// Fetches what the block before this one needs and writes to, when this one is at bond k0.
 HOL_INLINE void fetch_before(const SegmentBlock &s, const Reader &in, const SegmentStore &x, const SegmentOutputs &out,
                              long k0) {
     fetch_ahead(in.r->lane[0], k0, s.block.ahead);
     fetch_ahead(reinterpret_cast<const double *>(x.kept), k0, s.kept_ahead);
-    if (update == add_ && out.has_pulls) fetch_ahead(out.pulls.lane[0], k0, s.block.ahead);
+    if (out.has_pulls) fetch_ahead(out.pulls.lane[0], k0, s.block.ahead);
 }
 
 // Atoms 1 .. own of each segment, and atom 0 of a chain that begins here. `next`: t of the separators behind them.
@@ -153,7 +153,7 @@ static void finish_segments(const SegmentBlock &s, const Reader &in, const Separ
         long k0 = from + (end - from - 1) / W * W;
         for (; k0 >= from && k0 >= full; k0 -= W) chunk(k0, D + (k0 - from), true);
         for (; k0 >= from; k0 -= W) {
-            if (s.block.ahead) fetch_before<update>(s, in, x, out, k0);
+            if (s.block.ahead) fetch_before(s, in, x, out, k0);
             vec3 d[W];
             if (plain)
                 subtract_chunk<false>(rows, k0, d, nullptr);

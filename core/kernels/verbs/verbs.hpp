@@ -12,7 +12,7 @@ void long_forces_eliminate(const ForcesCall &, const Lane &, int64_t block, bool
                            double *scratch);
 void long_forces_finish(const ForcesCall &, const Lane &, int64_t block, double *store, double *scratch, Tally &);
 
-JoinResult long_join(const Lane &, bool careful, double *store);
+JoinResult long_join(const Lane &, int64_t blocks, bool careful, double *store);
 
 void velocities(const VelocitiesCall &, const Unit &, double *scratch, Tally &);
 void long_velocities_eliminate(const VelocitiesCall &, const Lane &, int64_t block, bool careful, double *store,
