@@ -19,6 +19,7 @@ constexpr long double ring_limit = 1e-24L;
 // number; the reference's least pivot is that of one order.
 constexpr long double tree_limit = 1e80L;
 constexpr long double graph_limit = 1e-20L;      // graphs with a pivot below it are promised nothing
+constexpr long double any_order_limit = 1e-25L;  // those with one below it in another order may be refused
 constexpr long double inverse_limit = 1e-16L;    // nor their inverse below this
 constexpr long double inverse_of_tree = 1e-50L;  // nor that of trees
 constexpr long double straight_sine2 = 1e-21L;   // triangles below it are straight but for rounding
@@ -276,6 +277,15 @@ bool is_straight_triangle(const hostile_molecule &m)
     return least < straight_sine2;
 }
 
+/** Of all orders of elimination: a pivot is one over a diagonal element of the inverse of what is eliminated so far,
+ * the least one of that of all. Z~ has ones on its diagonal. */
+long double least_pivot_of_any_order(const molecule_metric &exact, std::size_t n)
+{
+    long double most = 1;
+    for (std::size_t k = 0; k < n; ++k) most = std::max(most, static_cast<long double>(exact.inverse[k * n + k]));
+    return 1 / most;
+}
+
 }  // namespace
 
 molecule_verdict check_alone(const hostile_molecule &m, const molecule_reference &exact, molecule_facts &facts)
@@ -296,7 +306,10 @@ molecule_verdict check_alone(const hostile_molecule &m, const molecule_reference
     }
     const molecule_results alone = compute(a, m.dt > 0 ? m.dt : 1);
     check_outputs(m, alone, out);
+    const bool may_be_refused =
+        facts.promised && graph && least_pivot_of_any_order(exact.metric, m.n_bonds()) <= any_order_limit;
     for (const int status : {alone.forces, alone.solve, alone.velocities, alone.metric}) {
+        if (may_be_refused && status == HOL_ERR_DEGENERATE) facts.promised = false;
         if (facts.promised) out.note(M_REFUSED, status != HOL_OK);
         if (!facts.regular) out.note(M_ACCEPTED, status != HOL_ERR_DEGENERATE);
     }

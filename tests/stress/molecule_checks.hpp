@@ -21,7 +21,7 @@ struct molecule_facts {
     bool regular = false;
     long double condition = 0, least_pivot = 0;
     /** Whether bounds are promised: trees and triangles always, rings as long as no pivot of Z~ is below 1e-24, graphs
-     * 1e-20.
+     * 1e-20. Graphs with one below 1e-25 in another order may be refused, but not solved wrongly.
      */
     bool promised = false;
 };
