@@ -126,10 +126,10 @@ struct PositionsCall {
 
 struct MetricCall {
     AtomArray r, force;
-    double kT;
-    double *log_det, *log_det_z;  // per chain
-    bool sum;                     // the tally's log_det is needed
-    bool add;
+    double kT = 0;
+    double *log_det = nullptr, *log_det_z = nullptr;  // per chain
+    bool sum = false;                                 // the tally's log_det is needed
+    bool add = false;
     Box box;
 };
 

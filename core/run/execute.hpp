@@ -17,7 +17,7 @@ public:
     enum Order { forwards, backwards };
 
     // Calls body(j, scratch, tally) for j = 0 .. n-1, or from n-1 to 0, and adds the tallies in that order. A thread
-    // has the same share in both, so that it finds in cache what it came to last.
+    // has the same share in both, so that it finds in cache what it came to last, but for the first blocks of a chain.
     template <class Body>
     void for_each(std::int64_t n, Tally &total, const Body &body, Order order = forwards) const {
         run(

@@ -62,8 +62,6 @@ void copies_are_solved(const char *name, const bonds &list, int count)
     metric.force = packed_array(g.data());
     metric.kT = 1;
     metric.log_det = log_det.data();
-    metric.log_det_z = nullptr;
-    metric.add = false;
     holonomic::metric(chains, metric, nullptr);
     for (int c = 1; c < count; ++c)
         require(log_det[static_cast<std::size_t>(c)] != log_det[0], name, "two molecules have one determinant");

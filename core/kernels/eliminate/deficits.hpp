@@ -37,11 +37,12 @@ struct Geometry {
 
 // The reciprocal of the power of two just below a > 0.
 HOL_INLINE vec reciprocal_scale(vec a) {
-#if HOL_FOURS  // not by way of the registers of integers
+#if HOL_FOURS  // of one element, too, in the registers of vectors
     const __m128i exponent = _mm_and_si128(_mm_castpd_si128(_mm_set1_pd(a.element)), _mm_set1_epi64x(exponent_bits));
     return {_mm_cvtsd_f64(_mm_castsi128_pd(_mm_sub_epi64(_mm_set1_epi64x(2 * exponent_of_one), exponent)))};
-#endif
+#else
     return as_vec((mask{} + 2 * exponent_of_one) - (as_mask(a) & (mask{} + exponent_bits)));
+#endif
 }
 
 // Bonds, the joints between them, and what couples these.

@@ -64,7 +64,7 @@ HOL_INLINE Four reciprocal_scale(Four a) {
     return {_mm256_castsi256_pd(_mm256_sub_epi64(_mm256_set1_epi64x(2 * 0x3ff0000000000000LL), exponents))};
 }
 
-// Out of line: of four bonds.
+// Few calls have a box, so it is not inlined.
 HOL_NOINLINE void fold(const Box &box, Vector3<Four> *d, Vector3<Four> *low) { wrap<true>(box, *d, *low); }
 
 // Four bonds from the atom at r on, unrounded. Of the last ones there are `left`, fewer than four; beside them stand

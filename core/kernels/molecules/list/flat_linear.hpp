@@ -1,6 +1,6 @@
-// Linear equations of molecules with cycles, and of large ones: A t = b as it stands, L D L^T along a list
-// (flat_list.hpp). Of one molecule (V = double), or of W of one shape in lanes. Whether that will do without
-// refinement, flat_proof.hpp says.
+// Linear equations of molecules with cycles, and of large ones, along a list (flat_list.hpp): A t = b as it stands, and
+// what it is made of. Of one molecule (V = double), or of W of one shape in lanes. flat_factor.hpp solves them; whether
+// that will do without refinement, flat_proof.hpp says.
 #pragma once
 
 #include "core/kernels/molecules/list/flat_tiles.hpp"
@@ -20,24 +20,24 @@ struct FlatLinear {
     const AtomArray &coordinates;
     const Inputs &in;
     const int terms;             // of right-hand sides
-    const bool masses_known;     // those of the molecules before, in the same memory
+    const bool masses_known;     // in lanes: those of the molecules before, in the same memory
     const LongTeam *const team;  // or nullptr
     double *const own;           // memory of this thread, for one tile
     V *w;                        // inverse masses of all sites
     V *masses;                   // of one tile: -w_0, w_0, -w_1, .. , 0
     Rows<V> pull, d;             // G, and the sum of |t| |d| of an atom's bonds; bonds
-    Rows<V> a;                   // w f, then w (f + G); or where right-hand sides are rates v + w G
-    Rows<V> r, v;                // of one tile: coordinates, then G; velocities, then |a| as it was
-    V *t, *per_pivot;            // right-hand sides, then multipliers; pivots, then 1 over them
-    V *lower, *size;             // |d|
-    V *diagonal;                 // of one tile, of A
-    V *back, *rate;              // R; in the same memory then rates of the bonds as they are left: flat_rates.hpp
-    V *side;                     // right-hand sides as they came: flat_refine.hpp
-    int32_t *bonds_at;           // of one tile: flat_residual.hpp
-    Rows<V> d_low, a_low;        // what refinement adds to the bonds of one tile, and to the accelerations of all
-    V *found;                    // [n_tiles] flat_refine.hpp
-    unsigned *left, *firm;       // [n_branches + 1] lanes: flat_proof.hpp; in which pivots may do with refinement
-    const bool with_rates;       // they are wanted
+    Rows<V> a;     // w f, then w (f + G); where right-hand sides are rates v + w G, and what pulls guests in their rows
+    Rows<V> r, v;  // of one tile: coordinates, then G; velocities, then |a| as it was, then pulls of rates
+    V *t, *per_pivot;   // right-hand sides, then multipliers; pivots, then 1 over them
+    V *lower, *size;    // |d|
+    V *diagonal;        // of A, of one tile; then R of outer columns (flat_proof.hpp)
+    V *back, *rate;     // one memory: R, changes (flat_proof.hpp), solutions (flat_refine.hpp), rates as they are left
+    V *side;            // right-hand sides as they came: flat_refine.hpp
+    int32_t *bonds_at;  // of one tile: flat_residual.hpp
+    Rows<V> d_low, a_low;   // what refinement adds to the bonds of one tile, and to all accelerations; doubts
+    V *found;               // [n_tiles] flat_proof.hpp, flat_refine.hpp
+    unsigned *left, *firm;  // [n_branches + 1] lanes: flat_proof.hpp; in which pivots may do with refinement
+    const bool with_rates;  // they are wanted
 
     static int64_t values(const FlatList &s) {
         return tile_values(s) + in_fours(s.n_sites) + 4 * (3 * static_cast<int64_t>(s.n_sites) + s.n_rows) +

@@ -18,7 +18,7 @@ struct FlatPositions {
     const MoleculeLane *const lane;
     const int used;
     const Atoms<V> at;
-    const bool known;  // masses and lengths are those of the molecules before, in the same memory
+    const bool known;  // masses and lengths, and their extremes, are those of the molecules before, in the same memory
     FlatNewton<V> newton;
     Tally &tally;
     V a_min, a_max, largest_coordinate;
@@ -73,10 +73,13 @@ struct FlatPositions {
             found.coordinate = largest;
             found.w = lightest;
         } else {
-            if (!known) read_masses(lane, s, newton.w);
+            if (!known) {
+                read_masses(lane, s, newton.w);
+                found.w = V{};
+                for (int32_t k = 0; k < s.n_sites; ++k) found.w = max(newton.w[k], found.w);
+            }
             read_atoms(call.r_ref, at, s, tile, ref);
             read_atoms(call.r, at, s, tile, r);
-            for (int32_t k = 0; k < s.n_sites && !known; ++k) found.w = max(newton.w[k], k > 0 ? found.w : V{});
             for (int32_t k = 0; k < s.n_sites; ++k) found.coordinate = larger(absolute(r[k]), found.coordinate);
         }
         find_bonds(s, tile, call.box_ref, ref, newton.b);

@@ -126,7 +126,7 @@ struct FlatProof {
     }
     // Solves for what is left of equations in doubt alone. The bound is the same with the changes in place of
     // multipliers, so it is no more than the part of R that each change is of its multiplier: theory (55b).
-    // Returns the lanes of `left` in which it is small enough.
+    // Returns the lanes of `left` in which it is small enough. Changes stand where rates do, which are found once more.
     static unsigned correct(const FlatLinear<V> &all, unsigned left) {
         V furthest = Width<V>::all(1);
         bool any_doubts = false;
@@ -167,10 +167,11 @@ struct FlatProof {
     // with_rates: finds what is left of the bonds' rates, in the place of R where that is not needed any more.
     template <bool with_rates>
     __attribute__((noinline)) void look_at(const Tile &tile) {
-        V *const needed = x.diagonal - tile.first_outer;
-        for (int32_t i = tile.first_outer; with_rates && i < tile.end_outer; ++i) needed[i] = x.back[s.outer[i]];
+        const int32_t *const outer = s.outer + tile.first_outer;
+        const int32_t n = tile.end_outer - tile.first_outer;
+        for (int32_t i = 0; with_rates && i < n; ++i) x.diagonal[i] = x.back[outer[i]];  // R, not complete yet
         look_at_columns<with_rates>(tile);
-        for (int32_t i = tile.first_outer; with_rates && i < tile.end_outer; ++i) x.back[s.outer[i]] = needed[i];
+        for (int32_t i = 0; with_rates && i < n; ++i) x.back[outer[i]] = x.diagonal[i];
     }
     template <bool with_rates>
     HOL_FORCED void look_at_columns(const Tile &tile) {

@@ -13,10 +13,11 @@ class FlatResidual {
 public:
     explicit FlatResidual(const FlatLinear<V> &linear) : x(linear), s(linear.s) {}
 
-    // Prepares for so many columns of a tile, column(i), as one by one they take longer.
+    // Prepares for so many columns of a tile, column(i): lists the bonds of their atoms.
     template <class Column>
     void prepare(const Tile &tile, int32_t n, const Column &column) {
-        start_list(tile);
+        listed = &tile;
+        __builtin_memset(wanted(), 0, static_cast<size_t>(tile.end_site - tile.first_site));
         for (int32_t i = 0; i < n; ++i) {
             const int32_t row = tile.first_row + (column(i) - tile.first);
             wanted()[s.from[row] / 4] = wanted()[s.to[row] / 4] = 1;
@@ -75,10 +76,6 @@ private:
     int32_t *columns() const { return x.bonds_at + in_fours(s.most_sites); }
     int32_t *starts() const { return columns() + in_fours(s.most_columns); }
     int32_t *items() const { return starts() + in_fours(s.most_sites + 2); }
-    void start_list(const Tile &tile) {
-        listed = &tile;
-        __builtin_memset(wanted(), 0, static_cast<size_t>(tile.end_site - tile.first_site));
-    }
     void list(const Tile &tile) {
         const int32_t *const from = s.from + (tile.first_row - tile.first), *const to = s.to + (from - s.from);
         int32_t *const start = starts(), *const item = items(), *const column = columns();
@@ -99,16 +96,19 @@ private:
         for (int32_t i = 2; i < n + 2; ++i) start[i] += start[i - 1];
         for_ends([&](int32_t site, int32_t end) { item[start[site + 1]++] = end; });
     }
-    // Adds the pulls of a tile's bonds on one of its sites.
+    // Adds the pulls of a tile's bonds on one of its sites: in the order of these, listed or not.
     Pair3<double> add(const Tile &tile, int32_t site, Pair3<double> sum) {
         const int32_t i = site - tile.first_site, *const item = items();
-        if (listed != &tile || !wanted()[i]) {
-            start_list(tile);
-            wanted()[i] = 1;
-            list(tile);
+        const auto add_end = [&](int32_t k, bool second) { sum = add_pairs(sum, pull(tile, k, second)); };
+        if (listed == &tile && wanted()[i]) {
+            for (int32_t e = starts()[i]; e < starts()[i + 1]; ++e) add_end(item[e] / 2, (item[e] & 1) != 0);
+            return sum;
         }
-        for (int32_t e = starts()[i]; e < starts()[i + 1]; ++e)
-            sum = add_pairs(sum, pull(tile, item[e] / 2, (item[e] & 1) != 0));
+        const int32_t *const from = s.from + (tile.first_row - tile.first), *const to = s.to + (from - s.from);
+        for (int32_t k = tile.first; k < tile.end; ++k) {
+            if (from[k] == 4 * i) add_end(k, false);
+            if (to[k] == 4 * i) add_end(k, true);
+        }
         return sum;
     }
     // Of all bonds of an atom, in whatever tiles these are.

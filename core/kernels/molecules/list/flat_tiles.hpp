@@ -201,10 +201,10 @@ HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<V> &at, const Fla
                            const Rows<V> &to) {
     read_vectors(array, at, s.place_of, s.n_atoms, to.slots());
 }
-// Writes row(site of the tile) of a tile's own atoms. What is in lanes is written in another way.
+// Writes row(site of the tile) of all own atoms of a tile: not where atoms belong to other molecules, too.
 template <class Value>
-HOL_INLINE void write_atoms(const AtomArray &array, const Atoms<double> &at, const FlatList &s, const Tile &tile,
-                            const Value &row) {
+HOL_INLINE void write_tile(const AtomArray &array, const Atoms<double> &at, const FlatList &s, const Tile &tile,
+                           const Value &row) {
     const int64_t *const list = at.list[0], first = at.first[0];
     const int32_t *const atom_of = s.atom_of + tile.first_site;
     const int32_t n = tile.own_end - tile.first_site;
@@ -220,8 +220,6 @@ HOL_INLINE void write_atoms(const AtomArray &array, const Atoms<double> &at, con
         write_rows(&p, vector_of(row(i)));
     }
 }
-template <class V, class Value>
-HOL_INLINE void write_atoms(const AtomArray &, const Atoms<V> &, const FlatList &, const Tile &, const Value &) {}
 // One of the values of a tile's sites, by four times the site's number.
 template <class V>
 HOL_INLINE const V &at_four_times(const V *values, int32_t k) {

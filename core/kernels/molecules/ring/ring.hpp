@@ -1,8 +1,7 @@
 // The equations of a molecule with one ring, once the trees that hang from it are eliminated. The bonds of the ring are
 // a chain of all but the last one, and that one: LDL^T, each row coupled to the next one and, by fill, to the last. It
-// subtracts. What a rounding of all diagonal elements does to each pivot is found beside it (theory (57b)): `error` of
-// the pivot at hand, `error_of_last`, and `slope`, the same of what couples the row to the last one. `slack` is
-// negative where a pivot is not large enough for that.
+// subtracts. That it may is shown by another one beside it, of the matrix with what rounding may do to it taken off its
+// diagonal, many times over: `slack` is negative where a pivot of that is not positive (theory (57b)).
 //
 // Bond p of the ring, at place n_tree + p, points from slot n_tree + p to the next one: the bond *behind* this atom, as
 // p - 1 is the one *before* it.
@@ -12,9 +11,11 @@
 
 namespace holonomic::HOL_ISA::graph {
 
-// The roundings that a pivot may lose: of the 16 + sqrt(n) that count as right (tests/oracle/molecules/README.md), but
-// for what right-hand sides and sums lose.
-HOL_INLINE double most_lost(int32_t n_bonds) { return 0.75 * (16 + __builtin_sqrt(static_cast<double>(n_bonds))); }
+// How many roundings of the diagonal elements may be taken off, of the 16 + sqrt(n) that count as right
+// (tests/oracle/molecules/README.md).
+HOL_INLINE double most_roundings(int32_t n_bonds) { return 0.8 * (16 + __builtin_sqrt(static_cast<double>(n_bonds))); }
+// What its pivots must keep of the diagonal elements, so that none is zero.
+constexpr double least_lowered_part = 1.0 / 1024;
 
 template <class V>
 struct Ring {
@@ -23,11 +24,42 @@ struct Ring {
     static int64_t values(const Schedule &s) { return s.n_core + 2 * static_cast<int64_t>(s.n_tree); }
 };
 
-// What an atom gives to the diagonal elements of the bonds before and behind it, and between them; what a rounding of
-// all that these are made of does to the first two.
+// What an atom gives to the diagonal elements of the bonds before and behind it, and to what couples them.
+template <class V>
+struct RingShare {
+    V before, behind, between;
+};
+// And what a rounding of all that these are made of does to them.
 template <class V>
 struct RingJoint {
-    V before, behind, between, error_before, error_behind, slack;
+    RingShare<V> share, error;
+    V slack;
+};
+
+// L D L^T of the rows of a ring, one after the other; the last one last.
+template <class V>
+struct RingPivots {
+    V diagonal, coupling, taken, last, taken_of_last;  // coupling: of the row to the last one
+    void start(const RingShare<V> &joint) { *this = {joint.behind, joint.between, V{}, joint.before, V{}}; }
+    // Returns the next pivot, of a diagonal element that was `whole`.
+    HOL_FORCED V pivot(const RingShare<V> &joint, V &whole) {
+        whole = diagonal + joint.before;
+        diagonal = joint.behind;
+        return whole - taken;
+    }
+    // To the next row and the last one, with 1 / pivot. is_end: these two are the same.
+    HOL_FORCED void eliminate(V between, V behind, const V &r, bool is_end, V &next, V &l) {
+        if (is_end) {
+            coupling = coupling + between;
+            between = V{};
+            last = last + behind;
+        }
+        next = between * r;
+        l = coupling * r;
+        taken_of_last = mul_add(l, coupling, taken_of_last);
+        taken = next * between;
+        coupling = l * between;
+    }
 };
 
 HOL_INLINE int32_t children_of(const Schedule &s, int32_t slot) {
@@ -57,7 +89,7 @@ HOL_INLINE RingJoint<V> up_ring_joint(const Molecules<V> &x, int32_t before, int
     BondRow<V> &to = x.row[before], &from = x.row[slot];
     const V whole_to = w * to.q, whole_from = w * from.q;
     V between = w * dot(to.d, from.d), left_to = whole_to, left_from = whole_from, y_to = to.t, y_from = from.t;
-    V error_to = whole_to, error_from = whole_from, error[known];
+    V error_to = whole_to, error_from = whole_from, error_between = {}, error[known];
     HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) f.y[a] = w * dot(rows.bond(a).d, to.d);
     solve_joint(k, f.r, f.m, f.y, z_to, f.l);
@@ -66,7 +98,9 @@ HOL_INLINE RingJoint<V> up_ring_joint(const Molecules<V> &x, int32_t before, int
         left_to = mul_add(-(z_to[a] * f.r[a]), z_to[a], left_to);
         y_to = mul_add(f.l[a], rows.bond(a).t, y_to);
         reach[a] = f.l[a];
-        error[a] = (w + x.w[rows.place(a)]) * rows.bond(a).q;
+        // E of the child may be small, as the difference of what its own children leave.
+        const V own = x.w[rows.place(a)] * rows.bond(a).q;
+        error[a] = mul_add(w, rows.bond(a).q, own * min(own / rows.bond(a).E, Width<V>::all(1 / least_part)));
         error_to = mul_add(f.l[a] * f.l[a], error[a], error_to);
         f.y[a] = w * dot(rows.bond(a).d, from.d);
     }
@@ -79,6 +113,7 @@ HOL_INLINE RingJoint<V> up_ring_joint(const Molecules<V> &x, int32_t before, int
         y_from = mul_add(-f.l[a], rows.bond(a).t, y_from);
         reach[k + a] = -f.l[a];
         error_from = mul_add(f.l[a] * f.l[a], error[a], error_from);
+        error_between = mul_add(reach[a] * f.l[a], error[a], error_between);
         f.y[a] = rows.bond(a).t;
         rows.bond(a).r = f.r[a];
         rows.bond(a).E = f.y[a] * f.r[a];  // what siblings.hpp compares with
@@ -90,66 +125,54 @@ HOL_INLINE RingJoint<V> up_ring_joint(const Molecules<V> &x, int32_t before, int
     for (int a = 0; a < k; ++a) rows.bond(a).t = f.l[a];
     to.t = y_to;
     from.t = y_from;
-    return {left_to, left_from, between, error_to, error_from, slack};
+    return {{left_to, left_from, between}, {error_to, error_from, error_between}, slack};
 }
 
 // From right-hand sides to u of the ring and of the children of its atoms, all in t of the rows.
 template <bool bare, class V>
 static inline void up_ring(Molecules<V> &x, const Ring<V> &ring) {
     V *reach = ring.reach, *to_last = ring.to_last;
-    V taken = {}, coupling = {}, carried = {}, diagonal = {}, last = {}, taken_of_last = {}, y_of_last = {};
-    V slack = x.slack, error = {}, kept = {}, slope = {}, diagonal_error = {}, error_of_last = {}, last_error = {};
-    const V part = Width<V>::all(-1 / most_lost(x.s.n_bonds)), one = Width<V>::all(1);
+    RingPivots<V> pivots = {}, lowered = {};
+    V carried = {}, y_of_last = {}, slack = x.slack, whole = {}, unused[2] = {};
+    const V part = Width<V>::all(-1 / most_roundings(x.s.n_bonds)), left = Width<V>::all(1) + part,
+            least = Width<V>::all(-least_lowered_part), one = Width<V>::all(1);
     const int32_t first = bare ? 0 : x.s.n_tree, end = x.s.n_bonds - 1;
     for_ring<bare>(x.s, [&](int32_t before, int32_t slot, int k) HOL_FORCED {
-        RingJoint<V> joint;
+        RingShare<V> joint, low;
         BondRow<V> &row = x.row[before];
         if (k == 0) {
-            const V w = x.w[slot], to = w * row.q, from = w * x.row[slot].q;
-            joint = {to, from, w * dot(row.d, x.row[slot].d), to, from, slack};
+            const V w = x.w[slot];
+            joint = {w * row.q, w * x.row[slot].q, w * dot(row.d, x.row[slot].d)};
+            low = {left * joint.before, left * joint.behind, joint.between};
         } else {
-            joint = choose_number<1, most_on_ring>(
+            const RingJoint<V> whole_joint = choose_number<1, most_on_ring>(
                 k, [=](auto known) HOL_FORCED { return up_ring_joint<known>(x, before, slot, reach, slack); });
             reach += 2 * k;
-            slack = joint.slack;
+            slack = whole_joint.slack;
+            joint = whole_joint.share;
+            const RingShare<V> &error = whole_joint.error;
+            low = {mul_add(part, error.before, joint.before), mul_add(part, error.behind, joint.behind),
+                   mul_add(part, error.between, joint.between)};
         }
         if (slot == first) {
-            last = joint.before;
-            coupling = joint.between;
-            diagonal = joint.behind;
-            last_error = joint.error_before;
-            diagonal_error = joint.error_behind;
+            pivots.start(joint);
+            lowered.start(low);
             return;
         }
-        const V whole = diagonal + joint.before, P = whole - taken, r = one / P, y = row.t + carried;
-        error = mul_add(kept, error, bare ? whole : diagonal_error + joint.error_before);
-        slack = min(mul_add(part, error, P), slack);
-        row.r = r;
-        row.t = row.E = y * r;
-        if (slot == end) {
-            coupling = coupling + joint.between;
-            joint.between = V{};
-            last = last + joint.behind;
-            last_error = last_error + joint.error_behind;
-        }
-        const V next = joint.between * r, l = coupling * r;
-        row.l = next;
+        const V low_P = lowered.pivot(low, whole), P = pivots.pivot(joint, whole), y = row.t + carried;
+        slack = min(mul_add(least, whole, low_P), slack);
+        row.r = one / P;
+        row.t = row.E = y * row.r;
+        lowered.eliminate(low.between, low.behind, one / low_P, slot == end, unused[0], unused[1]);
+        V l;
+        pivots.eliminate(joint.between, joint.behind, row.r, slot == end, row.l, l);
         *to_last++ = l;
-        taken_of_last = mul_add(l, coupling, taken_of_last);
         y_of_last = mul_add(l, y, y_of_last);
-        carried = next * y;
-        taken = next * joint.between;
-        coupling = l * joint.between;
-        diagonal = joint.behind;
-        const V more = mul_add(l, error, slope);
-        error_of_last = mul_add(l, slope + more, error_of_last);
-        slope = next * more;
-        kept = next * next;
-        diagonal_error = joint.error_behind;
+        carried = row.l * y;
     });
     BondRow<V> &row = x.row[end];
-    const V P = last - taken_of_last;
-    x.slack = min(mul_add(part, last_error + error_of_last, P), slack);
+    const V P = pivots.last - pivots.taken_of_last, low_P = lowered.last - lowered.taken_of_last;
+    x.slack = min(mul_add(least, pivots.last, low_P), slack);
     row.r = one / P;
     row.t = row.E = (row.t + y_of_last) * row.r;
 }
@@ -209,7 +232,7 @@ HOL_INLINE void look_at_ring_atom(Molecules<V> &x, int32_t before, int32_t slot,
     for (int a = 0; a < k; ++a) least = min(left_of(x.row[child[a]], -minus_shared), least);
     const MaskOf<V> faint = less(least, V{});
     if (__builtin_expect(!any(faint), 1)) return;
-    const V shared = -minus_shared;  // in memory here alone
+    const V shared = -minus_shared;  // a call takes its address, so that it is in memory; here alone
     for (int a = -2; a < k; ++a)
         doubt_faint_bond(x, a == -2 ? before : a < 0 ? slot : child[a], shared, bits(faint), x.slack);
 }
