@@ -223,7 +223,8 @@ HOL_INLINE void write_tile(const AtomArray &array, const Atoms<double> &at, cons
 // One of the values of a tile's sites, by four times the site's number.
 template <class V>
 HOL_INLINE const V &at_four_times(const V *values, int32_t k) {
-    return *reinterpret_cast<const V *>(reinterpret_cast<const char *>(values) + sizeof(V) / 4 * k);
+    constexpr int64_t quarter = sizeof(V) / 4;  // bytes
+    return *reinterpret_cast<const V *>(reinterpret_cast<const char *>(values) + quarter * k);
 }
 // The sums of the inverse masses of both ends.
 template <class V>
