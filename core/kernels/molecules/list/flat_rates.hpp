@@ -45,7 +45,7 @@ __attribute__((noinline)) void move_atoms(const FlatLinear<V> &x, const Tile &ti
     sum_pulls(x.s, tile, x.rate, x.d_of(tile), x.v);
     x.keep_for_owners(tile, x.v);
     const auto moved = [&](int32_t i) HOL_FORCED { return multiply_add(in_row(w[i]), x.v[i], a[i]); };
-    if constexpr (Width<V>::lanes == 1)
+    if constexpr (FlatLinear<V>::step == 4)
         if (to) return write_tile(*to, x.at, x.s, tile, moved);
     for (int32_t i = 0; i < n; ++i) a[i] = moved(i);
 }

@@ -93,7 +93,7 @@ static inline unsigned solve_flat(const VelocitiesCall &call, const FlatBlock<V>
     if (call.lambda) write_multipliers(x, call.lambda, good);
     if (call.virial) add_virial(x, good, tally);
     // Nothing reads v any more, so that tiles of one molecule write it as they come.
-    const bool tile_by_tile = Width<V>::lanes == 1 && x.with_rates && !x.lane[0].shared;
+    const bool tile_by_tile = FlatLinear<V>::step == 4 && x.with_rates && !x.lane[0].shared;
     if (x.with_rates) take_rates(x, tile_by_tile ? &call.v : nullptr);
     if (!tile_by_tile) write_atoms(x, call.v, x.a, false, good);
     return bits(x.in_use()) & ~good;
