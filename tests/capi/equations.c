@@ -61,3 +61,17 @@ void leave_roundings_in_box(const molecule *m, const double *box, const double *
     CHECK_AT_MOST(largest, DBL_EPSILON);
     free(a), free(tension);
 }
+
+void leave_roundings_of_rates(const molecule *m, const double *v, const molecule_solution *exact)
+{
+    for (int64_t k = 0; k < m->n_bonds; ++k) {
+        const int64_t i = m->pairs[2 * k], j = m->pairs[2 * k + 1];
+        long double rate = 0, size = 0;
+        for (int x = 0; x < 3; ++x) {
+            const long double d = (long double)m->r[3 * j + x] - m->r[3 * i + x];
+            rate += d * ((long double)v[3 * j + x] - v[3 * i + x]);
+            size += fabsl(d) * (exact->moved_scale[i] + exact->moved_scale[j]);
+        }
+        CHECK_AT_MOST(fabsl(rate), oracle_bound(m->n_bonds) * DBL_EPSILON * size);
+    }
+}

@@ -3,6 +3,7 @@
 #define TESTS_EQUATIONS_H
 
 #include "molecule.h"
+#include "molecule_solution.h"
 
 /** d = r_j - r_i of a pair, the nearest image in a box whose vectors have no components above the diagonal, or NULL. */
 void bond_in_box(const double *r, const int64_t *pair, const double *box, long double d[3]);
@@ -14,5 +15,8 @@ void leave_roundings_of_equations(const molecule *m, const double *lambda, const
 /** The same in a box, or NULL: images round by eps of its sides. */
 void leave_roundings_in_box(const molecule *m, const double *box, const double *lambda, const double *v,
                             const double *f, int rates, const double *given);
+
+/** Rates d.(v_j - v_i) of velocities are roundings of what these are made of. */
+void leave_roundings_of_rates(const molecule *m, const double *v, const molecule_solution *exact);
 
 #endif

@@ -3,6 +3,7 @@
  * eigenvalues are, and the errors of all bonds of a line add up: a solver that looks at pivots alone misses its bound.
  */
 #include "check.h"
+#include "equations.h"
 #include "mixture.h"
 #include "molecule_solution.h"
 
@@ -146,20 +147,6 @@ static void assert_near(const molecule *part, const double *lambda, const double
     for (int64_t i = 0; i < 3 * part->n_atoms; ++i) CHECK_AT_MOST(fabsl(vectors[i] - expected[i]), unit * scale[i / 3]);
 }
 
-static void assert_rates(const molecule *part, const double *v, const molecule_solution *exact)
-{
-    for (int64_t k = 0; k < part->n_bonds; ++k) {
-        const int64_t i = part->pairs[2 * k], j = part->pairs[2 * k + 1];
-        long double rate = 0, size = 0;
-        for (int x = 0; x < 3; ++x) {
-            const long double d = (long double)part->r[3 * j + x] - part->r[3 * i + x];
-            rate += d * ((long double)v[3 * j + x] - v[3 * i + x]);
-            size += fabsl(d) * (exact->moved_scale[i] + exact->moved_scale[j]);
-        }
-        CHECK_AT_MOST(fabsl(rate), oracle_bound(part->n_bonds) * DBL_EPSILON * size);
-    }
-}
-
 /** Right-hand sides that give the multipliers of the forces, but for their rounding. */
 static double *right_hand_side(const mixture *m)
 {
@@ -195,7 +182,7 @@ static void assert_solutions(molecule *parts, int n, uint64_t seed)
         mixture_take_bonds(&m, p, mu, of_bonds);
         mixture_take(&m, p, v, of_atoms);
         assert_near(part, of_bonds, of_atoms, &exact, exact.moved, exact.moved_scale);
-        assert_rates(part, of_atoms, &exact);
+        leave_roundings_of_rates(part, of_atoms, &exact);
         molecule_solution_free(&exact);
         if (p % 4 != 0) continue; /* the widest margin of the three, and wide numbers take time */
         mixture_take_bonds(&m, p, rhs, given);

@@ -282,7 +282,7 @@ bool is_straight_triangle(const hostile_molecule &m)
 long double least_pivot_of_any_order(const molecule_metric &exact, std::size_t n)
 {
     long double most = 1;
-    for (std::size_t k = 0; k < n; ++k) most = std::max(most, static_cast<long double>(exact.inverse[k * n + k]));
+    for (std::size_t k = 0; k < n; ++k) most = std::max(most, exact.inverse[k * n + k]);
     return 1 / most;
 }
 

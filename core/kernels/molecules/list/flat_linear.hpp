@@ -50,7 +50,10 @@ struct FlatLinear {
     }
     static int64_t left_values(const FlatList &s) { return in_fours(s.n_branches / 2 + 1); }
     static int64_t most_columns(const FlatList &s) { return in_fours(s.most_columns); }
-    static int64_t bonds_at_values(const FlatList &s) { return in_fours(s.most_sites + 2) + 2 * most_columns(s); }
+    static int64_t bonds_at_values(const FlatList &s) {
+        constexpr int64_t in_one = sizeof(V) / sizeof(int32_t);
+        return in_fours((2 * in_fours(s.most_sites + 2) + 3 * most_columns(s) + in_one - 1) / in_one);
+    }
     FlatLinear(const FlatList &list, const MoleculeLane *l, int in_use, bool packed, bool known,
                const LongTeam *threads, const Box &b, const AtomArray &positions, const Inputs &inputs, int sides,
                Memory<V> &memory)
@@ -122,7 +125,8 @@ struct FlatLinear {
     HOL_FORCED Rows<V> d_of(const Tile &tile) const { return d.from(tile.first_row); }
 
     // w f, or v where right-hand sides are rates.
-    HOL_FORCED void load_inputs(const Tile &tile, const Rows<V> &to) const {
+    HOL_FORCED void load_inputs(const Tile &tile) const {
+        const Rows<V> to = a_of(tile);
         const int32_t n = tile.end_site - tile.first_site;
         const V *const of_site = w + tile.first_site;
         if (terms & (rates | pulls)) read_atoms(terms & rates ? *in.v : *in.f, at, s, tile, to);
@@ -156,7 +160,7 @@ struct FlatLinear {
             if (!masses_known) read_masses(lane, s, w);
             read_atoms(coordinates, at, s, tile, r);
             if (terms & squares) read_atoms(*in.v, at, s, tile, v);
-            load_inputs(tile, a_of(tile));
+            load_inputs(tile);
         }
     }
 
@@ -234,20 +238,16 @@ struct FlatLinear {
             head = head + p;
             tail = tail + opposite(p);
         }
-        if (terms & rates) {
+        if (terms & rates)
             keep_for_owners(tile, of);
-        } else {
-            add_visits(s, tile, pull);
-        }
+        else
+            add_visits(s, tile, pull, pull);
     }
     // Keeps what pulls guests, and adds to what pulls a tile's own atoms that of their guests in later tiles.
     HOL_FORCED void keep_for_owners(const Tile &tile, const Rows<V> &of) const {
-        const Rows<V> kept = a.from(tile.first_site);
+        const Rows<V> kept = a_of(tile);
         for (int32_t i = tile.own_end - tile.first_site; i < tile.end_site - tile.first_site; ++i) kept[i] = of[i];
-        for (int32_t i = tile.first_visit; i < tile.end_visit; ++i) {
-            RowOf<V> &own_atom = of[s.visit[i].own - tile.first_site];
-            own_atom = own_atom + a[s.visit[i].guest];
-        }
+        add_visits(s, tile, a, of.from(-tile.first_site));
     }
     // The sum of w |t| |d| of all bonds of the atom of a site, once G is known.
     HOL_FORCED V tensions_at(int32_t site) const {

@@ -159,7 +159,7 @@ struct FlatMoves {
     HOL_FORCED void weigh(const Tile &tile) const {
         const Rows<V> of = moves.from(tile.first_site);
         const V *const of_site = w + tile.first_site;
-        add_visits(s, tile, moves);
+        add_visits(s, tile, moves, moves);
         for (int64_t i = 0; i < tile.own_end - tile.first_site; ++i) of[i] = in_row(of_site[i]) * of[i];
     }
     __attribute__((noinline)) void displace() {
@@ -172,14 +172,8 @@ struct FlatMoves {
     }
     // Bonds as moved, and what is left of them.
     __attribute__((noinline)) V move() {
-        if (displaced)
-            up([&](const Tile &tile, const Rows<V> &) HOL_FORCED { measure_inner(tile); });
-        else
-            down([&](const Tile &tile) HOL_FORCED {
-                pull(tile);
-                weigh(tile);
-                measure_inner(tile);
-            });
+        displace();
+        up([&](const Tile &tile, const Rows<V> &) HOL_FORCED { measure_inner(tile); });
         return finish_move();
     }
     // Of the bonds of a tile's own atoms, in groups of `step`; the others, once all atoms have been moved.
@@ -195,7 +189,7 @@ struct FlatMoves {
         found[&tile - s.tile].errors = errors;
     }
     V finish_move() {
-        displaced = moved = true;
+        moved = true;
         if (s.n_tiles > 1) up([&](const Tile &tile, const Rows<V> &) HOL_FORCED { measure_outer(tile); });
         return largest_error();
     }

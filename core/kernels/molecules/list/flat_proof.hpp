@@ -161,20 +161,20 @@ struct FlatProof {
     }
     // Of a tile, but for the bonds of which not all is known yet. A part of the terms does for most.
     void look_at(const Tile &tile) {
-        x.with_rates ? look_at<true>(tile) : look_at<false>(tile);
+        if (x.with_rates) {
+            const int32_t *const outer = s.outer + tile.first_outer;
+            const int32_t n = tile.end_outer - tile.first_outer;
+            for (int32_t i = 0; i < n; ++i) x.diagonal[i] = x.back[outer[i]];  // R, not complete yet
+            look_at<true>(tile);
+            for (int32_t i = 0; i < n; ++i) x.back[outer[i]] = x.diagonal[i];
+        } else {
+            look_at<false>(tile);
+        }
         look_at_missed(tile);
     }
-    // with_rates: finds what is left of the bonds' rates, in the place of R where that is not needed any more.
+    // with_rates: finds what is left of the bonds' rates, in the place of R.
     template <bool with_rates>
     __attribute__((noinline)) void look_at(const Tile &tile) {
-        const int32_t *const outer = s.outer + tile.first_outer;
-        const int32_t n = tile.end_outer - tile.first_outer;
-        for (int32_t i = 0; with_rates && i < n; ++i) x.diagonal[i] = x.back[outer[i]];  // R, not complete yet
-        look_at_columns<with_rates>(tile);
-        for (int32_t i = 0; with_rates && i < n; ++i) x.back[outer[i]] = x.diagonal[i];
-    }
-    template <bool with_rates>
-    HOL_FORCED void look_at_columns(const Tile &tile) {
         const Columns<V> most = all_columns<V>(most_backward(s.n_bonds));
         const Rows<V> of = x.a_of(tile);
         int32_t next = tile.first_outer;

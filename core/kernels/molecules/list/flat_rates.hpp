@@ -26,7 +26,7 @@ static inline void find_pulls_again(const FlatLinear<V> &all) {
     all.down([](const FlatLinear<V> &x, const Branch &branch) HOL_FORCED {
         for_tiles_down(x.s, branch, [&](const Tile &tile) HOL_FORCED {
             if (!(x.terms & rates)) return x.find_pulls(tile);  // nobody asks for accelerations any more
-            x.load_inputs(tile, x.a_of(tile));
+            x.load_inputs(tile);
             x.find_pulls(tile);
             x.add_pulls(tile);
             if (x.with_rates) find_rates(x, tile);

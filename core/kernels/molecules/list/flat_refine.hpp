@@ -103,7 +103,7 @@ struct FlatRefine {
     }
     __attribute__((noinline)) void start(const Tile &tile) const {
         open(tile);
-        x.load_inputs(tile, x.a_of(tile));
+        x.load_inputs(tile);
         for (int64_t k = tile.first; k < tile.end; k += step) x.some(side, k) = x.sides_of(tile, k, terms);
         x.add_given(tile, side);
         for (int32_t k = tile.first; k < tile.end; ++k) solution[k] = x.t[k];

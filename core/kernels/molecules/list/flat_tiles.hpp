@@ -137,11 +137,11 @@ HOL_INLINE void sum_pulls(const FlatList &s, const Tile &tile, const V *multipli
         tail = tail - p;
     }
 }
-// Of an atom of a tile, and of a guest the pull on it added to that on its atom.
+// Adds what pulls guests of later tiles to what pulls the atoms of a tile, by their sites.
 template <class V>
-HOL_INLINE void add_visits(const FlatList &s, const Tile &tile, const Rows<V> &pull) {
+HOL_INLINE void add_visits(const FlatList &s, const Tile &tile, const Rows<V> &guests, const Rows<V> &pull) {
     for (int32_t i = tile.first_visit; i < tile.end_visit; ++i)
-        pull[s.visit[i].own] = pull[s.visit[i].own] + pull[s.visit[i].guest];
+        pull[s.visit[i].own] = pull[s.visit[i].own] + guests[s.visit[i].guest];
 }
 // Guests are as their atoms are.
 template <class V>
@@ -205,10 +205,9 @@ HOL_INLINE void read_atoms(const AtomArray &array, const Atoms<V> &at, const Fla
 template <class Value>
 HOL_INLINE void write_tile(const AtomArray &array, const Atoms<double> &at, const FlatList &s, const Tile &tile,
                            const Value &row) {
-    const int64_t *const list = at.list[0], first = at.first[0];
     const int32_t *const atom_of = s.atom_of + tile.first_site;
     const int32_t n = tile.own_end - tile.first_site;
-    const auto number = [&](int32_t i) HOL_FORCED { return list ? list[atom_of[i]] : first + atom_of[i]; };
+    const auto number = [&](int32_t i) HOL_FORCED { return at.number(0, atom_of[i]); };
     if (at.layout == elements) {
         for (int32_t i = 0; i < n; ++i) write_one(array, number(i), vector_of(row(i)));
         return;

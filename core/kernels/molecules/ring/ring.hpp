@@ -40,25 +40,25 @@ struct RingJoint {
 template <class V>
 struct RingPivots {
     V diagonal, coupling, taken, last, taken_of_last;  // coupling: of the row to the last one
-    void start(const RingShare<V> &joint) { *this = {joint.behind, joint.between, V{}, joint.before, V{}}; }
-    // Returns the next pivot, of a diagonal element that was `whole`.
-    HOL_FORCED V pivot(const RingShare<V> &joint, V &whole) {
-        whole = diagonal + joint.before;
-        diagonal = joint.behind;
-        return whole - taken;
-    }
-    // To the next row and the last one, with 1 / pivot. is_end: these two are the same.
-    HOL_FORCED void eliminate(V between, V behind, const V &r, bool is_end, V &next, V &l) {
+    V to_next, to_last;                                // of the row eliminated last, over its pivot
+    void start(const RingShare<V> &joint) { *this = {joint.behind, joint.between, V{}, joint.before, V{}, V{}, V{}}; }
+    HOL_FORCED V whole(const RingShare<V> &joint) const { return diagonal + joint.before; }
+    HOL_FORCED V pivot(const RingShare<V> &joint) const { return whole(joint) - taken; }
+    V last_pivot() const { return last - taken_of_last; }
+    // Takes the row, with 1 / pivot, from the next one and the last one. is_end: these two are the same.
+    HOL_FORCED void eliminate(const RingShare<V> &joint, const V &r, bool is_end) {
+        V between = joint.between;
         if (is_end) {
             coupling = coupling + between;
             between = V{};
-            last = last + behind;
+            last = last + joint.behind;
         }
-        next = between * r;
-        l = coupling * r;
-        taken_of_last = mul_add(l, coupling, taken_of_last);
-        taken = next * between;
-        coupling = l * between;
+        to_next = between * r;
+        to_last = coupling * r;
+        taken_of_last = mul_add(to_last, coupling, taken_of_last);
+        taken = to_next * between;
+        coupling = to_last * between;
+        diagonal = joint.behind;
     }
 };
 
@@ -133,7 +133,7 @@ template <bool bare, class V>
 static inline void up_ring(Molecules<V> &x, const Ring<V> &ring) {
     V *reach = ring.reach, *to_last = ring.to_last;
     RingPivots<V> pivots = {}, lowered = {};
-    V carried = {}, y_of_last = {}, slack = x.slack, whole = {}, unused[2] = {};
+    V carried = {}, y_of_last = {}, slack = x.slack;
     const V part = Width<V>::all(-1 / most_roundings(x.s.n_bonds)), left = Width<V>::all(1) + part,
             least = Width<V>::all(-least_lowered_part), one = Width<V>::all(1);
     const int32_t first = bare ? 0 : x.s.n_tree, end = x.s.n_bonds - 1;
@@ -159,21 +159,20 @@ static inline void up_ring(Molecules<V> &x, const Ring<V> &ring) {
             lowered.start(low);
             return;
         }
-        const V low_P = lowered.pivot(low, whole), P = pivots.pivot(joint, whole), y = row.t + carried;
-        slack = min(mul_add(least, whole, low_P), slack);
-        row.r = one / P;
-        row.t = row.E = y * row.r;
-        lowered.eliminate(low.between, low.behind, one / low_P, slot == end, unused[0], unused[1]);
-        V l;
-        pivots.eliminate(joint.between, joint.behind, row.r, slot == end, row.l, l);
-        *to_last++ = l;
-        y_of_last = mul_add(l, y, y_of_last);
-        carried = row.l * y;
+        const V low_P = lowered.pivot(low), r = one / pivots.pivot(joint), y = row.t + carried;
+        slack = min(mul_add(least, pivots.whole(joint), low_P), slack);
+        row.r = r;
+        row.t = row.E = y * r;
+        lowered.eliminate(low, one / low_P, slot == end);
+        pivots.eliminate(joint, r, slot == end);
+        row.l = pivots.to_next;
+        *to_last++ = pivots.to_last;
+        y_of_last = mul_add(pivots.to_last, y, y_of_last);
+        carried = pivots.to_next * y;
     });
     BondRow<V> &row = x.row[end];
-    const V P = pivots.last - pivots.taken_of_last, low_P = lowered.last - lowered.taken_of_last;
-    x.slack = min(mul_add(least, pivots.last, low_P), slack);
-    row.r = one / P;
+    x.slack = min(mul_add(least, pivots.last, lowered.last_pivot()), slack);
+    row.r = one / pivots.last_pivot();
     row.t = row.E = (row.t + y_of_last) * row.r;
 }
 
@@ -218,21 +217,20 @@ struct RingBond {
 };
 
 // Looks at the k children of an atom of the ring and the two bonds of the ring. What u and t differ by, E of the rows
-// and t, came from around the ring: both count as pulls. minus_per: - per_cancelled2.
+// and t, came from around the ring: both count as pulls.
 template <int k, class V>
 HOL_INLINE void look_at_ring_atom(Molecules<V> &x, int32_t before, int32_t slot, const RingBond<V> &to,
-                                  const RingBond<V> &from, V minus_per) {
+                                  const RingBond<V> &from) {
     const int32_t *const child = x.s.child + x.s.child_start[slot];
     V T2 = to.pull + from.pull;
     HOL_UNROLL_FEW
     for (int a = 0; a < k; ++a) T2 = mul_add(x.row[child[a]].q, x.row[child[a]].t * x.row[child[a]].t, T2);
-    const V w = x.w[slot], minus_shared = (w * w) * (minus_per * T2);
-    V least = min(mul_add(minus_shared, to.error, to.own), mul_add(minus_shared, from.error, from.own));
+    const V w = x.w[slot], shared = (w * w) * (x.per_cancelled2 * T2);
+    V least = min(mul_add(-shared, to.error, to.own), mul_add(-shared, from.error, from.own));
     HOL_UNROLL_FEW
-    for (int a = 0; a < k; ++a) least = min(left_of(x.row[child[a]], -minus_shared), least);
+    for (int a = 0; a < k; ++a) least = min(left_of(x.row[child[a]], shared), least);
     const MaskOf<V> faint = less(least, V{});
     if (__builtin_expect(!any(faint), 1)) return;
-    const V shared = -minus_shared;  // a call takes its address, so that it is in memory; here alone
     for (int a = -2; a < k; ++a)
         doubt_faint_bond(x, a == -2 ? before : a < 0 ? slot : child[a], shared, bits(faint), x.slack);
 }
@@ -243,7 +241,6 @@ static inline void down_ring(Molecules<V> &x, const Ring<V> &ring) {
     const Schedule &s = x.s;
     const V *reach = ring.reach + 2 * static_cast<int64_t>(s.n_tree - s.child_start[s.n_tree]);
     const V last = x.row[s.n_bonds - 1].t, *to_last = ring.to_last + s.n_core - 1;
-    const V minus_per = Width<V>::all(-x.per_cancelled2);
     V behind = last;
     RingBond<V> from(x.row[s.n_bonds - 1]);
     for (int32_t slot = s.n_bonds - 1; slot >= s.n_tree; --slot) {
@@ -260,7 +257,7 @@ static inline void down_ring(Molecules<V> &x, const Ring<V> &ring) {
                 BondRow<V> &child = x.row[s.child[s.child_start[slot] + a]];
                 child.t = mul_add(reach[a], before, mul_add(reach[known + a], behind, child.t));
             }
-            if (look) look_at_ring_atom<known>(x, place, slot, to, from, minus_per);
+            if (look) look_at_ring_atom<known>(x, place, slot, to, from);
         });
         from = to;
         behind = before;
