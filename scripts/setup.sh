@@ -70,6 +70,7 @@ int main() { OpenMM::System system; }' | c++ -x c++ - -lOpenMM -o /dev/null 2>/d
         ase) [ -n "$(python_with numpy, ase)" ] ;;
         openmm-python) [ -n "$(python_with numpy, openmm)" ] ;;
         venv) [ -n "$(python_with numpy, venv, ensurepip)" ] ;;
+        setuptools) [ -n "$(python_with setuptools, wheel, pip)" ] ;;
         eigen) [ -e /usr/include/eigen3/Eigen/Core ] || pkg-config --exists eigen3 2>/dev/null ;;
         *) command -v "$1" >/dev/null ;;
     esac
@@ -111,6 +112,7 @@ debian_package() {
         numpy) echo python3-numpy ;;
         ase) echo python3-numpy python3-ase ;;
         venv) echo python3-numpy python3-venv ;;
+        setuptools) echo python3-setuptools python3-wheel python3-pip ;;
         openmm-python) echo python3-numpy python3-simtk libopenmm-plugins ;;
         ninja) echo ninja-build ;;
         openblas | mctc-lib) echo "lib$1-dev" ;;

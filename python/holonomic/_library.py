@@ -6,6 +6,11 @@ import ctypes
 import os
 from ctypes import c_double, c_int, c_int32, c_int64, c_void_p
 
+try:
+    from ._installed import LIBRARY as _INSTALLED  # written by `HOLONOMIC_PREFIX=... pip install`
+except ImportError:
+    _INSTALLED = None
+
 _NEEDED = (0, 2)
 _NAME = "libholonomic.so.0"
 
@@ -91,10 +96,11 @@ class View(ctypes.Structure):
 
 
 def _load() -> ctypes.CDLL:
-    """HOLONOMIC_LIBRARY if it is set, else the library in this folder (wheels), else the system's."""
+    """HOLONOMIC_LIBRARY if it is set, else the library in this folder (wheels), else the one that this package was installed
+    beside, else the system's."""
     named = os.environ.get("HOLONOMIC_LIBRARY")
     beside = os.path.join(os.path.dirname(os.path.abspath(__file__)), _NAME)
-    path = named or (beside if os.path.exists(beside) else _NAME)
+    path = named or (beside if os.path.exists(beside) else _INSTALLED or _NAME)
     try:
         library = ctypes.CDLL(path)
     except OSError as error:
