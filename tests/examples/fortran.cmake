@@ -13,6 +13,14 @@ example_test(alkane_md.rattle fortran alkane_md file=${molecule} steps=20000 out
     "energy drift" 1 > -2
     file nve.dat > 100000
     file nve.gp > 300)
+# SHAKE in its place stays just within its tolerance; to 1e-10 it is the same trajectory's energy.
+example_test(alkane_md.shake fortran alkane_md file=${molecule} steps=20000 tolerance=1e-10 --
+    "constraints           by SHAKE, to" 1 = 1e-10
+    "largest bond error" 1 < 1.01e-10
+    "largest bond error" 1 > 1e-12
+    "energy fluctuation" 1 < 0.1
+    "energy drift" 1 < 2
+    "energy drift" 1 > -2)
 # Runge-Kutta knows nothing of the bonds but their forces: order 4 in their lengths shows that the forces are exact.
 example_test(alkane_md.rk4 fortran alkane_md file=${molecule} integrator=rk4 steps=500 dt=1 --
     "observed order" 1 > 3.8

@@ -59,7 +59,7 @@ example() { # example NAME SOURCE...
 }
 md=$examples/alkane_md
 example alkane_md "$md/alkane_units.f90" "$md/alkane_force_field.f90" "$md/alkane_options.f90" "$md/alkane_xyz.f90" \
-    "$md/alkane_integrators.f90" "$md/alkane_samples.f90" "$md/alkane_md.f90"
+    "$md/alkane_shake.f90" "$md/alkane_integrators.f90" "$md/alkane_samples.f90" "$md/alkane_md.f90"
 example make_alkane "$md/make_alkane.f90"
 melt=$examples/melt_md
 example melt_md "$melt/melt_pairs.f90" "$melt/melt_start.f90" "$melt/melt_md.f90"

@@ -6,7 +6,8 @@
 !               by a projection
 module alkane_integrators
    use, intrinsic :: iso_fortran_env, only: int64
-   use alkane_force_field, only: force_field, potential_energy
+   use alkane_force_field, only: bond_length, force_field, potential_energy
+   use alkane_shake, only: rattle_velocities, shake
    use alkane_units, only: dp, boltzmann
    use holonomic, only: hol_chains, hol_report
    implicit none
@@ -20,6 +21,8 @@ module alkane_integrators
       real(dp), allocatable :: lambda(:)       ! of the last drift, the first guess for the next
       real(dp) :: potential = 0
       integer(int64) :: iterations = 0         ! most that a drift has taken so far
+      real(dp) :: tolerance = 0                ! above 0: SHAKE and RATTLE's iterations to this, not the library
+      integer(int64) :: ticks = 0              ! of the clock, in constraints
    end type
 
 contains
@@ -77,7 +80,7 @@ contains
       call drift(m, dt)
       m%potential = potential_energy(m%field, m%r, m%f)
       m%v = m%v + dt/2*divided_by_mass(m, m%f)
-      call m%chains%project_velocities(m%r, m%v)
+      call project_velocities(m, dt)
    end subroutine
 
    subroutine step_langevin(m, dt, temperature, friction)
@@ -85,17 +88,17 @@ contains
       real(dp), intent(in) :: dt, temperature, friction
       real(dp) :: kept
       m%v = m%v + dt/2*divided_by_mass(m, m%f)
-      call m%chains%project_velocities(m%r, m%v)
+      call project_velocities(m, dt)
       call drift(m, dt/2)
-      call m%chains%project_velocities(m%r, m%v)
+      call project_velocities(m, dt)
       kept = exp(-friction*dt)
       m%v = kept*m%v + sqrt(1 - kept**2)*thermal_velocities(m, temperature)
-      call m%chains%project_velocities(m%r, m%v)
+      call project_velocities(m, dt)
       call drift(m, dt/2)
-      call m%chains%project_velocities(m%r, m%v)
+      call project_velocities(m, dt)
       m%potential = potential_energy(m%field, m%r, m%f)
       m%v = m%v + dt/2*divided_by_mass(m, m%f)
-      call m%chains%project_velocities(m%r, m%v)
+      call project_velocities(m, dt)
    end subroutine
 
    ! The constrained move along the velocities: corrections act along the bonds before the move, and change the
@@ -104,10 +107,34 @@ contains
       type(molecule), intent(inout) :: m
       real(dp), intent(in) :: dt
       type(hol_report) :: report
+      integer(int64) :: began, ended
+      integer :: rounds
       m%r_ref = m%r
       m%r = m%r + dt*m%v
-      call m%chains%project_positions(m%r_ref, m%r, dt, m%v, m%lambda, guess=.true., report=report)
+      call system_clock(began)
+      if (m%tolerance > 0) then
+         call shake(m%field%mass, bond_length, m%tolerance, m%r_ref, m%r, dt, m%v, rounds)
+         report%iterations = rounds
+      else
+         call m%chains%project_positions(m%r_ref, m%r, dt, m%v, m%lambda, guess=.true., report=report)
+      end if
+      call system_clock(ended)
+      m%ticks = m%ticks + ended - began
       m%iterations = max(m%iterations, report%iterations)
+   end subroutine
+
+   subroutine project_velocities(m, dt)
+      type(molecule), intent(inout) :: m
+      real(dp), intent(in) :: dt
+      integer(int64) :: began, ended
+      call system_clock(began)
+      if (m%tolerance > 0) then
+         call rattle_velocities(m%field%mass, bond_length, m%tolerance, m%r, dt, m%v)
+      else
+         call m%chains%project_velocities(m%r, m%v)
+      end if
+      call system_clock(ended)
+      m%ticks = m%ticks + ended - began
    end subroutine
 
    function divided_by_mass(m, f) result(a)

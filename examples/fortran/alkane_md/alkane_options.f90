@@ -16,6 +16,7 @@ module alkane_options
       real(dp) :: dt = 2                       ! fs
       real(dp) :: temperature = 300            ! K
       real(dp) :: friction = 1                 ! 1/ps, for langevin
+      real(dp) :: tolerance = 0                ! of SHAKE in place of the library; 0: the library
    end type
 
 contains
@@ -35,6 +36,7 @@ contains
       end do
       if (all(chosen%integrator /= [character(8) :: "rattle", "rk4", "langevin"])) &
          call stop_with("integrator="//chosen%integrator//" is none of rattle, rk4, langevin")
+      if (chosen%tolerance > 0 .and. chosen%integrator == "rk4") call stop_with("tolerance= is SHAKE's, and rk4 has none")
       if (chosen%every == 0) chosen%every = max(1, chosen%steps/1000)
    end subroutine
 
@@ -60,9 +62,11 @@ contains
          chosen%temperature = positive_number(name, value)
       case ("friction")
          chosen%friction = positive_number(name, value)
+      case ("tolerance")
+         chosen%tolerance = positive_number(name, value)
       case default
          call stop_with("there is no option '"//name//"'; there are file, integrator, steps, dt, temperature, "// &
-                        "friction, seed, every and output")
+                        "friction, seed, every, tolerance and output")
       end select
    end subroutine
 
