@@ -12,7 +12,7 @@ install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT licence)
 # What the header cites, and what users of an installed library look for. Links between the pages lead on; pictures and
 # the pages for whoever works on the library stay in the tree.
 install(FILES README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
-foreach(page recipes integrators molecules rigid metric theory linking fortran fortran_reference python porting stability performance abi)
+foreach(page start promises recipes integrators molecules rigid metric theory linking fortran fortran_reference python porting stability performance abi)
     install(FILES docs/${page}.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT development)
 endforeach()
 install(FILES docs/reference/tasks.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs/reference COMPONENT development)

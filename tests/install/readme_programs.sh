@@ -1,7 +1,7 @@
 #!/bin/sh
-# README's programs: each compiled and run by README's own line, in this folder, prints what README says.
+# The programs of a page (README.md, docs/start.md): each compiled and run by its own line prints what the page says.
 #
-#   readme_programs.sh README LANGUAGE...        LANGUAGE: c, fortran, python
+#   readme_programs.sh PAGE LANGUAGE...        LANGUAGE: c, fortran, python
 set -eu
 readme=$1
 shift

@@ -1,10 +1,10 @@
 #!/bin/sh
-# Runs README's commands as they stand, in a home directory that neither pkg-config nor the loader knows: what it builds
+# Runs the commands of docs/start.md as they stand, in a home directory that neither pkg-config nor the loader knows: what it builds
 # must run and print what README says.
 #
-#   run_readme.sh README BUILD LIBDIR WORK LANGUAGE...        LANGUAGE: c, fortran
-#       BUILD   a build of the library: README's own commands to configure and build are taken as done there
-#       LIBDIR  folder of libraries in a prefix; README says lib
+#   run_readme.sh PAGE BUILD LIBDIR WORK LANGUAGE...        LANGUAGE: c, fortran
+#       BUILD   a build of the library: its commands to configure and build are taken as done there
+#       LIBDIR  folder of libraries in a prefix; the page says lib
 # CC, FC, CMAKE and PKG_CONFIG name the programs to use.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)

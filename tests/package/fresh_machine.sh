@@ -51,7 +51,7 @@ for host in lammps openmm; do
 done
 # The programs of README, by the lines of README, print what README says: in Python as soon as its packages are there.
 mkdir -p "$root/srv/try/tests/install"
-cp "$source/README.md" "$root/srv/try"
+cp "$source/README.md" "$source/docs/start.md" "$root/srv/try"
 cp "$source/tests/install/readme_programs.sh" "$root/srv/try"
 inside mkdir /srv/try/readme
 began=$SECONDS
@@ -66,7 +66,7 @@ inside sh -c 'apt-get install -y -qq --no-install-recommends gcc g++ gfortran li
     >"$work/$suite.apt.log" 2>&1 || { tail -n 20 "$work/$suite.apt.log"; exit 1; }
 
 cp -r "$source/tests/install/programs" "$source/tests/install/projects" "$root/srv/try/tests/install"
-inside sh -c "cd /srv/try/readme && ../readme_programs.sh ../README.md c fortran"
+inside sh -c "cd /srv/try/readme && ../readme_programs.sh ../start.md c fortran"
 echo "and in C and Fortran after $((SECONDS - began)) s"
 
 for language in c fortran; do
