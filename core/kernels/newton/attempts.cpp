@@ -64,15 +64,17 @@ void move_first(const Newton &x, unsigned chosen, const Packed &r, const Packed 
         store_first(move, chosen, MoveSink<true, false>{r, v, per_dt});
 }
 
-// The same to the lists, of all lanes.
-template <Same masses, bool to_v>
-static void move_listed(const Block &block, const Newton &x, const AtomLists &lists, double *r, double *v,
+// The same to the lists. Where only `some` lanes move, -0 is added to the others: it takes the sign from no zero.
+template <Same masses, bool to_v, bool some>
+static void move_listed(const Block &block, const Newton &x, const AtomLists &lists, mask which, double *r, double *v,
                         double per_dt) {
     const AtomLists at = lists;
-    const vec rate = splat(per_dt);
+    const vec rate = splat(per_dt), stay = splat(-0.0);
     vec3 before = {};
     for (long k = 0; k <= block.n; ++k) {
-        const vec3 after = x.tau[k] * x.b[k], m = times_w<masses>(x, k, after - before);
+        const vec3 after = x.tau[k] * x.b[k];
+        vec3 m = times_w<masses>(x, k, after - before);
+        if (some) m = {select(which, m.x, stay), select(which, m.y, stay), select(which, m.z, stay)};
         before = after;
         scatter<add_>(r, at, k, m);
         if (!to_v) continue;
@@ -240,13 +242,16 @@ bool listed_positions(const Block &block, const Lane *lane, const PositionsCall 
     const Source source = {&call.box, nullptr, base_of(call.r), at.atoms};
     Carried carried(block, x, call, source);
     const Outcome out = solve_positions(block, x, call, carried, block.in_use(), call.guess);
-    if (any(~out.converged) || any(coarse_moves(block, x, carried, out.converged))) return false;
-    note_worst(block, x, call, out.converged, out.error, tally);
-    choose(
-        [&](auto masses, auto to_v) {
-            move_listed<same_if(masses), to_v>(block, x, at, base_of(call.r), base_of(call.v), 1 / call.dt);
-        },
-        !x.w, call.v.x != nullptr);
+    const mask done = out.converged | out.untouched;
+    if (any(~done) || any(coarse_moves(block, x, carried, out.converged))) return false;
+    note_worst(block, x, call, done, out.error, tally);
+    if (any(out.converged))
+        choose(
+            [&](auto masses, auto to_v, auto some) {
+                move_listed<same_if(masses), to_v, some>(block, x, at, out.converged, base_of(call.r),
+                                                         base_of(call.v), 1 / call.dt);
+            },
+            !x.w, call.v.x != nullptr, any(out.untouched));
     if (call.virial) add_virial(block, x, out.converged, call.dt, tally);
     note_solved(block, x, call, out, tally);
     return true;

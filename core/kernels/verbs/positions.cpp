@@ -80,10 +80,10 @@ HOL_INLINE void load_positions(const SmallCall &call, const Place &place, const 
     carried.know_largest(largest);
 }
 
-// Moves the atoms of a block, but in lanes that are `untouched`, and writes its multipliers.
-template <bool uniform, class Place>
-HOL_INLINE void write_positions(const SmallCall &call, const Place &place, const Block &block, const Newton &x,
-                                const vec *atoms, mask untouched) {
+// Moves the atoms of a block. `some`: not in lanes that are `untouched`.
+template <bool uniform, bool some, class Place>
+HOL_INLINE void move_molecules(const SmallCall &call, const Place &place, const Newton &x, const vec *atoms,
+                               mask untouched) {
     constexpr int N = Place::bonds;
     double *const r = call.r, *const v = call.v;
     vec move[vectors_of<N>] = {}, moved[vectors_of<N>];
@@ -97,7 +97,7 @@ HOL_INLINE void write_positions(const SmallCall &call, const Place &place, const
         before = after;
     }
     // Not by zeros, which would take the sign from a number that is -0.
-    if (N <= 2 && any(untouched)) {
+    if (some && any(untouched)) {
         HOL_UNROLL
         for (int e = 0; e < 3 * (N + 1); ++e) move[e] = select(untouched, splat(-0.0), move[e]);
     }
@@ -119,8 +119,32 @@ HOL_INLINE void write_positions(const SmallCall &call, const Place &place, const
             store_molecules<write_>(place, moved, v);
         }
     }
+}
+
+// The same, out of the way: it would take the registers of blocks that move as a whole.
+template <bool uniform, class Place>
+HOL_NOINLINE void move_some_molecules(const SmallCall &call, const Place &place, const Newton &x, const vec *atoms,
+                                      mask untouched) {
+    move_molecules<uniform, true>(call, place, x, atoms, untouched);
+}
+
+// Moves the atoms of a block, but in lanes that are `untouched`, and writes its multipliers.
+template <bool uniform, class Place>
+HOL_INLINE void write_positions(const SmallCall &call, const Place &place, const Block &block, const Newton &x,
+                                const vec *atoms, mask untouched) {
+    constexpr bool few = Place::bonds <= 2 || !Place::in_row;
+    if (few || __builtin_expect(!any(untouched), 1)) {
+        move_molecules<uniform, few>(call, place, x, atoms, untouched);
+    } else if (bits(untouched) != all_lanes) {
+        const Newton copy = x;
+        move_some_molecules<uniform>(call, place, copy, atoms, untouched);
+    }
     if (call.lambda) store_multipliers(place, x.tau, splat(call.factor) / block.unit, call.lambda);
 }
+
+template <bool uniform, bool boxed, class Place>
+HOL_NOINLINE int64_t pass_over_right_ones(const PositionsCall &, const Unit &, const Block &, int64_t first,
+                                          int64_t end);
 
 // How many molecules the next block has; 0: none is left. A look at all loose ones beforehand took a tenth of the time.
 template <class Place>
@@ -136,9 +160,9 @@ HOL_INLINE int n_moved(const Outcome &out, int64_t n) {
     return __builtin_popcount(bits(out.converged & first_lanes(static_cast<int>(n))));
 }
 
-// The first attempt at a block. False if that is not enough for one of its lanes. Those of one or two bonds that are
-// right as they came have no multipliers, and stay where they are: so does a dimer that turns freely under velocity
-// Verlet, in which each step undoes what the one before it did to the length.
+// The first attempt at a block. False if that is not enough for one of its lanes. Molecules that are right as they came
+// have no multipliers, and stay where they are: so does a dimer that turns freely under velocity Verlet, in which each
+// step undoes what the one before it did to the length.
 template <bool uniform, int N>
 HOL_INLINE bool solve_molecules(const Block &block, Newton &x, const PositionsCall &call, Carried &carried,
                                 Outcome &out) {
@@ -150,8 +174,7 @@ HOL_INLINE bool solve_molecules(const Block &block, Newton &x, const PositionsCa
         out = solve_two_bonds<all, all>(x, carried, lanes);
     else
         out = iterate<all, all, N>(block, x, call, carried, lanes, false, false);
-    const mask done = N <= 2 ? out.converged | out.untouched : out.converged;
-    return !any(~done) && !any(coarse_moves<all, N>(block, x, carried, out.converged, coarse_part));
+    return !any(~(out.converged | out.untouched)) && !any(coarse_moves<all, N>(block, x, carried, out.converged, coarse_part));
 }
 
 // Single bonds, two blocks at a time: while one waits for its root and its quotient, the other is worked on. Ends
@@ -182,6 +205,8 @@ HOL_NOINLINE int64_t pairs_of_single_bonds(const PositionsCall &call, const Unit
         write_positions<uniform>(arrays, at_a, a.block, x_a, atoms_a, out_a.untouched);
         write_positions<uniform>(arrays, at_b, b.block, x_b, atoms_b, out_b.untouched);
         count_moved(tally, n_moved(out_a, W) + n_moved(out_b, W), 1);
+        if (__builtin_expect(bits(out_a.untouched & out_b.untouched) == all_lanes, 0))
+            first = pass_over_right_ones<uniform, boxed, Place>(call, unit, given, first + 2 * W, end) - 2 * W;
     }
     return first;
 }
@@ -215,6 +240,39 @@ HOL_NOINLINE int64_t positions_of_molecules(const PositionsCall &call, const Uni
         }
         write_positions<uniform>(arrays, place, block, x, atoms, out.untouched);
         count_moved(tally, n_moved(out, n), out.solves);
+        if (!Place::loose && __builtin_expect(bits(out.untouched) == all_lanes, 0) && !call.report)
+            first = pass_over_right_ones<uniform, boxed, Place>(call, unit, given, first + n, end) - n;
+    }
+    return first;
+}
+
+// Once all molecules of a block were right as they came, the next ones may be, too: then their lengths are all that is
+// looked at. Returns the first molecule of a block in which one is not.
+template <bool uniform, bool boxed, class Place>
+HOL_NOINLINE int64_t pass_over_right_ones(const PositionsCall &call, const Unit &unit, const Block &given,
+                                          int64_t first, int64_t end) {
+    constexpr int N = Place::bonds;
+    constexpr Same all = same_if(uniform);
+    const SmallCall arrays(call);
+    vec memory[small_scratch<N>];
+    Arena arena(reinterpret_cast<double *>(memory), N);
+    Newton x(N, arena);
+    SmallNewton<Place, uniform> newton(unit, given, x);
+    for (int64_t n; (n = Place::next(first, end)) > 0; first += n) {
+        const Place place(unit, first, n);
+        const Source r = place.source(arrays.r, call.box);
+        Carried carried(newton.block, x, call, r);
+        vec atoms[vectors_of<N>], worst = {}, sum = {};
+        load_positions<boxed>(arrays, place, x, atoms, carried);
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k)
+            sum = sum + dot(x.D[k], x.b[k]) + length_error<all>(x, k, false, x.D[k], worst);
+        // A reference that is no number is for the others to refuse.
+        if (any(~carried.within(largest_error<all>(x, worst, sum), splat(1.0)))) break;
+        if (!call.lambda) continue;
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) x.tau[k] = vec{};
+        store_multipliers(place, x.tau, splat(1.0), call.lambda);
     }
     return first;
 }
