@@ -75,11 +75,11 @@ int main() { OpenMM::System system; }' | c++ -x c++ - -lOpenMM -o /dev/null 2>/d
     esac
 }
 
-# The first Python that has these modules, the system's among them.
+# The first Python that has these modules, the system's among them; with its folder, as cmake wants it.
 python_with() { # python_with MODULE[, MODULE...]
     local name
     for name in python3 /usr/bin/python3; do
-        "$name" -c "import $*" >/dev/null 2>&1 && echo "$name" && return
+        "$name" -c "import $*" >/dev/null 2>&1 && command -v "$name" && return
     done
 }
 
@@ -103,7 +103,7 @@ debian_package() {
         qemu-x86_64) echo qemu-user ;;
         arm) echo g++-aarch64-linux-gnu qemu-user ;;
         clang++) echo clang libomp-dev ;;
-        flang) newest_package '^flang-[0-9]+$' ;;
+        flang) newest_package '^flang-[0-9]+$' flang ;;
         gnuplot) echo gnuplot-nox ;;
         benchmark) echo libbenchmark-dev ;;
         lapack) echo liblapack-dev ;;
@@ -111,7 +111,7 @@ debian_package() {
         numpy) echo python3-numpy ;;
         ase) echo python3-numpy python3-ase ;;
         venv) echo python3-numpy python3-venv ;;
-        openmm-python) echo python3-numpy python3-simtk libopenmm-plugins ;;
+        openmm-python) echo python3-numpy "$(newest_package '^python3-(simtk|openmm)$' python3-openmm)" libopenmm-plugins ;;
         ninja) echo ninja-build ;;
         openblas | mctc-lib) echo "lib$1-dev" ;;
         abidiff) echo abigail-tools ;;
@@ -123,10 +123,10 @@ debian_package() {
 }
 
 # The one with the highest number among the packages whose names match; without an index of packages, a guess.
-newest_package() {
+newest_package() { # newest_package REGULAR_EXPRESSION GUESS
     local name
     name=$(apt-cache --names-only search "$1" 2>/dev/null | cut -d ' ' -f 1 | sort -V | tail -n 1)
-    echo "${name:-flang}"
+    echo "${name:-$2}"
 }
 
 missing_of() {
