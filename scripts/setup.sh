@@ -76,11 +76,11 @@ int main() { OpenMM::System system; }' | c++ -x c++ - -lOpenMM -o /dev/null 2>/d
     esac
 }
 
-# The first Python that has these modules, the system's among them.
+# The first Python that has these modules, the system's among them; with its folder, as cmake wants it.
 python_with() { # python_with MODULE[, MODULE...]
     local name
     for name in python3 /usr/bin/python3; do
-        "$name" -c "import $*" >/dev/null 2>&1 && echo "$name" && return
+        "$name" -c "import $*" >/dev/null 2>&1 && command -v "$name" && return
     done
 }
 
@@ -104,7 +104,7 @@ debian_package() {
         qemu-x86_64) echo qemu-user ;;
         arm) echo g++-aarch64-linux-gnu qemu-user ;;
         clang++) echo clang libomp-dev ;;
-        flang) newest_package '^flang-[0-9]+$' ;;
+        flang) newest_package '^flang-[0-9]+$' flang ;;
         gnuplot) echo gnuplot-nox ;;
         benchmark) echo libbenchmark-dev ;;
         lapack) echo liblapack-dev ;;
@@ -113,7 +113,7 @@ debian_package() {
         ase) echo python3-numpy python3-ase ;;
         venv) echo python3-numpy python3-venv ;;
         setuptools) echo python3-setuptools python3-wheel python3-pip ;;
-        openmm-python) echo python3-numpy python3-simtk libopenmm-plugins ;;
+        openmm-python) echo python3-numpy "$(newest_package '^python3-(simtk|openmm)$' python3-openmm)" libopenmm-plugins ;;
         ninja) echo ninja-build ;;
         openblas | mctc-lib) echo "lib$1-dev" ;;
         abidiff) echo abigail-tools ;;
@@ -125,10 +125,10 @@ debian_package() {
 }
 
 # The one with the highest number among the packages whose names match; without an index of packages, a guess.
-newest_package() {
+newest_package() { # newest_package REGULAR_EXPRESSION GUESS
     local name
     name=$(apt-cache --names-only search "$1" 2>/dev/null | cut -d ' ' -f 1 | sort -V | tail -n 1)
-    echo "${name:-flang}"
+    echo "${name:-$2}"
 }
 
 missing_of() {

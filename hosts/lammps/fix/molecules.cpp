@@ -13,7 +13,7 @@ using namespace LAMMPS_NS;
 using namespace holonomic_lammps;
 
 Registry FixHolonomic::register_molecules(const std::vector<int> &which) {
-    const std::vector<Bond> bonds = selection_.select(groupbit, atoms_, which);
+    const std::vector<RigidBond> bonds = selection_.select(groupbit, atoms_, which);
     return Registry(world, bonds, selection_.select_bodies(groupbit, which), domain->dimension, size_to_divide());
 }
 

@@ -101,11 +101,11 @@ bool Selection::wants(int i) const {
     return false;
 }
 
-std::vector<Bond> Selection::select(int groupbit, std::vector<Belonging> &atoms, const std::vector<int> &which) {
+std::vector<RigidBond> Selection::select(int groupbit, std::vector<Belonging> &atoms, const std::vector<int> &which) {
     // Entries of a list that another command has changed may stand elsewhere now: they are selected anew.
     for (int i : which)
         if (atoms[i].topology != topology(i)) release_atom(i, atoms[i]);
-    std::vector<Bond> bonds = select_bonds(groupbit, atoms, which);
+    std::vector<RigidBond> bonds = select_bonds(groupbit, atoms, which);
     if (!angle_types_.empty()) select_angles(atoms, which, bonds);
     for (int i : which) atoms[i].topology = topology(i);
     return bonds;
@@ -143,7 +143,7 @@ std::vector<double> Selection::lengths_of_types() {
     return lengths;
 }
 
-std::vector<Bond> Selection::select_bonds(int groupbit, std::vector<Belonging> &atoms, const std::vector<int> &which) {
+std::vector<RigidBond> Selection::select_bonds(int groupbit, std::vector<Belonging> &atoms, const std::vector<int> &which) {
     const int n_ranks = size_of(world);
     Outgoing<Flags> notes(n_ranks);
     for (int i : which) {
@@ -166,7 +166,7 @@ std::vector<Bond> Selection::select_bonds(int groupbit, std::vector<Belonging> &
         });
 
     const std::vector<double> lengths = lengths_of_types();
-    std::vector<Bond> bonds;
+    std::vector<RigidBond> bonds;
     std::size_t next = 0;
     for (int i : which)
         for (int k = 0; k < atom->num_bond[i]; ++k) {
@@ -184,12 +184,12 @@ std::vector<Bond> Selection::select_bonds(int groupbit, std::vector<Belonging> &
 }
 
 /** Angles of the types wanted whose two bonds are rigid: the distance of their ends by the law of cosines. */
-void Selection::select_angles(std::vector<Belonging> &atoms, const std::vector<int> &which, std::vector<Bond> &bonds) {
+void Selection::select_angles(std::vector<Belonging> &atoms, const std::vector<int> &which, std::vector<RigidBond> &bonds) {
     const int n_ranks = size_of(world);
-    Outgoing<Bond> notes(n_ranks);
-    for (const Bond &bond : bonds) notes[bookkeeper(std::min(bond.from, bond.to), n_ranks)].push_back(bond);
+    Outgoing<RigidBond> notes(n_ranks);
+    for (const RigidBond &bond : bonds) notes[bookkeeper(std::min(bond.from, bond.to), n_ranks)].push_back(bond);
     std::map<Pair, double> known;
-    for (const Bond &bond : route(world, notes).items) known[pair_of(bond.from, bond.to)] = bond.length;
+    for (const RigidBond &bond : route(world, notes).items) known[pair_of(bond.from, bond.to)] = bond.length;
 
     std::vector<Ask> questions;
     for (int i : which) {

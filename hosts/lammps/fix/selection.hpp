@@ -43,7 +43,7 @@ public:
      * force acts along it, and gives their rigid distances. What is new must have both ends among them, on whatever
      * rank. Collective.
      */
-    std::vector<Bond> select(int groupbit, std::vector<Belonging> &atoms, const std::vector<int> &which);
+    std::vector<RigidBond> select(int groupbit, std::vector<Belonging> &atoms, const std::vector<int> &which);
 
     /** Of some atoms those of the group's molecules that have the atoms of a template, type by type in the order of
      * IDs. Collective. */
@@ -58,8 +58,8 @@ public:
 private:
     struct Ends;
     std::vector<double> lengths_of_types();
-    std::vector<Bond> select_bonds(int groupbit, std::vector<Belonging> &atoms, const std::vector<int> &which);
-    void select_angles(std::vector<Belonging> &atoms, const std::vector<int> &which, std::vector<Bond> &bonds);
+    std::vector<RigidBond> select_bonds(int groupbit, std::vector<Belonging> &atoms, const std::vector<int> &which);
+    void select_angles(std::vector<Belonging> &atoms, const std::vector<int> &which, std::vector<RigidBond> &bonds);
     bool wants(int i) const;
     std::uint32_t topology(int i) const;
     void release_atom(int i, Belonging &belonging);

@@ -15,7 +15,7 @@ namespace {
 /** A bond on its way to the bookkeeper of its molecule. */
 struct Entry {
     Tag molecule;
-    Bond bond;
+    RigidBond bond;
 };
 
 /** An atom of a body on its way to the bookkeeper of its molecule. */
@@ -50,7 +50,7 @@ void throw_together(MPI_Comm world, const std::string &message) {
     throw ErrorEverywhere(text);
 }
 
-Registry::Registry(MPI_Comm world, const std::vector<Bond> &bonds, const std::vector<BodyAtom> &bodies, int dimensions,
+Registry::Registry(MPI_Comm world, const std::vector<RigidBond> &bonds, const std::vector<BodyAtom> &bodies, int dimensions,
                    std::int64_t divide)
     : world_(world), n_ranks_(size_of(world)), divide_(divide) {
     std::vector<Node> nodes = collect(bonds, bodies);
@@ -81,26 +81,26 @@ void Registry::add_up() {
 }
 
 /** Nodes whose books are kept here, with all their bonds, each once. A body is tied to the atom that it is named by. */
-std::vector<Node> Registry::collect(const std::vector<Bond> &bonds, const std::vector<BodyAtom> &bodies) const {
-    Outgoing<Bond> outgoing(n_ranks_);
+std::vector<Node> Registry::collect(const std::vector<RigidBond> &bonds, const std::vector<BodyAtom> &bodies) const {
+    Outgoing<RigidBond> outgoing(n_ranks_);
     const auto tell = [&](Tag from, Tag to, double length) {
         outgoing[bookkeeper(from, n_ranks_)].push_back({from, to, length});
         outgoing[bookkeeper(to, n_ranks_)].push_back({to, from, length});
     };
-    for (const Bond &bond : bonds) tell(bond.from, bond.to, bond.length);
+    for (const RigidBond &bond : bonds) tell(bond.from, bond.to, bond.length);
     Outgoing<BodyAtom> of_bodies(n_ranks_);
     for (const BodyAtom &part : bodies) {
         of_bodies[bookkeeper(part.atom, n_ranks_)].push_back(part);
         if (part.atom != part.body) tell(part.body, part.atom, no_distance);
     }
-    std::vector<Bond> known = route(world_, outgoing).items;
-    std::sort(known.begin(), known.end(), [](const Bond &a, const Bond &b) {
+    std::vector<RigidBond> known = route(world_, outgoing).items;
+    std::sort(known.begin(), known.end(), [](const RigidBond &a, const RigidBond &b) {
         return a.from != b.from ? a.from < b.from : a.to != b.to ? a.to < b.to : a.length < b.length;
     });
     std::string trouble;
     std::vector<Node> nodes;
     for (std::size_t k = 0; k < known.size(); ++k) {
-        const Bond &bond = known[k];
+        const RigidBond &bond = known[k];
         if (bond.from == bond.to) trouble = "a bond of atom " + std::to_string(bond.from) + " with itself";
         if (k > 0 && known[k - 1].from == bond.from && known[k - 1].to == bond.to) {
             if (known[k - 1].length != no_distance && known[k - 1].length != bond.length)
@@ -144,7 +144,7 @@ void Registry::build(const std::vector<Node> &nodes, int dimensions) {
     Outgoing<Note> notes(n_ranks_);
     std::map<Shape, Shape> examined;
     for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
-        std::vector<Bond> bonds;
+        std::vector<RigidBond> bonds;
         for (; end < entries.size() && entries[end].molecule == entries[begin].molecule; ++end)
             bonds.push_back(entries[end].bond);
         std::vector<Tag> tags;

@@ -40,7 +40,7 @@ public:
      * Throws ErrorEverywhere if a bond is given with two lengths or joins an atom with itself, or an atom is in two
      * bodies.
      */
-    Registry(MPI_Comm world, const std::vector<Bond> &bonds, const std::vector<BodyAtom> &bodies = {},
+    Registry(MPI_Comm world, const std::vector<RigidBond> &bonds, const std::vector<BodyAtom> &bodies = {},
              int dimensions = 3, std::int64_t divide = 0);
 
     /** Of the molecules whose books are kept here, those of which atoms are missing. Collective.
@@ -70,7 +70,7 @@ public:
     bool knows(Tag molecule) const { return molecules_.count(molecule) != 0; }
 
 private:
-    std::vector<Node> collect(const std::vector<Bond> &bonds, const std::vector<BodyAtom> &bodies) const;
+    std::vector<Node> collect(const std::vector<RigidBond> &bonds, const std::vector<BodyAtom> &bodies) const;
     void build(const std::vector<Node> &nodes, int dimensions);
     void add_up();
     bool divides(const Shape &shape) const;

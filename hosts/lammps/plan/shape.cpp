@@ -106,9 +106,9 @@ bool Shape::operator<(const Shape &other) const {
            std::tie(other.n_atoms, other.pairs, other.lengths, other.bodies);
 }
 
-Shape shape_of(const std::vector<Bond> &bonds, const std::vector<BodyAtom> &body_atoms, std::vector<Tag> &tags) {
+Shape shape_of(const std::vector<RigidBond> &bonds, const std::vector<BodyAtom> &body_atoms, std::vector<Tag> &tags) {
     tags.clear();
-    for (const Bond &bond : bonds) {
+    for (const RigidBond &bond : bonds) {
         tags.push_back(bond.from);
         tags.push_back(bond.to);
     }
@@ -127,7 +127,7 @@ Shape shape_of(const std::vector<Bond> &bonds, const std::vector<BodyAtom> &body
         body.at.push_back({atom.at[0], atom.at[1], atom.at[2]});
     }
     for (const auto &entry : bodies) shape.bodies.push_back(entry.second);
-    for (const Bond &bond : bonds) {
+    for (const RigidBond &bond : bonds) {
         if (bond.length == no_distance) continue;
         shape.pairs.push_back({place(bond.from), place(bond.to)});
         shape.lengths.push_back(bond.length);

@@ -10,7 +10,7 @@
 namespace holonomic_lammps {
 
 /** A bond between two atoms, by their tags. */
-struct Bond {
+struct RigidBond {
     Tag from, to;
     double length;
 };
@@ -45,7 +45,7 @@ struct Shape {
 
 /** The shape of a molecule and the tags at its places: along a linear chain from its end of lower tag, else ascending.
  * Its atoms are those of the bonds. Atoms that distances hold on a line, three or more, are a body, too. */
-Shape shape_of(const std::vector<Bond> &bonds, const std::vector<BodyAtom> &bodies, std::vector<Tag> &tags);
+Shape shape_of(const std::vector<RigidBond> &bonds, const std::vector<BodyAtom> &bodies, std::vector<Tag> &tags);
 
 /** A shape travels as numbers. */
 void write(const Shape &shape, std::vector<double> &numbers);

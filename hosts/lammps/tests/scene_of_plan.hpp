@@ -32,7 +32,7 @@ inline int random_below(int n) {
 /** Chains, trees and rings, with tags in no order. */
 struct World {
     int n_atoms = 0;
-    std::vector<Bond> bonds;
+    std::vector<RigidBond> bonds;
     std::vector<int> molecule_of;  // by tag
     std::vector<int> owner;        // by tag
 
@@ -69,9 +69,9 @@ struct World {
 };
 
 /** Bonds as the owners of their atoms tell them: both, or that of the first. */
-inline std::vector<Bond> told(const World &world, bool both) {
-    std::vector<Bond> bonds;
-    for (const Bond &bond : world.bonds) {
+inline std::vector<RigidBond> told(const World &world, bool both) {
+    std::vector<RigidBond> bonds;
+    for (const RigidBond &bond : world.bonds) {
         if (world.owner[bond.from] == me) bonds.push_back(bond);
         if (both && world.owner[bond.to] == me) bonds.push_back({bond.to, bond.from, bond.length});
     }
@@ -83,7 +83,7 @@ inline Registry registry_of(const World &world, bool both) { return Registry(MPI
 /** Bonds of the residents' shapes, with their lengths, are the world's. */
 inline void check_bonds(const World &world, const Plan &plan) {
     std::map<std::pair<Tag, Tag>, double> known;
-    for (const Bond &bond : world.bonds) known[std::minmax(bond.from, bond.to)] = bond.length;
+    for (const RigidBond &bond : world.bonds) known[std::minmax(bond.from, bond.to)] = bond.length;
     int n_bonds = 0;
     for (const Resident &resident : plan.residents()) {
         const Shape &shape = plan.shapes()[resident.shape];

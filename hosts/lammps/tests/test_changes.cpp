@@ -11,7 +11,7 @@ namespace {
 std::set<Tag> change(World &world, int n_changes) {
     std::set<Tag> touched;
     for (int k = 0; k < n_changes; ++k) {
-        Bond &bond = world.bonds[random_below(static_cast<int>(world.bonds.size()))];
+        RigidBond &bond = world.bonds[random_below(static_cast<int>(world.bonds.size()))];
         touched.insert({bond.from, bond.to});
         if (k % 3 == 0) {
             bond = world.bonds.back();
@@ -20,7 +20,7 @@ std::set<Tag> change(World &world, int n_changes) {
             const Tag other = 1 + random_below(static_cast<int>(world.owner.size()) - 1);
             const Tag from = bond.from;
             if (other == from) continue;
-            const bool there = std::any_of(world.bonds.begin(), world.bonds.end(), [&](const Bond &b) {
+            const bool there = std::any_of(world.bonds.begin(), world.bonds.end(), [&](const RigidBond &b) {
                 return std::minmax(b.from, b.to) == std::minmax(from, other);
             });
             if (there) continue;
@@ -50,8 +50,8 @@ void test_changes() {
         std::set<Tag> which;
         for (std::size_t k = 0; k < tags.size(); ++k)
             if (gone.count(members[k].molecule) || touched.count(tags[k])) which.insert(tags[k]);
-        std::vector<Bond> bonds;
-        for (const Bond &bond : told(world, false))
+        std::vector<RigidBond> bonds;
+        for (const RigidBond &bond : told(world, false))
             if (which.count(bond.from)) bonds.push_back(bond);
         CHECK(!registry.replace(gone, Registry(MPI_COMM_WORLD, bonds)));
         const Registry anew = registry_of(world, true);

@@ -29,7 +29,7 @@ void test_registry() {
             if (molecule < 0) continue;
             const auto first = std::find(world.molecule_of.begin(), world.molecule_of.end(), molecule);
             CHECK(members[k].molecule == first - world.molecule_of.begin());
-            const auto has = [&](const Bond &b) { return b.from == tags[k] || b.to == tags[k]; };
+            const auto has = [&](const RigidBond &b) { return b.from == tags[k] || b.to == tags[k]; };
             CHECK(2 * members[k].taken == std::count_if(world.bonds.begin(), world.bonds.end(), has));
         }
     }
@@ -38,7 +38,7 @@ void test_registry() {
 /** A chain through all tags takes few rounds, and its places follow it. */
 void test_long_chain() {
     constexpr int n = 5000;
-    std::vector<Bond> bonds;
+    std::vector<RigidBond> bonds;
     for (Tag k = 0; k + 1 < n; ++k)
         if (k % n_ranks == me) bonds.push_back({1 + k * 1999 % n, 1 + (k + 1) * 1999 % n, 1.0});
     const Registry registry(MPI_COMM_WORLD, bonds);
@@ -81,7 +81,7 @@ void test_plan() {
 
 /** Molecules whose atoms are dealt evenly live on all ranks: none has more than twice its share. */
 void test_balance() {
-    std::vector<Bond> bonds;
+    std::vector<RigidBond> bonds;
     constexpr int n_chains = 400, n = 12;
     for (Tag c = 0; c < n_chains && me == 0; ++c)
         for (Tag k = 1; k < n; ++k) bonds.push_back({c * n + k, c * n + k + 1, 1.0});
@@ -101,7 +101,7 @@ void test_balance() {
 /** Four atoms on a line by their distances, tied to a planar body that is given: one molecule, and no distance within.
  */
 void test_bodies() {
-    std::vector<Bond> bonds;
+    std::vector<RigidBond> bonds;
     std::vector<BodyAtom> bodies;
     if (me == 0) bonds = {{1, 2, 1.0}, {2, 3, 1.25}, {3, 4, 1.5}, {1, 3, 2.25}, {2, 4, 2.75}};
     if (me == n_ranks - 1) {
@@ -140,7 +140,7 @@ void refuses(const char *words, Function function) {
 }
 
 void test_errors() {
-    std::vector<Bond> bonds;
+    std::vector<RigidBond> bonds;
     if (me == n_ranks - 1) bonds = {{7, 8, 1.0}, {8, 7, 1.25}};
     refuses("are to be at two distances", [&] { Registry(MPI_COMM_WORLD, bonds); });
     if (me == 0) bonds = {{5, 5, 1.0}};
@@ -162,7 +162,7 @@ void test_errors() {
 
 /** Errors of the library name tags. */
 void test_messages() {
-    std::vector<Bond> bonds;
+    std::vector<RigidBond> bonds;
     if (me == 0) bonds = {{40, 30, 1.0}, {30, 20, 1.0}};
     const Registry registry(MPI_COMM_WORLD, bonds);
     std::vector<Tag> tags;
