@@ -1,5 +1,6 @@
 #include "Algorithm.h"
 
+#include <cstdint>
 #include <cstring>
 #include <string>
 
