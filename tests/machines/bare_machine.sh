@@ -4,7 +4,8 @@
 #   make_machine SUITE ROOT [MIRROR]         SUITE: bookworm, trixie, noble, ...; MIRROR: if not given, from where this machine gets
 #                                            its own packages. Ends with 77 where that can't be had; needs root and mmdebstrap.
 #                                            The folder is removed when the script ends.
-#   inside COMMAND...                        runs there with an environment of its own (`inside NAME=VALUE COMMAND...`)
+#   inside COMMAND...                        runs there with an environment of its own (`inside NAME=VALUE COMMAND...`); a folder
+#                                            that $shared names is /srv/shared there
 
 leave_out() {
     echo "left out: $*"
@@ -37,12 +38,14 @@ make_machine() {
     cp /etc/resolv.conf "$root/etc/" 2>/dev/null || :
     cp /etc/apt/apt.conf.d/* "$root/etc/apt/apt.conf.d/" 2>/dev/null || :
     [ ! -d /etc/apt/auth.conf.d ] || cp -r /etc/apt/auth.conf.d "$root/etc/apt/"
+    mkdir -p "$root/srv/shared"
     inside true || leave_out "nothing can be mounted in a machine of its own"
 }
 
 # What is mounted there is seen by the command alone, so nothing is left that could be removed with the machine.
 inside() {
     unshare --mount sh -c '
-        mount --rbind /dev "$0/dev" && mount --bind /proc "$0/proc" && mount --rbind /sys "$0/sys" && exec chroot "$0" "$@"' "$root" \
+        mount --rbind /dev "$0/dev" && mount --bind /proc "$0/proc" && mount --rbind /sys "$0/sys" &&
+            { [ -z "$1" ] || mount --bind "$1" "$0/srv/shared"; } && shift && exec chroot "$0" "$@"' "$root" "${shared:-}" \
         /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C DEBIAN_FRONTEND=noninteractive "$@"
 }

@@ -20,8 +20,9 @@ git clone --quiet --no-hardlinks "$top" "$root/srv/holonomic" || exit 1
 ccache=()
 if [ -n "${FRESH_CCACHE:-}" ]; then
     inside sh -c 'apt-get update -qq && apt-get install -y -qq --no-install-recommends ccache' </dev/null >"$root.log" 2>&1 || exit 1
-    ccache=(CCACHE_DIR=/srv/ccache CCACHE_BASEDIR=/srv CCACHE_NOHASHDIR=1 CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache)
-    cp -r "$FRESH_CCACHE" "$root/srv/ccache"
+    ccache=(CCACHE_DIR=/srv/shared CCACHE_BASEDIR=/srv CCACHE_NOHASHDIR=1 CMAKE_C_COMPILER_LAUNCHER=ccache
+        CMAKE_CXX_COMPILER_LAUNCHER=ccache)
+    shared=$FRESH_CCACHE
 fi
 
 began=$SECONDS
