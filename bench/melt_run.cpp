@@ -1,5 +1,6 @@
 #include "melt_run.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "random.h"

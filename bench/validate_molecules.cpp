@@ -1,4 +1,5 @@
 // The same for the methods that take molecules of any topology, on all the kinds that are measured.
+#include <algorithm>
 #include <cmath>
 
 #include "errors.hpp"

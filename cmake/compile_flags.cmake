@@ -6,6 +6,7 @@ set(warnings "$<$<COMPILE_LANGUAGE:C,CXX>:-Wall;-Wextra;-Wpedantic;-Wconversion;
 add_library(holonomic_warnings INTERFACE)
 if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
     target_compile_options(holonomic_warnings INTERFACE "${warnings}")
+    set(HOLONOMIC_WARNINGS "${warnings}") # for folders whose targets do not all name it: tests, examples, benchmarks
     if(HOLONOMIC_WARNINGS_AS_ERRORS)
         # For targets that don't name holonomic_warnings, too: the whole tree, examples included.
         add_compile_options("${warnings}" "$<$<COMPILE_LANGUAGE:C,CXX>:-Werror>")

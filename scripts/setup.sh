@@ -4,10 +4,14 @@
 #   fail TEXT...            a line on standard error, and the end of the script
 #   need NAME...            installs what is missing of these, or says what to install and ends the script
 #   want NAME...            the same for what a script can do without: if it can't be had, it says so and goes on
+#   help_asked ARGUMENT...  whether the first is --help or -h; then the head comment of the script has been printed
 #   build_jobs              prints how many compilations to run at once
 #   few_instruction_sets    for HOLONOMIC_INSTRUCTION_SETS where a build is slow and what it is for needs no others: four
 #                           lanes and one, the same whatever processor this is
 #   own_instruction_sets    prints those that this processor runs, the one that it takes last; all where that is not known
+#   test_tools              what scripts/test wants beside what it needs
+#
+# HOLONOMIC_WITHOUT (environment): names that `want` goes without; for a look at what is done where they can't be had.
 
 say() {
     printf '== %s\n' "$*"
@@ -17,6 +21,13 @@ fail() {
     printf '%s: %s\n' "${0##*/}" "$*" >&2
     exit 1
 }
+
+help_asked() {
+    case ${1:-} in --help | -h) sed -n '2,/^[^#]/{s/^# \{0,1\}//p}' "$0" ;; *) return 1 ;; esac
+}
+
+# Without one of these ctest says which tests it skipped, and why.
+test_tools="clang++ valgrind abidiff mpfr qemu-x86_64 flang git gnuplot eigen benchmark lapack numpy venv setuptools ase"
 
 few_instruction_sets="avx2;scalar"
 
@@ -138,26 +149,37 @@ missing_of() {
     done
 }
 
+# As root, or by sudo. Another apt may be at work, as on a machine that has just been started: it is waited for, up to five
+# minutes. apt's own option is for dpkg's locks alone, not for that of the lists.
+apt_get() {
+    local as_root=() words status until=$((SECONDS + 300))
+    [ "$(id -u)" -eq 0 ] || as_root=(sudo)
+    while :; do
+        words=$("${as_root[@]}" env LC_ALL=C DEBIAN_FRONTEND=noninteractive \
+            apt-get -qq -o DPkg::Lock::Timeout=300 "$@" 2>&1 >/dev/null </dev/null)
+        status=$?
+        case $words in *'Could not get lock'*) [ "$SECONDS" -ge "$until" ] || { sleep 2; continue; } ;; esac
+        [ -z "$words" ] || printf '%s\n' "$words" >&2
+        return $status
+    done
+}
+
 # Installs the packages that bring the names given; fails where that is not possible.
 install_names() {
-    local name packages=() as_root=()
+    local name packages=()
     command -v apt-get >/dev/null || return 1
-    if [ "$(id -u)" -ne 0 ]; then
-        command -v sudo >/dev/null || return 1
-        as_root=(sudo)
+    [ "$(id -u)" -eq 0 ] || command -v sudo >/dev/null || return 1
+    if [ -z "${apt_lists_fresh:-}" ]; then
+        # Where one of several sources can't be reached, the others may have what is needed.
+        apt_get update
+        apt_lists_fresh=yes
     fi
     for name in "$@"; do
         # shellcheck disable=SC2207
         packages+=($(debian_package "$name"))
     done
     say "installing ${packages[*]} with apt-get"
-    if [ -z "${apt_lists_fresh:-}" ]; then
-        # Where one of several sources can't be reached, the others may have what is needed.
-        "${as_root[@]}" apt-get update -qq
-        apt_lists_fresh=yes
-    fi
-    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-        apt-get install -y -qq --no-install-recommends "${packages[@]}" >/dev/null || return 1
+    apt_get install -y --no-install-recommends "${packages[@]}" || return 1
 }
 
 need() {
@@ -179,6 +201,7 @@ Other systems have them under the same or similar names."
 want() {
     local name
     for name in $(missing_of "$@"); do
+        case " ${HOLONOMIC_WITHOUT:-} " in *" $name "*) say "going on without $name, as HOLONOMIC_WITHOUT says"; continue ;; esac
         # One by one: that one is not to be had must not cost the others.
         install_names "$name"
         present "$name" || say "going on without $name"

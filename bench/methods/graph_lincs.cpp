@@ -1,6 +1,7 @@
 // LINCS (Hess, Bekker, Berendsen and Fraaije 1997, J. Comput. Chem. 18, 1463) for molecules of any shape: a projection
 // along the old bond directions with the inverse of the coupling matrix expanded in powers up to `order`, then
 // `iterations` corrections for the lengthening by rotation, as in Hess 2008 (P-LINCS).
+#include <algorithm>
 #include <cmath>
 #include <memory>
 

@@ -2,6 +2,7 @@
 // et al. 2023): the exact Jacobian of the bonds' squared lengths, new bonds times old ones, factored in each iteration.
 // Quasi-Newton: the symmetric matrix of the old bonds alone, factored once per step, solved with until the lengths are
 // right. Both without exchanges, along a list of operations that is made once per kind.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 

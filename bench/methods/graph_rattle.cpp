@@ -1,6 +1,7 @@
 // Sweeps over the bonds of a molecule of any shape, one at a time, until all are within the tolerance: Ryckaert,
 // Ciccotti and Berendsen 1977 for positions, Andersen 1983 for velocities. As in Allen and Tildesley's programs a bond
 // neither of whose atoms moved in the last sweep is not looked at again.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 

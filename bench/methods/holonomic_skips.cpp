@@ -1,4 +1,6 @@
 // One thing less or more than the whole work of a level at a time.
+#include <algorithm>
+
 #include "holonomic_parts.hpp"
 
 namespace bench {

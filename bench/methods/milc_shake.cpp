@@ -1,6 +1,7 @@
 // MILC SHAKE (Bailey, Lowe and Sutton 2008, J. Comput. Phys. 227, 8949): the positions' non-linear equations are solved
 // by repeated tridiagonal solves with the matrix of the first iterate, 2 dt^2 D_k.(w_k b_k ..), D being the bonds after
 // the drift and b those before it.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 

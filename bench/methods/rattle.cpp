@@ -1,6 +1,7 @@
 // Sweeps over the bonds, one at a time, until all are within the tolerance: Ryckaert, Ciccotti and Berendsen 1977 for
 // positions, Andersen 1983 for velocities. A bond neither of whose atoms moved in the last sweep is not looked at
 // again, as in Allen and Tildesley's programs.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 

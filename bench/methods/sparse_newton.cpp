@@ -3,6 +3,7 @@
 // whatever its shape. Its pattern is symmetric but its values are not (new bonds times old ones), so L and U^T differ
 // in their values and share their pattern: an L D L^T in structure. For a chain numbered along itself there is no
 // fill-in.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 

@@ -1,5 +1,6 @@
 #include "tridiagonal_system.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 

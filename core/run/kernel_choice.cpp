@@ -43,7 +43,9 @@ struct Sets {
     const char *const wanted = std::getenv("HOLONOMIC_ISA");
 
     Sets() {
-        __builtin_cpu_init();
+#if defined(__x86_64__) || defined(__i386__)
+        __builtin_cpu_init();  // the library may be called before the compiler's own constructor has run
+#endif
 #define HOLONOMIC_CONSIDER(isa, runs_here) \
     if (runs_here) consider(isa::kernels, true);
         HOLONOMIC_KERNEL_SETS(HOLONOMIC_CONSIDER)

@@ -1,6 +1,8 @@
 #include "HolonomicConstraints.h"
 
+#include <map>
 #include <memory>
+#include <string>
 
 #include "Algorithm.h"
 #include "ReferenceConstraints.h"

@@ -5,44 +5,14 @@
 #   fresh_machine.sh PACKAGES SUITE WORK [MIRROR]
 #       PACKAGES  folder of the .deb files        SUITE   bookworm, noble, ...
 #       WORK      folder for the machine, a chroot; is removed at the end
-#       MIRROR    where debootstrap gets it; if not given, from where this machine gets its own packages
-# Needs root. Exit status 77: no debootstrap, no root, or the distribution can't be had.
+#       MIRROR    if not given, from where this machine gets its own packages
+# Needs root. Exit status 77: no mmdebstrap, no root, or the distribution can't be had.
 set -eu
 packages=$(cd "$1" && pwd) suite=$2 work=$3
 source=$(cd "$(dirname "$0")/../.." && pwd)
 
-leave_out() {
-    echo "left out: $*"
-    exit 77
-}
-[ "$(id -u)" -eq 0 ] || leave_out "only root can make a machine of its own"
-command -v debootstrap >/dev/null || leave_out "no debootstrap"
-mirror=${4:-$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' | head -n 1)}
-[ -n "$mirror" ] || leave_out "no mirror known"
-
-root=$work/$suite
-rm -rf "$root"
-mkdir -p "$work"
-trap 'rm -rf "$root"' EXIT
-how=(--variant=minbase --include=ca-certificates) script=()
-if [ ! -e "/usr/share/debootstrap/scripts/$suite" ]; then
-    # A release younger than this debootstrap: Ubuntu's are all made by one script.
-    script=(/usr/share/debootstrap/scripts/gutsy)
-    how+=(--components=main,universe)
-    if [ ! -e /usr/share/keyrings/ubuntu-archive-keyring.gpg ]; then
-        echo "there is no key here to check $suite with: it is taken as it comes"
-        how+=(--no-check-gpg)
-    fi
-fi
-echo "making $suite"
-debootstrap "${how[@]}" "$suite" "$root" "$mirror" "${script[@]}" >"$work/$suite.log" 2>&1 ||
-    { tail -n 5 "$work/$suite.log"; leave_out "$suite can't be had"; }
-inside() { chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C DEBIAN_FRONTEND=noninteractive "$@"; }
-
-# apt reaches its sources as it does outside.
-cp /etc/resolv.conf "$root/etc/" 2>/dev/null || :
-cp /etc/apt/apt.conf.d/* "$root/etc/apt/apt.conf.d/" 2>/dev/null || :
-[ ! -d /etc/apt/auth.conf.d ] || cp -r /etc/apt/auth.conf.d "$root/etc/apt/"
+. "$source/tests/machines/bare_machine.sh"
+make_machine "$suite" "$work/$suite" "${@:4}"
 mkdir -p "$root/srv/packages"
 cp "$packages"/*.deb "$root/srv/packages"
 for host in lammps openmm; do

@@ -5,6 +5,7 @@
  * differs.
  */
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <string>

@@ -4,6 +4,7 @@
 #include <cfloat>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 
 #include "bond_matrix.hpp"
 
@@ -273,6 +274,30 @@ chain_reference::chain_reference(const hostile_chain &c)
     const long double longest = *std::max_element(c.length.begin(), c.length.end());
     const long double steps = 4 * static_cast<long double>(n) * (1 + static_cast<long double>(c.mass[0]));
     for (std::size_t k = 0; k < n; ++k) underflow[k] = smallest * (underflow[k] + steps * (longest / c.length[k]));
+}
+
+bool is_decided(const hostile_chain &c, const exact_metric &metric)
+{
+    const long double rounding = solution_epsilon();
+    if (rounding < 1e-60L) return true;
+    if (!metric.regular) return false;
+    long double least = HUGE_VALL, largest = 0;
+    for (std::size_t k = 0; k < c.length.size(); ++k) {
+        const long double length = c.length[k], diagonal = length * length * (c.w[k] + c.w[k + 1]);
+        least = std::min(least, diagonal);
+        largest = std::max(largest, diagonal);
+    }
+    const long double growth = metric.condition * static_cast<long double>(c.n_bonds) * (largest / least);
+    return growth * rounding < 1e-3L * DBL_EPSILON;
+}
+
+int status_of_undecided(std::int64_t undecided, std::int64_t chains)
+{
+    if (undecided == 0) return 0;
+    std::printf("skipped: the reference has %.1Lg relative rounding, which does not decide about %lld of %lld chains. "
+                "With MPFR (libmpfr-dev) it decides about all.\n",
+                solution_epsilon(), static_cast<long long>(undecided), static_cast<long long>(chains));
+    return not_all_decided;
 }
 
 long double oracle_bound(std::int64_t n_bonds)

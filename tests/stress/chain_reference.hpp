@@ -8,6 +8,7 @@
 #ifndef STRESS_CHAIN_REFERENCE_HPP
 #define STRESS_CHAIN_REFERENCE_HPP
 
+#include <cstdint>
 #include <vector>
 
 #include "exact_metric.hpp"
@@ -58,6 +59,22 @@ private:
     long_vec inverse_;        // (Z^-1)_kk
     long_vec roundings_;      // [k]: what the joint between bonds k-1 and k adds to n_kl
 };
+
+/**
+ * Whether the reference's arithmetic decides about this chain: about all of them with MPFR, with 113 bits about those
+ * whose reference is right to a thousandth of a rounding of the library's. Elimination without exchange solves a system
+ * whose elements are off by some roundings u of this arithmetic, for Z is positive definite and tridiagonal. With Z~,
+ * which has ones on its diagonal, the solution is off by N u cond(Z~) of its largest component, and that is at most
+ * max Z_kk / min Z_kk of the smallest. If the condition number that 113 bits find is small in that sense, the true one
+ * is the same but for this error.
+ */
+bool is_decided(const hostile_chain &c, const exact_metric &metric);
+
+/** Exit status of a program that found nothing wrong, but could not decide about all its chains; ctest says so. */
+constexpr int not_all_decided = 77;
+
+/** A line that says how many of these it could not decide about, and why; 0 if it could about all of them. */
+int status_of_undecided(std::int64_t undecided, std::int64_t chains);
 
 /** K of tests/oracle/README.md. */
 long double oracle_bound(std::int64_t n_bonds);

@@ -33,6 +33,7 @@ enum quantity {
     ACCEPTED,               ///< no error for a chain that has none
     OUTPUTS_KEPT,           ///< outputs of a failing chain written to, or one not finite without an error
     SAME_BITS,              ///< alone, among others, in another layout and on several threads
+    UNDECIDED,              ///< the reference's arithmetic is not enough for this chain; for information
     N_QUANTITIES
 };
 
@@ -41,7 +42,8 @@ inline const char *quantity_name(int q)
     static const char *const names[N_QUANTITIES] = {
         "lambda",    "lambda, K",    "G",          "virial",     "ln det",       "Fixman force", "inverse",
         "condition", "error bound",  "lambda (v)", "velocities", "d.dv left",    "bond lengths", "bond by bond",
-        "shift (r)", "refused step", "refused",    "accepted",   "outputs kept", "same bits"};
+        "shift (r)", "refused step", "refused",    "accepted",   "outputs kept", "same bits",
+        "undecided"};
     return names[q];
 }
 
@@ -76,7 +78,7 @@ struct verdict {
 /** Quantities that are counted but promised nowhere. */
 inline bool for_information(int q)
 {
-    return q == LAMBDA_NEAR || q == POSITION_LENGTH_LOCAL || q == REFUSED_STEP;
+    return q == LAMBDA_NEAR || q == POSITION_LENGTH_LOCAL || q == REFUSED_STEP || q == UNDECIDED;
 }
 
 inline bool verdict::exceeded() const

@@ -1,6 +1,8 @@
 // Iterative refinement of multipliers against exact residuals: which corrections are good, and when to stop.
 #pragma once
 
+#include <cstdint>
+
 #include "core/kernels/arithmetic/width.hpp"
 
 namespace holonomic::HOL_ISA::graph {

@@ -1,5 +1,7 @@
 // The tridiagonal matrix 1 - gamma by plain products, theory (38)-(41), and what rounding has done to them. Elimination
 // begins at both ends and meets in the middle: two recursions that do not wait for each other.
+#include <cstddef>
+
 #include "core/kernels/arithmetic/exact.hpp"
 #include "core/kernels/isa/lanes.hpp"
 #include "core/kernels/verbs/verbs.hpp"

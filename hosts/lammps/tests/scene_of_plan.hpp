@@ -4,6 +4,7 @@
 #define HOLONOMIC_LAMMPS_TESTS_SCENE_OF_PLAN_HPP
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <map>
 #include <numeric>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Unit tests of what is found and planned anew where bonds change, without LAMMPS.
+#include <cstdint>
 #include <set>
 
 #include "plan/blocks.hpp"

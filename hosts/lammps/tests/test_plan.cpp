@@ -2,6 +2,7 @@
 // Unit tests of the plan, without LAMMPS: to be run with any number of ranks.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <numeric>

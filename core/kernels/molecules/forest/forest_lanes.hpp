@@ -2,6 +2,8 @@
 // working arrays.
 #pragma once
 
+#include <cstddef>
+
 #include "core/kernels/molecules/forest/forest.hpp"
 #include "core/kernels/molecules/molecules.hpp"
 

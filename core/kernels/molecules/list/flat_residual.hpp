@@ -3,6 +3,8 @@
 // same.
 #pragma once
 
+#include <cstddef>
+
 #include "core/kernels/molecules/list/flat_linear.hpp"
 #include "core/kernels/molecules/twice.hpp"
 
