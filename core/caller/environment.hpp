@@ -1,0 +1,116 @@
+// The caller's floating-point environment: which exceptions trap, how results are rounded, whether denormal numbers are
+// taken for zero, and which exceptions there have been. The library calculates in the default one, where nothing traps:
+// lanes without a molecule may divide by zero.
+#pragma once
+
+#if defined(__x86_64__)
+#include <xmmintrin.h>
+#endif
+#if defined(__aarch64__)
+#include <cstdint>
+#else
+#include <cfenv>
+#endif
+
+namespace holonomic {
+
+#if defined(__x86_64__)
+
+using Environment = unsigned;  // MXCSR
+
+constexpr Environment default_environment = 0x1f80, flags_of_environment = 0x3f;
+inline Environment environment() { return _mm_getcsr(); }
+inline void set_environment(Environment to) { _mm_setcsr(to); }
+inline void set_default_environment() { _mm_setcsr(default_environment); }
+inline bool is_default(Environment e) { return (e & ~flags_of_environment) == default_environment; }
+inline bool differ(Environment a, Environment b) { return a != b; }
+
+#elif defined(__aarch64__)
+
+struct Environment {
+    std::uint64_t control, flags;  // FPCR, FPSR
+};
+
+inline Environment environment() {
+    Environment e;
+    __asm__ volatile("mrs %0, fpcr\n\tmrs %1, fpsr" : "=r"(e.control), "=r"(e.flags));
+    return e;
+}
+inline void set_environment(const Environment &to) {
+    __asm__ volatile("msr fpcr, %0\n\tmsr fpsr, %1" : : "r"(to.control), "r"(to.flags));
+}
+inline void set_default_environment() { set_environment({0, 0}); }
+inline bool is_default(const Environment &e) { return e.control == 0; }
+inline bool differ(const Environment &a, const Environment &b) { return a.control != b.control || a.flags != b.flags; }
+
+#else
+
+using Environment = std::fenv_t;
+
+inline Environment environment() {
+    Environment e;
+    std::fegetenv(&e);
+    return e;
+}
+inline void set_environment(const Environment &to) { std::fesetenv(&to); }
+inline void set_default_environment() { std::fesetenv(FE_DFL_ENV); }
+inline bool is_default(const Environment &) { return false; }  // nobody can look into it
+inline bool differ(const Environment &, const Environment &) { return true; }
+
+#endif
+
+// While it lives, this thread calculates in the default environment. Then it has again what it had, the exceptions
+// that there have been included, and nothing traps on the way.
+class DefaultEnvironment {
+public:
+    DefaultEnvironment() : before_(environment()) {
+        if (!is_default(before_)) begin();
+    }
+    ~DefaultEnvironment() {
+        if (differ(environment(), before_)) end();
+    }
+    DefaultEnvironment(const DefaultEnvironment &) = delete;
+    DefaultEnvironment &operator=(const DefaultEnvironment &) = delete;
+
+private:
+    friend class CallersEnvironment;
+    void begin() const noexcept;
+    void end() const noexcept;
+
+    const Environment before_;
+};
+
+// While it lives, this thread has what it had before its DefaultEnvironment: threads that start meanwhile inherit that,
+// and keep it for the caller.
+class CallersEnvironment {
+public:
+    CallersEnvironment() noexcept;
+    ~CallersEnvironment();
+    CallersEnvironment(const CallersEnvironment &) = delete;
+    CallersEnvironment &operator=(const CallersEnvironment &) = delete;
+
+private:
+    const DefaultEnvironment *const inside_;
+};
+
+// The default environment of long double, too: on x86-64 another unit calculates with these, x87, and to look at its
+// environment takes as long as a call on one bond.
+#if defined(__x86_64__)
+class LongDoubleEnvironment {
+public:
+    LongDoubleEnvironment() {
+        std::fegetenv(&before_);
+        std::fesetenv(FE_DFL_ENV);
+    }
+    ~LongDoubleEnvironment() { std::fesetenv(&before_); }
+    LongDoubleEnvironment(const LongDoubleEnvironment &) = delete;
+    LongDoubleEnvironment &operator=(const LongDoubleEnvironment &) = delete;
+
+private:
+    std::fenv_t before_;
+};
+#else
+using LongDoubleEnvironment = DefaultEnvironment;
+#endif
+
+}  // namespace holonomic
