@@ -13,20 +13,25 @@ namespace holonomic {
 
 #if defined(__x86_64__)
 
-using Environment = unsigned;  // MXCSR
+// Doubles are calculated with MXCSR, and the C library rounds what it prints as x87's control word says.
+struct Environment {
+    unsigned mxcsr;
+    unsigned short x87;
+};
 
-constexpr Environment default_environment = 0x1f80, flags_of_environment = 0x3f;
-
-// _mm_getcsr is no barrier: compilers move it. To write takes a quarter of the time of a look.
+// _mm_getcsr is no barrier: compilers move it. Writing takes a quarter of the time of this look.
 inline Environment environment() {
     Environment e;
-    __asm__ volatile("stmxcsr %0" : "=m"(e));
+    __asm__ volatile("stmxcsr %0\n\tfnstcw %1" : "=m"(e.mxcsr), "=m"(e.x87));
     return e;
 }
-inline void set_environment(Environment to) { __asm__ volatile("ldmxcsr %0" : : "m"(to) : "memory"); }
-inline void set_default_environment() { set_environment(default_environment); }
-inline void set_flags(Environment to) { set_environment(to); }
-inline bool is_default(Environment e) { return (e & ~flags_of_environment) == default_environment; }
+inline void set_flags(const Environment &to) { __asm__ volatile("ldmxcsr %0" : : "m"(to.mxcsr) : "memory"); }
+inline void set_environment(const Environment &to) {
+    __asm__ volatile("fldcw %0" : : "m"(to.x87) : "memory");
+    set_flags(to);
+}
+inline void set_default_environment() { set_environment({0x1f80, 0x37f}); }
+inline bool is_default(const Environment &e) { return (e.mxcsr & ~0x3fU) == 0x1f80 && e.x87 == 0x37f; }
 
 #elif defined(__aarch64__)
 
@@ -100,8 +105,8 @@ private:
     const DefaultEnvironment *const inside_;
 };
 
-// The default environment of long double, too: on x86-64 another unit calculates with these, x87, and to look at its
-// environment takes as long as a call on one bond.
+// The same where long double is used. On x86-64 x87 calculates with these; to look at what exceptions it has seen, and to
+// forget new ones, takes as long as a call on one bond.
 #if defined(__x86_64__)
 class LongDoubleEnvironment {
 public:
