@@ -105,8 +105,8 @@ private:
     const DefaultEnvironment *const inside_;
 };
 
-// The same where long double is used. On x86-64 x87 calculates with these; to look at what exceptions it has seen, and to
-// forget new ones, takes as long as a call on one bond.
+// The same where long double is used. On x86-64 x87 calculates with these; to look at what exceptions it has seen, and
+// to forget new ones, takes as long as a call on one bond.
 #if defined(__x86_64__)
 class LongDoubleEnvironment {
 public:

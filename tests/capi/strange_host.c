@@ -18,14 +18,14 @@ typedef struct environment {
 } environment;
 
 enum {
-    TRAPS = 1 | 4 | 8,   /* invalid, zero, overflow: their bits among the flags, and as masks */
-    FLAGS = 0x3f,        /* all six of them */
-    INEXACT = 0x20,      /* which a program has always seen, soon after its start */
-    UPWARD = 2,          /* the rounding */
-    FLUSHED = 0x8040,    /* denormal results and operands, of MXCSR */
-    FULL_LENGTH = 0x300, /* of x87's results */
+    TRAPS = 1 | 4 | 8,     /* invalid, zero, overflow: their bits among the flags, and as masks */
+    FLAGS = 0x3f,          /* all six of them */
+    INEXACT = 0x20,        /* which a program has always seen, soon after its start */
+    UPWARD = 2,            /* the rounding */
+    FLUSHED = 0x8040,      /* denormal results and operands, of MXCSR */
+    FULL_LENGTH = 0x300,   /* of x87's results */
     NOTHING_TRAPS = 0x37f, /* its control word from the beginning */
-    MASKS_AT = 7,        /* in MXCSR */
+    MASKS_AT = 7,          /* in MXCSR */
     ROUNDING_AT = 13,
     X87_ROUNDING_AT = 10
 };
@@ -106,30 +106,28 @@ static void leave(passage p)
     abort();
 }
 
-#define FUNCTION(type, name, parameters, arguments)                                         \
-    type name parameters                                                                    \
-    {                                                                                       \
-        static void *found;                                                                 \
-        type(*next) parameters;                                                             \
-        if (!__atomic_load_n(&found, __ATOMIC_RELAXED))                                     \
-            __atomic_store_n(&found, find(#name), __ATOMIC_RELAXED);                        \
-        memcpy(&next, &found, sizeof next);                                                 \
-        const passage p = enter(#name);                                                     \
-        type const result = next arguments;                                                 \
-        leave(p);                                                                           \
-        return result;                                                                      \
+#define FUNCTION(type, name, parameters, arguments)                                                              \
+    type name parameters                                                                                         \
+    {                                                                                                            \
+        static void *found;                                                                                      \
+        type(*next) parameters;                                                                                  \
+        if (!__atomic_load_n(&found, __ATOMIC_RELAXED)) __atomic_store_n(&found, find(#name), __ATOMIC_RELAXED); \
+        memcpy(&next, &found, sizeof next);                                                                      \
+        const passage p = enter(#name);                                                                          \
+        type const result = next arguments;                                                                      \
+        leave(p);                                                                                                \
+        return result;                                                                                           \
     }
-#define PROCEDURE(name, parameters, arguments)                                              \
-    void name parameters                                                                    \
-    {                                                                                       \
-        static void *found;                                                                 \
-        void(*next) parameters;                                                             \
-        if (!__atomic_load_n(&found, __ATOMIC_RELAXED))                                     \
-            __atomic_store_n(&found, find(#name), __ATOMIC_RELAXED);                        \
-        memcpy(&next, &found, sizeof next);                                                 \
-        const passage p = enter(#name);                                                     \
-        next arguments;                                                                     \
-        leave(p);                                                                           \
+#define PROCEDURE(name, parameters, arguments)                                                                   \
+    void name parameters                                                                                         \
+    {                                                                                                            \
+        static void *found;                                                                                      \
+        void(*next) parameters;                                                                                  \
+        if (!__atomic_load_n(&found, __ATOMIC_RELAXED)) __atomic_store_n(&found, find(#name), __ATOMIC_RELAXED); \
+        memcpy(&next, &found, sizeof next);                                                                      \
+        const passage p = enter(#name);                                                                          \
+        next arguments;                                                                                          \
+        leave(p);                                                                                                \
     }
 
 #include "interposed_functions.h"
