@@ -1,10 +1,12 @@
-// The boundary between C callers and the core: no exception crosses it, every failure leaves a message.
+// The boundary between C callers and the core: no exception crosses it, every failure leaves a message, and the core
+// calculates in the default floating-point environment, whatever the caller's is.
 #ifndef HOLONOMIC_CAPI_BOUNDARY_HPP
 #define HOLONOMIC_CAPI_BOUNDARY_HPP
 
 #include <exception>
 #include <new>
 
+#include "core/caller/environment.hpp"
 #include "core/error.hpp"
 #include "core/molecules/chains.hpp"
 #include "holonomic.h"
@@ -26,8 +28,11 @@ inline void need(const void *p, const char *name) {
 
 // `function` is the name of the caller's, with which messages begin.
 // Inlined by force: a call on one short chain would spend a tenth of its time in handing down its arguments once more.
-template <class Body>
+// Arithmetic: LongDoubleEnvironment for a body that calculates with long double. Functions that are not guarded
+// calculate nothing.
+template <class Arithmetic = DefaultEnvironment, class Body>
 __attribute__((always_inline)) inline int guarded(const char *function, const Body &body) noexcept {
+    const Arithmetic arithmetic;
     try {
         body();
         return HOL_OK;

@@ -4,6 +4,7 @@
 
 using holonomic::Checks;
 using holonomic::guarded;
+using holonomic::LongDoubleEnvironment;
 using holonomic::make_error;
 using holonomic::need;
 using holonomic::Status;
@@ -55,7 +56,7 @@ int hol_chains_add_block(hol_chains *chains, int64_t n_chains, int64_t n_bonds, 
 }
 
 int hol_chains_add_bonds(hol_chains *chains, int64_t n_bonds, const int64_t *pairs, const double *lengths) {
-    return guarded(__func__, [&] {
+    return guarded<LongDoubleEnvironment>(__func__, [&] {
         need(chains, "chains");
         need(pairs, "pairs");
         need(lengths, "lengths");
@@ -65,7 +66,7 @@ int hol_chains_add_bonds(hol_chains *chains, int64_t n_bonds, const int64_t *pai
 
 int hol_chains_add_molecules(hol_chains *chains, int64_t n_molecules, int64_t n_atoms, int64_t first_atom,
                              int64_t n_bonds, const int64_t *pairs, const double *lengths) {
-    return guarded(__func__, [&] {
+    return guarded<LongDoubleEnvironment>(__func__, [&] {
         need(chains, "chains");
         need(pairs, "pairs");
         need(lengths, "lengths");

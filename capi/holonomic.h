@@ -32,7 +32,10 @@
  *   location are those of the first bad molecule. A fixed atom of several molecules gets the sum over those that are
  *   not bad.
  * - An output may overlap another argument only where its description says so.
- * - The library never prints, exits, aborts or throws, and changes no floating-point environment.
+ * - The library never prints, exits, aborts or throws.
+ * - Floating-point environment: whatever the caller has set (exceptions that trap, as by gfortran's -ffpe-trap; another
+ *   rounding; denormal numbers flushed to zero), each function calculates in the default environment of the processor,
+ *   in all its threads, gives the same bits, and leaves the caller's as it was, sticky exception flags included.
  * - Threads: any number of them may use a handle at once that none changes (create, add, set, destroy). Scratch memory
  *   belongs to the calling thread; after its first call with molecules of that size nothing is allocated, but by
  *   hol_impose and for a long chain whose positions need a second attempt (light atoms, taut between heavy ones).

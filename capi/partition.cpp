@@ -4,7 +4,7 @@
 
 int hol_partition_function(int64_t n_bonds, const double *masses, double *log_he, double *log_rigid,
                            double *log_volume) {
-    return holonomic::guarded(__func__, [&] {
+    return holonomic::guarded<holonomic::LongDoubleEnvironment>(__func__, [&] {
         if (!log_he && !log_rigid && !log_volume)
             throw holonomic::make_error(holonomic::Status::null, "log_he, log_rigid and log_volume are all NULL");
         const holonomic::PartitionAsked asked{log_he || log_rigid, log_volume != nullptr};

@@ -94,8 +94,9 @@ int narrow_side(const Box &box, double longest_bond, double *width) {
     if (box.shape == Box::none || longest_bond == 0) return -1;
     for (int i = 0; i < 3; ++i) {
         const double gradient = gradient_along(box, i);
+        if (gradient * 2 * longest_bond <= 1 + 1e-12) continue;
         *width = 1 / gradient;
-        if (gradient * 2 * longest_bond > 1 + 1e-12) return i;
+        return i;
     }
     return -1;
 }

@@ -29,7 +29,10 @@ BodyKind kind_of(const Body &body, const Shape &shape) {
         kind.per_moment[1 + p] = body.inverse_mass / kind.square[p];
     }
     for (int p = 0; p < 3; ++p)
-        for (int q = 0; q < 3; ++q) kind.part[p][q] = p == q ? 0.5 : kind.square[p] / (kind.square[p] + kind.square[q]);
+        for (int q = 0; q < 3; ++q) {
+            const double both = kind.square[p] + kind.square[q];
+            kind.part[p][q] = p == q || both == 0 ? 0.5 : kind.square[p] / both;
+        }
     for (int i = 0; i < 3; ++i) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         kind.skew[i] = kind.part[j][k] - kind.part[k][j];

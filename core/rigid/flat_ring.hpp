@@ -42,10 +42,10 @@ private:
 
     double tolerance() const { return 16 * std::numeric_limits<double>::epsilon() * static_cast<double>(ring_.size()); }
 
-    // By how much a way from i over j to k turns at j; NaN if it is not held.
+    // By how much a way from i over j to k turns at j; infinity if it is not held.
     double turn(Atom i, Atom j, Atom k) const {
         const double a = graph_.square(i, j), b = graph_.square(j, k), c = graph_.square(i, k);
-        if (!(a > 0 && b > 0 && c > 0)) return std::numeric_limits<double>::quiet_NaN();
+        if (!(a > 0 && b > 0 && c > 0)) return std::numeric_limits<double>::infinity();
         return std::acos(std::max(-1.0, std::min(1.0, (c - a - b) / (2 * std::sqrt(a * b)))));
     }
 
@@ -65,7 +65,7 @@ private:
         graph_.for_partners(last, [&](Atom atom) {
             if (found || atom < ring_[0] || std::find(ring_.begin(), ring_.end(), atom) != ring_.end()) return;
             const double next = turned + turn(before, last, atom);
-            if (!(next <= circle + tolerance())) return;
+            if (next > circle + tolerance()) return;
             ring_.push_back(atom);
             found = extend(next);
             if (!found) ring_.pop_back();

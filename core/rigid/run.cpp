@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <new>
 
+#include "core/caller/environment.hpp"
 #include "core/rigid/blocks.hpp"
 #include "core/run/kernel_choice.hpp"
 #include "core/run/outcomes.hpp"
@@ -197,9 +198,11 @@ Found run(const Chains &chains, const Work &work) {
     } else {
 #ifdef _OPENMP
         std::atomic<std::int64_t> next{0};
+        const CallersEnvironment outside;
         // A thread that gets no memory leaves its share to the others; the calling thread has its own.
 #pragma omp parallel num_threads(n_threads)
         {
+            const DefaultEnvironment own_environment;
             char *const memory = static_cast<char *>(thread_memory(Keep::rigid, all.bytes));
             Block one(chains, work, memory, outcomes);
             for (std::int64_t j; memory && (j = next.fetch_add(1)) < n_blocks;) parts[j] = one.run(j * block);

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <new>
 
+#include "core/caller/environment.hpp"
 #include "core/kernels/molecules/forest/forest.hpp"
 #include "core/kernels/molecules/list/flat_list.hpp"
 #include "core/run/lane.hpp"
@@ -50,8 +51,10 @@ void share(int n_threads, std::int64_t scratch_bytes, std::int64_t store_bytes, 
         shares[i].end = n * (i + 1) / n_shares;
         shares[i].next.store(shares[i].first, std::memory_order_relaxed);
     }
+    const CallersEnvironment outside;
 #pragma omp parallel num_threads(n_threads)
     {
+        const DefaultEnvironment own_environment;
         double *const scratch = scratch_memory(scratch_bytes);
         const int own = static_cast<int>(static_cast<std::int64_t>(omp_get_thread_num()) * n_shares / n_threads);
         for (int i = 0; scratch && (store_bytes == 0 || store_memory(store_bytes)) && i < n_shares; ++i) {

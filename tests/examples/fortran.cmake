@@ -133,3 +133,15 @@ example_test(ring_fixman fortran ring_fixman molecules=200 moves=300 --
     "what the potential does to neighbours:" 1 > 5)
 example_refuses(ring_fixman.notices_the_wrong_sign fortran "the sampling is not what it should be"
     ring_fixman molecules=200 moves=150 factor=-1)
+
+# -------------------------------------------------------------------------------------------------------- with traps
+# As many an old code is run: an invalid operation, a division by zero or an overflow ends the program, in the library, too.
+if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
+    example_folder(fortran KIND traps FLAGS "-ffpe-trap=invalid,zero,overflow")
+    example_test(alkane_md.traps fortran_traps alkane_md file=${molecule} steps=500 -- "largest bond error" 1 < 2e-14)
+    example_test(melt_md.traps fortran_traps melt_md chains=16 melt=100 steps=100 -- "largest bond error" 1 < 1e-13)
+    example_test(legacy_fixed.traps fortran_traps legacy_fixed -- "LARGEST BOND ERROR" 1 < 5e-14)
+    example_test(water_md.traps fortran_traps water_md molecules=64 melt=20 steps=50 -- "largest bond error" 1 < 1e-13)
+    example_test(tip4p_md.traps fortran_traps tip4p_md molecules=64 melt=20 steps=50 -- "largest shape error" 1 < 1e-13)
+    example_test(ring_fixman.traps fortran_traps ring_fixman molecules=200 moves=300 -- "200 rings of" 1 = 6)
+endif()

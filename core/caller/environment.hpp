@@ -1,0 +1,128 @@
+// The caller's floating-point environment: which exceptions trap, how results are rounded, whether denormal numbers are
+// taken for zero, and which exceptions there have been. The library calculates in the default one, where nothing traps:
+// lanes without a molecule may divide by zero.
+#pragma once
+
+#if defined(__aarch64__)
+#include <cstdint>
+#else
+#include <cfenv>
+#endif
+
+namespace holonomic {
+
+#if defined(__x86_64__)
+
+// Doubles are calculated with MXCSR, and the C library rounds what it prints as x87's control word says.
+struct Environment {
+    unsigned mxcsr;
+    unsigned short x87;
+};
+
+// _mm_getcsr is no barrier: compilers move it. Writing takes a quarter of the time of this look.
+inline Environment environment() {
+    Environment e;
+    __asm__ volatile("stmxcsr %0\n\tfnstcw %1" : "=m"(e.mxcsr), "=m"(e.x87));
+    return e;
+}
+inline void set_flags(const Environment &to) { __asm__ volatile("ldmxcsr %0" : : "m"(to.mxcsr) : "memory"); }
+inline void set_environment(const Environment &to) {
+    __asm__ volatile("fldcw %0" : : "m"(to.x87) : "memory");
+    set_flags(to);
+}
+inline void set_default_environment() { set_environment({0x1f80, 0x37f}); }
+inline bool is_default(const Environment &e) { return (e.mxcsr & ~0x3fU) == 0x1f80 && e.x87 == 0x37f; }
+
+#elif defined(__aarch64__)
+
+struct Environment {
+    std::uint64_t control, flags;  // FPCR, FPSR
+};
+
+inline Environment environment() {
+    Environment e;
+    __asm__ volatile("mrs %0, fpcr\n\tmrs %1, fpsr" : "=r"(e.control), "=r"(e.flags));
+    return e;
+}
+inline void set_flags(const Environment &to) { __asm__ volatile("msr fpsr, %0" : : "r"(to.flags) : "memory"); }
+inline void set_environment(const Environment &to) {
+    __asm__ volatile("msr fpcr, %0" : : "r"(to.control) : "memory");
+    set_flags(to);
+}
+inline void set_default_environment() { set_environment({0, 0}); }
+inline bool is_default(const Environment &e) { return e.control == 0; }
+
+#else
+
+using Environment = std::fenv_t;
+
+inline Environment environment() {
+    Environment e;
+    std::fegetenv(&e);
+    return e;
+}
+inline void set_environment(const Environment &to) { std::fesetenv(&to); }
+inline void set_default_environment() { std::fesetenv(FE_DFL_ENV); }
+inline void set_flags(const Environment &to) { set_environment(to); }
+inline bool is_default(const Environment &) { return false; }  // nobody can look into it
+
+#endif
+
+// While it lives, this thread calculates in the default environment. Then it has again what it had, the exceptions
+// that there have been included, and nothing traps on the way.
+class DefaultEnvironment {
+public:
+    DefaultEnvironment() : before_(environment()) {
+        if (!is_default(before_)) begin();
+    }
+    ~DefaultEnvironment() {
+        if (is_default(before_))
+            set_flags(before_);
+        else
+            end();
+    }
+    DefaultEnvironment(const DefaultEnvironment &) = delete;
+    DefaultEnvironment &operator=(const DefaultEnvironment &) = delete;
+
+private:
+    friend class CallersEnvironment;
+    void begin() const noexcept;
+    void end() const noexcept;
+
+    const Environment before_;
+};
+
+// While it lives, this thread has what it had before its DefaultEnvironment: threads that start meanwhile inherit that,
+// and keep it for the caller.
+class CallersEnvironment {
+public:
+    CallersEnvironment() noexcept;
+    ~CallersEnvironment();
+    CallersEnvironment(const CallersEnvironment &) = delete;
+    CallersEnvironment &operator=(const CallersEnvironment &) = delete;
+
+private:
+    const DefaultEnvironment *const inside_;
+};
+
+// The same where long double is used. On x86-64 x87 calculates with these; to look at what exceptions it has seen, and
+// to forget new ones, takes as long as a call on one bond.
+#if defined(__x86_64__)
+class LongDoubleEnvironment {
+public:
+    LongDoubleEnvironment() {
+        std::fegetenv(&before_);
+        std::fesetenv(FE_DFL_ENV);
+    }
+    ~LongDoubleEnvironment() { std::fesetenv(&before_); }
+    LongDoubleEnvironment(const LongDoubleEnvironment &) = delete;
+    LongDoubleEnvironment &operator=(const LongDoubleEnvironment &) = delete;
+
+private:
+    std::fenv_t before_;
+};
+#else
+using LongDoubleEnvironment = DefaultEnvironment;
+#endif
+
+}  // namespace holonomic
