@@ -24,8 +24,7 @@ Box orthorhombic_box(const double m[3][3]) {
     for (int i = 0; i < 3; ++i) {
         box.h[4 * i] = m[i][i];
         box.inverse[4 * i] = m[i][i] != 0 ? 1 / m[i][i] : 0;
-        if (!std::isfinite(box.inverse[4 * i]))
-            throw make_error(Status::value, "box vector %d is too short", i + 1);
+        if (!std::isfinite(box.inverse[4 * i])) throw make_error(Status::value, "box vector %d is too short", i + 1);
     }
     for (int i = 0; i < most_lanes + 2; ++i) {
         box.minus_side[i] = -box.h[4 * (i % 3)];

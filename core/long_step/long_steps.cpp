@@ -19,6 +19,8 @@ namespace {
 // With a lower bound on its iterations a molecule gets nothing but these.
 constexpr int enough_iterations = 20;
 constexpr std::int64_t most_rounds = 1000;  // of SHAKE
+// In larger molecules a path may fail for other reasons than that it ends: what Newton's method has found stands.
+constexpr std::int64_t most_watched = 256;
 // Two roots that differ by less of a bond are one.
 constexpr double same = 1e-3;
 
@@ -108,7 +110,7 @@ private:
 
     bool solve(const Planned &planned, const Molecule &m, Tally &own) {
         if (reference_) reference_->show(m.number);
-        const StepBonds step(chains_, m, call_.r_ref, call_.box_ref, call_.r, call_.box);
+        const StepBonds step(m, call_.r_ref, call_.box_ref, call_.r, call_.box);
         OneMolecule one(chains_, planned, m);
         one.read(call_);
         const double scale = 2 * call_.dt * call_.dt;
@@ -120,15 +122,16 @@ private:
                 one.lambda[k] = call_.lambda[m.bond(static_cast<std::int64_t>(k))];
             found = one.solve(call_, nullptr, own);
             for (std::size_t k = 0; k < n; ++k) newton[k] = scale * one.lambda[k];
-            if (found && step.can_be_certified() && step.is_certified(newton)) return accept(one);
+            if (found && step.is_certified(newton)) return accept(one);
         }
         if (chains_.max_iterations < enough_iterations) return found && accept(one);
         OneMolecule way(chains_, planned, m);
         std::int64_t solves = 0;
         const bool path = step.follow(way, chains_.max_iterations, tau, solves);
-        if (found && !path && !step.can_be_certified()) return accept(one);
+        if (found && !path && m.n_bonds > most_watched) return accept(one);
         // Beyond the path's end SHAKE comes to anything, mostly to bonds that point backwards.
-        if (!path && !(step.can_be_certified() && step.shake(most_rounds, tau) && step.is_certified(tau))) return false;
+        if (!path && !(m.n_bonds <= most_watched && step.shake(most_rounds, tau) && step.is_certified(tau)))
+            return false;
         if (found && step.distance(newton, tau) < same) return accept(one);
         // Newton's method from there, in the caller's arrays' precision.
         own = empty_tally();

@@ -9,9 +9,9 @@ namespace holonomic {
 
 class Reference;
 
-// A molecule with a larger |D.D - a^2| / a^2 is not solved among the others, but here. Below it no step was found to
-// have come to another root; ordinary steps leave it below 0.01.
-constexpr double far_from_lengths = 0.2;
+// A molecule with a larger |D.D - a^2| / a^2 is not solved among the others, but here. Of 5000 steps that turn small
+// molecules by up to 60 degrees 2 below it came to another root; ordinary steps leave it below 0.01.
+constexpr double far_from_lengths = 0.15;
 
 // Looks for the molecules that a call has left, solves those that can be, in the caller's arrays, and returns the tally
 // as if the call had. call.worst_trial: beyond which nothing is tried. `reference`: what stands in for reference

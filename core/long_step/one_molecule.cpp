@@ -77,7 +77,7 @@ bool OneMolecule::solve(PositionsCall call, const double *length, Tally &tally) 
         lane.atoms = lane.bonds = nullptr;
         lane.shared = nullptr;
         if (length) lane.length = length;
-        const MoleculeUnit unit{planned_.schedule, &lane, 1,      true, false, nullptr, planned_.forest,
+        const MoleculeUnit unit{planned_.schedule,      &lane, 1, true, false, nullptr, planned_.forest,
                                 planned_.forest ? 1 : 0};
         kernels().molecules.positions(call, unit, scratch_of_this_thread(bytes), own);
     } else {
@@ -91,8 +91,7 @@ bool OneMolecule::solve(PositionsCall call, const double *length, Tally &tally) 
             kernels(unit).positions(call, unit, scratch_of_this_thread(bytes), own);
         } else {
             const InWindows<PositionsCall> &windows = kernels().long_positions;
-            double *const store =
-                static_cast<double *>(thread_memory(Keep::store, store_bytes(windows, lane.n_bonds)));
+            double *const store = static_cast<double *>(thread_memory(Keep::store, store_bytes(windows, lane.n_bonds)));
             if (!store) throw std::bad_alloc();
             solve_long_chain(windows, kernels_for_one_chain().positions, call, lane, Team(1, bytes), store, own);
         }

@@ -17,13 +17,16 @@ std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 constexpr double first_step = 0.25, shortest_step = 1.0 / 512, near = 0.25, very_near = 0.05;
 constexpr double tolerance_on_the_way = 1e-9;
 constexpr int iterations_on_the_way = 6;
+// Of the symmetric part: what of a diagonal element counts as positive, and how many elements are looked at.
+constexpr double least_pivot = 1e-10;
+constexpr std::int64_t most_elements = 1 << 16;
 // Where Newton's method takes over from SHAKE.
 constexpr double shaken = 1e-6;
 
 }  // namespace
 
-StepBonds::StepBonds(const Chains &, const Molecule &molecule, const AtomArray &r_ref, const Box &box_ref,
-                     const AtomArray &r, const Box &box)
+StepBonds::StepBonds(const Molecule &molecule, const AtomArray &r_ref, const Box &box_ref, const AtomArray &r,
+                     const Box &box)
     : m_(molecule), b_(at(molecule.n_bonds)), D_(b_.size()) {
     for (std::int64_t k = 0; k < m_.n_bonds; ++k)
         for (const bool of_reference : {true, false}) {
@@ -68,28 +71,45 @@ double StepBonds::distance(const std::vector<double> &tau, const std::vector<dou
     return largest;
 }
 
-// By Cholesky's factors of the symmetric part, which exist or not.
+std::vector<std::int64_t> StepBonds::first_of_rows() const {
+    std::vector<std::int64_t> of_atom(at(m_.n_atoms), -1), first(at(m_.n_bonds));
+    for (std::int64_t k = 0; k < m_.n_bonds; ++k) {
+        first[at(k)] = k;
+        for (const std::int64_t atom : {m_.i(k), m_.j(k)}) {
+            std::int64_t &one = of_atom[at(atom)];
+            if (one < 0) one = k;
+            first[at(k)] = std::min(first[at(k)], one);
+        }
+    }
+    return first;
+}
+
+// By Cholesky's factors of the symmetric part, which exist or not. Rows are kept from their first element on.
 bool StepBonds::is_certified(const std::vector<double> &tau) const {
-    const std::int64_t n = m_.n_bonds;
+    const std::vector<std::int64_t> first = first_of_rows();
+    std::vector<std::int64_t> start(first.size() + 1, 0);
+    for (std::int64_t k = 0; k < m_.n_bonds; ++k) {
+        start[at(k) + 1] = start[at(k)] + k - first[at(k)] + 1;
+        if (start[at(k) + 1] > most_elements) return false;
+    }
     const std::vector<Vector> D = moved(tau);
-    std::vector<double> s(at(n * n), 0.0);
-    for (std::int64_t k = 0; k < n; ++k)
-        for (std::int64_t l = 0; l <= k; ++l) {
+    std::vector<double> s(at(start.back()));
+    const auto element = [&](std::int64_t k, std::int64_t l) -> double & {
+        return s[at(start[at(k)] + l - first[at(k)])];
+    };
+    for (std::int64_t k = 0; k < m_.n_bonds; ++k)
+        for (std::int64_t l = first[at(k)]; l <= k; ++l) {
             double w = 0;
             for (const std::int64_t atom : {m_.i(k), m_.j(k)})
                 for (const std::int64_t other : {m_.i(l), m_.j(l)})
                     if (atom == other) w += ((atom == m_.i(k)) == (other == m_.i(l)) ? 1 : -1) * m_.w(atom);
-            s[at(k * n + l)] = 0.5 * w * (dot(D[at(k)], b_[at(l)]) + dot(D[at(l)], b_[at(k)]));
-        }
-    for (std::int64_t k = 0; k < n; ++k) {
-        const double least = 1e-10 * s[at(k * n + k)];
-        for (std::int64_t l = 0; l <= k; ++l) {
-            double sum = s[at(k * n + l)];
-            for (std::int64_t i = 0; i < l; ++i) sum -= s[at(k * n + i)] * s[at(l * n + i)];
+            double sum = w == 0 ? 0 : 0.5 * w * (dot(D[at(k)], b_[at(l)]) + dot(D[at(l)], b_[at(k)]));
+            const double least = least_pivot * sum;
+            for (std::int64_t i = std::max(first[at(k)], first[at(l)]); i < l; ++i)
+                sum -= element(k, i) * element(l, i);
             if (l == k && !(sum > least)) return false;
-            s[at(k * n + l)] = l == k ? std::sqrt(sum) : sum / s[at(l * n + l)];
+            element(k, l) = l == k ? std::sqrt(sum) : sum / element(l, l);
         }
-    }
     return true;
 }
 
