@@ -16,8 +16,6 @@ namespace holonomic {
 
 namespace {
 
-// With a lower bound on its iterations a molecule gets nothing but these.
-constexpr int enough_iterations = 20;
 constexpr std::int64_t most_rounds = 1000;  // of SHAKE
 // In larger molecules a path may fail for other reasons than that it ends: what Newton's method has found stands.
 constexpr std::int64_t most_watched = 256;

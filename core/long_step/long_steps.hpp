@@ -13,6 +13,9 @@ class Reference;
 // molecules by up to 60 degrees 2 below it came to another root; ordinary steps leave it below 0.01.
 constexpr double far_from_lengths = 0.15;
 
+// With a lower bound on its iterations a molecule gets nothing but these.
+constexpr int enough_iterations = 20;
+
 // Looks for the molecules that a call has left, solves those that can be, in the caller's arrays, and returns the tally
 // as if the call had. call.worst_trial: beyond which nothing is tried. `reference`: what stands in for reference
 // positions, or nullptr.

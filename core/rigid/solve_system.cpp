@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/long_step/long_steps.hpp"
 #include "core/rigid/system.hpp"
 
 namespace holonomic::rigid {
@@ -191,7 +192,7 @@ Outcome System::restore(const Conformation &from, const Conformation &to, double
         if (outcome == Outcome::good || (outcome == Outcome::not_finite && *iterations == 0)) return outcome;
     }
     for (const bool in_doubles : {true, false}) {
-        const int steps = follow(from, to, multipliers);
+        const int steps = most_iterations < enough_iterations ? 0 : follow(from, to, multipliers);
         if (steps == 0) break;
         const Outcome outcome = newton(in_doubles);
         *iterations += steps;
