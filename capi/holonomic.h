@@ -38,7 +38,8 @@
  *   in all its threads, gives the same bits, and leaves the caller's as it was, sticky exception flags included.
  * - Threads: any number of them may use a handle at once that none changes (create, add, set, destroy). Scratch memory
  *   belongs to the calling thread; after its first call with molecules of that size nothing is allocated, but by
- *   hol_impose and for a long chain whose positions need a second attempt (light atoms, taut between heavy ones).
+ *   hol_impose, for a long chain whose positions need a second attempt (light atoms, taut between heavy ones), and for
+ *   steps that are so long that a molecule is looked at alone.
  * - Results depend on nothing but the molecule: not on hol_chains_set_threads, the memory layout, the other molecules,
  *   nor the order in which bonds were given.
  */
@@ -299,13 +300,15 @@ HOL_API int hol_chains_set_index_base(hol_chains *chains, int base);
  * @param[in] box  [3][3], row i is box vector i, length. Three sides stand on the diagonal: {a,0,0, 0,b,0, 0,0,c}. A
  *                 row of zeros: not periodic along that axis, in which no other vector may have a component. NULL: none
  *
- * The image is the right one for bonds shorter than half the smallest distance between opposite faces; molecules may be
+ * Any three vectors that span the lattice are the same box (since 0.2), also rows that are not reduced, as a tilt of
+ * many sides ("flip no" of LAMMPS): images are taken in a cell that is as wide as the lattice has one. The image is the
+ * right one for bonds shorter than half the smallest distance between opposite faces of that cell; molecules may be
  * larger, and their cycles may go round the box (networks, zeolites). A network that does so has 3 n - 3 freedoms for
  * its bonds, not 3 n - 6: with more bonds than the latter it is added after the box has been set. May be set again
  * before every call; that takes no time. An orthorhombic box (zeros beside the diagonal) makes calls up to 1.6 times as
  * long, any other 1.1 to 1.9 times. Programs whose molecules are whole need none.
- * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_VALUE (not finite, or no cell; since 0.2 narrower than twice the
- *         longest bond). On an error nothing is changed. Not thread-safe on one handle. Since 0.1.
+ * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_VALUE (not finite, or no cell; since 0.2 that cell is narrower than
+ *         twice the longest bond). On an error nothing is changed. Not thread-safe on one handle. Since 0.1.
  */
 HOL_API int hol_chains_set_box(hol_chains *chains, const double *box);
 
@@ -458,7 +461,8 @@ HOL_API int hol_chains_set_tolerance(hol_chains *chains, double tolerance);
 
 /**
  * Bound on the iterations of hol_project_positions for a molecule of any shape, 1..1000. The default is 50; a
- * well-posed step needs 2 to 5. A smaller bound makes no step faster that converges.
+ * well-posed step needs 2 to 5. A smaller bound makes no step faster that converges. With less than 20 no root is
+ * followed from the reference (hol_project_positions); else so many points of its path are looked at.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.1.
  */
 HOL_API int hol_chains_set_max_iterations(hol_chains *chains, int max_iterations);
@@ -714,6 +718,12 @@ typedef struct hol_report {
  *     r_i + dt^2 w_i G_i,   G_i = - 2 sum_k s_ki lambda_k b_k,   b_k = r_ref,j - r_ref,i,
  * (s = +1 at atom j of bond k, -1 at atom i) has |d_k| = a_k for every bond, to the rounding of the coordinates, by
  * Newton's method with the exact Jacobian. docs/theory.md (15)-(19), docs/integrators.md.
+ *
+ * These equations are quadratic, and may have several roots. The one meant is that of the reference, where all lambda
+ * are 0, as it grows while r goes straight from r_ref to where it is. Newton's method comes there in ordinary steps. A
+ * molecule with a bond of |d.d - a^2| > 0.15 a^2 in r, or for which it fails, is looked at alone, and its root is tested
+ * or followed from the reference. Where that comes to an end before r there is none (HOL_ERR_NO_CONVERGENCE: halve the
+ * step), though bonds that turn round might have the lengths. docs/stability.md says what is guaranteed, and the cost.
  *
  * @param[in]     chains
  * @param[in]     r_ref   positions before the drift [n_atoms][3]; may be r itself (in Fortran: docs/fortran.md). Only

@@ -5,6 +5,7 @@
 #include "core/caller/box.hpp"
 #include "core/caller/packed_array.hpp"
 #include "core/check.hpp"
+#include "core/long_step/long_steps.hpp"
 #include "core/reference.hpp"
 #include "core/rigid/run.hpp"
 #include "core/rigid/verbs.hpp"
@@ -88,8 +89,12 @@ void project_from(const Chains &chains, PositionsCall &call, const Reference *re
     put_box(chains.box, call.box);
     put_box(box_ref, call.box_ref);
     Apart apart(chains);
-    const Tally tally = execute(chains, PositionsWork(call, apart, reference));
+    const double worst_trial = call.worst_trial;
+    call.worst_trial = std::min(worst_trial, far_from_lengths);
+    Tally tally = execute(chains, PositionsWork(call, apart, reference));
     apart.put_back();
+    call.worst_trial = worst_trial;
+    if (tally.n_bad > 0) tally = finish_long_steps(chains, call, reference, tally);
     clear_unconstrained(chains, call.lambda);
     if (report) *report = report_of(chains, tally);
     if (tally.n_bad > 0) throw_error_of(chains, tally, call, reference, box_ref);

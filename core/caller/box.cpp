@@ -4,59 +4,44 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/caller/reduce.hpp"
 #include "core/error.hpp"
 
 namespace holonomic {
 
-// A row of zeros means that the box is not periodic along that vector. For the inverse it is replaced by a vector that
-// makes the matrix regular; its own multiple is then never subtracted, because the kernels skip zero elements of h.
-Box make_box(const double *h) {
-    if (!h) return Box{};
-    double m[3][3];
-    bool periodic[3], diagonal = true;
+namespace {
+
+bool is_diagonal(const double m[3][3]) {
+    for (int i = 0; i < 3; ++i)
+        for (int c = 0; c < 3; ++c)
+            if (i != c && m[i][c] != 0) return false;
+    return true;
+}
+
+Box orthorhombic_box(const double m[3][3]) {
+    Box box{};
+    box.shape = Box::orthorhombic;
     for (int i = 0; i < 3; ++i) {
-        periodic[i] = false;
-        for (int c = 0; c < 3; ++c) {
-            m[i][c] = h[3 * i + c];
-            if (!std::isfinite(m[i][c]))
-                throw make_error(Status::value, "element (%d,%d) of the box is not finite", i + 1, c + 1);
-            periodic[i] = periodic[i] || m[i][c] != 0;
-            diagonal = diagonal && (i == c || m[i][c] == 0);
-        }
+        box.h[4 * i] = m[i][i];
+        box.inverse[4 * i] = m[i][i] != 0 ? 1 / m[i][i] : 0;
+        if (!std::isfinite(box.inverse[4 * i])) throw make_error(Status::value, "box vector %d is too short", i + 1);
     }
-    Box next{};
-    for (int i = 0; i < 9; ++i) next.h[i] = h[i];
+    for (int i = 0; i < most_lanes + 2; ++i) {
+        box.minus_side[i] = -box.h[4 * (i % 3)];
+        box.per_side[i] = box.inverse[4 * (i % 3)];
+    }
+    return box;
+}
+
+// Replaces missing vectors, one or two, by ones perpendicular to the others.
+void fill_missing_rows(double m[3][3], const bool *periodic) {
     const auto cross = [](const double *a, const double *b, double *c) {
         for (int k = 0; k < 3; ++k) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
     };
-    // A side that was meant for the diagonal stands elsewhere, as where three sides fill the first row.
-    for (int i = 0; i < 3; ++i)
-        for (int c = 0; c < 3; ++c)
-            if (m[i][c] != 0 && !periodic[c])
-                throw make_error(Status::value,
-                                 "box vector %d is zero, and box vector %d has a component (%g) along that axis: this "
-                                 "is no cell; the box is three vectors, one in each row, and the sides of a "
-                                 "rectangular box stand on the diagonal",
-                                 c + 1, i + 1, m[i][c]);
-    const int n = periodic[0] + periodic[1] + periodic[2];
-    if (n == 0) return next;
-    next.shape = diagonal ? Box::orthorhombic : Box::triclinic;
-    if (diagonal) {
-        for (int i = 0; i < 3; ++i) next.inverse[3 * i + i] = periodic[i] ? 1 / m[i][i] : 0;
-        for (int i = 0; i < 3; ++i)
-            if (!std::isfinite(next.inverse[3 * i + i]))
-                throw make_error(Status::value, "box vector %d is too short", i + 1);
-        for (int i = 0; i < most_lanes + 2; ++i) {
-            next.minus_side[i] = -next.h[4 * (i % 3)];
-            next.per_side[i] = next.inverse[4 * (i % 3)];
-        }
-        return next;
-    }
-    // Replace missing vectors by ones perpendicular to the others.
     for (int i = 0; i < 3; ++i) {
         if (periodic[i]) continue;
         double *a = m[i], *b = m[(i + 1) % 3], *c = m[(i + 2) % 3];
-        if (n == 2) {
+        if (periodic[(i + 1) % 3] && periodic[(i + 2) % 3]) {
             cross(b, c, a);
         } else if (!periodic[(i + 1) % 3] && periodic[(i + 2) % 3]) {
             int smallest = 0;
@@ -66,17 +51,61 @@ Box make_box(const double *h) {
             axis[smallest] = 1;
             cross(c, axis, a);
             cross(c, a, b);
-            break;
+            return;
         }
     }
-    double columns[3][3], volume = 0, size = 1;
-    for (int i = 0; i < 3; ++i) cross(m[(i + 1) % 3], m[(i + 2) % 3], columns[i]);
-    for (int c = 0; c < 3; ++c) volume += m[0][c] * columns[0][c];
-    for (int i = 0; i < 3; ++i) size *= std::sqrt(m[i][0] * m[i][0] + m[i][1] * m[i][1] + m[i][2] * m[i][2]);
-    if (!(std::fabs(volume) > 1e-10 * size))
-        throw make_error(Status::value, "the box vectors lie in a plane or on a line");
+}
+
+}  // namespace
+
+// A row of zeros means that the box is not periodic along that vector. For the inverse it is replaced by a vector that
+// makes the matrix regular; its own multiple is then never subtracted, because the kernels skip zero elements of h.
+// Any other rows of the same lattice are the same box; kernels take those that are reduced (reduce.hpp), as nearest
+// images are found by rounding fractional coordinates.
+Box make_box(const double *h) {
+    if (!h) return Box{};
+    double m[3][3];
+    bool periodic[3];
+    for (int i = 0; i < 3; ++i) {
+        periodic[i] = false;
+        for (int c = 0; c < 3; ++c) {
+            m[i][c] = h[3 * i + c];
+            if (!std::isfinite(m[i][c]))
+                throw make_error(Status::value, "element (%d,%d) of the box is not finite", i + 1, c + 1);
+            periodic[i] = periodic[i] || m[i][c] != 0;
+        }
+    }
+    // A side that was meant for the diagonal stands elsewhere, as where three sides fill the first row.
     for (int i = 0; i < 3; ++i)
-        for (int c = 0; c < 3; ++c) next.inverse[3 * c + i] = periodic[i] ? columns[i][c] / volume : 0;
+        for (int c = 0; c < 3; ++c)
+            if (m[i][c] != 0 && !periodic[c])
+                throw make_error(Status::value,
+                                 "box vector %d is zero, and box vector %d has a component (%g) along that axis: this "
+                                 "is no cell; the box is three vectors, one in each row, and the sides of a "
+                                 "rectangular box stand on the diagonal",
+                                 c + 1, i + 1, m[i][c]);
+    if (!periodic[0] && !periodic[1] && !periodic[2]) return Box{};
+    if (is_diagonal(m)) return orthorhombic_box(m);
+    double whole[3][3], gradient[3][3];
+    std::memcpy(whole, m, sizeof m);
+    fill_missing_rows(whole, periodic);
+    double size = 1;
+    for (const double *row : whole) size *= std::sqrt(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
+    if (!(std::fabs(gradients_of(whole, gradient)) > 1e-10 * size))
+        throw make_error(Status::value, "the box vectors lie in a plane or on a line");
+    if (reduce_cell(whole, periodic)) {
+        gradients_of(whole, gradient);
+        for (int i = 0; i < 3; ++i)
+            if (periodic[i]) std::copy(whole[i], whole[i] + 3, m[i]);
+        if (is_diagonal(m)) return orthorhombic_box(m);
+    }
+    Box next{};
+    next.shape = Box::triclinic;
+    for (int i = 0; i < 3; ++i)
+        for (int c = 0; c < 3; ++c) {
+            next.h[3 * i + c] = m[i][c];
+            next.inverse[3 * c + i] = periodic[i] ? gradient[i][c] : 0;
+        }
     return next;
 }
 

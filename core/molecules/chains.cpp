@@ -40,8 +40,7 @@ void Chains::box_changed(const Box &next, Box &seen) {
 
 void Chains::check_width(const Box &next, double longest, const double *lengths) const {
     double width;
-    const int side = narrow_side(next, longest, &width);
-    if (side < 0) return;
+    if (narrow_side(next, longest, &width) < 0) return;
     char atoms[256] = "";
     for (std::int64_t c = n_chains(); c-- > 0;) {
         const Molecule m = molecule(c);
@@ -50,10 +49,11 @@ void Chains::check_width(const Box &next, double longest, const double *lengths)
                 std::snprintf(atoms, sizeof atoms, " (atoms %s and %s)", name_of_atom(m.atom(m.i(k))).text,
                               name_of_atom(m.atom(m.j(k))).text);
     }
-    throw make_error(Status::value,
-                     "the box is %g wide along box vector %d, less than twice the longest bond, %g%s: images of its "
-                     "atoms can't be told apart; are box and lengths in the same unit?",
-                     width, side + 1, longest, atoms);
+    throw make_error(
+        Status::value,
+        "the box is %g wide from face to face, less than twice the longest bond, %g%s: images of its atoms "
+        "can't be told apart; are box and lengths in the same unit?",
+        width, longest, atoms);
 }
 
 void Chains::set_box(const double *h) {

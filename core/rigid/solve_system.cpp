@@ -4,6 +4,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "core/long_step/long_steps.hpp"
 #include "core/rigid/system.hpp"
 
 namespace holonomic::rigid {
@@ -98,6 +99,8 @@ std::int32_t System::assemble(const Factor<T> &f, const Conformation &rows, cons
     return bad;
 }
 
+template std::int32_t System::assemble(const Factor<double> &, const Conformation &, const Conformation &) const;
+
 // Sizes of corrections are compared in the units of each row: |x| sqrt of its diagonal.
 template <class T>
 Outcome System::project_with(const Factor<T> &f, T *x, const Conformation &where, const DoublePair *constant,
@@ -147,7 +150,6 @@ template <class T>
 Outcome System::restore_with(const Factor<T> &f, T *x, const Conformation &from, const Conformation &to,
                              double tolerance, int most_iterations, DoublePair *multipliers, int *iterations,
                              double *error) const {
-    for (std::int32_t k = 0; k < s_.n_rows; ++k) multipliers[k] = as_pair(0);
     double before = std::numeric_limits<double>::infinity();
     for (*iterations = 0;; ++*iterations) {
         *error = residuals(to, residual_);
@@ -171,14 +173,33 @@ Outcome System::restore_with(const Factor<T> &f, T *x, const Conformation &from,
     }
 }
 
+// From the positions as they came by Newton's method, then by following the solution from the reference. A singular
+// matrix on the way says nothing of the molecule; at the reference it does.
 Outcome System::restore(const Conformation &from, const Conformation &to, double tolerance, int most_iterations,
                         DoublePair *multipliers, int *iterations, double *error) const {
     std::copy(to.q, to.q + s_.n_nodes, start_);
-    const Outcome first =
-        restore_with(plain_, x_, from, to, tolerance, most_iterations, multipliers, iterations, error);
-    if (first == Outcome::good) return first;
-    std::copy(start_, start_ + s_.n_nodes, to.q);
-    return restore_with(wide_, wide_x_, from, to, tolerance, most_iterations, multipliers, iterations, error);
+    const auto begin_again = [&] {
+        std::copy(start_, start_ + s_.n_nodes, to.q);
+        std::fill(multipliers, multipliers + s_.n_rows, as_pair(0));
+    };
+    const auto newton = [&](bool in_doubles) {
+        if (in_doubles)
+            return restore_with(plain_, x_, from, to, tolerance, most_iterations, multipliers, iterations, error);
+        return restore_with(wide_, wide_x_, from, to, tolerance, most_iterations, multipliers, iterations, error);
+    };
+    for (const bool in_doubles : {true, false}) {
+        begin_again();
+        const Outcome outcome = newton(in_doubles);
+        if (outcome == Outcome::good || (outcome == Outcome::not_finite && *iterations == 0)) return outcome;
+    }
+    for (const bool in_doubles : {true, false}) {
+        const int steps = most_iterations < enough_iterations ? 0 : follow(from, to, multipliers);
+        if (steps == 0) break;
+        const Outcome outcome = newton(in_doubles);
+        *iterations += steps;
+        if (outcome == Outcome::good) return outcome;
+    }
+    return assemble(wide_, from, from) < 0 ? Outcome::no_convergence : Outcome::degenerate;
 }
 
 }  // namespace holonomic::rigid

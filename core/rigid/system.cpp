@@ -55,7 +55,7 @@ struct Layout {
     DoublePair *t, *c, *residual, *wide_x, *inverse;
     Factor<double> plain;
     Factor<DoublePair> wide;
-    double *x, *raw, *within, *gradient[2];
+    double *x, *raw, *within, *gradient[2], *path;
     std::int64_t bytes;
 };
 
@@ -87,6 +87,7 @@ Layout lay_out(const Shape &s, char *memory) {
     m.raw = pieces.take<double>(3 * std::int64_t{s.n_atoms});
     m.gradient[0] = pieces.take<double>(3 * entries);
     m.gradient[1] = pieces.take<double>(3 * entries);
+    m.path = pieces.take<double>(3 * rows);
     m.within = pieces.take<double>(s.by_lengths ? 3 * (bonds + 2 * std::int64_t{s.n_held}) : 0);
     m.bytes = (pieces.used(memory) + 63) / 64 * 64;
     return m;
@@ -118,6 +119,7 @@ System::System(const Shape &shape, const Body *bodies, char *memory) : s_(shape)
     start_ = m.start;
     gradient_[0] = m.gradient[0];
     gradient_[1] = m.gradient[1];
+    path_ = m.path;
 }
 
 void System::read(const AtomArray &r, const Box &box, const Place &place, const Conformation &to) const {

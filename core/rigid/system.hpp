@@ -51,9 +51,13 @@ public:
 
     // Adds to z multiples -w t of gradients so that sum of gradient.z + c = 0 in each row; t is written.
     Outcome project(const Conformation &at, const DoublePair *c, PairVector *z, DoublePair *t) const;
-    // Moves q along the gradients of the reference until each row is fulfilled to `tolerance` of its scale.
+    // Moves q along the gradients of the reference until each row is fulfilled to `tolerance` of its scale. Where
+    // Newton's method does not come there, by the path below.
     Outcome restore(const Conformation &reference, const Conformation &now, double tolerance, int most_iterations,
                     DoublePair *t, int *iterations, double *error) const;
+    // Moves q along the gradients of the reference to about where the solution comes that begins there: of positions
+    // reference + t (q - reference) for t from 0 to 1. Returns the number of linear solves, or 0 where it ends before.
+    int follow(const Conformation &reference, const Conformation &now, DoublePair *t) const;
     // The largest residual of a row as |d.d - a^2| / a^2 is one, and its bond (-1: of a body).
     double residuals(const Conformation &at, DoublePair *to, std::int32_t *worst_bond = nullptr) const;
     // -sum t gradient, per node.
@@ -76,6 +80,7 @@ private:
     template <class T>
     Outcome project_with(const Factor<T> &f, T *x, const Conformation &at, const DoublePair *c, PairVector *z,
                          DoublePair *t) const;
+    // From q and t as they are, which belong together.
     template <class T>
     Outcome restore_with(const Factor<T> &f, T *x, const Conformation &reference, const Conformation &now,
                          double tolerance, int most_iterations, DoublePair *t, int *iterations, double *error) const;
@@ -88,6 +93,7 @@ private:
     DoublePair *wide_x_, *residual_, *inverse_;
     PairVector *start_;
     double *gradient_[2];  // [entries][3] as doubles
+    double *path_;         // [n_rows] three times
 };
 
 }  // namespace holonomic::rigid

@@ -157,8 +157,8 @@ private:
             make_error(Status::no_convergence, "%s: no corrections along the %s. The worst is %s: %s%s", name_,
                        in_place() ? "bonds bring them to their lengths, which can't be reached from these "
                                     "positions, or not at all"
-                                  : "reference bonds bring the bonds back to their lengths; the step is too "
-                                    "large, or a length can't be reached",
+                                  : "reference bonds, as they grow from the reference on, bring the bonds back to "
+                                    "their lengths; the step is too large, or a length can't be reached",
                        name_of_bond(chains_, m_, k).text, lengths_of(k).text, others_),
             k, -1);
     }
