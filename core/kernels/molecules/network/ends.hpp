@@ -104,6 +104,20 @@ struct Ends {
             });
         });
     }
+    // What a node's trees give beside what has been added.
+    void add_push(int32_t n, const Vector3<double> &more) const {
+        net.for_own(n, [&](int32_t u) { y[u] -= dot(D.get<double>(u), more); });
+        for (int32_t f = s.foreign_start[n]; f < s.foreign_start[n + 1]; ++f)
+            y[s.foreign[f]] += dot(D.get<double>(s.foreign[f]), more);
+    }
+    // What the ends at a node do to it, by these values.
+    Pair3<double> pull_of(int32_t n, const double *of) const {
+        Pair3<double> sum_of = {};
+        net.for_own(n, [&](int32_t u) { sum_of = add_pairs(sum_of, product_pairs(of[u], b.get<double>(u))); });
+        for (int32_t f = s.foreign_start[n]; f < s.foreign_start[n + 1]; ++f)
+            sum_of = add_pairs(sum_of, product_pairs(-of[s.foreign[f]], b.get<double>(s.foreign[f])));
+        return sum_of;
+    }
     // Of a node with its trees, by these values of the ends.
     Vector3<double> acceleration_of(int32_t n, const double *of) const {
         Vector3<double> sum_of = push.get<double>(n);
