@@ -1,6 +1,7 @@
 #include "core/molecules/count.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace holonomic {
 
@@ -74,8 +75,9 @@ public:
     std::int64_t five_bonded() const {
         if (may_go_round(5)) return -1;
         for (std::size_t k = 0; k < draft_.bonds.size(); ++k) {
-            const std::size_t u = end(2 * k), v = end(2 * k + 1);
+            std::size_t u = end(2 * k), v = end(2 * k + 1);
             if (gone_[u] || gone_[v] || fixed_[u] || fixed_[v]) continue;
+            if (n_bonds(v) < n_bonds(u)) std::swap(u, v);  // which may be a hub
             std::vector<std::size_t> both;
             for (std::int32_t b = start_[u]; b < start_[u + 1]; ++b) {
                 const std::size_t x = other(bond_[at(b)], u);
@@ -99,7 +101,9 @@ private:
         const std::size_t first = end(2 * at(bond));
         return first == v ? end(2 * at(bond) + 1) : first;
     }
+    std::int32_t n_bonds(std::size_t v) const { return start_[v + 1] - start_[v]; }
     std::int64_t bond_between(std::size_t u, std::size_t v) const {
+        if (n_bonds(v) < n_bonds(u)) std::swap(u, v);
         for (std::int32_t b = start_[u]; b < start_[u + 1]; ++b)
             if (other(bond_[at(b)], u) == v) return draft_.bonds[at(bond_[at(b)])];
         return -1;

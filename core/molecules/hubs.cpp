@@ -1,5 +1,7 @@
 #include "core/molecules/hubs.hpp"
 
+#include "core/molecules/network.hpp"
+
 namespace holonomic {
 
 namespace {
@@ -18,6 +20,7 @@ public:
             }
         list_edges();
         place_unknowns();
+        for (const std::int32_t n : c_.hub) delay_three(n);
         return std::move(c_);
     }
 
@@ -79,6 +82,12 @@ private:
             ++c_.unknowns[at(p.own)];
             if (is_single(u) && p.other != p.own) ++c_.unknowns[at(p.other)];
         }
+    }
+    // Some that are far apart in its list.
+    void delay_three(std::int32_t n) {
+        Numbers ends(s_.foreign + s_.foreign_start[n], s_.foreign + s_.foreign_start[n + 1]);
+        for_own(s_, n, [&](std::int32_t u) { ends.push_back(u); });
+        for (std::int32_t i = 0; i < 3; ++i) c_.late[at(ends[ends.size() * at(i) / 3])] = 1;
     }
     // A cell without edges.
     std::int32_t add_strand() {

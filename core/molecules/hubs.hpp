@@ -26,8 +26,9 @@ struct Cells {
     Numbers hub, hub_of;              // nodes; [n_nodes] which hub a node is, or -1
     Numbers unknowns;                 // [cells] how many
     std::vector<Places> of_unknown;   // [n_unknowns]
-    std::vector<unsigned char> late;  // [n_unknowns] bonds from a hub to another, or to a fixed atom: nothing is left of
-                                      // them without hubs, so that they follow these
+    // [n_unknowns] What follows hubs: bonds from a hub to another, or to a fixed atom, of which nothing is left without
+    // hubs; and three ends at each hub, as many as bonds that may depend on others while the hub cannot move.
+    std::vector<unsigned char> late;
     std::int32_t size() const { return static_cast<std::int32_t>(node.size()); }
 };
 
