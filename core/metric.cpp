@@ -18,7 +18,7 @@ namespace {
 struct MetricWork final : Work {
     const Variants<MetricCall> calls;
     const Kernels &k = kernels();
-    const std::int64_t careful_bytes;  // of networks
+    const std::int64_t careful_bytes;  // that others do without
     MetricWork(const MetricCall &call, Apart &apart, std::int64_t bytes)
         : calls(
               call, apart, [](MetricCall &) {},
@@ -41,13 +41,20 @@ struct MetricWork final : Work {
     }
 };
 
-// The metric of a network needs the factor that its other calls do without. Returns what that takes of scratch memory.
-std::int64_t make_careful_of(const Chains &chains, const Schedule &s) {
+// What the metric of a molecule takes of scratch memory beside other calls: a network needs the factor that these do
+// without, an atom of many bonds the elements of the inverse between all of them.
+std::int64_t more_scratch(const Chains &chains, const Schedule &s) {
+    const char *const kind = s.network ? "network" : "molecule";
     try {
-        return make_careful(s, memory_left(chains)).careful_bytes;
+        const Schedule &order = s.network && !s.careful ? make_careful(s, memory_left(chains)) : *careful_order(s);
+        if (!s.network && order.more_of_metric == 0) return 0;
+        const std::int64_t bytes =
+            (s.network ? order.careful_bytes : chains.plan().scratch_bytes) + order.more_of_metric;
+        if (bytes > memory_left(chains)) throw TooMuchMemory(bytes);
+        return bytes;
     } catch (const TooMuchMemory &needed) {
         char what[64];
-        std::snprintf(what, sizeof what, "the metric of a network of %d bonds", static_cast<int>(s.n_bonds));
+        std::snprintf(what, sizeof what, "the metric of a %s of %d bonds", kind, static_cast<int>(s.n_bonds));
         throw too_much_memory(chains, what, needed.bytes);
     }
 }
@@ -64,7 +71,7 @@ void metric_of_all(const Chains &chains, MetricCall &call, double *energy) {
     std::int64_t careful_bytes = 0;
     for (const std::int32_t shape : chains.plan().shapes) {
         const Schedule &s = *chains.plan().schedules[static_cast<std::size_t>(shape)];
-        if (s.network && !s.careful) careful_bytes = std::max(careful_bytes, make_careful_of(chains, s));
+        careful_bytes = std::max(careful_bytes, more_scratch(chains, s));
     }
     Apart apart(chains);
     const Tally tally = execute(chains, MetricWork(call, apart, careful_bytes));

@@ -1,6 +1,7 @@
 #include "core/molecules/count.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace holonomic {
 
@@ -71,11 +72,13 @@ public:
     }
 
     // The last bond of five atoms that are all bonded to each other, or -1.
-    std::int64_t five_bonded() const {
+    std::int64_t five_bonded() {
         if (may_go_round(5)) return -1;
+        list_partners();
         for (std::size_t k = 0; k < draft_.bonds.size(); ++k) {
-            const std::size_t u = end(2 * k), v = end(2 * k + 1);
+            std::size_t u = end(2 * k), v = end(2 * k + 1);
             if (gone_[u] || gone_[v] || fixed_[u] || fixed_[v]) continue;
+            if (n_bonds(v) < n_bonds(u)) std::swap(u, v);  // which may be a hub
             std::vector<std::size_t> both;
             for (std::int32_t b = start_[u]; b < start_[u + 1]; ++b) {
                 const std::size_t x = other(bond_[at(b)], u);
@@ -99,16 +102,27 @@ private:
         const std::size_t first = end(2 * at(bond));
         return first == v ? end(2 * at(bond) + 1) : first;
     }
+    std::int32_t n_bonds(std::size_t v) const { return start_[v + 1] - start_[v]; }
     std::int64_t bond_between(std::size_t u, std::size_t v) const {
-        for (std::int32_t b = start_[u]; b < start_[u + 1]; ++b)
-            if (other(bond_[at(b)], u) == v) return draft_.bonds[at(bond_[at(b)])];
-        return -1;
+        if (n_bonds(v) < n_bonds(u)) std::swap(u, v);
+        const auto begin = partner_.begin() + start_[u], end = partner_.begin() + start_[u + 1];
+        const Partner wanted = {static_cast<std::int32_t>(v), 0};
+        const auto found = std::lower_bound(begin, end, wanted);
+        return found == end || found->first != wanted.first ? -1 : draft_.bonds[at(found->second)];
     }
     std::int64_t last_among(const std::vector<std::size_t> &atoms) const {
         std::int64_t last = -1;
         for (std::size_t u : atoms)
             for (std::size_t v : atoms) last = std::max(last, u < v ? bond_between(u, v) : -1);
         return last;
+    }
+
+    void list_partners() {
+        for (std::size_t v = 0; v + 1 < start_.size(); ++v) {
+            for (std::int32_t b = start_[v]; b < start_[v + 1]; ++b)
+                partner_.emplace_back(static_cast<std::int32_t>(other(bond_[at(b)], v)), bond_[at(b)]);
+            std::sort(partner_.begin() + start_[v], partner_.end());
+        }
     }
 
     std::int64_t overfull_part(std::size_t from, std::vector<unsigned char> &seen) const {
@@ -145,6 +159,8 @@ private:
     std::vector<std::int32_t> vertex_;  // of each place in the draft
     std::vector<unsigned char> fixed_, gone_;
     std::vector<std::int32_t> start_, bond_, degree_;  // the bonds of each vertex
+    typedef std::pair<std::int32_t, std::int32_t> Partner;
+    std::vector<Partner> partner_;  // of each vertex, ascending, and the bond to it
 };
 
 }  // namespace

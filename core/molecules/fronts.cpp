@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/molecules/bisection.hpp"
+#include "core/molecules/hubs.hpp"
 #include "core/molecules/network.hpp"
 
 namespace holonomic {
@@ -18,13 +19,15 @@ std::int32_t size_of(const Numbers &list) { return static_cast<std::int32_t>(lis
 
 class FrontMaker {
 public:
-    FrontMaker(const NetworkPlan &s, FrontArrays &a)
-        : s_(s), a_(a), part_of_(at(s.n_nodes), 0), in_part_(at(s.n_nodes), -1), front_of_(at(s.n_unknowns), -1) {}
+    FrontMaker(const NetworkPlan &s, const unsigned char *fixed, FrontArrays &a)
+        : s_(s), a_(a), cells_(cells_of(s, fixed)), n_hubs_(size_of(cells_.hub)), part_of_(at(cells_.size()), 0),
+          in_part_(at(cells_.size()), -1), front_of_(at(s.n_unknowns + 3 * n_hubs_), -1) {}
 
     FrontPlan make(std::int64_t most_bytes) {
-        Numbers nodes(at(s_.n_nodes));
-        for (std::int32_t i = 0; i < s_.n_nodes; ++i) nodes[at(i)] = i;
-        divide(graph_of_all(), nodes);
+        Numbers cells(at(cells_.size()));
+        for (std::int32_t i = 0; i < cells_.size(); ++i) cells[at(i)] = i;
+        divide(cells_.graph, cells);
+        list_spokes();
         number();
         list_rows();
         cut_branches();
@@ -44,46 +47,34 @@ public:
         p.own_row = a_.own_row.data();
         p.foreign_row = a_.foreign_row.data();
         p.partner_row = a_.partner_row.data();
+        p.n_hubs = n_hubs_;
+        p.hub = a_.hub.data();
+        p.hub_of = a_.hub_of.data();
+        p.spoke = a_.spoke.data();
         return p;
     }
 
 private:
-    // Nodes and the strands between them, each of weight 1.
-    Graph graph_of_all() const {
-        const Lists strands =
-            invert(s_.n_nodes, s_.n_strands, [&](std::int32_t i, int end) { return s_.strand_node[2 * i + end]; });
-        Graph g;
-        g.start.assign(1, 0);
-        for (std::int32_t n = 0; n < s_.n_nodes; ++n) {
-            for (const std::int32_t *i = strands.begin(n); i != strands.end(n); ++i) {
-                const std::int32_t other = s_.strand_node[2 * *i] + s_.strand_node[2 * *i + 1] - n;
-                if (other != n) g.edge.push_back({other, 1});
-            }
-            g.start.push_back(static_cast<std::int32_t>(g.edge.size()));
-            g.weight.push_back(1);
-        }
-        return g;
-    }
-    std::int32_t unknowns_at(std::int32_t n) const {
-        return s_.nodes[s_.nodes_of[n]].n_own + s_.foreign_start[n + 1] - s_.foreign_start[n];
-    }
-
-    // Fronts of these nodes, whose edges `g` has; returns the last one. Nodes of the part: `nodes` as g numbers them.
-    std::int32_t divide(const Graph &g, const Numbers &nodes) {
+    // Fronts of these cells, whose edges `g` has; returns the last one. Cells of the part: `cells` as g numbers them.
+    std::int32_t divide(const Graph &g, const Numbers &cells) {
         std::int32_t unknowns = 0;
-        for (const std::int32_t n : nodes) unknowns += unknowns_at(n);
-        FrontPlan::Front front = {0, 0, 0, size_of(a_.node), size_of(a_.node), {-1, -1}, -1};
+        for (const std::int32_t c : cells) unknowns += cells_.unknowns[at(c)];
+        FrontPlan::Front front = {0, 0, 0, size_of(a_.node), size_of(a_.node), 0, 0, {-1, -1}, -1};
         std::vector<unsigned char> side;
-        if (nodes.size() > 1 && unknowns > most_of_leaf) side = bisect(g);
+        if (cells.size() > 1 && unknowns > most_of_leaf) side = bisect(g);
+        const std::int32_t self_if_leaf = static_cast<std::int32_t>(a_.front.size());
         if (std::adjacent_find(side.begin(), side.end(), std::not_equal_to<>()) != side.end()) {
             for (unsigned char half = 0; half < 2; ++half) {
                 Graph part;
                 Numbers members;
-                part_of(g, side, half, nodes, part, members);
+                part_of(g, side, half, cells, part, members);
                 front.half[half] = divide(part, members);
             }
         } else {
-            a_.node.insert(a_.node.end(), nodes.begin(), nodes.end());
+            for (const std::int32_t c : cells) {
+                part_of_[at(c)] = self_if_leaf;
+                if (cells_.node[at(c)] >= 0) a_.node.push_back(cells_.node[at(c)]);
+            }
             front.end_node = size_of(a_.node);
         }
         a_.front.push_back(front);
@@ -91,15 +82,14 @@ private:
         parent_.push_back(-1);
         for (const std::int32_t f : front.half)
             if (f >= 0) parent_[at(f)] = self;
-        for (std::int32_t i = front.first_node; i < front.end_node; ++i) part_of_[at(a_.node[at(i)])] = self;
         return self;
     }
-    void part_of(const Graph &g, const std::vector<unsigned char> &side, unsigned char half, const Numbers &nodes,
+    void part_of(const Graph &g, const std::vector<unsigned char> &side, unsigned char half, const Numbers &cells,
                  Graph &part, Numbers &members) {
         for (std::int32_t i = 0; i < g.size(); ++i)
             if (side[at(i)] == half) {
                 in_part_[at(i)] = size_of(members);
-                members.push_back(nodes[at(i)]);
+                members.push_back(cells[at(i)]);
                 part.weight.push_back(g.weight[at(i)]);
             }
         part.start.assign(1, 0);
@@ -112,34 +102,73 @@ private:
         }
     }
 
+    // The bonds of hubs, by the leaf that has their terms.
+    void list_spokes() {
+        a_.hub = cells_.hub;
+        a_.hub_of = cells_.hub_of;
+        for (std::int32_t u = 0; u < s_.n_unknowns && n_hubs_ > 0; ++u) {
+            add_spoke(u, s_.node_of[u], 1);
+            if (s_.other_node[u] >= 0) add_spoke(u, s_.other_node[u], -1);
+        }
+        std::stable_sort(a_.spoke.begin(), a_.spoke.end(), [this](const FrontPlan::Spoke &x, const FrontPlan::Spoke &y) {
+            return leaf_of(x.unknown) < leaf_of(y.unknown);
+        });
+        std::vector<unsigned char> begun(at(n_hubs_), 0);
+        std::int32_t i = 0;
+        for (std::size_t f = 0; f < a_.front.size(); ++f) {
+            a_.front[f].first_spoke = i;
+            for (; at(i) < a_.spoke.size() && at(leaf_of(a_.spoke[at(i)].unknown)) == f; ++i) {
+                FrontPlan::Spoke &spoke = a_.spoke[at(i)];
+                spoke.is_first = !begun[at(spoke.hub)];
+                begun[at(spoke.hub)] = 1;
+            }
+            a_.front[f].end_spoke = i;
+        }
+    }
+    void add_spoke(std::int32_t u, std::int32_t node, std::int32_t sign) {
+        if (cells_.hub_of[at(node)] >= 0) a_.spoke.push_back({u, cells_.hub_of[at(node)], 0, 0, -1, sign, false});
+    }
+    std::int32_t leaf_of(std::int32_t u) const { return part_of_[at(cells_.of_unknown[at(u)].own)]; }
+    std::int32_t of_hub(std::int32_t hub, std::int32_t c) const { return s_.n_unknowns + 3 * hub + c; }
+
     // The front that has both: fronts of halves have lower numbers than those of the whole.
     std::int32_t common(std::int32_t a, std::int32_t b) const {
+        if (a < 0 || b < 0) return std::max(a, b);
         while (a != b) (a < b ? a : b) = parent_[at(a < b ? a : b)];
         return a;
     }
-    // Where each unknown is eliminated, and when.
+    // Where each unknown is eliminated, and when: in a front, hubs after most, late bonds after these.
     void number() {
         for (std::int32_t u = 0; u < s_.n_unknowns; ++u) {
-            const std::int32_t own = part_of_[at(s_.node_of[u])];
-            const bool is_first = s_.sign[u] > 0;
-            const std::int32_t other = s_.other_node[u] >= 0 ? s_.other_node[u]
-                                       : is_first            ? s_.node_of[s_.partner[u]]
-                                                             : s_.node_of[u];
-            front_of_[at(u)] = common(own, part_of_[at(other)]);
-            ++a_.front[at(front_of_[at(u)])].n_own;
+            const Cells::Places &p = cells_.of_unknown[at(u)];
+            front_of_[at(u)] = common(part_of_[at(p.own)], part_of_[at(p.other)]);
         }
+        for (const FrontPlan::Spoke &spoke : a_.spoke)
+            for (std::int32_t c = 0; c < 3; ++c) {
+                std::int32_t &front = front_of_[at(of_hub(spoke.hub, c))];
+                front = common(front, cells_.late[at(spoke.unknown)] ? leaf_of(spoke.unknown) : front_of_[at(spoke.unknown)]);
+            }
+        for (const FrontPlan::Spoke &spoke : a_.spoke)
+            if (cells_.late[at(spoke.unknown)])
+                front_of_[at(spoke.unknown)] = common(front_of_[at(spoke.unknown)], front_of_[at(of_hub(spoke.hub, 0))]);
+        for (const std::int32_t f : front_of_) ++a_.front[at(f)].n_own;
         std::int32_t first = 0;
         Numbers next;
         for (const FrontPlan::Front &f : a_.front) {
             next.push_back(first);
             first += f.n_own;
         }
-        turn_.resize(at(s_.n_unknowns));
-        unknown_.resize(at(s_.n_unknowns));
-        for (std::int32_t u = 0; u < s_.n_unknowns; ++u) {
+        const std::int32_t n = size_of(front_of_);
+        turn_.resize(at(n));
+        unknown_.resize(at(n));
+        const auto turn = [&](std::int32_t u) {
             turn_[at(u)] = next[at(front_of_[at(u)])]++;
             unknown_[at(turn_[at(u)])] = u;
-        }
+        };
+        for (std::int32_t u = 0; u < n; ++u)
+            if (u >= s_.n_unknowns || !cells_.late[at(u)]) turn(u);
+        for (std::int32_t u = 0; u < s_.n_unknowns; ++u)
+            if (cells_.late[at(u)]) turn(u);
     }
 
     // Calls each(unknown) for those that a leaf's terms hold; some more than once.
@@ -153,6 +182,16 @@ private:
             });
             for (std::int32_t k = s_.foreign_start[n]; k < s_.foreign_start[n + 1]; ++k) each(s_.foreign[k]);
         }
+        for (std::int32_t i = f.first_spoke; i < f.end_spoke; ++i) {
+            const FrontPlan::Spoke &spoke = a_.spoke[at(i)];
+            each(spoke.unknown);
+            if (couples(spoke)) each(s_.partner[spoke.unknown]);
+            for (std::int32_t c = 0; c < 3; ++c) each(of_hub(spoke.hub, c));
+        }
+    }
+    // Whether the terms that couple a strand's ends are with its end at the hub.
+    bool couples(const FrontPlan::Spoke &spoke) const {
+        return s_.other_node[spoke.unknown] < 0 && s_.sign[spoke.unknown] < 0;
     }
     void list_rows() {
         const std::int32_t n_fronts = static_cast<std::int32_t>(a_.front.size());
@@ -191,13 +230,20 @@ private:
         a_.partner_row.assign(at(s_.n_unknowns), -1);
         a_.foreign_row.resize(at(s_.foreign_start[s_.n_nodes]));
         for (std::int32_t n = 0; n < s_.n_nodes; ++n) {
-            const std::int32_t f = part_of_[at(n)];
+            if (cells_.cell_of[at(n)] < 0) continue;
+            const std::int32_t f = part_of_[at(cells_.cell_of[at(n)])];
             for_own(s_, n, [&](std::int32_t u) {
                 a_.own_row[at(u)] = row_of(f, u);
                 if (s_.sign[u] < 0) a_.partner_row[at(u)] = row_of(f, s_.partner[u]);
             });
             for (std::int32_t k = s_.foreign_start[n]; k < s_.foreign_start[n + 1]; ++k)
                 a_.foreign_row[at(k)] = row_of(f, s_.foreign[k]);
+        }
+        for (FrontPlan::Spoke &spoke : a_.spoke) {
+            const std::int32_t f = leaf_of(spoke.unknown);
+            spoke.row = row_of(f, spoke.unknown);
+            spoke.hub_row = row_of(f, of_hub(spoke.hub, 0));
+            if (couples(spoke)) spoke.partner_row = row_of(f, s_.partner[spoke.unknown]);
         }
         for (std::int32_t &turn : a_.row) turn = unknown_[at(turn)];
     }
@@ -270,22 +316,26 @@ private:
 
     const NetworkPlan &s_;
     FrontArrays &a_;
-    Numbers part_of_;         // the leaf of a node
+    const Cells cells_;
+    const std::int32_t n_hubs_;
+    Numbers part_of_;         // the leaf of a cell
     Numbers in_part_;         // of a graph's vertices
     Numbers parent_;          // of a front, or -1
-    Numbers front_of_;        // of an unknown
+    Numbers front_of_;        // of an unknown, then of those of hubs, three each
     Numbers turn_, unknown_;  // of an unknown, when it is eliminated; and the other way round
 };
 
 }  // namespace
 
-FrontPlan make_fronts(const NetworkPlan &s, std::int64_t most_bytes, FrontArrays &arrays) {
-    return FrontMaker(s, arrays).make(most_bytes);
+FrontPlan make_fronts(const NetworkPlan &s, const unsigned char *fixed, std::int64_t most_bytes, FrontArrays &arrays) {
+    return FrontMaker(s, fixed, arrays).make(most_bytes);
 }
 
 std::size_t bytes_of(const FrontArrays &a) {
-    std::size_t bytes = a.front.capacity() * sizeof(a.front[0]) + a.branch.capacity() * sizeof(a.branch[0]);
-    for (const Numbers *list : {&a.row, &a.to_parent, &a.node, &a.own_row, &a.foreign_row, &a.partner_row})
+    std::size_t bytes = a.front.capacity() * sizeof(a.front[0]) + a.branch.capacity() * sizeof(a.branch[0]) +
+                        a.spoke.capacity() * sizeof(a.spoke[0]);
+    for (const Numbers *list :
+         {&a.row, &a.to_parent, &a.node, &a.own_row, &a.foreign_row, &a.partner_row, &a.hub, &a.hub_of})
         bytes += list->capacity() * sizeof(std::int32_t);
     return bytes;
 }

@@ -13,11 +13,12 @@ namespace holonomic {
 struct FrontArrays {
     std::vector<FrontPlan::Front> front;
     std::vector<FrontPlan::Branch> branch;
-    Numbers row, to_parent, node, own_row, foreign_row, partner_row;
+    std::vector<FrontPlan::Spoke> spoke;
+    Numbers row, to_parent, node, own_row, foreign_row, partner_row, hub, hub_of;
 };
 
-// Of a network whose plan has all but the fronts; none where they would take more than most_bytes.
-FrontPlan make_fronts(const NetworkPlan &s, std::int64_t most_bytes, FrontArrays &arrays);
+// Of a network whose plan has all but the fronts; none where they would take more than most_bytes. fixed: by local atom.
+FrontPlan make_fronts(const NetworkPlan &s, const unsigned char *fixed, std::int64_t most_bytes, FrontArrays &arrays);
 
 std::size_t bytes_of(const FrontArrays &arrays);
 

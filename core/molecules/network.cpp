@@ -258,7 +258,7 @@ private:
 
 void make_network(const Schedule &s, std::int64_t most_bytes, NetworkArrays &arrays) {
     NetworkMaker(s, arrays).make();
-    arrays.plan.fronts = make_fronts(arrays.plan, most_bytes, arrays.fronts);
+    arrays.plan.fronts = make_fronts(arrays.plan, s.fixed, most_bytes, arrays.fronts);
 }
 
 std::size_t bytes_of(const NetworkArrays &a) {

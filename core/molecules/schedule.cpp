@@ -55,7 +55,7 @@ std::unique_ptr<Schedule> bare_schedule(std::int32_t n_atoms, std::int32_t n_bon
     s->memory = new Schedule::Memory();
     pack(*s, work);
     if (!maker.is_network()) {
-        s->careful_bytes = careful_scratch_bytes(*s);
+        s->careful_bytes = careful_scratch_bytes(*s, s->more_of_metric);
         return s;
     }
     make_network(*s, most_bytes, s->memory->of_large().network);

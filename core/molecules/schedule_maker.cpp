@@ -176,7 +176,7 @@ void ScheduleMaker::check_atoms(const Numbers &core, std::int64_t most_bytes) co
     Numbers degree(at(s_.n_atoms));
     std::int64_t bytes = 0;
     for (const std::int32_t k : core)
-        for (const std::int32_t i : {m_.atom_i[at(k)], m_.atom_j[at(k)]}) bytes += 8 * std::int64_t{++degree[at(i)]};
+        for (const std::int32_t i : {m_.atom_i[at(k)], m_.atom_j[at(k)]}) bytes += bytes_of_column(degree[at(i)]++);
     if (bytes > most_bytes) throw TooMuchMemory(bytes);
 }
 

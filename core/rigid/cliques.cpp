@@ -65,6 +65,7 @@ public:
         for (const Partner &partner : bonds_of_.at(atom))
             if (is_free(partner.atom)) each(partner.atom);
     }
+    Atom with_fewer(Atom i, Atom j) const { return bonds_of_.at(i).size() < bonds_of_.at(j).size() ? i : j; }
     double square(Atom i, Atom j) const {
         const std::int64_t bond = bond_between(i, j);
         return bond < 0 ? -1 : lengths_[bond % n_lengths_] * lengths_[bond % n_lengths_];
@@ -131,8 +132,9 @@ private:
         const std::int64_t i = list_.pairs[2 * bond], j = list_.pairs[2 * bond + 1];
         if (i == j || !is_free(i) || !is_free(j)) return;
         std::vector<std::int64_t> both;
-        for (const Partner &partner : bonds_of_.at(i))
-            if (partner.atom != j && is_free(partner.atom) && bond_between(partner.atom, j) >= 0 &&
+        const Atom fewer = with_fewer(i, j), other = i + j - fewer;
+        for (const Partner &partner : bonds_of_.at(fewer))
+            if (partner.atom != other && is_free(partner.atom) && bond_between(partner.atom, other) >= 0 &&
                 (both.empty() || both.back() != partner.atom))
                 both.push_back(partner.atom);
         if (five) {

@@ -29,6 +29,7 @@ public:
     void for_partners(Atom atom, const Each &each) const {
         for (const auto &partner : of_[at(atom)]) each(partner.first);
     }
+    Atom with_fewer(Atom i, Atom j) const { return of_[at(i)].size() < of_[at(j)].size() ? i : j; }
     double square(Atom i, Atom j) const {
         const auto &list = of_[at(i)];
         const auto found = std::lower_bound(list.begin(), list.end(), std::make_pair(j, std::int32_t{0}));
@@ -42,25 +43,37 @@ private:
     std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> of_;  // atoms and bonds
 };
 
+// Calls each(atom) for partners of both, which come after `after`. The one with fewer partners is looked through: the
+// other may have thousands.
+template <class Each>
+void for_common(const Partners &partners, std::int32_t i, std::int32_t j, std::int32_t after, const Each &each) {
+    const std::int32_t looked_through = partners.with_fewer(i, j), other = i + j - looked_through;
+    for (const auto &partner : partners.of(looked_through))
+        if (partner.first > after && partners.square(other, partner.first) >= 0) each(partner.first);
+}
+
 // Three or four atoms, of which i is the lowest.
 bool is_lowest_of_flat(const Partners &partners, std::int32_t i) {
-    const auto &list = partners.of(i);
+    bool found = false;
     const auto square = [&](std::int32_t a, std::int32_t b) { return partners.square(a, b); };
-    for (std::size_t a = 0; a < list.size(); ++a)
-        for (std::size_t b = a + 1; b < list.size(); ++b) {
-            const std::int32_t j = list[a].first, k = list[b].first;
-            const double ij = square(i, j), ik = square(i, k), jk = square(j, k);
-            if (j < i || jk < 0) continue;
-            const double three[9] = {0, ij, ik, ij, 0, jk, ik, jk, 0};
-            if (are_flat(3, three)) return true;
-            for (std::size_t c = b + 1; c < list.size(); ++c) {
-                const std::int32_t l = list[c].first;
+    for (const auto &partner : partners.of(i)) {
+        const std::int32_t j = partner.first;
+        if (j < i) continue;
+        const double ij = square(i, j);
+        for_common(partners, i, j, j, [&](std::int32_t k) {
+            if (found) return;
+            const double ik = square(i, k), jk = square(j, k), three[9] = {0, ij, ik, ij, 0, jk, ik, jk, 0};
+            found = are_flat(3, three);
+            if (found) return;
+            for_common(partners, j, k, k, [&](std::int32_t l) {
                 const double il = square(i, l), jl = square(j, l), kl = square(k, l);
-                if (jl < 0 || kl < 0) continue;
+                if (il < 0) return;
                 const double four[16] = {0, ij, ik, il, ij, 0, jk, jl, ik, jk, 0, kl, il, jl, kl, 0};
-                if (are_flat(4, four)) return true;
-            }
-        }
+                found = found || are_flat(4, four);
+            });
+        });
+        if (found) return true;
+    }
     return false;
 }
 

@@ -11,7 +11,8 @@
 
 namespace holonomic::rigid {
 
-// Graph: for_partners(atom, each) calls each(partner); square(i, j) is their squared distance, -1 where none is held.
+// Graph: for_partners(atom, each) calls each(partner); with_fewer(i, j) is the one that has fewer of them; square(i, j)
+// is their squared distance, -1 where none is held.
 template <class Graph>
 class FlatRing {
 public:
@@ -62,7 +63,7 @@ private:
         if (ring_.size() == most || --steps_ < 0) return false;
         bool found = false;
         const Atom last = ring_.back(), before = ring_[ring_.size() - 2];
-        graph_.for_partners(last, [&](Atom atom) {
+        graph_.for_partners(graph_.with_fewer(last, before), [&](Atom atom) {
             if (found || atom < ring_[0] || std::find(ring_.begin(), ring_.end(), atom) != ring_.end()) return;
             const double next = turned + turn(before, last, atom);
             if (next > circle + tolerance()) return;

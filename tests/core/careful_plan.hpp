@@ -22,7 +22,9 @@ struct planned {
     explicit planned(const molecule &m)
         : schedule(holonomic::make_schedule(m.n_atoms, m.n_bonds, m.pairs.data(), nullptr))
     {
-        const std::size_t size = static_cast<std::size_t>(holonomic::careful_scratch_bytes(*schedule)) / 8;
+        std::int64_t more = 0;
+        const std::int64_t bytes = holonomic::careful_scratch_bytes(*schedule, more) + more;
+        const std::size_t size = static_cast<std::size_t>(bytes) / 8;
         memory.assign(size + 16, 12345.0);
         double *const first = memory.data() + (8 - reinterpret_cast<std::uintptr_t>(memory.data()) / 8 % 8) % 8;
         canary = first + size;

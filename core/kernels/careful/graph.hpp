@@ -45,6 +45,26 @@ HOL_NOINLINE bool eliminate_children(const CarefulPlan &plan, Joint &x, int32_t 
     return eliminate_arms(x);
 }
 
+// The same table as of a tree (many.hpp): pivots of the children, and what is offered to the bond above.
+HOL_NOINLINE bool reduce_many(const Molecule &m, const Graph &g, Joint &x, int32_t i, int32_t &bad) {
+    const CarefulPlan &plan = m.plan;
+    const int32_t *const arms = plan.arms + plan.arm_start[i];
+    bool all = true;
+    x.n_others = 0;
+    for (int a = 0; a < x.n; ++a)
+        if (is_child(plan, i, arms[a])) x.others[x.n_others++] = a;
+    reduce_many(x, g.L + plan.table_start[i], [&](int e, const Wide &E, bool good) {
+        if (arms[e] == plan.parent[i]) g.up[arms[e]] = E;
+        if (is_child(plan, i, arms[e])) {
+            g.pivot[arms[e]] = g.up[arms[e]] + E;
+            good = good && abs(g.pivot[arms[e]].hi) > vanishing * (m.w[i] + m.w[m.other(arms[e], i)]);
+        }
+        if (!good && all) bad = arms[e];
+        all = all && good;
+    });
+    return all;
+}
+
 // Adds what atom i gives to the elements of its core bonds, once its children are eliminated.
 HOL_NOINLINE void add_to_core(const Molecule &m, const Graph &g, const Joint &x, int32_t i, const Wide *L) {
     const int32_t *const arms = m.plan.arms + m.plan.arm_start[i];
@@ -62,7 +82,8 @@ HOL_NOINLINE void add_to_core(const Molecule &m, const Graph &g, const Joint &x,
             g.core.diagonal[at] += value;
             g.core.size_of_diagonal[at] += size;
             g.core.full[at] += x.w * dot(x.D[e], x.B[e]);
-            g.core.removed[at] += taken(x, L + e * x.n, e);
+            if (x.n > most_arms) multipliers(x, e, x.row);
+            g.core.removed[at] += taken(x, x.n > most_arms ? x.row : L + e * x.n, e);
         }
     }
 }
@@ -75,7 +96,8 @@ HOL_NOINLINE bool factorize_joint(const Molecule &m, const Graph &g, Joint &x, i
     open_joint(m, g.D, g.B, i, x);
     for (int a = 0; a < x.n; ++a)
         if (is_child(plan, i, arms[a])) set_arm(x, a, g.up[arms[a]]);
-    for (int e = 0; e < x.n; ++e) {
+    if (x.n > most_arms && !reduce_many(m, g, x, i, bad)) return false;
+    for (int e = 0; e < x.n && x.n <= most_arms; ++e) {
         if (!is_child(plan, i, arms[e])) continue;
         if (!eliminate_children(plan, x, i, e)) {
             bad = arms[stiffest(x)];
@@ -91,7 +113,7 @@ HOL_NOINLINE bool factorize_joint(const Molecule &m, const Graph &g, Joint &x, i
         bad = arms[stiffest(x)];
         return false;
     }
-    for (int e = 0; e < x.n; ++e) {
+    for (int e = 0; e < x.n && x.n <= most_arms; ++e) {
         if (is_child(plan, i, arms[e])) continue;
         multipliers(x, e, L + e * x.n);
         if (arms[e] == plan.parent[i]) g.up[arms[e]] = offered(x, e, e);
@@ -123,10 +145,25 @@ HOL_NOINLINE bool factorize(const Molecule &m, const Graph &g, Joint &x, int32_t
     return factorize(g.core, x.loss, bad);
 }
 
+// Sums of y over the children of an atom of many arms, to each(e, sum): for other arms all, for a child its siblings.
+template <class Each>
+HOL_NOINLINE void sum_many(const Molecule &m, const Graph &g, int32_t i, const Each &each) {
+    const int32_t *const arms = m.plan.arms + m.plan.arm_start[i];
+    sum_many(
+        g.L + m.plan.table_start[i], m.plan.arm_start[i + 1] - m.plan.arm_start[i], -1,
+        [&](int a) { return g.y[arms[a]]; }, [&](int a) { return m.outward(g.D, arms[a], i); },
+        [&](int a) { return m.outward(g.B, arms[a], i); }, each);
+}
+
 // Takes what the children of atom i pass on from y of its other arms.
-HOL_NOINLINE void pass_on(const CarefulPlan &plan, const Graph &g, int32_t i) {
+HOL_NOINLINE void pass_on(const Molecule &m, const Graph &g, int32_t i) {
+    const CarefulPlan &plan = m.plan;
     const int32_t *const arms = plan.arms + plan.arm_start[i];
     const int n = plan.arm_start[i + 1] - plan.arm_start[i];
+    if (n > most_arms)
+        return sum_many(m, g, i, [&](int e, const Wide &sum) {
+            if (!is_child(plan, i, arms[e])) g.y[arms[e]] -= sum;
+        });
     for (int e = 0; e < n; ++e) {
         if (is_child(plan, i, arms[e])) continue;
         for (int a = 0; a < n; ++a)
@@ -144,6 +181,10 @@ HOL_NOINLINE void solve_children(const Molecule &m, const Graph &g, int32_t i, W
         if (!is_child(plan, i, arms[e])) pull = pull + t[arms[e]] * m.outward(g.B, arms[e], i);
     for (int e = 0; e < n; ++e)
         if (is_child(plan, i, arms[e])) g.y[arms[e]] -= m.w[i] * dot(m.outward(g.D, arms[e], i), pull);
+    if (n > most_arms)
+        return sum_many(m, g, i, [&](int e, const Wide &sum) {
+            if (is_child(plan, i, arms[e])) t[arms[e]] = (g.y[arms[e]] - sum) / g.pivot[arms[e]];
+        });
     for (int e = 0; e < n; ++e) {
         if (!is_child(plan, i, arms[e])) continue;
         Wide sum = g.y[arms[e]];
@@ -157,9 +198,9 @@ HOL_NOINLINE void solve_children(const Molecule &m, const Graph &g, int32_t i, W
 HOL_NOINLINE void solve(const Molecule &m, const Graph &g, const Wide *b, Wide *t) {
     const CarefulPlan &plan = m.plan;
     for (int32_t k = 0; k < plan.n_bonds; ++k) g.y[k] = b[k];
-    for (int32_t s = 0; s < plan.n_hanging; ++s) pass_on(plan, g, plan.hanging[s]);
+    for (int32_t s = 0; s < plan.n_hanging; ++s) pass_on(m, g, plan.hanging[s]);
     for (int32_t i = 0; i < plan.n_atoms; ++i)
-        if (plan.parent[i] < 0) pass_on(plan, g, i);
+        if (plan.parent[i] < 0) pass_on(m, g, i);
     for (int32_t c = 0; c < plan.n_core; ++c) g.core_y[c] = g.y[plan.core[c]];
     solve(g.core, g.core_y);
     for (int32_t c = 0; c < plan.n_core; ++c) t[plan.core[c]] = g.core_y[c];

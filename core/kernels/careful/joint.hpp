@@ -8,12 +8,13 @@
 #pragma once
 
 #include "core/kernels/careful/digits_lost.hpp"
+#include "core/kernels/careful/plan.hpp"
 
 namespace holonomic::HOL_ISA::careful {
 
 // An atom of more bonds is done by its inertia alone, the sum of rho D B^T: O(n) instead of O(n^3) terms per arm. That
 // has digits enough while it is no larger than `mild`; beyond, only atoms of still more bonds make do with it.
-constexpr int few_arms = 16, most_arms = 64;
+constexpr int few_arms = 16, most_arms = most_in_table;
 constexpr double mild = 0x1p20;
 
 // An arm with an E below this part of w d.d does not give way at all.
@@ -45,6 +46,7 @@ struct Joint {
     Wide inverse[9];    // if so: the inverse of 1 + sum rho D B^T over those that give way,
     Rigid rigid_arms;   // with the directions of the others taken out
     mutable Loss loss;  // of all sums so far
+    Wide *behind, *row;  // [18 n], [n] of many arms: sums, and multipliers of one
 };
 
 // Finds the cross products and sizes of all arms, once their vectors are there.

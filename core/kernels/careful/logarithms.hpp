@@ -20,6 +20,35 @@ HOL_INLINE Wide full_diagonal(const Molecule &m, int32_t k) {
     return (wide(m.w[m.plan.atom_i[k]]) + wide(m.w[m.plan.atom_j[k]])) * dot(m.d[k], m.d[k]);
 }
 
+// The same of an atom of many arms, all of which give way: with the sum rho B D^T over the children so far.
+HOL_NOINLINE Wide log_of_many(const Molecule &m, const Wide *up, Wide *F, Joint &x, int32_t i) {
+    const CarefulPlan &plan = m.plan;
+    const int32_t *const arms = plan.arms + plan.arm_start[i];
+    Wide sum = wide(0), so_far[9] = {}, inverse[9];
+    double inertia = 0;
+    int parent = -1;
+    const auto reduce = [&](int a, Wide &left) {  // returns what has been taken
+        invert_with_one(so_far, inverse);
+        const Wide3 G = from_left(x.D[a], inverse);
+        left = x.w * dot(G, x.B[a]);
+        return x.w * dot(from_left(G, so_far), x.B[a]);
+    };
+    for (int a = 0; a < x.n; ++a) {
+        if (arms[a] == plan.parent[i]) parent = a;
+        if (!is_child(plan, i, arms[a])) continue;
+        const int32_t k = arms[a];
+        Wide left;
+        const Wide removed = F[k] + reduce(a, left);
+        sum += wide(log_of_ratio(removed, up[k] + left, full_diagonal(m, k)));
+        inertia += abs((x.rho[a] * dot(x.D[a], x.B[a])).hi);
+        add_outer(so_far, x.B[a], x.rho[a] * x.D[a]);
+    }
+    if (inertia >= mild) x.loss.note(1, wide(0));
+    Wide left;
+    if (parent >= 0) F[arms[parent]] = reduce(parent, left);
+    return sum;
+}
+
 // Adds the logarithms of the children of atom i, one after the other. F gets what all of them take of its parent bond.
 HOL_NOINLINE Wide log_of_children(const Molecule &m, const Wide *up, Wide *F, Joint &x, Wide *l, int32_t i) {
     const CarefulPlan &plan = m.plan;
@@ -27,6 +56,13 @@ HOL_NOINLINE Wide log_of_children(const Molecule &m, const Wide *up, Wide *F, Jo
     Wide sum = wide(0);
     int parent = -1;
     open_joint(m, m.d, m.d, i, x);
+    bool gives_way = x.n > most_arms && x.w > 0;
+    for (int a = 0; a < x.n && gives_way; ++a) {
+        if (!is_child(plan, i, arms[a])) continue;
+        set_arm(x, a, up[arms[a]]);
+        gives_way = !x.rigid[a];
+    }
+    if (gives_way) return log_of_many(m, up, F, x, i);
     x.n_others = 0;
     for (int a = 0; a < x.n; ++a) {
         if (arms[a] == plan.parent[i]) parent = a;

@@ -5,16 +5,23 @@
 
 namespace holonomic::HOL_ISA::careful {
 
-// Of arms a and b of atom i at [table_start[i] + a n + b].
+// Of arms a and b of atom i at [start[i] + a n + b]; none of an atom of a tree with many arms.
 struct Neighbours {
-    Wide *H;              // [table_start[n_atoms]]
+    int64_t *start;       // [n_atoms + 1]
+    Wide *H;              //
     Wide *diagonal;       // [n_bonds]
     Wide *lower, *pivot;  // of the core's inverse, where its factor has elements
 };
 
 HOL_NOINLINE Neighbours take_neighbours(const CarefulPlan &plan, Memory &memory) {
     Neighbours x;
-    x.H = memory.take<Wide>(plan.table_start[plan.n_atoms]);
+    x.start = memory.take<int64_t>(plan.n_atoms + 1);
+    x.start[0] = 0;
+    for (int32_t i = 0; i < plan.n_atoms; ++i) {
+        const int64_t n = plan.arm_start[i + 1] - plan.arm_start[i];
+        x.start[i + 1] = x.start[i] + (n > most_arms && is_tree(plan) ? 0 : n * n);
+    }
+    x.H = memory.take<Wide>(x.start[plan.n_atoms]);
     x.diagonal = memory.take<Wide>(plan.n_bonds);
     x.lower = memory.take<Wide>(plan.column_start[plan.n_core]);
     x.pivot = memory.take<Wide>(plan.n_core);
@@ -25,11 +32,12 @@ HOL_NOINLINE Neighbours take_neighbours(const CarefulPlan &plan, Memory &memory)
 HOL_NOINLINE void find_neighbours(const CarefulPlan &plan, const Tree &tree, const Neighbours &x) {
     for (int32_t i = 0; i < plan.n_atoms; ++i) {
         const int n = plan.arm_start[i + 1] - plan.arm_start[i];
+        if (n > most_arms) continue;
         for (int a = 0; a < n; ++a) {
             const int32_t k = plan.arms[plan.arm_start[i] + a];
             const Wide r = wide(1) / (tree.up[k] + tree.down[k]);
-            const int64_t row = plan.table_start[i] + a * n;
-            for (int b = 0; b < n; ++b) x.H[row + b] = b == a ? r : -(tree.L[row + b] * r);
+            const int64_t row = x.start[i] + a * n, of_L = plan.table_start[i] + a * n;
+            for (int b = 0; b < n; ++b) x.H[row + b] = b == a ? r : -(tree.L[of_L + b] * r);
         }
     }
 }
@@ -58,11 +66,15 @@ HOL_NOINLINE void invert(const Core &core, const Neighbours &x) {
 }
 
 // Goes from the arms of atom i that are no children to those that are.
-HOL_NOINLINE void hand_down(const CarefulPlan &plan, const Graph &g, const Neighbours &x, int32_t i) {
+HOL_NOINLINE void hand_down(const Molecule &m, const Graph &g, const Neighbours &x, int32_t i) {
+    const CarefulPlan &plan = m.plan;
     const int32_t *const arms = plan.arms + plan.arm_start[i];
     const int n = plan.arm_start[i + 1] - plan.arm_start[i];
-    Wide *const H = x.H + plan.table_start[i];
-    const Wide *const L = g.L + plan.table_start[i];
+    Wide *const H = x.H + x.start[i], *const table = g.L + plan.table_start[i];
+    const auto outward = [&](int a) { return m.outward(m.d, arms[a], i); };
+    const auto L = [&](int e, int a) {
+        return n > most_arms ? multiplier_of_many(table, n, e, a, outward, outward) : table[e * n + a];
+    };
     const auto child = [&](int a) { return is_child(plan, i, arms[a]); };
     for (int c = 0; c < n; ++c) {
         if (!child(c)) continue;
@@ -70,7 +82,7 @@ HOL_NOINLINE void hand_down(const CarefulPlan &plan, const Graph &g, const Neigh
             if (child(b)) continue;
             Wide sum = wide(0);
             for (int e = 0; e < n; ++e)
-                if (!child(e)) sum -= L[e * n + c] * H[e * n + b];
+                if (!child(e)) sum -= L(e, c) * H[e * n + b];
             H[c * n + b] = H[b * n + c] = sum;
         }
     }
@@ -79,21 +91,22 @@ HOL_NOINLINE void hand_down(const CarefulPlan &plan, const Graph &g, const Neigh
         const Wide r = wide(1) / g.pivot[arms[c]];
         for (int b = 0; b < n; ++b) {
             if (!child(b)) continue;
-            Wide sum = b == c ? r : -(L[c * n + b] * r);
+            Wide sum = b == c ? r : -(L(c, b) * r);
             for (int e = 0; e < n; ++e)
-                if (!child(e)) sum -= L[e * n + c] * H[e * n + b];
+                if (!child(e)) sum -= L(e, c) * H[e * n + b];
             H[c * n + b] = sum;
         }
         x.diagonal[arms[c]] = H[c * n + c];
     }
 }
 
-HOL_NOINLINE void find_neighbours(const CarefulPlan &plan, const Graph &g, const Neighbours &x) {
+HOL_NOINLINE void find_neighbours(const Molecule &m, const Graph &g, const Neighbours &x) {
+    const CarefulPlan &plan = m.plan;
     invert(g.core, x);
     from_the_root(plan, [&](int32_t i) {
         const int32_t *const arms = plan.arms + plan.arm_start[i];
         const int n = plan.arm_start[i + 1] - plan.arm_start[i];
-        Wide *const H = x.H + plan.table_start[i];
+        Wide *const H = x.H + x.start[i];
         for (int a = 0; a < n; ++a)
             for (int b = 0; b < n; ++b) {
                 if (arms[a] == plan.parent[i] && a == b)
@@ -101,7 +114,7 @@ HOL_NOINLINE void find_neighbours(const CarefulPlan &plan, const Graph &g, const
                 else if (plan.place[arms[a]] >= 0 && plan.place[arms[b]] >= 0)
                     H[a * n + b] = core_element(plan, x, plan.place[arms[a]], plan.place[arms[b]]);
             }
-        hand_down(plan, g, x, i);
+        hand_down(m, g, x, i);
         return true;
     });
 }
@@ -116,7 +129,7 @@ HOL_NOINLINE void find_neighbours(const CarefulPlan &plan, const Ring &ring, con
         for (int side = 0; side < 2; ++side) {
             const int32_t end = side == 0 ? plan.atom_i[bk] : plan.atom_j[bk];
             if (end == plan.atom_i[bl] || end == plan.atom_j[bl])
-                x.H[plan.table_start[end] + 1] = x.H[plan.table_start[end] + 2] = h;
+                x.H[x.start[end] + 1] = x.H[x.start[end] + 2] = h;
         }
     };
     const Wide corner = diagonal;
@@ -132,10 +145,11 @@ HOL_NOINLINE void find_neighbours(const CarefulPlan &plan, const Ring &ring, con
     put(0, last, beside);
 }
 
-HOL_NOINLINE void find_neighbours(const CarefulPlan &plan, const System &system, const Neighbours &x) {
+HOL_NOINLINE void find_neighbours(const Molecule &m, const System &system, const Neighbours &x) {
+    const CarefulPlan &plan = m.plan;
     if (is_tree(plan)) return find_neighbours(plan, system.tree, x);
     if (is_ring(plan)) return find_neighbours(plan, system.ring, x);
-    find_neighbours(plan, system.graph, x);
+    find_neighbours(m, system.graph, x);
 }
 
 }  // namespace holonomic::HOL_ISA::careful

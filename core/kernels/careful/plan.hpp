@@ -11,7 +11,7 @@ struct CarefulPlan {
     int32_t n_atoms, n_bonds;
     const int32_t *atom_i, *atom_j;   // [n_bonds]
     const int32_t *arm_start, *arms;  // [n_atoms+1], [2 n_bonds]: the bonds of each atom
-    const int64_t *table_start;       // [n_atoms+1]: sums of the squares of the numbers of bonds of the atoms before
+    const int64_t *table_start;       // [n_atoms+1]: sums of table_values() of the atoms before
     int32_t most_arms;                // of one atom
     const int32_t *parent;            // [n_atoms] bond towards the core or the root; -1 there
     int32_t n_hanging;                //
@@ -23,6 +23,11 @@ struct CarefulPlan {
     const int32_t *rows;              // [column_start[n_core]] ascending in each column
     const int32_t *ring;              // [n_bonds] in their order round the ring; nullptr if it is no bare ring
 };
+
+// How many numbers are kept of the multipliers at an atom of n bonds; of more than so many, see many.hpp.
+constexpr int most_in_table = 64;
+constexpr int64_t values_of_many(int64_t n) { return 17 * n + 16; }
+constexpr int64_t table_values(int64_t n) { return n > most_in_table ? values_of_many(n) : n * n; }
 
 // Molecules of more bonds are not done again in four times the precision, which would take a kilobyte per bond.
 constexpr int32_t most_fourfold = 65536;

@@ -19,7 +19,7 @@ HOL_NOINLINE void list_arms(CarefulPlan &plan, Memory &memory) {
     for (int32_t i = 0, end = 0; i < plan.n_atoms; ++i) {
         const int32_t n = start[i];
         plan.most_arms = n > plan.most_arms ? n : plan.most_arms;
-        table[i + 1] = table[i] + static_cast<int64_t>(n) * n;
+        table[i + 1] = table[i] + table_values(n);
         start[i] = end += n;
     }
     for (int32_t k = plan.n_bonds; k-- > 0;) {

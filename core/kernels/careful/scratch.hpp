@@ -9,9 +9,10 @@ namespace holonomic {
 inline constexpr int64_t careful_scratch_bytes(int64_t n_atoms, int64_t n_bonds, int64_t most_arms, int64_t table,
                                                int64_t n_core, int64_t fill) {
     const int64_t wide = n_bonds > most_fourfold ? 16 : 32, vector = 3 * wide, most_arrays = 64;
-    const int64_t per_bond = 4 * vector + 14 * wide + 40, per_atom = 2 * vector + 16;
-    const int64_t joint =
-        most_arms * (2 * vector + wide + 32) + 2 * (vector + 8) * (most_arms > 64 ? 0 : most_arms * most_arms);
+    const int64_t per_bond = 4 * vector + 14 * wide + 40, per_atom = 2 * vector + 24;
+    const int64_t joint = most_arms * (2 * vector + wide + 32) +
+                          (most_arms > most_in_table ? 19 * wide * most_arms
+                                                     : 2 * (vector + 8) * (most_arms * most_arms));
     return per_bond * n_bonds + per_atom * n_atoms + joint + wide * (2 * table + 5 * n_core + 3 * fill) +
            8 * (n_core + fill) + 64 * most_arrays;
 }
@@ -21,9 +22,10 @@ inline int64_t careful_plan_bytes(const Schedule &s) {
     return 16 * static_cast<int64_t>(s.n_atoms) + 12 * static_cast<int64_t>(s.n_bonds) + 64 * 6;
 }
 
-// Of a plan and a verb.
-inline int64_t careful_scratch_bytes(const Schedule &s) {
+// Of a plan and a verb; more_of_metric: what a metric takes beside that.
+inline int64_t careful_scratch_bytes(const Schedule &s, int64_t &more_of_metric) {
     int64_t most_arms = 0, table = 0;
+    more_of_metric = 0;
     for (int32_t slot = 0; slot < s.n_atoms; ++slot) {
         const int32_t c = slot - s.n_tree;
         const int64_t above = c < 0           ? 1
@@ -31,7 +33,8 @@ inline int64_t careful_scratch_bytes(const Schedule &s) {
                                               : s.meet_start[c + 1] - s.meet_start[c],
                       arms = s.child_start[slot + 1] - s.child_start[slot] + above;
         most_arms = arms > most_arms ? arms : most_arms;
-        table += arms * arms;
+        table += table_values(arms);
+        if (arms > most_in_table && s.n_core > 0) more_of_metric += 32 * arms * arms;
     }
     return careful_plan_bytes(s) +
            careful_scratch_bytes(s.n_atoms, s.n_bonds, most_arms, table, s.n_core, s.column_start[s.n_core]);

@@ -3,7 +3,7 @@
 // are.
 #pragma once
 
-#include "core/kernels/careful/joint.hpp"
+#include "core/kernels/careful/many.hpp"
 #include "core/kernels/careful/molecule.hpp"
 
 namespace holonomic::HOL_ISA::careful {
@@ -23,6 +23,8 @@ HOL_NOINLINE Joint take_joint(int32_t most, bool mixed, Memory &memory) {
     x.sB = mixed ? memory.take<double>(n) : x.sD;
     x.sXD = memory.take<double>(pairs);
     x.sXB = mixed ? memory.take<double>(pairs) : x.sXD;
+    x.behind = memory.take<Wide>(n > most_arms ? 18 * n : 0);
+    x.row = memory.take<Wide>(n > most_arms ? n : 0);
     return x;
 }
 
@@ -57,7 +59,8 @@ HOL_NOINLINE int stiffest(const Joint &x) {
 
 struct Tree {
     Wide *up, *down;  // [n_bonds] inverse mass offered to the bond from the side away from the root, and from its side
-    Wide *L;          // multipliers of arm a in the message along arm e of atom i at [table_start[i] + e n + a]
+    Wide *L;          // multipliers of arm a in the message along arm e of atom i at [table_start[i] + e n + a], or
+                      // what many.hpp has of them
     Wide *y_up, *y_down;  // [n_bonds] what a solve sends
 };
 
@@ -97,6 +100,22 @@ HOL_NOINLINE bool send(const Molecule &m, const Tree &tree, Joint &x, int32_t i,
     return true;
 }
 
+// Messages of atom i along all its arms but its parent's, or along that one alone.
+HOL_NOINLINE bool send_many(const Molecule &m, const Tree &tree, Joint &x, int32_t i, bool up, int32_t &bad) {
+    const int32_t *const arms = m.plan.arms + m.plan.arm_start[i];
+    bool all = true;
+    x.n_others = 0;
+    for (int a = 0; a < x.n; ++a)
+        if (!up || arms[a] != m.plan.parent[i]) x.others[x.n_others++] = a;
+    reduce_many(x, tree.L + m.plan.table_start[i], [&](int e, const Wide &E, bool good) {
+        if ((arms[e] == m.plan.parent[i]) != up) return;
+        (up ? tree.up : tree.down)[arms[e]] = E;
+        if (!good && all) bad = arms[e];
+        all = all && good;
+    });
+    return all;
+}
+
 // Returns false if a bond depends on others, and sets its number.
 HOL_NOINLINE bool factorize(const Molecule &m, const Tree &tree, Joint &x, int32_t &bad) {
     const CarefulPlan &plan = m.plan;
@@ -111,7 +130,8 @@ HOL_NOINLINE bool factorize(const Molecule &m, const Tree &tree, Joint &x, int32
             else
                 set_arm(x, a, tree.up[k]);
         }
-        if (!send(m, tree, x, i, e, tree.up[parent], bad)) return false;
+        if (x.n > most_arms ? !send_many(m, tree, x, i, true, bad) : !send(m, tree, x, i, e, tree.up[parent], bad))
+            return false;
     }
     const bool good = from_the_root(plan, [&](int32_t i) {
         open_joint(m, m.d, m.d, i, x);
@@ -119,6 +139,7 @@ HOL_NOINLINE bool factorize(const Molecule &m, const Tree &tree, Joint &x, int32
             const int32_t k = plan.arms[plan.arm_start[i] + a];
             set_arm(x, a, k == plan.parent[i] ? tree.down[k] : tree.up[k]);
         }
+        if (x.n > most_arms) return send_many(m, tree, x, i, false, bad);
         for (int a = 0; a < x.n; ++a) {
             const int32_t k = plan.arms[plan.arm_start[i] + a];
             if (k != plan.parent[i] && !send(m, tree, x, i, a, tree.down[k], bad)) return false;
@@ -132,6 +153,18 @@ HOL_NOINLINE bool factorize(const Molecule &m, const Tree &tree, Joint &x, int32
         if (!(tree.up[k].hi + tree.down[k].hi > vanishing * diagonal)) return false;
     }
     return true;
+}
+
+// Right-hand sides behind the arms of an atom of many, as they pass over it, to each(e, sum); or those behind one arm.
+template <class Each>
+HOL_NOINLINE void pass_many(const Molecule &m, const Tree &tree, const Wide *b, int32_t i, int only, const Each &each) {
+    const CarefulPlan &plan = m.plan;
+    const int32_t *const arms = plan.arms + plan.arm_start[i];
+    const auto outward = [&](int a) { return m.outward(m.d, arms[a], i); };
+    sum_many(
+        tree.L + plan.table_start[i], plan.arm_start[i + 1] - plan.arm_start[i], only,
+        [&](int a) { return b[arms[a]] + (arms[a] == plan.parent[i] ? tree.y_down : tree.y_up)[arms[a]]; }, outward,
+        outward, [&](int e, const Wide &sum) { each(e, -sum); });
 }
 
 // Returns the right-hand sides behind arm e of atom i, as they pass over it.
@@ -156,11 +189,21 @@ HOL_NOINLINE void solve(const Molecule &m, const Tree &tree, const Wide *b, Wide
         const int32_t *const arms = plan.arms + plan.arm_start[i];
         int e = 0;
         while (arms[e] != plan.parent[i]) ++e;
+        if (plan.arm_start[i + 1] - plan.arm_start[i] > most_arms) {
+            tree.y_down[plan.parent[i]] = wide(0);  // multiplied by nothing
+            pass_many(m, tree, b, i, e, [&](int, const Wide &sum) { tree.y_up[plan.parent[i]] = sum; });
+            continue;
+        }
         tree.y_up[plan.parent[i]] = passed(plan, tree, b, i, e);
     }
     from_the_root(plan, [&](int32_t i) {
         const int32_t *const arms = plan.arms + plan.arm_start[i];
-        for (int a = 0; a < plan.arm_start[i + 1] - plan.arm_start[i]; ++a)
+        const int32_t n = plan.arm_start[i + 1] - plan.arm_start[i];
+        if (n > most_arms)
+            pass_many(m, tree, b, i, -1, [&](int e, const Wide &sum) {
+                if (arms[e] != plan.parent[i]) tree.y_down[arms[e]] = sum;
+            });
+        for (int a = 0; a < n && n <= most_arms; ++a)
             if (arms[a] != plan.parent[i]) tree.y_down[arms[a]] = passed(plan, tree, b, i, a);
         return true;
     });

@@ -132,7 +132,8 @@ struct Schedule {
     const int32_t *share_start;  // [n_shares + 1] arms that one thread works on at a time
     int32_t n_shares;
 
-    int64_t careful_bytes;  // scratch memory of the careful solver and its plan; not of networks
+    int64_t careful_bytes;   // scratch memory of the careful solver and its plan; not of networks
+    int64_t more_of_metric;  // and what a metric takes beside that, where atoms have many bonds
     // Of a network: an order of elimination for the careful solver, if it fills little; and one that is made once a
     // metric has been asked for, which no other call uses.
     const Schedule *careful;

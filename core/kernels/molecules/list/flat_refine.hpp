@@ -220,7 +220,7 @@ struct FlatRefine {
         }
         return rounded;
     }
-    // In which corrections that are no numbers, which are not seen, have left none among the multipliers.
+    // In which there are numbers.
     MaskOf<V> take_solution(const Tile &tile) const {
         V sum = {};
         for (int32_t k = tile.first; k < tile.end; ++k) {
@@ -265,7 +265,12 @@ struct FlatRefine {
         if (!any(doubtful)) return proven;
         start();
         MaskOf<V> good = correct_until_right<V>(
-            doubtful, [&]() HOL_FORCED { solve(); }, [&](MaskOf<V> active) HOL_FORCED { return correct(active); },
+            doubtful,
+            [&]() HOL_FORCED {
+                solve();
+                return doubtful;
+            },
+            [&](MaskOf<V> active) HOL_FORCED { return correct(active); },
             [&]() HOL_FORCED { return lanes_where(rounded); });
         good = good & lanes_where(taken);
         if (!(bits(good) | proven)) return 0;

@@ -23,7 +23,7 @@ struct Dense {
     static constexpr int32_t filled(int32_t n) { return (n + unit - 1) / unit * unit; }
     bool symmetric() const { return lower == upper; }
 
-    // per_pivot has whole diagonal elements. False if a pivot is not more than this part of its own.
+    // per_pivot has whole diagonal elements. False if a pivot is not more than this part of its own, of its sign.
     __attribute__((noinline)) bool eliminate(double least_left) const {
         double *const other = factor + static_cast<int64_t>(panel) * height;
         bool good = true;
@@ -100,7 +100,7 @@ private:
         for (int32_t p = 0; p < step; ++p) {
             double *const lp = l + p * height + c, *const up = u + p * height + c;
             const double d = lp[p], whole = per_pivot[c + p];
-            good = good && d > least_left * whole;
+            good = good && (whole < 0 ? d < least_left * whole : d > least_left * whole);
             pivot[p] = d;
             per[p] = per_pivot[c + p] = 1 / d;
             for (int32_t q = p + 1; q < step; ++q) {

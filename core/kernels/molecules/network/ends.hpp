@@ -104,6 +104,20 @@ struct Ends {
             });
         });
     }
+    // What a node's trees give beside what has been added.
+    void add_push(int32_t n, const Vector3<double> &more) const {
+        net.for_own(n, [&](int32_t u) { y[u] -= dot(D.get<double>(u), more); });
+        for (int32_t f = s.foreign_start[n]; f < s.foreign_start[n + 1]; ++f)
+            y[s.foreign[f]] += dot(D.get<double>(s.foreign[f]), more);
+    }
+    // What the ends at a node do to it, by these values.
+    Pair3<double> pull_of(int32_t n, const double *of) const {
+        Pair3<double> sum_of = {};
+        net.for_own(n, [&](int32_t u) { sum_of = add_pairs(sum_of, product_pairs(of[u], b.get<double>(u))); });
+        for (int32_t f = s.foreign_start[n]; f < s.foreign_start[n + 1]; ++f)
+            sum_of = add_pairs(sum_of, product_pairs(-of[s.foreign[f]], b.get<double>(s.foreign[f])));
+        return sum_of;
+    }
     // Of a node with its trees, by these values of the ends.
     Vector3<double> acceleration_of(int32_t n, const double *of) const {
         Vector3<double> sum_of = push.get<double>(n);
@@ -198,17 +212,35 @@ struct Ends {
     // False where a pivot is next to nothing.
     __attribute__((noinline)) bool factorize_fronts() const {
         return fronts.factorize(
-            least_share, [&](const FrontPlan::Front &f, const Dense &a) { add_terms(f, a); },
-            [&](int32_t u) { return E[u] + dot(D.get<double>(u), mass.get<double>(s.node_of[u]) * b.get<double>(u)); });
+            least_share,
+            [&](const FrontPlan::Front &f, const Dense &a) {
+                add_terms(f, a);
+                add_spokes(f, a);
+            },
+            [&](int32_t u) {
+                return s.fronts.n_hubs > 0 ? diagonal_beside_hubs(u) : E[u] + offered_by(s.node_of[u], u);
+            });
     }
+    // of, to: with room for what hubs add.
     void solve_fronts(const double *of, double *to) const {
         for (int32_t u = 0; u < s.n_unknowns; ++u) to[u] = of[u];
+        for (int32_t u = s.n_unknowns; u < s.n_unknowns + 3 * s.fronts.n_hubs; ++u) to[u] = 0;
         fronts.solve(to);
     }
 
 private:
     static constexpr double least_share = 16 * epsilon, least_of_own = 1e-5;
 
+    double offered_by(int32_t n, int32_t u) const {
+        return dot(D.get<double>(u), mass.get<double>(n) * b.get<double>(u));
+    }
+    double diagonal_beside_hubs(int32_t u) const {
+        if (u >= s.n_unknowns) return -1;
+        const int32_t from = s.node_of[u], to = s.other_node[u];
+        const double by_from = offered_by(from, u), by_to = to < 0 ? E[u] : offered_by(to, u);
+        const double left = (s.fronts.hub_of[from] < 0 ? by_from : 0) + (to < 0 || s.fronts.hub_of[to] < 0 ? by_to : 0);
+        return left > 0 ? left : by_from + by_to;
+    }
     // Calls each(unknown, row, sign) for all whose bonds meet at a node.
     template <class Each>
     HOL_FORCED void for_unknowns_at(int32_t n, const Each &each) const {
@@ -236,6 +268,31 @@ private:
                 add(row, other, coupling[u]);
                 add(other, row, coupling[s.partner[u]]);
             });
+        }
+    }
+    // What hubs add to it.
+    __attribute__((noinline)) void add_spokes(const FrontPlan::Front &front, const Dense &a) const {
+        const auto add = [&](int32_t row, int32_t column, double value) {
+            if (row >= column || !a.symmetric()) Fronts::element(front, a, row, column) += value;
+        };
+        for (int32_t i = front.first_spoke; i < front.end_spoke; ++i) {
+            const FrontPlan::Spoke &spoke = s.fronts.spoke[i];
+            const int32_t u = spoke.unknown;
+            const Factors<double> factors = factors_of(mass.get<double>(s.fronts.hub[spoke.hub]));
+            const Vector3<double> of_row = static_cast<double>(spoke.sign) * (D.get<double>(u) * factors.lower),
+                                  of_column = static_cast<double>(spoke.sign) * (factors.upper * b.get<double>(u));
+            const double rows[3] = {of_row.x, of_row.y, of_row.z},
+                         columns[3] = {of_column.x, of_column.y, of_column.z};
+            for (int32_t c = 0; c < 3; ++c) {
+                const int32_t h = spoke.hub_row + c;
+                add(spoke.row, h, rows[c]);
+                add(h, spoke.row, columns[c]);
+                if (spoke.is_first) add(h, h, -1);
+            }
+            if (spoke.sign > 0 && s.other_node[u] < 0) add(spoke.row, spoke.row, E[u]);
+            if (spoke.partner_row < 0) continue;
+            add(spoke.row, spoke.partner_row, coupling[u]);
+            add(spoke.partner_row, spoke.row, coupling[s.partner[u]]);
         }
     }
 };

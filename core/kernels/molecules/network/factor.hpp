@@ -3,6 +3,7 @@
 // forces and velocities these are the same.
 #pragma once
 
+#include "core/kernels/molecules/network/stiff_joint.hpp"
 #include "core/kernels/molecules/network/unknowns.hpp"
 
 namespace holonomic::HOL_ISA::graph {
@@ -10,7 +11,7 @@ namespace holonomic::HOL_ISA::graph {
 // What offers less than this part of an inverse mass is taken to offer so much: the end of a strand; a bond of a tree
 // below an atom with several, whose multiplier is a difference that is divided by it. The factors need not be exact, as
 // what they leave is corrected.
-constexpr double least_offer = 1e-10, least_offer_of_child = 1e-5;
+constexpr double least_offer = 1e-10;
 
 struct NetFactor {
     const Net &net;
@@ -22,14 +23,16 @@ struct NetFactor {
     double *per_pivot;              // 1 / P; of trees: of a bond below an atom with several E, else 1 / P
     Tensor<double> *joint;          // [n_tree] of atoms with several children: the inverse mass that they leave
     Vector3<double> *push;          // [n_tree] of those: from their y
+    StiffJoints stiff;              // of nodes, then of atoms of trees
     Unknowns unknowns;
 
     static int64_t values(const NetworkPlan &s, bool symmetric) {
-        return 5 * in_fours(s.n_bonds) + in_fours(12 * static_cast<int64_t>(s.n_tree)) + Unknowns::values(s, symmetric);
+        return 5 * in_fours(s.n_bonds) + in_fours(12 * static_cast<int64_t>(s.n_tree)) +
+               StiffJoints::values(s.n_nodes + s.n_tree) + Unknowns::values(s, symmetric);
     }
     // D != b: a matrix that is not symmetric.
     NetFactor(const Net &of, const Net3 &bonds, bool symmetric, Memory<double> &memory)
-        : net(of), s(of.s), b(bonds), unknowns(of, symmetric, memory) {
+        : net(of), s(of.s), b(bonds), stiff(s.n_nodes + s.n_tree, memory), unknowns(of, symmetric, memory) {
         const int64_t n = in_fours(s.n_bonds);
         to_last = memory.values(n);
         from_last = symmetric ? to_last : memory.values(n);
@@ -46,8 +49,15 @@ struct NetFactor {
             part, [&](auto width, const NetStrands &g) HOL_FORCED { factorize_strands<decltype(width)>(g, D, y); });
     }
     void close() const {
-        unknowns.add_pushes();
+        add_pushes();
         unknowns.factorize();
+    }
+    // What trees at the nodes give to right-hand sides.
+    void add_pushes() const {
+        unknowns.add_pushes();
+        for (int32_t n = 0; n < s.n_nodes && s.n_tree > 0; ++n)
+            if (stiff.is[n])
+                unknowns.add_push(n, rounded(stiff.acceleration(n)) - unknowns.mass.get<double>(n) * unknowns.push.get<double>(n));
     }
     // Other right-hand sides.
     void take_up_rest(double *y) const {
@@ -77,7 +87,10 @@ struct NetFactor {
         for (int32_t u = 0; u < s.n_unknowns; ++u) y[s.place_of[u]] = unknowns.x[u];
         for (int32_t n = 0; n < s.n_nodes && s.n_tree > 0; ++n) {
             if (s.child_start[n] == s.child_start[n + 1]) continue;
-            solve_children(n, unknowns.acceleration_of(n, unknowns.x), y);
+            if (stiff.is[n])
+                solve_stiff_children(n, stiff.acceleration(n, unknowns.pull_of(n, unknowns.x)), y);
+            else
+                solve_children(n, unknowns.acceleration_of(n, unknowns.x), y);
         }
         for (int32_t i = s.n_tree; i-- > 0;) take_down_tree(i, y);
     }
@@ -210,7 +223,7 @@ private:
                 to_first[e] = part * mul_add(q, E, w * dot(cross(Dc, De), cross(bc, be)));
             } else {
                 joint[i] = mass_with_children(s.n_nodes + i, w, D);
-                to_first[e] = dot(De, joint[i] * be);
+                to_first[e] = stiff.is[s.n_nodes + i] ? stiff.offered(s.n_nodes + i, De, be) : dot(De, joint[i] * be);
             }
             keep_new_bond(i, De);
             take_up_tree(i, y);
@@ -227,14 +240,28 @@ private:
 
     Tensor<double> mass_with_children(int32_t number, double w, const Net3 &D) const {
         Tensor<double> mass = diagonal_tensor(w);
+        bool is_stiff = false;
         for (int32_t j = s.child_start[number]; j < s.child_start[number + 1]; ++j) {
             const int32_t c = s.first_tree_place + s.child[j];
             const Vector3<double> Dc = D.get<double>(c), bc = b.get<double>(c);
-            const double E = max(to_first[c], least_offer_of_child * (w * dot(Dc, bc)));
+            const double E = to_first[c];
+            is_stiff = is_stiff || E < stiff_offer * (w * dot(Dc, bc));
             per_pivot[c] = 1 / E;
             load(mass, E, bc, Dc);
         }
-        return mass;
+        stiff.is[number] = is_stiff;
+        return is_stiff ? mass_of_stiff(number, w, D) : mass;
+    }
+    __attribute__((noinline)) Tensor<double> mass_of_stiff(int32_t number, double w, const Net3 &D) const {
+        stiff.begin(number, w);
+        for (int32_t j = s.child_start[number]; j < s.child_start[number + 1]; ++j) {
+            const int32_t c = s.first_tree_place + s.child[j];
+            const Vector3<double> Dc = D.get<double>(c), bc = b.get<double>(c);
+            const double E = max(to_first[c], least_stiff_offer * (w * dot(Dc, bc)));
+            per_pivot[c] = 1 / E;
+            stiff.load(number, E, bc, Dc);
+        }
+        return stiff.mass(number);
     }
     // sum b y / E over children.
     Vector3<double> push_of(int32_t number, const double *y) const {
@@ -243,7 +270,16 @@ private:
             const int32_t c = s.first_tree_place + s.child[j];
             sum = add_times(sum, y[c] * per_pivot[c], b.get<double>(c));
         }
+        if (stiff.is[number]) push_stiff(number, y);
         return sum;
+    }
+    __attribute__((noinline)) void push_stiff(int32_t number, const double *y) const {
+        Pair3<double> sum = {};
+        for (int32_t j = s.child_start[number]; j < s.child_start[number + 1]; ++j) {
+            const int32_t c = s.first_tree_place + s.child[j];
+            sum = add_pairs(sum, product_pairs(y[c] * per_pivot[c], b.get<double>(c)));
+        }
+        stiff.set_push(number, sum);
     }
     void take_up_tree(int32_t i, double *y) const {
         const int32_t e = s.first_tree_place + i, n = n_children(s.n_nodes + i);
@@ -252,7 +288,7 @@ private:
             y[e] = mul_add(from_last[c], y[c], y[e]);
         } else if (n > 1) {
             push[i] = push_of(s.n_nodes + i, y);
-            y[e] += dot(unknowns.tree_bond[i], joint[i] * push[i]);
+            y[e] += dot(unknowns.tree_bond[i], stiff.is[s.n_nodes + i] ? rounded(stiff.acceleration(s.n_nodes + i)) : joint[i] * push[i]);
         }
     }
     void take_up_nodes(const double *y) const {  // what their trees give
@@ -265,11 +301,19 @@ private:
             t[c] = (t[c] - dot(unknowns.tree_bond[i], a)) * per_pivot[c];
         }
     }
+    __attribute__((noinline)) void solve_stiff_children(int32_t number, const Pair3<double> &a, double *t) const {
+        for (int32_t j = s.child_start[number]; j < s.child_start[number + 1]; ++j) {
+            const int32_t i = s.child[j], c = s.first_tree_place + i;
+            t[c] = left_of(t[c], unknowns.tree_bond[i], a) * per_pivot[c];
+        }
+    }
     void take_down_tree(int32_t i, double *t) const {
         const int32_t e = s.first_tree_place + i, n = n_children(s.n_nodes + i);
         if (n == 1) {
             const int32_t c = s.first_tree_place + s.child[first_child(s.n_nodes + i)];
             t[c] = mul_add(to_last[c], t[e], t[c] * per_pivot[c]);
+        } else if (n > 1 && stiff.is[s.n_nodes + i]) {
+            solve_stiff_children(s.n_nodes + i, stiff.acceleration(s.n_nodes + i, product_pairs(-t[e], b.get<double>(e))), t);
         } else if (n > 1) {
             solve_children(s.n_nodes + i, joint[i] * (push[i] - t[e] * b.get<double>(e)), t);
         }

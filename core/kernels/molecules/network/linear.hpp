@@ -45,9 +45,9 @@ struct NetLinear : NetProof {
             [&]() {
                 NetResiduals{*this, factor, begun ? solution : t}.find(tension, keep);
                 begun = true;
-                if (!solve_for(next_part, enough, t))
-                    t[0] = 0 / (t[0] - t[0]);  // not a number, which is no contraction
+                if (!solve_for(next_part, enough, t)) return Flag{false};
                 net.for_parts([&](const NetPart &part) { factor.take_down(part, t); });
+                return Flag{true};
             },
             [&](Flag) {
                 const auto bond = [&](int32_t k) {
@@ -58,7 +58,12 @@ struct NetLinear : NetProof {
             },
             [&]() { return Flag{false}; });
         if (!good.set) return false;
-        for (int32_t k = 0; k < s.n_bonds; ++k) t[k] = solution[k];
+        double sum = 0;
+        for (int32_t k = 0; k < s.n_bonds; ++k) {
+            t[k] = solution[k];
+            sum += abs(solution[k]);
+        }
+        if (!finite(sum).set) return false;
         factor.find_pulls_of_rest(t, G);
         return true;
     }
@@ -106,7 +111,7 @@ struct NetLinear : NetProof {
             net.for_strands(part, [&](auto width, const NetStrands &g) HOL_FORCED { push<decltype(width)>(g); });
             factor.take_up(part, t);
         });
-        factor.unknowns.add_pushes();
+        factor.add_pushes();
         if (!solve_for(next_part, nullptr, t)) return false;
         factor.find_pulls_of_rest(t, G);
         return true;

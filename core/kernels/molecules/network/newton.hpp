@@ -161,7 +161,7 @@ struct NetNewton {
         });
         factor.take_up_rest(t);
         net.for_parts([&](const NetPart &part) { worst[part.share] = move_strands(part); });
-        factor.unknowns.add_pushes();
+        factor.add_pushes();
         moved = true;
         found = false;
         return failed ? __builtin_nan("") : worst_of_all();

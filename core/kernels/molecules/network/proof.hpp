@@ -159,7 +159,7 @@ struct NetProof : NetEquations {
             begin(part);
             factor.take_up(part, change);
         });
-        factor.unknowns.add_pushes();
+        factor.add_pushes();
         if (!solve_for(next_part, size_of_side, change)) return false;
         // A change that is a part of its multiplier leaves the terms of the equations what they are.
         prove_all(change, 0.5 * most_left(), false, [&](const NetPart &part) {

@@ -63,7 +63,7 @@ struct NetResiduals {
                           sum = subtract_pairs(so_far, dot_pairs(bond_at<V>(u), of_nodes<V>(u)));
             store_any(at_end.y + u, load_any<V>(at_end.y + u) + (sum.hi + sum.lo));
         });
-        at_end.add_pushes();
+        factor.add_pushes();
     }
 
 private:

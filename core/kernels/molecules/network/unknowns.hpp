@@ -17,12 +17,12 @@ struct Unknowns : Ends {
 
     static int64_t values(const NetworkPlan &s, bool symmetric) {
         return Ends::values(s, symmetric) + in_fours(3 * static_cast<int64_t>(s.n_node_shares)) +
-               9 * in_fours(s.n_unknowns);
+               9 * in_fours(s.n_unknowns + 3 * s.fronts.n_hubs);
     }
     Unknowns(const Net &of, bool symmetric, Memory<double> &memory) : Ends(of, symmetric, memory) {
         sum = memory.values(in_fours(3 * static_cast<int64_t>(s.n_node_shares)));
         double **const arrays[] = {&x, &size, &r, &shadow, &p, &p_node, &v, &s_node, &t};
-        for (double **array : arrays) *array = memory.values(in_fours(s.n_unknowns));
+        for (double **array : arrays) *array = memory.values(in_fours(s.n_unknowns + 3 * s.fronts.n_hubs));
     }
 
     void factorize() const {
@@ -32,7 +32,14 @@ struct Unknowns : Ends {
     }
     // Solves for y until what is left is `part` of it, both as sums of squares' roots, and, with `sizes`, of right-hand
     // sides' terms by place, every unknown's is a rounding of its own, or of the mean. How many rounds it took, or -1.
-    __attribute__((noinline)) int32_t solve(double part, const double *sizes) const {
+    // What the iteration cannot do alone is begun again with fronts.
+    int32_t solve(double part, const double *sizes) const {
+        const int32_t taken = iterate(part, sizes);
+        return taken < 0 && use_fronts() ? iterate(part, sizes) : taken;
+    }
+
+private:
+    __attribute__((noinline)) int32_t iterate(double part, const double *sizes) const {
         Sums<double> all = sums_of_shares([&](int32_t share, Parts &parts) {
             net.for_unknowns(share, [&](auto width, int32_t u) HOL_FORCED {
                 typedef decltype(width) V;
@@ -102,7 +109,6 @@ struct Unknowns : Ends {
         return -1;
     }
 
-private:
     // So many rounds have to take squares down to less than this part.
     static constexpr int32_t most_rounds = 2000, look_after = 64;
     static constexpr double least_progress = 0.1;
