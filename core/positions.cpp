@@ -1,6 +1,7 @@
 #include "core/positions.hpp"
 
 #include <algorithm>
+#include <new>
 
 #include "core/caller/box.hpp"
 #include "core/caller/packed_array.hpp"
@@ -12,6 +13,7 @@
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
 #include "core/run/outcomes.hpp"
+#include "core/run/thread_memory.hpp"
 
 namespace holonomic {
 
@@ -42,6 +44,29 @@ struct PositionsWork final : Work {
         solve_long_chain(k.long_positions, kernels_for_one_chain().positions, calls[where], lane, team, store, tally);
     }
 };
+
+// Whether parts of a molecule are moved while others still read the reference: long chains in windows, paths.
+bool moves_in_parts(const Plan &plan) {
+    if (plan.longest > longest_lane) return true;
+    return std::any_of(plan.shapes.begin(), plan.shapes.end(),
+                       [&](std::int32_t shape) { return plan.schedules[static_cast<std::size_t>(shape)]->paths; });
+}
+
+// A copy of the caller's array in memory of this thread.
+AtomArray copy_of(const AtomArray &array, std::int64_t n_atoms) {
+    const std::int64_t bytes = 3 * n_atoms * static_cast<std::int64_t>(sizeof(double));
+    double *const copy = static_cast<double *>(thread_memory(Keep::reference, bytes));
+    if (!copy) throw std::bad_alloc();
+    AtomArray to = packed_array(copy);
+    for (std::int64_t i = 0; i < n_atoms; ++i) {
+        double x[3];
+        read_atom(array, i, x);
+        write_atom(to, i, x);
+    }
+    to.packed = array.packed;
+    if (!array.z) to.z = nullptr;
+    return to;
+}
 
 // Once for a set of molecules, their lengths and the box, and before anything is moved.
 void check_start(const Chains &chains, const BondVectors &reference, const AtomArray &r) {
@@ -87,8 +112,11 @@ void project_from(const Chains &chains, PositionsCall &call, const Reference *re
     call.max_iterations = chains.max_iterations;
     put_box(chains.box, call.box);
     put_box(box_ref, call.box_ref);
+    PositionsCall given = call;
+    if (call.r_ref.x == call.r.x && moves_in_parts(chains.plan()))
+        given.r_ref = copy_of(call.r_ref, chains.n_atoms());
     Apart apart(chains);
-    const Tally tally = execute(chains, PositionsWork(call, apart, reference));
+    const Tally tally = execute(chains, PositionsWork(given, apart, reference));
     apart.put_back();
     clear_unconstrained(chains, call.lambda);
     if (report) *report = report_of(chains, tally);
