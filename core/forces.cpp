@@ -144,7 +144,7 @@ void forces_of_all(const Chains &chains, const ForcesCall &call, double *virial)
                       virial ? sum : nullptr);
     });
     parts.finish();
-    if (virial) std::copy(sum, sum + 9, virial);
+    if (virial) write_virial(sum, virial);
 }
 
 }  // namespace

@@ -188,7 +188,7 @@ void project_positions_of_all(const Chains &chains, const PositionsCall &call, c
         rigid::project_positions(chains, r_ref, call.r, call.v, call.dt, call.lambda, virial ? sum : nullptr, report);
     });
     parts.finish();
-    if (virial) std::copy(sum, sum + 9, virial);
+    if (virial) write_virial(sum, virial);
 }
 
 }  // namespace

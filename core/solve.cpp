@@ -109,7 +109,7 @@ void solve_of_all(const Chains &chains, const AtomArray &r, const double *rhs, d
     parts.run([&] { solve_bonds(chains, r, rhs, lambda, g, add, virial ? sum : nullptr); });
     parts.run([&] { rigid::solve(chains, r, rhs, lambda, g, add, virial ? sum : nullptr); });
     parts.finish();
-    if (virial) std::copy(sum, sum + 9, virial);
+    if (virial) write_virial(sum, virial);
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ void project_velocities_of_all(const Chains &chains, const VelocitiesCall &call,
     parts.run([&] { project_velocities_of_bonds(chains, of_bonds, virial ? sum : nullptr); });
     parts.run([&] { rigid::project_velocities(chains, call.r, call.v, call.lambda, virial ? sum : nullptr); });
     parts.finish();
-    if (virial) std::copy(sum, sum + 9, virial);
+    if (virial) write_virial(sum, virial);
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
-// Which units are ordinary: those in which no product of a kernel overflows or underflows, unless the numbers of one
-// molecule differ by very much.
+// Whether the units of a molecule are ordinary ones.
 #pragma once
 
 #include <cmath>
+
+#include "core/kernels/call.hpp"
 
 namespace holonomic {
 
@@ -10,9 +11,6 @@ namespace holonomic {
 struct Powers {
     int length, mass;
 };
-
-// Metres and kilograms are (2^-33, 2^-86).
-constexpr int most_ordinary_length = 48, most_ordinary_mass = 92;
 
 // Of the longest bond and the largest inverse mass, both positive and finite. Even, as there are roots of masses.
 inline Powers powers_of(double longest, double most_w) {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <new>
 
+#include "core/error.hpp"
 #include "core/kernels/molecules/forest/forest.hpp"
 #include "core/kernels/molecules/list/flat_list.hpp"
 #include "core/run/lane.hpp"
@@ -344,9 +346,20 @@ void work_again(const Work &work, const Unit &unit, int where, double *scratch, 
     do_bad_ones_again(work, unit, where, scratch, tally);
 }
 
+void write_virial(const double *sum, double *virial) {
+    if (!std::all_of(sum, sum + 9, [](double x) { return std::isfinite(x); })) {
+        Error error = make_error(Status::not_finite, "the virial overflows; choose other units");
+        error.n_bad = 1;  // the rest of the call has been done
+        throw error;
+    }
+    std::copy(sum, sum + 9, virial);
+}
+
 void write_virial(const Tally &tally, double *virial) {
     const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    for (int i = 0; i < 9; ++i) virial[i] = tally.virial[place[i]];
+    double sum[9];
+    for (int i = 0; i < 9; ++i) sum[i] = tally.virial[place[i]];
+    write_virial(sum, virial);
 }
 
 double *scratch_of_this_thread(std::int64_t bytes) {

@@ -70,8 +70,9 @@ protected:
     ~Work() = default;
 };
 
-// The six sums of a tally as a symmetric [3][3].
+// The six sums of a tally as a symmetric [3][3]; or a sum [9]. Throws Error if one has overflowed.
 void write_virial(const Tally &tally, double *virial);
+void write_virial(const double *sum, double *virial);
 
 // Throws std::bad_alloc.
 double *scratch_of_this_thread(std::int64_t bytes);
