@@ -44,7 +44,26 @@ struct ForcesWork final : Work {
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_forces.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return k.long_forces.bytes(n); }
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
-        solve_long_chain(k.long_forces, calls[where], lane, team, store, tally);
+        work_on_long(calls[where], lane, team, store, tally);
+    }
+    void work_on_long(const ForcesCall &call, const Lane &lane, const Team &team, double *store, Tally &tally) const {
+        solve_long_chain(k.long_forces, call, lane, team, store, tally);
+    }
+    bool rescales() const override { return true; }
+    bool again(const Unit &one, int where, double *scratch, Tally &tally) const override {
+        return work_in_ordinary_units(
+            calls[where], one, tally,
+            [&](const ForcesCall &c, const Unit &unit, Tally &own) { kernels(unit).forces(c, unit, scratch, own); });
+    }
+    bool again(const MoleculeUnit &one, int where, double *scratch, Tally &tally) const override {
+        return work_in_ordinary_units(
+            calls[where], one, tally,
+            [&](const ForcesCall &c, const MoleculeUnit &unit, Tally &own) { k.molecules.forces(c, unit, scratch, own); });
+    }
+    bool again(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
+        return work_in_ordinary_units(
+            calls[where], Unit{&lane, 1, false, false}, tally,
+            [&](const ForcesCall &c, const Unit &unit, Tally &own) { work_on_long(c, unit.lanes[0], team, store, own); });
     }
 };
 
@@ -125,7 +144,7 @@ void forces_of_all(const Chains &chains, const ForcesCall &call, double *virial)
                       virial ? sum : nullptr);
     });
     parts.finish();
-    if (virial) std::copy(sum, sum + 9, virial);
+    if (virial) write_virial(sum, virial);
 }
 
 }  // namespace

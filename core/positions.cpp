@@ -1,6 +1,7 @@
 #include "core/positions.hpp"
 
 #include <algorithm>
+#include <new>
 
 #include "core/caller/box.hpp"
 #include "core/caller/packed_array.hpp"
@@ -13,6 +14,7 @@
 #include "core/run/diagnose.hpp"
 #include "core/run/execute.hpp"
 #include "core/run/outcomes.hpp"
+#include "core/run/thread_memory.hpp"
 
 namespace holonomic {
 
@@ -40,9 +42,51 @@ struct PositionsWork final : Work {
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_positions.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return store_bytes(k.long_positions, n); }
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
-        solve_long_chain(k.long_positions, kernels_for_one_chain().positions, calls[where], lane, team, store, tally);
+        work_on_long(calls[where], lane, team, store, tally);
+    }
+    void work_on_long(const PositionsCall &call, const Lane &lane, const Team &team, double *store, Tally &tally) const {
+        solve_long_chain(k.long_positions, kernels_for_one_chain().positions, call, lane, team, store, tally);
+    }
+    bool rescales() const override { return true; }
+    bool again(const Unit &one, int where, double *scratch, Tally &tally) const override {
+        return work_in_ordinary_units(
+            calls[where], one, tally,
+            [&](const PositionsCall &c, const Unit &unit, Tally &own) { kernels(unit).positions(c, unit, scratch, own); });
+    }
+    bool again(const MoleculeUnit &one, int where, double *scratch, Tally &tally) const override {
+        return work_in_ordinary_units(
+            calls[where], one, tally,
+            [&](const PositionsCall &c, const MoleculeUnit &unit, Tally &own) { k.molecules.positions(c, unit, scratch, own); });
+    }
+    bool again(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
+        return work_in_ordinary_units(
+            calls[where], Unit{&lane, 1, false, false}, tally,
+            [&](const PositionsCall &c, const Unit &unit, Tally &own) { work_on_long(c, unit.lanes[0], team, store, own); });
     }
 };
+
+// Whether parts of a molecule are moved while others still read the reference: long chains in windows, paths.
+bool moves_in_parts(const Plan &plan) {
+    if (plan.longest > longest_lane) return true;
+    return std::any_of(plan.shapes.begin(), plan.shapes.end(),
+                       [&](std::int32_t shape) { return plan.schedules[static_cast<std::size_t>(shape)]->paths; });
+}
+
+// A copy of the caller's array in memory of this thread.
+AtomArray copy_of(const AtomArray &array, std::int64_t n_atoms) {
+    const std::int64_t bytes = 3 * n_atoms * static_cast<std::int64_t>(sizeof(double));
+    double *const copy = static_cast<double *>(thread_memory(Keep::reference, bytes));
+    if (!copy) throw std::bad_alloc();
+    AtomArray to = packed_array(copy);
+    for (std::int64_t i = 0; i < n_atoms; ++i) {
+        double x[3];
+        read_atom(array, i, x);
+        write_atom(to, i, x);
+    }
+    to.packed = array.packed;
+    if (!array.z) to.z = nullptr;
+    return to;
+}
 
 // Once for a set of molecules, their lengths and the box, and before anything is moved.
 void check_start(const Chains &chains, const BondVectors &reference, const AtomArray &r) {
@@ -88,12 +132,13 @@ void project_from(const Chains &chains, PositionsCall &call, const Reference *re
     call.max_iterations = chains.max_iterations;
     put_box(chains.box, call.box);
     put_box(box_ref, call.box_ref);
+    PositionsCall given = call;
+    if (call.r_ref.x == call.r.x && moves_in_parts(chains.plan()))
+        given.r_ref = copy_of(call.r_ref, chains.n_atoms());
+    given.worst_trial = std::min(call.worst_trial, far_from_lengths);
     Apart apart(chains);
-    const double worst_trial = call.worst_trial;
-    call.worst_trial = std::min(worst_trial, far_from_lengths);
-    Tally tally = execute(chains, PositionsWork(call, apart, reference));
+    Tally tally = execute(chains, PositionsWork(given, apart, reference));
     apart.put_back();
-    call.worst_trial = worst_trial;
     if (tally.n_bad > 0) tally = finish_long_steps(chains, call, reference, tally);
     clear_unconstrained(chains, call.lambda);
     if (report) *report = report_of(chains, tally);
@@ -146,7 +191,7 @@ void project_positions_of_all(const Chains &chains, const PositionsCall &call, c
         rigid::project_positions(chains, r_ref, call.r, call.v, call.dt, call.lambda, virial ? sum : nullptr, report);
     });
     parts.finish();
-    if (virial) std::copy(sum, sum + 9, virial);
+    if (virial) write_virial(sum, virial);
 }
 
 }  // namespace

@@ -233,7 +233,7 @@ void reactions(const Chains &chains, const AtomArray &r, const Box &box, const d
     parts.run([&] { reactions_of_bonds(chains, r, box, lambda, out, virial ? sum : nullptr); });
     parts.run([&] { rigid::reactions(chains, r, box, lambda, out, virial ? sum : nullptr); });
     parts.finish();
-    if (virial) std::copy(sum, sum + 9, virial);
+    if (virial) write_virial(sum, virial);
 }
 
 }  // namespace holonomic

@@ -35,6 +35,12 @@ struct SolveWork final : Work {
     void unit(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const override {
         k.molecules.solve(calls[where], unit, scratch, tally);
     }
+    bool rescales() const override { return true; }
+    bool again(const MoleculeUnit &one, int where, double *scratch, Tally &tally) const override {
+        return work_in_ordinary_units(
+            calls[where], one, tally,
+            [&](const SolveCall &c, const MoleculeUnit &unit, Tally &own) { k.molecules.solve(c, unit, scratch, own); });
+    }
     // The plan has no linear chains.
     void unit(const Unit &, int, double *, Tally &) const override {}
     bool walks_forests() const override { return true; }
@@ -103,7 +109,7 @@ void solve_of_all(const Chains &chains, const AtomArray &r, const double *rhs, d
     parts.run([&] { solve_bonds(chains, r, rhs, lambda, g, add, virial ? sum : nullptr); });
     parts.run([&] { rigid::solve(chains, r, rhs, lambda, g, add, virial ? sum : nullptr); });
     parts.finish();
-    if (virial) std::copy(sum, sum + 9, virial);
+    if (virial) write_virial(sum, virial);
 }
 
 }  // namespace

@@ -35,7 +35,9 @@ struct VelocitiesWork final : Work {
     std::int64_t long_blocks(std::int64_t n) const override { return k.long_velocities.blocks(n); }
     std::int64_t long_bytes(std::int64_t n) const override { return k.long_velocities.bytes(n); }
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
-        const VelocitiesCall &call = calls[where];
+        work_on_long(calls[where], lane, team, store, tally);
+    }
+    void work_on_long(const VelocitiesCall &call, const Lane &lane, const Team &team, double *store, Tally &tally) const {
         // The recursion gives the multipliers to a few roundings of themselves; what that leaves of the rates goes with
         // a second projection, of velocities that need next to none.
         const std::int64_t n_bad = tally.n_bad;
@@ -45,6 +47,22 @@ struct VelocitiesWork final : Work {
         again.lambda = nullptr;
         again.virial = false;
         if (!call.v.is_float) solve_long_chain(k.long_velocities, again, lane, team, store, tally);
+    }
+    bool rescales() const override { return true; }
+    bool again(const Unit &one, int where, double *scratch, Tally &tally) const override {
+        return work_in_ordinary_units(
+            calls[where], one, tally,
+            [&](const VelocitiesCall &c, const Unit &unit, Tally &own) { kernels(unit).velocities(c, unit, scratch, own); });
+    }
+    bool again(const MoleculeUnit &one, int where, double *scratch, Tally &tally) const override {
+        return work_in_ordinary_units(
+            calls[where], one, tally,
+            [&](const VelocitiesCall &c, const MoleculeUnit &unit, Tally &own) { k.molecules.velocities(c, unit, scratch, own); });
+    }
+    bool again(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
+        return work_in_ordinary_units(
+            calls[where], Unit{&lane, 1, false, false}, tally,
+            [&](const VelocitiesCall &c, const Unit &unit, Tally &own) { work_on_long(c, unit.lanes[0], team, store, own); });
     }
 };
 
@@ -75,7 +93,7 @@ void project_velocities_of_all(const Chains &chains, const VelocitiesCall &call,
     parts.run([&] { project_velocities_of_bonds(chains, of_bonds, virial ? sum : nullptr); });
     parts.run([&] { rigid::project_velocities(chains, call.r, call.v, call.lambda, virial ? sum : nullptr); });
     parts.finish();
-    if (virial) std::copy(sum, sum + 9, virial);
+    if (virial) write_virial(sum, virial);
 }
 
 }  // namespace

@@ -87,10 +87,12 @@ struct Box {
 };
 
 // What a unit adds to the result of a call.
+constexpr int64_t most_listed = 64;
 struct Tally {
     double virial[6];  // xx xy xz yy yz zz of - sum t d (x) d
     int64_t n_bad;
     int64_t first_bad;  // smallest number of a bad chain
+    int64_t *bad;       // numbers of the first most_listed of them, or nullptr
     // positions
     int64_t iterations, n_corrected, worst_chain, worst_bond;
     double worst;
@@ -98,11 +100,22 @@ struct Tally {
     double log_det, log_det_z;
 };
 
+// Which units are ordinary: those in which no product of a kernel overflows or underflows, unless the numbers of one
+// molecule differ by very much. Powers of two of the longest bond and of the lightest mass; metres and kilograms are
+// -33 and -86.
+constexpr int most_ordinary_length = 48, most_ordinary_mass = 92;
+// Squares of bonds are no more than this then, and no less than one over it; kernels look whether they are.
+constexpr double most_ordinary_square = 0x1p199;
+
+// Calls are `rescaled` where their molecule has been put into ordinary units (core/run/rescale.hpp). Where it has not, a
+// molecule whose units plain products can't do in is bad, and core puts it there.
+
 struct ForcesCall {
     AtomArray r, v, f, g;
     double *lambda, *tension;
     bool add, virial;
     Box box;
+    bool rescaled = false;
 };
 
 struct VelocitiesCall {
@@ -111,6 +124,7 @@ struct VelocitiesCall {
     bool virial;
     const double *strain;  // of a box that changes, arithmetic/vector3.hpp; or nullptr
     Box box;
+    bool rescaled = false;
 };
 
 struct PositionsCall {
@@ -122,6 +136,7 @@ struct PositionsCall {
     double worst_trial = __builtin_inf();  // a molecule that comes with a larger error |D.D - a^2| / a^2 is bad
     int max_iterations;
     Box box, box_ref;  // of r; of r_ref
+    bool rescaled = false;
 };
 
 struct MetricCall {
@@ -140,6 +155,7 @@ struct SolveCall {
     double *lambda, *tension;
     bool add, virial;
     Box box;
+    bool rescaled = false;
 };
 
 enum JoinResult { join_good, join_doubtful, join_bad };

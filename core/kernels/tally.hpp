@@ -11,6 +11,7 @@ static inline Tally empty_tally() {
     sum[0] = sum[1] = sum[2] = sum[3] = sum[4] = sum[5] = tally.worst = tally.log_det = tally.log_det_z = 0;
     tally.n_bad = tally.iterations = tally.n_corrected = 0;
     tally.first_bad = tally.worst_chain = tally.worst_bond = -1;
+    tally.bad = nullptr;
     return tally;
 }
 
@@ -47,6 +48,7 @@ static inline void add(Tally &total, const Tally &piece) {
 
 // Counts a molecule, by its number, as bad.
 static inline void note_bad(int64_t molecule, Tally &tally) {
+    if (tally.bad && tally.n_bad < most_listed) tally.bad[tally.n_bad] = molecule;
     if (tally.n_bad++ == 0 || molecule < tally.first_bad) tally.first_bad = molecule;
 }
 

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "core/molecules/hash.hpp"
+#include "core/molecules/ordinary.hpp"
 
 namespace holonomic {
 
@@ -80,6 +81,13 @@ double Kinds::longest(std::int64_t first, double least) const {
         longest = std::max(longest, table ? *std::max_element(table, table + kind.n_bonds) : kind.length_uniform);
     }
     return longest;
+}
+
+bool Kinds::is_ordinary(const Kind &kind) const {
+    const double *const masses = w(kind), *const lengths = length(kind);
+    return are_ordinary(
+        powers_of(lengths ? *std::max_element(lengths, lengths + kind.n_bonds) : kind.length_uniform,
+                  masses ? *std::max_element(masses, masses + kind.n_atoms()) : kind.w_uniform));
 }
 
 void Kinds::shrink() {

@@ -40,6 +40,8 @@ public:
     const double *length(const Kind &kind) const {
         return kind.length_offset < 0 ? nullptr : length_.data() + kind.length_offset;
     }
+    // Whether its masses and lengths are in ordinary units (ordinary.hpp).
+    bool is_ordinary(const Kind &kind) const;
     // The largest length of the kinds from `first` on, if that is more than `least`.
     double longest(std::int64_t first, double least) const;
     void shrink();

@@ -53,7 +53,8 @@ public:
             need(kernels().molecules.forest_bytes(*plan_->forests[i]));
         need(scratch_bytes(plan_->longest));
         const std::vector<Plan::Piece> &pieces = plan_->pieces;
-        if (pieces.size() == 1 && pieces[0].shape == linear && plan_->longest <= longest_lane)
+        if (pieces.size() == 1 && pieces[0].shape == linear && plan_->longest <= longest_lane &&
+            !(pieces[0].where & far_units))
             plan_->only = chains_.unit(*plan_, pieces[0], &plan_->first_of_only);
         return std::move(plan_);
     }
@@ -139,7 +140,8 @@ private:
 
     void add_run(std::int64_t g, std::int64_t begin, std::int64_t end, bool apart) {
         const Kind &k = kind(g);
-        const int where = (groups_[at(g)].reordered ? reordered : in_place) + (apart ? staged : in_place);
+        const int where = (groups_[at(g)].reordered ? reordered : in_place) + (apart ? staged : in_place) +
+                          (chains_.kinds_.is_ordinary(k) ? 0 : far_units);
         const std::int64_t stage = apart ? static_cast<std::int64_t>(plan_->stage.size()) : -1;
         for (std::int64_t i = begin; apart && i < end; ++i) add_to_stage(groups_[at(g)], i);
         plan_->n_bonds += (end - begin) * k.n_bonds;

@@ -13,6 +13,8 @@ namespace holonomic {
 // Where the arrays of a molecule stand for the kernels: in the caller's memory, or apart from it (core/run/apart.hpp).
 enum Where { in_place = 0, reordered = 1, staged = 2 };  // values per bond; atoms; both: 3
 constexpr int n_wheres = 4;
+// Beside it: molecules whose masses or lengths are in units far from ordinary ones (core/run/rescale.hpp).
+constexpr int far_units = 4;
 
 // Made at the first use after a change. Which molecules share a unit, or a block of lanes in it, changes no result.
 struct Plan {

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <new>
 
 #include "core/caller/environment.hpp"
+#include "core/error.hpp"
 #include "core/kernels/molecules/forest/forest.hpp"
 #include "core/kernels/molecules/list/flat_list.hpp"
 #include "core/run/lane.hpp"
@@ -107,6 +109,62 @@ void work_on_molecules(const Work &work, const MoleculeUnit &unit, int where, do
     work_on_alike();
 }
 
+Unit one_of(const Unit &unit, std::int64_t i, Lane *lane) {
+    *lane = lane_of(unit, i);
+    return {lane, 1, unit.regular, unit.large};
+}
+MoleculeUnit one_of(const MoleculeUnit &unit, std::int64_t i, MoleculeLane *lane) {
+    *lane = lane_of(unit, i);
+    MoleculeUnit one{unit.schedule, lane, 1, true, unit.large};
+    if (unit.forests && unit.count == 1) one = unit;
+    for (std::int64_t f = 0, first = 0; unit.forests && unit.count > 1 && f < unit.n_forests; ++f) {
+        if (i >= first && i < first + unit.forests[f].n_trees) one.schedule = unit.forests[f].schedule[i - first];
+        first += unit.forests[f].n_trees;
+    }
+    return one;
+}
+std::int64_t number_of(const Lane &lane) { return lane.chain; }
+std::int64_t number_of(const MoleculeLane &lane) { return lane.molecule; }
+
+// Does the molecules of a unit in ordinary units, one by one. `which`(number): those that are to be done.
+template <class AnyUnit, class Which>
+void work_on_rescaled(const Work &work, const AnyUnit &unit, int where, double *scratch, Tally &tally,
+                      const Which &which) {
+    for (std::int64_t i = 0; i < unit.count; ++i) {
+        typename std::remove_const<typename std::remove_pointer<decltype(unit.lanes)>::type>::type lane;
+        const AnyUnit one = one_of(unit, i, &lane);
+        if (which(number_of(lane)) && !work.again(one, where, scratch, tally)) note_bad(number_of(lane), tally);
+    }
+}
+
+template <class AnyUnit>
+void do_bad_ones_again(const Work &work, const AnyUnit &unit, int where, double *scratch, Tally &tally) {
+    const std::int64_t n = tally.n_bad, *const bad = tally.bad;
+    tally.bad = nullptr;
+    if (!work.rescales() || (n > most_listed && n < unit.count)) return;
+    tally.n_bad = 0;
+    work_on_rescaled(work, unit, where, scratch, tally, [&](std::int64_t number) {
+        return n == unit.count || std::find(bad, bad + n, number) != bad + n;
+    });
+}
+
+// A unit as it is, or in ordinary units; do_it(tally) does the first.
+template <class AnyUnit, class Do>
+void in_its_units(const Work &work, const AnyUnit &unit, int where, double *scratch, Tally &tally, const Do &do_it) {
+    if ((where & far_units) && work.rescales())
+        return work_on_rescaled(work, unit, where, scratch, tally, [](std::int64_t) { return true; });
+    if (tally.n_bad > 0) {  // of other molecules
+        Tally own = empty_tally();
+        in_its_units(work, unit, where, scratch, own, do_it);
+        return add(tally, own);
+    }
+    std::int64_t bad[most_listed];
+    tally.bad = bad;
+    do_it(tally);
+    if (__builtin_expect(tally.n_bad > 0, 0)) do_bad_ones_again(work, unit, where, scratch, tally);
+    tally.bad = nullptr;
+}
+
 // One call: what it needs, and its pieces one by one or shared.
 class Execution {
 public:
@@ -157,7 +215,9 @@ private:
             MoleculeUnit unit = chains_.unit(plan_, piece, &lane);
             unit.team = team;
             if (outcomes_) return work_on_each(unit, piece.where, scratch, tally);
-            return work_on_molecules(work_, unit, piece.where, scratch, tally);
+            return in_its_units(work_, unit, piece.where, scratch, tally, [&](Tally &own) {
+                work_on_molecules(work_, unit, piece.where, scratch, own);
+            });
         }
         Lane lane;
         const Unit unit = chains_.unit(plan_, piece, &lane);
@@ -166,12 +226,19 @@ private:
         else if (outcomes_)
             work_on_each(unit, piece.where, scratch, tally);
         else
-            work_.unit(unit, piece.where, scratch, tally);
+            in_its_units(work_, unit, piece.where, scratch, tally,
+                         [&](Tally &own) { work_.unit(unit, piece.where, scratch, own); });
     }
 
     void work_on_long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const {
-        with_outcome(outcome_of(lane.chain), tally,
-                     [&](Tally &own) { work_.long_chain(lane, where, team, store, own); });
+        with_outcome(outcome_of(lane.chain), tally, [&](Tally &own) {
+            Tally once = empty_tally();
+            if (!(where & far_units) || !work_.rescales()) {
+                work_.long_chain(lane, where, team, store, once);
+                if (once.n_bad == 0 || !work_.rescales()) return add(own, once);
+            }
+            if (!work_.again(lane, where, team, store, own)) note_bad(lane.chain, own);
+        });
     }
 
     // The molecules of a unit one by one, so that each has a tally of its own: the same results, for lanes are
@@ -180,18 +247,24 @@ private:
         for (std::int64_t i = 0; i < unit.count; ++i) {
             const Lane lane = unit.regular ? lane_of(unit, i) : unit.lanes[i];
             const Unit one{&lane, 1, unit.regular, unit.large};
-            with_outcome(outcome_of(lane.chain), tally, [&](Tally &own) { work_.unit(one, where, scratch, own); });
+            with_outcome(outcome_of(lane.chain), tally, [&](Tally &own) {
+                in_its_units(work_, one, where, scratch, own, [&](Tally &of_one) { work_.unit(one, where, scratch, of_one); });
+            });
         }
     }
     void work_on_each(const MoleculeUnit &unit, int where, double *scratch, Tally &tally) const {
         const auto one = [&](const Schedule *schedule, const MoleculeLane &lane, bool regular) {
+            const MoleculeUnit alone{schedule, &lane, 1, regular, unit.large, unit.team};
             with_outcome(outcome_of(lane.molecule), tally, [&](Tally &own) {
-                work_.unit(MoleculeUnit{schedule, &lane, 1, regular, unit.large, unit.team}, where, scratch, own);
+                in_its_units(work_, alone, where, scratch, own,
+                             [&](Tally &of_one) { work_.unit(alone, where, scratch, of_one); });
             });
         };
         if (unit.forests && unit.count == 1)
-            return with_outcome(outcome_of(unit.lanes->molecule), tally,
-                                [&](Tally &own) { work_on_molecules(work_, unit, where, scratch, own); });
+            return with_outcome(outcome_of(unit.lanes->molecule), tally, [&](Tally &own) {
+                in_its_units(work_, unit, where, scratch, own,
+                             [&](Tally &of_one) { work_on_molecules(work_, unit, where, scratch, of_one); });
+            });
         const MoleculeLane *lane = unit.lanes;
         for (std::int64_t i = 0; i < unit.n_forests; ++i)
             for (int l = 0; l < unit.forests[i].n_trees; ++l) one(unit.forests[i].schedule[l], *lane++, true);
@@ -272,9 +345,24 @@ void Team::run(std::int64_t n, Order order, Tally &total, void (*call)(const voi
     }
 }
 
+void work_again(const Work &work, const Unit &unit, int where, double *scratch, Tally &tally) {
+    do_bad_ones_again(work, unit, where, scratch, tally);
+}
+
+void write_virial(const double *sum, double *virial) {
+    if (!std::all_of(sum, sum + 9, [](double x) { return std::isfinite(x); })) {
+        Error error = make_error(Status::not_finite, "the virial overflows; choose other units");
+        error.n_bad = 1;  // the rest of the call has been done
+        throw error;
+    }
+    std::copy(sum, sum + 9, virial);
+}
+
 void write_virial(const Tally &tally, double *virial) {
     const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    for (int i = 0; i < 9; ++i) virial[i] = tally.virial[place[i]];
+    double sum[9];
+    for (int i = 0; i < 9; ++i) sum[i] = tally.virial[place[i]];
+    write_virial(sum, virial);
 }
 
 double *scratch_of_this_thread(std::int64_t bytes) {

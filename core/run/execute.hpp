@@ -6,6 +6,7 @@
 #include "core/kernels/tally.hpp"
 #include "core/molecules/chains.hpp"
 #include "core/run/kernel_choice.hpp"
+#include "core/run/rescale.hpp"
 
 namespace holonomic {
 
@@ -58,12 +59,20 @@ public:
     virtual std::int64_t long_bytes(std::int64_t n_bonds) const = 0;
     virtual void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const = 0;
 
+    // Whether molecules are worked on in ordinary units where their own ones are too far from these (rescale.hpp). That
+    // is what again() does with a unit of one molecule; it returns false where that is bad, too.
+    virtual bool rescales() const { return false; }
+    virtual bool again(const Unit &, int, double *, Tally &) const { return false; }
+    virtual bool again(const MoleculeUnit &, int, double *, Tally &) const { return false; }
+    virtual bool again(const Lane &, int, const Team &, double *, Tally &) const { return false; }
+
 protected:
     ~Work() = default;
 };
 
-// The six sums of a tally as a symmetric [3][3].
+// The six sums of a tally as a symmetric [3][3]; or a sum [9]. Throws Error if one has overflowed.
 void write_virial(const Tally &tally, double *virial);
+void write_virial(const double *sum, double *virial);
 
 // Throws std::bad_alloc.
 double *scratch_of_this_thread(std::int64_t bytes);
@@ -71,15 +80,24 @@ double *scratch_of_this_thread(std::int64_t bytes);
 // Throws std::bad_alloc before any work is done.
 Tally execute(const Chains &chains, const Plan &plan, const Work &work);
 
+// Does those of a unit that have been found to be bad once more, in ordinary units: all of them, or those that are
+// listed.
+void work_again(const Work &work, const Unit &unit, int where, double *scratch, Tally &tally);
+
 // The same by the plan of the molecules as they are.
 template <class AnyWork>
 inline Tally execute(const Chains &chains, const AnyWork &work) {
     const Plan &plan = chains.plan();
     Tally tally = empty_tally();
-    if (plan.only.count == 0 || chains.keeps_outcomes)
+    if (plan.only.count == 0 || chains.keeps_outcomes) {
         tally = execute(chains, plan, static_cast<const Work &>(work));
-    else
-        work.unit(plan.only, plan.pieces[0].where, scratch_of_this_thread(plan.scratch_bytes), tally);
+    } else {
+        double *const scratch = scratch_of_this_thread(plan.scratch_bytes);
+        std::int64_t bad[most_listed];
+        tally.bad = bad;
+        work.unit(plan.only, plan.pieces[0].where, scratch, tally);
+        if (tally.n_bad > 0) work_again(work, plan.only, plan.pieces[0].where, scratch, tally);
+    }
     return tally;
 }
 
@@ -88,10 +106,12 @@ inline Tally execute(const Chains &chains, const AnyWork &work) {
 template <class Phases, class Call>
 void solve_long_chain(const Phases &phases, const Call &call, const Lane &lane, const Team &team, double *store,
                       Tally &tally) {
+    Powers units;
     const std::int64_t blocks = phases.blocks(lane.n_bonds);
     JoinResult result = join_doubtful;
     for (int attempt = 0; attempt < 2 && result == join_doubtful; ++attempt) {
         const bool careful = attempt == 1;
+        if (careful && !call.rescaled && find_units(OneMolecule(lane), call, units) && !are_ordinary(units)) break;
         // A few blocks before all others: a chain that is in doubt there needs no plain products elsewhere.
         std::int64_t done = 0;
         for (const std::int64_t end : {std::min<std::int64_t>(blocks, 8), blocks}) {

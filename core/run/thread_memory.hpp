@@ -16,6 +16,7 @@ enum class Keep {
     reference,
     rigid,
     outcomes,
+    rescaled,
     last
 };
 

@@ -173,6 +173,49 @@ static void wrong_lengths_and_masses_change_nothing(void **state)
     mixture_free(&m);
 }
 
+/** What needs more than the bound is left as it was. */
+static void no_molecule_takes_more_iterations_than_the_bound(void **state)
+{
+    (void)state;
+    const double dt = 0.02;
+    int refused = 0, solved = 0;
+    for (int kind = 0; kind < MOLECULE_KINDS; ++kind) {
+        if (kind >= MOLECULE_GOOD_KINDS && kind < MOLECULE_REFUSED_END) continue;
+        for (int64_t n = 1; n <= 9; n += 4) {
+            mixture m = mixture_of_kind((molecule_kind)kind, n, kind == MOLECULE_DENDRIMER ? 2 : 5,
+                                        kind == MOLECULE_DENDRIMER ? 2 : 5, ONE_AFTER_THE_OTHER, 4);
+            const size_t size = mixture_size(&m), bonds = (size_t)m.n_bonds;
+            double *drifted = mixture_drifted(&m, dt), *free_r = copy_of(drifted, size);
+            const int unbound = hol_project_positions(m.chains, m.r, free_r, NULL, dt, NULL, 0, NULL, NULL);
+            for (int bound = 1; bound <= 12 && unbound != HOL_ERR_LENGTHS; ++bound) {
+                double *r = copy_of(drifted, size), *lambda = untouched(bonds);
+                hol_report report;
+                CHECK(hol_chains_set_max_iterations(m.chains, bound));
+                const int status = hol_project_positions(m.chains, m.r, r, NULL, dt, lambda, 0, NULL, &report);
+                if (report.iterations > bound)
+                    fail_msg("%s, %d molecules: %d iterations, bound %d", molecule_kind_name((molecule_kind)kind), (int)n,
+                             (int)report.iterations, bound);
+                if (hol_chains_n_chains(m.chains) == 1 && status != HOL_OK) {
+                    assert_int_equal(status, HOL_ERR_NO_CONVERGENCE);
+                    assert_same_bits(r, drifted, size);
+                    assert_untouched(lambda, bonds);
+                    ++refused;
+                }
+                if (status == HOL_OK && unbound == HOL_OK) {
+                    hol_worst worst;
+                    CHECK(hol_violation(m.chains, r, NULL, &worst));
+                    CHECK_AT_MOST(worst.length, 1e-12);
+                    ++solved;
+                }
+                free(r), free(lambda);
+            }
+            free(drifted), free(free_r);
+            mixture_free(&m);
+        }
+    }
+    assert_true(refused > 50 && solved > 200);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -181,6 +224,7 @@ int main(void)
         cmocka_unit_test(inactive_molecules_are_neither_read_nor_written),
         cmocka_unit_test(new_lengths_and_masses_give_the_bits_of_a_new_handle),
         cmocka_unit_test(wrong_lengths_and_masses_change_nothing),
+        cmocka_unit_test(no_molecule_takes_more_iterations_than_the_bound),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

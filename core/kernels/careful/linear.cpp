@@ -26,7 +26,7 @@ static void force_terms(const Molecule &m, const ForcesCall &call, Wide *b) {
 void forces(const ForcesCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch, Tally &tally) {
     Memory memory = {reinterpret_cast<char *>(scratch)};
     Solution x(plan, lane, memory);
-    bool good = x.open(call.r, call.box);
+    bool good = x.open(call.r, call.box, call.rescaled);
     if (good) {
         force_terms(x.m, call, x.b);
         good = x.close();
@@ -41,7 +41,7 @@ void forces(const ForcesCall &call, const CarefulPlan &plan, const MoleculeLane 
 void solve(const SolveCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch, Tally &tally) {
     Memory memory = {reinterpret_cast<char *>(scratch)};
     Solution x(plan, lane, memory);
-    bool good = x.open(call.r, call.box);
+    bool good = x.open(call.r, call.box, call.rescaled);
     if (good) {
         // Z = 4 A and t = 2 lambda.
         for (int32_t k = 0; k < plan.n_bonds; ++k)
@@ -75,7 +75,7 @@ void velocities(const VelocitiesCall &call, const CarefulPlan &plan, const Molec
     Memory memory = {reinterpret_cast<char *>(scratch)};
     Solution x(plan, lane, memory);
     const Molecule &m = x.m;
-    bool good = x.open(call.r, call.box);
+    bool good = x.open(call.r, call.box, call.rescaled);
     if (good) {
         rate_terms(m, call, x.b);
         good = x.close();

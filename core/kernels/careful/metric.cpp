@@ -46,7 +46,7 @@ static void fixman_force(const Molecule &m, const Tree &tree, const Neighbours &
 void metric(const MetricCall &call, const CarefulPlan &plan, const MoleculeLane &lane, double *scratch, Tally &tally) {
     Memory memory = {reinterpret_cast<char *>(scratch)};
     Solution x(plan, lane, memory);
-    if (!x.open(call.r, call.box)) {
+    if (!x.open(call.r, call.box, true)) {
         if (x.lacks_digits()) return fourfold::careful::metric(call, plan, lane, scratch, tally);
         return note_bad(lane.molecule, tally);
     }

@@ -72,6 +72,16 @@ struct Molecule {
     int32_t other(int32_t k, int32_t i) const { return plan.atom_i[k] + plan.atom_j[k] - i; }
 };
 
+// Whether its units are ordinary ones (call.hpp), up to the rounding of exponents there.
+HOL_NOINLINE bool is_in_ordinary_units(const Molecule &m) {
+    double longest = 0;
+    for (int32_t k = 0; k < m.plan.n_bonds; ++k) longest = m.unit[k] > longest ? m.unit[k] : longest;
+    constexpr double most_length = 2.0 * (1LL << most_ordinary_length), most_mass = 0x1p94;
+    static_assert(most_ordinary_mass == 92, "");
+    return longest <= most_length && longest >= 1 / most_length && m.mass_unit <= most_mass &&
+           m.mass_unit >= 1 / most_mass;
+}
+
 HOL_NOINLINE void load_masses(Molecule &m) {
     double largest = 0;
     for (int32_t i = 0; i < m.plan.n_atoms; ++i) largest = m.lane.w[i] > largest ? m.lane.w[i] : largest;

@@ -142,7 +142,7 @@ void positions(const PositionsCall &call, const CarefulPlan &plan, const Molecul
     Projection p(plan, lane, memory);
     Projected result = projected_not;
     int64_t solves = 0;
-    if (load(p, call)) {
+    if (load(p, call) && (call.rescaled || is_in_ordinary_units(p.m))) {
         if (call.guess) result = iterate(p, call, true, solves);
         if (result == projected_not) result = iterate(p, call, false, solves);
     }

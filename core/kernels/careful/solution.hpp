@@ -73,8 +73,9 @@ struct Solution {
           t(memory.take<Wide>(plan.n_bonds)) {}
     // A molecule of which a pivot seems to vanish may be regular all the same; more digits say so. Those of a ring are
     // right as they are.
-    bool open(const AtomArray &r, const Box &box) {
-        if (!load(m, r, box)) return false;
+    // in_any_units: else those that are not ordinary are left to core.
+    bool open(const AtomArray &r, const Box &box, bool in_any_units) {
+        if (!load(m, r, box) || (!in_any_units && !is_in_ordinary_units(m))) return false;
         const bool good = factorize(m, system);
         if (!good) system.joint.loss.largest = is_ring(m.plan) ? 0 : __builtin_inf();
         return good;

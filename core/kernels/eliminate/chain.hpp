@@ -152,10 +152,10 @@ constexpr double largest_reciprocal = 1e140;
 template <bool uniform>
 HOL_NOINLINE void forward_careful(const Block &block, const System &s) {
     const long n = block.n;
-    vec size = {}, overflow = {};  // of reciprocals of pivots; NaN if any q is infinite
+    vec size = {}, overflow = {};  // of reciprocals of pivots; NaN if any q or E is infinite
     vec q = dot(s.D[0], s.D[0]), E = w_at<uniform>(block, 0) * q, y = s.t[0];
     for (long k = 0; k < n; ++k) {
-        overflow = overflow + (q - q);
+        overflow = overflow + ((q - q) + (E - E));
         const vec w = w_at<uniform>(block, k + 1), P = mul_add(w, q, E);
         s.t[k] = y / P;
         s.pivots[k] = splat(1.0) / P;

@@ -256,6 +256,7 @@ HOL_INLINE four round(four a) { return _mm256_round_pd(a, _MM_FROUND_TO_NEAREST_
 HOL_INLINE bool any(mask m) { return bits(m) != 0; }
 HOL_INLINE mask finite(vec a) { return equal(a - a, vec{}); }
 HOL_INLINE mask none() { return mask{}; }
+HOL_INLINE mask all_if(bool which) { return mask{} - (which ? 1 : 0); }
 HOL_INLINE mask first_lanes(int n) {
     mask m{};
     for (int i = 0; i < W; ++i) m[i] = i < n ? -1 : 0;

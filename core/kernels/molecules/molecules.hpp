@@ -54,6 +54,15 @@ struct Molecules {
     MaskOf<V> in_use() const { return Width<V>::first(used); }
 };
 
+// Lanes in which squares of bonds are ordinary (call.hpp), from the least and from a sum of all, or the largest. For
+// products of n of them, largest^n.
+template <class V>
+HOL_INLINE MaskOf<V> ordinary_squares(const V &least, const V &largest, double most = most_ordinary_square) {
+    return less(largest, Width<V>::all(most)) & less(Width<V>::all(1 / most), least);
+}
+
+constexpr double most_of_three = most_ordinary_square * most_ordinary_square * most_ordinary_square;
+
 // A vector component by component: as a structure gcc copies it as memory (docs/development/trials.md).
 template <class V>
 HOL_INLINE void put(Vector3<V> &to, const Vector3<V> &a) {

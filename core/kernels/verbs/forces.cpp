@@ -121,10 +121,12 @@ static void forces_block(const Block &block, const Lane *lane, const ForcesCall 
         if (call.g.x) close(call.g, block, lane, good, g, call.add);
         return;
     }
-    // Lanes that plain arithmetic can't answer for: once more, with compensated products.
+    // Lanes that plain arithmetic can't answer for: once more, with compensated products, but where it is their units
+    // that are in the way.
     mask rest = block.in_use();
+    const mask tried = ~good & (calm | all_if(call.rescaled));
     for (int careful = 0; careful < 2 && any(rest); ++careful) {
-        if (careful) good = forward_carefully(block, Reader(block, call.box, terms, r, v, f, true), s);
+        if (careful) good = forward_carefully(block, Reader(block, call.box, terms, r, v, f, true), s) & tried;
         backward(0, block.n, s.t, s.L);
         good = good & finite(s.t[0]) & rest;
         finish_forces(block, call, s, good, g, update, arena, tally);

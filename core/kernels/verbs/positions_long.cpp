@@ -1,6 +1,7 @@
 // Position level of one long chain in windows (memory/cut.hpp). The kernel of short chains solves each. The result does
 // not rest on how far a margin is felt: inside a piece Newton's method has tested all lengths, and where two pieces
-// meet they are tested here before anything is written. If windows can't do the chain, core hands it to positions() as
+// meet they are tested here before anything is written. The bonds of the reference are needed while atoms are moved: it
+// is not the array of the positions (core/positions.cpp). If windows can't do the chain, core hands it to positions() as
 // a unit of one.
 #include "core/kernels/memory/cut.hpp"
 #include "core/kernels/memory/load.hpp"
@@ -115,7 +116,6 @@ static void finish_window(const PositionsCall &call, const Lane &lane, int64_t j
 }
 
 bool long_positions(const PositionsCall &call, const Lane &lane, const LongTeam &team, double *tau, Tally &tally) {
-    if (call.r_ref.x == call.r.x) return false;  // the bonds of the reference are needed while atoms are moved
     const int64_t n = windows(lane.n_bonds).blocks;
     bool seen[3] = {};  // of each WindowResult
     SharedLargest worst;

@@ -62,7 +62,6 @@ static void write_all(PathsWork &x, const Schedule &s, bool moved, Tally &sum) {
 
 bool path_positions(const PositionsCall &call, const Schedule &s, const MoleculeLane &molecule, const LongTeam *team,
                     double *scratch, Tally &tally) {
-    if (call.r_ref.x == call.r.x) return false;  // the bonds of the reference are needed while atoms are moved
     const PositionsCall strict = call_for_pieces(call);
     const bool packed = call.r.packed && call.r_ref.packed && (!call.v.x || call.v.packed);
     Vector3<double> *const move = reinterpret_cast<Vector3<double> *>(scratch + s.n_bonds);

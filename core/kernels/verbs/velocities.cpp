@@ -10,8 +10,7 @@
 
 namespace holonomic::HOL_ISA {
 
-static mask forward_velocities(const Block &block, const Reader &in, const Projection &x) {
-    mask calm;
+static mask forward_velocities(const Block &block, const Reader &in, const Projection &x, mask &calm) {
     return block.uniform_w ? forward<true, true>(block, in, x.s, x.v, calm)
                            : forward<false, true>(block, in, x.s, x.v, calm);
 }
@@ -71,7 +70,7 @@ static inline bool listed_velocities(const Block &block, const Lane *lane, const
     const AtomLists at(lane);
     const Projection x(block.n, arena, nullptr);
     const Reader in(block, call.box, kept_rate, at, call.r, call.v, AtomArray{});
-    mask good = forward_velocities(block, in, x);
+    mask calm, good = forward_velocities(block, in, x, calm);
     good = good & pull_back(block, x, true);
     if (any(~good)) return false;
     if (call.lambda) store_bonds(block, x.s.t, 0.5 * block.mass, good, call.lambda);
@@ -84,11 +83,12 @@ static void velocities_block(const Block &block, const Lane *lane, const Velocit
     if (block.staged && listed_velocities(block, lane, call, arena)) return;
     const Packed r = open(call.r, block, lane, arena, true), v = open(call.v, block, lane, arena, true);
     const Projection x(block.n, arena, call.strain);
-    mask rest = block.in_use();
+    mask rest = block.in_use(), calm = none(), tried = none();  // as in forces.cpp
     for (int careful = 0; careful < 2 && any(rest); ++careful) {
         Reader in(block, call.box, kept_rate, r, v, v, careful);
         in.strain = call.strain;
-        mask good = careful ? forward_carefully(block, in, x) : forward_velocities(block, in, x);
+        mask good = careful ? forward_carefully(block, in, x) & tried : forward_velocities(block, in, x, calm);
+        if (!careful) tried = ~good & (calm | all_if(call.rescaled));
         good = good & pull_back(block, x, !call.v.is_float) & rest;
         rest = rest & ~good;
         if (!any(good)) continue;

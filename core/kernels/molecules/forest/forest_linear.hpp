@@ -133,10 +133,15 @@ struct ForestLinear : ForestTrees {
     void down(const Range &, const Doubt &);
     unsigned solve();
     void solve_again();
-    __attribute__((noinline)) bool finite_in(const Range &range) const {
-        vec sum = {};
-        for (int32_t p = range.place; p < range.end_place; ++p) sum = sum + abs(row[p].t);
-        return bits(finite(sum)) == all_lanes;
+    // As finite_solution() has it.
+    __attribute__((noinline)) mask finite_in(const Range &range) const {
+        vec sum = {}, squares = {}, least = splat(1);
+        for (int32_t p = range.place; p < range.end_place; ++p) {
+            sum = sum + abs(row[p].t);
+            squares = squares + row[p].q;
+            least = min(select(lanes_of(f.held[p]), row[p].q, splat(1)), least);
+        }
+        return finite(sum) & ordinary_squares(least, squares);
     }
 
     __attribute__((noinline)) void add_pulls_to_velocities(const Range &range) {

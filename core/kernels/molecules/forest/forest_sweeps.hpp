@@ -180,9 +180,7 @@ inline unsigned ForestLinear::solve() {
     const ForestDoubt doubt{slack};
     slack = up(all(), working, slack, doubt);
     down<true>(all(), doubt);
-    vec sum = {};
-    for (int32_t p = 0; p < f.n_places; ++p) sum = sum + abs(row[p].t);
-    return bits(first_lanes(f.n_trees) & ~less(slack, vec{}) & finite(sum));
+    return bits(first_lanes(f.n_trees) & ~less(slack, vec{}) & finite_in(all()));
 }
 inline void ForestLinear::solve_again() {
     substitute(all(), working);

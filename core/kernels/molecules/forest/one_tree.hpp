@@ -55,7 +55,7 @@ struct OneTree {
     void substitute_back(int32_t p) const {
         Piece &own = piece[p];
         z.down<true>(z.piece(p), TreeDoubt{&own.faint, &own.slack});
-        if (!z.finite_in(z.piece(p))) own.slack = -1;
+        if (any(~z.finite_in(z.piece(p)))) own.slack = -1;
     }
 
     // Faint bonds have been found, and are to be looked at again.

@@ -29,16 +29,17 @@ __attribute__((noinline)) void eliminate(const FlatLinear<V> &x, const Tile &til
     });
 }
 
-// The lanes in which all pivots of a tile keep this part of the diagonal elements.
+// The lanes in which all pivots of a tile keep this part of the diagonal elements, and all of these are ordinary.
 template <class V>
 HOL_INLINE unsigned pivots_above(const FlatLinear<V> &x, const Tile &tile, double part) {
     const Columns<V> most = all_columns<V>(1 / part);
     unsigned all = bits(x.in_use());
     for (int64_t k = tile.first; k < tile.end; k += x.step) {
         const Columns<V> ratio = x.some(x.diagonal, k - tile.first) * x.some(x.per_pivot, k),
-                         spare = (most - ratio) * ratio;  // is not positive where one of both is not
-        if (__builtin_expect(all_positive<V>(spare), 1)) continue;
-        for (int i = 0; i < x.step && k + i < tile.end; ++i) all &= positive<V>(spare, i);
+                         spare = (most - ratio) * ratio,  // is not positive where one of both is not
+            room = all_columns<V>(most_ordinary_square) - (x.some(x.diagonal, k - tile.first) + x.some(x.per_pivot, k));
+        if (__builtin_expect(all_positive<V>(spare) && all_positive<V>(room), 1)) continue;
+        for (int i = 0; i < x.step && k + i < tile.end; ++i) all &= positive<V>(spare, i) & positive<V>(room, i);
     }
     return all;
 }

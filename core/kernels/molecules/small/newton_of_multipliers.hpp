@@ -41,17 +41,17 @@ HOL_INLINE V solve_twice(const Model &x, V *tau) {
     return left;
 }
 
-// Finds tau in the lanes of `active`, which keeps the lanes that need more; in others it is anything. Returns the
-// number of solves.
+// Finds tau in the lanes of `active` by no more than `most` solves; it keeps the lanes that need more. In others tau is
+// anything. Returns the number of solves.
 template <int N, class V, class Model>
-HOL_INLINE int64_t solve_for_multipliers(const Model &x, V *tau, MaskOf<V> &active) {
+HOL_INLINE int64_t solve_for_multipliers(const Model &x, V *tau, MaskOf<V> &active, int most) {
     V y[N];
     HOL_UNROLL
     for (int k = 0; k < N; ++k) y[k] = first_side(x.sigma[k], x.per_a2[k]);
     Model::solve(x.inverse(), y, tau);
     int64_t solves = 3;
-    active = active & ~less(solve_twice<N>(x, tau), Width<V>::all(small_enough));
-    for (; __builtin_expect(any(active), 0) && solves < 9; solves += 2) {
+    active = active & ~less(solve_twice<N>(x, tau), Width<V>::all(most < solves ? 0 : small_enough));
+    for (; __builtin_expect(any(active), 0) && solves < 9 && solves + 2 <= most; solves += 2) {
         V before[N];
         HOL_UNROLL
         for (int k = 0; k < N; ++k) before[k] = tau[k];

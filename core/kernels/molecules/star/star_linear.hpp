@@ -61,7 +61,7 @@ struct Star {
             const V of_one = adj[k][k] * r, alone = y[k] * of_one;
             least = min(mul_add(-shared, q[k] * (of_one * of_one), mul_add(t[k], t[k], alone * alone)), least);
         }
-        return finite(sum) & ~less(least, V{});
+        return finite(sum) & ~less(least, V{}) & ordinary_squares<V>(abs(r), abs(r), most_of_three);
     }
 
     // G of all atoms.

@@ -71,7 +71,7 @@ struct StarPositions {
         }
         MaskOf<V> unsure = wanted;
         const StarModel<N, V> model(m, b, D, sigma);
-        const int64_t solves = solve_for_multipliers<N>(model, tau, unsure);
+        const int64_t solves = solve_for_multipliers<N>(model, tau, unsure, call.max_iterations);
         if (__builtin_expect(bits(wanted) != all_of<V>, 0)) {
             HOL_UNROLL
             for (int k = 0; k < N; ++k) tau[k] = keep(wanted, tau[k]);

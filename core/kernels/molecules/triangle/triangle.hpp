@@ -46,6 +46,7 @@ template <class V>
 struct TriangleInverse {
     V adj[3][3];
     V r;  // 1 / det
+    HOL_FORCED MaskOf<V> is_ordinary() const { return ordinary_squares<V>(abs(r), abs(r), most_of_three); }
     HOL_STATIC void solve(const TriangleInverse &m, const V *y, V *t) {
         const V y0 = y[0], y1 = y[1], y2 = y[2];
         HOL_UNROLL

@@ -80,7 +80,7 @@ HOL_INLINE unsigned solve_triangles(const TriangleCall &call, int used, const At
     triangle_sides<where>(call, at, m, x.d, y);
     const TriangleInverse<V> inverse = invert_triangle(m, x);
     TriangleInverse<V>::solve(inverse, y, t);
-    MaskOf<V> right = x.closed & finite(t[0] + (t[1] + t[2]));
+    MaskOf<V> right = x.closed & finite(t[0] + (t[1] + t[2])) & inverse.is_ordinary();
     HOL_UNROLL
     for (int k = 0; k < 3; ++k) {  // terms a + p and p are at most 6 |a| in all if p <= 5/2 |a|
         const int l = (k + 1) % 3;
@@ -135,7 +135,7 @@ HOL_INLINE unsigned project_triangles(const VelocitiesCall &call, int used, cons
     };
     const V before = measure();
     project(~Width<V>::none());
-    const unsigned good = bits(Width<V>::first(used) & x.closed & finite(t[0] + (t[1] + t[2])));
+    const unsigned good = bits(Width<V>::first(used) & x.closed & finite(t[0] + (t[1] + t[2])) & inverse.is_ordinary());
     if (!good) return good;
     if (call.lambda) write_triangle_bonds<where>(at, t, Width<V>::all(0.5), call.lambda, good);
     if (call.virial) add_bonds_virial<3>(x.d, t, 1, good, tally);

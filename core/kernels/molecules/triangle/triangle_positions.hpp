@@ -100,7 +100,7 @@ struct TrianglePositions {
         const MaskOf<V> near = less_equal(error, Width<V>::all(call.worst_trial));
         const MaskOf<V> wanted = in_use & ~untouched & near & model.open_angle();
         MaskOf<V> unsure = wanted;
-        const int64_t solves = solve_for_multipliers<3>(model, x.tau, unsure);
+        const int64_t solves = solve_for_multipliers<3>(model, x.tau, unsure, call.max_iterations);
         // Bits from here on: masks of vectors take registers that the moves need.
         const unsigned solved = bits(wanted & ~unsure), as_they_came = bits(untouched);
         if (__builtin_expect(bits(wanted) != all_of<V>, 0))

@@ -1,0 +1,24 @@
+// Whether the units of a molecule are ordinary ones.
+#pragma once
+
+#include <cmath>
+
+#include "core/kernels/call.hpp"
+
+namespace holonomic {
+
+// Powers of two.
+struct Powers {
+    int length, mass;
+};
+
+// Of the longest bond and the largest inverse mass, both positive and finite. Even, as there are roots of masses.
+inline Powers powers_of(double longest, double most_w) {
+    return {std::ilogb(longest) / 2 * 2, most_w > 0 ? -std::ilogb(most_w) / 2 * 2 : 0};
+}
+
+inline bool are_ordinary(const Powers &units) {
+    return std::abs(units.length) <= most_ordinary_length && std::abs(units.mass) <= most_ordinary_mass;
+}
+
+}  // namespace holonomic

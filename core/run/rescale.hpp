@@ -1,0 +1,134 @@
+// Molecules in units so far from ordinary ones that products of theirs overflow or underflow. Such a molecule is worked
+// on by itself, in a copy: lengths and masses are divided by powers of two, and what is found is multiplied by them,
+// which changes no digit. So powers of two of the units change no bit of a result.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <type_traits>
+
+#include "core/kernels/molecules/schedule.hpp"
+#include "core/kernels/tally.hpp"
+#include "core/molecules/ordinary.hpp"
+
+namespace holonomic {
+
+// A molecule as a kernel has it, of whatever shape.
+struct OneMolecule {
+    std::int64_t n_atoms, n_bonds, first_atom;
+    const std::int64_t *atoms;  // or nullptr, as in the lanes of call.hpp; likewise below
+    const double *w, *length;
+    double w_uniform, length_uniform;
+    std::int64_t first_bond;
+    const std::int64_t *bonds;
+    const unsigned char *shared;
+    const Schedule *schedule;  // or nullptr: each bond joins an atom to the next
+    std::int64_t number;
+
+    explicit OneMolecule(const Lane &lane);
+    OneMolecule(const Schedule &schedule, const MoleculeLane &lane);
+    std::int64_t bond(std::int64_t k) const { return bonds ? bonds[k] : first_bond + k; }
+};
+
+// The copy of one molecule: its arrays, masses and lengths.
+class Rescaled {
+public:
+    // Takes memory of the calling thread. Throws std::bad_alloc.
+    Rescaled(const OneMolecule &molecule, const Powers &units);
+
+    // Copies of the caller's arrays, over 2^e. Those that are only read; those that are read and written; and results.
+    AtomArray inputs(const AtomArray &callers, int e);
+    AtomArray moved(const AtomArray &callers, int e) { return add(callers, e, true); }
+    AtomArray results(const AtomArray &callers, int e, bool are_added) { return add(callers, e, are_added); }
+    const double *inputs(const double *callers, int e);
+    double *results(double *callers, int e, bool are_read = false);
+
+    // The lane of the copy, of a unit of its own.
+    Lane lane_of(const Lane &lane) const;
+    MoleculeLane lane_of(const MoleculeLane &lane) const;
+
+    // Writes what kernels have written, times 2^e; false, with nothing written, if a number overflows.
+    bool put_back() const;
+
+    const Powers units;
+
+private:
+    struct Atoms {
+        AtomArray callers, copy, before;  // before: as it was given to the kernel
+        int e;
+    };
+    struct Values {
+        double *callers, *copy, *before;
+        int e;
+    };
+    AtomArray copy_of(const AtomArray &callers, int e, bool read);
+    AtomArray add(const AtomArray &callers, int e, bool read);
+    double *take(std::int64_t n);
+
+    const OneMolecule one_;
+    char *memory_;
+    double *w_ = nullptr, *length_ = nullptr;
+    Atoms atoms_[3];
+    Values values_[2];
+    int n_atoms_ = 0, n_values_ = 0;
+};
+
+// The units in which the longest bond and the lightest mass are about 1, from positions and their box, or from the
+// lengths of the bonds. False if there are none: an infinity, or nothing but bonds of length zero.
+bool find_units(const OneMolecule &molecule, const AtomArray &r, const Box &box, Powers &units);
+bool find_units(const OneMolecule &molecule, Powers &units);
+
+Box rescaled(const Box &box, int e);
+
+// The calls of the verbs for a copy.
+ForcesCall rescaled(const ForcesCall &call, Rescaled &copy);
+VelocitiesCall rescaled(const VelocitiesCall &call, Rescaled &copy);
+SolveCall rescaled(const SolveCall &call, Rescaled &copy);
+PositionsCall rescaled(const PositionsCall &call, Rescaled &copy);
+inline bool find_units(const OneMolecule &m, const ForcesCall &c, Powers &u) { return find_units(m, c.r, c.box, u); }
+inline bool find_units(const OneMolecule &m, const VelocitiesCall &c, Powers &u) {
+    return find_units(m, c.r, c.box, u);
+}
+inline bool find_units(const OneMolecule &m, const SolveCall &c, Powers &u) { return find_units(m, c.r, c.box, u); }
+inline bool find_units(const OneMolecule &m, const PositionsCall &, Powers &u) { return find_units(m, u); }
+
+// Whether it may be good in them if it was bad as it is: else what does not converge would be tried twice.
+template <class Call>
+bool may_help(const Call &, const Powers &) {
+    return true;
+}
+inline bool may_help(const PositionsCall &, const Powers &units) { return !are_ordinary(units); }
+
+// Adds what a copy gives to the sums of its molecule.
+void add_rescaled(const OneMolecule &molecule, const Powers &units, Tally own, Tally &tally);
+
+inline Unit unit_of(const Rescaled &copy, const Unit &one, Lane *lane) {
+    *lane = copy.lane_of(one.lanes[0]);
+    return {lane, 1, true, false};
+}
+inline MoleculeUnit unit_of(const Rescaled &copy, const MoleculeUnit &one, MoleculeLane *lane) {
+    *lane = copy.lane_of(one.lanes[0]);
+    return {one.schedule, lane, 1, true, false, nullptr, one.forests, one.n_forests};
+}
+inline OneMolecule one_of(const Unit &one) { return OneMolecule(one.lanes[0]); }
+inline OneMolecule one_of(const MoleculeUnit &one) { return OneMolecule(*one.schedule, one.lanes[0]); }
+
+// Does a unit of one molecule in ordinary units: run(call, unit, tally) calls the kernel. Returns false, with nothing
+// written, if that is bad, too.
+template <class Call, class AnyUnit, class Run>
+bool work_in_ordinary_units(const Call &call, const AnyUnit &unit, Tally &tally, const Run &run) {
+    const OneMolecule one = one_of(unit);
+    Powers units;
+    if (!find_units(one, call, units) || !may_help(call, units)) return false;
+    Rescaled copy(one, units);
+    Call of_copy = rescaled(call, copy);
+    of_copy.rescaled = true;
+    typename std::remove_const<typename std::remove_pointer<decltype(unit.lanes)>::type>::type lane;
+    Tally own = empty_tally();
+    run(of_copy, unit_of(copy, unit, &lane), own);
+    if (own.n_bad > 0 || !copy.put_back()) return false;
+    add_rescaled(one, units, own, tally);
+    return true;
+}
+
+}  // namespace holonomic
