@@ -68,6 +68,7 @@ int main() { OpenMM::System system; }' | c++ -x c++ - -lOpenMM -o /dev/null 2>/d
         arm) command -v aarch64-linux-gnu-g++ >/dev/null && command -v qemu-aarch64 >/dev/null ;;
         numpy) [ -n "$(python_with numpy)" ] ;;
         ase) [ -n "$(python_with numpy, ase)" ] ;;
+        pytest) [ -n "$(python_with pytest)" ] ;;
         openmm-python) [ -n "$(python_with numpy, openmm)" ] ;;
         venv) [ -n "$(python_with numpy, venv, ensurepip)" ] ;;
         eigen) [ -e /usr/include/eigen3/Eigen/Core ] || pkg-config --exists eigen3 2>/dev/null ;;
@@ -110,6 +111,7 @@ debian_package() {
         openmm) echo libopenmm-dev ;;
         numpy) echo python3-numpy ;;
         ase) echo python3-numpy python3-ase ;;
+        pytest) echo python3-pytest ;;
         venv) echo python3-numpy python3-venv ;;
         openmm-python) echo python3-numpy python3-simtk libopenmm-plugins ;;
         ninja) echo ninja-build ;;

@@ -44,7 +44,7 @@ class PackedArrays:
         if type(array) is not np.ndarray or array.dtype != _DOUBLE or array.shape != self._shape or not array.flags.aligned:
             raise NotPacked
         try:
-            pointer = c_void_p(addressof(c_char.from_buffer(array)))  # sooner than by array.ctypes
+            pointer = c_void_p(addressof(c_char.from_buffer(array)))  # type: ignore  # sooner than by array.ctypes
         except (TypeError, ValueError):  # read-only, not contiguous, or without a byte
             raise NotPacked from None
         if len(self._known) >= 64:  # most of them are gone

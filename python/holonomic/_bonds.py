@@ -16,14 +16,15 @@ from ._massless import held_rigid_atoms
 from ._types import Bodies, Floats, Integers, Pairs, Places
 from .errors import ArgumentError, MasslessWarning, NumberError, ask, ask_to_add
 
-def _again(of: type, masses: np.ndarray, fixed: Optional[np.ndarray], memory_limit: int, added: Added,
-           lengths: Optional[np.ndarray], settings: dict, labels: Optional[tuple]) -> "Bonds":
+
+def _again(of: Any, masses: np.ndarray, fixed: Optional[np.ndarray], added: Added, lengths: Optional[np.ndarray],
+           settings: dict, labels: Optional[tuple]) -> "Bonds":
     """A copy: a set of its own, made as the other was."""
     from .molecules import Molecules
 
     molecules = of.__new__(of)
     Molecules.__init__(molecules, masses, fixed)
-    molecules.memory_limit = memory_limit
+    molecules.memory_limit = settings["memory_limit"]  # what is added has to fit
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", MasslessWarning)
         added.repeat(molecules)
@@ -59,10 +60,13 @@ class Bonds:
         self._labels: Optional[tuple] = None
         self._grown()
 
+    def _settings(self) -> dict:
+        return {}
+
     def __reduce__(self) -> tuple:
         """For copy, deepcopy and pickle: each makes a set of its own of the same molecules and settings."""
-        return (_again, (type(self), self._masses, self._fixed, self._memory_limit, self._added, self._lengths,
-                         self._settings(), self._labels), getattr(self, "__dict__", None) or None)
+        return (_again, (type(self), self._masses, self._fixed, self._added, self._lengths, self._settings(),
+                         self._labels), getattr(self, "__dict__", None) or None)
 
     def _grown(self) -> None:
         """After bonds were added: memory for the outputs of `forces` in one piece, [lambda, tensions, virial, forces]."""

@@ -58,7 +58,8 @@ class Settings(Queries):
 
     def _settings(self) -> dict:
         """All of them, in an order in which they can be set."""
-        names = ("box", "reference_box", "box_rate", "threads", "tolerance", "max_iterations", "checks", "keep_outcomes", "active")
+        names = ("box", "reference_box", "box_rate", "threads", "tolerance", "max_iterations", "memory_limit", "checks",
+                 "keep_outcomes", "active")
         return {name: getattr(self, name) for name in names}
 
     @_ArraySetting

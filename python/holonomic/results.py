@@ -34,6 +34,7 @@ class Forces:
     def __init__(self, memory: Any, n_bonds: int, out: Optional[np.ndarray], has_tensions: bool = True, columns: int = 3):
         self._memory, self._n_bonds, self._out = memory, n_bonds, out
         self._has_tensions, self._columns = has_tensions, columns
+        self._array: np.ndarray  # made when it is asked for
 
     def _part(self, start: int, stop: Optional[int]) -> np.ndarray:
         try:
