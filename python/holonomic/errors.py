@@ -85,7 +85,6 @@ _NAMES = {"hol_chains_add": "add_chain", "hol_chains_add_bonds": "add", "hol_cha
           "hol_chains_set_lengths": "set_lengths", "hol_chains_set_masses": "set_masses", "hol_chains_set_labels": "set_labels",
           "hol_chains_set_outcomes": "keep_outcomes", "hol_inverse_create": "inverse"}
 _NAME = re.compile(r"\bhol_\w+")
-_IMPOSE = "; impose() makes crude positions right"
 
 
 def _name(found: re.Match) -> str:
@@ -103,8 +102,6 @@ def fail(status: int, when_added: bool = False) -> NoReturn:
     library.hol_error_location(*(byref(place) for place in places))
     message = _in_words_of_python(library.hol_error_message().decode(errors="replace"))
     of = ArgumentError if when_added and status == 7 else _CLASSES.get(status, Error)
-    if of is LengthsError and "reference" in message and "impose" not in message:
-        message += _IMPOSE
     error = of(message)
     error.status = status
     chain, bond, atom, error.n_bad = (place.value for place in places)

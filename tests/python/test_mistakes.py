@@ -103,10 +103,31 @@ class Mistakes(unittest.TestCase):
     def test_crude_positions_are_told_of_impose(self):
         molecules, r = dimers()
         crude = r * (0.85, 1, 1)
-        with self.assertRaisesRegex(hol.LengthsError, r"impose\(\)"):
+        with self.assertRaisesRegex(hol.LengthsError, r"\(impose\)"):
             molecules.project_positions(crude, crude + 0.0, 1)
         molecules.impose(crude)
         molecules.project_positions(crude, crude + 0.0, 1)
+
+    def test_a_step_that_explodes_is_no_matter_of_units(self):
+        for is_first in (True, False):
+            molecules, r = dimers()
+            if not is_first:
+                molecules.project_positions(r, r + 0.0, 1)
+            new = r + 0.0
+            new[3] += (0, 40, 0)
+            with self.assertRaisesRegex(hol.LengthsError, "forces or time step") as caught:
+                molecules.project_positions(r, new, 1)
+            self.assertNotRegex(str(caught.exception), "unit|order|counted")
+            self.assertEqual((caught.exception.molecule, caught.exception.bond), (1, 0))
+
+    def test_messages_about_lengths_fit_in_240_letters(self):
+        molecules, r = dimers(1000)
+        for wrong in (r * (0.85, 1, 1), r * (10, 1, 1), np.roll(r, 1, axis=0)):
+            for box in (None, 30000.0):
+                molecules.box = box
+                with self.assertRaises(hol.LengthsError) as caught:
+                    molecules.project_positions(wrong, wrong + 0.0, 1)
+                self.assertLessEqual(len(str(caught.exception)), 240, str(caught.exception))
 
     def test_one_is_singular(self):
         molecules, r = dimers(1)
