@@ -170,10 +170,8 @@ void write_causes(const Misfit &found, const Box *box, int base, char *text, std
         std::snprintf(text, size,
                       "likely a crude start or another force field's lengths (hol_impose), or another order");
     else
-        std::snprintf(
-            text, size, "likely %s, another order or unit of lengths, or atoms counted from %d (here from %d)",
-            !box || box->shape == Box::none ? "a molecule cut by a face of the cell" : "a box of another unit or step",
-            1 - base, base);
+        std::snprintf(text, size, "likely a %s, another order or unit, or atoms counted from %d (here from %d)",
+                      !box || box->shape == Box::none ? "cut molecule" : "wrong box", 1 - base, base);
 }
 
 Error misfit_error(const Chains &chains, const Misfit &found, const BondVectors &bonds, const char *what) {
