@@ -184,6 +184,8 @@ class Bonds:
 
     def _look_for_massless(self, bonds: np.ndarray) -> None:
         """Bonds that hold a molecule in space, where that is hardly meant."""
+        if not (self._masses == 0).any():
+            return
         inside = bonds[((bonds >= 0) & (bonds < self._n_atoms)).all(axis=1)]  # the library refuses the others
         if self._fixed is not None:
             held = inside[(self._masses[inside] == 0) & ~self._fixed[inside]].tolist()
@@ -214,7 +216,7 @@ class Bonds:
         """New lengths (n_bonds,) for all bonds, or one number."""
         lengths = numbers(lengths, self._n_bonds, "lengths", "bond")
         ask(library.hol_chains_set_lengths(self._handle, address(lengths)))
-        self._lengths, self._begins = np.array(lengths), True
+        self._lengths = np.array(lengths)
 
     def set_masses(self, masses: Floats) -> None:
         """New masses (n_atoms,). What is held fixed (mass 0) stays so, and what can move."""

@@ -37,7 +37,8 @@ class Constraint(FixConstraint):  # type: ignore
     bonds    (n, 2) integers, the two atoms of each bond, in any order; numbers below 0 count from the end
     lengths  (n,), or one number, or None: as they are in the atoms at the first use
     angles   (m, 3) integers, atoms i, j, k: the distance of i and k is kept, too; where the bonds ij and jk are, this is the
-             angle at j. Lengths, if given, have theirs after those of the bonds: (n + m,). At 180 degrees the three are a body
+             angle at j. Lengths, if given, have theirs after those of the bonds: (n + m,). At 180 degrees (to half of one)
+             the three are a body
     bodies   lists of atoms; each list is held as one rigid body, as it is in the atoms at the first use
 
     Cells and what is periodic are those of the atoms at each call. Atoms of a FixAtoms beside it are held, whichever of the
@@ -277,7 +278,7 @@ class Constraint(FixConstraint):  # type: ignore
             if not same.any():
                 return
             sizes.append(kept.lengths[same][0])
-        if sizes[2] < (sizes[0] + sizes[1]) * (1 - 1e-6):
+        if sizes[2] < (sizes[0] + sizes[1]) * (1 - 1e-5):  # more than half a degree from it
             return
         keep = ~np.isin(kept.pairs, angle).all(axis=1)
         place = np.zeros((3, 3))

@@ -229,6 +229,21 @@ class Boxes(unittest.TestCase):
                 warnings.simplefilter("error")
                 molecules.project_positions(r, r + 0.0, 1)
 
+    def test_a_barostat_is_not_asked_at_each_step(self):
+        asked = []
+
+        class Counted(hol.Molecules):
+            def _cut_misfit(self, r, box):
+                asked.append(box[0, 0])
+
+        r = dimers(4)[1]
+        counted = Counted(np.ones(8))
+        counted.add_molecules(4, 2, [(0, 1)], 1.0)
+        for box in (40, 40.1, 40.2, 42, 42.1):
+            counted.box = box
+            counted.project_positions(r, r + 0.0, 1)
+        self.assertEqual(asked, [40, 42])
+
     def test_crude_positions_inside_as_across_are_not_blamed_on_it(self):
         molecules, r = self.cut()
         molecules.box = 9.3
