@@ -23,7 +23,7 @@ from .results import Forces, Impulse, Metric, Outcomes, Reactions, Report, Viola
 __version__ = "0.2.0"
 __all__ = [
     "ArgumentError", "DegenerateError", "Error", "Forces", "Impulse", "Inverse", "LengthsError", "LengthsWarning",
-    "MasslessWarning", "Metric", "Molecule", "Molecules", "NoConvergenceError", "NotDefiniteError", "NotFiniteError", "NumberError", "OutOfMemoryError", "Outcomes",
-    "PartitionFunction", "Reactions", "Report", "SharedAtomError", "Violation", "instruction_set", "partition_function",
-    "tridiagonal", "version",
+    "MasslessWarning", "Metric", "Molecule", "Molecules", "NoConvergenceError", "NotDefiniteError", "NotFiniteError",
+    "NumberError", "OutOfMemoryError", "Outcomes", "PartitionFunction", "Reactions", "Report", "SharedAtomError",
+    "Violation", "instruction_set", "partition_function", "tridiagonal", "version",
 ]

@@ -43,6 +43,22 @@ class Kept:
                                     atoms.pbc)[1]
         return True
 
+    def straighten(self, i: int, j: int, k: int) -> None:
+        """Three atoms whose distances say that they are on a line become a body: as bonds they depend on each other."""
+        sizes = []
+        for pair in ((i, j), (j, k), (i, k)):
+            same = (np.sort(self.pairs, axis=1) == sorted(pair)).all(axis=1)
+            if not same.any():
+                return
+            sizes.append(self.lengths[same][0])
+        if sizes[2] < (sizes[0] + sizes[1]) * (1 - 1e-5):  # more than half a degree from it
+            return
+        place = np.zeros((3, 3))
+        place[1:, 0] = sizes[0], sizes[0] + sizes[1]
+        keep = ~np.isin(self.pairs, (i, j, k)).all(axis=1)
+        self.pairs, self.lengths = self.pairs[keep], self.lengths[keep]
+        self.bodies, self.places = self.bodies + [np.array([i, j, k])], self.places + [place]
+
     def of_selection(self, new: np.ndarray) -> "Kept":
         """Those whose atoms are all selected: new[i] is the number that atom i gets, or -1. None left: an IndexError."""
         self.count_from_start(len(new))

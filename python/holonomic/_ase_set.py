@@ -140,7 +140,7 @@ def cut_bonds_differ(atoms: Any, kept: Kept) -> Optional[str]:
             continue
         off = np.sqrt(np.mean((across - inside.mean()) ** 2))
         if off > 4 * inside.std() + 1e-3 * inside.mean():
-            return (f"bonds of the same elements that a face of the cell cuts are {across.min():.4g} to {across.max():.4g} long, the others "
+            return (f"bonds that a face of the cell cuts are {across.min():.4g} to {across.max():.4g} long, others of the same elements "
                     f"{inside.min():.4g} to {inside.max():.4g}: this is hardly the cell of these positions")
     return None
 
@@ -157,3 +157,24 @@ def group_of(constraint: Any, constraints: List[Any]) -> List[Any]:
         if not more:
             return [constraints[k] for k in sorted(group)]
         group |= more
+
+
+# Constraints of ASE that move atoms after this one, each on its own; those that keep lengths can't hold together with it.
+_MOVE_ATOMS = ("FixCartesian", "FixedPlane", "FixedLine", "FixScaled", "FixedMode")
+_KEEP_LENGTHS = ("FixBondLengths", "FixLinearTriatomic", "FixInternals")
+
+
+def look_at_others(own: np.ndarray, constraints: List[Any]) -> None:
+    """Refuses, or warns of, constraints of other classes that do something to the same atoms."""
+    for other in constraints:
+        name = type(other).__name__
+        if name not in _MOVE_ATOMS + _KEEP_LENGTHS or not hasattr(other, "get_indices"):
+            continue
+        shared = np.intersect1d(other.get_indices(), own)
+        if len(shared) == 0:
+            continue
+        if name in _KEEP_LENGTHS:
+            raise ArgumentError(f"{name} and Constraint share atom {shared[0]}, and each would break what the other keeps: put the "
+                                "bonds of both into one Constraint")
+        warnings.warn(f"{name} and Constraint share atom {shared[0]}: what {name} does to it is not known to the bonds, which are "
+                      "off by it", stacklevel=5)

@@ -24,9 +24,10 @@ def cut_bonds_misfit(r: np.ndarray, bonds: np.ndarray, lengths: np.ndarray, box:
     if not (off[cut].max() > max(_LEAST, _TIMES * off[inside].max())):
         return None
     k = int(np.flatnonzero(cut)[off[cut].argmax()])
-    return (f"the bonds that a face of the box cuts are off by up to {100 * off[cut].max():.2g} % (bond {k}, atoms {bonds[k, 0]} and "
-            f"{bonds[k, 1]}: {length[k]:.6g} long, it should be {lengths[k]:.6g}), the others by {100 * off[inside].max():.2g} %: "
-            "this is hardly the box of these positions")
+    i, j = bonds[k]
+    return (f"the bonds that a face of the box cuts are off by up to {100 * off[cut].max():.2g} % (bond {k}, atoms {i} and {j}: "
+            f"{length[k]:.6g} long, it should be {lengths[k]:.6g}), the others by {100 * off[inside].max():.2g} %: this is hardly "
+            "the box of these positions")
 
 
 def minimum_images(d: np.ndarray, box: np.ndarray) -> np.ndarray:

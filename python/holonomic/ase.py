@@ -11,7 +11,6 @@ Positions, momenta and forces are right to their rounding after each call, witho
 
 from __future__ import annotations
 
-import warnings
 from typing import Any, Optional, Tuple
 
 import numpy as np
@@ -19,14 +18,10 @@ from ase.constraints import FixAtoms, FixConstraint  # type: ignore
 
 from . import _ase_find as find
 from ._ase_bonds import Kept, together
-from ._ase_set import MoleculesOfAtoms, group_of
+from ._ase_set import MoleculesOfAtoms, group_of, look_at_others
 from ._types import Bodies, Floats, Pairs
 from .errors import ArgumentError, LengthsError, NoConvergenceError
 from .molecules import Molecules
-
-# Constraints of ASE that move atoms after this one: of the first it says so, the others can't hold together with it.
-_MOVE_ATOMS = ("FixCartesian", "FixedPlane", "FixedLine", "FixScaled", "FixedMode")
-_KEEP_LENGTHS = ("FixBondLengths", "FixLinearTriatomic", "FixInternals")
 
 
 class Constraint(FixConstraint):  # type: ignore
@@ -62,7 +57,8 @@ class Constraint(FixConstraint):  # type: ignore
         if lengths is not None:
             lengths = np.asarray(lengths, dtype=float)
             if lengths.shape not in ((), (len(joined),)):
-                raise ArgumentError(f"lengths has the shape {lengths.shape}; it must be ({len(joined)},), one for each bond and angle")
+                raise ArgumentError(f"lengths has the shape {lengths.shape}; it must be ({len(joined)},), one for each bond and "
+                                    "angle")
             lengths = np.array(np.broadcast_to(lengths, (len(joined),)))
         self._set_kept(Kept(joined, lengths, own_bodies, None))
 
@@ -232,15 +228,15 @@ class Constraint(FixConstraint):  # type: ignore
     def _prepare(self, atoms: Any, look: bool = True) -> MoleculesOfAtoms:
         """The molecules with masses, held atoms and cell as they are now, of all constraints that share atoms with this one."""
         held = np.zeros(len(atoms), dtype=bool)
-        others = []
+        ours = []
         for constraint in atoms.constraints:
             if isinstance(constraint, FixAtoms):
                 held[constraint.index] = True
             elif isinstance(constraint, Constraint):
                 constraint._kept.count_from_start(len(atoms))
-                others.append(constraint)
+                ours.append(constraint)
         held = np.flatnonzero(held)
-        group = group_of(self, others) if len(others) > 1 else [self]
+        group = group_of(self, ours) if len(ours) > 1 else [self]
         parts = [constraint._kept for constraint in group]
         masses = atoms.get_masses()
         found = self._set
@@ -249,8 +245,8 @@ class Constraint(FixConstraint):  # type: ignore
             found.set_masses(masses)
             found.set_cell(atoms)
             return found
-        for constraint in atoms.constraints:
-            self._refuse(constraint)
+        others = [constraint for constraint in atoms.constraints if not isinstance(constraint, Constraint)]
+        look_at_others(np.concatenate([part.atoms() for part in parts]), others)
         measured = [constraint._measure(atoms) for constraint in group]
         is_first = found is None
         found = MoleculesOfAtoms(together(parts), masses, held)
@@ -265,39 +261,9 @@ class Constraint(FixConstraint):  # type: ignore
         kept = self._kept
         took = kept.measure(atoms)
         for angle in (self._angles % len(atoms)).tolist():
-            self._straight(angle)
+            kept.straighten(*angle)
         self._angles = self._angles[:0]
         return took
-
-    def _straight(self, angle: list) -> None:
-        """Three atoms on a line, by the lengths of their distances, are a body: as bonds they depend on each other."""
-        kept, (i, j, k) = self._kept, angle
-        sizes = []
-        for pair in ((i, j), (j, k), (i, k)):
-            same = (np.sort(kept.pairs, axis=1) == sorted(pair)).all(axis=1)
-            if not same.any():
-                return
-            sizes.append(kept.lengths[same][0])
-        if sizes[2] < (sizes[0] + sizes[1]) * (1 - 1e-5):  # more than half a degree from it
-            return
-        keep = ~np.isin(kept.pairs, angle).all(axis=1)
-        place = np.zeros((3, 3))
-        place[1:, 0] = sizes[0], sizes[0] + sizes[1]
-        kept.pairs, kept.lengths = kept.pairs[keep], kept.lengths[keep]
-        kept.bodies, kept.places = kept.bodies + [np.array(angle)], kept.places + [place]
-
-    def _refuse(self, other: Any) -> None:
-        name = type(other).__name__
-        if isinstance(other, Constraint) or name not in _MOVE_ATOMS + _KEEP_LENGTHS or not hasattr(other, "get_indices"):
-            return
-        shared = np.intersect1d(other.get_indices(), self.get_indices())
-        if len(shared) == 0:
-            return
-        if name in _KEEP_LENGTHS:
-            raise ArgumentError(f"{name} and Constraint share atom {shared[0]}, and each would break what the other keeps: put the "
-                                "bonds of both into one Constraint")
-        warnings.warn(f"{name} and Constraint share atom {shared[0]}: what {name} does to it is not known to the bonds, which are "
-                      "off by it", stacklevel=4)
 
     @classmethod
     def _with(cls, kept: Kept, angles: np.ndarray) -> "Constraint":

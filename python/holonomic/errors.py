@@ -93,7 +93,8 @@ def _name(found: re.Match) -> str:
 
 
 def _in_words_of_python(message: str) -> str:
-    return re.sub(r"(?<!of )\b1 (bond|molecule|atom|chain)s\b", r"1 \1", _NAME.sub(_name, message)).replace("another handle's", "another object's")
+    message = _NAME.sub(_name, message).replace("another handle's", "another object's")
+    return re.sub(r"(?<!of )\b1 (bond|molecule|atom|chain)s\b", r"1 \1", message)
 
 
 def fail(status: int, when_added: bool = False) -> NoReturn:
