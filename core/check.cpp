@@ -171,7 +171,8 @@ void write_causes(const Misfit &found, const Box *box, int base, char *text, std
                       "likely a crude start or another force field's lengths (hol_impose), or another order");
     else
         std::snprintf(text, size, "likely a %s, another order or unit, or atoms counted from %d (here from %d)",
-                      !box || box->shape == Box::none ? "cut molecule" : "wrong box", 1 - base, base);
+                      !box || box->shape == Box::none ? "molecule cut by a face" : "box of another time", 1 - base,
+                      base);
 }
 
 Error misfit_error(const Chains &chains, const Misfit &found, const BondVectors &bonds, const char *what) {
