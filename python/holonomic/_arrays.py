@@ -74,7 +74,7 @@ def view_of(array: Any, rows: int, name: str, what: str = "atoms", output: bool 
         if output:
             raise TypeError(f"{name} is written to: it must be aligned, in rows of its own, of float64 or float32; "
                             f"it is {a.dtype} with strides {a.strides}")
-        a = np.array(a, dtype=np.float64)
+        a = _doubles(np.array(a), name)
     if output and not a.flags.writeable:
         raise ArgumentError(f"{name} is written to, and is read-only")
     start, column = a.__array_interface__["data"][0] if a.size else 8, a.strides[1]

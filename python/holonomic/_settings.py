@@ -119,6 +119,8 @@ class Settings(Queries):
 
     @keep_outcomes.setter
     def keep_outcomes(self, keep: bool) -> None:
+        if not isinstance(keep, (bool, np.bool_, int)):
+            raise TypeError(f"keep_outcomes must be True or False, not {keep!r}")
         ask(library.hol_chains_set_outcomes(self._handle, bool(keep)))
         self._keep_outcomes = bool(keep)
 

@@ -94,6 +94,7 @@ def _name(found: re.Match) -> str:
 
 def _in_words_of_python(message: str) -> str:
     message = _NAME.sub(_name, message).replace("another handle's", "another object's")
+    message = message.replace("some views have z and some have not", "some arrays are (n, 3) and some (n, 2)")
     return re.sub(r"(?<!of )\b1 (bond|molecule|atom|chain)s\b", r"1 \1", message)
 
 

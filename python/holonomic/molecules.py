@@ -8,7 +8,7 @@ from typing import Any, NoReturn, Optional, Tuple
 
 import numpy as np
 
-from ._arrays import NotPacked, address, dimensions, numbers, output, view_of
+from ._arrays import NotPacked, address, dimensions, number, numbers, output, view_of
 from ._cut import cut_bonds_misfit
 from ._library import bare, library
 from ._settings import Settings
@@ -62,7 +62,7 @@ class Molecules(Settings):
         Returns lambda_, tensions, virial and forces.
         """
         if v is r:
-            _same("v")
+            _same(r)
         n = self._n_bonds
         memory = self._outputs()
         pointer = self._packed.pointer
@@ -137,9 +137,11 @@ class Molecules(Settings):
         twice that.
         """
         if v is not None and (v is r or v is r_ref):
-            _same("v")
+            _same(r)
         if self._begins:
             self._begin(r_ref)
+        if guess and lambda_ is None:
+            _no_guess()
         report = Report()
         wanted = None
         if multipliers or virial or lambda_ is not None:
@@ -166,7 +168,9 @@ class Molecules(Settings):
         b_k leads from the first atom of bond k, as it was given, to the second.
         """
         if v is not None and v is r:
-            _same("v")
+            _same(r)
+        if guess and lambda_ is None:
+            _no_guess()
         report = Report()
         lambda_, wanted = self._wanted(lambda_, multipliers or guess, virial)
         report.lambda_, report.virial = lambda_, wanted
@@ -192,7 +196,7 @@ class Molecules(Settings):
         Returns (lambda_, virial), None for what was not wanted.
         """
         if v is r:
-            _same("v")
+            _same(r)
         lambda_, wanted = self._wanted(None, multipliers, virial) if multipliers or virial else (None, None)
         pointer = self._packed.pointer
         try:
@@ -221,12 +225,16 @@ class Molecules(Settings):
 
     def violation(self, r: Floats, v: Array = None) -> Violation:
         """Largest violation of the constraints by positions r (n_atoms, 3) and velocities v."""
+        if v is not None and v is r:
+            _same(r)
         worst = Violation()
         ask(library.hol_violation_view(self._handle, self._view(r, "r"), self._view(v, "v"), byref(worst)))
         return worst
 
     def residuals(self, r: Floats, v: Array = None) -> Tuple[np.ndarray, np.ndarray]:
         """What is left of each constraint: (d.d - a^2) / a^2 and d.(v_j - v_i + L d), each (n_bonds,)."""
+        if v is not None and v is r:
+            _same(r)
         length, rate = np.zeros(self._n_bonds), np.zeros(self._n_bonds)
         ask(library.hol_residuals_view(self._handle, self._view(r, "r"), self._view(v, "v"), address(length), address(rate)))
         return length, rate
@@ -277,6 +285,7 @@ class Molecules(Settings):
 
     def metric(self, r: Floats, kT: float = 0.0) -> Metric:
         """Metric determinant of the molecules, and the Fixman potential and its forces at the thermal energy kT."""
+        kT = number(kT, "kT")
         r_view = self._view(r, "r")
         n, energy = self.n_molecules, c_double()
         log_det, log_det_z, force = np.zeros(n), np.zeros(n), np.zeros((self._n_atoms, dimensions(r)))
@@ -293,8 +302,14 @@ class Molecules(Settings):
                 f"of {counted(self._n_atoms, 'atom')}>")
 
 
-def _same(name: str) -> NoReturn:
-    raise ArgumentError(f"{name} is the array that was given for the positions")
+def _same(r: Any) -> NoReturn:
+    if r is None:
+        raise TypeError("r is None: positions are needed")
+    raise ArgumentError("v is the array that was given for the positions")
+
+
+def _no_guess() -> NoReturn:
+    raise ArgumentError("guess is True, and lambda_, which holds the guess, was not given")
 
 
 def _data(array: Optional[np.ndarray]) -> Any:

@@ -47,13 +47,24 @@ class Mistakes(unittest.TestCase):
                      lambda: hol.partition_function(2.5), lambda: molecules.degrees_of_freedom(2.5)):
             with self.assertRaisesRegex(TypeError, "must be"):
                 call()
+        for call in (lambda: molecules.forces(r * 1j), lambda: molecules.forces([[None] * 3] * 6), lambda: molecules.forces(None),
+                     lambda: molecules.forces([["1"] * 3] * 6), lambda: molecules.metric(r, "1"),
+                     lambda: setattr(molecules, "keep_outcomes", "no")):
+            with self.assertRaises(TypeError):
+                call()
+        for call in (lambda: molecules.project_positions(r, r + 0.0, 1, guess=True),
+                     lambda: molecules.forces(r, out=np.zeros((6, 2)))):
+            with self.assertRaisesRegex(hol.ArgumentError, r"lambda_, which holds the guess|\(n, 3\) and some \(n, 2\)"):
+                call()
         molecules.threads, molecules.tolerance, molecules.box = np.int32(2), np.float32(0.5), np.int64(31)
         self.assertEqual((molecules.threads, molecules.tolerance, molecules.box[0, 0]), (2, 0.5, 31))
 
     def test_positions_given_for_velocities(self):
         molecules, r = dimers()
         for call in (lambda: molecules.forces(r, r), lambda: molecules.project_velocities(r, r),
-                     lambda: molecules.project_positions(r, r + 0.0, 1, r), lambda: molecules.project_positions_along(r[::2], r, 1, r)):
+                     lambda: molecules.violation(r, r), lambda: molecules.residuals(r, r),
+                     lambda: molecules.project_positions(r, r + 0.0, 1, r),
+                     lambda: molecules.project_positions_along(r[::2], r, 1, r)):
             before = r.copy()
             with self.assertRaisesRegex(ValueError, "v is the array that was given for the positions"):
                 call()
