@@ -14,6 +14,9 @@ namespace holonomic {
 
 namespace {
 
+// Up to this many times too long or too short, bonds look like those of other force fields.
+constexpr double crude = 1.5;
+
 // Where squares overflow, the bond is too long all the same.
 double length_of(const double *d) {
     const double dd = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
@@ -157,23 +160,19 @@ Misfit find_misfit(const Chains &chains, const BondVectors &bonds, const IsBad &
     return found;
 }
 
-// What is likely to have gone wrong, by what the bonds look like.
+// What is likely to have gone wrong, by what the bonds look like; the most likely first.
 void write_causes(const Misfit &found, const Box *box, int base, char *text, std::size_t size) {
     const bool none_is_right = found.least > 1 + most_off || found.most < 1 - most_off;
-    if (none_is_right && found.most < 1.2 * found.least) {
-        std::snprintf(text, size,
-                      "all bonds are about %.3g times as long as they should be: lengths and positions are hardly "
-                      "in the same unit",
+    if (none_is_right && found.most < 1.2 * found.least && found.worst > crude)
+        std::snprintf(text, size, "all are about %.3g times as long: lengths and positions are hardly in the same unit",
                       found.most);
-        return;
-    }
-    const char *const of_box = !box                      ? ""
-                               : box->shape == Box::none ? "a molecule cut by a face of the cell, as no box is set; "
-                                                         : "a box of another unit or another time than the positions; ";
-    std::snprintf(text, size,
-                  "likely causes: %slengths in another order than the bonds, or in another unit than the positions; "
-                  "atoms counted from %d (here from %d)",
-                  of_box, 1 - base, base);
+    else if (found.worst > 1 + most_off && found.worst <= crude)
+        std::snprintf(text, size,
+                      "likely a crude start or another force field's lengths (hol_impose), or another order");
+    else
+        std::snprintf(text, size, "likely a %s, another order or unit, or atoms counted from %d (here from %d)",
+                      !box || box->shape == Box::none ? "molecule cut by a face" : "box of another time", 1 - base,
+                      base);
 }
 
 Error misfit_error(const Chains &chains, const Misfit &found, const BondVectors &bonds, const char *what) {
@@ -182,15 +181,13 @@ Error misfit_error(const Chains &chains, const Misfit &found, const BondVectors 
     for_bonds(bonds, m, [&](std::int64_t k, const double *d) {
         if (k == found.bond) length = length_of(d);
     });
-    char causes[280];
+    char causes[160];
     write_causes(found, bonds.box, chains.base, causes, sizeof causes);
     Error error =
-        make_error(Status::lengths,
-                   "molecule %s, %s: %.6g long %s, it should be %.6g; %s%s%lld of %lld molecules have such "
-                   "bonds; %s. Nothing was changed (hol_chains_set_checks)",
+        make_error(Status::lengths, "molecule %s, %s: %.6g long %s, it should be %.6g (%lld of %lld molecules); %s%s%s",
                    chains.name_of_molecule(m.number).text, name_of_bond(chains, m, found.bond).text, length, what,
-                   m.length(found.bond), bonds.box ? box_in_words(*bonds.box) : "", bonds.box ? "; " : "",
-                   static_cast<long long>(found.n_bad), static_cast<long long>(found.n_molecules), causes);
+                   m.length(found.bond), static_cast<long long>(found.n_bad), static_cast<long long>(found.n_molecules),
+                   bonds.box ? box_in_words(*bonds.box) : "", bonds.box ? "; " : "", causes);
     error.chain = found.molecule;
     error.bond = found.bond;
     error.n_bad = found.n_bad;
@@ -199,6 +196,24 @@ Error misfit_error(const Chains &chains, const Misfit &found, const BondVectors 
 }
 
 bool is_too_long(double length, double a) { return length > most_stretched * a; }
+
+// The reference fits where this is said.
+Error stretched_error(const Chains &chains, const Molecule &m, std::int64_t bond, double length, std::int64_t n_bad) {
+    char others[80] = "";
+    if (n_bad > 1)
+        std::snprintf(others, sizeof others, " (the first of %lld bad molecules)", static_cast<long long>(n_bad));
+    Error error = make_error(
+        Status::lengths,
+        "molecule %s, %s: %.6g long in the positions to be projected, it should be %.6g; %s: forces or time step "
+        "are far too large, or a molecule is cut by a face of the cell%s",
+        chains.name_of_molecule(m.number).text, name_of_bond(chains, m, bond).text, length, m.length(bond),
+        box_in_words(chains.box), others);
+    error.chain = m.number;
+    error.bond = bond;
+    error.n_bad = n_bad;
+    error.base = chains.base;
+    return error;
+}
 
 }  // namespace
 
@@ -216,7 +231,9 @@ void check_trial(const Chains &chains, const AtomArray &r) {
     const BondVectors bonds{&r, nullptr, &chains.box};
     if (all_within(chains, bonds, 0, most_stretched, std::numeric_limits<double>::infinity())) return;
     const Misfit found = find_misfit(chains, bonds, is_too_long);
-    if (found.molecule >= 0) throw misfit_error(chains, found, bonds, "in the positions to be projected");
+    if (found.molecule < 0) return;
+    const Molecule m = chains.molecule(found.molecule);
+    throw stretched_error(chains, m, found.bond, found.worst * m.length(found.bond), found.n_bad);
 }
 
 bool is_stretched(const Chains &chains, std::int64_t molecule, const AtomArray &r, std::int64_t n_bad, Error *error) {
@@ -231,20 +248,7 @@ bool is_stretched(const Chains &chains, std::int64_t molecule, const AtomArray &
         bond = k;
     });
     if (bond < 0) return false;
-    char others[80] = "";
-    if (n_bad > 1)
-        std::snprintf(others, sizeof others, " (the first of %lld bad molecules)", static_cast<long long>(n_bad));
-    *error =
-        make_error(Status::lengths,
-                   "molecule %s, %s: %.6g long in the positions to be projected, it should be %.6g; %s: a molecule "
-                   "cut by a face of the cell, or a step that is far too large; the molecule was left as it "
-                   "is (hol_chains_set_checks)%s",
-                   chains.name_of_molecule(molecule).text, name_of_bond(chains, m, bond).text, worst * m.length(bond),
-                   m.length(bond), box_in_words(chains.box), others);
-    error->chain = molecule;
-    error->bond = bond;
-    error->n_bad = n_bad;
-    error->base = chains.base;
+    *error = stretched_error(chains, m, bond, worst * m.length(bond), n_bad);
     return true;
 }
 

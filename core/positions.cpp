@@ -91,7 +91,7 @@ AtomArray copy_of(const AtomArray &array, std::int64_t n_atoms) {
 // Once for a set of molecules, their lengths and the box, and before anything is moved.
 void check_start(const Chains &chains, const BondVectors &reference, const AtomArray &r) {
     if (!chains.wants_fit()) return;
-    check_reference(chains, reference, reference.r ? "in the reference positions" : "among the reference vectors");
+    check_reference(chains, reference, reference.r ? "in the reference" : "among the reference vectors");
     check_trial(chains, r);
     chains.note_fit();
 }
@@ -162,9 +162,9 @@ void project_positions_of_bonds(const Chains &chains, PositionsCall &call, const
 void check_start_of_all(const Chains &chains, const AtomArray &r_ref, const AtomArray &r) {
     if (!chains.wants_fit()) return;
     const Box &box = chains.box_of_reference();
-    check_reference(chains, {&r_ref, nullptr, &box}, "in the reference positions");
+    check_reference(chains, {&r_ref, nullptr, &box}, "in the reference");
     check_trial(chains, r);
-    rigid::check_reference(chains, r_ref, box, "in the reference positions");
+    rigid::check_reference(chains, r_ref, box, "in the reference");
     chains.note_fit();
 }
 

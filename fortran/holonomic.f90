@@ -41,7 +41,7 @@ module holonomic
              HOL_SHAPE_RIGID
 
    ! Molecules with rigid bonds. The variable that was created owns them until its destroy: there is no finalizer. A copy
-   ! made by assignment refers to the same molecules, owns nothing, and must not be used after the owner's destroy.
+   ! refers to the same molecules, owns nothing, and must not be used after the owner's destroy, but to be destroyed itself.
    type, extends(chain_set_metric) :: hol_chains
    end type
 

@@ -6,6 +6,7 @@ module holonomic_chains
    use, intrinsic :: iso_fortran_env, only: int32, int64, real64
    use holonomic_c, only: hol_chains_add, hol_chains_add_block, hol_chains_create, hol_chains_destroy, &
                           hol_chains_set_index_base, hol_error_location, HOL_ERR_VALUE
+   use holonomic_ownership, only: ownership
    use holonomic_status, only: decimal, failure, settle
    implicit none
    private
@@ -14,9 +15,10 @@ module holonomic_chains
    type :: chain_set
       private
       type(c_ptr) :: handle = c_null_ptr
-      logical :: is_owner = .false.
+      type(ownership) :: owner
    contains
       procedure :: create
+      procedure :: adopt
       procedure :: destroy
       procedure, private :: add_list_32, add_list_64, add_list_one_length_32, add_list_one_length_64
       procedure, private :: add_block_32, add_block_64, add_block_one_length_32, add_block_one_length_64
@@ -24,8 +26,6 @@ module holonomic_chains
       generic :: add => add_list_32, add_list_64, add_list_one_length_32, add_list_one_length_64, &
          add_block_32, add_block_64, add_block_one_length_32, add_block_one_length_64
       procedure :: c_handle   ! for calls of the module holonomic_c
-      procedure, private :: share
-      generic :: assignment(=) => share
    end type
 
 contains
@@ -56,28 +56,23 @@ contains
          end if
          call problem%ask(status)
          if (problem%none()) call problem%ask(hol_chains_set_index_base(self%handle, 1_c_int))
-         self%is_owner = problem%none()
+         if (problem%none()) call self%owner%take()
       end if
       call settle(problem, "create", stat, errmsg)
    end subroutine
 
-   ! A copy made by assignment only forgets the molecules: they belong to the variable that created them.
+   ! A copy only forgets the molecules: they belong to the variable that created them.
    impure elemental subroutine destroy(self)
       class(chain_set), intent(inout) :: self
-      if (self%is_owner) call hol_chains_destroy(self%handle)
+      if (self%owner%is_here()) call hol_chains_destroy(self%handle)
       self%handle = c_null_ptr
-      self%is_owner = .false.
+      call self%owner%drop()
    end subroutine
 
-   impure elemental subroutine share(self, other)
+   ! Owns the molecules from now on. For a copy whose owner is gone without `destroy`.
+   impure elemental subroutine adopt(self)
       class(chain_set), intent(inout) :: self
-      class(chain_set), intent(in) :: other
-      if (c_associated(self%handle)) then
-         if (c_associated(self%handle, other%handle)) return
-         call self%destroy()
-      end if
-      self%handle = other%handle
-      self%is_owner = .false.
+      if (c_associated(self%handle)) call self%owner%take()
    end subroutine
 
    subroutine add_list_64(self, atoms, lengths, stat, errmsg)

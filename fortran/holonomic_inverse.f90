@@ -7,6 +7,7 @@ module holonomic_inverse
                           hol_inverse_destroy, hol_inverse_entry, hol_inverse_error_bound_view, hol_inverse_matrix, &
                           hol_inverse_n_bonds, hol_inverse_row, HOL_ERR_NULL, HOL_ERR_VALUE, HOL_UNIT_DIAGONAL
    use holonomic_chains, only: chain_set
+   use holonomic_ownership, only: ownership
    use holonomic_place, only: enough, list_of, number_at, place
    use holonomic_status, only: decimal, failure, settle
    implicit none
@@ -16,15 +17,14 @@ module holonomic_inverse
    type :: hol_inverse
       private
       type(c_ptr) :: handle = c_null_ptr
-      logical :: is_owner = .false.
+      type(ownership) :: owner
       integer(c_int64_t) :: n_atoms = 0   ! of the arrays v and f of error_bound
    contains
-      procedure, private :: create_rows_32, create_rows_64, create_parts_32, create_parts_64, share
+      procedure, private :: create_rows_32, create_rows_64, create_parts_32, create_parts_64
       generic :: create => create_rows_32, create_rows_64, create_parts_32, create_parts_64
-      procedure :: destroy, n_bonds, entry => inverse_entry, row, band, matrix, condition
+      procedure :: adopt, destroy, n_bonds, entry => inverse_entry, row, band, matrix, condition
       procedure, private :: bound_at_rest, bound_rows_32, bound_rows_64, bound_parts_32, bound_parts_64
       generic :: error_bound => bound_at_rest, bound_rows_32, bound_rows_64, bound_parts_32, bound_parts_64
-      generic :: assignment(=) => share
    end type
 
 contains
@@ -97,7 +97,7 @@ contains
                                                       //"destroy it first")
       if (problem%none()) then
          call problem%ask(hol_inverse_create_view(chains%c_handle(), int(chain, c_int64_t), at_r%address(), self%handle))
-         self%is_owner = problem%none()
+         if (problem%none()) call self%owner%take()
          self%n_atoms = hol_chains_n_atoms(chains%c_handle())
       end if
       call settle(problem, "create", stat, errmsg)
@@ -105,21 +105,15 @@ contains
 
    impure elemental subroutine destroy(self)
       class(hol_inverse), intent(inout) :: self
-      if (self%is_owner) call hol_inverse_destroy(self%handle)
+      if (self%owner%is_here()) call hol_inverse_destroy(self%handle)
       self%handle = c_null_ptr
-      self%is_owner = .false.
+      call self%owner%drop()
    end subroutine
 
-   impure elemental subroutine share(self, other)
+   ! Owns the inverse from now on. For a copy whose owner is gone without `destroy`.
+   impure elemental subroutine adopt(self)
       class(hol_inverse), intent(inout) :: self
-      class(hol_inverse), intent(in) :: other
-      if (c_associated(self%handle)) then
-         if (c_associated(self%handle, other%handle)) return
-         call self%destroy()
-      end if
-      self%handle = other%handle
-      self%n_atoms = other%n_atoms
-      self%is_owner = .false.
+      if (c_associated(self%handle)) call self%owner%take()
    end subroutine
 
    pure recursive integer(int64) function n_bonds(self)

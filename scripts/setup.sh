@@ -79,6 +79,7 @@ int main() { OpenMM::System system; }' | c++ -x c++ - -lOpenMM -o /dev/null 2>/d
         arm) command -v aarch64-linux-gnu-g++ >/dev/null && command -v qemu-aarch64 >/dev/null ;;
         numpy) [ -n "$(python_with numpy)" ] ;;
         ase) [ -n "$(python_with numpy, ase)" ] ;;
+        pytest) [ -n "$(python_with pytest)" ] ;;
         openmm-python) [ -n "$(python_with numpy, openmm)" ] ;;
         venv) [ -n "$(python_with numpy, venv, ensurepip)" ] ;;
         setuptools) [ -n "$(python_with setuptools, wheel, pip)" ] ;;
@@ -122,6 +123,7 @@ debian_package() {
         openmm) echo libopenmm-dev ;;
         numpy) echo python3-numpy ;;
         ase) echo python3-numpy python3-ase ;;
+        pytest) echo python3-pytest ;;
         venv) echo python3-numpy python3-venv ;;
         setuptools) echo python3-setuptools python3-wheel python3-pip ;;
         openmm-python) echo python3-numpy "$(newest_package '^python3-(simtk|openmm)$' python3-openmm)" libopenmm-plugins ;;

@@ -122,17 +122,16 @@ void check_reference(const Chains &chains, const AtomArray &r, const Box &box, c
     if (worst.bond >= 0) {
         const Bond &bond = chains.bodies()->shape(m).bonds[at(worst.bond)];
         error = make_error(Status::lengths,
-                           "molecule %s, its bond between atoms %s and %s: far from its length, %.6g, %s; %s. Nothing "
-                           "was changed (hol_chains_set_checks)",
+                           "molecule %s, its bond between atoms %s and %s: far from its length, %.6g, %s; %s",
                            chains.name_of_rigid(worst.molecule, atoms[0]).text, name(atoms[bond.i]).text,
                            name(atoms[bond.j]).text, bond.length, what, box_in_words(box));
     } else {
-        error = make_error(
-            Status::lengths,
-            "molecule %s, atom %s: far from its place in its body %s; %s; likely causes: another order of "
-            "atoms than in the body's reference coordinates, another unit, a molecule cut by a face of "
-            "the cell. Nothing was changed (hol_chains_set_checks)",
-            chains.name_of_rigid(worst.molecule, atoms[0]).text, name(worst.atom).text, what, box_in_words(box));
+        error = make_error(Status::lengths,
+                           "molecule %s, atom %s: far from its place in its body %s; %s; likely another order of atoms "
+                           "than in the body's "
+                           "coordinates, another unit, or a molecule cut by a face of the cell",
+                           chains.name_of_rigid(worst.molecule, atoms[0]).text, name(worst.atom).text, what,
+                           box_in_words(box));
     }
     error.chain = worst.molecule;
     error.bond = worst.bond;

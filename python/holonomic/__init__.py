@@ -11,10 +11,10 @@
 """
 
 from . import tridiagonal
-from ._bonds import Molecule
 from ._library import instruction_set, version
-from .errors import (ArgumentError, DegenerateError, Error, LengthsError, NoConvergenceError, NotDefiniteError,
-                     NotFiniteError, NumberError, OutOfMemoryError, SharedAtomError)
+from ._queries import Molecule
+from .errors import (ArgumentError, DegenerateError, Error, LengthsError, LengthsWarning, MasslessWarning,
+                     NoConvergenceError, NotDefiniteError, NotFiniteError, NumberError, OutOfMemoryError, SharedAtomError)
 from .inverse import Inverse
 from .molecules import Molecules
 from .partition import PartitionFunction, partition_function
@@ -22,8 +22,8 @@ from .results import Forces, Impulse, Metric, Outcomes, Reactions, Report, Viola
 
 __version__ = "0.2.0"
 __all__ = [
-    "ArgumentError", "DegenerateError", "Error", "Forces", "Impulse", "Inverse", "LengthsError", "Metric", "Molecule",
-    "Molecules", "NoConvergenceError", "NotDefiniteError", "NotFiniteError", "NumberError", "OutOfMemoryError", "Outcomes",
-    "PartitionFunction", "Reactions", "Report", "SharedAtomError", "Violation", "instruction_set", "partition_function",
-    "tridiagonal", "version",
+    "ArgumentError", "DegenerateError", "Error", "Forces", "Impulse", "Inverse", "LengthsError", "LengthsWarning",
+    "MasslessWarning", "Metric", "Molecule", "Molecules", "NoConvergenceError", "NotDefiniteError", "NotFiniteError",
+    "NumberError", "OutOfMemoryError", "Outcomes", "PartitionFunction", "Reactions", "Report", "SharedAtomError",
+    "Violation", "instruction_set", "partition_function", "tridiagonal", "version",
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import weakref
 from ctypes import addressof, byref, c_char, c_void_p
 from typing import Any, Optional
@@ -43,7 +44,7 @@ class PackedArrays:
         if type(array) is not np.ndarray or array.dtype != _DOUBLE or array.shape != self._shape or not array.flags.aligned:
             raise NotPacked
         try:
-            pointer = c_void_p(addressof(c_char.from_buffer(array)))  # sooner than by array.ctypes
+            pointer = c_void_p(addressof(c_char.from_buffer(array)))  # type: ignore  # sooner than by array.ctypes
         except (TypeError, ValueError):  # read-only, not contiguous, or without a byte
             raise NotPacked from None
         if len(self._known) >= 64:  # most of them are gone
@@ -73,7 +74,7 @@ def view_of(array: Any, rows: int, name: str, what: str = "atoms", output: bool 
         if output:
             raise TypeError(f"{name} is written to: it must be aligned, in rows of its own, of float64 or float32; "
                             f"it is {a.dtype} with strides {a.strides}")
-        a = np.array(a, dtype=np.float64)
+        a = _doubles(np.array(a), name)
     if output and not a.flags.writeable:
         raise ArgumentError(f"{name} is written to, and is read-only")
     start, column = a.__array_interface__["data"][0] if a.size else 8, a.strides[1]
@@ -110,7 +111,7 @@ def dimensions(array: Any) -> int:
 
 def numbers(values: Any, count: Optional[int], name: str, of: str) -> np.ndarray:
     """A packed array [count] of doubles; a single number stands for all."""
-    a = np.asarray(values, dtype=np.float64)
+    a = _doubles(values, name)
     if a.ndim == 0 and count is not None:
         a = np.full(count, a)
     if a.ndim != 1 or (count is not None and len(a) != count):
@@ -128,6 +129,27 @@ def output(array: Any, shape: tuple, name: str) -> np.ndarray:
     return array
 
 
+def _doubles(values: Any, name: str) -> np.ndarray:
+    a = np.asarray(values)
+    if a.dtype.kind not in "fiub":
+        raise TypeError(f"{name} must be numbers" + (f", not {values!r}" if isinstance(values, str) else f"; it is of {a.dtype}"))
+    return a.astype(np.float64, copy=False)
+
+
+def integer(value: Any, name: str) -> int:
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} must be an integer, not {value!r}") from None
+
+
+def number(value: Any, name: str) -> float:
+    try:
+        return float(operator.truediv(value, 1))  # no text, which float() would read
+    except TypeError:
+        raise TypeError(f"{name} must be a number, not {value!r}") from None
+
+
 def integers(values: Any, name: str) -> np.ndarray:
     a = np.asarray(values)
     if a.size and not np.issubdtype(a.dtype, np.integer):
@@ -140,11 +162,14 @@ def address(array: Optional[np.ndarray]) -> Optional[int]:
     return None if array is None else array.__array_interface__["data"][0]
 
 
-def matrix(values: Any, name: str) -> Optional[np.ndarray]:
-    """A box or rate as (3, 3): from that, from three sides on the diagonal, or from one number for all three."""
+def matrix(values: Any, name: str, sides: bool = False) -> Optional[np.ndarray]:
+    """A box or rate as (3, 3): from that, from three numbers for the diagonal, or from one for all three. With `sides` these
+    are lengths: not negative."""
     if values is None:
         return None
-    a = np.asarray(values, dtype=np.float64)
+    a = _doubles(values, name)
+    if sides and a.ndim < 2 and not np.all(a >= 0):
+        raise ArgumentError(f"{name} is {a.tolist()}; sides must be positive, or 0 where it is not periodic")
     if a.shape == ():
         a = np.full(3, a)
     if a.shape == (3,):

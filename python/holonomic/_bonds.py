@@ -2,52 +2,87 @@
 
 from __future__ import annotations
 
+import warnings
 import weakref
-from ctypes import byref, c_double, c_int, c_int64, c_void_p
-from typing import Any, NamedTuple, Optional, Tuple
+from ctypes import byref, c_double, c_void_p
+from typing import Any, List, Optional, Tuple
 
 import numpy as np
 
-from ._arrays import KnownViews, PackedArrays, address, integers, numbers
+from ._added import Added
+from ._arrays import KnownViews, PackedArrays, address, integer, integers, numbers
 from ._library import library
-from .errors import ArgumentError, ask
+from ._massless import held_rigid_atoms
+from ._types import Bodies, Floats, Integers, Pairs, Places
+from .errors import ArgumentError, MasslessWarning, NumberError, ask, ask_to_add
 
-SHAPES = ("chain", "tree", "ring", "triangle", "other", "rigid")
 
+def _again(of: Any, masses: np.ndarray, fixed: Optional[np.ndarray], added: Added, lengths: Optional[np.ndarray],
+           settings: dict, labels: Optional[tuple]) -> "Bonds":
+    """A copy: a set of its own, made as the other was."""
+    from .molecules import Molecules
 
-class Molecule(NamedTuple):
-    """One molecule as the library sees it.
-
-    shape  "chain", "tree", "ring", "triangle", "other", or "rigid": with rigid bodies
-    atoms  its atoms, along a linear chain, ascending otherwise
-    bonds  its bonds by their places in the arrays per bond, in the order in which errors count them
-    """
-
-    shape: str
-    atoms: np.ndarray
-    bonds: np.ndarray
+    molecules = of.__new__(of)
+    Molecules.__init__(molecules, masses, fixed)
+    molecules.memory_limit = settings["memory_limit"]  # what is added has to fit
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", MasslessWarning)
+        added.repeat(molecules)
+    if lengths is not None:
+        molecules.set_lengths(lengths)
+    for name, value in settings.items():
+        setattr(molecules, name, value)
+    if labels is not None:
+        molecules.set_labels(*labels)
+    return molecules
 
 
 class Bonds:
     """The part of Molecules that knows what is bonded."""
 
-    def __init__(self, masses: Any):
-        masses = numbers(masses, None, "masses", "atom")
+    __slots__ = ("_handle", "_destroy", "_n_atoms", "_n_bonds", "_packed", "_views", "_outputs", "_masses", "_fixed", "_added",
+                 "_lengths", "_labels", "_begins", "__weakref__")
+
+    def __init__(self, masses: Floats, fixed: Optional[Integers] = None):
+        masses = np.array(numbers(masses, None, "masses", "atom"))
+        self._fixed: Optional[np.ndarray] = None
+        if fixed is not None:
+            self._fixed = _mask(fixed, len(masses))
+            masses[self._fixed] = 0
         handle = c_void_p()
         ask(library.hol_chains_create(len(masses), address(masses), byref(handle)))
         self._handle = handle
         self._n_atoms = len(masses)
         self._destroy = weakref.finalize(self, library.hol_chains_destroy, handle)
         self._packed, self._views = PackedArrays((self._n_atoms, 3)), KnownViews(self._n_atoms)
+        self._masses, self._added = masses, Added()
+        self._lengths: Optional[np.ndarray] = None  # if they were set after they were added
+        self._labels: Optional[tuple] = None
         self._grown()
+
+    def _settings(self) -> dict:
+        return {}
+
+    def __reduce__(self) -> tuple:
+        """For copy, deepcopy and pickle: each makes a set of its own of the same molecules and settings."""
+        return (_again, (type(self), self._masses, self._fixed, self._added, self._lengths, self._settings(),
+                         self._labels), getattr(self, "__dict__", None) or None)
 
     def _grown(self) -> None:
         """After bonds were added: memory for the outputs of `forces` in one piece, [lambda, tensions, virial, forces]."""
         self._n_bonds = n = library.hol_chains_n_bonds(self._handle)
         self._outputs = c_double * (2 * n + 9 + 3 * self._n_atoms)
+        self._begins = True  # the next `project_positions` is the first one
+
+    def _noted(self, method: str, *arguments: Any) -> None:
+        """After a call that added something."""
+        self._added.note(method, *arguments)
+        if self._lengths is not None:
+            self._lengths = np.concatenate([self._lengths, self._added.lengths()[len(self._lengths):]])
+        self._grown()
 
     # ------------------------------------------------------------------------------------------------------- adding
-    def add(self, bonds: Any, lengths: Any) -> None:
+    def add(self, bonds: Pairs, lengths: Floats) -> None:
         """Adds rigid bonds of any molecules, in any order.
 
         bonds    (n, 2) integers, the two atoms of each bond, counted from 0
@@ -58,10 +93,13 @@ class Bonds:
         """
         bonds = self._pairs(bonds)
         lengths = numbers(lengths, len(bonds), "lengths", "bond")
-        ask(library.hol_chains_add_bonds(self._handle, len(bonds), address(bonds), address(lengths)))
-        self._grown()
+        if len(bonds) == 0:
+            return
+        self._look_for_massless(bonds)
+        ask_to_add(library.hol_chains_add_bonds(self._handle, len(bonds), address(bonds), address(lengths)))
+        self._noted("add", bonds, lengths)
 
-    def add_molecules(self, n_molecules: int, n_atoms: int, bonds: Any, lengths: Any, first_atom: int = 0) -> None:
+    def add_molecules(self, n_molecules: int, n_atoms: int, bonds: Pairs, lengths: Floats, first_atom: int = 0) -> None:
         """Adds the same bonds for n_molecules molecules of n_atoms consecutive atoms each.
 
         bonds       (n, 2) integers, numbers within the molecule, counted from 0
@@ -73,28 +111,35 @@ class Bonds:
         """
         bonds = self._pairs(bonds)
         lengths = numbers(lengths, len(bonds), "lengths", "bond")
-        ask(library.hol_chains_add_molecules(self._handle, n_molecules, n_atoms, first_atom, len(bonds), address(bonds),
-                                             address(lengths)))
-        self._grown()
+        n_molecules, n_atoms = integer(n_molecules, "n_molecules"), integer(n_atoms, "n_atoms")
+        first_atom = integer(first_atom, "first_atom")
+        if len(bonds) == 0:
+            return
+        self._look_for_massless(bonds + first_atom)
+        ask_to_add(library.hol_chains_add_molecules(self._handle, n_molecules, n_atoms, first_atom, len(bonds), address(bonds),
+                                                    address(lengths)))
+        self._noted("add_molecules", n_molecules, n_atoms, bonds, lengths, first_atom)
 
-    def add_chain(self, atoms: Any, lengths: Any) -> None:
+    def add_chain(self, atoms: Integers, lengths: Floats) -> None:
         """Adds one linear chain by its atoms in order along it: (n+1,) integers; lengths (n,), or one number."""
         atoms = integers(atoms, "atoms")
         if atoms.ndim != 1 or len(atoms) < 2:
             raise ArgumentError(f"atoms has the shape {atoms.shape}; it must be (n,), the atoms along a chain, at least two")
         lengths = numbers(lengths, len(atoms) - 1, "lengths", "bond")
-        ask(library.hol_chains_add(self._handle, len(lengths), address(atoms), address(lengths)))
-        self._grown()
+        ask_to_add(library.hol_chains_add(self._handle, len(lengths), address(atoms), address(lengths)))
+        self._noted("add_chain", atoms, lengths)
 
-    def add_chains(self, n_chains: int, n_bonds: int, lengths: Any, first_atom: int = 0) -> None:
+    def add_chains(self, n_chains: int, n_bonds: int, lengths: Floats, first_atom: int = 0) -> None:
         """Adds n_chains linear chains of n_bonds bonds over consecutive atoms; lengths (n_bonds,), or one number."""
+        n_chains, n_bonds = integer(n_chains, "n_chains"), integer(n_bonds, "n_bonds")
+        first_atom = integer(first_atom, "first_atom")
         if n_bonds < 1:
-            raise ArgumentError(f"n_bonds = {n_bonds} must be at least 1")
+            raise ArgumentError(f"n_bonds is {n_bonds}; it must be at least 1")
         lengths = numbers(lengths, n_bonds, "lengths", "bond")
-        ask(library.hol_chains_add_block(self._handle, n_chains, n_bonds, first_atom, address(lengths)))
-        self._grown()
+        ask_to_add(library.hol_chains_add_block(self._handle, n_chains, n_bonds, first_atom, address(lengths)))
+        self._noted("add_chains", n_chains, n_bonds, lengths, first_atom)
 
-    def add_rigid(self, bodies: Any, places: Any, bonds: Any = (), lengths: Any = ()) -> None:
+    def add_rigid(self, bodies: Bodies, places: Places, bonds: Pairs = (), lengths: Floats = ()) -> None:
         """Adds rigid bodies, any number of atoms held as one whole each, and bonds at them.
 
         bodies   the atoms of each body, a list of lists; in a body an atom of mass 0 is a massless site
@@ -106,21 +151,23 @@ class Bonds:
         """
         sizes, atoms, where = self._bodies(bodies, places)
         bonds, lengths = self._at_bodies(bonds, lengths)
-        ask(library.hol_chains_add_rigid(self._handle, len(sizes), address(sizes), address(atoms), address(where), len(bonds),
-                                         address(bonds), address(lengths)))
-        self._grown()
+        ask_to_add(library.hol_chains_add_rigid(self._handle, len(sizes), address(sizes), address(atoms), address(where),
+                                                len(bonds), address(bonds), address(lengths)))
+        self._noted("add_rigid", *_apart(sizes, atoms, where), bonds, lengths)
 
-    def add_rigid_molecules(self, n_molecules: int, n_atoms: int, bodies: Any, places: Any, bonds: Any = (),
-                            lengths: Any = (), first_atom: int = 0) -> None:
+    def add_rigid_molecules(self, n_molecules: int, n_atoms: int, bodies: Bodies, places: Places,
+                            bonds: Pairs = (), lengths: Floats = (), first_atom: int = 0) -> None:
         """Adds the same bodies and bonds for n_molecules molecules of n_atoms consecutive atoms each; numbers of atoms are
         those within the molecule. 1000 CO2: ``add_rigid_molecules(1000, 3, [[0, 1, 2]], [[(-d, 0, 0), (0, 0, 0), (d, 0, 0)]])``.
         """
         sizes, atoms, where = self._bodies(bodies, places)
         bonds, lengths = self._at_bodies(bonds, lengths)
-        ask(library.hol_chains_add_rigid_molecules(self._handle, n_molecules, n_atoms, first_atom, len(sizes), address(sizes),
-                                                   address(atoms), address(where), len(bonds), address(bonds),
-                                                   address(lengths)))
-        self._grown()
+        n_molecules, n_atoms = integer(n_molecules, "n_molecules"), integer(n_atoms, "n_atoms")
+        first_atom = integer(first_atom, "first_atom")
+        ask_to_add(library.hol_chains_add_rigid_molecules(
+            self._handle, n_molecules, n_atoms, first_atom, len(sizes), address(sizes), address(atoms), address(where),
+            len(bonds), address(bonds), address(lengths)))
+        self._noted("add_rigid_molecules", n_molecules, n_atoms, *_apart(sizes, atoms, where), bonds, lengths, first_atom)
 
     @staticmethod
     def _bodies(bodies: Any, places: Any) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -135,87 +182,67 @@ class Bonds:
         sizes = np.array([len(body) for body in atoms], dtype=np.int64)
         return sizes, np.concatenate(atoms), np.ascontiguousarray(np.concatenate(where))
 
+    def _look_for_massless(self, bonds: np.ndarray) -> None:
+        """Bonds that hold a molecule in space, where that is hardly meant."""
+        if not (self._masses == 0).any():
+            return
+        inside = bonds[((bonds >= 0) & (bonds < self._n_atoms)).all(axis=1)]  # the library refuses the others
+        if self._fixed is not None:
+            held = inside[(self._masses[inside] == 0) & ~self._fixed[inside]].tolist()
+        else:
+            held = held_rigid_atoms(inside, self._masses)
+        if not held:
+            return
+        what = (f"atom {held[0]} has mass 0, and its bonds hold it in space, and its molecule with it. A massless site, as M of "
+                "TIP4P, is an atom of a body: add_rigid")
+        if self._fixed is not None:
+            raise ArgumentError(what + "; or name it in `fixed`")
+        warnings.warn(MasslessWarning(f"{what}. If it is to be held, say so: Molecules(masses, fixed=[{held[0]}])"), stacklevel=3)
+
     def _at_bodies(self, bonds: Any, lengths: Any) -> Tuple[np.ndarray, np.ndarray]:
-        bonds = np.zeros((0, 2), np.int64) if len(bonds) == 0 else self._pairs(bonds)
+        bonds = self._pairs(bonds)
         return bonds, numbers(lengths, len(bonds), "lengths", "bond")
 
     @staticmethod
     def _pairs(bonds: Any) -> np.ndarray:
         bonds = integers(bonds, "bonds")
+        if bonds.size == 0:
+            bonds = bonds.reshape(0, 2)
         if bonds.ndim != 2 or bonds.shape[1] != 2:
             raise ArgumentError(f"bonds has the shape {bonds.shape}; it must be (n, 2), the two atoms of each bond")
         return bonds
 
-    def set_lengths(self, lengths: Any) -> None:
+    def set_lengths(self, lengths: Floats) -> None:
         """New lengths (n_bonds,) for all bonds, or one number."""
         lengths = numbers(lengths, self._n_bonds, "lengths", "bond")
         ask(library.hol_chains_set_lengths(self._handle, address(lengths)))
+        self._lengths = np.array(lengths)
 
-    def set_masses(self, masses: Any) -> None:
+    def set_masses(self, masses: Floats) -> None:
         """New masses (n_atoms,). What is held fixed (mass 0) stays so, and what can move."""
-        masses = numbers(masses, self._n_atoms, "masses", "atom")
+        masses = np.array(numbers(masses, self._n_atoms, "masses", "atom"))
+        if self._fixed is not None:
+            masses[self._fixed] = 0
         ask(library.hol_chains_set_masses(self._handle, address(masses)))
+        self._masses = masses
 
-    # ------------------------------------------------------------------------------------------------- what is there
-    @property
-    def n_atoms(self) -> int:
-        """Number of atoms."""
-        return self._n_atoms
 
-    @property
-    def n_bonds(self) -> int:
-        """Number of bonds."""
-        return self._n_bonds
+def _mask(fixed: Any, n_atoms: int) -> np.ndarray:
+    """One bool an atom, from that or from numbers of atoms."""
+    given = np.asarray(fixed)
+    if given.dtype == bool:
+        if given.shape != (n_atoms,):
+            raise ArgumentError(f"fixed has the shape {given.shape}; it must be ({n_atoms},), or numbers of atoms")
+        return given.copy()
+    mask = np.zeros(n_atoms, dtype=bool)
+    atoms = integers(given, "fixed")
+    if atoms.size and not (atoms.min() >= 0 and atoms.max() < n_atoms):
+        raise NumberError(f"fixed has atom {atoms[(atoms < 0) | (atoms >= n_atoms)].ravel()[0]}, outside 0 .. {n_atoms - 1}")
+    mask[atoms] = True
+    return mask
 
-    @property
-    def n_molecules(self) -> int:
-        """Number of molecules that the bonds form."""
-        return library.hol_chains_n_chains(self._handle)
 
-    @property
-    def n_kinds(self) -> int:
-        """Number of different kinds of molecules (shape, masses and lengths)."""
-        return library.hol_chains_n_kinds(self._handle)
-
-    @property
-    def memory(self) -> int:
-        """Memory that the set of molecules occupies in the library, in bytes."""
-        return library.hol_chains_memory(self._handle)
-
-    def n_of_shape(self, shape: str) -> int:
-        """Number of molecules of a shape: "chain", "tree", "ring", "triangle", "other" or "rigid"."""
-        if shape not in SHAPES:
-            raise ArgumentError(f"shape is {shape!r}; it must be one of {', '.join(SHAPES)}")
-        return library.hol_chains_n_of_shape(self._handle, SHAPES.index(shape))
-
-    def molecule(self, number: int) -> Molecule:
-        """Shape, atoms and bonds of one molecule."""
-        shape, n_atoms, n_bonds = c_int(), c_int64(), c_int64()
-        ask(library.hol_chains_molecule(self._handle, number, byref(shape), byref(n_atoms), byref(n_bonds)))
-        atoms, bonds = np.empty(n_atoms.value, np.int64), np.empty(n_bonds.value, np.int64)
-        ask(library.hol_chains_atoms(self._handle, number, address(atoms)))
-        ask(library.hol_chains_bonds(self._handle, number, address(bonds)))
-        return Molecule(SHAPES[shape.value], atoms, bonds)
-
-    def molecules_of_bonds(self) -> np.ndarray:
-        """The molecule of every bond, (n_bonds,); -1 for a bond between two fixed atoms."""
-        molecules = np.empty(self._n_bonds, np.int64)
-        ask(library.hol_chains_molecules_of_bonds(self._handle, address(molecules)))
-        return molecules
-
-    def degrees_of_freedom(self, dimensions: int = 3) -> int:
-        """Those of all atoms that can move, less one for each bond. A conserved total momentum is not subtracted."""
-        count = library.hol_chains_degrees_of_freedom(self._handle, dimensions)
-        if count < 0:
-            raise ArgumentError(f"dimensions is {dimensions}; it must be 2 or 3")
-        return count
-
-    def set_labels(self, atoms: Optional[Any] = None, molecules: Optional[Any] = None) -> None:
-        """Numbers by which you know atoms (n_atoms,) and molecules (n_molecules,): error messages show them."""
-        lists = []
-        for labels, count, name in ((atoms, self._n_atoms, "atoms"), (molecules, self.n_molecules, "molecules")):
-            labels = None if labels is None else integers(labels, name)
-            if labels is not None and labels.shape != (count,):
-                raise ArgumentError(f"{name} has the shape {labels.shape}; it must be ({count},)")
-            lists.append(labels)
-        ask(library.hol_chains_set_labels(self._handle, *(address(labels) for labels in lists)))
+def _apart(sizes: np.ndarray, atoms: np.ndarray, where: np.ndarray) -> Tuple[List[np.ndarray], List[np.ndarray]]:
+    """Bodies and places again, one array a body."""
+    ends = np.cumsum(sizes)[:-1]
+    return np.split(atoms, ends), np.split(where, ends)

@@ -2,67 +2,103 @@
 
 from __future__ import annotations
 
-from typing import Any, Optional
+from typing import Any, Callable, Optional, Union, overload
 
 import numpy as np
 
-from ._arrays import address, matrix
+from ._arrays import address, integer, matrix, number
 from ._library import library
+from ._queries import Queries
+from ._types import Floats
 from .errors import ArgumentError, ask
 
 _WHEN = ("never", "at start", "always")
 
 
-class Settings:
+class _ArraySetting:
+    """A setting that is given in any form, and is an array or None afterwards: `take` checks and applies it."""
+
+    def __init__(self, take: Callable[[Any, Any], Optional[np.ndarray]]):
+        self._take, self.__doc__, self._slot = take, take.__doc__, "_" + take.__name__
+
+    @overload
+    def __get__(self, molecules: None, owner: Any) -> "_ArraySetting": ...
+
+    @overload
+    def __get__(self, molecules: Settings, owner: Any) -> Optional[np.ndarray]: ...
+
+    def __get__(self, molecules: Optional[Settings], owner: Any) -> Union["_ArraySetting", Optional[np.ndarray]]:
+        if molecules is None:
+            return self
+        value = getattr(molecules, self._slot)
+        return None if value is None else value.copy()
+
+    def __set__(self, molecules: Settings, value: Optional[Floats]) -> None:
+        setattr(molecules, self._slot, self._take(molecules, value))
+
+
+class Settings(Queries):
     """The part of Molecules that is set. Settings must not be changed while another thread is in a call."""
 
-    _box: Optional[np.ndarray] = None
-    _reference_box: Optional[np.ndarray] = None
-    _box_rate: Optional[np.ndarray] = None
-    _threads = 1
-    _tolerance = 0.0
-    _max_iterations = 50
-    _checks = "at start"
-    _memory_limit = 0
-    _keep_outcomes = False
-    _active: Optional[np.ndarray] = None
+    __slots__ = ("_box", "_reference_box", "_box_rate", "_active", "_threads", "_tolerance", "_max_iterations", "_checks",
+                 "_memory_limit", "_keep_outcomes")
 
-    @property
-    def box(self) -> Optional[np.ndarray]:
+    def __init__(self, masses: Floats, fixed: Any = None):
+        super().__init__(masses, fixed)
+        self._box: Optional[np.ndarray] = None
+        self._reference_box: Optional[np.ndarray] = None
+        self._box_rate: Optional[np.ndarray] = None
+        self._active: Optional[np.ndarray] = None
+        self._threads = 1
+        self._tolerance = 0.0
+        self._max_iterations = 50
+        self._checks = "at start"
+        self._memory_limit = 0
+        self._keep_outcomes = False
+
+    def _settings(self) -> dict:
+        """All of them, in an order in which they can be set."""
+        names = ("box", "reference_box", "box_rate", "threads", "tolerance", "max_iterations", "memory_limit", "checks",
+                 "keep_outcomes", "active")
+        return {name: getattr(self, name) for name in names}
+
+    @_ArraySetting
+    def box(self, box: Any) -> Optional[np.ndarray]:
         """Periodic cell (3, 3), row i is cell vector i, length; bond vectors are then minimum images. None: no cell.
 
         May be set to three sides (3,), or to one number for a cube. A side or row of zeros: not periodic along it.
         Changing the array that is returned changes nothing: set the box again.
         """
-        return _copy(self._box)
-
-    @box.setter
-    def box(self, box: Any) -> None:
-        box = matrix(box, "box")
+        box = matrix(box, "box", sides=True)
         ask(library.hol_chains_set_box(self._handle, address(box)))
-        self._box = box
+        before = self._box
+        if box is not None and (before is None or np.abs(box - before).max() > 0.02 * np.abs(box).max()):
+            self._begins = True  # no barostat's step
+        return box
 
-    @property
-    def reference_box(self) -> Optional[np.ndarray]:
+    @_ArraySetting
+    def reference_box(self, box: Any) -> Optional[np.ndarray]:
         """Cell of r_ref in `project_positions`, where a barostat deforms it in between. None: the same as `box`."""
-        return _copy(self._reference_box)
-
-    @reference_box.setter
-    def reference_box(self, box: Any) -> None:
-        box = matrix(box, "reference_box")
+        box = matrix(box, "reference_box", sides=True)
         ask(library.hol_chains_set_reference_box(self._handle, address(box)))
-        self._reference_box = box
+        return box
 
-    @property
-    def box_rate(self) -> Optional[np.ndarray]:
+    @_ArraySetting
+    def box_rate(self, rate: Any) -> Optional[np.ndarray]:
         """Rate L (3, 3), 1/time, at which the cell changes and atoms with it: r' = v + L r. None: it does not."""
-        return _copy(self._box_rate)
-
-    @box_rate.setter
-    def box_rate(self, rate: Any) -> None:
         rate = matrix(rate, "box_rate")
         ask(library.hol_chains_set_box_rate(self._handle, address(rate)))
-        self._box_rate = rate
+        return rate
+
+    @_ArraySetting
+    def active(self, active: Any) -> Optional[np.ndarray]:
+        """Molecules that take part, (n_molecules,) of bool; the data of others are neither read nor written. None: all."""
+        if active is not None:
+            active = np.array(active, dtype=bool)
+            if active.shape != (self.n_molecules,):
+                raise ArgumentError(f"active has the shape {active.shape}; it must be ({self.n_molecules},)")
+        ask(library.hol_chains_set_active(self._handle, address(active)))
+        return active
 
     @property
     def threads(self) -> int:
@@ -71,6 +107,7 @@ class Settings:
 
     @threads.setter
     def threads(self, count: int) -> None:
+        count = integer(count, "threads")
         ask(library.hol_chains_set_threads(self._handle, count))
         self._threads = count
 
@@ -82,6 +119,8 @@ class Settings:
 
     @keep_outcomes.setter
     def keep_outcomes(self, keep: bool) -> None:
+        if not isinstance(keep, (bool, np.bool_, int)):
+            raise TypeError(f"keep_outcomes must be True or False, not {keep!r}")
         ask(library.hol_chains_set_outcomes(self._handle, bool(keep)))
         self._keep_outcomes = bool(keep)
 
@@ -92,6 +131,7 @@ class Settings:
 
     @tolerance.setter
     def tolerance(self, tolerance: float) -> None:
+        tolerance = number(tolerance, "tolerance")
         ask(library.hol_chains_set_tolerance(self._handle, tolerance))
         self._tolerance = tolerance
 
@@ -102,6 +142,7 @@ class Settings:
 
     @max_iterations.setter
     def max_iterations(self, count: int) -> None:
+        count = integer(count, "max_iterations")
         ask(library.hol_chains_set_max_iterations(self._handle, count))
         self._max_iterations = count
 
@@ -113,6 +154,7 @@ class Settings:
 
     @memory_limit.setter
     def memory_limit(self, limit: int) -> None:
+        limit = integer(limit, "memory_limit")
         ask(library.hol_chains_set_memory_limit(self._handle, limit))
         self._memory_limit = limit
 
@@ -129,21 +171,3 @@ class Settings:
             raise ArgumentError(f"checks is {when!r}; it must be one of {', '.join(map(repr, _WHEN))}")
         ask(library.hol_chains_set_checks(self._handle, _WHEN.index(when)))
         self._checks = when
-
-    @property
-    def active(self) -> Optional[np.ndarray]:
-        """Molecules that take part, (n_molecules,) of bool; the data of others are neither read nor written. None: all."""
-        return _copy(self._active)
-
-    @active.setter
-    def active(self, active: Any) -> None:
-        if active is not None:
-            active = np.array(active, dtype=bool)
-            if active.shape != (self.n_molecules,):
-                raise ArgumentError(f"active has the shape {active.shape}; it must be ({self.n_molecules},)")
-        ask(library.hol_chains_set_active(self._handle, address(active)))
-        self._active = active
-
-
-def _copy(array: Optional[np.ndarray]) -> Optional[np.ndarray]:
-    return None if array is None else array.copy()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from ctypes import byref, c_int64
 from typing import NoReturn, Optional
 
@@ -51,7 +52,7 @@ class NotFiniteError(Error, ArithmeticError):
 
 
 class DegenerateError(Error, ArithmeticError):
-    """A bond of length zero, or bonds that are not independent of each other."""
+    """A bond of length zero, or bonds that are not independent of each other in these positions."""
 
 
 class NoConvergenceError(Error, ArithmeticError):
@@ -66,15 +67,44 @@ class LengthsError(Error, ValueError):
     """Positions do not fit the bonds' lengths (`Molecules.checks`)."""
 
 
+class LengthsWarning(UserWarning):
+    """Positions fit the bonds' lengths so badly, or in such a way, that a mistake is likely."""
+
+
+class MasslessWarning(UserWarning):
+    """A bond with an atom of mass 0, which it holds in space, looks as if it was meant for a massless site."""
+
+
 _CLASSES = {1: ArgumentError, 2: ArgumentError, 3: NumberError, 4: SharedAtomError, 5: OutOfMemoryError,
             6: NotFiniteError, 7: DegenerateError, 8: NoConvergenceError, 9: NotDefiniteError, 11: LengthsError}
 
 
-def fail(status: int) -> NoReturn:
+# Names of C that a message may have in it, where those of Python are not what is left without "hol_", "chains_" and "set_".
+_NAMES = {"hol_chains_add": "add_chain", "hol_chains_add_bonds": "add", "hol_chains_add_block": "add_chains",
+          "hol_chains_create": "Molecules", "hol_chains_bonds": "molecule", "hol_chains_atoms": "molecule",
+          "hol_chains_set_lengths": "set_lengths", "hol_chains_set_masses": "set_masses", "hol_chains_set_labels": "set_labels",
+          "hol_chains_set_outcomes": "keep_outcomes", "hol_inverse_create": "inverse"}
+_NAME = re.compile(r"\bhol_\w+")
+
+
+def _name(found: re.Match) -> str:
+    name = re.sub("_view$", "", found[0])
+    return _NAMES.get(name) or re.sub("^hol_(chains_|inverse_|tridiagonal_)?(set_)?", "", name)
+
+
+def _in_words_of_python(message: str) -> str:
+    message = _NAME.sub(_name, message).replace("another handle's", "another object's")
+    message = message.replace("some views have z and some have not", "some arrays are (n, 3) and some (n, 2)")
+    return re.sub(r"(?<!of )\b1 (bond|molecule|atom|chain)s\b", r"1 \1", message)
+
+
+def fail(status: int, when_added: bool = False) -> NoReturn:
     """Raises the exception of this thread's last failing call."""
     places = [c_int64() for _ in range(4)]
     library.hol_error_location(*(byref(place) for place in places))
-    error = _CLASSES.get(status, Error)(library.hol_error_message().decode(errors="replace"))
+    message = _in_words_of_python(library.hol_error_message().decode(errors="replace"))
+    of = ArgumentError if when_added and status == 7 else _CLASSES.get(status, Error)
+    error = of(message)
     error.status = status
     chain, bond, atom, error.n_bad = (place.value for place in places)
     error.molecule, error.bond, error.atom = (None if place < 0 else place for place in (chain, bond, atom))
@@ -84,3 +114,9 @@ def fail(status: int) -> NoReturn:
 def ask(status: int) -> None:
     if status:
         fail(status)
+
+
+def ask_to_add(status: int) -> None:
+    """Bonds that can't be are a wrong argument where they are added, and not bad data."""
+    if status:
+        fail(status, when_added=True)

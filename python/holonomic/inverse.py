@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import weakref
 from ctypes import byref, c_double, c_void_p
-from typing import Any, Optional, Tuple
+from typing import NoReturn, Optional, Tuple
 
 import numpy as np
 
-from ._arrays import address, numbers, view_of
+from ._arrays import address, integer, numbers, view_of
 from ._library import library
+from ._types import Array, Floats
 from .errors import ask
 
 
@@ -21,12 +22,24 @@ class Inverse:
     Z~, which has ones on its diagonal.
     """
 
-    def __init__(self, chains: c_void_p, molecule: int, r_view: Any, n_atoms: int):
+    __slots__ = ("_handle", "_n_atoms", "_n_bonds", "_destroy", "__weakref__")
+
+    def __init__(self, chains: c_void_p, molecule: int, r_view: object, n_atoms: int):
         handle = c_void_p()
-        ask(library.hol_inverse_create_view(chains, molecule, r_view, byref(handle)))
+        ask(library.hol_inverse_create_view(chains, integer(molecule, "molecule"), r_view, byref(handle)))
         self._handle, self._n_atoms = handle, n_atoms
         self._n_bonds = library.hol_inverse_n_bonds(handle)
         self._destroy = weakref.finalize(self, library.hol_inverse_destroy, handle)
+
+    # It never changes: one does for all.
+    def __copy__(self) -> Inverse:
+        return self
+
+    def __deepcopy__(self, memo: dict) -> Inverse:
+        return self
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("an Inverse can't be pickled: pickle the Molecules and r, and ask them for it again; or its matrix()")
 
     @property
     def n_bonds(self) -> int:
@@ -36,17 +49,18 @@ class Inverse:
     def entry(self, i: int, j: int, physical: bool = False) -> float:
         """One element."""
         value = c_double()
-        ask(library.hol_inverse_entry(self._handle, int(physical), i, j, byref(value)))
+        ask(library.hol_inverse_entry(self._handle, int(physical), integer(i, "i"), integer(j, "j"), byref(value)))
         return value.value
 
     def row(self, i: int, physical: bool = False) -> np.ndarray:
         """Row i, (n_bonds,)."""
         row = np.empty(self._n_bonds)
-        ask(library.hol_inverse_row(self._handle, int(physical), i, address(row)))
+        ask(library.hol_inverse_row(self._handle, int(physical), integer(i, "i"), address(row)))
         return row
 
     def band(self, width: int, physical: bool = False) -> np.ndarray:
         """The diagonal and `width` diagonals beside it, (n_bonds, width+1): element (i, i+k) at [i, k]."""
+        width = integer(width, "width")
         band = np.empty((self._n_bonds, max(width, 0) + 1))
         ask(library.hol_inverse_band(self._handle, int(physical), width, address(band)))
         return band
@@ -63,7 +77,7 @@ class Inverse:
         ask(library.hol_inverse_condition(self._handle, byref(condition)))
         return condition.value
 
-    def error_bound(self, lambda_: Any, v: Optional[Any] = None, f: Optional[Any] = None) -> Tuple[np.ndarray, float]:
+    def error_bound(self, lambda_: Floats, v: Array = None, f: Array = None) -> Tuple[np.ndarray, float]:
         """How far multipliers of any source are from the exact ones at most: for each bond (n_bonds,), and relative to the
         largest. v and f as they were given to `forces`; lambda_ is the molecule's part, in the order of its bonds."""
         lambda_ = numbers(lambda_, self._n_bonds, "lambda_", "bond of the molecule")

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import warnings
 from ctypes import addressof, byref, c_double, c_int64
-from typing import Any, Optional, Tuple
+from typing import Any, NoReturn, Optional, Tuple
 
 import numpy as np
 
-from ._arrays import NotPacked, address, dimensions, numbers, output, view_of
-from ._bonds import Bonds
+from ._arrays import NotPacked, address, dimensions, number, numbers, output, view_of
+from ._cut import cut_bonds_misfit
 from ._library import bare, library
 from ._settings import Settings
-from .errors import ArgumentError, ask, fail
+from ._types import Array, Floats, Integers
+from .errors import ArgumentError, LengthsError, LengthsWarning, ask, fail
 from .inverse import Inverse
-from .results import Forces, Impulse, Metric, Outcomes, Reactions, Report, Violation
+from .results import Forces, Impulse, Metric, Outcomes, Reactions, Report, Violation, counted
 
 _BOXES = ("box", "reference")
 _forces, _forces_view = bare("hol_forces"), bare("hol_forces_view")
@@ -22,10 +24,12 @@ _velocities, _velocities_view = bare("hol_project_velocities"), bare("hol_projec
 _along_view = bare("hol_project_positions_along_view")
 
 
-class Molecules(Bonds, Settings):
+class Molecules(Settings):
     """Any number of molecules of rigid bonds over the caller's arrays of atoms.
 
-    Molecules(masses)    masses (n_atoms,); 0: the atom is held fixed
+    Molecules(masses)           masses (n_atoms,); 0: the atom is held fixed
+    Molecules(masses, fixed)    fixed: which atoms are held, by their numbers or (n_atoms,) of bool, whatever their masses;
+                                bonds with any other atom of mass 0 are refused then. A massless site belongs to a body.
 
     Atoms, bonds and molecules are counted from 0. Arrays per atom are (n_atoms, 3), or (n_atoms, 2) in two dimensions, of
     float64 or float32 with any strides: the library works on them where they stand. Inputs of other types are converted.
@@ -35,11 +39,18 @@ class Molecules(Bonds, Settings):
     Errors are exceptions (`holonomic.Error`) with the molecule, bond and atom at fault. After an error about the data of some
     molecules, all others are complete, and the arrays of the bad ones are as they were.
 
+    A copy (copy, deepcopy, pickle) is a set of its own.
+
     One object may be used by any number of threads at once, each with arrays of its own, while none changes it. Calls
     let other threads of Python run.
     """
 
-    def forces(self, r: Any, v: Any = None, f: Any = None, *, out: Optional[np.ndarray] = None, add: bool = False) -> Forces:
+    __slots__ = ()
+
+    def __init__(self, masses: Floats, fixed: Optional[Integers] = None):
+        super().__init__(masses, fixed)
+
+    def forces(self, r: Floats, v: Array = None, f: Array = None, *, out: Optional[np.ndarray] = None, add: bool = False) -> Forces:
         """Constraint forces that keep every bond's length constant at this instant: one factorization, no tolerance.
 
         r    positions (n_atoms, 3), length
@@ -50,6 +61,8 @@ class Molecules(Bonds, Settings):
 
         Returns lambda_, tensions, virial and forces.
         """
+        if v is r:
+            _same(r)
         n = self._n_bonds
         memory = self._outputs()
         pointer = self._packed.pointer
@@ -83,7 +96,13 @@ class Molecules(Bonds, Settings):
     def _view(self, array: Any, name: str, is_output: bool = False) -> Any:
         return self._views.view(array, name, is_output)
 
-    def solve(self, r: Any, rhs: Any, *, out: Optional[np.ndarray] = None, add: bool = False) -> Forces:
+    def spread_forces(self, r: Floats, f: np.ndarray) -> Forces:
+        """Adds to f, in place, the constraint forces at rest: afterwards f / m is right for a kick, and forces on massless
+        sites have gone to the atoms of their bodies. What `project_positions` and `project_velocities` make of the kick is
+        the same with them. Returns what was added."""
+        return self.forces(r, None, f, out=f, add=True)
+
+    def solve(self, r: Floats, rhs: Floats, *, out: Optional[np.ndarray] = None, add: bool = False) -> Forces:
         """Multipliers of any right-hand side: Z lambda = rhs, with the matrix Z that `forces` solves.
 
         r         positions (n_atoms, 3)
@@ -100,7 +119,7 @@ class Molecules(Bonds, Settings):
         ask(library.hol_solve_view(self._handle, r_view, address(rhs), start, g_view, int(add), start + 16 * n))
         return Forces(memory, n, out, False, columns)
 
-    def project_positions(self, r_ref: Any, r: np.ndarray, dt: float, v: Optional[np.ndarray] = None, *,
+    def project_positions(self, r_ref: Floats, r: np.ndarray, dt: float, v: Optional[np.ndarray] = None, *,
                           lambda_: Optional[np.ndarray] = None, guess: bool = False, multipliers: bool = False,
                           virial: bool = False) -> Report:
         """Puts positions back on the constraints, in place (SHAKE; the first half of RATTLE), to their rounding.
@@ -117,6 +136,12 @@ class Molecules(Bonds, Settings):
         Returns a report. The constraint force over a leap-frog step is that of the multipliers; in velocity Verlet it is
         twice that.
         """
+        if v is not None and (v is r or v is r_ref):
+            _same(r)
+        if self._begins:
+            self._begin(r_ref)
+        if guess and lambda_ is None:
+            _no_guess()
         report = Report()
         wanted = None
         if multipliers or virial or lambda_ is not None:
@@ -135,13 +160,17 @@ class Molecules(Bonds, Settings):
             fail(status)
         return report
 
-    def project_positions_along(self, b: Any, r: np.ndarray, dt: float, v: Optional[np.ndarray] = None, *,
+    def project_positions_along(self, b: Floats, r: np.ndarray, dt: float, v: Optional[np.ndarray] = None, *,
                                 lambda_: Optional[np.ndarray] = None, guess: bool = False, multipliers: bool = False,
                                 virial: bool = False) -> Report:
         """`project_positions` with the bond vectors of the reference, b (n_bonds, 3), in place of its positions.
 
         b_k leads from the first atom of bond k, as it was given, to the second.
         """
+        if v is not None and v is r:
+            _same(r)
+        if guess and lambda_ is None:
+            _no_guess()
         report = Report()
         lambda_, wanted = self._wanted(lambda_, multipliers or guess, virial)
         report.lambda_, report.virial = lambda_, wanted
@@ -156,7 +185,7 @@ class Molecules(Bonds, Settings):
             lambda_ = np.zeros(self._n_bonds)
         return lambda_, np.zeros((3, 3)) if virial else None
 
-    def project_velocities(self, r: Any, v: np.ndarray, *, multipliers: bool = False, virial: bool = False) -> Impulse:
+    def project_velocities(self, r: Floats, v: np.ndarray, *, multipliers: bool = False, virial: bool = False) -> Impulse:
         """Projects velocities onto the constraints, in place (the second half of RATTLE): d_k.(v_j - v_i) = 0.
 
         r            positions (n_atoms, 3)
@@ -166,6 +195,8 @@ class Molecules(Bonds, Settings):
 
         Returns (lambda_, virial), None for what was not wanted.
         """
+        if v is r:
+            _same(r)
         lambda_, wanted = self._wanted(None, multipliers, virial) if multipliers or virial else (None, None)
         pointer = self._packed.pointer
         try:
@@ -177,7 +208,7 @@ class Molecules(Bonds, Settings):
             fail(status)
         return Impulse(lambda_, wanted)
 
-    def reactions(self, r: Any, lambda_: Any, *, box: str = "box") -> Reactions:
+    def reactions(self, r: Floats, lambda_: Floats, *, box: str = "box") -> Reactions:
         """What given multipliers do: tensions, forces or impulses on atoms, virials of bonds.
 
         r        positions with which the multipliers were found (of `project_positions`: r_ref)
@@ -192,14 +223,18 @@ class Molecules(Bonds, Settings):
                                        self._view(found.forces, "g"), 0, address(found.bond_virial), address(found.virial)))
         return found
 
-    def violation(self, r: Any, v: Any = None) -> Violation:
+    def violation(self, r: Floats, v: Array = None) -> Violation:
         """Largest violation of the constraints by positions r (n_atoms, 3) and velocities v."""
+        if v is not None and v is r:
+            _same(r)
         worst = Violation()
         ask(library.hol_violation_view(self._handle, self._view(r, "r"), self._view(v, "v"), byref(worst)))
         return worst
 
-    def residuals(self, r: Any, v: Any = None) -> Tuple[np.ndarray, np.ndarray]:
+    def residuals(self, r: Floats, v: Array = None) -> Tuple[np.ndarray, np.ndarray]:
         """What is left of each constraint: (d.d - a^2) / a^2 and d.(v_j - v_i + L d), each (n_bonds,)."""
+        if v is not None and v is r:
+            _same(r)
         length, rate = np.zeros(self._n_bonds), np.zeros(self._n_bonds)
         ask(library.hol_residuals_view(self._handle, self._view(r, "r"), self._view(v, "v"), address(length), address(rate)))
         return length, rate
@@ -219,9 +254,26 @@ class Molecules(Bonds, Settings):
         ask(library.hol_outcomes(self._handle, address(found.status), address(found.iterations)))
         return found
 
-    def check(self, r: Any, *, box: str = "box") -> None:
-        """Raises LengthsError if a bond of r is off by more than a tenth of its length, or longer than half the box."""
+    def check(self, r: Floats, *, box: str = "box") -> None:
+        """Raises LengthsError if a bond of r is off by more than a tenth of its length, or longer than half the box; or if
+        the bonds that a face of the box cuts are off, and the others not: the box is not that of r then."""
         ask(library.hol_chains_check_view(self._handle, self._view(r, "r"), _box(box)))
+        misfit = self._cut_misfit(r, self._reference_box if box == "reference" else self._box)
+        if misfit:
+            raise LengthsError(misfit)
+
+    def _begin(self, r_ref: Any) -> None:
+        """Before the first `project_positions`: what the library does not look at by itself."""
+        self._begins = False
+        if self._checks != "never":
+            misfit = self._cut_misfit(r_ref, self._box if self._reference_box is None else self._reference_box)
+            if misfit:
+                warnings.warn(LengthsWarning(misfit), stacklevel=3)
+
+    def _cut_misfit(self, r: Any, box: Optional[np.ndarray]) -> Optional[str]:
+        if box is None or self._n_bonds == 0 or np.shape(r) != (self._n_atoms, 3):
+            return None
+        return cut_bonds_misfit(np.asarray(r, dtype=float), self.bonds, self.lengths, box)
 
     @staticmethod
     def reference_error() -> Tuple[float, Optional[int], Optional[int]]:
@@ -231,8 +283,9 @@ class Molecules(Bonds, Settings):
         none = molecule.value < 0
         return error.value, None if none else molecule.value, None if none else bond.value
 
-    def metric(self, r: Any, kT: float = 0.0) -> Metric:
+    def metric(self, r: Floats, kT: float = 0.0) -> Metric:
         """Metric determinant of the molecules, and the Fixman potential and its forces at the thermal energy kT."""
+        kT = number(kT, "kT")
         r_view = self._view(r, "r")
         n, energy = self.n_molecules, c_double()
         log_det, log_det_z, force = np.zeros(n), np.zeros(n), np.zeros((self._n_atoms, dimensions(r)))
@@ -240,12 +293,23 @@ class Molecules(Bonds, Settings):
                                     self._view(force, "force"), 0))
         return Metric(log_det, log_det_z, energy.value, force)
 
-    def inverse(self, molecule: int, r: Any) -> Inverse:
+    def inverse(self, molecule: int, r: Floats) -> Inverse:
         """The inverse of the matrix Z of one molecule at positions r (n_atoms, 3), element by element or whole."""
         return Inverse(self._handle, molecule, self._view(r, "r"), self._n_atoms)
 
     def __repr__(self) -> str:
-        return f"<holonomic.Molecules: {self.n_molecules} of {self._n_bonds} bonds over {self._n_atoms} atoms>"
+        return (f"<holonomic.Molecules: {counted(self.n_molecules, 'molecule')} with {counted(self._n_bonds, 'bond')}, "
+                f"of {counted(self._n_atoms, 'atom')}>")
+
+
+def _same(r: Any) -> NoReturn:
+    if r is None:
+        raise TypeError("r is None: positions are needed")
+    raise ArgumentError("v is the array that was given for the positions")
+
+
+def _no_guess() -> NoReturn:
+    raise ArgumentError("guess is True, and lambda_, which holds the guess, was not given")
 
 
 def _data(array: Optional[np.ndarray]) -> Any:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from ctypes import byref, c_double
-from typing import Any, NamedTuple, Optional
+from typing import NamedTuple, Optional
 
-from ._arrays import address, numbers
+from ._arrays import address, integer, numbers
 from ._library import library
+from ._types import Floats
 from .errors import ask
 
 
@@ -21,11 +22,12 @@ class PartitionFunction(NamedTuple):
     log_volume: float
 
 
-def partition_function(n_bonds: int, masses: Optional[Any] = None) -> PartitionFunction:
+def partition_function(n_bonds: int, masses: Optional[Floats] = None) -> PartitionFunction:
     """Means of powers of the metric determinant over all conformations of a freely jointed chain of n_bonds bonds.
 
     masses  (n_bonds+1,), any unit; 0: held fixed. None: all equal
     """
+    n_bonds = integer(n_bonds, "n_bonds")
     if masses is not None:
         masses = numbers(masses, n_bonds + 1, "masses", "atom")
     found = [c_double() for _ in range(3)]

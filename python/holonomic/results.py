@@ -8,6 +8,16 @@ from typing import Any, NamedTuple, Optional
 import numpy as np
 
 
+def counted(n: int, noun: str) -> str:
+    """"1 bond", "2 bonds"."""
+    return f"{n} {noun}" + ("" if n == 1 else "s")
+
+
+def _forces(memory: bytes, n_bonds: int, out: Optional[np.ndarray], has_tensions: bool, columns: int) -> Forces:
+    """One that was pickled or copied."""
+    return Forces(bytearray(memory), n_bonds, out, has_tensions, columns)
+
+
 class Forces:
     """Constraint forces at an instant, from `Molecules.forces` or `Molecules.solve`.
 
@@ -24,6 +34,7 @@ class Forces:
     def __init__(self, memory: Any, n_bonds: int, out: Optional[np.ndarray], has_tensions: bool = True, columns: int = 3):
         self._memory, self._n_bonds, self._out = memory, n_bonds, out
         self._has_tensions, self._columns = has_tensions, columns
+        self._array: np.ndarray  # made when it is asked for
 
     def _part(self, start: int, stop: Optional[int]) -> np.ndarray:
         try:
@@ -38,7 +49,7 @@ class Forces:
         return self._part(0, self._n_bonds)
 
     @property
-    def tensions(self) -> Optional[np.ndarray]:
+    def tensions(self) -> Any:
         """2 lambda |d| (n_bonds,), force."""
         return self._part(self._n_bonds, 2 * self._n_bonds) if self._has_tensions else None
 
@@ -54,11 +65,14 @@ class Forces:
         if self._out is not None:
             return self._out
         start = 2 * self._n_bonds + 9
-        count = (len(self._memory) - start) // 3
+        count = (len(self._part(0, None)) - start) // 3
         return self._part(start, start + count * self._columns).reshape(count, self._columns)
 
+    def __reduce__(self) -> tuple:
+        return _forces, (bytes(self._memory), self._n_bonds, self._out, self._has_tensions, self._columns)
+
     def __repr__(self) -> str:
-        return f"<holonomic.Forces of {self._n_bonds} bonds>"
+        return f"<holonomic.Forces of {counted(self._n_bonds, 'bond')}>"
 
 
 class Report(ctypes.Structure):
@@ -76,11 +90,12 @@ class Report(ctypes.Structure):
 
     _fields_ = [("iterations", ctypes.c_int64), ("n_corrected", ctypes.c_int64), ("n_failed", ctypes.c_int64),
                 ("molecule", ctypes.c_int64), ("bond", ctypes.c_int64), ("max_error", ctypes.c_double)]
-    lambda_: Optional[np.ndarray] = None
-    virial: Optional[np.ndarray] = None
+    lambda_: Any = None  # an array where it was asked for: who did need not tell a type checker again
+    virial: Any = None
 
     def __repr__(self) -> str:
-        return (f"<holonomic.Report: {self.n_corrected} molecules corrected in at most {self.iterations} iterations, "
+        return (f"<holonomic.Report: {counted(self.n_corrected, 'molecule')} corrected in at most "
+                f"{counted(self.iterations, 'iteration')}, "
                 f"largest error {self.max_error:.2g}>")
 
 
@@ -91,8 +106,8 @@ class Impulse(NamedTuple):
     virial   (3, 3), energy time, or None if it was not wanted
     """
 
-    lambda_: Optional[np.ndarray]
-    virial: Optional[np.ndarray]
+    lambda_: Any
+    virial: Any
 
 
 class Reactions(NamedTuple):

@@ -6,21 +6,22 @@ gamma is (n-1,); rows are counted from 0. NotDefiniteError says at which row the
 from __future__ import annotations
 
 from ctypes import byref, c_double
-from typing import Any, Tuple
+from typing import Tuple
 
 import numpy as np
 
-from ._arrays import address, numbers
+from ._arrays import address, integer, numbers
 from ._library import library
+from ._types import Floats
 from .errors import ask
 
 
-def _rows(gamma: Any) -> Tuple[int, np.ndarray]:
+def _rows(gamma: Floats) -> Tuple[int, np.ndarray]:
     gamma = numbers(gamma, None, "gamma", "row but the first")
     return len(gamma) + 1, gamma
 
 
-def pivots(gamma: Any) -> np.ndarray:
+def pivots(gamma: Floats) -> np.ndarray:
     """Pivots Omega^2 of the elimination from the first row on, (n,)."""
     n, gamma = _rows(gamma)
     omega2 = np.empty(n)
@@ -28,7 +29,7 @@ def pivots(gamma: Any) -> np.ndarray:
     return omega2
 
 
-def log_det(gamma: Any) -> float:
+def log_det(gamma: Floats) -> float:
     """ln det T."""
     n, gamma = _rows(gamma)
     value = c_double()
@@ -36,7 +37,7 @@ def log_det(gamma: Any) -> float:
     return value.value
 
 
-def solve(gamma: Any, b: Any) -> np.ndarray:
+def solve(gamma: Floats, b: Floats) -> np.ndarray:
     """x (n,) of T x = b."""
     n, gamma = _rows(gamma)
     b = numbers(b, n, "b", "row")
@@ -45,17 +46,18 @@ def solve(gamma: Any, b: Any) -> np.ndarray:
     return x
 
 
-def inverse_entry(gamma: Any, i: int, j: int) -> float:
+def inverse_entry(gamma: Floats, i: int, j: int) -> float:
     """One element of the inverse."""
     n, gamma = _rows(gamma)
     value = c_double()
-    ask(library.hol_tridiagonal_inverse_entry(n, address(gamma), i, j, byref(value)))
+    ask(library.hol_tridiagonal_inverse_entry(n, address(gamma), integer(i, "i"), integer(j, "j"), byref(value)))
     return value.value
 
 
-def inverse_band(gamma: Any, width: int) -> np.ndarray:
+def inverse_band(gamma: Floats, width: int) -> np.ndarray:
     """The diagonal of the inverse and `width` diagonals beside it, (n, width+1): element (i, i+k) at [i, k]."""
     n, gamma = _rows(gamma)
+    width = integer(width, "width")
     band = np.empty((n, max(width, 0) + 1))
     ask(library.hol_tridiagonal_inverse_band(n, address(gamma), width, address(band)))
     return band

@@ -36,7 +36,7 @@ link() { # link PROGRAM SOURCE... OBJECT...
 }
 
 for test in test_oracle.f90 test_layouts.f90 test_arguments.f90 test_levels.f90 test_molecules.f90 test_graphs.f90 \
-    test_metric.f90 test_integrators.f90 test_lifecycle.f90 test_fixed.f test_old_arrays.f; do
+    test_metric.f90 test_integrators.f90 test_lifecycle.f90 test_copies.f90 test_fixed.f test_old_arrays.f; do
     extra=
     [ $test != test_lifecycle.f90 ] || extra=c_side.obj
     # shellcheck disable=SC2086

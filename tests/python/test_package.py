@@ -51,7 +51,7 @@ class Package(unittest.TestCase):
                         self.assertTrue(inspect.getdoc(value), f"{name}.{member}")
         for base in hol.Molecules.__mro__[1:-1]:
             for member, value in vars(base).items():
-                if not member.startswith("_") and (inspect.isfunction(value) or isinstance(value, property)):
+                if not member.startswith("_") and (inspect.isfunction(value) or inspect.isdatadescriptor(value)):
                     self.assertTrue(inspect.getdoc(value), member)
 
 

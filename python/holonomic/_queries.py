@@ -1,0 +1,115 @@
+"""Questions about a set of molecules: what the library has found in the bonds."""
+
+from __future__ import annotations
+
+from ctypes import byref, c_int, c_int64
+from typing import NamedTuple, Optional
+
+import numpy as np
+
+from ._arrays import address, integer, integers
+from ._bonds import Bonds
+from ._library import library
+from ._types import Integers
+from .errors import ArgumentError, ask
+
+SHAPES = ("chain", "tree", "ring", "triangle", "other", "rigid")
+
+
+class Molecule(NamedTuple):
+    """One molecule as the library sees it.
+
+    shape  "chain", "tree", "ring", "triangle", "other", or "rigid": with rigid bodies
+    atoms  its atoms, along a linear chain, ascending otherwise
+    bonds  its bonds by their places in the arrays per bond, in the order in which errors count them
+    """
+
+    shape: str
+    atoms: np.ndarray
+    bonds: np.ndarray
+
+
+class Queries(Bonds):
+    """The part of Molecules that is asked."""
+
+    __slots__ = ()
+
+    @property
+    def n_atoms(self) -> int:
+        """Number of atoms."""
+        return self._n_atoms
+
+    @property
+    def n_bonds(self) -> int:
+        """Number of bonds."""
+        return self._n_bonds
+
+    @property
+    def masses(self) -> np.ndarray:
+        """Masses (n_atoms,), 0 of what is held fixed; a copy."""
+        return self._masses.copy()
+
+    @property
+    def bonds(self) -> np.ndarray:
+        """The two atoms of every bond (n_bonds, 2), in the order in which they were given; a copy."""
+        return self._added.bonds()
+
+    @property
+    def lengths(self) -> np.ndarray:
+        """The length of every bond (n_bonds,); a copy."""
+        return self._added.lengths() if self._lengths is None else self._lengths.copy()
+
+    @property
+    def n_molecules(self) -> int:
+        """Number of molecules that the bonds form."""
+        return library.hol_chains_n_chains(self._handle)
+
+    @property
+    def n_kinds(self) -> int:
+        """Number of different kinds of molecules (shape, masses and lengths)."""
+        return library.hol_chains_n_kinds(self._handle)
+
+    @property
+    def memory(self) -> int:
+        """Memory that the set of molecules occupies in the library, in bytes."""
+        return library.hol_chains_memory(self._handle)
+
+    def n_of_shape(self, shape: str) -> int:
+        """Number of molecules of a shape: "chain", "tree", "ring", "triangle", "other" or "rigid"."""
+        if shape not in SHAPES:
+            raise ArgumentError(f"shape is {shape!r}; it must be one of {', '.join(SHAPES)}")
+        return library.hol_chains_n_of_shape(self._handle, SHAPES.index(shape))
+
+    def molecule(self, number: int) -> Molecule:
+        """Shape, atoms and bonds of one molecule."""
+        shape, n_atoms, n_bonds = c_int(), c_int64(), c_int64()
+        number = integer(number, "number")
+        ask(library.hol_chains_molecule(self._handle, number, byref(shape), byref(n_atoms), byref(n_bonds)))
+        atoms, bonds = np.empty(n_atoms.value, np.int64), np.empty(n_bonds.value, np.int64)
+        ask(library.hol_chains_atoms(self._handle, number, address(atoms)))
+        ask(library.hol_chains_bonds(self._handle, number, address(bonds)))
+        return Molecule(SHAPES[shape.value], atoms, bonds)
+
+    def molecules_of_bonds(self) -> np.ndarray:
+        """The molecule of every bond, (n_bonds,); -1 for a bond between two fixed atoms."""
+        molecules = np.empty(self._n_bonds, np.int64)
+        ask(library.hol_chains_molecules_of_bonds(self._handle, address(molecules)))
+        return molecules
+
+    def degrees_of_freedom(self, dimensions: int = 3) -> int:
+        """Those of all atoms that can move, less one for each bond. A conserved total momentum is not subtracted."""
+        count = library.hol_chains_degrees_of_freedom(self._handle, integer(dimensions, "dimensions"))
+        if count < 0:
+            raise ArgumentError(f"dimensions is {dimensions}; it must be 2 or 3")
+        return count
+
+    def set_labels(self, atoms: Optional[Integers] = None, molecules: Optional[Integers] = None) -> None:
+        """Numbers by which you know atoms (n_atoms,) and molecules (n_molecules,): error messages show them."""
+        lists = []
+        for labels, count, name in ((atoms, self._n_atoms, "atoms"), (molecules, self.n_molecules, "molecules")):
+            labels = None if labels is None else integers(labels, name)
+            if labels is not None and labels.shape != (count,):
+                raise ArgumentError(f"{name} has the shape {labels.shape}; it must be ({count},)")
+            lists.append(labels)
+        ask(library.hol_chains_set_labels(self._handle, *(address(labels) for labels in lists)))
+        self._labels = tuple(None if labels is None else np.array(labels) for labels in lists)
