@@ -7,6 +7,7 @@
 
 #include "core/caller/box.hpp"
 #include "core/kernels/atom.hpp"
+#include "core/long_step/one_molecule.hpp"
 #include "core/long_step/roots.hpp"
 #include "core/reference.hpp"
 #include "core/run/lane.hpp"
@@ -17,6 +18,8 @@ namespace holonomic {
 namespace {
 
 constexpr std::int64_t most_rounds = 1000;  // of SHAKE
+// Newton's method that takes more has lost its way.
+constexpr int iterations_on_the_way = 14;
 // In larger molecules a path may fail for other reasons than that it ends: what Newton's method has found stands.
 constexpr std::int64_t most_watched = 256;
 // Two roots that differ by less of a bond are one.
@@ -118,14 +121,15 @@ private:
         if (step.error() > far_from_lengths) {
             for (std::size_t k = 0; call_.guess && k < n; ++k)
                 one.lambda[k] = call_.lambda[m.bond(static_cast<std::int64_t>(k))];
-            found = one.solve(call_, nullptr, own);
+            PositionsCall first = call_;
+            first.max_iterations = std::min(first.max_iterations, iterations_on_the_way);
+            found = one.solve(first, own);
             for (std::size_t k = 0; k < n; ++k) newton[k] = scale * one.lambda[k];
             if (found && step.is_certified(newton)) return accept(one);
         }
         if (chains_.max_iterations < enough_iterations) return found && accept(one);
-        OneMolecule way(chains_, planned, m);
         std::int64_t solves = 0;
-        const bool path = step.follow(way, chains_.max_iterations, tau, solves);
+        const bool path = step.follow(4 * std::int64_t{chains_.max_iterations}, tau, solves);
         if (found && !path && m.n_bonds > most_watched) return accept(one);
         // Beyond the path's end SHAKE comes to anything, mostly to bonds that point backwards.
         if (!path && !(m.n_bonds <= most_watched && step.shake(most_rounds, tau) && step.is_certified(tau)))
@@ -137,7 +141,7 @@ private:
         for (std::size_t k = 0; k < n; ++k) one.lambda[k] = tau[k] / scale;
         PositionsCall last = call_;
         last.guess = true;
-        if (!one.solve(last, nullptr, own)) return false;
+        if (!one.solve(last, own)) return false;
         for (std::size_t k = 0; k < n; ++k) newton[k] = scale * one.lambda[k];
         own.iterations += solves;
         return step.distance(newton, tau) < same && accept(one);

@@ -2,7 +2,7 @@
 
 #include <new>
 
-#include "core/caller/packed_array.hpp"
+#include "core/kernels/atom.hpp"
 #include "core/run/execute.hpp"
 #include "core/run/thread_memory.hpp"
 
@@ -17,21 +17,17 @@ std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 OneMolecule::OneMolecule(const Chains &chains, const Planned &planned, const Molecule &molecule)
     : lambda(at(molecule.n_bonds), 0.0), chains_(chains), planned_(planned), m_(molecule) {}
 
-void OneMolecule::point(const AtomArray &like, Array &to) const {
-    to.memory.resize(3 * at(m_.n_atoms));
-    char *const x = reinterpret_cast<char *>(to.memory.data());
-    const std::int64_t size = like.is_float ? sizeof(float) : sizeof(double);
-    to.atoms = {x, x + size, like.z ? x + 2 * size : nullptr, 3 * size, like.is_float, like.packed};
-}
-
 void OneMolecule::copy(const AtomArray &from, Array &to) {
     to.atoms = AtomArray{};
     if (!from.x) return;
-    point(from, to);
+    to.memory.resize(3 * at(m_.n_atoms));
+    char *const x = reinterpret_cast<char *>(to.memory.data());
+    const std::int64_t size = from.is_float ? sizeof(float) : sizeof(double);
+    to.atoms = {x, x + size, from.z ? x + 2 * size : nullptr, 3 * size, from.is_float, from.packed};
     for (std::int64_t i = 0; i < m_.n_atoms; ++i) {
-        double x[3];
-        read_atom(from, m_.atom(i), x);
-        write_atom(to.atoms, i, x);
+        double atom[3];
+        read_atom(from, m_.atom(i), atom);
+        write_atom(to.atoms, i, atom);
     }
 }
 
@@ -40,15 +36,6 @@ void OneMolecule::read(const PositionsCall &call) {
     copy(call.r_ref, r_ref_);
     copy(call.r, r_);
     copy(call.v, v_);
-}
-
-void OneMolecule::set(const std::vector<double> &reference, const std::vector<double> &positions) {
-    in_place_ = false;
-    r_ref_.memory = reference;
-    r_.memory = positions;
-    r_ref_.atoms = packed_array(r_ref_.memory.data());
-    r_.atoms = packed_array(r_.memory.data());
-    v_.atoms = AtomArray{};
 }
 
 void OneMolecule::write(const PositionsCall &call) const {
@@ -64,7 +51,7 @@ void OneMolecule::write(const PositionsCall &call) const {
     for (std::int64_t k = 0; call.lambda && k < m_.n_bonds; ++k) call.lambda[m_.bond(k)] = lambda[at(k)];
 }
 
-bool OneMolecule::solve(PositionsCall call, const double *length, Tally &tally) {
+bool OneMolecule::solve(PositionsCall call, Tally &tally) {
     call.r_ref = in_place_ ? r_.atoms : r_ref_.atoms;
     call.r = r_.atoms;
     call.v = v_.atoms;
@@ -76,7 +63,6 @@ bool OneMolecule::solve(PositionsCall call, const double *length, Tally &tally) 
         lane.first_atom = lane.first_bond = 0;
         lane.atoms = lane.bonds = nullptr;
         lane.shared = nullptr;
-        if (length) lane.length = length;
         const MoleculeUnit unit{planned_.schedule,      &lane, 1, true, false, nullptr, planned_.forest,
                                 planned_.forest ? 1 : 0};
         kernels().molecules.positions(call, unit, scratch_of_this_thread(bytes), own);
@@ -85,7 +71,6 @@ bool OneMolecule::solve(PositionsCall call, const double *length, Tally &tally) 
         lane.first_atom = lane.first_bond = 0;
         lane.atoms = nullptr;
         for (std::int64_t i = 0; i < 4; ++i) lane.element[i] = 3 * i;
-        if (length) lane.length = length;
         const Unit unit{&lane, 1, true, false};
         if (lane.n_bonds <= longest_lane) {
             kernels(unit).positions(call, unit, scratch_of_this_thread(bytes), own);

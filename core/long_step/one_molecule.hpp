@@ -21,16 +21,14 @@ class OneMolecule {
 public:
     OneMolecule(const Chains &chains, const Planned &planned, const Molecule &molecule);
 
-    // The kernels' projection of r: lambda as a guess if call.guess, and what they find. `length`: in place of its own.
-    // Arrays of the call are replaced by these. Returns whether it was solved; else r, v and lambda are as they were.
-    bool solve(PositionsCall call, const double *length, Tally &tally);
+    // The kernels' projection of r: lambda as a guess if call.guess, and what they find. Arrays of the call are
+    // replaced by these. Returns whether it was solved; else r, v and lambda are as they were.
+    bool solve(PositionsCall call, Tally &tally);
 
     // Takes the atoms as the caller has them, in the same type and dimensions.
     void read(const PositionsCall &call);
     // Atoms that can move.
     void write(const PositionsCall &call) const;
-    // Packed doubles, without velocities.
-    void set(const std::vector<double> &reference, const std::vector<double> &positions);
 
     std::vector<double> lambda;  // [n_bonds]
 
@@ -40,7 +38,6 @@ private:
         AtomArray atoms{};
     };
     void copy(const AtomArray &from, Array &to);
-    void point(const AtomArray &like, Array &to) const;
 
     const Chains &chains_;
     const Planned &planned_;

@@ -14,12 +14,12 @@ std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 // Along the path: steps of this part of it, in which no bond is to be off by more than `near` of its length from where
 // the last steps point.
-constexpr double first_step = 0.25, shortest_step = 1.0 / 512, near = 0.25, very_near = 0.05;
-constexpr double tolerance_on_the_way = 1e-9;
-constexpr int iterations_on_the_way = 6;
-// Of the symmetric part: what of a diagonal element counts as positive, and how many elements are looked at.
-constexpr double least_pivot = 1e-10;
-constexpr std::int64_t most_elements = 1 << 16;
+constexpr double first_step = 0.25, shortest_step = 1e-6, near = 0.25, very_near = 0.05;
+// |D.D - a^2| / a^2 from which Newton's method begins at a point, and where it ends.
+constexpr double near_enough = 0.3, close = 1e-9;
+constexpr int iterations_at_a_point = 6;
+// What of a diagonal element of the symmetric part counts as positive, and how many products factors may take.
+constexpr double least_pivot = 1e-10, most_work = 1e7;
 // Where Newton's method takes over from SHAKE.
 constexpr double shaken = 1e-6;
 
@@ -40,11 +40,12 @@ StepBonds::StepBonds(const Molecule &molecule, const AtomArray &r_ref, const Box
             const double a = m_.length(k), error = std::fabs(dot(D_[at(k)], D_[at(k)]) - a * a) / (a * a);
             if (!(error <= error_)) error_ = error;
         }
+    make_rows();
 }
 
-std::vector<StepBonds::Vector> StepBonds::moved(const std::vector<double> &tau) const {
-    std::vector<Vector> shift(at(m_.n_atoms), Vector{0, 0, 0}), D = D_;
-    const auto add = [&](Vector &to, double factor, const Vector &v) {
+std::vector<StepBonds::Vector> StepBonds::moved(const std::vector<double> &tau, double part) const {
+    std::vector<Vector> shift(at(m_.n_atoms), Vector{0, 0, 0}), D(b_.size());
+    const auto add = [](Vector &to, double factor, const Vector &v) {
         to.x += factor * v.x;
         to.y += factor * v.y;
         to.z += factor * v.z;
@@ -54,14 +55,15 @@ std::vector<StepBonds::Vector> StepBonds::moved(const std::vector<double> &tau) 
         add(shift[at(m_.j(k))], -m_.w(m_.j(k)) * tau[at(k)], b_[at(k)]);
     }
     for (std::int64_t k = 0; k < m_.n_bonds; ++k) {
-        add(D[at(k)], 1, shift[at(m_.j(k))]);
-        add(D[at(k)], -1, shift[at(m_.i(k))]);
+        add(D[at(k)] = shift[at(m_.j(k))], -1, shift[at(m_.i(k))]);
+        add(D[at(k)], 1 - part, b_[at(k)]);
+        add(D[at(k)], part, D_[at(k)]);
     }
     return D;
 }
 
 double StepBonds::distance(const std::vector<double> &tau, const std::vector<double> &other) const {
-    const std::vector<Vector> D = moved(tau), E = moved(other);
+    const std::vector<Vector> D = moved(tau, 1), E = moved(other, 1);
     double largest = 0;
     for (std::int64_t k = 0; k < m_.n_bonds; ++k) {
         const Vector d = {D[at(k)].x - E[at(k)].x, D[at(k)].y - E[at(k)].y, D[at(k)].z - E[at(k)].z};
@@ -71,104 +73,119 @@ double StepBonds::distance(const std::vector<double> &tau, const std::vector<dou
     return largest;
 }
 
-std::vector<std::int64_t> StepBonds::first_of_rows() const {
-    std::vector<std::int64_t> of_atom(at(m_.n_atoms), -1), first(at(m_.n_bonds));
+// Rows begin with the first bond that shares an atom.
+void StepBonds::make_rows() {
+    std::vector<std::int64_t> of_atom(at(m_.n_atoms), -1);
+    start_.assign(1, 0);
+    double work = 0;
     for (std::int64_t k = 0; k < m_.n_bonds; ++k) {
-        first[at(k)] = k;
+        std::int64_t first = k;
         for (const std::int64_t atom : {m_.i(k), m_.j(k)}) {
             std::int64_t &one = of_atom[at(atom)];
             if (one < 0) one = k;
-            first[at(k)] = std::min(first[at(k)], one);
+            first = std::min(first, one);
         }
+        first_.push_back(first);
+        start_.push_back(start_.back() + k - first + 1);
+        work += static_cast<double>(k - first + 1) * static_cast<double>(k - first + 1);
+        if (work > most_work) return;
     }
-    return first;
-}
-
-// By Cholesky's factors of the symmetric part, which exist or not. Rows are kept from their first element on.
-bool StepBonds::is_certified(const std::vector<double> &tau) const {
-    const std::vector<std::int64_t> first = first_of_rows();
-    std::vector<std::int64_t> start(first.size() + 1, 0);
-    for (std::int64_t k = 0; k < m_.n_bonds; ++k) {
-        start[at(k) + 1] = start[at(k)] + k - first[at(k)] + 1;
-        if (start[at(k) + 1] > most_elements) return false;
-    }
-    const std::vector<Vector> D = moved(tau);
-    std::vector<double> s(at(start.back()));
-    const auto element = [&](std::int64_t k, std::int64_t l) -> double & {
-        return s[at(start[at(k)] + l - first[at(k)])];
-    };
+    coupling_.resize(at(start_.back()));
     for (std::int64_t k = 0; k < m_.n_bonds; ++k)
-        for (std::int64_t l = first[at(k)]; l <= k; ++l) {
-            double w = 0;
+        for (std::int64_t l = first_[at(k)]; l <= k; ++l)
             for (const std::int64_t atom : {m_.i(k), m_.j(k)})
                 for (const std::int64_t other : {m_.i(l), m_.j(l)})
-                    if (atom == other) w += ((atom == m_.i(k)) == (other == m_.i(l)) ? 1 : -1) * m_.w(atom);
-            double sum = w == 0 ? 0 : 0.5 * w * (dot(D[at(k)], b_[at(l)]) + dot(D[at(l)], b_[at(k)]));
+                    if (atom == other)
+                        coupling_[place(k, l)] += ((atom == m_.i(k)) == (other == m_.i(l)) ? 1 : -1) * m_.w(atom);
+}
+
+// By Cholesky's factors of the symmetric part, which exist or not.
+bool StepBonds::is_certified(const std::vector<double> &tau) const {
+    if (!has_rows()) return false;
+    const std::vector<Vector> D = moved(tau, 1);
+    std::vector<double> s(coupling_);
+    for (std::int64_t k = 0; k < m_.n_bonds; ++k)
+        for (std::int64_t l = first_[at(k)]; l <= k; ++l) {
+            double &sum = s[place(k, l)];
+            sum *= 0.5 * (dot(D[at(k)], b_[at(l)]) + dot(D[at(l)], b_[at(k)]));
             const double least = least_pivot * sum;
-            for (std::int64_t i = std::max(first[at(k)], first[at(l)]); i < l; ++i)
-                sum -= element(k, i) * element(l, i);
+            for (std::int64_t i = std::max(first_[at(k)], first_[at(l)]); i < l; ++i)
+                sum -= s[place(k, i)] * s[place(l, i)];
             if (l == k && !(sum > least)) return false;
-            element(k, l) = l == k ? std::sqrt(sum) : sum / element(l, l);
+            sum = l == k ? std::sqrt(sum) : sum / s[place(l, l)];
         }
     return true;
 }
 
-// Places of the atoms that have these bonds, from any one of them. False if cycles go round a box.
-bool StepBonds::lay_out(const std::vector<Vector> &bonds, std::vector<double> &atoms) const {
-    atoms.assign(3 * at(m_.n_atoms), 0.0);
-    const auto go = [&](std::int64_t k, bool back) {
-        const double *const from = &atoms[3 * at(back ? m_.j(k) : m_.i(k))];
-        double *const to = &atoms[3 * at(back ? m_.i(k) : m_.j(k))], sign = back ? -1 : 1;
-        to[0] = from[0] + sign * bonds[at(k)].x;
-        to[1] = from[1] + sign * bonds[at(k)].y;
-        to[2] = from[2] + sign * bonds[at(k)].z;
-    };
-    if (m_.shape)
-        m_.shape->walk(go);
-    else
-        for (std::int64_t k = 0; k < m_.n_bonds; ++k) go(k, false);
+// Solves A x = y, A_kl = w_kl D_k.b_l, by the factors L U of A without pivoting; up: columns of U.
+void StepBonds::solve(const std::vector<Vector> &D, std::vector<double> &x, Factors &f) const {
+    std::vector<double> &low = f.low, &up = f.up;
+    low = up = coupling_;
     for (std::int64_t k = 0; k < m_.n_bonds; ++k) {
-        const double *const i = &atoms[3 * at(m_.i(k))], *const j = &atoms[3 * at(m_.j(k))];
-        const Vector d = {j[0] - i[0] - bonds[at(k)].x, j[1] - i[1] - bonds[at(k)].y, j[2] - i[2] - bonds[at(k)].z};
-        if (!(std::sqrt(dot(d, d)) <= 1e-3 * m_.length(k))) return false;
+        for (std::int64_t l = first_[at(k)]; l <= k; ++l) {
+            double &of_row = low[place(k, l)], &of_column = up[place(k, l)];
+            of_row *= dot(D[at(k)], b_[at(l)]);
+            of_column *= dot(D[at(l)], b_[at(k)]);
+            for (std::int64_t i = std::max(first_[at(k)], first_[at(l)]); i < l; ++i) {
+                of_row -= low[place(k, i)] * up[place(l, i)];
+                of_column -= low[place(l, i)] * up[place(k, i)];
+            }
+            if (l < k) of_row /= up[place(l, l)];
+        }
+        for (std::int64_t l = first_[at(k)]; l < k; ++l) x[at(k)] -= low[place(k, l)] * x[at(l)];
     }
-    return true;
+    for (std::int64_t k = m_.n_bonds; k-- > 0;) {
+        x[at(k)] /= up[place(k, k)];
+        for (std::int64_t l = first_[at(k)]; l < k; ++l) x[at(l)] -= up[place(k, l)] * x[at(k)];
+    }
 }
 
-bool StepBonds::follow(OneMolecule &one, std::int64_t most, std::vector<double> &tau, std::int64_t &solves) const {
-    std::vector<double> from, to, place(3 * at(m_.n_atoms)), length(b_.size());
-    if (!lay_out(b_, from) || !lay_out(D_, to)) return false;
-    PositionsCall call{};
-    call.dt = 1;
-    call.guess = true;
-    call.tolerance = tolerance_on_the_way;
-    call.max_iterations = iterations_on_the_way;
+// Newton's method at a point of the path, as long as it leaves a quarter of the error and less.
+bool StepBonds::correct(double part, std::vector<double> &tau, std::int64_t &solves, Factors &f) const {
+    std::vector<double> x(b_.size());
+    double before = near_enough;
+    for (int i = 0; i <= iterations_at_a_point; ++i) {
+        const std::vector<Vector> D = moved(tau, part);
+        double error = 0;
+        for (std::int64_t k = 0; k < m_.n_bonds; ++k) {
+            const double q = dot(b_[at(k)], b_[at(k)]), a = m_.length(k),
+                         left = dot(D[at(k)], D[at(k)]) - q - part * (a * a - q);
+            x[at(k)] = left / 2;
+            const double one = std::fabs(left) / (a * a);
+            if (!(one <= error)) error = one;  // keeps a NaN
+        }
+        if (error <= close) return true;
+        if (!(error < before)) return false;
+        before = error / 4;
+        solve(D, x, f);
+        ++solves;
+        for (std::int64_t k = 0; k < m_.n_bonds; ++k) tau[at(k)] += x[at(k)];
+    }
+    return false;
+}
+
+bool StepBonds::follow(std::int64_t most, std::vector<double> &tau, std::int64_t &solves) const {
+    if (!has_rows()) return false;
     std::vector<double> accepted(b_.size(), 0.0), slope(b_.size(), 0.0), guess(b_.size());
+    Factors factors;
     double done = 0, step = first_step;
+    bool halved = false;
     for (std::int64_t n = 0; done < 1; ++n) {
         if (n >= most || step < shortest_step) return false;
         const double next = std::min(done + step, 1.0);
-        for (std::size_t e = 0; e < place.size(); ++e) place[e] = from[e] + next * (to[e] - from[e]);
-        for (std::int64_t k = 0; k < m_.n_bonds; ++k) {
-            const double q = dot(b_[at(k)], b_[at(k)]), a = m_.length(k);
-            length[at(k)] = std::sqrt(q + next * (a * a - q));
-            guess[at(k)] = accepted[at(k)] + (next - done) * slope[at(k)];
-            one.lambda[at(k)] = 0.5 * guess[at(k)];
-        }
-        one.set(from, place);
-        Tally tally = empty_tally();
-        const bool solved = one.solve(call, length.data(), tally);
-        solves += std::max<std::int64_t>(tally.iterations, 1);
-        for (std::int64_t k = 0; k < m_.n_bonds; ++k) tau[at(k)] = 2 * one.lambda[at(k)];
-        const double off = solved ? distance(tau, guess) : 1;
-        if (!(off <= near)) {
+        for (std::size_t k = 0; k < guess.size(); ++k) guess[k] = accepted[k] + (next - done) * slope[k];
+        tau = guess;
+        const double off = correct(next, tau, solves, factors) ? distance(tau, guess) : 1;
+        const bool there = off <= near;
+        if (there && off <= very_near && !halved) step *= 2;
+        halved = !there;
+        if (!there) {
             step = 0.5 * (next - done);
             continue;
         }
-        for (std::int64_t k = 0; k < m_.n_bonds; ++k) slope[at(k)] = (tau[at(k)] - accepted[at(k)]) / (next - done);
+        for (std::size_t k = 0; k < guess.size(); ++k) slope[k] = (tau[k] - accepted[k]) / (next - done);
         accepted = tau;
         done = next;
-        if (off <= very_near) step *= 2;
     }
     return true;
 }

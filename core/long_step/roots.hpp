@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "core/long_step/one_molecule.hpp"
+#include "core/molecules/chains.hpp"
 
 namespace holonomic {
 
@@ -24,9 +24,10 @@ public:
     // known.
     bool is_certified(const std::vector<double> &tau) const;
 
-    // The root that the reference's, where all are 0, becomes on the way to the positions as they are. False where the
-    // path has an end before, or takes more than `most` solutions by the kernels. Adds to `solves`.
-    bool follow(OneMolecule &one, std::int64_t most, std::vector<double> &tau, std::int64_t &solves) const;
+    // The root that the reference's, where all are 0, becomes on the way to the positions as they are: of bonds
+    // b + t (D - b) and squares of lengths between b.b and a^2. To 1e-9. False where the path has an end before, or
+    // `most` points are not enough. Adds to `solves`.
+    bool follow(std::int64_t most, std::vector<double> &tau, std::int64_t &solves) const;
 
     // What SHAKE comes to, bond after bond along the reference, within so many rounds.
     bool shake(std::int64_t rounds, std::vector<double> &tau) const;
@@ -36,13 +37,25 @@ private:
         double x, y, z;
     };
     static double dot(const Vector &a, const Vector &b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-    std::vector<std::int64_t> first_of_rows() const;
-    std::vector<Vector> moved(const std::vector<double> &tau) const;  // D
-    bool lay_out(const std::vector<Vector> &bonds, std::vector<double> &atoms) const;
+    struct Factors {
+        std::vector<double> low, up;
+    };
+    std::vector<Vector> moved(const std::vector<double> &tau, double part) const;  // bonds at this part of the path
+    void make_rows();
+    bool has_rows() const { return !coupling_.empty(); }
+    std::size_t place(std::int64_t k, std::int64_t l) const {
+        const std::size_t row = static_cast<std::size_t>(k);
+        return static_cast<std::size_t>(start_[row] + l - first_[row]);
+    }
+    void solve(const std::vector<Vector> &D, std::vector<double> &x, Factors &f) const;
+    bool correct(double part, std::vector<double> &tau, std::int64_t &solves, Factors &f) const;
 
     const Molecule &m_;
     std::vector<Vector> b_, D_;
     double error_ = 0;
+    // Bonds of which row k may have elements: first_[k] .. k, from start_[k] on; W of these. Empty: too many.
+    std::vector<std::int64_t> first_, start_;
+    std::vector<double> coupling_;
 };
 
 }  // namespace holonomic
