@@ -206,7 +206,7 @@ void ScheduleMaker::list_children() {
     for (std::int32_t i = 0, first = 0; i < s_.n_atoms; ++i) {
         const std::int32_t k = m_.child_start[at(i)];
         m_.child_start[at(i)] = first += k;
-        const bool decomposed = i >= s_.n_tree || k <= most_decomposed;
+        const bool decomposed = !is_network_ && (i >= s_.n_tree || k <= most_decomposed);
         m_.pair_start[at(i) + 1] = m_.pair_start[at(i)] + (decomposed ? k * (k - 1) / 2 : values_of_joint(k));
         s_.max_children = std::max(s_.max_children, k);
         if (decomposed) s_.max_joint = std::max(s_.max_joint, k);

@@ -194,6 +194,20 @@ static void all_levels_are_those_of_many_digits(void **state)
     }
 }
 
+/** Two hubs and a closed rim have as many bonds as freedoms. */
+static void networks_are_solved_whose_bonds_nearly_depend_on_each_other(void **state)
+{
+    (void)state;
+    network_scene s = make((sort){100, 1, 2, closed_rim, 0, 1, 0}, 5);
+    const molecule_problem p = network_problem(&s);
+    molecule_metric exact;
+    assert_int_equal(molecule_metric_make(&p, &exact), 0);
+    assert_true(exact.condition > 1e8L);
+    compare(&s);
+    molecule_metric_free(&exact);
+    network_free(s);
+}
+
 /** Arms that a hub's fixed neighbours hold, among many that give way. */
 static void held_stars_are_those_of_many_digits(void **state)
 {
@@ -295,6 +309,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(large_hubs_are_solved),
         cmocka_unit_test(all_levels_are_those_of_many_digits),
+        cmocka_unit_test(networks_are_solved_whose_bonds_nearly_depend_on_each_other),
         cmocka_unit_test(held_stars_are_those_of_many_digits),
         cmocka_unit_test(metrics_of_stars_are_those_of_many_digits),
         cmocka_unit_test(a_star_of_many_arms_is_solved),
