@@ -161,7 +161,7 @@ apt_get() {
             apt-get -qq -o DPkg::Lock::Timeout=300 "$@" 2>&1 >/dev/null </dev/null)
         status=$?
         case $words in *'Could not get lock'*) [ "$SECONDS" -ge "$until" ] || { sleep 2; continue; } ;; esac
-        [ -z "$words" ] || printf '%s\n' "$words" >&2
+        printf '%s\n' "$words" | grep -v -e '^$' -e 'delaying package configuration' >&2
         return $status
     done
 }

@@ -35,17 +35,17 @@ bool overflows(double value, int e, bool is_float) {
 
 }  // namespace
 
-OneMolecule::OneMolecule(const Lane &lane)
+KernelMolecule::KernelMolecule(const Lane &lane)
     : n_atoms(lane.n_bonds + 1), n_bonds(lane.n_bonds), first_atom(lane.first_atom), atoms(lane.atoms), w(lane.w),
       length(lane.length), w_uniform(lane.w_uniform), length_uniform(lane.length_uniform), first_bond(lane.first_bond),
       bonds(nullptr), shared(nullptr), schedule(nullptr), number(lane.chain) {}
 
-OneMolecule::OneMolecule(const Schedule &s, const MoleculeLane &lane)
+KernelMolecule::KernelMolecule(const Schedule &s, const MoleculeLane &lane)
     : n_atoms(s.n_atoms), n_bonds(s.n_bonds), first_atom(lane.first_atom), atoms(lane.atoms), w(lane.w),
       length(lane.length), w_uniform(0), length_uniform(0), first_bond(lane.first_bond), bonds(lane.bonds),
       shared(lane.shared), schedule(&s), number(lane.molecule) {}
 
-Rescaled::Rescaled(const OneMolecule &molecule, const Powers &of) : units(of), one_(molecule) {
+Rescaled::Rescaled(const KernelMolecule &molecule, const Powers &of) : units(of), one_(molecule) {
     const std::int64_t atoms = rounded_up(8 * (3 * one_.n_atoms + 3 * room_behind)),
                        values = rounded_up(8 * (std::max(one_.n_atoms, one_.n_bonds) + room_behind));
     memory_ = static_cast<char *>(
@@ -154,11 +154,11 @@ bool Rescaled::put_back() const {
 
 namespace {
 
-double most_w(const OneMolecule &m) { return m.w ? *std::max_element(m.w, m.w + m.n_atoms) : m.w_uniform; }
+double most_w(const KernelMolecule &m) { return m.w ? *std::max_element(m.w, m.w + m.n_atoms) : m.w_uniform; }
 
 }  // namespace
 
-bool find_units(const OneMolecule &m, const AtomArray &r, const Box &box, Powers &units) {
+bool find_units(const KernelMolecule &m, const AtomArray &r, const Box &box, Powers &units) {
     double longest = 0;
     for (std::int64_t k = 0; k < m.n_bonds; ++k) {
         double from[3], to[3], d[3];
@@ -175,7 +175,7 @@ bool find_units(const OneMolecule &m, const AtomArray &r, const Box &box, Powers
     return true;
 }
 
-bool find_units(const OneMolecule &m, Powers &units) {
+bool find_units(const KernelMolecule &m, Powers &units) {
     units = powers_of(m.length ? *std::max_element(m.length, m.length + m.n_bonds) : m.length_uniform, most_w(m));
     return true;
 }
@@ -242,7 +242,7 @@ PositionsCall rescaled(const PositionsCall &call, Rescaled &copy) {
     return c;
 }
 
-void add_rescaled(const OneMolecule &molecule, const Powers &units, Tally own, Tally &tally) {
+void add_rescaled(const KernelMolecule &molecule, const Powers &units, Tally own, Tally &tally) {
     for (double &sum : own.virial) sum = std::scalbn(sum, 2 * units.length + units.mass);
     if (own.worst_chain >= 0) own.worst_chain = molecule.number;
     add(tally, own);

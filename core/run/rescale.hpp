@@ -14,7 +14,7 @@
 namespace holonomic {
 
 // A molecule as a kernel has it, of whatever shape.
-struct OneMolecule {
+struct KernelMolecule {
     std::int64_t n_atoms, n_bonds, first_atom;
     const std::int64_t *atoms;  // or nullptr, as in the lanes of call.hpp; likewise below
     const double *w, *length;
@@ -25,8 +25,8 @@ struct OneMolecule {
     const Schedule *schedule;  // or nullptr: each bond joins an atom to the next
     std::int64_t number;
 
-    explicit OneMolecule(const Lane &lane);
-    OneMolecule(const Schedule &schedule, const MoleculeLane &lane);
+    explicit KernelMolecule(const Lane &lane);
+    KernelMolecule(const Schedule &schedule, const MoleculeLane &lane);
     std::int64_t bond(std::int64_t k) const { return bonds ? bonds[k] : first_bond + k; }
 };
 
@@ -34,7 +34,7 @@ struct OneMolecule {
 class Rescaled {
 public:
     // Takes memory of the calling thread. Throws std::bad_alloc.
-    Rescaled(const OneMolecule &molecule, const Powers &units);
+    Rescaled(const KernelMolecule &molecule, const Powers &units);
 
     // Copies of the caller's arrays, over 2^e. Those that are only read; those that are read and written; and results.
     AtomArray inputs(const AtomArray &callers, int e);
@@ -65,7 +65,7 @@ private:
     AtomArray add(const AtomArray &callers, int e, bool read);
     double *take(std::int64_t n);
 
-    const OneMolecule one_;
+    const KernelMolecule one_;
     char *memory_;
     double *w_ = nullptr, *length_ = nullptr;
     Atoms atoms_[3];
@@ -75,8 +75,8 @@ private:
 
 // The units in which the longest bond and the lightest mass are about 1, from positions and their box, or from the
 // lengths of the bonds. False if there are none: an infinity, or nothing but bonds of length zero.
-bool find_units(const OneMolecule &molecule, const AtomArray &r, const Box &box, Powers &units);
-bool find_units(const OneMolecule &molecule, Powers &units);
+bool find_units(const KernelMolecule &molecule, const AtomArray &r, const Box &box, Powers &units);
+bool find_units(const KernelMolecule &molecule, Powers &units);
 
 Box rescaled(const Box &box, int e);
 
@@ -85,12 +85,12 @@ ForcesCall rescaled(const ForcesCall &call, Rescaled &copy);
 VelocitiesCall rescaled(const VelocitiesCall &call, Rescaled &copy);
 SolveCall rescaled(const SolveCall &call, Rescaled &copy);
 PositionsCall rescaled(const PositionsCall &call, Rescaled &copy);
-inline bool find_units(const OneMolecule &m, const ForcesCall &c, Powers &u) { return find_units(m, c.r, c.box, u); }
-inline bool find_units(const OneMolecule &m, const VelocitiesCall &c, Powers &u) {
+inline bool find_units(const KernelMolecule &m, const ForcesCall &c, Powers &u) { return find_units(m, c.r, c.box, u); }
+inline bool find_units(const KernelMolecule &m, const VelocitiesCall &c, Powers &u) {
     return find_units(m, c.r, c.box, u);
 }
-inline bool find_units(const OneMolecule &m, const SolveCall &c, Powers &u) { return find_units(m, c.r, c.box, u); }
-inline bool find_units(const OneMolecule &m, const PositionsCall &, Powers &u) { return find_units(m, u); }
+inline bool find_units(const KernelMolecule &m, const SolveCall &c, Powers &u) { return find_units(m, c.r, c.box, u); }
+inline bool find_units(const KernelMolecule &m, const PositionsCall &, Powers &u) { return find_units(m, u); }
 
 // Whether it may be good in them if it was bad as it is: else what does not converge would be tried twice.
 template <class Call>
@@ -100,7 +100,7 @@ bool may_help(const Call &, const Powers &) {
 inline bool may_help(const PositionsCall &, const Powers &units) { return !are_ordinary(units); }
 
 // Adds what a copy gives to the sums of its molecule.
-void add_rescaled(const OneMolecule &molecule, const Powers &units, Tally own, Tally &tally);
+void add_rescaled(const KernelMolecule &molecule, const Powers &units, Tally own, Tally &tally);
 
 inline Unit unit_of(const Rescaled &copy, const Unit &one, Lane *lane) {
     *lane = copy.lane_of(one.lanes[0]);
@@ -110,14 +110,14 @@ inline MoleculeUnit unit_of(const Rescaled &copy, const MoleculeUnit &one, Molec
     *lane = copy.lane_of(one.lanes[0]);
     return {one.schedule, lane, 1, true, false, nullptr, one.forests, one.n_forests};
 }
-inline OneMolecule one_of(const Unit &one) { return OneMolecule(one.lanes[0]); }
-inline OneMolecule one_of(const MoleculeUnit &one) { return OneMolecule(*one.schedule, one.lanes[0]); }
+inline KernelMolecule one_of(const Unit &one) { return KernelMolecule(one.lanes[0]); }
+inline KernelMolecule one_of(const MoleculeUnit &one) { return KernelMolecule(*one.schedule, one.lanes[0]); }
 
 // Does a unit of one molecule in ordinary units: run(call, unit, tally) calls the kernel. Returns false, with nothing
 // written, if that is bad, too.
 template <class Call, class AnyUnit, class Run>
 bool work_in_ordinary_units(const Call &call, const AnyUnit &unit, Tally &tally, const Run &run) {
-    const OneMolecule one = one_of(unit);
+    const KernelMolecule one = one_of(unit);
     Powers units;
     if (!find_units(one, call, units) || !may_help(call, units)) return false;
     Rescaled copy(one, units);

@@ -294,9 +294,10 @@ bool is_decided(const hostile_chain &c, const exact_metric &metric)
 int status_of_undecided(std::int64_t undecided, std::int64_t chains)
 {
     if (undecided == 0) return 0;
-    std::printf("skipped: the reference has %.1Lg relative rounding, which does not decide about %lld of %lld chains. "
-                "With MPFR (libmpfr-dev) it decides about all.\n",
-                solution_epsilon(), static_cast<long long>(undecided), static_cast<long long>(chains));
+    std::printf(
+        "skipped: the reference has %.1Lg relative rounding, which does not decide about %lld of %lld chains. "
+        "With MPFR (libmpfr-dev) it decides about all.\n",
+        solution_epsilon(), static_cast<long long>(undecided), static_cast<long long>(chains));
     return not_all_decided;
 }
 

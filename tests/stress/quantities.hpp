@@ -42,8 +42,7 @@ inline const char *quantity_name(int q)
     static const char *const names[N_QUANTITIES] = {
         "lambda",    "lambda, K",    "G",          "virial",     "ln det",       "Fixman force", "inverse",
         "condition", "error bound",  "lambda (v)", "velocities", "d.dv left",    "bond lengths", "bond by bond",
-        "shift (r)", "refused step", "refused",    "accepted",   "outputs kept", "same bits",
-        "undecided"};
+        "shift (r)", "refused step", "refused",    "accepted",   "outputs kept", "same bits",    "undecided"};
     return names[q];
 }
 

@@ -184,7 +184,8 @@ int run(const soak_options &options, std::int64_t longest, const std::string &di
                 3600 * static_cast<double>(all.chains) / seconds, options.workers);
     if (lost > 0) std::printf("stress: %d processes ended before their time\n", lost);
     const double allowed = percent < 0 ? 0 : percent / 100 * static_cast<double>(all.chains);
-    if (lost > 0 || static_cast<double>(all.exceeded) > allowed || (percent >= 0 && all.worst() > largest_excess)) return 1;
+    if (lost > 0 || static_cast<double>(all.exceeded) > allowed || (percent >= 0 && all.worst() > largest_excess))
+        return 1;
     return status_of_undecided(all.quantity[UNDECIDED].exceeded, all.chains);
 }
 

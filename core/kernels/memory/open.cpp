@@ -2,6 +2,10 @@
 
 namespace holonomic::HOL_ISA {
 
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push  // gcc 14 takes a vector that is filled element by element for one that was never set
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
 void set_masses(Block &block, const Lane *lane, Arena &arena, bool thrice) {
     const double *table[W];
     double constant[W];  // where there is no table
@@ -49,6 +53,9 @@ void set_masses(Block &block, const Lane *lane, Arena &arena, bool thrice) {
         block.w3[i] = w3;
     }
 }
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
 
 void note_bad(const Block &block, mask bad, Tally &tally) {
     const unsigned which = bits(bad & block.in_use());

@@ -128,13 +128,13 @@ HOL_NOINLINE void add_pulls_to_virial(const Molecules<V> &x, unsigned which, Tal
 // Returns the lanes in which all multipliers are finite, and products of bonds can't have overflowed or underflowed.
 template <class V>
 HOL_INLINE MaskOf<V> finite_solution(const Molecules<V> &x) {
-    V sum = {}, squares = {}, least = Width<V>::all(1);
+    V sum = {}, sum_of_squares = {}, least = Width<V>::all(1);
     for (int32_t k = 0; k < x.s.n_bonds; ++k) {
         sum = sum + abs(x.row[k].t);
-        squares = squares + x.row[k].q;
+        sum_of_squares = sum_of_squares + x.row[k].q;
         least = min(x.row[k].q, least);
     }
-    return finite(sum) & ordinary_squares(least, squares);
+    return finite(sum) & ordinary_squares(least, sum_of_squares);
 }
 
 }  // namespace holonomic::HOL_ISA::graph

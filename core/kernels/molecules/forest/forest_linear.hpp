@@ -135,13 +135,13 @@ struct ForestLinear : ForestTrees {
     void solve_again();
     // As finite_solution() has it.
     __attribute__((noinline)) mask finite_in(const Range &range) const {
-        vec sum = {}, squares = {}, least = splat(1);
+        vec sum = {}, sum_of_squares = {}, least = splat(1);
         for (int32_t p = range.place; p < range.end_place; ++p) {
             sum = sum + abs(row[p].t);
-            squares = squares + row[p].q;
+            sum_of_squares = sum_of_squares + row[p].q;
             least = min(select(lanes_of(f.held[p]), row[p].q, splat(1)), least);
         }
-        return finite(sum) & ordinary_squares(least, squares);
+        return finite(sum) & ordinary_squares(least, sum_of_squares);
     }
 
     __attribute__((noinline)) void add_pulls_to_velocities(const Range &range) {
