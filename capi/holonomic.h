@@ -375,8 +375,9 @@ typedef enum hol_when {
  * HOL_ALWAYS makes calls 1.6 to 2 times as long, of every shape.
  *
  * The message names the worst bond, its atoms, its length and the length wanted, whether a box is set, and the likely
- * causes: of a reference its unit, order or box; of positions to be projected, whose reference fits, forces or time step.
- * A crude start (a model built by hand; files with two decimals are no such case) calls hol_impose once (docs/recipes.md).
+ * causes: of a reference its unit, order or box; of positions to be projected, whose reference fits, forces or time
+ * step. A crude start (a model built by hand; files with two decimals are no such case) calls hol_impose once
+ * (docs/recipes.md).
  *
  * @param[in,out] chains
  * @param[in]     when    an hol_when
