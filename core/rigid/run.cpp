@@ -63,7 +63,7 @@ private:
         const System system(bodies_.shape(m), bodies_.kinds(), memory_);
         Outcome outcome = Outcome::good;
         with_outcome(outcome_of(m), found_.tally, [&](Tally &tally) {
-            outcome = work_.molecule(system, place(m), tally);
+            outcome = bodies_.shape(m).is_ordinary ? work_.molecule(system, place(m), tally) : Outcome::not_finite;
             if (outcome == Outcome::good) return;
             if (tally.n_bad == 0) found_.first_outcome = outcome;
             note_bad(chains_.n_chains() + m, tally);

@@ -225,10 +225,31 @@ private:
 
 }  // namespace
 
+namespace {
+
+// Axes of a body take its lengths to the twelfth power, elimination squares of lengths^2 / mass.
+constexpr double most_length = 0x1p80, most_mass = 0x1p150;
+
+bool is_between(double a, double most) { return a > 1 / most && a < most; }
+
+bool is_in_range(const Shape &shape, const std::vector<Body> &bodies) {
+    bool good = true;
+    for (const Part &part : shape.parts) {
+        const Body &body = bodies[static_cast<std::size_t>(part.body)];
+        good = good && is_between(body.mass, most_mass) && is_between(body.extent, most_length);
+    }
+    for (const double mass : shape.mass) good = good && (mass == 0 || is_between(mass, most_mass));
+    for (const Bond &bond : shape.bonds) good = good && is_between(bond.length, most_length);
+    return good;
+}
+
+}  // namespace
+
 void complete(Shape &shape, const std::vector<Body> &bodies) {
     Completion(shape, bodies).run();
+    shape.is_ordinary = is_in_range(shape, bodies);
     shape.is_lone_body =
-        shape.parts.size() == 1 && shape.n_atoms == shape.n_held &&
+        shape.is_ordinary && shape.parts.size() == 1 && shape.n_atoms == shape.n_held &&
         std::all_of(shape.bonds.begin(), shape.bonds.end(), [](const Bond &bond) { return bond.row < 0; }) &&
         bodies[static_cast<std::size_t>(shape.parts[0].body)].is_thick;
     // A rigid whole has three or six motions left unless a fixed atom holds it: more equations than freedoms depend.

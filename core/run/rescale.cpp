@@ -242,6 +242,15 @@ PositionsCall rescaled(const PositionsCall &call, Rescaled &copy) {
     return c;
 }
 
+MetricCall rescaled(const MetricCall &call, Rescaled &copy) {
+    const int length = copy.units.length;
+    MetricCall c = call;
+    c.r = copy.inputs(call.r, length);
+    c.force = copy.results(call.force, -length, call.add);
+    c.box = rescaled(call.box, length);
+    return c;
+}
+
 void add_rescaled(const KernelMolecule &molecule, const Powers &units, Tally own, Tally &tally) {
     for (double &sum : own.virial) sum = std::scalbn(sum, 2 * units.length + units.mass);
     if (own.worst_chain >= 0) own.worst_chain = molecule.number;

@@ -85,12 +85,20 @@ ForcesCall rescaled(const ForcesCall &call, Rescaled &copy);
 VelocitiesCall rescaled(const VelocitiesCall &call, Rescaled &copy);
 SolveCall rescaled(const SolveCall &call, Rescaled &copy);
 PositionsCall rescaled(const PositionsCall &call, Rescaled &copy);
+MetricCall rescaled(const MetricCall &call, Rescaled &copy);  // but for the determinants
+inline bool find_units(const KernelMolecule &m, const MetricCall &c, Powers &u) { return find_units(m, c.r, c.box, u); }
 inline bool find_units(const KernelMolecule &m, const ForcesCall &c, Powers &u) { return find_units(m, c.r, c.box, u); }
 inline bool find_units(const KernelMolecule &m, const VelocitiesCall &c, Powers &u) {
     return find_units(m, c.r, c.box, u);
 }
 inline bool find_units(const KernelMolecule &m, const SolveCall &c, Powers &u) { return find_units(m, c.r, c.box, u); }
 inline bool find_units(const KernelMolecule &m, const PositionsCall &, Powers &u) { return find_units(m, u); }
+
+template <class Call>
+void mark(Call &call) {
+    call.rescaled = true;
+}
+inline void mark(MetricCall &) {}  // its careful ways take any units
 
 // Whether it may be good in them if it was bad as it is: else what does not converge would be tried twice.
 template <class Call>
@@ -122,7 +130,7 @@ bool work_in_ordinary_units(const Call &call, const AnyUnit &unit, Tally &tally,
     if (!find_units(one, call, units) || !may_help(call, units)) return false;
     Rescaled copy(one, units);
     Call of_copy = rescaled(call, copy);
-    of_copy.rescaled = true;
+    mark(of_copy);
     typename std::remove_const<typename std::remove_pointer<decltype(unit.lanes)>::type>::type lane;
     Tally own = empty_tally();
     run(of_copy, unit_of(copy, unit, &lane), own);
