@@ -54,7 +54,7 @@ struct MetricWork final : Work {
     // ln det Z is of the caller's units: Z is of lengths squared over masses.
     template <class AnyUnit, class Run>
     static bool in_ordinary_units(const MetricCall &call, const AnyUnit &one, Tally &tally, const Run &run) {
-        const OneMolecule molecule = one_of(one);
+        const KernelMolecule molecule = one_of(one);
         double log_det = 0, log_det_z = 0;
         const bool good = work_in_ordinary_units(call, one, tally, [&](MetricCall c, const AnyUnit &unit, Tally &own) {
             c.log_det = &log_det;

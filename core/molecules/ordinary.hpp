@@ -18,7 +18,8 @@ inline Powers powers_of(double longest, double most_w) {
 }
 
 inline bool are_ordinary(const Powers &units) {
-    return std::abs(units.length) <= most_ordinary_length && std::abs(units.mass) <= most_ordinary_mass;
+    return std::abs(units.length) <= most_ordinary_length && std::abs(units.mass) <= most_ordinary_mass &&
+           std::abs(2 * units.length - units.mass) <= most_ordinary_mass;  // of pivots
 }
 
 }  // namespace holonomic

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/kernels/molecules/list/flat_linear.hpp"
+#include "core/kernels/molecules/proof.hpp"
 
 namespace holonomic::HOL_ISA::graph {
 
@@ -37,7 +38,7 @@ HOL_INLINE unsigned pivots_above(const FlatLinear<V> &x, const Tile &tile, doubl
     for (int64_t k = tile.first; k < tile.end; k += x.step) {
         const Columns<V> ratio = x.some(x.diagonal, k - tile.first) * x.some(x.per_pivot, k),
                          spare = (most - ratio) * ratio,  // is not positive where one of both is not
-            room = all_columns<V>(most_ordinary_square) - (x.some(x.diagonal, k - tile.first) + x.some(x.per_pivot, k));
+            room = all_columns<V>(most_ordinary_pivot) - (x.some(x.diagonal, k - tile.first) + x.some(x.per_pivot, k));
         if (__builtin_expect(all_positive<V>(spare) && all_positive<V>(room), 1)) continue;
         for (int i = 0; i < x.step && k + i < tile.end; ++i) all &= positive<V>(spare, i) & positive<V>(room, i);
     }

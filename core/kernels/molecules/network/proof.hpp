@@ -100,9 +100,28 @@ struct NetProof : NetEquations {
         factor.take_down_rest(y);
         return true;
     }
+    __attribute__((noinline)) bool has_ordinary_squares() const {
+        vec sum = {}, least = splat(1);
+        int32_t k = 0;
+        for (; k + W <= s.n_bonds; k += W) {
+            const Vector3<vec> bond = d.get<vec>(k);
+            const vec q = dot(bond, bond);
+            sum = sum + q;
+            least = min(q, least);
+        }
+        double rest = 0, least_of_rest = 1;
+        for (; k < s.n_bonds; ++k) {
+            const Vector3<double> bond = d.get<double>(k);
+            rest += dot(bond, bond);
+            least_of_rest = min(dot(bond, bond), least_of_rest);
+        }
+        return !any(~ordinary_squares(least, sum, most_ordinary_pivot)) &&
+               ordinary_squares(least_of_rest, rest, most_ordinary_pivot).set;
+    }
     // All multipliers, and whether they are proven.
     __attribute__((noinline)) bool find() const {
         load();
+        if (!has_ordinary_squares()) return false;
         if (!solve_for(any_part, size_of_side, t)) return false;
         prove_all(t, most_left(), true, [](const NetPart &) {});
         return true;
