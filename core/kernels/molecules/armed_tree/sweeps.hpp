@@ -40,16 +40,6 @@ bool ArmedTree::solve(bool look) {
         again = faint.n > 0 && !faint.again && x.slack >= 0;
         faint.again = true;
     } while (again);
-<<<<<<< HEAD
-    double sum = 0, sum_of_squares = 0, least = 1;
-    for (int32_t i = 0; i <= x.s.n_arms; ++i)
-        for (int32_t k = x.s.stretch[i].first_place; k < x.s.stretch[i].end_place; ++k) {
-            sum += abs(x.row[k].t);
-            sum_of_squares += x.row[k].q;
-            least = min(x.row[k].q, least);
-        }
-    return (x.slack >= 0 || !look) && sum - sum == 0 && ordinary_squares(least, sum_of_squares).set;
-=======
     double sum = 0, most = 0, least = 1;  // of reciprocal pivots
     for (int32_t i = 0; i <= x.s.n_arms; ++i)
         for (int32_t k = x.s.stretch[i].first_place; k < x.s.stretch[i].end_place; ++k) {
@@ -58,7 +48,6 @@ bool ArmedTree::solve(bool look) {
             least = min(x.row[k].r, least);
         }
     return (x.slack >= 0 || !look) && sum - sum == 0 && ordinary_squares(least, most, most_ordinary_pivot).set;
->>>>>>> units
 }
 
 HOL_NOINLINE bool is_torn(const Molecules<double> &x, int32_t slot) {
