@@ -20,7 +20,8 @@ public:
             }
         list_edges();
         place_unknowns();
-        for (const std::int32_t n : c_.hub) delay_three(n);
+        for (const std::int32_t n : c_.hub)
+            if (!is_fixed(n)) delay_three(n);
         return std::move(c_);
     }
 
@@ -35,7 +36,7 @@ private:
         c_.hub_of.assign(at(s_.n_nodes), -1);
         for (std::int32_t n = 0; n < s_.n_nodes; ++n) {
             const std::int32_t ends = s_.nodes[s_.nodes_of[n]].n_own + s_.foreign_start[n + 1] - s_.foreign_start[n];
-            if (ends <= most_at_node || is_fixed(n)) continue;
+            if (ends <= most_at_node) continue;
             c_.hub_of[at(n)] = static_cast<std::int32_t>(c_.hub.size());
             c_.hub.push_back(n);
         }

@@ -165,7 +165,8 @@ static void large_hubs_are_solved(void **state)
         {700, 2, 1, closed_rim, 0, 1e3, 0},
         {700, 3, 1, closed_rim, 0, 1e-3, 3},
         {20000, 1, 1, closed_rim, 0, 1e4, 0},
-        {500, 3, 2, 0, 0, 1, 2}};
+        {500, 3, 2, 0, 0, 1, 2},
+        {4000, 1, 1, closed_rim, 0, 0, 1}};
     for (size_t i = 0; i < sizeof sorts / sizeof *sorts; ++i) {
         if (quick_run() && sorts[i].rim > 5000) continue;
         network_scene s = make(sorts[i], 1 + i);
