@@ -110,9 +110,10 @@ private:
             add_spoke(u, s_.node_of[u], 1);
             if (s_.other_node[u] >= 0) add_spoke(u, s_.other_node[u], -1);
         }
-        std::stable_sort(a_.spoke.begin(), a_.spoke.end(), [this](const FrontPlan::Spoke &x, const FrontPlan::Spoke &y) {
-            return leaf_of(x.unknown) < leaf_of(y.unknown);
-        });
+        std::stable_sort(a_.spoke.begin(), a_.spoke.end(),
+                         [this](const FrontPlan::Spoke &x, const FrontPlan::Spoke &y) {
+                             return leaf_of(x.unknown) < leaf_of(y.unknown);
+                         });
         std::vector<unsigned char> begun(at(n_hubs_), 0);
         std::int32_t i = 0;
         for (std::size_t f = 0; f < a_.front.size(); ++f) {
@@ -146,11 +147,13 @@ private:
         for (const FrontPlan::Spoke &spoke : a_.spoke)
             for (std::int32_t c = 0; c < 3; ++c) {
                 std::int32_t &front = front_of_[at(of_hub(spoke.hub, c))];
-                front = common(front, cells_.late[at(spoke.unknown)] ? leaf_of(spoke.unknown) : front_of_[at(spoke.unknown)]);
+                front = common(front,
+                               cells_.late[at(spoke.unknown)] ? leaf_of(spoke.unknown) : front_of_[at(spoke.unknown)]);
             }
         for (const FrontPlan::Spoke &spoke : a_.spoke)
             if (cells_.late[at(spoke.unknown)])
-                front_of_[at(spoke.unknown)] = common(front_of_[at(spoke.unknown)], front_of_[at(of_hub(spoke.hub, 0))]);
+                front_of_[at(spoke.unknown)] =
+                    common(front_of_[at(spoke.unknown)], front_of_[at(of_hub(spoke.hub, 0))]);
         for (const std::int32_t f : front_of_) ++a_.front[at(f)].n_own;
         std::int32_t first = 0;
         Numbers next;

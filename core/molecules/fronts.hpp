@@ -17,7 +17,8 @@ struct FrontArrays {
     Numbers row, to_parent, node, own_row, foreign_row, partner_row, hub, hub_of;
 };
 
-// Of a network whose plan has all but the fronts; none where they would take more than most_bytes. fixed: by local atom.
+// Of a network whose plan has all but the fronts; none where they would take more than most_bytes. fixed: by local
+// atom.
 FrontPlan make_fronts(const NetworkPlan &s, const unsigned char *fixed, std::int64_t most_bytes, FrontArrays &arrays);
 
 std::size_t bytes_of(const FrontArrays &arrays);

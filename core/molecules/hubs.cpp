@@ -20,7 +20,8 @@ public:
             }
         list_edges();
         place_unknowns();
-        for (const std::int32_t n : c_.hub) delay_three(n);
+        for (const std::int32_t n : c_.hub)
+            if (!is_fixed(n)) delay_three(n);
         return std::move(c_);
     }
 
@@ -34,9 +35,8 @@ private:
     void find_hubs() {
         c_.hub_of.assign(at(s_.n_nodes), -1);
         for (std::int32_t n = 0; n < s_.n_nodes; ++n) {
-            const std::int32_t ends =
-                s_.nodes[s_.nodes_of[n]].n_own + s_.foreign_start[n + 1] - s_.foreign_start[n];
-            if (ends <= most_at_node || is_fixed(n)) continue;
+            const std::int32_t ends = s_.nodes[s_.nodes_of[n]].n_own + s_.foreign_start[n + 1] - s_.foreign_start[n];
+            if (ends <= most_at_node) continue;
             c_.hub_of[at(n)] = static_cast<std::int32_t>(c_.hub.size());
             c_.hub.push_back(n);
         }
@@ -64,7 +64,8 @@ private:
             Cells::Places &p = c_.of_unknown[at(u)];
             p = {c_.cell_of[at(from)], c_.cell_of[at(to)]};
             const bool any_hub = p.own < 0 || p.other < 0;
-            if (any_hub && is_single(u)) c_.late[at(u)] = (p.own < 0 || is_fixed(from)) && (p.other < 0 || is_fixed(to));
+            if (any_hub && is_single(u))
+                c_.late[at(u)] = (p.own < 0 || is_fixed(from)) && (p.other < 0 || is_fixed(to));
             if (p.own < 0 && p.other < 0 && !is_single(u)) {
                 const std::int32_t v = s_.partner[u];
                 p.own = v < u ? c_.of_unknown[at(v)].own : add_strand();

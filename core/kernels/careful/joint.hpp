@@ -40,12 +40,12 @@ struct Joint {
     Wide3 *XD, *XB;               // [n][n] cross products of arms a and b at [a n + b]
     double *sD, *sB, *sXD, *sXB;  // [n], [n][n] sizes of these vectors: sums of their components in absolute values
     int n_others, n_rigid;
-    int *others;        // [n] the arms that are eliminated
-    Wide det;           // of S over these arms, relative to the product of their E that are not 0
-    bool by_inertia;    // how they are eliminated
-    Wide inverse[9];    // if so: the inverse of 1 + sum rho D B^T over those that give way,
-    Rigid rigid_arms;   // with the directions of the others taken out
-    mutable Loss loss;  // of all sums so far
+    int *others;         // [n] the arms that are eliminated
+    Wide det;            // of S over these arms, relative to the product of their E that are not 0
+    bool by_inertia;     // how they are eliminated
+    Wide inverse[9];     // if so: the inverse of 1 + sum rho D B^T over those that give way,
+    Rigid rigid_arms;    // with the directions of the others taken out
+    mutable Loss loss;   // of all sums so far
     Wide *behind, *row;  // [18 n], [n] of many arms: sums, and multipliers of one
 };
 

@@ -1,7 +1,7 @@
 // An atom of so many arms that a table of all multipliers would be too large: O(n) numbers for n arms, and as many
-// operations. Arm e is reduced by all others that are eliminated, by the inverse N_e of 1 + sum rho B D^T over them. Its
-// multipliers are l_a = rho_a G_e.B_a with G_e = D_e N_e, so that sums over them are those of vectors. What comes before
-// e and what comes behind it are added up apart, so that nothing is subtracted.
+// operations. Arm e is reduced by all others that are eliminated, by the inverse N_e of 1 + sum rho B D^T over them.
+// Its multipliers are l_a = rho_a G_e.B_a with G_e = D_e N_e, so that sums over them are those of vectors. What comes
+// before e and what comes behind it are added up apart, so that nothing is subtracted.
 //
 // Arms that don't give way, three at most, take their directions out of D and B, and get what that leaves of D_e. As e
 // each of them has its multipliers one by one.

@@ -19,13 +19,13 @@ static Wide3 weighed_normal(const Molecule &m, const Tree &tree, const Neighbour
     Wide3 sum = {};
     for (int b = 0; b < n; ++b)
         if (b != a)
-            sum = sum + x.H[x.start[i] + a * n + b] *
-                            cross(m.outward(m.d, arms[a], i), m.outward(m.d, arms[b], i));
+            sum = sum + x.H[x.start[i] + a * n + b] * cross(m.outward(m.d, arms[a], i), m.outward(m.d, arms[b], i));
     return m.w[i] * sum;
 }
 
 // kT phi_k = kT d_k x (normals at both ends) / d_k.d_k turns bond k: its force on atom j, and minus that on atom i.
-static void fixman_force(const Molecule &m, const Tree &tree, const Neighbours &x, double kT, Wide3 *normal, Wide3 *force) {
+static void fixman_force(const Molecule &m, const Tree &tree, const Neighbours &x, double kT, Wide3 *normal,
+                         Wide3 *force) {
     const CarefulPlan &plan = m.plan;
     for (int32_t k = 0; k < plan.n_bonds; ++k) normal[k] = Wide3{};
     for (int32_t i = 0; i < plan.n_atoms; ++i) {

@@ -128,8 +128,7 @@ HOL_NOINLINE void find_neighbours(const CarefulPlan &plan, const Ring &ring, con
         const Wide h = value / (ring.length[k] * ring.length[l]);
         for (int side = 0; side < 2; ++side) {
             const int32_t end = side == 0 ? plan.atom_i[bk] : plan.atom_j[bk];
-            if (end == plan.atom_i[bl] || end == plan.atom_j[bl])
-                x.H[x.start[end] + 1] = x.H[x.start[end] + 2] = h;
+            if (end == plan.atom_i[bl] || end == plan.atom_j[bl]) x.H[x.start[end] + 1] = x.H[x.start[end] + 2] = h;
         }
     };
     const Wide corner = diagonal;

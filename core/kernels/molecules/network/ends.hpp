@@ -281,8 +281,7 @@ private:
             const Factors<double> factors = factors_of(mass.get<double>(s.fronts.hub[spoke.hub]));
             const Vector3<double> of_row = static_cast<double>(spoke.sign) * (D.get<double>(u) * factors.lower),
                                   of_column = static_cast<double>(spoke.sign) * (factors.upper * b.get<double>(u));
-            const double rows[3] = {of_row.x, of_row.y, of_row.z},
-                         columns[3] = {of_column.x, of_column.y, of_column.z};
+            const double rows[3] = {of_row.x, of_row.y, of_row.z}, columns[3] = {of_column.x, of_column.y, of_column.z};
             for (int32_t c = 0; c < 3; ++c) {
                 const int32_t h = spoke.hub_row + c;
                 add(spoke.row, h, rows[c]);

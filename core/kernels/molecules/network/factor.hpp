@@ -57,7 +57,8 @@ struct NetFactor {
         unknowns.add_pushes();
         for (int32_t n = 0; n < s.n_nodes && s.n_tree > 0; ++n)
             if (stiff.is[n])
-                unknowns.add_push(n, rounded(stiff.acceleration(n)) - unknowns.mass.get<double>(n) * unknowns.push.get<double>(n));
+                unknowns.add_push(
+                    n, rounded(stiff.acceleration(n)) - unknowns.mass.get<double>(n) * unknowns.push.get<double>(n));
     }
     // Other right-hand sides.
     void take_up_rest(double *y) const {
@@ -288,7 +289,8 @@ private:
             y[e] = mul_add(from_last[c], y[c], y[e]);
         } else if (n > 1) {
             push[i] = push_of(s.n_nodes + i, y);
-            y[e] += dot(unknowns.tree_bond[i], stiff.is[s.n_nodes + i] ? rounded(stiff.acceleration(s.n_nodes + i)) : joint[i] * push[i]);
+            y[e] += dot(unknowns.tree_bond[i],
+                        stiff.is[s.n_nodes + i] ? rounded(stiff.acceleration(s.n_nodes + i)) : joint[i] * push[i]);
         }
     }
     void take_up_nodes(const double *y) const {  // what their trees give
@@ -313,7 +315,8 @@ private:
             const int32_t c = s.first_tree_place + s.child[first_child(s.n_nodes + i)];
             t[c] = mul_add(to_last[c], t[e], t[c] * per_pivot[c]);
         } else if (n > 1 && stiff.is[s.n_nodes + i]) {
-            solve_stiff_children(s.n_nodes + i, stiff.acceleration(s.n_nodes + i, product_pairs(-t[e], b.get<double>(e))), t);
+            solve_stiff_children(s.n_nodes + i,
+                                 stiff.acceleration(s.n_nodes + i, product_pairs(-t[e], b.get<double>(e))), t);
         } else if (n > 1) {
             solve_children(s.n_nodes + i, joint[i] * (push[i] - t[e] * b.get<double>(e)), t);
         }

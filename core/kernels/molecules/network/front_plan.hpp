@@ -16,15 +16,16 @@ namespace holonomic {
 //     [ A   D L ]
 //     [ U b^T -1 ]
 //
-// They follow those of A in number, and are eliminated where all ends meet. The leaves of the other ends have the terms.
+// They follow those of A in number, and are eliminated where all ends meet. The leaves of the other ends have the
+// terms.
 struct FrontPlan {
     struct Front {
         int32_t n_own, n_rows;         // the own ones first, then all others, in the order of elimination
         int32_t first_row;             // in row, to_parent
         int32_t first_node, end_node;  // in node; none of what is halved
         int32_t first_spoke, end_spoke;
-        int32_t half[2];               // fronts, or -1
-        int32_t branch;                // -1: of the trunk
+        int32_t half[2];  // fronts, or -1
+        int32_t branch;   // -1: of the trunk
     };
     // A front with all that it is made of, for one thread. What has several branches below it is the *trunk*, whose
     // fronts come one after the other.
@@ -53,8 +54,8 @@ struct FrontPlan {
     const int32_t *hub;     // nodes
     const int32_t *hub_of;  // [n_nodes] or -1
     const Spoke *spoke;     // those of a leaf together
-    double rounds;               // of the iteration that take as long as the fronts
-    bool at_once;                // whether it would take more
+    double rounds;          // of the iteration that take as long as the fronts
+    bool at_once;           // whether it would take more
 };
 
 }  // namespace holonomic

@@ -8,14 +8,14 @@
 
 namespace holonomic::HOL_ISA::graph {
 
-// A child is stiff that offers less than this part of the atom's inverse mass. What offers still less than the other one
-// is taken to offer so much.
+// A child is stiff that offers less than this part of the atom's inverse mass. What offers still less than the other
+// one is taken to offer so much.
 constexpr double stiff_offer = 1e-5, least_stiff_offer = 1e-14;
 
 // y - D.a
 HOL_INLINE double left_of(double y, const Vector3<double> &D, const Pair3<double> &a) {
-    const Pair<double> left =
-        subtract_pairs({y, 0.0}, add_pairs(scale_pair(D.x, a.x), add_pairs(scale_pair(D.y, a.y), scale_pair(D.z, a.z))));
+    const Pair<double> left = subtract_pairs(
+        {y, 0.0}, add_pairs(scale_pair(D.x, a.x), add_pairs(scale_pair(D.y, a.y), scale_pair(D.z, a.z))));
     return left.hi + left.lo;
 }
 
@@ -41,12 +41,14 @@ struct StiffJoints {
     void load(int32_t i, double E, const Vector3<double> &b, const Vector3<double> &D) const {
         Pair3<double> *const row = joint[i].row;
         const Pair3<double> pushed = times(i, pairs_of(b, Vector3<double>{})),
-                            by = add_pairs(scale_by(D.x, row[0]), add_pairs(scale_by(D.y, row[1]), scale_by(D.z, row[2])));
+                            by = add_pairs(scale_by(D.x, row[0]),
+                                           add_pairs(scale_by(D.y, row[1]), scale_by(D.z, row[2])));
         const Pair<double> whole = add_pairs({E, 0.0}, dot_pairs(pairs_of(D, Vector3<double>{}), pushed));
         const Pair<double> along[3] = {pushed.x, pushed.y, pushed.z};
         for (int c = 0; c < 3; ++c) {
             const Pair<double> part = quotient(along[c], whole);
-            row[c] = subtract_pairs(row[c], {multiply_pairs(part, by.x), multiply_pairs(part, by.y), multiply_pairs(part, by.z)});
+            row[c] = subtract_pairs(
+                row[c], {multiply_pairs(part, by.x), multiply_pairs(part, by.y), multiply_pairs(part, by.z)});
         }
     }
     Tensor<double> mass(int32_t i) const {
