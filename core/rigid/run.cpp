@@ -275,8 +275,9 @@ Error error_of_first(const Chains &chains, const Found &found, const Named *arra
         case Outcome::no_convergence:
             return finish(
                 make_error(Status::no_convergence,
-                           "%s, with %d bodies, the first of atom %s: no corrections along the reference, as they grow from there on, bring "
-                           "bodies and bonds back to their lengths; the step is too large, or a length can't "
+                           "%s, with %d bodies, the first of atom %s: no corrections along the reference, as they grow "
+                           "from there on, bring bodies and bonds back to their lengths; the step is too large, or a "
+                           "length can't "
                            "be reached%s",
                            name, static_cast<int>(shape.parts.size()), chains.name_of_atom(atoms[0]).text, others),
                 -1);
