@@ -20,10 +20,8 @@ struct Environment {
 };
 
 // _mm_getcsr is no barrier: compilers move it. Writing takes a quarter of the time of this look.
-inline Environment environment() {
-    Environment e;
+inline void read_environment(Environment &e) {
     __asm__ volatile("stmxcsr %0\n\tfnstcw %1" : "=m"(e.mxcsr), "=m"(e.x87));
-    return e;
 }
 inline void set_flags(const Environment &to) { __asm__ volatile("ldmxcsr %0" : : "m"(to.mxcsr) : "memory"); }
 inline void set_environment(const Environment &to) {
@@ -39,10 +37,8 @@ struct Environment {
     std::uint64_t control, flags;  // FPCR, FPSR
 };
 
-inline Environment environment() {
-    Environment e;
+inline void read_environment(Environment &e) {
     __asm__ volatile("mrs %0, fpcr\n\tmrs %1, fpsr" : "=r"(e.control), "=r"(e.flags));
-    return e;
 }
 inline void set_flags(const Environment &to) { __asm__ volatile("msr fpsr, %0" : : "r"(to.flags) : "memory"); }
 inline void set_environment(const Environment &to) {
@@ -56,11 +52,7 @@ inline bool is_default(const Environment &e) { return e.control == 0; }
 
 using Environment = std::fenv_t;
 
-inline Environment environment() {
-    Environment e;
-    std::fegetenv(&e);
-    return e;
-}
+inline void read_environment(Environment &e) { std::fegetenv(&e); }
 inline void set_environment(const Environment &to) { std::fesetenv(&to); }
 inline void set_default_environment() { std::fesetenv(FE_DFL_ENV); }
 inline void set_flags(const Environment &to) { set_environment(to); }
@@ -72,11 +64,13 @@ inline bool is_default(const Environment &) { return false; }  // nobody can loo
 // that there have been included, and nothing traps on the way.
 class DefaultEnvironment {
 public:
-    DefaultEnvironment() : before_(environment()) {
-        if (!is_default(before_)) begin();
+    DefaultEnvironment() {
+        read_environment(before_);
+        was_default_ = is_default(before_);
+        if (!was_default_) begin();
     }
     ~DefaultEnvironment() {
-        if (is_default(before_))
+        if (was_default_)
             set_flags(before_);
         else
             end();
@@ -89,7 +83,8 @@ private:
     void begin() const noexcept;
     void end() const noexcept;
 
-    const Environment before_;
+    Environment before_;
+    bool was_default_;
 };
 
 // While it lives, this thread has what it had before its DefaultEnvironment: threads that start meanwhile inherit that,
