@@ -180,6 +180,21 @@ module holonomic_c_molecules
          integer(c_int) :: status
       end function
 
+      function hol_chains_set_length_tolerance(chains, tolerance) bind(c) result(status)
+         import :: c_double, c_int, c_ptr
+         type(c_ptr), value :: chains
+         real(c_double), value :: tolerance
+         integer(c_int) :: status
+      end function
+
+      function hol_chains_adjustment(chains, largest, bond) bind(c) result(status)
+         import :: c_double, c_int, c_int64_t, c_ptr
+         type(c_ptr), value :: chains
+         real(c_double), intent(out) :: largest
+         integer(c_int64_t), intent(out) :: bond
+         integer(c_int) :: status
+      end function
+
       function hol_chains_set_memory_limit(chains, bytes) bind(c) result(status)
          import :: c_int, c_int64_t, c_ptr
          type(c_ptr), value :: chains

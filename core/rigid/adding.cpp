@@ -9,6 +9,7 @@
 #include "core/molecules/memory_limit.hpp"
 #include "core/rigid/bodies.hpp"
 #include "core/rigid/cliques.hpp"
+#include "core/rigid/fit.hpp"
 
 namespace holonomic {
 
@@ -91,6 +92,18 @@ BodyName name_of_body(const Chains &chains, const rigid::Given &given, std::int6
          chains.base, -1, given.atoms[0]);
 }
 
+// A body that its lengths have made stays as it is.
+void set_length(const rigid::Shape &shape, std::size_t bond, double length, rigid::Given &given) {
+    double &old = given.bonds[bond].length;
+    if (!shape.by_lengths || shape.bonds[bond].row >= 0)
+        old = length;
+    else if (!(std::fabs(length - old) <= rigid::same_length * old))
+        throw rigid::Refusal{rigid::Refusal::of_bonds,
+                             {},
+                             {rigid::Unsolvable::length_in_body, static_cast<std::int32_t>(bond)},
+                             -1};
+}
+
 }  // namespace
 
 void Chains::add_rigid(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
@@ -152,7 +165,7 @@ void Chains::add_rigid_molecules(std::int64_t count, std::int64_t n_atoms, std::
 
 // Where parts of the list depend, their molecules are added as bodies, the others as ever.
 void Chains::add_with_bodies(const BondList &list, const double *lengths, std::int64_t n_lengths) {
-    const rigid::Cliques cliques = rigid::find_cliques(masses_, list, lengths, n_lengths);
+    const rigid::Cliques cliques = rigid::find_cliques(masses_, list, lengths, n_lengths, length_tolerance);
     FoundMolecules found;
     std::vector<std::int64_t> pairs, rest, rest_pairs;
     std::vector<double> its_lengths;
@@ -187,7 +200,10 @@ void Chains::add_with_bodies(const BondList &list, const double *lengths, std::i
         given.by_lengths = true;
         for (std::int64_t &bond : given.bond_numbers) bond = n_bonds_ + cliques.bonds[at(bond - n_bonds_)];
     }
+    const std::int64_t first_bond = n_bonds_;
     commit_rigid(molecules, 0, &batch);
+    if (cliques.adjusted > rigid::rounding && cliques.adjusted > adjustment_.largest)
+        adjustment_ = {cliques.adjusted, first_bond + cliques.adjusted_bond};
 }
 
 void Chains::commit_rigid(const std::vector<rigid::Given> &molecules, std::int64_t n_bonds, Batch *also) {
@@ -239,9 +255,9 @@ std::unique_ptr<rigid::Bodies> Chains::rebuild_bodies(const Masses &masses, cons
                                 name_of_atom(atom).text),
                      base, -1, atom);
         }
-        for (std::size_t k = 0; lengths && k < given.bonds.size(); ++k)
-            given.bonds[k].length = lengths[given.bond_numbers[k]];
         try {
+            for (std::size_t k = 0; lengths && k < given.bonds.size(); ++k)
+                set_length(bodies_->shape(m), k, lengths[given.bond_numbers[k]], given);
             next->add(given);
         } catch (const rigid::Refusal &refusal) {
             refuse(*this, given, refusal);

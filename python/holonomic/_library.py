@@ -34,6 +34,8 @@ SIGNATURES = {
     "hol_chains_set_threads": "i pi",
     "hol_chains_set_outcomes": "i pi",
     "hol_chains_set_active": "i pp",
+    "hol_chains_set_length_tolerance": "i pd",
+    "hol_chains_adjustment": "i ppp",
     "hol_chains_set_memory_limit": "i pl",
     "hol_chains_set_tolerance": "i pd",
     "hol_chains_set_max_iterations": "i pi",

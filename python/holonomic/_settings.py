@@ -22,6 +22,7 @@ class Settings:
     _threads = 1
     _tolerance = 0.0
     _max_iterations = 50
+    _length_tolerance = 1e-3
     _checks = "at start"
     _memory_limit = 0
     _keep_outcomes = False
@@ -104,6 +105,17 @@ class Settings:
     def max_iterations(self, count: int) -> None:
         ask(library.hol_chains_set_max_iterations(self._handle, count))
         self._max_iterations = count
+
+    @property
+    def length_tolerance(self) -> float:
+        """By which part of them lengths of rigid groups may be adjusted, so that they are those of places in space: 1e-3 by
+        default, at most 0.01; for what is added later."""
+        return self._length_tolerance
+
+    @length_tolerance.setter
+    def length_tolerance(self, tolerance: float) -> None:
+        ask(library.hol_chains_set_length_tolerance(self._handle, tolerance))
+        self._length_tolerance = tolerance
 
     @property
     def memory_limit(self) -> int:

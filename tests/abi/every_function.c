@@ -212,6 +212,9 @@ static void crude(hol_chains *both, const double *r)
     SUCCEEDS(hol_residuals_view(both, &positions, &rates, NULL, rate));
     NEAR(rate[3], 3);
     SUCCEEDS(hol_chains_set_memory_limit(both, 1 << 20));
+    SUCCEEDS(hol_chains_set_length_tolerance(both, 1e-3));
+    SUCCEEDS(hol_chains_adjustment(both, &error, &bond));
+    EXPECT(error == 0 && bond == -1);
     SUCCEEDS(hol_chains_set_outcomes(both, 1));
     SUCCEEDS(hol_impose(both, moved, &report));
     EXPECT(report.n_corrected == 1 && report.n_failed == 0 && report.iterations > 1);
