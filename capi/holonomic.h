@@ -175,6 +175,11 @@ HOL_API int hol_chains_add_block(hol_chains *chains, int64_t n_chains, int64_t n
  * Multipliers of such bonds are, of those whose pulls come nearest to the body's forces, the ones of least norm; only
  * forces across a line or plane have none. Right-hand sides of hol_solve are not looked at for them.
  *
+ * Where groups of five atoms and more share atoms, as all bonds and angles of an alkane do, they are no bodies:
+ * distances that shorter ones of the molecule imply (the tenth of five atoms, ...) are left out of the equations
+ * (hol_chains_implied). Their lengths are compared with the others', within the same tolerance. Groups on a line or in a
+ * plane that share atoms with other bodies are refused.
+ *
  * New molecules are numbered by their lowest atoms that can move, those with bodies behind all others. Arrays per bond
  * have these bonds in the order of the list, after those of earlier calls. All bonds of a molecule have to be given in
  * one call, but a fixed atom may occur in any number of bonds and calls.
@@ -556,6 +561,14 @@ HOL_API int64_t hol_chains_memory(const hol_chains *chains);
  * @return HOL_OK; HOL_ERR_NULL (chains or largest). Since 0.2.
  */
 HOL_API int hol_chains_adjustment(const hol_chains *chains, double *largest, int64_t *bond);
+
+/**
+ * Which distances others imply (hol_chains_add_bonds): they are in no equation, and their multipliers are 0.
+ * @param[in]  chains
+ * @param[out] implied  [n_bonds], 1 or 0
+ * @return HOL_OK; HOL_ERR_NULL. Since 0.2.
+ */
+HOL_API int hol_chains_implied(const hol_chains *chains, unsigned char *implied);
 
 /**
  * By which part of them lengths of distances that depend on each other may be adjusted, so that they are those of

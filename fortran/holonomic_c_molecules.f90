@@ -195,6 +195,13 @@ module holonomic_c_molecules
          integer(c_int) :: status
       end function
 
+      function hol_chains_implied(chains, implied) bind(c) result(status)
+         import :: c_int, c_ptr, c_signed_char
+         type(c_ptr), value :: chains
+         integer(c_signed_char), intent(out) :: implied(*)
+         integer(c_int) :: status
+      end function
+
       function hol_chains_set_memory_limit(chains, bytes) bind(c) result(status)
          import :: c_int, c_int64_t, c_ptr
          type(c_ptr), value :: chains

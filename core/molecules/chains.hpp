@@ -89,6 +89,7 @@ public:
         std::int64_t bond = -1;
     };
     const Adjustment &adjustment() const { return adjustment_; }
+    const std::vector<std::int64_t> &implied() const { return implied_; }
     Name name_of_molecule(std::int64_t molecule) const;
     Name name_of_rigid(std::int64_t molecule, std::int64_t atom) const {  // of a molecule with bodies, by one atom
         return labels_.of_molecule(molecule, atom, base);
@@ -187,7 +188,8 @@ private:
     Kinds kinds_;
     Shapes shapes_;
     Groups groups_;
-    std::vector<std::int64_t> unconstrained_;  // bonds between two fixed atoms, in the caller's arrays
+    std::vector<std::int64_t> unconstrained_;  // bonds in no equation, in the caller's arrays: between two fixed atoms,
+    std::vector<std::int64_t> implied_;        // or those that others imply (rigid/implied.hpp)
     std::vector<unsigned char> backwards_;     // [n_bonds], or empty: no bond is
     std::vector<unsigned char> active_;        // [n_chains] or empty: all
     std::unique_ptr<rigid::Bodies> bodies_;

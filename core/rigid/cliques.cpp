@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string>
 #include <unordered_map>
 
 namespace holonomic::rigid {
@@ -27,8 +28,9 @@ public:
         return bond < 0 ? -1 : lengths_[bond % n_lengths_] * lengths_[bond % n_lengths_];
     }
 
-    Search(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths, double tolerance)
-        : list_(list), lengths_(lengths), n_lengths_(n_lengths), tolerance_(tolerance) {
+    Search(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths, double tolerance,
+           const std::vector<unsigned char> &left_out)
+        : list_(list), lengths_(lengths), n_lengths_(n_lengths), tolerance_(tolerance), left_out_(left_out) {
         for (std::int64_t k = 0; k < list.n_bonds; ++k) {
             const std::int64_t i = list.pairs[2 * k], j = list.pairs[2 * k + 1];
             if (masses.fixed(i - list.base) || masses.fixed(j - list.base) || i == j) continue;
@@ -39,11 +41,15 @@ public:
     }
 
     Cliques find() {
+        for (std::int64_t k = 0; k < list_.n_bonds; ++k)
+            if (is_left_out(k)) compare(k);
+        take_away();
         for (std::int64_t k = 0; k < list_.n_bonds; ++k) look_around(k, true);
         std::int64_t steps = steps_for_rings(list_.n_bonds);
         for (std::int64_t k = 0; k < list_.n_bonds; ++k) look_for_ring(k, steps);
         for (std::int64_t k = 0; k < list_.n_bonds; ++k) look_around(k, false);
         if (!found_.sizes.empty()) collect_bonds();
+        for (const std::int64_t k : found_.bonds) look_for_shared(k);
         return std::move(found_);
     }
 
@@ -54,6 +60,66 @@ private:
             return atom != other.atom ? atom < other.atom : bond < other.bond;
         }
     };
+
+    bool is_left_out(std::int64_t bond) const { return !left_out_.empty() && left_out_[at(bond)] != 0; }
+
+    // A length that others imply, with those of five atoms that tell it.
+    void compare(std::int64_t bond) {
+        std::vector<std::int64_t> both, clique{list_.pairs[2 * bond], list_.pairs[2 * bond + 1]};
+        if (!bonds_of_.count(clique[0]) || !bonds_of_.count(clique[1])) return;
+        for (const Partner &partner : bonds_of_.at(clique[0]))
+            if (bond_between(partner.atom, clique[1]) >= 0) both.push_back(partner.atom);
+        grow(clique, both);
+        if (clique.size() < 5) return;
+        std::sort(clique.begin(), clique.end());
+        const Group group = look_at(distances(clique), tolerance_);
+        if (group.kind == Group::impossible) refuse(clique, group.misfit);
+        note(clique, group.misfit);
+    }
+
+    void take_away() {
+        if (left_out_.empty()) return;
+        for (auto &bonds : bonds_of_) {
+            const auto is_out = [this](const Partner &partner) { return is_left_out(partner.bond); };
+            bonds.second.erase(std::remove_if(bonds.second.begin(), bonds.second.end(), is_out), bonds.second.end());
+        }
+    }
+
+    bool is_together(const std::vector<std::int64_t> &atoms) const {
+        const auto first = body_of_.find(atoms[0]);
+        return first != body_of_.end() && std::all_of(atoms.begin(), atoms.end(), [&](std::int64_t atom) {
+                   const auto its = body_of_.find(atom);
+                   return its != body_of_.end() && its->second == first->second;
+               });
+    }
+
+    // Groups that depend and share atoms with a body: equations of distances do not hold these.
+    void look_for_shared(std::int64_t bond) {
+        const std::int64_t i = list_.pairs[2 * bond], j = list_.pairs[2 * bond + 1];
+        if (is_left_out(bond) || !bonds_of_.count(i) || !bonds_of_.count(j)) return;
+        std::vector<std::int64_t> both;
+        for (const Partner &partner : bonds_of_.at(i))
+            if (bond_between(partner.atom, j) >= 0) both.push_back(partner.atom);
+        for (std::size_t a = 0; a < both.size(); ++a) {
+            check_shared(bond, {i, j, both[a]});
+            for (std::size_t b = 0; b < a; ++b)
+                if (bond_between(both[a], both[b]) >= 0) check_shared(bond, {i, j, both[b], both[a]});
+        }
+    }
+    void check_shared(std::int64_t bond, const std::vector<std::int64_t> &atoms) const {
+        if (is_together(atoms) || !depend(atoms)) return;
+        std::string names;
+        const Labels none, &labels = list_.labels ? *list_.labels : none;
+        for (const std::int64_t atom : atoms)
+            names += (names.empty() ? "" : ", ") + std::string(labels.of_atom(atom - list_.base, list_.base).text);
+        char words[512];
+        std::snprintf(words, sizeof words,
+                      "is one of the distances between atoms %.200s, which their lengths hold %s, as a body; but such "
+                      "bodies share atoms here, and none may: leave out the distances of one of the bodies that are no "
+                      "bonds, or give all these atoms as one body to hol_chains_add_rigid",
+                      names.c_str(), atoms.size() == 3 ? "straight" : "flat");
+        throw bond_error(list_, Status::degenerate, bond, words);
+    }
 
     bool is_free(std::int64_t atom) const { return bonds_of_.count(atom) && !body_of_.count(atom); }
 
@@ -94,7 +160,7 @@ private:
 
     void look_around(std::int64_t bond, bool five) {
         const std::int64_t i = list_.pairs[2 * bond], j = list_.pairs[2 * bond + 1];
-        if (i == j || !is_free(i) || !is_free(j)) return;
+        if (i == j || is_left_out(bond) || !is_free(i) || !is_free(j)) return;
         std::vector<std::int64_t> both;
         for (const Partner &partner : bonds_of_.at(i))
             if (partner.atom != j && is_free(partner.atom) && bond_between(partner.atom, j) >= 0 &&
@@ -130,7 +196,7 @@ private:
 
     void look_for_ring(std::int64_t bond, std::int64_t &steps) {
         const std::int64_t i = list_.pairs[2 * bond], j = list_.pairs[2 * bond + 1];
-        if (i == j || !is_free(i) || !is_free(j)) return;
+        if (i == j || is_left_out(bond) || !is_free(i) || !is_free(j)) return;
         FlatRing<Search> flat(*this, std::min(i, j), std::max(i, j), tolerance_, steps);
         if (flat.find()) take(flat.ring(), flat.places(), 2);
     }
@@ -145,13 +211,16 @@ private:
         const Distances wanted = distances(atoms);
         const Misfit misfit = atoms.size() == n ? misfit_of(wanted, places) : fit_places(wanted, dimension, places);
         if (misfit.error > Decimals(wanted, tolerance_).most()) refuse(atoms, misfit);
-        if (misfit.error > found_.adjusted) {
-            found_.adjusted = misfit.error;
-            found_.adjusted_bond = bond_between(atoms[at(misfit.i)], atoms[at(misfit.j)]);
-        }
+        note(atoms, misfit);
         found_.sizes.push_back(static_cast<std::int64_t>(atoms.size()));
         found_.atoms.insert(found_.atoms.end(), atoms.begin(), atoms.end());
         found_.places.insert(found_.places.end(), places.begin(), places.end());
+    }
+
+    void note(const std::vector<std::int64_t> &atoms, const Misfit &misfit) {
+        if (!(misfit.error > found_.adjusted)) return;
+        found_.adjusted = misfit.error;
+        found_.adjusted_bond = bond_between(atoms[at(misfit.i)], atoms[at(misfit.j)]);
     }
 
     // An atom joins a body that holds it by more distances than its place has coordinates, all of which it fits.
@@ -200,13 +269,15 @@ private:
                 if (reached.emplace(partner.atom, true).second) stack.push_back(partner.atom);
         }
         for (std::int64_t k = 0; k < list_.n_bonds; ++k)
-            if (reached.count(list_.pairs[2 * k]) || reached.count(list_.pairs[2 * k + 1])) found_.bonds.push_back(k);
+            if (!is_left_out(k) && (reached.count(list_.pairs[2 * k]) || reached.count(list_.pairs[2 * k + 1])))
+                found_.bonds.push_back(k);
     }
 
     const BondList &list_;
     const double *const lengths_;
     const std::int64_t n_lengths_;
     const double tolerance_;
+    const std::vector<unsigned char> &left_out_;
     std::unordered_map<std::int64_t, std::vector<Partner>> bonds_of_;  // of atoms that can move
     std::unordered_map<std::int64_t, std::size_t> body_of_;
     Cliques found_;
@@ -215,8 +286,8 @@ private:
 }  // namespace
 
 Cliques find_cliques(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths,
-                     double tolerance) {
-    return Search(masses, list, lengths, n_lengths, tolerance).find();
+                     double tolerance, const std::vector<unsigned char> &left_out) {
+    return Search(masses, list, lengths, n_lengths, tolerance, left_out).find();
 }
 
 }  // namespace holonomic::rigid

@@ -25,7 +25,8 @@ struct Cliques {
 
 // Bond k of the list has the length lengths[k % n_lengths]. Throws Error, naming a bond and the atoms, where lengths are
 // those of no places in space by more than the tolerance.
+// left_out: of each bond, or empty: one that others imply, and that is compared with them alone (implied.hpp).
 Cliques find_cliques(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths,
-                     double tolerance);
+                     double tolerance, const std::vector<unsigned char> &left_out = {});
 
 }  // namespace holonomic::rigid

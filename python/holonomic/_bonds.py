@@ -185,6 +185,12 @@ class Bonds:
         ask(library.hol_chains_adjustment(self._handle, byref(largest), byref(bond)))
         return largest.value, None if bond.value < 0 else bond.value
 
+    def implied(self) -> np.ndarray:
+        """Which distances others imply, (n_bonds,) of bool: they are in no equation, and their multipliers are 0."""
+        implied = np.empty(self._n_bonds, np.uint8)
+        ask(library.hol_chains_implied(self._handle, address(implied)))
+        return implied.astype(bool)
+
     @property
     def memory(self) -> int:
         """Memory that the set of molecules occupies in the library, in bytes."""

@@ -215,6 +215,8 @@ static void crude(hol_chains *both, const double *r)
     SUCCEEDS(hol_chains_set_length_tolerance(both, 1e-3));
     SUCCEEDS(hol_chains_adjustment(both, &error, &bond));
     EXPECT(error == 0 && bond == -1);
+    SUCCEEDS(hol_chains_implied(both, implied));
+    EXPECT(implied[0] == 0);
     SUCCEEDS(hol_chains_set_outcomes(both, 1));
     SUCCEEDS(hol_impose(both, moved, &report));
     EXPECT(report.n_corrected == 1 && report.n_failed == 0 && report.iterations > 1);
