@@ -170,15 +170,15 @@ HOL_API int hol_chains_add_block(hol_chains *chains, int64_t n_chains, int64_t n
  * six atoms and more whose angles, held by distances of next neighbours, keep them in a plane; and atoms that such a
  * body holds by more distances than their places have coordinates. Lengths may be as a topology file has them, with few
  * decimals: they are adjusted in the least way (hol_chains_adjustment), by no more than
- * hol_chains_set_length_tolerance. Four atoms are flat, and three straight, where a plane or a line misses their lengths
- * by no more than their last decimal, or where no other places are nearer. Forces and motions are those of the body.
- * Multipliers of such bonds are, of those whose pulls come nearest to the body's forces, the ones of least norm; only
- * forces across a line or plane have none. Right-hand sides of hol_solve are not looked at for them.
+ * hol_chains_set_length_tolerance. Four atoms are flat, and three straight, where a plane or a line misses their
+ * lengths by no more than their last decimal, or where no other places are nearer. Forces and motions are those of the
+ * body. Multipliers of such bonds are, of those whose pulls come nearest to the body's forces, the ones of least norm;
+ * only forces across a line or plane have none. Right-hand sides of hol_solve are not looked at for them.
  *
  * Where groups of five atoms and more share atoms, as all bonds and angles of an alkane do, they are no bodies:
  * distances that shorter ones of the molecule imply (the tenth of five atoms, ...) are left out of the equations
- * (hol_chains_implied). Their lengths are compared with the others', within the same tolerance. Groups on a line or in a
- * plane that share atoms with other bodies are refused.
+ * (hol_chains_implied). Their lengths are compared with the others', within the same tolerance. Groups on a line or in
+ * a plane that share atoms with other bodies are refused.
  *
  * New molecules are numbered by their lowest atoms that can move, those with bodies behind all others. Arrays per bond
  * have these bonds in the order of the list, after those of earlier calls. All bonds of a molecule have to be given in
@@ -557,7 +557,8 @@ HOL_API int64_t hol_chains_memory(const hol_chains *chains);
  * decimals, no places in space have quite these lengths.
  * @param[in]  chains
  * @param[out] largest  by which part of it the length has been changed that was changed most; 0 if none was
- * @param[out] bond     its number, or NULL; -1 if no length was changed. hol_chains_molecules_of_bonds tells the molecule
+ * @param[out] bond     its number, or NULL; -1 if no length was changed. hol_chains_molecules_of_bonds tells the
+ * molecule
  * @return HOL_OK; HOL_ERR_NULL (chains or largest). Since 0.2.
  */
 HOL_API int hol_chains_adjustment(const hol_chains *chains, double *largest, int64_t *bond);

@@ -95,14 +95,15 @@ BodyName name_of_body(const Chains &chains, const rigid::Given &given, std::int6
 
 // A body that its lengths have made stays as it is.
 void set_length(const rigid::Shape &shape, std::size_t bond, double length, rigid::Given &given) {
-    double &old = given.bonds[bond].length;
-    if (!shape.by_lengths || shape.bonds[bond].row >= 0)
-        old = length;
-    else if (!(std::fabs(length - old) <= rigid::same_length * old))
+    const double old = given.bonds[bond].length;
+    given.bonds[bond].length = length;
+    if (!shape.by_lengths || shape.bonds[bond].row >= 0) return;
+    if (!(std::fabs(length - old) <= rigid::same_length * old))
         throw rigid::Refusal{rigid::Refusal::of_bonds,
                              {},
                              {rigid::Unsolvable::length_in_body, static_cast<std::int32_t>(bond)},
                              -1};
+    given.bonds[bond].length = old;
 }
 
 }  // namespace
@@ -164,12 +165,13 @@ void Chains::add_rigid_molecules(std::int64_t count, std::int64_t n_atoms, std::
     commit_rigid(all, count * n_bonds);
 }
 
-// Where parts of the list depend, their molecules are added as bodies, or without what others imply, the others as ever.
+// Where parts of the list depend, their molecules are added as bodies, or without what others imply, the others as
+// ever.
 void Chains::add_with_bodies(const BondList &list, const double *lengths, std::int64_t n_lengths) {
     rigid::Cliques cliques = rigid::find_cliques(masses_, list, lengths, n_lengths, length_tolerance);
     std::vector<unsigned char> implied = rigid::implied_bonds(masses_, list, lengths, n_lengths, cliques);
-    const bool any = std::count(implied.begin(), implied.end(), 1) > 0;
-    if (any) cliques = rigid::find_cliques(masses_, list, lengths, n_lengths, length_tolerance, implied);
+    if (!cliques.shared.empty() || std::count(implied.begin(), implied.end(), 1) > 0)
+        cliques = rigid::find_cliques(masses_, list, lengths, n_lengths, length_tolerance, implied);
     FoundMolecules found;
     std::vector<std::int64_t> pairs, rest, rest_pairs;
     std::vector<double> its_lengths;

@@ -106,8 +106,9 @@ private:
                 if (bond_between(both[a], both[b]) >= 0) check_shared(bond, {i, j, both[b], both[a]});
         }
     }
-    void check_shared(std::int64_t bond, const std::vector<std::int64_t> &atoms) const {
+    void check_shared(std::int64_t bond, const std::vector<std::int64_t> &atoms) {
         if (is_together(atoms) || !depend(atoms)) return;
+        if (left_out_.empty()) return found_.shared.push_back(bond);
         std::string names;
         const Labels none, &labels = list_.labels ? *list_.labels : none;
         for (const std::int64_t atom : atoms)
@@ -154,7 +155,7 @@ private:
     bool depend(const std::vector<std::int64_t> &atoms) const {
         const Distances wanted = distances(atoms);
         const Group group = look_at(wanted, tolerance_);
-        if (group.kind == Group::impossible && atoms.size() > 3) refuse(atoms, group.misfit);
+        if (group.kind == Group::impossible) refuse(atoms, group.misfit);
         return group.kind == Group::dependent;
     }
 

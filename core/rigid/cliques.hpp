@@ -19,13 +19,14 @@ struct Cliques {
     std::vector<std::int64_t> sizes, atoms;  // of the bodies; atoms counted as the list counts them
     std::vector<double> places;              // [..][3]
     std::vector<std::int64_t> bonds;         // of the list, in molecules that have one of these bodies, ascending
+    std::vector<std::int64_t> shared;        // of the list, in groups that depend and share atoms with bodies
     double adjusted = 0;                     // by which part of it a body changes a length, at most
     std::int64_t adjusted_bond = -1;         // of the list
 };
 
-// Bond k of the list has the length lengths[k % n_lengths]. Throws Error, naming a bond and the atoms, where lengths are
-// those of no places in space by more than the tolerance.
-// left_out: of each bond, or empty: one that others imply, and that is compared with them alone (implied.hpp).
+// Bond k of the list has the length lengths[k % n_lengths]. Throws Error, naming a bond and the atoms, where lengths
+// are those of no places in space by more than the tolerance. left_out: of each bond, or empty: one that others imply,
+// and that is compared with them alone (implied.hpp). With it, groups that share atoms are an error.
 Cliques find_cliques(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths,
                      double tolerance, const std::vector<unsigned char> &left_out = {});
 

@@ -177,7 +177,8 @@ Decimals::Decimals(const Distances &wanted, double tolerance) : open_(least_open
     double least = std::numeric_limits<double>::infinity();
     for (const double length : wanted.length)
         if (length > 0) least = std::min(least, length);
-    const int of_lengths = decimals_of(wanted, 12, false), of_places = of_lengths < 0 ? decimals_of(wanted, 5, true) : -1;
+    const int of_lengths = decimals_of(wanted, 12, false),
+              of_places = of_lengths < 0 ? decimals_of(wanted, 5, true) : -1;
     // Fewer than three are a round number, not a rounded one.
     if (of_lengths >= 0) open_ = std::max(open_, std::pow(10.0, -std::max(of_lengths, 3)) / least);
     if (of_places >= 0) open_ = std::max(open_, 2 * std::pow(10.0, -2 * std::max(of_places, 3)) / (least * least));
@@ -200,8 +201,8 @@ Group look_at(const Distances &wanted, double tolerance) {
         group.dimension = d;
         group.misfit = fit_places(wanted, d, group.places);
         group.kind = decimals.allow(group.misfit) || (must && group.misfit.error <= decimals.most()) ? Group::dependent
-                     : must                                                                    ? Group::impossible
-                                                                                               : Group::independent;
+                     : must && n > 3                                                                 ? Group::impossible
+                                     : Group::independent;
         if (group.kind != Group::independent) return group;
     }
     return group;

@@ -1,5 +1,6 @@
 // Places of a group of atoms by their distances, as a topology file has them: with so many decimals, of which the last
-// is rounded. Lengths are adjusted in the least way: places are those of the least sum of squares of what distances miss.
+// is rounded. Lengths are adjusted in the least way: places are those of the least sum of squares of what distances
+// miss.
 #pragma once
 
 #include <algorithm>
@@ -51,7 +52,8 @@ private:
     double open_, most_;
 };
 
-// What all distances of n atoms say: of three on a line, of four in a plane, of five and more anywhere.
+// What all distances of n atoms say: of three on a line, of four in a plane, of five and more anywhere. Three that make
+// no triangle are refused elsewhere (closable.hpp).
 struct Group {
     enum Kind { independent, dependent, impossible } kind;  // impossible: of no place in space, by more than tolerance
     int dimension;

@@ -1,4 +1,5 @@
-// Places by squared distances: Cholesky's factors of the inner products from atom 0, the largest remaining height first.
+// Places by squared distances: Cholesky's factors of the inner products from atom 0, the largest remaining height
+// first.
 #pragma once
 
 #include <cstdint>

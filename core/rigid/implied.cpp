@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "core/molecules/hash.hpp"
 
@@ -89,6 +89,7 @@ public:
         for (std::size_t b = 0; b < cliques.sizes.size(); ++b)
             for (std::int64_t a = 0; a < cliques.sizes[b]; ++a)
                 body_of_[cliques.atoms[next++]] = static_cast<std::int64_t>(b);
+        for (const std::int64_t bond : cliques.shared) shares_.insert(list.pairs[2 * bond]);
         for (std::int64_t k = 0; k < list.n_bonds; ++k)
             for (int e = 0; e < 2; ++e) bonds_of_[list.pairs[2 * k + e]].push_back(k);
     }
@@ -115,11 +116,12 @@ private:
         std::vector<std::int64_t> atoms{first}, bonds;
         std::unordered_map<std::int64_t, std::int64_t> column;
         seen[first] = true;
-        bool has_body = false;
+        bool has_body = false, shares = false;
         for (std::size_t next = 0; next < atoms.size(); ++next) {
             const std::int64_t atom = atoms[next];
             column[atom] = static_cast<std::int64_t>(next);
             has_body = has_body || body(atom) >= 0;
+            shares = shares || shares_.count(atom) > 0;
             for (const std::int64_t k : bonds_of_.at(atom)) {
                 const std::int64_t i = list_.pairs[2 * k], other = i == atom ? list_.pairs[2 * k + 1] : i;
                 if (fixed(other) || other >= atom) bonds.push_back(k);
@@ -151,7 +153,7 @@ private:
             }
             outside -= is_within(k) && within.add(end(2 * k), end(2 * k + 1));
         }
-        for (const std::int64_t k : found) implied_[at(k)] = outside > 0;
+        for (const std::int64_t k : found) implied_[at(k)] = outside > 0 || shares;
     }
 
     const Masses &masses_;
@@ -160,6 +162,7 @@ private:
     const std::int64_t n_lengths_;
     std::vector<unsigned char> implied_;
     std::unordered_map<std::int64_t, std::int64_t> body_of_;
+    std::unordered_set<std::int64_t> shares_;
     std::unordered_map<std::int64_t, std::vector<std::int64_t>> bonds_of_;
 };
 

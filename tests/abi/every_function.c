@@ -198,7 +198,9 @@ static void along(hol_chains *both, const double *r)
 /* The same molecules from far off, what is left of each bond, and a status for each molecule. */
 static void crude(hol_chains *both, const double *r)
 {
-    double moved[21], length[6], rate[6], v[21] = {0};
+    double moved[21], length[6], rate[6], v[21] = {0}, error = -1;
+    unsigned char implied[6] = {7};
+    int64_t bond = 7;
     int status[2] = {-1, -1}, iterations[2] = {-1, -1}, k;
     hol_report report;
     const hol_view positions = view_of(moved), rates = view_of(v);

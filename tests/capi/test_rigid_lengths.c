@@ -270,7 +270,8 @@ static void what_decimals_do_not_leave_open_stays(void **state)
 {
     (void)state;
     part pyramid = {.n = 4, .mass = {14, 1, 1, 1}, .place = {0, 0, 0.02}};
-    for (int i = 0; i < 3; ++i) pyramid.place[3 + 3 * i] = 0.1 * cos(2.1 * i), pyramid.place[4 + 3 * i] = 0.1 * sin(2.1 * i);
+    for (int i = 0; i < 3; ++i)
+        pyramid.place[3 + 3 * i] = 0.1 * cos(2.1 * i), pyramid.place[4 + 3 * i] = 0.1 * sin(2.1 * i);
     pyramid = add_all(pyramid);
     for (int k = 0; k < 6; ++k) pyramid.length[k] = round(pyramid.length[k] * 1e5) / 1e5;
     hol_chains *chains = chains_of(&pyramid);
@@ -292,6 +293,69 @@ static void what_decimals_do_not_leave_open_stays(void **state)
     CHECK(hol_chains_set_length_tolerance(chains, 1e-3));
     CHECK(hol_chains_add_bonds(chains, p.n_bonds, p.pairs, p.length));
     CHECK(hol_chains_set_lengths(chains, p.length)); /* the same: nothing is measured again */
+    hol_chains_destroy(chains);
+}
+
+/** Two groups of five atoms that share two: which distances others imply is told, and all are held. */
+static void all_bonds_and_angles_of_ethane(void **state)
+{
+    (void)state;
+    part p = {.n = 8, .mass = {12, 12, 1, 1, 1, 1, 1, 1}};
+    p.place[0] = -0.765, p.place[3] = 0.765;
+    for (int h = 0; h < 6; ++h) {
+        const double angle = 2 * acos(-1.0) / 3 * h + (h < 3 ? 0 : 0.4), side = h < 3 ? -1 : 1;
+        p.place[6 + 3 * h] = side * 1.13, p.place[7 + 3 * h] = 1.03 * cos(angle),
+                        p.place[8 + 3 * h] = 1.03 * sin(angle);
+    }
+    add_bond(&p, 0, 1);
+    for (int h = 0; h < 6; ++h) {
+        add_bond(&p, 0, 2 + h), add_bond(&p, 1, 2 + h);
+        add_bond(&p, 2 + h, 2 + h / 3 * 3 + (h + 1) % 3);
+    }
+    hol_chains *chains = chains_of(&p);
+    unsigned char implied[19];
+    double lambda[19], r[3 * MOST], v[3 * MOST], f[3 * MOST], g[3 * MOST];
+    int n_implied = 0;
+    assert_int_equal(hol_chains_degrees_of_freedom(chains, 3), 7);
+    assert_int_equal(hol_chains_n_of_shape(chains, HOL_SHAPE_RIGID), 0);
+    CHECK(hol_chains_implied(chains, implied));
+    make_state(&p, r, v, f);
+    CHECK(hol_forces(chains, r, NULL, f, lambda, NULL, g, HOL_WRITE, NULL));
+    for (int k = 0; k < 19; ++k) {
+        const int64_t i = p.pairs[2 * k], j = p.pairs[2 * k + 1];
+        double rate = 0;
+        n_implied += implied[k];
+        if (implied[k]) assert_true(lambda[k] == 0);
+        for (int x = 0; x < 3; ++x)
+            rate += (r[3 * j + x] - r[3 * i + x]) *
+                    ((f[3 * j + x] + g[3 * j + x]) / p.mass[j] - (f[3 * i + x] + g[3 * i + x]) / p.mass[i]);
+        CHECK_AT_MOST(fabs(rate), 1e-12);
+    }
+    assert_int_equal(n_implied, 2);
+    hol_chains_destroy(chains);
+
+    p.length[1] *= 1.1; /* of five atoms, none of which has another place */
+    CHECK(hol_chains_create(8, p.mass, &chains));
+    CHECK_FAILS(HOL_ERR_DEGENERATE, hol_chains_add_bonds(chains, 19, p.pairs, p.length));
+    assert_message_names("tolerance");
+    hol_chains_destroy(chains);
+}
+
+/** Two flat groups with a common side, as all angles of ethylene make them. */
+static void flat_groups_that_share_atoms_are_refused(void **state)
+{
+    (void)state;
+    part p = {.n = 6,
+              .mass = {12, 12, 1, 1, 1, 1},
+              .place = {-0.66, 0, 0, 0.66, 0, 0, -1.2, 0.9, 0, -1.2, -0.9, 0, 1.2, 0.9, 0, 1.2, -0.9, 0}};
+    hol_chains *chains;
+    add_bond(&p, 0, 1), add_bond(&p, 2, 3), add_bond(&p, 4, 5);
+    for (int h = 2; h < 6; ++h) add_bond(&p, 0, h), add_bond(&p, 1, h);
+    CHECK(hol_chains_create(6, p.mass, &chains));
+    CHECK_FAILS(HOL_ERR_DEGENERATE, hol_chains_add_bonds(chains, p.n_bonds, p.pairs, p.length));
+    assert_message_names("flat");
+    assert_message_names("hol_chains_add_rigid");
+    assert_int_equal(hol_chains_n_bonds(chains), 0);
     hol_chains_destroy(chains);
 }
 
@@ -340,6 +404,8 @@ int main(void)
         cmocka_unit_test(lengths_that_disagree_are_named_and_nothing_is_added),
         cmocka_unit_test(lengths_with_the_decimals_of_a_file_are_flat_straight_and_rigid),
         cmocka_unit_test(what_decimals_do_not_leave_open_stays),
+        cmocka_unit_test(all_bonds_and_angles_of_ethane),
+        cmocka_unit_test(flat_groups_that_share_atoms_are_refused),
         cmocka_unit_test(bodies_and_others_come_in_one_list),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
