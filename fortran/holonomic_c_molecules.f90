@@ -1,7 +1,7 @@
 ! The part of the C interface that says what is bonded and how it is treated; use the module holonomic_c, which has all
 ! parts.
 module holonomic_c_molecules
-   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int64_t, c_ptr
+   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int64_t, c_ptr, c_signed_char
    implicit none
    public
    private :: c_double, c_int, c_int64_t, c_ptr

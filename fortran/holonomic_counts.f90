@@ -3,7 +3,8 @@ module holonomic_counts
    use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_loc, c_null_ptr, c_signed_char
    use, intrinsic :: iso_fortran_env, only: int32, int64, real64
    use holonomic_c, only: hol_chains_adjustment, hol_chains_atoms, hol_chains_bonds, hol_chains_degrees_of_freedom, &
-                          hol_chains_implied, hol_chains_memory, hol_chains_molecule, hol_chains_molecules_of_bonds, hol_chains_n_atoms, hol_chains_n_bonds, &
+                          hol_chains_implied, hol_chains_memory, hol_chains_molecule, hol_chains_molecules_of_bonds, &
+                          hol_chains_n_atoms, hol_chains_n_bonds, &
                           hol_chains_n_chains, hol_chains_n_kinds, hol_chains_n_of_shape, hol_chains_offsets
    use holonomic_place, only: enough
    use holonomic_settings, only: chain_set_settings
