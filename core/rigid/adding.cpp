@@ -99,10 +99,8 @@ void set_length(const rigid::Shape &shape, std::size_t bond, double length, rigi
     given.bonds[bond].length = length;
     if (!shape.by_lengths || shape.bonds[bond].row >= 0) return;
     if (!(std::fabs(length - old) <= rigid::same_length * old))
-        throw rigid::Refusal{rigid::Refusal::of_bonds,
-                             {},
-                             {rigid::Unsolvable::length_in_body, static_cast<std::int32_t>(bond)},
-                             -1};
+        throw rigid::Refusal{
+            rigid::Refusal::of_bonds, {}, {rigid::Unsolvable::length_in_body, static_cast<std::int32_t>(bond)}, -1};
     given.bonds[bond].length = old;
 }
 

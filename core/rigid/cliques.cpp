@@ -66,11 +66,14 @@ private:
     // A length that others imply, with those of five atoms that tell it.
     void compare(std::int64_t bond) {
         std::vector<std::int64_t> both, clique{list_.pairs[2 * bond], list_.pairs[2 * bond + 1]};
-        if (!bonds_of_.count(clique[0]) || !bonds_of_.count(clique[1])) return;
-        for (const Partner &partner : bonds_of_.at(clique[0]))
-            if (bond_between(partner.atom, clique[1]) >= 0) both.push_back(partner.atom);
+        if (bonds_of_.count(clique[0]) && bonds_of_.count(clique[1]))
+            for (const Partner &partner : bonds_of_.at(clique[0]))
+                if (bond_between(partner.atom, clique[1]) >= 0) both.push_back(partner.atom);
         grow(clique, both);
-        if (clique.size() < 5) return;
+        if (clique.size() < 5)
+            throw bond_error(list_, Status::degenerate, bond,
+                             "is one too many: the atoms that it and the bonds around it join have fewer freedoms than "
+                             "bonds; hol_chains_add_rigid holds such a part by coordinates");
         std::sort(clique.begin(), clique.end());
         const Group group = look_at(distances(clique), tolerance_);
         if (group.kind == Group::impossible) refuse(clique, group.misfit);

@@ -111,6 +111,14 @@ private:
     }
     double length(std::int64_t bond) const { return lengths_[bond % n_lengths_]; }
 
+    // A mistake, which is refused elsewhere.
+    bool is_twice(std::int64_t bond) const {
+        const std::int64_t i = list_.pairs[2 * bond], j = list_.pairs[2 * bond + 1];
+        std::int64_t n = 0;
+        for (const std::int64_t k : bonds_of_.at(i)) n += list_.pairs[2 * k] == j || list_.pairs[2 * k + 1] == j;
+        return n > 1;
+    }
+
     void look_at_molecule(std::int64_t first, std::unordered_map<std::int64_t, bool> &seen) {
         // Atoms in the order in which they are reached: neighbours have near columns.
         std::vector<std::int64_t> atoms{first}, bonds;
@@ -153,7 +161,7 @@ private:
             }
             outside -= is_within(k) && within.add(end(2 * k), end(2 * k + 1));
         }
-        for (const std::int64_t k : found) implied_[at(k)] = outside > 0 || shares;
+        for (const std::int64_t k : found) implied_[at(k)] = (outside > 0 || shares) && !is_twice(k);
     }
 
     const Masses &masses_;
