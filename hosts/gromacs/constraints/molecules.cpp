@@ -1,6 +1,8 @@
 #include "molecules.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <regex>
 
 namespace holonomic {
 
@@ -9,89 +11,95 @@ namespace {
 // Frozen atoms have the inverse mass 1e-30 there, so that LINCS need not divide by zero.
 double mass_of(real inverse_mass) { return inverse_mass > real(1e-29) ? 1 / double(inverse_mass) : 0; }
 
-std::vector<double> masses_of(gmx::ArrayRef<const real> inverse_masses, size_t n_atoms) {
-    std::vector<double> masses(n_atoms, 0);
-    for (size_t i = 0; i < std::min<size_t>(n_atoms, inverse_masses.size()); i++)
-        masses[i] = mass_of(inverse_masses[i]);
-    return masses;
-}
-
-bool same_are_fixed(const std::vector<double> &a, const std::vector<double> &b) {
-    if (a.size() != b.size()) return false;
-    for (size_t i = 0; i < a.size(); i++)
-        if ((a[i] > 0) != (b[i] > 0)) return false;
-    return true;
-}
-
-void check(int status, const char *hint) {
-    if (status != HOL_OK) end_run(hint);
+std::vector<Bond> constraints_of(const InteractionDefinitions &definitions, bool dynamics) {
+    std::vector<Bond> list;
+    for (int kind : {F_CONSTR, F_CONSTRNC}) {
+        const std::vector<int> &numbers = definitions.il[kind].iatoms;
+        for (size_t k = 0; k + 2 < numbers.size(); k += 3) {
+            const auto &constraint = definitions.iparams[numbers[k]].constr;
+            const bool is_flexible = constraint.dA == 0 && constraint.dB == 0;
+            if (is_flexible && !dynamics) continue;  // minimisation finds these lengths
+            list.push_back({numbers[k + 1], numbers[k + 2], constraint.dA, constraint.dB});
+        }
+    }
+    return list;
 }
 
 }  // namespace
 
-void end_run(const std::string &hint) {
-    gmx_fatal(0, __FILE__, __LINE__, "Constraints by holonomic: %s%s%s", hol_error_message(), hint.empty() ? "" : "\n",
-              hint.c_str());
-}
-
 void Molecules::set(const InteractionDefinitions &definitions, int n_atoms, gmx::ArrayRef<const real> inverse_masses,
                     double lambda, bool dynamics) {
-    std::vector<int64_t> new_pairs;
-    new_pairs.reserve(pairs.size());
-    length_a.clear();
-    length_b.clear();
-    any_perturbed = any_flexible = false;
-    for (int kind : {F_CONSTR, F_CONSTRNC}) {
-        const std::vector<int> &list = definitions.il[kind].iatoms;
-        for (size_t k = 0; k + 2 < list.size(); k += 3) {
-            const auto &constraint = definitions.iparams[list[k]].constr;
-            const bool is_flexible = constraint.dA == 0 && constraint.dB == 0;
-            if (is_flexible && !dynamics) continue;  // minimisation finds them
-            any_flexible |= is_flexible;
-            any_perturbed |= constraint.dA != constraint.dB;
-            new_pairs.push_back(list[k + 1] + 1);
-            new_pairs.push_back(list[k + 2] + 1);
-            length_a.push_back(constraint.dA);
-            length_b.push_back(constraint.dB);
-        }
-    }
-    std::vector<double> new_masses = masses_of(inverse_masses, n_atoms);
+    std::vector<double> new_masses(n_atoms, 0);
+    for (int i = 0; i < std::min<int>(n_atoms, static_cast<int>(inverse_masses.size())); i++)
+        new_masses[i] = mass_of(inverse_masses[i]);
+    std::vector<Bond> new_list = constraints_of(definitions, dynamics);
+    if (handle && new_list == list && new_masses == all_masses) return set_lambda(lambda);
+    list.swap(new_list);
+    all_masses.swap(new_masses);
     lambda_of_lengths = lambda_of_masses = lambda;
-    const bool same = handle && new_pairs == pairs && same_are_fixed(new_masses, masses);
-    const bool other_masses = new_masses != masses;
-    pairs.swap(new_pairs);
-    masses.swap(new_masses);
-    const bool other_lengths = set_lengths();
-    if (!same) return make();
-    if (other_lengths)
-        check(hol_chains_set_lengths(handle.get(), lengths.data()), "These lengths are of the constraints' list.");
-    if (other_masses) check(hol_chains_set_masses(handle.get(), masses.data()), "");
+    make();
 }
 
 void Molecules::make() {
+    const std::vector<Kind> old_kinds = std::move(arrangement.kinds);
+    const std::vector<double> old_masses = std::move(masses);
+    const std::vector<Bond> old_bonds = std::move(arrangement.bonds);
+    arrangement = arrange(list, all_masses);
+    masses.clear();
+    any_perturbed = any_flexible = false;
+    bool any_moves = false;
+    for (int atom : arrangement.atoms) {
+        masses.push_back(all_masses[atom]);
+        any_moves |= masses.back() > 0;
+    }
+    for (const Bond &bond : arrangement.bonds) {
+        any_perturbed |= bond.a != bond.b;
+        any_flexible |= bond.a == 0 && bond.b == 0;
+    }
+    set_lengths();
+    // Atoms that went from one domain to another may leave all as it was here, but for where it stands.
+    if (handle && arrangement.kinds == old_kinds && masses == old_masses && arrangement.bonds == old_bonds)
+        return check(hol_chains_set_lengths(handle.get(), lengths.data()));
+    const bool is_first = !handle;
     handle.reset();
-    if (pairs.empty()) return;
-    // Where no atom can move there is nothing to do; the library refuses masses that are all 0.
-    bool all_fixed = true;
-    for (int64_t atom : pairs) all_fixed &= masses[atom - 1] == 0;
-    if (all_fixed) return;
+    if (!any_moves) return;
     hol_chains *made = nullptr;
-    check(hol_chains_create(static_cast<int64_t>(masses.size()), masses.data(), &made), "");
+    check(hol_chains_create(static_cast<int64_t>(masses.size()), masses.data(), &made));
     handle.reset(made);
-    check(hol_chains_set_index_base(made, 1), "");
-    check(hol_chains_add_bonds(made, static_cast<int64_t>(lengths.size()), pairs.data(), lengths.data()),
-          "Atoms are counted as in the topology. The list is what `constraints` of the run's parameters and [ constraints ] "
-          "of\nthe topology make of it.");
-    check(hol_chains_set_threads(made, std::max(1, gmx_omp_nthreads_get(ModuleMultiThread::Lincs))), "");
+    if (!add(made)) {
+        set_labels();
+        add(made);
+        end_run();
+    }
+    threads = std::max(1, gmx_omp_nthreads_get(ModuleMultiThread::Lincs));
+    check(hol_chains_set_threads(made, threads));
+    // Once they have run, a molecule that went astray must not keep the others from being solved.
+    if (!is_first) check(hol_chains_set_checks(made, HOL_NEVER));
+}
+
+bool Molecules::add(hol_chains *chains) const {
+    std::vector<int64_t> pairs;
+    for (const Kind &kind : arrangement.kinds) {
+        pairs.clear();
+        for (int64_t k = kind.first_bond; k < kind.first_bond + kind.n_bonds; k++) {
+            pairs.push_back(arrangement.bonds[k].first - kind.first_atom);
+            pairs.push_back(arrangement.bonds[k].second - kind.first_atom);
+        }
+        if (hol_chains_add_molecules(chains, kind.count, kind.n_atoms, kind.first_atom, kind.n_bonds, pairs.data(),
+                                     &lengths[kind.first_bond]) != HOL_OK)
+            return false;
+    }
+    return true;
 }
 
 bool Molecules::set_lengths() {
-    const std::vector<double> before = lengths;
-    lengths.resize(length_a.size());
+    const std::vector<double> before = std::move(lengths);
+    lengths.resize(arrangement.bonds.size());
     for (size_t k = 0; k < lengths.size(); k++) {
-        lengths[k] = length_a[k] + lambda_of_lengths * (length_b[k] - length_a[k]);
-        // Known when positions are: any length until then.
-        if (lengths[k] == 0) lengths[k] = before.size() == lengths.size() ? before[k] : 0.1;
+        const Bond &bond = arrangement.bonds[k];
+        lengths[k] = bond.a + lambda_of_lengths * (bond.b - bond.a);
+        // A flexible one is known when positions are: any length until then.
+        if (flexible(k)) lengths[k] = before.size() == lengths.size() ? before[k] : 0.1;
     }
     return lengths != before;
 }
@@ -99,42 +107,44 @@ bool Molecules::set_lengths() {
 void Molecules::set_lambda(double lambda) {
     if (!any_perturbed || lambda == lambda_of_lengths) return;
     lambda_of_lengths = lambda;
-    if (set_lengths() && handle)
-        check(hol_chains_set_lengths(handle.get(), lengths.data()), "These lengths are those of lambda.");
+    if (set_lengths() && handle) check(hol_chains_set_lengths(handle.get(), lengths.data()));
 }
 
 void Molecules::set_masses(gmx::ArrayRef<const real> inverse_masses, double lambda) {
-    masses = masses_of(inverse_masses, masses.size());
+    for (size_t k = 0; k < masses.size(); k++) masses[k] = mass_of(inverse_masses[arrangement.atoms[k]]);
     lambda_of_masses = lambda;
-    if (handle) check(hol_chains_set_masses(handle.get(), masses.data()), "These masses are those of lambda.");
+    if (handle) check(hol_chains_set_masses(handle.get(), masses.data()));
 }
 
-void Molecules::set_flexible(const hol_view &x) {
+void Molecules::set_flexible(const double *x) {
     if (!any_flexible || !handle) return;
-    std::vector<double> off(lengths.size());
-    check(hol_residuals_view(handle.get(), &x, nullptr, off.data(), nullptr), "");
-    for (size_t k = 0; k < lengths.size(); k++)
-        if (flexible(k)) lengths[k] *= std::sqrt(1 + off[k]);
-    check(hol_chains_set_lengths(handle.get(), lengths.data()), "Some of these are flexible constraints.");
-}
-
-void Molecules::set_box(const t_pbc *pbc) {
-    if (!handle) return;
-    if (pbc == nullptr || pbc->pbcType == PbcType::No) {
-        check(hol_chains_set_box(handle.get(), nullptr), "");
-        return;
+    for (size_t k = 0; k < lengths.size(); k++) {
+        if (!flexible(k)) continue;
+        const double *const i = x + 3 * arrangement.bonds[k].first, *const j = x + 3 * arrangement.bonds[k].second;
+        lengths[k] = std::sqrt((j[0] - i[0]) * (j[0] - i[0]) + (j[1] - i[1]) * (j[1] - i[1]) +
+                               (j[2] - i[2]) * (j[2] - i[2]));
     }
-    double box[3][3] = {};
-    const int n_periodic = pbc->pbcType == PbcType::XY ? 2 : 3;
-    for (int a = 0; a < n_periodic; a++)
-        for (int b = 0; b < 3; b++) box[a][b] = pbc->box[a][b];
-    check(hol_chains_set_box(handle.get(), &box[0][0]), "");
+    check(hol_chains_set_lengths(handle.get(), lengths.data()));
 }
 
-void Molecules::set_labels(const gmx_domdec_t *domains) {
-    std::vector<int64_t> labels(masses.size(), 0);
-    for (int64_t atom : pairs) labels[atom - 1] = ddglatnr(domains, static_cast<int>(atom) - 1);
+int Molecules::number(int place) const { return ddglatnr(domain, arrangement.atoms[place]); }
+
+void Molecules::set_labels() const {
+    std::vector<int64_t> labels;
+    for (size_t k = 0; k < n_atoms(); k++) labels.push_back(number(static_cast<int>(k)));
     hol_chains_set_labels(handle.get(), labels.data(), nullptr);
+}
+
+// "atom 3 (label 17)" is the atom 17 of the topology.
+std::string Molecules::words() {
+    static const std::regex labelled("[0-9]+ \\(label ([0-9]+)\\)");
+    return std::regex_replace(hol_error_message(), labelled, "$1");
+}
+
+void Molecules::end_run() const {
+    gmx_fatal(0, __FILE__, __LINE__,
+              "Constraints by holonomic: %s\nAtoms are counted as in the topology, over all molecules.",
+              words().c_str());
 }
 
 }  // namespace holonomic

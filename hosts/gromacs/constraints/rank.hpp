@@ -7,16 +7,14 @@
 
 namespace holonomic {
 
-// The domain of this thread's rank, for the numbers of atoms in the topology; null without domains.
-inline thread_local const gmx_domdec_t *domain = nullptr;
-
 // One call of gmx::constrain_lincs.
 struct Call {
     int64_t step;
     const t_inputrec &parameters;
     const t_pbc *pbc;
-    real *x, *q, *v;    // [n_atoms][3]; v may be null; q may be x
-    double dt;          // of v
+    const real *x;      // [n_atoms][3] of the rank
+    real *q, *v;        // q may be x; v may be null
+    double inverse_dt;  // of v
     double *virial;     // [3][3], or null: sum of r (x) m dq
     double *dvdlambda;  // or null
     int max_warnings;
@@ -37,28 +35,23 @@ struct Rank {
 private:
     double *multipliers_if(bool wanted);
     double derivative_by_lambda() const;
-    int move_crude_start(const Call &);
+    int move_crude_start();
     void measure(const Call &);
 
-    std::vector<double> multipliers, scratch;
+    std::vector<double> x, q, change, multipliers;  // at the places of the molecules' arrangement
 };
 
-// What is left of the constraints.
+// What is left of the constraints at q, in the precision of GROMACS.
 struct Deviation {
     double sum_of_squares = 0, largest = 0;
     size_t bond = 0;  // of the largest
 };
-Deviation deviation(const Molecules &, real *q);
+Deviation deviation(const Molecules &, const t_pbc *, const real *q);
 
 // Whether a bond has turned by more than lincs-warnangle between x and q.
-bool any_turned(const Molecules &, const Call &);
-// Tells and counts what GROMACS does: molecules that could not be solved, with the library's words, and turned bonds.
-void warn(Molecules &, const Call &, int status);
-
-// [n_atoms][3], in either precision.
-template <typename T>
-hol_view view(T *q) {
-    return {q, q + 1, q + 2, 3 * sizeof(T), sizeof(T) == 8 ? HOL_DOUBLE : HOL_FLOAT, 0};
-}
+bool any_turned(const Molecules &, const Call &, const double *x, const double *q);
+// Tells and counts what GROMACS does: molecules that could not be solved, in `words`, and turned bonds.
+void warn(const Molecules &, const Call &, const std::string &words, int64_t n_unsolved, const double *x,
+          const double *q);
 
 }  // namespace holonomic

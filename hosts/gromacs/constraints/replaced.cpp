@@ -1,10 +1,8 @@
 // The functions of GROMACS that these take the place of. The dynamic linker finds them first, also from within
 // libgromacs, because this object is loaded before it. What stands in GROMACS's own `Lincs` is looked at nowhere.
-#include <dlfcn.h>
-
+#include <cmath>
 #include <map>
 #include <mutex>
-#include <type_traits>
 
 #include "found.hpp"
 #include "rank.hpp"
@@ -93,17 +91,15 @@ bool constrain_lincs(bool wants_rmsd, const t_inputrec &parameters, int64_t step
         if (masses_change && rank.molecules.mass_lambda() != lambda) rank.molecules.set_masses(inverse_masses, lambda);
         rank.molecules.set_lambda(lambda);
     }
-    rank.molecules.set_box(pbc);
 
     double sum[9] = {}, by_lambda = 0;
-    const bool moves_v = positions && !v.empty() && inverse_dt != 0;
     const holonomic::Call call{step,
                                parameters,
                                pbc,
-                               const_cast<real *>(reinterpret_cast<const real *>(x.data())),  // only read
+                               reinterpret_cast<const real *>(x.data()),
                                reinterpret_cast<real *>(q.data()),
-                               moves_v ? reinterpret_cast<real *>(v.data()) : nullptr,
-                               moves_v ? 1 / static_cast<double>(inverse_dt) : 1,
+                               positions && !v.empty() ? reinterpret_cast<real *>(v.data()) : nullptr,
+                               inverse_dt,
                                wants_virial ? sum : nullptr,
                                perturbed && dvdlambda ? &by_lambda : nullptr,
                                max_warnings,
