@@ -61,7 +61,7 @@ void Molecules::make() {
     if (handle && arrangement.kinds == old_kinds && masses == old_masses && arrangement.bonds == old_bonds)
         return check(hol_chains_set_lengths(handle.get(), lengths.data()));
     const bool is_first = !handle;
-    handle.reset();
+    handle.reset();  // before memory is taken for the next
     if (!any_moves) return;
     hol_chains *made = nullptr;
     check(hol_chains_create(static_cast<int64_t>(masses.size()), masses.data(), &made));
@@ -73,6 +73,8 @@ void Molecules::make() {
     }
     threads = std::max(1, gmx_omp_nthreads_get(ModuleMultiThread::Lincs));
     check(hol_chains_set_threads(made, threads));
+    // A hundredth of what single precision can hold: displacements are rounded to that.
+    if (!GMX_DOUBLE) check(hol_chains_set_tolerance(made, 1e-9));
     // Once they have run, a molecule that went astray must not keep the others from being solved.
     if (!is_first) check(hol_chains_set_checks(made, HOL_NEVER));
 }
