@@ -9,6 +9,9 @@ import subprocess
 HERE = pathlib.Path(__file__).resolve().parent
 WRAPPER = os.environ.get("HOLONOMIC_GMX", str(HERE.parent / "gmx-holonomic"))
 DOUBLE, MIXED = "gmx_d", "gmx"
+MPIRUN = ["mpirun", "--oversubscribe", "-n", "1"]
+ENVIRONMENT = {"GMX_MAXBACKUP": "-1", "GMX_SUPPRESS_DUMP": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
+               "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
 class Failed(Exception):
@@ -16,10 +19,11 @@ class Failed(Exception):
 
 
 def call(command, folder, stdin="", environment=None):
+    variables = {**os.environ, **ENVIRONMENT, **(environment or {})}
     done = subprocess.run(command, cwd=folder, input=stdin, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                          env={**os.environ, "GMX_MAXBACKUP": "-1", "GMX_SUPPRESS_DUMP": "1", **(environment or {})})
+                          env={name: value for name, value in variables.items() if value is not None})
     if done.returncode:
-        raise Failed(done.stdout[-4000:])
+        raise Failed(done.stdout)
     return done.stdout
 
 
