@@ -16,7 +16,7 @@
 #include "gromacs/utility/listoflists.h"
 #include "gromacs/utility/real.h"
 #include "gromacs/version.h"
-#if GMX_API_VERSION >= 20250000
+#if GMX_API_VERSION >= 20230000
 #include <filesystem>
 #endif
 
@@ -30,7 +30,7 @@ enum class ModuleMultiThread : int { Lincs = 8 };
 
 #define HOLONOMIC_WEAK __attribute__((weak))
 
-#if GMX_API_VERSION >= 20250000
+#if GMX_API_VERSION >= 20230000
 [[noreturn]] HOLONOMIC_WEAK void gmx_fatal(int, const std::filesystem::path &file, int line, const char *format, ...);
 #else
 [[noreturn]] HOLONOMIC_WEAK void gmx_fatal(int, const char *file, int line, const char *format, ...);
