@@ -38,8 +38,10 @@ public:
         int n_ends = 0, most = 0, end = atom;
         for (int i : found.atoms) {
             most = std::max(most, around.count(i));
-            if (around.count(i) == 1 && ++n_ends == 1) end = i;
-            else if (around.count(i) == 1) end = std::min(end, i);
+            if (around.count(i) == 1 && ++n_ends == 1)
+                end = i;
+            else if (around.count(i) == 1)
+                end = std::min(end, i);
         }
         if (most <= 2 && n_ends == 2) {  // a chain: along it
             if (end != atom) found = walk_again(found, end);

@@ -1,5 +1,6 @@
-// Places of the constrained atoms in arrays of our own: molecule behind molecule, equal ones together, the atoms of a chain
-// in order along it. There the library takes its shortest paths, whatever the order in the topology or in a domain.
+// Places of the constrained atoms in arrays of our own: molecule behind molecule, equal ones together, the atoms of a
+// chain in order along it. There the library takes its shortest paths, whatever the order in the topology or in a
+// domain.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -7,8 +7,8 @@ namespace holonomic {
 
 namespace {
 
-// A bond is shorter than half of each side of the box. Of another image at least one component is longer than that, and one
-// shift along each vector, the last first, brings it back.
+// A bond is shorter than half of each side of the box. Of another image at least one component is longer than that, and
+// one shift along each vector, the last first, brings it back.
 struct Box {
     explicit Box(const t_pbc *pbc) {
         if (pbc == nullptr || pbc->pbcType == PbcType::No) return;
@@ -42,7 +42,8 @@ void make_whole(const Arrangement &arrangement, const Box &box, const real *from
         const real *const there = from + 3 * static_cast<ptrdiff_t>(arrangement.atoms[parent]);
         double d[3] = {double(here[0]) - there[0], double(here[1]) - there[1], double(here[2]) - there[2]};
         box.wrap(d);
-        for (int a = 0; a < 3; a++) to[3 * static_cast<ptrdiff_t>(k) + a] = to[3 * static_cast<ptrdiff_t>(parent) + a] + d[a];
+        for (int a = 0; a < 3; a++)
+            to[3 * static_cast<ptrdiff_t>(k) + a] = to[3 * static_cast<ptrdiff_t>(parent) + a] + d[a];
     }
 }
 

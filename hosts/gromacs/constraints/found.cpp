@@ -8,6 +8,7 @@
 #include <cstring>
 #include <vector>
 
+#include "calls.hpp"
 #include "gromacs.hpp"
 #include "holonomic.h"
 
@@ -27,12 +28,10 @@ void *address(Function *function) {
 
 // A name of the dynamic linker contains the types of the arguments, so what has other arguments is not found.
 const std::vector<Name> &taken_over() {
-    static const std::vector<Name> names = {{"gmx::init_lincs", address(&gmx::init_lincs)},
-                                            {"gmx::set_lincs", address(&gmx::set_lincs)},
-                                            {"gmx::constrain_lincs", address(&gmx::constrain_lincs)},
-                                            {"gmx::lincs_rmsd", address(&gmx::lincs_rmsd)},
-                                            {"gmx::done_lincs", address(&gmx::done_lincs)},
-                                            {"dd_numHomeAtoms", address(&dd_numHomeAtoms)}};
+    static const std::vector<Name> names = {
+        {"gmx::init_lincs", address(&gmx::init_lincs)},           {"gmx::set_lincs", address(&gmx::set_lincs)},
+        {"gmx::constrain_lincs", address(&gmx::constrain_lincs)}, {"gmx::lincs_rmsd", address(&gmx::lincs_rmsd)},
+        {"gmx::done_lincs", address(&gmx::done_lincs)},           {"dd_numHomeAtoms", address(&dd_numHomeAtoms)}};
     return names;
 }
 
@@ -58,10 +57,22 @@ std::string &library() {
     return path;
 }
 
+// The functions among those taken over that this GROMACS calls directly, so that ours would never be called.
+std::string &called_directly() {
+    static std::string list;
+    return list;
+}
+
 int is_gromacs(dl_phdr_info *info, size_t, void *) {
     const char *const name = std::strrchr(info->dlpi_name, '/');
     if (!name || std::strncmp(name, "/libgromacs", 11) != 0) return 0;
     library() = info->dlpi_name;
+    const std::set<std::string> called = names_called_through_linker(*info);
+    for (const Name &one : taken_over()) {
+        Dl_info own;
+        if (next(one.function) && dladdr(one.function, &own) && !called.count(own.dli_sname))
+            add(called_directly(), one.words);
+    }
     return 1;
 }
 
@@ -71,13 +82,20 @@ __attribute__((constructor)) void check() {
     const char *const version = address(&gmx_version) ? gmx_version() : "unknown";
     const int year = GMX_API_VERSION / 10000;
     const std::string list = missing();
-    if (std::atoi(version) == year && list.empty()) return;
-    fprintf(stderr,
-            "holonomic: this object was built for GROMACS %d in %s precision, and %s is version %s.\n", year,
+    if (std::atoi(version) == year && list.empty() && called_directly().empty()) return;
+    fprintf(stderr, "holonomic: this object was built for GROMACS %d in %s precision, and %s is version %s.\n", year,
             GMX_DOUBLE ? "double" : "mixed", library().c_str(), version);
     if (!list.empty()) fprintf(stderr, "These functions are not there as they are expected: %s.\n", list.c_str());
-    fprintf(stderr, "Nothing was taken over, and nothing was run. Build hosts/gromacs for this GROMACS, or use it without "
-                    "LD_PRELOAD.\n");
+    if (!called_directly().empty())
+        fprintf(stderr,
+                "These functions are called directly there, and nothing can take their place: %s.\nThat is how Ubuntu "
+                "links "
+                "its libraries (-Bsymbolic-functions); a GROMACS of your own, built with its defaults, will do.\n",
+                called_directly().c_str());
+    fprintf(
+        stderr,
+        "Nothing was taken over, and nothing was run. Build hosts/gromacs for a GROMACS that fits, or run it without "
+        "LD_PRELOAD.\n");
     _exit(1);
 }
 

@@ -1,5 +1,5 @@
-// GROMACS as these sources see it: headers of its development package, and declarations of what they do not declare. Its
-// functions are weak: a program that GROMACS is no part of, a shell for one, may be started with this object, too.
+// GROMACS as these sources see it: headers of its development package, and declarations of what they do not declare.
+// Its functions are weak: a program that GROMACS is no part of, a shell for one, may be started with this object, too.
 #pragma once
 #include <cstdint>
 #include <cstdio>

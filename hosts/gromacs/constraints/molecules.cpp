@@ -123,8 +123,8 @@ void Molecules::set_flexible(const double *x) {
     for (size_t k = 0; k < lengths.size(); k++) {
         if (!flexible(k)) continue;
         const double *const i = x + 3 * arrangement.bonds[k].first, *const j = x + 3 * arrangement.bonds[k].second;
-        lengths[k] = std::sqrt((j[0] - i[0]) * (j[0] - i[0]) + (j[1] - i[1]) * (j[1] - i[1]) +
-                               (j[2] - i[2]) * (j[2] - i[2]));
+        lengths[k] =
+            std::sqrt((j[0] - i[0]) * (j[0] - i[0]) + (j[1] - i[1]) * (j[1] - i[1]) + (j[2] - i[2]) * (j[2] - i[2]));
     }
     check(hol_chains_set_lengths(handle.get(), lengths.data()));
 }

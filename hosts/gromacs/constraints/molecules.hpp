@@ -20,8 +20,8 @@ public:
              bool dynamics);
     // Masses of another lambda, of the same atoms. Frozen atoms stay frozen.
     void set_masses(gmx::ArrayRef<const real> inverse_masses, double lambda);
-    void set_lambda(double lambda);        // lengths between those of A and B
-    void set_flexible(const double *x);    // flexible constraints have the lengths of x, at the places of `places`
+    void set_lambda(double lambda);      // lengths between those of A and B
+    void set_flexible(const double *x);  // flexible constraints have the lengths of x, at the places of `places`
     // The library's last message once more, with atoms as the topology counts them. `again` repeats the call.
     template <typename Call>
     std::string message(Call again) const {
@@ -29,7 +29,7 @@ public:
         again();
         return words();
     }
-    [[noreturn]] void end_run() const;     // with the library's message
+    [[noreturn]] void end_run() const;  // with the library's message
 
     hol_chains *chains() const { return handle.get(); }
     const Arrangement &places() const { return arrangement; }

@@ -47,11 +47,12 @@ Lincs *init_lincs(FILE *log, const gmx_mtop_t &topology, int n_flexible, ArrayRe
         for (FILE *file : {log, stderr}) holonomic::tell_what_was_found(file);
     }
     if (split && builder)
-        gmx_fatal(0, __FILE__, __LINE__,
-                  "Constraints by holonomic: with domain decomposition each molecule must be whole on one rank, and here "
-                  "constraints may cross from one rank to another (there are no update groups). Use one rank and threads: "
-                  "mdrun -ntmpi 1 -ntomp N, or one process of an MPI build. With constraints = h-bonds molecules are whole "
-                  "on any number of ranks.");
+        gmx_fatal(
+            0, __FILE__, __LINE__,
+            "Constraints by holonomic: with domain decomposition each molecule must be whole on one rank, and here "
+            "constraints may cross from one rank to another (there are no update groups). Use one rank and threads: "
+            "mdrun -ntmpi 1 -ntomp N, or one process of an MPI build. With constraints = h-bonds molecules are whole "
+            "on any number of ranks.");
     Rank &rank = rank_of(lincs);
     if (builder) join_sums(rank, *builder);
     return lincs;
@@ -121,7 +122,8 @@ bool constrain_lincs(bool wants_rmsd, const t_inputrec &parameters, int64_t step
 
 }  // namespace gmx
 
-// Called where the atoms of a domain are handed to constraints: the way to know the domain, of which nothing else is told.
+// Called where the atoms of a domain are handed to constraints: the way to know the domain, of which nothing else is
+// told.
 int dd_numHomeAtoms(const gmx_domdec_t &domain) {
     static const auto original = holonomic::original(&dd_numHomeAtoms);
     holonomic::domain = &domain;

@@ -37,9 +37,7 @@ void expect_sound(const Arrangement &arrangement, const std::vector<Bond> &list)
             }
             expect(arrangement.starts[m] <= parent && parent < k, "a parent is before its atom, in its molecule");
             expect(std::any_of(arrangement.bonds.begin(), arrangement.bonds.end(),
-                               [&](const Bond &b) {
-                                   return std::minmax(b.first, b.second) == std::minmax(parent, k);
-                               }),
+                               [&](const Bond &b) { return std::minmax(b.first, b.second) == std::minmax(parent, k); }),
                    "an atom is bonded to its parent");
         }
 }
@@ -53,8 +51,8 @@ void chains_stand_along_themselves() {
 
 void equal_molecules_stand_together() {
     // two waters with a chain between them, and one of other lengths
-    const std::vector<Bond> list = {bond(0, 1), bond(0, 2),    bond(1, 2),    bond(3, 4), bond(5, 6),
-                                    bond(5, 7), bond(6, 7),    bond(8, 9, 2), bond(8, 10, 2), bond(9, 10, 2)};
+    const std::vector<Bond> list = {bond(0, 1), bond(0, 2), bond(1, 2),    bond(3, 4),     bond(5, 6),
+                                    bond(5, 7), bond(6, 7), bond(8, 9, 2), bond(8, 10, 2), bond(9, 10, 2)};
     std::vector<double> masses(11, 1);
     Arrangement arrangement = arrange(list, masses);
     expect_sound(arrangement, list);
