@@ -10,8 +10,8 @@ if(NOT HOLONOMIC_PACKAGE_DEB)
 endif()
 set(package holonomic-gromacs)
 set(summary "constraints of GROMACS to the rounding, of any shape")
-set(description "The wrapper gmx-holonomic runs the gmx of this distribution, unmodified, in mixed
-or double precision, with exact constraints in the place of LINCS.")
+set(description "The wrapper gmx-holonomic runs the gmx of this distribution, unmodified,
+in mixed or double precision, with exact constraints in the place of LINCS.")
 set(depends)
 set(recommends gromacs)
 include(${CMAKE_CURRENT_LIST_DIR}/../../cmake/host_package.cmake)
