@@ -72,6 +72,7 @@ int main() { return static_cast<int>(benchmark::CPUInfo::Get().num_cpus) * 0; }'
 int main() { OpenMM::System system; }' | c++ -x c++ - -lOpenMM -o /dev/null 2>/dev/null ;;
         mpi) command -v mpirun >/dev/null && command -v mpicxx >/dev/null ;;
         lammps) command -v lmp >/dev/null && [ -e /usr/include/lammps/lammps.h ] ;;
+        gromacs) command -v gmx >/dev/null && command -v gmx_d >/dev/null && [ -e /usr/include/gromacs/version.h ] && command -v python3 >/dev/null ;;
         lammps-examples) [ -e /usr/share/lammps/examples/HEAT/data.spce ] ;;
         openblas | mctc-lib) pkg-config --exists "$1" 2>/dev/null ;;
         gromacs-data) [ -e /usr/share/gromacs/top/spc216.gro ] ;;
@@ -133,6 +134,7 @@ debian_package() {
         dpkg-shlibdeps) echo dpkg-dev ;;
         mpi) echo openmpi-bin libopenmpi-dev ;;
         lammps) echo lammps liblammps-dev ;;
+        gromacs) echo gromacs libgromacs-dev python3 ;;
         *) echo "$1" ;;
     esac
 }

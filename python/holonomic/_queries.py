@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ctypes import byref, c_int, c_int64
-from typing import NamedTuple, Optional
+from ctypes import byref, c_double, c_int, c_int64
+from typing import NamedTuple, Optional, Tuple
 
 import numpy as np
 

@@ -15,7 +15,7 @@ source=$(cd "$(dirname "$0")/../.." && pwd)
 make_machine "$suite" "$work/$suite" "${@:4}"
 mkdir -p "$root/srv/packages"
 cp "$packages"/*.deb "$root/srv/packages"
-for host in lammps openmm; do
+for host in lammps openmm gromacs; do
     mkdir "$root/srv/$host"
     mv "$root/srv/packages/holonomic-$host"_*.deb "$root/srv/$host" 2>/dev/null || :
 done
@@ -66,6 +66,13 @@ if [ -n "$same_suite" ] && [ -n "$(ls "$root/srv/lammps")" ]; then
     inside OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 lmp-holonomic -log none -in /srv/try/trimer.lmp |
         awk '/^ *(0|100) +[-0-9.]+ +[-0-9.e]+ *$/ { print; e[++n] = $2; error = $3 }
              END { exit !(n == 2 && (e[1] - e[2])^2 < 1e-8 && error < 1e-13) }' || { echo "the run went wrong"; exit 1; }
+fi
+if [ -n "$same_suite" ] && [ -n "$(ls "$root/srv/gromacs")" ]; then
+    echo "GROMACS:"
+    inside sh -c 'apt-get install -y -qq --no-install-recommends gromacs /srv/gromacs/*.deb' >"$work/$suite.gromacs.log" 2>&1 ||
+        { tail -n 20 "$work/$suite.gromacs.log"; exit 1; }
+    cp -r "$source/hosts/gromacs/tests" "$root/srv/try/gromacs"
+    inside HOLONOMIC_GMX=gmx-holonomic sh -c 'cd /srv/try/gromacs && python3 -m unittest test_gromacs.Accuracy'
 fi
 inside apt-get purge -y -qq libholonomic0 >/dev/null
 [ -z "$(find "$root/usr/lib" "$root/usr/include" -name '*holonomic*')" ] || { echo "files are left after the packages are removed"; exit 1; }

@@ -1,0 +1,17 @@
+// Copies of the atoms' vectors at the places of an Arrangement, in double precision.
+#pragma once
+#include "arrangement.hpp"
+#include "gromacs.hpp"
+
+namespace holonomic {
+
+// Positions, each molecule whole: an atom stands at the image nearest to its parent. `pbc` null: they are whole.
+void copy_whole(const Arrangement &, const t_pbc *, const real *from, double *to, int n_threads);
+void copy(const Arrangement &, const real *from, double *to, int n_threads);
+
+// q += d and, if there are velocities, v += d / dt.
+void move(const Arrangement &, const double *d, double inverse_dt, real *q, real *v, int n_threads);
+// projected = p, or where it is other than q, projected += p - q.
+void hand_back(const Arrangement &, const double *p, const real *q, real *projected, int n_threads);
+
+}  // namespace holonomic

@@ -1,0 +1,40 @@
+// Velocities, and displacements and accelerations alike: d . (q_j - q_i) = 0, with the change of least kinetic energy.
+#include "copies.hpp"
+#include "rank.hpp"
+
+namespace holonomic {
+
+void Rank::derivatives(const Call &call, real *projected, gmx::ConstraintVariable what) {
+    hol_chains *const chains = molecules.chains();
+    if (chains == nullptr) return;
+    if (what == gmx::ConstraintVariable::Force)
+        gmx_fatal(0, __FILE__, __LINE__,
+                  "Constraints by holonomic: forces are not projected here; GROMACS asks for it nowhere");
+    const bool flexible_alone = what == gmx::ConstraintVariable::Deriv_FlexCon;
+    const Arrangement &places = molecules.places();
+    const int n_threads = molecules.n_threads();
+    x.resize(3 * molecules.n_atoms());
+    q.resize(x.size());
+    copy_whole(places, call.pbc, call.x, x.data(), n_threads);
+    copy(places, call.q, q.data(), n_threads);
+    double *const lambda = multipliers_if(flexible_alone || (call.dvdlambda && molecules.perturbed()));
+    const auto project = [&] { return hol_project_velocities(chains, x.data(), q.data(), lambda, call.virial); };
+    int status = project();
+    if (status == HOL_OK && flexible_alone) {
+        for (size_t k = 0; k < molecules.n_bonds(); k++)
+            if (!molecules.flexible(k)) lambda[k] = 0;
+        change.assign(x.size(), 0);
+        status =
+            hol_reactions(chains, x.data(), HOL_BOX, lambda, nullptr, change.data(), HOL_WRITE, nullptr, call.virial);
+        copy(places, call.q, q.data(), n_threads);
+        for (size_t i = 0; i < q.size(); i++) q[i] += molecules.inverse_mass(i / 3) * change[i];
+    }
+    if (status != HOL_OK) {
+        molecules.message(project);
+        molecules.end_run();
+    }
+    hand_back(places, q.data(), call.q, projected, n_threads);
+    if (call.dvdlambda && molecules.perturbed()) *call.dvdlambda += derivative_by_lambda();
+}
+
+}  // namespace holonomic

@@ -1,0 +1,390 @@
+"""GROMACS with LINCS of high order beside GROMACS with this library: the same program, input and seeds."""
+import math
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+import gromacs as g
+import scenes as s
+
+FREE = ["Kinetic-En.", "Pressure", "Vir-XX", "Vir-XY", "Pres-ZZ"]
+ALL = FREE + ["Potential"]
+ORDERS = dict(lincs_order=40, lincs_iter=14)
+BUTANES = [(s.alkane(4), 8), (s.water(), 19)]
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="holonomic-gromacs-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def scene(self, molecules, spacing, gmx=g.DOUBLE, index=None, **options):
+        s.write(self.folder, molecules, spacing, **{**ORDERS, **options})
+        arguments = []
+        if index:
+            (self.folder / "index.ndx").write_text(index)
+            arguments = ["-n", "index.ndx"]
+        g.grompp(self.folder, gmx, *arguments)
+
+    def both(self, terms, *arguments, gmx=g.DOUBLE, threads=1):
+        g.mdrun(self.folder, holonomic=False, name="lincs", gmx=gmx)
+        g.mdrun(self.folder, *arguments, name="exact", gmx=gmx, threads=threads)
+        return (g.energies(self.folder, terms, gmx, "lincs"), g.energies(self.folder, terms, gmx, "exact"))
+
+    def assert_same(self, pair, tolerance=1e-8, skip=()):
+        lincs, exact = pair
+        self.assertEqual(set(lincs), set(exact))
+        for term in set(lincs) - set(skip):
+            scale = max(abs(v) for v in lincs[term]) or 1
+            for a, b in zip(lincs[term], exact[term]):
+                self.assertLessEqual(abs(a - b), tolerance * scale, f"{term}: {a} {b}")
+
+    def worst_length(self, molecules, bonds_of, name="exact"):
+        """Of all frames: the largest relative error of a length, and of d.v against |d| |v|."""
+        worst = rate = 0
+        for x, v in g.frames(self.folder / f"{name}.trr"):
+            first = 0
+            for molecule, count in molecules:
+                for _ in range(count):
+                    for i, j, length in bonds_of(molecule):
+                        p, q = x[first + i - 1], x[first + j - 1]
+                        d = [b - a for a, b in zip(p, q)]
+                        d = [a - self.side * round(a / self.side) for a in d]
+                        worst = max(worst, abs(math.hypot(*d) / length - 1))
+                        if v:
+                            u = [b - a for a, b in zip(v[first + i - 1], v[first + j - 1])]
+                            rate = max(rate, abs(sum(a * b for a, b in zip(d, u))) / length)
+                    first += len(molecule.atoms)
+        return worst, rate
+
+    @property
+    def side(self):
+        return float((self.folder / "conf.gro").read_text().split()[-1])
+
+
+def constraints_of(molecule):
+    return [(i, j, lengths[0]) for i, j, *lengths in molecule.constraints]
+
+
+def bonds_of(molecule):
+    return [(i, j, length) for i, j, length, _ in molecule.bonds]
+
+
+class Integrators(Case):
+    def test_energies_and_virials_are_those_of_lincs_where_that_converges(self):
+        for integrator in ("md", "md-vv", "sd", "bd"):
+            for constraints in ("h-bonds", "all-bonds"):
+                with self.subTest(integrator=integrator, constraints=constraints):
+                    self.scene(BUTANES, 0.9, integrator=integrator, constraints=constraints, tc_grps="system", tau_t=1,
+                               ref_t=300, bd_fric=1000)
+                    self.assert_same(self.both(ALL))
+
+    def test_constraints_in_the_topology_alone(self):
+        self.scene([(s.chain(6), 27)], 1.0, dt=0.004)
+        self.assert_same(self.both(ALL))
+
+    def test_minimisation(self):
+        for integrator in ("steep", "cg"):
+            with self.subTest(integrator=integrator):
+                self.scene(BUTANES, 0.9, integrator=integrator, constraints="all-bonds", emtol=1, emstep=0.002,
+                           lincs_order=300)
+                self.assert_same(self.both(["Potential", "Pressure"]), 1e-6)
+
+    def test_pressure_coupling(self):
+        # x is scaled before the step, and the virial is taken with bonds as they are then: docs/porting.md.
+        for barostat, thermostat in (("berendsen", "v-rescale"), ("c-rescale", "v-rescale"),
+                                     ("parrinello-rahman", "nose-hoover")):
+            with self.subTest(barostat=barostat):
+                self.scene(BUTANES, 0.9, constraints="all-bonds", pcoupl=barostat, tcoupl=thermostat, tc_grps="system",
+                           tau_t=0.5, ref_t=300, tau_p=1, ref_p=1, compressibility=4e-5, nstpcouple=1, nsttcouple=1)
+                self.assert_same(self.both(ALL), 1e-3)
+
+    def test_single_precision(self):
+        self.scene(BUTANES, 0.9, gmx=g.MIXED, constraints="all-bonds", nsteps=10)
+        self.assert_same(self.both(ALL, gmx=g.MIXED), 5e-3)
+        rmsd = g.energies(self.folder, ["Constr.-rmsd"], g.MIXED, "exact")["Constr. rmsd"]
+        self.assertLess(max(rmsd), 2e-6)  # coordinates of 2 nm in bonds of 0.1 nm
+
+    def test_a_box_that_is_no_cuboid(self):
+        s.write(self.folder, BUTANES, 0.9, constraints="all-bonds", **ORDERS)
+        lines = (self.folder / "conf.gro").read_text().splitlines()
+        side = self.side
+        lines[-1] = " ".join(f"{v:.5f}" for v in (side, side, side, 0, 0, 0.3 * side, 0, 0.3 * side, -0.2 * side))
+        (self.folder / "conf.gro").write_text("\n".join(lines) + "\n")
+        g.grompp(self.folder)
+        self.assert_same(self.both(ALL))
+
+    def test_flat_cell_with_walls(self):
+        self.scene(BUTANES, 0.9, constraints="all-bonds", pbc="xy", nwall=2, wall_atomtype="C C", wall_type="9-3", wall_density="1 1")
+        self.assert_same(self.both(ALL))
+
+
+class Accuracy(Case):
+    def test_lengths_and_velocities_are_exact(self):
+        for integrator in ("md", "md-vv"):
+            with self.subTest(integrator=integrator):
+                molecules = [(s.cholesterol(), 27)]
+                self.scene(molecules, 1.3, integrator=integrator, dt=0.02, nsteps=50, nstxout=10, nstvout=10)
+                g.mdrun(self.folder, name="exact")
+                worst, rate = self.worst_length(molecules, constraints_of)
+                self.assertLess(worst, 1e-13)  # rounding of coordinates of 4 nm
+                if integrator == "md-vv":
+                    self.assertLess(rate, 1e-12)
+
+    def test_frames_of_cholesterol_keep_their_energy(self):
+        molecules = [(s.cholesterol(), 64)]
+        drift = {}
+        for name, order in (("lincs", dict(lincs_order=4, lincs_iter=1)), ("exact", {})):
+            self.scene(molecules, 1.3, interacting=False, dt=0.02, nsteps=1000, nstenergy=100, **order)
+            g.mdrun(self.folder, holonomic=name == "exact", name=name)
+            energy = g.energies(self.folder, ["Total-Energy"], g.DOUBLE, name)["Total Energy"]
+            drift[name] = energy[-1] / energy[0] - 1
+        self.assertLess(drift["lincs"], -5e-3)
+        self.assertLess(abs(drift["exact"]), 1e-4)  # what the leapfrog's energy fluctuates by
+
+    def test_pressure_of_free_molecules_is_that_of_their_centres(self):
+        # sum m v^2 + sum r.G over a rigid body that turns freely is 0; the leapfrog's kinetic energy is right to dt^2.
+        places = [(0, 0, 0), (0.3, 0, 0), (0.1, 0.25, 0)]
+        sides = [(i, j, math.dist(places[i - 1], places[j - 1])) for i, j in ((1, 2), (2, 3), (1, 3))]
+        triangle = s.Molecule("TRI", [("C", "A", 40.0), ("C", "B", 55.0), ("C", "D", 72.0)], places, constraints=sides)
+        molecules = [(triangle, 27)]
+        self.scene(molecules, 1.3, interacting=False, dt=0.0005, nsteps=20, nstvout=1, nstxout=1)
+        g.mdrun(self.folder, name="exact")
+        pressure = g.energies(self.folder, ["Pressure"], g.DOUBLE, "exact")["Pressure"]
+        frames = g.frames(self.folder / "exact.trr")
+        masses = [atom[2] for atom in molecules[0][0].atoms]
+        for k in range(5, 15):
+            def of_centres(v):
+                total = 0
+                for first in range(0, len(v), 3):
+                    p = [sum(m * v[first + i][a] for i, m in enumerate(masses)) for a in range(3)]
+                    total += sum(c * c for c in p) / sum(masses)
+                return total
+            # v of frame k is that half a step before; GROMACS takes the mean of the two kinetic energies
+            wanted = 0.5 * (of_centres(frames[k][1]) + of_centres(frames[k + 1][1])) / (3 * self.side ** 3) * 16.6054
+            self.assertAlmostEqual(pressure[k] / wanted, 1, delta=2e-3)
+
+    def test_what_lincs_does_not_converge_for(self):
+        molecules = [(s.alkane(4), 8)]
+        self.scene(molecules, 1.2, constraints="h-angles", nsteps=100, nstxout=50)
+        g.mdrun(self.folder, name="exact")
+        energy = g.energies(self.folder, ["Total-Energy"], g.DOUBLE, "exact")["Total Energy"]
+        self.assertLess(max(abs(e - energy[0]) for e in energy), 0.05 * abs(energy[0]))
+        self.assertLess(self.worst_length(molecules, bonds_of)[0], 1e-13)
+
+    def test_nearly_straight_chains(self):
+        molecules = [(s.chain(50, bend=math.radians(4)), 8)]
+        self.scene(molecules, 8.0, interacting=False, dt=0.005, nsteps=100, nstxout=50)
+        g.mdrun(self.folder, name="exact")
+        energy = g.energies(self.folder, ["Total-Energy"], g.DOUBLE, "exact")["Total Energy"]
+        self.assertLess(max(abs(e / energy[0] - 1) for e in energy), 5e-2)
+        self.assertLess(self.worst_length(molecules, constraints_of)[0], 1e-12)
+
+
+class Special(Case):
+    def frozen(self, dimensions):
+        n = len(BUTANES[0][0].atoms)
+        listed = " ".join(str(k * n + j) for k in range(8) for j in (1, 2, 7))
+        index = "[ System ]\n" + " ".join(str(i + 1) for i in range(8 * n)) + f"\n[ F ]\n{listed}\n"
+        self.scene(BUTANES[:1], 1.3, constraints="all-bonds", freezegrps="F", freezedim=dimensions, index=index,
+                   nstxout=20, nstvout=20)
+
+    def test_frozen_atoms(self):
+        self.frozen("Y Y Y")
+        pair = self.both(["Kinetic-En.", "Potential"])
+        self.assert_same(pair, 1e-7)
+        frames = g.frames(self.folder / "exact.trr")
+        for k in range(8):
+            for j in (0, 1, 6):
+                atom = k * len(BUTANES[0][0].atoms) + j
+                self.assertEqual(frames[0][0][atom], frames[-1][0][atom])
+        # LINCS has 1e18 bar there: bonds between two frozen atoms pull without end
+        pressure = g.energies(self.folder, ["Pressure"], g.DOUBLE, "exact")["Pressure"]
+        self.assertLess(max(abs(p) for p in pressure), 1e4)
+
+    def test_atoms_frozen_in_one_dimension(self):
+        self.frozen("Y N N")
+        self.assert_same(self.both(["Kinetic-En.", "Potential"]))
+
+    def perturbed(self, **options):
+        a = s.alkane(3)
+        molecule = s.Molecule("PER", [(kind, name, m, 1.3 * m) for kind, name, m in a.atoms], a.places, angles=a.angles,
+                              constraints=[(i, j, length, 1.05 * length) for i, j, length, _ in a.bonds])
+        self.scene([(molecule, 8)], 1.3, free_energy="yes", nstdhdl=1, tc_grps="system", tau_t=1, ref_t=300, **options)
+        return self.both(ALL + ["dVremain/dl"])
+
+    def test_free_energy_with_lengths_and_masses(self):
+        for integrator in ("md", "sd", "md-vv"):
+            with self.subTest(integrator=integrator):
+                self.assert_same(self.perturbed(init_lambda=0.5, integrator=integrator))
+
+    def test_slow_growth(self):
+        self.assert_same(self.perturbed(init_lambda=0.2, delta_lambda=1e-4), 1e-3)
+
+    def test_pulling_with_a_constraint(self):
+        n = len(BUTANES[0][0].atoms)
+        index = ("[ System ]\n" + " ".join(str(i + 1) for i in range(27 * n)) + "\n[ A ]\n"
+                 + " ".join(str(i + 1) for i in range(n)) + "\n[ B ]\n" + " ".join(str(n + i + 1) for i in range(n)) + "\n")
+        self.scene([(s.alkane(4), 27)], 1.3, constraints="all-bonds", index=index, pull="yes", pull_ngroups=2, pull_ncoords=1,
+                   pull_group1_name="A", pull_group2_name="B", pull_coord1_type="constraint",
+                   pull_coord1_geometry="distance", pull_coord1_groups="1 2", pull_coord1_rate=0.1, pull_coord1_start="yes")
+        self.assert_same(self.both(ALL))
+
+    def test_flexible_constraints(self):
+        atoms = [("C", "A", 12.0), ("C", "B", 14.0), ("H", "D", 2.0)]
+        molecule = s.Molecule("FLX", atoms, [(0, 0, 0), (0.15, 0, 0), (0.18, 0.1, 0)], bonds=[(1, 3, 0.2, 2e4)],
+                              constraints=[(1, 2, 0.15), (2, 3, 0.0)],
+                              extra="[ bonds ]\n2 3 6 0.1044 20000\n")
+        self.scene([(molecule, 8)], 1.3, dt=0.001, fcstep=0.001, niter=20)
+        self.assert_same(self.both(ALL), 1e-6)
+
+    def test_virtual_sites_stay_gromacs_own(self):
+        half = s.alkane(3)
+        places = half.places + [(0.0, 0.0, 0.05)]
+        molecule = s.Molecule("VST", half.atoms + [("MW", "MW", 0.0)], places, bonds=half.bonds, angles=half.angles,
+                              extra=f"[ virtual_sites2 ]\n{len(places)} 1 5 1 0.4\n")
+        self.scene([(molecule, 8)], 1.3, constraints="all-bonds")
+        self.assert_same(self.both(ALL))
+
+    def test_continuation_from_a_checkpoint(self):
+        self.scene(BUTANES, 0.9, constraints="all-bonds", nsteps=40)
+        g.mdrun(self.folder, name="whole")
+        g.mdrun(self.folder, "-nsteps", "20", name="part")
+        g.mdrun(self.folder, "-cpi", "part.cpt", "-nsteps", "20", "-noappend", name="part")
+        whole = g.energies(self.folder, ALL, g.DOUBLE, "whole")
+        part = g.energies(self.folder, ALL, g.DOUBLE, "part.part0002")
+        for term in ALL:
+            term = term.replace("Kinetic-En.", "Kinetic En.")
+            self.assertAlmostEqual(whole[term][-1] / part[term][-1], 1, delta=1e-9)
+
+    def test_rerun(self):
+        self.scene(BUTANES, 0.9, constraints="all-bonds", nstxout=5)
+        g.mdrun(self.folder, name="run")
+        g.mdrun(self.folder, "-rerun", "run.trr", holonomic=False, name="lincs")
+        g.mdrun(self.folder, "-rerun", "run.trr", name="exact")
+        self.assert_same((g.energies(self.folder, ["Potential"], g.DOUBLE, "lincs"),
+                          g.energies(self.folder, ["Potential"], g.DOUBLE, "exact")))
+
+
+class Ranks(Case):
+    MOLECULES = [(s.alkane(4), 64), (s.water(), 61)]
+
+    def test_two_ranks_with_molecules_whole(self):
+        self.scene(self.MOLECULES, 1.0, constraints="h-bonds", nsteps=60)
+        pair = self.both(ALL, "-ntmpi", "2")
+        self.assert_same(pair)
+        rmsd = g.energies(self.folder, ["Constr.-rmsd"], g.DOUBLE, "exact")["Constr. rmsd"]
+        self.assertLess(max(rmsd), 1e-9)
+
+    def test_the_sum_of_deviations_is_that_of_all_ranks(self):
+        self.scene(self.MOLECULES, 1.0, gmx=g.MIXED, constraints="h-bonds", nsteps=10)
+        for ranks in ("1", "2"):
+            g.mdrun(self.folder, "-ntmpi", ranks, gmx=g.MIXED, name=f"on{ranks}")
+        one, two = (g.energies(self.folder, ["Constr.-rmsd"], g.MIXED, f"on{ranks}")["Constr. rmsd"] for ranks in "12")
+        self.assertGreater(min(two), 1e-8)
+        for a, b in zip(one[1:], two[1:]):
+            self.assertAlmostEqual(a / b, 1, delta=0.5)
+
+    def test_threads(self):
+        molecules = [(s.chain(100), 125)]
+        self.scene(molecules, 16.0, interacting=False, dt=0.002, nsteps=5)
+        self.assert_same(self.both(FREE, threads=2), 1e-6)
+        g.mdrun(self.folder, name="one")
+        one, two = (g.energies(self.folder, FREE, g.DOUBLE, name) for name in ("one", "exact"))
+        for a, b in zip(one["Kinetic En."], two["Kinetic En."]):
+            self.assertAlmostEqual(a / b, 1, delta=1e-13)  # GROMACS sums by thread
+
+    def test_molecules_across_ranks_are_refused(self):
+        self.scene([(s.alkane(4), 125)], 1.0, constraints="all-bonds")
+        with self.assertRaisesRegex(g.Failed, r"mdrun\s+-ntmpi\s+1\s+-ntomp\s+N"):
+            g.mdrun(self.folder, "-ntmpi", "2", name="exact")
+
+    @unittest.skipUnless(g.has("gmx_mpi_d") and g.has("mpirun"), "no MPI build of GROMACS")
+    def test_mpi(self):
+        self.scene(self.MOLECULES, 1.0, constraints="h-bonds", nsteps=20)
+        g.mdrun(self.folder, holonomic=False, name="lincs")
+        g.call([*g.MPIRUN[:-1], "2", g.WRAPPER, "-quiet", "mdrun", "-s", "topol.tpr", "-deffnm", "exact", "-ntomp", "1",
+                "-pin", "off"], self.folder, environment={"GMX": "gmx_mpi_d"})
+        self.assert_same((g.energies(self.folder, ALL, g.DOUBLE, "lincs"), g.energies(self.folder, ALL, g.DOUBLE, "exact")))
+
+
+class Words(Case):
+    def test_the_log_says_what_was_taken_over(self):
+        self.scene(BUTANES, 0.9, constraints="h-bonds", nsteps=2)
+        said = g.mdrun(self.folder, name="exact")
+        for text in (said, (self.folder / "exact.log").read_text()):
+            self.assertRegex(text, r"Constraints by holonomic \S+ \(\S+\) in place of LINCS, in GROMACS 20\d\d")
+            self.assertRegex(text, r"Taken over: .*gmx::constrain_lincs")
+
+    def test_each_build_of_gromacs_has_the_functions(self):
+        for gmx in ("gmx", "gmx_d", "gmx_mpi", "gmx_mpi_d"):
+            if g.has(gmx) and (g.has("mpirun") or "mpi" not in gmx):
+                with self.subTest(gmx=gmx):
+                    self.assertIn("GROMACS version", g.call([*(g.MPIRUN if "mpi" in gmx else []), g.WRAPPER, "--version"],
+                                                            self.folder, environment={"GMX": gmx}))
+
+    def test_another_precision_is_told_and_nothing_is_run(self):
+        objects = [p for p in pathlib.Path(g.os.environ.get("HOLONOMIC_GROMACS", g.HERE)).glob("libholonomic_gromacs.so")]
+        self.assertTrue(objects, "no libholonomic_gromacs.so where HOLONOMIC_GROMACS says")
+        done = subprocess.run(["gmx_d", "--version"], env={**g.os.environ, "LD_PRELOAD": str(objects[0])}, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("gmx::constrain_lincs", done.stdout)
+        self.assertNotIn("GROMACS version", done.stdout)
+
+    def test_programs_without_gromacs_are_left_alone(self):
+        objects = pathlib.Path(g.os.environ.get("HOLONOMIC_GROMACS", g.HERE)) / "libholonomic_gromacs.so"
+        done = subprocess.run(["true"], env={**g.os.environ, "LD_PRELOAD": str(objects)}, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        self.assertEqual((done.returncode, done.stdout), (0, ""))
+
+    def test_update_on_a_device_is_refused(self):
+        with self.assertRaisesRegex(g.Failed, "-update cpu"):
+            g.call([g.WRAPPER, "mdrun", "-update", "gpu"], self.folder)
+
+    def test_all_angles_of_an_alkane_end_with_the_librarys_words(self):
+        self.scene([(s.alkane(4), 8)], 1.2, constraints="all-angles")
+        with self.assertRaisesRegex(g.Failed, r"Constraints by holonomic: [^-]*atoms"):
+            g.mdrun(self.folder, name="exact")
+
+    def exploding(self, **options):
+        self.scene([(s.chain(6), 27)], 0.8, dt=0.05, nsteps=200, lincs_warnangle=30, gen_temp=3000, **options)
+
+    def test_turned_bonds_are_counted_until_it_is_enough(self):
+        self.exploding()
+        with self.assertRaisesRegex(g.Failed, r"Too many LINCS warnings \(\d+\)") as failed:
+            g.mdrun(self.folder, name="exact", environment={"GMX_MAXCONSTRWARN": "5"})
+        self.assertRegex(str(failed.exception), r"CONSTRAINT WARNING\nrelative constraint deviation: rms")
+        self.assertRegex(str(failed.exception), r"bonds that rotated more than 30 degrees:")
+
+    def test_atoms_of_another_rank_have_their_numbers_of_the_topology(self):
+        self.scene([(s.cholesterol(), 125)], 1.2, dt=0.02, nsteps=3, lincs_warnangle=2)
+        said = {}
+        for ranks in ("1", "2"):
+            said[ranks] = g.mdrun(self.folder, "-ntmpi", ranks, name="exact", environment={"GMX_MAXCONSTRWARN": "9999"})
+        told = {ranks: sorted(set(re.findall(r"^ +(\d+) +(\d+) +[\d.]+ +[\d.]+ +[\d.]+ +0.2719$", text, re.M)))
+                for ranks, text in said.items()}
+        self.assertGreater(len(told["1"]), 5)
+        self.assertEqual(told["1"], told["2"])
+
+    def test_a_crude_start_is_moved(self):
+        molecule = s.chain(6)
+        molecule.places = [(1.25 * x, 1.25 * y, z) for x, y, z in molecule.places]
+        self.scene([(molecule, 8)], 1.5, nsteps=2, nstxout=1)
+        self.assertIn("Molecules were moved onto their lengths", g.mdrun(self.folder, name="exact"))
+        self.assertLess(self.worst_length([(molecule, 8)], constraints_of)[0], 1e-13)
+
+    def test_what_cannot_be_solved_is_told_and_dumped(self):
+        molecule = s.chain(6)
+        molecule.places = [(7 * x, 7 * y, z) for x, y, z in molecule.places]
+        self.scene([(molecule, 8)], 8.0, nsteps=2, interacting=False, continuation="yes", gen_vel="no")
+        said = g.mdrun(self.folder, name="exact", environment={"GMX_SUPPRESS_DUMP": None})
+        self.assertRegex(said, r"molecules? could not be solved: hol_project_positions: .*atom")
+        self.assertIn("Constraint error in algorithm Lincs", (self.folder / "exact.log").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()
