@@ -18,9 +18,11 @@ struct Box {
             half[a] = pbc->box[a][a] / 2;
         }
     }
+    // A sum in place of "or": three comparisons without a branch.
     bool is_other_image(const real *a, const real *b) const {
-        return (std::fabs(a[0] - b[0]) > half[0]) | (std::fabs(a[1] - b[1]) > half[1]) |
-               (std::fabs(a[2] - b[2]) > half[2]);
+        return int(std::fabs(a[0] - b[0]) > half[0]) + int(std::fabs(a[1] - b[1]) > half[1]) +
+                   int(std::fabs(a[2] - b[2]) > half[2]) !=
+               0;
     }
     void wrap(double *d) const {
         for (int a = n - 1; a >= 0; a--) {
