@@ -19,9 +19,9 @@
  *   hol_chains_bonds gives their places in the arrays per bond.
  * - A bond between two fixed atoms is no constraint: it belongs to no molecule, removes no degree of freedom, and its
  *   multiplier and tension are 0.
- * - Units are the caller's own; any consistent set does (mass, length, time; force = mass length / time^2). Powers of two
- *   of them change no bit of a result (of sums over molecules, the last ones). Where numbers overflow or underflow on the way a molecule is worked on in other
- *   units, which takes longer; where results overflow it is HOL_ERR_NOT_FINITE.
+ * - Units are the caller's own; any consistent set does (mass, length, time; force = mass length / time^2). Powers of
+ * two of them change no bit of a result (of sums over molecules, the last ones). Where numbers overflow or underflow on
+ * the way a molecule is worked on in other units, which takes longer; where results overflow it is HOL_ERR_NOT_FINITE.
  * - An output that is NULL is not computed; an input that may be NULL is zero then. Neither costs anything.
  * - Arrays per atom are [n_atoms][3] (Fortran: (3, n_atoms)); only atoms of molecules are read and written. Arrays per
  *   bond are [n_bonds], in the order in which the bonds were given, call after call. Arrays per molecule are
@@ -473,8 +473,8 @@ HOL_API int hol_chains_set_tolerance(hol_chains *chains, double tolerance);
 /**
  * Bound on the iterations of hol_project_positions for a molecule of any shape, 1..1000. The default is 50; a
  * well-posed step needs 2 to 5. A smaller bound makes no step faster that converges. What needs more is
- * HOL_ERR_NO_CONVERGENCE. With less than 20 no root is followed from the reference (hol_project_positions); else so many
- * points of its path are looked at.
+ * HOL_ERR_NO_CONVERGENCE. With less than 20 no root is followed from the reference (hol_project_positions); else so
+ * many points of its path are looked at.
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.1.
  */
 HOL_API int hol_chains_set_max_iterations(hol_chains *chains, int max_iterations);
@@ -761,10 +761,10 @@ typedef struct hol_report {
  *
  * These equations are quadratic, and may have several roots. The one meant is that of the reference, where all lambda
  * are 0, as it grows while r goes straight from r_ref to where it is. Newton's method comes there in ordinary steps. A
- * molecule with a bond of |d.d - a^2| > 0.15 a^2 in r, or for which it fails, is looked at alone, and its root is
- * tested or followed from the reference. Where that comes to an end before r there is none (HOL_ERR_NO_CONVERGENCE:
- * halve the step), though bonds that turn round might have the lengths. docs/stability.md says what is guaranteed, and
- * the cost.
+ * molecule for which it fails is looked at alone, and so is one with a bond of |d.d - a^2| > 0.15 a^2 in r that is no
+ * linear chain: its root is tested, or followed from the reference. Where that comes to an end before r there is none
+ * (HOL_ERR_NO_CONVERGENCE: halve the step), though bonds that turn round might have the lengths. docs/stability.md says
+ * what is guaranteed, and the cost.
  *
  * @param[in]     chains
  * @param[in]     r_ref   positions before the drift [n_atoms][3]; may be r itself (in Fortran: docs/fortran.md). Only

@@ -44,24 +44,28 @@ struct PositionsWork final : Work {
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
         work_on_long(calls[where], lane, team, store, tally);
     }
-    void work_on_long(const PositionsCall &call, const Lane &lane, const Team &team, double *store, Tally &tally) const {
+    void work_on_long(const PositionsCall &call, const Lane &lane, const Team &team, double *store,
+                      Tally &tally) const {
         solve_long_chain(k.long_positions, kernels_for_one_chain().positions, call, lane, team, store, tally);
     }
     bool rescales() const override { return true; }
     bool again(const Unit &one, int where, double *scratch, Tally &tally) const override {
-        return work_in_ordinary_units(
-            calls[where], one, tally,
-            [&](const PositionsCall &c, const Unit &unit, Tally &own) { kernels(unit).positions(c, unit, scratch, own); });
+        return work_in_ordinary_units(calls[where], one, tally,
+                                      [&](const PositionsCall &c, const Unit &unit, Tally &own) {
+                                          kernels(unit).positions(c, unit, scratch, own);
+                                      });
     }
     bool again(const MoleculeUnit &one, int where, double *scratch, Tally &tally) const override {
-        return work_in_ordinary_units(
-            calls[where], one, tally,
-            [&](const PositionsCall &c, const MoleculeUnit &unit, Tally &own) { k.molecules.positions(c, unit, scratch, own); });
+        return work_in_ordinary_units(calls[where], one, tally,
+                                      [&](const PositionsCall &c, const MoleculeUnit &unit, Tally &own) {
+                                          k.molecules.positions(c, unit, scratch, own);
+                                      });
     }
     bool again(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
-        return work_in_ordinary_units(
-            calls[where], Unit{&lane, 1, false, false}, tally,
-            [&](const PositionsCall &c, const Unit &unit, Tally &own) { work_on_long(c, unit.lanes[0], team, store, own); });
+        return work_in_ordinary_units(calls[where], Unit{&lane, 1, false, false}, tally,
+                                      [&](const PositionsCall &c, const Unit &unit, Tally &own) {
+                                          work_on_long(c, unit.lanes[0], team, store, own);
+                                      });
     }
 };
 
@@ -132,13 +136,14 @@ void project_from(const Chains &chains, PositionsCall &call, const Reference *re
     call.max_iterations = chains.max_iterations;
     put_box(chains.box, call.box);
     put_box(box_ref, call.box_ref);
-    PositionsCall given = call;
-    if (call.r_ref.x == call.r.x && moves_in_parts(chains.plan()))
-        given.r_ref = copy_of(call.r_ref, chains.n_atoms());
-    given.worst_trial = std::min(call.worst_trial, far_from_lengths);
+    const AtomArray r_ref = call.r_ref;
+    if (call.r_ref.x == call.r.x && moves_in_parts(chains.plan())) call.r_ref = copy_of(r_ref, chains.n_atoms());
+    call.far_trial = std::min(call.worst_trial, far_from_lengths);
     Apart apart(chains);
-    Tally tally = execute(chains, PositionsWork(given, apart, reference));
+    Tally tally = execute(chains, PositionsWork(call, apart, reference));
     apart.put_back();
+    call.r_ref = r_ref;
+    call.far_trial = call.worst_trial;
     if (tally.n_bad > 0) tally = finish_long_steps(chains, call, reference, tally);
     clear_unconstrained(chains, call.lambda);
     if (report) *report = report_of(chains, tally);

@@ -107,8 +107,8 @@ constexpr int most_ordinary_length = 48, most_ordinary_mass = 92;
 // Squares of bonds are no more than this then, and no less than one over it; kernels look whether they are.
 constexpr double most_ordinary_square = 0x1p199;
 
-// Calls are `rescaled` where their molecule has been put into ordinary units (core/run/rescale.hpp). Where it has not, a
-// molecule whose units plain products can't do in is bad, and core puts it there.
+// Calls are `rescaled` where their molecule has been put into ordinary units (core/run/rescale.hpp). Where it has not,
+// a molecule whose units plain products can't do in is bad, and core puts it there.
 
 struct ForcesCall {
     AtomArray r, v, f, g;
@@ -134,6 +134,7 @@ struct PositionsCall {
     bool guess, virial, report;            // report: the errors left are wanted
     double tolerance;                      // 0: what the coordinates carry
     double worst_trial = __builtin_inf();  // a molecule that comes with a larger error |D.D - a^2| / a^2 is bad
+    double far_trial = __builtin_inf();    // the same of one that is no linear chain, and no more
     int max_iterations;
     Box box, box_ref;  // of r; of r_ref
     bool rescaled = false;

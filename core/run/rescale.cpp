@@ -48,8 +48,7 @@ KernelMolecule::KernelMolecule(const Schedule &s, const MoleculeLane &lane)
 Rescaled::Rescaled(const KernelMolecule &molecule, const Powers &of) : units(of), one_(molecule) {
     const std::int64_t atoms = rounded_up(8 * (3 * one_.n_atoms + 3 * room_behind)),
                        values = rounded_up(8 * (std::max(one_.n_atoms, one_.n_bonds) + room_behind));
-    memory_ = static_cast<char *>(
-        thread_memory(Keep::rescaled, most_atom_arrays * atoms + most_value_arrays * values));
+    memory_ = static_cast<char *>(thread_memory(Keep::rescaled, most_atom_arrays * atoms + most_value_arrays * values));
     if (!memory_) throw std::bad_alloc();
     if (one_.w) {
         w_ = take(one_.n_atoms);
@@ -159,18 +158,29 @@ double most_w(const KernelMolecule &m) { return m.w ? *std::max_element(m.w, m.w
 }  // namespace
 
 bool find_units(const KernelMolecule &m, const AtomArray &r, const Box &box, Powers &units) {
-    double longest = 0;
-    for (std::int64_t k = 0; k < m.n_bonds; ++k) {
-        double from[3], to[3], d[3];
-        read_atom(r, atom_of(m, m.schedule ? m.schedule->atom_i[k] : k), from);
-        read_atom(r, atom_of(m, m.schedule ? m.schedule->atom_j[k] : k + 1), to);
-        bond_vector(box, from, to, d);
-        for (const double component : d) {
-            if (!std::isfinite(component)) return false;
-            longest = std::max(longest, std::fabs(component));
+    double longest = 0, sum = 0;  // max() may lose a NaN, the sum keeps it
+    const auto take = [&](const double *d) {
+        for (int c = 0; c < 3; ++c) {
+            longest = std::max(longest, std::fabs(d[c]));
+            sum += std::fabs(d[c]);
+        }
+    };
+    if (!m.schedule && !m.atoms && r.packed && box.shape == Box::none) {  // long chains come here often
+        const double *const x = reinterpret_cast<const double *>(r.x) + 3 * m.first_atom;
+        for (std::int64_t k = 0; k < m.n_bonds; ++k) {
+            const double d[3] = {x[3 * k + 3] - x[3 * k], x[3 * k + 4] - x[3 * k + 1], x[3 * k + 5] - x[3 * k + 2]};
+            take(d);
+        }
+    } else {
+        for (std::int64_t k = 0; k < m.n_bonds; ++k) {
+            double from[3], to[3], d[3];
+            read_atom(r, atom_of(m, m.schedule ? m.schedule->atom_i[k] : k), from);
+            read_atom(r, atom_of(m, m.schedule ? m.schedule->atom_j[k] : k + 1), to);
+            bond_vector(box, from, to, d);
+            take(d);
         }
     }
-    if (longest == 0) return false;
+    if (!std::isfinite(sum) || longest == 0) return false;
     units = powers_of(longest, most_w(m));
     return true;
 }

@@ -1,5 +1,6 @@
-/** Molecules whose positions are right as they came, beside others that are not: these stay as they are, bit by bit, and those
- * get what they get among others of their kind. Chains of one to seven bonds, at which kernels change, and some longer. */
+/** Molecules whose positions are right as they came, beside others that are not: these stay as they are, bit by bit,
+ * and those get what they get among others of their kind. Chains of one to seven bonds, at which kernels change, and
+ * some longer. */
 #include "check.h"
 #include "random.h"
 
@@ -12,7 +13,10 @@ typedef struct scene {
     hol_chains *chains;
 } scene;
 
-static double uniform(random_stream *state) { return 2 * random_uniform(state) - 1; }
+static double uniform(random_stream *state)
+{
+    return 2 * random_uniform(state) - 1;
+}
 
 /** Unit bonds, positions a short step away from them; some coordinates are -0. */
 static void make(scene *s, int64_t n_bonds, int scattered, int boxed)

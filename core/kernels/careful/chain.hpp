@@ -57,7 +57,9 @@ HOL_NOINLINE bool chain_positions(const PositionsCall &call, const Lane &chain, 
     ChainPlan &of = *memory.take<ChainPlan>(1);
     of.set(chain);
     Tally own = empty_tally();
-    HOL_CAREFUL::careful::positions(call, of.plan, of.lane, reinterpret_cast<double *>(memory.next), own);
+    PositionsCall of_chain = call;
+    of_chain.far_trial = call.worst_trial;
+    HOL_CAREFUL::careful::positions(of_chain, of.plan, of.lane, reinterpret_cast<double *>(memory.next), own);
     if (own.n_bad > 0) return false;
     add(tally, own);
     return true;

@@ -93,7 +93,7 @@ static Projected iterate(Projection &p, const PositionsCall &call, bool guess, i
     const double accepted = carried(p, call), done = wanted_error(call);
     for (int32_t k = 0; k < m.plan.n_bonds; ++k) p.T[k] = wide(0);
     move(p);
-    if (!is_finite(p.error) || p.error > call.worst_trial) return projected_not;
+    if (!is_finite(p.error) || p.error > call.far_trial) return projected_not;
     if (p.error <= accepted) return projected_untouched;
     if (guess) {
         const double before = p.error;

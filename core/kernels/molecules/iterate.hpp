@@ -93,7 +93,7 @@ HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const Posi
     const V done = Width<V>::all(limits.wanted);
     V error = newton.open();
     Solved<V> out = {wanted & less_equal(error, limits.accepted), none, error, 0};
-    Mask active = wanted & ~out.untouched & finite(error) & less_equal(error, Width<V>::all(call.worst_trial));
+    Mask active = wanted & ~out.untouched & finite(error) & less_equal(error, Width<V>::all(call.far_trial));
     if (call.guess) {
         newton.forget(~active);
         const V with_guess = newton.move();

@@ -248,8 +248,8 @@ bool listed_positions(const Block &block, const Lane *lane, const PositionsCall 
     if (any(out.converged))
         choose(
             [&](auto masses, auto to_v, auto some) {
-                move_listed<same_if(masses), to_v, some>(block, x, at, out.converged, base_of(call.r),
-                                                         base_of(call.v), 1 / call.dt);
+                move_listed<same_if(masses), to_v, some>(block, x, at, out.converged, base_of(call.r), base_of(call.v),
+                                                         1 / call.dt);
             },
             !x.w, call.v.x != nullptr, any(out.untouched));
     if (call.virial) add_virial(block, x, out.converged, call.dt, tally);

@@ -174,7 +174,8 @@ HOL_INLINE bool solve_molecules(const Block &block, Newton &x, const PositionsCa
         out = solve_two_bonds<all, all>(x, carried, lanes);
     else
         out = iterate<all, all, N>(block, x, call, carried, lanes, false, false);
-    return !any(~(out.converged | out.untouched)) && !any(coarse_moves<all, N>(block, x, carried, out.converged, coarse_part));
+    return !any(~(out.converged | out.untouched)) &&
+           !any(coarse_moves<all, N>(block, x, carried, out.converged, coarse_part));
 }
 
 // Single bonds, two blocks at a time: while one waits for its root and its quotient, the other is worked on. Ends
@@ -265,8 +266,7 @@ HOL_NOINLINE int64_t pass_over_right_ones(const PositionsCall &call, const Unit 
         vec atoms[vectors_of<N>], worst = {}, sum = {};
         load_positions<boxed>(arrays, place, x, atoms, carried);
         HOL_UNROLL
-        for (int k = 0; k < N; ++k)
-            sum = sum + dot(x.D[k], x.b[k]) + length_error<all>(x, k, false, x.D[k], worst);
+        for (int k = 0; k < N; ++k) sum = sum + dot(x.D[k], x.b[k]) + length_error<all>(x, k, false, x.D[k], worst);
         // A reference that is no number is for the others to refuse.
         if (any(~carried.within(largest_error<all>(x, worst, sum), splat(1.0)))) break;
         if (!call.lambda) continue;

@@ -143,7 +143,8 @@ std::vector<double> Selection::lengths_of_types() {
     return lengths;
 }
 
-std::vector<RigidBond> Selection::select_bonds(int groupbit, std::vector<Belonging> &atoms, const std::vector<int> &which) {
+std::vector<RigidBond> Selection::select_bonds(int groupbit, std::vector<Belonging> &atoms,
+                                               const std::vector<int> &which) {
     const int n_ranks = size_of(world);
     Outgoing<Flags> notes(n_ranks);
     for (int i : which) {
@@ -184,7 +185,8 @@ std::vector<RigidBond> Selection::select_bonds(int groupbit, std::vector<Belongi
 }
 
 /** Angles of the types wanted whose two bonds are rigid: the distance of their ends by the law of cosines. */
-void Selection::select_angles(std::vector<Belonging> &atoms, const std::vector<int> &which, std::vector<RigidBond> &bonds) {
+void Selection::select_angles(std::vector<Belonging> &atoms, const std::vector<int> &which,
+                              std::vector<RigidBond> &bonds) {
     const int n_ranks = size_of(world);
     Outgoing<RigidBond> notes(n_ranks);
     for (const RigidBond &bond : bonds) notes[bookkeeper(std::min(bond.from, bond.to), n_ranks)].push_back(bond);

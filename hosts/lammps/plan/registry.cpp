@@ -50,8 +50,8 @@ void throw_together(MPI_Comm world, const std::string &message) {
     throw ErrorEverywhere(text);
 }
 
-Registry::Registry(MPI_Comm world, const std::vector<RigidBond> &bonds, const std::vector<BodyAtom> &bodies, int dimensions,
-                   std::int64_t divide)
+Registry::Registry(MPI_Comm world, const std::vector<RigidBond> &bonds, const std::vector<BodyAtom> &bodies,
+                   int dimensions, std::int64_t divide)
     : world_(world), n_ranks_(size_of(world)), divide_(divide) {
     std::vector<Node> nodes = collect(bonds, bodies);
     find_components(world, nodes);

@@ -63,7 +63,7 @@ struct StarPositions {
         V error = measure(D, sigma);
         const Limits<V> limits(call, largest * m.per_a_min);
         const MaskOf<V> untouched = in_use & less_equal(error, limits.accepted);
-        const MaskOf<V> wanted = in_use & ~untouched & less_equal(error, Width<V>::all(call.worst_trial));
+        const MaskOf<V> wanted = in_use & ~untouched & less_equal(error, Width<V>::all(call.far_trial));
         if (__builtin_expect(bits(untouched) == bits(in_use), 0) && !call.report) {  // nothing to do
             for (V &t : tau) t = V{};
             if (call.lambda) write_multipliers(tau, bits(untouched));

@@ -97,7 +97,7 @@ struct TrianglePositions {
             return bits(untouched);
         }
         const TriangleModel<V> model(x);
-        const MaskOf<V> near = less_equal(error, Width<V>::all(call.worst_trial));
+        const MaskOf<V> near = less_equal(error, Width<V>::all(call.far_trial));
         const MaskOf<V> wanted = in_use & ~untouched & near & model.open_angle();
         MaskOf<V> unsure = wanted;
         const int64_t solves = solve_for_multipliers<3>(model, x.tau, unsure, call.max_iterations);
