@@ -29,7 +29,7 @@ began=$SECONDS
 log=$root.test.log
 # shellcheck disable=SC2086
 inside "${ccache[@]}" CMAKE_ARGS="${CMAKE_ARGS:-}" HOLONOMIC_WITHOUT="$without" /srv/holonomic/scripts/test ${FRESH_TESTS:-} \
-    </dev/null 2>&1 | tee "$log" | grep -E '^(==|The following tests FAILED|	 *[0-9]+ - .*(Failed|SEGFAULT|Timeout))'
+    </dev/null 2>&1 | tee "$log" | grep --line-buffered -E '^(==|The following tests FAILED|	 *[0-9]+ - .*(Failed|SEGFAULT|Timeout))'
 status=${PIPESTATUS[0]}
 counts=$(awk '
     /tests passed, .* tests? failed out of/ { failed = $4; total = $NF; counted = 1 }

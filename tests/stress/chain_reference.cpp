@@ -295,8 +295,8 @@ int status_of_undecided(std::int64_t undecided, std::int64_t chains)
 {
     if (undecided == 0) return 0;
     std::printf(
-        "skipped: the reference has %.1Lg relative rounding, which does not decide about %lld of %lld chains. "
-        "With MPFR (libmpfr-dev) it decides about all.\n",
+        "skipped: the reference has %.1Lg relative rounding, which does not decide about %lld of %lld chains; "
+        "with MPFR (libmpfr-dev) it decides about all\n",
         solution_epsilon(), static_cast<long long>(undecided), static_cast<long long>(chains));
     return not_all_decided;
 }

@@ -33,6 +33,7 @@ struct CMUnitTest {
 #define assert_null(p) assert_true(!(p))
 #define assert_non_null(p) assert_true(p)
 #define assert_int_equal(a, b) same_integers((long long)(a), (long long)(b), #a " == " #b, __FILE__, __LINE__)
+#define assert_int_not_equal(a, b) assert_true((long long)(a) != (long long)(b))
 #define assert_in_range(x, low, high) assert_true((x) >= (low) && (x) <= (high))
 #define assert_string_equal(a, b) assert_true(strcmp((a), (b)) == 0)
 #define assert_memory_equal(a, b, size) assert_true(memcmp((a), (b), (size)) == 0)
