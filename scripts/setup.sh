@@ -27,7 +27,7 @@ help_asked() {
 }
 
 # Without one of these ctest says which tests it skipped, and why.
-test_tools="clang++ valgrind abidiff mpfr qemu-x86_64 flang git gnuplot eigen benchmark lapack numpy venv setuptools ase"
+test_tools="clang++ valgrind abidiff mpfr qemu-x86_64 flang git gnuplot eigen benchmark lapack numpy venv setuptools ase mypy"
 
 few_instruction_sets="avx2;scalar"
 

@@ -153,6 +153,9 @@ bool Rescaled::put_back() const {
 
 namespace {
 
+// What lengths may be (holonomic.h); longer and shorter bonds than these are refused.
+constexpr double longest_bond = 0x1p500;
+
 double most_w(const KernelMolecule &m) { return m.w ? *std::max_element(m.w, m.w + m.n_atoms) : m.w_uniform; }
 
 }  // namespace
@@ -180,7 +183,7 @@ bool find_units(const KernelMolecule &m, const AtomArray &r, const Box &box, Pow
             take(d);
         }
     }
-    if (!std::isfinite(sum) || longest == 0) return false;
+    if (!std::isfinite(sum) || !(longest > 1 / longest_bond && longest < longest_bond)) return false;
     units = powers_of(longest, most_w(m));
     return true;
 }
