@@ -19,9 +19,9 @@
  *   hol_chains_bonds gives their places in the arrays per bond.
  * - A bond between two fixed atoms is no constraint: it belongs to no molecule, removes no degree of freedom, and its
  *   multiplier and tension are 0.
- * - Units are the caller's own; any consistent set does (mass, length, time; force = mass length / time^2). Powers of two
- *   of them change no bit of a result (of sums over molecules, the last ones). Where numbers overflow or underflow on the way a molecule is worked on in other
- *   units, which takes longer; where results overflow it is HOL_ERR_NOT_FINITE.
+ * - Units are the caller's own; any consistent set does (mass, length, time; force = mass length / time^2). Powers of
+ * two of them change no bit of a result (of sums over molecules, the last ones). Where numbers overflow or underflow on
+ * the way a molecule is worked on in other units, which takes longer; where results overflow it is HOL_ERR_NOT_FINITE.
  * - An output that is NULL is not computed; an input that may be NULL is zero then. Neither costs anything.
  * - Arrays per atom are [n_atoms][3] (Fortran: (3, n_atoms)); only atoms of molecules are read and written. Arrays per
  *   bond are [n_bonds], in the order in which the bonds were given, call after call. Arrays per molecule are

@@ -51,19 +51,21 @@ struct ForcesWork final : Work {
     }
     bool rescales() const override { return true; }
     bool again(const Unit &one, int where, double *scratch, Tally &tally) const override {
-        return work_in_ordinary_units(
-            calls[where], one, tally,
-            [&](const ForcesCall &c, const Unit &unit, Tally &own) { kernels(unit).forces(c, unit, scratch, own); });
+        return work_in_ordinary_units(calls[where], one, tally, [&](const ForcesCall &c, const Unit &unit, Tally &own) {
+            kernels(unit).forces(c, unit, scratch, own);
+        });
     }
     bool again(const MoleculeUnit &one, int where, double *scratch, Tally &tally) const override {
-        return work_in_ordinary_units(
-            calls[where], one, tally,
-            [&](const ForcesCall &c, const MoleculeUnit &unit, Tally &own) { k.molecules.forces(c, unit, scratch, own); });
+        return work_in_ordinary_units(calls[where], one, tally,
+                                      [&](const ForcesCall &c, const MoleculeUnit &unit, Tally &own) {
+                                          k.molecules.forces(c, unit, scratch, own);
+                                      });
     }
     bool again(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
-        return work_in_ordinary_units(
-            calls[where], Unit{&lane, 1, false, false}, tally,
-            [&](const ForcesCall &c, const Unit &unit, Tally &own) { work_on_long(c, unit.lanes[0], team, store, own); });
+        return work_in_ordinary_units(calls[where], Unit{&lane, 1, false, false}, tally,
+                                      [&](const ForcesCall &c, const Unit &unit, Tally &own) {
+                                          work_on_long(c, unit.lanes[0], team, store, own);
+                                      });
     }
 };
 

@@ -41,9 +41,10 @@ struct MetricWork final : Work {
         });
     }
     bool again(const MoleculeUnit &one, int where, double *scratch, Tally &tally) const override {
-        return in_ordinary_units(
-            calls[where], one, tally,
-            [&](const MetricCall &c, const MoleculeUnit &unit, Tally &own) { k.molecules.metric(c, unit, scratch, own); });
+        return in_ordinary_units(calls[where], one, tally,
+                                 [&](const MetricCall &c, const MoleculeUnit &unit, Tally &own) {
+                                     k.molecules.metric(c, unit, scratch, own);
+                                 });
     }
     bool again(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
         const auto run = [&](const MetricCall &c, const Unit &unit, Tally &own) {

@@ -43,24 +43,28 @@ struct PositionsWork final : Work {
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
         work_on_long(calls[where], lane, team, store, tally);
     }
-    void work_on_long(const PositionsCall &call, const Lane &lane, const Team &team, double *store, Tally &tally) const {
+    void work_on_long(const PositionsCall &call, const Lane &lane, const Team &team, double *store,
+                      Tally &tally) const {
         solve_long_chain(k.long_positions, kernels_for_one_chain().positions, call, lane, team, store, tally);
     }
     bool rescales() const override { return true; }
     bool again(const Unit &one, int where, double *scratch, Tally &tally) const override {
-        return work_in_ordinary_units(
-            calls[where], one, tally,
-            [&](const PositionsCall &c, const Unit &unit, Tally &own) { kernels(unit).positions(c, unit, scratch, own); });
+        return work_in_ordinary_units(calls[where], one, tally,
+                                      [&](const PositionsCall &c, const Unit &unit, Tally &own) {
+                                          kernels(unit).positions(c, unit, scratch, own);
+                                      });
     }
     bool again(const MoleculeUnit &one, int where, double *scratch, Tally &tally) const override {
-        return work_in_ordinary_units(
-            calls[where], one, tally,
-            [&](const PositionsCall &c, const MoleculeUnit &unit, Tally &own) { k.molecules.positions(c, unit, scratch, own); });
+        return work_in_ordinary_units(calls[where], one, tally,
+                                      [&](const PositionsCall &c, const MoleculeUnit &unit, Tally &own) {
+                                          k.molecules.positions(c, unit, scratch, own);
+                                      });
     }
     bool again(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
-        return work_in_ordinary_units(
-            calls[where], Unit{&lane, 1, false, false}, tally,
-            [&](const PositionsCall &c, const Unit &unit, Tally &own) { work_on_long(c, unit.lanes[0], team, store, own); });
+        return work_in_ordinary_units(calls[where], Unit{&lane, 1, false, false}, tally,
+                                      [&](const PositionsCall &c, const Unit &unit, Tally &own) {
+                                          work_on_long(c, unit.lanes[0], team, store, own);
+                                      });
     }
 };
 
@@ -132,8 +136,7 @@ void project_from(const Chains &chains, PositionsCall &call, const Reference *re
     put_box(chains.box, call.box);
     put_box(box_ref, call.box_ref);
     PositionsCall given = call;
-    if (call.r_ref.x == call.r.x && moves_in_parts(chains.plan()))
-        given.r_ref = copy_of(call.r_ref, chains.n_atoms());
+    if (call.r_ref.x == call.r.x && moves_in_parts(chains.plan())) given.r_ref = copy_of(call.r_ref, chains.n_atoms());
     Apart apart(chains);
     const Tally tally = execute(chains, PositionsWork(given, apart, reference));
     apart.put_back();

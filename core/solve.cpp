@@ -37,9 +37,10 @@ struct SolveWork final : Work {
     }
     bool rescales() const override { return true; }
     bool again(const MoleculeUnit &one, int where, double *scratch, Tally &tally) const override {
-        return work_in_ordinary_units(
-            calls[where], one, tally,
-            [&](const SolveCall &c, const MoleculeUnit &unit, Tally &own) { k.molecules.solve(c, unit, scratch, own); });
+        return work_in_ordinary_units(calls[where], one, tally,
+                                      [&](const SolveCall &c, const MoleculeUnit &unit, Tally &own) {
+                                          k.molecules.solve(c, unit, scratch, own);
+                                      });
     }
     // The plan has no linear chains.
     void unit(const Unit &, int, double *, Tally &) const override {}

@@ -37,7 +37,8 @@ struct VelocitiesWork final : Work {
     void long_chain(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
         work_on_long(calls[where], lane, team, store, tally);
     }
-    void work_on_long(const VelocitiesCall &call, const Lane &lane, const Team &team, double *store, Tally &tally) const {
+    void work_on_long(const VelocitiesCall &call, const Lane &lane, const Team &team, double *store,
+                      Tally &tally) const {
         // The recursion gives the multipliers to a few roundings of themselves; what that leaves of the rates goes with
         // a second projection, of velocities that need next to none.
         const std::int64_t n_bad = tally.n_bad;
@@ -50,19 +51,22 @@ struct VelocitiesWork final : Work {
     }
     bool rescales() const override { return true; }
     bool again(const Unit &one, int where, double *scratch, Tally &tally) const override {
-        return work_in_ordinary_units(
-            calls[where], one, tally,
-            [&](const VelocitiesCall &c, const Unit &unit, Tally &own) { kernels(unit).velocities(c, unit, scratch, own); });
+        return work_in_ordinary_units(calls[where], one, tally,
+                                      [&](const VelocitiesCall &c, const Unit &unit, Tally &own) {
+                                          kernels(unit).velocities(c, unit, scratch, own);
+                                      });
     }
     bool again(const MoleculeUnit &one, int where, double *scratch, Tally &tally) const override {
-        return work_in_ordinary_units(
-            calls[where], one, tally,
-            [&](const VelocitiesCall &c, const MoleculeUnit &unit, Tally &own) { k.molecules.velocities(c, unit, scratch, own); });
+        return work_in_ordinary_units(calls[where], one, tally,
+                                      [&](const VelocitiesCall &c, const MoleculeUnit &unit, Tally &own) {
+                                          k.molecules.velocities(c, unit, scratch, own);
+                                      });
     }
     bool again(const Lane &lane, int where, const Team &team, double *store, Tally &tally) const override {
-        return work_in_ordinary_units(
-            calls[where], Unit{&lane, 1, false, false}, tally,
-            [&](const VelocitiesCall &c, const Unit &unit, Tally &own) { work_on_long(c, unit.lanes[0], team, store, own); });
+        return work_in_ordinary_units(calls[where], Unit{&lane, 1, false, false}, tally,
+                                      [&](const VelocitiesCall &c, const Unit &unit, Tally &own) {
+                                          work_on_long(c, unit.lanes[0], team, store, own);
+                                      });
     }
 };
 

@@ -107,8 +107,8 @@ constexpr int most_ordinary_length = 48, most_ordinary_mass = 92;
 // Squares of bonds are no more than this then, and no less than one over it; kernels look whether they are.
 constexpr double most_ordinary_square = 0x1p199;
 
-// Calls are `rescaled` where their molecule has been put into ordinary units (core/run/rescale.hpp). Where it has not, a
-// molecule whose units plain products can't do in is bad, and core puts it there.
+// Calls are `rescaled` where their molecule has been put into ordinary units (core/run/rescale.hpp). Where it has not,
+// a molecule whose units plain products can't do in is bad, and core puts it there.
 
 struct ForcesCall {
     AtomArray r, v, f, g;

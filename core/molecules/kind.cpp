@@ -85,9 +85,8 @@ double Kinds::longest(std::int64_t first, double least) const {
 
 bool Kinds::is_ordinary(const Kind &kind) const {
     const double *const masses = w(kind), *const lengths = length(kind);
-    return are_ordinary(
-        powers_of(lengths ? *std::max_element(lengths, lengths + kind.n_bonds) : kind.length_uniform,
-                  masses ? *std::max_element(masses, masses + kind.n_atoms()) : kind.w_uniform));
+    return are_ordinary(powers_of(lengths ? *std::max_element(lengths, lengths + kind.n_bonds) : kind.length_uniform,
+                                  masses ? *std::max_element(masses, masses + kind.n_atoms()) : kind.w_uniform));
 }
 
 void Kinds::shrink() {

@@ -212,9 +212,8 @@ private:
             MoleculeUnit unit = chains_.unit(plan_, piece, &lane);
             unit.team = team;
             if (outcomes_) return work_on_each(unit, piece.where, scratch, tally);
-            return in_its_units(work_, unit, piece.where, scratch, tally, [&](Tally &own) {
-                work_on_molecules(work_, unit, piece.where, scratch, own);
-            });
+            return in_its_units(work_, unit, piece.where, scratch, tally,
+                                [&](Tally &own) { work_on_molecules(work_, unit, piece.where, scratch, own); });
         }
         Lane lane;
         const Unit unit = chains_.unit(plan_, piece, &lane);
@@ -245,7 +244,8 @@ private:
             const Lane lane = unit.regular ? lane_of(unit, i) : unit.lanes[i];
             const Unit one{&lane, 1, unit.regular, unit.large};
             with_outcome(outcome_of(lane.chain), tally, [&](Tally &own) {
-                in_its_units(work_, one, where, scratch, own, [&](Tally &of_one) { work_.unit(one, where, scratch, of_one); });
+                in_its_units(work_, one, where, scratch, own,
+                             [&](Tally &of_one) { work_.unit(one, where, scratch, of_one); });
             });
         }
     }

@@ -48,8 +48,7 @@ OneMolecule::OneMolecule(const Schedule &s, const MoleculeLane &lane)
 Rescaled::Rescaled(const OneMolecule &molecule, const Powers &of) : units(of), one_(molecule) {
     const std::int64_t atoms = rounded_up(8 * (3 * one_.n_atoms + 3 * room_behind)),
                        values = rounded_up(8 * (std::max(one_.n_atoms, one_.n_bonds) + room_behind));
-    memory_ = static_cast<char *>(
-        thread_memory(Keep::rescaled, most_atom_arrays * atoms + most_value_arrays * values));
+    memory_ = static_cast<char *>(thread_memory(Keep::rescaled, most_atom_arrays * atoms + most_value_arrays * values));
     if (!memory_) throw std::bad_alloc();
     if (one_.w) {
         w_ = take(one_.n_atoms);
@@ -154,6 +153,9 @@ bool Rescaled::put_back() const {
 
 namespace {
 
+// What lengths may be (holonomic.h); longer and shorter bonds than these are refused.
+constexpr double longest_bond = 0x1p500;
+
 double most_w(const OneMolecule &m) { return m.w ? *std::max_element(m.w, m.w + m.n_atoms) : m.w_uniform; }
 
 }  // namespace
@@ -170,7 +172,7 @@ bool find_units(const OneMolecule &m, const AtomArray &r, const Box &box, Powers
             longest = std::max(longest, std::fabs(component));
         }
     }
-    if (longest == 0) return false;
+    if (!(longest > 1 / longest_bond && longest < longest_bond)) return false;
     units = powers_of(longest, most_w(m));
     return true;
 }

@@ -74,7 +74,7 @@ private:
 };
 
 // The units in which the longest bond and the lightest mass are about 1, from positions and their box, or from the
-// lengths of the bonds. False if there are none: an infinity, or nothing but bonds of length zero.
+// lengths of the bonds. False if there are none: an infinity, bonds of length zero, or longer than lengths may be.
 bool find_units(const OneMolecule &molecule, const AtomArray &r, const Box &box, Powers &units);
 bool find_units(const OneMolecule &molecule, Powers &units);
 

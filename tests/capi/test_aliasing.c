@@ -66,10 +66,10 @@ static void positions_may_be_their_own_reference(const mixture *m, int apart)
     any_array v = array_of(m->v, size, apart), u = array_of(m->v, size, apart);
     double *lambda = untouched(n), *other = untouched(n), virial[9], sum[9];
     hol_report report, own_report;
-    const int status = hol_project_positions_view(m->chains, &ref.view, &r.view, &v.view, 1e-3, lambda, 0, virial,
-                                                  &report);
-    assert_int_equal(hol_project_positions_view(m->chains, &own.view, &own.view, &u.view, 1e-3, other, 0, sum,
-                                                &own_report), status);
+    const int status =
+        hol_project_positions_view(m->chains, &ref.view, &r.view, &v.view, 1e-3, lambda, 0, virial, &report);
+    assert_int_equal(
+        hol_project_positions_view(m->chains, &own.view, &own.view, &u.view, 1e-3, other, 0, sum, &own_report), status);
     assert_same_arrays(&r, &own);
     assert_same_arrays(&v, &u);
     assert_same_bits(lambda, other, n);
@@ -109,7 +109,7 @@ static void check_molecule(molecule m)
 static void small_molecules(void **state)
 {
     (void)state;
-    for (int kind = 0; kind < MOLECULE_KINDS; ++kind)  /* the last ones are bodies */
+    for (int kind = 0; kind < MOLECULE_KINDS; ++kind) /* the last ones are bodies */
         if (kind != MOLECULE_TAUT_EXACTLY)
             check_molecule(molecule_make((molecule_kind)kind, kind == MOLECULE_DENDRIMER ? 2 : 6, 3));
 }

@@ -38,8 +38,9 @@ static results call(const mixture *m, hol_chains *chains, verb which, powers p)
     const int speed = p.length - p.time, force = p.mass + p.length - 2 * p.time;
     double *r = scaled(m->r, size, p.length), *v = scaled(m->v, size, speed), *f = scaled(m->f, size, force);
     double *rhs = scaled(m->length, n, 2 * p.length - 2 * p.time), *drifted = mixture_drifted(m, 1e-3);
-    results x = {0, scaled(drifted, size, p.length), scaled(m->v, size, speed), untouched(size), untouched(n),
-                 untouched(n), {0}};
+    results x = {
+        0,  scaled(drifted, size, p.length), scaled(m->v, size, speed), untouched(size), untouched(n), untouched(n),
+        {0}};
     for (int i = 0; i < 9; ++i) x.virial[i] = -77;
     if (which == FORCES) x.status = hol_forces(chains, r, v, f, x.lambda, x.tension, x.g, HOL_WRITE, x.virial);
     if (which == SOLVE) x.status = hol_solve(chains, r, rhs, x.lambda, x.g, HOL_WRITE, x.virial);
@@ -130,10 +131,10 @@ static hol_chains *chains_of(const mixture *m, powers p)
 /** Handles in these units, at all levels. */
 static void check_units(const mixture *m, const char *name)
 {
-    static const powers units[] = {{-33, -86, -50},  {0, -340, 0},  {0, -344, 0},   {0, -400, 0},   {0, 356, 0},
-                                   {120, -240, 0},   {128, -256, 0}, {88, -176, 20}, {-256, 0, 0},   {-264, 0, -30},
-                                   {-300, 0, 0},     {-140, 280, 0}, {0, 600, 100},  {0, 700, 100},  {-96, 564, 60},
-                                   {-306, 360, 0},   {400, -300, 0}, {-450, 100, 0}, {450, -900, -8}, {480, 300, 250}};
+    static const powers units[] = {{-33, -86, -50}, {0, -340, 0},   {0, -344, 0},   {0, -400, 0},    {0, 356, 0},
+                                   {120, -240, 0},  {128, -256, 0}, {88, -176, 20}, {-256, 0, 0},    {-264, 0, -30},
+                                   {-300, 0, 0},    {-140, 280, 0}, {0, 600, 100},  {0, 700, 100},   {-96, 564, 60},
+                                   {-306, 360, 0},  {400, -300, 0}, {-450, 100, 0}, {450, -900, -8}, {480, 300, 250}};
     int answered = 0;
     CHECK(hol_chains_set_checks(m->chains, HOL_NEVER));
     for (size_t u = 0; u < sizeof units / sizeof *units; ++u) {
@@ -150,8 +151,7 @@ static void check_bonds(const mixture *m, const char *name)
     int answered = 0;
     for (int e = -480; e <= 480; e += 20) {
         const powers p = {e, 0, 0};
-        for (int which = FORCES; which <= VELOCITIES; ++which)
-            answered += compare(m, m->chains, (verb)which, p, name);
+        for (int which = FORCES; which <= VELOCITIES; ++which) answered += compare(m, m->chains, (verb)which, p, name);
     }
     if (answered < 60) fail_msg("%s: %d calls have been answered", name, answered);
 }

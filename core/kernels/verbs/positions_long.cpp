@@ -1,8 +1,8 @@
 // Position level of one long chain in windows (memory/cut.hpp). The kernel of short chains solves each. The result does
 // not rest on how far a margin is felt: inside a piece Newton's method has tested all lengths, and where two pieces
 // meet they are tested here before anything is written. The bonds of the reference are needed while atoms are moved: it
-// is not the array of the positions (core/positions.cpp). If windows can't do the chain, core hands it to positions() as
-// a unit of one.
+// is not the array of the positions (core/positions.cpp). If windows can't do the chain, core hands it to positions()
+// as a unit of one.
 #include "core/kernels/memory/cut.hpp"
 #include "core/kernels/memory/load.hpp"
 #include "core/kernels/memory/outputs.hpp"
