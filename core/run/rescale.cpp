@@ -133,7 +133,8 @@ bool Rescaled::put_back() const {
                 read_atom(atoms_[a].callers, atom_of(one_, i), now);
                 bool any = false;
                 for (int c = 0; c < 3; ++c) {
-                    if (same_bits(x[c], before[c])) continue;
+                    if (same_bits(x[c], before[c]) || x[c] == before[c])
+                        continue;  // nor where a zero has lost its sign
                     any = true;
                     if (pass == 0 && overflows(x[c], atoms_[a].e, atoms_[a].callers.is_float)) return false;
                     now[c] = std::scalbn(x[c], atoms_[a].e);
