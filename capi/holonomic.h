@@ -725,10 +725,10 @@ typedef struct hol_report {
  *
  * These equations are quadratic, and may have several roots. The one meant is that of the reference, where all lambda
  * are 0, as it grows while r goes straight from r_ref to where it is. Newton's method comes there in ordinary steps. A
- * molecule for which it fails is looked at alone, and so is one with a bond of |d.d - a^2| > 0.15 a^2 in r that is no
- * linear chain: its root is tested, or followed from the reference. Where that comes to an end before r there is none
- * (HOL_ERR_NO_CONVERGENCE: halve the step), though bonds that turn round might have the lengths. docs/stability.md says
- * what is guaranteed, and the cost.
+ * molecule for which it fails is looked at alone, and so is one with a bond of |d.d - a^2| > 0.15 a^2 in r, or of more
+ * than 0.5 a^2 in a linear chain: its root is tested, or followed from the reference. Where that comes to an end before
+ * r there is none (HOL_ERR_NO_CONVERGENCE: halve the step), though bonds that turn round might have the lengths.
+ * docs/stability.md says what is guaranteed, and the cost.
  *
  * @param[in]     chains
  * @param[in]     r_ref   positions before the drift [n_atoms][3]; may be r itself (in Fortran: docs/fortran.md). Only

@@ -76,17 +76,20 @@ bool moves_in_parts(const Plan &plan) {
                        [&](std::int32_t shape) { return plan.schedules[static_cast<std::size_t>(shape)]->paths; });
 }
 
-// A copy of the caller's array in memory of this thread.
-AtomArray copy_of(const AtomArray &array, std::int64_t n_atoms) {
-    const std::int64_t bytes = 3 * n_atoms * static_cast<std::int64_t>(sizeof(double));
+// A copy of the caller's array in memory of this thread: of the atoms of active molecules.
+AtomArray copy_of(const AtomArray &array, const Chains &chains) {
+    const std::int64_t bytes = 3 * chains.n_atoms() * static_cast<std::int64_t>(sizeof(double));
     double *const copy = static_cast<double *>(thread_memory(Keep::reference, bytes));
     if (!copy) throw std::bad_alloc();
     AtomArray to = packed_array(copy);
-    for (std::int64_t i = 0; i < n_atoms; ++i) {
-        double x[3];
-        read_atom(array, i, x);
-        write_atom(to, i, x);
-    }
+    chains.for_active([&](const Molecule &m) {
+        for (std::int64_t i = 0; i < m.n_atoms; ++i) {
+            double x[3];
+            read_atom(array, m.atom(i), x);
+            write_atom(to, m.atom(i), x);
+        }
+        return true;
+    });
     to.packed = array.packed;
     if (!array.z) to.z = nullptr;
     return to;
@@ -137,13 +140,15 @@ void project_from(const Chains &chains, PositionsCall &call, const Reference *re
     put_box(chains.box, call.box);
     put_box(box_ref, call.box_ref);
     const AtomArray r_ref = call.r_ref;
-    if (call.r_ref.x == call.r.x && moves_in_parts(chains.plan())) call.r_ref = copy_of(r_ref, chains.n_atoms());
-    call.far_trial = std::min(call.worst_trial, far_from_lengths);
+    if (call.r_ref.x == call.r.x && moves_in_parts(chains.plan())) call.r_ref = copy_of(r_ref, chains);
+    const double worst_trial = call.worst_trial;
+    call.far_trial = std::min(worst_trial, far_from_lengths);
+    call.worst_trial = std::min(worst_trial, far_from_lengths_of_chains);
     Apart apart(chains);
     Tally tally = execute(chains, PositionsWork(call, apart, reference));
     apart.put_back();
     call.r_ref = r_ref;
-    call.far_trial = call.worst_trial;
+    call.far_trial = call.worst_trial = worst_trial;
     if (tally.n_bad > 0) tally = finish_long_steps(chains, call, reference, tally);
     clear_unconstrained(chains, call.lambda);
     if (report) *report = report_of(chains, tally);
