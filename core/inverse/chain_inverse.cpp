@@ -41,9 +41,10 @@ ChainInverse::ChainInverse(const Chains &chains, std::int64_t chain, const AtomA
         e = as_pair(deficit(k)) + l * e;
         pivot = e + as_pair(k + 1 < n_ ? coupling(k + 1) : 0);
         b.l = rounded(l);
+        b.l_rest = rounded(l - as_pair(b.l));
         b.inverse = rounded(e);
-        b.pivot = rounded(pivot);
-        good = good && b.pivot > 0 && std::isfinite(b.pivot);
+        b.pivot = pivot;
+        good = good && rounded(pivot) > 0 && std::isfinite(rounded(pivot));
         if (!good) break;
     }
     if (!good) refuse(chains, chain, r);
@@ -154,12 +155,17 @@ void ChainInverse::matrix(bool physical, double *out) const {
     }
 }
 
-// x becomes |M^-1| x for x >= 0.
+// x becomes |M^-1| x for x >= 0. Sums have twice the digits, as those of the elimination have: equal joints round them
+// all the same way.
 void ChainInverse::multiply_by_absolute_inverse(std::vector<double> &x) const {
-    for (std::size_t k = 1; k < n_; ++k) x[k] += std::fabs(bonds_[k].l) * x[k - 1];
+    const auto factor = [&](std::size_t k) { return as_pair(std::fabs(bonds_[k].l)) + as_pair(bonds_[k].l_rest); };
+    std::vector<DoublePair> sums(n_);
+    for (std::size_t k = 0; k < n_; ++k) sums[k] = k == 0 ? as_pair(x[0]) : as_pair(x[k]) + factor(k) * sums[k - 1];
+    DoublePair above = as_pair(0);
     for (std::size_t k = n_; k-- > 0;) {
-        x[k] /= bonds_[k].pivot;
-        if (k + 1 < n_) x[k] += std::fabs(bonds_[k + 1].l) * x[k + 1];
+        const DoublePair sum = sums[k] / bonds_[k].pivot;
+        above = k + 1 < n_ ? sum + factor(k + 1) * above : sum;
+        x[k] = rounded(above);
     }
 }
 

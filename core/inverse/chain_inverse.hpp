@@ -24,10 +24,11 @@ public:
 private:
     struct Bond {
         double l;  // of the elimination: couples it to the bond before, with the sign of their cosine; 0 for the first
-        double pivot;    // P of theory (26)
-        double inverse;  // (M^-1)_kk
-        double root;     // sqrt(M_kk)
-        double length;   // |d_k|
+        double l_rest;     // what |l| is more than its double
+        DoublePair pivot;  // P of theory (26)
+        double inverse;    // (M^-1)_kk
+        double root;       // sqrt(M_kk)
+        double length;     // |d_k|
     };
     class Walk;
 

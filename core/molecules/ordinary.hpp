@@ -7,9 +7,10 @@
 
 namespace holonomic {
 
-// Powers of two.
+// Powers of two. Multipliers, and what they are linear in, are over one more: forces and squares of velocities, or the
+// velocities that are projected, or right-hand sides.
 struct Powers {
-    int length, mass;
+    int length, mass, multiplier = 0;
 };
 
 // Of the longest bond and the largest inverse mass, both positive and finite. Even, as there are roots of masses.

@@ -111,7 +111,9 @@ void solve_long_chain(const Phases &phases, const Call &call, const Lane &lane, 
     JoinResult result = join_doubtful;
     for (int attempt = 0; attempt < 2 && result == join_doubtful; ++attempt) {
         const bool careful = attempt == 1;
-        if (careful && !call.rescaled && find_units(KernelMolecule(lane), call, units) && !are_ordinary(units)) break;
+        if (careful && !call.rescaled &&
+            !(find_units(KernelMolecule(lane), call.r, call.box, units) && are_ordinary(units)))
+            break;
         // A few blocks before all others: a chain that is in doubt there needs no plain products elsewhere.
         std::int64_t done = 0;
         for (const std::int64_t end : {std::min<std::int64_t>(blocks, 8), blocks}) {

@@ -1,5 +1,6 @@
 #include "core/run/rescale.hpp"
 
+#include <climits>
 #include <cmath>
 #include <cstring>
 #include <new>
@@ -99,6 +100,12 @@ const double *Rescaled::inputs(const double *callers, int e) {
     return copy;
 }
 
+const double *Rescaled::rates(const double *strain, int e) {
+    if (!strain) return nullptr;
+    for (int c = 0; c < 6; ++c) strain_[c] = std::scalbn(strain[c], -e);
+    return strain_;
+}
+
 double *Rescaled::results(double *callers, int e, bool are_read) {
     if (!callers) return nullptr;
     double *const copy = take(one_.n_bonds), *const before = take(one_.n_bonds);
@@ -194,6 +201,50 @@ bool find_units(const KernelMolecule &m, Powers &units) {
     return true;
 }
 
+namespace {
+
+// Forces and the like are left as they are, denormal ones too, in all but extreme cases: over 2^(e + multiplier), where
+// their units are 2^e and the largest is about 2^own.
+constexpr int most_ordinary_input = 400;
+int multiplier_of(int own, int e) { return std::abs(own) <= most_ordinary_input ? -e : own / 2 * 2 - e; }
+
+// log2 of the largest component, or that of 1 if all are zero.
+constexpr int of_zero = INT_MIN / 4;
+int power_of(double largest) { return largest > 0 && std::isfinite(largest) ? std::ilogb(largest) : of_zero; }
+int power_of(const KernelMolecule &m, const AtomArray &callers) {
+    double largest = 0;
+    for (std::int64_t i = 0; callers.x && i < m.n_atoms; ++i) {
+        double x[3];
+        read_atom(callers, atom_of(m, i), x);
+        for (const double component : x) largest = std::max(largest, std::fabs(component));
+    }
+    return power_of(largest);
+}
+int or_one(int power) { return power <= of_zero / 2 ? 0 : power; }
+
+}  // namespace
+
+bool find_units(const KernelMolecule &m, const ForcesCall &call, Powers &units) {
+    if (!find_units(m, call.r, call.box, units)) return false;
+    const int of_forces = power_of(m, call.f), of_velocities = 2 * power_of(m, call.v) + units.mass - units.length;
+    units.multiplier = multiplier_of(or_one(std::max(of_forces, of_velocities)), units.length + units.mass);
+    return true;
+}
+
+bool find_units(const KernelMolecule &m, const VelocitiesCall &call, Powers &units) {
+    if (!find_units(m, call.r, call.box, units)) return false;
+    units.multiplier = multiplier_of(or_one(power_of(m, call.v)), units.length);
+    return true;
+}
+
+bool find_units(const KernelMolecule &m, const SolveCall &call, Powers &units) {
+    if (!find_units(m, call.r, call.box, units)) return false;
+    double largest = 0;
+    for (std::int64_t k = 0; k < m.n_bonds; ++k) largest = std::max(largest, std::fabs(call.rhs[m.bond(k)]));
+    units.multiplier = multiplier_of(or_one(power_of(largest)), 2 * units.length);
+    return true;
+}
+
 Box rescaled(const Box &box, int e) {
     Box copy{};
     copy.shape = box.shape;
@@ -210,14 +261,14 @@ Box rescaled(const Box &box, int e) {
 }
 
 ForcesCall rescaled(const ForcesCall &call, Rescaled &copy) {
-    const int length = copy.units.length, mass = copy.units.mass;
+    const int length = copy.units.length, multiplier = copy.units.mass + copy.units.multiplier;
     ForcesCall c = call;
     c.r = copy.inputs(call.r, length);
-    c.v = copy.inputs(call.v, length);
-    c.f = copy.inputs(call.f, length + mass);
-    c.g = copy.results(call.g, length + mass, call.add);
-    c.lambda = copy.results(call.lambda, mass);
-    c.tension = copy.results(call.tension, length + mass);
+    c.v = copy.inputs(call.v, length + copy.units.multiplier / 2);
+    c.f = copy.inputs(call.f, length + multiplier);
+    c.g = copy.results(call.g, length + multiplier, call.add);
+    c.lambda = copy.results(call.lambda, multiplier);
+    c.tension = copy.results(call.tension, length + multiplier);
     c.box = rescaled(call.box, length);
     return c;
 }
@@ -226,20 +277,21 @@ VelocitiesCall rescaled(const VelocitiesCall &call, Rescaled &copy) {
     const int length = copy.units.length;
     VelocitiesCall c = call;
     c.r = copy.inputs(call.r, length);
-    c.v = copy.moved(call.v, length);
-    c.lambda = copy.results(call.lambda, copy.units.mass);
+    c.v = copy.moved(call.v, length + copy.units.multiplier);
+    c.lambda = copy.results(call.lambda, copy.units.mass + copy.units.multiplier);
+    c.strain = copy.rates(call.strain, copy.units.multiplier);
     c.box = rescaled(call.box, length);
     return c;
 }
 
 SolveCall rescaled(const SolveCall &call, Rescaled &copy) {
-    const int length = copy.units.length, mass = copy.units.mass;
+    const int length = copy.units.length, multiplier = copy.units.mass + copy.units.multiplier;
     SolveCall c = call;
     c.r = copy.inputs(call.r, length);
-    c.rhs = copy.inputs(call.rhs, 2 * length);
-    c.g = copy.results(call.g, length + mass, call.add);
-    c.lambda = copy.results(call.lambda, mass);
-    c.tension = copy.results(call.tension, length + mass);
+    c.rhs = copy.inputs(call.rhs, 2 * length + copy.units.multiplier);
+    c.g = copy.results(call.g, length + multiplier, call.add);
+    c.lambda = copy.results(call.lambda, multiplier);
+    c.tension = copy.results(call.tension, length + multiplier);
     c.box = rescaled(call.box, length);
     return c;
 }
@@ -266,7 +318,7 @@ MetricCall rescaled(const MetricCall &call, Rescaled &copy) {
 }
 
 void add_rescaled(const KernelMolecule &molecule, const Powers &units, Tally own, Tally &tally) {
-    for (double &sum : own.virial) sum = std::scalbn(sum, 2 * units.length + units.mass);
+    for (double &sum : own.virial) sum = std::scalbn(sum, 2 * units.length + units.mass + units.multiplier);
     if (own.worst_chain >= 0) own.worst_chain = molecule.number;
     add(tally, own);
 }

@@ -41,6 +41,7 @@ public:
     AtomArray moved(const AtomArray &callers, int e) { return add(callers, e, true); }
     AtomArray results(const AtomArray &callers, int e, bool are_added) { return add(callers, e, are_added); }
     const double *inputs(const double *callers, int e);
+    const double *rates(const double *strain, int e);  // the six of VelocitiesCall
     double *results(double *callers, int e, bool are_read = false);
 
     // The lane of the copy, of a unit of its own.
@@ -68,6 +69,7 @@ private:
     const KernelMolecule one_;
     char *memory_;
     double *w_ = nullptr, *length_ = nullptr;
+    double strain_[6];
     Atoms atoms_[3];
     Values values_[2];
     int n_atoms_ = 0, n_values_ = 0;
@@ -86,12 +88,10 @@ VelocitiesCall rescaled(const VelocitiesCall &call, Rescaled &copy);
 SolveCall rescaled(const SolveCall &call, Rescaled &copy);
 PositionsCall rescaled(const PositionsCall &call, Rescaled &copy);
 MetricCall rescaled(const MetricCall &call, Rescaled &copy);  // but for the determinants
+bool find_units(const KernelMolecule &molecule, const ForcesCall &call, Powers &units);
+bool find_units(const KernelMolecule &molecule, const VelocitiesCall &call, Powers &units);
+bool find_units(const KernelMolecule &molecule, const SolveCall &call, Powers &units);
 inline bool find_units(const KernelMolecule &m, const MetricCall &c, Powers &u) { return find_units(m, c.r, c.box, u); }
-inline bool find_units(const KernelMolecule &m, const ForcesCall &c, Powers &u) { return find_units(m, c.r, c.box, u); }
-inline bool find_units(const KernelMolecule &m, const VelocitiesCall &c, Powers &u) {
-    return find_units(m, c.r, c.box, u);
-}
-inline bool find_units(const KernelMolecule &m, const SolveCall &c, Powers &u) { return find_units(m, c.r, c.box, u); }
 inline bool find_units(const KernelMolecule &m, const PositionsCall &, Powers &u) { return find_units(m, u); }
 
 template <class Call>

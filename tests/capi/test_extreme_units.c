@@ -84,14 +84,16 @@ static int is_finite_scaled(const double *a, size_t n, int e)
 }
 
 /** Returns whether it was answered. */
-static int compare(const mixture *m, hol_chains *chains, verb which, powers p, const char *name)
+static int compare(const mixture *m, hol_chains *chains, verb which, powers p, const results *ordinary,
+                   const char *name)
 {
     const size_t size = mixture_size(m), n = (size_t)m->n_bonds;
     const int speed = p.length - p.time, force = p.mass + p.length - 2 * p.time;
     const int multiplier = which == METRIC ? 0 : which == VELOCITIES ? p.mass - p.time : p.mass - 2 * p.time;
     const int on_atoms = which == METRIC ? -p.length : force;
     const int energy = force + p.length + (which == VELOCITIES ? p.time : 0);
-    results a = call(m, m->chains, which, (powers){0, 0, 0}), b = call(m, chains, which, p);
+    const results a = *ordinary;
+    results b = call(m, chains, which, p);
     int answered = 0;
     if (a.status == HOL_OK && b.status == HOL_OK) {
         answered = 1;
@@ -112,7 +114,7 @@ static int compare(const mixture *m, hol_chains *chains, verb which, powers p, c
         }
         for (int i = 0; i < 9; ++i) assert_true(b.virial[i] == -77);
     }
-    release(&a), release(&b);
+    release(&b);
     return answered;
 }
 
@@ -128,41 +130,48 @@ static hol_chains *chains_of(const mixture *m, powers p)
     return chains;
 }
 
-/** Handles in these units, at all levels. */
-static void check_units(const mixture *m, const char *name)
+/** Handles in these units, at all levels. `ordinary`: the results in the mixture's own. */
+static void check_units(const mixture *m, const results *ordinary, const char *name)
 {
     static const powers units[] = {{-33, -86, -50}, {0, -340, 0},   {0, -344, 0},   {0, -400, 0},    {0, 356, 0},
                                    {120, -240, 0},  {128, -256, 0}, {88, -176, 20}, {-256, 0, 0},    {-264, 0, -30},
                                    {-300, 0, 0},    {-140, 280, 0}, {0, 600, 100},  {0, 700, 100},   {-96, 564, 60},
                                    {-306, 360, 0},  {400, -300, 0}, {-450, 100, 0}, {450, -900, -8}, {480, 300, 250}};
     int answered = 0;
-    CHECK(hol_chains_set_checks(m->chains, HOL_NEVER));
-    for (size_t u = 0; u < sizeof units / sizeof *units; ++u) {
+    for (size_t u = 0; u < sizeof units / sizeof *units; u += quick_run() ? 7 : 1) {
         hol_chains *chains = chains_of(m, units[u]);
-        for (int which = 0; which < N_VERBS; ++which) answered += compare(m, chains, (verb)which, units[u], name);
+        for (int which = 0; which < N_VERBS; ++which)
+            answered += compare(m, chains, (verb)which, units[u], &ordinary[which], name);
         hol_chains_destroy(chains);
     }
-    if (answered < 60) fail_msg("%s: %d calls have been answered", name, answered);
+    if (answered < (quick_run() ? 6 : 60)) fail_msg("%s: %d calls have been answered", name, answered);
 }
 
 /** Positions in other units than the lengths, which forces and velocities do not look at. */
-static void check_bonds(const mixture *m, const char *name)
+static void check_bonds(const mixture *m, const results *ordinary, const char *name)
 {
     int answered = 0;
-    for (int e = -480; e <= 480; e += 20) {
+    for (int e = -480; e <= 480; e += quick_run() ? 160 : 20) {
         const powers p = {e, 0, 0};
-        for (int which = FORCES; which <= VELOCITIES; ++which) answered += compare(m, m->chains, (verb)which, p, name);
+        for (int which = FORCES; which <= VELOCITIES; ++which)
+            answered += compare(m, m->chains, (verb)which, p, &ordinary[which], name);
     }
-    if (answered < 60) fail_msg("%s: %d calls have been answered", name, answered);
+    if (answered < (quick_run() ? 6 : 60)) fail_msg("%s: %d calls have been answered", name, answered);
 }
 
-static void check_molecule(molecule m, const char *name)
+/** Alone, and with so many others like it. */
+static void check_molecule(molecule m, int others, const char *name)
 {
     molecule parts[5] = {m, m, m, m, m};
-    for (int n = 1; n <= 5; n += 4) {
-        mixture x = mixture_make(parts, n, n == 5 ? MIXED : ONE_AFTER_THE_OTHER, 7);
-        check_units(&x, name);
-        check_bonds(&x, name);
+    for (int n = 1; n <= 1 + others; n += others) {
+        mixture x = mixture_make(parts, n, n > 1 ? MIXED : ONE_AFTER_THE_OTHER, 7);
+        results ordinary[N_VERBS];
+        CHECK(hol_chains_set_checks(x.chains, HOL_NEVER));
+        for (int which = 0; which < N_VERBS; ++which)
+            ordinary[which] = call(&x, x.chains, (verb)which, (powers){0, 0, 0});
+        check_units(&x, ordinary, name);
+        check_bonds(&x, ordinary, name);
+        for (int which = 0; which < N_VERBS; ++which) release(&ordinary[which]);
         mixture_free(&x);
     }
     molecule_free(&m);
@@ -172,7 +181,7 @@ static void small_molecules(void **state)
 {
     (void)state;
     for (int kind = 0; kind < MOLECULE_GOOD_KINDS; ++kind)
-        check_molecule(molecule_make((molecule_kind)kind, kind == MOLECULE_DENDRIMER ? 2 : 6, 3),
+        check_molecule(molecule_make((molecule_kind)kind, kind == MOLECULE_DENDRIMER ? 2 : 6, 3), 4,
                        molecule_kind_name((molecule_kind)kind));
 }
 
@@ -183,7 +192,7 @@ static void chains(void **state)
     for (size_t i = 0; i < sizeof bonds / sizeof *bonds; ++i) {
         char name[40];
         snprintf(name, sizeof name, "chain of %d", (int)bonds[i]);
-        check_molecule(molecule_make(MOLECULE_CHAIN, bonds[i], 11 + i), name);
+        check_molecule(molecule_make(MOLECULE_CHAIN, bonds[i], 11 + i), 4, name);
     }
 }
 
@@ -191,13 +200,13 @@ static void large_molecules(void **state)
 {
     (void)state;
     if (quick_run()) return;
-    check_molecule(molecule_make(MOLECULE_RING, 300, 5), "ring of 300");
-    check_molecule(large_arms(300, 306, 2), "arms");
-    check_molecule(large_segments(2500, 150, 0, 3), "segments");
-    check_molecule(large_segments(2500, 150, 40, 3), "segments with rings");
-    check_molecule(large_comb(2500), "comb");
-    check_molecule(large_rings(1500), "rings");
-    check_molecule(large_ladder(300), "ladder");
+    check_molecule(molecule_make(MOLECULE_RING, 300, 5), 1, "ring of 300");
+    check_molecule(large_arms(300, 306, 2), 1, "arms");
+    check_molecule(large_segments(1200, 150, 0, 3), 1, "segments");
+    check_molecule(large_segments(1200, 150, 40, 3), 1, "segments with rings");
+    check_molecule(large_comb(1200), 1, "comb");
+    check_molecule(large_rings(900), 1, "rings");
+    check_molecule(large_ladder(300), 1, "ladder");
 }
 
 /** Every third molecule is in units of its own. */
@@ -239,15 +248,15 @@ static void bonds_of_1e80_and_1e100_are_right(void **state)
     long double d[2][3], Z[2][2], b[2] = {0, 0};
     for (int k = 0; k < 2; ++k)
         for (int c = 0; c < 3; ++c) {
-            d[k][c] = (long double)r[3 * k + 3 + c] - r[3 * k + c];
+            d[k][c] = ((long double)r[3 * k + 3 + c] - r[3 * k + c]) * 1e-80L; /* in units of 1e80 */
             b[k] += 2 * d[k][c] * ((long double)f[3 * k + 3 + c] - f[3 * k + c]);
         }
     for (int k = 0; k < 2; ++k)
         for (int l = 0; l < 2; ++l)
             Z[k][l] = (k == l ? 8 : -4) * (d[k][0] * d[l][0] + d[k][1] * d[l][1] + d[k][2] * d[l][2]);
     const long double det = Z[0][0] * Z[1][1] - Z[0][1] * Z[1][0];
-    CHECK_AT_MOST(fabsl(lambda[0] / ((b[0] * Z[1][1] - b[1] * Z[0][1]) / det) - 1), 1e-14L);
-    CHECK_AT_MOST(fabsl(lambda[1] / ((b[1] * Z[0][0] - b[0] * Z[1][0]) / det) - 1), 1e-14L);
+    CHECK_AT_MOST(fabsl(lambda[0] * 1e80L / ((b[0] * Z[1][1] - b[1] * Z[0][1]) / det) - 1), 1e-14L);
+    CHECK_AT_MOST(fabsl(lambda[1] * 1e80L / ((b[1] * Z[0][0] - b[0] * Z[1][0]) / det) - 1), 1e-14L);
     /* nearly antiparallel, to 1e-100: by fractions */
     const double far[9] = {0, 0, 0, 1e100, .3, .2, .5, 1, .7};
     CHECK(hol_forces(chains, far, NULL, f, lambda, NULL, NULL, HOL_WRITE, NULL));
@@ -308,6 +317,32 @@ static void an_infinite_position_is_named_by_every_verb(void **state)
         }
 }
 
+/** Bonds longer than lengths may be, wherever they stand: their multipliers would be zero by overflow. */
+static void bonds_beyond_lengths_are_refused(void **state)
+{
+    (void)state;
+    static const int64_t bonds[] = {1, 2, 5, 30, 257, 300, 1500};
+    for (size_t b = 0; b < sizeof bonds / sizeof *bonds; ++b) {
+        const int64_t n = bonds[b];
+        molecule one = molecule_make(MOLECULE_CHAIN, n, 7);
+        mixture m = mixture_make(&one, 1, ONE_AFTER_THE_OTHER, 1);
+        const int64_t places[] = {0, 1, n / 3, n / 2, n - 1, n};
+        for (size_t p = 0; p < sizeof places / sizeof *places; ++p)
+            for (double far = 1e156; far < 1e300; far *= 1e70) {
+                double *const x = m.r + 3 * places[p] + 1, kept = *x;
+                *x = far;
+                for (int which = FORCES; which <= VELOCITIES; ++which) {
+                    results y = call(&m, m.chains, (verb)which, (powers){0, 0, 0});
+                    assert_int_equal(y.status, HOL_ERR_NOT_FINITE);
+                    release(&y);
+                }
+                *x = kept;
+            }
+        mixture_free(&m);
+        molecule_free(&one);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -318,6 +353,7 @@ int main(void)
         cmocka_unit_test(bonds_of_1e80_and_1e100_are_right),
         cmocka_unit_test(a_virial_that_overflows_is_refused),
         cmocka_unit_test(an_infinite_position_is_named_by_every_verb),
+        cmocka_unit_test(bonds_beyond_lengths_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

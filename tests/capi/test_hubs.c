@@ -103,6 +103,7 @@ static void check_forces(const network_scene *s)
     double *lambda = untouched((size_t)s->m.n_bonds), *g = untouched(3 * (size_t)s->m.n_atoms), virial[9];
     CHECK(hol_forces(s->chains, s->m.r, s->m.v, s->m.f, lambda, NULL, g, HOL_WRITE, virial));
     for (int c = 0; c < 9; ++c) assert_true(isfinite(virial[c]));
+    const long double own = sqrtl((long double)s->m.n_bonds) * long_double_rounding(); /* of these sums */
     long double *a = calloc(3 * (size_t)s->m.n_atoms, sizeof *a), *size = calloc((size_t)s->m.n_atoms, sizeof *size);
     for (int64_t k = 0; k < s->m.n_bonds; ++k)
         for (int e = 0; e < 2; ++e) {
@@ -127,7 +128,7 @@ static void check_forces(const network_scene *s)
             sum += d * (a[3 * j + c] - a[3 * i + c]) + dv * dv;
             terms += dv * dv;
         }
-        CHECK_AT_MOST(fabsl(sum), 4 * DBL_EPSILON * terms);
+        CHECK_AT_MOST(fabsl(sum), (4 * DBL_EPSILON + own) * terms);
     }
     free(lambda), free(g), free(a), free(size);
 }
@@ -168,7 +169,7 @@ static void large_hubs_are_solved(void **state)
         {500, 3, 2, 0, 0, 1, 2},
         {4000, 1, 1, closed_rim, 0, 0, 1}};
     for (size_t i = 0; i < sizeof sorts / sizeof *sorts; ++i) {
-        if (quick_run() && sorts[i].rim > 5000) continue;
+        if (quick_run() && sorts[i].rim > 600) continue;
         network_scene s = make(sorts[i], 1 + i);
         check_forces(&s);
         check_moves(&s, 1e-4);
@@ -195,7 +196,7 @@ static void all_levels_are_those_of_many_digits(void **state)
     static const sort sorts[] = {{80, 1, 1, closed_rim, 0, 1, 0},    {80, 1, 2, closed_rim, 0, 1, 0},
                                  {70, 2, 1, closed_rim, 40, 1e3, 2}, {75, 2, 2, 0, 0, 1e-3, 6},
                                  {90, 1, 1, 0, 0, 1e-6, 8},          {90, 1, 1, 0, 0, 1, 14}};
-    for (size_t i = 0; i < sizeof sorts / sizeof *sorts; ++i) {
+    for (size_t i = 0; i < (quick_run() ? 1 : sizeof sorts / sizeof *sorts); ++i) {
         network_scene s = make(sorts[i], 100 + i);
         compare(&s);
         network_free(s);
@@ -206,6 +207,7 @@ static void all_levels_are_those_of_many_digits(void **state)
 static void networks_are_solved_whose_bonds_nearly_depend_on_each_other(void **state)
 {
     (void)state;
+    if (quick_run()) return;
     network_scene s = make((sort){100, 1, 2, closed_rim, 0, 1, 0}, 5);
     const molecule_problem p = network_problem(&s);
     molecule_metric exact;
@@ -220,7 +222,7 @@ static void networks_are_solved_whose_bonds_nearly_depend_on_each_other(void **s
 static void held_stars_are_those_of_many_digits(void **state)
 {
     (void)state;
-    for (int held = 1; held <= 3; ++held) {
+    for (int held = 1; held <= (quick_run() ? 1 : 3); ++held) {
         network_scene s = network_scene_empty(0);
         random_stream random = random_seed((uint64_t)held);
         double r[3] = {0, 0, 0};
@@ -263,7 +265,7 @@ static void metrics_of_stars_are_those_of_many_digits(void **state)
 static void a_star_of_many_arms_is_solved(void **state)
 {
     (void)state;
-    const int n = quick_run() ? 30000 : 100000;
+    const int n = quick_run() ? 2000 : 100000;
     network_scene s = make((sort){n, 1, 1, 0, 0, 1e4, 0}, 3);
     check_forces(&s);
     check_moves(&s, 1e-4);
@@ -303,8 +305,8 @@ static void a_hub_in_cycles_has_no_metric_beyond_the_limit(void **state)
 static void light_atoms_between_heavy_ones_are_solved(void **state)
 {
     (void)state;
-    for (uint64_t seed = 0; seed < (quick_run() ? 3 : 8); ++seed) {
-        network_scene s = tangle(seed % 2 ? 1000 : 2000, seed % 3 ? 8 : 6, seed);
+    for (uint64_t seed = 0; seed < (quick_run() ? 1 : 8); ++seed) {
+        network_scene s = tangle(seed % 2 || quick_run() ? 1000 : 2000, seed % 3 ? 8 : 6, seed);
         check_forces(&s);
         check_moves(&s, 1e-7);
         network_free(s);

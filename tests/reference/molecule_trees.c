@@ -1,6 +1,7 @@
 #include "molecule_shapes.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -145,15 +146,16 @@ void make_star(molecule *m, random_stream *s, int64_t arms)
 void make_tree(molecule *m, random_stream *s, int64_t n_bonds, int valence)
 {
     double u[3];
+    int *bonds = calloc((size_t)n_bonds + 1, sizeof *bonds); /* of each atom */
     first_atom(m, 1);
     while (m->n_bonds < n_bonds) {
         const int64_t to = random_integer(s, 0, m->n_atoms - 1);
-        int bonds = 0;
-        for (int64_t k = 0; k < 2 * m->n_bonds; ++k) bonds += m->pairs[k] == to;
-        if (bonds >= valence) continue;
+        if (bonds[to] >= valence) continue;
+        ++bonds[to], ++bonds[m->n_atoms];
         random_direction(s, u);
         molecule_grow(m, to, pow(10, 2 * random_uniform(s) - 1), 0.7 + 0.8 * random_uniform(s), u);
     }
+    free(bonds);
 }
 
 void make_taut(molecule *m, random_stream *s, int64_t size, double turn)

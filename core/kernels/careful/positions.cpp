@@ -88,6 +88,9 @@ static double carried(const Projection &p, const PositionsCall &call) {
     return carried > call.tolerance ? carried : call.tolerance;
 }
 
+// Newton's method that has lost its way: so many steps do not halve the smallest error.
+constexpr int64_t patience = 12;
+
 static Projected iterate(Projection &p, const PositionsCall &call, bool guess, int64_t &solves) {
     const Molecule &m = p.m;
     const double accepted = carried(p, call), done = wanted_error(call);
@@ -103,13 +106,17 @@ static Projected iterate(Projection &p, const PositionsCall &call, bool guess, i
         if (!(p.error <= before)) return projected_not;  // where it did not help: from zero
         if (p.error <= done) return projected;
     }
-    double rate = p.error;
+    double rate = p.error, least = p.error;
+    int64_t since = 0;
     for (solves = 1; solves <= call.max_iterations; ++solves) {
         const double before = p.error, expected = rate * before;
         if (!step(p)) return projected_not;
         const bool floor = any(at_floor(expected, before, p.error));
         if (p.error <= done || (floor && p.error <= accepted)) return projected;
         rate = p.error;  // new factors square it
+        since = p.error <= 0.5 * least ? solves : since;
+        least = p.error < least ? p.error : least;
+        if (solves - since >= patience) return projected_not;
     }
     return projected_not;
 }

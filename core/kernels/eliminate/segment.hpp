@@ -73,7 +73,7 @@ struct Elimination {
     Column e, ac;     // E = A / F; a and c, in the same units of 1 / F
     vec rF, f, y, T;  // 1 / F; f is in its units, too
     vec w_max, slack;
-    vec largest_rF;
+    vec largest_rF, least_rF;
 };
 
 // From a separator and the bond behind it, whose right-hand side is b1.
@@ -87,6 +87,7 @@ HOL_INLINE void start(Elimination &e, const Block &block, vec q0, const Joint &j
     e.y = b1;
     e.f = w * j.g;
     e.T = e.slack = e.largest_rF = vec{};
+    e.least_rF = splat(1.0);
     e.w_max = w;
 }
 
@@ -97,6 +98,7 @@ HOL_INLINE void normalise(Elimination &e) {
     e.e = {e.e.A * e.rF, splat(1.0)};
     e.ac = {e.ac.A * e.rF, e.ac.F * e.rF};
     e.largest_rF = max(e.largest_rF, e.rF);
+    e.least_rF = min(e.least_rF, e.rF);
 }
 
 // What a segment leaves at its left joint, once that no longer changes. All further bonds together take at most
@@ -229,7 +231,8 @@ HOL_NOINLINE void eliminate(const SegmentBlock &s, const Reader &in, const Separ
     sum.T = e.T;
     sum.span = e.w_max * e.q;
     sum.reach = uniform ? vec{} : e.w_max * sum.q;
-    sum.doubt = doubt | ~less(e.largest_rF, splat(careful ? largest_reciprocal_of_one : largest_reciprocal_of_four));
+    sum.doubt = doubt | ~less(e.largest_rF, splat(careful ? largest_reciprocal_of_one : largest_reciprocal_of_four)) |
+                ~less(vec{}, e.least_rF);
 }
 
 // The rounding of the X of nearly parallel bonds reaches E' through a. With a = sum alpha_j X_j over n joints, its

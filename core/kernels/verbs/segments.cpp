@@ -44,6 +44,7 @@ JoinResult long_join(const Lane &lane, int64_t blocks, bool careful, double *sto
         for (int i = 0; i < W; ++i) {
             const double P = E + s.c[i], yhat = (y + s.b[i]) + s.T[i], S = s.E[i] * E + s.a[i];
             if (!careful && is_doubtful_join(s, i, S, P, 1.0)) return join_doubtful;
+            if (!(P - P == 0)) return careful ? join_bad : join_doubtful;  // what is over it would be zero
             s.t[i] = yhat / P;
             s.up[i] = s.f[i] / P;
             E = S / P;

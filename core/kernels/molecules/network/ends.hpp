@@ -83,7 +83,7 @@ struct Ends {
                 for (int32_t i = 0, u = g.unknown; i < g.n_own; ++i, u += g.step) {
                     const V offer = load_any<V>(E + u);
                     store_any(per_E + u, Width<V>::all(1) / offer);
-                    load(left, offer, b.get<V>(u), D.get<V>(u));
+                    add_offer(left, offer, b.get<V>(u), D.get<V>(u));
                 }
                 with_ends.set(g.node, left);
             });

@@ -248,7 +248,7 @@ private:
             const double E = to_first[c];
             is_stiff = is_stiff || E < stiff_offer * (w * dot(Dc, bc));
             per_pivot[c] = 1 / E;
-            load(mass, E, bc, Dc);
+            add_offer(mass, E, bc, Dc);
         }
         stiff.is[number] = is_stiff;
         return is_stiff ? mass_of_stiff(number, w, D) : mass;
@@ -260,7 +260,7 @@ private:
             const Vector3<double> Dc = D.get<double>(c), bc = b.get<double>(c);
             const double E = max(to_first[c], least_stiff_offer * (w * dot(Dc, bc)));
             per_pivot[c] = 1 / E;
-            stiff.load(number, E, bc, Dc);
+            stiff.add_offer(number, E, bc, Dc);
         }
         return stiff.mass(number);
     }

@@ -2,6 +2,7 @@
 // difference that is divided by what it offers. In twice the precision enough of it is left.
 #pragma once
 
+#include "core/kernels/molecules/list/flat_list.hpp"
 #include "core/kernels/molecules/network/tensor.hpp"
 #include "core/kernels/molecules/scratch.hpp"
 #include "core/kernels/molecules/twice.hpp"
@@ -37,8 +38,8 @@ struct StiffJoints {
         const Tensor<double> mass = diagonal_tensor(w);
         for (int c = 0; c < 3; ++c) joint[i].row[c] = pairs_of(mass.row[c], Vector3<double>{});
     }
-    // As load() of tensor.hpp.
-    void load(int32_t i, double E, const Vector3<double> &b, const Vector3<double> &D) const {
+    // As add_offer() of tensor.hpp.
+    void add_offer(int32_t i, double E, const Vector3<double> &b, const Vector3<double> &D) const {
         Pair3<double> *const row = joint[i].row;
         const Pair3<double> pushed = times(i, pairs_of(b, Vector3<double>{})),
                             by = add_pairs(scale_by(D.x, row[0]),

@@ -49,7 +49,7 @@ HOL_STATIC Factors<double> factors_of(const Tensor<double> &mass) {
 // mass^-1 + b (x) D / E. One rank after the other is as good where E is next to nothing, and where the atom is held
 // fixed.
 template <class V>
-HOL_INLINE void load(Tensor<V> &mass, const V &E, const Vector3<V> &b, const Vector3<V> &D) {
+HOL_INLINE void add_offer(Tensor<V> &mass, const V &E, const Vector3<V> &b, const Vector3<V> &D) {
     const Vector3<V> pushed = mass * b;
     const V f = Width<V>::all(-1) / (E + dot(D, pushed));
     const Vector3<V> by = add_times(add_times(D.x * mass.row[0], D.y, mass.row[1]), D.z, mass.row[2]);

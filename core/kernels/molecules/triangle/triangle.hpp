@@ -5,6 +5,7 @@
 
 #include "core/kernels/molecules/atoms/consecutive.hpp"
 #include "core/kernels/molecules/image.hpp"
+#include "core/kernels/molecules/molecules.hpp"
 #include "core/kernels/molecules/schedule.hpp"
 #include "core/kernels/molecules/virial.hpp"
 
