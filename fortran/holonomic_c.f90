@@ -59,10 +59,10 @@ module holonomic_c
 
    type, bind(c) :: hol_worst
       real(c_double) :: length = 0
-      integer(c_int64_t) :: length_chain = 0
+      integer(c_int64_t) :: length_molecule = 0
       integer(c_int64_t) :: length_bond = 0
       real(c_double) :: rate = 0
-      integer(c_int64_t) :: rate_chain = 0
+      integer(c_int64_t) :: rate_molecule = 0
       integer(c_int64_t) :: rate_bond = 0
    end type
 

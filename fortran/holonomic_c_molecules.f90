@@ -200,7 +200,7 @@ module holonomic_c_molecules
          integer(c_int64_t) :: n
       end function
 
-      pure function hol_chains_n_chains(chains) bind(c) result(n)
+      pure function hol_chains_n_molecules(chains) bind(c) result(n)
          import :: c_int64_t, c_ptr
          type(c_ptr), value :: chains
          integer(c_int64_t) :: n

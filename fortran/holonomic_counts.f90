@@ -4,7 +4,7 @@ module holonomic_counts
    use, intrinsic :: iso_fortran_env, only: int32, int64
    use holonomic_c, only: hol_chains_atoms, hol_chains_bonds, hol_chains_degrees_of_freedom, hol_chains_memory, &
                           hol_chains_molecule, hol_chains_molecules_of_bonds, hol_chains_n_atoms, hol_chains_n_bonds, &
-                          hol_chains_n_chains, hol_chains_n_kinds, hol_chains_n_of_shape, hol_chains_offsets
+                          hol_chains_n_molecules, hol_chains_n_kinds, hol_chains_n_of_shape, hol_chains_offsets
    use holonomic_place, only: enough
    use holonomic_settings, only: chain_set_settings
    use holonomic_status, only: failure, settle
@@ -39,7 +39,7 @@ contains
 
    pure recursive integer(int64) function n_chains(self)
       class(chain_set_counts), intent(in) :: self
-      n_chains = hol_chains_n_chains(self%c_handle())
+      n_chains = hol_chains_n_molecules(self%c_handle())
    end function
 
    pure recursive integer(int64) function n_bonds(self)
@@ -85,7 +85,7 @@ contains
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
       call problem%need_created(self%c_handle())
-      if (enough("first_bond", size(first_bond, kind=int64), self%n_chains() + 1, "molecules and the end", problem)) &
+      if (enough("first_bond", size(first_bond, kind=int64), self%n_molecules() + 1, "molecules and the end", problem)) &
          call problem%ask(hol_chains_offsets(self%c_handle(), c_loc(first_bond)))
       call settle(problem, "offsets", stat, errmsg)
    end subroutine
@@ -102,13 +102,13 @@ contains
       type(failure) :: problem
       call problem%need_created(self%c_handle())
       needed = 0
-      do number = 1, self%n_chains()
+      do number = 1, self%n_molecules()
          call problem%ask(hol_chains_molecule(self%c_handle(), number, c_null_ptr, c_loc(n), c_null_ptr))
          if (problem%none()) needed = needed + n
       end do
       if (enough("list", size(list, kind=int64), needed, "atoms", problem)) then
          before = 0
-         do number = 1, self%n_chains()
+         do number = 1, self%n_molecules()
             call problem%ask(hol_chains_molecule(self%c_handle(), number, c_null_ptr, c_loc(n), c_null_ptr))
             if (problem%none()) call problem%ask(hol_chains_atoms(self%c_handle(), number, c_loc(list(before + 1))))
             before = before + n

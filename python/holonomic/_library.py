@@ -43,7 +43,7 @@ SIGNATURES = {
     "hol_chains_set_tolerance": "i pd",
     "hol_chains_set_max_iterations": "i pi",
     "hol_chains_n_atoms": "l p",
-    "hol_chains_n_chains": "l p",
+    "hol_chains_n_molecules": "l p",
     "hol_chains_n_bonds": "l p",
     "hol_chains_n_of_shape": "l pi",
     "hol_chains_n_kinds": "l p",

@@ -62,7 +62,7 @@ class Queries(Bonds):
     @property
     def n_molecules(self) -> int:
         """Number of molecules that the bonds form."""
-        return library.hol_chains_n_chains(self._handle)
+        return library.hol_chains_n_molecules(self._handle)
 
     @property
     def n_kinds(self) -> int:

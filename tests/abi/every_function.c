@@ -45,7 +45,7 @@ static void handles(hol_chains *chains)
     EXPECT(strncmp(hol_version(), "0.", 2) == 0);
     EXPECT(strcmp(hol_status_name(HOL_ERR_DEGENERATE), "HOL_ERR_DEGENERATE") == 0);
     EXPECT(hol_instruction_set()[0] != 0);
-    EXPECT(hol_chains_n_atoms(chains) == 4 && hol_chains_n_chains(chains) == 1 && hol_chains_n_bonds(chains) == 3);
+    EXPECT(hol_chains_n_atoms(chains) == 4 && hol_chains_n_molecules(chains) == 1 && hol_chains_n_bonds(chains) == 3);
     SUCCEEDS(hol_chains_offsets(chains, offsets));
     EXPECT(offsets[0] == 0 && offsets[1] == 3);
     SUCCEEDS(hol_chains_atoms(chains, 0, atoms));
@@ -102,7 +102,7 @@ static void positions(const hol_chains *chains)
     r[3] = 0.01;
     r[10] = 0.02;
     SUCCEEDS(hol_violation(chains, r, NULL, &worst));
-    EXPECT(worst.length > 1e-5 && worst.length_chain == 0 && worst.rate == 0);
+    EXPECT(worst.length > 1e-5 && worst.length_molecule == 0 && worst.rate == 0);
     SUCCEEDS(hol_project_positions(chains, hanging, r, v, 0.01, lambda, 0, NULL, &report));
     EXPECT(report.n_corrected == 1 && report.n_failed == 0 && report.max_error < 1e-12 && report.iterations >= 1);
     NEAR(r[3] * r[3] + r[4] * r[4] + r[5] * r[5], 1);

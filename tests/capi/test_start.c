@@ -3,6 +3,7 @@
  * atoms and lengths; and nothing is moved.
  */
 #include "check.h"
+#include "input.h"
 #include "water.h"
 
 enum { SIDE = 10, DT = 1 };
@@ -154,11 +155,11 @@ static void a_mistake_is_seen_in_every_layout(void **state)
     const hol_view single = {packed, packed + 1, packed + 2, 3 * sizeof(float), HOL_FLOAT, 0};
     const hol_view single_next = {moved, moved + 1, moved + 2, 3 * sizeof(float), HOL_FLOAT, 0};
     CHECK_FAILS(HOL_ERR_LENGTHS,
-                hol_project_positions_view(chains, &apart, &apart_next, NULL, DT, NULL, 0, NULL, NULL));
+                hol_project_positions_view(chains, INPUT(&apart), &apart_next, NULL, DT, NULL, 0, NULL, NULL));
     assert_message_names("about 10 times");
     assert_same_bits(next, before, 3 * n);
     CHECK_FAILS(HOL_ERR_LENGTHS,
-                hol_project_positions_view(chains, &single, &single_next, NULL, DT, NULL, 0, NULL, NULL));
+                hol_project_positions_view(chains, INPUT(&single), &single_next, NULL, DT, NULL, 0, NULL, NULL));
     assert_message_names("about 10 times");
     assert_memory_equal(moved, packed, sizeof *moved * 3 * n);
     free(x);

@@ -117,9 +117,9 @@ contains
       call check(stat == HOL_ERR_VALUE, "a block of no chains")
       call other%add(1, 2, 4, [1.0_real64], stat, message)
       call check(stat == HOL_ERR_VALUE .and. says("2 bonds"), "a block with too few lengths")
-      call check(other%n_chains() == 1 .and. other%n_bonds() == 2, "nothing was added by any of these")
+      call check(other%n_molecules() == 1 .and. other%n_bonds() == 2, "nothing was added by any of these")
       call other%add([4, 5, 6], 1.0_real64, stat)
-      call check(stat == HOL_OK .and. other%n_chains() == 2, "and the chains stay usable")
+      call check(stat == HOL_OK .and. other%n_molecules() == 2, "and the chains stay usable")
       call other%destroy()
    end subroutine
 

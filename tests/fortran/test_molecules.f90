@@ -37,7 +37,7 @@ contains
       call test("shapes")
       call set%create(ones)
       call set%add(bonds=mixed, lengths=1.0_real64)
-      call check(set%n_chains() == 5 .and. set%n_bonds() == 17, "five molecules are found")
+      call check(set%n_molecules() == 5 .and. set%n_bonds() == 17, "five molecules are found")
       call check(set%n_of_shape(HOL_SHAPE_CHAIN) == 1 .and. set%n_of_shape(HOL_SHAPE_TREE) == 1 .and. &
                  set%n_of_shape(HOL_SHAPE_RING) == 1 .and. set%n_of_shape(HOL_SHAPE_TRIANGLE) == 1 .and. &
                  set%n_of_shape(HOL_SHAPE_OTHER) == 1, "one of each shape")
@@ -92,7 +92,7 @@ contains
       call b%destroy()
       call a%create(ones)
       call a%add(int(mixed, int64), 1.0_real64)
-      call check(a%n_chains() == 5, "with one length for all, too")
+      call check(a%n_molecules() == 5, "with one length for all, too")
       call a%destroy()
    end subroutine
 
@@ -213,9 +213,9 @@ contains
       end do
       call set%add(k4, 1.0_real64, stat, message)
       call check(stat == HOL_ERR_DEGENERATE .and. says("bond"), "all ten distances of five atoms")
-      call check(set%n_chains() == 1 .and. set%n_bonds() == 2, "nothing was added by any of these")
+      call check(set%n_molecules() == 1 .and. set%n_bonds() == 2, "nothing was added by any of these")
       call set%add(reshape([4, 5], [2, 1]), 1.0_real64)
-      call check(set%n_chains() == 2, "and the set stays usable")
+      call check(set%n_molecules() == 2, "and the set stays usable")
       call set%destroy()
    end subroutine
 
@@ -233,7 +233,7 @@ contains
       call check(stat == HOL_ERR_INDEX .and. says("3"), "an atom outside of the molecule")
       call set%add_molecules(2, 2, 1, pair, [1.0_real64, 1.0_real64], stat, message)
       call check(stat == HOL_ERR_VALUE .and. says("2 lengths"), "too many lengths")
-      call check(set%n_chains() == 0, "nothing was added by any of these")
+      call check(set%n_molecules() == 0, "nothing was added by any of these")
       call set%add_molecules(2, 2, 1, pair, 1.0_real64)
       call set%atoms(3, list, stat, message)
       call check(stat == HOL_ERR_INDEX .and. index(message, "atoms: ") == 1, "there is no third molecule")
