@@ -4,7 +4,7 @@
 module holonomic_chains
    use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
    use, intrinsic :: iso_fortran_env, only: int32, int64, real64
-   use holonomic_c, only: hol_chains_add, hol_chains_add_block, hol_chains_create, hol_chains_destroy, &
+   use holonomic_c, only: hol_chains_add, hol_chains_add_block, hol_chains_copy, hol_chains_create, hol_chains_destroy, &
                           hol_chains_set_index_base, hol_error_location, HOL_ERR_VALUE
    use holonomic_ownership, only: ownership
    use holonomic_status, only: decimal, failure, settle
@@ -18,6 +18,7 @@ module holonomic_chains
       type(ownership) :: owner
    contains
       procedure :: create
+      procedure :: copy_of
       procedure :: adopt
       procedure :: destroy
       procedure, private :: add_list_32, add_list_64, add_list_one_length_32, add_list_one_length_64
@@ -59,6 +60,21 @@ contains
          if (problem%none()) call self%owner%take()
       end if
       call settle(problem, "create", stat, errmsg)
+   end subroutine
+
+   ! Molecules of its own, as those of another variable are now, with its options: to be changed apart from them.
+   subroutine copy_of(self, other, stat, errmsg)
+      class(chain_set), intent(inout) :: self
+      class(chain_set), intent(in) :: other
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      call problem%need_created(other%handle)
+      if (c_associated(self%handle)) &
+         call problem%set(HOL_ERR_VALUE, "this variable has been created already; destroy it first")
+      if (problem%none()) call problem%ask(hol_chains_copy(other%handle, self%handle))
+      if (problem%none()) call self%owner%take()
+      call settle(problem, "copy_of", stat, errmsg)
    end subroutine
 
    ! A copy only forgets the molecules: they belong to the variable that created them.

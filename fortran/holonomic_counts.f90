@@ -15,7 +15,7 @@ module holonomic_counts
    type, extends(chain_set_settings) :: chain_set_counts
    contains
       procedure :: n_atoms
-      procedure :: n_chains
+      procedure :: n_molecules
       procedure :: n_bonds
       procedure :: degrees_of_freedom
       procedure :: memory
@@ -37,9 +37,9 @@ contains
       n_atoms = hol_chains_n_atoms(self%c_handle())
    end function
 
-   pure recursive integer(int64) function n_chains(self)
+   pure recursive integer(int64) function n_molecules(self)
       class(chain_set_counts), intent(in) :: self
-      n_chains = hol_chains_n_molecules(self%c_handle())
+      n_molecules = hol_chains_n_molecules(self%c_handle())
    end function
 
    pure recursive integer(int64) function n_bonds(self)
@@ -77,7 +77,7 @@ contains
    end function
 
    ! Where the bonds of each molecule follow one another, as in a set of linear chains alone:
-   ! first_bond(n_chains + 1): molecule m has the bonds first_bond(m) .. first_bond(m + 1) - 1 of arrays per bond.
+   ! first_bond(n_molecules + 1): molecule m has the bonds first_bond(m) .. first_bond(m + 1) - 1 of arrays per bond.
    recursive subroutine offsets(self, first_bond, stat, errmsg)
       class(chain_set_counts), intent(in) :: self
       integer(int64), intent(inout), contiguous, target :: first_bond(:)
@@ -90,7 +90,7 @@ contains
       call settle(problem, "offsets", stat, errmsg)
    end subroutine
 
-   ! list(n_bonds + n_chains) suffices: the atoms of all molecules, molecule after molecule, those of a linear chain in
+   ! list(n_bonds + n_molecules) suffices: the atoms of all molecules, molecule after molecule, those of a linear chain in
    ! order, those of others ascending. If all are linear chains, chain c begins at element first_bond(c) + c - 1.
    recursive subroutine atoms_of_all(self, list, stat, errmsg)
       class(chain_set_counts), intent(in) :: self

@@ -31,7 +31,7 @@ static void views_and_index_base_give_the_same(void **state)
     CHECK(hol_inverse_error_bound_view(other, NULL, INPUT(&f.view), lambda, NULL, relative + 1));
     CHECK_FAILS(HOL_ERR_INDEX, hol_inverse_entry(other, HOL_PHYSICAL, 0, 1, &b));
     hol_inverse_destroy(other);
-    CHECK_FAILS(HOL_ERR_INDEX, hol_inverse_create(chains, 0, c.r, &other));
+    CHECK_FAILS(HOL_ERR_INDEX, hol_inverse_create(counted, 0, c.r, &other));
     assert_null(other);
     laid_out_free(&r), laid_out_free(&v), laid_out_free(&f);
     hol_inverse_destroy(inverse);

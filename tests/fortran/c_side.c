@@ -41,7 +41,7 @@ int64_t c_layout(int which)
         offsetof(hol_report, iterations),
         offsetof(hol_report, n_corrected),
         offsetof(hol_report, n_failed),
-        offsetof(hol_report, chain),
+        offsetof(hol_report, molecule),
         offsetof(hol_report, bond),
         offsetof(hol_report, max_error),
         sizeof(hol_worst),
