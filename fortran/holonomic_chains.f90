@@ -100,13 +100,11 @@ contains
       type(failure) :: problem
       integer(c_int64_t) :: n_bonds
       call problem%need_created(self%handle)
-      n_bonds = size(atoms, kind=c_int64_t) - 1
-      if (size(lengths, kind=c_int64_t) /= max(n_bonds, 0_c_int64_t)) then
+      n_bonds = max(size(atoms, kind=c_int64_t) - 1, 0_c_int64_t)
+      if (size(lengths, kind=c_int64_t) /= n_bonds) then
          call problem%set(HOL_ERR_VALUE, decimal(size(lengths, kind=c_int64_t))//" lengths were given for "// &
-                          decimal(max(n_bonds, 0_c_int64_t))//" bonds")
-      else if (n_bonds < 1) then
-         call problem%set(HOL_ERR_VALUE, "a chain needs at least two atoms")
-      else
+                          decimal(n_bonds)//" bonds")
+      else if (n_bonds > 0) then
          call problem%ask(hol_chains_add(self%handle, n_bonds, c_loc(atoms), c_loc(lengths)))
       end if
       call settle(problem, "add", stat, errmsg)
@@ -147,9 +145,7 @@ contains
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
       call problem%need_created(self%handle)
-      if (n_bonds < 1) then
-         call problem%set(HOL_ERR_VALUE, "n_bonds = "//decimal(n_bonds)//" must be at least 1")
-      else if (size(lengths, kind=int64) /= n_bonds) then
+      if (size(lengths, kind=int64) /= max(n_bonds, 0_int64)) then
          call problem%set(HOL_ERR_VALUE, decimal(size(lengths, kind=int64))//" lengths were given for "// &
                           decimal(n_bonds)//" bonds")
       else

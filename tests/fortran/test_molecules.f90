@@ -184,7 +184,7 @@ contains
       call check(stat == HOL_ERR_VALUE .and. message == "add: the first dimension of bonds must be 2, not 3", &
                  "three rows")
       call set%add(reshape([integer ::], [2, 0]), 1.0_real64, stat, message)
-      call check(stat == HOL_ERR_VALUE .and. says("no bonds"), "none")
+      call check(stat == HOL_OK, "none: nothing to be added")
       call set%add(reshape([4, 5, 5, 6], [2, 2]), [1.0_real64], stat, message)
       call check(stat == HOL_ERR_VALUE .and. says("1 lengths") .and. says("2 bonds"), "too few lengths")
       pair(:, 1) = [4, 19]
@@ -226,7 +226,7 @@ contains
       call test("wrong blocks")
       call set%create(ones)
       call set%add_molecules(0, 2, 1, pair, 1.0_real64, stat, message)
-      call check(stat == HOL_ERR_VALUE .and. index(message, "add_molecules: ") == 1, "no molecules")
+      call check(stat == HOL_OK, "no molecules: nothing to be added")
       call set%add_molecules(10, 2, 1, pair, 1.0_real64, stat, message)
       call check(stat == HOL_ERR_INDEX, "a block that reaches too far")
       call set%add_molecules(2, 2, 1, reshape([1, 3], [2, 1]), 1.0_real64, stat, message)
