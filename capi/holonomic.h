@@ -793,6 +793,82 @@ HOL_API int hol_solve_view(const hol_chains *chains, const hol_const_view *r, co
                            const hol_view *g, hol_mode mode, double *virial);
 
 /**
+ * Factors of all molecules at one configuration, kept for any number of right-hand sides: force groups of several time
+ * steps (r-RESPA), terms that relax errors, derivatives. A solve with them costs the two substitutions of hol_forces
+ * and no elimination.
+ */
+typedef struct hol_factors hol_factors;
+
+/**
+ * Makes an object for the factors of a set, without any yet.
+ * @param[in]  chains   has to live as long as the factors
+ * @param[out] factors  the new object, to be given to hol_factors_destroy; NULL on an error
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_MEMORY. Since 0.3.
+ */
+HOL_API int hol_factors_create(const hol_chains *chains, hol_factors **factors);
+
+/** Frees the factors; NULL is allowed and does nothing. Since 0.3. */
+HOL_API void hol_factors_destroy(hol_factors *factors);
+
+/**
+ * Makes the factors at these positions, in the box and with the rate of the box that the set has now; they belong to
+ * these until the next update. It costs about what hol_forces does, allocates at the first time and after a change of
+ * the set, and keeps 5 to 13 doubles per bond and 3 per atom.
+ *
+ * Chains of up to 256 bonds, trees and rings of up to 2048 and triangles are kept. Of longer and larger ones, other
+ * cycles, rigid bodies, molecules that plain products do not answer for, and all of a set that shares fixed atoms among
+ * molecules, the positions are kept: their solves cost what hol_forces and hol_solve do. All are right to the bound of
+ * these.
+ * @param[in,out] factors
+ * @param[in]     r        positions [n_atoms][3]. Copied
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE; HOL_ERR_MEMORY. After a bad molecule all others
+ *         have their factors; solves then name it again. Not thread-safe on one object. Since 0.3.
+ */
+HOL_API int hol_factors_update(hol_factors *factors, const double *r);
+
+/** hol_factors_update with positions of any layout. Since 0.3. */
+HOL_API int hol_factors_update_view(hol_factors *factors, const hol_const_view *r);
+
+/**
+ * hol_forces at the positions of hol_factors_update.
+ * @param[in]     factors
+ * @param[in]     v        velocities [n_atoms][3], or NULL: at rest
+ * @param[in]     f        applied forces [n_atoms][3], or NULL: none
+ * @param[out]    lambda   multipliers [n_bonds], or NULL
+ * @param[out]    tension  [n_bonds], or NULL
+ * @param[in,out] g        constraint forces [n_atoms][3], or NULL. May be f itself
+ * @param[in]     mode     HOL_WRITE or HOL_ADD
+ * @param[out]    virial   [3][3], or NULL
+ * @return as hol_forces; HOL_ERR_STATE (no update yet, or the set has been changed since). hol_outcomes knows nothing
+ * of it. Thread-safe on one object. Since 0.3.
+ */
+HOL_API int hol_factors_forces(const hol_factors *factors, const double *v, const double *f, double *lambda,
+                               double *tension, double *g, hol_mode mode, double *virial);
+
+/** hol_factors_forces with arrays per atom of any layout. Since 0.3. */
+HOL_API int hol_factors_forces_view(const hol_factors *factors, const hol_const_view *v, const hol_const_view *f,
+                                    double *lambda, double *tension, const hol_view *g, hol_mode mode, double *virial);
+
+/**
+ * hol_solve at the positions of hol_factors_update, for several right-hand sides.
+ * @param[in]     factors
+ * @param[in]     n_rhs    >= 0
+ * @param[in]     rhs      [n_rhs][n_bonds]
+ * @param[out]    lambda   [n_rhs][n_bonds], or NULL; may be rhs itself
+ * @param[in,out] g        [n_rhs][n_atoms][3], or NULL
+ * @param[in]     mode     HOL_WRITE or HOL_ADD
+ * @param[out]    virial   [n_rhs][3][3], or NULL
+ * @return as hol_solve; HOL_ERR_VALUE (n_rhs, mode); HOL_ERR_STATE as hol_factors_forces. After a bad molecule in one
+ *         right-hand side the following ones are not solved for. Thread-safe on one object. Since 0.3.
+ */
+HOL_API int hol_factors_solve(const hol_factors *factors, int64_t n_rhs, const double *rhs, double *lambda, double *g,
+                              hol_mode mode, double *virial);
+
+/** hol_factors_solve with forces of any layout: g is [n_rhs] views. Since 0.3. */
+HOL_API int hol_factors_solve_view(const hol_factors *factors, int64_t n_rhs, const double *rhs, double *lambda,
+                                   const hol_view *g, hol_mode mode, double *virial);
+
+/**
  * What given multipliers do: the forces or impulses on the atoms, tensions and virials of the bonds; of the multipliers
  * that hol_forces, hol_solve, hol_project_velocities or hol_project_positions found, or of their means over steps.
  *

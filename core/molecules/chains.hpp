@@ -134,6 +134,10 @@ public:
         return !backwards_.empty() && backwards_[static_cast<std::size_t>(bond)] != 0;
     }
 
+    // Another one after each change of the molecules, their masses, lengths, or which are active.
+    std::int64_t revision() const { return revision_; }
+    bool shares_fixed_atoms() const { return use_.any_shared(); }
+
     Checks checks() const { return checks_; }
     void set_checks(Checks when) {
         if (checks_ != when) fits_.set(false);
@@ -158,6 +162,7 @@ private:
     friend class Planner;
     const Plan &make_plan() const;
     void changed() {
+        ++revision_;
         plan_.clear();
         plan_of_parts_.clear();
         fits_.set(false);
@@ -187,6 +192,7 @@ private:
     void for_bonds(const Each &each) const;
 
     std::int64_t n_atoms_, n_bonds_ = 0;
+    std::int64_t revision_ = 0;
     Masses masses_;
     AtomUse use_;
     Kinds kinds_;
