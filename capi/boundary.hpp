@@ -10,10 +10,15 @@
 #include "core/error.hpp"
 #include "core/molecules/chains.hpp"
 #include "holonomic.h"
+#include "reference_error.hpp"
 
 struct hol_chains {
     holonomic::Chains chains;
+    mutable holonomic::ReferenceError reference_error;
     hol_chains(std::int64_t n_atoms, const double *masses) : chains(n_atoms, masses) {}
+    explicit hol_chains(const holonomic::Chains &original) : chains(original) {}
+    std::int64_t n_atoms() const { return chains.n_atoms(); }
+    std::int64_t n_bonds() const { return chains.n_bonds(); }
 };
 
 namespace holonomic {
@@ -24,6 +29,11 @@ int remember(const char *function, const Error &error) noexcept;
 // Throws Status::null if p is a null pointer.
 inline void need(const void *p, const char *name) {
     if (!p) throw make_error(Status::null, "%s is NULL", name);
+}
+
+// The same of an array of `count` elements: of none it is not needed.
+inline void need(std::int64_t count, const void *p, const char *name) {
+    if (count != 0) need(p, name);
 }
 
 // `function` is the name of the caller's, with which messages begin.

@@ -11,17 +11,15 @@ using holonomic::Status;
 
 namespace {
 
-void need_bodies(const hol_chains *chains, const int64_t *sizes, const int64_t *atoms, const double *places) {
-    need(chains, "chains");
-    need(sizes, "sizes");
-    need(atoms, "atoms");
-    need(places, "places");
+void need_bodies(int64_t n_bodies, const int64_t *sizes, const int64_t *atoms, const double *places) {
+    need(n_bodies, sizes, "sizes");
+    need(n_bodies, atoms, "atoms");
+    need(n_bodies, places, "places");
 }
 
-void need_bonds(int64_t n_bonds, const int64_t *pairs, const double *lengths) {
-    if (n_bonds == 0) return;
-    need(pairs, "pairs");
-    need(lengths, "lengths");
+void need_bonds(int64_t n_bonds, const int64_t *list, const double *lengths, const char *name = "pairs") {
+    need(n_bonds, list, name);
+    need(n_bonds, lengths, "lengths");
 }
 
 }  // namespace
@@ -30,8 +28,17 @@ int hol_chains_create(int64_t n_atoms, const double *masses, hol_chains **chains
     return guarded(__func__, [&] {
         need(chains, "chains");
         *chains = nullptr;
-        if (n_atoms != 0) need(masses, "masses");
+        need(n_atoms, masses, "masses");
         *chains = new hol_chains(n_atoms, masses);
+    });
+}
+
+int hol_chains_copy(const hol_chains *chains, hol_chains **copy) {
+    return guarded(__func__, [&] {
+        need(copy, "copy");
+        *copy = nullptr;
+        need(chains, "chains");
+        *copy = new hol_chains(chains->chains);
     });
 }
 
@@ -40,8 +47,7 @@ void hol_chains_destroy(hol_chains *chains) { delete chains; }
 int hol_chains_add(hol_chains *chains, int64_t n_bonds, const int64_t *atoms, const double *lengths) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(atoms, "atoms");
-        need(lengths, "lengths");
+        need_bonds(n_bonds, atoms, lengths, "atoms");
         chains->chains.add(n_bonds, atoms, lengths);
     });
 }
@@ -50,7 +56,7 @@ int hol_chains_add_block(hol_chains *chains, int64_t n_chains, int64_t n_bonds, 
                          const double *lengths) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(lengths, "lengths");
+        need(n_chains == 0 ? 0 : n_bonds, lengths, "lengths");
         chains->chains.add_block(n_chains, n_bonds, first_atom, lengths);
     });
 }
@@ -58,8 +64,7 @@ int hol_chains_add_block(hol_chains *chains, int64_t n_chains, int64_t n_bonds, 
 int hol_chains_add_bonds(hol_chains *chains, int64_t n_bonds, const int64_t *pairs, const double *lengths) {
     return guarded<LongDoubleEnvironment>(__func__, [&] {
         need(chains, "chains");
-        need(pairs, "pairs");
-        need(lengths, "lengths");
+        need_bonds(n_bonds, pairs, lengths);
         chains->chains.add_bonds(n_bonds, pairs, lengths);
     });
 }
@@ -68,8 +73,7 @@ int hol_chains_add_molecules(hol_chains *chains, int64_t n_molecules, int64_t n_
                              int64_t n_bonds, const int64_t *pairs, const double *lengths) {
     return guarded<LongDoubleEnvironment>(__func__, [&] {
         need(chains, "chains");
-        need(pairs, "pairs");
-        need(lengths, "lengths");
+        need_bonds(n_molecules == 0 ? 0 : n_bonds, pairs, lengths);
         chains->chains.add_molecules(n_molecules, n_atoms, first_atom, n_bonds, pairs, lengths);
     });
 }
@@ -77,7 +81,8 @@ int hol_chains_add_molecules(hol_chains *chains, int64_t n_molecules, int64_t n_
 int hol_chains_add_rigid(hol_chains *chains, int64_t n_bodies, const int64_t *sizes, const int64_t *atoms,
                          const double *places, int64_t n_bonds, const int64_t *pairs, const double *lengths) {
     return guarded(__func__, [&] {
-        need_bodies(chains, sizes, atoms, places);
+        need(chains, "chains");
+        need_bodies(n_bodies, sizes, atoms, places);
         need_bonds(n_bonds, pairs, lengths);
         chains->chains.add_rigid(n_bodies, sizes, atoms, places, n_bonds, pairs, lengths);
     });
@@ -87,8 +92,9 @@ int hol_chains_add_rigid_molecules(hol_chains *chains, int64_t n_molecules, int6
                                    int64_t n_bodies, const int64_t *sizes, const int64_t *atoms, const double *places,
                                    int64_t n_bonds, const int64_t *pairs, const double *lengths) {
     return guarded(__func__, [&] {
-        need_bodies(chains, sizes, atoms, places);
-        need_bonds(n_bonds, pairs, lengths);
+        need(chains, "chains");
+        need_bodies(n_molecules == 0 ? 0 : n_bodies, sizes, atoms, places);
+        need_bonds(n_molecules == 0 ? 0 : n_bonds, pairs, lengths);
         chains->chains.add_rigid_molecules(n_molecules, n_atoms, first_atom, n_bodies, sizes, atoms, places, n_bonds,
                                            pairs, lengths);
     });
@@ -98,7 +104,17 @@ int hol_chains_set_index_base(hol_chains *chains, int base) {
     return guarded(__func__, [&] {
         need(chains, "chains");
         if (base != 0 && base != 1) throw make_error(Status::value, "the index base is %d; it must be 0 or 1", base);
-        chains->chains.base = base;
+        chains->chains.set_base(base);
+    });
+}
+
+int hol_chains_set_bodies(hol_chains *chains, hol_bodies which) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        if (which != HOL_BODIES_FOUND && which != HOL_BODIES_GIVEN)
+            throw make_error(Status::value, "which is %d; it must be HOL_BODIES_FOUND or HOL_BODIES_GIVEN",
+                             static_cast<int>(which));
+        chains->chains.finds_bodies = which == HOL_BODIES_FOUND;
     });
 }
 
@@ -133,15 +149,26 @@ int hol_chains_set_labels(hol_chains *chains, const int64_t *atoms, const int64_
 int hol_chains_set_lengths(hol_chains *chains, const double *lengths) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(lengths, "lengths");
+        need(chains->n_bonds(), lengths, "lengths");
         chains->chains.set_lengths(lengths);
+    });
+}
+
+int hol_chains_set_length(hol_chains *chains, int64_t bond, double length) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        const int base = chains->chains.base;
+        if (bond < base || bond - base >= chains->n_bonds())
+            throw make_error(Status::index, "bond %lld is outside %d .. %lld", static_cast<long long>(bond), base,
+                             static_cast<long long>(chains->n_bonds() - 1 + base));
+        chains->chains.set_length(bond - base, length);
     });
 }
 
 int hol_chains_set_masses(hol_chains *chains, const double *masses) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        if (chains->chains.n_atoms() != 0) need(masses, "masses");
+        need(chains->n_atoms(), masses, "masses");
         chains->chains.set_masses(masses);
     });
 }
@@ -150,11 +177,12 @@ static_assert(static_cast<int>(Checks::never) == HOL_NEVER && static_cast<int>(C
                   static_cast<int>(Checks::always) == HOL_ALWAYS,
               "core/molecules/chains.hpp and the public header disagree");
 
-int hol_chains_set_checks(hol_chains *chains, int when) {
+int hol_chains_set_checks(hol_chains *chains, hol_when when) {
     return guarded(__func__, [&] {
         need(chains, "chains");
         if (when != HOL_NEVER && when != HOL_AT_START && when != HOL_ALWAYS)
-            throw make_error(Status::value, "when is %d; it must be HOL_NEVER, HOL_AT_START or HOL_ALWAYS", when);
+            throw make_error(Status::value, "when is %d; it must be HOL_NEVER, HOL_AT_START or HOL_ALWAYS",
+                             static_cast<int>(when));
         chains->chains.set_checks(static_cast<Checks>(when));
     });
 }

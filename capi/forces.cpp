@@ -13,10 +13,10 @@ using holonomic::packed_array;
 using holonomic::viewed_array;
 
 int hol_forces(const hol_chains *chains, const double *r, const double *v, const double *f, double *lambda,
-               double *tension, double *g, int mode, double *virial) {
+               double *tension, double *g, hol_mode mode, double *virial) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(r, "r");
+        need(chains->n_atoms(), r, "r");
         ForcesCall call;
         call.r = packed_array(r);
         call.v = packed_array(v);
@@ -29,16 +29,16 @@ int hol_forces(const hol_chains *chains, const double *r, const double *v, const
     });
 }
 
-int hol_forces_view(const hol_chains *chains, const hol_view *r, const hol_view *v, const hol_view *f, double *lambda,
-                    double *tension, const hol_view *g, int mode, double *virial) {
+int hol_forces_view(const hol_chains *chains, const hol_const_view *r, const hol_const_view *v, const hol_const_view *f,
+                    double *lambda, double *tension, const hol_view *g, hol_mode mode, double *virial) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(r, "r");
+        need(chains->n_atoms(), r, "r");
         ForcesCall call;
-        call.r = viewed_array(r, "r");
-        call.v = viewed_array(v, "v");
-        call.f = viewed_array(f, "f");
-        call.g = viewed_array(g, "g");
+        call.r = viewed_array(chains->n_atoms(), r, "r");
+        call.v = viewed_array(chains->n_atoms(), v, "v");
+        call.f = viewed_array(chains->n_atoms(), f, "f");
+        call.g = viewed_array(chains->n_atoms(), g, "g");
         const AtomArray *const all[] = {&call.r, &call.v, &call.f, &call.g};
         holonomic::check_dimensions(all, 4);
         call.lambda = lambda;

@@ -27,7 +27,7 @@ void impose(const hol_chains *chains, const AtomArray &r, hol_report *report) {
 int hol_impose(const hol_chains *chains, double *r, hol_report *report) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(r, "r");
+        need(chains->n_atoms(), r, "r");
         impose(chains, holonomic::packed_array(r), report);
     });
 }
@@ -35,7 +35,7 @@ int hol_impose(const hol_chains *chains, double *r, hol_report *report) {
 int hol_impose_view(const hol_chains *chains, const hol_view *r, hol_report *report) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(r, "r");
-        impose(chains, holonomic::viewed_array(r, "r"), report);
+        need(chains->n_atoms(), r, "r");
+        impose(chains, holonomic::viewed_array(chains->n_atoms(), r, "r"), report);
     });
 }

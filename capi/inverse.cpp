@@ -25,7 +25,8 @@ namespace {
 void create(const hol_chains *chains, std::int64_t molecule, const AtomArray &r, hol_inverse **inverse) {
     const holonomic::Chains &all = chains->chains;
     if (molecule - all.base >= all.n_chains() && molecule - all.base < all.n_molecules() && molecule >= all.base)
-        throw make_error(Status::value, "molecule %lld has rigid bodies: the inverse of its matrix is not implemented",
+        throw make_error(Status::unsupported,
+                         "molecule %lld has rigid bodies: the inverse of its matrix is not implemented",
                          static_cast<long long>(molecule));
     if (molecule < all.base || molecule - all.base >= all.n_chains()) {
         holonomic::Error error =
@@ -43,9 +44,10 @@ std::int64_t bond(const hol_inverse *inverse, std::int64_t i) {
     return i < base ? -1 : i - base;
 }
 
-bool is_physical(int scaling) {
+bool is_physical(hol_scaling scaling) {
     if (scaling != HOL_UNIT_DIAGONAL && scaling != HOL_PHYSICAL)
-        throw make_error(Status::value, "scaling is %d; it must be HOL_UNIT_DIAGONAL or HOL_PHYSICAL", scaling);
+        throw make_error(Status::value, "scaling is %d; it must be HOL_UNIT_DIAGONAL or HOL_PHYSICAL",
+                         static_cast<int>(scaling));
     return scaling == HOL_PHYSICAL;
 }
 
@@ -77,13 +79,14 @@ int hol_inverse_create(const hol_chains *chains, int64_t molecule, const double 
     });
 }
 
-int hol_inverse_create_view(const hol_chains *chains, int64_t molecule, const hol_view *r, hol_inverse **inverse) {
+int hol_inverse_create_view(const hol_chains *chains, int64_t molecule, const hol_const_view *r,
+                            hol_inverse **inverse) {
     if (inverse) *inverse = nullptr;
     return guarded(__func__, [&] {
         need(chains, "chains");
         need(r, "r");
         need(inverse, "inverse");
-        create(chains, molecule, viewed_array(r, "r"), inverse);
+        create(chains, molecule, viewed_array(chains->n_atoms(), r, "r"), inverse);
     });
 }
 
@@ -91,7 +94,7 @@ void hol_inverse_destroy(hol_inverse *inverse) { delete inverse; }
 
 int64_t hol_inverse_n_bonds(const hol_inverse *inverse) { return inverse ? inverse->inverse->n_bonds() : 0; }
 
-int hol_inverse_entry(const hol_inverse *inverse, int scaling, int64_t i, int64_t j, double *value) {
+int hol_inverse_entry(const hol_inverse *inverse, hol_scaling scaling, int64_t i, int64_t j, double *value) {
     return guarded(__func__, [&] {
         need(inverse, "inverse");
         need(value, "value");
@@ -99,7 +102,7 @@ int hol_inverse_entry(const hol_inverse *inverse, int scaling, int64_t i, int64_
     });
 }
 
-int hol_inverse_row(const hol_inverse *inverse, int scaling, int64_t i, double *row) {
+int hol_inverse_row(const hol_inverse *inverse, hol_scaling scaling, int64_t i, double *row) {
     return guarded(__func__, [&] {
         need(inverse, "inverse");
         need(row, "row");
@@ -107,7 +110,7 @@ int hol_inverse_row(const hol_inverse *inverse, int scaling, int64_t i, double *
     });
 }
 
-int hol_inverse_band(const hol_inverse *inverse, int scaling, int64_t width, double *band) {
+int hol_inverse_band(const hol_inverse *inverse, hol_scaling scaling, int64_t width, double *band) {
     return guarded(__func__, [&] {
         need(inverse, "inverse");
         need(band, "band");
@@ -115,7 +118,7 @@ int hol_inverse_band(const hol_inverse *inverse, int scaling, int64_t width, dou
     });
 }
 
-int hol_inverse_matrix(const hol_inverse *inverse, int scaling, double *matrix) {
+int hol_inverse_matrix(const hol_inverse *inverse, hol_scaling scaling, double *matrix) {
     return guarded(__func__, [&] {
         need(inverse, "inverse");
         need(matrix, "matrix");
@@ -140,14 +143,14 @@ int hol_inverse_error_bound(const hol_inverse *inverse, const double *v, const d
     });
 }
 
-int hol_inverse_error_bound_view(const hol_inverse *inverse, const hol_view *v, const hol_view *f, const double *lambda,
-                                 double *bound, double *relative) {
+int hol_inverse_error_bound_view(const hol_inverse *inverse, const hol_const_view *v, const hol_const_view *f,
+                                 const double *lambda, double *bound, double *relative) {
     return guarded(__func__, [&] {
         need(inverse, "inverse");
         need(lambda, "lambda");
-        const AtomArray av = viewed_array(v, "v"), af = viewed_array(f, "f");
+        const AtomArray av = viewed_array(1, v, "v"), af = viewed_array(1, f, "f");
         const AtomArray *const all[] = {&av, &af};
-        if (av.x) holonomic::check_dimensions(all, 2);
+        holonomic::check_dimensions(all, 2);
         error_bound(inverse, av, af, lambda, bound, relative);
     });
 }

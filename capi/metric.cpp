@@ -13,10 +13,10 @@ using holonomic::packed_array;
 using holonomic::viewed_array;
 
 int hol_metric(const hol_chains *chains, const double *r, double kT, double *log_det, double *log_det_z, double *energy,
-               double *force, int mode) {
+               double *force, hol_mode mode) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(r, "r");
+        need(chains->n_atoms(), r, "r");
         MetricCall call;
         call.r = packed_array(r);
         call.force = packed_array(force);
@@ -28,14 +28,14 @@ int hol_metric(const hol_chains *chains, const double *r, double kT, double *log
     });
 }
 
-int hol_metric_view(const hol_chains *chains, const hol_view *r, double kT, double *log_det, double *log_det_z,
-                    double *energy, const hol_view *force, int mode) {
+int hol_metric_view(const hol_chains *chains, const hol_const_view *r, double kT, double *log_det, double *log_det_z,
+                    double *energy, const hol_view *force, hol_mode mode) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(r, "r");
+        need(chains->n_atoms(), r, "r");
         MetricCall call;
-        call.r = viewed_array(r, "r");
-        call.force = viewed_array(force, "force");
+        call.r = viewed_array(chains->n_atoms(), r, "r");
+        call.force = viewed_array(chains->n_atoms(), force, "force");
         const AtomArray *const all[] = {&call.r, &call.force};
         holonomic::check_dimensions(all, 2);
         call.kT = kT;

@@ -8,9 +8,9 @@
 namespace holonomic {
 
 // Throws Error if the mode is neither HOL_WRITE nor HOL_ADD.
-inline bool adds(int mode) {
+inline bool adds(hol_mode mode) {
     if (mode != HOL_WRITE && mode != HOL_ADD)
-        throw make_error(Status::value, "mode is %d; it must be HOL_WRITE or HOL_ADD", mode);
+        throw make_error(Status::value, "mode is %d; it must be HOL_WRITE or HOL_ADD", static_cast<int>(mode));
     return mode == HOL_ADD;
 }
 

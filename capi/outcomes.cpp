@@ -21,7 +21,7 @@ int hol_outcomes(const hol_chains *chains, int *status, int *iterations) {
         need(chains, "chains");
         const OutcomeOf *const outcomes = holonomic::last_outcomes(chains->chains);
         if (!outcomes)
-            throw make_error(Status::value,
+            throw make_error(Status::state,
                              "nothing is known of the last call: outcomes were not kept (hol_chains_set_outcomes), or "
                              "it was another handle's, another thread's, or ended before it came to the molecules");
         for (std::int64_t m = 0; m < chains->chains.n_molecules(); ++m) {

@@ -26,9 +26,6 @@ inline void set(PositionsCall &call, double dt, double *lambda, int guess) {
     call.guess = guess == 1;
 }
 
-// Of the last reference that this thread's calls have compared with the lengths.
-thread_local holonomic::WorstLength reference_error{0, -1, -1};
-
 // The caller's report: written once there is one, also if the call fails then.
 class ReportTo {
 public:
@@ -46,10 +43,26 @@ private:
     holonomic::Report found_{};
 };
 
+// What is compared with the lengths is told even where the call fails then; most calls compare nothing.
+class Compared : public holonomic::WorstLength {
+public:
+    explicit Compared(holonomic::ReferenceError &to) : WorstLength{nothing, -1, -1}, to_(to) {}
+    ~Compared() {
+        if (error != nothing) to_.set(*this);
+    }
+    Compared(const Compared &) = delete;
+    Compared &operator=(const Compared &) = delete;
+
+private:
+    static constexpr double nothing = -1;
+    holonomic::ReferenceError &to_;
+};
+
 inline void project(const hol_chains *chains, PositionsCall &call, const AtomArray *bonds, double *virial,
                     hol_report *report) {
     ReportTo found(report);
-    holonomic::project_positions(chains->chains, call, bonds, virial, found.get(), &reference_error);
+    Compared compared(chains->reference_error);
+    holonomic::project_positions(chains->chains, call, bonds, virial, found.get(), &compared);
 }
 
 }  // namespace
@@ -58,8 +71,8 @@ int hol_project_positions(const hol_chains *chains, const double *r_ref, double 
                           double *lambda, int guess, double *virial, hol_report *report) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(r_ref, "r_ref");
-        need(r, "r");
+        need(chains->n_atoms(), r_ref, "r_ref");
+        need(chains->n_atoms(), r, "r");
         PositionsCall call;
         set(call, dt, lambda, guess);
         call.r_ref = packed_array(r_ref);
@@ -69,17 +82,18 @@ int hol_project_positions(const hol_chains *chains, const double *r_ref, double 
     });
 }
 
-int hol_project_positions_view(const hol_chains *chains, const hol_view *r_ref, const hol_view *r, const hol_view *v,
-                               double dt, double *lambda, int guess, double *virial, hol_report *report) {
+int hol_project_positions_view(const hol_chains *chains, const hol_const_view *r_ref, const hol_view *r,
+                               const hol_view *v, double dt, double *lambda, int guess, double *virial,
+                               hol_report *report) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(r_ref, "r_ref");
-        need(r, "r");
+        need(chains->n_atoms(), r_ref, "r_ref");
+        need(chains->n_atoms(), r, "r");
         PositionsCall call;
         set(call, dt, lambda, guess);
-        call.r_ref = viewed_array(r_ref, "r_ref");
-        call.r = viewed_array(r, "r");
-        call.v = viewed_array(v, "v");
+        call.r_ref = viewed_array(chains->n_atoms(), r_ref, "r_ref");
+        call.r = viewed_array(chains->n_atoms(), r, "r");
+        call.v = viewed_array(chains->n_atoms(), v, "v");
         const AtomArray *const all[] = {&call.r_ref, &call.r, &call.v};
         holonomic::check_dimensions(all, 3);
         project(chains, call, nullptr, virial, report);
@@ -90,8 +104,8 @@ int hol_project_positions_along(const hol_chains *chains, const double *b, doubl
                                 double *lambda, int guess, double *virial, hol_report *report) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        if (chains->chains.n_bonds() != 0) need(b, "b");
-        need(r, "r");
+        if (chains->n_bonds() != 0) need(b, "b");
+        need(chains->n_atoms(), r, "r");
         PositionsCall call;
         set(call, dt, lambda, guess);
         call.r = packed_array(r);
@@ -101,25 +115,32 @@ int hol_project_positions_along(const hol_chains *chains, const double *b, doubl
     });
 }
 
-int hol_project_positions_along_view(const hol_chains *chains, const hol_view *b, const hol_view *r, const hol_view *v,
-                                     double dt, double *lambda, int guess, double *virial, hol_report *report) {
+int hol_project_positions_along_view(const hol_chains *chains, const hol_const_view *b, const hol_view *r,
+                                     const hol_view *v, double dt, double *lambda, int guess, double *virial,
+                                     hol_report *report) {
     return guarded(__func__, [&] {
         need(chains, "chains");
         need(b, "b");
-        need(r, "r");
+        need(chains->n_atoms(), r, "r");
         PositionsCall call;
         set(call, dt, lambda, guess);
-        const AtomArray bonds = viewed_array(b, "b");
-        call.r = viewed_array(r, "r");
-        call.v = viewed_array(v, "v");
+        const AtomArray bonds = viewed_array(chains->n_bonds(), b, "b");
+        call.r = viewed_array(chains->n_atoms(), r, "r");
+        call.v = viewed_array(chains->n_atoms(), v, "v");
         const AtomArray *const all[] = {&bonds, &call.r, &call.v};
         holonomic::check_dimensions(all, 3);
         project(chains, call, &bonds, virial, report);
     });
 }
 
-void hol_reference_error(double *error, int64_t *molecule, int64_t *bond) {
-    if (error) *error = reference_error.error;
-    if (molecule) *molecule = reference_error.molecule;
-    if (bond) *bond = reference_error.bond;
+int hol_reference_error(const hol_chains *chains, double *error, int64_t *molecule, int64_t *bond) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        holonomic::WorstLength found;
+        if (!chains->reference_error.get(&found))
+            throw make_error(Status::state, "no reference has been compared with the lengths yet");
+        if (error) *error = found.error;
+        if (molecule) *molecule = found.molecule;
+        if (bond) *bond = found.bond;
+    });
 }

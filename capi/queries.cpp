@@ -1,8 +1,12 @@
 // What a set of molecules tells about itself.
+#include <algorithm>
+
 #include "boundary.hpp"
+#include "which_box.hpp"
 
 using holonomic::Form;
 using holonomic::guarded;
+using holonomic::is_reference;
 using holonomic::make_error;
 using holonomic::need;
 using holonomic::Status;
@@ -14,6 +18,12 @@ static_assert(same(Form::chain, HOL_SHAPE_CHAIN) && same(Form::tree, HOL_SHAPE_T
                   same(Form::ring, HOL_SHAPE_RING) && same(Form::triangle, HOL_SHAPE_TRIANGLE) &&
                   same(Form::other, HOL_SHAPE_OTHER) && holonomic::Chains::form_with_bodies == HOL_SHAPE_RIGID,
               "core/molecules/shape.hpp and the public header disagree");
+
+using holonomic::Role;
+constexpr bool same(Role role, hol_role code) { return static_cast<int>(role) == static_cast<int>(code); }
+static_assert(same(Role::own, HOL_ROLE_OWN) && same(Role::body, HOL_ROLE_BODY) &&
+                  same(Role::implied, HOL_ROLE_IMPLIED) && same(Role::fixed, HOL_ROLE_FIXED),
+              "core/molecules/chains.hpp and the public header disagree");
 
 // The number of a molecule counted from 0. Throws Error if there is none of that number.
 std::int64_t from_zero(const holonomic::Chains &chains, std::int64_t molecule) {
@@ -28,7 +38,7 @@ std::int64_t from_zero(const holonomic::Chains &chains, std::int64_t molecule) {
 }  // namespace
 
 int64_t hol_chains_n_atoms(const hol_chains *chains) { return chains ? chains->chains.n_atoms() : 0; }
-int64_t hol_chains_n_chains(const hol_chains *chains) { return chains ? chains->chains.n_molecules() : 0; }
+int64_t hol_chains_n_molecules(const hol_chains *chains) { return chains ? chains->chains.n_molecules() : 0; }
 int64_t hol_chains_n_bonds(const hol_chains *chains) { return chains ? chains->chains.n_bonds() : 0; }
 
 int hol_chains_offsets(const hol_chains *chains, int64_t *offsets) {
@@ -69,12 +79,53 @@ int hol_chains_bonds(const hol_chains *chains, int64_t molecule, int64_t *bonds)
 int hol_chains_molecules_of_bonds(const hol_chains *chains, int64_t *molecules) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(molecules, "molecules");
+        need(chains->n_bonds(), molecules, "molecules");
         chains->chains.molecules_of_bonds(molecules);
     });
 }
 
-int64_t hol_chains_n_of_shape(const hol_chains *chains, int shape) {
+int hol_chains_pairs(const hol_chains *chains, int64_t *pairs) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        need(chains->n_bonds(), pairs, "pairs");
+        chains->chains.pairs(pairs);
+    });
+}
+
+int hol_chains_lengths(const hol_chains *chains, double *lengths) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        need(chains->n_bonds(), lengths, "lengths");
+        chains->chains.lengths(lengths);
+    });
+}
+
+int hol_chains_masses(const hol_chains *chains, double *masses) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        need(chains->n_atoms(), masses, "masses");
+        chains->chains.masses(masses);
+    });
+}
+
+int hol_chains_box(const hol_chains *chains, hol_which_box which, double *box) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        need(box, "box");
+        const double *const given =
+            is_reference(which) ? chains->chains.given_reference_box() : chains->chains.given_box();
+        std::copy(given, given + 9, box);
+    });
+}
+
+int hol_chains_roles(const hol_chains *chains, int *roles, int64_t *removed) {
+    return guarded(__func__, [&] {
+        need(chains, "chains");
+        chains->chains.roles(roles, removed);
+    });
+}
+
+int64_t hol_chains_n_of_shape(const hol_chains *chains, hol_shape shape) {
     return chains ? chains->chains.n_of_form(shape) : 0;
 }
 

@@ -10,16 +10,18 @@ using holonomic::need;
 int hol_residuals(const hol_chains *chains, const double *r, const double *v, double *length, double *rate) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(r, "r");
+        need(chains->n_atoms(), r, "r");
         holonomic::residuals(chains->chains, holonomic::packed_array(r), holonomic::packed_array(v), length, rate);
     });
 }
 
-int hol_residuals_view(const hol_chains *chains, const hol_view *r, const hol_view *v, double *length, double *rate) {
+int hol_residuals_view(const hol_chains *chains, const hol_const_view *r, const hol_const_view *v, double *length,
+                       double *rate) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(r, "r");
-        const AtomArray ar = holonomic::viewed_array(r, "r"), av = holonomic::viewed_array(v, "v");
+        need(chains->n_atoms(), r, "r");
+        const AtomArray ar = holonomic::viewed_array(chains->n_atoms(), r, "r"),
+                        av = holonomic::viewed_array(chains->n_atoms(), v, "v");
         const AtomArray *const all[] = {&ar, &av};
         holonomic::check_dimensions(all, 2);
         holonomic::residuals(chains->chains, ar, av, length, rate);

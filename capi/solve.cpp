@@ -11,23 +11,23 @@ using holonomic::need;
 using holonomic::packed_array;
 using holonomic::viewed_array;
 
-int hol_solve(const hol_chains *chains, const double *r, const double *rhs, double *lambda, double *g, int mode,
+int hol_solve(const hol_chains *chains, const double *r, const double *rhs, double *lambda, double *g, hol_mode mode,
               double *virial) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(r, "r");
-        need(rhs, "rhs");
+        need(chains->n_atoms(), r, "r");
+        need(chains->n_bonds(), rhs, "rhs");
         holonomic::solve(chains->chains, packed_array(r), rhs, lambda, packed_array(g), adds(mode), virial);
     });
 }
 
-int hol_solve_view(const hol_chains *chains, const hol_view *r, const double *rhs, double *lambda, const hol_view *g,
-                   int mode, double *virial) {
+int hol_solve_view(const hol_chains *chains, const hol_const_view *r, const double *rhs, double *lambda,
+                   const hol_view *g, hol_mode mode, double *virial) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(r, "r");
-        need(rhs, "rhs");
-        const AtomArray ar = viewed_array(r, "r"), ag = viewed_array(g, "g");
+        need(chains->n_atoms(), r, "r");
+        need(chains->n_bonds(), rhs, "rhs");
+        const AtomArray ar = viewed_array(chains->n_atoms(), r, "r"), ag = viewed_array(chains->n_atoms(), g, "g");
         const AtomArray *const all[] = {&ar, &ag};
         holonomic::check_dimensions(all, 2);
         holonomic::solve(chains->chains, ar, rhs, lambda, ag, adds(mode), virial);

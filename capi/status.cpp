@@ -17,7 +17,8 @@ static_assert(same(Status::ok, HOL_OK) && same(Status::null, HOL_ERR_NULL) && sa
                   same(Status::degenerate, HOL_ERR_DEGENERATE) &&
                   same(Status::no_convergence, HOL_ERR_NO_CONVERGENCE) &&
                   same(Status::not_definite, HOL_ERR_NOT_DEFINITE) && same(Status::internal, HOL_ERR_INTERNAL) &&
-                  same(Status::lengths, HOL_ERR_LENGTHS),
+                  same(Status::lengths, HOL_ERR_LENGTHS) && same(Status::unsupported, HOL_ERR_UNSUPPORTED) &&
+                  same(Status::state, HOL_ERR_STATE) && same(Status::callback, HOL_ERR_CALLBACK),
               "core/status.hpp and the public header disagree");
 
 }  // namespace
@@ -34,6 +35,8 @@ int remember(const char *function, const Error &error) noexcept {
 #define HOL_VERSION_TEXT(major, minor, patch) HOL_TEXT(major) "." HOL_TEXT(minor) "." HOL_TEXT(patch)
 
 const char *hol_version(void) { return HOL_VERSION_TEXT(HOL_VERSION_MAJOR, HOL_VERSION_MINOR, HOL_VERSION_PATCH); }
+
+int hol_version_number(void) { return HOL_VERSION; }
 
 const char *hol_status_name(int status) {
     switch (status) {
@@ -61,6 +64,12 @@ const char *hol_status_name(int status) {
             return "HOL_ERR_INTERNAL";
         case HOL_ERR_LENGTHS:
             return "HOL_ERR_LENGTHS";
+        case HOL_ERR_UNSUPPORTED:
+            return "HOL_ERR_UNSUPPORTED";
+        case HOL_ERR_STATE:
+            return "HOL_ERR_STATE";
+        case HOL_ERR_CALLBACK:
+            return "HOL_ERR_CALLBACK";
         default:
             return "unknown status";
     }

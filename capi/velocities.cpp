@@ -11,8 +11,8 @@ using holonomic::VelocitiesCall;
 int hol_project_velocities(const hol_chains *chains, const double *r, double *v, double *lambda, double *virial) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(r, "r");
-        need(v, "v");
+        need(chains->n_atoms(), r, "r");
+        need(chains->n_atoms(), v, "v");
         VelocitiesCall call;
         call.r = holonomic::packed_array(r);
         call.v = holonomic::packed_array(v);
@@ -21,15 +21,15 @@ int hol_project_velocities(const hol_chains *chains, const double *r, double *v,
     });
 }
 
-int hol_project_velocities_view(const hol_chains *chains, const hol_view *r, const hol_view *v, double *lambda,
+int hol_project_velocities_view(const hol_chains *chains, const hol_const_view *r, const hol_view *v, double *lambda,
                                 double *virial) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(r, "r");
-        need(v, "v");
+        need(chains->n_atoms(), r, "r");
+        need(chains->n_atoms(), v, "v");
         VelocitiesCall call;
-        call.r = holonomic::viewed_array(r, "r");
-        call.v = holonomic::viewed_array(v, "v");
+        call.r = holonomic::viewed_array(chains->n_atoms(), r, "r");
+        call.v = holonomic::viewed_array(chains->n_atoms(), v, "v");
         const AtomArray *const all[] = {&call.r, &call.v};
         holonomic::check_dimensions(all, 2);
         call.lambda = lambda;

@@ -2,25 +2,33 @@
 #ifndef HOLONOMIC_CAPI_VIEW_HPP
 #define HOLONOMIC_CAPI_VIEW_HPP
 
+#include <cstdint>
+
 #include "core/caller/packed_array.hpp"
 #include "holonomic.h"
 
 namespace holonomic {
 
 // As the view says. Throws Error with `name` in the message if it makes no sense.
-AtomArray checked_array(const hol_view *view, const char *name);
+AtomArray checked_array(const hol_const_view &view, const char *name);
 
-// The same; absent if it is a null pointer. Most views are of packed doubles: Fortran's arrays come as views.
-inline AtomArray viewed_array(const hol_view *view, const char *name) {
-    if (!view) return AtomArray{};
+// The same of `count` elements; absent if the view is a null pointer, or if there are none. Most views are of packed
+// doubles: Fortran's arrays come as views.
+inline AtomArray viewed_array(std::int64_t count, const hol_const_view *view, const char *name) {
+    if (!view || count == 0) return AtomArray{};
     const double *const x = static_cast<const double *>(view->x);
     if (x && view->element == HOL_DOUBLE && view->reserved == 0 && view->stride == 3 * sizeof(double) &&
         view->y == x + 1 && view->z == x + 2)
         return packed_array(x);
-    return checked_array(view, name);
+    return checked_array(*view, name);
+}
+inline AtomArray viewed_array(std::int64_t count, const hol_view *view, const char *name) {
+    if (!view) return AtomArray{};
+    const hol_const_view read = hol_view_read(view);
+    return viewed_array(count, &read, name);
 }
 
-// All views of a call have z, or none has.
+// All views of a call that are there have z, or none has.
 void check_dimensions(const AtomArray *const *arrays, int n);
 
 }  // namespace holonomic

@@ -10,7 +10,7 @@ using holonomic::need;
 namespace {
 
 void write(hol_worst *to, const holonomic::Worst &found) {
-    *to = {found.length, found.length_chain, found.length_bond, found.rate, found.rate_chain, found.rate_bond};
+    *to = {found.length, found.length_molecule, found.length_bond, found.rate, found.rate_molecule, found.rate_bond};
 }
 
 }  // namespace
@@ -18,7 +18,7 @@ void write(hol_worst *to, const holonomic::Worst &found) {
 int hol_violation(const hol_chains *chains, const double *r, const double *v, hol_worst *worst) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(r, "r");
+        need(chains->n_atoms(), r, "r");
         need(worst, "worst");
         holonomic::Worst found;
         holonomic::violation(chains->chains, holonomic::packed_array(r), holonomic::packed_array(v), &found);
@@ -26,12 +26,13 @@ int hol_violation(const hol_chains *chains, const double *r, const double *v, ho
     });
 }
 
-int hol_violation_view(const hol_chains *chains, const hol_view *r, const hol_view *v, hol_worst *worst) {
+int hol_violation_view(const hol_chains *chains, const hol_const_view *r, const hol_const_view *v, hol_worst *worst) {
     return guarded(__func__, [&] {
         need(chains, "chains");
-        need(r, "r");
+        need(chains->n_atoms(), r, "r");
         need(worst, "worst");
-        const AtomArray ar = holonomic::viewed_array(r, "r"), av = holonomic::viewed_array(v, "v");
+        const AtomArray ar = holonomic::viewed_array(chains->n_atoms(), r, "r"),
+                        av = holonomic::viewed_array(chains->n_atoms(), v, "v");
         const AtomArray *const all[] = {&ar, &av};
         holonomic::check_dimensions(all, 2);
         holonomic::Worst found;

@@ -69,43 +69,12 @@ struct ForcesWork final : Work {
     }
 };
 
-// d.(w_j f_j - w_i f_i) + |v_j - v_i + L d|^2, twice, of all bonds of active molecules.
-void right_hand_sides(const Chains &chains, const double *L, const AtomArray &r, const AtomArray &v, const AtomArray &f,
-                      double *rhs) {
-    for (std::int64_t number = 0; number < chains.n_chains(); ++number) {
-        if (!chains.is_active(number)) continue;
-        const Molecule m = chains.molecule(number);
-        for (std::int64_t k = 0; k < m.n_bonds; ++k) {
-            const std::int64_t i = m.i(k), j = m.j(k);
-            double x[2][3], u[2][3] = {}, a[2][3] = {}, d[3];
-            read_atom(r, m.atom(i), x[0]);
-            read_atom(r, m.atom(j), x[1]);
-            if (v.x) {
-                read_atom(v, m.atom(i), u[0]);
-                read_atom(v, m.atom(j), u[1]);
-            }
-            if (f.x) {
-                read_atom(f, m.atom(i), a[0]);
-                read_atom(f, m.atom(j), a[1]);
-            }
-            bond_vector(chains.box, x[0], x[1], d);
-            double sum = 0;
-            for (int c = 0; c < (r.z ? 3 : 2); ++c) {
-                const double flow = L[3 * c] * d[0] + L[3 * c + 1] * d[1] + L[3 * c + 2] * d[2];
-                const double speed = (u[1][c] - u[0][c]) + flow;
-                sum += d[c] * (m.w(j) * a[1][c] - m.w(i) * a[0][c]) + speed * speed;
-            }
-            rhs[m.bond(k)] = 2 * sum;
-        }
-    }
-}
-
 // With a box that changes, by the equations for given right-hand sides: such forces are asked for now and then.
 [[gnu::noinline]] Tally forces_in_motion(const Chains &chains, const double *L, const ForcesCall &call) {
     const std::int64_t bytes = chains.n_bonds() * static_cast<std::int64_t>(sizeof(double));
     double *const rhs = static_cast<double *>(thread_memory(Keep::right_hand_sides, bytes));
     if (!rhs && bytes > 0) throw std::bad_alloc();
-    right_hand_sides(chains, L, call.r, call.v, call.f, rhs);
+    right_hand_sides(chains, chains.box, L, call.r, call.v, call.f, rhs);
     return solve_equations(chains, call.r, rhs, {call.lambda, call.tension, call.g, call.add, call.virial});
 }
 
@@ -150,6 +119,36 @@ void forces_of_all(const Chains &chains, const ForcesCall &call, double *virial)
 }
 
 }  // namespace
+
+void right_hand_sides(const Chains &chains, const Box &box, const double *L, const AtomArray &r, const AtomArray &v,
+                      const AtomArray &f, double *rhs) {
+    for (std::int64_t number = 0; number < chains.n_chains(); ++number) {
+        if (!chains.is_active(number)) continue;
+        const Molecule m = chains.molecule(number);
+        for (std::int64_t k = 0; k < m.n_bonds; ++k) {
+            const std::int64_t i = m.i(k), j = m.j(k);
+            double x[2][3], u[2][3] = {}, a[2][3] = {}, d[3];
+            read_atom(r, m.atom(i), x[0]);
+            read_atom(r, m.atom(j), x[1]);
+            if (v.x) {
+                read_atom(v, m.atom(i), u[0]);
+                read_atom(v, m.atom(j), u[1]);
+            }
+            if (f.x) {
+                read_atom(f, m.atom(i), a[0]);
+                read_atom(f, m.atom(j), a[1]);
+            }
+            bond_vector(box, x[0], x[1], d);
+            double sum = 0;
+            for (int c = 0; c < (r.z ? 3 : 2); ++c) {
+                const double flow = L[3 * c] * d[0] + L[3 * c + 1] * d[1] + L[3 * c + 2] * d[2];
+                const double speed = (u[1][c] - u[0][c]) + flow;
+                sum += d[c] * (m.w(j) * a[1][c] - m.w(i) * a[0][c]) + speed * speed;
+            }
+            rhs[m.bond(k)] = 2 * sum;
+        }
+    }
+}
 
 void forces(const Chains &chains, ForcesCall &call, double *virial) {
     with_outcomes(chains, [&] {

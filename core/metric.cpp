@@ -99,7 +99,7 @@ void metric_of_all(const Chains &chains, MetricCall &call, double *energy) {
     if (!(call.kT >= 0) || !std::isfinite(call.kT))
         throw make_error(Status::value, "kT is %g; it must be finite and not negative", call.kT);
     if (chains.bodies())
-        throw make_error(Status::value,
+        throw make_error(Status::unsupported,
                          "the metric determinant of molecules with rigid bodies is not implemented: of a body alone it "
                          "is a constant; molecules without bodies need a set of their own");
     call.sum = energy != nullptr;

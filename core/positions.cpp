@@ -181,7 +181,7 @@ void check_start_of_all(const Chains &chains, const AtomArray &r_ref, const Atom
 void project_positions_of_all(const Chains &chains, const PositionsCall &call, const AtomArray *bonds, double *virial,
                               Report *report, WorstLength *reference_error) {
     if (bonds)
-        throw make_error(Status::value,
+        throw make_error(Status::unsupported,
                          "rigid bodies have no bond vectors to project along: hol_project_positions takes reference "
                          "positions");
     const AtomArray &r_ref = call.r_ref;

@@ -16,7 +16,10 @@ enum class Status {
     no_convergence = 8,
     not_definite = 9,
     internal = 10,
-    lengths = 11
+    lengths = 11,
+    unsupported = 12,
+    state = 13,
+    callback = 14
 };
 
 }  // namespace holonomic

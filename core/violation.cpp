@@ -41,14 +41,14 @@ void violation_of_bonds(const Chains &chains, const AtomArray &r, const AtomArra
             const double rate = std::fabs((d[0] * (v1[0] - v0[0]) + d[1] * (v1[1] - v0[1]) + d[2] * (v1[2] - v0[2])) +
                                           (of_box && v.x ? stretching(*of_box, d) : 0));
             finite = finite && std::isfinite(length) && std::isfinite(rate);
-            if (found.length_chain < 0 || length > found.length) {
+            if (found.length_molecule < 0 || length > found.length) {
                 found.length = length;
-                found.length_chain = chain + chains.base;
+                found.length_molecule = chain + chains.base;
                 found.length_bond = k + chains.base;
             }
-            if (v.x && (found.rate_chain < 0 || rate > found.rate)) {
+            if (v.x && (found.rate_molecule < 0 || rate > found.rate)) {
                 found.rate = rate;
-                found.rate_chain = chain + chains.base;
+                found.rate_molecule = chain + chains.base;
                 found.rate_bond = k + chains.base;
             }
         }

@@ -18,6 +18,9 @@ module holonomic
    use holonomic_c, only: hol_report, hol_worst, HOL_OK, HOL_ERR_NULL, HOL_ERR_VALUE, HOL_ERR_INDEX, &
                           HOL_ERR_SHARED_ATOM, HOL_ERR_MEMORY, HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE, &
                           HOL_ERR_NO_CONVERGENCE, HOL_ERR_NOT_DEFINITE, HOL_ERR_INTERNAL, HOL_ERR_LENGTHS, &
+                          HOL_ERR_UNSUPPORTED, HOL_ERR_STATE, HOL_ERR_CALLBACK, HOL_BODIES_FOUND, HOL_BODIES_GIVEN, &
+                          HOL_ROLE_OWN, HOL_ROLE_BODY, HOL_ROLE_IMPLIED, HOL_ROLE_FIXED, &
+                          c_version_number => hol_version_number, &
                           HOL_NEVER, HOL_AT_START, HOL_ALWAYS, c_version => hol_version, c_status_name => hol_status_name, &
                           c_instruction_set => hol_instruction_set, c_error_location => hol_error_location, &
                           HOL_PHYSICAL, HOL_SHAPE_CHAIN, HOL_SHAPE_OTHER, HOL_SHAPE_RIGID, HOL_SHAPE_RING, &
@@ -31,12 +34,14 @@ module holonomic
    implicit none
    private
    public :: hol_chains, hol_inverse, hol_report, hol_worst
-   public :: hol_version, hol_status_name, hol_instruction_set, hol_error_location
+   public :: hol_version, hol_version_number, hol_status_name, hol_instruction_set, hol_error_location
    public :: hol_tridiagonal_pivots, hol_tridiagonal_log_det, hol_tridiagonal_solve, hol_tridiagonal_inverse_entry, &
              hol_tridiagonal_inverse_band, hol_partition_function
    public :: HOL_OK, HOL_ERR_NULL, HOL_ERR_VALUE, HOL_ERR_INDEX, HOL_ERR_SHARED_ATOM, HOL_ERR_MEMORY, &
              HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE, HOL_ERR_NO_CONVERGENCE, HOL_ERR_NOT_DEFINITE, HOL_ERR_INTERNAL, &
-             HOL_ERR_LENGTHS, HOL_NEVER, HOL_AT_START, HOL_ALWAYS, HOL_PHYSICAL, HOL_UNIT_DIAGONAL, HOL_SHAPE_CHAIN, &
+             HOL_ERR_LENGTHS, HOL_ERR_UNSUPPORTED, HOL_ERR_STATE, HOL_ERR_CALLBACK, HOL_BODIES_FOUND, HOL_BODIES_GIVEN, &
+             HOL_ROLE_OWN, HOL_ROLE_BODY, HOL_ROLE_IMPLIED, HOL_ROLE_FIXED, &
+             HOL_NEVER, HOL_AT_START, HOL_ALWAYS, HOL_PHYSICAL, HOL_UNIT_DIAGONAL, HOL_SHAPE_CHAIN, &
              HOL_SHAPE_TREE, HOL_SHAPE_RING, HOL_SHAPE_TRIANGLE, HOL_SHAPE_OTHER, &
              HOL_SHAPE_RIGID
 
@@ -74,6 +79,10 @@ module holonomic
       procedure :: version
    end interface
 
+   interface hol_version_number
+      procedure :: version_number
+   end interface
+
    interface hol_status_name
       procedure :: status_name
    end interface
@@ -93,6 +102,11 @@ contains
       text = text_of(c_version())
    end function
 
+   ! 10000 major + 100 minor + patch.
+   integer function version_number()
+      version_number = int(c_version_number())
+   end function
+
    function status_name(status) result(text)
       integer, intent(in) :: status
       character(:), allocatable :: text
@@ -105,12 +119,12 @@ contains
    end function
 
    ! Where this thread's last failure inside the library was; -1: does not apply.
-   subroutine error_location(chain, bond, atom, n_bad)
-      integer(int64), intent(out), optional :: chain, bond, atom, n_bad
+   subroutine error_location(molecule, bond, atom, n_bad)
+      integer(int64), intent(out), optional :: molecule, bond, atom, n_bad
       integer(c_int64_t), target :: at(4)
       at = -1
       call c_error_location(c_loc(at(1)), c_loc(at(2)), c_loc(at(3)), c_loc(at(4)))
-      if (present(chain)) chain = at(1)
+      if (present(molecule)) molecule = at(1)
       if (present(bond)) bond = at(2)
       if (present(atom)) atom = at(3)
       if (present(n_bad)) n_bad = at(4)

@@ -16,21 +16,26 @@ module holonomic_along
       procedure, private :: along_rows_32_short, along_parts_32_short   ! dt of single precision, too
       generic :: project_positions_along => along_rows_32, along_rows_64, along_parts_32, along_parts_64, &
          along_rows_32_short, along_parts_32_short
-      procedure, nopass :: reference_error
+      procedure :: reference_error
    end type
 
 contains
 
-   ! The largest |b.b - a^2| / a^2 of the last reference that this thread's calls have compared with the lengths, and where.
-   subroutine reference_error(error, chain, bond)
-      real(real64), intent(out) :: error
-      integer(int64), intent(out), optional :: chain, bond
-      real(real64), target :: value
+   ! The largest |b.b - a^2| / a^2 of the last reference that a call has compared with the lengths, and where.
+   subroutine reference_error(self, error, molecule, bond, stat, errmsg)
+      class(chain_set_along), intent(in) :: self
+      real(real64), intent(inout), target :: error
+      integer(int64), intent(inout), optional :: molecule, bond
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
       integer(int64), target :: place_of(2)
-      call hol_reference_error(c_loc(value), c_loc(place_of(1)), c_loc(place_of(2)))
-      error = value
-      if (present(chain)) chain = place_of(1)
-      if (present(bond)) bond = place_of(2)
+      call problem%need_created(self%c_handle())
+      if (problem%none()) call problem%ask(hol_reference_error(self%c_handle(), c_loc(error), c_loc(place_of(1)), &
+                                                               c_loc(place_of(2))))
+      if (problem%none() .and. present(molecule)) molecule = place_of(1)
+      if (problem%none() .and. present(bond)) bond = place_of(2)
+      call settle(problem, "reference_error", stat, errmsg)
    end subroutine
 
    recursive subroutine along_rows_64(self, b, r, dt, v, lambda, guess, virial, report, stat, errmsg)

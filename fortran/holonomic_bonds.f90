@@ -32,8 +32,6 @@ contains
       if (size(bonds, 1) /= 2) then
          call problem%set(HOL_ERR_VALUE, "the first dimension of bonds must be 2, not "// &
                           decimal(size(bonds, 1, c_int64_t)))
-      else if (size(bonds, 2) < 1) then
-         call problem%set(HOL_ERR_VALUE, "no bonds were given")
       else if (size(lengths) /= size(bonds, 2)) then
          call problem%set(HOL_ERR_VALUE, decimal(size(lengths, kind=c_int64_t))//" lengths were given for "// &
                           decimal(size(bonds, 2, c_int64_t))//" bonds")

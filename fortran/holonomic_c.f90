@@ -2,6 +2,7 @@
 ! conventions. What each function does is said in the header. Ordinary programs want the module `holonomic`.
 module holonomic_c
    use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int32_t, c_int64_t, c_null_ptr, c_ptr
+   use holonomic_c_given
    use holonomic_c_metric
    use holonomic_c_molecules
    implicit none
@@ -21,6 +22,9 @@ module holonomic_c
    integer(c_int), parameter :: HOL_ERR_NOT_DEFINITE = 9
    integer(c_int), parameter :: HOL_ERR_INTERNAL = 10
    integer(c_int), parameter :: HOL_ERR_LENGTHS = 11
+   integer(c_int), parameter :: HOL_ERR_UNSUPPORTED = 12
+   integer(c_int), parameter :: HOL_ERR_STATE = 13
+   integer(c_int), parameter :: HOL_ERR_CALLBACK = 14
 
    ! hol_when
    integer(c_int), parameter :: HOL_NEVER = 0
@@ -52,17 +56,17 @@ module holonomic_c
       integer(c_int64_t) :: iterations = 0
       integer(c_int64_t) :: n_corrected = 0
       integer(c_int64_t) :: n_failed = 0
-      integer(c_int64_t) :: chain = 0
+      integer(c_int64_t) :: molecule = 0
       integer(c_int64_t) :: bond = 0
       real(c_double) :: max_error = 0
    end type
 
    type, bind(c) :: hol_worst
       real(c_double) :: length = 0
-      integer(c_int64_t) :: length_chain = 0
+      integer(c_int64_t) :: length_molecule = 0
       integer(c_int64_t) :: length_bond = 0
       real(c_double) :: rate = 0
-      integer(c_int64_t) :: rate_chain = 0
+      integer(c_int64_t) :: rate_molecule = 0
       integer(c_int64_t) :: rate_bond = 0
    end type
 
@@ -76,6 +80,11 @@ module holonomic_c
          type(c_ptr) :: text
       end function
 
+      function hol_version_number() bind(c) result(number)
+         import :: c_int
+         integer(c_int) :: number
+      end function
+
       function hol_status_name(status) bind(c) result(text)
          import :: c_int, c_ptr
          integer(c_int), value :: status
@@ -87,9 +96,9 @@ module holonomic_c
          type(c_ptr) :: text
       end function
 
-      subroutine hol_error_location(chain, bond, atom, n_bad) bind(c)
+      subroutine hol_error_location(molecule, bond, atom, n_bad) bind(c)
          import :: c_ptr
-         type(c_ptr), value :: chain, bond, atom, n_bad
+         type(c_ptr), value :: molecule, bond, atom, n_bad
       end subroutine
 
       function hol_instruction_set() bind(c) result(text)
@@ -205,10 +214,12 @@ module holonomic_c
          integer(c_int) :: status
       end function
 
-      subroutine hol_reference_error(error, chain, bond) bind(c)
-         import :: c_ptr
-         type(c_ptr), value :: error, chain, bond
-      end subroutine
+      function hol_reference_error(chains, error, molecule, bond) bind(c) result(status)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: chains
+         type(c_ptr), value :: error, molecule, bond
+         integer(c_int) :: status
+      end function
 
       function hol_violation(chains, r, v, worst) bind(c) result(status)
          import :: c_int, c_ptr

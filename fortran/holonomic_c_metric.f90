@@ -32,19 +32,19 @@ module holonomic_c_metric
 
       ! -------------------------------------------------------------------------------------------- inverse of Z
 
-      function hol_inverse_create(chains, chain, r, inverse) bind(c) result(status)
+      function hol_inverse_create(chains, molecule, r, inverse) bind(c) result(status)
          import :: c_int, c_int64_t, c_ptr
          type(c_ptr), value :: chains
-         integer(c_int64_t), value :: chain
+         integer(c_int64_t), value :: molecule
          type(c_ptr), value :: r
          type(c_ptr), intent(out) :: inverse
          integer(c_int) :: status
       end function
 
-      function hol_inverse_create_view(chains, chain, r, inverse) bind(c) result(status)
+      function hol_inverse_create_view(chains, molecule, r, inverse) bind(c) result(status)
          import :: c_int, c_int64_t, c_ptr
          type(c_ptr), value :: chains
-         integer(c_int64_t), value :: chain
+         integer(c_int64_t), value :: molecule
          type(c_ptr), value :: r
          type(c_ptr), intent(out) :: inverse
          integer(c_int) :: status

@@ -200,7 +200,7 @@ module holonomic_c_molecules
          integer(c_int64_t) :: n
       end function
 
-      pure function hol_chains_n_chains(chains) bind(c) result(n)
+      pure function hol_chains_n_molecules(chains) bind(c) result(n)
          import :: c_int64_t, c_ptr
          type(c_ptr), value :: chains
          integer(c_int64_t) :: n
@@ -218,10 +218,10 @@ module holonomic_c_molecules
          integer(c_int) :: status
       end function
 
-      function hol_chains_atoms(chains, chain, atoms) bind(c) result(status)
+      function hol_chains_atoms(chains, molecule, atoms) bind(c) result(status)
          import :: c_int, c_int64_t, c_ptr
          type(c_ptr), value :: chains
-         integer(c_int64_t), value :: chain
+         integer(c_int64_t), value :: molecule
          type(c_ptr), value :: atoms
          integer(c_int) :: status
       end function

@@ -4,7 +4,7 @@
 module holonomic_chains
    use, intrinsic :: iso_c_binding, only: c_associated, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
    use, intrinsic :: iso_fortran_env, only: int32, int64, real64
-   use holonomic_c, only: hol_chains_add, hol_chains_add_block, hol_chains_create, hol_chains_destroy, &
+   use holonomic_c, only: hol_chains_add, hol_chains_add_block, hol_chains_copy, hol_chains_create, hol_chains_destroy, &
                           hol_chains_set_index_base, hol_error_location, HOL_ERR_VALUE
    use holonomic_ownership, only: ownership
    use holonomic_status, only: decimal, failure, settle
@@ -18,6 +18,7 @@ module holonomic_chains
       type(ownership) :: owner
    contains
       procedure :: create
+      procedure :: copy_of
       procedure :: adopt
       procedure :: destroy
       procedure, private :: add_list_32, add_list_64, add_list_one_length_32, add_list_one_length_64
@@ -61,6 +62,21 @@ contains
       call settle(problem, "create", stat, errmsg)
    end subroutine
 
+   ! Molecules of its own, as those of another variable are now, with its options: to be changed apart from them.
+   subroutine copy_of(self, other, stat, errmsg)
+      class(chain_set), intent(inout) :: self
+      class(chain_set), intent(in) :: other
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      call problem%need_created(other%handle)
+      if (c_associated(self%handle)) &
+         call problem%set(HOL_ERR_VALUE, "this variable has been created already; destroy it first")
+      if (problem%none()) call problem%ask(hol_chains_copy(other%handle, self%handle))
+      if (problem%none()) call self%owner%take()
+      call settle(problem, "copy_of", stat, errmsg)
+   end subroutine
+
    ! A copy only forgets the molecules: they belong to the variable that created them.
    impure elemental subroutine destroy(self)
       class(chain_set), intent(inout) :: self
@@ -84,13 +100,11 @@ contains
       type(failure) :: problem
       integer(c_int64_t) :: n_bonds
       call problem%need_created(self%handle)
-      n_bonds = size(atoms, kind=c_int64_t) - 1
-      if (size(lengths, kind=c_int64_t) /= max(n_bonds, 0_c_int64_t)) then
+      n_bonds = max(size(atoms, kind=c_int64_t) - 1, 0_c_int64_t)
+      if (size(lengths, kind=c_int64_t) /= n_bonds) then
          call problem%set(HOL_ERR_VALUE, decimal(size(lengths, kind=c_int64_t))//" lengths were given for "// &
-                          decimal(max(n_bonds, 0_c_int64_t))//" bonds")
-      else if (n_bonds < 1) then
-         call problem%set(HOL_ERR_VALUE, "a chain needs at least two atoms")
-      else
+                          decimal(n_bonds)//" bonds")
+      else if (n_bonds > 0) then
          call problem%ask(hol_chains_add(self%handle, n_bonds, c_loc(atoms), c_loc(lengths)))
       end if
       call settle(problem, "add", stat, errmsg)
@@ -131,9 +145,7 @@ contains
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
       call problem%need_created(self%handle)
-      if (n_bonds < 1) then
-         call problem%set(HOL_ERR_VALUE, "n_bonds = "//decimal(n_bonds)//" must be at least 1")
-      else if (size(lengths, kind=int64) /= n_bonds) then
+      if (size(lengths, kind=int64) /= max(n_bonds, 0_int64)) then
          call problem%set(HOL_ERR_VALUE, decimal(size(lengths, kind=int64))//" lengths were given for "// &
                           decimal(n_bonds)//" bonds")
       else

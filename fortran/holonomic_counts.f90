@@ -4,7 +4,7 @@ module holonomic_counts
    use, intrinsic :: iso_fortran_env, only: int32, int64
    use holonomic_c, only: hol_chains_atoms, hol_chains_bonds, hol_chains_degrees_of_freedom, hol_chains_memory, &
                           hol_chains_molecule, hol_chains_molecules_of_bonds, hol_chains_n_atoms, hol_chains_n_bonds, &
-                          hol_chains_n_chains, hol_chains_n_kinds, hol_chains_n_of_shape, hol_chains_offsets
+                          hol_chains_n_molecules, hol_chains_n_kinds, hol_chains_n_of_shape, hol_chains_offsets
    use holonomic_place, only: enough
    use holonomic_settings, only: chain_set_settings
    use holonomic_status, only: failure, settle
@@ -15,7 +15,7 @@ module holonomic_counts
    type, extends(chain_set_settings) :: chain_set_counts
    contains
       procedure :: n_atoms
-      procedure :: n_chains
+      procedure :: n_molecules
       procedure :: n_bonds
       procedure :: degrees_of_freedom
       procedure :: memory
@@ -37,9 +37,9 @@ contains
       n_atoms = hol_chains_n_atoms(self%c_handle())
    end function
 
-   pure recursive integer(int64) function n_chains(self)
+   pure recursive integer(int64) function n_molecules(self)
       class(chain_set_counts), intent(in) :: self
-      n_chains = hol_chains_n_chains(self%c_handle())
+      n_molecules = hol_chains_n_molecules(self%c_handle())
    end function
 
    pure recursive integer(int64) function n_bonds(self)
@@ -77,7 +77,7 @@ contains
    end function
 
    ! Where the bonds of each molecule follow one another, as in a set of linear chains alone:
-   ! first_bond(n_chains + 1): molecule m has the bonds first_bond(m) .. first_bond(m + 1) - 1 of arrays per bond.
+   ! first_bond(n_molecules + 1): molecule m has the bonds first_bond(m) .. first_bond(m + 1) - 1 of arrays per bond.
    recursive subroutine offsets(self, first_bond, stat, errmsg)
       class(chain_set_counts), intent(in) :: self
       integer(int64), intent(inout), contiguous, target :: first_bond(:)
@@ -85,12 +85,12 @@ contains
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
       call problem%need_created(self%c_handle())
-      if (enough("first_bond", size(first_bond, kind=int64), self%n_chains() + 1, "molecules and the end", problem)) &
+      if (enough("first_bond", size(first_bond, kind=int64), self%n_molecules() + 1, "molecules and the end", problem)) &
          call problem%ask(hol_chains_offsets(self%c_handle(), c_loc(first_bond)))
       call settle(problem, "offsets", stat, errmsg)
    end subroutine
 
-   ! list(n_bonds + n_chains) suffices: the atoms of all molecules, molecule after molecule, those of a linear chain in
+   ! list(n_bonds + n_molecules) suffices: the atoms of all molecules, molecule after molecule, those of a linear chain in
    ! order, those of others ascending. If all are linear chains, chain c begins at element first_bond(c) + c - 1.
    recursive subroutine atoms_of_all(self, list, stat, errmsg)
       class(chain_set_counts), intent(in) :: self
@@ -102,13 +102,13 @@ contains
       type(failure) :: problem
       call problem%need_created(self%c_handle())
       needed = 0
-      do number = 1, self%n_chains()
+      do number = 1, self%n_molecules()
          call problem%ask(hol_chains_molecule(self%c_handle(), number, c_null_ptr, c_loc(n), c_null_ptr))
          if (problem%none()) needed = needed + n
       end do
       if (enough("list", size(list, kind=int64), needed, "atoms", problem)) then
          before = 0
-         do number = 1, self%n_chains()
+         do number = 1, self%n_molecules()
             call problem%ask(hol_chains_molecule(self%c_handle(), number, c_null_ptr, c_loc(n), c_null_ptr))
             if (problem%none()) call problem%ask(hol_chains_atoms(self%c_handle(), number, c_loc(list(before + 1))))
             before = before + n

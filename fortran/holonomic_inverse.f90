@@ -29,23 +29,23 @@ module holonomic_inverse
 
 contains
 
-   subroutine create_rows_64(self, chains, chain, r, stat, errmsg)
+   subroutine create_rows_64(self, chains, molecule, r, stat, errmsg)
       class(hol_inverse), intent(inout) :: self
       class(chain_set), intent(in) :: chains
-      integer, intent(in) :: chain
+      integer, intent(in) :: molecule
       real(real64), intent(in), target :: r(:, :)
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
       type(place), target :: at_r
       call at_r%rows_64(hol_chains_n_atoms(chains%c_handle()), problem, "r", r)
-      call create_at(self, problem, chains, chain, at_r, stat, errmsg)
+      call create_at(self, problem, chains, molecule, at_r, stat, errmsg)
    end subroutine
 
-   subroutine create_parts_64(self, chains, chain, x, y, z, stat, errmsg)
+   subroutine create_parts_64(self, chains, molecule, x, y, z, stat, errmsg)
       class(hol_inverse), intent(inout) :: self
       class(chain_set), intent(in) :: chains
-      integer, intent(in) :: chain
+      integer, intent(in) :: molecule
       real(real64), intent(in), target :: x(:), y(:)
       real(real64), intent(in), optional, target :: z(:)
       integer, intent(out), optional :: stat
@@ -53,26 +53,26 @@ contains
       type(failure) :: problem
       type(place), target :: at_r
       call at_r%parts_64(hol_chains_n_atoms(chains%c_handle()), problem, "*", x, y, z)
-      call create_at(self, problem, chains, chain, at_r, stat, errmsg)
+      call create_at(self, problem, chains, molecule, at_r, stat, errmsg)
    end subroutine
 
-   subroutine create_rows_32(self, chains, chain, r, stat, errmsg)
+   subroutine create_rows_32(self, chains, molecule, r, stat, errmsg)
       class(hol_inverse), intent(inout) :: self
       class(chain_set), intent(in) :: chains
-      integer, intent(in) :: chain
+      integer, intent(in) :: molecule
       real(real32), intent(in), target :: r(:, :)
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       type(failure) :: problem
       type(place), target :: at_r
       call at_r%rows_32(hol_chains_n_atoms(chains%c_handle()), problem, "r", r)
-      call create_at(self, problem, chains, chain, at_r, stat, errmsg)
+      call create_at(self, problem, chains, molecule, at_r, stat, errmsg)
    end subroutine
 
-   subroutine create_parts_32(self, chains, chain, x, y, z, stat, errmsg)
+   subroutine create_parts_32(self, chains, molecule, x, y, z, stat, errmsg)
       class(hol_inverse), intent(inout) :: self
       class(chain_set), intent(in) :: chains
-      integer, intent(in) :: chain
+      integer, intent(in) :: molecule
       real(real32), intent(in), target :: x(:), y(:)
       real(real32), intent(in), optional, target :: z(:)
       integer, intent(out), optional :: stat
@@ -80,14 +80,14 @@ contains
       type(failure) :: problem
       type(place), target :: at_r
       call at_r%parts_32(hol_chains_n_atoms(chains%c_handle()), problem, "*", x, y, z)
-      call create_at(self, problem, chains, chain, at_r, stat, errmsg)
+      call create_at(self, problem, chains, molecule, at_r, stat, errmsg)
    end subroutine
 
-   subroutine create_at(self, problem, chains, chain, at_r, stat, errmsg)
+   subroutine create_at(self, problem, chains, molecule, at_r, stat, errmsg)
       class(hol_inverse), intent(inout) :: self
       type(failure), intent(inout) :: problem
       class(chain_set), intent(in) :: chains
-      integer, intent(in) :: chain
+      integer, intent(in) :: molecule
       type(place), intent(in), target :: at_r
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
@@ -96,7 +96,7 @@ contains
       if (c_associated(self%handle)) call problem%set(HOL_ERR_VALUE, "this inverse has been created already; " &
                                                       //"destroy it first")
       if (problem%none()) then
-         call problem%ask(hol_inverse_create_view(chains%c_handle(), int(chain, c_int64_t), at_r%address(), self%handle))
+         call problem%ask(hol_inverse_create_view(chains%c_handle(), int(molecule, c_int64_t), at_r%address(), self%handle))
          if (problem%none()) call self%owner%take()
          self%n_atoms = hol_chains_n_atoms(chains%c_handle())
       end if

@@ -118,8 +118,8 @@ contains
       else if (present(energy) .or. at_force%given) then
          call problem%set(HOL_ERR_VALUE, "kt must be given for the energy and the force")
       end if
-      at_log_det = list_of(log_det, "log_det", self%n_chains(), "molecules", problem)
-      at_log_det_z = list_of(log_det_z, "log_det_z", self%n_chains(), "molecules", problem)
+      at_log_det = list_of(log_det, "log_det", self%n_molecules(), "molecules", problem)
+      at_log_det_z = list_of(log_det_z, "log_det_z", self%n_molecules(), "molecules", problem)
       if (problem%none()) then
          call problem%ask(hol_metric_view(self%c_handle(), at_r%address(), thermal, at_log_det, at_log_det_z, &
                                           number_at(energy), at_force%address(), mode))

@@ -40,11 +40,11 @@ contains
       to_status = c_null_ptr
       to_iterations = c_null_ptr
       if (present(status)) then
-         if (enough("status", size(status, kind=c_int64_t), self%n_chains(), "molecules", problem)) &
+         if (enough("status", size(status, kind=c_int64_t), self%n_molecules(), "molecules", problem)) &
             to_status = c_loc(status)
       end if
       if (present(iterations)) then
-         if (enough("iterations", size(iterations, kind=c_int64_t), self%n_chains(), "molecules", problem)) &
+         if (enough("iterations", size(iterations, kind=c_int64_t), self%n_molecules(), "molecules", problem)) &
             to_iterations = c_loc(iterations)
       end if
       if (problem%none()) call problem%ask(hol_outcomes(self%c_handle(), to_status, to_iterations))

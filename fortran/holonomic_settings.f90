@@ -3,7 +3,7 @@ module holonomic_settings
    use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_loc, c_null_ptr, c_ptr, c_signed_char
    use, intrinsic :: iso_fortran_env, only: int32, int64, real64
    use holonomic_rigid, only: chain_set_rigid
-   use holonomic_c, only: hol_chains_n_atoms, hol_chains_n_bonds, hol_chains_n_chains, hol_chains_set_active, &
+   use holonomic_c, only: hol_chains_n_atoms, hol_chains_n_bonds, hol_chains_n_molecules, hol_chains_set_active, &
                           hol_chains_set_box, hol_chains_set_box_rate, hol_chains_set_checks, hol_chains_set_labels, &
                           hol_chains_set_lengths, hol_chains_set_masses, &
                           hol_chains_set_max_iterations, hol_chains_set_memory_limit, hol_chains_set_reference_box, &
@@ -125,7 +125,7 @@ contains
       type(c_ptr) :: at_atoms, at_molecules
       call problem%need_created(self%c_handle())
       at_atoms = labels_of(atoms, "atoms", hol_chains_n_atoms(self%c_handle()), problem)
-      at_molecules = labels_of(molecules, "molecules", hol_chains_n_chains(self%c_handle()), problem)
+      at_molecules = labels_of(molecules, "molecules", hol_chains_n_molecules(self%c_handle()), problem)
       if (problem%none()) call problem%ask(hol_chains_set_labels(self%c_handle(), at_atoms, at_molecules))
       call settle(problem, "set_labels", stat, errmsg)
    end subroutine
@@ -185,7 +185,7 @@ contains
       call problem%need_created(self%c_handle())
       if (.not. present(active)) then
          call problem%ask(hol_chains_set_active(self%c_handle(), c_null_ptr))
-      else if (enough("active", size(active, kind=c_int64_t), hol_chains_n_chains(self%c_handle()), "molecules", problem)) then
+      else if (enough("active", size(active, kind=c_int64_t), hol_chains_n_molecules(self%c_handle()), "molecules", problem)) then
          allocate (flags(max(1, size(active))), stat=trouble)
          if (trouble /= 0) then
             call problem%set(HOL_ERR_MEMORY, "out of memory")

@@ -21,16 +21,18 @@ struct Layout {
     void call(Level level, const Problem &p, State &s) {
         const hol_view reference_view = reference.view(), r_view = r.view(), v_view = v.view(), f_view = f.view(),
                        g_view = g.view();
+        const hol_const_view reference_read = hol_view_read(&reference_view), r_read = hol_view_read(&r_view),
+                             v_read = hol_view_read(&v_view), f_read = hol_view_read(&f_view);
         double energy;
         if (level == Level::acceleration)
-            check(hol_forces_view(chains.get(), &r_view, &v_view, &f_view, s.lambda.data(), nullptr, &g_view, HOL_WRITE,
+            check(hol_forces_view(chains.get(), &r_read, &v_read, &f_read, s.lambda.data(), nullptr, &g_view, HOL_WRITE,
                                   nullptr));
         else if (level == Level::velocity)
-            check(hol_project_velocities_view(chains.get(), &reference_view, &v_view, s.lambda.data(), nullptr));
+            check(hol_project_velocities_view(chains.get(), &reference_read, &v_view, s.lambda.data(), nullptr));
         else if (level == Level::metric)
-            check(hol_metric_view(chains.get(), &r_view, 1.0, s.log_det.data(), nullptr, &energy, &g_view, HOL_WRITE));
+            check(hol_metric_view(chains.get(), &r_read, 1.0, s.log_det.data(), nullptr, &energy, &g_view, HOL_WRITE));
         else
-            check(hol_project_positions_view(chains.get(), &reference_view, &r_view, &v_view, p.dt, s.lambda.data(), 0,
+            check(hol_project_positions_view(chains.get(), &reference_read, &r_view, &v_view, p.dt, s.lambda.data(), 0,
                                              nullptr, nullptr));
     }
 };

@@ -51,7 +51,7 @@ void print(const Call &c, double n) {
 /** Rounds that the iteration for a network takes; 0 of what is solved directly. */
 int rounds_of_forces(const Network &s, hol_chains *chains, const std::vector<double> &v, const std::vector<double> &f,
                      std::vector<double> &g) {
-    std::vector<int> iterations(static_cast<std::size_t>(hol_chains_n_chains(chains)));
+    std::vector<int> iterations(static_cast<std::size_t>(hol_chains_n_molecules(chains)));
     hol_chains_set_outcomes(chains, 1);
     hol_forces(chains, s.r.data(), v.data(), f.data(), nullptr, nullptr, g.data(), HOL_WRITE, nullptr);
     hol_outcomes(chains, nullptr, iterations.data());

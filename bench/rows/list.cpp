@@ -25,7 +25,7 @@ const std::vector<Verb> &verbs() {
          },
          [](const Call &c) {
              Arrays &a = c.arrays;
-             return c.calls.hol_forces_view(c.chains, a.r.view(), a.v.view(), a.f.view(), a.lambda.data(), nullptr,
+             return c.calls.hol_forces_view(c.chains, a.r.input(), a.v.input(), a.f.input(), a.lambda.data(), nullptr,
                                             a.g.view(), HOL_WRITE, nullptr);
          }},
         {"velocities", false,
@@ -35,7 +35,7 @@ const std::vector<Verb> &verbs() {
          },
          [](const Call &c) {
              Arrays &a = c.arrays;
-             return c.calls.hol_project_velocities_view(c.chains, a.r.view(), a.v.view(), a.lambda.data(), nullptr);
+             return c.calls.hol_project_velocities_view(c.chains, a.r.input(), a.v.view(), a.lambda.data(), nullptr);
          }},
         {"positions", true,
          [](const Call &c) {
@@ -45,7 +45,7 @@ const std::vector<Verb> &verbs() {
          },
          [](const Call &c) {
              Arrays &a = c.arrays;
-             return c.calls.hol_project_positions_view(c.chains, a.reference.view(), a.r.view(), a.v.view(), c.scene.dt,
+             return c.calls.hol_project_positions_view(c.chains, a.reference.input(), a.r.view(), a.v.view(), c.scene.dt,
                                                        a.lambda.data(), 0, nullptr, nullptr);
          }},
     };

@@ -23,11 +23,17 @@ public:
     void copy(const Field &other);
     double *packed() { return static_cast<double *>(view_.x); }  ///< of that layout alone
     const hol_view *view() const { return &view_; }
+    const hol_const_view *input()
+    {
+        read_ = hol_view_read(&view_);
+        return &read_;
+    }
 
 private:
     std::vector<double> doubles_;
     std::vector<float> floats_;
     hol_view view_;
+    hol_const_view read_;
 };
 
 /// Arrays of one call.

@@ -159,6 +159,33 @@ struct SolveCall {
     bool rescaled = false;
 };
 
+// Factors that are kept from one elimination for any number of solves, block by block of the molecules of a unit, known
+// by its first molecule. Each solve goes through the same units, and so comes to the same blocks.
+struct KeptFactors {
+    void *owner;
+    double *(*room)(void *owner, int64_t molecule, int64_t doubles);  // to be filled; nullptr: there is no memory
+    const double *const *block;                                       // [n_molecules] or nullptr: that one is not kept
+};
+
+// Keeps them, and marks the molecules that it has not kept.
+struct KeepCall {
+    AtomArray r;  // packed
+    KeptFactors *kept;
+    unsigned char *left;  // [n_molecules]
+    Box box;
+};
+
+// Solves with them: with given right-hand sides, or with those of velocities and forces. Marks the molecules of which
+// nothing has been written: other ways are left to them. Those that are marked already are passed over.
+struct KeptCall {
+    AtomArray v, f, g;  // packed
+    const double *rhs;
+    double *lambda, *tension;
+    bool add, virial, boxed;
+    const KeptFactors *kept;
+    unsigned char *left;
+};
+
 enum JoinResult { join_good, join_doubtful, join_bad };
 
 // A chain of more than longest_lane bonds is worked on in blocks of segments, in phases; within a phase the blocks may
@@ -230,6 +257,15 @@ struct TridiagonalKernels {
     bool (*pivots)(int64_t n, const double *gamma, double *pivots);
 };
 
+// Chains that fit into lanes, and molecules in lanes: is_kept() says of which shapes. Others are not to be handed over.
+struct KeptKernels {
+    void (*keep_chains)(const KeepCall &, const Unit &, double *scratch, Tally &);
+    void (*solve_chains)(const KeptCall &, const Unit &, double *scratch, Tally &);
+    bool (*is_kept)(const Schedule &);
+    void (*keep_molecules)(const KeepCall &, const MoleculeUnit &, double *scratch, Tally &);
+    void (*solve_molecules)(const KeptCall &, const MoleculeUnit &, double *scratch, Tally &);
+};
+
 // The kernels of one instruction set. `scratch` has scratch_bytes(bonds of the longest chain), aligned to 64; for long
 // chains piece_bytes.
 struct Kernels {
@@ -248,6 +284,7 @@ struct Kernels {
     MoleculeKernels molecules{};
     TridiagonalKernels tridiagonal{};
     BodyKernels bodies{};
+    KeptKernels kept{};
 };
 
 }  // namespace holonomic

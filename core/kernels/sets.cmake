@@ -4,6 +4,7 @@
 
 # Chains that fit into lanes: what every set has.
 set(chain_kernels
+    kernels/kept/chains.cpp
     kernels/memory/load.cpp
     kernels/memory/load_lists.cpp
     kernels/memory/open.cpp
@@ -21,6 +22,7 @@ set(chain_kernels
 )
 # Long chains, and molecules that are no chains.
 set(other_kernels
+    kernels/kept/molecules.cpp
     kernels/verbs/bodies.cpp
     kernels/verbs/molecules_forces.cpp
     kernels/verbs/molecules_forests.cpp

@@ -55,7 +55,8 @@ void check_lengths(std::int64_t n_bonds, const double *lengths, int base) {
 }
 
 void Chains::add(std::int64_t n_bonds, const std::int64_t *atoms, const double *lengths) {
-    check_at_least("n_bonds", n_bonds, 1);
+    check_at_least("n_bonds", n_bonds, 0);
+    if (n_bonds == 0) return;
     // Before anything is read: atoms that can move occur once, with one that is fixed between each two at the most.
     if (n_bonds > 2 * n_atoms_)
         throw make_error(Status::value, "n_bonds is %lld: a chain of so many bonds has more than the %lld atoms",
@@ -82,8 +83,9 @@ void Chains::add(std::int64_t n_bonds, const std::int64_t *atoms, const double *
 }
 
 void Chains::add_block(std::int64_t count, std::int64_t n_bonds, std::int64_t first_atom, const double *lengths) {
-    check_at_least("n_chains", count, 1);
-    check_at_least("n_bonds", n_bonds, 1);
+    check_at_least("n_chains", count, 0);
+    check_at_least("n_bonds", n_bonds, 0);
+    if (count == 0 || n_bonds == 0) return;
     const std::int64_t first = from_zero(first_atom, base);
     if (first < 0 || first >= n_atoms_ || n_bonds >= n_atoms_ || count > (n_atoms_ - first) / (n_bonds + 1))
         throw outside("chains", count, n_bonds, first_atom, n_atoms_, base);
@@ -97,7 +99,8 @@ void Chains::add_block(std::int64_t count, std::int64_t n_bonds, std::int64_t fi
 }
 
 void Chains::add_bonds(std::int64_t n_bonds, const std::int64_t *pairs, const double *lengths) {
-    check_at_least("n_bonds", n_bonds, 1);
+    check_at_least("n_bonds", n_bonds, 0);
+    if (n_bonds == 0) return;
     if (n_bonds > most_bonds)
         throw make_error(Status::value, "n_bonds is %lld; it must be at most %lld in a call",
                          static_cast<long long>(n_bonds), static_cast<long long>(most_bonds));
@@ -114,16 +117,17 @@ void Chains::add_listed(const BondList &list, const double *lengths, std::int64_
         batch.append_found(found, list, lengths, n_lengths);
         if (!batch.is_flat()) return batch.commit();
     } catch (const Error &error) {
-        if (error.status != Status::degenerate) throw;
+        if (error.status != Status::degenerate || !finds_bodies) throw;
     }
     add_with_bodies(list, lengths, n_lengths);
 }
 
 void Chains::add_molecules(std::int64_t count, std::int64_t n_atoms, std::int64_t first_atom, std::int64_t n_bonds,
                            const std::int64_t *pairs, const double *lengths) {
-    check_at_least("n_molecules", count, 1);
+    check_at_least("n_molecules", count, 0);
+    check_at_least("n_bonds", n_bonds, 0);
+    if (count == 0 || n_bonds == 0) return;
     check_at_least("n_atoms", n_atoms, 2);
-    check_at_least("n_bonds", n_bonds, 1);
     if (n_bonds > most_bonds || count > most_bonds / n_bonds)
         throw make_error(
             Status::value, "n_molecules times n_bonds is %lld times %lld; it must be at most %lld in a call",

@@ -40,6 +40,7 @@ Batch::~Batch() {
     chains_.groups_.roll_back(before_);
     chains_.kinds_.roll_back(kinds_before_);
     chains_.unconstrained_.resize(n_unconstrained_);
+    chains_.of_unconstrained_.resize(n_unconstrained_);
     chains_.active_.resize(n_active_);
     chains_.changed();  // the tables that a plan points into may have moved
     for (const std::int64_t atom : taken_) chains_.use_.give_back(atom);
@@ -83,6 +84,11 @@ void Batch::append_part(std::int64_t n_bonds, const std::int64_t *atoms, const d
                            nullptr);
 }
 
+void Batch::leave_out(std::int64_t bond, const std::int64_t *atoms, double length) {
+    chains_.unconstrained_.push_back(bond);
+    chains_.of_unconstrained_.push_back({{atoms[0], atoms[1]}, length});
+}
+
 // Bonds between two fixed atoms divide it.
 void Batch::append_chain(std::int64_t n_bonds, const std::int64_t *atoms, const double *lengths) {
     const std::int64_t first_bond = chains_.n_bonds_ + n_bonds_;
@@ -91,7 +97,7 @@ void Batch::append_chain(std::int64_t n_bonds, const std::int64_t *atoms, const 
         const bool end = k == n_bonds;
         if (!end && !(chains_.masses_.fixed(atoms[k]) && chains_.masses_.fixed(atoms[k + 1]))) continue;
         if (k > begin) append_part(k - begin, atoms + begin, lengths + begin, first_bond + begin);
-        if (!end) chains_.unconstrained_.push_back(first_bond + k);
+        if (!end) leave_out(first_bond + k, atoms + k, lengths[k]);
         begin = k + 1;
     }
     n_bonds_ += n_bonds;
@@ -211,7 +217,10 @@ void Batch::append_found(const FoundMolecules &found, const BondList &list, cons
             if (found.fixed[i]) fixed_.push_back(found.atoms[i]);
     }
     fixed_.insert(fixed_.end(), found.unconstrained_atoms.begin(), found.unconstrained_atoms.end());
-    for (const std::int64_t bond : found.unconstrained) chains_.unconstrained_.push_back(chains_.n_bonds_ + bond);
+    for (std::size_t k = 0; k < found.unconstrained.size(); ++k) {
+        const std::int64_t bond = found.unconstrained[k];
+        leave_out(chains_.n_bonds_ + bond, &found.unconstrained_atoms[2 * k], lengths[bond % n_lengths]);
+    }
     n_bonds_ += n_bonds;
 }
 

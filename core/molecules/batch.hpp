@@ -30,6 +30,7 @@ public:
 
 private:
     void append_part(std::int64_t n_bonds, const std::int64_t *atoms, const double *lengths, std::int64_t first_bond);
+    void leave_out(std::int64_t bond, const std::int64_t *atoms, double length);  // of two fixed atoms
     std::int32_t shape_of(const FoundMolecules &found, std::size_t m, std::int32_t likely);
     void append_one(const FoundMolecules &found, std::size_t m, std::int32_t shape, const double *lengths);
     void note_direction(const FoundMolecules &found, const FoundMolecule &molecule, const BondList &list);

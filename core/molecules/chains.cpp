@@ -11,7 +11,14 @@ namespace holonomic {
 Chains::Chains(std::int64_t n_atoms, const double *masses)
     : n_atoms_(n_atoms), masses_(n_atoms, masses, 0), use_(n_atoms) {}
 
+Chains::Chains(const Chains &) = default;
 Chains::~Chains() = default;
+
+void Chains::set_base(int counted_from) {
+    if (counted_from != base && n_bonds_ > 0)
+        throw make_error(Status::state, "molecules have been added already, with numbers counted from %d", base);
+    base = counted_from;
+}
 
 // Of a bond, or of what else is taken as a nearest image.
 double Chains::longest() const { return bodies_ ? std::max(longest_, bodies_->longest()) : longest_; }
@@ -35,7 +42,7 @@ void Chains::box_changed(const Box &next, Box &seen) {
     }
     if (next.shape == seen.shape && !(change > small * size)) return;
     seen = next;
-    fits_.store(false, std::memory_order_relaxed);
+    fits_.set(false);
 }
 
 void Chains::check_width(const Box &next, double longest, const double *lengths) const {
@@ -56,10 +63,17 @@ void Chains::check_width(const Box &next, double longest, const double *lengths)
         width, longest, atoms);
 }
 
+Chains::GivenBox Chains::given(const double *h) {
+    GivenBox box{};
+    if (h) std::copy(h, h + 9, box.h);
+    return box;
+}
+
 void Chains::set_box(const double *h) {
     const Box next = make_box(h);
     check_width(next, longest(), nullptr);
     box = next;
+    given_box_ = given(h);
     box_changed(box, seen_box_);
 }
 
@@ -67,6 +81,7 @@ void Chains::set_reference_box(const double *h) {
     const Box next = make_box(h);
     check_width(next, longest(), nullptr);
     reference_box_ = next;
+    given_reference_box_ = given(h);
     has_reference_box_ = h != nullptr;
     box_changed(reference_box_, seen_reference_);
 }

@@ -1,15 +1,14 @@
 // Which atoms are joined by rigid bonds: what a handle of the C interface holds.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <vector>
 
 #include "core/caller/box.hpp"
 #include "core/kernels/call.hpp"
 #include "core/molecules/atom_use.hpp"
+#include "core/molecules/copied.hpp"
 #include "core/molecules/find.hpp"
 #include "core/molecules/group.hpp"
 #include "core/molecules/kind.hpp"
@@ -26,6 +25,9 @@ class Bodies;
 struct Given;
 }  // namespace rigid
 
+// What a bond is. The values are those of hol_role, which capi/queries.cpp asserts.
+enum class Role { own = 0, body = 1, implied = 2, fixed = 3 };
+
 // When positions are compared with the lengths. The values are those of hol_when, which capi/chains.cpp asserts.
 enum class Checks { never = 0, at_start = 1, always = 2 };
 
@@ -34,6 +36,7 @@ class Batch;
 class Chains {
 public:
     Chains(std::int64_t n_atoms, const double *masses);
+    Chains(const Chains &);  // shares what has been found out about shapes
     ~Chains();
 
     // adding.cpp. On an Error or std::bad_alloc nothing is added.
@@ -55,12 +58,14 @@ public:
 
     // values.cpp. On an Error or std::bad_alloc nothing is changed.
     void set_lengths(const double *lengths);
+    void set_length(std::int64_t bond, double length);
     void set_masses(const double *masses);
 
     void set_active(const unsigned char *active);
     void set_labels(const std::int64_t *atoms, const std::int64_t *molecules) {
         labels_.set(n_atoms_, atoms, n_molecules(), molecules);
     }
+    void set_base(int counted_from);  // before anything is added. Throws Error
     void set_box(const double *h);
     void set_reference_box(const double *h);
     void set_box_rate(const double *L);
@@ -81,6 +86,12 @@ public:
     std::int64_t count_bonds(std::int64_t molecule) const;  // that `bonds` writes
     void bonds(std::int64_t molecule, std::int64_t *out) const;
     void molecules_of_bonds(std::int64_t *out) const;
+    void pairs(std::int64_t *out) const;                            // [n_bonds][2]
+    void lengths(double *out) const;                                // [n_bonds]
+    void masses(double *out) const { masses_.copy(out); }           // [n_atoms]
+    void roles(std::int32_t *role, std::int64_t *n_removed) const;  // [n_bonds] a Role each, [n_molecules]; or null
+    const double *given_box() const { return given_box_.h; }        // [9], zeros: none
+    const double *given_reference_box() const { return has_reference_box_ ? given_reference_box_.h : given_box_.h; }
     std::int64_t degrees_of_freedom(int dimensions) const;
     Name name_of_atom(std::int64_t atom) const { return labels_.of_atom(atom, base); }
     Name name_of_molecule(std::int64_t molecule) const;
@@ -108,7 +119,7 @@ public:
 
     // plan.cpp
     const Plan &plan() const {  // thread-safe
-        const Plan *const made = plan_.load(std::memory_order_acquire);
+        const Plan *const made = plan_.there();
         return made ? *made : make_plan();
     }
     const Plan &plan_of_parts() const;  // likewise; no molecule of it is linear
@@ -123,23 +134,26 @@ public:
         return !backwards_.empty() && backwards_[static_cast<std::size_t>(bond)] != 0;
     }
 
+    // Another one after each change of the molecules, their masses, lengths, or which are active.
+    std::int64_t revision() const { return revision_; }
+    bool shares_fixed_atoms() const { return use_.any_shared(); }
+
     Checks checks() const { return checks_; }
     void set_checks(Checks when) {
-        if (checks_ != when) fits_.store(false, std::memory_order_relaxed);
+        if (checks_ != when) fits_.set(false);
         checks_ = when;
     }
     // Whether positions are to be compared with the lengths before they are used (core/check.hpp): at the first call
     // after a change of the molecules, their lengths or the box. Thread-safe: several threads may find that it is so.
-    bool wants_fit() const {
-        return checks_ == Checks::always || (checks_ == Checks::at_start && !fits_.load(std::memory_order_relaxed));
-    }
-    void note_fit() const { fits_.store(true, std::memory_order_relaxed); }
+    bool wants_fit() const { return checks_ == Checks::always || (checks_ == Checks::at_start && !fits_.get()); }
+    void note_fit() const { fits_.set(true); }
 
-    int base = 0;
+    int base = 0;  // set_base
     int n_threads = 1;
     double tolerance = 0;
     int max_iterations = 50;
     bool keeps_outcomes = false;    // core/run/outcomes.hpp
+    bool finds_bodies = true;       // in lists of bonds whose lengths depend on each other; else they are refused
     std::int64_t memory_limit = 0;  // bytes; 0: the default (memory_limit.hpp)
     Box box{};
 
@@ -148,9 +162,10 @@ private:
     friend class Planner;
     const Plan &make_plan() const;
     void changed() {
-        plan_.store(nullptr);
-        plan_of_parts_.store(nullptr);
-        fits_.store(false);
+        ++revision_;
+        plan_.clear();
+        plan_of_parts_.clear();
+        fits_.set(false);
     }
     void box_changed(const Box &next, Box &seen);
     Molecule molecule_of(const Group &group, std::int64_t index) const;
@@ -173,29 +188,38 @@ private:
     void add_with_bodies(const BondList &list, const double *lengths, std::int64_t n_lengths);
     std::unique_ptr<rigid::Bodies> rebuild_bodies(const Masses &masses, const double *lengths) const;
     double longest() const;
+    template <class Each>
+    void for_bonds(const Each &each) const;
 
     std::int64_t n_atoms_, n_bonds_ = 0;
+    std::int64_t revision_ = 0;
     Masses masses_;
     AtomUse use_;
     Kinds kinds_;
     Shapes shapes_;
     Groups groups_;
     std::vector<std::int64_t> unconstrained_;  // bonds between two fixed atoms, in the caller's arrays
-    std::vector<unsigned char> backwards_;     // [n_bonds], or empty: no bond is
-    std::vector<unsigned char> active_;        // [n_chains] or empty: all
-    std::unique_ptr<rigid::Bodies> bodies_;
+    struct Given {
+        std::int64_t atoms[2];
+        double length;
+    };
+    std::vector<Given> of_unconstrained_;   // as they were given
+    std::vector<unsigned char> backwards_;  // [n_bonds], or empty: no bond is
+    std::vector<unsigned char> active_;     // [n_chains] or empty: all
+    Owned<rigid::Bodies> bodies_;
     Labels labels_;
     Box reference_box_{};
+    struct GivenBox {
+        double h[9];
+    } given_box_{}, given_reference_box_{};
+    static GivenBox given(const double *h);
     BoxRate box_rate_{};
     bool has_reference_box_ = false, has_box_rate_ = false;
     Checks checks_ = Checks::at_start;
     double longest_ = 0;                 // of the bonds' lengths
     Box seen_box_{}, seen_reference_{};  // those that positions were last to be compared in
-    mutable std::atomic<bool> fits_{false};
-
-    mutable std::mutex plan_mutex_;
-    mutable std::atomic<const Plan *> plan_{nullptr}, plan_of_parts_{nullptr};
-    mutable std::unique_ptr<Plan> plan_owner_, plan_of_parts_owner_;
+    mutable Flag fits_;
+    mutable Made<Plan> plan_, plan_of_parts_;
 };
 
 }  // namespace holonomic

@@ -17,8 +17,8 @@ Masses::Masses(std::int64_t n_atoms, const double *masses, int base) : n_atoms_(
         const double w = masses[i] == 0 ? 0 : 1 / masses[i];
         if (!(masses[i] >= 0) || !std::isfinite(w)) {
             Error error = make_error(Status::value,
-                                     "the mass of atom %lld (counted from %d) is %g; it must be positive, or 0 for an "
-                                     "atom that is held fixed",
+                                     "the mass of atom %lld (counted from %d) is %g; it must be positive, or "
+                                     "infinite for an atom that is held fixed",
                                      static_cast<long long>(i + base), base, masses[i]);
             error.atom = i;
             error.base = base;
@@ -26,11 +26,6 @@ Masses::Masses(std::int64_t n_atoms, const double *masses, int base) : n_atoms_(
         }
         uniform = uniform && masses[i] == masses[0];
     }
-    if (uniform && n_atoms > 0 && masses[0] == 0)
-        throw make_error(Status::value,
-                         "all %lld masses are 0, so that no atom can move: they have not been set; if that is meant, "
-                         "atoms that are held fixed may have the mass +infinity, too",
-                         static_cast<long long>(n_atoms));
     if (uniform && n_atoms > 0)
         uniform_mass_ = masses[0];
     else

@@ -20,6 +20,9 @@ public:
     double w(std::int64_t atom) const { return fixed(atom) ? 0 : 1 / given(atom); }
     bool uniform() const { return masses_.empty(); }
     std::int64_t n_movable() const;
+    void copy(double *out) const {
+        for (std::int64_t i = 0; i < n_atoms_; ++i) out[i] = given(i);
+    }
     std::size_t bytes() const { return masses_.capacity() * sizeof(double); }
 
 private:

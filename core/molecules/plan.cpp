@@ -302,27 +302,13 @@ std::int64_t Plan::bytes() const {
     return static_cast<std::int64_t>(bytes);
 }
 
-namespace {
-
-// Made by the first of the threads that need it.
-const Plan &made_once(const Chains &chains, bool of_parts, std::mutex &mutex, std::atomic<const Plan *> &plan,
-                      std::unique_ptr<Plan> &owner) {
-    const Plan *const there = plan.load(std::memory_order_acquire);
-    if (there) return *there;
-    const std::lock_guard<std::mutex> lock(mutex);
-    if (!plan.load(std::memory_order_relaxed)) {
-        owner = Planner(chains, of_parts).make();
-        plan.store(owner.get(), std::memory_order_release);
-    }
-    return *owner;
+const Plan &Chains::make_plan() const {
+    return plan_.once([this] { return Planner(*this, false).make(); });
 }
 
-}  // namespace
-
-const Plan &Chains::make_plan() const { return made_once(*this, false, plan_mutex_, plan_, plan_owner_); }
-
 const Plan &Chains::plan_of_parts() const {
-    return made_once(*this, true, plan_mutex_, plan_of_parts_, plan_of_parts_owner_);
+    const Plan *const made = plan_of_parts_.there();
+    return made ? *made : plan_of_parts_.once([this] { return Planner(*this, true).make(); });
 }
 
 }  // namespace holonomic

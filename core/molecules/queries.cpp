@@ -140,6 +140,49 @@ void Chains::molecules_of_bonds(std::int64_t *out) const {
     }
 }
 
+// Calls each(bond, i, j, length, role) for all bonds; those of molecules as they were given, of molecules with bodies
+// from the lower atom.
+template <class Each>
+void Chains::for_bonds(const Each &each) const {
+    for (std::int64_t number = 0; number < n_chains(); ++number) {
+        const Molecule m = molecule(number);
+        for (std::int64_t k = 0; k < m.n_bonds; ++k) {
+            const bool back = is_backwards(m.bond(k));
+            each(m.bond(k), m.atom(back ? m.j(k) : m.i(k)), m.atom(back ? m.i(k) : m.j(k)), m.length(k), Role::own);
+        }
+    }
+    for (std::size_t k = 0; k < unconstrained_.size(); ++k) {
+        const Given &given = of_unconstrained_[k];
+        each(unconstrained_[k], given.atoms[0], given.atoms[1], given.length, Role::fixed);
+    }
+    for (std::int64_t m = 0; bodies_ && m < bodies_->n_molecules(); ++m) {
+        const std::int64_t *const atom = bodies_->atoms(m), *number = bodies_->bonds(m);
+        for (const rigid::Bond &bond : bodies_->shape(m).bonds)
+            each(*number++, atom[bond.i], atom[bond.j], bond.length, bond.row < 0 ? Role::body : Role::own);
+    }
+}
+
+void Chains::pairs(std::int64_t *out) const {
+    for_bonds([&](std::int64_t bond, std::int64_t i, std::int64_t j, double, Role) {
+        out[2 * bond] = i + base;
+        out[2 * bond + 1] = j + base;
+    });
+}
+
+void Chains::lengths(double *out) const {
+    for_bonds([&](std::int64_t bond, std::int64_t, std::int64_t, double length, Role) { out[bond] = length; });
+}
+
+void Chains::roles(std::int32_t *role, std::int64_t *n_removed) const {
+    if (role)
+        for_bonds([&](std::int64_t bond, std::int64_t, std::int64_t, double, Role its) {
+            role[bond] = static_cast<std::int32_t>(its);
+        });
+    if (!n_removed) return;
+    for (std::int64_t m = 0; m < n_chains(); ++m) n_removed[m] = count_bonds(m);
+    for (std::int64_t m = n_chains(); m < n_molecules(); ++m) n_removed[m] = bodies_->constraints(m - n_chains(), 3);
+}
+
 std::int64_t Chains::degrees_of_freedom(int dimensions) const {
     std::int64_t constraints = 0;
     for (const Group &group : groups_.all()) {
@@ -159,11 +202,11 @@ Name Chains::name_of_molecule(std::int64_t number) const {
 }
 
 std::int64_t Chains::memory() const {
-    const Plan *const plan = plan_.load(std::memory_order_acquire), *const of_parts =
-                                                                        plan_of_parts_.load(std::memory_order_acquire);
+    const Plan *const plan = plan_.there(), *const of_parts = plan_of_parts_.there();
     return static_cast<std::int64_t>(sizeof *this + masses_.bytes() + use_.bytes() + kinds_.bytes() + shapes_.bytes() +
                                      groups_.bytes() + unconstrained_.capacity() * sizeof(std::int64_t) +
-                                     active_.capacity() + backwards_.capacity()) +
+                                     of_unconstrained_.capacity() * sizeof(Given) + active_.capacity() +
+                                     backwards_.capacity()) +
            labels_.bytes() + (bodies_ ? bodies_->bytes() : 0) + (plan ? plan->bytes() : 0) +
            (of_parts ? of_parts->bytes() : 0);
 }

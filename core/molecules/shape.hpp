@@ -16,8 +16,8 @@ enum class Form { chain = 0, tree = 1, ring = 2, triangle = 3, other = 4 };
 struct Shape {
     Form form;
     std::int32_t n_atoms, n_bonds;
-    std::vector<std::int32_t> round_cycles;  // with cycles, the steps of walk(): k, or ~k if it goes back
-    std::unique_ptr<const Schedule> schedule;
+    std::vector<std::int32_t> round_cycles;    // with cycles, the steps of walk(): k, or ~k if it goes back
+    std::shared_ptr<const Schedule> schedule;  // copies of the set share it
     // Of a bond, local atoms, the lower one first.
     std::int32_t i(std::int64_t bond) const { return schedule->atom_i[bond]; }
     std::int32_t j(std::int64_t bond) const { return schedule->atom_j[bond]; }

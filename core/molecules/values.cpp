@@ -57,7 +57,7 @@ constexpr double small_change = 1.5;
 
 void Chains::set_lengths(const double *lengths) {
     check_lengths(n_bonds_, lengths, base);
-    bool small = fits_.load();
+    bool small = fits_.get();
     for (std::int64_t c = 0; small && c < n_chains(); ++c) {
         const Molecule m = molecule(c);
         for (std::int64_t k = 0; small && k < m.n_bonds; ++k) {
@@ -68,7 +68,15 @@ void Chains::set_lengths(const double *lengths) {
     std::unique_ptr<rigid::Bodies> bodies = rebuild_bodies(masses_, lengths);
     rebuild(masses_, lengths);
     bodies_ = std::move(bodies);
-    fits_.store(small);
+    for (std::size_t k = 0; k < unconstrained_.size(); ++k) of_unconstrained_[k].length = lengths[unconstrained_[k]];
+    fits_.set(small);
+}
+
+void Chains::set_length(std::int64_t bond, double length) {
+    std::vector<double> all(at(n_bonds_));
+    lengths(all.data());
+    all[at(bond)] = length;
+    set_lengths(all.data());
 }
 
 void Chains::set_masses(const double *masses) {
@@ -81,11 +89,11 @@ void Chains::set_masses(const double *masses) {
         error.base = base;
         throw error;
     }
-    const bool fitted = fits_.load();
+    const bool fitted = fits_.get();
     std::unique_ptr<rigid::Bodies> bodies = rebuild_bodies(next, nullptr);
     rebuild(next, nullptr);
     bodies_ = std::move(bodies);
-    fits_.store(fitted);
+    fits_.set(fitted);
     masses_ = std::move(next);
 }
 

@@ -30,8 +30,8 @@ constexpr std::int64_t most = std::int64_t{1} << 30;
 
 // Returns the number of atoms of all bodies.
 std::int64_t check_sizes(std::int64_t n_bodies, const std::int64_t *sizes, std::int64_t n_bonds, int base) {
-    if (n_bodies < 1)
-        throw make_error(Status::value, "n_bodies is %lld; it must be at least 1", static_cast<long long>(n_bodies));
+    if (n_bodies < 0)
+        throw make_error(Status::value, "n_bodies is %lld; it must be at least 0", static_cast<long long>(n_bodies));
     if (n_bonds < 0 || n_bonds > most)
         throw make_error(Status::value, "n_bonds is %lld; it must be in 0 .. %lld", static_cast<long long>(n_bonds),
                          static_cast<long long>(most));
@@ -91,6 +91,18 @@ BodyName name_of_body(const Chains &chains, const rigid::Given &given, std::int6
          chains.base, -1, given.atoms[0]);
 }
 
+// Of a set that is to have no bodies but those that are given as such.
+[[noreturn]] void refuse_body(const Chains &chains, const rigid::Cliques &cliques) {
+    const auto name = [&](std::size_t i) { return chains.name_of_atom(cliques.atoms[i] - chains.base); };
+    const std::int64_t n = cliques.sizes[0];
+    fail(make_error(Status::degenerate,
+                    "the distances between %lld atoms, from %s to %s, depend on each other: they are a rigid body, and "
+                    "hol_chains_set_bodies says that none is to be made of "
+                    "distances",
+                    static_cast<long long>(n), name(0).text, name(at(n) - 1).text),
+         chains.base, -1, cliques.atoms[0] - chains.base);
+}
+
 }  // namespace
 
 void Chains::add_rigid(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
@@ -108,8 +120,9 @@ void Chains::add_rigid_molecules(std::int64_t count, std::int64_t n_atoms, std::
     const std::int64_t n_held = check_sizes(n_bodies, sizes, n_bonds, base);
     check_lengths(n_bonds, lengths, base);
     const std::int64_t first = first_atom < base ? -1 : first_atom - base;
-    if (count < 1 || n_atoms < 2)
-        throw make_error(Status::value, "n_molecules is %lld and n_atoms %lld; they must be at least 1 and 2",
+    if (count == 0 || (n_bodies == 0 && n_bonds == 0)) return;
+    if (count < 0 || n_atoms < 2)
+        throw make_error(Status::value, "n_molecules is %lld and n_atoms %lld; they must be at least 0 and 2",
                          static_cast<long long>(count), static_cast<long long>(n_atoms));
     if (first < 0 || first >= n_atoms_ || n_atoms > n_atoms_ || count > (n_atoms_ - first) / n_atoms)
         fail(make_error(Status::index,
@@ -180,6 +193,7 @@ void Chains::add_with_bodies(const BondList &list, const double *lengths, std::i
     Batch batch(*this);
     batch.append_found(found, list, lengths, n_lengths);
     if (cliques.sizes.empty()) return batch.commit();
+    if (!finds_bodies) refuse_body(*this, cliques);
     std::vector<rigid::Given> molecules = sort_rigid(
         static_cast<std::int64_t>(cliques.sizes.size()), cliques.sizes.data(), cliques.atoms.data(), 0,
         cliques.places.data(), static_cast<std::int64_t>(its_lengths.size()), pairs.data(), its_lengths.data());

@@ -192,20 +192,22 @@ std::int64_t Bodies::constraints(int dimensions) const {
     std::int64_t sum = 0;
     for (std::int64_t m = 0; m < n_molecules(); ++m) {
         if (!is_active(m)) continue;
-        const Shape &its = shape(m);
         std::int64_t &taken = of_shape[at(molecules_[at(m)].shape)];
-        if (taken < 0) {
-            taken = 0;
-            for (const Bond &bond : its.bonds) taken += bond.row >= 0;
-            for (const Part &part : its.parts) {
-                const Body &kind = body(part);
-                const int left = dimensions == 2 ? 3 : kind.rank == 1 ? 5 : 6;
-                taken += dimensions * kind.n_massive - left;
-            }
-        }
+        if (taken < 0) taken = constraints(m, dimensions);
         sum += taken;
     }
     return sum;
+}
+
+std::int64_t Bodies::constraints(std::int64_t molecule, int dimensions) const {
+    std::int64_t taken = 0;
+    for (const Bond &bond : shape(molecule).bonds) taken += bond.row >= 0;
+    for (const Part &part : shape(molecule).parts) {
+        const Body &kind = body(part);
+        const int left = dimensions == 2 ? 3 : kind.rank == 1 ? 5 : 6;
+        taken += dimensions * kind.n_massive - left;
+    }
+    return taken;
 }
 
 std::int64_t Bodies::bytes() const {

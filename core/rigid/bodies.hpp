@@ -64,6 +64,7 @@ public:
     std::int64_t work() const { return work_; }                    // rows of all molecules
     // That active ones take from the freedoms of the atoms that have mass.
     std::int64_t constraints(int dimensions) const;
+    std::int64_t constraints(std::int64_t molecule, int dimensions) const;  // of one
     const std::vector<std::int64_t> &fixed_atoms() const { return fixed_; }
     std::int64_t bytes() const;
 

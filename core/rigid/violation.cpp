@@ -173,14 +173,14 @@ void violation(const Chains &chains, const AtomArray &r, const AtomArray &v, Wor
         throw error_of(chains, bad, arrays, 2);
     }
     const auto shown = [&](std::int64_t bond) { return bond < 0 ? -1 : bond + chains.base; };
-    if (length.molecule >= 0 && (worst->length_chain < 0 || length.error > worst->length)) {
+    if (length.molecule >= 0 && (worst->length_molecule < 0 || length.error > worst->length)) {
         worst->length = length.error;
-        worst->length_chain = length.molecule + chains.base;
+        worst->length_molecule = length.molecule + chains.base;
         worst->length_bond = shown(length.bond);
     }
-    if (rate.molecule >= 0 && (worst->rate_chain < 0 || rate.error > worst->rate)) {
+    if (rate.molecule >= 0 && (worst->rate_molecule < 0 || rate.error > worst->rate)) {
         worst->rate = rate.error;
-        worst->rate_chain = rate.molecule + chains.base;
+        worst->rate_molecule = rate.molecule + chains.base;
         worst->rate_bond = shown(rate.bond);
     }
 }

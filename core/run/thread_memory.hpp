@@ -17,6 +17,8 @@ enum class Keep {
     rigid,
     outcomes,
     rescaled,
+    factors,
+    sides_of_factors,
     last
 };
 

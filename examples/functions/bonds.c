@@ -12,7 +12,7 @@ int main(void)
     ok(hol_chains_create(7, mass, &chains));
     ok(hol_chains_add_bonds(chains, 6, pairs[0], length));
 
-    shows("molecules", (double)hol_chains_n_chains(chains), 2);
+    shows("molecules", (double)hol_chains_n_molecules(chains), 2);
     shows("trees", (double)hol_chains_n_of_shape(chains, HOL_SHAPE_TREE), 1);
     shows("kinds", (double)hol_chains_n_kinds(chains), 2);
     ok(hol_chains_molecules_of_bonds(chains, molecule_of));

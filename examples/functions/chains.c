@@ -13,7 +13,7 @@ int main(void)
     ok(hol_chains_add(chains, 3, atoms, length));      /* 9-7-8-6 */
 
     shows("atoms", (double)hol_chains_n_atoms(chains), 10);
-    shows("molecules", (double)hol_chains_n_chains(chains), 3);
+    shows("molecules", (double)hol_chains_n_molecules(chains), 3);
     shows("bonds", (double)hol_chains_n_bonds(chains), 7);
     ok(hol_chains_offsets(chains, offsets)); /* the bonds of chain 2 are 4, 5 and 6 in arrays per bond */
     shows("first bond of chain 2", (double)offsets[2], 4);

@@ -16,7 +16,7 @@ int main(void)
     hol_error_location(&molecule, &bond, &atom, &n_bad);
     shows("bond", (double)bond, 1);
     shows("atom (does not apply)", (double)atom, -1);
-    shows("molecules", (double)hol_chains_n_chains(chains), 0); /* nothing was added */
+    shows("molecules", (double)hol_chains_n_molecules(chains), 0); /* nothing was added */
 
     /* With the numbers by which the program knows its atoms. */
     const int64_t labels[3] = {90208, 90209, 90210};

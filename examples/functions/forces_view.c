@@ -5,7 +5,7 @@ int main(void)
 {
     const double mass[3] = {0, 1, 1}, length[2] = {1, 1};
     float x[3] = {0, 1, 2}, y[3] = {0, 0, 0}, vx[3] = {0, 0, 0}, vy[3] = {0, 1, 2};
-    const hol_view r = {x, y, NULL, sizeof(float), HOL_FLOAT, 0}, v = {vx, vy, NULL, sizeof(float), HOL_FLOAT, 0};
+    const hol_const_view r = {x, y, NULL, sizeof(float), HOL_FLOAT, 0}, v = {vx, vy, NULL, sizeof(float), HOL_FLOAT, 0};
     double tension[2];
     hol_chains *chains = NULL;
 

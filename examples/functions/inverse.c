@@ -5,8 +5,7 @@ int main(void)
 {
     const double mass[3] = {1, 1, 1}, length[2] = {1, 1};
     double r[3][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, f[3][3] = {{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}};
-    const hol_view at = {&r[0][0], &r[0][1], &r[0][2], sizeof r[0], HOL_DOUBLE, 0};
-    const hol_view pulled = {&f[0][0], &f[0][1], &f[0][2], sizeof f[0], HOL_DOUBLE, 0};
+    const hol_const_view at = hol_const_view_rows(r[0]), pulled = hol_const_view_rows(f[0]);
     double value, row[2], band[2][2], matrix[2][2], condition, lambda[2], bound[2], relative;
     hol_chains *chains = NULL;
     hol_inverse *inverse = NULL, *same = NULL;

@@ -5,7 +5,7 @@ int main(void)
 {
     const double mass[3] = {1, 1, 1}, length[2] = {1, 1}, kT = 2;
     double bent[3][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, straight[3][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
-    const hol_view view = {&straight[0][0], &straight[0][1], &straight[0][2], sizeof straight[0], HOL_DOUBLE, 0};
+    const hol_const_view view = hol_const_view_rows(straight[0]);
     double log_det, log_det_z, energy, force[3][3];
     hol_chains *chains = NULL;
 

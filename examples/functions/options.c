@@ -23,6 +23,30 @@ int main(void)
     ok(hol_chains_set_active(chains, active));        /* the second chain is left out of every call */
     shows("degrees of freedom", (double)hol_chains_degrees_of_freedom(chains, 3), 3 * 4 - 1);
     ok(hol_chains_set_active(chains, NULL));
+
+    /* A replica with a box and a length of its own; what is known of the molecules is shared. */
+    const double cube[9] = {9, 0, 0, 0, 9, 0, 0, 0, 9};
+    double lengths[2], masses[4], box[9];
+    int64_t pairs[4], removed[2];
+    int roles[2];
+    hol_chains *replica = NULL;
+    ok(hol_chains_copy(chains, &replica));
+    ok(hol_chains_set_box(replica, cube));
+    ok(hol_chains_set_length(replica, 2, 1.5));
+    ok(hol_chains_set_bodies(replica, HOL_BODIES_GIVEN)); /* distances that depend on each other are refused from here */
+    ok(hol_chains_lengths(replica, lengths));
+    shows("second length", lengths[1], 1.5);
+    ok(hol_chains_masses(replica, masses));
+    shows("first mass", masses[0], 1);
+    ok(hol_chains_box(replica, HOL_BOX, box));
+    shows("side", box[0], 9);
+    ok(hol_chains_pairs(replica, pairs));
+    shows("first atom of the second bond", (double)pairs[2], 3);
+    ok(hol_chains_roles(replica, roles, removed));
+    shows("role", roles[0], HOL_ROLE_OWN);
+    shows("freedoms removed", (double)removed[1], 1);
+    hol_chains_destroy(replica);
+    shows("version", hol_version_number() >= HOL_VERSION, 1);
     hol_chains_destroy(chains);
     return 0;
 }

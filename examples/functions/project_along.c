@@ -27,8 +27,8 @@ int main(void)
         by[k] = b[3 * k + 1];
         bz[k] = b[3 * k + 2];
     }
-    const hol_view vectors = {bx, by, bz, sizeof *bx, HOL_DOUBLE, 0};
-    const hol_view positions = {r, r + 1, r + 2, 3 * sizeof *r, HOL_DOUBLE, 0};
+    const hol_const_view vectors = hol_const_view_parts(bx, by, bz);
+    const hol_view positions = hol_view_rows(r);
     r[3] += 0.01;
     ok(hol_project_positions_along_view(chains, &vectors, &positions, NULL, dt, NULL, 0, NULL, NULL));
     shows("length of a bond",

@@ -5,8 +5,8 @@ int main(void)
 {
     const double mass[2] = {1, 1}, length = 1, dt = 0.1;
     double r_ref[2][3] = {{0, 0, 0}, {1, 0, 0}}, v[2][3] = {{0, -1, 0}, {0, 1, 0}}, r[2][3], lambda, virial[3][3];
-    const hol_view before = {&r_ref[0][0], &r_ref[0][1], &r_ref[0][2], sizeof r[0], HOL_DOUBLE, 0};
-    const hol_view after = {&r[0][0], &r[0][1], &r[0][2], sizeof r[0], HOL_DOUBLE, 0};
+    const hol_const_view before = hol_const_view_rows(r_ref[0]);
+    const hol_view after = hol_view_rows(r[0]);
     hol_report report;
     hol_chains *chains = NULL;
 

@@ -5,8 +5,8 @@ int main(void)
 {
     const double mass[2] = {1, 3}, length = 1;
     double r[2][3] = {{0, 0, 0}, {1, 0, 0}}, v[2][3] = {{0, 1, 0}, {4, 0, 0}}, lambda, virial[3][3];
-    const hol_view at = {&r[0][0], &r[0][1], &r[0][2], sizeof r[0], HOL_DOUBLE, 0};
-    const hol_view moving = {&v[0][0], &v[0][1], &v[0][2], sizeof v[0], HOL_DOUBLE, 0};
+    const hol_const_view at = hol_const_view_rows(r[0]);
+    const hol_view moving = hol_view_rows(v[0]);
     hol_chains *chains = NULL;
 
     ok(hol_chains_create(2, mass, &chains));

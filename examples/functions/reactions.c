@@ -7,7 +7,7 @@ int main(void)
 {
     const double mass[3] = {0, 1, 2}, length[2] = {1, 1}, dt = 0.01; /* the first atom is held fixed */
     const double r[3][3] = {{0, 0, 0}, {1, 0, 0}, {1.6, 0.8, 0}}, before[3][3] = {{0, 0, 0}, {0.5, 1, 0}, {-1, 0.3, 2}};
-    const hol_view view = {(void *)&r[0][0], (void *)&r[0][1], (void *)&r[0][2], sizeof r[0], HOL_DOUBLE, 0};
+    const hol_const_view view = hol_const_view_rows(r[0]);
     double v[3][3], moved[3][3], lambda[2], tension[2], impulse[3][3], of_bond[2][6], virial[9], again[9];
     hol_chains *chains = NULL;
 

@@ -5,7 +5,7 @@ int main(void)
 {
     const double mass[2] = {1, 1}, length = 1, k = 100;
     double r[2][3] = {{0, 0, 0}, {1.1, 0, 0}}, lambda, g[2][3], again;
-    const hol_view view = {&r[0][0], &r[0][1], &r[0][2], sizeof r[0], HOL_DOUBLE, 0};
+    const hol_const_view view = hol_const_view_rows(r[0]);
     const double sigma = 1.1 * 1.1 - 1, rhs = k * sigma;
     hol_chains *chains = NULL;
 

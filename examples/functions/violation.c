@@ -5,7 +5,7 @@ int main(void)
 {
     const double mass[3] = {1, 1, 1}, length[2] = {1, 1};
     double r[3][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1.5, 0}}, v[3][3] = {{0, 0, 0}, {0.5, 0, 0}, {0.5, 0, 0}};
-    const hol_view view = {&r[0][0], &r[0][1], &r[0][2], sizeof r[0], HOL_DOUBLE, 0};
+    const hol_const_view view = hol_const_view_rows(r[0]);
     hol_worst worst;
     hol_chains *chains = NULL;
 

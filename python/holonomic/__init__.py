@@ -14,16 +14,17 @@ from . import tridiagonal
 from ._library import instruction_set, version
 from ._queries import Molecule
 from .errors import (ArgumentError, DegenerateError, Error, LengthsError, LengthsWarning, MasslessWarning,
-                     NoConvergenceError, NotDefiniteError, NotFiniteError, NumberError, OutOfMemoryError, SharedAtomError)
+                     NoConvergenceError, NotDefiniteError, NotFiniteError, NumberError, OutOfMemoryError, SharedAtomError,
+                     StateError, UnsupportedError)
 from .inverse import Inverse
 from .molecules import Molecules
 from .partition import PartitionFunction, partition_function
 from .results import Forces, Impulse, Metric, Outcomes, Reactions, Report, Violation
 
-__version__ = "0.2.0"
+__version__ = "0.3.0"
 __all__ = [
     "ArgumentError", "DegenerateError", "Error", "Forces", "Impulse", "Inverse", "LengthsError", "LengthsWarning",
     "MasslessWarning", "Metric", "Molecule", "Molecules", "NoConvergenceError", "NotDefiniteError", "NotFiniteError",
     "NumberError", "OutOfMemoryError", "Outcomes", "PartitionFunction", "Reactions", "Report", "SharedAtomError",
-    "Violation", "instruction_set", "partition_function", "tridiagonal", "version",
+    "StateError", "UnsupportedError", "Violation", "instruction_set", "partition_function", "tridiagonal", "version",
 ]

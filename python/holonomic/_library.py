@@ -11,17 +11,19 @@ try:
 except ImportError:
     _INSTALLED = None
 
-_NEEDED = (0, 2)
+_NEEDED = 300  # HOL_VERSION of 0.3.0
 _NAME = "libholonomic.so.0"
 
 # Result and arguments: p a pointer, i int, l int64_t, d double, s a text, - nothing. A test reads the header beside this.
 SIGNATURES = {
     "hol_version": "s",
+    "hol_version_number": "i",
     "hol_status_name": "s i",
     "hol_error_message": "s",
     "hol_error_location": "- pppp",
     "hol_instruction_set": "s",
     "hol_chains_create": "i lpp",
+    "hol_chains_copy": "i pp",
     "hol_chains_destroy": "- p",
     "hol_chains_add": "i plpp",
     "hol_chains_add_block": "i plllp",
@@ -30,7 +32,9 @@ SIGNATURES = {
     "hol_chains_add_rigid": "i plppplpp",
     "hol_chains_add_rigid_molecules": "i pllllppplpp",
     "hol_chains_set_lengths": "i pp",
+    "hol_chains_set_length": "i pld",
     "hol_chains_set_masses": "i pp",
+    "hol_chains_set_bodies": "i pi",
     "hol_chains_set_box": "i pp",
     "hol_chains_set_reference_box": "i pp",
     "hol_chains_set_box_rate": "i pp",
@@ -43,7 +47,7 @@ SIGNATURES = {
     "hol_chains_set_tolerance": "i pd",
     "hol_chains_set_max_iterations": "i pi",
     "hol_chains_n_atoms": "l p",
-    "hol_chains_n_chains": "l p",
+    "hol_chains_n_molecules": "l p",
     "hol_chains_n_bonds": "l p",
     "hol_chains_n_of_shape": "l pi",
     "hol_chains_n_kinds": "l p",
@@ -51,6 +55,11 @@ SIGNATURES = {
     "hol_chains_atoms": "i plp",
     "hol_chains_bonds": "i plp",
     "hol_chains_molecules_of_bonds": "i pp",
+    "hol_chains_pairs": "i pp",
+    "hol_chains_lengths": "i pp",
+    "hol_chains_masses": "i pp",
+    "hol_chains_box": "i pip",
+    "hol_chains_roles": "i ppp",
     "hol_chains_degrees_of_freedom": "l pi",
     "hol_chains_memory": "l p",
     "hol_chains_check_view": "i ppi",
@@ -63,7 +72,7 @@ SIGNATURES = {
     "hol_project_positions": "i ppppdpipp",
     "hol_project_positions_view": "i ppppdpipp",
     "hol_project_positions_along_view": "i ppppdpipp",
-    "hol_reference_error": "- ppp",
+    "hol_reference_error": "i pppp",
     "hol_violation_view": "i pppp",
     "hol_residuals_view": "i ppppp",
     "hol_impose_view": "i ppp",
@@ -111,9 +120,9 @@ def _load() -> ctypes.CDLL:
     if not hasattr(library, "hol_version"):
         raise ImportError(f"{path} is not the library of holonomic")
     library.hol_version.restype = ctypes.c_char_p
-    version = library.hol_version().decode()
-    if tuple(int(number) for number in version.split(".")[:2]) < _NEEDED:
-        raise ImportError(f"{path} is holonomic {version}; this package needs {_NEEDED[0]}.{_NEEDED[1]} or later")
+    if not hasattr(library, "hol_version_number") or library.hol_version_number() < _NEEDED:
+        raise ImportError(f"{path} is holonomic {library.hol_version().decode()}; this package needs "
+                          f"{_NEEDED // 10000}.{_NEEDED // 100 % 100} or later")
     for name, signature in SIGNATURES.items():
         function = getattr(library, name, None)
         if function is None:

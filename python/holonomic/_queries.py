@@ -13,6 +13,7 @@ from ._library import library
 from ._types import Integers
 from .errors import ArgumentError, ask
 
+ROLES = ("own", "body", "implied", "fixed")
 SHAPES = ("chain", "tree", "ring", "triangle", "other", "rigid")
 
 
@@ -62,7 +63,7 @@ class Queries(Bonds):
     @property
     def n_molecules(self) -> int:
         """Number of molecules that the bonds form."""
-        return library.hol_chains_n_chains(self._handle)
+        return library.hol_chains_n_molecules(self._handle)
 
     @property
     def n_kinds(self) -> int:
@@ -95,6 +96,14 @@ class Queries(Bonds):
         molecules = np.empty(self._n_bonds, np.int64)
         ask(library.hol_chains_molecules_of_bonds(self._handle, address(molecules)))
         return molecules
+
+    def roles(self) -> Tuple[np.ndarray, np.ndarray]:
+        """What became of every bond, (n_bonds,): "own": a constraint with a multiplier of its own; "body": held by a rigid
+        body; "implied": a consequence of others; "fixed": between two fixed atoms. And how many freedoms each molecule's
+        constraints remove, (n_molecules,)."""
+        roles, removed = np.empty(self._n_bonds, np.intc), np.empty(self.n_molecules, np.int64)
+        ask(library.hol_chains_roles(self._handle, address(roles), address(removed)))
+        return np.array(ROLES)[roles], removed
 
     def degrees_of_freedom(self, dimensions: int = 3) -> int:
         """Those of all atoms that can move, less one for each bond. A conserved total momentum is not subtracted."""

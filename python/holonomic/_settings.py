@@ -41,7 +41,7 @@ class Settings(Queries):
     """The part of Molecules that is set. Settings must not be changed while another thread is in a call."""
 
     __slots__ = ("_box", "_reference_box", "_box_rate", "_active", "_threads", "_tolerance", "_max_iterations", "_checks",
-                 "_memory_limit", "_keep_outcomes")
+                 "_memory_limit", "_keep_outcomes", "_find_bodies")
 
     def __init__(self, masses: Floats, fixed: Any = None):
         super().__init__(masses, fixed)
@@ -55,11 +55,12 @@ class Settings(Queries):
         self._checks = "at start"
         self._memory_limit = 0
         self._keep_outcomes = False
+        self._find_bodies = True
 
     def _settings(self) -> dict:
         """All of them, in an order in which they can be set."""
         names = ("box", "reference_box", "box_rate", "threads", "tolerance", "max_iterations", "memory_limit", "checks",
-                 "keep_outcomes", "active")
+                 "keep_outcomes", "find_bodies", "active")
         return {name: getattr(self, name) for name in names}
 
     @_ArraySetting
@@ -123,6 +124,18 @@ class Settings(Queries):
             raise TypeError(f"keep_outcomes must be True or False, not {keep!r}")
         ask(library.hol_chains_set_outcomes(self._handle, bool(keep)))
         self._keep_outcomes = bool(keep)
+
+    @property
+    def find_bodies(self) -> bool:
+        """Whether distances that depend on each other become rigid bodies when they are added (default), or are refused."""
+        return self._find_bodies
+
+    @find_bodies.setter
+    def find_bodies(self, find: bool) -> None:
+        if not isinstance(find, (bool, np.bool_, int)):
+            raise TypeError(f"find_bodies must be True or False, not {find!r}")
+        ask(library.hol_chains_set_bodies(self._handle, 0 if find else 1))
+        self._find_bodies = bool(find)
 
     @property
     def tolerance(self) -> float:

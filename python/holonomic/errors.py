@@ -67,6 +67,14 @@ class LengthsError(Error, ValueError):
     """Positions do not fit the bonds' lengths (`Molecules.checks`)."""
 
 
+class UnsupportedError(Error, NotImplementedError):
+    """It is not implemented for such molecules."""
+
+
+class StateError(Error, RuntimeError):
+    """Not at this time: something has to be called before, or may not be any more."""
+
+
 class LengthsWarning(UserWarning):
     """Positions fit the bonds' lengths so badly, or in such a way, that a mistake is likely."""
 
@@ -76,7 +84,8 @@ class MasslessWarning(UserWarning):
 
 
 _CLASSES = {1: ArgumentError, 2: ArgumentError, 3: NumberError, 4: SharedAtomError, 5: OutOfMemoryError,
-            6: NotFiniteError, 7: DegenerateError, 8: NoConvergenceError, 9: NotDefiniteError, 11: LengthsError}
+            6: NotFiniteError, 7: DegenerateError, 8: NoConvergenceError, 9: NotDefiniteError, 11: LengthsError,
+            12: UnsupportedError, 13: StateError}
 
 
 # Names of C that a message may have in it, where those of Python are not what is left without "hol_", "chains_" and "set_".

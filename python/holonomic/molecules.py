@@ -275,11 +275,10 @@ class Molecules(Settings):
             return None
         return cut_bonds_misfit(np.asarray(r, dtype=float), self.bonds, self.lengths, box)
 
-    @staticmethod
-    def reference_error() -> Tuple[float, Optional[int], Optional[int]]:
-        """Error, molecule and bond of the reference of the last call of this thread that compared it with the lengths."""
+    def reference_error(self) -> Tuple[float, Optional[int], Optional[int]]:
+        """Error, molecule and bond of the reference of the last call that compared it with the lengths."""
         error, molecule, bond = c_double(), c_int64(), c_int64()
-        library.hol_reference_error(byref(error), byref(molecule), byref(bond))
+        ask(library.hol_reference_error(self._handle, byref(error), byref(molecule), byref(bond)))
         none = molecule.value < 0
         return error.value, None if none else molecule.value, None if none else bond.value
 

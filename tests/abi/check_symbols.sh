@@ -27,7 +27,7 @@ version=$(sed -n 's/^#define HOL_VERSION_M.*OR \([0-9]*\)$/\1/p' "$source/capi/h
 frozen=$source/tests/abi/frozen/holonomic-$version
 compare "the version script" "$in_map" "$frozen.map" "$(sed -n 's/^ *\(hol_[a-z_0-9]*\);.*/\1/p' "$frozen.map" | sort)"
 compare "HOLONOMIC_$version" "$(sed -n "/^HOLONOMIC_$version {/,/^}/s/^ *\(hol_[a-z_0-9]*\);.*/\1/p" "$source/capi/holonomic.map" | sort)" \
-    docs/abi.md "$(sed -n "/^## $version against/,/^## How/s/^    \(hol_[a-z_0-9]*\)$/\1/p" "$source/docs/abi.md" | sort)"
+    docs/abi.md "$(sed -n "/^## The functions of $version/,/^## How/s/^    \(hol_[a-z_0-9]*\)$/\1/p" "$source/docs/abi.md" | sort)"
 [ -z "$(printf '%s\n' "$in_map" | uniq -d)" ] || { echo "twice in the version script"; status=1; }
 
 # A name without a version would be a hole in the script.

@@ -26,15 +26,6 @@ static const double mass[4] = {0, 1, 1, 1}, length[3] = {1, 1, 1};
 static const double hanging[12] = {0, 0, 0, 0, 0, -1, 0, 0, -2, 0, 0, -3};
 static const double weight[12] = {0, 0, -10, 0, 0, -10, 0, 0, -10, 0, 0, -10};
 
-static hol_view view_of(const double *a)
-{
-    hol_view view = {NULL, NULL, NULL, 3 * sizeof(double), HOL_DOUBLE, 0};
-    view.x = (void *)a;
-    view.y = (void *)(a + 1);
-    view.z = (void *)(a + 2);
-    return view;
-}
-
 static void handles(hol_chains *chains)
 {
     const double box[9] = {100, 0, 0, 0, 100, 0, 0, 0, 100};
@@ -43,9 +34,10 @@ static void handles(hol_chains *chains)
     int64_t offsets[2], atoms[4], chain = 7, bond = 7, atom = 7, bad = 7;
     hol_chains *second = NULL;
     EXPECT(strncmp(hol_version(), "0.", 2) == 0);
+    EXPECT(hol_version_number() >= HOL_VERSION);
     EXPECT(strcmp(hol_status_name(HOL_ERR_DEGENERATE), "HOL_ERR_DEGENERATE") == 0);
     EXPECT(hol_instruction_set()[0] != 0);
-    EXPECT(hol_chains_n_atoms(chains) == 4 && hol_chains_n_chains(chains) == 1 && hol_chains_n_bonds(chains) == 3);
+    EXPECT(hol_chains_n_atoms(chains) == 4 && hol_chains_n_molecules(chains) == 1 && hol_chains_n_bonds(chains) == 3);
     SUCCEEDS(hol_chains_offsets(chains, offsets));
     EXPECT(offsets[0] == 0 && offsets[1] == 3);
     SUCCEEDS(hol_chains_atoms(chains, 0, atoms));
@@ -69,7 +61,8 @@ static void handles(hol_chains *chains)
 static void forces(const hol_chains *chains)
 {
     double lambda[3], tension[3], g[12], virial[9];
-    const hol_view r = view_of(hanging), f = view_of(weight), out = view_of(g);
+    const hol_const_view r = hol_const_view_rows(hanging), f = hol_const_view_rows(weight);
+    const hol_view out = hol_view_rows(g);
     SUCCEEDS(hol_forces(chains, hanging, NULL, weight, lambda, tension, g, HOL_WRITE, virial));
     NEAR(tension[0], 30);
     NEAR(tension[2], 10);
@@ -83,7 +76,8 @@ static void forces(const hol_chains *chains)
 static void velocities(const hol_chains *chains)
 {
     double v[12] = {0, 0, 0, 0, 0, 1, 2, 0, 1, 0, 0, 4}, lambda[3];
-    const hol_view r = view_of(hanging), out = view_of(v);
+    const hol_const_view r = hol_const_view_rows(hanging);
+    const hol_view out = hol_view_rows(v);
     SUCCEEDS(hol_project_velocities(chains, hanging, v, lambda, NULL));
     NEAR(v[5], 0);
     NEAR(v[6], 2);
@@ -95,27 +89,28 @@ static void velocities(const hol_chains *chains)
 static void positions(const hol_chains *chains)
 {
     double r[12], v[12] = {0}, lambda[3];
-    const hol_view before = view_of(hanging), after = view_of(r);
+    const hol_const_view before = hol_const_view_rows(hanging), moved = hol_const_view_rows(r);
+    const hol_view after = hol_view_rows(r);
     hol_report report;
     hol_worst worst;
     memcpy(r, hanging, sizeof r);
     r[3] = 0.01;
     r[10] = 0.02;
     SUCCEEDS(hol_violation(chains, r, NULL, &worst));
-    EXPECT(worst.length > 1e-5 && worst.length_chain == 0 && worst.rate == 0);
+    EXPECT(worst.length > 1e-5 && worst.length_molecule == 0 && worst.rate == 0);
     SUCCEEDS(hol_project_positions(chains, hanging, r, v, 0.01, lambda, 0, NULL, &report));
     EXPECT(report.n_corrected == 1 && report.n_failed == 0 && report.max_error < 1e-12 && report.iterations >= 1);
     NEAR(r[3] * r[3] + r[4] * r[4] + r[5] * r[5], 1);
     SUCCEEDS(hol_project_positions_view(chains, &before, &after, NULL, 0.01, NULL, 0, NULL, &report));
     EXPECT(report.n_corrected == 0);
-    SUCCEEDS(hol_violation_view(chains, &after, NULL, &worst));
+    SUCCEEDS(hol_violation_view(chains, &moved, NULL, &worst));
     EXPECT(worst.length < 1e-12);
 }
 
 static void metric(const hol_chains *chains)
 {
     double log_det, log_det_z, energy, force[12];
-    const hol_view r = view_of(hanging);
+    const hol_const_view r = hol_const_view_rows(hanging);
     SUCCEEDS(hol_metric(chains, hanging, 2, &log_det, &log_det_z, &energy, force, HOL_WRITE));
     NEAR(log_det, log(0.25));
     NEAR(log_det_z, log(64));
@@ -129,7 +124,7 @@ static void inverse(const hol_chains *chains)
 {
     static const double exact[9] = {0.75, 0.5, 0.25, 0.5, 0.5, 0.25, 0.25, 0.25, 0.25}, lambda[3] = {15, 10, 5};
     double value, row[3], band[6], matrix[9], condition, bound[3], relative;
-    const hol_view r = view_of(hanging), f = view_of(weight);
+    const hol_const_view r = hol_const_view_rows(hanging), f = hol_const_view_rows(weight);
     hol_inverse *z = NULL;
     int i;
     SUCCEEDS(hol_inverse_create(chains, 0, hanging, &z));
@@ -171,7 +166,6 @@ static void tridiagonal(void)
     NEAR(he + rigid + volume, 0);
 }
 
-#if HOL_VERSION_MAJOR > 0 || HOL_VERSION_MINOR >= 2
 /* The first beads of the triangle and of the star, displaced, and put back along bond vectors. */
 static void along(hol_chains *both, const double *r)
 {
@@ -180,7 +174,8 @@ static void along(hol_chains *both, const double *r)
     int64_t molecule = -7, bond = -7;
     int k, c;
     hol_report report;
-    const hol_view vectors = view_of(b), positions = view_of(moved);
+    const hol_const_view vectors = hol_const_view_rows(b);
+    const hol_view positions = hol_view_rows(moved);
     for (k = 0; k < 6; ++k)
         for (c = 0; c < 3; ++c) b[3 * k + c] = r[3 * to[k] + c] - r[3 * from[k] + c];
     memcpy(moved, r, sizeof moved);
@@ -188,7 +183,7 @@ static void along(hol_chains *both, const double *r)
     moved[12] += 0.01;
     SUCCEEDS(hol_project_positions_along(both, b, moved, NULL, 0.01, NULL, 0, NULL, &report));
     EXPECT(report.n_corrected == 2 && report.max_error < 1e-12);
-    hol_reference_error(&error, &molecule, &bond);
+    SUCCEEDS(hol_reference_error(both, &error, &molecule, &bond));
     EXPECT(error >= 0 && error < 1e-12 && molecule >= 0 && bond >= 0);
     SUCCEEDS(hol_project_positions_along_view(both, &vectors, &positions, NULL, 0.01, NULL, 0, NULL, NULL));
     moved[3] += 5;
@@ -201,7 +196,8 @@ static void crude(hol_chains *both, const double *r)
     double moved[21], length[6], rate[6], v[21] = {0};
     int status[2] = {-1, -1}, iterations[2] = {-1, -1}, k;
     hol_report report;
-    const hol_view positions = view_of(moved), rates = view_of(v);
+    const hol_const_view at = hol_const_view_rows(moved), rates = hol_const_view_rows(v);
+    const hol_view positions = hol_view_rows(moved);
     memcpy(moved, r, sizeof moved);
     moved[3] += 1;
     v[12] = 3;
@@ -209,7 +205,7 @@ static void crude(hol_chains *both, const double *r)
     NEAR(length[0], 3);
     NEAR(length[2], 0);
     NEAR(rate[3], 3);
-    SUCCEEDS(hol_residuals_view(both, &positions, &rates, NULL, rate));
+    SUCCEEDS(hol_residuals_view(both, &at, &rates, NULL, rate));
     NEAR(rate[3], 3);
     SUCCEEDS(hol_chains_set_memory_limit(both, 1 << 20));
     SUCCEEDS(hol_chains_set_outcomes(both, 1));
@@ -222,8 +218,35 @@ static void crude(hol_chains *both, const double *r)
     for (k = 0; k < 6; ++k) NEAR(length[k], 0);
     moved[3] += 1;
     SUCCEEDS(hol_impose_view(both, &positions, NULL));
-    SUCCEEDS(hol_residuals_view(both, &positions, NULL, length, NULL));
+    SUCCEEDS(hol_residuals_view(both, &at, NULL, length, NULL));
     for (k = 0; k < 6; ++k) NEAR(length[k], 0);
+}
+
+/* A set tells what it was given, and so does its copy, which is changed apart from it. */
+static void given(const hol_chains *chains)
+{
+    const double cube[9] = {50, 0, 0, 0, 50, 0, 0, 0, 50};
+    double lengths[3] = {0}, masses[4], box[9];
+    int64_t pairs[6], removed[1];
+    int roles[3] = {-1, -1, -1};
+    hol_chains *copy = NULL;
+    SUCCEEDS(hol_chains_copy(chains, &copy));
+    SUCCEEDS(hol_chains_set_box(copy, cube));
+    SUCCEEDS(hol_chains_set_length(copy, 1, 2));
+    SUCCEEDS(hol_chains_set_bodies(copy, HOL_BODIES_GIVEN));
+    SUCCEEDS(hol_chains_lengths(copy, lengths));
+    EXPECT(lengths[0] == 1 && lengths[1] == 2 && lengths[2] == 1);
+    SUCCEEDS(hol_chains_lengths(chains, lengths));
+    EXPECT(lengths[1] == 1);
+    SUCCEEDS(hol_chains_masses(copy, masses));
+    EXPECT(masses[0] == 0 && masses[3] == 1);
+    SUCCEEDS(hol_chains_pairs(copy, pairs));
+    EXPECT(pairs[0] == 0 && pairs[1] == 1 && pairs[5] == 3);
+    SUCCEEDS(hol_chains_box(copy, HOL_REFERENCE_BOX, box));
+    EXPECT(box[0] == 50 && box[1] == 0 && box[8] == 50);
+    SUCCEEDS(hol_chains_roles(copy, roles, removed));
+    EXPECT(roles[0] == HOL_ROLE_OWN && removed[0] == 3);
+    hol_chains_destroy(copy);
 }
 
 /* Two rods of two atoms, and one that hangs at a fixed atom. */
@@ -254,9 +277,9 @@ static void molecules(void)
                  box[9] = {9, 0, 0, 0, 9};
     const double r[21] = {0, 0, 0, 1, 0, 0, 0.5, h, 0, 5, 5, 5, 6, 5, 5, 5, 6, 5, 5, 5, 6};
     const double rhs[6] = {4, 4, 4, 4, 4, 4};
-    const hol_view view = view_of(r);
+    const hol_const_view view = hol_const_view_rows(r);
     double lambda[6] = {0}, g[21];
-    const hol_view out = view_of(g);
+    const hol_view out = hol_view_rows(g);
     int64_t n_atoms = 0, n_bonds = 0, bonds[3] = {0}, of_bonds[6] = {0};
     int shape = -1;
     hol_chains *both = NULL;
@@ -309,7 +332,6 @@ static void molecules(void)
     crude(both, r);
     hol_chains_destroy(both);
 }
-#endif
 
 int main(void)
 {
@@ -317,16 +339,15 @@ int main(void)
     SUCCEEDS(hol_chains_create(4, mass, &chains));
     SUCCEEDS(hol_chains_add_block(chains, 1, 3, 0, length));
     handles(chains);
+    given(chains);
     forces(chains);
     velocities(chains);
     positions(chains);
     metric(chains);
     inverse(chains);
     tridiagonal();
-#if HOL_VERSION_MAJOR > 0 || HOL_VERSION_MINOR >= 2
     molecules();
     bodies();
-#endif
     hol_chains_destroy(chains);
     if (failures == 0)
         printf("compiled for %d.%d, runs with %s\n", HOL_VERSION_MAJOR, HOL_VERSION_MINOR, hol_version());

@@ -32,6 +32,15 @@ static void enum_values_are_frozen(void)
     IS(HOL_ERR_NOT_DEFINITE, 9);
     IS(HOL_ERR_INTERNAL, 10);
     IS(HOL_ERR_LENGTHS, 11);
+    IS(HOL_ERR_UNSUPPORTED, 12);
+    IS(HOL_ERR_STATE, 13);
+    IS(HOL_ERR_CALLBACK, 14);
+    IS(HOL_BODIES_FOUND, 0);
+    IS(HOL_BODIES_GIVEN, 1);
+    IS(HOL_ROLE_OWN, 0);
+    IS(HOL_ROLE_BODY, 1);
+    IS(HOL_ROLE_IMPLIED, 2);
+    IS(HOL_ROLE_FIXED, 3);
     IS(HOL_NEVER, 0);
     IS(HOL_AT_START, 1);
     IS(HOL_ALWAYS, 2);
@@ -76,7 +85,7 @@ static void hol_report_is_frozen(void)
     IS(offsetof(hol_report, iterations), 0);
     IS(offsetof(hol_report, n_corrected), 8);
     IS(offsetof(hol_report, n_failed), 16);
-    IS(offsetof(hol_report, chain), 24);
+    IS(offsetof(hol_report, molecule), 24);
     IS(offsetof(hol_report, bond), 32);
     IS(offsetof(hol_report, max_error), 40);
     IS(sizeof(hol_report), 48);
@@ -85,10 +94,10 @@ static void hol_report_is_frozen(void)
 static void hol_worst_is_frozen(void)
 {
     IS(offsetof(hol_worst, length), 0);
-    IS(offsetof(hol_worst, length_chain), 8);
+    IS(offsetof(hol_worst, length_molecule), 8);
     IS(offsetof(hol_worst, length_bond), 16);
     IS(offsetof(hol_worst, rate), 24);
-    IS(offsetof(hol_worst, rate_chain), 32);
+    IS(offsetof(hol_worst, rate_molecule), 32);
     IS(offsetof(hol_worst, rate_bond), 40);
     IS(sizeof(hol_worst), 48);
 }

@@ -69,7 +69,7 @@ static void call_verbs(record *to, const scene *s, const hol_chains *h, room *o)
     put_status(to, hol_metric(h, s->r, 1, o->molecules, o->others, &worst.rate, o->also, HOL_WRITE));
     put_outputs(to, s, o);
     put(to, &worst.rate, 1);
-    put(to, o->molecules, (size_t)hol_chains_n_chains(h)), put(to, o->others, (size_t)hol_chains_n_chains(h));
+    put(to, o->molecules, (size_t)hol_chains_n_molecules(h)), put(to, o->others, (size_t)hol_chains_n_molecules(h));
 }
 
 static void call_inverse(record *to, const scene *s, const hol_chains *h, room *o)

@@ -205,7 +205,7 @@ hol_chains *large_chains(const molecule *m)
     hol_chains *chains = NULL;
     CHECK(hol_chains_create(m->n_atoms, m->mass, &chains));
     CHECK(hol_chains_add_bonds(chains, m->n_bonds, m->pairs, m->length));
-    assert_int_equal(hol_chains_n_chains(chains), 1);
+    assert_int_equal(hol_chains_n_molecules(chains), 1);
     const hol_shape shape = m->n_bonds < m->n_atoms ? HOL_SHAPE_TREE : HOL_SHAPE_OTHER;
     assert_int_equal(hol_chains_n_of_shape(chains, shape), 1);
     return chains;

@@ -152,7 +152,7 @@ residues residues_make(const residue_recipe *recipe, int64_t n_bonds, uint64_t s
     measure(&s);
     if (recipe->shuffled) residues_shuffle(&s.m, seed + 1, NULL);
     s.chains = residue_chains(&s.m, residues_box(&s));
-    s.n_molecules = hol_chains_n_chains(s.chains);
+    s.n_molecules = hol_chains_n_molecules(s.chains);
     assert_true(recipe->fixed_backbone ? s.n_molecules > 1 : s.n_molecules == 1);
     return s;
 }

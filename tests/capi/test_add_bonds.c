@@ -57,7 +57,7 @@ static assembly canonical(int64_t n, int64_t low, int64_t high, arrangement how,
     int64_t *atoms = malloc(8 * (size_t)(a.n_bonds + n));
     bond_list list = shuffled(&a, seed);
     found = of_bonds(&a, &list);
-    assert_int_equal(hol_chains_n_chains(found), n);
+    assert_int_equal(hol_chains_n_molecules(found), n);
     hol_chains_destroy(a.chains);
     CHECK(hol_chains_create(a.n_atoms, a.mass, &a.chains));
     double *length = malloc(8 * (size_t)a.n_bonds);
@@ -122,7 +122,7 @@ static void check_every_level(const assembly *a, hol_chains *b, const bond_list 
     hol_worst w1, w2;
     CHECK(hol_violation(a->chains, r1, v1, &w1));
     CHECK(hol_violation(b, r2, v2, &w2));
-    assert_true(w1.length == w2.length && w1.rate == w2.rate && w1.length_chain == w2.length_chain);
+    assert_true(w1.length == w2.length && w1.rate == w2.rate && w1.length_molecule == w2.length_molecule);
     assert_int_equal(w1.length_bond, w2.length_bond);
     free(l1), free(l2), free(t1), free(t2), free(g1), free(g2), free(v1), free(v2), free(r1), free(r2), free(d1),
         free(d2);
@@ -165,7 +165,7 @@ static void a_list_may_come_in_several_calls(void **state)
         }
         CHECK(hol_chains_add_bonds(b, n, list.pairs + 2 * first, list.lengths + first));
     }
-    assert_int_equal(hol_chains_n_chains(b), a.n_chains);
+    assert_int_equal(hol_chains_n_molecules(b), a.n_chains);
     assert_int_equal(hol_chains_n_bonds(b), a.n_bonds);
     int64_t *molecule = malloc(8 * (size_t)a.n_bonds);
     CHECK(hol_chains_molecules_of_bonds(b, molecule));

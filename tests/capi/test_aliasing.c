@@ -1,5 +1,6 @@
 /** An output in the place of an input, where the header allows it, gives the bits that arrays of their own give. */
 #include "check.h"
+#include "input.h"
 #include "large.h"
 #include "mixture.h"
 
@@ -39,8 +40,8 @@ static void forces_may_stand_where_forces_stood(const mixture *m, int apart, int
     any_array r = array_of(m->r, size, apart), v = array_of(m->v, size, apart), f = array_of(m->f, size, apart);
     any_array g = array_of(m->f, size, apart);
     double *lambda = untouched(n), *other = untouched(n), virial[9], sum[9];
-    CHECK(hol_forces_view(m->chains, &r.view, &v.view, &f.view, lambda, NULL, &g.view, mode, virial));
-    CHECK(hol_forces_view(m->chains, &r.view, &v.view, &f.view, other, NULL, &f.view, mode, sum));
+    CHECK(hol_forces_view(m->chains, INPUT(&r.view), INPUT(&v.view), INPUT(&f.view), lambda, NULL, &g.view, mode, virial));
+    CHECK(hol_forces_view(m->chains, INPUT(&r.view), INPUT(&v.view), INPUT(&f.view), other, NULL, &f.view, mode, sum));
     assert_same_arrays(&g, &f);
     assert_same_bits(lambda, other, n);
     assert_same_bits(virial, sum, 9);
@@ -67,9 +68,9 @@ static void positions_may_be_their_own_reference(const mixture *m, int apart)
     double *lambda = untouched(n), *other = untouched(n), virial[9], sum[9];
     hol_report report, own_report;
     const int status =
-        hol_project_positions_view(m->chains, &ref.view, &r.view, &v.view, 1e-3, lambda, 0, virial, &report);
+        hol_project_positions_view(m->chains, INPUT(&ref.view), &r.view, &v.view, 1e-3, lambda, 0, virial, &report);
     assert_int_equal(
-        hol_project_positions_view(m->chains, &own.view, &own.view, &u.view, 1e-3, other, 0, sum, &own_report), status);
+        hol_project_positions_view(m->chains, INPUT(&own.view), &own.view, &u.view, 1e-3, other, 0, sum, &own_report), status);
     assert_same_arrays(&r, &own);
     assert_same_arrays(&v, &u);
     assert_same_bits(lambda, other, n);
@@ -77,7 +78,7 @@ static void positions_may_be_their_own_reference(const mixture *m, int apart)
     if (status == HOL_OK) assert_same_bits(virial, sum, 9);
     if (status == HOL_OK) {
         hol_worst worst;
-        CHECK(hol_violation_view(m->chains, &own.view, NULL, &worst));
+        CHECK(hol_violation_view(m->chains, INPUT(&own.view), NULL, &worst));
         CHECK_AT_MOST(worst.length, 1e-9);
     }
     release(&r, &ref), release(&v, &u), release(&own, NULL), free(off), free(lambda), free(other);

@@ -1,5 +1,6 @@
 /* The position level along given bond vectors: as with the positions that they come from. */
 #include "check.h"
+#include "input.h"
 #include "random.h"
 #include "water.h"
 
@@ -117,7 +118,7 @@ static void results_are_those_of_positions(void **state)
         stream = random_seed(100 + seed);
         for (size_t i = 0; i < n; ++i)
             again[i] = s.r[i] + (s.mass[i / 3] == 0 ? 0 : 0.01 * (2 * random_uniform(&stream) - 1));
-        CHECK(hol_project_positions_along_view(s.chains, &b, &to, NULL, 0.1, NULL, 0, NULL, NULL));
+        CHECK(hol_project_positions_along_view(s.chains, INPUT(&b), &to, NULL, 0.1, NULL, 0, NULL, NULL));
         assert_same_bits(again, r[1], n);
         hol_chains_destroy(s.chains);
     }
@@ -208,7 +209,7 @@ static void long_chains_keep_their_digits(void **state)
     hol_report report;
     CHECK(hol_project_positions_along(chains, b, r, NULL, 1, NULL, 0, NULL, &report));
     CHECK(hol_project_positions(chains, r0, plain, NULL, 1, NULL, 0, NULL, NULL));
-    hol_reference_error(&error, NULL, NULL);
+    CHECK(hol_reference_error(chains, &error, NULL, NULL));
     CHECK_AT_MOST(error, 1e-15); /* of the vectors as they were given, not as coordinates */
     CHECK_AT_MOST(largest_difference(r, plain, n), 64 * 60 * DBL_EPSILON);
     free(mass);

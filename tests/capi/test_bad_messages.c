@@ -3,6 +3,7 @@
  */
 #include "assembly.h"
 #include "check.h"
+#include "from_one.h"
 #include "spoil.h"
 
 static void the_first_bad_chain_decides_status_and_message(void **state)
@@ -21,9 +22,10 @@ static void the_first_bad_chain_decides_status_and_message(void **state)
     spoil(&a, 1, 1, NAN_FORCE);
     CHECK_FAILS(HOL_ERR_NOT_FINITE, hol_forces(a.chains, a.r, NULL, a.f, NULL, NULL, g, HOL_WRITE, NULL));
     assert_location(1, 3);
-    CHECK(hol_chains_set_index_base(a.chains, 1));
-    CHECK_FAILS(HOL_ERR_NOT_FINITE, hol_forces(a.chains, a.r, NULL, a.f, NULL, NULL, g, HOL_WRITE, NULL));
+    hol_chains *const counted = from_one(a.chains);
+    CHECK_FAILS(HOL_ERR_NOT_FINITE, hol_forces(counted, a.r, NULL, a.f, NULL, NULL, g, HOL_WRITE, NULL));
     assert_location(2, 3);
+    hol_chains_destroy(counted);
     free(g);
     assembly_free(&a);
 }
@@ -44,10 +46,11 @@ static void the_message_names_the_atom_or_bond_at_fault(void **state)
     assembly a = assembly_of_kind(CHAIN_COIL, 7, 5, 5, SCATTERED, 27);
     double *v = copy_of(a.v, assembly_size(&a)), lambda[35];
     hol_worst worst;
+    hol_chains *const counted[2] = {a.chains, from_one(a.chains)};
     for (int base = 0; base < 2; ++base) {
         const int64_t atom = a.atoms[a.first[3] + 2];
         char name[40];
-        CHECK(hol_chains_set_index_base(a.chains, base));
+        a.chains = counted[base];
         snprintf(name, sizeof name, "atom %lld", (long long)atom + base);
         double *const places[3] = {a.r + 3 * atom + 1, v + 3 * atom, a.f + 3 * atom + 2};
         for (int k = 0; k < 3; ++k) {
@@ -68,6 +71,8 @@ static void the_message_names_the_atom_or_bond_at_fault(void **state)
         snprintf(name, sizeof name, "bond %d", 4 + base);
         assert_names(6 + base, 4 + base, -1, name);
     }
+    a.chains = counted[0];
+    hol_chains_destroy(counted[1]);
     free(v);
     assembly_free(&a);
 }

@@ -2,6 +2,7 @@
 #include "assembly.h"
 #include "box_rate.h"
 #include "check.h"
+#include "input.h"
 #include "layout.h"
 #include "mixture.h"
 #include "molecule_solution.h"
@@ -143,7 +144,7 @@ static void layouts_threads_and_neighbours_change_no_bit(void **state)
     assert_same_bits(virial, other, 9);
     for (int l = 0; l < n_double_layouts; ++l) {
         laid_out r = lay_out(layouts + l, a.n_atoms, a.r, 3), w = lay_out(layouts + l, a.n_atoms, a.v, 3);
-        CHECK(hol_project_velocities_view(a.chains, &r.view, &w.view, mu, NULL));
+        CHECK(hol_project_velocities_view(a.chains, INPUT(&r.view), &w.view, mu, NULL));
         collect(&w, again);
         assert_same_bits(v, again, size);
         assert_same_bits(lambda, mu, n);
@@ -175,7 +176,7 @@ static void floats_obey_it_to_their_rounding(void **state)
     for (int l = n_double_layouts; l < n_layouts; ++l) {
         laid_out r = lay_out(layouts + l, m.n_atoms, m.r, 3), v = lay_out(layouts + l, m.n_atoms, m.v, 3);
         double *x = copy_of(m.r, size), *u = copy_of(m.v, size);
-        CHECK(hol_project_velocities_view(m.chains, &r.view, &v.view, NULL, NULL));
+        CHECK(hol_project_velocities_view(m.chains, INPUT(&r.view), &v.view, NULL, NULL));
         collect(&r, x);
         collect(&v, u);
         for (int64_t k = 0; k < m.n_bonds; ++k) {

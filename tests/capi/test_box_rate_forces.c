@@ -19,7 +19,7 @@ static void violation_measures_the_whole_motion(void **state)
     }
     CHECK_AT_MOST(fabsl(worst.rate - largest), 16 * DBL_EPSILON * largest);
     CHECK(hol_violation(m.chains, m.r, NULL, &worst));
-    assert_true(worst.rate == 0 && worst.rate_chain == -1);
+    assert_true(worst.rate == 0 && worst.rate_molecule == -1);
     mixture_free(&m);
 }
 

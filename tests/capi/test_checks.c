@@ -1,5 +1,6 @@
 /* When positions are compared with lengths, how it is switched off, and that sound programs see nothing of it. */
 #include "check.h"
+#include "input.h"
 #include "random.h"
 #include "water.h"
 
@@ -221,9 +222,9 @@ static void the_check_on_request(void **state)
     CHECK_FAILS(HOL_ERR_NULL, hol_chains_check(chains, NULL, HOL_BOX));
     CHECK_FAILS(HOL_ERR_VALUE, hol_chains_check(chains, w.r, 2));
     const hol_view view = {w.r, w.r + 1, w.r + 2, 3 * sizeof(double), HOL_DOUBLE, 0};
-    CHECK(hol_chains_check_view(chains, &view, HOL_REFERENCE_BOX));
+    CHECK(hol_chains_check_view(chains, INPUT(&view), HOL_REFERENCE_BOX));
     w.r[9 * 7 + 3] += 0.4;
-    CHECK_FAILS(HOL_ERR_LENGTHS, hol_chains_check_view(chains, &view, HOL_BOX));
+    CHECK_FAILS(HOL_ERR_LENGTHS, hol_chains_check_view(chains, INPUT(&view), HOL_BOX));
     assert_message_names("molecule 7");
     assert_message_names("1 of 27 molecules");
     unsigned char active[27];
@@ -250,20 +251,20 @@ static void the_references_own_error_is_reported(void **state)
     hol_worst worst;
     CHECK(hol_violation(chains, w.r, NULL, &worst));
     CHECK(hol_project_positions(chains, w.r, r, NULL, 1, NULL, 0, NULL, &report));
-    hol_reference_error(&error, &molecule, &bond);
+    CHECK(hol_reference_error(chains, &error, &molecule, &bond));
     assert_true(error == worst.length && molecule == 11 && bond == worst.length_bond);
     CHECK(hol_chains_set_checks(chains, HOL_ALWAYS));
     memcpy(r, w.r, sizeof *r * n);
     CHECK(hol_project_positions(chains, r, r, NULL, 1, NULL, 0, NULL, &report)); /* before r is moved */
-    hol_reference_error(&error, NULL, NULL);
+    CHECK(hol_reference_error(chains, &error, NULL, NULL));
     assert_true(error == worst.length);
     CHECK(hol_project_positions(chains, r, r, NULL, 1, NULL, 0, NULL, NULL));
-    hol_reference_error(&error, NULL, NULL);
+    CHECK(hol_reference_error(chains, &error, NULL, NULL));
     CHECK_AT_MOST(error, 1e-13);
     CHECK(hol_chains_set_checks(chains, HOL_NEVER));
     memcpy(r, w.r, sizeof *r * n);
     CHECK(hol_project_positions(chains, r, r, NULL, 1, NULL, 0, NULL, &report));
-    hol_reference_error(&error, NULL, NULL);
+    CHECK(hol_reference_error(chains, &error, NULL, NULL));
     assert_true(error == worst.length);
     CHECK_AT_MOST(report.max_error, 1e-14);
     free(r);

@@ -37,7 +37,7 @@ static void a_bond_between_two_fixed_atoms_is_no_constraint(void **state)
         chain one = chain_make(CHAIN_COIL, n, 1);
         one.mass[cut] = one.mass[cut + 1] = 0;
         assembly a = assembly_make(&one, 1, IN_ORDER, 0);
-        assert_int_equal(hol_chains_n_chains(a.chains), 2);
+        assert_int_equal(hol_chains_n_molecules(a.chains), 2);
         assert_int_equal(hol_chains_n_bonds(a.chains), n);
         assert_int_equal(hol_chains_degrees_of_freedom(a.chains, 3), 3 * (n - 1) - (n - 1));
         double *g = untouched((size_t)size), *lambda = untouched((size_t)n), *tension = untouched((size_t)n),

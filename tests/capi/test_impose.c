@@ -1,5 +1,6 @@
 /** Positions that lie anywhere are moved onto the constraints; and what is left of each constraint. */
 #include "check.h"
+#include "input.h"
 
 enum { most_atoms = 40 };
 
@@ -288,7 +289,7 @@ static void residuals_are_those_of_each_bond(void **state)
     }
     const hol_view at = {r, r + 1, r + 2, 3 * sizeof(double), HOL_DOUBLE, 0};
     double again[most_atoms];
-    CHECK(hol_residuals_view(chains, &at, NULL, again, rate));
+    CHECK(hol_residuals_view(chains, INPUT(&at), NULL, again, rate));
     assert_same_bits(again, length, (size_t)m.n_bonds);
     for (int64_t k = 0; k < m.n_bonds; ++k) assert_true(rate[k] == 0);
     CHECK(hol_residuals(chains, r, v, NULL, NULL));
@@ -315,7 +316,7 @@ static void wrong_arguments_are_refused(void **state)
     CHECK_FAILS(HOL_ERR_NULL, hol_residuals_view(chains, NULL, NULL, r, NULL));
     hol_report report;
     CHECK(hol_impose(chains, r, &report));
-    assert_int_equal(report.chain, -1);
+    assert_int_equal(report.molecule, -1);
     hol_chains_destroy(chains);
 }
 

@@ -98,7 +98,7 @@ static void every_verb_leaves_inactive_chains_alone(void **state)
     CHECK(hol_violation(a.chains, a.r, a.v, &worst));
     CHECK(hol_violation(b.chains, b.r, b.v, &b_worst));
     assert_true(worst.length == b_worst.length && worst.rate == b_worst.rate);
-    assert_true(active[worst.length_chain] && active[worst.rate_chain]);
+    assert_true(active[worst.length_molecule] && active[worst.rate_molecule]);
 
     free(g), free(before), free(lambda), free(b_g), free(b_lambda), free(v), free(b_v), free(fresh), free(r), free(b_r);
     free(of_positions), free(r_before), free(active);
@@ -174,7 +174,7 @@ static void bad_data_in_an_inactive_chain_are_no_error(void **state)
     for (int i = 0; i < 9; ++i) assert_true(virial[i] == 0);
     hol_worst worst;
     CHECK(hol_violation(a.chains, a.r, a.v, &worst));
-    assert_int_equal(worst.length_chain, -1);
+    assert_int_equal(worst.length_molecule, -1);
     assert_true(worst.length == 0 && worst.rate == 0);
     assembly_free(&a);
 }

@@ -1,6 +1,8 @@
 /** Functions of the inverse: layouts, index bases, boxes, and wrong arguments. */
 #include "chain.h"
 #include "check.h"
+#include "from_one.h"
+#include "input.h"
 #include "inverse.h"
 #include "layout.h"
 
@@ -13,27 +15,28 @@ static void views_and_index_base_give_the_same(void **state)
     double a, b, bound[2][9], lambda[9], relative[2];
     CHECK(hol_forces(chains, c.r, c.v, c.f, lambda, NULL, NULL, HOL_WRITE, NULL));
     CHECK(hol_inverse_create(chains, 0, c.r, &inverse));
-    CHECK(hol_chains_set_index_base(chains, 1));
+    hol_chains *counted = from_one(chains);
     laid_out r = lay_out(&layouts[1], 10, c.r, 3), v = lay_out(&layouts[2], 10, c.v, 3),
              f = lay_out(&layouts[1], 10, c.f, 3);
-    CHECK(hol_inverse_create_view(chains, 1, &r.view, &other));
+    CHECK(hol_inverse_create_view(counted, 1, INPUT(&r.view), &other));
     for (int64_t i = 0; i < 9; ++i) {
         CHECK(hol_inverse_entry(inverse, HOL_PHYSICAL, i, 3, &a));
         CHECK(hol_inverse_entry(other, HOL_PHYSICAL, i + 1, 4, &b));
         assert_true(a == b);
     }
     CHECK(hol_inverse_error_bound(inverse, c.v, c.f, lambda, bound[0], relative));
-    CHECK(hol_inverse_error_bound_view(other, &v.view, &f.view, lambda, bound[1], relative + 1));
+    CHECK(hol_inverse_error_bound_view(other, INPUT(&v.view), INPUT(&f.view), lambda, bound[1], relative + 1));
     assert_same_bits(bound[0], bound[1], 9);
     assert_true(relative[0] == relative[1]);
-    CHECK(hol_inverse_error_bound_view(other, NULL, &f.view, lambda, NULL, relative + 1));
+    CHECK(hol_inverse_error_bound_view(other, NULL, INPUT(&f.view), lambda, NULL, relative + 1));
     CHECK_FAILS(HOL_ERR_INDEX, hol_inverse_entry(other, HOL_PHYSICAL, 0, 1, &b));
     hol_inverse_destroy(other);
-    CHECK_FAILS(HOL_ERR_INDEX, hol_inverse_create(chains, 0, c.r, &other));
+    CHECK_FAILS(HOL_ERR_INDEX, hol_inverse_create(counted, 0, c.r, &other));
     assert_null(other);
     laid_out_free(&r), laid_out_free(&v), laid_out_free(&f);
     hol_inverse_destroy(inverse);
     hol_chains_destroy(chains);
+    hol_chains_destroy(counted);
     chain_free(&c);
 }
 

@@ -1,5 +1,6 @@
 /** The caller's numbers of atoms and molecules, in messages. */
 #include "check.h"
+#include "from_one.h"
 #include "mixture.h"
 
 static void messages_show_the_labels_of_atoms_and_molecules(void **state)
@@ -11,10 +12,11 @@ static void messages_show_the_labels_of_atoms_and_molecules(void **state)
     char text[200];
     for (int64_t i = 0; i < m.n_atoms; ++i) atoms[i] = 90000 + 7 * i;
     const int64_t first = m.first_atom[2], bad = first + 3;
+    hol_chains *const counted[2] = {m.chains, from_one(m.chains)};
     for (int base = 0; base < 2; ++base) {
         int64_t number, atom;
         v[3 * bad] = NAN;
-        CHECK(hol_chains_set_index_base(m.chains, base));
+        m.chains = counted[base];
         CHECK(hol_chains_set_labels(m.chains, atoms, molecules));
         CHECK_FAILS(HOL_ERR_NOT_FINITE, hol_project_velocities(m.chains, m.r, v, NULL, NULL));
         snprintf(text, sizeof text, "molecule %d (label %lld): the velocity of atom %lld (label %lld) is", 2 + base,
@@ -34,6 +36,8 @@ static void messages_show_the_labels_of_atoms_and_molecules(void **state)
         v[3 * bad] = 1;
     }
     CHECK_FAILS(HOL_ERR_NULL, hol_chains_set_labels(NULL, atoms, NULL));
+    m.chains = counted[0];
+    hol_chains_destroy(counted[1]);
     free(atoms), free(v);
     mixture_free(&m);
 }

@@ -124,7 +124,7 @@ static void large_molecules_share_a_fixed_atom(void **state)
     hol_chains *chains = NULL;
     CHECK(hol_chains_create((int64_t)all, mass, &chains));
     CHECK(hol_chains_add_bonds(chains, (int64_t)(2 * n + 2), pairs, length));
-    assert_int_equal(hol_chains_n_chains(chains), 2);
+    assert_int_equal(hol_chains_n_molecules(chains), 2);
     for (int threads = 1; threads <= 3; ++threads) {
         CHECK(hol_chains_set_threads(chains, threads));
         CHECK(hol_forces(chains, r, NULL, f, lambda, NULL, g, HOL_WRITE, NULL));

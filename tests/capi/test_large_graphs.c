@@ -4,6 +4,7 @@
  */
 #include "check.h"
 #include "equations.h"
+#include "input.h"
 #include "large.h"
 #include "molecule_solution.h"
 
@@ -111,7 +112,7 @@ static void change_no_bit(molecule m)
     const hol_view ref = {m.r, m.r + 1, m.r + 2, 3 * sizeof(double), HOL_DOUBLE, 0},
                    now = {components, components + size / 3, components + 2 * (size / 3), sizeof(double), HOL_DOUBLE,
                           0};
-    CHECK(hol_project_positions_view(chains, &ref, &now, NULL, dt, NULL, 0, NULL, NULL));
+    CHECK(hol_project_positions_view(chains, INPUT(&ref), &now, NULL, dt, NULL, 0, NULL, NULL));
     for (size_t i = 0; i < size; ++i) assert_same_bits(components + i % 3 * (size / 3) + i / 3, r + i, 1);
     hol_chains_destroy(chains);
     large_turn_bonds(&m);

@@ -3,6 +3,7 @@
  * layout, threads or the order of the bonds, and what is found solves the equations.
  */
 #include "check.h"
+#include "input.h"
 #include "large.h"
 
 typedef struct results {
@@ -120,10 +121,10 @@ static void layout_changes_no_bit(void **state)
         double *r = padded(m.r, m.n_atoms), *v = padded(m.v, m.n_atoms), *f = padded(m.f, m.n_atoms);
         double *lambda = untouched((size_t)m.n_bonds);
         const hol_view vr = view_of(r), vv = view_of(v), vf = view_of(f);
-        CHECK(hol_forces_view(chains, &vr, &vv, &vf, lambda, NULL, &vf, HOL_WRITE, NULL));
+        CHECK(hol_forces_view(chains, INPUT(&vr), INPUT(&vv), INPUT(&vf), lambda, NULL, &vf, HOL_WRITE, NULL));
         assert_same_bits(lambda, plain.lambda, (size_t)m.n_bonds);
         for (int64_t i = 0; i < m.n_atoms; ++i) assert_same_bits(f + 4 * i, plain.g + 3 * i, 3);
-        CHECK(hol_project_velocities_view(chains, &vr, &vv, lambda, NULL));
+        CHECK(hol_project_velocities_view(chains, INPUT(&vr), &vv, lambda, NULL));
         assert_same_bits(lambda, plain.mu, (size_t)m.n_bonds);
         for (int64_t i = 0; i < m.n_atoms; ++i) assert_same_bits(v + 4 * i, plain.v + 3 * i, 3);
         free(r), free(v), free(f), free(lambda);

@@ -58,7 +58,7 @@ static void what_takes_more_is_refused_and_nothing_is_changed(void **state)
     assert_message_names("hol_chains_set_memory_limit");
     assert_message_names("atom 0");
     assert_int_equal(hol_chains_n_bonds(s.chains), 0);
-    assert_int_equal(hol_chains_n_chains(s.chains), 0);
+    assert_int_equal(hol_chains_n_molecules(s.chains), 0);
     CHECK(hol_chains_add_bonds(s.chains, 1, pair, s.lengths)); /* what is small has room */
     CHECK(hol_chains_set_memory_limit(s.chains, 0));
     CHECK(hol_chains_add_bonds(s.chains, s.n_bonds, s.pairs, s.lengths));

@@ -3,6 +3,7 @@
  */
 #include "assembly.h"
 #include "check.h"
+#include "input.h"
 #include "layout.h"
 
 /** All outputs of one call. */
@@ -108,7 +109,7 @@ static void every_layout_gives_the_same_bits(void **state)
         for (int l = 0; l < n_layouts; ++l) {
             laid_out r = lay_out(&layouts[l], a.n_atoms, a.r, 3);
             laid_out force = lay_out(&layouts[(l + 1) % n_layouts], a.n_atoms, x.force, 3);
-            CHECK(hol_metric_view(a.chains, &r.view, 1.5, y.log_det, y.log_det_z, &y.energy, &force.view, HOL_WRITE));
+            CHECK(hol_metric_view(a.chains, INPUT(&r.view), 1.5, y.log_det, y.log_det_z, &y.energy, &force.view, HOL_WRITE));
             memcpy(y.force, x.force, x.size * sizeof(double));
             collect(&force, y.force);
             if (force.view.element == HOL_DOUBLE) {
@@ -257,9 +258,9 @@ static void wrong_arguments_write_nothing(void **state)
     CHECK_FAILS(HOL_ERR_VALUE, hol_metric(a.chains, a.r, INFINITY, ld, lz, u, f, HOL_WRITE));
     CHECK_FAILS(HOL_ERR_VALUE, hol_metric(a.chains, a.r, 1, ld, lz, u, f, 2));
     hol_view r = {a.r, a.r + 1, a.r + 2, 3 * sizeof(double), HOL_DOUBLE, 0}, flat = {f, f + 1, NULL, 16, HOL_DOUBLE, 0};
-    CHECK_FAILS(HOL_ERR_NULL, hol_metric_view(NULL, &r, 1, ld, lz, u, NULL, HOL_WRITE));
+    CHECK_FAILS(HOL_ERR_NULL, hol_metric_view(NULL, INPUT(&r), 1, ld, lz, u, NULL, HOL_WRITE));
     CHECK_FAILS(HOL_ERR_NULL, hol_metric_view(a.chains, NULL, 1, ld, lz, u, NULL, HOL_WRITE));
-    CHECK_FAILS(HOL_ERR_VALUE, hol_metric_view(a.chains, &r, 1, ld, lz, u, &flat, HOL_WRITE));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_metric_view(a.chains, INPUT(&r), 1, ld, lz, u, &flat, HOL_WRITE));
     assert_all_untouched(&x);
     CHECK(metric(&a, &x)); /* the handle is as good as before */
     discard(&x), assembly_free(&a);

@@ -46,7 +46,7 @@ static outputs compute(const mixture *m)
     const size_t n = (size_t)m->n_bonds, size = mixture_size(m);
     for (int k = 0; k < 3; ++k) o.per_bond[k] = untouched(n), o.per_atom[k] = untouched(size);
     memcpy(o.per_atom[1], m->v, size * sizeof(double));
-    o.log_det = untouched((size_t)hol_chains_n_chains(m->chains));
+    o.log_det = untouched((size_t)hol_chains_n_molecules(m->chains));
     double *blank = untouched(10);
     memcpy(o.virial, blank, sizeof o.virial);
     memcpy(&o.energy, blank, sizeof o.energy);

@@ -7,7 +7,7 @@
 static long double of_part(const mixture *m, int64_t part, const double *per_molecule)
 {
     int64_t *molecules = calloc((size_t)m->n_bonds, sizeof *molecules);
-    char *seen = calloc((size_t)hol_chains_n_chains(m->chains) + 1, 1);
+    char *seen = calloc((size_t)hol_chains_n_molecules(m->chains) + 1, 1);
     long double sum = 0;
     CHECK(hol_chains_molecules_of_bonds(m->chains, molecules));
     for (int64_t k = m->first_bond[part]; k < m->first_bond[part + 1]; ++k) {
@@ -22,7 +22,7 @@ static void metric_agrees_with_a_dense_solution(void **state)
 {
     (void)state;
     mixture m = mixture_of_all(quick_run() ? 1 : 3, MIXED, 1);
-    const size_t n = (size_t)hol_chains_n_chains(m.chains);
+    const size_t n = (size_t)hol_chains_n_molecules(m.chains);
     const double kT = 1.5;
     double *log_det = untouched(n), *log_det_z = untouched(n), *force = untouched(mixture_size(&m)), energy;
     long double sum = 0, size = 0;

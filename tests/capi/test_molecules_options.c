@@ -195,7 +195,7 @@ static void no_molecule_takes_more_iterations_than_the_bound(void **state)
                 if (report.iterations > bound)
                     fail_msg("%s, %d molecules: %d iterations, bound %d", molecule_kind_name((molecule_kind)kind),
                              (int)n, (int)report.iterations, bound);
-                if (hol_chains_n_chains(m.chains) == 1 && status != HOL_OK) {
+                if (hol_chains_n_molecules(m.chains) == 1 && status != HOL_OK) {
                     assert_int_equal(status, HOL_ERR_NO_CONVERGENCE);
                     assert_same_bits(r, drifted, size);
                     assert_untouched(lambda, bonds);

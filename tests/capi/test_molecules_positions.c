@@ -167,8 +167,8 @@ static void violation_names_the_molecule_and_the_bond_that_is_farthest_off(void 
     }
     CHECK(hol_violation(m.chains, m.r, NULL, &worst));
     CHECK_AT_MOST(fabs(worst.length - 0.21), 1e-12);
-    assert_int_equal(worst.length_chain, molecules[k]);
-    CHECK(hol_chains_bonds(m.chains, worst.length_chain, bonds));
+    assert_int_equal(worst.length_molecule, molecules[k]);
+    CHECK(hol_chains_bonds(m.chains, worst.length_molecule, bonds));
     assert_int_equal(bonds[worst.length_bond], k);
     mixture_free(&m);
 }

@@ -33,7 +33,7 @@ static void shapes_are_recognised_whatever_the_order_of_the_bonds(void **state)
     for (uint64_t seed = 0; seed < 3; ++seed) {
         mixture m = mixture_make(parts, N, seed ? MIXED : ONE_AFTER_THE_OTHER, seed);
         int64_t *molecules = calloc((size_t)m.n_bonds, sizeof *molecules), freedoms = 0;
-        assert_int_equal(hol_chains_n_chains(m.chains), N);
+        assert_int_equal(hol_chains_n_molecules(m.chains), N);
         for (int s = 0; s < 5; ++s) assert_int_equal(hol_chains_n_of_shape(m.chains, s), of_shape[s]);
         CHECK(hol_chains_molecules_of_bonds(m.chains, molecules));
         for (int p = 0; p < N; ++p) {
@@ -168,7 +168,7 @@ static void bonds_between_fixed_atoms_are_no_constraints(void **state)
     for (int i = 0; i < 18; ++i) f[i] = 1 - i % 4, g[i] = 7;
     CHECK(hol_chains_create(6, mass, &chains));
     CHECK(hol_chains_add_bonds(chains, 10, pairs, length));
-    assert_int_equal(hol_chains_n_chains(chains), 1);
+    assert_int_equal(hol_chains_n_molecules(chains), 1);
     assert_int_equal(hol_chains_n_bonds(chains), 10);
     assert_int_equal(hol_chains_degrees_of_freedom(chains, 3), 6 - 4);
     CHECK(hol_chains_molecules_of_bonds(chains, molecules));

@@ -195,7 +195,7 @@ static void run_peptide(int light_alone, double dt)
     const energy_record e = nve_run(&n, dt, steps);
     print_message(
         "peptide, %d atoms, %d molecules: energy %.6f, later %.6f, spread %.2g of %.3g; lengths within %.2f\n",
-        (int)part.n_atoms, (int)hol_chains_n_chains(m.chains), e.first, e.last, e.spread, scale, n.worst_length);
+        (int)part.n_atoms, (int)hol_chains_n_molecules(m.chains), e.first, e.last, e.spread, scale, n.worst_length);
     CHECK_AT_MOST(n.worst_length, 8);
     CHECK_AT_MOST(e.spread, 0.02 * scale);
     CHECK_AT_MOST(fabs(e.last - e.first), 0.004 * scale);

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "input.h"
 #include "large.h"
 #include "network_scene.h"
 #include "random.h"
@@ -237,7 +238,7 @@ static void threads_and_layouts_change_no_bit(void **state)
     const hol_view ref = {s.m.r, s.m.r + 1, s.m.r + 2, 3 * sizeof(double), HOL_DOUBLE, 0},
                    now = {components, components + size / 3, components + 2 * (size / 3), sizeof(double), HOL_DOUBLE,
                           0};
-    CHECK(hol_project_positions_view(s.chains, &ref, &now, NULL, 0.005, NULL, 0, NULL, NULL));
+    CHECK(hol_project_positions_view(s.chains, INPUT(&ref), &now, NULL, 0.005, NULL, 0, NULL, NULL));
     for (size_t i = 0; i < size; ++i) assert_same_bits(components + i % 3 * (size / 3) + i / 3, r + i, 1);
     free(g), free(lambda), free(v), free(r), free(h), free(mu), free(w), free(q), free(components);
     network_free(s);

@@ -25,7 +25,7 @@ static results call(const mixture *m, verb which, const double *trial)
 {
     const size_t n = (size_t)m->n_bonds, size = mixture_size(m);
     results x = {untouched(n), copy_of(which == POSITIONS ? trial : m->r, size), copy_of(m->v, size), {0}, 0};
-    double *rhs = copy_of(m->length, n), *log_det = untouched((size_t)hol_chains_n_chains(m->chains)), energy;
+    double *rhs = copy_of(m->length, n), *log_det = untouched((size_t)hol_chains_n_molecules(m->chains)), energy;
     if (which == FORCES) x.status = hol_forces(m->chains, m->r, m->v, m->f, x.per_bond, NULL, x.v, HOL_WRITE, NULL);
     if (which == VELOCITIES) x.status = hol_project_velocities(m->chains, m->r, x.v, x.per_bond, NULL);
     if (which == POSITIONS)
@@ -45,7 +45,7 @@ static void release(results *x)
 /** All molecules by one call, and each of them alone, in a call that finds the others inactive. */
 static int64_t compare(const mixture *m, verb which, const double *trial)
 {
-    const int64_t n = hol_chains_n_chains(m->chains);
+    const int64_t n = hol_chains_n_molecules(m->chains);
     int *status = untold(n), *iterations = untold(n);
     CHECK(hol_chains_set_outcomes(m->chains, 0));
     results plain = call(m, which, trial);
@@ -260,19 +260,19 @@ static void outcomes_that_are_not_there_are_refused(void **state)
     CHECK_FAILS(HOL_ERR_NULL, hol_chains_set_outcomes(NULL, 1));
     CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_outcomes(chains, 2));
     CHECK(hol_forces(chains, r[0], NULL, NULL, NULL, NULL, g[0], HOL_WRITE, NULL));
-    CHECK_FAILS(HOL_ERR_VALUE, hol_outcomes(chains, status, NULL)); /* not kept */
+    CHECK_FAILS(HOL_ERR_STATE, hol_outcomes(chains, status, NULL)); /* not kept */
     CHECK(hol_chains_set_outcomes(chains, 1));
     CHECK(hol_chains_set_outcomes(other, 1));
-    CHECK_FAILS(HOL_ERR_VALUE, hol_outcomes(chains, status, NULL)); /* no call since */
+    CHECK_FAILS(HOL_ERR_STATE, hol_outcomes(chains, status, NULL)); /* no call since */
     CHECK(hol_forces(chains, r[0], NULL, NULL, NULL, NULL, g[0], HOL_WRITE, NULL));
     CHECK(hol_outcomes(chains, status, NULL));
     CHECK(hol_outcomes(chains, NULL, NULL));
-    CHECK_FAILS(HOL_ERR_VALUE, hol_outcomes(other, status, NULL));
+    CHECK_FAILS(HOL_ERR_STATE, hol_outcomes(other, status, NULL));
     CHECK_FAILS(HOL_ERR_VALUE, hol_metric(chains, r[0], -1, NULL, NULL, NULL, g[0], HOL_WRITE));
-    CHECK_FAILS(HOL_ERR_VALUE, hol_outcomes(chains, status, NULL)); /* that call did nothing */
+    CHECK_FAILS(HOL_ERR_STATE, hol_outcomes(chains, status, NULL)); /* that call did nothing */
     CHECK(hol_forces(chains, r[0], NULL, NULL, NULL, NULL, g[0], HOL_WRITE, NULL));
     CHECK(hol_chains_add_block(chains, 1, 1, 2, &length));
-    CHECK_FAILS(HOL_ERR_VALUE, hol_outcomes(chains, status, NULL)); /* there are more now */
+    CHECK_FAILS(HOL_ERR_STATE, hol_outcomes(chains, status, NULL)); /* there are more now */
     hol_chains_destroy(chains);
     hol_chains_destroy(other);
 }

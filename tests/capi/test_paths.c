@@ -3,6 +3,7 @@
  * lengths about those at which they are cut, with fixed and with free ends, in boxes, layouts, precisions and threads.
  */
 #include "check.h"
+#include "input.h"
 #include "large.h"
 #include "molecule_solution.h"
 
@@ -193,7 +194,7 @@ static void threads_and_layouts_change_no_bit(void **state)
         const hol_view of = {x[a], x[a] + atoms, x[a] + 2 * atoms, sizeof *r, HOL_DOUBLE, 0};
         view[a] = of;
     }
-    CHECK(hol_project_positions_view(s.chains, &ref, view, view + 1, dt, lambda, 0, NULL, NULL));
+    CHECK(hol_project_positions_view(s.chains, INPUT(&ref), view, view + 1, dt, lambda, 0, NULL, NULL));
     assert_same_bits(lambda, s.lambda, n);
     for (size_t i = 0; i < size; ++i) {
         assert_same_bits(x[0] + i % 3 * atoms + i / 3, s.r + i, 1);
@@ -273,7 +274,7 @@ static void floats_get_their_lengths_to_their_rounding(void **state)
     }
     const hol_view from = {ref, ref + 1, ref + 2, 3 * sizeof *ref, HOL_FLOAT, 0},
                    to = {r, r + 1, r + 2, 3 * sizeof *r, HOL_FLOAT, 0};
-    CHECK(hol_project_positions_view(s.chains, &from, &to, NULL, dt, NULL, 0, NULL, NULL));
+    CHECK(hol_project_positions_view(s.chains, INPUT(&from), &to, NULL, dt, NULL, 0, NULL, NULL));
     for (size_t i = 0; i < size; ++i) CHECK_AT_MOST(fabs((double)r[i] - s.r[i]), 16 * (double)FLT_EPSILON * extent);
     free(ref), free(r);
     forget(&s);

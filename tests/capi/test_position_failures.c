@@ -117,7 +117,7 @@ static void a_hard_bound_on_iterations_ends_in_a_status(void **state)
     assert_int_equal(report.n_failed, 9);
     assert_int_equal(report.n_corrected, 0);
     assert_int_equal(report.iterations, 1);
-    assert_int_equal(report.chain, -1);
+    assert_int_equal(report.molecule, -1);
     assert_int_equal(report.bond, -1);
     CHECK(hol_chains_set_max_iterations(a.chains, 50));
     CHECK(hol_project_positions(a.chains, a.r, s.r, s.v, time_step, s.lambda, 0, s.virial, &report));

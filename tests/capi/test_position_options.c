@@ -174,7 +174,7 @@ static void check_worst_bond(int64_t n_chains, int64_t n_bonds)
     CHECK(hol_chains_set_tolerance(a.chains, 1e-3));
     CHECK(hol_project_positions(a.chains, a.r, r, NULL, 0.004, NULL, 0, NULL, &report));
     CHECK(hol_violation(a.chains, r, NULL, &worst));
-    assert_int_equal(report.chain, worst.length_chain);
+    assert_int_equal(report.molecule, worst.length_molecule);
     assert_int_equal(report.bond, worst.length_bond);
     /* before the positions are rounded, which is far less than the error */
     CHECK_AT_MOST(fabs(report.max_error - worst.length), (n_bonds > 1000 ? 2000 : 100) * DBL_EPSILON);

@@ -1,6 +1,7 @@
 /** What given multipliers do: forces, impulses, tensions and virials, against the calls that found the multipliers. */
 #include "assembly.h"
 #include "check.h"
+#include "input.h"
 #include "layout.h"
 #include "mixture.h"
 
@@ -109,7 +110,7 @@ static void long_chains_threads_and_layouts_change_no_bit(void **state)
         assert_same_bits(virial, sum, 9);
         for (int l = 0; l < n_double_layouts; ++l) {
             laid_out r = lay_out(layouts + l, a.n_atoms, a.r, 3), out = lay_out(layouts + l, a.n_atoms, H, 3);
-            CHECK(hol_reactions_view(a.chains, &r.view, HOL_BOX, lambda, NULL, &out.view, HOL_WRITE, u, NULL));
+            CHECK(hol_reactions_view(a.chains, INPUT(&r.view), HOL_BOX, lambda, NULL, &out.view, HOL_WRITE, u, NULL));
             collect(&out, H);
             assert_same_bits(G, H, size);
             assert_same_bits(w, u, 6 * n);
@@ -138,7 +139,7 @@ static void they_are_added_where_asked_and_floats_round_once(void **state)
         double *x = copy_of(m.r, size), *expected = untouched(size), *got = untouched(size);
         collect(&r, x);
         CHECK(hol_reactions(m.chains, x, HOL_BOX, lambda, NULL, expected, HOL_WRITE, NULL, NULL));
-        CHECK(hol_reactions_view(m.chains, &r.view, HOL_BOX, lambda, NULL, &out.view, HOL_WRITE, NULL, NULL));
+        CHECK(hol_reactions_view(m.chains, INPUT(&r.view), HOL_BOX, lambda, NULL, &out.view, HOL_WRITE, NULL, NULL));
         collect(&out, got);
         for (size_t i = 0; i < size; ++i)
             if (!isnan(m.f[i])) assert_true(got[i] == (double)(float)expected[i]);

@@ -122,7 +122,7 @@ static void positions_fail(const flock *x, const double *drifted, int status, in
     assert_named(atom);
     assert_int_equal(report.n_failed, 1);
     assert_int_equal(report.n_corrected, COPIES - 1);
-    assert_int_not_equal(report.chain, BAD);
+    assert_int_not_equal(report.molecule, BAD);
     assert_others(x, lambda, x->good.bond[4], NULL, 0);
     assert_others(x, r, x->good.atom[2], drifted, 1);
     assert_others(x, v, x->good.atom[3], m->v, 1);

@@ -1,5 +1,6 @@
 /** What results of large molecules of repeating units do not depend on, to the last bit: threads, the order of bonds,
  * the layout of arrays, what was set before. */
+#include "input.h"
 #include "layout.h"
 #include "residue_checks.h"
 #include "residue_flock.h"
@@ -74,17 +75,17 @@ static void lay_out_arrays(residues *s)
         laid_out r = lay_out(how, m->n_atoms, m->r, 3), v = lay_out(other, m->n_atoms, m->v, 3),
                  f = lay_out(other, m->n_atoms, m->f, 3), g = lay_out(how, m->n_atoms, m->f, 3),
                  moved = lay_out(how, m->n_atoms, start, 3);
-        CHECK(hol_forces_view(s->chains, &r.view, &v.view, &f.view, lambda, tension, &g.view, HOL_WRITE, virial));
+        CHECK(hol_forces_view(s->chains, INPUT(&r.view), INPUT(&v.view), INPUT(&f.view), lambda, tension, &g.view, HOL_WRITE, virial));
         assert_same_bits(lambda, x.bond[0], n);
         assert_same_bits(tension, x.bond[1], n);
         assert_same_bits(virial, x.virial, 9);
         assert_laid_out(&g, x.atom[0], how->name);
-        CHECK(hol_solve_view(s->chains, &r.view, m->length, lambda, NULL, HOL_WRITE, NULL));
+        CHECK(hol_solve_view(s->chains, INPUT(&r.view), m->length, lambda, NULL, HOL_WRITE, NULL));
         assert_same_bits(lambda, x.bond[2], n);
-        CHECK(hol_project_velocities_view(s->chains, &r.view, &v.view, lambda, NULL));
+        CHECK(hol_project_velocities_view(s->chains, INPUT(&r.view), &v.view, lambda, NULL));
         assert_same_bits(lambda, x.bond[3], n);
         assert_laid_out(&v, x.atom[1], other->name);
-        CHECK(hol_project_positions_view(s->chains, &r.view, &moved.view, NULL, dt, lambda, 0, NULL, NULL));
+        CHECK(hol_project_positions_view(s->chains, INPUT(&r.view), &moved.view, NULL, dt, lambda, 0, NULL, NULL));
         if (how->element == HOL_DOUBLE) {
             assert_same_bits(lambda, x.bond[4], n);
             assert_laid_out(&moved, x.atom[2], how->name);

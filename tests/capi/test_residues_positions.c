@@ -151,7 +151,7 @@ static void end_within_a_tolerance(residues *s)
     const int64_t bond = worst_bond(s, r, &error);
     CHECK_AT_MOST(error, 1e-5);
     CHECK_AT_MOST(fabs(report.max_error - error), 4 * length_rounding(s));
-    CHECK(hol_chains_bonds(s->chains, report.chain, order));
+    CHECK(hol_chains_bonds(s->chains, report.molecule, order));
     if (error > 1e-8) ++n_told, assert_int_equal(order[report.bond], bond);
     free(r), free(order);
 }
@@ -222,7 +222,7 @@ static void tell_worst(residues *s)
             CHECK(hol_project_positions(s->chains, m->r, r, NULL, 1, NULL, 0, NULL, &report));
             assert_same_bits(r, was, size);
             assert_int_equal(report.n_corrected, 0);
-            assert_int_equal(report.chain, 0);
+            assert_int_equal(report.molecule, 0);
             assert_int_equal(order[report.bond], bond[within]);
             CHECK_AT_MOST(fabs(report.max_error - worst.length), 4 * length_rounding(s));
             CHECK(hol_chains_set_tolerance(s->chains, 0));

@@ -201,7 +201,7 @@ static void memory_of_bodies_has_a_limit(void **state)
                 hol_chains_add_rigid_molecules(chains, COUNT, 6, 0, 1, &six, list, s.k->place, 0, NULL, NULL));
     assert_message_names("hol_chains_set_memory_limit");
     CHECK_FAILS(HOL_ERR_MEMORY, hol_chains_add_rigid(chains, 1, &six, list, s.k->place, 0, NULL, NULL));
-    assert_int_equal(hol_chains_n_chains(chains), 0);
+    assert_int_equal(hol_chains_n_molecules(chains), 0);
     CHECK(hol_chains_set_memory_limit(chains, 1000000));
     CHECK(hol_chains_add_rigid_molecules(chains, 1, 6, 0, 1, &six, list, s.k->place, 0, NULL, NULL));
     hol_chains_destroy(chains);

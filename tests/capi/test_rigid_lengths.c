@@ -186,7 +186,7 @@ static void lengths_that_disagree_are_named_and_nothing_is_added(void **state)
     hol_error_location(NULL, &bond, NULL, NULL);
     assert_in_range(bond, 0, p.n_bonds - 1);
     assert_int_equal(hol_chains_n_bonds(chains), 0);
-    assert_int_equal(hol_chains_n_chains(chains), 0);
+    assert_int_equal(hol_chains_n_molecules(chains), 0);
     p.length[4] /= 1.01;
     CHECK(hol_chains_add_bonds(chains, p.n_bonds, p.pairs, p.length));
     CHECK_FAILS(HOL_ERR_SHARED_ATOM, hol_chains_add_bonds(chains, p.n_bonds, p.pairs, p.length));
@@ -209,7 +209,7 @@ static void bodies_and_others_come_in_one_list(void **state)
     for (int i = 0; i < 27; ++i) f[i] = random_normal(&s);
     CHECK(hol_chains_create(9, mass, &chains));
     CHECK(hol_chains_add_bonds(chains, 8, pairs, length));
-    assert_int_equal(hol_chains_n_chains(chains), 3);
+    assert_int_equal(hol_chains_n_molecules(chains), 3);
     assert_int_equal(hol_chains_n_of_shape(chains, HOL_SHAPE_RIGID), 1);
     CHECK(hol_chains_molecules_of_bonds(chains, numbers));
     const int64_t expected[8] = {0, 2, 0, 2, 2, 2, 0, 1};

@@ -3,6 +3,7 @@
  * is the sum over those that are not bad.
  */
 #include "check.h"
+#include "input.h"
 #include "random.h"
 
 #include <float.h>
@@ -86,7 +87,7 @@ static void each_molecule_gives_what_it_gives_alone(void **state)
     (void)state;
     brush b = make_brush(0);
     const size_t n = (size_t)b.n_atoms, m = (size_t)b.n_bonds;
-    assert_int_equal(hol_chains_n_chains(b.chains), N_CHAINS);
+    assert_int_equal(hol_chains_n_molecules(b.chains), N_CHAINS);
     for (int threads = 1; threads <= 3; threads += 2)
         for (int mode = HOL_WRITE; mode <= HOL_ADD; ++mode) {
             CHECK(hol_chains_set_threads(b.chains, threads));
@@ -187,7 +188,7 @@ static void arrays_of_any_layout_share_atoms(void **state)
         }
     const hol_view vr = {r, r + 1, r + 2, 20, HOL_FLOAT, 0}, vf = {f, f + 1, f + 2, 20, HOL_FLOAT, 0},
                    vg = {g, g + 1, g + 2, 20, HOL_FLOAT, 0};
-    CHECK(hol_forces_view(c.chains, &vr, NULL, &vf, l, NULL, &vg, HOL_WRITE, NULL));
+    CHECK(hol_forces_view(c.chains, INPUT(&vr), NULL, INPUT(&vf), l, NULL, &vg, HOL_WRITE, NULL));
     CHECK(hol_forces(c.chains, exact, NULL, g1, l1, NULL, g1, HOL_WRITE, NULL)); /* g is f itself */
     assert_same_bits(l, l1, m);
     for (size_t i = 1; i < n; ++i)
@@ -202,7 +203,7 @@ static void the_middle_one_falls_apart_in_a_list_of_bonds(void **state)
     (void)state;
     brush b = make_brush(1);
     /* the chain through the fixed atom is cut there: its two ends couple to nothing */
-    assert_int_equal(hol_chains_n_chains(b.chains), N_CHAINS + 1);
+    assert_int_equal(hol_chains_n_molecules(b.chains), N_CHAINS + 1);
     assert_int_equal(hol_chains_n_of_shape(b.chains, HOL_SHAPE_CHAIN), N_CHAINS + 1);
     assert_int_equal(hol_chains_degrees_of_freedom(b.chains, 3), 3 * (b.n_atoms - 1) - b.n_bonds);
     brush c = make_brush(0);
@@ -227,7 +228,7 @@ static void a_ring_through_a_fixed_atom_is_a_chain_between_two_copies_of_it(void
     hol_chains *c;
     CHECK(hol_chains_create(4, mass, &c));
     CHECK(hol_chains_add_bonds(c, 4, pairs, length));
-    assert_int_equal(hol_chains_n_chains(c), 1);
+    assert_int_equal(hol_chains_n_molecules(c), 1);
     int shape;
     int64_t n_atoms, n_bonds, atoms[5];
     CHECK(hol_chains_molecule(c, 0, &shape, &n_atoms, &n_bonds));

@@ -3,6 +3,7 @@
  * atoms and lengths; and nothing is moved.
  */
 #include "check.h"
+#include "input.h"
 #include "water.h"
 
 enum { SIDE = 10, DT = 1 };
@@ -154,11 +155,11 @@ static void a_mistake_is_seen_in_every_layout(void **state)
     const hol_view single = {packed, packed + 1, packed + 2, 3 * sizeof(float), HOL_FLOAT, 0};
     const hol_view single_next = {moved, moved + 1, moved + 2, 3 * sizeof(float), HOL_FLOAT, 0};
     CHECK_FAILS(HOL_ERR_LENGTHS,
-                hol_project_positions_view(chains, &apart, &apart_next, NULL, DT, NULL, 0, NULL, NULL));
+                hol_project_positions_view(chains, INPUT(&apart), &apart_next, NULL, DT, NULL, 0, NULL, NULL));
     assert_message_names("about 10 times");
     assert_same_bits(next, before, 3 * n);
     CHECK_FAILS(HOL_ERR_LENGTHS,
-                hol_project_positions_view(chains, &single, &single_next, NULL, DT, NULL, 0, NULL, NULL));
+                hol_project_positions_view(chains, INPUT(&single), &single_next, NULL, DT, NULL, 0, NULL, NULL));
     assert_message_names("about 10 times");
     assert_memory_equal(moved, packed, sizeof *moved * 3 * n);
     free(x);
@@ -193,21 +194,23 @@ static void a_stale_box(void **state)
     free_waters(&w);
 }
 
-static void masses_that_are_all_zero(void **state)
+/* A process whose atoms are all held fixed calls what all others call. */
+static void atoms_that_are_all_fixed(void **state)
 {
     (void)state;
-    const double zero[4] = {0, 0, 0, 0}, one[4] = {1, 1, 1, 1};
-    const double held[2] = {INFINITY, INFINITY};
-    hol_chains *chains;
-    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_create(4, zero, &chains));
-    assert_message_names("all 4 masses are 0");
-    assert_null(chains);
-    CHECK(hol_chains_create(2, held, &chains)); /* on purpose */
-    hol_chains_destroy(chains);
-    CHECK(hol_chains_create(4, one, &chains));
-    CHECK_FAILS(HOL_ERR_VALUE, hol_chains_set_masses(chains, zero));
-    assert_message_names("all 4 masses are 0");
-    hol_chains_destroy(chains);
+    const double zero[4] = {0, 0, 0, 0}, length[3] = {1, 1, 1}, r[12] = {0, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0};
+    const double held[4] = {INFINITY, INFINITY, INFINITY, INFINITY};
+    for (int k = 0; k < 2; ++k) {
+        double lambda[3] = {7, 7, 7}, g[12] = {0}, virial[9];
+        hol_chains *chains;
+        CHECK(hol_chains_create(4, k ? held : zero, &chains));
+        CHECK(hol_chains_add_block(chains, 1, 3, 0, length));
+        CHECK(hol_chains_set_masses(chains, k ? held : zero));
+        assert_int_equal(hol_chains_degrees_of_freedom(chains, 3), 0);
+        CHECK(hol_forces(chains, r, NULL, NULL, lambda, NULL, g, HOL_WRITE, virial));
+        assert_true(lambda[0] == 0 && lambda[2] == 0 && virial[0] == 0);
+        hol_chains_destroy(chains);
+    }
 }
 
 static void boxes_that_are_no_cell(void **state)
@@ -299,7 +302,7 @@ int main(void)
         cmocka_unit_test(atoms_counted_from_one),
         cmocka_unit_test(a_mistake_is_seen_in_every_layout),
         cmocka_unit_test(a_stale_box),
-        cmocka_unit_test(masses_that_are_all_zero),
+        cmocka_unit_test(atoms_that_are_all_fixed),
         cmocka_unit_test(boxes_that_are_no_cell),
         cmocka_unit_test(boxes_narrower_than_two_bonds),
         cmocka_unit_test(lengths_that_make_no_triangle),

@@ -7,6 +7,8 @@ static void version_is_the_one_of_the_header(void **state)
     char expected[64];
     snprintf(expected, sizeof expected, "%d.%d.%d", HOL_VERSION_MAJOR, HOL_VERSION_MINOR, HOL_VERSION_PATCH);
     assert_string_equal(hol_version(), expected);
+    assert_int_equal(hol_version_number(), HOL_VERSION);
+    assert_int_equal(HOL_VERSION, 10000 * HOL_VERSION_MAJOR + 100 * HOL_VERSION_MINOR + HOL_VERSION_PATCH);
 }
 
 static void every_status_has_its_own_name(void **state)
@@ -25,9 +27,12 @@ static void every_status_has_its_own_name(void **state)
         "HOL_ERR_NOT_DEFINITE",
         "HOL_ERR_INTERNAL",
         "HOL_ERR_LENGTHS",
+        "HOL_ERR_UNSUPPORTED",
+        "HOL_ERR_STATE",
+        "HOL_ERR_CALLBACK",
     };
-    for (int s = 0; s < 12; ++s) assert_string_equal(hol_status_name(s), names[s]);
-    assert_string_equal(hol_status_name(12), "unknown status");
+    for (int s = 0; s < 15; ++s) assert_string_equal(hol_status_name(s), names[s]);
+    assert_string_equal(hol_status_name(15), "unknown status");
     assert_string_equal(hol_status_name(-1), "unknown status");
     assert_string_equal(hol_status_name(1 << 30), "unknown status");
 }

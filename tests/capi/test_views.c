@@ -1,6 +1,7 @@
 /** Arrays of any layout: the same bits as from [n][3] arrays of doubles, and nothing written between the elements. */
 #include "assembly.h"
 #include "check.h"
+#include "input.h"
 #include "layout.h"
 #include "positions.h"
 
@@ -25,7 +26,7 @@ static void forces_through(const assembly *a, const layout *how, const layout *o
     laid_out r = lay_out(how, a->n_atoms, a->r, 3), v = lay_out(other, a->n_atoms, a->v, 3);
     laid_out f = lay_out(how, a->n_atoms, a->f, 3), out = lay_out(other, a->n_atoms, a->v, 3);
     CHECK(
-        hol_forces_view(a->chains, &r.view, &v.view, &f.view, view_lambda, view_tension, &out.view, mode, view_virial));
+        hol_forces_view(a->chains, INPUT(&r.view), INPUT(&v.view), INPUT(&f.view), view_lambda, view_tension, &out.view, mode, view_virial));
     assert_same_bits(lambda, view_lambda, n);
     assert_same_bits(tension, view_tension, n);
     assert_same_bits(virial, view_virial, 9);
@@ -66,7 +67,7 @@ static void velocities_are_the_same_through_every_layout(void **state)
             double *view_lambda = untouched(n), view_virial[9];
             laid_out r = lay_out(&layouts[(i + 3) % n_layouts], a.n_atoms, a.r, 3),
                      u = lay_out(&layouts[i], a.n_atoms, a.v, 3);
-            CHECK(hol_project_velocities_view(a.chains, &r.view, &u.view, view_lambda, view_virial));
+            CHECK(hol_project_velocities_view(a.chains, INPUT(&r.view), &u.view, view_lambda, view_virial));
             assert_same_bits(lambda, view_lambda, n);
             assert_same_bits(virial, view_virial, 9);
             assert_laid_out(&u, v, layouts[i].name);
@@ -95,7 +96,7 @@ static void positions_are_the_same_through_every_layout_of_doubles(void **state)
             laid_out r = lay_out(&layouts[(i + 3) % n_double_layouts], a.n_atoms, a.r, 3);
             laid_out p = lay_out(&layouts[i], a.n_atoms, start, 3),
                      u = lay_out(&layouts[(i + 1) % n_double_layouts], a.n_atoms, a.v, 3);
-            CHECK(hol_project_positions_view(a.chains, &r.view, &p.view, &u.view, time_step, view_lambda, 0,
+            CHECK(hol_project_positions_view(a.chains, INPUT(&r.view), &p.view, &u.view, time_step, view_lambda, 0,
                                              view_virial, &view_report));
             assert_same_bits(lambda, view_lambda, n);
             assert_same_bits(virial, view_virial, 9);
@@ -121,9 +122,9 @@ static void float_positions_end_at_the_rounding_of_floats(void **state)
         laid_out v = lay_out(&layouts[i], a.n_atoms, a.v, 3);
         hol_report report;
         hol_worst worst;
-        CHECK(hol_project_positions_view(a.chains, &r.view, &p.view, &v.view, time_step, NULL, 0, NULL, &report));
+        CHECK(hol_project_positions_view(a.chains, INPUT(&r.view), &p.view, &v.view, time_step, NULL, 0, NULL, &report));
         assert_int_equal(report.n_failed, 0);
-        CHECK(hol_violation_view(a.chains, &p.view, NULL, &worst));
+        CHECK(hol_violation_view(a.chains, INPUT(&p.view), NULL, &worst));
         /* coordinates up to 20, each rounded by 2^-25 of itself; |d| changes by up to 2 sqrt(3) of that, |d|^2 by twice
            that, and a chain within the same tolerance before is not moved */
         CHECK_AT_MOST(worst.length, 20 * 0x1p-25 * 4 * 1.74 * 2);
@@ -169,12 +170,12 @@ static void two_dimensions_give_the_bits_of_three_with_zero_z(void **state)
             memcpy(u, a.v, sizeof *u * size);
         CHECK(hol_forces(a.chains, a.r, a.v, a.f, lambda, NULL, g, HOL_ADD, virial));
         CHECK(
-            hol_forces_view(a.chains, &fr.view, &fv.view, &ff.view, flat_lambda, NULL, &ff.view, HOL_ADD, flat_virial));
+            hol_forces_view(a.chains, INPUT(&fr.view), INPUT(&fv.view), INPUT(&ff.view), flat_lambda, NULL, &ff.view, HOL_ADD, flat_virial));
         assert_same_bits(lambda, flat_lambda, n);
         for (int k = 0; k < 9; ++k) assert_true(virial[k] == flat_virial[k]);
         assert_laid_out(&ff, g, layouts[i].name);
         CHECK(hol_project_positions(same_length, a.r, q, u, short_step, lambda, 0, virial, NULL));
-        CHECK(hol_project_positions_view(same_length, &fr.view, &fp.view, &fv.view, short_step, flat_lambda, 0,
+        CHECK(hol_project_positions_view(same_length, INPUT(&fr.view), &fp.view, &fv.view, short_step, flat_lambda, 0,
                                          flat_virial, NULL));
         assert_same_bits(lambda, flat_lambda, n);
         assert_laid_out(&fp, q, layouts[i].name);
@@ -182,12 +183,12 @@ static void two_dimensions_give_the_bits_of_three_with_zero_z(void **state)
         laid_out_free(&fv);
         fv = lay_out(&layouts[i], a.n_atoms, a.v, 2);
         CHECK(hol_project_velocities(a.chains, a.r, v, lambda, virial));
-        CHECK(hol_project_velocities_view(a.chains, &fr.view, &fv.view, flat_lambda, flat_virial));
+        CHECK(hol_project_velocities_view(a.chains, INPUT(&fr.view), &fv.view, flat_lambda, flat_virial));
         assert_same_bits(lambda, flat_lambda, n);
         assert_laid_out(&fv, v, layouts[i].name);
         hol_worst worst, flat_worst;
         CHECK(hol_violation(a.chains, a.r, v, &worst));
-        CHECK(hol_violation_view(a.chains, &fr.view, &fv.view, &flat_worst));
+        CHECK(hol_violation_view(a.chains, INPUT(&fr.view), INPUT(&fv.view), &flat_worst));
         assert_memory_equal(&worst, &flat_worst, sizeof worst);
         laid_out_free(&fr), laid_out_free(&fv), laid_out_free(&ff), laid_out_free(&fp);
     }
@@ -203,17 +204,17 @@ static void views_may_be_null_where_arrays_may(void **state)
     const hol_view r = {a.r, a.r + 1, a.r + 2, 24, HOL_DOUBLE, 0}, f = {a.f, a.f + 1, a.f + 2, 24, HOL_DOUBLE, 0};
     double lambda[15], view_lambda[15];
     CHECK(hol_forces(a.chains, a.r, NULL, a.f, lambda, NULL, NULL, HOL_WRITE, NULL));
-    CHECK(hol_forces_view(a.chains, &r, NULL, &f, view_lambda, NULL, NULL, HOL_WRITE, NULL));
+    CHECK(hol_forces_view(a.chains, INPUT(&r), NULL, INPUT(&f), view_lambda, NULL, NULL, HOL_WRITE, NULL));
     assert_same_bits(lambda, view_lambda, 15);
-    CHECK_FAILS(HOL_ERR_NULL, hol_forces_view(a.chains, NULL, NULL, &f, view_lambda, NULL, NULL, HOL_WRITE, NULL));
-    CHECK_FAILS(HOL_ERR_NULL, hol_forces_view(NULL, &r, NULL, &f, view_lambda, NULL, NULL, HOL_WRITE, NULL));
-    CHECK_FAILS(HOL_ERR_NULL, hol_project_velocities_view(a.chains, &r, NULL, NULL, NULL));
+    CHECK_FAILS(HOL_ERR_NULL, hol_forces_view(a.chains, NULL, NULL, INPUT(&f), view_lambda, NULL, NULL, HOL_WRITE, NULL));
+    CHECK_FAILS(HOL_ERR_NULL, hol_forces_view(NULL, INPUT(&r), NULL, INPUT(&f), view_lambda, NULL, NULL, HOL_WRITE, NULL));
+    CHECK_FAILS(HOL_ERR_NULL, hol_project_velocities_view(a.chains, INPUT(&r), NULL, NULL, NULL));
     CHECK_FAILS(HOL_ERR_NULL, hol_project_velocities_view(a.chains, NULL, &f, NULL, NULL));
     CHECK_FAILS(HOL_ERR_NULL, hol_project_positions_view(a.chains, NULL, &r, NULL, 1, NULL, 0, NULL, NULL));
-    CHECK_FAILS(HOL_ERR_NULL, hol_project_positions_view(a.chains, &r, NULL, NULL, 1, NULL, 0, NULL, NULL));
+    CHECK_FAILS(HOL_ERR_NULL, hol_project_positions_view(a.chains, INPUT(&r), NULL, NULL, 1, NULL, 0, NULL, NULL));
     hol_worst worst;
     CHECK_FAILS(HOL_ERR_NULL, hol_violation_view(a.chains, NULL, NULL, &worst));
-    CHECK_FAILS(HOL_ERR_NULL, hol_violation_view(a.chains, &r, NULL, NULL));
+    CHECK_FAILS(HOL_ERR_NULL, hol_violation_view(a.chains, INPUT(&r), NULL, NULL));
     assembly_free(&a);
 }
 
@@ -237,23 +238,23 @@ static void views_that_describe_nothing_are_refused(void **state)
     hol_worst worst;
     for (int i = 0; i < 8; ++i) {
         const int status = i < 2 ? HOL_ERR_NULL : HOL_ERR_VALUE;
-        CHECK_FAILS(status, hol_forces_view(a.chains, &wrong[i], NULL, NULL, lambda, NULL, &out, HOL_WRITE, virial));
-        CHECK_FAILS(status, hol_forces_view(a.chains, &good, &wrong[i], NULL, lambda, NULL, &out, HOL_WRITE, virial));
-        CHECK_FAILS(status, hol_forces_view(a.chains, &good, NULL, &wrong[i], lambda, NULL, &out, HOL_WRITE, virial));
-        CHECK_FAILS(status, hol_forces_view(a.chains, &good, NULL, NULL, lambda, NULL, &wrong[i], HOL_WRITE, virial));
-        CHECK_FAILS(status, hol_project_velocities_view(a.chains, &wrong[i], &out, lambda, virial));
-        CHECK_FAILS(status, hol_project_velocities_view(a.chains, &good, &wrong[i], lambda, virial));
-        CHECK_FAILS(status, hol_project_positions_view(a.chains, &wrong[i], &out, NULL, 1, lambda, 0, virial, NULL));
-        CHECK_FAILS(status, hol_project_positions_view(a.chains, &good, &wrong[i], NULL, 1, lambda, 0, virial, NULL));
-        CHECK_FAILS(status, hol_project_positions_view(a.chains, &good, &out, &wrong[i], 1, lambda, 0, virial, NULL));
-        CHECK_FAILS(status, hol_violation_view(a.chains, &wrong[i], NULL, &worst));
-        CHECK_FAILS(status, hol_violation_view(a.chains, &good, &wrong[i], &worst));
+        CHECK_FAILS(status, hol_forces_view(a.chains, INPUT(&wrong[i]), NULL, NULL, lambda, NULL, &out, HOL_WRITE, virial));
+        CHECK_FAILS(status, hol_forces_view(a.chains, INPUT(&good), INPUT(&wrong[i]), NULL, lambda, NULL, &out, HOL_WRITE, virial));
+        CHECK_FAILS(status, hol_forces_view(a.chains, INPUT(&good), NULL, INPUT(&wrong[i]), lambda, NULL, &out, HOL_WRITE, virial));
+        CHECK_FAILS(status, hol_forces_view(a.chains, INPUT(&good), NULL, NULL, lambda, NULL, &wrong[i], HOL_WRITE, virial));
+        CHECK_FAILS(status, hol_project_velocities_view(a.chains, INPUT(&wrong[i]), &out, lambda, virial));
+        CHECK_FAILS(status, hol_project_velocities_view(a.chains, INPUT(&good), &wrong[i], lambda, virial));
+        CHECK_FAILS(status, hol_project_positions_view(a.chains, INPUT(&wrong[i]), &out, NULL, 1, lambda, 0, virial, NULL));
+        CHECK_FAILS(status, hol_project_positions_view(a.chains, INPUT(&good), &wrong[i], NULL, 1, lambda, 0, virial, NULL));
+        CHECK_FAILS(status, hol_project_positions_view(a.chains, INPUT(&good), &out, &wrong[i], 1, lambda, 0, virial, NULL));
+        CHECK_FAILS(status, hol_violation_view(a.chains, INPUT(&wrong[i]), NULL, &worst));
+        CHECK_FAILS(status, hol_violation_view(a.chains, INPUT(&good), INPUT(&wrong[i]), &worst));
     }
     /* two dimensions in one view, three in another */
-    CHECK_FAILS(HOL_ERR_VALUE, hol_forces_view(a.chains, &good, &flat, NULL, lambda, NULL, &out, HOL_WRITE, virial));
-    CHECK_FAILS(HOL_ERR_VALUE, hol_forces_view(a.chains, &flat, NULL, NULL, lambda, NULL, &out, HOL_WRITE, virial));
-    CHECK_FAILS(HOL_ERR_VALUE, hol_project_velocities_view(a.chains, &flat, &out, lambda, virial));
-    CHECK_FAILS(HOL_ERR_VALUE, hol_violation_view(a.chains, &good, &flat, &worst));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_forces_view(a.chains, INPUT(&good), INPUT(&flat), NULL, lambda, NULL, &out, HOL_WRITE, virial));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_forces_view(a.chains, INPUT(&flat), NULL, NULL, lambda, NULL, &out, HOL_WRITE, virial));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_project_velocities_view(a.chains, INPUT(&flat), &out, lambda, virial));
+    CHECK_FAILS(HOL_ERR_VALUE, hol_violation_view(a.chains, INPUT(&good), INPUT(&flat), &worst));
     assert_untouched(lambda, 15);
     assert_untouched(g, 54);
     assert_untouched(virial, 9);

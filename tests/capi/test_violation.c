@@ -1,6 +1,7 @@
 /** Largest violation of the constraints, and where it is. */
 #include "assembly.h"
 #include "check.h"
+#include "from_one.h"
 
 static void violation_finds_the_worst_bond_of_all_chains(void **state)
 {
@@ -29,17 +30,18 @@ static void violation_finds_the_worst_bond_of_all_chains(void **state)
         CHECK(hol_violation(a.chains, a.r, a.v, &worst));
         CHECK_AT_MOST(fabsl(worst.length - length), 16 * DBL_EPSILON);
         CHECK_AT_MOST(fabsl(worst.rate - rate), 16 * DBL_EPSILON * rate);
-        assert_int_equal(worst.length_chain, where[0]);
+        assert_int_equal(worst.length_molecule, where[0]);
         assert_int_equal(worst.length_bond, where[1]);
-        assert_int_equal(worst.rate_chain, where[2]);
+        assert_int_equal(worst.rate_molecule, where[2]);
         assert_int_equal(worst.rate_bond, where[3]);
         CHECK(hol_violation(a.chains, a.r, NULL, &worst));
         assert_true(worst.rate == 0);
-        assert_int_equal(worst.length_chain, where[0]);
-        CHECK(hol_chains_set_index_base(a.chains, 1));
-        CHECK(hol_violation(a.chains, a.r, a.v, &worst));
-        assert_int_equal(worst.length_chain, where[0] + 1);
+        assert_int_equal(worst.length_molecule, where[0]);
+        hol_chains *const counted = from_one(a.chains);
+        CHECK(hol_violation(counted, a.r, a.v, &worst));
+        assert_int_equal(worst.length_molecule, where[0] + 1);
         assert_int_equal(worst.length_bond, where[1] + 1);
+        hol_chains_destroy(counted);
         assembly_free(&a);
     }
 }
@@ -66,7 +68,7 @@ static void an_empty_set_has_no_violation(void **state)
     CHECK(hol_chains_create(1, &mass, &c));
     CHECK(hol_violation(c, r, r, &worst));
     assert_true(worst.length == 0 && worst.rate == 0);
-    assert_int_equal(worst.length_chain, -1);
+    assert_int_equal(worst.length_molecule, -1);
     hol_chains_destroy(c);
 }
 

@@ -79,16 +79,16 @@ int invert(scene &s)
 int add_one(scene &s)
 {
     static const std::int64_t atoms[4] = {3980, 3990, 3985, 3999};
-    const std::int64_t before = hol_chains_n_chains(s.chains);
+    const std::int64_t before = hol_chains_n_molecules(s.chains);
     const int status = hol_chains_add(s.chains, 3, atoms, s.length.data());
-    return hol_chains_n_chains(s.chains) == before + (status == HOL_OK ? 1 : 0) ? status : -1;
+    return hol_chains_n_molecules(s.chains) == before + (status == HOL_OK ? 1 : 0) ? status : -1;
 }
 
 int add_several(scene &s)
 {
-    const std::int64_t before = hol_chains_n_chains(s.chains);
+    const std::int64_t before = hol_chains_n_molecules(s.chains);
     const int status = hol_chains_add_block(s.chains, 20, 3, 3700, s.length.data());
-    return hol_chains_n_chains(s.chains) == before + (status == HOL_OK ? 20 : 0) ? status : -1;
+    return hol_chains_n_molecules(s.chains) == before + (status == HOL_OK ? 20 : 0) ? status : -1;
 }
 
 /** A tetrahedron with a tail, and three rods. */
@@ -96,19 +96,19 @@ int add_bodies(scene &s)
 {
     static const std::int64_t size = 4, atoms[4] = {3980, 3990, 3985, 3999}, tail[2] = {3999, 3991};
     static const double places[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
-    const std::int64_t before = hol_chains_n_chains(s.chains);
+    const std::int64_t before = hol_chains_n_molecules(s.chains);
     const int status = hol_chains_add_rigid(s.chains, 1, &size, atoms, places, 1, tail, s.length.data());
-    return hol_chains_n_chains(s.chains) == before + (status == HOL_OK ? 1 : 0) ? status : -1;
+    return hol_chains_n_molecules(s.chains) == before + (status == HOL_OK ? 1 : 0) ? status : -1;
 }
 
 int add_copies_of_bodies(scene &s)
 {
     static const std::int64_t size = 2, atoms[2] = {0, 1};
     static const double places[6] = {0, 0, 0, 1, 0, 0};
-    const std::int64_t before = hol_chains_n_chains(s.chains);
+    const std::int64_t before = hol_chains_n_molecules(s.chains);
     const int status =
         hol_chains_add_rigid_molecules(s.chains, 3, 2, 3900, 1, &size, atoms, places, 0, nullptr, nullptr);
-    return hol_chains_n_chains(s.chains) == before + (status == HOL_OK ? 3 : 0) ? status : -1;
+    return hol_chains_n_molecules(s.chains) == before + (status == HOL_OK ? 3 : 0) ? status : -1;
 }
 
 int set_active(scene &s)

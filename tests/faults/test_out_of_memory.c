@@ -191,8 +191,8 @@ static void the_first_calculation_with_a_handle_can_fail(void **state)
         double *before = untouched(size), *out = untouched(size), *again = untouched(size), *right = untouched(size);
         prepare(&a, right);
         CHECK(what->call(&a, right));
-        unsigned char *active = malloc((size_t)hol_chains_n_chains(a.chains));
-        memset(active, 1, (size_t)hol_chains_n_chains(a.chains));
+        unsigned char *active = malloc((size_t)hol_chains_n_molecules(a.chains));
+        memset(active, 1, (size_t)hol_chains_n_molecules(a.chains));
         attempt t = {what, &a, right, before, out, again, 0, 0, 0, 0, 0};
         for (t.good = 0;; ++t.good) {
             CHECK(hol_chains_set_active(a.chains, active)); /* makes the handle prepare itself again */
@@ -335,14 +335,14 @@ static void a_change_that_finds_no_memory_changes_nothing(void **state)
             fail_no_more();
             if (status != HOL_OK) {
                 assert_int_equal(status, HOL_ERR_MEMORY);
-                assert_int_equal(hol_chains_n_chains(chains), 1);
+                assert_int_equal(hol_chains_n_molecules(chains), 1);
                 assert_int_equal(hol_chains_n_bonds(chains), 2);
                 assert_int_equal(hol_chains_n_kinds(chains), 1);
                 CHECK(change(chains, which)); /* the atoms are still free */
             }
             CHECK(change(twin, which));
-            const int64_t n = hol_chains_n_chains(twin);
-            assert_int_equal(hol_chains_n_chains(chains), n);
+            const int64_t n = hol_chains_n_molecules(twin);
+            assert_int_equal(hol_chains_n_molecules(chains), n);
             assert_int_equal(hol_chains_n_kinds(chains), hol_chains_n_kinds(twin));
             for (int64_t c = 0; c < n; ++c) {
                 int64_t atoms[2][8] = {{0}}, bonds_of[2][8] = {{0}};

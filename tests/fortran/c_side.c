@@ -41,15 +41,15 @@ int64_t c_layout(int which)
         offsetof(hol_report, iterations),
         offsetof(hol_report, n_corrected),
         offsetof(hol_report, n_failed),
-        offsetof(hol_report, chain),
+        offsetof(hol_report, molecule),
         offsetof(hol_report, bond),
         offsetof(hol_report, max_error),
         sizeof(hol_worst),
         offsetof(hol_worst, length),
-        offsetof(hol_worst, length_chain),
+        offsetof(hol_worst, length_molecule),
         offsetof(hol_worst, length_bond),
         offsetof(hol_worst, rate),
-        offsetof(hol_worst, rate_chain),
+        offsetof(hol_worst, rate_molecule),
         offsetof(hol_worst, rate_bond),
     };
     const int count = (int)(sizeof list / sizeof list[0]);

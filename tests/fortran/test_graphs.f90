@@ -139,7 +139,7 @@ contains
       call set%project_positions(r, p, dt, u, lambda, report=report)
       call set%violation(p, worst=worst)
       call check(worst%length <= 32*eps*maxval(abs(r)), "to the rounding of the coordinates")
-      call check(report%n_failed == 0 .and. report%n_corrected == set%n_chains(), "report")
+      call check(report%n_failed == 0 .and. report%n_corrected == set%n_molecules(), "report")
       g = along_bonds(bonds, lambda, r)
       call check(maxval(abs(p - q - dt**2*spread(w, 1, 3)*g)) <= 64*eps*maxval(abs(r)), &
                  "displaced by dt^2 w G along the bonds before")
@@ -248,8 +248,8 @@ contains
       integer :: i, x
       call test("metric")
       call set%metric(r, 1.0_real64, log_det=log_det, energy=energy, force=force)
-      call check(set%n_chains() == 5 .or. mod(trial, 2) == 0, "five molecules, if no fixed atom cuts them")
-      if (set%n_chains() == 5) call check(abs(energy - sum(log_det(:5))/2) <= 16*eps*abs(energy), "energy is theirs")
+      call check(set%n_molecules() == 5 .or. mod(trial, 2) == 0, "five molecules, if no fixed atom cuts them")
+      if (set%n_molecules() == 5) call check(abs(energy - sum(log_det(:5))/2) <= 16*eps*abs(energy), "energy is theirs")
       call check(maxval(abs(sum(force, dim=2))) <= 100*eps*scale_of(force), "no total force")
       h = 1e-4_real64
       do i = 1, n, 3

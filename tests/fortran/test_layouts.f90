@@ -114,7 +114,7 @@ contains
       vz = v(3, :)
       call chains%violation(x, y, z, vx, vy, vz, again)
       call check(same_bits(again%length, worst%length) .and. same_bits(again%rate, worst%rate), "the same violation")
-      call check(again%rate_bond == worst%rate_bond .and. again%rate_chain == 1, "at the same place, counted from 1")
+      call check(again%rate_bond == worst%rate_bond .and. again%rate_molecule == 1, "at the same place, counted from 1")
       x = x + dt*vx
       y = y + dt*vy
       z = z + dt*vz

@@ -46,11 +46,11 @@ contains
               offset(c_loc(view), c_loc(view%element)), offset(c_loc(view), c_loc(view%reserved)), &
               c_sizeof(report), offset(c_loc(report), c_loc(report%iterations)), &
               offset(c_loc(report), c_loc(report%n_corrected)), offset(c_loc(report), c_loc(report%n_failed)), &
-              offset(c_loc(report), c_loc(report%chain)), offset(c_loc(report), c_loc(report%bond)), &
+              offset(c_loc(report), c_loc(report%molecule)), offset(c_loc(report), c_loc(report%bond)), &
               offset(c_loc(report), c_loc(report%max_error)), &
               c_sizeof(worst), offset(c_loc(worst), c_loc(worst%length)), &
-              offset(c_loc(worst), c_loc(worst%length_chain)), offset(c_loc(worst), c_loc(worst%length_bond)), &
-              offset(c_loc(worst), c_loc(worst%rate)), offset(c_loc(worst), c_loc(worst%rate_chain)), &
+              offset(c_loc(worst), c_loc(worst%length_molecule)), offset(c_loc(worst), c_loc(worst%length_bond)), &
+              offset(c_loc(worst), c_loc(worst%rate)), offset(c_loc(worst), c_loc(worst%rate_molecule)), &
               offset(c_loc(worst), c_loc(worst%rate_bond))]
       do k = 1, size(ours)
          call check(c_layout(int(k - 1, c_int)) == ours(k), "number "//achar(iachar("0") + k/10)// &
@@ -105,7 +105,7 @@ contains
       call chains%add([7, 3, 5], 1.0_real64)
       call chains%add(2, 1, 8, 1.0_real64)
       call chains%add([1_int64, 2_int64, 4_int64, 6_int64], [1.0_real64, 2.0_real64, 3.0_real64])
-      call check(chains%n_atoms() == 14 .and. chains%n_chains() == 4 .and. chains%n_bonds() == 7, "what there is")
+      call check(chains%n_atoms() == 14 .and. chains%n_molecules() == 4 .and. chains%n_bonds() == 7, "what there is")
       call chains%offsets(first_bond)
       call check(all(first_bond == [1, 3, 4, 5, 8]), "offsets count from 1")
       call chains%atoms(list)
@@ -180,7 +180,7 @@ contains
       call chains%set_tolerance(0.5_real64)
       call chains%project_positions(r_ref, r, 1.0_real64, report=report)
       call check(report%n_corrected == 0 .and. all(same_bits(r, before)), "within the tolerance nothing is done")
-      call check(report%chain == 1 .and. report%bond == 2, "and the worst bond is told, from 1")
+      call check(report%molecule == 1 .and. report%bond == 2, "and the worst bond is told, from 1")
       call chains%set_tolerance(0.0_real64)
       call chains%set_max_iterations(1)
       call chains%project_positions(r_ref, r, 1.0_real64, stat=stat)

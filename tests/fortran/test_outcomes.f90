@@ -21,7 +21,7 @@ program test_outcomes
    call chains%create(spread(1.0_real64, 1, 3*n))
    call chains%add(n, 2, 1, [1.0_real64, 1.0_real64])
    call chains%outcomes(status, stat=stat, errmsg=message)
-   call check(stat == HOL_ERR_VALUE .and. index(message, "outcomes: ") == 1, "nothing is kept at first")
+   call check(stat == HOL_ERR_STATE .and. index(message, "outcomes: ") == 1, "nothing is kept at first")
    call chains%set_outcomes(.true.)
    trial = r
    trial(1, 2::3) = 1.1_real64

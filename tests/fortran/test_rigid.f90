@@ -68,7 +68,7 @@ contains
       call check(stat == HOL_ERR_VALUE, "lengths without bonds")
       call chains%add_rigid([1, 2, 4], co2, stat=stat, errmsg=message)
       call check(stat == HOL_ERR_INDEX .and. index(message, "atom 4") > 0, "an atom that is not there")
-      call check(chains%n_chains() == 0, "nothing was added")
+      call check(chains%n_molecules() == 0, "nothing was added")
       call chains%destroy()
    end subroutine
 end program

@@ -143,12 +143,9 @@ contains
 
    subroutine masses_are_zero()
       type(hol_chains) :: chains
-      call test("masses that are all zero")
+      call test("atoms that are all held fixed")
       call chains%create(0*mass, stat=stat, errmsg=message)
-      call check(stat == HOL_ERR_VALUE .and. says("all 375 masses are 0"), trim(message))
-      call add_waters(chains, [oh, oh, hh])
-      call chains%set_masses(0*mass, stat=stat, errmsg=message)
-      call check(stat == HOL_ERR_VALUE .and. says("all 375 masses are 0"), trim(message))
+      call check(stat == HOL_OK .and. chains%degrees_of_freedom() == 0, "may be")
       call chains%destroy()
    end subroutine
 

@@ -80,6 +80,12 @@ struct atom_array {
     std::size_t n;
     block plain, laid_out;
     hol_view view;
+    hol_const_view read;
+    const hol_const_view *input()
+    {
+        read = hol_view_read(&view);
+        return &read;
+    }
 
     atom_array(std::int64_t n_atoms, byte_reader &in)
         : n(static_cast<std::size_t>(n_atoms)), plain(3 * n * sizeof(double)),

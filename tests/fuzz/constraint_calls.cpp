@@ -14,7 +14,7 @@ void session::forces()
     outputs out;
     for (block *b : {&lambda, &tension, &g.plain, &g.laid_out}) out.add(*b);
     out.add_sum(virial);
-    const int mode = in.often() ? in.byte() & 1 : in.byte();
+    const hol_mode mode = static_cast<hol_mode>(in.often() ? in.byte() & 1 : in.byte());
     int status;
     if (in.byte() & 1) {
         double *const l = maybe(lambda.doubles());
@@ -23,7 +23,7 @@ void session::forces()
                             l, maybe(tension.doubles()), into, mode, maybe(virial.doubles()));
         if (status == HOL_OK && l && !any_inactive) check(finite(l, bonds()), "multipliers that are not finite");
     } else {
-        status = hol_forces_view(maybe(chains), maybe(&r.view), maybe(&v.view), maybe(&f.view), maybe(lambda.doubles()),
+        status = hol_forces_view(maybe(chains), maybe(r.input()), maybe(v.input()), maybe(f.input()), maybe(lambda.doubles()),
                                  maybe(tension.doubles()), maybe(&g.view), mode, maybe(virial.doubles()));
     }
     out.check_after(status, active());
@@ -39,7 +39,7 @@ void session::velocities()
     const int status = in.byte() & 1
                            ? hol_project_velocities(maybe(chains), maybe(r.plain.doubles()), maybe(v.plain.doubles()),
                                                     maybe(lambda.doubles()), maybe(virial.doubles()))
-                           : hol_project_velocities_view(maybe(chains), maybe(&r.view), maybe(&v.view),
+                           : hol_project_velocities_view(maybe(chains), maybe(r.input()), maybe(&v.view),
                                                          maybe(lambda.doubles()), maybe(virial.doubles()));
     out.check_after(status, active());
 }
@@ -63,7 +63,7 @@ void session::positions()
         in.byte() & 1 ? hol_project_positions(maybe(chains), maybe(before.plain.doubles()), maybe(r.plain.doubles()),
                                               maybe(v.plain.doubles()), dt, maybe(lambda.doubles()), guess,
                                               maybe(virial.doubles()), said)
-                      : hol_project_positions_view(maybe(chains), maybe(&before.view), maybe(&r.view), maybe(&v.view),
+                      : hol_project_positions_view(maybe(chains), maybe(before.input()), maybe(&r.view), maybe(&v.view),
                                                    dt, maybe(lambda.doubles()), guess, maybe(virial.doubles()), said);
     out.check_after(status, active());
     if (said && status == HOL_OK) {
@@ -77,10 +77,10 @@ void session::compare()
     atom_array r(n_atoms, in);
     outputs out;
     for (block *b : {&r.plain, &r.laid_out}) out.add(*b);
-    check_status(hol_chains_set_checks(maybe(chains), in.often() ? in.byte() % 3 : in.byte()));
-    const int box = in.often() ? in.byte() & 1 : in.byte();
+    check_status(hol_chains_set_checks(maybe(chains), static_cast<hol_when>(in.often() ? in.byte() % 3 : in.byte())));
+    const hol_which_box box = static_cast<hol_which_box>(in.often() ? in.byte() & 1 : in.byte());
     const int status = in.byte() & 1 ? hol_chains_check(maybe(chains), maybe(r.plain.doubles()), box)
-                                     : hol_chains_check_view(maybe(chains), maybe(&r.view), box);
+                                     : hol_chains_check_view(maybe(chains), maybe(r.input()), box);
     out.check_after(status, 0);
 }
 
@@ -99,14 +99,14 @@ void session::along()
             ? hol_project_positions_along(maybe(chains), maybe(b.plain.doubles()), maybe(r.plain.doubles()),
                                           maybe(v.plain.doubles()), 0.01, maybe(lambda.doubles()), guess,
                                           maybe(virial.doubles()), said)
-            : hol_project_positions_along_view(maybe(chains), maybe(&b.view), maybe(&r.view), maybe(&v.view), 0.01,
+            : hol_project_positions_along_view(maybe(chains), maybe(b.input()), maybe(&r.view), maybe(&v.view), 0.01,
                                                maybe(lambda.doubles()), guess, maybe(virial.doubles()), said);
     // Lengths that do not fit, and vectors that make no sense, change nothing at all.
     double error;
     std::int64_t molecule, bond;
     out.check_after(status, active());
-    hol_reference_error(&error, &molecule, &bond);
-    check(error >= 0 || std::isnan(error), "an error of the reference that is negative");
+    if (hol_reference_error(chains, &error, &molecule, &bond) == HOL_OK)
+        check(error >= 0 || std::isnan(error), "an error of the reference that is negative");
 }
 
 void session::violation()
@@ -118,7 +118,7 @@ void session::violation()
     hol_worst *const w = maybe(reinterpret_cast<hol_worst *>(worst.data()));
     const int status = in.byte() & 1
                            ? hol_violation(maybe(chains), maybe(r.plain.doubles()), maybe(v.plain.doubles()), w)
-                           : hol_violation_view(maybe(chains), maybe(&r.view), maybe(&v.view), w);
+                           : hol_violation_view(maybe(chains), maybe(r.input()), maybe(v.input()), w);
     out.check_after(status, active());
 }
 

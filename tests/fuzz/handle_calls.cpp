@@ -48,11 +48,11 @@ void session::add()
                        step = in.byte() % 3 == 0 ? -1 : 1;
     for (std::size_t k = 0; k <= length; ++k)
         list[k] = in.often() ? first + step * static_cast<std::int64_t>(k) : in.whole();
-    const std::int64_t chains_before = hol_chains_n_chains(chains), bonds_before = hol_chains_n_bonds(chains);
+    const std::int64_t chains_before = hol_chains_n_molecules(chains), bonds_before = hol_chains_n_bonds(chains);
     const int status = hol_chains_add(maybe(chains), n, maybe(list), maybe(lengths.doubles()));
     check_status(status);
     if (status != HOL_OK)
-        check(hol_chains_n_chains(chains) == chains_before && hol_chains_n_bonds(chains) == bonds_before,
+        check(hol_chains_n_molecules(chains) == chains_before && hol_chains_n_bonds(chains) == bonds_before,
               "a failing add adds");
 }
 
@@ -62,11 +62,11 @@ void session::add_block()
     const std::size_t length = static_cast<std::size_t>(n > 0 && n <= n_atoms ? n : 0);
     block lengths(length * sizeof(double));
     fill(lengths, length, in, true);
-    const std::int64_t chains_before = hol_chains_n_chains(chains), bonds_before = hol_chains_n_bonds(chains);
+    const std::int64_t chains_before = hol_chains_n_molecules(chains), bonds_before = hol_chains_n_bonds(chains);
     const int status = hol_chains_add_block(maybe(chains), n_chains, n, first, maybe(lengths.doubles()));
     check_status(status);
     if (status != HOL_OK)
-        check(hol_chains_n_chains(chains) == chains_before && hol_chains_n_bonds(chains) == bonds_before,
+        check(hol_chains_n_molecules(chains) == chains_before && hol_chains_n_bonds(chains) == bonds_before,
               "a failing add adds");
 }
 
@@ -92,7 +92,7 @@ void session::set()
             check_status(hol_chains_set_threads(maybe(chains), in.below(5) - 1));
             break;
         case 3: {
-            const std::size_t n = static_cast<std::size_t>(hol_chains_n_chains(chains));
+            const std::size_t n = static_cast<std::size_t>(hol_chains_n_molecules(chains));
             block active(n);
             for (std::size_t c = 0; c < n; ++c) active.data()[c] = static_cast<char>(in.byte() % 3);
             check_status(
@@ -113,7 +113,7 @@ void session::set()
 
 void session::ask()
 {
-    const std::size_t n = static_cast<std::size_t>(hol_chains_n_chains(chains));
+    const std::size_t n = static_cast<std::size_t>(hol_chains_n_molecules(chains));
     block offsets((n + 1) * sizeof(std::int64_t));
     std::int64_t *const o = reinterpret_cast<std::int64_t *>(offsets.data());
     if (hol_chains_offsets(maybe(chains), maybe(o)) == HOL_OK) {

@@ -11,18 +11,18 @@ namespace fuzz
 void session::metric()
 {
     atom_array r(n_atoms, in), force(n_atoms, in);
-    const std::size_t n = static_cast<std::size_t>(hol_chains_n_chains(chains));
+    const std::size_t n = static_cast<std::size_t>(hol_chains_n_molecules(chains));
     block log_det(n * sizeof(double)), log_det_z(n * sizeof(double)), energy(sizeof(double));
     outputs out;
     for (block *b : {&log_det, &log_det_z, &force.plain, &force.laid_out}) out.add(*b);
     out.add_sum(energy);
     const double kT = in.often() ? 1 : in.number();
-    const int mode = in.often() ? in.byte() & 1 : in.byte();
+    const hol_mode mode = static_cast<hol_mode>(in.often() ? in.byte() & 1 : in.byte());
     const int status =
         in.byte() & 1
             ? hol_metric(maybe(chains), maybe(r.plain.doubles()), kT, maybe(log_det.doubles()),
                          maybe(log_det_z.doubles()), maybe(energy.doubles()), maybe(force.plain.doubles()), mode)
-            : hol_metric_view(maybe(chains), maybe(&r.view), kT, maybe(log_det.doubles()), maybe(log_det_z.doubles()),
+            : hol_metric_view(maybe(chains), maybe(r.input()), kT, maybe(log_det.doubles()), maybe(log_det_z.doubles()),
                               maybe(energy.doubles()), maybe(&force.view), mode);
     out.check_after(status, active());
 }
@@ -33,7 +33,7 @@ void session::inverse()
     hol_inverse *made = reinterpret_cast<hol_inverse *>(this);
     const std::int64_t chain = in.whole();
     const int created = in.byte() & 1 ? hol_inverse_create(maybe(chains), chain, maybe(r.plain.doubles()), &made)
-                                      : hol_inverse_create_view(maybe(chains), chain, maybe(&r.view), &made);
+                                      : hol_inverse_create_view(maybe(chains), chain, maybe(r.input()), &made);
     check_status(created);
     check(created == HOL_OK || made == nullptr, "an inverse after an error");
     const std::int64_t n = hol_inverse_n_bonds(made);
@@ -43,7 +43,7 @@ void session::inverse()
         bounds(rows * sizeof(double));
     block band(rows * static_cast<std::size_t>(width < 0 ? 1 : width + 1) * sizeof(double));
     fill(multipliers, rows, in);
-    const int scaling = in.often() ? in.byte() & 1 : in.byte();
+    const hol_scaling scaling = static_cast<hol_scaling>(in.often() ? in.byte() & 1 : in.byte());
     const auto after = [](block &b, const std::vector<char> &before, int status) {
         check_status(status);
         if (status != HOL_OK) check(b.holds(before), "an output was written on an error");
@@ -65,7 +65,7 @@ void session::inverse()
           in.byte() & 1
               ? hol_inverse_error_bound(given, maybe(v.plain.doubles()), maybe(f.plain.doubles()),
                                         maybe(multipliers.doubles()), maybe(bounds.doubles()), maybe(&relative))
-              : hol_inverse_error_bound_view(given, maybe(&v.view), maybe(&f.view), maybe(multipliers.doubles()),
+              : hol_inverse_error_bound_view(given, maybe(v.input()), maybe(f.input()), maybe(multipliers.doubles()),
                                              maybe(bounds.doubles()), maybe(&relative)));
     hol_inverse_destroy(made);
 }

@@ -26,7 +26,7 @@ void session::add_bonds()
     block pairs(2 * size * sizeof(std::int64_t)), lengths(size * sizeof(double));
     fill_pairs(pairs, size, n_atoms);
     fill(lengths, size, in, true);
-    const std::int64_t chains_before = hol_chains_n_chains(chains), bonds_before = hol_chains_n_bonds(chains),
+    const std::int64_t chains_before = hol_chains_n_molecules(chains), bonds_before = hol_chains_n_bonds(chains),
                        kinds_before = hol_chains_n_kinds(chains);
     const bool too_long = n > 2000 && n <= 1073741824;
     if (too_long) return;
@@ -36,7 +36,7 @@ void session::add_bonds()
     if (status == HOL_OK)
         check(hol_chains_n_bonds(chains) == bonds_before + n, "bonds are missing");
     else
-        check(hol_chains_n_chains(chains) == chains_before && hol_chains_n_bonds(chains) == bonds_before &&
+        check(hol_chains_n_molecules(chains) == chains_before && hol_chains_n_bonds(chains) == bonds_before &&
                   hol_chains_n_kinds(chains) == kinds_before,
               "a failing add adds");
 }
@@ -72,7 +72,7 @@ void session::set_values()
     check_status(hol_chains_set_reference_box(maybe(chains), maybe(box.doubles())));
     fill(box, 9, in, true);
     check_status(hol_chains_set_box_rate(maybe(chains), in.often() ? nullptr : box.doubles()));
-    const std::size_t n_labels = static_cast<std::size_t>(n_atoms + hol_chains_n_chains(chains));
+    const std::size_t n_labels = static_cast<std::size_t>(n_atoms + hol_chains_n_molecules(chains));
     block labels(n_labels * sizeof(std::int64_t));
     fill(labels, n_labels, in);
     std::int64_t *const numbers = reinterpret_cast<std::int64_t *>(labels.data());
@@ -81,7 +81,7 @@ void session::set_values()
 
 void session::ask_about_molecules()
 {
-    const std::int64_t n_chains = hol_chains_n_chains(chains), which = in.whole();
+    const std::int64_t n_chains = hol_chains_n_molecules(chains), which = in.whole();
     std::int64_t n_of_atoms = -1, n_of_bonds = -1, of_shape = 0;
     int shape = -1;
     const int status = hol_chains_molecule(maybe(chains), which, maybe(&shape), &n_of_atoms, &n_of_bonds);
@@ -103,7 +103,7 @@ void session::ask_about_molecules()
                 check(b[k] >= base && b[k] - base < hol_chains_n_bonds(chains) && m[b[k] - base] == which,
                       "a bond of another molecule");
     }
-    for (int s = -1; s < 6; ++s) of_shape += hol_chains_n_of_shape(chains, s);
+    for (int s = -1; s < 6; ++s) of_shape += hol_chains_n_of_shape(chains, static_cast<hol_shape>(s));
     check(of_shape == n_chains, "a molecule of no shape");
     check(hol_chains_n_kinds(maybe(chains)) <= n_chains, "more kinds than molecules");
 }
@@ -116,11 +116,11 @@ void session::solve()
     outputs out;
     for (block *b : {&lambda, &g.plain, &g.laid_out}) out.add(*b);
     out.add_sum(virial);
-    const int mode = in.often() ? in.byte() & 1 : in.byte();
+    const hol_mode mode = static_cast<hol_mode>(in.often() ? in.byte() & 1 : in.byte());
     double *const into = in.often() ? maybe(lambda.doubles()) : rhs.doubles();  // "may be rhs itself"
     const int status = in.byte() & 1 ? hol_solve(maybe(chains), maybe(r.plain.doubles()), maybe(rhs.doubles()), into,
                                                  maybe(g.plain.doubles()), mode, maybe(virial.doubles()))
-                                     : hol_solve_view(maybe(chains), maybe(&r.view), maybe(rhs.doubles()), into,
+                                     : hol_solve_view(maybe(chains), maybe(r.input()), maybe(rhs.doubles()), into,
                                                       maybe(&g.view), mode, maybe(virial.doubles()));
     out.check_after(status, active());
 }
@@ -134,13 +134,14 @@ void session::react()
     outputs out;
     for (block *b : {&tension, &of_bonds, &g.plain, &g.laid_out}) out.add(*b);
     out.add_sum(virial);
-    const int mode = in.often() ? in.byte() & 1 : in.byte(), box = in.often() ? in.byte() & 1 : in.byte();
+    const hol_mode mode = static_cast<hol_mode>(in.often() ? in.byte() & 1 : in.byte());
+    const hol_which_box box = static_cast<hol_which_box>(in.often() ? in.byte() & 1 : in.byte());
     const int status =
         in.byte() & 1
             ? hol_reactions(maybe(chains), maybe(r.plain.doubles()), box, maybe(lambda.doubles()),
                             maybe(tension.doubles()), maybe(g.plain.doubles()), mode, maybe(of_bonds.doubles()),
                             maybe(virial.doubles()))
-            : hol_reactions_view(maybe(chains), maybe(&r.view), box, maybe(lambda.doubles()), maybe(tension.doubles()),
+            : hol_reactions_view(maybe(chains), maybe(r.input()), box, maybe(lambda.doubles()), maybe(tension.doubles()),
                                  maybe(&g.view), mode, maybe(of_bonds.doubles()), maybe(virial.doubles()));
     out.check_after(status, active());
 }

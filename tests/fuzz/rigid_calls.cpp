@@ -46,7 +46,7 @@ void session::add_rigid()
                                                   : in.whole(),
                        n_of_each = in.often() ? static_cast<std::int64_t>(n_held) + in.below(4) : in.whole(),
                        from = in.often() ? base + in.below(8) : in.whole();
-    const std::int64_t chains_before = hol_chains_n_chains(chains), bonds_before = hol_chains_n_bonds(chains),
+    const std::int64_t chains_before = hol_chains_n_molecules(chains), bonds_before = hol_chains_n_bonds(chains),
                        freedoms_before = hol_chains_degrees_of_freedom(chains, 3);
     hol_chains *const to = maybe(chains);
     std::int64_t *const bonded = maybe(reinterpret_cast<std::int64_t *>(pairs.data()));
@@ -58,10 +58,10 @@ void session::add_rigid()
     check_status(status);
     if (status == HOL_OK)
         check(
-            hol_chains_n_bonds(chains) == bonds_before + n * n_molecules && hol_chains_n_chains(chains) > chains_before,
+            hol_chains_n_bonds(chains) == bonds_before + n * n_molecules && hol_chains_n_molecules(chains) > chains_before,
             "bodies or bonds are missing");
     else
-        check(hol_chains_n_chains(chains) == chains_before && hol_chains_n_bonds(chains) == bonds_before &&
+        check(hol_chains_n_molecules(chains) == chains_before && hol_chains_n_bonds(chains) == bonds_before &&
                   hol_chains_degrees_of_freedom(chains, 3) == freedoms_before,
               "a failing add adds");
 }

@@ -48,7 +48,7 @@ struct session {
         if (!molecules.empty() && hol_chains_molecules_of_bonds(chains, molecules.data()) != HOL_OK) return INT64_MAX;
         for (const std::int64_t m : molecules)
             if (m < 0) return INT64_MAX;
-        return any_inactive ? INT64_MAX : hol_chains_n_chains(chains);
+        return any_inactive ? INT64_MAX : hol_chains_n_molecules(chains);
     }
     template <class T>
     T *maybe(T *p)

@@ -58,7 +58,7 @@ class Errors(unittest.TestCase):
 
     def test_every_bad_molecule_is_named(self):
         molecules, r = dimers(6)
-        with self.assertRaises(hol.ArgumentError):
+        with self.assertRaises(hol.StateError):
             molecules.outcomes()
         trial = r + 0.0
         trial[1::2, 0] += 0.1

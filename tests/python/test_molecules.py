@@ -74,6 +74,8 @@ class Bonds(unittest.TestCase):
         molecules = hol.Molecules([1.0, 1.0])
         molecules.add([(0, 1)], 1)
         r = np.array([(0, 0, 0), (1.01, 0, 0)])
+        with self.assertRaises(hol.StateError):
+            molecules.reference_error()
         molecules.project_positions(r, r, 1)
         error, molecule, bond = molecules.reference_error()
         self.assertAlmostEqual(error, 1.01**2 - 1, places=14)

@@ -126,7 +126,7 @@ static long double check_metric(const molecule_file *c, const hol_chains *chains
     const int status = hol_metric(chains, c->r, 1, o->log_det, o->log_det_z, &o->energy, o->fixman, HOL_WRITE);
     if (status != HOL_OK) return print_failure(c->name, "metric", status);
     long double det = 0, det_z = 0, z_scale = fabsl(c->lndet);
-    for (int64_t m = 0; m < hol_chains_n_chains(chains); ++m) {
+    for (int64_t m = 0; m < hol_chains_n_molecules(chains); ++m) {
         det += o->log_det[m];
         det_z += o->log_det_z[m];
     }

@@ -41,6 +41,12 @@ vec gather(const vec &from, const std::vector<std::int64_t> &atoms)
 struct three_arrays {
     vec memory;
     hol_view view;
+    hol_const_view read;
+    const hol_const_view *input()
+    {
+        read = hol_view_read(&view);
+        return &read;
+    }
     explicit three_arrays(const vec &from) : memory(from.size())
     {
         const std::size_t n = from.size() / 3;
@@ -152,11 +158,11 @@ library_results compute_in_views(const arrangement &a, double dt)
     library_results o = blank(a);
     const hol_chains *chains = a.chains.get();
     three_arrays r(a.r), v(a.v), f(a.f), g(o.g), fixman(o.fixman), projected(o.v), moved(o.moved), drift(o.r);
-    o.forces = hol_forces_view(chains, &r.view, &v.view, &f.view, o.lambda.data(), nullptr, &g.view, HOL_WRITE,
+    o.forces = hol_forces_view(chains, r.input(), v.input(), f.input(), o.lambda.data(), nullptr, &g.view, HOL_WRITE,
                                o.virial.data());
-    o.metric = hol_metric_view(chains, &r.view, 1, o.log_det.data(), nullptr, nullptr, &fixman.view, HOL_WRITE);
-    o.velocities = hol_project_velocities_view(chains, &r.view, &projected.view, o.velocity_lambda.data(), nullptr);
-    o.positions = hol_project_positions_view(chains, &r.view, &drift.view, &moved.view, dt, o.position_lambda.data(), 0,
+    o.metric = hol_metric_view(chains, r.input(), 1, o.log_det.data(), nullptr, nullptr, &fixman.view, HOL_WRITE);
+    o.velocities = hol_project_velocities_view(chains, r.input(), &projected.view, o.velocity_lambda.data(), nullptr);
+    o.positions = hol_project_positions_view(chains, r.input(), &drift.view, &moved.view, dt, o.position_lambda.data(), 0,
                                              nullptr, &o.report);
     g.give_back(o.g);
     fixman.give_back(o.fixman);

@@ -103,7 +103,7 @@ struct inverse_deleter {
 /** A few elements of the inverse, if the whole is one molecule with its bonds in the library's order. */
 void check_inverse(const placement &a, const hostile_molecule &m, const molecule_metric &exact, molecule_verdict &out)
 {
-    if (hol_chains_n_chains(a.chains.get()) != 1) return;
+    if (hol_chains_n_molecules(a.chains.get()) != 1) return;
     const std::int64_t n = m.n_bonds();
     std::vector<std::int64_t> order(m.length.size());
     if (std::count(a.molecule_of_bond.begin(), a.molecule_of_bond.end(), 0) != n) return;

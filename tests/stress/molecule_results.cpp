@@ -48,6 +48,12 @@ struct listed_bond {
 struct backwards {
     numbers memory;
     hol_view view;
+    hol_const_view read;
+    const hol_const_view *input()
+    {
+        read = hol_view_read(&view);
+        return &read;
+    }
     explicit backwards(const numbers &from) : memory(from.size())
     {
         const std::size_t n = from.size() / 3;
@@ -156,7 +162,7 @@ molecule_results compute(const placement &a, double dt)
 {
     molecule_results o = blank_results(a);
     const hol_chains *chains = a.chains.get();
-    const std::size_t n = static_cast<std::size_t>(hol_chains_n_chains(chains));
+    const std::size_t n = static_cast<std::size_t>(hol_chains_n_molecules(chains));
     numbers log_det(n, blank()), log_det_z(n, blank());
     o.forces = hol_forces(chains, a.r.data(), a.v.data(), a.f.data(), o.lambda.data(), nullptr, o.g.data(), HOL_WRITE,
                           o.virial.data());
@@ -174,15 +180,15 @@ molecule_results compute_in_views(const placement &a, double dt)
 {
     molecule_results o = blank_results(a);
     const hol_chains *chains = a.chains.get();
-    const std::size_t n = static_cast<std::size_t>(hol_chains_n_chains(chains));
+    const std::size_t n = static_cast<std::size_t>(hol_chains_n_molecules(chains));
     numbers log_det(n, blank()), log_det_z(n, blank());
     backwards r(a.r), v(a.v), f(a.f), g(o.g), fixman(o.fixman), projected(o.v), moved(o.moved), drift(o.r);
-    o.forces = hol_forces_view(chains, &r.view, &v.view, &f.view, o.lambda.data(), nullptr, &g.view, HOL_WRITE,
+    o.forces = hol_forces_view(chains, r.input(), v.input(), f.input(), o.lambda.data(), nullptr, &g.view, HOL_WRITE,
                                o.virial.data());
-    o.solve = hol_solve_view(chains, &r.view, a.rhs.data(), o.solved.data(), nullptr, HOL_WRITE, nullptr);
-    o.metric = hol_metric_view(chains, &r.view, 1, log_det.data(), log_det_z.data(), nullptr, &fixman.view, HOL_WRITE);
-    o.velocities = hol_project_velocities_view(chains, &r.view, &projected.view, o.mu.data(), nullptr);
-    o.positions = hol_project_positions_view(chains, &r.view, &drift.view, &moved.view, dt, o.position_lambda.data(), 0,
+    o.solve = hol_solve_view(chains, r.input(), a.rhs.data(), o.solved.data(), nullptr, HOL_WRITE, nullptr);
+    o.metric = hol_metric_view(chains, r.input(), 1, log_det.data(), log_det_z.data(), nullptr, &fixman.view, HOL_WRITE);
+    o.velocities = hol_project_velocities_view(chains, r.input(), &projected.view, o.mu.data(), nullptr);
+    o.positions = hol_project_positions_view(chains, r.input(), &drift.view, &moved.view, dt, o.position_lambda.data(), 0,
                                              nullptr, nullptr);
     g.give_back(o.g);
     fixman.give_back(o.fixman);

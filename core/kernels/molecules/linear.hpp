@@ -53,9 +53,24 @@ struct Linear {
     }
     // For the rates of the velocities v.
     void solve_for_rates() {
-        solve_again();
+        const Molecules<V> &y = x;
+        const Vector3<V> *const speed = v;
+        solve_again([&](int32_t place, int32_t from, int32_t to) HOL_FORCED {
+            BondRow<V> &row = y.row[place];
+            row.t = dot(row.d, speed[to] - speed[from]);
+            if (y.in.strain) row.t = row.t + stretching(y.in.strain, row.d);
+        });
         down_and_pull<false>();
     }
+    // For right-hand sides that side(place, from, to) puts into t of the row of the bond between two slots.
+    template <class Side>
+    void solve_for(const Side &side) {
+        solve_again(side);
+        down_and_pull<true>();
+    }
+    // What a later solve needs of an elimination: that many values, from the rows on.
+    V *factors() const { return &x.row->d.x; }
+    int64_t n_factors() const { return &r->x - factors(); }
 
     // G of all atoms by slot, once all is solved.
     Vector3<V> *pulls() const { return r; }
@@ -68,17 +83,13 @@ private:
         down_trees<look>(x, pulls());
     }
 
-    // Up, and back to the bonds at the root, or the ring and the bonds at its atoms. Rates of v are found on the way.
-    __attribute__((noinline)) void solve_again() {
+    // Up, and back to the bonds at the root, or the ring and the bonds at its atoms. Right-hand sides are found on the
+    // way.
+    template <class Side>
+    __attribute__((noinline)) void solve_again(const Side &side) {
         const Molecules<V> &y = x;
-        const Vector3<V> *const speed = v;
-        const auto find_rate = [&](int32_t place, int32_t from, int32_t to) HOL_FORCED {
-            BondRow<V> &row = y.row[place];
-            row.t = dot(row.d, speed[to] - speed[from]);
-            if (y.in.strain) row.t = row.t + stretching(y.in.strain, row.d);
-        };
-        for (int32_t p = 0; p < x.s.n_core; ++p) find_rate(x.s.n_tree + p, x.s.from[p], x.s.to[p]);
-        substitute_trees(x, working, [&](int32_t slot) HOL_FORCED { find_rate(slot, y.s.parent[slot], slot); });
+        for (int32_t p = 0; p < x.s.n_core; ++p) side(x.s.n_tree + p, x.s.from[p], x.s.to[p]);
+        substitute_trees(x, working, [&](int32_t slot) HOL_FORCED { side(slot, y.s.parent[slot], slot); });
         if (x.s.type == Schedule::ring)
             choose(
                 [&](auto bare) HOL_FORCED {

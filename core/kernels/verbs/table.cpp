@@ -41,6 +41,7 @@ const Kernels kernels = {
      molecules_metric, molecules_solve},
     {tridiagonal_solve, tridiagonal_pivots},
     {bodies_scratch_bytes, bodies_forces, bodies_velocities, bodies_positions},
+    {keep_chains, solve_kept_chains, is_kept, keep_molecules, solve_kept_molecules},
 #else
     {},
     {},
@@ -49,6 +50,7 @@ const Kernels kernels = {
     {},
     {},
     {},
+    {keep_chains, solve_kept_chains, nullptr, nullptr, nullptr},
 #endif
 };
 

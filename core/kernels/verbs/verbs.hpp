@@ -44,6 +44,12 @@ bool path_positions(const PositionsCall &, const Schedule &, const MoleculeLane 
                     Tally &);
 void molecules_solve(const SolveCall &, const MoleculeUnit &, double *scratch, Tally &);
 
+void keep_chains(const KeepCall &, const Unit &, double *scratch, Tally &);
+void solve_kept_chains(const KeptCall &, const Unit &, double *scratch, Tally &);
+bool is_kept(const Schedule &);
+void keep_molecules(const KeepCall &, const MoleculeUnit &, double *scratch, Tally &);
+void solve_kept_molecules(const KeptCall &, const MoleculeUnit &, double *scratch, Tally &);
+
 int64_t bodies_scratch_bytes(int64_t n_atoms);
 uint64_t bodies_forces(const ForcesCall &, const BodyUnit &, double *scratch, BodyResult *);
 uint64_t bodies_velocities(const VelocitiesCall &, const BodyUnit &, double *scratch, BodyResult *);

@@ -1,0 +1,12 @@
+// Goes through the molecules of a set with the kernels that keep factors, or solve with them.
+#pragma once
+
+#include "core/molecules/chains.hpp"
+
+namespace holonomic {
+
+// Both mark the molecules that are left to the ordinary verbs. Throw std::bad_alloc before any work is done.
+void keep(const Chains &chains, const KeepCall &call);
+Tally solve_kept(const Chains &chains, const KeptCall &call);
+
+}  // namespace holonomic

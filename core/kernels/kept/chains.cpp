@@ -1,0 +1,262 @@
+// Chains that fit into lanes: their elimination kept, and solves with it. A right-hand side costs the two sweeps, and
+// what it is read from.
+#include "core/kernels/eliminate/chain.hpp"
+#include "core/kernels/kept/block.hpp"
+#include "core/kernels/memory/load.hpp"
+#include "core/kernels/memory/open.hpp"
+#include "core/kernels/memory/outputs.hpp"
+#include "core/kernels/memory/small.hpp"
+#include "core/kernels/verbs/verbs.hpp"
+
+namespace holonomic::HOL_ISA {
+
+using namespace kept;
+
+static void leave(const Block &block, mask which, unsigned char *left) {
+    for (unsigned rest = bits(which & block.in_use()); rest; rest &= rest - 1)
+        left[block.chain[__builtin_ctz(rest)]] = 1;
+}
+
+// Lanes that plain products can't answer for get those of compensated ones.
+static mask keep_carefully(const Block &block, const Reader &in, const System &s, mask which, Arena arena) {
+    const System careful(block.n, arena);
+    in.load(0, block.n, careful.D, careful.D_low, careful.t);
+    block.uniform_w ? forward_careful<true>(block, careful) : forward_careful<false>(block, careful);
+    for (long k = 0; k < block.n; ++k) {
+        s.pivots[k] = select(which, careful.pivots[k], s.pivots[k]);
+        if (k > 0) s.L[k] = select(which, careful.L[k], s.L[k]);
+    }
+    return which & finite(careful.t[0]);
+}
+
+static void keep_block(const Block &block, const Lane *lane, const KeepCall &call, Arena arena, Tally &) {
+    double *const to = call.kept->room(call.kept->owner, block.chain[0], doubles(block.n));
+    if (!to) return leave(block, ~none(), call.left);
+    const Packed r = open(call.r, block, lane, arena, true);
+    const System s = kept::system(to, block.n, arena.vecs(block.n + W));
+    const Reader in(block, call.box, none_, r, {}, {});
+    mask calm, good = block.uniform_w ? forward<true, true>(block, in, s, nullptr, calm)
+                                      : forward<false, true>(block, in, s, nullptr, calm);
+    s.L[0] = s.L[block.n] = vec{};
+    good = good & calm;
+    if (any(block.in_use() & ~good))
+        good = good | keep_carefully(block, Reader(block, call.box, none_, r, {}, {}, true), s, ~good & calm, arena);
+    set_head(to, false, good & block.in_use());
+    leave(block, ~good, call.left);
+}
+
+// Factors of small molecules, read and eliminated in registers. Returns the first molecule that is not done.
+template <class Place, bool uniform, bool boxed>
+static int64_t keep_small(const KeepCall &call, const Unit &unit, const Block &given, int64_t first) {
+    constexpr int N = Place::bonds;
+    const double *const r = reinterpret_cast<const double *>(call.r.x);
+    BlockMasses<Place> masses(given);
+    const int64_t end = Place::end(unit, first);
+    for (int64_t n; (n = Place::next(first, end)) > 0; first += n) {
+        const Place place(unit, first, n);
+        masses.take(place);
+        vec e[vectors_of<N>], t[N] = {};
+        double *const to = call.kept->room(call.kept->owner, place.chain_of(0), doubles(N));
+        if (!to) break;
+        const System s = kept::system(to, N, t);
+        load_bonds<boxed, false>(call.box, place, r, e, s.D);
+        const Source source = place.source(r, call.box);
+        Sweep<uniform, true> sweep{masses.block, source, s};
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k)
+            sweep.step(
+                k, [&]() HOL_FORCED { return vec{}; }, k % 4 == 0, false);
+        if (__builtin_expect(any(sweep.doubt() | ~sweep.calm()), 0)) break;
+        s.L[0] = s.L[N] = vec{};
+        set_head(to, true, first_lanes(static_cast<int>(n)));
+    }
+    return first;
+}
+
+static int64_t keep_small_ones(const KeepCall &call, const Unit &unit, Block &block, int64_t first, Tally &) {
+    return any_molecules(
+        unit, block, first, call.box.shape != Box::none, true, [&](auto place, auto uniform, auto boxed) {
+            return keep_small<typename decltype(place)::type, uniform, boxed>(call, unit, block, first);
+        });
+}
+
+void keep_chains(const KeepCall &call, const Unit &unit, double *scratch, Tally &tally) {
+    for_each_block(call, unit, scratch, tally, keep_block, keep_small_ones);
+}
+
+// Differences of a vector per atom along the bonds k0 .. k0 + W - 1, with inverse masses if there are `w`. Where a lane
+// may end, what is behind counts as zeros.
+template <bool weigh>
+HOL_INLINE void differences(const Block &block, const Packed &x, const RowsOfLanes &rows, long k0, vec3 *out) {
+    if (__builtin_expect(k0 + W <= block.n_min, 1))
+        return subtract_chunk<false, weigh>(rows, k0, out, nullptr, block.w3);
+    for (int b = 0; b < W; ++b) out[b] = vec3{};
+    for (int i = 0; i < W; ++i)
+        for (long k = k0; k < k0 + W && k < block.len[i]; ++k)
+            for (int c = 0; c < 3; ++c) {
+                const double *const p = x.lane[i] + 3 * k + c, *const w = weigh ? block.w3[i] + 3 * k + c : nullptr;
+                (&out[k - k0].x)[c][i] = weigh ? w[3] * p[3] - w[0] * p[0] : p[3] - p[0];
+            }
+}
+
+// Right-hand sides of all bonds into t, and the sweep up on the way.
+template <bool weigh, bool has_v, bool has_f>
+HOL_NOINLINE void substitute_sides(const Block &block, const System &s, const Packed &v, const Packed &f) {
+    constexpr int terms = (has_v ? velocity_squared : 0) | (has_f ? force_difference : 0);
+    const RowsOfLanes of_v(has_v ? v : f), of_f(has_f ? f : v);
+    vec y = {};
+    for (long k0 = 0; k0 < block.n; k0 += W) {
+        vec3 dv[W] = {}, df[W] = {};
+        if (has_v) differences<false>(block, v, of_v, k0, dv);
+        if (has_f) differences<weigh>(block, f, of_f, k0, df);
+        const long end = k0 + W < block.n ? k0 + W : block.n;
+        for (long k = k0; k < end; ++k) {
+            y = mul_add(s.L[k], y, right_hand_side(terms, block.mass, s.D[k], dv[k - k0], df[k - k0]));
+            s.t[k] = y * s.pivots[k];
+        }
+    }
+}
+
+// The same of values per bond that are given.
+HOL_NOINLINE void substitute_given(const Block &block, const System &s, const double *rhs) {
+    const vec half = 0.5 * block.mass;
+    vec y = {};
+    for (long k0 = 0; k0 < block.n; k0 += W) {
+        vec b[W] = {};
+        const long end = k0 + W < block.n ? k0 + W : block.n;
+        if (k0 + W <= block.n_min) {
+            for (int i = 0; i < W; ++i) b[i] = load(rhs + block.first_bond[i] + k0);
+            transpose(b);
+        } else {
+            for (int i = 0; i < W; ++i)
+                for (long k = k0; k < end && k < block.len[i]; ++k) b[k - k0][i] = rhs[block.first_bond[i] + k];
+        }
+        for (long k = k0; k < end; ++k) {
+            y = mul_add(s.L[k], y, half * b[k - k0]);
+            s.t[k] = y * s.pivots[k];
+        }
+    }
+}
+
+// Of no forces and no velocities.
+HOL_INLINE void substitute_nothing(const Block &block, const System &s) {
+    for (long k = 0; k < block.n; ++k) s.t[k] = vec{};
+}
+
+static void solve_block(const Block &block, const Lane *lane, const KeptCall &call, Arena arena, Tally &tally) {
+    const double *const from = call.kept->block[block.chain[0]];
+    if (!from) return;
+    const System s = kept::system(from, block.n, arena.vecs(block.n + W));
+    const Packed v = open(call.v, block, lane, arena, true), f = open(call.f, block, lane, arena, true);
+    const Packed g = open(call.g, block, lane, arena, false);
+    const Update update = call.add && in_place(call.g, block) ? add_ : write_;  // else unstage() adds
+    if (call.rhs)
+        substitute_given(block, s, call.rhs);
+    else if (!call.v.x && !call.f.x)
+        substitute_nothing(block, s);
+    else
+        choose(
+            [&](auto has_v, auto has_f) {
+                block.uniform_w ? substitute_sides<false, has_v, has_f>(block, s, v, f)
+                                : substitute_sides<true, has_v, has_f>(block, s, v, f);
+            },
+            call.v.x != nullptr, call.f.x != nullptr);
+    backward(0, block.n, s.t, s.L);
+    const mask good = finite(s.t[0]) & kept_lanes(from);
+    leave(block, ~good, call.left);
+    if (call.lambda) store_bonds(block, s.t, splat(0.5), good, call.lambda);
+    if (call.tension) {
+        vec *const value = arena.vecs(block.n);
+        for (long k = 0; k < block.n; ++k) value[k] = s.t[k] * sqrt(dot(s.D[k], s.D[k]));
+        store_bonds(block, value, splat(1.0), good, call.tension);
+    }
+    if (call.virial) add_virial(block.n, s.D, s.t, good, splat(1.0), tally);
+    if (call.g.x) {
+        store_pulls(block, s.D, s.t, good, update, g);
+        close(call.g, block, lane, good, g, call.add);
+    }
+}
+
+// Small molecules. Returns the first one that is not done.
+template <class Place, bool uniform>
+static int64_t solve_small(const KeptCall &call, const Unit &unit, const Block &given, int64_t first, Tally &tally) {
+    constexpr int N = Place::bonds;
+    const auto base = [](const AtomArray &a) { return reinterpret_cast<double *>(a.x); };
+    BlockMasses<Place> masses(given);
+    const Block &block = masses.block;
+    const int64_t end = Place::end(unit, first);
+    for (int64_t n; (n = Place::next(first, end)) > 0; first += n) {
+        const Place place(unit, first, n);
+        const double *const from = call.kept->block[place.chain_of(0)];
+        if (!from || !is_small(from)) break;
+        masses.take(place);
+        vec t[N], e[vectors_of<N>], *const L = multipliers(from, N), *const P = pivots(from, N);
+        const vec3 *const D = bonds(from);
+        vec3 dv[N] = {}, df[N] = {}, *const x = reinterpret_cast<vec3 *>(e);
+        if (call.rhs) {
+            for (int k = 0; k < N; ++k)
+                for (int i = 0; i < W; ++i) t[k][i] = call.rhs[place.bond_of(i) + k];
+            for (int k = 0; k < N; ++k) t[k] = (0.5 * block.mass) * t[k];
+        } else {
+            if (call.v.x) {
+                load_molecules(place, base(call.v), e);
+                HOL_UNROLL
+                for (int k = 0; k < N; ++k) dv[k] = x[k + 1] - x[k];
+            }
+            if (call.f.x) {
+                load_molecules(place, base(call.f), e);
+                HOL_UNROLL
+                for (int k = 0; k < N; ++k)
+                    df[k] = uniform ? x[k + 1] - x[k] : block.w[k + 1] * x[k + 1] - block.w[k] * x[k];
+            }
+            HOL_UNROLL
+            for (int k = 0; k < N; ++k)
+                t[k] = call.v.x ? right_hand_side(velocity_squared | force_difference, block.mass, D[k], dv[k], df[k])
+                                : right_hand_side(force_difference, block.mass, D[k], dv[k], df[k]);
+        }
+        vec y = {};
+        HOL_UNROLL
+        for (int k = 0; k < N; ++k) {
+            y = k == 0 ? t[0] : mul_add(L[k], y, t[k]);
+            t[k] = y * P[k];
+        }
+        backward(0, N, t, L);
+        if (__builtin_expect(any(~finite(t[0])), 0)) {
+            for (int64_t i = 0; i < n; ++i) call.left[place.chain_of(static_cast<int>(i))] = 1;
+            continue;
+        }
+        if (call.g.x) {
+            vec value[vectors_of<N>] = {};
+            vec3 before = {};
+            HOL_UNROLL
+            for (int k = 0; k <= N; ++k) {
+                const vec3 after = k < N ? t[k] * D[k] : vec3{}, g = after - before;
+                value[3 * k] = g.x;
+                value[3 * k + 1] = g.y;
+                value[3 * k + 2] = g.z;
+                before = after;
+            }
+            call.add ? store_molecules<add_>(place, value, base(call.g))
+                     : store_molecules<write_>(place, value, base(call.g));
+        }
+        if (call.virial) add_virial(N, D, t, first_lanes(static_cast<int>(n)), splat(1.0), tally);
+        if (call.lambda) store_multipliers(place, t, splat(0.5), call.lambda);
+        if (call.tension) {
+            for (int k = 0; k < N; ++k) t[k] = t[k] * sqrt(dot(D[k], D[k]));
+            store_multipliers(place, t, splat(1.0), call.tension);
+        }
+    }
+    return first;
+}
+
+static int64_t solve_small_ones(const KeptCall &call, const Unit &unit, Block &block, int64_t first, Tally &tally) {
+    return any_molecules(unit, block, first, call.boxed, true, [&](auto place, auto uniform, auto) {
+        return solve_small<typename decltype(place)::type, uniform>(call, unit, block, first, tally);
+    });
+}
+
+void solve_kept_chains(const KeptCall &call, const Unit &unit, double *scratch, Tally &tally) {
+    for_each_block(call, unit, scratch, tally, solve_block, solve_small_ones);
+}
+
+}  // namespace holonomic::HOL_ISA
