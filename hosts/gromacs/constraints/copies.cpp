@@ -5,10 +5,19 @@
 
 namespace holonomic {
 
+// Vectors wider than registers are handed over in memory; here functions are inlined, and no other file sees them.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 namespace {
 
+// An atom's vector as one of four numbers: its components are worked on together.
+typedef real Four __attribute__((vector_size(4 * sizeof(real))));
+typedef decltype(Four{} < Four{}) Flags;
+
+Four read(const real *p) { return Four{p[0], p[1], p[2], 0}; }
+
 // A bond is shorter than half of each side of the box. Of another image at least one component is longer than that, and
-// one shift along each vector, the last first, brings it back.
+// shifts along each vector, the last first, bring it back.
 struct Box {
     explicit Box(const t_pbc *pbc) {
         if (pbc == nullptr || pbc->pbcType == PbcType::No) return;
@@ -18,22 +27,18 @@ struct Box {
             half[a] = pbc->box[a][a] / 2;
         }
     }
-    // A sum in place of "or": three comparisons without a branch.
-    bool is_other_image(const real *a, const real *b) const {
-        return int(std::fabs(a[0] - b[0]) > half[0]) + int(std::fabs(a[1] - b[1]) > half[1]) +
-                   int(std::fabs(a[2] - b[2]) > half[2]) !=
-               0;
-    }
+    Flags is_other_image(Four a, Four b) const { return (a - b > half) | (b - a > half); }
     void wrap(double *d) const {
+        constexpr double to_integer = 0x1.8p52;  // a sum with it has no bits behind the point
         for (int a = n - 1; a >= 0; a--) {
-            const double shift = std::rint(d[a] / vectors[a][a]);
+            const double shift = (d[a] / vectors[a][a] + to_integer) - to_integer;
             for (int b = 0; b < 3; b++) d[b] -= shift * vectors[a][b];
         }
     }
+    static constexpr real far = std::numeric_limits<real>::infinity();
     int n = 0;
     double vectors[3][3] = {};
-    real half[3] = {std::numeric_limits<real>::infinity(), std::numeric_limits<real>::infinity(),
-                    std::numeric_limits<real>::infinity()};
+    Four half = {far, far, far, far};
 };
 
 // A molecule that a face of the box cuts.
@@ -58,16 +63,13 @@ void copy_whole(const Arrangement &arrangement, const t_pbc *pbc, const real *fr
 #pragma omp parallel for num_threads(n_threads) schedule(static) if (n_threads > 1)
     for (int64_t m = 0; m < n_molecules; m++) {
         const int start = arrangement.starts[m], end = arrangement.starts[m + 1];
-        bool is_cut = false;
+        Flags is_cut = {};
         for (int k = start; k < end; k++) {
-            const real *const here = from + 3 * static_cast<ptrdiff_t>(atoms[k]);
-            is_cut |= box.is_other_image(here, from + 3 * static_cast<ptrdiff_t>(atoms[parents[k]]));
-            double *const place = to + 3 * static_cast<ptrdiff_t>(k);
-            place[0] = here[0];
-            place[1] = here[1];
-            place[2] = here[2];
+            const Four here = read(from + 3 * static_cast<ptrdiff_t>(atoms[k]));
+            is_cut |= box.is_other_image(here, read(from + 3 * static_cast<ptrdiff_t>(atoms[parents[k]])));
+            for (int a = 0; a < 3; a++) to[3 * static_cast<ptrdiff_t>(k) + a] = here[a];
         }
-        if (is_cut) make_whole(arrangement, box, from, to, start, end);
+        if (is_cut[0] | is_cut[1] | is_cut[2]) make_whole(arrangement, box, from, to, start, end);
     }
 }
 

@@ -103,7 +103,13 @@ bool Molecules::set_lengths() {
         // A flexible one is known when positions are: any length until then.
         if (flexible(k)) lengths[k] = before.size() == lengths.size() ? before[k] : 0.1;
     }
+    find_shortest();
     return lengths != before;
+}
+
+void Molecules::find_shortest() {
+    const auto least = std::min_element(lengths.begin(), lengths.end());
+    shortest_length = least == lengths.end() ? 0 : *least;
 }
 
 void Molecules::set_lambda(double lambda) {
@@ -126,6 +132,7 @@ void Molecules::set_flexible(const double *x) {
         lengths[k] =
             std::sqrt((j[0] - i[0]) * (j[0] - i[0]) + (j[1] - i[1]) * (j[1] - i[1]) + (j[2] - i[2]) * (j[2] - i[2]));
     }
+    find_shortest();
     check(hol_chains_set_lengths(handle.get(), lengths.data()));
 }
 

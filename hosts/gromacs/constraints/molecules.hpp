@@ -38,6 +38,7 @@ public:
     int n_threads() const { return threads; }
     int number(int place) const;  // of the atom there, as the topology counts
     double length(size_t bond) const { return lengths[bond]; }
+    double shortest() const { return shortest_length; }
     double change_with_lambda(size_t bond) const { return arrangement.bonds[bond].b - arrangement.bonds[bond].a; }
     bool flexible(size_t bond) const { return arrangement.bonds[bond].a == 0 && arrangement.bonds[bond].b == 0; }
     double inverse_mass(size_t place) const { return masses[place] > 0 ? 1 / masses[place] : 0; }
@@ -48,6 +49,7 @@ private:
     void make();
     bool add(hol_chains *) const;
     bool set_lengths();  // of lambda; whether one has changed
+    void find_shortest();
     void set_labels() const;
     static std::string words();
     void check(int status) const {
@@ -59,7 +61,7 @@ private:
     std::vector<double> all_masses;  // of the rank's atoms; 0: held fixed
     Arrangement arrangement;
     std::vector<double> lengths, masses;  // at the arrangement's places
-    double lambda_of_lengths = 0, lambda_of_masses = 0;
+    double lambda_of_lengths = 0, lambda_of_masses = 0, shortest_length = 0;
     bool any_perturbed = false, any_flexible = false;
     int threads = 1;
 };

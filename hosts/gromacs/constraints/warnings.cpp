@@ -1,4 +1,5 @@
 // What GROMACS tells of constraints: how far they are off, and bonds that turned by more than an angle in one step.
+#include <algorithm>
 #include <cinttypes>
 #include <cmath>
 
@@ -60,8 +61,14 @@ Deviation deviation(const Molecules &molecules, const t_pbc *pbc, const real *q)
     return result;
 }
 
+// Turning by the warning's angle takes a chord; where no atom has moved by half of the shortest one, none has turned.
 bool any_turned(const Molecules &molecules, const Call &call, const double *x, const double *q) {
     const double cosine = warning_cosine(call);
+    const double least = 0.99 * std::sqrt(std::max(0.0, 2 - 2 * cosine) / 12) * molecules.shortest();
+    const size_t n = 3 * molecules.n_atoms();
+    int any_far = 0;
+    for (size_t i = 0; i < n; i++) any_far |= !(std::fabs(q[i] - x[i]) < least);
+    if (!any_far) return false;
     const std::vector<Bond> &bonds = molecules.places().bonds;
     bool any = false;
     for (size_t k = 0; k < bonds.size(); k++) {
