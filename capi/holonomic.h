@@ -32,10 +32,9 @@
  * - Every function that can fail returns an hol_status. hol_error_message() then says in words what was wrong and
  *   where, hol_error_location() in numbers; both are the calling thread's own.
  * - A wrong argument: nothing is written. Bad data in some molecules (HOL_ERR_NOT_FINITE, HOL_ERR_DEGENERATE,
- *   HOL_ERR_NO_CONVERGENCE, after the first call also HOL_ERR_LENGTHS): their outputs stay as they were, bit for bit;
- *   all other molecules are complete; sums over molecules (virial, energy) are not written. Status, message and
- *   location are those of the first bad molecule. A fixed atom of several molecules gets the sum over those that are
- *   not bad.
+ *   HOL_ERR_NO_CONVERGENCE): their outputs stay as they were, bit for bit; all other molecules are complete; sums over
+ *   molecules (virial, energy) are not written. Status, message and location are those of the first bad molecule. A
+ *   fixed atom of several molecules gets the sum over those that are not bad.
  * - An output may overlap another argument only where its description says so.
  * - The library never prints, exits, aborts or throws.
  * - Floating-point environment: whatever the caller has set (exceptions that trap, as by gfortran's -ffpe-trap; another
@@ -424,12 +423,14 @@ typedef enum hol_when HOL_IS_INT {
  * atoms moved by half the cell. With HOL_AT_START (default)
  *
  * - the first call returns HOL_ERR_LENGTHS and moves nothing if a bond of the reference is off by more than a tenth of
- *   its length or longer than half the box, or if a bond of the positions to be projected is more than 5 times as long
- *   as it should be. So does the first call after new molecules, after hol_chains_set_active, after lengths of more
- *   than 1.5 times or less than two thirds of those before, and after a box that differs by more than 2 per cent. It
- *   costs one pass over the bonds, once.
+ *   its length or longer than half the box, or if bonds across faces of the box are off by more than 1e-3 of their
+ *   length and three times as much as any inside (a box that is a hundredth off does that); HOL_ERR_NO_CONVERGENCE, and likewise moves nothing, if the reference fits
+ *   but a bond of the positions to be projected is more than 5 times as long as it should be. So does the first call
+ *   after new molecules, after hol_chains_set_active, after lengths of more than 1.5 times or less than two thirds of
+ *   those before, and after a box that differs by more than 2 per cent. It costs one pass over the bonds, once.
  * - in every later call a molecule with a bond of more than 5 times its length in the positions to be projected is bad
- *   (HOL_ERR_LENGTHS): it is left as it is, all others are complete. That costs under 2 per cent of the call.
+ *   (HOL_ERR_NO_CONVERGENCE, as any step that is too long): it is left as it is, all others are complete. That costs
+ *   under 2 per cent of the call.
  *
  * HOL_ALWAYS makes calls 1.6 to 2 times as long, of every shape.
  *
@@ -495,7 +496,7 @@ HOL_API int hol_chains_set_outcomes(hol_chains *chains, int keep);
  *                         are solved directly. Of a bad molecule what it took as far as that is known, or 0. Or NULL
  *
  * An inactive molecule has HOL_OK and 0. Where positions or forces were refused before anything was done
- * (HOL_ERR_LENGTHS in the first step), all molecules that do not fit have that status.
+ * (in the first step, hol_chains_set_checks), all molecules that do not fit have that status.
  * @return HOL_OK; HOL_ERR_NULL (chains); HOL_ERR_STATE: the thread has made no such call since, it ended by a wrong
  *         argument or by HOL_ERR_MEMORY, molecules have been added after it, or this thread has called with another
  *         handle that keeps outcomes. Thread-safe on one handle. Since 0.2.

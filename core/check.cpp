@@ -135,7 +135,7 @@ struct Misfit {
 };
 
 template <class IsBad>
-Misfit find_misfit(const Chains &chains, const BondVectors &bonds, const IsBad &is_bad) {
+Misfit find_misfit(const Chains &chains, const BondVectors &bonds, Status status, const IsBad &is_bad) {
     Misfit found;
     chains.for_active([&](const Molecule &m) {
         bool bad = false;
@@ -154,7 +154,7 @@ Misfit find_misfit(const Chains &chains, const BondVectors &bonds, const IsBad &
         });
         ++found.n_molecules;
         found.n_bad += bad;
-        if (bad) note_status(m.number, Status::lengths);
+        if (bad) note_status(m.number, status);
         return true;
     });
     return found;
@@ -197,17 +197,18 @@ Error misfit_error(const Chains &chains, const Misfit &found, const BondVectors 
 
 bool is_too_long(double length, double a) { return length > most_stretched * a; }
 
-// The reference fits where this is said.
+// The reference fits where this is said: it is the step that is too long, whether or not Newton's method would come
+// back.
 Error stretched_error(const Chains &chains, const Molecule &m, std::int64_t bond, double length, std::int64_t n_bad) {
     char others[80] = "";
     if (n_bad > 1)
         std::snprintf(others, sizeof others, " (the first of %lld bad molecules)", static_cast<long long>(n_bad));
     Error error = make_error(
-        Status::lengths,
-        "molecule %s, %s: %.6g long in the positions to be projected, it should be %.6g; %s: forces or time step "
-        "are far too large, or a molecule is cut by a face of the cell%s",
+        Status::no_convergence,
+        "molecule %s, %s: %.6g long in the positions to be projected, it should be %.6g; %s: %s, or a face of "
+        "the cell cuts the molecule%s",
         chains.name_of_molecule(m.number).text, name_of_bond(chains, m, bond).text, length, m.length(bond),
-        box_in_words(chains.box), others);
+        box_in_words(chains.box), too_long_a_step, others);
     error.chain = m.number;
     error.bond = bond;
     error.n_bad = n_bad;
@@ -220,17 +221,21 @@ Error stretched_error(const Chains &chains, const Molecule &m, std::int64_t bond
 void check_reference(const Chains &chains, const BondVectors &bonds, const char *what) {
     const double half = bonds.box ? half_width(*bonds.box) : std::numeric_limits<double>::infinity();
     const double longest = half * (1 + 1e-6);
-    if (all_within(chains, bonds, 1 - most_off, 1 + most_off, longest)) return;
-    const Misfit found = find_misfit(chains, bonds, [&](double length, double a) {
+    if (all_within(chains, bonds, 1 - most_off, 1 + most_off, longest)) {
+        if (bonds.r) check_cut(chains, *bonds.r, *bonds.box, what);
+        return;
+    }
+    const Misfit found = find_misfit(chains, bonds, Status::lengths, [&](double length, double a) {
         return std::fabs(length - a) > most_off * a || length > longest;
     });
+    if (bonds.r && found.worst <= crude) check_cut(chains, *bonds.r, *bonds.box, what);
     if (found.molecule >= 0) throw misfit_error(chains, found, bonds, what);
 }
 
 void check_trial(const Chains &chains, const AtomArray &r) {
     const BondVectors bonds{&r, nullptr, &chains.box};
     if (all_within(chains, bonds, 0, most_stretched, std::numeric_limits<double>::infinity())) return;
-    const Misfit found = find_misfit(chains, bonds, is_too_long);
+    const Misfit found = find_misfit(chains, bonds, Status::no_convergence, is_too_long);
     if (found.molecule < 0) return;
     const Molecule m = chains.molecule(found.molecule);
     throw stretched_error(chains, m, found.bond, found.worst * m.length(found.bond), found.n_bad);

@@ -21,6 +21,8 @@ struct BondVectors {
 // calculation finds it.
 void check_reference(const Chains &chains, const BondVectors &bonds, const char *what);
 void check_trial(const Chains &chains, const AtomArray &r);
+// Where all bonds fit that well: whether those across a face of the box fit as the others do.
+void check_cut(const Chains &chains, const AtomArray &r, const Box &box, const char *what);
 
 // The error of a molecule that was refused for its trial positions; or false, if it was not for these.
 bool is_stretched(const Chains &chains, std::int64_t molecule, const AtomArray &r, std::int64_t n_bad, Error *error);

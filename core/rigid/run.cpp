@@ -8,6 +8,7 @@
 
 #include "core/caller/environment.hpp"
 #include "core/rigid/blocks.hpp"
+#include "core/run/bond_words.hpp"
 #include "core/run/kernel_choice.hpp"
 #include "core/run/outcomes.hpp"
 #include "core/run/thread_memory.hpp"
@@ -273,21 +274,14 @@ Error error_of_first(const Chains &chains, const Found &found, const Named *arra
                            name, static_cast<int>(shape.parts.size()), chains.name_of_atom(atoms[0]).text, others),
                 -1);
         case Outcome::no_convergence:
-            return finish(
-                make_error(Status::no_convergence,
-                           "%s, with %d bodies, the first of atom %s: no corrections along the reference, as they grow "
-                           "from there on, bring bodies and bonds back to their lengths; the step is too large, or a "
-                           "length can't "
-                           "be reached%s",
-                           name, static_cast<int>(shape.parts.size()), chains.name_of_atom(atoms[0]).text, others),
-                -1);
         case Outcome::stretched:
             return finish(
-                make_error(Status::lengths,
-                           "%s, with %d bodies, the first of atom %s: a bond or a body is more than 5 times as "
-                           "long as it should be in the positions to be projected; the molecule was left as "
-                           "it is (hol_chains_set_checks)%s",
-                           name, static_cast<int>(shape.parts.size()), chains.name_of_atom(atoms[0]).text, others),
+                make_error(
+                    Status::no_convergence,
+                    "%s, with %d bodies, the first of atom %s: nothing along the reference brings bodies and bonds "
+                    "back from the positions to be projected; %s: %s%s",
+                    name, static_cast<int>(shape.parts.size()), chains.name_of_atom(atoms[0]).text,
+                    box_in_words(chains.box), too_long_a_step, others),
                 -1);
         default:
             return finish(make_error(Status::not_finite, "%s: the numbers overflow or underflow; choose other units%s",

@@ -154,12 +154,10 @@ private:
     Error out_of_reach() const {
         const std::int64_t k = worst_bond();
         return finish(
-            make_error(Status::no_convergence, "%s: no corrections along the %s. The worst is %s: %s%s", name_,
-                       in_place() ? "bonds bring them to their lengths, which can't be reached from these "
-                                    "positions, or not at all"
-                                  : "reference bonds, as they grow from the reference on, bring the bonds back to "
-                                    "their lengths; the step is too large, or a length can't be reached",
-                       name_of_bond(chains_, m_, k).text, lengths_of(k).text, others_),
+            make_error(Status::no_convergence, "%s, %s: %s: %s%s", name_, name_of_bond(chains_, m_, k).text,
+                       lengths_of(k).text,
+                       in_place() ? "not reached along these bonds (hol_impose goes further)" : too_long_a_step,
+                       others_),
             k, -1);
     }
 

@@ -1,5 +1,6 @@
 #include "Algorithm.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -23,6 +24,7 @@ double *packed(std::vector<Vec3> &vectors) { return reinterpret_cast<double *>(v
 HolonomicAlgorithm::HolonomicAlgorithm(const System &system, int nThreads) {
     std::vector<double> masses(system.getNumParticles());
     for (int i = 0; i < system.getNumParticles(); ++i) masses[i] = system.getParticleMass(i);
+    if (std::all_of(masses.begin(), masses.end(), [](double mass) { return mass == 0; })) return;
     hol_chains *made = nullptr;
     ask(hol_chains_create(system.getNumParticles(), masses.data(), &made));
     molecules.reset(made);
@@ -48,19 +50,22 @@ void HolonomicAlgorithm::addConstraints(const System &system) {
     ask(hol_chains_add_bonds(molecules.get(), static_cast<std::int64_t>(lengths.size()), pairs.data(), lengths.data()));
 }
 
-void HolonomicAlgorithm::takeMasses(const std::vector<double> &inverse) {
+bool HolonomicAlgorithm::takeMasses(const std::vector<double> &inverse) {
+    if (!molecules) return false;
     if (inverse.size() == inverseMasses.size() &&
         std::memcmp(inverse.data(), inverseMasses.data(), inverse.size() * sizeof(double)) == 0)
-        return;
+        return true;
     std::vector<double> masses(inverse.size());
+    // Of a particle without mass OpenMM gives 0, or in some integrators 1/0: it stays in either case.
     for (std::size_t i = 0; i < inverse.size(); ++i) masses[i] = inverse[i] == 0 ? 0 : 1 / inverse[i];
     ask(hol_chains_set_masses(molecules.get(), masses.data()));
     inverseMasses = inverse;
+    return true;
 }
 
 void HolonomicAlgorithm::apply(std::vector<Vec3> &reference, std::vector<Vec3> &positions, std::vector<double> &inverse,
                                double) {
-    takeMasses(inverse);
+    if (!takeMasses(inverse)) return;
     // The unit of time is that of a displacement: 1 leaves the multipliers, which nobody asks for, in a unit of their
     // own.
     const int status = hol_project_positions(molecules.get(), packed(reference), packed(positions), nullptr, 1, nullptr,
@@ -74,6 +79,6 @@ void HolonomicAlgorithm::apply(std::vector<Vec3> &reference, std::vector<Vec3> &
 
 void HolonomicAlgorithm::applyToVelocities(std::vector<Vec3> &positions, std::vector<Vec3> &velocities,
                                            std::vector<double> &inverse, double) {
-    takeMasses(inverse);
+    if (!takeMasses(inverse)) return;
     ask(hol_project_velocities(molecules.get(), packed(positions), packed(velocities), nullptr, nullptr));
 }

@@ -24,12 +24,13 @@ public:
 
 private:
     void addConstraints(const System &system);
-    void takeMasses(const std::vector<double> &inverse);
+    // Gives whether there is anything that can move.
+    bool takeMasses(const std::vector<double> &inverse);
 
     struct Destroy {
         void operator()(hol_chains *molecules) const { hol_chains_destroy(molecules); }
     };
-    std::unique_ptr<hol_chains, Destroy> molecules;
+    std::unique_ptr<hol_chains, Destroy> molecules;  // null: no particle has mass
     std::vector<double> inverseMasses;  // of the last call
 };
 

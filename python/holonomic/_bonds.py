@@ -41,7 +41,7 @@ class Bonds:
     """The part of Molecules that knows what is bonded."""
 
     __slots__ = ("_handle", "_destroy", "_n_atoms", "_n_bonds", "_packed", "_views", "_outputs", "_masses", "_fixed", "_added",
-                 "_lengths", "_labels", "_begins", "__weakref__")
+                 "_lengths", "_labels", "__weakref__")
 
     def __init__(self, masses: Floats, fixed: Optional[Integers] = None):
         masses = np.array(numbers(masses, None, "masses", "atom"))
@@ -72,7 +72,6 @@ class Bonds:
         """After bonds were added: memory for the outputs of `forces` in one piece, [lambda, tensions, virial, forces]."""
         self._n_bonds = n = library.hol_chains_n_bonds(self._handle)
         self._outputs = c_double * (2 * n + 9 + 3 * self._n_atoms)
-        self._begins = True  # the next `project_positions` is the first one
 
     def _noted(self, method: str, *arguments: Any) -> None:
         """After a call that added something."""

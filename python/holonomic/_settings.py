@@ -72,9 +72,6 @@ class Settings(Queries):
         """
         box = matrix(box, "box", sides=True)
         ask(library.hol_chains_set_box(self._handle, address(box)))
-        before = self._box
-        if box is not None and (before is None or np.abs(box - before).max() > 0.02 * np.abs(box).max()):
-            self._begins = True  # no barostat's step
         return box
 
     @_ArraySetting

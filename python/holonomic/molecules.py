@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import warnings
 from ctypes import addressof, byref, c_double, c_int64
 from typing import Any, NoReturn, Optional, Tuple
 
 import numpy as np
 
 from ._arrays import NotPacked, address, dimensions, number, numbers, output, view_of
-from ._cut import cut_bonds_misfit
 from ._library import bare, library
 from ._settings import Settings
 from ._types import Array, Floats, Integers
-from .errors import ArgumentError, LengthsError, LengthsWarning, ask, fail
+from .errors import ArgumentError, ask, fail
 from .inverse import Inverse
 from .results import Forces, Impulse, Metric, Outcomes, Reactions, Report, Violation, counted
 
@@ -138,8 +136,6 @@ class Molecules(Settings):
         """
         if v is not None and (v is r or v is r_ref):
             _same(r)
-        if self._begins:
-            self._begin(r_ref)
         if guess and lambda_ is None:
             _no_guess()
         report = Report()
@@ -258,22 +254,6 @@ class Molecules(Settings):
         """Raises LengthsError if a bond of r is off by more than a tenth of its length, or longer than half the box; or if
         the bonds that a face of the box cuts are off, and the others not: the box is not that of r then."""
         ask(library.hol_chains_check_view(self._handle, self._view(r, "r"), _box(box)))
-        misfit = self._cut_misfit(r, self._reference_box if box == "reference" else self._box)
-        if misfit:
-            raise LengthsError(misfit)
-
-    def _begin(self, r_ref: Any) -> None:
-        """Before the first `project_positions`: what the library does not look at by itself."""
-        self._begins = False
-        if self._checks != "never":
-            misfit = self._cut_misfit(r_ref, self._box if self._reference_box is None else self._reference_box)
-            if misfit:
-                warnings.warn(LengthsWarning(misfit), stacklevel=3)
-
-    def _cut_misfit(self, r: Any, box: Optional[np.ndarray]) -> Optional[str]:
-        if box is None or self._n_bonds == 0 or np.shape(r) != (self._n_atoms, 3):
-            return None
-        return cut_bonds_misfit(np.asarray(r, dtype=float), self.bonds, self.lengths, box)
 
     def reference_error(self) -> Tuple[float, Optional[int], Optional[int]]:
         """Error, molecule and bond of the reference of the last call that compared it with the lengths."""

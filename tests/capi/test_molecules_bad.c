@@ -162,7 +162,6 @@ static void positions_of_bad_molecules_stay(void **state)
             double *virial = untouched(9);
             hol_report report;
             CHECK_FAILS(how == 0   ? HOL_ERR_NOT_FINITE
-                        : how == 1 ? HOL_ERR_LENGTHS
                         : how == 2 ? HOL_ERR_DEGENERATE
                                    : HOL_ERR_NO_CONVERGENCE,
                         hol_project_positions(m.chains, m.r, r, v, dt, lambda, 0, virial, &report));

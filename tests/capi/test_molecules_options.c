@@ -187,7 +187,7 @@ static void no_molecule_takes_more_iterations_than_the_bound(void **state)
             const size_t size = mixture_size(&m), bonds = (size_t)m.n_bonds;
             double *drifted = mixture_drifted(&m, dt), *free_r = copy_of(drifted, size);
             const int unbound = hol_project_positions(m.chains, m.r, free_r, NULL, dt, NULL, 0, NULL, NULL);
-            for (int bound = 1; bound <= 12 && unbound != HOL_ERR_LENGTHS; ++bound) {
+            for (int bound = 1; bound <= 12 && unbound != HOL_ERR_NO_CONVERGENCE; ++bound) {
                 double *r = copy_of(drifted, size), *lambda = untouched(bonds);
                 hol_report report;
                 CHECK(hol_chains_set_max_iterations(m.chains, bound));

@@ -196,10 +196,10 @@ static void a_first_step_names_all_that_do_not_fit(void **state)
     memcpy(trial, r, sizeof r);
     CHECK(hol_project_positions(chains, r[0], trial[0], NULL, 1, NULL, 0, NULL, NULL));
     for (int i = 0; i < N; ++i) trial[2 * i][0] = i % 4 == 1 ? -7 : i % 4 == 2 ? NAN : 0.1;
-    CHECK_FAILS(HOL_ERR_LENGTHS, hol_project_positions(chains, r[0], trial[0], NULL, 1, NULL, 0, NULL, NULL));
+    CHECK_FAILS(HOL_ERR_NO_CONVERGENCE, hol_project_positions(chains, r[0], trial[0], NULL, 1, NULL, 0, NULL, NULL));
     CHECK(hol_outcomes(chains, status, NULL));
     for (int i = 0; i < N; ++i)
-        assert_int_equal(status[i], i % 4 == 1 ? HOL_ERR_LENGTHS : i % 4 == 2 ? HOL_ERR_NOT_FINITE : HOL_OK);
+        assert_int_equal(status[i], i % 4 == 1 ? HOL_ERR_NO_CONVERGENCE : i % 4 == 2 ? HOL_ERR_NOT_FINITE : HOL_OK);
     hol_chains_destroy(chains);
 }
 

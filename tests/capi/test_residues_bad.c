@@ -194,7 +194,7 @@ static void name_what_can_not_be(residues *s)
         memcpy(r + 3 * atom, before, sizeof before);
         memcpy(before, there, sizeof before);
         there[1] += 1e4;
-        positions_fail(&x, drifted, HOL_ERR_LENGTHS, -1);
+        positions_fail(&x, drifted, HOL_ERR_NO_CONVERGENCE, -1);
         CHECK(hol_chains_set_checks(x.chains, HOL_NEVER));
         positions_fail(&x, drifted, HOL_ERR_NO_CONVERGENCE, -1);
         CHECK(hol_chains_set_checks(x.chains, HOL_AT_START));

@@ -194,6 +194,70 @@ static void a_stale_box(void **state)
     free_waters(&w);
 }
 
+/* Off by so little that every bond is within a tenth of its length: those across the faces are not right, all others
+ * are.
+ */
+static void a_box_that_is_slightly_off(void **state)
+{
+    (void)state;
+    static const double factors[] = {1.01, 0.99, 1.002};
+    waters w = make_waters(4, 5);
+    cut_by_the_faces(&w);
+    hol_chains *chains = water_set(&w, water_lengths);
+    for (int k = 0; k < 3; ++k) {
+        double off[9];
+        for (int i = 0; i < 9; ++i) off[i] = factors[k] * w.box[i];
+        CHECK(hol_chains_set_box(chains, off));
+        assert_refused(chains, &w, WORDS("a face of the box cuts it", "hardly the box of these positions"));
+        assert_in_range(strlen(hol_error_message()), 60, 240);
+    }
+    CHECK(hol_chains_set_box(chains, w.box));
+    CHECK(hol_chains_check(chains, w.r, HOL_BOX));
+    /* All positions as crude as those at the faces: no word of the box. */
+    for (int64_t i = 0; i < 3 * w.n_atoms; ++i) w.r[i] += 4e-3 * sin(7.0 * (double)i);
+    CHECK(hol_chains_check(chains, w.r, HOL_BOX));
+    hol_chains_destroy(chains);
+    free_waters(&w);
+}
+
+/* Forces that are too large, in the first step as in the second: however far the atoms fly, one status and one message,
+ * and no word of units, order or counting, for the reference fits. */
+static void a_step_that_explodes(void **state)
+{
+    (void)state;
+    static const double far[] = {2, 3, 4.5, 6, 20, 1e3, 1e6};
+    waters w = make_waters(4, 4);
+    const size_t n = 3 * (size_t)w.n_atoms;
+    for (int boxed = 0; boxed < 2; ++boxed)
+        for (int later = 0; later < 2; ++later)
+            for (int k = 0; k < 7; ++k) {
+                if (boxed && far[k] > 6) continue; /* comes back by another face */
+                hol_chains *chains = water_set(&w, water_lengths);
+                CHECK(hol_chains_set_box(chains, boxed ? w.box : NULL));
+                double *const r = copy_of(w.r, n), *const first = copy_of(w.r, n);
+                if (later) CHECK(hol_project_positions(chains, w.r, first, NULL, DT, NULL, 0, NULL, NULL));
+                r[3 * 4 + 0] += far[k] * 0.6, r[3 * 4 + 1] -= far[k] * 0.8, r[3 * 4 + 2] += 0.3 * far[k];
+                double *const before = copy_of(r, n);
+                CHECK_FAILS(HOL_ERR_NO_CONVERGENCE,
+                            hol_project_positions(chains, w.r, r, NULL, DT, NULL, 0, NULL, NULL));
+                assert_message_names("in the positions to be projected");
+                assert_message_names("forces or time step too large");
+                assert_null(strstr(hol_error_message(), "unit"));
+                assert_null(strstr(hol_error_message(), "order"));
+                assert_null(strstr(hol_error_message(), "counted"));
+                assert_in_range(strlen(hol_error_message()), 60, 240);
+                int64_t molecule;
+                hol_error_location(&molecule, NULL, NULL, NULL);
+                assert_int_equal(molecule, 1);
+                assert_same_bits(r + 9, before + 9, 9);
+                free(r);
+                free(first);
+                free(before);
+                hol_chains_destroy(chains);
+            }
+    free_waters(&w);
+}
+
 /* A process whose atoms are all held fixed calls what all others call. */
 static void atoms_that_are_all_fixed(void **state)
 {
@@ -302,6 +366,8 @@ int main(void)
         cmocka_unit_test(atoms_counted_from_one),
         cmocka_unit_test(a_mistake_is_seen_in_every_layout),
         cmocka_unit_test(a_stale_box),
+        cmocka_unit_test(a_box_that_is_slightly_off),
+        cmocka_unit_test(a_step_that_explodes),
         cmocka_unit_test(atoms_that_are_all_fixed),
         cmocka_unit_test(boxes_that_are_no_cell),
         cmocka_unit_test(boxes_narrower_than_two_bonds),

@@ -121,15 +121,17 @@ class Mistakes(unittest.TestCase):
 
     def test_a_step_that_explodes_is_no_matter_of_units(self):
         for is_first in (True, False):
-            molecules, r = dimers()
-            if not is_first:
-                molecules.project_positions(r, r + 0.0, 1)
-            new = r + 0.0
-            new[3] += (0, 40, 0)
-            with self.assertRaisesRegex(hol.LengthsError, "forces or time step") as caught:
-                molecules.project_positions(r, new, 1)
-            self.assertNotRegex(str(caught.exception), "unit|order|counted")
-            self.assertEqual((caught.exception.molecule, caught.exception.bond), (1, 0))
+            for far in (3, 40, 1e5):
+                molecules, r = dimers()
+                if not is_first:
+                    molecules.project_positions(r, r + 0.0, 1)
+                new = r + 0.0
+                new[3] += (0, far, 0)
+                with self.assertRaisesRegex(hol.NoConvergenceError, "forces or time step") as caught:
+                    molecules.project_positions(r, new, 1)
+                self.assertNotRegex(str(caught.exception), "unit|order|counted")
+                self.assertLessEqual(len(str(caught.exception)), 240)
+                self.assertEqual((caught.exception.molecule, caught.exception.bond), (1, 0))
 
     def test_messages_about_lengths_fit_in_240_letters(self):
         molecules, r = dimers(1000)
@@ -230,30 +232,13 @@ class Boxes(unittest.TestCase):
             else:
                 with self.assertRaisesRegex(hol.LengthsError, "face of the box cuts"):
                     molecules.check(r)
-            with warnings.catch_warnings(record=True) as caught:
-                warnings.simplefilter("always")
+            if is_right:
                 molecules.project_positions(r, r + 0.0, 1)
-                molecules.project_positions(r, r + 0.0, 1)
-            self.assertEqual([w.category for w in caught], [] if is_right else [hol.LengthsWarning])
-            molecules.box, molecules.checks = box, "never"
-            with warnings.catch_warnings():
-                warnings.simplefilter("error")
-                molecules.project_positions(r, r + 0.0, 1)
-
-    def test_a_barostat_is_not_asked_at_each_step(self):
-        asked = []
-
-        class Counted(hol.Molecules):
-            def _cut_misfit(self, r, box):
-                asked.append(box[0, 0])
-
-        r = dimers(4)[1]
-        counted = Counted(np.ones(8))
-        counted.add_molecules(4, 2, [(0, 1)], 1.0)
-        for box in (40, 40.1, 40.2, 42, 42.1):
-            counted.box = box
-            counted.project_positions(r, r + 0.0, 1)
-        self.assertEqual(asked, [40, 42])
+            else:
+                with self.assertRaisesRegex(hol.LengthsError, "hardly the box"):
+                    molecules.project_positions(r, r + 0.0, 1)
+            molecules.checks = "never"
+            molecules.project_positions(r, r + 0.0, 1)
 
     def test_crude_positions_inside_as_across_are_not_blamed_on_it(self):
         molecules, r = self.cut()

@@ -8,6 +8,7 @@
 #include "domain.h"
 #include "fix_holonomic.h"
 #include "force.h"
+#include "image.hpp"
 #include "memory.h"
 #include "templates.hpp"
 #include "update.h"
@@ -103,7 +104,7 @@ void FixHolonomic::divided_forces() {
 std::vector<Divided::Known> FixHolonomic::divided_bonds() const {
     if (!divided_->any()) return {};
     return divided_->bonds(divided_r_.data(), [this](double *d) {
-        const Vector shift = image_vector(nearest_image(d));
+        const Vector shift = image_vector(*domain, nearest_image(*domain, d));
         for (int c = 0; c < 3; ++c) d[c] += shift[c];
     });
 }

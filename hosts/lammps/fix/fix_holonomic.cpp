@@ -21,8 +21,8 @@ using namespace holonomic_lammps;
 
 FixHolonomic::FixHolonomic(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), selection_(lmp) {
     if (!atom->tag_enable) error->all(FLERR, "Fix holonomic: atoms must have IDs"s);
-    if (atom->molecular != Atom::MOLECULAR)
-        error->all(FLERR, "Fix holonomic: the atom style must have bonds (and not take them from molecule templates)"s);
+    if (atom->molecular == Atom::TEMPLATE)
+        error->all(FLERR, "Fix holonomic: the atom style must have bonds of its own, not from molecule templates"s);
     read_options(narg, arg, selection_.read(narg, arg, 3));
     if (selection_.empty()) error->all(FLERR, "Illegal fix holonomic command: nothing is selected (b, t, m or rigid)"s);
 
@@ -71,8 +71,19 @@ FixHolonomic::~FixHolonomic() {
     memory->destroy(array_local);
 }
 
+static bool is_keyword(const char *word) {
+    for (const char *keyword : {"fixed", "forces", "tensions", "divide", "rigid"})
+        if (strcmp(word, keyword) == 0) return true;
+    return false;
+}
+
 void FixHolonomic::read_options(int narg, char **arg, int first) {
     for (int k = first; k < narg; k += 2) {
+        if (strcmp(arg[k], "rigid") == 0 && (k + 1 == narg || is_keyword(arg[k + 1]))) {
+            selection_.bodies.take_as_they_stand();
+            --k;
+            continue;
+        }
         if (k + 1 >= narg) error->all(FLERR, std::string("Fix holonomic: keyword ") + arg[k] + " needs a value");
         if (strcmp(arg[k], "fixed") == 0) {
             const int number = group->find(arg[k + 1]);
@@ -87,7 +98,7 @@ void FixHolonomic::read_options(int narg, char **arg, int first) {
             divide_ = utils::inumeric(FLERR, arg[k + 1], false, lmp);
             if (divide_ < 0) error->all(FLERR, "Fix holonomic: divide needs a number of atoms, or 0"s);
         } else if (strcmp(arg[k], "rigid") == 0) {
-            guarded([&] { selection_.add_template(arg[k + 1]); });
+            guarded([&] { selection_.bodies.add_file(arg[k + 1]); });
         } else {
             error->all(FLERR, std::string("Illegal fix holonomic command: no keyword ") + arg[k]);
         }
@@ -123,6 +134,19 @@ void FixHolonomic::check_other_fixes() {
                 error->one(FLERR, "Atom " + std::to_string(atom->tag[i]) + " belongs to fix " + other->id +
                                       " and to fix " + id +
                                       ": one fix holonomic has to have all rigid bonds of a molecule");
+    }
+    for (int k = 0; k < modify->nfix; ++k) {
+        const char *style = modify->fix[k]->style;
+        if (!utils::strmatch(style, "^shake") && !utils::strmatch(style, "^rattle") &&
+            !utils::strmatch(style, "^ilves"))
+            continue;
+        const Tag shared = selection_.held_elsewhere(atoms_);
+        if (shared && comm->me == 0)
+            error->warning(FLERR, "Fix " + std::string(modify->fix[k]->id) + " (" + style +
+                                      ") holds bonds of atoms of fix " + id + " (holonomic), atom " +
+                                      std::to_string(shared) +
+                                      " for one: each spoils what the other has done; let fix holonomic hold them all");
+        break;
     }
     std::vector<int> rigid(atom->nlocal);
     for (int i = 0; i < atom->nlocal; ++i) rigid[i] = atoms_[i].molecule != 0;

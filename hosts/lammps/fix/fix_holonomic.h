@@ -70,6 +70,7 @@ private:
     void read_options(int narg, char **arg, int first);
     void check_other_fixes();
     void find_molecules();
+    void tell_displacement();
     bool renew_molecules(const std::vector<int> &changed, bool other_atoms);
     holonomic_lammps::Registry register_molecules(const std::vector<int> &which);
     void take_memberships(const std::vector<int> &which);
@@ -87,8 +88,6 @@ private:
     void collect_positions(const Block &);
     void return_positions(const Block &, double inverse_time);
     void add_images(const Block &, int sign);
-    Vector image_vector(const Shifts &) const;
-    Shifts nearest_image(const double *d) const;
 
     // Velocities and forces
     void measure_rate();
@@ -160,6 +159,7 @@ private:
     bool reruns_ = false;
 
     int max_rows_ = 0;  // of array_local
+    double told_ = 0;   // of the bodies' displacements, the part of the shortest distance that a warning has named
 };
 
 }  // namespace LAMMPS_NS

@@ -6,6 +6,7 @@
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
+#include "error.h"
 #include "fix_holonomic.h"
 #include "templates.hpp"
 
@@ -14,7 +15,7 @@ using namespace holonomic_lammps;
 
 Registry FixHolonomic::register_molecules(const std::vector<int> &which) {
     const std::vector<RigidBond> bonds = selection_.select(groupbit, atoms_, which);
-    return Registry(world, bonds, selection_.select_bodies(groupbit, which), domain->dimension, size_to_divide());
+    return Registry(world, bonds, selection_.bodies.select(groupbit, which), domain->dimension, size_to_divide());
 }
 
 void FixHolonomic::take_memberships(const std::vector<int> &which) {
@@ -35,6 +36,18 @@ void FixHolonomic::find_molecules() {
         blocks_.clear();
         *plan_ = Plan(world);
     });
+    tell_displacement();
+}
+
+/** Once, and again if it has become more. */
+void FixHolonomic::tell_displacement() {
+    const Bodies::Displacement &most = selection_.bodies.most_displaced();
+    if (!(most.part > Bodies::unremarkable && most.part > 1.001 * told_)) return;
+    told_ = most.part;
+    if (comm->me == 0)
+        error->warning(FLERR, "Fix holonomic: an atom of molecule " + std::to_string(most.molecule) + " is " +
+                                  std::to_string(most.distance) + " from where " + most.name +
+                                  " has it, the largest displacement: it is moved there before the run");
 }
 
 /**
@@ -45,7 +58,7 @@ bool FixHolonomic::renew_molecules(const std::vector<int> &changed, bool other_a
     std::vector<Tag> names;
     for (int i : changed) {
         names.push_back(atom->tag[i]);
-        names.insert(names.end(), atom->bond_atom[i], atom->bond_atom[i] + atom->num_bond[i]);
+        if (atom->num_bond) names.insert(names.end(), atom->bond_atom[i], atom->bond_atom[i] + atom->num_bond[i]);
     }
     // All ranks learn of all that has changed: too much for them if it is most of the system.
     bigint n_names = static_cast<bigint>(names.size());

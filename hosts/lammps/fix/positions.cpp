@@ -7,6 +7,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "fix_holonomic.h"
+#include "image.hpp"
 #include "input.h"
 #include "templates.hpp"
 #include "update.h"
@@ -61,10 +62,10 @@ void FixHolonomic::make_whole() {
                 double *to = &now_[3 * (resident.first + step[0])];
                 const double *from = &now_[3 * (resident.first + step[1])];
                 const double d[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
-                const Shifts images = nearest_image(d);
+                const Shifts images = nearest_image(*domain, d);
                 if (images == Shifts{0, 0, 0}) continue;
                 shifted_.push_back({resident.first + step[0], images});
-                const Vector shift = image_vector(images);
+                const Vector shift = image_vector(*domain, images);
                 for (int c = 0; c < 3; ++c) to[c] += shift[c];
             }
         }
@@ -78,27 +79,9 @@ void FixHolonomic::make_whole() {
     }
 }
 
-FixHolonomic::Vector FixHolonomic::image_vector(const Shifts &n) const {
-    const double *h = domain->h;
-    return {n[0] * h[0] + n[1] * h[5] + n[2] * h[4], n[1] * h[1] + n[2] * h[3], n[2] * h[2]};
-}
-
-/** How many box vectors to add to d to make it short. */
-FixHolonomic::Shifts FixHolonomic::nearest_image(const double *d) const {
-    const double *h = domain->h;
-    Shifts n{0, 0, 0};
-    if (std::fabs(d[0]) < 0.5 * h[0] && std::fabs(d[1]) < 0.5 * h[1] && std::fabs(d[2]) < 0.5 * h[2]) return n;
-    if (domain->zperiodic) n[2] = -static_cast<int>(std::lround(d[2] / h[2]));
-    const double y = d[1] + n[2] * h[3];
-    if (domain->yperiodic) n[1] = -static_cast<int>(std::lround(y / h[1]));
-    const double x = d[0] + n[2] * h[4] + n[1] * h[5];
-    if (domain->xperiodic) n[0] = -static_cast<int>(std::lround(x / h[0]));
-    return n;
-}
-
 void FixHolonomic::add_images(const Block &block, int sign) {
     for (int k = block.first_shifted; k < block.end_shifted; ++k) {
-        const Vector shift = image_vector(shifted_[k].images);
+        const Vector shift = image_vector(*domain, shifted_[k].images);
         for (int c = 0; c < 3; ++c) now_[3 * shifted_[k].slot + c] += sign * shift[c];
     }
 }

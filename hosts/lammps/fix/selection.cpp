@@ -42,12 +42,6 @@ struct Ask {
     Tag from, to;
 };
 
-/** An atom of a molecule that may look like a template. */
-struct Part {
-    Tag molecule, tag;
-    int type;
-};
-
 /** An entry of an atom's list of bonds or angles, which holds 32 at most. */
 void check_entries(Error *error, int n) {
     if (n > 32) error->one(FLERR, "Fix holonomic: an atom has more than 32 bonds or angles"s);
@@ -83,14 +77,12 @@ int Selection::read(int narg, char **arg, int first) {
     return k;
 }
 
-void Selection::add_template(const char *file) {
-    if (!atom->molecule_flag) error->all(FLERR, "Fix holonomic: rigid needs an atom style with molecule IDs"s);
-    templates_.push_back(read_template(world, file));
+bool Selection::empty() const {
+    return bond_types_.empty() && atom_types_.empty() && masses_.empty() && bodies.empty();
 }
 
-bool Selection::empty() const {
-    return bond_types_.empty() && atom_types_.empty() && masses_.empty() && templates_.empty();
-}
+int Selection::n_bonds(int i) const { return atom->num_bond ? atom->num_bond[i] : 0; }
+int Selection::n_angles(int i) const { return atom->num_angle ? atom->num_angle[i] : 0; }
 
 /** Whether all bonds of an atom are wanted for its type or mass. */
 bool Selection::wants(int i) const {
@@ -118,8 +110,8 @@ std::uint32_t Selection::topology(int i) const {
         number = (number ^ static_cast<std::uint64_t>(x)) * 0x9E3779B97F4A7C15u;
         number ^= number >> 32;
     };
-    for (int k = 0; k < atom->num_bond[i]; ++k) add(atom->bond_type[i][k]), add(atom->bond_atom[i][k]);
-    for (int k = 0; atom->num_angle && k < atom->num_angle[i]; ++k) {
+    for (int k = 0; k < n_bonds(i); ++k) add(atom->bond_type[i][k]), add(atom->bond_atom[i][k]);
+    for (int k = 0; k < n_angles(i); ++k) {
         add(atom->angle_type[i][k]);
         add(atom->angle_atom1[i][k]), add(atom->angle_atom2[i][k]), add(atom->angle_atom3[i][k]);
     }
@@ -156,8 +148,8 @@ std::vector<RigidBond> Selection::select_bonds(int groupbit, std::vector<Belongi
 
     std::vector<Ask> questions;
     for (int i : which) {
-        check_entries(error, atom->num_bond[i]);
-        for (int k = 0; k < atom->num_bond[i]; ++k) questions.push_back({atom->tag[i], atom->bond_atom[i][k]});
+        check_entries(error, n_bonds(i));
+        for (int k = 0; k < n_bonds(i); ++k) questions.push_back({atom->tag[i], atom->bond_atom[i][k]});
     }
     const auto other = ask_bookkeepers<int>(
         world, questions, [](const Ask &q) { return q.to; },
@@ -170,7 +162,7 @@ std::vector<RigidBond> Selection::select_bonds(int groupbit, std::vector<Belongi
     std::vector<RigidBond> bonds;
     std::size_t next = 0;
     for (int i : which)
-        for (int k = 0; k < atom->num_bond[i]; ++k) {
+        for (int k = 0; k < n_bonds(i); ++k) {
             const int flags = other[next++];
             int &type = atom->bond_type[i][k];
             const bool ours = atoms[i].bonds >> k & 1 && type < 0;
@@ -195,8 +187,8 @@ void Selection::select_angles(std::vector<Belonging> &atoms, const std::vector<i
 
     std::vector<Ask> questions;
     for (int i : which) {
-        check_entries(error, atom->num_angle[i]);
-        for (int k = 0; k < atom->num_angle[i]; ++k) {
+        check_entries(error, n_angles(i));
+        for (int k = 0; k < n_angles(i); ++k) {
             questions.push_back({atom->angle_atom1[i][k], atom->angle_atom2[i][k]});
             questions.push_back({atom->angle_atom3[i][k], atom->angle_atom2[i][k]});
         }
@@ -210,7 +202,7 @@ void Selection::select_angles(std::vector<Belonging> &atoms, const std::vector<i
 
     std::size_t next = 0;
     for (int i : which)
-        for (int k = 0; k < atom->num_angle[i]; ++k) {
+        for (int k = 0; k < n_angles(i); ++k) {
             const double a = sides[next], b = sides[next + 1];
             next += 2;
             int &type = atom->angle_type[i][k];
@@ -228,34 +220,25 @@ void Selection::select_angles(std::vector<Belonging> &atoms, const std::vector<i
         }
 }
 
-std::vector<BodyAtom> Selection::select_bodies(int groupbit, const std::vector<int> &which) {
-    std::vector<BodyAtom> bodies;
-    if (templates_.empty()) return bodies;
+Tag Selection::held_elsewhere(const std::vector<Belonging> &atoms) const {
     const int n_ranks = size_of(world);
-    Outgoing<Part> outgoing(n_ranks);
-    for (int i : which)
-        if (atom->molecule[i] > 0 && atom->mask[i] & groupbit)
-            outgoing[bookkeeper(atom->molecule[i], n_ranks)].push_back(
-                {atom->molecule[i], atom->tag[i], atom->type[i]});
-    std::vector<Part> parts = route(world, outgoing).items;
-    std::sort(parts.begin(), parts.end(), [](const Part &p, const Part &q) {
-        return p.molecule != q.molecule ? p.molecule < q.molecule : p.tag < q.tag;
-    });
-    const Part *end = parts.data() + parts.size();
-    for (const Part *first = parts.data(), *last = first; first != end; first = last) {
-        while (last != end && last->molecule == first->molecule) ++last;
-        for (const Template &molecule : templates_) {
-            if (!std::equal(first, last, molecule.types.begin(), molecule.types.end(),
-                            [](const Part &p, int type) { return p.type == type; }))
-                continue;
-            for (std::size_t k = 0; k < molecule.at.size(); ++k) {
-                const auto &at = molecule.at[k];
-                bodies.push_back({first->tag, first[k].tag, {at[0], at[1], at[2]}});
-            }
-            break;
-        }
+    Outgoing<Tag> notes(n_ranks);
+    std::vector<Tag> questions;
+    for (int i = 0; i < atom->nlocal; ++i) {
+        if (atoms[i].molecule) notes[bookkeeper(atom->tag[i], n_ranks)].push_back(atom->tag[i]);
+        for (int k = 0; k < n_bonds(i); ++k)
+            if (atom->bond_type[i][k] < 0 && !(atoms[i].bonds >> k & 1))
+                questions.insert(questions.end(), {atom->tag[i], static_cast<Tag>(atom->bond_atom[i][k])});
     }
-    return bodies;
+    const std::vector<Tag> members = route(world, notes).items;
+    const std::set<Tag> known(members.begin(), members.end());
+    const auto belongs = ask_bookkeepers<int>(
+        world, questions, [](Tag tag) { return tag; }, [&](Tag tag) { return static_cast<int>(known.count(tag)); });
+    Tag first = MAXTAGINT;
+    for (std::size_t k = 0; k < questions.size(); ++k)
+        if (belongs[k]) first = std::min(first, questions[k]);
+    MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+    return first == MAXTAGINT ? 0 : first;
 }
 
 void Selection::release(std::vector<Belonging> &atoms) {
@@ -266,9 +249,9 @@ void Selection::release(std::vector<Belonging> &atoms) {
 void Selection::release_atom(int i, Belonging &belonging) {
     if ((belonging.bonds | belonging.angles) == 0) return;
     const bool known = belonging.topology == topology(i);
-    for (int k = 0; k < atom->num_bond[i]; ++k)
+    for (int k = 0; k < n_bonds(i); ++k)
         if (!known || belonging.bonds >> k & 1) atom->bond_type[i][k] = std::abs(atom->bond_type[i][k]);
-    for (int k = 0; atom->num_angle && k < atom->num_angle[i]; ++k)
+    for (int k = 0; k < n_angles(i); ++k)
         if (!known || belonging.angles >> k & 1) atom->angle_type[i][k] = std::abs(atom->angle_type[i][k]);
     belonging.bonds = belonging.angles = 0;
 }

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "../plan/registry.hpp"
+#include "bodies.hpp"
 #include "pointers.h"
-#include "template.hpp"
 
 namespace holonomic_lammps {
 
@@ -27,13 +27,13 @@ struct Belonging : Membership {
 /** Which bonds and angles are to be rigid: those of given types, or bonds of atoms of given types or masses. */
 class Selection : protected LAMMPS_NS::Pointers {
 public:
-    explicit Selection(LAMMPS_NS::LAMMPS *lmp) : Pointers(lmp) {}
+    explicit Selection(LAMMPS_NS::LAMMPS *lmp) : Pointers(lmp), bodies(lmp) {}
 
     /** Reads "b 1 2 a 1 t 3 m 1.0" from arg[first] on; gives the number of the argument behind. */
     int read(int narg, char **arg, int first);
 
-    /** Molecules that look like that of a molecule file are rigid bodies. */
-    void add_template(const char *file);
+    /** Which molecules are rigid bodies. */
+    Bodies bodies;
 
     /** Whether there is anything to select. */
     bool empty() const;
@@ -45,12 +45,12 @@ public:
      */
     std::vector<RigidBond> select(int groupbit, std::vector<Belonging> &atoms, const std::vector<int> &which);
 
-    /** Of some atoms those of the group's molecules that have the atoms of a template, type by type in the order of
-     * IDs. Collective. */
-    std::vector<BodyAtom> select_bodies(int groupbit, const std::vector<int> &which);
-
     /** Atoms here whose bonds or angles are others than when they were last selected, and atoms that are new. */
     std::vector<int> changed(const std::vector<Belonging> &atoms) const;
+
+    /** The first atom of this fix's molecules that has a bond whose force another fix has switched off, 0 if there is
+     * none. Collective. */
+    Tag held_elsewhere(const std::vector<Belonging> &atoms) const;
 
     /** Makes the types of an atom's rigid bonds and angles positive again. */
     void release(std::vector<Belonging> &atoms);
@@ -63,10 +63,12 @@ private:
     bool wants(int i) const;
     std::uint32_t topology(int i) const;
     void release_atom(int i, Belonging &belonging);
+    /** Of an atom; atom styles without bonds have no such lists. */
+    int n_bonds(int i) const;
+    int n_angles(int i) const;
 
     std::set<int> bond_types_, angle_types_, atom_types_;
     std::vector<double> masses_;
-    std::vector<Template> templates_;
 };
 
 }  // namespace holonomic_lammps

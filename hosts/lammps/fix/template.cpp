@@ -34,6 +34,7 @@ Template read_template(MPI_Comm world, const std::string &file) {
     std::istringstream lines(text_of(world, file));
     const auto wrong = [&](const std::string &what) { return ErrorEverywhere("molecule file " + file + ": " + what); };
     Template molecule;
+    molecule.name = "the file " + file;
     std::size_t n_coords = 0, n_types = 0;
     std::string line, section;
     std::getline(lines, line);  // a title

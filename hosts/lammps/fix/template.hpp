@@ -12,6 +12,7 @@ namespace holonomic_lammps {
 
 /** What a rigid molecule looks like: its atoms in the order of their IDs. */
 struct Template {
+    std::string name; /**< in messages */
     std::vector<int> types;
     std::vector<std::array<double, 3>> at;
 };

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "lines.hpp"
+#include "superpose.hpp"
 
 namespace holonomic_lammps {
 
@@ -14,25 +15,11 @@ namespace {
 
 using Neighbours = std::vector<std::vector<int>>;
 
-/** Joins the atoms of a body by its shortest gaps (Prim 1957): those are what nearest images are taken of. */
+/** Joins the atoms of a body by its shortest gaps: those are what nearest images are taken of. */
 void join(const Body &body, Neighbours &neighbours) {
-    const std::size_t n = body.places.size();
-    std::vector<double> gap(n, HUGE_VAL);
-    std::vector<std::size_t> nearest(n, 0);
-    std::vector<char> joined(n, 0);
-    for (std::size_t done = 1, last = 0; done < n; ++done) {
-        joined[last] = 1;
-        std::size_t next = 0;
-        for (std::size_t k = 0; k < n; ++k) {
-            if (joined[k]) continue;
-            double square = 0;
-            for (int c = 0; c < 3; ++c) square += std::pow(body.at[k][c] - body.at[last][c], 2);
-            if (square < gap[k]) gap[k] = square, nearest[k] = last;
-            if (joined[next] || gap[k] < gap[next]) next = k;
-        }
-        neighbours[body.places[next]].push_back(body.places[nearest[next]]);
-        neighbours[body.places[nearest[next]]].push_back(body.places[next]);
-        last = next;
+    for (const auto &step : shortest_way(body.at)) {
+        neighbours[body.places[step[0]]].push_back(body.places[step[1]]);
+        neighbours[body.places[step[1]]].push_back(body.places[step[0]]);
     }
 }
 

@@ -199,6 +199,64 @@ bodies() {
     below 1e-7 v_net parts
 }
 
+# water_file BOND DEGREES: a molecule file of waters as make_scene writes them.
+water_file() {
+    awk -v a="$1" -v angle="$2" 'BEGIN { angle *= atan2(0, -1) / 180
+        printf "# water\n\n3 atoms\n\nCoords\n\n1 %.17g 0 0\n2 0 0 0\n3 %.17g %.17g 0\n\nTypes\n\n1 1\n2 2\n3 1\n", a, a * cos(angle), a * sin(angle) }'
+}
+
+# Which molecules a file's shape holds: the one that fits best; a warning and an error if none fits well; all as they stand
+# without a file; molecules of an atom style that has no bonds.
+shapes() {
+    local n
+    "$SCENE" waters 216 >data
+    water_file 1.05 109.47 >right.mol
+    water_file 1.06 109.47 >near.mol
+    water_file 1.05 80 >bent.mol
+    { sed '/^Types/q' right.mol; printf '\n1 1\n2 2\n3 2\n'; } >other.mol
+    run 1 right "$INPUTS/atomic.lmp" data data select "rigid right.mol"
+    grep -q 'largest displacement' right && [ "$(grep -c 'largest displacement' right)" -gt 0 ] && fail "a warning without a reason"
+    run 2 best "$INPUTS/atomic.lmp" data data select "rigid other.mol rigid near.mol rigid bent.mol rigid right.mol"
+    same 1e-12 TotEng right best
+    run 1 warned "$INPUTS/atomic.lmp" data data select "rigid near.mol"
+    # By hand: the molecule moves along its axis by a third of 2 x 0.01 cos(54.735 deg) at the ends, less at the middle.
+    grep -q 'WARNING.* is 0.00[89][0-9]* from where the file near.mol has it, the largest displacement' warned || { grep WARN warned; fail "no warning"; }
+    lammps 1 refused "$INPUTS/atomic.lmp" data data select "rigid bent.mol" && fail "another molecule's shape was taken"
+    grep -q 'ERROR.*molecule [0-9]* is 0.[12][0-9]* from where the file bent.mol has it' refused || { grep ERROR refused; fail "no error"; }
+    for n in 1 2; do
+        run $n stand$n "$INPUTS/atomic.lmp" data data select rigid
+        same 1e-10 TotEng right stand$n
+    done
+    awk '/ (bonds|angles|bond types|angle types)$/ { next } /^Bonds/ { exit } /^Atoms/ { print "Atoms # atomic"; reading = 1; next }
+        reading && NF { id[++n] = $1; molecule[n] = $2; print $1, $3, $4, $5, $6; next } { print }
+        END { print "\nMolecules\n"; for (k = 1; k <= n; ++k) print id[k], molecule[k] }' data >data.atomic
+    run 2 atomic "$INPUTS/atomic.lmp" data "data.atomic fix id NULL Molecules" style atomic select "rigid right.mol forces 10" \
+        first "fix id all property/atom mol ghost yes"
+    same 1e-10 TotEng right atomic
+    below 1e-13 'f_rigid[1]' atomic
+}
+
+# Fix shake that holds bonds of the same atoms is told of, whichever comes first; that of other atoms is not.
+beside() {
+    local n ranks
+    "$SCENE" trimers 125 >plain
+    # Every other bond, or all of every other molecule, is of type 2.
+    for n in 1 2; do
+        awk -v n=$n '/bond types/ { $1 = 2 } /^Bonds/ { bonds = 1 } /^Angles/ { bonds = 0 }
+            bonds && NF == 4 { $2 = 1 + int(($1 - 1) / n) % 2 } { print }' plain >data$n
+        printf '%s\n' 'bond_coeff 2 100.0 1.05' "fix other all shake 1e-8 100 0 b 2" >other
+        for ranks in 1 2; do
+            run $ranks out "$INPUTS/beads.lmp" data data$n rigid holonomic dt 0.002 wide 3.5 before "include other" steps 1
+            if [ $n = 1 ]; then
+                grep 'WARNING.*Fix other (shake) holds bonds of atoms of fix rigid (holonomic), atom [0-9]* for one' out || fail "no warning"
+            else
+                grep 'holds bonds' out && fail "a warning without a reason"
+            fi
+        done
+    done
+    return 0
+}
+
 # Atoms on a line (CO2, acetylene) and all distances of five atoms (methane), by bonds and angles.
 cliques() {
     fluid bonds co2 steps 100

@@ -1,0 +1,242 @@
+"""Scenes of OpenMM's own tests of constraints: chains, clusters, massless particles, virtual sites, minimisation, Drude particles."""
+
+import math
+import unittest
+
+import numpy as np
+import openmm as mm
+from openmm import unit
+
+from holonomic_openmm import add_holonomic
+
+mm.Platform.loadPluginsFromDirectory(mm.Platform.getDefaultPluginsDirectory())
+NAMES = [mm.Platform.getPlatform(i).getName() for i in range(mm.Platform.getNumPlatforms())]
+PLATFORMS = [name for name in ("Reference", "CPU") if name in NAMES]
+ROOT2 = math.sqrt(2)
+
+
+def custom():
+    integrator = mm.CustomIntegrator(0.001)
+    integrator.addPerDofVariable("x1", 0)
+    integrator.addUpdateContextState()
+    integrator.addComputePerDof("v", "v+0.5*dt*f/m")
+    integrator.addComputePerDof("x", "x+dt*v")
+    integrator.addComputePerDof("x1", "x")
+    integrator.addConstrainPositions()
+    integrator.addComputePerDof("v", "v+0.5*dt*f/m+(x-x1)/dt")
+    integrator.addConstrainVelocities()
+    return integrator
+
+
+INTEGRATORS = {
+    "verlet": lambda: mm.VerletIntegrator(0.001),
+    "variable verlet": lambda: mm.VariableVerletIntegrator(1e-5),
+    "langevin": lambda: mm.LangevinIntegrator(100, 2, 0.001),
+    "langevin middle": lambda: mm.LangevinMiddleIntegrator(100, 2, 0.001),
+    "variable langevin": lambda: mm.VariableLangevinIntegrator(100, 2, 1e-5),
+    "brownian": lambda: mm.BrownianIntegrator(100, 20, 0.0005),
+    "nose-hoover": lambda: mm.NoseHooverIntegrator(100, 5, 0.001),
+    "custom": custom,
+}
+
+
+def charged(masses, charges):
+    system = mm.System()
+    force = mm.NonbondedForce()
+    for mass, charge in zip(masses, charges):
+        system.addParticle(mass)
+        force.addParticle(charge, 0.5, 5.0 if mass else 0.0)
+    system.addForce(force)
+    return system
+
+
+def chain():
+    n = 8
+    system = charged([5.0 if i % 2 else 10.0 for i in range(n)], [0.2 if i % 2 else -0.2 for i in range(n)])
+    constraints = [(i, i + 1, 1.0) for i in range(n - 1)]
+    r = np.zeros((n, 3))
+    for i in range(1, n):
+        r[i] = r[i - 1] + ((0.8, 0.6, 0), (0.8, -0.36, 0.48))[i % 2]
+    return system, constraints, r
+
+
+def cluster():
+    """A tetrahedral group and two more, whose distances close cycles."""
+    system = charged([1.0 if i else 5.0 for i in range(7)], [0.1 * (-1) ** i for i in range(7)])
+    constraints = [(0, 1, 1.0), (0, 2, 1.0), (0, 3, 1.0), (0, 4, 1.0), (1, 5, 1.0), (1, 6, 1.0), (2, 3, ROOT2), (2, 4, ROOT2),
+                   (3, 4, ROOT2), (5, 6, ROOT2)]
+    r = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (-1, 0, 0), (1, 1, 0), (1, 0, -1)], float)
+    return system, constraints, r
+
+
+def context_of(system, constraints, r, integrator, platform, velocities=None, holonomic=True):
+    for i, j, length in constraints:
+        system.addConstraint(i, j, length)
+    if holonomic:
+        add_holonomic(system)
+    context = mm.Context(system, integrator, mm.Platform.getPlatformByName(platform))
+    context.setPositions(r)
+    if velocities is not None:
+        context.setVelocities(velocities)
+        context.applyVelocityConstraints(1e-8)
+    return context
+
+
+def positions(context):
+    return context.getState(getPositions=True).getPositions(asNumpy=True).value_in_unit(unit.nanometer)
+
+
+def velocities(context):
+    return context.getState(getVelocities=True).getVelocities(asNumpy=True)._value
+
+
+def worst(r, constraints):
+    return max(abs(np.linalg.norm(r[i] - r[j]) / length - 1) for i, j, length in constraints)
+
+
+class Scenes(unittest.TestCase):
+    def test_chains_and_clusters_with_every_integrator(self):
+        for platform in PLATFORMS:
+            for make in (chain, cluster):
+                for name, integrator in INTEGRATORS.items():
+                    with self.subTest(platform=platform, scene=make.__name__, integrator=name):
+                        system, constraints, r = make()
+                        start = np.random.default_rng(1).uniform(-0.5, 0.5, r.shape)
+                        context = context_of(system, constraints, r, integrator(), platform, start)
+                        for _ in range(10):
+                            context.getIntegrator().step(20)
+                            self.assertLess(worst(positions(context), constraints), 1e-13)
+                        self.assertGreater(np.abs(positions(context) - r).max(), 1e-3)
+
+    def test_energy_of_chains_and_clusters(self):
+        for make in (chain, cluster):
+            system, constraints, r = make()
+            start = np.random.default_rng(1).uniform(-0.5, 0.5, r.shape)
+            context = context_of(system, constraints, r, mm.VerletIntegrator(0.001), "Reference", start)
+            energies = []
+            for _ in range(50):
+                context.getIntegrator().step(20)
+                state = context.getState(getEnergy=True)
+                energies.append((state.getKineticEnergy() + state.getPotentialEnergy())._value)
+            self.assertLess(np.ptp(energies), 0.01)
+
+    def test_velocities_on_the_constraints(self):
+        for platform in PLATFORMS:
+            for make in (chain, cluster):
+                system, constraints, r = make()
+                start = np.random.default_rng(2).uniform(-0.5, 0.5, r.shape)
+                context = context_of(system, constraints, r, custom(), platform, start)
+                context.getIntegrator().step(50)
+                r, v = positions(context), velocities(context)
+                for i, j, length in constraints:
+                    self.assertLess(abs((r[i] - r[j]) @ (v[i] - v[j])), 1e-13)
+
+    def test_a_constraint_of_a_massless_particle_with_one_that_has_mass_is_refused(self):
+        for platform in PLATFORMS:
+            with self.assertRaises(mm.OpenMMException):
+                context_of(charged([0.0, 1.0], [0, 0]), [(0, 1, 1.5)], [(-1, 0, 0), (1, 0, 0)], mm.VerletIntegrator(0.01), platform)
+
+    def test_massless_particles_alone(self):
+        for platform in PLATFORMS:
+            for name, integrator in INTEGRATORS.items():
+                if name.startswith("variable"):
+                    continue  # their error of a step is over the masses
+                with self.subTest(platform=platform, integrator=name):
+                    r = np.array([(-1.0, 0, 0), (1.0, 0, 0)])
+                    context = context_of(charged([0.0, 0.0], [0.2, -0.2]), [(0, 1, 1.5)], r, integrator(), platform,
+                                         np.zeros((2, 3)))
+                    context.getIntegrator().step(2)
+                    np.testing.assert_array_equal(positions(context), r)
+                    np.testing.assert_array_equal(velocities(context), 0)
+                    context.applyConstraints(1e-6)
+                    context.applyVelocityConstraints(1e-6)
+                    np.testing.assert_array_equal(positions(context), r)
+
+    def test_massless_pairs_beside_molecules(self):
+        for platform in PLATFORMS:
+            for name, integrator in INTEGRATORS.items():
+                with self.subTest(platform=platform, integrator=name):
+                    system = charged([0.0, 0.0, 2.0, 3.0], [0.2, -0.2, 0.1, -0.1])
+                    r = np.array([(-2.0, 0, 0), (2.0, 0, 0), (0, 0, 0), (0, 1.0, 0)])
+                    start = np.zeros((4, 3))
+                    start[3] = (0.5, 0, 0)
+                    context = context_of(system, [(0, 1, 1.5), (2, 3, 1.0)], r, integrator(), platform, start)
+                    context.getIntegrator().step(100)
+                    np.testing.assert_array_equal(positions(context)[:2], r[:2])
+                    self.assertLess(worst(positions(context), [(2, 3, 1.0)]), 1e-13)
+                    self.assertGreater(np.abs(positions(context)[2:] - r[2:]).max(), 1e-4)
+
+    def test_virtual_sites(self):
+        for platform in PLATFORMS:
+            for name, integrator in INTEGRATORS.items():
+                with self.subTest(platform=platform, integrator=name):
+                    system = charged([16.0, 1.0, 1.0, 0.0], [0.0, 0.5, 0.5, -1.0])
+                    force = system.getForce(0)
+                    for i in range(4):
+                        for j in range(i):
+                            force.addException(i, j, 0, 1, 0)
+                    system.setVirtualSite(3, mm.ThreeParticleAverageSite(0, 1, 2, 0.786646558, 0.106676721, 0.106676721))
+                    pull = mm.CustomExternalForce("3*x*x-2*y")
+                    pull.addParticle(3, [])
+                    system.addForce(pull)
+                    r = np.array([(0, 0, 0), (0.9572, 0, 0), (-0.2399872, 0.9266272, 0), (0, 0, 0)])
+                    constraints = [(0, 1, 0.9572), (0, 2, 0.9572), (1, 2, np.linalg.norm(r[1] - r[2]))]
+                    context = context_of(system, constraints, r, integrator(), platform, np.zeros((4, 3)))
+                    context.computeVirtualSites()
+                    context.getIntegrator().step(100)
+                    now = positions(context)
+                    self.assertLess(worst(now, constraints), 1e-13)
+                    site = 0.786646558 * now[0] + 0.106676721 * (now[1] + now[2])
+                    np.testing.assert_allclose(now[3], site, atol=1e-12)
+
+    def test_minimisation(self):
+        for platform in PLATFORMS:
+            for make in (chain, cluster):
+                with self.subTest(platform=platform, scene=make.__name__):
+                    system, constraints, r = make()
+                    context = context_of(system, constraints, r, mm.VerletIntegrator(0.001), platform)
+                    before = context.getState(getEnergy=True).getPotentialEnergy()._value
+                    mm.LocalEnergyMinimizer.minimize(context, 0.1)
+                    after = context.getState(getEnergy=True).getPotentialEnergy()._value
+                    self.assertLess(after, before - 1e-3)
+                    self.assertLess(worst(positions(context), constraints), 1e-13)
+                    # The minimum of OpenMM's own constraints, up to what the minimiser leaves.
+                    system, constraints, r = make()
+                    own = context_of(system, constraints, r, mm.VerletIntegrator(0.001), platform, holonomic=False)
+                    mm.LocalEnergyMinimizer.minimize(own, 0.1)
+                    self.assertAlmostEqual(after, own.getState(getEnergy=True).getPotentialEnergy()._value, delta=0.02 * (before - after))
+
+    @unittest.skipUnless(hasattr(mm, "DrudeForce"), "this OpenMM has no Drude particles")
+    def test_drude_water(self):
+        for make in (lambda: mm.DrudeLangevinIntegrator(300, 20, 1, 20, 0.0005), lambda: mm.DrudeSCFIntegrator(0.0005)):
+            system = mm.System()
+            nonbonded, drude = mm.NonbondedForce(), mm.DrudeForce()
+            r, constraints = [], []
+            for m in range(8):
+                first = 5 * m
+                for mass in (15.6, 0.4, 1.0, 1.0, 0.0):
+                    system.addParticle(mass)
+                for charge in (1.71636, -1.71636, 0.55733, 0.55733, -1.11466):
+                    nonbonded.addParticle(charge, 0.318395 if charge == 1.71636 else 1, 0.21094 * 4.184 if charge == 1.71636 else 0)
+                for i in range(5):
+                    for j in range(i):
+                        nonbonded.addException(first + i, first + j, 0, 1, 0)
+                drude.addParticle(first + 1, first, -1, -1, -1, -1.71636, 0.001042542, 1, 1)
+                system.setVirtualSite(first + 4, mm.ThreeParticleAverageSite(first, first + 2, first + 3, 0.786646558,
+                                                                             0.106676721, 0.106676721))
+                constraints += [(first, first + 2, 0.09572), (first, first + 3, 0.09572), (first + 2, first + 3, 0.15139)]
+                at = np.array([m // 4, m // 2 % 2, m % 2]) * 0.4
+                r += [at, at, at + (0.09572, 0, 0), at + (-0.023999, 0.092663, 0), at]
+            system.addForce(nonbonded)
+            system.addForce(drude)
+            context = context_of(system, constraints, np.array(r), make(), "Reference")
+            context.applyConstraints(1e-6)
+            context.computeVirtualSites()
+            context.setVelocitiesToTemperature(300, 1)
+            context.getIntegrator().step(100)
+            self.assertLess(worst(positions(context), constraints), 1e-13)
+            self.assertGreater(np.abs(positions(context) - r).max(), 1e-3)
+
+
+if __name__ == "__main__":
+    unittest.main()
