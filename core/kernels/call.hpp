@@ -186,7 +186,8 @@ struct KeptCall {
     unsigned char *left;
 };
 
-enum JoinResult { join_good, join_doubtful, join_bad };
+// extreme: doubtful, and by the units in which the chain is.
+enum JoinResult { join_good, join_doubtful, join_extreme, join_bad };
 
 // A chain of more than longest_lane bonds is worked on in blocks of segments, in phases; within a phase the blocks may
 // be done in any order, by any thread. `store` keeps what passes from phase to phase.

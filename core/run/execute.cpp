@@ -148,21 +148,26 @@ void do_bad_ones_again(const Work &work, const AnyUnit &unit, int where, double 
     });
 }
 
-// A unit as it is, or in ordinary units; do_it(tally) does the first.
+// A unit as it is, or in ordinary units; do_it(tally) does the first. Inlined by force: all of a call on one molecule
+// passes here.
 template <class AnyUnit, class Do>
-void in_its_units(const Work &work, const AnyUnit &unit, int where, double *scratch, Tally &tally, const Do &do_it) {
-    if ((where & far_units) && work.rescales())
-        return work_on_rescaled(work, unit, where, scratch, tally, [](std::int64_t) { return true; });
-    if (tally.n_bad > 0) {  // of other molecules
-        Tally own = empty_tally();
-        in_its_units(work, unit, where, scratch, own, do_it);
-        return add(tally, own);
-    }
+void with_a_list_of_bad_ones(const Work &work, const AnyUnit &unit, int where, double *scratch, Tally &tally,
+                             const Do &do_it) {
     std::int64_t bad[most_listed];
     tally.bad = bad;
     do_it(tally);
     if (__builtin_expect(tally.n_bad > 0, 0)) do_bad_ones_again(work, unit, where, scratch, tally);
     tally.bad = nullptr;
+}
+template <class AnyUnit, class Do>
+__attribute__((always_inline)) inline void in_its_units(const Work &work, const AnyUnit &unit, int where,
+                                                        double *scratch, Tally &tally, const Do &do_it) {
+    if (__builtin_expect((where & far_units) && work.rescales(), 0))
+        return work_on_rescaled(work, unit, where, scratch, tally, [](std::int64_t) { return true; });
+    if (__builtin_expect(tally.n_bad == 0, 1)) return with_a_list_of_bad_ones(work, unit, where, scratch, tally, do_it);
+    Tally own = empty_tally();  // the bad ones so far are other molecules
+    with_a_list_of_bad_ones(work, unit, where, scratch, own, do_it);
+    add(tally, own);
 }
 
 // One call: what it needs, and its pieces one by one or shared.
@@ -349,20 +354,29 @@ void work_again(const Work &work, const Unit &unit, int where, double *scratch, 
     do_bad_ones_again(work, unit, where, scratch, tally);
 }
 
+namespace {
+
+template <int n>
+void refuse_infinite_virial(const double *sum) {
+    double zero = 0;
+    for (int i = 0; i < n; ++i) zero += 0 * sum[i];
+    if (__builtin_expect(zero == 0, 1)) return;
+    Error error = make_error(Status::not_finite, "the virial overflows; choose other units");
+    error.n_bad = 1;  // the rest of the call has been done
+    throw error;
+}
+
+}  // namespace
+
 void write_virial(const double *sum, double *virial) {
-    if (!std::all_of(sum, sum + 9, [](double x) { return std::isfinite(x); })) {
-        Error error = make_error(Status::not_finite, "the virial overflows; choose other units");
-        error.n_bad = 1;  // the rest of the call has been done
-        throw error;
-    }
+    refuse_infinite_virial<9>(sum);
     std::copy(sum, sum + 9, virial);
 }
 
 void write_virial(const Tally &tally, double *virial) {
+    refuse_infinite_virial<6>(tally.virial);
     const int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    double sum[9];
-    for (int i = 0; i < 9; ++i) sum[i] = tally.virial[place[i]];
-    write_virial(sum, virial);
+    for (int i = 0; i < 9; ++i) virial[i] = tally.virial[place[i]];
 }
 
 double *scratch_of_this_thread(std::int64_t bytes) {

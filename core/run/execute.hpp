@@ -106,14 +106,10 @@ inline Tally execute(const Chains &chains, const AnyWork &work) {
 template <class Phases, class Call>
 void solve_long_chain(const Phases &phases, const Call &call, const Lane &lane, const Team &team, double *store,
                       Tally &tally) {
-    Powers units;
     const std::int64_t blocks = phases.blocks(lane.n_bonds);
     JoinResult result = join_doubtful;
     for (int attempt = 0; attempt < 2 && result == join_doubtful; ++attempt) {
         const bool careful = attempt == 1;
-        if (careful && !call.rescaled &&
-            !(find_units(KernelMolecule(lane), call.r, call.box, units) && are_ordinary(units)))
-            break;
         // A few blocks before all others: a chain that is in doubt there needs no plain products elsewhere.
         std::int64_t done = 0;
         for (const std::int64_t end : {std::min<std::int64_t>(blocks, 8), blocks}) {
@@ -123,6 +119,7 @@ void solve_long_chain(const Phases &phases, const Call &call, const Lane &lane, 
             });
             done = end;
             result = phases.join(lane, end, careful, store);
+            if (result == join_extreme && call.rescaled) result = join_doubtful;  // nothing better is to be had
             if (result != join_good) break;
         }
     }

@@ -25,7 +25,8 @@ struct Summary {
     vec E, y, a, c, f, T;  // y without the right-hand side of the separator behind
     vec q, b;              // of the separators: d.d and the right-hand side
     vec span, reach;       // largest w times the last q, times the separator's: see is_doubtful_join()
-    vec t, up;             // at the separators: y^ / P^, then t; f / P^
+    vec w_max, q_max;
+    vec t, up;  // at the separators: y^ / P^, then t; f / P^
     mask doubt;
 };
 
@@ -72,7 +73,7 @@ struct Elimination {
     vec q;            // of the bond that is to be eliminated
     Column e, ac;     // E = A / F; a and c, in the same units of 1 / F
     vec rF, f, y, T;  // 1 / F; f is in its units, too
-    vec w_max, slack;
+    vec w_max, q_max, slack;
     vec largest_rF, least_rF;
 };
 
@@ -89,6 +90,7 @@ HOL_INLINE void start(Elimination &e, const Block &block, vec q0, const Joint &j
     e.T = e.slack = e.largest_rF = vec{};
     e.least_rF = splat(1.0);
     e.w_max = w;
+    e.q_max = max(q0, j.q);
 }
 
 // In a straight chain c, f and E shrink by the same factor at each bond. They are rounded in the same way, so that
@@ -143,6 +145,7 @@ HOL_INLINE void step(Elimination &e, const Block &block, const SegmentStore &x, 
     if (!careful) e.slack = min(e.slack, left);
     if (!uniform) e.w_max = max(e.w_max, ragged ? keep(live, w) : w);  // inert bonds have masses of their own
     e.q = j.q;
+    e.q_max = max(e.q_max, ragged ? keep(live, j.q) : j.q);
 }
 
 // Loads W segments, stage by stage, and eliminates their inner bonds: a group at a time where all have these bonds,
@@ -230,6 +233,8 @@ HOL_NOINLINE void eliminate(const SegmentBlock &s, const Reader &in, const Separ
     sum.f = e.f;
     sum.T = e.T;
     sum.span = e.w_max * e.q;
+    sum.w_max = e.w_max;
+    sum.q_max = e.q_max;
     sum.reach = uniform ? vec{} : e.w_max * sum.q;
     sum.doubt = doubt | ~less(e.largest_rF, splat(careful ? largest_reciprocal_of_one : largest_reciprocal_of_four)) |
                 ~less(vec{}, e.least_rF);

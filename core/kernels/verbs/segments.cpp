@@ -32,19 +32,38 @@ void eliminate_block(int terms, const Box &box, const Cut &cut, const Lane &lane
     if (x.past_cache) settle_stores();
 }
 
+// Whether the units of a chain, as it is in these blocks, are not ordinary ones, or its bonds no lengths.
+bool are_extreme(const Summary *all, int64_t blocks) {
+    vec q = {}, w = {};
+    for (int64_t j = 0; j < blocks; ++j) {
+        q = max(q, all[j].q_max);
+        w = max(w, all[j].w_max);
+    }
+    double most_q = 0, most_w = 0;
+    for (int i = 0; i < W; ++i) {
+        most_q = q[i] > most_q ? q[i] : most_q;
+        most_w = w[i] > most_w ? w[i] : most_w;
+    }
+    constexpr double length = int64_t{1} << most_ordinary_length, mass = 0x1p92;
+    static_assert(most_ordinary_mass == 92);
+    const auto ordinary = [](double x, double most) { return x * most >= 1 && x <= most; };
+    return !(ordinary(most_q, length * length) && ordinary(most_w, mass) && ordinary(most_q * most_w, mass));
+}
+
 // Solves for the separators of the first blocks. `careful` says how the segments were eliminated.
 JoinResult long_join(const Lane &lane, int64_t blocks, bool careful, double *store) {
     const Cut cut(lane.n_bonds);
     Summary *const all = SegmentStore(store, cut, 0).summary;
+    const auto doubt = [&] { return careful ? join_bad : are_extreme(all, blocks) ? join_extreme : join_doubtful; };
     double E = 0, y = 0;
     for (int64_t j = 0; j < blocks; ++j) {
         Summary &s = all[j];
         if (j == 0) E = relative_w(lane, 0) * s.q[0];
-        if (any(s.doubt)) return careful ? join_bad : join_doubtful;
+        if (any(s.doubt)) return doubt();
         for (int i = 0; i < W; ++i) {
             const double P = E + s.c[i], yhat = (y + s.b[i]) + s.T[i], S = s.E[i] * E + s.a[i];
-            if (!careful && is_doubtful_join(s, i, S, P, 1.0)) return join_doubtful;
-            if (!(P - P == 0)) return careful ? join_bad : join_doubtful;  // what is over it would be zero
+            if (!careful && is_doubtful_join(s, i, S, P, 1.0)) return doubt();
+            if (!(P - P == 0)) return doubt();  // what is over it would be zero
             s.t[i] = yhat / P;
             s.up[i] = s.f[i] / P;
             E = S / P;
@@ -57,7 +76,7 @@ JoinResult long_join(const Lane &lane, int64_t blocks, bool careful, double *sto
         for (int i = W - 1; i >= 0; --i) {
             t = j == blocks - 1 && i == W - 1 ? s.t[i] : s.t[i] + s.up[i] * t;
             s.t[i] = t;
-            if (!(t - t == 0)) return careful ? join_bad : join_doubtful;
+            if (!(t - t == 0)) return doubt();
         }
     }
     return join_good;
