@@ -28,7 +28,7 @@ namespace holonomic {
 /** What a function of the library refused, with hol_error_location(). */
 class Error : public std::runtime_error {
 public:
-    Error(int status, const std::string &message) : std::runtime_error(message), status(status) {
+    Error(int code, const std::string &message) : std::runtime_error(message), status(code) {
         hol_error_location(&molecule, &bond, &atom, &n_bad);
     }
     /** Of an argument that this header refuses. */
