@@ -77,6 +77,14 @@ const char *hol_status_name(int status) {
 
 const char *hol_error_message(void) { return holonomic::last_message; }
 
+int hol_error_remember(int status, const char *message) {
+    holonomic::Error error{};
+    error.status = static_cast<holonomic::Status>(status);
+    std::snprintf(holonomic::last_message, sizeof holonomic::last_message, "%s", message ? message : "");
+    holonomic::last_error = error;
+    return status;
+}
+
 void hol_error_location(int64_t *molecule, int64_t *bond, int64_t *atom, int64_t *n_bad) {
     const holonomic::Error &error = holonomic::last_error;
     const bool any = error.status != holonomic::Status::ok;

@@ -1,13 +1,13 @@
 ! The C interface of the library (holonomic.h), declared for Fortran and nothing more: same names, same arguments, C's
 ! conventions. What each function does is said in the header. Ordinary programs want the module `holonomic`.
 module holonomic_c
-   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int32_t, c_int64_t, c_null_ptr, c_ptr
+   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_int, c_int32_t, c_int64_t, c_null_ptr, c_ptr
    use holonomic_c_given
    use holonomic_c_metric
    use holonomic_c_molecules
    implicit none
    public
-   private :: c_double, c_int, c_int32_t, c_int64_t, c_null_ptr, c_ptr
+   private :: c_char, c_double, c_int, c_int32_t, c_int64_t, c_null_ptr, c_ptr
 
    ! hol_status
    integer(c_int), parameter :: HOL_OK = 0
@@ -94,6 +94,13 @@ module holonomic_c
       function hol_error_message() bind(c) result(text)
          import :: c_ptr
          type(c_ptr) :: text
+      end function
+
+      function hol_error_remember(status, message) bind(c) result(same)
+         import :: c_char, c_int
+         integer(c_int), value :: status
+         character(kind=c_char), intent(in) :: message(*)
+         integer(c_int) :: same
       end function
 
       subroutine hol_error_location(molecule, bond, atom, n_bad) bind(c)

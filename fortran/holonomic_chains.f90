@@ -17,7 +17,8 @@ module holonomic_chains
       type(c_ptr) :: handle = c_null_ptr
       type(ownership) :: owner
    contains
-      procedure :: create
+      procedure, private :: create_set
+      generic :: create => create_set
       procedure :: copy_of
       procedure :: adopt
       procedure :: destroy
@@ -31,7 +32,7 @@ module holonomic_chains
 
 contains
 
-   subroutine create(self, masses, stat, errmsg)
+   subroutine create_set(self, masses, stat, errmsg)
       class(chain_set), intent(inout) :: self
       real(real64), intent(in), contiguous, target :: masses(:)
       integer, intent(out), optional :: stat

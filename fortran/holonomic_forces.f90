@@ -3,14 +3,14 @@ module holonomic_forces
    use, intrinsic :: iso_c_binding, only: c_int, c_null_ptr, c_ptr
    use, intrinsic :: iso_fortran_env, only: int64, real32, real64
    use holonomic_c, only: hol_forces_view, HOL_ADD, HOL_WRITE
-   use holonomic_given, only: chain_set_given
+   use holonomic_single, only: chain_set_single
    use holonomic_place, only: list_of, place, tensor
    use holonomic_status, only: failure, settle
    implicit none
    private
    public :: chain_set_forces
 
-   type, extends(chain_set_given) :: chain_set_forces
+   type, extends(chain_set_single) :: chain_set_forces
    contains
       procedure, private :: forces_rows_32, forces_rows_64, forces_parts_32, forces_parts_64
       procedure, private :: add_forces_rows_32, add_forces_rows_64, add_forces_parts_32, add_forces_parts_64

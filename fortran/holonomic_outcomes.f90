@@ -12,7 +12,8 @@ module holonomic_outcomes
    type, extends(chain_set_impose) :: chain_set_outcomes
    contains
       procedure :: set_outcomes
-      procedure :: outcomes
+      procedure, private :: outcomes_32, outcomes_64
+      generic :: outcomes => outcomes_32, outcomes_64
    end type
 
 contains
@@ -29,7 +30,7 @@ contains
    end subroutine
 
    ! Of each molecule, in this thread's last call: a status as `stat`, and the number of iterations.
-   recursive subroutine outcomes(self, status, iterations, stat, errmsg)
+   recursive subroutine outcomes_32(self, status, iterations, stat, errmsg)
       class(chain_set_outcomes), intent(in) :: self
       integer(c_int), intent(inout), optional, contiguous, target :: status(:), iterations(:)
       integer, intent(out), optional :: stat
@@ -49,6 +50,31 @@ contains
       end if
       if (problem%none()) call problem%ask(hol_outcomes(self%c_handle(), to_status, to_iterations))
       call settle(problem, "outcomes", stat, errmsg)
+   end subroutine
+
+   ! For programs whose default integers have eight bytes.
+   recursive subroutine outcomes_64(self, status, iterations, stat, errmsg)
+      class(chain_set_outcomes), intent(in) :: self
+      integer(c_int64_t), intent(inout) :: status(:)
+      integer(c_int64_t), intent(inout), optional :: iterations(:)
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      integer(c_int), allocatable :: short(:), rounds(:)
+      integer :: own
+      allocate (short(size(status)), source=int(status, c_int))
+      allocate (rounds(self%n_molecules()), source=0_c_int)
+      if (present(iterations)) then
+         if (size(iterations) < size(rounds)) rounds = rounds(:size(iterations))
+      end if
+      if (present(stat)) then
+         call self%outcomes_32(short, rounds, own, errmsg)
+         stat = own
+         if (own /= 0) return
+      else
+         call self%outcomes_32(short, rounds)
+      end if
+      status = short
+      if (present(iterations)) iterations(:size(rounds)) = rounds
    end subroutine
 
 end module

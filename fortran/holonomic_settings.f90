@@ -20,18 +20,21 @@ module holonomic_settings
       generic :: set_box => set_box_matrix, set_box_lengths
       procedure, private :: set_reference_box_matrix, set_reference_box_lengths
       generic :: set_reference_box => set_reference_box_matrix, set_reference_box_lengths
-      procedure :: set_box_rate
+      procedure, private :: set_box_rate_matrix
+      generic :: set_box_rate => set_box_rate_matrix
       procedure :: set_checks
       procedure, private :: set_labels_none, set_labels_32, set_labels_64
       generic :: set_labels => set_labels_none, set_labels_32, set_labels_64
       procedure :: set_threads
       procedure :: set_active
-      procedure :: set_tolerance
+      procedure, private :: set_tolerance_to
+      generic :: set_tolerance => set_tolerance_to
       procedure :: set_max_iterations
       procedure, private :: set_memory_limit_32, set_memory_limit_64
       generic :: set_memory_limit => set_memory_limit_32, set_memory_limit_64
-      procedure :: set_lengths
-      procedure :: set_masses
+      procedure, private :: set_lengths_of, set_masses_of
+      generic :: set_lengths => set_lengths_of
+      generic :: set_masses => set_masses_of
    end type
 
 contains
@@ -88,7 +91,7 @@ contains
    end subroutine
 
    ! d(box)/dt = matmul(L, box) and r' = v + matmul(L, r). Without an argument: none.
-   subroutine set_box_rate(self, L, stat, errmsg)
+   subroutine set_box_rate_matrix(self, L, stat, errmsg)
       class(chain_set_settings), intent(inout) :: self
       real(real64), intent(in), optional :: L(3, 3)
       integer, intent(out), optional :: stat
@@ -197,7 +200,7 @@ contains
       call settle(problem, "set_active", stat, errmsg)
    end subroutine
 
-   subroutine set_tolerance(self, tolerance, stat, errmsg)
+   subroutine set_tolerance_to(self, tolerance, stat, errmsg)
       class(chain_set_settings), intent(inout) :: self
       real(real64), intent(in) :: tolerance
       integer, intent(out), optional :: stat
@@ -240,7 +243,7 @@ contains
    end subroutine
 
    ! New lengths of all bonds, in the order in which these were given.
-   subroutine set_lengths(self, lengths, stat, errmsg)
+   subroutine set_lengths_of(self, lengths, stat, errmsg)
       class(chain_set_settings), intent(inout) :: self
       real(real64), intent(in), contiguous, target :: lengths(:)
       integer, intent(out), optional :: stat
@@ -254,7 +257,7 @@ contains
    end subroutine
 
    ! New masses of all atoms. A fixed atom of a molecule stays fixed, and one that can move stays movable.
-   subroutine set_masses(self, masses, stat, errmsg)
+   subroutine set_masses_of(self, masses, stat, errmsg)
       class(chain_set_settings), intent(inout) :: self
       real(real64), intent(in), contiguous, target :: masses(:)
       integer, intent(out), optional :: stat

@@ -2,8 +2,8 @@
 ! a hol_status in it (0 on success) and the reason in `errmsg`, which a success leaves alone; if `stat` is absent a
 ! failure stops the program with the reason.
 module holonomic_status
-   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_int, c_int64_t, c_ptr, c_size_t
-   use holonomic_c, only: hol_error_message, HOL_ERR_NULL, HOL_OK
+   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_null_char, c_f_pointer, c_int, c_int64_t, c_ptr, c_size_t
+   use holonomic_c, only: hol_error_message, hol_error_remember, HOL_ERR_NULL, HOL_OK
    implicit none
    private
    public :: failure, settle, text_of, decimal, named
@@ -12,6 +12,7 @@ module holonomic_status
    ! The message is of fixed length, as C's is: there may be no memory left for another. Undefined while there is none.
    type :: failure
       integer(c_int) :: status = HOL_OK
+      logical :: is_own = .false.   ! found here, and not by the library
       character(640) :: message
    contains
       procedure :: none
@@ -41,6 +42,7 @@ contains
       character(*), intent(in) :: message
       if (.not. self%none()) return
       self%status = status
+      self%is_own = .true.
       self%message = message
    end subroutine
 
@@ -79,13 +81,14 @@ contains
       integer, intent(out), optional :: stat
       character(*), intent(inout), optional :: errmsg
       character(len(problem%message) + 40) :: text   ! not an expression: there may be no memory left for one
-      integer :: n
+      integer :: n, ignored
       if (present(stat)) stat = int(problem%status)
       if (problem%none()) return
       n = len(procedure)
       text = procedure
       text(n + 1:n + 2) = ": "
       text(n + 3:) = problem%message
+      if (problem%is_own) ignored = hol_error_remember(problem%status, trim(text)//c_null_char)
       if (.not. present(stat)) error stop "holonomic: "//trim(text)
       if (present(errmsg)) errmsg = text
    end subroutine

@@ -4,6 +4,8 @@
  * atoms, and the processes share the bonds that are cut, the interface. The results are those that the library
  * holonomic finds for the whole molecule on one process.
  *
+ * This interface is no part of the promise of docs/abi.md: it may change with any release.
+ *
  * Each process eliminates the bonds inside its subdomain, but for those where many parts between cut bonds meet. What
  * is left, those and the cut bonds, are the interface's equations, of which every process adds up its part (the Schur
  * complement), and which every process solves alike. A residual of all bonds in twice the precision then corrects the
@@ -26,9 +28,9 @@ extern "C" {
 /**
  * Replaces numbers[0..n-1] by their sums over all processes, with the same bits on each (MPI_Allreduce with MPI_SUM and
  * MPI_IN_PLACE does so). This is the only communication. Processes come with the same n.
- * @return 0, or anything else if it went wrong: the call that needed it then returns HOL_ERR_INTERNAL
+ * @return 0, or anything else if it went wrong: the call that needed it then returns HOL_ERR_CALLBACK
  */
-typedef int (*hol_sum)(void *context, int64_t n, double *numbers);
+typedef int (*hol_subdomain_sum)(void *context, int64_t n, double *numbers);
 
 /** What one process knows of divided molecules. */
 typedef struct hol_subdomain hol_subdomain;
@@ -48,11 +50,11 @@ typedef struct hol_subdomain hol_subdomain;
  * @param[in]  cut_lengths    [n_cut], on every process. Copied
  * @param[out] subdomain      the new handle, to be given to hol_subdomain_destroy; NULL on an error
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (a size, length or mass); HOL_ERR_INDEX (an atom that is not there, a
- *         bond of an atom with itself; an end that no process names, or two); HOL_ERR_MEMORY; HOL_ERR_INTERNAL
+ *         bond of an atom with itself; an end that no process names, or two); HOL_ERR_MEMORY; HOL_ERR_CALLBACK
  */
-int hol_subdomain_create(int rank, int n_ranks, hol_sum sum, void *context, int64_t n_atoms, const double *masses,
-                         int64_t n_bonds, const int64_t *pairs, const double *lengths, int64_t n_cut,
-                         const int64_t *ends, const double *cut_lengths, hol_subdomain **subdomain);
+int hol_subdomain_create(int rank, int n_ranks, hol_subdomain_sum sum, void *context, int64_t n_atoms,
+                         const double *masses, int64_t n_bonds, const int64_t *pairs, const double *lengths,
+                         int64_t n_cut, const int64_t *ends, const double *cut_lengths, hol_subdomain **subdomain);
 
 /**
  * Frees a handle. Not collective.
@@ -82,7 +84,7 @@ int hol_subdomain_set_box_rate(hol_subdomain *subdomain, const double *L);
  * @param[in] subdomain  the handle
  * @param[in] r          [n_atoms][3]. Copied. Bonds are taken as minimum images if there is a box
  * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE (bonds that depend on each other);
- * HOL_ERR_MEMORY; HOL_ERR_INTERNAL
+ * HOL_ERR_MEMORY; HOL_ERR_CALLBACK
  */
 int hol_subdomain_factorize(hol_subdomain *subdomain, const double *r);
 
@@ -95,9 +97,9 @@ int hol_subdomain_factorize(hol_subdomain *subdomain, const double *r);
  * @param[in,out] g        constraint forces [n_atoms][3], or NULL; may be f itself
  * @param[in]  mode        HOL_WRITE: g = G for every atom; HOL_ADD: g = g + G
  * @param[out] virial      [3][3], this process's part: the sum over processes is the virial; or NULL
- * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (mode; nothing was factorized); HOL_ERR_NOT_FINITE; HOL_ERR_DEGENERATE
- *         (one correction does not reach the rounding: bonds nearly depend on each other); HOL_ERR_MEMORY;
- *         HOL_ERR_INTERNAL
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (mode); HOL_ERR_STATE (nothing was factorized); HOL_ERR_NOT_FINITE;
+ * HOL_ERR_DEGENERATE (one correction does not reach the rounding: bonds nearly depend on each other); HOL_ERR_MEMORY;
+ *         HOL_ERR_CALLBACK
  */
 int hol_subdomain_forces(hol_subdomain *subdomain, const double *v, const double *f, double *lambda, double *cut_lambda,
                          double *g, int mode, double *virial);
@@ -138,7 +140,7 @@ int hol_subdomain_project_positions(hol_subdomain *subdomain, double *r, double 
  * @param[in]  v       [n_atoms][3], or NULL
  * @param[out] length  largest abs(d.d - a^2) / a^2, on every process, or NULL
  * @param[out] rate    largest abs(d.(v_j - v_i + L d)), 0 without v, on every process, or NULL
- * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_NOT_FINITE; HOL_ERR_INTERNAL
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_NOT_FINITE; HOL_ERR_CALLBACK
  */
 int hol_subdomain_violation(hol_subdomain *subdomain, const double *r, const double *v, double *length, double *rate);
 
@@ -155,7 +157,7 @@ int hol_subdomain_set_labels(hol_subdomain *subdomain, const int64_t *atoms);
  * taken. Not collective.
  * @param[in]  subdomain  the handle
  * @param[out] d          [n_cut][3]
- * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE (nothing was factorized)
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_STATE (nothing was factorized)
  */
 int hol_subdomain_cut_vectors(const hol_subdomain *subdomain, double *d);
 

@@ -249,6 +249,32 @@ static void given(const hol_chains *chains)
     hol_chains_destroy(copy);
 }
 
+/* Three beads hang from a fixed one, with factors that are kept. */
+static void kept(const hol_chains *chains)
+{
+    const double rhs[6] = {4, 0, 0, 0, 0, 4};
+    double tension[3], g[12], lambda[6], forces[24], one[3];
+    const hol_const_view r = hol_const_view_rows(hanging), f = hol_const_view_rows(weight);
+    hol_view out = hol_view_rows(g), each[2];
+    hol_factors *factors = NULL;
+    each[0] = hol_view_rows(forces);
+    each[1] = hol_view_rows(forces + 12);
+    SUCCEEDS(hol_factors_create(chains, &factors));
+    EXPECT(hol_factors_forces(factors, NULL, weight, NULL, tension, g, HOL_WRITE, NULL) == HOL_ERR_STATE);
+    SUCCEEDS(hol_factors_update(factors, hanging));
+    SUCCEEDS(hol_factors_forces(factors, NULL, weight, NULL, tension, g, HOL_WRITE, NULL));
+    NEAR(tension[0], 30);
+    SUCCEEDS(hol_factors_update_view(factors, &r));
+    SUCCEEDS(hol_factors_forces_view(factors, NULL, &f, NULL, NULL, &out, HOL_ADD, NULL));
+    NEAR(g[5], 20);
+    SUCCEEDS(hol_factors_solve(factors, 2, rhs, lambda, NULL, HOL_WRITE, NULL));
+    SUCCEEDS(hol_solve(chains, hanging, rhs + 3, one, NULL, HOL_WRITE, NULL));
+    NEAR(lambda[4], one[1]);
+    SUCCEEDS(hol_factors_solve_view(factors, 2, rhs, NULL, each, HOL_WRITE, NULL));
+    hol_factors_destroy(factors);
+    EXPECT(hol_error_remember(HOL_ERR_VALUE, "mine") == HOL_ERR_VALUE && strcmp(hol_error_message(), "mine") == 0);
+}
+
 /* Two rods of two atoms, and one that hangs at a fixed atom. */
 static void bodies(void)
 {
@@ -340,6 +366,7 @@ int main(void)
     SUCCEEDS(hol_chains_add_block(chains, 1, 3, 0, length));
     handles(chains);
     given(chains);
+    kept(chains);
     forces(chains);
     velocities(chains);
     positions(chains);

@@ -105,6 +105,8 @@ contains
       call check(stat == HOL_ERR_VALUE .and. says("bond 1"), "a length of zero")
       call other%add([4, 5, 6], [1.0_real64], stat, message)
       call check(stat == HOL_ERR_VALUE .and. says("1 lengths") .and. says("2 bonds"), "too few lengths")
+      call hol_error_location(chain, bond, atom, n_bad)
+      call check(chain == -1 .and. bond == -1 .and. atom == -1 .and. n_bad == 0, "which is nowhere in the molecules")
       call other%add([4], [real(real64) ::], stat, message)
       call check(stat == HOL_OK, "a chain of one atom has no bond to be added")
       call other%add([integer ::], 1.0_real64, stat, message)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# An installed prefix holds one header, no trace of the trees that it was built in, and no private dependency.
+# An installed prefix holds the header and that for C++, no trace of the trees that it was built in, and no private dependency.
 #
 #   check_contents.sh PREFIX SOURCE BUILD
 set -eu
@@ -10,9 +10,10 @@ fail() {
     exit 1
 }
 
-headers=$(find . -name '*.h' -o -name '*.hpp' -o -name '*.inl')
-[ "$headers" = ./include/holonomic.h ] || fail "headers: $headers"
+headers=$(find . -name '*.h' -o -name '*.hpp' -o -name '*.inl' | sort | tr '\n' ' ')
+[ "$headers" = './include/holonomic.h ./include/holonomic.hpp ' ] || fail "headers: $headers"
 cmp include/holonomic.h "$source/capi/holonomic.h"
+cmp include/holonomic.hpp "$source/capi/holonomic.hpp"
 [ -f share/doc/holonomic/LICENSE ] || fail "no licence"
 
 # Every page that the header cites, and the manual, which names every function.

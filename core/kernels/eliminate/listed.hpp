@@ -10,13 +10,12 @@
 
 namespace holonomic::HOL_ISA {
 
-// As substitute_and_store(), to the lists.
+// As substitute_and_store() (substitute.hpp), to the lists.
 template <Update update>
 HOL_NOINLINE void substitute_and_scatter(const Block &block, const System &s, const AtomLists &at, double *out,
                                          double *value_out, vec factor) {
     vec t = {}, values[W];
     vec3 after = {};
-    s.L[block.n] = vec{};
     const auto pull = [&](long k, const vec3 &before) HOL_FORCED {
         if (out) scatter<update>(out, at, k, after - before);
     };

@@ -1,6 +1,8 @@
 // Chains that fit into lanes: their elimination kept, and solves with it. A right-hand side costs the two sweeps, and
 // what it is read from.
 #include "core/kernels/eliminate/chain.hpp"
+#include "core/kernels/eliminate/listed.hpp"
+#include "core/kernels/eliminate/substitute.hpp"
 #include "core/kernels/kept/block.hpp"
 #include "core/kernels/memory/load.hpp"
 #include "core/kernels/memory/open.hpp"
@@ -99,12 +101,13 @@ HOL_INLINE void differences(const Block &block, const Packed &x, const RowsOfLan
             }
 }
 
-// Right-hand sides of all bonds into t, and the sweep up on the way.
+// Right-hand sides of all bonds into t, and the sweep up on the way. Returns the lanes in which nothing can overflow on
+// the way down, as Sweep::calm().
 template <bool weigh, bool has_v, bool has_f>
-HOL_NOINLINE void substitute_sides(const Block &block, const System &s, const Packed &v, const Packed &f) {
+HOL_NOINLINE mask substitute_sides(const Block &block, const System &s, const Packed &v, const Packed &f) {
     constexpr int terms = (has_v ? velocity_squared : 0) | (has_f ? force_difference : 0);
     const RowsOfLanes of_v(has_v ? v : f), of_f(has_f ? f : v);
-    vec y = {};
+    vec y = {}, size = {};
     for (long k0 = 0; k0 < block.n; k0 += W) {
         vec3 dv[W] = {}, df[W] = {};
         if (has_v) differences<false>(block, v, of_v, k0, dv);
@@ -112,9 +115,55 @@ HOL_NOINLINE void substitute_sides(const Block &block, const System &s, const Pa
         const long end = k0 + W < block.n ? k0 + W : block.n;
         for (long k = k0; k < end; ++k) {
             y = mul_add(s.L[k], y, right_hand_side(terms, block.mass, s.D[k], dv[k - k0], df[k - k0]));
-            s.t[k] = y * s.pivots[k];
+            const vec u = y * s.pivots[k];
+            s.t[k] = u;
+            size = size + abs(u);
         }
     }
+    return less(size, splat(largest_calm));
+}
+
+// The same of lists of atoms.
+template <bool has_v, bool has_f>
+HOL_NOINLINE mask substitute_listed(const Block &block, const System &s, const AtomLists &at, const double *v,
+                                    const double *f) {
+    constexpr int terms = (has_v ? velocity_squared : 0) | (has_f ? force_difference : 0);
+    const vec *const w = block.uniform_w ? nullptr : block.w;
+    vec y = {}, size = {};
+    vec3 v0 = {}, f0 = {}, dv = {}, df = {};
+    if (has_v) v0 = gather(v, at, 0);
+    if (has_f) f0 = gather(f, at, 0);
+    for (long k = 0; k < block.n; ++k) {
+        if (has_v) {
+            const vec3 v1 = gather(v, at, k + 1);
+            dv = v1 - v0;
+            v0 = v1;
+        }
+        if (has_f) {
+            const vec3 f1 = gather(f, at, k + 1);
+            df = w ? w[k + 1] * f1 - w[k] * f0 : f1 - f0;
+            f0 = f1;
+        }
+        y = mul_add(s.L[k], y, right_hand_side(terms, block.mass, s.D[k], dv, df));
+        const vec u = y * s.pivots[k];
+        s.t[k] = u;
+        size = size + abs(u);
+    }
+    return less(size, splat(largest_calm));
+}
+
+// Writes at once what the sweep down finds. Returns whether it is done; if not, nothing has been written.
+template <class Substitute, class Store>
+HOL_INLINE bool solve_at_once(const Block &block, const KeptCall &call, const double *from,
+                              const Substitute &substitute, const Store &store) {
+    if (call.rhs || (!call.v.x && !call.f.x) || call.tension || call.virial || block.lanes < W ||
+        any(~kept_lanes(from)))
+        return false;
+    mask calm = none();
+    choose([&](auto has_v, auto has_f) { calm = substitute(has_v, has_f); }, call.v.x != nullptr, call.f.x != nullptr);
+    if (any(~calm)) return false;
+    choose([&](auto add) { store(add); }, call.add);
+    return true;
 }
 
 // The same of values per bond that are given.
@@ -147,9 +196,31 @@ static void solve_block(const Block &block, const Lane *lane, const KeptCall &ca
     const double *const from = call.kept->block[block.chain[0]];
     if (!from) return;
     const System s = kept::system(from, block.n, arena.vecs(block.n + W));
+    const vec half = splat(0.5);
+    if (block.staged && listed(block, lane)) {
+        const AtomLists at(lane);
+        if (solve_at_once(
+                block, call, from,
+                [&](auto has_v, auto has_f) {
+                    return substitute_listed<has_v, has_f>(block, s, at, base_of(call.v), base_of(call.f));
+                },
+                [&](auto add) {
+                    substitute_and_scatter<add ? add_ : write_>(block, s, at, base_of(call.g), call.lambda, half);
+                }))
+            return;
+    }
     const Packed v = open(call.v, block, lane, arena, true), f = open(call.f, block, lane, arena, true);
     const Packed g = open(call.g, block, lane, arena, false);
     const Update update = call.add && in_place(call.g, block) ? add_ : write_;  // else unstage() adds
+    if (!block.staged &&
+        solve_at_once(
+            block, call, from,
+            [&](auto has_v, auto has_f) {
+                return block.uniform_w ? substitute_sides<false, has_v, has_f>(block, s, v, f)
+                                       : substitute_sides<true, has_v, has_f>(block, s, v, f);
+            },
+            [&](auto add) { substitute_and_store<add ? add_ : write_>(block, s, g, call.lambda, half); }))
+        return;
     if (call.rhs)
         substitute_given(block, s, call.rhs);
     else if (!call.v.x && !call.f.x)

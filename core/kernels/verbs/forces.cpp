@@ -1,7 +1,7 @@
 // Acceleration level of a block of chains: load and eliminate in one go, up the chains; substitute and store, down.
 #include "core/kernels/eliminate/chain.hpp"
 #include "core/kernels/eliminate/listed.hpp"
-#include "core/kernels/eliminate/one_lane.hpp"
+#include "core/kernels/eliminate/substitute.hpp"
 #include "core/kernels/memory/load.hpp"
 #include "core/kernels/memory/open.hpp"
 #include "core/kernels/memory/outputs.hpp"
@@ -23,57 +23,6 @@ static mask forward_carefully(const Block &block, const Reader &in, const System
     return ~none();
 }
 
-// The backward sweep, which writes at once what it finds: G (see store_pulls) to `out`, and factor t to
-// value_out[bond]. Either may be absent. For blocks in which all lanes are used, good and calm().
-template <Update update>
-HOL_NOINLINE void substitute_and_store(const Block &block, const System &s, const Packed &out, double *value_out,
-                                       vec factor) {
-#if HOL_FOURS
-    if (out.lane[0]) {
-        const AtomSink<update> g = {out};
-        pull_down(block.n, s.D, s.t, s.L, [&](long e, auto x) HOL_FORCED { g.put(0, e, x); });
-    } else {
-        backward(0, block.n, s.t, s.L);
-    }
-    if (value_out) store_bonds(block, s.t, factor, ~none(), value_out);
-#else
-    const long full = block.n_min / W * W;
-    vec t = {};
-    vec3 after = {};  // t d of the bond behind
-    if (full < block.n) {
-        backward(full, block.n, s.t, s.L);
-        t = s.t[full];
-        after = t * s.D[full];
-    } else {
-        s.L[block.n] = vec{};
-    }
-    // Bonds full .. n-1 and the atoms behind them.
-    const AtomSink<update> sink = {out};
-    if (out.lane[0] && full < block.n) store_pulls(block, nullptr, s.D, s.t, ~none(), sink, full + 1, after);
-    if (value_out) store_bonds(block, s.t, factor, ~none(), value_out, full);
-    for (long k0 = full - W; k0 >= 0; k0 -= W) {
-        vec value[3 * W], bond_value[W];
-        HOL_UNROLL
-        for (long b = W - 1; b >= 0; --b) {
-            const long k = k0 + b;
-            t = mul_add(s.L[k + 1], t, s.t[k]);
-            bond_value[b] = mul_add(factor, t, vec{});  // zeros as +0
-            const vec3 p = t * s.D[k];
-            value[3 * b] = after.x - p.x;
-            value[3 * b + 1] = after.y - p.y;
-            value[3 * b + 2] = after.z - p.z;
-            after = p;
-        }
-        if (out.lane[0]) {
-            if (update == write_ && block.ahead) fetch_ahead(out.lane[0], k0, block.ahead);
-            store_chunk(k0 + 1, value, sink);
-        }
-        if (value_out) store_values<false>(block, k0, bond_value, all_lanes, value_out);
-    }
-    if (out.lane[0]) store_first(after, all_lanes, sink);
-#endif
-}
-
 // Lists of atoms in packed arrays. True if the block is done; on false nothing was written.
 static inline bool listed_forces(const Block &block, const Lane *lane, const ForcesCall &call, Arena arena) {
     if (!call.r.packed || !call.f.x || (call.g.x && !call.g.packed) || call.tension || call.virial ||
@@ -85,6 +34,7 @@ static inline bool listed_forces(const Block &block, const Lane *lane, const For
     mask calm;
     const mask good = forward_forces(block, in, s, calm);
     if (any(~(good & calm))) return false;
+    s.L[block.n] = vec{};
     choose(
         [&](auto add) {
             substitute_and_scatter<add ? add_ : write_>(block, s, at, base_of(call.g), call.lambda, splat(0.5));
@@ -116,6 +66,7 @@ static void forces_block(const Block &block, const Lane *lane, const ForcesCall 
     mask calm, good = forward_forces(block, Reader(block, call.box, terms, r, v, f), s, calm);
     const bool plain = block.lanes == W && !any(~(good & calm));
     if (__builtin_expect(plain && !call.tension && !call.virial, 1)) {
+        s.L[block.n] = vec{};
         choose([&](auto add) { substitute_and_store<add ? add_ : write_>(block, s, g, call.lambda, splat(0.5)); },
                update == add_);
         if (call.g.x) close(call.g, block, lane, good, g, call.add);

@@ -47,7 +47,7 @@ template <class Check>
 Subdomain &begin(hol_subdomain *subdomain, bool factorized, Check check_arguments) {
     need(subdomain, "subdomain");
     Subdomain &all = subdomain->all;
-    if (factorized && !all.factorized()) throw Failure{HOL_ERR_VALUE, "hol_subdomain_factorize comes first"};
+    if (factorized && !all.factorized()) throw Failure{HOL_ERR_STATE, "hol_subdomain_factorize comes first"};
     all.processes.forget();
     all.processes.alone(check_arguments);
     return all;
@@ -61,9 +61,9 @@ void give(const Found &found, double *lambda, double *cut_lambda, double *virial
 
 }  // namespace
 
-int hol_subdomain_create(int rank, int n_ranks, hol_sum sum, void *context, int64_t n_atoms, const double *masses,
-                         int64_t n_bonds, const int64_t *pairs, const double *lengths, int64_t n_cut,
-                         const int64_t *ends, const double *cut_lengths, hol_subdomain **subdomain) {
+int hol_subdomain_create(int rank, int n_ranks, hol_subdomain_sum sum, void *context, int64_t n_atoms,
+                         const double *masses, int64_t n_bonds, const int64_t *pairs, const double *lengths,
+                         int64_t n_cut, const int64_t *ends, const double *cut_lengths, hol_subdomain **subdomain) {
     return guarded([&] {
         need(subdomain, "subdomain");
         *subdomain = nullptr;
@@ -188,7 +188,7 @@ int hol_subdomain_set_labels(hol_subdomain *subdomain, const int64_t *atoms) {
 int hol_subdomain_cut_vectors(const hol_subdomain *subdomain, double *d) {
     return guarded([&] {
         need(subdomain && d, "subdomain or d");
-        if (!subdomain->all.factorized()) throw Failure{HOL_ERR_VALUE, "hol_subdomain_factorize comes first"};
+        if (!subdomain->all.factorized()) throw Failure{HOL_ERR_STATE, "hol_subdomain_factorize comes first"};
         for (const TwiceVector &vector : subdomain->all.cut_vectors())
             for (int c = 0; c < 3; ++c) *d++ = vector.hi[c];
     });

@@ -25,7 +25,7 @@ struct Failure {
  */
 class Processes {
 public:
-    Processes(int rank, int n_ranks, hol_sum sum, void *context)
+    Processes(int rank, int n_ranks, hol_subdomain_sum sum, void *context)
         : rank_(rank), n_ranks_(n_ranks), sum_(sum), context_(context) {}
 
     /** Does what concerns this process alone, unless something went wrong before. */
@@ -48,7 +48,7 @@ public:
         statuses[rank_] = failure_.status;
         ++n_sums, n_numbers += static_cast<std::int64_t>(numbers.size());
         if (sum_(context_, static_cast<std::int64_t>(numbers.size()), numbers.data()) != 0)
-            throw Failure{HOL_ERR_INTERNAL, "the program's sum over processes failed"};
+            throw Failure{HOL_ERR_CALLBACK, "the program's sum over processes failed"};
         for (int p = 0; p < n_ranks_; ++p) {
             if (statuses[p] == HOL_OK) continue;
             Failure failure = failure_;
@@ -79,7 +79,7 @@ public:
 
 private:
     int rank_, n_ranks_;
-    hol_sum sum_;
+    hol_subdomain_sum sum_;
     void *context_;
     Failure failure_{HOL_OK, ""};
 };

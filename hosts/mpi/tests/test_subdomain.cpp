@@ -237,7 +237,7 @@ void test_errors(const Scene &scene) {
     std::vector<double> r = part.of_atoms(scene.r), f = part.of_atoms(scene.f), lambda(part.bonds.size(), 7.0);
     const auto same = [&](int status, int wanted, const char *what) { expect(status == wanted, what, status, wanted); };
     same(hol_subdomain_forces(part.subdomain, nullptr, f.data(), lambda.data(), nullptr, nullptr, HOL_WRITE, nullptr),
-         HOL_ERR_VALUE, "forces before anything was factorized");
+         HOL_ERR_STATE, "forces before anything was factorized");
     same(hol_subdomain_factorize(part.subdomain, r.data()), HOL_OK, "factorize");
     if (rank == n_ranks - 1) f[0] = NAN;
     same(hol_subdomain_forces(part.subdomain, nullptr, f.data(), lambda.data(), nullptr, nullptr, HOL_WRITE, nullptr),

@@ -127,6 +127,15 @@ HOL_API const char *hol_error_message(void);
 HOL_API void hol_error_location(int64_t *molecule, int64_t *bond, int64_t *atom, int64_t *n_bad);
 
 /**
+ * For bindings to other languages: remembers a failure that they have found themselves as this thread's last one, at no
+ * place, so that hol_error_message() and hol_error_location() tell nothing of an earlier one.
+ * @param[in] status   an hol_status
+ * @param[in] message  copied, at most 639 letters of it; NULL: ""
+ * @return status. Since 0.3.
+ */
+HOL_API int hol_error_remember(int status, const char *message);
+
+/**
  * The instruction set that the calculations use on this machine: "baseline", "avx2" or "avx512vl" (four lanes with the
  * registers of AVX-512). Never NULL. A chain of up to 256 bonds that comes alone runs with "scalar" (one lane, with
  * AVX2's instructions) where one of the last two runs: the same bits, in less time. The environment variable
@@ -839,8 +848,8 @@ HOL_API int hol_factors_update_view(hol_factors *factors, const hol_const_view *
  * @param[in,out] g        constraint forces [n_atoms][3], or NULL. May be f itself
  * @param[in]     mode     HOL_WRITE or HOL_ADD
  * @param[out]    virial   [3][3], or NULL
- * @return as hol_forces; HOL_ERR_STATE (no update yet, or the set has been changed since). hol_outcomes knows nothing of
- *         it. Thread-safe on one object. Since 0.3.
+ * @return as hol_forces; HOL_ERR_STATE (no update yet, or the set has been changed since). hol_outcomes knows nothing
+ * of it. Thread-safe on one object. Since 0.3.
  */
 HOL_API int hol_factors_forces(const hol_factors *factors, const double *v, const double *f, double *lambda,
                                double *tension, double *g, hol_mode mode, double *virial);

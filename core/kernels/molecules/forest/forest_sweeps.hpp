@@ -139,11 +139,11 @@ inline __attribute__((noinline)) void ForestLinear::substitute(const Range &rang
         choose_few<3>(k, [&](auto known) HOL_FORCED {
             const ForestJoint joint(*this, s);
             joint.read_t();
-            substitute_joint<known, false>(joint, k, memory);
+            substitute_joint<known, false, false>(joint, k, memory);
             joint.write_t();
         });
     }
-    if (range.root) substitute_joint<1, true>(ForestJoint(*this, f.n_steps - 1), 1, memory);
+    if (range.root) substitute_joint<1, true, false>(ForestJoint(*this, f.n_steps - 1), 1, memory);
 }
 
 // u of the children becomes t, and atoms get their pulls, as in down_joint(). `look`: tests the result.
