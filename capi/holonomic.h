@@ -433,10 +433,11 @@ typedef enum hol_when HOL_IS_INT {
  *
  * - the first call returns HOL_ERR_LENGTHS and moves nothing if a bond of the reference is off by more than a tenth of
  *   its length or longer than half the box, or if bonds across faces of the box are off by more than 1e-3 of their
- *   length and three times as much as any inside (a box that is a hundredth off does that); HOL_ERR_NO_CONVERGENCE, and likewise moves nothing, if the reference fits
- *   but a bond of the positions to be projected is more than 5 times as long as it should be. So does the first call
- *   after new molecules, after hol_chains_set_active, after lengths of more than 1.5 times or less than two thirds of
- *   those before, and after a box that differs by more than 2 per cent. It costs one pass over the bonds, once.
+ *   length and three times as much as any inside (a box that is a hundredth off does that); HOL_ERR_NO_CONVERGENCE, and
+ * likewise moves nothing, if the reference fits but a bond of the positions to be projected is more than 5 times as
+ * long as it should be. So does the first call after new molecules, after hol_chains_set_active, after lengths of more
+ * than 1.5 times or less than two thirds of those before, and after a box that differs by more than 2 per cent. It
+ * costs one pass over the bonds, once.
  * - in every later call a molecule with a bond of more than 5 times its length in the positions to be projected is bad
  *   (HOL_ERR_NO_CONVERGENCE, as any step that is too long): it is left as it is, all others are complete. That costs
  *   under 2 per cent of the call.

@@ -31,7 +31,7 @@ private:
         void operator()(hol_chains *molecules) const { hol_chains_destroy(molecules); }
     };
     std::unique_ptr<hol_chains, Destroy> molecules;  // null: no particle has mass
-    std::vector<double> inverseMasses;  // of the last call
+    std::vector<double> inverseMasses;               // of the last call
 };
 
 }  // namespace OpenMM

@@ -3,7 +3,8 @@
 #
 #   hosts.sh SUITE WORK [HOST...]
 #       SUITE    bookworm, trixie      WORK      folder for the machine and its logs      HOST     mpi lammps openmm ase gromacs xtb by default
-# A line for each host stands at the end. FRESH_CCACHE is a folder for ccache, which is on the machine then.
+# A line for each host stands at the end. FRESH_CCACHE is a folder for ccache, which is on the machine then; CMAKE_ARGS
+# goes to the library's cmake.
 # Exit status 77: no mmdebstrap, no root, or the distribution can't be had.
 set -u
 suite=$1 work=$2
@@ -23,8 +24,8 @@ if [ -n "${FRESH_CCACHE:-}" ]; then
 fi
 
 # The library, once for all of them.
-if ! inside "${ccache[@]}" bash -c 'cd /srv/holonomic && . scripts/setup.sh && need c++ make cmake &&
-    cmake -S . -B build/library -DHOLONOMIC_BUILD_TESTS=OFF -DHOLONOMIC_BUILD_FORTRAN=OFF "-DHOLONOMIC_INSTRUCTION_SETS=$few_instruction_sets" &&
+if ! inside "${ccache[@]}" CMAKE_ARGS="${CMAKE_ARGS:-}" bash -c 'cd /srv/holonomic && . scripts/setup.sh && need c++ make cmake &&
+    cmake -S . -B build/library -DHOLONOMIC_BUILD_TESTS=OFF -DHOLONOMIC_BUILD_FORTRAN=OFF "-DHOLONOMIC_INSTRUCTION_SETS=$few_instruction_sets" ${CMAKE_ARGS:-} &&
     cmake --build build/library -j "$(build_jobs)" && cmake --install build/library --prefix /srv/installed' </dev/null >>"$root.log" 2>&1; then
     tail -n 20 "$root.log"
     exit 1

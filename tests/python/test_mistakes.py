@@ -154,6 +154,78 @@ class Mistakes(unittest.TestCase):
             self.assertIsNone(re.search(r"\b1 \w+s\b", text), text)
 
 
+class FirstHour(unittest.TestCase):
+    """Each of these is said, whatever is wrong; arrays of the caller's stay as they were."""
+
+    def setUp(self):
+        self.molecules, self.r = dimers()
+        self.v = 0 * self.r
+
+    def test_arrays_of_the_wrong_form(self):
+        molecules, r, v = self.molecules, self.r, self.v
+        for call in (lambda: molecules.forces(r.T), lambda: molecules.forces(r[:-1]), lambda: molecules.forces(r, v.T),
+                     lambda: molecules.forces(r.ravel()), lambda: molecules.project_velocities(r, v[:-1]),
+                     lambda: molecules.project_velocities(r, v.tolist()), lambda: molecules.project_velocities(r, v.astype(int)),
+                     lambda: molecules.project_positions(r, (r + 0.0).astype(int), 1),
+                     lambda: molecules.project_positions(r, (r + 0.0).tolist(), 1), lambda: molecules.project_positions(r[:2], r + 0.0, 1),
+                     lambda: molecules.solve(r, [1.0, 2.0]), lambda: molecules.reactions(r, np.zeros(4)),
+                     lambda: molecules.set_lengths([1.0, 2.0]), lambda: molecules.set_masses([1.0]),
+                     lambda: hol.Molecules(np.ones((3, 3))), lambda: setattr(molecules, "box", np.ones((2, 2))),
+                     lambda: setattr(molecules, "box", [10, 10])):
+            with self.assertRaises((TypeError, ValueError)):
+                call()
+
+    def test_bonds_of_the_wrong_form(self):
+        for bonds, lengths in (([(0, 1, 2)], 1.0), ([0, 1], 1.0), (np.array([[0, 2], [1, 3]]).T[:, :1], 1.0), ([(0, 1)], [1.0, 2.0]),
+                               ([(0, 1)], -1.0), ([(0, 1)], np.inf), ([(0, 1.5)], 1.0), ([(0, -1)], 1.0), ([(5, 6)], 1.0),
+                               ([(0, 1), (1, 2), (0, 2)], [1.0, 1.0, 3.0])):
+            molecules = hol.Molecules(np.ones(6))
+            with self.assertRaises((TypeError, ValueError, IndexError), msg=str(bonds)):
+                molecules.add(bonds, lengths)
+            self.assertEqual(molecules.n_bonds, 0)
+
+    def test_steps_that_mean_nothing(self):
+        molecules, r, v = self.molecules, self.r, self.v
+        new = r + 0.01
+        kept = new.copy()
+        for dt in (0, np.nan, "1", None):
+            with self.assertRaises((TypeError, ValueError)):
+                molecules.project_positions(r, new, dt, v)
+        for wrong in (np.nan, np.inf):
+            bad = new.copy()
+            bad[2, 1] = wrong
+            with self.assertRaisesRegex(hol.NotFiniteError, "atom 2"):
+                molecules.project_positions(r, bad, 1)
+            f = np.zeros_like(r)
+            f[5, 0] = wrong
+            with self.assertRaisesRegex(hol.NotFiniteError, "atom 5"):
+                molecules.forces(r, v, f)
+        np.testing.assert_array_equal(new, kept)
+
+    def test_where_units_order_and_cells_differ(self):
+        for scale, words in ((10, "unit"), (0.1, "unit")):
+            molecules, r = dimers()
+            with self.assertRaisesRegex(hol.LengthsError, words):
+                molecules.project_positions(scale * r, scale * r, 1)
+        molecules, r = dimers()
+        with self.assertRaisesRegex(hol.LengthsError, "order"):
+            molecules.check(r[[0, 2, 1, 3, 4, 5]])
+        r[1, 0] -= 20
+        with self.assertRaisesRegex(hol.LengthsError, "no box is set"):
+            molecules.check(r)
+        with self.assertRaises(ValueError):
+            molecules.box = 1.5  # narrower than two bonds
+
+    def test_use_before_anything_is_there(self):
+        molecules = hol.Molecules(np.ones(2))
+        for call in (lambda: molecules.molecule(0), lambda: molecules.inverse(0, np.zeros((2, 3))), molecules.outcomes,
+                     lambda: hol.Molecules([1.0, np.nan]), lambda: hol.Molecules([1.0, -1.0]), lambda: hol.Molecules(3)):
+            with self.assertRaises((hol.Error, TypeError, ValueError)):
+                call()
+        with self.assertRaises(AttributeError):
+            molecules.masses = [1.0, 2.0]
+
+
 class Massless(unittest.TestCase):
     """An atom of mass 0 is held in space: what is meant for a massless site is not."""
 

@@ -9,8 +9,8 @@ namespace holonomic_lammps {
 
 using Points = std::vector<std::array<double, 3>>;
 
-/** How far a shape, moved and turned onto as many points with the least sum of squares, is from them at most: Horn 1987. A
- * shape is not mirrored. */
+/** How far a shape, moved and turned onto as many points with the least sum of squares, is from them at most: Horn
+ * 1987. A shape is not mirrored. */
 double largest_displacement(const Points &shape, const Points &points);
 
 /** The distance of the two points that are closest to each other. */

@@ -1,0 +1,170 @@
+/* Mistakes that are made in the first hour: none is silent, each message has words that lead to it, and nothing of the
+ * caller's is changed. What is wrong at the first step with units, boxes and numbering is in test_start.c. */
+#include "check.h"
+
+enum { ATOMS = 9, BONDS = 9 };
+
+/* Three waters, of which the last one is cut by a face of a cube of 10. */
+static const double masses[ATOMS] = {16, 1, 1, 16, 1, 1, 16, 1, 1}, lengths[3] = {1, 1, 1.6};
+static const int64_t pairs[6] = {0, 1, 0, 2, 1, 2};
+
+static void positions(double r[ATOMS][3])
+{
+    for (int m = 0; m < 3; ++m)
+        for (int i = 0; i < 3; ++i) {
+            r[3 * m + i][0] = 2 + 3.8 * m + (i ? 0.6 : 0);
+            r[3 * m + i][1] = 5 + (i == 1 ? 0.8 : i == 2 ? -0.8 : 0);
+            r[3 * m + i][2] = 5;
+            r[3 * m + i][0] -= r[3 * m + i][0] > 10 ? 10 : 0;
+        }
+}
+
+static hol_chains *waters(void)
+{
+    hol_chains *chains;
+    const double box[9] = {10, 0, 0, 0, 10, 0, 0, 0, 10};
+    CHECK(hol_chains_create(ATOMS, masses, &chains));
+    CHECK(hol_chains_add_molecules(chains, 3, 3, 0, 3, pairs, lengths));
+    CHECK(hol_chains_set_box(chains, box));
+    return chains;
+}
+
+/* Whatever the status: it is an error, and its message has these words. */
+#define REFUSED(words, call)                                              \
+    do {                                                                  \
+        if ((call) == HOL_OK) fail_msg("%s: nothing is said", #call);     \
+        assert_message_names(words);                                      \
+        assert_in_range(strlen(hol_error_message()), strlen(words), 300); \
+    } while (0)
+
+static void masses_and_bonds(void **state)
+{
+    (void)state;
+    hol_chains *chains = NULL, *none = NULL;
+    double wrong[ATOMS];
+    for (int k = 0; k < 3; ++k) {
+        memcpy(wrong, masses, sizeof wrong);
+        wrong[4] = k == 0 ? -1 : k == 1 ? NAN : 1e-320; /* of which 1/m overflows */
+        REFUSED("atom 4", hol_chains_create(ATOMS, wrong, &none));
+        assert_null(none);
+    }
+    REFUSED("n_atoms", hol_chains_create(-1, masses, &none));
+    REFUSED("masses", hol_chains_create(ATOMS, NULL, &none));
+    CHECK(hol_chains_create(ATOMS, masses, &chains));
+    const int64_t beyond[2] = {8, 9}, below[2] = {-1, 0}, itself[2] = {3, 3}, twice[4] = {0, 1, 1, 0};
+    const double one[2] = {1, 1}, bad[4] = {0, -1, NAN, INFINITY};
+    REFUSED("9", hol_chains_add_bonds(chains, 1, beyond, one)); /* counted from 1 */
+    REFUSED("-1", hol_chains_add_bonds(chains, 1, below, one));
+    REFUSED("itself", hol_chains_add_bonds(chains, 1, itself, one));
+    REFUSED("bond", hol_chains_add_bonds(chains, 2, twice, one));
+    for (int k = 0; k < 4; ++k) REFUSED("length", hol_chains_add_bonds(chains, 1, pairs, bad + k));
+    REFUSED("lengths", hol_chains_add_bonds(chains, 1, pairs, NULL));
+    REFUSED("n_bonds", hol_chains_add_bonds(chains, -1, pairs, one));
+    const double open[3] = {1, 1, 2.1}, flat[3] = {1, 1, 0};
+    REFUSED("triangle", hol_chains_add_molecules(chains, 3, 3, 0, 3, pairs, open));
+    REFUSED("length", hol_chains_add_molecules(chains, 3, 3, 0, 3, pairs, flat));
+    REFUSED("atom", hol_chains_add_molecules(chains, 4, 3, 0, 3, pairs, lengths)); /* more than there are */
+    CHECK(hol_chains_add_molecules(chains, 3, 3, 0, 3, pairs, lengths));
+    REFUSED("atom 0", hol_chains_add_molecules(chains, 3, 3, 0, 3, pairs, lengths)); /* added again */
+    assert_int_equal(hol_chains_n_bonds(chains), BONDS);
+    hol_chains_destroy(chains);
+}
+
+static void bodies(void **state)
+{
+    (void)state;
+    hol_chains *chains = NULL;
+    const double without[3] = {0, 0, 1}, places[9] = {0, 0, 0, 1, 0, 0, 2, 0, 0};
+    const double on_each_other[9] = {0};
+    const int64_t three = 3, two = 2, one = 1, atoms[3] = {0, 1, 2}, again[3] = {0, 1, 1};
+    CHECK(hol_chains_create(3, without, &chains));
+    REFUSED("mass", hol_chains_add_rigid(chains, 1, &two, atoms, places, 0, NULL, NULL));
+    REFUSED("body 0", hol_chains_add_rigid(chains, 1, &one, atoms, places, 0, NULL, NULL));
+    hol_chains_destroy(chains);
+    CHECK(hol_chains_create(3, masses, &chains));
+    REFUSED("atom 1", hol_chains_add_rigid(chains, 1, &three, again, places, 0, NULL, NULL));
+    REFUSED("", hol_chains_add_rigid(chains, 1, &three, atoms, on_each_other, 0, NULL, NULL));
+    hol_chains_destroy(chains);
+}
+
+static void settings(void **state)
+{
+    (void)state;
+    hol_chains *chains = waters();
+    const double none[9] = {10, 0, 0, 20, 0, 0, 0, 0, 10}, narrow[9] = {3, 0, 0, 0, 10, 0, 0, 0, 10};
+    double nan[9] = {NAN};
+    REFUSED("box", hol_chains_set_box(chains, none));
+    REFUSED("bond", hol_chains_set_box(chains, narrow)); /* a bond of 1.6 is more than half of it */
+    REFUSED("box", hol_chains_set_box(chains, nan));
+    REFUSED("rate", hol_chains_set_box_rate(chains, nan));
+    REFUSED("tolerance", hol_chains_set_tolerance(chains, -1e-8));
+    REFUSED("tolerance", hol_chains_set_tolerance(chains, NAN));
+    REFUSED("threads", hol_chains_set_threads(chains, 0));
+    REFUSED("", hol_chains_set_max_iterations(chains, 0));
+    REFUSED("base", hol_chains_set_index_base(chains, 2));
+    double wrong[BONDS];
+    for (int k = 0; k < BONDS; ++k) wrong[k] = k == 4 ? -1 : lengths[k % 3];
+    REFUSED("bond", hol_chains_set_lengths(chains, wrong));
+    for (int k = 0; k < ATOMS; ++k) wrong[k] = k == 7 ? -1 : 1;
+    REFUSED("atom 7", hol_chains_set_masses(chains, wrong));
+    hol_chains_destroy(chains);
+}
+
+static void steps(void **state)
+{
+    (void)state;
+    hol_chains *chains = waters();
+    double r[ATOMS][3], before[ATOMS][3], v[ATOMS][3] = {{0}}, f[ATOMS][3] = {{0}}, g[ATOMS][3], lambda[BONDS];
+    positions(before);
+    positions(r);
+    REFUSED("dt", hol_project_positions(chains, before[0], r[0], v[0], 0, NULL, 0, NULL, NULL));
+    REFUSED("dt", hol_project_positions(chains, before[0], r[0], v[0], NAN, NULL, 0, NULL, NULL));
+    REFUSED("lambda", hol_project_positions(chains, before[0], r[0], v[0], 1, NULL, 1, NULL, NULL));
+    REFUSED("r", hol_project_positions(chains, before[0], NULL, v[0], 1, NULL, 0, NULL, NULL));
+    REFUSED("mode", hol_forces(chains, r[0], v[0], f[0], NULL, NULL, g[0], 7, NULL));
+    v[4][1] = NAN;
+    REFUSED("velocity of atom 4", hol_project_velocities(chains, r[0], v[0], NULL, NULL));
+    v[4][1] = 0;
+    f[8][0] = INFINITY;
+    REFUSED("atom 8", hol_forces(chains, r[0], v[0], f[0], NULL, NULL, g[0], HOL_WRITE, NULL));
+    f[8][0] = 0;
+    for (int k = 0; k < BONDS; ++k) lambda[k] = k == 5 ? NAN : 0;
+    REFUSED("bond", hol_solve(chains, r[0], lambda, NULL, g[0], HOL_WRITE, NULL));
+    r[1][2] = NAN;
+    REFUSED("position of atom 1", hol_project_positions(chains, before[0], r[0], v[0], 1, NULL, 0, NULL, NULL));
+    positions(r);
+    /* Two atoms at one place, as of a file that was read wrongly. */
+    double meet[ATOMS][3];
+    positions(meet);
+    memcpy(meet[1], meet[0], sizeof meet[0]);
+    REFUSED("bond", hol_forces(chains, meet[0], v[0], f[0], NULL, NULL, g[0], HOL_WRITE, NULL));
+    r[1][2] += 0.1; /* what is right already is not projected along anything */
+    REFUSED("bond", hol_project_positions(chains, meet[0], r[0], v[0], 1, NULL, 0, NULL, NULL));
+    positions(r);
+    /* The box forgotten, another unit, another order of atoms. */
+    CHECK(hol_chains_set_box(chains, NULL));
+    REFUSED("no box is set", hol_project_positions(chains, before[0], r[0], v[0], 1, NULL, 0, NULL, NULL));
+    const double box[9] = {10, 0, 0, 0, 10, 0, 0, 0, 10}, tenth[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    REFUSED("bond", hol_chains_set_box(chains, tenth));
+    CHECK(hol_chains_set_box(chains, box));
+    for (int i = 0; i < ATOMS; ++i)
+        for (int c = 0; c < 3; ++c) meet[i][c] = 0.1 * before[i][c];
+    REFUSED("bond", hol_project_positions(chains, meet[0], meet[0], v[0], 1, NULL, 0, NULL, NULL));
+    CHECK(hol_project_positions(chains, before[0], r[0], v[0], 1, NULL, 0, NULL, NULL));
+    /* Questions with wrong numbers. */
+    int64_t list[3];
+    REFUSED("", hol_chains_atoms(chains, 3, list));
+    REFUSED("", hol_metric(chains, r[0], NAN, NULL, NULL, NULL, NULL, HOL_WRITE));
+    hol_chains_destroy(chains);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(masses_and_bonds),
+        cmocka_unit_test(bodies),
+        cmocka_unit_test(settings),
+        cmocka_unit_test(steps),
+    };
+    return cmocka_run_group_tests_name("mistakes", tests, NULL, NULL);
+}
