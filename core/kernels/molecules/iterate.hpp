@@ -126,7 +126,7 @@ HOL_INLINE Solved<V> iterate(System &newton, const Limits<V> &limits, const Posi
         active = active & ~finished & finite(error) & ~(fresh & lost_its_way(error, before));
         if (!any(active)) break;
         rate = error / before;
-        const Mask renewed = active & worth_new_factors<by_length>(error, rate, i);
+        const Mask renewed = active & worth_new_factors<by_length>(error, rate, i, limits.wanted);
         proven = ~renewed & next_is_last(error, rate);
         fresh = renewed;
         if (!any(renewed)) continue;

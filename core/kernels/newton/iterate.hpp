@@ -75,7 +75,7 @@ HOL_INLINE Outcome iterate(const Block &block, Newton &x, const PositionsCall &c
         }
         active = active & finite(error);
         rate = error / before;
-        const mask renewed = careful ? active : active & worth_new_factors(error, rate, i);
+        const mask renewed = careful ? active : active & worth_new_factors(error, rate, i, wanted_error(call));
         if (!careful) proven = ~renewed & next_is_last(error, rate);
         if (!any(renewed)) continue;
         renew_factors(careful ? careful_factors : renewed_factors, renewed);

@@ -33,22 +33,24 @@ HOL_INLINE MaskOf<V> at_floor(V expected, V before, V error) {
 }
 
 // The factors of an earlier D shrink the error by the same `rate` each time. New ones square it, at twice the price.
-// They are worth it if the old ones would take more than four solves in all. i: solves so far, less one.
-// `by_length`: the right-hand side is |D_0| (|D| - a) where the factors are those of D_0. Then the rate of the first
-// solve says nothing of those that follow. It leaves the square of the angles by which bonds have turned, the others
-// are slowed down by the angles themselves. Later, new factors take one solve for what is below 1e-8 and two for what
-// is above, and a price of one to three: they are worth it if the old ones would take two more than that.
+// They are worth it if the old ones would take more than four solves in all to what is `wanted`. i: solves so far, less
+// one. `by_length`: the right-hand side is |D_0| (|D| - a) where the factors are those of D_0. Then the rate of the
+// first solve says nothing of those that follow. It leaves the square of the angles by which bonds have turned, the
+// others are slowed down by the angles themselves: two of these make the error to the power of two, four to that of
+// three. Later, new factors take one solve for what is below 1e-8 and two for what is above, and a price of one to
+// three: they are worth it if the old ones would take two more than that.
 template <bool by_length = false, class V>
-HOL_INLINE MaskOf<V> worth_new_factors(V error, V rate, int64_t i) {
-    if (by_length && i == 0) return less(Width<V>::all(1e-5), error);
+HOL_INLINE MaskOf<V> worth_new_factors(V error, V rate, int64_t i, double wanted) {
+    if (by_length && i == 0)
+        return less(Width<V>::all(1e-5), error) & less(Width<V>::all(wanted), error * error * error);
     V expected = error * rate;
     if (by_length) {
         expected = expected * rate;
         expected = select(less(Width<V>::all(1e-8), error), expected * rate, expected);
-        return less(Width<V>::all(0.4 * epsilon), expected);
+        return less(Width<V>::all(0.4 * wanted), expected);
     }
     for (int64_t k = i + 2; k < 4; ++k) expected = expected * rate;
-    return less(Width<V>::all(0.1 * epsilon), expected) & less(Width<V>::all(i < 2 ? -1.0 : 1e-4), rate);
+    return less(Width<V>::all(0.1 * wanted), expected) & less(Width<V>::all(i < 2 ? -1.0 : 1e-4), rate);
 }
 
 // True if nobody needs to look at what the next solve does: the error is no larger than last_error, and the same

@@ -2,7 +2,7 @@
 """Cholesterol among chains of beads, under one thermostat: the temperature of each kind of molecule by LINCS and by holonomic.
 Beads and chains are like those of Martini: 72 amu, sigma 0.47 nm, epsilon 3.5 kJ/mol, bonds of 0.47 nm.
 
-    temperatures.py [--ps 2000] [--gmx gmx] [--folder FOLDER] [--figure FILE.svg] [--steps 20 30]
+    temperatures.py [--ps 600] [--gmx gmx] [--folder FOLDER] [--figure FILE.svg] [--steps 20 30]
 """
 import argparse
 import math
@@ -16,7 +16,7 @@ import gromacs as g  # noqa: E402
 import scenes as s  # noqa: E402
 
 BOLTZMANN = 0.00831446
-N_STEROLS, N_CHAINS = 100, 350
+N_STEROLS, N_CHAINS = 300, 450
 SOLVERS = {"LINCS 4, 1": (4, 1), "LINCS 8, 2": (8, 2), "LINCS 12, 3": (12, 3), "holonomic": (4, 1)}
 QUIET = dict(nstenergy=1000, nstcalcenergy=10, nstlist=20, nstcomm=10, lincs_warnangle=90, rcoulomb=1.1, rvdw=1.1, rlist=1.3,
              vdw_modifier="potential-shift", tcoupl="v-rescale", tc_grps="System", tau_t=1, ref_t=310, gen_temp=310)
@@ -45,7 +45,7 @@ def prepare(folder, gmx):
     martini(folder)
     g.grompp(folder, gmx)
     g.mdrun(folder, gmx=gmx, name="relaxed")
-    s.write_mdp(folder, **{**QUIET, "dt": 0.01, "nsteps": 15000, "pcoupl": "berendsen", "tau_p": 2, "ref_p": 50,
+    s.write_mdp(folder, **{**QUIET, "dt": 0.01, "nsteps": 8000, "pcoupl": "berendsen", "tau_p": 0.5, "ref_p": 100,
                            "compressibility": 3e-4})
     g.grompp(folder, gmx, "-c", "relaxed.gro")
     g.mdrun(folder, gmx=gmx, name="made")
@@ -91,7 +91,7 @@ def draw(rows, path):
 
 def main():
     arguments = argparse.ArgumentParser()
-    arguments.add_argument("--ps", type=float, default=2000)
+    arguments.add_argument("--ps", type=float, default=600)
     arguments.add_argument("--gmx", default=g.MIXED)
     arguments.add_argument("--folder", type=pathlib.Path, default=pathlib.Path("build/temperatures"))
     arguments.add_argument("--figure", type=pathlib.Path)
@@ -104,7 +104,7 @@ def main():
     for step in options.steps:
         for solver, (order, iterations) in SOLVERS.items():
             name = f"{solver.replace(', ', '-').replace(' ', '')}-{step}"
-            s.write_mdp(folder, **{**QUIET, "dt": step / 1000, "nsteps": round(1000 * options.ps / step), "nstvout": 100,
+            s.write_mdp(folder, **{**QUIET, "dt": step / 1000, "nsteps": round(1000 * options.ps / step), "nstvout": 40,
                                    "lincs_order": order, "lincs_iter": iterations})
             g.grompp(folder, options.gmx, "-c", "made.gro", "-o", f"{name}.tpr")
             g.mdrun(folder, f"{name}.tpr", gmx=options.gmx, holonomic=solver == "holonomic", name=name)
