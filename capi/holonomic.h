@@ -172,11 +172,19 @@ HOL_API int hol_chains_add_block(hol_chains *chains, int64_t n_chains, int64_t n
  * @param[in]     lengths  [n_bonds], as in hol_chains_add. Copied.
  *
  * Distances that depend on each other are held as rigid bodies, as if hol_chains_add_rigid had been called, where their
- * lengths say so: atoms that are all bonded to each other, three on a line, four in a plane (to the rounding of the
- * lengths), five and more (to 1e-6 of them); rings of six atoms and more whose angles, held by distances of next
- * neighbours, keep them in a plane. Forces and motions are those of the body. Multipliers of such bonds are, of those
- * whose pulls come nearest to the body's forces, the ones of least norm; only forces across a line or plane have none.
- * Right-hand sides of hol_solve are not looked at for them.
+ * lengths say so: atoms that are all bonded to each other, three on a line, four in a plane, five and more; rings of
+ * six atoms and more whose angles, held by distances of next neighbours, keep them in a plane; and atoms that such a
+ * body holds by more distances than their places have coordinates. Lengths may be as a topology file has them, with few
+ * decimals: they are adjusted in the least way (hol_chains_adjustment), by no more than
+ * hol_chains_set_length_tolerance. Four atoms are flat, and three straight, where a plane or a line misses their
+ * lengths by no more than their last decimal, or where no other places are nearer. Forces and motions are those of the
+ * body. Multipliers of such bonds are, of those whose pulls come nearest to the body's forces, the ones of least norm;
+ * only forces across a line or plane have none. Right-hand sides of hol_solve are not looked at for them.
+ *
+ * Where groups of five atoms and more share atoms, as all bonds and angles of an alkane do, they are no bodies:
+ * distances that shorter ones of the molecule imply (the tenth of five atoms, ...) are left out of the equations
+ * (hol_chains_implied). Their lengths are compared with the others', within the same tolerance. Groups on a line or in
+ * a plane that share atoms with other bodies are refused.
  *
  * New molecules are numbered by their lowest atoms that can move, those with bodies behind all others. Arrays per bond
  * have these bonds in the order of the list, after those of earlier calls. All bonds of a molecule have to be given in
@@ -185,7 +193,7 @@ HOL_API int hol_chains_add_block(hol_chains *chains, int64_t n_chains, int64_t n
  *         than 2^31 - 1 bonds; lengths of a triangle or ring that can't close: the message names the atoms);
  *         HOL_ERR_INDEX; HOL_ERR_SHARED_ATOM (an atom that can move is in a molecule of an earlier call; the message
  *         names it); HOL_ERR_DEGENERATE (a bond given twice, more bonds within a part of a molecule than it has
- *         freedoms, or lengths of five atoms and more that fit no places in space: the message names a bond. Bonds
+ *         freedoms, or lengths of four atoms and more that fit no places in space: the message names a bond. Bonds
  *         that depend on each other through the positions alone are found by the calls that meet them);
  *         HOL_ERR_MEMORY (also: more than hol_chains_set_memory_limit allows; the message names the molecule).
  *         On an error nothing is added. Not thread-safe on one handle. O(n_bonds). Since 0.2.
@@ -554,6 +562,34 @@ HOL_API int64_t hol_chains_degrees_of_freedom(const hol_chains *chains, int dime
 
 /** Memory that the handle occupies, in bytes; 0 if chains is NULL. Since 0.1. */
 HOL_API int64_t hol_chains_memory(const hol_chains *chains);
+
+/**
+ * How far the lengths of distances that depend on each other have been adjusted (hol_chains_add_bonds): of a file's
+ * decimals, no places in space have quite these lengths.
+ * @param[in]  chains
+ * @param[out] largest  by which part of it the length has been changed that was changed most; 0 if none was
+ * @param[out] bond     its number, or NULL; -1 if no length was changed. hol_chains_molecules_of_bonds tells the
+ * molecule
+ * @return HOL_OK; HOL_ERR_NULL (chains or largest). Since 0.2.
+ */
+HOL_API int hol_chains_adjustment(const hol_chains *chains, double *largest, int64_t *bond);
+
+/**
+ * Which distances others imply (hol_chains_add_bonds): they are in no equation, and their multipliers are 0.
+ * @param[in]  chains
+ * @param[out] implied  [n_bonds], 1 or 0
+ * @return HOL_OK; HOL_ERR_NULL. Since 0.2.
+ */
+HOL_API int hol_chains_implied(const hol_chains *chains, unsigned char *implied);
+
+/**
+ * By which part of them lengths of distances that depend on each other may be adjusted, so that they are those of
+ * places in space; what misses these by more is refused when it is added. It holds for what is added later.
+ * @param[in,out] chains
+ * @param[in]     tolerance  0 .. 0.01; 1e-3 until it is set, 0: lengths must be right to rounding
+ * @return HOL_OK; HOL_ERR_NULL; HOL_ERR_VALUE. Not thread-safe on one handle. Since 0.2.
+ */
+HOL_API int hol_chains_set_length_tolerance(hol_chains *chains, double tolerance);
 
 /**
  * Bound on the memory that a set of molecules takes. Of a molecule with many cycles (a lattice, a sheet) the

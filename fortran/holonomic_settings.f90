@@ -6,7 +6,8 @@ module holonomic_settings
    use holonomic_c, only: hol_chains_n_atoms, hol_chains_n_bonds, hol_chains_n_chains, hol_chains_set_active, &
                           hol_chains_set_box, hol_chains_set_box_rate, hol_chains_set_checks, hol_chains_set_labels, &
                           hol_chains_set_lengths, hol_chains_set_masses, &
-                          hol_chains_set_max_iterations, hol_chains_set_memory_limit, hol_chains_set_reference_box, &
+                          hol_chains_set_length_tolerance, hol_chains_set_max_iterations, &
+                          hol_chains_set_memory_limit, hol_chains_set_reference_box, &
                           hol_chains_set_threads, hol_chains_set_tolerance, HOL_ERR_MEMORY
    use holonomic_place, only: enough, list_of, tensor
    use holonomic_status, only: failure, settle
@@ -27,6 +28,7 @@ module holonomic_settings
       procedure :: set_threads
       procedure :: set_active
       procedure :: set_tolerance
+      procedure :: set_length_tolerance
       procedure :: set_max_iterations
       procedure, private :: set_memory_limit_32, set_memory_limit_64
       generic :: set_memory_limit => set_memory_limit_32, set_memory_limit_64
@@ -206,6 +208,18 @@ contains
       call problem%need_created(self%c_handle())
       call problem%ask(hol_chains_set_tolerance(self%c_handle(), tolerance))
       call settle(problem, "set_tolerance", stat, errmsg)
+   end subroutine
+
+   ! By which part of them lengths of rigid groups may be adjusted.
+   subroutine set_length_tolerance(self, tolerance, stat, errmsg)
+      class(chain_set_settings), intent(inout) :: self
+      real(real64), intent(in) :: tolerance
+      integer, intent(out), optional :: stat
+      character(*), intent(inout), optional :: errmsg
+      type(failure) :: problem
+      call problem%need_created(self%c_handle())
+      call problem%ask(hol_chains_set_length_tolerance(self%c_handle(), tolerance))
+      call settle(problem, "set_length_tolerance", stat, errmsg)
    end subroutine
 
    subroutine set_max_iterations(self, max_iterations, stat, errmsg)

@@ -83,6 +83,13 @@ public:
     void molecules_of_bonds(std::int64_t *out) const;
     std::int64_t degrees_of_freedom(int dimensions) const;
     Name name_of_atom(std::int64_t atom) const { return labels_.of_atom(atom, base); }
+    // The length that a body changed most, by which part of it; 0 and bond -1: none.
+    struct Adjustment {
+        double largest = 0;
+        std::int64_t bond = -1;
+    };
+    const Adjustment &adjustment() const { return adjustment_; }
+    const std::vector<std::int64_t> &implied() const { return implied_; }
     Name name_of_molecule(std::int64_t molecule) const;
     Name name_of_rigid(std::int64_t molecule, std::int64_t atom) const {  // of a molecule with bodies, by one atom
         return labels_.of_molecule(molecule, atom, base);
@@ -138,6 +145,7 @@ public:
     int base = 0;
     int n_threads = 1;
     double tolerance = 0;
+    double length_tolerance = 1e-3;  // by what part lengths of bodies are adjusted, at most (rigid/fit.hpp)
     int max_iterations = 50;
     bool keeps_outcomes = false;    // core/run/outcomes.hpp
     std::int64_t memory_limit = 0;  // bytes; 0: the default (memory_limit.hpp)
@@ -180,10 +188,12 @@ private:
     Kinds kinds_;
     Shapes shapes_;
     Groups groups_;
-    std::vector<std::int64_t> unconstrained_;  // bonds between two fixed atoms, in the caller's arrays
+    std::vector<std::int64_t> unconstrained_;  // bonds in no equation, in the caller's arrays: between two fixed atoms,
+    std::vector<std::int64_t> implied_;        // or those that others imply (rigid/implied.hpp)
     std::vector<unsigned char> backwards_;     // [n_bonds], or empty: no bond is
     std::vector<unsigned char> active_;        // [n_chains] or empty: all
     std::unique_ptr<rigid::Bodies> bodies_;
+    Adjustment adjustment_;
     Labels labels_;
     Box reference_box_{};
     BoxRate box_rate_{};

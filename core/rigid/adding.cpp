@@ -9,6 +9,8 @@
 #include "core/molecules/memory_limit.hpp"
 #include "core/rigid/bodies.hpp"
 #include "core/rigid/cliques.hpp"
+#include "core/rigid/fit.hpp"
+#include "core/rigid/implied.hpp"
 
 namespace holonomic {
 
@@ -91,6 +93,17 @@ BodyName name_of_body(const Chains &chains, const rigid::Given &given, std::int6
          chains.base, -1, given.atoms[0]);
 }
 
+// A body that its lengths have made stays as it is.
+void set_length(const rigid::Shape &shape, std::size_t bond, double length, rigid::Given &given) {
+    const double old = given.bonds[bond].length;
+    given.bonds[bond].length = length;
+    if (!shape.by_lengths || shape.bonds[bond].row >= 0) return;
+    if (!(std::fabs(length - old) <= rigid::same_length * old))
+        throw rigid::Refusal{
+            rigid::Refusal::of_bonds, {}, {rigid::Unsolvable::length_in_body, static_cast<std::int32_t>(bond)}, -1};
+    given.bonds[bond].length = old;
+}
+
 }  // namespace
 
 void Chains::add_rigid(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
@@ -150,14 +163,19 @@ void Chains::add_rigid_molecules(std::int64_t count, std::int64_t n_atoms, std::
     commit_rigid(all, count * n_bonds);
 }
 
-// Where parts of the list depend, their molecules are added as bodies, the others as ever.
+// Where parts of the list depend, their molecules are added as bodies, or without what others imply, the others as
+// ever.
 void Chains::add_with_bodies(const BondList &list, const double *lengths, std::int64_t n_lengths) {
-    const rigid::Cliques cliques = rigid::find_cliques(masses_, list, lengths, n_lengths);
+    rigid::Cliques cliques = rigid::find_cliques(masses_, list, lengths, n_lengths, length_tolerance);
+    std::vector<unsigned char> implied = rigid::implied_bonds(masses_, list, lengths, n_lengths, cliques);
+    if (!cliques.shared.empty() || std::count(implied.begin(), implied.end(), 1) > 0)
+        cliques = rigid::find_cliques(masses_, list, lengths, n_lengths, length_tolerance, implied);
     FoundMolecules found;
     std::vector<std::int64_t> pairs, rest, rest_pairs;
     std::vector<double> its_lengths;
     std::size_t next = 0;
     for (std::int64_t k = 0; k < list.n_bonds; ++k) {
+        if (implied[at(k)]) continue;
         const bool of_body = next < cliques.bonds.size() && cliques.bonds[next] == k;
         next += of_body;
         std::vector<std::int64_t> &to = of_body ? pairs : rest_pairs;
@@ -177,9 +195,21 @@ void Chains::add_with_bodies(const BondList &list, const double *lengths, std::i
     }
     for (std::int64_t &bond : found.bonds) bond = rest[at(bond)];
     for (std::int64_t &bond : found.unconstrained) bond = rest[at(bond)];
+    for (std::int64_t k = 0; k < list.n_bonds; ++k)
+        if (implied[at(k)]) found.unconstrained.push_back(k);
     Batch batch(*this);
     batch.append_found(found, list, lengths, n_lengths);
-    if (cliques.sizes.empty()) return batch.commit();
+    const std::int64_t first_bond = n_bonds_;
+    const auto note = [&] {
+        if (cliques.adjusted > rigid::rounding && cliques.adjusted > adjustment_.largest)
+            adjustment_ = {cliques.adjusted, first_bond + cliques.adjusted_bond};
+        for (std::int64_t k = 0; k < list.n_bonds; ++k)
+            if (implied[at(k)]) implied_.push_back(first_bond + k);
+    };
+    if (cliques.sizes.empty()) {
+        batch.commit();
+        return note();
+    }
     std::vector<rigid::Given> molecules = sort_rigid(
         static_cast<std::int64_t>(cliques.sizes.size()), cliques.sizes.data(), cliques.atoms.data(), 0,
         cliques.places.data(), static_cast<std::int64_t>(its_lengths.size()), pairs.data(), its_lengths.data());
@@ -188,6 +218,7 @@ void Chains::add_with_bodies(const BondList &list, const double *lengths, std::i
         for (std::int64_t &bond : given.bond_numbers) bond = n_bonds_ + cliques.bonds[at(bond - n_bonds_)];
     }
     commit_rigid(molecules, 0, &batch);
+    note();
 }
 
 void Chains::commit_rigid(const std::vector<rigid::Given> &molecules, std::int64_t n_bonds, Batch *also) {
@@ -239,9 +270,9 @@ std::unique_ptr<rigid::Bodies> Chains::rebuild_bodies(const Masses &masses, cons
                                 name_of_atom(atom).text),
                      base, -1, atom);
         }
-        for (std::size_t k = 0; lengths && k < given.bonds.size(); ++k)
-            given.bonds[k].length = lengths[given.bond_numbers[k]];
         try {
+            for (std::size_t k = 0; lengths && k < given.bonds.size(); ++k)
+                set_length(bodies_->shape(m), k, lengths[given.bond_numbers[k]], given);
             next->add(given);
         } catch (const rigid::Refusal &refusal) {
             refuse(*this, given, refusal);

@@ -11,9 +11,6 @@ namespace {
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
-// A bond's length and the body's own distance between its atoms: equal to what a file's digits allow.
-constexpr double same_length = 1e-6;
-
 struct Row {
     std::vector<Entry> entries;
     std::int32_t bond;
@@ -64,6 +61,7 @@ private:
     }
 
     void check_within(const Bond &bond, std::int32_t number) const {
+        if (s_.by_lengths) return;  // fit.hpp has done it
         const Part &part = s_.parts[at(s_.part_of[at(bond.i)])];
         const Body &body = body_of(part);
         double square = 0;

@@ -19,6 +19,9 @@ struct Part {
     std::int32_t first_atom, first_node;
 };
 
+// A bond's length and the distance between its atoms in a body that was given by places: equal to what digits allow.
+constexpr double same_length = 1e-6;
+
 // A bond as it was given, of atoms numbered within the molecule.
 struct Bond {
     std::int32_t i, j;

@@ -25,6 +25,7 @@ def _again(of: Any, masses: np.ndarray, fixed: Optional[np.ndarray], added: Adde
     molecules = of.__new__(of)
     Molecules.__init__(molecules, masses, fixed)
     molecules.memory_limit = settings["memory_limit"]  # what is added has to fit
+    molecules.length_tolerance = settings["length_tolerance"]  # and rigid groups are adjusted as they were
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", MasslessWarning)
         added.repeat(molecules)

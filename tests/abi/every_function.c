@@ -198,7 +198,9 @@ static void along(hol_chains *both, const double *r)
 /* The same molecules from far off, what is left of each bond, and a status for each molecule. */
 static void crude(hol_chains *both, const double *r)
 {
-    double moved[21], length[6], rate[6], v[21] = {0};
+    double moved[21], length[6], rate[6], v[21] = {0}, error = -1;
+    unsigned char implied[6] = {7};
+    int64_t bond = 7;
     int status[2] = {-1, -1}, iterations[2] = {-1, -1}, k;
     hol_report report;
     const hol_view positions = view_of(moved), rates = view_of(v);
@@ -212,6 +214,11 @@ static void crude(hol_chains *both, const double *r)
     SUCCEEDS(hol_residuals_view(both, &positions, &rates, NULL, rate));
     NEAR(rate[3], 3);
     SUCCEEDS(hol_chains_set_memory_limit(both, 1 << 20));
+    SUCCEEDS(hol_chains_set_length_tolerance(both, 1e-3));
+    SUCCEEDS(hol_chains_adjustment(both, &error, &bond));
+    EXPECT(error == 0 && bond == -1);
+    SUCCEEDS(hol_chains_implied(both, implied));
+    EXPECT(implied[0] == 0);
     SUCCEEDS(hol_chains_set_outcomes(both, 1));
     SUCCEEDS(hol_impose(both, moved, &report));
     EXPECT(report.n_corrected == 1 && report.n_failed == 0 && report.iterations > 1);
