@@ -109,6 +109,9 @@ private:
     std::vector<Pair> pairs_;
 };
 
+// Of the square of a height, relative to the largest, which independence is a matter of for few atoms.
+double of_heights(const Distances &wanted) { return 2 * epsilon * static_cast<double>(wanted.n - 2); }
+
 // The least number of decimals that all values have, to a few roundings; -1 if more than `most`, or if so many
 // decimals are all that a number of this size has: what is as near by chance is not rounded.
 int decimals_of(const Distances &wanted, int most, bool of_squares) {
@@ -130,6 +133,17 @@ int decimals_of(const Distances &wanted, int most, bool of_squares) {
         if (std::all_of(values.begin(), values.end(), fits)) return chance < likely ? p : -1;
     }
     return -1;
+}
+
+// Whether places on a grid of so many decimals would be on a line or in a plane: what is off it then is no rounding.
+bool are_flat_on_grid(const Distances &wanted, int decimals) {
+    const double scale = std::pow(10.0, 2 * decimals);
+    std::vector<double> squares(wanted.length), places;
+    for (std::int64_t i = 0; i < wanted.n; ++i)
+        for (std::int64_t j = 0; j < i; ++j)
+            if (!(wanted.at(i, j) > 0)) return false;  // not all are held
+    for (double &x : squares) x = std::round(x * x * scale) / scale;
+    return places_in(static_cast<int>(wanted.n) - 2, wanted.n, squares.data(), places) <= of_heights(wanted);
 }
 
 }  // namespace
@@ -189,14 +203,15 @@ Decimals::Decimals(const Distances &wanted, double tolerance)
     double least = std::numeric_limits<double>::infinity();
     for (const double length : wanted.length)
         if (length > 0) least = std::min(least, length);
-    const int of_lengths = decimals_of(wanted, 14, false),
-              of_places = of_lengths < 0 ? decimals_of(wanted, 6, true) : -1;
+    const int of_lengths = decimals_of(wanted, 12, false);
+    int of_places = of_lengths < 0 ? decimals_of(wanted, 6, true) : -1;
+    if (of_places >= 0 && wanted.n < 5 && are_flat_on_grid(wanted, of_places)) of_places = -1;
     // Fewer than three are a round number, not a rounded one.
     if (of_lengths >= 0) open_ = std::max(open_, std::pow(10.0, -std::max(of_lengths, 3)) / least);
     if (of_places >= 0)
         open_ = std::max(open_, 2 * std::pow(10.0, -2 * std::max(of_places, 3)) / (least * least));
     are_full_ = of_lengths < 0 && of_places < 0;
-    if (are_full_ && wanted.n < 5) highest_ = 2 * epsilon * static_cast<double>(wanted.n - 2);
+    if (are_full_ && wanted.n < 5) highest_ = of_heights(wanted);
     if (tolerance > 0) most_ = std::max(tolerance, std::min(open_, 10 * tolerance));
 }
 
@@ -210,13 +225,15 @@ Group look_at(const Distances &wanted, double tolerance) {
     Group group{Group::independent, most, {}, {}};
     for (int d = 1; d <= most; ++d) {
         const double left = places_in(d, n, squares.data(), group.places);
-        const bool must = d == 3 || (d == most && left < 0);  // else they fit no place in space
-        if (!must && left > high) continue;
+        const bool impossible = d == 3 || (d == most && left < 0);  // they fit no place in space
+        if (!impossible && left > high) continue;
         const Decimals decimals(wanted, tolerance);
         group.dimension = d;
         group.misfit = fit_places(wanted, d, group.places);
-        group.kind = decimals.allow(left, group.misfit) || (must && group.misfit.error <= decimals.most()) ? Group::dependent
-                     : must && n > 3                                                                 ? Group::impossible
+        const bool must = impossible && !decimals.allow_position(group.misfit);
+        group.kind = decimals.allow(left, group.misfit) || (must && group.misfit.error <= decimals.most())
+                         ? Group::dependent
+                     : must && n > 3 ? Group::impossible
                                      : Group::independent;
         if (group.kind != Group::independent) return group;
     }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -45,6 +46,8 @@ public:
     // Places in fewer dimensions are what the lengths say. square: of the height that is left, of the largest distance.
     bool allow(const Misfit &misfit) const { return misfit.error <= std::min(open_, most_); }
     bool allow(double square, const Misfit &misfit) const { return square <= highest_ && allow(misfit); }
+    // Fewer than five atoms miss no place in space by more than positions do, which say how far they are from flat.
+    bool allow_position(const Misfit &misfit) const { return std::isfinite(highest_) && misfit.error <= 1e-12; }
     // Of an atom by other atoms' places, whose errors add up.
     bool allow_joining(const Misfit &misfit) const { return misfit.error <= 4 * std::min(open_, most_); }
     // Lengths that no other places have may be adjusted so far.
