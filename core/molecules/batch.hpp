@@ -8,8 +8,8 @@
 
 namespace holonomic {
 
-// Throws Error if a length is out of range.
-void check_lengths(std::int64_t n_bonds, const double *lengths, int base);
+// Throws Error if a length is out of range. may_be_zero: its two atoms are one point.
+void check_lengths(std::int64_t n_bonds, const double *lengths, int base, bool may_be_zero = false);
 
 class Batch {
 public:

@@ -23,7 +23,9 @@ namespace holonomic {
 
 namespace rigid {
 class Bodies;
+struct Cliques;
 struct Given;
+struct LooseParts;
 }  // namespace rigid
 
 // When positions are compared with the lengths. The values are those of hol_when, which capi/chains.cpp asserts.
@@ -173,12 +175,15 @@ private:
     void check_width(const Box &next, double longest, const double *lengths) const;
     std::vector<rigid::Given> sort_rigid(std::int64_t n_bodies, const std::int64_t *sizes, const std::int64_t *atoms,
                                          std::int64_t offset, const double *places, std::int64_t n_bonds,
-                                         const std::int64_t *pairs, const double *lengths) const;
+                                         const std::int64_t *pairs, const double *lengths,
+                                         const rigid::LooseParts *parts = nullptr) const;
     // `also`, of another addition in the same call: done when nothing else can fail but it.
     void commit_rigid(const std::vector<rigid::Given> &molecules, std::int64_t n_bonds, Batch *also = nullptr);
     // Bond k of the list has the length lengths[k % n_lengths]. Parts that depend become bodies (rigid/cliques.hpp).
     void add_listed(const BondList &list, const double *lengths, std::int64_t n_lengths);
     void add_with_bodies(const BondList &list, const double *lengths, std::int64_t n_lengths);
+    rigid::LooseParts take_linear(const BondList &list, const double *lengths, std::int64_t n_lengths,
+                                  rigid::Cliques &cliques, std::vector<unsigned char> &implied) const;
     std::unique_ptr<rigid::Bodies> rebuild_bodies(const Masses &masses, const double *lengths) const;
     double longest() const;
 

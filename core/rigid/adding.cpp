@@ -11,6 +11,7 @@
 #include "core/rigid/cliques.hpp"
 #include "core/rigid/fit.hpp"
 #include "core/rigid/implied.hpp"
+#include "core/rigid/linear.hpp"
 
 namespace holonomic {
 
@@ -93,11 +94,14 @@ BodyName name_of_body(const Chains &chains, const rigid::Given &given, std::int6
          chains.base, -1, given.atoms[0]);
 }
 
-// A body that its lengths have made stays as it is.
+// A body that its lengths have made stays as it is, and so do flat and straight groups.
 void set_length(const rigid::Shape &shape, std::size_t bond, double length, rigid::Given &given) {
     const double old = given.bonds[bond].length;
     given.bonds[bond].length = length;
-    if (!shape.by_lengths || shape.bonds[bond].row >= 0) return;
+    const rigid::Bond &its = shape.bonds[bond];
+    const auto part = [&](std::int32_t atom) { return atom < shape.n_held ? shape.part_of[at(atom)] : -1 - atom; };
+    const bool within = part(its.i) == part(its.j);
+    if (!shape.by_lengths || !within) return;
     if (!(std::fabs(length - old) <= rigid::same_length * old))
         throw rigid::Refusal{
             rigid::Refusal::of_bonds, {}, {rigid::Unsolvable::length_in_body, static_cast<std::int32_t>(bond)}, -1};
@@ -163,6 +167,36 @@ void Chains::add_rigid_molecules(std::int64_t count, std::int64_t n_atoms, std::
     commit_rigid(all, count * n_bonds);
 }
 
+// Linear groups as loose parts, behind the bodies; and what they imply. Bonds of length zero are relations.
+rigid::LooseParts Chains::take_linear(const BondList &list, const double *lengths, std::int64_t n_lengths,
+                                      rigid::Cliques &cliques, std::vector<unsigned char> &implied) const {
+    const rigid::Linear groups(cliques.linear);
+    rigid::LooseParts parts;
+    double longest = 0;
+    for (const std::int64_t k : cliques.linear_bonds) longest = std::max(longest, lengths[k % n_lengths]);
+    for (const std::int64_t k : rigid::implied_beside(groups, masses_, list, lengths, n_lengths, cliques)) {
+        implied[at(k)] = 1;
+        parts.links.emplace_back(list.pairs[2 * k], list.pairs[2 * k + 1]);
+    }
+    for (std::int64_t k = 0; k < list.n_bonds; ++k) {
+        if (lengths[k % n_lengths] > 0) continue;
+        const std::int64_t i = list.pairs[2 * k], j = list.pairs[2 * k + 1];
+        if (masses_.fixed(i - list.base) || masses_.fixed(j - list.base))
+            throw bond_error(list, Status::value, k, "has the length 0, and one of its atoms is held fixed");
+        implied[at(k)] = 1;
+        parts.links.emplace_back(i, j);
+    }
+    parts.loose.resize(cliques.sizes.size());
+    for (std::size_t p = 0; p < groups.parts().size(); ++p) {
+        const std::vector<std::int64_t> &atoms = groups.parts()[p];
+        cliques.sizes.push_back(static_cast<std::int64_t>(atoms.size()));
+        cliques.atoms.insert(cliques.atoms.end(), atoms.begin(), atoms.end());
+        cliques.places.resize(cliques.places.size() + 3 * atoms.size(), 0);
+        parts.loose.push_back({groups.relations()[p], longest > 0 ? longest : 1});
+    }
+    return parts;
+}
+
 // Where parts of the list depend, their molecules are added as bodies, or without what others imply, the others as
 // ever.
 void Chains::add_with_bodies(const BondList &list, const double *lengths, std::int64_t n_lengths) {
@@ -170,14 +204,17 @@ void Chains::add_with_bodies(const BondList &list, const double *lengths, std::i
     std::vector<unsigned char> implied = rigid::implied_bonds(masses_, list, lengths, n_lengths, cliques);
     if (!cliques.shared.empty() || std::count(implied.begin(), implied.end(), 1) > 0)
         cliques = rigid::find_cliques(masses_, list, lengths, n_lengths, length_tolerance, implied);
+    rigid::LooseParts parts;
+    if (!cliques.linear.empty()) parts = take_linear(list, lengths, n_lengths, cliques, implied);
     FoundMolecules found;
-    std::vector<std::int64_t> pairs, rest, rest_pairs;
+    std::vector<std::int64_t> pairs, of_bodies, rest, rest_pairs;
     std::vector<double> its_lengths;
     std::size_t next = 0;
     for (std::int64_t k = 0; k < list.n_bonds; ++k) {
-        if (implied[at(k)]) continue;
         const bool of_body = next < cliques.bonds.size() && cliques.bonds[next] == k;
         next += of_body;
+        if (implied[at(k)]) continue;
+        if (of_body) of_bodies.push_back(k);
         std::vector<std::int64_t> &to = of_body ? pairs : rest_pairs;
         to.push_back(list.pairs[2 * k]);
         to.push_back(list.pairs[2 * k + 1]);
@@ -212,10 +249,11 @@ void Chains::add_with_bodies(const BondList &list, const double *lengths, std::i
     }
     std::vector<rigid::Given> molecules = sort_rigid(
         static_cast<std::int64_t>(cliques.sizes.size()), cliques.sizes.data(), cliques.atoms.data(), 0,
-        cliques.places.data(), static_cast<std::int64_t>(its_lengths.size()), pairs.data(), its_lengths.data());
+        cliques.places.data(), static_cast<std::int64_t>(its_lengths.size()), pairs.data(), its_lengths.data(),
+        parts.loose.empty() ? nullptr : &parts);
     for (rigid::Given &given : molecules) {
         given.by_lengths = true;
-        for (std::int64_t &bond : given.bond_numbers) bond = n_bonds_ + cliques.bonds[at(bond - n_bonds_)];
+        for (std::int64_t &bond : given.bond_numbers) bond = n_bonds_ + of_bodies[at(bond - n_bonds_)];
     }
     commit_rigid(molecules, 0, &batch);
     note();

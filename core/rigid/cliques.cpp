@@ -35,6 +35,11 @@ public:
         for (std::int64_t k = 0; k < list.n_bonds; ++k) {
             const std::int64_t i = list.pairs[2 * k], j = list.pairs[2 * k + 1];
             if (masses.fixed(i - list.base) || masses.fixed(j - list.base) || i == j) continue;
+            if (length(k) == 0) {
+                bonds_of_[i], bonds_of_[j];
+                take_linear({i, j}, std::vector<double>(6, 0), 0);
+                continue;
+            }
             bonds_of_[i].push_back({j, k});
             bonds_of_[j].push_back({i, k});
         }
@@ -49,8 +54,9 @@ public:
         std::int64_t steps = steps_for_rings(list_.n_bonds);
         for (std::int64_t k = 0; k < list_.n_bonds; ++k) look_for_ring(k, steps);
         for (std::int64_t k = 0; k < list_.n_bonds; ++k) look_around(k, false);
-        if (!found_.sizes.empty()) collect_bonds();
+        found_.bonds = bonds_from(held_atoms());
         for (const std::int64_t k : found_.bonds) look_for_shared(k);
+        if (!found_.linear.empty()) gather_linear();
         return std::move(found_);
     }
 
@@ -66,6 +72,7 @@ private:
 
     // A length that others imply, with those of five atoms that tell it.
     void compare(std::int64_t bond) {
+        if (length(bond) == 0) return;
         std::vector<std::int64_t> both, clique{list_.pairs[2 * bond], list_.pairs[2 * bond + 1]};
         if (bonds_of_.count(clique[0]) && bonds_of_.count(clique[1]))
             for (const Partner &partner : bonds_of_.at(clique[0]))
@@ -111,19 +118,67 @@ private:
         }
     }
     void check_shared(std::int64_t bond, const std::vector<std::int64_t> &atoms) {
-        if (is_together(atoms) || !depend(atoms)) return;
+        if (is_together(atoms) || is_in_linear(atoms) || !depend(atoms)) return;
         if (left_out_.empty()) return found_.shared.push_back(bond);
-        std::string names;
-        const Labels none, &labels = list_.labels ? *list_.labels : none;
-        for (const std::int64_t atom : atoms)
-            names += (names.empty() ? "" : ", ") + std::string(labels.of_atom(atom - list_.base, list_.base).text);
-        char words[512];
-        std::snprintf(words, sizeof words,
-                      "is one of the distances between atoms %.200s, which their lengths hold %s, as a body; but such "
-                      "bodies share atoms here, and none may: leave out the distances of one of the bodies that are no "
-                      "bonds, or give all these atoms as one body to hol_chains_add_rigid",
-                      names.c_str(), atoms.size() == 3 ? "straight" : "flat");
-        throw bond_error(list_, Status::degenerate, bond, words);
+        Group group = look_at(distances(atoms), tolerance_);
+        std::vector<std::int64_t> all = atoms;
+        std::vector<double> places = group.places;
+        for (std::size_t next = 0; next < all.size(); ++next)
+            for (const Partner &partner : bonds_of_.at(all[next]))
+                if (std::count(all.begin(), all.end(), partner.atom) == 0)
+                    join(partner.atom, group.dimension, all, places);
+        if (all.size() > atoms.size()) group.misfit = fit_places(distances(all), group.dimension, places);
+        if (group.misfit.error > Decimals(distances(all), tolerance_).most()) refuse(all, group.misfit);
+        note(all, group.misfit);
+        take_linear(std::move(all), std::move(places), group.dimension);
+    }
+
+    void take_linear(std::vector<std::int64_t> atoms, std::vector<double> places, int dimension) {
+        for (const std::int64_t atom : atoms) linear_of_[atom].push_back(found_.linear.size());
+        found_.linear.push_back({std::move(atoms), std::move(places), dimension});
+    }
+    bool is_in_linear(const std::vector<std::int64_t> &atoms) const {
+        const auto found = linear_of_.find(atoms[0]);
+        if (found == linear_of_.end()) return false;
+        return std::any_of(found->second.begin(), found->second.end(), [&](std::size_t g) {
+            const std::vector<std::int64_t> &its = found_.linear[g].atoms;
+            return std::all_of(atoms.begin(), atoms.end(),
+                               [&](std::int64_t atom) { return std::count(its.begin(), its.end(), atom) > 0; });
+        });
+    }
+
+    // Bodies that share atoms with linear groups are such groups, too.
+    void gather_linear() {
+        std::vector<std::int64_t> sizes, atoms;
+        std::vector<double> places;
+        const std::size_t before = found_.linear.size();
+        std::size_t first = 0;
+        for (const std::int64_t size : found_.sizes) {
+            const auto begin = static_cast<std::ptrdiff_t>(first), end = begin + static_cast<std::ptrdiff_t>(size);
+            std::vector<std::int64_t> its(found_.atoms.begin() + begin, found_.atoms.begin() + end);
+            std::vector<double> there(found_.places.begin() + 3 * begin, found_.places.begin() + 3 * end);
+            first += at(size);
+            const bool shares = std::any_of(its.begin(), its.end(), [&](std::int64_t atom) {
+                const auto found = linear_of_.find(atom);
+                return found != linear_of_.end() && found->second[0] < before;
+            });
+            if (shares) {
+                int dimension = 1;
+                for (std::size_t e = 0; e < there.size(); ++e)
+                    if (there[e] != 0) dimension = std::max(dimension, static_cast<int>(e % 3) + 1);
+                take_linear(std::move(its), std::move(there), dimension);
+                continue;
+            }
+            sizes.push_back(size);
+            atoms.insert(atoms.end(), its.begin(), its.end());
+            places.insert(places.end(), there.begin(), there.end());
+        }
+        found_.sizes = std::move(sizes);
+        found_.atoms = std::move(atoms);
+        found_.places = std::move(places);
+        std::vector<std::int64_t> linear;
+        for (const LinearGroup &group : found_.linear) linear.insert(linear.end(), group.atoms.begin(), group.atoms.end());
+        found_.linear_bonds = bonds_from(linear);
     }
 
     bool is_free(std::int64_t atom) const { return bonds_of_.count(atom) && !body_of_.count(atom); }
@@ -263,21 +318,35 @@ private:
         throw bond_error(list_, Status::degenerate, bond, words);
     }
 
-    // All bonds that hang together with a body, but not through fixed atoms.
-    void collect_bonds() {
+    std::vector<std::int64_t> held_atoms() const {
+        std::vector<std::int64_t> all(found_.atoms);
+        for (const LinearGroup &group : found_.linear) all.insert(all.end(), group.atoms.begin(), group.atoms.end());
+        return all;
+    }
+    // All bonds that hang together with these atoms, but not through fixed atoms.
+    std::vector<std::int64_t> bonds_from(std::vector<std::int64_t> stack) const {
+        std::vector<std::int64_t> bonds;
+        if (stack.empty()) return bonds;
         std::unordered_map<std::int64_t, bool> reached;
-        std::vector<std::int64_t> stack(found_.atoms);
         for (const std::int64_t atom : stack) reached[atom] = true;
         while (!stack.empty()) {
             const std::int64_t atom = stack.back();
             stack.pop_back();
-            for (const Partner &partner : bonds_of_.at(atom))
-                if (reached.emplace(partner.atom, true).second) stack.push_back(partner.atom);
+            const auto reach = [&](std::int64_t other) {
+                if (reached.emplace(other, true).second) stack.push_back(other);
+            };
+            for (const Partner &partner : bonds_of_.at(atom)) reach(partner.atom);
+            if (const auto found = linear_of_.find(atom); found != linear_of_.end())
+                for (const std::size_t g : found->second)
+                    for (const std::int64_t other : found_.linear[g].atoms) reach(other);
         }
         for (std::int64_t k = 0; k < list_.n_bonds; ++k)
-            if (!is_left_out(k) && (reached.count(list_.pairs[2 * k]) || reached.count(list_.pairs[2 * k + 1])))
-                found_.bonds.push_back(k);
+            if (!is_left_out(k) && length(k) > 0 &&
+                (reached.count(list_.pairs[2 * k]) || reached.count(list_.pairs[2 * k + 1])))
+                bonds.push_back(k);
+        return bonds;
     }
+    double length(std::int64_t bond) const { return lengths_[bond % n_lengths_]; }
 
     const BondList &list_;
     const double *const lengths_;
@@ -286,6 +355,7 @@ private:
     const std::vector<unsigned char> &left_out_;
     std::unordered_map<std::int64_t, std::vector<Partner>> bonds_of_;  // of atoms that can move
     std::unordered_map<std::int64_t, std::size_t> body_of_;
+    std::unordered_map<std::int64_t, std::vector<std::size_t>> linear_of_;
     Cliques found_;
 };
 

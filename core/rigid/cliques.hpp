@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/molecules/find.hpp"
+#include "core/rigid/linear.hpp"
 
 namespace holonomic::rigid {
 
@@ -20,13 +21,15 @@ struct Cliques {
     std::vector<double> places;              // [..][3]
     std::vector<std::int64_t> bonds;         // of the list, in molecules that have one of these bodies, ascending
     std::vector<std::int64_t> shared;        // of the list, in groups that depend and share atoms with bodies
+    std::vector<LinearGroup> linear;         // on a line or in a plane, which share atoms, and bonds of length zero
+    std::vector<std::int64_t> linear_bonds;  // of those above, in molecules with such groups, ascending
     double adjusted = 0;                     // by which part of it a body changes a length, at most
     std::int64_t adjusted_bond = -1;         // of the list
 };
 
 // Bond k of the list has the length lengths[k % n_lengths]. Throws Error, naming a bond and the atoms, where lengths
 // are those of no places in space by more than the tolerance. left_out: of each bond, or empty: one that others imply,
-// and that is compared with them alone (implied.hpp). With it, groups that share atoms are an error.
+// and that is compared with them alone (implied.hpp). With it, groups that share atoms are linear ones.
 Cliques find_cliques(const Masses &masses, const BondList &list, const double *lengths, std::int64_t n_lengths,
                      double tolerance, const std::vector<unsigned char> &left_out = {});
 

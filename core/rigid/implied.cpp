@@ -1,84 +1,17 @@
 #include "core/rigid/implied.hpp"
 
 #include <algorithm>
-#include <map>
+#include <tuple>
 #include <unordered_map>
 #include <unordered_set>
 
-#include "core/molecules/hash.hpp"
+#include "core/rigid/rank.hpp"
 
 namespace holonomic::rigid {
 
 namespace {
 
 std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
-
-// Numbers modulo 2^61 - 1.
-using Number = std::uint64_t;
-constexpr Number prime = (Number{1} << 61) - 1;
-__extension__ typedef unsigned __int128 Wide;
-
-Number times(Number a, Number b) {
-    const Wide product = static_cast<Wide>(a) * b;
-    const Number sum = static_cast<Number>(product & prime) + static_cast<Number>(product >> 61);
-    return sum >= prime ? sum - prime : sum;
-}
-Number minus(Number a, Number b) { return a >= b ? a - b : a + prime - b; }
-Number inverse(Number a) {  // a^(prime - 2)
-    Number result = 1;
-    for (Number e = prime - 2; e > 0; e >>= 1, a = times(a, a))
-        if (e & 1) result = times(result, a);
-    return result;
-}
-
-// Rows of distances at random coordinates, one after the other.
-class Rank {
-public:
-    // Atoms are counted from 0; -1: it is fixed, at `place`.
-    struct End {
-        std::int64_t column, place;
-    };
-    // Whether those before imply it.
-    bool add(const End &i, const End &j) {
-        std::map<std::int64_t, Number> row;
-        for (int c = 0; c < 3; ++c) {
-            const Number d = minus(coordinate(j.place, c), coordinate(i.place, c));
-            if (i.column >= 0) row[3 * i.column + c] = minus(0, d);
-            if (j.column >= 0) row[3 * j.column + c] = d;
-        }
-        while (!row.empty()) {
-            const auto first = row.begin();
-            if (first->second == 0) {
-                row.erase(first);
-                continue;
-            }
-            const auto pivot = pivots_.find(first->first);
-            if (pivot == pivots_.end()) {
-                keep(row);
-                return false;
-            }
-            const Number factor = first->second;
-            for (const auto &entry : pivot->second) {
-                Number &value = row[entry.first];
-                value = minus(value, times(factor, entry.second));
-            }
-        }
-        return true;
-    }
-
-private:
-    using Row = std::vector<std::pair<std::int64_t, Number>>;
-    static Number coordinate(std::int64_t place, int c) {
-        return mix(mix(0x9e3779b97f4a7c15u, static_cast<std::uint64_t>(place)), static_cast<std::uint64_t>(c)) % prime;
-    }
-    void keep(const std::map<std::int64_t, Number> &row) {
-        const Number scale = inverse(row.begin()->second);
-        Row &pivot = pivots_[row.begin()->first];
-        for (const auto &entry : row)
-            if (entry.second != 0) pivot.emplace_back(entry.first, times(scale, entry.second));
-    }
-    std::unordered_map<std::int64_t, Row> pivots_;  // by the column of their first entry, which is 1
-};
 
 class Search {
 public:
@@ -90,15 +23,15 @@ public:
             for (std::int64_t a = 0; a < cliques.sizes[b]; ++a)
                 body_of_[cliques.atoms[next++]] = static_cast<std::int64_t>(b);
         for (const std::int64_t bond : cliques.shared) shares_.insert(list.pairs[2 * bond]);
-        for (std::int64_t k = 0; k < list.n_bonds; ++k)
-            for (int e = 0; e < 2; ++e) bonds_of_[list.pairs[2 * k + e]].push_back(k);
+        for (std::int64_t k = 0; k < list.n_bonds; ++k)  // those of length zero are relations (linear.hpp)
+            for (int e = 0; e < 2 && length(k) > 0; ++e) bonds_of_[list.pairs[2 * k + e]].push_back(k);
     }
 
     std::vector<unsigned char> find() {
         std::unordered_map<std::int64_t, bool> seen;
         for (std::int64_t e = 0; e < 2 * list_.n_bonds; ++e) {
             const std::int64_t atom = list_.pairs[e];
-            if (!fixed(atom) && !seen[atom]) look_at_molecule(atom, seen);
+            if (!fixed(atom) && !seen[atom] && bonds_of_.count(atom)) look_at_molecule(atom, seen);
         }
         return std::move(implied_);
     }
@@ -145,7 +78,7 @@ private:
         });
         const auto end = [&](std::int64_t e) {
             const std::int64_t atom = list_.pairs[e];
-            return fixed(atom) ? Rank::End{-1, -1 - atom} : Rank::End{column.at(atom), column.at(atom)};
+            return fixed(atom) ? Rank::fixed(atom) : Rank::free(column.at(atom));
         };
         const auto is_within = [&](std::int64_t k) {
             const std::int64_t its = body(list_.pairs[2 * k]);
@@ -179,6 +112,68 @@ private:
 std::vector<unsigned char> implied_bonds(const Masses &masses, const BondList &list, const double *lengths,
                                          std::int64_t n_lengths, const Cliques &cliques) {
     return Search(masses, list, lengths, n_lengths, cliques).find();
+}
+
+std::vector<std::int64_t> implied_beside(const Linear &linear, const Masses &masses, const BondList &list,
+                                         const double *lengths, std::int64_t n_lengths, const Cliques &cliques) {
+    std::unordered_map<std::int64_t, std::int64_t> column, body_of;
+    std::size_t next = 0;
+    for (std::size_t b = 0; b < cliques.sizes.size(); ++b)
+        for (std::int64_t a = 0; a < cliques.sizes[b]; ++a) body_of[cliques.atoms[next++]] = static_cast<std::int64_t>(b);
+    const auto column_of = [&](std::int64_t atom) {
+        return column.emplace(atom, static_cast<std::int64_t>(column.size())).first->second;
+    };
+    std::vector<std::vector<Rank::Number>> followers;
+    for (std::size_t p = 0; p < linear.parts().size(); ++p)
+        followers.push_back(Rank::followers(linear.relations()[p], linear.leaders()[p]));
+    const auto end = [&](std::int64_t atom) {
+        if (masses.fixed(atom - list.base)) return Rank::fixed(atom);
+        const Linear::Place *const place = linear.find(atom);
+        if (!place) return Rank::free(column_of(atom));
+        const std::vector<std::int32_t> &leaders = linear.leaders()[place->part].atoms;
+        std::vector<std::pair<std::int64_t, Rank::Number>> of;
+        for (std::size_t l = 0; l < leaders.size(); ++l)
+            of.emplace_back(column_of(linear.parts()[place->part][at(leaders[l])]),
+                            followers[place->part][place->atom * leaders.size() + l]);
+        return Rank::combination(std::move(of));
+    };
+    // First those that bodies hold, then those between leaders, by which the others are best told, then shorter ones.
+    struct Key {
+        int rank;
+        double length;
+        std::int64_t bond;
+        bool operator<(const Key &other) const {
+            return std::tie(rank, length, bond) < std::tie(other.rank, other.length, other.bond);
+        }
+    };
+    std::vector<Key> order;
+    for (const std::int64_t k : cliques.linear_bonds) {
+        const std::int64_t i = list.pairs[2 * k], j = list.pairs[2 * k + 1];
+        const auto follows = [&](std::int64_t atom) {
+            const Linear::Place *const place = linear.find(atom);
+            return place && !place->leads;
+        };
+        const bool within = body_of.count(i) && body_of.count(j) && body_of.at(i) == body_of.at(j);
+        order.push_back({within ? -1 : follows(i) + follows(j), lengths[k % n_lengths], k});
+    }
+    std::sort(order.begin(), order.end());
+    std::vector<std::int64_t> found;
+    Rank rank;
+    for (const Key &key : order)
+        if (rank.add(end(list.pairs[2 * key.bond]), end(list.pairs[2 * key.bond + 1])) && key.rank >= 0)
+            found.push_back(key.bond);
+    for (const std::int64_t k : found) {
+        const auto has = [](const LinearGroup &group, std::int64_t atom) {
+            return std::count(group.atoms.begin(), group.atoms.end(), atom) > 0;
+        };
+        if (std::none_of(cliques.linear.begin(), cliques.linear.end(), [&](const LinearGroup &group) {
+                return has(group, list.pairs[2 * k]) && has(group, list.pairs[2 * k + 1]);
+            }))
+            throw bond_error(list, Status::degenerate, k,
+                             "is one too many: the flat and straight groups and the bonds around it leave fewer freedoms "
+                             "than there are bonds; hol_chains_add_rigid holds such a part by coordinates");
+    }
+    return found;
 }
 
 }  // namespace holonomic::rigid
